@@ -1,0 +1,1 @@
+//! Flight cards of the workspace: the tests themselves are the files in `tests/tests/`.
