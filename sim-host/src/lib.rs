@@ -1,1 +1,5 @@
-//! The simulator.
+//! The simulator: a nonlinear Whipple bicycle steered by the control crate that is flashed, and
+//! the question it answers: from which disturbances does it recover?
+
+pub mod bicycle;
+pub mod num;

@@ -1,0 +1,71 @@
+//! Accelerations and energy: d'Alembert's principle projected on the partial velocities (Kane's
+//! equations). The derivation is `docs/bicycle.md`.
+
+use super::inertia::Inertia;
+use super::{Geometry, Motion, State};
+use crate::num::Scalar;
+
+/// Applied torques \[N m\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torques<S> {
+    /// On the rear frame about the horizontal heading line through the rear contact, right positive:
+    /// its virtual power is `roll * roll_rate`.
+    pub roll: S,
+    /// From the rear on the front frame about the steer axis, to the right positive.
+    pub steer: S,
+}
+
+/// Accelerations of the independent speeds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accelerations<S> {
+    /// Roll \[rad/s^2\].
+    pub roll: S,
+    /// Steer \[rad/s^2\].
+    pub steer: S,
+    /// Rear wheel relative to the rear frame \[rad/s^2\].
+    pub rear_wheel: S,
+}
+
+impl<S: Scalar> Motion<S> {
+    /// Accelerations under `torques` and gravity.
+    #[inline(always)]
+    pub fn accelerations(&self, b: &Geometry, torques: &Torques<S>) -> Accelerations<S> {
+        let inertia = Inertia::new(b, &self.pose);
+        let mass = inertia.mass(b, &self.pose, &self.partial);
+        let bias = self.bias(b, &inertia);
+        let [u, v, w] = &self.partial;
+        let force = [
+            torques.roll - u.power(b, &self.pose, &bias),
+            torques.steer - v.power(b, &self.pose, &bias),
+            -w.power(b, &self.pose, &bias),
+        ];
+        let [roll, steer, rear_wheel] = solve(&mass, force);
+        Accelerations { roll, steer, rear_wheel }
+    }
+
+    /// Kinetic plus potential energy \[J\]; the potential is zero with the centres of mass at ground
+    /// height.
+    pub fn energy(&self, b: &Geometry, state: &State<S>) -> S {
+        let inertia = Inertia::new(b, &self.pose);
+        let [m11, m12, m13, m22, m23, m33] = inertia.mass(b, &self.pose, &self.partial);
+        let (p, q, r) = (state.roll_rate, state.steer_rate, state.rear_wheel_rate);
+        let twice = m11 * p * p + m22 * q * q + m33 * r * r + (m12 * p * q + m13 * p * r + m23 * q * r) * 2.0;
+        let (_, cr) = self.pose.attitude.roll;
+        let moment = self.pose.k.dot(inertia.moment) - cr * (b.rR * (b.rear.mass + b.front.mass));
+        twice * 0.5 + moment * -b.g
+    }
+}
+
+/// Solves the symmetric positive-definite system by elimination without pivoting, the wheel first.
+#[inline(always)]
+fn solve<S: Scalar>(&[a11, a12, a13, a22, a23, a33]: &[S; 6], [r1, r2, r3]: [S; 3]) -> [S; 3] {
+    let one = S::constant(1.0);
+    let inv3 = one / a33;
+    let (q1, q2) = (a13 * inv3, a23 * inv3);
+    let (b11, b12, b22) = (a11 - q1 * a13, a12 - q1 * a23, a22 - q2 * a23);
+    let (s1, s2) = (r1 - q1 * r3, r2 - q2 * r3);
+    let inv = one / (b11 * b22 - b12 * b12);
+    let x1 = (s1 * b22 - s2 * b12) * inv;
+    let x2 = (s2 * b11 - s1 * b12) * inv;
+    [x1, x2, (r3 - a13 * x1 - a23 * x2) * inv3]
+}

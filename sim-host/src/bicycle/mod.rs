@@ -1,0 +1,56 @@
+//! The nonlinear Whipple bicycle.
+//!
+//! Four rigid bodies (rear frame with rigid rider, rear wheel, front frame, front wheel), knife-edge
+//! wheels that roll without slip on level ground, three speeds free: roll rate, steer rate, rear
+//! wheel rate. Derivation: `docs/bicycle.md`. Axes and signs of Meijaard et al. 2007: roll right +,
+//! steer right +, wheel rates negative when rolling forward.
+
+mod bias;
+mod dynamics;
+mod geometry;
+mod inertia;
+mod motion;
+mod parameters;
+mod pitch;
+mod pose;
+
+pub use dynamics::{Accelerations, Torques};
+pub use geometry::{Geometry, Gyrostat};
+pub use motion::{Motion, Velocities};
+pub use parameters::{KEYS, Parameters};
+pub use pitch::{Attitude, front_contact_residual, pitch_from_upright};
+pub use pose::Pose;
+
+use crate::num::Scalar;
+
+/// The bicycle's state as far as its accelerations depend on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<S> {
+    /// Roll angle \[rad\], right positive.
+    pub roll: S,
+    /// Steer angle \[rad\], right positive.
+    pub steer: S,
+    /// Roll rate (the Euler angle's) \[rad/s\].
+    pub roll_rate: S,
+    /// Steer rate \[rad/s\].
+    pub steer_rate: S,
+    /// Rear wheel's rate relative to the rear frame \[rad/s\], negative forward.
+    pub rear_wheel_rate: S,
+    /// Pitch \[rad\]: follows from roll and steer; kept as the start of its own next solution.
+    pub pitch: S,
+}
+
+impl<S: Scalar> State<S> {
+    /// Upright and straight at forward speed `v` \[m/s\], the rear wheel rolling.
+    pub fn upright(b: &Geometry, v: S) -> Self {
+        let zero = S::constant(0.0);
+        Self {
+            roll: zero,
+            steer: zero,
+            roll_rate: zero,
+            steer_rate: zero,
+            rear_wheel_rate: v * (-1.0 / b.rR),
+            pitch: zero,
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! The rear frame's pitch: the one that puts the front wheel on the ground.
+//!
+//! With the rear wheel on the ground, the height of the front wheel's lowest point is a function of
+//! roll, steer and pitch; its root is found by Newton's method from a guess close by, so that the
+//! root stays the one continuous from the upright bicycle (there is another: the bicycle upside
+//! down). See `docs/bicycle.md`, section 3.
+
+use super::Geometry;
+use crate::num::Scalar;
+
+/// Newton iterations on the guess that a time step provides: its error is of the order of the step
+/// squared, below 1e-4 rad, so that two leave nothing but rounding.
+const ITERATIONS: usize = 2;
+
+/// Sines and cosines of the configuration, with the front wheel on the ground.
+#[derive(Clone, Copy, Debug)]
+pub struct Attitude<S> {
+    /// Sine and cosine of roll.
+    pub roll: (S, S),
+    /// Sine and cosine of steer.
+    pub steer: (S, S),
+    /// Sine and cosine of the steer axis' tilt, pitch included.
+    pub tilt: (S, S),
+    /// Pitch from the upright bicycle's \[rad\], nose up positive.
+    pub pitch: S,
+}
+
+/// Height of the front wheel's lowest point below the ground and its derivative by pitch \[m\].
+#[inline(always)]
+fn front_contact<S: Scalar>(b: &Geometry, (sr, cr): (S, S), (sd, cd): (S, S), (st, ct): (S, S)) -> (S, S) {
+    // Cosine of the angle between the front axle and the vertical, and the sine.
+    let n = sd * st * cr + cd * sr;
+    let m = (S::constant(1.0) - n * n).sqrt();
+    let depth = cr * (st * -b.d1 + ct * b.d2 + -b.rR) + (sd * sr - cd * st * cr) * b.d3 + m * b.rF;
+    let slope = -(cr * (ct * b.d1 + st * b.d2 + cd * ct * b.d3)) - n / m * (sd * ct * cr) * b.rF;
+    (depth, slope)
+}
+
+/// The attitude with the front wheel on the ground, by Newton's method from `guess` \[rad\], which
+/// must be within about 1e-3 rad.
+#[inline(always)]
+pub(super) fn attitude<S: Scalar>(b: &Geometry, roll: S, steer: S, guess: S) -> Attitude<S> {
+    let (roll, steer) = (roll.sin_cos(), steer.sin_cos());
+    let mut pitch = guess;
+    let (mut s, mut c) = (guess + b.lam).sin_cos();
+    for _ in 0..ITERATIONS {
+        let (depth, slope) = front_contact(b, roll, steer, (s, c));
+        let e = -(depth / slope);
+        pitch = pitch + e;
+        // The angle's own addition theorem; the correction is small enough for its series.
+        let q = e * e;
+        let (se, ce) =
+            (e * (q * (q * (1.0 / 120.0) + -1.0 / 6.0) + 1.0), q * (q * (1.0 / 24.0) + -0.5) + 1.0);
+        (s, c) = (s * ce + c * se, c * ce - s * se);
+    }
+    Attitude { roll, steer, tilt: (s, c), pitch }
+}
+
+/// The pitch \[rad\] of any attitude, followed from the upright bicycle in small steps.
+///
+/// `None` when the path breaks off: the front wheel can't be put on the ground there.
+pub fn pitch_from_upright(b: &Geometry, roll: f64, steer: f64) -> Option<f64> {
+    let steps = (roll.abs().max(steer.abs()) / 0.01).ceil().max(1.0);
+    let mut pitch = 0.0;
+    for i in 1..=steps as usize {
+        let part = i as f64 / steps;
+        let (r, d) = ((roll * part).sin_cos(), (steer * part).sin_cos());
+        for _ in 0..4 {
+            let (depth, slope) = front_contact(b, r, d, (pitch + b.lam).sin_cos());
+            pitch -= depth / slope;
+        }
+    }
+    let residual = front_contact(b, roll.sin_cos(), steer.sin_cos(), (pitch + b.lam).sin_cos()).0;
+    (residual.abs() < 1e-12).then_some(pitch)
+}
+
+/// How far the front wheel's lowest point is below the ground \[m\]; 0 but for rounding when `pitch`
+/// belongs to `roll` and `steer`.
+pub fn front_contact_residual(b: &Geometry, roll: f64, steer: f64, pitch: f64) -> f64 {
+    front_contact(b, roll.sin_cos(), steer.sin_cos(), (pitch + b.lam).sin_cos()).0
+}

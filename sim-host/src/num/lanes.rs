@@ -1,0 +1,89 @@
+//! Several numbers side by side: the compiler turns the loops into vector instructions.
+
+use super::{Scalar, sincos};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// `N` independent numbers; every operation acts on each alone, so a lane has the same bits as an
+/// `f64` that went through the same operations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(32))]
+pub struct Lanes<const N: usize>(pub [f64; N]);
+
+impl<const N: usize> Lanes<N> {
+    /// Every lane through a function.
+    #[inline(always)]
+    pub fn map(self, op: impl Fn(f64) -> f64) -> Self {
+        let mut out = self;
+        for i in 0..N {
+            out.0[i] = op(self.0[i]);
+        }
+        out
+    }
+}
+
+macro_rules! binary {
+    ($trait:ident, $method:ident, $op:tt) => {
+        impl<const N: usize> $trait for Lanes<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let mut out = self;
+                for i in 0..N {
+                    out.0[i] = self.0[i] $op other.0[i];
+                }
+                out
+            }
+        }
+    };
+}
+binary!(Add, add, +);
+binary!(Sub, sub, -);
+binary!(Mul, mul, *);
+binary!(Div, div, /);
+
+impl<const N: usize> Add<f64> for Lanes<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: f64) -> Self {
+        self + Self([other; N])
+    }
+}
+
+impl<const N: usize> Mul<f64> for Lanes<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: f64) -> Self {
+        self * Self([other; N])
+    }
+}
+
+impl<const N: usize> Neg for Lanes<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        let mut out = self;
+        for i in 0..N {
+            out.0[i] = -self.0[i];
+        }
+        out
+    }
+}
+
+impl<const N: usize> Scalar for Lanes<N> {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self([value; N])
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let mut out = self;
+        for i in 0..N {
+            out.0[i] = self.0[i].sqrt();
+        }
+        out
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        sincos::sin_cos_lanes(self)
+    }
+}

@@ -1,0 +1,51 @@
+//! The numbers the bicycle's equations are written in: one source for f64, for several rides side
+//! by side ([`Lanes`]) and for exact derivatives ([`Dual`]).
+//!
+//! Only `+ - * /`, square root and [`sin_cos`] are used, none of which depends on the C library or
+//! on fused multiply-add: a ride has the same bits alone, in a batch, and on every x86-64.
+
+mod dual;
+mod lanes;
+mod sincos;
+mod vector;
+
+pub use dual::Dual;
+pub use lanes::Lanes;
+pub use sincos::sin_cos;
+pub use vector::Vec3;
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A real number, a pack of them, or one with its derivative.
+pub trait Scalar:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Mul<f64, Output = Self>
+{
+    /// A constant.
+    fn constant(value: f64) -> Self;
+    /// The square root.
+    fn sqrt(self) -> Self;
+    /// Sine and cosine of an angle in radians, |angle| below 1e5.
+    fn sin_cos(self) -> (Self, Self);
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        sin_cos(self)
+    }
+}
