@@ -2,4 +2,6 @@
 //! the question it answers: from which disturbances does it recover?
 
 pub mod bicycle;
+pub mod eigen;
+pub mod integrate;
 pub mod num;

@@ -6,9 +6,12 @@
 //! steer right +, wheel rates negative when rolling forward.
 
 mod bias;
+pub mod catalogue;
+mod check;
 mod dynamics;
 mod geometry;
 mod inertia;
+pub mod linear;
 mod motion;
 mod parameters;
 mod pitch;

@@ -1,0 +1,79 @@
+//! Could such a bicycle exist: ranges of the parameters, inertias of real bodies.
+
+use super::{KEYS, Parameters};
+
+/// Unit and allowed range of each parameter, in the order of [`KEYS`].
+const RANGES: [(&str, f64, f64); 26] = [
+    ("m", 0.1, 5.0),
+    ("m", -1.0, 1.0),
+    ("rad", -1.0, 1.4),
+    ("m/s^2", 0.01, 30.0),
+    ("m", 0.02, 1.5),
+    ("kg", 1e-6, 100.0),
+    ("kg m^2", 1e-9, 100.0),
+    ("kg m^2", 1e-9, 100.0),
+    ("m", -3.0, 5.0),
+    ("m", -5.0, -1e-3),
+    ("kg", 1e-3, 1000.0),
+    ("kg m^2", 1e-9, 1000.0),
+    ("kg m^2", 1e-9, 1000.0),
+    ("kg m^2", 1e-9, 1000.0),
+    ("kg m^2", -1000.0, 1000.0),
+    ("m", -3.0, 5.0),
+    ("m", -5.0, -1e-3),
+    ("kg", 1e-3, 1000.0),
+    ("kg m^2", 1e-9, 1000.0),
+    ("kg m^2", 1e-9, 1000.0),
+    ("kg m^2", 1e-9, 1000.0),
+    ("kg m^2", -1000.0, 1000.0),
+    ("m", 0.02, 1.5),
+    ("kg", 1e-6, 100.0),
+    ("kg m^2", 1e-9, 100.0),
+    ("kg m^2", 1e-9, 100.0),
+];
+
+/// What a parameter must be: unit and range.
+pub(super) fn describe(key: &str) -> String {
+    let Some(i) = KEYS.iter().position(|k| *k == key) else { return String::new() };
+    let (unit, min, max) = RANGES[i];
+    format!("it must be a number from {min} to {max} {unit}")
+}
+
+/// Doubts about the parameters.
+///
+/// # Errors
+/// The reason why no such bicycle exists: a value outside its range (NaN is), or an inertia matrix
+/// that is not positive definite.
+pub(super) fn check(p: &Parameters) -> Result<Vec<String>, String> {
+    for (key, value) in KEYS.iter().zip(p.to_values()) {
+        let (_, min, max) = RANGES[KEYS.iter().position(|k| k == key).unwrap_or_default()];
+        if !(value >= min && value <= max) {
+            return Err(format!("`{key}` = {value} is out of range; {}", describe(key)));
+        }
+    }
+    let mut warnings = Vec::new();
+    for (body, [xx, yy, zz, xz]) in [
+        ("IB", [p.IBxx, p.IByy, p.IBzz, p.IBxz]),
+        ("IH", [p.IHxx, p.IHyy, p.IHzz, p.IHxz]),
+        ("IR", [p.IRxx, p.IRyy, p.IRxx, 0.0]),
+        ("IF", [p.IFxx, p.IFyy, p.IFxx, 0.0]),
+    ] {
+        let (mean, spread) = (0.5 * (xx + zz), (0.5 * (xx - zz)).hypot(xz));
+        let (small, large) = (mean - spread, mean + spread);
+        if small <= 0.0 {
+            return Err(format!(
+                "`{body}xz` = {xz} is too large for `{body}xx` = {xx} and `{body}zz` = {zz}: the inertia matrix \
+                 is not positive definite (allowed: |{body}xz| below {:.6})",
+                (xx * zz).sqrt()
+            ));
+        }
+        let slack = 1e-9 * (small + large + yy);
+        if yy > small + large + slack || large > small + yy + slack {
+            warnings.push(format!(
+                "{body}: principal inertias {small:.6}, {yy:.6}, {large:.6} kg m^2 violate the triangle \
+                 inequality; no rigid body has them"
+            ));
+        }
+    }
+    Ok(warnings)
+}
