@@ -8,14 +8,14 @@ use crate::num::Scalar;
 
 /// What acts on the bicycle during a step.
 pub trait Actuation<S> {
-    /// The torques at a motion met inside the step.
-    fn torques(&self, b: &Geometry, motion: &Motion<S>) -> Torques<S>;
+    /// The torques at a motion met inside the step; `stage` 0 is the step's start, 3 its end.
+    fn torques(&mut self, b: &Geometry, stage: usize, motion: &Motion<S>) -> Torques<S>;
 }
 
 /// Torques that stay what they are during the step (zero-order hold).
 impl<S: Scalar> Actuation<S> for Torques<S> {
     #[inline(always)]
-    fn torques(&self, _: &Geometry, _: &Motion<S>) -> Torques<S> {
+    fn torques(&mut self, _: &Geometry, _: usize, _: &Motion<S>) -> Torques<S> {
         *self
     }
 }
@@ -49,26 +49,25 @@ impl<S: Scalar> State<S> {
     }
 }
 
-/// One step of `h` seconds from `state`, whose motion is `motion`.
+/// One step of `h` seconds.
+///
+/// One loop over the four stages, so that the equations of motion stand in the binary once.
 #[inline(always)]
-pub fn rk4<S: Scalar>(
-    b: &Geometry,
-    state: &State<S>,
-    motion: &Motion<S>,
-    h: f64,
-    actuation: &impl Actuation<S>,
-) -> State<S> {
-    // The pitch just solved, not the one predicted to get there.
-    let start = State { pitch: motion.pose.attitude.pitch, ..*state };
-    let k1 = rate(b, &start, motion, &actuation.torques(b, motion));
-    let k2 = stage(b, &start.moved(0.5 * h, &k1), actuation);
-    let k3 = stage(b, &start.moved(0.5 * h, &k2), actuation);
-    let k4 = stage(b, &start.moved(h, &k3), actuation);
-    start.moved(h / 6.0, &k1).moved(h / 3.0, &k2).moved(h / 3.0, &k3).moved(h / 6.0, &k4)
-}
-
-#[inline(always)]
-fn stage<S: Scalar>(b: &Geometry, state: &State<S>, actuation: &impl Actuation<S>) -> State<S> {
-    let motion = Motion::new(b, state);
-    rate(b, state, &motion, &actuation.torques(b, &motion))
+pub fn rk4<S: Scalar>(b: &Geometry, state: &State<S>, h: f64, actuation: &mut impl Actuation<S>) -> State<S> {
+    const AHEAD: [f64; 4] = [0.5, 0.5, 1.0, 0.0];
+    const WEIGHT: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
+    let (mut start, mut at, mut end) = (*state, *state, *state);
+    for stage in 0..4 {
+        let motion = Motion::new(b, &at);
+        if stage == 0 {
+            // The pitch just solved, not the one predicted to get here.
+            start.pitch = motion.pose.attitude.pitch;
+            end = start;
+        }
+        let torques = actuation.torques(b, stage, &motion);
+        let k = rate(b, &at, &motion, &torques);
+        end = end.moved(h * WEIGHT[stage], &k);
+        at = start.moved(h * AHEAD[stage], &k);
+    }
+    end
 }

@@ -1,7 +1,9 @@
 //! The simulator: a nonlinear Whipple bicycle steered by the control crate that is flashed, and
 //! the question it answers: from which disturbances does it recover?
 
+pub mod basin;
 pub mod bicycle;
 pub mod eigen;
 pub mod integrate;
 pub mod num;
+pub mod ride;

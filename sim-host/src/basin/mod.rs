@@ -1,0 +1,9 @@
+//! The basin of attraction: from which disturbances, over forward speed, the bicycle recovers.
+
+mod compare;
+mod outline;
+mod search;
+
+pub use compare::{Rmse, rmse};
+pub use outline::{Basin, Column, Island, ScanPoint, Work};
+pub use search::{Axis, Search, SearchError, basin, column};

@@ -1,0 +1,177 @@
+//! The search: a scan over disturbances, then every border it crosses narrowed down.
+
+use super::{Basin, Column, Island, ScanPoint, Work};
+use crate::ride::{Conditions, ConditionsError, Ride, Start, rides};
+use rayon::prelude::*;
+
+/// Which rate the disturbance changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Axis {
+    /// The steer rate.
+    SteerRate,
+    /// The roll rate.
+    RollRate,
+}
+
+impl Axis {
+    /// The start of a ride at `speed` \[m/s\] with a disturbance of `rate` \[rad/s\].
+    pub fn start(self, speed: f64, rate: f64) -> Start {
+        let steady = Start { speed_m_s: speed, ..Start::default() };
+        match self {
+            Axis::SteerRate => Start { steer_rate_rad_s: rate, ..steady },
+            Axis::RollRate => Start { roll_rate_rad_s: rate, ..steady },
+        }
+    }
+}
+
+/// What is searched, and how finely.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Search {
+    /// Forward speeds \[m/s\], rising.
+    pub speeds: Vec<f64>,
+    /// The disturbed rate.
+    pub axis: Axis,
+    /// Largest disturbance tried \[rad/s\].
+    pub max_rate: f64,
+    /// Step of the scan \[rad/s\]: islands and gaps narrower than this can be missed.
+    pub scan_step: f64,
+    /// How closely the borders are located \[rad/s\].
+    pub tolerance: f64,
+}
+
+/// A search that can't be done.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct SearchError(pub String);
+
+impl From<ConditionsError> for SearchError {
+    fn from(error: ConditionsError) -> Self {
+        Self(error.0)
+    }
+}
+
+/// Rides between two known ends in one round of narrowing: as many as go side by side.
+const SECTIONS: usize = 8;
+
+impl Search {
+    /// Checks ranges.
+    ///
+    /// # Errors
+    /// Names the value and its range.
+    pub fn check(&self) -> Result<(), SearchError> {
+        let within = |name: &str, value: f64, min: f64, max: f64| {
+            if value >= min && value <= max {
+                Ok(())
+            } else {
+                Err(SearchError(format!("{name} = {value} is outside {min} to {max}")))
+            }
+        };
+        within("number of speeds", self.speeds.len() as f64, 1.0, 100_000.0)?;
+        for &v in &self.speeds {
+            within("speed (m/s)", v, 0.0, 30.0)?;
+        }
+        within("max rate (rad/s)", self.max_rate, 0.01, 100.0)?;
+        within("scan step (rad/s)", self.scan_step, 1e-3, self.max_rate)?;
+        within("tolerance (rad/s)", self.tolerance, 1e-9, self.scan_step)
+    }
+}
+
+/// The basin of every speed, on all cores of the current rayon pool; `finished` is called for each
+/// column, `stop` asked before each. The result does not depend on the number of threads.
+///
+/// # Errors
+/// When the search or the conditions fail their checks.
+pub fn basin(
+    conditions: &Conditions,
+    search: &Search,
+    finished: impl Fn(&Column) + Sync,
+    stop: impl Fn() -> bool + Sync,
+) -> Result<Basin, SearchError> {
+    search.check()?;
+    conditions.check()?;
+    let columns: Vec<Option<Column>> = search
+        .speeds
+        .par_iter()
+        .map(|&speed| {
+            if stop() {
+                return None;
+            }
+            let column = column(conditions, search, speed);
+            finished(&column);
+            Some(column)
+        })
+        .collect();
+    Ok(Basin { columns: columns.into_iter().flatten().collect() })
+}
+
+/// The basin at one speed.
+pub fn column(conditions: &Conditions, search: &Search, speed: f64) -> Column {
+    let mut work = Work::default();
+    let mut ride = |rates: &[f64]| -> Vec<Ride> {
+        let starts: Vec<Start> = rates.iter().map(|&r| search.axis.start(speed, r)).collect();
+        let done = rides(conditions, &starts);
+        work.add(&done);
+        done
+    };
+    // The last point is the cap itself, also when the step does not divide it.
+    let points = (search.max_rate / search.scan_step - 1e-9).ceil() as usize;
+    let rates: Vec<f64> = (1..=points).map(|i| (i as f64 * search.scan_step).min(search.max_rate)).collect();
+    let scan = ride(&rates);
+    // Without a disturbance nothing falls; a border lies wherever the scan changes its mind.
+    let mut runs: Vec<Island> = Vec::new();
+    let mut border = None;
+    let mut open = Some((0.0, None));
+    let (mut last_rate, mut last_fell, mut last_ride) = (0.0, false, None);
+    for (&rate, now) in rates.iter().zip(&scan) {
+        if now.fell() && !last_fell {
+            let (to, at) = narrow(&mut ride, last_rate, rate, search.tolerance, last_ride);
+            if let Some((from, _)) = open.take() {
+                runs.push(Island { from, to });
+                if runs.len() == 1 {
+                    border = at;
+                }
+            }
+        } else if !now.fell() && last_fell {
+            let (from, at) = narrow(&mut ride, rate, last_rate, search.tolerance, Some(*now));
+            open = Some((from, at));
+        }
+        (last_rate, last_fell, last_ride) = (rate, now.fell(), Some(*now));
+    }
+    let capped = runs.is_empty();
+    if let Some((from, _)) = open {
+        runs.push(Island { from, to: search.max_rate });
+        if capped {
+            border = last_ride;
+        }
+    }
+    let upper = runs.first().map_or(0.0, |run| run.to);
+    let scan = rates.iter().zip(&scan).map(|(&rate, r)| ScanPoint { rate, outcome: r.outcome }).collect();
+    Column { speed, upper, capped, islands: runs.split_off(1), scan, border, work }
+}
+
+/// The rate closest to a border that was seen not to fall, within `tolerance` of one that fell, and
+/// its ride. `safe` did not fall, `fell` did; each may be the larger.
+fn narrow(
+    ride: &mut impl FnMut(&[f64]) -> Vec<Ride>,
+    mut safe: f64,
+    mut fell: f64,
+    tolerance: f64,
+    mut at: Option<Ride>,
+) -> (f64, Option<Ride>) {
+    while (fell - safe).abs() > tolerance {
+        let cell = (fell - safe) / (SECTIONS + 1) as f64;
+        let rates: Vec<f64> = (1..=SECTIONS).map(|i| safe + i as f64 * cell).collect();
+        let done = ride(&rates);
+        match done.iter().position(Ride::fell) {
+            Some(first) => {
+                fell = rates[first];
+                if first > 0 {
+                    (safe, at) = (rates[first - 1], Some(done[first - 1]));
+                }
+            }
+            None => (safe, at) = (rates[SECTIONS - 1], Some(done[SECTIONS - 1])),
+        }
+    }
+    (safe, at)
+}

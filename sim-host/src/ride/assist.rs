@@ -1,0 +1,35 @@
+//! Who turns the steer: nobody, the control crate that is flashed, or its law as a mathematician
+//! would write it.
+
+use crate::bicycle::{Geometry, Motion};
+use crate::num::Scalar;
+use control::{Law, Plan};
+
+/// The steer assist of a ride.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Assist {
+    /// No torque.
+    None,
+    /// The control crate: f32, sampled at its rate, torque held between samples, limits and all.
+    Firmware(Box<Plan>),
+    /// The bare law in f64, continuous in time, with exact sensors and no limits.
+    Ideal(Box<Law>),
+}
+
+/// Forward speed at the front wheel \[m/s\].
+#[inline(always)]
+pub(super) fn front_speed<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> S {
+    motion.actual.front_spin * -b.rF
+}
+
+/// Forward speed at the rear wheel \[m/s\].
+#[inline(always)]
+pub(super) fn rear_speed<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> S {
+    motion.actual.rear_spin * -b.rR
+}
+
+/// Angular velocity of the rear frame about its x axis, horizontal when upright \[rad/s\].
+#[inline(always)]
+pub(super) fn body_roll_rate<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> S {
+    motion.actual.omega.x * b.lam.cos() + motion.actual.omega.z * b.lam.sin()
+}

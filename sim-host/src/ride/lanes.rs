@@ -1,0 +1,148 @@
+//! Rides side by side, one in each lane; a lane whose ride ends takes the next.
+
+use super::assist::{body_roll_rate, front_speed, rear_speed};
+use super::rider::Rider;
+use super::sensor::{Reading, roll_rate, speed};
+use super::{Assist, Conditions, Ride, Start, TracePoint};
+use crate::bicycle::{Geometry, Motion, State, Torques};
+use crate::integrate::{Actuation, rk4};
+use crate::num::Lanes;
+
+/// How many rides go side by side: two AVX2 registers a number, which hides the latencies.
+pub(super) const WIDTH: usize = 8;
+
+/// The rides in the lanes, as what acts on their bicycles.
+struct Riders<'a, const N: usize> {
+    conditions: &'a Conditions,
+    lanes: [Option<Rider>; N],
+    /// Speeds at the start \[m/s\].
+    initial: Lanes<N>,
+    /// Torques since the step's start \[N m\].
+    torque: Lanes<N>,
+    /// Where lane 0 is written down.
+    trace: Option<&'a mut Vec<TracePoint>>,
+}
+
+impl<const N: usize> Riders<'_, N> {
+    /// What every lane's sensors would say: roll rate \[rad/s\] and speed \[m/s\].
+    #[inline(always)]
+    fn readings(&self, b: &Geometry, motion: &Motion<Lanes<N>>) -> (Lanes<N>, Lanes<N>) {
+        (
+            roll_rate(self.conditions.imu, motion.actual.roll, body_roll_rate(b, motion)),
+            speed(
+                self.conditions.schedule_speed,
+                front_speed(b, motion),
+                rear_speed(b, motion),
+                self.initial,
+            ),
+        )
+    }
+
+    /// The control instant at a step's start: sensors, controllers, new torques.
+    fn control(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
+        let (rate, speed) = self.readings(b, motion);
+        for (lane, rider) in self.lanes.iter_mut().enumerate() {
+            let Some(rider) = rider else { continue };
+            let now = Reading { roll_rate_rad_s: rate.0[lane], speed_m_s: speed.0[lane] };
+            let told = rider.sensors.delayed(now);
+            let (torque_nm, limits) = rider.command(&self.conditions.assist, &told);
+            self.torque.0[lane] = torque_nm;
+            if let (0, Some(trace)) = (lane, &mut self.trace) {
+                let t = f64::from(rider.step) * self.conditions.step_s;
+                trace.push(TracePoint::new(b, t, motion, &told, torque_nm, limits));
+            }
+        }
+    }
+}
+
+impl<const N: usize> Actuation<Lanes<N>> for Riders<'_, N> {
+    #[inline(always)]
+    fn torques(&mut self, b: &Geometry, stage: usize, motion: &Motion<Lanes<N>>) -> Torques<Lanes<N>> {
+        if stage == 0 {
+            self.control(b, motion);
+        } else if let Assist::Ideal(law) = &self.conditions.assist {
+            let (rate, speed) = self.readings(b, motion);
+            self.torque = speed.map(|v| law.gain(v)) * rate;
+        }
+        Torques { roll: Lanes([0.0; N]), steer: self.torque }
+    }
+}
+
+/// Every ride to its end, in the order of `starts`; with `trace`, every instant of lane 0's rides.
+///
+/// A lane's arithmetic does not depend on its neighbours, so a ride has the same bits in any lane.
+#[inline(always)]
+pub(super) fn run<const N: usize>(
+    conditions: &Conditions,
+    starts: &[Start],
+    trace: Option<&mut Vec<TracePoint>>,
+) -> Vec<Ride> {
+    let b = &conditions.bicycle;
+    let mut waiting = starts.iter().copied().enumerate();
+    let still = Lanes([0.0; N]);
+    let mut state = State::upright(b, still);
+    let lanes = std::array::from_fn(|_| None);
+    let mut riders = Riders { conditions, lanes, initial: still, torque: still, trace };
+    let mut done = Vec::with_capacity(starts.len());
+    loop {
+        for lane in 0..N {
+            if riders.lanes[lane].is_some() {
+                continue;
+            }
+            // An empty lane stands upright and still, which costs what any other state costs.
+            let next = waiting.next();
+            let start = next.map_or_else(Start::default, |(_, start)| start);
+            set(&mut state, lane, &start.state(b));
+            riders.initial.0[lane] = start.speed_m_s;
+            riders.torque.0[lane] = 0.0;
+            riders.lanes[lane] = next.map(|(index, start)| Rider::new(conditions, index, start));
+        }
+        if riders.lanes.iter().all(Option::is_none) {
+            break;
+        }
+        let after = rk4(b, &state, conditions.step_s, &mut riders);
+        for lane in 0..N {
+            let torque_nm = riders.torque.0[lane];
+            let Some(rider) = &mut riders.lanes[lane] else { continue };
+            let (was, is) = (get(&state, lane), get(&after, lane));
+            if let Some(ride) = rider.book(conditions, torque_nm, &was, &is) {
+                done.push((rider.index, ride));
+                riders.lanes[lane] = None;
+            }
+        }
+        state = after;
+    }
+    done.sort_by_key(|(index, _): &(usize, Ride)| *index);
+    done.into_iter().map(|(_, ride)| ride).collect()
+}
+
+fn get<const N: usize>(s: &State<Lanes<N>>, lane: usize) -> State<f64> {
+    State {
+        roll: s.roll.0[lane],
+        steer: s.steer.0[lane],
+        roll_rate: s.roll_rate.0[lane],
+        steer_rate: s.steer_rate.0[lane],
+        rear_wheel_rate: s.rear_wheel_rate.0[lane],
+        pitch: s.pitch.0[lane],
+    }
+}
+
+fn set<const N: usize>(s: &mut State<Lanes<N>>, lane: usize, to: &State<f64>) {
+    s.roll.0[lane] = to.roll;
+    s.steer.0[lane] = to.steer;
+    s.roll_rate.0[lane] = to.roll_rate;
+    s.steer_rate.0[lane] = to.steer_rate;
+    s.rear_wheel_rate.0[lane] = to.rear_wheel_rate;
+    s.pitch.0[lane] = to.pitch;
+}
+
+impl Start {
+    /// The state it stands for.
+    pub fn state(&self, b: &Geometry) -> State<f64> {
+        State {
+            roll_rate: self.roll_rate_rad_s,
+            steer_rate: self.steer_rate_rad_s,
+            ..State::upright(b, self.speed_m_s)
+        }
+    }
+}

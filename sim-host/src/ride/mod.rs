@@ -1,0 +1,17 @@
+//! One ride: the bicycle, the assist and a disturbance at t = 0, until it falls or time is up.
+
+mod assist;
+mod batch;
+mod conditions;
+mod event;
+mod lanes;
+mod outcome;
+mod rider;
+mod sensor;
+mod trace;
+
+pub use assist::Assist;
+pub use batch::{rides, traced};
+pub use conditions::{Conditions, ConditionsError, Imu, ScheduleSpeed, Start};
+pub use outcome::{Effort, FinalState, Outcome, Ride};
+pub use trace::TracePoint;

@@ -1,0 +1,111 @@
+//! The bookkeeping of one ride while it lasts.
+
+use super::event::{at_fall, fallen, time_of_fall};
+use super::sensor::{Reading, Sensors, frame};
+use super::{Assist, Conditions, Effort, FinalState, Outcome, Ride, Start};
+use crate::bicycle::State;
+
+/// The ride in a lane.
+pub(super) struct Rider {
+    /// Which of the starts.
+    pub(super) index: usize,
+    pub(super) start: Start,
+    /// Control periods ridden.
+    pub(super) step: u32,
+    pub(super) sensors: Sensors,
+    controller: control::State,
+    torque_nm: f64,
+    effort: Effort,
+    torque_squares: f64,
+    /// Largest roll and steer of the last second.
+    late: [f64; 2],
+}
+
+impl Rider {
+    pub(super) fn new(conditions: &Conditions, index: usize, start: Start) -> Self {
+        Self {
+            index,
+            start,
+            step: 0,
+            sensors: Sensors::new(conditions, &start),
+            controller: control::State::default(),
+            torque_nm: 0.0,
+            effort: Effort::default(),
+            torque_squares: 0.0,
+            late: [0.0; 2],
+        }
+    }
+
+    /// The controller's answer to this instant's reading: torque and active limits.
+    pub(super) fn command(&mut self, assist: &Assist, told: &Reading) -> (f64, u8) {
+        match assist {
+            Assist::None => (0.0, 0),
+            Assist::Firmware(plan) => {
+                let command = control::step(plan, &mut self.controller, &frame(told));
+                (f64::from(command.torque_nm), command.limits.0)
+            }
+            Assist::Ideal(law) => (law.gain(told.speed_m_s) * told.roll_rate_rad_s, 0),
+        }
+    }
+
+    /// Books one step under the held `torque_nm`; the finished ride, when it was the last.
+    ///
+    /// The effort of a step in which the bicycle falls is left out.
+    pub(super) fn book(
+        &mut self,
+        conditions: &Conditions,
+        torque_nm: f64,
+        was: &State<f64>,
+        is: &State<f64>,
+    ) -> Option<Ride> {
+        let h = conditions.step_s;
+        if fallen(is) {
+            let time_s = f64::from(self.step) * h + time_of_fall(was, is, h);
+            let end = at_fall(was, is, time_s - f64::from(self.step) * h, h);
+            self.step += 1;
+            return Some(self.finish(Outcome::Fallen { time_s }, time_s, &end));
+        }
+        let e = &mut self.effort;
+        e.peak_torque_nm = e.peak_torque_nm.max(torque_nm.abs());
+        if self.step > 0 {
+            e.peak_slew_nm_s = e.peak_slew_nm_s.max((torque_nm - self.torque_nm).abs() / h);
+        }
+        e.peak_roll_rad = e.peak_roll_rad.max(is.roll.abs());
+        e.peak_steer_rad = e.peak_steer_rad.max(is.steer.abs());
+        let work = torque_nm * (is.steer - was.steer);
+        e.motor_energy_j += work;
+        e.motor_energy_out_j += work.max(0.0);
+        self.torque_squares += torque_nm * torque_nm;
+        self.torque_nm = torque_nm;
+        self.step += 1;
+        let t = f64::from(self.step) * h;
+        if t > conditions.time_limit_s - 1.0 {
+            self.late = [self.late[0].max(is.roll.abs()), self.late[1].max(is.steer.abs())];
+        }
+        (self.step >= conditions.steps()).then(|| self.finish(self.outlasted(conditions), t, is))
+    }
+
+    fn finish(&self, outcome: Outcome, t: f64, state: &State<f64>) -> Ride {
+        let mut effort = self.effort;
+        effort.rms_torque_nm = (self.torque_squares / f64::from(self.step.max(1))).sqrt();
+        let end = FinalState {
+            t,
+            roll: state.roll,
+            steer: state.steer,
+            roll_rate: state.roll_rate,
+            steer_rate: state.steer_rate,
+            rear_wheel_rate: state.rear_wheel_rate,
+        };
+        Ride { start: self.start, outcome, end, effort, steps: self.step }
+    }
+
+    fn outlasted(&self, conditions: &Conditions) -> Outcome {
+        let small = |late: f64, peak: f64| late <= conditions.recovered_below * peak;
+        let e = &self.effort;
+        if small(self.late[0], e.peak_roll_rad) && small(self.late[1], e.peak_steer_rad) {
+            Outcome::Recovered
+        } else {
+            Outcome::Undecided
+        }
+    }
+}

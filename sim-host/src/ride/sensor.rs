@@ -1,0 +1,60 @@
+//! The simulated sensors of one ride: what they measure and how late they tell.
+
+use super::{Conditions, Imu, ScheduleSpeed, Start};
+use control::{Sample, SensorFrame};
+use std::collections::VecDeque;
+
+/// What the sensors would say without delay.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Reading {
+    /// Roll rate by [`Imu`] \[rad/s\].
+    pub(super) roll_rate_rad_s: f64,
+    /// Speed by [`ScheduleSpeed`] \[m/s\].
+    pub(super) speed_m_s: f64,
+}
+
+/// The readings on their way. Before t = 0 the bicycle rode steadily.
+#[derive(Clone, Debug)]
+pub(super) struct Sensors {
+    pipeline: VecDeque<Reading>,
+}
+
+impl Sensors {
+    pub(super) fn new(conditions: &Conditions, start: &Start) -> Self {
+        let steady = Reading { roll_rate_rad_s: 0.0, speed_m_s: start.speed_m_s };
+        Self { pipeline: vec![steady; usize::from(conditions.sensor_delay_ticks)].into() }
+    }
+
+    /// Takes in this instant's reading and gives the one that arrives now.
+    pub(super) fn delayed(&mut self, now: Reading) -> Reading {
+        // Without delay the queue stays empty and the reading passes through.
+        let Some(arrived) = self.pipeline.pop_front() else { return now };
+        self.pipeline.push_back(now);
+        arrived
+    }
+}
+
+/// A reading as the firmware gets it.
+pub(super) fn frame(reading: &Reading) -> SensorFrame {
+    SensorFrame {
+        roll_rate_rad_s: Sample::fresh(reading.roll_rate_rad_s as f32),
+        wheel_speed_m_s: Sample::fresh(reading.speed_m_s as f32),
+    }
+}
+
+/// The gyro's choice between the two roll rates.
+pub(super) fn roll_rate<S>(imu: Imu, euler: S, body: S) -> S {
+    match imu {
+        Imu::Euler => euler,
+        Imu::Body => body,
+    }
+}
+
+/// The speed sensor's choice.
+pub(super) fn speed<S>(schedule: ScheduleSpeed, front: S, rear: S, initial: S) -> S {
+    match schedule {
+        ScheduleSpeed::Front => front,
+        ScheduleSpeed::Rear => rear,
+        ScheduleSpeed::Initial => initial,
+    }
+}

@@ -1,0 +1,70 @@
+//! A ride written down, one line a control period.
+
+use super::assist::{front_speed, rear_speed};
+use super::sensor::Reading;
+use crate::bicycle::{Geometry, Motion};
+use crate::num::Lanes;
+
+/// One instant of a traced ride, at the start of a control period.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct TracePoint {
+    /// Time \[s\].
+    pub t: f64,
+    /// Roll \[rad\].
+    pub roll: f64,
+    /// Steer \[rad\].
+    pub steer: f64,
+    /// Pitch \[rad\].
+    pub pitch: f64,
+    /// Roll rate \[rad/s\].
+    pub roll_rate: f64,
+    /// Steer rate \[rad/s\].
+    pub steer_rate: f64,
+    /// Yaw rate \[rad/s\].
+    pub yaw_rate: f64,
+    /// Rear wheel rate \[rad/s\].
+    pub rear_wheel_rate: f64,
+    /// Rear wheel's forward speed \[m/s\].
+    pub rear_speed: f64,
+    /// Front wheel's forward speed \[m/s\].
+    pub front_speed: f64,
+    /// Roll rate as the controller was told \[rad/s\].
+    pub measured_roll_rate: f64,
+    /// Speed as the controller was told \[m/s\].
+    pub measured_speed: f64,
+    /// Steer torque \[N m\].
+    pub torque: f64,
+    /// Limits that changed the torque, as bits of [`control::Limits`].
+    pub limits: u8,
+}
+
+impl TracePoint {
+    /// What there is to write down of lane 0 at `t`.
+    pub(super) fn new<const N: usize>(
+        b: &Geometry,
+        t: f64,
+        motion: &Motion<Lanes<N>>,
+        told: &Reading,
+        torque_nm: f64,
+        limits: u8,
+    ) -> Self {
+        let (pose, actual) = (&motion.pose, &motion.actual);
+        let angle = |(s, c): (Lanes<N>, Lanes<N>)| s.0[0].atan2(c.0[0]);
+        Self {
+            t,
+            roll: angle(pose.attitude.roll),
+            steer: angle(pose.attitude.steer),
+            pitch: pose.attitude.pitch.0[0],
+            roll_rate: actual.roll.0[0],
+            steer_rate: actual.steer.0[0],
+            yaw_rate: actual.yaw.0[0],
+            rear_wheel_rate: actual.rear_spin.0[0],
+            rear_speed: rear_speed(b, motion).0[0],
+            front_speed: front_speed(b, motion).0[0],
+            measured_roll_rate: told.roll_rate_rad_s,
+            measured_speed: told.speed_m_s,
+            torque: torque_nm,
+            limits,
+        }
+    }
+}
