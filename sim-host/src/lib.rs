@@ -3,7 +3,9 @@
 
 pub mod basin;
 pub mod bicycle;
+pub mod cli;
 pub mod eigen;
 pub mod integrate;
 pub mod num;
+pub mod report;
 pub mod ride;

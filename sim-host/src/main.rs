@@ -1,2 +1,5 @@
-//! The command line.
-fn main() {}
+//! The command line of the simulator.
+
+fn main() -> std::process::ExitCode {
+    sim_host::cli::run()
+}

@@ -21,7 +21,7 @@ pub struct Island {
 }
 
 /// How much was computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Work {
     /// Rides.
     pub rides: u64,

@@ -101,7 +101,7 @@ impl Conditions {
 
 /// The initial state of one ride: upright, straight, on the path of steady riding but for the
 /// disturbance, an instantaneous change of rates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Start {
     /// Forward speed of the rear wheel \[m/s\].
     pub speed_m_s: f64,

@@ -37,7 +37,7 @@ impl Outcome {
 }
 
 /// What the ride asked of the motor and of the rider.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Effort {
     /// Largest torque either way \[N m\].
     pub peak_torque_nm: f64,
@@ -57,7 +57,7 @@ pub struct Effort {
 }
 
 /// The state at the end of a ride.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct FinalState {
     /// Time \[s\].
     pub t: f64,

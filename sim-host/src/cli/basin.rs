@@ -1,0 +1,168 @@
+//! `sim-host basin`.
+
+use super::conditions::ConditionArgs;
+use super::outputs::{OutputArgs, print};
+use super::{Ended, Failure, interrupt, speeds};
+use crate::basin::{Axis, Basin, Search, Work, basin};
+use crate::bicycle::linear::Linear;
+use crate::eigen::critical_speeds;
+use crate::report::document::BasinDocument;
+use crate::report::figure::{self, BasinFigure};
+use crate::report::resolved::{ResolvedSearch, axis_name};
+use crate::report::{table, terminal};
+use control::Law;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::fmt::Write;
+use std::time::Instant;
+
+const EXAMPLES: &str = "\
+Examples:
+  sim-host basin --svg basin.svg --json basin.json
+  sim-host basin --law none --speeds 4:10:0.1
+  sim-host basin --law cl2:4 --assist ideal --schedule-speed rear
+  sim-host basin --preset product --sensor-delay 20ms --csv product.csv
+  sim-host basin --bicycle my.toml#city --axis roll-rate --max-rate 5";
+
+/// Options of `basin`.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    #[command(flatten)]
+    conditions: ConditionArgs,
+    /// Forward speeds in m/s: A:B:STEP, B included, or one
+    #[arg(long, default_value = "0:10:0.1", value_parser = speeds::parse, value_name = "A:B:STEP", allow_hyphen_values = true)]
+    speeds: std::vec::Vec<f64>,
+    /// The rate that is disturbed at t = 0
+    #[arg(long, default_value = "steer-rate")]
+    axis: Axis,
+    /// Largest disturbance tried, in rad/s
+    #[arg(long, default_value_t = 30.0, value_name = "RAD/S", allow_negative_numbers = true)]
+    max_rate: f64,
+    /// Step of the scan, in rad/s; what is narrower can be missed
+    #[arg(long, default_value_t = 0.25, value_name = "RAD/S", allow_negative_numbers = true)]
+    scan_step: f64,
+    /// How closely the borders are located, in rad/s
+    #[arg(long, default_value_t = 0.01, value_name = "RAD/S", allow_negative_numbers = true)]
+    tolerance: f64,
+    /// Threads; the result does not depend on them [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    #[command(flatten)]
+    outputs: OutputArgs,
+}
+
+pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    let setup = args.conditions.setup()?;
+    let search = Search {
+        speeds: args.speeds.clone(),
+        axis: args.axis,
+        max_rate: args.max_rate,
+        scan_step: args.scan_step,
+        tolerance: args.tolerance,
+    };
+    search.check()?;
+    let outputs = args.outputs.open()?;
+    interrupt::install();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.unwrap_or(0).into()).build()?;
+    let bar = progress(outputs.shows_progress(), search.speeds.len());
+    let begin = Instant::now();
+    let result = pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
+    let seconds = begin.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    let result = result?;
+    let complete = result.columns.len() == search.speeds.len();
+    if outputs.talks() {
+        print(&summary(&result, &search, seconds))?;
+    }
+    let resolved = ResolvedSearch {
+        axis: axis_name(search.axis).into(),
+        max_rate: search.max_rate,
+        scan_step: search.scan_step,
+        tolerance: search.tolerance,
+    };
+    let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, &result, seconds);
+    let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
+    let label = format!("{}, law {}", setup.config.bicycle.name, setup.config.law.name);
+    outputs.write(
+        &document,
+        &(&document.config, &document.search),
+        || table::table(&(&document.config, &document.search), &table::basin_rows(&result)),
+        || {
+            figure::basin(&BasinFigure {
+                series: &[(&label, &result)],
+                self_stable: uncontrolled.v_w.zip(uncontrolled.v_c),
+                axis: search.axis,
+                cap: search.max_rate,
+                title: &format!("Basin of attraction: {label}, {}", setup.config.assist),
+            })
+        },
+    )?;
+    if complete {
+        Ok(Ended::Done)
+    } else {
+        eprintln!(
+            "interrupted: {} of {} speeds are done and kept",
+            result.columns.len(),
+            search.speeds.len()
+        );
+        Ok(Ended::Interrupted)
+    }
+}
+
+/// A bar with the time left, on standard error, and only on a terminal.
+fn progress(shown: bool, speeds: usize) -> ProgressBar {
+    if !shown {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("basin {bar:40} {pos}/{len} speeds, {elapsed} gone, {eta} left");
+    ProgressBar::new(speeds as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// The answer in words and as a plot.
+fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
+    let mut text = terminal::basin(basin, 80);
+    let Work { rides, steps: _, right_hand_sides } = basin.work();
+    let _ = writeln!(text, "area {:.3} rad m/s^2", basin.area());
+    if let Some(mean) = basin.mean_height() {
+        let _ = writeln!(text, "mean height {mean:.3} rad/s (borders within {} rad/s)", search.tolerance);
+    }
+    let undecided = basin
+        .columns
+        .iter()
+        .filter(|c| c.border.is_some_and(|r| r.outcome.name() == "undecided"))
+        .map(|c| c.speed);
+    if let Some((low, high)) = span(undecided) {
+        let _ = writeln!(
+            text,
+            "undecided at the border at speeds between {low} and {high} m/s: not fallen in time, not come back"
+        );
+    }
+    let capped = basin.columns.iter().filter(|c| c.capped).map(|c| c.speed);
+    if let Some((low, high)) = span(capped) {
+        let _ = writeln!(
+            text,
+            "nothing fell up to {} rad/s at speeds between {low} and {high} m/s",
+            search.max_rate
+        );
+    }
+    for column in &basin.columns {
+        for island in &column.islands {
+            let _ = writeln!(
+                text,
+                "island at {} m/s: {:.2} to {:.2} rad/s does not fall either",
+                column.speed, island.from, island.to
+            );
+        }
+    }
+    let _ = writeln!(
+        text,
+        "{rides} rides, {right_hand_sides} right-hand sides, {seconds:.2} s ({:.0} ns each on {} threads)",
+        seconds * 1e9 / right_hand_sides.max(1) as f64,
+        rayon::current_num_threads()
+    );
+    text
+}
+
+fn span(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    values.fold(None, |s, v| Some(s.map_or((v, v), |(a, b): (f64, f64)| (a.min(v), b.max(v)))))
+}

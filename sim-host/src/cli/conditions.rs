@@ -1,0 +1,185 @@
+//! The options that say who rides what under which conditions; `ride` and `basin` share them.
+
+use super::{Failure, law};
+use crate::bicycle::{Geometry, catalogue};
+use crate::report::resolved::{ResolvedConfig, ResolvedLaw};
+use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
+use clap::ValueEnum;
+use control::{Config, Law, Taper, Wheel};
+
+/// Where defaults come from.
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Preset {
+    /// The published conditions: law h, every limit off.
+    Thesis,
+    /// What is flashed: law h-cut, torque and rate limit, taper.
+    Product,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum AssistKind {
+    /// The control crate that is flashed: f32, sampled, limits and all.
+    Firmware,
+    /// The bare law in f64, continuous, without limits.
+    Ideal,
+}
+
+/// A value, or none.
+#[derive(Clone, Copy)]
+struct Limit<T>(Option<T>);
+
+#[derive(clap::Args)]
+pub(super) struct ConditionArgs {
+    /// Shipped bicycle (see `bicycle list`), FILE, or FILE#NAME of a collection
+    #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
+    bicycle: String,
+    /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, or a table FILE [default: h; product: h-cut]
+    #[arg(long)]
+    law: Option<String>,
+    /// Defaults of the options below
+    #[arg(long, default_value = "thesis")]
+    preset: Preset,
+    /// Who computes the torque
+    #[arg(long, default_value = "firmware")]
+    assist: AssistKind,
+    /// Speed that schedules the gain
+    #[arg(long, default_value = "front")]
+    schedule_speed: ScheduleSpeed,
+    /// Largest torque in N m, or none [default: none; product: 7]
+    #[arg(long, value_name = "NM|none", value_parser = limit_nm, allow_hyphen_values = true)]
+    torque_limit: Option<Limit<f32>>,
+    /// Largest change of torque in N m/s, or none [default: none; product: 100]
+    #[arg(long, value_name = "NM/S|none", value_parser = limit_nm, allow_hyphen_values = true)]
+    rate_limit: Option<Limit<f32>>,
+    /// Torque zero at the first, whole at the second speed in m/s, or none [default: none; product: 0.5:1.5]
+    #[arg(long, value_name = "ZERO:FULL|none", value_parser = taper, allow_hyphen_values = true)]
+    taper: Option<Limit<(f32, f32)>>,
+    /// Delay of the simulated sensors, for example 20ms; a whole number of control periods
+    #[arg(long, value_name = "TIME", default_value = "0ms", value_parser = seconds, allow_hyphen_values = true)]
+    sensor_delay: f64,
+    /// Roll rate the gyro reports: of the roll angle, or the frame's about its own axis
+    #[arg(long, default_value = "euler")]
+    imu: Imu,
+    /// How long a ride lasts if it does not fall, in seconds
+    #[arg(long, default_value_t = 6.0, value_name = "S", allow_negative_numbers = true)]
+    time_limit: f64,
+    /// A ride has recovered when roll and steer end below this fraction of their largest
+    #[arg(long, default_value_t = 0.1, value_name = "FRACTION", allow_negative_numbers = true)]
+    recovered_below: f64,
+}
+
+fn limit_nm(text: &str) -> Result<Limit<f32>, String> {
+    if text == "none" {
+        return Ok(Limit(None));
+    }
+    text.parse().map(|x| Limit(Some(x))).map_err(|_| format!("`{text}` is neither a number nor none"))
+}
+
+fn taper(text: &str) -> Result<Limit<(f32, f32)>, String> {
+    if text == "none" {
+        return Ok(Limit(None));
+    }
+    let speeds = text.split_once(':').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    speeds.map(|s| Limit(Some(s))).ok_or_else(|| format!("`{text}` is neither ZERO:FULL in m/s nor none"))
+}
+
+/// A time with its unit \[s\].
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    let wrong =
+        || format!("`{text}` is not a time; expected a number with its unit, for example 20ms or 0.02s");
+    let (number, scale) = match text.strip_suffix("ms") {
+        Some(number) => (number, 1e-3),
+        None => (text.strip_suffix('s').ok_or_else(wrong)?, 1.0),
+    };
+    let value: f64 = number.trim().parse().map_err(|_| wrong())?;
+    if value.is_finite() && value >= 0.0 { Ok(value * scale) } else { Err(wrong()) }
+}
+
+/// Whole control periods in a delay.
+fn whole_ticks(delay_s: f64, period_s: f64) -> Result<u16, String> {
+    let ticks = delay_s / period_s;
+    if ticks > 1000.0 {
+        return Err(format!("--sensor-delay {} ms is outside 0 to {} ms", delay_s * 1e3, period_s * 1e6));
+    }
+    if (ticks - ticks.round()).abs() > 1e-6 {
+        let near = |n: f64| format!("{} ms", n * period_s * 1e3);
+        return Err(format!(
+            "--sensor-delay {} ms is not a whole number of control periods of {} ms; nearest are {} and {}",
+            delay_s * 1e3,
+            period_s * 1e3,
+            near(ticks.floor()),
+            near(ticks.ceil())
+        ));
+    }
+    Ok(ticks.round() as u16)
+}
+
+/// What the options stand for.
+pub(super) struct Setup {
+    pub(super) conditions: Conditions,
+    pub(super) config: ResolvedConfig,
+    pub(super) parameters: crate::bicycle::Parameters,
+}
+
+impl ConditionArgs {
+    /// Loads and checks everything; warnings go to standard error.
+    pub(super) fn setup(&self) -> Result<Setup, Failure> {
+        let bicycle = catalogue::load(&self.bicycle)?;
+        for warning in &bicycle.warnings {
+            eprintln!("warning: {}: {warning}", bicycle.name);
+        }
+        let base = match self.preset {
+            Preset::Thesis => Config::thesis(Law::H { cut: false }),
+            Preset::Product => Config::product(),
+        };
+        let product = self.preset == Preset::Product;
+        let law_name = self.law.as_deref().unwrap_or(if product { "h-cut" } else { "h" });
+        let law = law::parse(law_name)?;
+        let mut config = Config { law: law.clone(), ..base };
+        config.input.wheel = match self.schedule_speed {
+            ScheduleSpeed::Front | ScheduleSpeed::Initial => Wheel::Front,
+            ScheduleSpeed::Rear => Wheel::Rear,
+        };
+        if let Some(Limit(limit)) = self.torque_limit {
+            config.shape.max_torque_nm = limit;
+        }
+        if let Some(Limit(limit)) = self.rate_limit {
+            config.shape.max_rate_nm_s = limit;
+        }
+        if let Some(Limit(taper)) = self.taper {
+            config.shape.taper = taper.map(|(zero_m_s, full_m_s)| Taper { zero_m_s, full_m_s });
+        }
+        let period_s = 1.0 / f64::from(config.rate_hz);
+        let sensor_delay_ticks = whole_ticks(self.sensor_delay, period_s)?;
+        let assist = match self.assist {
+            _ if law == Law::None => Assist::None,
+            AssistKind::Firmware => Assist::Firmware(Box::new(config.plan()?)),
+            AssistKind::Ideal => {
+                let shape = &config.shape;
+                let limited =
+                    shape.max_torque_nm.is_some() || shape.max_rate_nm_s.is_some() || shape.taper.is_some();
+                if limited || sensor_delay_ticks > 0 {
+                    return Err(
+                        "limits and sensor delay act on --assist firmware only; the ideal law has none"
+                            .into(),
+                    );
+                }
+                Assist::Ideal(Box::new(law.clone()))
+            }
+        };
+        let conditions = Conditions {
+            schedule_speed: self.schedule_speed,
+            imu: self.imu,
+            sensor_delay_ticks,
+            time_limit_s: self.time_limit,
+            step_s: period_s,
+            recovered_below: self.recovered_below,
+            ..Conditions::thesis(Geometry::new(&bicycle.parameters), assist)
+        };
+        conditions.check()?;
+        let preset = if product { "product" } else { "thesis" };
+        let law = ResolvedLaw::new(law_name, &law);
+        let config = ResolvedConfig::new(preset, &bicycle, law, &conditions);
+        Ok(Setup { conditions, config, parameters: bicycle.parameters })
+    }
+}

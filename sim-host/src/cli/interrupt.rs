@@ -1,0 +1,25 @@
+//! Ctrl-C: the first asks the work to stop and keep what is done, the second ends the program.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static STOP: AtomicBool = AtomicBool::new(false);
+static INSTALLED: OnceLock<()> = OnceLock::new();
+
+/// Installs the handler once.
+pub(super) fn install() {
+    INSTALLED.get_or_init(|| {
+        // Without a handler Ctrl-C ends the program at once, which loses work but harms nothing.
+        let _ = ctrlc::set_handler(|| {
+            if STOP.swap(true, Ordering::SeqCst) {
+                std::process::exit(130);
+            }
+            eprintln!("\ninterrupted: finishing the columns under way (again to quit at once)");
+        });
+    });
+}
+
+/// Whether Ctrl-C was pressed.
+pub(super) fn stopped() -> bool {
+    STOP.load(Ordering::SeqCst)
+}

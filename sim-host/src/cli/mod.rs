@@ -1,0 +1,96 @@
+//! The command line, one file per subcommand.
+
+mod basin;
+mod bicycle;
+mod conditions;
+mod eigen;
+mod interrupt;
+mod law;
+mod outputs;
+mod ride;
+mod speeds;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// What a command comes back with when it can't do what it was asked.
+type Failure = Box<dyn std::error::Error>;
+
+/// How a command that could, ended.
+enum Ended {
+    /// All done.
+    Done,
+    /// By Ctrl-C; what was finished is written.
+    Interrupted,
+}
+
+const EXAMPLES: &str = "\
+Exit codes: 0 ran (a fall is a result), 1 bad input or I/O, 2 usage, 130 interrupted.
+
+Examples:
+  sim-host basin --svg basin.svg               the basin of the thesis bicycle under the flashed law
+  sim-host ride --speed 4 --steer-rate 5       one ride
+  sim-host eigen --law cl2:4                   eigenvalues over speed
+  sim-host bicycle list                        the bicycles that ship";
+
+/// From which disturbances does a bicycle with a steer assist recover?
+#[derive(Parser)]
+#[command(name = "sim-host", version = VERSION, after_help = EXAMPLES, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SIM_HOST_COMMIT"), ")");
+
+#[derive(Subcommand)]
+enum Command {
+    /// The basin of attraction over forward speed.
+    Basin(Box<basin::Args>),
+    /// One ride after a disturbance.
+    Ride(Box<ride::Args>),
+    /// Eigenvalues of the linearised bicycle over speed, and its critical speeds.
+    Eigen(eigen::Args),
+    /// Bicycles: list, show, check, accelerations.
+    #[command(subcommand)]
+    Bicycle(bicycle::Command),
+    /// The JSON schema of a command's `--json` document.
+    Schema {
+        /// Which document.
+        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check"])]
+        document: String,
+    },
+}
+
+/// Runs the program: arguments from the process, answers to standard output, errors to standard
+/// error.
+pub fn run() -> ExitCode {
+    let cli = Cli::parse();
+    let ended = match cli.command {
+        Command::Basin(args) => basin::run(&args),
+        Command::Ride(args) => ride::run(&args),
+        Command::Eigen(args) => eigen::run(&args),
+        Command::Bicycle(command) => bicycle::run(&command),
+        Command::Schema { document } => schema(&document),
+    };
+    match ended {
+        Ok(Ended::Done) => ExitCode::SUCCESS,
+        Ok(Ended::Interrupted) => ExitCode::from(130),
+        // A reader that has seen enough, like `head`, is no error.
+        Err(e) if is_broken_pipe(&*e) => ExitCode::SUCCESS,
+        Err(e) => {
+            eprintln!("error: {e}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+fn is_broken_pipe(e: &(dyn std::error::Error + 'static)) -> bool {
+    e.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
+}
+
+fn schema(document: &str) -> Result<Ended, Failure> {
+    let schema = crate::report::document::schema(document).ok_or("no such document")?;
+    outputs::print(&(serde_json::to_string_pretty(&schema)? + "\n"))?;
+    Ok(Ended::Done)
+}

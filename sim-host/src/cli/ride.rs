@@ -1,0 +1,88 @@
+//! `sim-host ride`.
+
+use super::conditions::ConditionArgs;
+use super::outputs::{OutputArgs, print};
+use super::{Ended, Failure};
+use crate::report::document::RideDocument;
+use crate::report::figure::{self, RideFigure};
+use crate::report::{table, terminal};
+use crate::ride::{Ride, Start, traced};
+use std::fmt::Write;
+
+const EXAMPLES: &str = "\
+Examples:
+  sim-host ride --speed 4 --steer-rate 5
+  sim-host ride --law none --speed 6 --steer-rate 1 --svg ride.svg --csv ride.csv
+  sim-host ride --preset product --speed 3 --roll-rate 0.5 --json";
+
+/// Options of `ride`.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    #[command(flatten)]
+    conditions: ConditionArgs,
+    /// Forward speed at the start, in m/s
+    #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
+    speed: f64,
+    /// Steer rate at the start, in rad/s, right positive
+    #[arg(long, default_value_t = 0.0, value_name = "RAD/S", allow_negative_numbers = true)]
+    steer_rate: f64,
+    /// Roll rate at the start, in rad/s, right positive
+    #[arg(long, default_value_t = 0.0, value_name = "RAD/S", allow_negative_numbers = true)]
+    roll_rate: f64,
+    #[command(flatten)]
+    outputs: OutputArgs,
+}
+
+pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    let within = |name: &str, value: f64, low: f64, high: f64| {
+        if value >= low && value <= high {
+            Ok(())
+        } else {
+            Err(format!("{name} {value} is outside {low} to {high}"))
+        }
+    };
+    within("--speed (m/s)", args.speed, 0.0, 30.0)?;
+    within("--steer-rate (rad/s)", args.steer_rate, -100.0, 100.0)?;
+    within("--roll-rate (rad/s)", args.roll_rate, -100.0, 100.0)?;
+    let setup = args.conditions.setup()?;
+    let outputs = args.outputs.open()?;
+    let start =
+        Start { speed_m_s: args.speed, steer_rate_rad_s: args.steer_rate, roll_rate_rad_s: args.roll_rate };
+    let (ride, trace) = traced(&setup.conditions, start);
+    if outputs.talks() {
+        print(&(terminal::ride(&trace, 80) + &summary(&ride)))?;
+    }
+    let document = RideDocument::new(setup.config.clone(), &ride);
+    let title = format!(
+        "{}, law {}: {} m/s, steer rate {} rad/s, roll rate {} rad/s",
+        setup.config.bicycle.name, setup.config.law.name, args.speed, args.steer_rate, args.roll_rate
+    );
+    outputs.write(
+        &document,
+        &document.config,
+        || table::table(&document.config, &trace),
+        || figure::ride(&RideFigure { trace: &trace, outcome: ride.outcome, title: &title }),
+    )?;
+    Ok(Ended::Done)
+}
+
+fn summary(ride: &Ride) -> String {
+    let (e, mut text) = (&ride.effort, String::new());
+    let _ = match ride.outcome.time_to_fall_s() {
+        Some(t) => writeln!(text, "fallen after {t:.6} s"),
+        None => writeln!(text, "not fallen, {}", ride.outcome.name()),
+    };
+    let _ = writeln!(
+        text,
+        "peak roll {:.1} deg, peak steer {:.1} deg",
+        e.peak_roll_rad.to_degrees(),
+        e.peak_steer_rad.to_degrees()
+    );
+    let _ = writeln!(
+        text,
+        "torque: peak {:.2} N m, rms {:.2} N m, peak slew {:.1} N m/s; motor energy {:.2} J (pushing {:.2} J)",
+        e.peak_torque_nm, e.rms_torque_nm, e.peak_slew_nm_s, e.motor_energy_j, e.motor_energy_out_j
+    );
+    text
+}

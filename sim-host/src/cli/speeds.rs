@@ -1,0 +1,50 @@
+//! Ranges of speeds: `A:B:STEP` with B included, or a single value.
+
+/// The speeds a text stands for \[m/s\].
+pub(super) fn parse(text: &str) -> Result<Vec<f64>, String> {
+    let number = |part: &str| {
+        part.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| {
+            format!("`{part}` is not a number; expected A:B:STEP in m/s, for example 0:10:0.1, or one speed")
+        })
+    };
+    let parts: Vec<&str> = text.split(':').collect();
+    let speeds = match parts[..] {
+        [one] => vec![number(one)?],
+        [from, to, step] => {
+            let (from, to, step) = (number(from)?, number(to)?, number(step)?);
+            if step <= 0.0 || to < from {
+                return Err(format!("the range {text} must rise, with a step above zero"));
+            }
+            let n = ((to - from) / step + 1e-9).floor();
+            if n > 1e5 {
+                return Err(format!("the range {text} has {n} speeds; at most 100000"));
+            }
+            // Rounded to a billionth, so that 0.1 steps read 0.3 and not 0.30000000000000004.
+            (0..=n as usize).map(|i| ((from + i as f64 * step) * 1e9).round() / 1e9).collect()
+        }
+        _ => return Err(format!("expected A:B:STEP or one speed, not {text}")),
+    };
+    match speeds.iter().find(|v| !(0.0..=30.0).contains(*v)) {
+        Some(v) => Err(format!("speed {v} m/s is outside 0 to 30")),
+        None => Ok(speeds),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parse;
+
+    #[test]
+    fn ranges_include_their_end() {
+        assert_eq!(parse("0:0.3:0.1"), Ok(vec![0.0, 0.1, 0.2, 0.3]));
+        assert_eq!(parse("2:7.5:0.1").map(|v| (v.len(), v[55])), Ok((56, 7.5)));
+        assert_eq!(parse("4"), Ok(vec![4.0]));
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_the_reason() {
+        for text in ["", "a", "0:1", "0:1:0", "1:0:0.1", "0:1:-1", "-1", "31", "0:nan:1", "0:30:1e-9"] {
+            assert!(parse(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! The JSON documents, schema 1: what scripts may rely on (`docs/cli.md`, `docs/schema/`).
+
+use super::resolved::{ResolvedConfig, ResolvedSearch, Tool};
+use crate::basin::{Basin, ScanPoint, Work};
+use crate::ride::{Effort, FinalState, Ride, Start};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// The version of these documents.
+pub const SCHEMA: u32 = 1;
+
+/// `bicycle check`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[allow(non_snake_case, reason = "the symbols of the paper")]
+pub struct CheckDocument {
+    /// 1.
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// The bicycle.
+    pub bicycle: super::resolved::ResolvedBicycle,
+    /// Mass matrix of `[roll, steer]` \[kg m^2\].
+    pub M: [[f64; 2]; 2],
+    /// Damping per unit speed \[kg m\].
+    pub C1: [[f64; 2]; 2],
+    /// Stiffness per unit gravity \[kg m\].
+    pub K0: [[f64; 2]; 2],
+    /// Stiffness per unit speed squared \[kg\].
+    pub K2: [[f64; 2]; 2],
+    /// Speed at which the weave pair forms \[m/s\].
+    pub v_d: Option<f64>,
+    /// Weave speed \[m/s\].
+    pub v_w: Option<f64>,
+    /// Capsize speed \[m/s\].
+    pub v_c: Option<f64>,
+}
+
+/// `eigen`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct EigenDocument {
+    /// 1.
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// The bicycle.
+    pub bicycle: super::resolved::ResolvedBicycle,
+    /// The law.
+    pub law: super::resolved::ResolvedLaw,
+    /// Speed at which the first complex pair forms \[m/s\].
+    pub v_d: Option<f64>,
+    /// Weave speed \[m/s\].
+    pub v_w: Option<f64>,
+    /// Capsize speed \[m/s\].
+    pub v_c: Option<f64>,
+    /// Speeds \[m/s\].
+    pub speeds: Vec<f64>,
+    /// Per speed the four eigenvalues `[re, im]` \[1/s\], largest real part first.
+    pub eigenvalues: Vec<[[f64; 2]; 4]>,
+}
+
+/// `ride`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct RideDocument {
+    /// 1.
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// The conditions.
+    pub config: ResolvedConfig,
+    /// The initial state.
+    pub start: Start,
+    /// "fallen", "recovered" or "undecided".
+    pub outcome: &'static str,
+    /// When it fell \[s\]; null if it did not.
+    pub time_to_fall_s: Option<f64>,
+    /// The state at the end.
+    #[serde(rename = "final")]
+    pub end: FinalState,
+    /// What it took.
+    pub effort: Effort,
+}
+
+impl RideDocument {
+    /// The document of a ride.
+    pub fn new(config: ResolvedConfig, ride: &Ride) -> Self {
+        Self {
+            schema: SCHEMA,
+            tool: Tool::this(),
+            config,
+            start: ride.start,
+            outcome: ride.outcome.name(),
+            time_to_fall_s: ride.outcome.time_to_fall_s(),
+            end: ride.end,
+            effort: ride.effort,
+        }
+    }
+}
+
+/// The two borders of the interval that contains zero, per speed \[rad/s\]; null if not computed.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Height {
+    /// To the right.
+    pub upper: Vec<Option<f64>>,
+    /// To the left: the mirror image.
+    pub lower: Vec<Option<f64>>,
+}
+
+/// A range of disturbances outside the basin that does not fall either; it has a mirror image.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct IslandEntry {
+    /// Speed \[m/s\].
+    pub speed: f64,
+    /// Least disturbance \[rad/s\].
+    pub from: f64,
+    /// Largest disturbance \[rad/s\].
+    pub to: f64,
+}
+
+/// The ride at the border of one speed.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Border {
+    /// Speed \[m/s\].
+    pub speed: f64,
+    /// "recovered" or "undecided".
+    pub outcome: &'static str,
+    /// What it took.
+    pub effort: Effort,
+}
+
+/// Every ride of the scan, per speed and rate.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Map {
+    /// Disturbances \[rad/s\].
+    pub rates: Vec<f64>,
+    /// Per speed and rate "fallen", "recovered" or "undecided"; an empty list if not computed.
+    pub outcome: Vec<Vec<&'static str>>,
+    /// Per speed and rate the time to fall \[s\]; null for a ride that did not.
+    pub time_to_fall_s: Vec<Vec<Option<f64>>>,
+}
+
+/// `basin`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct BasinDocument {
+    /// 1.
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// The conditions.
+    pub config: ResolvedConfig,
+    /// What was searched.
+    pub search: ResolvedSearch,
+    /// False after an interruption: then some heights are null, and so are the measures.
+    pub complete: bool,
+    /// Forward speeds \[m/s\].
+    pub speeds: Vec<f64>,
+    /// The outline.
+    pub height: Height,
+    /// Per speed whether nothing fell up to `search.max_rate`; null if not computed.
+    pub capped: Vec<Option<bool>>,
+    /// What lies beyond the outline.
+    pub islands: Vec<IslandEntry>,
+    /// Area between zero and `upper`, trapezoidal rule \[rad m/s^2\].
+    pub area: Option<f64>,
+    /// Mean of `upper` \[rad/s\].
+    pub mean_height: Option<f64>,
+    /// The rides at the outline.
+    pub border: Vec<Border>,
+    /// The scan.
+    pub map: Map,
+    /// How much was computed.
+    pub work: Work,
+    /// How long it took \[s\].
+    pub seconds: f64,
+}
+
+impl BasinDocument {
+    /// The document of a basin over `speeds`, of which some may be missing.
+    pub fn new(
+        config: ResolvedConfig,
+        search: ResolvedSearch,
+        speeds: &[f64],
+        basin: &Basin,
+        seconds: f64,
+    ) -> Self {
+        let complete = basin.columns.len() == speeds.len();
+        let column = |v: &f64| basin.columns.iter().find(|c| c.speed == *v);
+        let columns: Vec<_> = speeds.iter().map(column).collect();
+        let upper: Vec<Option<f64>> = columns.iter().map(|c| c.map(|c| c.upper)).collect();
+        let islands = basin
+            .columns
+            .iter()
+            .flat_map(|c| c.islands.iter().map(|i| IslandEntry { speed: c.speed, from: i.from, to: i.to }))
+            .collect();
+        let border = basin
+            .columns
+            .iter()
+            .filter_map(|c| {
+                c.border.map(|ride| Border {
+                    speed: c.speed,
+                    outcome: ride.outcome.name(),
+                    effort: ride.effort,
+                })
+            })
+            .collect();
+        let scans: Vec<&[ScanPoint]> = columns.iter().map(|c| c.map_or(&[][..], |c| &c.scan)).collect();
+        Self {
+            schema: SCHEMA,
+            tool: Tool::this(),
+            config,
+            search,
+            complete,
+            speeds: speeds.to_vec(),
+            // An exact zero has no sign, so its mirror image is zero and not minus zero.
+            height: Height { lower: upper.iter().map(|u| u.map(|u| 0.0 - u)).collect(), upper },
+            capped: columns.iter().map(|c| c.map(|c| c.capped)).collect(),
+            islands,
+            area: complete.then(|| basin.area()),
+            mean_height: basin.mean_height().filter(|_| complete),
+            border,
+            map: Map {
+                rates: basin.columns.first().map_or(Vec::new(), |c| c.scan.iter().map(|p| p.rate).collect()),
+                outcome: scans.iter().map(|s| s.iter().map(|p| p.outcome.name()).collect()).collect(),
+                time_to_fall_s: scans
+                    .iter()
+                    .map(|s| s.iter().map(|p| p.outcome.time_to_fall_s()).collect())
+                    .collect(),
+            },
+            work: basin.work(),
+            seconds,
+        }
+    }
+}
+
+/// The JSON schema of a document by its command's name; `None` for another name.
+pub fn schema(command: &str) -> Option<serde_json::Value> {
+    let schema = match command {
+        "basin" => schemars::schema_for!(BasinDocument),
+        "ride" => schemars::schema_for!(RideDocument),
+        "eigen" => schemars::schema_for!(EigenDocument),
+        "bicycle-check" => schemars::schema_for!(CheckDocument),
+        _ => return None,
+    };
+    serde_json::to_value(schema).ok()
+}

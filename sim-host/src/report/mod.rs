@@ -1,0 +1,9 @@
+//! What leaves the program: documents, tables, figures, files.
+
+pub mod document;
+pub mod figure;
+pub mod output;
+pub mod picture;
+pub mod resolved;
+pub mod table;
+pub mod terminal;

@@ -1,0 +1,161 @@
+//! The full configuration a result was computed with, as every output carries it.
+
+use crate::basin::Axis;
+use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
+use crate::ride::{Assist, Conditions};
+use control::Law;
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The program a result came from.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Tool {
+    /// Always "sim-host".
+    pub name: &'static str,
+    /// Release.
+    pub version: &'static str,
+    /// Commit it was built from, "unknown" outside a repository.
+    pub commit: &'static str,
+}
+
+impl Tool {
+    /// This program.
+    pub const fn this() -> Self {
+        Self { name: "sim-host", version: env!("CARGO_PKG_VERSION"), commit: env!("SIM_HOST_COMMIT") }
+    }
+}
+
+/// The bicycle of a result.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ResolvedBicycle {
+    /// Name, FILE or FILE#NAME as given.
+    pub name: String,
+    /// Where the values come from.
+    pub source: Option<String>,
+    /// Doubts about the values.
+    pub warnings: Vec<String>,
+    /// The values, symbols of Meijaard et al. 2007, SI units.
+    pub parameters: BTreeMap<&'static str, f64>,
+}
+
+impl ResolvedBicycle {
+    /// The bicycle for an output.
+    pub fn new(bicycle: &Bicycle) -> Self {
+        Self {
+            name: bicycle.name.clone(),
+            source: bicycle.source.clone(),
+            warnings: bicycle.warnings.clone(),
+            parameters: parameters(&bicycle.parameters),
+        }
+    }
+}
+
+fn parameters(p: &Parameters) -> BTreeMap<&'static str, f64> {
+    KEYS.into_iter().zip(p.to_values()).collect()
+}
+
+/// The roll-rate law of a result.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ResolvedLaw {
+    /// Name, or file as given.
+    pub name: String,
+    /// Points of a table: speed \[m/s\], gain \[N m s/rad\]; none for a formula.
+    pub points: Option<Vec<(f32, f32)>>,
+}
+
+impl ResolvedLaw {
+    /// The law for an output, under the name it was asked for by.
+    pub fn new(name: &str, law: &Law) -> Self {
+        let points = match law {
+            Law::Table(table) => Some(table.points().to_vec()),
+            _ => None,
+        };
+        Self { name: name.into(), points }
+    }
+}
+
+/// The conditions of a result, defaults filled in.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ResolvedConfig {
+    /// "thesis" or "product".
+    pub preset: String,
+    /// The bicycle.
+    pub bicycle: ResolvedBicycle,
+    /// The law.
+    pub law: ResolvedLaw,
+    /// "none", "firmware" or "ideal".
+    pub assist: &'static str,
+    /// "front", "rear" or "initial".
+    pub schedule_speed: String,
+    /// "euler" or "body".
+    pub imu: String,
+    /// Largest torque \[N m\]; null is none.
+    pub torque_limit_nm: Option<f32>,
+    /// Largest change of torque \[N m/s\]; null is none.
+    pub rate_limit_nm_s: Option<f32>,
+    /// Taper below walking speed: torque zero at the first, whole at the second speed \[m/s\].
+    pub taper_m_s: Option<(f32, f32)>,
+    /// Delay of the simulated sensors \[s\].
+    pub sensor_delay_s: f64,
+    /// Control rate \[Hz\]; null for the continuous ideal law.
+    pub control_rate_hz: Option<f32>,
+    /// Integration step \[s\].
+    pub step_s: f64,
+    /// Time limit of a ride \[s\].
+    pub time_limit_s: f64,
+    /// Fraction of the largest roll and steer below which a ride's last second must stay to count as
+    /// recovered.
+    pub recovered_below: f64,
+}
+
+impl ResolvedConfig {
+    /// The configuration for an output.
+    pub fn new(preset: &str, bicycle: &Bicycle, law: ResolvedLaw, c: &Conditions) -> Self {
+        let config = match &c.assist {
+            Assist::Firmware(plan) => Some(plan.config()),
+            Assist::None | Assist::Ideal(_) => None,
+        };
+        Self {
+            preset: preset.into(),
+            bicycle: ResolvedBicycle::new(bicycle),
+            law,
+            assist: match &c.assist {
+                Assist::None => "none",
+                Assist::Firmware(_) => "firmware",
+                Assist::Ideal(_) => "ideal",
+            },
+            schedule_speed: format!("{:?}", c.schedule_speed).to_lowercase(),
+            imu: format!("{:?}", c.imu).to_lowercase(),
+            torque_limit_nm: config.and_then(|c| c.shape.max_torque_nm),
+            rate_limit_nm_s: config.and_then(|c| c.shape.max_rate_nm_s),
+            taper_m_s: config.and_then(|c| c.shape.taper).map(|t| (t.zero_m_s, t.full_m_s)),
+            sensor_delay_s: f64::from(c.sensor_delay_ticks) * c.step_s,
+            control_rate_hz: config.map(|c| c.rate_hz),
+            step_s: c.step_s,
+            time_limit_s: c.time_limit_s,
+            recovered_below: c.recovered_below,
+        }
+    }
+}
+
+/// What a basin was searched with.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ResolvedSearch {
+    /// "steer-rate" or "roll-rate".
+    pub axis: String,
+    /// Largest disturbance tried \[rad/s\].
+    pub max_rate: f64,
+    /// Step of the scan \[rad/s\].
+    pub scan_step: f64,
+    /// How closely borders are located \[rad/s\].
+    pub tolerance: f64,
+}
+
+/// The axis' name in files and on the command line.
+pub fn axis_name(axis: Axis) -> &'static str {
+    match axis {
+        Axis::SteerRate => "steer-rate",
+        Axis::RollRate => "roll-rate",
+    }
+}

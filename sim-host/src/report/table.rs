@@ -1,0 +1,52 @@
+//! CSV tables, headed by `#` lines with the program and the full configuration.
+
+use super::resolved::Tool;
+use serde::Serialize;
+
+/// A header comment: the program, then `config` as one line of JSON.
+fn heading(config: &impl Serialize) -> String {
+    let tool = Tool::this();
+    let config = serde_json::to_string(config).unwrap_or_default();
+    format!("# {} {} commit {}\n# {config}\n", tool.name, tool.version, tool.commit)
+}
+
+/// A table of serialisable rows, columns named by their fields.
+///
+/// # Errors
+/// When a row can't be written as a line of CSV.
+pub fn table<R: Serialize>(config: &impl Serialize, rows: &[R]) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(heading(config).into_bytes());
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    writer.into_inner().map_err(|e| csv::Error::from(std::io::Error::other(e.to_string())))
+}
+
+/// One line of a basin's table.
+#[derive(Clone, Debug, Serialize)]
+pub struct BasinRow {
+    /// Forward speed.
+    pub speed_m_s: f64,
+    /// Disturbance.
+    pub rate_rad_s: f64,
+    /// "fallen", "recovered", "undecided", or for the outline itself "border".
+    pub outcome: &'static str,
+    /// Time to fall, empty if it did not.
+    pub time_to_fall_s: Option<f64>,
+}
+
+/// The scan and, per speed, the border as rows.
+pub fn basin_rows(basin: &crate::basin::Basin) -> Vec<BasinRow> {
+    let mut rows = Vec::new();
+    for c in &basin.columns {
+        let row = |rate, outcome, time| BasinRow {
+            speed_m_s: c.speed,
+            rate_rad_s: rate,
+            outcome,
+            time_to_fall_s: time,
+        };
+        rows.push(row(c.upper, "border", None));
+        rows.extend(c.scan.iter().map(|p| row(p.rate, p.outcome.name(), p.outcome.time_to_fall_s())));
+    }
+    rows
+}
