@@ -1,1 +1,4 @@
-//! Flight cards of the workspace: the tests themselves are the files in `tests/tests/`.
+//! What the flight cards in `tests/tests/` share; the cards themselves are the tests.
+
+pub mod newton_euler;
+pub mod published;
