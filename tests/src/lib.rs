@@ -1,4 +1,7 @@
 //! What the flight cards in `tests/tests/` share; the cards themselves are the tests.
 
+pub mod draws;
+pub mod flow;
 pub mod newton_euler;
 pub mod published;
+pub mod rides;
