@@ -11,8 +11,12 @@ pub struct Derived {
     pub name: String,
     /// M, C1, K0, K2, row by row.
     pub matrices: [[f64; 4]; 4],
-    /// v_d, v_w, v_c \[m/s\], if they exist.
-    pub speeds: [Option<f64>; 3],
+    /// Where the weave pair is born \[m/s\], if the file knows.
+    pub v_d: Option<f64>,
+    /// Where weave becomes stable \[m/s\].
+    pub v_w: f64,
+    /// Where capsize becomes unstable \[m/s\], if it does.
+    pub v_c: Option<f64>,
     /// Speed \[m/s\] and the four eigenvalues there, (real, imaginary) \[1/s\].
     pub eigenvalues: Vec<(f64, [(f64, f64); 4])>,
 }
@@ -28,7 +32,6 @@ pub fn all() -> Vec<Derived> {
 }
 
 fn one(name: &str, table: &Table, file: &Table) -> Derived {
-    let speed = |key: &str| Some(float(&table[key])).filter(|v| !v.is_nan());
     let rows = file.get(&format!("{name}_eigenvalues")).and_then(Value::as_array);
     let eigenvalues = rows.into_iter().flatten().map(|row| {
         let (re, im) = (floats(&row["re"]), floats(&row["im"]));
@@ -40,7 +43,9 @@ fn one(name: &str, table: &Table, file: &Table) -> Derived {
             let rows = table[key].as_array().expect("a matrix");
             rows.iter().flat_map(floats).collect::<Vec<_>>().try_into().expect("2 x 2 numbers")
         }),
-        speeds: ["v_d", "v_w", "v_c"].map(speed),
+        v_d: table.get("v_d").map(float),
+        v_w: float(&table["v_w"]),
+        v_c: Some(float(&table["v_c"])).filter(|v| !v.is_nan()),
         eigenvalues: eigenvalues.collect(),
     }
 }

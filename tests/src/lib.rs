@@ -1,7 +1,9 @@
 //! What the flight cards in `tests/tests/` share; the cards themselves are the tests.
 
+pub mod derived;
 pub mod draws;
 pub mod flow;
+pub mod linearised;
 pub mod newton_euler;
 pub mod published;
 pub mod rides;

@@ -1,6 +1,6 @@
 //! Rides without a controller.
 
-use sim_host::bicycle::{Geometry, Motion, State, Torques, catalogue};
+use sim_host::bicycle::{Geometry, State, Torques, catalogue};
 use sim_host::integrate::rk4;
 
 /// No torque.
@@ -24,23 +24,20 @@ pub fn knocked(b: &Geometry, v: f64, steer_rate: f64) -> State<f64> {
     State { steer_rate, ..State::upright(b, v) }
 }
 
-/// Rides `steps` steps of `step` seconds; `watch` sees every state with its motion, the first and
-/// the last too.
+/// Rides `steps` steps of `step` seconds; `watch` sees every state, the first and the last too.
 pub fn ride(
     b: &Geometry,
     start: State<f64>,
     torques: &Torques<f64>,
     step: f64,
     steps: usize,
-    mut watch: impl FnMut(&State<f64>, &Motion<f64>),
+    mut watch: impl FnMut(&State<f64>),
 ) -> State<f64> {
     let mut state = start;
-    let mut motion = Motion::new(b, &state);
-    watch(&state, &motion);
+    watch(&state);
     for _ in 0..steps {
-        state = rk4(b, &state, &motion, step, torques);
-        motion = Motion::new(b, &state);
-        watch(&state, &motion);
+        state = rk4(b, &state, step, &mut { *torques });
+        watch(&state);
     }
     state
 }
