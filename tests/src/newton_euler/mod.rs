@@ -8,7 +8,7 @@
 mod bodies;
 mod constraints;
 
-use bodies::{Bicycle, FRONT_FRAME, FRONT_WHEEL, REAR_FRAME, REAR_WHEEL};
+use bodies::{Bicycle, Body, FRONT_FRAME, FRONT_WHEEL, REAR_FRAME, REAR_WHEEL};
 use constraints::{COLUMNS, CONTACT_ROWS, ROWS, angular, jacobian, rates};
 use nalgebra::{DMatrix, DVector, Vector3};
 use sim_host::bicycle::{Parameters, State, Torques};
@@ -39,6 +39,8 @@ pub struct Solution {
     pub front_wheel_acceleration: f64,
     /// Acceleration of the rear wheel's centre \[m/s^2\].
     pub rear_axle_acceleration: Vector3<f64>,
+    /// Kinetic and potential energy \[J\], the potential zero at ground height.
+    pub energy: f64,
     /// Force of the ground on the rear wheel \[N\]; z is negative when it pushes up.
     pub rear_contact: Vector3<f64>,
     /// Force of the ground on the front wheel \[N\].
@@ -82,6 +84,7 @@ pub fn solve(p: &Parameters, state: &State<f64>, torques: &Torques<f64>) -> Opti
         yaw_acceleration: alpha.z - pitch_acceleration * sr,
         front_wheel_acceleration: wheel(&a, FRONT_FRAME, FRONT_WHEEL, &front_axle),
         rear_axle_acceleration: a.fixed_rows::<3>(6 * REAR_WHEEL).into_owned(),
+        energy: energy(&bicycle, &v, p.g),
         rear_contact: contact(0),
         front_contact: contact(1),
     })
@@ -106,6 +109,16 @@ fn velocities(bicycle: &Bicycle, j: &DMatrix<f64>, state: &State<f64>) -> Option
     right[ROWS + 1] = state.steer_rate;
     right[ROWS + 2] = state.rear_wheel_rate;
     matrix.lu().solve(&right)
+}
+
+/// Kinetic and potential energy of the four bodies.
+fn energy(bicycle: &Bicycle, velocities: &DVector<f64>, gravity: f64) -> f64 {
+    let one = |(i, body): (usize, &Body)| {
+        let (v, omega) = (velocities.fixed_rows::<3>(6 * i), angular(velocities, i));
+        0.5 * (body.mass * v.norm_squared() + omega.dot(&(body.inertia * omega)))
+            - body.mass * gravity * body.centre.z
+    };
+    bicycle.bodies.iter().enumerate().map(one).sum()
 }
 
 /// Accelerations of the four bodies and the 21 constraint forces.
