@@ -19,7 +19,8 @@ pub fn eigenvalues(bicycle: &Linear, law: &Law, v: f64) -> [Complex<f64>; 4] {
 /// The speeds at which the straight ride changes its nature \[m/s\]; `None` where it does not.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct CriticalSpeeds {
-    /// Two real eigenvalues merge into the first complex pair; none if there is a pair at rest.
+    /// Two growing real eigenvalues merge into the weave pair; none if there is a growing pair at
+    /// rest. (Two decaying ones may merge before, at a lower speed.)
     pub v_d: Option<f64>,
     /// Weave: the rightmost complex pair moves into the left half plane.
     pub v_w: Option<f64>,
@@ -35,12 +36,13 @@ pub fn critical_speeds(bicycle: &Linear, law: &Law) -> CriticalSpeeds {
     };
     // The steady turn: det(g K0 + v^2 K2) changes sign, whatever the roll-rate feedback.
     let det = |v: f64| (bicycle.k0 * bicycle.g + bicycle.k2 * (v * v)).determinant();
+    let growing_pair = |v: f64| at(v).iter().any(|e| e.im != 0.0 && e.re > 0.0);
     let v_w = upward(&|v| -rightmost(v, true), |v| rightmost(v, true).is_finite());
     CriticalSpeeds {
-        v_d: if at(0.0).iter().any(|e| e.im != 0.0) {
+        v_d: if growing_pair(0.0) {
             None
         } else {
-            upward(&|v| if at(v).iter().any(|e| e.im != 0.0) { 1.0 } else { -1.0 }, |_| true)
+            upward(&|v| if growing_pair(v) { 1.0 } else { -1.0 }, |_| true)
         },
         v_w,
         v_c: upward(&|v| -det(v), |_| true),

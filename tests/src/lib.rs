@@ -1,1 +1,9 @@
-//! Flight cards of the workspace: the tests themselves are the files in `tests/tests/`.
+//! What the flight cards in `tests/tests/` share; the cards themselves are the tests.
+
+pub mod derived;
+pub mod draws;
+pub mod flow;
+pub mod linearised;
+pub mod newton_euler;
+pub mod published;
+pub mod rides;

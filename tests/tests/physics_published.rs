@@ -1,0 +1,13 @@
+//! The file of published values itself.
+
+use tests::published;
+
+#[test]
+fn every_published_value_names_its_source_and_why_its_tolerance() {
+    assert!(published::names().len() >= 8);
+    for name in published::names() {
+        let entry = published::entry(&name);
+        assert!(entry.text("source").len() > 10 && entry.text("reason").len() > 10, "{name}");
+        assert!(entry.tolerance() > 0.0 && entry.tolerance() <= 0.01, "{name}");
+    }
+}
