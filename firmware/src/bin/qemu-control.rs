@@ -54,7 +54,8 @@ fn spin_until(end: Instant) {
 fn main() -> ! {
     static PLAN: StaticCell<Plan> = StaticCell::new();
     hprintln!("{}", firmware::identity!());
-    let plan: &'static Plan = PLAN.init(Config::product().plan().expect("the product's configuration is valid"));
+    let Ok(plan) = Config::product().plan() else { exit(Exit::Input) };
+    let plan: &'static Plan = PLAN.init(plan);
     let length = Duration::from_secs(argument("seconds").unwrap_or(5).into());
     let every = Duration::from_millis(argument("every_ms").unwrap_or(100).into());
     let hold = argument("block_us").map(|us| Duration::from_micros(us.into()));

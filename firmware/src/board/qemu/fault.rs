@@ -38,9 +38,16 @@ pub fn enable() {
 #[unsafe(no_mangle)]
 extern "C" fn fault_report(sp: u32, exception: u32) -> ! {
     // SAFETY: the core's own registers, reading them has no effect.
-    let [cfsr, hfsr, bfar] =
-        [0xE000_ED28, 0xE000_ED2C, 0xE000_ED38].map(|at: usize| unsafe { (at as *const u32).read_volatile() });
-    hprintln!("fault: exception={} cfsr={:08x} hfsr={:08x} bfar={:08x} sp={:08x}", exception, cfsr, hfsr, bfar, sp);
+    let [cfsr, hfsr, bfar] = [0xE000_ED28, 0xE000_ED2C, 0xE000_ED38]
+        .map(|at: usize| unsafe { (at as *const u32).read_volatile() });
+    hprintln!(
+        "fault: exception={} cfsr={:08x} hfsr={:08x} bfar={:08x} sp={:08x}",
+        exception,
+        cfsr,
+        hfsr,
+        bfar,
+        sp
+    );
     exit(Exit::Fault)
 }
 
