@@ -24,6 +24,13 @@ pub mod tasks;
 #[macro_export]
 macro_rules! identity {
     () => {
-        concat!(env!("CARGO_BIN_NAME"), " ", env!("CARGO_PKG_VERSION"), " ", env!("FIRMWARE_COMMIT"))
+        // Opaque, so that the words stay together in the image instead of in single instructions.
+        core::hint::black_box(concat!(
+            env!("CARGO_BIN_NAME"),
+            " ",
+            env!("CARGO_PKG_VERSION"),
+            " ",
+            env!("FIRMWARE_COMMIT")
+        ))
     };
 }

@@ -1,6 +1,7 @@
 //! Sensor frames to feed to the images, and the configurations to run on them.
 
 use control::history::{Latency, MAX_LATENCY_TICKS};
+use control::law::TABLE_POINTS;
 use control::wire::{encode_config, encode_frame};
 use control::{Config, Law, LawTable, Sample, SensorFrame, Wheel};
 use std::f32::consts::TAU;
@@ -11,7 +12,9 @@ use std::f32::consts::TAU;
 /// # Panics
 /// Never: the table is a valid one.
 pub fn configurations() -> Vec<(&'static str, Config)> {
-    let table = LawTable::new(&[(0.0, 40.0), (3.0, 25.0), (5.0, 9.5), (7.5, 0.0)]).expect("a valid table");
+    let points: Vec<_> =
+        (0_u8..TABLE_POINTS as u8).map(|i| (0.25 * f32::from(i), 31.5 - f32::from(i))).collect();
+    let table = LawTable::new(&points).expect("a valid table");
     let late = |roll_rate_ticks, speed_ticks, config| Config {
         latency: Latency { roll_rate_ticks, speed_ticks },
         ..config
@@ -26,7 +29,7 @@ pub fn configurations() -> Vec<(&'static str, Config)> {
         ("g", Config::thesis(Law::G)),
         ("cl1", Config::thesis(Law::Cl1)),
         ("cl2, k = 3.7", Config::thesis(Law::Cl2 { k: 3.7 })),
-        ("table", Config::thesis(Law::Table(table))),
+        ("table of 32 points", Config::thesis(Law::Table(table))),
         ("h, gyro 31 ticks late", late(MAX_LATENCY_TICKS, 0, Config::thesis(Law::H { cut: false }))),
         ("product", Config::product()),
         ("product, rear wheel, wheel 20 ticks late", late(2, 20, rear)),
