@@ -40,6 +40,11 @@ pub fn root() -> &'static Path {
     manifest.parent().unwrap_or(manifest)
 }
 
+/// Where cargo builds the images, apart from the host's programs.
+pub fn target_dir() -> PathBuf {
+    root().join("target/firmware")
+}
+
 /// Where a built image lies.
 pub fn path(name: &str) -> PathBuf {
     target_dir().join(TARGET).join("firmware").join(name)
@@ -82,10 +87,6 @@ pub fn ready() -> bool {
         let _ = writeln!(std::io::stderr(), "\nSKIPPED, NOT PASSED: the firmware tests need\n  {list}\n");
         false
     })
-}
-
-fn target_dir() -> PathBuf {
-    root().join("target/firmware")
 }
 
 fn cargo_build(package: &str, feature: &str) -> Command {

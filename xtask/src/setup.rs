@@ -1,7 +1,7 @@
 //! What the images need beyond a stable Rust: the chip's target, QEMU and the size tool.
 
 use crate::Result;
-use crate::image::{TARGET, root};
+use crate::image::{self, TARGET, root};
 use crate::process::must;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -58,6 +58,9 @@ fn add_target(source: TargetSource) -> Result<()> {
         let script = root().join("xtask/setup-targets.sh");
         must(Command::new("bash").arg(script).arg(TARGET), Duration::from_secs(1200))
     };
+    // Cargo does not notice another `core` of the same release: nothing built with an earlier one may
+    // stay. There may be nothing.
+    let _ = std::fs::remove_dir_all(image::target_dir());
     match source {
         TargetSource::Rustup => rustup(),
         TargetSource::Debian => debian(),
