@@ -1,12 +1,16 @@
 //! Links only when no public entry of `control` has a panic path: the panic handler calls a symbol
 //! that does not exist, and the linker drops the handler only if nothing can reach it. Never run.
+//!
+//! Left out is printing a `ParamError`: core's own printing of f32 has assertions. Nothing in
+//! `control` prints.
 #![no_std]
 #![no_main]
 #![allow(unsafe_code)]
 
 use control::history::{History, Latency};
 use control::input::Believed;
-use control::{Config, Law, LawTable, Plan, SensorFrame, State, wire};
+use control::shape::{Limits, shape};
+use control::{Config, Law, LawTable, Plan, Sample, SensorFrame, State, wire};
 use core::hint::black_box;
 
 #[panic_handler]
@@ -32,6 +36,8 @@ pub extern "C" fn _start() -> ! {
         used((config.law.validate(), config.input.validate()));
         used((config.latency.validate(), config.shape.validate()));
         used(wire::encode_config(&config));
+        let (limits, [a, b, c, d]) = (black_box(Limits::RATE), black_box([0.0; 4]));
+        used((limits.contains(black_box(Limits::TAPER)), shape(&config.shape, a, b, c, d)));
         let mut history = black_box(History::default());
         used(history.align(&black_box(Latency::default()), black_box(Believed::default())));
         if let Ok(plan) = black_box(config).plan() {
@@ -53,8 +59,8 @@ fn configured() -> Config {
 fn run(plan: &Plan) {
     let mut state = State::default();
     for _ in 0..black_box(1000) {
-        let frame: SensorFrame = wire::decode_frame(&black_box([0; wire::FRAME_BYTES]));
-        used(wire::encode_frame(&frame));
+        let frame = wire::decode_frame(&black_box([0; wire::FRAME_BYTES]));
+        used((wire::encode_frame(&frame), SensorFrame::missing(), Sample::fresh(black_box(0.0))));
         let command = control::step(black_box(plan), black_box(&mut state), &frame);
         let [.., status] = black_box(wire::encode_command(&command));
         let status = wire::decode_status(status);
