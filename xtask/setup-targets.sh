@@ -31,7 +31,7 @@ for dir in "$sysroot/lib/rustlib/src/rust/library" "/usr/src/rustc-$release/libr
 done
 if [ -z "$source" ]; then
   # A private apt state: the machine's own package sources stay as they are, nothing is installed.
-  site=$(apt-get indextargets --format '$(SITE)' 2>/dev/null | grep -m1 -E '/debian/?$' || true)
+  site=$(apt-get update --print-uris 2>/dev/null | sed -n "s#^'\(.*/debian\)/dists/.*#\1#p" | sort -u | head -1 || true)
   [ -n "$site" ] || fail "apt has no Debian source to take rust-src from; with access to rustup's servers:
   rustup target add ${missing[*]}"
   keyring=/usr/share/keyrings/debian-archive-keyring.gpg
