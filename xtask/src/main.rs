@@ -1,2 +1,144 @@
-//! Runner of the chores.
-fn main() {}
+//! `cargo xtask`: the chores of the workspace.
+
+use std::process::{Command, ExitCode};
+use std::time::Duration;
+use xtask::document::{self, instruction_table, size_table};
+use xtask::setup::{TargetSource, setup};
+use xtask::{Result, image, process, qemu};
+
+const HELP: &str = "\
+cargo xtask <command> [--help]
+
+  setup         install what the firmware needs: the chip's target, QEMU, binutils
+  test          set-up, build the firmware, run all tests, those in QEMU included
+  firmware      build all firmware images
+  qemu IMAGE    run an image in QEMU
+  size          what the images take of flash and RAM, against their budgets
+  instructions  instructions of a control step, against the budget
+";
+
+const SETUP_HELP: &str = "\
+cargo xtask setup [--target-source auto|rustup|debian]
+
+Installs the Rust target thumbv7em-none-eabihf and, as root, QEMU and binutils from apt. What is
+there already stays as it is. Fails with a list of what could not be had and how to get it.
+
+  auto    rustup; if its servers can't be reached, Debian (default)
+  rustup  rustup target add
+  debian  compile core and alloc from Debian's rust-src of the compiler's release: about a minute
+";
+
+const TEST_HELP: &str = "\
+cargo xtask test [--target-source auto|rustup|debian] [-- ARGUMENTS OF cargo test]
+
+Runs the set-up, builds the firmware images, then `cargo test` with the tests in QEMU required: a
+missing QEMU or target is a failure, not a skip.
+";
+
+const FIRMWARE_HELP: &str = "\
+cargo xtask firmware
+
+Builds all images of all boards into target/firmware/thumbv7em-none-eabihf/firmware.
+";
+
+const QEMU_HELP: &str = "\
+cargo xtask qemu IMAGE [NAME=VALUE...]
+
+Builds and runs a QEMU image in simulated time, in the current directory, for at most two minutes;
+the exit status is the image's. Try: cargo xtask qemu qemu-control seconds=5 block_us=1500
+";
+
+const SIZE_HELP: &str = "\
+cargo xtask size
+
+Prints text, data, bss, flash and RAM of each image and writes docs/images.md anew. Fails when an
+image is over its budget.
+";
+
+const INSTRUCTIONS_HELP: &str = "\
+cargo xtask instructions
+
+Counts the instructions of every control step over the border ride for each law and configuration,
+prints them and writes docs/images.md anew. Fails when a step takes more than 600.
+";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match dispatch(&words) {
+        Ok(code) => code,
+        Err(why) => {
+            eprintln!("xtask: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn dispatch(words: &[&str]) -> Result<ExitCode> {
+    let (command, rest) = words.split_first().unwrap_or((&"--help", &[]));
+    let help = match *command {
+        "setup" => SETUP_HELP,
+        "test" => TEST_HELP,
+        "firmware" => FIRMWARE_HELP,
+        "qemu" => QEMU_HELP,
+        "size" => SIZE_HELP,
+        "instructions" => INSTRUCTIONS_HELP,
+        "--help" | "-h" | "help" => HELP,
+        other => return Err(format!("no command {other:?}\n\n{HELP}")),
+    };
+    if help == HELP || matches!(rest.first(), Some(&"--help" | &"-h")) {
+        print!("{help}");
+        return Ok(ExitCode::SUCCESS);
+    }
+    match (*command, rest) {
+        ("setup", _) => setup(target_source(rest)?)?,
+        ("test", _) => test(rest)?,
+        ("firmware", []) => build_all()?,
+        ("qemu", [image, arguments @ ..]) => return run(image, arguments),
+        ("size" | "instructions", []) => measure(command)?,
+        _ => return Err(format!("wrong arguments\n\n{help}")),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn target_source(words: &[&str]) -> Result<TargetSource> {
+    match words {
+        [] | ["--target-source", "auto"] => Ok(TargetSource::Auto),
+        ["--target-source", "rustup"] => Ok(TargetSource::Rustup),
+        ["--target-source", "debian"] => Ok(TargetSource::Debian),
+        other => Err(format!("wrong arguments {other:?}\n\n{SETUP_HELP}")),
+    }
+}
+
+fn test(words: &[&str]) -> Result<()> {
+    let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
+    setup(target_source(&words[..split])?)?;
+    build_all()?;
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    cargo.current_dir(image::root()).arg("test").args(words.get(split + 1..).unwrap_or_default());
+    process::must(cargo.env("STEER_ASSIST_REQUIRE_QEMU", "1"), Duration::from_secs(4800))
+}
+
+fn build_all() -> Result<()> {
+    image::build("board-qemu")?;
+    image::build("board-stm32f405")
+}
+
+fn run(name: &str, arguments: &[&str]) -> Result<ExitCode> {
+    image::build("board-qemu")?;
+    let here = std::env::current_dir().map_err(|e| e.to_string())?;
+    let outcome = qemu::run(name, arguments, &here, qemu::TIMED, Duration::from_secs(120))?;
+    print!("{}", outcome.stdout);
+    eprint!("{}", outcome.stderr);
+    Ok(outcome.status.and_then(|status| u8::try_from(status).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+fn measure(command: &str) -> Result<()> {
+    build_all()?;
+    let (sizes, counts) = document::regenerate()?;
+    let sizes_only = command == "size";
+    print!("{}", if sizes_only { size_table(&sizes) } else { instruction_table(&counts) });
+    let over =
+        if sizes_only { document::over_budget(&sizes, &[]) } else { document::over_budget(&[], &counts) };
+    if over.is_empty() { Ok(()) } else { Err(format!("over budget:\n  {}", over.join("\n  "))) }
+}

@@ -1,0 +1,71 @@
+//! Links only when no public entry of `control` has a panic path: the panic handler calls a symbol
+//! that does not exist, and the linker drops the handler only if nothing can reach it. Never run.
+//!
+//! Left out is printing a `ParamError`: core's own printing of f32 has assertions. Nothing in
+//! `control` prints.
+#![no_std]
+#![no_main]
+#![allow(unsafe_code)]
+
+use control::history::{History, Latency};
+use control::input::Believed;
+use control::shape::{Limits, shape};
+use control::{Config, Law, LawTable, Plan, Sample, SensorFrame, State, wire};
+use core::hint::black_box;
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    unsafe extern "C" {
+        fn control_has_a_panic_path() -> !;
+    }
+    // SAFETY: never executed; an image with this call in it does not link.
+    unsafe { control_has_a_panic_path() }
+}
+
+/// Uses a result where the optimiser can't see it.
+fn used<T>(value: T) {
+    let _ = black_box(value);
+}
+
+/// The linker's entry: every public function of `control`, each with input the compiler can't see.
+#[unsafe(no_mangle)]
+pub extern "C" fn _start() -> ! {
+    loop {
+        let config = configured();
+        used((config.law.gain(black_box(1.0_f32)), config.law.gain(black_box(1.0_f64))));
+        used((config.law.validate(), config.input.validate()));
+        used((config.latency.validate(), config.shape.validate()));
+        used(wire::encode_config(&config));
+        let (limits, [a, b, c, d]) = (black_box(Limits::RATE), black_box([0.0; 4]));
+        used((limits.contains(black_box(Limits::TAPER)), shape(&config.shape, a, b, c, d)));
+        let mut history = black_box(History::default());
+        used(history.align(&black_box(Latency::default()), black_box(Believed::default())));
+        if let Ok(plan) = black_box(config).plan() {
+            run(&black_box(plan));
+        }
+    }
+}
+
+/// The configurations a user can come by: made in code, from a table of any length, from bytes.
+fn configured() -> Config {
+    let table = LawTable::new(black_box::<&[(f32, f32)]>(&[(0.0, 1.0)]));
+    match (wire::decode_config(&black_box([0; wire::CONFIG_BYTES])), table) {
+        (Ok(config), _) => config,
+        (Err(_), Ok(table)) => Config::thesis(Law::Table(table)),
+        (Err(_), Err(_)) => black_box(Config::product()),
+    }
+}
+
+fn run(plan: &Plan) {
+    let mut state = State::default();
+    for _ in 0..black_box(1000) {
+        let frame = wire::decode_frame(&black_box([0; wire::FRAME_BYTES]));
+        used((wire::encode_frame(&frame), SensorFrame::missing(), Sample::fresh(black_box(0.0))));
+        let command = control::step(black_box(plan), black_box(&mut state), &frame);
+        let [.., status] = black_box(wire::encode_command(&command));
+        let status = wire::decode_status(status);
+        #[cfg(feature = "unwrap")]
+        let status = Some(status.unwrap());
+        used((status, state.torque_nm(), plan.config().rate_hz));
+    }
+}

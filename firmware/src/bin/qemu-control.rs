@@ -1,0 +1,76 @@
+//! The shared tasks for some simulated seconds, with a task that keeps the thread busy all the
+//! time. Ends with success only if every period had its step and no step was late.
+//!
+//! Arguments: `seconds=5`; `block_us=N` holds control up for N us once every `every_ms=100`
+//! milliseconds, from a priority above it, beginning at a release.
+#![no_std]
+#![no_main]
+
+use control::{Config, Plan};
+use cortex_m_semihosting::hprintln;
+use embassy_time::{Duration, Instant, Timer};
+use firmware::board::semihosting::{argument, exit};
+use firmware::board::{self, Exit, executor};
+use firmware::tasks;
+use static_cell::StaticCell;
+
+/// The thread without a moment's rest, giving way to its other tasks every 0.3 ms.
+#[embassy_executor::task]
+async fn hog() {
+    loop {
+        spin_until(Instant::now() + Duration::from_micros(300));
+        embassy_futures::yield_now().await;
+    }
+}
+
+/// Holds control up: `hold` from one release in every `every`, the first in the middle of it.
+#[embassy_executor::task]
+async fn block(every: Duration, hold: Duration) {
+    let mut release = Instant::from_ticks(0) + every / 2;
+    loop {
+        Timer::at(release).await;
+        spin_until(release + hold);
+        release += every;
+    }
+}
+
+/// Ends the run and says how it went.
+#[embassy_executor::task]
+async fn judge(length: Duration) {
+    let start = Instant::from_millis(Instant::now().as_millis());
+    Timer::at(start + length).await;
+    let Some(t) = tasks::latest() else { exit(Exit::Failure) };
+    let expected = (length.as_micros() / firmware::deadline::PERIOD.as_micros()) as u32;
+    let missed = t.deadlines.missed(length);
+    hprintln!("done: steps={} missed={} worst_us={}", t.deadlines.steps, missed, t.deadlines.worst_us);
+    exit(if t.deadlines.steps == expected && missed == 0 { Exit::Success } else { Exit::Failure })
+}
+
+fn spin_until(end: Instant) {
+    while Instant::now() < end {}
+}
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    static PLAN: StaticCell<Plan> = StaticCell::new();
+    hprintln!("{}", firmware::identity!());
+    let Ok(plan) = Config::product().plan() else { exit(Exit::Input) };
+    let plan: &'static Plan = PLAN.init(plan);
+    let length = Duration::from_secs(argument("seconds").unwrap_or(5).into());
+    let every = Duration::from_millis(argument("every_ms").unwrap_or(100).into());
+    let hold = argument("block_us").map(|us| Duration::from_micros(us.into()));
+    board::run(
+        |control| {
+            control.spawn(tasks::control(plan).unwrap());
+            if let Some(hold) = hold {
+                executor::above_control().spawn(block(every, hold).unwrap());
+            }
+        },
+        |thread| {
+            thread.spawn(tasks::supervise().unwrap());
+            thread.spawn(tasks::report().unwrap());
+            thread.spawn(hog().unwrap());
+            thread.spawn(judge(length).unwrap());
+        },
+    )
+}

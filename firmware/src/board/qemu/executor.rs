@@ -1,0 +1,67 @@
+//! Three executors: two in interrupts of peripherals that the board does not use, one in the thread.
+#![allow(unsafe_code)]
+
+use super::{fault, time};
+use cortex_m::interrupt::InterruptNumber;
+use cortex_m::peripheral::scb::SystemHandler;
+use cortex_m::peripheral::{NVIC, Peripherals};
+use embassy_executor::{InterruptExecutor, SendSpawner, Spawner, raw};
+use static_cell::StaticCell;
+use stm32_metapac::{Interrupt, interrupt};
+
+static CONTROL: InterruptExecutor = InterruptExecutor::new();
+static ABOVE_CONTROL: InterruptExecutor = InterruptExecutor::new();
+
+/// Starts the clock and the executors: `control` gets the one at control's priority, `thread` the
+/// lowest one.
+///
+/// # Panics
+/// When called a second time.
+pub fn run(control: impl FnOnce(SendSpawner), thread: impl FnOnce(Spawner)) -> ! {
+    static THREAD: StaticCell<raw::Executor> = StaticCell::new();
+    let mut core = Peripherals::take().expect("the board is run once");
+    fault::enable();
+    // SAFETY: no critical section is built on priorities here, and no handler runs yet.
+    unsafe {
+        core.SCB.set_priority(SystemHandler::SysTick, 0x00);
+        core.NVIC.set_priority(Interrupt::USART6, 0x20);
+        core.NVIC.set_priority(Interrupt::UART5, 0x40);
+    }
+    time::start(core.SYST);
+
+    // UART4 stays disabled: its pending bit is how tasks wake the thread's executor.
+    let wake = Interrupt::UART4;
+    let executor = THREAD.init(raw::Executor::new(wake.number() as usize as *mut ()));
+    thread(executor.spawner());
+    control(CONTROL.start(Interrupt::UART5));
+    loop {
+        NVIC::unpend(wake);
+        // SAFETY: only this loop polls it, and never from within itself.
+        unsafe { executor.poll() };
+        // A pending interrupt ends `wfi` even while masked, so no wake-up is lost. QEMU sleeps in
+        // `wfi` but not in the `wfe` of the stock executor.
+        cortex_m::interrupt::disable();
+        if !NVIC::is_pending(wake) {
+            cortex_m::asm::wfi();
+        }
+        // SAFETY: outside every critical section.
+        unsafe { cortex_m::interrupt::enable() };
+    }
+}
+
+/// Starts an executor whose tasks interrupt control: for tests that hold it up.
+pub fn above_control() -> SendSpawner {
+    ABOVE_CONTROL.start(Interrupt::USART6)
+}
+
+#[interrupt]
+fn UART5() {
+    // SAFETY: the handler of the interrupt that CONTROL was started with.
+    unsafe { CONTROL.on_interrupt() }
+}
+
+#[interrupt]
+fn USART6() {
+    // SAFETY: the handler of the interrupt that ABOVE_CONTROL was started with.
+    unsafe { ABOVE_CONTROL.on_interrupt() }
+}

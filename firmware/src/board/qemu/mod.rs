@@ -1,0 +1,50 @@
+//! The STM32F405 as QEMU's machine `netduinoplus2` has it: core, SysTick, NVIC, memories. Its RCC
+//! and PWR are not modelled, so the chip's HAL does not start there; this thin layer does.
+
+pub mod executor;
+pub mod fault;
+pub mod recording;
+pub mod semihosting;
+mod sensors;
+pub mod time;
+mod watchdog;
+
+pub use executor::run;
+pub use sensors::{drive, sense};
+pub use watchdog::feed_watchdog;
+
+use crate::tasks::Telemetry;
+use cortex_m_semihosting::hprintln;
+
+/// How an image ends: the exit status of QEMU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Exit {
+    /// All that the image checks holds.
+    Success = 0,
+    /// Something that the image checks does not hold.
+    Failure = 1,
+    /// The image's input is not what it must be.
+    Input = 2,
+    /// A panic.
+    Panic = 101,
+    /// A processor fault.
+    Fault = 102,
+    /// An interrupt that nobody asked for.
+    StrayInterrupt = 103,
+    /// The watchdog was not fed.
+    Watchdog = 104,
+}
+
+/// One line on QEMU's standard output; the torque in mN m, since printing an f32 takes 20 KB of flash.
+pub fn report(t: &Telemetry) {
+    hprintln!(
+        "steps={} late={} worst_us={} torque_mn_m={} status={:?} drive={:?}",
+        t.deadlines.steps,
+        t.deadlines.late,
+        t.deadlines.worst_us,
+        (t.command.torque_nm * 1e3) as i32,
+        t.command.status,
+        t.drive
+    );
+}

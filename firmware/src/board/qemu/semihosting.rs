@@ -1,0 +1,95 @@
+//! The host's side of QEMU: files, the command line and the exit status.
+//!
+//! Calls and numbers: Arm, "Semihosting for AArch32 and AArch64", 2.0.
+#![allow(unsafe_code)]
+
+use super::Exit;
+use core::ffi::CStr;
+use core::fmt::Write;
+use cortex_m_semihosting::{nr, syscall};
+use heapless::String;
+
+/// A file of the host, opened in QEMU's working directory. Closed by QEMU's end.
+pub struct File(usize);
+
+impl File {
+    /// Opens a file for reading.
+    ///
+    /// # Panics
+    /// When the host can't open it.
+    pub fn read_from(name: &CStr) -> Self {
+        Self::open(name, nr::open::R_BINARY)
+    }
+
+    /// Makes a file, or empties it.
+    ///
+    /// # Panics
+    /// When the host can't make it.
+    pub fn write_to(name: &CStr) -> Self {
+        Self::open(name, nr::open::RW_TRUNC_BINARY)
+    }
+
+    fn open(name: &CStr, mode: usize) -> Self {
+        // SAFETY: the arguments of SYS_OPEN: a string ending in NUL, the mode, its length without the NUL.
+        let handle = unsafe { syscall!(OPEN, name.as_ptr(), mode, name.count_bytes()) };
+        assert!(handle != usize::MAX, "the host can't open {name:?}");
+        Self(handle)
+    }
+
+    /// Fills `bytes`; `false` when the file ends before.
+    pub fn read_exact(&mut self, mut bytes: &mut [u8]) -> bool {
+        while !bytes.is_empty() {
+            // SAFETY: the arguments of SYS_READ: handle, a buffer the host may write, its length.
+            let left = unsafe { syscall!(READ, self.0, bytes.as_mut_ptr(), bytes.len()) };
+            let got = bytes.len() - left.min(bytes.len());
+            if got == 0 {
+                return false;
+            }
+            bytes = &mut bytes[got..];
+        }
+        true
+    }
+
+    /// Writes all of `bytes`.
+    ///
+    /// # Panics
+    /// When the host can't take them.
+    pub fn write_all(&mut self, bytes: &[u8]) {
+        // SAFETY: the arguments of SYS_WRITE: handle, a buffer the host may read, its length.
+        let left = unsafe { syscall!(WRITE, self.0, bytes.as_ptr(), bytes.len()) };
+        assert!(left == 0, "the host took {left} bytes too few");
+    }
+}
+
+/// The number in `name=number` on the image's command line (`-semihosting-config arg=...`).
+pub fn argument(name: &str) -> Option<u32> {
+    let words = command_line();
+    words.split(' ').find_map(|word| word.strip_prefix(name)?.strip_prefix('=')?.parse().ok())
+}
+
+/// The words of the image's command line, one blank between them.
+pub fn command_line() -> String<256> {
+    let mut bytes = [0_u8; 256];
+    let mut block = [bytes.as_mut_ptr() as usize, bytes.len() - 1];
+    // SAFETY: the argument of SYS_GET_CMDLINE: a buffer the host may write and its length.
+    let failed = unsafe { cortex_m_semihosting::syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) };
+    let mut words = String::new();
+    if failed == 0
+        && let Ok(line) = CStr::from_bytes_until_nul(&bytes)
+    {
+        // Both hold 256 bytes.
+        let _ = words.write_str(line.to_str().unwrap_or_default());
+    }
+    words
+}
+
+/// Ends QEMU with the status.
+pub fn exit(status: Exit) -> ! {
+    const SYS_EXIT_EXTENDED: usize = 0x20;
+    const APPLICATION_EXIT: u32 = 0x20026;
+    let block = [APPLICATION_EXIT, status as u32];
+    loop {
+        // SAFETY: the argument of SYS_EXIT_EXTENDED: the reason and the status.
+        unsafe { cortex_m_semihosting::syscall1(SYS_EXIT_EXTENDED, block.as_ptr() as usize) };
+    }
+}

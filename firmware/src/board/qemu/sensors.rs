@@ -1,0 +1,32 @@
+//! Made-up sensors for tests of timing: a bicycle at 4 m/s whose roll rate swings by 0.5 rad/s
+//! once a second. The motor takes every torque.
+
+use crate::tasks::Refusal;
+use control::{Command, Sample, SensorFrame};
+use core::cell::Cell;
+use core::f32::consts::TAU;
+use critical_section::Mutex;
+
+/// Roll rate and its quarter-period companion \[rad/s\].
+static SWING: Mutex<Cell<(f32, f32)>> = Mutex::new(Cell::new((0.5, 0.0)));
+
+/// The sensors of this instant.
+pub fn sense() -> SensorFrame {
+    let angle = TAU / 1000.0;
+    let roll_rate = critical_section::with(|cs| {
+        let (a, b) = SWING.borrow(cs).get();
+        // Each half uses the other's newest value, which keeps the swing's size for ever.
+        let a = a - angle * b;
+        SWING.borrow(cs).set((a, b + angle * a));
+        a
+    });
+    SensorFrame { roll_rate_rad_s: Sample::fresh(roll_rate), wheel_speed_m_s: Sample::fresh(4.0) }
+}
+
+/// Takes the command.
+///
+/// # Errors
+/// None on this board.
+pub fn drive(_: &Command) -> Result<(), Refusal> {
+    Ok(())
+}

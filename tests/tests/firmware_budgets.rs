@@ -1,0 +1,50 @@
+//! What the images take of the chip, and whether the documented numbers are true.
+
+use xtask::document::{over_budget, path, stale, text};
+use xtask::{image, instructions, size};
+
+/// Situation: all images, built.
+/// Action: measure their sizes and the instructions of every step of the border ride.
+/// Must hold: no budget exceeded; `docs/images.md` says the same within 3 %.
+#[test]
+fn images_keep_their_budgets_and_the_document_is_true() {
+    if !image::ready() {
+        return;
+    }
+    image::build("board-stm32f405").expect("the board's image builds");
+    let (sizes, counts) = (size::sizes().unwrap(), instructions::counts().unwrap());
+    assert_eq!(over_budget(&sizes, &counts), [""; 0]);
+    let committed = std::fs::read_to_string(path()).unwrap();
+    assert_eq!(stale(&committed, &text(&sizes, &counts)), [""; 0], "run `cargo xtask size`");
+}
+
+/// Situation: a document whose numbers are off by 10 %, and one with a row missing.
+/// Action: compare it with the right one.
+/// Must hold: the rows are named; the right document has none.
+#[test]
+fn a_stale_document_is_noticed() {
+    let count = |name, max| instructions::Count { name, mean: 100, max };
+    let right = text(&[], &[count("h", 150), count("f", 80)]);
+    assert_eq!(stale(&right, &right), [""; 0]);
+    assert_eq!(stale(&text(&[], &[count("h", 165), count("f", 81)]), &right).len(), 1);
+    assert_eq!(stale(&text(&[], &[count("h", 150)]), &right).len(), 1);
+}
+
+/// Situation: the built images.
+/// Action: look for the words name, version and commit in their bytes.
+/// Must hold: every image says which it is.
+#[test]
+fn every_image_carries_its_identity() {
+    if !image::ready() {
+        return;
+    }
+    image::build("board-stm32f405").expect("the board's image builds");
+    for image in image::IMAGES {
+        let bytes = std::fs::read(image::path(image.name)).unwrap();
+        let identity = format!("{} {} ", image.name, env!("CARGO_PKG_VERSION"));
+        let at = bytes.windows(identity.len()).position(|w| w == identity.as_bytes());
+        let commit = at.map(|at| &bytes[at + identity.len()..][..7]);
+        let known = |commit: &[u8]| commit == b"unknown" || commit.iter().all(u8::is_ascii_hexdigit);
+        assert!(commit.is_some_and(known), "{}", image.name);
+    }
+}

@@ -1,0 +1,106 @@
+//! `docs/images.md`: the sizes and instruction counts, written by `cargo xtask size` and
+//! `cargo xtask instructions`, compared with fresh ones by a test.
+
+use crate::image::root;
+use crate::instructions::{BUDGET, Count};
+use crate::size::Size;
+use crate::{Result, instructions, size};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// How far a committed number may be from a fresh one: another patch release of the compiler, or
+/// the length of a source path in a panic message, is no news.
+const TOLERANCE: f64 = 0.03;
+
+/// Where it lies.
+pub fn path() -> PathBuf {
+    root().join("docs/images.md")
+}
+
+/// Its text for these measurements.
+pub fn text(sizes: &[Size], counts: &[Count]) -> String {
+    format!(
+        "# Images in numbers
+
+Written by `cargo xtask size` and `cargo xtask instructions`; a test compares it with fresh numbers.
+
+## Size
+
+Bytes, profile `firmware`. Flash is text + data, RAM is data + bss; the stack has 32 KiB of its own.
+
+{}
+## Instructions of a control step
+
+Counted in QEMU over the border ride, call included; at most {BUDGET} are allowed, of the 168,000 clock
+cycles of a period. Instructions are not cycles: the chip adds wait states of the flash, divisions
+of 14 cycles and interrupts.
+
+{}",
+        size_table(sizes),
+        instruction_table(counts)
+    )
+}
+
+/// The table of sizes.
+pub fn size_table(sizes: &[Size]) -> String {
+    let head = "| image | text | data | bss | flash | of | RAM | of |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    let row = |s: &Size| {
+        let Size { name, text, data, bss, flash_budget, ram_budget } = *s;
+        let (flash, ram) = (s.flash(), s.ram());
+        format!("| {name} | {text} | {data} | {bss} | {flash} | {flash_budget} | {ram} | {ram_budget} |\n")
+    };
+    sizes.iter().map(row).fold(head.into(), |table: String, row| table + &row)
+}
+
+/// The table of instruction counts.
+pub fn instruction_table(counts: &[Count]) -> String {
+    let head = "| configuration | mean | largest |\n| --- | ---: | ---: |\n";
+    let row = |c: &Count| format!("| {} | {} | {} |\n", c.name, c.mean, c.max);
+    counts.iter().map(row).fold(head.into(), |table: String, row| table + &row)
+}
+
+/// Measures everything anew and writes the document.
+///
+/// # Errors
+/// A measurement failed, the file can't be written, or an image or a step is over its budget.
+pub fn regenerate() -> Result<(Vec<Size>, Vec<Count>)> {
+    let (sizes, counts) = (size::sizes()?, instructions::counts()?);
+    std::fs::write(path(), text(&sizes, &counts)).map_err(|e| format!("{}: {e}", path().display()))?;
+    Ok((sizes, counts))
+}
+
+/// What is over its budget.
+pub fn over_budget(sizes: &[Size], counts: &[Count]) -> Vec<String> {
+    let images = sizes.iter().filter(|s| s.is_over()).map(|s| {
+        let (flash, ram) = (s.flash(), s.ram());
+        format!("{}: flash {flash} of {}, RAM {ram} of {} bytes", s.name, s.flash_budget, s.ram_budget)
+    });
+    let steps = counts.iter().filter(|c| c.max > BUDGET);
+    images.chain(steps.map(|c| format!("{}: {} of {BUDGET} instructions", c.name, c.max))).collect()
+}
+
+/// The rows in which the committed text differs from the fresh one by more than the tolerance.
+pub fn stale(committed: &str, fresh: &str) -> Vec<String> {
+    let (committed, fresh) = (rows(committed), rows(fresh));
+    let close = |a: &[f64], b: &[f64]| {
+        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= TOLERANCE * a.max(*b))
+    };
+    let names = committed.keys().chain(fresh.keys().filter(|name| !committed.contains_key(*name)));
+    names
+        .filter(|name| !matches!((committed.get(*name), fresh.get(*name)), (Some(a), Some(b)) if close(a, b)))
+        .map(|name| format!("{name}: committed {:?}, now {:?}", committed.get(name), fresh.get(name)))
+        .collect()
+}
+
+/// The tables' rows: the first cell and the numbers of the others.
+fn rows(text: &str) -> BTreeMap<String, Vec<f64>> {
+    let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+    text.lines()
+        .filter(|line| line.starts_with("| "))
+        .map(cells)
+        .filter_map(|row| {
+            let numbers = row.get(2..row.len() - 1)?.iter().map(|cell| cell.parse().ok());
+            Some((row.get(1)?.clone(), numbers.collect::<Option<Vec<f64>>>()?))
+        })
+        .collect()
+}

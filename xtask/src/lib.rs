@@ -1,0 +1,14 @@
+//! Builds the firmware images, runs them in QEMU, measures them. The `xtask` binary and the tests
+//! that drive QEMU both stand on this.
+
+pub mod document;
+pub mod image;
+pub mod instructions;
+pub mod process;
+pub mod qemu;
+pub mod rides;
+pub mod setup;
+pub mod size;
+
+/// A failure in words for whoever called `cargo xtask`.
+pub type Result<T> = std::result::Result<T, String>;

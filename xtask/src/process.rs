@@ -1,0 +1,81 @@
+//! Other programs, never without a time limit.
+
+use crate::Result;
+use std::io::Read;
+use std::process::{Child, Command, Stdio};
+use std::thread::{JoinHandle, sleep, spawn};
+use std::time::{Duration, Instant};
+
+/// How a program ended.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Its exit status; `None` when a signal ended it.
+    pub status: Option<i32>,
+    /// What it wrote to standard output.
+    pub stdout: String,
+    /// What it wrote to standard error.
+    pub stderr: String,
+}
+
+/// Runs a program and keeps what it writes.
+///
+/// # Errors
+/// It can't be started, or it did not end within the limit and was killed.
+pub fn capture(command: &mut Command, limit: Duration) -> Result<Outcome> {
+    let mut child = start(command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()))?;
+    let (out, err) = (child.stdout.take().map(drain), child.stderr.take().map(drain));
+    let ended = wait(&mut child, limit);
+    let [stdout, stderr] = [out, err].map(|reader| reader.map_or_else(String::new, text));
+    match ended {
+        Ok(status) => Ok(Outcome { status, stdout, stderr }),
+        Err(why) => Err(format!("{command:?}: {why}\n{stdout}{stderr}")),
+    }
+}
+
+/// Runs a program that writes to the terminal itself; anything but success is an error.
+///
+/// # Errors
+/// It can't be started, did not end within the limit and was killed, or failed.
+pub fn must(command: &mut Command, limit: Duration) -> Result<()> {
+    let mut child = start(command.stdin(Stdio::null()))?;
+    match wait(&mut child, limit) {
+        Ok(Some(0)) => Ok(()),
+        Ok(status) => {
+            Err(format!("{command:?} failed ({})", status.map_or("signal".into(), |s| s.to_string())))
+        }
+        Err(why) => Err(format!("{command:?}: {why}")),
+    }
+}
+
+fn start(command: &mut Command) -> Result<Child> {
+    command.spawn().map_err(|e| format!("can't start {:?}: {e}", command.get_program()))
+}
+
+fn wait(child: &mut Child, limit: Duration) -> Result<Option<i32>> {
+    let start = Instant::now();
+    loop {
+        match child.try_wait() {
+            Ok(Some(status)) => return Ok(status.code()),
+            Ok(None) if start.elapsed() < limit => sleep(Duration::from_millis(10)),
+            unfinished => {
+                // It may have ended meanwhile; then there is nothing to kill.
+                let _ = child.kill();
+                let _ = child.wait();
+                return Err(unfinished.err().map_or(format!("killed after {limit:?}"), |e| e.to_string()));
+            }
+        }
+    }
+}
+
+fn drain(mut pipe: impl Read + Send + 'static) -> JoinHandle<Vec<u8>> {
+    spawn(move || {
+        let mut bytes = Vec::new();
+        // What was read before an error is all there is to show.
+        let _ = pipe.read_to_end(&mut bytes);
+        bytes
+    })
+}
+
+fn text(reader: JoinHandle<Vec<u8>>) -> String {
+    String::from_utf8_lossy(&reader.join().unwrap_or_default()).into_owned()
+}

@@ -1,0 +1,50 @@
+//! Images in QEMU's machine with the same chip as the board.
+
+use crate::process::{Outcome, capture};
+use crate::{Result, image};
+use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
+
+/// Simulated time: an instruction lasts 2^5 ns, 31,250 of them a millisecond.
+pub const TIMED: Option<u8> = Some(5);
+/// Simulated time: an instruction lasts 2^10 ns, so that timers count single ones.
+pub const COUNTED: Option<u8> = Some(10);
+/// No simulated time: fastest, for what does not depend on time.
+pub const UNTIMED: Option<u8> = None;
+
+/// Runs an image with words as its arguments, in a directory that holds its files, with simulated
+/// time going 2^`shift` ns an instruction.
+///
+/// # Errors
+/// QEMU could not be run, or did not end within the limit.
+pub fn run(
+    image: &str,
+    arguments: &[&str],
+    directory: &Path,
+    shift: Option<u8>,
+    limit: Duration,
+) -> Result<Outcome> {
+    let words: String = [image].iter().chain(arguments).map(|word| format!(",arg={word}")).collect();
+    let mut qemu = Command::new("qemu-system-arm");
+    qemu.current_dir(directory);
+    qemu.args(["-machine", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "none"]);
+    if let Some(shift) = shift {
+        qemu.arg("-icount").arg(format!("shift={shift},sleep=off"));
+    }
+    qemu.arg("-semihosting-config").arg(format!("enable=on,target=native{words}"));
+    capture(qemu.arg("-kernel").arg(image::path(image)), limit)
+}
+
+/// An empty directory for one run's files, under `target`: what is left there after a failure can
+/// be looked at.
+///
+/// # Errors
+/// It can't be made.
+pub fn directory(name: &str) -> Result<std::path::PathBuf> {
+    let directory = image::root().join("target/qemu").join(name);
+    // There may be none yet.
+    let _ = std::fs::remove_dir_all(&directory);
+    std::fs::create_dir_all(&directory).map_err(|e| format!("{}: {e}", directory.display()))?;
+    Ok(directory)
+}

@@ -1,0 +1,158 @@
+//! Sensor frames to feed to the images, and the configurations to run on them.
+
+use control::history::{Latency, MAX_LATENCY_TICKS};
+use control::law::TABLE_POINTS;
+use control::wire::{encode_config, encode_frame};
+use control::{Config, Law, LawTable, Sample, SensorFrame, Wheel};
+use std::f32::consts::TAU;
+
+/// A name and a configuration: every law without limits, the product, and sensors of different
+/// latency.
+///
+/// # Panics
+/// Never: the table is a valid one.
+pub fn configurations() -> Vec<(&'static str, Config)> {
+    let points: Vec<_> =
+        (0_u8..TABLE_POINTS as u8).map(|i| (0.25 * f32::from(i), 31.5 - f32::from(i))).collect();
+    let table = LawTable::new(&points).expect("a valid table");
+    let late = |roll_rate_ticks, speed_ticks, config| Config {
+        latency: Latency { roll_rate_ticks, speed_ticks },
+        ..config
+    };
+    let mut rear = Config::product();
+    rear.input.wheel = Wheel::Rear;
+    vec![
+        ("none", Config::thesis(Law::None)),
+        ("h", Config::thesis(Law::H { cut: false })),
+        ("h, cut", Config::thesis(Law::H { cut: true })),
+        ("f", Config::thesis(Law::F)),
+        ("g", Config::thesis(Law::G)),
+        ("cl1", Config::thesis(Law::Cl1)),
+        ("cl2, k = 3.7", Config::thesis(Law::Cl2 { k: 3.7 })),
+        ("table of 32 points", Config::thesis(Law::Table(table))),
+        ("h, gyro 31 ticks late", late(MAX_LATENCY_TICKS, 0, Config::thesis(Law::H { cut: false }))),
+        ("product", Config::product()),
+        ("product, rear wheel, wheel 20 ticks late", late(2, 20, rear)),
+    ]
+}
+
+/// A ride at the border of what the assist can hold: 20 s at 1 kHz, the roll rate swings ever
+/// wider while the speed falls from 8 to 1 m/s, then dies away as the speed comes back. The wheel's
+/// pulses come every 20 ms.
+///
+/// Made up, for its shape; a recorded ride has the same type.
+pub fn border_ride() -> Vec<SensorFrame> {
+    let mut speed = 8.0;
+    (0_u16..20_000)
+        .map(|tick| {
+            let t = f32::from(tick) * 1e-3;
+            let size = 0.2 * (0.35 * (10.0 - (t - 10.0).abs())).exp();
+            if tick % 20 == 0 {
+                speed = 1.0 + 0.7 * (t - 10.0).abs();
+            }
+            let wheel_speed_m_s = Sample { value: speed, age_ticks: tick % 20 };
+            SensorFrame { roll_rate_rad_s: Sample::fresh(size * (0.8 * TAU * t).sin()), wheel_speed_m_s }
+        })
+        .collect()
+}
+
+/// The same ride with every sample fresh, as the published laws want it.
+pub fn fresh(ride: &[SensorFrame]) -> Vec<SensorFrame> {
+    let fresh = |sample: Sample| Sample { age_ticks: 0, ..sample };
+    ride.iter()
+        .map(|f| SensorFrame {
+            roll_rate_rad_s: fresh(f.roll_rate_rad_s),
+            wheel_speed_m_s: fresh(f.wheel_speed_m_s),
+        })
+        .collect()
+}
+
+/// Pseudo-random frames: stretches of plausible, fresh ones, so that the law runs, and between
+/// them anything: every bit pattern, the edges of the ranges, late and missing samples.
+pub fn random_frames(seed: u64, frames: usize) -> Vec<SensorFrame> {
+    let mut random = Random(seed);
+    let mut calm = 0;
+    (0..frames)
+        .map(|_| {
+            calm = if calm == 0 { random.below(200) } else { calm - 1 };
+            let wild = calm < 20 && random.below(3) == 0;
+            SensorFrame {
+                roll_rate_rad_s: random.sample(wild, 6.0),
+                wheel_speed_m_s: random.sample(wild, 12.0),
+            }
+        })
+        .collect()
+}
+
+/// The bytes of `rides.bin` for these rides.
+pub fn encode(rides: &[(&Config, &[SensorFrame])]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for (config, frames) in rides {
+        bytes.extend(encode_config(config));
+        bytes.extend((frames.len() as u32).to_le_bytes());
+        frames.iter().for_each(|frame| bytes.extend(encode_frame(frame)));
+    }
+    bytes
+}
+
+/// Where f32 arithmetic and the input checks change their behaviour.
+const EDGES: [u32; 20] = [
+    0x0000_0000, // 0
+    0x8000_0000, // -0
+    0x0000_0001, // least denormal
+    0x8000_0001,
+    0x007f_ffff, // largest denormal
+    0x0080_0000, // least normal
+    0x8080_0000,
+    0x7f7f_ffff, // largest
+    0xff7f_ffff,
+    0x7f80_0000, // infinite
+    0xff80_0000,
+    0x7fc0_0000, // quiet NaN
+    0xffc0_1234,
+    0x7f80_0001, // signalling NaN
+    0xffbf_ffff,
+    0x4270_0000, // 60, the largest roll rate
+    0x4270_0001,
+    0x41f0_0000, // 30, the largest speed
+    0x41f0_0001,
+    0x40f0_0000, // 7.5, where h is cut
+];
+
+/// SplitMix64 (Steele, Lea and Flood 2014): small, and the same everywhere.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, end: u32) -> u32 {
+        (self.next() >> 32) as u32 % end
+    }
+
+    /// A value within `plausible` either way and fresh, or a `wild` one.
+    fn sample(&mut self, wild: bool, plausible: f32) -> Sample {
+        let within = (self.below(1 << 24) as f32 / (1 << 23) as f32 - 1.0) * plausible;
+        if !wild {
+            return Sample::fresh(within);
+        }
+        let value = match self.below(4) {
+            0 => f32::from_bits(self.next() as u32),
+            1 => f32::from_bits(EDGES[self.below(EDGES.len() as u32) as usize]),
+            2 => f32::from_bits(0x7f80_0000 | self.next() as u32),
+            _ => within,
+        };
+        let age = match self.below(6) {
+            0 => self.below(20),
+            1 => 240 + self.below(20),
+            2 => self.below(1 << 16),
+            3 => u32::from(control::frame::MISSING),
+            _ => 0,
+        };
+        Sample { value, age_ticks: age as u16 }
+    }
+}

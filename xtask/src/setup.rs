@@ -1,0 +1,103 @@
+//! What the images need beyond a stable Rust: the chip's target, QEMU and the size tool.
+
+use crate::Result;
+use crate::image::{self, TARGET, root};
+use crate::process::must;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+/// Where the target's `core` comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TargetSource {
+    /// rustup, and if that fails Debian.
+    Auto,
+    /// `rustup target add`.
+    Rustup,
+    /// Compiled from Debian's package of the standard library's source.
+    Debian,
+}
+
+/// A program and the package that brings it.
+const TOOLS: [(&str, &str); 2] =
+    [("qemu-system-arm", "qemu-system-arm"), ("arm-none-eabi-size", "binutils-arm-none-eabi")];
+
+/// What is missing, each with the way to get it.
+pub fn missing() -> Vec<String> {
+    let target = (!has_target())
+        .then(|| format!("the Rust target {TARGET}: cargo xtask setup, or rustup target add {TARGET}"));
+    let tools = missing_tools().into_iter().map(|(program, package)| {
+        format!("{program}: cargo xtask setup as root, or install your system's package (Debian: apt-get install {package})")
+    });
+    target.into_iter().chain(tools).collect()
+}
+
+/// Gets whatever is missing. Does nothing on a machine that has all of it.
+///
+/// # Errors
+/// What could not be had, and how to get it.
+pub fn setup(source: TargetSource) -> Result<()> {
+    let target = if has_target() { Ok(()) } else { add_target(source) };
+    let tools = add_tools();
+    for failure in [target, tools].into_iter().filter_map(Result::err) {
+        eprintln!("{failure}");
+    }
+    match missing() {
+        list if list.is_empty() => Ok(()),
+        list => Err(format!("still missing:\n  {}", list.join("\n  "))),
+    }
+}
+
+fn add_target(source: TargetSource) -> Result<()> {
+    let rustup = || {
+        let mut rustup = Command::new("rustup");
+        // One try: the other source is there for when it fails.
+        must(rustup.args(["target", "add", TARGET]).env("RUSTUP_MAX_RETRIES", "0"), Duration::from_secs(120))
+    };
+    let debian = || {
+        let script = root().join("xtask/setup-targets.sh");
+        must(Command::new("bash").arg(script).arg(TARGET), Duration::from_secs(1200))
+    };
+    // Cargo does not notice another `core` of the same release: nothing built with an earlier one may
+    // stay. There may be nothing.
+    let _ = std::fs::remove_dir_all(image::target_dir());
+    match source {
+        TargetSource::Rustup => rustup(),
+        TargetSource::Debian => debian(),
+        TargetSource::Auto => rustup().or_else(|why| {
+            eprintln!("{why}; building the target from Debian's source instead");
+            debian()
+        }),
+    }
+}
+
+fn add_tools() -> Result<()> {
+    let packages: Vec<_> = missing_tools().into_iter().map(|(_, package)| package).collect();
+    if packages.is_empty() {
+        return Ok(());
+    }
+    let apt = |arguments: &[&str]| {
+        let mut apt = Command::new("apt-get");
+        apt.env("DEBIAN_FRONTEND", "noninteractive").args(arguments);
+        must(&mut apt, Duration::from_secs(900))
+    };
+    apt(&["update", "-qq"])?;
+    apt(&[&["install", "-y", "-qq", "--no-install-recommends"], packages.as_slice()].concat())
+}
+
+fn missing_tools() -> Vec<(&'static str, &'static str)> {
+    TOOLS.into_iter().filter(|(program, _)| !runs(program)).collect()
+}
+
+fn runs(program: &str) -> bool {
+    let quiet = |c: &mut Command| c.stdout(Stdio::null()).stderr(Stdio::null()).status();
+    quiet(Command::new(program).arg("--version")).is_ok_and(|status| status.success())
+}
+
+fn has_target() -> bool {
+    let rustc = std::env::var_os("RUSTC").unwrap_or("rustc".into());
+    let Ok(output) = Command::new(rustc).args(["--print", "sysroot"]).output() else { return false };
+    let sysroot = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
+    let Ok(files) = sysroot.join("lib/rustlib").join(TARGET).join("lib").read_dir() else { return false };
+    files.flatten().any(|file| file.file_name().to_string_lossy().starts_with("libcore-"))
+}

@@ -1,0 +1,67 @@
+//! What the images take of the chip's memories.
+
+use crate::image::{self, IMAGES};
+use crate::process::capture;
+use crate::{Result, setup};
+use std::process::Command;
+use std::time::Duration;
+
+/// An image's sections \[bytes\].
+#[derive(Clone, Copy, Debug)]
+pub struct Size {
+    /// The image's name.
+    pub name: &'static str,
+    /// Code and constants.
+    pub text: u32,
+    /// Variables with a start value, kept in flash and copied to RAM.
+    pub data: u32,
+    /// Variables without one.
+    pub bss: u32,
+    /// Flash budget.
+    pub flash_budget: u32,
+    /// RAM budget, the stack's 32 KiB not counted.
+    pub ram_budget: u32,
+}
+
+impl Size {
+    /// Flash taken \[bytes\].
+    pub fn flash(&self) -> u32 {
+        self.text + self.data
+    }
+    /// RAM taken \[bytes\].
+    pub fn ram(&self) -> u32 {
+        self.data + self.bss
+    }
+    /// Whether it takes more than it may.
+    pub fn is_over(&self) -> bool {
+        self.flash() > self.flash_budget || self.ram() > self.ram_budget
+    }
+}
+
+/// The sizes of all images, which must be built.
+///
+/// # Errors
+/// The size tool or an image is missing.
+pub fn sizes() -> Result<Vec<Size>> {
+    IMAGES
+        .iter()
+        .map(|image| {
+            let mut tool = Command::new("arm-none-eabi-size");
+            let outcome = capture(tool.arg(image::path(image.name)), Duration::from_secs(20))
+                .map_err(|why| format!("{why}\n{}", setup::missing().join("\n")))?;
+            let row = outcome.stdout.lines().nth(1).unwrap_or_default();
+            let mut numbers = row.split_whitespace().map_while(|word| word.parse().ok());
+            match [numbers.next(), numbers.next(), numbers.next()] {
+                [Some(text), Some(data), Some(bss)] => Ok(Size {
+                    name: image.name,
+                    text,
+                    data,
+                    bss,
+                    flash_budget: image.flash,
+                    ram_budget: image.ram,
+                }),
+                _ => Err(format!("{}: {}", image.name, outcome.stderr)),
+            }
+        })
+        .collect()
+}
