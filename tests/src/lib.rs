@@ -1,5 +1,6 @@
 //! What the flight cards in `tests/tests/` share; the cards themselves are the tests.
 
+pub mod basins;
 pub mod derived;
 pub mod draws;
 pub mod flow;

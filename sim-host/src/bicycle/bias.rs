@@ -2,82 +2,93 @@
 //! centripetal, gyroscopic, and what the constraints add. `docs/bicycle.md`, section 6.
 
 use super::inertia::{Inertia, Momenta};
-use super::{Geometry, Gyrostat, Motion};
+use super::motion::Contact;
+use super::{Geometry, Gyrostat, Pose, Velocities};
 use crate::num::{Scalar, Vec3};
 
-impl<S: Scalar> Motion<S> {
-    /// Force and moments that must act on the bicycle to move it with zero independent
-    /// accelerations against gravity.
-    #[inline(always)]
-    pub(super) fn bias(&self, b: &Geometry, inertia: &Inertia<S>) -> Momenta<S> {
-        let (p, v) = (&self.pose, &self.actual);
-        let ((sr, cr), (sd, cd), (st, ct)) = (p.attitude.roll, p.attitude.steer, p.attitude.tilt);
-        let zero = S::constant(0.0);
-        let w = v.omega;
-        let wf = Vec3::new(w.x, w.y, w.z + v.steer);
+/// Force and moments that must act on the bicycle to move it with zero independent accelerations
+/// against gravity, and the acceleration that the front contact has without pitch, yaw and front
+/// wheel acceleration.
+///
+/// With `contact`, these three accelerations are what cancels it; without, they are zero too.
+#[inline(always)]
+pub(super) fn bias<S: Scalar>(
+    b: &Geometry,
+    p: &Pose<S>,
+    v: &Velocities<S>,
+    inertia: &Inertia<S>,
+    contact: Option<&Contact<S>>,
+) -> (Momenta<S>, Vec3<S>) {
+    let ((sr, cr), (sd, cd), (st, ct)) = (p.attitude.roll, p.attitude.steer, p.attitude.tilt);
+    let zero = S::constant(0.0);
+    let w = v.omega;
+    let wf = Vec3::new(w.x, w.y, w.z + v.steer);
 
-        // Rates of directions, seen from the ground. e1 and e3 turn with roll and yaw only.
-        let w2 = w.y - v.pitch;
-        let e1_dot = Vec3::new(sr * st * v.yaw, cr * v.yaw, -(sr * ct * v.yaw));
-        let u2_dot = Vec3::new(-w.z, zero, w.x);
-        let e3_dot = Vec3::new(w2 * ct, -(w.z * st + w.x * ct), w2 * st);
-        let f1_dot = Vec3::new(-(wf.z * sd), wf.z * cd, w.x * sd - w.y * cd);
-        let f2_dot = Vec3::new(-(wf.z * cd), -(wf.z * sd), w.x * cd + w.y * sd);
-        // The front wheel's own frame (heading, f2, down) turns with its yaw and its lean.
-        let front_yaw = -(f2_dot.dot(p.heading) * p.per_m);
-        let front_lean = f2_dot.dot(p.down);
-        let down_dot = p.heading.times(front_yaw * p.n) - p.f2.times(front_lean);
+    // Rates of directions, seen from the ground. e1 and e3 turn with roll and yaw only.
+    let w2 = w.y - v.pitch;
+    let e1_dot = Vec3::new(sr * st * v.yaw, cr * v.yaw, -(sr * ct * v.yaw));
+    let u2_dot = Vec3::new(-w.z, zero, w.x);
+    let e3_dot = Vec3::new(w2 * ct, -(w.z * st + w.x * ct), w2 * st);
+    let f1_dot = Vec3::new(-(wf.z * sd), wf.z * cd, w.x * sd - w.y * cd);
+    let f2_dot = Vec3::new(-(wf.z * cd), -(wf.z * sd), w.x * cd + w.y * sd);
+    // The front wheel's own frame (heading, f2, down) turns with its yaw and its lean.
+    let front_yaw = -(f2_dot.dot(p.heading) * p.per_m);
+    let front_lean = f2_dot.dot(p.down);
+    let down_dot = p.heading.times(front_yaw * p.n) - p.f2.times(front_lean);
 
-        // The front contact's acceleration without pitch, yaw and front wheel acceleration.
-        let trail_dot = f1_dot.scaled(b.d3) + down_dot.scaled(b.rF);
-        let axis_dot = Vec3::new(w.y * b.d2, w.z * b.d1 - w.x * b.d2, -(w.y * b.d1));
-        let base_dot = axis_dot + trail_dot - e3_dot.scaled(b.rR);
-        let arm_dot = Vec3::new(
-            -(w.x * p.trail.z) - trail_dot.y,
-            trail_dot.x - w.y * p.trail.z,
-            w.y * p.trail.y + w.x * p.trail.x,
-        );
-        let alpha_free = e1_dot.times(v.roll) + u2_dot.times(v.pitch);
-        let free = alpha_free.cross(p.base) + w.cross(base_dot) - e1_dot.times(v.rear_spin * b.rR)
-            + arm_dot.times(v.steer)
-            + p.lateral.times(v.front_spin * front_yaw * b.rF);
-        let [pitch, yaw, front_spin] = self.contact.close(b, p, free);
+    // The front contact's acceleration without pitch, yaw and front wheel acceleration.
+    let trail_dot = f1_dot.scaled(b.d3) + down_dot.scaled(b.rF);
+    let axis_dot = Vec3::new(w.y * b.d2, w.z * b.d1 - w.x * b.d2, -(w.y * b.d1));
+    let base_dot = axis_dot + trail_dot - e3_dot.scaled(b.rR);
+    let arm_dot = Vec3::new(
+        -(w.x * p.trail.z) - trail_dot.y,
+        trail_dot.x - w.y * p.trail.z,
+        w.y * p.trail.y + w.x * p.trail.x,
+    );
+    let alpha_free = e1_dot.times(v.roll) + u2_dot.times(v.pitch);
+    let free = alpha_free.cross(p.base) + w.cross(base_dot) - e1_dot.times(v.rear_spin * b.rR)
+        + arm_dot.times(v.steer)
+        + p.lateral.times(v.front_spin * front_yaw * b.rF);
+    let [pitch, yaw, front_spin] = match contact {
+        Some(contact) => contact.close(b, p, free),
+        None => [zero; 3],
+    };
 
-        let mut alpha = alpha_free + p.k.times(yaw);
-        alpha.y = alpha.y + pitch;
-        let alpha_f = Vec3::new(alpha.x + w.y * v.steer, alpha.y - w.x * v.steer, alpha.z);
-        // P's acceleration; gravity is the same as accelerating upwards.
-        let mut axle = e1_dot.times(v.rolling * -b.rR) + u2_dot.times(v.roll * b.rR) - p.k.scaled(b.g);
-        let along = alpha.y * -b.rR;
-        axle.x = axle.x + p.e1.x * along;
-        axle.z = axle.z + p.e1.z * along;
+    let mut alpha = alpha_free + p.k.times(yaw);
+    alpha.y = alpha.y + pitch;
+    let alpha_f = Vec3::new(alpha.x + w.y * v.steer, alpha.y - w.x * v.steer, alpha.z);
+    // P's acceleration; gravity is the same as accelerating upwards.
+    let mut axle = e1_dot.times(v.rolling * -b.rR) + u2_dot.times(v.roll * b.rR) - p.k.scaled(b.g);
+    let along = alpha.y * -b.rR;
+    axle.x = axle.x + p.e1.x * along;
+    axle.z = axle.z + p.e1.z * along;
 
-        // Rear gyrostat about P.
-        let s = b.rear.moment;
-        let force_r = axle.scaled(b.rear.mass) + swing(alpha, w, s);
-        let moment_r = turned(&b.rear, alpha)
-            + w.cross(turned(&b.rear, w))
-            + u2_dot.times(v.rear_spin * b.rear.spin_inertia)
-            + Vec3::new(-(axle.y * s[1]), axle.x * s[1] - axle.z * s[0], axle.y * s[0]);
+    // Rear gyrostat about P.
+    let s = b.rear.moment;
+    let force_r = axle.scaled(b.rear.mass) + swing(alpha, w, s);
+    let moment_r = turned(&b.rear, alpha)
+        + w.cross(turned(&b.rear, w))
+        + u2_dot.times(v.rear_spin * b.rear.spin_inertia)
+        + Vec3::new(-(axle.y * s[1]), axle.x * s[1] - axle.z * s[0], axle.y * s[0]);
 
-        // Front gyrostat about its centre of mass.
-        let arm = (Vec3::new(-(alpha_f.z * sd), alpha_f.z * cd, alpha_f.x * sd - alpha_f.y * cd)
-            + wf.cross(f1_dot))
-        .scaled(b.front.com[0]);
-        let force_f = (axle + swing(alpha, w, [b.d1, b.front.com[1]]) + arm).scaled(b.front.mass);
-        let moment_f = inertia.front.times(alpha_f)
-            + wf.cross(inertia.front.times(wf))
-            + f2_dot.times(v.front_spin * b.front.spin_inertia)
-            + p.f2.times(front_spin * b.front.spin_inertia);
+    // Front gyrostat about its centre of mass.
+    let arm = (Vec3::new(-(alpha_f.z * sd), alpha_f.z * cd, alpha_f.x * sd - alpha_f.y * cd)
+        + wf.cross(f1_dot))
+    .scaled(b.front.com[0]);
+    let force_f = (axle + swing(alpha, w, [b.d1, b.front.com[1]]) + arm).scaled(b.front.mass);
+    let moment_f = inertia.front.times(alpha_f)
+        + wf.cross(inertia.front.times(wf))
+        + f2_dot.times(v.front_spin * b.front.spin_inertia)
+        + p.f2.times(front_spin * b.front.spin_inertia);
 
-        Momenta {
-            momentum: force_r + force_f,
-            angular: moment_r + moment_f + p.front_com.cross(force_f),
-            steer: moment_f.z + (cd * force_f.y - sd * force_f.x) * b.front.com[0],
-            rear_axle: alpha.y * b.rear.spin_inertia,
-            front_axle: (p.f2.x * alpha_f.x + p.f2.y * alpha_f.y + front_spin) * b.front.spin_inertia,
-        }
-    }
+    let force = Momenta {
+        momentum: force_r + force_f,
+        angular: moment_r + moment_f + p.front_com.cross(force_f),
+        steer: moment_f.z + (cd * force_f.y - sd * force_f.x) * b.front.com[0],
+        rear_axle: alpha.y * b.rear.spin_inertia,
+        front_axle: (p.f2.x * alpha_f.x + p.f2.y * alpha_f.y + front_spin) * b.front.spin_inertia,
+    };
+    (force, free)
 }
 
 /// `alpha x r + omega x (omega x r)` for r = (x, 0, z).

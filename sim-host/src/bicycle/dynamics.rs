@@ -1,6 +1,7 @@
 //! Accelerations and energy: d'Alembert's principle projected on the partial velocities (Kane's
 //! equations). The derivation is `docs/bicycle.md`.
 
+use super::bias::bias;
 use super::inertia::Inertia;
 use super::{Geometry, Motion, State};
 use crate::num::Scalar;
@@ -32,7 +33,7 @@ impl<S: Scalar> Motion<S> {
     pub fn accelerations(&self, b: &Geometry, torques: &Torques<S>) -> Accelerations<S> {
         let inertia = Inertia::new(b, &self.pose);
         let mass = inertia.mass(b, &self.pose, &self.partial);
-        let bias = self.bias(b, &inertia);
+        let (bias, _) = bias(b, &self.pose, &self.actual, &inertia, Some(&self.contact));
         let [u, v, w] = &self.partial;
         let force = [
             torques.roll - u.power(b, &self.pose, &bias),

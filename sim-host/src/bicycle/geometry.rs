@@ -30,6 +30,8 @@ pub struct Gyrostat {
 /// axis, `u3` down along it. `P` is the rear wheel's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geometry {
+    /// Wheel base \[m\].
+    pub w: f64,
     /// Rear wheel radius \[m\].
     pub rR: f64,
     /// Front wheel radius \[m\].
@@ -69,7 +71,7 @@ impl Geometry {
             (p.mF, [d3, Q[1]], p.IFxx, p.IFyy),
             (p.mH, [H[0] - d1, H[1]], tilt([p.IHxx, p.IHyy, p.IHzz, p.IHxz], s, c)),
         );
-        Self { rR: p.rR, rF: p.rF, lam: p.lam, g: p.g, d1, d2: Q[1], d3, rear, front }
+        Self { w: p.w, rR: p.rR, rF: p.rF, lam: p.lam, g: p.g, d1, d2: Q[1], d3, rear, front }
     }
 }
 

@@ -92,7 +92,7 @@ impl<S: Scalar> Inertia<S> {
 
     /// The momenta of one velocity state.
     #[inline(always)]
-    fn momenta(&self, b: &Geometry, pose: &Pose<S>, v: &Velocities<S>) -> Momenta<S> {
+    pub(super) fn momenta(&self, b: &Geometry, pose: &Pose<S>, v: &Velocities<S>) -> Momenta<S> {
         let axle = v.axle(b, pose);
         let spin = v.front_spin * b.front.spin_inertia;
         let mut angular = self.whole.times(v.omega)

@@ -16,6 +16,7 @@ mod motion;
 mod parameters;
 mod pitch;
 mod pose;
+mod redundant;
 
 pub use dynamics::{Accelerations, Torques};
 pub use geometry::{Geometry, Gyrostat};
@@ -23,6 +24,7 @@ pub use motion::{Motion, Velocities};
 pub use parameters::{KEYS, Parameters};
 pub use pitch::{Attitude, front_contact_residual, pitch_from_upright};
 pub use pose::Pose;
+pub use redundant::FullState;
 
 use crate::num::Scalar;
 

@@ -96,6 +96,22 @@ pub struct Motion<S> {
 }
 
 impl<S: Scalar> Motion<S> {
+    /// How far the front contact is ahead of the rear one along the rear wheel's heading, as a part
+    /// of the wheelbase, times the cosine of roll: 1 riding upright. At 0 the bicycle has folded up
+    /// sideways, and no pitch near by keeps both wheels on the ground.
+    #[inline(always)]
+    pub fn unfolded(&self, b: &Geometry) -> S {
+        let (_, cos_roll) = self.pose.attitude.roll;
+        cos_roll * (self.pose.e1.x * self.pose.base.x + self.pose.e1.z * self.pose.base.z) * (1.0 / b.w)
+    }
+
+    /// The wheelbase's projection on the front wheel's heading, as a part of the wheelbase: 1 riding
+    /// straight, 0 with the front wheel across the path, where it can't roll.
+    #[inline(always)]
+    pub fn along_front(&self, b: &Geometry) -> S {
+        self.pose.base.dot(self.pose.heading) * (1.0 / b.w)
+    }
+
     /// Solves the constraints at a state: pitch from the front contact's height; pitch rate, yaw
     /// rate and front wheel rate from rolling without slip, that is
     /// `omega x base - rR rear_spin e1 + steer_rate (u3 x trail) + rF front_spin heading = 0`.

@@ -5,9 +5,12 @@ use super::outputs::{OutputArgs, print};
 use super::{Ended, Failure};
 use crate::report::document::RideDocument;
 use crate::report::figure::{self, RideFigure};
+use crate::report::output::Output;
 use crate::report::{table, terminal};
-use crate::ride::{Ride, Start, traced};
+use crate::ride::{Ride, Start, frames, traced};
+use control::wire::encode_frame;
 use std::fmt::Write;
+use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -30,6 +33,9 @@ pub(super) struct Args {
     /// Roll rate at the start, in rad/s, right positive
     #[arg(long, default_value_t = 0.0, value_name = "RAD/S", allow_negative_numbers = true)]
     roll_rate: f64,
+    /// Write the sensor frames as the firmware got them, 12 bytes each, for replay on the chip
+    #[arg(long, value_name = "FILE")]
+    frames: Option<PathBuf>,
     #[command(flatten)]
     outputs: OutputArgs,
 }
@@ -47,6 +53,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     within("--roll-rate (rad/s)", args.roll_rate, -100.0, 100.0)?;
     let setup = args.conditions.setup()?;
     let outputs = args.outputs.open()?;
+    let frames_file = args.frames.as_deref().map(Output::create).transpose()?;
     let start =
         Start { speed_m_s: args.speed, steer_rate_rad_s: args.steer_rate, roll_rate_rad_s: args.roll_rate };
     let (ride, trace) = traced(&setup.conditions, start);
@@ -58,6 +65,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         "{}, law {}: {} m/s, steer rate {} rad/s, roll rate {} rad/s",
         setup.config.bicycle.name, setup.config.law.name, args.speed, args.steer_rate, args.roll_rate
     );
+    if let Some(file) = frames_file {
+        file.finish(&frames(&trace).iter().flat_map(encode_frame).collect::<Vec<u8>>())?;
+    }
     outputs.write(
         &document,
         &document.config,

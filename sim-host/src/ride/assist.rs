@@ -1,7 +1,7 @@
 //! Who turns the steer: nobody, the control crate that is flashed, or its law as a mathematician
 //! would write it.
 
-use crate::bicycle::{Geometry, Motion};
+use crate::bicycle::{Geometry, Velocities};
 use crate::num::Scalar;
 use control::{Law, Plan};
 
@@ -18,18 +18,18 @@ pub enum Assist {
 
 /// Forward speed at the front wheel \[m/s\].
 #[inline(always)]
-pub(super) fn front_speed<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> S {
-    motion.actual.front_spin * -b.rF
+pub(super) fn front_speed<S: Scalar>(b: &Geometry, v: &Velocities<S>) -> S {
+    v.front_spin * -b.rF
 }
 
 /// Forward speed at the rear wheel \[m/s\].
 #[inline(always)]
-pub(super) fn rear_speed<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> S {
-    motion.actual.rear_spin * -b.rR
+pub(super) fn rear_speed<S: Scalar>(b: &Geometry, v: &Velocities<S>) -> S {
+    v.rear_spin * -b.rR
 }
 
 /// Angular velocity of the rear frame about its x axis, horizontal when upright \[rad/s\].
 #[inline(always)]
-pub(super) fn body_roll_rate<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> S {
-    motion.actual.omega.x * b.lam.cos() + motion.actual.omega.z * b.lam.sin()
+pub(super) fn body_roll_rate<S: Scalar>(b: &Geometry, v: &Velocities<S>) -> S {
+    v.omega.x * b.lam.cos() + v.omega.z * b.lam.sin()
 }

@@ -1,8 +1,8 @@
 //! Rides side by side, one in each lane; a lane whose ride ends takes the next.
 
-use super::assist::{body_roll_rate, front_speed, rear_speed};
+use super::refine::{Segment, quickness, refined, too_quick};
 use super::rider::Rider;
-use super::sensor::{Reading, roll_rate, speed};
+use super::sensor::{Reading, readings};
 use super::{Assist, Conditions, Ride, Start, TracePoint};
 use crate::bicycle::{Geometry, Motion, State, Torques};
 use crate::integrate::{Actuation, rk4};
@@ -19,28 +19,17 @@ struct Riders<'a, const N: usize> {
     initial: Lanes<N>,
     /// Torques since the step's start \[N m\].
     torque: Lanes<N>,
+    /// How quick each lane's motion is, by [`quickness`].
+    quickness: [Lanes<N>; 4],
     /// Where lane 0 is written down.
     trace: Option<&'a mut Vec<TracePoint>>,
 }
 
 impl<const N: usize> Riders<'_, N> {
-    /// What every lane's sensors would say: roll rate \[rad/s\] and speed \[m/s\].
-    #[inline(always)]
-    fn readings(&self, b: &Geometry, motion: &Motion<Lanes<N>>) -> (Lanes<N>, Lanes<N>) {
-        (
-            roll_rate(self.conditions.imu, motion.actual.roll, body_roll_rate(b, motion)),
-            speed(
-                self.conditions.schedule_speed,
-                front_speed(b, motion),
-                rear_speed(b, motion),
-                self.initial,
-            ),
-        )
-    }
-
     /// The control instant at a step's start: sensors, controllers, new torques.
     fn control(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
-        let (rate, speed) = self.readings(b, motion);
+        self.quickness = quickness(b, motion);
+        let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
         for (lane, rider) in self.lanes.iter_mut().enumerate() {
             let Some(rider) = rider else { continue };
             let now = Reading { roll_rate_rad_s: rate.0[lane], speed_m_s: speed.0[lane] };
@@ -61,7 +50,7 @@ impl<const N: usize> Actuation<Lanes<N>> for Riders<'_, N> {
         if stage == 0 {
             self.control(b, motion);
         } else if let Assist::Ideal(law) = &self.conditions.assist {
-            let (rate, speed) = self.readings(b, motion);
+            let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
             self.torque = speed.map(|v| law.gain(v)) * rate;
         }
         Torques { roll: Lanes([0.0; N]), steer: self.torque }
@@ -77,12 +66,13 @@ pub(super) fn run<const N: usize>(
     starts: &[Start],
     trace: Option<&mut Vec<TracePoint>>,
 ) -> Vec<Ride> {
-    let b = &conditions.bicycle;
+    let (b, h) = (&conditions.bicycle, conditions.step_s);
     let mut waiting = starts.iter().copied().enumerate();
     let still = Lanes([0.0; N]);
     let mut state = State::upright(b, still);
     let lanes = std::array::from_fn(|_| None);
-    let mut riders = Riders { conditions, lanes, initial: still, torque: still, trace };
+    let mut riders =
+        Riders { conditions, lanes, initial: still, torque: still, quickness: [still; 4], trace };
     let mut done = Vec::with_capacity(starts.len());
     loop {
         for lane in 0..N {
@@ -100,12 +90,20 @@ pub(super) fn run<const N: usize>(
         if riders.lanes.iter().all(Option::is_none) {
             break;
         }
-        let after = rk4(b, &state, conditions.step_s, &mut riders);
+        let mut after = rk4(b, &state, h, &mut riders);
         for lane in 0..N {
             let torque_nm = riders.torque.0[lane];
             let Some(rider) = &mut riders.lanes[lane] else { continue };
-            let (was, is) = (get(&state, lane), get(&after, lane));
-            if let Some(ride) = rider.book(conditions, torque_nm, &was, &is) {
+            let was = get(&state, lane);
+            let last = if too_quick(riders.quickness.map(|q| q.0[lane]), h) {
+                let last = refined(conditions, &was, &mut rider.full, torque_nm, riders.initial.0[lane]);
+                set(&mut after, lane, &last.is);
+                last
+            } else {
+                rider.full = None;
+                Segment { was, is: get(&after, lane), offset: 0.0, h }
+            };
+            if let Some(ride) = rider.book(conditions, torque_nm, &was, &last) {
                 done.push((rider.index, ride));
                 riders.lanes[lane] = None;
             }

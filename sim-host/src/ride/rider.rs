@@ -1,9 +1,10 @@
 //! The bookkeeping of one ride while it lasts.
 
 use super::event::{at_fall, fallen, time_of_fall};
+use super::refine::Segment;
 use super::sensor::{Reading, Sensors, frame};
 use super::{Assist, Conditions, Effort, FinalState, Outcome, Ride, Start};
-use crate::bicycle::State;
+use crate::bicycle::{FullState, State};
 
 /// The ride in a lane.
 pub(super) struct Rider {
@@ -14,6 +15,8 @@ pub(super) struct Rider {
     pub(super) step: u32,
     pub(super) sensors: Sensors,
     controller: control::State,
+    /// All speeds, while the motion is too quick for the three independent ones.
+    pub(super) full: Option<FullState>,
     torque_nm: f64,
     effort: Effort,
     torque_squares: f64,
@@ -29,6 +32,7 @@ impl Rider {
             step: 0,
             sensors: Sensors::new(conditions, &start),
             controller: control::State::default(),
+            full: None,
             torque_nm: 0.0,
             effort: Effort::default(),
             torque_squares: 0.0,
@@ -48,20 +52,22 @@ impl Rider {
         }
     }
 
-    /// Books one step under the held `torque_nm`; the finished ride, when it was the last.
+    /// Books one control period under the held `torque_nm`, from `was` to the end of its `last`
+    /// segment; the finished ride, when it was the last.
     ///
-    /// The effort of a step in which the bicycle falls is left out.
+    /// The effort of a period in which the bicycle falls is left out.
     pub(super) fn book(
         &mut self,
         conditions: &Conditions,
         torque_nm: f64,
         was: &State<f64>,
-        is: &State<f64>,
+        last: &Segment,
     ) -> Option<Ride> {
-        let h = conditions.step_s;
+        let (h, is) = (conditions.step_s, &last.is);
         if fallen(is) {
-            let time_s = f64::from(self.step) * h + time_of_fall(was, is, h);
-            let end = at_fall(was, is, time_s - f64::from(self.step) * h, h);
+            let tau = time_of_fall(&last.was, is, last.h);
+            let time_s = f64::from(self.step) * h + last.offset + tau;
+            let end = at_fall(&last.was, is, tau, last.h);
             self.step += 1;
             return Some(self.finish(Outcome::Fallen { time_s }, time_s, &end));
         }

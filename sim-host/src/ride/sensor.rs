@@ -1,6 +1,9 @@
 //! The simulated sensors of one ride: what they measure and how late they tell.
 
+use super::assist::{body_roll_rate, front_speed, rear_speed};
 use super::{Conditions, Imu, ScheduleSpeed, Start};
+use crate::bicycle::Velocities;
+use crate::num::Scalar;
 use control::{Sample, SensorFrame};
 use std::collections::VecDeque;
 
@@ -42,19 +45,18 @@ pub(super) fn frame(reading: &Reading) -> SensorFrame {
     }
 }
 
-/// The gyro's choice between the two roll rates.
-pub(super) fn roll_rate<S>(imu: Imu, euler: S, body: S) -> S {
-    match imu {
-        Imu::Euler => euler,
-        Imu::Body => body,
-    }
-}
-
-/// The speed sensor's choice.
-pub(super) fn speed<S>(schedule: ScheduleSpeed, front: S, rear: S, initial: S) -> S {
-    match schedule {
-        ScheduleSpeed::Front => front,
-        ScheduleSpeed::Rear => rear,
+/// What the sensors would say at these velocities: roll rate \[rad/s\] and speed \[m/s\].
+#[inline(always)]
+pub(super) fn readings<S: Scalar>(conditions: &Conditions, v: &Velocities<S>, initial: S) -> (S, S) {
+    let b = &conditions.bicycle;
+    let rate = match conditions.imu {
+        Imu::Euler => v.roll,
+        Imu::Body => body_roll_rate(b, v),
+    };
+    let speed = match conditions.schedule_speed {
+        ScheduleSpeed::Front => front_speed(b, v),
+        ScheduleSpeed::Rear => rear_speed(b, v),
         ScheduleSpeed::Initial => initial,
-    }
+    };
+    (rate, speed)
 }

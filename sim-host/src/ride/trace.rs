@@ -1,9 +1,10 @@
 //! A ride written down, one line a control period.
 
 use super::assist::{front_speed, rear_speed};
-use super::sensor::Reading;
+use super::sensor::{Reading, frame};
 use crate::bicycle::{Geometry, Motion};
 use crate::num::Lanes;
+use control::SensorFrame;
 
 /// One instant of a traced ride, at the start of a control period.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -59,12 +60,19 @@ impl TracePoint {
             steer_rate: actual.steer.0[0],
             yaw_rate: actual.yaw.0[0],
             rear_wheel_rate: actual.rear_spin.0[0],
-            rear_speed: rear_speed(b, motion).0[0],
-            front_speed: front_speed(b, motion).0[0],
+            rear_speed: rear_speed(b, actual).0[0],
+            front_speed: front_speed(b, actual).0[0],
             measured_roll_rate: told.roll_rate_rad_s,
             measured_speed: told.speed_m_s,
             torque: torque_nm,
             limits,
         }
     }
+}
+
+/// The sensor frames of a ride as the firmware was given them, to be replayed on the chip.
+pub fn frames(trace: &[TracePoint]) -> Vec<SensorFrame> {
+    let told =
+        |p: &TracePoint| Reading { roll_rate_rad_s: p.measured_roll_rate, speed_m_s: p.measured_speed };
+    trace.iter().map(|p| frame(&told(p))).collect()
 }

@@ -1,0 +1,111 @@
+//! The same bicycle with all six speeds kept, and the contact forces at the front wheel unknown.
+//!
+//! Roll rate, steer rate and rear wheel rate fix the other speeds except where the front wheel comes
+//! to stand across the path (the rear wheel can't roll there) or beside the rear wheel (pitch alone
+//! moves there). The motion passes such places smoothly; this formulation follows it, at ten times
+//! the cost. `docs/bicycle.md`, section 6.
+
+use super::inertia::Inertia;
+use super::pitch::Attitude;
+use super::{Geometry, Motion, Pose, State, Torques, Velocities};
+use crate::num::Vec3;
+use nalgebra::{SMatrix, SVector};
+
+/// A state with redundant speeds; they fulfil the constraints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FullState {
+    /// Roll, pitch and steer \[rad\].
+    pub angles: [f64; 3],
+    /// Rates of roll, pitch, yaw, steer, rear wheel and front wheel \[rad/s\].
+    pub speeds: [f64; 6],
+}
+
+impl FullState {
+    /// The state with its dependent speeds, from a motion away from the singular places.
+    pub fn new(motion: &Motion<f64>, state: &State<f64>) -> Self {
+        let v = &motion.actual;
+        Self {
+            angles: [state.roll, motion.pose.attitude.pitch, state.steer],
+            speeds: [v.roll, v.pitch, v.yaw, v.steer, v.rear_spin, v.front_spin],
+        }
+    }
+
+    /// The independent part.
+    pub fn state(&self) -> State<f64> {
+        State {
+            roll: self.angles[0],
+            pitch: self.angles[1],
+            steer: self.angles[2],
+            roll_rate: self.speeds[0],
+            steer_rate: self.speeds[3],
+            rear_wheel_rate: self.speeds[4],
+        }
+    }
+
+    /// The pose, with the pitch as it is.
+    fn pose(&self, b: &Geometry) -> Pose<f64> {
+        let [roll, pitch, steer] = self.angles;
+        let tilt = (pitch + b.lam).sin_cos();
+        Pose::new(b, Attitude { roll: roll.sin_cos(), steer: steer.sin_cos(), tilt, pitch })
+    }
+
+    /// `self + h * rate`, entry by entry.
+    pub fn moved(&self, h: f64, rate: &FullState) -> FullState {
+        let mut to = *self;
+        to.angles.iter_mut().zip(rate.angles).for_each(|(x, r)| *x += h * r);
+        to.speeds.iter_mut().zip(rate.speeds).for_each(|(x, r)| *x += h * r);
+        to
+    }
+
+    /// The rate of change of every entry, in the same places, under the torques that `act` gives for
+    /// the velocities. `None` if the equations have no solution, which no state near a ride has.
+    pub fn rate(&self, b: &Geometry, act: impl Fn(&Velocities<f64>) -> Torques<f64>) -> Option<FullState> {
+        let pose = self.pose(b);
+        let unit: [Velocities<f64>; 6] = std::array::from_fn(|i| {
+            let mut speeds = [0.0; 6];
+            speeds[i] = 1.0;
+            velocities(&pose, &speeds)
+        });
+        let actual = velocities(&pose, &self.speeds);
+        let inertia = Inertia::new(b, &pose);
+        let (bias, free) = super::bias::bias(b, &pose, &actual, &inertia, None);
+        let torques = act(&actual);
+        let mut a = SMatrix::<f64, 9, 9>::zeros();
+        let mut r = SVector::<f64, 9>::zeros();
+        for j in 0..6 {
+            let momenta = inertia.momenta(b, &pose, &unit[j]);
+            let contact = contact_velocity(b, &pose, &unit[j]);
+            for i in 0..=j {
+                a[(i, j)] = unit[i].power(b, &pose, &momenta);
+                a[(j, i)] = a[(i, j)];
+            }
+            for (i, c) in [contact.x, contact.y, contact.z].into_iter().enumerate() {
+                a[(6 + i, j)] = c;
+                a[(j, 6 + i)] = c;
+            }
+            r[j] = -unit[j].power(b, &pose, &bias);
+        }
+        r[0] += torques.roll;
+        r[3] += torques.steer;
+        (r[6], r[7], r[8]) = (-free.x, -free.y, -free.z);
+        let solution = a.lu().solve(&r)?;
+        let speeds = std::array::from_fn(|i| solution[i]);
+        Some(FullState { angles: [actual.roll, actual.pitch, actual.steer], speeds })
+    }
+}
+
+fn velocities(
+    pose: &Pose<f64>,
+    &[roll, pitch, yaw, steer, rear_spin, front_spin]: &[f64; 6],
+) -> Velocities<f64> {
+    let mut omega = pose.e1.scaled(roll) + pose.k.scaled(yaw);
+    omega.y += pitch;
+    Velocities { roll, pitch, yaw, steer, rear_spin, front_spin, omega, rolling: omega.y + rear_spin }
+}
+
+/// Velocity of the material point at the front contact; the constraints make it zero.
+fn contact_velocity(b: &Geometry, pose: &Pose<f64>, v: &Velocities<f64>) -> Vec3<f64> {
+    v.omega.cross(pose.base) - pose.e1.scaled(v.rear_spin * b.rR)
+        + Vec3::new(-pose.trail.y, pose.trail.x, 0.0).scaled(v.steer)
+        + pose.heading.scaled(v.front_spin * b.rF)
+}

@@ -1,0 +1,224 @@
+//! Flight cards: what the controller promises for every input.
+
+use control::history::{Latency, MAX_LATENCY_TICKS};
+use control::{Config, Law, LawTable, Limits, Plan, Reject, Sample, SensorFrame, State, Status, Taper, step};
+use proptest::prelude::*;
+
+fn any_sample() -> impl Strategy<Value = Sample> {
+    (any::<u32>(), prop_oneof![Just(0_u16), any::<u16>()])
+        .prop_map(|(bits, age_ticks)| Sample { value: f32::from_bits(bits), age_ticks })
+}
+
+fn plausible_frame() -> impl Strategy<Value = SensorFrame> {
+    (-20.0_f32..20.0, -3.0_f32..12.0).prop_map(|(rate, speed)| fresh(rate, speed))
+}
+
+fn any_frame() -> impl Strategy<Value = SensorFrame> {
+    let wild = (any_sample(), any_sample())
+        .prop_map(|(roll_rate_rad_s, wheel_speed_m_s)| SensorFrame { roll_rate_rad_s, wheel_speed_m_s });
+    prop_oneof![plausible_frame(), wild]
+}
+
+fn any_law() -> impl Strategy<Value = Law> {
+    let table = LawTable::new(&[(0.0, 30.0), (4.0, 12.0), (9.0, -1.0)]).expect("a valid table");
+    prop_oneof![
+        Just(Law::H { cut: false }),
+        Just(Law::H { cut: true }),
+        Just(Law::F),
+        Just(Law::G),
+        Just(Law::Cl1),
+        (0.01_f32..20.0).prop_map(|k| Law::Cl2 { k }),
+        Just(Law::Table(table)),
+    ]
+}
+
+fn any_plan() -> impl Strategy<Value = Plan> {
+    let limits = (
+        proptest::option::of(0.1_f32..50.0),
+        proptest::option::of(1.0_f32..1e5),
+        proptest::option::of((0.0_f32..4.0, 0.2_f32..5.0)),
+    );
+    (any_law(), limits, 0..=MAX_LATENCY_TICKS, 0..=MAX_LATENCY_TICKS).prop_map(|(law, limits, a, b)| {
+        let mut config = Config::thesis(law);
+        config.shape.max_torque_nm = limits.0;
+        config.shape.max_rate_nm_s = limits.1;
+        config.shape.taper = limits.2.map(|(zero, width)| Taper { zero_m_s: zero, full_m_s: zero + width });
+        config.latency = Latency { roll_rate_ticks: a, speed_ticks: b };
+        config.plan().expect("in range")
+    })
+}
+
+fn fresh(roll_rate: f32, speed: f32) -> SensorFrame {
+    SensorFrame { roll_rate_rad_s: Sample::fresh(roll_rate), wheel_speed_m_s: Sample::fresh(speed) }
+}
+
+fn mirrored(frame: &SensorFrame) -> SensorFrame {
+    let value = -frame.roll_rate_rad_s.value;
+    SensorFrame { roll_rate_rad_s: Sample { value, ..frame.roll_rate_rad_s }, ..*frame }
+}
+
+proptest! {
+    /// Whatever the bits, the torque is finite and inside its limits, and so is its change.
+    #[test]
+    fn the_torque_is_always_inside_its_limits(
+        plan in any_plan(),
+        frames in proptest::collection::vec(any_frame(), 1..200),
+    ) {
+        let mut state = State::default();
+        let shape = plan.config().shape;
+        for frame in &frames {
+            let before = state.torque_nm();
+            let command = step(&plan, &mut state, frame);
+            prop_assert!(command.torque_nm.is_finite() && command.gain_nm_s_rad.is_finite());
+            prop_assert_eq!(command.torque_nm.to_bits(), state.torque_nm().to_bits());
+            if let Some(max) = shape.max_torque_nm {
+                prop_assert!(command.torque_nm.abs() <= max);
+            }
+            if let Some(rate) = shape.max_rate_nm_s {
+                // In f64, with room for the rounding of one f32 addition.
+                let change = (f64::from(command.torque_nm) - f64::from(before)).abs();
+                let room = f64::from(f32::EPSILON) * f64::from(before.abs().max(command.torque_nm.abs()));
+                prop_assert!(change <= f64::from(rate) / 1000.0 * (1.0 + 1e-7) + room, "{change}");
+            }
+            if !matches!(command.status, Status::Active) {
+                prop_assert_eq!(command.gain_nm_s_rad, 0.0);
+            }
+        }
+    }
+
+    /// Mirrored roll rates give the mirrored torque, to the bit, with the same limits active.
+    #[test]
+    fn the_torque_is_odd_in_the_roll_rate(
+        plan in any_plan(),
+        frames in proptest::collection::vec(any_frame(), 1..100),
+    ) {
+        let (mut right, mut left) = (State::default(), State::default());
+        for frame in &frames {
+            let (a, b) = (step(&plan, &mut right, frame), step(&plan, &mut left, &mirrored(frame)));
+            prop_assert_eq!(a.torque_nm, -b.torque_nm);
+            prop_assert_eq!((a.limits, a.status), (b.limits, b.status));
+        }
+    }
+
+    /// With equal latencies the history changes no bit of the bare law.
+    #[test]
+    fn equal_latencies_add_nothing(
+        ticks in 0..=MAX_LATENCY_TICKS,
+        frames in proptest::collection::vec(plausible_frame(), 1..100),
+    ) {
+        let law = Law::H { cut: false };
+        let latency = Latency { roll_rate_ticks: ticks, speed_ticks: ticks };
+        let plan = Config { latency, ..Config::thesis(law.clone()) }.plan().expect("in range");
+        let mut state = State::default();
+        for frame in &frames {
+            let bare = law.gain(frame.wheel_speed_m_s.value) * frame.roll_rate_rad_s.value;
+            prop_assert_eq!(step(&plan, &mut state, frame).torque_nm.to_bits(), bare.to_bits());
+        }
+    }
+
+    /// Every formula in f32 is its f64 self within a few units in the last place of its largest term.
+    #[test]
+    fn laws_in_f32_are_the_laws_in_f64(law in any_law(), speed in -3.0_f32..12.0) {
+        let (single, double) = (f64::from(law.gain(speed)), law.gain(f64::from(speed)));
+        // f and g have terms up to about 450 that cancel.
+        prop_assert!((single - double).abs() < 1e-4 * (1.0 + double.abs()), "{single} {double}");
+    }
+}
+
+/// Situation: the published formulas at a few speeds. Action: evaluate. They must be as printed,
+/// with the sign turned to our axes.
+#[test]
+fn the_laws_are_as_written() {
+    for v in [0.0_f64, 1.4, 2.8, 4.4, 6.7, 7.4, 7.5, 9.0] {
+        assert_eq!(Law::H { cut: false }.gain(v), -(4.0 * v - 30.0) * libm::exp(-0.03 * v * v));
+        assert!((Law::F.gain(v) + (-0.88 * v * v + 12.0 * v - 41.0)).abs() < 1e-13);
+        assert!((Law::G.gain(v) + (v - 40.0) * libm::exp(-0.35 * v)).abs() < 1e-13);
+        assert_eq!(Law::Cl1.gain(v), if v < 6.7 { 5.97 * (6.7 - v) } else { 0.0 });
+        assert_eq!(Law::Cl2 { k: 3.0 }.gain(v), 3.0 * (10.0 - v));
+        assert_eq!(Law::H { cut: true }.gain(v), if v < 7.5 { Law::H { cut: false }.gain(v) } else { 0.0 });
+    }
+    // Where the thesis wants its crosses (eqs 3.8 to 3.10) the slopes of CL2 give them.
+    assert!((Law::Cl2 { k: 3.0 }.gain(1.4_f64) - 25.8).abs() < 1e-12);
+    assert!(Law::H { cut: false }.gain(8.0_f64) < 0.0);
+}
+
+/// Situation: a slow speed sensor beside a fast gyro. Action: feed numbered samples. The pair used
+/// must be of one instant, and nothing may come out before there is one.
+#[test]
+fn late_sensors_are_paired_with_the_past() {
+    let table = LawTable::new(&[(0.0, 0.0), (30.0, 30.0)]).expect("a valid table");
+    let latency = Latency { roll_rate_ticks: 0, speed_ticks: 3 };
+    let plan = Config { latency, ..Config::thesis(Law::Table(table)) }.plan().expect("in range");
+    let mut state = State::default();
+    for k in 0..20 {
+        let command = step(&plan, &mut state, &fresh(k as f32, 2.0));
+        if k < 3 {
+            assert_eq!((command.status, command.torque_nm), (Status::Filling, 0.0));
+        } else {
+            assert_eq!((command.status, command.torque_nm), (Status::Active, 2.0 * (k - 3) as f32));
+        }
+    }
+    // A gap empties it: no torque from samples of before.
+    let gap = step(&plan, &mut state, &SensorFrame::missing());
+    assert_eq!(gap.status, Status::Rejected(Reject::RollRateStale));
+    assert_eq!(step(&plan, &mut state, &fresh(1.0, 2.0)).status, Status::Filling);
+}
+
+/// Situation: each way a frame can be unbelievable. Action: step. The reason must be named and the
+/// torque must go to zero, no faster than its rate limit.
+#[test]
+fn unbelievable_frames_are_refused_with_the_reason() {
+    let mut config = Config::thesis(Law::H { cut: false });
+    config.shape.max_rate_nm_s = Some(1000.0);
+    let plan = config.plan().expect("in range");
+    for (frame, reason) in [
+        (fresh(f32::NAN, 4.0), Reject::RollRateRange),
+        (fresh(f32::INFINITY, 4.0), Reject::RollRateRange),
+        (fresh(60.001, 4.0), Reject::RollRateRange),
+        (fresh(1.0, f32::NEG_INFINITY), Reject::SpeedRange),
+        (fresh(1.0, 30.001), Reject::SpeedRange),
+        (
+            SensorFrame { roll_rate_rad_s: Sample { value: 1.0, age_ticks: 1 }, ..fresh(1.0, 4.0) },
+            Reject::RollRateStale,
+        ),
+        (SensorFrame { wheel_speed_m_s: Sample::missing(), ..fresh(1.0, 4.0) }, Reject::SpeedStale),
+    ] {
+        let mut state = State::default();
+        for _ in 0..20 {
+            step(&plan, &mut state, &fresh(0.5, 4.0));
+        }
+        let before = state.torque_nm();
+        assert!(before > 3.5, "{before}");
+        let command = step(&plan, &mut state, &frame);
+        assert_eq!(command.status, Status::Rejected(reason));
+        assert_eq!(command.torque_nm, before - 1.0);
+        assert_eq!(command.limits, Limits::RATE);
+    }
+}
+
+/// Situation: each parameter out of its range. Action: make a plan. It must be refused by name,
+/// value and range.
+#[test]
+fn parameters_out_of_range_are_named() {
+    let refused = |change: fn(&mut Config)| {
+        let mut config = Config::product();
+        change(&mut config);
+        config.plan().expect_err("out of range")
+    };
+    for (error, name) in [
+        (refused(|c| c.rate_hz = 99.0), "rate_hz"),
+        (refused(|c| c.law = Law::Cl2 { k: 0.0 }), "law.cl2.k"),
+        (refused(|c| c.law = Law::Table(LawTable::default())), "law.table.points"),
+        (refused(|c| c.input.roll_rate_max_rad_s = f32::NAN), "input.roll_rate_max_rad_s"),
+        (refused(|c| c.input.speed_max_age_ticks = 1001), "input.speed_max_age_ticks"),
+        (refused(|c| c.latency.speed_ticks = 32), "latency.speed_ticks"),
+        (refused(|c| c.shape.max_torque_nm = Some(-1.0)), "shape.max_torque_nm"),
+        (refused(|c| c.shape.max_rate_nm_s = Some(f32::INFINITY)), "shape.max_rate_nm_s"),
+        (refused(|c| c.shape.taper = Some(Taper { zero_m_s: 2.0, full_m_s: 1.0 })), "shape.taper.full_m_s"),
+    ] {
+        assert_eq!(error.name, name);
+        assert!(error.to_string().contains(name) && error.to_string().contains(&error.max.to_string()));
+    }
+    assert!(LawTable::new(&[(1.0, 2.0), (1.0, 3.0)]).is_err());
+    assert!(LawTable::new(&[(f32::NAN, 2.0)]).is_err());
+}

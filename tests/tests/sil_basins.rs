@@ -1,0 +1,137 @@
+//! Flight cards: what a basin search promises.
+
+use control::{Config, Law};
+use sim_host::basin::{Axis, Search, basin, column, rmse};
+use sim_host::ride::rides;
+use tests::basins::{H, alone, assisted, configured, ideal, search};
+
+/// Situation: the flashed h at 4 m/s. Action: find the border. The ride at the border must survive
+/// and one just beyond must fall.
+#[test]
+fn the_border_is_a_border() {
+    let conditions = assisted(H);
+    let search = search(&[4.0], 15.0);
+    let found = column(&conditions, &search, 4.0);
+    let at = |rate: f64| rides(&conditions, &[Axis::SteerRate.start(4.0, rate)])[0];
+    assert!((8.0..9.0).contains(&found.upper), "{}", found.upper);
+    assert!(!at(found.upper).fell() && at(found.upper + search.tolerance).fell());
+    assert_eq!(found.border, Some(at(found.upper)));
+    assert!(!found.capped && found.islands.is_empty());
+}
+
+/// Situation: the search may try no more than 5 rad/s, and the basin is higher. Action: search. It
+/// must say that it reached the cap, at exactly 5, also when the step does not divide it.
+#[test]
+fn the_cap_is_reported() {
+    let search = Search { scan_step: 0.23, ..search(&[4.0], 5.0) };
+    let found = column(&assisted(H), &search, 4.0);
+    assert!(found.capped && found.upper == 5.0, "{found:?}");
+    assert_eq!(found.scan.last().map(|p| p.rate), Some(5.0));
+}
+
+/// Situation: the bicycle alone at 4.6 m/s, where some knocks beyond the first fall are survived.
+/// Action: search. These islands must be reported, be true, and leave `upper` alone.
+#[test]
+fn islands_are_reported_not_merged() {
+    let conditions = alone();
+    let found = column(&conditions, &search(&[4.6], 10.0), 4.6);
+    assert!(!found.islands.is_empty());
+    for island in &found.islands {
+        assert!(island.from > found.upper && island.to >= island.from);
+        let start = |rate| Axis::SteerRate.start(4.6, rate);
+        let edges = rides(&conditions, &[start(island.from), start(island.to)]);
+        assert!(edges.iter().all(|r| !r.fell()), "{island:?}");
+        let outside = rides(&conditions, &[start(island.from - 0.01), start(island.to + 0.01)]);
+        assert!(outside.iter().all(|r| r.fell()), "{island:?}");
+    }
+}
+
+/// Situation: a bicycle at rest. Action: search. Every knock must fall and nothing must break.
+#[test]
+fn a_bicycle_at_rest_has_no_basin() {
+    let found = column(&assisted(H), &search(&[0.0], 5.0), 0.0);
+    assert!(found.upper < 0.01 && !found.capped && found.scan.iter().all(|p| p.outcome.name() == "fallen"));
+}
+
+/// Situation: eleven speeds. Action: search on one thread and on three. Every bit must agree.
+#[test]
+fn the_number_of_threads_does_not_matter() {
+    let speeds: Vec<f64> = (0..=10).map(f64::from).collect();
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| basin(&alone(), &search(&speeds, 10.0), |_| (), || false)).expect("a basin")
+    };
+    let (one, three) = (on(1), on(3));
+    assert_eq!(one, three);
+    assert!(one.area() > 10.0);
+}
+
+/// Situation: an interruption after the first column. Action: search. What is done must be kept.
+#[test]
+fn an_interruption_keeps_what_is_done() {
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let count = || done.load(std::sync::atomic::Ordering::SeqCst);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+    let kept = pool.install(|| {
+        basin(
+            &alone(),
+            &search(&[2.0, 4.0, 6.0], 2.0),
+            |_| {
+                done.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
+            },
+            || count() >= 1,
+        )
+    });
+    let kept = kept.expect("a basin");
+    assert_eq!(kept.columns.len(), 1);
+    assert!(kept.columns[0].speed == 2.0 || kept.columns[0].speed == 6.0, "{}", kept.columns[0].speed);
+}
+
+/// Situation: the roll rate is disturbed instead. Action: search. There must be a basin, a smaller
+/// one in rad/s than for the light steering assembly.
+#[test]
+fn roll_rate_disturbances_have_a_basin_too() {
+    let steer = column(&assisted(H), &search(&[5.0], 15.0), 5.0);
+    let roll = column(&assisted(H), &Search { axis: Axis::RollRate, ..search(&[5.0], 15.0) }, 5.0);
+    assert!((0.1..3.0).contains(&roll.upper), "{}", roll.upper);
+    assert!(roll.upper < 0.5 * steer.upper);
+}
+
+/// Situation: the law sampled at 1 kHz in f32 beside the continuous one. Action: compare outlines.
+/// They must be close, but not the same.
+#[test]
+fn sampling_costs_little() {
+    let search = search(&[2.0, 4.0, 6.0, 8.0], 12.0);
+    let of = |c| basin(&c, &search, |_| (), || false).expect("a basin");
+    let (flashed, continuous) = (of(assisted(H)), of(ideal(H)));
+    let distance = rmse(&flashed, &continuous).expect("shared speeds");
+    println!("rmse {} rad/s (as printed {})", distance.mean, distance.as_printed);
+    assert!((1e-4..0.06).contains(&distance.mean), "{distance:?}");
+    assert!((distance.as_printed - distance.mean * 2.0).abs() < 1e-12, "four columns: root 4 times");
+}
+
+/// Situation: the product's limits and h cut at 7.5 m/s. Action: compare with the bare law. The
+/// limits must cost basin where the bare law asks for more torque than they give, and the cut must
+/// add basin where h steers out of the fall.
+#[test]
+fn what_the_product_limits_cost() {
+    let speeds = [1.0, 3.0, 9.0];
+    let of = |c| basin(&c, &search(&speeds, 15.0), |_| (), || false).expect("a basin");
+    let (bare, product) = (of(assisted(H)), of(configured(Config::product())));
+    for (a, b) in bare.columns.iter().zip(&product.columns) {
+        println!("{} m/s: bare {:.3}, product {:.3} rad/s", a.speed, a.upper, b.upper);
+    }
+    assert!(product.columns[0].upper < bare.columns[0].upper - 0.2);
+    assert!(product.columns[1].upper < bare.columns[1].upper - 0.2);
+    assert!(product.columns[2].upper > bare.columns[2].upper + 0.2);
+}
+
+/// Situation: a law that does nothing. Action: compare with no assist. The outlines must agree to
+/// the bit.
+#[test]
+fn a_law_of_zero_is_no_assist() {
+    let none = configured(Config::thesis(Law::None));
+    let (a, b) = (column(&none, &search(&[6.0], 8.0), 6.0), column(&alone(), &search(&[6.0], 8.0), 6.0));
+    assert_eq!(a, b);
+    assert!(a.upper > 4.0);
+}
