@@ -6,4 +6,5 @@ pub mod bicycle;
 pub mod eigen;
 pub mod integrate;
 pub mod num;
+pub mod report;
 pub mod ride;

@@ -1,0 +1,17 @@
+//! Figures of results: pure functions from data to a [`Picture`].
+
+mod basin;
+mod canvas;
+mod colour;
+mod eigen;
+mod legend;
+mod modes;
+mod outlines;
+mod panel;
+mod ride;
+pub(super) mod scale;
+
+pub use basin::{BasinFigure, basin};
+pub use canvas::{Picture, PictureError};
+pub use eigen::{EigenFigure, eigen};
+pub use ride::{RideFigure, ride};
