@@ -34,8 +34,7 @@ pub fn ride(figure: &RideFigure, width: usize) -> String {
         ("steer [deg]", |p| p.steer.to_degrees()),
         ("torque [N m]", |p| p.torque),
     ];
-    let end = figure.trace.iter().map(|p| p.t).fold(0.0, f64::max);
-    let x = (0.0, if end > 0.0 { end } else { 1.0 });
+    let x = (0.0, figure.end());
     let mut text = String::new();
     for (i, (label, of)) in curves.into_iter().enumerate() {
         let y = nice(figure.trace.iter().map(of), 3);

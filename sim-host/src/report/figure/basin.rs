@@ -1,14 +1,13 @@
 //! A basin of attraction over speed.
 
-use super::canvas::{Area, Canvas, Picture, Stroke, text_width};
+use super::canvas::{Area, Canvas, Picture, Stroke};
 use super::colour::{BASIN, INK, ISLAND, SHADES, STABLE, shade};
 use super::legend::{Entry, Sign, entry, rows, rows_height, triangle};
 use super::outlines::outlines;
 use super::panel::Panel;
-use super::scale::{nice, ticks};
+use super::time_scale::TimeScale;
 use crate::basin::{Axis, Basin, Column};
 use crate::ride::Outcome;
-use kuva::render::render::TextAnchor;
 
 /// What a figure of basins shows.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +39,14 @@ pub fn basin(figure: &BasinFigure) -> Picture {
 pub(super) const AREA: Area = Area { x: 66.0, y: 44.0, width: 600.0, height: 380.0 };
 /// From the axes down to the legend.
 pub(super) const LEGEND_GAP: f64 = 50.0;
+/// How wide the legend may be.
+pub(super) const LEGEND_WIDTH: f64 = AREA.width + 80.0;
+/// How opaque the inside is laid over its black hatching.
+pub(super) const SOFTER: f64 = 0.5;
+/// The height of a figure with this legend.
+pub(super) fn height(legend: &[Entry]) -> f64 {
+    AREA.bottom() + LEGEND_GAP + rows_height(legend, LEGEND_WIDTH) + 12.0
+}
 /// The label of the speeds.
 pub(super) const SPEED: &str = "Forward speed v [m/s]";
 
@@ -52,15 +59,15 @@ impl BasinFigure<'_> {
         }
     }
 
-    /// Axes that show every column whole, up to `top`.
-    pub(super) fn panel(&self, top: f64) -> Panel {
-        let edges: Vec<f64> =
-            self.series.iter().flat_map(|(_, b)| edges(b)).flat_map(|(a, b)| [a, b]).collect();
-        let x = match edges.len() {
-            0 => (0.0, 10.0),
-            _ => edges.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |r, &e| (r.0.min(e), r.1.max(e))),
+    /// Axes from the least to the greatest of `speeds`, and to a little over `top`.
+    pub(super) fn panel(&self, speeds: impl Iterator<Item = f64>, top: f64) -> Panel {
+        let (low, high) = speeds.fold((f64::INFINITY, f64::NEG_INFINITY), |r, v| (r.0.min(v), r.1.max(v)));
+        let x = match (low, high) {
+            _ if low < high => (low, high),
+            _ if low == high => (low - 0.5, low + 0.5),
+            _ => (0.0, 10.0),
         };
-        Panel { area: AREA, x, y: (0.0, if top > 0.0 { top } else { 1.0 }) }
+        Panel { area: AREA, x, y: (0.0, if top > 0.0 { 1.015 * top } else { 1.0 }) }
     }
 
     /// The legend's entry of the self-stable range, if there is one.
@@ -110,42 +117,73 @@ fn undecided(column: &Column) -> Vec<(f64, f64)> {
 }
 
 fn inside_and_outside(figure: &BasinFigure, name: &str, basin: &Basin) -> Picture {
-    let panel = figure.panel(figure.cap);
     let edges = edges(basin);
+    // Half a column further than the speeds and a little over the cap, so that the dots are whole.
+    let ends = edges.iter().flat_map(|&(a, b)| [a, b]);
+    let panel = figure.panel(ends, figure.cap);
     let legend = entries(figure, name, basin);
-    let height = AREA.bottom() + LEGEND_GAP + rows_height(&legend, AREA.width) + 12.0;
-    let mut canvas = Canvas::new(AREA.right() + 92.0, height);
+    let mut canvas = Canvas::new(AREA.right() + 92.0, height(&legend));
     canvas.title((AREA.x, 26.0), AREA.width, figure.title);
-    let outline: Vec<(f64, f64)> = match basin.columns.as_slice() {
-        [only] => vec![(edges[0].0, only.upper), (edges[0].1, only.upper)],
-        columns => columns.iter().map(|c| (c.speed, c.upper)).collect(),
-    };
-    canvas.clipped(panel.area, |canvas| {
+    let outline = outline(basin, &edges);
+    let pixels = |data: &[(f64, f64)]| data.iter().map(|&p| panel.at(p)).collect::<Vec<_>>();
+    let inside = |canvas: &mut Canvas, opacity: f64| {
         if let ([first, ..], [.., last]) = (&outline[..], &outline[..]) {
             let corners = [&[(first.0, 0.0)], &outline[..], &[(last.0, 0.0)]].concat();
-            canvas.polygon(&corners.iter().map(|&p| panel.at(p)).collect::<Vec<_>>(), BASIN);
+            canvas.polygon(&pixels(&corners), BASIN, opacity);
         }
         for (column, &edge) in basin.columns.iter().zip(&edges) {
             for island in &column.islands {
-                canvas.rect(panel.span(edge, (island.from, island.to)), ISLAND, 1.0);
+                let mut area = panel.span(edge, (island.from, island.to));
+                area.height = area.height.max(2.0);
+                canvas.rect(area, ISLAND, opacity);
             }
         }
-        for (column, &edge) in basin.columns.iter().zip(&edges) {
-            for range in undecided(column) {
-                canvas.hatch(panel.span(edge, range));
+    };
+    canvas.clipped(panel.area, |canvas| {
+        inside(canvas, 1.0);
+        for (i, &edge) in edges.iter().enumerate() {
+            for range in undecided(&basin.columns[i]) {
+                canvas.hatch(&pixels(&cell(basin, i, edge, range)));
             }
         }
+        inside(canvas, SOFTER);
         if let Some(range) = figure.self_stable {
             panel.shade_x(canvas, range);
         }
         falls(canvas, &panel, basin);
-        canvas.line(&outline.iter().map(|&p| panel.at(p)).collect::<Vec<_>>(), Stroke::solid(INK, 1.6));
+        canvas.line(&pixels(&outline), Stroke::solid(INK, 1.6));
         caps(canvas, &panel, basin);
     });
     panel.frame(&mut canvas, Some(SPEED), figure.rate_label());
-    rows(&mut canvas, &legend, (AREA.x, AREA.bottom() + LEGEND_GAP), AREA.width);
-    colour_bar(&mut canvas, longest(basin));
+    rows(&mut canvas, &legend, (AREA.x, AREA.bottom() + LEGEND_GAP), LEGEND_WIDTH);
+    TimeScale::new(basin).bar(&mut canvas, AREA);
     canvas.finish()
+}
+
+/// The border of the basin, level from the outer columns to their edges.
+fn outline(basin: &Basin, edges: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let columns = &basin.columns;
+    let first = columns.first().zip(edges.first()).map(|(c, e)| (e.0, c.upper));
+    let last = columns.last().zip(edges.last()).map(|(c, e)| (e.1, c.upper));
+    first.into_iter().chain(columns.iter().map(|c| (c.speed, c.upper))).chain(last).collect()
+}
+
+/// The corners of a range of column `i` from edge to edge; in the basin none is beyond its border.
+fn cell(basin: &Basin, i: usize, edge: (f64, f64), (low, high): (f64, f64)) -> [(f64, f64); 5] {
+    let column = &basin.columns[i];
+    let border = |neighbour: Option<&Column>| match neighbour {
+        Some(n) if high <= column.upper => 0.5 * (column.upper + n.upper),
+        _ => f64::INFINITY,
+    };
+    let left = border(i.checked_sub(1).map(|k| &basin.columns[k]));
+    let right = border(basin.columns.get(i + 1));
+    [
+        (edge.0, low.min(left)),
+        (edge.0, high.min(left)),
+        (column.speed, high),
+        (edge.1, high.min(right)),
+        (edge.1, low.min(right)),
+    ]
 }
 
 /// What of the legend this basin needs.
@@ -167,15 +205,9 @@ fn entries(figure: &BasinFigure, name: &str, basin: &Basin) -> Vec<Entry> {
     legend
 }
 
-/// The end of the colour scale \[s\]: the longest time to fall, rounded up.
-fn longest(basin: &Basin) -> f64 {
-    let times = basin.columns.iter().flat_map(|c| &c.scan).filter_map(|p| p.outcome.time_to_fall_s());
-    nice(times.chain([0.0, 0.5]), 5).1
-}
-
 /// A dot for every fall, in the colour of its time.
 fn falls(canvas: &mut Canvas, panel: &Panel, basin: &Basin) {
-    let longest = longest(basin);
+    let scale = TimeScale::new(basin);
     let mut shades = vec![Vec::new(); SHADES];
     let mut nearest = f64::INFINITY;
     for column in &basin.columns {
@@ -184,8 +216,7 @@ fn falls(canvas: &mut Canvas, panel: &Panel, basin: &Basin) {
         }
         for point in &column.scan {
             if let Some(time) = point.outcome.time_to_fall_s() {
-                let shade = (time / longest * SHADES as f64) as usize;
-                shades[shade.min(SHADES - 1)].push(panel.at((column.speed, point.rate)));
+                shades[scale.shade_of(time)].push(panel.at((column.speed, point.rate)));
             }
         }
     }
@@ -208,23 +239,4 @@ pub(super) fn caps(canvas: &mut Canvas, panel: &Panel, basin: &Basin) {
             last = x;
         }
     }
-}
-
-/// The scale of times to fall, right of the axes.
-fn colour_bar(canvas: &mut Canvas, longest: f64) {
-    let bar = Area { x: AREA.right() + 18.0, y: AREA.y, width: 14.0, height: AREA.height };
-    let scale = Panel { area: bar, x: (0.0, 1.0), y: (0.0, longest) };
-    for i in 0..SHADES {
-        let (low, high) = (i as f64 / SHADES as f64, (i + 1) as f64 / SHADES as f64);
-        let area = scale.span((0.0, 1.0), (low * longest, high * longest));
-        canvas.rect(area, shade(i), 1.0);
-    }
-    let mut widest = 0.0_f64;
-    for (t, number) in ticks(scale.y, 7) {
-        let at = scale.y(t);
-        canvas.line(&[(bar.right(), at), (bar.right() + 4.0, at)], Stroke::solid(INK, 1.0));
-        canvas.text((bar.right() + 7.0, at + 4.0), 12, TextAnchor::Start, &number);
-        widest = widest.max(text_width(&number, 12));
-    }
-    canvas.text_upwards((bar.right() + 24.0 + widest, bar.y + 0.5 * bar.height), 13, "Time to fall [s]");
 }

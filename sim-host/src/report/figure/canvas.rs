@@ -4,7 +4,7 @@ use super::colour::INK;
 use kuva::backend::svg::SvgBackend;
 use kuva::plot::FillPattern;
 use kuva::render::color::Color;
-use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, build_path};
+use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
 use kuva::{RasterBackend, render::render::TextSpan};
 
 /// Pixels of a PNG per pixel of the SVG.
@@ -133,7 +133,8 @@ impl Canvas {
 
     /// A title at the left, as large as fits into `width`.
     pub(super) fn title(&mut self, (x, y): (f64, f64), width: f64, content: &str) {
-        let size = (width / text_width(content, 1)).min(15.0) as u32;
+        // Bold letters are a sixth wider.
+        let size = (width / (1.17 * text_width(content, 1))).min(15.0) as u32;
         let span = TextSpan { bold: true, ..TextSpan::plain(content) };
         self.scene.add(Primitive::RichText {
             x,
@@ -173,18 +174,23 @@ impl Canvas {
         });
     }
 
-    /// Thin black diagonals over an area.
-    pub(super) fn hatch(&mut self, area: Area) {
-        self.rect(area, Color::Css(format!("url(#{})", FillPattern::DiagonalForward.id()).into()), 1.0);
+    /// Thin diagonals over a polygon; kuva knows only black ones.
+    pub(super) fn hatch(&mut self, corners: &[(f64, f64)]) {
+        let pattern = format!("url(#{})", FillPattern::DiagonalForward.id());
+        self.fill(corners, Color::Css(pattern.into()), None);
     }
 
-    pub(super) fn polygon(&mut self, corners: &[(f64, f64)], fill: &str) {
+    pub(super) fn polygon(&mut self, corners: &[(f64, f64)], color: &str, opacity: f64) {
+        self.fill(corners, color.into(), Some(opacity));
+    }
+
+    fn fill(&mut self, corners: &[(f64, f64)], fill: Color, opacity: Option<f64>) {
         self.scene.add(Primitive::Path(Box::new(PathData {
-            d: build_path(corners) + "Z",
-            fill: Some(fill.into()),
+            d: path(corners),
+            fill: Some(fill),
             stroke: Color::None,
             stroke_width: 0.0,
-            opacity: None,
+            opacity,
             stroke_dasharray: None,
         })));
     }
@@ -219,9 +225,21 @@ impl Canvas {
     }
 }
 
-/// About how wide a text is; the fonts' letters are 0.6 of their size wide on average.
+/// About how wide a text is in the fonts used.
 pub(super) fn text_width(text: &str, size: u32) -> f64 {
-    0.6 * f64::from(size) * text.chars().count().max(1) as f64
+    let width = |c: char| match c {
+        ' ' | '.' | ',' | ':' | '(' | ')' | '[' | ']' | '/' | 'i' | 'j' | 'l' | 'f' | 't' | 'r' | '-' => 0.38,
+        'm' | 'w' | 'M' | 'W' => 0.95,
+        c if c.is_uppercase() => 0.7,
+        _ => 0.63,
+    };
+    f64::from(size) * text.chars().map(width).sum::<f64>()
+}
+
+/// A closed path as SVG writes it, to hundredths of a pixel.
+fn path(corners: &[(f64, f64)]) -> String {
+    let points: Vec<String> = corners.iter().map(|(x, y)| format!("{x:.2} {y:.2}")).collect();
+    format!("M {} Z", points.join(" L "))
 }
 
 /// Pieces of `on` pixels with gaps of `off` along a line.

@@ -1,5 +1,6 @@
 //! What the signs mean, in rows below a figure or a column beside a panel.
 
+use super::basin::SOFTER;
 use super::canvas::{Area, Canvas, Stroke, text_width};
 use super::colour::GREY;
 use kuva::render::render::TextAnchor;
@@ -80,7 +81,9 @@ fn draw(canvas: &mut Canvas, entry: &Entry, (x, y): (f64, f64)) {
         }
         Sign::Hatched(color) => {
             canvas.rect(area, color, 1.0);
-            canvas.hatch(area);
+            let (r, b) = (area.right(), area.bottom());
+            canvas.hatch(&[(x, area.y), (r, area.y), (r, b), (x, b)]);
+            canvas.rect(area, color, SOFTER);
             border(canvas);
         }
         Sign::Triangle(color) => triangle(canvas, (x + 0.5 * SWATCH, y - 4.0), color),
@@ -90,5 +93,5 @@ fn draw(canvas: &mut Canvas, entry: &Entry, (x, y): (f64, f64)) {
 
 /// A small triangle whose tip points up at `tip`.
 pub(super) fn triangle(canvas: &mut Canvas, (x, y): (f64, f64), color: &str) {
-    canvas.polygon(&[(x, y), (x - 4.0, y + 7.0), (x + 4.0, y + 7.0)], color);
+    canvas.polygon(&[(x, y), (x - 4.0, y + 7.0), (x + 4.0, y + 7.0)], color, 1.0);
 }

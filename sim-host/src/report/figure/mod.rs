@@ -10,6 +10,7 @@ mod outlines;
 mod panel;
 mod ride;
 pub(super) mod scale;
+mod time_scale;
 
 pub use basin::{BasinFigure, basin};
 pub use canvas::{Picture, PictureError};

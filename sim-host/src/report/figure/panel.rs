@@ -1,12 +1,14 @@
 //! A pair of axes.
 
-use super::canvas::{Area, Canvas, Stroke, text_width};
+use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{INK, STABLE};
 use super::scale::ticks;
 use kuva::render::render::TextAnchor;
 
 const TICK_TEXT: u32 = 12;
 const LABEL_TEXT: u32 = 13;
+/// From the labels at the left to the axis, the same in all panels.
+const LABEL_GAP: f64 = 50.0;
 
 /// A range of data over an area of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,16 +80,14 @@ impl Panel {
                 canvas.text((at, bottom + 17.0), TICK_TEXT, TextAnchor::Middle, &number);
             }
         }
-        let mut widest = 0.0_f64;
         for (v, number) in ticks(self.y, (height / 36.0) as usize) {
             let at = self.y(v);
             canvas.line(&[(x - 4.0, at), (x, at)], ink);
             canvas.text((x - 7.0, at + 4.0), TICK_TEXT, TextAnchor::End, &number);
-            widest = widest.max(text_width(&number, TICK_TEXT));
         }
         if let Some(label) = x_label {
             canvas.text((x + 0.5 * width, bottom + 36.0), LABEL_TEXT, TextAnchor::Middle, label);
         }
-        canvas.text_upwards((x - 16.0 - widest, y + 0.5 * height), LABEL_TEXT, y_label);
+        canvas.text_upwards((x - LABEL_GAP, y + 0.5 * height), LABEL_TEXT, y_label);
     }
 }

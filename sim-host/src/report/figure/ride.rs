@@ -20,12 +20,25 @@ pub struct RideFigure<'a> {
     pub outcome: Outcome,
 }
 
+impl RideFigure<'_> {
+    /// When it ends \[s\]: the last control period included.
+    pub(in crate::report) fn end(&self) -> f64 {
+        let end = match (self.outcome.time_to_fall_s(), self.trace) {
+            (Some(t), _) => t,
+            (None, [.., before, last]) => last.t + (last.t - before.t),
+            _ => 1.0,
+        };
+        // To a microsecond, or the last round number would be missed by a rounding error.
+        (end * 1e6).round().max(1.0) / 1e6
+    }
+}
+
 const LEFT: f64 = 70.0;
 const TOP: f64 = 56.0;
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 128.0;
 const GAP: f64 = 16.0;
-const LEGEND: f64 = 170.0;
+const LEGEND: f64 = 186.0;
 
 type Curve = (&'static str, fn(&TracePoint) -> f64);
 
@@ -46,8 +59,8 @@ const LIMITS: [(Limits, &str, &str); 3] = [
 /// Angles, rates, wheel speeds and torque over time, and when limits changed the torque.
 pub fn ride(figure: &RideFigure) -> Picture {
     let fall = figure.outcome.time_to_fall_s();
-    let end = figure.trace.iter().map(|p| p.t).chain(fall).filter(|t| t.is_finite()).fold(0.0, f64::max);
-    let x = (0.0, if end > 0.0 { end } else { 1.0 });
+    // A fall is not drawn on the frame.
+    let x = (0.0, figure.end() * if fall.is_some() { 1.03 } else { 1.0 });
     let rows = ROWS.len() as f64;
     let bottom = TOP + rows * HEIGHT + (rows - 1.0) * GAP;
     let mut canvas = Canvas::new(LEFT + WIDTH + LEGEND, bottom + 52.0);

@@ -42,9 +42,9 @@ pub(super) fn plot(basin: &Basin, title: &str, width: usize) -> String {
     }
     text += &x_axis(across, x, "forward speed [m/s]");
     let meanings = [
-        (UNDECIDED, "not fallen, not come back"),
-        (ISLAND, "beyond a first fall"),
-        (CAPPED, "no fall at all"),
+        (UNDECIDED, "outlasts the time limit, not come back"),
+        (ISLAND, "beyond a first fall, not fallen"),
+        (CAPPED, "no fall up to the largest rate tried"),
     ];
     let used = meanings.iter().filter(|(sign, _)| signs.contains(*sign) || capped.contains(*sign));
     for (sign, meaning) in used {
