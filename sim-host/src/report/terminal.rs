@@ -4,9 +4,8 @@ mod braille;
 mod columns;
 
 use super::figure::scale::nice;
-use super::figure::{BasinFigure, EigenFigure, RideFigure};
+use super::figure::{BasinFigure, Curve, EigenFigure, RideFigure};
 use crate::basin::Axis;
-use crate::ride::TracePoint;
 use braille::Chart;
 
 /// Fewer columns than this are not enough for a plot with its numbers.
@@ -29,7 +28,7 @@ pub fn basin(figure: &BasinFigure, width: usize) -> String {
 
 /// Roll, steer and torque over time.
 pub fn ride(figure: &RideFigure, width: usize) -> String {
-    let curves: [(&str, fn(&TracePoint) -> f64); 3] = [
+    let curves: [Curve; 3] = [
         ("roll [deg]", |p| p.roll.to_degrees()),
         ("steer [deg]", |p| p.steer.to_degrees()),
         ("torque [N m]", |p| p.torque),
@@ -61,7 +60,7 @@ pub fn eigen(figure: &EigenFigure, width: usize) -> String {
     let mut real = Chart::new(width, 12, x, (-10.0, 10.0));
     real.dots(points().map(|(v, e)| (v, e.re)));
     let mut imaginary =
-        Chart::new(width, 6, x, nice(points().map(|(_, e)| e.im.min(20.0).max(0.0)).chain([1.0]), 3));
+        Chart::new(width, 6, x, nice(points().map(|(_, e)| e.im.clamp(0.0, 20.0)).chain([1.0]), 3));
     imaginary.dots(points().filter(|(_, e)| e.im > 0.0).map(|(v, e)| (v, e.im)));
     let critical = figure.critical;
     let speeds = [("v_d", critical.v_d), ("v_w", critical.v_w), ("v_c", critical.v_c)].map(

@@ -39,13 +39,11 @@ pub fn basin(figure: &BasinFigure) -> Picture {
 pub(super) const AREA: Area = Area { x: 66.0, y: 44.0, width: 600.0, height: 380.0 };
 /// From the axes down to the legend.
 pub(super) const LEGEND_GAP: f64 = 50.0;
-/// How wide the legend may be.
-pub(super) const LEGEND_WIDTH: f64 = AREA.width + 80.0;
 /// How opaque the inside is laid over its black hatching.
 pub(super) const SOFTER: f64 = 0.5;
 /// The height of a figure with this legend.
 pub(super) fn height(legend: &[Entry]) -> f64 {
-    AREA.bottom() + LEGEND_GAP + rows_height(legend, LEGEND_WIDTH) + 12.0
+    AREA.bottom() + LEGEND_GAP + rows_height(legend, AREA.width) + 12.0
 }
 /// The label of the speeds.
 pub(super) const SPEED: &str = "Forward speed v [m/s]";
@@ -73,7 +71,7 @@ impl BasinFigure<'_> {
     /// The legend's entry of the self-stable range, if there is one.
     pub(super) fn stable_entry(&self) -> Option<Entry> {
         let (from, to) = self.self_stable?;
-        let label = format!("self-stable without control, {from:.2} to {to:.2} m/s");
+        let label = format!("uncontrolled: self-stable, {from:.2}–{to:.2} m/s");
         Some(entry(Sign::Fill(STABLE, 0.3), label))
     }
 }
@@ -152,10 +150,10 @@ fn inside_and_outside(figure: &BasinFigure, name: &str, basin: &Basin) -> Pictur
         }
         falls(canvas, &panel, basin);
         canvas.line(&pixels(&outline), Stroke::solid(INK, 1.6));
-        caps(canvas, &panel, basin);
     });
+    caps(&mut canvas, &panel, basin);
     panel.frame(&mut canvas, Some(SPEED), figure.rate_label());
-    rows(&mut canvas, &legend, (AREA.x, AREA.bottom() + LEGEND_GAP), LEGEND_WIDTH);
+    rows(&mut canvas, &legend, (AREA.x, AREA.bottom() + LEGEND_GAP), AREA.width);
     TimeScale::new(basin).bar(&mut canvas, AREA);
     canvas.finish()
 }

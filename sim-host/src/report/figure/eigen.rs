@@ -53,7 +53,7 @@ pub fn eigen(figure: &EigenFigure) -> Picture {
     let mut legend = vec![
         entry(Sign::Line(alone), "real eigenvalue"),
         entry(Sign::Line(pair), "complex pair"),
-        entry(Sign::Fill(STABLE, 0.3), "stable: no real part positive"),
+        entry(Sign::Fill(STABLE, 0.3), "stable straight ride"),
     ];
     legend.truncate(if stable.is_empty() { 2 } else { 3 });
     let legend_y = imaginary.area.bottom() + 50.0;
@@ -92,19 +92,16 @@ struct Label {
     speed: f64,
     index: &'static str,
     value: String,
+    /// From where to where it stands.
+    span: (f64, f64),
     /// Rows further up, away from labels nearby.
     row: usize,
 }
 
 impl Label {
-    fn width(&self) -> f64 {
-        text_width(&self.value, LABEL_TEXT) + text_width("v", LABEL_TEXT) + text_width("w", 10)
-    }
-
     fn draw(&self, canvas: &mut Canvas, panel: &Panel) {
         let y = panel.area.y - 7.0 - LABEL_LINE * self.row as f64;
-        let left = panel.x(self.speed) - 0.5 * self.width();
-        canvas.indexed((left, y), LABEL_TEXT, ("v", self.index), &self.value);
+        canvas.indexed((self.span.0, y), LABEL_TEXT, ("v", self.index), &self.value);
     }
 }
 
@@ -114,14 +111,15 @@ fn labels(critical: &CriticalSpeeds, x: (f64, f64)) -> Vec<Label> {
     let mut labels: Vec<Label> = Vec::new();
     let in_sight = speeds.into_iter().filter_map(|(index, v)| v.map(|v| (index, v)));
     for (index, speed) in in_sight.filter(|&(_, v)| x.0 <= v && v <= x.1) {
-        let mut label = Label { speed, index, value: format!(" = {speed:.2}"), row: 0 };
-        let near = |other: &Label| {
-            let pixels = (other.speed - speed).abs() / (x.1 - x.0) * WIDTH;
-            pixels < 0.5 * (other.width() + label.width()) + 6.0
-        };
-        let taken: Vec<usize> = labels.iter().filter(|o| near(o)).map(|o| o.row).collect();
-        label.row = (0..).find(|row| !taken.contains(row)).unwrap_or(0);
-        labels.push(label);
+        let value = format!(" = {speed:.2}");
+        let width = text_width(&format!("vw{value}"), LABEL_TEXT);
+        let middle = LEFT + (speed - x.0) / (x.1 - x.0) * WIDTH;
+        let left = (middle - 0.5 * width).clamp(LEFT, LEFT + WIDTH - width);
+        let span = (left, left + width);
+        let touches = |other: &&Label| other.span.0 < span.1 + 8.0 && span.0 < other.span.1 + 8.0;
+        let taken: Vec<usize> = labels.iter().filter(touches).map(|o| o.row).collect();
+        let row = (0..).find(|row| !taken.contains(row)).unwrap_or(0);
+        labels.push(Label { speed, index, value, span, row });
     }
     labels
 }

@@ -15,4 +15,8 @@ mod time_scale;
 pub use basin::{BasinFigure, basin};
 pub use canvas::{Picture, PictureError};
 pub use eigen::{EigenFigure, eigen};
+pub(super) use ride::Curve;
 pub use ride::{RideFigure, ride};
+
+#[cfg(test)]
+mod tests;

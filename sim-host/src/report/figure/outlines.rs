@@ -1,6 +1,6 @@
 //! The outlines of several basins.
 
-use super::basin::{AREA, BasinFigure, LEGEND_GAP, LEGEND_WIDTH, SPEED, caps, height};
+use super::basin::{AREA, BasinFigure, LEGEND_GAP, SPEED, caps, height};
 use super::canvas::{Canvas, Picture, Stroke};
 use super::colour::{INK, SERIES};
 use super::legend::{Sign, entry, rows};
@@ -14,7 +14,7 @@ pub(super) fn outlines(figure: &BasinFigure) -> Picture {
     let panel = figure.panel(columns().map(|c| c.speed), top);
     let stroke = |i: usize| {
         let color = SERIES[i % SERIES.len()];
-        if i % 2 == 0 { Stroke::solid(color, 2.2) } else { Stroke::dashed(color, 2.2) }
+        if i.is_multiple_of(2) { Stroke::solid(color, 2.2) } else { Stroke::dashed(color, 2.2) }
     };
     let mut legend: Vec<_> =
         figure.series.iter().enumerate().map(|(i, (name, _))| entry(Sign::Line(stroke(i)), *name)).collect();
@@ -22,7 +22,7 @@ pub(super) fn outlines(figure: &BasinFigure) -> Picture {
     if columns().any(|c| c.capped) {
         legend.push(entry(Sign::Triangle(INK), "no fall up to the largest rate tried"));
     }
-    let mut canvas = Canvas::new(AREA.right() + 92.0, height(&legend));
+    let mut canvas = Canvas::new(AREA.right() + 24.0, height(&legend));
     canvas.title((AREA.x, 26.0), AREA.width, figure.title);
     if let Some(range) = figure.self_stable {
         panel.shade_x(&mut canvas, range);
@@ -32,12 +32,10 @@ pub(super) fn outlines(figure: &BasinFigure) -> Picture {
             panel.line(&mut canvas, basin.columns.iter().map(|c| (c.speed, c.upper)), stroke(i));
         }
     }
-    canvas.clipped(panel.area, |canvas| {
-        for (_, basin) in figure.series {
-            caps(canvas, &panel, basin);
-        }
-    });
+    for (_, basin) in figure.series {
+        caps(&mut canvas, &panel, basin);
+    }
     panel.frame(&mut canvas, Some(SPEED), figure.rate_label());
-    rows(&mut canvas, &legend, (AREA.x, AREA.bottom() + LEGEND_GAP), LEGEND_WIDTH);
+    rows(&mut canvas, &legend, (AREA.x, AREA.bottom() + LEGEND_GAP), AREA.width);
     canvas.finish()
 }

@@ -8,7 +8,7 @@ use kuva::render::render::TextAnchor;
 const TICK_TEXT: u32 = 12;
 const LABEL_TEXT: u32 = 13;
 /// From the labels at the left to the axis, the same in all panels.
-const LABEL_GAP: f64 = 50.0;
+const LABEL_GAP: f64 = 46.0;
 
 /// A range of data over an area of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +80,7 @@ impl Panel {
                 canvas.text((at, bottom + 17.0), TICK_TEXT, TextAnchor::Middle, &number);
             }
         }
-        for (v, number) in ticks(self.y, (height / 36.0) as usize) {
+        for (v, number) in ticks(self.y, (height / 42.0) as usize) {
             let at = self.y(v);
             canvas.line(&[(x - 4.0, at), (x, at)], ink);
             canvas.text((x - 7.0, at + 4.0), TICK_TEXT, TextAnchor::End, &number);

@@ -40,7 +40,8 @@ const HEIGHT: f64 = 128.0;
 const GAP: f64 = 16.0;
 const LEGEND: f64 = 186.0;
 
-type Curve = (&'static str, fn(&TracePoint) -> f64);
+/// A curve's name and its values.
+pub(in crate::report) type Curve = (&'static str, fn(&TracePoint) -> f64);
 
 const ROWS: [(&str, &[Curve]); 4] = [
     ("Angle [deg]", &[("roll", |p| p.roll.to_degrees()), ("steer", |p| p.steer.to_degrees())]),
