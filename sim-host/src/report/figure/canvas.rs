@@ -1,43 +1,13 @@
 //! Drawing in pixels, y downwards: a scene of kuva's that becomes SVG or PNG.
 
 use super::colour::INK;
-use kuva::backend::svg::SvgBackend;
+use super::picture::Picture;
+use super::shape::{dashes, path, text_width};
 use kuva::plot::FillPattern;
 use kuva::render::color::Color;
-use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
-use kuva::{RasterBackend, render::render::TextSpan};
+use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, TextSpan};
 
-/// Pixels of a PNG per pixel of the SVG.
-const PNG_SCALE: f32 = 2.0;
 const FONTS: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
-
-/// A finished figure.
-#[derive(Debug)]
-pub struct Picture {
-    scene: Scene,
-}
-
-/// A picture that can't be turned into pixels.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("can't draw the picture: {0}")]
-pub struct PictureError(String);
-
-impl Picture {
-    /// As SVG text.
-    pub fn svg(&self) -> String {
-        // Without a view box, what embeds the picture could crop it but not scale it.
-        let view_box = format!("<svg viewBox=\"0 0 {} {}\" ", self.scene.width, self.scene.height);
-        SvgBackend::new().render_scene(&self.scene).replacen("<svg ", &view_box, 1)
-    }
-
-    /// As a PNG file's bytes, twice the SVG's size.
-    ///
-    /// # Errors
-    /// When the encoder fails.
-    pub fn png(&self) -> Result<Vec<u8>, PictureError> {
-        RasterBackend::new().with_scale(PNG_SCALE).render_scene(&self.scene).map_err(PictureError)
-    }
-}
 
 /// A rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -225,63 +195,9 @@ impl Canvas {
     }
 }
 
-/// About how wide a text is in the fonts used.
-pub(super) fn text_width(text: &str, size: u32) -> f64 {
-    let width = |c: char| match c {
-        ' ' | '.' | ',' | ':' | '(' | ')' | '[' | ']' | '/' | 'i' | 'j' | 'l' | 'f' | 't' | 'r' | '-' => 0.38,
-        'm' | 'w' | 'M' | 'W' => 0.95,
-        c if c.is_uppercase() => 0.7,
-        _ => 0.63,
-    };
-    f64::from(size) * text.chars().map(width).sum::<f64>()
-}
-
-/// A closed path as SVG writes it, to hundredths of a pixel.
-fn path(corners: &[(f64, f64)]) -> String {
-    let points: Vec<String> = corners.iter().map(|(x, y)| format!("{x:.2} {y:.2}")).collect();
-    format!("M {} Z", points.join(" L "))
-}
-
-/// Pieces of `on` pixels with gaps of `off` along a line.
-fn dashes(points: &[(f64, f64)], on: f64, off: f64) -> Vec<Vec<(f64, f64)>> {
-    let mut pieces = Vec::new();
-    let mut piece: Vec<(f64, f64)> = points.first().copied().into_iter().collect();
-    let (mut drawing, mut left) = (true, on);
-    for w in points.windows(2) {
-        let ((mut x, mut y), (x1, y1)) = (w[0], w[1]);
-        loop {
-            let rest = (x1 - x).hypot(y1 - y);
-            if rest <= left {
-                left -= rest;
-                if drawing {
-                    piece.push((x1, y1));
-                }
-                break;
-            }
-            (x, y) = (x + (x1 - x) * left / rest, y + (y1 - y) * left / rest);
-            if drawing {
-                piece.push((x, y));
-                pieces.push(std::mem::take(&mut piece));
-            } else {
-                piece = vec![(x, y)];
-            }
-            drawing = !drawing;
-            left = if drawing { on } else { off };
-        }
-    }
-    pieces.push(piece);
-    pieces
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn dashes_go_round_corners() {
-        let pieces = dashes(&[(0.0, 0.0), (5.0, 0.0), (5.0, 6.0)], 6.0, 2.0);
-        assert_eq!(pieces, [vec![(0.0, 0.0), (5.0, 0.0), (5.0, 1.0)], vec![(5.0, 3.0), (5.0, 6.0)]]);
-    }
 
     #[test]
     fn text_is_text_whatever_it_holds() {

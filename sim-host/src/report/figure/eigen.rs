@@ -1,11 +1,13 @@
 //! Eigenvalues over speed.
 
-use super::canvas::{Area, Canvas, Picture, Stroke, text_width};
+use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{GREY, INK, SERIES, STABLE};
 use super::legend::{Sign, entry, rows, rows_height};
 use super::modes::{curves, pieces, stable_ranges};
 use super::panel::Panel;
+use super::picture::Picture;
 use super::scale::nice;
+use super::shape::text_width;
 use crate::eigen::CriticalSpeeds;
 use nalgebra::Complex;
 

@@ -1,13 +1,15 @@
 //! What the signs mean, in rows below a figure or a column beside a panel.
 
-use super::basin::SOFTER;
-use super::canvas::{Area, Canvas, Stroke, text_width};
+use super::canvas::{Area, Canvas, Stroke};
 use super::colour::GREY;
+use super::shape::text_width;
 use kuva::render::render::TextAnchor;
 
 const TEXT: u32 = 12;
 const LINE: f64 = 19.0;
 const SWATCH: f64 = 24.0;
+/// How opaque a colour is laid over its black hatching.
+pub(super) const SOFTER: f64 = 0.5;
 
 /// A sign.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,9 +1,10 @@
 //! The outlines of several basins.
 
 use super::basin::{AREA, BasinFigure, LEGEND_GAP, SPEED, caps, height};
-use super::canvas::{Canvas, Picture, Stroke};
+use super::canvas::{Canvas, Stroke};
 use super::colour::{INK, SERIES};
 use super::legend::{Sign, entry, rows};
+use super::picture::Picture;
 use super::scale::nice;
 
 /// A line for every basin. Every second one is dashed, and these are drawn last: where two lines

@@ -80,7 +80,7 @@ impl Panel {
                 canvas.text((at, bottom + 17.0), TICK_TEXT, TextAnchor::Middle, &number);
             }
         }
-        for (v, number) in ticks(self.y, (height / 42.0) as usize) {
+        for (v, number) in ticks(self.y, (height / 50.0) as usize) {
             let at = self.y(v);
             canvas.line(&[(x - 4.0, at), (x, at)], ink);
             canvas.text((x - 7.0, at + 4.0), TICK_TEXT, TextAnchor::End, &number);

@@ -1,9 +1,10 @@
 //! A ride over time.
 
-use super::canvas::{Area, Canvas, Picture, Stroke};
+use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{FALL, GREY, SERIES};
 use super::legend::{Sign, column, entry};
 use super::panel::Panel;
+use super::picture::Picture;
 use super::scale::nice;
 use crate::ride::{Outcome, TracePoint};
 use control::Limits;

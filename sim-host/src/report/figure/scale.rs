@@ -4,7 +4,7 @@ use kuva::render::render_utils::{auto_nice_range, compute_tick_step, generate_ti
 
 /// Round numbers within a range, with their texts.
 pub(in crate::report) fn ticks(range: (f64, f64), wanted: usize) -> Vec<(f64, String)> {
-    let wanted = wanted.clamp(2, 10);
+    let wanted = wanted.clamp(3, 10);
     let step = compute_tick_step(range.0, range.1, wanted);
     let decimals = (1..6).find(|&d| (step * 10f64.powi(d)).fract() < 1e-9).unwrap_or(6) as usize;
     let decimals = if step.fract() == 0.0 { 0 } else { decimals };
