@@ -71,8 +71,17 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     bar.finish_and_clear();
     let result = result?;
     let complete = result.columns.len() == search.speeds.len();
+    let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
+    let label = format!("{}, law {}", setup.config.bicycle.name, setup.config.law.name);
+    let picture = BasinFigure {
+        title: &format!("Basin of attraction: {label}, {}", setup.config.assist),
+        series: &[("", &result)],
+        self_stable: uncontrolled.v_w.zip(uncontrolled.v_c),
+        axis: search.axis,
+        cap: search.max_rate,
+    };
     if outputs.talks() {
-        print(&summary(&result, &search, seconds))?;
+        print(&(terminal::basin(&picture, 80) + &summary(&result, &search, seconds)))?;
     }
     let resolved = ResolvedSearch {
         axis: axis_name(search.axis).into(),
@@ -81,21 +90,11 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         tolerance: search.tolerance,
     };
     let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, &result, seconds);
-    let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
-    let label = format!("{}, law {}", setup.config.bicycle.name, setup.config.law.name);
     outputs.write(
         &document,
         &(&document.config, &document.search),
         || table::table(&(&document.config, &document.search), &table::basin_rows(&result)),
-        || {
-            figure::basin(&BasinFigure {
-                series: &[(&label, &result)],
-                self_stable: uncontrolled.v_w.zip(uncontrolled.v_c),
-                axis: search.axis,
-                cap: search.max_rate,
-                title: &format!("Basin of attraction: {label}, {}", setup.config.assist),
-            })
-        },
+        || figure::basin(&picture),
     )?;
     if complete {
         Ok(Ended::Done)
@@ -118,9 +117,9 @@ fn progress(shown: bool, speeds: usize) -> ProgressBar {
     ProgressBar::new(speeds as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// The answer in words and as a plot.
+/// The answer in words.
 fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
-    let mut text = terminal::basin(basin, 80);
+    let mut text = String::new();
     let Work { rides, steps: _, right_hand_sides } = basin.work();
     let _ = writeln!(text, "area {:.3} rad m/s^2", basin.area());
     if let Some(mean) = basin.mean_height() {

@@ -55,8 +55,10 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let linear = Linear::new(&bicycle.parameters);
     let critical = critical_speeds(&linear, &law);
     let values: Vec<_> = args.speeds.iter().map(|&v| eigenvalues(&linear, &law, v)).collect();
+    let title = format!("Eigenvalues: {}, law {}", bicycle.name, args.law);
+    let picture = EigenFigure { title: &title, speeds: &args.speeds, eigenvalues: &values, critical };
     if outputs.talks() {
-        print(&(terminal::eigen(&args.speeds, &values, 80) + &summary(&critical)))?;
+        print(&(terminal::eigen(&picture, 80) + &summary(&critical)))?;
     }
     let CriticalSpeeds { v_d, v_w, v_c } = critical;
     let document = EigenDocument {
@@ -84,19 +86,11 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         };
         args.speeds.iter().zip(&values).map(row).collect::<Vec<_>>()
     };
-    let title = format!("Eigenvalues: {}, law {}", bicycle.name, args.law);
     outputs.write(
         &document,
         &(&document.bicycle, &document.law),
         || table::table(&(&document.bicycle, &document.law), &rows()),
-        || {
-            figure::eigen(&EigenFigure {
-                speeds: &args.speeds,
-                eigenvalues: &values,
-                critical,
-                title: &title,
-            })
-        },
+        || figure::eigen(&picture),
     )?;
     Ok(Ended::Done)
 }

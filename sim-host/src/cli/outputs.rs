@@ -78,7 +78,7 @@ impl Outputs {
         if self.svg.is_some() || self.png.is_some() {
             let (figure, caption) = (figure(), caption(config));
             if let Some(file) = self.svg {
-                file.finish(svg_with_caption(figure.svg(), &caption).as_bytes())?;
+                file.finish(svg_with_caption(&figure.svg(), &caption).as_bytes())?;
             }
             if let Some(file) = self.png {
                 file.finish(&png_with_caption(&figure.png()?, &caption))?;

@@ -57,14 +57,15 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let start =
         Start { speed_m_s: args.speed, steer_rate_rad_s: args.steer_rate, roll_rate_rad_s: args.roll_rate };
     let (ride, trace) = traced(&setup.conditions, start);
-    if outputs.talks() {
-        print(&(terminal::ride(&trace, 80) + &summary(&ride)))?;
-    }
-    let document = RideDocument::new(setup.config.clone(), &ride);
     let title = format!(
         "{}, law {}: {} m/s, steer rate {} rad/s, roll rate {} rad/s",
         setup.config.bicycle.name, setup.config.law.name, args.speed, args.steer_rate, args.roll_rate
     );
+    let picture = RideFigure { title: &title, trace: &trace, outcome: ride.outcome };
+    if outputs.talks() {
+        print(&(terminal::ride(&picture, 80) + &summary(&ride)))?;
+    }
+    let document = RideDocument::new(setup.config.clone(), &ride);
     if let Some(file) = frames_file {
         file.finish(&frames(&trace).iter().flat_map(encode_frame).collect::<Vec<u8>>())?;
     }
@@ -72,7 +73,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         &document,
         &document.config,
         || table::table(&document.config, &trace),
-        || figure::ride(&RideFigure { trace: &trace, outcome: ride.outcome, title: &title }),
+        || figure::ride(&picture),
     )?;
     Ok(Ended::Done)
 }

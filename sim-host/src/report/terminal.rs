@@ -1,13 +1,153 @@
-//! stub
-#![allow(missing_docs)]
-use crate::basin::*;
-use crate::ride::*;
-pub fn basin(_: &Basin, _: usize) -> String {
-    String::new()
+//! Plots for a terminal: plain Unicode without colour.
+
+mod braille;
+mod columns;
+
+use super::figure::scale::nice;
+use super::figure::{BasinFigure, Curve, EigenFigure, RideFigure};
+use crate::basin::Axis;
+use braille::Chart;
+
+/// Fewer columns than this are not enough for a plot with its numbers.
+const MIN_WIDTH: usize = 40;
+
+/// A basin, or several one below the other, as columns of blocks; every line ends with a newline.
+pub fn basin(figure: &BasinFigure, width: usize) -> String {
+    let width = width.max(MIN_WIDTH);
+    let rate = match figure.axis {
+        Axis::SteerRate => "initial steer rate [rad/s]",
+        Axis::RollRate => "initial roll rate [rad/s]",
+    };
+    let mut text = String::new();
+    for (name, basin) in figure.series {
+        let title = if name.is_empty() { rate.to_string() } else { format!("{name}: {rate}") };
+        text += &columns::plot(basin, &title, width);
+    }
+    text
 }
-pub fn ride(_: &[TracePoint], _: usize) -> String {
-    String::new()
+
+/// Roll, steer and torque over time.
+pub fn ride(figure: &RideFigure, width: usize) -> String {
+    let curves: [Curve; 3] = [
+        ("roll [deg]", |p| p.roll.to_degrees()),
+        ("steer [deg]", |p| p.steer.to_degrees()),
+        ("torque [N m]", |p| p.torque),
+    ];
+    let x = (0.0, figure.end());
+    let mut text = String::new();
+    for (i, (label, of)) in curves.into_iter().enumerate() {
+        let y = nice(figure.trace.iter().map(of), 3);
+        let mut chart = Chart::new(width.max(MIN_WIDTH), 6, x, y);
+        chart.line(figure.trace.iter().map(|p| (p.t, of(p))));
+        text += &chart.text(label, (i + 1 == curves.len()).then_some("time [s]"));
+    }
+    let ending = match figure.outcome.time_to_fall_s() {
+        Some(t) => format!("falls at {t:.3} s"),
+        None => figure.outcome.name().into(),
+    };
+    text + &ending + "\n"
 }
-pub fn eigen(_: &[f64], _: &[[nalgebra::Complex<f64>; 4]], _: usize) -> String {
-    String::new()
+
+/// Real parts of the eigenvalues over speed, imaginary parts below, and the critical speeds.
+pub fn eigen(figure: &EigenFigure, width: usize) -> String {
+    let width = width.max(MIN_WIDTH);
+    let x = match figure.speeds {
+        [first, .., last] if first < last => (*first, *last),
+        [only, ..] => (only - 0.5, only + 0.5),
+        [] => (0.0, 10.0),
+    };
+    let points = || figure.speeds.iter().zip(figure.eigenvalues).flat_map(|(&v, e)| e.map(|e| (v, e)));
+    let mut real = Chart::new(width, 12, x, (-10.0, 10.0));
+    real.dots(points().map(|(v, e)| (v, e.re)));
+    let mut imaginary =
+        Chart::new(width, 6, x, nice(points().map(|(_, e)| e.im.clamp(0.0, 20.0)).chain([1.0]), 3));
+    imaginary.dots(points().filter(|(_, e)| e.im > 0.0).map(|(v, e)| (v, e.im)));
+    let critical = figure.critical;
+    let speeds = [("v_d", critical.v_d), ("v_w", critical.v_w), ("v_c", critical.v_c)].map(
+        |(name, speed)| match speed {
+            Some(v) => format!("{name} = {v:.2} m/s"),
+            None => format!("no {name}"),
+        },
+    );
+    real.text("Re λ [1/s]", None)
+        + &imaginary.text("Im λ [rad/s]", Some("forward speed [m/s]"))
+        + &speeds.join(", ")
+        + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::basin::{Basin, Column, Island, ScanPoint, Work};
+    use crate::eigen::CriticalSpeeds;
+    use crate::ride::Outcome;
+    use nalgebra::Complex;
+
+    fn fits(text: &str, width: usize) {
+        assert!(text.ends_with('\n'));
+        for line in text.lines() {
+            assert!(line.chars().count() <= width, "{line}");
+        }
+    }
+
+    fn column(speed: f64, upper: f64, capped: bool) -> Column {
+        let outcome = |rate| match rate {
+            r if r > upper => Outcome::Fallen { time_s: 1.0 },
+            r if r < 2.0 => Outcome::Recovered,
+            _ => Outcome::Undecided,
+        };
+        let scan = (1..=8).map(f64::from).map(|rate| ScanPoint { rate, outcome: outcome(rate) }).collect();
+        let islands = if capped { vec![] } else { vec![Island { from: 6.0, to: 7.0 }] };
+        Column { speed, upper, capped, islands, scan, border: None, work: Work::default() }
+    }
+
+    fn basin_text(columns: Vec<Column>, width: usize) -> String {
+        let basin = Basin { columns };
+        let series = [("law", &basin)];
+        let figure =
+            BasinFigure { title: "", series: &series, self_stable: None, axis: Axis::SteerRate, cap: 8.0 };
+        super::basin(&figure, width)
+    }
+
+    #[test]
+    fn basins_of_any_shape_fit() {
+        for columns in [
+            vec![],
+            vec![column(4.0, 3.0, false)],
+            (0..5).map(|i| column(f64::from(i), 0.0, false)).collect(),
+            (0..101).map(|i| column(0.1 * f64::from(i), 8.0, true)).collect(),
+            (0..7).map(|i| column(f64::from(i), f64::from(i), false)).collect(),
+        ] {
+            for width in [0, 40, 80, 133] {
+                fits(&basin_text(columns.clone(), width), width.max(MIN_WIDTH));
+            }
+        }
+    }
+
+    #[test]
+    fn signs_tell_the_kinds_apart() {
+        let text = basin_text(vec![column(1.0, 5.0, false), column(2.0, 8.0, true)], 60);
+        for sign in ["law: initial steer rate [rad/s]", "forward speed [m/s]", "▒ ", "▓ ", "▲ "] {
+            assert!(text.contains(sign), "{sign}\n{text}");
+        }
+    }
+
+    #[test]
+    fn rides_and_eigenvalues_fit() {
+        let outcome = Outcome::Fallen { time_s: 1.25 };
+        let text = ride(&RideFigure { title: "", trace: &[], outcome }, 80);
+        fits(&text, 80);
+        assert!(text.contains("falls at 1.250 s"));
+        let eigenvalues = [[Complex::new(-3.0, 4.0); 4]; 11];
+        let speeds: Vec<f64> = (0..11).map(f64::from).collect();
+        let critical = CriticalSpeeds { v_d: None, v_w: Some(5.0), v_c: None };
+        for n in [0, 1, 11] {
+            let text = eigen(
+                &EigenFigure { title: "", speeds: &speeds[..n], eigenvalues: &eigenvalues[..n], critical },
+                70,
+            );
+            fits(&text, 70);
+            assert!(text.contains("v_w = 5.00 m/s"));
+        }
+    }
 }

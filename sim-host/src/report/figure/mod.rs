@@ -1,41 +1,25 @@
-//! stub
-#![allow(missing_docs)]
-use crate::basin::*;
-use crate::eigen::*;
-use crate::ride::*;
-pub struct Picture;
-impl Picture {
-    pub fn svg(&self) -> &str {
-        ""
-    }
-    pub fn png(&self) -> Result<Vec<u8>, String> {
-        Ok(vec![])
-    }
-}
-pub struct BasinFigure<'a> {
-    pub series: &'a [(&'a str, &'a Basin)],
-    pub self_stable: Option<(f64, f64)>,
-    pub axis: Axis,
-    pub cap: f64,
-    pub title: &'a str,
-}
-pub fn basin(_: &BasinFigure) -> Picture {
-    Picture
-}
-pub struct RideFigure<'a> {
-    pub trace: &'a [TracePoint],
-    pub outcome: Outcome,
-    pub title: &'a str,
-}
-pub fn ride(_: &RideFigure) -> Picture {
-    Picture
-}
-pub struct EigenFigure<'a> {
-    pub speeds: &'a [f64],
-    pub eigenvalues: &'a [[nalgebra::Complex<f64>; 4]],
-    pub critical: CriticalSpeeds,
-    pub title: &'a str,
-}
-pub fn eigen(_: &EigenFigure) -> Picture {
-    Picture
-}
+//! Figures of results: pure functions from data to a [`Picture`].
+
+mod basin;
+mod canvas;
+mod colour;
+mod eigen;
+mod inside;
+mod legend;
+mod modes;
+mod outlines;
+mod panel;
+mod picture;
+mod ride;
+pub(super) mod scale;
+mod shape;
+mod time_scale;
+
+pub use basin::{BasinFigure, basin};
+pub use eigen::{EigenFigure, eigen};
+pub use picture::{Picture, PictureError};
+pub(super) use ride::Curve;
+pub use ride::{RideFigure, ride};
+
+#[cfg(test)]
+mod tests;

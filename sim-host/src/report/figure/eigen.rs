@@ -1,0 +1,127 @@
+//! Eigenvalues over speed.
+
+use super::canvas::{Area, Canvas, Stroke};
+use super::colour::{GREY, INK, SERIES, STABLE};
+use super::legend::{Sign, entry, rows, rows_height};
+use super::modes::{curves, pieces, stable_ranges};
+use super::panel::Panel;
+use super::picture::Picture;
+use super::scale::nice;
+use super::shape::text_width;
+use crate::eigen::CriticalSpeeds;
+use nalgebra::Complex;
+
+/// What a figure of eigenvalues shows.
+#[derive(Clone, Copy, Debug)]
+pub struct EigenFigure<'a> {
+    /// Above the figure.
+    pub title: &'a str,
+    /// Forward speeds \[m/s\], rising.
+    pub speeds: &'a [f64],
+    /// The eigenvalues at each of them \[1/s\].
+    pub eigenvalues: &'a [[Complex<f64>; 4]],
+    /// Where the straight ride changes its nature.
+    pub critical: CriticalSpeeds,
+}
+
+const LEFT: f64 = 66.0;
+const WIDTH: f64 = 600.0;
+/// Parts beyond this are cut off \[1/s\]: the fast castering mode would flatten the rest.
+const REAL_LIMIT: f64 = 10.0;
+const IMAGINARY_LIMIT: f64 = 20.0;
+const LABEL_TEXT: u32 = 13;
+const LABEL_LINE: f64 = 16.0;
+
+/// Real parts above, imaginary parts below, with the critical speeds and the stable ranges.
+pub fn eigen(figure: &EigenFigure) -> Picture {
+    let x = match figure.speeds {
+        [first, .., last] if first < last => (*first, *last),
+        [only, ..] => (only - 0.5, only + 0.5),
+        [] => (0.0, 10.0),
+    };
+    let parts = |part: fn(&Complex<f64>) -> f64| figure.eigenvalues.iter().flatten().map(part);
+    let growth = parts(|e| e.re.clamp(-REAL_LIMIT, REAL_LIMIT)).chain([-1.0, 1.0]);
+    let turning = parts(|e| e.im.clamp(0.0, IMAGINARY_LIMIT)).chain([0.0, 1.0]);
+    let labels = labels(&figure.critical, x);
+    let label_rows = labels.iter().map(|l| l.row + 1).max().unwrap_or(0);
+    let top = 40.0 + LABEL_LINE * label_rows as f64;
+    let area = |y: f64, height: f64| Area { x: LEFT, y, width: WIDTH, height };
+    let real = Panel { area: area(top, 260.0), x, y: nice(growth, 8) };
+    let imaginary = Panel { area: area(real.area.bottom() + 16.0, 150.0), x, y: nice(turning, 5) };
+
+    let pair = Stroke::solid(SERIES[0], 2.0);
+    let alone = Stroke::solid(SERIES[1], 2.0);
+    let stable = stable_ranges(figure.speeds, figure.eigenvalues);
+    let mut legend = vec![
+        entry(Sign::Line(alone), "real eigenvalue"),
+        entry(Sign::Line(pair), "complex pair"),
+        entry(Sign::Fill(STABLE, 0.3), "stable straight ride"),
+    ];
+    legend.truncate(if stable.is_empty() { 2 } else { 3 });
+    let legend_y = imaginary.area.bottom() + 50.0;
+    let mut canvas = Canvas::new(LEFT + WIDTH + 24.0, legend_y + rows_height(&legend, WIDTH) + 12.0);
+    canvas.title((LEFT, 26.0), WIDTH, figure.title);
+    for panel in [&real, &imaginary] {
+        for &range in &stable {
+            panel.shade_x(&mut canvas, range);
+        }
+        for label in &labels {
+            panel.vertical(&mut canvas, label.speed, Stroke::dashed(INK, 0.9));
+        }
+    }
+    real.line(&mut canvas, [(x.0, 0.0), (x.1, 0.0)], Stroke::solid(GREY, 0.9));
+    for label in &labels {
+        label.draw(&mut canvas, &real);
+    }
+    for curve in curves(figure.eigenvalues) {
+        for (is_pair, range) in pieces(&curve) {
+            let along = |part: fn(&Complex<f64>) -> f64| range.clone().map(move |k| (k, part));
+            let data = |(k, part): (usize, fn(&Complex<f64>) -> f64)| (figure.speeds[k], part(&curve[k]));
+            real.line(&mut canvas, along(|e| e.re).map(data), if is_pair { pair } else { alone });
+            if is_pair && curve[range.clone()].iter().any(|e| e.im > 0.0) {
+                imaginary.line(&mut canvas, along(|e| e.im).map(data), pair);
+            }
+        }
+    }
+    real.frame(&mut canvas, None, "Re λ [1/s]");
+    imaginary.frame(&mut canvas, Some("Forward speed v [m/s]"), "Im λ [rad/s]");
+    rows(&mut canvas, &legend, (LEFT, legend_y), WIDTH);
+    canvas.finish()
+}
+
+/// A critical speed's name above the figure.
+struct Label {
+    speed: f64,
+    index: &'static str,
+    value: String,
+    /// From where to where it stands.
+    span: (f64, f64),
+    /// Rows further up, away from labels nearby.
+    row: usize,
+}
+
+impl Label {
+    fn draw(&self, canvas: &mut Canvas, panel: &Panel) {
+        let y = panel.area.y - 7.0 - LABEL_LINE * self.row as f64;
+        canvas.indexed((self.span.0, y), LABEL_TEXT, ("v", self.index), &self.value);
+    }
+}
+
+/// The labels of the speeds in sight, none over another.
+fn labels(critical: &CriticalSpeeds, x: (f64, f64)) -> Vec<Label> {
+    let speeds = [("d", critical.v_d), ("w", critical.v_w), ("c", critical.v_c)];
+    let mut labels: Vec<Label> = Vec::new();
+    let in_sight = speeds.into_iter().filter_map(|(index, v)| v.map(|v| (index, v)));
+    for (index, speed) in in_sight.filter(|&(_, v)| x.0 <= v && v <= x.1) {
+        let value = format!(" = {speed:.2}");
+        let width = text_width(&format!("vw{value}"), LABEL_TEXT);
+        let middle = LEFT + (speed - x.0) / (x.1 - x.0) * WIDTH;
+        let left = (middle - 0.5 * width).clamp(LEFT, LEFT + WIDTH - width);
+        let span = (left, left + width);
+        let touches = |other: &&Label| other.span.0 < span.1 + 8.0 && span.0 < other.span.1 + 8.0;
+        let taken: Vec<usize> = labels.iter().filter(touches).map(|o| o.row).collect();
+        let row = (0..).find(|row| !taken.contains(row)).unwrap_or(0);
+        labels.push(Label { speed, index, value, span, row });
+    }
+    labels
+}

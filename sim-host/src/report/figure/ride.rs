@@ -1,0 +1,163 @@
+//! A ride over time.
+
+use super::canvas::{Area, Canvas, Stroke};
+use super::colour::{FALL, GREY, SERIES};
+use super::legend::{Sign, column, entry};
+use super::panel::Panel;
+use super::picture::Picture;
+use super::scale::nice;
+use crate::ride::{Outcome, TracePoint};
+use control::Limits;
+use kuva::render::render::TextAnchor;
+
+/// What a figure of a ride shows.
+#[derive(Clone, Copy, Debug)]
+pub struct RideFigure<'a> {
+    /// Above the figure.
+    pub title: &'a str,
+    /// The ride.
+    pub trace: &'a [TracePoint],
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+impl RideFigure<'_> {
+    /// When it ends \[s\]: the last control period included.
+    pub(in crate::report) fn end(&self) -> f64 {
+        let end = match (self.outcome.time_to_fall_s(), self.trace) {
+            (Some(t), _) => t,
+            (None, [.., before, last]) => last.t + (last.t - before.t),
+            _ => 1.0,
+        };
+        // To a microsecond, or the last round number would be missed by a rounding error.
+        (end * 1e6).round().max(1.0) / 1e6
+    }
+}
+
+const LEFT: f64 = 70.0;
+const TOP: f64 = 56.0;
+const WIDTH: f64 = 560.0;
+const HEIGHT: f64 = 128.0;
+const GAP: f64 = 16.0;
+const LEGEND: f64 = 186.0;
+
+/// A curve's name and its values.
+pub(in crate::report) type Curve = (&'static str, fn(&TracePoint) -> f64);
+
+const ROWS: [(&str, &[Curve]); 4] = [
+    ("Angle [deg]", &[("roll", |p| p.roll.to_degrees()), ("steer", |p| p.steer.to_degrees())]),
+    ("Rate [rad/s]", &[("roll rate", |p| p.roll_rate), ("steer rate", |p| p.steer_rate)]),
+    ("Speed [m/s]", &[("front wheel", |p| p.front_speed), ("rear wheel", |p| p.rear_speed)]),
+    ("Torque [N m]", &[("steer torque", |p| p.torque)]),
+];
+
+/// Limits with their names and colours.
+const LIMITS: [(Limits, &str, &str); 3] = [
+    (Limits::TAPER, "low-speed taper", SERIES[3]),
+    (Limits::MAGNITUDE, "largest torque", SERIES[1]),
+    (Limits::RATE, "rate of change", SERIES[2]),
+];
+
+/// Angles, rates, wheel speeds and torque over time, and when limits changed the torque.
+pub fn ride(figure: &RideFigure) -> Picture {
+    let fall = figure.outcome.time_to_fall_s();
+    // A fall is not drawn on the frame.
+    let x = (0.0, figure.end() * if fall.is_some() { 1.03 } else { 1.0 });
+    let rows = ROWS.len() as f64;
+    let bottom = TOP + rows * HEIGHT + (rows - 1.0) * GAP;
+    let mut canvas = Canvas::new(LEFT + WIDTH + LEGEND, bottom + 52.0);
+    canvas.title((LEFT, 26.0), WIDTH + LEGEND - 12.0, figure.title);
+    for (i, (label, curves)) in ROWS.iter().enumerate() {
+        let area = Area { x: LEFT, y: TOP + i as f64 * (HEIGHT + GAP), width: WIDTH, height: HEIGHT };
+        let values = || curves.iter().flat_map(|(_, of)| figure.trace.iter().map(of));
+        let panel = Panel { area, x, y: padded(nice(values(), 4)) };
+        let mut legend = Vec::new();
+        let last = i + 1 == ROWS.len();
+        if last {
+            legend.extend(limits(&mut canvas, &panel, figure.trace));
+        }
+        if panel.y.0 < 0.0 && 0.0 < panel.y.1 {
+            panel.line(&mut canvas, [(x.0, 0.0), (x.1, 0.0)], Stroke::solid(GREY, 0.7));
+        }
+        for (k, (name, of)) in curves.iter().enumerate() {
+            let stroke = Stroke::solid(SERIES[k], 1.8);
+            panel.line(&mut canvas, thinned(figure.trace, *of, x.1 / WIDTH), stroke);
+            legend.insert(k, entry(Sign::Line(stroke), *name));
+        }
+        if let Some(t) = fall {
+            panel.vertical(&mut canvas, t, Stroke::dashed(FALL, 1.4));
+        }
+        panel.frame(&mut canvas, last.then_some("Time [s]"), label);
+        column(&mut canvas, &legend, (area.right() + 14.0, area.y));
+    }
+    let ending = match fall {
+        Some(t) => format!("falls at {t:.3} s"),
+        None => figure.outcome.name().into(),
+    };
+    canvas.text((LEFT + WIDTH, TOP - 8.0), 12, TextAnchor::End, &ending);
+    canvas.finish()
+}
+
+/// A range with some room above and below, for lines that lie on its ends.
+fn padded((low, high): (f64, f64)) -> (f64, f64) {
+    let room = 0.06 * (high - low);
+    (low - room, high + room)
+}
+
+/// Marks when limits were active along the lower edge; gives the legend of those that were.
+fn limits(canvas: &mut Canvas, panel: &Panel, trace: &[TracePoint]) -> Vec<super::legend::Entry> {
+    let mut legend = Vec::new();
+    let mut y = panel.area.bottom();
+    for (limit, name, color) in LIMITS {
+        let spans = active(trace, limit);
+        if spans.is_empty() {
+            continue;
+        }
+        y -= 5.0;
+        for (from, to) in spans {
+            let (left, right) = (panel.x(from), panel.x(to));
+            let area = Area { x: left, y, width: (right - left).max(0.75), height: 4.0 };
+            canvas.rect(area, color, 1.0);
+        }
+        legend.push(entry(Sign::Fill(color, 1.0), format!("limit: {name}")));
+    }
+    legend
+}
+
+/// When a limit was active \[s\].
+fn active(trace: &[TracePoint], limit: Limits) -> Vec<(f64, f64)> {
+    let mut spans: Vec<(f64, f64)> = Vec::new();
+    let mut open = false;
+    for (i, point) in trace.iter().enumerate() {
+        let on = Limits(point.limits).contains(limit);
+        // The torque of a control period is held until the next.
+        let until = trace.get(i + 1).map_or(point.t, |next| next.t);
+        match spans.last_mut() {
+            Some(span) if on && open => span.1 = until,
+            _ if on => spans.push((point.t, until)),
+            _ => {}
+        }
+        open = on;
+    }
+    spans
+}
+
+/// A curve's first, least, greatest and last value in every `bin` of time: no peak is lost, however
+/// long the ride.
+fn thinned(trace: &[TracePoint], of: fn(&TracePoint) -> f64, bin: f64) -> Vec<(f64, f64)> {
+    let data: Vec<_> = trace.iter().map(|p| (p.t, of(p))).filter(|(_, y)| y.is_finite()).collect();
+    let mut kept = Vec::new();
+    for part in data.chunk_by(|a, b| (a.0 / bin).floor() == (b.0 / bin).floor()) {
+        let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+        let mut of_part: Vec<(f64, f64)> =
+            [part.first(), part.iter().min_by(by_value), part.iter().max_by(by_value), part.last()]
+                .into_iter()
+                .flatten()
+                .copied()
+                .collect();
+        of_part.sort_by(|a, b| a.0.total_cmp(&b.0));
+        of_part.dedup();
+        kept.extend(of_part);
+    }
+    kept
+}
