@@ -13,8 +13,15 @@ fn relative(pairs: &[(f64, f64)]) -> f64 {
     pairs.iter().map(|p| (p.0 - p.1).abs()).fold(0.0, f64::max) / size
 }
 
-/// Relative differences of rates and of accelerations, and the pitch's.
-fn differences(draw: &Draw) -> Option<[f64; 3]> {
+/// What the two formulations differ by.
+struct Found {
+    /// Pitch \[rad\], dependent rates and all accelerations relative to their size.
+    off: [f64; 3],
+    /// [rad/s^2]
+    steer_acceleration: f64,
+}
+
+fn compare(draw: &Draw) -> Option<Found> {
     let s = newton_euler::solve(&draw.parameters, &draw.state, &draw.torques)?;
     let (state, motion) = flow::along(&draw.geometry, &draw.state, &draw.torques);
     let v = motion.actual;
@@ -31,29 +38,34 @@ fn differences(draw: &Draw) -> Option<[f64; 3]> {
         (axle[1].eps, s.rear_axle_acceleration.y),
         (axle[2].eps, s.rear_axle_acceleration.z),
     ];
-    Some([(draw.state.pitch - s.pitch).abs(), relative(&rates), relative(&accelerations)])
+    let off = [(draw.state.pitch - s.pitch).abs(), relative(&rates), relative(&accelerations)];
+    Some(Found { off, steer_acceleration: s.steer_acceleration })
 }
 
 #[test]
 fn a_thousand_random_states_of_all_bicycles_accelerate_alike() {
     let worst = Cell::new([0.0_f64; 3]);
-    let seen = Cell::new(0);
+    // How many, the steepest roll and steer, the largest steer acceleration.
+    let seen = Cell::new((0, [0.0_f64; 3]));
     runner(1000)
         .run(&situations(60_f64.to_radians()), |draw| {
-            let found = differences(&draw).expect("the front wheel reaches the ground");
+            let found = compare(&draw).expect("the front wheel reaches the ground");
             let w = worst.get();
-            worst.set([w[0].max(found[0]), w[1].max(found[1]), w[2].max(found[2])]);
-            seen.set(seen.get() + 1);
-            proptest::prop_assert!(found.iter().all(|d| *d < 1e-10), "{:?} {found:?}", draw.name);
+            worst.set([0, 1, 2].map(|i| w[i].max(found.off[i])));
+            let (count, most) = seen.get();
+            let here = [draw.state.roll, draw.state.steer, found.steer_acceleration];
+            seen.set((count + 1, [0, 1, 2].map(|i| most[i].max(here[i].abs()))));
+            proptest::prop_assert!(found.off.iter().all(|d| *d < 1e-11), "{}: {:?}", draw.name, found.off);
             Ok(())
         })
         .unwrap();
     let [pitch, rates, accelerations] = worst.get();
+    let (count, [roll, steer, steer_acceleration]) = seen.get();
+    println!("{count} states: pitch {pitch:.1e} rad, rates {rates:.1e}, accelerations {accelerations:.1e}");
     println!(
-        "{} states: pitch {pitch:.1e} rad, rates {rates:.1e}, accelerations {accelerations:.1e}",
-        seen.get()
+        "roll to {roll:.3}, steer to {steer:.3} rad, steer acceleration to {steer_acceleration:.0} rad/s^2"
     );
-    assert_eq!(seen.get(), 1000);
+    assert!(count == 1000 && roll > 1.0 && steer > 1.0 && steer_acceleration > 1000.0);
 }
 
 #[test]

@@ -3,9 +3,9 @@
 use differential_equations::prelude::*;
 use sim_host::bicycle::{Geometry, Parameters, State, Torques};
 use tests::newton_euler;
-use tests::rides::{knocked, ride, shipped};
+use tests::rides::{FREE, knocked, ride, shipped};
 
-/// Newton's and Euler's equations as a system of first order in [`entries`].
+/// Newton's and Euler's equations as a first-order system of [`entries`].
 struct Reference {
     parameters: Parameters,
     torques: Torques<f64>,
@@ -30,44 +30,61 @@ fn entries(s: &State<f64>) -> [f64; 5] {
     [s.roll, s.steer, s.roll_rate, s.steer_rate, s.rear_wheel_rate]
 }
 
-#[test]
-fn scan() {
-    for (name, v, q, t) in [
-        ("rigid_jason", 8.0, 5.0, 3.0),
-        ("rigid_jason", 7.0, 7.0, 3.0),
-        ("benchmark", 5.0, 4.0, 3.0),
-        ("benchmark", 5.0, 5.0, 3.0),
-        ("rigid_jason", 5.0, 3.0, 1.0),
-    ] {
-        let torques = Torques { roll: 0.0, steer: 0.0 };
-        let parameters = shipped(name).parameters;
-        let b = Geometry::new(&parameters);
-        let start = knocked(&b, v, q);
-        let reference = Reference { parameters, torques };
-        let solution = IVP::ode(&reference, 0.0, t, entries(&start))
-            .method(ExplicitRungeKutta::dop853().rtol(1e-13).atol(1e-13))
-            .solve()
-            .unwrap();
-        let end = *solution.y.last().unwrap();
-        println!(
-            "{name} {v} {q}: {} evals {} steps {:?}",
-            solution.evals.function,
-            solution.steps.total(),
-            end
-        );
-        let mut prev = 0.0;
-        for step in [8e-3, 4e-3, 2e-3, 1e-3, 5e-4] {
-            let mut m = [0.0_f64; 2];
-            let e = ride(&b, start, &torques, step, (t / step).round() as usize, |s| {
-                m = [m[0].max(s.roll.abs()), m[1].max(s.steer.abs())];
-            });
-            let off = entries(&e).iter().zip(&end).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            println!(
-                "  {step}: {off:.2e} order {:.3} {:.1?}",
-                (prev / off as f64).log2(),
-                m.map(f64::to_degrees)
-            );
-            prev = off;
-        }
+/// Differences of the end states of one ride in three steps, 2, 1 and 0.5 ms, from the reference.
+fn errors(name: &str, start: [f64; 2], torques: Torques<f64>, seconds: f64) -> [f64; 3] {
+    let parameters = shipped(name).parameters;
+    let b = Geometry::new(&parameters);
+    let start = knocked(&b, start[0], start[1]);
+    // The longest step keeps trial steps from states in which the wheels can't both stand.
+    let method = ExplicitRungeKutta::dop853().rtol(1e-13).atol(1e-13).h_max(0.02);
+    let reference = Reference { parameters, torques };
+    let solution = IVP::ode(&reference, 0.0, seconds, entries(&start)).method(method).solve().unwrap();
+    let wanted = solution.y.last().unwrap();
+
+    let [mut roll, mut steer] = [0.0_f64; 2];
+    let errors = [2e-3, 1e-3, 5e-4].map(|step| {
+        let end = ride(&b, start, &torques, step, (seconds / step).round() as usize, |s| {
+            (roll, steer) = (roll.max(s.roll.abs()), steer.max(s.steer.abs()));
+        });
+        entries(&end).iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    });
+    let angles = [roll, steer].map(f64::to_degrees);
+    println!("{name}: roll {:.1} deg, steer {:.1} deg", angles[0], angles[1]);
+    println!(
+        "    2, 1, 0.5 ms: {:.1e} {:.1e} {:.1e}, orders {:.3?}",
+        errors[0],
+        errors[1],
+        errors[2],
+        orders(errors)
+    );
+    errors
+}
+
+fn orders(e: [f64; 3]) -> [f64; 2] {
+    [(e[0] / e[1]).log2(), (e[1] / e[2]).log2()]
+}
+
+/// Also bounded below: the reference is exacter than the ride it judges.
+fn assert_fourth_order(errors: [f64; 3], at_1_ms: std::ops::Range<f64>) {
+    assert!(at_1_ms.contains(&errors[1]), "{errors:?}");
+    for order in orders(errors) {
+        assert!((3.8..4.2).contains(&order), "order {order}");
     }
+}
+
+#[test]
+fn a_hard_knock_that_is_recovered_from() {
+    assert_fourth_order(errors("rigid_jason", [8.0, 6.5], FREE, 3.0), 1e-10..5e-9);
+}
+
+#[test]
+fn a_hard_knock_of_the_benchmark_under_torques() {
+    let torques = Torques { roll: 8.0, steer: -0.3 };
+    assert_fourth_order(errors("benchmark", [5.0, 5.0], torques, 3.0), 1e-11..5e-9);
+}
+
+/// The handlebar turns in at 7 rad/s, the bicycle lies at 46 degrees.
+#[test]
+fn a_fall_with_the_front_wheel_folding_under() {
+    assert_fourth_order(errors("rigid_jason", [4.0, 3.0], FREE, 0.8), 1e-8..1e-6);
 }
