@@ -2,7 +2,9 @@
 
 use control::wire::{COMMAND_BYTES, decode_status, encode_command, encode_frame};
 use control::{Config, Plan, SensorFrame, State, Status, step};
+use sim_host::ride::{Start, frames, traced};
 use std::time::Duration;
+use tests::basins::{H, assisted};
 use xtask::{image, qemu, rides};
 
 /// Pseudo-random frames for each configuration.
@@ -47,22 +49,45 @@ fn assert_same_bits(name: &str, rides: &[(&Config, &[SensorFrame])]) {
     }
 }
 
-/// Situation: the border ride, its wheel pulses up to 19 ms old, and the same ride with fresh ones.
+/// Situation: rides of the simulator: the recorded one, and rides at other speeds and disturbances,
+/// some of which fall; and a made-up one whose wheel pulses are up to 19 ms old.
 /// Action: every law, the product, and sensors of different latency, on host and chip.
 /// Must hold: every bit of every command alike.
 #[test]
-fn a_recorded_ride_gives_the_same_bits_on_host_and_chip() {
+fn recorded_rides_give_the_same_bits_on_host_and_chip() {
     if !image::ready() {
         return;
     }
     let configurations = rides::configurations();
-    let recorded = rides::border_ride();
-    let fresh = rides::fresh(&recorded);
+    let swinging = rides::swinging_ride();
+    let mut recorded = vec![rides::border_ride(), rides::fresh(&swinging), swinging];
+    for (speed, steer_rate) in [(1.0, 3.0), (2.5, -8.0), (6.0, 7.9), (8.0, 7.7), (3.0, 12.0)] {
+        recorded.push(simulated(speed, steer_rate));
+    }
     let rides: Vec<_> = configurations
         .iter()
-        .flat_map(|(_, config)| [(config, recorded.as_slice()), (config, fresh.as_slice())])
+        .flat_map(|(_, config)| recorded.iter().map(move |ride| (config, ride.as_slice())))
         .collect();
     assert_same_bits("ride", &rides);
+}
+
+fn simulated(speed_m_s: f64, steer_rate_rad_s: f64) -> Vec<SensorFrame> {
+    let start = Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s: 0.0 };
+    frames(&traced(&assisted(H), start).1)
+}
+
+/// Situation: the ride in data/border_ride.frames. Action: simulate it again. Must hold: every bit
+/// of every frame alike, on any machine; and it is a border ride, hard on the assist and not a fall.
+#[test]
+fn the_recorded_border_ride_is_what_the_simulator_rides() {
+    let recorded = rides::border_ride();
+    let again = simulated(4.0, 8.42);
+    assert_eq!(recorded.len(), again.len());
+    for (tick, (a, b)) in recorded.iter().zip(&again).enumerate() {
+        assert_eq!(encode_frame(a), encode_frame(b), "tick {tick}");
+    }
+    let peak = recorded.iter().map(|f| f.roll_rate_rad_s.value.abs()).fold(0.0, f32::max);
+    assert!(recorded.len() == 6000 && (1.0..6.0).contains(&peak), "{} frames, {peak} rad/s", recorded.len());
 }
 
 /// Situation: sensors gone mad: any bit pattern, NaN of every kind, denormals, infinities, the

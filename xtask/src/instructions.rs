@@ -25,14 +25,8 @@ pub struct Count {
 pub fn counts() -> Result<Vec<Count>> {
     let configurations = rides::configurations();
     let ride = rides::border_ride();
-    let fresh = rides::fresh(&ride);
-    let rides: Vec<(&Config, &[SensorFrame])> = configurations
-        .iter()
-        .map(|(_, config)| {
-            let takes_old = config.input.speed_max_age_ticks > 0;
-            (config, if takes_old { ride.as_slice() } else { fresh.as_slice() })
-        })
-        .collect();
+    let rides: Vec<(&Config, &[SensorFrame])> =
+        configurations.iter().map(|(_, config)| (config, ride.as_slice())).collect();
     let directory = qemu::directory("instructions")?;
     std::fs::write(directory.join("rides.bin"), rides::encode(&rides)).map_err(|e| e.to_string())?;
     let outcome = qemu::run("qemu-instructions", &[], &directory, qemu::COUNTED, Duration::from_secs(300))?;

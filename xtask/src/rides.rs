@@ -2,9 +2,12 @@
 
 use control::history::{Latency, MAX_LATENCY_TICKS};
 use control::law::TABLE_POINTS;
-use control::wire::{encode_config, encode_frame};
+use control::wire::{decode_frame, encode_config, encode_frame};
 use control::{Config, Law, LawTable, Sample, SensorFrame, Wheel};
 use std::f32::consts::TAU;
+
+/// [`border_ride`], as recorded.
+const BORDER_RIDE: &[u8] = include_bytes!("../../data/border_ride.frames");
 
 /// A name and a configuration: every law without limits, the product, and sensors of different
 /// latency.
@@ -36,12 +39,21 @@ pub fn configurations() -> Vec<(&'static str, Config)> {
     ]
 }
 
-/// A ride at the border of what the assist can hold: 20 s at 1 kHz, the roll rate swings ever
-/// wider while the speed falls from 8 to 1 m/s, then dies away as the speed comes back. The wheel's
-/// pulses come every 20 ms.
+/// A ride at the border of what the assist can hold: law h, 4 m/s, handlebar knocked with 8.42 rad/s,
+/// 6 s at 1 kHz, every sample fresh. Recorded with `sim-host ride --speed 4 --steer-rate 8.42 --frames
+/// data/border_ride.frames`; a test records it again.
 ///
-/// Made up, for its shape; a recorded ride has the same type.
+/// # Panics
+/// Never: the file is a whole number of frames.
 pub fn border_ride() -> Vec<SensorFrame> {
+    let (frames, rest) = BORDER_RIDE.as_chunks();
+    assert!(rest.is_empty(), "data/border_ride.frames ends in half a frame");
+    frames.iter().map(decode_frame).collect()
+}
+
+/// A ride made up for its reach: 20 s at 1 kHz, the roll rate swings ever wider while the speed falls
+/// from 8 to 1 m/s, then dies away as the speed comes back. The wheel's pulses come every 20 ms.
+pub fn swinging_ride() -> Vec<SensorFrame> {
     let mut speed = 8.0;
     (0_u16..20_000)
         .map(|tick| {
