@@ -3,7 +3,7 @@
 //! Roll rate, steer rate and rear wheel rate fix the other speeds except where the front wheel comes
 //! to stand across the path (the rear wheel can't roll there) or beside the rear wheel (pitch alone
 //! moves there). The motion passes such places smoothly; this formulation follows it, at ten times
-//! the cost. `docs/bicycle.md`, section 6.
+//! the cost. `docs/bicycle.md`, section 9.
 
 use super::inertia::Inertia;
 use super::pitch::Attitude;
