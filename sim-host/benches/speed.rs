@@ -1,0 +1,104 @@
+//! How fast: `cargo bench -p sim-host`. Figures of one machine stand in docs/performance.md.
+
+use control::{Config, Law, Sample, SensorFrame};
+use divan::{Bencher, black_box};
+use sim_host::basin::{Axis, Search, basin};
+use sim_host::bicycle::{Geometry, Motion, State, Torques, catalogue, pitch_from_upright};
+use sim_host::integrate::rk4;
+use sim_host::ride::{Assist, Conditions, Start, rides};
+
+fn main() {
+    divan::main();
+}
+
+fn thesis_bicycle() -> Geometry {
+    Geometry::new(&catalogue::load("rigid_jason").expect("it ships").parameters)
+}
+
+fn flashed() -> Conditions {
+    let plan = Config::thesis(Law::H { cut: false }).plan().expect("in range");
+    Conditions::thesis(thesis_bicycle(), Assist::Firmware(Box::new(plan)))
+}
+
+/// States all over a ride, so that nothing can be computed once for all.
+fn states(b: &Geometry) -> Vec<State<f64>> {
+    (0..1000)
+        .map(|i| {
+            let t = f64::from(i) * 1e-2;
+            let (roll, steer) = (0.5 * (1.7 * t).sin(), 0.7 * (2.3 * t).sin());
+            State {
+                roll,
+                steer,
+                roll_rate: 2.0 * (3.1 * t).cos(),
+                steer_rate: 4.0 * (0.7 * t).cos(),
+                rear_wheel_rate: -10.0 - t,
+                pitch: pitch_from_upright(b, roll, steer).expect("both wheels reach the ground"),
+            }
+        })
+        .collect()
+}
+
+/// A thousand right-hand sides, one bicycle at a time.
+#[divan::bench]
+fn right_hand_side_scalar_x1000(bencher: Bencher) {
+    let b = thesis_bicycle();
+    let states = states(&b);
+    let torques = Torques { roll: 0.0, steer: 1.0 };
+    bencher.bench_local(|| {
+        for state in &states {
+            black_box(Motion::new(&b, black_box(state)).accelerations(&b, &torques));
+        }
+    });
+}
+
+/// A thousand Runge-Kutta steps in a row, one bicycle: four right-hand sides each, each waiting for
+/// the one before.
+#[divan::bench]
+fn runge_kutta_step_scalar_x1000(bencher: Bencher) {
+    let b = thesis_bicycle();
+    let start = State { steer_rate: 1.0, ..State::upright(&b, 7.0) };
+    bencher.bench_local(|| {
+        let mut state = black_box(start);
+        for _ in 0..1000 {
+            state = rk4(&b, &state, 1e-3, &mut Torques { roll: 0.0, steer: 0.0 });
+        }
+        black_box(state)
+    });
+}
+
+/// Eight rides of 6 s abreast under the control crate: 8 x 24000 right-hand sides.
+#[divan::bench]
+fn eight_rides_of_6_s(bencher: Bencher) {
+    let conditions = flashed();
+    let starts: Vec<Start> = (1..=8).map(|i| Axis::SteerRate.start(5.0, f64::from(i))).collect();
+    bencher.bench_local(|| rides(&conditions, black_box(&starts)));
+}
+
+/// A thousand control steps of the flashed law on the host.
+#[divan::bench]
+fn control_step_x1000(bencher: Bencher) {
+    let plan = Config::product().plan().expect("in range");
+    bencher.bench_local(|| {
+        let mut state = control::State::default();
+        for i in 0..1000_u16 {
+            let sample = |x: f32| Sample::fresh(black_box(x));
+            let roll_rate_rad_s = sample(f32::from(i) * 1e-3);
+            let frame = SensorFrame { roll_rate_rad_s, wheel_speed_m_s: sample(4.0) };
+            black_box(control::step(&plan, &mut state, &frame));
+        }
+    });
+}
+
+/// The whole basin: 0 to 10 m/s by 0.1, up to 30 rad/s, within 0.01 rad/s, all cores.
+#[divan::bench(sample_count = 3, sample_size = 1)]
+fn basin_of_h(bencher: Bencher) {
+    let conditions = flashed();
+    let search = Search {
+        speeds: (0..=100).map(|i| f64::from(i) / 10.0).collect(),
+        axis: Axis::SteerRate,
+        max_rate: 30.0,
+        scan_step: 0.25,
+        tolerance: 0.01,
+    };
+    bencher.bench_local(|| basin(&conditions, &search, |_| (), || false));
+}
