@@ -1,7 +1,7 @@
 //! `sim-host basin`.
 
 use super::conditions::ConditionArgs;
-use super::outputs::{OutputArgs, print};
+use super::outputs::{OutputArgs, Results, complain};
 use super::{Ended, Failure, interrupt, speeds};
 use crate::basin::{Axis, Basin, Search, Work, basin};
 use crate::bicycle::linear::Linear;
@@ -12,6 +12,7 @@ use crate::report::resolved::{ResolvedSearch, axis_name};
 use crate::report::{table, terminal};
 use control::Law;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -71,9 +72,6 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     bar.finish_and_clear();
     let result = result?;
     let complete = result.columns.len() == search.speeds.len();
-    if outputs.talks() {
-        print(&summary(&result, &search, seconds))?;
-    }
     let resolved = ResolvedSearch {
         axis: axis_name(search.axis).into(),
         max_rate: search.max_rate,
@@ -83,11 +81,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, &result, seconds);
     let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
     let label = format!("{}, law {}", setup.config.bicycle.name, setup.config.law.name);
-    outputs.write(
-        &document,
-        &(&document.config, &document.search),
-        || table::table(&(&document.config, &document.search), &table::basin_rows(&result)),
-        || {
+    let config = json!({"config": document.config, "search": document.search, "complete": complete});
+    outputs.write(Results {
+        document: &document,
+        config: &config,
+        summary: || summary(&result, &search, seconds),
+        table: || table::table(&config, &table::basin_rows(&result)),
+        figure: || {
             figure::basin(&BasinFigure {
                 series: &[(&label, &result)],
                 self_stable: uncontrolled.v_w.zip(uncontrolled.v_c),
@@ -96,15 +96,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
                 title: &format!("Basin of attraction: {label}, {}", setup.config.assist),
             })
         },
-    )?;
+    })?;
     if complete {
         Ok(Ended::Done)
     } else {
-        eprintln!(
-            "interrupted: {} of {} speeds are done and kept",
-            result.columns.len(),
-            search.speeds.len()
-        );
+        let (done, all) = (result.columns.len(), search.speeds.len());
+        complain(&format!("interrupted: {done} of {all} speeds are done and kept"));
         Ok(Ended::Interrupted)
     }
 }

@@ -1,7 +1,7 @@
 //! `sim-host eigen`.
 
-use super::outputs::{OutputArgs, print};
-use super::{Ended, Failure, law, speeds};
+use super::outputs::{OutputArgs, Results};
+use super::{Ended, Failure, law, speeds, warn};
 use crate::bicycle::catalogue;
 use crate::bicycle::linear::Linear;
 use crate::eigen::{CriticalSpeeds, critical_speeds, eigenvalues};
@@ -9,6 +9,7 @@ use crate::report::document::{EigenDocument, SCHEMA};
 use crate::report::figure::{self, EigenFigure};
 use crate::report::resolved::{ResolvedBicycle, ResolvedLaw, Tool};
 use crate::report::{table, terminal};
+use serde_json::json;
 use std::fmt::Write;
 
 const EXAMPLES: &str = "\
@@ -50,14 +51,12 @@ struct Row {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let bicycle = catalogue::load(&args.bicycle)?;
+    warn(&bicycle);
     let law = law::parse(&args.law)?;
     let outputs = args.outputs.open()?;
     let linear = Linear::new(&bicycle.parameters);
     let critical = critical_speeds(&linear, &law);
     let values: Vec<_> = args.speeds.iter().map(|&v| eigenvalues(&linear, &law, v)).collect();
-    if outputs.talks() {
-        print(&(terminal::eigen(&args.speeds, &values, 80) + &summary(&critical)))?;
-    }
     let CriticalSpeeds { v_d, v_w, v_c } = critical;
     let document = EigenDocument {
         schema: SCHEMA,
@@ -85,11 +84,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         args.speeds.iter().zip(&values).map(row).collect::<Vec<_>>()
     };
     let title = format!("Eigenvalues: {}, law {}", bicycle.name, args.law);
-    outputs.write(
-        &document,
-        &(&document.bicycle, &document.law),
-        || table::table(&(&document.bicycle, &document.law), &rows()),
-        || {
+    let config = json!({"bicycle": document.bicycle, "law": document.law});
+    outputs.write(Results {
+        document: &document,
+        config: &config,
+        summary: || terminal::eigen(&args.speeds, &values, 80) + &summary(&critical),
+        table: || table::table(&config, &rows()),
+        figure: || {
             figure::eigen(&EigenFigure {
                 speeds: &args.speeds,
                 eigenvalues: &values,
@@ -97,7 +98,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
                 title: &title,
             })
         },
-    )?;
+    })?;
     Ok(Ended::Done)
 }
 

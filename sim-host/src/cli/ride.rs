@@ -1,12 +1,13 @@
 //! `sim-host ride`.
 
 use super::conditions::ConditionArgs;
-use super::outputs::{OutputArgs, print};
+use super::outputs::{OutputArgs, Results};
 use super::{Ended, Failure};
 use crate::report::document::RideDocument;
 use crate::report::figure::{self, RideFigure};
 use crate::report::{table, terminal};
 use crate::ride::{Ride, Start, traced};
+use serde_json::json;
 use std::fmt::Write;
 
 const EXAMPLES: &str = "\
@@ -50,20 +51,19 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let start =
         Start { speed_m_s: args.speed, steer_rate_rad_s: args.steer_rate, roll_rate_rad_s: args.roll_rate };
     let (ride, trace) = traced(&setup.conditions, start);
-    if outputs.talks() {
-        print(&(terminal::ride(&trace, 80) + &summary(&ride)))?;
-    }
     let document = RideDocument::new(setup.config.clone(), &ride);
     let title = format!(
         "{}, law {}: {} m/s, steer rate {} rad/s, roll rate {} rad/s",
         setup.config.bicycle.name, setup.config.law.name, args.speed, args.steer_rate, args.roll_rate
     );
-    outputs.write(
-        &document,
-        &document.config,
-        || table::table(&document.config, &trace),
-        || figure::ride(&RideFigure { trace: &trace, outcome: ride.outcome, title: &title }),
-    )?;
+    let config = json!({"config": document.config, "start": document.start});
+    outputs.write(Results {
+        document: &document,
+        config: &config,
+        summary: || terminal::ride(&trace, 80) + &summary(&ride),
+        table: || table::table(&config, &trace),
+        figure: || figure::ride(&RideFigure { trace: &trace, outcome: ride.outcome, title: &title }),
+    })?;
     Ok(Ended::Done)
 }
 
