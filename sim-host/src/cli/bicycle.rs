@@ -13,6 +13,12 @@ use nalgebra::Matrix2;
 use std::fmt::Write;
 use std::path::PathBuf;
 
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  sim-host bicycle list
+  sim-host bicycle show --bicycle benchmark > my.toml
+  sim-host bicycle check --bicycle my.toml";
+
 const SHOW_HELP: &str = "\
 The answer is a file that --bicycle takes.
 
@@ -26,7 +32,8 @@ Examples:
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
-    /// The bicycles that ship
+    /// The bicycles that ship, with their weave and capsize speeds
+    #[command(after_help = "Example:\n  sim-host bicycle list")]
     List,
     /// One bicycle's parameters
     #[command(after_help = SHOW_HELP)]

@@ -54,9 +54,10 @@ enum Command {
     /// Eigenvalues of the linearised bicycle over speed, and its critical speeds.
     Eigen(eigen::Args),
     /// Bicycles: list, show, check, accelerations.
-    #[command(subcommand)]
+    #[command(subcommand, after_help = bicycle::EXAMPLES)]
     Bicycle(bicycle::Command),
     /// The JSON schema of a command's `--json` document.
+    #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
         #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check"])]

@@ -249,5 +249,7 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
         _ => return None,
     };
-    serde_json::to_value(schema).ok()
+    // The descriptions are the doc comments, whose brackets are escaped.
+    let text = serde_json::to_string(&schema).ok()?.replace(r"\\[", "[").replace(r"\\]", "]");
+    serde_json::from_str(&text).ok()
 }
