@@ -81,21 +81,22 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, &result, seconds);
     let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
     let label = format!("{}, law {}", setup.config.bicycle.name, setup.config.law.name);
+    let cut = if complete { "" } else { ", interrupted" };
+    let title = format!("Basin of attraction: {label}, {}{cut}", setup.config.assist);
+    let figure = BasinFigure {
+        series: &[(&label, &result)],
+        self_stable: uncontrolled.v_w.zip(uncontrolled.v_c),
+        axis: search.axis,
+        cap: search.max_rate,
+        title: &title,
+    };
     let config = json!({"config": document.config, "search": document.search, "complete": complete});
     outputs.write(Results {
         document: &document,
         config: &config,
-        summary: || summary(&result, &search, seconds),
+        summary: || terminal::basin(&result, 80) + &summary(&result, &search, seconds),
         table: || table::table(&config, &table::basin_rows(&result)),
-        figure: || {
-            figure::basin(&BasinFigure {
-                series: &[(&label, &result)],
-                self_stable: uncontrolled.v_w.zip(uncontrolled.v_c),
-                axis: search.axis,
-                cap: search.max_rate,
-                title: &format!("Basin of attraction: {label}, {}", setup.config.assist),
-            })
-        },
+        figure: || figure::basin(&figure),
     })?;
     if complete {
         Ok(Ended::Done)
@@ -115,9 +116,9 @@ fn progress(shown: bool, speeds: usize) -> ProgressBar {
     ProgressBar::new(speeds as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// The answer in words and as a plot.
+/// The answer in words.
 fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
-    let mut text = terminal::basin(basin, 80);
+    let mut text = String::new();
     let Work { rides, steps: _, right_hand_sides } = basin.work();
     let _ = writeln!(text, "area {:.3} rad m/s^2", basin.area());
     if let Some(mean) = basin.mean_height() {

@@ -84,20 +84,14 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         args.speeds.iter().zip(&values).map(row).collect::<Vec<_>>()
     };
     let title = format!("Eigenvalues: {}, law {}", bicycle.name, args.law);
+    let figure = EigenFigure { speeds: &args.speeds, eigenvalues: &values, critical, title: &title };
     let config = json!({"bicycle": document.bicycle, "law": document.law});
     outputs.write(Results {
         document: &document,
         config: &config,
         summary: || terminal::eigen(&args.speeds, &values, 80) + &summary(&critical),
         table: || table::table(&config, &rows()),
-        figure: || {
-            figure::eigen(&EigenFigure {
-                speeds: &args.speeds,
-                eigenvalues: &values,
-                critical,
-                title: &title,
-            })
-        },
+        figure: || figure::eigen(&figure),
     })?;
     Ok(Ended::Done)
 }

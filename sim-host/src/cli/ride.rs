@@ -56,13 +56,14 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         "{}, law {}: {} m/s, steer rate {} rad/s, roll rate {} rad/s",
         setup.config.bicycle.name, setup.config.law.name, args.speed, args.steer_rate, args.roll_rate
     );
+    let figure = RideFigure { trace: &trace, outcome: ride.outcome, title: &title };
     let config = json!({"config": document.config, "start": document.start});
     outputs.write(Results {
         document: &document,
         config: &config,
         summary: || terminal::ride(&trace, 80) + &summary(&ride),
         table: || table::table(&config, &trace),
-        figure: || figure::ride(&RideFigure { trace: &trace, outcome: ride.outcome, title: &title }),
+        figure: || figure::ride(&figure),
     })?;
     Ok(Ended::Done)
 }
