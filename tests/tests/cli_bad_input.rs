@@ -1,4 +1,5 @@
 //! What the program says to input it can't work with, and what it leaves alone.
+#![cfg(unix)]
 
 use tests::cli::{Bench, Run, bicycle_with, repository};
 

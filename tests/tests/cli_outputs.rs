@@ -1,4 +1,5 @@
 //! Files: what they carry, and that they are whole or not there.
+#![cfg(unix)]
 
 use serde_json::Value;
 use tests::cli::Bench;

@@ -129,19 +129,12 @@ fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
         .iter()
         .filter(|c| c.border.is_some_and(|r| r.outcome.name() == "undecided"))
         .map(|c| c.speed);
-    if let Some((low, high)) = span(undecided) {
-        let _ = writeln!(
-            text,
-            "undecided at the border at speeds between {low} and {high} m/s: not fallen in time, not come back"
-        );
+    if let Some(speeds) = span(undecided) {
+        let _ = writeln!(text, "undecided at the border at {speeds}: not fallen in time, not come back");
     }
     let capped = basin.columns.iter().filter(|c| c.capped).map(|c| c.speed);
-    if let Some((low, high)) = span(capped) {
-        let _ = writeln!(
-            text,
-            "nothing fell up to {} rad/s at speeds between {low} and {high} m/s",
-            search.max_rate
-        );
+    if let Some(speeds) = span(capped) {
+        let _ = writeln!(text, "nothing fell up to {} rad/s at {speeds}", search.max_rate);
     }
     for column in &basin.columns {
         for island in &column.islands {
@@ -161,6 +154,8 @@ fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
     text
 }
 
-fn span(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    values.fold(None, |s, v| Some(s.map_or((v, v), |(a, b): (f64, f64)| (a.min(v), b.max(v)))))
+/// From the least to the largest of some speeds, in words.
+fn span(speeds: impl Iterator<Item = f64> + Clone) -> Option<String> {
+    let (low, high) = (speeds.clone().reduce(f64::min)?, speeds.reduce(f64::max)?);
+    Some(if low == high { format!("{low} m/s") } else { format!("speeds between {low} and {high} m/s") })
 }
