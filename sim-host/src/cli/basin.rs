@@ -71,6 +71,10 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let seconds = begin.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let result = result?;
+    if result.columns.is_empty() {
+        complain("interrupted: no speed is done, nothing is written");
+        return Ok(Ended::Interrupted);
+    }
     let complete = result.columns.len() == search.speeds.len();
     let resolved = ResolvedSearch {
         axis: axis_name(search.axis).into(),
