@@ -7,5 +7,6 @@ pub mod cli;
 pub mod eigen;
 pub mod integrate;
 pub mod num;
+mod range;
 pub mod report;
 pub mod ride;

@@ -1,9 +1,11 @@
 //! What the flight cards in `tests/tests/` share; the cards themselves are the tests.
 
 pub mod basins;
+pub mod cli;
 pub mod derived;
 pub mod draws;
 pub mod flow;
+pub mod json_schema;
 pub mod linearised;
 pub mod newton_euler;
 pub mod published;

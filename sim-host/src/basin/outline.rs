@@ -79,7 +79,10 @@ impl Basin {
     /// Area between zero and `upper` by the trapezoidal rule \[rad/s m/s\]; the published areas are
     /// of this upper half. 0 for fewer than two speeds.
     pub fn area(&self) -> f64 {
-        self.columns.windows(2).map(|w| 0.5 * (w[0].upper + w[1].upper) * (w[1].speed - w[0].speed)).sum()
+        let strips =
+            self.columns.windows(2).map(|w| 0.5 * (w[0].upper + w[1].upper) * (w[1].speed - w[0].speed));
+        // The sum of nothing is minus zero.
+        strips.sum::<f64>() + 0.0
     }
 
     /// Mean of `upper` over the speeds \[rad/s\]; `None` without a column.

@@ -1,6 +1,7 @@
 //! The search: a scan over disturbances, then every border it crosses narrowed down.
 
 use super::{Basin, Column, Island, ScanPoint, Work};
+use crate::range::within;
 use crate::ride::{Conditions, ConditionsError, Ride, Start, rides};
 use rayon::prelude::*;
 
@@ -60,13 +61,7 @@ impl Search {
     /// # Errors
     /// Names the value and its range.
     pub fn check(&self) -> Result<(), SearchError> {
-        let within = |name: &str, value: f64, min: f64, max: f64| {
-            if value >= min && value <= max {
-                Ok(())
-            } else {
-                Err(SearchError(format!("{name} = {value} is outside {min} to {max}")))
-            }
-        };
+        let within = |name, value, min, max| within(name, value, min, max).map_err(SearchError);
         within("number of speeds", self.speeds.len() as f64, 1.0, 100_000.0)?;
         for &v in &self.speeds {
             within("speed (m/s)", v, 0.0, 30.0)?;

@@ -1,17 +1,19 @@
 //! `sim-host basin`.
 
 use super::conditions::ConditionArgs;
-use super::outputs::{OutputArgs, print};
+use super::outputs::{OutputArgs, Results, complain};
 use super::{Ended, Failure, interrupt, speeds};
-use crate::basin::{Axis, Basin, Search, Work, basin};
+use crate::basin::{Axis, Basin, Column, Search, Work, basin};
 use crate::bicycle::linear::Linear;
 use crate::eigen::critical_speeds;
 use crate::report::document::BasinDocument;
 use crate::report::figure::{self, BasinFigure};
 use crate::report::resolved::{ResolvedSearch, axis_name};
 use crate::report::{table, terminal};
+use crate::ride::Outcome;
 use control::Law;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -70,19 +72,11 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let seconds = begin.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let result = result?;
-    let complete = result.columns.len() == search.speeds.len();
-    let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
-    let label = format!("{}, law {}", setup.config.bicycle.name, setup.config.law.name);
-    let picture = BasinFigure {
-        title: &format!("Basin of attraction: {label}, {}", setup.config.assist),
-        series: &[("", &result)],
-        self_stable: uncontrolled.v_w.zip(uncontrolled.v_c),
-        axis: search.axis,
-        cap: search.max_rate,
-    };
-    if outputs.talks() {
-        print(&(terminal::basin(&picture, 80) + &summary(&result, &search, seconds)))?;
+    if result.columns.is_empty() {
+        complain("interrupted: no speed is done, nothing is written");
+        return Ok(Ended::Interrupted);
     }
+    let complete = result.columns.len() == search.speeds.len();
     let resolved = ResolvedSearch {
         axis: axis_name(search.axis).into(),
         max_rate: search.max_rate,
@@ -90,20 +84,30 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         tolerance: search.tolerance,
     };
     let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, &result, seconds);
-    outputs.write(
-        &document,
-        &(&document.config, &document.search),
-        || table::table(&(&document.config, &document.search), &table::basin_rows(&result)),
-        || figure::basin(&picture),
-    )?;
+    let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
+    let label = format!("{}, law {}", setup.config.bicycle.name, setup.config.law.name);
+    let cut = if complete { "" } else { ", interrupted" };
+    let title = format!("Basin of attraction: {label}, {}{cut}", setup.config.assist);
+    let figure = BasinFigure {
+        series: &[("", &result)],
+        self_stable: uncontrolled.v_w.zip(uncontrolled.v_c),
+        axis: search.axis,
+        cap: search.max_rate,
+        title: &title,
+    };
+    let config = json!({"config": document.config, "search": document.search, "complete": complete});
+    outputs.write(Results {
+        document: &document,
+        config: &config,
+        summary: || terminal::basin(&figure, 80) + &summary(&result, &search, seconds),
+        table: || table::table(&config, &table::basin_rows(&result)),
+        figure: || figure::basin(&figure),
+    })?;
     if complete {
         Ok(Ended::Done)
     } else {
-        eprintln!(
-            "interrupted: {} of {} speeds are done and kept",
-            result.columns.len(),
-            search.speeds.len()
-        );
+        let (done, all) = (result.columns.len(), search.speeds.len());
+        complain(&format!("interrupted: {done} of {all} speeds are done and kept"));
         Ok(Ended::Interrupted)
     }
 }
@@ -125,24 +129,13 @@ fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
     if let Some(mean) = basin.mean_height() {
         let _ = writeln!(text, "mean height {mean:.3} rad/s (borders within {} rad/s)", search.tolerance);
     }
-    let undecided = basin
-        .columns
-        .iter()
-        .filter(|c| c.border.is_some_and(|r| r.outcome.name() == "undecided"))
-        .map(|c| c.speed);
-    if let Some((low, high)) = span(undecided) {
-        let _ = writeln!(
-            text,
-            "undecided at the border at speeds between {low} and {high} m/s: not fallen in time, not come back"
-        );
+    let undecided = spans(basin, |c| c.border.is_some_and(|r| r.outcome == Outcome::Undecided));
+    if !undecided.is_empty() {
+        let _ = writeln!(text, "border undecided at {undecided} m/s: not fallen in time, not come back");
     }
-    let capped = basin.columns.iter().filter(|c| c.capped).map(|c| c.speed);
-    if let Some((low, high)) = span(capped) {
-        let _ = writeln!(
-            text,
-            "nothing fell up to {} rad/s at speeds between {low} and {high} m/s",
-            search.max_rate
-        );
+    let capped = spans(basin, |c| c.capped);
+    if !capped.is_empty() {
+        let _ = writeln!(text, "nothing fell up to {} rad/s at {capped} m/s", search.max_rate);
     }
     for column in &basin.columns {
         for island in &column.islands {
@@ -162,6 +155,13 @@ fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
     text
 }
 
-fn span(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    values.fold(None, |s, v| Some(s.map_or((v, v), |(a, b): (f64, f64)| (a.min(v), b.max(v)))))
+/// From the least to the largest of some speeds, in words.
+/// The speeds of the columns that are so, as ranges: "0.9 to 4.1, 7.3 to 10".
+fn spans(basin: &Basin, is: impl Fn(&Column) -> bool) -> String {
+    let runs = basin.columns.chunk_by(|a, b| is(a) == is(b)).filter(|run| is(&run[0]));
+    let text = |run: &[Column]| match run {
+        [one] => one.speed.to_string(),
+        _ => format!("{} to {}", run[0].speed, run[run.len() - 1].speed),
+    };
+    runs.map(text).collect::<Vec<_>>().join(", ")
 }

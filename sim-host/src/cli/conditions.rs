@@ -1,11 +1,11 @@
 //! The options that say who rides what under which conditions; `ride` and `basin` share them.
 
-use super::{Failure, law};
+use super::{Failure, law, warn};
 use crate::bicycle::{Geometry, catalogue};
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw};
 use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
 use clap::ValueEnum;
-use control::{Config, Law, Taper, Wheel};
+use control::{Config, Law, ShapeConfig, Taper, Wheel};
 
 /// Where defaults come from.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -92,7 +92,11 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
         None => (text.strip_suffix('s').ok_or_else(wrong)?, 1.0),
     };
     let value: f64 = number.trim().parse().map_err(|_| wrong())?;
-    if value.is_finite() && value >= 0.0 { Ok(value * scale) } else { Err(wrong()) }
+    if (0.0..=3600.0).contains(&(value * scale)) {
+        Ok(value * scale)
+    } else {
+        Err(format!("{text} is outside 0 s to 3600 s"))
+    }
 }
 
 /// Whole control periods in a delay.
@@ -114,6 +118,16 @@ fn whole_ticks(delay_s: f64, period_s: f64) -> Result<u16, String> {
     Ok(ticks.round() as u16)
 }
 
+/// The option that sets a parameter of the control crate.
+fn option_of(parameter: &str) -> Option<&'static str> {
+    match parameter {
+        "shape.max_torque_nm" => Some("--torque-limit"),
+        "shape.max_rate_nm_s" => Some("--rate-limit"),
+        "shape.taper.zero_m_s" | "shape.taper.full_m_s" => Some("--taper"),
+        _ => None,
+    }
+}
+
 /// What the options stand for.
 pub(super) struct Setup {
     pub(super) conditions: Conditions,
@@ -125,9 +139,7 @@ impl ConditionArgs {
     /// Loads and checks everything; warnings go to standard error.
     pub(super) fn setup(&self) -> Result<Setup, Failure> {
         let bicycle = catalogue::load(&self.bicycle)?;
-        for warning in &bicycle.warnings {
-            eprintln!("warning: {}: {warning}", bicycle.name);
-        }
+        warn(&bicycle);
         let base = match self.preset {
             Preset::Thesis => Config::thesis(Law::H { cut: false }),
             Preset::Product => Config::product(),
@@ -151,13 +163,15 @@ impl ConditionArgs {
         }
         let period_s = 1.0 / f64::from(config.rate_hz);
         let sensor_delay_ticks = whole_ticks(self.sensor_delay, period_s)?;
+        let limited = config.shape != ShapeConfig::default();
+        let plan = config.plan().map_err(|e| match option_of(e.name) {
+            Some(option) => format!("{option}: {e}"),
+            None => e.to_string(),
+        })?;
         let assist = match self.assist {
             _ if law == Law::None => Assist::None,
-            AssistKind::Firmware => Assist::Firmware(Box::new(config.plan()?)),
+            AssistKind::Firmware => Assist::Firmware(Box::new(plan)),
             AssistKind::Ideal => {
-                let shape = &config.shape;
-                let limited =
-                    shape.max_torque_nm.is_some() || shape.max_rate_nm_s.is_some() || shape.taper.is_some();
                 if limited || sensor_delay_ticks > 0 {
                     return Err(
                         "limits and sensor delay act on --assist firmware only; the ideal law has none"

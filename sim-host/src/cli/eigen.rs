@@ -1,7 +1,7 @@
 //! `sim-host eigen`.
 
-use super::outputs::{OutputArgs, print};
-use super::{Ended, Failure, law, speeds};
+use super::outputs::{OutputArgs, Results};
+use super::{Ended, Failure, law, speeds, warn};
 use crate::bicycle::catalogue;
 use crate::bicycle::linear::Linear;
 use crate::eigen::{CriticalSpeeds, critical_speeds, eigenvalues};
@@ -9,6 +9,7 @@ use crate::report::document::{EigenDocument, SCHEMA};
 use crate::report::figure::{self, EigenFigure};
 use crate::report::resolved::{ResolvedBicycle, ResolvedLaw, Tool};
 use crate::report::{table, terminal};
+use serde_json::json;
 use std::fmt::Write;
 
 const EXAMPLES: &str = "\
@@ -50,16 +51,12 @@ struct Row {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let bicycle = catalogue::load(&args.bicycle)?;
+    warn(&bicycle);
     let law = law::parse(&args.law)?;
     let outputs = args.outputs.open()?;
     let linear = Linear::new(&bicycle.parameters);
     let critical = critical_speeds(&linear, &law);
     let values: Vec<_> = args.speeds.iter().map(|&v| eigenvalues(&linear, &law, v)).collect();
-    let title = format!("Eigenvalues: {}, law {}", bicycle.name, args.law);
-    let picture = EigenFigure { title: &title, speeds: &args.speeds, eigenvalues: &values, critical };
-    if outputs.talks() {
-        print(&(terminal::eigen(&picture, 80) + &summary(&critical)))?;
-    }
     let CriticalSpeeds { v_d, v_w, v_c } = critical;
     let document = EigenDocument {
         schema: SCHEMA,
@@ -86,12 +83,16 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         };
         args.speeds.iter().zip(&values).map(row).collect::<Vec<_>>()
     };
-    outputs.write(
-        &document,
-        &(&document.bicycle, &document.law),
-        || table::table(&(&document.bicycle, &document.law), &rows()),
-        || figure::eigen(&picture),
-    )?;
+    let title = format!("Eigenvalues: {}, law {}", bicycle.name, args.law);
+    let figure = EigenFigure { speeds: &args.speeds, eigenvalues: &values, critical, title: &title };
+    let config = json!({"bicycle": document.bicycle, "law": document.law});
+    outputs.write(Results {
+        document: &document,
+        config: &config,
+        summary: || terminal::eigen(&figure, 80) + &summary(&critical),
+        table: || table::table(&config, &rows()),
+        figure: || figure::eigen(&figure),
+    })?;
     Ok(Ended::Done)
 }
 

@@ -1,5 +1,6 @@
 //! Ctrl-C: the first asks the work to stop and keep what is done, the second ends the program.
 
+use super::outputs::complain;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -14,7 +15,7 @@ pub(super) fn install() {
             if STOP.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
-            eprintln!("\ninterrupted: finishing the columns under way (again to quit at once)");
+            complain("\ninterrupted: finishing the columns under way (again to quit at once)");
         });
     });
 }

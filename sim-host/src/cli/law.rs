@@ -29,7 +29,9 @@ pub(super) fn parse(text: &str) -> Result<Law, String> {
         "cl1" => Law::Cl1,
         _ => match text.strip_prefix("cl2:") {
             Some(k) => Law::Cl2 {
-                k: k.parse().map_err(|_| format!("`{k}` in `{text}` is not a number; expected cl2:K"))?,
+                k: k.parse().map_err(|_| {
+                    format!("law `{text}`: `{k}` is not a number; expected cl2:K, K from 0.001 to 20")
+                })?,
             },
             None => table(text)?,
         },
@@ -52,6 +54,9 @@ fn table(path: &str) -> Result<Law, String> {
         ));
     }
     let points: Vec<(f32, f32)> = file.speed_m_s.into_iter().zip(file.gain_nm_s_rad).collect();
-    let table = LawTable::new(&points).map_err(|e| format!("law file {path}: {e} (speeds must rise)"))?;
+    let table = LawTable::new(&points).map_err(|e| {
+        let rising = if e.name.contains("speed") { " (speeds must rise)" } else { "" };
+        format!("law file {path}: {e}{rising}")
+    })?;
     Ok(Law::Table(table))
 }

@@ -1,5 +1,6 @@
 //! The command line, one file per subcommand.
 
+mod accel;
 mod basin;
 mod bicycle;
 mod conditions;
@@ -10,6 +11,7 @@ mod outputs;
 mod ride;
 mod speeds;
 
+use crate::bicycle::catalogue::Bicycle;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -52,9 +54,10 @@ enum Command {
     /// Eigenvalues of the linearised bicycle over speed, and its critical speeds.
     Eigen(eigen::Args),
     /// Bicycles: list, show, check, accelerations.
-    #[command(subcommand)]
+    #[command(subcommand, after_help = bicycle::EXAMPLES)]
     Bicycle(bicycle::Command),
     /// The JSON schema of a command's `--json` document.
+    #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
         #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check"])]
@@ -79,14 +82,22 @@ pub fn run() -> ExitCode {
         // A reader that has seen enough, like `head`, is no error.
         Err(e) if is_broken_pipe(&*e) => ExitCode::SUCCESS,
         Err(e) => {
-            eprintln!("error: {e}");
+            outputs::complain(&format!("error: {e}"));
             ExitCode::from(1)
         }
     }
 }
 
+/// Doubts about a bicycle, to standard error.
+fn warn(bicycle: &Bicycle) {
+    for warning in &bicycle.warnings {
+        outputs::complain(&format!("warning: {}: {warning}", bicycle.name));
+    }
+}
+
 fn is_broken_pipe(e: &(dyn std::error::Error + 'static)) -> bool {
-    e.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
+    let pipe = |e: &std::io::Error| e.kind() == std::io::ErrorKind::BrokenPipe;
+    std::iter::successors(Some(e), |e| e.source()).any(|e| e.downcast_ref().is_some_and(pipe))
 }
 
 fn schema(document: &str) -> Result<Ended, Failure> {

@@ -1,6 +1,6 @@
-//! Where results go: standard output and files, all opened before the work begins.
+//! Where results go: standard output and files, all tried before the work begins.
 
-use super::Failure;
+use super::{Failure, is_broken_pipe};
 use crate::report::figure::Picture;
 use crate::report::output::Output;
 use crate::report::picture::{caption, png_with_caption, svg_with_caption};
@@ -10,16 +10,16 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(super) struct OutputArgs {
-    /// Write JSON to FILE, or to standard output
+    /// Write JSON to FILE, or to standard output (also -)
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
     json: Option<PathBuf>,
-    /// Write a CSV table
+    /// Write a CSV table; - is standard output
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write a figure as SVG
+    /// Write a figure as SVG; - is standard output
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
-    /// Write a figure as PNG
+    /// Write a figure as PNG; - is standard output
     #[arg(long, value_name = "FILE")]
     png: Option<PathBuf>,
     /// No text, plot or progress bar
@@ -27,9 +27,8 @@ pub(super) struct OutputArgs {
     quiet: bool,
 }
 
-/// The opened outputs of one command.
+/// The tried outputs of one command.
 pub(super) struct Outputs {
-    json_to_stdout: bool,
     json: Option<Output>,
     csv: Option<Output>,
     svg: Option<Output>,
@@ -37,26 +36,46 @@ pub(super) struct Outputs {
     quiet: bool,
 }
 
+/// What there is to write; what nobody asked for is not made.
+pub(super) struct Results<D, C, S, T, F> {
+    /// The JSON document.
+    pub(super) document: D,
+    /// The full configuration, for tables and figures.
+    pub(super) config: C,
+    /// The answer in words and as a plot.
+    pub(super) summary: S,
+    /// The CSV table.
+    pub(super) table: T,
+    /// The figure.
+    pub(super) figure: F,
+}
+
 impl OutputArgs {
-    /// Opens every output asked for.
+    /// Tries every output asked for.
     pub(super) fn open(&self) -> Result<Outputs, Failure> {
         let open = |path: &Option<PathBuf>| path.as_deref().map(Output::create).transpose();
-        let to_stdout = self.json.as_deref() == Some(Path::new("-"));
-        Ok(Outputs {
-            json_to_stdout: to_stdout,
-            json: if to_stdout { None } else { open(&self.json)? },
+        let outputs = Outputs {
+            json: open(&self.json)?,
             csv: open(&self.csv)?,
             svg: open(&self.svg)?,
             png: open(&self.png)?,
             quiet: self.quiet,
-        })
+        };
+        let all = outputs.all();
+        for (i, (option, output)) in all.iter().enumerate() {
+            if let Some((other, _)) = all[..i].iter().find(|(_, earlier)| earlier.collides(output)) {
+                return Err(format!("{other} and {option} have the same place to write to").into());
+            }
+        }
+        Ok(outputs)
     }
 }
 
 impl Outputs {
-    /// Whether text and plots go to standard output.
-    pub(super) fn talks(&self) -> bool {
-        !self.quiet && !self.json_to_stdout
+    fn all(&self) -> Vec<(&'static str, &Output)> {
+        let named =
+            [("--json", &self.json), ("--csv", &self.csv), ("--svg", &self.svg), ("--png", &self.png)];
+        named.into_iter().filter_map(|(name, output)| output.as_ref().map(|o| (name, o))).collect()
     }
 
     /// Whether a progress bar may be shown.
@@ -64,40 +83,55 @@ impl Outputs {
         !self.quiet
     }
 
-    /// Writes everything that was asked for; `table` and `figure` are made only when needed.
-    pub(super) fn write(
-        self,
-        document: &impl Serialize,
-        config: &impl Serialize,
-        table: impl FnOnce() -> Result<Vec<u8>, csv::Error>,
-        figure: impl FnOnce() -> Picture,
-    ) -> Result<(), Failure> {
-        if let Some(file) = self.csv {
-            file.finish(&table()?)?;
+    /// Writes everything that was asked for, the text for people last. What can't be written costs
+    /// nothing else, and a reader of standard output that goes away, like `head`, no file.
+    pub(super) fn write<D, C, S, T, F>(&self, results: Results<D, C, S, T, F>) -> Result<(), Failure>
+    where
+        D: Serialize,
+        C: Serialize,
+        S: FnOnce() -> String,
+        T: FnOnce() -> Result<Vec<u8>, csv::Error>,
+        F: FnOnce() -> Picture,
+    {
+        let Results { document, config, summary, table, figure } = results;
+        let mut done = Vec::new();
+        if let Some(output) = &self.json {
+            done.push(write_json(output, &document));
+        }
+        if let Some(output) = &self.csv {
+            done.push(table().map_err(Failure::from).and_then(|table| Ok(output.finish(&table)?)));
         }
         if self.svg.is_some() || self.png.is_some() {
-            let (figure, caption) = (figure(), caption(config));
-            if let Some(file) = self.svg {
-                file.finish(svg_with_caption(&figure.svg(), &caption).as_bytes())?;
+            let (figure, caption) = (figure(), caption(&config));
+            if let Some(output) = &self.svg {
+                let svg = svg_with_caption(&figure.svg(), &caption);
+                done.push(output.finish(svg.as_bytes()).map_err(Failure::from));
             }
-            if let Some(file) = self.png {
-                file.finish(&png_with_caption(&figure.png()?, &caption))?;
-            }
-        }
-        if self.json_to_stdout || self.json.is_some() {
-            let text = serde_json::to_string_pretty(document)? + "\n";
-            match self.json {
-                Some(file) => file.finish(text.as_bytes())?,
-                None => print(&text)?,
+            if let Some(output) = &self.png {
+                let png = figure.png().map_err(Failure::from);
+                done.push(png.and_then(|png| Ok(output.finish(&png_with_caption(&png, &caption))?)));
             }
         }
-        Ok(())
+        if !self.quiet && !self.all().iter().any(|(_, output)| output.is_standard()) {
+            done.push(print(&summary()));
+        }
+        // A closed pipe is forgiven, so it comes last.
+        let failures = done.into_iter().filter_map(Result::err);
+        failures.min_by_key(|e| is_broken_pipe(&**e)).map_or(Ok(()), Err)
     }
 }
 
+/// A document as JSON.
+pub(super) fn write_json(output: &Output, document: &impl Serialize) -> Result<(), Failure> {
+    Ok(output.finish((serde_json::to_string_pretty(document)? + "\n").as_bytes())?)
+}
+
 /// Text to standard output; a closed pipe is an error of its own kind, not a panic.
-pub(super) fn print(text: &str) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes())?;
-    out.flush()
+pub(super) fn print(text: &str) -> Result<(), Failure> {
+    Ok(Output::create(Path::new("-"))?.finish(text.as_bytes())?)
+}
+
+/// A line to standard error; nobody may be there to read it, which is no reason to panic.
+pub(super) fn complain(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
 }

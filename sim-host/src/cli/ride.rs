@@ -1,14 +1,16 @@
 //! `sim-host ride`.
 
 use super::conditions::ConditionArgs;
-use super::outputs::{OutputArgs, print};
+use super::outputs::{OutputArgs, Results};
 use super::{Ended, Failure};
+use crate::range::within;
 use crate::report::document::RideDocument;
 use crate::report::figure::{self, RideFigure};
 use crate::report::output::Output;
 use crate::report::{table, terminal};
 use crate::ride::{Ride, Start, frames, traced};
 use control::wire::encode_frame;
+use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -33,21 +35,14 @@ pub(super) struct Args {
     /// Roll rate at the start, in rad/s, right positive
     #[arg(long, default_value_t = 0.0, value_name = "RAD/S", allow_negative_numbers = true)]
     roll_rate: f64,
+    #[command(flatten)]
+    outputs: OutputArgs,
     /// Write the sensor frames as the firmware got them, 12 bytes each, for replay on the chip
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
-    #[command(flatten)]
-    outputs: OutputArgs,
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let within = |name: &str, value: f64, low: f64, high: f64| {
-        if value >= low && value <= high {
-            Ok(())
-        } else {
-            Err(format!("{name} {value} is outside {low} to {high}"))
-        }
-    };
     within("--speed (m/s)", args.speed, 0.0, 30.0)?;
     within("--steer-rate (rad/s)", args.steer_rate, -100.0, 100.0)?;
     within("--roll-rate (rad/s)", args.roll_rate, -100.0, 100.0)?;
@@ -57,24 +52,23 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let start =
         Start { speed_m_s: args.speed, steer_rate_rad_s: args.steer_rate, roll_rate_rad_s: args.roll_rate };
     let (ride, trace) = traced(&setup.conditions, start);
+    let document = RideDocument::new(setup.config.clone(), &ride);
     let title = format!(
         "{}, law {}: {} m/s, steer rate {} rad/s, roll rate {} rad/s",
         setup.config.bicycle.name, setup.config.law.name, args.speed, args.steer_rate, args.roll_rate
     );
-    let picture = RideFigure { title: &title, trace: &trace, outcome: ride.outcome };
-    if outputs.talks() {
-        print(&(terminal::ride(&picture, 80) + &summary(&ride)))?;
-    }
-    let document = RideDocument::new(setup.config.clone(), &ride);
+    let figure = RideFigure { trace: &trace, outcome: ride.outcome, title: &title };
+    let config = json!({"config": document.config, "start": document.start});
     if let Some(file) = frames_file {
         file.finish(&frames(&trace).iter().flat_map(encode_frame).collect::<Vec<u8>>())?;
     }
-    outputs.write(
-        &document,
-        &document.config,
-        || table::table(&document.config, &trace),
-        || figure::ride(&picture),
-    )?;
+    outputs.write(Results {
+        document: &document,
+        config: &config,
+        summary: || terminal::ride(&figure, 80) + &summary(&ride),
+        table: || table::table(&config, &trace),
+        figure: || figure::ride(&figure),
+    })?;
     Ok(Ended::Done)
 }
 

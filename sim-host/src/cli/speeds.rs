@@ -9,11 +9,12 @@ pub(super) fn parse(text: &str) -> Result<Vec<f64>, String> {
     };
     let parts: Vec<&str> = text.split(':').collect();
     let speeds = match parts[..] {
-        [one] => vec![number(one)?],
+        // Plus zero, so that -0 is no speed of its own.
+        [one] => vec![number(one)? + 0.0],
         [from, to, step] => {
             let (from, to, step) = (number(from)?, number(to)?, number(step)?);
-            if step <= 0.0 || to < from {
-                return Err(format!("the range {text} must rise, with a step above zero"));
+            if step < 1e-6 || to < from {
+                return Err(format!("the range {text} must rise, in steps of at least 0.000001 m/s"));
             }
             let n = ((to - from) / step + 1e-9).floor();
             if n > 1e5 {

@@ -4,6 +4,7 @@ use super::resolved::{ResolvedConfig, ResolvedSearch, Tool};
 use crate::basin::{Basin, ScanPoint, Work};
 use crate::ride::{Effort, FinalState, Ride, Start};
 use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
 use serde::Serialize;
 
 /// The version of these documents.
@@ -14,6 +15,7 @@ pub const SCHEMA: u32 = 1;
 #[allow(non_snake_case, reason = "the symbols of the paper")]
 pub struct CheckDocument {
     /// 1.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: u32,
     /// The program.
     pub tool: Tool,
@@ -39,6 +41,7 @@ pub struct CheckDocument {
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct EigenDocument {
     /// 1.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: u32,
     /// The program.
     pub tool: Tool,
@@ -62,6 +65,7 @@ pub struct EigenDocument {
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct RideDocument {
     /// 1.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: u32,
     /// The program.
     pub tool: Tool,
@@ -70,6 +74,7 @@ pub struct RideDocument {
     /// The initial state.
     pub start: Start,
     /// "fallen", "recovered" or "undecided".
+    #[schemars(extend("enum" = ["fallen", "recovered", "undecided"]))]
     pub outcome: &'static str,
     /// When it fell \[s\]; null if it did not.
     pub time_to_fall_s: Option<f64>,
@@ -122,6 +127,7 @@ pub struct Border {
     /// Speed \[m/s\].
     pub speed: f64,
     /// "recovered" or "undecided".
+    #[schemars(extend("enum" = ["recovered", "undecided"]))]
     pub outcome: &'static str,
     /// What it took.
     pub effort: Effort,
@@ -142,6 +148,7 @@ pub struct Map {
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct BasinDocument {
     /// 1.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: u32,
     /// The program.
     pub tool: Tool,
@@ -233,12 +240,16 @@ impl BasinDocument {
 
 /// The JSON schema of a document by its command's name; `None` for another name.
 pub fn schema(command: &str) -> Option<serde_json::Value> {
+    // Of what is written: a value that can be null is there all the same.
+    let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
     let schema = match command {
-        "basin" => schemars::schema_for!(BasinDocument),
-        "ride" => schemars::schema_for!(RideDocument),
-        "eigen" => schemars::schema_for!(EigenDocument),
-        "bicycle-check" => schemars::schema_for!(CheckDocument),
+        "basin" => generator.into_root_schema_for::<BasinDocument>(),
+        "ride" => generator.into_root_schema_for::<RideDocument>(),
+        "eigen" => generator.into_root_schema_for::<EigenDocument>(),
+        "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
         _ => return None,
     };
-    serde_json::to_value(schema).ok()
+    // The descriptions are the doc comments, whose brackets are escaped.
+    let text = serde_json::to_string(&schema).ok()?.replace(r"\\[", "[").replace(r"\\]", "]");
+    serde_json::from_str(&text).ok()
 }

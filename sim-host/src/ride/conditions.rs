@@ -2,6 +2,7 @@
 
 use super::Assist;
 use crate::bicycle::Geometry;
+use crate::range::within;
 
 /// The speed that schedules the assist's gain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
@@ -80,13 +81,7 @@ impl Conditions {
     /// # Errors
     /// Names the value and its range.
     pub fn check(&self) -> Result<(), ConditionsError> {
-        let within = |name: &str, value: f64, min: f64, max: f64| {
-            if value >= min && value <= max {
-                Ok(())
-            } else {
-                Err(ConditionsError(format!("{name} = {value} is outside {min} to {max}")))
-            }
-        };
+        let within = |name, value, min, max| within(name, value, min, max).map_err(ConditionsError);
         within("time limit (s)", self.time_limit_s, self.step_s, 3600.0)?;
         within("step (s)", self.step_s, 1e-5, 1e-2)?;
         within("recovered-below fraction", self.recovered_below, 1e-6, 1.0)?;

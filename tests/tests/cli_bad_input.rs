@@ -1,0 +1,227 @@
+//! What the program says to input it can't work with, and what it leaves alone.
+#![cfg(unix)]
+
+use tests::cli::{Bench, Run, bicycle_with, repository};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+
+/// Runs a command that must be refused, with an older file where its document would go; that file
+/// must survive and no other appear.
+fn refused(bench: &Bench, line: &str, named: &[&str]) -> Run {
+    bench.write("old.json", "older result");
+    let before = bench.files();
+    let run = bench.run(&format!("{line} --json old.json"));
+    run.refused_naming(named);
+    assert_eq!(bench.files(), before, "{line}");
+    assert_eq!(bench.read("old.json"), "older result", "{line}");
+    run
+}
+
+/// Situation: parameter files with one thing wrong each.
+/// Action: use them.
+/// Must hold: refused, naming file, key, value and range; nothing written.
+#[test]
+fn wrong_parameter_files() {
+    let bench = Bench::new(PROGRAM);
+    for (key, line, named) in [
+        ("mB", "mB = -5", &["`mB` = -5", "0.001 to 1000 kg"][..]),
+        ("mB", "mB = nan", &["`mB` = NaN", "0.001 to 1000 kg"]),
+        ("mB", "mB = inf", &["`mB` = inf", "0.001 to 1000 kg"]),
+        ("mB", "mB = '85'", &["`mB`", "number", "\"85\""]),
+        ("mB", "", &["`mB` is missing", "0.001 to 1000 kg"]),
+        ("mB", "mB = ", &["not valid TOML", "line 27"]),
+        ("mB", "mb = 85.0", &["unknown key `mb`", "mB"]),
+        ("w", "w = 0", &["`w` = 0", "0.1 to 5 m"]),
+        ("zB", "zB = 0.9", &["`zB` = 0.9", "-5 to -0.001 m"]),
+        ("lam", "lam = 18", &["`lam` = 18", "-1 to 1.4 rad"]),
+        ("IBxz", "IBxz = 50", &["`IBxz` = 50", "`IBxx` = 9.2", "`IBzz` = 2.8", "below 5.075"]),
+        ("IFxx", "IFxx = -0.1", &["`IFxx` = -0.1", "kg m^2"]),
+    ] {
+        bench.write("my.toml", bicycle_with(key, line));
+        for command in ["bicycle check", "eigen --speeds 4", "ride --speed 4", "basin --speeds 4"] {
+            let named: Vec<&str> = named.iter().copied().chain(["my.toml"]).collect();
+            refused(&bench, &format!("{command} --bicycle my.toml"), &named);
+        }
+    }
+    bench.write("bytes.toml", [0xff, 0x00, 0xfe]);
+    refused(&bench, "eigen --bicycle bytes.toml", &["bytes.toml", "UTF-8"]);
+    bench.write("empty.toml", "");
+    refused(&bench, "eigen --bicycle empty.toml", &["empty.toml", "`w` is missing"]);
+}
+
+/// Situation: a bicycle whose inertias no rigid body has.
+/// Action: check it, and ride it.
+/// Must hold: a warning with the reason and the values, in the document too; it still runs.
+#[test]
+fn inertias_of_no_rigid_body_are_warned_of() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("my.toml", bicycle_with("IByy", "IByy = 50.0"));
+    for command in ["bicycle check", "eigen --speeds 4", "ride --speed 4", "basin --speeds 4 --max-rate 1"] {
+        let run = bench.run(&format!("{command} --bicycle my.toml"));
+        assert_eq!(run.code, Some(0));
+        for word in ["warning: my.toml: IB", "50.0", "triangle inequality"] {
+            assert!(run.stderr.contains(word), "{command}: {}", run.stderr);
+        }
+    }
+    let document = bench.json("bicycle check --bicycle my.toml");
+    assert!(document["bicycle"]["warnings"][0].as_str().unwrap().contains("triangle inequality"));
+}
+
+/// Situation: bicycles that are not there, and collections without a choice.
+/// Action: use them.
+/// Must hold: refused, with the names there are.
+#[test]
+fn unknown_bicycles() {
+    let bench = Bench::new(PROGRAM);
+    refused(&bench, "eigen --bicycle unicycle", &["`unicycle`", "rigid_jason", "benchmark"]);
+    refused(&bench, "eigen --bicycle missing.toml#x", &["missing.toml"]);
+    refused(&bench, "eigen --bicycle .", &["."]);
+    let collection = repository("data/bicycles.toml").display().to_string();
+    refused(&bench, &format!("eigen --bicycle {collection}"), &[&collection, "#NAME", "benchmark"]);
+    refused(&bench, &format!("eigen --bicycle {collection}#unicycle"), &["#NAME", "benchmark"]);
+    bench.write("my.toml", bicycle_with("w", "w = 1.1"));
+    refused(&bench, "eigen --bicycle my.toml#city", &["my.toml", "city"]);
+}
+
+/// Situation: laws that are not there or wrong.
+/// Action: use them.
+/// Must hold: refused, naming law or file, key, value and range.
+#[test]
+fn wrong_laws() {
+    let bench = Bench::new(PROGRAM);
+    refused(&bench, "eigen --law H", &["`H`", "h-cut", "cl2:K"]);
+    refused(&bench, "eigen --law cl2:", &["`cl2:`", "0.001 to 20"]);
+    refused(&bench, "eigen --law cl2:-1", &["`cl2:-1`", "-1", "0.001 to 20"]);
+    refused(&bench, "eigen --law cl2:nan", &["`cl2:nan`", "NaN", "0.001 to 20"]);
+    for (text, named) in [
+        ("", &["speed_m_s"][..]),
+        ("speed_m_s = [0]", &["gain_nm_s_rad"]),
+        ("speed_m_s = [0, 1]\ngain_nm_s_rad = [1]", &["speed_m_s", "2", "gain_nm_s_rad", "1"]),
+        ("speed_m_s = []\ngain_nm_s_rad = []", &["points", "1 to 32"]),
+        ("speed_m_s = [5, 0]\ngain_nm_s_rad = [1, 1]", &["speed_m_s = 0", "5.001 to 30", "rise"]),
+        ("speed_m_s = [0, 99]\ngain_nm_s_rad = [1, 1]", &["speed_m_s = 99", "to 30"]),
+        ("speed_m_s = [0]\ngain_nm_s_rad = [1e9]", &["gain_nm_s_rad = 1000000000", "-200 to 200"]),
+        ("speed_m_s = [nan]\ngain_nm_s_rad = [1]", &["speed_m_s = NaN"]),
+        ("speed_m_s = ['a']\ngain_nm_s_rad = [1]", &["line 1", "\"a\""]),
+        ("speed_m_s = [0]\ngain_nm_s_rad = [1]\ngains = 3", &["`gains`", "gain_nm_s_rad"]),
+    ] {
+        bench.write("law.toml", text);
+        let named: Vec<&str> = named.iter().copied().chain(["law.toml"]).collect();
+        refused(&bench, "eigen --law law.toml", &named);
+    }
+}
+
+/// Situation: numbers out of their range: negative, huge, NaN.
+/// Action: give them as options.
+/// Must hold: refused, naming the quantity, the value and the range.
+#[test]
+fn numbers_out_of_range() {
+    let bench = Bench::new(PROGRAM);
+    for (line, named) in [
+        ("ride --speed -1", &["--speed", "-1", "0 to 30"][..]),
+        ("ride --speed nan", &["--speed", "NaN", "0 to 30"]),
+        ("ride --speed 4 --steer-rate 1e6", &["--steer-rate", "1000000", "-100 to 100"]),
+        ("ride --speed 4 --roll-rate=-inf", &["--roll-rate", "-inf", "-100 to 100"]),
+        ("ride --speed 4 --time-limit -6", &["time limit", "-6", "0.001 to 3600"]),
+        ("ride --speed 4 --time-limit 0", &["time limit", "0", "0.001 to 3600"]),
+        ("ride --speed 4 --time-limit 1e9", &["time limit", "1000000000", "0.001 to 3600"]),
+        ("ride --speed 4 --recovered-below 2", &["recovered-below", "2", "to 1"]),
+        ("ride --speed 4 --torque-limit -7", &["--torque-limit", "-7", "0.1 to 50"]),
+        ("ride --speed 4 --torque-limit nan", &["--torque-limit", "NaN", "0.1 to 50"]),
+        ("ride --speed 4 --rate-limit 0", &["--rate-limit", "0", "1 to 100000"]),
+        ("ride --speed 4 --taper 3:1", &["--taper", "1", "3.1 to 10"]),
+        ("ride --speed 4 --sensor-delay 1.5ms", &["--sensor-delay", "1.5 ms", "1 ms and 2 ms"]),
+        ("ride --speed 4 --sensor-delay 5s", &["--sensor-delay", "5000 ms", "0 to 1000 ms"]),
+        ("ride --speed 4 --assist ideal --torque-limit 7", &["limits", "ideal"]),
+        ("basin --speeds 4 --max-rate -1", &["max rate", "-1", "0.01 to 100"]),
+        ("basin --speeds 4 --scan-step 0", &["scan step", "0", "0.001 to 30"]),
+        ("basin --speeds 4 --tolerance -1", &["tolerance", "-1"]),
+    ] {
+        refused(&bench, line, named);
+    }
+    for (line, word) in [
+        ("basin --speeds 10:0:0.1", "rise"),
+        ("basin --speeds 0:10:0", "0.000001 m/s"),
+        ("basin --speeds 0:40:1", "0 to 30"),
+        ("basin --speeds -1", "0 to 30"),
+        ("eigen --speeds 0:1:1e-6", "at most 100000"),
+        ("basin --speeds a:b:c", "A:B:STEP"),
+        ("ride --speed 4 --sensor-delay -5ms", "0 s to 3600 s"),
+        ("ride --speed 4 --sensor-delay 5", "20ms"),
+        ("basin --threads 0", "1..=1024"),
+    ] {
+        let run = bench.run(line);
+        assert!(run.code == Some(2) && run.stderr.contains(word), "{line}: {}", run.stderr);
+    }
+}
+
+/// Situation: speed zero, and the largest disturbances allowed.
+/// Action: ride and search.
+/// Must hold: results, not errors; nothing in them is NaN.
+#[test]
+fn extremes_within_the_ranges_run() {
+    let bench = Bench::new(PROGRAM);
+    for line in [
+        "ride --speed 0 --steer-rate 100",
+        "ride --speed 30 --steer-rate -100 --roll-rate 100",
+        "ride --speed 0 --law none --roll-rate 1e-300",
+        "basin --speeds 0 --max-rate 100 --scan-step 20 --tolerance 5",
+        "eigen --speeds 0:30:15 --law f",
+    ] {
+        let text = bench.json(line).to_string();
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{line}");
+    }
+}
+
+/// Situation: tables of states that are wrong.
+/// Action: ask for accelerations, into an older file.
+/// Must hold: refused, naming file, line, column, value and range; the older file survives.
+#[test]
+fn wrong_tables_of_states() {
+    let bench = Bench::new(PROGRAM);
+    let header = "roll,steer,roll_rate,steer_rate,rear_wheel_rate,roll_torque,steer_torque";
+    for (text, named) in [
+        (String::new(), &["`roll` is missing", "steer_torque"][..]),
+        ("roll;steer\n".into(), &["`roll` is missing"]),
+        (header.replace("steer_rate", "roll"), &["`roll` is there twice"]),
+        (format!("{header}\n0,0,0\n"), &["line: 2", "3 fields"]),
+        (format!("{header}\n0,0,0,0,0,0,0\n0,x,0,0,0,0,0\n"), &["line 3", "`steer` = `x`", "-10 to 10"]),
+        (format!("{header}\n1e300,0,0,0,0,0,0\n"), &["line 2", "`roll` = `1e300`", "-10 to 10"]),
+        (format!("{header}\n0,0,0,0,nan,0,0\n"), &["`rear_wheel_rate` = `nan`", "-10000 to 10000"]),
+        (format!("{header}\n1.5707963267948966,0,0,0,0,0,0\n"), &["line 2", "front wheel"]),
+    ] {
+        bench.write("in.csv", text);
+        bench.write("old.csv", "older result");
+        let named: Vec<&str> = named.iter().copied().chain(["in.csv"]).collect();
+        bench.run("bicycle accel --states in.csv --csv old.csv").refused_naming(&named);
+        assert_eq!((bench.read("old.csv").as_str(), bench.files().len()), ("older result", 2));
+    }
+    bench.run("bicycle accel --states missing.csv").refused_naming(&["missing.csv"]);
+}
+
+/// Situation: places that can't be written to, and one place for two results.
+/// Action: name them as outputs of every kind.
+/// Must hold: refused before any work, naming the place and the reason; no file appears.
+#[test]
+fn outputs_that_can_not_be() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("file", "");
+    std::fs::create_dir(bench.path("folder")).unwrap();
+    std::os::unix::fs::symlink("nowhere", bench.path("link")).unwrap();
+    let before = bench.files();
+    for option in ["--json", "--csv", "--svg", "--png"] {
+        for (place, reason) in [
+            ("missing/out", "no folder missing"),
+            ("folder", "folder"),
+            ("file/out", "no folder file"),
+            ("link", "link to nothing"),
+        ] {
+            // Longer than any test may take, if the place were tried only at the end.
+            let line = format!("basin --time-limit 3600 --speeds 6:7:0.01 {option} {place}");
+            bench.run(&line).refused_naming(&[place, reason]);
+        }
+    }
+    bench.run("ride --speed 4 --csv out --json ./out").refused_naming(&["--csv", "--json", "same place"]);
+    bench.run("ride --speed 4 --csv - --json").refused_naming(&["--csv", "--json", "same place"]);
+    assert_eq!(bench.files(), before);
+}

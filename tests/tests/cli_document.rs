@@ -1,0 +1,84 @@
+//! `docs/cli.md` is true: its examples run and say what it says, every option is in it.
+
+use tests::cli::{Bench, repository};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+
+fn document() -> String {
+    std::fs::read_to_string(repository("docs/cli.md")).unwrap()
+}
+
+/// The fenced blocks in `language`.
+fn blocks(text: &str, language: &str) -> Vec<String> {
+    let fence = format!("```{language}\n");
+    text.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
+}
+
+/// Whether `said` is `expected`, in which `...` stands for anything.
+fn matches(expected: &str, mut said: &str) -> bool {
+    let mut parts = expected.split("...\n");
+    let (first, rest) = (parts.next().unwrap_or_default(), parts.collect::<Vec<_>>());
+    let Some(after) = said.strip_prefix(first) else { return false };
+    said = after;
+    for part in &rest {
+        let Some(at) = said.find(part) else { return false };
+        said = &said[at + part.len()..];
+    }
+    said.is_empty() || rest.last().is_some_and(|last| last.is_empty())
+}
+
+/// Situation: the examples with their output in the document.
+/// Action: run them in the repository's folder.
+/// Must hold: the output is the documented one, but for what is left out there.
+#[test]
+fn documented_examples_say_what_the_document_says() {
+    let (bench, mut examples) = (Bench::new(PROGRAM), 0);
+    for block in blocks(&document(), "console") {
+        for example in block.split("$ sim-host ").skip(1) {
+            let (line, expected) = example.split_once('\n').unwrap();
+            let run = bench.command(line).current_dir(repository("")).output().unwrap();
+            let said = String::from_utf8([run.stdout, run.stderr].concat()).unwrap();
+            assert!(matches(expected, &said), "$ sim-host {line}\n{said}");
+            examples += 1;
+        }
+    }
+    assert!(examples >= 8);
+}
+
+/// Situation: the other examples.
+/// Action: give their options with `--help` after them.
+/// Must hold: none is unknown.
+#[test]
+fn documented_commands_have_known_options() {
+    let bench = Bench::new(PROGRAM);
+    for block in blocks(&document(), "sh") {
+        for line in block.lines().filter_map(|l| l.strip_prefix("sim-host ")) {
+            let words = line.split(" > ").next().unwrap();
+            let run = bench.run(&format!("{words} --help"));
+            assert_eq!(run.code, Some(0), "{line}: {}", run.stderr);
+        }
+    }
+}
+
+/// Situation: the options in every command's help.
+/// Action: look for them in the document.
+/// Must hold: all are there; a default given for a word or number stands in the option's line.
+#[test]
+fn every_option_is_documented_with_its_default() {
+    let (bench, document) = (Bench::new(PROGRAM), document());
+    for command in ["basin", "ride", "eigen", "bicycle show", "bicycle check", "bicycle accel"] {
+        let help = bench.run(&format!("{command} --help")).stdout;
+        let mut option = "";
+        for line in help.lines().map(str::trim) {
+            if let Some(at) = line.find("--").filter(|&at| at == 0 || line.starts_with('-')) {
+                option = line[at..].split([' ', '[']).next().unwrap();
+                let known = option == "--help" || document.contains(&format!("`{option}"));
+                assert!(known || document.contains(&format!(" {option}")), "{command} {option}");
+            } else if let Some(default) = line.strip_prefix("[default: ").and_then(|d| d.strip_suffix(']')) {
+                let mut rows = document.lines().filter(|l| l.starts_with(&format!("| `{option}")));
+                let row = rows.next().unwrap_or_else(|| panic!("{command} {option}: no row"));
+                assert!(row.contains(default) || command == "eigen", "{command} {option}: {default}");
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Ctrl-C and readers that go away.
+#![cfg(target_os = "linux")]
+
+use serde_json::Value;
+use std::os::unix::process::ExitStatusExt;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use tests::cli::{Bench, Run};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+/// Many short columns, together far more than the test waits for.
+const MANY: &str = "basin --speeds 0:30:0.0005 --time-limit 0.2 --scan-step 10 --tolerance 5";
+/// One column that takes minutes.
+const LONG: &str = "basin --speeds 6 --time-limit 3600 --max-rate 0.5 --scan-step 0.01";
+
+/// Waits until the child has computed for a while.
+fn wait_for_work(child: &Child) {
+    let stat = format!("/proc/{}/stat", child.id());
+    let begin = Instant::now();
+    loop {
+        let text = std::fs::read_to_string(&stat).expect("the program runs");
+        let (_, fields) = text.rsplit_once(')').expect("a name in parentheses");
+        // The twelfth field after the name is the user time in hundredths of a second.
+        let used: u32 = fields.split_whitespace().nth(11).and_then(|f| f.parse().ok()).expect("a time");
+        if used >= 30 {
+            return;
+        }
+        assert!(begin.elapsed() < Duration::from_secs(30), "it does nothing");
+        sleep(Duration::from_millis(5));
+    }
+}
+
+fn press_ctrl_c(child: &Child) {
+    let kill = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status();
+    assert!(kill.expect("sh runs").success());
+}
+
+fn spawn(bench: &Bench, line: &str) -> Child {
+    let mut command = bench.command(line);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts")
+}
+
+/// Situation: a long basin, some of it done.
+/// Action: Ctrl-C.
+/// Must hold: exit code 130 soon; all outputs written, what is done kept, what is not null.
+#[test]
+fn an_interrupted_basin_keeps_what_is_done() {
+    let bench = Bench::new(PROGRAM);
+    let child = spawn(&bench, &format!("{MANY} --json out.json --csv out.csv --svg out.svg --png out.png"));
+    wait_for_work(&child);
+    press_ctrl_c(&child);
+    let run = Run::from(child.wait_with_output().unwrap());
+    assert_eq!(run.code, Some(130), "{run:?}");
+    assert!(run.stderr.contains("of 60001 speeds are done and kept"), "{}", run.stderr);
+    assert_eq!(bench.files(), ["out.csv", "out.json", "out.png", "out.svg"]);
+    let document: Value = serde_json::from_str(&bench.read("out.json")).unwrap();
+    assert_eq!(document["complete"], false);
+    assert!(document["area"].is_null() && document["mean_height"].is_null());
+    let upper = document["height"]["upper"].as_array().unwrap();
+    let capped = document["capped"].as_array().unwrap();
+    let outcomes = document["map"]["outcome"].as_array().unwrap();
+    assert_eq!((upper.len(), capped.len(), outcomes.len()), (60001, 60001, 60001));
+    let done = upper.iter().filter(|u| u.is_number()).count();
+    assert!(done > 0 && done < 60001, "{done}");
+    for ((upper, capped), outcome) in upper.iter().zip(capped).zip(outcomes) {
+        let missing = upper.is_null();
+        assert_eq!((capped.is_null(), outcome.as_array().unwrap().is_empty()), (missing, missing));
+    }
+    assert_eq!(bench.read("out.csv").matches(",border,").count(), done);
+}
+
+/// Situation: a column that takes minutes, results going to a new and to an older file.
+/// Action: Ctrl-C twice.
+/// Must hold: exit code 130 at once; the older file as it was, nothing new.
+#[test]
+fn a_second_ctrl_c_quits_at_once_and_leaves_nothing() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("old.json", "older result");
+    let child = spawn(&bench, &format!("{LONG} --json old.json --csv new.csv"));
+    wait_for_work(&child);
+    let begin = Instant::now();
+    press_ctrl_c(&child);
+    sleep(Duration::from_millis(200));
+    press_ctrl_c(&child);
+    let run = Run::from(child.wait_with_output().unwrap());
+    assert_eq!(run.code, Some(130), "{run:?}");
+    assert!(begin.elapsed() < Duration::from_secs(5));
+    assert_eq!((bench.files(), bench.read("old.json").as_str()), (vec!["old.json".into()], "older result"));
+}
+
+/// Situation: a ride of an hour and a basin of minutes.
+/// Action: kill the program.
+/// Must hold: no file is left behind.
+#[test]
+fn a_killed_run_leaves_nothing() {
+    let bench = Bench::new(PROGRAM);
+    for line in ["ride --speed 6 --time-limit 3600", LONG] {
+        let mut child = spawn(&bench, &format!("{line} --json new.json --csv new.csv"));
+        sleep(Duration::from_millis(300));
+        child.kill().unwrap();
+        assert_eq!(child.wait().unwrap().signal(), Some(9), "{line}: over before it was killed");
+        assert_eq!(bench.files(), [""; 0], "{line}");
+    }
+}
+
+/// Situation: a reader of standard output that goes away at once, as `head` does.
+/// Action: run each command.
+/// Must hold: no panic, exit code 0, and files asked for are written all the same.
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let bench = Bench::new(PROGRAM);
+    for line in [
+        "basin --speeds 4 --max-rate 1 --csv kept.csv",
+        "basin --speeds 4 --max-rate 1 --csv kept.csv --json",
+        "ride --speed 4 --csv kept.csv --json",
+        "eigen --speeds 4 --csv kept.csv",
+        "bicycle list",
+        "bicycle show",
+        "bicycle check --json",
+        "schema basin",
+    ] {
+        let _ = std::fs::remove_file(bench.path("kept.csv"));
+        let mut child = spawn(&bench, line);
+        drop(child.stdout.take());
+        let run = Run::from(child.wait_with_output().unwrap());
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{line}");
+        assert_eq!(bench.path("kept.csv").exists(), line.contains("kept.csv"), "{line}");
+    }
+}
+
+/// Situation: nobody reads standard error.
+/// Action: give a command something to complain about.
+/// Must hold: exit code 1 as ever, no panic.
+#[test]
+fn complaints_nobody_reads_are_no_panic() {
+    let bench = Bench::new(PROGRAM);
+    let mut child = spawn(&bench, "eigen --bicycle missing.toml");
+    drop(child.stderr.take());
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+}

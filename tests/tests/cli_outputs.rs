@@ -1,0 +1,152 @@
+//! Files: what they carry, and that they are whole or not there.
+#![cfg(unix)]
+
+use serde_json::Value;
+use tests::cli::Bench;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+const COMMANDS: [&str; 3] = [
+    "basin --speeds 4:5:0.5 --scan-step 2 --max-rate 4 --time-limit 1",
+    "ride --speed 4 --steer-rate 5 --preset product",
+    "eigen --speeds 0:10:1 --law h",
+];
+
+/// The program's name, version and commit as texts carry them, from a document.
+fn identity(document: &Value) -> String {
+    let tool = |key: &str| document["tool"][key].as_str().unwrap();
+    assert_eq!(tool("version"), env!("CARGO_PKG_VERSION"));
+    let commit = tool("commit");
+    assert!(commit == "unknown" || commit.chars().all(|c| c.is_ascii_hexdigit()), "{commit}");
+    format!("{} {} commit {commit}", tool("name"), tool("version"))
+}
+
+/// Checks that everything `config` says is in the document.
+fn agrees(config: &Value, document: &Value) {
+    let keys = config.as_object().unwrap();
+    assert!(keys.contains_key("config") || keys.contains_key("bicycle"));
+    for (key, value) in keys {
+        assert_eq!(value, &document[key], "{key}");
+    }
+}
+
+/// The text of a PNG's `tEXt` chunk with the keyword Description.
+fn png_description(png: &[u8]) -> String {
+    assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+    let mut rest = &png[8..];
+    while let [a, b, c, d, kind @ ..] = rest {
+        let length = u32::from_be_bytes([*a, *b, *c, *d]) as usize;
+        let data = &kind[4..4 + length];
+        if let Some(text) = data.strip_prefix(b"Description\0").filter(|_| kind.starts_with(b"tEXt")) {
+            return text.iter().map(|&byte| char::from(byte)).collect();
+        }
+        rest = &kind[4 + length + 4..];
+    }
+    panic!("no description");
+}
+
+/// Situation: each command that writes files, all of them asked for.
+/// Action: run it.
+/// Must hold: CSV, SVG and PNG carry the document's version, commit and configuration.
+#[test]
+fn every_file_carries_version_commit_and_configuration() {
+    for line in COMMANDS {
+        let bench = Bench::new(PROGRAM);
+        let run = bench.run(&format!("{line} --json o.json --csv o.csv --svg o.svg --png o.png"));
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{line}");
+        assert_eq!(bench.files(), ["o.csv", "o.json", "o.png", "o.svg"]);
+        let document: Value = serde_json::from_str(&bench.read("o.json")).unwrap();
+        let identity = identity(&document);
+        let csv = bench.read("o.csv");
+        let mut head = csv.lines().map(|l| l.strip_prefix("# ").unwrap_or(""));
+        assert_eq!(head.next(), Some(identity.as_str()));
+        agrees(&serde_json::from_str(head.next().unwrap()).unwrap(), &document);
+        let svg = bench.read("o.svg");
+        let description = svg.split("<desc>").nth(1).expect("a description").split("</desc>").next().unwrap();
+        let svg_text = description.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
+        let png_text = png_description(&std::fs::read(bench.path("o.png")).unwrap());
+        for text in [svg_text, png_text] {
+            let config = text.strip_prefix(&format!("{identity} ")).expect("the identity");
+            agrees(&serde_json::from_str(config).unwrap(), &document);
+        }
+    }
+}
+
+/// Situation: tables of each command.
+/// Action: read them.
+/// Must hold: the documented columns, as many rows as there are results, every cell a number or
+/// word, no NaN.
+#[test]
+fn tables_have_their_documented_columns() {
+    let bench = Bench::new(PROGRAM);
+    let columns = [
+        "speed_m_s,rate_rad_s,outcome,time_to_fall_s",
+        "t,roll,steer,pitch,roll_rate,steer_rate,yaw_rate,rear_wheel_rate,rear_speed,front_speed,\
+         measured_roll_rate,measured_speed,torque,limits",
+        "speed_m_s,re1,im1,re2,im2,re3,im3,re4,im4",
+    ];
+    // Three speeds of two scan points and a border each; 6 s of 1 ms; eleven speeds.
+    for ((line, columns), rows) in COMMANDS.into_iter().zip(columns).zip([9, 6000, 11]) {
+        let table = bench.run(&format!("{line} --csv -")).stdout;
+        let mut lines = table.lines().skip(2);
+        assert_eq!(lines.next(), Some(columns));
+        assert_eq!(lines.clone().count(), rows, "{line}");
+        let width = columns.split(',').count();
+        assert!(lines.all(|l| l.split(',').count() == width && !l.contains("NaN") && !l.contains("inf")));
+    }
+}
+
+/// Situation: an older, longer file where the result goes, and a link to a file.
+/// Action: write there.
+/// Must hold: the file is the new result and nothing else; the link still is one.
+#[test]
+fn results_replace_older_files_and_follow_links() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("out.json", "x".repeat(100_000));
+    std::os::unix::fs::symlink("out.json", bench.path("link.json")).unwrap();
+    assert_eq!(bench.run("ride --speed 4 --json link.json").code, Some(0));
+    assert!(serde_json::from_str::<Value>(&bench.read("out.json")).is_ok());
+    assert!(bench.path("link.json").is_symlink());
+    assert_eq!(bench.files(), ["link.json", "out.json"]);
+}
+
+/// Situation: a pipe with a name as output.
+/// Action: write there, and read the other end.
+/// Must hold: the document comes through; the pipe is still a pipe.
+#[test]
+fn a_pipe_is_written_to_and_not_replaced() {
+    let bench = Bench::new(PROGRAM);
+    let run = bench
+        .shell("mkfifo pipe && { \"$0\" ride --speed 4 -q --json pipe & cat pipe; wait; test -p pipe; }");
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(serde_json::from_str::<Value>(&run.stdout).is_ok());
+    assert_eq!(bench.files(), ["pipe"]);
+}
+
+/// Situation: a disk that is full after half a kilobyte.
+/// Action: write a document over an older one, and one to standard output.
+/// Must hold: exit code 1 naming the place; the older file as it was, nothing beside it.
+#[test]
+fn a_full_disk_costs_no_older_file() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("old.json", "older result");
+    let full = "trap '' XFSZ; ulimit -f 1; \"$0\" ride --speed 4 --time-limit 0.1 -q";
+    bench.shell(&format!("{full} --json old.json")).refused_naming(&["old.json", "large"]);
+    assert_eq!((bench.files(), bench.read("old.json").as_str()), (vec!["old.json".into()], "older result"));
+    let run = bench.shell(&format!("({full} --json) > out.json"));
+    run.refused_naming(&["standard output", "large"]);
+}
+
+/// Situation: quiet, documents on standard output, and neither.
+/// Action: run a command.
+/// Must hold: text only where no document goes; nothing on standard error.
+#[test]
+fn text_and_documents_do_not_mix() {
+    let bench = Bench::new(PROGRAM);
+    for line in COMMANDS {
+        let talk = bench.run(line);
+        assert!(talk.code == Some(0) && talk.stdout.lines().count() >= 2, "{talk:?}");
+        let quiet = bench.run(&format!("{line} -q"));
+        assert_eq!((talk.stderr.as_str(), quiet.stderr.as_str(), quiet.stdout.as_str()), ("", "", ""));
+        assert!(bench.json(line)["schema"] == 1);
+    }
+}
