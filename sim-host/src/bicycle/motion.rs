@@ -97,12 +97,11 @@ pub struct Motion<S> {
 
 impl<S: Scalar> Motion<S> {
     /// How far the front contact is ahead of the rear one along the rear wheel's heading, as a part
-    /// of the wheelbase, times the cosine of roll: 1 riding upright. At 0 the bicycle has folded up
-    /// sideways, and no pitch near by keeps both wheels on the ground.
+    /// of the wheelbase: 1 riding upright. At 0 the bicycle has folded up sideways: roll and steer
+    /// stand still there and only pitch moves.
     #[inline(always)]
     pub fn unfolded(&self, b: &Geometry) -> S {
-        let (_, cos_roll) = self.pose.attitude.roll;
-        cos_roll * (self.pose.e1.x * self.pose.base.x + self.pose.e1.z * self.pose.base.z) * (1.0 / b.w)
+        (self.pose.e1.x * self.pose.base.x + self.pose.e1.z * self.pose.base.z) * (1.0 / b.w)
     }
 
     /// The wheelbase's projection on the front wheel's heading, as a part of the wheelbase: 1 riding

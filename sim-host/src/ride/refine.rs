@@ -9,6 +9,7 @@ use super::event::fallen;
 use super::sensor::readings;
 use super::{Assist, Conditions};
 use crate::bicycle::{FullState, Geometry, Motion, State, Torques, Velocities};
+use crate::integrate::{Actuation, rk4};
 use crate::num::Scalar;
 
 /// Largest step in units of the motion's own time.
@@ -40,15 +41,23 @@ pub(super) fn quickness<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> [S; 4] {
 }
 
 /// Whether a step of `h` seconds with the independent speeds will not do.
-pub(super) fn too_quick([squares, cos_roll, unfolded, along]: [f64; 4], h: f64) -> bool {
-    // Written so that a NaN is too quick.
-    !(unfolded.abs() >= NEAREST
-        && along.abs() >= NEAREST
-        && squares * h * h <= LARGEST * LARGEST * cos_roll * cos_roll)
+pub(super) fn too_quick(quickness: [f64; 4], h: f64) -> bool {
+    singular(quickness) || pieces(quickness, h) > 1.0
+}
+
+/// Whether the independent speeds do not safely fix the others. NaN counts as singular.
+fn singular([_, _, unfolded, along]: [f64; 4]) -> bool {
+    !(unfolded.abs() >= NEAREST && along.abs() >= NEAREST)
+}
+
+/// How many steps `h` seconds take.
+fn pieces([squares, cos_roll, ..]: [f64; 4], h: f64) -> f64 {
+    let steps = (h * squares.sqrt() / (LARGEST * cos_roll.abs())).ceil();
+    if steps.is_nan() { MOST } else { steps.clamp(1.0, MOST) }
 }
 
 /// The last segment of a control period from `from`: the one that ends it, or the one in which the
-/// bicycle falls. `full` holds all speeds from one such period to the next.
+/// bicycle falls. `full` holds all speeds from one such period to the next, while they are needed.
 pub(super) fn refined(
     conditions: &Conditions,
     from: &State<f64>,
@@ -57,8 +66,6 @@ pub(super) fn refined(
     initial: f64,
 ) -> Segment {
     let b = &conditions.bicycle;
-    let period = conditions.step_s;
-    let mut at = full.unwrap_or_else(|| FullState::new(&Motion::new(b, from), from));
     let act = |v: &Velocities<f64>| {
         let steer = match &conditions.assist {
             Assist::None | Assist::Firmware(_) => torque,
@@ -71,19 +78,32 @@ pub(super) fn refined(
     };
     let (mut was, mut offset) = (*from, 0.0);
     loop {
-        let left = period - offset;
-        let [p, q, r, s, ..] = at.speeds;
-        let rate = (p * p + q * q + r * r + s * s).sqrt() / at.angles[0].cos().abs();
-        let pieces = (left * rate / LARGEST).ceil().clamp(1.0, MOST);
-        let h = if pieces.is_nan() { left } else { left / pieces };
-        let next = step(b, &at, h, &act);
-        let is = next.map_or(State { rear_wheel_rate: f64::NAN, ..was }, |next| next.state());
-        let last = pieces <= 1.0 || pieces.is_nan();
-        let Some(next) = next.filter(|_| !last && !fallen(&is)) else {
-            *full = next;
-            return Segment { was, is, offset, h };
+        let motion = Motion::new(b, &was);
+        let quickness = quickness(b, &motion);
+        let left = conditions.step_s - offset;
+        let pieces = pieces(quickness, left);
+        let h = left / pieces;
+        let is = if singular(quickness) {
+            let at = full.unwrap_or_else(|| FullState::new(&motion, &was));
+            *full = step(b, &at, h, &act);
+            full.map_or(State { rear_wheel_rate: f64::NAN, ..was }, |next| next.state())
+        } else {
+            *full = None;
+            rk4(b, &was, h, &mut Continuous(&act))
         };
-        (at, was, offset) = (next, is, offset + h);
+        if pieces <= 1.0 || fallen(&is) {
+            return Segment { was, is, offset, h };
+        }
+        (was, offset) = (is, offset + h);
+    }
+}
+
+/// Torques that follow from the velocities met inside a step.
+struct Continuous<'a, F>(&'a F);
+
+impl<F: Fn(&Velocities<f64>) -> Torques<f64>> Actuation<f64> for Continuous<'_, F> {
+    fn torques(&mut self, _: &Geometry, _: usize, motion: &Motion<f64>) -> Torques<f64> {
+        (self.0)(&motion.actual)
     }
 }
 
