@@ -222,6 +222,7 @@ fn outputs_that_can_not_be() {
         }
     }
     bench.run("ride --speed 4 --csv out --json ./out").refused_naming(&["--csv", "--json", "same place"]);
+    bench.run("ride --speed 4 --csv out --frames out").refused_naming(&["--csv", "--frames", "same place"]);
     bench.run("ride --speed 4 --csv - --json").refused_naming(&["--csv", "--json", "same place"]);
     assert_eq!(bench.files(), before);
 }

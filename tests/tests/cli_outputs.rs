@@ -136,6 +136,19 @@ fn a_full_disk_costs_no_older_file() {
     run.refused_naming(&["standard output", "large"]);
 }
 
+/// Situation: a ride whose frames are asked for besides its table.
+/// Action: run it, once with the frames on standard output.
+/// Must hold: 12 bytes for each line of the table; the same bytes, and no text among them.
+#[test]
+fn frames_are_as_many_as_lines_of_the_table() {
+    let bench = Bench::new(PROGRAM);
+    bench.run("ride --speed 4 --steer-rate 2 --csv o.csv --frames o.frames");
+    let frames = std::fs::read(bench.path("o.frames")).unwrap();
+    assert_eq!(frames.len(), 12 * (bench.read("o.csv").lines().count() - 3));
+    let output = bench.command("ride --speed 4 --steer-rate 2 --frames -").output().unwrap();
+    assert!(output.stdout == frames);
+}
+
 /// Situation: quiet, documents on standard output, and neither.
 /// Action: run a command.
 /// Must hold: text only where no document goes; nothing on standard error.

@@ -63,7 +63,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         tolerance: args.tolerance,
     };
     search.check()?;
-    let outputs = args.outputs.open()?;
+    let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.unwrap_or(0).into()).build()?;
     let bar = progress(outputs.shows_progress(), search.speeds.len());

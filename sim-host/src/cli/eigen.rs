@@ -53,7 +53,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let bicycle = catalogue::load(&args.bicycle)?;
     warn(&bicycle);
     let law = law::parse(&args.law)?;
-    let outputs = args.outputs.open()?;
+    let outputs = args.outputs.open(None)?;
     let linear = Linear::new(&bicycle.parameters);
     let critical = critical_speeds(&linear, &law);
     let values: Vec<_> = args.speeds.iter().map(|&v| eigenvalues(&linear, &law, v)).collect();

@@ -33,6 +33,7 @@ pub(super) struct Outputs {
     csv: Option<Output>,
     svg: Option<Output>,
     png: Option<Output>,
+    frames: Option<Output>,
     quiet: bool,
 }
 
@@ -51,14 +52,15 @@ pub(super) struct Results<D, C, S, T, F> {
 }
 
 impl OutputArgs {
-    /// Tries every output asked for.
-    pub(super) fn open(&self) -> Result<Outputs, Failure> {
+    /// Tries every output asked for; `frames` is one of `ride`.
+    pub(super) fn open(&self, frames: Option<&Path>) -> Result<Outputs, Failure> {
         let open = |path: &Option<PathBuf>| path.as_deref().map(Output::create).transpose();
         let outputs = Outputs {
             json: open(&self.json)?,
             csv: open(&self.csv)?,
             svg: open(&self.svg)?,
             png: open(&self.png)?,
+            frames: frames.map(Output::create).transpose()?,
             quiet: self.quiet,
         };
         let all = outputs.all();
@@ -73,8 +75,13 @@ impl OutputArgs {
 
 impl Outputs {
     fn all(&self) -> Vec<(&'static str, &Output)> {
-        let named =
-            [("--json", &self.json), ("--csv", &self.csv), ("--svg", &self.svg), ("--png", &self.png)];
+        let named = [
+            ("--json", &self.json),
+            ("--csv", &self.csv),
+            ("--svg", &self.svg),
+            ("--png", &self.png),
+            ("--frames", &self.frames),
+        ];
         named.into_iter().filter_map(|(name, output)| output.as_ref().map(|o| (name, o))).collect()
     }
 
@@ -83,7 +90,12 @@ impl Outputs {
         !self.quiet
     }
 
-    /// Writes everything that was asked for, the text for people last. What can't be written costs
+    /// Writes the frames, if they were asked for.
+    pub(super) fn write_frames(&self, frames: impl FnOnce() -> Vec<u8>) -> Result<(), Failure> {
+        self.frames.as_ref().map_or(Ok(()), |output| Ok(output.finish(&frames())?))
+    }
+
+    /// Writes everything else that was asked for, the text for people last. What can't be written costs
     /// nothing else, and a reader of standard output that goes away, like `head`, no file.
     pub(super) fn write<D, C, S, T, F>(&self, results: Results<D, C, S, T, F>) -> Result<(), Failure>
     where

@@ -6,7 +6,6 @@ use super::{Ended, Failure};
 use crate::range::within;
 use crate::report::document::RideDocument;
 use crate::report::figure::{self, RideFigure};
-use crate::report::output::Output;
 use crate::report::{table, terminal};
 use crate::ride::{Ride, Start, frames, traced};
 use control::wire::encode_frame;
@@ -35,11 +34,11 @@ pub(super) struct Args {
     /// Roll rate at the start, in rad/s, right positive
     #[arg(long, default_value_t = 0.0, value_name = "RAD/S", allow_negative_numbers = true)]
     roll_rate: f64,
-    #[command(flatten)]
-    outputs: OutputArgs,
     /// Write the sensor frames as the firmware got them, 12 bytes each, for replay on the chip
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
+    #[command(flatten)]
+    outputs: OutputArgs,
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
@@ -47,8 +46,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     within("--steer-rate (rad/s)", args.steer_rate, -100.0, 100.0)?;
     within("--roll-rate (rad/s)", args.roll_rate, -100.0, 100.0)?;
     let setup = args.conditions.setup()?;
-    let outputs = args.outputs.open()?;
-    let frames_file = args.frames.as_deref().map(Output::create).transpose()?;
+    let outputs = args.outputs.open(args.frames.as_deref())?;
     let start =
         Start { speed_m_s: args.speed, steer_rate_rad_s: args.steer_rate, roll_rate_rad_s: args.roll_rate };
     let (ride, trace) = traced(&setup.conditions, start);
@@ -59,9 +57,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     );
     let figure = RideFigure { trace: &trace, outcome: ride.outcome, title: &title };
     let config = json!({"config": document.config, "start": document.start});
-    if let Some(file) = frames_file {
-        file.finish(&frames(&trace).iter().flat_map(encode_frame).collect::<Vec<u8>>())?;
-    }
+    let framed = outputs.write_frames(|| frames(&trace).iter().flat_map(encode_frame).collect());
     outputs.write(Results {
         document: &document,
         config: &config,
@@ -69,6 +65,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         table: || table::table(&config, &trace),
         figure: || figure::ride(&figure),
     })?;
+    framed?;
     Ok(Ended::Done)
 }
 
