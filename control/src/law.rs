@@ -22,7 +22,7 @@ impl LawTable {
     ///
     /// # Errors
     /// Names the first offending value: no point or more than [`TABLE_POINTS`], a speed outside
-    /// -30..=30 m/s, a gain beyond 200 N m s/rad either way, a speed not above the one before it.
+    /// -30..=30 m/s, a gain beyond 200 N m s/rad either way, a speed not at least 0.001 m/s above the one before it.
     pub fn new(points: &[(f32, f32)]) -> Result<Self, ParamError> {
         check("law.table.points", points.len() as f32, 1.0, TABLE_POINTS as f32)?;
         let mut table = Self::default();
@@ -58,7 +58,8 @@ impl LawTable {
     }
 }
 
-/// A roll-rate law. Gains in N m s/rad, speeds in m/s.
+/// A roll-rate law. Gains in N m s/rad, speeds in m/s. Formulas are the sources' `K_phi_d`; the gain is
+/// minus that, except where a gain is said.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "no allocator to box the table with")]
 pub enum Law {
@@ -74,11 +75,11 @@ pub enum Law {
     F,
     /// `g(v) = (v - 40) exp(-0.35 v)` (eq. 3.12).
     G,
-    /// `5.97 (6.7 - v)` below 6.7 m/s, zero above (eqs 3.6-3.7).
+    /// Gain `5.97 (6.7 - v)` below 6.7 m/s, zero above (eqs 3.6-3.7).
     Cl1,
-    /// `k (10 - v)` below 10 m/s, zero above (section 3.4.2), k > 0 in N s^2/rad.
+    /// Gain `k (10 - v)` below 10 m/s, zero above (section 3.4.2), k > 0 in N s^2/rad.
     Cl2 {
-        /// Slope of the gain over speed \[N s^2/rad\], 0..=20.
+        /// Slope of the gain over speed \[N s^2/rad\], 0.001..=20.
         k: f32,
     },
     /// A user's table.

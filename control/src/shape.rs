@@ -82,7 +82,7 @@ impl ShapeConfig {
 /// The wanted torque shaped, and the limits that acted.
 ///
 /// `wanted_nm` must be finite; `previous_nm` is the last output; `max_change_nm` is the largest
-/// change in one period (`f32::MAX` for none). The output never exceeds the magnitude, is finite,
+/// change in one period (`f32::MAX` for none). The output never exceeds the magnitude if `previous_nm` did not, is finite,
 /// and mirrors: both torques' signs flipped flip the output's.
 pub fn shape(
     config: &ShapeConfig,

@@ -144,3 +144,25 @@ fn nothing_happens_without_a_disturbance() {
         }
     }
 }
+
+/// Situation: rides that come back and rides that fall, under the crate and under the ideal law.
+/// Action: work out the effort again from the trace. It must be the one that was booked.
+#[test]
+fn the_effort_is_that_of_the_trace() {
+    for conditions in [assisted(H), ideal(H)] {
+        for (v, w) in [(5.0, 5.0), (4.0, 9.0), (8.0, 15.0), (8.0, 30.0)] {
+            let (ride, trace) = traced(&conditions, knock(v, w));
+            // The period in which the bicycle falls is not booked.
+            let booked = &trace[..trace.len() - usize::from(ride.fell())];
+            let peak = booked.iter().map(|p| p.torque.abs()).fold(0.0, f64::max);
+            let slew =
+                booked.windows(2).map(|p| (p[1].torque - p[0].torque).abs() / 1e-3).fold(0.0, f64::max);
+            let squares: f64 = booked.iter().map(|p| p.torque * p.torque).sum();
+            let rms = (squares / booked.len() as f64).sqrt();
+            let e = &ride.effort;
+            assert_eq!(e.peak_torque_nm, peak, "{v} {w}");
+            assert!(peak > 0.5 && (e.peak_slew_nm_s - slew).abs() < 1e-9 * slew, "{v} {w}: {e:?}, {slew}");
+            assert!((e.rms_torque_nm - rms).abs() < 1e-12 * rms, "{v} {w}: {e:?}, {rms}");
+        }
+    }
+}

@@ -19,7 +19,7 @@ pub struct Image {
     pub board: &'static str,
     /// Flash budget \[bytes\].
     pub flash: u32,
-    /// RAM budget without the stack \[bytes\].
+    /// RAM budget, stack included \[bytes\].
     pub ram: u32,
 }
 

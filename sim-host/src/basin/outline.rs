@@ -25,9 +25,10 @@ pub struct Island {
 pub struct Work {
     /// Rides.
     pub rides: u64,
-    /// Integration steps.
+    /// Control periods ridden.
     pub steps: u64,
-    /// Right-hand sides of the equations of motion.
+    /// Right-hand sides of the equations of motion: four a control period. Those of the shorter steps
+    /// in which falls end are not counted.
     pub right_hand_sides: u64,
 }
 

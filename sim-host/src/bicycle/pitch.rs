@@ -7,6 +7,7 @@
 
 use super::Geometry;
 use crate::num::Scalar;
+use std::f64::consts::PI;
 
 /// Newton iterations on the guess that a time step provides: its error is of the order of the step
 /// squared, below 1e-4 rad, so that two leave nothing but rounding.
@@ -58,8 +59,12 @@ pub(super) fn attitude<S: Scalar>(b: &Geometry, roll: S, steer: S, guess: S) -> 
 
 /// The pitch \[rad\] of any attitude, followed from the upright bicycle in small steps.
 ///
-/// `None` when the path breaks off: the front wheel can't be put on the ground there.
+/// `None` when the path breaks off: the front wheel can't be put on the ground there; and beyond half
+/// a turn of roll or steer.
 pub fn pitch_from_upright(b: &Geometry, roll: f64, steer: f64) -> Option<f64> {
+    if !(roll.abs() <= PI && steer.abs() <= PI) {
+        return None;
+    }
     let steps = (roll.abs().max(steer.abs()) / 0.01).ceil().max(1.0);
     let mut pitch = 0.0;
     for i in 1..=steps as usize {

@@ -49,6 +49,11 @@ impl FullState {
         Pose::new(b, Attitude { roll: roll.sin_cos(), steer: steer.sin_cos(), tilt, pitch })
     }
 
+    /// The velocities, dependent ones as they are.
+    pub fn velocities(&self, b: &Geometry) -> Velocities<f64> {
+        velocities(&self.pose(b), &self.speeds)
+    }
+
     /// `self + h * rate`, entry by entry.
     pub fn moved(&self, h: f64, rate: &FullState) -> FullState {
         let mut to = *self;

@@ -155,7 +155,6 @@ fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
     text
 }
 
-/// From the least to the largest of some speeds, in words.
 /// The speeds of the columns that are so, as ranges: "0.9 to 4.1, 7.3 to 10".
 fn spans(basin: &Basin, is: impl Fn(&Column) -> bool) -> String {
     let runs = basin.columns.chunk_by(|a, b| is(a) == is(b)).filter(|run| is(&run[0]));

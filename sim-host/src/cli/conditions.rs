@@ -168,18 +168,14 @@ impl ConditionArgs {
             Some(option) => format!("{option}: {e}"),
             None => e.to_string(),
         })?;
+        if self.assist == AssistKind::Ideal && (limited || sensor_delay_ticks > 0) {
+            let why = "limits and sensor delay act on --assist firmware only; the ideal law has none";
+            return Err(why.into());
+        }
         let assist = match self.assist {
             _ if law == Law::None => Assist::None,
             AssistKind::Firmware => Assist::Firmware(Box::new(plan)),
-            AssistKind::Ideal => {
-                if limited || sensor_delay_ticks > 0 {
-                    return Err(
-                        "limits and sensor delay act on --assist firmware only; the ideal law has none"
-                            .into(),
-                    );
-                }
-                Assist::Ideal(Box::new(law.clone()))
-            }
+            AssistKind::Ideal => Assist::Ideal(Box::new(law.clone())),
         };
         let conditions = Conditions {
             schedule_speed: self.schedule_speed,

@@ -41,14 +41,10 @@ pub fn ride(figure: &RideFigure, width: usize) -> String {
         chart.line(figure.trace.iter().map(|p| (p.t, of(p))));
         text += &chart.text(label, (i + 1 == curves.len()).then_some("time [s]"));
     }
-    let ending = match figure.outcome.time_to_fall_s() {
-        Some(t) => format!("falls at {t:.3} s"),
-        None => figure.outcome.name().into(),
-    };
-    text + &ending + "\n"
+    text
 }
 
-/// Real parts of the eigenvalues over speed, imaginary parts below, and the critical speeds.
+/// Real parts of the eigenvalues over speed, imaginary parts below.
 pub fn eigen(figure: &EigenFigure, width: usize) -> String {
     let width = width.max(MIN_WIDTH);
     let x = match figure.speeds {
@@ -62,17 +58,7 @@ pub fn eigen(figure: &EigenFigure, width: usize) -> String {
     let mut imaginary =
         Chart::new(width, 6, x, nice(points().map(|(_, e)| e.im.clamp(0.0, 20.0)).chain([1.0]), 3));
     imaginary.dots(points().filter(|(_, e)| e.im > 0.0).map(|(v, e)| (v, e.im)));
-    let critical = figure.critical;
-    let speeds = [("v_d", critical.v_d), ("v_w", critical.v_w), ("v_c", critical.v_c)].map(
-        |(name, speed)| match speed {
-            Some(v) => format!("{name} = {v:.2} m/s"),
-            None => format!("no {name}"),
-        },
-    );
-    real.text("Re λ [1/s]", None)
-        + &imaginary.text("Im λ [rad/s]", Some("forward speed [m/s]"))
-        + &speeds.join(", ")
-        + "\n"
+    real.text("Re λ [1/s]", None) + &imaginary.text("Im λ [rad/s]", Some("forward speed [m/s]"))
 }
 
 #[cfg(test)]
@@ -137,7 +123,7 @@ mod tests {
         let outcome = Outcome::Fallen { time_s: 1.25 };
         let text = ride(&RideFigure { title: "", trace: &[], outcome }, 80);
         fits(&text, 80);
-        assert!(text.contains("falls at 1.250 s"));
+        assert!(text.contains("torque [N m]") && text.contains("time [s]"));
         let eigenvalues = [[Complex::new(-3.0, 4.0); 4]; 11];
         let speeds: Vec<f64> = (0..11).map(f64::from).collect();
         let critical = CriticalSpeeds { v_d: None, v_w: Some(5.0), v_c: None };
@@ -147,7 +133,7 @@ mod tests {
                 70,
             );
             fits(&text, 70);
-            assert!(text.contains("v_w = 5.00 m/s"));
+            assert!(text.contains("Re λ [1/s]") && text.contains("forward speed [m/s]"));
         }
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn fallen(state: &State<f64>) -> bool {
 pub(super) fn time_of_fall(before: &State<f64>, after: &State<f64>, h: f64) -> f64 {
     let roll = [before.roll, after.roll, before.roll_rate * h, after.roll_rate * h];
     let steer = [before.steer, after.steer, before.steer_rate * h, after.steer_rate * h];
-    if roll.iter().chain(&steer).any(|x| !x.is_finite()) {
+    if roll.iter().chain(&steer).chain([&after.rear_wheel_rate]).any(|x| !x.is_finite()) {
         return 0.0;
     }
     let beyond = |s: f64| hermite(&roll, s).abs().max(hermite(&steer, s).abs()) >= FALL_RAD;

@@ -17,7 +17,7 @@ struct Riders<'a, const N: usize> {
     lanes: [Option<Rider>; N],
     /// Speeds at the start \[m/s\].
     initial: Lanes<N>,
-    /// Torques since the step's start \[N m\].
+    /// Torques at the step's start \[N m\].
     torque: Lanes<N>,
     /// How quick each lane's motion is, by [`quickness`].
     quickness: [Lanes<N>; 4],
@@ -32,7 +32,12 @@ impl<const N: usize> Riders<'_, N> {
         let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
         for (lane, rider) in self.lanes.iter_mut().enumerate() {
             let Some(rider) = rider else { continue };
-            let now = Reading { roll_rate_rad_s: rate.0[lane], speed_m_s: speed.0[lane] };
+            // Near singular places only all six speeds tell the truth.
+            let (rate, speed) = match &rider.full {
+                Some(full) => readings(self.conditions, &full.velocities(b), self.initial.0[lane]),
+                None => (rate.0[lane], speed.0[lane]),
+            };
+            let now = Reading { roll_rate_rad_s: rate, speed_m_s: speed };
             let told = rider.sensors.delayed(now);
             let (torque_nm, limits) = rider.command(&self.conditions.assist, &told);
             self.torque.0[lane] = torque_nm;
@@ -47,13 +52,15 @@ impl<const N: usize> Riders<'_, N> {
 impl<const N: usize> Actuation<Lanes<N>> for Riders<'_, N> {
     #[inline(always)]
     fn torques(&mut self, b: &Geometry, stage: usize, motion: &Motion<Lanes<N>>) -> Torques<Lanes<N>> {
+        let mut steer = self.torque;
         if stage == 0 {
             self.control(b, motion);
+            steer = self.torque;
         } else if let Assist::Ideal(law) = &self.conditions.assist {
             let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
-            self.torque = speed.map(|v| law.gain(v)) * rate;
+            steer = speed.map(|v| law.gain(v)) * rate;
         }
-        Torques { roll: Lanes([0.0; N]), steer: self.torque }
+        Torques { roll: Lanes([0.0; N]), steer }
     }
 }
 

@@ -84,7 +84,7 @@ pub struct Ride {
     pub end: FinalState,
     /// What it took.
     pub effort: Effort,
-    /// Integration steps taken; four right-hand sides each.
+    /// Control periods ridden.
     pub steps: u32,
 }
 

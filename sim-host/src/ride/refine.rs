@@ -1,5 +1,5 @@
-//! Where the motion is too quick for the control period, or near a place where the independent
-//! speeds do not fix the others: shorter steps with all speeds kept ([`FullState`]).
+//! Shorter steps where the motion is too quick for the control period; and all six speeds
+//! ([`FullState`]) near places where the three independent ones do not fix the others.
 //!
 //! Rides that end in a fall go there: the front wheel comes to stand across the path or beside the
 //! rear wheel, and close to 90 degrees of roll the yaw rate grows like one over the cosine of roll,

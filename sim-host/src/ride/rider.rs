@@ -15,7 +15,7 @@ pub(super) struct Rider {
     pub(super) step: u32,
     pub(super) sensors: Sensors,
     controller: control::State,
-    /// All speeds, while the motion is too quick for the three independent ones.
+    /// All speeds, while the motion is near a place where three do not fix the others.
     pub(super) full: Option<FullState>,
     torque_nm: f64,
     effort: Effort,
@@ -93,7 +93,9 @@ impl Rider {
 
     fn finish(&self, outcome: Outcome, t: f64, state: &State<f64>) -> Ride {
         let mut effort = self.effort;
-        effort.rms_torque_nm = (self.torque_squares / f64::from(self.step.max(1))).sqrt();
+        let fell = matches!(outcome, Outcome::Fallen { .. });
+        let booked = self.step.saturating_sub(u32::from(fell));
+        effort.rms_torque_nm = (self.torque_squares / f64::from(booked.max(1))).sqrt();
         let end = FinalState {
             t,
             roll: state.roll,
