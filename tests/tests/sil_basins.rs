@@ -5,7 +5,7 @@ use sim_host::basin::{Axis, Search, basin, column, rmse};
 use sim_host::ride::rides;
 use tests::basins::{H, alone, assisted, configured, ideal, search};
 
-/// Situation: the flashed h at 4 m/s. Action: find the border. The ride at the border must survive
+/// Situation: law h, in the control crate, at 4 m/s. Action: find the border. The ride at the border must survive
 /// and one just beyond must fall.
 #[test]
 fn the_border_is_a_border() {

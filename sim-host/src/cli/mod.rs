@@ -30,7 +30,7 @@ const EXAMPLES: &str = "\
 Exit codes: 0 ran (a fall is a result), 1 bad input or I/O, 2 usage, 130 interrupted.
 
 Examples:
-  sim-host basin --svg basin.svg               the basin of the thesis bicycle under the flashed law
+  sim-host basin --svg basin.svg               the basin of the thesis bicycle under law h
   sim-host ride --speed 4 --steer-rate 5       one ride
   sim-host eigen --law cl2:4                   eigenvalues over speed
   sim-host bicycle list                        the bicycles that ship";
