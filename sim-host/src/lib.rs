@@ -10,3 +10,4 @@ pub mod num;
 mod range;
 pub mod report;
 pub mod ride;
+pub mod rider;

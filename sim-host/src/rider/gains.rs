@@ -1,0 +1,55 @@
+//! What a rider responds to, and how strongly.
+
+use crate::num::Scalar;
+
+/// The symbols of the gains, in the order of [`Gains`] and [`Signals`]. Units: N m per rad, rad s,
+/// rad/s, rad/s^2 (roll, then steer), rad (heading), m (lateral offset).
+pub const KEYS: [&str; 10] = [
+    "K_phi_p",
+    "K_phi_i",
+    "K_phi_d",
+    "K_phi_dd",
+    "K_delta_p",
+    "K_delta_i",
+    "K_delta_d",
+    "K_delta_dd",
+    "K_psi",
+    "K_y",
+];
+
+/// Feedback gains (eqs 2.7 and 2.8; heading and lateral offset for Hess's family), by [`KEYS`].
+/// Positive gains turn the handlebar to the right for a motion to the right.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Gains(pub [f64; 10]);
+
+/// The motion as a rider feels it, by [`KEYS`]: roll, its integral, rate and acceleration; the same
+/// of steer; heading; lateral offset of the front contact \[m\]. Right positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Signals<S>(pub [S; 10]);
+
+impl Gains {
+    /// The gain at [`KEYS`]' place of `key`; `None` for another name.
+    pub fn get(&self, key: &str) -> Option<f64> {
+        KEYS.iter().position(|k| *k == key).map(|i| self.0[i])
+    }
+
+    /// The neural signal before its delay \[N m\]: the sum of gains times signals.
+    #[inline(always)]
+    pub fn signal<S: Scalar>(&self, signals: &Signals<S>) -> S {
+        let mut sum = signals.0[0] * self.0[0];
+        for i in 1..KEYS.len() {
+            sum = sum + signals.0[i] * self.0[i];
+        }
+        sum
+    }
+
+    /// On the straight line from `self` to `other`: `self` at `s` = 0, `other` at 1.
+    #[inline(always)]
+    pub fn toward(&self, other: &Gains, s: f64) -> Gains {
+        let mut out = *self;
+        for (x, to) in out.0.iter_mut().zip(other.0) {
+            *x += s * (to - *x);
+        }
+        out
+    }
+}

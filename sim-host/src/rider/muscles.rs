@@ -1,0 +1,35 @@
+//! Neuromuscular dynamics: the second-order filter between the neural signal and the steer torque
+//! (eq. B.5; eq. 2.9 is printed without the square of its input gain).
+
+use crate::range::within;
+
+/// `T'' = omega^2 (alpha - T) - 2 zeta omega T'`.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Muscles {
+    /// Undamped natural frequency \[rad/s\].
+    pub omega_rad_s: f64,
+    /// Damping ratio.
+    pub zeta: f64,
+}
+
+/// Muscles that can't be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct MusclesError(pub String);
+
+impl Muscles {
+    /// Shoulder dynamics: 2.17 Hz, damping ratio `sqrt(1/2)` (Schouten et al. 2007, as used by the
+    /// thesis).
+    pub const SHOULDERS: Self =
+        Self { omega_rad_s: 2.17 * std::f64::consts::TAU, zeta: std::f64::consts::FRAC_1_SQRT_2 };
+
+    /// Checks ranges.
+    ///
+    /// # Errors
+    /// Names the value and its range.
+    pub fn check(&self) -> Result<(), MusclesError> {
+        within("neuromuscular natural frequency (rad/s)", self.omega_rad_s, 0.1, 200.0)
+            .map_err(MusclesError)?;
+        within("neuromuscular damping ratio", self.zeta, 0.01, 10.0).map_err(MusclesError)
+    }
+}
