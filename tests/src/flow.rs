@@ -6,7 +6,8 @@ use sim_host::num::Dual;
 
 /// The state with its time derivative, and all that follows from it, likewise.
 pub fn along(b: &Geometry, state: &State<f64>, torques: &Torques<f64>) -> (State<Dual>, Motion<Dual>) {
-    let rate = rate(b, state, &Motion::new(b, state), torques);
+    let motion = Motion::new(b, state);
+    let rate = rate(state, &motion, &motion.accelerations(b, torques));
     let dual = |re, eps| Dual { re, eps };
     let moving = State {
         roll: dual(state.roll, rate.roll),

@@ -8,6 +8,7 @@
 use super::inertia::Inertia;
 use super::pitch::Attitude;
 use super::{Geometry, Motion, Pose, State, Torques, Velocities};
+use crate::integrate::Moves;
 use crate::num::Vec3;
 use nalgebra::{SMatrix, SVector};
 
@@ -43,7 +44,7 @@ impl FullState {
     }
 
     /// The pose, with the pitch as it is.
-    fn pose(&self, b: &Geometry) -> Pose<f64> {
+    pub fn pose(&self, b: &Geometry) -> Pose<f64> {
         let [roll, pitch, steer] = self.angles;
         let tilt = (pitch + b.lam).sin_cos();
         Pose::new(b, Attitude { roll: roll.sin_cos(), steer: steer.sin_cos(), tilt, pitch })
@@ -54,17 +55,9 @@ impl FullState {
         velocities(&self.pose(b), &self.speeds)
     }
 
-    /// `self + h * rate`, entry by entry.
-    pub fn moved(&self, h: f64, rate: &FullState) -> FullState {
-        let mut to = *self;
-        to.angles.iter_mut().zip(rate.angles).for_each(|(x, r)| *x += h * r);
-        to.speeds.iter_mut().zip(rate.speeds).for_each(|(x, r)| *x += h * r);
-        to
-    }
-
-    /// The rate of change of every entry, in the same places, under the torques that `act` gives for
-    /// the velocities. `None` if the equations have no solution, which no state near a ride has.
-    pub fn rate(&self, b: &Geometry, act: impl Fn(&Velocities<f64>) -> Torques<f64>) -> Option<FullState> {
+    /// The rate of change of every entry, in the same places, under `torques`. `None` if the equations
+    /// have no solution, which no state near a ride has.
+    pub fn rate(&self, b: &Geometry, torques: &Torques<f64>) -> Option<FullState> {
         let pose = self.pose(b);
         let unit: [Velocities<f64>; 6] = std::array::from_fn(|i| {
             let mut speeds = [0.0; 6];
@@ -74,7 +67,6 @@ impl FullState {
         let actual = velocities(&pose, &self.speeds);
         let inertia = Inertia::new(b, &pose);
         let (bias, free) = super::bias::bias(b, &pose, &actual, &inertia, None);
-        let torques = act(&actual);
         let mut a = SMatrix::<f64, 9, 9>::zeros();
         let mut r = SVector::<f64, 9>::zeros();
         for j in 0..6 {
@@ -106,6 +98,15 @@ fn velocities(
     let mut omega = pose.e1.scaled(roll) + pose.k.scaled(yaw);
     omega.y += pitch;
     Velocities { roll, pitch, yaw, steer, rear_spin, front_spin, omega, rolling: omega.y + rear_spin }
+}
+
+impl Moves for FullState {
+    fn moved(&self, h: f64, rate: &Self) -> Self {
+        let mut to = *self;
+        to.angles.iter_mut().zip(rate.angles).for_each(|(x, r)| *x += h * r);
+        to.speeds.iter_mut().zip(rate.speeds).for_each(|(x, r)| *x += h * r);
+        to
+    }
 }
 
 /// Velocity of the material point at the front contact; the constraints make it zero.

@@ -3,8 +3,9 @@
 use super::Assist;
 use crate::bicycle::Geometry;
 use crate::range::within;
+use crate::rider::Rider;
 
-/// The speed that schedules the assist's gain.
+/// The speed that schedules the gains of assist and rider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum ScheduleSpeed {
@@ -31,9 +32,11 @@ pub enum Imu {
 pub struct Conditions {
     /// The bicycle.
     pub bicycle: Geometry,
-    /// Who turns the steer.
+    /// What turns the steer.
     pub assist: Assist,
-    /// Which speed schedules the gain.
+    /// Who rides: human control in parallel with the assist.
+    pub rider: Option<Rider>,
+    /// Which speed schedules the gains.
     pub schedule_speed: ScheduleSpeed,
     /// What the gyro reports.
     pub imu: Imu,
@@ -62,6 +65,7 @@ impl Conditions {
         Self {
             bicycle,
             assist,
+            rider: None,
             schedule_speed: ScheduleSpeed::Front,
             imu: Imu::Euler,
             sensor_delay_ticks: 0,
@@ -76,6 +80,11 @@ impl Conditions {
         (self.time_limit_s / self.step_s).round() as u32
     }
 
+    /// The rider's neural delay in steps; 0 without a rider.
+    pub(super) fn delay_steps(&self) -> usize {
+        self.rider.as_ref().map_or(0, |rider| (rider.delay_s / self.step_s).round() as usize)
+    }
+
     /// Checks what the types do not.
     ///
     /// # Errors
@@ -85,6 +94,9 @@ impl Conditions {
         within("time limit (s)", self.time_limit_s, self.step_s, 3600.0)?;
         within("step (s)", self.step_s, 1e-5, 1e-2)?;
         within("recovered-below fraction", self.recovered_below, 1e-6, 1.0)?;
+        if let Some(rider) = &self.rider {
+            rider.check(self.step_s).map_err(|e| ConditionsError(e.0))?;
+        }
         within(
             "sensor delay in control periods",
             f64::from(self.sensor_delay_ticks),

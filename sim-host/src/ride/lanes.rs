@@ -1,66 +1,99 @@
 //! Rides side by side, one in each lane; a lane whose ride ends takes the next.
 
-use super::refine::{Segment, quickness, refined, too_quick};
-use super::rider::Rider;
+use super::human::{Human, Humans};
+use super::logbook::{Logbook, Pushes};
+use super::refine::{Period, Segment, quickness, refined, too_quick};
 use super::sensor::{Reading, readings};
 use super::{Assist, Conditions, Ride, Start, TracePoint};
-use crate::bicycle::{Geometry, Motion, State, Torques};
+use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques};
 use crate::integrate::{Actuation, rk4};
 use crate::num::Lanes;
+use crate::rider::Instant;
 
 /// How many rides go side by side: two AVX2 registers a number, which hides the latencies.
 pub(super) const WIDTH: usize = 8;
 
 /// The rides in the lanes, as what acts on their bicycles.
-struct Riders<'a, const N: usize> {
+struct Abreast<'a, const N: usize> {
     conditions: &'a Conditions,
-    lanes: [Option<Rider>; N],
+    lanes: [Option<Logbook>; N],
     /// Speeds at the start \[m/s\].
     initial: Lanes<N>,
-    /// Torques at the step's start \[N m\].
-    torque: Lanes<N>,
+    /// The assist's torques at the step's start \[N m\].
+    assist: Lanes<N>,
+    /// The riders.
+    humans: Option<Humans<'a, N>>,
+    /// The riders' torques at the step's start \[N m\].
+    human: Lanes<N>,
     /// How quick each lane's motion is, by [`quickness`].
     quickness: [Lanes<N>; 4],
     /// Where lane 0 is written down.
     trace: Option<&'a mut Vec<TracePoint>>,
 }
 
-impl<const N: usize> Riders<'_, N> {
+impl<const N: usize> Abreast<'_, N> {
     /// The control instant at a step's start: sensors, controllers, new torques.
     fn control(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
         self.quickness = quickness(b, motion);
+        if let Some(humans) = &self.humans {
+            self.human = humans.body.at.torque;
+        }
         let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
-        for (lane, rider) in self.lanes.iter_mut().enumerate() {
-            let Some(rider) = rider else { continue };
+        for (lane, ride) in self.lanes.iter_mut().enumerate() {
+            let Some(ride) = ride else { continue };
             // Near singular places only all six speeds tell the truth.
-            let (rate, speed) = match &rider.full {
+            let (rate, speed) = match &ride.full {
                 Some(full) => readings(self.conditions, &full.velocities(b), self.initial.0[lane]),
                 None => (rate.0[lane], speed.0[lane]),
             };
             let now = Reading { roll_rate_rad_s: rate, speed_m_s: speed };
-            let told = rider.sensors.delayed(now);
-            let (torque_nm, limits) = rider.command(&self.conditions.assist, &told);
-            self.torque.0[lane] = torque_nm;
+            let told = ride.sensors.delayed(now);
+            let (torque_nm, limits) = ride.command(&self.conditions.assist, &told);
+            self.assist.0[lane] = torque_nm;
             if let (0, Some(trace)) = (lane, &mut self.trace) {
-                let t = f64::from(rider.step) * self.conditions.step_s;
-                trace.push(TracePoint::new(b, t, motion, &told, torque_nm, limits));
+                let t = f64::from(ride.step) * self.conditions.step_s;
+                let pushes = Pushes { assist_nm: torque_nm, rider_nm: self.human.0[0] };
+                trace.push(TracePoint::new(b, t, motion, &told, pushes, limits));
             }
         }
     }
 }
 
-impl<const N: usize> Actuation<Lanes<N>> for Riders<'_, N> {
+impl<const N: usize> Actuation<Lanes<N>> for Abreast<'_, N> {
     #[inline(always)]
     fn torques(&mut self, b: &Geometry, stage: usize, motion: &Motion<Lanes<N>>) -> Torques<Lanes<N>> {
-        let mut steer = self.torque;
+        let mut steer = self.assist;
         if stage == 0 {
             self.control(b, motion);
-            steer = self.torque;
+            steer = self.assist;
         } else if let Assist::Ideal(law) = &self.conditions.assist {
             let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
             steer = speed.map(|v| law.gain(v)) * rate;
         }
+        if let Some(humans) = &self.humans {
+            steer = steer + humans.body.at.torque;
+        }
         Torques { roll: Lanes([0.0; N]), steer }
+    }
+
+    #[inline(always)]
+    fn felt(
+        &mut self,
+        b: &Geometry,
+        stage: usize,
+        state: &State<Lanes<N>>,
+        motion: &Motion<Lanes<N>>,
+        acc: &Accelerations<Lanes<N>>,
+    ) {
+        if let Some(humans) = &mut self.humans {
+            let mut taken = [false; N];
+            for (taken, lane) in taken.iter_mut().zip(&self.lanes) {
+                *taken = lane.is_some();
+            }
+            let (_, speed) = readings(self.conditions, &motion.actual, self.initial);
+            let now = Instant::new(state, motion, acc);
+            humans.felt(b, stage, self.conditions.step_s, &now, &speed, taken);
+        }
     }
 }
 
@@ -77,42 +110,67 @@ pub(super) fn run<const N: usize>(
     let mut waiting = starts.iter().copied().enumerate();
     let still = Lanes([0.0; N]);
     let mut state = State::upright(b, still);
-    let lanes = std::array::from_fn(|_| None);
-    let mut riders =
-        Riders { conditions, lanes, initial: still, torque: still, quickness: [still; 4], trace };
+    let mut abreast = Abreast {
+        conditions,
+        lanes: std::array::from_fn(|_| None),
+        initial: still,
+        assist: still,
+        humans: conditions.rider.as_ref().map(|rider| Humans::new(rider, conditions.delay_steps())),
+        human: still,
+        quickness: [still; 4],
+        trace,
+    };
     let mut done = Vec::with_capacity(starts.len());
     loop {
         for lane in 0..N {
-            if riders.lanes[lane].is_some() {
+            if abreast.lanes[lane].is_some() {
                 continue;
             }
             // An empty lane stands upright and still, which costs what any other state costs.
             let next = waiting.next();
             let start = next.map_or_else(Start::default, |(_, start)| start);
             set(&mut state, lane, &start.state(b));
-            riders.initial.0[lane] = start.speed_m_s;
-            riders.torque.0[lane] = 0.0;
-            riders.lanes[lane] = next.map(|(index, start)| Rider::new(conditions, index, start));
+            abreast.initial.0[lane] = start.speed_m_s;
+            abreast.assist.0[lane] = 0.0;
+            if let Some(humans) = &mut abreast.humans {
+                humans.restart(lane);
+            }
+            abreast.lanes[lane] = next.map(|(index, start)| Logbook::new(conditions, index, start));
         }
-        if riders.lanes.iter().all(Option::is_none) {
+        if abreast.lanes.iter().all(Option::is_none) {
             break;
         }
-        let mut after = rk4(b, &state, h, &mut riders);
+        if let Some(humans) = &mut abreast.humans {
+            humans.turn();
+        }
+        let mut after = rk4(b, &state, h, &mut abreast);
         for lane in 0..N {
-            let torque_nm = riders.torque.0[lane];
-            let Some(rider) = &mut riders.lanes[lane] else { continue };
+            let pushes = Pushes { assist_nm: abreast.assist.0[lane], rider_nm: abreast.human.0[lane] };
+            let Some(ride) = &mut abreast.lanes[lane] else { continue };
             let was = get(&state, lane);
-            let last = if too_quick(riders.quickness.map(|q| q.0[lane]), h) {
-                let last = refined(conditions, &was, &mut rider.full, torque_nm, riders.initial.0[lane]);
+            let last = if too_quick(abreast.quickness.map(|q| q.0[lane]), h) {
+                let human = abreast.humans.as_mut().map(|humans| humans.one(lane));
+                let mut period = Period {
+                    conditions,
+                    full: &mut ride.full,
+                    assist_nm: pushes.assist_nm,
+                    initial_m_s: abreast.initial.0[lane],
+                    human,
+                };
+                let last = refined(&mut period, &was);
+                let body = period.human.map(|human: Human| human.body.end);
                 set(&mut after, lane, &last.is);
+                if let (Some(humans), Some(body)) = (&mut abreast.humans, body) {
+                    humans.set(lane, &body);
+                }
                 last
             } else {
-                rider.full = None;
+                ride.full = None;
                 Segment { was, is: get(&after, lane), offset: 0.0, h }
             };
-            if let Some(ride) = rider.book(conditions, torque_nm, &was, &last) {
-                done.push((rider.index, ride));
-                riders.lanes[lane] = None;
+            if let Some(finished) = ride.book(conditions, pushes, &was, &last) {
+                done.push((ride.index, finished));
+                abreast.lanes[lane] = None;
             }
         }
         state = after;

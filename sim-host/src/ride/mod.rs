@@ -1,13 +1,14 @@
-//! One ride: the bicycle, the assist and a disturbance at t = 0, until it falls or time is up.
+//! One ride: the bicycle, the assist, the rider and a disturbance at t = 0, until it falls or time is up.
 
 mod assist;
 mod batch;
 mod conditions;
 mod event;
+mod human;
 mod lanes;
+mod logbook;
 mod outcome;
 mod refine;
-mod rider;
 mod sensor;
 mod trace;
 

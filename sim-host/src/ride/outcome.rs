@@ -54,6 +54,14 @@ pub struct Effort {
     pub motor_energy_j: f64,
     /// Work done by the motor while it pushes \[J\].
     pub motor_energy_out_j: f64,
+    /// Largest torque of the rider either way \[N m\].
+    pub rider_peak_torque_nm: f64,
+    /// Root mean square of the rider's torque over the ride \[N m\].
+    pub rider_rms_torque_nm: f64,
+    /// Work done by the rider on the steer axis, braking work counted negative \[J\].
+    pub rider_energy_j: f64,
+    /// Part of the ride in which assist and rider pushed against each other, 0 to 1.
+    pub opposed: f64,
 }
 
 /// The state at the end of a ride.

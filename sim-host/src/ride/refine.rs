@@ -6,11 +6,13 @@
 //! as a coin's does, and may throw the roll back.
 
 use super::event::fallen;
+use super::human::Human;
 use super::sensor::readings;
 use super::{Assist, Conditions};
-use crate::bicycle::{FullState, Geometry, Motion, State, Torques, Velocities};
-use crate::integrate::{Actuation, rk4};
+use crate::bicycle::{Accelerations, FullState, Geometry, Motion, State, Torques, Velocities};
+use crate::integrate::{Actuation, STAGES, Stages, rk4};
 use crate::num::Scalar;
+use crate::rider::Instant;
 
 /// Largest step in units of the motion's own time.
 const LARGEST: f64 = 0.05;
@@ -56,41 +58,64 @@ fn pieces([squares, cos_roll, ..]: [f64; 4], h: f64) -> f64 {
     if steps.is_nan() { MOST } else { steps.clamp(1.0, MOST) }
 }
 
-/// The last segment of a control period from `from`: the one that ends it, or the one in which the
-/// bicycle falls. `full` holds all speeds from one such period to the next, while they are needed.
-pub(super) fn refined(
-    conditions: &Conditions,
-    from: &State<f64>,
-    full: &mut Option<FullState>,
-    torque: f64,
-    initial: f64,
-) -> Segment {
-    let b = &conditions.bicycle;
-    let act = |v: &Velocities<f64>| {
-        let steer = match &conditions.assist {
-            Assist::None | Assist::Firmware(_) => torque,
+/// A control period of one ride.
+pub(super) struct Period<'a> {
+    pub(super) conditions: &'a Conditions,
+    /// All speeds from one such period to the next, while they are needed.
+    pub(super) full: &'a mut Option<FullState>,
+    /// The assist's torque at its start \[N m\].
+    pub(super) assist_nm: f64,
+    /// The ride's speed at t = 0 \[m/s\].
+    pub(super) initial_m_s: f64,
+    /// The rider.
+    pub(super) human: Option<Human<'a>>,
+}
+
+impl Period<'_> {
+    fn torques(&self, v: &Velocities<f64>) -> Torques<f64> {
+        let assist = match &self.conditions.assist {
+            Assist::None | Assist::Firmware(_) => self.assist_nm,
             Assist::Ideal(law) => {
-                let (rate, speed) = readings(conditions, v, initial);
+                let (rate, speed) = readings(self.conditions, v, self.initial_m_s);
                 law.gain(speed) * rate
             }
         };
-        Torques { roll: 0.0, steer }
-    };
+        let rider = self.human.as_ref().map_or(0.0, |human| human.body.at.torque);
+        Torques { roll: 0.0, steer: assist + rider }
+    }
+
+    /// Lets the rider feel a stage of the step of `h` seconds that begins at `offset`.
+    fn felt(&mut self, stage: usize, (offset, h): (f64, f64), now: &Instant<f64>) {
+        if let Some(human) = &mut self.human {
+            let (_, speed) = readings(self.conditions, now.velocities, self.initial_m_s);
+            let s = (offset + STAGES[stage] * h) / self.conditions.step_s;
+            human.felt(&self.conditions.bicycle, (stage, h, s), now, speed);
+        }
+    }
+}
+
+/// The last segment of a control period from `from`: the one that ends it, or the one in which the
+/// bicycle falls.
+pub(super) fn refined(period: &mut Period, from: &State<f64>) -> Segment {
+    let (b, step_s) = (&period.conditions.bicycle, period.conditions.step_s);
     let (mut was, mut offset) = (*from, 0.0);
     loop {
         let motion = Motion::new(b, &was);
         let quickness = quickness(b, &motion);
-        let left = conditions.step_s - offset;
+        let left = step_s - offset;
         let pieces = pieces(quickness, left);
         let h = left / pieces;
         let is = if singular(quickness) {
-            let at = full.unwrap_or_else(|| FullState::new(&motion, &was));
-            *full = step(b, &at, h, &act);
-            full.map_or(State { rear_wheel_rate: f64::NAN, ..was }, |next| next.state())
+            let at = period.full.unwrap_or_else(|| FullState::new(&motion, &was));
+            *period.full = step(b, &at, (offset, h), period);
+            period.full.map_or(State { rear_wheel_rate: f64::NAN, ..was }, |next| next.state())
         } else {
-            *full = None;
-            rk4(b, &was, h, &mut Continuous(&act))
+            *period.full = None;
+            rk4(b, &was, h, &mut Shorter { period, offset, h })
         };
+        if let Some(human) = &mut period.human {
+            human.body = Stages::new(human.body.end);
+        }
         if pieces <= 1.0 || fallen(&is) {
             return Segment { was, is, offset, h };
         }
@@ -98,26 +123,47 @@ pub(super) fn refined(
     }
 }
 
-/// Torques that follow from the velocities met inside a step.
-struct Continuous<'a, F>(&'a F);
+/// A shorter step with the independent speeds.
+struct Shorter<'a, 'b> {
+    period: &'a mut Period<'b>,
+    offset: f64,
+    h: f64,
+}
 
-impl<F: Fn(&Velocities<f64>) -> Torques<f64>> Actuation<f64> for Continuous<'_, F> {
+impl Actuation<f64> for Shorter<'_, '_> {
     fn torques(&mut self, _: &Geometry, _: usize, motion: &Motion<f64>) -> Torques<f64> {
-        (self.0)(&motion.actual)
+        self.period.torques(&motion.actual)
+    }
+
+    fn felt(
+        &mut self,
+        _: &Geometry,
+        stage: usize,
+        state: &State<f64>,
+        motion: &Motion<f64>,
+        acc: &Accelerations<f64>,
+    ) {
+        self.period.felt(stage, (self.offset, self.h), &Instant::new(state, motion, acc));
     }
 }
 
-/// One Runge-Kutta step with all speeds.
-fn step(
-    b: &Geometry,
-    from: &FullState,
-    h: f64,
-    act: &impl Fn(&Velocities<f64>) -> Torques<f64>,
-) -> Option<FullState> {
-    let k1 = from.rate(b, act)?;
-    let k2 = from.moved(0.5 * h, &k1).rate(b, act)?;
-    let k3 = from.moved(0.5 * h, &k2).rate(b, act)?;
-    let k4 = from.moved(h, &k3).rate(b, act)?;
-    let to = from.moved(h / 6.0, &k1).moved(h / 3.0, &k2).moved(h / 3.0, &k3).moved(h / 6.0, &k4);
-    Some(to)
+/// One Runge-Kutta step with all speeds, `h` seconds from `offset`.
+fn step(b: &Geometry, from: &FullState, (offset, h): (f64, f64), period: &mut Period) -> Option<FullState> {
+    let mut stages = Stages::new(*from);
+    for stage in 0..STAGES.len() {
+        let at = stages.at;
+        let (pose, velocities) = (at.pose(b), at.velocities(b));
+        let k = at.rate(b, &period.torques(&velocities))?;
+        let [roll, _, steer] = at.angles;
+        let [roll_acc, _, _, steer_acc, _, _] = k.speeds;
+        let now = Instant {
+            angles: [roll, steer],
+            accelerations: [roll_acc, steer_acc],
+            pose: &pose,
+            velocities: &velocities,
+        };
+        period.felt(stage, (offset, h), &now);
+        stages.next(stage, h, &k);
+    }
+    Some(stages.end)
 }

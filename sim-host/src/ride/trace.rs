@@ -1,6 +1,7 @@
 //! A ride written down, one line a control period.
 
 use super::assist::{front_speed, rear_speed};
+use super::logbook::Pushes;
 use super::sensor::{Reading, frame};
 use crate::bicycle::{Geometry, Motion};
 use crate::num::Lanes;
@@ -33,8 +34,10 @@ pub struct TracePoint {
     pub measured_roll_rate: f64,
     /// Speed as the controller was told \[m/s\].
     pub measured_speed: f64,
-    /// Steer torque \[N m\].
+    /// The assist's steer torque \[N m\].
     pub torque: f64,
+    /// The rider's steer torque \[N m\].
+    pub rider_torque: f64,
     /// Limits that changed the torque, as bits of [`control::Limits`].
     pub limits: u8,
 }
@@ -46,7 +49,7 @@ impl TracePoint {
         t: f64,
         motion: &Motion<Lanes<N>>,
         told: &Reading,
-        torque_nm: f64,
+        pushes: Pushes,
         limits: u8,
     ) -> Self {
         let (pose, actual) = (&motion.pose, &motion.actual);
@@ -64,7 +67,8 @@ impl TracePoint {
             front_speed: front_speed(b, actual).0[0],
             measured_roll_rate: told.roll_rate_rad_s,
             measured_speed: told.speed_m_s,
-            torque: torque_nm,
+            torque: pushes.assist_nm,
+            rider_torque: pushes.rider_nm,
             limits,
         }
     }

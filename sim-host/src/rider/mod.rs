@@ -1,13 +1,19 @@
 //! Human riders: delayed linear feedback of the bicycle's motion through the muscles of the
 //! shoulders, in parallel with the assist (Kuipers 2020, sections 2.1.3 and 2.3; Schwab et al. 2013).
 
+mod body;
 mod gains;
 mod muscles;
+mod nerves;
 mod schedule;
 
+pub use body::{Body, Instant};
 pub use gains::{Gains, KEYS, Signals};
 pub use muscles::{Muscles, MusclesError};
+pub use nerves::Nerves;
 pub use schedule::{Outside, Schedule, ScheduleError};
+
+use crate::range::within;
 
 /// A rider: what is fed back at which speed, how late, through which muscles.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,3 +28,39 @@ pub struct Rider {
 
 /// Longest neural delay \[s\].
 pub const MAX_DELAY_S: f64 = 1.0;
+
+/// A rider that can't be simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct RiderError(pub String);
+
+impl Rider {
+    /// The delay in whole steps of `step_s` seconds.
+    ///
+    /// # Errors
+    /// When it is not a whole number of them: names the nearest two.
+    pub fn delay_steps(&self, step_s: f64) -> Result<usize, RiderError> {
+        let steps = self.delay_s / step_s;
+        if (steps - steps.round()).abs() > 1e-6 {
+            let ms = |n: f64| format!("{} ms", n * step_s * 1e3);
+            return Err(RiderError(format!(
+                "neural delay {} ms is not a whole number of steps of {} ms; nearest are {} and {}",
+                self.delay_s * 1e3,
+                step_s * 1e3,
+                ms(steps.floor()),
+                ms(steps.ceil())
+            )));
+        }
+        Ok(steps.round() as usize)
+    }
+
+    /// Checks ranges, and that the delay is a whole number of steps of `step_s` seconds.
+    ///
+    /// # Errors
+    /// Names the value and its range.
+    pub fn check(&self, step_s: f64) -> Result<(), RiderError> {
+        within("neural delay (s)", self.delay_s, 0.0, MAX_DELAY_S).map_err(RiderError)?;
+        self.muscles.check().map_err(|e| RiderError(e.0))?;
+        self.delay_steps(step_s).map(|_| ())
+    }
+}

@@ -1,6 +1,7 @@
 //! Neuromuscular dynamics: the second-order filter between the neural signal and the steer torque
 //! (eq. B.5; eq. 2.9 is printed without the square of its input gain).
 
+use crate::num::Scalar;
 use crate::range::within;
 
 /// `T'' = omega^2 (alpha - T) - 2 zeta omega T'`.
@@ -22,6 +23,13 @@ impl Muscles {
     /// thesis).
     pub const SHOULDERS: Self =
         Self { omega_rad_s: 2.17 * std::f64::consts::TAU, zeta: std::f64::consts::FRAC_1_SQRT_2 };
+
+    /// `T''` \[N m/s^2\] under the neural signal `alpha` \[N m\], from `T` \[N m\] and `T'`.
+    #[inline(always)]
+    pub fn acceleration<S: Scalar>(&self, alpha: S, torque: S, torque_rate: S) -> S {
+        let (w, zeta) = (self.omega_rad_s, self.zeta);
+        (alpha - torque) * (w * w) - torque_rate * (2.0 * zeta * w)
+    }
 
     /// Checks ranges.
     ///

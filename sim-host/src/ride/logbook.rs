@@ -6,8 +6,15 @@ use super::sensor::{Reading, Sensors, frame};
 use super::{Assist, Conditions, Effort, FinalState, Outcome, Ride, Start};
 use crate::bicycle::{FullState, State};
 
+/// Torques on the steer axis at the start of a control period.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pushes {
+    pub(super) assist_nm: f64,
+    pub(super) rider_nm: f64,
+}
+
 /// The ride in a lane.
-pub(super) struct Rider {
+pub(super) struct Logbook {
     /// Which of the starts.
     pub(super) index: usize,
     pub(super) start: Start,
@@ -17,14 +24,16 @@ pub(super) struct Rider {
     controller: control::State,
     /// All speeds, while the motion is near a place where three do not fix the others.
     pub(super) full: Option<FullState>,
-    torque_nm: f64,
+    before: Pushes,
     effort: Effort,
-    torque_squares: f64,
+    /// Sums over the control periods: squares of both torques, and how many they opposed each other.
+    squares: [f64; 2],
+    opposed: u32,
     /// Largest roll and steer of the last second.
     late: [f64; 2],
 }
 
-impl Rider {
+impl Logbook {
     pub(super) fn new(conditions: &Conditions, index: usize, start: Start) -> Self {
         Self {
             index,
@@ -33,9 +42,10 @@ impl Rider {
             sensors: Sensors::new(conditions, &start),
             controller: control::State::default(),
             full: None,
-            torque_nm: 0.0,
+            before: Pushes::default(),
             effort: Effort::default(),
-            torque_squares: 0.0,
+            squares: [0.0; 2],
+            opposed: 0,
             late: [0.0; 2],
         }
     }
@@ -52,14 +62,14 @@ impl Rider {
         }
     }
 
-    /// Books one control period under the held `torque_nm`, from `was` to the end of its `last`
+    /// Books one control period that began with `pushes`, from `was` to the end of its `last`
     /// segment; the finished ride, when it was the last.
     ///
     /// The effort of a period in which the bicycle falls is left out.
     pub(super) fn book(
         &mut self,
         conditions: &Conditions,
-        torque_nm: f64,
+        pushes: Pushes,
         was: &State<f64>,
         last: &Segment,
     ) -> Option<Ride> {
@@ -72,17 +82,21 @@ impl Rider {
             return Some(self.finish(Outcome::Fallen { time_s }, time_s, &end));
         }
         let e = &mut self.effort;
-        e.peak_torque_nm = e.peak_torque_nm.max(torque_nm.abs());
+        let Pushes { assist_nm, rider_nm } = pushes;
+        e.peak_torque_nm = e.peak_torque_nm.max(assist_nm.abs());
         if self.step > 0 {
-            e.peak_slew_nm_s = e.peak_slew_nm_s.max((torque_nm - self.torque_nm).abs() / h);
+            e.peak_slew_nm_s = e.peak_slew_nm_s.max((assist_nm - self.before.assist_nm).abs() / h);
         }
         e.peak_roll_rad = e.peak_roll_rad.max(is.roll.abs());
         e.peak_steer_rad = e.peak_steer_rad.max(is.steer.abs());
-        let work = torque_nm * (is.steer - was.steer);
-        e.motor_energy_j += work;
-        e.motor_energy_out_j += work.max(0.0);
-        self.torque_squares += torque_nm * torque_nm;
-        self.torque_nm = torque_nm;
+        let turned = is.steer - was.steer;
+        e.motor_energy_j += assist_nm * turned;
+        e.motor_energy_out_j += (assist_nm * turned).max(0.0);
+        e.rider_peak_torque_nm = e.rider_peak_torque_nm.max(rider_nm.abs());
+        e.rider_energy_j += rider_nm * turned;
+        self.squares = [self.squares[0] + assist_nm * assist_nm, self.squares[1] + rider_nm * rider_nm];
+        self.opposed += u32::from(assist_nm * rider_nm < 0.0);
+        self.before = pushes;
         self.step += 1;
         let t = f64::from(self.step) * h;
         if t > conditions.time_limit_s - 1.0 {
@@ -95,7 +109,10 @@ impl Rider {
         let mut effort = self.effort;
         let fell = matches!(outcome, Outcome::Fallen { .. });
         let booked = self.step.saturating_sub(u32::from(fell));
-        effort.rms_torque_nm = (self.torque_squares / f64::from(booked.max(1))).sqrt();
+        let mean = |sum: f64| sum / f64::from(booked.max(1));
+        effort.rms_torque_nm = mean(self.squares[0]).sqrt();
+        effort.rider_rms_torque_nm = mean(self.squares[1]).sqrt();
+        effort.opposed = mean(f64::from(self.opposed));
         let end = FinalState {
             t,
             roll: state.roll,

@@ -1,0 +1,170 @@
+//! The human rider of a ride: muscles that move along with the bicycle, nerves that come late.
+
+use crate::bicycle::Geometry;
+use crate::integrate::{STAGES, Stages};
+use crate::num::Lanes;
+use crate::rider::{Body, Instant, Nerves, Rider, Signals};
+
+/// The riders in the lanes.
+pub(super) struct Humans<'a, const N: usize> {
+    rider: &'a Rider,
+    /// Their bodies at the step's start, and in the step under way.
+    pub(super) body: Stages<Body<Lanes<N>>>,
+    /// Their nerves; `None` for a rider without delay.
+    nerves: Option<[Nerves; N]>,
+    /// The signals that arrive at the start, middle and end of the step.
+    arriving: [Lanes<N>; 3],
+}
+
+impl<'a, const N: usize> Humans<'a, N> {
+    /// Riders whose nerves take `delay` steps.
+    pub(super) fn new(rider: &'a Rider, delay: usize) -> Self {
+        Self {
+            rider,
+            body: Stages::new(Body::fresh()),
+            nerves: (delay > 0).then(|| std::array::from_fn(|_| Nerves::new(delay))),
+            arriving: [Lanes([0.0; N]); 3],
+        }
+    }
+
+    /// A new ride in a lane.
+    pub(super) fn restart(&mut self, lane: usize) {
+        self.set(lane, &Body::fresh());
+        if let Some(nerves) = &mut self.nerves {
+            nerves[lane].forget();
+        }
+    }
+
+    /// A stage of the step of `h` seconds: what is felt at `now` and the `speeds` \[m/s\] that
+    /// schedule the gains, and the bodies moved on. Nothing is felt in lanes that are not `taken`.
+    #[inline(always)]
+    pub(super) fn felt(
+        &mut self,
+        b: &Geometry,
+        stage: usize,
+        h: f64,
+        now: &Instant<Lanes<N>>,
+        speeds: &Lanes<N>,
+        taken: [bool; N],
+    ) {
+        let body = self.body.at;
+        let alpha = match &mut self.nerves {
+            Some(nerves) => {
+                if stage == 0 {
+                    let signals = body.signals(now);
+                    feel(self.rider, nerves, &signals, speeds, taken);
+                    arrive(nerves, &mut self.arriving, taken);
+                }
+                self.arriving[(2.0 * STAGES[stage]) as usize]
+            }
+            None => neural(self.rider, &body.signals(now), speeds),
+        };
+        let k = body.rate(b, now, &self.rider.muscles, alpha);
+        self.body.next(stage, h, &k);
+    }
+
+    /// The rider in a lane, at the step's start.
+    pub(super) fn one(&mut self, lane: usize) -> Human<'_> {
+        let Body { roll_integral, steer_integral, heading, rear_lateral, torque, torque_rate } =
+            self.body.start();
+        let body = Body {
+            roll_integral: roll_integral.0[lane],
+            steer_integral: steer_integral.0[lane],
+            heading: heading.0[lane],
+            rear_lateral: rear_lateral.0[lane],
+            torque: torque.0[lane],
+            torque_rate: torque_rate.0[lane],
+        };
+        let nerves = self.nerves.as_mut().map(|nerves| &mut nerves[lane]);
+        Human { rider: self.rider, body: Stages::new(body), nerves }
+    }
+
+    /// Puts a body into a lane at the end of the step.
+    pub(super) fn set(&mut self, lane: usize, to: &Body<f64>) {
+        let end = &mut self.body.end;
+        end.roll_integral.0[lane] = to.roll_integral;
+        end.steer_integral.0[lane] = to.steer_integral;
+        end.heading.0[lane] = to.heading;
+        end.rear_lateral.0[lane] = to.rear_lateral;
+        end.torque.0[lane] = to.torque;
+        end.torque_rate.0[lane] = to.torque_rate;
+    }
+
+    /// The end of a step is the start of the next.
+    #[inline(always)]
+    pub(super) fn turn(&mut self) {
+        self.body = Stages::new(self.body.end);
+    }
+}
+
+/// The neural signals before their delay, each with the gains at its speed.
+#[inline(always)]
+fn neural<const N: usize>(rider: &Rider, signals: &Signals<Lanes<N>>, speeds: &Lanes<N>) -> Lanes<N> {
+    let mut out = Lanes([0.0; N]);
+    for lane in 0..N {
+        out.0[lane] = rider.schedule.at(speeds.0[lane]).signal(&lane_of(signals, lane));
+    }
+    out
+}
+
+fn lane_of<const N: usize>(signals: &Signals<Lanes<N>>, lane: usize) -> Signals<f64> {
+    let mut one = [0.0; 10];
+    for (to, from) in one.iter_mut().zip(&signals.0) {
+        *to = from.0[lane];
+    }
+    Signals(one)
+}
+
+fn feel<const N: usize>(
+    rider: &Rider,
+    nerves: &mut [Nerves; N],
+    signals: &Signals<Lanes<N>>,
+    speeds: &Lanes<N>,
+    taken: [bool; N],
+) {
+    for lane in (0..N).filter(|&lane| taken[lane]) {
+        nerves[lane].feel(rider.schedule.at(speeds.0[lane]).signal(&lane_of(signals, lane)));
+    }
+}
+
+fn arrive<const N: usize>(nerves: &[Nerves; N], to: &mut [Lanes<N>; 3], taken: [bool; N]) {
+    for lane in (0..N).filter(|&lane| taken[lane]) {
+        for (to, signal) in to.iter_mut().zip(nerves[lane].arriving()) {
+            to.0[lane] = signal;
+        }
+    }
+}
+
+/// One rider through the shorter steps of a control period.
+pub(super) struct Human<'a> {
+    rider: &'a Rider,
+    pub(super) body: Stages<Body<f64>>,
+    /// `None` without delay.
+    nerves: Option<&'a mut Nerves>,
+}
+
+impl Human<'_> {
+    /// A stage at the part `s` of the control period, in a step of `h` seconds.
+    pub(super) fn felt(
+        &mut self,
+        b: &Geometry,
+        (stage, h, s): (usize, f64, f64),
+        now: &Instant<f64>,
+        speed: f64,
+    ) {
+        let body = self.body.at;
+        let neural = || self.rider.schedule.at(speed).signal(&body.signals(now));
+        let alpha = match &mut self.nerves {
+            Some(nerves) => {
+                if stage == 0 && s == 0.0 {
+                    // In its lane this instant was felt with the independent speeds.
+                    nerves.correct(neural());
+                }
+                nerves.arriving_at(s)
+            }
+            None => neural(),
+        };
+        let k = body.rate(b, now, &self.rider.muscles, alpha);
+        self.body.next(stage, h, &k);
+    }
+}

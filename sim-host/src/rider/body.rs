@@ -1,0 +1,118 @@
+//! A rider's own state, and what a rider feels.
+
+use super::{Muscles, Signals};
+use crate::bicycle::{Accelerations, Geometry, Motion, Pose, State, Velocities};
+use crate::integrate::Moves;
+use crate::num::Scalar;
+
+/// What a rider remembers from instant to instant, the nerves' delay left out. All zero at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body<S> {
+    /// Integral of roll from t = 0 \[rad s\].
+    pub roll_integral: S,
+    /// Integral of steer \[rad s\].
+    pub steer_integral: S,
+    /// Heading of the rear frame: integral of the yaw rate \[rad\].
+    pub heading: S,
+    /// Sideways path of the rear contact, right positive \[m\].
+    pub rear_lateral: S,
+    /// Torque of the muscles on the handlebar, right positive \[N m\].
+    pub torque: S,
+    /// Its rate \[N m/s\].
+    pub torque_rate: S,
+}
+
+/// An instant of the bicycle's motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant<'a, S> {
+    /// Roll and steer \[rad\].
+    pub angles: [S; 2],
+    /// Their accelerations \[rad/s^2\].
+    pub accelerations: [S; 2],
+    /// The pose.
+    pub pose: &'a Pose<S>,
+    /// The velocities.
+    pub velocities: &'a Velocities<S>,
+}
+
+impl<'a, S: Scalar> Instant<'a, S> {
+    /// The instant of a state, its motion and its accelerations.
+    #[inline(always)]
+    pub fn new(state: &State<S>, motion: &'a Motion<S>, acc: &Accelerations<S>) -> Self {
+        Self {
+            angles: [state.roll, state.steer],
+            accelerations: [acc.roll, acc.steer],
+            pose: &motion.pose,
+            velocities: &motion.actual,
+        }
+    }
+}
+
+impl<S: Scalar> Body<S> {
+    /// At the start.
+    #[inline(always)]
+    pub fn fresh() -> Self {
+        let zero = S::constant(0.0);
+        Self {
+            roll_integral: zero,
+            steer_integral: zero,
+            heading: zero,
+            rear_lateral: zero,
+            torque: zero,
+            torque_rate: zero,
+        }
+    }
+
+    /// What the rider feels.
+    #[inline(always)]
+    pub fn signals(&self, now: &Instant<S>) -> Signals<S> {
+        let ([roll, steer], [roll_acc, steer_acc], v) = (now.angles, now.accelerations, now.velocities);
+        // The front contact from the rear one: ahead and to the right of the rear wheel's heading.
+        let (e1, k, base) = (now.pose.e1, now.pose.k, now.pose.base);
+        let (ahead, right) = (base.dot(e1), base.dot(k.cross(e1)));
+        let (sin, cos) = self.heading.sin_cos();
+        let lateral = self.rear_lateral + sin * ahead + cos * right;
+        Signals([
+            roll,
+            self.roll_integral,
+            v.roll,
+            roll_acc,
+            steer,
+            self.steer_integral,
+            v.steer,
+            steer_acc,
+            self.heading,
+            lateral,
+        ])
+    }
+
+    /// The rate of change of every entry, in the same places, under the neural signal `alpha` \[N m\]
+    /// that arrives now.
+    #[inline(always)]
+    pub fn rate(&self, b: &Geometry, now: &Instant<S>, muscles: &Muscles, alpha: S) -> Body<S> {
+        let v = now.velocities;
+        let (sin, _) = self.heading.sin_cos();
+        Body {
+            roll_integral: now.angles[0],
+            steer_integral: now.angles[1],
+            heading: v.yaw,
+            rear_lateral: (v.pitch + v.rear_spin) * -b.rR * sin,
+            torque: self.torque_rate,
+            torque_rate: muscles.acceleration(alpha, self.torque, self.torque_rate),
+        }
+    }
+}
+
+impl<S: Scalar> Moves for Body<S> {
+    #[inline(always)]
+    fn moved(&self, h: f64, rate: &Self) -> Self {
+        Self {
+            roll_integral: self.roll_integral + rate.roll_integral * h,
+            steer_integral: self.steer_integral + rate.steer_integral * h,
+            heading: self.heading + rate.heading * h,
+            rear_lateral: self.rear_lateral + rate.rear_lateral * h,
+            torque: self.torque + rate.torque * h,
+            torque_rate: self.torque_rate + rate.torque_rate * h,
+        }
+    }
+}

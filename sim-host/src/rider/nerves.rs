@@ -1,0 +1,152 @@
+//! The neural delay: signals on their way from what is felt to the muscles.
+//!
+//! Method of steps: the delay is a whole number of integration steps, so that every step of the
+//! delayed equation is one of an ordinary equation whose input is known. The signals at whole steps
+//! are kept; between them the cubic through the four nearest is taken, never across t = 0, where the
+//! disturbance makes the signal jump, nor across a multiple of the delay, where the jump comes back
+//! as a kink. So the method's order stays that of the Runge-Kutta step.
+
+/// The signals of one ride on their way.
+#[derive(Clone, Debug)]
+pub struct Nerves {
+    /// The latest signals, by step modulo its length, a power of two \[N m\].
+    ring: Vec<f64>,
+    /// Steps the delay takes; at least 1.
+    delay: usize,
+    /// Signals felt so far.
+    felt: usize,
+}
+
+impl Nerves {
+    /// Nerves with a delay of `delay` steps, at least 1, in which no signal travels yet.
+    pub fn new(delay: usize) -> Self {
+        // The oldest signal needed is two steps older than the one that arrives.
+        Self { ring: vec![0.0; (delay + 4).next_power_of_two()], delay: delay.max(1), felt: 0 }
+    }
+
+    /// Forgets every signal, for a new ride.
+    pub fn forget(&mut self) {
+        self.felt = 0;
+    }
+
+    /// Takes in the signal at the start of the next step.
+    #[inline(always)]
+    pub fn feel(&mut self, signal: f64) {
+        let mask = self.ring.len() - 1;
+        self.ring[self.felt & mask] = signal;
+        self.felt += 1;
+    }
+
+    /// Puts another signal in the place of the latest one.
+    pub fn correct(&mut self, signal: f64) {
+        self.felt -= 1;
+        self.feel(signal);
+    }
+
+    /// The first of up to four signals that what arrives during this step is taken from, how many, and
+    /// the place among them of the one that arrives at its start; `None` before the delay has passed.
+    #[inline(always)]
+    fn nearest(&self) -> Option<(usize, usize, usize)> {
+        let i = (self.felt - 1).checked_sub(self.delay)?;
+        let (first, last) = if self.delay < 3 {
+            (0, self.felt - 1)
+        } else {
+            let first = i - i % self.delay;
+            (first, first + self.delay)
+        };
+        let from = i.saturating_sub(1).max(first).min((last + 1).saturating_sub(4).max(first));
+        Some((from, (last - from + 1).min(4), i - from))
+    }
+
+    /// What arrives at the start, the middle and the end of the step that began with the latest
+    /// signal; zero before the delay has passed.
+    #[inline(always)]
+    pub fn arriving(&self) -> [f64; 3] {
+        let Some((from, count, place)) = self.nearest() else { return [0.0; 3] };
+        let mask = self.ring.len() - 1;
+        let at = |k: usize| self.ring[(from + k) & mask];
+        let middle = match (count, place) {
+            (4, 1) => (9.0 * (at(1) + at(2)) - (at(0) + at(3))) / 16.0,
+            (4, 0) => (5.0 * at(0) + 15.0 * at(1) - 5.0 * at(2) + at(3)) / 16.0,
+            (4, _) => (5.0 * at(3) + 15.0 * at(2) - 5.0 * at(1) + at(0)) / 16.0,
+            _ => self.arriving_at(0.5),
+        };
+        [at(place), middle, at(place + 1)]
+    }
+
+    /// What arrives at the part `s`, 0 to 1, of that step.
+    pub fn arriving_at(&self, s: f64) -> f64 {
+        let Some((from, count, place)) = self.nearest() else { return 0.0 };
+        let (mask, at) = (self.ring.len() - 1, s + place as f64);
+        // Lagrange's polynomial.
+        let weight = |j: usize| -> f64 {
+            (0..count).filter(|&k| k != j).map(|k| (at - k as f64) / (j as f64 - k as f64)).product()
+        };
+        (0..count).map(|j| weight(j) * self.ring[(from + j) & mask]).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What arrives of `f` felt at 0, 1, ... at every half step, up to `steps`.
+    fn delayed(delay: usize, steps: usize, f: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        let mut nerves = Nerves::new(delay);
+        let mut out = Vec::new();
+        for n in 0..steps {
+            nerves.feel(f(n as f64));
+            for (s, got) in [0.0, 0.5, 1.0].into_iter().zip(nerves.arriving()) {
+                assert!((nerves.arriving_at(s) - got).abs() <= 1e-12 * got.abs().max(1.0));
+                out.push((n as f64 + s - delay as f64, got));
+            }
+        }
+        out
+    }
+
+    #[test]
+    fn a_cubic_arrives_as_it_was_felt() {
+        let f = |t: f64| 1.0 + 2.0 * t - 0.3 * t * t + 0.01 * t * t * t;
+        for delay in [3, 4, 5, 30, 60, 61] {
+            for (t, got) in delayed(delay, 4 * delay, f) {
+                // A step that ends when the first signal arrives still sees nothing.
+                if t > 0.0 {
+                    assert!((got - f(t)).abs() < 1e-11 * (1.0 + f(t).abs()), "{delay} {t}: {got} {}", f(t));
+                } else if t < 0.0 {
+                    assert_eq!(got, 0.0, "{delay} {t}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn whole_steps_arrive_exactly() {
+        let f = |t: f64| (17.0 * t).sin();
+        for delay in [1, 2, 3, 7] {
+            for (t, got) in delayed(delay, 30, f).into_iter().filter(|(t, _)| t.fract() == 0.0 && *t > 0.0) {
+                assert_eq!(got, f(t), "{delay} {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_kink_after_one_delay_is_not_smeared() {
+        let f = |t: f64| if t <= 10.0 { t } else { 10.0 - 3.0 * (t - 10.0) };
+        for (t, got) in delayed(10, 40, f).into_iter().filter(|(t, _)| *t > 0.0 && *t <= 20.0) {
+            assert!((got - f(t)).abs() < 1e-12, "{t}: {got}");
+        }
+    }
+
+    #[test]
+    fn a_new_ride_starts_from_nothing() {
+        let mut nerves = Nerves::new(4);
+        (0..20).for_each(|_| nerves.feel(1.0));
+        assert_eq!(nerves.arriving()[1], 1.0);
+        nerves.forget();
+        nerves.feel(2.0);
+        assert_eq!(nerves.arriving()[2], 0.0);
+        nerves.correct(3.0);
+        (0..4).for_each(|_| nerves.feel(0.0));
+        assert_eq!(nerves.arriving()[0], 3.0);
+    }
+}
