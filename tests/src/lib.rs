@@ -9,4 +9,5 @@ pub mod json_schema;
 pub mod linearised;
 pub mod newton_euler;
 pub mod published;
+pub mod riders;
 pub mod rides;

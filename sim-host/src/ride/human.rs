@@ -168,3 +168,83 @@ impl Human<'_> {
         self.body.next(stage, h, &k);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bicycle::{Motion, State, catalogue};
+    use crate::rider::{Gains, Muscles, Schedule};
+    use nalgebra::Complex;
+    use std::f64::consts::TAU;
+
+    const STEP_S: f64 = 1e-3;
+    const DELAY_STEPS: usize = 60;
+
+    /// The torques of eight riders over time while roll, steer and yaw swing at `omega` with small
+    /// amplitudes, the bicycle itself held upright at 5 m/s.
+    fn swung(rider: &Rider, delay: usize, omega: f64, seconds: f64) -> Vec<f64> {
+        let b = Geometry::new(&catalogue::load("rigid_jason").unwrap().parameters);
+        let state = State::upright(&b, Lanes([5.0; 8]));
+        let mut humans = Humans::<8>::new(rider, delay);
+        let mut torques = Vec::new();
+        for n in 0..(seconds / STEP_S) as usize {
+            torques.push(humans.body.end.torque.0[3]);
+            humans.turn();
+            for (stage, part) in STAGES.into_iter().enumerate() {
+                let phase = omega * (n as f64 + part) * STEP_S;
+                let (sin, cos) = phase.sin_cos();
+                let same = |x: f64| Lanes([x; 8]);
+                let mut motion = Motion::new(&b, &state);
+                motion.actual.roll = same(ROLL * omega * cos);
+                motion.actual.steer = same(STEER * omega * cos);
+                motion.actual.yaw = same(YAW * omega * cos);
+                let acc = |amplitude: f64| same(-amplitude * omega * omega * sin);
+                let now = Instant {
+                    angles: [same(ROLL * sin), same(STEER * sin)],
+                    accelerations: [acc(ROLL), acc(STEER)],
+                    pose: &motion.pose,
+                    velocities: &motion.actual,
+                };
+                humans.felt(&b, stage, STEP_S, &now, &same(5.0), [true; 8]);
+            }
+        }
+        torques
+    }
+
+    const ROLL: f64 = 1e-6;
+    const STEER: f64 = -2e-6;
+    const YAW: f64 = 0.5e-6;
+
+    /// Situation: the rider as ridden, all gains in use, the motion a small sine. Action: take the
+    /// torque's Fourier coefficient once it has settled. It must be that of G_nm exp(-tau s) K(s).
+    #[test]
+    fn frequency_response() {
+        let gains = Gains([-8.0, -0.5, 7.0, 4.2, 12.0, 3.0, 1.3, -0.09, -0.6, 0.0]);
+        for delay in [0, 30, DELAY_STEPS] {
+            for periods in [1_usize, 3, 10] {
+                let (muscles, tau) = (Muscles::SHOULDERS, delay as f64 * STEP_S);
+                let rider = Rider { schedule: Schedule::constant(gains), delay_s: tau, muscles };
+                // Whole periods in the last second.
+                let omega = TAU * periods as f64;
+                let torques = swung(&rider, delay, omega, 4.0);
+                let s = Complex::new(0.0, omega);
+                let k = |at: usize| {
+                    let [p, i, d, dd] = [0, 1, 2, 3].map(|j| Complex::from(gains.0[at + j]));
+                    p + i / s + d * s + dd * s * s
+                };
+                let filter = muscles.omega_rad_s.powi(2)
+                    / (s * s + s * 2.0 * muscles.zeta * muscles.omega_rad_s + muscles.omega_rad_s.powi(2));
+                let felt = k(0) * ROLL + k(4) * STEER + Complex::from(gains.0[8] * YAW);
+                let wanted = felt * (-s * tau).exp() * filter;
+                let mut got = Complex::new(0.0, 0.0);
+                for (n, torque) in torques.iter().enumerate().skip(3000) {
+                    let turn = Complex::new(0.0, -omega * n as f64 * STEP_S).exp();
+                    // A sine is the imaginary part of the exponential.
+                    got += turn * *torque * Complex::new(0.0, 2.0) / 1000.0;
+                }
+                let error = (got - wanted).norm() / wanted.norm();
+                assert!((1e-13..5e-7).contains(&error), "{delay} ms, {periods} Hz: {got} {wanted} {error:e}");
+            }
+        }
+    }
+}

@@ -37,6 +37,12 @@ pub struct Solution {
     pub yaw_acceleration: f64,
     /// Front wheel's acceleration relative to the front frame \[rad/s^2\].
     pub front_wheel_acceleration: f64,
+    /// Place of the rear wheel's centre, from the rear contact \[m\].
+    pub rear_axle: Vector3<f64>,
+    /// Its velocity \[m/s\].
+    pub rear_axle_velocity: Vector3<f64>,
+    /// Place of the front contact, from the rear one \[m\].
+    pub front_contact_place: Vector3<f64>,
     /// Acceleration of the rear wheel's centre \[m/s^2\].
     pub rear_axle_acceleration: Vector3<f64>,
     /// Kinetic and potential energy \[J\], the potential zero at ground height.
@@ -83,6 +89,9 @@ pub fn solve(p: &Parameters, state: &State<f64>, torques: &Torques<f64>) -> Opti
         pitch_acceleration,
         yaw_acceleration: alpha.z - pitch_acceleration * sr,
         front_wheel_acceleration: wheel(&a, FRONT_FRAME, FRONT_WHEEL, &front_axle),
+        rear_axle: bicycle.bodies[REAR_WHEEL].centre,
+        rear_axle_velocity: v.fixed_rows::<3>(6 * REAR_WHEEL).into_owned(),
+        front_contact_place: bicycle.bodies[FRONT_WHEEL].centre + bicycle.contacts[1].arm(),
         rear_axle_acceleration: a.fixed_rows::<3>(6 * REAR_WHEEL).into_owned(),
         energy: energy(&bicycle, &v, p.g),
         rear_contact: contact(0),

@@ -1,0 +1,91 @@
+//! Flight cards: the parts of a rider against closed forms.
+
+use sim_host::bicycle::{Geometry, Motion, State};
+use sim_host::integrate::{STAGES, Stages};
+use sim_host::rider::{Body, Instant, Muscles, Nerves};
+use tests::rides::shipped;
+
+/// Situation: muscles at rest, the neural signal jumps to 1 N m. Action: integrate for a second in
+/// steps of 0.1 ms. Torque and rate must be the closed step response to 1e-12.
+#[test]
+fn step_response_of_the_muscles() {
+    let b = Geometry::new(&shipped("rigid_jason").parameters);
+    let state = State::upright(&b, 5.0);
+    let motion = Motion::new(&b, &state);
+    let now =
+        Instant { angles: [0.0; 2], accelerations: [0.0; 2], pose: &motion.pose, velocities: &motion.actual };
+    for muscles in [Muscles::SHOULDERS, Muscles { omega_rad_s: 30.0, zeta: 0.707 }] {
+        let Muscles { omega_rad_s: w, zeta } = muscles;
+        let damped = w * (1.0 - zeta * zeta).sqrt();
+        let h = 1e-4;
+        let mut body = Body::<f64>::fresh();
+        let (mut largest, mut overshoot) = (0.0_f64, 0.0_f64);
+        for n in 0..10_000 {
+            let t = f64::from(n) * h;
+            let (sin, cos) = (damped * t).sin_cos();
+            let fade = (-zeta * w * t).exp();
+            let torque = 1.0 - fade * (cos + zeta * w / damped * sin);
+            let rate = fade * w * w / damped * sin;
+            largest = largest.max((body.torque - torque).abs()).max((body.torque_rate - rate).abs() / w);
+            overshoot = overshoot.max(body.torque - 1.0);
+            let mut stages = Stages::new(body);
+            for stage in 0..STAGES.len() {
+                let k = stages.at.rate(&b, &now, &muscles, 1.0);
+                stages.next(stage, h, &k);
+            }
+            body = stages.end;
+        }
+        println!("{muscles:?}: largest error {largest:e}, overshoot {overshoot:.6}");
+        assert!((1e-16..1e-12).contains(&largest), "{largest:e}");
+        let closed = (-std::f64::consts::PI * zeta / (1.0 - zeta * zeta).sqrt()).exp();
+        assert!((overshoot - closed).abs() < 1e-5, "{overshoot} {closed}");
+    }
+}
+
+/// Situation: a sine felt every millisecond. Action: let it arrive 30, 60 or 7 steps later. At whole
+/// steps it must be the sine to the bit, between them to 1e-12, and nothing before.
+#[test]
+fn pure_delay() {
+    let felt = |n: f64| (2e-3 * n).sin();
+    for delay in [7_usize, 30, 60] {
+        let mut nerves = Nerves::new(delay);
+        let mut largest = 0.0_f64;
+        for n in 0..3000 {
+            nerves.feel(felt(n as f64));
+            let [start, middle, end] = nerves.arriving();
+            let then = n as f64 - delay as f64;
+            if then < 0.0 {
+                assert_eq!([start, middle, end], [0.0; 3]);
+            } else {
+                assert_eq!([start, end], [felt(then), felt(then + 1.0)]);
+                largest = largest.max((middle - felt(then + 0.5)).abs());
+            }
+        }
+        // The cubic's remainder, 3/128 of the fourth difference inside, 5/128 at the ends: 6e-13.
+        println!("{delay} steps: largest error {largest:e}");
+        assert!((1e-15..1e-12).contains(&largest), "{largest:e}");
+    }
+}
+
+/// Situation: the same at ever smaller steps. Action: watch the error between whole steps. It must
+/// fall with the fourth power.
+#[test]
+fn the_delay_line_is_of_fourth_order() {
+    let error = |per_second: usize| {
+        let h = 1.0 / per_second as f64;
+        let mut nerves = Nerves::new(per_second * 6 / 100);
+        let mut largest = 0.0_f64;
+        for n in 0..per_second {
+            nerves.feel((20.0 * n as f64 * h).cos());
+            let t = (n as f64 + 0.5) * h - 0.06;
+            if t > 0.0 {
+                largest = largest.max((nerves.arriving()[1] - (20.0 * t).cos()).abs());
+            }
+        }
+        largest
+    };
+    let errors = [100, 200, 400].map(error);
+    let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
+    println!("errors {errors:?}, orders {orders:.3?}");
+    assert!(orders.iter().all(|o| (3.8..4.2).contains(o)), "{orders:?}");
+}
