@@ -3,6 +3,7 @@
 use super::Assist;
 use crate::bicycle::Geometry;
 use crate::range::within;
+use crate::rider::Rider;
 
 /// The speed that schedules the assist's gain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
@@ -33,6 +34,8 @@ pub struct Conditions {
     pub bicycle: Geometry,
     /// Who turns the steer.
     pub assist: Assist,
+    /// Who rides: human control in parallel with the assist.
+    pub rider: Option<Rider>,
     /// Which speed schedules the gain.
     pub schedule_speed: ScheduleSpeed,
     /// What the gyro reports.
@@ -62,6 +65,7 @@ impl Conditions {
         Self {
             bicycle,
             assist,
+            rider: None,
             schedule_speed: ScheduleSpeed::Front,
             imu: Imu::Euler,
             sensor_delay_ticks: 0,
