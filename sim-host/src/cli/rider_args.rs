@@ -48,7 +48,7 @@ pub(super) fn step(delay_s: f64, period_s: f64, firmware: bool) -> Result<f64, S
     }
     if firmware {
         return Err(format!(
-            "the rider's --delay {} is not a whole number of control periods of {}; nearest are {} and {} \
+            "--delay: {} is not a whole number of control periods of {}; nearest are {} and {} \
              (without --assist firmware any delay will do)",
             ms(delay_s),
             ms(period_s),
@@ -58,7 +58,7 @@ pub(super) fn step(delay_s: f64, period_s: f64, firmware: bool) -> Result<f64, S
     }
     let step = delay_s / periods.ceil();
     if step < 1e-5 {
-        return Err(format!("the rider's --delay {} is less than the shortest step, 0.01 ms", ms(delay_s)));
+        return Err(format!("--delay: {} is less than the shortest step, 0.01 ms", ms(delay_s)));
     }
     complain(&format!(
         "note: step {} so that the delay of {} is {} steps",
