@@ -105,7 +105,7 @@ fn wrong_options_of_a_rider_are_refused() {
         ("--rider young --delay -60ms", "0 s to 1 s"),
         ("--rider young --delay 1.001s", "0 s to 1 s"),
         ("--rider young --delay nanms", "0 s to 1 s"),
-        ("--rider young --delay 60", "60ms"),
+        ("--rider young --delay 60", "20ms or 0.02s"),
         ("--rider young --gains median", "regression, mean, best"),
         ("--rider young --gains-outside zero", "extrapolate, hold"),
         ("--gains mean", "--rider"),

@@ -4,9 +4,7 @@ use super::table::{RiderTable, Row};
 use super::{Gains, KEYS, Outside, Rider, Schedule, ScheduleError};
 
 /// How gains are made continuous over speed.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, schemars::JsonSchema, clap::ValueEnum,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Fit {
     /// One straight line per gain, least squares over all sets (the thesis's LR).
