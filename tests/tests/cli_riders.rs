@@ -42,6 +42,12 @@ fn wrong_tables_are_refused_with_the_reason() {
         ),
         ("delay_ms = 30", "delay_ms = 30\nneuromuscular = { omega_rad_s = 9 }", &["line 3", "zeta"]),
         ("delay_ms = 30", "delay_ms = 30\nbest_runs = [1, 9]", &["`best_runs`", "run 9"]),
+        (
+            "delay_ms = 30",
+            "delay_ms = 30\nregression = { K_y = [1, 2] }",
+            &["`regression`", "`K_y`", "column"],
+        ),
+        ("delay_ms = 30", "delay_ms = 30\nregression = {}", &["`regression`", "is missing"]),
         ("delay_ms = 30", "delay_ms = 30\nbest_runs = [1]", &["`best_runs`", "0 rows", "4 m/s"]),
         ("delay_ms = 30", "delay_ms = 30\nbest_runs = [1, 2, 3]", &["`best_runs`", "2 rows", "2 m/s"]),
         ("'K_phi_p'", "'K_phi'", &["`columns`", "unknown column `K_phi`", "K_phi_p, K_phi_i"]),
