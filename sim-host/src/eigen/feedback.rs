@@ -25,6 +25,7 @@ pub struct Intuitive {
 }
 
 /// An assist as the linear analysis sees it.
+#[allow(clippy::large_enum_variant, reason = "there is one of them in an analysis")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Feedback {
     /// A roll-rate law of the control crate; [`Law::None`] for no assist.

@@ -30,9 +30,14 @@ fn differentiation(n: usize) -> DMatrix<f64> {
         let end = if j == 0 || j == n { 2.0 } else { 1.0 };
         if j.is_multiple_of(2) { end } else { -end }
     };
-    let mut d = DMatrix::from_fn(n + 1, n + 1, |i, j| {
-        if i == j { 0.0 } else { weight(i) / weight(j) / (x[i] - x[j]) }
-    });
+    let mut d =
+        DMatrix::from_fn(
+            n + 1,
+            n + 1,
+            |i, j| {
+                if i == j { 0.0 } else { weight(i) / weight(j) / (x[i] - x[j]) }
+            },
+        );
     for i in 0..=n {
         d[(i, i)] = -d.row(i).sum();
     }

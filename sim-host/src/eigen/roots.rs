@@ -15,14 +15,15 @@ const SAME: f64 = 1e-7;
 /// A root whose last correction is larger, relative or absolute \[1/s\], is none. Simple roots end
 /// near 1e-14; of a double one rounding leaves half the digits.
 const CONVERGED: f64 = 1e-5;
+/// A candidate that is led further away, relative or absolute \[1/s\], was none.
+const REACH: f64 = 0.01;
 const ITERATIONS: usize = 40;
 
 /// The `count` rightmost characteristic roots \[1/s\], largest real part first, a conjugate pair with
-/// its positive imaginary part first: one more where the last would be half a pair, fewer (all) for
-/// an ordinary system with fewer states.
+/// its positive imaginary part first: one more where the last would be half a pair.
 ///
-/// # Panics
-/// If the roots do not settle with 112 points: a delay far beyond the system's times.
+/// Fewer where there are no more, in an ordinary system, and where those further left are so fast
+/// that 112 points do not resolve them: of those returned each is exact, and none is missing between.
 pub fn roots(system: &DelaySystem, count: usize) -> Vec<C> {
     if system.is_ordinary() {
         let mut all = eigenvalues(system.undelayed()).expect("the QR iteration converges");
@@ -30,15 +31,22 @@ pub fn roots(system: &DelaySystem, count: usize) -> Vec<C> {
         return cut(all, count);
     }
     let mut before: Vec<C> = Vec::new();
+    let mut settled: Vec<C> = Vec::new();
     for nodes in NODES {
-        let Some(all) = eigenvalues(generator(system, nodes)) else { continue };
-        let now = cut(exact(system, all, count), count);
-        if now.len() >= count && same(&before, &now) {
-            return now;
+        let Some(mut candidates) = eigenvalues(generator(system, nodes)) else { continue };
+        // Points resolve what turns by about a radian from one to the next; the rest is spurious.
+        candidates.retain(|s| s.norm() * system.delay_s <= nodes as f64);
+        let now = exact(system, candidates, count);
+        let agree = now.iter().take_while(|s| before.iter().any(|b| same(*b, **s))).count();
+        if agree >= settled.len() {
+            settled = cut(now[..agree].to_vec(), count);
+        }
+        if settled.len() >= count {
+            break;
         }
         before = now;
     }
-    panic!("characteristic roots with a delay of {} s do not settle", system.delay_s)
+    settled
 }
 
 /// The rightmost root, of a pair that above \[1/s\]: its real part is the growth rate of a small
@@ -58,8 +66,9 @@ fn scale(root: C) -> f64 {
     root.norm().max(1.0)
 }
 
-fn same(a: &[C], b: &[C]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).norm() < SAME * scale(*b))
+/// Whether two computed roots are one.
+pub(super) fn same(a: C, b: C) -> bool {
+    (a - b).norm() < SAME * scale(b)
 }
 
 /// The roots that the rightmost of `candidates` lead to, sorted; a few more than `count` are tried.
@@ -68,8 +77,8 @@ fn same(a: &[C], b: &[C]) -> bool {
 fn exact(system: &DelaySystem, mut candidates: Vec<C>, count: usize) -> Vec<C> {
     sort(&mut candidates);
     // A pair is kept by its upper half.
-    let mut upper: Vec<C> =
-        cut(candidates, count + 4).into_iter().filter(|s| s.im >= 0.0).collect();
+    let start: Vec<C> = cut(candidates, count + 4).into_iter().filter(|s| s.im >= 0.0).collect();
+    let mut upper = start.clone();
     let mut corrections = vec![f64::INFINITY; upper.len()];
     for _ in 0..ITERATIONS {
         for i in 0..upper.len() {
@@ -91,9 +100,10 @@ fn exact(system: &DelaySystem, mut candidates: Vec<C>, count: usize) -> Vec<C> {
             corrections[i] = step.norm() / scale(s);
         }
     }
-    let good = upper.iter().zip(&corrections).filter(|(_, c)| **c < CONVERGED);
-    let mut all: Vec<C> =
-        good.flat_map(|(&s, _)| [Some(s), (s.im > 0.0).then(|| s.conj())]).flatten().collect();
+    let is_root =
+        |&i: &usize| corrections[i] < CONVERGED && (upper[i] - start[i]).norm() < REACH * scale(start[i]);
+    let found = (0..upper.len()).filter(is_root).map(|i| upper[i]);
+    let mut all: Vec<C> = found.flat_map(|s| [Some(s), (s.im > 0.0).then(|| s.conj())]).flatten().collect();
     sort(&mut all);
     all
 }
