@@ -11,7 +11,7 @@ const STEP_M_S: f64 = 0.02;
 const ROOTS: usize = 6;
 
 /// What crosses the imaginary axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Crossing {
     /// A complex pair: weave, or another oscillation.
@@ -27,7 +27,8 @@ pub struct StabilityChange {
     pub speed: f64,
     /// Whether the ride is stable above it.
     pub stable_above: bool,
-    /// What crosses.
+    /// What crosses: "pair" or "real".
+    #[schemars(with = "String", extend("enum" = ["pair", "real"]))]
     pub crossing: Crossing,
 }
 
