@@ -10,6 +10,7 @@ mod law;
 mod outputs;
 mod ride;
 mod speeds;
+mod thesis;
 
 use crate::bicycle::catalogue::Bicycle;
 use clap::{Parser, Subcommand};
@@ -33,7 +34,8 @@ Examples:
   sim-host basin --svg basin.svg               the basin of the thesis bicycle under law h
   sim-host ride --speed 4 --steer-rate 5       one ride
   sim-host eigen --law cl2:4                   eigenvalues over speed
-  sim-host bicycle list                        the bicycles that ship";
+  sim-host bicycle list                        the bicycles that ship
+  sim-host thesis --quick                      the published tables and figures, computed again";
 
 /// From which disturbances does a bicycle with a steer assist recover?
 #[derive(Parser)]
@@ -53,6 +55,8 @@ enum Command {
     Ride(Box<ride::Args>),
     /// Eigenvalues of the linearised bicycle over speed, and its critical speeds.
     Eigen(eigen::Args),
+    /// The tables and figures of the thesis computed again, as a report.
+    Thesis(thesis::Args),
     /// Bicycles: list, show, check, accelerations.
     #[command(subcommand, after_help = bicycle::EXAMPLES)]
     Bicycle(bicycle::Command),
@@ -73,6 +77,7 @@ pub fn run() -> ExitCode {
         Command::Basin(args) => basin::run(&args),
         Command::Ride(args) => ride::run(&args),
         Command::Eigen(args) => eigen::run(&args),
+        Command::Thesis(args) => thesis::run(&args),
         Command::Bicycle(command) => bicycle::run(&command),
         Command::Schema { document } => schema(&document),
     };

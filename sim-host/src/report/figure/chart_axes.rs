@@ -17,8 +17,13 @@ impl Fitted {
             Some((low, high)) => (scaled(low), scaled(high)),
             None if axis.log => {
                 let of_values = values.filter(|v| *v > 0.0).map(f64::log10);
-                let ends = of_values.fold((f64::INFINITY, f64::NEG_INFINITY), |r, v| (r.0.min(v), r.1.max(v)));
-                if ends.0 > ends.1 { (0.0, 1.0) } else { (ends.0.floor(), ends.1.ceil().max(ends.0.floor() + 1.0)) }
+                let ends =
+                    of_values.fold((f64::INFINITY, f64::NEG_INFINITY), |r, v| (r.0.min(v), r.1.max(v)));
+                if ends.0 > ends.1 {
+                    (0.0, 1.0)
+                } else {
+                    (ends.0.floor(), ends.1.ceil().max(ends.0.floor() + 1.0))
+                }
             }
             None => nice(values, 6),
         };

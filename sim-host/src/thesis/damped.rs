@@ -1,0 +1,86 @@
+//! Fits of a damped oscillation to a response (appendix C).
+
+use super::simplex::minimum;
+use std::ops::RangeInclusive;
+
+/// Samples of a signal: time \[s\] and value.
+pub type Samples = [(f64, f64)];
+
+/// What a fit says of the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fitted {
+    /// Real part of the eigenvalue \[1/s\]: `-beta` or `-gamma`.
+    pub real: f64,
+    /// Imaginary part \[rad/s\]: `omega`; 0 of a capsize fit.
+    pub imaginary: f64,
+    /// Root-mean-square residual as a part of the signal's root mean square.
+    pub residual: f64,
+}
+
+/// What bounds the parameters of a fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bounds {
+    /// `omega` \[rad/s\].
+    pub omega: RangeInclusive<f64>,
+    /// `beta` \[1/s\].
+    pub beta: RangeInclusive<f64>,
+}
+
+/// Eq. C.1, `(A sin(omega t) + B cos(omega t)) exp(-beta t) + E`, from plain ones, E from zero.
+pub fn oscillation(samples: &Samples) -> Fitted {
+    let found = minimum([1.0, 1.0, 1.0, 1.0, 0.0], |p| squares(samples, |t| damped(p, t)));
+    fitted(samples, -found[3], found[2].abs(), |t| damped(&found, t))
+}
+
+/// The same within bounds, from their middle; amplitudes within twice the signal's largest value.
+pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
+    let peak = samples.iter().fold(0.0_f64, |m, s| m.max(s.1.abs()));
+    let clamped = |[a, b, omega, beta, e]: &[f64; 5]| {
+        let within = |x: &f64, r: &RangeInclusive<f64>| x.clamp(*r.start(), *r.end());
+        let amplitude = |x: &f64| x.clamp(-2.0 * peak, 2.0 * peak);
+        [amplitude(a), amplitude(b), within(omega, &bounds.omega), within(beta, &bounds.beta), amplitude(e)]
+    };
+    let middle = |r: &RangeInclusive<f64>| 0.5 * (r.start() + r.end());
+    let start = [peak, peak, middle(&bounds.omega), middle(&bounds.beta), 0.0];
+    let found = clamped(&minimum(start, |p| squares(samples, |t| damped(&clamped(p), t))));
+    fitted(samples, -found[3], found[2], |t| damped(&found, t))
+}
+
+/// Eq. C.2, `D exp(-gamma t)`, for capsize.
+pub fn decay(samples: &Samples) -> Fitted {
+    let model = |[d, gamma]: &[f64; 2], t: f64| d * (-gamma * t).exp();
+    let peak = samples.iter().fold(0.0_f64, |m, s| m.max(s.1.abs()));
+    let found = minimum([peak, 1.0], |p| squares(samples, |t| model(p, t)));
+    fitted(samples, -found[1], 0.0, |t| model(&found, t))
+}
+
+fn damped([a, b, omega, beta, e]: &[f64; 5], t: f64) -> f64 {
+    let (s, c) = (omega * t).sin_cos();
+    (a * s + b * c) * (-beta * t).exp() + e
+}
+
+fn squares(samples: &Samples, model: impl Fn(f64) -> f64) -> f64 {
+    samples.iter().map(|&(t, y)| (y - model(t)).powi(2)).sum()
+}
+
+fn fitted(samples: &Samples, real: f64, imaginary: f64, model: impl Fn(f64) -> f64) -> Fitted {
+    let size = squares(samples, |_| 0.0).max(f64::MIN_POSITIVE);
+    Fitted { real, imaginary, residual: (squares(samples, model) / size).sqrt() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_oscillation_close_to_the_start_is_found() {
+        let samples: Vec<_> = (0..300)
+            .map(|i| 0.02 * f64::from(i))
+            .map(|t| (t, 2.0 * (1.3 * t).sin() * (-0.7 * t).exp() + 0.1))
+            .collect();
+        let fit = oscillation(&samples);
+        assert!((fit.real + 0.7).abs() < 1e-2 && (fit.imaginary - 1.3).abs() < 1e-2, "{fit:?}");
+        let within = bounded(&samples, &Bounds { omega: 0.0..=3.0, beta: 0.0..=2.0 });
+        assert!((within.real + 0.7).abs() < 1e-2 && within.residual < 1e-2, "{within:?}");
+    }
+}
