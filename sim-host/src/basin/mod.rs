@@ -6,4 +6,4 @@ mod search;
 
 pub use compare::{Rmse, rmse};
 pub use outline::{Basin, Column, Island, ScanPoint, Work};
-pub use search::{Axis, Search, SearchError, basin, column};
+pub use search::{Axis, Search, SearchError, basin, border, column};

@@ -1,6 +1,6 @@
 //! Whose basin: a small key that fixes every condition of a search.
 
-use crate::basin::{Axis, Search};
+use crate::basin::{Axis, Column, Search, border, column};
 use crate::bicycle::Geometry;
 use crate::ride::{Assist, Conditions, ScheduleSpeed};
 use control::Law;
@@ -14,6 +14,8 @@ pub struct Case {
     pub schedule: ScheduleSpeed,
     /// Which speeds.
     pub span: Span,
+    /// Whether the scan goes on beyond the first fall, for a map of the falls.
+    pub map: bool,
 }
 
 /// A law of the thesis, continuous and without limits.
@@ -78,7 +80,12 @@ impl Assisted {
 impl Case {
     /// The basin of a law over all speeds, scheduled by the front wheel.
     pub fn of(law: Assisted) -> Self {
-        Self { law, schedule: ScheduleSpeed::Front, span: Span::All }
+        Self { law, schedule: ScheduleSpeed::Front, span: Span::All, map: false }
+    }
+
+    /// The same with a map of the falls beyond the border.
+    pub fn mapped(self) -> Self {
+        Self { map: true, ..self }
     }
 
     /// The same scheduled by another speed.
@@ -92,6 +99,12 @@ impl Case {
         Conditions { schedule_speed: self.schedule, ..thesis }
     }
 
+    /// The basin at one speed.
+    pub fn column(&self, bicycle: &Geometry, resolution: &Resolution, speed: f64) -> Column {
+        let find = if self.map { column } else { border };
+        find(&self.conditions(bicycle), &self.search(resolution), speed)
+    }
+
     /// What is searched.
     pub fn search(&self, resolution: &Resolution) -> Search {
         let (from, to) = match self.span {
@@ -100,12 +113,10 @@ impl Case {
         };
         let n = ((to - from) / resolution.speed_step + 1e-9) as usize;
         let speed = |i: usize| ((from + i as f64 * resolution.speed_step) * 1e9).round() / 1e9;
-        // The uncontrolled bicycle falls from far less, and slowly computed falls are most of its work.
-        let max_rate = if self.law == Assisted::Alone { 16.0 } else { 30.0 };
         Search {
             speeds: (0..=n).map(speed).collect(),
             axis: Axis::SteerRate,
-            max_rate,
+            max_rate: 30.0,
             scan_step: resolution.scan_step,
             tolerance: resolution.tolerance,
         }

@@ -6,19 +6,19 @@ use super::draw::{SELF_STABLE, SPEED, STEER_RATE, outline, over_time};
 use super::heights::{between, coarse, exact, mean};
 use super::item::{Figure, Item, Value};
 use super::study::Study;
-use crate::basin::{Basin, column};
+use crate::basin::Basin;
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use crate::ride::{ScheduleSpeed, Start, TracePoint, traced};
 use std::sync::Arc;
 
 /// The basins of Figure 3.7.
 pub(super) fn cases_3_7() -> Vec<Case> {
-    vec![Case::of(Assisted::Cl1)]
+    vec![Case::of(Assisted::Cl1).mapped()]
 }
 
 /// Figure 3.7: the basin of CL1.
 pub(super) fn figure_3_7(study: &Study) -> Item {
-    let basin = study.basin(&Case::of(Assisted::Cl1));
+    let basin = study.basin(&Case::of(Assisted::Cl1).mapped());
     let caption = "Basin of attraction under CL1. Inside: rides of 6 s that do not fall; outside, the colour tells the \
                    time to the fall.";
     Item {
@@ -94,10 +94,7 @@ pub(super) fn figure_3_10(study: &Study) -> Item {
 
 /// Fills `value` with a basin's height at one speed.
 fn height_at(study: &Study, case: Case, speed: f64, value: Value) -> Value {
-    let at = |case: Case| {
-        let search = case.search(&study.resolution);
-        Basin { columns: vec![column(&case.conditions(&study.bicycle), &search, speed)] }
-    };
+    let at = |case: Case| Basin { columns: vec![case.column(&study.bicycle, &study.resolution, speed)] };
     let basin = at(case);
     Value { exact: Some(mean(&exact(&basin))), coarse: Some(mean(&coarse(&basin))), ..value }
         .tried(BY_REAR, mean(&exact(&at(case.scheduled(ScheduleSpeed::Rear)))))

@@ -65,7 +65,8 @@ pub struct ValueEntry {
     pub coarse: Option<f64>,
     /// `exact` from `published`, in % of it.
     pub difference_percent: Option<f64>,
-    /// "" for a difference up to 2 %, "explained: WHAT", or "unexplained", with what comes closest.
+    /// "" for a difference up to 2 % or the rounding of the print, and where a printed bound holds;
+    /// "explained: WHAT", or "unexplained", with what comes closest.
     pub explanation: String,
     /// Numbers under other readings of the text.
     pub experiments: Vec<ExperimentEntry>,
@@ -104,7 +105,7 @@ impl ValueEntry {
             row: cell.row.clone(),
             column: cell.column.clone(),
             unit: cell.unit.clone(),
-            published: cell.printed,
+            published: cell.printed.map(|p| p.value),
             from: cell.from.clone(),
             exact: finite(value.exact),
             coarse: finite(value.coarse),

@@ -1,6 +1,6 @@
 //! What an item of the thesis consists of when it has been computed again.
 
-use super::published::{self, Cell};
+use super::published::{self, Bound, Cell};
 use crate::report::figure::Picture;
 
 /// Differences up to this need no explanation \[%\].
@@ -68,7 +68,8 @@ pub struct Experiment {
 /// What a difference from the print comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Explanation {
-    /// Nothing is printed, or nothing computed, or the difference is small.
+    /// Nothing is printed, or nothing computed, or the difference is small: within [`ACCEPTED_PERCENT`],
+    /// the rounding of the print, or the bound that is printed.
     NotNeeded,
     /// The printed grid or an experiment comes within [`ACCEPTED_PERCENT`]; its name.
     Explained(String),
@@ -99,7 +100,7 @@ impl Value {
     /// How far the exact number is from the printed one \[%\] of it; `None` without both, and where
     /// the printed one is zero but the exact one is not.
     pub fn difference(&self) -> Option<f64> {
-        percent(self.exact?, self.cell.printed?)
+        percent(self.exact?, self.cell.printed?.value)
     }
 
     /// Where the difference comes from.
@@ -107,7 +108,16 @@ impl Value {
         let (Some(exact), Some(printed)) = (self.exact, self.cell.printed) else {
             return Explanation::NotNeeded;
         };
-        let close = |x: f64| percent(x, printed).is_some_and(|d| d.abs() <= ACCEPTED_PERCENT);
+        let close = |x: f64| {
+            let rounded = (x - printed.value).abs() <= printed.rounding * (1.0 + 1e-9);
+            let bounded = match self.cell.bound {
+                Some(Bound::Above) => x >= printed.value,
+                Some(Bound::Below) => x <= printed.value,
+                None => false,
+            };
+            rounded || bounded || percent(x, printed.value).is_some_and(|d| d.abs() <= ACCEPTED_PERCENT)
+        };
+        let printed = printed.value;
         if close(exact) {
             return Explanation::NotNeeded;
         }
@@ -142,24 +152,30 @@ impl Item {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::thesis::published::Printed;
 
-    fn value(printed: Option<f64>, exact: f64) -> Value {
+    fn value(printed: Option<&str>, exact: f64) -> Value {
         let text = String::new;
-        let cell = Cell { row: text(), column: text(), unit: text(), from: text(), printed };
+        let printed = printed.map(|p| Printed::parse(p).unwrap());
+        let cell = Cell { row: text(), column: text(), unit: text(), from: text(), printed, bound: None };
         Value::new(cell, Some(exact))
     }
 
     #[test]
     fn a_difference_is_explained_by_what_comes_close() {
         assert_eq!(value(None, 5.0).explanation(), Explanation::NotNeeded);
-        assert_eq!(value(Some(5.0), 5.05).explanation(), Explanation::NotNeeded);
-        assert_eq!(value(Some(5.0), 6.0).explanation(), Explanation::Unexplained(None));
-        let far = value(Some(5.0), 6.0).tried("half", 5.5).tried("worse", 7.0);
+        assert_eq!(value(Some("5.0"), 5.05).explanation(), Explanation::NotNeeded);
+        assert_eq!(value(Some("5"), 5.4).explanation(), Explanation::NotNeeded);
+        let mut above = value(Some("5.0"), 6.0);
+        assert_eq!(above.explanation(), Explanation::Unexplained(None));
+        above.cell.bound = Some(Bound::Above);
+        assert_eq!(above.explanation(), Explanation::NotNeeded);
+        let far = value(Some("5.0"), 6.0).tried("half", 5.5).tried("worse", 7.0);
         let Explanation::Unexplained(Some((name, part))) = far.explanation() else { panic!("{far:?}") };
         assert_eq!((name.as_str(), part.round()), ("half", 50.0));
         let near = far.on_grid(Some(5.01));
         assert_eq!(near.explanation(), Explanation::Explained(COARSE.into()));
-        assert_eq!(value(Some(0.0), 1.0).difference(), None);
-        assert_eq!(value(Some(0.0), 0.0).difference(), Some(0.0));
+        assert_eq!(value(Some("0.0"), 1.0).difference(), None);
+        assert_eq!(value(Some("0.0"), 0.0).difference(), Some(0.0));
     }
 }

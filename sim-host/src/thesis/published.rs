@@ -15,7 +15,49 @@ pub struct Published {
     pub height: Vec<Heights>,
 }
 
-/// A table of numbers; NaN where nothing is printed.
+/// A number as printed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Printed {
+    /// The number.
+    pub value: f64,
+    /// Half a unit of its last digit: how far rounding can have moved it.
+    pub rounding: f64,
+}
+
+impl Printed {
+    /// A number with its digits.
+    ///
+    /// # Errors
+    /// When the text is no number.
+    pub fn parse(text: &str) -> Result<Self, std::num::ParseFloatError> {
+        let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+        Ok(Self { value: text.parse()?, rounding: 0.5 * 10f64.powi(-(decimals as i32)) })
+    }
+}
+
+/// A text that is a printed number, or empty.
+fn cell_text<'de, D: serde::Deserializer<'de>>(from: D) -> Result<Option<Printed>, D::Error> {
+    let text = String::deserialize(from)?;
+    let wrong = |e| serde::de::Error::custom(format!("`{text}`: {e}"));
+    if text.is_empty() { Ok(None) } else { Printed::parse(&text).map(Some).map_err(wrong) }
+}
+
+/// A cell of a table in the file.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(transparent)]
+pub struct CellText(#[serde(deserialize_with = "cell_text")] pub Option<Printed>);
+
+/// What a sentence says of a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Bound {
+    /// The true one is higher.
+    Above,
+    /// The true one is lower.
+    Below,
+}
+
+/// A table of numbers.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
@@ -41,7 +83,7 @@ pub struct Row {
     /// Its name.
     pub name: String,
     /// Its values, by column.
-    pub values: Vec<f64>,
+    pub values: Vec<CellText>,
 }
 
 /// A number from a sentence.
@@ -59,9 +101,12 @@ pub struct Quoted {
     /// Unit, empty for a pure number.
     pub unit: String,
     /// The number.
-    pub value: f64,
+    pub value: CellText,
     /// The sentence, shortened.
     pub words: String,
+    /// Whether only a bound is printed.
+    #[serde(default)]
+    pub bound: Option<Bound>,
 }
 
 /// Heights of one run's gain sets (Tables I.1 and I.2).
@@ -105,7 +150,9 @@ pub struct Cell {
     /// Unit.
     pub unit: String,
     /// The number; `None` where nothing is printed.
-    pub printed: Option<f64>,
+    pub printed: Option<Printed>,
+    /// Whether only a bound is printed.
+    pub bound: Option<Bound>,
     /// Table, figure, equation or section.
     pub from: String,
 }
@@ -124,11 +171,12 @@ pub fn published() -> &'static Published {
 pub fn cells(item: &str) -> Vec<Cell> {
     let tables = published().table.iter().filter(|t| t.item == item).flat_map(|table| {
         table.rows.iter().flat_map(move |row| {
-            row.values.iter().enumerate().map(move |(i, &value)| Cell {
+            row.values.iter().enumerate().map(move |(i, value)| Cell {
                 row: row.name.clone(),
                 column: table.columns[i].clone(),
                 unit: table.units[i].clone(),
-                printed: Some(value).filter(|v| v.is_finite()),
+                printed: value.0,
+                bound: None,
                 from: table.from.clone(),
             })
         })
@@ -137,7 +185,8 @@ pub fn cells(item: &str) -> Vec<Cell> {
         row: q.row.clone(),
         column: q.column.clone(),
         unit: q.unit.clone(),
-        printed: Some(q.value),
+        printed: q.value.0,
+        bound: q.bound,
         from: q.from.clone(),
     });
     tables.chain(quoted).collect()

@@ -3,9 +3,7 @@
 
 use crate::bicycle::{Geometry, Motion, State, Torques};
 use crate::integrate::rate;
-use differential_equations::prelude::{
-    BackwardDifferentiationFormula, ExplicitRungeKutta, IVP, ImplicitRungeKutta, ODE,
-};
+use differential_equations::prelude::{BackwardDifferentiationFormula, ExplicitRungeKutta, IVP, ODE};
 use std::f64::consts::FRAC_PI_2;
 
 /// Roll, steer, their rates, rear wheel rate; and the pitch, which the first two fix, as the start of
@@ -121,13 +119,11 @@ pub enum Adaptive {
     Dop853,
     /// Backward differentiation of orders 1 to 5: the family of MATLAB's `ode15s`.
     Bdf,
-    /// Radau IIA of fifth order.
-    Radau5,
 }
 
 impl Adaptive {
     /// All of them.
-    pub const ALL: [Self; 4] = [Adaptive::Dopri5, Adaptive::Bdf, Adaptive::Dop853, Adaptive::Radau5];
+    pub const ALL: [Self; 3] = [Adaptive::Dopri5, Adaptive::Bdf, Adaptive::Dop853];
 
     /// Its name in the report.
     pub fn name(self) -> &'static str {
@@ -135,7 +131,6 @@ impl Adaptive {
             Adaptive::Dopri5 => "Dormand-Prince 5 (as ode45)",
             Adaptive::Dop853 => "Dormand-Prince 8",
             Adaptive::Bdf => "BDF 1 to 5 (as ode15s)",
-            Adaptive::Radau5 => "Radau IIA 5",
         }
     }
 }
@@ -166,10 +161,6 @@ pub fn adaptive(
         Adaptive::Bdf => {
             let method = BackwardDifferentiationFormula::adaptive().rtol(tolerance).atol(tolerance);
             ivp.method(method.h_max(h_max).max_steps(MOST_STEPS)).solve()
-        }
-        Adaptive::Radau5 => {
-            let method = ImplicitRungeKutta::radau5().rtol(tolerance).atol(tolerance).h_max(h_max);
-            ivp.method(method.max_steps(MOST_STEPS)).solve()
         }
     };
     let solution = solution.ok()?;

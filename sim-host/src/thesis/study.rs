@@ -1,7 +1,7 @@
 //! What all items share: the bicycle, the resolution, and basins computed once.
 
 use super::case::{Assisted, Case, Resolution};
-use crate::basin::{Basin, Column, column};
+use crate::basin::{Basin, Column};
 use crate::bicycle::linear::Linear;
 use crate::bicycle::{Geometry, Parameters, catalogue};
 use crate::eigen::{CriticalSpeeds, critical_speeds};
@@ -58,8 +58,8 @@ impl Study {
         if let Some(found) = self.stored(case) {
             return found;
         }
-        let (conditions, search) = (case.conditions(&self.bicycle), case.search(&self.resolution));
-        let columns = search.speeds.par_iter().map(|&v| column(&conditions, &search, v)).collect();
+        let speeds = case.search(&self.resolution).speeds;
+        let columns = speeds.par_iter().map(|&v| case.column(&self.bicycle, &self.resolution, v)).collect();
         self.store(*case, Basin { columns })
     }
 
@@ -73,15 +73,14 @@ impl Study {
     /// not kept.
     pub fn prepare(&self, cases: &[Case], finished: impl Fn() + Sync, stop: impl Fn() -> bool + Sync) {
         let missing: Vec<&Case> = cases.iter().filter(|c| !self.has(c)).collect();
-        let setups: Vec<_> =
-            missing.iter().map(|c| (c.conditions(&self.bicycle), c.search(&self.resolution))).collect();
-        let jobs = setups.iter().enumerate().flat_map(|(i, (_, s))| (0..s.speeds.len()).map(move |k| (i, k)));
-        // A bridge hands the jobs out in order: the first items are done first.
+        let speeds: Vec<Vec<f64>> = missing.iter().map(|c| c.search(&self.resolution).speeds).collect();
+        let jobs = speeds.iter().enumerate().flat_map(|(i, s)| (0..s.len()).map(move |k| (i, k)));
+        // A bridge hands the jobs out in order and one by one.
         let mut done: Vec<(usize, usize, Column)> = jobs
             .par_bridge()
             .filter_map(|(i, k)| {
-                let (conditions, search) = &setups[i];
-                let column = (!stop()).then(|| column(conditions, search, search.speeds[k]))?;
+                let one = || missing[i].column(&self.bicycle, &self.resolution, speeds[i][k]);
+                let column = (!stop()).then(one)?;
                 finished();
                 Some((i, k, column))
             })
@@ -93,7 +92,7 @@ impl Study {
             while let Some((_, _, column)) = done.next_if(|(of, _, _)| *of == i) {
                 columns.push(column);
             }
-            if columns.len() == setups[i].1.speeds.len() {
+            if columns.len() == speeds[i].len() {
                 self.store(*case, Basin { columns });
             }
         }

@@ -145,7 +145,7 @@ impl Series {
 
 /// How opaque a filled area is.
 const FILLED: f64 = 0.25;
-const LEFT: f64 = 66.0;
+const LEFT: f64 = 76.0;
 const TITLE: f64 = 40.0;
 const PLOT_TITLE: f64 = 22.0;
 const BELOW: f64 = 48.0;

@@ -25,7 +25,7 @@ impl Fitted {
                     (ends.0.floor(), ends.1.ceil().max(ends.0.floor() + 1.0))
                 }
             }
-            None => nice(values, 6),
+            None => roomy(values.filter(|v| v.is_finite()).collect()),
         };
         Self { log: axis.log, range }
     }
@@ -46,4 +46,13 @@ impl Fitted {
         let step = ((to - from) as f64 / f64::from(most)).ceil().max(1.0) as usize;
         (from..=to).step_by(step).map(|decade| (f64::from(decade), format!("1e{decade}"))).collect()
     }
+}
+
+/// A range with round ends and some room, so that lines do not lie on the frame; one that begins at
+/// zero stays there.
+fn roomy(values: Vec<f64>) -> (f64, f64) {
+    let (low, high) = nice(values.iter().copied(), 6);
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let room = 0.04 * (high - low);
+    (if least == 0.0 { low } else { low - room }, high + room)
 }

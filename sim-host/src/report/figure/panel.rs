@@ -3,6 +3,7 @@
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{INK, STABLE};
 use super::scale::ticks;
+use super::shape::text_width;
 use kuva::render::render::TextAnchor;
 
 const TICK_TEXT: u32 = 12;
@@ -101,6 +102,7 @@ impl Panel {
         if let Some(label) = x_label {
             canvas.text((x + 0.5 * width, bottom + 36.0), LABEL_TEXT, TextAnchor::Middle, label);
         }
-        canvas.text_upwards((x - LABEL_GAP, y + 0.5 * height), LABEL_TEXT, y_label);
+        let widest = along_y.iter().map(|(_, number)| text_width(number, TICK_TEXT)).fold(0.0, f64::max);
+        canvas.text_upwards((x - LABEL_GAP.max(widest + 16.0), y + 0.5 * height), LABEL_TEXT, y_label);
     }
 }
