@@ -64,7 +64,7 @@ enum Command {
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
-        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check"])]
+        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "thesis"])]
         document: String,
     },
 }

@@ -247,6 +247,7 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "ride" => generator.into_root_schema_for::<RideDocument>(),
         "eigen" => generator.into_root_schema_for::<EigenDocument>(),
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
+        "thesis" => generator.into_root_schema_for::<crate::thesis::document::ThesisDocument>(),
         _ => return None,
     };
     // The descriptions are the doc comments, whose brackets are escaped.

@@ -107,12 +107,12 @@ impl Case {
 
     /// What is searched.
     pub fn search(&self, resolution: &Resolution) -> Search {
-        let (from, to) = match self.span {
-            Span::All => (0.0, 10.0),
-            Span::Ridden => (2.0, 7.5),
+        let (from, to, step) = match self.span {
+            Span::All => (0.0, 10.0, resolution.assist_speed_step),
+            Span::Ridden => (2.0, 7.5, resolution.rider_speed_step),
         };
-        let n = ((to - from) / resolution.speed_step + 1e-9) as usize;
-        let speed = |i: usize| ((from + i as f64 * resolution.speed_step) * 1e9).round() / 1e9;
+        let n = ((to - from) / step + 1e-9) as usize;
+        let speed = |i: usize| ((from + i as f64 * step) * 1e9).round() / 1e9;
         Search {
             speeds: (0..=n).map(speed).collect(),
             axis: Axis::SteerRate,
@@ -126,8 +126,10 @@ impl Case {
 /// How finely basins are searched.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Resolution {
-    /// Step of the speeds \[m/s\].
-    pub speed_step: f64,
+    /// Step of the speeds from 0 to 10 m/s \[m/s\].
+    pub assist_speed_step: f64,
+    /// Step of the speeds from 2 to 7.5 m/s, where riders were measured \[m/s\].
+    pub rider_speed_step: f64,
     /// Step of the scan \[rad/s\]; a whole part of [`GRID`].
     pub scan_step: f64,
     /// How closely borders are located \[rad/s\].
@@ -139,7 +141,9 @@ pub const GRID: f64 = 0.5;
 
 impl Resolution {
     /// For the report.
-    pub const FULL: Self = Self { speed_step: 0.1, scan_step: 0.25, tolerance: 0.01 };
+    pub const FULL: Self =
+        Self { assist_speed_step: 0.1, rider_speed_step: 0.1, scan_step: 0.25, tolerance: 0.01 };
     /// For a look.
-    pub const QUICK: Self = Self { speed_step: 0.5, scan_step: 0.5, tolerance: 0.05 };
+    pub const QUICK: Self =
+        Self { assist_speed_step: 1.0, rider_speed_step: 0.5, scan_step: 0.5, tolerance: 0.05 };
 }

@@ -53,7 +53,7 @@ pub(super) fn figure_2_3(study: &Study) -> Item {
     let mut plots = Vec::new();
     let mut circle = None;
     for (title, speed, seconds) in rides {
-        let trace = free_ride(study, speed, seconds);
+        let trace = free_ride(study, speed, SMALL, seconds);
         if speed == v_c {
             circle = time_of_full_turn(&trace);
         }
@@ -68,7 +68,13 @@ pub(super) fn figure_2_3(study: &Study) -> Item {
     }
     let title = format!("Modes of the bicycle: roll rate after a steer rate of {SMALL} rad/s");
     let chart = Chart { title, columns: 2, plots, shaded: String::new() };
-    let values = Item::compare("figure-2.3", |cell| Value::new(cell, circle));
+    let values = Item::compare("figure-2.3", |cell| {
+        let tried =
+            [0.2, 0.25, 0.3].map(|rate| (rate, time_of_full_turn(&free_ride(study, v_c, rate, 600.0))));
+        tried.iter().fold(Value::new(cell, circle), |value, (rate, time)| {
+            value.tried(&format!("a disturbance of {rate} rad/s"), time.unwrap_or(f64::NAN))
+        })
+    });
     let caption = format!(
         "Roll rate of the nonlinear uncontrolled bicycle after an initial steer rate of {SMALL} rad/s (the \
          thesis says “a small perturbation”), at 4, 7 and 14 m/s and at the computed v_w = {v_w:.3} and \
@@ -82,10 +88,10 @@ pub(super) fn figure_2_3(study: &Study) -> Item {
     Item { values, figures, notes, ..Item::default() }
 }
 
-fn free_ride(study: &Study, speed: f64, seconds: f64) -> Vec<TracePoint> {
+fn free_ride(study: &Study, speed: f64, steer_rate: f64, seconds: f64) -> Vec<TracePoint> {
     let conditions =
         Conditions { time_limit_s: seconds, ..Conditions::thesis(study.bicycle, crate::ride::Assist::None) };
-    traced(&conditions, Start { speed_m_s: speed, steer_rate_rad_s: SMALL, roll_rate_rad_s: 0.0 }).1
+    traced(&conditions, Start { speed_m_s: speed, steer_rate_rad_s: steer_rate, roll_rate_rad_s: 0.0 }).1
 }
 
 /// When the bicycle has turned once about the vertical \[s\].

@@ -42,7 +42,8 @@ pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
     };
     let middle = |r: &RangeInclusive<f64>| 0.5 * (r.start() + r.end());
     let start = [peak, peak, middle(&bounds.omega), middle(&bounds.beta), 0.0];
-    let found = clamped(&minimum(start, |p| squares(samples, |t| damped(&clamped(p), t))));
+    let model = |p: &[f64; 5], t: f64| damped(&clamped(p), t);
+    let found = clamped(&patiently(samples, start, model));
     fitted(samples, -found[3], found[2], |t| damped(&found, t))
 }
 
@@ -50,8 +51,20 @@ pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
 pub fn decay(samples: &Samples) -> Fitted {
     let model = |[d, gamma]: &[f64; 2], t: f64| d * (-gamma * t).exp();
     let peak = samples.iter().fold(0.0_f64, |m, s| m.max(s.1.abs()));
-    let found = minimum([peak, 1.0], |p| squares(samples, |t| model(p, t)));
+    let found = patiently(samples, [peak, 1.0], model);
     fitted(samples, -found[1], 0.0, |t| model(&found, t))
+}
+
+/// A simplex search begun anew from its result, on the residual as a part of the signal: the
+/// tolerances then do not depend on how small the signal is, as those of `fmincon` do not.
+fn patiently<const N: usize>(
+    samples: &Samples,
+    start: [f64; N],
+    model: impl Fn(&[f64; N], f64) -> f64,
+) -> [f64; N] {
+    let size = squares(samples, |_| 0.0).max(f64::MIN_POSITIVE);
+    let part = |p: &[f64; N]| 1e3 * squares(samples, |t| model(p, t)) / size;
+    (0..5).fold(start, |from, _| minimum(from, part))
 }
 
 fn damped([a, b, omega, beta, e]: &[f64; 5], t: f64) -> f64 {

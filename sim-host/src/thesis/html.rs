@@ -62,7 +62,7 @@ fn summary(document: &ThesisDocument) -> String {
         document.seconds,
         compared.len(),
         r.tolerance,
-        r.speed_step,
+        r.rider_speed_step,
         if document.quick { " (a quick look, coarser than the full report)" } else { "" },
     )
 }

@@ -200,7 +200,7 @@ fn legend(chart: &Chart) -> Vec<Entry> {
 
 fn draw(canvas: &mut Canvas, plot: &Plot, area: Area) {
     let values = |of: fn(&(f64, f64)) -> f64| plot.series.iter().flat_map(|s| &s.points).map(of);
-    let (x, y) = (Fitted::new(&plot.x, values(|p| p.0)), Fitted::new(&plot.y, values(|p| p.1)));
+    let (x, y) = (Fitted::new(&plot.x, values(|p| p.0), false), Fitted::new(&plot.y, values(|p| p.1), true));
     let panel = Panel { area, x: x.range, y: y.range };
     for &(from, to) in &plot.shaded {
         if let (Some(from), Some(to)) = (x.place(from), x.place(to)) {

@@ -10,8 +10,8 @@ pub(super) struct Fitted {
 }
 
 impl Fitted {
-    /// The range asked for, or one around `values`.
-    pub(super) fn new(axis: &Axis, values: impl Iterator<Item = f64>) -> Self {
+    /// The range asked for, or one around `values`, with some `room` or without.
+    pub(super) fn new(axis: &Axis, values: impl Iterator<Item = f64>, room: bool) -> Self {
         let scaled = |v: f64| if axis.log { v.log10() } else { v };
         let range = match axis.range {
             Some((low, high)) => (scaled(low), scaled(high)),
@@ -25,7 +25,8 @@ impl Fitted {
                     (ends.0.floor(), ends.1.ceil().max(ends.0.floor() + 1.0))
                 }
             }
-            None => roomy(values.filter(|v| v.is_finite()).collect()),
+            None if room => roomy(values.filter(|v| v.is_finite()).collect()),
+            None => nice(values, 6),
         };
         Self { log: axis.log, range }
     }
