@@ -85,26 +85,23 @@ pub(super) fn eigen_lines(study: &Study, law: Assisted, speeds: &[f64]) -> Eigen
 pub(super) fn sorted_lines(speeds: &[f64], at: impl Fn(f64) -> Vec<(f64, f64)>) -> EigenLines {
     let all: Vec<Vec<(f64, f64)>> = speeds.iter().map(|&v| at(v)).collect();
     let n = all.first().map_or(0, Vec::len);
-    let lines = |count: usize, of: &dyn Fn(&[(f64, f64)]) -> Vec<f64>| {
-        let sorted = all.iter().map(|values| {
-            let mut parts = of(values);
-            parts.sort_by(|a, b| b.total_cmp(a));
-            parts
-        });
-        let sorted: Vec<Vec<f64>> = sorted.collect();
-        let line = |k: usize| speeds.iter().zip(&sorted).map(move |(&v, parts)| (v, parts[k])).collect();
-        (0..count).map(line).collect()
-    };
-    let turning = |values: &[(f64, f64)]| {
+    let growth = all.iter().map(|values| values.iter().map(|e| e.0).collect()).collect();
+    let turning = |values: &Vec<(f64, f64)>| {
         let mut parts: Vec<f64> = values.iter().map(|e| e.1).filter(|im| *im > 1e-9).collect();
-        parts.resize(n, -1.0);
+        parts.resize(n, f64::NEG_INFINITY);
         parts
     };
-    let mut imaginary: Vec<Vec<(f64, f64)>> = lines(n / 2, &turning);
-    for point in imaginary.iter_mut().flatten().filter(|p| p.1 < 0.0) {
+    let mut imaginary = by_size(speeds, all.iter().map(turning).collect(), n / 2);
+    for point in imaginary.iter_mut().flatten().filter(|p| p.1.is_infinite()) {
         point.1 = f64::NAN;
     }
-    EigenLines { real: lines(n, &|values| values.iter().map(|e| e.0).collect()), imaginary }
+    EigenLines { real: by_size(speeds, growth, n), imaginary }
+}
+
+/// Lines through the largest, second largest... of `values` at every speed, `count` of them.
+fn by_size(speeds: &[f64], mut values: Vec<Vec<f64>>, count: usize) -> Vec<Vec<(f64, f64)>> {
+    values.iter_mut().for_each(|v| v.sort_by(|a, b| b.total_cmp(a)));
+    (0..count).map(|k| speeds.iter().zip(&values).map(|(&v, sorted)| (v, sorted[k])).collect()).collect()
 }
 
 /// The lines as series of one name.
