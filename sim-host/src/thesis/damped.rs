@@ -85,15 +85,15 @@ fn fitted(samples: &Samples, real: f64, imaginary: f64, model: impl Fn(f64) -> f
 mod tests {
     use super::*;
 
+    /// SciPy's Nelder-Mead, with the same start, tolerances and evaluations, ends at the same wrong
+    /// place; with patience the right one is found.
     #[test]
-    fn an_oscillation_close_to_the_start_is_found() {
-        let samples: Vec<_> = (0..300)
-            .map(|i| 0.02 * f64::from(i))
-            .map(|t| (t, 2.0 * (1.3 * t).sin() * (-0.7 * t).exp() + 0.1))
-            .collect();
+    fn an_oscillation_is_missed_as_elsewhere_and_found_with_patience() {
+        let signal = |t: f64| ((1.2 * t).sin() + 0.8 * (1.2 * t).cos()) * (-0.9 * t).exp() + 0.1;
+        let samples: Vec<_> = (0..300).map(|i| 0.02 * f64::from(i)).map(|t| (t, signal(t))).collect();
         let fit = oscillation(&samples);
-        assert!((fit.real + 0.7).abs() < 1e-2 && (fit.imaginary - 1.3).abs() < 1e-2, "{fit:?}");
+        assert!((fit.imaginary - 0.95970007).abs() < 1e-6 && (fit.real + 1.75235535).abs() < 1e-6, "{fit:?}");
         let within = bounded(&samples, &Bounds { omega: 0.0..=3.0, beta: 0.0..=2.0 });
-        assert!((within.real + 0.7).abs() < 1e-2 && within.residual < 1e-2, "{within:?}");
+        assert!((within.real + 0.9).abs() < 1e-3 && within.residual < 1e-3, "{within:?}");
     }
 }
