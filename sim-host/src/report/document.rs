@@ -260,6 +260,7 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "eigen" => generator.into_root_schema_for::<EigenDocument>(),
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
         "rider-show" => generator.into_root_schema_for::<super::rider::RiderDocument>(),
+        "thesis" => generator.into_root_schema_for::<crate::thesis::document::ThesisDocument>(),
         _ => return None,
     };
     // The descriptions are the doc comments, whose brackets are escaped.

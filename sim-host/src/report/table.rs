@@ -39,6 +39,19 @@ pub fn numbers(
     writer.into_inner().map_err(|e| csv::Error::from(std::io::Error::other(e.to_string())))
 }
 
+/// The same without the heading, as text.
+///
+/// # Errors
+/// When a row can't be written as a line of CSV.
+pub fn csv_text<R: Serialize>(rows: &[R]) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    let bytes = writer.into_inner().map_err(|e| csv::Error::from(std::io::Error::other(e.to_string())))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
 /// One line of a basin's table.
 #[derive(Clone, Debug, Serialize)]
 pub struct BasinRow {
