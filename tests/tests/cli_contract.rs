@@ -29,7 +29,13 @@ fn documents_fit_their_committed_schemas() {
         ("ride", "ride --speed 1 --steer-rate 25 --preset product --sensor-delay 20ms"),
         ("ride", "ride --speed 0"),
         ("ride", "ride --speed 4 --rider young --gains best"),
+        (
+            "basin-compare",
+            "basin compare a=--rider=smart b=--law=none --speeds 5:6:1 --max-rate 6 --scan-step 1",
+        ),
+        ("basin-plane", "basin plane --speed 5 --rays 4 --points 4 --tolerance 0.05"),
         ("eigen", "eigen --speeds 0:10:1"),
+        ("eigen", "eigen --rider smart --law h --speeds 3:4:0.5 --roots 6"),
         ("eigen", &format!("eigen --speeds 4 --law {}", law.display())),
         ("bicycle-check", "bicycle check"),
         ("bicycle-check", "bicycle check --bicycle yellowrev"),
@@ -38,7 +44,9 @@ fn documents_fit_their_committed_schemas() {
     ] {
         assert_eq!(violations(&committed(name), &bench.json(line)), [""; 0], "{line}");
     }
-    for name in ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis"] {
+    for name in
+        ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane"]
+    {
         let run = bench.run(&format!("schema {name}"));
         let file = std::fs::read_to_string(repository("docs/schema").join(format!("{name}.json"))).unwrap();
         assert!(run.stdout == file, "run: sim-host schema {name} > docs/schema/{name}.json");

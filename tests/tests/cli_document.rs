@@ -75,6 +75,8 @@ fn every_option_is_documented_with_its_default() {
         "bicycle accel",
         "rider show",
         "rider check",
+        "basin compare",
+        "basin plane",
         "thesis",
     ] {
         let help = bench.run(&format!("{command} --help")).stdout;

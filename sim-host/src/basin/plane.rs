@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 /// What is searched: rays from the undisturbed ride, evenly spread over half of the plane in units
 /// of the two largest rates; the other half is the mirror image.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct PlaneSearch {
     /// Forward speed \[m/s\].
     pub speed: f64,

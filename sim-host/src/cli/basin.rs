@@ -8,7 +8,7 @@ use crate::bicycle::linear::Linear;
 use crate::eigen::critical_speeds;
 use crate::report::document::BasinDocument;
 use crate::report::figure::{self, BasinFigure};
-use crate::report::resolved::{ResolvedSearch, axis_name};
+use crate::report::resolved::ResolvedSearch;
 use crate::report::{table, terminal};
 use crate::ride::Outcome;
 use control::Law;
@@ -24,14 +24,35 @@ Examples:
   sim-host basin --rider young --delay 60ms --gains best
   sim-host basin --law cl2:4 --assist ideal --schedule-speed rear
   sim-host basin --preset product --sensor-delay 20ms --csv product.csv
-  sim-host basin --bicycle my.toml#city --axis roll-rate --max-rate 5";
+  sim-host basin --bicycle my.toml#city --axis roll-rate --max-rate 5
+  sim-host basin compare 'young=--rider young' 'smart=--rider smart' --svg riders.svg
+  sim-host basin plane --speed 4 --rider smart --law h --svg plane.svg";
 
 /// Options of `basin`.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub(super) struct Args {
+    #[command(subcommand)]
+    command: Option<Command>,
     #[command(flatten)]
     conditions: ConditionArgs,
+    #[command(flatten)]
+    search: SearchArgs,
+    #[command(flatten)]
+    outputs: OutputArgs,
+}
+
+#[derive(clap::Subcommand)]
+enum Command {
+    /// Several basins in one figure, with area, mean height and distances (RMSE)
+    Compare(super::compare::Args),
+    /// The basin at one speed over steer rate and roll rate together
+    Plane(Box<super::plane::Args>),
+}
+
+/// What is searched and how finely.
+#[derive(clap::Args)]
+pub(super) struct SearchArgs {
     /// Forward speeds in m/s: A:B:STEP, B included, or one [default: 0:10:0.1; 2:7.5:0.1 with a rider]
     #[arg(long, value_parser = speeds::parse, value_name = "A:B:STEP", allow_hyphen_values = true)]
     speeds: Option<std::vec::Vec<f64>>,
@@ -47,29 +68,56 @@ pub(super) struct Args {
     /// How closely the borders are located, in rad/s
     #[arg(long, default_value_t = 0.01, value_name = "RAD/S", allow_negative_numbers = true)]
     tolerance: f64,
+    #[command(flatten)]
+    threads: ThreadArgs,
+}
+
+#[derive(clap::Args)]
+pub(super) struct ThreadArgs {
     /// Threads; the result does not depend on them [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    #[command(flatten)]
-    outputs: OutputArgs,
+}
+
+impl ThreadArgs {
+    /// The threads asked for.
+    pub(super) fn pool(&self) -> Result<rayon::ThreadPool, rayon::ThreadPoolBuildError> {
+        rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0).into()).build()
+    }
+}
+
+impl SearchArgs {
+    /// The search, checked; with a rider (`ridden`) over the speeds where gains are known.
+    pub(super) fn search(&self, ridden: bool) -> Result<Search, Failure> {
+        let speeds = if ridden { "2:7.5:0.1" } else { "0:10:0.1" };
+        let search = Search {
+            speeds: self.speeds.clone().map_or_else(|| speeds::parse(speeds), Ok)?,
+            axis: self.axis,
+            max_rate: self.max_rate,
+            scan_step: self.scan_step,
+            tolerance: self.tolerance,
+        };
+        search.check()?;
+        Ok(search)
+    }
+
+    pub(super) fn pool(&self) -> Result<rayon::ThreadPool, rayon::ThreadPoolBuildError> {
+        self.threads.pool()
+    }
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    match &args.command {
+        Some(Command::Compare(args)) => return super::compare::run(args),
+        Some(Command::Plane(args)) => return super::plane::run(args),
+        None => {}
+    }
     let setup = args.conditions.setup()?;
-    // A rider's gains are known from 2.1 to 7.4 m/s.
-    let speeds = if args.conditions.ridden() { "2:7.5:0.1" } else { "0:10:0.1" };
-    let search = Search {
-        speeds: args.speeds.clone().map_or_else(|| speeds::parse(speeds), Ok)?,
-        axis: args.axis,
-        max_rate: args.max_rate,
-        scan_step: args.scan_step,
-        tolerance: args.tolerance,
-    };
-    search.check()?;
+    let search = args.search.search(args.conditions.ridden())?;
     let outputs = args.outputs.open(None)?;
     interrupt::install();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.unwrap_or(0).into()).build()?;
-    let bar = progress(outputs.shows_progress(), search.speeds.len());
+    let pool = args.search.pool()?;
+    let bar = progress(outputs.shows_progress(), search.speeds.len(), "speeds");
     let begin = Instant::now();
     let result = pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
     let seconds = begin.elapsed().as_secs_f64();
@@ -80,12 +128,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         return Ok(Ended::Interrupted);
     }
     let complete = result.columns.len() == search.speeds.len();
-    let resolved = ResolvedSearch {
-        axis: axis_name(search.axis).into(),
-        max_rate: search.max_rate,
-        scan_step: search.scan_step,
-        tolerance: search.tolerance,
-    };
+    let resolved = ResolvedSearch::new(&search);
     let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, &result, seconds);
     let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
     let label = setup.config.label();
@@ -116,12 +159,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 }
 
 /// A bar with the time left, on standard error, and only on a terminal.
-fn progress(shown: bool, speeds: usize) -> ProgressBar {
+pub(super) fn progress(shown: bool, count: usize, what: &str) -> ProgressBar {
     if !shown {
         return ProgressBar::hidden();
     }
-    let style = ProgressStyle::with_template("basin {bar:40} {pos}/{len} speeds, {elapsed} gone, {eta} left");
-    ProgressBar::new(speeds as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    let template = format!("basin {{bar:40}} {{pos}}/{{len}} {what}, {{elapsed}} gone, {{eta}} left");
+    let style = ProgressStyle::with_template(&template);
+    ProgressBar::new(count as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
 /// The answer in words.

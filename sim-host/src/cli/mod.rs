@@ -3,11 +3,13 @@
 mod accel;
 mod basin;
 mod bicycle;
+mod compare;
 mod conditions;
 mod eigen;
 mod interrupt;
 mod law;
 mod outputs;
+mod plane;
 mod ride;
 mod rider;
 mod rider_args;
@@ -70,7 +72,7 @@ enum Command {
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
-        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis"])]
+        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane"])]
         document: String,
     },
 }

@@ -65,7 +65,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     outputs.write(Results {
         document: &document,
         config: &config,
-        summary: || terminal::ride(&figure, 80) + &summary(&ride),
+        summary: || terminal::ride(&figure, 80) + &summary(&ride, setup.conditions.rider.is_some()),
         table: || table::table(&config, &trace),
         figure: || figure::ride(&figure),
     })?;
@@ -73,7 +73,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
-fn summary(ride: &Ride) -> String {
+fn summary(ride: &Ride, ridden: bool) -> String {
     let (e, mut text) = (&ride.effort, String::new());
     let _ = match ride.outcome.time_to_fall_s() {
         Some(t) => writeln!(text, "fallen after {t:.6} s"),
@@ -90,5 +90,15 @@ fn summary(ride: &Ride) -> String {
         "torque: peak {:.2} N m, rms {:.2} N m, peak slew {:.1} N m/s; motor energy {:.2} J (pushing {:.2} J)",
         e.peak_torque_nm, e.rms_torque_nm, e.peak_slew_nm_s, e.motor_energy_j, e.motor_energy_out_j
     );
+    if ridden {
+        let _ = writeln!(
+            text,
+            "rider: peak {:.2} N m, rms {:.2} N m, energy {:.2} J; against the assist {:.0} % of the time",
+            e.rider_peak_torque_nm,
+            e.rider_rms_torque_nm,
+            e.rider_energy_j,
+            100.0 * e.opposed
+        );
+    }
     text
 }

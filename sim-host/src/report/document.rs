@@ -256,6 +256,8 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
     let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
     let schema = match command {
         "basin" => generator.into_root_schema_for::<BasinDocument>(),
+        "basin-compare" => generator.into_root_schema_for::<super::compare::CompareDocument>(),
+        "basin-plane" => generator.into_root_schema_for::<super::plane::PlaneDocument>(),
         "ride" => generator.into_root_schema_for::<RideDocument>(),
         "eigen" => generator.into_root_schema_for::<EigenDocument>(),
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),

@@ -1,9 +1,11 @@
 //! What leaves the program: documents, tables, figures, files.
 
+pub mod compare;
 pub mod document;
 pub mod figure;
 pub mod output;
 pub mod picture;
+pub mod plane;
 pub mod resolved;
 pub mod rider;
 pub mod table;

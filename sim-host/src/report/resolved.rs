@@ -1,6 +1,6 @@
 //! The full configuration a result was computed with, as every output carries it.
 
-use crate::basin::Axis;
+use crate::basin::{Axis, Search};
 use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
 use crate::ride::{Assist, Conditions};
 use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};
@@ -236,6 +236,18 @@ pub struct ResolvedSearch {
     pub scan_step: f64,
     /// How closely borders are located \[rad/s\].
     pub tolerance: f64,
+}
+
+impl ResolvedSearch {
+    /// The search for an output.
+    pub fn new(search: &Search) -> Self {
+        Self {
+            axis: axis_name(search.axis).into(),
+            max_rate: search.max_rate,
+            scan_step: search.scan_step,
+            tolerance: search.tolerance,
+        }
+    }
 }
 
 /// The axis' name in files and on the command line.

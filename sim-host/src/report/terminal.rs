@@ -31,7 +31,7 @@ pub fn ride(figure: &RideFigure, width: usize) -> String {
     let curves: [Curve; 3] = [
         ("roll [deg]", |p| p.roll.to_degrees()),
         ("steer [deg]", |p| p.steer.to_degrees()),
-        ("torque [N m]", |p| p.torque),
+        ("torque of assist and rider [N m]", |p| p.torque + p.rider_torque),
     ];
     let x = (0.0, figure.end());
     let mut text = String::new();
@@ -126,7 +126,7 @@ mod tests {
         let outcome = Outcome::Fallen { time_s: 1.25 };
         let text = ride(&RideFigure { title: "", trace: &[], outcome }, 80);
         fits(&text, 80);
-        assert!(text.contains("torque [N m]") && text.contains("time [s]"));
+        assert!(text.contains("torque of assist and rider [N m]") && text.contains("time [s]"));
         let speeds: Vec<f64> = (0..11).map(f64::from).collect();
         let critical = CriticalSpeeds { v_d: None, v_w: Some(5.0), v_c: None };
         for n in [0, 1, 11] {

@@ -13,6 +13,7 @@ mod modes;
 mod outlines;
 mod panel;
 mod picture;
+mod plane;
 mod ride;
 pub(super) mod scale;
 mod shape;
@@ -23,6 +24,7 @@ pub use chart::{Axis, Chart, Line, Look, Plot, Series, chart};
 pub use eigen::{EigenFigure, eigen};
 pub use marker::Marker;
 pub use picture::{Picture, PictureError};
+pub use plane::{PlaneFigure, plane};
 pub(super) use ride::Curve;
 pub use ride::{RideFigure, ride};
 

@@ -48,7 +48,7 @@ const ROWS: [(&str, &[Curve]); 4] = [
     ("Angle [deg]", &[("roll", |p| p.roll.to_degrees()), ("steer", |p| p.steer.to_degrees())]),
     ("Rate [rad/s]", &[("roll rate", |p| p.roll_rate), ("steer rate", |p| p.steer_rate)]),
     ("Speed [m/s]", &[("front wheel", |p| p.front_speed), ("rear wheel", |p| p.rear_speed)]),
-    ("Torque [N m]", &[("steer torque", |p| p.torque)]),
+    ("Torque [N m]", &[("assist", |p| p.torque), ("rider", |p| p.rider_torque)]),
 ];
 
 /// Limits with their names and colours.
@@ -80,6 +80,10 @@ pub fn ride(figure: &RideFigure) -> Picture {
             panel.line(&mut canvas, [(x.0, 0.0), (x.1, 0.0)], Stroke::solid(GREY, 0.7));
         }
         for (k, (name, of)) in curves.iter().enumerate() {
+            // Nobody rides.
+            if *name == "rider" && figure.trace.iter().all(|p| p.rider_torque == 0.0) {
+                continue;
+            }
             let stroke = Stroke::solid(SERIES[k], 1.8);
             panel.line(&mut canvas, thinned(figure.trace, *of, x.1 / WIDTH), stroke);
             legend.insert(k, entry(Sign::Line(stroke), *name));

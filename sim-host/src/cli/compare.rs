@@ -1,0 +1,204 @@
+//! `sim-host basin compare`.
+
+use super::basin::{SearchArgs, progress};
+use super::conditions::{ConditionArgs, Setup};
+use super::outputs::{OutputArgs, Results, complain};
+use super::{Ended, Failure, interrupt};
+use crate::basin::{Basin, Column, Work, basin};
+use crate::bicycle::linear::Linear;
+use crate::eigen::critical_speeds;
+use crate::report::compare::{Case, CompareDocument};
+use crate::report::figure::{self, BasinFigure};
+use crate::report::resolved::ResolvedSearch;
+use crate::report::table;
+use clap::Parser;
+use control::Law;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+const EXAMPLES: &str = "\
+Examples:
+  sim-host basin compare 'young=--rider young' 'naive=--rider young --delay 60ms' 'smart=--rider smart'
+  sim-host basin compare 'rider=--rider smart' 'with h=--rider smart --law h' --svg assist.svg
+  sim-host basin --law h --json h.json && sim-host basin compare h.json 'f=--law f' --csv laws.csv";
+
+/// Options of `basin compare`.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// What to compare: LABEL=OPTIONS with the options of `basin` that say who rides what under which
+    /// conditions, or the FILE of a `basin --json`
+    #[arg(required = true, num_args = 1..=24, value_name = "LABEL=OPTIONS|FILE")]
+    cases: Vec<String>,
+    #[command(flatten)]
+    search: SearchArgs,
+    #[command(flatten)]
+    outputs: OutputArgs,
+}
+
+/// The options of one case.
+#[derive(Parser)]
+#[command(no_binary_name = true, disable_help_flag = true)]
+struct CaseArgs {
+    #[command(flatten)]
+    conditions: ConditionArgs,
+}
+
+/// A case before it is computed.
+enum Asked {
+    Compute(String, Box<Setup>),
+    Done(Case),
+}
+
+pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    let mut asked = Vec::new();
+    let mut ridden = false;
+    for text in &args.cases {
+        match text.split_once('=').filter(|_| !std::path::Path::new(text).is_file()) {
+            Some((label, options)) => {
+                let case = parse(label, options)?;
+                ridden |= case.ridden();
+                asked
+                    .push(Asked::Compute(label.into(), Box::new(case.setup().map_err(|e| named(label, e))?)));
+            }
+            None => asked.push(Asked::Done(read(text)?)),
+        }
+    }
+    let search = args.search.search(ridden)?;
+    let resolved = ResolvedSearch::new(&search);
+    if let Some(other) = asked.iter().find_map(|a| match a {
+        Asked::Done(case) if case.config["axis"] != resolved.axis => Some(case),
+        _ => None,
+    }) {
+        let axis = &other.config["axis"];
+        return Err(format!("{}: its axis is {axis}, --axis is {}", other.label, resolved.axis).into());
+    }
+    let outputs = args.outputs.open(None)?;
+    interrupt::install();
+    let pool = args.search.pool()?;
+    let to_compute = asked.iter().filter(|a| matches!(a, Asked::Compute(..))).count();
+    let bar = progress(outputs.shows_progress(), to_compute * search.speeds.len(), "columns");
+    let (mut cases, mut stable, mut complete) = (Vec::new(), None, true);
+    for one in asked {
+        let case = match one {
+            Asked::Done(case) => case,
+            Asked::Compute(label, setup) => {
+                let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
+                stable = stable.or(uncontrolled.v_w.zip(uncontrolled.v_c));
+                let found =
+                    pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
+                let config = json!(setup.config);
+                Case { label, config, basin: found? }
+            }
+        };
+        complete &= !interrupt::stopped();
+        if !case.basin.columns.is_empty() {
+            cases.push(case);
+        }
+    }
+    bar.finish_and_clear();
+    if cases.is_empty() {
+        complain("interrupted: no speed is done, nothing is written");
+        return Ok(Ended::Interrupted);
+    }
+    let document = CompareDocument::new(resolved, &cases, complete);
+    let series: Vec<(&str, &Basin)> = cases.iter().map(|c| (c.label.as_str(), &c.basin)).collect();
+    let title = if complete { "Basins of attraction" } else { "Basins of attraction, interrupted" };
+    let figure =
+        BasinFigure { series: &series, self_stable: stable, axis: search.axis, cap: search.max_rate, title };
+    let configs: Vec<_> =
+        document.cases.iter().map(|c| json!({"label": c.label, "config": c.config})).collect();
+    let config = json!({"cases": configs, "search": document.search, "complete": complete});
+    outputs.write(Results {
+        document: &document,
+        config: &config,
+        summary: || summary(&document),
+        table: || heights(&config, &cases),
+        figure: || figure::basin(&figure),
+    })?;
+    if complete {
+        return Ok(Ended::Done);
+    }
+    complain("interrupted: what is done is kept");
+    Ok(Ended::Interrupted)
+}
+
+fn named(label: &str, error: impl std::fmt::Display) -> Failure {
+    format!("case `{label}`: {error}").into()
+}
+
+fn parse(label: &str, options: &str) -> Result<ConditionArgs, Failure> {
+    let words = shlex::split(options).ok_or_else(|| named(label, "a quotation mark is not closed"))?;
+    let case = CaseArgs::try_parse_from(words).map_err(|e| {
+        let text = e.to_string();
+        let why = text.lines().next().unwrap_or("").trim_start_matches("error: ");
+        named(label, format!("{why} (see `sim-host basin --help`)"))
+    })?;
+    Ok(case.conditions)
+}
+
+/// The outline in a file of `basin --json`.
+fn read(path: &str) -> Result<Case, Failure> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| format!("`{path}` is neither LABEL=OPTIONS nor a file that can be read: {e}"))?;
+    let document: Value = serde_json::from_str(&text).map_err(|e| format!("{path}: {e}"))?;
+    let wrong = |what: &str| format!("{path}: no `{what}`; expected the document of `sim-host basin --json`");
+    let list = |value: &Value| value.as_array().cloned();
+    let speeds = list(&document["speeds"]).ok_or_else(|| wrong("speeds"))?;
+    let upper = list(&document["height"]["upper"]).ok_or_else(|| wrong("height.upper"))?;
+    let capped = list(&document["capped"]).ok_or_else(|| wrong("capped"))?;
+    let axis = document["search"]["axis"].as_str().ok_or_else(|| wrong("search.axis"))?;
+    if upper.len() != speeds.len() || capped.len() != speeds.len() {
+        return Err(format!("{path}: `speeds`, `height.upper` and `capped` differ in length").into());
+    }
+    let mut columns = Vec::new();
+    for ((speed, upper), capped) in speeds.iter().zip(&upper).zip(&capped) {
+        let speed = speed.as_f64().ok_or_else(|| wrong("speeds of numbers"))?;
+        // An interrupted basin has gaps.
+        let Some(upper) = upper.as_f64() else { continue };
+        let capped = capped.as_bool().unwrap_or(false);
+        let (islands, scan) = (Vec::new(), Vec::new());
+        columns.push(Column { speed, upper, capped, islands, scan, border: None, work: Work::default() });
+    }
+    if columns.is_empty() {
+        return Err(format!("{path}: no speed of it is computed").into());
+    }
+    let label =
+        std::path::Path::new(path).file_stem().map_or(path.into(), |s| s.to_string_lossy().into_owned());
+    let mut config = document["config"].clone();
+    config["axis"] = json!(axis);
+    Ok(Case { label, config, basin: Basin { columns } })
+}
+
+/// The heights by speed, a column a case.
+fn heights(config: &Value, cases: &[Case]) -> Result<Vec<u8>, csv::Error> {
+    let mut speeds: Vec<f64> = cases.iter().flat_map(|c| &c.basin.columns).map(|c| c.speed).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup_by(|b, a| (*b - *a).abs() < 1e-9);
+    let names = std::iter::once("speed_m_s".into()).chain(cases.iter().map(|c| c.label.clone()));
+    let at =
+        |case: &Case, v: f64| case.basin.columns.iter().find(|c| (c.speed - v).abs() < 1e-9).map(|c| c.upper);
+    let rows =
+        speeds.into_iter().map(|v| std::iter::once(Some(v)).chain(cases.iter().map(|c| at(c, v))).collect());
+    table::numbers(config, &names.collect::<Vec<_>>(), rows)
+}
+
+fn summary(document: &CompareDocument) -> String {
+    let cases = &document.cases;
+    let width = cases.iter().map(|c| c.label.chars().count()).max().unwrap_or(0).max(4);
+    let mut text = format!("{:width$}  area rad m/s^2  mean rad/s  of the first  RMSE rad/s to", "case");
+    for i in 1..=cases.len() {
+        let _ = write!(text, " {i:>6}");
+    }
+    text.push('\n');
+    for (case, distances) in cases.iter().zip(&document.rmse) {
+        let mean = case.mean_height.map_or("-".into(), |m| format!("{m:.3}"));
+        let part = case.relative_area.map_or("-".into(), |r| format!("{:.1} %", 100.0 * r));
+        let _ = write!(text, "{:width$}  {:>14.3}  {mean:>10}  {part:>12}  {:13}", case.label, case.area, "");
+        for d in distances {
+            let _ = write!(text, " {:>6}", d.map_or("-".into(), |d| format!("{d:.3}")));
+        }
+        text.push('\n');
+    }
+    text
+}

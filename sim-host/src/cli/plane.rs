@@ -1,0 +1,118 @@
+//! `sim-host basin plane`.
+
+use super::basin::{ThreadArgs, progress};
+use super::conditions::ConditionArgs;
+use super::outputs::{OutputArgs, Results, complain};
+use super::{Ended, Failure, interrupt};
+use crate::basin::{Plane, PlaneSearch, plane};
+use crate::report::figure::{self, PlaneFigure};
+use crate::report::plane::{PlaneDocument, plane_rows};
+use crate::report::table;
+use serde_json::json;
+use std::fmt::Write;
+use std::time::Instant;
+
+const EXAMPLES: &str = "\
+Examples:
+  sim-host basin plane --speed 4 --svg plane.svg
+  sim-host basin plane --speed 4.3 --rider smart --law h --json plane.json
+  sim-host basin plane --speed 7 --law none --max-roll-rate 2 --rays 180 --csv plane.csv";
+
+/// Options of `basin plane`.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    #[command(flatten)]
+    conditions: ConditionArgs,
+    /// Forward speed, in m/s
+    #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
+    speed: f64,
+    /// Directions over half a turn, 2 to 10000; the other half mirrors
+    #[arg(long, default_value_t = 60, value_name = "N")]
+    rays: usize,
+    /// Largest steer rate tried, in rad/s
+    #[arg(long, default_value_t = 20.0, value_name = "RAD/S", allow_negative_numbers = true)]
+    max_steer_rate: f64,
+    /// Largest roll rate tried, in rad/s
+    #[arg(long, default_value_t = 4.0, value_name = "RAD/S", allow_negative_numbers = true)]
+    max_roll_rate: f64,
+    /// Rides of the scan along each ray; what is narrower than their distance can be missed
+    #[arg(long, default_value_t = 80, value_name = "N")]
+    points: usize,
+    /// How closely borders are located, as a part of a ray
+    #[arg(long, default_value_t = 0.0005, value_name = "PART", allow_negative_numbers = true)]
+    tolerance: f64,
+    #[command(flatten)]
+    threads: ThreadArgs,
+    #[command(flatten)]
+    outputs: OutputArgs,
+}
+
+pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    let setup = args.conditions.setup()?;
+    let search = PlaneSearch {
+        speed: args.speed,
+        rays: args.rays,
+        max_steer_rate: args.max_steer_rate,
+        max_roll_rate: args.max_roll_rate,
+        points: args.points,
+        tolerance: args.tolerance,
+    };
+    search.check()?;
+    let outputs = args.outputs.open(None)?;
+    interrupt::install();
+    let pool = args.threads.pool()?;
+    let bar = progress(outputs.shows_progress(), search.rays, "rays");
+    let begin = Instant::now();
+    let found = pool.install(|| plane(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
+    let seconds = begin.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    let found = found?;
+    if found.rays.is_empty() {
+        complain("interrupted: no ray is done, nothing is written");
+        return Ok(Ended::Interrupted);
+    }
+    let label = setup.config.label();
+    let document = PlaneDocument::new(setup.config, search, &found, seconds);
+    let cut = if document.complete { "" } else { ", interrupted" };
+    let title = format!("Basin of attraction at {} m/s: {label}{cut}", args.speed);
+    let config = json!({"config": document.config, "search": search, "complete": document.complete});
+    outputs.write(Results {
+        document: &document,
+        config: &config,
+        summary: || summary(&document, &found),
+        table: || table::table(&config, &plane_rows(&found)),
+        figure: || figure::plane(&PlaneFigure { title: &title, plane: &found }),
+    })?;
+    if document.complete {
+        return Ok(Ended::Done);
+    }
+    complain(&format!("interrupted: {} of {} rays are done and kept", found.rays.len(), search.rays));
+    Ok(Ended::Interrupted)
+}
+
+fn summary(document: &PlaneDocument, plane: &Plane) -> String {
+    let mut text = String::new();
+    if let Some(area) = document.area {
+        let _ = writeln!(text, "area {area:.3} rad^2/s^2");
+    }
+    let outline = plane.outline();
+    let most = |of: fn(&(f64, f64)) -> f64| outline.iter().map(of).fold(0.0, f64::max);
+    let _ = writeln!(
+        text,
+        "reaches {:.3} rad/s of steer rate and {:.3} rad/s of roll rate",
+        most(|p| p.0),
+        most(|p| p.1)
+    );
+    let count = |is: fn(&crate::basin::Ray) -> bool| plane.rays.iter().filter(|ray| is(ray)).count();
+    let _ = writeln!(
+        text,
+        "{} rays, {} with islands beyond, {} without a fall to their end; {} rides, {:.2} s",
+        plane.rays.len(),
+        count(|ray| !ray.column.islands.is_empty()),
+        count(|ray| ray.column.capped),
+        document.work.rides,
+        document.seconds
+    );
+    text
+}

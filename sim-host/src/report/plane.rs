@@ -1,0 +1,102 @@
+//! The document and the table of `basin plane`.
+
+use super::document::SCHEMA;
+use super::resolved::{ResolvedConfig, Tool};
+use crate::basin::{Plane, PlaneSearch, Work};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// `basin plane`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct PlaneDocument {
+    /// 1.
+    #[schemars(extend("const" = SCHEMA))]
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// The conditions.
+    pub config: ResolvedConfig,
+    /// What was searched.
+    pub search: PlaneSearch,
+    /// False after an interruption: then rays are missing, and so is the area.
+    pub complete: bool,
+    /// Area inside the outline \[rad^2/s^2\].
+    pub area: Option<f64>,
+    /// The border around the undisturbed ride, all the way round: `[steer rate, roll rate]` \[rad/s\].
+    pub outline: Vec<[f64; 2]>,
+    /// The rays of one half; the other half is the mirror image.
+    pub rays: Vec<RayEntry>,
+    /// How much was computed.
+    pub work: Work,
+    /// How long it took \[s\].
+    pub seconds: f64,
+}
+
+/// One ray.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct RayEntry {
+    /// Steer rate at its end \[rad/s\].
+    pub steer_rate: f64,
+    /// Roll rate at its end \[rad/s\].
+    pub roll_rate: f64,
+    /// How far nothing falls, as a part of the ray.
+    pub upper: f64,
+    /// Whether nothing fell up to its end.
+    pub capped: bool,
+    /// Parts of the ray beyond the first fall that do not fall either, `[from, to]`.
+    pub islands: Vec<[f64; 2]>,
+}
+
+impl PlaneDocument {
+    /// The document of a plane.
+    pub fn new(config: ResolvedConfig, search: PlaneSearch, plane: &Plane, seconds: f64) -> Self {
+        let complete = plane.rays.len() == search.rays;
+        let entry = |ray: &crate::basin::Ray| RayEntry {
+            steer_rate: ray.steer_rate,
+            roll_rate: ray.roll_rate,
+            upper: ray.column.upper,
+            capped: ray.column.capped,
+            islands: ray.column.islands.iter().map(|i| [i.from, i.to]).collect(),
+        };
+        Self {
+            schema: SCHEMA,
+            tool: Tool::this(),
+            config,
+            search,
+            complete,
+            area: complete.then(|| plane.area()),
+            outline: plane.outline().into_iter().map(|(steer, roll)| [steer, roll]).collect(),
+            rays: plane.rays.iter().map(entry).collect(),
+            work: plane.work(),
+            seconds,
+        }
+    }
+}
+
+/// One line of the table: a ride of the scan, or the border of a ray.
+#[derive(Clone, Debug, Serialize)]
+pub struct PlaneRow {
+    /// Disturbance of the steer rate.
+    pub steer_rate_rad_s: f64,
+    /// Disturbance of the roll rate.
+    pub roll_rate_rad_s: f64,
+    /// "fallen", "recovered", "undecided", or for the outline itself "border".
+    pub outcome: &'static str,
+    /// Time to fall, empty if it did not.
+    pub time_to_fall_s: Option<f64>,
+}
+
+/// The scans and borders as rows; the mirror images left out.
+pub fn plane_rows(plane: &Plane) -> Vec<PlaneRow> {
+    let mut rows = Vec::new();
+    for ray in &plane.rays {
+        let row = |s: f64, outcome, time_to_fall_s| {
+            let (steer_rate_rad_s, roll_rate_rad_s) = ray.at(s);
+            PlaneRow { steer_rate_rad_s, roll_rate_rad_s, outcome, time_to_fall_s }
+        };
+        rows.push(row(ray.column.upper, "border", None));
+        let scan = ray.column.scan.iter();
+        rows.extend(scan.map(|p| row(p.rate, p.outcome.name(), p.outcome.time_to_fall_s())));
+    }
+    rows
+}
