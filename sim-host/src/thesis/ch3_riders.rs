@@ -1,6 +1,6 @@
 //! Sections 3.1 to 3.3 and the end of 3.4: basins of the riders, alone and aided.
 
-use super::case::{Assisted, Case};
+use super::case::{Assisted, Case, GRID};
 use super::cyclist::{Cyclist, fit_name, fit_named, named};
 use super::draw::{SELF_STABLE, SPEED, STEER_RATE, outline};
 use super::fits::LINES;
@@ -175,10 +175,11 @@ pub(super) fn cases_3_5() -> Vec<Case> {
     THREE.into_iter().map(|(_, who)| Case::ridden(who(Fit::Mean)).mapped()).collect()
 }
 
-/// Times to the fall \[s\] seen up to a disturbance of `to` \[rad/s\].
-fn times_to_fall(basin: &Basin, to: f64) -> Vec<f64> {
-    let scan = basin.columns.iter().flat_map(|c| &c.scan).filter(|p| p.rate <= to);
-    scan.filter_map(|p| p.outcome.time_to_fall_s()).collect()
+/// The longest time to a fall \[s\] at disturbances that are multiples of `step` \[rad/s\].
+fn longest_fall(basin: &Basin, step: f64) -> Option<f64> {
+    let on_grid = |rate: f64| ((rate / step).round() * step - rate).abs() < 1e-9;
+    let scan = basin.columns.iter().flat_map(|c| &c.scan).filter(|p| on_grid(p.rate));
+    scan.filter_map(|p| p.outcome.time_to_fall_s()).reduce(f64::max)
 }
 
 /// Figure 3.5.
@@ -201,17 +202,8 @@ pub(super) fn figure_3_5(study: &Study) -> Item {
     }
     let values = Item::compare("figure-3.5", |cell| {
         let who = THREE.into_iter().find(|(name, _)| *name == cell.row).map(|(_, who)| who);
-        let longest = |to| {
-            let times = times_to_fall(&of(who?), to);
-            times.into_iter().reduce(f64::max)
-        };
-        let usual = || {
-            let mut times = times_to_fall(&of(who?), 15.0);
-            times.sort_by(f64::total_cmp);
-            times.get(times.len() / 2).copied()
-        };
-        Value::new(cell, longest(f64::INFINITY))
-            .tried("the median up to 15 rad/s", usual().unwrap_or(f64::NAN))
+        let longest = |step| longest_fall(&of(who?), step);
+        Value::new(cell, longest(study.resolution.scan_step)).on_grid(longest(GRID))
     });
     let note = "The longest time is that of single rides close to the border: the closer to it, the longer.";
     Item { values, figures, notes: vec![note.into()], ..Item::default() }
