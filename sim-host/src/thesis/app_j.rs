@@ -61,7 +61,7 @@ pub(super) fn figure_j_1(_: &Study) -> Item {
         series.push(Series::new("runs", Look::marks(4, Marker::Point), runs));
     }
     let plot = Plot {
-        x: Axis::new("Table J.2 (at 1), Table J.3 (at 2)").over(0.5, 2.5),
+        x: Axis::new("left: Table J.2, right: Table J.3").over(0.5, 2.5),
         y: Axis::new("Variance accounted for [%]"),
         series,
         ..Plot::default()
