@@ -6,7 +6,7 @@ use super::cyclist::{Cyclist, fit_name, fit_named};
 use super::draw::{SPEED, outline, same_name, sorted_lines, speeds};
 use super::heights::{Outline, area};
 use super::item::{Figure, Item, Value};
-use super::merit::{merit, with_readings};
+use super::merit::merit;
 use super::study::Study;
 use crate::eigen::{Feedback, Model, Stability, roots, stability};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
@@ -130,7 +130,7 @@ pub(super) fn figure_j_3(study: &Study) -> Item {
 
 /// The basins of Figure J.4.
 pub(super) fn cases_j_4() -> Vec<Case> {
-    with_readings(&all_fits(&[undelayed]))
+    all_fits(&[undelayed])
 }
 
 fn highest(outlines: &[Outline]) -> f64 {
