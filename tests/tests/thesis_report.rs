@@ -134,6 +134,46 @@ fn bad_items_and_folders_are_refused() {
     assert_eq!(bench.files(), ["file"]);
 }
 
+/// Situation: riders, coarsely.
+/// Action: compute the fits of the young cyclist, the critical speeds of the undelayed one, and basins.
+/// Must hold: eq. F.2's steer gains and Table J.4 come out as printed; the areas of the young cyclist's
+/// basins are within 4 % of the print; each has its coarse grid; the naive, old cyclist's are the
+/// smallest, far below the young one's; 60 ms destroy the undelayed gains.
+#[test]
+fn riders_are_as_published() {
+    let bench = Bench::new(PROGRAM);
+    let only = "equation-F.2,table-J.4,table-3.1,table-3.3,figure-J.5";
+    let run = bench.run(&format!("thesis --quick -q --only {only} --out riders"));
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let document: Value = serde_json::from_str(&bench.read("riders/values.json")).unwrap();
+    let values = document["values"].as_array().unwrap();
+    let value = |item: &str, row: &str, column: &str| {
+        let is = |v: &&Value| v["item"] == item && v["row"] == row && v["column"] == column;
+        values.iter().find(is).unwrap_or_else(|| panic!("{item} {row} {column}"))
+    };
+    let number = |item: &str, row: &str, column: &str| value(item, row, column)["exact"].as_f64().unwrap();
+    for row in ["K_delta_i", "K_delta_d"] {
+        assert_eq!(value("equation-F.2", row, "slope")["explanation"], "", "{row}");
+    }
+    let ends: Vec<_> = values.iter().filter(|v| v["item"] == "table-J.4").collect();
+    assert_eq!(ends.len(), 6);
+    for end in ends {
+        assert_eq!(end["explanation"], "", "{end}");
+    }
+    for fit in ["LR", "LI mean", "LI highest VAF"] {
+        let young = value("table-3.1", &format!("young {fit}"), "area");
+        let difference = young["difference_percent"].as_f64().unwrap();
+        assert!((-4.0..=4.0).contains(&difference), "{fit}: {difference} %");
+        assert!(young["coarse"].is_number() && !young["experiments"].as_array().unwrap().is_empty());
+    }
+    for fit in ["LI mean", "LI highest VAF"] {
+        let [young, naive, smart] = ["young", "naive", "smart"].map(|who| number("table-3.3", fit, who));
+        assert!(naive < 0.7 * smart && smart < 0.6 * young, "{fit}: {young} {naive} {smart}");
+        assert!(naive > 5.0 && young < 60.0, "{fit}: {young} {naive}");
+    }
+    assert!((0.0..2.0).contains(&number("figure-J.5", "undelayed gains with 60 ms", "area")));
+}
+
 /// Situation: data/thesis.toml.
 /// Action: look for every item that numbers are printed for.
 /// Must hold: the catalogue knows it.

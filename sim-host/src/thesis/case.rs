@@ -1,5 +1,6 @@
 //! Whose basin: a small key that fixes every condition of a search.
 
+use super::cyclist::Cyclist;
 use crate::basin::{Axis, Column, Search, border, column};
 use crate::bicycle::Geometry;
 use crate::ride::{Assist, Conditions, ScheduleSpeed};
@@ -10,6 +11,8 @@ use control::Law;
 pub struct Case {
     /// The steer assist's law.
     pub law: Assisted,
+    /// Who rides.
+    pub rider: Option<Cyclist>,
     /// Which speed sets the gains.
     pub schedule: ScheduleSpeed,
     /// Which speeds.
@@ -80,7 +83,17 @@ impl Assisted {
 impl Case {
     /// The basin of a law over all speeds, scheduled by the front wheel.
     pub fn of(law: Assisted) -> Self {
-        Self { law, schedule: ScheduleSpeed::Front, span: Span::All, map: false }
+        Self { law, rider: None, schedule: ScheduleSpeed::Front, span: Span::All, map: false }
+    }
+
+    /// The basin of a rider alone over the speeds riders were measured at.
+    pub fn ridden(rider: Cyclist) -> Self {
+        Self { rider: Some(rider), span: Span::Ridden, ..Self::of(Assisted::Alone) }
+    }
+
+    /// The same with an assist.
+    pub fn aided(self, law: Assisted) -> Self {
+        Self { law, ..self }
     }
 
     /// The same with a map of the falls beyond the border.
@@ -96,7 +109,7 @@ impl Case {
     /// The conditions of its rides.
     pub fn conditions(&self, bicycle: &Geometry) -> Conditions {
         let thesis = Conditions::thesis(*bicycle, self.law.assist());
-        Conditions { schedule_speed: self.schedule, ..thesis }
+        Conditions { schedule_speed: self.schedule, rider: self.rider.map(|r| r.rider()), ..thesis }
     }
 
     /// The basin at one speed.

@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::item::Item;
 use super::study::Study;
-use super::{app_c, app_d, ch2, ch3_assist, ch3_laws};
+use super::{app_c, app_d, app_h, app_j, ch2, ch3_assist, ch3_laws, ch3_riders, fits};
 
 /// An item of the thesis.
 #[derive(Debug)]
@@ -63,6 +63,10 @@ const fn linear(name: &'static str, title: &'static str, compute: fn(&Study) -> 
     Entry { name, title, made: Made::Computed { needs: "eigenvalues", cases: none, compute, work: 1 } }
 }
 
+const fn gains(name: &'static str, title: &'static str, compute: fn(&Study) -> Item) -> Entry {
+    Entry { name, title, made: Made::Computed { needs: "gains", cases: none, compute, work: 1 } }
+}
+
 const fn rides(name: &'static str, title: &'static str, compute: fn(&Study) -> Item, work: u64) -> Entry {
     Entry { name, title, made: Made::Computed { needs: "rides", cases: none, compute, work } }
 }
@@ -85,14 +89,14 @@ pub const CATALOGUE: &[Entry] = &[
     linear("figure-2.2", "Eigenvalues of the uncontrolled bicycle", ch2::figure_2_2),
     rides("figure-2.3", "Modes of the nonlinear bicycle", ch2::figure_2_3, 6),
     linear("figure-2.7", "The intuitive controller on the benchmark bicycle", ch2::figure_2_7),
-    Entry { name: "figure-3.1", title: "Gains of the young cyclist over speed", made: RIDERS },
-    Entry { name: "table-3.1", title: "Basins of the young cyclist", made: RIDERS },
-    Entry { name: "figure-3.2", title: "Basins of the young cyclist", made: RIDERS },
-    Entry { name: "table-3.2", title: "Basins of the old cyclists", made: RIDERS },
-    Entry { name: "figure-3.3", title: "Gains of the smart, old cyclist over speed", made: RIDERS },
-    Entry { name: "figure-3.4", title: "Basins of the old cyclists", made: RIDERS },
-    Entry { name: "table-3.3", title: "Decline of the basins with delay", made: RIDERS },
-    Entry { name: "figure-3.5", title: "Basins of the three cyclists", made: RIDERS },
+    gains("figure-3.1", "Gains of the young cyclist over speed", fits::figure_3_1),
+    basins("table-3.1", "Basins of the young cyclist", ch3_riders::cases_3_1, ch3_riders::table_3_1),
+    basins("figure-3.2", "Basins of the young cyclist", ch3_riders::cases_figure_3_2, ch3_riders::figure_3_2),
+    basins("table-3.2", "Basins of the old cyclists", ch3_riders::cases_3_2, ch3_riders::table_3_2),
+    gains("figure-3.3", "Gains of the smart, old cyclist over speed", fits::figure_3_3),
+    basins("figure-3.4", "Basins of the old cyclists", ch3_riders::cases_figure_3_4, ch3_riders::figure_3_4),
+    basins("table-3.3", "Decline of the basins with delay", ch3_riders::cases_3_3, ch3_riders::table_3_3),
+    basins("figure-3.5", "Basins of the three cyclists", ch3_riders::cases_3_5, ch3_riders::figure_3_5),
     linear("section-3.4", "Weave speeds under the laws", ch3_laws::section_3_4),
     linear("figure-3.6", "Eigenvalues and gain of CL1", ch3_laws::figure_3_6),
     basins("figure-3.7", "Basin of CL1", ch3_assist::cases_3_7, ch3_assist::figure_3_7),
@@ -103,24 +107,29 @@ pub const CATALOGUE: &[Entry] = &[
     linear("figure-3.12", "Eigenvalues under f, g and h", ch3_laws::figure_3_12),
     basins("figure-3.13", "Basins of f, g and h", ch3_assist::cases_3_13, ch3_assist::figure_3_13),
     rides("figure-3.14", "Rides under f and h from 7.221 m/s", ch3_assist::figure_3_14, 1),
-    Entry { name: "figure-3.15", title: "Basin of the smart, old cyclist aided by h", made: RIDERS },
+    basins(
+        "figure-3.15",
+        "Basin of the smart, old cyclist aided by h",
+        ch3_riders::cases_3_15,
+        ch3_riders::figure_3_15,
+    ),
     rides("figure-C.1", "Eigenvalues fitted to the roll rate", app_c::figure_c_1, 8),
     rides("figure-C.2", "Eigenvalues fitted to the steer rate", app_c::figure_c_2, 8),
     rides("figure-C.3", "Eigenvalues fitted within bounds, and by matrix pencil", app_c::figure_c_3, 12),
     rides("figure-D.1", "The rides of the convergence study", app_d::figure_d_1, 2),
     rides("figure-D.2", "Errors of fixed steps", app_d::figure_d_2, 40),
     rides("figure-D.3", "Errors of adaptive solvers", app_d::figure_d_3, 20),
-    Entry { name: "table-F.1", title: "Fit of the young cyclist's gains", made: RIDERS },
-    Entry { name: "equation-F.2", title: "Regression of the young cyclist's gains", made: RIDERS },
-    Entry { name: "table-G.2", title: "Fit of the smart cyclist's gains", made: RIDERS },
-    Entry { name: "equation-G.2", title: "Regression of the smart cyclist's gains", made: RIDERS },
-    Entry { name: "figure-H.1", title: "Six and seven gains over speed", made: RIDERS },
-    Entry { name: "table-H.1", title: "Fit of the six gains", made: RIDERS },
-    Entry { name: "equation-H.1", title: "Regression of the six gains", made: RIDERS },
-    Entry { name: "figure-H.2", title: "The six gains over speed", made: RIDERS },
-    Entry { name: "table-H.2", title: "Basins of the smart cyclist with six gains", made: RIDERS },
-    Entry { name: "figure-H.3", title: "Basins with six and with seven gains", made: RIDERS },
-    Entry { name: "table-H.3", title: "Change of the basins from seven to six gains", made: RIDERS },
+    gains("table-F.1", "Fit of the young cyclist's gains", fits::table_f_1),
+    gains("equation-F.2", "Regression of the young cyclist's gains", fits::equation_f_2),
+    gains("table-G.2", "Fit of the smart cyclist's gains", fits::table_g_2),
+    gains("equation-G.2", "Regression of the smart cyclist's gains", fits::equation_g_2),
+    gains("figure-H.1", "Six and seven gains over speed", fits::figure_h_1),
+    gains("table-H.1", "Fit of the six gains", fits::table_h_1),
+    gains("equation-H.1", "Regression of the six gains", fits::equation_h_1),
+    gains("figure-H.2", "The six gains over speed", fits::figure_h_2),
+    basins("table-H.2", "Basins of the smart cyclist with six gains", app_h::cases, app_h::table_h_2),
+    basins("figure-H.3", "Basins with six and with seven gains", app_h::cases_figure_h_3, app_h::figure_h_3),
+    basins("table-H.3", "Change of the basins from seven to six gains", app_h::cases, app_h::table_h_3),
     Entry { name: "table-I.1", title: "Heights of the young cyclist's reduced gain sets", made: RIDERS },
     Entry { name: "table-I.2", title: "Heights of the old cyclist's reduced gain sets", made: RIDERS },
     Entry { name: "figure-I.1", title: "Heights of the reduced gain sets", made: RIDERS },
@@ -129,13 +138,13 @@ pub const CATALOGUE: &[Entry] = &[
     Entry { name: "figure-I.4", title: "Measured and modelled roll rate, run 248", made: MEASURED },
     Entry { name: "figure-I.5", title: "Measured and modelled roll rate, run 252", made: MEASURED },
     Entry { name: "figure-I.6", title: "Measured and modelled roll rate, run 256", made: MEASURED },
-    Entry { name: "figure-J.1", title: "Variance accounted for by two reduced sets", made: RIDERS },
-    Entry { name: "equation-J.5", title: "Regression of the undelayed rider's gains", made: RIDERS },
-    Entry { name: "figure-J.2", title: "The undelayed rider's gains over speed", made: RIDERS },
-    Entry { name: "table-J.4", title: "Critical speeds of the undelayed rider", made: RIDERS },
-    Entry { name: "figure-J.3", title: "Eigenvalues of the undelayed rider", made: RIDERS },
-    Entry { name: "figure-J.4", title: "Basins of the undelayed rider", made: RIDERS },
-    Entry { name: "figure-J.5", title: "Basins with a delay the gains do not know of", made: RIDERS },
+    gains("figure-J.1", "Variance accounted for by two reduced sets", app_j::figure_j_1),
+    gains("equation-J.5", "Regression of the undelayed rider's gains", fits::equation_j_5),
+    gains("figure-J.2", "The undelayed rider's gains over speed", fits::figure_j_2),
+    linear("table-J.4", "Critical speeds of the undelayed rider", app_j::table_j_4),
+    linear("figure-J.3", "Eigenvalues of the undelayed rider", app_j::figure_j_3),
+    basins("figure-J.4", "Basins of the undelayed rider", app_j::cases_j_4, app_j::figure_j_4),
+    basins("figure-J.5", "Basins with a delay the gains do not know of", app_j::cases_j_5, app_j::figure_j_5),
     Entry { name: "table-K.1", title: "Gains at 4.3 m/s", made: RIDERS },
     Entry { name: "figure-K.1", title: "Gains and torques at 4.3 m/s", made: RIDERS },
     Entry { name: "figure-K.2", title: "Which gain makes the regression unstable", made: RIDERS },

@@ -3,17 +3,23 @@
 
 pub mod app_c;
 pub mod app_d;
+mod app_h;
+mod app_j;
 pub mod case;
 pub mod catalogue;
 mod ch2;
 mod ch3_assist;
 mod ch3_laws;
+mod ch3_riders;
+pub mod cyclist;
 pub mod damped;
 pub mod document;
 mod draw;
+mod fits;
 pub mod heights;
 mod html;
 pub mod item;
+mod merit;
 pub mod pencil;
 pub mod published;
 pub mod run;

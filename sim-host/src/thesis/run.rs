@@ -3,6 +3,7 @@
 use super::case::Case;
 use super::catalogue::{Entry, Made};
 use super::item::Item;
+use super::merit::is_reading;
 use super::study::Study;
 use rayon::prelude::*;
 
@@ -23,18 +24,17 @@ pub struct Outcome {
     pub item: Option<Item>,
 }
 
-/// The basins an item needs.
-fn cases(entry: &Entry) -> Vec<Case> {
-    match entry.made {
-        Made::Computed { cases, .. } => cases(),
-        Made::Unavailable(_) => Vec::new(),
-    }
+/// The basins an item needs; a quick study does without the riders' other readings.
+fn cases(study: &Study, entry: &Entry) -> Vec<Case> {
+    let Made::Computed { cases, .. } = entry.made else { return Vec::new() };
+    let wanted = |case: &Case| !(study.quick && is_reading(case));
+    cases().into_iter().filter(wanted).collect()
 }
 
 /// How much work `entries` are, in columns of a basin.
 pub fn work(study: &Study, entries: &[&Entry]) -> u64 {
     let mut all: Vec<Case> = Vec::new();
-    for case in entries.iter().flat_map(|e| cases(e)) {
+    for case in entries.iter().flat_map(|e| cases(study, e)) {
         if !all.contains(&case) {
             all.push(case);
         }
@@ -51,14 +51,14 @@ pub fn work(study: &Study, entries: &[&Entry]) -> u64 {
 pub fn run(study: &Study, entries: &[&'static Entry], progress: &Progress) -> Vec<Outcome> {
     let compute = |entry: &'static Entry| {
         let Made::Computed { compute, work, .. } = entry.made else { return Outcome { entry, item: None } };
-        let needed = cases(entry);
+        let needed = cases(study, entry);
         study.prepare(&needed, || (progress.advanced)(1), progress.stop);
         let ready = !(progress.stop)() && needed.iter().all(|case| study.has(case));
         let item = ready.then(|| compute(study));
         (progress.advanced)(work);
         Outcome { entry, item }
     };
-    let (without, with): (Vec<_>, Vec<_>) = entries.iter().partition(|e| cases(e).is_empty());
+    let (without, with): (Vec<_>, Vec<_>) = entries.iter().partition(|e| cases(study, e).is_empty());
     let mut done: Vec<Outcome> = without.into_par_iter().map(compute).collect();
     done.extend(with.into_iter().map(compute));
     done.sort_by_key(|o| entries.iter().position(|e| e.name == o.entry.name));

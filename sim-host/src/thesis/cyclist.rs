@@ -1,0 +1,178 @@
+//! Who rides: a small key for a rider of the thesis.
+
+use crate::rider::catalogue::load;
+use crate::rider::{Fit, Gains, KEYS, Outside, Rider, RiderTable, Row, Schedule};
+
+/// A shipped rider, how its gains become continuous over speed, and how late it responds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cyclist {
+    /// Name of the shipped table.
+    pub table: &'static str,
+    /// How gains become continuous.
+    pub fit: Fit,
+    /// The neural delay \[ms\].
+    pub delay_ms: u16,
+    /// Which print of the gains.
+    pub print: Print,
+}
+
+/// Which of the thesis's contradicting prints the gains follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Print {
+    /// As `docs/riders.md` settles it.
+    Settled,
+    /// The regression by least squares over the printed sets instead of the printed lines.
+    LeastSquares,
+    /// The best sets by the VAFs as printed.
+    HighestVaf,
+    /// The smart cyclist with run 249, which Table G.4 has; the gain on the roll rate is given.
+    Run249(f64),
+    /// Run 191 at 6.0 m/s, as in Table G.4.
+    Run191,
+    /// Eq. H.1 with its intercept of the steer rate as printed.
+    EquationH1,
+}
+
+/// Run 249 of Table G.4, by [`KEYS`]; the roll rate's gain is printed 2.98 there, 7.98 in Table H.4.
+const RUN_249: [f64; 10] = [-9.75, 0.0, 7.98, 5.18, 3.16, -0.02, 1.07, -0.09, 0.0, 0.0];
+
+impl Cyclist {
+    const fn new(table: &'static str, fit: Fit, delay_ms: u16) -> Self {
+        Self { table, fit, delay_ms, print: Print::Settled }
+    }
+
+    /// The young cyclist.
+    pub const fn young(fit: Fit) -> Self {
+        Self::new("young", fit, 30)
+    }
+
+    /// The naive, old cyclist: the young one's control with old nerves.
+    pub const fn naive(fit: Fit) -> Self {
+        Self::new("young", fit, 60)
+    }
+
+    /// The smart, old cyclist.
+    pub const fn smart(fit: Fit) -> Self {
+        Self::new("smart", fit, 60)
+    }
+
+    /// The smart, old cyclist with six gains.
+    pub const fn six(fit: Fit) -> Self {
+        Self::new("smart6", fit, 60)
+    }
+
+    /// The cyclist of appendix J, whose gains know of no delay.
+    pub const fn undelayed(fit: Fit, delay_ms: u16) -> Self {
+        Self::new("undelayed", fit, delay_ms)
+    }
+
+    /// The same by another print.
+    pub const fn by(self, print: Print) -> Self {
+        Self { print, ..self }
+    }
+
+    /// The measured gains.
+    pub fn table(&self) -> RiderTable {
+        let shipped = load(self.table).unwrap_or_else(|e| panic!("{e}"));
+        let rows = shipped.rows.clone();
+        match self.print {
+            Print::Settled => shipped,
+            Print::LeastSquares => RiderTable { regression: None, ..shipped },
+            Print::HighestVaf => RiderTable { best_runs: None, ..shipped },
+            Print::Run249(roll_rate) => with_run_249(shipped, roll_rate),
+            Print::Run191 => {
+                let at = |r: Row| if r.run == Some(191) { Row { speed_m_s: 6.0, ..r } } else { r };
+                RiderTable { rows: rows.into_iter().map(at).collect(), regression: None, ..shipped }
+            }
+            Print::EquationH1 => {
+                let mut regression = shipped.regression;
+                let steer_rate = KEYS.iter().position(|k| *k == "K_delta_d");
+                if let (Some(line), Some(i)) = (&mut regression, steer_rate) {
+                    line.intercept.0[i] = -0.06181;
+                }
+                RiderTable { regression, ..shipped }
+            }
+        }
+    }
+
+    /// The gains over speed.
+    pub fn schedule(&self) -> Schedule {
+        let schedule = self.table().schedule(self.fit, Outside::Extrapolate);
+        schedule.unwrap_or_else(|e| panic!("data/riders/{}.toml: {e}", self.table))
+    }
+
+    /// The rider.
+    pub fn rider(&self) -> Rider {
+        Rider {
+            schedule: self.schedule(),
+            delay_s: f64::from(self.delay_ms) * 1e-3,
+            muscles: self.table().muscles,
+        }
+    }
+}
+
+fn with_run_249(shipped: RiderTable, roll_rate: f64) -> RiderTable {
+    let mut gains = Gains(RUN_249);
+    gains.0[2] = roll_rate;
+    let row = Row { speed_m_s: 2.2, run: Some(249), group: 1, vaf: Some(99.25), gains };
+    let mut rows = shipped.rows;
+    let at = rows.partition_point(|r| r.speed_m_s < row.speed_m_s);
+    rows.insert(at, row);
+    RiderTable { rows, regression: None, ..shipped }
+}
+
+/// The name of a fit in the thesis.
+pub fn fit_name(fit: Fit) -> &'static str {
+    match fit {
+        Fit::Regression => "LR",
+        Fit::Mean => "LI mean",
+        Fit::Best => "LI highest VAF",
+    }
+}
+
+/// The fit of a name in the thesis.
+pub fn fit_named(name: &str) -> Option<Fit> {
+    Fit::ALL.into_iter().find(|&fit| fit_name(fit) == name)
+}
+
+/// A rider by the name of a row in `data/thesis.toml`: "young LR", "six LI mean".
+pub fn named(row: &str) -> Option<Cyclist> {
+    let (who, fit) = row.split_once(' ')?;
+    let fit = fit_named(fit)?;
+    match who {
+        "young" => Some(Cyclist::young(fit)),
+        "naive" => Some(Cyclist::naive(fit)),
+        "smart" => Some(Cyclist::smart(fit)),
+        "six" => Some(Cyclist::six(fit)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_print_makes_a_rider() {
+        let prints = [Print::Settled, Print::LeastSquares, Print::Run249(2.98), Print::Run191];
+        for who in [Cyclist::young, Cyclist::naive, Cyclist::smart, Cyclist::six] {
+            for fit in Fit::ALL {
+                for print in prints {
+                    assert!(who(fit).by(print).rider().check(1e-3).is_ok(), "{fit:?} {print:?}");
+                }
+            }
+        }
+        assert_eq!(named("six LI mean"), Some(Cyclist::six(Fit::Mean)));
+        assert_eq!(named("young, mean of the three"), None);
+    }
+
+    #[test]
+    fn run_249_is_the_best_of_its_group() {
+        let at = |print| Cyclist::smart(Fit::Best).by(print).schedule().points()[0].1;
+        assert_eq!(at(Print::Run249(2.98)).get("K_phi_d"), Some(2.98));
+        assert_eq!(at(Print::Settled).get("K_phi_d"), Some(10.34));
+        let line = |print| Cyclist::six(Fit::Regression).by(print).schedule().at(0.0).get("K_delta_d");
+        assert!((line(Print::EquationH1).unwrap() + 0.06181).abs() < 1e-9);
+        assert!((line(Print::Settled).unwrap() + 0.6181).abs() < 1e-9);
+    }
+}
