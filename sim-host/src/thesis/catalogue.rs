@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::item::Item;
 use super::study::Study;
-use super::{app_c, app_d, ch2, ch3_assist, ch3_laws};
+use super::{app_c, app_d, app_i, app_k, ch2, ch3_assist, ch3_laws};
 
 /// An item of the thesis.
 #[derive(Debug)]
@@ -121,9 +121,9 @@ pub const CATALOGUE: &[Entry] = &[
     Entry { name: "table-H.2", title: "Basins of the smart cyclist with six gains", made: RIDERS },
     Entry { name: "figure-H.3", title: "Basins with six and with seven gains", made: RIDERS },
     Entry { name: "table-H.3", title: "Change of the basins from seven to six gains", made: RIDERS },
-    Entry { name: "table-I.1", title: "Heights of the young cyclist's reduced gain sets", made: RIDERS },
-    Entry { name: "table-I.2", title: "Heights of the old cyclist's reduced gain sets", made: RIDERS },
-    Entry { name: "figure-I.1", title: "Heights of the reduced gain sets", made: RIDERS },
+    rides("table-I.1", "Heights of the young cyclist's reduced gain sets", app_i::table_i_1, 30),
+    rides("table-I.2", "Heights of the old cyclist's reduced gain sets", app_i::table_i_2, 60),
+    rides("figure-I.1", "Heights of the reduced gain sets", app_i::figure_i_1, 60),
     Entry { name: "figure-I.2", title: "Measured and modelled roll rate, run 184", made: MEASURED },
     Entry { name: "figure-I.3", title: "Measured and modelled roll rate, run 248", made: MEASURED },
     Entry { name: "figure-I.4", title: "Measured and modelled roll rate, run 248", made: MEASURED },
@@ -136,15 +136,15 @@ pub const CATALOGUE: &[Entry] = &[
     Entry { name: "figure-J.3", title: "Eigenvalues of the undelayed rider", made: RIDERS },
     Entry { name: "figure-J.4", title: "Basins of the undelayed rider", made: RIDERS },
     Entry { name: "figure-J.5", title: "Basins with a delay the gains do not know of", made: RIDERS },
-    Entry { name: "table-K.1", title: "Gains at 4.3 m/s", made: RIDERS },
-    Entry { name: "figure-K.1", title: "Gains and torques at 4.3 m/s", made: RIDERS },
-    Entry { name: "figure-K.2", title: "Which gain makes the regression unstable", made: RIDERS },
-    Entry { name: "figure-K.3", title: "Sensitivity at 4.3 m/s", made: RIDERS },
-    Entry { name: "figure-K.4", title: "Sensitivity at 2.2 m/s", made: RIDERS },
-    Entry { name: "figure-K.5", title: "Sensitivity at 3.2 m/s", made: RIDERS },
-    Entry { name: "figure-K.6", title: "Sensitivity at 4.3 m/s", made: RIDERS },
-    Entry { name: "figure-K.7", title: "Sensitivity at 6.0 m/s", made: RIDERS },
-    Entry { name: "figure-K.8", title: "Sensitivity at 7.3 m/s", made: RIDERS },
+    linear("table-K.1", "Gains at 4.3 m/s", app_k::table_k_1),
+    rides("figure-K.1", "Gains and torques at 4.3 m/s", app_k::figure_k_1, 1),
+    rides("figure-K.2", "Which gain makes the regression unstable", app_k::figure_k_2, 1),
+    rides("figure-K.3", "Sensitivity at 4.3 m/s", app_k::figure_k_3, 2),
+    rides("figure-K.4", "Sensitivity at 2.2 m/s", app_k::figure_k_4, 2),
+    rides("figure-K.5", "Sensitivity at 3.2 m/s", app_k::figure_k_5, 2),
+    rides("figure-K.6", "Sensitivity at 4.3 m/s", app_k::figure_k_6, 2),
+    rides("figure-K.7", "Sensitivity at 6.0 m/s", app_k::figure_k_7, 2),
+    rides("figure-K.8", "Sensitivity at 7.3 m/s", app_k::figure_k_8, 2),
 ];
 
 /// No such item.

@@ -3,11 +3,14 @@
 
 pub mod app_c;
 pub mod app_d;
+mod app_i;
+mod app_k;
 pub mod case;
 pub mod catalogue;
 mod ch2;
 mod ch3_assist;
 mod ch3_laws;
+mod constant;
 pub mod damped;
 pub mod document;
 mod draw;
