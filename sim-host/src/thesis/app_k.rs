@@ -125,6 +125,12 @@ fn compared(study: &Study, sets: &[(String, Gains)], seconds: f64) -> (Plot, Tab
     (plot, Table { title, columns: columns.to_vec(), rows })
 }
 
+/// A gain's signal: "δp/10" of `K_delta_p`.
+fn short(key: &usize) -> String {
+    let name = KEYS[*key].replace("K_", "").replace("phi_", "φ").replace("delta_", "δ");
+    if name == "δp" { name + "/10" } else { name }
+}
+
 /// Figure K.1: the sets of gains at 4.3 m/s and their torques.
 pub(super) fn figure_k_1(study: &Study) -> Item {
     let table = smart();
@@ -145,7 +151,7 @@ pub(super) fn figure_k_1(study: &Study) -> Item {
         Series::new(format!("{name}: gains"), look, points.collect())
     };
     let left = Plot {
-        x: Axis::new("1 φp, 2 φd, 3 φdd, 4 δp/10, 5 δi, 6 δd, 7 δdd").over(0.5, 7.5),
+        x: Axis::of_names("Gain, by its signal", table.columns.iter().map(short).collect()),
         y: Axis::new("Gain"),
         series: sets.iter().enumerate().map(gains).collect(),
         ..Plot::default()

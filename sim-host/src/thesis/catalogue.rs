@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::item::Item;
 use super::study::Study;
-use super::{app_c, app_d, app_i, app_k, ch2, ch3_assist, ch3_laws};
+use super::{app_c, app_d, app_i, app_k, ch2, ch3_assist, ch3_laws, sensitivity};
 
 /// An item of the thesis.
 #[derive(Debug)]
@@ -145,6 +145,7 @@ pub const CATALOGUE: &[Entry] = &[
     rides("figure-K.6", "Sensitivity at 4.3 m/s", app_k::figure_k_6, 2),
     rides("figure-K.7", "Sensitivity at 6.0 m/s", app_k::figure_k_7, 2),
     rides("figure-K.8", "Sensitivity at 7.3 m/s", app_k::figure_k_8, 2),
+    rides("sensitivity-K", "Sensitivity of the height to everything", sensitivity::sensitivity_k, 200),
 ];
 
 /// No such item.

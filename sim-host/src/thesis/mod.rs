@@ -20,6 +20,7 @@ pub mod item;
 pub mod pencil;
 pub mod published;
 pub mod run;
+mod sensitivity;
 pub mod simplex;
 pub mod solvers;
 pub mod study;
