@@ -4,8 +4,10 @@ mod compare;
 mod outline;
 mod plane;
 mod search;
+mod sensitivity;
 
 pub use compare::{Rmse, rmse};
 pub use outline::{Basin, Column, Island, ScanPoint, Work};
 pub use plane::{Plane, PlaneSearch, Ray, plane};
 pub use search::{Axis, Search, SearchError, basin, border, column};
+pub use sensitivity::{Quantity, Sensitivity, sensitivities};

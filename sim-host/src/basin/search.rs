@@ -174,7 +174,7 @@ fn explored(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Sta
 
 /// The rate closest to a border that was seen not to fall, within `tolerance` of one that fell, and
 /// its ride. `safe` did not fall, `fell` did; each may be the larger.
-fn narrow(
+pub(super) fn narrow(
     ride: &mut impl FnMut(&[f64]) -> Vec<Ride>,
     mut safe: f64,
     mut fell: f64,

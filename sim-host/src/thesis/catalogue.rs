@@ -3,7 +3,9 @@
 use super::case::Case;
 use super::item::Item;
 use super::study::Study;
-use super::{app_c, app_d, app_h, app_j, ch2, ch3_assist, ch3_laws, ch3_riders, fits};
+use super::{
+    app_c, app_d, app_h, app_i, app_j, app_k, ch2, ch3_assist, ch3_laws, ch3_riders, fits, sensitivity,
+};
 
 /// An item of the thesis.
 #[derive(Debug)]
@@ -80,7 +82,6 @@ const fn basins(
     Entry { name, title, made: Made::Computed { needs: "basins", cases, compute, work: 2 } }
 }
 
-const RIDERS: Made = Made::Unavailable("needs the riders, which are not there yet");
 const MEASURED: Made =
     Made::Unavailable("needs the measured roll rates of the experiments, which are not published");
 
@@ -130,9 +131,9 @@ pub const CATALOGUE: &[Entry] = &[
     basins("table-H.2", "Basins of the smart cyclist with six gains", app_h::cases, app_h::table_h_2),
     basins("figure-H.3", "Basins with six and with seven gains", app_h::cases_figure_h_3, app_h::figure_h_3),
     basins("table-H.3", "Change of the basins from seven to six gains", app_h::cases, app_h::table_h_3),
-    Entry { name: "table-I.1", title: "Heights of the young cyclist's reduced gain sets", made: RIDERS },
-    Entry { name: "table-I.2", title: "Heights of the old cyclist's reduced gain sets", made: RIDERS },
-    Entry { name: "figure-I.1", title: "Heights of the reduced gain sets", made: RIDERS },
+    rides("table-I.1", "Heights of the young cyclist's reduced gain sets", app_i::table_i_1, 30),
+    rides("table-I.2", "Heights of the old cyclist's reduced gain sets", app_i::table_i_2, 60),
+    rides("figure-I.1", "Heights of the reduced gain sets", app_i::figure_i_1, 60),
     Entry { name: "figure-I.2", title: "Measured and modelled roll rate, run 184", made: MEASURED },
     Entry { name: "figure-I.3", title: "Measured and modelled roll rate, run 248", made: MEASURED },
     Entry { name: "figure-I.4", title: "Measured and modelled roll rate, run 248", made: MEASURED },
@@ -145,15 +146,16 @@ pub const CATALOGUE: &[Entry] = &[
     linear("figure-J.3", "Eigenvalues of the undelayed rider", app_j::figure_j_3),
     basins("figure-J.4", "Basins of the undelayed rider", app_j::cases_j_4, app_j::figure_j_4),
     basins("figure-J.5", "Basins with a delay the gains do not know of", app_j::cases_j_5, app_j::figure_j_5),
-    Entry { name: "table-K.1", title: "Gains at 4.3 m/s", made: RIDERS },
-    Entry { name: "figure-K.1", title: "Gains and torques at 4.3 m/s", made: RIDERS },
-    Entry { name: "figure-K.2", title: "Which gain makes the regression unstable", made: RIDERS },
-    Entry { name: "figure-K.3", title: "Sensitivity at 4.3 m/s", made: RIDERS },
-    Entry { name: "figure-K.4", title: "Sensitivity at 2.2 m/s", made: RIDERS },
-    Entry { name: "figure-K.5", title: "Sensitivity at 3.2 m/s", made: RIDERS },
-    Entry { name: "figure-K.6", title: "Sensitivity at 4.3 m/s", made: RIDERS },
-    Entry { name: "figure-K.7", title: "Sensitivity at 6.0 m/s", made: RIDERS },
-    Entry { name: "figure-K.8", title: "Sensitivity at 7.3 m/s", made: RIDERS },
+    linear("table-K.1", "Gains at 4.3 m/s", app_k::table_k_1),
+    rides("figure-K.1", "Gains and torques at 4.3 m/s", app_k::figure_k_1, 1),
+    rides("figure-K.2", "Which gain makes the regression unstable", app_k::figure_k_2, 1),
+    rides("figure-K.3", "Sensitivity at 4.3 m/s", app_k::figure_k_3, 2),
+    rides("figure-K.4", "Sensitivity at 2.2 m/s", app_k::figure_k_4, 2),
+    rides("figure-K.5", "Sensitivity at 3.2 m/s", app_k::figure_k_5, 2),
+    rides("figure-K.6", "Sensitivity at 4.3 m/s", app_k::figure_k_6, 2),
+    rides("figure-K.7", "Sensitivity at 6.0 m/s", app_k::figure_k_7, 2),
+    rides("figure-K.8", "Sensitivity at 7.3 m/s", app_k::figure_k_8, 2),
+    rides("sensitivity-K", "Sensitivity of the height to everything", sensitivity::sensitivity_k, 200),
 ];
 
 /// No such item.

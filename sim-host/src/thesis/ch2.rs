@@ -6,7 +6,7 @@ use super::item::{Figure, Item, Value};
 use super::study::Study;
 use crate::bicycle::catalogue;
 use crate::bicycle::linear::Linear;
-use crate::eigen::critical_speeds;
+use crate::eigen::{Feedback, Intuitive, Model, critical_speeds};
 use crate::report::figure::{Axis, Chart, Line, Look, Plot, Series};
 use crate::ride::{Conditions, Start, TracePoint, traced};
 use control::Law;
@@ -109,13 +109,16 @@ const LARGEST_GAIN: f64 = 40.0;
 /// Figure 2.7: the controller of Schwab et al. 2008 on the benchmark bicycle.
 pub(super) fn figure_2_7(study: &Study) -> Item {
     let Ok(benchmark) = catalogue::load("benchmark") else { return Item::default() };
-    let linear = Linear::new(&benchmark.parameters);
-    let critical = critical_speeds(&linear, &Law::None);
+    let critical = critical_speeds(&Linear::new(&benchmark.parameters), &Law::None);
+    let model = |controller| Model::new(&benchmark.parameters, Feedback::Intuitive(controller), None);
     let speeds = speeds(10.0, if study.quick { 400 } else { 1000 });
-    let v_max = most_stable(&linear, &speeds);
+    let v_max = most_stable(&model(Intuitive { k_v: 0.0, v_max: 0.0, k_c: 0.0 }), &speeds);
     let k_v = LARGEST_GAIN / v_max;
-    let k_c = least_capsize_gain(&linear, v_max, &speeds);
-    let EigenLines { real, imaginary } = sorted_lines(&speeds, |v| controlled(&linear, v_max, k_v, k_c, v));
+    let k_c = least_capsize_gain(|k_c| model(Intuitive { k_v, v_max, k_c }), v_max, &speeds);
+    let controller = Intuitive { k_v, v_max, k_c };
+    let feedback = Feedback::Intuitive(controller);
+    let whole = model(controller);
+    let EigenLines { real, imaginary } = sorted_lines(&speeds, |v| controlled(&whole, v));
     let eigen = Plot {
         x: Axis::new(SPEED),
         y: Axis::new("Eigenvalue λ").over(-10.0, 10.0),
@@ -127,8 +130,8 @@ pub(super) fn figure_2_7(study: &Study) -> Item {
         shaded: critical.v_w.zip(critical.v_c).into_iter().collect(),
         ..Plot::default()
     };
-    let roll_rate = speeds.iter().map(|&v| (v, k_v * (v_max - v).max(0.0))).collect();
-    let roll = speeds.iter().map(|&v| (v, k_c * (v - v_max).max(0.0))).collect();
+    let roll_rate = speeds.iter().map(|&v| (v, feedback.at(v).roll_rate)).collect();
+    let roll = speeds.iter().map(|&v| (v, feedback.at(v).roll)).collect();
     let gains = Plot {
         x: Axis::new(SPEED),
         y: Axis::new("Gain [N m s/rad], [N m/rad]"),
@@ -157,13 +160,8 @@ pub(super) fn figure_2_7(study: &Study) -> Item {
 }
 
 /// Eigenvalues under eq. 2.16, `(real, imaginary)`.
-fn controlled(linear: &Linear, v_max: f64, k_v: f64, k_c: f64, v: f64) -> Vec<(f64, f64)> {
-    let mut a = linear.state_matrix(v, k_v * (v_max - v).max(0.0));
-    // A steer torque proportional to roll enters where that of the roll rate does.
-    let unit = linear.state_matrix(v, 1.0) - linear.state_matrix(v, 0.0);
-    let column = unit.column(2) * (k_c * (v - v_max).max(0.0));
-    a.column_mut(0).zip_apply(&column, |x, add| *x += add);
-    a.complex_eigenvalues().iter().map(|e| (e.re, e.im)).collect()
+fn controlled(model: &Model, v: f64) -> Vec<(f64, f64)> {
+    model.at(v).a.complex_eigenvalues().iter().map(|e| (e.re, e.im)).collect()
 }
 
 fn growth(values: &[(f64, f64)]) -> f64 {
@@ -171,17 +169,18 @@ fn growth(values: &[(f64, f64)]) -> f64 {
 }
 
 /// The speed at which the uncontrolled bicycle's rightmost eigenvalue lies furthest left \[m/s\].
-fn most_stable(linear: &Linear, speeds: &[f64]) -> f64 {
-    let growth_at = |v: f64| growth(&controlled(linear, 0.0, 0.0, 0.0, v));
+fn most_stable(uncontrolled: &Model, speeds: &[f64]) -> f64 {
+    let growth_at = |v: f64| growth(&controlled(uncontrolled, v));
     let by_growth = |a: &f64, b: &f64| growth_at(*a).total_cmp(&growth_at(*b));
     speeds.iter().copied().min_by(by_growth).unwrap_or(0.0)
 }
 
 /// The least gain on roll per speed above `v_max` that leaves no growth at `speeds` \[N s/rad\].
-fn least_capsize_gain(linear: &Linear, v_max: f64, speeds: &[f64]) -> f64 {
+fn least_capsize_gain(with: impl Fn(f64) -> Model, v_max: f64, speeds: &[f64]) -> f64 {
     let stable = |k_c: f64| {
+        let model = with(k_c);
         let above = speeds.iter().filter(|&&v| v > v_max);
-        above.into_iter().all(|&v| growth(&controlled(linear, v_max, 0.0, k_c, v)) <= 0.0)
+        above.into_iter().all(|&v| growth(&controlled(&model, v)) <= 0.0)
     };
     let (mut low, mut high) = (0.0, 10.0);
     while high - low > 1e-4 {

@@ -52,6 +52,8 @@ pub struct Value {
     pub exact: Option<f64>,
     /// Computed on the grid of disturbances the thesis probably used.
     pub coarse: Option<f64>,
+    /// What grid that is.
+    pub grid: &'static str,
     /// What else could be meant, computed.
     pub experiments: Vec<Experiment>,
 }
@@ -77,18 +79,29 @@ pub enum Explanation {
     Unexplained(Option<(String, f64)>),
 }
 
-/// The name of the coarse grid among the explanations.
+/// The name of the usual coarse grid among the explanations.
 pub const COARSE: &str = "disturbances in steps of 0.5 rad/s, last before the first fall";
 
 impl Value {
     /// A number without coarse grid or experiments.
     pub fn new(cell: Cell, exact: Option<f64>) -> Self {
-        Self { cell, exact: exact.filter(|x| x.is_finite()), coarse: None, experiments: Vec::new() }
+        Self {
+            cell,
+            exact: exact.filter(|x| x.is_finite()),
+            coarse: None,
+            grid: COARSE,
+            experiments: Vec::new(),
+        }
     }
 
     /// The same with the number on the coarse grid.
     pub fn on_grid(self, coarse: Option<f64>) -> Self {
         Self { coarse, ..self }
+    }
+
+    /// The same with the number on another grid, which is named.
+    pub fn on_grid_of(self, coarse: Option<f64>, grid: &'static str) -> Self {
+        Self { coarse, grid, ..self }
     }
 
     /// The same with an experiment.
@@ -121,7 +134,7 @@ impl Value {
         if close(exact) {
             return Explanation::NotNeeded;
         }
-        let coarse = self.coarse.map(|value| Experiment { name: COARSE.into(), value });
+        let coarse = self.coarse.map(|value| Experiment { name: self.grid.into(), value });
         let all = || coarse.iter().chain(&self.experiments);
         if let Some(found) = all().find(|e| close(e.value)) {
             return Explanation::Explained(found.name.clone());

@@ -167,8 +167,23 @@ pub fn published() -> &'static Published {
     &PUBLISHED
 }
 
+/// The height of gain set `number`, from 1, of a run in Table I.1 or I.2, which print them "± 0.1".
+pub fn height_cell(of: &Heights, number: usize) -> Cell {
+    let height = of.rows.get(number - 1).map_or(f64::NAN, |row| row.height);
+    Cell {
+        row: format!("run {}, set {number}", of.run),
+        column: "height".into(),
+        unit: "rad/s".into(),
+        printed: height.is_finite().then_some(Printed { value: height, rounding: 0.1 }),
+        bound: None,
+        from: format!("Table {}", of.table),
+    }
+}
+
 /// Every number printed for `item`, tables first, in the file's order; cells without a number too.
 pub fn cells(item: &str) -> Vec<Cell> {
+    let heights = published().height.iter().filter(|h| item.strip_prefix("table-") == Some(&h.table));
+    let heights = heights.flat_map(|h| (1..=h.rows.len()).map(move |number| height_cell(h, number)));
     let tables = published().table.iter().filter(|t| t.item == item).flat_map(|table| {
         table.rows.iter().flat_map(move |row| {
             row.values.iter().enumerate().map(move |(i, value)| Cell {
@@ -189,7 +204,7 @@ pub fn cells(item: &str) -> Vec<Cell> {
         bound: q.bound,
         from: q.from.clone(),
     });
-    tables.chain(quoted).collect()
+    heights.chain(tables).chain(quoted).collect()
 }
 
 /// Remarks on the print of `item`, and the sentences its numbers come from.

@@ -48,6 +48,8 @@ pub struct Axis {
     pub range: Option<(f64, f64)>,
     /// Logarithmic.
     pub log: bool,
+    /// What stands at 1, 2...; numbers if there are none.
+    pub names: Vec<String>,
 }
 
 /// Points that belong together. A point with NaN interrupts the line.
@@ -122,12 +124,18 @@ impl Look {
 impl Axis {
     /// A linear axis.
     pub fn new(label: &str) -> Self {
-        Self { label: label.into(), range: None, log: false }
+        Self { label: label.into(), ..Self::default() }
     }
 
     /// The same from `low` to `high`.
     pub fn over(self, low: f64, high: f64) -> Self {
         Self { range: Some((low, high)), ..self }
+    }
+
+    /// An axis of names, at 1, 2...
+    pub fn of_names(label: &str, names: Vec<String>) -> Self {
+        let range = Some((0.4, names.len() as f64 + 0.6));
+        Self { label: label.into(), range, log: false, names }
     }
 
     /// The same, logarithmic.

@@ -7,6 +7,7 @@ use super::scale::{nice, ticks};
 pub(super) struct Fitted {
     log: bool,
     pub(super) range: (f64, f64),
+    names: Vec<String>,
 }
 
 impl Fitted {
@@ -28,7 +29,7 @@ impl Fitted {
             None if room => roomy(values.filter(|v| v.is_finite()).collect()),
             None => nice(values, 6),
         };
-        Self { log: axis.log, range }
+        Self { log: axis.log, range, names: axis.names.clone() }
     }
 
     /// Where a value lies in the range; none for one that has no place.
@@ -39,6 +40,9 @@ impl Fitted {
 
     /// Ticks for an axis of `length` pixels that wants one every `apart`.
     pub(super) fn ticks(&self, length: f64, apart: f64) -> Vec<(f64, String)> {
+        if !self.names.is_empty() {
+            return (1..).map(f64::from).zip(self.names.iter().cloned()).collect();
+        }
         if !self.log {
             return ticks(self.range, (length / apart) as usize);
         }

@@ -1,0 +1,184 @@
+//! How the height of the basin changes with everything the ride depends on: central differences.
+
+use super::search::{Axis, Search, SearchError, border, narrow};
+use crate::bicycle::{self, Geometry, Parameters};
+use crate::ride::{Conditions, Ride, rides};
+use crate::rider::{KEYS, Rider, Schedule};
+use rayon::prelude::*;
+
+/// A quantity of the bicycle or its rider.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// A gain, by its place in [`KEYS`], at all speeds.
+    Gain(usize),
+    /// The neural delay.
+    Delay,
+    /// The muscles' undamped natural frequency.
+    MuscleFrequency,
+    /// The muscles' damping ratio.
+    MuscleDamping,
+    /// A parameter of the bicycle, by its place in [`bicycle::KEYS`].
+    Bicycle(usize),
+}
+
+impl Quantity {
+    /// Everything `rider` on a bicycle depends on; gains that are zero at all speeds are left out.
+    pub fn all(rider: &Rider) -> Vec<Self> {
+        let used = |&i: &usize| rider.schedule.points().iter().any(|(_, gains)| gains.0[i] != 0.0);
+        let gains = (0..KEYS.len()).filter(used).map(Self::Gain);
+        let body = [Self::Delay, Self::MuscleFrequency, Self::MuscleDamping];
+        gains.chain(body).chain((0..bicycle::KEYS.len()).map(Self::Bicycle)).collect()
+    }
+
+    /// Its symbol.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gain(i) => KEYS[i],
+            Self::Delay => "tau_d",
+            Self::MuscleFrequency => "omega_nm",
+            Self::MuscleDamping => "zeta_nm",
+            Self::Bicycle(i) => bicycle::KEYS[i],
+        }
+    }
+
+    /// The conditions with the quantity times `factor`.
+    ///
+    /// # Errors
+    /// When the schedule or the conditions do not allow it, for a delay that it is no whole number of
+    /// steps.
+    pub fn scaled(
+        self,
+        conditions: &Conditions,
+        parameters: &Parameters,
+        factor: f64,
+    ) -> Result<Conditions, SearchError> {
+        let mut changed = conditions.clone();
+        if let Self::Bicycle(i) = self {
+            let mut values = parameters.to_values();
+            values[i] *= factor;
+            changed.bicycle = Geometry::new(&Parameters::from_values(&values));
+        }
+        if let Some(rider) = &mut changed.rider {
+            match self {
+                Self::Gain(i) => {
+                    let mut points = rider.schedule.points().to_vec();
+                    points.iter_mut().for_each(|(_, gains)| gains.0[i] *= factor);
+                    let outside = rider.schedule.outside();
+                    rider.schedule = Schedule::new(points, outside).map_err(|e| SearchError(e.0))?;
+                }
+                Self::Delay => rider.delay_s *= factor,
+                Self::MuscleFrequency => rider.muscles.omega_rad_s *= factor,
+                Self::MuscleDamping => rider.muscles.zeta *= factor,
+                Self::Bicycle(_) => {}
+            }
+        }
+        changed.check()?;
+        Ok(changed)
+    }
+
+    /// The relative step of the differences: `PERCENT`, of a delay the next number of whole double steps.
+    fn step(self, conditions: &Conditions) -> f64 {
+        match (self, &conditions.rider) {
+            (Self::Delay, Some(rider)) => 2.0 * conditions.step_s / rider.delay_s,
+            _ => 0.01 * PERCENT,
+        }
+    }
+}
+
+/// The larger step of the differences \[%\].
+const PERCENT: f64 = 1.0;
+
+/// How the height of the basin at one speed depends on a quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Forward speed \[m/s\].
+    pub speed: f64,
+    /// The height \[rad/s\].
+    pub height: f64,
+    /// Change of the height for +1 % \[rad/s\].
+    pub per_percent: f64,
+    /// The same from half the step.
+    pub halved: f64,
+    /// How far the located borders can put `halved`, the less sure of the two, off \[rad/s\].
+    pub resolution: f64,
+}
+
+impl Sensitivity {
+    /// Relative change of the height over relative change of the quantity.
+    pub fn elasticity(&self) -> f64 {
+        100.0 * self.per_percent / self.height
+    }
+
+    /// Whether both steps tell the same: within a tenth, or what the borders resolve.
+    pub fn is_smooth(&self) -> bool {
+        let apart = (self.halved - self.per_percent).abs();
+        apart <= 2.0 * self.resolution + 0.1 * self.per_percent.abs().max(self.halved.abs())
+    }
+}
+
+/// The sensitivity at `speed` \[m/s\] to `quantities`, borders within `tolerance` \[rad/s\], on all
+/// cores of the current rayon pool. `parameters` are those of the conditions' bicycle.
+///
+/// # Errors
+/// When the conditions fail their checks, or with a quantity changed.
+pub fn sensitivities(
+    conditions: &Conditions,
+    parameters: &Parameters,
+    quantities: &[Quantity],
+    speed: f64,
+    tolerance: f64,
+) -> Result<Vec<Sensitivity>, SearchError> {
+    conditions.check()?;
+    let search =
+        Search { speeds: vec![speed], axis: Axis::SteerRate, max_rate: 20.0, scan_step: 0.25, tolerance };
+    search.check()?;
+    let height = border(conditions, &search, speed).upper;
+    let one = |&quantity: &Quantity| -> Result<Sensitivity, SearchError> {
+        let step = quantity.step(conditions);
+        let at = |factor: f64, guess: f64| -> Result<f64, SearchError> {
+            let changed = quantity.scaled(conditions, parameters, factor)?;
+            Ok(near(&changed, speed, guess, tolerance))
+        };
+        let (low, high) = (at(1.0 - step, height)?, at(1.0 + step, height)?);
+        let half = 0.5 * step;
+        let (inner_low, inner_high) =
+            (at(1.0 - half, 0.5 * (height + low))?, at(1.0 + half, 0.5 * (height + high))?);
+        let per_percent = |low: f64, high: f64, step: f64| (high - low) / (200.0 * step);
+        Ok(Sensitivity {
+            quantity,
+            speed,
+            height,
+            per_percent: per_percent(low, high, step),
+            halved: per_percent(inner_low, inner_high, half),
+            resolution: per_percent(0.0, tolerance, half),
+        })
+    };
+    quantities.par_iter().map(one).collect()
+}
+
+/// The border next to `guess` \[rad/s\].
+///
+/// Eight rides around it, wider and wider until the first does not fall and another does; then as
+/// every border is narrowed.
+fn near(conditions: &Conditions, speed: f64, guess: f64, tolerance: f64) -> f64 {
+    let mut ride = |rates: &[f64]| -> Vec<Ride> {
+        let starts: Vec<_> = rates.iter().map(|&rate| Axis::SteerRate.start(speed, rate)).collect();
+        rides(conditions, &starts)
+    };
+    let mut width = 8e-3;
+    loop {
+        let away = [-1.0, -0.25, -0.0625, -0.015, 0.015, 0.0625, 0.25, 1.0];
+        let rates = away.map(|part| (guess + width * part).max(0.0));
+        let done = ride(&rates);
+        let first = done.iter().position(Ride::fell);
+        match first {
+            Some(first) if first > 0 => {
+                return narrow(&mut ride, rates[first - 1], rates[first], tolerance, None).0;
+            }
+            _ if width > guess.max(1.0) => return if first.is_none() { rates[7] } else { 0.0 },
+            _ => width *= 8.0,
+        }
+    }
+}

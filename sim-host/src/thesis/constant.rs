@@ -1,0 +1,20 @@
+//! Riders whose gains do not change with speed: appendices I and K.
+
+use super::study::Study;
+use crate::ride::{Assist, Conditions, Start};
+use crate::rider::{Gains, Muscles, Rider, Schedule};
+
+/// A rider with the same gains at every speed and the muscles of the thesis.
+pub(super) fn constant(gains: Gains, delay_s: f64) -> Rider {
+    Rider { schedule: Schedule::constant(gains), delay_s, muscles: Muscles::SHOULDERS }
+}
+
+/// The published conditions for a rider without an assist.
+pub(super) fn ridden(study: &Study, rider: Rider) -> Conditions {
+    Conditions { rider: Some(rider), ..Conditions::thesis(study.bicycle, Assist::None) }
+}
+
+/// A ride at `speed_m_s` disturbed by a steer rate.
+pub(super) fn disturbed(speed_m_s: f64, steer_rate_rad_s: f64) -> Start {
+    Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s: 0.0 }
+}
