@@ -37,6 +37,11 @@ impl Published {
         self.number("tolerance")
     }
 
+    /// Whether there is such a key.
+    pub fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
     /// A text: `source`, `reason`.
     pub fn text(&self, key: &str) -> &str {
         self.get(key).as_str().unwrap_or_else(|| panic!("{}.{key} is no text", self.name))

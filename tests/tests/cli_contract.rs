@@ -28,14 +28,17 @@ fn documents_fit_their_committed_schemas() {
         ("ride", "ride --speed 4 --steer-rate 5"),
         ("ride", "ride --speed 1 --steer-rate 25 --preset product --sensor-delay 20ms"),
         ("ride", "ride --speed 0"),
+        ("ride", "ride --speed 4 --rider young --gains best"),
         ("eigen", "eigen --speeds 0:10:1"),
         ("eigen", &format!("eigen --speeds 4 --law {}", law.display())),
         ("bicycle-check", "bicycle check"),
         ("bicycle-check", "bicycle check --bicycle yellowrev"),
+        ("rider-show", "rider show smart6"),
+        ("rider-show", "rider show hess --gains regression"),
     ] {
         assert_eq!(violations(&committed(name), &bench.json(line)), [""; 0], "{line}");
     }
-    for name in ["basin", "ride", "eigen", "bicycle-check"] {
+    for name in ["basin", "ride", "eigen", "bicycle-check", "rider-show"] {
         let run = bench.run(&format!("schema {name}"));
         let file = std::fs::read_to_string(repository("docs/schema").join(format!("{name}.json"))).unwrap();
         assert!(run.stdout == file, "run: sim-host schema {name} > docs/schema/{name}.json");

@@ -66,7 +66,16 @@ fn documented_commands_have_known_options() {
 #[test]
 fn every_option_is_documented_with_its_default() {
     let (bench, document) = (Bench::new(PROGRAM), document());
-    for command in ["basin", "ride", "eigen", "bicycle show", "bicycle check", "bicycle accel"] {
+    for command in [
+        "basin",
+        "ride",
+        "eigen",
+        "bicycle show",
+        "bicycle check",
+        "bicycle accel",
+        "rider show",
+        "rider check",
+    ] {
         let help = bench.run(&format!("{command} --help")).stdout;
         let mut option = "";
         for line in help.lines().map(str::trim) {

@@ -21,6 +21,7 @@ const EXAMPLES: &str = "\
 Examples:
   sim-host basin --svg basin.svg --json basin.json
   sim-host basin --law none --speeds 4:10:0.1
+  sim-host basin --rider young --delay 60ms --gains best
   sim-host basin --law cl2:4 --assist ideal --schedule-speed rear
   sim-host basin --preset product --sensor-delay 20ms --csv product.csv
   sim-host basin --bicycle my.toml#city --axis roll-rate --max-rate 5";
@@ -31,9 +32,9 @@ Examples:
 pub(super) struct Args {
     #[command(flatten)]
     conditions: ConditionArgs,
-    /// Forward speeds in m/s: A:B:STEP, B included, or one
-    #[arg(long, default_value = "0:10:0.1", value_parser = speeds::parse, value_name = "A:B:STEP", allow_hyphen_values = true)]
-    speeds: std::vec::Vec<f64>,
+    /// Forward speeds in m/s: A:B:STEP, B included, or one [default: 0:10:0.1; with --rider: 2:7.5:0.1]
+    #[arg(long, value_parser = speeds::parse, value_name = "A:B:STEP", allow_hyphen_values = true)]
+    speeds: Option<std::vec::Vec<f64>>,
     /// The rate that is disturbed at t = 0
     #[arg(long, default_value = "steer-rate")]
     axis: Axis,
@@ -55,8 +56,10 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let setup = args.conditions.setup()?;
+    // A rider's gains are known from 2.1 to 7.4 m/s.
+    let speeds = if args.conditions.ridden() { "2:7.5:0.1" } else { "0:10:0.1" };
     let search = Search {
-        speeds: args.speeds.clone(),
+        speeds: args.speeds.clone().map_or_else(|| speeds::parse(speeds), Ok)?,
         axis: args.axis,
         max_rate: args.max_rate,
         scan_step: args.scan_step,
@@ -85,7 +88,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     };
     let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, &result, seconds);
     let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
-    let label = format!("{}, law {}", setup.config.bicycle.name, setup.config.law.name);
+    let label = setup.config.label();
     let cut = if complete { "" } else { ", interrupted" };
     let title = format!("Basin of attraction: {label}, {}{cut}", setup.config.assist);
     let figure = BasinFigure {

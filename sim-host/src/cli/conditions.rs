@@ -1,8 +1,9 @@
 //! The options that say who rides what under which conditions; `ride` and `basin` share them.
 
+use super::rider_args::{RiderArgs, step};
 use super::{Failure, law, warn};
 use crate::bicycle::{Geometry, catalogue};
-use crate::report::resolved::{ResolvedConfig, ResolvedLaw};
+use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
 use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
 use clap::ValueEnum;
 use control::{Config, Law, ShapeConfig, Taper, Wheel};
@@ -33,7 +34,9 @@ pub(super) struct ConditionArgs {
     /// Shipped bicycle (see `bicycle list`), FILE, or FILE#NAME of a collection
     #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
     bicycle: String,
-    /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, or a table FILE [default: h; product: h-cut]
+    #[command(flatten)]
+    rider: RiderArgs,
+    /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, or a table FILE [default: h; with --rider: none; product: h-cut]
     #[arg(long)]
     law: Option<String>,
     /// Defaults of the options below
@@ -83,20 +86,20 @@ fn taper(text: &str) -> Result<Limit<(f32, f32)>, String> {
     speeds.map(|s| Limit(Some(s))).ok_or_else(|| format!("`{text}` is neither ZERO:FULL in m/s nor none"))
 }
 
-/// A time with its unit \[s\].
-pub(super) fn seconds(text: &str) -> Result<f64, String> {
+fn seconds(text: &str) -> Result<f64, String> {
+    time(text, 3600.0)
+}
+
+/// A time with its unit, from 0 to `max` \[s\].
+pub(super) fn time(text: &str, max: f64) -> Result<f64, String> {
     let wrong =
         || format!("`{text}` is not a time; expected a number with its unit, for example 20ms or 0.02s");
-    let (number, scale) = match text.strip_suffix("ms") {
-        Some(number) => (number, 1e-3),
+    let (number, per_s) = match text.strip_suffix("ms") {
+        Some(number) => (number, 1e3),
         None => (text.strip_suffix('s').ok_or_else(wrong)?, 1.0),
     };
-    let value: f64 = number.trim().parse().map_err(|_| wrong())?;
-    if (0.0..=3600.0).contains(&(value * scale)) {
-        Ok(value * scale)
-    } else {
-        Err(format!("{text} is outside 0 s to 3600 s"))
-    }
+    let value = number.trim().parse::<f64>().map_err(|_| wrong())? / per_s;
+    if (0.0..=max).contains(&value) { Ok(value) } else { Err(format!("{text} is outside 0 s to {max} s")) }
 }
 
 /// Whole control periods in a delay.
@@ -136,6 +139,11 @@ pub(super) struct Setup {
 }
 
 impl ConditionArgs {
+    /// Whether a rider is asked for.
+    pub(super) fn ridden(&self) -> bool {
+        self.rider.rider.is_some()
+    }
+
     /// Loads and checks everything; warnings go to standard error.
     pub(super) fn setup(&self) -> Result<Setup, Failure> {
         let bicycle = catalogue::load(&self.bicycle)?;
@@ -145,7 +153,12 @@ impl ConditionArgs {
             Preset::Product => Config::product(),
         };
         let product = self.preset == Preset::Product;
-        let law_name = self.law.as_deref().unwrap_or(if product { "h-cut" } else { "h" });
+        let rider = self.rider.load()?;
+        let law_name = self.law.as_deref().unwrap_or(match (product, &rider) {
+            (true, _) => "h-cut",
+            (false, Some(_)) => "none",
+            (false, None) => "h",
+        });
         let law = law::parse(law_name)?;
         let mut config = Config { law: law.clone(), ..base };
         config.input.wheel = match self.schedule_speed {
@@ -162,13 +175,12 @@ impl ConditionArgs {
             config.shape.taper = taper.map(|(zero_m_s, full_m_s)| Taper { zero_m_s, full_m_s });
         }
         let period_s = 1.0 / f64::from(config.rate_hz);
-        let sensor_delay_ticks = whole_ticks(self.sensor_delay, period_s)?;
         let limited = config.shape != ShapeConfig::default();
         let plan = config.plan().map_err(|e| match option_of(e.name) {
             Some(option) => format!("{option}: {e}"),
             None => e.to_string(),
         })?;
-        if self.assist == AssistKind::Ideal && (limited || sensor_delay_ticks > 0) {
+        if self.assist == AssistKind::Ideal && (limited || self.sensor_delay > 0.0) {
             let why = "limits and sensor delay act on --assist firmware only; the ideal law has none";
             return Err(why.into());
         }
@@ -177,19 +189,26 @@ impl ConditionArgs {
             AssistKind::Firmware => Assist::Firmware(Box::new(plan)),
             AssistKind::Ideal => Assist::Ideal(Box::new(law.clone())),
         };
+        let step_s = match &rider {
+            Some((rider, ..)) => step(rider.delay_s, period_s, matches!(assist, Assist::Firmware(_)))?,
+            None => period_s,
+        };
+        let sensor_delay_ticks = whole_ticks(self.sensor_delay, step_s)?;
+        let resolved = rider.as_ref().map(|(rider, table, fit)| ResolvedRider::new(table, *fit, rider));
         let conditions = Conditions {
+            rider: rider.map(|(rider, ..)| rider),
             schedule_speed: self.schedule_speed,
             imu: self.imu,
             sensor_delay_ticks,
             time_limit_s: self.time_limit,
-            step_s: period_s,
+            step_s,
             recovered_below: self.recovered_below,
             ..Conditions::thesis(Geometry::new(&bicycle.parameters), assist)
         };
         conditions.check()?;
         let preset = if product { "product" } else { "thesis" };
         let law = ResolvedLaw::new(law_name, &law);
-        let config = ResolvedConfig::new(preset, &bicycle, law, &conditions);
+        let config = ResolvedConfig::new(preset, &bicycle, resolved, law, &conditions);
         Ok(Setup { conditions, config, parameters: bicycle.parameters })
     }
 }

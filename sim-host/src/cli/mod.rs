@@ -9,6 +9,8 @@ mod interrupt;
 mod law;
 mod outputs;
 mod ride;
+mod rider;
+mod rider_args;
 mod speeds;
 
 use crate::bicycle::catalogue::Bicycle;
@@ -33,7 +35,8 @@ Examples:
   sim-host basin --svg basin.svg               the basin of the thesis bicycle under law h
   sim-host ride --speed 4 --steer-rate 5       one ride
   sim-host eigen --law cl2:4                   eigenvalues over speed
-  sim-host bicycle list                        the bicycles that ship";
+  sim-host bicycle list                        the bicycles that ship
+  sim-host rider list                          the riders that ship";
 
 /// From which disturbances does a bicycle with a steer assist recover?
 #[derive(Parser)]
@@ -56,11 +59,14 @@ enum Command {
     /// Bicycles: list, show, check, accelerations.
     #[command(subcommand, after_help = bicycle::EXAMPLES)]
     Bicycle(bicycle::Command),
+    /// Riders: list, show, check.
+    #[command(subcommand, after_help = rider::EXAMPLES)]
+    Rider(rider::Command),
     /// The JSON schema of a command's `--json` document.
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
-        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check"])]
+        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show"])]
         document: String,
     },
 }
@@ -74,6 +80,7 @@ pub fn run() -> ExitCode {
         Command::Ride(args) => ride::run(&args),
         Command::Eigen(args) => eigen::run(&args),
         Command::Bicycle(command) => bicycle::run(&command),
+        Command::Rider(command) => rider::run(&command),
         Command::Schema { document } => schema(&document),
     };
     match ended {

@@ -17,6 +17,7 @@ const EXAMPLES: &str = "\
 Examples:
   sim-host ride --speed 4 --steer-rate 5
   sim-host ride --law none --speed 6 --steer-rate 1 --svg ride.svg --csv ride.csv
+  sim-host ride --rider smart --law h --speed 4 --steer-rate 5
   sim-host ride --preset product --speed 3 --roll-rate 0.5 --json";
 
 /// Options of `ride`.
@@ -52,8 +53,11 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let (ride, trace) = traced(&setup.conditions, start);
     let document = RideDocument::new(setup.config.clone(), &ride);
     let title = format!(
-        "{}, law {}: {} m/s, steer rate {} rad/s, roll rate {} rad/s",
-        setup.config.bicycle.name, setup.config.law.name, args.speed, args.steer_rate, args.roll_rate
+        "{}: {} m/s, steer rate {} rad/s, roll rate {} rad/s",
+        setup.config.label(),
+        args.speed,
+        args.steer_rate,
+        args.roll_rate
     );
     let figure = RideFigure { trace: &trace, outcome: ride.outcome, title: &title };
     let config = json!({"config": document.config, "start": document.start});

@@ -247,6 +247,7 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "ride" => generator.into_root_schema_for::<RideDocument>(),
         "eigen" => generator.into_root_schema_for::<EigenDocument>(),
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
+        "rider-show" => generator.into_root_schema_for::<super::rider::RiderDocument>(),
         _ => return None,
     };
     // The descriptions are the doc comments, whose brackets are escaped.

@@ -5,5 +5,6 @@ pub mod figure;
 pub mod output;
 pub mod picture;
 pub mod resolved;
+pub mod rider;
 pub mod table;
 pub mod terminal;

@@ -3,6 +3,7 @@
 use crate::basin::Axis;
 use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
 use crate::ride::{Assist, Conditions};
+use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};
 use control::Law;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -75,6 +76,69 @@ impl ResolvedLaw {
     }
 }
 
+/// The muscles of a result's rider.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ResolvedMuscles {
+    /// Undamped natural frequency \[rad/s\].
+    pub omega_rad_s: f64,
+    /// Damping ratio.
+    pub zeta: f64,
+}
+
+/// Gains at one speed.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ResolvedGains {
+    /// Forward speed \[m/s\].
+    pub speed_m_s: f64,
+    /// The gains: N m per rad, rad s, rad/s, rad/s^2 (roll, then steer), rad (heading), m (lateral
+    /// offset).
+    pub gains: BTreeMap<&'static str, f64>,
+}
+
+impl ResolvedGains {
+    /// The gains for an output.
+    pub fn new(speed_m_s: f64, gains: &Gains) -> Self {
+        Self { speed_m_s, gains: crate::rider::KEYS.into_iter().zip(gains.0).collect() }
+    }
+}
+
+/// The rider of a result.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ResolvedRider {
+    /// Name, or FILE as given.
+    pub name: String,
+    /// Where the gains come from.
+    pub source: Option<String>,
+    /// How they became continuous over speed.
+    pub gains: Fit,
+    /// Neural delay \[s\].
+    pub delay_s: f64,
+    /// "extrapolate" or "hold": the gains beyond the outermost points.
+    pub outside: &'static str,
+    /// The muscles.
+    pub muscles: ResolvedMuscles,
+    /// The points that the gains go through on straight lines.
+    pub points: Vec<ResolvedGains>,
+}
+
+impl ResolvedRider {
+    /// The rider for an output.
+    pub fn new(table: &RiderTable, fit: Fit, rider: &Rider) -> Self {
+        Self {
+            name: table.name.clone(),
+            source: table.source.clone(),
+            gains: fit,
+            delay_s: rider.delay_s,
+            outside: match rider.schedule.outside() {
+                Outside::Extrapolate => "extrapolate",
+                Outside::Hold => "hold",
+            },
+            muscles: ResolvedMuscles { omega_rad_s: rider.muscles.omega_rad_s, zeta: rider.muscles.zeta },
+            points: rider.schedule.points().iter().map(|(v, k)| ResolvedGains::new(*v, k)).collect(),
+        }
+    }
+}
+
 /// The conditions of a result, defaults filled in.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ResolvedConfig {
@@ -82,6 +146,8 @@ pub struct ResolvedConfig {
     pub preset: String,
     /// The bicycle.
     pub bicycle: ResolvedBicycle,
+    /// Who rides; null for a rigid rider, hands off.
+    pub rider: Option<ResolvedRider>,
     /// The law.
     pub law: ResolvedLaw,
     /// "none", "firmware" or "ideal".
@@ -111,7 +177,13 @@ pub struct ResolvedConfig {
 
 impl ResolvedConfig {
     /// The configuration for an output.
-    pub fn new(preset: &str, bicycle: &Bicycle, law: ResolvedLaw, c: &Conditions) -> Self {
+    pub fn new(
+        preset: &str,
+        bicycle: &Bicycle,
+        rider: Option<ResolvedRider>,
+        law: ResolvedLaw,
+        c: &Conditions,
+    ) -> Self {
         let config = match &c.assist {
             Assist::Firmware(plan) => Some(plan.config()),
             Assist::None | Assist::Ideal(_) => None,
@@ -119,6 +191,7 @@ impl ResolvedConfig {
         Self {
             preset: preset.into(),
             bicycle: ResolvedBicycle::new(bicycle),
+            rider,
             law,
             assist: match &c.assist {
                 Assist::None => "none",
@@ -136,6 +209,14 @@ impl ResolvedConfig {
             time_limit_s: c.time_limit_s,
             recovered_below: c.recovered_below,
         }
+    }
+
+    /// Who rides what, in a few words: "rigid_jason, rider young (mean gains, 30 ms), law none".
+    pub fn label(&self) -> String {
+        let rider = self.rider.as_ref().map_or(String::new(), |r| {
+            format!(", rider {} ({} gains, {} ms)", r.name, r.gains.name(), (r.delay_s * 1e9).round() / 1e6)
+        });
+        format!("{}{rider}, law {}", self.bicycle.name, self.law.name)
     }
 }
 

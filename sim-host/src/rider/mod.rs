@@ -2,16 +2,22 @@
 //! shoulders, in parallel with the assist (Kuipers 2020, sections 2.1.3 and 2.3; Schwab et al. 2013).
 
 mod body;
+pub mod catalogue;
+mod file;
+mod fit;
 mod gains;
 mod muscles;
 mod nerves;
 mod schedule;
+mod table;
 
 pub use body::{Body, Instant};
+pub use fit::{Fit, Line};
 pub use gains::{Gains, KEYS, Signals};
 pub use muscles::{Muscles, MusclesError};
 pub use nerves::Nerves;
 pub use schedule::{Outside, Schedule, ScheduleError};
+pub use table::{RiderTable, Row};
 
 use crate::range::within;
 

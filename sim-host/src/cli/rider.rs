@@ -1,0 +1,160 @@
+//! `sim-host rider`: list, show, check.
+
+use super::outputs::{print, write_json};
+use super::{Ended, Failure};
+use crate::report::output::Output;
+use crate::report::resolved::Tool;
+use crate::report::rider::{FitEntry, RiderDocument, gain_rows};
+use crate::report::table;
+use crate::rider::{Fit, KEYS, Outside, RiderTable, catalogue};
+use serde_json::json;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  sim-host rider list
+  sim-host rider show young
+  sim-host rider show smart --gains regression --json
+  sim-host rider check my-rider.toml";
+
+const SHOW_HELP: &str = "\
+The answer is a file that --rider takes; what is made of it over speed is in its comments.
+
+Examples:
+  sim-host rider show young > my-rider.toml
+  sim-host rider show smart --gains regression --json
+  sim-host rider show hess --csv hess.csv";
+
+#[derive(clap::Subcommand)]
+pub(super) enum Command {
+    /// The riders that ship
+    #[command(after_help = "Example:\n  sim-host rider list")]
+    List,
+    /// One rider's gains, their course over speed and how well it fits (R^2)
+    #[command(after_help = SHOW_HELP)]
+    Show(ShowArgs),
+    /// Checks a rider's table
+    #[command(after_help = "Example:\n  sim-host rider check my-rider.toml")]
+    Check {
+        /// Shipped rider or FILE
+        #[arg(value_name = "NAME|FILE")]
+        rider: String,
+    },
+}
+
+#[derive(clap::Args)]
+pub(super) struct ShowArgs {
+    /// Shipped rider or FILE
+    #[arg(value_name = "NAME|FILE")]
+    rider: String,
+    /// Only this course of the gains over speed [default: all that the table allows]
+    #[arg(long)]
+    gains: Option<Fit>,
+    /// Write JSON to FILE, or to standard output (also -)
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
+    json: Option<PathBuf>,
+    /// Write a CSV table; - is standard output
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+}
+
+pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
+    match command {
+        Command::List => list()?,
+        Command::Show(args) => show(args)?,
+        Command::Check { rider } => check(rider)?,
+    }
+    Ok(Ended::Done)
+}
+
+/// Sets, groups, speeds, delay and muscles in a line.
+fn summary(t: &RiderTable) -> String {
+    let (first, last) = (&t.rows[0], &t.rows[t.rows.len() - 1]);
+    format!(
+        "{} sets in {} groups, {} to {} m/s, delay {} ms, muscles {:.3} rad/s, {:.3}",
+        t.rows.len(),
+        t.groups().count(),
+        first.speed_m_s,
+        last.speed_m_s,
+        (t.delay_s * 1e9).round() / 1e6,
+        t.muscles.omega_rad_s,
+        t.muscles.zeta
+    )
+}
+
+fn list() -> Result<(), Failure> {
+    let mut text = String::new();
+    for name in catalogue::shipped_names() {
+        let table = catalogue::load(name)?;
+        let source = table.source.as_deref().unwrap_or("");
+        let _ = writeln!(text, "{name:19} {}\n{:19} {source}", summary(&table), "");
+    }
+    print(&text)
+}
+
+/// The fits a table allows: those asked for must be, of all the others those that can.
+fn fits(table: &RiderTable, asked: Option<Fit>) -> Result<Vec<Fit>, Failure> {
+    let possible = |fit: &Fit| table.schedule(*fit, Outside::default());
+    if let Some(fit) = asked {
+        possible(&fit).map_err(|e| format!("rider `{}`, gains {}: {e}", table.name, fit.name()))?;
+        return Ok(vec![fit]);
+    }
+    Ok(Fit::ALL.into_iter().filter(|fit| possible(fit).is_ok()).collect())
+}
+
+fn show(args: &ShowArgs) -> Result<(), Failure> {
+    let table = catalogue::load(&args.rider)?;
+    let fits = fits(&table, args.gains)?;
+    let entries = fits.iter().map(|fit| FitEntry::new(&table, *fit)).collect::<Result<Vec<_>, _>>()?;
+    let open = |path: &Option<PathBuf>| path.as_deref().map(Output::create).transpose();
+    let (json, csv) = (open(&args.json)?, open(&args.csv)?);
+    if json.as_ref().zip(csv.as_ref()).is_some_and(|(json, csv)| json.collides(csv)) {
+        return Err("--json and --csv have the same place to write to".into());
+    }
+    if let Some(output) = &csv {
+        let config = json!({"rider": table.name, "delay_s": table.delay_s, "muscles": table.muscles});
+        output.finish(&table::table(&config, &gain_rows(&table, &fits)?)?)?;
+    }
+    if let Some(output) = &json {
+        write_json(output, &RiderDocument::new(&table, entries.clone()))?;
+    }
+    if json.is_some() || csv.is_some() {
+        return Ok(());
+    }
+    let Tool { name: tool, version, commit } = Tool::this();
+    let mut text = format!("# {tool} {version} commit {commit}, rider {}\n{}", table.name, table.to_toml());
+    for entry in &entries {
+        comment(&mut text, entry, &table.columns);
+    }
+    print(&text)
+}
+
+/// A fit as comment lines.
+fn comment(text: &mut String, fit: &FitEntry, columns: &[usize]) {
+    let keys: Vec<&str> = columns.iter().map(|&i| KEYS[i]).collect();
+    let _ = writeln!(text, "\n# gains {}", fit.gains.name());
+    let speeds: String = fit.points.iter().map(|p| format!(" {:9.3}", p.speed_m_s)).collect();
+    let _ = writeln!(text, "# at m/s    {speeds}        R^2{}", fit.line.as_ref().map_or("", |_| "   line"));
+    for key in keys {
+        let values: String = fit.points.iter().map(|p| format!(" {:9.3}", p.gains[key])).collect();
+        let r_squared = fit.r_squared[key].map_or("       none".into(), |r| format!("{r:11.3}"));
+        let line = fit.line.as_ref().map_or(String::new(), |line| {
+            let (slope, rest) = line[key];
+            format!("   {slope:.4} v {} {:.4}", if rest < 0.0 { '-' } else { '+' }, rest.abs())
+        });
+        let _ = writeln!(text, "# {key:10}{values}{r_squared}{line}");
+    }
+}
+
+fn check(name: &str) -> Result<(), Failure> {
+    let table = catalogue::load(name)?;
+    let mut text = format!("{name}: sound\n{}\n", summary(&table));
+    for fit in Fit::ALL {
+        let _ = match table.schedule(fit, Outside::default()) {
+            Ok(schedule) => writeln!(text, "gains {}: {} points", fit.name(), schedule.points().len()),
+            Err(e) => writeln!(text, "gains {}: not possible: {e}", fit.name()),
+        };
+    }
+    print(&text)
+}

@@ -1,0 +1,70 @@
+//! The options that say who rides.
+
+use super::Failure;
+use super::conditions::time;
+use super::outputs::complain;
+use crate::rider::{Fit, MAX_DELAY_S, Outside, Rider, RiderTable, catalogue};
+
+#[derive(clap::Args)]
+pub(super) struct RiderArgs {
+    /// Who rides: a shipped rider (see `rider list`) or a table FILE [default: a rigid rider, hands off]
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(super) rider: Option<String>,
+    /// How the rider's gains become continuous over speed [default: mean]
+    #[arg(long, requires = "rider")]
+    gains: Option<Fit>,
+    /// The rider's neural delay, 0 to 1 s, for example 60ms [default: the table's own]
+    #[arg(long, value_name = "TIME", requires = "rider", value_parser = delay, allow_hyphen_values = true)]
+    delay: Option<f64>,
+    /// The rider's gains beyond the measured speeds [default: extrapolate]
+    #[arg(long, requires = "rider")]
+    gains_outside: Option<Outside>,
+}
+
+fn delay(text: &str) -> Result<f64, String> {
+    time(text, MAX_DELAY_S)
+}
+
+impl RiderArgs {
+    /// The rider asked for, with the table and the fit behind it.
+    pub(super) fn load(&self) -> Result<Option<(Rider, RiderTable, Fit)>, Failure> {
+        let Some(name) = &self.rider else { return Ok(None) };
+        let (fit, outside) = (self.gains.unwrap_or_default(), self.gains_outside.unwrap_or_default());
+        let table = catalogue::load(name)?;
+        let rider = table
+            .rider(fit, outside, self.delay)
+            .map_err(|e| format!("rider `{name}`, gains {}: {e}", fit.name()))?;
+        Ok(Some((rider, table, fit)))
+    }
+}
+
+/// The integration step of which `delay_s` is a whole number, `period_s` if it can be. The firmware
+/// fixes it to its control period; otherwise a shorter one is found and told on standard error.
+pub(super) fn step(delay_s: f64, period_s: f64, firmware: bool) -> Result<f64, String> {
+    let ms = |s: f64| format!("{} ms", (s * 1e9).round() / 1e6);
+    let periods = delay_s / period_s;
+    if (periods - periods.round()).abs() < 1e-6 {
+        return Ok(period_s);
+    }
+    if firmware {
+        return Err(format!(
+            "--delay: {} is not a whole number of control periods of {}; nearest are {} and {} \
+             (without --assist firmware any delay will do)",
+            ms(delay_s),
+            ms(period_s),
+            ms(periods.floor() * period_s),
+            ms(periods.ceil() * period_s)
+        ));
+    }
+    let step = delay_s / periods.ceil();
+    if step < 1e-5 {
+        return Err(format!("--delay: {} is less than the shortest step, 0.01 ms", ms(delay_s)));
+    }
+    complain(&format!(
+        "note: step {} so that the delay of {} is {} steps",
+        ms(step),
+        ms(delay_s),
+        periods.ceil()
+    ));
+    Ok(step)
+}

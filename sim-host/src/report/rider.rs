@@ -1,0 +1,181 @@
+//! `rider show`: document and table.
+#![allow(non_snake_case, reason = "the symbols of the thesis")]
+
+use super::document::SCHEMA;
+use super::resolved::{ResolvedGains, ResolvedMuscles, Tool};
+use crate::rider::{Fit, Gains, KEYS, Outside, RiderTable, ScheduleError};
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+type ByKey<T> = BTreeMap<&'static str, T>;
+
+/// `rider show`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct RiderDocument {
+    /// 1.
+    #[schemars(extend("const" = SCHEMA))]
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// Name, or FILE as given.
+    pub name: String,
+    /// Where the values come from.
+    pub source: Option<String>,
+    /// A remark.
+    pub note: Option<String>,
+    /// Neural delay \[s\].
+    pub delay_s: f64,
+    /// The muscles.
+    pub muscles: ResolvedMuscles,
+    /// The measured sets.
+    pub rows: Vec<RowEntry>,
+    /// What is made of them over speed.
+    pub fits: Vec<FitEntry>,
+}
+
+/// One measured set.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct RowEntry {
+    /// The experiment.
+    pub run: Option<u32>,
+    /// Sets of like speed share a number.
+    pub group: u32,
+    /// Variance accounted for \[%\].
+    pub vaf: Option<f64>,
+    /// Speed and gains.
+    #[serde(flatten)]
+    pub at: ResolvedGains,
+}
+
+/// The gains over speed.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct FitEntry {
+    /// How.
+    pub gains: Fit,
+    /// Straight lines through these, going on beyond the outermost.
+    pub points: Vec<ResolvedGains>,
+    /// Slope \[per m/s\] and gain at rest of a regression; null for others.
+    pub line: Option<ByKey<(f64, f64)>>,
+    /// Coefficient of determination; null for a gain that is the same in all rows.
+    pub r_squared: ByKey<Option<f64>>,
+}
+
+impl FitEntry {
+    /// What `fit` makes of a table.
+    ///
+    /// # Errors
+    /// As [`RiderTable::schedule`].
+    pub fn new(table: &RiderTable, fit: Fit) -> Result<Self, ScheduleError> {
+        let schedule = table.schedule(fit, Outside::default())?;
+        let line = table.line();
+        let pairs = line.slope.0.into_iter().zip(line.intercept.0);
+        Ok(Self {
+            gains: fit,
+            points: schedule.points().iter().map(|(v, k)| ResolvedGains::new(*v, k)).collect(),
+            line: (fit == Fit::Regression).then(|| KEYS.into_iter().zip(pairs).collect()),
+            r_squared: KEYS.into_iter().zip(table.r_squared(&schedule)).collect(),
+        })
+    }
+}
+
+impl RiderDocument {
+    /// The document of a table and the fits asked for.
+    pub fn new(table: &RiderTable, fits: Vec<FitEntry>) -> Self {
+        let row = |r: &crate::rider::Row| RowEntry {
+            run: r.run,
+            group: r.group,
+            vaf: r.vaf,
+            at: ResolvedGains::new(r.speed_m_s, &r.gains),
+        };
+        Self {
+            schema: SCHEMA,
+            tool: Tool::this(),
+            name: table.name.clone(),
+            source: table.source.clone(),
+            note: table.note.clone(),
+            delay_s: table.delay_s,
+            muscles: ResolvedMuscles { omega_rad_s: table.muscles.omega_rad_s, zeta: table.muscles.zeta },
+            rows: table.rows.iter().map(row).collect(),
+            fits,
+        }
+    }
+}
+
+/// One line of the table: a measured set, or a point of a fit.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct GainRow {
+    /// "measured", or the fit.
+    pub kind: &'static str,
+    /// Forward speed.
+    pub speed_m_s: f64,
+    /// The experiment.
+    pub run: Option<u32>,
+    /// Its group.
+    pub group: Option<u32>,
+    /// Variance accounted for.
+    pub vaf: Option<f64>,
+    /// Roll.
+    pub K_phi_p: f64,
+    /// Roll integral.
+    pub K_phi_i: f64,
+    /// Roll rate.
+    pub K_phi_d: f64,
+    /// Roll acceleration.
+    pub K_phi_dd: f64,
+    /// Steer.
+    pub K_delta_p: f64,
+    /// Steer integral.
+    pub K_delta_i: f64,
+    /// Steer rate.
+    pub K_delta_d: f64,
+    /// Steer acceleration.
+    pub K_delta_dd: f64,
+    /// Heading.
+    pub K_psi: f64,
+    /// Lateral offset.
+    pub K_y: f64,
+}
+
+impl GainRow {
+    fn new(kind: &'static str, speed_m_s: f64, Gains(k): Gains) -> Self {
+        let [K_phi_p, K_phi_i, K_phi_d, K_phi_dd, K_delta_p, K_delta_i, K_delta_d, K_delta_dd, K_psi, K_y] =
+            k;
+        Self {
+            kind,
+            speed_m_s,
+            run: None,
+            group: None,
+            vaf: None,
+            K_phi_p,
+            K_phi_i,
+            K_phi_d,
+            K_phi_dd,
+            K_delta_p,
+            K_delta_i,
+            K_delta_d,
+            K_delta_dd,
+            K_psi,
+            K_y,
+        }
+    }
+}
+
+/// The measured sets, then the points of `fits`.
+///
+/// # Errors
+/// As [`RiderTable::schedule`].
+pub fn gain_rows(table: &RiderTable, fits: &[Fit]) -> Result<Vec<GainRow>, ScheduleError> {
+    let measured = |r: &crate::rider::Row| GainRow {
+        run: r.run,
+        group: Some(r.group),
+        vaf: r.vaf,
+        ..GainRow::new("measured", r.speed_m_s, r.gains)
+    };
+    let mut rows: Vec<GainRow> = table.rows.iter().map(measured).collect();
+    for fit in fits {
+        let schedule = table.schedule(*fit, Outside::default())?;
+        rows.extend(schedule.points().iter().map(|(v, k)| GainRow::new(fit.name(), *v, *k)));
+    }
+    Ok(rows)
+}

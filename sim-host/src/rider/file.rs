@@ -1,0 +1,217 @@
+//! Riders' files: TOML with `columns` and `rows` (`docs/riders.md`).
+
+use super::catalogue::RiderError;
+use super::table::{RiderTable, Row};
+use super::{Fit, Gains, KEYS, MAX_DELAY_S, Muscles, Outside};
+use crate::range::within;
+use serde::Deserialize;
+use std::path::Path;
+
+/// The version of the files.
+pub(super) const SCHEMA: u32 = 1;
+/// Columns that are not gains.
+const ROW_KEYS: [&str; 4] = ["speed_m_s", "run", "group", "vaf"];
+/// Gains of nested loops, innermost first.
+const NESTED_KEYS: [&str; 5] = ["k_delta", "k_phidot", "k_phi", "k_psi", "k_y"];
+/// The gains that nested loops multiply out to, as places in [`KEYS`].
+const NESTED_GAINS: [usize; 5] = [4, 2, 0, 8, 9];
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    schema: u32,
+    source: Option<String>,
+    note: Option<String>,
+    delay_ms: f64,
+    neuromuscular: Option<MusclesFile>,
+    #[serde(default)]
+    feedback: Feedback,
+    best_runs: Option<Vec<u32>>,
+    columns: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MusclesFile {
+    omega_rad_s: f64,
+    zeta: f64,
+}
+
+/// What the columns of gains multiply.
+#[derive(Clone, Copy, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Feedback {
+    /// Each its own signal.
+    #[default]
+    States,
+    /// Each the error of the loop inside it.
+    Nested,
+}
+
+/// The gains of `U = k_delta (k_phidot (k_phi (k_psi (-k_y y - psi) - phi) - phi') - delta)`, all
+/// commands zero.
+fn multiplied_out([k_delta, k_phidot, k_phi, k_psi, k_y]: [f64; 5]) -> [f64; 5] {
+    let roll_rate = -k_delta * k_phidot;
+    let roll = roll_rate * k_phi;
+    let heading = roll * k_psi;
+    [-k_delta, roll_rate, roll, heading, heading * k_y]
+}
+
+impl RiderTable {
+    /// A table from a file's text.
+    ///
+    /// # Errors
+    /// Names file, key, row, value and allowed range.
+    pub fn from_text(name: &str, text: &str, path: &Path) -> Result<Self, RiderError> {
+        let file: File = toml::from_str(text)
+            .map_err(|e| RiderError::Syntax { path: path.into(), reason: e.to_string().trim().into() })?;
+        file.table(name).map_err(|reason| RiderError::Table { path: path.into(), reason })
+    }
+
+    /// Checks `best_runs` against the rows.
+    fn check_best(&self) -> Result<(), String> {
+        let Some(best) = &self.best_runs else { return Ok(()) };
+        if let Some(run) = best.iter().find(|b| !self.rows.iter().any(|r| r.run == Some(**b))) {
+            return Err(format!("`best_runs`: no row has run {run}"));
+        }
+        for group in self.groups() {
+            let n = group.iter().filter(|r| r.run.is_some_and(|run| best.contains(&run))).count();
+            if n != 1 {
+                return Err(format!(
+                    "`best_runs` names {n} rows of the group at {} m/s; it must be one of each group",
+                    group[0].speed_m_s
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl File {
+    fn table(self, name: &str) -> Result<RiderTable, String> {
+        if self.schema != SCHEMA {
+            return Err(format!("`schema` = {} is not known; this program reads {SCHEMA}", self.schema));
+        }
+        within("`delay_ms`", self.delay_ms, 0.0, MAX_DELAY_S * 1e3)?;
+        let muscles = self
+            .neuromuscular
+            .as_ref()
+            .map_or(Muscles::SHOULDERS, |m| Muscles { omega_rad_s: m.omega_rad_s, zeta: m.zeta });
+        muscles.check().map_err(|e| format!("`neuromuscular`: {e}"))?;
+        let columns = self.gain_columns()?;
+        within("number of `rows`", self.rows.len() as f64, 1.0, 1000.0)?;
+        let mut rows: Vec<Row> = Vec::new();
+        for (i, cells) in self.rows.iter().enumerate() {
+            let row = self.row(cells, rows.last()).map_err(|e| format!("row {}: {e}", i + 1))?;
+            rows.push(row);
+        }
+        let table = RiderTable {
+            name: name.into(),
+            source: self.source,
+            note: self.note,
+            delay_s: self.delay_ms / 1e3,
+            muscles,
+            best_runs: self.best_runs,
+            columns,
+            rows,
+        };
+        table.check_best()?;
+        table.schedule(Fit::Mean, Outside::default()).map_err(|e| format!("means of groups: {e}"))?;
+        Ok(table)
+    }
+
+    /// The gains that have a column, once the columns are known to be right.
+    fn gain_columns(&self) -> Result<Vec<usize>, String> {
+        let keys = self.gain_keys();
+        for (i, column) in self.columns.iter().enumerate() {
+            let column = column.as_str();
+            if !ROW_KEYS.contains(&column) && !keys.contains(&column) {
+                let known = [&ROW_KEYS, keys].concat().join(", ");
+                return Err(format!("`columns`: unknown column `{column}`; known are {known}"));
+            }
+            if self.columns[..i].iter().any(|c| c == column) {
+                return Err(format!("`columns`: `{column}` is there twice"));
+            }
+        }
+        let has = |key: &str| self.columns.iter().any(|c| c == key);
+        if !has("speed_m_s") {
+            return Err("`columns`: `speed_m_s` is missing".into());
+        }
+        let present = (0..keys.len()).filter(|&i| has(keys[i]));
+        let mut gains: Vec<usize> = match self.feedback {
+            Feedback::States => present.collect(),
+            Feedback::Nested => present.map(|i| NESTED_GAINS[i]).collect(),
+        };
+        gains.sort_unstable();
+        if gains.is_empty() {
+            return Err(format!("`columns`: no gains; known are {}", keys.join(", ")));
+        }
+        Ok(gains)
+    }
+
+    fn gain_keys(&self) -> &'static [&'static str] {
+        match self.feedback {
+            Feedback::States => &KEYS,
+            Feedback::Nested => &NESTED_KEYS,
+        }
+    }
+
+    fn row(&self, cells: &[f64], before: Option<&Row>) -> Result<Row, String> {
+        let (n, m) = (cells.len(), self.columns.len());
+        if n != m {
+            return Err(format!("{n} values for {m} columns ({})", self.columns.join(", ")));
+        }
+        let cell = |key: &str| self.columns.iter().position(|c| c == key).map(|i| cells[i]);
+        let whole = |key: &str, max: f64| match cell(key) {
+            None => Ok(None),
+            Some(x) if x.is_nan() && key == "run" => Ok(None),
+            Some(x) => {
+                within(&format!("`{key}`"), x, 1.0, max)?;
+                if x.fract() != 0.0 {
+                    return Err(format!("`{key}` = {x} is not a whole number"));
+                }
+                Ok(Some(x as u32))
+            }
+        };
+        let speed_m_s = cell("speed_m_s").unwrap_or_default();
+        within("`speed_m_s`", speed_m_s, 0.0, 30.0)?;
+        if let Some(before) = before.filter(|b| b.speed_m_s > speed_m_s) {
+            return Err(format!(
+                "`speed_m_s` = {speed_m_s} after {}: rows must be sorted by speed",
+                before.speed_m_s
+            ));
+        }
+        let same = before.is_some_and(|b| b.speed_m_s == speed_m_s);
+        let last = before.map_or(0, |b| b.group);
+        let group = whole("group", 1e6)?.unwrap_or(if same { last } else { last + 1 });
+        if group < last {
+            return Err(format!("`group` = {group} after {last}: groups must rise with speed"));
+        }
+        let run = whole("run", 1e9)?;
+        let vaf = cell("vaf").filter(|x| !x.is_nan());
+        if let Some(vaf) = vaf {
+            within("`vaf`", vaf, -1000.0, 100.0)?;
+        }
+        let mut gains = [0.0; KEYS.len()];
+        let keys = self.gain_keys();
+        let mut read = Vec::new();
+        for key in keys {
+            let gain = cell(key).unwrap_or(0.0);
+            within(&format!("`{key}`"), gain, -1e5, 1e5)?;
+            read.push(gain);
+        }
+        match self.feedback {
+            Feedback::States => gains.copy_from_slice(&read),
+            Feedback::Nested => {
+                let nested = multiplied_out([read[0], read[1], read[2], read[3], read[4]]);
+                for (i, gain) in NESTED_GAINS.into_iter().zip(nested) {
+                    within(&format!("{} of the nested gains", KEYS[i]), gain, -1e5, 1e5)?;
+                    // Plus zero, so that a loop left out gives no -0.
+                    gains[i] = gain + 0.0;
+                }
+            }
+        }
+        Ok(Row { speed_m_s, run, group, vaf, gains: Gains(gains) })
+    }
+}

@@ -1,0 +1,138 @@
+//! From measured sets of gains to gains at every speed (Kuipers 2020, section 2.3.3).
+
+use super::table::{RiderTable, Row};
+use super::{Gains, KEYS, Outside, Rider, Schedule, ScheduleError};
+
+/// How gains are made continuous over speed.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, schemars::JsonSchema, clap::ValueEnum,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum Fit {
+    /// One straight line per gain, least squares over all sets (the thesis's LR).
+    Regression,
+    /// Straight lines through the groups' means, at the mean of their speeds (LI, mean).
+    #[default]
+    Mean,
+    /// Straight lines through each group's best set, at that set's speed (LI, HV).
+    Best,
+}
+
+impl Fit {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Regression, Self::Mean, Self::Best];
+
+    /// Its name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Regression => "regression",
+            Self::Mean => "mean",
+            Self::Best => "best",
+        }
+    }
+}
+
+/// A straight line per gain, `slope * speed + intercept`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Change of the gains per m/s.
+    pub slope: Gains,
+    /// The gains at rest.
+    pub intercept: Gains,
+}
+
+impl Line {
+    /// The gains at `speed` \[m/s\].
+    fn at(&self, speed: f64) -> Gains {
+        Gains(std::array::from_fn(|i| self.slope.0[i] * speed + self.intercept.0[i]))
+    }
+}
+
+/// Mean speed and gains of some rows.
+fn mean(rows: &[Row]) -> (f64, Gains) {
+    let n = rows.len() as f64;
+    let gains = std::array::from_fn(|i| rows.iter().map(|r| r.gains.0[i]).sum::<f64>() / n);
+    (rows.iter().map(|r| r.speed_m_s).sum::<f64>() / n, Gains(gains))
+}
+
+impl RiderTable {
+    /// The least-squares line of each gain over all rows; level if there is but one speed.
+    pub fn line(&self) -> Line {
+        let (speed, gains) = mean(&self.rows);
+        let square: f64 = self.rows.iter().map(|r| (r.speed_m_s - speed).powi(2)).sum();
+        let slope = std::array::from_fn(|i| {
+            let product = |r: &Row| (r.speed_m_s - speed) * (r.gains.0[i] - gains.0[i]);
+            if square > 0.0 { self.rows.iter().map(product).sum::<f64>() / square } else { 0.0 }
+        });
+        let intercept = std::array::from_fn(|i| gains.0[i] - slope[i] * speed);
+        Line { slope: Gains(slope), intercept: Gains(intercept) }
+    }
+
+    /// The gains over speed.
+    ///
+    /// # Errors
+    /// Names the value and its range; [`Fit::Best`] needs a VAF for every set of a group, or
+    /// `best_runs`, or groups of one.
+    pub fn schedule(&self, fit: Fit, outside: Outside) -> Result<Schedule, ScheduleError> {
+        let points = match fit {
+            Fit::Regression => {
+                let (first, last) = (&self.rows[0], &self.rows[self.rows.len() - 1]);
+                let line = self.line();
+                let mut speeds = vec![first.speed_m_s, last.speed_m_s];
+                speeds.dedup();
+                speeds.into_iter().map(|v| (v, line.at(v))).collect()
+            }
+            Fit::Mean => self.groups().map(mean).collect(),
+            Fit::Best => self.groups().map(|g| self.best(g)).collect::<Result<_, _>>()?,
+        };
+        Schedule::new(points, outside)
+    }
+
+    fn best(&self, group: &[Row]) -> Result<(f64, Gains), ScheduleError> {
+        let named = |r: &&Row| self.best_runs.iter().flatten().any(|run| r.run == Some(*run));
+        let highest = || {
+            let vafs: Option<Vec<f64>> = group.iter().map(|r| r.vaf).collect();
+            let (i, _) = vafs?.into_iter().enumerate().rev().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some(&group[i])
+        };
+        let best = match group {
+            [one] => Some(one),
+            _ => group.iter().find(named).or_else(highest),
+        };
+        best.map(|r| (r.speed_m_s, r.gains)).ok_or_else(|| {
+            ScheduleError(format!(
+                "which of the {} sets at about {} m/s is the best? the table needs the column `vaf`, or `best_runs`",
+                group.len(),
+                group[0].speed_m_s
+            ))
+        })
+    }
+
+    /// Coefficient of determination of each gain: `1 - sum (K - f)^2 / sum (K - mean K)^2` over the
+    /// rows, `f` the schedule at the row's own speed; `None` where a gain is the same in all rows.
+    ///
+    /// Eq. 2.21 is printed as `1 - sum (K - mean K)^2 / sum (f - mean K)^2`. That is -195 to -0.2 for
+    /// the regression of Table F.1, where 0.005 to 0.855 is printed; this form gives those.
+    pub fn r_squared(&self, schedule: &Schedule) -> [Option<f64>; KEYS.len()] {
+        let (_, mean) = mean(&self.rows);
+        std::array::from_fn(|i| {
+            let first = self.rows[0].gains.0[i];
+            if self.rows.iter().all(|r| r.gains.0[i] == first) {
+                return None;
+            }
+            let sum = |f: &dyn Fn(&Row) -> f64| -> f64 {
+                self.rows.iter().map(|r| (r.gains.0[i] - f(r)).powi(2)).sum()
+            };
+            Some(1.0 - sum(&|r| schedule.at(r.speed_m_s).0[i]) / sum(&|_| mean.0[i]))
+        })
+    }
+
+    /// The rider with these gains; `delay_s` instead of the table's own \[s\].
+    ///
+    /// # Errors
+    /// As [`RiderTable::schedule`].
+    pub fn rider(&self, fit: Fit, outside: Outside, delay_s: Option<f64>) -> Result<Rider, ScheduleError> {
+        let schedule = self.schedule(fit, outside)?;
+        Ok(Rider { schedule, delay_s: delay_s.unwrap_or(self.delay_s), muscles: self.muscles })
+    }
+}

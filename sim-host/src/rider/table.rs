@@ -1,0 +1,79 @@
+//! Measured gains: one set a row, sets of like speed in a group.
+
+use super::file::SCHEMA;
+use super::{Gains, KEYS, Muscles};
+
+/// One measured set of gains.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Forward speed \[m/s\].
+    pub speed_m_s: f64,
+    /// The experiment.
+    pub run: Option<u32>,
+    /// Sets of like speed share a number; numbers rise with speed.
+    pub group: u32,
+    /// Variance accounted for \[%\].
+    pub vaf: Option<f64>,
+    /// The gains; those without a column are zero.
+    pub gains: Gains,
+}
+
+/// A rider's measured gains and what they were measured with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RiderTable {
+    /// Its name, or FILE as given.
+    pub name: String,
+    /// Where the values come from.
+    pub source: Option<String>,
+    /// A remark.
+    pub note: Option<String>,
+    /// The effective neural delay they hold for \[s\].
+    pub delay_s: f64,
+    /// The muscles they hold for.
+    pub muscles: Muscles,
+    /// The run of each group that counts as its best; otherwise the highest VAF does.
+    pub best_runs: Option<Vec<u32>>,
+    /// The gains that have a column, as places in [`KEYS`].
+    pub columns: Vec<usize>,
+    /// The sets, speeds not falling.
+    pub rows: Vec<Row>,
+}
+
+impl RiderTable {
+    /// The groups, by rising speed.
+    pub fn groups(&self) -> impl Iterator<Item = &[Row]> {
+        self.rows.chunk_by(|a, b| a.group == b.group)
+    }
+
+    /// The table as a file, nested loops multiplied out. What is read back is the same but for its
+    /// name.
+    pub fn to_toml(&self) -> String {
+        let text = |key, value: &Option<String>| {
+            value.as_ref().map_or(String::new(), |v| format!("{key} = {}\n", toml::Value::from(v.as_str())))
+        };
+        let has = |is: fn(&Row) -> bool| self.rows.iter().any(is);
+        let (run, vaf) = (has(|r| r.run.is_some()), has(|r| r.vaf.is_some()));
+        let mut columns = vec!["speed_m_s", "group"];
+        columns.extend(run.then_some("run"));
+        columns.extend(vaf.then_some("vaf"));
+        columns.extend(self.columns.iter().map(|&i| KEYS[i]));
+        let rows = self.rows.iter().map(|r| {
+            let mut cells = vec![format!("{:?}", r.speed_m_s), r.group.to_string()];
+            cells.extend(run.then(|| r.run.map_or("nan".into(), |run| run.to_string())));
+            cells.extend(vaf.then(|| r.vaf.map_or("nan".into(), |vaf| format!("{vaf:?}"))));
+            cells.extend(self.columns.iter().map(|&i| format!("{:?}", r.gains.0[i])));
+            format!("  [{}],\n", cells.join(", "))
+        });
+        format!(
+            "schema = {SCHEMA}\n{}{}delay_ms = {:?}\nneuromuscular = {{ omega_rad_s = {:?}, zeta = {:?} }}\n{}\
+             columns = {columns:?}\nrows = [\n{}]\n",
+            text("source", &self.source),
+            text("note", &self.note),
+            self.delay_s * 1e3,
+            self.muscles.omega_rad_s,
+            self.muscles.zeta,
+            self.best_runs.as_ref().map_or(String::new(), |runs| format!("best_runs = {runs:?}\n")),
+            rows.collect::<String>(),
+        )
+    }
+}

@@ -1,0 +1,269 @@
+//! Riders on the command line: names, files, options, and what is wrong with them.
+
+use serde_json::{Value, json};
+use tests::cli::{Bench, repository};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+
+/// A good table, one line per key.
+const TABLE: &str = "\
+schema = 1
+delay_ms = 30
+columns = ['speed_m_s', 'run', 'group', 'vaf', 'K_phi_p', 'K_delta_d']
+rows = [
+  [2.0, 1, 1, 90, 10, -1], [2.2, 2, 1, 95, 20, -2],
+  [4.0, 3, 2, 92, 30, -3], [4.0, 4, 2, 91, 40, -5],
+]
+";
+
+/// Situation: a table with one thing wrong each.
+/// Action: check it, and ride it.
+/// Must hold: refused in one paragraph that names the file, the key or row, the value and what is
+/// allowed.
+#[test]
+fn wrong_tables_are_refused_with_the_reason() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("my.toml", TABLE);
+    assert_eq!(bench.run("rider check my.toml").code, Some(0));
+    for (right, wrong, named) in [
+        ("schema = 1\n", "", &["missing", "schema"][..]),
+        ("schema = 1", "schema = 2", &["`schema` = 2", "reads 1"]),
+        ("delay_ms = 30\n", "", &["missing", "delay_ms"]),
+        ("delay_ms = 30", "delay_ms = -30", &["`delay_ms` = -30", "0 to 1000"]),
+        ("delay_ms = 30", "delay_ms = nan", &["`delay_ms` = NaN", "0 to 1000"]),
+        ("delay_ms = 30", "delay_ms = 3000", &["`delay_ms` = 3000", "0 to 1000"]),
+        ("delay_ms = 30", "delay_ms = 'x'", &["line 2", "\"x\""]),
+        ("delay_ms = 30", "delay_ms = 30\ndelay_s = 1", &["line 3", "delay_s"]),
+        ("delay_ms = 30", "delay_ms = 30\nfeedback = 'all'", &["line 3", "all", "nested"]),
+        (
+            "delay_ms = 30",
+            "delay_ms = 30\nneuromuscular = { omega_rad_s = 0, zeta = 1 }",
+            &["`neuromuscular`", "= 0 ", "0.1 to 200"],
+        ),
+        ("delay_ms = 30", "delay_ms = 30\nneuromuscular = { omega_rad_s = 9 }", &["line 3", "zeta"]),
+        ("delay_ms = 30", "delay_ms = 30\nbest_runs = [1, 9]", &["`best_runs`", "run 9"]),
+        ("delay_ms = 30", "delay_ms = 30\nbest_runs = [1]", &["`best_runs`", "0 rows", "4 m/s"]),
+        ("delay_ms = 30", "delay_ms = 30\nbest_runs = [1, 2, 3]", &["`best_runs`", "2 rows", "2 m/s"]),
+        ("'K_phi_p'", "'K_phi'", &["`columns`", "unknown column `K_phi`", "K_phi_p, K_phi_i"]),
+        ("'K_phi_p'", "'k_delta'", &["unknown column `k_delta`"]),
+        ("'K_phi_p'", "'K_delta_d'", &["`columns`", "`K_delta_d` is there twice"]),
+        ("'speed_m_s'", "'K_y'", &["`columns`", "`speed_m_s` is missing"]),
+        ("[2.2, 2, 1, 95, 20, -2]", "[2.2, 2, 1, 95, 20]", &["row 2", "5 values", "6 columns"]),
+        ("[2.2, 2, 1, 95, 20, -2]", "[2.2, 2, 1, 95, 20, -2, 0]", &["row 2", "7 values"]),
+        ("[2.2, 2, 1, 95, 20, -2]", "[1.9, 2, 1, 95, 20, -2]", &["row 2", "1.9", "after 2", "sorted"]),
+        ("[2.2, 2, 1, 95, 20, -2]", "[2.2, 2, 1, 95, inf, -2]", &["row 2", "`K_phi_p` = inf", "100000"]),
+        ("[2.2, 2, 1, 95, 20, -2]", "[2.2, 2, 1, 95, nan, -2]", &["row 2", "`K_phi_p` = NaN"]),
+        ("[2.2, 2, 1, 95, 20, -2]", "[nan, 2, 1, 95, 20, -2]", &["row 2", "`speed_m_s` = NaN", "0 to 30"]),
+        ("[2.2, 2, 1, 95, 20, -2]", "[31, 2, 1, 95, 20, -2]", &["row 2", "`speed_m_s` = 31", "0 to 30"]),
+        ("[2.2, 2, 1, 95, 20, -2]", "[2.2, 2.5, 1, 95, 20, -2]", &["row 2", "`run` = 2.5", "whole"]),
+        ("[2.2, 2, 1, 95, 20, -2]", "[2.2, 2, 0, 95, 20, -2]", &["row 2", "`group` = 0", "1 to"]),
+        ("[4.0, 4, 2, 91, 40, -5]", "[4.0, 4, 1, 91, 40, -5]", &["row 4", "`group` = 1", "after 2"]),
+        ("[2.2, 2, 1, 95, 20, -2]", "[2.2, 2, 1, 195, 20, -2]", &["row 2", "`vaf` = 195", "to 100"]),
+        ("[4.0, 4, 2, 91, 40, -5]", "[4.0, 4, 3, 91, 40, -5]", &["means of groups", "4", "rise"]),
+        ("[2.2, 2, 1, 95, 20, -2]", "['a', 2, 1, 95, 20, -2]", &["line 5", "\"a\""]),
+    ] {
+        assert!(TABLE.contains(right), "{right}");
+        bench.write("my.toml", TABLE.replacen(right, wrong, 1));
+        let named: Vec<&str> = named.iter().copied().chain(["my.toml"]).collect();
+        bench.run("rider check my.toml").refused_naming(&named);
+        bench.run("ride --speed 4 --rider my.toml").refused_naming(&named);
+    }
+    let without = |rows: &str, columns: &str| {
+        format!("schema = 1\ndelay_ms = 0\ncolumns = [{columns}]\nrows = {rows}\n")
+    };
+    bench.write("my.toml", without("[[2.0, 90]]", "'speed_m_s', 'vaf'"));
+    bench.run("rider check my.toml").refused_naming(&["my.toml", "no gains", "K_phi_p"]);
+    bench.write("my.toml", without("[]", "'speed_m_s', 'K_y'"));
+    bench.run("rider check my.toml").refused_naming(&["my.toml", "`rows` = 0", "1 to 1000"]);
+    bench.write("my.toml", b"\xff\xfe");
+    bench.run("rider check my.toml").refused_naming(&["my.toml", "UTF-8"]);
+    bench.run("rider check missing.toml").refused_naming(&["missing.toml", "no such file", "young", "hess"]);
+    std::fs::create_dir(bench.path("folder")).unwrap();
+    bench.run("rider check folder").refused_naming(&["folder"]);
+}
+
+/// Situation: options of a rider that can't be.
+/// Action: give them.
+/// Must hold: refused, naming the option, the value and what is allowed; without a rider they are no
+/// options at all.
+#[test]
+fn wrong_options_of_a_rider_are_refused() {
+    let bench = Bench::new(PROGRAM);
+    for (line, named) in [
+        ("ride --speed 4 --rider old", &["unknown rider `old`", "young, smart, smart6"][..]),
+        ("basin --speeds 4 --rider old", &["unknown rider `old`"]),
+        (
+            "ride --speed 4 --rider young --law h --delay 24.5ms",
+            &["--delay", "24.5 ms", "1 ms", "24 ms and 25 ms"],
+        ),
+        ("ride --speed 4 --rider young --preset product --delay 0.4ms", &["--delay", "0 ms and 1 ms"]),
+        ("ride --speed 4 --rider young --delay 0.004ms", &["--delay", "0.004 ms", "0.01 ms"]),
+    ] {
+        bench.run(line).refused_naming(named);
+    }
+    for (options, word) in [
+        ("--rider young --delay -60ms", "0 s to 1 s"),
+        ("--rider young --delay 1.001s", "0 s to 1 s"),
+        ("--rider young --delay nanms", "0 s to 1 s"),
+        ("--rider young --delay 60", "60ms"),
+        ("--rider young --gains median", "regression, mean, best"),
+        ("--rider young --gains-outside zero", "extrapolate, hold"),
+        ("--gains mean", "--rider"),
+        ("--delay 60ms", "--rider"),
+        ("--gains-outside hold", "--rider"),
+    ] {
+        for command in ["ride --speed 4", "basin --speeds 4"] {
+            let run = bench.run(&format!("{command} {options}"));
+            assert!(run.code == Some(2) && run.stderr.contains(word), "{options}: {}", run.stderr);
+        }
+    }
+    bench.write("my.toml", TABLE.replace("'vaf'", "'K_y'"));
+    let run = bench.run("ride --speed 4 --rider my.toml --gains best");
+    run.refused_naming(&["my.toml", "best", "2 sets", "2 m/s", "`vaf`", "best_runs"]);
+    assert_eq!(bench.run("ride --speed 4 --rider my.toml --gains mean").code, Some(0));
+}
+
+/// Situation: no options but a rider; then each of them.
+/// Action: read the configuration of a ride's document.
+/// Must hold: the documented defaults, the options, the points.
+#[test]
+fn options_of_a_rider_are_in_the_configuration() {
+    let bench = Bench::new(PROGRAM);
+    let config = |options: &str| bench.json(&format!("ride --speed 4 {options}"))["config"].clone();
+    assert_eq!(config("")["rider"], Value::Null);
+    let young = config("--rider young");
+    let rider = &young["rider"];
+    assert_eq!(
+        (&young["law"]["name"], &young["assist"], &young["step_s"]),
+        (&json!("none"), &json!("none"), &json!(1e-3))
+    );
+    assert_eq!(
+        (&rider["name"], &rider["gains"], &rider["delay_s"]),
+        (&json!("young"), &json!("mean"), &json!(0.03))
+    );
+    assert_eq!((&rider["outside"], rider["points"].as_array().unwrap().len()), (&json!("extrapolate"), 5));
+    assert!(rider["source"].as_str().unwrap().contains("F.2"));
+    let first = &rider["points"][0];
+    assert!((first["speed_m_s"].as_f64().unwrap() - 6.5 / 3.0).abs() < 1e-12);
+    assert!((first["gains"]["K_phi_p"].as_f64().unwrap() - (44.08 + 71.05 + 43.21) / 3.0).abs() < 1e-12);
+    assert_eq!((&first["gains"]["K_phi_i"], first["gains"].as_object().unwrap().len()), (&json!(0.0), 10));
+    assert!((rider["muscles"]["omega_rad_s"].as_f64().unwrap() - 13.6345).abs() < 1e-4);
+
+    let naive = config("--rider young --delay 60ms --gains best --gains-outside hold")["rider"].clone();
+    assert_eq!(
+        (&naive["delay_s"], &naive["gains"], &naive["outside"]),
+        (&json!(0.06), &json!("best"), &json!("hold"))
+    );
+    assert_eq!(naive["points"][1]["gains"]["K_phi_p"], json!(34.51));
+    let line = config("--rider young --gains regression")["rider"]["points"].clone();
+    assert_eq!((line.as_array().unwrap().len(), &line[1]["speed_m_s"]), (2, &json!(7.4)));
+
+    // A rider comes without assist, unless it is asked for.
+    for (options, law, assist) in [
+        ("--rider young --law h", "h", "firmware"),
+        ("--rider young --preset product", "h-cut", "firmware"),
+        ("--rider smart --preset product --law none", "none", "none"),
+        ("--rider hess --law h --assist ideal", "h", "ideal"),
+    ] {
+        let config = config(options);
+        assert_eq!((&config["law"]["name"], &config["assist"]), (&json!(law), &json!(assist)), "{options}");
+    }
+}
+
+/// Situation: delays that are no whole milliseconds, without the firmware.
+/// Action: ride.
+/// Must hold: the largest step up to 1 ms of which the delay is a whole number, told on standard
+/// error; whole milliseconds leave the step alone and say nothing.
+#[test]
+fn the_step_divides_the_delay() {
+    let bench = Bench::new(PROGRAM);
+    for (options, step, note) in [
+        ("--delay 24.5ms", 0.98e-3, "note: step 0.98 ms so that the delay of 24.5 ms is 25 steps\n"),
+        (
+            "--delay 0.4ms --law h --assist ideal",
+            0.4e-3,
+            "note: step 0.4 ms so that the delay of 0.4 ms is 1 steps\n",
+        ),
+        ("--delay 30ms", 1e-3, ""),
+        ("--delay 0.06s", 1e-3, ""),
+        ("--delay 1s", 1e-3, ""),
+        ("--delay 0ms", 1e-3, ""),
+    ] {
+        let run = bench.run(&format!("ride --speed 4 --rider young {options} --json"));
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), note), "{options}");
+        let document: Value = serde_json::from_str(&run.stdout).unwrap();
+        assert!((document["config"]["step_s"].as_f64().unwrap() - step).abs() < 1e-15, "{options}");
+    }
+}
+
+/// Situation: basins with and without a rider, no speeds given.
+/// Action: read the speeds of the documents.
+/// Must hold: where the gains were measured with one, 0 to 10 m/s without.
+#[test]
+fn a_riders_basin_is_over_the_measured_speeds() {
+    let bench = Bench::new(PROGRAM);
+    let quick = "--scan-step 30 --tolerance 15 --time-limit 0.002";
+    let speeds = |options: &str| bench.json(&format!("basin {quick} {options}"))["speeds"].clone();
+    let ends = |v: &Value| {
+        let v = v.as_array().unwrap();
+        (v.len(), v[0].as_f64().unwrap(), v[v.len() - 1].as_f64().unwrap())
+    };
+    assert_eq!(ends(&speeds("--rider young")), (56, 2.0, 7.5));
+    assert_eq!(ends(&speeds("--rider young --speeds 3:4:0.5")), (3, 3.0, 4.0));
+    assert_eq!(ends(&speeds("")), (101, 0.0, 10.0));
+}
+
+/// Situation: the riders that ship.
+/// Action: list, show, check.
+/// Must hold: every name is in the list; what `show` prints is a file with the same gains; JSON and
+/// CSV have all rows and fits; `--gains` leaves the others out.
+#[test]
+fn list_show_and_check() {
+    let bench = Bench::new(PROGRAM);
+    let list = bench.run("rider list");
+    for name in ["young", "smart", "smart6", "undelayed", "undelayed-alt", "hess", "hess-benchmark"] {
+        assert!(list.stdout.lines().any(|l| l.split(' ').next() == Some(name)), "{name}");
+        let shown = bench.run(&format!("rider show {name}"));
+        bench.write("shown.toml", &shown.stdout);
+        let gains = |rider: &str| bench.json(&format!("rider show {rider}"));
+        let (of_name, of_file) = (gains(name), gains("shown.toml"));
+        for key in ["rows", "fits", "delay_s", "muscles", "source", "note"] {
+            assert_eq!(of_name[key], of_file[key], "{name} {key}");
+        }
+        let check = bench.run(&format!("rider check {name}"));
+        assert!(check.code == Some(0) && check.stdout.starts_with(&format!("{name}: sound\n")), "{check:?}");
+    }
+    let young = bench.json("rider show young");
+    let fits = young["fits"].as_array().unwrap();
+    assert_eq!((young["rows"].as_array().unwrap().len(), fits.len()), (15, 3));
+    assert_eq!(young["rows"][3]["gains"]["K_delta_i"], json!(121.1));
+    assert!((fits[0]["r_squared"]["K_delta_i"].as_f64().unwrap() - 0.855).abs() < 0.001);
+    assert_eq!((&fits[0]["r_squared"]["K_psi"], &fits[1]["line"]), (&Value::Null, &Value::Null));
+    let one = bench.json("rider show young --gains best");
+    assert_eq!((one["fits"].as_array().unwrap().len(), &one["fits"][0]["gains"]), (1, &json!("best")));
+
+    let csv = bench.run("rider show young --csv -").stdout;
+    let lines: Vec<&str> = csv.lines().filter(|l| !l.starts_with('#')).collect();
+    assert!(lines[0].starts_with("kind,speed_m_s,run,group,vaf,K_phi_p,"), "{}", lines[0]);
+    assert_eq!(lines.len(), 1 + 15 + 2 + 5 + 5);
+    assert!(lines[1].starts_with("measured,2.1,248,1,93.82,44.08,0.0,51.7,"), "{}", lines[1]);
+    bench.run("rider show young --csv a --json ./a").refused_naming(&["--csv", "--json", "same place"]);
+
+    bench.write("my.toml", TABLE.replace("'vaf'", "'K_y'"));
+    let check = bench.run("rider check my.toml").stdout;
+    assert!(check.contains("gains best: not possible") && check.contains("gains mean: 2 points"), "{check}");
+    bench.run("rider show my.toml --gains best").refused_naming(&["my.toml", "best", "`vaf`"]);
+    assert_eq!(bench.json("rider show my.toml")["fits"].as_array().unwrap().len(), 2);
+}
+
+/// Situation: the commented example.
+/// Action: check it and ride it.
+/// Must hold: it is sound.
+#[test]
+fn the_example_is_a_rider() {
+    let bench = Bench::new(PROGRAM);
+    let example = repository("data/riders/example.toml");
+    let check = bench.run(&format!("rider check {}", example.display()));
+    assert!(check.stdout.contains("6 sets in 2 groups, 2.1 to 7.4 m/s, delay 30 ms"), "{check:?}");
+    assert_eq!(bench.run(&format!("ride -q --speed 4 --rider {}", example.display())).code, Some(0));
+}
