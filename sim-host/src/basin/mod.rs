@@ -2,8 +2,10 @@
 
 mod compare;
 mod outline;
+mod plane;
 mod search;
 
 pub use compare::{Rmse, rmse};
 pub use outline::{Basin, Column, Island, ScanPoint, Work};
-pub use search::{Axis, Search, SearchError, basin, column};
+pub use plane::{Plane, PlaneSearch, Ray, plane};
+pub use search::{Axis, Search, SearchError, basin, border, column};

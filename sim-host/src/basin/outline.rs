@@ -41,7 +41,7 @@ impl Work {
         self.right_hand_sides += 4 * steps;
     }
 
-    fn plus(self, other: &Work) -> Work {
+    pub(super) fn plus(self, other: &Work) -> Work {
         Work {
             rides: self.rides + other.rides,
             steps: self.steps + other.steps,

@@ -102,9 +102,30 @@ pub fn basin(
 
 /// The basin at one speed.
 pub fn column(conditions: &Conditions, search: &Search, speed: f64) -> Column {
+    explored(conditions, search, &|rate| search.axis.start(speed, rate), usize::MAX)
+}
+
+/// The basin along any line of disturbances: `start` makes the initial state of a disturbance of 0 to
+/// `search.max_rate`. The search's axis is of no meaning.
+pub(super) fn along(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Start) -> Column {
+    explored(conditions, search, start, usize::MAX)
+}
+
+/// The basin at one speed without what lies beyond: the scan ends soon after the first fall, and there
+/// are no islands. `upper` is that of [`column`].
+pub fn border(conditions: &Conditions, search: &Search, speed: f64) -> Column {
+    Column {
+        islands: Vec::new(),
+        ..explored(conditions, search, &|rate| search.axis.start(speed, rate), SECTIONS)
+    }
+}
+
+/// The scan in groups of `group` rides, to its end or the first group with a fall; and its borders.
+fn explored(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Start, group: usize) -> Column {
+    let speed = start(0.0).speed_m_s;
     let mut work = Work::default();
     let mut ride = |rates: &[f64]| -> Vec<Ride> {
-        let starts: Vec<Start> = rates.iter().map(|&r| search.axis.start(speed, r)).collect();
+        let starts: Vec<Start> = rates.iter().map(|&r| start(r)).collect();
         let done = rides(conditions, &starts);
         work.add(&done);
         done
@@ -112,7 +133,13 @@ pub fn column(conditions: &Conditions, search: &Search, speed: f64) -> Column {
     // The last point is the cap itself, also when the step does not divide it.
     let points = (search.max_rate / search.scan_step - 1e-9).ceil() as usize;
     let rates: Vec<f64> = (1..=points).map(|i| (i as f64 * search.scan_step).min(search.max_rate)).collect();
-    let scan = ride(&rates);
+    let mut scan: Vec<Ride> = Vec::new();
+    for group in rates.chunks(group.min(points.max(1))) {
+        scan.extend(ride(group));
+        if scan.iter().any(Ride::fell) {
+            break;
+        }
+    }
     // Without a disturbance nothing falls; a border lies wherever the scan changes its mind.
     let mut runs: Vec<Island> = Vec::new();
     let mut border = None;

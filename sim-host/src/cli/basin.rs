@@ -32,7 +32,7 @@ Examples:
 pub(super) struct Args {
     #[command(flatten)]
     conditions: ConditionArgs,
-    /// Forward speeds in m/s: A:B:STEP, B included, or one [default: 0:10:0.1; with --rider: 2:7.5:0.1]
+    /// Forward speeds in m/s: A:B:STEP, B included, or one [default: 0:10:0.1; 2:7.5:0.1 with a rider]
     #[arg(long, value_parser = speeds::parse, value_name = "A:B:STEP", allow_hyphen_values = true)]
     speeds: Option<std::vec::Vec<f64>>,
     /// The rate that is disturbed at t = 0

@@ -133,7 +133,7 @@ fn show(args: &ShowArgs) -> Result<(), Failure> {
 /// A fit as comment lines.
 fn comment(text: &mut String, fit: &FitEntry, columns: &[usize]) {
     let keys: Vec<&str> = columns.iter().map(|&i| KEYS[i]).collect();
-    let _ = writeln!(text, "\n# gains {}", fit.gains.name());
+    let _ = writeln!(text, "\n# gains {}", fit.gains);
     let speeds: String = fit.points.iter().map(|p| format!(" {:9.3}", p.speed_m_s)).collect();
     let _ = writeln!(text, "# at m/s    {speeds}        R^2{}", fit.line.as_ref().map_or("", |_| "   line"));
     for key in keys {

@@ -110,7 +110,8 @@ pub struct ResolvedRider {
     /// Where the gains come from.
     pub source: Option<String>,
     /// How they became continuous over speed.
-    pub gains: Fit,
+    #[schemars(extend("enum" = ["regression", "mean", "best"]))]
+    pub gains: &'static str,
     /// Neural delay \[s\].
     pub delay_s: f64,
     /// "extrapolate" or "hold": the gains beyond the outermost points.
@@ -127,7 +128,7 @@ impl ResolvedRider {
         Self {
             name: table.name.clone(),
             source: table.source.clone(),
-            gains: fit,
+            gains: fit.name(),
             delay_s: rider.delay_s,
             outside: match rider.schedule.outside() {
                 Outside::Extrapolate => "extrapolate",
@@ -214,7 +215,7 @@ impl ResolvedConfig {
     /// Who rides what, in a few words: "rigid_jason, rider young (mean gains, 30 ms), law none".
     pub fn label(&self) -> String {
         let rider = self.rider.as_ref().map_or(String::new(), |r| {
-            format!(", rider {} ({} gains, {} ms)", r.name, r.gains.name(), (r.delay_s * 1e9).round() / 1e6)
+            format!(", rider {} ({} gains, {} ms)", r.name, r.gains, (r.delay_s * 1e9).round() / 1e6)
         });
         format!("{}{rider}, law {}", self.bicycle.name, self.law.name)
     }

@@ -52,7 +52,8 @@ pub struct RowEntry {
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct FitEntry {
     /// How.
-    pub gains: Fit,
+    #[schemars(extend("enum" = ["regression", "mean", "best"]))]
+    pub gains: &'static str,
     /// Straight lines through these, going on beyond the outermost.
     pub points: Vec<ResolvedGains>,
     /// Slope \[per m/s\] and gain at rest of a regression; null for others.
@@ -71,7 +72,7 @@ impl FitEntry {
         let line = table.line();
         let pairs = line.slope.0.into_iter().zip(line.intercept.0);
         Ok(Self {
-            gains: fit,
+            gains: fit.name(),
             points: schedule.points().iter().map(|(v, k)| ResolvedGains::new(*v, k)).collect(),
             line: (fit == Fit::Regression).then(|| KEYS.into_iter().zip(pairs).collect()),
             r_squared: KEYS.into_iter().zip(table.r_squared(&schedule)).collect(),

@@ -2,9 +2,10 @@
 
 use super::catalogue::RiderError;
 use super::table::{RiderTable, Row};
-use super::{Fit, Gains, KEYS, MAX_DELAY_S, Muscles, Outside};
+use super::{Fit, Gains, KEYS, Line, MAX_DELAY_S, Muscles, Outside};
 use crate::range::within;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The version of the files.
@@ -29,6 +30,8 @@ struct File {
     best_runs: Option<Vec<u32>>,
     columns: Vec<String>,
     rows: Vec<Vec<f64>>,
+    /// By gain its change per m/s and its value at rest.
+    regression: Option<BTreeMap<String, [f64; 2]>>,
 }
 
 #[derive(Deserialize)]
@@ -106,12 +109,14 @@ impl File {
             let row = self.row(cells, rows.last()).map_err(|e| format!("row {}: {e}", i + 1))?;
             rows.push(row);
         }
+        let regression = self.line(&columns)?;
         let table = RiderTable {
             name: name.into(),
             source: self.source,
             note: self.note,
             delay_s: self.delay_ms / 1e3,
             muscles,
+            regression,
             best_runs: self.best_runs,
             columns,
             rows,
@@ -148,6 +153,24 @@ impl File {
             return Err(format!("`columns`: no gains; known are {}", keys.join(", ")));
         }
         Ok(gains)
+    }
+
+    /// The regression that came with the table: of each gain that has a column, of no other.
+    fn line(&self, columns: &[usize]) -> Result<Option<Line>, String> {
+        let Some(lines) = &self.regression else { return Ok(None) };
+        let gains: Vec<&str> = columns.iter().map(|&i| KEYS[i]).collect();
+        if let Some(key) = lines.keys().find(|key| !gains.contains(&key.as_str())) {
+            return Err(format!("`regression`: `{key}` is not a gain with a column ({})", gains.join(", ")));
+        }
+        let mut line = Line { slope: Gains::default(), intercept: Gains::default() };
+        for &i in columns {
+            let [slope, rest] =
+                lines.get(KEYS[i]).ok_or_else(|| format!("`regression`: `{}` is missing", KEYS[i]))?;
+            within(&format!("`regression`: slope of `{}`", KEYS[i]), *slope, -1e5, 1e5)?;
+            within(&format!("`regression`: `{}` at rest", KEYS[i]), *rest, -1e5, 1e5)?;
+            (line.slope.0[i], line.intercept.0[i]) = (*slope, *rest);
+        }
+        Ok(Some(line))
     }
 
     fn gain_keys(&self) -> &'static [&'static str] {

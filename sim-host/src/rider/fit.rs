@@ -4,12 +4,11 @@ use super::table::{RiderTable, Row};
 use super::{Gains, KEYS, Outside, Rider, Schedule, ScheduleError};
 
 /// How gains are made continuous over speed.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, schemars::JsonSchema, clap::ValueEnum,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Fit {
-    /// One straight line per gain, least squares over all sets (the thesis's LR).
+    /// One straight line per gain (the thesis's LR): the table's own `regression`, otherwise least
+    /// squares over all sets.
     Regression,
     /// Straight lines through the groups' means, at the mean of their speeds (LI, mean).
     #[default]
@@ -57,7 +56,7 @@ fn mean(rows: &[Row]) -> (f64, Gains) {
 
 impl RiderTable {
     /// The least-squares line of each gain over all rows; level if there is but one speed.
-    pub fn line(&self) -> Line {
+    pub fn least_squares(&self) -> Line {
         let (speed, gains) = mean(&self.rows);
         let square: f64 = self.rows.iter().map(|r| (r.speed_m_s - speed).powi(2)).sum();
         let slope = std::array::from_fn(|i| {
@@ -66,6 +65,11 @@ impl RiderTable {
         });
         let intercept = std::array::from_fn(|i| gains.0[i] - slope[i] * speed);
         Line { slope: Gains(slope), intercept: Gains(intercept) }
+    }
+
+    /// The line of [`Fit::Regression`]: the one that came with the table, or else of least squares.
+    pub fn line(&self) -> Line {
+        self.regression.unwrap_or_else(|| self.least_squares())
     }
 
     /// The gains over speed.

@@ -1,7 +1,7 @@
 //! Measured gains: one set a row, sets of like speed in a group.
 
 use super::file::SCHEMA;
-use super::{Gains, KEYS, Muscles};
+use super::{Gains, KEYS, Line, Muscles};
 
 /// One measured set of gains.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +33,8 @@ pub struct RiderTable {
     pub muscles: Muscles,
     /// The run of each group that counts as its best; otherwise the highest VAF does.
     pub best_runs: Option<Vec<u32>>,
+    /// The regression as it was published, if the rows do not give it to all digits.
+    pub regression: Option<Line>,
     /// The gains that have a column, as places in [`KEYS`].
     pub columns: Vec<usize>,
     /// The sets, speeds not falling.
@@ -64,9 +66,14 @@ impl RiderTable {
             cells.extend(self.columns.iter().map(|&i| format!("{:?}", r.gains.0[i])));
             format!("  [{}],\n", cells.join(", "))
         });
+        let lines = self.regression.iter().flat_map(|line| {
+            let pair = |i: &usize| (KEYS[*i], line.slope.0[*i], line.intercept.0[*i]);
+            self.columns.iter().map(pair).map(|(key, a, b)| format!("{key} = [{a:?}, {b:?}]\n"))
+        });
+        let lines: String = lines.collect();
         format!(
             "schema = {SCHEMA}\n{}{}delay_ms = {:?}\nneuromuscular = {{ omega_rad_s = {:?}, zeta = {:?} }}\n{}\
-             columns = {columns:?}\nrows = [\n{}]\n",
+             columns = {columns:?}\nrows = [\n{}]\n{}{lines}",
             text("source", &self.source),
             text("note", &self.note),
             self.delay_s * 1e3,
@@ -74,6 +81,7 @@ impl RiderTable {
             self.muscles.zeta,
             self.best_runs.as_ref().map_or(String::new(), |runs| format!("best_runs = {runs:?}\n")),
             rows.collect::<String>(),
+            if lines.is_empty() { "" } else { "\n[regression]\n" },
         )
     }
 }

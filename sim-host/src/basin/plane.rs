@@ -1,0 +1,135 @@
+//! The basin at one speed over both disturbances: steer rate and roll rate together.
+
+use super::search::along;
+use super::{Axis, Column, Search, SearchError, Work};
+use crate::range::within;
+use crate::ride::{Conditions, Start};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// What is searched: rays from the undisturbed ride, evenly spread over half of the plane in units
+/// of the two largest rates; the other half is the mirror image.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct PlaneSearch {
+    /// Forward speed \[m/s\].
+    pub speed: f64,
+    /// Rays over half a turn.
+    pub rays: usize,
+    /// Largest steer rate tried \[rad/s\].
+    pub max_steer_rate: f64,
+    /// Largest roll rate tried \[rad/s\].
+    pub max_roll_rate: f64,
+    /// Rides of the scan along each ray.
+    pub points: usize,
+    /// How closely borders are located, as a part of a ray.
+    pub tolerance: f64,
+}
+
+/// One direction of disturbances.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ray {
+    /// Steer rate at the ray's end \[rad/s\].
+    pub steer_rate: f64,
+    /// Roll rate at the ray's end \[rad/s\].
+    pub roll_rate: f64,
+    /// What was found along it; its rates are parts of the ray, 0 to 1.
+    pub column: Column,
+}
+
+impl Ray {
+    /// The disturbance at the part `s` of the ray: steer rate, roll rate \[rad/s\].
+    pub fn at(&self, s: f64) -> (f64, f64) {
+        (s * self.steer_rate, s * self.roll_rate)
+    }
+}
+
+/// A basin over steer rate and roll rate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane {
+    /// The rays that were searched, by angle. Fewer than asked for after an interruption.
+    pub rays: Vec<Ray>,
+}
+
+impl Plane {
+    /// The border of the star-shaped part around zero, all the way round: steer rate, roll rate
+    /// \[rad/s\].
+    pub fn outline(&self) -> Vec<(f64, f64)> {
+        let half = self.rays.iter().map(|ray| ray.at(ray.column.upper));
+        let mirrored = half.clone().map(|(steer, roll)| (-steer, -roll));
+        half.chain(mirrored).collect()
+    }
+
+    /// Area inside the outline \[rad^2/s^2\].
+    pub fn area(&self) -> f64 {
+        let points = self.outline();
+        let next = points.iter().cycle().skip(1);
+        0.5 * points.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>() + 0.0
+    }
+
+    /// What it took.
+    pub fn work(&self) -> Work {
+        self.rays.iter().fold(Work::default(), |sum, ray| sum.plus(&ray.column.work))
+    }
+}
+
+impl PlaneSearch {
+    /// The direction of ray `i`: steer rate, roll rate at its end \[rad/s\].
+    fn direction(&self, i: usize) -> (f64, f64) {
+        let (sin, cos) = (PI * i as f64 / self.rays as f64).sin_cos();
+        (self.max_steer_rate * cos, self.max_roll_rate * sin)
+    }
+
+    /// Checks ranges.
+    ///
+    /// # Errors
+    /// Names the value and its range.
+    pub fn check(&self) -> Result<(), SearchError> {
+        let within = |name, value, min, max| within(name, value, min, max).map_err(SearchError);
+        within("speed (m/s)", self.speed, 0.0, 30.0)?;
+        within("number of rays", self.rays as f64, 2.0, 10_000.0)?;
+        within("largest steer rate (rad/s)", self.max_steer_rate, 0.01, 100.0)?;
+        within("largest roll rate (rad/s)", self.max_roll_rate, 0.01, 100.0)?;
+        within("points of a ray", self.points as f64, 1.0, 10_000.0)?;
+        within("tolerance as a part of a ray", self.tolerance, 1e-9, 1.0 / self.points as f64)
+    }
+}
+
+/// The basin over both rates, on all cores of the current rayon pool; `finished` is called for each
+/// ray, `stop` asked before each. The result does not depend on the number of threads.
+///
+/// # Errors
+/// When the search or the conditions fail their checks.
+pub fn plane(
+    conditions: &Conditions,
+    search: &PlaneSearch,
+    finished: impl Fn(&Ray) + Sync,
+    stop: impl Fn() -> bool + Sync,
+) -> Result<Plane, SearchError> {
+    search.check()?;
+    conditions.check()?;
+    let line = Search {
+        speeds: vec![search.speed],
+        axis: Axis::SteerRate,
+        max_rate: 1.0,
+        scan_step: 1.0 / search.points as f64,
+        tolerance: search.tolerance,
+    };
+    let rays: Vec<Option<Ray>> = (0..search.rays)
+        .into_par_iter()
+        .map(|i| {
+            if stop() {
+                return None;
+            }
+            let (steer_rate, roll_rate) = search.direction(i);
+            let start = |s: f64| Start {
+                speed_m_s: search.speed,
+                steer_rate_rad_s: s * steer_rate,
+                roll_rate_rad_s: s * roll_rate,
+            };
+            let ray = Ray { steer_rate, roll_rate, column: along(conditions, &line, &start) };
+            finished(&ray);
+            Some(ray)
+        })
+        .collect();
+    Ok(Plane { rays: rays.into_iter().flatten().collect() })
+}
