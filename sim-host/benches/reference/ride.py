@@ -271,10 +271,9 @@ def bicycle(name):
 
 
 def regression(name):
-    """Slopes and intercepts of the gains over speed, least squares over a rider's sets."""
-    table = tomllib.loads((DATA / "riders" / f"{name}.toml").read_text())
-    rows, columns = np.array(table["rows"]), table["columns"]
-    return np.polyfit(rows[:, columns.index("speed_m_s")], rows[:, [columns.index(k) for k in GAINS]], 1)
+    """Slopes and intercepts of a rider's gains over speed, as published."""
+    lines = tomllib.loads((DATA / "riders" / f"{name}.toml").read_text())["regression"]
+    return np.array([lines[key] for key in GAINS]).T
 
 
 def timed(run, times):
