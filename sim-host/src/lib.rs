@@ -11,3 +11,4 @@ mod range;
 pub mod report;
 pub mod ride;
 pub mod rider;
+pub mod thesis;

@@ -38,7 +38,7 @@ fn documents_fit_their_committed_schemas() {
     ] {
         assert_eq!(violations(&committed(name), &bench.json(line)), [""; 0], "{line}");
     }
-    for name in ["basin", "ride", "eigen", "bicycle-check", "rider-show"] {
+    for name in ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis"] {
         let run = bench.run(&format!("schema {name}"));
         let file = std::fs::read_to_string(repository("docs/schema").join(format!("{name}.json"))).unwrap();
         assert!(run.stdout == file, "run: sim-host schema {name} > docs/schema/{name}.json");

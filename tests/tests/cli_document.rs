@@ -75,6 +75,7 @@ fn every_option_is_documented_with_its_default() {
         "bicycle accel",
         "rider show",
         "rider check",
+        "thesis",
     ] {
         let help = bench.run(&format!("{command} --help")).stdout;
         let mut option = "";

@@ -2,7 +2,7 @@
 #![allow(non_snake_case, reason = "the symbols of the paper")]
 
 use super::Parameters;
-use nalgebra::{Matrix2, Matrix4};
+use nalgebra::{Matrix2, Matrix4, Vector2};
 
 /// `M q'' + v C1 q' + (g K0 + v^2 K2) q = T` with `q = [roll, steer]`, `T = [roll, steer torque]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +82,11 @@ impl Linear {
         a.fixed_view_mut::<2, 2>(2, 0).copy_from(&k);
         a.fixed_view_mut::<2, 2>(2, 2).copy_from(&c);
         a
+    }
+
+    /// Accelerations of roll and steer per unit steer torque \[rad/s^2 per N m\].
+    pub fn steer_torque_response(&self) -> Vector2<f64> {
+        inverse(&self.m).column(1).into()
     }
 }
 

@@ -1,14 +1,16 @@
 //! `sim-host eigen`.
 
 use super::outputs::{OutputArgs, Results};
+use super::rider_args::RiderArgs;
 use super::{Ended, Failure, law, speeds, warn};
 use crate::bicycle::catalogue;
-use crate::bicycle::linear::Linear;
-use crate::eigen::{CriticalSpeeds, critical_speeds, eigenvalues};
+use crate::eigen::{CriticalSpeeds, Feedback, Mode, Model, Stability, modes, roots, stability};
 use crate::report::document::{EigenDocument, SCHEMA};
 use crate::report::figure::{self, EigenFigure};
-use crate::report::resolved::{ResolvedBicycle, ResolvedLaw, Tool};
+use crate::report::resolved::{ResolvedBicycle, ResolvedLaw, ResolvedRider, Tool};
 use crate::report::{table, terminal};
+use nalgebra::Complex;
+use rayon::prelude::*;
 use serde_json::json;
 use std::fmt::Write;
 
@@ -16,7 +18,9 @@ const EXAMPLES: &str = "\
 Examples:
   sim-host eigen --bicycle benchmark
   sim-host eigen --law h --speeds 0:10:0.05 --svg eigen.svg
-  sim-host eigen --law cl2:4 --json";
+  sim-host eigen --law cl2:4 --json
+  sim-host eigen --rider smart --law h --speeds 2:7.5:0.1 --json
+  sim-host eigen --law cl1 --modes --csv modes.csv";
 
 /// Options of `eigen`.
 #[derive(clap::Args)]
@@ -28,75 +32,100 @@ pub(super) struct Args {
     /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, or a table FILE
     #[arg(long, default_value = "none")]
     law: String,
+    #[command(flatten)]
+    rider: RiderArgs,
     /// Forward speeds in m/s: A:B:STEP, B included, or one
     #[arg(long, default_value = "0:10:0.1", value_parser = speeds::parse, value_name = "A:B:STEP", allow_hyphen_values = true)]
     speeds: std::vec::Vec<f64>,
+    /// With a rider: how many of the rightmost eigenvalues, 4 to 40; without there are four
+    #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u8).range(4..=40))]
+    roots: u8,
+    /// Adds the modes to the table
+    #[arg(long)]
+    modes: bool,
     #[command(flatten)]
     outputs: OutputArgs,
-}
-
-/// One line of the table: real and imaginary parts of the four eigenvalues.
-#[derive(serde::Serialize)]
-struct Row {
-    speed_m_s: f64,
-    re1: f64,
-    im1: f64,
-    re2: f64,
-    im2: f64,
-    re3: f64,
-    im3: f64,
-    re4: f64,
-    im4: f64,
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let bicycle = catalogue::load(&args.bicycle)?;
     warn(&bicycle);
     let law = law::parse(&args.law)?;
+    let (resolved, rider) = match args.rider.load()? {
+        Some((rider, table, fit)) => (Some(ResolvedRider::new(&table, fit, &rider)), Some(rider)),
+        None => (None, None),
+    };
     let outputs = args.outputs.open(None)?;
-    let linear = Linear::new(&bicycle.parameters);
-    let critical = critical_speeds(&linear, &law);
-    let values: Vec<_> = args.speeds.iter().map(|&v| eigenvalues(&linear, &law, v)).collect();
+    let count = if rider.is_some() { usize::from(args.roots) } else { 4 };
+    let model = Model::new(&bicycle.parameters, Feedback::Law(law.clone()), rider);
+    let Stability { critical, ranges, changes } = stability(&model);
+    let values: Vec<_> = args.speeds.par_iter().map(|&v| roots(&model.at(v), count)).collect();
+    let modes = modes(&model, &args.speeds, count);
     let CriticalSpeeds { v_d, v_w, v_c } = critical;
     let document = EigenDocument {
         schema: SCHEMA,
         tool: Tool::this(),
         bicycle: ResolvedBicycle::new(&bicycle),
+        rider: resolved,
         law: ResolvedLaw::new(&args.law, &law),
         v_d,
         v_w,
         v_c,
+        stable_ranges: ranges.iter().map(|&(from, to)| [from, to]).collect(),
+        stability_changes: changes,
         speeds: args.speeds.clone(),
-        eigenvalues: values.iter().map(|four| four.map(|e| [e.re, e.im])).collect(),
+        eigenvalues: values.iter().map(|of_speed| of_speed.iter().map(|e| [e.re, e.im]).collect()).collect(),
+        modes: modes.iter().map(|mode| (mode.name.clone(), per_speed(mode, args.speeds.len()))).collect(),
     };
-    let rows = || {
-        let row = |(&speed_m_s, [a, b, c, d]): (&f64, &[nalgebra::Complex<f64>; 4])| Row {
-            speed_m_s,
-            re1: a.re,
-            im1: a.im,
-            re2: b.re,
-            im2: b.im,
-            re3: c.re,
-            im3: c.im,
-            re4: d.re,
-            im4: d.im,
-        };
-        args.speeds.iter().zip(&values).map(row).collect::<Vec<_>>()
-    };
-    let title = format!("Eigenvalues: {}, law {}", bicycle.name, args.law);
-    let figure = EigenFigure { speeds: &args.speeds, eigenvalues: &values, critical, title: &title };
-    let config = json!({"bicycle": document.bicycle, "law": document.law});
+    let rider = document.rider.as_ref().map_or(String::new(), |r| format!(", {}", r.label()));
+    let title = format!("Eigenvalues: {}{rider}, law {}", bicycle.name, args.law);
+    let figure =
+        EigenFigure { speeds: &args.speeds, modes: &modes, stable: &ranges, critical, title: &title };
+    let config = json!({"bicycle": document.bicycle, "rider": document.rider, "law": document.law});
+    let in_table = if args.modes { &modes[..] } else { &[] };
     outputs.write(Results {
         document: &document,
         config: &config,
-        summary: || terminal::eigen(&figure, 80) + &summary(&critical),
-        table: || table::table(&config, &rows()),
+        summary: || terminal::eigen(&figure, 80) + &summary(&critical, &ranges),
+        table: || {
+            table::numbers(&config, &columns(count, in_table), rows(&args.speeds, &values, count, in_table))
+        },
         figure: || figure::eigen(&figure),
     })?;
     Ok(Ended::Done)
 }
 
-fn summary(critical: &CriticalSpeeds) -> String {
+/// The roots of a mode at each speed, as in the document.
+fn per_speed(mode: &Mode, speeds: usize) -> Vec<Vec<[f64; 2]>> {
+    let at = |i: usize| mode.roots.iter().filter_map(|root| root[i]).map(|e| [e.re, e.im]).collect();
+    (0..speeds).map(at).collect()
+}
+
+/// The table's heading: the speed, the rightmost eigenvalues, the modes.
+fn columns(count: usize, modes: &[Mode]) -> Vec<String> {
+    let numbered = |name: &str, n: usize| {
+        let name = name.replace(' ', "_");
+        (1..=n).flat_map(|i| [format!("{name}re{i}"), format!("{name}im{i}")]).collect::<Vec<_>>()
+    };
+    let of_modes = modes.iter().flat_map(|mode| numbered(&format!("{}_", mode.name), mode.roots.len()));
+    ["speed_m_s".into()].into_iter().chain(numbered("", count)).chain(of_modes).collect()
+}
+
+fn rows(
+    speeds: &[f64],
+    values: &[Vec<Complex<f64>>],
+    count: usize,
+    modes: &[Mode],
+) -> impl Iterator<Item = Vec<Option<f64>>> {
+    let both = |root: Option<Complex<f64>>| [root.map(|e| e.re), root.map(|e| e.im)];
+    (0..speeds.len()).map(move |i| {
+        let rightmost = (0..count).map(|n| values[i].get(n).copied());
+        let of_modes = modes.iter().flat_map(|mode| &mode.roots).map(|root| root[i]);
+        [Some(speeds[i])].into_iter().chain(rightmost.chain(of_modes).flat_map(both)).collect()
+    })
+}
+
+fn summary(critical: &CriticalSpeeds, stable: &[(f64, f64)]) -> String {
     let mut text = String::new();
     for (name, what, speed) in [
         ("v_d", "weave pair forms", critical.v_d),
@@ -108,5 +137,8 @@ fn summary(critical: &CriticalSpeeds) -> String {
             None => writeln!(text, "{name}: none up to {} m/s ({what})", crate::eigen::SEARCH_TO_M_S),
         };
     }
+    let ranges: Vec<String> = stable.iter().map(|(from, to)| format!("{from:.4} to {to:.4} m/s")).collect();
+    let ranges = if ranges.is_empty() { "nowhere".into() } else { ranges.join(", ") };
+    let _ = writeln!(text, "stable: {ranges} (searched up to {} m/s)", crate::eigen::SEARCH_TO_M_S);
     text
 }

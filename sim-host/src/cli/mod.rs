@@ -12,6 +12,7 @@ mod ride;
 mod rider;
 mod rider_args;
 mod speeds;
+mod thesis;
 
 use crate::bicycle::catalogue::Bicycle;
 use clap::{Parser, Subcommand};
@@ -36,7 +37,8 @@ Examples:
   sim-host ride --speed 4 --steer-rate 5       one ride
   sim-host eigen --law cl2:4                   eigenvalues over speed
   sim-host bicycle list                        the bicycles that ship
-  sim-host rider list                          the riders that ship";
+  sim-host rider list                          the riders that ship
+  sim-host thesis --quick                      the published tables and figures, computed again";
 
 /// From which disturbances does a bicycle with a steer assist recover?
 #[derive(Parser)]
@@ -56,6 +58,8 @@ enum Command {
     Ride(Box<ride::Args>),
     /// Eigenvalues of the linearised bicycle over speed, and its critical speeds.
     Eigen(eigen::Args),
+    /// The tables and figures of the thesis computed again, as a report.
+    Thesis(thesis::Args),
     /// Bicycles: list, show, check, accelerations.
     #[command(subcommand, after_help = bicycle::EXAMPLES)]
     Bicycle(bicycle::Command),
@@ -66,7 +70,7 @@ enum Command {
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
-        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show"])]
+        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis"])]
         document: String,
     },
 }
@@ -79,6 +83,7 @@ pub fn run() -> ExitCode {
         Command::Basin(args) => basin::run(&args),
         Command::Ride(args) => ride::run(&args),
         Command::Eigen(args) => eigen::run(&args),
+        Command::Thesis(args) => thesis::run(&args),
         Command::Bicycle(command) => bicycle::run(&command),
         Command::Rider(command) => rider::run(&command),
         Command::Schema { document } => schema(&document),

@@ -2,10 +2,12 @@
 
 use super::resolved::{ResolvedConfig, ResolvedSearch, Tool};
 use crate::basin::{Basin, ScanPoint, Work};
+use crate::eigen::StabilityChange;
 use crate::ride::{Effort, FinalState, Ride, Start};
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// The version of these documents.
 pub const SCHEMA: u32 = 1;
@@ -47,18 +49,28 @@ pub struct EigenDocument {
     pub tool: Tool,
     /// The bicycle.
     pub bicycle: super::resolved::ResolvedBicycle,
+    /// Who rides; null for a rigid rider, hands off.
+    pub rider: Option<super::resolved::ResolvedRider>,
     /// The law.
     pub law: super::resolved::ResolvedLaw,
-    /// Speed at which the first complex pair forms \[m/s\].
+    /// Speed at which the first complex pair forms \[m/s\]; not looked for with a rider.
     pub v_d: Option<f64>,
     /// Weave speed \[m/s\].
     pub v_w: Option<f64>,
     /// Capsize speed \[m/s\].
     pub v_c: Option<f64>,
+    /// Ranges of speed in which the straight ride is stable, from rest to 20 m/s \[m/s\].
+    pub stable_ranges: Vec<[f64; 2]>,
+    /// The ends of these ranges, but for those of the search.
+    pub stability_changes: Vec<StabilityChange>,
     /// Speeds \[m/s\].
     pub speeds: Vec<f64>,
-    /// Per speed the four eigenvalues `[re, im]` \[1/s\], largest real part first.
-    pub eigenvalues: Vec<[[f64; 2]; 4]>,
+    /// Per speed the eigenvalues `[re, im]` \[1/s\], largest real part first: four without a rider,
+    /// else as many of the rightmost as were asked for, and one more rather than half a pair.
+    pub eigenvalues: Vec<Vec<[f64; 2]>>,
+    /// Modes by name: per speed their one or two eigenvalues `[re, im]` \[1/s\], followed by
+    /// continuity; those left of all that were computed are missing.
+    pub modes: BTreeMap<String, Vec<Vec<[f64; 2]>>>,
 }
 
 /// `ride`.
@@ -248,6 +260,7 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "eigen" => generator.into_root_schema_for::<EigenDocument>(),
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
         "rider-show" => generator.into_root_schema_for::<super::rider::RiderDocument>(),
+        "thesis" => generator.into_root_schema_for::<crate::thesis::document::ThesisDocument>(),
         _ => return None,
     };
     // The descriptions are the doc comments, whose brackets are escaped.

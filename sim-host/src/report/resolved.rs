@@ -138,6 +138,12 @@ impl ResolvedRider {
             points: rider.schedule.points().iter().map(|(v, k)| ResolvedGains::new(*v, k)).collect(),
         }
     }
+
+    /// In a few words, for titles.
+    pub fn label(&self) -> String {
+        let ms = (self.delay_s * 1e9).round() / 1e6;
+        format!("rider {} ({} gains, {ms} ms)", self.name, self.gains)
+    }
 }
 
 /// The conditions of a result, defaults filled in.
@@ -214,9 +220,7 @@ impl ResolvedConfig {
 
     /// Who rides what, in a few words: "rigid_jason, rider young (mean gains, 30 ms), law none".
     pub fn label(&self) -> String {
-        let rider = self.rider.as_ref().map_or(String::new(), |r| {
-            format!(", rider {} ({} gains, {} ms)", r.name, r.gains, (r.delay_s * 1e9).round() / 1e6)
-        });
+        let rider = self.rider.as_ref().map_or(String::new(), |r| format!(", {}", r.label()));
         format!("{}{rider}, law {}", self.bicycle.name, self.law.name)
     }
 }

@@ -22,6 +22,36 @@ pub fn table<R: Serialize>(config: &impl Serialize, rows: &[R]) -> Result<Vec<u8
     writer.into_inner().map_err(|e| csv::Error::from(std::io::Error::other(e.to_string())))
 }
 
+/// A table of numbers under `columns`; `None` is an empty cell.
+///
+/// # Errors
+/// When the rows are not as long as the heading.
+pub fn numbers(
+    config: &impl Serialize,
+    columns: &[String],
+    rows: impl IntoIterator<Item = Vec<Option<f64>>>,
+) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(heading(config).into_bytes());
+    writer.write_record(columns)?;
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    writer.into_inner().map_err(|e| csv::Error::from(std::io::Error::other(e.to_string())))
+}
+
+/// The same without the heading, as text.
+///
+/// # Errors
+/// When a row can't be written as a line of CSV.
+pub fn csv_text<R: Serialize>(rows: &[R]) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    let bytes = writer.into_inner().map_err(|e| csv::Error::from(std::io::Error::other(e.to_string())))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
 /// One line of a basin's table.
 #[derive(Clone, Debug, Serialize)]
 pub struct BasinRow {

@@ -44,7 +44,7 @@ pub fn ride(figure: &RideFigure, width: usize) -> String {
     text
 }
 
-/// Real parts of the eigenvalues over speed, imaginary parts below.
+/// Real parts of the roots over speed, imaginary parts below.
 pub fn eigen(figure: &EigenFigure, width: usize) -> String {
     let width = width.max(MIN_WIDTH);
     let x = match figure.speeds {
@@ -52,7 +52,10 @@ pub fn eigen(figure: &EigenFigure, width: usize) -> String {
         [only, ..] => (only - 0.5, only + 0.5),
         [] => (0.0, 10.0),
     };
-    let points = || figure.speeds.iter().zip(figure.eigenvalues).flat_map(|(&v, e)| e.map(|e| (v, e)));
+    let along = |root: &Vec<Option<_>>| {
+        figure.speeds.iter().zip(root).filter_map(|(&v, e)| e.map(|e| (v, e))).collect::<Vec<_>>()
+    };
+    let points = || figure.modes.iter().flat_map(|mode| &mode.roots).flat_map(along);
     let mut real = Chart::new(width, 12, x, (-10.0, 10.0));
     real.dots(points().map(|(v, e)| (v, e.re)));
     let mut imaginary =
@@ -65,7 +68,7 @@ pub fn eigen(figure: &EigenFigure, width: usize) -> String {
 mod tests {
     use super::*;
     use crate::basin::{Basin, Column, Island, ScanPoint, Work};
-    use crate::eigen::CriticalSpeeds;
+    use crate::eigen::{CriticalSpeeds, Mode};
     use crate::ride::Outcome;
     use nalgebra::Complex;
 
@@ -124,14 +127,14 @@ mod tests {
         let text = ride(&RideFigure { title: "", trace: &[], outcome }, 80);
         fits(&text, 80);
         assert!(text.contains("torque [N m]") && text.contains("time [s]"));
-        let eigenvalues = [[Complex::new(-3.0, 4.0); 4]; 11];
         let speeds: Vec<f64> = (0..11).map(f64::from).collect();
         let critical = CriticalSpeeds { v_d: None, v_w: Some(5.0), v_c: None };
         for n in [0, 1, 11] {
-            let text = eigen(
-                &EigenFigure { title: "", speeds: &speeds[..n], eigenvalues: &eigenvalues[..n], critical },
-                70,
-            );
+            let root = vec![Some(Complex::new(-3.0, 4.0)); n];
+            let modes = [Mode { name: "weave".into(), roots: vec![root, vec![None; n]] }];
+            let figure =
+                EigenFigure { title: "", speeds: &speeds[..n], modes: &modes, stable: &[], critical };
+            let text = eigen(&figure, 70);
             fits(&text, 70);
             assert!(text.contains("Re λ [1/s]") && text.contains("forward speed [m/s]"));
         }

@@ -27,20 +27,28 @@ impl Area {
     }
 }
 
+/// Whether a line is broken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Dash {
+    Solid,
+    Dashed,
+    Dotted,
+}
+
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stroke {
     pub(super) color: &'static str,
     pub(super) width: f64,
-    pub(super) dashed: bool,
+    pub(super) dash: Dash,
 }
 
 impl Stroke {
     pub(super) const fn solid(color: &'static str, width: f64) -> Self {
-        Self { color, width, dashed: false }
+        Self { color, width, dash: Dash::Solid }
     }
     pub(super) const fn dashed(color: &'static str, width: f64) -> Self {
-        Self { color, width, dashed: true }
+        Self { color, width, dash: Dash::Dashed }
     }
 }
 
@@ -118,7 +126,11 @@ impl Canvas {
 
     /// A line through `points`. Dashes are cut here: kuva's PNG begins them anew at every point.
     pub(super) fn line(&mut self, points: &[(f64, f64)], stroke: Stroke) {
-        let pieces = if stroke.dashed { dashes(points, 6.0, 3.5) } else { vec![points.to_vec()] };
+        let pieces = match stroke.dash {
+            Dash::Solid => vec![points.to_vec()],
+            Dash::Dashed => dashes(points, 6.0, 3.5),
+            Dash::Dotted => dashes(points, 1.8, 2.8),
+        };
         for points in pieces.into_iter().filter(|p| p.len() > 1) {
             self.scene.add(Primitive::PolyLine {
                 points,

@@ -3,12 +3,12 @@
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{GREY, INK, SERIES, STABLE};
 use super::legend::{Sign, entry, rows, rows_height};
-use super::modes::{curves, pieces, stable_ranges};
+use super::modes::{imaginary, in_sight, real};
 use super::panel::Panel;
 use super::picture::Picture;
 use super::scale::nice;
 use super::shape::text_width;
-use crate::eigen::CriticalSpeeds;
+use crate::eigen::{CriticalSpeeds, Mode};
 use nalgebra::Complex;
 
 /// What a figure of eigenvalues shows.
@@ -18,8 +18,10 @@ pub struct EigenFigure<'a> {
     pub title: &'a str,
     /// Forward speeds \[m/s\], rising.
     pub speeds: &'a [f64],
-    /// The eigenvalues at each of them \[1/s\].
-    pub eigenvalues: &'a [[Complex<f64>; 4]],
+    /// The modes there.
+    pub modes: &'a [Mode],
+    /// The ranges of speed in which the straight ride is stable \[m/s\].
+    pub stable: &'a [(f64, f64)],
     /// Where the straight ride changes its nature.
     pub critical: CriticalSpeeds,
 }
@@ -32,61 +34,68 @@ const IMAGINARY_LIMIT: f64 = 20.0;
 const LABEL_TEXT: u32 = 13;
 const LABEL_LINE: f64 = 16.0;
 
-/// Real parts above, imaginary parts below, with the critical speeds and the stable ranges.
+/// Real parts above in solid lines, imaginary parts below in dashed ones, each mode in its colour,
+/// with the critical speeds and the stable ranges. Modes that stay left of the panel are left out.
 pub fn eigen(figure: &EigenFigure) -> Picture {
     let x = match figure.speeds {
         [first, .., last] if first < last => (*first, *last),
         [only, ..] => (only - 0.5, only + 0.5),
         [] => (0.0, 10.0),
     };
-    let parts = |part: fn(&Complex<f64>) -> f64| figure.eigenvalues.iter().flatten().map(part);
+    let modes: Vec<(&Mode, &str)> =
+        figure.modes.iter().filter(|m| in_sight(m, (-REAL_LIMIT, REAL_LIMIT))).zip(colours()).collect();
+    let roots = || modes.iter().flat_map(|(mode, _)| mode.roots.iter().flatten().flatten());
+    let parts = |part: fn(&Complex<f64>) -> f64| roots().map(part);
     let growth = parts(|e| e.re.clamp(-REAL_LIMIT, REAL_LIMIT)).chain([-1.0, 1.0]);
     let turning = parts(|e| e.im.clamp(0.0, IMAGINARY_LIMIT)).chain([0.0, 1.0]);
     let labels = labels(&figure.critical, x);
     let label_rows = labels.iter().map(|l| l.row + 1).max().unwrap_or(0);
     let top = 40.0 + LABEL_LINE * label_rows as f64;
     let area = |y: f64, height: f64| Area { x: LEFT, y, width: WIDTH, height };
-    let real = Panel { area: area(top, 260.0), x, y: nice(growth, 8) };
-    let imaginary = Panel { area: area(real.area.bottom() + 16.0, 150.0), x, y: nice(turning, 5) };
+    let above = Panel { area: area(top, 260.0), x, y: nice(growth, 8) };
+    let below = Panel { area: area(above.area.bottom() + 16.0, 150.0), x, y: nice(turning, 5) };
 
-    let pair = Stroke::solid(SERIES[0], 2.0);
-    let alone = Stroke::solid(SERIES[1], 2.0);
-    let stable = stable_ranges(figure.speeds, figure.eigenvalues);
-    let mut legend = vec![
-        entry(Sign::Line(alone), "real eigenvalue"),
-        entry(Sign::Line(pair), "complex pair"),
-        entry(Sign::Fill(STABLE, 0.3), "stable straight ride"),
-    ];
-    legend.truncate(if stable.is_empty() { 2 } else { 3 });
-    let legend_y = imaginary.area.bottom() + 50.0;
+    let mut legend: Vec<_> = modes
+        .iter()
+        .map(|(mode, colour)| entry(Sign::Line(Stroke::solid(colour, 2.0)), mode.name.as_str()))
+        .collect();
+    if figure.stable.iter().any(|(from, to)| *from < x.1 && *to > x.0) {
+        legend.push(entry(Sign::Fill(STABLE, 0.3), "stable straight ride"));
+    }
+    let legend_y = below.area.bottom() + 50.0;
     let mut canvas = Canvas::new(LEFT + WIDTH + 24.0, legend_y + rows_height(&legend, WIDTH) + 12.0);
     canvas.title((LEFT, 26.0), WIDTH, figure.title);
-    for panel in [&real, &imaginary] {
-        for &range in &stable {
+    for panel in [&above, &below] {
+        for &range in figure.stable {
             panel.shade_x(&mut canvas, range);
         }
         for label in &labels {
             panel.vertical(&mut canvas, label.speed, Stroke::dashed(INK, 0.9));
         }
     }
-    real.line(&mut canvas, [(x.0, 0.0), (x.1, 0.0)], Stroke::solid(GREY, 0.9));
+    above.line(&mut canvas, [(x.0, 0.0), (x.1, 0.0)], Stroke::solid(GREY, 0.9));
     for label in &labels {
-        label.draw(&mut canvas, &real);
+        label.draw(&mut canvas, &above);
     }
-    for curve in curves(figure.eigenvalues) {
-        for (is_pair, range) in pieces(&curve) {
-            let along = |part: fn(&Complex<f64>) -> f64| range.clone().map(move |k| (k, part));
-            let data = |(k, part): (usize, fn(&Complex<f64>) -> f64)| (figure.speeds[k], part(&curve[k]));
-            real.line(&mut canvas, along(|e| e.re).map(data), if is_pair { pair } else { alone });
-            if is_pair && curve[range.clone()].iter().any(|e| e.im > 0.0) {
-                imaginary.line(&mut canvas, along(|e| e.im).map(data), pair);
+    for (mode, colour) in &modes {
+        for root in &mode.roots {
+            for line in real(figure.speeds, root) {
+                above.line(&mut canvas, line, Stroke::solid(colour, 2.0));
+            }
+            for line in imaginary(figure.speeds, root) {
+                below.line(&mut canvas, line, Stroke::dashed(colour, 2.0));
             }
         }
     }
-    real.frame(&mut canvas, None, "Re λ [1/s]");
-    imaginary.frame(&mut canvas, Some("Forward speed v [m/s]"), "Im λ [rad/s]");
+    above.frame(&mut canvas, None, "Re λ [1/s]");
+    below.frame(&mut canvas, Some("Forward speed v [m/s]"), "Im λ [rad/s]");
     rows(&mut canvas, &legend, (LEFT, legend_y), WIDTH);
     canvas.finish()
+}
+
+/// A colour for each mode; they come round again after the last.
+fn colours() -> impl Iterator<Item = &'static str> {
+    SERIES.into_iter().cycle()
 }
 
 /// A critical speed's name above the figure.

@@ -2,6 +2,7 @@
 
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::GREY;
+use super::marker::{Marker, mark};
 use super::shape::text_width;
 use kuva::render::render::TextAnchor;
 
@@ -22,6 +23,8 @@ pub(super) enum Sign {
     Hatched(&'static str),
     /// Triangles.
     Triangle(&'static str),
+    /// Marks on a line, or without one.
+    Marked(Marker, Stroke, bool),
 }
 
 /// A sign and its meaning.
@@ -89,6 +92,12 @@ fn draw(canvas: &mut Canvas, entry: &Entry, (x, y): (f64, f64)) {
             border(canvas);
         }
         Sign::Triangle(color) => triangle(canvas, (x + 0.5 * SWATCH, y - 4.0), color),
+        Sign::Marked(marker, stroke, line) => {
+            if line {
+                canvas.line(&[(x, y), (x + SWATCH, y)], stroke);
+            }
+            mark(canvas, &[(x + 0.5 * SWATCH, y)], marker, stroke.color);
+        }
     }
     canvas.text((x + SWATCH + 8.0, y + 4.0), TEXT, TextAnchor::Start, &entry.label);
 }

@@ -2,10 +2,13 @@
 
 mod basin;
 mod canvas;
+mod chart;
+mod chart_axes;
 mod colour;
 mod eigen;
 mod inside;
 mod legend;
+mod marker;
 mod modes;
 mod outlines;
 mod panel;
@@ -16,7 +19,9 @@ mod shape;
 mod time_scale;
 
 pub use basin::{BasinFigure, basin};
+pub use chart::{Axis, Chart, Line, Look, Plot, Series, chart};
 pub use eigen::{EigenFigure, eigen};
+pub use marker::Marker;
 pub use picture::{Picture, PictureError};
 pub(super) use ride::Curve;
 pub use ride::{RideFigure, ride};

@@ -1,109 +1,64 @@
-//! Eigenvalues over speed as curves.
+//! Modes as lines over speed.
 
+use crate::eigen::Mode;
 use nalgebra::Complex;
-use std::ops::Range;
 
-type Four = [Complex<f64>; 4];
+type Root = Option<Complex<f64>>;
 
-/// Four curves: at every speed each goes on with the eigenvalue that takes them all least far.
-pub(super) fn curves(eigenvalues: &[Four]) -> [Vec<Complex<f64>>; 4] {
-    let mut curves: [Vec<Complex<f64>>; 4] = Default::default();
-    let mut last: Option<Four> = None;
-    for &values in eigenvalues {
-        let next = last.map_or(values, |last| nearest(&last, &values));
-        for (curve, value) in curves.iter_mut().zip(next) {
-            curve.push(value);
-        }
-        last = Some(next);
-    }
-    curves
+/// Stretches of a root's real part over speed.
+pub(super) fn real(speeds: &[f64], root: &[Root]) -> Vec<Vec<(f64, f64)>> {
+    // The lower half of a pair lies under the upper one.
+    lines(speeds, root, |e| e.re, |a, b| a.im >= 0.0 || b.im >= 0.0)
 }
 
-/// The order of `values` that is closest to `last`.
-fn nearest(last: &Four, values: &Four) -> Four {
-    let mut best = (f64::INFINITY, *values);
-    for code in 0..256_usize {
-        let order = [code & 3, code >> 2 & 3, code >> 4 & 3, code >> 6];
-        if order.iter().fold(0, |seen, i| seen | 1 << i) != 0b1111 {
+/// Stretches of a root's positive imaginary part over speed, from and to zero where a pair begins
+/// and ends.
+pub(super) fn imaginary(speeds: &[f64], root: &[Root]) -> Vec<Vec<(f64, f64)>> {
+    lines(speeds, root, |e| e.im, |a, b| a.im > 0.0 || b.im > 0.0)
+}
+
+fn lines(
+    speeds: &[f64],
+    root: &[Root],
+    part: fn(&Complex<f64>) -> f64,
+    drawn: fn(&Complex<f64>, &Complex<f64>) -> bool,
+) -> Vec<Vec<(f64, f64)>> {
+    let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
+    let mut joined = false;
+    for (v, e) in speeds.windows(2).zip(root.windows(2)) {
+        let Some((a, b)) = e[0].as_ref().zip(e[1].as_ref()).filter(|(a, b)| drawn(a, b)) else {
+            joined = false;
             continue;
+        };
+        if !joined {
+            lines.push(vec![(v[0], part(a))]);
         }
-        let candidate = order.map(|i| values[i]);
-        let distance = last.iter().zip(&candidate).map(|(a, b)| (a - b).norm_sqr()).sum();
-        if distance < best.0 {
-            best = (distance, candidate);
+        if let Some(line) = lines.last_mut() {
+            line.push((v[1], part(b)));
         }
+        joined = true;
     }
-    best.1
+    lines
 }
 
-/// Stretches of a curve and whether each is part of a complex pair. Neighbours share a point.
-pub(super) fn pieces(curve: &[Complex<f64>]) -> Vec<(bool, Range<usize>)> {
-    let mut pieces: Vec<(bool, Range<usize>)> = Vec::new();
-    for k in 1..curve.len() {
-        let pair = curve[k - 1].im != 0.0 || curve[k].im != 0.0;
-        match pieces.last_mut() {
-            Some((same, range)) if *same == pair => range.end = k + 1,
-            _ => pieces.push((pair, k - 1..k + 1)),
-        }
-    }
-    pieces
-}
-
-/// The ranges of speed without a positive real part, their ends interpolated.
-pub(super) fn stable_ranges(speeds: &[f64], eigenvalues: &[Four]) -> Vec<(f64, f64)> {
-    let growth: Vec<f64> =
-        eigenvalues.iter().map(|e| e.iter().map(|e| e.re).fold(f64::NEG_INFINITY, f64::max)).collect();
-    let mut ranges = Vec::new();
-    let mut from = speeds.first().copied().filter(|_| growth.first().is_some_and(|&g| g <= 0.0));
-    for k in 1..speeds.len().min(growth.len()) {
-        let (before, now) = (growth[k - 1], growth[k]);
-        let crossing = || speeds[k - 1] + (speeds[k] - speeds[k - 1]) * before / (before - now);
-        match from {
-            None if now <= 0.0 => from = Some(crossing()),
-            Some(start) if now > 0.0 => {
-                ranges.push((start, crossing()));
-                from = None;
-            }
-            _ => {}
-        }
-    }
-    ranges.extend(from.zip(speeds.last().copied()));
-    ranges
+/// Whether any of a mode's real parts lies within `range`.
+pub(super) fn in_sight(mode: &Mode, range: (f64, f64)) -> bool {
+    mode.roots.iter().flatten().flatten().any(|e| range.0 <= e.re && e.re <= range.1)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn real(values: [f64; 4]) -> Four {
-        values.map(|re| Complex::new(re, 0.0))
-    }
-
     #[test]
-    fn a_curve_stays_itself_where_the_order_by_size_changes() {
-        let a = [
-            Complex::new(0.1, 5.0),
-            Complex::new(0.1, -5.0),
-            Complex::new(0.0, 0.0),
-            Complex::new(-9.0, 0.0),
-        ];
-        let b = [
-            Complex::new(0.0, 0.0),
-            Complex::new(-0.1, 5.0),
-            Complex::new(-0.1, -5.0),
-            Complex::new(-9.0, 0.0),
-        ];
-        let curves = curves(&[a, b]);
-        assert_eq!(curves[0][1], Complex::new(-0.1, 5.0));
-        assert_eq!(pieces(&curves[0]), [(true, 0..2)]);
-        assert_eq!(pieces(&curves[2]), [(false, 0..2)]);
-    }
-
-    #[test]
-    fn stable_ranges_end_where_growth_begins() {
-        let values = [1.0, -1.0, -1.0, 3.0].map(|re| real([re, -4.0, -5.0, -6.0]));
-        assert_eq!(stable_ranges(&[0.0, 1.0, 2.0, 3.0], &values), [(0.5, 2.25)]);
-        assert_eq!(stable_ranges(&[0.0], &[real([-1.0; 4])]), [(0.0, 0.0)]);
-        assert_eq!(stable_ranges(&[], &[]), []);
+    fn lines_end_where_a_root_is_lost_and_pairs_begin_at_zero() {
+        let at = |re, im| Some(Complex::new(re, im));
+        let speeds = [0.0, 1.0, 2.0, 3.0, 4.0];
+        let upper = [at(1.0, 0.0), at(2.0, 3.0), at(3.0, 4.0), None, at(5.0, 6.0)];
+        assert_eq!(real(&speeds, &upper), [[(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)]]);
+        assert_eq!(imaginary(&speeds, &upper), [[(0.0, 0.0), (1.0, 3.0), (2.0, 4.0)]]);
+        let lower = upper.map(|e| e.map(|e| e.conj()));
+        assert_eq!(real(&speeds, &lower), [[(0.0, 1.0), (1.0, 2.0)]]);
+        assert!(imaginary(&speeds, &lower).is_empty() && real(&[], &[]).is_empty());
     }
 }

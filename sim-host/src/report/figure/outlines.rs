@@ -1,7 +1,7 @@
 //! The outlines of several basins.
 
 use super::basin::{AREA, BasinFigure, LEGEND_GAP, SPEED, caps, height};
-use super::canvas::{Canvas, Stroke};
+use super::canvas::{Canvas, Dash, Stroke};
 use super::colour::{INK, SERIES};
 use super::legend::{Sign, entry, rows};
 use super::picture::Picture;
@@ -28,8 +28,8 @@ pub(super) fn outlines(figure: &BasinFigure) -> Picture {
     if let Some(range) = figure.self_stable {
         panel.shade_x(&mut canvas, range);
     }
-    for dashed in [false, true] {
-        for (i, (_, basin)) in figure.series.iter().enumerate().filter(|(i, _)| stroke(*i).dashed == dashed) {
+    for dash in [Dash::Solid, Dash::Dashed] {
+        for (i, (_, basin)) in figure.series.iter().enumerate().filter(|(i, _)| stroke(*i).dash == dash) {
             panel.line(&mut canvas, basin.columns.iter().map(|c| (c.speed, c.upper)), stroke(i));
         }
     }

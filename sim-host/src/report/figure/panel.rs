@@ -3,6 +3,7 @@
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{INK, STABLE};
 use super::scale::ticks;
+use super::shape::text_width;
 use kuva::render::render::TextAnchor;
 
 const TICK_TEXT: u32 = 12;
@@ -68,26 +69,40 @@ impl Panel {
 
     /// The frame with ticks, numbers and labels; without an `x_label` also without numbers below.
     pub(super) fn frame(&self, canvas: &mut Canvas, x_label: Option<&str>, y_label: &str) {
+        let Area { width, height, .. } = self.area;
+        let along = [ticks(self.x, (width / 70.0) as usize), ticks(self.y, (height / 50.0) as usize)];
+        self.frame_with(canvas, &along, x_label, y_label);
+    }
+
+    /// The frame with these ticks, where and how named, along x and y.
+    pub(super) fn frame_with(
+        &self,
+        canvas: &mut Canvas,
+        [along_x, along_y]: &[Vec<(f64, String)>; 2],
+        x_label: Option<&str>,
+        y_label: &str,
+    ) {
         let Area { x, y, width, height } = self.area;
         let ink = Stroke::solid(INK, 1.0);
         let corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height), (x, y)];
         canvas.line(&corners, ink);
         let bottom = y + height;
-        for (v, number) in ticks(self.x, (width / 70.0) as usize) {
-            let at = self.x(v);
+        for (v, number) in along_x {
+            let at = self.x(*v);
             canvas.line(&[(at, bottom), (at, bottom + 4.0)], ink);
             if x_label.is_some() {
-                canvas.text((at, bottom + 17.0), TICK_TEXT, TextAnchor::Middle, &number);
+                canvas.text((at, bottom + 17.0), TICK_TEXT, TextAnchor::Middle, number);
             }
         }
-        for (v, number) in ticks(self.y, (height / 50.0) as usize) {
-            let at = self.y(v);
+        for (v, number) in along_y {
+            let at = self.y(*v);
             canvas.line(&[(x - 4.0, at), (x, at)], ink);
-            canvas.text((x - 7.0, at + 4.0), TICK_TEXT, TextAnchor::End, &number);
+            canvas.text((x - 7.0, at + 4.0), TICK_TEXT, TextAnchor::End, number);
         }
         if let Some(label) = x_label {
             canvas.text((x + 0.5 * width, bottom + 36.0), LABEL_TEXT, TextAnchor::Middle, label);
         }
-        canvas.text_upwards((x - LABEL_GAP, y + 0.5 * height), LABEL_TEXT, y_label);
+        let widest = along_y.iter().map(|(_, number)| text_width(number, TICK_TEXT)).fold(0.0, f64::max);
+        canvas.text_upwards((x - LABEL_GAP.max(widest + 16.0), y + 0.5 * height), LABEL_TEXT, y_label);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::basin::{Axis, Basin, Column, Island, ScanPoint, Work};
-use crate::eigen::CriticalSpeeds;
+use crate::eigen::{CriticalSpeeds, Mode};
 use crate::ride::{Outcome, TracePoint};
 use nalgebra::Complex;
 
@@ -109,18 +109,29 @@ fn rides_of_any_length_are_drawn() {
 }
 
 #[test]
-fn eigenvalues_of_any_number_are_drawn() {
-    let pair =
-        [Complex::new(0.5, 3.0), Complex::new(0.5, -3.0), Complex::new(-1.0, 0.0), Complex::new(-99.0, 0.0)];
-    let alone = [1.0, 0.5, -1.0, -99.0].map(|re| Complex::new(re, 0.0));
-    let all = [alone, pair, pair.map(|e| e - 2.0)];
+fn modes_of_any_number_are_drawn() {
+    let at = |re, im| Some(Complex::new(re, im));
+    let mode = |name: &str, roots| Mode { name: name.into(), roots };
+    let all = [
+        mode(
+            "weave",
+            vec![vec![at(1.0, 0.0), at(0.5, 3.0), at(-1.5, 3.0)], vec![at(0.5, 0.0), at(0.5, -3.0), None]],
+        ),
+        mode("capsize", vec![vec![at(-1.0, 0.0); 3]]),
+        mode("rider 1", vec![vec![at(-99.0, 5.0); 3]]),
+    ];
+    let speeds = [0.0, 1.0, 2.0];
     let critical = CriticalSpeeds { v_d: Some(0.5), v_w: Some(0.6), v_c: Some(50.0) };
     for n in 0..=3 {
-        let figure =
-            EigenFigure { title: "", speeds: &[0.0, 1.0, 2.0][..n], eigenvalues: &all[..n], critical };
-        let text = svg(&eigen(&figure));
-        assert!(text.contains("Re λ [1/s]") && text.contains("Im λ [rad/s]"));
-        assert!(!text.contains("50.00"));
-        assert_eq!(n == 3, text.contains("stable straight ride"));
+        let cut = |root: &Vec<_>| root[..n].to_vec();
+        let modes: Vec<Mode> = all.iter().map(|m| mode(&m.name, m.roots.iter().map(cut).collect())).collect();
+        for stable in [&[][..], &[(1.2, 20.0)]] {
+            let figure = EigenFigure { title: "", speeds: &speeds[..n], modes: &modes, stable, critical };
+            let text = svg(&eigen(&figure));
+            assert!(text.contains("Re λ [1/s]") && text.contains("Im λ [rad/s]"));
+            assert!(!text.contains("50.00") && !text.contains("rider 1"));
+            assert_eq!(n > 0, text.contains(">weave<"));
+            assert_eq!((n == 3 || n == 0) && !stable.is_empty(), text.contains("stable straight ride"));
+        }
     }
 }

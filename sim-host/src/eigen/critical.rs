@@ -1,20 +1,14 @@
-//! Eigenvalues of the linearised bicycle over speed, and its critical speeds.
+//! The speeds at which the straight ride changes its nature.
 
+use super::eigenvalues;
 use crate::bicycle::linear::Linear;
 use control::Law;
 use nalgebra::Complex;
 
 /// Speeds above this are not searched for critical speeds \[m/s\].
 pub const SEARCH_TO_M_S: f64 = 20.0;
+/// Step of the search without a rider \[m/s\].
 const SEARCH_STEP_M_S: f64 = 0.01;
-
-/// The four eigenvalues \[1/s\] at speed `v` \[m/s\], largest real part first, a conjugate pair with
-/// its positive imaginary part first.
-pub fn eigenvalues(bicycle: &Linear, law: &Law, v: f64) -> [Complex<f64>; 4] {
-    let mut values: [Complex<f64>; 4] = bicycle.state_matrix(v, law.gain(v)).complex_eigenvalues().into();
-    values.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
-    values
-}
 
 /// The speeds at which the straight ride changes its nature \[m/s\]; `None` where it does not.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -28,25 +22,26 @@ pub struct CriticalSpeeds {
     pub v_c: Option<f64>,
 }
 
-/// The critical speeds up to [`SEARCH_TO_M_S`], each by bisection to rounding.
+/// The critical speeds without a rider up to [`SEARCH_TO_M_S`], each by bisection to rounding.
 pub fn critical_speeds(bicycle: &Linear, law: &Law) -> CriticalSpeeds {
     let at = |v: f64| eigenvalues(bicycle, law, v);
-    let rightmost = |v: f64, complex: bool| {
-        at(v).iter().filter(|e| (e.im != 0.0) == complex).map(|e| e.re).fold(f64::NEG_INFINITY, f64::max)
-    };
     // The steady turn: det(g K0 + v^2 K2) changes sign, whatever the roll-rate feedback.
     let det = |v: f64| (bicycle.k0 * bicycle.g + bicycle.k2 * (v * v)).determinant();
     let growing_pair = |v: f64| at(v).iter().any(|e| e.im != 0.0 && e.re > 0.0);
-    let v_w = upward(&|v| -rightmost(v, true), |v| rightmost(v, true).is_finite());
     CriticalSpeeds {
         v_d: if growing_pair(0.0) {
             None
         } else {
             upward(&|v| if growing_pair(v) { 1.0 } else { -1.0 }, |_| true)
         },
-        v_w,
+        v_w: upward(&|v| -rightmost_pair(&at(v)), |v| rightmost_pair(&at(v)).is_finite()),
         v_c: upward(&|v| -det(v), |_| true),
     }
+}
+
+/// The largest real part of complex values; minus infinity if all are real.
+pub(super) fn rightmost_pair(values: &[Complex<f64>]) -> f64 {
+    values.iter().filter(|e| e.im != 0.0).map(|e| e.re).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The first speed at which `f` goes from negative to not negative, both ends being `valid`.
@@ -57,13 +52,17 @@ fn upward(f: &dyn Fn(f64) -> f64, valid: impl Fn(f64) -> bool) -> Option<f64> {
         let (a, b) = (speed(i - 1), speed(i));
         valid(a) && valid(b) && f(a) < 0.0 && f(b) >= 0.0
     })?;
-    let (mut low, mut high) = (speed(bracket - 1), speed(bracket));
+    Some(bisect((speed(bracket - 1), speed(bracket)), |v| f(v) < 0.0))
+}
+
+/// Where `below` ceases to hold between two speeds, to rounding.
+pub(super) fn bisect((mut low, mut high): (f64, f64), below: impl Fn(f64) -> bool) -> f64 {
     while high - low > 4.0 * f64::EPSILON * high {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
             break;
         }
-        if f(middle) < 0.0 { low = middle } else { high = middle }
+        if below(middle) { low = middle } else { high = middle }
     }
-    Some(0.5 * (low + high))
+    0.5 * (low + high)
 }

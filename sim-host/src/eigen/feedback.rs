@@ -1,0 +1,62 @@
+//! What an assist feeds back at a speed.
+
+use control::Law;
+
+/// A steer torque of `roll * roll + roll_rate * roll rate`, positive into the fall.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StaticFeedback {
+    /// Gain of the roll angle \[N m/rad\].
+    pub roll: f64,
+    /// Gain of the roll rate \[N m s/rad\].
+    pub roll_rate: f64,
+}
+
+/// The intuitive controller (eq. 2.16; Schwab, Kooijman and Meijaard 2008): roll rate below
+/// `v_max`, roll angle above. The published torque acts in the opposite sense of ours, hence its
+/// minus signs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intuitive {
+    /// Roll-rate gain per speed below `v_max` \[N s^2/rad\].
+    pub k_v: f64,
+    /// The speed at which nothing is fed back \[m/s\].
+    pub v_max: f64,
+    /// Roll-angle gain per speed above `v_max` \[N s/rad\].
+    pub k_c: f64,
+}
+
+/// An assist as the linear analysis sees it.
+#[allow(clippy::large_enum_variant, reason = "there is one of them in an analysis")]
+#[derive(Clone, Debug, PartialEq)]
+pub enum Feedback {
+    /// A roll-rate law of the control crate; [`Law::None`] for no assist.
+    Law(Law),
+    /// The intuitive controller.
+    Intuitive(Intuitive),
+}
+
+impl Feedback {
+    /// The gains at forward speed `v` \[m/s\].
+    pub fn at(&self, v: f64) -> StaticFeedback {
+        match self {
+            Self::Law(law) => StaticFeedback { roll: 0.0, roll_rate: law.gain(v) },
+            Self::Intuitive(Intuitive { k_v, v_max, .. }) if v < *v_max => {
+                StaticFeedback { roll: 0.0, roll_rate: k_v * (v_max - v) }
+            }
+            Self::Intuitive(Intuitive { v_max, k_c, .. }) => {
+                StaticFeedback { roll: k_c * (v - v_max), roll_rate: 0.0 }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_intuitive_controller_changes_over_at_its_speed() {
+        let feedback = Feedback::Intuitive(Intuitive { k_v: 10.0, v_max: 4.0, k_c: 3.0 });
+        let gains = |v| (feedback.at(v).roll, feedback.at(v).roll_rate);
+        assert_eq!([1.0, 4.0, 6.0].map(gains), [(0.0, 30.0), (0.0, 0.0), (6.0, 0.0)]);
+    }
+}

@@ -1,0 +1,35 @@
+//! The linear analysis of a bicycle under an assist and a delayed rider: characteristic roots over
+//! speed, the speeds at which stability changes, and the modes. See `docs/eigenvalues.md`.
+
+mod critical;
+mod feedback;
+mod follow;
+mod generator;
+mod modes;
+mod roots;
+mod stability;
+mod system;
+
+pub use critical::{CriticalSpeeds, SEARCH_TO_M_S, critical_speeds};
+pub use feedback::{Feedback, Intuitive, StaticFeedback};
+pub use modes::{Mode, REFERENCE_SPEED_M_S, modes};
+pub use roots::{rightmost, roots};
+pub use stability::{Crossing, Stability, StabilityChange, stability};
+pub use system::{DelaySystem, Model};
+
+use crate::bicycle::linear::Linear;
+use control::Law;
+use nalgebra::Complex;
+
+/// The four eigenvalues \[1/s\] at speed `v` \[m/s\] without a rider, largest real part first, a
+/// conjugate pair with its positive imaginary part first.
+pub fn eigenvalues(bicycle: &Linear, law: &Law, v: f64) -> [Complex<f64>; 4] {
+    let mut values: [Complex<f64>; 4] = bicycle.state_matrix(v, law.gain(v)).complex_eigenvalues().into();
+    sort(&mut values);
+    values
+}
+
+/// Largest real part first, then largest imaginary part.
+fn sort(values: &mut [Complex<f64>]) {
+    values.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
+}

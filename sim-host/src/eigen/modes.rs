@@ -1,0 +1,99 @@
+//! The modes of a model over speed, followed by continuity.
+
+use super::follow::{Followed, Found};
+use super::roots::{roots, same};
+use super::sort;
+use super::system::Model;
+use nalgebra::Complex;
+
+/// Modes get their names at this speed \[m/s\], where those of a bicycle are well apart.
+pub const REFERENCE_SPEED_M_S: f64 = 10.0;
+/// Longest step over speed \[m/s\].
+const SPEED_STEP: f64 = 0.1;
+/// Longest step of the feedback's strength on its way from none to all.
+const STRENGTH_STEP: f64 = 0.05;
+/// Roots computed beyond those followed, so that these are not lost when others overtake them.
+const SPARE: usize = 2;
+
+/// A mode: the two roots of what at the reference speed is a pair, or one real root there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// "weave", "capsize", "caster", or "rider 1", "rider 2" ... for what a rider adds.
+    pub name: String,
+    /// Its roots, each at all speeds \[1/s\]; `None` where it lies left of all roots computed.
+    pub roots: Vec<Vec<Option<Complex<f64>>>>,
+}
+
+/// The modes at `speeds` \[m/s\]: weave, capsize, caster and, with a rider, those that make up the
+/// `count` rightmost roots at the reference speed.
+///
+/// The names are those of the uncontrolled bicycle at [`REFERENCE_SPEED_M_S`]: weave its complex
+/// pair, caster the more negative of the real roots, capsize the other (Meijaard et al. 2007). From
+/// there the roots are followed while all feedback grows from nothing to what it is, then over
+/// speed. Whatever they become on the way, names stay with roots: below `v_d` weave is two real
+/// roots. Where two modes meet, form a pair and part again, each leaves on its side.
+pub fn modes(model: &Model, speeds: &[f64], count: usize) -> Vec<Mode> {
+    let (names, start) = named(model, count);
+    let find = |v: f64| {
+        let system = model.at(v);
+        let all = system.is_ordinary();
+        Found { roots: roots(&system, start.len() + SPARE), all }
+    };
+    let mut curves: Vec<Vec<Option<Complex<f64>>>> = vec![vec![None; speeds.len()]; start.len()];
+    let mut order: Vec<usize> = (0..speeds.len()).collect();
+    order.sort_by(|&i, &j| speeds[i].total_cmp(&speeds[j]));
+    let (below, above): (Vec<usize>, Vec<usize>) =
+        order.into_iter().partition(|&i| speeds[i] <= REFERENCE_SPEED_M_S);
+    for way in [below.into_iter().rev().collect(), above] {
+        let mut followed = Followed::new(REFERENCE_SPEED_M_S, &start);
+        for i in way {
+            followed.go(speeds[i], SPEED_STEP, &find);
+            for (curve, root) in curves.iter_mut().zip(followed.now()) {
+                curve[i] = *root;
+            }
+        }
+    }
+    let mut modes: Vec<Mode> = Vec::new();
+    for (name, curve) in names.into_iter().zip(curves) {
+        match modes.iter_mut().find(|mode| mode.name == name) {
+            Some(mode) => mode.roots.push(curve),
+            None => modes.push(Mode { name, roots: vec![curve] }),
+        }
+    }
+    modes
+}
+
+/// Names and roots at the reference speed.
+fn named(model: &Model, count: usize) -> (Vec<String>, Vec<Complex<f64>>) {
+    let v = REFERENCE_SPEED_M_S;
+    let find = |strength: f64| {
+        let system = model.scaled(v, strength);
+        let all = system.is_ordinary();
+        Found { roots: roots(&system, system.a.nrows() + SPARE), all }
+    };
+    let mut bicycle: Vec<Complex<f64>> =
+        model.linear().state_matrix(v, 0.0).complex_eigenvalues().iter().copied().collect();
+    // Real ones last, the more negative at the end.
+    sort(&mut bicycle);
+    bicycle.sort_by_key(|root| root.im == 0.0);
+    let mut followed = Followed::new(0.0, &bicycle);
+    followed.go(1.0, STRENGTH_STEP, &find);
+    let named = ["weave", "weave", "capsize", "caster"].into_iter().zip(followed.now());
+    let mut found: Vec<(String, Complex<f64>)> =
+        named.filter_map(|(name, root)| Some((name.to_owned(), (*root)?))).collect();
+    let mut number = 0;
+    for root in roots(&model.at(v), count) {
+        if found.iter().any(|(_, known)| same(*known, root)) {
+            continue;
+        }
+        let name = match found.iter().find(|(_, known)| same(*known, root.conj())) {
+            Some((name, _)) => name.clone(),
+            None => {
+                number += 1;
+                format!("rider {number}")
+            }
+        };
+        found.push((name, root));
+    }
+    found.into_iter().unzip()
+}

@@ -1,0 +1,139 @@
+//! The rightmost characteristic roots of a delay system: candidates from its discretised generator,
+//! each then made exact on the characteristic equation itself.
+
+use super::generator::{eigenvalues, generator};
+use super::sort;
+use super::system::DelaySystem;
+use nalgebra::{Complex, DMatrix};
+
+type C = Complex<f64>;
+
+/// Chebyshev points tried in turn, until two in a row give the same roots.
+const NODES: [usize; 7] = [14, 20, 28, 40, 56, 80, 112];
+/// Two sets of roots are the same when they differ by less, relative to a root or absolute \[1/s\].
+const SAME: f64 = 1e-7;
+/// A root whose last correction is larger, relative or absolute \[1/s\], is none. Simple roots end
+/// near 1e-14; of a double one rounding leaves half the digits.
+const CONVERGED: f64 = 1e-5;
+/// A candidate that is led further away, relative or absolute \[1/s\], was none.
+const REACH: f64 = 0.01;
+const ITERATIONS: usize = 40;
+
+/// The `count` rightmost characteristic roots \[1/s\], largest real part first, a conjugate pair with
+/// its positive imaginary part first: one more where the last would be half a pair.
+///
+/// Fewer where there are no more, in an ordinary system, and where those further left are so fast
+/// that 112 points do not resolve them: of those returned each is exact, and none is missing between.
+pub fn roots(system: &DelaySystem, count: usize) -> Vec<C> {
+    if system.is_ordinary() {
+        let mut all = eigenvalues(system.undelayed()).expect("the QR iteration converges");
+        sort(&mut all);
+        return cut(all, count);
+    }
+    let mut before: Vec<C> = Vec::new();
+    let mut settled: Vec<C> = Vec::new();
+    for nodes in NODES {
+        let Some(mut candidates) = eigenvalues(generator(system, nodes)) else { continue };
+        // Points resolve what turns by about a radian from one to the next; the rest is spurious.
+        candidates.retain(|s| s.norm() * system.delay_s <= nodes as f64);
+        let now = exact(system, candidates, count);
+        let agree = now.iter().take_while(|s| before.iter().any(|b| same(*b, **s))).count();
+        if agree >= settled.len() {
+            settled = cut(now[..agree].to_vec(), count);
+        }
+        if settled.len() >= count {
+            break;
+        }
+        before = now;
+    }
+    settled
+}
+
+/// The rightmost root, of a pair that above \[1/s\]: its real part is the growth rate of a small
+/// disturbance.
+///
+/// # Panics
+/// If no root settles. Of 2100 random riders with gains up to 100000 and delays up to 1 s all six
+/// rightmost did.
+pub fn rightmost(system: &DelaySystem) -> C {
+    roots(system, 1)[0]
+}
+
+/// The first `count` of sorted roots, and the other half of a pair that would be cut through.
+fn cut(mut sorted: Vec<C>, count: usize) -> Vec<C> {
+    let halved = count > 0 && sorted.get(count - 1).is_some_and(|last| last.im > 0.0);
+    sorted.truncate(count + usize::from(halved));
+    sorted
+}
+
+fn scale(root: C) -> f64 {
+    root.norm().max(1.0)
+}
+
+/// Whether two computed roots are one.
+pub(super) fn same(a: C, b: C) -> bool {
+    (a - b).norm() < SAME * scale(b)
+}
+
+/// The roots that the rightmost of `candidates` lead to, sorted; a few more than `count` are tried.
+///
+/// Newton's corrections with the others' pull taken out (Ehrlich and Aberth): no two end in one root.
+fn exact(system: &DelaySystem, mut candidates: Vec<C>, count: usize) -> Vec<C> {
+    sort(&mut candidates);
+    // A pair is kept by its upper half.
+    let start: Vec<C> = cut(candidates, count + 4).into_iter().filter(|s| s.im >= 0.0).collect();
+    let mut upper = start.clone();
+    let mut corrections = vec![f64::INFINITY; upper.len()];
+    for _ in 0..ITERATIONS {
+        for i in 0..upper.len() {
+            let s = upper[i];
+            if corrections[i] < 4.0 * f64::EPSILON {
+                continue;
+            }
+            let pull: C = (0..upper.len()).map(|j| pull(s, upper[j], i == j)).sum();
+            let newton = newton_correction(system, s);
+            let mut step = newton / (C::ONE - newton * pull);
+            if s.im == 0.0 {
+                step.im = 0.0;
+            }
+            if !step.norm().is_finite() {
+                continue;
+            }
+            let next = s - step;
+            upper[i] = if next.im < 0.0 { next.conj() } else { next };
+            corrections[i] = step.norm() / scale(s);
+        }
+    }
+    let is_root =
+        |&i: &usize| corrections[i] < CONVERGED && (upper[i] - start[i]).norm() < REACH * scale(start[i]);
+    let found = (0..upper.len()).filter(is_root).map(|i| upper[i]);
+    let mut all: Vec<C> = found.flat_map(|s| [Some(s), (s.im > 0.0).then(|| s.conj())]).flatten().collect();
+    sort(&mut all);
+    all
+}
+
+/// What the root `other` and its conjugate add to the logarithmic derivative at `s`.
+fn pull(s: C, other: C, itself: bool) -> C {
+    let of = |root: C| C::ONE / (s - root);
+    match (itself, other.im != 0.0) {
+        (true, false) => C::ZERO,
+        (true, true) => of(other.conj()),
+        (false, false) => of(other),
+        (false, true) => of(other) + of(other.conj()),
+    }
+}
+
+/// The determinant of the characteristic matrix over its derivative.
+fn newton_correction(system: &DelaySystem, s: C) -> C {
+    let n = system.a.nrows();
+    let late = (-s * system.delay_s).exp() * system.delay_s;
+    let derivative = DMatrix::from_fn(n, n, |i, j| {
+        let diagonal = if i == j { C::ONE } else { C::ZERO };
+        diagonal + late * (system.b[i] * system.k[j])
+    });
+    match system.characteristic(s).lu().solve(&derivative) {
+        Some(ratio) => C::ONE / ratio.trace(),
+        // Exactly singular: a root.
+        None => C::ZERO,
+    }
+}

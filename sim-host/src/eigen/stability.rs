@@ -1,0 +1,126 @@
+//! The ranges of speed in which the straight ride is stable, for any model.
+
+use super::critical::{CriticalSpeeds, SEARCH_TO_M_S, bisect, critical_speeds, rightmost_pair};
+use super::roots::roots;
+use super::system::Model;
+use rayon::prelude::*;
+
+/// Step of the search \[m/s\].
+const STEP_M_S: f64 = 0.02;
+/// Roots looked at: the rightmost pair and the real roots beside it.
+const ROOTS: usize = 6;
+
+/// What crosses the imaginary axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Crossing {
+    /// A complex pair: weave, or another oscillation.
+    Pair,
+    /// A real root: capsize, or another drift.
+    Real,
+}
+
+/// A speed at which small disturbances begin or cease to grow.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+pub struct StabilityChange {
+    /// The speed \[m/s\].
+    pub speed: f64,
+    /// Whether the ride is stable above it.
+    pub stable_above: bool,
+    /// What crosses: "pair" or "real".
+    #[schemars(with = "String", extend("enum" = ["pair", "real"]))]
+    pub crossing: Crossing,
+}
+
+/// Where the straight ride is stable, from rest to [`SEARCH_TO_M_S`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stability {
+    /// The critical speeds.
+    pub critical: CriticalSpeeds,
+    /// Ranges of speed without a growing root \[m/s\].
+    pub ranges: Vec<(f64, f64)>,
+    /// The ends of these ranges, but for those of the search.
+    pub changes: Vec<StabilityChange>,
+}
+
+/// The stability of a model, its changes by bisection to rounding; what is narrower than 0.02 m/s
+/// can be missed.
+///
+/// Under a law without a rider the critical speeds are [`critical_speeds`]'. Else `v_w` and `v_c`
+/// are the first speeds at which the rightmost pair ceases to grow and at which a real root becomes
+/// positive, and `v_d` is not looked for.
+pub fn stability(model: &Model) -> Stability {
+    let steps = (SEARCH_TO_M_S / STEP_M_S).round() as usize;
+    let looks: Vec<Look> =
+        (0..=steps).into_par_iter().map(|i| Look::at(model, i as f64 * STEP_M_S)).collect();
+    let between = |w: &[Look], below: &dyn Fn(&Look) -> bool| {
+        bisect((w[0].speed, w[1].speed), |v| below(&Look::at(model, v)))
+    };
+    let changes: Vec<StabilityChange> = looks
+        .windows(2)
+        .filter(|w| (w[0].growth > 0.0) != (w[1].growth > 0.0))
+        .map(|w| {
+            let stable_above = w[0].growth > 0.0;
+            let speed = between(w, &|look| (look.growth > 0.0) == stable_above);
+            let unstable = if stable_above { &w[0] } else { &w[1] };
+            let crossing = if unstable.pair == unstable.growth { Crossing::Pair } else { Crossing::Real };
+            StabilityChange { speed, stable_above, crossing }
+        })
+        .collect();
+    let critical = match model.law_alone() {
+        Some(law) => critical_speeds(model.linear(), law),
+        None => CriticalSpeeds {
+            v_d: None,
+            v_w: looks
+                .windows(2)
+                .find(|w| w[0].pair > 0.0 && w[1].pair <= 0.0)
+                .map(|w| between(w, &|look| look.pair > 0.0)),
+            v_c: looks
+                .windows(2)
+                .find(|w| w[0].turn > 0.0 && w[1].turn <= 0.0)
+                .map(|w| between(w, &|look| look.turn > 0.0)),
+        },
+    };
+    Stability { critical, ranges: ranges(looks[0].growth <= 0.0, &changes), changes }
+}
+
+fn ranges(stable_at_rest: bool, changes: &[StabilityChange]) -> Vec<(f64, f64)> {
+    let ends = stable_at_rest.then_some(0.0).into_iter().chain(changes.iter().map(|c| c.speed));
+    let ends: Vec<f64> = ends.chain([SEARCH_TO_M_S]).collect();
+    ends.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect()
+}
+
+/// What decides about stability at a speed.
+struct Look {
+    speed: f64,
+    /// Largest real part \[1/s\].
+    growth: f64,
+    /// Largest real part of a complex pair \[1/s\].
+    pair: f64,
+    /// The characteristic determinant at zero: it changes sign where a real root does.
+    turn: f64,
+}
+
+impl Look {
+    fn at(model: &Model, speed: f64) -> Self {
+        let system = model.at(speed);
+        let roots = roots(&system, ROOTS);
+        let turn = (-system.undelayed()).determinant();
+        Self { speed, growth: roots[0].re, pair: rightmost_pair(&roots), turn }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_lie_between_changes() {
+        let change = |speed, stable_above| StabilityChange { speed, stable_above, crossing: Crossing::Pair };
+        assert_eq!(ranges(false, &[]), []);
+        assert_eq!(ranges(true, &[]), [(0.0, 20.0)]);
+        assert_eq!(ranges(false, &[change(2.0, true), change(5.0, false)]), [(2.0, 5.0)]);
+        let thrice = [change(2.0, false), change(5.0, true)];
+        assert_eq!(ranges(true, &thrice), [(0.0, 2.0), (5.0, 20.0)]);
+    }
+}

@@ -1,0 +1,156 @@
+//! Bicycle, assist and rider as one linear system with a delay.
+
+use super::feedback::Feedback;
+use crate::bicycle::{Parameters, linear::Linear};
+use crate::rider::{Gains, Rider};
+use control::Law;
+use nalgebra::{Complex, DMatrix, DVector, RowDVector};
+
+/// `x' = a x + b z(t - delay)`, `z = k x`: in the usual form `A0 = a`, `A1 = b k`. All that is
+/// delayed is one signal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DelaySystem {
+    /// What acts at once.
+    pub a: DMatrix<f64>,
+    /// Where the delayed signal acts.
+    pub b: DVector<f64>,
+    /// What the signal is made of.
+    pub k: RowDVector<f64>,
+    /// The delay \[s\]; 0 gives an ordinary system.
+    pub delay_s: f64,
+}
+
+impl DelaySystem {
+    /// The characteristic matrix `s I - a - b k exp(-s delay)`, singular at a root `s` \[1/s\].
+    pub fn characteristic(&self, s: Complex<f64>) -> DMatrix<Complex<f64>> {
+        let late = (-s * self.delay_s).exp();
+        DMatrix::from_fn(self.a.nrows(), self.a.ncols(), |i, j| {
+            let diagonal = if i == j { s } else { Complex::ZERO };
+            diagonal - self.a[(i, j)] - late * (self.b[i] * self.k[j])
+        })
+    }
+
+    /// The system matrix without the delay.
+    pub fn undelayed(&self) -> DMatrix<f64> {
+        &self.a + &self.b * &self.k
+    }
+
+    /// Whether the delay is without effect.
+    pub(super) fn is_ordinary(&self) -> bool {
+        self.delay_s == 0.0 || self.b.amax() == 0.0 || self.k.amax() == 0.0
+    }
+}
+
+/// A bicycle with an assist and, perhaps, a rider, at any speed.
+///
+/// The states are, in this order: roll, steer, roll rate, steer rate; with a rider, of the integral
+/// of roll, the integral of steer, heading and lateral offset of the front contact those that any
+/// gain needs; the torque of the muscles and its rate.
+#[derive(Clone, Debug)]
+pub struct Model {
+    linear: Linear,
+    /// Wheel base \[m\], trail times the cosine of the steer axis tilt \[m\], that cosine.
+    path: (f64, f64, f64),
+    feedback: Feedback,
+    rider: Option<Rider>,
+    /// Which of integral of roll, integral of steer, heading, lateral offset are states.
+    integrals: [bool; 4],
+}
+
+/// Gains of the [`Model::integrals`] in [`crate::rider::KEYS`].
+const INTEGRAL_KEYS: [usize; 4] = [1, 5, 8, 9];
+
+impl Model {
+    /// The linear model of a bicycle, an assist and a rider.
+    pub fn new(p: &Parameters, feedback: Feedback, rider: Option<Rider>) -> Self {
+        let used = |key: usize| {
+            rider.iter().any(|r| r.schedule.points().iter().any(|(_, gains)| gains.0[key] != 0.0))
+        };
+        let mut integrals = INTEGRAL_KEYS.map(used);
+        // The lateral offset follows from the heading.
+        integrals[2] |= integrals[3];
+        let cos = p.lam.cos();
+        Self { linear: Linear::new(p), path: (p.w, p.c * cos, cos), feedback, rider, integrals }
+    }
+
+    /// The bicycle.
+    pub fn linear(&self) -> &Linear {
+        &self.linear
+    }
+
+    /// The law, if nothing else acts.
+    pub(super) fn law_alone(&self) -> Option<&Law> {
+        match (&self.feedback, &self.rider) {
+            (Feedback::Law(law), None) => Some(law),
+            _ => None,
+        }
+    }
+
+    /// The system at speed `v` \[m/s\].
+    pub fn at(&self, v: f64) -> DelaySystem {
+        self.scaled(v, 1.0)
+    }
+
+    /// The system at speed `v` \[m/s\] with all feedback, assist and rider, times `strength`.
+    pub(super) fn scaled(&self, v: f64, strength: f64) -> DelaySystem {
+        let extra = self.integrals.iter().filter(|used| **used).count();
+        let n = 4 + if self.rider.is_some() { extra + 2 } else { 0 };
+        let assist = self.feedback.at(v);
+        let mut a = DMatrix::zeros(n, n);
+        let mut bicycle = self.linear.state_matrix(v, assist.roll_rate * strength);
+        let of_torque = self.linear.steer_torque_response();
+        for row in 0..2 {
+            bicycle[(2 + row, 0)] += of_torque[row] * assist.roll * strength;
+        }
+        a.view_mut((0, 0), (4, 4)).copy_from(&bicycle);
+        let (mut b, mut k) = (DVector::zeros(n), RowDVector::zeros(n));
+        let Some(rider) = &self.rider else { return DelaySystem { a, b, k, delay_s: 0.0 } };
+
+        let torque = n - 2;
+        a[(2, torque)] = of_torque[0];
+        a[(3, torque)] = of_torque[1];
+        let muscles = rider.muscles;
+        a[(torque, torque + 1)] = 1.0;
+        a[(torque + 1, torque)] = -muscles.omega_rad_s.powi(2);
+        a[(torque + 1, torque + 1)] = -2.0 * muscles.zeta * muscles.omega_rad_s;
+        b[torque + 1] = muscles.omega_rad_s.powi(2);
+        let places = self.add_integrals(&mut a, v);
+
+        let Gains(gains) = rider.schedule.at(v);
+        // Roll and steer, their rates, their accelerations as the bicycle's equations give them.
+        for (key, state) in [(0, 0), (4, 1), (2, 2), (6, 3)] {
+            k[state] += gains[key];
+        }
+        k += a.row(2) * gains[3] + a.row(3) * gains[7];
+        for (key, place) in INTEGRAL_KEYS.into_iter().zip(places) {
+            if let Some(state) = place {
+                k[state] += gains[key];
+            }
+        }
+        k *= strength;
+        DelaySystem { a, b, k, delay_s: rider.delay_s }
+    }
+
+    /// Writes the rows of the integrals in use; returns their places in the state.
+    fn add_integrals(&self, a: &mut DMatrix<f64>, v: f64) -> [Option<usize>; 4] {
+        let (w, trail, cos) = self.path;
+        let mut next = 4..;
+        let places = self.integrals.map(|used| if used { next.next() } else { None });
+        for (state, place) in places[..2].iter().enumerate() {
+            if let Some(row) = place {
+                a[(*row, state)] = 1.0;
+            }
+        }
+        if let Some(heading) = places[2] {
+            a[(heading, 1)] = v * cos / w;
+            a[(heading, 3)] = trail / w;
+            if let Some(lateral) = places[3] {
+                // The rear contact's v psi and what the front contact turns about it: the terms of
+                // the trail cancel.
+                a[(lateral, heading)] = v;
+                a[(lateral, 1)] = v * cos;
+            }
+        }
+        places
+    }
+}

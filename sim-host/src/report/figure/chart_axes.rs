@@ -1,0 +1,59 @@
+//! The axes of a chart: from data to a linear or logarithmic range with ticks.
+
+use super::chart::Axis;
+use super::scale::{nice, ticks};
+
+/// An axis with its range, in decades if it is logarithmic.
+pub(super) struct Fitted {
+    log: bool,
+    pub(super) range: (f64, f64),
+}
+
+impl Fitted {
+    /// The range asked for, or one around `values`, with some `room` or without.
+    pub(super) fn new(axis: &Axis, values: impl Iterator<Item = f64>, room: bool) -> Self {
+        let scaled = |v: f64| if axis.log { v.log10() } else { v };
+        let range = match axis.range {
+            Some((low, high)) => (scaled(low), scaled(high)),
+            None if axis.log => {
+                let of_values = values.filter(|v| *v > 0.0).map(f64::log10);
+                let ends =
+                    of_values.fold((f64::INFINITY, f64::NEG_INFINITY), |r, v| (r.0.min(v), r.1.max(v)));
+                if ends.0 > ends.1 {
+                    (0.0, 1.0)
+                } else {
+                    (ends.0.floor(), ends.1.ceil().max(ends.0.floor() + 1.0))
+                }
+            }
+            None if room => roomy(values.filter(|v| v.is_finite()).collect()),
+            None => nice(values, 6),
+        };
+        Self { log: axis.log, range }
+    }
+
+    /// Where a value lies in the range; none for one that has no place.
+    pub(super) fn place(&self, v: f64) -> Option<f64> {
+        let v = if self.log { v.log10() } else { v };
+        v.is_finite().then_some(v)
+    }
+
+    /// Ticks for an axis of `length` pixels that wants one every `apart`.
+    pub(super) fn ticks(&self, length: f64, apart: f64) -> Vec<(f64, String)> {
+        if !self.log {
+            return ticks(self.range, (length / apart) as usize);
+        }
+        let (from, to) = (self.range.0.ceil() as i32, self.range.1.floor() as i32);
+        let most = (length / apart).max(2.0) as i32;
+        let step = ((to - from) as f64 / f64::from(most)).ceil().max(1.0) as usize;
+        (from..=to).step_by(step).map(|decade| (f64::from(decade), format!("1e{decade}"))).collect()
+    }
+}
+
+/// A range with round ends and some room, so that lines do not lie on the frame; one that begins at
+/// zero stays there.
+fn roomy(values: Vec<f64>) -> (f64, f64) {
+    let (low, high) = nice(values.iter().copied(), 6);
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let room = 0.04 * (high - low);
+    (if least == 0.0 { low } else { low - room }, high + room)
+}

@@ -1,0 +1,196 @@
+//! The values as a document and as a table.
+
+use super::case::Resolution;
+use super::catalogue::Made;
+use super::item::{Explanation, Value};
+use super::run::Outcome;
+use crate::report::resolved::Tool;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// The document `values.json`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ThesisDocument {
+    /// Version of this layout.
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// Whether `--quick` was given.
+    pub quick: bool,
+    /// How finely basins were searched.
+    pub resolution: Resolution,
+    /// False after Ctrl-C.
+    pub complete: bool,
+    /// The items asked for.
+    pub items: Vec<ItemEntry>,
+    /// Every number, in the items' order.
+    pub values: Vec<ValueEntry>,
+    /// Time taken \[s\].
+    pub seconds: f64,
+}
+
+/// An item of the document.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ItemEntry {
+    /// Kind and number.
+    pub name: &'static str,
+    /// What it is.
+    pub title: &'static str,
+    /// "computed", "interrupted" or "unavailable".
+    pub status: &'static str,
+    /// Why it is unavailable.
+    pub reason: Option<&'static str>,
+    /// Names of its figures.
+    pub figures: Vec<String>,
+}
+
+/// A number of the document.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ValueEntry {
+    /// The item.
+    pub item: &'static str,
+    /// Row.
+    pub row: String,
+    /// Column.
+    pub column: String,
+    /// Unit, empty for a pure number.
+    pub unit: String,
+    /// The printed number; null where nothing is printed.
+    pub published: Option<f64>,
+    /// Where it is printed.
+    pub from: String,
+    /// The computed number; null if there is none.
+    pub exact: Option<f64>,
+    /// The same on the thesis's probable grid of disturbances; null where no basin is involved.
+    pub coarse: Option<f64>,
+    /// `exact` from `published`, in % of it.
+    pub difference_percent: Option<f64>,
+    /// "" for a difference up to 2 % or the rounding of the print, and where a printed bound holds;
+    /// "explained: WHAT", or "unexplained", with what comes closest.
+    pub explanation: String,
+    /// Numbers under other readings of the text.
+    pub experiments: Vec<ExperimentEntry>,
+}
+
+/// A number under another reading of the text.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ExperimentEntry {
+    /// What is different.
+    pub name: String,
+    /// The number then.
+    pub value: f64,
+}
+
+impl Explanation {
+    /// In words.
+    pub fn words(&self) -> String {
+        match self {
+            Explanation::NotNeeded => String::new(),
+            Explanation::Explained(by) => format!("explained: {by}"),
+            Explanation::Unexplained(None) => "unexplained".into(),
+            Explanation::Unexplained(Some((name, part))) => {
+                format!("unexplained; {part:.0} % of it by: {name}")
+            }
+        }
+    }
+}
+
+impl ValueEntry {
+    fn new(item: &'static str, value: &Value) -> Self {
+        let cell = &value.cell;
+        let finite = |x: Option<f64>| x.filter(|x| x.is_finite());
+        let experiments = value.experiments.iter().filter(|e| e.value.is_finite());
+        Self {
+            item,
+            row: cell.row.clone(),
+            column: cell.column.clone(),
+            unit: cell.unit.clone(),
+            published: cell.printed.map(|p| p.value),
+            from: cell.from.clone(),
+            exact: finite(value.exact),
+            coarse: finite(value.coarse),
+            difference_percent: finite(value.difference()),
+            explanation: value.explanation().words(),
+            experiments: experiments
+                .map(|e| ExperimentEntry { name: e.name.clone(), value: e.value })
+                .collect(),
+        }
+    }
+}
+
+impl ThesisDocument {
+    /// The document of a run.
+    pub fn new(outcomes: &[Outcome], quick: bool, resolution: Resolution, seconds: f64) -> Self {
+        let items: Vec<ItemEntry> = outcomes.iter().map(item).collect();
+        let values = outcomes.iter().filter_map(|o| o.item.as_ref().map(|item| (o.entry.name, item)));
+        let values =
+            values.flat_map(|(name, item)| item.values.iter().map(move |v| ValueEntry::new(name, v)));
+        Self {
+            schema: 1,
+            tool: Tool::this(),
+            quick,
+            resolution,
+            complete: items.iter().all(|i| i.status != INTERRUPTED),
+            values: values.collect(),
+            items,
+            seconds,
+        }
+    }
+
+    /// The values as a CSV table.
+    ///
+    /// # Errors
+    /// When a row can't be written.
+    pub fn csv(&self) -> Result<String, csv::Error> {
+        let rows: Vec<CsvRow> = self.values.iter().map(CsvRow::new).collect();
+        crate::report::table::csv_text(&rows)
+    }
+}
+
+const INTERRUPTED: &str = "interrupted";
+
+fn item(outcome: &Outcome) -> ItemEntry {
+    let entry = outcome.entry;
+    let (status, reason) = match (&outcome.item, &entry.made) {
+        (Some(_), _) => ("computed", None),
+        (None, Made::Unavailable(reason)) => ("unavailable", Some(*reason)),
+        (None, Made::Computed { .. }) => (INTERRUPTED, None),
+    };
+    let figures = outcome.item.iter().flat_map(|item| &item.figures).map(|f| f.name.clone()).collect();
+    ItemEntry { name: entry.name, title: entry.title, status, reason, figures }
+}
+
+/// A line of `values.csv`.
+#[derive(Serialize)]
+struct CsvRow<'a> {
+    item: &'a str,
+    row: &'a str,
+    column: &'a str,
+    unit: &'a str,
+    published: Option<f64>,
+    from: &'a str,
+    exact: Option<f64>,
+    coarse: Option<f64>,
+    difference_percent: Option<f64>,
+    explanation: &'a str,
+    experiments: String,
+}
+
+impl<'a> CsvRow<'a> {
+    fn new(value: &'a ValueEntry) -> Self {
+        let experiments = value.experiments.iter().map(|e| format!("{} = {}", e.name, e.value));
+        Self {
+            item: value.item,
+            row: &value.row,
+            column: &value.column,
+            unit: &value.unit,
+            published: value.published,
+            from: &value.from,
+            exact: value.exact,
+            coarse: value.coarse,
+            difference_percent: value.difference_percent,
+            explanation: &value.explanation,
+            experiments: experiments.collect::<Vec<_>>().join("; "),
+        }
+    }
+}

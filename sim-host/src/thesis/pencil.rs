@@ -1,0 +1,62 @@
+//! Eigenvalues from a response: the matrix pencil (Hua and Sarkar 1990) of several signals that
+//! share their modes.
+
+use nalgebra::{Complex, DMatrix};
+
+/// The `order` eigenvalues \[1/s\] behind equally long `signals`, sampled every `dt` seconds; largest
+/// real part first. `None` when there are too few samples or a mode can't be told from the others.
+pub fn eigenvalues(signals: &[Vec<f64>], dt: f64, order: usize) -> Option<Vec<Complex<f64>>> {
+    let n = signals.first()?.len();
+    let rows = n / 2;
+    let columns = n.checked_sub(rows)?;
+    if rows * signals.len() < order || columns < order {
+        return None;
+    }
+    // Each signal to size one, so that none counts more than another.
+    let scaled: Vec<Vec<f64>> = signals
+        .iter()
+        .map(|s| {
+            let size = s.iter().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
+            s.iter().map(|x| x / size).collect()
+        })
+        .collect();
+    let hankel = |shift: usize| {
+        DMatrix::from_fn(rows * scaled.len(), columns - 1, |i, k| scaled[i / rows][i % rows + k + shift])
+    };
+    let svd = hankel(0).svd(true, true);
+    let mut by_size: Vec<usize> = (0..svd.singular_values.len()).collect();
+    by_size.sort_by(|&a, &b| svd.singular_values[b].total_cmp(&svd.singular_values[a]));
+    let (u, v_t, kept) = (svd.u.as_ref()?, svd.v_t.as_ref()?, by_size.get(..order)?);
+    let (u, v_t) = (u.select_columns(kept), v_t.select_rows(kept));
+    let mut pencil = u.transpose() * hankel(1) * v_t.transpose();
+    for (column, &k) in kept.iter().enumerate() {
+        let size = svd.singular_values[k];
+        if size <= 0.0 {
+            return None;
+        }
+        pencil.column_mut(column).scale_mut(1.0 / size);
+    }
+    let mut found: Vec<_> = pencil.complex_eigenvalues().iter().map(|z| z.ln() / dt).collect();
+    found.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
+    found.iter().all(|e| e.re.is_finite() && e.im.is_finite()).then_some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn modes_that_were_put_in_come_out() {
+        let t = |k: usize| 0.02 * k as f64;
+        let pair = |k: usize| (0.4 * t(k)).exp() * (3.0 * t(k)).cos();
+        let fast = |k: usize| (-14.0 * t(k)).exp();
+        let a: Vec<f64> = (0..75).map(|k| pair(k) + 0.5 * fast(k)).collect();
+        let b: Vec<f64> = (0..75).map(|k| pair(k) - 2.0 * fast(k)).collect();
+        let found = eigenvalues(&[a, b], 0.02, 3).unwrap();
+        for (e, (re, im)) in found.iter().zip([(0.4, 3.0), (0.4, -3.0), (-14.0, 0.0)]) {
+            assert!((e - Complex::new(re, im)).norm() < 1e-8, "{found:?}");
+        }
+        assert_eq!(eigenvalues(&[vec![1.0, 2.0]], 0.02, 3), None);
+        assert_eq!(eigenvalues(&[], 0.02, 1), None);
+    }
+}

@@ -1,0 +1,66 @@
+//! Computes the items asked for.
+
+use super::case::Case;
+use super::catalogue::{Entry, Made};
+use super::item::Item;
+use super::study::Study;
+use rayon::prelude::*;
+
+/// How far the work has come, and whether to go on.
+pub struct Progress<'a> {
+    /// Called with every piece of work done, in columns of a basin.
+    pub advanced: &'a (dyn Fn(u64) + Sync),
+    /// Asked before every column and every item.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// An item asked for and what became of it.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The item.
+    pub entry: &'static Entry,
+    /// Its content; `None` if it is unavailable or was interrupted.
+    pub item: Option<Item>,
+}
+
+/// The basins an item needs.
+fn cases(entry: &Entry) -> Vec<Case> {
+    match entry.made {
+        Made::Computed { cases, .. } => cases(),
+        Made::Unavailable(_) => Vec::new(),
+    }
+}
+
+/// How much work `entries` are, in columns of a basin.
+pub fn work(study: &Study, entries: &[&Entry]) -> u64 {
+    let mut all: Vec<Case> = Vec::new();
+    for case in entries.iter().flat_map(|e| cases(e)) {
+        if !all.contains(&case) {
+            all.push(case);
+        }
+    }
+    let own = |e: &&Entry| match e.made {
+        Made::Computed { work, .. } => work,
+        Made::Unavailable(_) => 0,
+    };
+    study.columns(&all) as u64 + entries.iter().map(own).sum::<u64>()
+}
+
+/// Computes `entries`, those without basins first and side by side, the others one after the other,
+/// each with its basins on all cores: an interruption leaves whole items.
+pub fn run(study: &Study, entries: &[&'static Entry], progress: &Progress) -> Vec<Outcome> {
+    let compute = |entry: &'static Entry| {
+        let Made::Computed { compute, work, .. } = entry.made else { return Outcome { entry, item: None } };
+        let needed = cases(entry);
+        study.prepare(&needed, || (progress.advanced)(1), progress.stop);
+        let ready = !(progress.stop)() && needed.iter().all(|case| study.has(case));
+        let item = ready.then(|| compute(study));
+        (progress.advanced)(work);
+        Outcome { entry, item }
+    };
+    let (without, with): (Vec<_>, Vec<_>) = entries.iter().partition(|e| cases(e).is_empty());
+    let mut done: Vec<Outcome> = without.into_par_iter().map(compute).collect();
+    done.extend(with.into_iter().map(compute));
+    done.sort_by_key(|o| entries.iter().position(|e| e.name == o.entry.name));
+    done
+}

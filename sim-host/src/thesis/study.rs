@@ -1,0 +1,116 @@
+//! What all items share: the bicycle, the resolution, and basins computed once.
+
+use super::case::{Assisted, Case, Resolution};
+use crate::basin::{Basin, Column};
+use crate::bicycle::linear::Linear;
+use crate::bicycle::{Geometry, Parameters, catalogue};
+use crate::eigen::{CriticalSpeeds, critical_speeds};
+use rayon::prelude::*;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The bicycle of the thesis.
+const BICYCLE: &str = "rigid_jason";
+
+/// The shared ground of all items.
+#[derive(Debug)]
+pub struct Study {
+    /// The bicycle's parameters.
+    pub parameters: Parameters,
+    /// For the nonlinear equations.
+    pub bicycle: Geometry,
+    /// Linearised.
+    pub linear: Linear,
+    /// Critical speeds of the uncontrolled bicycle.
+    pub critical: CriticalSpeeds,
+    /// How finely basins are searched.
+    pub resolution: Resolution,
+    /// Whether to be quick rather than exact.
+    pub quick: bool,
+    basins: Mutex<Vec<(Case, Arc<Basin>)>>,
+}
+
+impl Study {
+    /// The study of the shipped thesis bicycle.
+    ///
+    /// # Errors
+    /// When the shipped bicycles can't be read.
+    pub fn new(quick: bool) -> Result<Self, catalogue::BicycleError> {
+        let parameters = catalogue::load(BICYCLE)?.parameters;
+        let linear = Linear::new(&parameters);
+        Ok(Self {
+            parameters,
+            bicycle: Geometry::new(&parameters),
+            linear,
+            critical: critical_speeds(&linear, &Assisted::Alone.law()),
+            resolution: if quick { Resolution::QUICK } else { Resolution::FULL },
+            quick,
+            basins: Mutex::default(),
+        })
+    }
+
+    /// The range in which the uncontrolled bicycle balances itself \[m/s\].
+    pub fn self_stable(&self) -> Option<(f64, f64)> {
+        self.critical.v_w.zip(self.critical.v_c)
+    }
+
+    /// The basin of a case: from the store, or computed now.
+    pub fn basin(&self, case: &Case) -> Arc<Basin> {
+        if let Some(found) = self.stored(case) {
+            return found;
+        }
+        let speeds = case.search(&self.resolution).speeds;
+        let columns = speeds.par_iter().map(|&v| case.column(&self.bicycle, &self.resolution, v)).collect();
+        self.store(*case, Basin { columns })
+    }
+
+    /// Whether the basin of a case is there already.
+    pub fn has(&self, case: &Case) -> bool {
+        self.stored(case).is_some()
+    }
+
+    /// Computes the basins of `cases`, column by column so that all cores are busy to the end;
+    /// `finished` is called for each column, `stop` asked before each. Basins that were stopped are
+    /// not kept.
+    pub fn prepare(&self, cases: &[Case], finished: impl Fn() + Sync, stop: impl Fn() -> bool + Sync) {
+        let missing: Vec<&Case> = cases.iter().filter(|c| !self.has(c)).collect();
+        let speeds: Vec<Vec<f64>> = missing.iter().map(|c| c.search(&self.resolution).speeds).collect();
+        let jobs = speeds.iter().enumerate().flat_map(|(i, s)| (0..s.len()).map(move |k| (i, k)));
+        // A bridge hands the jobs out in order and one by one.
+        let mut done: Vec<(usize, usize, Column)> = jobs
+            .par_bridge()
+            .filter_map(|(i, k)| {
+                let one = || missing[i].column(&self.bicycle, &self.resolution, speeds[i][k]);
+                let column = (!stop()).then(one)?;
+                finished();
+                Some((i, k, column))
+            })
+            .collect();
+        done.sort_by_key(|(i, k, _)| (*i, *k));
+        let mut done = done.into_iter().peekable();
+        for (i, case) in missing.into_iter().enumerate() {
+            let mut columns = Vec::new();
+            while let Some((_, _, column)) = done.next_if(|(of, _, _)| *of == i) {
+                columns.push(column);
+            }
+            if columns.len() == speeds[i].len() {
+                self.store(*case, Basin { columns });
+            }
+        }
+    }
+
+    /// How many columns [`Self::prepare`] has to compute.
+    pub fn columns(&self, cases: &[Case]) -> usize {
+        cases.iter().filter(|c| !self.has(c)).map(|c| c.search(&self.resolution).speeds.len()).sum()
+    }
+
+    fn stored(&self, case: &Case) -> Option<Arc<Basin>> {
+        let basins = self.basins.lock().unwrap_or_else(PoisonError::into_inner);
+        basins.iter().find(|(c, _)| c == case).map(|(_, b)| b.clone())
+    }
+
+    fn store(&self, case: Case, basin: Basin) -> Arc<Basin> {
+        let basin = Arc::new(basin);
+        self.basins.lock().unwrap_or_else(PoisonError::into_inner).push((case, basin.clone()));
+        basin
+    }
+}

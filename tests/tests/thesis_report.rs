@@ -1,0 +1,147 @@
+//! `sim-host thesis`: what it writes, for whom it can be read, and what it refuses.
+
+use serde_json::Value;
+use sim_host::thesis::catalogue::CATALOGUE;
+use sim_host::thesis::published::{cells, published};
+use tests::cli::{Bench, repository};
+use tests::json_schema::violations;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+/// Items of every kind: eigenvalues, rides, a basin, one that can't be computed.
+const SOME: &str = "2.2,section-3.4,figure-3.7,figure-3.11,figure-3.14,C.3,figure-I.2";
+const SOME_NAMES: [&str; 7] =
+    ["figure-2.2", "section-3.4", "figure-3.7", "figure-3.11", "figure-3.14", "figure-C.3", "figure-I.2"];
+
+fn report() -> (Bench, Value) {
+    let bench = Bench::new(PROGRAM);
+    let run = bench.run(&format!("thesis --quick --only {SOME} --out look"));
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(run.stdout.contains("look/report.html"), "{}", run.stdout);
+    let document = serde_json::from_str(&bench.read("look/values.json")).unwrap();
+    (bench, document)
+}
+
+/// Situation: a report of a few items.
+/// Action: read the page.
+/// Must hold: every item and its figures are on it; nothing on it comes from elsewhere; no two parts
+/// of it have the same name.
+#[test]
+fn the_page_stands_alone_and_is_complete() {
+    let (bench, _) = report();
+    let page = bench.read("look/report.html");
+    for name in SOME_NAMES {
+        assert!(page.contains(&format!("<section id=\"{name}\">")), "{name}");
+        assert!(page.contains(&format!("href=\"#{name}\"")), "{name}");
+    }
+    assert_eq!(page.matches("<figure>").count(), 6);
+    assert!(page.contains("not published"), "why Figure I.2 is missing");
+    for elsewhere in ["src=", "<script", "@import", "<link", "url(http", "href=\"http", "href=\"/", "href='"]
+    {
+        assert!(!page.contains(elsewhere), "{elsewhere}");
+    }
+    let mut ids: Vec<&str> = page.split(" id=\"").skip(1).filter_map(|s| s.split('"').next()).collect();
+    let all = ids.len();
+    ids.sort_unstable();
+    ids.dedup();
+    assert_eq!(ids.len(), all);
+    for used in page.split("url(#").skip(1).filter_map(|s| s.split(')').next()) {
+        assert!(ids.binary_search(&used).is_ok(), "{used}");
+    }
+}
+
+/// Situation: the same.
+/// Action: read the values, and every figure's files.
+/// Must hold: the published numbers are those of data/thesis.toml, in JSON and CSV; every item asked
+/// for is there with its state; figures are whole; those of the weave speeds that are printed but for
+/// CL2 with K = 4 are met, and that one is not.
+#[test]
+fn the_values_are_those_of_the_file() {
+    let (bench, document) = report();
+    assert_eq!(
+        (&document["schema"], &document["complete"], &document["quick"]),
+        (&1.into(), &true.into(), &true.into())
+    );
+    let schema = std::fs::read_to_string(repository("docs/schema/thesis.json")).unwrap();
+    assert_eq!(violations(&serde_json::from_str(&schema).unwrap(), &document), [""; 0]);
+    let items = document["items"].as_array().unwrap();
+    let names: Vec<&str> = items.iter().map(|i| i["name"].as_str().unwrap()).collect();
+    assert_eq!(names, SOME_NAMES);
+    assert_eq!(items[6]["status"], "unavailable");
+    for figure in items.iter().flat_map(|i| i["figures"].as_array().unwrap()) {
+        let figure = figure.as_str().unwrap();
+        assert!(bench.read(&format!("look/figures/{figure}.svg")).starts_with("<svg"), "{figure}");
+        assert!(bench.read(&format!("look/figures/{figure}.csv")).lines().count() > 2, "{figure}");
+    }
+    let values = document["values"].as_array().unwrap();
+    let wanted: Vec<_> = SOME_NAMES.iter().flat_map(|name| cells(name)).collect();
+    assert_eq!(values.len(), wanted.len());
+    let csv = bench.read("look/values.csv");
+    assert_eq!(csv.lines().count(), wanted.len() + 1);
+    for (value, cell) in values.iter().zip(&wanted) {
+        assert_eq!(value["published"].as_f64(), cell.printed.map(|p| p.value), "{cell:?}");
+        assert_eq!(value["row"], cell.row.as_str());
+        assert_eq!(value["from"], cell.from.as_str());
+    }
+    let weave = values.iter().filter(|v| v["item"] == "section-3.4" && v["published"].is_number());
+    for value in weave {
+        let met = value["explanation"] == "";
+        assert_eq!(met, value["row"] != "CL2, K = 4", "{value}");
+    }
+}
+
+/// Situation: the same report, by one thread and by two.
+/// Action: compare the values.
+/// Must hold: they are the same to the last bit.
+#[test]
+fn threads_change_nothing() {
+    let bench = Bench::new(PROGRAM);
+    for threads in [1, 2] {
+        let run =
+            bench.run(&format!("thesis --quick -q --only 3.7,3.14,C.2 --out t{threads} --threads {threads}"));
+        assert_eq!((run.code, run.stdout.as_str()), (Some(0), ""), "{}", run.stderr);
+    }
+    for file in ["values.csv", "figures/figure-3.7.csv", "figures/figure-C.2.csv", "figures/figure-3.14.svg"]
+    {
+        assert!(bench.read(&format!("t1/{file}")) == bench.read(&format!("t2/{file}")), "{file}");
+    }
+}
+
+/// Situation: every item.
+/// Action: list them.
+/// Must hold: each has a line; those that can't be computed say why; nothing is written.
+#[test]
+fn the_list_names_every_item() {
+    let bench = Bench::new(PROGRAM);
+    let run = bench.run("thesis --list");
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    for entry in CATALOGUE {
+        assert!(run.stdout.lines().any(|l| l.starts_with(&format!("{} ", entry.name))), "{}", entry.name);
+    }
+    assert!(run.stdout.contains("not computed: needs the measured roll rates"));
+    assert!(bench.files().is_empty());
+}
+
+/// Situation: an item that is none, a folder that can't be.
+/// Action: ask for them.
+/// Must hold: one clear error each, before any work; the first names the items.
+#[test]
+fn bad_items_and_folders_are_refused() {
+    let bench = Bench::new(PROGRAM);
+    bench.run("thesis --only 3.99").refused_naming(&["`3.99`", "figure-2.2", "figure-C.3", "section-3.4"]);
+    bench.run("thesis --only 2.2,,3.6").refused_naming(&["``"]);
+    bench.write("file", "");
+    bench.run("thesis --only 2.2 --out file").refused_naming(&["file"]);
+    assert_eq!(bench.files(), ["file"]);
+}
+
+/// Situation: data/thesis.toml.
+/// Action: look for every item that numbers are printed for.
+/// Must hold: the catalogue knows it.
+#[test]
+fn every_published_number_has_an_item() {
+    let tables = published().table.iter().map(|t| &t.item);
+    for item in tables.chain(published().quoted.iter().map(|q| &q.item)) {
+        assert!(CATALOGUE.iter().any(|e| e.name == item), "{item}");
+    }
+    assert_eq!(published().height.iter().map(|h| h.rows.len()).sum::<usize>(), 52);
+}
