@@ -6,6 +6,7 @@ use sim_host::basin::{Axis, Search, basin};
 use sim_host::bicycle::{Geometry, Motion, State, Torques, catalogue, pitch_from_upright};
 use sim_host::integrate::rk4;
 use sim_host::ride::{Assist, Conditions, Start, rides};
+use sim_host::rider::{self, Fit, Outside};
 
 fn main() {
     divan::main();
@@ -18,6 +19,13 @@ fn thesis_bicycle() -> Geometry {
 fn flashed() -> Conditions {
     let plan = Config::thesis(Law::H { cut: false }).plan().expect("in range");
     Conditions::thesis(thesis_bicycle(), Assist::Firmware(Box::new(plan)))
+}
+
+/// The young rider, 30 ms late, by linear regression, without assist.
+fn ridden() -> Conditions {
+    let young = rider::catalogue::load("young").expect("it ships");
+    let young = young.rider(Fit::Regression, Outside::Extrapolate, None).expect("in range");
+    Conditions { rider: Some(young), ..Conditions::thesis(thesis_bicycle(), Assist::None) }
 }
 
 /// States all over a ride, so that nothing can be computed once for all.
@@ -66,12 +74,21 @@ fn runge_kutta_step_scalar_x1000(bencher: Bencher) {
     });
 }
 
+fn eight_rides(bencher: Bencher, conditions: &Conditions) {
+    let starts: Vec<Start> = (1..=8).map(|i| Axis::SteerRate.start(5.0, f64::from(i))).collect();
+    bencher.bench_local(|| rides(conditions, black_box(&starts)));
+}
+
 /// Eight rides of 6 s abreast under the control crate: 8 x 24000 right-hand sides.
 #[divan::bench]
 fn eight_rides_of_6_s(bencher: Bencher) {
-    let conditions = flashed();
-    let starts: Vec<Start> = (1..=8).map(|i| Axis::SteerRate.start(5.0, f64::from(i))).collect();
-    bencher.bench_local(|| rides(&conditions, black_box(&starts)));
+    eight_rides(bencher, &flashed());
+}
+
+/// The same with a delayed rider in place of the assist; the ride at 5 m/s keeps upright up to 8 rad/s.
+#[divan::bench]
+fn eight_rides_of_6_s_with_a_rider(bencher: Bencher) {
+    eight_rides(bencher, &ridden());
 }
 
 /// A thousand control steps of the flashed law on the host.
@@ -89,16 +106,26 @@ fn control_step_x1000(bencher: Bencher) {
     });
 }
 
-/// The whole basin: 0 to 10 m/s by 0.1, up to 30 rad/s, within 0.01 rad/s, all cores.
-#[divan::bench(sample_count = 3, sample_size = 1)]
-fn basin_of_h(bencher: Bencher) {
-    let conditions = flashed();
+/// The basin at tenths of m/s, up to 30 rad/s, within 0.01 rad/s, all cores.
+fn whole_basin(bencher: Bencher, conditions: &Conditions, tenths: std::ops::RangeInclusive<u8>) {
     let search = Search {
-        speeds: (0..=100).map(|i| f64::from(i) / 10.0).collect(),
+        speeds: tenths.map(|i| f64::from(i) / 10.0).collect(),
         axis: Axis::SteerRate,
         max_rate: 30.0,
         scan_step: 0.25,
         tolerance: 0.01,
     };
-    bencher.bench_local(|| basin(&conditions, &search, |_| (), || false));
+    bencher.bench_local(|| basin(conditions, &search, |_| (), || false));
+}
+
+/// 0 to 10 m/s under law h as flashed.
+#[divan::bench(sample_count = 3, sample_size = 1)]
+fn basin_of_h(bencher: Bencher) {
+    whole_basin(bencher, &flashed(), 0..=100);
+}
+
+/// 2 to 7.5 m/s with a delayed rider and no assist.
+#[divan::bench(sample_count = 3, sample_size = 1)]
+fn basin_of_the_young_rider(bencher: Bencher) {
+    whole_basin(bencher, &ridden(), 20..=75);
 }

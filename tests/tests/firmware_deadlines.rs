@@ -45,7 +45,7 @@ fn five_busy_seconds_miss_no_deadline() {
     }
     let outcome = fly("deadlines", &["seconds=5"]);
     assert_eq!(result(&outcome), (5000, 0));
-    let worst_us = field(last_line(&outcome), "worst_us").unwrap();
+    let worst_us: u32 = field(last_line(&outcome), "worst_us").unwrap();
     assert!(worst_us < 100, "a step ended {worst_us} us after its release");
     assert_eq!(outcome.status, Some(0));
 }

@@ -2,6 +2,7 @@
 
 use crate::{Result, qemu, rides};
 use control::{Config, SensorFrame};
+use std::str::FromStr;
 use std::time::Duration;
 
 /// The most instructions a step may take: 600 of the 168,000 clock cycles of a period.
@@ -46,7 +47,7 @@ pub fn counts() -> Result<Vec<Count>> {
     }
 }
 
-/// The number in `name=number` of an image's line.
-pub fn field(line: &str, name: &str) -> Option<u32> {
+/// The number in `name=number` of a program's line.
+pub fn field<T: FromStr>(line: &str, name: &str) -> Option<T> {
     line.split_whitespace().find_map(|word| word.strip_prefix(name)?.strip_prefix('=')?.parse().ok())
 }

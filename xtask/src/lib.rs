@@ -1,6 +1,7 @@
 //! Builds the firmware images, runs them in QEMU, measures them. The `xtask` binary and the tests
 //! that drive QEMU both stand on this.
 
+pub mod bench;
 pub mod document;
 pub mod image;
 pub mod instructions;

@@ -2,6 +2,7 @@
 
 use std::process::{Command, ExitCode};
 use std::time::Duration;
+use xtask::bench::bench;
 use xtask::document::{self, instruction_table, size_table};
 use xtask::setup::{TargetSource, setup};
 use xtask::{Result, image, process, qemu};
@@ -15,6 +16,7 @@ cargo xtask <command> [--help]
   qemu IMAGE    run an image in QEMU
   size          what the images take of flash and RAM, against their budgets
   instructions  instructions of a control step, against the budget
+  bench         a delayed rider's ride and basin, timed beside Python programs of the same ride
 ";
 
 const SETUP_HELP: &str = "\
@@ -62,6 +64,15 @@ Counts the instructions of every control step over the border ride for each law 
 prints them and writes docs/images.md anew. Fails when a step takes more than 600.
 ";
 
+const BENCH_HELP: &str = "\
+cargo xtask bench
+
+Times a ride of 6 s with a rider 30 ms late, in sim-host and in Python with numba and with scipy, and
+the rider's basin in sim-host, one after the other; prints one table. Fails when the rides end apart
+by more than 1e-6, or when the Python programs can't be had; the rest is printed nevertheless. Python
+3.11 or later makes a virtual environment in target/bench-python; the packages come from PyPI.
+";
+
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -83,6 +94,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         "qemu" => QEMU_HELP,
         "size" => SIZE_HELP,
         "instructions" => INSTRUCTIONS_HELP,
+        "bench" => BENCH_HELP,
         "--help" | "-h" | "help" => HELP,
         other => return Err(format!("no command {other:?}\n\n{HELP}")),
     };
@@ -95,6 +107,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         ("test", _) => test(rest)?,
         ("firmware", []) => build_all()?,
         ("qemu", [image, arguments @ ..]) => return run(image, arguments),
+        ("bench", []) => bench()?,
         ("size" | "instructions", []) => measure(command)?,
         _ => return Err(format!("wrong arguments\n\n{help}")),
     }

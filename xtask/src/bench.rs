@@ -1,0 +1,131 @@
+//! A delayed rider's ride and basin in sim-host, beside Python programs of the same ride.
+
+use crate::image::root;
+use crate::instructions::field;
+use crate::process::{capture, must};
+use crate::{Result, process};
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::process::Command;
+use std::time::Duration;
+
+/// The rides' ends may differ by this in each entry: roll, steer \[rad\], their rates, rear wheel rate
+/// \[rad/s\].
+const AGREED: f64 = 1e-6;
+
+const LIMIT: Duration = Duration::from_secs(1200);
+
+/// What a program measured.
+#[derive(Clone, Debug)]
+struct Timing {
+    name: String,
+    /// Median and least of several runs \[s\].
+    median_s: f64,
+    least_s: f64,
+    rides: f64,
+    right_hand_sides: f64,
+    /// Final state of the ride; of the basin nothing.
+    end: Vec<f64>,
+}
+
+/// Measures and prints the table.
+///
+/// # Errors
+/// The Python programs or their packages can't be had (then the rest is printed nevertheless), or
+/// the rides end apart.
+pub fn bench() -> Result<()> {
+    // Nothing is built or fetched while a clock runs.
+    let python = environment();
+    must(cargo().arg("--no-run"), LIMIT)?;
+    let reference = python.and_then(|python| {
+        let mut ride = Command::new(python);
+        timings(ride.arg(reference("ride.py")))
+    });
+    let ours = timings(&mut cargo())?;
+    let all: Vec<Timing> = reference.iter().flatten().cloned().chain(ours).collect();
+    print!("{}", table(&all));
+    let apart = apart(&all);
+    println!("\nthe rides end within {apart:.1e} of each other (rad, rad/s)");
+    match reference {
+        Err(why) => Err(format!("without the Python programs: {why}")),
+        Ok(_) if apart < AGREED => Ok(()),
+        Ok(_) => Err(format!("that is more than {AGREED:e}")),
+    }
+}
+
+fn cargo() -> Command {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    cargo.current_dir(root()).args(["bench", "--quiet", "--package", "sim-host", "--bench", "riders"]);
+    cargo
+}
+
+fn reference(file: &str) -> PathBuf {
+    root().join("sim-host/benches/reference").join(file)
+}
+
+/// A Python with the packages of `requirements.txt`; made at the first call.
+fn environment() -> Result<PathBuf> {
+    let place = root().join("target/bench-python");
+    let python = place.join("bin/python");
+    let mut make = Command::new("python3");
+    must(make.args(["-m", "venv"]).arg(&place), LIMIT).map_err(|e| {
+        format!("{e}\nneeded: Python 3.11 or later with venv (Debian: apt-get install python3-venv)")
+    })?;
+    let mut pip = Command::new(&python);
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"]);
+    must(pip.arg(reference("requirements.txt")), LIMIT)
+        .map_err(|e| format!("{e}\nneeded: the packages of sim-host/benches/reference/requirements.txt"))?;
+    Ok(python)
+}
+
+/// Runs a program that prints timings.
+fn timings(program: &mut Command) -> Result<Vec<Timing>> {
+    let process::Outcome { status, stdout, stderr } = capture(program, LIMIT)?;
+    let read: Vec<Timing> = stdout.lines().filter_map(timing).collect();
+    if status == Some(0) && !read.is_empty() {
+        Ok(read)
+    } else {
+        Err(format!("{program:?} failed:\n{stdout}{stderr}"))
+    }
+}
+
+fn timing(line: &str) -> Option<Timing> {
+    let end: String = field(line, "end")?;
+    Some(Timing {
+        name: field(line, "name")?,
+        median_s: field(line, "median_s")?,
+        least_s: field(line, "least_s")?,
+        rides: field(line, "rides")?,
+        right_hand_sides: field(line, "right_hand_sides")?,
+        end: end.split(',').filter_map(|x| x.parse().ok()).collect(),
+    })
+}
+
+fn table(all: &[Timing]) -> String {
+    let mut text = String::from(
+        "| median of several runs (least) | per right-hand side | per ride | in all |\n| --- | ---: | ---: | ---: |\n",
+    );
+    for t in all {
+        let both = |scale: f64, digits: usize| {
+            format!("{:.digits$} ({:.digits$})", t.median_s * scale, t.least_s * scale)
+        };
+        let _ = writeln!(
+            text,
+            "| {} | {} ns | {} ms | {} s |",
+            t.name,
+            both(1e9 / t.right_hand_sides, 0),
+            both(1e3 / t.rides, 2),
+            both(1.0, 3)
+        );
+    }
+    text
+}
+
+/// The largest difference between the ends of two rides.
+fn apart(all: &[Timing]) -> f64 {
+    let ends: Vec<&Vec<f64>> = all.iter().map(|t| &t.end).filter(|end| !end.is_empty()).collect();
+    // What is not a number agrees with nothing.
+    let apart = |x: f64, y: f64| if (x - y).is_nan() { f64::INFINITY } else { (x - y).abs() };
+    let difference = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| apart(*x, *y)).fold(0.0, f64::max);
+    ends.iter().flat_map(|a| ends.iter().map(|b| difference(a, b))).fold(0.0, f64::max)
+}
