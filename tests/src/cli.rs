@@ -56,7 +56,10 @@ impl Bench {
     /// The program with the words of `line`, in the folder; nothing comes from standard input.
     pub fn command(&self, line: &str) -> Command {
         let mut command = Command::new(self.program);
-        command.args(line.split_whitespace()).current_dir(self.folder.path()).stdin(Stdio::null());
+        command
+            .args(shlex::split(line).expect("quotation marks are closed"))
+            .current_dir(self.folder.path())
+            .stdin(Stdio::null());
         command
     }
 

@@ -33,7 +33,7 @@ fn documents_fit_their_committed_schemas() {
             "basin-compare",
             "basin compare a=--rider=smart b=--law=none --speeds 5:6:1 --max-rate 6 --scan-step 1",
         ),
-        ("basin-plane", "basin plane --speed 5 --rays 4 --points 4 --tolerance 0.05"),
+        ("basin-plane", "basin plane --speed 5 --rays 4 --points 4 --ray-tolerance 0.05"),
         ("eigen", "eigen --speeds 0:10:1"),
         ("eigen", "eigen --rider smart --law h --speeds 3:4:0.5 --roots 6"),
         ("eigen", &format!("eigen --speeds 4 --law {}", law.display())),

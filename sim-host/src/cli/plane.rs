@@ -41,7 +41,7 @@ pub(super) struct Args {
     points: usize,
     /// How closely borders are located, as a part of a ray
     #[arg(long, default_value_t = 0.0005, value_name = "PART", allow_negative_numbers = true)]
-    tolerance: f64,
+    ray_tolerance: f64,
     #[command(flatten)]
     threads: ThreadArgs,
     #[command(flatten)]
@@ -56,7 +56,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         max_steer_rate: args.max_steer_rate,
         max_roll_rate: args.max_roll_rate,
         points: args.points,
-        tolerance: args.tolerance,
+        tolerance: args.ray_tolerance,
     };
     search.check()?;
     let outputs = args.outputs.open(None)?;
