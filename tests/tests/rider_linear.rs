@@ -5,7 +5,7 @@ use control::Law;
 use nalgebra::{Complex, DMatrix, DVector};
 use sim_host::eigen::{Feedback, Model, rightmost};
 use sim_host::ride::{Assist, Conditions, Start, TracePoint, traced};
-use sim_host::rider::{Fit, Gains, Outside, Rider, Schedule, catalogue};
+use sim_host::rider::{Fit, Outside, Rider, Schedule, catalogue};
 use tests::basins::{H, alone};
 use tests::riders::thorough;
 use tests::rides::shipped;
@@ -47,10 +47,6 @@ fn undelayed_closed_loops_are_their_matrix_exponentials() {
             let n = matrix.nrows();
             let mut start = DVector::zeros(n);
             start[3] = SMALL;
-            if rider.schedule.at(4.0).0[9] != 0.0 {
-                // Nothing is off the path at the start; the lateral offset is that of straight steer.
-                assert_eq!(n, 10);
-            }
             for i in [100, 500, 1000, 2000] {
                 let wanted = (&matrix * (1e-3 * i as f64)).exp() * &start;
                 let p = &trace[i];
@@ -136,5 +132,4 @@ fn the_regression_at_4_3_is_a_limit_cycle_until_its_gains_follow_the_speed() {
         table.rider(Fit::Regression, Outside::Extrapolate, None).unwrap_or_else(|e| panic!("{e}"));
     let (ride, _) = traced(&Conditions { rider: Some(following), ..alone() }, start);
     assert!(ride.fell(), "{:?}", ride.outcome);
-    assert_ne!(Gains::default(), table.rows[0].gains);
 }

@@ -12,6 +12,15 @@ fn rider(name: &str, fit: Fit, delay_s: Option<f64>) -> Rider {
     table.rider(fit, Outside::Extrapolate, delay_s).unwrap_or_else(|e| panic!("{e}"))
 }
 
+/// The same with run 186 at the speed that the independent program has it at.
+fn as_independent(name: &str, fit: Fit, delay_s: Option<f64>) -> Rider {
+    let mut table = catalogue::load(name).unwrap_or_else(|e| panic!("{e}"));
+    for row in table.rows.iter_mut().filter(|row| name == "young" && row.run == Some(186)) {
+        row.speed_m_s = entry("rider_basins").number("run_186_speed");
+    }
+    table.rider(fit, Outside::Extrapolate, delay_s).unwrap_or_else(|e| panic!("{e}"))
+}
+
 fn ridden(assist: Conditions, rider: Rider) -> Conditions {
     Conditions { rider: Some(rider), ..assist }
 }
@@ -25,7 +34,7 @@ fn areas_of_riders() {
         [("young", "young", None), ("naive", "young", Some(0.06)), ("smart", "smart", None)]
     {
         for fit in Fit::ALL {
-            let conditions = ridden(alone(), rider(name, fit, delay));
+            let conditions = ridden(alone(), as_independent(name, fit, delay));
             let speeds: Vec<f64> = (0..=55).map(|i| 2.0 + 0.1 * f64::from(i)).collect();
             let heights: Vec<f64> =
                 speeds.par_iter().map(|&v| border(&conditions, &search(&[v], 15.0), v).upper).collect();

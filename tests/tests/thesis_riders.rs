@@ -18,7 +18,8 @@ fn constant(gains: Gains, delay_ms: f64) -> Rider {
 fn heights(table: &str, run: u32, set: usize) -> (f64, f64) {
     let of = published().height.iter().find(|h| h.table == table && h.run == run).expect("a run");
     let row = &of.rows[set - 1];
-    let conditions = Conditions { rider: Some(constant(row.gains(), of.delay_ms)), ..alone() };
+    let conditions =
+        Conditions { rider: Some(constant(Gains::of_states(&row.gains), of.delay_ms)), ..alone() };
     let upper = border(&conditions, &search(&[of.speed], 15.0), of.speed).upper;
     ((10.0 * upper + 1e-9).floor() / 10.0 + 0.1, row.height)
 }

@@ -7,7 +7,7 @@ mod search;
 mod sensitivity;
 
 pub use compare::{Rmse, rmse};
-pub use outline::{Basin, Column, Island, ScanPoint, Work};
+pub use outline::{Basin, Column, Island, ScanPoint, Work, area};
 pub use plane::{Plane, PlaneSearch, Ray, plane};
 pub use search::{Axis, Search, SearchError, basin, border, column};
 pub use sensitivity::{Quantity, Sensitivity, sensitivities};

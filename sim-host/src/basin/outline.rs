@@ -80,10 +80,12 @@ impl Basin {
     /// Area between zero and `upper` by the trapezoidal rule \[rad/s m/s\]; the published areas are
     /// of this upper half. 0 for fewer than two speeds.
     pub fn area(&self) -> f64 {
-        let strips =
-            self.columns.windows(2).map(|w| 0.5 * (w[0].upper + w[1].upper) * (w[1].speed - w[0].speed));
-        // The sum of nothing is minus zero.
-        strips.sum::<f64>() + 0.0
+        area(&self.outline())
+    }
+
+    /// The outline: speed \[m/s\] and height \[rad/s\].
+    pub fn outline(&self) -> Vec<(f64, f64)> {
+        self.columns.iter().map(|c| (c.speed, c.upper)).collect()
     }
 
     /// Mean of `upper` over the speeds \[rad/s\]; `None` without a column.
@@ -96,4 +98,11 @@ impl Basin {
     pub fn work(&self) -> Work {
         self.columns.iter().fold(Work::default(), |sum, c| sum.plus(&c.work))
     }
+}
+
+/// Area under an outline by the trapezoidal rule \[rad m/s^2\].
+pub fn area(outline: &[(f64, f64)]) -> f64 {
+    let strips = outline.windows(2).map(|w| 0.5 * (w[0].1 + w[1].1) * (w[1].0 - w[0].0));
+    // The sum of nothing is minus zero.
+    strips.sum::<f64>() + 0.0
 }

@@ -47,7 +47,17 @@ struct CaseArgs {
 /// A case before it is computed.
 enum Asked {
     Compute(String, Box<Setup>),
-    Done(Case),
+    /// And the axis its file says.
+    Done(Case, String),
+}
+
+impl Asked {
+    fn label(&self) -> &str {
+        match self {
+            Self::Compute(label, _) => label,
+            Self::Done(case, _) => &case.label,
+        }
+    }
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
@@ -61,17 +71,25 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
                 asked
                     .push(Asked::Compute(label.into(), Box::new(case.setup().map_err(|e| named(label, e))?)));
             }
-            None => asked.push(Asked::Done(read(text)?)),
+            None => {
+                let (case, axis) = read(text)?;
+                asked.push(Asked::Done(case, axis));
+            }
         }
     }
     let search = args.search.search(ridden)?;
     let resolved = ResolvedSearch::new(&search);
-    if let Some(other) = asked.iter().find_map(|a| match a {
-        Asked::Done(case) if case.config["axis"] != resolved.axis => Some(case),
-        _ => None,
-    }) {
-        let axis = &other.config["axis"];
-        return Err(format!("{}: its axis is {axis}, --axis is {}", other.label, resolved.axis).into());
+    for (i, one) in asked.iter().enumerate() {
+        if let Asked::Done(case, axis) = one
+            && *axis != resolved.axis
+        {
+            return Err(format!("{}: its axis is {axis}, --axis is {}", case.label, resolved.axis).into());
+        }
+        if asked[..i].iter().any(|other| other.label() == one.label()) {
+            return Err(
+                format!("two cases are called `{}`; each needs a label of its own", one.label()).into()
+            );
+        }
     }
     let outputs = args.outputs.open(None)?;
     interrupt::install();
@@ -81,7 +99,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let (mut cases, mut stable, mut complete) = (Vec::new(), None, true);
     for one in asked {
         let case = match one {
-            Asked::Done(case) => case,
+            Asked::Done(case, _) => case,
             Asked::Compute(label, setup) => {
                 let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
                 stable = stable.or(uncontrolled.v_w.zip(uncontrolled.v_c));
@@ -138,7 +156,7 @@ fn parse(label: &str, options: &str) -> Result<ConditionArgs, Failure> {
 }
 
 /// The outline in a file of `basin --json`.
-fn read(path: &str) -> Result<Case, Failure> {
+fn read(path: &str) -> Result<(Case, String), Failure> {
     let text = std::fs::read_to_string(path)
         .map_err(|e| format!("`{path}` is neither LABEL=OPTIONS nor a file that can be read: {e}"))?;
     let document: Value = serde_json::from_str(&text).map_err(|e| format!("{path}: {e}"))?;
@@ -165,9 +183,8 @@ fn read(path: &str) -> Result<Case, Failure> {
     }
     let label =
         std::path::Path::new(path).file_stem().map_or(path.into(), |s| s.to_string_lossy().into_owned());
-    let mut config = document["config"].clone();
-    config["axis"] = json!(axis);
-    Ok(Case { label, config, basin: Basin { columns } })
+    let case = Case { label, config: document["config"].clone(), basin: Basin { columns } };
+    Ok((case, axis.into()))
 }
 
 /// The heights by speed, a column a case.

@@ -80,11 +80,6 @@ impl Conditions {
         (self.time_limit_s / self.step_s).round() as u32
     }
 
-    /// The rider's neural delay in steps; 0 without a rider.
-    pub(super) fn delay_steps(&self) -> usize {
-        self.rider.as_ref().map_or(0, |rider| (rider.delay_s / self.step_s).round() as usize)
-    }
-
     /// Checks what the types do not.
     ///
     /// # Errors

@@ -115,7 +115,7 @@ pub(super) fn run<const N: usize>(
         lanes: std::array::from_fn(|_| None),
         initial: still,
         assist: still,
-        humans: conditions.rider.as_ref().map(|rider| Humans::new(rider, conditions.delay_steps())),
+        humans: conditions.rider.as_ref().map(|rider| Humans::new(rider, rider.delay_steps(h))),
         human: still,
         quickness: [still; 4],
         trace,

@@ -36,10 +36,10 @@ pub struct TracePoint {
     pub measured_speed: f64,
     /// The assist's steer torque \[N m\].
     pub torque: f64,
-    /// The rider's steer torque \[N m\].
-    pub rider_torque: f64,
     /// Limits that changed the torque, as bits of [`control::Limits`].
     pub limits: u8,
+    /// The rider's steer torque \[N m\].
+    pub rider_torque: f64,
 }
 
 impl TracePoint {

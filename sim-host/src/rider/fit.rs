@@ -42,13 +42,13 @@ pub struct Line {
 
 impl Line {
     /// The gains at `speed` \[m/s\].
-    fn at(&self, speed: f64) -> Gains {
+    pub fn at(&self, speed: f64) -> Gains {
         Gains(std::array::from_fn(|i| self.slope.0[i] * speed + self.intercept.0[i]))
     }
 }
 
-/// Mean speed and gains of some rows.
-fn mean(rows: &[Row]) -> (f64, Gains) {
+/// Mean speed \[m/s\] and gains of some rows.
+pub fn mean(rows: &[Row]) -> (f64, Gains) {
     let n = rows.len() as f64;
     let gains = std::array::from_fn(|i| rows.iter().map(|r| r.gains.0[i]).sum::<f64>() / n);
     (rows.iter().map(|r| r.speed_m_s).sum::<f64>() / n, Gains(gains))

@@ -28,6 +28,13 @@ pub struct Gains(pub [f64; 10]);
 pub struct Signals<S>(pub [S; 10]);
 
 impl Gains {
+    /// Gains on roll (p, i, d, dd), then on steer; the others zero.
+    pub fn of_states(gains: &[f64; 8]) -> Self {
+        let mut all = Self::default();
+        all.0[..gains.len()].copy_from_slice(gains);
+        all
+    }
+
     /// The gain at [`KEYS`]' place of `key`; `None` for another name.
     pub fn get(&self, key: &str) -> Option<f64> {
         KEYS.iter().position(|k| *k == key).map(|i| self.0[i])

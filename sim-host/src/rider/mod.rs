@@ -12,7 +12,7 @@ mod schedule;
 mod table;
 
 pub use body::{Body, Instant};
-pub use fit::{Fit, Line};
+pub use fit::{Fit, Line, mean};
 pub use gains::{Gains, KEYS, Signals};
 pub use muscles::{Muscles, MusclesError};
 pub use nerves::Nerves;
@@ -38,35 +38,32 @@ pub const MAX_DELAY_S: f64 = 1.0;
 /// A rider that can't be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
-pub struct RiderError(pub String);
+pub struct UnfitError(pub String);
 
 impl Rider {
-    /// The delay in whole steps of `step_s` seconds.
-    ///
-    /// # Errors
-    /// When it is not a whole number of them: names the nearest two.
-    pub fn delay_steps(&self, step_s: f64) -> Result<usize, RiderError> {
-        let steps = self.delay_s / step_s;
-        if (steps - steps.round()).abs() > 1e-6 {
-            let ms = |n: f64| format!("{} ms", n * step_s * 1e3);
-            return Err(RiderError(format!(
-                "neural delay {} ms is not a whole number of steps of {} ms; nearest are {} and {}",
-                self.delay_s * 1e3,
-                step_s * 1e3,
-                ms(steps.floor()),
-                ms(steps.ceil())
-            )));
-        }
-        Ok(steps.round() as usize)
+    /// The delay in steps of `step_s` seconds, the nearest whole number.
+    pub fn delay_steps(&self, step_s: f64) -> usize {
+        (self.delay_s / step_s).round() as usize
     }
 
     /// Checks ranges, and that the delay is a whole number of steps of `step_s` seconds.
     ///
     /// # Errors
-    /// Names the value and its range.
-    pub fn check(&self, step_s: f64) -> Result<(), RiderError> {
-        within("neural delay (s)", self.delay_s, 0.0, MAX_DELAY_S).map_err(RiderError)?;
-        self.muscles.check().map_err(|e| RiderError(e.0))?;
-        self.delay_steps(step_s).map(|_| ())
+    /// Names the value and its range, or the nearest delays.
+    pub fn check(&self, step_s: f64) -> Result<(), UnfitError> {
+        within("neural delay (s)", self.delay_s, 0.0, MAX_DELAY_S).map_err(UnfitError)?;
+        self.muscles.check().map_err(|e| UnfitError(e.0))?;
+        let steps = self.delay_s / step_s;
+        if (steps - self.delay_steps(step_s) as f64).abs() <= 1e-6 {
+            return Ok(());
+        }
+        let ms = |n: f64| format!("{} ms", n * step_s * 1e3);
+        Err(UnfitError(format!(
+            "neural delay {} ms is not a whole number of steps of {} ms; nearest are {} and {}",
+            self.delay_s * 1e3,
+            step_s * 1e3,
+            ms(steps.floor()),
+            ms(steps.ceil())
+        )))
     }
 }

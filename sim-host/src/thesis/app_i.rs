@@ -24,15 +24,6 @@ struct Set {
     column: Column,
 }
 
-impl GainRow {
-    /// The gains as a rider has them.
-    pub fn gains(&self) -> Gains {
-        let mut gains = Gains::default();
-        gains.0[..self.gains.len()].copy_from_slice(&self.gains);
-        gains
-    }
-}
-
 impl Set {
     fn exact(&self) -> f64 {
         self.column.upper
@@ -50,7 +41,7 @@ impl Set {
     }
 
     fn conditions(&self, study: &Study) -> Conditions {
-        ridden(study, constant(self.row.gains(), self.of.delay_ms * 1e-3))
+        ridden(study, constant(Gains::of_states(&self.row.gains), self.of.delay_ms * 1e-3))
     }
 }
 
@@ -82,7 +73,7 @@ fn sets(study: &Study, table: &str, scan_step: f64) -> Vec<Set> {
         of_table.flat_map(|h| h.rows.iter().enumerate().map(move |(i, row)| (h, i + 1, row))).collect();
     all.into_par_iter()
         .map(|(of, number, row)| {
-            let conditions = ridden(study, constant(row.gains(), of.delay_ms * 1e-3));
+            let conditions = ridden(study, constant(Gains::of_states(&row.gains), of.delay_ms * 1e-3));
             Set { of, row, number, column: border(&conditions, &search(scan_step), of.speed) }
         })
         .collect()
@@ -181,7 +172,7 @@ fn tried(study: &Study, sets: &[Set], set: &Set, value: Value) -> Value {
     }
     let delay_s = if set.of.delay_ms > 45.0 { 0.03 } else { 0.06 };
     let name = format!("a delay of {} ms", delay_s * 1e3);
-    value = value.tried(&name, height(&ridden(study, constant(set.row.gains(), delay_s))));
+    value = value.tried(&name, height(&ridden(study, constant(Gains::of_states(&set.row.gains), delay_s))));
     let whole = column(&conditions, &search(GRID), set.of.speed);
     let standing = whole.scan.iter().filter(|p| p.outcome.time_to_fall_s().is_none());
     let last = standing.map(|p| p.rate).fold(0.0, f64::max);

@@ -8,7 +8,7 @@ use super::study::Study;
 use crate::eigen::{Feedback, Model, rightmost};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use crate::ride::{Conditions, Ride, TracePoint, traced};
-use crate::rider::{Gains, KEYS, RiderTable, Row, catalogue};
+use crate::rider::{Gains, KEYS, RiderTable, Row, catalogue, mean};
 use control::Law;
 use nalgebra::Complex;
 
@@ -29,20 +29,8 @@ fn smart() -> RiderTable {
 
 /// The rows of the group whose mean speed is closest to `speed` \[m/s\].
 fn group(table: &RiderTable, speed: f64) -> &[Row] {
-    let away = |rows: &&[Row]| (mean_speed(rows) - speed).abs();
+    let away = |rows: &&[Row]| (mean(rows).0 - speed).abs();
     table.groups().min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or_default()
-}
-
-fn mean_speed(rows: &[Row]) -> f64 {
-    rows.iter().map(|r| r.speed_m_s).sum::<f64>() / rows.len() as f64
-}
-
-fn mean_gains(rows: &[Row]) -> Gains {
-    Gains(std::array::from_fn(|i| rows.iter().map(|r| r.gains.0[i]).sum::<f64>() / rows.len() as f64))
-}
-
-fn at(line: crate::rider::Line, speed: f64) -> Gains {
-    Gains(std::array::from_fn(|i| line.slope.0[i] * speed + line.intercept.0[i]))
 }
 
 /// The rightmost characteristic root \[1/s\] under constant gains.
@@ -71,9 +59,9 @@ fn ended(ride: &Ride, trace: &[TracePoint]) -> String {
 /// Table K.1: the mean's and the regression's gains.
 pub(super) fn table_k_1(_: &Study) -> Item {
     let table = smart();
-    let mean = mean_gains(group(&table, SPEED));
-    let least = at(table.least_squares(), SPEED);
-    let equation = at(table.line(), SPEED);
+    let mean = mean(group(&table, SPEED)).1;
+    let least = table.least_squares().at(SPEED);
+    let equation = table.line().at(SPEED);
     let values = Item::compare("table-K.1", |cell| {
         let gain = |g: &Gains| g.get(&cell.column).unwrap_or(f64::NAN);
         let (m, lr, rounded) = (gain(&mean), gain(&least), gain(&equation));
@@ -137,8 +125,8 @@ pub(super) fn figure_k_1(study: &Study) -> Item {
     let rows = group(&table, SPEED);
     let mut sets: Vec<(String, Gains)> =
         rows.iter().map(|r| (format!("run {}", r.run.unwrap_or(0)), r.gains)).collect();
-    sets.push(("mean".into(), mean_gains(rows)));
-    let regression = at(table.least_squares(), SPEED);
+    sets.push(("mean".into(), mean(rows).1));
+    let regression = table.least_squares().at(SPEED);
     sets.push(("regression".into(), regression));
     let (torques, roots) = compared(study, &sets, 6.0);
     let markers = [Marker::Dot, Marker::Square, Marker::Triangle, Marker::Ring, Marker::Cross];
@@ -182,7 +170,7 @@ pub(super) fn figure_k_1(study: &Study) -> Item {
 /// Figure K.2: the regression with one gain after the other replaced by the mean's.
 pub(super) fn figure_k_2(study: &Study) -> Item {
     let table = smart();
-    let (regression, mean) = (at(table.least_squares(), SPEED), mean_gains(group(&table, SPEED)));
+    let (regression, mean) = (table.least_squares().at(SPEED), mean(group(&table, SPEED)).1);
     let mut sets = vec![("regression".to_owned(), regression)];
     for &key in &table.columns {
         let mut gains = regression;
@@ -216,7 +204,7 @@ pub(super) fn figure_k_2(study: &Study) -> Item {
 fn factors(study: &Study, name: &str, near: f64) -> Item {
     let table = smart();
     let rows = group(&table, near);
-    let mean = mean_gains(rows);
+    let mean = mean(rows).1;
     let mut plots = Vec::new();
     let mut lines = Vec::new();
     for &key in &table.columns {

@@ -112,10 +112,10 @@ impl Case {
         Conditions { schedule_speed: self.schedule, rider: self.rider.map(|r| r.rider()), ..thesis }
     }
 
-    /// The basin at one speed.
-    pub fn column(&self, bicycle: &Geometry, resolution: &Resolution, speed: f64) -> Column {
+    /// The basin at one speed, under its [`Self::conditions`] and with its [`Self::search`].
+    pub fn column(&self, conditions: &Conditions, search: &Search, speed: f64) -> Column {
         let find = if self.map { column } else { border };
-        find(&self.conditions(bicycle), &self.search(resolution), speed)
+        find(conditions, search, speed)
     }
 
     /// What is searched.

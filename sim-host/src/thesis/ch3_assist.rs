@@ -94,7 +94,7 @@ pub(super) fn figure_3_10(study: &Study) -> Item {
 
 /// Fills `value` with a basin's height at one speed.
 fn height_at(study: &Study, case: Case, speed: f64, value: Value) -> Value {
-    let at = |case: Case| Basin { columns: vec![case.column(&study.bicycle, &study.resolution, speed)] };
+    let at = |case: Case| Basin { columns: study.columns_at(&case, &[speed]) };
     let basin = at(case);
     Value { exact: Some(mean(&exact(&basin))), coarse: Some(mean(&coarse(&basin))), ..value }
         .tried(BY_REAR, mean(&exact(&at(case.scheduled(ScheduleSpeed::Rear)))))

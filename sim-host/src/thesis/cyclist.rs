@@ -1,5 +1,6 @@
 //! Who rides: a small key for a rider of the thesis.
 
+use super::published::{cells, published};
 use crate::rider::catalogue::load;
 use crate::rider::{Fit, Gains, KEYS, Outside, Rider, RiderTable, Row, Schedule};
 
@@ -25,16 +26,15 @@ pub enum Print {
     LeastSquares,
     /// The best sets by the VAFs as printed.
     HighestVaf,
-    /// The smart cyclist with run 249, which Table G.4 has; the gain on the roll rate is given.
-    Run249(f64),
+    /// The smart cyclist with run 249, by Table G.4.
+    Run249ByG4,
+    /// The smart cyclist with run 249, by Table H.4.
+    Run249ByH4,
     /// Run 191 at 6.0 m/s, as in Table G.4.
     Run191,
     /// Eq. H.1 with its intercept of the steer rate as printed.
     EquationH1,
 }
-
-/// Run 249 of Table G.4, by [`KEYS`]; the roll rate's gain is printed 2.98 there, 7.98 in Table H.4.
-const RUN_249: [f64; 10] = [-9.75, 0.0, 7.98, 5.18, 3.16, -0.02, 1.07, -0.09, 0.0, 0.0];
 
 impl Cyclist {
     const fn new(table: &'static str, fit: Fit, delay_ms: u16) -> Self {
@@ -79,16 +79,19 @@ impl Cyclist {
             Print::Settled => shipped,
             Print::LeastSquares => RiderTable { regression: None, ..shipped },
             Print::HighestVaf => RiderTable { best_runs: None, ..shipped },
-            Print::Run249(roll_rate) => with_run_249(shipped, roll_rate),
+            Print::Run249ByG4 => with_run_249(shipped, &published().run_249.table_g_4),
+            Print::Run249ByH4 => with_run_249(shipped, &published().run_249.table_h_4),
             Print::Run191 => {
                 let at = |r: Row| if r.run == Some(191) { Row { speed_m_s: 6.0, ..r } } else { r };
                 RiderTable { rows: rows.into_iter().map(at).collect(), regression: None, ..shipped }
             }
             Print::EquationH1 => {
                 let mut regression = shipped.regression;
-                let steer_rate = KEYS.iter().position(|k| *k == "K_delta_d");
-                if let (Some(line), Some(i)) = (&mut regression, steer_rate) {
-                    line.intercept.0[i] = -0.06181;
+                for cell in cells("equation-H.1").iter().filter(|c| c.column == "at 0 m/s") {
+                    let key = KEYS.iter().position(|k| *k == cell.row);
+                    if let (Some(line), Some(i), Some(printed)) = (&mut regression, key, cell.printed) {
+                        line.intercept.0[i] = printed.value;
+                    }
                 }
                 RiderTable { regression, ..shipped }
             }
@@ -97,24 +100,20 @@ impl Cyclist {
 
     /// The gains over speed.
     pub fn schedule(&self) -> Schedule {
-        let schedule = self.table().schedule(self.fit, Outside::Extrapolate);
-        schedule.unwrap_or_else(|e| panic!("data/riders/{}.toml: {e}", self.table))
+        self.rider().schedule
     }
 
     /// The rider.
     pub fn rider(&self) -> Rider {
-        Rider {
-            schedule: self.schedule(),
-            delay_s: f64::from(self.delay_ms) * 1e-3,
-            muscles: self.table().muscles,
-        }
+        let rider = self.table().rider(self.fit, Outside::Extrapolate, Some(f64::from(self.delay_ms) * 1e-3));
+        rider.unwrap_or_else(|e| panic!("data/riders/{}.toml: {e}", self.table))
     }
 }
 
-fn with_run_249(shipped: RiderTable, roll_rate: f64) -> RiderTable {
-    let mut gains = Gains(RUN_249);
-    gains.0[2] = roll_rate;
-    let row = Row { speed_m_s: 2.2, run: Some(249), group: 1, vaf: Some(99.25), gains };
+fn with_run_249(shipped: RiderTable, printed: &[f64; 8]) -> RiderTable {
+    let of = &published().run_249;
+    let gains = Gains::of_states(printed);
+    let row = Row { speed_m_s: of.speed, run: Some(249), group: 1, vaf: Some(of.vaf), gains };
     let mut rows = shipped.rows;
     let at = rows.partition_point(|r| r.speed_m_s < row.speed_m_s);
     rows.insert(at, row);
@@ -154,7 +153,7 @@ mod tests {
 
     #[test]
     fn every_print_makes_a_rider() {
-        let prints = [Print::Settled, Print::LeastSquares, Print::Run249(2.98), Print::Run191];
+        let prints = [Print::Settled, Print::LeastSquares, Print::Run249ByG4, Print::Run191];
         for who in [Cyclist::young, Cyclist::naive, Cyclist::smart, Cyclist::six] {
             for fit in Fit::ALL {
                 for print in prints {
@@ -169,7 +168,7 @@ mod tests {
     #[test]
     fn run_249_is_the_best_of_its_group() {
         let at = |print| Cyclist::smart(Fit::Best).by(print).schedule().points()[0].1;
-        assert_eq!(at(Print::Run249(2.98)).get("K_phi_d"), Some(2.98));
+        assert_eq!(at(Print::Run249ByG4).get("K_phi_d"), Some(2.98));
         assert_eq!(at(Print::Settled).get("K_phi_d"), Some(10.34));
         let line = |print| Cyclist::six(Fit::Regression).by(print).schedule().at(0.0).get("K_delta_d");
         assert!((line(Print::EquationH1).unwrap() + 0.06181).abs() < 1e-9);

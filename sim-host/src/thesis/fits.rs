@@ -34,8 +34,8 @@ fn symbol(key: &str) -> String {
 const OTHER_PRINTS: [(&str, Print, &str); 4] = [
     ("best sets by the printed VAFs", Print::HighestVaf, "young"),
     ("run 191 at 6.0 m/s, as in Table G.4", Print::Run191, "smart"),
-    ("with run 249, K_phi_d = 7.98", Print::Run249(7.98), "smart"),
-    ("with run 249 as in Table G.4, K_phi_d = 2.98", Print::Run249(2.98), "smart"),
+    ("with run 249, K_phi_d = 7.98", Print::Run249ByH4, "smart"),
+    ("with run 249 as in Table G.4, K_phi_d = 2.98", Print::Run249ByG4, "smart"),
 ];
 
 /// The other prints of a rider.

@@ -1,6 +1,7 @@
 //! Figures of merit of a basin, exact and on a coarse grid of disturbances.
 
 use super::case::GRID;
+pub use crate::basin::area;
 use crate::basin::{Basin, Column};
 
 /// Heights over speed: `(speed, height)` in m/s and rad/s.
@@ -8,7 +9,7 @@ pub type Outline = Vec<(f64, f64)>;
 
 /// The outline as located.
 pub fn exact(basin: &Basin) -> Outline {
-    basin.columns.iter().map(|c| (c.speed, c.upper)).collect()
+    basin.outline()
 }
 
 /// The outline on the thesis's probable grid: the last multiple of [`GRID`] before the first that falls.
@@ -25,11 +26,6 @@ fn on_grid(column: &Column) -> f64 {
 /// The outline on a grid of `step` \[rad/s\], from the located border.
 pub fn floored(basin: &Basin, step: f64) -> Outline {
     basin.columns.iter().map(|c| (c.speed, (c.upper / step + 1e-9).floor() * step)).collect()
-}
-
-/// Area under an outline by the trapezoidal rule \[rad m/s^2\].
-pub fn area(outline: &[(f64, f64)]) -> f64 {
-    outline.windows(2).map(|w| 0.5 * (w[0].1 + w[1].1) * (w[1].0 - w[0].0)).sum::<f64>() + 0.0
 }
 
 /// Mean of the heights \[rad/s\]; NaN of none.

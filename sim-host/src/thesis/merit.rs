@@ -24,8 +24,8 @@ const READINGS: [(&str, Reading); 7] = [
     ("best sets by the VAFs of Table F.2", |case| {
         by(case, Print::HighestVaf, |r| r.fit == Fit::Best && r.table == "young")
     }),
-    ("with run 249, K_phi_d = 7.98", |case| by(case, Print::Run249(7.98), |r| r.table == "smart")),
-    ("with run 249, K_phi_d = 2.98", |case| by(case, Print::Run249(2.98), |r| r.table == "smart")),
+    ("with run 249, K_phi_d = 7.98", |case| by(case, Print::Run249ByH4, |r| r.table == "smart")),
+    ("with run 249, K_phi_d = 2.98", |case| by(case, Print::Run249ByG4, |r| r.table == "smart")),
     (BY_REAR, |case| Some(case.scheduled(ScheduleSpeed::Rear))),
     (BY_INITIAL, |case| Some(case.scheduled(ScheduleSpeed::Initial))),
 ];

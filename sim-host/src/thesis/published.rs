@@ -13,6 +13,22 @@ pub struct Published {
     pub quoted: Vec<Quoted>,
     /// Tables I.1 and I.2.
     pub height: Vec<Heights>,
+    /// The set that the smart cyclist's gains are without.
+    pub run_249: Run249,
+}
+
+/// Run 249 of Tables G.4 and H.4.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Run249 {
+    /// Forward speed \[m/s\].
+    pub speed: f64,
+    /// Variance accounted for \[%\].
+    pub vaf: f64,
+    /// Gains on roll (p, i, d, dd), then on steer, by Table G.4.
+    pub table_g_4: [f64; 8],
+    /// The same by Table H.4.
+    pub table_h_4: [f64; 8],
 }
 
 /// A number as printed.

@@ -1,10 +1,11 @@
 //! What all items share: the bicycle, the resolution, and basins computed once.
 
 use super::case::{Assisted, Case, Resolution};
-use crate::basin::{Basin, Column};
+use crate::basin::{Basin, Column, Search};
 use crate::bicycle::linear::Linear;
 use crate::bicycle::{Geometry, Parameters, catalogue};
 use crate::eigen::{CriticalSpeeds, critical_speeds};
+use crate::ride::Conditions;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -58,9 +59,15 @@ impl Study {
         if let Some(found) = self.stored(case) {
             return found;
         }
-        let speeds = case.search(&self.resolution).speeds;
-        let columns = speeds.par_iter().map(|&v| case.column(&self.bicycle, &self.resolution, v)).collect();
+        let search = case.search(&self.resolution);
+        let columns = self.columns_at(case, &search.speeds);
         self.store(*case, Basin { columns })
+    }
+
+    /// The basin of a case at some speeds \[m/s\], computed now.
+    pub fn columns_at(&self, case: &Case, speeds: &[f64]) -> Vec<Column> {
+        let (conditions, search) = (case.conditions(&self.bicycle), case.search(&self.resolution));
+        speeds.par_iter().map(|&v| case.column(&conditions, &search, v)).collect()
     }
 
     /// Whether the basin of a case is there already.
@@ -73,13 +80,14 @@ impl Study {
     /// not kept.
     pub fn prepare(&self, cases: &[Case], finished: impl Fn() + Sync, stop: impl Fn() -> bool + Sync) {
         let missing: Vec<&Case> = cases.iter().filter(|c| !self.has(c)).collect();
-        let speeds: Vec<Vec<f64>> = missing.iter().map(|c| c.search(&self.resolution).speeds).collect();
-        let jobs = speeds.iter().enumerate().flat_map(|(i, s)| (0..s.len()).map(move |k| (i, k)));
+        let searches: Vec<Search> = missing.iter().map(|c| c.search(&self.resolution)).collect();
+        let conditions: Vec<Conditions> = missing.iter().map(|c| c.conditions(&self.bicycle)).collect();
+        let jobs = searches.iter().enumerate().flat_map(|(i, s)| (0..s.speeds.len()).map(move |k| (i, k)));
         // A bridge hands the jobs out in order and one by one.
         let mut done: Vec<(usize, usize, Column)> = jobs
             .par_bridge()
             .filter_map(|(i, k)| {
-                let one = || missing[i].column(&self.bicycle, &self.resolution, speeds[i][k]);
+                let one = || missing[i].column(&conditions[i], &searches[i], searches[i].speeds[k]);
                 let column = (!stop()).then(one)?;
                 finished();
                 Some((i, k, column))
@@ -92,7 +100,7 @@ impl Study {
             while let Some((_, _, column)) = done.next_if(|(of, _, _)| *of == i) {
                 columns.push(column);
             }
-            if columns.len() == speeds[i].len() {
+            if columns.len() == searches[i].speeds.len() {
                 self.store(*case, Basin { columns });
             }
         }
