@@ -3,7 +3,7 @@
 //! The sources print the feedback gain `K_phi_d(v)` of the Basu-Mandal axes, where steering into
 //! the fall is a negative gain; `gain = -K_phi_d` here, converted once, in this file.
 
-use crate::param::{ParamError, check};
+use crate::param::{Leaf, ParamError, check};
 use crate::real::Real;
 use heapless::Vec;
 
@@ -120,7 +120,7 @@ impl Law {
         match self {
             Law::Cl2 { k } => check("law.cl2.k", *k, 1e-3, 20.0),
             Law::Table(t) if t.points.is_empty() => {
-                Err(ParamError { name: "law.table.points", value: 0.0, min: 1.0, max: TABLE_POINTS as f32 })
+                Err(Leaf::new("", "law.table.points", 1.0, TABLE_POINTS as f32).error(0.0))
             }
             _ => Ok(()),
         }

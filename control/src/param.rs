@@ -1,29 +1,136 @@
-//! What is wrong with a parameter: its name, its value and the range it may have.
+//! The parameters, each declared once: its name, unit and range, beside the field that holds it.
+//!
+//! A group of parameters is a struct with a `leaves` function that shows every field of it to a
+//! [`Visit`]or. Checking, encoding, listing, getting and setting are visitors, so none of them can
+//! forget a parameter.
 
 use core::fmt;
 
-/// A parameter outside its range. `value` may be NaN or infinite, as given.
+/// What is known of a parameter beside its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ParamError {
-    /// The parameter's dotted name, unit included.
+pub struct Leaf {
+    /// The group it belongs to, dotted: `limits.end_stop`.
+    pub group: &'static str,
+    /// Its own name, unit included: `soft_rad`.
     pub name: &'static str,
-    /// The value given.
-    pub value: f32,
     /// Least allowed value.
     pub min: f32,
     /// Largest allowed value.
     pub max: f32,
 }
 
+impl Leaf {
+    /// A number or a count, `min..=max`.
+    pub const fn new(group: &'static str, name: &'static str, min: f32, max: f32) -> Self {
+        Self { group, name, min, max }
+    }
+
+    /// Something that is on (1) or off (0).
+    pub const fn switch(group: &'static str, name: &'static str) -> Self {
+        Self::new(group, name, 0.0, 1.0)
+    }
+
+    /// The error of a `value` outside the range.
+    pub const fn error(&self, value: f32) -> ParamError {
+        ParamError { leaf: *self, value }
+    }
+
+    /// Accepts `value` when it is inside the range; NaN never is.
+    ///
+    /// # Errors
+    /// The parameter, its value and the range.
+    pub fn check(&self, value: f32) -> Result<(), ParamError> {
+        if value >= self.min && value <= self.max { Ok(()) } else { Err(self.error(value)) }
+    }
+}
+
+/// A parameter outside its range. `value` may be NaN or infinite, as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParamError {
+    /// Which parameter.
+    pub leaf: Leaf,
+    /// The value given.
+    pub value: f32,
+}
+
 impl fmt::Display for ParamError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} = {} is outside {} to {}", self.name, self.value, self.min, self.max)
+        let Leaf { group, name, min, max } = self.leaf;
+        let dot = if group.is_empty() { "" } else { "." };
+        write!(f, "{group}{dot}{name} = {} is outside {min} to {max}", self.value)
     }
 }
 
 impl core::error::Error for ParamError {}
 
+/// Something that is done with every parameter, in the order of their declaration.
+pub trait Visit {
+    /// A number.
+    fn number(&mut self, leaf: &Leaf, value: &mut f32);
+    /// A number that may be off.
+    fn limit(&mut self, leaf: &Leaf, value: &mut Option<f32>);
+    /// A whole number.
+    fn count(&mut self, leaf: &Leaf, value: &mut u16);
+    /// On or off.
+    fn switch(&mut self, leaf: &Leaf, value: &mut bool);
+    /// One of `names`, by its place among them.
+    fn choice(&mut self, leaf: &Leaf, names: &'static [&'static str], value: &mut u8);
+}
+
+/// Shows a group that may be off: first the switch, then what is `inside`.
+pub fn optional<T: Default, V: Visit>(
+    to: &mut V,
+    leaf: &Leaf,
+    value: &mut Option<T>,
+    inside: impl FnOnce(&mut T, &mut V),
+) {
+    let mut on = value.is_some();
+    let mut group = value.take().unwrap_or_default();
+    to.switch(leaf, &mut on);
+    inside(&mut group, to);
+    *value = on.then_some(group);
+}
+
+/// Finds the first parameter that is outside its range.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Checker(Option<ParamError>);
+
+impl Checker {
+    /// What was found.
+    ///
+    /// # Errors
+    /// The first parameter outside its range.
+    pub fn verdict(self) -> Result<(), ParamError> {
+        self.0.map_or(Ok(()), Err)
+    }
+
+    /// Takes in another finding; the first one counts.
+    pub fn note(&mut self, found: Result<(), ParamError>) {
+        if self.0.is_none() {
+            self.0 = found.err();
+        }
+    }
+}
+
+impl Visit for Checker {
+    fn number(&mut self, leaf: &Leaf, value: &mut f32) {
+        self.note(leaf.check(*value));
+    }
+    fn limit(&mut self, leaf: &Leaf, value: &mut Option<f32>) {
+        if let Some(value) = value {
+            self.note(leaf.check(*value));
+        }
+    }
+    fn count(&mut self, leaf: &Leaf, value: &mut u16) {
+        self.note(leaf.check(f32::from(*value)));
+    }
+    fn switch(&mut self, _: &Leaf, _: &mut bool) {}
+    fn choice(&mut self, leaf: &Leaf, _: &'static [&'static str], value: &mut u8) {
+        self.note(leaf.check(f32::from(*value)));
+    }
+}
+
 /// Accepts `value` when `min <= value <= max`; NaN never is.
 pub(crate) fn check(name: &'static str, value: f32, min: f32, max: f32) -> Result<(), ParamError> {
-    if value >= min && value <= max { Ok(()) } else { Err(ParamError { name, value, min, max }) }
+    Leaf::new("", name, min, max).check(value)
 }

@@ -5,7 +5,7 @@ use crate::frame::{Sample, SensorFrame, Wheel};
 use crate::history::Latency;
 use crate::input::{InputConfig, Reject};
 use crate::law::{Law, LawTable, TABLE_POINTS};
-use crate::param::{ParamError, check};
+use crate::param::{Leaf, ParamError, check};
 use crate::shape::{ShapeConfig, Taper};
 use heapless::Vec;
 
@@ -134,7 +134,7 @@ pub fn decode_config(bytes: &[u8; CONFIG_BYTES]) -> Result<Config, ParamError> {
         5 => Law::Cl1,
         6 => Law::Cl2 { k },
         7 => Law::Table(LawTable::new(&points)?),
-        other => return Err(ParamError { name: "wire.law", value: f32::from(other), min: 0.0, max: 7.0 }),
+        other => return Err(Leaf::new("wire", "law", 0.0, 7.0).error(f32::from(other))),
     };
     let input = InputConfig {
         wheel: if from.mark("wire.wheel")? { Wheel::Rear } else { Wheel::Front },
@@ -190,7 +190,7 @@ impl Reader<'_> {
         match self.u8() {
             0 => Ok(false),
             1 => Ok(true),
-            other => Err(ParamError { name, value: f32::from(other), min: 0.0, max: 1.0 }),
+            other => Err(Leaf::switch("", name).error(f32::from(other))),
         }
     }
     fn limit(&mut self, name: &'static str) -> Result<Option<f32>, ParamError> {

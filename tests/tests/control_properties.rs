@@ -216,8 +216,8 @@ fn parameters_out_of_range_are_named() {
         (refused(|c| c.shape.max_rate_nm_s = Some(f32::INFINITY)), "shape.max_rate_nm_s"),
         (refused(|c| c.shape.taper = Some(Taper { zero_m_s: 2.0, full_m_s: 1.0 })), "shape.taper.full_m_s"),
     ] {
-        assert_eq!(error.name, name);
-        assert!(error.to_string().contains(name) && error.to_string().contains(&error.max.to_string()));
+        assert_eq!(error.leaf.name, name);
+        assert!(error.to_string().contains(name) && error.to_string().contains(&error.leaf.max.to_string()));
     }
     assert!(LawTable::new(&[(1.0, 2.0), (1.0, 3.0)]).is_err());
     assert!(LawTable::new(&[(f32::NAN, 2.0)]).is_err());

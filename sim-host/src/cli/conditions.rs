@@ -176,7 +176,7 @@ impl ConditionArgs {
         }
         let period_s = 1.0 / f64::from(config.rate_hz);
         let limited = config.shape != ShapeConfig::default();
-        let plan = config.plan().map_err(|e| match option_of(e.name) {
+        let plan = config.plan().map_err(|e| match option_of(e.leaf.name) {
             Some(option) => format!("{option}: {e}"),
             None => e.to_string(),
         })?;
