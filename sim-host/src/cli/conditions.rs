@@ -3,6 +3,7 @@
 use super::rider_args::{RiderArgs, step};
 use super::{Failure, law, warn};
 use crate::bicycle::{Geometry, catalogue};
+use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
 use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
 use clap::ValueEnum;
@@ -88,18 +89,6 @@ fn taper(text: &str) -> Result<Limit<(f32, f32)>, String> {
 
 fn seconds(text: &str) -> Result<f64, String> {
     time(text, 3600.0)
-}
-
-/// A time with its unit, from 0 to `max` \[s\].
-pub(super) fn time(text: &str, max: f64) -> Result<f64, String> {
-    let wrong =
-        || format!("`{text}` is not a time; expected a number with its unit, for example 20ms or 0.02s");
-    let (number, per_s) = match text.strip_suffix("ms") {
-        Some(number) => (number, 1e3),
-        None => (text.strip_suffix('s').ok_or_else(wrong)?, 1.0),
-    };
-    let value = number.trim().parse::<f64>().map_err(|_| wrong())? / per_s;
-    if (0.0..=max).contains(&value) { Ok(value) } else { Err(format!("{text} is outside 0 s to {max} s")) }
 }
 
 /// Whole control periods in a delay.

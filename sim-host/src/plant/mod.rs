@@ -1,0 +1,59 @@
+//! What lies between the bicycle and the controller: sensors that measure it, the motor that turns
+//! its steer, and what can be wrong with either. `docs/plant.md`.
+
+mod actuator;
+mod dice;
+mod fault;
+mod fault_text;
+mod friction;
+mod preset;
+mod reading;
+mod rig;
+mod sensor;
+
+pub use actuator::{Actuator, ActuatorConfig, Supply};
+pub use dice::Dice;
+pub use fault::{Channel, Fault, FaultState, Kind};
+pub use friction::Friction;
+pub use preset::{PRESETS, preset};
+pub use reading::{Frame, Reading, Sensor, Traveller};
+pub use rig::{Held, Measured, Rig};
+pub use sensor::{ImuMount, SensorConfig, SensorModel, SensorState};
+
+/// A value of the plant that can't be simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct PlantError(pub String);
+
+/// Everything between bicycle and controller. The default is exact, at once and without fault.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plant {
+    /// The sensors.
+    pub sensors: SensorConfig,
+    /// The motor and the steer's friction.
+    pub actuator: ActuatorConfig,
+    /// What goes wrong, in the order in which it acts.
+    pub faults: Vec<Fault>,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+impl Plant {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the value and its range.
+    pub fn check(&self) -> Result<(), PlantError> {
+        self.sensors.check()?;
+        self.actuator.check()
+    }
+
+    /// What an exact sensor would say where it sits.
+    fn truth(&self, sensor: Sensor, reading: &Reading) -> [f64; 3] {
+        let imu = &self.sensors.imu;
+        match sensor {
+            Sensor::Gyro | Sensor::Accel if imu.turned_rad != [0.0; 3] => imu.seen(reading.of(sensor)),
+            _ => reading.of(sensor),
+        }
+    }
+}
