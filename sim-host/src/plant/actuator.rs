@@ -2,10 +2,13 @@
 
 use super::{Friction, PlantError};
 use crate::range::within;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// A supply voltage and the motor it drives, seen at the steer axis.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Supply {
     /// Voltage \[V\].
     pub voltage_v: f64,
@@ -27,7 +30,8 @@ impl Supply {
 
 /// How the motor departs from giving the torque it is asked for, and the friction of the steer. The
 /// default does not, and has none.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct ActuatorConfig {
     /// Control periods from the command to the drive.
     pub delay_ticks: u16,

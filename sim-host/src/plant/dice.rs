@@ -2,8 +2,7 @@
 
 use crate::ride::Start;
 use chacha20::ChaCha8Rng;
-use chacha20::rand_core::SeedableRng;
-use rand_distr::{Distribution, StandardNormal, StandardUniform};
+use chacha20::rand_core::{Rng, SeedableRng};
 
 /// A source of random numbers for one purpose in one ride: seed and start are the generator's key,
 /// the purpose is its stream, so neither lane nor thread nor another purpose's draws change them.
@@ -24,14 +23,26 @@ impl Dice {
         Self(rng)
     }
 
-    /// A draw from the normal distribution of mean 0 and standard deviation 1.
+    /// A draw from the uniform distribution over 0 (included) to 1 (excluded).
+    fn uniform(&mut self) -> f64 {
+        const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
+        (self.0.next_u64() >> 11) as f64 * STEP
+    }
+
+    /// A draw from the normal distribution of mean 0 and standard deviation 1: Marsaglia's polar
+    /// method, by [`libm`], so that the bits are the same on every machine.
     pub fn normal(&mut self) -> f64 {
-        StandardNormal.sample(&mut self.0)
+        loop {
+            let (x, y) = (2.0 * self.uniform() - 1.0, 2.0 * self.uniform() - 1.0);
+            let square = x * x + y * y;
+            if square > 0.0 && square < 1.0 {
+                return x * (-2.0 * libm::log(square) / square).sqrt();
+            }
+        }
     }
 
     /// True with a probability of `p`.
     pub fn chance(&mut self, p: f64) -> bool {
-        let u: f64 = StandardUniform.sample(&mut self.0);
-        u < p
+        self.uniform() < p
     }
 }

@@ -3,9 +3,12 @@
 use super::PlantError;
 use crate::num::Scalar;
 use crate::range::within;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Friction about the steer axis, against the steer rate whatever turns the steer. The default has none.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct Friction {
     /// Viscous \[N m s/rad\].
     pub viscous_nm_s_rad: f64,

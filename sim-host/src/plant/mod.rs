@@ -2,11 +2,11 @@
 //! its steer, and what can be wrong with either. `docs/plant.md`.
 
 mod actuator;
+pub mod catalogue;
 mod dice;
 mod fault;
 mod fault_text;
 mod friction;
-mod preset;
 mod reading;
 mod rig;
 mod sensor;
@@ -15,7 +15,6 @@ pub use actuator::{Actuator, ActuatorConfig, Supply};
 pub use dice::Dice;
 pub use fault::{Channel, Fault, FaultState, Kind};
 pub use friction::Friction;
-pub use preset::{PRESETS, preset};
 pub use reading::{Frame, Reading, Sensor, Traveller};
 pub use rig::{Held, Measured, Rig};
 pub use sensor::{ImuMount, SensorConfig, SensorModel, SensorState};

@@ -65,6 +65,12 @@ impl SensorModel {
         all().map_err(PlantError)
     }
 
+    /// Age of the newest sample at the control instant before the first, if none was lost.
+    pub(super) fn age_before_boot(&self) -> u16 {
+        let latest = -1 - i64::from(self.delay_ticks);
+        latest.rem_euclid(i64::from(self.every_ticks)) as u16
+    }
+
     /// What a sample of `truth` says, if it is not lost.
     fn sample(&self, truth: [f64; 3], dice: Option<&mut Dice>) -> Option<[f64; 3]> {
         let mut told = truth;
@@ -176,11 +182,11 @@ pub struct SensorState {
 }
 
 impl SensorState {
-    /// Before the control instant `tick`; until then the truth was `steady`.
-    pub fn new(model: &SensorModel, steady: [f64; 3], tick: i64, dice: Dice) -> Self {
+    /// Before the control instant 0; until then the truth was `steady`.
+    pub fn new(model: &SensorModel, steady: [f64; 3], dice: Dice) -> Self {
         let mut dice = (model.noise > 0.0 || model.dropout > 0.0).then_some(dice);
-        let first = tick - i64::from(model.delay_ticks);
-        let on_their_way = (first..tick).map(|at| taken(model, at, steady, dice.as_mut())).collect();
+        let on_their_way =
+            (-i64::from(model.delay_ticks)..0).map(|at| taken(model, at, steady, dice.as_mut())).collect();
         Self { on_their_way, dice }
     }
 
