@@ -47,6 +47,26 @@ impl Plant {
         self.actuator.check()
     }
 
+    /// Whether sensors and motor are exact and nothing goes wrong; friction may be there.
+    pub fn exact(&self) -> bool {
+        self.sensors.exact() && self.actuator.exact() && self.faults.is_empty()
+    }
+
+    /// Whether the mirrored ride of every ride is one too.
+    pub fn mirrors(&self) -> bool {
+        self.sensors.mirrors() && self.faults.is_empty()
+    }
+
+    /// The same with all sensors later by `ticks` control periods.
+    pub fn delayed(&self, ticks: u16) -> Self {
+        let mut later = self.clone();
+        for sensor in Sensor::ALL {
+            let delay_ticks = &mut later.sensors.model_mut(sensor).delay_ticks;
+            *delay_ticks = delay_ticks.saturating_add(ticks);
+        }
+        later
+    }
+
     /// What an exact sensor would say where it sits.
     fn truth(&self, sensor: Sensor, reading: &Reading) -> [f64; 3] {
         let imu = &self.sensors.imu;

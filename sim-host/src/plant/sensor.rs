@@ -162,6 +162,17 @@ impl SensorConfig {
         &mut self.models[sensor as usize]
     }
 
+    /// Whether all sensors tell the truth at once; where the IMU sits is no matter.
+    pub fn exact(&self) -> bool {
+        self.imu.turned_rad == [0.0; 3] && self.models.iter().all(|model| *model == SensorModel::default())
+    }
+
+    /// Whether the sensors tell a mirrored truth mirrored.
+    pub fn mirrors(&self) -> bool {
+        let odd = |m: &SensorModel| m.bias == [0.0; 3] && m.noise == 0.0 && m.dropout == 0.0;
+        self.imu.turned_rad == [0.0; 3] && self.imu.point_m[1] == 0.0 && self.models.iter().all(odd)
+    }
+
     /// Checks every value.
     ///
     /// # Errors
