@@ -98,7 +98,7 @@ fn same(a: &TracePoint, b: &TracePoint) -> bool {
 /// was told or the motor gave from that very one on.
 #[test]
 fn a_fault_changes_the_ride_from_its_instant_on() {
-    let plain = traced(&assisted(H), KNOCK).1;
+    let plain = traced(&faulty("gyro:bias=1@100s"), KNOCK).1;
     for fault in [
         "gyro:bias=0.1",
         "gyro.x:flip",
