@@ -4,7 +4,7 @@ use control::{Causes, Config, Loss, Mode, Sensor as Declared};
 use sim_host::bicycle::{Motion, State};
 use sim_host::plant::catalogue::load;
 use sim_host::plant::{ActuatorConfig, Plant, Sensor, SensorModel};
-use sim_host::ride::{Conditions, Outcome, Ride, Start, TracePoint, frames, rides, traced};
+use sim_host::ride::{Conditions, Ride, Start, TracePoint, frames, rides, traced};
 use tests::basins::{H, alone, assisted, configured, ideal};
 
 const KNOCK: Start = Start { speed_m_s: 4.0, steer_rate_rad_s: 3.0, roll_rate_rad_s: 0.0 };
