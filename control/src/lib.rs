@@ -13,10 +13,11 @@
 //!
 //! The way of the data, one module each: [`frame`] (what the sensors say) -> [`input`] (may it be
 //! believed) -> [`history`] (sensors of different latency brought to one instant) -> [`law`] (the
-//! wanted torque) -> [`shape`] (what may be asked of the motor). [`controller`] puts them together.
+//! wanted torque; [`table`] for one of a user's own, [`capsize`] for what may be added to it) -> [`shape`] (what may be asked of the motor). [`controller`] puts them together.
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod capsize;
 pub mod controller;
 pub mod frame;
 pub mod history;
@@ -25,11 +26,14 @@ pub mod law;
 pub mod param;
 pub mod real;
 pub mod shape;
+pub mod table;
 pub mod wire;
 
+pub use capsize::Capsize;
 pub use controller::{Command, Config, Plan, State, Status, step};
 pub use frame::{Sample, SensorFrame, Wheel};
 pub use input::{InputConfig, Reject};
-pub use law::{Law, LawTable};
+pub use law::Law;
 pub use param::ParamError;
 pub use shape::{Limits, ShapeConfig, Taper};
+pub use table::LawTable;

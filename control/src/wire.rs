@@ -4,9 +4,10 @@ use crate::controller::{Command, Config, Status};
 use crate::frame::{Sample, SensorFrame, Wheel};
 use crate::history::Latency;
 use crate::input::{InputConfig, Reject};
-use crate::law::{Law, LawTable, TABLE_POINTS};
+use crate::law::{LAW_NAMES, Law};
 use crate::param::{Leaf, ParamError, check};
 use crate::shape::{ShapeConfig, Taper};
+use crate::table::{LawTable, TABLE_POINTS};
 use heapless::Vec;
 
 /// Bytes of a [`SensorFrame`]: roll rate and wheel speed, each f32 value and u16 age.
@@ -74,19 +75,12 @@ pub fn encode_config(config: &Config) -> [u8; CONFIG_BYTES] {
     let mut bytes = [0; CONFIG_BYTES];
     let mut to = Writer(bytes.iter_mut());
     to.f32(config.rate_hz);
-    let (law, k, table) = match &config.law {
-        Law::None => (0, 0.0, None),
-        Law::H { cut: false } => (1, 0.0, None),
-        Law::H { cut: true } => (2, 0.0, None),
-        Law::F => (3, 0.0, None),
-        Law::G => (4, 0.0, None),
-        Law::Cl1 => (5, 0.0, None),
-        Law::Cl2 { k } => (6, *k, None),
-        Law::Table(table) => (7, 0.0, Some(table)),
+    let points = match &config.law {
+        Law::Table(table) => table.points(),
+        _ => &[],
     };
-    let points = table.map_or(&[][..], LawTable::points);
-    to.u8(law);
-    to.f32(k);
+    to.u8(config.law.number());
+    to.f32(config.law.slope());
     to.u8(points.len() as u8);
     for i in 0..TABLE_POINTS {
         let (speed, gain) = points.get(i).copied().unwrap_or((0.0, 0.0));
@@ -113,7 +107,7 @@ pub fn encode_config(config: &Config) -> [u8; CONFIG_BYTES] {
 /// A configuration from bytes, not yet checked: [`Config::plan`] does that. Never panics.
 ///
 /// # Errors
-/// A law, wheel or limit mark that does not exist, or a table that [`LawTable::new`] refuses.
+/// A law, wheel or limit mark that does not exist, or points that [`LawTable::new`] refuses.
 pub fn decode_config(bytes: &[u8; CONFIG_BYTES]) -> Result<Config, ParamError> {
     let mut from = Reader(bytes.iter());
     let rate_hz = from.f32();
@@ -125,17 +119,10 @@ pub fn decode_config(bytes: &[u8; CONFIG_BYTES]) -> Result<Config, ParamError> {
     }
     check("wire.table.points", f32::from(used), 0.0, TABLE_POINTS as f32)?;
     points.truncate(usize::from(used));
-    let law = match law {
-        0 => Law::None,
-        1 => Law::H { cut: false },
-        2 => Law::H { cut: true },
-        3 => Law::F,
-        4 => Law::G,
-        5 => Law::Cl1,
-        6 => Law::Cl2 { k },
-        7 => Law::Table(LawTable::new(&points)?),
-        other => return Err(Leaf::new("wire", "law", 0.0, 7.0).error(f32::from(other))),
-    };
+    let table = if used > 0 { LawTable::new(&points)? } else { LawTable::default() };
+    let last = (LAW_NAMES.len() - 1) as f32;
+    let unknown = Leaf::new("wire", "law", 0.0, last).error(f32::from(law));
+    let law = Law::numbered(law, k, table).ok_or(unknown)?;
     let input = InputConfig {
         wheel: if from.mark("wire.wheel")? { Wheel::Rear } else { Wheel::Front },
         roll_rate_max_rad_s: from.f32(),

@@ -20,6 +20,7 @@ fn laws() -> impl Strategy<Value = Law> {
         Just(Law::G),
         Just(Law::Cl1),
         any::<f32>().prop_map(|k| Law::Cl2 { k }),
+        any::<f32>().prop_map(|kappa| Law::BalanceAssist { kappa }),
         table,
     ]
 }

@@ -7,8 +7,9 @@ use crate::bicycle::catalogue;
 use crate::eigen::{CriticalSpeeds, Feedback, Mode, Model, Stability, modes, roots, stability};
 use crate::report::document::{EigenDocument, SCHEMA};
 use crate::report::figure::{self, EigenFigure};
-use crate::report::resolved::{ResolvedBicycle, ResolvedLaw, ResolvedRider, Tool};
+use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider, Tool};
 use crate::report::{table, terminal};
+use control::Capsize;
 use nalgebra::Complex;
 use rayon::prelude::*;
 use serde_json::json;
@@ -19,6 +20,8 @@ Examples:
   sim-host eigen --bicycle benchmark
   sim-host eigen --law h --speeds 0:10:0.05 --svg eigen.svg
   sim-host eigen --law cl2:4 --json
+  sim-host eigen --law balance-assist:5.2 --bicycle balanceassistv1
+  sim-host eigen --bicycle benchmark --capsize 0.7:6.5
   sim-host eigen --rider smart --law h --speeds 2:7.5:0.1 --json
   sim-host eigen --law cl1 --modes --csv modes.csv";
 
@@ -29,9 +32,12 @@ pub(super) struct Args {
     /// Shipped bicycle, FILE, or FILE#NAME of a collection
     #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
     bicycle: String,
-    /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, or a table FILE
+    /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, balance-assist:K, or a table FILE
     #[arg(long, default_value = "none")]
     law: String,
+    /// Torque into the lean of K (v - V) times the roll angle above the speed V in m/s, beside the law
+    #[arg(long, value_name = "K:V", value_parser = law::capsize, allow_hyphen_values = true)]
+    capsize: Option<Capsize>,
     #[command(flatten)]
     rider: RiderArgs,
     /// Forward speeds in m/s: A:B:STEP, B included, or one
@@ -57,7 +63,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     };
     let outputs = args.outputs.open(None)?;
     let count = if rider.is_some() { usize::from(args.roots) } else { 4 };
-    let model = Model::new(&bicycle.parameters, Feedback::Law(law.clone()), rider);
+    let capsize = args.capsize.unwrap_or_default();
+    let model = Model::new(&bicycle.parameters, Feedback::new(law.clone(), capsize), rider);
     let Stability { critical, ranges, changes } = stability(&model);
     let values: Vec<_> = args.speeds.par_iter().map(|&v| roots(&model.at(v), count)).collect();
     let modes = modes(&model, &args.speeds, count);
@@ -68,6 +75,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         bicycle: ResolvedBicycle::new(&bicycle),
         rider: resolved,
         law: ResolvedLaw::new(&args.law, &law),
+        capsize: ResolvedCapsize::new(&capsize),
         v_d,
         v_w,
         v_c,
@@ -78,10 +86,11 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         modes: modes.iter().map(|mode| (mode.name.clone(), per_speed(mode, args.speeds.len()))).collect(),
     };
     let rider = document.rider.as_ref().map_or(String::new(), |r| format!(", {}", r.label()));
-    let title = format!("Eigenvalues: {}{rider}, law {}", bicycle.name, args.law);
+    let beside = args.capsize.map_or(String::new(), |c| format!(" and capsize {}:{}", c.k_c, c.v_max_m_s));
+    let title = format!("Eigenvalues: {}{rider}, law {}{beside}", bicycle.name, args.law);
     let figure =
         EigenFigure { speeds: &args.speeds, modes: &modes, stable: &ranges, critical, title: &title };
-    let config = json!({"bicycle": document.bicycle, "rider": document.rider, "law": document.law});
+    let config = json!({"bicycle": document.bicycle, "rider": document.rider, "law": document.law, "capsize": document.capsize});
     let in_table = if args.modes { &modes[..] } else { &[] };
     outputs.write(Results {
         document: &document,
