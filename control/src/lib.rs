@@ -15,12 +15,14 @@
 //! The way of the data, one module each: [`frame`] (what the sensors say) -> [`calibrate`] (in the
 //! bicycle's axes) -> [`input`] (may it be believed; [`watch`] is one sensor) -> [`permit`] (may
 //! torque flow, and why not) -> [`history`] (sensors of different latency brought to one instant) ->
-//! [`law`] (the wanted torque) -> [`shape`] (what may be asked of the motor). [`controller`] puts them
+//! [`law`] (the wanted torque; [`table`] for one of a user's own,
+//! [`capsize`] for what may be added to it) -> [`shape`] (what may be asked of the motor). [`controller`] puts them
 //! together, [`fault`] numbers what can go wrong, [`param`] declares every parameter.
 #![no_std]
 #![forbid(unsafe_code)]
 
 pub mod calibrate;
+pub mod capsize;
 pub mod controller;
 pub mod fault;
 pub mod frame;
@@ -31,16 +33,19 @@ pub mod param;
 pub mod permit;
 pub mod real;
 pub mod shape;
+pub mod table;
 pub mod watch;
 pub mod wire;
 
 pub use calibrate::Calibration;
+pub use capsize::Capsize;
 pub use controller::{Command, Config, Plan, State, step};
 pub use fault::{CAUSES, Cause, Causes};
 pub use frame::{Sample, SensorFrame, Triple, Wheel};
 pub use input::InputConfig;
-pub use law::{Law, LawTable};
+pub use law::Law;
 pub use param::ParamError;
 pub use permit::{Mode, PermitConfig};
 pub use shape::{Limits, ShapeConfig, Taper};
+pub use table::LawTable;
 pub use watch::{Loss, Sensor};

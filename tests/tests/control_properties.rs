@@ -53,6 +53,7 @@ fn any_law() -> impl Strategy<Value = Law> {
         Just(Law::G),
         Just(Law::Cl1),
         (0.01_f32..20.0).prop_map(|k| Law::Cl2 { k }),
+        (0.01_f32..20.0).prop_map(|kappa| Law::BalanceAssist { kappa }),
         Just(Law::Table(table)),
     ]
 }

@@ -37,7 +37,7 @@ pub(super) struct ConditionArgs {
     bicycle: String,
     #[command(flatten)]
     rider: RiderArgs,
-    /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, or a table FILE [default: h; none with a rider; product: h-cut]
+    /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, balance-assist:K, or a table FILE [default: h; none with a rider; product: h-cut]
     #[arg(long)]
     law: Option<String>,
     /// Defaults of the options below
