@@ -18,11 +18,14 @@
 #![forbid(unsafe_code)]
 
 pub mod controller;
+pub mod estimate;
 pub mod frame;
 pub mod history;
 pub mod input;
 pub mod law;
+pub mod maths;
 pub mod param;
+pub mod pulses;
 pub mod real;
 pub mod shape;
 pub mod wire;
