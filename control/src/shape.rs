@@ -1,7 +1,7 @@
 //! Shapes the wanted torque into one that may be asked of the motor: a taper to zero below walking
 //! speed, a magnitude and a rate. Each is off (`None`) or set; the output says which were active.
 
-use crate::param::{ParamError, check};
+use crate::param::{Leaf, ParamError, Visit, optional};
 
 /// Which limits changed the torque in this step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,6 +36,13 @@ pub struct Taper {
     pub full_m_s: f32,
 }
 
+impl Default for Taper {
+    /// From 0.5 to 1.5 m/s.
+    fn default() -> Self {
+        Self { zero_m_s: 0.5, full_m_s: 1.5 }
+    }
+}
+
 impl Taper {
     fn scale(&self, speed_m_s: f32) -> f32 {
         if speed_m_s >= self.full_m_s {
@@ -60,22 +67,24 @@ pub struct ShapeConfig {
 }
 
 impl ShapeConfig {
-    /// Checks every limit that is set.
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        to.limit(&Leaf::new("shape", "max_torque_nm", 0.1, 50.0), &mut self.max_torque_nm);
+        to.limit(&Leaf::new("shape", "max_rate_nm_s", 1.0, 1e5), &mut self.max_rate_nm_s);
+        optional(to, &Leaf::switch("shape", "taper"), &mut self.taper, |taper, to| {
+            to.number(&Leaf::new("shape.taper", "zero_m_s", 0.0, 9.9), &mut taper.zero_m_s);
+            to.number(&Leaf::new("shape.taper", "full_m_s", 0.1, 10.0), &mut taper.full_m_s);
+        });
+    }
+
+    /// Checks what spans several parameters.
     ///
     /// # Errors
     /// The parameter, its value and the allowed range.
     pub fn validate(&self) -> Result<(), ParamError> {
-        if let Some(t) = self.max_torque_nm {
-            check("shape.max_torque_nm", t, 0.1, 50.0)?;
-        }
-        if let Some(r) = self.max_rate_nm_s {
-            check("shape.max_rate_nm_s", r, 1.0, 1e5)?;
-        }
-        if let Some(t) = self.taper {
-            check("shape.taper.zero_m_s", t.zero_m_s, 0.0, 9.9)?;
-            check("shape.taper.full_m_s", t.full_m_s, t.zero_m_s + 0.1, 10.0)?;
-        }
-        Ok(())
+        self.taper.map_or(Ok(()), |t| {
+            Leaf::new("shape.taper", "full_m_s", t.zero_m_s + 0.1, 10.0).check(t.full_m_s)
+        })
     }
 }
 

@@ -6,6 +6,7 @@ use crate::bicycle::{Geometry, catalogue};
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
 use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
 use clap::ValueEnum;
+use control::param::Leaf;
 use control::{Config, Law, ShapeConfig, Taper, Wheel};
 
 /// Where defaults come from.
@@ -122,11 +123,11 @@ fn whole_ticks(delay_s: f64, period_s: f64) -> Result<u16, String> {
 }
 
 /// The option that sets a parameter of the control crate.
-fn option_of(parameter: &str) -> Option<&'static str> {
-    match parameter {
-        "shape.max_torque_nm" => Some("--torque-limit"),
-        "shape.max_rate_nm_s" => Some("--rate-limit"),
-        "shape.taper.zero_m_s" | "shape.taper.full_m_s" => Some("--taper"),
+fn option_of(parameter: &Leaf) -> Option<&'static str> {
+    match (parameter.group, parameter.name) {
+        ("shape", "max_torque_nm") => Some("--torque-limit"),
+        ("shape", "max_rate_nm_s") => Some("--rate-limit"),
+        ("shape.taper", _) => Some("--taper"),
         _ => None,
     }
 }
@@ -161,10 +162,12 @@ impl ConditionArgs {
         });
         let law = law::parse(law_name)?;
         let mut config = Config { law: law.clone(), ..base };
-        config.input.wheel = match self.schedule_speed {
+        config.input = config.input.scheduled_by(match self.schedule_speed {
             ScheduleSpeed::Front | ScheduleSpeed::Initial => Wheel::Front,
             ScheduleSpeed::Rear => Wheel::Rear,
-        };
+        });
+        // The simulated bicycle is put together as drawn.
+        config.calibration.polarity_checked = true;
         if let Some(Limit(limit)) = self.torque_limit {
             config.shape.max_torque_nm = limit;
         }
@@ -176,7 +179,7 @@ impl ConditionArgs {
         }
         let period_s = 1.0 / f64::from(config.rate_hz);
         let limited = config.shape != ShapeConfig::default();
-        let plan = config.plan().map_err(|e| match option_of(e.leaf.name) {
+        let plan = config.plan().map_err(|e| match option_of(&e.leaf) {
             Some(option) => format!("{option}: {e}"),
             None => e.to_string(),
         })?;
