@@ -24,13 +24,16 @@
 pub mod calibrate;
 pub mod capsize;
 pub mod controller;
+pub mod estimate;
 pub mod fault;
 pub mod frame;
 pub mod history;
 pub mod input;
 pub mod law;
+pub mod maths;
 pub mod param;
 pub mod permit;
+pub mod pulses;
 pub mod real;
 pub mod shape;
 pub mod table;
