@@ -4,8 +4,9 @@ use crate::frame::SensorFrame;
 use crate::history::{History, Latency};
 use crate::input::{InputConfig, Reject};
 use crate::law::Law;
+use crate::limits::{ActiveLimits, Limits, Taper};
 use crate::param::{ParamError, check};
-use crate::shape::{Limits, ShapeConfig, Taper, shape};
+use crate::shape::{self, Asked, ShapePlan, ShapeState};
 
 /// Everything a user may choose. Plain data; [`Config::plan`] checks it.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +20,7 @@ pub struct Config {
     /// How late each sensor is known to be.
     pub latency: Latency,
     /// Limits on the torque.
-    pub shape: ShapeConfig,
+    pub shape: Limits,
 }
 
 impl Config {
@@ -30,7 +31,7 @@ impl Config {
             law,
             input: InputConfig::default(),
             latency: Latency::default(),
-            shape: ShapeConfig::default(),
+            shape: Limits::default(),
         }
     }
 
@@ -41,10 +42,12 @@ impl Config {
     pub fn product() -> Self {
         let input =
             InputConfig { roll_rate_max_age_ticks: 10, speed_max_age_ticks: 250, ..InputConfig::default() };
-        let shape = ShapeConfig {
+        let shape = Limits {
             max_torque_nm: Some(7.0),
-            max_rate_nm_s: Some(100.0),
+            rise_nm_s: Some(100.0),
+            fall_nm_s: Some(100.0),
             taper: Some(Taper { zero_m_s: 0.5, full_m_s: 1.5 }),
+            ..Limits::default()
         };
         Self { input, shape, ..Self::thesis(Law::H { cut: true }) }
     }
@@ -59,8 +62,9 @@ impl Config {
         self.input.validate()?;
         self.latency.validate()?;
         self.shape.validate()?;
-        let max_change_nm = self.shape.max_rate_nm_s.map_or(f32::MAX, |r| r / self.rate_hz);
-        Ok(Plan { config: self, max_change_nm })
+        let shape = ShapePlan::new(&self.shape, self.rate_hz);
+        let period_us = (1e6 / self.rate_hz) as u32;
+        Ok(Plan { config: self, shape, period_us })
     }
 }
 
@@ -68,7 +72,8 @@ impl Config {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     config: Config,
-    max_change_nm: f32,
+    shape: ShapePlan,
+    period_us: u32,
 }
 
 impl Plan {
@@ -82,13 +87,13 @@ impl Plan {
 #[derive(Clone, Debug, Default)]
 pub struct State {
     history: History,
-    torque_nm: f32,
+    shape: ShapeState,
 }
 
 impl State {
     /// The torque commanded last \[N m\].
     pub fn torque_nm(&self) -> f32 {
-        self.torque_nm
+        self.shape.torque_nm()
     }
 }
 
@@ -111,7 +116,7 @@ pub struct Command {
     /// The gain used \[N m s/rad\]; 0 unless [`Status::Active`].
     pub gain_nm_s_rad: f32,
     /// The limits that changed the torque.
-    pub limits: Limits,
+    pub limits: ActiveLimits,
     /// How the torque came about.
     pub status: Status,
 }
@@ -134,7 +139,17 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
             }
         },
     };
-    let (torque_nm, limits) = shape(&config.shape, plan.max_change_nm, state.torque_nm, speed, wanted);
-    state.torque_nm = torque_nm;
+    let asked = Asked {
+        wanted_nm: wanted,
+        authority: 1.0,
+        limp: false,
+        speed_low_m_s: speed,
+        speed_high_m_s: speed,
+        steer_rad: None,
+        steer_rate_rad_s: None,
+        rider_torque_nm: None,
+        elapsed_us: plan.period_us,
+    };
+    let (torque_nm, limits) = shape::step(&config.shape, &plan.shape, &mut state.shape, &asked);
     Command { torque_nm, gain_nm_s_rad: gain, limits, status }
 }

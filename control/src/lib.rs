@@ -13,15 +13,18 @@
 //!
 //! The way of the data, one module each: [`frame`] (what the sensors say) -> [`input`] (may it be
 //! believed) -> [`history`] (sensors of different latency brought to one instant) -> [`law`] (the
-//! wanted torque) -> [`shape`] (what may be asked of the motor). [`controller`] puts them together.
+//! wanted torque) -> [`shape`] (what may be asked of the motor,
+//! by the table in [`limits`]; [`guard`] judges it). [`controller`] puts them together.
 #![no_std]
 #![forbid(unsafe_code)]
 
 pub mod controller;
 pub mod frame;
+pub mod guard;
 pub mod history;
 pub mod input;
 pub mod law;
+pub mod limits;
 pub mod param;
 pub mod real;
 pub mod shape;
@@ -31,5 +34,5 @@ pub use controller::{Command, Config, Plan, State, Status, step};
 pub use frame::{Sample, SensorFrame, Wheel};
 pub use input::{InputConfig, Reject};
 pub use law::{Law, LawTable};
+pub use limits::{ActiveLimits, Limits, Taper};
 pub use param::ParamError;
-pub use shape::{Limits, ShapeConfig, Taper};

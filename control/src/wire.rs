@@ -5,14 +5,14 @@ use crate::frame::{Sample, SensorFrame, Wheel};
 use crate::history::Latency;
 use crate::input::{InputConfig, Reject};
 use crate::law::{Law, LawTable, TABLE_POINTS};
+use crate::limits::{Limits, Taper};
 use crate::param::{Leaf, ParamError, check};
-use crate::shape::{ShapeConfig, Taper};
 use heapless::Vec;
 
 /// Bytes of a [`SensorFrame`]: roll rate and wheel speed, each f32 value and u16 age.
 pub const FRAME_BYTES: usize = 12;
-/// Bytes of a [`Command`]: torque and gain as f32, limits, status.
-pub const COMMAND_BYTES: usize = 10;
+/// Bytes of a [`Command`]: torque and gain as f32, limits as u16, status.
+pub const COMMAND_BYTES: usize = 11;
 /// Bytes of a [`Config`]: every field in the order of the types, room for a whole gain table.
 pub const CONFIG_BYTES: usize = 46 + 8 * TABLE_POINTS;
 
@@ -37,12 +37,13 @@ pub fn decode_frame(bytes: &[u8; FRAME_BYTES]) -> SensorFrame {
 pub fn encode_command(command: &Command) -> [u8; COMMAND_BYTES] {
     let [t0, t1, t2, t3] = command.torque_nm.to_le_bytes();
     let [g0, g1, g2, g3] = command.gain_nm_s_rad.to_le_bytes();
+    let [l0, l1] = command.limits.0.to_le_bytes();
     let status = match command.status {
         Status::Active => 0,
         Status::Filling => 1,
         Status::Rejected(reason) => 16 + reason as u8,
     };
-    [t0, t1, t2, t3, g0, g1, g2, g3, command.limits.0, status]
+    [t0, t1, t2, t3, g0, g1, g2, g3, l0, l1, status]
 }
 
 /// A command's status byte read back; `None` for a byte that no status has.
@@ -104,7 +105,7 @@ pub fn encode_config(config: &Config) -> [u8; CONFIG_BYTES] {
     to.u16(config.latency.roll_rate_ticks);
     to.u16(config.latency.speed_ticks);
     to.limit(config.shape.max_torque_nm);
-    to.limit(config.shape.max_rate_nm_s);
+    to.limit(config.shape.rise_nm_s);
     to.limit(config.shape.taper.map(|t| t.zero_m_s));
     to.f32(config.shape.taper.map_or(0.0, |t| t.full_m_s));
     bytes
@@ -148,7 +149,8 @@ pub fn decode_config(bytes: &[u8; CONFIG_BYTES]) -> Result<Config, ParamError> {
     let max_rate_nm_s = from.limit("wire.max_rate")?;
     let (zero, full_m_s) = (from.limit("wire.taper")?, from.f32());
     let taper = zero.map(|zero_m_s| Taper { zero_m_s, full_m_s });
-    let shape = ShapeConfig { max_torque_nm, max_rate_nm_s, taper };
+    let (rise_nm_s, fall_nm_s) = (max_rate_nm_s, max_rate_nm_s);
+    let shape = Limits { max_torque_nm, rise_nm_s, fall_nm_s, taper, ..Limits::default() };
     Ok(Config { rate_hz, law, input, latency, shape })
 }
 

@@ -1,7 +1,9 @@
 //! Flight cards: what the controller promises for every input.
 
 use control::history::{Latency, MAX_LATENCY_TICKS};
-use control::{Config, Law, LawTable, Limits, Plan, Reject, Sample, SensorFrame, State, Status, Taper, step};
+use control::{
+    ActiveLimits, Config, Law, LawTable, Plan, Reject, Sample, SensorFrame, State, Status, Taper, step,
+};
 use proptest::prelude::*;
 
 fn any_sample() -> impl Strategy<Value = Sample> {
@@ -41,7 +43,8 @@ fn any_plan() -> impl Strategy<Value = Plan> {
     (any_law(), limits, 0..=MAX_LATENCY_TICKS, 0..=MAX_LATENCY_TICKS).prop_map(|(law, limits, a, b)| {
         let mut config = Config::thesis(law);
         config.shape.max_torque_nm = limits.0;
-        config.shape.max_rate_nm_s = limits.1;
+        config.shape.rise_nm_s = limits.1;
+        config.shape.fall_nm_s = limits.1;
         config.shape.taper = limits.2.map(|(zero, width)| Taper { zero_m_s: zero, full_m_s: zero + width });
         config.latency = Latency { roll_rate_ticks: a, speed_ticks: b };
         config.plan().expect("in range")
@@ -74,7 +77,7 @@ proptest! {
             if let Some(max) = shape.max_torque_nm {
                 prop_assert!(command.torque_nm.abs() <= max);
             }
-            if let Some(rate) = shape.max_rate_nm_s {
+            if let Some(rate) = shape.rise_nm_s {
                 // In f64, with room for the rounding of one f32 addition.
                 let change = (f64::from(command.torque_nm) - f64::from(before)).abs();
                 let room = f64::from(f32::EPSILON) * f64::from(before.abs().max(command.torque_nm.abs()));
@@ -169,7 +172,7 @@ fn late_sensors_are_paired_with_the_past() {
 #[test]
 fn unbelievable_frames_are_refused_with_the_reason() {
     let mut config = Config::thesis(Law::H { cut: false });
-    config.shape.max_rate_nm_s = Some(1000.0);
+    config.shape.fall_nm_s = Some(1000.0);
     let plan = config.plan().expect("in range");
     for (frame, reason) in [
         (fresh(f32::NAN, 4.0), Reject::RollRateRange),
@@ -192,7 +195,7 @@ fn unbelievable_frames_are_refused_with_the_reason() {
         let command = step(&plan, &mut state, &frame);
         assert_eq!(command.status, Status::Rejected(reason));
         assert_eq!(command.torque_nm, before - 1.0);
-        assert_eq!(command.limits, Limits::RATE);
+        assert_eq!(command.limits, ActiveLimits::RATE);
     }
 }
 
@@ -212,9 +215,9 @@ fn parameters_out_of_range_are_named() {
         (refused(|c| c.input.roll_rate_max_rad_s = f32::NAN), "input.roll_rate_max_rad_s"),
         (refused(|c| c.input.speed_max_age_ticks = 1001), "input.speed_max_age_ticks"),
         (refused(|c| c.latency.speed_ticks = 32), "latency.speed_ticks"),
-        (refused(|c| c.shape.max_torque_nm = Some(-1.0)), "shape.max_torque_nm"),
-        (refused(|c| c.shape.max_rate_nm_s = Some(f32::INFINITY)), "shape.max_rate_nm_s"),
-        (refused(|c| c.shape.taper = Some(Taper { zero_m_s: 2.0, full_m_s: 1.0 })), "shape.taper.full_m_s"),
+        (refused(|c| c.shape.max_torque_nm = Some(-1.0)), "max_torque_nm"),
+        (refused(|c| c.shape.rise_nm_s = Some(f32::INFINITY)), "rise_nm_s"),
+        (refused(|c| c.shape.taper = Some(Taper { zero_m_s: 2.0, full_m_s: 1.0 })), "full_m_s"),
     ] {
         assert_eq!(error.leaf.name, name);
         assert!(error.to_string().contains(name) && error.to_string().contains(&error.leaf.max.to_string()));

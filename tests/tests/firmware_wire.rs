@@ -2,7 +2,7 @@
 
 use control::history::Latency;
 use control::wire::{CONFIG_BYTES, decode_config, encode_config};
-use control::{Config, InputConfig, Law, LawTable, ShapeConfig, Taper, Wheel};
+use control::{Config, InputConfig, Law, LawTable, Limits, Taper, Wheel};
 use proptest::prelude::*;
 
 fn laws() -> impl Strategy<Value = Law> {
@@ -34,13 +34,14 @@ fn configurations() -> impl Strategy<Value = Config> {
             speed_max_age_ticks: b,
         });
     let latency = any::<(u16, u16)>().prop_map(|(a, b)| Latency { roll_rate_ticks: a, speed_ticks: b });
-    let shape = any::<(Option<f32>, Option<f32>, Option<(f32, f32)>)>().prop_map(|(torque, rate, taper)| {
-        ShapeConfig {
+    let shape =
+        any::<(Option<f32>, Option<f32>, Option<(f32, f32)>)>().prop_map(|(torque, rate, taper)| Limits {
             max_torque_nm: torque,
-            max_rate_nm_s: rate,
+            rise_nm_s: rate,
+            fall_nm_s: rate,
             taper: taper.map(|(zero_m_s, full_m_s)| Taper { zero_m_s, full_m_s }),
-        }
-    });
+            ..Limits::default()
+        });
     (any::<f32>(), laws(), input, latency, shape).prop_map(|(rate_hz, law, input, latency, shape)| Config {
         rate_hz,
         law,

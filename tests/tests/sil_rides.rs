@@ -98,7 +98,7 @@ fn limits_are_obeyed_in_the_loop() {
     let magnitude = limited(|c| c.shape.max_torque_nm = Some(3.0));
     assert_eq!(magnitude.effort.peak_torque_nm, 3.0);
     assert!(free.effort.peak_torque_nm > 6.0);
-    let rate = limited(|c| c.shape.max_rate_nm_s = Some(20.0));
+    let rate = limited(|c| (c.shape.rise_nm_s, c.shape.fall_nm_s) = (Some(20.0), Some(20.0)));
     assert!((19.9..20.001).contains(&rate.effort.peak_slew_nm_s), "{:?}", rate.effort);
     assert!(free.effort.peak_slew_nm_s > 40.0);
     let taper = limited(|c| c.shape.taper = Some(Taper { zero_m_s: 3.0, full_m_s: 9.9 }));

@@ -7,10 +7,11 @@
 #![no_main]
 #![allow(unsafe_code)]
 
+use control::guard::{self, GuardPlan, GuardState};
 use control::history::{History, Latency};
 use control::input::Believed;
-use control::shape::{Limits, shape};
-use control::{Config, Law, LawTable, Plan, Sample, SensorFrame, State, wire};
+use control::shape::{self, Asked, ShapePlan, ShapeState};
+use control::{ActiveLimits, Config, Law, LawTable, Plan, Sample, SensorFrame, State, wire};
 use core::hint::black_box;
 
 #[panic_handler]
@@ -36,14 +37,34 @@ pub extern "C" fn _start() -> ! {
         used((config.law.validate(), config.input.validate()));
         used((config.latency.validate(), config.shape.validate()));
         used(wire::encode_config(&config));
-        let (limits, [a, b, c, d]) = (black_box(Limits::RATE), black_box([0.0; 4]));
-        used((limits.contains(black_box(Limits::TAPER)), shape(&config.shape, a, b, c, d)));
+        limits(&config);
         let mut history = black_box(History::default());
         used(history.align(&black_box(Latency::default()), black_box(Believed::default())));
         if let Ok(plan) = black_box(config).plan() {
             run(&black_box(plan));
         }
     }
+}
+
+/// The shaper and the guard, each of anything.
+fn limits(config: &Config) {
+    let (table, rate) = (black_box(config.shape), black_box(config.rate_hz));
+    let (mut shape, mut guard) = (black_box(ShapeState::default()), black_box(GuardState::default()));
+    let asked = black_box(Asked {
+        wanted_nm: 0.0,
+        authority: 0.0,
+        limp: false,
+        speed_low_m_s: 0.0,
+        speed_high_m_s: 0.0,
+        steer_rad: None,
+        steer_rate_rad_s: None,
+        rider_torque_nm: None,
+        elapsed_us: 0,
+    });
+    let (torque, acted) = shape::step(&table, &ShapePlan::new(&table, rate), &mut shape, &asked);
+    used((acted.contains(black_box(ActiveLimits::RATE)), shape.torque_nm()));
+    let plan = GuardPlan::new(&table, rate);
+    used(guard::judge(&table, &plan, &mut guard, torque, black_box(true), &asked));
 }
 
 /// The configurations a user can come by: made in code, from a table of any length, from bytes.

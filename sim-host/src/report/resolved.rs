@@ -208,7 +208,7 @@ impl ResolvedConfig {
             schedule_speed: format!("{:?}", c.schedule_speed).to_lowercase(),
             imu: format!("{:?}", c.imu).to_lowercase(),
             torque_limit_nm: config.and_then(|c| c.shape.max_torque_nm),
-            rate_limit_nm_s: config.and_then(|c| c.shape.max_rate_nm_s),
+            rate_limit_nm_s: config.and_then(|c| c.shape.rise_nm_s),
             taper_m_s: config.and_then(|c| c.shape.taper).map(|t| (t.zero_m_s, t.full_m_s)),
             sensor_delay_s: f64::from(c.sensor_delay_ticks) * c.step_s,
             control_rate_hz: config.map(|c| c.rate_hz),
