@@ -1,6 +1,7 @@
 //! The same bytes on every link: little-endian, fixed length, any bit pattern allowed.
 
-use crate::controller::{Command, Config};
+use crate::config::Config;
+use crate::controller::Command;
 use crate::frame::{Sample, SensorFrame, Triple};
 use crate::law::{LAW_NAMES, Law};
 use crate::param::{Leaf, ParamError, Visit};
@@ -10,9 +11,9 @@ use heapless::Vec;
 /// Bytes of a [`SensorFrame`]: its fields in their order, a sample as f32 values and u16 age.
 pub const FRAME_BYTES: usize = 81;
 /// Bytes of a [`Command`]: torque and gain as f32, limits, mode, causes.
-pub const COMMAND_BYTES: usize = 18;
+pub const COMMAND_BYTES: usize = 19;
 /// Bytes of a [`Config`]: the law with room for a whole table, then every leaf in its order.
-pub const CONFIG_BYTES: usize = 510;
+pub const CONFIG_BYTES: usize = 734;
 
 /// A sensor frame as bytes.
 pub fn encode_frame(frame: &SensorFrame) -> [u8; FRAME_BYTES] {
@@ -65,7 +66,7 @@ pub fn encode_command(command: &Command) -> [u8; COMMAND_BYTES] {
     let mut to = Writer(bytes.iter_mut());
     to.f32(command.torque_nm);
     to.f32(command.gain_nm_s_rad);
-    to.u8(command.limits.0);
+    to.u16(command.limits.0);
     to.u8(command.mode as u8);
     to.u64(command.causes.0);
     bytes

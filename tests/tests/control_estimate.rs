@@ -1,6 +1,6 @@
 //! Flight cards: what the estimator makes of a nonlinear bicycle's sensors.
 
-use control::estimate::{EstimateConfig, EstimateState, Felt, Motion, Place, Source, step};
+use control::estimate::{EstimateConfig, EstimateState, Motion, Source, step};
 use sim_host::bicycle::onboard::estimator_parameters;
 use sim_host::ride::Start;
 use tests::basins::H;

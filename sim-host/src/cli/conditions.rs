@@ -7,7 +7,7 @@ use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
 use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
 use clap::ValueEnum;
 use control::param::Leaf;
-use control::{Config, Law, ShapeConfig, Taper, Wheel};
+use control::{Config, Law, Limits, Taper, Wheel};
 
 /// Where defaults come from.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -125,9 +125,9 @@ fn whole_ticks(delay_s: f64, period_s: f64) -> Result<u16, String> {
 /// The option that sets a parameter of the control crate.
 fn option_of(parameter: &Leaf) -> Option<&'static str> {
     match (parameter.group, parameter.name) {
-        ("shape", "max_torque_nm") => Some("--torque-limit"),
-        ("shape", "max_rate_nm_s") => Some("--rate-limit"),
-        ("shape.taper", _) => Some("--taper"),
+        ("limits", "max_torque_nm") => Some("--torque-limit"),
+        ("limits", "rise_nm_s" | "fall_nm_s") => Some("--rate-limit"),
+        ("limits.taper", _) => Some("--taper"),
         _ => None,
     }
 }
@@ -169,16 +169,17 @@ impl ConditionArgs {
         // The simulated bicycle is put together as drawn.
         config.calibration.polarity_checked = true;
         if let Some(Limit(limit)) = self.torque_limit {
-            config.shape.max_torque_nm = limit;
+            config.limits.max_torque_nm = limit;
         }
         if let Some(Limit(limit)) = self.rate_limit {
-            config.shape.max_rate_nm_s = limit;
+            config.limits.rise_nm_s = limit;
+            config.limits.fall_nm_s = limit;
         }
         if let Some(Limit(taper)) = self.taper {
-            config.shape.taper = taper.map(|(zero_m_s, full_m_s)| Taper { zero_m_s, full_m_s });
+            config.limits.taper = taper.map(|(zero_m_s, full_m_s)| Taper { zero_m_s, full_m_s });
         }
         let period_s = 1.0 / f64::from(config.rate_hz);
-        let limited = config.shape != ShapeConfig::default();
+        let limited = config.limits != Limits::default();
         let plan = config.plan().map_err(|e| match option_of(&e.leaf) {
             Some(option) => format!("{option}: {e}"),
             None => e.to_string(),

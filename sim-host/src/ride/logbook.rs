@@ -58,7 +58,7 @@ impl Logbook {
     }
 
     /// The controller's answer to this instant's reading: torque and active limits.
-    pub(super) fn command(&mut self, assist: &Assist, told: &Reading) -> (f64, u8) {
+    pub(super) fn command(&mut self, assist: &Assist, told: &Reading) -> (f64, u16) {
         match assist {
             Assist::None => (0.0, 0),
             Assist::Firmware(plan) => {

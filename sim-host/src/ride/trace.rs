@@ -38,8 +38,8 @@ pub struct TracePoint {
     pub measured_speed: f64,
     /// The assist's steer torque \[N m\].
     pub torque: f64,
-    /// Limits that changed the torque, as bits of [`control::Limits`].
-    pub limits: u8,
+    /// Limits that changed the torque, as bits of [`control::ActiveLimits`].
+    pub limits: u16,
     /// The rider's steer torque \[N m\].
     pub rider_torque: f64,
 }
@@ -52,7 +52,7 @@ impl TracePoint {
         motion: &Motion<Lanes<N>>,
         told: &Reading,
         pushes: Pushes,
-        limits: u8,
+        limits: u16,
     ) -> Self {
         let (pose, actual) = (&motion.pose, &motion.actual);
         let angle = |(s, c): (Lanes<N>, Lanes<N>)| s.0[0].atan2(c.0[0]);
