@@ -141,6 +141,22 @@ impl Default for EndStop {
 }
 
 impl Limits {
+    /// What is flashed.
+    pub fn product() -> Self {
+        Self {
+            max_torque_nm: Some(7.0),
+            speed_cap: None,
+            taper: Some(Taper { zero_m_s: 0.5, full_m_s: 1.5 }),
+            rise_nm_s: Some(100.0),
+            fall_nm_s: Some(200.0),
+            rider_torque: Some(RiderTorque { allowance_nm: 2.0, multiplier: 2.0 }),
+            rider_motion: Some(RiderMotion { steer_rate_rad_s: 1.0, after_ms: 200, fade_ms: 100 }),
+            window: Some(Window { ms: 100, nm: 8.0 }),
+            end_stop: Some(EndStop { soft_rad: 1.047, hard_rad: 1.222 }),
+            limp_fraction: Some(0.5),
+        }
+    }
+
     /// Shows every limit.
     pub fn leaves<V: Visit>(&mut self, to: &mut V) {
         let leaf = |name, min, max| Leaf::new("limits", name, min, max);

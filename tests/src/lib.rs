@@ -6,6 +6,7 @@ pub mod derived;
 pub mod draws;
 pub mod flow;
 pub mod json_schema;
+pub mod limits;
 pub mod linearised;
 pub mod newton_euler;
 pub mod published;
