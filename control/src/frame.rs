@@ -23,26 +23,80 @@ impl Sample {
     }
 }
 
-/// The sensors at one control instant, benchmark axes and signs.
+/// The newest sample of a sensor with three axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SensorFrame {
-    /// Angular rate of the rear frame about its x axis (forward, horizontal when upright), as a
-    /// gyro on the frame gives it \[rad/s\]; positive rolling right. The Euler rate of roll that
-    /// the published laws use differs from it by yaw rate times the sine of pitch and mounting.
-    pub roll_rate_rad_s: Sample,
-    /// Forward speed of the wheel named in [`crate::InputConfig::wheel`] \[m/s\]: its rate times
-    /// its radius, positive forward.
-    pub wheel_speed_m_s: Sample,
+pub struct Triple {
+    /// The values along x, y and z. Any bit patterns.
+    pub value: [f32; 3],
+    /// Control periods since the sensor delivered them: 0 is fresh, [`MISSING`] is none.
+    pub age_ticks: u16,
 }
 
-impl SensorFrame {
-    /// A frame with no sample in it.
+impl Triple {
+    /// A sample delivered in this very period.
+    pub const fn fresh(value: [f32; 3]) -> Self {
+        Self { value, age_ticks: 0 }
+    }
+    /// No sample.
     pub const fn missing() -> Self {
-        Self { roll_rate_rad_s: Sample::missing(), wheel_speed_m_s: Sample::missing() }
+        Self { value: [0.0; 3], age_ticks: MISSING }
     }
 }
 
-/// Which wheel the speed sensor sits on. At large steer angles the front wheel turns up to twice
+/// The sensors at one control instant, each in its own axes, zero and sign, which
+/// [`crate::calibrate`] turns into the bicycle's. A sensor that is not there is always missing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorFrame {
+    /// The time of this instant \[us\], wrapping.
+    pub now_us: u32,
+    /// Angular velocity of the rear frame \[rad/s\]: about x (forward, horizontal when upright), y
+    /// (right) and z (down). The Euler rate of roll that the published laws use differs from x by
+    /// yaw rate times the sine of pitch.
+    pub gyro_rad_s: Triple,
+    /// Specific force, acceleration less gravity, in the same axes \[m/s^2\]: (0, 0, -9.81) upright
+    /// at rest. The mean over the last period.
+    pub accel_m_s2: Triple,
+    /// Steer angle by a sensor that knows its zero \[rad\], positive to the right.
+    pub steer_rad: Sample,
+    /// Steer rate by the motor's encoder \[rad/s\].
+    pub steer_rate_rad_s: Sample,
+    /// Rate of the front wheel times its radius \[m/s\], positive forward.
+    pub front_wheel_m_s: Sample,
+    /// Rate of the rear wheel times its radius \[m/s\], positive forward.
+    pub rear_wheel_m_s: Sample,
+    /// The rider's torque on the handlebar \[N m\], positive to the right.
+    pub rider_torque_nm: Sample,
+    /// The torque that the drive says it gives \[N m\].
+    pub motor_torque_nm: Sample,
+    /// Heading less the path's direction \[rad\], positive to the right.
+    pub heading_error_rad: Sample,
+    /// Distance from the path \[m\], positive to its right.
+    pub lateral_error_m: Sample,
+    /// The rider's switch: true asks for assist.
+    pub engage: bool,
+}
+
+impl SensorFrame {
+    /// A frame with no sample in it, the switch off.
+    pub const fn missing() -> Self {
+        Self {
+            now_us: 0,
+            gyro_rad_s: Triple::missing(),
+            accel_m_s2: Triple::missing(),
+            steer_rad: Sample::missing(),
+            steer_rate_rad_s: Sample::missing(),
+            front_wheel_m_s: Sample::missing(),
+            rear_wheel_m_s: Sample::missing(),
+            rider_torque_nm: Sample::missing(),
+            motor_torque_nm: Sample::missing(),
+            heading_error_rad: Sample::missing(),
+            lateral_error_m: Sample::missing(),
+            engage: false,
+        }
+    }
+}
+
+/// Which wheel's speed schedules the gains. At large steer angles the front wheel turns up to twice
 /// as fast as the rear one, so a gain scheduled with one is not the gain scheduled with the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wheel {

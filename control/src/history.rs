@@ -4,8 +4,8 @@
 //! values pass through untouched. After a reset, or a gap, nothing comes out until enough has gone
 //! in: no motion is invented.
 
-use crate::input::Believed;
-use crate::param::{ParamError, check};
+use crate::input::Bounds;
+use crate::param::{Leaf, Visit};
 use heapless::Deque;
 
 /// Most control periods by which two sensors' latencies may differ.
@@ -23,21 +23,27 @@ pub struct Latency {
 }
 
 impl Latency {
-    /// Checks both latencies.
-    ///
-    /// # Errors
-    /// The parameter, its value and the allowed range.
-    pub fn validate(&self) -> Result<(), ParamError> {
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
         let max = f32::from(MAX_LATENCY_TICKS);
-        check("latency.roll_rate_ticks", f32::from(self.roll_rate_ticks), 0.0, max)?;
-        check("latency.speed_ticks", f32::from(self.speed_ticks), 0.0, max)
+        to.count(&Leaf::new("latency", "roll_rate_ticks", 0.0, max), &mut self.roll_rate_ticks);
+        to.count(&Leaf::new("latency", "speed_ticks", 0.0, max), &mut self.speed_ticks);
     }
+}
+
+/// What the law needs of one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Aligned {
+    /// Roll rate \[rad/s\].
+    pub roll_rate_rad_s: f32,
+    /// Speed \[m/s\].
+    pub speed: Bounds,
 }
 
 /// The believed values of the last periods, newest last, without gaps.
 #[derive(Clone, Debug, Default)]
 pub struct History {
-    recent: Deque<Believed, CAPACITY>,
+    recent: Deque<Aligned, CAPACITY>,
 }
 
 impl History {
@@ -48,7 +54,7 @@ impl History {
 
     /// Takes in the newest values and gives back one instant's, or `None` while the faster
     /// sensor's past does not yet reach back to the slower one's present.
-    pub fn align(&mut self, latency: &Latency, newest: Believed) -> Option<Believed> {
+    pub fn align(&mut self, latency: &Latency, newest: Aligned) -> Option<Aligned> {
         let Latency { roll_rate_ticks, speed_ticks } = *latency;
         if roll_rate_ticks == speed_ticks {
             return Some(newest);
@@ -62,6 +68,6 @@ impl History {
         let slowest = roll_rate_ticks.max(speed_ticks);
         let roll_rate = back(slowest.saturating_sub(roll_rate_ticks))?;
         let speed = back(slowest.saturating_sub(speed_ticks))?;
-        Some(Believed { roll_rate_rad_s: roll_rate.roll_rate_rad_s, speed_m_s: speed.speed_m_s })
+        Some(Aligned { roll_rate_rad_s: roll_rate.roll_rate_rad_s, speed: speed.speed })
     }
 }

@@ -1,93 +1,332 @@
-//! May a sensor frame be believed: finite, in range, fresh. Decided before any arithmetic.
+//! Which sensors may be believed, decided before any arithmetic; and between which bounds the speed is.
 
+use crate::fault::{Cause, Causes};
 use crate::frame::{Sample, SensorFrame, Wheel};
-use crate::param::{ParamError, check};
+use crate::param::{Leaf, Visit};
+use crate::watch::{Codes, Loss, Sensor, Told, Watch};
 
-/// What an input must fulfil.
+/// The declared sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputConfig {
-    /// Which wheel [`SensorFrame::wheel_speed_m_s`] is measured on.
+    /// Which wheel schedules the gains while both are believed.
     pub wheel: Wheel,
-    /// Largest believable roll rate, either way \[rad/s\], 1..=100.
-    pub roll_rate_max_rad_s: f32,
-    /// Largest believable wheel speed, either way \[m/s\], 1..=30.
-    pub speed_max_m_s: f32,
-    /// Oldest roll-rate sample that is still used \[control periods\], 0..=1000.
-    pub roll_rate_max_age_ticks: u16,
-    /// Oldest speed sample that is still used \[control periods\], 0..=1000.
-    pub speed_max_age_ticks: u16,
+    /// How many of the newest samples the speed's bounds span, 1..=[`RECENT`].
+    pub recent_samples: u16,
+    /// How fast the speed may change while no sample comes \[m/s^2\]: the bounds widen by it.
+    pub drift_m_s2: f32,
+    /// Age from which they widen: the time between samples of a good wheel sensor \[control periods\].
+    pub drift_after_ticks: u16,
+    /// Angular velocity of the frame \[rad/s\].
+    pub gyro: Sensor,
+    /// Specific force \[m/s^2\].
+    pub accel: Sensor,
+    /// Steer angle \[rad\].
+    pub steer: Sensor,
+    /// Steer rate \[rad/s\].
+    pub steer_rate: Sensor,
+    /// Speed of the front wheel \[m/s\].
+    pub front_wheel: Sensor,
+    /// Speed of the rear wheel \[m/s\].
+    pub rear_wheel: Sensor,
+    /// The rider's torque \[N m\].
+    pub rider_torque: Sensor,
+    /// The drive's torque \[N m\].
+    pub motor: Sensor,
+    /// The path's errors \[rad, m\].
+    pub path: Sensor,
 }
+
+/// Most samples that the speed's bounds can span.
+pub const RECENT: usize = 6;
 
 impl Default for InputConfig {
-    /// Front wheel; 60 rad/s and 30 m/s; only fresh samples.
+    /// A gyro up to 60 rad/s and a front wheel up to 100 m/s, only fresh samples; nothing else.
     fn default() -> Self {
+        let none = Sensor::default();
         Self {
             wheel: Wheel::Front,
-            roll_rate_max_rad_s: 60.0,
-            speed_max_m_s: 30.0,
-            roll_rate_max_age_ticks: 0,
-            speed_max_age_ticks: 0,
+            recent_samples: 1,
+            drift_m_s2: 0.0,
+            drift_after_ticks: 0,
+            gyro: Sensor::exact(60.0),
+            accel: none,
+            steer: none,
+            steer_rate: none,
+            front_wheel: Sensor::exact(100.0),
+            rear_wheel: none,
+            rider_torque: none,
+            motor: none,
+            path: none,
         }
     }
-}
-
-/// Why a frame was not used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Reject {
-    /// No roll rate, or one older than allowed.
-    RollRateStale = 1,
-    /// Roll rate is NaN, infinite or beyond its range.
-    RollRateRange = 2,
-    /// No speed, or one older than allowed.
-    SpeedStale = 3,
-    /// Speed is NaN, infinite or beyond its range.
-    SpeedRange = 4,
-}
-
-/// A frame's values once believed: finite and in range.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Believed {
-    /// Roll rate \[rad/s\].
-    pub roll_rate_rad_s: f32,
-    /// Wheel speed \[m/s\].
-    pub speed_m_s: f32,
 }
 
 impl InputConfig {
-    /// Checks the limits themselves.
-    ///
-    /// # Errors
-    /// The parameter, its value and the allowed range.
-    pub fn validate(&self) -> Result<(), ParamError> {
-        check("input.roll_rate_max_rad_s", self.roll_rate_max_rad_s, 1.0, 100.0)?;
-        check("input.speed_max_m_s", self.speed_max_m_s, 1.0, 30.0)?;
-        let ages = (f32::from(self.roll_rate_max_age_ticks), f32::from(self.speed_max_age_ticks));
-        check("input.roll_rate_max_age_ticks", ages.0, 0.0, 1000.0)?;
-        check("input.speed_max_age_ticks", ages.1, 0.0, 1000.0)
+    /// The same with the gains scheduled by `wheel`; if only the other wheel has a sensor, it moves.
+    pub fn scheduled_by(mut self, wheel: Wheel) -> Self {
+        let (front, rear) = (self.front_wheel.fitted, self.rear_wheel.fitted);
+        if self.wheel != wheel && front != rear {
+            core::mem::swap(&mut self.front_wheel, &mut self.rear_wheel);
+        }
+        Self { wheel, ..self }
     }
 
-    /// The values of `frame`, or the first reason not to use it.
-    ///
-    /// # Errors
-    /// A [`Reject`]; the frame must then not reach any arithmetic.
-    pub fn believe(&self, frame: &SensorFrame) -> Result<Believed, Reject> {
-        let fresh = |s: &Sample, max| s.age_ticks <= max;
-        // Written so that NaN, which compares false, is refused.
-        let inside = |s: &Sample, max: f32| s.value >= -max && s.value <= max;
-        if !fresh(&frame.roll_rate_rad_s, self.roll_rate_max_age_ticks) {
-            Err(Reject::RollRateStale)
-        } else if !inside(&frame.roll_rate_rad_s, self.roll_rate_max_rad_s) {
-            Err(Reject::RollRateRange)
-        } else if !fresh(&frame.wheel_speed_m_s, self.speed_max_age_ticks) {
-            Err(Reject::SpeedStale)
-        } else if !inside(&frame.wheel_speed_m_s, self.speed_max_m_s) {
-            Err(Reject::SpeedRange)
-        } else {
-            Ok(Believed {
-                roll_rate_rad_s: frame.roll_rate_rad_s.value,
-                speed_m_s: frame.wheel_speed_m_s.value,
-            })
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        let g = "input";
+        let mut wheel = u8::from(self.wheel == Wheel::Rear);
+        to.choice(&Leaf::new(g, "wheel", 0.0, 1.0), &["front", "rear"], &mut wheel);
+        self.wheel = if wheel == 0 { Wheel::Front } else { Wheel::Rear };
+        to.count(&Leaf::new(g, "recent_samples", 1.0, RECENT as f32), &mut self.recent_samples);
+        to.number(&Leaf::new(g, "drift_m_s2", 0.0, 100.0), &mut self.drift_m_s2);
+        to.count(&Leaf::new(g, "drift_after_ticks", 0.0, 10_000.0), &mut self.drift_after_ticks);
+        self.gyro.leaves("input.gyro", to);
+        self.accel.leaves("input.accel", to);
+        self.steer.leaves("input.steer", to);
+        self.steer_rate.leaves("input.steer_rate", to);
+        self.front_wheel.leaves("input.front_wheel", to);
+        self.rear_wheel.leaves("input.rear_wheel", to);
+        self.rider_torque.leaves("input.rider_torque", to);
+        self.motor.leaves("input.motor", to);
+        self.path.leaves("input.path", to);
+    }
+
+    /// Each sensor with its codes.
+    fn declared(&self) -> [(&Sensor, &'static Codes); 9] {
+        [
+            (&self.gyro, &GYRO),
+            (&self.accel, &ACCEL),
+            (&self.steer, &STEER),
+            (&self.steer_rate, &STEER_RATE),
+            (&self.front_wheel, &FRONT_WHEEL),
+            (&self.rear_wheel, &REAR_WHEEL),
+            (&self.rider_torque, &RIDER_TORQUE),
+            (&self.motor, &MOTOR),
+            (&self.path, &PATH),
+        ]
+    }
+
+    /// Most good samples that any fitted sensor needs before it is believed.
+    pub fn slowest_to_qualify(&self) -> u32 {
+        let needs =
+            |(sensor, _): (&Sensor, _)| if sensor.fitted { u32::from(sensor.qualify_samples) } else { 0 };
+        self.declared().into_iter().map(needs).fold(0, u32::max)
+    }
+
+    /// The causes that mean `loss`, by the sensors' declarations.
+    pub fn causes_of(&self, loss: Loss) -> Causes {
+        let mut set = Causes::NONE;
+        for (sensor, codes) in self.declared() {
+            if sensor.loss == loss {
+                set = set.with(codes.set());
+            }
         }
+        set
+    }
+}
+
+macro_rules! codes {
+    ($name:ident, $lost:ident, $range:ident, $jump:ident, $stuck:ident) => {
+        const $name: Codes =
+            Codes { lost: Cause::$lost, range: Cause::$range, jump: Cause::$jump, stuck: Cause::$stuck };
+    };
+}
+
+codes!(GYRO, GyroLost, GyroRange, GyroJump, GyroStuck);
+codes!(ACCEL, AccelLost, AccelRange, AccelJump, AccelStuck);
+codes!(STEER, SteerLost, SteerRange, SteerJump, SteerStuck);
+codes!(STEER_RATE, SteerRateLost, SteerRateRange, SteerRateJump, SteerRateStuck);
+codes!(FRONT_WHEEL, FrontWheelLost, FrontWheelRange, FrontWheelJump, FrontWheelStuck);
+codes!(REAR_WHEEL, RearWheelLost, RearWheelRange, RearWheelJump, RearWheelStuck);
+codes!(RIDER_TORQUE, RiderTorqueLost, RiderTorqueRange, RiderTorqueJump, RiderTorqueStuck);
+codes!(MOTOR, MotorLost, MotorRange, MotorJump, MotorStuck);
+codes!(PATH, PathLost, PathLost, PathLost, PathLost);
+
+/// A value known only to lie between two.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bounds {
+    /// The least it can be.
+    pub low: f32,
+    /// The newest sample.
+    pub newest: f32,
+    /// The most it can be.
+    pub high: f32,
+}
+
+/// The sensors' values, `None` where a sensor is not fitted or not believed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Believed {
+    /// Angular velocity of the frame \[rad/s\].
+    pub gyro_rad_s: Option<[f32; 3]>,
+    /// Specific force \[m/s^2\].
+    pub accel_m_s2: Option<[f32; 3]>,
+    /// Steer angle \[rad\].
+    pub steer_rad: Option<f32>,
+    /// Steer rate \[rad/s\].
+    pub steer_rate_rad_s: Option<f32>,
+    /// Speed of the front wheel \[m/s\].
+    pub front_wheel_m_s: Option<Bounds>,
+    /// Speed of the rear wheel \[m/s\].
+    pub rear_wheel_m_s: Option<Bounds>,
+    /// The rider's torque \[N m\].
+    pub rider_torque_nm: Option<f32>,
+    /// The drive's torque \[N m\].
+    pub motor_torque_nm: Option<f32>,
+    /// Heading \[rad\] and lateral \[m\] error.
+    pub path: Option<[f32; 2]>,
+    /// What is wrong with the others.
+    pub causes: Causes,
+}
+
+/// What is remembered of the sensors.
+#[derive(Clone, Debug, Default)]
+pub struct InputState {
+    gyro: Watch<3>,
+    accel: Watch<3>,
+    steer: Watch<1>,
+    steer_rate: Watch<1>,
+    front_wheel: Watch<1>,
+    rear_wheel: Watch<1>,
+    rider_torque: Watch<1>,
+    motor: Watch<1>,
+    path: Watch<2>,
+    front_recent: Recent,
+    rear_recent: Recent,
+    /// The frame before.
+    before: Option<Before>,
+}
+
+/// What tells whether the bicycle moves.
+#[derive(Clone, Copy, Debug)]
+struct Before {
+    steer_rad: f32,
+    front_wheel_m_s: f32,
+    rear_wheel_m_s: f32,
+    torque_nm: f32,
+}
+
+/// One control period, from a frame in the bicycle's axes and the torque commanded last \[N m\].
+pub fn step(
+    config: &InputConfig,
+    period_s: f32,
+    state: &mut InputState,
+    frame: &SensorFrame,
+    torque_nm: f32,
+) -> Believed {
+    let s = state;
+    let was = s.before.unwrap_or(Before::of(frame, torque_nm));
+    s.before = Some(Before::of(frame, torque_nm));
+    let size = |x: f32| if x < 0.0 { -x } else { x };
+    // What other sensors say of it; NaN says nothing.
+    let turning = size(frame.steer_rad.value - was.steer_rad) > TURNED_RAD
+        || size(frame.steer_rate_rad_s.value) > TURNING_RAD_S;
+    let [x, y, z] = frame.gyro_rad_s.value.map(size);
+    let swinging = x > SWINGING_RAD_S || y > SWINGING_RAD_S || z > SWINGING_RAD_S;
+    let front_changes = frame.front_wheel_m_s.value.to_bits() != was.front_wheel_m_s.to_bits();
+    let rear_changes = frame.rear_wheel_m_s.value.to_bits() != was.rear_wheel_m_s.to_bits();
+    let torque_changes = size(torque_nm - was.torque_nm) > TORQUE_CHANGE_NM;
+
+    let mut causes = Causes::NONE;
+    let gyro = {
+        let sample = (&frame.gyro_rad_s.value, frame.gyro_rad_s.age_ticks);
+        told(&mut causes, s.gyro.step(&config.gyro, &GYRO, period_s, sample, turning))
+    };
+    let accel = {
+        let sample = (&frame.accel_m_s2.value, frame.accel_m_s2.age_ticks);
+        told(&mut causes, s.accel.step(&config.accel, &ACCEL, period_s, sample, swinging))
+    };
+    let mut one = |watch: &mut Watch<1>, sensor: &Sensor, codes: &Codes, sample: &Sample, moves: bool| {
+        let sample = (&[sample.value], sample.age_ticks);
+        told(&mut causes, watch.step(sensor, codes, period_s, sample, moves))
+            .map(|([value], age)| (value, age))
+    };
+    let swings = size(frame.steer_rate_rad_s.value) > TURNING_RAD_S;
+    let steer = one(&mut s.steer, &config.steer, &STEER, &frame.steer_rad, swings);
+    let turned = size(frame.steer_rad.value - was.steer_rad) > TURNED_RAD;
+    let steer_rate = one(&mut s.steer_rate, &config.steer_rate, &STEER_RATE, &frame.steer_rate_rad_s, turned);
+    let front =
+        one(&mut s.front_wheel, &config.front_wheel, &FRONT_WHEEL, &frame.front_wheel_m_s, rear_changes);
+    let rear = one(&mut s.rear_wheel, &config.rear_wheel, &REAR_WHEEL, &frame.rear_wheel_m_s, front_changes);
+    let rider =
+        one(&mut s.rider_torque, &config.rider_torque, &RIDER_TORQUE, &frame.rider_torque_nm, turning);
+    let motor = one(&mut s.motor, &config.motor, &MOTOR, &frame.motor_torque_nm, torque_changes);
+    let path = {
+        let values = [frame.heading_error_rad.value, frame.lateral_error_m.value];
+        let age = frame.heading_error_rad.age_ticks.max(frame.lateral_error_m.age_ticks);
+        told(&mut causes, s.path.step(&config.path, &PATH, period_s, (&values, age), false))
+    };
+    Believed {
+        gyro_rad_s: gyro.map(|(value, _)| value),
+        accel_m_s2: accel.map(|(value, _)| value),
+        steer_rad: steer.map(|(value, _)| value),
+        steer_rate_rad_s: steer_rate.map(|(value, _)| value),
+        front_wheel_m_s: s.front_recent.bounds(config, period_s, front),
+        rear_wheel_m_s: s.rear_recent.bounds(config, period_s, rear),
+        rider_torque_nm: rider.map(|(value, _)| value),
+        motor_torque_nm: motor.map(|(value, _)| value),
+        path: path.map(|(value, _)| value),
+        causes,
+    }
+}
+
+/// Steer in one period that counts as turning \[rad\]: 1 rad/s at 1 kHz.
+const TURNED_RAD: f32 = 1e-3;
+/// Steer rate that counts as turning \[rad/s\].
+const TURNING_RAD_S: f32 = 1.0;
+/// Angular velocity of the frame that counts as moving \[rad/s\].
+const SWINGING_RAD_S: f32 = 0.5;
+/// Change of torque in one period that the drive must show \[N m\].
+const TORQUE_CHANGE_NM: f32 = 0.01;
+
+impl Before {
+    fn of(frame: &SensorFrame, torque_nm: f32) -> Self {
+        Self {
+            steer_rad: frame.steer_rad.value,
+            front_wheel_m_s: frame.front_wheel_m_s.value,
+            rear_wheel_m_s: frame.rear_wheel_m_s.value,
+            torque_nm,
+        }
+    }
+}
+
+/// A watch's value; what is wrong goes to the causes.
+fn told<const N: usize>(causes: &mut Causes, told: Told<N>) -> Option<([f32; N], u16)> {
+    if let Some(cause) = told.lost {
+        causes.note(cause, true);
+    }
+    told.value
+}
+
+/// The newest samples of a wheel.
+#[derive(Clone, Debug, Default)]
+struct Recent {
+    samples: heapless::Deque<f32, RECENT>,
+}
+
+impl Recent {
+    /// The bounds of a speed from its newest sample and age, and the samples before it.
+    fn bounds(&mut self, config: &InputConfig, period_s: f32, newest: Option<(f32, u16)>) -> Option<Bounds> {
+        let Some((newest, age)) = newest else {
+            self.samples.clear();
+            return None;
+        };
+        if age == 0 || self.samples.is_empty() {
+            while self.samples.len() >= usize::from(config.recent_samples).max(1) {
+                let _ = self.samples.pop_front();
+            }
+            // There is room: the oldest went above.
+            let _ = self.samples.push_back(newest);
+        }
+        let (mut low, mut high) = (newest, newest);
+        for sample in &self.samples {
+            low = if *sample < low { *sample } else { low };
+            high = if *sample > high { *sample } else { high };
+        }
+        let late = age.saturating_sub(config.drift_after_ticks);
+        if late > 0 {
+            let drift = config.drift_m_s2 * period_s * f32::from(late);
+            (low, high) = (low - drift, high + drift);
+        }
+        Some(Bounds { low, newest, high })
     }
 }

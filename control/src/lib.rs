@@ -2,7 +2,8 @@
 //!
 //! # Contract
 //! * **Call** [`step`] once per control period (1 kHz by default, [`Config::rate_hz`]), with the
-//!   sensors of that instant. There is no clock inside: time is counted in calls.
+//!   sensors of that instant. There is no clock inside: time is counted in calls, and what really
+//!   passed stands in the frame.
 //! * **Axes** are the benchmark's (Meijaard et al. 2007, SAE): x forward, y right, z down. Roll
 //!   rate is positive rolling right, steer torque is positive to the right. The assist steers into
 //!   the fall: `T = +gain(v) * roll_rate` with `gain > 0` where it stabilises.
@@ -11,28 +12,46 @@
 //!   hardware. f32 arithmetic and [`libm`] only, so host and Cortex-M agree in every bit.
 //! * **Total**: every bit pattern of every input gives a finite torque inside the limits.
 //!
-//! The way of the data, one module each: [`frame`] (what the sensors say) -> [`input`] (may it be
-//! believed) -> [`history`] (sensors of different latency brought to one instant) -> [`law`] (the
-//! wanted torque) -> [`shape`] (what may be asked of the motor,
-//! by the table in [`limits`]; [`guard`] judges it). [`controller`] puts them together.
+//! The way of the data, one module each: [`frame`] (what the sensors say) -> [`calibrate`] (in the
+//! bicycle's axes) -> [`input`] (may it be believed; [`watch`] is one sensor) -> [`permit`] (may
+//! torque flow, and why not) -> [`history`] (sensors of different latency brought to one instant) ->
+//! [`law`] (the wanted torque; [`table`] for one of a user's own,
+//! [`capsize`] for what may be added to it) -> [`shape`] (what may be asked of the motor,
+//! by the table in [`limits`]; [`guard`] judges it by the same). [`controller`] puts them
+//! together, [`fault`] numbers what can go wrong, [`param`] declares every parameter.
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod calibrate;
+pub mod capsize;
 pub mod controller;
+pub mod estimate;
+pub mod fault;
 pub mod frame;
 pub mod guard;
 pub mod history;
 pub mod input;
 pub mod law;
 pub mod limits;
+pub mod maths;
 pub mod param;
+pub mod permit;
+pub mod pulses;
 pub mod real;
 pub mod shape;
+pub mod table;
+pub mod watch;
 pub mod wire;
 
-pub use controller::{Command, Config, Plan, State, Status, step};
-pub use frame::{Sample, SensorFrame, Wheel};
-pub use input::{InputConfig, Reject};
-pub use law::{Law, LawTable};
+pub use calibrate::Calibration;
+pub use capsize::Capsize;
+pub use controller::{Command, Config, Plan, State, step};
+pub use fault::{CAUSES, Cause, Causes};
+pub use frame::{Sample, SensorFrame, Triple, Wheel};
+pub use input::InputConfig;
+pub use law::Law;
 pub use limits::{ActiveLimits, Limits, Taper};
 pub use param::ParamError;
+pub use permit::{Mode, PermitConfig};
+pub use table::LawTable;
+pub use watch::{Loss, Sensor};

@@ -1,6 +1,6 @@
 //! How fast: `cargo bench -p sim-host`. Figures of one machine stand in docs/performance.md.
 
-use control::{Config, Law, Sample, SensorFrame};
+use control::{Config, Law, Sample, SensorFrame, Triple};
 use divan::{Bencher, black_box};
 use sim_host::basin::{Axis, Search, basin};
 use sim_host::bicycle::{Geometry, Motion, State, Torques, catalogue, pitch_from_upright};
@@ -99,8 +99,9 @@ fn control_step_x1000(bencher: Bencher) {
         let mut state = control::State::default();
         for i in 0..1000_u16 {
             let sample = |x: f32| Sample::fresh(black_box(x));
-            let roll_rate_rad_s = sample(f32::from(i) * 1e-3);
-            let frame = SensorFrame { roll_rate_rad_s, wheel_speed_m_s: sample(4.0) };
+            let gyro_rad_s = Triple::fresh([black_box(f32::from(i) * 1e-3), 0.0, 0.0]);
+            let front_wheel_m_s = sample(4.0);
+            let frame = SensorFrame { gyro_rad_s, front_wheel_m_s, engage: true, ..SensorFrame::missing() };
             black_box(control::step(&plan, &mut state, &frame));
         }
     });

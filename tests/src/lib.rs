@@ -4,6 +4,7 @@ pub mod basins;
 pub mod cli;
 pub mod derived;
 pub mod draws;
+pub mod felt;
 pub mod flow;
 pub mod json_schema;
 pub mod limits;

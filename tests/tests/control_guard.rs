@@ -291,7 +291,7 @@ fn each_fault_of_the_shaper_is_found() {
             Asked {
                 steer_rad: Some(1.4 * (2.0 * t).sin()),
                 steer_rate_rad_s: Some(2.8 * (2.0 * t).cos()),
-                rider_torque_nm: Some(8.0 * (3.3 * t).sin()),
+                rider_torque_nm: Some(20.0 * (3.3 * t).sin()),
                 limp: i > 1000,
                 ..at_speed(20.0 * (5.0 * t).sin(), 2.0 + 1.5 * t.cos())
             }

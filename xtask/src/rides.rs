@@ -1,9 +1,9 @@
 //! Sensor frames to feed to the images, and the configurations to run on them.
 
 use control::history::{Latency, MAX_LATENCY_TICKS};
-use control::law::TABLE_POINTS;
+use control::table::TABLE_POINTS;
 use control::wire::{decode_frame, encode_config, encode_frame};
-use control::{Config, Law, LawTable, Sample, SensorFrame, Wheel};
+use control::{Config, Law, LawTable, Sample, SensorFrame, Triple, Wheel};
 use std::f32::consts::TAU;
 
 /// [`border_ride`], as recorded.
@@ -22,8 +22,9 @@ pub fn configurations() -> Vec<(&'static str, Config)> {
         latency: Latency { roll_rate_ticks, speed_ticks },
         ..config
     };
-    let mut rear = Config::product();
-    rear.input.wheel = Wheel::Rear;
+    let mut product = Config::product();
+    product.calibration.polarity_checked = true;
+    let rear = Config { input: product.input.scheduled_by(Wheel::Rear), ..product.clone() };
     vec![
         ("none", Config::thesis(Law::None)),
         ("h", Config::thesis(Law::H { cut: false })),
@@ -32,9 +33,10 @@ pub fn configurations() -> Vec<(&'static str, Config)> {
         ("g", Config::thesis(Law::G)),
         ("cl1", Config::thesis(Law::Cl1)),
         ("cl2, k = 3.7", Config::thesis(Law::Cl2 { k: 3.7 })),
+        ("balance assist, kappa = 5.2", Config::thesis(Law::BalanceAssist { kappa: 5.2 })),
         ("table of 32 points", Config::thesis(Law::Table(table))),
         ("h, gyro 31 ticks late", late(MAX_LATENCY_TICKS, 0, Config::thesis(Law::H { cut: false }))),
-        ("product", Config::product()),
+        ("product", product),
         ("product, rear wheel, wheel 20 ticks late", late(2, 20, rear)),
     ]
 }
@@ -63,7 +65,15 @@ pub fn swinging_ride() -> Vec<SensorFrame> {
                 speed = 1.0 + 0.7 * (t - 10.0).abs();
             }
             let wheel_speed_m_s = Sample { value: speed, age_ticks: tick % 20 };
-            SensorFrame { roll_rate_rad_s: Sample::fresh(size * (0.8 * TAU * t).sin()), wheel_speed_m_s }
+            let roll_rate = size * (0.8 * TAU * t).sin();
+            SensorFrame {
+                now_us: u32::from(tick) * 1000,
+                gyro_rad_s: Triple::fresh([roll_rate, 0.0, 0.0]),
+                front_wheel_m_s: wheel_speed_m_s,
+                rear_wheel_m_s: wheel_speed_m_s,
+                engage: tick > 400,
+                ..SensorFrame::missing()
+            }
         })
         .collect()
 }
@@ -73,8 +83,9 @@ pub fn fresh(ride: &[SensorFrame]) -> Vec<SensorFrame> {
     let fresh = |sample: Sample| Sample { age_ticks: 0, ..sample };
     ride.iter()
         .map(|f| SensorFrame {
-            roll_rate_rad_s: fresh(f.roll_rate_rad_s),
-            wheel_speed_m_s: fresh(f.wheel_speed_m_s),
+            front_wheel_m_s: fresh(f.front_wheel_m_s),
+            rear_wheel_m_s: fresh(f.rear_wheel_m_s),
+            ..*f
         })
         .collect()
 }
@@ -83,14 +94,27 @@ pub fn fresh(ride: &[SensorFrame]) -> Vec<SensorFrame> {
 /// them anything: every bit pattern, the edges of the ranges, late and missing samples.
 pub fn random_frames(seed: u64, frames: usize) -> Vec<SensorFrame> {
     let mut random = Random(seed);
-    let mut calm = 0;
+    let (mut calm, mut switch, mut now_us) = (0, 0, 0_u32);
     (0..frames)
         .map(|_| {
             calm = if calm == 0 { random.below(200) } else { calm - 1 };
+            switch = if switch == 0 { random.below(4000) } else { switch - 1 };
             let wild = calm < 20 && random.below(3) == 0;
+            now_us = now_us.wrapping_add(if wild { random.next() as u32 } else { 1000 });
+            let x = random.sample(wild, 6.0);
             SensorFrame {
-                roll_rate_rad_s: random.sample(wild, 6.0),
-                wheel_speed_m_s: random.sample(wild, 12.0),
+                now_us,
+                gyro_rad_s: random.triple(x, wild, 6.0),
+                accel_m_s2: random.triple(Sample::fresh(0.0), wild, 12.0),
+                steer_rad: random.sample(wild, 1.0),
+                steer_rate_rad_s: random.sample(wild, 10.0),
+                front_wheel_m_s: random.sample(wild, 12.0),
+                rear_wheel_m_s: random.sample(wild, 12.0),
+                rider_torque_nm: random.sample(wild, 10.0),
+                motor_torque_nm: random.sample(wild, 10.0),
+                heading_error_rad: random.sample(wild, 0.5),
+                lateral_error_m: random.sample(wild, 2.0),
+                engage: switch > 40,
             }
         })
         .collect()
@@ -166,5 +190,11 @@ impl Random {
             _ => 0,
         };
         Sample { value, age_ticks: age as u16 }
+    }
+
+    /// Three axes, the first as given.
+    fn triple(&mut self, x: Sample, wild: bool, plausible: f32) -> Triple {
+        let (y, z) = (self.sample(wild, plausible), self.sample(wild, plausible));
+        Triple { value: [x.value, y.value, z.value], age_ticks: x.age_ticks }
     }
 }

@@ -8,10 +8,11 @@
 #![allow(unsafe_code)]
 
 use control::guard::{self, GuardPlan, GuardState};
-use control::history::{History, Latency};
-use control::input::Believed;
+use control::history::{Aligned, History, Latency};
 use control::shape::{self, Asked, ShapePlan, ShapeState};
-use control::{ActiveLimits, Config, Law, LawTable, Plan, Sample, SensorFrame, State, wire};
+use control::{
+    ActiveLimits, CAUSES, Causes, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State, wire,
+};
 use core::hint::black_box;
 
 #[panic_handler]
@@ -34,12 +35,12 @@ pub extern "C" fn _start() -> ! {
     loop {
         let config = configured();
         used((config.law.gain(black_box(1.0_f32)), config.law.gain(black_box(1.0_f64))));
-        used((config.law.validate(), config.input.validate()));
-        used((config.latency.validate(), config.shape.validate()));
-        used(wire::encode_config(&config));
+        used((config.law.validate(), config.shape.validate()));
+        used((wire::encode_config(&config), wire::config_bytes_used()));
+        used((black_box(Mode::Off).name(), black_box(Causes::all(&CAUSES)).iter().count()));
         limits(&config);
         let mut history = black_box(History::default());
-        used(history.align(&black_box(Latency::default()), black_box(Believed::default())));
+        used(history.align(&black_box(Latency::default()), black_box(Aligned::default())));
         if let Ok(plan) = black_box(config).plan() {
             run(&black_box(plan));
         }
@@ -83,10 +84,10 @@ fn run(plan: &Plan) {
         let frame = wire::decode_frame(&black_box([0; wire::FRAME_BYTES]));
         used((wire::encode_frame(&frame), SensorFrame::missing(), Sample::fresh(black_box(0.0))));
         let command = control::step(black_box(plan), black_box(&mut state), &frame);
-        let [.., status] = black_box(wire::encode_command(&command));
-        let status = wire::decode_status(status);
+        used(wire::encode_command(&command));
+        let first = command.causes.iter().next();
         #[cfg(feature = "unwrap")]
-        let status = Some(status.unwrap());
-        used((status, state.torque_nm(), plan.config().rate_hz));
+        let first = Some(first.unwrap());
+        used((first, state.torque_nm(), plan.config().rate_hz, plan.ticks_to_engage()));
     }
 }

@@ -37,7 +37,7 @@ pub(super) struct ConditionArgs {
     bicycle: String,
     #[command(flatten)]
     rider: RiderArgs,
-    /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, or a table FILE [default: h; none with a rider; product: h-cut]
+    /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, balance-assist:K, or a table FILE [default: h; none with a rider; product: h-cut]
     #[arg(long)]
     law: Option<String>,
     /// Defaults of the options below
@@ -162,10 +162,12 @@ impl ConditionArgs {
         });
         let law = law::parse(law_name)?;
         let mut config = Config { law: law.clone(), ..base };
-        config.input.wheel = match self.schedule_speed {
+        config.input = config.input.scheduled_by(match self.schedule_speed {
             ScheduleSpeed::Front | ScheduleSpeed::Initial => Wheel::Front,
             ScheduleSpeed::Rear => Wheel::Rear,
-        };
+        });
+        // The simulated bicycle is put together as drawn.
+        config.calibration.polarity_checked = true;
         if let Some(Limit(limit)) = self.torque_limit {
             config.shape.max_torque_nm = limit;
         }

@@ -35,7 +35,7 @@ pub(super) struct Args {
     /// Roll rate at the start, in rad/s, right positive
     #[arg(long, default_value_t = 0.0, value_name = "RAD/S", allow_negative_numbers = true)]
     roll_rate: f64,
-    /// Write the sensor frames as the firmware got them, 12 bytes each, for replay on the chip
+    /// Write the sensor frames as the firmware got them, 81 bytes each, for replay on the chip
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
     #[command(flatten)]
@@ -61,7 +61,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     );
     let figure = RideFigure { trace: &trace, outcome: ride.outcome, title: &title };
     let config = json!({"config": document.config, "start": document.start});
-    let framed = outputs.write_frames(|| frames(&trace).iter().flat_map(encode_frame).collect());
+    let framed = outputs
+        .write_frames(|| frames(&setup.conditions, start, &trace).iter().flat_map(encode_frame).collect());
     outputs.write(Results {
         document: &document,
         config: &config,

@@ -53,6 +53,10 @@ pub struct EigenDocument {
     pub rider: Option<super::resolved::ResolvedRider>,
     /// The law.
     pub law: super::resolved::ResolvedLaw,
+    /// The capsize term beside it; null if there is none.
+    pub capsize: Option<super::resolved::ResolvedCapsize>,
+    /// What stands between law and steer axis; null if it gives what it is asked for.
+    pub actuator: Option<crate::eigen::LinearActuator>,
     /// Speed at which the first complex pair forms \[m/s\]; not looked for with a rider.
     pub v_d: Option<f64>,
     /// Weave speed \[m/s\].

@@ -4,7 +4,7 @@ use crate::basin::{Axis, Search};
 use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
 use crate::ride::{Assist, Conditions};
 use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};
-use control::Law;
+use control::{Capsize, Law};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -73,6 +73,23 @@ impl ResolvedLaw {
             _ => None,
         };
         Self { name: name.into(), points }
+    }
+}
+
+/// The capsize term of a result.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ResolvedCapsize {
+    /// Roll-angle gain per speed above `v_max_m_s` \[N s/rad\].
+    pub k_c_n_s_rad: f32,
+    /// Speed up to which there is no torque \[m/s\].
+    pub v_max_m_s: f32,
+}
+
+impl ResolvedCapsize {
+    /// The capsize term for an output; `None` if it is off.
+    pub fn new(capsize: &Capsize) -> Option<Self> {
+        let Capsize { k_c, v_max_m_s } = *capsize;
+        capsize.is_on().then_some(Self { k_c_n_s_rad: k_c, v_max_m_s })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::human::{Human, Humans};
 use super::logbook::{Logbook, Pushes};
+use super::preroll::Readied;
 use super::refine::{Period, Segment, quickness, refined, too_quick};
 use super::sensor::{Reading, readings};
 use super::{Assist, Conditions, Ride, Start, TracePoint};
@@ -121,6 +122,7 @@ pub(super) fn run<const N: usize>(
         trace,
     };
     let mut done = Vec::with_capacity(starts.len());
+    let mut readied = Readied::default();
     loop {
         for lane in 0..N {
             if abreast.lanes[lane].is_some() {
@@ -135,7 +137,10 @@ pub(super) fn run<const N: usize>(
             if let Some(humans) = &mut abreast.humans {
                 humans.restart(lane);
             }
-            abreast.lanes[lane] = next.map(|(index, start)| Logbook::new(conditions, index, start));
+            abreast.lanes[lane] = next.map(|(index, start)| {
+                let ready = readied.at(conditions, start.speed_m_s);
+                Logbook::new(conditions, index, start, ready)
+            });
         }
         if abreast.lanes.iter().all(Option::is_none) {
             break;

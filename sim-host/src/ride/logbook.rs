@@ -1,6 +1,7 @@
 //! The bookkeeping of one ride while it lasts.
 
 use super::event::{at_fall, fallen, time_of_fall};
+use super::preroll::Ready;
 use super::refine::Segment;
 use super::sensor::{Reading, Sensors, frame};
 use super::{Assist, Conditions, Effort, FinalState, Outcome, Ride, Start};
@@ -21,7 +22,8 @@ pub(super) struct Logbook {
     /// Control periods ridden.
     pub(super) step: u32,
     pub(super) sensors: Sensors,
-    controller: control::State,
+    /// The controller, and the control periods since its boot; `None` if there is none.
+    controller: Option<Ready>,
     /// All speeds, while the motion is near a place where three do not fix the others.
     pub(super) full: Option<FullState>,
     before: Pushes,
@@ -34,13 +36,18 @@ pub(super) struct Logbook {
 }
 
 impl Logbook {
-    pub(super) fn new(conditions: &Conditions, index: usize, start: Start) -> Self {
+    pub(super) fn new(
+        conditions: &Conditions,
+        index: usize,
+        start: Start,
+        controller: Option<Ready>,
+    ) -> Self {
         Self {
             index,
             start,
             step: 0,
             sensors: Sensors::new(conditions, &start),
-            controller: control::State::default(),
+            controller,
             full: None,
             before: Pushes::default(),
             effort: Effort::default(),
@@ -55,7 +62,9 @@ impl Logbook {
         match assist {
             Assist::None => (0.0, 0),
             Assist::Firmware(plan) => {
-                let command = control::step(plan, &mut self.controller, &frame(told));
+                let Some(Ready { controller, ticks }) = &mut self.controller else { return (0.0, 0) };
+                let command = control::step(plan, controller, &frame(plan, told, *ticks, true));
+                *ticks = ticks.wrapping_add(1);
                 (f64::from(command.torque_nm), command.limits.0)
             }
             Assist::Ideal(law) => (law.gain(told.speed_m_s) * told.roll_rate_rad_s, 0),

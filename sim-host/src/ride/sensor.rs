@@ -4,7 +4,7 @@ use super::assist::{body_roll_rate, front_speed, rear_speed};
 use super::{Conditions, Imu, ScheduleSpeed, Start};
 use crate::bicycle::Velocities;
 use crate::num::Scalar;
-use control::{Sample, SensorFrame};
+use control::{Plan, Sample, SensorFrame, Triple, Wheel};
 use std::collections::VecDeque;
 
 /// What the sensors would say without delay.
@@ -37,11 +37,22 @@ impl Sensors {
     }
 }
 
-/// A reading as the firmware gets it.
-pub(super) fn frame(reading: &Reading) -> SensorFrame {
+/// A reading as the firmware gets it, `ticks` control periods after its boot.
+pub(super) fn frame(plan: &Plan, reading: &Reading, ticks: u32, engage: bool) -> SensorFrame {
+    let speed = Sample::fresh(reading.speed_m_s as f32);
+    let missing = SensorFrame::missing();
+    let (front_wheel_m_s, rear_wheel_m_s) = match plan.config().input.wheel {
+        Wheel::Front => (speed, missing.rear_wheel_m_s),
+        Wheel::Rear => (missing.front_wheel_m_s, speed),
+    };
+    let period_us = (1e6 / f64::from(plan.config().rate_hz)) as u64;
     SensorFrame {
-        roll_rate_rad_s: Sample::fresh(reading.roll_rate_rad_s as f32),
-        wheel_speed_m_s: Sample::fresh(reading.speed_m_s as f32),
+        now_us: (u64::from(ticks) * period_us) as u32,
+        gyro_rad_s: Triple::fresh([reading.roll_rate_rad_s as f32, 0.0, 0.0]),
+        front_wheel_m_s,
+        rear_wheel_m_s,
+        engage,
+        ..missing
     }
 }
 

@@ -2,7 +2,9 @@
 
 use super::assist::{front_speed, rear_speed};
 use super::logbook::Pushes;
+use super::preroll::preroll;
 use super::sensor::{Reading, frame};
+use super::{Assist, Conditions, Start};
 use crate::bicycle::{Geometry, Motion};
 use crate::num::Lanes;
 use control::SensorFrame;
@@ -74,9 +76,16 @@ impl TracePoint {
     }
 }
 
-/// The sensor frames of a ride as the firmware was given them, to be replayed on the chip.
-pub fn frames(trace: &[TracePoint]) -> Vec<SensorFrame> {
-    let told =
-        |p: &TracePoint| Reading { roll_rate_rad_s: p.measured_roll_rate, speed_m_s: p.measured_speed };
-    trace.iter().map(|p| frame(&told(p))).collect()
+/// The sensor frames of a ride as the firmware was given them, from its boot on, to be replayed on
+/// the chip; none without a firmware.
+pub fn frames(conditions: &Conditions, start: Start, trace: &[TracePoint]) -> Vec<SensorFrame> {
+    let Assist::Firmware(plan) = &conditions.assist else { return Vec::new() };
+    let mut frames = Vec::with_capacity(trace.len());
+    let steady = Reading { roll_rate_rad_s: 0.0, speed_m_s: start.speed_m_s };
+    let ready = preroll(plan, &steady, |frame, _| frames.push(*frame));
+    frames.extend((ready.ticks..).zip(trace).map(|(ticks, p)| {
+        let told = Reading { roll_rate_rad_s: p.measured_roll_rate, speed_m_s: p.measured_speed };
+        frame(plan, &told, ticks, true)
+    }));
+    frames
 }

@@ -39,12 +39,12 @@ pub enum Exit {
 /// One line on QEMU's standard output; the torque in mN m, since printing an f32 takes 20 KB of flash.
 pub fn report(t: &Telemetry) {
     hprintln!(
-        "steps={} late={} worst_us={} torque_mn_m={} status={:?} drive={:?}",
+        "steps={} late={} worst_us={} torque_mn_m={} mode={} drive={:?}",
         t.deadlines.steps,
         t.deadlines.late,
         t.deadlines.worst_us,
         (t.command.torque_nm * 1e3) as i32,
-        t.command.status,
+        t.command.mode.name(),
         t.drive
     );
 }

@@ -1,11 +1,15 @@
 //! Made-up sensors for tests of timing: a bicycle at 4 m/s whose roll rate swings by 0.5 rad/s
-//! once a second. The motor takes every torque.
+//! once a second, and a rider who asks for assist. The motor takes every torque.
 
 use crate::tasks::Refusal;
-use control::{Command, Sample, SensorFrame};
+use control::{Command, Sample, SensorFrame, Triple};
 use core::cell::Cell;
 use core::f32::consts::TAU;
 use critical_section::Mutex;
+use embassy_time::Instant;
+
+/// When the rider presses the switch \[ms\]: after the self-test.
+const SWITCH_AFTER_MS: u64 = 400;
 
 /// Roll rate and its quarter-period companion \[rad/s\].
 static SWING: Mutex<Cell<(f32, f32)>> = Mutex::new(Cell::new((0.5, 0.0)));
@@ -20,7 +24,14 @@ pub fn sense() -> SensorFrame {
         SWING.borrow(cs).set((a, b + angle * a));
         a
     });
-    SensorFrame { roll_rate_rad_s: Sample::fresh(roll_rate), wheel_speed_m_s: Sample::fresh(4.0) }
+    let now = Instant::now();
+    SensorFrame {
+        now_us: now.as_micros() as u32,
+        gyro_rad_s: Triple::fresh([roll_rate, 0.0, 0.0]),
+        front_wheel_m_s: Sample::fresh(4.0),
+        engage: now.as_millis() > SWITCH_AFTER_MS,
+        ..SensorFrame::missing()
+    }
 }
 
 /// Takes the command.

@@ -8,7 +8,7 @@ mod watchdog;
 pub use watchdog::feed_watchdog;
 
 use crate::tasks::{Refusal, Telemetry};
-use control::{Command, SensorFrame, Status};
+use control::{Command, SensorFrame};
 use defmt_rtt as _;
 use embassy_executor::{Executor, InterruptExecutor, SendSpawner, Spawner};
 use embassy_stm32::interrupt;
@@ -56,18 +56,13 @@ pub fn drive(_: &Command) -> Result<(), Refusal> {
 
 /// One line of defmt over RTT.
 pub fn report(t: &Telemetry) {
-    let status = match t.command.status {
-        Status::Active => "active",
-        Status::Filling => "filling",
-        Status::Rejected(_) => "rejected",
-    };
     defmt::info!(
-        "steps={=u32} late={=u32} worst_us={=u32} torque_nm={=f32} status={=str} motor={=str}",
+        "steps={=u32} late={=u32} worst_us={=u32} torque_nm={=f32} mode={=str} motor={=str}",
         t.deadlines.steps,
         t.deadlines.late,
         t.deadlines.worst_us,
         t.command.torque_nm,
-        status,
+        t.command.mode.name(),
         t.drive.map_or_else(Refusal::reason, |()| "driven")
     );
 }

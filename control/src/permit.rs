@@ -1,0 +1,303 @@
+//! May torque flow, how much of it, and if not, why not.
+//!
+//! Permission is off at boot, given only on a fresh press of the rider's switch, and taken away by
+//! any listed cause. All causes present are told at once.
+
+use crate::fault::{Cause, Causes};
+use crate::input::InputConfig;
+use crate::param::{Leaf, Visit};
+use crate::watch::Loss;
+
+/// Where the controller stands. The number is the one on the wire.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Mode {
+    /// Not stepped yet.
+    #[default]
+    Off = 0,
+    /// Waits for the sensors' first good samples.
+    Initialise = 1,
+    /// All sensors must stay good for a while.
+    SelfTest = 2,
+    /// Ready; waits for the rider's switch.
+    Standby = 3,
+    /// Torque flows.
+    Engaged = 4,
+    /// Reduced torque flows, because something is missing that can be done without.
+    Limp = 5,
+    /// No torque until the causes are gone, the switch was released, and all begins anew.
+    Fault = 6,
+}
+
+impl Mode {
+    /// Every mode, by number.
+    pub const ALL: [Mode; 7] =
+        [Mode::Off, Mode::Initialise, Mode::SelfTest, Mode::Standby, Mode::Engaged, Mode::Limp, Mode::Fault];
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Mode::Off => "off",
+            Mode::Initialise => "initialise",
+            Mode::SelfTest => "self-test",
+            Mode::Standby => "standby",
+            Mode::Engaged => "engaged",
+            Mode::Limp => "limp",
+            Mode::Fault => "fault",
+        }
+    }
+
+    /// Whether torque may flow.
+    pub const fn drives(self) -> bool {
+        matches!(self, Mode::Engaged | Mode::Limp)
+    }
+}
+
+/// Conditions of the permission. The default lets everything pass: no self-test, no ramps, no polarity check.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PermitConfig {
+    /// How long all sensors must be good before standby \[control periods\].
+    pub self_test_ticks: u16,
+    /// From no to full authority after the switch, or after a pause \[control periods\].
+    pub ramp_in_ticks: u16,
+    /// From full to no authority when the switch is released, or in a pause \[control periods\].
+    pub ramp_out_ticks: u16,
+    /// Refuse to engage until a polarity check was passed.
+    pub need_polarity: bool,
+    /// Roll angle, either way, beyond which the bicycle has fallen \[rad\].
+    pub fallen_rad: Option<f32>,
+    /// Speed below which the bicycle is parked \[m/s\]; torque pauses.
+    pub parked_m_s: Option<f32>,
+    /// Speed backwards beyond which torque pauses \[m/s\].
+    pub backwards_m_s: Option<f32>,
+    /// Specific force below which the bicycle is in the air \[m/s^2\].
+    pub lifted_m_s2: Option<f32>,
+    /// How long any of the four must last \[control periods\].
+    pub persist_ticks: u16,
+}
+
+impl PermitConfig {
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        let g = "permit";
+        to.count(&Leaf::new(g, "self_test_ticks", 0.0, 10_000.0), &mut self.self_test_ticks);
+        to.count(&Leaf::new(g, "ramp_in_ticks", 0.0, 20_000.0), &mut self.ramp_in_ticks);
+        to.count(&Leaf::new(g, "ramp_out_ticks", 0.0, 20_000.0), &mut self.ramp_out_ticks);
+        to.switch(&Leaf::switch(g, "need_polarity"), &mut self.need_polarity);
+        to.limit(&Leaf::new(g, "fallen_rad", 0.3, 3.2), &mut self.fallen_rad);
+        to.limit(&Leaf::new(g, "parked_m_s", 0.01, 3.0), &mut self.parked_m_s);
+        to.limit(&Leaf::new(g, "backwards_m_s", 0.01, 3.0), &mut self.backwards_m_s);
+        to.limit(&Leaf::new(g, "lifted_m_s2", 0.1, 9.0), &mut self.lifted_m_s2);
+        to.count(&Leaf::new(g, "persist_ticks", 0.0, 1000.0), &mut self.persist_ticks);
+    }
+}
+
+/// What each cause does, from the sensors' declarations and for the rest once and for all.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reactions {
+    /// Fault: no torque, and all begins anew.
+    pub fault: Causes,
+    /// Back to standby: a fresh press is needed.
+    pub disengage: Causes,
+    /// No torque while it lasts.
+    pub pause: Causes,
+    /// Reduced torque while it lasts.
+    pub limp: Causes,
+}
+
+impl Reactions {
+    /// The reactions under these declarations.
+    pub fn new(input: &InputConfig) -> Self {
+        use Cause::*;
+        let fault = Causes::all(&[
+            GyroDisagrees,
+            MotorDisagrees,
+            WrongResponse,
+            GuardNotFinite,
+            GuardPermission,
+            GuardTorque,
+            GuardRate,
+            GuardWindow,
+            GuardOverride,
+            GuardEndStop,
+            Timing,
+        ]);
+        let limp = Causes::all(&[WheelsDisagree, SteerDisagrees, YawDisagrees]);
+        Self {
+            fault: fault.with(input.causes_of(Loss::Fault)),
+            disengage: Causes::all(&[Fallen, Lifted, PolarityUnchecked, SwitchOff]),
+            pause: Causes::all(&[Backwards, Parked]),
+            limp: limp.with(input.causes_of(Loss::Limp)),
+        }
+    }
+}
+
+/// What the permission remembers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PermitState {
+    mode: Mode,
+    /// Control periods in this mode.
+    ticks: u16,
+    /// Whether the switch was seen released since boot or the last disengagement.
+    released: bool,
+    authority: f32,
+    /// Causes since the fault began.
+    latched: Causes,
+    fallen: Persistent,
+    parked: Persistent,
+    backwards: Persistent,
+    lifted: Persistent,
+}
+
+/// The permission of one control period.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Permission {
+    /// Where the controller stands.
+    pub mode: Mode,
+    /// The part of the torque that may flow, 0 to 1.
+    pub authority: f32,
+    /// Every cause that is present, and in a fault every one since it began.
+    pub causes: Causes,
+}
+
+/// What the permission looks at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Asked {
+    /// What is wrong with the inputs, and what the guard found in the last period.
+    pub causes: Causes,
+    /// The rider's switch.
+    pub engage: bool,
+    /// A polarity check was passed.
+    pub polarity_checked: bool,
+    /// Roll angle \[rad\], if known.
+    pub roll_rad: Option<f32>,
+    /// Forward speed \[m/s\], if known.
+    pub speed_m_s: Option<f32>,
+    /// Size of the specific force \[m/s^2\], if known.
+    pub force_m_s2: Option<f32>,
+}
+
+/// Something that counts once it has lasted, and no longer when it has been gone as long.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Persistent {
+    ticks: u16,
+    holds: bool,
+}
+
+impl Persistent {
+    fn step(&mut self, now: bool, persist_ticks: u16) -> bool {
+        self.ticks = if now == self.holds { 0 } else { self.ticks.saturating_add(1) };
+        if self.ticks > persist_ticks {
+            (self.holds, self.ticks) = (now, 0);
+        }
+        self.holds
+    }
+}
+
+/// One control period.
+pub fn step(
+    config: &PermitConfig,
+    reactions: &Reactions,
+    state: &mut PermitState,
+    asked: &Asked,
+) -> Permission {
+    let causes = state.causes(config, asked);
+    let mode = state.next(config, reactions, asked, causes);
+    if mode != state.mode {
+        (state.mode, state.ticks) = (mode, 0);
+    } else {
+        state.ticks = state.ticks.saturating_add(1);
+    }
+    let paused = causes.any(reactions.pause);
+    state.authority = if mode == Mode::Fault {
+        0.0
+    } else if mode.drives() && !paused {
+        towards(state.authority, 1.0, config.ramp_in_ticks)
+    } else {
+        towards(state.authority, 0.0, config.ramp_out_ticks)
+    };
+    let causes = if mode == Mode::Fault { causes.with(state.latched) } else { causes };
+    Permission { mode, authority: state.authority, causes }
+}
+
+impl PermitState {
+    /// The part of the torque that is permitted, 0 to 1.
+    pub fn authority(&self) -> f32 {
+        self.authority
+    }
+
+    /// Everything that stands in the way now.
+    fn causes(&mut self, config: &PermitConfig, asked: &Asked) -> Causes {
+        let mut causes = asked.causes;
+        let persist = config.persist_ticks;
+        // Comparisons with what is not known are false.
+        let beyond =
+            |value: Option<f32>, limit: Option<f32>| matches!((value, limit), (Some(v), Some(l)) if v > l);
+        let roll = asked.roll_rad.map(f32::abs);
+        let backwards = asked.speed_m_s.map(|v| -v);
+        let slow = beyond(config.parked_m_s, asked.speed_m_s.map(f32::abs));
+        causes.note(Cause::Fallen, self.fallen.step(beyond(roll, config.fallen_rad), persist));
+        causes.note(Cause::Parked, self.parked.step(slow, persist));
+        causes.note(Cause::Backwards, self.backwards.step(beyond(backwards, config.backwards_m_s), persist));
+        let light = beyond(config.lifted_m_s2, asked.force_m_s2);
+        causes.note(Cause::Lifted, self.lifted.step(light, persist));
+        causes.note(Cause::PolarityUnchecked, config.need_polarity && !asked.polarity_checked);
+        causes.note(Cause::SwitchOff, !asked.engage);
+        causes.note(Cause::SwitchHeld, asked.engage && !self.released && !self.mode.drives());
+        let testing = matches!(self.mode, Mode::Off | Mode::Initialise | Mode::SelfTest);
+        causes.note(Cause::SelfTest, testing);
+        causes
+    }
+
+    /// The mode that follows.
+    fn next(&mut self, config: &PermitConfig, reactions: &Reactions, asked: &Asked, causes: Causes) -> Mode {
+        // At boot sensors are expected to be missing; that is no fault yet.
+        let broken = causes.and(reactions.fault);
+        let started = !matches!(self.mode, Mode::Off | Mode::Initialise);
+        if started && !broken.is_empty() {
+            self.latched = if self.mode == Mode::Fault { self.latched.with(broken) } else { broken };
+            self.released = false;
+            return Mode::Fault;
+        }
+        let before = self.released;
+        self.released |= !asked.engage;
+        match self.mode {
+            Mode::Off => Mode::Initialise,
+            Mode::Initialise if broken.is_empty() => Mode::SelfTest,
+            Mode::SelfTest if self.ticks >= config.self_test_ticks => Mode::Standby,
+            Mode::Standby => {
+                let blocked = reactions.disengage.with(reactions.pause);
+                if before && !causes.any(blocked) { self.engaged(reactions, causes) } else { Mode::Standby }
+            }
+            Mode::Engaged | Mode::Limp => {
+                if causes.any(reactions.disengage) {
+                    self.released = !asked.engage;
+                    Mode::Standby
+                } else {
+                    self.engaged(reactions, causes)
+                }
+            }
+            Mode::Fault if self.released => Mode::Initialise,
+            same => same,
+        }
+    }
+
+    fn engaged(&self, reactions: &Reactions, causes: Causes) -> Mode {
+        if causes.any(reactions.limp) { Mode::Limp } else { Mode::Engaged }
+    }
+}
+
+/// A step of a ramp that takes `ticks` from 0 to 1; none is at once.
+fn towards(from: f32, to: f32, ticks: u16) -> f32 {
+    let step = 1.0 / f32::from(ticks.max(1));
+    if from < to {
+        let next = from + step;
+        // So that rounding does not leave it a hair below the whole.
+        if next > to - 0.5 * step { to } else { next }
+    } else if from > to {
+        let next = from - step;
+        if next < to + 0.5 * step { to } else { next }
+    } else {
+        to
+    }
+}

@@ -1,0 +1,52 @@
+//! Before the disturbance: the bicycle rides upright and straight, the controller boots, tests
+//! itself, and is engaged by a fresh press of the switch, all by the step that is flashed.
+
+use super::sensor::{Reading, frame};
+use super::{Assist, Conditions};
+use control::{Command, Plan, SensorFrame, State};
+
+/// A controller at t = 0.
+#[derive(Clone, Debug)]
+pub(super) struct Ready {
+    pub(super) controller: State,
+    /// Control periods since boot.
+    pub(super) ticks: u32,
+}
+
+/// Rides steadily by what the sensors tell until the assist has its whole authority; `seen` gets
+/// every frame and command. A controller that does not engage is given up after ten times the
+/// time it should take, and rides on without.
+pub(super) fn preroll(plan: &Plan, steady: &Reading, mut seen: impl FnMut(&SensorFrame, &Command)) -> Ready {
+    let mut controller = State::default();
+    let (mut pressed, mut ticks) = (false, 0);
+    while ticks < 10 * plan.ticks_to_engage() {
+        let told = frame(plan, steady, ticks, pressed);
+        let command = control::step(plan, &mut controller, &told);
+        ticks += 1;
+        seen(&told, &command);
+        pressed |= command.mode == control::Mode::Standby;
+        if controller.authority() == 1.0 {
+            break;
+        }
+    }
+    Ready { controller, ticks }
+}
+
+/// The last controller readied: rides from the same speed share it.
+#[derive(Default)]
+pub(super) struct Readied(Option<(f64, Ready)>);
+
+impl Readied {
+    /// A controller ready at this speed \[m/s\], if there is one to be.
+    pub(super) fn at(&mut self, conditions: &Conditions, speed_m_s: f64) -> Option<Ready> {
+        let Assist::Firmware(plan) = &conditions.assist else { return None };
+        match &self.0 {
+            Some((speed, ready)) if *speed == speed_m_s => Some(ready.clone()),
+            _ => {
+                let ready = preroll(plan, &Reading { roll_rate_rad_s: 0.0, speed_m_s }, |_, _| ());
+                self.0 = Some((speed_m_s, ready.clone()));
+                Some(ready)
+            }
+        }
+    }
+}
