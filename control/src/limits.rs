@@ -84,7 +84,7 @@ pub struct RiderTorque {
 
 impl Default for RiderTorque {
     fn default() -> Self {
-        Self { allowance_nm: 2.0, multiplier: 2.0 }
+        Self { allowance_nm: 7.0, multiplier: 1.0 }
     }
 }
 
@@ -134,13 +134,44 @@ pub struct EndStop {
 }
 
 impl Default for EndStop {
-    /// 60 and 70 degrees.
+    /// 50 and 60 degrees.
     fn default() -> Self {
-        Self { soft_rad: 1.047, hard_rad: 1.222 }
+        Self { soft_rad: 0.873, hard_rad: 1.047 }
     }
 }
 
 impl Limits {
+    /// What is flashed. The evidence is rides on the border of the basin (`rigid_jason`, 2 to 7 m/s, either
+    /// rate disturbed, `h` cut at 7.5 m/s; hands off, and with the riders `smart`, `young` and `hess`).
+    ///
+    /// * 7 N m: the largest torque of the published balance-assist prototype.
+    /// * Rise 100 N m/s: hands off such rides rise by up to 94 N m/s under 7 N m (105 without it), fall by up to 100 (113).
+    ///   Falling is the safe side: twice as fast, 35 ms from the largest torque to none.
+    /// * Taper 0.5 to 1.5 m/s: walking.
+    /// * End-stop 50 to 60 degrees: torque towards the side steered to is wanted up to 47 degrees; steer itself
+    ///   goes to 59 degrees at 2 m/s, but there the torque already leads back.
+    /// * Rider's motion 1 rad/s for 200 ms, gone 100 ms later: without anyone overriding, the steer turns against the
+    ///   torque as fast for up to 132 ms hands off, 166 ms with a rider. 200 ms at 1 rad/s are 11 degrees.
+    /// * Rider's torque: who pushes with more than the assist's 7 N m has won anyhow, at twice that the assist is gone.
+    ///   Less would act in many border rides, where these riders push against it with 2 to 27 N m.
+    /// * Window 6 N m in 50 ms: above the 5.7 N m to which 100 N m/s lead in the longest it can be, so it acts
+    ///   only where the rate was not kept.
+    /// * Half of it in limp mode: a choice.
+    pub fn product() -> Self {
+        Self {
+            max_torque_nm: Some(7.0),
+            speed_cap: None,
+            taper: Some(Taper { zero_m_s: 0.5, full_m_s: 1.5 }),
+            rise_nm_s: Some(100.0),
+            fall_nm_s: Some(200.0),
+            rider_torque: Some(RiderTorque { allowance_nm: 7.0, multiplier: 1.0 }),
+            rider_motion: Some(RiderMotion { steer_rate_rad_s: 1.0, after_ms: 200, fade_ms: 100 }),
+            window: Some(Window { ms: 50, nm: 6.0 }),
+            end_stop: Some(EndStop { soft_rad: 0.873, hard_rad: 1.047 }),
+            limp_fraction: Some(0.5),
+        }
+    }
+
     /// Shows every limit.
     pub fn leaves<V: Visit>(&mut self, to: &mut V) {
         let leaf = |name, min, max| Leaf::new("limits", name, min, max);

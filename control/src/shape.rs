@@ -213,7 +213,8 @@ fn reach(plan: &ShapePlan, last: f32, elapsed_us: u32) -> (f32, f32) {
             Some(fall) => (from - fall) * plan.crossing,
         }
     };
-    (lowest(last), -lowest(-last))
+    // Not a mere minus: zero stays a positive zero.
+    (lowest(last), 0.0 - lowest(-last))
 }
 
 /// Parts of the window: one that is being filled, and as many full ones as cover it.
