@@ -7,6 +7,7 @@ pub mod cli;
 pub mod eigen;
 pub mod integrate;
 pub mod num;
+pub mod plant;
 mod range;
 pub mod report;
 pub mod ride;

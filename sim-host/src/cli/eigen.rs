@@ -1,6 +1,5 @@
 //! `sim-host eigen`.
 
-use super::conditions::time;
 use super::outputs::{OutputArgs, Results};
 use super::rider_args::RiderArgs;
 use super::{Ended, Failure, law, speeds, warn};
@@ -8,6 +7,7 @@ use crate::bicycle::catalogue;
 use crate::eigen::{
     CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes, roots, stability,
 };
+use crate::range::time;
 use crate::report::document::{EigenDocument, SCHEMA};
 use crate::report::figure::{self, EigenFigure};
 use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider, Tool};

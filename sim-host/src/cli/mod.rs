@@ -10,6 +10,7 @@ mod interrupt;
 mod law;
 mod outputs;
 mod plane;
+mod plant_args;
 mod ride;
 mod rider;
 mod rider_args;

@@ -50,6 +50,11 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let setup = args.conditions.setup()?;
+    if !setup.conditions.plant.mirrors() {
+        return Err(
+            "basin plane mirrors one half: no faults, noise, bias, dropout, no IMU off its middle".into()
+        );
+    }
     let search = PlaneSearch {
         speed: args.speed,
         rays: args.rays,

@@ -1,8 +1,8 @@
 //! The options that say who rides.
 
 use super::Failure;
-use super::conditions::time;
 use super::outputs::complain;
+use crate::range::time;
 use crate::rider::{Fit, MAX_DELAY_S, Outside, Rider, RiderTable, catalogue};
 
 #[derive(clap::Args)]

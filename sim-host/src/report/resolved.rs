@@ -2,6 +2,7 @@
 
 use crate::basin::{Axis, Search};
 use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
+use crate::plant::{ActuatorConfig, ImuMount, Plant, Sensor, SensorModel};
 use crate::ride::{Assist, Conditions};
 use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};
 use control::{Capsize, Law};
@@ -163,6 +164,35 @@ impl ResolvedRider {
     }
 }
 
+/// Sensors, motor and faults of a result.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ResolvedPlant {
+    /// The sensors that depart from the truth, by name; all others are exact.
+    pub sensors: BTreeMap<&'static str, SensorModel>,
+    /// Where the IMU sits.
+    pub imu: ImuMount,
+    /// The motor and the friction of the steer.
+    pub actuator: ActuatorConfig,
+    /// What goes wrong, as `--fault` reads it, in the order in which it acts.
+    pub faults: Vec<String>,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+impl ResolvedPlant {
+    /// The plant for an output.
+    pub fn new(plant: &Plant) -> Self {
+        let departing = Sensor::ALL.into_iter().map(|sensor| (sensor.name(), *plant.sensors.model(sensor)));
+        Self {
+            sensors: departing.filter(|(_, model)| *model != SensorModel::default()).collect(),
+            imu: plant.sensors.imu,
+            actuator: plant.actuator,
+            faults: plant.faults.iter().map(ToString::to_string).collect(),
+            seed: plant.seed,
+        }
+    }
+}
+
 /// The conditions of a result, defaults filled in.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ResolvedConfig {
@@ -188,6 +218,8 @@ pub struct ResolvedConfig {
     pub taper_m_s: Option<(f32, f32)>,
     /// Delay of the simulated sensors \[s\].
     pub sensor_delay_s: f64,
+    /// How sensors and motor depart from exact ones.
+    pub plant: ResolvedPlant,
     /// Control rate \[Hz\]; null for the continuous ideal law.
     pub control_rate_hz: Option<f32>,
     /// Integration step \[s\].
@@ -228,6 +260,7 @@ impl ResolvedConfig {
             rate_limit_nm_s: config.and_then(|c| c.limits.rise_nm_s),
             taper_m_s: config.and_then(|c| c.limits.taper).map(|t| (t.zero_m_s, t.full_m_s)),
             sensor_delay_s: f64::from(c.sensor_delay_ticks) * c.step_s,
+            plant: ResolvedPlant::new(&c.plant),
             control_rate_hz: config.map(|c| c.rate_hz),
             step_s: c.step_s,
             time_limit_s: c.time_limit_s,
