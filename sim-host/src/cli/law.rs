@@ -55,7 +55,7 @@ fn table(path: &str) -> Result<Law, String> {
     }
     let points: Vec<(f32, f32)> = file.speed_m_s.into_iter().zip(file.gain_nm_s_rad).collect();
     let table = LawTable::new(&points).map_err(|e| {
-        let rising = if e.name.contains("speed") { " (speeds must rise)" } else { "" };
+        let rising = if e.leaf.name.contains("speed") { " (speeds must rise)" } else { "" };
         format!("law file {path}: {e}{rising}")
     })?;
     Ok(Law::Table(table))
