@@ -11,4 +11,5 @@ mod range;
 pub mod report;
 pub mod ride;
 pub mod rider;
+pub mod sweep;
 pub mod thesis;
