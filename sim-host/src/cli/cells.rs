@@ -11,7 +11,7 @@ const MOST: usize = 100_000;
 /// How the values of an axis become options.
 enum Role {
     /// They are an option's values.
-    Option(Choice),
+    Option(Box<Choice>),
     /// They stand where the shared options have the axis' key in braces.
     Place(String),
 }
@@ -35,7 +35,7 @@ fn roles(axes: &[Axis], words: &[String]) -> Result<Vec<Role>, SweepError> {
             Ok(choice) if given && !choice.repeats() => {
                 Err(format!("--over {key}: --{key} is given as well; it can't be both"))
             }
-            Ok(choice) => Ok(Role::Option(choice)),
+            Ok(choice) => Ok(Role::Option(Box::new(choice))),
             Err(names) => Err(format!(
                 "--over {key}: there is no option --{key}, nor {place} in another option's value; options are {}",
                 names.join(", ")

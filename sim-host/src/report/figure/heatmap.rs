@@ -133,10 +133,13 @@ fn contour(map: &[Vec<Option<f64>>], level: f64) -> Vec<[(f64, f64); 2]> {
     pieces
 }
 
+/// A place and the number there.
+type At = ((f64, f64), f64);
+
 /// Where a number changes its sign between two places.
-fn crossing(((p, a), (q, b)): (((f64, f64), f64), ((f64, f64), f64))) -> Option<(f64, f64)> {
+fn crossing(((p, a), (q, b)): (At, At)) -> Option<(f64, f64)> {
     let part = a / (a - b);
-    ((a < 0.0) != (b < 0.0)).then(|| (p.0 + part * (q.0 - p.0), p.1 + part * (q.1 - p.1)))
+    ((a < 0.0) != (b < 0.0)).then_some((p.0 + part * (q.0 - p.0), p.1 + part * (q.1 - p.1)))
 }
 
 #[cfg(test)]
