@@ -11,5 +11,6 @@ mod range;
 pub mod report;
 pub mod ride;
 pub mod rider;
+pub mod study;
 pub mod sweep;
 pub mod thesis;

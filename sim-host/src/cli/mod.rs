@@ -15,6 +15,7 @@ mod ride;
 mod rider;
 mod rider_args;
 mod speeds;
+mod study;
 mod sweep;
 mod thesis;
 mod words;

@@ -67,6 +67,10 @@ struct Told {
 enum Command {
     /// Puts the parts of a sweep together
     Merge(Merge),
+    /// Answers a question by sweeps that are written down: a page with tables and figures
+    Study(super::study::Args),
+    /// The studies that ship
+    Studies,
 }
 
 /// Options of `sweep merge`.
@@ -83,8 +87,11 @@ struct Merge {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    if let Some(Command::Merge(args)) = &args.command {
-        return merge(args);
+    match &args.command {
+        Some(Command::Merge(args)) => return merge(args),
+        Some(Command::Study(args)) => return super::study::run(args),
+        Some(Command::Studies) => return super::study::list(),
+        None => {}
     }
     let resolved = resolve(&args.over, args.conditions.words(), |ridden| args.search.search(ridden))?;
     let mine = args.shard.unwrap_or(Shard::WHOLE).of(&resolved.plan.cells);
@@ -95,8 +102,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let json = args.told.json.as_deref().map(Output::create).transpose()?;
     let folder = Folder::open(&args.out, &resolved.plan)?;
     interrupt::install();
-    let to_do: Vec<&Cell> =
-        to_do(&resolved, &mine, &folder, |e| complain(&format!("warning: {e}: computed again")));
+    let to_do = to_do(&resolved, &mine, &folder);
     let bar = progress(!args.told.quiet, "sweep", to_do.len() * resolved.search.speeds.len(), "columns");
     let steps = Progress { advanced: &|| bar.inc(1), stop: &interrupt::stopped };
     let done = pool.install(|| sweep::run(&to_do, &resolved.search, &folder, &steps));
@@ -117,17 +123,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 }
 
 /// The cells of `mine` that are not there, or damaged, which is told.
-fn to_do<'a>(
-    resolved: &'a Resolved,
-    mine: &[usize],
-    folder: &Folder,
-    damaged: impl Fn(&str),
-) -> Vec<&'a Cell> {
+pub(super) fn to_do<'a>(resolved: &'a Resolved, mine: &[usize], folder: &Folder) -> Vec<&'a Cell> {
     let cells = mine.iter().map(|&i| &resolved.cells[i]);
     let missing = |cell: &&Cell| match folder.unit(&cell.id) {
         Ok(there) => there.is_none(),
         Err(e) => {
-            damaged(&e.to_string());
+            complain(&format!("warning: {e}: computed again"));
             true
         }
     };
@@ -135,7 +136,12 @@ fn to_do<'a>(
 }
 
 /// Writes what there is: the results if the sweep is whole, and what was asked for.
-fn finish(grid: &Grid, folder: &Folder, json: Option<&Output>, quiet: bool) -> Result<(), Failure> {
+pub(super) fn finish(
+    grid: &Grid,
+    folder: &Folder,
+    json: Option<&Output>,
+    quiet: bool,
+) -> Result<(), Failure> {
     let document = SweepDocument::new(grid);
     if document.complete {
         sweep::write(grid, &document, folder)?;
@@ -182,7 +188,7 @@ fn dry_run(resolved: &Resolved, mine: &[usize], out: &Path, threads: usize) -> R
     let (plan, speeds) = (&resolved.plan, &resolved.search.speeds);
     let folder = out.join(sweep::PLAN).exists().then(|| Folder::open(out, plan)).transpose()?;
     let to_do: Vec<&Cell> = match &folder {
-        Some(folder) => to_do(resolved, mine, folder, |_| {}),
+        Some(folder) => to_do(resolved, mine, folder),
         None => mine.iter().map(|&i| &resolved.cells[i]).collect(),
     };
     let missing: BTreeSet<&str> = to_do.iter().map(|cell| &*cell.id).collect();

@@ -24,12 +24,14 @@ struct Alone {
 /// # Errors
 /// In one line, what is wrong with which option.
 pub(super) fn conditions(words: &[String]) -> Result<ConditionArgs, String> {
-    let parsed = Alone::try_parse_from(words).map_err(|e| {
-        let text = e.to_string();
-        let why = text.lines().next().unwrap_or("").trim_start_matches("error: ");
-        format!("{why} (see `sim-host basin --help`)")
-    })?;
-    Ok(parsed.conditions)
+    Alone::try_parse_from(words).map(|alone| alone.conditions).map_err(|e| why(&e))
+}
+
+/// An error of wrong usage in one line.
+pub(super) fn why(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let why = text.lines().next().unwrap_or("").trim_start_matches("error: ");
+    format!("{why} (see `sim-host basin --help`)")
 }
 
 /// An option that some words can set.

@@ -8,13 +8,13 @@ use crate::report::figure::{
 
 const AREA: &str = "Area [rad m/s²]";
 /// Most maps side by side; of more combinations of the other axes the largest area is shown.
-const MAPS: usize = 9;
+const MAPS: usize = 12;
 /// What counts as nothing lost.
 const CONTOUR: f64 = 0.95;
 
 /// The figures and their names: the area over every two axes, or over the only one; then also the
 /// height over speed.
-pub(super) fn figures(grid: &Grid) -> Vec<(String, Picture)> {
+pub fn pictures(grid: &Grid) -> Vec<(String, Picture)> {
     let axes = &grid.plan.axes;
     let varied: Vec<usize> = (0..axes.len()).filter(|&i| axes[i].values.len() > 1).collect();
     if let [only] = varied[..] {

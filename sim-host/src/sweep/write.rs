@@ -1,6 +1,6 @@
 //! The results of a whole sweep as files.
 
-use super::maps::figures;
+use super::maps::pictures;
 use super::netcdf::netcdf;
 use super::{Folder, Grid, SweepError};
 use crate::report::picture::{caption, svg_with_caption};
@@ -18,7 +18,7 @@ pub fn write(grid: &Grid, document: &SweepDocument, folder: &Folder) -> Result<(
     folder.write("sweep.csv", &csv(cells_table(document))?)?;
     folder.write("heights.csv", &csv(heights_table(document))?)?;
     let about = caption(&document.heading());
-    for (name, picture) in figures(grid) {
+    for (name, picture) in pictures(grid) {
         let svg = svg_with_caption(&picture.svg(), &about);
         folder.write(&format!("figures/{name}.svg"), svg.as_bytes())?;
     }

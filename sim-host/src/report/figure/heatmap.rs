@@ -71,20 +71,26 @@ fn draw(canvas: &mut Canvas, figure: &HeatMap, map: &[Vec<Option<f64>>], area: A
     // Cell i is centred at i.
     let panel = Panel { area, x: (-0.5, across as f64 - 0.5), y: (-0.5, up as f64 - 0.5) };
     canvas.rect(area, GREY, 0.4);
-    for (j, row) in map.iter().enumerate() {
-        for (i, x) in row.iter().enumerate().filter_map(|(i, x)| Some((i, (*x)?))) {
-            let (i, j) = (i as f64, j as f64);
-            let cell = panel.span((i - 0.5, i + 0.5), (j - 0.5, j + 0.5));
-            // Half a pixel of overlap hides the seams.
-            let cell = Area { width: cell.width + 0.5, height: cell.height + 0.5, ..cell };
-            canvas.clipped(area, |canvas| canvas.rect(cell, &*shade(shade_of(x, range)), 1.0));
+    canvas.clipped(area, |canvas| {
+        for (j, row) in map.iter().enumerate() {
+            for (i, x) in row.iter().enumerate().filter_map(|(i, x)| Some((i, (*x)?))) {
+                let (i, j) = (i as f64, j as f64);
+                let cell = panel.span((i - 0.5, i + 0.5), (j - 0.5, j + 0.5));
+                // Half a pixel of overlap hides the seams.
+                let cell = Area { width: cell.width + 0.5, height: cell.height + 0.5, ..cell };
+                canvas.rect(cell, &*shade(shade_of(x, range)), 1.0);
+            }
         }
-    }
+    });
     let most = map.iter().flatten().flatten().copied().fold(0.0, f64::max);
-    for piece in contour(map, figure.contour * most) {
-        panel.line(canvas, piece, Stroke::solid(INK, 3.4));
-        panel.line(canvas, piece, Stroke::solid(LINE, 2.2));
-    }
+    let pieces = contour(map, figure.contour * most);
+    canvas.clipped(area, |canvas| {
+        for (color, width) in [(INK, 3.4), (LINE, 2.2)] {
+            for piece in &pieces {
+                canvas.line(&piece.map(|p| panel.at(p)), Stroke::solid(color, width));
+            }
+        }
+    });
     let names = |names: &[String], room: f64, wide: bool| {
         let size = |name: &String| if wide { text_width(name, 12) + 8.0 } else { 16.0 };
         let widest = names.iter().map(size).fold(1.0, f64::max);
