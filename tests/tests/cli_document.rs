@@ -79,6 +79,7 @@ fn every_option_is_documented_with_its_default() {
         "basin plane",
         "sweep",
         "sweep merge",
+        "sweep study",
         "thesis",
     ] {
         let help = bench.run(&format!("{command} --help")).stdout;
