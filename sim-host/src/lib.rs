@@ -12,4 +12,6 @@ mod range;
 pub mod report;
 pub mod ride;
 pub mod rider;
+pub mod study;
+pub mod sweep;
 pub mod thesis;

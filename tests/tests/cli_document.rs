@@ -77,6 +77,9 @@ fn every_option_is_documented_with_its_default() {
         "rider check",
         "basin compare",
         "basin plane",
+        "sweep",
+        "sweep merge",
+        "sweep study",
         "thesis",
     ] {
         let help = bench.run(&format!("{command} --help")).stdout;

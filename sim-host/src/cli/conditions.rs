@@ -115,7 +115,7 @@ pub(super) struct Setup {
 impl ConditionArgs {
     /// Whether a rider is asked for.
     pub(super) fn ridden(&self) -> bool {
-        self.rider.rider.is_some()
+        self.rider.name().is_some()
     }
 
     /// Loads and checks everything; warnings go to standard error.

@@ -144,7 +144,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         config: &config,
         summary: || terminal::eigen(&figure, 80) + &summary(&critical, &ranges),
         table: || {
-            table::numbers(&config, &columns(count, in_table), rows(&args.speeds, &values, count, in_table))
+            table::rows(&config, &columns(count, in_table), rows(&args.speeds, &values, count, in_table))
         },
         figure: || figure::eigen(&figure),
     })?;

@@ -8,5 +8,6 @@ pub mod picture;
 pub mod plane;
 pub mod resolved;
 pub mod rider;
+pub mod sweep;
 pub mod table;
 pub mod terminal;

@@ -7,24 +7,29 @@ use crate::ride::{Assist, Conditions};
 use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};
 use control::{Capsize, Law};
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// The program a result came from.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Tool {
     /// Always "sim-host".
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Release.
-    pub version: &'static str,
+    pub version: Cow<'static, str>,
     /// Commit it was built from, "unknown" outside a repository.
-    pub commit: &'static str,
+    pub commit: Cow<'static, str>,
 }
 
 impl Tool {
     /// This program.
     pub const fn this() -> Self {
-        Self { name: "sim-host", version: env!("CARGO_PKG_VERSION"), commit: env!("SIM_HOST_COMMIT") }
+        Self {
+            name: Cow::Borrowed("sim-host"),
+            version: Cow::Borrowed(env!("CARGO_PKG_VERSION")),
+            commit: Cow::Borrowed(env!("SIM_HOST_COMMIT")),
+        }
     }
 }
 
