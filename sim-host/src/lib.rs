@@ -4,6 +4,7 @@
 pub mod basin;
 pub mod bicycle;
 pub mod cli;
+pub mod design;
 pub mod eigen;
 pub mod integrate;
 pub mod num;
@@ -11,4 +12,5 @@ mod range;
 pub mod report;
 pub mod ride;
 pub mod rider;
+pub mod study;
 pub mod thesis;

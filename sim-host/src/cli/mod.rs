@@ -5,6 +5,7 @@ mod basin;
 mod bicycle;
 mod compare;
 mod conditions;
+mod design;
 mod eigen;
 mod interrupt;
 mod law;
@@ -14,6 +15,7 @@ mod ride;
 mod rider;
 mod rider_args;
 mod speeds;
+mod study;
 mod thesis;
 
 use crate::bicycle::catalogue::Bicycle;
@@ -68,11 +70,15 @@ enum Command {
     /// Riders: list, show, check.
     #[command(subcommand, after_help = rider::EXAMPLES)]
     Rider(rider::Command),
+    /// A gain schedule with the largest worst basin, judged beside the known laws.
+    Design(design::Args),
+    /// Studies: a question computed, its answer as a page with a figure.
+    Study(study::Args),
     /// The JSON schema of a command's `--json` document.
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
-        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane"])]
+        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "design"])]
         document: String,
     },
 }
@@ -88,6 +94,8 @@ pub fn run() -> ExitCode {
         Command::Thesis(args) => thesis::run(&args),
         Command::Bicycle(command) => bicycle::run(&command),
         Command::Rider(command) => rider::run(&command),
+        Command::Design(args) => design::run(&args),
+        Command::Study(args) => study::run(&args),
         Command::Schema { document } => schema(&document),
     };
     match ended {
