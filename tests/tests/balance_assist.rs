@@ -5,7 +5,7 @@ use nalgebra::Complex;
 use sim_host::bicycle::{Parameters, catalogue};
 use sim_host::eigen::{Feedback, LinearActuator, Model, rightmost, roots};
 use sim_host::study::balance_assist::{RIDDEN, RIDERLESS, published, stable_range, study, weave};
-use sim_host::study::motor_fit::{Explained, FITS, Free, fit, published_residual};
+use sim_host::study::motor_fit::{Free, fits, published_residual};
 use sim_host::study::prototype::groups;
 use std::path::Path;
 
@@ -46,7 +46,7 @@ fn the_published_stable_speeds_come_out() {
 #[test]
 fn what_a_motor_explains_of_the_measured_weave() {
     let (bicycle, measured) = (bicycle(RIDERLESS), published().weave);
-    let fits: Vec<Explained> = FITS.into_iter().map(|f| fit(&bicycle, &measured, f)).collect();
+    let fits = fits(&bicycle, &measured);
     for e in &fits {
         println!(
             "{}: {:?}, {:.3} ({:.3}, {:.3})",
@@ -66,7 +66,7 @@ fn what_a_motor_explains_of_the_measured_weave() {
     assert!((1.35..1.45).contains(&published), "{published}");
     assert!((half.residual - published).abs() < 0.02 && (0.47..0.53).contains(&half.actuator.scale));
     let motor = of(&[Free::Scale, Free::Lag, Free::Friction]);
-    assert!((0.9..1.05).contains(&motor.residual), "{motor:?}");
+    assert!((0.75..0.95).contains(&motor.residual), "{motor:?}");
     let heavy = of(&[Free::Friction, Free::Inertia]);
     assert!((0.5..0.65).contains(&heavy.residual) && (0.1..0.2).contains(&heavy.actuator.inertia_kg_m2));
 }

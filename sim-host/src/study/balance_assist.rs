@@ -1,7 +1,7 @@
 //! The balance assist of the Gazelle and TU Delft prototype: where the published bicycle is stable under it, and
 //! its measured weave beside the model's. Published numbers: `data/balance_assist.toml`.
 
-use super::motor_fit::{Explained, FITS, Free, fit, published_residual};
+use super::motor_fit::{Explained, Free, fits, published_residual};
 use super::page::{Page, table};
 use crate::bicycle::{Parameters, catalogue};
 use crate::eigen::{Feedback, LinearActuator, Model, SEARCH_TO_M_S, roots, stability};
@@ -106,7 +106,7 @@ pub fn study() -> Result<Page, String> {
     let load = |name| catalogue::load(name).map(|b| b.parameters).map_err(|e| e.to_string());
     let (riderless, ridden) = (load(RIDERLESS)?, load(RIDDEN)?);
     let published = published();
-    let fits: Vec<Explained> = FITS.into_iter().map(|f| fit(&riderless, &published.weave, f)).collect();
+    let fits = fits(&riderless, &published.weave);
     let mut text = String::from(
         "# The balance assist of the Gazelle and TU Delft prototype\n\n\
          Made by `sim-host study balance-assist`; published numbers and their sources are in\n\

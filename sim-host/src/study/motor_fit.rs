@@ -32,14 +32,14 @@ impl Free {
         }
     }
 
-    fn set(self, actuator: &mut LinearActuator, value: f64) {
-        *match self {
+    fn of(self, actuator: &mut LinearActuator) -> &mut f64 {
+        match self {
             Self::Scale => &mut actuator.scale,
             Self::Friction => &mut actuator.viscous_nm_s_rad,
             Self::Lag => &mut actuator.time_constant_s,
             Self::Delay => &mut actuator.delay_s,
             Self::Inertia => &mut actuator.inertia_kg_m2,
-        } = value;
+        }
     }
 }
 
@@ -76,23 +76,46 @@ pub const FITS: [(&str, &[Free]); 9] = {
     ]
 };
 
+/// Every fit of [`FITS`], in their order.
+pub fn fits(bicycle: &Parameters, measured: &[Weave]) -> Vec<Explained> {
+    let mut done: Vec<Explained> = Vec::new();
+    for named in FITS {
+        done.push(fit(bicycle, measured, named, &done));
+    }
+    done
+}
+
 /// Fits what `free` names to both measured series at once, by the least squares of the distances in the complex
-/// plane, with the slope that was set in the controller.
-pub fn fit(
+/// plane, with the slope that was set in the controller. There are local minima, so the search begins thrice:
+/// afresh, and twice from the best of those `done` with less freedom.
+fn fit(
     bicycle: &Parameters,
     measured: &[Weave],
     (name, free): (&'static str, &'static [Free]),
+    done: &[Explained],
 ) -> Explained {
-    let best = match free {
-        [] => Vec::new(),
-        [_] => search::<1>(bicycle, measured, free),
-        [_, _] => search::<2>(bicycle, measured, free),
-        [_, _, _] => search::<3>(bicycle, measured, free),
-        _ => search::<4>(bicycle, measured, free),
-    };
-    let actuator = chosen(free, &best);
-    let [residual, residual_re, residual_im] = residuals(bicycle, measured, actuator, |w| w.kappa_set);
-    Explained { name, free, actuator, residual, residual_re, residual_im }
+    let less = done.iter().filter(|e| e.free.iter().all(|f| free.contains(f)));
+    let less = less.min_by(|a, b| a.residual.total_cmp(&b.residual));
+    let mut starts = vec![free.iter().map(|f| f.start()).collect::<Vec<f64>>()];
+    if let Some(less) = less {
+        let mut actuator = less.actuator;
+        starts.push(free.iter().map(|f| *f.of(&mut actuator)).collect());
+        let begun = |f: &Free| if less.free.contains(f) { *f.of(&mut actuator) } else { f.start() };
+        starts.push(free.iter().map(begun).collect());
+    }
+    let ends = starts.iter().map(|start| {
+        let best = match free.len() {
+            0 => Vec::new(),
+            1 => search::<1>(bicycle, measured, free, start),
+            2 => search::<2>(bicycle, measured, free, start),
+            3 => search::<3>(bicycle, measured, free, start),
+            _ => search::<4>(bicycle, measured, free, start),
+        };
+        let actuator = chosen(free, &best);
+        let [residual, residual_re, residual_im] = residuals(bicycle, measured, actuator, |w| w.kappa_set);
+        Explained { name, free, actuator, residual, residual_re, residual_im }
+    });
+    ends.min_by(|a, b| a.residual.total_cmp(&b.residual)).expect("there are starts")
 }
 
 /// The distances of a perfect motor behind the slope of the published model, both parts and each alone.
@@ -100,19 +123,24 @@ pub fn published_residual(bicycle: &Parameters, measured: &[Weave]) -> [f64; 3] 
     residuals(bicycle, measured, LinearActuator::default(), |w| w.kappa_model)
 }
 
-fn search<const N: usize>(bicycle: &Parameters, measured: &[Weave], free: &[Free]) -> Vec<f64> {
+fn search<const N: usize>(
+    bicycle: &Parameters,
+    measured: &[Weave],
+    free: &[Free],
+    start: &[f64],
+) -> Vec<f64> {
     let miss = |x: &[f64; N]| match x.iter().all(|value| *value >= 0.0) {
         true => residuals(bicycle, measured, chosen(free, x), |w| w.kappa_set)[0],
         false => f64::INFINITY,
     };
-    let start: [f64; N] = std::array::from_fn(|i| free[i].start());
+    let start: [f64; N] = std::array::from_fn(|i| start[i]);
     // Once more from where the first ended: a simplex can shrink on its way.
     minimum(minimum(start, miss), miss).to_vec()
 }
 
 fn chosen(free: &[Free], values: &[f64]) -> LinearActuator {
     let mut actuator = LinearActuator::default();
-    free.iter().zip(values).for_each(|(free, value)| free.set(&mut actuator, *value));
+    free.iter().zip(values).for_each(|(free, value)| *free.of(&mut actuator) = *value);
     actuator
 }
 
