@@ -78,6 +78,8 @@ fn every_option_is_documented_with_its_default() {
         "basin compare",
         "basin plane",
         "thesis",
+        "study",
+        "design",
     ] {
         let help = bench.run(&format!("{command} --help")).stdout;
         let mut option = "";

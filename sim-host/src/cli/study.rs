@@ -52,7 +52,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         Study::BalanceAssist => Some(pool.install(balance_assist::study)?),
         Study::Prototype => {
             interrupt::install();
-            let search = prototype::search(if args.quick { 0.5 } else { 0.1 });
+            let search = prototype::search(if args.quick { 1.1 } else { 0.25 });
             let bar = progress(!args.quiet, prototype::work(&search), "columns");
             let page = pool.install(|| prototype::study(&search, &|| bar.inc(1), &interrupt::stopped));
             bar.finish_and_clear();

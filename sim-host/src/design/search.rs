@@ -3,7 +3,7 @@
 
 use super::knots::{GAINS, Knots, roughness};
 use crate::basin::Search;
-use crate::study::trial::{Trial, areas};
+use crate::study::trial::{Trial, least_area};
 use argmin::core::{CostFunction, Error, Executor};
 use argmin::solver::neldermead::NelderMead;
 use control::Law;
@@ -72,7 +72,16 @@ pub fn optimise(
     advanced: &dyn Fn(Progress),
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<Found>, String> {
-    let hunt = RefCell::new(Hunt { trials, plan, advanced, stop, found: None, failed: None, ended: false });
+    let hunt = RefCell::new(Hunt {
+        trials,
+        plan,
+        advanced,
+        stop,
+        worst: 0,
+        found: None,
+        failed: None,
+        ended: false,
+    });
     let mut dice = Dice(plan.seed);
     let mut corner = plan.knots.gains_of(&plan.start);
     let mut steps = vec![FIRST_STEP; corner.len()];
@@ -111,6 +120,8 @@ struct Hunt<'a> {
     plan: &'a Plan,
     advanced: &'a dyn Fn(Progress),
     stop: &'a (dyn Fn() -> bool + Sync),
+    /// The trial with the least area of the last schedule.
+    worst: usize,
     found: Option<Found>,
     failed: Option<String>,
     ended: bool,
@@ -157,11 +168,13 @@ impl Hunt<'_> {
         Some(now + BEYOND * beyond)
     }
 
-    fn worst_area(&self, gains: &[f64]) -> Result<Option<f64>, String> {
+    fn worst_area(&mut self, gains: &[f64]) -> Result<Option<f64>, String> {
         let law = self.plan.knots.law(gains).map_err(|e| e.to_string())?;
-        let asked: Vec<(&Trial, &Law)> = self.trials.iter().map(|trial| (trial, &law)).collect();
-        let areas = areas(&asked, &self.plan.search, &|| {}, self.stop)?;
-        Ok(areas.map(|areas| areas.into_iter().fold(f64::INFINITY, f64::min)))
+        let found = least_area(self.trials, &law, &self.plan.search, self.worst, self.stop)?;
+        Ok(found.map(|(area, of)| {
+            self.worst = of;
+            area
+        }))
     }
 
     fn end(&mut self, complete: bool) {

@@ -68,7 +68,7 @@ pub fn groups() -> Result<Vec<Group>, String> {
 
 /// How many columns the study computes.
 pub fn work(search: &Search) -> usize {
-    2 * RIDES.len() * laws().len() * search.speeds.len()
+    RIDES.len() * (2 * laws().len() - 1) * search.speeds.len()
 }
 
 /// The study; `None` if `stop` said so on the way.
@@ -81,15 +81,28 @@ pub fn study(
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<Page>, String> {
     let (groups, laws) = (groups()?, laws());
+    // Without a law no limit matters: that is ridden once.
+    let matters = |g: &Group, law: &Law| *law != Law::None || !g.rate_limited;
+    let pairs = groups.iter().flat_map(|g| laws.iter().map(move |(_, law)| (g, law)));
     let asked: Vec<(&Trial, &Law)> =
-        groups.iter().flat_map(|g| laws.iter().map(|(_, law)| (&g.trial, law))).collect();
-    let Some(outlines) = outlines(&asked, search, advanced, stop)? else { return Ok(None) };
-    let by_group: Vec<&[Outline]> = outlines.chunks(laws.len()).collect();
+        pairs.filter(|(g, law)| matters(g, law)).map(|(g, law)| (&g.trial, law)).collect();
+    let Some(found) = outlines(&asked, search, advanced, stop)? else { return Ok(None) };
+    let mut found = found.into_iter();
+    let mut by_group: Vec<Vec<Outline>> = Vec::new();
+    for g in &groups {
+        let mut of_laws: Vec<Outline> = Vec::new();
+        for (_, law) in &laws {
+            let before = by_group.last().and_then(|group| group.first());
+            let outline = if matters(g, law) { found.next() } else { before.cloned() };
+            of_laws.extend(outline);
+        }
+        by_group.push(of_laws);
+    }
     let text = text(&groups, &by_group, search);
     Ok(Some(Page { name: NAME, text, chart: figure(&groups, &by_group) }))
 }
 
-fn text(groups: &[Group], outlines: &[&[Outline]], search: &Search) -> String {
+fn text(groups: &[Group], outlines: &[Vec<Outline>], search: &Search) -> String {
     let laws = laws();
     let mut heading = vec!["bicycle", "rider", "largest change [N m/s]"];
     heading.extend(laws.iter().map(|(name, _)| *name));
@@ -109,7 +122,7 @@ fn text(groups: &[Group], outlines: &[&[Outline]], search: &Search) -> String {
         outline.iter().min_by_key(apart).map_or(f64::NAN, |point| point.1)
     };
     let heights = groups.iter().zip(outlines).filter(|(g, _)| g.rate_limited).flat_map(|(g, outlines)| {
-        laws.iter().zip(*outlines).map(move |((name, _), outline)| {
+        laws.iter().zip(outlines).map(move |((name, _), outline)| {
             let who = format!("{}, {}", g.bicycle, g.rider.unwrap_or("no rider"));
             let at = speeds.map(|v| format!("{:.2}", nearest(outline, v)));
             [vec![who, (*name).to_owned()], at.to_vec()].concat()
@@ -124,7 +137,7 @@ fn text(groups: &[Group], outlines: &[&[Outline]], search: &Search) -> String {
     format!(
         "# The prototype's law beside h\n\n\
          Made by `sim-host study prototype`. Both laws are given the prototype's {LIMIT_NM} N m, the flashed code at\n\
-         1 kHz and exact sensors without delay. Areas of the basin under a steer rate, {} to {} m/s in steps of {step:.1} m/s,\n\
+         1 kHz and exact sensors without delay. Areas of the basin under a steer rate, {} to {} m/s in steps of {step:.2} m/s,\n\
          in rad m/s^2; borders within {} rad/s. A ride that does not fall within 6 s counts, so that slow growth at\n\
          low speed is no fall.\n\n{areas}\n\
          The steer rates that are survived, in rad/s, with the rate limit:\n\n{heights}\n\
@@ -135,7 +148,7 @@ fn text(groups: &[Group], outlines: &[&[Outline]], search: &Search) -> String {
     )
 }
 
-fn figure(groups: &[Group], outlines: &[&[Outline]]) -> Chart {
+fn figure(groups: &[Group], outlines: &[Vec<Outline>]) -> Chart {
     let limited = groups.iter().zip(outlines).filter(|(g, _)| g.rate_limited);
     let plots = limited.map(|(g, outlines)| Plot {
         title: format!("{}, {}", g.bicycle, g.rider.unwrap_or("no rider")),
@@ -143,7 +156,7 @@ fn figure(groups: &[Group], outlines: &[&[Outline]]) -> Chart {
         y: Axis::new("Steer rate survived [rad/s]"),
         series: laws()
             .iter()
-            .zip(*outlines)
+            .zip(outlines)
             .enumerate()
             .map(|(i, ((name, _), outline))| Series::new(*name, Look::line(i, Line::Solid), outline.clone()))
             .collect(),

@@ -112,3 +112,47 @@ pub fn areas(
     let outlines = outlines(asked, search, advanced, stop)?;
     Ok(outlines.map(|all| all.iter().map(|outline| area(outline)).collect()))
 }
+
+/// The least area of a law over `trials` \[rad m/s^2\], and whose it is. The trial `first` is ridden whole, the others
+/// only as far as they could still be less: the answer is that of [`areas`]. `None` if `stop` said so on the way.
+///
+/// # Errors
+/// As of [`outlines`].
+pub fn least_area(
+    trials: &[Trial],
+    law: &Law,
+    search: &Search,
+    first: usize,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Option<(f64, usize)>, String> {
+    let Some(trial) = trials.get(first) else { return Err("there is no such trial".into()) };
+    let Some(bound) = areas(&[(trial, law)], search, &|| {}, stop)? else { return Ok(None) };
+    let bound = bound[0];
+    let conditions: Vec<Conditions> =
+        trials.iter().map(|trial| trial.conditions(law)).collect::<Result<_, _>>()?;
+    let areas: Option<Vec<f64>> = (0..trials.len())
+        .into_par_iter()
+        .map(|i| {
+            if i == first {
+                return Some(bound);
+            }
+            let mut outline = Outline::new();
+            for &speed in &search.speeds {
+                if stop() {
+                    return None;
+                }
+                outline.push((speed, border(&conditions[i], search, speed).upper));
+                // No strip is negative.
+                if area(&outline) > bound {
+                    break;
+                }
+            }
+            Some(area(&outline))
+        })
+        .collect();
+    let least = |areas: Vec<f64>| {
+        let start = (bound, first);
+        areas.into_iter().zip(0..).fold(start, |least, (a, i)| if a < least.0 { (a, i) } else { least })
+    };
+    Ok(areas.map(least))
+}
