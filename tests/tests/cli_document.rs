@@ -81,6 +81,8 @@ fn every_option_is_documented_with_its_default() {
         "sweep merge",
         "sweep study",
         "thesis",
+        "study",
+        "design",
     ] {
         let help = bench.run(&format!("{command} --help")).stdout;
         let mut option = "";

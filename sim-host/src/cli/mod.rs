@@ -6,6 +6,7 @@ mod bicycle;
 mod cells;
 mod compare;
 mod conditions;
+mod design;
 mod eigen;
 mod interrupt;
 mod law;
@@ -18,6 +19,7 @@ mod rider_args;
 mod speeds;
 mod study;
 mod sweep;
+mod sweep_study;
 mod thesis;
 mod words;
 
@@ -76,11 +78,15 @@ enum Command {
     /// Riders: list, show, check.
     #[command(subcommand, after_help = rider::EXAMPLES)]
     Rider(rider::Command),
+    /// A gain schedule with the largest worst basin, judged beside the known laws.
+    Design(design::Args),
+    /// Studies: a question computed, its answer as a page with a figure.
+    Study(study::Args),
     /// The JSON schema of a command's `--json` document.
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
-        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep"])]
+        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design"])]
         document: String,
     },
 }
@@ -97,6 +103,8 @@ pub fn run() -> ExitCode {
         Command::Thesis(args) => thesis::run(&args),
         Command::Bicycle(command) => bicycle::run(&command),
         Command::Rider(command) => rider::run(&command),
+        Command::Design(args) => design::run(&args),
+        Command::Study(args) => study::run(&args),
         Command::Schema { document } => schema(&document),
     };
     match ended {

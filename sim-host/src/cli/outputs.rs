@@ -87,6 +87,14 @@ impl Outputs {
         named.into_iter().filter_map(|(name, output)| output.as_ref().map(|o| (name, o))).collect()
     }
 
+    /// Refuses a further output that has the place of one of these.
+    pub(super) fn refuse_place_of(&self, option: &str, further: &Output) -> Result<(), Failure> {
+        match self.all().into_iter().find(|(_, output)| output.collides(further)) {
+            Some((other, _)) => Err(format!("{other} and {option} have the same place to write to").into()),
+            None => Ok(()),
+        }
+    }
+
     /// Whether a progress bar may be shown.
     pub(super) fn shows_progress(&self) -> bool {
         !self.quiet

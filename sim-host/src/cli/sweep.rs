@@ -68,7 +68,7 @@ enum Command {
     /// Puts the parts of a sweep together
     Merge(Merge),
     /// Answers a question by sweeps that are written down: a page with tables and figures
-    Study(super::study::Args),
+    Study(super::sweep_study::Args),
     /// The studies that ship
     Studies,
 }
@@ -89,8 +89,8 @@ struct Merge {
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     match &args.command {
         Some(Command::Merge(args)) => return merge(args),
-        Some(Command::Study(args)) => return super::study::run(args),
-        Some(Command::Studies) => return super::study::list(),
+        Some(Command::Study(args)) => return super::sweep_study::run(args),
+        Some(Command::Studies) => return super::sweep_study::list(),
         None => {}
     }
     let resolved = resolve(&args.over, args.conditions.words(), |ridden| args.search.search(ridden))?;

@@ -1,6 +1,7 @@
 //! What leaves the program: documents, tables, figures, files.
 
 pub mod compare;
+pub mod design;
 pub mod document;
 pub mod figure;
 pub mod output;

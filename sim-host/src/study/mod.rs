@@ -1,12 +1,7 @@
-//! Studies: questions answered by sweeps that are written down, with the answer as a page.
+//! Studies: a question, computed, and its answer as a page of Markdown with a figure.
 
-mod answer;
-mod catalogue;
-mod figure;
-mod keep;
-mod page;
-
-pub use catalogue::{Part, Study, StudyError, load, shipped};
-pub use figure::figures;
-pub use keep::{Kept, kept};
-pub use page::{Spent, page};
+pub mod balance_assist;
+pub mod motor_fit;
+pub mod page;
+pub mod prototype;
+pub mod trial;

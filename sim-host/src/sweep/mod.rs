@@ -10,6 +10,7 @@ mod plan;
 mod run;
 mod seal;
 mod shard;
+pub mod study;
 mod unit;
 mod write;
 

@@ -7,8 +7,8 @@ use std::path::Path;
 
 /// Those that ship: names, and files in `data/studies/`.
 const SHIPPED: [(&str, &str); 2] = [
-    ("limits", include_str!("../../../data/studies/limits.toml")),
-    ("imu", include_str!("../../../data/studies/imu.toml")),
+    ("limits", include_str!("../../../../data/studies/limits.toml")),
+    ("imu", include_str!("../../../../data/studies/imu.toml")),
 ];
 
 /// A question and the sweeps that answer it.
