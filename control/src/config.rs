@@ -4,11 +4,11 @@ use crate::calibrate::Calibration;
 use crate::capsize::Capsize;
 use crate::controller::Plan;
 use crate::cross::CrossConfig;
-use crate::estimate::EstimateConfig;
+use crate::estimate::{EstimateConfig, Source};
 use crate::history::Latency;
 use crate::input::InputConfig;
 use crate::law::Law;
-use crate::limits::{Limits, Taper};
+use crate::limits::Limits;
 use crate::param::{Checker, Leaf, ParamError, Visit};
 use crate::permit::PermitConfig;
 use crate::watch::{Loss, Sensor};
@@ -56,31 +56,58 @@ impl Config {
         }
     }
 
-    /// What is flashed: `h` cut to zero above 7.5 m/s, 7 N m (the largest torque of the published
-    /// balance-assist prototype), 100 N m/s (above the 91 N m/s that border rides of unlimited `h`
-    /// reach), nothing below 0.5 m/s and all of it from 1.5 m/s, samples up to 10 ms (gyro) and
-    /// 250 ms (wheel pulses) old. It refuses to engage until a polarity check was passed.
+    /// What is flashed: `h` cut to zero above 7.5 m/s, every sensor but the rider's torque and the path
+    /// declared and watched, all limits and checks on ([`Limits::product`]).
+    ///
+    /// Slopes are at least twice the largest in rides on the border of the basins of `h`, alone and with
+    /// riders (`data/motion.toml`). It refuses to engage until a polarity check was passed.
     pub fn product() -> Self {
-        let gyro =
-            Sensor { timeout_ticks: 10, qualify_samples: 100, loss: Loss::Fault, ..Sensor::exact(60.0) };
+        let sensor = |max, slope_per_s, timeout_ticks, loss| Sensor {
+            slope_per_s: Some(slope_per_s),
+            timeout_ticks,
+            stuck_ticks: 100,
+            qualify_samples: 50,
+            loss,
+            ..Sensor::exact(max)
+        };
         let wheel =
-            Sensor { timeout_ticks: 250, qualify_samples: 3, loss: Loss::Fault, ..Sensor::exact(30.0) };
-        let input = InputConfig { gyro, front_wheel: wheel, ..InputConfig::default() };
+            |slope| Sensor { stuck_ticks: 500, qualify_samples: 3, ..sensor(30.0, slope, 250, Loss::Limp) };
+        let input = InputConfig {
+            recent_samples: 3,
+            drift_m_s2: 10.0,
+            drift_after_ticks: 30,
+            max_gap_ms: Some(5.0),
+            gyro: sensor(35.0, 500.0, 10, Loss::Fault),
+            accel: Sensor { slope_per_s: None, ..sensor(160.0, 0.0, 20, Loss::Limp) },
+            steer: sensor(1.6, 40.0, 20, Loss::Limp),
+            steer_rate: sensor(40.0, 1000.0, 20, Loss::Limp),
+            front_wheel: wheel(300.0),
+            rear_wheel: wheel(100.0),
+            motor: Sensor { slope_per_s: None, ..sensor(20.0, 0.0, 20, Loss::Fault) },
+            ..InputConfig::default()
+        };
+        let cross = CrossConfig {
+            wheels_m_s: Some(0.8),
+            yaw_rad_s: Some(2.0),
+            steer_rad: Some(0.1),
+            motor_nm: Some(2.0),
+            persist_ticks: 50,
+            ..CrossConfig::default()
+        };
         let permit = PermitConfig {
             self_test_ticks: 200,
             ramp_in_ticks: 500,
             ramp_out_ticks: 200,
             need_polarity: true,
-            ..PermitConfig::default()
+            fallen_rad: Some(1.05),
+            parked_m_s: Some(0.3),
+            backwards_m_s: Some(0.3),
+            lifted_m_s2: Some(3.0),
+            persist_ticks: 100,
         };
-        let limits = Limits {
-            max_torque_nm: Some(7.0),
-            rise_nm_s: Some(100.0),
-            fall_nm_s: Some(100.0),
-            taper: Some(Taper { zero_m_s: 0.5, full_m_s: 1.5 }),
-            ..Limits::default()
-        };
-        Self { input, permit, limits, ..Self::thesis(Law::H { cut: true }) }
+        let estimate = EstimateConfig { roll_rate: Source::Estimate, ..EstimateConfig::default() };
+        let limits = Limits::product();
+        Self { input, estimate, cross, permit, limits, ..Self::thesis(Law::H { cut: true }) }
     }
 
     /// Shows every parameter but the law's.

@@ -7,6 +7,7 @@ pub mod cli;
 pub mod design;
 pub mod eigen;
 pub mod integrate;
+pub mod leaves;
 pub mod num;
 pub mod plant;
 mod range;

@@ -3,7 +3,9 @@
 use super::plant_args::{PlantArgs, whole_ticks};
 use super::rider_args::{RiderArgs, step};
 use super::{Failure, law, warn};
+use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
+use crate::leaves;
 use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
 use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
@@ -65,6 +67,9 @@ pub(super) struct ConditionArgs {
     sensor_delay: f64,
     #[command(flatten)]
     plant: PlantArgs,
+    /// Any parameter of the flashed code, as limits.rise_nm_s=50 or limits.end_stop=on; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
     /// Roll rate the gyro reports: of the roll angle, or the frame's about its own axis
     #[arg(long, default_value = "euler")]
     imu: Imu,
@@ -151,7 +156,18 @@ impl ConditionArgs {
         if let Some(Limit(taper)) = self.taper {
             config.limits.taper = taper.map(|(zero_m_s, full_m_s)| Taper { zero_m_s, full_m_s });
         }
+        for word in &self.set {
+            let (key, value) = word.split_once('=').ok_or(format!("--set {word}: expected KEY=VALUE"))?;
+            leaves::set(&mut config, key, value).map_err(|why| format!("--set {word}: {why}"))?;
+        }
         let period_s = 1.0 / f64::from(config.rate_hz);
+        let flashed = law != Law::None && self.assist == AssistKind::Firmware;
+        let step_s = match &rider {
+            Some((rider, ..)) => step(rider.delay_s, period_s, flashed)?,
+            None => period_s,
+        };
+        let plant = self.plant.plant(step_s)?;
+        fit(&mut config, &Geometry::new(&bicycle.parameters), plant.sensors.imu.point_m);
         let limited = config.limits != Limits::default();
         let plan = config.plan().map_err(|e| match option_of(&e.leaf) {
             Some(option) => format!("{option}: {e}"),
@@ -166,10 +182,6 @@ impl ConditionArgs {
             AssistKind::Firmware => Assist::Firmware(Box::new(plan)),
             AssistKind::Ideal => Assist::Ideal(Box::new(law.clone())),
         };
-        let step_s = match &rider {
-            Some((rider, ..)) => step(rider.delay_s, period_s, matches!(assist, Assist::Firmware(_)))?,
-            None => period_s,
-        };
         let sensor_delay_ticks = whole_ticks("--sensor-delay", self.sensor_delay, step_s)?;
         let resolved = rider.as_ref().map(|(rider, table, fit)| ResolvedRider::new(table, *fit, rider));
         let conditions = Conditions {
@@ -177,7 +189,7 @@ impl ConditionArgs {
             schedule_speed: self.schedule_speed,
             imu: self.imu,
             sensor_delay_ticks,
-            plant: self.plant.plant(step_s)?,
+            plant,
             time_limit_s: self.time_limit,
             step_s,
             recovered_below: self.recovered_below,

@@ -2,9 +2,11 @@
 
 use crate::basin::{Axis, Search};
 use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
+use crate::leaves::departing;
 use crate::plant::{ActuatorConfig, ImuMount, Plant, Sensor, SensorModel};
 use crate::ride::{Assist, Conditions};
 use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};
+use control::estimate::{EstimateConfig, Source};
 use control::{Capsize, Law};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -225,6 +227,8 @@ pub struct ResolvedConfig {
     pub sensor_delay_s: f64,
     /// How sensors and motor depart from exact ones.
     pub plant: ResolvedPlant,
+    /// Parameters of the flashed code that differ from those of the published conditions, by name.
+    pub parameters: BTreeMap<String, String>,
     /// Control rate \[Hz\]; null for the continuous ideal law.
     pub control_rate_hz: Option<f32>,
     /// Integration step \[s\].
@@ -266,6 +270,7 @@ impl ResolvedConfig {
             taper_m_s: config.and_then(|c| c.limits.taper).map(|t| (t.zero_m_s, t.full_m_s)),
             sensor_delay_s: f64::from(c.sensor_delay_ticks) * c.step_s,
             plant: ResolvedPlant::new(&c.plant),
+            parameters: config.map_or(BTreeMap::new(), |c| departing(c, &published(c)).into_iter().collect()),
             control_rate_hz: config.map(|c| c.rate_hz),
             step_s: c.step_s,
             time_limit_s: c.time_limit_s,
@@ -278,6 +283,16 @@ impl ResolvedConfig {
         let rider = self.rider.as_ref().map_or(String::new(), |r| format!(", {}", r.label()));
         format!("{}{rider}, law {}", self.bicycle.name, self.law.name)
     }
+}
+
+/// The published conditions on the same bicycle.
+fn published(config: &Config) -> Config {
+    let mut published = Config::thesis(config.law.clone());
+    published.estimate = EstimateConfig { roll_rate: Source::GyroX, ..config.estimate };
+    published.cross.wheelbase_m = config.cross.wheelbase_m;
+    published.cross.tilt_rad = config.cross.tilt_rad;
+    published.calibration.polarity_checked = config.calibration.polarity_checked;
+    published
 }
 
 /// What a basin was searched with.
