@@ -7,7 +7,7 @@ use crate::plant::{ActuatorConfig, ImuMount, Plant, Sensor, SensorModel};
 use crate::ride::{Assist, Conditions};
 use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};
 use control::estimate::{EstimateConfig, Source};
-use control::{Capsize, Law};
+use control::{Capsize, Config, Law};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
