@@ -13,6 +13,7 @@ mod geometry;
 mod inertia;
 pub mod linear;
 mod motion;
+pub mod onboard;
 mod parameters;
 mod pitch;
 mod pose;

@@ -67,7 +67,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = args.threads.pool()?;
-    let bar = progress(outputs.shows_progress(), search.rays, "rays");
+    let bar = progress(outputs.shows_progress(), "basin", search.rays, "rays");
     let begin = Instant::now();
     let found = pool.install(|| plane(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
     let seconds = begin.elapsed().as_secs_f64();

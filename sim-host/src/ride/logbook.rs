@@ -23,7 +23,7 @@ pub(super) struct Answer {
     pub(super) frame: SensorFrame,
     /// Commanded steer torque \[N m\].
     pub(super) torque_nm: f64,
-    pub(super) limits: u8,
+    pub(super) limits: u16,
     pub(super) mode: Mode,
     pub(super) causes: Causes,
 }

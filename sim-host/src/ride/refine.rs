@@ -160,10 +160,10 @@ impl Actuation<f64> for Shorter<'_, '_> {
 /// One Runge-Kutta step with all speeds, `h` seconds from `offset`.
 fn step(b: &Geometry, from: &FullState, (offset, h): (f64, f64), period: &mut Period) -> Option<FullState> {
     let mut stages = Stages::new(*from);
-    for stage in 0..STAGES.len() {
+    for (stage, part) in STAGES.into_iter().enumerate() {
         let at = stages.at;
         let (pose, velocities) = (at.pose(b), at.velocities(b));
-        let k = at.rate(b, &period.torques(offset + STAGES[stage] * h, &velocities))?;
+        let k = at.rate(b, &period.torques(offset + part * h, &velocities))?;
         let [roll, _, steer] = at.angles;
         let [roll_acc, _, _, steer_acc, _, _] = k.speeds;
         let now = Instant {

@@ -39,8 +39,8 @@ pub struct TracePoint {
     pub measured_speed: f64,
     /// The steer torque the assist commanded \[N m\].
     pub torque: f64,
-    /// Limits that changed the torque, as bits of [`control::Limits`].
-    pub limits: u8,
+    /// Limits that changed the torque, as bits of [`control::ActiveLimits`].
+    pub limits: u16,
     /// The rider's steer torque \[N m\].
     pub rider_torque: f64,
     /// The steer torque the motor gives in the middle of the control period \[N m\].

@@ -96,7 +96,7 @@ fn rides_of_any_length_are_drawn() {
         mode: 4,
         causes: 0,
         frame: control::SensorFrame::missing(),
-        limits: control::Limits::RATE.0,
+        limits: control::ActiveLimits::RATE.0,
     };
     for n in [0, 1, 2, 1500] {
         let trace: Vec<_> = (0..n).map(point).collect();

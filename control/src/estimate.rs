@@ -1,0 +1,195 @@
+//! The motion as far as the sensors show it: attitude, rates, accelerations, and how sure that is.
+//!
+//! Exact kinematics of a bicycle whose rear wheel rolls without slip (`docs/bicycle.md`): the order of
+//! turns is yaw, roll, pitch, so roll rate is `wx cos(pitch) + wz sin(pitch)`, and the lateral
+//! specific force at a place `up` above and `forward` of the rear contact is
+//! `v yaw_rate cos(roll) - g sin(roll) + up wx' + forward wz' + wy (wx forward + wz (radius - up))`.
+
+mod config;
+mod roll;
+mod steer;
+
+pub use config::{EstimateConfig, Place, SOURCES, Source};
+
+use crate::maths::{bounded, sin_cos};
+use roll::{G, Roll};
+use steer::Steer;
+
+/// Largest angular rate \[rad/s\], specific force \[m/s^2\] and speed \[m/s\] that are reckoned with.
+const MOST: (f32, f32, f32) = (100.0, 1000.0, 100.0);
+/// Lag of what the roll angle is observed by \[s\]: long against the gyro's noise, short against a turn.
+const OBSERVED_S: f32 = 0.1;
+/// Speed below which the bicycle stands \[m/s\], and above which it balances by riding.
+const STANDING_M_S: f32 = 0.05;
+const BALANCING_M_S: f32 = 1.5;
+/// How long it must stand and be still before the gyros show their bias \[s\].
+const STILL_S: f32 = 0.5;
+/// A gap after which the past is worth nothing \[us\].
+const GAP_US: u32 = 100_000;
+/// Angle beyond which the fit of the pitch is not trusted \[rad\].
+const FITTED_RAD: f32 = 1.2;
+
+/// What is felt in one control period: rear-frame axes, x forward (horizontal when upright), y right, z down.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Felt {
+    /// Angular rates about x, y and z \[rad/s\].
+    pub gyro_rad_s: [f32; 3],
+    /// Specific force, the mean over the last period: (0, 0, -9.81) upright and still \[m/s^2\].
+    pub accel_m_s2: Option<[f32; 3]>,
+    /// Steer angle, right positive \[rad\].
+    pub steer_rad: Option<f32>,
+    /// Steer rate \[rad/s\].
+    pub steer_rate_rad_s: Option<f32>,
+    /// Rear wheel's rate times its radius, positive forward \[m/s\].
+    pub speed_m_s: f32,
+    /// Time since the step before \[us\].
+    pub elapsed_us: u32,
+}
+
+/// The motion that follows from it. Always finite.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Roll angle, right positive; a quarter turn at most \[rad\].
+    pub roll_rad: f32,
+    /// Roll rate by [`Source`] \[rad/s\].
+    pub roll_rate_rad_s: f32,
+    /// Yaw rate \[rad/s\].
+    pub yaw_rate_rad_s: f32,
+    /// Pitch, nose up positive \[rad\]; 0 without a steer sensor.
+    pub pitch_rad: f32,
+    /// Steer angle \[rad\]; 0 without a sensor.
+    pub steer_rad: f32,
+    /// Steer rate \[rad/s\]; 0 without a sensor.
+    pub steer_rate_rad_s: f32,
+    /// Rear wheel's forward speed \[m/s\].
+    pub speed_m_s: f32,
+    /// Roll acceleration, [`EstimateConfig::accel_lag_s`] late \[rad/s^2\].
+    pub roll_accel_rad_s2: f32,
+    /// The roll angle is wrong by no more than this; pi when nothing is known \[rad\].
+    pub roll_bound_rad: f32,
+    /// Biases of the gyros, as far as known \[rad/s\].
+    pub gyro_bias_rad_s: [f32; 3],
+}
+
+/// What the estimator remembers.
+#[derive(Clone, Debug, Default)]
+pub struct EstimateState {
+    /// `None` before the first step and after a gap.
+    running: Option<Running>,
+    /// Biases about y and z \[rad/s\], and their variance. They show only while standing still.
+    bias: [f32; 2],
+    bias_variance: Option<f32>,
+    steer: Steer,
+}
+
+#[derive(Clone, Debug)]
+struct Running {
+    roll: Roll,
+    /// The sideways force that is not explained, before lever arms, smoothed \[m/s^2\].
+    unexplained_m_s2: f32,
+    /// Rates about x and z, smoothed \[rad/s\].
+    smooth: [f32; 2],
+    /// Roll rate, smoothed for the roll acceleration \[rad/s\].
+    roll_rate: f32,
+    still_s: f32,
+}
+
+/// One control period.
+pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> Motion {
+    let dt = 1e-6 * felt.elapsed_us.min(GAP_US) as f32;
+    if felt.elapsed_us > GAP_US {
+        state.running = None;
+        state.steer = Steer::default();
+    }
+    let c = config;
+    let (steer_rad, steer_rate_rad_s) =
+        state.steer.step(c.steer_lag_s, dt, felt.steer_rad, felt.steer_rate_rad_s);
+    let speed = bounded(felt.speed_m_s, MOST.2);
+    let told = felt.gyro_rad_s.map(|w| bounded(w, MOST.0));
+    let at_first = c.bias_max_rad_s * c.bias_max_rad_s / 9.0;
+    let mut bias_variance = state.bias_variance.unwrap_or(at_first);
+
+    let [by, bz] = state.bias;
+    let [wy, wz] = [told[1] - by, told[2] - bz];
+    let run = state.running.get_or_insert_with(|| Running {
+        roll: Roll::unknown(c.bias_max_rad_s),
+        unexplained_m_s2: 0.0,
+        smooth: [told[0], wz],
+        roll_rate: told[0],
+        still_s: 0.0,
+    });
+    let wx = told[0] - run.roll.bias_rad_s;
+    let pitch_rad = pitch(&c.pitch, run.roll.angle_rad, steer_rad);
+    let (sin_pitch, cos_pitch) = sin_cos(pitch_rad);
+    let roll_rate = wx * cos_pitch + wz * sin_pitch;
+    run.roll.turn(roll_rate, dt, (c.gyro_walk_rad, c.bias_walk_rad_s), c.bias_max_rad_s);
+    bias_variance = (bias_variance + dt * c.bias_walk_rad_s * c.bias_walk_rad_s).min(at_first);
+
+    // At rest the gyros show nothing but their bias.
+    let quiet = told.iter().all(|w| w.abs() <= c.bias_max_rad_s);
+    run.still_s = if quiet && speed.abs() <= STANDING_M_S { run.still_s + dt } else { 0.0 };
+    if run.still_s > STILL_S {
+        run.still_s = 2.0 * STILL_S;
+        let seen = c.gyro_walk_rad * c.gyro_walk_rad / dt.max(1e-6);
+        let _ = run.roll.observe_bias(wx, seen, c.bias_max_rad_s);
+        let gain = bias_variance / (bias_variance + seen);
+        bias_variance -= gain * bias_variance;
+        state.bias = [by + gain * wy, bz + gain * wz].map(|b| bounded(b, c.bias_max_rad_s));
+    }
+
+    let (sin_roll, cos_roll) = sin_cos(run.roll.angle_rad);
+    // As if roll were nearer to upright than 72 degrees: the division must not blow up.
+    let yaw_rate = (wz * cos_pitch - wx * sin_pitch) / cos_roll.max(0.3);
+    // What the rear wheel's contact moves with: its rate seen from the ground.
+    let rolling = speed - wy * c.wheel_radius_m;
+    let (place, noise, error, force) = match felt.accel_m_s2 {
+        Some(f) => (&c.imu, c.accel_noise_rad, c.accel_error_rad, f.map(|f| bounded(f, MOST.1))),
+        None => (&c.balance, c.balance_noise_rad, c.balance_error_rad, [0.0, 0.0, -G]),
+    };
+    let swing = wy * (wx * place.forward_m + wz * (c.wheel_radius_m - place.up_m));
+    let unexplained = force[1] - rolling * yaw_rate * cos_roll + G * sin_roll - swing;
+    let keep = dt / (OBSERVED_S + dt);
+    run.unexplained_m_s2 += keep * (unexplained - run.unexplained_m_s2);
+    run.smooth = [run.smooth[0] + keep * (wx - run.smooth[0]), run.smooth[1] + keep * (wz - run.smooth[1])];
+    let lever = place.up_m * ((wx - run.smooth[0]) / OBSERVED_S)
+        + place.forward_m * ((wz - run.smooth[1]) / OBSERVED_S);
+    let seen = felt.accel_m_s2.is_some() || speed >= BALANCING_M_S;
+    if seen && dt > 0.0 {
+        let [fx, fy, fz] = force;
+        let pull = libm::sqrtf(fx * fx + fy * fy + fz * fz) - G;
+        let violence = (lever * lever + pull * pull) / (c.violent_m_s2 * c.violent_m_s2);
+        let variance = noise * noise * (1.0 + violence) / dt;
+        run.roll.observe((lever - run.unexplained_m_s2) / G, variance, c.bias_max_rad_s);
+    }
+
+    run.roll_rate += dt / (c.accel_lag_s + dt) * (roll_rate - run.roll_rate);
+    let roll_accel_rad_s2 = (roll_rate - run.roll_rate) / c.accel_lag_s;
+    let yaw_error = 3.0 * libm::sqrtf(bias_variance) + c.speed_error * yaw_rate.abs();
+    let systematic = error + speed.abs() * yaw_error / G;
+    let bound = libm::sqrtf(run.roll.spread()) + systematic;
+    state.bias_variance = Some(bias_variance);
+    let gyro_x = felt.gyro_rad_s[0];
+    Motion {
+        roll_rad: run.roll.angle_rad,
+        roll_rate_rad_s: match c.roll_rate {
+            Source::GyroX if gyro_x.is_finite() => gyro_x,
+            Source::GyroX => 0.0,
+            Source::Estimate => roll_rate,
+        },
+        yaw_rate_rad_s: yaw_rate,
+        pitch_rad,
+        steer_rad,
+        steer_rate_rad_s,
+        speed_m_s: speed,
+        roll_accel_rad_s2,
+        roll_bound_rad: bounded(bound, core::f32::consts::PI),
+        gyro_bias_rad_s: [run.roll.bias_rad_s, state.bias[0], state.bias[1]],
+    }
+}
+
+/// Pitch by the fitted polynomial \[rad\].
+fn pitch(fit: &[f32; 6], roll_rad: f32, steer_rad: f32) -> f32 {
+    let (r, d) = (bounded(roll_rad, FITTED_RAD), bounded(steer_rad, FITTED_RAD));
+    let [dd, dr, d4, d3r, d2r2, dr3] = *fit;
+    d * (d * dd + r * dr + d * d * (d * d4 + r * d3r) + r * r * (d * d2r2 + r * dr3))
+}

@@ -1,0 +1,76 @@
+//! What the flashed estimator must know of a bicycle, computed from its geometry.
+
+use super::{Geometry, Gyrostat, pitch_from_upright};
+use control::Config;
+use control::estimate::{EstimateConfig, Place};
+use nalgebra::{SMatrix, SVector};
+
+/// The attitudes over which the pitch is fitted: roll and steer up to these, either way \[rad\].
+const FITTED: (f64, f64) = (0.8, 1.0);
+/// Points of the fit along each.
+const POINTS: usize = 41;
+
+/// The estimator's parameters that follow from the bicycle; the others as they are by default.
+pub fn estimator_parameters(b: &Geometry) -> EstimateConfig {
+    EstimateConfig {
+        pitch: pitch_fit(b).map(|c| c as f32),
+        wheel_radius_m: b.rR as f32,
+        balance: balance(b),
+        ..EstimateConfig::default()
+    }
+}
+
+/// Tells the flashed code which bicycle it is on and where its IMU sits: `imu_m` from the rear wheel's centre,
+/// forward, right and down \[m\]. What it makes of that stays as chosen.
+pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) {
+    let imu = Place { forward_m: imu_m[0] as f32, up_m: (b.rR - imu_m[2]) as f32 };
+    config.estimate = EstimateConfig { roll_rate: config.estimate.roll_rate, imu, ..estimator_parameters(b) };
+    (config.cross.wheelbase_m, config.cross.tilt_rad) = (b.w as f32, b.lam as f32);
+}
+
+/// The terms of [`EstimateConfig::pitch`] at an attitude.
+fn terms(roll: f64, steer: f64) -> [f64; 6] {
+    let (r, d) = (roll, steer);
+    [d * d, d * r, d.powi(4), d.powi(3) * r, (d * r).powi(2), d * r.powi(3)]
+}
+
+/// Least squares over a grid of attitudes; those without a pitch are left out.
+fn pitch_fit(b: &Geometry) -> [f64; 6] {
+    let mut normal = SMatrix::<f64, 6, 6>::zeros();
+    let mut right = SVector::<f64, 6>::zeros();
+    let part = |i: usize| 2.0 * i as f64 / (POINTS - 1) as f64 - 1.0;
+    for i in 0..POINTS {
+        for j in 0..POINTS {
+            let (roll, steer) = (FITTED.0 * part(i), FITTED.1 * part(j));
+            if let Some(pitch) = pitch_from_upright(b, roll, steer) {
+                let row = SVector::from(terms(roll, steer));
+                normal += row * row.transpose();
+                right += row * pitch;
+            }
+        }
+    }
+    normal.lu().solve(&right).map_or([0.0; 6], Into::into)
+}
+
+/// The place where the upright bicycle feels no lateral force, for the ground's acts at the contacts:
+/// `v yaw' + (ITxx roll'' + ITxz yaw'') / (mT hT) = g roll` (Meijaard et al. 2007, eq. A6, without the
+/// steer's own terms).
+fn balance(b: &Geometry) -> Place {
+    let (s, c) = b.lam.sin_cos();
+    let mut sums = [0.0; 3];
+    let mut add = |body: &Gyrostat, forward: f64| {
+        let [along, down] = [body.com[0] + forward, body.com[1]];
+        // From the steer axis' directions to the frame's, from the axle to the contact.
+        let (x, z) = (along * c + down * s, down * c - along * s - b.rR);
+        let [i11, _, i33, i13] = body.inertia;
+        let xx = i11 * c * c + 2.0 * i13 * s * c + i33 * s * s;
+        let xz = (i33 - i11) * s * c + i13 * (c * c - s * s);
+        sums[0] -= body.mass * z;
+        sums[1] += xx + body.mass * z * z;
+        sums[2] += xz - body.mass * x * z;
+    };
+    add(&b.rear, 0.0);
+    add(&b.front, b.d1);
+    let [moment, xx, xz] = sums;
+    Place { forward_m: (xz / moment) as f32, up_m: (xx / moment) as f32 }
+}
