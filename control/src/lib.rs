@@ -31,6 +31,7 @@ pub mod law;
 pub mod maths;
 pub mod param;
 pub mod permit;
+pub mod predict;
 pub mod pulses;
 pub mod real;
 pub mod shape;

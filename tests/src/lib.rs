@@ -7,6 +7,7 @@ pub mod draws;
 pub mod felt;
 pub mod flow;
 pub mod json_schema;
+pub mod late;
 pub mod linearised;
 pub mod newton_euler;
 pub mod published;
