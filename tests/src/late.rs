@@ -1,9 +1,10 @@
 //! Rides with late sensors and a slow actuator, and a controller that may make up for both.
 
 use crate::felt::{Noise, Truth, truth};
+use crate::model::{LinearBicycle, Model, OnTheWay};
 use control::Law;
 use control::estimate::{self, EstimateConfig, EstimateState, Felt, Motion};
-use control::predict::{self, PredictConfig, PredictPlan, PredictState};
+use control::predict::{self, PredictConfig};
 use sim_host::bicycle::{self, Accelerations, Geometry, State, Torques};
 use sim_host::integrate::{Actuation, STAGES, Stages, rk4};
 use sim_host::ride::Start;
@@ -17,6 +18,17 @@ const STEP_S: f64 = 1e-3;
 const STEP_US: u32 = 1000;
 /// How long the estimator rides along before the disturbance \[steps\].
 const BEFORE: usize = 1000;
+
+/// How the controller makes up for the delay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ahead {
+    /// Not at all.
+    Off,
+    /// By the roll acceleration, as flashed, this far \[s\].
+    Lead(f64),
+    /// By a linear bicycle, this far \[s\].
+    Model(LinearBicycle, f64),
+}
 
 /// What all rides of a comparison share.
 #[derive(Clone, Debug)]
@@ -34,52 +46,70 @@ pub struct Late<'a> {
     /// What the controller knows of the bicycle's attitude.
     pub estimate: EstimateConfig,
     /// How it makes up for the delay.
-    pub predict: PredictConfig,
+    pub ahead: Ahead,
     /// The noise of the sensors, by its seed.
     pub noise: Option<u64>,
     /// How long a ride lasts \[s\].
     pub seconds: f64,
 }
 
+/// How a ride went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ridden {
+    /// Roll or steer reached 90 degrees.
+    pub fell: bool,
+    /// Root mean square of the torque asked for \[N m\].
+    pub rms_nm: f64,
+    /// Root mean square of its change from one control period to the next, by time \[N m/s\].
+    pub rms_nm_s: f64,
+}
+
 impl Late<'_> {
-    /// Whether a ride falls (90 degrees of roll or steer).
-    pub fn falls(&self, start: Start) -> bool {
+    /// A ride, to its end or the fall.
+    pub fn ride(&self, start: Start) -> Ridden {
         let b = self.bicycle;
         let mut state = start.state(b);
         let mut controller = Controller::new(self, start.speed_m_s);
         let mut push = Push::new(self);
         let free = Torques { roll: 0.0, steer: 0.0 };
         let mut before = truth(b, &state, &free, &self.estimate.imu);
-        for _ in 0..(self.seconds / STEP_S) as usize {
+        let (mut squares, mut changes, mut last) = (0.0, 0.0, 0.0);
+        let steps = (self.seconds / STEP_S) as usize;
+        for i in 0..steps {
             let torques = Torques { roll: 0.0, steer: push.assist_nm + push.body.end.torque };
             let now = truth(b, &state, &torques, &self.estimate.imu);
             let wanted = controller.step(self, &Truth::between(&before, &now));
+            squares += wanted * wanted;
+            changes += ((wanted - last) / STEP_S).powi(2);
+            last = wanted;
             let share = if self.actuator_s > 0.0 { 1.0 - (-STEP_S / self.actuator_s).exp() } else { 1.0 };
             push.assist_nm += share * (wanted - push.assist_nm);
             push.body = Stages::new(push.body.end);
             state = rk4(b, &state, STEP_S, &mut push);
             // Not below, so that a state that is no number falls too.
             if !(state.roll.abs() < FRAC_PI_2 && state.steer.abs() < FRAC_PI_2) {
-                return true;
+                let n = (i + 1) as f64;
+                return Ridden { fell: true, rms_nm: (squares / n).sqrt(), rms_nm_s: (changes / n).sqrt() };
             }
             before = now;
         }
-        false
+        let n = steps as f64;
+        Ridden { fell: false, rms_nm: (squares / n).sqrt(), rms_nm_s: (changes / n).sqrt() }
     }
 
-    /// The largest steer rate \[rad/s\] up to `most` below which no ride at `speed` \[m/s\] falls, to 0.02.
+    /// The largest steer rate \[rad/s\] up to `most` below which no ride at `speed` \[m/s\] falls, to 0.05.
     pub fn height(&self, speed_m_s: f64, most: f64) -> f64 {
         let falls =
-            |steer_rate_rad_s| self.falls(Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s: 0.0 });
+            |steer_rate_rad_s| self.ride(Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s: 0.0 }).fell;
         let mut low = 0.0;
-        while !falls(low + 0.5) {
-            low += 0.5;
+        while !falls(low + 1.0) {
+            low += 1.0;
             if low >= most {
                 return low;
             }
         }
-        let mut high = low + 0.5;
-        while high - low > 0.02 {
+        let mut high = low + 1.0;
+        while high - low > 0.05 {
             let middle = 0.5 * (low + high);
             if falls(middle) { high = middle } else { low = middle }
         }
@@ -90,8 +120,9 @@ impl Late<'_> {
 /// The controller of one ride.
 struct Controller {
     estimator: EstimateState,
-    plan: PredictPlan,
-    predictor: PredictState,
+    lead: PredictConfig,
+    model: Option<Model>,
+    torques: OnTheWay,
     noise: Option<Noise>,
     arriving: VecDeque<(Felt, f32)>,
 }
@@ -107,15 +138,22 @@ impl Controller {
         let told = (steady.felt(STEP_US), steady.front_speed as f32);
         let mut controller = Self {
             estimator: EstimateState::default(),
-            plan: late.predict.plan(1.0 / STEP_S as f32),
-            predictor: PredictState::default(),
+            lead: PredictConfig {
+                lead_s: if let Ahead::Lead(s) = late.ahead { s as f32 } else { 0.0 },
+                ..PredictConfig::default()
+            },
+            model: match &late.ahead {
+                Ahead::Model(bicycle, delay) => Some(Model::new(bicycle, *delay as f32, STEP_S as f32)),
+                Ahead::Off | Ahead::Lead(_) => None,
+            },
+            torques: OnTheWay::default(),
             noise: late.noise.map(Noise::new),
             arriving: vec![told; late.sensors_ms].into(),
         };
         for _ in 0..BEFORE {
             let _ = controller.step(late, &steady);
         }
-        controller.predictor = PredictState::default();
+        controller.torques = OnTheWay::default();
         controller
     }
 
@@ -128,9 +166,14 @@ impl Controller {
         self.arriving.push_back((felt, now.front_speed as f32));
         let Some((felt, front_speed)) = self.arriving.pop_front() else { return 0.0 };
         let motion: Motion = estimate::step(&late.estimate, &mut self.estimator, &felt);
-        let ahead = predict::step(&self.plan, &self.predictor, &motion, true);
+        let ahead = match &self.model {
+            Some(model) => model.ahead(&self.torques, &motion),
+            None => predict::step(&self.lead, &motion),
+        };
         let torque = late.law.gain(front_speed) * ahead.roll_rate_rad_s;
-        self.predictor.commanded(&self.plan, torque);
+        if let Some(model) = &self.model {
+            self.torques.commanded(model, torque);
+        }
         f64::from(torque)
     }
 }

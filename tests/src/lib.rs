@@ -9,6 +9,7 @@ pub mod flow;
 pub mod json_schema;
 pub mod late;
 pub mod linearised;
+pub mod model;
 pub mod newton_euler;
 pub mod published;
 pub mod riders;

@@ -1,9 +1,7 @@
 //! What the flashed estimator must know of a bicycle, computed from its geometry.
 
-use super::linear::Linear;
-use super::{Geometry, Gyrostat, Parameters, pitch_from_upright};
+use super::{Geometry, Gyrostat, pitch_from_upright};
 use control::estimate::{EstimateConfig, Place};
-use control::predict::LinearBicycle;
 use nalgebra::{SMatrix, SVector};
 
 /// The attitudes over which the pitch is fitted: roll and steer up to these, either way \[rad\].
@@ -18,22 +16,6 @@ pub fn estimator_parameters(b: &Geometry) -> EstimateConfig {
         wheel_radius_m: b.rR as f32,
         balance: balance(b),
         ..EstimateConfig::default()
-    }
-}
-
-/// The linear bicycle that the flashed predictor reckons with.
-pub fn predictor_parameters(p: &Parameters) -> LinearBicycle {
-    let linear = Linear::new(p);
-    // At speeds 1 and 0: the state matrix is linear in v and v squared.
-    let (still, moving) = (linear.state_matrix(0.0, 0.0), linear.state_matrix(1.0, 0.0));
-    let place = |i: usize| (2 + i / 2, i % 2);
-    let by_rows = |value: &dyn Fn((usize, usize)) -> f64| std::array::from_fn(|i| value(place(i)) as f32);
-    let torque = linear.steer_torque_response();
-    LinearBicycle {
-        damping: by_rows(&|(row, column)| -moving[(row, 2 + column)]),
-        gravity: by_rows(&|at| -still[at]),
-        speed: by_rows(&|at| still[at] - moving[at]),
-        torque: [torque[0] as f32, torque[1] as f32],
     }
 }
 
