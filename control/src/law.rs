@@ -1,69 +1,29 @@
 //! Roll-rate laws: the gain in `T = +gain(v) * roll_rate`, steering into the fall.
 //!
-//! The sources print the feedback gain `K_phi_d(v)` of the Basu-Mandal axes, where steering into
+//! The thesis prints the feedback gain `K_phi_d(v)` of the Basu-Mandal axes, where steering into
 //! the fall is a negative gain; `gain = -K_phi_d` here, converted once, in this file.
 
-use crate::param::{Leaf, ParamError, check};
+use crate::param::{Leaf, ParamError, Visit};
 use crate::real::Real;
-use heapless::Vec;
+use crate::table::LawTable;
 
-/// Most points a user's gain table may have.
-pub const TABLE_POINTS: usize = 32;
+/// The laws by name, in the order of their numbers on the wire.
+pub const LAW_NAMES: &[&str] = &["none", "h", "h-cut", "f", "g", "cl1", "cl2", "table", "balance-assist"];
 
-/// A user's gain schedule: speeds \[m/s\] strictly rising, gain \[N m s/rad\], linear between the
-/// points and constant outside them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LawTable {
-    points: Vec<(f32, f32), TABLE_POINTS>,
-}
-
-impl LawTable {
-    /// Builds a table from `(speed_m_s, gain_nm_s_rad)` points.
-    ///
-    /// # Errors
-    /// Names the first offending value: no point or more than [`TABLE_POINTS`], a speed outside
-    /// -30..=30 m/s, a gain beyond 200 N m s/rad either way, a speed not at least 0.001 m/s above the one before it.
-    pub fn new(points: &[(f32, f32)]) -> Result<Self, ParamError> {
-        check("law.table.points", points.len() as f32, 1.0, TABLE_POINTS as f32)?;
-        let mut table = Self::default();
-        let mut floor = -30.0;
-        for &(speed, gain) in points {
-            check("law.table.speed_m_s", speed, floor, 30.0)?;
-            check("law.table.gain_nm_s_rad", gain, -200.0, 200.0)?;
-            // The length was checked above, so the push always succeeds.
-            let _ = table.points.push((speed, gain));
-            floor = speed + 1e-3;
-        }
-        Ok(table)
-    }
-
-    /// The points, `(speed_m_s, gain_nm_s_rad)`, speeds rising.
-    pub fn points(&self) -> &[(f32, f32)] {
-        &self.points
-    }
-
-    fn gain<R: Real>(&self, speed_m_s: R) -> R {
-        let mut before: Option<(R, R)> = None;
-        for &(v, k) in &self.points {
-            let (v, k) = (R::lit(f64::from(v)), R::lit(f64::from(k)));
-            if speed_m_s <= v {
-                return match before {
-                    Some((v0, k0)) => k0 + (k - k0) * ((speed_m_s - v0) / (v - v0)),
-                    None => k,
-                };
-            }
-            before = Some((v, k));
-        }
-        before.map_or(R::lit(0.0), |(_, k)| k)
-    }
-}
+/// Speed at and above which the balance assist is off \[m/s\].
+const BALANCE_OFF_M_S: f64 = 4.7;
+/// Speed up to which the balance assist grows with speed \[m/s\].
+const BALANCE_FULL_M_S: f64 = 1.5;
+/// Where `f` is least \[m/s\]: its vertex, at which it is still positive.
+const F_LEAST_M_S: f32 = 12.0 / 1.76;
 
 /// A roll-rate law. Gains in N m s/rad, speeds in m/s. Formulas are the sources' `K_phi_d`; the gain is
 /// minus that, except where a gain is said.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "no allocator to box the table with")]
 pub enum Law {
     /// No assist.
+    #[default]
     None,
     /// `h(v) = (4 v - 30) exp(-0.03 v^2)` (Kuipers 2020, eq. 3.13): the thesis's choice. Its gain
     /// changes sign at 7.5 m/s and steers out of the fall above; `cut` makes it zero there.
@@ -84,6 +44,12 @@ pub enum Law {
     },
     /// A user's table.
     Table(LawTable),
+    /// Gain `kappa (4.7 - v)` from 1.5 to 4.7 m/s, zero above; below 1.5 m/s the straight line from zero
+    /// at rest. The balance assist of the Gazelle and TU Delft prototype (mechmotum/fall-probability-paper).
+    BalanceAssist {
+        /// Slope of the gain over speed \[N s^2/rad\], 0.001..=20; published 3.9 and 5.2.
+        kappa: f32,
+    },
 }
 
 impl Law {
@@ -107,9 +73,98 @@ impl Law {
             Law::G => (R::lit(40.0) - v) * (R::lit(-0.35) * v).exp(),
             Law::Cl1 if v < R::lit(6.7) => R::lit(5.97) * (R::lit(6.7) - v),
             Law::Cl2 { k } if v < R::lit(10.0) => R::lit(f64::from(*k)) * (R::lit(10.0) - v),
-            Law::Cl1 | Law::Cl2 { .. } => zero,
+            Law::BalanceAssist { kappa } if v > zero && v < R::lit(BALANCE_OFF_M_S) => {
+                let kappa = R::lit(f64::from(*kappa));
+                if v < R::lit(BALANCE_FULL_M_S) {
+                    kappa * R::lit((BALANCE_OFF_M_S - BALANCE_FULL_M_S) / BALANCE_FULL_M_S) * v
+                } else {
+                    kappa * (R::lit(BALANCE_OFF_M_S) - v)
+                }
+            }
+            Law::Cl1 | Law::Cl2 { .. } | Law::BalanceAssist { .. } => zero,
             Law::Table(table) => table.gain(v),
         }
+    }
+
+    /// The gain of least magnitude between two speeds \[m/s\], in either order: 0 if the gain changes its sign
+    /// there. For a speed that is only known to lie between them: no other gain is safe whichever it is.
+    ///
+    /// One speed given twice gives the bits of [`Law::gain`]. Exact but for the rounding of `gain`.
+    pub fn gain_towards_zero(&self, one_m_s: f32, other_m_s: f32) -> f32 {
+        let least = self.gain(one_m_s);
+        if one_m_s == other_m_s {
+            return least;
+        }
+        let (low, high) = if one_m_s < other_m_s { (one_m_s, other_m_s) } else { (other_m_s, one_m_s) };
+        let least = nearer_zero(least, self.gain(other_m_s));
+        let inside = |v: f32| low < v && v < high;
+        // Every other law has no least magnitude but at the ends of the range and where it changes its sign.
+        match self {
+            Law::F if inside(F_LEAST_M_S) => nearer_zero(least, self.gain(F_LEAST_M_S)),
+            Law::Table(table) => {
+                let kinks = table.points().iter().filter(|(v, _)| inside(*v));
+                kinks.fold(least, |least, (_, gain)| nearer_zero(least, *gain))
+            }
+            _ => least,
+        }
+    }
+
+    /// Its number on the wire: its place in [`LAW_NAMES`].
+    pub fn number(&self) -> u8 {
+        match self {
+            Law::None => 0,
+            Law::H { cut: false } => 1,
+            Law::H { cut: true } => 2,
+            Law::F => 3,
+            Law::G => 4,
+            Law::Cl1 => 5,
+            Law::Cl2 { .. } => 6,
+            Law::Table(_) => 7,
+            Law::BalanceAssist { .. } => 8,
+        }
+    }
+
+    /// Its slope \[N s^2/rad\]; 0 for a law without one.
+    pub fn slope(&self) -> f32 {
+        match self {
+            Law::Cl2 { k } => *k,
+            Law::BalanceAssist { kappa } => *kappa,
+            _ => 0.0,
+        }
+    }
+
+    /// The law of a number, not yet checked; `None` for a number that no law has.
+    pub fn numbered(number: u8, slope: f32, table: LawTable) -> Option<Self> {
+        Some(match number {
+            0 => Law::None,
+            1 => Law::H { cut: false },
+            2 => Law::H { cut: true },
+            3 => Law::F,
+            4 => Law::G,
+            5 => Law::Cl1,
+            6 => Law::Cl2 { k: slope },
+            7 => Law::Table(table),
+            8 => Law::BalanceAssist { kappa: slope },
+            _ => return None,
+        })
+    }
+
+    /// Shows the law: which, then what it needs, the slope or the points of the table.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        let (mut number, mut slope) = (self.number(), self.slope());
+        let mut table = match self {
+            Law::Table(table) => core::mem::take(table),
+            _ => LawTable::default(),
+        };
+        let kind = Leaf::new("law", "kind", 0.0, (LAW_NAMES.len() - 1) as f32);
+        to.choice(&kind, LAW_NAMES, &mut number);
+        match number {
+            6 => to.number(&Leaf::new("law", "cl2.k", 1e-3, 20.0), &mut slope),
+            7 => table.leaves(to),
+            8 => to.number(&Leaf::new("law", "balance-assist.kappa", 1e-3, 20.0), &mut slope),
+            _ => {}
+        }
+        *self = Law::numbered(number, slope, table).unwrap_or_default();
     }
 
     /// Checks the law's own parameters.
@@ -117,12 +172,23 @@ impl Law {
     /// # Errors
     /// The parameter, its value and the allowed range.
     pub fn validate(&self) -> Result<(), ParamError> {
+        let range = |name| Leaf::new("", name, 1e-3, 20.0);
         match self {
-            Law::Cl2 { k } => check("law.cl2.k", *k, 1e-3, 20.0),
-            Law::Table(t) if t.points.is_empty() => {
-                Err(Leaf::new("", "law.table.points", 1.0, TABLE_POINTS as f32).error(0.0))
-            }
+            Law::Cl2 { k } => range("law.cl2.k").check(*k),
+            Law::BalanceAssist { kappa } => range("law.balance-assist.kappa").check(*kappa),
+            Law::Table(table) => table.validate(),
             _ => Ok(()),
         }
+    }
+}
+
+/// The one of less magnitude, or 0 between gains of different sign.
+fn nearer_zero(a: f32, b: f32) -> f32 {
+    if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
+        0.0
+    } else if b.abs() < a.abs() {
+        b
+    } else {
+        a
     }
 }

@@ -13,21 +13,29 @@
 //! * **Total**: every bit pattern of every input gives a finite torque inside the limits.
 //!
 //! The way of the data, one module each: [`frame`] (what the sensors say) -> [`calibrate`] (in the
-//! bicycle's axes) -> [`input`] (may it be believed; [`watch`] is one sensor) -> [`permit`] (may
-//! torque flow, and why not) -> [`history`] (sensors of different latency brought to one instant) ->
-//! [`law`] (the wanted torque) -> [`shape`] (what may be asked of the motor). [`controller`] puts them
-//! together, [`fault`] numbers what can go wrong, [`param`] declares every parameter.
+//! bicycle's axes) -> [`input`] (may it be believed; [`watch`] is one sensor) -> [`estimate`] (the motion)
+//! -> [`cross`] (do the sensors fit each other) -> [`permit`] (may torque flow, and why not) ->
+//! [`history`] (sensors of different latency brought to one instant) -> [`law`] (the wanted torque;
+//! [`table`] for one of a user's own, [`capsize`] for what may be added to it) -> [`shape`] (inside the
+//! [`limits`]) -> [`guard`] (judges it by them). [`controller`] puts them together, [`config`] holds what
+//! may be chosen, [`fault`] numbers what can go wrong, [`param`] declares every parameter. A board makes
+//! wheel speeds of [`pulses`].
 #![no_std]
 #![forbid(unsafe_code)]
 
 pub mod calibrate;
+pub mod capsize;
+pub mod config;
 pub mod controller;
+pub mod cross;
 pub mod estimate;
 pub mod fault;
 pub mod frame;
+pub mod guard;
 pub mod history;
 pub mod input;
 pub mod law;
+pub mod limits;
 pub mod maths;
 pub mod param;
 pub mod permit;
@@ -35,16 +43,20 @@ pub mod predict;
 pub mod pulses;
 pub mod real;
 pub mod shape;
+pub mod table;
 pub mod watch;
 pub mod wire;
 
 pub use calibrate::Calibration;
-pub use controller::{Command, Config, Plan, State, step};
+pub use capsize::Capsize;
+pub use config::Config;
+pub use controller::{Command, Plan, State, step};
 pub use fault::{CAUSES, Cause, Causes};
 pub use frame::{Sample, SensorFrame, Triple, Wheel};
 pub use input::InputConfig;
-pub use law::{Law, LawTable};
+pub use law::Law;
+pub use limits::{ActiveLimits, Limits, Taper};
 pub use param::ParamError;
 pub use permit::{Mode, PermitConfig};
-pub use shape::{Limits, ShapeConfig, Taper};
+pub use table::LawTable;
 pub use watch::{Loss, Sensor};

@@ -129,8 +129,3 @@ impl Visit for Checker {
         self.note(leaf.check(f32::from(*value)));
     }
 }
-
-/// Accepts `value` when `min <= value <= max`; NaN never is.
-pub(crate) fn check(name: &'static str, value: f32, min: f32, max: f32) -> Result<(), ParamError> {
-    Leaf::new("", name, min, max).check(value)
-}

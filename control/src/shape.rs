@@ -1,131 +1,295 @@
-//! Shapes the wanted torque into one that may be asked of the motor: a taper to zero below walking
-//! speed, a magnitude and a rate. Each is off (`None`) or set; the output says which were active.
+//! Shapes the wanted torque into one that may be asked of the motor: inside every limit of the
+//! table, and otherwise as wanted.
+//!
+//! First what the torque may be (caps, then shares), then how it may get there (window, rate). The
+//! window never keeps it from zero and never excludes where it is, so the rate has the last word.
 
-use crate::param::{Leaf, ParamError, Visit, optional};
+use crate::limits::{ActiveLimits, EndStop, Limits, RiderMotion, RiderTorque, SpeedCap, Taper, Window};
 
-/// Which limits changed the torque in this step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Limits(pub u8);
-
-impl Limits {
-    /// The torque was scaled down because the bicycle is slower than walking speed.
-    pub const TAPER: Limits = Limits(1);
-    /// The torque was cut to the largest allowed.
-    pub const MAGNITUDE: Limits = Limits(2);
-    /// The torque was held back because it may not change faster.
-    pub const RATE: Limits = Limits(4);
-
-    /// Whether every limit of `other` is in `self`.
-    pub const fn contains(self, other: Limits) -> bool {
-        self.0 & other.0 == other.0
-    }
-    /// Adds `other` when `active`.
-    fn set(&mut self, other: Limits, active: bool) {
-        if active {
-            self.0 |= other.0;
-        }
-    }
-}
-
-/// Full assist at and above `full_m_s`, none at and below `zero_m_s`, linear between.
+/// What the shaper is asked for, and what the limits depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Taper {
-    /// Speed at and below which the torque is zero \[m/s\], 0..=10.
-    pub zero_m_s: f32,
-    /// Speed from which the torque is whole \[m/s\], above `zero_m_s`, up to 10.
-    pub full_m_s: f32,
+pub struct Asked {
+    /// Wanted steer torque \[N m\]; NaN and infinity ask for none.
+    pub wanted_nm: f32,
+    /// How much of it is permitted, 0 to 1; 1 changes no bit of it. NaN is 0.
+    pub authority: f32,
+    /// Whether the controller limps.
+    pub limp: bool,
+    /// Lowest speed of the recent past \[m/s\].
+    pub speed_low_m_s: f32,
+    /// Highest speed of the recent past \[m/s\].
+    pub speed_high_m_s: f32,
+    /// Steer angle, positive to the right \[rad\], if known.
+    pub steer_rad: Option<f32>,
+    /// Steer rate \[rad/s\], if known.
+    pub steer_rate_rad_s: Option<f32>,
+    /// The rider's steer torque, positive to the right \[N m\], if known.
+    pub rider_torque_nm: Option<f32>,
+    /// Time since the last call \[us\].
+    pub elapsed_us: u32,
 }
 
-impl Default for Taper {
-    /// From 0.5 to 1.5 m/s.
-    fn default() -> Self {
-        Self { zero_m_s: 0.5, full_m_s: 1.5 }
-    }
+/// What follows from the table and the rate of calls alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapePlan {
+    rise_step_nm: Option<f32>,
+    fall_step_nm: Option<f32>,
+    /// Rise over fall: what is left of a period after falling to zero is spent on rising.
+    crossing: f32,
+    period_us: u32,
+    part_us: u32,
 }
 
-impl Taper {
-    fn scale(&self, speed_m_s: f32) -> f32 {
-        if speed_m_s >= self.full_m_s {
-            1.0
-        } else if speed_m_s <= self.zero_m_s {
-            0.0
-        } else {
-            (speed_m_s - self.zero_m_s) / (self.full_m_s - self.zero_m_s)
+impl ShapePlan {
+    /// Of a checked table, for `rate_hz` calls a second.
+    pub fn new(limits: &Limits, rate_hz: f32) -> Self {
+        let step = |rate: Option<f32>| rate.map(|r| r / rate_hz);
+        Self {
+            rise_step_nm: step(limits.rise_nm_s),
+            fall_step_nm: step(limits.fall_nm_s),
+            crossing: match (limits.rise_nm_s, limits.fall_nm_s) {
+                (Some(rise), Some(fall)) => rise / fall,
+                _ => f32::MAX,
+            },
+            period_us: (1e6 / rate_hz) as u32,
+            part_us: limits.window.map_or(u32::MAX, |w| u32::from(w.ms) * 1000 / (PARTS as u32 - 1) + 1),
         }
     }
 }
 
-/// The limits on the torque.
+/// What the shaper remembers. `ShapeState::default()` is one whose torque has been zero for long:
+/// what it must be set to whenever the motor was asked for zero instead of its torque.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ShapeConfig {
-    /// Largest torque, either way \[N m\], 0.1..=50; `None` is no limit.
-    pub max_torque_nm: Option<f32>,
-    /// Largest change of torque, either way \[N m/s\], 1..=1e5; `None` is no limit.
-    pub max_rate_nm_s: Option<f32>,
-    /// Taper below walking speed; `None` is none.
-    pub taper: Option<Taper>,
+pub struct ShapeState {
+    torque_nm: f32,
+    against_us: u32,
+    past: Past,
 }
 
-impl ShapeConfig {
-    /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.limit(&Leaf::new("shape", "max_torque_nm", 0.1, 50.0), &mut self.max_torque_nm);
-        to.limit(&Leaf::new("shape", "max_rate_nm_s", 1.0, 1e5), &mut self.max_rate_nm_s);
-        optional(to, &Leaf::switch("shape", "taper"), &mut self.taper, |taper, to| {
-            to.number(&Leaf::new("shape.taper", "zero_m_s", 0.0, 9.9), &mut taper.zero_m_s);
-            to.number(&Leaf::new("shape.taper", "full_m_s", 0.1, 10.0), &mut taper.full_m_s);
-        });
-    }
-
-    /// Checks what spans several parameters.
-    ///
-    /// # Errors
-    /// The parameter, its value and the allowed range.
-    pub fn validate(&self) -> Result<(), ParamError> {
-        self.taper.map_or(Ok(()), |t| {
-            Leaf::new("shape.taper", "full_m_s", t.zero_m_s + 0.1, 10.0).check(t.full_m_s)
-        })
+impl ShapeState {
+    /// The last torque \[N m\].
+    pub fn torque_nm(&self) -> f32 {
+        self.torque_nm
     }
 }
 
-/// The wanted torque shaped, and the limits that acted.
-///
-/// `wanted_nm` must be finite; `previous_nm` is the last output; `max_change_nm` is the largest
-/// change in one period (`f32::MAX` for none). The output never exceeds the magnitude if `previous_nm` did not, is finite,
-/// and mirrors: both torques' signs flipped flip the output's.
-pub fn shape(
-    config: &ShapeConfig,
-    max_change_nm: f32,
-    previous_nm: f32,
-    speed_m_s: f32,
-    wanted_nm: f32,
-) -> (f32, Limits) {
-    let mut limits = Limits::default();
-    let mut torque = wanted_nm;
-    if let Some(taper) = &config.taper {
-        let scale = taper.scale(speed_m_s);
-        limits.set(Limits::TAPER, scale < 1.0 && torque != 0.0);
-        torque *= scale;
+/// The wanted torque shaped, and the limits that acted. Finite for every input, and odd: torques,
+/// steer angle and steer rate mirrored give the torque mirrored, to the bit.
+pub fn step(limits: &Limits, plan: &ShapePlan, state: &mut ShapeState, asked: &Asked) -> (f32, ActiveLimits) {
+    let last = state.torque_nm;
+    let speeds = interval(asked.speed_low_m_s, asked.speed_high_m_s);
+    let mut shaping =
+        Shaping { torque: finite(Some(asked.wanted_nm)).unwrap_or(0.0), acted: Default::default() };
+
+    if let Some(max) = limits.max_torque_nm {
+        shaping.cut(ActiveLimits::MAGNITUDE, -max, max);
+        if let Some(part) = limits.limp_fraction.filter(|_| asked.limp) {
+            shaping.cut(ActiveLimits::LIMP, -max * part, max * part);
+        }
+        if let (Some(r), Some(rider)) = (limits.rider_torque, finite(asked.rider_torque_nm)) {
+            let (low, high) = rider_band(&r, max, rider);
+            shaping.cut(ActiveLimits::RIDER_TORQUE, low, high);
+        }
     }
-    if let Some(max) = config.max_torque_nm {
-        limits.set(Limits::MAGNITUDE, torque > max || torque < -max);
-        torque = between(torque, -max, max);
+    if let Some(cap) = &limits.speed_cap {
+        let most = lowest_in(cap, speeds);
+        shaping.cut(ActiveLimits::SPEED, -most, most);
     }
-    if config.max_rate_nm_s.is_some() {
-        let (low, high) = (previous_nm - max_change_nm, previous_nm + max_change_nm);
-        limits.set(Limits::RATE, torque < low || torque > high);
-        torque = between(torque, low, high);
+    if let Some(taper) = &limits.taper {
+        shaping.scale(ActiveLimits::TAPER, taper_share(taper, speeds.0));
     }
-    (torque, limits)
+    shaping.scale(ActiveLimits::AUTHORITY, share(asked.authority));
+    if let Some(rider) = &limits.rider_motion {
+        state.against_us = against(rider, state.against_us, last, asked);
+        shaping.scale(ActiveLimits::RIDER_MOTION, motion_share(rider, state.against_us));
+    }
+    if let (Some(stop), Some(steer)) = (&limits.end_stop, finite(asked.steer_rad)) {
+        let share = if shaping.torque * steer > 0.0 { stop_share(stop, steer) } else { 1.0 };
+        shaping.scale(ActiveLimits::END_STOP, share);
+    }
+    if let Some(Window { nm, .. }) = limits.window {
+        state.past.hold(last, asked.elapsed_us, plan.part_us);
+        let (low, high) = state.past.extremes();
+        shaping.cut(ActiveLimits::WINDOW, smaller(high, 0.0) - nm, larger(low, 0.0) + nm);
+    }
+    if plan.rise_step_nm.is_some() || plan.fall_step_nm.is_some() {
+        let (low, high) = reach(plan, last, asked.elapsed_us);
+        shaping.cut(ActiveLimits::RATE, low, high);
+    }
+    state.torque_nm = shaping.torque;
+    (shaping.torque, shaping.acted)
 }
 
-/// `f32::clamp` without its panic on disordered bounds.
-fn between(x: f32, low: f32, high: f32) -> f32 {
-    if x < low {
-        low
-    } else if x > high {
-        high
+/// A torque on its way through the limits.
+struct Shaping {
+    torque: f32,
+    acted: ActiveLimits,
+}
+
+impl Shaping {
+    fn cut(&mut self, limit: ActiveLimits, low: f32, high: f32) {
+        self.acted.note(limit, self.torque < low || self.torque > high);
+        self.torque = larger(low, smaller(high, self.torque));
+    }
+    fn scale(&mut self, limit: ActiveLimits, share: f32) {
+        self.acted.note(limit, share < 1.0 && self.torque != 0.0);
+        self.torque *= share;
+    }
+}
+
+/// Lowest and highest torque to the left and right that the rider's torque leaves.
+fn rider_band(limit: &RiderTorque, max: f32, rider: f32) -> (f32, f32) {
+    let high = max + (limit.allowance_nm + rider) * limit.multiplier;
+    let low = max + (limit.allowance_nm - rider) * limit.multiplier;
+    (-larger(low, 0.0), larger(high, 0.0))
+}
+
+/// The smallest torque of the cap anywhere in the interval of speeds.
+fn lowest_in(cap: &SpeedCap, (slow, fast): (f32, f32)) -> f32 {
+    let mut least = smaller(at(cap, slow), at(cap, fast));
+    for (v, t) in cap.speed_m_s.iter().zip(&cap.torque_nm) {
+        if slow < *v && *v < fast {
+            least = smaller(least, *t);
+        }
+    }
+    least
+}
+
+/// The cap at a speed.
+fn at(cap: &SpeedCap, speed: f32) -> f32 {
+    let mut before: Option<(f32, f32)> = None;
+    for (&v, &t) in cap.speed_m_s.iter().zip(&cap.torque_nm) {
+        if speed <= v {
+            return before.map_or(t, |(v0, t0)| t0 + (t - t0) * ((speed - v0) / (v - v0)));
+        }
+        before = Some((v, t));
+    }
+    before.map_or(0.0, |(_, t)| t)
+}
+
+fn taper_share(taper: &Taper, speed: f32) -> f32 {
+    if speed >= taper.full_m_s {
+        1.0
+    } else if speed > taper.zero_m_s {
+        (speed - taper.zero_m_s) / (taper.full_m_s - taper.zero_m_s)
     } else {
-        x
+        0.0
     }
+}
+
+fn stop_share(stop: &EndStop, steer: f32) -> f32 {
+    share((stop.hard_rad - steer.abs()) / (stop.hard_rad - stop.soft_rad))
+}
+
+/// For how long the handlebar has been turned against the torque \[us\].
+fn against(rider: &RiderMotion, before_us: u32, torque: f32, asked: &Asked) -> u32 {
+    let rate = asked.steer_rate_rad_s.unwrap_or(0.0);
+    let limit = rider.steer_rate_rad_s;
+    if (torque > 0.0 && rate < -limit) || (torque < 0.0 && rate > limit) {
+        let most = (u32::from(rider.after_ms) + u32::from(rider.fade_ms)) * 1000;
+        before_us.saturating_add(asked.elapsed_us).min(most)
+    } else {
+        before_us.saturating_sub(asked.elapsed_us)
+    }
+}
+
+fn motion_share(rider: &RiderMotion, against_us: u32) -> f32 {
+    let most = (u32::from(rider.after_ms) + u32::from(rider.fade_ms)) * 1000;
+    let left = most.saturating_sub(against_us);
+    share(left as f32 / (f32::from(rider.fade_ms) * 1e3))
+}
+
+/// The torques one step reaches from `last`.
+fn reach(plan: &ShapePlan, last: f32, elapsed_us: u32) -> (f32, f32) {
+    let late = elapsed_us >= plan.period_us;
+    let part = if late { 1.0 } else { elapsed_us as f32 / plan.period_us as f32 };
+    let [rise, fall] = [plan.rise_step_nm, plan.fall_step_nm].map(|step| step.map(|s| s * part));
+    let lowest = |from: f32| {
+        let rise = rise.unwrap_or(f32::MAX);
+        match fall {
+            _ if from <= 0.0 => from - rise,
+            None => -rise,
+            Some(fall) if from >= fall => from - fall,
+            Some(fall) => (from - fall) * plan.crossing,
+        }
+    };
+    // Not a mere minus: zero stays a positive zero.
+    (lowest(last), 0.0 - lowest(-last))
+}
+
+/// Parts of the window: one that is being filled, and as many full ones as cover it.
+const PARTS: usize = 9;
+
+/// The torques of the recent past: their extremes in each part of the window.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Past {
+    parts: [(f32, f32); PARTS],
+    newest: u8,
+    filled_us: u32,
+}
+
+impl Past {
+    /// `torque` was in force for the time that passed.
+    fn hold(&mut self, torque: f32, elapsed_us: u32, part_us: u32) {
+        self.filled_us = self.filled_us.saturating_add(elapsed_us);
+        for _ in 0..PARTS {
+            if self.filled_us < part_us {
+                break;
+            }
+            self.filled_us -= part_us;
+            self.newest = (self.newest + 1) % PARTS as u8;
+            if let Some(part) = self.parts.get_mut(usize::from(self.newest)) {
+                *part = (torque, torque);
+            }
+        }
+        if self.filled_us >= part_us {
+            self.filled_us = 0;
+        }
+        if let Some((low, high)) = self.parts.get_mut(usize::from(self.newest)) {
+            *low = smaller(*low, torque);
+            *high = larger(*high, torque);
+        }
+    }
+
+    /// Lowest and highest torque in force at any time within the window.
+    fn extremes(&self) -> (f32, f32) {
+        let both = |(l, h): (f32, f32), part: &(f32, f32)| (smaller(l, part.0), larger(h, part.1));
+        self.parts.iter().fold((f32::MAX, f32::MIN), both)
+    }
+}
+
+/// Speeds in order; if any is NaN, all speeds there are.
+fn interval(a: f32, b: f32) -> (f32, f32) {
+    if a <= b {
+        (a, b)
+    } else if b < a {
+        (b, a)
+    } else {
+        (f32::MIN, f32::MAX)
+    }
+}
+
+fn finite(value: Option<f32>) -> Option<f32> {
+    value.filter(|v| v.is_finite())
+}
+
+/// `x` within 0..=1; NaN is 0.
+fn share(x: f32) -> f32 {
+    if x >= 1.0 {
+        1.0
+    } else if x > 0.0 {
+        x
+    } else {
+        0.0
+    }
+}
+
+/// `x`, or `bound` if that is smaller; so `-0.0` stays what it is.
+fn smaller(bound: f32, x: f32) -> f32 {
+    if x > bound { bound } else { x }
+}
+
+/// `x`, or `bound` if that is larger.
+fn larger(bound: f32, x: f32) -> f32 {
+    if x < bound { bound } else { x }
 }

@@ -1,17 +1,19 @@
 //! The same bytes on every link: little-endian, fixed length, any bit pattern allowed.
 
-use crate::controller::{Command, Config};
+use crate::config::Config;
+use crate::controller::Command;
 use crate::frame::{Sample, SensorFrame, Triple};
-use crate::law::{Law, LawTable, TABLE_POINTS};
+use crate::law::{LAW_NAMES, Law};
 use crate::param::{Leaf, ParamError, Visit};
+use crate::table::{LawTable, TABLE_POINTS};
 use heapless::Vec;
 
 /// Bytes of a [`SensorFrame`]: its fields in their order, a sample as f32 values and u16 age.
 pub const FRAME_BYTES: usize = 81;
 /// Bytes of a [`Command`]: torque and gain as f32, limits, mode, causes.
-pub const COMMAND_BYTES: usize = 18;
+pub const COMMAND_BYTES: usize = 19;
 /// Bytes of a [`Config`]: the law with room for a whole table, then every leaf in its order.
-pub const CONFIG_BYTES: usize = 510;
+pub const CONFIG_BYTES: usize = 734;
 
 /// A sensor frame as bytes.
 pub fn encode_frame(frame: &SensorFrame) -> [u8; FRAME_BYTES] {
@@ -64,7 +66,7 @@ pub fn encode_command(command: &Command) -> [u8; COMMAND_BYTES] {
     let mut to = Writer(bytes.iter_mut());
     to.f32(command.torque_nm);
     to.f32(command.gain_nm_s_rad);
-    to.u8(command.limits.0);
+    to.u16(command.limits.0);
     to.u8(command.mode as u8);
     to.u64(command.causes.0);
     bytes
@@ -74,19 +76,12 @@ pub fn encode_command(command: &Command) -> [u8; COMMAND_BYTES] {
 pub fn encode_config(config: &Config) -> [u8; CONFIG_BYTES] {
     let mut bytes = [0; CONFIG_BYTES];
     let mut to = Writer(bytes.iter_mut());
-    let (law, k, table) = match &config.law {
-        Law::None => (0, 0.0, None),
-        Law::H { cut: false } => (1, 0.0, None),
-        Law::H { cut: true } => (2, 0.0, None),
-        Law::F => (3, 0.0, None),
-        Law::G => (4, 0.0, None),
-        Law::Cl1 => (5, 0.0, None),
-        Law::Cl2 { k } => (6, *k, None),
-        Law::Table(table) => (7, 0.0, Some(table)),
+    let points = match &config.law {
+        Law::Table(table) => table.points(),
+        _ => &[],
     };
-    let points = table.map_or(&[][..], LawTable::points);
-    to.u8(law);
-    to.f32(k);
+    to.u8(config.law.number());
+    to.f32(config.law.slope());
     to.u8(points.len() as u8);
     for i in 0..TABLE_POINTS {
         let (speed, gain) = points.get(i).copied().unwrap_or((0.0, 0.0));
@@ -111,17 +106,10 @@ pub fn decode_config(bytes: &[u8; CONFIG_BYTES]) -> Result<Config, ParamError> {
     }
     Leaf::new("wire", "table.points", 0.0, TABLE_POINTS as f32).check(f32::from(used))?;
     points.truncate(usize::from(used));
-    let law = match law {
-        0 => Law::None,
-        1 => Law::H { cut: false },
-        2 => Law::H { cut: true },
-        3 => Law::F,
-        4 => Law::G,
-        5 => Law::Cl1,
-        6 => Law::Cl2 { k },
-        7 => Law::Table(LawTable::new(&points)?),
-        other => return Err(Leaf::new("wire", "law", 0.0, 7.0).error(f32::from(other))),
-    };
+    let table = if used > 0 { LawTable::new(&points)? } else { LawTable::default() };
+    let last = (LAW_NAMES.len() - 1) as f32;
+    let unknown = Leaf::new("wire", "law", 0.0, last).error(f32::from(law));
+    let law = Law::numbered(law, k, table).ok_or(unknown)?;
     let mut config = Config::thesis(law);
     let mut decoder = Decoder { from, wrong: None };
     config.leaves(&mut decoder);

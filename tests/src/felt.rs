@@ -155,7 +155,7 @@ impl Noise {
 
     /// Adds the noise of the next millisecond.
     pub fn on(&mut self, felt: &mut Felt) {
-        if self.tick % 10 == 0 {
+        if self.tick.is_multiple_of(10) {
             let [gyro, accel, steer, steer_rate, speed] = Self::SIZES;
             let sizes = [gyro, gyro, gyro, accel, accel, accel, steer, steer_rate, speed];
             self.held = sizes.map(|size| size * self.normal());

@@ -20,6 +20,7 @@ fn laws() -> impl Strategy<Value = Law> {
         Just(Law::G),
         Just(Law::Cl1),
         prop::num::f32::NORMAL.prop_map(|k| Law::Cl2 { k }),
+        prop::num::f32::NORMAL.prop_map(|kappa| Law::BalanceAssist { kappa }),
         table,
     ]
 }

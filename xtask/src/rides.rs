@@ -1,7 +1,7 @@
 //! Sensor frames to feed to the images, and the configurations to run on them.
 
 use control::history::{Latency, MAX_LATENCY_TICKS};
-use control::law::TABLE_POINTS;
+use control::table::TABLE_POINTS;
 use control::wire::{decode_frame, encode_config, encode_frame};
 use control::{Config, Law, LawTable, Sample, SensorFrame, Triple, Wheel};
 use std::f32::consts::TAU;
@@ -33,6 +33,7 @@ pub fn configurations() -> Vec<(&'static str, Config)> {
         ("g", Config::thesis(Law::G)),
         ("cl1", Config::thesis(Law::Cl1)),
         ("cl2, k = 3.7", Config::thesis(Law::Cl2 { k: 3.7 })),
+        ("balance assist, kappa = 5.2", Config::thesis(Law::BalanceAssist { kappa: 5.2 })),
         ("table of 32 points", Config::thesis(Law::Table(table))),
         ("h, gyro 31 ticks late", late(MAX_LATENCY_TICKS, 0, Config::thesis(Law::H { cut: false }))),
         ("product", product),

@@ -7,9 +7,12 @@
 #![no_main]
 #![allow(unsafe_code)]
 
+use control::guard::{self, GuardPlan, GuardState};
 use control::history::{Aligned, History, Latency};
-use control::shape::{Limits, shape};
-use control::{CAUSES, Causes, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State, wire};
+use control::shape::{self, Asked, ShapePlan, ShapeState};
+use control::{
+    ActiveLimits, CAUSES, Causes, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State, wire,
+};
 use core::hint::black_box;
 
 #[panic_handler]
@@ -32,17 +35,37 @@ pub extern "C" fn _start() -> ! {
     loop {
         let config = configured();
         used((config.law.gain(black_box(1.0_f32)), config.law.gain(black_box(1.0_f64))));
-        used((config.law.validate(), config.shape.validate()));
+        used((config.law.validate(), config.limits.validate()));
         used((wire::encode_config(&config), wire::config_bytes_used()));
         used((black_box(Mode::Off).name(), black_box(Causes::all(&CAUSES)).iter().count()));
-        let (limits, [a, b, c, d]) = (black_box(Limits::RATE), black_box([0.0; 4]));
-        used((limits.contains(black_box(Limits::TAPER)), shape(&config.shape, a, b, c, d)));
+        limits(&config);
         let mut history = black_box(History::default());
         used(history.align(&black_box(Latency::default()), black_box(Aligned::default())));
         if let Ok(plan) = black_box(config).plan() {
             run(&black_box(plan));
         }
     }
+}
+
+/// The shaper and the guard, each of anything.
+fn limits(config: &Config) {
+    let (table, rate) = (black_box(config.limits), black_box(config.rate_hz));
+    let (mut shape, mut guard) = (black_box(ShapeState::default()), black_box(GuardState::default()));
+    let asked = black_box(Asked {
+        wanted_nm: 0.0,
+        authority: 0.0,
+        limp: false,
+        speed_low_m_s: 0.0,
+        speed_high_m_s: 0.0,
+        steer_rad: None,
+        steer_rate_rad_s: None,
+        rider_torque_nm: None,
+        elapsed_us: 0,
+    });
+    let (torque, acted) = shape::step(&table, &ShapePlan::new(&table, rate), &mut shape, &asked);
+    used((acted.contains(black_box(ActiveLimits::RATE)), shape.torque_nm()));
+    let plan = GuardPlan::new(&table, rate);
+    used(guard::judge(&table, &plan, &mut guard, torque, black_box(true), &asked));
 }
 
 /// The configurations a user can come by: made in code, from a table of any length, from bytes.

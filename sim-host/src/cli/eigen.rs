@@ -4,11 +4,15 @@ use super::outputs::{OutputArgs, Results};
 use super::rider_args::RiderArgs;
 use super::{Ended, Failure, law, speeds, warn};
 use crate::bicycle::catalogue;
-use crate::eigen::{CriticalSpeeds, Feedback, Mode, Model, Stability, modes, roots, stability};
+use crate::eigen::{
+    CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes, roots, stability,
+};
+use crate::range::time;
 use crate::report::document::{EigenDocument, SCHEMA};
 use crate::report::figure::{self, EigenFigure};
-use crate::report::resolved::{ResolvedBicycle, ResolvedLaw, ResolvedRider, Tool};
+use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider, Tool};
 use crate::report::{table, terminal};
+use control::Capsize;
 use nalgebra::Complex;
 use rayon::prelude::*;
 use serde_json::json;
@@ -19,6 +23,9 @@ Examples:
   sim-host eigen --bicycle benchmark
   sim-host eigen --law h --speeds 0:10:0.05 --svg eigen.svg
   sim-host eigen --law cl2:4 --json
+  sim-host eigen --law balance-assist:5.2 --bicycle balanceassistv1
+  sim-host eigen --bicycle benchmark --capsize 0.7:6.5
+  sim-host eigen --law h --actuator-lag 20ms --steer-friction 0.34 --modes --csv motor.csv
   sim-host eigen --rider smart --law h --speeds 2:7.5:0.1 --json
   sim-host eigen --law cl1 --modes --csv modes.csv";
 
@@ -29,15 +36,20 @@ pub(super) struct Args {
     /// Shipped bicycle, FILE, or FILE#NAME of a collection
     #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
     bicycle: String,
-    /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, or a table FILE
+    /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, balance-assist:K, or a table FILE
     #[arg(long, default_value = "none")]
     law: String,
+    /// Torque into the lean of K (v - V) times the roll angle above the speed V in m/s, beside the law
+    #[arg(long, value_name = "K:V", value_parser = law::capsize, allow_hyphen_values = true)]
+    capsize: Option<Capsize>,
+    #[command(flatten)]
+    actuator: ActuatorArgs,
     #[command(flatten)]
     rider: RiderArgs,
     /// Forward speeds in m/s: A:B:STEP, B included, or one
     #[arg(long, default_value = "0:10:0.1", value_parser = speeds::parse, value_name = "A:B:STEP", allow_hyphen_values = true)]
     speeds: std::vec::Vec<f64>,
-    /// With a rider: how many of the rightmost eigenvalues, 4 to 40; without there are four
+    /// With a rider or a delay: how many of the rightmost eigenvalues, 4 to 40; without there are four, or five
     #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u8).range(4..=40))]
     roots: u8,
     /// Adds the modes to the table
@@ -45,6 +57,39 @@ pub(super) struct Args {
     modes: bool,
     #[command(flatten)]
     outputs: OutputArgs,
+}
+
+/// How the torque on the steer axis departs from the law's.
+#[derive(clap::Args)]
+struct ActuatorArgs {
+    /// From the command to the drive, for example 5ms; not with --rider
+    #[arg(long, value_name = "TIME", default_value = "0ms", value_parser = second, allow_hyphen_values = true)]
+    actuator_delay: f64,
+    /// Time constant of the torque's first-order response, for example 20ms
+    #[arg(long, value_name = "TIME", default_value = "0ms", value_parser = second, allow_hyphen_values = true)]
+    actuator_lag: f64,
+    /// Viscous friction about the steer axis, in N m s/rad
+    #[arg(long, value_name = "NMS/RAD", default_value_t = 0.0, allow_negative_numbers = true)]
+    steer_friction: f64,
+    /// Inertia added about the steer axis, in kg m^2: a rotor's times the gear ratio squared
+    #[arg(long, value_name = "KGM2", default_value_t = 0.0, allow_negative_numbers = true)]
+    steer_inertia: f64,
+}
+
+fn second(text: &str) -> Result<f64, String> {
+    time(text, 1.0)
+}
+
+impl ActuatorArgs {
+    fn actuator(&self) -> LinearActuator {
+        LinearActuator {
+            delay_s: self.actuator_delay,
+            time_constant_s: self.actuator_lag,
+            viscous_nm_s_rad: self.steer_friction,
+            inertia_kg_m2: self.steer_inertia,
+            ..LinearActuator::default()
+        }
+    }
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
@@ -56,8 +101,14 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         None => (None, None),
     };
     let outputs = args.outputs.open(None)?;
-    let count = if rider.is_some() { usize::from(args.roots) } else { 4 };
-    let model = Model::new(&bicycle.parameters, Feedback::Law(law.clone()), rider);
+    let actuator = args.actuator.actuator();
+    let count = match (&rider, actuator.delay_s > 0.0) {
+        (None, false) => 4 + usize::from(actuator.time_constant_s > 0.0),
+        _ => usize::from(args.roots),
+    };
+    let capsize = args.capsize.unwrap_or_default();
+    let model = Model::new(&bicycle.parameters, Feedback::new(law.clone(), capsize), rider);
+    let model = model.with_actuator(actuator)?;
     let Stability { critical, ranges, changes } = stability(&model);
     let values: Vec<_> = args.speeds.par_iter().map(|&v| roots(&model.at(v), count)).collect();
     let modes = modes(&model, &args.speeds, count);
@@ -68,6 +119,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         bicycle: ResolvedBicycle::new(&bicycle),
         rider: resolved,
         law: ResolvedLaw::new(&args.law, &law),
+        capsize: ResolvedCapsize::new(&capsize),
+        actuator: Some(actuator).filter(|a| *a != LinearActuator::default()),
         v_d,
         v_w,
         v_c,
@@ -78,17 +131,20 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         modes: modes.iter().map(|mode| (mode.name.clone(), per_speed(mode, args.speeds.len()))).collect(),
     };
     let rider = document.rider.as_ref().map_or(String::new(), |r| format!(", {}", r.label()));
-    let title = format!("Eigenvalues: {}{rider}, law {}", bicycle.name, args.law);
+    let turned = document.actuator.map_or("", |_| ", actuator");
+    let beside = args.capsize.map_or(String::new(), |c| format!(" and capsize {}:{}", c.k_c, c.v_max_m_s));
+    let title = format!("Eigenvalues: {}{rider}, law {}{beside}{turned}", bicycle.name, args.law);
     let figure =
         EigenFigure { speeds: &args.speeds, modes: &modes, stable: &ranges, critical, title: &title };
-    let config = json!({"bicycle": document.bicycle, "rider": document.rider, "law": document.law});
+    let config = json!({"bicycle": document.bicycle, "rider": document.rider, "law": document.law, "capsize": document.capsize,
+        "actuator": document.actuator});
     let in_table = if args.modes { &modes[..] } else { &[] };
     outputs.write(Results {
         document: &document,
         config: &config,
         summary: || terminal::eigen(&figure, 80) + &summary(&critical, &ranges),
         table: || {
-            table::numbers(&config, &columns(count, in_table), rows(&args.speeds, &values, count, in_table))
+            table::rows(&config, &columns(count, in_table), rows(&args.speeds, &values, count, in_table))
         },
         figure: || figure::eigen(&figure),
     })?;

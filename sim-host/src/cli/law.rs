@@ -1,9 +1,9 @@
 //! Laws by name or from a table file.
 
-use control::{Law, LawTable};
+use control::{Capsize, Law, LawTable};
 
 /// For help texts.
-pub(super) const HELP: &str = "none, h, h-cut (zero above 7.5 m/s), f, g, cl1, cl2:K (K > 0), or a TOML file with speed_m_s and gain_nm_s_rad";
+pub(super) const HELP: &str = "none, h, h-cut (zero above 7.5 m/s), f, g, cl1, cl2:K, balance-assist:K (K > 0), or a TOML file with speed_m_s and gain_nm_s_rad";
 
 /// A user's gain table as a file.
 #[derive(serde::Deserialize)]
@@ -27,17 +27,31 @@ pub(super) fn parse(text: &str) -> Result<Law, String> {
         "f" => Law::F,
         "g" => Law::G,
         "cl1" => Law::Cl1,
-        _ => match text.strip_prefix("cl2:") {
-            Some(k) => Law::Cl2 {
-                k: k.parse().map_err(|_| {
-                    format!("law `{text}`: `{k}` is not a number; expected cl2:K, K from 0.001 to 20")
-                })?,
-            },
-            None => table(text)?,
+        _ => match text.split_once(':') {
+            Some(("cl2", k)) => Law::Cl2 { k: slope(text, k)? },
+            Some(("balance-assist", k)) => Law::BalanceAssist { kappa: slope(text, k)? },
+            _ => table(text)?,
         },
     };
     law.validate().map_err(|e| format!("law `{text}`: {e}"))?;
     Ok(law)
+}
+
+fn slope(law: &str, text: &str) -> Result<f32, String> {
+    text.parse().map_err(|_| {
+        let (name, _) = law.split_once(':').unwrap_or((law, ""));
+        format!("law `{law}`: `{text}` is not a number; expected {name}:K, K from 0.001 to 20")
+    })
+}
+
+/// The capsize term that `K:V` stands for.
+pub(super) fn capsize(text: &str) -> Result<Capsize, String> {
+    let numbers = text.split_once(':').and_then(|(k, v)| Some((k.parse().ok()?, v.parse().ok()?)));
+    let (k_c, v_max_m_s) =
+        numbers.ok_or_else(|| format!("`{text}` is not K:V, N s/rad and m/s, for example 0.7:6.5"))?;
+    let capsize = Capsize { k_c, v_max_m_s };
+    capsize.validate().map_err(|e| e.to_string())?;
+    Ok(capsize)
 }
 
 fn table(path: &str) -> Result<Law, String> {

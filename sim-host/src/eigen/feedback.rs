@@ -1,6 +1,6 @@
 //! What an assist feeds back at a speed.
 
-use control::Law;
+use control::{Capsize, Law};
 
 /// A steer torque of `roll * roll + roll_rate * roll rate`, positive into the fall.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,15 +30,25 @@ pub struct Intuitive {
 pub enum Feedback {
     /// A roll-rate law of the control crate; [`Law::None`] for no assist.
     Law(Law),
+    /// A roll-rate law with the capsize term beside it.
+    WithCapsize(Law, Capsize),
     /// The intuitive controller.
     Intuitive(Intuitive),
 }
 
 impl Feedback {
+    /// A law, with the capsize term if that does anything.
+    pub fn new(law: Law, capsize: Capsize) -> Self {
+        if capsize.is_on() { Self::WithCapsize(law, capsize) } else { Self::Law(law) }
+    }
+
     /// The gains at forward speed `v` \[m/s\].
     pub fn at(&self, v: f64) -> StaticFeedback {
         match self {
             Self::Law(law) => StaticFeedback { roll: 0.0, roll_rate: law.gain(v) },
+            Self::WithCapsize(law, capsize) => {
+                StaticFeedback { roll: capsize.gain(v), roll_rate: law.gain(v) }
+            }
             Self::Intuitive(Intuitive { k_v, v_max, .. }) if v < *v_max => {
                 StaticFeedback { roll: 0.0, roll_rate: k_v * (v_max - v) }
             }

@@ -1,6 +1,7 @@
 //! The linear analysis of a bicycle under an assist and a delayed rider: characteristic roots over
 //! speed, the speeds at which stability changes, and the modes. See `docs/eigenvalues.md`.
 
+mod actuator;
 mod critical;
 mod feedback;
 mod follow;
@@ -10,6 +11,7 @@ mod roots;
 mod stability;
 mod system;
 
+pub use actuator::LinearActuator;
 pub use critical::{CriticalSpeeds, SEARCH_TO_M_S, critical_speeds};
 pub use feedback::{Feedback, Intuitive, StaticFeedback};
 pub use modes::{Mode, REFERENCE_SPEED_M_S, modes};

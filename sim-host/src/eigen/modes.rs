@@ -18,7 +18,7 @@ const SPARE: usize = 2;
 /// A mode: the two roots of what at the reference speed is a pair, or one real root there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// "weave", "capsize", "caster", or "rider 1", "rider 2" ... for what a rider adds.
+    /// "weave", "capsize", "caster", or "rider 1", "rider 2" ... for what a rider adds, "actuator 1" ... without a rider.
     pub name: String,
     /// Its roots, each at all speeds \[1/s\]; `None` where it lies left of all roots computed.
     pub roots: Vec<Vec<Option<Complex<f64>>>>,
@@ -90,7 +90,7 @@ fn named(model: &Model, count: usize) -> (Vec<String>, Vec<Complex<f64>>) {
             Some((name, _)) => name.clone(),
             None => {
                 number += 1;
-                format!("rider {number}")
+                format!("{} {number}", model.adds())
             }
         };
         found.push((name, root));

@@ -1,6 +1,7 @@
 //! Bicycle, assist and rider as one linear system with a delay.
 
-use super::feedback::Feedback;
+use super::actuator::LinearActuator;
+use super::feedback::{Feedback, StaticFeedback};
 use crate::bicycle::{Parameters, linear::Linear};
 use crate::rider::{Gains, Rider};
 use control::Law;
@@ -45,13 +46,14 @@ impl DelaySystem {
 ///
 /// The states are, in this order: roll, steer, roll rate, steer rate; with a rider, of the integral
 /// of roll, the integral of steer, heading and lateral offset of the front contact those that any
-/// gain needs; the torque of the muscles and its rate.
+/// gain needs; the torque of the muscles and its rate; with an actuator that takes its time, its torque.
 #[derive(Clone, Debug)]
 pub struct Model {
     linear: Linear,
     /// Wheel base \[m\], trail times the cosine of the steer axis tilt \[m\], that cosine.
     path: (f64, f64, f64),
     feedback: Feedback,
+    actuator: LinearActuator,
     rider: Option<Rider>,
     /// Which of integral of roll, integral of steer, heading, lateral offset are states.
     integrals: [bool; 4],
@@ -70,7 +72,22 @@ impl Model {
         // The lateral offset follows from the heading.
         integrals[2] |= integrals[3];
         let cos = p.lam.cos();
-        Self { linear: Linear::new(p), path: (p.w, p.c * cos, cos), feedback, rider, integrals }
+        let path = (p.w, p.c * cos, cos);
+        Self { linear: Linear::new(p), path, feedback, actuator: LinearActuator::default(), rider, integrals }
+    }
+
+    /// The same, turned by an actuator that is not perfect. Its inertia becomes part of the bicycle.
+    ///
+    /// # Errors
+    /// A value out of its range; a delay beside a rider, for the analysis has room for one late signal.
+    pub fn with_actuator(mut self, actuator: LinearActuator) -> Result<Self, String> {
+        actuator.check()?;
+        if actuator.delay_s > 0.0 && self.rider.is_some() {
+            return Err("an actuator's delay can't be analysed beside a rider".into());
+        }
+        self.linear.m[(1, 1)] += actuator.inertia_kg_m2;
+        self.actuator = actuator;
+        Ok(self)
     }
 
     /// The bicycle.
@@ -78,10 +95,16 @@ impl Model {
         &self.linear
     }
 
+    /// What adds roots to the bicycle's four.
+    pub(super) fn adds(&self) -> &'static str {
+        if self.rider.is_some() { "rider" } else { "actuator" }
+    }
+
     /// The law, if nothing else acts.
     pub(super) fn law_alone(&self) -> Option<&Law> {
+        let exact = LinearActuator { inertia_kg_m2: self.actuator.inertia_kg_m2, ..Default::default() };
         match (&self.feedback, &self.rider) {
-            (Feedback::Law(law), None) => Some(law),
+            (Feedback::Law(law), None) if self.actuator == exact => Some(law),
             _ => None,
         }
     }
@@ -94,19 +117,29 @@ impl Model {
     /// The system at speed `v` \[m/s\] with all feedback, assist and rider, times `strength`.
     pub(super) fn scaled(&self, v: f64, strength: f64) -> DelaySystem {
         let extra = self.integrals.iter().filter(|used| **used).count();
-        let n = 4 + if self.rider.is_some() { extra + 2 } else { 0 };
-        let assist = self.feedback.at(v);
-        let mut a = DMatrix::zeros(n, n);
-        let mut bicycle = self.linear.state_matrix(v, assist.roll_rate * strength);
+        let late = usize::from(self.actuator.time_constant_s > 0.0);
+        let with_rider = 4 + if self.rider.is_some() { extra + 2 } else { 0 };
+        let n = with_rider + late;
         let of_torque = self.linear.steer_torque_response();
+        let StaticFeedback { roll, roll_rate } = self.feedback.at(v);
+        let scale = self.actuator.scale * strength;
+        let (roll, roll_rate) = (roll * scale, roll_rate * scale);
+        let (mut a, mut b, mut k) = (DMatrix::zeros(n, n), DVector::zeros(n), RowDVector::zeros(n));
+        let at_once = late == 0 && self.actuator.delay_s == 0.0;
+        let mut bicycle = self.linear.state_matrix(v, if at_once { roll_rate } else { 0.0 });
         for row in 0..2 {
-            bicycle[(2 + row, 0)] += of_torque[row] * assist.roll * strength;
+            if at_once {
+                bicycle[(2 + row, 0)] += of_torque[row] * roll;
+            }
+            bicycle[(2 + row, 3)] -= of_torque[row] * self.actuator.viscous_nm_s_rad * strength;
         }
         a.view_mut((0, 0), (4, 4)).copy_from(&bicycle);
-        let (mut b, mut k) = (DVector::zeros(n), RowDVector::zeros(n));
-        let Some(rider) = &self.rider else { return DelaySystem { a, b, k, delay_s: 0.0 } };
+        if !at_once {
+            self.add_actuator(&mut a, &mut b, &mut k, (roll, roll_rate));
+        }
+        let Some(rider) = &self.rider else { return DelaySystem { a, b, k, delay_s: self.actuator.delay_s } };
 
-        let torque = n - 2;
+        let torque = with_rider - 2;
         a[(2, torque)] = of_torque[0];
         a[(3, torque)] = of_torque[1];
         let muscles = rider.muscles;
@@ -129,6 +162,34 @@ impl Model {
         }
         k *= strength;
         DelaySystem { a, b, k, delay_s: rider.delay_s }
+    }
+
+    /// Writes what an actuator makes of the torque of `gains`, of roll and of its rate, that it is asked for.
+    fn add_actuator(
+        &self,
+        a: &mut DMatrix<f64>,
+        b: &mut DVector<f64>,
+        k: &mut RowDVector<f64>,
+        gains: (f64, f64),
+    ) {
+        let of_torque = self.linear.steer_torque_response();
+        let LinearActuator { delay_s, time_constant_s, .. } = self.actuator;
+        let (mut enters, mut asked) = (b.clone(), k.clone());
+        (asked[0], asked[2]) = gains;
+        if time_constant_s > 0.0 {
+            let torque = a.nrows() - 1;
+            a[(2, torque)] = of_torque[0];
+            a[(3, torque)] = of_torque[1];
+            a[(torque, torque)] = -1.0 / time_constant_s;
+            enters[torque] = 1.0 / time_constant_s;
+        } else {
+            (enters[2], enters[3]) = (of_torque[0], of_torque[1]);
+        }
+        if delay_s > 0.0 {
+            (*b, *k) = (enters, asked);
+        } else {
+            *a += enters * asked;
+        }
     }
 
     /// Writes the rows of the integrals in use; returns their places in the state.

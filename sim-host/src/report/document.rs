@@ -53,6 +53,10 @@ pub struct EigenDocument {
     pub rider: Option<super::resolved::ResolvedRider>,
     /// The law.
     pub law: super::resolved::ResolvedLaw,
+    /// The capsize term beside it; null if there is none.
+    pub capsize: Option<super::resolved::ResolvedCapsize>,
+    /// What stands between law and steer axis; null if it gives what it is asked for.
+    pub actuator: Option<crate::eigen::LinearActuator>,
     /// Speed at which the first complex pair forms \[m/s\]; not looked for with a rider.
     pub v_d: Option<f64>,
     /// Weave speed \[m/s\].
@@ -262,6 +266,8 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "eigen" => generator.into_root_schema_for::<EigenDocument>(),
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
         "rider-show" => generator.into_root_schema_for::<super::rider::RiderDocument>(),
+        "sweep" => generator.into_root_schema_for::<super::sweep::SweepDocument>(),
+        "design" => generator.into_root_schema_for::<super::design::DesignDocument>(),
         "thesis" => generator.into_root_schema_for::<crate::thesis::document::ThesisDocument>(),
         _ => return None,
     };

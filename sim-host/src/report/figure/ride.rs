@@ -7,7 +7,7 @@ use super::panel::Panel;
 use super::picture::Picture;
 use super::scale::nice;
 use crate::ride::{Outcome, TracePoint};
-use control::Limits;
+use control::ActiveLimits;
 use kuva::render::render::TextAnchor;
 
 /// What a figure of a ride shows.
@@ -52,10 +52,10 @@ const ROWS: [(&str, &[Curve]); 4] = [
 ];
 
 /// Limits with their names and colours.
-const LIMITS: [(Limits, &str, &str); 3] = [
-    (Limits::TAPER, "low-speed taper", SERIES[3]),
-    (Limits::MAGNITUDE, "largest torque", SERIES[1]),
-    (Limits::RATE, "rate of change", SERIES[2]),
+const LIMITS: [(ActiveLimits, &str, &str); 3] = [
+    (ActiveLimits::TAPER, "low-speed taper", SERIES[3]),
+    (ActiveLimits::MAGNITUDE, "largest torque", SERIES[1]),
+    (ActiveLimits::RATE, "rate of change", SERIES[2]),
 ];
 
 /// Angles, rates, wheel speeds and torque over time, and when limits changed the torque.
@@ -129,11 +129,11 @@ fn limits(canvas: &mut Canvas, panel: &Panel, trace: &[TracePoint]) -> Vec<super
 }
 
 /// When a limit was active \[s\].
-fn active(trace: &[TracePoint], limit: Limits) -> Vec<(f64, f64)> {
+fn active(trace: &[TracePoint], limit: ActiveLimits) -> Vec<(f64, f64)> {
     let mut spans: Vec<(f64, f64)> = Vec::new();
     let mut open = false;
     for (i, point) in trace.iter().enumerate() {
-        let on = Limits(point.limits).contains(limit);
+        let on = ActiveLimits(point.limits).contains(limit);
         // The torque of a control period is held until the next.
         let until = trace.get(i + 1).map_or(point.t, |next| next.t);
         match spans.last_mut() {

@@ -1,0 +1,323 @@
+//! Judges the torque just before the motor, by the same table as the shaper but with code of its own.
+//!
+//! Where the shaper computes the nearest torque it may ask for, the guard asks what the torque
+//! would have to have been: how long such a change takes, how far such a torque lies beyond a line.
+//! It never corrects. What it finds wrong becomes zero, and it forgets all, so that whoever asked
+//! must begin anew from zero.
+//!
+//! It is more lenient than the shaper by rounding alone ([`slack`]), by the microsecond to which time is
+//! known, and by an eighth of the window's length.
+
+use crate::fault::Cause;
+use crate::limits::{CAP_POINTS, Limits};
+use crate::shape::Asked;
+
+/// What is wrong with a torque. The numbers stay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Violation {
+    /// Not a number, or infinite.
+    NotFinite = 1,
+    /// Not zero without permission.
+    NotPermitted = 2,
+    /// Beyond the largest torque.
+    Magnitude = 3,
+    /// Beyond what the authority leaves.
+    Authority = 4,
+    /// Beyond what limp mode leaves.
+    Limp = 5,
+    /// Beyond the largest torque at this speed.
+    Speed = 6,
+    /// Beyond what the taper leaves.
+    Taper = 7,
+    /// Against the torque of the rider.
+    RiderTorque = 8,
+    /// Against the motion of the handlebar.
+    RiderMotion = 9,
+    /// Towards the end-stop.
+    EndStop = 10,
+    /// Away from zero too fast.
+    Rise = 11,
+    /// Towards zero too fast.
+    Fall = 12,
+    /// Too far within the window.
+    Window = 13,
+}
+
+impl Violation {
+    /// Its code.
+    pub const fn cause(self) -> Cause {
+        match self {
+            Violation::NotFinite => Cause::GuardNotFinite,
+            Violation::NotPermitted | Violation::Authority => Cause::GuardPermission,
+            Violation::Magnitude | Violation::Limp | Violation::Speed | Violation::Taper => {
+                Cause::GuardTorque
+            }
+            Violation::RiderTorque | Violation::RiderMotion => Cause::GuardOverride,
+            Violation::EndStop => Cause::GuardEndStop,
+            Violation::Rise | Violation::Fall => Cause::GuardRate,
+            Violation::Window => Cause::GuardWindow,
+        }
+    }
+}
+
+/// What follows from the table and the rate of calls alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GuardPlan {
+    period_s: f32,
+    /// Time one N m takes, up and down \[s/(N m)\]; 0 without a limit.
+    rise_s_nm: f32,
+    fall_s_nm: f32,
+    /// Largest torque; `f32::MAX` without a limit.
+    max_nm: f32,
+    stagger_us: u32,
+}
+
+impl GuardPlan {
+    /// Of a checked table, for `rate_hz` calls a second.
+    pub fn new(limits: &Limits, rate_hz: f32) -> Self {
+        Self {
+            period_s: 1.0 / rate_hz,
+            rise_s_nm: limits.rise_nm_s.map_or(0.0, |r| 1.0 / r),
+            fall_s_nm: limits.fall_nm_s.map_or(0.0, |r| 1.0 / r),
+            max_nm: limits.max_torque_nm.unwrap_or(f32::MAX),
+            stagger_us: limits.window.map_or(u32::MAX, |w| u32::from(w.ms) * 1000 / WATCHES as u32),
+        }
+    }
+}
+
+/// What the guard remembers of what was really output. `GuardState::default()`: zero for long.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GuardState {
+    torque_nm: f32,
+    turned_us: u32,
+    watches: [Watch; WATCHES],
+    oldest: u8,
+    since_us: u32,
+}
+
+/// The torque, if it is inside every limit; else why not, and the motor must be asked for zero.
+///
+/// `permitted` is false where there must be no torque at this very instant; a permission that
+/// runs out over time is `asked.authority`. Without permission the memory is cleared, so the shaper's must be too.
+///
+/// # Errors
+/// The first [`Violation`] in the order of their numbers.
+pub fn judge(
+    limits: &Limits,
+    plan: &GuardPlan,
+    state: &mut GuardState,
+    torque_nm: f32,
+    permitted: bool,
+    asked: &Asked,
+) -> Result<f32, Violation> {
+    state.pass_time(limits, plan, asked);
+    let verdict = if !torque_nm.is_finite() {
+        Err(Violation::NotFinite)
+    } else if permitted {
+        Torque::new(limits, plan, state, torque_nm, asked.elapsed_us).judge(state, asked)
+    } else if torque_nm == 0.0 {
+        Ok(())
+    } else {
+        Err(Violation::NotPermitted)
+    };
+    if verdict.is_ok() && permitted {
+        state.torque_nm = torque_nm;
+    } else {
+        *state = GuardState::default();
+    }
+    verdict.map(|()| torque_nm)
+}
+
+/// What rounding may add \[N m\] to a torque that was `last_nm` before: 50 uN m, and two parts in a million.
+pub fn slack(torque_nm: f32, last_nm: f32) -> f32 {
+    5e-5 + 2e-6 * (torque_nm.abs() + last_nm.abs())
+}
+
+/// A torque seen as a size and a side, less what rounding may have added.
+struct Torque<'a> {
+    limits: &'a Limits,
+    plan: &'a GuardPlan,
+    /// Size beyond the slack \[N m\]; negative when too small to matter.
+    size: f32,
+    /// +1 to the right, -1 to the left.
+    side: f32,
+    /// How far it shrank, on the side where it was, and how far it grew, each less the slack \[N m\].
+    shrunk: f32,
+    grown: f32,
+    /// The time there was, at least and at most \[s\].
+    time_s: (f32, f32),
+    /// Whether it goes back to zero as fast as it may.
+    retreats: bool,
+}
+
+impl<'a> Torque<'a> {
+    fn new(
+        limits: &'a Limits,
+        plan: &'a GuardPlan,
+        state: &GuardState,
+        torque: f32,
+        elapsed_us: u32,
+    ) -> Self {
+        let last = state.torque_nm;
+        let slack = slack(torque, last);
+        let (size, before) = (torque.abs(), last.abs());
+        let crossed = (torque < 0.0 && last > 0.0) || (torque > 0.0 && last < 0.0);
+        let (shrunk, grown) = if crossed { (before, size) } else { (before - size, size - before) };
+        let within = |us: f32| {
+            let s = us * 1e-6;
+            if s < plan.period_s { s } else { plan.period_s }
+        };
+        let elapsed = elapsed_us as f32;
+        let time_s = (within(elapsed), within(elapsed + 1.0));
+        let retreats = limits.fall_nm_s.is_some()
+            && !crossed
+            && (shrunk + slack) * plan.fall_s_nm >= time_s.0 * (1.0 - 1e-6);
+        let side = if torque < 0.0 { -1.0 } else { 1.0 };
+        let (size, shrunk, grown) = (size - slack, shrunk - slack, grown - slack);
+        Self { limits, plan, size, side, shrunk, grown, time_s, retreats }
+    }
+
+    fn judge(&self, state: &GuardState, asked: &Asked) -> Result<(), Violation> {
+        let Limits { limp_fraction, speed_cap, taper, rider_torque, rider_motion, end_stop, window, .. } =
+            self.limits;
+        let max = self.plan.max_nm;
+        let refuse = |violation, found: bool| if found { Err(violation) } else { Ok(()) };
+
+        refuse(Violation::Magnitude, self.size > max)?;
+        refuse(Violation::Authority, self.beyond(max, asked.authority, 1.0))?;
+        if let (Some(part), true) = (*limp_fraction, asked.limp) {
+            refuse(Violation::Limp, self.plan.max_nm < f32::MAX && self.beyond(max, part, 1.0))?;
+        }
+        let (slow, fast) = (asked.speed_low_m_s, asked.speed_high_m_s);
+        let known = slow <= fast || fast <= slow;
+        let (slow, fast) = if known { (slow.min(fast), slow.max(fast)) } else { (-1e9, 1e9) };
+        if let Some(cap) = speed_cap {
+            let beyond = self.above_line(&cap.speed_m_s, &cap.torque_nm, slow, fast);
+            refuse(Violation::Speed, beyond && !self.retreats)?;
+        }
+        if let Some(t) = taper {
+            refuse(Violation::Taper, self.beyond(max, slow - t.zero_m_s, t.full_m_s - t.zero_m_s))?;
+        }
+        if let (Some(r), Some(rider)) = (rider_torque, known_value(asked.rider_torque_nm)) {
+            let along = rider * self.side;
+            let over = self.size > 0.0 && self.size - max > (r.allowance_nm + along) * r.multiplier;
+            refuse(Violation::RiderTorque, over && !self.retreats)?;
+        }
+        if let Some(r) = rider_motion {
+            let fade = f32::from(r.fade_ms);
+            let over = state.turned_us.saturating_sub(u32::from(r.after_ms) * 1000);
+            refuse(Violation::RiderMotion, self.beyond(max, fade - over as f32 * 1e-3, fade))?;
+        }
+        if let (Some(e), Some(steer)) = (end_stop, known_value(asked.steer_rad)) {
+            let way_left = e.hard_rad - steer * self.side;
+            refuse(Violation::EndStop, self.beyond(max, way_left, e.hard_rad - e.soft_rad))?;
+        }
+        self.in_time()?;
+        match window {
+            Some(w) => refuse(Violation::Window, self.size > state.start(self.side) + w.nm),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether more than `part` of `whole` of the largest torque, and not on its way back.
+    fn beyond(&self, max: f32, part: f32, whole: f32) -> bool {
+        let part = if part > 0.0 { part.min(whole) } else { 0.0 };
+        self.size > 0.0 && self.size * whole > max * part && !self.retreats
+    }
+
+    /// Whether anywhere between `slow` and `fast` it lies above the line through the points.
+    fn above_line(
+        &self,
+        speeds: &[f32; CAP_POINTS],
+        torques: &[f32; CAP_POINTS],
+        slow: f32,
+        fast: f32,
+    ) -> bool {
+        let ([first, .., last], [start, .., end]) = (speeds, torques);
+        let outside = (slow <= *first && self.size > *start) || (fast >= *last && self.size > *end);
+        let mut pieces = speeds.windows(2).zip(torques.windows(2));
+        self.size > 0.0
+            && (outside
+                || pieces.any(|piece| match piece {
+                    (&[v0, v1], &[t0, t1]) if slow <= v1 && v0 <= fast => {
+                        // Both ends of what the piece and the interval share, by the lever rule.
+                        let above = |v: f32| self.size * (v1 - v0) > t0 * (v1 - v) + t1 * (v - v0);
+                        above(v0.max(slow)) || above(v1.min(fast))
+                    }
+                    _ => false,
+                }))
+    }
+
+    /// Whether there was time for the change.
+    fn in_time(&self) -> Result<(), Violation> {
+        let takes = |way: f32, s_nm: f32| if way > 0.0 { way * s_nm } else { 0.0 };
+        let (down, up) = (takes(self.shrunk, self.plan.fall_s_nm), takes(self.grown, self.plan.rise_s_nm));
+        if down + up <= self.time_s.1 * (1.0 + 1e-5) {
+            Ok(())
+        } else if up > 0.0 {
+            Err(Violation::Rise)
+        } else {
+            Err(Violation::Fall)
+        }
+    }
+}
+
+/// How many watches cover a window, each started an eighth of it after the one before.
+const WATCHES: usize = 8;
+
+/// The extremes of the torque since the watch was started \[N m\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Watch {
+    low_nm: f32,
+    high_nm: f32,
+}
+
+impl GuardState {
+    /// The last output was in force for the time that passed.
+    fn pass_time(&mut self, limits: &Limits, plan: &GuardPlan, asked: &Asked) {
+        let last = self.torque_nm;
+        if let Some(r) = &limits.rider_motion {
+            let whole = (u32::from(r.after_ms) + u32::from(r.fade_ms)) * 1000;
+            let turned_back = match asked.steer_rate_rad_s {
+                Some(rate) if last > 0.0 => -rate > r.steer_rate_rad_s,
+                Some(rate) if last < 0.0 => rate > r.steer_rate_rad_s,
+                _ => false,
+            };
+            let time = self.turned_us;
+            self.turned_us = if turned_back {
+                whole.min(time.saturating_add(asked.elapsed_us))
+            } else {
+                time - time.min(asked.elapsed_us)
+            };
+        }
+        if limits.window.is_some() {
+            self.since_us = self.since_us.saturating_add(asked.elapsed_us);
+            let mut restarts = 0;
+            while self.since_us >= plan.stagger_us && restarts < WATCHES {
+                self.since_us -= plan.stagger_us;
+                restarts += 1;
+                if let Some(watch) = self.watches.get_mut(usize::from(self.oldest)) {
+                    *watch = Watch { low_nm: last, high_nm: last };
+                }
+                self.oldest = (self.oldest + 1) % WATCHES as u8;
+            }
+            self.since_us = self.since_us.min(plan.stagger_us);
+            for watch in &mut self.watches {
+                watch.low_nm = watch.low_nm.min(last);
+                watch.high_nm = watch.high_nm.max(last);
+            }
+        }
+    }
+
+    /// The least torque on this side of zero since the oldest watch was started.
+    fn start(&self, side: f32) -> f32 {
+        let watch = self.watches.get(usize::from(self.oldest)).copied().unwrap_or_default();
+        let least = if side > 0.0 { watch.low_nm } else { -watch.high_nm };
+        least.max(0.0)
+    }
+}
+
+fn known_value(value: Option<f32>) -> Option<f32> {
+    value.filter(|v| v.abs() < f32::INFINITY)
+}

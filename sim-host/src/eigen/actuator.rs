@@ -1,0 +1,40 @@
+//! The motor and its gear as the linear analysis sees them.
+
+use crate::range::within;
+
+/// How the torque on the steer axis departs from the one asked for, and what motor, gear and bearings add
+/// there. The default does neither.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+pub struct LinearActuator {
+    /// Torque given over torque asked for.
+    pub scale: f64,
+    /// From the command to the drive \[s\].
+    pub delay_s: f64,
+    /// Time constant of the torque's first-order response \[s\]; 0 is at once.
+    pub time_constant_s: f64,
+    /// Viscous friction about the steer axis \[N m s/rad\].
+    pub viscous_nm_s_rad: f64,
+    /// Inertia about the steer axis that is no part of the bicycle: the rotor's times the gear ratio
+    /// squared \[kg m^2\].
+    pub inertia_kg_m2: f64,
+}
+
+impl Default for LinearActuator {
+    fn default() -> Self {
+        Self { scale: 1.0, delay_s: 0.0, time_constant_s: 0.0, viscous_nm_s_rad: 0.0, inertia_kg_m2: 0.0 }
+    }
+}
+
+impl LinearActuator {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the value and its range.
+    pub fn check(&self) -> Result<(), String> {
+        within("actuator scale", self.scale, -10.0, 10.0)?;
+        within("actuator delay (s)", self.delay_s, 0.0, 1.0)?;
+        within("actuator time constant (s)", self.time_constant_s, 0.0, 10.0)?;
+        within("viscous friction (N m s/rad)", self.viscous_nm_s_rad, 0.0, 100.0)?;
+        within("actuator inertia (kg m^2)", self.inertia_kg_m2, 0.0, 10.0)
+    }
+}
