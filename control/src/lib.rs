@@ -39,6 +39,7 @@ pub mod limits;
 pub mod maths;
 pub mod param;
 pub mod permit;
+pub mod predict;
 pub mod pulses;
 pub mod real;
 pub mod shape;
