@@ -12,3 +12,4 @@ pub mod report;
 pub mod ride;
 pub mod rider;
 pub mod thesis;
+pub mod tracking;
