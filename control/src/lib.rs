@@ -44,6 +44,7 @@ pub mod pulses;
 pub mod real;
 pub mod shape;
 pub mod table;
+pub mod track;
 pub mod watch;
 pub mod wire;
 
