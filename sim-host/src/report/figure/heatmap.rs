@@ -158,7 +158,7 @@ mod tests {
         let pieces = contour(&map, 1.0);
         assert_eq!(pieces.len(), 2);
         assert!(pieces.iter().flatten().all(|p| p.0 == 0.25), "{pieces:?}");
-        assert_eq!(contour(&map, 5.0), []);
-        assert_eq!(contour(&[vec![Some(0.0), None], vec![Some(4.0), None]], 1.0), []);
+        assert!(contour(&map, 5.0).is_empty());
+        assert!(contour(&[vec![Some(0.0), None], vec![Some(4.0), None]], 1.0).is_empty());
     }
 }
