@@ -68,7 +68,7 @@ impl Config {
     /// declared and watched, all limits and checks on ([`Limits::product`]).
     ///
     /// Slopes are at least twice the largest in rides on the border of the basins of `h`, alone and with
-    /// riders (`data/motion.toml`). It refuses to engage until a polarity check was passed.
+    /// riders; steps are above the largest disturbances those basins hold, which come at once. It refuses to engage until a polarity check was passed.
     pub fn product() -> Self {
         let sensor = |max, slope_per_s, timeout_ticks, loss| Sensor {
             slope_per_s: Some(slope_per_s),
@@ -85,10 +85,10 @@ impl Config {
             drift_m_s2: 10.0,
             drift_after_ticks: 30,
             max_gap_ms: Some(5.0),
-            gyro: sensor(35.0, 500.0, 10, Loss::Fault),
+            gyro: Sensor { step: 4.0, ..sensor(35.0, 500.0, 10, Loss::Fault) },
             accel: Sensor { slope_per_s: None, ..sensor(160.0, 0.0, 20, Loss::Limp) },
             steer: sensor(1.6, 40.0, 20, Loss::Limp),
-            steer_rate: sensor(40.0, 1000.0, 20, Loss::Limp),
+            steer_rate: Sensor { step: 20.0, ..sensor(40.0, 1000.0, 20, Loss::Limp) },
             front_wheel: wheel(300.0),
             rear_wheel: wheel(100.0),
             motor: Sensor { slope_per_s: None, ..sensor(20.0, 0.0, 20, Loss::Fault) },

@@ -103,6 +103,8 @@ pub struct Reactions {
     pub pause: Causes,
     /// Reduced torque while it lasts.
     pub limp: Causes,
+    /// Of these, what counts until the rider asks anew: who is wrong is not known.
+    pub lasting: Causes,
 }
 
 impl Reactions {
@@ -128,6 +130,7 @@ impl Reactions {
             disengage: Causes::all(&[Fallen, Lifted, PolarityUnchecked, SwitchOff]),
             pause: Causes::all(&[Backwards, Parked]),
             limp: limp.with(input.causes_of(Loss::Limp)),
+            lasting: limp,
         }
     }
 }
@@ -143,6 +146,8 @@ pub struct PermitState {
     authority: f32,
     /// Causes since the fault began.
     latched: Causes,
+    /// Disagreements since the rider asked.
+    lasting: Causes,
     fallen: Persistent,
     parked: Persistent,
     backwards: Persistent,
@@ -201,7 +206,8 @@ pub fn step(
     state: &mut PermitState,
     asked: &Asked,
 ) -> Permission {
-    let causes = state.causes(config, asked);
+    let causes = state.causes(config, asked).with(state.lasting);
+    state.lasting = if state.mode.drives() { causes.and(reactions.lasting) } else { Causes::NONE };
     let mode = state.next(config, reactions, asked, causes);
     if mode != state.mode {
         (state.mode, state.ticks) = (mode, 0);

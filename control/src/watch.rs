@@ -24,7 +24,9 @@ pub struct Sensor {
     pub fitted: bool,
     /// Largest believable value, either way, in the sensor's unit.
     pub max: f32,
-    /// Largest believable change per second, in the sensor's unit; `None` is any.
+    /// Largest believable change at once, as by a blow, in the sensor's unit.
+    pub step: f32,
+    /// Largest believable change per second beyond it, in the sensor's unit; `None` is any.
     pub slope_per_s: Option<f32>,
     /// Age at which a held sample is too old \[control periods\].
     pub timeout_ticks: u16,
@@ -43,6 +45,7 @@ impl Default for Sensor {
         Self {
             fitted: false,
             max: 1e6,
+            step: 0.0,
             slope_per_s: None,
             timeout_ticks: 0,
             stuck_ticks: 0,
@@ -65,6 +68,7 @@ impl Sensor {
     pub fn leaves<V: Visit>(&mut self, group: &'static str, to: &mut V) {
         to.switch(&Leaf::switch(group, "fitted"), &mut self.fitted);
         to.number(&Leaf::new(group, "max", 1e-3, 1e6), &mut self.max);
+        to.number(&Leaf::new(group, "step", 0.0, 1e6), &mut self.step);
         to.limit(&Leaf::new(group, "slope_per_s", 1e-3, 1e6), &mut self.slope_per_s);
         to.count(&Leaf::new(group, "timeout_ticks", 0.0, 10_000.0), &mut self.timeout_ticks);
         to.count(&Leaf::new(group, "stuck_ticks", 0.0, 10_000.0), &mut self.stuck_ticks);
@@ -110,7 +114,11 @@ pub struct Watch<const N: usize> {
     told_age: u16,
     /// Good samples in a row.
     good: u16,
-    /// Control periods for which the samples stood still while something moved.
+    /// Control periods without any sample since the last good one.
+    gap: u16,
+    /// Control periods in which something moved since the last sample, ...
+    moved: u16,
+    /// ... and in which the samples stood still meanwhile.
     still: u16,
     /// Whether it is believed.
     trusted: bool,
@@ -125,6 +133,8 @@ impl<const N: usize> Default for Watch<N> {
             age: MISSING,
             told_age: MISSING,
             good: 0,
+            gap: 0,
+            moved: 0,
             still: 0,
             trusted: false,
             doubt: None,
@@ -157,9 +167,11 @@ impl<const N: usize> Watch<N> {
         }
         let (value, age) = sample;
         self.age = self.age.saturating_add(1);
-        self.still = self.still.saturating_add(u16::from(moves));
+        self.moved = self.moved.saturating_add(u16::from(moves));
         if age != self.told_age.saturating_add(1) && age != MISSING {
             self.take(sensor, codes, period_s, value, age);
+        } else {
+            self.gap = self.gap.saturating_add(1);
         }
         self.told_age = age;
         let stuck = sensor.stuck_ticks > 0 && self.still >= sensor.stuck_ticks;
@@ -189,10 +201,11 @@ impl<const N: usize> Watch<N> {
             return;
         }
         let change = |(a, b): (&f32, &f32)| if a > b { a - b } else { b - a };
-        let between = self.age.saturating_sub(age).max(1);
+        // Samples that were refused give a jump no more time.
+        let between = self.gap.saturating_add(1);
         let jumps = match sensor.slope_per_s {
             Some(slope) if self.age != MISSING => {
-                let most = slope * period_s * f32::from(between);
+                let most = sensor.step + slope * period_s * f32::from(between);
                 value.iter().zip(&self.value).map(change).any(|moved| moved > most)
             }
             _ => false,
@@ -211,9 +224,9 @@ impl<const N: usize> Watch<N> {
             self.good = self.good.saturating_add(1);
         }
         let same = value.iter().zip(&self.value).all(|(a, b)| a.to_bits() == b.to_bits());
-        if !same {
-            self.still = 0;
-        }
+        self.still = if same { self.still.saturating_add(self.moved) } else { 0 };
+        self.moved = 0;
+        self.gap = 0;
         self.value = *value;
         self.age = age;
     }

@@ -16,6 +16,7 @@ const CODES: Codes = Codes {
 const SENSOR: Sensor = Sensor {
     fitted: true,
     max: 10.0,
+    step: 0.0,
     slope_per_s: Some(100.0),
     timeout_ticks: 5,
     stuck_ticks: 8,
@@ -79,8 +80,26 @@ fn late_is_held_then_lost() {
     }
     assert_eq!(bench.step(7.0, 6, false), Told { value: None, lost: Some(Cause::SteerLost) });
     assert_eq!(bench.step(0.0, MISSING, false).lost, Some(Cause::SteerLost));
-    // So long a gap allows so large a change.
+    // So long a gap allows so large a change, ...
     assert!(bench.fresh(1.1).is_err() && bench.fresh(1.1).is_err() && bench.fresh(1.1).is_ok());
+}
+
+/// Situation: believed. Action: a jump, again and again. Must hold: refusing it gives it no more time: refused until lost.
+#[test]
+fn a_jump_does_not_become_true_by_waiting() {
+    let mut bench = Bench::trusted();
+    for age in 1..=5 {
+        assert_eq!(bench.fresh(1.25), Ok((1.002, age)), "0.1 a period, {age} periods");
+    }
+    assert_eq!(bench.fresh(1.25), Err(Some(Cause::SteerJump)));
+    let stepping = Sensor { step: 0.2, ..SENSOR };
+    let mut watch = bench.0;
+    watch = (0..3).fold(watch, |mut watch, _| {
+        watch.step(&stepping, &CODES, 1e-3, (&[1.25], 0), false);
+        watch
+    });
+    let told = watch.step(&stepping, &CODES, 1e-3, (&[1.54], 0), false);
+    assert_eq!(told.value, Some(([1.54], 0)), "a step of 0.2 and a period's slope");
 }
 
 /// Situation: believed. Action: samples that can't be, for as long as may be and longer. Must hold: the last good one is held,
