@@ -4,10 +4,13 @@ use control::Law;
 use nalgebra::Complex;
 use sim_host::bicycle::{Parameters, catalogue};
 use sim_host::eigen::{Feedback, LinearActuator, Model, rightmost, roots};
-use sim_host::study::balance_assist::{RIDDEN, RIDERLESS, published, stable_range, study, weave};
+use sim_host::study::balance_assist::{NAME, RIDDEN, RIDERLESS, published, stable_range, weave};
 use sim_host::study::motor_fit::{Free, fits, published_residual};
-use sim_host::study::prototype::groups;
-use std::path::Path;
+use sim_host::study::prototype;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use tests::cli::{Bench, repository};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
 fn bicycle(name: &str) -> Parameters {
     catalogue::load(name).expect("ships").parameters
@@ -146,8 +149,6 @@ fn actuators_that_cannot_be_analysed_are_refused() {
         let error = model().with_actuator(actuator).expect_err("out of range");
         assert!(error.contains(says), "{error}");
     }
-    let rider = groups().expect("ships");
-    assert!(rider.iter().any(|g| g.rider == Some("smart")));
     let smart = sim_host::rider::catalogue::load("smart").expect("ships");
     let smart = smart.rider(Default::default(), Default::default(), None).expect("valid");
     let ridden = Model::new(&bicycle(RIDDEN), Feedback::Law(Law::None), Some(smart));
@@ -155,13 +156,50 @@ fn actuators_that_cannot_be_analysed_are_refused() {
     assert!(error.contains("beside a rider"), "{error}");
 }
 
-/// Situation: the page in the documentation.
-/// Action: make the study again.
-/// Must hold: it is the page.
+/// Situation: the page in the documentation; a folder that is not there.
+/// Action: make the study again, by the program; into that folder.
+/// Must hold: it is the page, with its figure; refused before any work.
 #[test]
 fn the_page_is_what_the_study_makes() {
-    let page = study().expect("the bicycles ship");
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/studies/balance-assist.md");
-    let written = std::fs::read_to_string(file).expect("the page is there");
-    assert!(page.text == written, "make it again: sim-host study balance-assist");
+    let bench = Bench::new(PROGRAM);
+    let run = bench.run("study balance-assist --out .");
+    assert_eq!(
+        (run.code, bench.files()),
+        (Some(0), vec![format!("{NAME}.md"), format!("{NAME}.svg")]),
+        "{run:?}"
+    );
+    let written =
+        std::fs::read_to_string(repository("docs/studies/balance-assist.md")).expect("the page is there");
+    assert!(bench.read("balance-assist.md") == written, "make it again: sim-host study balance-assist");
+    assert_eq!(run.stdout, written);
+    bench.run("study balance-assist --out nowhere").refused_naming(&["nowhere", "no folder"]);
+    assert_eq!(bench.run("study nothing").code, Some(2));
+}
+
+/// Situation: the study of the prototype's law beside h, at the two ends of its speeds only.
+/// Action: make it; stop it.
+/// Must hold: at equal torque h survives more at 2 m/s in every case, at 7.5 m/s, where both laws end, both are
+/// the bicycle alone; nothing of a stopped study.
+#[test]
+fn h_beside_the_prototypes_law() {
+    let ends = prototype::search(5.5);
+    assert_eq!(ends.speeds, [2.0, 7.5]);
+    let counted = AtomicUsize::new(0);
+    let count = || {
+        counted.fetch_add(1, Ordering::SeqCst);
+    };
+    let page = prototype::study(&ends, &count, &|| false).expect("rides").expect("not stopped");
+    assert_eq!(counted.into_inner(), prototype::work(&ends));
+    for plot in &page.chart.plots {
+        let height = |law: &str, end: usize| {
+            let series = plot.series.iter().find(|s| s.name == law).expect("a law");
+            series.points[end].1
+        };
+        let [h, weak, strong] =
+            ["h-cut", "balance-assist:3.9", "balance-assist:5.2"].map(|law| [height(law, 0), height(law, 1)]);
+        assert!(h[0] > strong[0] && strong[0] > weak[0] && h[0] < 15.0, "{}: {h:?} {strong:?}", plot.title);
+        assert!((h[1] - strong[1]).abs() < 0.3 && (weak[1] - strong[1]).abs() < 0.02, "{}", plot.title);
+    }
+    assert_eq!(page.chart.plots.len(), 3);
+    assert!(prototype::study(&ends, &|| {}, &|| true).expect("rides").is_none());
 }

@@ -34,7 +34,7 @@ pub struct DesignDocument {
     /// Largest change of torque \[N m/s\].
     pub rate_limit_nm_s: Option<f32>,
     /// The schedule: speed \[m/s\] and gain \[N m s/rad\].
-    pub schedule: Vec<(f64, f64)>,
+    pub schedule: Vec<(f32, f32)>,
     /// Its least area over the trials it was designed with, found coarsely \[rad m/s^2\].
     pub worst_area: f64,
     /// The same of the law it began with.
@@ -183,9 +183,9 @@ impl DesignDocument {
     }
 }
 
-fn points(law: &Law) -> Vec<(f64, f64)> {
+fn points(law: &Law) -> Vec<(f32, f32)> {
     let Law::Table(table) = law else { return Vec::new() };
-    table.points().iter().map(|(v, gain)| (f64::from(*v), f64::from(*gain))).collect()
+    table.points().to_vec()
 }
 
 /// The law as a file that `--law` takes.
@@ -195,10 +195,7 @@ pub fn law_file(d: &Design) -> String {
         "{name} {version} commit {commit}: design, seed {}, {} schedules tried from {}, least area {:.3} rad m/s^2",
         d.plan.seed, d.found.evaluations, d.start, d.found.worst_area
     );
-    let (speeds, gains): (Vec<f32>, Vec<f32>) = match d.law {
-        Law::Table(table) => table.points().iter().copied().unzip(),
-        _ => Default::default(),
-    };
+    let (speeds, gains): (Vec<f32>, Vec<f32>) = points(d.law).into_iter().unzip();
     let source = toml::Value::from(source);
     format!("source = {source}\nspeed_m_s = {speeds:?}\ngain_nm_s_rad = {gains:?}\n")
 }

@@ -70,7 +70,7 @@ pub const FITS: [(&str, &[Free]); 9] = {
         ("less torque, lag", &[Scale, Lag]),
         ("lag, friction", &[Lag, Friction]),
         ("less torque, lag, friction", &[Scale, Lag, Friction]),
-        ("less torque, lag, delay, friction", &[Scale, Lag, Delay, Friction]),
+        ("less torque, delay, friction", &[Scale, Delay, Friction]),
         ("friction, inertia", &[Friction, Inertia]),
         ("torque, lag, friction, inertia", &[Scale, Lag, Friction, Inertia]),
     ]
@@ -134,8 +134,7 @@ fn search<const N: usize>(
         false => f64::INFINITY,
     };
     let start: [f64; N] = std::array::from_fn(|i| start[i]);
-    // Once more from where the first ended: a simplex can shrink on its way.
-    minimum(minimum(start, miss), miss).to_vec()
+    minimum(start, miss).to_vec()
 }
 
 fn chosen(free: &[Free], values: &[f64]) -> LinearActuator {

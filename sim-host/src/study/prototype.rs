@@ -139,17 +139,37 @@ fn text(groups: &[Group], outlines: &[Vec<Outline>], search: &Search) -> String 
     let heights = table(&names, heights);
     let last = search.speeds.len() - 1;
     let step = search.speeds.get(1).map_or(0.0, |v| v - search.speeds[0]);
+    let verdict = verdict(groups, outlines);
     format!(
         "# The prototype's law beside h\n\n\
          Made by `sim-host study prototype`. Both laws are given the prototype's {LIMIT_NM} N m, the flashed code at\n\
          1 kHz and exact sensors without delay. Areas of the basin under a steer rate, {} to {} m/s in steps of {step:.2} m/s,\n\
          in rad m/s^2; borders within {} rad/s. A ride that does not fall within 6 s counts, so that slow growth at\n\
          low speed is no fall.\n\n{areas}\n\
-         The steer rates that are survived, in rad/s, with the rate limit:\n\n{heights}\n\
-         The balance assist ends at 4.7 m/s and starts from zero at rest; h reaches on to 7.5 m/s. The prototype's own\n\
-         bicycle is heavier at the front; there is no rider's table for it, so that it is ridden hands off.\n\n\
+         The steer rates that are survived, in rad/s, with the rate limit, at the nearest speed computed:\n\n{heights}\n\
+         {verdict}\n\
+         The balance assist ends at 4.7 m/s and starts from zero at rest; h reaches on to 7.5 m/s. Of the prototype's own\n\
+         bicycle (`balanceassistv1_jason`) there is no rider's table; it is ridden hands off. The slopes are those of the\n\
+         published model; in the prototype twice as much was set ([balance-assist.md](balance-assist.md)).\n\n\
          ![Basins](prototype.svg)\n",
-        search.speeds[0], search.speeds[last], search.tolerance,
+        search.speeds[0],
+        search.speeds[search.speeds.len() - 1],
+        search.tolerance,
+    )
+}
+
+/// Which law has the larger basin, and what the rate limit does.
+fn verdict(groups: &[Group], outlines: &[Vec<Outline>]) -> String {
+    let areas: Vec<Vec<f64>> =
+        outlines.iter().map(|of_laws| of_laws.iter().map(|o| area(o)).collect()).collect();
+    let larger = areas.iter().filter(|a| a[1] > a[2].max(a[3])).count();
+    let pairs = areas.chunks_exact(2).flat_map(|pair| pair[0].iter().zip(&pair[1]));
+    let change = pairs.map(|(without, with)| (with / without - 1.0).abs()).fold(0.0, f64::max);
+    format!(
+        "At equal torque h has the larger basin in {larger} of {} cases. The rate limit changes no area by more than\n\
+         {:.1} %.\n",
+        groups.len(),
+        100.0 * change,
     )
 }
 
