@@ -1,145 +1,95 @@
 //! The composition: one sensor frame in, one torque command out.
 
-use crate::calibrate::{Calibration, CalibrationPlan};
+use crate::calibrate::CalibrationPlan;
+use crate::config::Config;
+use crate::cross::{self, CrossState};
+use crate::estimate::{self, EstimateState, Felt, Motion};
 use crate::fault::{Cause, Causes};
 use crate::frame::{SensorFrame, Wheel};
-use crate::history::{Aligned, History, Latency};
-use crate::input::{self, Believed, Bounds, InputConfig, InputState};
-use crate::law::Law;
-use crate::limits::{ActiveLimits, Limits, Taper};
-use crate::param::{Checker, Leaf, ParamError, Visit};
-use crate::permit::{self, Asked, Mode, PermitConfig, PermitState, Reactions};
+use crate::guard::{self, GuardPlan, GuardState};
+use crate::history::{Aligned, History};
+use crate::input::{self, Believed, Bounds, InputState};
+use crate::limits::ActiveLimits;
+use crate::permit::{self, Mode, PermitState, Reactions};
+use crate::predict;
 use crate::shape::{self, ShapePlan, ShapeState};
-use crate::watch::{Loss, Sensor};
-
-/// Everything a user may choose. Plain data; [`Config::plan`] checks it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Config {
-    /// How often [`step`] is called \[Hz\], 100..=10000.
-    pub rate_hz: f32,
-    /// The roll-rate law.
-    pub law: Law,
-    /// How sensors and motor sit on this bicycle.
-    pub calibration: Calibration,
-    /// The declared sensors.
-    pub input: InputConfig,
-    /// When torque may flow.
-    pub permit: PermitConfig,
-    /// How late each sensor is known to be.
-    pub latency: Latency,
-    /// Limits on the torque.
-    pub shape: Limits,
-}
-
-impl Config {
-    /// The conditions of the published basins: the law alone, every limit and check off, permission
-    /// for the asking.
-    pub fn thesis(law: Law) -> Self {
-        Self {
-            rate_hz: 1000.0,
-            law,
-            calibration: Calibration::default(),
-            input: InputConfig::default(),
-            permit: PermitConfig::default(),
-            latency: Latency::default(),
-            shape: Limits::default(),
-        }
-    }
-
-    /// What is flashed: `h` cut to zero above 7.5 m/s, 7 N m (the largest torque of the published
-    /// balance-assist prototype), 100 N m/s (above the 91 N m/s that border rides of unlimited `h`
-    /// reach), nothing below 0.5 m/s and all of it from 1.5 m/s, samples up to 10 ms (gyro) and
-    /// 250 ms (wheel pulses) old. It refuses to engage until a polarity check was passed.
-    pub fn product() -> Self {
-        let gyro =
-            Sensor { timeout_ticks: 10, qualify_samples: 100, loss: Loss::Fault, ..Sensor::exact(60.0) };
-        let wheel =
-            Sensor { timeout_ticks: 250, qualify_samples: 3, loss: Loss::Fault, ..Sensor::exact(30.0) };
-        let input = InputConfig { gyro, front_wheel: wheel, ..InputConfig::default() };
-        let permit = PermitConfig {
-            self_test_ticks: 200,
-            ramp_in_ticks: 500,
-            ramp_out_ticks: 200,
-            need_polarity: true,
-            ..PermitConfig::default()
-        };
-        let shape = Limits {
-            max_torque_nm: Some(7.0),
-            rise_nm_s: Some(100.0),
-            fall_nm_s: Some(100.0),
-            taper: Some(Taper { zero_m_s: 0.5, full_m_s: 1.5 }),
-            ..Limits::default()
-        };
-        Self { input, permit, shape, ..Self::thesis(Law::H { cut: true }) }
-    }
-
-    /// Shows every parameter but the law's.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("", "rate_hz", 100.0, 10_000.0), &mut self.rate_hz);
-        self.calibration.leaves(to);
-        self.input.leaves(to);
-        self.permit.leaves(to);
-        self.latency.leaves(to);
-        self.shape.leaves(to);
-    }
-
-    /// Checks every value and readies what [`step`] needs.
-    ///
-    /// # Errors
-    /// The first parameter outside its range, with its value and the range.
-    pub fn plan(mut self) -> Result<Plan, ParamError> {
-        let mut checker = Checker::default();
-        self.leaves(&mut checker);
-        checker.note(self.law.validate());
-        checker.note(self.shape.validate());
-        checker.verdict()?;
-        Ok(Plan {
-            period_s: 1.0 / self.rate_hz,
-            shape: ShapePlan::new(&self.shape, self.rate_hz),
-            period_us: (1e6 / self.rate_hz) as u32,
-            calibration: self.calibration.plan(),
-            reactions: Reactions::new(&self.input),
-            config: self,
-        })
-    }
-}
+use crate::track::{self, PathError, TrackState};
 
 /// A checked [`Config`] with what is derived from it. Read-only while the controller runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     config: Config,
     period_s: f32,
-    shape: ShapePlan,
     period_us: u32,
     calibration: CalibrationPlan,
     reactions: Reactions,
+    shape: ShapePlan,
+    guard: GuardPlan,
+    /// Whether anything needs more of the motion than the gyro's x axis.
+    estimates: bool,
 }
 
 impl Plan {
+    /// Of a configuration that was checked.
+    pub(crate) fn new(config: Config) -> Self {
+        let c = &config;
+        let crosses = c.cross.wheels_m_s.is_some() || c.cross.yaw_rad_s.is_some();
+        Self {
+            period_s: 1.0 / c.rate_hz,
+            period_us: (1e6 / c.rate_hz) as u32,
+            calibration: c.calibration.plan(),
+            reactions: Reactions::new(&c.input),
+            shape: ShapePlan::new(&c.limits, c.rate_hz),
+            guard: GuardPlan::new(&c.limits, c.rate_hz),
+            estimates: c.estimate.roll_rate == estimate::Source::Estimate
+                || c.capsize.is_on()
+                || c.permit.fallen_rad.is_some()
+                || c.predict.lead_s > 0.0
+                || c.track.is_some()
+                || crosses,
+            config,
+        }
+    }
+
     /// The configuration it was made from.
     pub fn config(&self) -> &Config {
         &self.config
     }
 
+    /// The control period \[us\], as the frames' times should grow.
+    pub fn period_us(&self) -> u32 {
+        self.period_us
+    }
+
     /// Control periods from boot to full authority, if every sensor is good from the start and the
     /// switch is pressed at once when it may be.
     pub fn ticks_to_engage(&self) -> u32 {
-        let Config { input, permit, .. } = &self.config;
-        let slowest = input.slowest_to_qualify();
-        8 + slowest
-            + u32::from(permit.self_test_ticks)
-            + u32::from(permit.ramp_in_ticks)
-            + u32::from(self.config.latency.roll_rate_ticks.max(self.config.latency.speed_ticks))
+        let Config { input, permit, latency, .. } = &self.config;
+        let waits = u32::from(permit.self_test_ticks) + u32::from(permit.persist_ticks);
+        let ramp = u32::from(permit.ramp_in_ticks);
+        let filling = u32::from(latency.roll_rate_ticks.max(latency.speed_ticks));
+        8 + input.slowest_to_qualify() + waits + ramp + filling
     }
 }
 
 /// What the controller remembers between steps. `State::default()` is a controller just started.
 #[derive(Clone, Debug, Default)]
 pub struct State {
+    /// The time of the frame before \[us\].
+    before_us: Option<u32>,
     input: InputState,
+    estimate: EstimateState,
+    motion: Motion,
+    cross: CrossState,
     permit: PermitState,
     history: History,
+    track: TrackState,
     shape: ShapeState,
+    guard: GuardState,
+    /// The limits that acted in the period before.
+    acted: ActiveLimits,
+    /// What the guard found in the period before.
+    found: Causes,
 }
 
 impl State {
@@ -151,6 +101,11 @@ impl State {
     /// The part of the torque that is permitted, 0 to 1.
     pub fn authority(&self) -> f32 {
         self.permit.authority()
+    }
+
+    /// The motion as far as it is known.
+    pub fn motion(&self) -> &Motion {
+        &self.motion
     }
 }
 
@@ -171,19 +126,29 @@ pub struct Command {
 
 /// One control period: the torque for the motor from the sensors of this instant.
 ///
-/// Without a believable roll rate or speed zero torque is wanted, reached as fast as the rate limit
-/// lets it.
+/// Without a believable roll rate or speed zero torque is wanted, reached as fast as the limits let
+/// it. In the modes before standby, and on any finding of the guard, it is zero at once.
 pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let config = &plan.config;
-    let frame = plan.calibration.frame(frame);
-    let last = state.torque_nm();
-    let believed = input::step(&config.input, plan.period_s, &mut state.input, &frame, last);
-    let speed = speed(&config.input, &believed);
-    let mut causes = believed.causes;
+    let elapsed_us = state.before_us.map_or(plan.period_us, |before| frame.now_us.wrapping_sub(before));
+    state.before_us = Some(frame.now_us);
+    let last_nm = state.torque_nm();
 
+    let frame = plan.calibration.frame(frame);
+    let believed = input::step(&config.input, plan.period_s, &mut state.input, &frame, last_nm);
+    state.motion = motion(plan, &mut state.estimate, &believed, elapsed_us);
+    let motion = state.motion;
+    let ahead = predict::step(&config.predict, &motion);
+    let crossed =
+        cross::step(&config.cross, plan.period_s, &mut state.cross, &believed, motion.roll_rad, last_nm);
+    let mut causes = believed.causes.with(crossed).with(state.found);
+    causes.note(Cause::Timing, config.input.max_gap_ms.is_some_and(|ms| elapsed_us as f32 > 1e3 * ms));
+
+    let speed = speed(config, &believed, &motion, causes.has(Cause::WheelsDisagree));
     let now = match (believed.gyro_rad_s, speed) {
-        (Some([roll_rate_rad_s, ..]), Some(speed)) => {
-            let now = state.history.align(&config.latency, Aligned { roll_rate_rad_s, speed });
+        (Some(_), Some(speed)) => {
+            let newest = Aligned { roll_rate_rad_s: ahead.roll_rate_rad_s, speed };
+            let now = state.history.align(&config.latency, newest);
             causes.note(Cause::Filling, now.is_none());
             now
         }
@@ -192,52 +157,125 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
             None
         }
     };
-    let asked = Asked {
+
+    let asked = permit::Asked {
         causes,
         engage: frame.engage,
         polarity_checked: config.calibration.polarity_checked,
-        roll_rad: None,
+        roll_rad: (plan.estimates && believed.gyro_rad_s.is_some()).then_some(motion.roll_rad),
         speed_m_s: speed.map(|v| v.newest),
         force_m_s2: believed.accel_m_s2.map(size),
     };
     let permission = permit::step(&config.permit, &plan.reactions, &mut state.permit, &asked);
 
-    let (gain, wanted, slowest) = match now {
-        Some(now) if permission.authority > 0.0 => {
-            let gain = config.law.gain(now.speed.newest);
-            (gain, gain * now.roll_rate_rad_s, now.speed.low)
+    let (gain, law_nm, bounds) = match now {
+        Some(Aligned { roll_rate_rad_s, speed }) => {
+            let gain = config.law.gain_towards_zero(speed.low, speed.high);
+            let mut wanted = gain * roll_rate_rad_s;
+            if config.capsize.is_on() {
+                wanted += config.capsize.torque(speed.low, ahead.roll_rad);
+            }
+            (gain, wanted, speed)
         }
-        _ => (0.0, 0.0, 0.0),
+        None => (0.0, 0.0, Bounds::default()),
     };
+    let track_nm = config.track.as_ref().map_or(0.0, |track| {
+        let seen = track::Seen {
+            roll_rad: motion.roll_rad,
+            steer_rad: motion.steer_rad,
+            roll_rate_rad_s: motion.roll_rate_rad_s,
+            steer_rate_rad_s: motion.steer_rate_rad_s,
+            speed_m_s: motion.speed_m_s,
+            path: believed.path.map(|[heading_rad, lateral_m]| PathError { heading_rad, lateral_m }),
+            rider_torque_nm: believed.rider_torque_nm,
+            acted: state.acted,
+            authority: permission.authority,
+            elapsed_us,
+        };
+        track::step(track, &mut state.track, &seen)
+    });
     let asked = shape::Asked {
-        wanted_nm: wanted,
+        // Zero added would turn -0 into 0.
+        wanted_nm: if config.track.is_some() { law_nm + track_nm } else { law_nm },
         authority: permission.authority,
         limp: permission.mode == Mode::Limp,
-        speed_low_m_s: slowest,
-        speed_high_m_s: slowest,
-        steer_rad: None,
-        steer_rate_rad_s: None,
-        rider_torque_nm: None,
-        elapsed_us: plan.period_us,
+        speed_low_m_s: bounds.low,
+        speed_high_m_s: bounds.high,
+        steer_rad: believed.steer_rad,
+        steer_rate_rad_s: believed.steer_rate_rad_s,
+        rider_torque_nm: believed.rider_torque_nm,
+        elapsed_us,
     };
-    let (torque_nm, limits) = shape::step(&config.shape, &plan.shape, &mut state.shape, &asked);
+    let permitted = permission.mode >= Mode::Standby;
+    let (shaped_nm, limits) = if permitted {
+        shape::step(&config.limits, &plan.shape, &mut state.shape, &asked)
+    } else {
+        state.shape = ShapeState::default();
+        (0.0, ActiveLimits::default())
+    };
+    let judged = guard::judge(&config.limits, &plan.guard, &mut state.guard, shaped_nm, permitted, &asked);
+    let torque_nm = judged.unwrap_or_else(|_| {
+        state.shape = ShapeState::default();
+        0.0
+    });
+    state.acted = limits;
+    state.found = judged.err().map_or(Causes::NONE, |violation| Causes::of(violation.cause()));
     Command {
         torque_nm: plan.calibration.motor(torque_nm),
-        gain_nm_s_rad: gain,
+        gain_nm_s_rad: if permission.authority > 0.0 { gain } else { 0.0 },
         limits,
         mode: permission.mode,
-        causes: permission.causes,
+        causes: permission.causes.with(state.found),
     }
 }
 
-/// The speed that schedules the gain: the chosen wheel's, or the other's while the chosen one is lost.
-fn speed(config: &InputConfig, believed: &Believed) -> Option<Bounds> {
-    let (front, rear) = (believed.front_wheel_m_s, believed.rear_wheel_m_s);
-    match config.wheel {
-        Wheel::Front => front.or(rear),
-        Wheel::Rear => rear.or(front),
+/// The motion from what is believed; if nothing needs more, just what the sensors say.
+fn motion(plan: &Plan, state: &mut EstimateState, believed: &Believed, elapsed_us: u32) -> Motion {
+    let rear = believed.rear_wheel_m_s.or(believed.front_wheel_m_s);
+    let felt = Felt {
+        gyro_rad_s: believed.gyro_rad_s.unwrap_or_default(),
+        accel_m_s2: believed.accel_m_s2,
+        steer_rad: believed.steer_rad,
+        steer_rate_rad_s: believed.steer_rate_rad_s,
+        speed_m_s: rear.map_or(0.0, |v| v.newest),
+        elapsed_us,
+    };
+    if plan.estimates {
+        return estimate::step(&plan.config.estimate, state, &felt);
+    }
+    let [roll_rate_rad_s, ..] = felt.gyro_rad_s;
+    Motion {
+        roll_rate_rad_s,
+        steer_rad: felt.steer_rad.unwrap_or(0.0),
+        steer_rate_rad_s: felt.steer_rate_rad_s.unwrap_or(0.0),
+        speed_m_s: felt.speed_m_s,
+        roll_bound_rad: core::f32::consts::PI,
+        ..Motion::default()
     }
 }
+
+/// Between which speeds of the scheduling wheel the truth lies: by that wheel's sensor; by the other's
+/// and the steer angle while it is lost; by both when they disagree.
+fn speed(config: &Config, believed: &Believed, motion: &Motion, disagree: bool) -> Option<Bounds> {
+    let (front, rear) = (believed.front_wheel_m_s, believed.rear_wheel_m_s);
+    // The front wheel goes the longer way, at most about twice as long.
+    let cos = match believed.steer_rad {
+        Some(steer) => cross::on_the_ground(config.cross.tilt_rad, motion.roll_rad, steer).1,
+        None => LEAST_COS,
+    };
+    let cos = if cos > LEAST_COS { cos } else { LEAST_COS };
+    let (own, other) = match config.input.wheel {
+        Wheel::Front => (front, rear.map(|v| v.spanning(v.scaled(1.0 / cos)))),
+        Wheel::Rear => (rear, front.map(|v| v.spanning(v.scaled(cos)))),
+    };
+    match (own, other) {
+        (Some(own), Some(other)) if disagree => Some(own.spanning(other)),
+        (own, other) => own.or(other),
+    }
+}
+
+/// Cosine of the largest steer angle on the ground that is reckoned with while it is not known.
+const LEAST_COS: f32 = 0.4;
 
 fn size([x, y, z]: [f32; 3]) -> f32 {
     libm::sqrtf(x * x + y * y + z * z)

@@ -8,6 +8,7 @@
 //! It is more lenient than the shaper by rounding alone ([`slack`]), by the microsecond to which time is
 //! known, and by an eighth of the window's length.
 
+use crate::fault::Cause;
 use crate::limits::{CAP_POINTS, Limits};
 use crate::shape::Asked;
 
@@ -41,6 +42,23 @@ pub enum Violation {
     Fall = 12,
     /// Too far within the window.
     Window = 13,
+}
+
+impl Violation {
+    /// Its code.
+    pub const fn cause(self) -> Cause {
+        match self {
+            Violation::NotFinite => Cause::GuardNotFinite,
+            Violation::NotPermitted | Violation::Authority => Cause::GuardPermission,
+            Violation::Magnitude | Violation::Limp | Violation::Speed | Violation::Taper => {
+                Cause::GuardTorque
+            }
+            Violation::RiderTorque | Violation::RiderMotion => Cause::GuardOverride,
+            Violation::EndStop => Cause::GuardEndStop,
+            Violation::Rise | Violation::Fall => Cause::GuardRate,
+            Violation::Window => Cause::GuardWindow,
+        }
+    }
 }
 
 /// What follows from the table and the rate of calls alone.

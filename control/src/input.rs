@@ -16,6 +16,8 @@ pub struct InputConfig {
     pub drift_m_s2: f32,
     /// Age from which they widen: the time between samples of a good wheel sensor \[control periods\].
     pub drift_after_ticks: u16,
+    /// Longest time between two control periods \[ms\].
+    pub max_gap_ms: Option<f32>,
     /// Angular velocity of the frame \[rad/s\].
     pub gyro: Sensor,
     /// Specific force \[m/s^2\].
@@ -48,6 +50,7 @@ impl Default for InputConfig {
             recent_samples: 1,
             drift_m_s2: 0.0,
             drift_after_ticks: 0,
+            max_gap_ms: None,
             gyro: Sensor::exact(60.0),
             accel: none,
             steer: none,
@@ -80,6 +83,7 @@ impl InputConfig {
         to.count(&Leaf::new(g, "recent_samples", 1.0, RECENT as f32), &mut self.recent_samples);
         to.number(&Leaf::new(g, "drift_m_s2", 0.0, 100.0), &mut self.drift_m_s2);
         to.count(&Leaf::new(g, "drift_after_ticks", 0.0, 10_000.0), &mut self.drift_after_ticks);
+        to.limit(&Leaf::new(g, "max_gap_ms", 0.1, 1000.0), &mut self.max_gap_ms);
         self.gyro.leaves("input.gyro", to);
         self.accel.leaves("input.accel", to);
         self.steer.leaves("input.steer", to);
@@ -151,6 +155,20 @@ pub struct Bounds {
     pub newest: f32,
     /// The most it can be.
     pub high: f32,
+}
+
+impl Bounds {
+    /// All three times a positive factor.
+    pub fn scaled(self, by: f32) -> Self {
+        Self { low: self.low * by, newest: self.newest * by, high: self.high * by }
+    }
+
+    /// As wide as both together, about this one's newest sample.
+    pub fn spanning(self, other: Self) -> Self {
+        let low = if other.low < self.low { other.low } else { self.low };
+        let high = if other.high > self.high { other.high } else { self.high };
+        Self { low, newest: self.newest, high }
+    }
 }
 
 /// The sensors' values, `None` where a sensor is not fitted or not believed.

@@ -13,18 +13,22 @@
 //! * **Total**: every bit pattern of every input gives a finite torque inside the limits.
 //!
 //! The way of the data, one module each: [`frame`] (what the sensors say) -> [`calibrate`] (in the
-//! bicycle's axes) -> [`input`] (may it be believed; [`watch`] is one sensor) -> [`permit`] (may
-//! torque flow, and why not) -> [`history`] (sensors of different latency brought to one instant) ->
-//! [`law`] (the wanted torque; [`table`] for one of a user's own,
-//! [`capsize`] for what may be added to it) -> [`shape`] (what may be asked of the motor,
-//! by the table in [`limits`]; [`guard`] judges it by the same). [`controller`] puts them
-//! together, [`fault`] numbers what can go wrong, [`param`] declares every parameter.
+//! bicycle's axes) -> [`input`] (may it be believed; [`watch`] is one sensor) -> [`estimate`] (the motion)
+//! -> [`cross`] (do the sensors fit each other) -> [`permit`] (may torque flow, and why not) ->
+//! [`predict`] (as it will be when the torque acts) -> [`history`] (sensors of different latency brought
+//! to one instant) -> [`law`] (the wanted torque; [`table`] for one of a user's own, [`capsize`] and
+//! [`track`] for what may be added to it) -> [`shape`] (inside the
+//! [`limits`]) -> [`guard`] (judges it by them). [`controller`] puts them together, [`config`] holds what
+//! may be chosen, [`fault`] numbers what can go wrong, [`param`] declares every parameter. A board makes
+//! wheel speeds of [`pulses`].
 #![no_std]
 #![forbid(unsafe_code)]
 
 pub mod calibrate;
 pub mod capsize;
+pub mod config;
 pub mod controller;
+pub mod cross;
 pub mod estimate;
 pub mod fault;
 pub mod frame;
@@ -36,6 +40,7 @@ pub mod limits;
 pub mod maths;
 pub mod param;
 pub mod permit;
+pub mod predict;
 pub mod pulses;
 pub mod real;
 pub mod shape;
@@ -46,7 +51,8 @@ pub mod wire;
 
 pub use calibrate::Calibration;
 pub use capsize::Capsize;
-pub use controller::{Command, Config, Plan, State, step};
+pub use config::Config;
+pub use controller::{Command, Plan, State, step};
 pub use fault::{CAUSES, Cause, Causes};
 pub use frame::{Sample, SensorFrame, Triple, Wheel};
 pub use input::InputConfig;

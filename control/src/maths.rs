@@ -16,7 +16,7 @@ pub fn sin_cos(angle_rad: f32) -> (f32, f32) {
     let q = x * x;
     let odd = -0.166_666_66 + q * (0.008_333_242 + q * (-0.000_198_227_4 + q * 2.634_756e-6));
     let even = 0.041_666_66 + q * (-0.001_388_865_2 + q * (2.477_458e-5 + q * -2.629_751e-7));
-    (x + x * (q * odd), 1.0 + q * (-0.5 + q * even))
+    (x * (1.0 + q * odd), 1.0 + q * (-0.5 + q * even))
 }
 
 /// `x` limited to `max` either way, NaN made 0; a value inside keeps its bits.

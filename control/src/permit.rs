@@ -9,7 +9,7 @@ use crate::param::{Leaf, Visit};
 use crate::watch::Loss;
 
 /// Where the controller stands. The number is the one on the wire.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Mode {
     /// Not stepped yet.

@@ -1,6 +1,7 @@
 //! The same bytes on every link: little-endian, fixed length, any bit pattern allowed.
 
-use crate::controller::{Command, Config};
+use crate::config::Config;
+use crate::controller::Command;
 use crate::frame::{Sample, SensorFrame, Triple};
 use crate::law::{LAW_NAMES, Law};
 use crate::param::{Leaf, ParamError, Visit};
@@ -12,7 +13,7 @@ pub const FRAME_BYTES: usize = 81;
 /// Bytes of a [`Command`]: torque and gain as f32, limits, mode, causes.
 pub const COMMAND_BYTES: usize = 19;
 /// Bytes of a [`Config`]: the law with room for a whole table, then every leaf in its order.
-pub const CONFIG_BYTES: usize = 587;
+pub const CONFIG_BYTES: usize = 901;
 
 /// A sensor frame as bytes.
 pub fn encode_frame(frame: &SensorFrame) -> [u8; FRAME_BYTES] {

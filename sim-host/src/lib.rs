@@ -4,12 +4,17 @@
 pub mod basin;
 pub mod bicycle;
 pub mod cli;
+pub mod design;
 pub mod eigen;
 pub mod integrate;
+pub mod leaves;
 pub mod num;
+pub mod plant;
 mod range;
 pub mod report;
 pub mod ride;
 pub mod rider;
+pub mod study;
+pub mod sweep;
 pub mod thesis;
 pub mod tracking;

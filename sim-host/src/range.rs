@@ -11,3 +11,18 @@ pub(crate) fn within(name: &str, value: f64, min: f64, max: f64) -> Result<(), S
         Err(format!("{name} = {value} is outside {min} to {max}"))
     }
 }
+
+/// A time with its unit, from 0 to `max` \[s\].
+///
+/// # Errors
+/// Names the text and what was expected.
+pub(crate) fn time(text: &str, max: f64) -> Result<f64, String> {
+    let wrong =
+        || format!("`{text}` is not a time; expected a number with its unit, for example 20ms or 0.02s");
+    let (number, per_s) = match text.strip_suffix("ms") {
+        Some(number) => (number, 1e3),
+        None => (text.strip_suffix('s').ok_or_else(wrong)?, 1.0),
+    };
+    let value = number.trim().parse::<f64>().map_err(|_| wrong())? / per_s;
+    if (0.0..=max).contains(&value) { Ok(value) } else { Err(format!("{text} is outside 0 s to {max} s")) }
+}

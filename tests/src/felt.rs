@@ -25,6 +25,8 @@ pub struct Truth {
     pub steer_rate: f64,
     /// Rear wheel's forward speed \[m/s\].
     pub speed: f64,
+    /// Front wheel's forward speed \[m/s\].
+    pub front_speed: f64,
     /// Body rates about x, y, z \[rad/s\].
     pub gyro: [f64; 3],
     /// Specific force of an accelerometer at the place asked for, along x, y, z \[m/s^2\].
@@ -79,6 +81,7 @@ pub fn truth(b: &Geometry, state: &State<f64>, torques: &Torques<f64>, place: &P
         steer: state.steer,
         steer_rate: state.steer_rate,
         speed: motion.actual.rear_spin.re * -b.rR,
+        front_speed: motion.actual.front_spin.re * -b.rF,
         gyro: omega.map(|w| w.re),
         accel,
     }
@@ -152,7 +155,7 @@ impl Noise {
 
     /// Adds the noise of the next millisecond.
     pub fn on(&mut self, felt: &mut Felt) {
-        if self.tick % 10 == 0 {
+        if self.tick.is_multiple_of(10) {
             let [gyro, accel, steer, steer_rate, speed] = Self::SIZES;
             let sizes = [gyro, gyro, gyro, accel, accel, accel, steer, steer_rate, speed];
             self.held = sizes.map(|size| size * self.normal());

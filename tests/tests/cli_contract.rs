@@ -34,6 +34,7 @@ fn documents_fit_their_committed_schemas() {
             "basin compare a=--rider=smart b=--law=none --speeds 5:6:1 --max-rate 6 --scan-step 1",
         ),
         ("basin-plane", "basin plane --speed 5 --rays 4 --points 4 --ray-tolerance 0.05"),
+        ("sweep", "sweep --over law=h,none --speeds 5 --max-rate 6 --scan-step 2 --time-limit 1"),
         ("eigen", "eigen --speeds 0:10:1"),
         ("eigen", "eigen --rider smart --law h --speeds 3:4:0.5 --roots 6"),
         ("eigen", &format!("eigen --speeds 4 --law {}", law.display())),
@@ -44,9 +45,17 @@ fn documents_fit_their_committed_schemas() {
     ] {
         assert_eq!(violations(&committed(name), &bench.json(line)), [""; 0], "{line}");
     }
-    for name in
-        ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane"]
-    {
+    for name in [
+        "basin",
+        "ride",
+        "eigen",
+        "bicycle-check",
+        "rider-show",
+        "thesis",
+        "basin-compare",
+        "basin-plane",
+        "sweep",
+    ] {
         let run = bench.run(&format!("schema {name}"));
         let file = std::fs::read_to_string(repository("docs/schema").join(format!("{name}.json"))).unwrap();
         assert!(run.stdout == file, "run: sim-host schema {name} > docs/schema/{name}.json");

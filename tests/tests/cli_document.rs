@@ -77,7 +77,12 @@ fn every_option_is_documented_with_its_default() {
         "rider check",
         "basin compare",
         "basin plane",
+        "sweep",
+        "sweep merge",
+        "sweep study",
         "thesis",
+        "study",
+        "design",
     ] {
         let help = bench.run(&format!("{command} --help")).stdout;
         let mut option = "";

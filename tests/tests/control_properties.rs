@@ -66,10 +66,10 @@ fn any_plan() -> impl Strategy<Value = Plan> {
     );
     (any_law(), limits, 0..=MAX_LATENCY_TICKS, 0..=MAX_LATENCY_TICKS).prop_map(|(law, limits, a, b)| {
         let mut config = Config::thesis(law);
-        config.shape.max_torque_nm = limits.0;
-        config.shape.rise_nm_s = limits.1;
-        config.shape.fall_nm_s = limits.1;
-        config.shape.taper = limits.2.map(|(zero, width)| Taper { zero_m_s: zero, full_m_s: zero + width });
+        config.limits.max_torque_nm = limits.0;
+        config.limits.rise_nm_s = limits.1;
+        config.limits.fall_nm_s = limits.1;
+        config.limits.taper = limits.2.map(|(zero, width)| Taper { zero_m_s: zero, full_m_s: zero + width });
         config.latency = Latency { roll_rate_ticks: a, speed_ticks: b };
         config.plan().expect("in range")
     })
@@ -82,6 +82,11 @@ fn fresh(roll_rate: f32, speed: f32) -> SensorFrame {
         engage: true,
         ..SensorFrame::missing()
     }
+}
+
+/// The frames at 1 kHz.
+fn timed(frames: &[SensorFrame]) -> Vec<SensorFrame> {
+    (1..).zip(frames).map(|(tick, frame)| SensorFrame { now_us: 1000 * tick, ..*frame }).collect()
 }
 
 /// The same situation in a mirror that stands along the path.
@@ -106,8 +111,11 @@ fn engaged(plan: &Plan, speed: f32) -> State {
     let mut state = State::default();
     let rest = fresh(0.0, speed);
     let mut standby = false;
-    for _ in 0..plan.ticks_to_engage() {
-        let command = step(plan, &mut state, &SensorFrame { engage: standby, ..rest });
+    let ticks = plan.ticks_to_engage();
+    for tick in 0..ticks {
+        // So that the last one is at time zero.
+        let now_us = (tick + 1).wrapping_sub(ticks).wrapping_mul(1000);
+        let command = step(plan, &mut state, &SensorFrame { now_us, engage: standby, ..rest });
         standby |= command.mode == Mode::Standby;
     }
     assert_eq!(state.authority(), 1.0);
@@ -122,8 +130,8 @@ proptest! {
         frames in proptest::collection::vec(any_frame(), 1..200),
     ) {
         let mut state = engaged(&plan, 4.0);
-        let shape = plan.config().shape;
-        for frame in &frames {
+        let shape = plan.config().limits;
+        for frame in &timed(&frames) {
             let before = state.torque_nm();
             let command = step(&plan, &mut state, frame);
             prop_assert!(command.torque_nm.is_finite() && command.gain_nm_s_rad.is_finite());
@@ -150,7 +158,7 @@ proptest! {
         frames in proptest::collection::vec(any_frame(), 1..100),
     ) {
         let (mut right, mut left) = (engaged(&plan, 4.0), engaged(&plan, 4.0));
-        for frame in &frames {
+        for frame in &timed(&frames) {
             let (a, b) = (step(&plan, &mut right, frame), step(&plan, &mut left, &mirrored(frame)));
             prop_assert_eq!(a.torque_nm, -b.torque_nm);
             prop_assert_eq!((a.limits, a.mode, a.causes), (b.limits, b.mode, b.causes));
@@ -167,7 +175,7 @@ proptest! {
         let latency = Latency { roll_rate_ticks: ticks, speed_ticks: ticks };
         let plan = Config { latency, ..Config::thesis(law.clone()) }.plan().expect("in range");
         let mut state = engaged(&plan, 4.0);
-        for frame in &frames {
+        for frame in &timed(&frames) {
             let bare = law.gain(frame.front_wheel_m_s.value) * frame.gyro_rad_s.value[0];
             prop_assert_eq!(step(&plan, &mut state, frame).torque_nm.to_bits(), bare.to_bits());
         }
@@ -208,12 +216,13 @@ fn late_sensors_are_paired_with_the_past() {
     let plan = Config { latency, ..Config::thesis(Law::Table(table)) }.plan().expect("in range");
     let mut state = engaged(&plan, 2.0);
     let gap = SensorFrame { gyro_rad_s: Triple::missing(), ..fresh(0.0, 2.0) };
-    for _ in 0..2 {
+    for round in 0..2 {
         // A gap empties it: no torque from samples of before.
-        let command = step(&plan, &mut state, &gap);
+        let at = |k: u32, frame| SensorFrame { now_us: 1000 * (1 + 21 * round + k), ..frame };
+        let command = step(&plan, &mut state, &at(0, gap));
         assert!(command.causes.has(Cause::GyroLost) && command.torque_nm == 0.0);
         for k in 0..20 {
-            let command = step(&plan, &mut state, &fresh(k as f32, 2.0));
+            let command = step(&plan, &mut state, &at(k + 1, fresh(k as f32, 2.0)));
             let filling = command.causes.has(Cause::Filling);
             if k < 3 {
                 assert_eq!((filling, command.torque_nm), (true, 0.0));
@@ -229,7 +238,7 @@ fn late_sensors_are_paired_with_the_past() {
 #[test]
 fn unbelievable_frames_are_refused_with_the_reason() {
     let mut config = Config::thesis(Law::H { cut: false });
-    config.shape.fall_nm_s = Some(1000.0);
+    config.limits.fall_nm_s = Some(1000.0);
     let plan = config.plan().expect("in range");
     let late = |gyro: Triple| SensorFrame { gyro_rad_s: gyro, ..fresh(1.0, 4.0) };
     for (frame, cause) in [
@@ -243,12 +252,12 @@ fn unbelievable_frames_are_refused_with_the_reason() {
         (SensorFrame { front_wheel_m_s: Sample::missing(), ..fresh(1.0, 4.0) }, Cause::FrontWheelLost),
     ] {
         let mut state = engaged(&plan, 4.0);
-        for _ in 0..20 {
-            step(&plan, &mut state, &fresh(0.5, 4.0));
+        for frame in timed(&[fresh(0.5, 4.0); 20]) {
+            step(&plan, &mut state, &frame);
         }
         let before = state.torque_nm();
         assert!(before > 3.5, "{before}");
-        let command = step(&plan, &mut state, &frame);
+        let command = step(&plan, &mut state, &SensorFrame { now_us: 21_000, ..frame });
         assert!(command.causes.has(cause), "{:?}", command.causes.iter().collect::<Vec<_>>());
         assert_eq!(command.torque_nm, before - 1.0);
         assert_eq!(command.limits, ActiveLimits::RATE);
@@ -274,9 +283,9 @@ fn parameters_out_of_range_are_named() {
         (refused(|c| c.input.recent_samples = 7), "input.recent_samples"),
         (refused(|c| c.permit.parked_m_s = Some(0.0)), "permit.parked_m_s"),
         (refused(|c| c.latency.speed_ticks = 32), "latency.speed_ticks"),
-        (refused(|c| c.shape.max_torque_nm = Some(-1.0)), "limits.max_torque_nm"),
-        (refused(|c| c.shape.rise_nm_s = Some(f32::INFINITY)), "limits.rise_nm_s"),
-        (refused(|c| c.shape.taper = Some(Taper { zero_m_s: 2.0, full_m_s: 1.0 })), "limits.taper.full_m_s"),
+        (refused(|c| c.limits.max_torque_nm = Some(-1.0)), "max_torque_nm"),
+        (refused(|c| c.limits.rise_nm_s = Some(f32::INFINITY)), "rise_nm_s"),
+        (refused(|c| c.limits.taper = Some(Taper { zero_m_s: 2.0, full_m_s: 1.0 })), "full_m_s"),
     ] {
         assert!(error.to_string().contains(name) && error.to_string().contains(&error.leaf.max.to_string()));
     }

@@ -95,15 +95,15 @@ fn limits_are_obeyed_in_the_loop() {
         change(&mut config);
         one(&configured(config), start)
     };
-    let magnitude = limited(|c| c.shape.max_torque_nm = Some(3.0));
+    let magnitude = limited(|c| c.limits.max_torque_nm = Some(3.0));
     assert_eq!(magnitude.effort.peak_torque_nm, 3.0);
     assert!(free.effort.peak_torque_nm > 6.0);
-    let rate = limited(|c| (c.shape.rise_nm_s, c.shape.fall_nm_s) = (Some(20.0), Some(20.0)));
+    let rate = limited(|c| (c.limits.rise_nm_s, c.limits.fall_nm_s) = (Some(20.0), Some(20.0)));
     assert!((19.9..20.001).contains(&rate.effort.peak_slew_nm_s), "{:?}", rate.effort);
     assert!(free.effort.peak_slew_nm_s > 40.0);
-    let taper = limited(|c| c.shape.taper = Some(Taper { zero_m_s: 3.0, full_m_s: 9.9 }));
+    let taper = limited(|c| c.limits.taper = Some(Taper { zero_m_s: 3.0, full_m_s: 9.9 }));
     assert!(taper.effort.peak_torque_nm < 0.7 * free.effort.peak_torque_nm);
-    let far = limited(|c| c.shape.max_torque_nm = Some(50.0));
+    let far = limited(|c| c.limits.max_torque_nm = Some(50.0));
     assert_eq!(far, free);
 }
 

@@ -4,6 +4,8 @@
 //! that of Sanjurjo et al. 2019 (roll of a bicycle from rates and speed), with an accelerometer in
 //! place of the steady-cornering assumption where there is one.
 
+use crate::maths::{QUARTER, bounded};
+
 /// Gravity \[m/s^2\].
 pub(super) const G: f32 = 9.81;
 
@@ -12,8 +14,6 @@ const SURPRISE_RAD: f32 = 0.3;
 
 /// Largest variance of the roll angle: nothing is known \[rad^2\].
 const ANYTHING: f32 = 1.0;
-
-use crate::maths::{QUARTER, bounded};
 
 /// The filter's memory: the estimates and the covariance of their errors.
 #[derive(Clone, Debug, Default)]

@@ -1,9 +1,12 @@
 //! Steer angle and rate from an encoder, a rate sensor, or both.
 
+use crate::maths::bounded;
+
 /// Largest believed steer angle \[rad\] and rate \[rad/s\].
 const MAX: (f32, f32) = (core::f32::consts::PI, 100.0);
 
-use crate::maths::bounded;
+/// Least lag while there is a rate sensor \[s\]: the angle then has to show slow errors only.
+const FUSED_S: f32 = 0.2;
 
 /// A second-order tracking filter with both roots equal: the angle follows the encoder, the rate is
 /// the rate sensor's plus what the encoder shows to be missing in it; without a rate sensor that is
@@ -27,6 +30,7 @@ impl Steer {
         if !self.tracking {
             *self = Self { angle_rad: angle, missing_rad_s: 0.0, tracking: true };
         }
+        let lag_s = if rate.is_some() && lag_s < FUSED_S { FUSED_S } else { lag_s };
         let w = 2.0 * dt / lag_s;
         let per = 1.0 / ((1.0 + w) * (1.0 + w));
         let ahead = self.angle_rad + dt * (told + self.missing_rad_s);

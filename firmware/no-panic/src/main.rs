@@ -36,7 +36,7 @@ pub extern "C" fn _start() -> ! {
     loop {
         let config = configured();
         used((config.law.gain(black_box(1.0_f32)), config.law.gain(black_box(1.0_f64))));
-        used((config.law.validate(), config.shape.validate()));
+        used((config.law.validate(), config.limits.validate()));
         used((wire::encode_config(&config), wire::config_bytes_used()));
         used((black_box(Mode::Off).name(), black_box(Causes::all(&CAUSES)).iter().count()));
         limits(&config);
@@ -50,7 +50,7 @@ pub extern "C" fn _start() -> ! {
 
 /// The shaper and the guard, each of anything.
 fn limits(config: &Config) {
-    let (table, rate) = (black_box(config.shape), black_box(config.rate_hz));
+    let (table, rate) = (black_box(config.limits), black_box(config.rate_hz));
     let (mut shape, mut guard) = (black_box(ShapeState::default()), black_box(GuardState::default()));
     let asked = black_box(Asked {
         wanted_nm: 0.0,

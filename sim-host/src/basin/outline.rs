@@ -21,7 +21,9 @@ pub struct Island {
 }
 
 /// How much was computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
 pub struct Work {
     /// Rides.
     pub rides: u64,
@@ -41,7 +43,8 @@ impl Work {
         self.right_hand_sides += 4 * steps;
     }
 
-    pub(super) fn plus(self, other: &Work) -> Work {
+    /// The sum of both.
+    pub fn plus(self, other: &Work) -> Work {
         Work {
             rides: self.rides + other.rides,
             steps: self.steps + other.steps,

@@ -93,7 +93,7 @@ impl<S: Scalar> Inertia<S> {
     /// The momenta of one velocity state.
     #[inline(always)]
     pub(super) fn momenta(&self, b: &Geometry, pose: &Pose<S>, v: &Velocities<S>) -> Momenta<S> {
-        let axle = v.axle(b, pose);
+        let axle = v.axle(b, pose.e1);
         let spin = v.front_spin * b.front.spin_inertia;
         let mut angular = self.whole.times(v.omega)
             + self.moment.cross(axle)

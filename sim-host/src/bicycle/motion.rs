@@ -29,11 +29,11 @@ pub struct Velocities<S> {
 }
 
 impl<S: Scalar> Velocities<S> {
-    /// Velocity of P, the rear wheel's centre.
+    /// Velocity of P, the rear wheel's centre, with the rear wheel's heading `e1` of [`Pose`].
     #[inline(always)]
-    pub fn axle(&self, b: &Geometry, pose: &Pose<S>) -> Vec3<S> {
+    pub fn axle(&self, b: &Geometry, e1: Vec3<S>) -> Vec3<S> {
         let v = self.rolling * -b.rR;
-        Vec3::new(pose.e1.x * v, self.roll * b.rR, pose.e1.z * v)
+        Vec3::new(e1.x * v, self.roll * b.rR, e1.z * v)
     }
 }
 

@@ -1,6 +1,7 @@
 //! What the flashed estimator must know of a bicycle, computed from its geometry.
 
 use super::{Geometry, Gyrostat, pitch_from_upright};
+use control::Config;
 use control::estimate::{EstimateConfig, Place};
 use nalgebra::{SMatrix, SVector};
 
@@ -17,6 +18,14 @@ pub fn estimator_parameters(b: &Geometry) -> EstimateConfig {
         balance: balance(b),
         ..EstimateConfig::default()
     }
+}
+
+/// Tells the flashed code which bicycle it is on and where its IMU sits: `imu_m` from the rear wheel's centre,
+/// forward, right and down \[m\]. What it makes of that stays as chosen.
+pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) {
+    let imu = Place { forward_m: imu_m[0] as f32, up_m: (b.rR - imu_m[2]) as f32 };
+    config.estimate = EstimateConfig { roll_rate: config.estimate.roll_rate, imu, ..estimator_parameters(b) };
+    (config.cross.wheelbase_m, config.cross.tilt_rad) = (b.w as f32, b.lam as f32);
 }
 
 /// The terms of [`EstimateConfig::pitch`] at an attitude.

@@ -117,7 +117,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = args.search.pool()?;
-    let bar = progress(outputs.shows_progress(), search.speeds.len(), "speeds");
+    let bar = progress(outputs.shows_progress(), "basin", search.speeds.len(), "speeds");
     let begin = Instant::now();
     let result = pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
     let seconds = begin.elapsed().as_secs_f64();
@@ -159,11 +159,11 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 }
 
 /// A bar with the time left, on standard error, and only on a terminal.
-pub(super) fn progress(shown: bool, count: usize, what: &str) -> ProgressBar {
+pub(super) fn progress(shown: bool, command: &str, count: usize, what: &str) -> ProgressBar {
     if !shown {
         return ProgressBar::hidden();
     }
-    let template = format!("basin {{bar:40}} {{pos}}/{{len}} {what}, {{elapsed}} gone, {{eta}} left");
+    let template = format!("{command} {{bar:40}} {{pos}}/{{len}} {what}, {{elapsed}} gone, {{eta}} left");
     let style = ProgressStyle::with_template(&template);
     ProgressBar::new(count as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

@@ -3,7 +3,7 @@
 use super::basin::{SearchArgs, progress};
 use super::conditions::{ConditionArgs, Setup};
 use super::outputs::{OutputArgs, Results, complain};
-use super::{Ended, Failure, interrupt};
+use super::{Ended, Failure, interrupt, words};
 use crate::basin::{Basin, Column, Work, basin};
 use crate::bicycle::linear::Linear;
 use crate::eigen::critical_speeds;
@@ -11,7 +11,6 @@ use crate::report::compare::{Case, CompareDocument};
 use crate::report::figure::{self, BasinFigure};
 use crate::report::resolved::ResolvedSearch;
 use crate::report::table;
-use clap::Parser;
 use control::Law;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -34,14 +33,6 @@ pub(super) struct Args {
     search: SearchArgs,
     #[command(flatten)]
     outputs: OutputArgs,
-}
-
-/// The options of one case.
-#[derive(Parser)]
-#[command(no_binary_name = true, disable_help_flag = true)]
-struct CaseArgs {
-    #[command(flatten)]
-    conditions: ConditionArgs,
 }
 
 /// A case before it is computed.
@@ -95,7 +86,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     interrupt::install();
     let pool = args.search.pool()?;
     let to_compute = asked.iter().filter(|a| matches!(a, Asked::Compute(..))).count();
-    let bar = progress(outputs.shows_progress(), to_compute * search.speeds.len(), "columns");
+    let bar = progress(outputs.shows_progress(), "basin", to_compute * search.speeds.len(), "columns");
     let (mut cases, mut stable, mut complete) = (Vec::new(), None, true);
     for one in asked {
         let case = match one {
@@ -147,12 +138,7 @@ fn named(label: &str, error: impl std::fmt::Display) -> Failure {
 
 fn parse(label: &str, options: &str) -> Result<ConditionArgs, Failure> {
     let words = shlex::split(options).ok_or_else(|| named(label, "a quotation mark is not closed"))?;
-    let case = CaseArgs::try_parse_from(words).map_err(|e| {
-        let text = e.to_string();
-        let why = text.lines().next().unwrap_or("").trim_start_matches("error: ");
-        named(label, format!("{why} (see `sim-host basin --help`)"))
-    })?;
-    Ok(case.conditions)
+    words::conditions(&words).map_err(|e| named(label, e))
 }
 
 /// The outline in a file of `basin --json`.
@@ -195,9 +181,10 @@ fn heights(config: &Value, cases: &[Case]) -> Result<Vec<u8>, csv::Error> {
     let names = std::iter::once("speed_m_s".into()).chain(cases.iter().map(|c| c.label.clone()));
     let at =
         |case: &Case, v: f64| case.basin.columns.iter().find(|c| (c.speed - v).abs() < 1e-9).map(|c| c.upper);
-    let rows =
-        speeds.into_iter().map(|v| std::iter::once(Some(v)).chain(cases.iter().map(|c| at(c, v))).collect());
-    table::numbers(config, &names.collect::<Vec<_>>(), rows)
+    let rows = speeds
+        .into_iter()
+        .map(|v| std::iter::once(Some(v)).chain(cases.iter().map(|c| at(c, v))).collect::<Vec<_>>());
+    table::rows(config, &names.collect::<Vec<_>>(), rows)
 }
 
 fn summary(document: &CompareDocument) -> String {

@@ -1,8 +1,12 @@
 //! The options that say who rides what under which conditions; `ride` and `basin` share them.
 
+use super::plant_args::{PlantArgs, whole_ticks};
 use super::rider_args::{RiderArgs, step};
 use super::{Failure, law, warn};
+use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
+use crate::leaves;
+use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
 use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
 use clap::ValueEnum;
@@ -61,6 +65,11 @@ pub(super) struct ConditionArgs {
     /// Delay of the simulated sensors, for example 20ms; a whole number of control periods
     #[arg(long, value_name = "TIME", default_value = "0ms", value_parser = seconds, allow_hyphen_values = true)]
     sensor_delay: f64,
+    #[command(flatten)]
+    plant: PlantArgs,
+    /// Any parameter of the flashed code, as limits.rise_nm_s=50 or limits.end_stop=on; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
     /// Roll rate the gyro reports: of the roll angle, or the frame's about its own axis
     #[arg(long, default_value = "euler")]
     imu: Imu,
@@ -91,37 +100,6 @@ fn seconds(text: &str) -> Result<f64, String> {
     time(text, 3600.0)
 }
 
-/// A time with its unit, from 0 to `max` \[s\].
-pub(super) fn time(text: &str, max: f64) -> Result<f64, String> {
-    let wrong =
-        || format!("`{text}` is not a time; expected a number with its unit, for example 20ms or 0.02s");
-    let (number, per_s) = match text.strip_suffix("ms") {
-        Some(number) => (number, 1e3),
-        None => (text.strip_suffix('s').ok_or_else(wrong)?, 1.0),
-    };
-    let value = number.trim().parse::<f64>().map_err(|_| wrong())? / per_s;
-    if (0.0..=max).contains(&value) { Ok(value) } else { Err(format!("{text} is outside 0 s to {max} s")) }
-}
-
-/// Whole control periods in a delay.
-fn whole_ticks(delay_s: f64, period_s: f64) -> Result<u16, String> {
-    let ticks = delay_s / period_s;
-    if ticks > 1000.0 {
-        return Err(format!("--sensor-delay {} ms is outside 0 to {} ms", delay_s * 1e3, period_s * 1e6));
-    }
-    if (ticks - ticks.round()).abs() > 1e-6 {
-        let near = |n: f64| format!("{} ms", n * period_s * 1e3);
-        return Err(format!(
-            "--sensor-delay {} ms is not a whole number of control periods of {} ms; nearest are {} and {}",
-            delay_s * 1e3,
-            period_s * 1e3,
-            near(ticks.floor()),
-            near(ticks.ceil())
-        ));
-    }
-    Ok(ticks.round() as u16)
-}
-
 /// The option that sets a parameter of the control crate.
 fn option_of(parameter: &Leaf) -> Option<&'static str> {
     match (parameter.group, parameter.name) {
@@ -142,7 +120,7 @@ pub(super) struct Setup {
 impl ConditionArgs {
     /// Whether a rider is asked for.
     pub(super) fn ridden(&self) -> bool {
-        self.rider.rider.is_some()
+        self.rider.name().is_some()
     }
 
     /// Loads and checks everything; warnings go to standard error.
@@ -169,17 +147,28 @@ impl ConditionArgs {
         // The simulated bicycle is put together as drawn.
         config.calibration.polarity_checked = true;
         if let Some(Limit(limit)) = self.torque_limit {
-            config.shape.max_torque_nm = limit;
+            config.limits.max_torque_nm = limit;
         }
         if let Some(Limit(limit)) = self.rate_limit {
-            config.shape.rise_nm_s = limit;
-            config.shape.fall_nm_s = limit;
+            config.limits.rise_nm_s = limit;
+            config.limits.fall_nm_s = limit;
         }
         if let Some(Limit(taper)) = self.taper {
-            config.shape.taper = taper.map(|(zero_m_s, full_m_s)| Taper { zero_m_s, full_m_s });
+            config.limits.taper = taper.map(|(zero_m_s, full_m_s)| Taper { zero_m_s, full_m_s });
+        }
+        for word in &self.set {
+            let (key, value) = word.split_once('=').ok_or(format!("--set {word}: expected KEY=VALUE"))?;
+            leaves::set(&mut config, key, value).map_err(|why| format!("--set {word}: {why}"))?;
         }
         let period_s = 1.0 / f64::from(config.rate_hz);
-        let limited = config.shape != Limits::default();
+        let flashed = law != Law::None && self.assist == AssistKind::Firmware;
+        let step_s = match &rider {
+            Some((rider, ..)) => step(rider.delay_s, period_s, flashed)?,
+            None => period_s,
+        };
+        let plant = self.plant.plant(step_s)?;
+        fit(&mut config, &Geometry::new(&bicycle.parameters), plant.sensors.imu.point_m);
+        let limited = config.limits != Limits::default();
         let plan = config.plan().map_err(|e| match option_of(&e.leaf) {
             Some(option) => format!("{option}: {e}"),
             None => e.to_string(),
@@ -193,17 +182,14 @@ impl ConditionArgs {
             AssistKind::Firmware => Assist::Firmware(Box::new(plan)),
             AssistKind::Ideal => Assist::Ideal(Box::new(law.clone())),
         };
-        let step_s = match &rider {
-            Some((rider, ..)) => step(rider.delay_s, period_s, matches!(assist, Assist::Firmware(_)))?,
-            None => period_s,
-        };
-        let sensor_delay_ticks = whole_ticks(self.sensor_delay, step_s)?;
+        let sensor_delay_ticks = whole_ticks("--sensor-delay", self.sensor_delay, step_s)?;
         let resolved = rider.as_ref().map(|(rider, table, fit)| ResolvedRider::new(table, *fit, rider));
         let conditions = Conditions {
             rider: rider.map(|(rider, ..)| rider),
             schedule_speed: self.schedule_speed,
             imu: self.imu,
             sensor_delay_ticks,
+            plant,
             time_limit_s: self.time_limit,
             step_s,
             recovered_below: self.recovered_below,

@@ -1,6 +1,5 @@
 //! `sim-host eigen`.
 
-use super::conditions::time;
 use super::outputs::{OutputArgs, Results};
 use super::rider_args::RiderArgs;
 use super::{Ended, Failure, law, speeds, warn};
@@ -8,6 +7,7 @@ use crate::bicycle::catalogue;
 use crate::eigen::{
     CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes, roots, stability,
 };
+use crate::range::time;
 use crate::report::document::{EigenDocument, SCHEMA};
 use crate::report::figure::{self, EigenFigure};
 use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider, Tool};
@@ -144,7 +144,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         config: &config,
         summary: || terminal::eigen(&figure, 80) + &summary(&critical, &ranges),
         table: || {
-            table::numbers(&config, &columns(count, in_table), rows(&args.speeds, &values, count, in_table))
+            table::rows(&config, &columns(count, in_table), rows(&args.speeds, &values, count, in_table))
         },
         figure: || figure::eigen(&figure),
     })?;

@@ -3,18 +3,25 @@
 mod accel;
 mod basin;
 mod bicycle;
+mod cells;
 mod compare;
 mod conditions;
+mod design;
 mod eigen;
 mod interrupt;
 mod law;
 mod outputs;
 mod plane;
+mod plant_args;
 mod ride;
 mod rider;
 mod rider_args;
 mod speeds;
+mod study;
+mod sweep;
+mod sweep_study;
 mod thesis;
+mod words;
 
 use crate::bicycle::catalogue::Bicycle;
 use clap::{Parser, Subcommand};
@@ -37,6 +44,7 @@ Exit codes: 0 ran (a fall is a result), 1 bad input or I/O, 2 usage, 130 interru
 Examples:
   sim-host basin --svg basin.svg               the basin of the thesis bicycle under law h
   sim-host ride --speed 4 --steer-rate 5       one ride
+  sim-host sweep --over law=h,f,g --out laws   basins over a grid of conditions
   sim-host eigen --law cl2:4                   eigenvalues over speed
   sim-host bicycle list                        the bicycles that ship
   sim-host rider list                          the riders that ship
@@ -58,6 +66,8 @@ enum Command {
     Basin(Box<basin::Args>),
     /// One ride after a disturbance.
     Ride(Box<ride::Args>),
+    /// Basins over a grid of conditions: resumed where it stopped, split over machines.
+    Sweep(Box<sweep::Args>),
     /// Eigenvalues of the linearised bicycle over speed, and its critical speeds.
     Eigen(eigen::Args),
     /// The tables and figures of the thesis computed again, as a report.
@@ -68,11 +78,15 @@ enum Command {
     /// Riders: list, show, check.
     #[command(subcommand, after_help = rider::EXAMPLES)]
     Rider(rider::Command),
+    /// A gain schedule with the largest worst basin, judged beside the known laws.
+    Design(design::Args),
+    /// Studies: a question computed, its answer as a page with a figure.
+    Study(study::Args),
     /// The JSON schema of a command's `--json` document.
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
-        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane"])]
+        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design"])]
         document: String,
     },
 }
@@ -83,11 +97,14 @@ pub fn run() -> ExitCode {
     let cli = Cli::parse();
     let ended = match cli.command {
         Command::Basin(args) => basin::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
         Command::Ride(args) => ride::run(&args),
         Command::Eigen(args) => eigen::run(&args),
         Command::Thesis(args) => thesis::run(&args),
         Command::Bicycle(command) => bicycle::run(&command),
         Command::Rider(command) => rider::run(&command),
+        Command::Design(args) => design::run(&args),
+        Command::Study(args) => study::run(&args),
         Command::Schema { document } => schema(&document),
     };
     match ended {
@@ -105,7 +122,7 @@ pub fn run() -> ExitCode {
 /// Doubts about a bicycle, to standard error.
 fn warn(bicycle: &Bicycle) {
     for warning in &bicycle.warnings {
-        outputs::complain(&format!("warning: {}: {warning}", bicycle.name));
+        outputs::complain_once(&format!("warning: {}: {warning}", bicycle.name));
     }
 }
 

@@ -5,8 +5,10 @@ use crate::report::figure::Picture;
 use crate::report::output::Output;
 use crate::report::picture::{caption, png_with_caption, svg_with_caption};
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 #[derive(clap::Args)]
 pub(super) struct OutputArgs {
@@ -85,6 +87,14 @@ impl Outputs {
         named.into_iter().filter_map(|(name, output)| output.as_ref().map(|o| (name, o))).collect()
     }
 
+    /// Refuses a further output that has the place of one of these.
+    pub(super) fn refuse_place_of(&self, option: &str, further: &Output) -> Result<(), Failure> {
+        match self.all().into_iter().find(|(_, output)| output.collides(further)) {
+            Some((other, _)) => Err(format!("{other} and {option} have the same place to write to").into()),
+            None => Ok(()),
+        }
+    }
+
     /// Whether a progress bar may be shown.
     pub(super) fn shows_progress(&self) -> bool {
         !self.quiet
@@ -146,4 +156,12 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
 /// A line to standard error; nobody may be there to read it, which is no reason to panic.
 pub(super) fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// The same, but not again: the cells of a sweep have a lot in common.
+pub(super) fn complain_once(text: &str) {
+    static SAID: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    if SAID.lock().unwrap_or_else(PoisonError::into_inner).insert(text.into()) {
+        complain(text);
+    }
 }

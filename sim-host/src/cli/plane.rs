@@ -50,6 +50,11 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let setup = args.conditions.setup()?;
+    if !setup.conditions.plant.mirrors() {
+        return Err(
+            "basin plane mirrors one half: no faults, noise, bias, dropout, no IMU off its middle".into()
+        );
+    }
     let search = PlaneSearch {
         speed: args.speed,
         rays: args.rays,
@@ -62,7 +67,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = args.threads.pool()?;
-    let bar = progress(outputs.shows_progress(), search.rays, "rays");
+    let bar = progress(outputs.shows_progress(), "basin", search.rays, "rays");
     let begin = Instant::now();
     let found = pool.install(|| plane(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
     let seconds = begin.elapsed().as_secs_f64();

@@ -1,15 +1,15 @@
 //! The options that say who rides.
 
 use super::Failure;
-use super::conditions::time;
-use super::outputs::complain;
+use super::outputs::complain_once;
+use crate::range::time;
 use crate::rider::{Fit, MAX_DELAY_S, Outside, Rider, RiderTable, catalogue};
 
 #[derive(clap::Args)]
 pub(super) struct RiderArgs {
-    /// Who rides: a shipped rider (see `rider list`) or a table FILE [default: a rigid rider, hands off]
+    /// Who rides: a shipped rider (see `rider list`), a table FILE, or none [default: none, a rigid rider, hands off]
     #[arg(long, value_name = "NAME|FILE")]
-    pub(super) rider: Option<String>,
+    rider: Option<String>,
     /// How the rider's gains become continuous over speed [default: mean]
     #[arg(long, requires = "rider")]
     gains: Option<Fit>,
@@ -26,9 +26,14 @@ fn delay(text: &str) -> Result<f64, String> {
 }
 
 impl RiderArgs {
+    /// The rider's name, or file, if there is to be one.
+    pub(super) fn name(&self) -> Option<&str> {
+        self.rider.as_deref().filter(|name| *name != "none")
+    }
+
     /// The rider asked for, with the table and the fit behind it.
     pub(super) fn load(&self) -> Result<Option<(Rider, RiderTable, Fit)>, Failure> {
-        let Some(name) = &self.rider else { return Ok(None) };
+        let Some(name) = self.name() else { return Ok(None) };
         let (fit, outside) = (self.gains.unwrap_or_default(), self.gains_outside.unwrap_or_default());
         let table = catalogue::load(name)?;
         let rider = table
@@ -60,7 +65,7 @@ pub(super) fn step(delay_s: f64, period_s: f64, firmware: bool) -> Result<f64, S
     if step < 1e-5 {
         return Err(format!("--delay: {} is less than the shortest step, 0.01 ms", ms(delay_s)));
     }
-    complain(&format!(
+    complain_once(&format!(
         "note: step {} so that the delay of {} is {} steps",
         ms(step),
         ms(delay_s),

@@ -266,6 +266,8 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "eigen" => generator.into_root_schema_for::<EigenDocument>(),
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
         "rider-show" => generator.into_root_schema_for::<super::rider::RiderDocument>(),
+        "sweep" => generator.into_root_schema_for::<super::sweep::SweepDocument>(),
+        "design" => generator.into_root_schema_for::<super::design::DesignDocument>(),
         "thesis" => generator.into_root_schema_for::<crate::thesis::document::ThesisDocument>(),
         _ => return None,
     };

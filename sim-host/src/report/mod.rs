@@ -1,6 +1,7 @@
 //! What leaves the program: documents, tables, figures, files.
 
 pub mod compare;
+pub mod design;
 pub mod document;
 pub mod figure;
 pub mod output;
@@ -8,5 +9,6 @@ pub mod picture;
 pub mod plane;
 pub mod resolved;
 pub mod rider;
+pub mod sweep;
 pub mod table;
 pub mod terminal;

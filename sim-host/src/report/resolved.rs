@@ -2,28 +2,36 @@
 
 use crate::basin::{Axis, Search};
 use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
+use crate::leaves::departing;
+use crate::plant::{ActuatorConfig, ImuMount, Plant, Sensor, SensorModel};
 use crate::ride::{Assist, Conditions};
 use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};
-use control::{Capsize, Law};
+use control::estimate::{EstimateConfig, Source};
+use control::{Capsize, Config, Law};
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// The program a result came from.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Tool {
     /// Always "sim-host".
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Release.
-    pub version: &'static str,
+    pub version: Cow<'static, str>,
     /// Commit it was built from, "unknown" outside a repository.
-    pub commit: &'static str,
+    pub commit: Cow<'static, str>,
 }
 
 impl Tool {
     /// This program.
     pub const fn this() -> Self {
-        Self { name: "sim-host", version: env!("CARGO_PKG_VERSION"), commit: env!("SIM_HOST_COMMIT") }
+        Self {
+            name: Cow::Borrowed("sim-host"),
+            version: Cow::Borrowed(env!("CARGO_PKG_VERSION")),
+            commit: Cow::Borrowed(env!("SIM_HOST_COMMIT")),
+        }
     }
 }
 
@@ -163,6 +171,35 @@ impl ResolvedRider {
     }
 }
 
+/// Sensors, motor and faults of a result.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ResolvedPlant {
+    /// The sensors that depart from the truth, by name; all others are exact.
+    pub sensors: BTreeMap<&'static str, SensorModel>,
+    /// Where the IMU sits.
+    pub imu: ImuMount,
+    /// The motor and the friction of the steer.
+    pub actuator: ActuatorConfig,
+    /// What goes wrong, as `--fault` reads it, in the order in which it acts.
+    pub faults: Vec<String>,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+impl ResolvedPlant {
+    /// The plant for an output.
+    pub fn new(plant: &Plant) -> Self {
+        let departing = Sensor::ALL.into_iter().map(|sensor| (sensor.name(), *plant.sensors.model(sensor)));
+        Self {
+            sensors: departing.filter(|(_, model)| *model != SensorModel::default()).collect(),
+            imu: plant.sensors.imu,
+            actuator: plant.actuator,
+            faults: plant.faults.iter().map(ToString::to_string).collect(),
+            seed: plant.seed,
+        }
+    }
+}
+
 /// The conditions of a result, defaults filled in.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ResolvedConfig {
@@ -188,6 +225,10 @@ pub struct ResolvedConfig {
     pub taper_m_s: Option<(f32, f32)>,
     /// Delay of the simulated sensors \[s\].
     pub sensor_delay_s: f64,
+    /// How sensors and motor depart from exact ones.
+    pub plant: ResolvedPlant,
+    /// Parameters of the flashed code that differ from those of the published conditions, by name.
+    pub parameters: BTreeMap<String, String>,
     /// Control rate \[Hz\]; null for the continuous ideal law.
     pub control_rate_hz: Option<f32>,
     /// Integration step \[s\].
@@ -224,10 +265,12 @@ impl ResolvedConfig {
             },
             schedule_speed: format!("{:?}", c.schedule_speed).to_lowercase(),
             imu: format!("{:?}", c.imu).to_lowercase(),
-            torque_limit_nm: config.and_then(|c| c.shape.max_torque_nm),
-            rate_limit_nm_s: config.and_then(|c| c.shape.rise_nm_s),
-            taper_m_s: config.and_then(|c| c.shape.taper).map(|t| (t.zero_m_s, t.full_m_s)),
+            torque_limit_nm: config.and_then(|c| c.limits.max_torque_nm),
+            rate_limit_nm_s: config.and_then(|c| c.limits.rise_nm_s),
+            taper_m_s: config.and_then(|c| c.limits.taper).map(|t| (t.zero_m_s, t.full_m_s)),
             sensor_delay_s: f64::from(c.sensor_delay_ticks) * c.step_s,
+            plant: ResolvedPlant::new(&c.plant),
+            parameters: config.map_or(BTreeMap::new(), |c| departing(c, &published(c)).into_iter().collect()),
             control_rate_hz: config.map(|c| c.rate_hz),
             step_s: c.step_s,
             time_limit_s: c.time_limit_s,
@@ -240,6 +283,16 @@ impl ResolvedConfig {
         let rider = self.rider.as_ref().map_or(String::new(), |r| format!(", {}", r.label()));
         format!("{}{rider}, law {}", self.bicycle.name, self.law.name)
     }
+}
+
+/// The published conditions on the same bicycle.
+fn published(config: &Config) -> Config {
+    let mut published = Config::thesis(config.law.clone());
+    published.estimate = EstimateConfig { roll_rate: Source::GyroX, ..config.estimate };
+    published.cross.wheelbase_m = config.cross.wheelbase_m;
+    published.cross.tilt_rad = config.cross.tilt_rad;
+    published.calibration.polarity_checked = config.calibration.polarity_checked;
+    published
 }
 
 /// What a basin was searched with.

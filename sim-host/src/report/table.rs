@@ -22,14 +22,14 @@ pub fn table<R: Serialize>(config: &impl Serialize, rows: &[R]) -> Result<Vec<u8
     writer.into_inner().map_err(|e| csv::Error::from(std::io::Error::other(e.to_string())))
 }
 
-/// A table of numbers under `columns`; `None` is an empty cell.
+/// A table of rows under `columns`; `None` is an empty cell.
 ///
 /// # Errors
 /// When the rows are not as long as the heading.
-pub fn numbers(
+pub fn rows<R: Serialize>(
     config: &impl Serialize,
     columns: &[String],
-    rows: impl IntoIterator<Item = Vec<Option<f64>>>,
+    rows: impl IntoIterator<Item = R>,
 ) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(heading(config).into_bytes());
     writer.write_record(columns)?;

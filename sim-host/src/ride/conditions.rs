@@ -2,6 +2,7 @@
 
 use super::Assist;
 use crate::bicycle::Geometry;
+use crate::plant::Plant;
 use crate::range::within;
 use crate::rider::Rider;
 
@@ -40,8 +41,11 @@ pub struct Conditions {
     pub schedule_speed: ScheduleSpeed,
     /// What the gyro reports.
     pub imu: Imu,
-    /// How late the simulated sensors are \[control periods\].
+    /// How late the simulated sensors are, beside what `plant` says \[control periods\].
     pub sensor_delay_ticks: u16,
+    /// How sensors and motor depart from exact ones, and the steer's friction. All of it but the
+    /// friction acts on [`Assist::Firmware`] only.
+    pub plant: Plant,
     /// How long a ride lasts if it does not fall \[s\].
     pub time_limit_s: f64,
     /// The control period, and the integration step \[s\].
@@ -69,6 +73,7 @@ impl Conditions {
             schedule_speed: ScheduleSpeed::Front,
             imu: Imu::Euler,
             sensor_delay_ticks: 0,
+            plant: Plant::default(),
             time_limit_s: 6.0,
             step_s: 1e-3,
             recovered_below: 0.1,
@@ -91,6 +96,12 @@ impl Conditions {
         within("recovered-below fraction", self.recovered_below, 1e-6, 1.0)?;
         if let Some(rider) = &self.rider {
             rider.check(self.step_s).map_err(|e| ConditionsError(e.0))?;
+        }
+        self.plant.check().map_err(|e| ConditionsError(e.0))?;
+        if matches!(self.assist, Assist::Ideal(_)) && !self.plant.exact() {
+            let why =
+                "the ideal law has exact sensors and an exact motor: of the plant only friction acts on it";
+            return Err(ConditionsError(why.into()));
         }
         within(
             "sensor delay in control periods",

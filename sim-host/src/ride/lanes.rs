@@ -2,13 +2,15 @@
 
 use super::human::{Human, Humans};
 use super::logbook::{Logbook, Pushes};
+use super::outfit::{self, Outfit, lane_frame, told_signals};
 use super::preroll::Readied;
 use super::refine::{Period, Segment, quickness, refined, too_quick};
 use super::sensor::{Reading, readings};
 use super::{Assist, Conditions, Ride, Start, TracePoint};
 use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques};
-use crate::integrate::{Actuation, rk4};
+use crate::integrate::{Actuation, STAGES, rk4};
 use crate::num::Lanes;
+use crate::plant::{Frame, Plant};
 use crate::rider::Instant;
 
 /// How many rides go side by side: two AVX2 registers a number, which hides the latencies.
@@ -17,10 +19,12 @@ pub(super) const WIDTH: usize = 8;
 /// The rides in the lanes, as what acts on their bicycles.
 struct Abreast<'a, const N: usize> {
     conditions: &'a Conditions,
+    /// The conditions' plant, every delay in it.
+    plant: Plant,
     lanes: [Option<Logbook>; N],
     /// Speeds at the start \[m/s\].
     initial: Lanes<N>,
-    /// The assist's torques at the step's start \[N m\].
+    /// The assist's torques, in the step's middle where they change in it \[N m\].
     assist: Lanes<N>,
     /// The riders.
     humans: Option<Humans<'a, N>>,
@@ -43,36 +47,76 @@ impl<const N: usize> Abreast<'_, N> {
         for (lane, ride) in self.lanes.iter_mut().enumerate() {
             let Some(ride) = ride else { continue };
             // Near singular places only all six speeds tell the truth.
-            let (rate, speed) = match &ride.full {
-                Some(full) => readings(self.conditions, &full.velocities(b), self.initial.0[lane]),
-                None => (rate.0[lane], speed.0[lane]),
+            let (told, answer) = match (ride.outfit.take(), &self.conditions.assist) {
+                (Some(mut outfit), Assist::Firmware(plan)) => {
+                    let at = match &ride.full {
+                        Some(full) => Frame::new(&full.pose(b), &full.velocities(b), full.angles[2]),
+                        None => lane_frame(motion, lane),
+                    };
+                    let (rider_nm, initial) = (self.human.0[lane], self.initial.0[lane]);
+                    let told = outfit.told(self.conditions, &self.plant, &at, rider_nm, initial);
+                    let answer = ride.answer(plan, outfit::frame(plan, &told));
+                    outfit.commanded(self.conditions, &self.plant, answer.torque_nm);
+                    let middle_s = 0.5 * self.conditions.step_s;
+                    self.assist.0[lane] =
+                        outfit.motor.torque(&self.plant.actuator, middle_s, at.velocities.steer);
+                    ride.outfit = Some(outfit);
+                    (told_signals(plan, &told), answer)
+                }
+                _ => {
+                    let (rate, speed) = match &ride.full {
+                        Some(full) => readings(self.conditions, &full.velocities(b), self.initial.0[lane]),
+                        None => (rate.0[lane], speed.0[lane]),
+                    };
+                    let told = ride.sensors.delayed(Reading { roll_rate_rad_s: rate, speed_m_s: speed });
+                    let answer = ride.command(&self.conditions.assist, &told);
+                    self.assist.0[lane] = answer.torque_nm;
+                    (told, answer)
+                }
             };
-            let now = Reading { roll_rate_rad_s: rate, speed_m_s: speed };
-            let told = ride.sensors.delayed(now);
-            let (torque_nm, limits) = ride.command(&self.conditions.assist, &told);
-            self.assist.0[lane] = torque_nm;
             if let (0, Some(trace)) = (lane, &mut self.trace) {
                 let t = f64::from(ride.step) * self.conditions.step_s;
-                let pushes = Pushes { assist_nm: torque_nm, rider_nm: self.human.0[0] };
-                trace.push(TracePoint::new(b, t, motion, &told, pushes, limits));
+                let pushes = Pushes { assist_nm: self.assist.0[0], rider_nm: self.human.0[0] };
+                trace.push(TracePoint::new(b, t, motion, &told, &answer, pushes));
             }
         }
+    }
+
+    /// The assist's torques on the steer axis at a stage of the step.
+    #[inline(always)]
+    fn given(&self, stage: usize, motion: &Motion<Lanes<N>>) -> Lanes<N> {
+        let mut given = self.assist;
+        if let Assist::Ideal(law) = &self.conditions.assist {
+            if stage > 0 {
+                let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
+                given = speed.map(|v| law.gain(v)) * rate;
+            }
+        } else if !self.plant.actuator.exact() {
+            let elapsed_s = STAGES[stage] * self.conditions.step_s;
+            for (lane, ride) in self.lanes.iter().enumerate() {
+                if let Some(outfit) = ride.as_ref().and_then(|ride| ride.outfit.as_ref()) {
+                    let rate = motion.actual.steer.0[lane];
+                    given.0[lane] = outfit.motor.torque(&self.plant.actuator, elapsed_s, rate);
+                }
+            }
+        }
+        given
     }
 }
 
 impl<const N: usize> Actuation<Lanes<N>> for Abreast<'_, N> {
     #[inline(always)]
     fn torques(&mut self, b: &Geometry, stage: usize, motion: &Motion<Lanes<N>>) -> Torques<Lanes<N>> {
-        let mut steer = self.assist;
         if stage == 0 {
             self.control(b, motion);
-            steer = self.assist;
-        } else if let Assist::Ideal(law) = &self.conditions.assist {
-            let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
-            steer = speed.map(|v| law.gain(v)) * rate;
         }
+        let mut steer = self.given(stage, motion);
         if let Some(humans) = &self.humans {
             steer = steer + humans.body.at.torque;
+        }
+        let friction = &self.plant.actuator.friction;
+        if friction.acts() {
+            steer = steer + friction.torque(motion.actual.steer);
         }
         Torques { roll: Lanes([0.0; N]), steer }
     }
@@ -113,6 +157,7 @@ pub(super) fn run<const N: usize>(
     let mut state = State::upright(b, still);
     let mut abreast = Abreast {
         conditions,
+        plant: conditions.plant.delayed(conditions.sensor_delay_ticks),
         lanes: std::array::from_fn(|_| None),
         initial: still,
         assist: still,
@@ -123,6 +168,7 @@ pub(super) fn run<const N: usize>(
     };
     let mut done = Vec::with_capacity(starts.len());
     let mut readied = Readied::default();
+    let fitted_out = outfit::needed(conditions);
     loop {
         for lane in 0..N {
             if abreast.lanes[lane].is_some() {
@@ -138,8 +184,14 @@ pub(super) fn run<const N: usize>(
                 humans.restart(lane);
             }
             abreast.lanes[lane] = next.map(|(index, start)| {
-                let ready = readied.at(conditions, start.speed_m_s);
-                Logbook::new(conditions, index, start, ready)
+                let (outfit, ready) = match &conditions.assist {
+                    Assist::Firmware(plan) if fitted_out => {
+                        let (outfit, ready) = Outfit::new(conditions, plan, &abreast.plant, &start, |_| ());
+                        (Some(Box::new(outfit)), Some(ready))
+                    }
+                    _ => (None, readied.at(conditions, start.speed_m_s)),
+                };
+                Logbook::new(conditions, index, start, ready, outfit)
             });
         }
         if abreast.lanes.iter().all(Option::is_none) {
@@ -159,6 +211,7 @@ pub(super) fn run<const N: usize>(
                     conditions,
                     full: &mut ride.full,
                     assist_nm: pushes.assist_nm,
+                    motor: ride.outfit.as_ref().map(|outfit| &outfit.motor),
                     initial_m_s: abreast.initial.0[lane],
                     human,
                 };

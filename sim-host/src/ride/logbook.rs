@@ -1,17 +1,42 @@
 //! The bookkeeping of one ride while it lasts.
 
 use super::event::{at_fall, fallen, time_of_fall};
+use super::outfit::Outfit;
 use super::preroll::Ready;
 use super::refine::Segment;
 use super::sensor::{Reading, Sensors, frame};
 use super::{Assist, Conditions, Effort, FinalState, Outcome, Ride, Start};
 use crate::bicycle::{FullState, State};
+use control::{Causes, Mode, Plan, SensorFrame};
 
 /// Torques on the steer axis at the start of a control period.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pushes {
     pub(super) assist_nm: f64,
     pub(super) rider_nm: f64,
+}
+
+/// The controller's answer at a control instant.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Answer {
+    /// What it was told.
+    pub(super) frame: SensorFrame,
+    /// Commanded steer torque \[N m\].
+    pub(super) torque_nm: f64,
+    pub(super) limits: u16,
+    pub(super) mode: Mode,
+    pub(super) causes: Causes,
+}
+
+impl Answer {
+    /// Of no controller.
+    const NONE: Self = Self {
+        frame: SensorFrame::missing(),
+        torque_nm: 0.0,
+        limits: 0,
+        mode: Mode::Off,
+        causes: Causes::NONE,
+    };
 }
 
 /// The ride in a lane.
@@ -24,6 +49,8 @@ pub(super) struct Logbook {
     pub(super) sensors: Sensors,
     /// The controller, and the control periods since its boot; `None` if there is none.
     controller: Option<Ready>,
+    /// Sensors and motor, where they are not exact.
+    pub(super) outfit: Option<Box<Outfit>>,
     /// All speeds, while the motion is near a place where three do not fix the others.
     pub(super) full: Option<FullState>,
     before: Pushes,
@@ -41,6 +68,7 @@ impl Logbook {
         index: usize,
         start: Start,
         controller: Option<Ready>,
+        outfit: Option<Box<Outfit>>,
     ) -> Self {
         Self {
             index,
@@ -48,6 +76,7 @@ impl Logbook {
             step: 0,
             sensors: Sensors::new(conditions, &start),
             controller,
+            outfit,
             full: None,
             before: Pushes::default(),
             effort: Effort::default(),
@@ -57,17 +86,31 @@ impl Logbook {
         }
     }
 
-    /// The controller's answer to this instant's reading: torque and active limits.
-    pub(super) fn command(&mut self, assist: &Assist, told: &Reading) -> (f64, u16) {
+    /// The controller's answer to this instant's reading, by exact sensors.
+    pub(super) fn command(&mut self, assist: &Assist, told: &Reading) -> Answer {
         match assist {
-            Assist::None => (0.0, 0),
+            Assist::None => Answer::NONE,
             Assist::Firmware(plan) => {
-                let Some(Ready { controller, ticks }) = &mut self.controller else { return (0.0, 0) };
-                let command = control::step(plan, controller, &frame(plan, told, *ticks, true));
-                *ticks = ticks.wrapping_add(1);
-                (f64::from(command.torque_nm), command.limits.0)
+                let ticks = self.controller.as_ref().map_or(0, |ready| ready.ticks);
+                self.answer(plan, frame(plan, told, ticks, true))
             }
-            Assist::Ideal(law) => (law.gain(told.speed_m_s) * told.roll_rate_rad_s, 0),
+            Assist::Ideal(law) => {
+                Answer { torque_nm: law.gain(told.speed_m_s) * told.roll_rate_rad_s, ..Answer::NONE }
+            }
+        }
+    }
+
+    /// The controller's answer to a frame.
+    pub(super) fn answer(&mut self, plan: &Plan, frame: SensorFrame) -> Answer {
+        let Some(Ready { controller, ticks }) = &mut self.controller else { return Answer::NONE };
+        let command = control::step(plan, controller, &frame);
+        *ticks = ticks.wrapping_add(1);
+        Answer {
+            frame,
+            torque_nm: f64::from(command.torque_nm),
+            limits: command.limits.0,
+            mode: command.mode,
+            causes: command.causes,
         }
     }
 

@@ -8,6 +8,7 @@ mod human;
 mod lanes;
 mod logbook;
 mod outcome;
+mod outfit;
 mod preroll;
 mod refine;
 mod sensor;

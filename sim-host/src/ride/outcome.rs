@@ -37,7 +37,9 @@ impl Outcome {
 }
 
 /// What the ride asked of the motor and of the rider.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
 pub struct Effort {
     /// Largest torque either way \[N m\].
     pub peak_torque_nm: f64,

@@ -13,14 +13,18 @@ pub(super) struct Ready {
     pub(super) ticks: u32,
 }
 
-/// Rides steadily by what the sensors tell until the assist has its whole authority; `seen` gets
-/// every frame and command. A controller that does not engage is given up after ten times the
+/// Rides steadily by what the sensors tell, given the control periods since boot and the switch, until
+/// the assist has its whole authority; `seen` gets every frame and command. A controller that does not engage is given up after ten times the
 /// time it should take, and rides on without.
-pub(super) fn preroll(plan: &Plan, steady: &Reading, mut seen: impl FnMut(&SensorFrame, &Command)) -> Ready {
+pub(super) fn preroll(
+    plan: &Plan,
+    mut told: impl FnMut(u32, bool) -> SensorFrame,
+    mut seen: impl FnMut(&SensorFrame, &Command),
+) -> Ready {
     let mut controller = State::default();
     let (mut pressed, mut ticks) = (false, 0);
     while ticks < 10 * plan.ticks_to_engage() {
-        let told = frame(plan, steady, ticks, pressed);
+        let told = told(ticks, pressed);
         let command = control::step(plan, &mut controller, &told);
         ticks += 1;
         seen(&told, &command);
@@ -30,6 +34,12 @@ pub(super) fn preroll(plan: &Plan, steady: &Reading, mut seen: impl FnMut(&Senso
         }
     }
     Ready { controller, ticks }
+}
+
+/// What exact sensors tell riding steadily at a speed \[m/s\].
+pub(super) fn steady(plan: &Plan, speed_m_s: f64) -> impl FnMut(u32, bool) -> SensorFrame {
+    let reading = Reading { roll_rate_rad_s: 0.0, speed_m_s };
+    move |ticks, pressed| frame(plan, &reading, ticks, pressed)
 }
 
 /// The last controller readied: rides from the same speed share it.
@@ -43,7 +53,7 @@ impl Readied {
         match &self.0 {
             Some((speed, ready)) if *speed == speed_m_s => Some(ready.clone()),
             _ => {
-                let ready = preroll(plan, &Reading { roll_rate_rad_s: 0.0, speed_m_s }, |_, _| ());
+                let ready = preroll(plan, steady(plan, speed_m_s), |_, _| ());
                 self.0 = Some((speed_m_s, ready.clone()));
                 Some(ready)
             }

@@ -12,6 +12,7 @@ use super::{Assist, Conditions};
 use crate::bicycle::{Accelerations, FullState, Geometry, Motion, State, Torques, Velocities};
 use crate::integrate::{Actuation, STAGES, Stages, rk4};
 use crate::num::Scalar;
+use crate::plant::Actuator;
 use crate::rider::Instant;
 
 /// Largest step in units of the motion's own time.
@@ -65,6 +66,8 @@ pub(super) struct Period<'a> {
     pub(super) full: &'a mut Option<FullState>,
     /// The assist's torque at its start \[N m\].
     pub(super) assist_nm: f64,
+    /// The motor that gives it, if it is not exact.
+    pub(super) motor: Option<&'a Actuator>,
     /// The ride's speed at t = 0 \[m/s\].
     pub(super) initial_m_s: f64,
     /// The rider.
@@ -72,16 +75,23 @@ pub(super) struct Period<'a> {
 }
 
 impl Period<'_> {
-    fn torques(&self, v: &Velocities<f64>) -> Torques<f64> {
-        let assist = match &self.conditions.assist {
-            Assist::None | Assist::Firmware(_) => self.assist_nm,
-            Assist::Ideal(law) => {
+    /// The torques `elapsed_s` into the period.
+    fn torques(&self, elapsed_s: f64, v: &Velocities<f64>) -> Torques<f64> {
+        let actuator = &self.conditions.plant.actuator;
+        let assist = match (&self.conditions.assist, self.motor) {
+            (Assist::None | Assist::Firmware(_), None) => self.assist_nm,
+            (Assist::None | Assist::Firmware(_), Some(motor)) => motor.torque(actuator, elapsed_s, v.steer),
+            (Assist::Ideal(law), _) => {
                 let (rate, speed) = readings(self.conditions, v, self.initial_m_s);
                 law.gain(speed) * rate
             }
         };
         let rider = self.human.as_ref().map_or(0.0, |human| human.body.at.torque);
-        Torques { roll: 0.0, steer: assist + rider }
+        let mut steer = assist + rider;
+        if actuator.friction.acts() {
+            steer += actuator.friction.torque(v.steer);
+        }
+        Torques { roll: 0.0, steer }
     }
 
     /// Lets the rider feel a stage of the step of `h` seconds that begins at `offset`.
@@ -131,8 +141,8 @@ struct Shorter<'a, 'b> {
 }
 
 impl Actuation<f64> for Shorter<'_, '_> {
-    fn torques(&mut self, _: &Geometry, _: usize, motion: &Motion<f64>) -> Torques<f64> {
-        self.period.torques(&motion.actual)
+    fn torques(&mut self, _: &Geometry, stage: usize, motion: &Motion<f64>) -> Torques<f64> {
+        self.period.torques(self.offset + STAGES[stage] * self.h, &motion.actual)
     }
 
     fn felt(
@@ -150,10 +160,10 @@ impl Actuation<f64> for Shorter<'_, '_> {
 /// One Runge-Kutta step with all speeds, `h` seconds from `offset`.
 fn step(b: &Geometry, from: &FullState, (offset, h): (f64, f64), period: &mut Period) -> Option<FullState> {
     let mut stages = Stages::new(*from);
-    for stage in 0..STAGES.len() {
+    for (stage, part) in STAGES.into_iter().enumerate() {
         let at = stages.at;
         let (pose, velocities) = (at.pose(b), at.velocities(b));
-        let k = at.rate(b, &period.torques(&velocities))?;
+        let k = at.rate(b, &period.torques(offset + part * h, &velocities))?;
         let [roll, _, steer] = at.angles;
         let [roll_acc, _, _, steer_acc, _, _] = k.speeds;
         let now = Instant {

@@ -1,9 +1,10 @@
 //! A ride written down, one line a control period.
 
 use super::assist::{front_speed, rear_speed};
-use super::logbook::Pushes;
-use super::preroll::preroll;
-use super::sensor::{Reading, frame};
+use super::logbook::{Answer, Pushes};
+use super::outfit::{self, Outfit};
+use super::preroll::{preroll, steady};
+use super::sensor::Reading;
 use super::{Assist, Conditions, Start};
 use crate::bicycle::{Geometry, Motion};
 use crate::num::Lanes;
@@ -36,12 +37,21 @@ pub struct TracePoint {
     pub measured_roll_rate: f64,
     /// Speed as the controller was told \[m/s\].
     pub measured_speed: f64,
-    /// The assist's steer torque \[N m\].
+    /// The steer torque the assist commanded \[N m\].
     pub torque: f64,
     /// Limits that changed the torque, as bits of [`control::ActiveLimits`].
     pub limits: u16,
     /// The rider's steer torque \[N m\].
     pub rider_torque: f64,
+    /// The steer torque the motor gives in the middle of the control period \[N m\].
+    pub motor_torque: f64,
+    /// Where the controller stood, as the number of [`control::Mode`].
+    pub mode: u8,
+    /// What stood in the way of the torque, as bits of [`control::Causes`].
+    pub causes: u64,
+    /// All that the controller was told.
+    #[serde(skip)]
+    pub frame: SensorFrame,
 }
 
 impl TracePoint {
@@ -51,8 +61,8 @@ impl TracePoint {
         t: f64,
         motion: &Motion<Lanes<N>>,
         told: &Reading,
+        answer: &Answer,
         pushes: Pushes,
-        limits: u16,
     ) -> Self {
         let (pose, actual) = (&motion.pose, &motion.actual);
         let angle = |(s, c): (Lanes<N>, Lanes<N>)| s.0[0].atan2(c.0[0]);
@@ -69,9 +79,13 @@ impl TracePoint {
             front_speed: front_speed(b, actual).0[0],
             measured_roll_rate: told.roll_rate_rad_s,
             measured_speed: told.speed_m_s,
-            torque: pushes.assist_nm,
+            torque: answer.torque_nm,
+            limits: answer.limits,
             rider_torque: pushes.rider_nm,
-            limits,
+            motor_torque: pushes.assist_nm,
+            mode: answer.mode as u8,
+            causes: answer.causes.0,
+            frame: answer.frame,
         }
     }
 }
@@ -81,11 +95,12 @@ impl TracePoint {
 pub fn frames(conditions: &Conditions, start: Start, trace: &[TracePoint]) -> Vec<SensorFrame> {
     let Assist::Firmware(plan) = &conditions.assist else { return Vec::new() };
     let mut frames = Vec::with_capacity(trace.len());
-    let steady = Reading { roll_rate_rad_s: 0.0, speed_m_s: start.speed_m_s };
-    let ready = preroll(plan, &steady, |frame, _| frames.push(*frame));
-    frames.extend((ready.ticks..).zip(trace).map(|(ticks, p)| {
-        let told = Reading { roll_rate_rad_s: p.measured_roll_rate, speed_m_s: p.measured_speed };
-        frame(plan, &told, ticks, true)
-    }));
+    if outfit::needed(conditions) {
+        let plant = conditions.plant.delayed(conditions.sensor_delay_ticks);
+        Outfit::new(conditions, plan, &plant, &start, |frame| frames.push(*frame));
+    } else {
+        preroll(plan, steady(plan, start.speed_m_s), |frame, _| frames.push(*frame));
+    }
+    frames.extend(trace.iter().map(|p| p.frame));
     frames
 }

@@ -92,6 +92,10 @@ fn rides_of_any_length_are_drawn() {
         measured_speed: 4.1,
         torque: if i == 700 { f64::NAN } else { 0.0 },
         rider_torque: 0.1,
+        motor_torque: 0.5,
+        mode: 4,
+        causes: 0,
+        frame: control::SensorFrame::missing(),
         limits: control::ActiveLimits::RATE.0,
     };
     for n in [0, 1, 2, 1500] {

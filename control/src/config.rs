@@ -1,0 +1,149 @@
+//! Everything a user may choose, in one place.
+
+use crate::calibrate::Calibration;
+use crate::capsize::Capsize;
+use crate::controller::Plan;
+use crate::cross::CrossConfig;
+use crate::estimate::{EstimateConfig, Source};
+use crate::history::Latency;
+use crate::input::InputConfig;
+use crate::law::Law;
+use crate::limits::Limits;
+use crate::param::{Checker, Leaf, ParamError, Visit, optional};
+use crate::permit::PermitConfig;
+use crate::predict::PredictConfig;
+use crate::track::Track;
+use crate::watch::{Loss, Sensor};
+
+/// Everything a user may choose. Plain data; [`Config::plan`] checks it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Config {
+    /// How often [`crate::step`] is called \[Hz\], 100..=10000.
+    pub rate_hz: f32,
+    /// The roll-rate law.
+    pub law: Law,
+    /// The capsize term added to it.
+    pub capsize: Capsize,
+    /// How sensors and motor sit on this bicycle.
+    pub calibration: Calibration,
+    /// The declared sensors.
+    pub input: InputConfig,
+    /// How the motion is estimated.
+    pub estimate: EstimateConfig,
+    /// How far sensors may disagree.
+    pub cross: CrossConfig,
+    /// When torque may flow.
+    pub permit: PermitConfig,
+    /// How late each sensor is known to be.
+    pub latency: Latency,
+    /// How the delay of sensors and actuator is made up for.
+    pub predict: PredictConfig,
+    /// How a path is followed; `None` is not at all.
+    pub track: Option<Track>,
+    /// Limits on the torque.
+    pub limits: Limits,
+}
+
+impl Config {
+    /// The conditions of the published basins: the law alone, every limit and check off, permission
+    /// for the asking.
+    pub fn thesis(law: Law) -> Self {
+        Self {
+            rate_hz: 1000.0,
+            law,
+            capsize: Capsize::default(),
+            calibration: Calibration::default(),
+            input: InputConfig::default(),
+            estimate: EstimateConfig::default(),
+            cross: CrossConfig::default(),
+            permit: PermitConfig::default(),
+            latency: Latency::default(),
+            predict: PredictConfig::default(),
+            track: None,
+            limits: Limits::default(),
+        }
+    }
+
+    /// What is flashed: `h` cut to zero above 7.5 m/s, every sensor but the rider's torque and the path
+    /// declared and watched, all limits and checks on ([`Limits::product`]).
+    ///
+    /// Slopes are at least twice the largest in rides on the border of the basins of `h`, alone and with
+    /// riders (`data/motion.toml`). It refuses to engage until a polarity check was passed.
+    pub fn product() -> Self {
+        let sensor = |max, slope_per_s, timeout_ticks, loss| Sensor {
+            slope_per_s: Some(slope_per_s),
+            timeout_ticks,
+            stuck_ticks: 100,
+            qualify_samples: 50,
+            loss,
+            ..Sensor::exact(max)
+        };
+        let wheel =
+            |slope| Sensor { stuck_ticks: 500, qualify_samples: 3, ..sensor(30.0, slope, 250, Loss::Limp) };
+        let input = InputConfig {
+            recent_samples: 3,
+            drift_m_s2: 10.0,
+            drift_after_ticks: 30,
+            max_gap_ms: Some(5.0),
+            gyro: sensor(35.0, 500.0, 10, Loss::Fault),
+            accel: Sensor { slope_per_s: None, ..sensor(160.0, 0.0, 20, Loss::Limp) },
+            steer: sensor(1.6, 40.0, 20, Loss::Limp),
+            steer_rate: sensor(40.0, 1000.0, 20, Loss::Limp),
+            front_wheel: wheel(300.0),
+            rear_wheel: wheel(100.0),
+            motor: Sensor { slope_per_s: None, ..sensor(20.0, 0.0, 20, Loss::Fault) },
+            ..InputConfig::default()
+        };
+        let cross = CrossConfig {
+            wheels_m_s: Some(0.8),
+            yaw_rad_s: Some(2.0),
+            steer_rad: Some(0.1),
+            motor_nm: Some(2.0),
+            persist_ticks: 50,
+            ..CrossConfig::default()
+        };
+        let permit = PermitConfig {
+            self_test_ticks: 200,
+            ramp_in_ticks: 500,
+            ramp_out_ticks: 200,
+            need_polarity: true,
+            fallen_rad: Some(1.05),
+            parked_m_s: Some(0.3),
+            backwards_m_s: Some(0.3),
+            lifted_m_s2: Some(3.0),
+            persist_ticks: 100,
+        };
+        let estimate = EstimateConfig { roll_rate: Source::Estimate, ..EstimateConfig::default() };
+        let limits = Limits::product();
+        Self { input, estimate, cross, permit, limits, ..Self::thesis(Law::H { cut: true }) }
+    }
+
+    /// Shows every parameter but the law's.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        to.number(&Leaf::new("", "rate_hz", 100.0, 10_000.0), &mut self.rate_hz);
+        self.capsize.leaves(to);
+        self.calibration.leaves(to);
+        self.input.leaves(to);
+        self.estimate.leaves(to);
+        self.cross.leaves(to);
+        self.permit.leaves(to);
+        self.latency.leaves(to);
+        self.predict.leaves(to);
+        optional(to, &Leaf::switch("", "track"), &mut self.track, Track::leaves);
+        self.limits.leaves(to);
+    }
+
+    /// Checks every value and readies what [`crate::step`] needs.
+    ///
+    /// # Errors
+    /// The first parameter outside its range, with its value and the range.
+    pub fn plan(mut self) -> Result<Plan, ParamError> {
+        let mut checker = Checker::default();
+        self.leaves(&mut checker);
+        checker.note(self.law.validate());
+        checker.note(self.limits.cross());
+        checker.note(self.track.as_ref().map_or(Ok(()), Track::cross));
+        checker.verdict()?;
+        Ok(Plan::new(self))
+    }
+}

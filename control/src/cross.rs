@@ -1,0 +1,169 @@
+//! Sensors against each other: what no single sensor can know to be wrong.
+//!
+//! The relations are the kinematics of a bicycle that rolls without slip, pitch and the contacts'
+//! wandering left out; how much that leaves unexplained in the hardest rides, and so the
+//! tolerances, stands in `data/motion.toml`.
+
+use crate::fault::{Cause, Causes};
+use crate::input::Believed;
+use crate::maths::sin_cos;
+use crate::param::{Leaf, Visit};
+
+/// The tolerances. Each check is off by default.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrossConfig {
+    /// Wheelbase \[m\].
+    pub wheelbase_m: f32,
+    /// Steer axis tilt \[rad\].
+    pub tilt_rad: f32,
+    /// Largest difference of front wheel speed times the cosine of the steer angle on the ground from
+    /// the rear wheel's speed \[m/s\].
+    pub wheels_m_s: Option<f32>,
+    /// Largest difference of the yaw rate from the one that speed and steer angle make \[rad/s\].
+    pub yaw_rad_s: Option<f32>,
+    /// Largest difference of the turned steer angle from the summed steer rate \[rad\].
+    pub steer_rad: Option<f32>,
+    /// Largest difference of the drive's torque from what it was asked for in the last periods \[N m\].
+    pub motor_nm: Option<f32>,
+    /// How long a difference must last \[control periods\].
+    pub persist_ticks: u16,
+}
+
+impl Default for CrossConfig {
+    /// All off; the geometry of a city bicycle.
+    fn default() -> Self {
+        Self {
+            wheelbase_m: 1.06,
+            tilt_rad: 0.32,
+            wheels_m_s: None,
+            yaw_rad_s: None,
+            steer_rad: None,
+            motor_nm: None,
+            persist_ticks: 0,
+        }
+    }
+}
+
+impl CrossConfig {
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        let g = "cross";
+        to.number(&Leaf::new(g, "wheelbase_m", 0.5, 3.0), &mut self.wheelbase_m);
+        to.number(&Leaf::new(g, "tilt_rad", -0.5, 1.0), &mut self.tilt_rad);
+        to.limit(&Leaf::new(g, "wheels_m_s", 0.01, 10.0), &mut self.wheels_m_s);
+        to.limit(&Leaf::new(g, "yaw_rad_s", 0.01, 20.0), &mut self.yaw_rad_s);
+        to.limit(&Leaf::new(g, "steer_rad", 0.001, 3.0), &mut self.steer_rad);
+        to.limit(&Leaf::new(g, "motor_nm", 0.01, 50.0), &mut self.motor_nm);
+        to.count(&Leaf::new(g, "persist_ticks", 0.0, 1000.0), &mut self.persist_ticks);
+    }
+}
+
+/// What the checks remember.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CrossState {
+    wheels: Lasting,
+    yaw: Lasting,
+    steer: Lasting,
+    motor: Lasting,
+    /// Steer angle less the summed steer rate, drifting slowly to the present one \[rad\].
+    offset_rad: Option<f32>,
+    /// Least and largest torque asked for in the last periods \[N m\].
+    asked_nm: (f32, f32),
+}
+
+/// Counts how long something lasts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Lasting(u16);
+
+impl Lasting {
+    /// Whether a `difference` beyond the `limit` has lasted longer than allowed. What can't be
+    /// compared breaks off the count.
+    fn beyond(&mut self, limit: Option<f32>, difference: Option<f32>, persist_ticks: u16) -> bool {
+        let beyond = matches!((limit, difference), (Some(l), Some(d)) if d > l || d < -l);
+        self.0 = if beyond { self.0.saturating_add(1) } else { 0 };
+        self.0 > persist_ticks
+    }
+}
+
+/// How quickly the sums forget: the part of the difference that one period takes away.
+const FORGET: f32 = 1.0 / 256.0;
+
+/// One control period: the sensors, the roll angle as estimated \[rad\], and the torque asked for in
+/// the period before, in the bicycle's sign \[N m\].
+pub fn step(
+    config: &CrossConfig,
+    period_s: f32,
+    state: &mut CrossState,
+    believed: &Believed,
+    roll_rad: f32,
+    torque_nm: f32,
+) -> Causes {
+    let mut causes = Causes::NONE;
+    let persist = config.persist_ticks;
+    let front = believed.front_wheel_m_s.map(|v| v.newest);
+    let rear = believed.rear_wheel_m_s.map(|v| v.newest);
+    let ground = match (config.wheels_m_s, config.yaw_rad_s, believed.steer_rad) {
+        (None, None, _) | (_, _, None) => None,
+        (_, _, Some(steer)) => Some(on_the_ground(config.tilt_rad, roll_rad, steer)),
+    };
+
+    let wheels = match (front, rear, ground) {
+        (Some(front), Some(rear), Some((_, cos))) => Some(front * cos - rear),
+        _ => None,
+    };
+    causes.note(Cause::WheelsDisagree, state.wheels.beyond(config.wheels_m_s, wheels, persist));
+
+    // The front wheel moves sideways by its speed times the sine; without it the rear one must do.
+    let sideways = match (front, rear, ground) {
+        (Some(front), _, Some((sin, _))) => Some(front * sin),
+        (None, Some(rear), Some((sin, cos))) if cos > 0.2 => Some(rear * sin / cos),
+        _ => None,
+    };
+    let yaw = match (sideways, believed.gyro_rad_s) {
+        (Some(sideways), Some([_, y, z])) => {
+            let (sin, cos) = sin_cos(roll_rad);
+            Some(y * sin + z * cos - sideways / config.wheelbase_m)
+        }
+        _ => None,
+    };
+    causes.note(Cause::YawDisagrees, state.yaw.beyond(config.yaw_rad_s, yaw, persist));
+
+    let steer = match (believed.steer_rad, believed.steer_rate_rad_s) {
+        (Some(angle), Some(rate)) => {
+            let expected = state.offset_rad.unwrap_or(angle) + rate * period_s;
+            let difference = angle - expected;
+            state.offset_rad = Some(expected + FORGET * difference);
+            Some(difference)
+        }
+        _ => {
+            state.offset_rad = None;
+            None
+        }
+    };
+    causes.note(Cause::SteerDisagrees, state.steer.beyond(config.steer_rad, steer, persist));
+
+    let (low, high) = state.asked_nm;
+    let motor = believed.motor_torque_nm.map(|given| {
+        if given > high {
+            given - high
+        } else if given < low {
+            given - low
+        } else {
+            0.0
+        }
+    });
+    causes.note(Cause::MotorDisagrees, state.motor.beyond(config.motor_nm, motor, persist));
+    let closer = |bound: f32| bound + 4.0 * FORGET * (torque_nm - bound);
+    state.asked_nm = (closer(low).min(torque_nm), closer(high).max(torque_nm));
+    causes
+}
+
+/// Sine and cosine of the angle between the front wheel's and the rear frame's tracks on the ground:
+/// the steer angle turned about an axis tilted by `tilt_rad`, leaned by `roll_rad`.
+pub fn on_the_ground(tilt_rad: f32, roll_rad: f32, steer_rad: f32) -> (f32, f32) {
+    let ((sin_tilt, cos_tilt), (sin_roll, cos_roll)) = (sin_cos(tilt_rad), sin_cos(roll_rad));
+    let (sin_steer, cos_steer) = sin_cos(steer_rad);
+    let (across, along) = (cos_tilt * sin_steer, cos_steer * cos_roll - sin_tilt * sin_steer * sin_roll);
+    let size = libm::sqrtf(across * across + along * along);
+    if size > 1e-3 { (across / size, along / size) } else { (0.0, 1.0) }
+}

@@ -1,0 +1,188 @@
+//! `sim-host design`.
+
+use super::basin::ThreadArgs;
+use super::outputs::{OutputArgs, Results, complain};
+use super::{Ended, Failure, interrupt, law};
+use crate::basin::{Axis, Search};
+use crate::design::{Knots, Plan, Progress, arena, competitors, judge, optimise};
+use crate::report::design::{Design, DesignDocument, figure, law_file};
+use crate::report::figure;
+use crate::report::output::Output;
+use crate::report::table;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+const EXAMPLES: &str = "\
+Examples:
+  sim-host design --budget 10min --law-file mine.toml --json mine.json --svg mine.svg
+  sim-host design --start mine.toml --seed 2 --law-file better.toml     going on from there
+  sim-host design --budget 30s --judge none --law-file look.toml        a quick look";
+
+/// Options of `design`.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// Longest time for the search, for example 90s, 10min or 2h; the judgement comes after
+    #[arg(long, default_value = "10min", value_name = "TIME", value_parser = budget, allow_hyphen_values = true)]
+    budget: Duration,
+    /// Schedules tried at most
+    #[arg(long, default_value_t = 400, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    evaluations: u32,
+    /// Of the simplices begun anew
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    seed: u64,
+    /// Points of the schedule between 2 and 7.5 m/s, 2 to 8
+    #[arg(long, default_value_t = 6, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=8))]
+    knots: u8,
+    /// Area given up for an even schedule, in rad m/s^2 per (N m s/rad)^2
+    #[arg(long, default_value_t = 0.0, value_name = "WEIGHT", allow_negative_numbers = true)]
+    smoothness: f64,
+    /// The law to begin with, as of --law elsewhere
+    #[arg(long, default_value = "h-cut", value_name = "LAW")]
+    start: String,
+    /// Step of the speeds on the way, in m/s
+    #[arg(long, default_value_t = 1.1, value_name = "M/S", allow_negative_numbers = true)]
+    coarse: f64,
+    /// Step of the speeds of the judgement beside the known laws, in m/s, or none
+    #[arg(long, default_value = "0.25", value_name = "M/S|none", value_parser = judgement, allow_hyphen_values = true)]
+    judge: Judgement,
+    /// Write the law as a file for --law
+    #[arg(long, value_name = "FILE")]
+    law_file: Option<PathBuf>,
+    #[command(flatten)]
+    threads: ThreadArgs,
+    #[command(flatten)]
+    outputs: OutputArgs,
+}
+
+/// The step of the speeds of the judgement; `None` for no judgement.
+#[derive(Clone, Copy)]
+struct Judgement(Option<f64>);
+
+fn judgement(text: &str) -> Result<Judgement, String> {
+    if text == "none" {
+        return Ok(Judgement(None));
+    }
+    text.parse()
+        .map(|step| Judgement(Some(step)))
+        .map_err(|_| format!("`{text}` is neither a number nor none"))
+}
+
+fn budget(text: &str) -> Result<Duration, String> {
+    let wrong =
+        || format!("`{text}` is not a time; expected a number with its unit, for example 90s, 10min or 2h");
+    let units = [("min", 60.0), ("ms", 1e-3), ("h", 3600.0), ("s", 1.0)];
+    let unit = units.iter().find_map(|(unit, seconds)| Some((text.strip_suffix(unit)?, seconds)));
+    let (number, seconds) = unit.ok_or_else(wrong)?;
+    let time = number.trim().parse::<f64>().map_err(|_| wrong())? * seconds;
+    if (1e-3..=1e6).contains(&time) {
+        Ok(Duration::from_secs_f64(time))
+    } else {
+        Err(format!("{text} is outside 1 ms to 1000000 s"))
+    }
+}
+
+/// A search over 2 to 7.5 m/s.
+fn search(option: &str, step: f64, scan_step: f64, tolerance: f64) -> Result<Search, Failure> {
+    if !(0.01..=5.5).contains(&step) {
+        return Err(format!("{option} {step} is outside 0.01 to 5.5 m/s").into());
+    }
+    // The last speed is 7.5 m/s also when the step does not divide the range.
+    let steps = (5.5 / step - 1e-9).ceil() as usize;
+    let speeds = (0..=steps).map(|i| ((2.0 + i as f64 * step).min(7.5) * 1e9).round() / 1e9).collect();
+    let search = Search { speeds, axis: Axis::SteerRate, max_rate: 20.0, scan_step, tolerance };
+    search.check()?;
+    Ok(search)
+}
+
+pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    let start = law::parse(&args.start)?;
+    if !(0.0..=10.0).contains(&args.smoothness) {
+        return Err(format!("--smoothness {} is outside 0 to 10", args.smoothness).into());
+    }
+    let plan = Plan {
+        knots: Knots::new(args.knots.into())?,
+        start,
+        search: search("--coarse", args.coarse, 1.0, 0.15)?,
+        smoothness: args.smoothness,
+        seed: args.seed,
+        evaluations: args.evaluations,
+    };
+    let fine = search("--judge", args.judge.0.unwrap_or(0.25), 0.25, 0.02)?;
+    let arena = arena()?;
+    let outputs = args.outputs.open(None)?;
+    let law_output = args.law_file.as_deref().map(Output::create).transpose()?;
+    if let Some(output) = &law_output {
+        outputs.refuse_place_of("--law-file", output)?;
+    }
+    interrupt::install();
+    let pool = args.threads.pool()?;
+    let begin = Instant::now();
+    let late = || begin.elapsed() >= args.budget;
+    let stop = || interrupt::stopped() || late();
+    let bar = progress(outputs.shows_progress(), "design", u64::from(plan.evaluations));
+    let advanced = |now: Progress| {
+        let by_time = begin.elapsed().as_secs_f64() / args.budget.as_secs_f64();
+        let part = f64::from(now.evaluations) / f64::from(plan.evaluations);
+        // Whichever runs out first; the bar knows the time left from it.
+        bar.set_position((part.max(by_time).min(1.0) * f64::from(plan.evaluations)) as u64);
+        bar.set_message(format!("{} tried, least area {:.3}", now.evaluations, now.best));
+    };
+    let found = pool.install(|| optimise(&arena.training, &plan, &advanced, &stop));
+    bar.finish_and_clear();
+    let Some(found) = found? else {
+        complain("stopped before the first schedule was tried, nothing is written");
+        return Ok(if interrupt::stopped() { Ended::Interrupted } else { Ended::Done });
+    };
+    let law = plan.knots.law(&found.gains)?;
+    let mut laws = competitors();
+    laws.push(("design".into(), law.clone()));
+    let mut judged = None;
+    if args.judge.0.is_some() && !interrupt::stopped() {
+        let columns = (arena.training.len() + arena.held_out.len()) * laws.len() * fine.speeds.len();
+        let bar = progress(outputs.shows_progress(), "judge", columns as u64);
+        judged = pool.install(|| judge(&arena, &laws, &fine, &|| bar.inc(1), &interrupt::stopped))?;
+        bar.finish_and_clear();
+    }
+    let design = Design {
+        plan: &plan,
+        start: &args.start,
+        found: &found,
+        law: &law,
+        arena: &arena,
+        fine: &fine,
+        laws: &laws,
+        judged: judged.as_ref(),
+    };
+    if let Some(output) = &law_output {
+        output.finish(law_file(&design).as_bytes())?;
+    }
+    let document = DesignDocument::new(&design, begin.elapsed().as_secs_f64());
+    let config = json!({"seed": document.seed, "evaluations": document.evaluations, "complete": document.complete,
+        "start": document.start, "schedule": document.schedule, "smoothness": document.smoothness,
+        "coarse": document.coarse, "fine": document.fine});
+    outputs.write(Results {
+        document: &document,
+        config: &config,
+        summary: || document.summary(),
+        table: || table::rows(&config, &document.columns(), document.rows()),
+        figure: || figure::chart(&figure(&document, &laws)),
+    })?;
+    if interrupt::stopped() {
+        complain("interrupted: the best so far is kept");
+        return Ok(Ended::Interrupted);
+    }
+    Ok(Ended::Done)
+}
+
+/// A bar with the time left, on standard error, and only on a terminal.
+fn progress(shown: bool, what: &str, count: u64) -> ProgressBar {
+    if !shown {
+        return ProgressBar::hidden();
+    }
+    let template = format!("{what} {{bar:40}} {{elapsed}} gone, {{eta}} left {{msg}}");
+    let style = ProgressStyle::with_template(&template);
+    ProgressBar::new(count).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

@@ -1,0 +1,175 @@
+//! The options that say how sensors and motor depart from exact ones, and what goes wrong.
+
+use crate::plant::{ActuatorConfig, Fault, ImuMount, Plant, Sensor, SensorConfig, Supply, catalogue};
+use crate::range::time;
+
+/// Longest delay of a sensor or the motor \[s\].
+const LONGEST_S: f64 = 1.0;
+
+#[derive(clap::Args)]
+pub(super) struct PlantArgs {
+    /// Departs a sensor from the truth, for example gyro:noise=0.01,bias=0.02,delay=5ms; may be repeated
+    #[arg(long, value_name = "NAME:KEY=VALUE,...", allow_hyphen_values = true)]
+    sensor: Vec<String>,
+    /// Motor and steer friction: none, davis, gazelle, a FILE, and KEY=VALUE to change it
+    #[arg(long, value_name = "NAME|FILE|KEY=VALUE,...", default_value = "none", allow_hyphen_values = true)]
+    actuator: String,
+    /// Something goes wrong, for example gyro.x:stuck@1.5s..2s or motor:dead@1s; may be repeated
+    #[arg(long, value_name = "CHANNEL:KIND@FROM..TO", allow_hyphen_values = true)]
+    fault: Vec<String>,
+    /// Seed of noise and dropouts; every ride's differ, by its start
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+}
+
+impl PlantArgs {
+    /// The plant asked for, with a control period of `period_s`.
+    pub(super) fn plant(&self, period_s: f64) -> Result<Plant, String> {
+        let mut sensors = SensorConfig::default();
+        for text in &self.sensor {
+            depart(&mut sensors, text, period_s).map_err(|e| format!("--sensor {text}: {e}"))?;
+        }
+        let actuator =
+            actuator(&self.actuator, period_s).map_err(|e| format!("--actuator {}: {e}", self.actuator))?;
+        let faults = self.fault.iter().map(|text| text.parse::<Fault>());
+        let faults = faults.collect::<Result<_, _>>().map_err(|e| format!("--fault: {e}"))?;
+        let plant = Plant { sensors, actuator, faults, seed: self.seed };
+        plant.check().map_err(|e| e.to_string())?;
+        Ok(plant)
+    }
+}
+
+/// Whole control periods in a time.
+pub(super) fn whole_ticks(name: &str, time_s: f64, period_s: f64) -> Result<u16, String> {
+    let ticks = time_s / period_s;
+    if ticks > 1000.0 {
+        return Err(format!("{name} {} ms is outside 0 to {} ms", time_s * 1e3, period_s * 1e6));
+    }
+    if (ticks - ticks.round()).abs() > 1e-6 {
+        let near = |n: f64| format!("{} ms", n * period_s * 1e3);
+        return Err(format!(
+            "{name} {} ms is not a whole number of control periods of {} ms; nearest are {} and {}",
+            time_s * 1e3,
+            period_s * 1e3,
+            near(ticks.floor()),
+            near(ticks.ceil())
+        ));
+    }
+    Ok(ticks.round() as u16)
+}
+
+/// The pairs of `KEY=VALUE,...`.
+fn pairs(text: &str) -> impl Iterator<Item = Result<(&str, &str), String>> {
+    text.split(',').map(|pair| pair.split_once('=').ok_or_else(|| format!("`{pair}` is not KEY=VALUE")))
+}
+
+fn number(key: &str, value: &str) -> Result<f64, String> {
+    value.trim().parse().map_err(|_| format!("{key}: `{value}` is not a number"))
+}
+
+fn ticks(key: &str, value: &str, period_s: f64) -> Result<u16, String> {
+    whole_ticks(key, time(value, LONGEST_S)?, period_s)
+}
+
+/// Takes in one `NAME[.AXIS]:KEY=VALUE,...`.
+fn depart(sensors: &mut SensorConfig, text: &str, period_s: f64) -> Result<(), String> {
+    let (place, settings) = text.split_once(':').ok_or("expected NAME:KEY=VALUE,...")?;
+    if place == "imu" {
+        return pairs(settings)
+            .try_for_each(|pair| pair.and_then(|(key, value)| mount(&mut sensors.imu, key, value)));
+    }
+    let (name, axis) = place.split_once('.').map_or((place, None), |(name, axis)| (name, Some(axis)));
+    let sensor = Sensor::ALL.into_iter().find(|sensor| sensor.name() == name).ok_or_else(|| {
+        format!("no sensor `{name}`; there are imu, {}", Sensor::ALL.map(Sensor::name).join(", "))
+    })?;
+    let axes = sensor.axes();
+    let axis = axis.map(|axis| {
+        let known = axes.iter().position(|known| *known == axis);
+        known.ok_or_else(|| match axes {
+            [] => format!("{name} has one axis only; leave out `.{axis}`"),
+            _ => format!("{name} has no axis `{axis}`; it has {}", axes.join(", ")),
+        })
+    });
+    let axis = axis.transpose()?;
+    let model = sensors.model_mut(sensor);
+    for pair in pairs(settings) {
+        let (key, value) = pair?;
+        match (key, axis) {
+            ("bias", Some(axis)) => model.bias[axis] = number(key, value)?,
+            (_, Some(_)) => return Err(format!("{key} is of all axes; only bias has one each")),
+            ("bias", None) => {
+                let bias = number(key, value)?;
+                model.bias.iter_mut().take(axes.len().max(1)).for_each(|axis| *axis = bias);
+            }
+            ("delay", None) => model.delay_ticks = ticks(key, value, period_s)?,
+            ("every", None) => model.every_ticks = ticks(key, value, period_s)?,
+            ("scale", None) => model.scale = number(key, value)?,
+            ("noise", None) => model.noise = number(key, value)?,
+            ("quantum", None) => model.quantum = number(key, value)?,
+            ("range", None) => model.range = Some(number(key, value)?),
+            ("dropout", None) => model.dropout = number(key, value)?,
+            _ => {
+                return Err(format!(
+                    "no `{key}`; there are delay=TIME, every=TIME, noise, bias, scale, quantum, range, dropout"
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn mount(imu: &mut ImuMount, key: &str, value: &str) -> Result<(), String> {
+    let [x, y, z] = &mut imu.point_m;
+    let [roll, pitch, yaw] = &mut imu.turned_rad;
+    let place = match key {
+        "x" => x,
+        "y" => y,
+        "z" => z,
+        "roll" => roll,
+        "pitch" => pitch,
+        "yaw" => yaw,
+        _ => return Err(format!("no `{key}` of the imu; there are x, y, z in m, roll, pitch, yaw in rad")),
+    };
+    *place = number(key, value)?;
+    Ok(())
+}
+
+/// The actuator of `NAME|FILE|KEY=VALUE,...`.
+fn actuator(text: &str, period_s: f64) -> Result<ActuatorConfig, String> {
+    let (name, settings) = match text.split_once(',') {
+        _ if text.split(',').next().is_some_and(|first| first.contains('=')) => ("none", Some(text)),
+        Some((name, settings)) => (name, Some(settings)),
+        None => (text, None),
+    };
+    let mut config = catalogue::load(name).map_err(|e| e.to_string())?;
+    let mut supply = [None; 3];
+    for pair in settings.into_iter().flat_map(pairs) {
+        let (key, value) = pair?;
+        match key {
+            "delay" => config.delay_ticks = ticks(key, value, period_s)?,
+            "time-constant" => config.time_constant_s = time(value, 10.0)?,
+            "scale" => config.scale = number(key, value)?,
+            "limit" => config.limit_nm = Some(number(key, value)?),
+            "viscous" => config.friction.viscous_nm_s_rad = number(key, value)?,
+            "coulomb" => config.friction.coulomb_nm = number(key, value)?,
+            "creep" => config.friction.creep_rad_s = number(key, value)?,
+            "voltage" => supply[0] = Some(number(key, value)?),
+            "resistance" => supply[1] = Some(number(key, value)?),
+            "constant" => supply[2] = Some(number(key, value)?),
+            _ => {
+                return Err(format!(
+                    "no `{key}`; there are delay=TIME, time-constant=TIME, scale, limit, viscous, coulomb, creep, \
+                     voltage, resistance, constant"
+                ));
+            }
+        }
+    }
+    match supply {
+        [None, None, None] => {}
+        [Some(voltage_v), Some(resistance_ohm), Some(constant_nm_a)] => {
+            config.supply = Some(Supply { voltage_v, resistance_ohm, constant_nm_a });
+        }
+        _ => return Err("voltage, resistance and constant go together".into()),
+    }
+    Ok(config)
+}

@@ -1,0 +1,258 @@
+//! `sim-host sweep`.
+
+use super::basin::{SearchArgs, progress};
+use super::cells::{Resolved, resolve};
+use super::conditions::ConditionArgs;
+use super::outputs::{complain, print, write_json};
+use super::words::Words;
+use super::{Ended, Failure, interrupt};
+use crate::basin::border;
+use crate::report::output::Output;
+use crate::report::sweep::SweepDocument;
+use crate::sweep::{self, Axis, Cell, Folder, Grid, Progress, Shard};
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+const EXAMPLES: &str = "\
+KEY is the name of an option below, or a word that an option's value has in braces. VALUES are words
+and ranges: A:B:STEP, A:B/N (N evenly spaced values), A:B/logN (evenly in the logarithm).
+
+Examples:
+  sim-host sweep --over torque-limit=0.5:20/log9,none --over sensor-delay=0ms:100ms/6 --out limits
+  sim-host sweep --over law=h,f,g --over rider=none,smart --speeds 2:7.5:0.5 --out laws
+  sim-host sweep --law cl2:{k} --over k=0.5:20/log7 --out cl2
+  sim-host sweep --over law=h,f,g --out part2 --shard 2/3
+  sim-host sweep merge part1 part2 part3 --out whole";
+
+/// Options of `sweep`.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(super) struct Args {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// What to vary, and its values; once for every axis
+    #[arg(long, required = true, value_name = "KEY=VALUES", value_parser = Axis::parse)]
+    over: Vec<Axis>,
+    /// Folder of the results; one of the same sweep is gone on with
+    #[arg(long, default_value = "sweep", value_name = "DIR")]
+    out: PathBuf,
+    /// Compute part I of N only, to be merged with the others
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    shard: Option<Shard>,
+    /// List the cells, tell how long they take, and end
+    #[arg(long, conflicts_with = "json")]
+    dry_run: bool,
+    #[command(flatten)]
+    told: Told,
+    #[command(flatten)]
+    search: SearchArgs,
+    #[command(flatten, next_help_heading = "Options of `basin`, for all cells")]
+    conditions: Words<ConditionArgs>,
+}
+
+/// What is told besides the folder.
+#[derive(clap::Args)]
+struct Told {
+    /// Write the document to FILE, or to standard output (also -), besides the folder
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
+    json: Option<PathBuf>,
+    /// No text or progress bar
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+#[derive(clap::Subcommand)]
+enum Command {
+    /// Puts the parts of a sweep together
+    Merge(Merge),
+    /// Answers a question by sweeps that are written down: a page with tables and figures
+    Study(super::sweep_study::Args),
+    /// The studies that ship
+    Studies,
+}
+
+/// Options of `sweep merge`.
+#[derive(clap::Args)]
+struct Merge {
+    /// Folders that `sweep --shard` made
+    #[arg(required = true, value_name = "DIR")]
+    parts: Vec<PathBuf>,
+    /// Folder of the whole
+    #[arg(long, default_value = "sweep", value_name = "DIR")]
+    out: PathBuf,
+    #[command(flatten)]
+    told: Told,
+}
+
+pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    match &args.command {
+        Some(Command::Merge(args)) => return merge(args),
+        Some(Command::Study(args)) => return super::sweep_study::run(args),
+        Some(Command::Studies) => return super::sweep_study::list(),
+        None => {}
+    }
+    let resolved = resolve(&args.over, args.conditions.words(), |ridden| args.search.search(ridden))?;
+    let mine = args.shard.unwrap_or(Shard::WHOLE).of(&resolved.plan.cells);
+    let pool = args.search.pool()?;
+    if args.dry_run {
+        return dry_run(&resolved, &mine, &args.out, pool.current_num_threads());
+    }
+    let json = args.told.json.as_deref().map(Output::create).transpose()?;
+    let folder = Folder::open(&args.out, &resolved.plan)?;
+    interrupt::install();
+    let to_do = to_do(&resolved, &mine, &folder);
+    let bar = progress(!args.told.quiet, "sweep", to_do.len() * resolved.search.speeds.len(), "columns");
+    let steps = Progress { advanced: &|| bar.inc(1), stop: &interrupt::stopped };
+    let done = pool.install(|| sweep::run(&to_do, &resolved.search, &folder, &steps));
+    bar.finish_and_clear();
+    let done = done?;
+    let grid = Grid::gather(&resolved.plan, std::slice::from_ref(&folder))?;
+    finish(&grid, &folder, json.as_ref(), args.told.quiet)?;
+    if done == to_do.len() {
+        return Ok(Ended::Done);
+    }
+    let before = mine.len() - to_do.len();
+    complain(&format!(
+        "interrupted: {} of {} cells are done and kept; the same command goes on",
+        before + done,
+        mine.len()
+    ));
+    Ok(Ended::Interrupted)
+}
+
+/// The cells of `mine` that are not there, or damaged, which is told.
+pub(super) fn to_do<'a>(resolved: &'a Resolved, mine: &[usize], folder: &Folder) -> Vec<&'a Cell> {
+    let cells = mine.iter().map(|&i| &resolved.cells[i]);
+    let missing = |cell: &&Cell| match folder.unit(&cell.id) {
+        Ok(there) => there.is_none(),
+        Err(e) => {
+            complain(&format!("warning: {e}: computed again"));
+            true
+        }
+    };
+    cells.filter(missing).collect()
+}
+
+/// Writes what there is: the results if the sweep is whole, and what was asked for.
+pub(super) fn finish(
+    grid: &Grid,
+    folder: &Folder,
+    json: Option<&Output>,
+    quiet: bool,
+) -> Result<(), Failure> {
+    let document = SweepDocument::new(grid);
+    if document.complete {
+        sweep::write(grid, &document, folder)?;
+    }
+    if let Some(output) = json {
+        write_json(output, &document)?;
+    }
+    if quiet || json.is_some_and(Output::is_standard) {
+        return Ok(());
+    }
+    print(&summary(grid, &document, folder.path()))
+}
+
+fn summary(grid: &Grid, document: &SweepDocument, folder: &Path) -> String {
+    let (all, folder) = (grid.units.len(), folder.display());
+    if !document.complete {
+        return format!("{} of {all} cells are in {folder}; the rest is missing\n", document.cells.len());
+    }
+    let mut text = format!("{all} cells, {} rides; results in {folder}\n", document.work.rides);
+    let by_area = |a: &&_, b: &&_| f64::total_cmp(&area(a), &area(b));
+    let ends = [
+        ("largest", document.cells.iter().max_by(by_area)),
+        ("smallest", document.cells.iter().min_by(by_area)),
+    ];
+    for (which, cell) in ends {
+        if let Some(cell) = cell {
+            let at: Vec<_> =
+                document.axes.iter().zip(&cell.values).map(|(a, v)| format!("{}={v}", a.key)).collect();
+            let _ = writeln!(text, "{which} area {:.3} rad m/s^2 at {}", cell.area, at.join(", "));
+        }
+    }
+    text
+}
+
+fn area(cell: &crate::report::sweep::CellDocument) -> f64 {
+    cell.area
+}
+
+/// Most columns that are timed for an estimate.
+const TIMED: usize = 4;
+
+/// Lists the cells and estimates the time from a few columns.
+fn dry_run(resolved: &Resolved, mine: &[usize], out: &Path, threads: usize) -> Result<Ended, Failure> {
+    let (plan, speeds) = (&resolved.plan, &resolved.search.speeds);
+    let folder = out.join(sweep::PLAN).exists().then(|| Folder::open(out, plan)).transpose()?;
+    let to_do: Vec<&Cell> = match &folder {
+        Some(folder) => to_do(resolved, mine, folder),
+        None => mine.iter().map(|&i| &resolved.cells[i]).collect(),
+    };
+    let missing: BTreeSet<&str> = to_do.iter().map(|cell| &*cell.id).collect();
+    let mut text = String::new();
+    for &i in mine {
+        let is = if missing.contains(&*plan.cells[i]) { "to do" } else { "done " };
+        let _ = writeln!(text, "{}  {is}  {}", plan.cells[i], plan.label(i));
+    }
+    let timed: Vec<&&Cell> = to_do.iter().step_by(to_do.len().div_ceil(TIMED).max(1)).collect();
+    let begin = Instant::now();
+    for cell in &timed {
+        border(&cell.conditions, &resolved.search, speeds[speeds.len() / 2]);
+    }
+    let each = begin.elapsed().as_secs_f64() / timed.len().max(1) as f64;
+    let columns = to_do.len() * speeds.len();
+    let _ = writeln!(
+        text,
+        "{} of {} cells to do, {} speeds each: about {} on {threads} threads ({} columns timed)",
+        to_do.len(),
+        mine.len(),
+        speeds.len(),
+        duration(each * columns as f64 / threads as f64),
+        timed.len()
+    );
+    print(&text)?;
+    Ok(Ended::Done)
+}
+
+/// A duration in words.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+fn merge(args: &Merge) -> Result<Ended, Failure> {
+    let json = args.told.json.as_deref().map(Output::create).transpose()?;
+    let parts: Vec<(Folder, _)> = args.parts.iter().map(|p| Folder::there(p)).collect::<Result<_, _>>()?;
+    let plan = &parts[0].1;
+    for (folder, other) in &parts[1..] {
+        if let Some(what) = plan.difference(other) {
+            let (first, other) = (parts[0].0.path().display(), folder.path().display());
+            return Err(format!("{first} and {other} are parts of different sweeps: {what} differs").into());
+        }
+    }
+    let folders: Vec<Folder> = parts.iter().map(|(folder, _)| folder.clone()).collect();
+    let grid = Grid::gather(plan, &folders)?;
+    if let Some(first) = grid.units.iter().position(Option::is_none) {
+        return Err(format!(
+            "{} of {} cells are in none of the folders, the first is {}; compute the missing shards first",
+            grid.missing(),
+            grid.units.len(),
+            plan.label(first)
+        )
+        .into());
+    }
+    let whole = Folder::open(&args.out, plan)?;
+    for unit in grid.units.iter().flatten() {
+        if !matches!(whole.unit(&unit.id), Ok(Some(_))) {
+            whole.keep(unit)?;
+        }
+    }
+    finish(&grid, &whole, json.as_ref(), args.told.quiet)?;
+    Ok(Ended::Done)
+}

@@ -1,0 +1,56 @@
+//! A gain schedule as numbers to choose: straight lines between knots over speed.
+
+use control::{Law, LawTable, ParamError};
+
+/// Allowed gains \[N m s/rad\]: the upper is the thesis's limit for a motor (section 2.4.3).
+pub const GAINS: (f64, f64) = (-10.0, 40.0);
+/// The speeds the schedule is designed for \[m/s\].
+const SPAN_M_S: (f64, f64) = (2.0, 7.5);
+/// Above its last knot a schedule fades to nothing over this \[m/s\]: there it was not judged.
+const FADE_M_S: f64 = 1.0;
+
+/// Speeds of the knots \[m/s\], rising.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Knots(Vec<f64>);
+
+impl Knots {
+    /// `count` knots evenly over the speeds it is designed for.
+    ///
+    /// # Errors
+    /// When there are fewer than 2 or more than 8.
+    pub fn new(count: usize) -> Result<Self, String> {
+        if !(2..=8).contains(&count) {
+            return Err(format!("number of knots = {count} is outside 2 to 8"));
+        }
+        let (from, to) = SPAN_M_S;
+        let step = (to - from) / (count - 1) as f64;
+        Ok(Self((0..count).map(|i| ((from + i as f64 * step) * 1e6).round() / 1e6).collect()))
+    }
+
+    /// The speeds \[m/s\].
+    pub fn speeds(&self) -> &[f64] {
+        &self.0
+    }
+
+    /// The law with `gains` at the knots, constant below the first, zero from 1 m/s above the last.
+    ///
+    /// # Errors
+    /// When a gain is out of the table's range.
+    pub fn law(&self, gains: &[f64]) -> Result<Law, ParamError> {
+        let mut points: Vec<(f32, f32)> =
+            self.0.iter().zip(gains).map(|(v, gain)| (*v as f32, *gain as f32)).collect();
+        points.extend(self.0.last().map(|v| ((v + FADE_M_S) as f32, 0.0)));
+        LawTable::new(&points).map(Law::Table)
+    }
+
+    /// The gains of another law at the knots, inside [`GAINS`].
+    pub fn gains_of(&self, law: &Law) -> Vec<f64> {
+        self.0.iter().map(|v| law.gain(*v).clamp(GAINS.0, GAINS.1)).collect()
+    }
+}
+
+/// How uneven gains are: the mean square of their second differences \[(N m s/rad)^2\].
+pub(super) fn roughness(gains: &[f64]) -> f64 {
+    let bends: Vec<f64> = gains.windows(3).map(|g| (g[0] - 2.0 * g[1] + g[2]).powi(2)).collect();
+    if bends.is_empty() { 0.0 } else { bends.iter().sum::<f64>() / bends.len() as f64 }
+}

@@ -1,0 +1,217 @@
+//! The search: the simplex method of Nelder and Mead, begun again around the best until the evaluations are used
+//! up.
+
+use super::knots::{GAINS, Knots, roughness};
+use crate::basin::Search;
+use crate::study::trial::{Trial, least_area};
+use argmin::core::{CostFunction, Error, Executor};
+use argmin::solver::neldermead::NelderMead;
+use control::Law;
+use std::cell::RefCell;
+
+/// What is searched, and how long.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The schedule's knots.
+    pub knots: Knots,
+    /// The law that the search begins with.
+    pub start: Law,
+    /// How areas are found, coarse: there are many.
+    pub search: Search,
+    /// Area given up for evenness \[rad m/s^2 per (N m s/rad)^2\]; see [`Knots`].
+    pub smoothness: f64,
+    /// Of the simplices begun anew.
+    pub seed: u64,
+    /// Schedules tried at most.
+    pub evaluations: u32,
+}
+
+/// How far a search has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Schedules tried.
+    pub evaluations: u32,
+    /// The best worst area so far \[rad m/s^2\].
+    pub best: f64,
+}
+
+/// What a search has found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Gains at the knots \[N m s/rad\].
+    pub gains: Vec<f64>,
+    /// The least area over the trials \[rad m/s^2\], coarse.
+    pub worst_area: f64,
+    /// The same of the law it began with.
+    pub start_area: f64,
+    /// Schedules tried.
+    pub evaluations: u32,
+    /// False if it was stopped before its evaluations were used up.
+    pub complete: bool,
+    /// Each improvement: schedules tried, worst area.
+    pub history: Vec<(u32, f64)>,
+}
+
+/// First steps from the law that the search begins with \[N m s/rad\].
+const FIRST_STEP: f64 = 4.0;
+/// Least and largest first steps of a simplex begun anew \[N m s/rad\].
+const STEPS: (f64, f64) = (1.0, 6.0);
+/// A simplex whose areas differ by less is begun anew \[rad m/s^2\].
+const ALIKE: f64 = 0.02;
+/// What a gain costs per N m s/rad beyond its range \[rad m/s^2\].
+const BEYOND: f64 = 1.0;
+
+/// Searches for the schedule with the largest least area over `trials`. The same plan gives the same answer on
+/// every machine; `stop` ends it early, with the best so far. `None` if that is before the first is tried.
+///
+/// # Errors
+/// When a trial can't be ridden.
+pub fn optimise(
+    trials: &[Trial],
+    plan: &Plan,
+    advanced: &dyn Fn(Progress),
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Option<Found>, String> {
+    let hunt = RefCell::new(Hunt {
+        trials,
+        plan,
+        advanced,
+        stop,
+        worst: 0,
+        found: None,
+        failed: None,
+        ended: false,
+    });
+    let mut dice = Dice(plan.seed);
+    let mut corner = plan.knots.gains_of(&plan.start);
+    let mut steps = vec![FIRST_STEP; corner.len()];
+    while !hunt.borrow().ended {
+        let simplex = simplex(&corner, &steps);
+        let solver = NelderMead::new(simplex).with_sd_tolerance(ALIKE).map_err(|e| e.to_string())?;
+        // An error here is the hunt's end, and what it found is kept there.
+        let run = Executor::new(Quarry(&hunt), solver).ctrlc(false).timer(false).run();
+        if run.is_err() && !hunt.borrow().ended {
+            return Err("the search failed".into());
+        }
+        if let Some(found) = &hunt.borrow().found {
+            corner.clone_from(&found.gains);
+        }
+        steps.iter_mut().for_each(|step| *step = dice.step());
+    }
+    let Hunt { found, failed, .. } = hunt.into_inner();
+    failed.map_or(Ok(found), Err)
+}
+
+/// A corner and one step from it along each axis, the other way where that leads out of the range.
+fn simplex(corner: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
+    let mut simplex = vec![corner.to_vec()];
+    for (i, step) in steps.iter().enumerate() {
+        let mut other = corner.to_vec();
+        let stepped = other[i] + step;
+        other[i] = if (GAINS.0..=GAINS.1).contains(&stepped) { stepped } else { other[i] - step };
+        simplex.push(other);
+    }
+    simplex
+}
+
+/// A search under way.
+struct Hunt<'a> {
+    trials: &'a [Trial],
+    plan: &'a Plan,
+    advanced: &'a dyn Fn(Progress),
+    stop: &'a (dyn Fn() -> bool + Sync),
+    /// The trial with the least area of the last schedule.
+    worst: usize,
+    found: Option<Found>,
+    failed: Option<String>,
+    ended: bool,
+}
+
+impl Hunt<'_> {
+    /// The cost of a schedule, to be made small; `None` when the hunt is over.
+    fn cost(&mut self, asked: &[f64]) -> Option<f64> {
+        let tried = self.found.as_ref().map_or(0, |found| found.evaluations);
+        if tried >= self.plan.evaluations {
+            self.end(true);
+            return None;
+        }
+        let gains: Vec<f64> = asked.iter().map(|gain| gain.clamp(GAINS.0, GAINS.1)).collect();
+        let beyond: f64 = asked.iter().zip(&gains).map(|(a, b)| (a - b).abs()).sum();
+        let worst = match self.worst_area(&gains) {
+            Ok(Some(worst)) => worst,
+            Ok(None) => {
+                self.end(false);
+                return None;
+            }
+            Err(why) => {
+                self.failed = Some(why);
+                self.end(false);
+                return None;
+            }
+        };
+        let cost = |area: f64, gains: &[f64]| self.plan.smoothness * roughness(gains) - area;
+        let now = cost(worst, &gains);
+        let found = self.found.get_or_insert_with(|| Found {
+            gains: gains.clone(),
+            worst_area: worst,
+            start_area: worst,
+            evaluations: 0,
+            complete: true,
+            history: vec![(1, worst)],
+        });
+        found.evaluations += 1;
+        if now < cost(found.worst_area, &found.gains) {
+            (found.gains, found.worst_area) = (gains, worst);
+            found.history.push((found.evaluations, worst));
+        }
+        (self.advanced)(Progress { evaluations: found.evaluations, best: found.worst_area });
+        Some(now + BEYOND * beyond)
+    }
+
+    fn worst_area(&mut self, gains: &[f64]) -> Result<Option<f64>, String> {
+        let law = self.plan.knots.law(gains).map_err(|e| e.to_string())?;
+        let found = least_area(self.trials, &law, &self.plan.search, self.worst, self.stop)?;
+        Ok(found.map(|(area, of)| {
+            self.worst = of;
+            area
+        }))
+    }
+
+    fn end(&mut self, complete: bool) {
+        self.ended = true;
+        if let Some(found) = &mut self.found {
+            found.complete = complete;
+        }
+    }
+}
+
+/// The hunt as the library sees it.
+struct Quarry<'a, 'b>(&'a RefCell<Hunt<'b>>);
+
+impl CostFunction for Quarry<'_, '_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+
+    fn cost(&self, gains: &Vec<f64>) -> Result<f64, Error> {
+        self.0.borrow_mut().cost(gains).ok_or_else(|| Error::msg("the search is over"))
+    }
+}
+
+/// SplitMix64 (Steele, Lea and Flood 2014).
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A step of either sign.
+    fn step(&mut self) -> f64 {
+        let part = (self.next() >> 11) as f64 / (1_u64 << 53) as f64;
+        let size = STEPS.0 + (STEPS.1 - STEPS.0) * part;
+        if self.next().is_multiple_of(2) { size } else { -size }
+    }
+}

@@ -1,0 +1,48 @@
+//! Random numbers that depend on what they are for and on nothing else.
+
+use crate::ride::Start;
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
+
+/// A source of random numbers for one purpose in one ride: seed and start are the generator's key,
+/// the purpose is its stream, so neither lane nor thread nor another purpose's draws change them.
+#[derive(Debug)]
+pub struct Dice(ChaCha8Rng);
+
+impl Dice {
+    /// The numbers of `purpose` in the ride from `start`.
+    pub fn new(seed: u64, start: &Start, purpose: u64) -> Self {
+        let Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s } = *start;
+        let words = [seed, speed_m_s.to_bits(), steer_rate_rad_s.to_bits(), roll_rate_rad_s.to_bits()];
+        let mut key = [0; 32];
+        for (bytes, word) in key.chunks_exact_mut(8).zip(words) {
+            bytes.copy_from_slice(&word.to_le_bytes());
+        }
+        let mut rng = ChaCha8Rng::from_seed(key);
+        rng.set_stream(purpose);
+        Self(rng)
+    }
+
+    /// A draw from the uniform distribution over 0 (included) to 1 (excluded).
+    fn uniform(&mut self) -> f64 {
+        const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
+        (self.0.next_u64() >> 11) as f64 * STEP
+    }
+
+    /// A draw from the normal distribution of mean 0 and standard deviation 1: Marsaglia's polar
+    /// method, by [`libm`], so that the bits are the same on every machine.
+    pub fn normal(&mut self) -> f64 {
+        loop {
+            let (x, y) = (2.0 * self.uniform() - 1.0, 2.0 * self.uniform() - 1.0);
+            let square = x * x + y * y;
+            if square > 0.0 && square < 1.0 {
+                return x * (-2.0 * libm::log(square) / square).sqrt();
+            }
+        }
+    }
+
+    /// True with a probability of `p`.
+    pub fn chance(&mut self, p: f64) -> bool {
+        self.uniform() < p
+    }
+}

@@ -1,0 +1,219 @@
+//! A fault as text: `CHANNEL[.AXIS]:KIND[=VALUE][@FROM[..TO]]`.
+
+use super::fault::{Channel, Fault, Kind};
+use super::{PlantError, Sensor};
+use crate::range::{time, within};
+use std::fmt;
+use std::str::FromStr;
+
+/// Latest time of a fault \[s\].
+const LATEST_S: f64 = 3600.0;
+/// Largest magnitude of a fault's amount.
+const LARGEST: f64 = 1e6;
+/// Longest delay or time constant \[s\].
+const LONGEST_S: f64 = 10.0;
+
+impl Channel {
+    /// All of them.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Sensor::ALL.into_iter().map(Self::Sensor).chain([Self::Motor, Self::Engage, Self::Clock])
+    }
+
+    /// Its name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sensor(sensor) => sensor.name(),
+            Self::Motor => "motor",
+            Self::Engage => "engage",
+            Self::Clock => "clock",
+        }
+    }
+
+    /// Names of its axes; none if it has but one.
+    const fn axes(self) -> &'static [&'static str] {
+        match self {
+            Self::Sensor(sensor) => sensor.axes(),
+            _ => &[],
+        }
+    }
+
+    /// The kinds of fault it can have, as they are written.
+    const fn kinds(self) -> &'static [&'static str] {
+        match self {
+            Self::Sensor(_) => &[
+                "stuck",
+                "missing",
+                "late=TIME",
+                "noise=X",
+                "bias=X",
+                "drift=X/s",
+                "scale=X",
+                "flip",
+                "jump=X",
+                "spike=X",
+                "nan",
+                "value=X",
+                "dropout=P",
+            ],
+            Self::Motor => &[
+                "dead",
+                "stuck",
+                "late=TIME",
+                "noise=X",
+                "bias=X",
+                "drift=X/s",
+                "scale=X",
+                "flip",
+                "value=X",
+                "slow=TIME",
+            ],
+            Self::Engage => &["stuck", "flip", "value=X", "missing"],
+            Self::Clock => &["stuck", "scale=X", "jump=X"],
+        }
+    }
+}
+
+impl Kind {
+    /// Its name on the command line.
+    const fn name(&self) -> &'static str {
+        match self {
+            Self::Stuck => "stuck",
+            Self::Missing => "missing",
+            Self::Late(_) => "late",
+            Self::Noise(_) => "noise",
+            Self::Bias(_) => "bias",
+            Self::Drift(_) => "drift",
+            Self::Scale(_) => "scale",
+            Self::Flip => "flip",
+            Self::Jump(_) => "jump",
+            Self::Spike(_) => "spike",
+            Self::Nan => "nan",
+            Self::Value(_) => "value",
+            Self::Dropout(_) => "dropout",
+            Self::Dead => "dead",
+            Self::Slow(_) => "slow",
+        }
+    }
+
+    /// Whether it acts on whole samples, so on all axes.
+    const fn whole(&self) -> bool {
+        matches!(self, Self::Missing | Self::Late(_) | Self::Dropout(_))
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.channel.name())?;
+        let axis = self.axis.and_then(|axis| self.channel.axes().get(usize::from(axis)));
+        if let Some(axis) = axis {
+            write!(f, ".{axis}")?;
+        }
+        write!(f, ":{}", self.kind.name())?;
+        match self.kind {
+            Kind::Stuck | Kind::Missing | Kind::Flip | Kind::Nan | Kind::Dead => {}
+            Kind::Late(x) | Kind::Slow(x) => write!(f, "={x}s")?,
+            Kind::Drift(x) => write!(f, "={x}/s")?,
+            Kind::Noise(x)
+            | Kind::Bias(x)
+            | Kind::Scale(x)
+            | Kind::Jump(x)
+            | Kind::Spike(x)
+            | Kind::Value(x)
+            | Kind::Dropout(x) => write!(f, "={x}")?,
+        }
+        if self.from_s != 0.0 || self.to_s.is_finite() {
+            write!(f, "@{}s", self.from_s)?;
+        }
+        if self.to_s.is_finite() {
+            write!(f, "..{}s", self.to_s)?;
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for Fault {
+    type Err = PlantError;
+
+    fn from_str(text: &str) -> Result<Self, PlantError> {
+        parsed(text).map_err(|why| PlantError(format!("fault `{text}`: {why}")))
+    }
+}
+
+fn parsed(text: &str) -> Result<Fault, String> {
+    let form = "expected CHANNEL[.AXIS]:KIND[=VALUE][@FROM[..TO]], for example gyro.x:bias=0.1@1.5s..3s";
+    let (place, what) = text.split_once(':').ok_or(form)?;
+    let (what, when) = what.split_once('@').map_or((what, None), |(what, when)| (what, Some(when)));
+    let (channel, axis) = placed(place)?;
+    let kind = kind(channel, what)?;
+    if axis.is_some() && kind.whole() {
+        return Err(format!("{} is of whole samples; leave out the axis", kind.name()));
+    }
+    let (from_s, to_s) = when.map_or(Ok((0.0, f64::INFINITY)), span)?;
+    if to_s.is_finite() && matches!(kind, Kind::Jump(_)) {
+        return Err("a jump is for good; leave out its end".into());
+    }
+    Ok(Fault { channel, axis, kind, from_s, to_s })
+}
+
+fn placed(text: &str) -> Result<(Channel, Option<u8>), String> {
+    let (name, axis) = text.split_once('.').map_or((text, None), |(name, axis)| (name, Some(axis)));
+    let channel = Channel::all().find(|channel| channel.name() == name).ok_or_else(|| {
+        let names: Vec<_> = Channel::all().map(Channel::name).collect();
+        format!("no channel `{name}`; there are {}", names.join(", "))
+    })?;
+    let Some(axis) = axis else { return Ok((channel, None)) };
+    let axes = channel.axes();
+    let index = axes.iter().position(|known| *known == axis).ok_or_else(|| match axes {
+        [] => format!("{name} has one axis only; leave out `.{axis}`"),
+        _ => format!("{name} has no axis `{axis}`; it has {}", axes.join(", ")),
+    })?;
+    Ok((channel, Some(index as u8)))
+}
+
+fn span(text: &str) -> Result<(f64, f64), String> {
+    let (from, to) = text.split_once("..").map_or((text, None), |(from, to)| (from, Some(to)));
+    let from_s = time(from, LATEST_S)?;
+    let to_s = to.map_or(Ok(f64::INFINITY), |to| time(to, LATEST_S))?;
+    if to_s > from_s { Ok((from_s, to_s)) } else { Err(format!("it ends at {to_s} s, not after {from_s} s")) }
+}
+
+fn kind(channel: Channel, text: &str) -> Result<Kind, String> {
+    let (name, value) = text.split_once('=').map_or((text, None), |(name, value)| (name, Some(value)));
+    let known =
+        channel.kinds().iter().find(|kind| kind.split('=').next() == Some(name)).ok_or_else(|| {
+            format!("no kind `{name}` of {}; there are {}", channel.name(), channel.kinds().join(", "))
+        })?;
+    let value = match (known.contains('='), value) {
+        (true, None) => return Err(format!("{name} needs a value: {known}")),
+        (false, Some(_)) => return Err(format!("{name} takes no value")),
+        (_, value) => value.unwrap_or_default(),
+    };
+    let number = |min: f64, max: f64| {
+        let text = if name == "drift" { value.strip_suffix("/s").unwrap_or(value) } else { value };
+        let x: f64 = text.trim().parse().map_err(|_| format!("{name}: `{value}` is not a number"))?;
+        within(name, x, min, max).map(|()| x)
+    };
+    let any = || number(-LARGEST, LARGEST);
+    Ok(match name {
+        "missing" => Kind::Missing,
+        "late" => Kind::Late(time(value, LONGEST_S)?),
+        "noise" => Kind::Noise(number(0.0, LARGEST)?),
+        "bias" => Kind::Bias(any()?),
+        "drift" => Kind::Drift(any()?),
+        "scale" => Kind::Scale(any()?),
+        "flip" => Kind::Flip,
+        "jump" => Kind::Jump(any()?),
+        "spike" => Kind::Spike(any()?),
+        "nan" => Kind::Nan,
+        "value" if channel == Channel::Engage => Kind::Value(number(0.0, 1.0)?),
+        "value" => Kind::Value(any()?),
+        "dropout" => Kind::Dropout(number(0.0, 1.0)?),
+        "dead" => Kind::Dead,
+        "slow" => Kind::Slow(positive(time(value, LONGEST_S)?)?),
+        _ => Kind::Stuck,
+    })
+}
+
+fn positive(time_s: f64) -> Result<f64, String> {
+    if time_s > 0.0 { Ok(time_s) } else { Err("slow: the time constant must be above 0 s".into()) }
+}

@@ -1,0 +1,57 @@
+//! Friction of the steer bearing and the motor's gear.
+
+use super::PlantError;
+use crate::num::Scalar;
+use crate::range::within;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Friction about the steer axis, against the steer rate whatever turns the steer. The default has none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Friction {
+    /// Viscous \[N m s/rad\].
+    pub viscous_nm_s_rad: f64,
+    /// Coulomb \[N m\].
+    pub coulomb_nm: f64,
+    /// Steer rate at which Coulomb friction reaches 71 % of its value: below it the steer creeps
+    /// instead of sticking \[rad/s\].
+    pub creep_rad_s: f64,
+}
+
+impl Default for Friction {
+    fn default() -> Self {
+        Self { viscous_nm_s_rad: 0.0, coulomb_nm: 0.0, creep_rad_s: 0.01 }
+    }
+}
+
+impl Friction {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the value and its range.
+    pub fn check(&self) -> Result<(), PlantError> {
+        within("viscous friction (N m s/rad)", self.viscous_nm_s_rad, 0.0, 100.0)
+            .and_then(|()| within("Coulomb friction (N m)", self.coulomb_nm, 0.0, 50.0))
+            .and_then(|()| within("creep (rad/s)", self.creep_rad_s, 1e-3, 1.0))
+            .and_then(|()| {
+                // Above it the friction's own time gets short for a step of 1 ms.
+                let slope = self.coulomb_nm / self.creep_rad_s;
+                within("Coulomb friction over creep (N m s/rad)", slope, 0.0, 100.0)
+            })
+            .map_err(PlantError)
+    }
+
+    /// Whether there is any.
+    pub fn acts(&self) -> bool {
+        self.viscous_nm_s_rad != 0.0 || self.coulomb_nm != 0.0
+    }
+
+    /// The torque on the steer axis at a steer rate \[rad/s\]: `-(c q + T q / sqrt(q^2 + q0^2))`, smooth
+    /// and odd, never with the motion.
+    #[inline(always)]
+    pub fn torque<S: Scalar>(&self, rate: S) -> S {
+        let direction = rate / (rate * rate + self.creep_rad_s * self.creep_rad_s).sqrt();
+        -(rate * self.viscous_nm_s_rad + direction * self.coulomb_nm)
+    }
+}

@@ -1,0 +1,130 @@
+//! All sensors, the switch and the clock of one ride, with their faults.
+
+use super::fault::{Channel, Fault, FaultState};
+use super::sensor::SensorState;
+use super::{Dice, Plant, Reading, Sensor};
+use crate::ride::Start;
+
+/// A sensor's newest sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// By [`Sensor::axes`].
+    pub value: [f64; 3],
+    /// Control periods since it arrived; `u16::MAX` and more count as none.
+    pub age_ticks: u16,
+}
+
+/// What the controller is told at one control instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    held: [Held; Sensor::ALL.len()],
+    /// The controller's time \[us\], wrapping.
+    pub now_us: u32,
+    /// The rider's switch.
+    pub engage: bool,
+}
+
+impl Measured {
+    /// The newest sample of a sensor.
+    pub fn of(&self, sensor: Sensor) -> &Held {
+        &self.held[sensor as usize]
+    }
+}
+
+/// The sensors of one ride, from the controller's boot on.
+#[derive(Debug)]
+pub struct Rig {
+    period_s: f64,
+    sensors: Vec<SensorState>,
+    faults: Vec<FaultState>,
+    held: [Held; Sensor::ALL.len()],
+    /// The present control instant, from boot; -1 before.
+    tick: i64,
+    /// That at t = 0, once it is known.
+    zero: Option<i64>,
+    /// The torque command that reached the motor last \[N m\].
+    command_nm: f64,
+}
+
+impl Rig {
+    /// At boot; until then the truth was `steady`. The ride will be that from `start`.
+    pub fn new(plant: &Plant, period_s: f64, start: &Start, steady: &Reading) -> Self {
+        let config = &plant.sensors;
+        let dice = |purpose: usize| Dice::new(plant.seed, start, purpose as u64);
+        let state = |s: Sensor| SensorState::new(config.model(s), plant.truth(s, steady), dice(s as usize));
+        let held = |sensor: Sensor| Held {
+            value: plant.truth(sensor, steady),
+            age_ticks: config.model(sensor).age_before_boot(),
+        };
+        let fault = |(index, fault): (usize, &Fault)| {
+            let before = match fault.channel {
+                Channel::Sensor(sensor) => plant.truth(sensor, steady),
+                Channel::Motor | Channel::Engage | Channel::Clock => [0.0; 3],
+            };
+            FaultState::new(fault, period_s, before, dice(Sensor::ALL.len() + index))
+        };
+        Self {
+            period_s,
+            sensors: Sensor::ALL.map(state).into(),
+            faults: plant.faults.iter().enumerate().map(fault).collect(),
+            held: Sensor::ALL.map(held),
+            tick: -1,
+            zero: None,
+            command_nm: 0.0,
+        }
+    }
+
+    /// The next control instant is at t = 0; faults count from there.
+    pub fn begin(&mut self) {
+        self.zero = Some(self.tick + 1);
+    }
+
+    /// The present control instant from t = 0; -1 before.
+    fn since_start(&self) -> i64 {
+        self.zero.map_or(-1, |zero| self.tick - zero)
+    }
+
+    /// What the controller is told at the next control instant, where the truth is `now` and the
+    /// rider's switch stands at `engage`.
+    pub fn measure(&mut self, plant: &Plant, now: &Reading, engage: bool) -> Measured {
+        self.tick += 1;
+        let (tick, ride) = (self.tick, self.since_start());
+        for (sensor, state) in Sensor::ALL.into_iter().zip(&mut self.sensors) {
+            let arrived = state.arriving(plant.sensors.model(sensor), tick, plant.truth(sensor, now));
+            let held = &mut self.held[sensor as usize];
+            *held = match faulty(&plant.faults, &mut self.faults, Channel::Sensor(sensor), ride, arrived) {
+                Some(value) => Held { value, age_ticks: 0 },
+                None => Held { age_ticks: held.age_ticks.saturating_add(1), ..*held },
+            };
+        }
+        let mut through = |channel, value: f64| {
+            let said = Some([value, 0.0, 0.0]);
+            faulty(&plant.faults, &mut self.faults, channel, ride, said).map_or(0.0, |[value, ..]| value)
+        };
+        let time_s = through(Channel::Clock, tick as f64 * self.period_s);
+        let engage = through(Channel::Engage, f64::from(u8::from(engage))) >= 0.5;
+        let now_us = (time_s * 1e6).round() as i64 as u32;
+        Measured { held: self.held, now_us, engage }
+    }
+
+    /// The torque command of the present control instant as it reaches the motor \[N m\].
+    pub fn command(&mut self, plant: &Plant, torque_nm: f64) -> f64 {
+        let (ride, said) = (self.since_start(), Some([torque_nm, 0.0, 0.0]));
+        if let Some([torque_nm, ..]) = faulty(&plant.faults, &mut self.faults, Channel::Motor, ride, said) {
+            self.command_nm = torque_nm;
+        }
+        self.command_nm
+    }
+}
+
+/// A channel's word through all its faults, in the order in which they were given.
+fn faulty(
+    faults: &[Fault],
+    states: &mut [FaultState],
+    channel: Channel,
+    tick: i64,
+    said: Option<[f64; 3]>,
+) -> Option<[f64; 3]> {
+    let of_channel = faults.iter().zip(states).filter(|(fault, _)| fault.channel == channel);
+    of_channel.fold(said, |said, (fault, state)| state.apply(fault, tick, said))
+}

@@ -1,0 +1,217 @@
+//! Sensors that are not exact: late, slow, noisy, off, skewed, coarse, narrow, lossy.
+
+use super::{Dice, PlantError, Sensor};
+use crate::num::sin_cos;
+use crate::range::within;
+use std::collections::VecDeque;
+
+/// Most control periods a sensor can be late, or apart between samples.
+const MAX_TICKS: u16 = 1000;
+
+/// How one sensor departs from the truth, in the order in which it does. The default does not.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+pub struct SensorModel {
+    /// A sample every so many control periods; between them the last one stands.
+    pub every_ticks: u16,
+    /// Measured over true value.
+    pub scale: f64,
+    /// Added to each axis, in the sensor's unit.
+    pub bias: [f64; 3],
+    /// Standard deviation of white Gaussian noise on every sample, in the sensor's unit.
+    pub noise: f64,
+    /// Largest magnitude that is told, in the sensor's unit; null is no limit.
+    pub range: Option<f64>,
+    /// Step between values that can be told, in the sensor's unit; 0 is none.
+    pub quantum: f64,
+    /// Probability that a sample is lost.
+    pub dropout: f64,
+    /// Control periods from the measurement to its arrival.
+    pub delay_ticks: u16,
+}
+
+impl Default for SensorModel {
+    fn default() -> Self {
+        Self {
+            every_ticks: 1,
+            scale: 1.0,
+            bias: [0.0; 3],
+            noise: 0.0,
+            range: None,
+            quantum: 0.0,
+            dropout: 0.0,
+            delay_ticks: 0,
+        }
+    }
+}
+
+impl SensorModel {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the value and its range.
+    pub fn check(&self, sensor: Sensor) -> Result<(), PlantError> {
+        let name = sensor.name();
+        let within = |key: &str, value, min, max| within(&format!("{name} {key}"), value, min, max);
+        let all = || {
+            within("every (control periods)", f64::from(self.every_ticks), 1.0, f64::from(MAX_TICKS))?;
+            within("scale", self.scale, -10.0, 10.0)?;
+            self.bias.iter().try_for_each(|bias| within("bias", *bias, -1e3, 1e3))?;
+            within("noise", self.noise, 0.0, 1e3)?;
+            self.range.map_or(Ok(()), |range| within("range", range, 1e-6, 1e6))?;
+            within("quantum", self.quantum, 0.0, 1e3)?;
+            within("dropout", self.dropout, 0.0, 1.0)?;
+            within("delay (control periods)", f64::from(self.delay_ticks), 0.0, f64::from(MAX_TICKS))
+        };
+        all().map_err(PlantError)
+    }
+
+    /// Age of the newest sample at the control instant before the first, if none was lost.
+    pub(super) fn age_before_boot(&self) -> u16 {
+        let latest = -1 - i64::from(self.delay_ticks);
+        latest.rem_euclid(i64::from(self.every_ticks)) as u16
+    }
+
+    /// What a sample of `truth` says, if it is not lost.
+    fn sample(&self, truth: [f64; 3], dice: Option<&mut Dice>) -> Option<[f64; 3]> {
+        let mut told = truth;
+        if *self == (Self { delay_ticks: self.delay_ticks, every_ticks: self.every_ticks, ..Self::default() })
+        {
+            return Some(told);
+        }
+        for (told, bias) in told.iter_mut().zip(self.bias) {
+            *told = *told * self.scale + bias;
+        }
+        if let Some(dice) = dice {
+            if self.noise > 0.0 {
+                told.iter_mut().for_each(|x| *x += self.noise * dice.normal());
+            }
+            if dice.chance(self.dropout) {
+                return None;
+            }
+        }
+        for x in &mut told {
+            if let Some(range) = self.range {
+                *x = x.clamp(-range, range);
+            }
+            if self.quantum > 0.0 {
+                *x = (*x / self.quantum).round() * self.quantum;
+            }
+        }
+        Some(told)
+    }
+}
+
+/// How the IMU (gyro and accelerometer) sits on the rear frame.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+pub struct ImuMount {
+    /// Its place from the rear wheel's centre: forward, right, down \[m\].
+    pub point_m: [f64; 3],
+    /// Its attitude in the frame: turned about z (down), then its y, then its x by these angles
+    /// about x, y and z \[rad\].
+    pub turned_rad: [f64; 3],
+}
+
+impl Default for ImuMount {
+    /// On the down tube, straight.
+    fn default() -> Self {
+        Self { point_m: [0.5, 0.0, -0.2], turned_rad: [0.0; 3] }
+    }
+}
+
+impl ImuMount {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the value and its range.
+    pub fn check(&self) -> Result<(), PlantError> {
+        let point = self.point_m.iter().try_for_each(|x| within("imu point (m)", *x, -3.0, 3.0));
+        let turned = |()| {
+            let half_turn = std::f64::consts::PI;
+            self.turned_rad.iter().try_for_each(|x| within("imu turned (rad)", *x, -half_turn, half_turn))
+        };
+        point.and_then(turned).map_err(PlantError)
+    }
+
+    /// A vector of the frame in the IMU's axes.
+    pub fn seen(&self, vector: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = vector;
+        let [(s1, c1), (s2, c2), (s3, c3)] = self.turned_rad.map(sin_cos);
+        let (x, y) = (x * c3 + y * s3, y * c3 - x * s3);
+        let (x, z) = (x * c2 - z * s2, z * c2 + x * s2);
+        let (y, z) = (y * c1 + z * s1, z * c1 - y * s1);
+        [x, y, z]
+    }
+}
+
+/// How all sensors depart from the truth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SensorConfig {
+    models: [SensorModel; Sensor::ALL.len()],
+    /// The IMU's place and attitude.
+    pub imu: ImuMount,
+}
+
+impl SensorConfig {
+    /// The model of a sensor.
+    pub fn model(&self, sensor: Sensor) -> &SensorModel {
+        &self.models[sensor as usize]
+    }
+
+    /// The model of a sensor, to be changed.
+    pub fn model_mut(&mut self, sensor: Sensor) -> &mut SensorModel {
+        &mut self.models[sensor as usize]
+    }
+
+    /// Whether all sensors tell the truth at once; where the IMU sits is no matter.
+    pub fn exact(&self) -> bool {
+        self.imu.turned_rad == [0.0; 3] && self.models.iter().all(|model| *model == SensorModel::default())
+    }
+
+    /// Whether the sensors tell a mirrored truth mirrored.
+    pub fn mirrors(&self) -> bool {
+        let odd = |m: &SensorModel| m.bias == [0.0; 3] && m.noise == 0.0 && m.dropout == 0.0;
+        self.imu.turned_rad == [0.0; 3] && self.imu.point_m[1] == 0.0 && self.models.iter().all(odd)
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the sensor, the value and its range.
+    pub fn check(&self) -> Result<(), PlantError> {
+        self.imu.check()?;
+        Sensor::ALL.into_iter().try_for_each(|sensor| self.model(sensor).check(sensor))
+    }
+}
+
+/// One sensor of one ride: its samples on their way.
+#[derive(Debug)]
+pub struct SensorState {
+    /// Oldest first; `None` where no sample was taken, or was lost.
+    on_their_way: VecDeque<Option<[f64; 3]>>,
+    /// Only for a model that needs it.
+    dice: Option<Dice>,
+}
+
+impl SensorState {
+    /// Before the control instant 0; until then the truth was `steady`.
+    pub fn new(model: &SensorModel, steady: [f64; 3], dice: Dice) -> Self {
+        let mut dice = (model.noise > 0.0 || model.dropout > 0.0).then_some(dice);
+        let on_their_way =
+            (-i64::from(model.delay_ticks)..0).map(|at| taken(model, at, steady, dice.as_mut())).collect();
+        Self { on_their_way, dice }
+    }
+
+    /// Takes in the truth at `tick`, one after the last, and gives the sample that arrives now.
+    pub fn arriving(&mut self, model: &SensorModel, tick: i64, truth: [f64; 3]) -> Option<[f64; 3]> {
+        let new = taken(model, tick, truth, self.dice.as_mut());
+        // Without delay the queue stays empty.
+        let Some(arrived) = self.on_their_way.pop_front() else { return new };
+        self.on_their_way.push_back(new);
+        arrived
+    }
+}
+
+/// The sample taken at `tick`, if one is.
+fn taken(model: &SensorModel, tick: i64, truth: [f64; 3], dice: Option<&mut Dice>) -> Option<[f64; 3]> {
+    (tick.rem_euclid(i64::from(model.every_ticks)) == 0).then(|| model.sample(truth, dice)).flatten()
+}

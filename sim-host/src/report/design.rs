@@ -1,0 +1,240 @@
+//! The document, table, figure and law file of `design`.
+
+use super::document::SCHEMA;
+use super::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
+use super::resolved::{ResolvedSearch, Tool};
+use crate::design::{Found, Judged, Plan};
+use control::Law;
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// `design`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct DesignDocument {
+    /// 1.
+    #[schemars(extend("const" = SCHEMA))]
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// The law that the search began with, as given.
+    pub start: String,
+    /// Seed of the simplices begun anew.
+    pub seed: u64,
+    /// Schedules that were to be tried.
+    pub evaluations_asked: u32,
+    /// Schedules that were tried: with the same seed, as many give the same answer.
+    pub evaluations: u32,
+    /// False if time ran out or after an interruption: then it is the best so far.
+    pub complete: bool,
+    /// Area given up for evenness \[rad m/s^2 per (N m s/rad)^2\].
+    pub smoothness: f64,
+    /// Largest torque \[N m\].
+    pub torque_limit_nm: Option<f32>,
+    /// Largest change of torque \[N m/s\].
+    pub rate_limit_nm_s: Option<f32>,
+    /// The schedule: speed \[m/s\] and gain \[N m s/rad\].
+    pub schedule: Vec<(f64, f64)>,
+    /// Its least area over the trials it was designed with, found coarsely \[rad m/s^2\].
+    pub worst_area: f64,
+    /// The same of the law it began with.
+    pub start_worst_area: f64,
+    /// Every improvement: schedules tried, least area.
+    pub history: Vec<(u32, f64)>,
+    /// How areas were found on the way.
+    pub coarse: SearchEntry,
+    /// How those of the trials below were found.
+    pub fine: SearchEntry,
+    /// The laws that are compared, by their names on the command line; the last is "design".
+    pub laws: Vec<String>,
+    /// Every trial; empty if they were left out or interrupted.
+    pub trials: Vec<TrialEntry>,
+    /// How long it took \[s\].
+    pub seconds: f64,
+}
+
+/// How areas are found.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct SearchEntry {
+    /// Forward speeds \[m/s\].
+    pub speeds: Vec<f64>,
+    /// The search at each.
+    #[serde(flatten)]
+    pub search: ResolvedSearch,
+}
+
+/// The laws in one trial.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct TrialEntry {
+    /// Who rides what.
+    pub label: String,
+    /// Whether the schedule was designed with it.
+    pub designed_with: bool,
+    /// Area of the basin under each of `laws`, trapezoidal rule \[rad m/s^2\].
+    pub area: Vec<f64>,
+}
+
+impl SearchEntry {
+    /// The entry of a search.
+    pub fn new(search: &crate::basin::Search) -> Self {
+        Self { speeds: search.speeds.clone(), search: ResolvedSearch::new(search) }
+    }
+}
+
+/// A design, and what it was judged to be.
+#[derive(Clone, Copy, Debug)]
+pub struct Design<'a> {
+    /// What was searched.
+    pub plan: &'a Plan,
+    /// The law it began with, as given.
+    pub start: &'a str,
+    /// What was found.
+    pub found: &'a Found,
+    /// What it is, as a law.
+    pub law: &'a Law,
+    /// With what and on what it was tried.
+    pub arena: &'a crate::design::Arena,
+    /// How areas were found for the judgement.
+    pub fine: &'a crate::basin::Search,
+    /// The laws compared, itself the last.
+    pub laws: &'a [(String, Law)],
+    /// Their areas, if they were found.
+    pub judged: Option<&'a Judged>,
+}
+
+impl DesignDocument {
+    /// The document of a design that took `seconds`.
+    pub fn new(d: &Design, seconds: f64) -> Self {
+        let trials = d.arena.training.iter().map(|t| (t, true));
+        let trials: Vec<_> = trials.chain(d.arena.held_out.iter().map(|t| (t, false))).collect();
+        let entries = |judged: &Judged| {
+            let entries = trials.iter().zip(&judged.areas).map(|((trial, designed_with), area)| TrialEntry {
+                label: trial.label.clone(),
+                designed_with: *designed_with,
+                area: area.clone(),
+            });
+            entries.collect()
+        };
+        let limits = d.arena.training.first().map(|t| t.limits).unwrap_or_default();
+        Self {
+            schema: SCHEMA,
+            tool: Tool::this(),
+            start: d.start.into(),
+            seed: d.plan.seed,
+            evaluations_asked: d.plan.evaluations,
+            evaluations: d.found.evaluations,
+            complete: d.found.complete,
+            smoothness: d.plan.smoothness,
+            torque_limit_nm: limits.max_torque_nm,
+            rate_limit_nm_s: limits.rise_nm_s,
+            schedule: points(d.law),
+            worst_area: d.found.worst_area,
+            start_worst_area: d.found.start_area,
+            history: d.found.history.clone(),
+            coarse: SearchEntry::new(&d.plan.search),
+            fine: SearchEntry::new(d.fine),
+            laws: d.laws.iter().map(|(name, _)| name.clone()).collect(),
+            trials: d.judged.map_or(Vec::new(), entries),
+            seconds,
+        }
+    }
+
+    /// The answer in words.
+    pub fn summary(&self) -> String {
+        let mut text = format!(
+            "{} schedules tried, least area {:.3} rad m/s^2 (coarse; {} has {:.3})\n",
+            self.evaluations, self.worst_area, self.start, self.start_worst_area
+        );
+        for (speed, gain) in &self.schedule {
+            let _ = writeln!(text, "  {speed:5.2} m/s  {gain:7.2} N m s/rad");
+        }
+        if self.trials.is_empty() {
+            return text;
+        }
+        let row = |label: &str, cells: Vec<String>| {
+            format!("{label:<54} {}\n", cells.iter().map(|c| format!("{c:>8}")).collect::<String>())
+        };
+        let short = |name: &String| name.replace("balance-assist", "ba");
+        text += &row("area [rad m/s^2]", self.laws.iter().map(short).collect());
+        for (designed_with, title) in [(true, "designed with"), (false, "held out")] {
+            let trials: Vec<&TrialEntry> =
+                self.trials.iter().filter(|t| t.designed_with == designed_with).collect();
+            for trial in &trials {
+                text += &row(&trial.label, trial.area.iter().map(|a| format!("{a:.2}")).collect());
+            }
+            let least = |i: usize| trials.iter().map(|t| t.area[i]).fold(f64::INFINITY, f64::min);
+            let least = (0..self.laws.len()).map(|i| format!("{:.2}", least(i))).collect();
+            text += &row(&format!("least, {title}"), least);
+        }
+        text
+    }
+
+    /// The heading of the table: the trial's number, whether it was designed with, each law.
+    pub fn columns(&self) -> Vec<String> {
+        ["trial".to_owned(), "designed_with".to_owned()].into_iter().chain(self.laws.clone()).collect()
+    }
+
+    /// The table's rows.
+    pub fn rows(&self) -> impl Iterator<Item = Vec<Option<f64>>> {
+        self.trials.iter().enumerate().map(|(i, t)| {
+            let head = [i as f64 + 1.0, f64::from(u8::from(t.designed_with))];
+            head.into_iter().chain(t.area.iter().copied()).map(Some).collect()
+        })
+    }
+}
+
+fn points(law: &Law) -> Vec<(f64, f64)> {
+    let Law::Table(table) = law else { return Vec::new() };
+    table.points().iter().map(|(v, gain)| (f64::from(*v), f64::from(*gain))).collect()
+}
+
+/// The law as a file that `--law` takes.
+pub fn law_file(d: &Design) -> String {
+    let Tool { name, version, commit } = Tool::this();
+    let source = format!(
+        "{name} {version} commit {commit}: design, seed {}, {} schedules tried from {}, least area {:.3} rad m/s^2",
+        d.plan.seed, d.found.evaluations, d.start, d.found.worst_area
+    );
+    let (speeds, gains): (Vec<f32>, Vec<f32>) = match d.law {
+        Law::Table(table) => table.points().iter().copied().unzip(),
+        _ => Default::default(),
+    };
+    let source = toml::Value::from(source);
+    format!("source = {source}\nspeed_m_s = {speeds:?}\ngain_nm_s_rad = {gains:?}\n")
+}
+
+/// The gains of the laws over speed, and their areas trial by trial.
+pub fn figure(document: &DesignDocument, laws: &[(String, Law)]) -> Chart {
+    let speeds: Vec<f64> = (0..=180).map(|i| 0.05 * f64::from(i)).collect();
+    let assisting = || laws.iter().enumerate().filter(|(_, (_, law))| *law != Law::None);
+    let gains = assisting().map(|(i, (name, law))| {
+        let line = if i + 1 == laws.len() { Line::Solid } else { Line::Dashed };
+        Series::new(name, Look::line(i, line), speeds.iter().map(|v| (*v, law.gain(*v))).collect())
+    });
+    let schedule = Plot {
+        title: "Gain".into(),
+        x: Axis::new("Forward speed v [m/s]"),
+        y: Axis::new("Gain [N m s/rad]").over(-12.0, 45.0),
+        series: gains.collect(),
+        ..Plot::default()
+    };
+    let areas = laws.iter().enumerate().map(|(i, (name, _))| {
+        let points = document.trials.iter().enumerate();
+        let points = points.map(|(n, trial)| (n as f64 + 1.0, trial.area[i])).collect();
+        Series::new(
+            name,
+            Look::marks(i, if i + 1 == laws.len() { Marker::Square } else { Marker::Ring }),
+            points,
+        )
+    });
+    let judged = Plot {
+        title: "Area of the basin; right of the line: held out".into(),
+        x: Axis::new("Trial"),
+        y: Axis::new("Area [rad m/s²]"),
+        series: areas.collect(),
+        verticals: vec![document.trials.iter().filter(|t| t.designed_with).count() as f64 + 0.5],
+        ..Plot::default()
+    };
+    let plots = if document.trials.is_empty() { vec![schedule] } else { vec![schedule, judged] };
+    Chart { title: "A designed law beside the known ones".into(), columns: 2, plots, shaded: String::new() }
+}

@@ -1,0 +1,164 @@
+//! Heat maps: a number over two axes of words, evenly spaced.
+
+use super::canvas::{Area, Canvas, Stroke};
+use super::colour::{GREY, INK, SHADES, shade};
+use super::legend::{Sign, entry, rows, rows_height};
+use super::panel::Panel;
+use super::picture::Picture;
+use super::scale::{nice, ticks};
+use super::shape::text_width;
+use kuva::render::render::TextAnchor;
+
+/// Heat maps side by side, in the same colours.
+#[derive(Clone, Debug)]
+pub struct HeatMap<'a> {
+    /// Above the figure.
+    pub title: &'a str,
+    /// The number's name and unit.
+    pub label: &'a str,
+    /// Name and values of the horizontal axis.
+    pub x: (&'a str, &'a [String]),
+    /// Name and values of the vertical axis.
+    pub y: (&'a str, &'a [String]),
+    /// The maps: a title, and the numbers row by row from below; none where it is not known.
+    pub maps: &'a [(String, Vec<Vec<Option<f64>>>)],
+    /// Where a line is drawn, as a part of a map's largest number.
+    pub contour: f64,
+}
+
+const LEFT: f64 = 86.0;
+const TOP: f64 = 62.0;
+const BELOW: f64 = 78.0;
+const BAR: f64 = 14.0;
+
+/// A rectangle for every number; unknown ones stay grey.
+pub fn heatmap(figure: &HeatMap) -> Picture {
+    let columns = figure.maps.len().clamp(1, 3);
+    let (width, height) = [(460.0, 340.0), (320.0, 260.0), (250.0, 210.0)][columns - 1];
+    let lines = figure.maps.len().div_ceil(columns);
+    let whole = (LEFT + width) * columns as f64 - LEFT;
+    let percent = 100.0 * figure.contour;
+    let legend = [entry(Sign::Line(Stroke::solid(LINE, 2.2)), format!("{percent} % of the map's largest"))];
+    let legend_y = TOP + (height + BELOW) * lines as f64 - 20.0;
+    let bottom = legend_y + rows_height(&legend, whole) + 12.0;
+    let mut canvas = Canvas::new(LEFT + whole + 96.0, bottom);
+    canvas.title((LEFT, 26.0), whole, figure.title);
+    let numbers = figure.maps.iter().flat_map(|(_, rows)| rows.iter().flatten().flatten().copied());
+    let range = nice(numbers.chain([0.0]), 6);
+    for (i, (title, map)) in figure.maps.iter().enumerate() {
+        let (column, line) = ((i % columns) as f64, (i / columns) as f64);
+        let area =
+            Area { x: LEFT + (LEFT + width) * column, y: TOP + (height + BELOW) * line, width, height };
+        canvas.text((area.x + 0.5 * width, area.y - 8.0), 12, TextAnchor::Middle, title);
+        draw(&mut canvas, figure, map, area, range);
+    }
+    rows(&mut canvas, &legend, (LEFT, legend_y), whole);
+    let last = Area { x: LEFT, y: TOP, width: whole, height };
+    bar(&mut canvas, last, range, figure.label);
+    canvas.finish()
+}
+
+/// Stays visible on dark and on light shades.
+const LINE: &str = "#ffffff";
+
+/// Of a number in a range, how far along it is as a shade's number.
+fn shade_of(x: f64, (low, high): (f64, f64)) -> usize {
+    (((x - low) / (high - low) * SHADES as f64) as usize).min(SHADES - 1)
+}
+
+fn draw(canvas: &mut Canvas, figure: &HeatMap, map: &[Vec<Option<f64>>], area: Area, range: (f64, f64)) {
+    let (across, up) = (figure.x.1.len(), figure.y.1.len());
+    // Cell i is centred at i.
+    let panel = Panel { area, x: (-0.5, across as f64 - 0.5), y: (-0.5, up as f64 - 0.5) };
+    canvas.rect(area, GREY, 0.4);
+    canvas.clipped(area, |canvas| {
+        for (j, row) in map.iter().enumerate() {
+            for (i, x) in row.iter().enumerate().filter_map(|(i, x)| Some((i, (*x)?))) {
+                let (i, j) = (i as f64, j as f64);
+                let cell = panel.span((i - 0.5, i + 0.5), (j - 0.5, j + 0.5));
+                // Half a pixel of overlap hides the seams.
+                let cell = Area { width: cell.width + 0.5, height: cell.height + 0.5, ..cell };
+                canvas.rect(cell, &*shade(shade_of(x, range)), 1.0);
+            }
+        }
+    });
+    let most = map.iter().flatten().flatten().copied().fold(0.0, f64::max);
+    let pieces = contour(map, figure.contour * most);
+    canvas.clipped(area, |canvas| {
+        for (color, width) in [(INK, 3.4), (LINE, 2.2)] {
+            for piece in &pieces {
+                canvas.line(&piece.map(|p| panel.at(p)), Stroke::solid(color, width));
+            }
+        }
+    });
+    let names = |names: &[String], room: f64, wide: bool| {
+        let size = |name: &String| if wide { text_width(name, 12) + 8.0 } else { 16.0 };
+        let widest = names.iter().map(size).fold(1.0, f64::max);
+        let step = (widest * names.len() as f64 / room).ceil().max(1.0) as usize;
+        let all = names.iter().enumerate().map(|(i, name)| (i as f64, name.clone()));
+        all.step_by(step).collect::<Vec<_>>()
+    };
+    let along = [names(figure.x.1, area.width, true), names(figure.y.1, area.height, false)];
+    panel.frame_with(canvas, &along, Some(figure.x.0), figure.y.0);
+}
+
+/// The colours as a bar, right of `axes`.
+fn bar(canvas: &mut Canvas, axes: Area, range: (f64, f64), label: &str) {
+    let x = axes.right() + 18.0;
+    let step = axes.height / SHADES as f64;
+    for i in 0..SHADES {
+        let overlap = if i > 0 { 1.0 } else { 0.0 };
+        let y = axes.bottom() - (i + 1) as f64 * step;
+        canvas.rect(Area { x, y, width: BAR, height: step + overlap }, &*shade(i), 1.0);
+    }
+    for (value, name) in ticks(range, 6) {
+        let y = axes.bottom() - (value - range.0) / (range.1 - range.0) * axes.height;
+        canvas.line(&[(x + BAR, y), (x + BAR + 4.0, y)], Stroke::solid(INK, 1.0));
+        canvas.text((x + BAR + 7.0, y + 4.0), 12, TextAnchor::Start, &name);
+    }
+    canvas.text_upwards((x + BAR + 52.0, axes.y + 0.5 * axes.height), 13, label);
+}
+
+/// The straight pieces of the line on which `map` is `level`, in cells: linear between the centres of
+/// each three neighbours, two triangles a square, so that no saddle is in doubt.
+fn contour(map: &[Vec<Option<f64>>], level: f64) -> Vec<[(f64, f64); 2]> {
+    let mut pieces = Vec::new();
+    let at = |i: usize, j: usize| Some(((i as f64, j as f64), (*map.get(j)?.get(i)?)? - level));
+    let across = map.first().map_or(0, Vec::len);
+    for j in 0..map.len() {
+        for i in 0..across {
+            for corners in [[(i, j), (i + 1, j), (i + 1, j + 1)], [(i, j), (i, j + 1), (i + 1, j + 1)]] {
+                let [Some(a), Some(b), Some(c)] = corners.map(|(i, j)| at(i, j)) else { continue };
+                let crossed: Vec<_> = [(a, b), (b, c), (c, a)].into_iter().filter_map(crossing).collect();
+                if let [from, to] = crossed[..] {
+                    pieces.push([from, to]);
+                }
+            }
+        }
+    }
+    pieces
+}
+
+/// A place and the number there.
+type At = ((f64, f64), f64);
+
+/// Where a number changes its sign between two places.
+fn crossing(((p, a), (q, b)): (At, At)) -> Option<(f64, f64)> {
+    let part = a / (a - b);
+    ((a < 0.0) != (b < 0.0)).then_some((p.0 + part * (q.0 - p.0), p.1 + part * (q.1 - p.1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contour_lies_between_the_numbers() {
+        let map = [vec![Some(0.0), Some(4.0)], vec![Some(0.0), Some(4.0)]];
+        let pieces = contour(&map, 1.0);
+        assert_eq!(pieces.len(), 2);
+        assert!(pieces.iter().flatten().all(|p| p.0 == 0.25), "{pieces:?}");
+        assert_eq!(contour(&map, 5.0), []);
+        assert_eq!(contour(&[vec![Some(0.0), None], vec![Some(4.0), None]], 1.0), []);
+    }
+}

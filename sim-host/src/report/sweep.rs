@@ -1,0 +1,159 @@
+//! The document and the tables of `sweep`.
+
+use super::document::SCHEMA;
+use super::resolved::Tool;
+use super::table;
+use crate::basin::Work;
+use crate::sweep::{Axis, Found, Grid, SweepSearch, Unit};
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// `sweep`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct SweepDocument {
+    /// 1.
+    #[schemars(extend("const" = SCHEMA))]
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// The options all cells share, as on the command line.
+    pub options: Vec<String>,
+    /// What is searched in every cell.
+    pub search: SweepSearch,
+    /// What the cells differ in.
+    pub axes: Vec<Axis>,
+    /// False as long as cells are missing.
+    pub complete: bool,
+    /// What is the same in every cell's configuration, as in the document of `basin`.
+    pub config: Value,
+    /// The cells that are done, the last axis' values following each other.
+    pub cells: Vec<CellDocument>,
+    /// How much was computed.
+    pub work: Work,
+}
+
+/// One cell.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct CellDocument {
+    /// Its identity, which is the name of its file.
+    pub id: String,
+    /// The axes' values.
+    pub values: Vec<String>,
+    /// What is not the same in every cell's configuration.
+    pub config: Value,
+    /// Area under the heights, trapezoidal rule \[rad m/s^2\].
+    pub area: f64,
+    /// Their mean \[rad/s\].
+    pub mean_height: f64,
+    /// Largest torque of the rides at the border \[N m\].
+    pub peak_torque_nm: f64,
+    /// Largest change of torque of the rides at the border \[N m/s\].
+    pub peak_slew_nm_s: f64,
+    /// What was found, per speed of the search.
+    pub found: Vec<Found>,
+}
+
+impl SweepDocument {
+    /// The document of a sweep, whole or in part.
+    pub fn new(grid: &Grid) -> Self {
+        let plan = &grid.plan;
+        let shared = shared(grid);
+        let entry = |(i, unit): (usize, &Unit)| {
+            let (peak_torque_nm, peak_slew_nm_s) = unit.most();
+            CellDocument {
+                id: unit.id.clone(),
+                values: plan.values(i),
+                config: without(&unit.config, &shared),
+                area: grid.area(unit),
+                mean_height: unit.mean_height(),
+                peak_torque_nm,
+                peak_slew_nm_s,
+                found: unit.found.clone(),
+            }
+        };
+        Self {
+            schema: SCHEMA,
+            tool: plan.tool.clone(),
+            options: plan.options.clone(),
+            search: plan.search.clone(),
+            axes: plan.axes.clone(),
+            complete: grid.missing() == 0,
+            config: shared.clone().into(),
+            cells: done(grid).map(entry).collect(),
+            work: done(grid).fold(Work::default(), |sum, (_, u)| sum.plus(&u.work)),
+        }
+    }
+
+    /// What tables and figures carry: everything but the cells. The program is the one that computed,
+    /// which need not be the one that writes.
+    pub fn heading(&self) -> Value {
+        let Self { tool, options, search, axes, complete, config, .. } = self;
+        serde_json::json!({"tool": tool, "options": options, "search": search, "axes": axes, "config": config, "complete": complete})
+    }
+}
+
+fn done(grid: &Grid) -> impl Iterator<Item = (usize, &Unit)> {
+    grid.units.iter().enumerate().filter_map(|(i, unit)| Some((i, unit.as_ref()?)))
+}
+
+/// The entries that all configurations have alike.
+fn shared(grid: &Grid) -> Map<String, Value> {
+    let mut units = done(grid).map(|(_, unit)| &unit.config);
+    let Some(Value::Object(first)) = units.next() else { return Map::new() };
+    let mut shared = first.clone();
+    for config in units {
+        shared.retain(|key, value| config.get(key) == Some(value));
+    }
+    shared
+}
+
+fn without(config: &Value, shared: &Map<String, Value>) -> Value {
+    let all = config.as_object().into_iter().flatten();
+    let own = all.filter(|(key, _)| !shared.contains_key(*key));
+    own.map(|(key, value)| (key.clone(), value.clone())).collect::<Map<_, _>>().into()
+}
+
+/// One line a cell: the axes' values, then measures of the basin.
+///
+/// # Errors
+/// When a row can't be written as a line of CSV.
+pub fn cells_table(document: &SweepDocument) -> Result<Vec<u8>, csv::Error> {
+    let measures = ["area_rad_m_s2", "mean_height_rad_s", "peak_torque_nm", "peak_slew_nm_s"];
+    let rows = document.cells.iter().map(|cell| {
+        let numbers = [cell.area, cell.mean_height, cell.peak_torque_nm, cell.peak_slew_nm_s];
+        cell.values.iter().cloned().chain(numbers.map(|x| x.to_string())).collect::<Vec<_>>()
+    });
+    table::rows(&document.heading(), &columns(document, &measures), rows)
+}
+
+/// One line a cell and speed: the axes' values, the speed, what was found.
+///
+/// # Errors
+/// When a row can't be written as a line of CSV.
+pub fn heights_table(document: &SweepDocument) -> Result<Vec<u8>, csv::Error> {
+    let measures = ["speed_m_s", "height_rad_s", "capped", "peak_torque_nm", "peak_slew_nm_s"];
+    let speeds = &document.search.speeds;
+    let rows = document.cells.iter().flat_map(|cell| {
+        cell.found.iter().zip(speeds).map(|(found, speed)| {
+            let effort = |of: fn(&crate::ride::Effort) -> f64| {
+                found.effort.as_ref().map_or(String::new(), |e| of(e).to_string())
+            };
+            let Found { height, capped, .. } = found;
+            let measures = [
+                speed.to_string(),
+                height.to_string(),
+                capped.to_string(),
+                effort(|e| e.peak_torque_nm),
+                effort(|e| e.peak_slew_nm_s),
+            ];
+            cell.values.iter().cloned().chain(measures).collect::<Vec<_>>()
+        })
+    });
+    table::rows(&document.heading(), &columns(document, &measures), rows)
+}
+
+fn columns(document: &SweepDocument, measures: &[&str]) -> Vec<String> {
+    let keys = document.axes.iter().map(|axis| axis.key.clone());
+    keys.chain(measures.iter().map(|m| (*m).to_owned())).collect()
+}

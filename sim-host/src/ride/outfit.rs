@@ -1,0 +1,133 @@
+//! The plant of one ride: exact readings, the sensors that tell them, the motor. Rides whose sensors
+//! and motor are exact, and whose controller needs roll rate and one speed only, go without.
+
+use super::preroll::{Ready, preroll};
+use super::sensor::Reading as Signals;
+use super::{Assist, Conditions, ScheduleSpeed, Start};
+use crate::bicycle::{Motion, Velocities};
+use crate::num::{Lanes, Vec3};
+use crate::plant::{Actuator, Frame, Held, Measured, Plant, Reading, Rig, Sensor, Traveller};
+use control::{InputConfig, Plan, Sample, SensorFrame, Triple, Wheel};
+
+/// Sensors and motor of one ride.
+#[derive(Debug)]
+pub(super) struct Outfit {
+    rig: Rig,
+    traveller: Traveller,
+    pub(super) motor: Actuator,
+}
+
+/// Whether rides under these conditions need one.
+pub(super) fn needed(conditions: &Conditions) -> bool {
+    let Assist::Firmware(plan) = &conditions.assist else { return false };
+    let InputConfig { accel, steer, steer_rate, front_wheel, rear_wheel, rider_torque, motor, path, .. } =
+        &plan.config().input;
+    let beyond = [accel, steer, steer_rate, rider_torque, motor, path].iter().any(|sensor| sensor.fitted);
+    beyond || (front_wheel.fitted && rear_wheel.fitted) || !conditions.plant.exact()
+}
+
+impl Outfit {
+    /// At t = 0, with the controller that these sensors readied. `frames` gets what it was told.
+    pub(super) fn new(
+        conditions: &Conditions,
+        plan: &Plan,
+        plant: &Plant,
+        start: &Start,
+        mut frames: impl FnMut(&SensorFrame),
+    ) -> (Self, Ready) {
+        let steady = Reading::steady(start.speed_m_s, conditions.bicycle.g);
+        let mut rig = Rig::new(plant, conditions.step_s, start, &steady);
+        let told = |_, pressed| frame(plan, &rig.measure(plant, &steady, pressed));
+        let ready = preroll(plan, told, |frame, _| frames(frame));
+        rig.begin();
+        let motor = Actuator::new(&plant.actuator);
+        (Self { rig, traveller: Traveller::default(), motor }, ready)
+    }
+
+    /// What the sensors tell at a control instant.
+    pub(super) fn told(
+        &mut self,
+        conditions: &Conditions,
+        plant: &Plant,
+        at: &Frame,
+        rider_torque_nm: f64,
+        initial_m_s: f64,
+    ) -> Measured {
+        let (b, h) = (&conditions.bicycle, conditions.step_s);
+        let exact = self.traveller.read(b, conditions.imu, plant.sensors.imu.point_m, h, at);
+        let mut now = Reading {
+            rider_torque_nm,
+            motor_torque_nm: self.motor.torque(&plant.actuator, h, at.velocities.steer),
+            ..exact
+        };
+        if conditions.schedule_speed == ScheduleSpeed::Initial {
+            (now.front_wheel_m_s, now.rear_wheel_m_s) = (initial_m_s, initial_m_s);
+        }
+        self.rig.measure(plant, &now, true)
+    }
+
+    /// Gives the motor its command of this control instant \[N m\].
+    pub(super) fn commanded(&mut self, conditions: &Conditions, plant: &Plant, torque_nm: f64) {
+        let reached = self.rig.command(plant, torque_nm);
+        self.motor.command(&plant.actuator, conditions.step_s, reached);
+    }
+}
+
+/// What the firmware gets of it: the declared sensors.
+pub(super) fn frame(plan: &Plan, told: &Measured) -> SensorFrame {
+    let input = &plan.config().input;
+    let of = |sensor| -> &Held { told.of(sensor) };
+    let one = |fitted: bool, sensor: Sensor, axis: usize| match fitted {
+        true => Sample { value: of(sensor).value[axis] as f32, age_ticks: of(sensor).age_ticks },
+        false => Sample::missing(),
+    };
+    let three = |fitted: bool, sensor: Sensor| match fitted {
+        true => Triple { value: of(sensor).value.map(|x| x as f32), age_ticks: of(sensor).age_ticks },
+        false => Triple::missing(),
+    };
+    SensorFrame {
+        now_us: told.now_us,
+        gyro_rad_s: three(input.gyro.fitted, Sensor::Gyro),
+        accel_m_s2: three(input.accel.fitted, Sensor::Accel),
+        steer_rad: one(input.steer.fitted, Sensor::Steer, 0),
+        steer_rate_rad_s: one(input.steer_rate.fitted, Sensor::SteerRate, 0),
+        front_wheel_m_s: one(input.front_wheel.fitted, Sensor::FrontWheel, 0),
+        rear_wheel_m_s: one(input.rear_wheel.fitted, Sensor::RearWheel, 0),
+        rider_torque_nm: one(input.rider_torque.fitted, Sensor::RiderTorque, 0),
+        motor_torque_nm: one(input.motor.fitted, Sensor::MotorReport, 0),
+        heading_error_rad: one(input.path.fitted, Sensor::Path, 0),
+        lateral_error_m: one(input.path.fitted, Sensor::Path, 1),
+        engage: told.engage,
+    }
+}
+
+/// Roll rate and speed as told.
+pub(super) fn told_signals(plan: &Plan, told: &Measured) -> Signals {
+    let wheel = match plan.config().input.wheel {
+        Wheel::Front => Sensor::FrontWheel,
+        Wheel::Rear => Sensor::RearWheel,
+    };
+    Signals { roll_rate_rad_s: told.of(Sensor::Gyro).value[0], speed_m_s: told.of(wheel).value[0] }
+}
+
+/// The rear frame in a lane.
+pub(super) fn lane_frame<const N: usize>(motion: &Motion<Lanes<N>>, lane: usize) -> Frame {
+    let vector = |v: Vec3<Lanes<N>>| Vec3::new(v.x.0[lane], v.y.0[lane], v.z.0[lane]);
+    let (v, pose) = (&motion.actual, &motion.pose);
+    let (sin, cos) = pose.attitude.steer;
+    Frame {
+        e1: vector(pose.e1),
+        k: vector(pose.k),
+        velocities: Velocities {
+            roll: v.roll.0[lane],
+            pitch: v.pitch.0[lane],
+            yaw: v.yaw.0[lane],
+            steer: v.steer.0[lane],
+            rear_spin: v.rear_spin.0[lane],
+            front_spin: v.front_spin.0[lane],
+            omega: vector(v.omega),
+            rolling: v.rolling.0[lane],
+        },
+        steer_rad: libm::atan2(sin.0[lane], cos.0[lane]),
+    }
+}

@@ -1,0 +1,172 @@
+//! The balance assist's law beside h, both behind the prototype's 7 N m.
+
+use super::page::{Page, table};
+use super::trial::{Outline, Trial, outlines};
+use crate::basin::{Axis as Disturbance, Search, area};
+use crate::report::figure::{Axis, Chart, Line, Look, Plot, Series};
+use control::{Law, Limits};
+
+/// The name of the page.
+pub const NAME: &str = "prototype";
+/// The largest torque of the published prototype \[N m\].
+pub const LIMIT_NM: f32 = 7.0;
+/// The product's largest change of torque \[N m/s\].
+const RATE_NM_S: f32 = 100.0;
+/// Who rides what.
+const RIDES: [(&str, Option<&str>); 3] =
+    [("rigid_jason", None), ("rigid_jason", Some("smart")), ("balanceassistv1_jason", None)];
+
+/// The laws, with their names on the command line.
+pub fn laws() -> [(&'static str, Law); 4] {
+    [
+        ("none", Law::None),
+        ("h-cut", Law::H { cut: true }),
+        ("balance-assist:3.9", Law::BalanceAssist { kappa: 3.9 }),
+        ("balance-assist:5.2", Law::BalanceAssist { kappa: 5.2 }),
+    ]
+}
+
+/// The search of the study: 2 to 7.5 m/s in steps of `step` \[m/s\].
+pub fn search(step: f64) -> Search {
+    let steps = (5.5 / step).round() as usize;
+    Search {
+        speeds: (0..=steps).map(|i| ((2.0 + i as f64 * step) * 1e9).round() / 1e9).collect(),
+        axis: Disturbance::SteerRate,
+        max_rate: 30.0,
+        scan_step: 0.25,
+        tolerance: 0.01,
+    }
+}
+
+/// One of the study's trials: a bicycle and a rider, with or without the product's rate limit.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// The bicycle's name.
+    pub bicycle: &'static str,
+    /// The rider's.
+    pub rider: Option<&'static str>,
+    /// Whether the torque's rate is limited.
+    pub rate_limited: bool,
+    trial: Trial,
+}
+
+/// All of them.
+///
+/// # Errors
+/// When a bicycle or rider does not ship.
+pub fn groups() -> Result<Vec<Group>, String> {
+    let pairs = RIDES.iter().flat_map(|ride| [false, true].map(|limited| (*ride, limited)));
+    pairs
+        .map(|((bicycle, rider), rate_limited)| {
+            let rate_nm_s = rate_limited.then_some(RATE_NM_S);
+            let limits = Limits {
+                max_torque_nm: Some(LIMIT_NM),
+                rise_nm_s: rate_nm_s,
+                fall_nm_s: rate_nm_s,
+                ..Limits::default()
+            };
+            let trial = Trial::new(bicycle, rider, None, 0, limits)?;
+            Ok(Group { bicycle, rider, rate_limited, trial })
+        })
+        .collect()
+}
+
+/// How many columns the study computes.
+pub fn work(search: &Search) -> usize {
+    RIDES.len() * (2 * laws().len() - 1) * search.speeds.len()
+}
+
+/// The study; `None` if `stop` said so on the way.
+///
+/// # Errors
+/// When a ride can't be set up.
+pub fn study(
+    search: &Search,
+    advanced: &(dyn Fn() + Sync),
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Option<Page>, String> {
+    let (groups, laws) = (groups()?, laws());
+    // Without a law no limit matters: that is ridden once.
+    let matters = |g: &Group, law: &Law| *law != Law::None || !g.rate_limited;
+    let pairs = groups.iter().flat_map(|g| laws.iter().map(move |(_, law)| (g, law)));
+    let asked: Vec<(&Trial, &Law)> =
+        pairs.filter(|(g, law)| matters(g, law)).map(|(g, law)| (&g.trial, law)).collect();
+    let Some(found) = outlines(&asked, search, advanced, stop)? else { return Ok(None) };
+    let mut found = found.into_iter();
+    let mut by_group: Vec<Vec<Outline>> = Vec::new();
+    for g in &groups {
+        let mut of_laws: Vec<Outline> = Vec::new();
+        for (_, law) in &laws {
+            let before = by_group.last().and_then(|group| group.first());
+            let outline = if matters(g, law) { found.next() } else { before.cloned() };
+            of_laws.extend(outline);
+        }
+        by_group.push(of_laws);
+    }
+    let text = text(&groups, &by_group, search);
+    Ok(Some(Page { name: NAME, text, chart: figure(&groups, &by_group) }))
+}
+
+fn text(groups: &[Group], outlines: &[Vec<Outline>], search: &Search) -> String {
+    let laws = laws();
+    let mut heading = vec!["bicycle", "rider", "largest change [N m/s]"];
+    heading.extend(laws.iter().map(|(name, _)| *name));
+    heading.push("5.2 over h-cut");
+    let rows = groups.iter().zip(outlines).map(|(g, outlines)| {
+        let areas: Vec<f64> = outlines.iter().map(|o| area(o)).collect();
+        let rate = if g.rate_limited { RATE_NM_S.to_string() } else { "none".into() };
+        let mut row = vec![g.bicycle.to_owned(), g.rider.unwrap_or("none").to_owned(), rate];
+        row.extend(areas.iter().map(|a| format!("{a:.2}")));
+        row.push(format!("{:.2}", areas[3] / areas[1]));
+        row
+    });
+    let areas = table(&heading, rows);
+    let speeds = [2.0, 3.0, 4.0, 4.5, 5.0, 6.0, 7.0];
+    let nearest = |outline: &[(f64, f64)], v: f64| {
+        let apart = |point: &&(f64, f64)| ((point.0 - v).abs() * 1e6) as u64;
+        outline.iter().min_by_key(apart).map_or(f64::NAN, |point| point.1)
+    };
+    let heights = groups.iter().zip(outlines).filter(|(g, _)| g.rate_limited).flat_map(|(g, outlines)| {
+        laws.iter().zip(outlines).map(move |((name, _), outline)| {
+            let who = format!("{}, {}", g.bicycle, g.rider.unwrap_or("no rider"));
+            let at = speeds.map(|v| format!("{:.2}", nearest(outline, v)));
+            [vec![who, (*name).to_owned()], at.to_vec()].concat()
+        })
+    });
+    let columns: Vec<String> = speeds.iter().map(|v| format!("{v} m/s")).collect();
+    let mut names = vec!["who", "law"];
+    names.extend(columns.iter().map(String::as_str));
+    let heights = table(&names, heights);
+    let last = search.speeds.len() - 1;
+    let step = search.speeds.get(1).map_or(0.0, |v| v - search.speeds[0]);
+    format!(
+        "# The prototype's law beside h\n\n\
+         Made by `sim-host study prototype`. Both laws are given the prototype's {LIMIT_NM} N m, the flashed code at\n\
+         1 kHz and exact sensors without delay. Areas of the basin under a steer rate, {} to {} m/s in steps of {step:.2} m/s,\n\
+         in rad m/s^2; borders within {} rad/s. A ride that does not fall within 6 s counts, so that slow growth at\n\
+         low speed is no fall.\n\n{areas}\n\
+         The steer rates that are survived, in rad/s, with the rate limit:\n\n{heights}\n\
+         The balance assist ends at 4.7 m/s and starts from zero at rest; h reaches on to 7.5 m/s. The prototype's own\n\
+         bicycle is heavier at the front; there is no rider's table for it, so that it is ridden hands off.\n\n\
+         ![Basins](prototype.svg)\n",
+        search.speeds[0], search.speeds[last], search.tolerance,
+    )
+}
+
+fn figure(groups: &[Group], outlines: &[Vec<Outline>]) -> Chart {
+    let limited = groups.iter().zip(outlines).filter(|(g, _)| g.rate_limited);
+    let plots = limited.map(|(g, outlines)| Plot {
+        title: format!("{}, {}", g.bicycle, g.rider.unwrap_or("no rider")),
+        x: Axis::new("Forward speed v [m/s]"),
+        y: Axis::new("Steer rate survived [rad/s]"),
+        series: laws()
+            .iter()
+            .zip(outlines)
+            .enumerate()
+            .map(|(i, ((name, _), outline))| Series::new(*name, Look::line(i, Line::Solid), outline.clone()))
+            .collect(),
+        ..Plot::default()
+    });
+    let title = format!("Basins at {LIMIT_NM} N m and {RATE_NM_S} N m/s");
+    Chart { title, columns: 2, plots: plots.collect(), shaded: String::new() }
+}

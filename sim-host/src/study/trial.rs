@@ -1,0 +1,158 @@
+//! A trial: who rides what, how late the sensors are and what the motor may give. Laws are judged by the basins
+//! they have in it.
+
+use crate::basin::{Search, area, border};
+use crate::bicycle::{Geometry, catalogue};
+use crate::ride::{Assist, Conditions};
+use crate::rider::{Fit, Outside, Rider, catalogue as riders};
+use control::{Config, Law, Limits};
+use rayon::prelude::*;
+
+/// Who rides what under which limits.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// In a few words.
+    pub label: String,
+    /// The bicycle.
+    pub bicycle: Geometry,
+    /// Who rides; `None` for a rigid rider, hands off.
+    pub rider: Option<Rider>,
+    /// How late the sensors are \[control periods of 1 ms\].
+    pub sensor_delay_ms: u16,
+    /// What the motor may be asked for.
+    pub limits: Limits,
+}
+
+impl Trial {
+    /// A trial of a shipped bicycle and rider, by mean gains and the table's own delay, or another \[s\].
+    ///
+    /// # Errors
+    /// When there is no such bicycle or rider.
+    pub fn new(
+        bicycle: &str,
+        rider: Option<&str>,
+        delay_s: Option<f64>,
+        sensor_delay_ms: u16,
+        limits: Limits,
+    ) -> Result<Self, String> {
+        let parameters = catalogue::load(bicycle).map_err(|e| e.to_string())?.parameters;
+        let table = rider.map(riders::load).transpose().map_err(|e| e.to_string())?;
+        let rider_of = |t: &crate::rider::RiderTable| t.rider(Fit::default(), Outside::default(), delay_s);
+        let ridden = table.as_ref().map(rider_of).transpose().map_err(|e| e.to_string())?;
+        let late = delay_s.map_or(String::new(), |s| format!(" with {} ms", (s * 1e6).round() / 1e3));
+        let label =
+            format!("{bicycle}, {}{late}, sensors {sensor_delay_ms} ms late", rider.unwrap_or("no rider"));
+        Ok(Self { label, bicycle: Geometry::new(&parameters), rider: ridden, sensor_delay_ms, limits })
+    }
+
+    /// The conditions of its rides under a law, steered by the flashed code.
+    ///
+    /// # Errors
+    /// When the law or the limits are out of range, or the conditions can't be ridden.
+    pub fn conditions(&self, law: &Law) -> Result<Conditions, String> {
+        let assist = match law {
+            Law::None => Assist::None,
+            _ => {
+                let config = Config { limits: self.limits, ..Config::thesis(law.clone()) };
+                Assist::Firmware(Box::new(config.plan().map_err(|e| e.to_string())?))
+            }
+        };
+        let conditions = Conditions {
+            rider: self.rider.clone(),
+            sensor_delay_ticks: self.sensor_delay_ms,
+            ..Conditions::thesis(self.bicycle, assist)
+        };
+        conditions.check().map_err(|e| e.to_string())?;
+        Ok(conditions)
+    }
+}
+
+/// An outline of a basin: speeds \[m/s\] and the heights there \[rad/s\].
+pub type Outline = Vec<(f64, f64)>;
+
+/// The outline of the basin of every trial and law asked for, all columns side by side; `advanced` is called for each. `None` if `stop` said so on the way.
+///
+/// # Errors
+/// As of [`Trial::conditions`], or when the search fails its check.
+pub fn outlines(
+    asked: &[(&Trial, &Law)],
+    search: &Search,
+    advanced: &(dyn Fn() + Sync),
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Option<Vec<Outline>>, String> {
+    search.check().map_err(|e| e.to_string())?;
+    let conditions: Vec<Conditions> =
+        asked.iter().map(|(trial, law)| trial.conditions(law)).collect::<Result<_, _>>()?;
+    let speeds = search.speeds.len();
+    let heights: Option<Vec<f64>> = (0..asked.len() * speeds)
+        .into_par_iter()
+        .map(|i| {
+            if stop() {
+                return None;
+            }
+            let column = border(&conditions[i / speeds], search, search.speeds[i % speeds]);
+            advanced();
+            Some(column.upper)
+        })
+        .collect();
+    let outline = |heights: &[f64]| search.speeds.iter().copied().zip(heights.iter().copied()).collect();
+    Ok(heights.map(|heights| heights.chunks(speeds).map(outline).collect()))
+}
+
+/// The areas under the outlines of [`outlines`] \[rad m/s^2\].
+///
+/// # Errors
+/// As of [`outlines`].
+pub fn areas(
+    asked: &[(&Trial, &Law)],
+    search: &Search,
+    advanced: &(dyn Fn() + Sync),
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Option<Vec<f64>>, String> {
+    let outlines = outlines(asked, search, advanced, stop)?;
+    Ok(outlines.map(|all| all.iter().map(|outline| area(outline)).collect()))
+}
+
+/// The least area of a law over `trials` \[rad m/s^2\], and whose it is. The trial `first` is ridden whole, the others
+/// only as far as they could still be less: the answer is that of [`areas`]. `None` if `stop` said so on the way.
+///
+/// # Errors
+/// As of [`outlines`].
+pub fn least_area(
+    trials: &[Trial],
+    law: &Law,
+    search: &Search,
+    first: usize,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Option<(f64, usize)>, String> {
+    let Some(trial) = trials.get(first) else { return Err("there is no such trial".into()) };
+    let Some(bound) = areas(&[(trial, law)], search, &|| {}, stop)? else { return Ok(None) };
+    let bound = bound[0];
+    let conditions: Vec<Conditions> =
+        trials.iter().map(|trial| trial.conditions(law)).collect::<Result<_, _>>()?;
+    let areas: Option<Vec<f64>> = (0..trials.len())
+        .into_par_iter()
+        .map(|i| {
+            if i == first {
+                return Some(bound);
+            }
+            let mut outline = Outline::new();
+            for &speed in &search.speeds {
+                if stop() {
+                    return None;
+                }
+                outline.push((speed, border(&conditions[i], search, speed).upper));
+                // No strip is negative.
+                if area(&outline) > bound {
+                    break;
+                }
+            }
+            Some(area(&outline))
+        })
+        .collect();
+    let least = |areas: Vec<f64>| {
+        let start = (bound, first);
+        areas.into_iter().zip(0..).fold(start, |least, (a, i)| if a < least.0 { (a, i) } else { least })
+    };
+    Ok(areas.map(least))
+}

@@ -1,0 +1,183 @@
+//! The axes of a sweep: `KEY=VALUES`, values being words and ranges of numbers.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Most values of one axis.
+const MOST: usize = 1000;
+
+/// What is varied, and the values it takes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Axis {
+    /// An option's long name, or the word in braces in an option's value.
+    pub key: String,
+    /// Its values, as on the command line.
+    pub values: Vec<String>,
+}
+
+impl Axis {
+    /// Reads `KEY=VALUES`: words and ranges, separated by commas. `A:B:STEP` and `A:B/N` are evenly
+    /// spaced, `A:B/logN` evenly in the logarithm; numbers may have a unit, as `0ms:100ms/6`.
+    ///
+    /// # Errors
+    /// Names what is wrong with which range or word.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let wrong = || format!("`{text}` is not KEY=VALUES, for example torque-limit=0.5:20/log9,none");
+        let (key, list) = text.split_once('=').ok_or_else(wrong)?;
+        if !key.starts_with(char::is_alphabetic)
+            || !key.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c))
+        {
+            return Err(wrong());
+        }
+        let mut values: Vec<String> = Vec::new();
+        for item in list.split(',').map(str::trim) {
+            for value in expand(item).map_err(|e| format!("{key}: {e}"))? {
+                if values.contains(&value) {
+                    return Err(format!("{key}: `{value}` is there twice"));
+                }
+                values.push(value);
+            }
+        }
+        if values.len() > MOST {
+            return Err(format!("{key} has {} values; at most {MOST}", values.len()));
+        }
+        Ok(Self { key: key.into(), values })
+    }
+
+    /// The values as numbers of one unit, if they are.
+    pub fn numbers(&self) -> Option<(Vec<f64>, &str)> {
+        let all: Vec<(f64, &str)> = self.values.iter().map(|v| number(v)).collect::<Option<_>>()?;
+        let (_, unit) = *all.first()?;
+        all.iter().all(|(_, u)| *u == unit).then(|| (all.iter().map(|(x, _)| *x).collect(), unit))
+    }
+}
+
+/// A number and the unit behind it, if the whole text is that.
+fn number(text: &str) -> Option<(f64, &str)> {
+    // Without this `inf` and `nan` were numbers, and the names that begin so.
+    if !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
+        return None;
+    }
+    let ends = (1..=text.len()).rev().filter(|&end| text.is_char_boundary(end));
+    let (x, unit) = ends.filter_map(|end| Some((text[..end].parse::<f64>().ok()?, &text[end..]))).next()?;
+    (x.is_finite() && unit.chars().all(char::is_alphabetic)).then_some((x, unit))
+}
+
+/// The values an item of the list stands for: itself, unless it is a range.
+fn expand(item: &str) -> Result<Vec<String>, String> {
+    if item.is_empty() {
+        return Err("a value is empty".into());
+    }
+    let (ends, count) = match item.split_once('/') {
+        Some((ends, count)) => (ends, Some(count)),
+        None => (item, None),
+    };
+    let Some(parts) = ends.split(':').map(number).collect::<Option<Vec<_>>>() else {
+        return Ok(vec![item.into()]);
+    };
+    let unit = parts.iter().map(|p| p.1).find(|u| !u.is_empty()).unwrap_or_default();
+    if parts.iter().any(|p| !p.1.is_empty() && p.1 != unit) {
+        return Err(format!("the range {item} has several units"));
+    }
+    let points = match (&parts[..], count) {
+        (&[(from, _), (to, _), (step, _)], None) => stepped(item, from, to, step)?,
+        (&[(from, _), (to, _)], Some(count)) => counted(item, from, to, count)?,
+        (_, None) => return Ok(vec![item.into()]),
+        _ => return Err(format!("the range {item} is none of A:B:STEP, A:B/N, A:B/logN")),
+    };
+    Ok(points.into_iter().map(|x| format!("{}{unit}", x + 0.0)).collect())
+}
+
+fn stepped(item: &str, from: f64, to: f64, step: f64) -> Result<Vec<f64>, String> {
+    if step < 1e-6 || to < from {
+        return Err(format!("the range {item} must rise, in steps of at least 0.000001"));
+    }
+    let n = ((to - from) / step + 1e-9).floor();
+    if n >= MOST as f64 {
+        return Err(format!("the range {item} has more than {MOST} values"));
+    }
+    Ok((0..=n as usize).map(|i| billionths(from + i as f64 * step)).collect())
+}
+
+fn counted(item: &str, from: f64, to: f64, count: &str) -> Result<Vec<f64>, String> {
+    let (log, digits) = count.strip_prefix("log").map_or((false, count), |n| (true, n));
+    let n = digits.parse().ok().filter(|n| (2..=MOST).contains(n)).ok_or_else(|| {
+        format!("the range {item}: `{digits}` is not a whole number of values from 2 to {MOST}")
+    })?;
+    if to <= from {
+        return Err(format!("the range {item} must rise"));
+    }
+    if log && from <= 0.0 {
+        return Err(format!("the range {item}: a logarithmic range begins above 0"));
+    }
+    let at = |i: usize| match (i as f64 / (n - 1) as f64, log) {
+        _ if i == 0 => from,
+        _ if i == n - 1 => to,
+        (part, true) => four_digits(from * (to / from).powf(part)),
+        (part, false) => billionths(from + part * (to - from)),
+    };
+    Ok((0..n).map(at).collect())
+}
+
+/// Rounded, so that 0.1 steps read 0.3 and not 0.30000000000000004.
+fn billionths(x: f64) -> f64 {
+    (x * 1e9).round() / 1e9
+}
+
+/// The nearest number of four digits: what lies on a logarithmic axis need not be exact.
+fn four_digits(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(text: &str) -> Vec<String> {
+        Axis::parse(text).unwrap().values
+    }
+
+    #[test]
+    fn ranges_and_words_mix() {
+        assert_eq!(values("torque-limit=0.5:20/log4,none"), ["0.5", "1.71", "5.848", "20", "none"]);
+        assert_eq!(values("sensor-delay=0ms:100ms/6"), ["0ms", "20ms", "40ms", "60ms", "80ms", "100ms"]);
+        assert_eq!(values("sensor-delay=0:0.3:0.1s"), ["0s", "0.1s", "0.2s", "0.3s"]);
+        assert_eq!(values("taper=none,0.5:1.5"), ["none", "0.5:1.5"]);
+        assert_eq!(values("law=h,cl2:4,data/laws/example.toml"), ["h", "cl2:4", "data/laws/example.toml"]);
+        assert_eq!(values("set=shape.rate=3"), ["shape.rate=3"]);
+    }
+
+    #[test]
+    fn numbers_have_one_unit() {
+        let numbers = |text: &str| Axis::parse(text).unwrap().numbers().map(|(n, u)| (n, u.to_owned()));
+        assert_eq!(numbers("a=0ms,20ms"), Some((vec![0.0, 20.0], "ms".into())));
+        assert_eq!(numbers("a=1e3,-2"), Some((vec![1e3, -2.0], String::new())));
+        for text in ["a=0ms,1s", "a=1,none", "a=inf", "a=nan", "a=0.5:1.5"] {
+            assert_eq!(numbers(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_the_reason() {
+        for (text, why) in [
+            ("torque-limit", "KEY=VALUES"),
+            ("=1", "KEY=VALUES"),
+            ("a b=1", "KEY=VALUES"),
+            ("a=", "empty"),
+            ("a=1,,2", "empty"),
+            ("a=1,1", "twice"),
+            ("a=1:0:0.1", "must rise"),
+            ("a=0:1:0", "must rise"),
+            ("a=1:1/3", "must rise"),
+            ("a=0:1/log3", "above 0"),
+            ("a=0:1/1", "2 to 1000"),
+            ("a=0:1/x", "`x`"),
+            ("a=0:1:0.1/3", "none of"),
+            ("a=0ms:1s/3", "several units"),
+            ("a=0:1:1e-5", "more than 1000"),
+        ] {
+            let error = Axis::parse(text).unwrap_err();
+            assert!(error.contains(why), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! Basins over a grid of conditions: cells that are computed one by one, anywhere and in any order,
+//! and put together to the same bytes.
+
+mod axis;
+mod folder;
+mod grid;
+mod maps;
+mod netcdf;
+mod plan;
+mod run;
+mod seal;
+mod shard;
+pub mod study;
+mod unit;
+mod write;
+
+pub use axis::Axis;
+pub use folder::{Folder, PLAN};
+pub use grid::Grid;
+pub use maps::pictures;
+pub use plan::{Plan, SweepSearch};
+pub(crate) use plan::{check, combination, count, label};
+pub use run::{Cell, Progress, run};
+pub use shard::Shard;
+pub use unit::{Found, Unit};
+pub use write::write;
+
+/// A sweep that can't be done.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct SweepError(pub String);
+
+impl From<crate::report::output::OutputError> for SweepError {
+    fn from(error: crate::report::output::OutputError) -> Self {
+        Self(error.to_string())
+    }
+}

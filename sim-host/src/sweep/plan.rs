@@ -1,0 +1,132 @@
+//! What a sweep is: enough to tell one from another, and to put its parts together.
+
+use super::seal::hash;
+use super::{Axis, SweepError, netcdf};
+use crate::basin::Search;
+use crate::report::document::SCHEMA;
+use crate::report::resolved::{Tool, axis_name};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// What the basin of every cell is searched with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SweepSearch {
+    /// Forward speeds \[m/s\].
+    pub speeds: Vec<f64>,
+    /// "steer-rate" or "roll-rate".
+    pub axis: String,
+    /// Largest disturbance tried \[rad/s\].
+    pub max_rate: f64,
+    /// Step of the scan \[rad/s\].
+    pub scan_step: f64,
+    /// How closely borders are located \[rad/s\].
+    pub tolerance: f64,
+}
+
+/// A sweep.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// The version of this file.
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// The options all cells share, as on the command line.
+    pub options: Vec<String>,
+    /// What is searched in every cell.
+    pub search: SweepSearch,
+    /// What the cells differ in.
+    pub axes: Vec<Axis>,
+    /// The cells' identities, the last axis' values following each other.
+    pub cells: Vec<String>,
+}
+
+impl SweepSearch {
+    /// The search for an output.
+    pub fn new(search: &Search) -> Self {
+        Self {
+            speeds: search.speeds.clone(),
+            axis: axis_name(search.axis).into(),
+            max_rate: search.max_rate,
+            scan_step: search.scan_step,
+            tolerance: search.tolerance,
+        }
+    }
+}
+
+impl Plan {
+    /// The plan of a sweep whose cells have these configurations. A cell's identity is the hash of
+    /// program, options, configuration and search: all that its result follows from.
+    pub fn new(options: Vec<String>, axes: Vec<Axis>, search: &Search, configs: &[Value]) -> Self {
+        let (tool, search) = (Tool::this(), SweepSearch::new(search));
+        let identity = |(i, config): (usize, &Value)| {
+            let values = label(&axes, &combination(&axes, i));
+            hash(&(SCHEMA, &tool, &options, values, config, &search))[..24].to_owned()
+        };
+        let cells = configs.iter().enumerate().map(identity).collect();
+        Self { schema: SCHEMA, tool, options, search, axes, cells }
+    }
+
+    /// The values of cell `i`, one an axis.
+    pub fn values(&self, i: usize) -> Vec<String> {
+        combination(&self.axes, i)
+    }
+
+    /// The values of cell `i` with their keys: "law=h, torque-limit=2".
+    pub fn label(&self, i: usize) -> String {
+        label(&self.axes, &self.values(i))
+    }
+
+    /// In what `other` differs; `None` if in nothing.
+    pub fn difference(&self, other: &Plan) -> Option<&'static str> {
+        let differences = [
+            (self.schema != other.schema || self.tool != other.tool, "the program"),
+            (self.options != other.options, "the options"),
+            (self.axes != other.axes, "the axes (--over)"),
+            (self.search != other.search, "the search"),
+            (self.cells != other.cells, "a file that it reads"),
+        ];
+        differences.into_iter().find_map(|(differs, what)| differs.then_some(what))
+    }
+}
+
+/// Checks that axes can be told apart, from each other and from what is computed.
+///
+/// # Errors
+/// Names the key.
+pub(crate) fn check(axes: &[Axis]) -> Result<(), SweepError> {
+    for (i, axis) in axes.iter().enumerate() {
+        let name = netcdf::name(axis);
+        let wrong = if axes[..i].iter().any(|other| netcdf::name(other) == name) {
+            "is there twice"
+        } else if netcdf::NAMES.contains(&&*name) {
+            "is the name of a result; choose another"
+        } else {
+            continue;
+        };
+        return Err(SweepError(format!("--over {}: the name {wrong}", axis.key)));
+    }
+    Ok(())
+}
+
+/// How many cells axes have.
+pub(crate) fn count(axes: &[Axis]) -> usize {
+    axes.iter().fold(1, |n, axis| n.saturating_mul(axis.values.len()))
+}
+
+/// The values of cell `i`, the last axis running fastest.
+pub(crate) fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
+    let mut values: Vec<String> = Vec::with_capacity(axes.len());
+    for axis in axes.iter().rev() {
+        values.push(axis.values[i % axis.values.len()].clone());
+        i /= axis.values.len();
+    }
+    values.reverse();
+    values
+}
+
+/// Values with their keys.
+pub(crate) fn label(axes: &[Axis], values: &[String]) -> String {
+    let pairs: Vec<String> = axes.iter().zip(values).map(|(a, v)| format!("{}={v}", a.key)).collect();
+    pairs.join(", ")
+}

@@ -1,0 +1,73 @@
+//! Computes cells.
+
+use super::unit::Unit;
+use super::{Folder, SweepError};
+use crate::basin::{Column, Search, border};
+use crate::ride::Conditions;
+use rayon::prelude::*;
+use serde_json::Value;
+use std::sync::Mutex;
+
+/// A cell that can be computed.
+pub struct Cell {
+    /// Its identity.
+    pub id: String,
+    /// Its full configuration.
+    pub config: Value,
+    /// The conditions that stand for.
+    pub conditions: Conditions,
+}
+
+/// How far the work has come, and whether to go on.
+pub struct Progress<'a> {
+    /// Called after every column.
+    pub advanced: &'a (dyn Fn() + Sync),
+    /// Asked before every column.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// Computes `cells` on all cores of the current rayon pool and keeps each in `folder` as soon as it
+/// is done; how many are. What is kept does not depend on the number of threads, nor on what was
+/// computed before.
+///
+/// # Errors
+/// When the search or a cell's conditions fail their checks, or a file can't be written.
+pub fn run(
+    cells: &[&Cell],
+    search: &Search,
+    folder: &Folder,
+    progress: &Progress,
+) -> Result<usize, SweepError> {
+    search.check().map_err(|e| SweepError(e.0))?;
+    for cell in cells {
+        cell.conditions.check().map_err(|e| SweepError(e.0))?;
+    }
+    let speeds = search.speeds.len();
+    let columns: Vec<Mutex<Vec<(usize, Column)>>> = cells.iter().map(|_| Mutex::default()).collect();
+    let done = Mutex::new(0);
+    // Column by column rather than cell by cell: then only as many cells are under way as threads.
+    (0..cells.len() * speeds).into_par_iter().try_for_each(|i| {
+        if (progress.stop)() {
+            return Ok::<(), SweepError>(());
+        }
+        let (cell, speed) = (i / speeds, i % speeds);
+        let column = border(&cells[cell].conditions, search, search.speeds[speed]);
+        (progress.advanced)();
+        let mut there = lock(&columns[cell]);
+        there.push((speed, column));
+        if there.len() < speeds {
+            return Ok(());
+        }
+        there.sort_by_key(|(speed, _)| *speed);
+        let whole = std::mem::take(&mut *there).into_iter().map(|(_, column)| column).collect();
+        folder.keep(&Unit::new(&cells[cell].id, &cells[cell].config, whole))?;
+        *lock(&done) += 1;
+        Ok(())
+    })?;
+    let done = *lock(&done);
+    Ok(done)
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}

@@ -1,0 +1,91 @@
+//! A part's sweep as its answer needs it: groups, each with the area of its reference.
+
+use super::Part;
+use crate::sweep::{Axis, Grid};
+
+/// The cells that share a reference.
+pub(super) struct Group {
+    /// What tells it from the others: "rider=smart"; empty if there is only one.
+    pub(super) label: String,
+    /// Area of the reference \[rad m/s^2\].
+    pub(super) reference: f64,
+    /// A line for every combination of the reference's other axes.
+    pub(super) lines: Vec<Vec<Option<f64>>>,
+}
+
+/// A part's answer, before it is put in words.
+pub(super) struct Answer {
+    /// The axis along which is looked.
+    pub(super) along: Axis,
+    /// The reference's other axes.
+    pub(super) others: Vec<Axis>,
+    /// The groups.
+    pub(super) groups: Vec<Group>,
+}
+
+/// Places of `axes` among the sweep's, the last running fastest.
+fn combinations(axes: &[&Axis]) -> Vec<Vec<(String, String)>> {
+    axes.iter().fold(vec![Vec::new()], |all, axis| {
+        let longer = |one: &Vec<(String, String)>| {
+            let one = one.clone();
+            axis.values.iter().map(move |v| [&one[..], &[(axis.key.clone(), v.clone())]].concat())
+        };
+        all.iter().flat_map(longer).collect()
+    })
+}
+
+impl Answer {
+    /// The answer in a finished sweep.
+    pub(super) fn new(part: &Part, grid: &Grid) -> Option<Self> {
+        let axes = &grid.plan.axes;
+        let along = axes.iter().find(|axis| axis.key == part.along)?;
+        let referred = |axis: &&Axis| part.reference.contains_key(&axis.key);
+        let others: Vec<&Axis> = axes.iter().filter(referred).filter(|axis| axis.key != part.along).collect();
+        let grouping: Vec<&Axis> = axes.iter().filter(|axis| !referred(axis)).collect();
+        let areas = grid.areas();
+        let area = |wanted: &[(String, String)]| {
+            let value = |axis: &Axis| wanted.iter().find(|(key, _)| *key == axis.key).map(|(_, v)| v);
+            let place = axes.iter().try_fold(0, |i, axis| {
+                let value = value(axis)?;
+                Some(i * axis.values.len() + axis.values.iter().position(|v| v == value)?)
+            })?;
+            areas[place]
+        };
+        let reference: Vec<(String, String)> =
+            part.reference.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
+        let group = |of: Vec<(String, String)>| {
+            let line = |rest: Vec<(String, String)>| {
+                let at = |v: &String| area(&[&of[..], &rest[..], &[(along.key.clone(), v.clone())]].concat());
+                along.values.iter().map(at).collect()
+            };
+            let label: Vec<String> = of.iter().map(|(key, value)| format!("{key} {value}")).collect();
+            Some(Group {
+                label: label.join(", "),
+                reference: area(&[&of[..], &reference[..]].concat())?,
+                lines: combinations(&others).into_iter().map(line).collect(),
+            })
+        };
+        let groups = combinations(&grouping).into_iter().map(group).collect::<Option<_>>()?;
+        Some(Self { along: along.clone(), others: others.into_iter().cloned().collect(), groups })
+    }
+
+    /// The numbers along the axis from the reference's side on, with their places and their unit; none
+    /// for an axis of words. A word among numbers, as `none`, is left out.
+    pub(super) fn numbers(&self, part: &Part) -> Option<(Vec<(usize, f64)>, String)> {
+        let numeric = |(i, value): (usize, &String)| {
+            let one = Axis { key: String::new(), values: vec![value.clone()] };
+            one.numbers().map(|(x, unit)| (i, x[0], unit.to_owned()))
+        };
+        let all: Vec<_> = self.along.values.iter().enumerate().filter_map(numeric).collect();
+        let (_, _, unit) = all.first()?.clone();
+        let mut numbers: Vec<(usize, f64)> = all.into_iter().map(|(i, x, _)| (i, x)).collect();
+        if numbers.len() < 2 {
+            return None;
+        }
+        let reference = self.along.values.iter().position(|v| *v == part.reference[&part.along])?;
+        if reference > numbers[0].0 {
+            numbers.reverse();
+        }
+        Some((numbers, unit))
+    }
+}

@@ -1,0 +1,83 @@
+//! The figures of a study.
+
+use super::Part;
+use super::answer::Answer;
+use super::page::LEAST;
+use crate::report::figure::{Axis, Chart, Line, Look, Marker, Picture, Plot, Series, chart};
+use crate::sweep::{Grid, pictures};
+
+/// The figures of a part's sweep with their names: along one axis of numbers a line for every group, along
+/// several the heat maps, of words the heights over speed.
+pub fn figures(part: &Part, grid: &Grid) -> Vec<(String, Picture)> {
+    let Some(answer) = Answer::new(part, grid) else { return Vec::new() };
+    match (answer.numbers(part), &answer.others[..]) {
+        (Some((numbers, unit)), []) => vec![(part.name.clone(), lines(part, &answer, &numbers, &unit))],
+        (Some(_), _) => {
+            let named = |(name, picture)| (format!("{}-{name}", part.name), picture);
+            let wanted = |(name, _): &(String, Picture)| {
+                part.reference.keys().filter(|k| name.contains(*k)).count() > 1
+            };
+            pictures(grid).into_iter().filter(wanted).map(named).collect()
+        }
+        (None, _) => vec![(part.name.clone(), heights(part, grid))],
+    }
+}
+
+/// The part of the area over the axis.
+fn lines(part: &Part, answer: &Answer, numbers: &[(usize, f64)], unit: &str) -> Picture {
+    let look = |i| Look { marker: Some(Marker::Point), ..Look::line(i, Line::Solid) };
+    let mut series: Vec<Series> = answer
+        .groups
+        .iter()
+        .enumerate()
+        .map(|(i, group)| {
+            let at = |&(place, x): &(usize, f64)| Some((x, group.lines[0][place]? / group.reference));
+            Series::new(group.label.clone(), look(i), numbers.iter().filter_map(at).collect())
+        })
+        .collect();
+    let ends = [numbers[0].1, numbers[numbers.len() - 1].1];
+    let range = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+    let level = [(range.0, LEAST), (range.1, LEAST)].to_vec();
+    series.insert(0, Series::new(format!("{:.0} %", 100.0 * LEAST), Look::line(0, Line::Faint), level));
+    let label =
+        if unit.is_empty() { answer.along.key.clone() } else { format!("{} [{unit}]", answer.along.key) };
+    let x = Axis::new(&label).over(range.0, range.1);
+    let plot = Plot {
+        x: if range.0 > 0.0 { x.log() } else { x },
+        y: Axis::new("Part of the reference's area"),
+        series,
+        ..Plot::default()
+    };
+    chart(&Chart { title: part.title.clone(), columns: 1, plots: vec![plot], ..Chart::default() })
+}
+
+/// The heights over speed, a panel for every combination of the other axes.
+fn heights(part: &Part, grid: &Grid) -> Picture {
+    let axes = &grid.plan.axes;
+    let at = axes.iter().position(|axis| axis.key == part.along).unwrap_or(0);
+    let mut plots: Vec<Plot> = Vec::new();
+    for (i, unit) in grid.units.iter().enumerate() {
+        let Some(unit) = unit else { continue };
+        let values = grid.plan.values(i);
+        let others: Vec<String> =
+            (0..axes.len()).filter(|&j| j != at).map(|j| format!("{} {}", axes[j].key, values[j])).collect();
+        let title = others.join(", ");
+        let colour = axes[at].values.iter().position(|v| *v == values[at]).unwrap_or(0);
+        let line = if colour % 2 == 0 { Line::Solid } else { Line::Dashed };
+        let points =
+            grid.plan.search.speeds.iter().copied().zip(unit.found.iter().map(|f| f.height)).collect();
+        let series =
+            Series::new(format!("{} {}", axes[at].key, values[at]), Look::line(colour, line), points);
+        match plots.iter_mut().find(|plot| plot.title == title) {
+            Some(plot) => plot.series.push(series),
+            None => plots.push(Plot {
+                title,
+                x: Axis::new("Forward speed [m/s]"),
+                y: Axis::new("Height [rad/s]"),
+                series: vec![series],
+                ..Plot::default()
+            }),
+        }
+    }
+    chart(&Chart { title: part.title.clone(), columns: 3, plots, ..Chart::default() })
+}

@@ -1,0 +1,166 @@
+//! A study's answer as a page of Markdown.
+
+use super::answer::{Answer, Group};
+use super::{Kept, Part, Study, kept};
+use crate::basin::Work;
+use crate::sweep::Grid;
+use std::fmt::Write;
+
+/// What counts as enough.
+pub(super) const LEAST: f64 = 0.95;
+
+/// What an answer took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spent {
+    /// Time \[s\]; none if some cells were there before.
+    pub seconds: Option<f64>,
+    /// Threads.
+    pub threads: usize,
+}
+
+/// The page of a study whose sweeps are done. Figures are at `figures`, seen from the page.
+pub fn page(study: &Study, grids: &[Grid], spent: Spent, figures: &str) -> String {
+    let tool = grids.first().map(|g| g.plan.tool.clone());
+    let commit = tool.map_or(String::new(), |t| format!("{} {} commit {}", t.name, t.version, t.commit));
+    let work =
+        grids.iter().flat_map(|g| g.units.iter().flatten()).fold(Work::default(), |w, u| w.plus(&u.work));
+    let mut text = format!("# {}\n\n{}\n\n", study.title, study.question.trim());
+    let time = spent.seconds.map_or(String::new(), |s| {
+        let minutes = s / 60.0;
+        format!(" in {minutes:.1} min on {} threads", spent.threads)
+    });
+    let _ = writeln!(
+        text,
+        "This page is what `sim-host sweep study {}` wrote ({commit}): {} rides, {:.1e} right-hand sides{time}.\n",
+        study.name, work.rides, work.right_hand_sides as f64
+    );
+    for (part, grid) in study.parts.iter().zip(grids) {
+        text += &section(study, part, grid, figures);
+    }
+    text
+}
+
+fn section(study: &Study, part: &Part, grid: &Grid, figures: &str) -> String {
+    let mut text = format!("## {}\n\n", part.title);
+    if !part.text.is_empty() {
+        let _ = writeln!(text, "{}\n", part.text.trim());
+    }
+    let over: Vec<String> = part.over.iter().map(|axis| format!("--over {axis}")).collect();
+    let _ =
+        writeln!(text, "```sh\nsim-host sweep {} \\\n    {}\n```\n", part.options, over.join(" \\\n    "));
+    match Answer::new(part, grid) {
+        None => text += "Not every cell is computed.\n\n",
+        Some(answer) => match (answer.numbers(part), &answer.others[..]) {
+            (None, _) => text += &compared(&answer),
+            (Some(numbers), []) => text += &alone(&answer, &numbers, grid),
+            (Some(numbers), _) => text += &together(&answer, &numbers),
+        },
+    }
+    for (name, _) in super::figures(part, grid) {
+        let _ = writeln!(text, "![{}]({figures}/{}-{name}.svg)\n", part.title, study.name);
+    }
+    text
+}
+
+/// Where a line of a group falls below what is enough.
+fn found(group: &Group, line: usize, numbers: &[(usize, f64)]) -> Kept {
+    let area = |i: usize| group.lines[line][i].unwrap_or(f64::NAN);
+    let points: Vec<(f64, f64)> = numbers.iter().map(|&(i, x)| (x, area(i) / group.reference)).collect();
+    kept(&points, LEAST)
+}
+
+fn in_words(found: Kept, numbers: &[(usize, f64)], unit: &str) -> String {
+    let last = numbers[numbers.len() - 1].1;
+    match found {
+        Kept::Everywhere => format!("{last}{unit} keeps it"),
+        Kept::Nowhere => "none".into(),
+        Kept::Until { at, kept, lost } => {
+            let digits = (2 - at.abs().max(1e-9).log10().floor() as i32).max(0) as usize;
+            let (low, high) = (kept.min(lost), kept.max(lost));
+            format!("{at:.digits$}{unit} ({low}{unit} to {high}{unit})")
+        }
+    }
+}
+
+/// One axis alone: a row a group.
+fn alone(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String), grid: &Grid) -> String {
+    let key = &answer.along.key;
+    let mut text = format!(
+        "| group | area of the reference, rad m/s^2 | {key} that keeps {:.0} % (grid) | part of the area at {} |\n| --- | --- | --- | --- |\n",
+        100.0 * LEAST,
+        numbers.iter().map(|n| format!("{}{unit}", n.1)).step_by(4).collect::<Vec<_>>().join(", ")
+    );
+    for group in &answer.groups {
+        let part = |i: usize| {
+            group.lines[0][i].map_or("-".into(), |a| format!("{:.1} %", 100.0 * a / group.reference))
+        };
+        let parts: Vec<String> = numbers.iter().step_by(4).map(|n| part(n.0)).collect();
+        let _ = writeln!(
+            text,
+            "| {} | {:.2} | {} | {} |",
+            group.label,
+            group.reference,
+            in_words(found(group, 0, numbers), numbers, unit),
+            parts.join(", ")
+        );
+    }
+    text + "\n" + &errors(answer, grid)
+}
+
+/// How sure the numbers are.
+fn errors(answer: &Answer, grid: &Grid) -> String {
+    let (speeds, tolerance) = (&grid.plan.search.speeds, grid.plan.search.tolerance);
+    let span = speeds.last().unwrap_or(&0.0) - speeds.first().unwrap_or(&0.0);
+    let least = answer.groups.iter().map(|g| g.reference).fold(f64::INFINITY, f64::min);
+    format!(
+        "Interpolated between the two values of the grid in parentheses, which are the bounds of its error. Heights \
+         are located within {tolerance} rad/s, areas thus within {:.2} rad m/s^2, {:.1} % of the smallest reference.\n\n",
+        tolerance * span,
+        100.0 * tolerance * span / least
+    )
+}
+
+/// Several axes: a table a group, rows and columns the reference's other axes.
+fn together(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String)) -> String {
+    let key = &answer.along.key;
+    let (rows, columns) = (&answer.others[0], answer.others.get(1));
+    let across = columns.map_or(1, |axis| axis.values.len());
+    let mut text = String::new();
+    for group in &answer.groups {
+        let _ = writeln!(
+            text,
+            "{}: {key} that keeps {:.0} % of {:.2} rad m/s^2 (interpolated; the grid's neighbours); \"none\": no limit of the grid does.\n",
+            group.label,
+            100.0 * LEAST,
+            group.reference
+        );
+        let names: Vec<&str> =
+            columns.map_or(vec![""], |axis| axis.values.iter().map(String::as_str).collect());
+        let corner = columns.map_or(rows.key.clone(), |axis| format!("{} \\ {}", rows.key, axis.key));
+        let _ = writeln!(text, "| {corner} | {} |\n| --- {}|", names.join(" | "), "| --- ".repeat(across));
+        for (i, row) in rows.values.iter().enumerate() {
+            let cell = |j| in_words(found(group, i * across + j, numbers), numbers, unit);
+            let cells: Vec<String> = (0..across).map(cell).collect();
+            let _ = writeln!(text, "| {row} | {} |", cells.join(" | "));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// An axis of words: the area at each, beside the reference's.
+fn compared(answer: &Answer) -> String {
+    let names: Vec<String> =
+        answer.along.values.iter().map(|v| format!("{} {v}", answer.along.key)).collect();
+    let mut text = format!("| group | {} |\n| --- {}|\n", names.join(" | "), "| --- ".repeat(names.len()));
+    for group in &answer.groups {
+        for line in &group.lines {
+            let cell = |area: &Option<f64>| {
+                area.map_or("-".into(), |a| format!("{a:.3} ({:+.2} %)", 100.0 * (a / group.reference - 1.0)))
+            };
+            let cells: Vec<String> = line.iter().map(cell).collect();
+            let _ = writeln!(text, "| {} | {} |", group.label, cells.join(" | "));
+        }
+    }
+    text + "\nAreas in rad m/s^2, and their difference to the reference.\n\n"
+}

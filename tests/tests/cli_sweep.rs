@@ -1,0 +1,416 @@
+//! Sweeps: the same bytes however they are computed, and nothing of another sweep among them.
+
+use netcdf3::FileReader;
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::select;
+use serde_json::Value;
+use sim_host::sweep::Axis;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+use tests::cli::{Bench, repository};
+use tests::draws::runner;
+use tests::json_schema::violations;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+/// Four cells of two columns, coarse and short.
+const SMALL: &str = "sweep --over law=h,none --over torque-limit=2,none --speeds 4:5:1 --max-rate 12 \
+                     --scan-step 2 --tolerance 0.5 --time-limit 1.5 -q";
+
+/// Every file under a folder, by its path in it.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).expect("the folder is there") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        if path.is_dir() {
+            found.extend(files(&path).into_iter().map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
+        } else {
+            found.insert(name, std::fs::read(&path).expect("a file"));
+        }
+    }
+    found
+}
+
+fn must(bench: &Bench, line: &str) -> String {
+    let run = bench.run(line);
+    assert_eq!(run.code, Some(0), "{line}: {}", run.stderr);
+    run.stdout + &run.stderr
+}
+
+fn units(bench: &Bench, folder: &str) -> Vec<String> {
+    let all = files(&bench.path(folder)).into_keys();
+    all.filter(|name| name.starts_with("units/")).map(|name| format!("{folder}/{name}")).collect()
+}
+
+/// Situation: two laws with and without a torque limit.
+/// Action: sweep; then ask `basin` for one of the cells.
+/// Must hold: the document fits its schema; the cell has `basin`'s heights, area and border efforts to
+/// the bit; a limit of 2 N m is never passed and costs area; without assist it changes nothing.
+#[test]
+fn a_cell_is_what_basin_finds() {
+    let bench = Bench::new(PROGRAM);
+    must(&bench, &format!("{SMALL} --out s"));
+    let document: Value = serde_json::from_str(&bench.read("s/sweep.json")).unwrap();
+    let schema = std::fs::read_to_string(repository("docs/schema/sweep.json")).unwrap();
+    assert_eq!(violations(&serde_json::from_str(&schema).unwrap(), &document), [""; 0]);
+    let cells = document["cells"].as_array().unwrap();
+    let values: Vec<String> = cells.iter().map(|c| c["values"].to_string()).collect();
+    assert_eq!(values, [r#"["h","2"]"#, r#"["h","none"]"#, r#"["none","2"]"#, r#"["none","none"]"#]);
+    let basin = bench.json(
+        "basin --law h --torque-limit 2 --speeds 4:5:1 --max-rate 12 --scan-step 2 --tolerance 0.5 \
+         --time-limit 1.5",
+    );
+    for (i, found) in cells[0]["found"].as_array().unwrap().iter().enumerate() {
+        assert_eq!(found["height"], basin["height"]["upper"][i]);
+        assert_eq!(found["effort"], basin["border"][i]["effort"]);
+    }
+    assert_eq!(cells[0]["area"], basin["area"]);
+    assert_eq!(cells[0]["config"]["torque_limit_nm"], 2.0);
+    assert_eq!(document["config"]["bicycle"], basin["config"]["bicycle"]);
+    let number = |i: usize, key: &str| cells[i][key].as_f64().unwrap();
+    assert_eq!(number(0, "peak_torque_nm"), 2.0);
+    assert!(number(0, "area") < number(1, "area") && number(0, "area") > 0.2 * number(1, "area"));
+    assert_eq!((number(2, "area"), number(2, "peak_torque_nm")), (number(3, "area"), 0.0));
+}
+
+/// Waits until a cell of the folder is done.
+fn wait_for_unit(child: &mut Child, units: &Path) {
+    let begin = Instant::now();
+    while !std::fs::read_dir(units)
+        .is_ok_and(|mut dir| dir.any(|e| e.is_ok_and(|e| e.path().extension().is_some_and(|x| x == "json"))))
+    {
+        assert!(begin.elapsed() < Duration::from_secs(60), "it does nothing");
+        assert!(child.try_wait().unwrap().is_none(), "over before a cell is done");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Situation: a sweep of a hundred cells.
+/// Action: Ctrl-C after the first cells; the same command again; the same at once in another folder.
+/// Must hold: exit code 130 with whole cells kept and no results; then the rest alone is computed; both
+/// folders have the same bytes.
+#[test]
+#[cfg(target_os = "linux")]
+fn what_was_interrupted_goes_on_to_the_same_bytes() {
+    let bench = Bench::new(PROGRAM);
+    let line = "sweep --over torque-limit=0.5:20/log100 --speeds 4:5:0.1 --max-rate 10 --scan-step 1 \
+                --tolerance 0.5 --time-limit 0.5 -q";
+    let mut child = bench
+        .command(&format!("{line} --out cut"))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    wait_for_unit(&mut child, &bench.path("cut/units"));
+    let kill = std::process::Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status();
+    assert!(kill.unwrap().success());
+    let run = tests::cli::Run::from(child.wait_with_output().unwrap());
+    assert_eq!(run.code, Some(130), "{run:?}");
+    let kept = units(&bench, "cut");
+    assert!(!kept.is_empty() && kept.len() < 100, "{}", kept.len());
+    assert!(run.stderr.contains(&format!("{} of 100 cells are done and kept", kept.len())), "{}", run.stderr);
+    assert!(!bench.path("cut/sweep.json").exists());
+    let written = |name: &String| std::fs::metadata(bench.path(name)).unwrap().modified().unwrap();
+    let before: Vec<_> = kept.iter().map(written).collect();
+    must(&bench, &format!("{line} --out cut"));
+    assert_eq!(kept.iter().map(written).collect::<Vec<_>>(), before, "computed again");
+    must(&bench, &format!("{line} --out whole --threads 1"));
+    assert!(files(&bench.path("cut")) == files(&bench.path("whole")));
+}
+
+/// Situation: a sweep, and the same in three shards.
+/// Action: merge the shards, given in another order.
+/// Must hold: disjoint shards; every file of the merged folder has the bytes of the whole one's, figures
+/// and NetCDF too; two shards alone are refused with the missing cells named.
+#[test]
+fn merged_shards_are_the_whole_to_the_bit() {
+    let bench = Bench::new(PROGRAM);
+    must(&bench, &format!("{SMALL} --out whole"));
+    for i in 1..=3 {
+        must(&bench, &format!("{SMALL} --out part{i} --shard {i}/3"));
+    }
+    let parts: Vec<usize> = (1..=3).map(|i| units(&bench, &format!("part{i}")).len()).collect();
+    assert_eq!(parts, [2, 1, 1]);
+    bench.run("sweep merge part1 part3 --out merged").refused_naming(&["1 of 4 cells", "law=", "shards"]);
+    assert!(!bench.path("merged").exists());
+    must(&bench, "sweep merge part3 part1 part2 --out merged -q");
+    let (whole, merged) = (files(&bench.path("whole")), files(&bench.path("merged")));
+    let results = ["figures/area-law-torque-limit.svg", "heights.csv", "sweep.csv", "sweep.json", "sweep.nc"];
+    assert!(results.iter().all(|name| whole.contains_key(*name)), "{:?}", whole.keys());
+    assert!(whole == merged);
+}
+
+/// Situation: a finished sweep.
+/// Action: change one digit in a cell's file, cut another's short; run again; damage one and merge.
+/// Must hold: both are named and computed again, with the same bytes in the end; a merge, which can't
+/// compute, names the file.
+#[test]
+fn damaged_cells_are_found_and_computed_again() {
+    let bench = Bench::new(PROGRAM);
+    must(&bench, &format!("{SMALL} --out s"));
+    let before = files(&bench.path("s"));
+    let damaged = units(&bench, "s");
+    let text = bench.read(&damaged[0]);
+    let at = text.find("\"rides\": ").unwrap() + 9;
+    let digit = if text.as_bytes()[at] == b'1' { "2" } else { "1" };
+    let changed = format!("{}{digit}{}", &text[..at], &text[at + 1..]);
+    bench.write(&damaged[0], &changed);
+    bench.write(&damaged[1], &bench.read(&damaged[1])[..200]);
+    let said = must(&bench, &format!("{SMALL} --out s"));
+    for name in &damaged[..2] {
+        assert!(said.contains(name.strip_prefix("s/").unwrap()), "{said}");
+    }
+    assert_eq!(said.matches("is damaged: computed again").count(), 2);
+    assert!(files(&bench.path("s")) == before);
+    bench.write(&damaged[0], &changed);
+    bench.run("sweep merge s --out merged").refused_naming(&[&damaged[0], "damaged"]);
+}
+
+/// Situation: folders of other sweeps, of something else, and none.
+/// Action: sweep into them, and merge them.
+/// Must hold: refused, with what differs; nothing in them is changed.
+#[test]
+fn a_folder_of_something_else_is_refused() {
+    let bench = Bench::new(PROGRAM);
+    must(&bench, &format!("{SMALL} --out s"));
+    let before = files(&bench.path("s"));
+    for (change, what) in
+        [("--over imu=body", "axes"), ("--imu body", "options"), ("--threads 1 --axis roll-rate", "search")]
+    {
+        bench.run(&format!("{SMALL} --out s {change}")).refused_naming(&["s holds another sweep", what]);
+    }
+    must(&bench, &format!("{SMALL} --imu body --out other"));
+    bench.run("sweep merge s other --out both").refused_naming(&["s and other", "options"]);
+    bench.run("sweep merge s nothing").refused_naming(&["nothing", "plan.json"]);
+    std::fs::create_dir(bench.path("full")).unwrap();
+    bench.write("full/letter.txt", "");
+    bench.run(&format!("{SMALL} --out full")).refused_naming(&["full", "neither empty"]);
+    assert!(files(&bench.path("s")) == before);
+}
+
+/// Situation: axes with wrong names and values.
+/// Action: sweep.
+/// Must hold: the axis, the cell and the value are named, before anything is made.
+#[test]
+fn wrong_axes_and_values_are_named() {
+    let bench = Bench::new(PROGRAM);
+    for (options, named) in [
+        ("--over torque=1,2", &["--over torque", "--torque", "{torque}", "torque-limit"][..]),
+        ("--over law=h,q", &["cell law=q", "unknown law `q`"]),
+        ("--over torque-limit=2,70", &["cell torque-limit=70", "--torque-limit", "0.1 to 50"]),
+        ("--over sensor-delay=0ms:1ms/3", &["cell sensor-delay=0.5ms", "control periods"]),
+        ("--over imu=euler,gyro", &["cell imu=gyro", "gyro", "--imu"]),
+        ("--over law=h --over law=f", &["--over law", "twice"]),
+        ("--law f --over law=h,g", &["--over law", "given as well"]),
+        ("--law cl2:{speed} --over speed=1,2", &["--over speed", "result"]),
+        ("--over delay=30ms,60ms", &["cell delay=30ms", "--rider"]),
+        ("--over torque-limit=1:20/1000 --over rate-limit=10:1000/1000", &["1000000 cells", "100000"]),
+    ] {
+        bench.run(&format!("sweep {options}")).refused_naming(named);
+    }
+    for options in
+        ["", "--over law", "--over torque-limit=2:1:1", "--over law=h --shard 3/2", "--over law=h --speeds x"]
+    {
+        assert_eq!(bench.run(&format!("sweep {options}")).code, Some(2), "{options}");
+    }
+    assert_eq!(bench.files(), [""; 0]);
+}
+
+/// Situation: a law's parameter, and riders beside none.
+/// Action: vary it by its name in braces, and by the law's whole word; vary riders with a delay.
+/// Must hold: the same heights; a rider's delay is no error in the cell without a rider.
+#[test]
+fn a_word_in_braces_stands_for_the_axis() {
+    let bench = Bench::new(PROGRAM);
+    let quick = "--speeds 4 --max-rate 12 --scan-step 2 --tolerance 1 --time-limit 1";
+    let heights = |axes: &str| {
+        let document = bench.json(&format!("sweep {axes} {quick} --out {}", axes.len()));
+        let cells = document["cells"].as_array().unwrap().clone();
+        cells.iter().map(|c| c["found"][0]["height"].as_f64().unwrap()).collect::<Vec<_>>()
+    };
+    let (inside, whole) = (heights("--law cl2:{k} --over k=0.5,4"), heights("--over law=cl2:0.5,cl2:4"));
+    assert_eq!(inside, whole);
+    assert!(inside[0] < inside[1], "{inside:?}");
+    let ridden = heights("--over rider=none,smart --delay 60ms --law h");
+    assert!(ridden.iter().all(|h| (1.0..12.0).contains(h)) && ridden[0] != ridden[1], "{ridden:?}");
+}
+
+/// Situation: a sweep that is not yet begun, and one that is done in part.
+/// Action: `--dry-run`.
+/// Must hold: every cell of the shard with its state; nothing is made.
+#[test]
+fn a_dry_run_lists_the_cells_and_makes_nothing() {
+    let bench = Bench::new(PROGRAM);
+    let line = SMALL.replace(" -q", "");
+    let said = must(&bench, &format!("{line} --out s --dry-run"));
+    assert_eq!(said.matches("to do  law=").count(), 4, "{said}");
+    assert!(said.contains("4 of 4 cells to do, 2 speeds each: about "), "{said}");
+    assert_eq!(bench.files(), [""; 0]);
+    must(&bench, &format!("{line} --out s --shard 1/2 -q"));
+    let said = must(&bench, &format!("{line} --out s --dry-run"));
+    assert_eq!((said.matches("to do  law=").count(), said.matches("done   law=").count()), (2, 2), "{said}");
+}
+
+/// Situation: axes of numbers with a unit and of words.
+/// Action: sweep, and read the NetCDF file.
+/// Must hold: dimensions axes and speed; the axes' values and the document's heights and areas, to the
+/// bit; units told.
+#[test]
+fn netcdf_has_the_documents_numbers() {
+    let bench = Bench::new(PROGRAM);
+    let document = bench.json(
+        "sweep --over sensor-delay=0ms,40ms --over law=h,cl2:4 --speeds 4:6:1 --max-rate 12 --scan-step 2 \
+         --tolerance 0.5 --time-limit 1 --out s",
+    );
+    let mut file = FileReader::open(bench.path("s/sweep.nc")).unwrap();
+    let set = file.data_set();
+    let dims: Vec<usize> =
+        ["sensor_delay", "law", "speed"].iter().map(|d| set.dim_size(d).unwrap()).collect();
+    assert_eq!(dims, [2, 2, 3]);
+    assert_eq!(set.get_var("height").unwrap().dim_names(), ["sensor_delay", "law", "speed"]);
+    assert_eq!(set.get_var("area").unwrap().dim_names(), ["sensor_delay", "law"]);
+    let units = |name: &str| set.get_var_attr_as_string(name, "units").unwrap();
+    assert_eq!((units("sensor_delay"), units("height")), ("ms".into(), "rad s-1".into()));
+    let configuration = set.get_global_attr_as_string("configuration").unwrap();
+    let configuration: Value = serde_json::from_str(&configuration).unwrap();
+    assert_eq!(configuration["tool"], document["tool"]);
+    assert_eq!(configuration["search"], document["search"]);
+    assert_eq!(file.read_var_f64("sensor_delay").unwrap(), [0.0, 40.0]);
+    assert_eq!(file.read_var_u8("law").unwrap(), b"h\0\0\0\0cl2:4");
+    let cells = document["cells"].as_array().unwrap();
+    let areas: Vec<f64> = cells.iter().map(|c| c["area"].as_f64().unwrap()).collect();
+    let found = cells.iter().flat_map(|c| c["found"].as_array().unwrap());
+    let heights: Vec<f64> = found.map(|f| f["height"].as_f64().unwrap()).collect();
+    assert_eq!(file.read_var_f64("area").unwrap(), areas);
+    assert_eq!(file.read_var_f64("height").unwrap(), heights);
+}
+
+/// Situation: words made of the characters of ranges.
+/// Action: read them as an axis.
+/// Must hold: no panic; values without repetition, or an error that names the key.
+#[test]
+fn any_text_is_an_axis_or_a_reason() {
+    let word =
+        vec(select(&['0', '1', '9', ':', ':', '.', '-', 'e', '/', 'l', 'o', 'g', 'm', 's', ','][..]), 0..14);
+    let text = prop_oneof![word.prop_map(|w| w.into_iter().collect::<String>()), any::<String>()];
+    runner(4000)
+        .run(&text, |text| {
+            match Axis::parse(&format!("key={text}")) {
+                Ok(axis) => {
+                    let mut values = axis.values.clone();
+                    values.sort();
+                    values.dedup();
+                    prop_assert_eq!(values.len(), axis.values.len());
+                    prop_assert!(!values.is_empty() && values.iter().all(|v| !v.is_empty()));
+                }
+                Err(e) => prop_assert!(e.contains("key"), "{e}"),
+            }
+            Ok(())
+        })
+        .unwrap();
+}
+
+/// Situation: ranges of N values, even and logarithmic, with and without a unit.
+/// Action: read them.
+/// Must hold: N rising values, both ends exact, steps or ratios alike within what rounding allows.
+#[test]
+fn ranges_of_n_values_are_even() {
+    let range = (0.01..10.0_f64, 1.5..100.0_f64, 2..40_usize, any::<bool>(), select(&["", "ms"][..]));
+    runner(1000)
+        .run(&range, |(from, factor, n, log, unit)| {
+            let to = from * factor;
+            let kind = if log { "log" } else { "" };
+            let axis = Axis::parse(&format!("k={from}{unit}:{to}{unit}/{kind}{n}")).unwrap();
+            let (x, found_unit) = axis.numbers().unwrap();
+            prop_assert_eq!((x.len(), found_unit), (n, unit));
+            prop_assert_eq!((x[0], x[n - 1]), (from, to));
+            for pair in x.windows(2) {
+                let (step, wanted) = if log {
+                    (pair[1] / pair[0], factor.powf(1.0 / (n - 1) as f64))
+                } else {
+                    (pair[1] - pair[0], (to - from) / (n - 1) as f64)
+                };
+                prop_assert!((step / wanted - 1.0).abs() < 2e-3, "{pair:?}");
+            }
+            Ok(())
+        })
+        .unwrap();
+}
+
+/// A study of two small sweeps.
+const STUDY: &str = r#"
+title = "Little"
+question = "Is it?"
+[[sweep]]
+name = "torque"
+title = "Torque"
+options = "--law h --speeds 4:5:1 --max-rate 12 --scan-step 2 --tolerance 0.1 --time-limit 1.5"
+over = ["torque-limit=0.5:20/log4,none"]
+reference = { torque-limit = "none" }
+along = "torque-limit"
+[[sweep]]
+name = "laws"
+title = "Laws"
+options = "--speeds 4:5:1 --max-rate 12 --scan-step 2 --tolerance 0.1 --time-limit 1.5"
+over = ["rider=none,smart", "law=h,f"]
+reference = { law = "h" }
+along = "law"
+"#;
+
+/// Situation: a study of one's own, of an axis of numbers and one of words.
+/// Action: compute it, and again.
+/// Must hold: the page has both answers with the numbers of the sweeps' tables, and the figures it shows;
+/// computed again, only the time taken is missing.
+#[test]
+fn a_study_is_answered_by_a_page() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("little.toml", STUDY);
+    let said = must(&bench, "sweep study little.toml --out s --pages p");
+    assert_eq!(said, "p/studies/little.md\n");
+    let page = bench.read("p/studies/little.md");
+    for words in ["# Little\n", "## Torque\n", "--over torque-limit=0.5:20/log4,none", "| rider smart | "] {
+        assert!(page.contains(words), "{words}: {page}");
+    }
+    let figures: Vec<&str> =
+        page.split("](../").skip(1).map(|rest| rest.split(')').next().unwrap()).collect();
+    assert_eq!(figures, ["img/studies/little-torque.svg", "img/studies/little-laws.svg"]);
+    for figure in figures {
+        assert!(bench.read(&format!("p/{figure}")).starts_with("<svg"));
+    }
+    let table = bench.read("s/torque/sweep.csv");
+    let area = |value: &str| -> f64 {
+        let row = table.lines().find(|l| l.starts_with(&format!("{value},"))).unwrap();
+        row.split(',').nth(1).unwrap().parse().unwrap()
+    };
+    let part = |value| 100.0 * area(value) / area("none");
+    assert!(page.contains(&format!("| {:.2} | ", area("none"))), "{page}");
+    assert!(page.contains(&format!("| {:.1} % |", part("20"))), "{page}");
+    let (lost, kept) = (part("0.5"), part("20"));
+    assert!(lost < 95.0 && kept >= 95.0, "{lost} {kept}");
+    must(&bench, "sweep study little.toml --out s --pages p -q");
+    let again = bench.read("p/studies/little.md");
+    let timeless = |page: &str| page.lines().filter(|l| !l.starts_with("This page")).collect::<String>();
+    assert!(page.contains(" min on ") && !again.contains(" min on "));
+    assert_eq!(timeless(&page), timeless(&again));
+}
+
+/// Situation: the studies that ship, and ones that are wrong.
+/// Action: list them; compute the wrong ones.
+/// Must hold: listed by name; study, sweep and value named.
+#[test]
+fn wrong_studies_are_named() {
+    let bench = Bench::new(PROGRAM);
+    let list = must(&bench, "sweep studies");
+    assert!(list.contains("limits ") && list.contains("imu "), "{list}");
+    bench.run("sweep study nothing").refused_naming(&["`nothing`", "limits, imu"]);
+    bench.write("a.toml", STUDY.replace("law=h,f\"", "law=h,q\""));
+    bench.run("sweep study a.toml").refused_naming(&["study a, sweep laws", "cell rider=none, law=q"]);
+    bench.write("a.toml", STUDY.replace("--law h --speeds", "--law h --speed"));
+    bench.run("sweep study a.toml").refused_naming(&["study a, sweep torque", "--speed"]);
+    bench.write("a.toml", STUDY.replace("along = \"law\"", "along = \"rider\""));
+    bench.run("sweep study a.toml").refused_naming(&["study a", "sweep laws", "`rider`"]);
+    assert_eq!(bench.files(), ["a.toml"]);
+}

@@ -1,0 +1,209 @@
+//! Flight cards: when torque may flow, and what takes the permission away.
+
+use control::permit::{Asked, Permission, PermitState, Reactions, step};
+use control::{Cause, Causes, Config, Mode, PermitConfig};
+
+const CONFIG: PermitConfig = PermitConfig {
+    self_test_ticks: 10,
+    ramp_in_ticks: 20,
+    ramp_out_ticks: 5,
+    need_polarity: true,
+    fallen_rad: Some(1.0),
+    parked_m_s: Some(0.3),
+    backwards_m_s: Some(0.3),
+    lifted_m_s2: Some(3.0),
+    persist_ticks: 3,
+};
+
+/// Riding upright at 4 m/s, all well, the switch off.
+const WELL: Asked = Asked {
+    causes: Causes::NONE,
+    engage: false,
+    polarity_checked: true,
+    roll_rad: Some(0.1),
+    speed_m_s: Some(4.0),
+    force_m_s2: Some(9.8),
+};
+
+const PRESSED: Asked = Asked { engage: true, ..WELL };
+
+struct Bench {
+    config: PermitConfig,
+    reactions: Reactions,
+    state: PermitState,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let reactions = Reactions::new(&Config::product().input);
+        Self { config: CONFIG, reactions, state: PermitState::default() }
+    }
+
+    fn step(&mut self, asked: &Asked) -> Permission {
+        step(&self.config, &self.reactions, &mut self.state, asked)
+    }
+
+    /// The permission after so many periods of the same.
+    fn hold(&mut self, asked: &Asked, ticks: usize) -> Permission {
+        (0..ticks).map(|_| self.step(asked)).last().expect("at least one")
+    }
+
+    /// Engaged with its whole authority.
+    fn engaged() -> Self {
+        let mut bench = Self::new();
+        assert_eq!(bench.hold(&WELL, 20).mode, Mode::Standby);
+        let whole = bench.hold(&PRESSED, 25);
+        assert_eq!((whole.mode, whole.authority), (Mode::Engaged, 1.0));
+        assert!(whole.causes.is_empty());
+        bench
+    }
+}
+
+/// Situation: power comes on, the switch released. Action: wait, press, wait, release. Must hold: off, initialise,
+/// self-test for its time, standby; authority only after the press, in twenty equal steps, and down in five.
+#[test]
+fn from_boot_to_torque_and_back() {
+    let mut bench = Bench::new();
+    let mut modes = Vec::new();
+    for _ in 0..20 {
+        let p = bench.step(&WELL);
+        assert_eq!(p.authority, 0.0);
+        assert_eq!(p.causes.has(Cause::SelfTest), modes.len() < 13, "{}", modes.len());
+        assert!(p.causes.has(Cause::SwitchOff));
+        modes.push(p.mode);
+    }
+    assert_eq!(modes[..2], [Mode::Initialise, Mode::SelfTest]);
+    assert!(
+        modes[1..12].iter().all(|m| *m == Mode::SelfTest) && modes[12..].iter().all(|m| *m == Mode::Standby)
+    );
+    for k in 1..=20 {
+        let p = bench.step(&PRESSED);
+        assert_eq!(p.mode, Mode::Engaged);
+        assert!((p.authority - k as f32 / 20.0).abs() < 1e-6, "{k}: {}", p.authority);
+    }
+    assert_eq!(bench.step(&PRESSED).authority, 1.0, "to the bit");
+    for k in 1..=5 {
+        let p = bench.step(&WELL);
+        assert_eq!(p.mode, Mode::Standby);
+        assert!((p.authority - (1.0 - k as f32 / 5.0)).abs() < 1e-6);
+    }
+    assert_eq!(bench.step(&WELL).authority, 0.0);
+}
+
+/// Situation: the switch is stuck on at boot. Action: wait long. Must hold: never engaged, and the list says that the
+/// switch is held; released and pressed again it engages.
+#[test]
+fn a_switch_held_at_boot_does_not_engage() {
+    let mut bench = Bench::new();
+    let p = bench.hold(&PRESSED, 1000);
+    assert_eq!((p.mode, p.authority), (Mode::Standby, 0.0));
+    assert!(p.causes.has(Cause::SwitchHeld) && !p.causes.has(Cause::SwitchOff));
+    bench.step(&WELL);
+    assert_eq!(bench.step(&PRESSED).mode, Mode::Engaged);
+}
+
+/// Situation: several things stand in the way at once. Action: press. Must hold: refused, and all are told at once.
+#[test]
+fn every_refusal_is_listed() {
+    let mut bench = Bench::new();
+    let asked = Asked {
+        polarity_checked: false,
+        roll_rad: Some(-1.2),
+        speed_m_s: Some(-0.4),
+        force_m_s2: Some(1.0),
+        causes: Causes::of(Cause::WheelsDisagree),
+        ..WELL
+    };
+    bench.hold(&asked, 30);
+    let p = bench.step(&Asked { engage: true, ..asked });
+    assert_eq!(p.mode, Mode::Standby);
+    let told: Vec<Cause> = p.causes.iter().collect();
+    let wanted =
+        [Cause::WheelsDisagree, Cause::PolarityUnchecked, Cause::Fallen, Cause::Lifted, Cause::Backwards];
+    assert_eq!(told, wanted);
+}
+
+/// Situation: engaged. Action: each way to fall, lie, hang in the air, lose the polarity check; for as long as allowed and one
+/// period longer. Must hold: nothing at first, then standby, and a held switch does not engage again.
+#[test]
+fn fallen_or_lifted_needs_a_fresh_press() {
+    let ways = [
+        (Asked { roll_rad: Some(1.01), ..PRESSED }, Cause::Fallen, 3),
+        (Asked { roll_rad: Some(-1.01), ..PRESSED }, Cause::Fallen, 3),
+        (Asked { force_m_s2: Some(2.9), ..PRESSED }, Cause::Lifted, 3),
+        (Asked { polarity_checked: false, ..PRESSED }, Cause::PolarityUnchecked, 0),
+    ];
+    for (asked, cause, patience) in ways {
+        let mut bench = Bench::engaged();
+        for _ in 0..patience {
+            assert_eq!(bench.step(&asked).mode, Mode::Engaged, "{cause:?}");
+        }
+        let p = bench.step(&asked);
+        assert!(p.mode == Mode::Standby && p.causes.has(cause), "{cause:?}: {p:?}");
+        let p = bench.hold(&PRESSED, 100);
+        assert_eq!((p.mode, p.authority), (Mode::Standby, 0.0), "{cause:?}: the switch was held");
+        bench.step(&WELL);
+        assert_eq!(bench.step(&PRESSED).mode, Mode::Engaged, "{cause:?}");
+    }
+    // Just inside is nothing.
+    let mut bench = Bench::engaged();
+    let inside = Asked { roll_rad: Some(0.99), force_m_s2: Some(3.01), speed_m_s: Some(0.31), ..PRESSED };
+    assert_eq!(bench.hold(&inside, 100).authority, 1.0);
+}
+
+/// Situation: engaged; the bicycle stops at a light, or rolls back. Action: wait, ride on. Must hold: torque ramps out, stays
+/// engaged, and ramps in again without a press.
+#[test]
+fn standing_pauses() {
+    for (speed, cause) in [(0.2, Cause::Parked), (-0.5, Cause::Backwards)] {
+        let mut bench = Bench::engaged();
+        let p = bench.hold(&Asked { speed_m_s: Some(speed), ..PRESSED }, 30);
+        assert_eq!((p.mode, p.authority), (Mode::Engaged, 0.0));
+        assert!(p.causes.has(cause));
+        let p = bench.hold(&PRESSED, 30);
+        assert_eq!((p.mode, p.authority), (Mode::Engaged, 1.0));
+    }
+}
+
+/// Situation: engaged. Action: every cause that means a fault, for one period. Must hold: no authority in that very period,
+/// the cause stays told, and only good sensors, a released switch, the self-test and a fresh press bring it back.
+#[test]
+fn a_fault_begins_anew() {
+    let reactions = Reactions::new(&Config::product().input);
+    let faults: Vec<Cause> = reactions.fault.iter().collect();
+    assert!(faults.contains(&Cause::GyroLost) && faults.contains(&Cause::GuardRate) && faults.len() > 12);
+    for cause in faults {
+        let mut bench = Bench::engaged();
+        let p = bench.step(&Asked { causes: Causes::of(cause), ..PRESSED });
+        assert_eq!((p.mode, p.authority), (Mode::Fault, 0.0), "{cause:?}");
+        let p = bench.hold(&PRESSED, 200);
+        assert!(p.mode == Mode::Fault && p.causes.has(cause), "{cause:?}: {p:?}");
+        let p = bench.hold(&WELL, 2);
+        assert_eq!(p.mode, Mode::Initialise, "{cause:?}");
+        assert_eq!(bench.hold(&WELL, 20).mode, Mode::Standby, "{cause:?}");
+        assert_eq!(bench.step(&PRESSED).mode, Mode::Engaged, "{cause:?}");
+    }
+}
+
+/// Situation: engaged. Action: every cause that means limping comes and goes. Must hold: limp while it lasts, authority whole,
+/// then engaged again by itself.
+#[test]
+fn what_can_be_done_without_is_limped_with() {
+    let limps: Vec<Cause> = Reactions::new(&Config::product().input).limp.iter().collect();
+    assert!(limps.contains(&Cause::WheelsDisagree) && limps.contains(&Cause::SteerStuck) && limps.len() > 15);
+    for cause in limps {
+        let mut bench = Bench::engaged();
+        let p = bench.hold(&Asked { causes: Causes::of(cause), ..PRESSED }, 50);
+        assert_eq!((p.mode, p.authority), (Mode::Limp, 1.0), "{cause:?}");
+        assert_eq!(bench.step(&PRESSED).mode, Mode::Engaged, "{cause:?}");
+    }
+}
+
+/// Situation: sensors missing since boot. Action: wait. Must hold: no fault, just waiting, and they are listed.
+#[test]
+fn missing_at_boot_is_no_fault() {
+    let mut bench = Bench::new();
+    let p = bench.hold(&Asked { causes: Causes::of(Cause::GyroLost), ..WELL }, 100);
+    assert_eq!(p.mode, Mode::Initialise);
+    assert!(p.causes.has(Cause::GyroLost) && p.causes.has(Cause::SelfTest));
+}

@@ -1,0 +1,112 @@
+//! Flight cards: the options of sensors, motor and faults.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::select;
+use serde_json::json;
+use tests::cli::Bench;
+use tests::draws::runner;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+
+/// Situation: no options, then all of them. Action: read the configuration of a ride's document.
+/// Must hold: exact by default; all that was asked for is there, times in control periods, faults as they
+/// read back; the ride repeats from them, and differs with another seed.
+#[test]
+fn the_document_has_the_plant() {
+    let bench = Bench::new(PROGRAM);
+    let plant = |options: &str| bench.json(&format!("ride --speed 4 {options}"))["config"]["plant"].clone();
+    let exact = plant("");
+    assert_eq!((&exact["sensors"], &exact["faults"], &exact["seed"]), (&json!({}), &json!([]), &json!(0)));
+    assert_eq!(exact["actuator"]["scale"], json!(1.0));
+    let options = "--sensor gyro:noise=0.01,bias=0.02,delay=5ms --sensor gyro.y:bias=-1 --sensor imu:roll=0.1,z=-0.4 \
+                   --sensor path:every=10ms,range=2 --actuator davis,limit=7,time-constant=20ms,delay=2ms \
+                   --fault gyro.x:stuck@1.5s..2s --fault motor:dead@5s --seed 9";
+    let all = plant(options);
+    let gyro = &all["sensors"]["gyro"];
+    assert_eq!((&gyro["noise"], &gyro["delay_ticks"]), (&json!(0.01), &json!(5)));
+    assert_eq!(gyro["bias"], json!([0.02, -1.0, 0.02]));
+    assert_eq!(
+        (&all["sensors"]["path"]["every_ticks"], &all["sensors"]["path"]["range"]),
+        (&json!(10), &json!(2.0))
+    );
+    assert_eq!(
+        (&all["imu"]["turned_rad"], &all["imu"]["point_m"]),
+        (&json!([0.1, 0.0, 0.0]), &json!([0.5, 0.0, -0.4]))
+    );
+    let actuator = &all["actuator"];
+    assert_eq!(
+        (&actuator["limit_nm"], &actuator["time_constant_s"], &actuator["delay_ticks"]),
+        (&json!(7.0), &json!(0.02), &json!(2))
+    );
+    assert_eq!(actuator["friction"]["viscous_nm_s_rad"], json!(0.34));
+    assert_eq!(
+        (&all["faults"], &all["seed"]),
+        (&json!(["gyro.x:stuck@1.5s..2s", "motor:dead@5s"]), &json!(9))
+    );
+    let end = |seed: u32| {
+        let line = format!("ride --speed 5 --steer-rate 1 --sensor gyro:noise=0.05 --seed {seed}");
+        bench.json(&line)["final"].clone()
+    };
+    assert_eq!(end(1), end(1));
+    assert_ne!(end(1), end(2));
+}
+
+/// Situation: options with something wrong. Must hold: exit code 1; the message names option, key, value and
+/// what is allowed.
+#[test]
+fn wrong_options_are_told_what_is_allowed() {
+    let bench = Bench::new(PROGRAM);
+    for (options, says) in [
+        ("--sensor gyro", &["--sensor gyro", "NAME:KEY=VALUE"][..]),
+        ("--sensor gyros:noise=1", &["`gyros`", "imu, gyro, accel"]),
+        ("--sensor gyro:noises=1", &["`noises`", "delay=TIME", "dropout"]),
+        ("--sensor gyro:noise", &["`noise` is not KEY=VALUE"]),
+        ("--sensor gyro:noise=x", &["noise: `x` is not a number"]),
+        ("--sensor gyro:noise=-1", &["gyro noise = -1", "0 to 1000"]),
+        ("--sensor gyro.w:bias=1", &["no axis `w`", "x, y, z"]),
+        ("--sensor gyro.x:noise=1", &["only bias"]),
+        ("--sensor steer.x:bias=1", &["one axis only"]),
+        ("--sensor gyro:delay=1.5ms", &["1 ms and 2 ms"]),
+        ("--sensor gyro:delay=2s", &["0 s to 1 s"]),
+        ("--sensor gyro:every=0ms", &["gyro every", "1 to 1000"]),
+        ("--sensor imu:up=1", &["no `up` of the imu", "x, y, z"]),
+        ("--actuator motor", &["unknown actuator `motor`", "none, davis, gazelle"]),
+        ("--actuator gazelle,power=3", &["no `power`", "time-constant"]),
+        ("--actuator limit=-1", &["actuator limit (N m) = -1", "0 to 1000"]),
+        ("--actuator voltage=24", &["go together"]),
+        ("--actuator coulomb=5", &["over creep"]),
+        ("--fault gyro:stuk", &["--fault", "gyro:stuk", "stuck, missing"]),
+        ("--assist ideal --fault gyro:stuck", &["only friction"]),
+        ("--assist ideal --actuator gazelle", &["only friction"]),
+    ] {
+        let run = bench.run(&format!("ride --speed 4 {options}"));
+        assert_eq!(run.code, Some(1), "{options}: {}", run.stderr);
+        assert!(says.iter().all(|word| run.stderr.contains(word)), "{options}: {}", run.stderr);
+    }
+    let run = bench.run("basin plane --speed 4 --fault gyro:stuck@1s");
+    assert!(run.code == Some(1) && run.stderr.contains("mirrors"), "{}", run.stderr);
+    assert_eq!(bench.run("ride --speed 4 --assist ideal --actuator davis").code, Some(0));
+}
+
+/// Situation: options made of anything that options are made of. Must hold: a ride or a reason.
+#[test]
+fn no_option_makes_the_program_panic() {
+    let bench = Bench::new(PROGRAM);
+    const PIECES: [&str; 16] = [
+        "gyro", "imu", "davis", ".x", ":", "=", ",", "noise", "delay", "limit", "x", "5ms", "-1", "1e99",
+        "nan", "@1s",
+    ];
+    let words = vec(select(&PIECES[..]), 1..7).prop_map(|pieces| pieces.concat());
+    runner(80)
+        .run(&(select(&["--sensor", "--actuator", "--fault"][..]), words), |(option, word)| {
+            let run = bench.run(&format!("ride --speed 4 --time-limit 0.1 --json {option}={word}"));
+            prop_assert!(matches!(run.code, Some(0..=2)), "{option} {word}: {run:?}");
+            prop_assert!(
+                run.code == Some(0) || run.stderr.starts_with("error: "),
+                "{option} {word}: {run:?}"
+            );
+            Ok(())
+        })
+        .unwrap();
+}

@@ -1,0 +1,240 @@
+//! Flight cards: rides with sensors, motors and faults.
+
+use control::{Causes, Config, Loss, Mode, Sensor as Declared};
+use sim_host::bicycle::{Motion, State};
+use sim_host::plant::catalogue::load;
+use sim_host::plant::{ActuatorConfig, Plant, Sensor, SensorModel};
+use sim_host::ride::{Conditions, Ride, Start, TracePoint, frames, rides, traced};
+use tests::basins::{H, alone, assisted, configured, ideal};
+
+const KNOCK: Start = Start { speed_m_s: 4.0, steer_rate_rad_s: 3.0, roll_rate_rad_s: 0.0 };
+
+/// Law h in the control crate with this plant.
+fn with(plant: Plant) -> Conditions {
+    Conditions { plant, ..assisted(H) }
+}
+
+fn faulty(fault: &str) -> Conditions {
+    with(Plant { faults: vec![fault.parse().unwrap()], ..Plant::default() })
+}
+
+fn actuated(actuator: ActuatorConfig) -> Conditions {
+    with(Plant { actuator, ..Plant::default() })
+}
+
+/// A plant in which everything is a little wrong.
+fn worn(seed: u64) -> Plant {
+    let mut plant = Plant { seed, ..Plant::default() };
+    let model =
+        SensorModel { noise: 0.01, dropout: 0.05, delay_ticks: 2, every_ticks: 3, ..SensorModel::default() };
+    for sensor in Sensor::ALL {
+        *plant.sensors.model_mut(sensor) = model;
+    }
+    plant.sensors.imu.turned_rad = [0.01, -0.02, 0.03];
+    plant.actuator = ActuatorConfig { delay_ticks: 1, time_constant_s: 0.01, ..load("davis").unwrap() };
+    plant
+}
+
+/// A configuration that holds samples for a while.
+fn patient() -> Config {
+    let mut config = Config::thesis(H);
+    let patient = Declared { timeout_ticks: 50, ..Declared::exact(100.0) };
+    config.input.gyro = patient;
+    config.input.front_wheel = patient;
+    config
+}
+
+/// All sensors declared.
+fn all_declared() -> Config {
+    let mut config = Config::thesis(H);
+    let exact = Declared::exact(1e5);
+    let i = &mut config.input;
+    (i.accel, i.steer, i.steer_rate, i.rear_wheel) = (exact, exact, exact, exact);
+    (i.rider_torque, i.motor, i.path) = (exact, exact, exact);
+    config
+}
+
+/// Situation: exact sensors, all of them declared, and a plant whose only departure is a fault after the
+/// ride. Action: rides that recover and fall, also where only all six speeds tell the truth.
+/// Must hold: the same bits as without a plant.
+#[test]
+fn an_exact_plant_changes_no_bit() {
+    let starts: Vec<Start> = [(4.0, 3.0), (4.0, 5.0), (1.0, 25.0), (7.0, 8.0), (3.0, -9.0)]
+        .map(|(speed_m_s, steer_rate_rad_s)| Start { speed_m_s, steer_rate_rad_s, ..KNOCK })
+        .into();
+    let plain = rides(&assisted(H), &starts);
+    assert!(plain.iter().any(Ride::fell) && !plain.iter().all(Ride::fell));
+    assert_eq!(rides(&configured(all_declared()), &starts), plain);
+    assert_eq!(rides(&faulty("gyro:bias=1@100s"), &starts), plain);
+}
+
+/// Situation: a worn plant, noise and all. Action: many rides in a batch, backwards, and each alone.
+/// Must hold: the same bits in any company; another seed gives another ride; the mirrored start too.
+#[test]
+fn noise_does_not_depend_on_the_company() {
+    let conditions = |seed| Conditions { plant: worn(seed), ..configured(patient()) };
+    let starts: Vec<Start> =
+        (0..24).map(|i| Start { speed_m_s: 2.0 + 0.2 * f64::from(i), ..KNOCK }).collect();
+    let together = rides(&conditions(7), &starts);
+    let backwards: Vec<Start> = starts.iter().rev().copied().collect();
+    let mut turned = rides(&conditions(7), &backwards);
+    turned.reverse();
+    assert_eq!(together, turned);
+    for (start, ride) in starts.iter().zip(&together) {
+        assert_eq!(traced(&conditions(7), *start).0, *ride);
+    }
+    let other = rides(&conditions(8), &starts);
+    assert!(together.iter().zip(&other).all(|(a, b)| a.end != b.end));
+    assert!(together.iter().filter(|ride| !ride.fell()).count() > 6);
+}
+
+fn same(a: &TracePoint, b: &TracePoint) -> bool {
+    (a.roll, a.steer, a.torque, a.motor_torque) == (b.roll, b.steer, b.torque, b.motor_torque)
+}
+
+/// Situation: law h at 4 m/s; faults of every channel that the controller has a use for, from 0.2 s on.
+/// Action: ride with and without.
+/// Must hold: both rides are the same until the control instant at 0.2 s, and differ in what the controller
+/// was told or the motor gave from that very one on.
+#[test]
+fn a_fault_changes_the_ride_from_its_instant_on() {
+    let plain = traced(&faulty("gyro:bias=1@100s"), KNOCK).1;
+    for fault in [
+        "gyro:bias=0.1",
+        "gyro.x:flip",
+        "gyro:stuck",
+        "gyro:missing",
+        "gyro:nan",
+        "front-wheel:value=1",
+        "front-wheel:missing",
+        "motor:dead",
+        "motor:scale=0.5",
+        "motor:value=-3",
+        "engage:missing",
+    ] {
+        let (_, seen) = traced(&faulty(&format!("{fault}@200ms")), KNOCK);
+        let told = |p: &TracePoint| {
+            (p.frame.gyro_rad_s.value.map(f32::to_bits), p.frame.front_wheel_m_s, p.frame.engage)
+        };
+        let aged = |p: &TracePoint| (p.frame.gyro_rad_s.age_ticks, p.motor_torque);
+        let differs =
+            |(a, b): (&TracePoint, &TracePoint)| told(a) != told(b) || aged(a) != aged(b) || !same(a, b);
+        let first = plain.iter().zip(&seen).position(differs);
+        assert_eq!(first, Some(200), "{fault}");
+    }
+}
+
+/// Situation: the gyro gets lost for good, and for 20 ms while the controller holds samples for 50.
+/// Must hold: for good, the causes name it and the torque is zero from there on; for a while, torque flows
+/// on. The trace has the mode.
+#[test]
+fn a_lost_gyro_stops_the_assist() {
+    let mut config = patient();
+    config.input.gyro.loss = Loss::Fault;
+    let fault = |text: &str| {
+        let plant = Plant { faults: vec![text.parse().unwrap()], ..Plant::default() };
+        traced(&Conditions { plant, ..configured(config.clone()) }, KNOCK).1
+    };
+    let lost = fault("gyro:missing@300ms");
+    assert!(lost[..350].iter().all(|p| p.mode == Mode::Engaged as u8) && lost[349].torque != 0.0);
+    let after = &lost[360..];
+    assert!(after.iter().all(|p| p.mode == Mode::Fault as u8 && p.torque == 0.0 && p.causes != 0));
+    let hole = fault("gyro:missing@300ms..320ms");
+    assert!(hole.iter().all(|p| p.mode == Mode::Engaged as u8 && Causes(p.causes) == Causes::NONE));
+    assert!(hole[310].frame.gyro_rad_s.age_ticks == 11 && hole[321].frame.gyro_rad_s.age_ticks == 0);
+}
+
+/// Situation: motors wired the wrong way, dead, weak and slow. Action: the knock that h saves.
+/// Must hold: the first makes it fall sooner than no assist, the second falls as without assist, to the
+/// bit; half the torque constant still saves it; a lag of 200 ms does not.
+#[test]
+fn motors_that_do_not_what_they_are_asked_for() {
+    let fallen = |conditions: &Conditions| traced(conditions, KNOCK).0.outcome.time_to_fall_s();
+    let none = fallen(&alone()).expect("falls");
+    let wrong = fallen(&actuated(ActuatorConfig { scale: -1.0, ..ActuatorConfig::default() }));
+    assert!(wrong.expect("falls") < none);
+    assert_eq!(fallen(&actuated(ActuatorConfig { scale: 0.0, ..ActuatorConfig::default() })), Some(none));
+    assert_eq!(fallen(&faulty("motor:dead")), Some(none));
+    assert_eq!(fallen(&actuated(ActuatorConfig { scale: 0.7, ..ActuatorConfig::default() })), None);
+    let slow = ActuatorConfig { time_constant_s: 0.2, ..ActuatorConfig::default() };
+    assert!(fallen(&actuated(slow)).is_some());
+}
+
+/// Situation: a lag of 20 ms and a delay of 3 ms under a ride. Must hold: the torque given follows from the
+/// commanded one by the closed form, period by period, at each period's middle; its largest change is gentler.
+#[test]
+fn the_torque_given_is_the_response_to_the_commands() {
+    let lag = ActuatorConfig { time_constant_s: 0.02, delay_ticks: 3, ..ActuatorConfig::default() };
+    let (ride, trace) = traced(&actuated(lag), KNOCK);
+    let (half, whole) = ((-0.5e-3_f64 / 0.02).exp(), (-1e-3_f64 / 0.02).exp());
+    let (mut response, mut largest) = (0.0, 0.0_f64);
+    for (tick, p) in trace.iter().enumerate() {
+        let target = if tick < 3 { 0.0 } else { trace[tick - 3].torque };
+        let middle = target + (response - target) * half;
+        assert!((p.motor_torque - middle).abs() < 1e-9, "{tick}: {} {middle}", p.motor_torque);
+        response = target + (response - target) * whole;
+        largest = largest.max(p.motor_torque.abs());
+    }
+    assert_eq!(ride.effort.peak_torque_nm, largest);
+    assert!(largest > 0.5);
+}
+
+/// Situation: the bicycle alone, under the ideal law and under the firmware, with the friction of the Davis
+/// bicycle. Action: a knock at 6 m/s.
+/// Must hold: alone, the energy falls, and by no more than friction can have taken; under either assist
+/// friction changes the ride.
+#[test]
+fn friction_acts_whatever_turns_the_steer() {
+    let start = Start { speed_m_s: 6.0, ..KNOCK };
+    let actuator = load("davis").unwrap();
+    let rubbed = |c: Conditions| Conditions { plant: Plant { actuator, ..Plant::default() }, ..c };
+    let conditions = rubbed(alone());
+    let b = &conditions.bicycle;
+    let energy = |s: &State<f64>| Motion::new(b, s).energy(b, s);
+    let (ride, trace) = traced(&conditions, start);
+    let end = State {
+        roll: ride.end.roll,
+        steer: ride.end.steer,
+        roll_rate: ride.end.roll_rate,
+        steer_rate: ride.end.steer_rate,
+        rear_wheel_rate: ride.end.rear_wheel_rate,
+        pitch: trace.last().unwrap().pitch,
+    };
+    let change = energy(&end) - energy(&start.state(b));
+    // The trapezoidal rule over the trace, without the last period.
+    let power = |p: &TracePoint| actuator.friction.torque(p.steer_rate) * p.steer_rate;
+    let work: f64 = trace.windows(2).map(|w| 0.5e-3 * (power(&w[0]) + power(&w[1]))).sum();
+    println!("{:?}: energy {change} J, work of friction {work} J", ride.outcome);
+    assert!(change < -0.1 && (change - work).abs() < 0.01 * work.abs());
+    for c in [assisted(H), ideal(H)] {
+        let (with, without) = (traced(&rubbed(c.clone()), start).0, traced(&c, start).0);
+        assert!(!with.fell() && !without.fell() && with.end != without.end);
+        assert!(with.effort.peak_steer_rad < without.effort.peak_steer_rad);
+    }
+}
+
+/// Situation: a worn plant. Action: take the frames of the ride and step the controller with them anew.
+/// Must hold: the torques of the trace, to the bit.
+#[test]
+fn the_frames_of_a_worn_ride_replay() {
+    let config = patient();
+    let conditions = Conditions { plant: worn(3), ..configured(config.clone()) };
+    let (_, trace) = traced(&conditions, KNOCK);
+    let frames = frames(&conditions, KNOCK, &trace);
+    assert!(frames.len() > trace.len());
+    let (plan, mut state) = (config.plan().unwrap(), control::State::default());
+    let torques: Vec<f64> =
+        frames.iter().map(|frame| f64::from(control::step(&plan, &mut state, frame).torque_nm)).collect();
+    let ridden: Vec<f64> = trace.iter().map(|p| p.torque).collect();
+    assert_eq!(torques[frames.len() - trace.len()..], ridden);
+}
+
+/// Situation: the ideal law with a noisy sensor, a weak motor or a fault. Must hold: refused, with the reason.
+#[test]
+fn the_ideal_law_has_an_exact_plant() {
+    let weak = ActuatorConfig { scale: 0.5, ..ActuatorConfig::default() };
+    for plant in [worn(0), Plant { actuator: weak, ..Plant::default() }] {
+        let refused = Conditions { plant, ..ideal(H) }.check().expect_err("refused").to_string();
+        assert!(refused.contains("only friction"), "{refused}");
+    }
+}
