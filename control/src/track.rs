@@ -45,16 +45,16 @@ pub struct Track {
 }
 
 impl Default for Track {
-    /// The computed gains. 2 N m is what a heading error of 0.2 rad asks for at most; errors count up to 0.3 rad and
-    /// 1 m, so the path is approached at 0.1 to 0.2 rad.
+    /// The computed gains. Errors count up to 0.3 rad and 1 m, so that a path far away is approached at 0.1 to
+    /// 0.2 rad; 2 N m leave the rest of 7 N m to balance.
     fn default() -> Self {
         Self {
             speed_m_s: [2.0, 4.0, 6.0, 8.0],
             gains: [
-                [-28.764, 2.039, -2.756, 0.343, -6.559, -1.391, -0.141],
-                [-20.363, 1.946, -2.831, 0.291, -9.526, -1.294, -0.141],
-                [-14.401, 6.502, -3.206, 0.478, -10.833, -1.226, -0.141],
-                [-13.836, 11.417, -3.767, 0.613, -13.588, -1.208, -0.141],
+                [-28.758, 2.039, -2.756, 0.343, -6.556, -1.387, -0.141],
+                [-20.355, 1.953, -2.834, 0.292, -9.529, -1.293, -0.141],
+                [-14.399, 6.495, -3.208, 0.480, -10.828, -1.227, -0.141],
+                [-13.837, 11.415, -3.768, 0.612, -13.591, -1.215, -0.141],
             ],
             max_torque_nm: 2.0,
             slew_nm_s: 20.0,

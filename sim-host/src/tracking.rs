@@ -20,8 +20,8 @@ pub struct Weights {
 }
 
 impl Default for Weights {
-    /// 1 m is worth 1 N m, which is about what an electric motor gives without the rider's noticing; the integral's
-    /// weight is a fiftieth, so that it takes about ten seconds.
+    /// 1 m is worth 1 N m, so half a metre is ridden away with a small part of the torque that balance
+    /// may need. The integral's weight is a fiftieth: it is slow against the way back to the path.
     fn default() -> Self {
         Self { lateral: 1.0, integral: 0.02, torque: 1.0 }
     }

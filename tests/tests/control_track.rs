@@ -119,11 +119,11 @@ fn large_errors_are_approached_with_care() {
 #[test]
 fn the_gains_are_the_computed_ones() {
     let (parameters, track) = (bicycle(), Track::default());
+    let computed = |v: f64| gains(&parameters, v, LAW.gain(v), &Weights::default());
+    track.speed_m_s.iter().for_each(|v| println!("{v} m/s: {:.3}", computed(f64::from(*v))));
     for (speed, row) in track.speed_m_s.iter().zip(&track.gains) {
         let v = f64::from(*speed);
-        let computed = gains(&parameters, v, LAW.gain(v), &Weights::default());
-        println!("{v}: {computed:.3}");
-        for (typed, computed) in row.iter().zip(computed.iter()) {
+        for (typed, computed) in row.iter().zip(computed(v).iter()) {
             assert!((f64::from(*typed) - computed).abs() < 1e-3, "{v} m/s: {typed} {computed}");
         }
     }

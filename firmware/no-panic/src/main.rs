@@ -10,6 +10,7 @@
 use control::guard::{self, GuardPlan, GuardState};
 use control::history::{Aligned, History, Latency};
 use control::shape::{self, Asked, ShapePlan, ShapeState};
+use control::track::{self, Seen, Track, TrackState};
 use control::{
     ActiveLimits, CAUSES, Causes, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State, wire,
 };
@@ -66,6 +67,8 @@ fn limits(config: &Config) {
     used((acted.contains(black_box(ActiveLimits::RATE)), shape.torque_nm()));
     let plan = GuardPlan::new(&table, rate);
     used(guard::judge(&table, &plan, &mut guard, torque, black_box(true), &asked));
+    let (follow, mut following) = (black_box(Track::default()), black_box(TrackState::default()));
+    used((follow.cross(), track::step(&follow, &mut following, &black_box(Seen::default()))));
 }
 
 /// The configurations a user can come by: made in code, from a table of any length, from bytes.
