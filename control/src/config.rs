@@ -9,8 +9,10 @@ use crate::history::Latency;
 use crate::input::InputConfig;
 use crate::law::Law;
 use crate::limits::Limits;
-use crate::param::{Checker, Leaf, ParamError, Visit};
+use crate::param::{Checker, Leaf, ParamError, Visit, optional};
 use crate::permit::PermitConfig;
+use crate::predict::PredictConfig;
+use crate::track::Track;
 use crate::watch::{Loss, Sensor};
 
 /// Everything a user may choose. Plain data; [`Config::plan`] checks it.
@@ -34,6 +36,10 @@ pub struct Config {
     pub permit: PermitConfig,
     /// How late each sensor is known to be.
     pub latency: Latency,
+    /// How the delay of sensors and actuator is made up for.
+    pub predict: PredictConfig,
+    /// How a path is followed; `None` is not at all.
+    pub track: Option<Track>,
     /// Limits on the torque.
     pub limits: Limits,
 }
@@ -52,6 +58,8 @@ impl Config {
             cross: CrossConfig::default(),
             permit: PermitConfig::default(),
             latency: Latency::default(),
+            predict: PredictConfig::default(),
+            track: None,
             limits: Limits::default(),
         }
     }
@@ -120,6 +128,8 @@ impl Config {
         self.cross.leaves(to);
         self.permit.leaves(to);
         self.latency.leaves(to);
+        self.predict.leaves(to);
+        optional(to, &Leaf::switch("", "track"), &mut self.track, Track::leaves);
         self.limits.leaves(to);
     }
 
@@ -132,6 +142,7 @@ impl Config {
         self.leaves(&mut checker);
         checker.note(self.law.validate());
         checker.note(self.limits.cross());
+        checker.note(self.track.as_ref().map_or(Ok(()), Track::cross));
         checker.verdict()?;
         Ok(Plan::new(self))
     }

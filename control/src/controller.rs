@@ -11,7 +11,9 @@ use crate::history::{Aligned, History};
 use crate::input::{self, Believed, Bounds, InputState};
 use crate::limits::ActiveLimits;
 use crate::permit::{self, Mode, PermitState, Reactions};
+use crate::predict;
 use crate::shape::{self, ShapePlan, ShapeState};
+use crate::track::{self, PathError, TrackState};
 
 /// A checked [`Config`] with what is derived from it. Read-only while the controller runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +44,8 @@ impl Plan {
             estimates: c.estimate.roll_rate == estimate::Source::Estimate
                 || c.capsize.is_on()
                 || c.permit.fallen_rad.is_some()
+                || c.predict.lead_s > 0.0
+                || c.track.is_some()
                 || crosses,
             config,
         }
@@ -79,8 +83,11 @@ pub struct State {
     cross: CrossState,
     permit: PermitState,
     history: History,
+    track: TrackState,
     shape: ShapeState,
     guard: GuardState,
+    /// The limits that acted in the period before.
+    acted: ActiveLimits,
     /// What the guard found in the period before.
     found: Causes,
 }
@@ -131,6 +138,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let believed = input::step(&config.input, plan.period_s, &mut state.input, &frame, last_nm);
     state.motion = motion(plan, &mut state.estimate, &believed, elapsed_us);
     let motion = state.motion;
+    let ahead = predict::step(&config.predict, &motion);
     let crossed =
         cross::step(&config.cross, plan.period_s, &mut state.cross, &believed, motion.roll_rad, last_nm);
     let mut causes = believed.causes.with(crossed).with(state.found);
@@ -139,7 +147,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let speed = speed(config, &believed, &motion, causes.has(Cause::WheelsDisagree));
     let now = match (believed.gyro_rad_s, speed) {
         (Some(_), Some(speed)) => {
-            let newest = Aligned { roll_rate_rad_s: motion.roll_rate_rad_s, speed };
+            let newest = Aligned { roll_rate_rad_s: ahead.roll_rate_rad_s, speed };
             let now = state.history.align(&config.latency, newest);
             causes.note(Cause::Filling, now.is_none());
             now
@@ -160,19 +168,35 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     };
     let permission = permit::step(&config.permit, &plan.reactions, &mut state.permit, &asked);
 
-    let (gain, wanted_nm, bounds) = match now {
+    let (gain, law_nm, bounds) = match now {
         Some(Aligned { roll_rate_rad_s, speed }) => {
             let gain = config.law.gain_towards_zero(speed.low, speed.high);
             let mut wanted = gain * roll_rate_rad_s;
             if config.capsize.is_on() {
-                wanted += config.capsize.torque(speed.low, motion.roll_rad);
+                wanted += config.capsize.torque(speed.low, ahead.roll_rad);
             }
             (gain, wanted, speed)
         }
         None => (0.0, 0.0, Bounds::default()),
     };
+    let track_nm = config.track.as_ref().map_or(0.0, |track| {
+        let seen = track::Seen {
+            roll_rad: motion.roll_rad,
+            steer_rad: motion.steer_rad,
+            roll_rate_rad_s: motion.roll_rate_rad_s,
+            steer_rate_rad_s: motion.steer_rate_rad_s,
+            speed_m_s: motion.speed_m_s,
+            path: believed.path.map(|[heading_rad, lateral_m]| PathError { heading_rad, lateral_m }),
+            rider_torque_nm: believed.rider_torque_nm,
+            acted: state.acted,
+            authority: permission.authority,
+            elapsed_us,
+        };
+        track::step(track, &mut state.track, &seen)
+    });
     let asked = shape::Asked {
-        wanted_nm,
+        // Zero added would turn -0 into 0.
+        wanted_nm: if config.track.is_some() { law_nm + track_nm } else { law_nm },
         authority: permission.authority,
         limp: permission.mode == Mode::Limp,
         speed_low_m_s: bounds.low,
@@ -194,6 +218,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
         state.shape = ShapeState::default();
         0.0
     });
+    state.acted = limits;
     state.found = judged.err().map_or(Causes::NONE, |violation| Causes::of(violation.cause()));
     Command {
         torque_nm: plan.calibration.motor(torque_nm),

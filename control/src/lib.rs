@@ -15,8 +15,9 @@
 //! The way of the data, one module each: [`frame`] (what the sensors say) -> [`calibrate`] (in the
 //! bicycle's axes) -> [`input`] (may it be believed; [`watch`] is one sensor) -> [`estimate`] (the motion)
 //! -> [`cross`] (do the sensors fit each other) -> [`permit`] (may torque flow, and why not) ->
-//! [`history`] (sensors of different latency brought to one instant) -> [`law`] (the wanted torque;
-//! [`table`] for one of a user's own, [`capsize`] for what may be added to it) -> [`shape`] (inside the
+//! [`predict`] (as it will be when the torque acts) -> [`history`] (sensors of different latency brought
+//! to one instant) -> [`law`] (the wanted torque; [`table`] for one of a user's own, [`capsize`] and
+//! [`track`] for what may be added to it) -> [`shape`] (inside the
 //! [`limits`]) -> [`guard`] (judges it by them). [`controller`] puts them together, [`config`] holds what
 //! may be chosen, [`fault`] numbers what can go wrong, [`param`] declares every parameter. A board makes
 //! wheel speeds of [`pulses`].
@@ -44,6 +45,7 @@ pub mod pulses;
 pub mod real;
 pub mod shape;
 pub mod table;
+pub mod track;
 pub mod watch;
 pub mod wire;
 

@@ -17,3 +17,4 @@ pub mod rider;
 pub mod study;
 pub mod sweep;
 pub mod thesis;
+pub mod tracking;

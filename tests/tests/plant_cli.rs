@@ -93,11 +93,11 @@ fn wrong_options_are_told_what_is_allowed() {
 #[test]
 fn no_option_makes_the_program_panic() {
     let bench = Bench::new(PROGRAM);
-    let pieces = [
+    const PIECES: [&str; 16] = [
         "gyro", "imu", "davis", ".x", ":", "=", ",", "noise", "delay", "limit", "x", "5ms", "-1", "1e99",
         "nan", "@1s",
     ];
-    let words = vec(select(&pieces[..]), 1..7).prop_map(|pieces| pieces.concat());
+    let words = vec(select(&PIECES[..]), 1..7).prop_map(|pieces| pieces.concat());
     runner(80)
         .run(&(select(&["--sensor", "--actuator", "--fault"][..]), words), |(option, word)| {
             let run = bench.run(&format!("ride --speed 4 --time-limit 0.1 --json {option}={word}"));

@@ -27,11 +27,11 @@ pub(super) fn conditions(words: &[String]) -> Result<ConditionArgs, String> {
     Alone::try_parse_from(words).map(|alone| alone.conditions).map_err(|e| why(&e))
 }
 
-/// An error of wrong usage in one line.
+/// An error of wrong usage in one line: its first paragraph.
 pub(super) fn why(error: &clap::Error) -> String {
     let text = error.to_string();
-    let why = text.lines().next().unwrap_or("").trim_start_matches("error: ");
-    format!("{why} (see `sim-host basin --help`)")
+    let first: Vec<&str> = text.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
+    format!("{} (see `sim-host basin --help`)", first.join(" ").trim_start_matches("error: "))
 }
 
 /// An option that some words can set.

@@ -79,7 +79,6 @@ pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> Result<Vec<u8>, S
         set.add_var_f64(name, dims)?;
         set.add_var_attr_string(name, "units", units)?;
         set.add_var_attr_string(name, "long_name", long_name)?;
-        set.add_var_attr_f64(name, "_FillValue", vec![f64::NAN])?;
     }
     let tool = &grid.plan.tool;
     set.add_global_attr_string("title", "Basins of attraction over a grid of conditions")?;
