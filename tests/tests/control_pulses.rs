@@ -20,7 +20,8 @@ impl Wheel {
     /// Where the `n`th pulse comes \[m\].
     fn place(&self, n: usize) -> f64 {
         let pulse = TAU * f64::from(self.config.radius_m) / f64::from(self.config.pulses_per_turn);
-        let uneven = 0.49 * f64::from(self.config.spacing_error) * if n % 2 == 0 { 1.0 } else { -1.0 };
+        let uneven =
+            0.49 * f64::from(self.config.spacing_error) * if n.is_multiple_of(2) { 1.0 } else { -1.0 };
         (n as f64 + 0.3 + uneven) * pulse
     }
 
