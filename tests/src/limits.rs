@@ -222,7 +222,7 @@ impl Truth {
     /// The largest torque on a side by what bicycle, rider and permission say.
     fn caps(&self, side: f64, asked: &Asked) -> f64 {
         let table = &self.table;
-        let max = table.max_torque_nm.map_or(f64::MAX, f64::from);
+        let max = table.max_torque_nm.map_or(f64::from(f32::MAX), f64::from);
         let share = |x: f64| if x > 0.0 { x.min(1.0) } else { 0.0 };
         let finite = |x: Option<f32>| x.filter(|x| x.is_finite()).map(f64::from);
         let mut cap = max * share(f64::from(asked.authority));

@@ -2,7 +2,6 @@
 
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{GREY, INK, SHADES, shade};
-use super::legend::{Sign, entry, rows, rows_height};
 use super::panel::Panel;
 use super::picture::Picture;
 use super::scale::{nice, ticks};
@@ -37,11 +36,8 @@ pub fn heatmap(figure: &HeatMap) -> Picture {
     let (width, height) = [(460.0, 340.0), (320.0, 260.0), (250.0, 210.0)][columns - 1];
     let lines = figure.maps.len().div_ceil(columns);
     let whole = (LEFT + width) * columns as f64 - LEFT;
-    let percent = 100.0 * figure.contour;
-    let legend = [entry(Sign::Line(Stroke::solid(LINE, 2.2)), format!("{percent} % of the map's largest"))];
-    let legend_y = TOP + (height + BELOW) * lines as f64 - 20.0;
-    let bottom = legend_y + rows_height(&legend, whole) + 12.0;
-    let mut canvas = Canvas::new(LEFT + whole + 96.0, bottom);
+    let below = TOP + (height + BELOW) * lines as f64 - 8.0;
+    let mut canvas = Canvas::new(LEFT + whole + 96.0, below + 14.0);
     canvas.title((LEFT, 26.0), whole, figure.title);
     let numbers = figure.maps.iter().flat_map(|(_, rows)| rows.iter().flatten().flatten().copied());
     let range = nice(numbers.chain([0.0]), 6);
@@ -52,13 +48,14 @@ pub fn heatmap(figure: &HeatMap) -> Picture {
         canvas.text((area.x + 0.5 * width, area.y - 8.0), 12, TextAnchor::Middle, title);
         draw(&mut canvas, figure, map, area, range);
     }
-    rows(&mut canvas, &legend, (LEFT, legend_y), whole);
+    let line = format!("White line: {} % of the map's largest", 100.0 * figure.contour);
+    canvas.text((LEFT, below), 12, TextAnchor::Start, &line);
     let last = Area { x: LEFT, y: TOP, width: whole, height };
     bar(&mut canvas, last, range, figure.label);
     canvas.finish()
 }
 
-/// Stays visible on dark and on light shades.
+/// Seen on dark shades, and by its dark edges on light ones.
 const LINE: &str = "#ffffff";
 
 /// Of a number in a range, how far along it is as a shade's number.

@@ -77,7 +77,10 @@ impl Answer {
             one.numbers().map(|(x, unit)| (i, x[0], unit.to_owned()))
         };
         let all: Vec<_> = self.along.values.iter().enumerate().filter_map(numeric).collect();
-        let (_, _, unit) = all.first()?.clone();
+        let unit = match &all.first()?.2 {
+            none if none.is_empty() && !part.unit.is_empty() => format!(" {}", part.unit),
+            unit => unit.clone(),
+        };
         let mut numbers: Vec<(usize, f64)> = all.into_iter().map(|(i, x, _)| (i, x)).collect();
         if numbers.len() < 2 {
             return None;

@@ -45,6 +45,9 @@ pub struct Part {
     /// The cell others are compared with: values by key. Axes that are not here tell groups apart, each
     /// with a reference of its own.
     pub reference: BTreeMap<String, String>,
+    /// Unit of the numbers along the axis below, if they come without.
+    #[serde(default)]
+    pub unit: String,
     /// The axis along which is looked for what keeps the area; of words, every value is compared.
     pub along: String,
 }

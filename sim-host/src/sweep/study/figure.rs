@@ -39,8 +39,11 @@ fn lines(part: &Part, answer: &Answer, numbers: &[(usize, f64)], unit: &str) -> 
     let range = (ends[0].min(ends[1]), ends[0].max(ends[1]));
     let level = [(range.0, LEAST), (range.1, LEAST)].to_vec();
     series.insert(0, Series::new(format!("{:.0} %", 100.0 * LEAST), Look::line(0, Line::Faint), level));
-    let label =
-        if unit.is_empty() { answer.along.key.clone() } else { format!("{} [{unit}]", answer.along.key) };
+    let label = if unit.is_empty() {
+        answer.along.key.clone()
+    } else {
+        format!("{} [{}]", answer.along.key, unit.trim())
+    };
     let x = Axis::new(&label).over(range.0, range.1);
     let plot = Plot {
         x: if range.0 > 0.0 { x.log() } else { x },

@@ -51,9 +51,9 @@ fn section(study: &Study, part: &Part, grid: &Grid, figures: &str) -> String {
     match Answer::new(part, grid) {
         None => text += "Not every cell is computed.\n\n",
         Some(answer) => match (answer.numbers(part), &answer.others[..]) {
-            (None, _) => text += &compared(&answer),
+            (None, _) => text += &compared(&answer, grid),
             (Some(numbers), []) => text += &alone(&answer, &numbers, grid),
-            (Some(numbers), _) => text += &together(&answer, &numbers),
+            (Some(numbers), _) => text += &(together(&answer, &numbers) + &accuracy(&answer, grid)),
         },
     }
     for (name, _) in super::figures(part, grid) {
@@ -73,7 +73,7 @@ fn in_words(found: Kept, numbers: &[(usize, f64)], unit: &str) -> String {
     let last = numbers[numbers.len() - 1].1;
     match found {
         Kept::Everywhere => format!("{last}{unit} keeps it"),
-        Kept::Nowhere => "none".into(),
+        Kept::Nowhere => "lost".into(),
         Kept::Until { at, kept, lost } => {
             let digits = (2 - at.abs().max(1e-9).log10().floor() as i32).max(0) as usize;
             let (low, high) = (kept.min(lost), kept.max(lost));
@@ -104,17 +104,18 @@ fn alone(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String), grid: &
             parts.join(", ")
         );
     }
-    text + "\n" + &errors(answer, grid)
+    text += "\nInterpolated between the two values of the grid in parentheses, which are the bounds of its error. ";
+    text + &accuracy(answer, grid)
 }
 
-/// How sure the numbers are.
-fn errors(answer: &Answer, grid: &Grid) -> String {
+/// How sure areas are.
+fn accuracy(answer: &Answer, grid: &Grid) -> String {
     let (speeds, tolerance) = (&grid.plan.search.speeds, grid.plan.search.tolerance);
     let span = speeds.last().unwrap_or(&0.0) - speeds.first().unwrap_or(&0.0);
     let least = answer.groups.iter().map(|g| g.reference).fold(f64::INFINITY, f64::min);
     format!(
-        "Interpolated between the two values of the grid in parentheses, which are the bounds of its error. Heights \
-         are located within {tolerance} rad/s, areas thus within {:.2} rad m/s^2, {:.1} % of the smallest reference.\n\n",
+        "Heights are located within {tolerance} rad/s, areas thus within {:.2} rad m/s^2, {:.1} % of the smallest \
+         reference.\n\n",
         tolerance * span,
         100.0 * tolerance * span / least
     )
@@ -129,7 +130,7 @@ fn together(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String)) -> S
     for group in &answer.groups {
         let _ = writeln!(
             text,
-            "{}: {key} that keeps {:.0} % of {:.2} rad m/s^2 (interpolated; the grid's neighbours); \"none\": no limit of the grid does.\n",
+            "{}: {key} that keeps {:.0} % of {:.2} rad m/s^2 (interpolated, between the grid's values in parentheses; \"lost\" at every value of the grid).\n",
             group.label,
             100.0 * LEAST,
             group.reference
@@ -149,7 +150,7 @@ fn together(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String)) -> S
 }
 
 /// An axis of words: the area at each, beside the reference's.
-fn compared(answer: &Answer) -> String {
+fn compared(answer: &Answer, grid: &Grid) -> String {
     let names: Vec<String> =
         answer.along.values.iter().map(|v| format!("{} {v}", answer.along.key)).collect();
     let mut text = format!("| group | {} |\n| --- {}|\n", names.join(" | "), "| --- ".repeat(names.len()));
@@ -162,5 +163,6 @@ fn compared(answer: &Answer) -> String {
             let _ = writeln!(text, "| {} | {} |", group.label, cells.join(" | "));
         }
     }
-    text + "\nAreas in rad m/s^2, and their difference to the reference.\n\n"
+    text += "\nAreas in rad m/s^2, and their difference to the reference. ";
+    text + &accuracy(answer, grid)
 }
