@@ -137,7 +137,6 @@ fn text(groups: &[Group], outlines: &[Vec<Outline>], search: &Search) -> String 
     let mut names = vec!["who", "law"];
     names.extend(columns.iter().map(String::as_str));
     let heights = table(&names, heights);
-    let last = search.speeds.len() - 1;
     let step = search.speeds.get(1).map_or(0.0, |v| v - search.speeds[0]);
     let verdict = verdict(groups, outlines);
     format!(
