@@ -108,7 +108,7 @@ fn every_fault_ends_in_its_safe_state_in_time() {
         });
         let Some(at) = reached else {
             let seen: std::collections::BTreeSet<_> =
-                trace.iter().flat_map(|p| told(p)).map(|c| format!("{c:?}")).collect();
+                trace.iter().flat_map(told).map(|c| format!("{c:?}")).collect();
             wrong.push(format!("{fault}: never {cause:?} in {mode:?}; told {seen:?}"));
             continue;
         };
