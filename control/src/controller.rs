@@ -258,19 +258,25 @@ fn motion(plan: &Plan, state: &mut EstimateState, believed: &Believed, elapsed_u
 /// and the steer angle while it is lost; by both when they disagree.
 fn speed(config: &Config, believed: &Believed, motion: &Motion, disagree: bool) -> Option<Bounds> {
     let (front, rear) = (believed.front_wheel_m_s, believed.rear_wheel_m_s);
-    // The front wheel goes the longer way, at most about twice as long.
-    let cos = match believed.steer_rad {
-        Some(steer) => cross::on_the_ground(config.cross.tilt_rad, motion.roll_rad, steer).1,
-        None => LEAST_COS,
-    };
-    let cos = if cos > LEAST_COS { cos } else { LEAST_COS };
     let (own, other) = match config.input.wheel {
-        Wheel::Front => (front, rear.map(|v| v.spanning(v.scaled(1.0 / cos)))),
-        Wheel::Rear => (rear, front.map(|v| v.spanning(v.scaled(cos)))),
+        Wheel::Front => (front, rear),
+        Wheel::Rear => (rear, front),
     };
     match (own, other) {
-        (Some(own), Some(other)) if disagree => Some(own.spanning(other)),
-        (own, other) => own.or(other),
+        (Some(_), None) => own,
+        (Some(_), Some(_)) if !disagree => own,
+        (_, None) => None,
+        (_, Some(other)) => {
+            // The front wheel goes the longer way, at most about twice as long.
+            let cos = match believed.steer_rad {
+                Some(steer) => cross::on_the_ground(config.cross.tilt_rad, motion.roll_rad, steer).1,
+                None => LEAST_COS,
+            };
+            let cos = if cos > LEAST_COS { cos } else { LEAST_COS };
+            let ratio = if config.input.wheel == Wheel::Front { 1.0 / cos } else { cos };
+            let other = other.spanning(other.scaled(ratio));
+            Some(own.map_or(other, |own| own.spanning(other)))
+        }
     }
 }
 

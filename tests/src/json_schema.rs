@@ -37,6 +37,7 @@ fn check(root: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<
             "const" => value == rule,
             "enum" => list(rule).contains(value),
             "minimum" => value.as_f64().is_none_or(|x| x >= rule.as_f64().unwrap_or(f64::NAN)),
+            "maximum" => value.as_f64().is_none_or(|x| x <= rule.as_f64().unwrap_or(f64::NAN)),
             "minItems" => value.as_array().is_none_or(|a| a.len() as u64 >= rule.as_u64().unwrap_or(0)),
             "maxItems" => value.as_array().is_none_or(|a| a.len() as u64 <= rule.as_u64().unwrap_or(0)),
             "items" => {

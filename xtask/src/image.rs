@@ -25,11 +25,11 @@ pub struct Image {
 
 /// Every image.
 pub const IMAGES: [Image; 5] = [
-    Image { name: "qemu-control", board: "board-qemu", flash: 48 << 10, ram: 16 << 10 },
-    Image { name: "qemu-replay", board: "board-qemu", flash: 64 << 10, ram: 32 << 10 },
-    Image { name: "qemu-instructions", board: "board-qemu", flash: 64 << 10, ram: 32 << 10 },
+    Image { name: "qemu-control", board: "board-qemu", flash: 80 << 10, ram: 24 << 10 },
+    Image { name: "qemu-replay", board: "board-qemu", flash: 128 << 10, ram: 48 << 10 },
+    Image { name: "qemu-instructions", board: "board-qemu", flash: 128 << 10, ram: 48 << 10 },
     Image { name: "qemu-fault", board: "board-qemu", flash: 64 << 10, ram: 32 << 10 },
-    Image { name: "board-stm32f405", board: "board-stm32f405", flash: 48 << 10, ram: 16 << 10 },
+    Image { name: "board-stm32f405", board: "board-stm32f405", flash: 80 << 10, ram: 24 << 10 },
 ];
 
 const BUILD_LIMIT: Duration = Duration::from_secs(1200);

@@ -5,8 +5,8 @@ use control::{Config, SensorFrame};
 use std::str::FromStr;
 use std::time::Duration;
 
-/// The most instructions a step may take: 600 of the 168,000 clock cycles of a period.
-pub const BUDGET: u32 = 600;
+/// The most instructions a step may take, of the 168,000 clock cycles of a period.
+pub const BUDGET: u32 = 3000;
 
 /// The steps of one configuration over the border ride.
 #[derive(Clone, Copy, Debug)]

@@ -95,30 +95,42 @@ pub fn fresh(ride: &[SensorFrame]) -> Vec<SensorFrame> {
 pub fn random_frames(seed: u64, frames: usize) -> Vec<SensorFrame> {
     let mut random = Random(seed);
     let (mut calm, mut switch, mut now_us) = (0, 0, 0_u32);
+    let mut walks = [0.0; 14];
     (0..frames)
         .map(|_| {
-            calm = if calm == 0 { random.below(200) } else { calm - 1 };
+            calm = if calm == 0 { random.below(2000) } else { calm - 1 };
             switch = if switch == 0 { random.below(4000) } else { switch - 1 };
-            let wild = calm < 20 && random.below(3) == 0;
+            let wild = calm < 40 && random.below(3) == 0;
             now_us = now_us.wrapping_add(if wild { random.next() as u32 } else { 1000 });
-            let x = random.sample(wild, 6.0);
+            for (walk, reach) in walks.iter_mut().zip(REACH) {
+                *walk = random.walked(*walk, reach);
+            }
+            let [p, q, r, x, y, z, steer, steer_rate, front, rear, rider, motor, heading, lateral] =
+                walks.map(|walk| random.sample(wild, walk));
+            let triple = |x: Sample, y: Sample, z: Sample| Triple {
+                value: [x.value, y.value, z.value],
+                age_ticks: x.age_ticks,
+            };
             SensorFrame {
                 now_us,
-                gyro_rad_s: random.triple(x, wild, 6.0),
-                accel_m_s2: random.triple(Sample::fresh(0.0), wild, 12.0),
-                steer_rad: random.sample(wild, 1.0),
-                steer_rate_rad_s: random.sample(wild, 10.0),
-                front_wheel_m_s: random.sample(wild, 12.0),
-                rear_wheel_m_s: random.sample(wild, 12.0),
-                rider_torque_nm: random.sample(wild, 10.0),
-                motor_torque_nm: random.sample(wild, 10.0),
-                heading_error_rad: random.sample(wild, 0.5),
-                lateral_error_m: random.sample(wild, 2.0),
+                gyro_rad_s: triple(p, q, r),
+                accel_m_s2: triple(x, y, z),
+                steer_rad: steer,
+                steer_rate_rad_s: steer_rate,
+                front_wheel_m_s: front,
+                rear_wheel_m_s: rear,
+                rider_torque_nm: rider,
+                motor_torque_nm: motor,
+                heading_error_rad: heading,
+                lateral_error_m: lateral,
                 engage: switch > 40,
             }
         })
         .collect()
 }
+
+/// How far the plausible values wander, in the order of the frame.
+const REACH: [f32; 14] = [6.0, 2.0, 4.0, 3.0, 6.0, 12.0, 1.0, 10.0, 12.0, 12.0, 8.0, 1.5, 0.5, 2.0];
 
 /// The bytes of `rides.bin` for these rides.
 pub fn encode(rides: &[(&Config, &[SensorFrame])]) -> Vec<u8> {
@@ -170,9 +182,15 @@ impl Random {
         (self.next() >> 32) as u32 % end
     }
 
-    /// A value within `plausible` either way and fresh, or a `wild` one.
+    /// A step of a random walk within `reach` either way.
+    fn walked(&mut self, from: f32, reach: f32) -> f32 {
+        let step = (self.below(1 << 24) as f32 / (1 << 23) as f32 - 1.0) * 0.004 * reach;
+        (from + step).clamp(-reach, reach)
+    }
+
+    /// The `plausible` value, fresh, or a `wild` one.
     fn sample(&mut self, wild: bool, plausible: f32) -> Sample {
-        let within = (self.below(1 << 24) as f32 / (1 << 23) as f32 - 1.0) * plausible;
+        let within = plausible;
         if !wild {
             return Sample::fresh(within);
         }
@@ -190,11 +208,5 @@ impl Random {
             _ => 0,
         };
         Sample { value, age_ticks: age as u16 }
-    }
-
-    /// Three axes, the first as given.
-    fn triple(&mut self, x: Sample, wild: bool, plausible: f32) -> Triple {
-        let (y, z) = (self.sample(wild, plausible), self.sample(wild, plausible));
-        Triple { value: [x.value, y.value, z.value], age_ticks: x.age_ticks }
     }
 }

@@ -148,6 +148,10 @@ impl ConditionArgs {
         config.calibration.polarity_checked = true;
         if let Some(Limit(limit)) = self.torque_limit {
             config.limits.max_torque_nm = limit;
+            if limit.is_none() {
+                // Both are relative to it.
+                (config.limits.rider_torque, config.limits.limp_fraction) = (None, None);
+            }
         }
         if let Some(Limit(limit)) = self.rate_limit {
             config.limits.rise_nm_s = limit;

@@ -8,7 +8,7 @@ use control::{Config, Plan};
 use cortex_m_semihosting::hprintln;
 
 /// Frames read at once: a call to the host costs as much as hundreds of steps.
-pub const BLOCK: usize = 512;
+pub const BLOCK: usize = 256;
 
 /// The frames of one block, as they came.
 pub type Block = [[u8; FRAME_BYTES]; BLOCK];
