@@ -93,8 +93,9 @@ fn every_option_is_documented_with_its_default() {
                 assert!(known || document.contains(&format!(" {option}")), "{command} {option}");
             } else if let Some(default) = line.strip_prefix("[default: ").and_then(|d| d.strip_suffix(']')) {
                 let mut rows = document.lines().filter(|l| l.starts_with(&format!("| `{option}")));
-                let row = rows.next().unwrap_or_else(|| panic!("{command} {option}: no row"));
-                assert!(row.contains(default) || command == "eigen", "{command} {option}: {default}");
+                // Several commands have an option of that name, each with a row.
+                let said = rows.any(|row| row.contains(default));
+                assert!(said || command == "eigen", "{command} {option}: {default}");
             }
         }
     }
