@@ -68,7 +68,8 @@ impl Config {
     /// declared and watched, all limits and checks on ([`Limits::product`]).
     ///
     /// Slopes are at least twice the largest in rides on the border of the basins of `h`, alone and with
-    /// riders; steps are above the largest disturbances those basins hold, which come at once. It refuses to engage until a polarity check was passed.
+    /// riders; steps are above the largest disturbances those basins hold, which come at once. It
+    /// refuses to engage until a polarity check was passed.
     pub fn product() -> Self {
         let sensor = |max, slope_per_s, timeout_ticks, loss| Sensor {
             slope_per_s: Some(slope_per_s),

@@ -56,11 +56,6 @@ impl Plan {
         &self.config
     }
 
-    /// The control period \[us\], as the frames' times should grow.
-    pub fn period_us(&self) -> u32 {
-        self.period_us
-    }
-
     /// Control periods from boot to full authority, if every sensor is good from the start and the
     /// switch is pressed at once when it may be.
     pub fn ticks_to_engage(&self) -> u32 {
@@ -79,7 +74,6 @@ pub struct State {
     before_us: Option<u32>,
     input: InputState,
     estimate: EstimateState,
-    motion: Motion,
     cross: CrossState,
     permit: PermitState,
     history: History,
@@ -101,11 +95,6 @@ impl State {
     /// The part of the torque that is permitted, 0 to 1.
     pub fn authority(&self) -> f32 {
         self.permit.authority()
-    }
-
-    /// The motion as far as it is known.
-    pub fn motion(&self) -> &Motion {
-        &self.motion
     }
 }
 
@@ -136,8 +125,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
 
     let frame = plan.calibration.frame(frame);
     let believed = input::step(&config.input, plan.period_s, &mut state.input, &frame, last_nm);
-    state.motion = motion(plan, &mut state.estimate, &believed, elapsed_us);
-    let motion = state.motion;
+    let motion = motion(plan, &mut state.estimate, &believed, elapsed_us);
     let ahead = predict::step(&config.predict, &motion);
     let crossed =
         cross::step(&config.cross, plan.period_s, &mut state.cross, &believed, motion.roll_rad, last_nm);

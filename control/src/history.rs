@@ -64,7 +64,8 @@ impl History {
         }
         // There is room: the oldest was dropped above.
         let _ = self.recent.push_back(newest);
-        let back = |ticks: u16| self.recent.iter().rev().nth(usize::from(ticks));
+        let newest = self.recent.len().saturating_sub(1);
+        let back = |ticks: u16| newest.checked_sub(usize::from(ticks)).and_then(|at| self.recent.get(at));
         let slowest = roll_rate_ticks.max(speed_ticks);
         let roll_rate = back(slowest.saturating_sub(roll_rate_ticks))?;
         let speed = back(slowest.saturating_sub(speed_ticks))?;

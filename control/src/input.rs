@@ -234,15 +234,14 @@ pub fn step(
     let s = state;
     let was = s.before.unwrap_or(Before::of(frame, torque_nm));
     s.before = Some(Before::of(frame, torque_nm));
-    let size = |x: f32| if x < 0.0 { -x } else { x };
     // What other sensors say of it; NaN says nothing.
-    let turning = size(frame.steer_rad.value - was.steer_rad) > TURNED_RAD
-        || size(frame.steer_rate_rad_s.value) > TURNING_RAD_S;
-    let [x, y, z] = frame.gyro_rad_s.value.map(size);
-    let swinging = x > SWINGING_RAD_S || y > SWINGING_RAD_S || z > SWINGING_RAD_S;
+    let turned = (frame.steer_rad.value - was.steer_rad).abs() > TURNED_RAD;
+    let turns = frame.steer_rate_rad_s.value.abs() > TURNING_RAD_S;
+    let turning = turned || turns;
+    let swinging = frame.gyro_rad_s.value.iter().any(|rate| rate.abs() > SWINGING_RAD_S);
     let front_changes = frame.front_wheel_m_s.value.to_bits() != was.front_wheel_m_s.to_bits();
     let rear_changes = frame.rear_wheel_m_s.value.to_bits() != was.rear_wheel_m_s.to_bits();
-    let torque_changes = size(torque_nm - was.torque_nm) > TORQUE_CHANGE_NM;
+    let torque_changes = (torque_nm - was.torque_nm).abs() > TORQUE_CHANGE_NM;
 
     let mut causes = Causes::NONE;
     let gyro = {
@@ -258,9 +257,7 @@ pub fn step(
         told(&mut causes, watch.step(sensor, codes, period_s, sample, moves))
             .map(|([value], age)| (value, age))
     };
-    let swings = size(frame.steer_rate_rad_s.value) > TURNING_RAD_S;
-    let steer = one(&mut s.steer, &config.steer, &STEER, &frame.steer_rad, swings);
-    let turned = size(frame.steer_rad.value - was.steer_rad) > TURNED_RAD;
+    let steer = one(&mut s.steer, &config.steer, &STEER, &frame.steer_rad, turns);
     let steer_rate = one(&mut s.steer_rate, &config.steer_rate, &STEER_RATE, &frame.steer_rate_rad_s, turned);
     let front =
         one(&mut s.front_wheel, &config.front_wheel, &FRONT_WHEEL, &frame.front_wheel_m_s, rear_changes);

@@ -30,10 +30,6 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// Every mode, by number.
-    pub const ALL: [Mode; 7] =
-        [Mode::Off, Mode::Initialise, Mode::SelfTest, Mode::Standby, Mode::Engaged, Mode::Limp, Mode::Fault];
-
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
@@ -273,24 +269,25 @@ impl PermitState {
             Mode::SelfTest if self.ticks >= config.self_test_ticks => Mode::Standby,
             Mode::Standby => {
                 let blocked = reactions.disengage.with(reactions.pause);
-                if before && !causes.any(blocked) { self.engaged(reactions, causes) } else { Mode::Standby }
+                if before && !causes.any(blocked) { engaged(reactions, causes) } else { Mode::Standby }
             }
             Mode::Engaged | Mode::Limp => {
                 if causes.any(reactions.disengage) {
                     self.released = !asked.engage;
                     Mode::Standby
                 } else {
-                    self.engaged(reactions, causes)
+                    engaged(reactions, causes)
                 }
             }
             Mode::Fault if self.released => Mode::Initialise,
             same => same,
         }
     }
+}
 
-    fn engaged(&self, reactions: &Reactions, causes: Causes) -> Mode {
-        if causes.any(reactions.limp) { Mode::Limp } else { Mode::Engaged }
-    }
+/// The mode in which torque flows under these causes.
+fn engaged(reactions: &Reactions, causes: Causes) -> Mode {
+    if causes.any(reactions.limp) { Mode::Limp } else { Mode::Engaged }
 }
 
 /// A step of a ramp that takes `ticks` from 0 to 1; none is at once.

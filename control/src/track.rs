@@ -176,13 +176,6 @@ pub struct TrackState {
     torque_nm: f32,
 }
 
-impl TrackState {
-    /// How much of its torque tracking gives, 0 to 1.
-    pub fn strength(&self) -> f32 {
-        self.strength
-    }
-}
-
 /// Longest time that a step reckons with \[us\].
 const LONGEST_US: u32 = 20_000;
 

@@ -14,8 +14,8 @@ pub(super) struct Ready {
 }
 
 /// Rides steadily by what the sensors tell, given the control periods since boot and the switch, until
-/// the assist has its whole authority; `seen` gets every frame and command. A controller that does not engage is given up after ten times the
-/// time it should take, and rides on without.
+/// the assist has its whole authority; `seen` gets every frame and command. A controller that does not
+/// engage is given up after ten times the time it should take, and rides on without.
 pub(super) fn preroll(
     plan: &Plan,
     mut told: impl FnMut(u32, bool) -> SensorFrame,
