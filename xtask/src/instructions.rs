@@ -5,9 +5,8 @@ use control::{Config, SensorFrame};
 use std::str::FromStr;
 use std::time::Duration;
 
-/// The most instructions a step may take, of the 168,000 clock cycles of a period: what the largest
-/// takes today and a little. It is to come down to 3,000.
-pub const BUDGET: u32 = 3300;
+/// The most instructions a step may take, of the 168,000 clock cycles of a period.
+pub const BUDGET: u32 = 3000;
 
 /// The steps of one configuration over the border ride.
 #[derive(Clone, Copy, Debug)]
