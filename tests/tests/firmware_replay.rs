@@ -8,8 +8,11 @@ use std::time::Duration;
 use tests::basins::{H, assisted, configured};
 use xtask::{image, qemu, rides};
 
-/// Least parts of the random frames in which every configuration must drive, and must refuse a sensor.
-const LEAST: (f64, f64) = (0.001, 0.001);
+/// Least parts of the random frames in which a configuration must drive, and must refuse a sensor. The flashed
+/// ones hold sensors against each other, which random ones seldom pass.
+fn least(name: &str) -> (f64, f64) {
+    if name.starts_with("product") { (0.001, 0.5) } else { (0.9, 0.01) }
+}
 
 /// Pseudo-random frames for a configuration: a million for the published one and the flashed ones, a tenth of
 /// that for those that differ from them in little.
@@ -133,7 +136,8 @@ fn a_million_random_frames_give_the_same_bits_on_host_and_chip() {
 
 /// Situation: the random frames of the test above.
 /// Action: look at what they exercise.
-/// Must hold: each configuration drives in at least a thousandth of them and refuses a sensor in as many; every reason to lose gyro or wheel but jump and stuck occurs; every torque is finite.
+/// Must hold: the published ones drive in nine tenths of them and refuse a sensor in a hundredth, the flashed ones
+/// in a thousandth and half; every reason to lose gyro or wheel but jump and stuck occurs; every torque is finite.
 #[test]
 fn the_random_frames_reach_the_law_and_every_refusal() {
     for (seed, (name, config)) in (1..).zip(rides::configurations()) {
@@ -148,7 +152,8 @@ fn the_random_frames_reach_the_law_and_every_refusal() {
         let driving = share(&|c| c.mode.drives());
         let refused = share(&|c| c.causes.iter().any(|cause| (1..=36).contains(&cause.code())));
         println!("{name}: {driving} driving, {refused} with a sensor refused");
-        assert!(driving > LEAST.0 && refused > LEAST.1, "{name}: {driving} driving, {refused} refused");
+        let least = least(name);
+        assert!(driving > least.0 && refused > least.1, "{name}: {driving} driving, {refused} refused");
         let wheel = match config.input.wheel {
             control::Wheel::Front => [Cause::FrontWheelLost, Cause::FrontWheelRange],
             control::Wheel::Rear => [Cause::RearWheelLost, Cause::RearWheelRange],
