@@ -160,7 +160,7 @@ impl<'a> Torque<'a> {
         elapsed_us: u32,
     ) -> Self {
         let last = state.torque_nm;
-        let slack = slack(torque, last);
+        let (slack, slack_before) = (slack(torque, last), slack(0.0, last));
         let (size, before) = (torque.abs(), last.abs());
         let crossed = (torque < 0.0 && last > 0.0) || (torque > 0.0 && last < 0.0);
         let (shrunk, grown) = if crossed { (before, size) } else { (before - size, size - before) };
@@ -174,7 +174,9 @@ impl<'a> Torque<'a> {
             && !crossed
             && (shrunk + slack) * plan.fall_s_nm >= time_s.0 * (1.0 - 1e-6);
         let side = if torque < 0.0 { -1.0 } else { 1.0 };
-        let (size, shrunk, grown) = (size - slack, shrunk - slack, grown - slack);
+        // The time to zero is a matter of the torque that was: a huge one the other way gives it nothing.
+        let shrunk = shrunk - if crossed { slack_before } else { slack };
+        let (size, grown) = (size - slack, grown - slack);
         Self { limits, plan, size, side, shrunk, grown, time_s, retreats }
     }
 

@@ -212,7 +212,15 @@ impl Truth {
             let start = recent.map(|(_, t)| t * side).fold(f64::INFINITY, f64::min);
             size - start.max(0.0) - f64::from(w.nm)
         });
-        let steep = if was < 0.0 && rise.is_finite() && fall.is_finite() { 1.0 + rise / fall } else { 1.0 };
+        let steep = match (rise.is_finite(), fall.is_finite()) {
+            (true, true) if was < 0.0 => 1.0 + rise / fall,
+            // Any torque the other way, or none, by rounding of the time to zero alone.
+            (false, true) if was < 0.0 => {
+                let unsure = f64::from(slack(0.0, self.last as f32)) / fall + 2e-5 * most;
+                if (-was / fall - most).abs() <= unsure { f64::INFINITY } else { 1.0 }
+            }
+            _ => 1.0,
+        };
         let worst = [beyond, absolute, size - up, down - size, window].into_iter().fold(0.0, f64::max);
         let scale =
             f64::from(self.table.max_torque_nm.unwrap_or(0.0)) + (rise.min(1e5) + fall.min(1e5)) * most;

@@ -220,6 +220,13 @@ fn each_violation_is_named() {
             100..=100,
             Violation::Fall,
         ),
+        (
+            "far across zero",
+            Limits { fall_nm_s: Some(1.0), ..off },
+            vec![(7.9, plain()), (-4e6, plain())],
+            1..=1,
+            Violation::Fall,
+        ),
         ("window", window, ramp(0.05), 41..=41, Violation::Window),
     ] {
         let refusal = first_refusal(&table, torques);
