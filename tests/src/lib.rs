@@ -8,7 +8,6 @@ pub mod felt;
 pub mod flow;
 pub mod json_schema;
 pub mod late;
-pub mod limits;
 pub mod linearised;
 pub mod model;
 pub mod newton_euler;

@@ -50,6 +50,6 @@ fn a_bad_file_of_rides_is_refused() {
             qemu::run("qemu-replay", &[], &directory, qemu::UNTIMED, Duration::from_secs(60)).unwrap();
         assert_eq!(outcome.status, Some(2), "{outcome:?}");
         assert!(outcome.stdout.contains(reason), "{outcome:?}");
-        assert_eq!(std::fs::read(directory.join("commands.bin")).unwrap(), []);
+        assert_eq!(std::fs::read(directory.join("commands.bin")).unwrap(), Vec::<u8>::new());
     }
 }

@@ -1,9 +1,9 @@
 //! Flight cards: the shaper keeps inside every limit, acts only where one is reached, and is odd.
 
+use crate::limits::{at_speed, calls, mirrored, plain, tables};
 use control::limits::*;
 use control::shape::{Asked, ShapePlan, ShapeState, step};
 use proptest::prelude::*;
-use tests::limits::{at_speed, calls, mirrored, plain, tables};
 
 /// The torques a table makes of a sequence, with what acted.
 fn shaped(table: &Limits, rate_hz: f32, sequence: &[Asked]) -> Vec<(f32, ActiveLimits)> {

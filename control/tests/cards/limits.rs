@@ -9,7 +9,7 @@ use proptest::option::of;
 use proptest::prelude::*;
 
 /// Nothing wanted, nothing known, at 5 m/s, a millisecond after the last call.
-pub fn plain() -> Asked {
+pub(crate) fn plain() -> Asked {
     Asked {
         wanted_nm: 0.0,
         authority: 1.0,
@@ -24,12 +24,12 @@ pub fn plain() -> Asked {
 }
 
 /// Only the torque wanted and the speed.
-pub fn at_speed(wanted_nm: f32, speed: f32) -> Asked {
+pub(crate) fn at_speed(wanted_nm: f32, speed: f32) -> Asked {
     Asked { wanted_nm, speed_low_m_s: speed, speed_high_m_s: speed, ..plain() }
 }
 
 /// The mirror image.
-pub fn mirrored(asked: &Asked) -> Asked {
+pub(crate) fn mirrored(asked: &Asked) -> Asked {
     Asked {
         wanted_nm: -asked.wanted_nm,
         steer_rad: asked.steer_rad.map(|x| -x),
@@ -40,7 +40,7 @@ pub fn mirrored(asked: &Asked) -> Asked {
 }
 
 /// Any table that is accepted, and a rate of calls \[Hz\].
-pub fn tables() -> impl Strategy<Value = (Limits, f32)> {
+pub(crate) fn tables() -> impl Strategy<Value = (Limits, f32)> {
     let cap = (vec(0.1_f32..5.0, CAP_POINTS), vec(0.0_f32..50.0, CAP_POINTS)).prop_map(|(gaps, torques)| {
         let mut cap = SpeedCap::default();
         let mut speed = 0.0;
@@ -120,7 +120,7 @@ fn call() -> impl Strategy<Value = Asked> {
 }
 
 /// A sequence of calls: spells in which all but the time stays as it is, of one call or many.
-pub fn calls(spells: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Asked>> {
+pub(crate) fn calls(spells: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Asked>> {
     let spell = (call(), prop_oneof![Just(1_usize), 1_usize..60], any::<bool>());
     vec(spell, spells).prop_map(|spells| {
         let mut all: Vec<Asked> = Vec::new();
@@ -134,7 +134,7 @@ pub fn calls(spells: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Asked>
 
 /// The past as it really was.
 #[derive(Clone, Debug)]
-pub struct Truth {
+pub(crate) struct Truth {
     table: Limits,
     period_s: f64,
     last: f64,
@@ -146,7 +146,7 @@ pub struct Truth {
 
 impl Truth {
     /// Zero torque for ever.
-    pub fn new(table: &Limits, rate_hz: f32) -> Self {
+    pub(crate) fn new(table: &Limits, rate_hz: f32) -> Self {
         let period_s = 1.0 / f64::from(rate_hz);
         Self {
             table: *table,
@@ -159,12 +159,12 @@ impl Truth {
     }
 
     /// Forgets everything.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         (self.last, self.turned_us, self.past) = (0.0, 0.0, vec![(self.now_us, 0.0)]);
     }
 
     /// Time passes.
-    pub fn wait(&mut self, asked: &Asked) {
+    pub(crate) fn wait(&mut self, asked: &Asked) {
         let elapsed = f64::from(asked.elapsed_us);
         self.now_us += elapsed;
         self.past.push((self.now_us, self.last));
@@ -177,13 +177,13 @@ impl Truth {
     }
 
     /// The torque is output.
-    pub fn output(&mut self, torque: f32) {
+    pub(crate) fn output(&mut self, torque: f32) {
         self.last = f64::from(torque);
     }
 
     /// By how much the torque is outside its limits \[N m\], and how much of that rounding may be; over
     /// `part` of the window.
-    pub fn excess(&self, torque: f32, asked: &Asked, part: f64) -> (f64, f64) {
+    pub(crate) fn excess(&self, torque: f32, asked: &Asked, part: f64) -> (f64, f64) {
         let rounding = f64::from(slack(torque, self.last as f32));
         let torque = f64::from(torque);
         let size = torque.abs();

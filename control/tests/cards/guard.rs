@@ -1,10 +1,10 @@
 //! Flight cards: the guard never stops a sound shaper, always stops a broken one.
 
+use crate::limits::{Truth, at_speed, calls, mirrored, plain, tables};
 use control::guard::{GuardPlan, GuardState, Violation, judge, slack};
 use control::limits::*;
 use control::shape::{Asked, ShapePlan, ShapeState, step};
 use proptest::prelude::*;
-use tests::limits::{Truth, at_speed, calls, mirrored, plain, tables};
 
 /// What can be wrong with a shaper, or between it and the guard.
 #[derive(Clone, Copy, Debug)]

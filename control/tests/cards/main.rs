@@ -1,0 +1,11 @@
+//! Flight cards of the control crate alone: what holds whatever the bicycle.
+
+mod guard;
+mod limits;
+mod maths;
+mod permit;
+mod properties;
+mod pulses;
+mod shape;
+mod watch;
+mod wire;

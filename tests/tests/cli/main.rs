@@ -1,0 +1,13 @@
+//! Flight cards: the command line.
+
+mod bad_input;
+mod contract;
+mod design;
+mod document;
+mod interrupt;
+mod options;
+mod outputs;
+mod parsers;
+mod plant;
+mod riders;
+mod sweep;

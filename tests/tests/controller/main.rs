@@ -1,0 +1,9 @@
+//! Flight cards: the parts of the controller on the nonlinear bicycle.
+
+mod estimate;
+mod fault_pages;
+mod fault_rides;
+mod laws;
+mod leaves;
+mod predict;
+mod track;

@@ -1,0 +1,7 @@
+//! Flight cards: the images, in QEMU.
+
+mod budgets;
+mod deadlines;
+mod faults;
+mod no_panic;
+mod replay;

@@ -1,0 +1,11 @@
+//! Flight cards: the bicycle.
+
+mod energy;
+mod linear;
+mod newton_euler;
+mod order;
+mod pitch;
+mod published;
+mod speeds;
+mod symmetry;
+mod table1;

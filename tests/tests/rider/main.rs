@@ -1,0 +1,7 @@
+//! Flight cards: the delayed human riders.
+
+mod delay;
+mod linear;
+mod parts;
+mod roots;
+mod tables;

@@ -1,0 +1,7 @@
+//! Flight cards: the flashed code in the simulated loop.
+
+mod basins;
+mod published;
+mod riders;
+mod rides;
+mod sensitivity;

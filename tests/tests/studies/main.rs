@@ -1,0 +1,4 @@
+//! Flight cards: questions answered with a computation.
+
+mod balance_assist;
+mod delay;

@@ -1,0 +1,5 @@
+//! Flight cards: the thesis, computed again.
+
+mod convergence;
+mod report;
+mod riders;
