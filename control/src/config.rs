@@ -12,6 +12,7 @@ use crate::limits::Limits;
 use crate::param::{Checker, Leaf, ParamError, Visit, optional};
 use crate::permit::PermitConfig;
 use crate::predict::PredictConfig;
+use crate::response::{ResponseConfig, SteerModel};
 use crate::track::Track;
 use crate::watch::{Loss, Sensor};
 
@@ -32,6 +33,8 @@ pub struct Config {
     pub estimate: EstimateConfig,
     /// How far sensors may disagree.
     pub cross: CrossConfig,
+    /// Whether the signs of gyro and motor are judged while riding.
+    pub response: ResponseConfig,
     /// When torque may flow.
     pub permit: PermitConfig,
     /// How late each sensor is known to be.
@@ -56,6 +59,7 @@ impl Config {
             input: InputConfig::default(),
             estimate: EstimateConfig::default(),
             cross: CrossConfig::default(),
+            response: ResponseConfig::default(),
             permit: PermitConfig::default(),
             latency: Latency::default(),
             predict: PredictConfig::default(),
@@ -67,8 +71,8 @@ impl Config {
     /// What is flashed: `h` cut to zero above 7.5 m/s, every sensor but the rider's torque and the path
     /// declared and watched, all limits and checks on ([`Limits::product`]).
     ///
-    /// Slopes are at least twice the largest in rides on the border of the basins of `h`, alone and with
-    /// riders; steps are above the largest disturbances those basins hold, which come at once. It
+    /// Slopes are at least twice, ranges and steps 1.4 times the largest of rides inside the basins of `h`, alone
+    /// and with riders (`data/motion.toml`); the steps are those of the disturbance, which comes at once. It
     /// refuses to engage until a polarity check was passed.
     pub fn product() -> Self {
         let sensor = |max, slope_per_s, timeout_ticks, loss| Sensor {
@@ -103,6 +107,7 @@ impl Config {
             persist_ticks: 50,
             ..CrossConfig::default()
         };
+        let response = ResponseConfig { gyro: true, motor: Some(SteerModel::default()) };
         let permit = PermitConfig {
             self_test_ticks: 200,
             ramp_in_ticks: 500,
@@ -116,7 +121,7 @@ impl Config {
         };
         let estimate = EstimateConfig { roll_rate: Source::Estimate, ..EstimateConfig::default() };
         let limits = Limits::product();
-        Self { input, estimate, cross, permit, limits, ..Self::thesis(Law::H { cut: true }) }
+        Self { input, estimate, cross, response, permit, limits, ..Self::thesis(Law::H { cut: true }) }
     }
 
     /// Shows every parameter but the law's.
@@ -127,6 +132,7 @@ impl Config {
         self.input.leaves(to);
         self.estimate.leaves(to);
         self.cross.leaves(to);
+        self.response.leaves(to);
         self.permit.leaves(to);
         self.latency.leaves(to);
         self.predict.leaves(to);

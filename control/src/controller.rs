@@ -11,7 +11,9 @@ use crate::history::{Aligned, History};
 use crate::input::{self, Believed, Bounds, InputState};
 use crate::limits::ActiveLimits;
 use crate::permit::{self, Mode, PermitState, Reactions};
+use crate::polarity::{self, Move, PolarityState};
 use crate::predict;
+use crate::response::{self, ResponseState};
 use crate::shape::{self, ShapePlan, ShapeState};
 use crate::track::{self, PathError, TrackState};
 
@@ -25,6 +27,12 @@ pub struct Plan {
     reactions: Reactions,
     shape: ShapePlan,
     guard: GuardPlan,
+    /// Control periods of a stretch of the response's judgement.
+    stretch_ticks: u16,
+    /// The polarity check is still to be passed.
+    check_polarity: bool,
+    /// The law's gain that the polarity check shows.
+    shown_gain_nm_s_rad: f32,
     /// Whether anything needs more of the motion than the gyro's x axis.
     estimates: bool,
 }
@@ -41,11 +49,15 @@ impl Plan {
             reactions: Reactions::new(&c.input),
             shape: ShapePlan::new(&c.limits, c.rate_hz),
             guard: GuardPlan::new(&c.limits, c.rate_hz),
+            stretch_ticks: response::stretch_ticks(c.rate_hz),
+            check_polarity: c.permit.need_polarity && !c.calibration.polarity_checked,
+            shown_gain_nm_s_rad: c.law.gain(polarity::SHOWN_AT_M_S),
             estimates: c.estimate.roll_rate == estimate::Source::Estimate
                 || c.capsize.is_on()
                 || c.permit.fallen_rad.is_some()
                 || c.predict.lead_s > 0.0
                 || c.track.is_some()
+                || c.response.motor.is_some()
                 || crosses,
             config,
         }
@@ -75,6 +87,9 @@ pub struct State {
     input: InputState,
     estimate: EstimateState,
     cross: CrossState,
+    response: ResponseState,
+    polarity: PolarityState,
+    shown_nm: f32,
     permit: PermitState,
     history: History,
     track: TrackState,
@@ -90,6 +105,21 @@ impl State {
     /// The torque commanded last, in the bicycle's sign \[N m\].
     pub fn torque_nm(&self) -> f32 {
         self.shape.torque_nm()
+    }
+
+    /// What is to be done next in the polarity check.
+    pub fn polarity(&self) -> Move {
+        self.polarity.next
+    }
+
+    /// The torque the law would ask for during the polarity check, in the bicycle's sign \[N m\].
+    pub fn shown_nm(&self) -> f32 {
+        self.shown_nm
+    }
+
+    /// How much of what they should do gyro and motor do: 1 all, -1 the opposite; `None` while too little happens.
+    pub fn slopes(&self) -> [Option<f32>; 2] {
+        self.response.slopes()
     }
 
     /// The part of the torque that is permitted, 0 to 1.
@@ -129,7 +159,11 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let ahead = predict::step(&config.predict, &motion);
     let crossed =
         cross::step(&config.cross, plan.period_s, &mut state.cross, &believed, motion.roll_rad, last_nm);
-    let mut causes = believed.causes.with(crossed).with(state.found);
+    let stretch = (plan.stretch_ticks, plan.period_s);
+    let place = &config.estimate;
+    let seen = (&believed, &motion);
+    let answered = response::step(&config.response, place, stretch, &mut state.response, seen, last_nm);
+    let mut causes = believed.causes.with(crossed).with(answered).with(state.found);
     causes.note(Cause::Timing, config.input.max_gap_ms.is_some_and(|ms| elapsed_us as f32 > 1e3 * ms));
 
     let speed = speed(config, &believed, &motion, causes.has(Cause::WheelsDisagree));
@@ -146,10 +180,15 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
         }
     };
 
+    if plan.check_polarity {
+        let gain = plan.shown_gain_nm_s_rad;
+        state.shown_nm = polarity::step(&config.input, plan.period_s, &mut state.polarity, &believed, gain);
+        causes.note(Cause::PolarityWrong, state.polarity.next == Move::Wrong);
+    }
     let asked = permit::Asked {
         causes,
         engage: frame.engage,
-        polarity_checked: config.calibration.polarity_checked,
+        polarity_checked: !plan.check_polarity || state.polarity.next == Move::Passed,
         roll_rad: (plan.estimates && believed.gyro_rad_s.is_some()).then_some(motion.roll_rad),
         speed_m_s: speed.map(|v| v.newest),
         force_m_s2: believed.accel_m_s2.map(size),

@@ -74,7 +74,7 @@ pub enum Cause {
     MotorStuck = 32,
     /// The two wheels' speeds do not fit the steer angle.
     WheelsDisagree = 33,
-    /// The gyro and the roll angle do not fit each other.
+    /// The gyro's rates and the sideways force have opposite signs.
     GyroDisagrees = 34,
     /// The steer rate and the steer angle do not fit each other.
     SteerDisagrees = 35,
@@ -120,11 +120,13 @@ pub enum Cause {
     Timing = 55,
     /// The path's errors are missing or too old.
     PathLost = 56,
+    /// The polarity check found a wrong sign.
+    PolarityWrong = 57,
 }
 
 /// Every cause, in the order of the codes.
 #[rustfmt::skip]
-pub const CAUSES: [Cause; 56] = {
+pub const CAUSES: [Cause; 57] = {
     use Cause::*;
     [
         GyroLost, GyroRange, GyroJump, GyroStuck, AccelLost, AccelRange, AccelJump, AccelStuck,
@@ -134,6 +136,7 @@ pub const CAUSES: [Cause; 56] = {
         MotorJump, MotorStuck, WheelsDisagree, GyroDisagrees, SteerDisagrees, MotorDisagrees, WrongResponse, YawDisagrees,
         GuardNotFinite, GuardPermission, GuardTorque, GuardRate, GuardWindow, GuardOverride, GuardEndStop,
         PolarityUnchecked, Filling, Fallen, Lifted, Backwards, Parked, SwitchHeld, SwitchOff, SelfTest, Timing, PathLost,
+        PolarityWrong,
     ]
 };
 

@@ -14,7 +14,8 @@
 //!
 //! The way of the data, one module each: [`frame`] (what the sensors say) -> [`calibrate`] (in the
 //! bicycle's axes) -> [`input`] (may it be believed; [`watch`] is one sensor) -> [`estimate`] (the motion)
-//! -> [`cross`] (do the sensors fit each other) -> [`permit`] (may torque flow, and why not) ->
+//! -> [`cross`] (do the sensors fit each other) -> [`response`] (do gyro and motor act with the right sign;
+//! by a [`slope`]) -> [`polarity`] (the check before the first ride) -> [`permit`] (may torque flow, and why not) ->
 //! [`predict`] (as it will be when the torque acts) -> [`history`] (sensors of different latency brought
 //! to one instant) -> [`law`] (the wanted torque; [`table`] for one of a user's own, [`capsize`] and
 //! [`track`] for what may be added to it) -> [`shape`] (inside the
@@ -40,10 +41,13 @@ pub mod limits;
 pub mod maths;
 pub mod param;
 pub mod permit;
+pub mod polarity;
 pub mod predict;
 pub mod pulses;
 pub mod real;
+pub mod response;
 pub mod shape;
+pub mod slope;
 pub mod table;
 pub mod track;
 pub mod watch;

@@ -156,7 +156,9 @@ impl Limits {
     ///   Less would act in many border rides, where these riders push against it with 2 to 27 N m.
     /// * Window 6 N m in 50 ms: above the 5.7 N m to which 100 N m/s lead in the longest it can be, so it acts
     ///   only where the rate was not kept.
-    /// * Half of it in limp mode: a choice.
+    /// * Half of it in limp mode: without the steer angle, where the end-stop can't act, half keeps two thirds of the
+    ///   height that the whole would add, without a front wheel's speed nine tenths. Rides alone would allow all of
+    ///   it; half is what a rider must at most hold while something is known to be wrong.
     pub fn product() -> Self {
         Self {
             max_torque_nm: Some(7.0),

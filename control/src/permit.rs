@@ -123,7 +123,7 @@ impl Reactions {
         let limp = Causes::all(&[WheelsDisagree, SteerDisagrees, YawDisagrees]);
         Self {
             fault: fault.with(input.causes_of(Loss::Fault)),
-            disengage: Causes::all(&[Fallen, Lifted, PolarityUnchecked, SwitchOff]),
+            disengage: Causes::all(&[Fallen, Lifted, PolarityUnchecked, PolarityWrong, SwitchOff]),
             pause: Causes::all(&[Backwards, Parked]),
             limp: limp.with(input.causes_of(Loss::Limp)),
             lasting: limp,

@@ -8,12 +8,12 @@ use std::time::Duration;
 /// The most instructions a step may take, of the 168,000 clock cycles of a period.
 pub const BUDGET: u32 = 3000;
 
-/// The steps of one configuration over the border ride.
+/// The steps of one configuration over the border ride, or over the rides with every sensor.
 #[derive(Clone, Copy, Debug)]
 pub struct Count {
-    /// The configuration's name.
+    /// The configuration's name, and what is ridden.
     pub name: &'static str,
-    /// Mean instructions of a step, rounded down.
+    /// Mean instructions of a step, rounded down; the largest of several rides.
     pub mean: u32,
     /// Largest number of instructions of a step.
     pub max: u32,
@@ -25,26 +25,48 @@ pub struct Count {
 /// QEMU or the image failed.
 pub fn counts() -> Result<Vec<Count>> {
     let configurations = rides::configurations();
-    let ride = rides::border_ride();
-    let rides: Vec<(&Config, &[SensorFrame])> =
-        configurations.iter().map(|(_, config)| (config, ride.as_slice())).collect();
+    let unchecked = Config::product();
+    let (border, whole, broken) = (rides::border_ride(), rides::all_sensors_ride(), rides::broken_rides());
+    let mut rides: Vec<(&str, &Config, &[SensorFrame])> =
+        configurations.iter().map(|(name, config)| (*name, config, border.as_slice())).collect();
+    let (product, everything) = (rides::product(), rides::everything());
+    rides.push(("product, polarity unchecked", &unchecked, &whole));
+    for (config, name, name_broken) in [
+        (&product, "product, every sensor", "product, each sensor broken in turn"),
+        (&everything, "everything on", "everything on, each sensor broken in turn"),
+    ] {
+        rides.push((name, config, &whole));
+        rides.extend(broken.iter().map(|ride| (name_broken, config, ride.as_slice())));
+    }
+    let files: Vec<(&Config, &[SensorFrame])> =
+        rides.iter().map(|(_, config, ride)| (*config, *ride)).collect();
     let directory = qemu::directory("instructions")?;
-    std::fs::write(directory.join("rides.bin"), rides::encode(&rides)).map_err(|e| e.to_string())?;
+    std::fs::write(directory.join("rides.bin"), rides::encode(&files)).map_err(|e| e.to_string())?;
     let outcome = qemu::run("qemu-instructions", &[], &directory, qemu::COUNTED, Duration::from_secs(300))?;
-    let counts: Vec<Count> = outcome
-        .stdout
-        .lines()
-        .filter(|line| line.starts_with("steps="))
-        .zip(&configurations)
-        .filter_map(|(line, (name, _))| {
+    let lines = outcome.stdout.lines().filter(|line| line.starts_with("steps="));
+    let counts: Vec<Count> = lines
+        .zip(&rides)
+        .filter_map(|(line, (name, ..))| {
             Some(Count { name, mean: field(line, "mean")?, max: field(line, "max")? })
         })
         .collect();
-    if outcome.status == Some(0) && counts.len() == configurations.len() {
-        Ok(counts)
+    if outcome.status == Some(0) && counts.len() == rides.len() {
+        Ok(joined(counts))
     } else {
         Err(format!("qemu-instructions: {outcome:?}"))
     }
+}
+
+/// Rides of one name as one: the largest mean and the largest of all steps.
+fn joined(counts: Vec<Count>) -> Vec<Count> {
+    let mut all: Vec<Count> = Vec::new();
+    for count in counts {
+        match all.iter_mut().find(|other| other.name == count.name) {
+            Some(same) => (same.mean, same.max) = (same.mean.max(count.mean), same.max.max(count.max)),
+            None => all.push(count),
+        }
+    }
+    all
 }
 
 /// The number in `name=number` of a program's line.

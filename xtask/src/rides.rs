@@ -1,13 +1,19 @@
 //! Sensor frames to feed to the images, and the configurations to run on them.
 
+use control::capsize::Capsize;
 use control::history::{Latency, MAX_LATENCY_TICKS};
+use control::limits::SpeedCap;
 use control::table::TABLE_POINTS;
+use control::track::Track;
 use control::wire::{decode_frame, encode_config, encode_frame};
-use control::{Config, Law, LawTable, Sample, SensorFrame, Triple, Wheel};
+use control::{Config, Law, LawTable, Sample, Sensor, SensorFrame, Triple, Wheel};
 use std::f32::consts::TAU;
 
 /// [`border_ride`], as recorded.
 const BORDER_RIDE: &[u8] = include_bytes!("../../data/border_ride.frames");
+
+/// [`all_sensors_ride`], as recorded.
+const ALL_SENSORS_RIDE: &[u8] = include_bytes!("../../data/all_sensors.frames");
 
 /// A name and a configuration: every law without limits, the product, and sensors of different
 /// latency.
@@ -22,8 +28,7 @@ pub fn configurations() -> Vec<(&'static str, Config)> {
         latency: Latency { roll_rate_ticks, speed_ticks },
         ..config
     };
-    let mut product = Config::product();
-    product.calibration.polarity_checked = true;
+    let product = product();
     let rear = Config { input: product.input.scheduled_by(Wheel::Rear), ..product.clone() };
     vec![
         ("none", Config::thesis(Law::None)),
@@ -41,6 +46,28 @@ pub fn configurations() -> Vec<(&'static str, Config)> {
     ]
 }
 
+/// What is flashed, on a bicycle whose polarity was checked.
+pub fn product() -> Config {
+    let mut product = Config::product();
+    product.calibration.polarity_checked = true;
+    product
+}
+
+/// The same with all that is off in it: the capsize term, the lead, a path to follow, a rider's torque sensor, a
+/// largest torque by speed, sensors of different latency.
+pub fn everything() -> Config {
+    let mut config = product();
+    config.capsize = Capsize { k_c: 1.0, v_max_m_s: 2.0 };
+    config.predict.lead_s = 0.02;
+    config.track = Some(Track::default());
+    config.input.rider_torque = config.input.steer;
+    config.input.rider_torque.max = 50.0;
+    config.input.path = Sensor::exact(10.0);
+    config.limits.speed_cap = Some(SpeedCap::default());
+    config.latency = Latency { roll_rate_ticks: 2, speed_ticks: 5 };
+    config
+}
+
 /// A ride at the border of what the assist can hold: law h, 4 m/s, handlebar knocked with 8.42 rad/s,
 /// 6 s at 1 kHz, every sample fresh. Recorded with `sim-host ride --speed 4 --steer-rate 8.42 --frames
 /// data/border_ride.frames`; a test records it again.
@@ -51,6 +78,58 @@ pub fn border_ride() -> Vec<SensorFrame> {
     let (frames, rest) = BORDER_RIDE.as_chunks();
     assert!(rest.is_empty(), "data/border_ride.frames ends in half a frame");
     frames.iter().map(decode_frame).collect()
+}
+
+/// A ride with the flashed configuration and every sensor it declares, boot to engagement included: 4 m/s, handlebar
+/// knocked with 5 rad/s, 1.25 s at 1 kHz. Recorded with `sim-host ride --preset product --speed 4 --steer-rate 5
+/// --time-limit 1.25 --frames data/all_sensors.frames`; a test records it again. A hand and a path are made up.
+///
+/// # Panics
+/// Never: the file is a whole number of frames.
+pub fn all_sensors_ride() -> Vec<SensorFrame> {
+    let (frames, rest) = ALL_SENSORS_RIDE.as_chunks();
+    assert!(rest.is_empty(), "data/all_sensors.frames ends in half a frame");
+    // A hand and a path, which the flashed configuration does without.
+    let complete = |frame: SensorFrame| SensorFrame {
+        rider_torque_nm: Sample::fresh(10.0 * frame.steer_rad.value),
+        heading_error_rad: Sample::fresh(frame.steer_rad.value),
+        lateral_error_m: Sample::fresh(0.5 + frame.steer_rad.value),
+        ..frame
+    };
+    frames.iter().map(decode_frame).map(complete).collect()
+}
+
+/// That ride, with each sensor in turn lost, not a number, or out of range from its middle on, the clock jumping,
+/// the switch released, the bicycle upside down.
+pub fn broken_rides() -> Vec<Vec<SensorFrame>> {
+    let breaks: [fn(&mut SensorFrame); 19] = [
+        |f| f.gyro_rad_s = Triple::missing(),
+        |f| f.gyro_rad_s.value[0] = f32::NAN,
+        |f| f.gyro_rad_s.value[2] = 50.0,
+        |f| f.accel_m_s2 = Triple::missing(),
+        |f| f.accel_m_s2.value[1] = 500.0,
+        |f| f.steer_rad = Sample::missing(),
+        |f| f.steer_rad.value = f32::NAN,
+        |f| f.steer_rate_rad_s = Sample::missing(),
+        |f| f.steer_rate_rad_s.value = -f.steer_rate_rad_s.value,
+        |f| f.front_wheel_m_s = Sample::missing(),
+        |f| f.front_wheel_m_s.value *= 0.5,
+        |f| f.front_wheel_m_s.age_ticks = 60,
+        |f| f.rear_wheel_m_s = Sample::missing(),
+        |f| f.rear_wheel_m_s.value += 2.0,
+        |f| f.motor_torque_nm = Sample::missing(),
+        |f| f.motor_torque_nm.value = 5.0,
+        |f| f.now_us = f.now_us.wrapping_mul(7),
+        |f| f.engage = false,
+        |f| f.accel_m_s2.value = f.accel_m_s2.value.map(|x| -x),
+    ];
+    let broken = |change: fn(&mut SensorFrame)| {
+        let mut ride = all_sensors_ride();
+        let middle = ride.len() / 2;
+        ride.iter_mut().skip(middle).for_each(change);
+        ride
+    };
+    breaks.into_iter().map(broken).collect()
 }
 
 /// A ride made up for its reach: 20 s at 1 kHz, the roll rate swings ever wider while the speed falls

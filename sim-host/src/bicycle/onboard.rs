@@ -1,8 +1,10 @@
-//! What the flashed estimator must know of a bicycle, computed from its geometry.
+//! What the flashed code must know of a bicycle, computed from its geometry.
 
-use super::{Geometry, Gyrostat, pitch_from_upright};
+use super::{Geometry, Gyrostat, Motion, State, Torques, pitch_from_upright};
+use crate::num::Dual;
 use control::Config;
 use control::estimate::{EstimateConfig, Place};
+use control::response::SteerModel;
 use nalgebra::{SMatrix, SVector};
 
 /// The attitudes over which the pitch is fitted: roll and steer up to these, either way \[rad\].
@@ -26,6 +28,30 @@ pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) {
     let imu = Place { forward_m: imu_m[0] as f32, up_m: (b.rR - imu_m[2]) as f32 };
     config.estimate = EstimateConfig { roll_rate: config.estimate.roll_rate, imu, ..estimator_parameters(b) };
     (config.cross.wheelbase_m, config.cross.tilt_rad) = (b.w as f32, b.lam as f32);
+    config.response.motor = config.response.motor.map(|_| steer_model(b));
+}
+
+/// The steer acceleration near the upright ride: the nonlinear equations, differentiated exactly.
+pub fn steer_model(b: &Geometry) -> SteerModel {
+    let constant = |re| Dual { re, eps: 0.0 };
+    // By roll, steer, their rates and the steer torque.
+    let by = |input: usize, v: f64| {
+        let at = |i: usize| if i == input { Dual::variable(0.0) } else { constant(0.0) };
+        let upright = State::upright(b, constant(v));
+        let state = State { roll: at(0), steer: at(1), roll_rate: at(2), steer_rate: at(3), ..upright };
+        let torques = Torques { roll: constant(0.0), steer: at(4) };
+        Motion::new(b, &state).accelerations(b, &torques).steer.eps as f32
+    };
+    let (roll, steer) = (by(0, 0.0), by(1, 0.0));
+    SteerModel {
+        per_nm: by(4, 0.0),
+        roll_rate: by(2, 1.0),
+        steer_rate: by(3, 1.0),
+        roll,
+        steer,
+        roll_v2: by(0, 1.0) - roll,
+        steer_v2: by(1, 1.0) - steer,
+    }
 }
 
 /// The terms of [`EstimateConfig::pitch`] at an attitude.

@@ -37,10 +37,15 @@ impl Outfit {
     ) -> (Self, Ready) {
         let steady = Reading::steady(start.speed_m_s, conditions.bicycle.g);
         let mut rig = Rig::new(plant, conditions.step_s, start, &steady);
-        let told = |_, pressed| frame(plan, &rig.measure(plant, &steady, pressed));
+        let mut motor = Actuator::new(&plant.actuator);
+        let told = |_, pressed, torque_nm| {
+            let reached = rig.command(plant, torque_nm);
+            motor.command(&plant.actuator, conditions.step_s, reached);
+            let motor_torque_nm = motor.torque(&plant.actuator, conditions.step_s, 0.0);
+            frame(plan, &rig.measure(plant, &Reading { motor_torque_nm, ..steady }, pressed))
+        };
         let ready = preroll(plan, told, |frame, _| frames(frame));
         rig.begin();
-        let motor = Actuator::new(&plant.actuator);
         (Self { rig, traveller: Traveller::default(), motor }, ready)
     }
 

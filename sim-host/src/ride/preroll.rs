@@ -13,20 +13,22 @@ pub(super) struct Ready {
     pub(super) ticks: u32,
 }
 
-/// Rides steadily by what the sensors tell, given the control periods since boot and the switch, until
+/// Rides steadily by what the sensors tell, given the control periods since boot, the switch and the torque commanded
+/// last \[N m\], until
 /// the assist has its whole authority; `seen` gets every frame and command. A controller that does not
 /// engage is given up after ten times the time it should take, and rides on without.
 pub(super) fn preroll(
     plan: &Plan,
-    mut told: impl FnMut(u32, bool) -> SensorFrame,
+    mut told: impl FnMut(u32, bool, f64) -> SensorFrame,
     mut seen: impl FnMut(&SensorFrame, &Command),
 ) -> Ready {
     let mut controller = State::default();
-    let (mut pressed, mut ticks) = (false, 0);
+    let (mut pressed, mut ticks, mut torque_nm) = (false, 0, 0.0);
     while ticks < 10 * plan.ticks_to_engage() {
-        let told = told(ticks, pressed);
+        let told = told(ticks, pressed, torque_nm);
         let command = control::step(plan, &mut controller, &told);
         ticks += 1;
+        torque_nm = f64::from(command.torque_nm);
         seen(&told, &command);
         pressed |= command.mode == control::Mode::Standby;
         if controller.authority() == 1.0 {
@@ -37,9 +39,9 @@ pub(super) fn preroll(
 }
 
 /// What exact sensors tell riding steadily at a speed \[m/s\].
-pub(super) fn steady(plan: &Plan, speed_m_s: f64) -> impl FnMut(u32, bool) -> SensorFrame {
+pub(super) fn steady(plan: &Plan, speed_m_s: f64) -> impl FnMut(u32, bool, f64) -> SensorFrame {
     let reading = Reading { roll_rate_rad_s: 0.0, speed_m_s };
-    move |ticks, pressed| frame(plan, &reading, ticks, pressed)
+    move |ticks, pressed, _| frame(plan, &reading, ticks, pressed)
 }
 
 /// The last controller readied: rides from the same speed share it.

@@ -6,4 +6,5 @@ mod fault_rides;
 mod laws;
 mod leaves;
 mod predict;
+mod response;
 mod track;

@@ -1,0 +1,210 @@
+//! Do gyro and motor act with the sign they should? Judged while riding, from what follows from them.
+//!
+//! * **Gyro**: where the IMU sits, the sideways specific force changes with the rates (`docs/bicycle.md`):
+//!   `f_y = v wz - g roll + up wx' + forward wz' + wy (wx forward + wz (radius - up))`. What is seen of it
+//!   beyond the terms of `wz` is held against the terms of `wx`.
+//! * **Motor**: the steer acceleration is held against the one that the commanded torque makes, what the
+//!   linearised bicycle (Meijaard et al. 2007, eq. 5.3) explains being taken off. A rider's torque is not
+//!   known, but muscles are slow.
+//!
+//! How much must happen before a slope counts is from rides inside the basins of `h`, alone and with riders: the
+//! gyro's slope stays above 0.9 in them (0.4 with 0.02 rad/s and 1 m/s^2 of noise), the motor's above 0. In
+//! small motions a rider may push the other way as quickly as the motor does.
+
+use crate::estimate::{EstimateConfig, Motion};
+use crate::fault::{Cause, Causes};
+use crate::input::Believed;
+use crate::param::{Leaf, Visit, optional};
+use crate::slope::{Slope, SlopeConfig, Stretch};
+
+/// Length of the motor's stretches; the gyro's are twice as long \[s\].
+const STRETCH_S: f32 = 0.008;
+
+/// The sideways force \[m/s^2\].
+const GYRO: SlopeConfig = SlopeConfig { slow_s: 0.2, forget_s: 0.3, most: 20.0, enough: 0.1 };
+/// Below this slope the gyro is wrong. A reversed x axis gives about -1, a reversed z axis less.
+const GYRO_WRONG: f32 = -0.2;
+
+/// The steer acceleration \[rad/s^2\].
+const MOTOR: SlopeConfig = SlopeConfig { slow_s: 0.05, forget_s: 0.2, most: 60.0, enough: 5.0 };
+/// Below this slope the motor is wrong.
+const MOTOR_WRONG: f32 = -0.2;
+
+/// What is judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ResponseConfig {
+    /// Whether the gyro's signs are judged; needs accelerometer and a wheel.
+    pub gyro: bool,
+    /// What the steer does without the motor, and with it; needs steer angle, steer rate and a wheel. `None`
+    /// is not judged.
+    pub motor: Option<SteerModel>,
+}
+
+/// The steer acceleration of the linearised bicycle: `per_nm T + v (roll_rate roll' + steer_rate steer') +
+/// (roll + v^2 roll_v2) roll + (steer + v^2 steer_v2) steer`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SteerModel {
+    /// By each N m of torque \[rad/s^2 / (N m)\].
+    pub per_nm: f32,
+    /// By roll rate and speed \[1/m\].
+    pub roll_rate: f32,
+    /// By steer rate and speed \[1/m\].
+    pub steer_rate: f32,
+    /// By roll \[1/s^2\].
+    pub roll: f32,
+    /// By steer \[1/s^2\].
+    pub steer: f32,
+    /// By roll and the square of speed \[1/m^2\].
+    pub roll_v2: f32,
+    /// By steer and the square of speed \[1/m^2\].
+    pub steer_v2: f32,
+}
+
+impl Default for SteerModel {
+    /// A city bicycle with its rider.
+    fn default() -> Self {
+        Self {
+            per_nm: 5.6,
+            roll_rate: 1.75,
+            steer_rate: -3.6,
+            roll: 19.0,
+            steer: 40.0,
+            roll_v2: 0.0,
+            steer_v2: -2.1,
+        }
+    }
+}
+
+impl ResponseConfig {
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        to.switch(&Leaf::switch("response", "gyro"), &mut self.gyro);
+        optional(to, &Leaf::switch("response", "motor"), &mut self.motor, |m, to| {
+            let leaf = |name, min, max| Leaf::new("response.motor", name, min, max);
+            to.number(&leaf("per_nm", 0.1, 100.0), &mut m.per_nm);
+            to.number(&leaf("roll_rate", -100.0, 100.0), &mut m.roll_rate);
+            to.number(&leaf("steer_rate", -100.0, 100.0), &mut m.steer_rate);
+            to.number(&leaf("roll", -1000.0, 1000.0), &mut m.roll);
+            to.number(&leaf("steer", -1000.0, 1000.0), &mut m.steer);
+            to.number(&leaf("roll_v2", -100.0, 100.0), &mut m.roll_v2);
+            to.number(&leaf("steer_v2", -100.0, 100.0), &mut m.steer_v2);
+        });
+    }
+}
+
+/// How many control periods a stretch of the motor's has.
+pub fn stretch_ticks(rate_hz: f32) -> u16 {
+    // At most 80 at the fastest rate there is.
+    ((STRETCH_S * rate_hz) as u16).max(2)
+}
+
+/// What the judgement remembers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ResponseState {
+    tick: u16,
+    gyro: Stretch<5>,
+    /// Roll acceleration and yaw acceleration of the last stretches \[rad/s^2\], and the sideways force they leave.
+    gyro_slope: Slope,
+    gyro_before: Option<[f32; 2]>,
+    motor: Stretch<6>,
+    motor_slope: Slope,
+    motor_before: Option<[f32; 2]>,
+}
+
+impl ResponseState {
+    /// The slopes of gyro and motor, 1 where all is right; `None` while too little happens.
+    pub fn slopes(&self) -> [Option<f32>; 2] {
+        [self.gyro_slope.told(&GYRO), self.motor_slope.told(&MOTOR)]
+    }
+}
+
+/// One control period: the sensors, the motion estimated from them, and the torque asked for in the period
+/// before, in the bicycle's sign \[N m\].
+pub fn step(
+    config: &ResponseConfig,
+    place: &EstimateConfig,
+    stretch: (u16, f32),
+    state: &mut ResponseState,
+    (believed, motion): (&Believed, &Motion),
+    torque_nm: f32,
+) -> Causes {
+    let (ticks, period_s) = stretch;
+    let dt_s = period_s * f32::from(ticks);
+    state.tick = if state.tick < 2 * ticks { state.tick + 1 } else { 1 };
+    // Each at its own tick, so that no control period has to do both.
+    let gyro_end = state.tick == ticks / 2;
+    let motor_end = state.tick == ticks || state.tick == 2 * ticks;
+    let speed = believed.rear_wheel_m_s.or(believed.front_wheel_m_s);
+    let mut causes = Causes::NONE;
+
+    match (believed.gyro_rad_s, believed.accel_m_s2, speed) {
+        (Some([wx, wy, wz]), Some([_, force, _]), Some(speed)) if config.gyro => {
+            let means = state.gyro.step([wx, wy, wz, force, speed.newest], gyro_end);
+            if let Some((now, before)) = means {
+                let slope = state.sideways(place, 2.0 * dt_s, now, before);
+                causes.note(Cause::GyroDisagrees, slope.is_some_and(|s| s < GYRO_WRONG));
+            }
+        }
+        _ => (state.gyro, state.gyro_before, state.gyro_slope) = Default::default(),
+    }
+    match (config.motor, believed.steer_rad, believed.steer_rate_rad_s, believed.gyro_rad_s, speed) {
+        (Some(model), Some(steer), Some(rate), Some(_), Some(speed)) => {
+            let values = [motion.roll_rad, motion.roll_rate_rad_s, steer, rate, speed.newest, torque_nm];
+            if let Some((now, before)) = state.motor.step(values, motor_end) {
+                let slope = state.turning(&model, dt_s, now, before);
+                causes.note(Cause::WrongResponse, slope.is_some_and(|s| s < MOTOR_WRONG));
+            }
+        }
+        _ => (state.motor, state.motor_before, state.motor_slope) = Default::default(),
+    }
+    causes
+}
+
+impl ResponseState {
+    /// The gyro's slope at the instant between two stretches.
+    fn sideways(
+        &mut self,
+        place: &EstimateConfig,
+        dt_s: f32,
+        now: [f32; 5],
+        before: [f32; 5],
+    ) -> Option<f32> {
+        let [wx, wy, wz, force, speed] = between(now, before);
+        let rate = |i: usize| (now.get(i).unwrap_or(&0.0) - before.get(i).unwrap_or(&0.0)) / dt_s;
+        let imu = &place.imu;
+        let rolling = speed - wy * place.wheel_radius_m;
+        let swing = wy * (wx * imu.forward_m + wz * (place.wheel_radius_m - imu.up_m));
+        let seen = force - rolling * wz - imu.forward_m * rate(2) - swing;
+        let expected = imu.up_m * rate(0);
+        let [expected_before, seen_before] = self.gyro_before.replace([expected, seen])?;
+        // Gravity's part is the sum of the rate: what it changes by is the rate.
+        let [wx_before, ..] = before;
+        let more = expected - expected_before - G * dt_s * wx_before;
+        self.gyro_slope.step(&GYRO, dt_s, more, seen - seen_before)
+    }
+
+    /// The motor's slope at the instant between two stretches.
+    fn turning(&mut self, m: &SteerModel, dt_s: f32, now: [f32; 6], before: [f32; 6]) -> Option<f32> {
+        let [roll, roll_rate, steer, steer_rate, v, torque] = between(now, before);
+        let ([.., rate_now, _, _], [.., rate_before, _, _]) = (now, before);
+        let explained = v * (m.roll_rate * roll_rate + m.steer_rate * steer_rate)
+            + (m.roll + v * v * m.roll_v2) * roll
+            + (m.steer + v * v * m.steer_v2) * steer;
+        let seen = (rate_now - rate_before) / dt_s - explained;
+        let expected = m.per_nm * torque;
+        let [expected_before, seen_before] = self.motor_before.replace([expected, seen])?;
+        self.motor_slope.step(&MOTOR, dt_s, expected - expected_before, seen - seen_before)
+    }
+}
+
+/// Gravity \[m/s^2\].
+const G: f32 = 9.81;
+
+/// Halfway between two stretches.
+fn between<const N: usize>(now: [f32; N], before: [f32; N]) -> [f32; N] {
+    let mut mean = now;
+    for (m, b) in mean.iter_mut().zip(before) {
+        *m = 0.5 * (*m + b);
+    }
+    mean
+}

@@ -1,0 +1,81 @@
+//! How much of what is expected to happen does happen: 1 all of it, 0 nothing, -1 the opposite.
+//!
+//! The least-squares slope of what is seen over what is expected, both freed of what is slow, over the recent
+//! past. A wrong sign shows in it within a fraction of a second, and noise that has nothing to do with
+//! what is expected averages out.
+
+use crate::maths::bounded;
+
+/// How fast must something be to count, how long does it count, and how much must there be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlopeConfig {
+    /// Time constant above which things are too slow \[s\].
+    pub slow_s: f32,
+    /// Time constant of forgetting \[s\].
+    pub forget_s: f32,
+    /// Largest value that is believed of what is seen, in its unit.
+    pub most: f32,
+    /// What the square of what is expected, summed over time, must reach before a slope is told, in its unit
+    /// squared, times s.
+    pub enough: f32,
+}
+
+/// What is remembered.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slope {
+    expected: f32,
+    seen: f32,
+    square: f32,
+    product: f32,
+}
+
+impl Slope {
+    /// Takes in by how much both have changed in `dt_s`; the slope, if enough has happened.
+    pub fn step(&mut self, config: &SlopeConfig, dt_s: f32, expected: f32, seen: f32) -> Option<f32> {
+        let keep = 1.0 / (1.0 + dt_s / config.slow_s);
+        self.expected = keep * (self.expected + expected);
+        self.seen = keep * (self.seen + seen);
+        let forget = 1.0 / (1.0 + dt_s / config.forget_s);
+        let y = bounded(self.seen, config.most);
+        self.square = forget * (self.square + dt_s * self.expected * self.expected);
+        self.product = forget * (self.product + dt_s * self.expected * y);
+        self.told(config)
+    }
+
+    /// The slope, if enough has happened.
+    pub fn told(&self, config: &SlopeConfig) -> Option<f32> {
+        (self.square > config.enough).then(|| self.product / self.square)
+    }
+}
+
+/// Means over short stretches of control periods, and the stretch before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch<const N: usize> {
+    sums: [f32; N],
+    periods: u16,
+    before: Option<[f32; N]>,
+}
+
+impl<const N: usize> Default for Stretch<N> {
+    fn default() -> Self {
+        Self { sums: [0.0; N], periods: 0, before: None }
+    }
+}
+
+impl<const N: usize> Stretch<N> {
+    /// Takes in a control period's values; at the `end` of a stretch its means, and those of the one before.
+    pub fn step(&mut self, values: [f32; N], end: bool) -> Option<([f32; N], [f32; N])> {
+        for (sum, value) in self.sums.iter_mut().zip(values) {
+            *sum += value;
+        }
+        self.periods = self.periods.saturating_add(1);
+        if !end {
+            return None;
+        }
+        let share = 1.0 / f32::from(self.periods);
+        let means = self.sums.map(|sum| share * sum);
+        let before = self.before.replace(means);
+        (self.sums, self.periods) = ([0.0; N], 0);
+        before.map(|before| (means, before))
+    }
+}
