@@ -1,6 +1,7 @@
 //! Flight cards: the parts of the controller on the nonlinear bicycle.
 
 mod estimate;
+mod fault_heights;
 mod fault_pages;
 mod fault_rides;
 mod laws;
