@@ -3,7 +3,7 @@
 
 use crate::basins::{H, assisted, configured};
 use crate::fault_cards::{product, rider};
-use control::{Config, Sensor};
+use control::{Config, Limits, Sensor};
 use rayon::prelude::*;
 use sim_host::basin::{Axis, Search, border};
 use sim_host::plant::Plant;
@@ -71,13 +71,27 @@ fn found(wanted: Border) -> Border {
     Border { height_rad_s: column.upper, ..wanted }
 }
 
-/// The product's sensors and estimator under h as published, without a limit or a check.
+/// The product under h as published, without a limit or a check; boot, self-test and ramps as they are.
 pub fn unchecked() -> Config {
-    let mut config = Config { estimate: product().estimate, ..Config::thesis(H) };
-    let any = Sensor { timeout_ticks: 1000, ..Sensor::exact(1e6) };
+    let mut config = Config { law: H, limits: Limits::default(), ..product() };
     let input = &mut config.input;
-    (input.gyro, input.accel, input.steer, input.steer_rate) = (any, any, any, any);
-    (input.front_wheel, input.rear_wheel, input.motor) = (any, any, any);
+    input.max_gap_ms = None;
+    for sensor in [
+        &mut input.gyro,
+        &mut input.accel,
+        &mut input.steer,
+        &mut input.steer_rate,
+        &mut input.front_wheel,
+        &mut input.rear_wheel,
+        &mut input.motor,
+    ] {
+        *sensor = Sensor { max: 1e6, slope_per_s: None, stuck_ticks: 0, ..*sensor };
+    }
+    let cross = &mut config.cross;
+    (cross.wheels_m_s, cross.yaw_rad_s, cross.steer_rad, cross.motor_nm) = (None, None, None, None);
+    let permit = &mut config.permit;
+    (permit.fallen_rad, permit.parked_m_s, permit.backwards_m_s, permit.lifted_m_s2) =
+        (None, None, None, None);
     config
 }
 
