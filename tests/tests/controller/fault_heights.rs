@@ -22,12 +22,14 @@ struct Row {
     reason: &'static str,
 }
 
+fn section() -> &'static str {
+    let mut sections = include_str!("../../../docs/safety.md").split("\n## ");
+    sections.find_map(|s| s.strip_prefix("What a fault costs\n")).expect("the section")
+}
+
 /// The rows of the section, in its order.
 fn rows() -> Vec<Row> {
-    let section = include_str!("../../../docs/safety.md")
-        .split("\n## ")
-        .find_map(|s| s.strip_prefix("What a fault costs\n"));
-    let rows = section.expect("the section").lines().filter(|line| line.starts_with("| `"));
+    let rows = section().lines().filter(|line| line.starts_with("| `"));
     rows.map(|line| {
         let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
         let [faults, later, at_once, reason] = cells[..] else { panic!("four cells: {line}") };
@@ -79,6 +81,8 @@ fn a_fault_costs_what_the_table_says() {
     };
     let unassisted = Conditions { assist: Assist::None, ..faulty(None) };
     let bases: Vec<f64> = SPEEDS.par_iter().map(|speed| height(&unassisted, *speed)).collect();
+    let listed = bases.iter().map(|base| format!("{base:.1}")).collect::<Vec<_>>().join(", ");
+    assert!(section().contains(&format!("{listed} rad/s")), "without assist: {listed} rad/s");
     let mut names = vec!["none"];
     names.extend(CARDS.iter().map(|card| card.0));
     let mut wrong: Vec<String> = names

@@ -6,5 +6,6 @@ mod fault_pages;
 mod fault_rides;
 mod laws;
 mod leaves;
+mod limp;
 mod predict;
 mod track;
