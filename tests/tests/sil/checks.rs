@@ -110,7 +110,8 @@ fn no_check_trips_inside_the_basins() {
 }
 
 /// Situation: the same rides, sensors with the noise of a real bicycle, which makes the basins smaller. Must hold: engaged
-/// throughout, no cause told in any ride that stays up; what trips in one that falls is not what makes it fall.
+/// throughout, no cause told in any ride that stays up; what trips in one that falls is not what makes it fall, for it falls
+/// without checks too; a third of the rides fall, most of them at the border.
 #[test]
 fn no_check_trips_by_noise() {
     let told = told(&noisy());
@@ -118,5 +119,5 @@ fn no_check_trips_by_noise() {
     println!("{fell} of {} rides fall; told before:\n{}", told.len(), listed(&told, |t| t.trip.is_some()));
     let wrong = listed(&told, |t| t.trip.is_some() && !(t.fell && t.falls_anyhow));
     assert!(wrong.is_empty(), "{wrong}");
-    assert!(fell < told.len() / 2, "{fell} of {}", told.len());
+    assert!((30..90).contains(&fell), "{fell} of {}", told.len());
 }
