@@ -1,10 +1,12 @@
 //! Flight cards: the parts of the controller on the nonlinear bicycle.
 
 mod estimate;
+mod fault_heights;
 mod fault_pages;
 mod fault_rides;
 mod laws;
 mod leaves;
+mod limp;
 mod predict;
 mod response;
 mod track;

@@ -1,6 +1,8 @@
 //! Flight cards: the flashed code in the simulated loop.
 
 mod basins;
+mod checks;
+mod motion;
 mod published;
 mod riders;
 mod rides;

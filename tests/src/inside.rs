@@ -1,0 +1,101 @@
+//! The basins that the flashed limits and checks are judged by: h alone and with two riders, in the thesis
+//! conditions, up to the speed at which h changes sign.
+
+use crate::basins::{H, assisted, configured};
+use crate::fault_cards::{product, rider};
+use control::{Config, Limits, Sensor};
+use rayon::prelude::*;
+use sim_host::basin::{Axis, Search, border};
+use sim_host::plant::Plant;
+use sim_host::ride::{Conditions, Imu, Start};
+use std::sync::OnceLock;
+
+/// Who rides with h: nobody, and two riders.
+pub const RIDERS: [Option<&str>; 3] = [None, Some("young"), Some("smart")];
+
+/// The disturbances.
+pub const AXES: [Axis; 2] = [Axis::SteerRate, Axis::RollRate];
+
+/// The speeds \[m/s\].
+pub const SPEEDS: [f64; 12] = [2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0, 6.5, 7.0, 7.5];
+
+/// The height of a basin at a speed.
+#[derive(Clone, Copy, Debug)]
+pub struct Border {
+    /// Who rides.
+    pub rider: Option<&'static str>,
+    /// What is disturbed.
+    pub axis: Axis,
+    /// Forward speed \[m/s\].
+    pub speed_m_s: f64,
+    /// Largest disturbance that does not end in a fall \[rad/s\].
+    pub height_rad_s: f64,
+}
+
+impl Border {
+    /// The ride from this part of the height.
+    pub fn start(&self, part: f64) -> Start {
+        self.axis.start(self.speed_m_s, part * self.height_rad_s)
+    }
+}
+
+/// These conditions with one of [`RIDERS`].
+pub fn with(name: Option<&str>, conditions: Conditions) -> Conditions {
+    Conditions { rider: name.map(rider), ..conditions }
+}
+
+/// Every border of [`RIDERS`], [`AXES`] and [`SPEEDS`], in this order, found once in a program.
+pub fn borders() -> &'static [Border] {
+    static BORDERS: OnceLock<Vec<Border>> = OnceLock::new();
+    BORDERS.get_or_init(|| {
+        let mut wanted = Vec::new();
+        for rider in RIDERS {
+            for axis in AXES {
+                wanted.extend(SPEEDS.map(|speed_m_s| Border { rider, axis, speed_m_s, height_rad_s: 0.0 }));
+            }
+        }
+        wanted.into_par_iter().map(found).collect()
+    })
+}
+
+fn found(wanted: Border) -> Border {
+    let (max_rate, scan_step) = match wanted.axis {
+        Axis::SteerRate => (24.0, 0.5),
+        Axis::RollRate => (6.0, 0.125),
+    };
+    let speed = wanted.speed_m_s;
+    let search =
+        Search { speeds: vec![speed], axis: wanted.axis, max_rate, scan_step, tolerance: 0.02 * scan_step };
+    let column = border(&with(wanted.rider, assisted(H)), &search, speed);
+    assert!(!column.capped, "{wanted:?} ends beyond {max_rate} rad/s");
+    Border { height_rad_s: column.upper, ..wanted }
+}
+
+/// The product under h as published, without a limit or a check; boot, self-test and ramps as they are.
+pub fn unchecked() -> Config {
+    let mut config = Config { law: H, limits: Limits::default(), ..product() };
+    let input = &mut config.input;
+    input.max_gap_ms = None;
+    for sensor in [
+        &mut input.gyro,
+        &mut input.accel,
+        &mut input.steer,
+        &mut input.steer_rate,
+        &mut input.front_wheel,
+        &mut input.rear_wheel,
+        &mut input.motor,
+    ] {
+        *sensor = Sensor { max: 1e6, slope_per_s: None, stuck_ticks: 0, ..*sensor };
+    }
+    let cross = &mut config.cross;
+    (cross.wheels_m_s, cross.yaw_rad_s, cross.steer_rad, cross.motor_nm) = (None, None, None, None);
+    let permit = &mut config.permit;
+    (permit.fallen_rad, permit.parked_m_s, permit.backwards_m_s, permit.lifted_m_s2) =
+        (None, None, None, None);
+    config
+}
+
+/// Rides under this configuration, the gyro on the frame.
+pub fn sensed(config: Config, plant: Plant) -> Conditions {
+    Conditions { imu: Imu::Body, plant, ..configured(config) }
+}
