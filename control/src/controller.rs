@@ -2,7 +2,7 @@
 
 use crate::calibrate::CalibrationPlan;
 use crate::config::Config;
-use crate::cross::{self, CrossState};
+use crate::cross::{self, CrossPlan, CrossState};
 use crate::estimate::{self, EstimateState, Felt, Motion};
 use crate::fault::{Cause, Causes};
 use crate::frame::{SensorFrame, Wheel};
@@ -24,6 +24,7 @@ pub struct Plan {
     period_s: f32,
     period_us: u32,
     calibration: CalibrationPlan,
+    cross: CrossPlan,
     reactions: Reactions,
     shape: ShapePlan,
     guard: GuardPlan,
@@ -46,6 +47,7 @@ impl Plan {
             period_s: 1.0 / c.rate_hz,
             period_us: (1e6 / c.rate_hz) as u32,
             calibration: c.calibration.plan(),
+            cross: CrossPlan::new(&c.cross, c.rate_hz),
             reactions: Reactions::new(&c.input),
             shape: ShapePlan::new(&c.limits, c.rate_hz),
             guard: GuardPlan::new(&c.limits, c.rate_hz),
@@ -158,7 +160,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let motion = motion(plan, &mut state.estimate, &believed, elapsed_us);
     let ahead = predict::step(&config.predict, &motion);
     let crossed =
-        cross::step(&config.cross, plan.period_s, &mut state.cross, &believed, motion.roll_rad, last_nm);
+        cross::step(&config.cross, &plan.cross, &mut state.cross, &believed, motion.roll_sin_cos, last_nm);
     let stretch = (plan.stretch_ticks, plan.period_s);
     let place = &config.estimate;
     let seen = (&believed, &motion);
@@ -166,7 +168,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let mut causes = believed.causes.with(crossed).with(answered).with(state.found);
     causes.note(Cause::Timing, config.input.max_gap_ms.is_some_and(|ms| elapsed_us as f32 > 1e3 * ms));
 
-    let speed = speed(config, &believed, &motion, causes.has(Cause::WheelsDisagree));
+    let speed = speed(plan, &believed, &motion, causes.has(Cause::WheelsDisagree));
     let now = match (believed.gyro_rad_s, speed) {
         (Some(_), Some(speed)) => {
             let newest = Aligned { roll_rate_rad_s: ahead.roll_rate_rad_s, speed };
@@ -191,7 +193,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
         polarity_checked: !plan.check_polarity || state.polarity.next == Move::Passed,
         roll_rad: (plan.estimates && believed.gyro_rad_s.is_some()).then_some(motion.roll_rad),
         speed_m_s: speed.map(|v| v.newest),
-        force_m_s2: believed.accel_m_s2.map(size),
+        force_m_s2: config.permit.lifted_m_s2.and(believed.accel_m_s2).map(estimate::size),
     };
     let permission = permit::step(&config.permit, &plan.reactions, &mut state.permit, &asked);
 
@@ -276,6 +278,7 @@ fn motion(plan: &Plan, state: &mut EstimateState, believed: &Believed, elapsed_u
         steer_rad: felt.steer_rad.unwrap_or(0.0),
         steer_rate_rad_s: felt.steer_rate_rad_s.unwrap_or(0.0),
         speed_m_s: felt.speed_m_s,
+        roll_sin_cos: (0.0, 1.0),
         roll_bound_rad: core::f32::consts::PI,
         ..Motion::default()
     }
@@ -283,9 +286,10 @@ fn motion(plan: &Plan, state: &mut EstimateState, believed: &Believed, elapsed_u
 
 /// Between which speeds of the scheduling wheel the truth lies: by that wheel's sensor; by the other's
 /// and the steer angle while it is lost; by both when they disagree.
-fn speed(config: &Config, believed: &Believed, motion: &Motion, disagree: bool) -> Option<Bounds> {
+fn speed(plan: &Plan, believed: &Believed, motion: &Motion, disagree: bool) -> Option<Bounds> {
     let (front, rear) = (believed.front_wheel_m_s, believed.rear_wheel_m_s);
-    let (own, other) = match config.input.wheel {
+    let wheel = plan.config.input.wheel;
+    let (own, other) = match wheel {
         Wheel::Front => (front, rear),
         Wheel::Rear => (rear, front),
     };
@@ -296,11 +300,11 @@ fn speed(config: &Config, believed: &Believed, motion: &Motion, disagree: bool) 
         (_, Some(other)) => {
             // The front wheel goes the longer way, at most about twice as long.
             let cos = match believed.steer_rad {
-                Some(steer) => cross::on_the_ground(config.cross.tilt_rad, motion.roll_rad, steer).1,
+                Some(steer) => cross::on_the_ground(&plan.cross, motion.roll_sin_cos, steer).1,
                 None => LEAST_COS,
             };
             let cos = if cos > LEAST_COS { cos } else { LEAST_COS };
-            let ratio = if config.input.wheel == Wheel::Front { 1.0 / cos } else { cos };
+            let ratio = if wheel == Wheel::Front { 1.0 / cos } else { cos };
             let other = other.spanning(other.scaled(ratio));
             Some(own.map_or(other, |own| own.spanning(other)))
         }
@@ -309,7 +313,3 @@ fn speed(config: &Config, believed: &Believed, motion: &Motion, disagree: bool) 
 
 /// Cosine of the largest steer angle on the ground that is reckoned with while it is not known.
 const LEAST_COS: f32 = 0.4;
-
-fn size([x, y, z]: [f32; 3]) -> f32 {
-    libm::sqrtf(x * x + y * y + z * z)
-}

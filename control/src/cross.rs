@@ -6,7 +6,7 @@
 
 use crate::fault::{Cause, Causes};
 use crate::input::Believed;
-use crate::maths::sin_cos;
+use crate::maths::{at_least, at_most, per_root, sin_cos};
 use crate::param::{Leaf, Visit};
 
 /// The tolerances. Each check is off by default.
@@ -58,6 +58,25 @@ impl CrossConfig {
     }
 }
 
+/// What follows from the parameters and the rate of calls alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrossPlan {
+    period_s: f32,
+    per_wheelbase: f32,
+    tilt_sin_cos: (f32, f32),
+}
+
+impl CrossPlan {
+    /// For `rate_hz` calls a second.
+    pub fn new(config: &CrossConfig, rate_hz: f32) -> Self {
+        Self {
+            period_s: 1.0 / rate_hz,
+            per_wheelbase: 1.0 / config.wheelbase_m,
+            tilt_sin_cos: sin_cos(config.tilt_rad),
+        }
+    }
+}
+
 /// What the checks remember.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CrossState {
@@ -88,14 +107,14 @@ impl Lasting {
 /// How quickly the sums forget: the part of the difference that one period takes away.
 const FORGET: f32 = 1.0 / 256.0;
 
-/// One control period: the sensors, the roll angle as estimated \[rad\], and the torque asked for in
+/// One control period: the sensors, sine and cosine of the roll angle as estimated, and the torque asked for in
 /// the period before, in the bicycle's sign \[N m\].
 pub fn step(
     config: &CrossConfig,
-    period_s: f32,
+    plan: &CrossPlan,
     state: &mut CrossState,
     believed: &Believed,
-    roll_rad: f32,
+    roll_sin_cos: (f32, f32),
     torque_nm: f32,
 ) -> Causes {
     let mut causes = Causes::NONE;
@@ -104,7 +123,7 @@ pub fn step(
     let rear = believed.rear_wheel_m_s.map(|v| v.newest);
     let ground = match (config.wheels_m_s, config.yaw_rad_s, believed.steer_rad) {
         (None, None, _) | (_, _, None) => None,
-        (_, _, Some(steer)) => Some(on_the_ground(config.tilt_rad, roll_rad, steer)),
+        (_, _, Some(steer)) => Some(on_the_ground(plan, roll_sin_cos, steer)),
     };
 
     let wheels = match (front, rear, ground) {
@@ -121,8 +140,8 @@ pub fn step(
     };
     let yaw = match (sideways, believed.gyro_rad_s) {
         (Some(sideways), Some([_, y, z])) => {
-            let (sin, cos) = sin_cos(roll_rad);
-            Some(y * sin + z * cos - sideways / config.wheelbase_m)
+            let (sin, cos) = roll_sin_cos;
+            Some(y * sin + z * cos - sideways * plan.per_wheelbase)
         }
         _ => None,
     };
@@ -130,7 +149,7 @@ pub fn step(
 
     let steer = match (believed.steer_rad, believed.steer_rate_rad_s) {
         (Some(angle), Some(rate)) => {
-            let expected = state.offset_rad.unwrap_or(angle) + rate * period_s;
+            let expected = state.offset_rad.unwrap_or(angle) + rate * plan.period_s;
             let difference = angle - expected;
             state.offset_rad = Some(expected + FORGET * difference);
             Some(difference)
@@ -154,16 +173,21 @@ pub fn step(
     });
     causes.note(Cause::MotorDisagrees, state.motor.beyond(config.motor_nm, motor, persist));
     let closer = |bound: f32| bound + 4.0 * FORGET * (torque_nm - bound);
-    state.asked_nm = (closer(low).min(torque_nm), closer(high).max(torque_nm));
+    state.asked_nm = (at_most(torque_nm, closer(low)), at_least(torque_nm, closer(high)));
     causes
 }
 
 /// Sine and cosine of the angle between the front wheel's and the rear frame's tracks on the ground:
-/// the steer angle turned about an axis tilted by `tilt_rad`, leaned by `roll_rad`.
-pub fn on_the_ground(tilt_rad: f32, roll_rad: f32, steer_rad: f32) -> (f32, f32) {
-    let ((sin_tilt, cos_tilt), (sin_roll, cos_roll)) = (sin_cos(tilt_rad), sin_cos(roll_rad));
+/// the steer angle turned about the tilted axis, leaned by an angle of which sine and cosine are given.
+pub fn on_the_ground(plan: &CrossPlan, roll_sin_cos: (f32, f32), steer_rad: f32) -> (f32, f32) {
+    let ((sin_tilt, cos_tilt), (sin_roll, cos_roll)) = (plan.tilt_sin_cos, roll_sin_cos);
     let (sin_steer, cos_steer) = sin_cos(steer_rad);
     let (across, along) = (cos_tilt * sin_steer, cos_steer * cos_roll - sin_tilt * sin_steer * sin_roll);
-    let size = libm::sqrtf(across * across + along * along);
-    if size > 1e-3 { (across / size, along / size) } else { (0.0, 1.0) }
+    let square = across * across + along * along;
+    if square > 1e-6 {
+        let per = per_root(square);
+        (across * per, along * per)
+    } else {
+        (0.0, 1.0)
+    }
 }

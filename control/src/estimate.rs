@@ -11,7 +11,7 @@ mod steer;
 
 pub use config::{EstimateConfig, Place, SOURCES, Source};
 
-use crate::maths::{bounded, sin_cos};
+use crate::maths::{at_least, at_most, bounded, per_root, sin_cos};
 use roll::{G, Roll};
 use steer::Steer;
 
@@ -51,6 +51,8 @@ pub struct Felt {
 pub struct Motion {
     /// Roll angle, right positive; a quarter turn at most \[rad\].
     pub roll_rad: f32,
+    /// Its sine and cosine.
+    pub roll_sin_cos: (f32, f32),
     /// Roll rate by [`Source`] \[rad/s\].
     pub roll_rate_rad_s: f32,
     /// Yaw rate \[rad/s\].
@@ -123,14 +125,14 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
     let (sin_pitch, cos_pitch) = sin_cos(pitch_rad);
     let roll_rate = wx * cos_pitch + wz * sin_pitch;
     run.roll.turn(roll_rate, dt, (c.gyro_walk_rad, c.bias_walk_rad_s), c.bias_max_rad_s);
-    bias_variance = (bias_variance + dt * c.bias_walk_rad_s * c.bias_walk_rad_s).min(at_first);
+    bias_variance = at_most(at_first, bias_variance + dt * c.bias_walk_rad_s * c.bias_walk_rad_s);
 
     // At rest the gyros show nothing but their bias.
     let quiet = told.iter().all(|w| w.abs() <= c.bias_max_rad_s);
     run.still_s = if quiet && speed.abs() <= STANDING_M_S { run.still_s + dt } else { 0.0 };
     if run.still_s > STILL_S {
         run.still_s = 2.0 * STILL_S;
-        let seen = c.gyro_walk_rad * c.gyro_walk_rad / dt.max(1e-6);
+        let seen = c.gyro_walk_rad * c.gyro_walk_rad / at_least(1e-6, dt);
         let _ = run.roll.observe_bias(wx, seen, c.bias_max_rad_s);
         let gain = bias_variance / (bias_variance + seen);
         bias_variance -= gain * bias_variance;
@@ -139,7 +141,7 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
 
     let (sin_roll, cos_roll) = sin_cos(run.roll.angle_rad);
     // As if roll were nearer to upright than 72 degrees: the division must not blow up.
-    let yaw_rate = (wz * cos_pitch - wx * sin_pitch) / cos_roll.max(0.3);
+    let yaw_rate = (wz * cos_pitch - wx * sin_pitch) / at_least(0.3, cos_roll);
     // What the rear wheel's contact moves with: its rate seen from the ground.
     let rolling = speed - wy * c.wheel_radius_m;
     let (place, noise, error, force) = match felt.accel_m_s2 {
@@ -155,8 +157,7 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
         + place.forward_m * ((wz - run.smooth[1]) / OBSERVED_S);
     let seen = felt.accel_m_s2.is_some() || speed >= BALANCING_M_S;
     if seen && dt > 0.0 {
-        let [fx, fy, fz] = force;
-        let pull = libm::sqrtf(fx * fx + fy * fy + fz * fz) - G;
+        let pull = size(force) - G;
         let violence = (lever * lever + pull * pull) / (c.violent_m_s2 * c.violent_m_s2);
         let variance = noise * noise * (1.0 + violence) / dt;
         run.roll.observe((lever - run.unexplained_m_s2) / G, variance, c.bias_max_rad_s);
@@ -171,6 +172,7 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
     let gyro_x = felt.gyro_rad_s[0];
     Motion {
         roll_rad: run.roll.angle_rad,
+        roll_sin_cos: (sin_roll, cos_roll),
         roll_rate_rad_s: match c.roll_rate {
             Source::GyroX if gyro_x.is_finite() => gyro_x,
             Source::GyroX => 0.0,
@@ -185,6 +187,12 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
         roll_bound_rad: bounded(bound, core::f32::consts::PI),
         gyro_bias_rad_s: [run.roll.bias_rad_s, state.bias[0], state.bias[1]],
     }
+}
+
+/// Length of a vector.
+pub(crate) fn size([x, y, z]: [f32; 3]) -> f32 {
+    let square = x * x + y * y + z * z;
+    square * per_root(square)
 }
 
 /// Pitch by the fitted polynomial \[rad\].

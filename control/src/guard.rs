@@ -10,6 +10,7 @@
 
 use crate::fault::Cause;
 use crate::limits::{CAP_POINTS, Limits};
+use crate::maths::{at_least, at_most};
 use crate::shape::Asked;
 
 /// What is wrong with a torque. The numbers stay.
@@ -193,7 +194,7 @@ impl<'a> Torque<'a> {
         }
         let (slow, fast) = (asked.speed_low_m_s, asked.speed_high_m_s);
         let known = slow <= fast || fast <= slow;
-        let (slow, fast) = if known { (slow.min(fast), slow.max(fast)) } else { (-1e9, 1e9) };
+        let (slow, fast) = if known { (at_most(fast, slow), at_least(fast, slow)) } else { (-1e9, 1e9) };
         if let Some(cap) = speed_cap {
             let beyond = self.above_line(&cap.speed_m_s, &cap.torque_nm, slow, fast);
             refuse(Violation::Speed, beyond && !self.retreats)?;
@@ -224,7 +225,7 @@ impl<'a> Torque<'a> {
 
     /// Whether more than `part` of `whole` of the largest torque, and not on its way back.
     fn beyond(&self, max: f32, part: f32, whole: f32) -> bool {
-        let part = if part > 0.0 { part.min(whole) } else { 0.0 };
+        let part = if part > 0.0 { at_most(whole, part) } else { 0.0 };
         self.size > 0.0 && self.size * whole > max * part && !self.retreats
     }
 
@@ -245,7 +246,7 @@ impl<'a> Torque<'a> {
                     (&[v0, v1], &[t0, t1]) if slow <= v1 && v0 <= fast => {
                         // Both ends of what the piece and the interval share, by the lever rule.
                         let above = |v: f32| self.size * (v1 - v0) > t0 * (v1 - v) + t1 * (v - v0);
-                        above(v0.max(slow)) || above(v1.min(fast))
+                        above(at_least(slow, v0)) || above(at_most(fast, v1))
                     }
                     _ => false,
                 }))
@@ -306,8 +307,8 @@ impl GuardState {
             }
             self.since_us = self.since_us.min(plan.stagger_us);
             for watch in &mut self.watches {
-                watch.low_nm = watch.low_nm.min(last);
-                watch.high_nm = watch.high_nm.max(last);
+                watch.low_nm = at_most(last, watch.low_nm);
+                watch.high_nm = at_least(last, watch.high_nm);
             }
         }
     }
@@ -316,7 +317,7 @@ impl GuardState {
     fn start(&self, side: f32) -> f32 {
         let watch = self.watches.get(usize::from(self.oldest)).copied().unwrap_or_default();
         let least = if side > 0.0 { watch.low_nm } else { -watch.high_nm };
-        least.max(0.0)
+        at_least(0.0, least)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::fault::{Cause, Causes};
 use crate::frame::{Sample, SensorFrame, Wheel};
+use crate::maths::{at_least, at_most};
 use crate::param::{Leaf, Visit};
 use crate::watch::{Codes, Loss, Sensor, Told, Watch};
 
@@ -232,8 +233,8 @@ pub fn step(
     torque_nm: f32,
 ) -> Believed {
     let s = state;
-    let was = s.before.unwrap_or(Before::of(frame, torque_nm));
-    s.before = Some(Before::of(frame, torque_nm));
+    let now = Before::of(frame, torque_nm);
+    let was = s.before.replace(now).unwrap_or(now);
     // What other sensors say of it; NaN says nothing.
     let turned = (frame.steer_rad.value - was.steer_rad).abs() > TURNED_RAD;
     let turns = frame.steer_rate_rad_s.value.abs() > TURNING_RAD_S;
@@ -312,30 +313,28 @@ fn told<const N: usize>(causes: &mut Causes, told: Told<N>) -> Option<([f32; N],
     told.value
 }
 
-/// The newest samples of a wheel.
-#[derive(Clone, Debug, Default)]
+/// The newest samples of a wheel, the newest first.
+#[derive(Clone, Copy, Debug, Default)]
 struct Recent {
-    samples: heapless::Deque<f32, RECENT>,
+    samples: [f32; RECENT],
+    known: u16,
 }
 
 impl Recent {
     /// The bounds of a speed from its newest sample and age, and the samples before it.
     fn bounds(&mut self, config: &InputConfig, period_s: f32, newest: Option<(f32, u16)>) -> Option<Bounds> {
         let Some((newest, age)) = newest else {
-            self.samples.clear();
+            self.known = 0;
             return None;
         };
-        if age == 0 || self.samples.is_empty() {
-            while self.samples.len() >= usize::from(config.recent_samples).max(1) {
-                let _ = self.samples.pop_front();
-            }
-            // There is room: the oldest went above.
-            let _ = self.samples.push_back(newest);
+        if age == 0 || self.known == 0 {
+            let [a, b, c, d, e, _] = self.samples;
+            self.samples = [newest, a, b, c, d, e];
+            self.known = self.known.saturating_add(1).min(config.recent_samples);
         }
         let (mut low, mut high) = (newest, newest);
-        for sample in &self.samples {
-            low = if *sample < low { *sample } else { low };
-            high = if *sample > high { *sample } else { high };
+        for sample in self.samples.iter().take(usize::from(self.known)) {
+            (low, high) = (at_most(*sample, low), at_least(*sample, high));
         }
         let late = age.saturating_sub(config.drift_after_ticks);
         if late > 0 {

@@ -22,13 +22,41 @@ pub fn sin_cos(angle_rad: f32) -> (f32, f32) {
 /// `x` limited to `max` either way, NaN made 0; a value inside keeps its bits.
 #[inline]
 pub fn bounded(x: f32, max: f32) -> f32 {
-    if x > max {
+    // What is inside, as nearly always, takes one comparison.
+    if x.abs() <= max {
+        x
+    } else if x > max {
         max
     } else if x < -max {
         -max
-    } else if x.is_nan() {
-        0.0
     } else {
-        x
+        0.0
     }
+}
+
+/// Largest relative error of [`per_root`], for what is neither 0, denormal nor beyond `1e38`.
+pub const PER_ROOT_ERROR: f32 = 2e-7;
+
+/// One over the square root, for positive numbers; finite for every other. A square root in software takes four times
+/// as long.
+#[inline]
+pub fn per_root(x: f32) -> f32 {
+    // Half the exponent, negated, with the constant of least error; each of Newton's steps squares it.
+    let guess = f32::from_bits(0x5f37_5a86_u32.wrapping_sub((x.to_bits() & 0x7fff_ffff) >> 1));
+    let better = guess * (1.5 - 0.5 * x * guess * guess);
+    let better = better * (1.5 - 0.5 * x * better * better);
+    let best = better * (1.5 - 0.5 * x * better * better);
+    bounded(best, f32::MAX)
+}
+
+/// The lesser; `x` if they are equal or `bound` is NaN. `f32::min` is a call on the chip.
+#[inline]
+pub fn at_most(bound: f32, x: f32) -> f32 {
+    if x > bound { bound } else { x }
+}
+
+/// The greater; `x` if they are equal or `bound` is NaN.
+#[inline]
+pub fn at_least(bound: f32, x: f32) -> f32 {
+    if x < bound { bound } else { x }
 }

@@ -5,6 +5,7 @@
 //! window never keeps it from zero and never excludes where it is, so the rate has the last word.
 
 use crate::limits::{ActiveLimits, EndStop, Limits, RiderMotion, RiderTorque, SpeedCap, Taper, Window};
+use crate::maths::{at_least, at_most};
 
 /// What the shaper is asked for, and what the limits depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +111,7 @@ pub fn step(limits: &Limits, plan: &ShapePlan, state: &mut ShapeState, asked: &A
     if let Some(Window { nm, .. }) = limits.window {
         state.past.hold(last, asked.elapsed_us, plan.part_us);
         let (low, high) = state.past.extremes();
-        shaping.cut(ActiveLimits::WINDOW, smaller(high, 0.0) - nm, larger(low, 0.0) + nm);
+        shaping.cut(ActiveLimits::WINDOW, at_most(high, 0.0) - nm, at_least(low, 0.0) + nm);
     }
     if plan.rise_step_nm.is_some() || plan.fall_step_nm.is_some() {
         let (low, high) = reach(plan, last, asked.elapsed_us);
@@ -129,7 +130,7 @@ struct Shaping {
 impl Shaping {
     fn cut(&mut self, limit: ActiveLimits, low: f32, high: f32) {
         self.acted.note(limit, self.torque < low || self.torque > high);
-        self.torque = larger(low, smaller(high, self.torque));
+        self.torque = at_least(low, at_most(high, self.torque));
     }
     fn scale(&mut self, limit: ActiveLimits, share: f32) {
         self.acted.note(limit, share < 1.0 && self.torque != 0.0);
@@ -141,15 +142,15 @@ impl Shaping {
 fn rider_band(limit: &RiderTorque, max: f32, rider: f32) -> (f32, f32) {
     let high = max + (limit.allowance_nm + rider) * limit.multiplier;
     let low = max + (limit.allowance_nm - rider) * limit.multiplier;
-    (-larger(low, 0.0), larger(high, 0.0))
+    (-at_least(low, 0.0), at_least(high, 0.0))
 }
 
 /// The smallest torque of the cap anywhere in the interval of speeds.
 fn lowest_in(cap: &SpeedCap, (slow, fast): (f32, f32)) -> f32 {
-    let mut least = smaller(at(cap, slow), at(cap, fast));
+    let mut least = at_most(at(cap, slow), at(cap, fast));
     for (v, t) in cap.speed_m_s.iter().zip(&cap.torque_nm) {
         if slow < *v && *v < fast {
-            least = smaller(least, *t);
+            least = at_most(least, *t);
         }
     }
     least
@@ -246,14 +247,14 @@ impl Past {
             self.filled_us = 0;
         }
         if let Some((low, high)) = self.parts.get_mut(usize::from(self.newest)) {
-            *low = smaller(*low, torque);
-            *high = larger(*high, torque);
+            *low = at_most(*low, torque);
+            *high = at_least(*high, torque);
         }
     }
 
     /// Lowest and highest torque in force at any time within the window.
     fn extremes(&self) -> (f32, f32) {
-        let both = |(l, h): (f32, f32), part: &(f32, f32)| (smaller(l, part.0), larger(h, part.1));
+        let both = |(l, h): (f32, f32), part: &(f32, f32)| (at_most(l, part.0), at_least(h, part.1));
         self.parts.iter().fold((f32::MAX, f32::MIN), both)
     }
 }
@@ -282,14 +283,4 @@ fn share(x: f32) -> f32 {
     } else {
         0.0
     }
-}
-
-/// `x`, or `bound` if that is smaller; so `-0.0` stays what it is.
-fn smaller(bound: f32, x: f32) -> f32 {
-    if x > bound { bound } else { x }
-}
-
-/// `x`, or `bound` if that is larger.
-fn larger(bound: f32, x: f32) -> f32 {
-    if x < bound { bound } else { x }
 }

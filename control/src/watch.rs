@@ -154,6 +154,7 @@ pub struct Told<const N: usize> {
 impl<const N: usize> Watch<N> {
     /// One control period: the frame's sample, and whether what it measures `moves` by what other
     /// sensors say.
+    #[inline(always)]
     pub fn step(
         &mut self,
         sensor: &Sensor,
@@ -192,15 +193,16 @@ impl<const N: usize> Watch<N> {
     }
 
     /// A new sample.
+    #[inline(always)]
     fn take(&mut self, sensor: &Sensor, codes: &Codes, period_s: f32, value: &[f32; N], age: u16) {
         // Written so that NaN, which compares false, is refused.
-        let inside = value.iter().all(|x| *x >= -sensor.max && *x <= sensor.max);
+        let inside = value.iter().all(|x| x.abs() <= sensor.max);
         if !inside {
             self.doubt = Some(codes.range);
             self.good = 0;
             return;
         }
-        let change = |(a, b): (&f32, &f32)| if a > b { a - b } else { b - a };
+        let change = |(a, b): (&f32, &f32)| (a - b).abs();
         // Samples that were refused give a jump no more time.
         let between = self.gap.saturating_add(1);
         let jumps = match sensor.slope_per_s {

@@ -1,4 +1,4 @@
-//! Counts the instructions of every control step over the rides of `rides.bin`.
+//! Counts the instructions of every control step over the rides of `rides.bin`, and the stack they take.
 //!
 //! Under `-icount shift=10` an instruction lasts 1.024 us, 172 counts of SysTick, so that a
 //! difference of counts is a whole number of instructions. Instructions are not cycles: there are
@@ -16,6 +16,7 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_semihosting::hprintln;
 use firmware::board::recording::{BLOCK, Recording};
 use firmware::board::semihosting::exit;
+use firmware::board::stack;
 use firmware::board::{Exit, fault};
 use static_cell::ConstStaticCell;
 
@@ -58,12 +59,13 @@ fn main() -> ! {
     let mut recording = Recording::open();
     while let Some(mut ride) = recording.next_ride() {
         let (mut state, mut command) = (State::default(), None);
-        let (mut steps, mut sum, mut max) = (0_u32, 0_u64, 0_u32);
+        let (mut steps, mut sum, mut max, mut deep) = (0_u32, 0_u64, 0_u32, 0_u32);
         loop {
             let frames = recording.next_block(&mut ride, block);
             if frames.is_empty() {
                 break;
             }
+            let top = stack::paint();
             for frame in frames {
                 let frame = decode_frame(frame);
                 let (plan, frame) = (black_box(&ride.plan), black_box(&frame));
@@ -73,8 +75,9 @@ fn main() -> ! {
                 let step = whole.saturating_sub(around);
                 (steps, sum, max) = (steps + 1, sum + u64::from(step), max.max(step));
             }
+            deep = deep.max(stack::depth(top));
         }
-        hprintln!("steps={} mean={} max={}", steps, sum / u64::from(steps.max(1)), max);
+        hprintln!("steps={} mean={} max={} stack={}", steps, sum / u64::from(steps.max(1)), max, deep);
     }
     exit(Exit::Success)
 }

@@ -118,19 +118,20 @@ fn a_sign_that_turns_round_ends_safe() {
     let flashed = Config { law: Law::H { cut: true }, limits: Limits::product(), ..watched() };
     let alone =
         |crew| Conditions { assist: Assist::None, ..with_rider(crew, flashed.clone(), Plant::default()) };
-    for (faults, meant, within_s) in [
-        (["gyro.x:scale=-1@20ms"].as_slice(), Cause::GyroDisagrees, 0.5),
-        (&["gyro.z:scale=-1@20ms"], Cause::GyroDisagrees, 0.2),
-        (&["accel.y:scale=-1@20ms"], Cause::GyroDisagrees, 0.5),
-        (&["gyro:flip@20ms"], Cause::YawDisagrees, 0.6),
-        (&["motor:flip@20ms", "motor-report:flip@20ms"], Cause::WrongResponse, 0.5),
+    for (faults, meant) in [
+        (["gyro.x:scale=-1@20ms"].as_slice(), Some((Cause::GyroDisagrees, 0.5))),
+        (&["gyro.z:scale=-1@20ms"], Some((Cause::GyroDisagrees, 0.2))),
+        (&["gyro:flip@20ms"], Some((Cause::YawDisagrees, 0.6))),
+        (&["motor:flip@20ms", "motor-report:flip@20ms"], Some((Cause::WrongResponse, 0.5))),
+        // A bicycle in balance feels next to no sideways force, whatever its sign.
+        (&["accel.y:scale=-1@20ms"], None),
     ] {
         let plant = Plant { faults: faults.iter().map(|f| f.parse().unwrap()).collect(), ..Plant::default() };
         let (mut times, mut others, mut driven) = (Vec::new(), Vec::new(), Vec::new());
         for (crew, start) in rides() {
             let ride = judged(&with_rider(crew, flashed.clone(), plant.clone()), start);
             match ride.first {
-                Some((t, cause)) if cause == meant => times.push(t - 0.02),
+                Some((t, cause)) if meant.is_some_and(|(meant, _)| cause == meant) => times.push(t - 0.02),
                 Some((t, cause)) => others.push((t, cause)),
                 None => (),
             }

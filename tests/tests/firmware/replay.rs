@@ -6,6 +6,7 @@ use sim_host::bicycle::onboard::fit;
 use sim_host::ride::{Conditions, Start, frames, traced};
 use std::time::Duration;
 use tests::basins::{H, assisted, configured};
+use tests::cli::Bench;
 use xtask::{image, qemu, rides};
 
 /// Least parts of the random frames in which a configuration must drive, and must refuse a sensor. The flashed
@@ -102,6 +103,25 @@ fn simulated(speed_m_s: f64, steer_rate_rad_s: f64) -> Vec<SensorFrame> {
     let start = Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s: 0.0 };
     let conditions = assisted(H);
     frames(&conditions, start, &traced(&conditions, start).1)
+}
+
+/// Situation: the ride in data/all_sensors.frames, made by the command line's options. Action: ride it again. Must hold: every
+/// bit of what the declared sensors said alike; the controller engages, and no cause is told after it.
+#[test]
+fn the_recorded_ride_with_every_sensor_is_what_the_simulator_rides() {
+    let bench = Bench::new(env!("CARGO_BIN_EXE_sim-host-under-test"));
+    let run =
+        bench.run("ride --preset product --speed 4 --steer-rate 5 --time-limit 1.25 --frames again.frames");
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let again = std::fs::read(bench.path("again.frames")).unwrap();
+    assert!(again == include_bytes!("../../../data/all_sensors.frames"), "{} bytes", again.len());
+    let plan = rides::product().plan().unwrap();
+    let mut state = control::State::default();
+    let commands: Vec<_> =
+        rides::all_sensors_ride().iter().map(|frame| control::step(&plan, &mut state, frame)).collect();
+    let engaged = commands.iter().position(|c| c.mode == control::Mode::Engaged).expect("engages");
+    assert!((200..900).contains(&engaged), "{engaged}");
+    assert!(commands[engaged..].iter().all(|c| c.causes == control::Causes::NONE));
 }
 
 /// Situation: the ride in data/border_ride.frames. Action: simulate it again. Must hold: every bit

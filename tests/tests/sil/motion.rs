@@ -1,6 +1,6 @@
 //! Flight card: the largest motion inside the basins, and the limits that must let it pass.
 
-use control::cross::on_the_ground;
+use control::cross::{CrossConfig, CrossPlan, on_the_ground};
 use control::{Config, Sensor};
 use rayon::prelude::*;
 use sim_host::bicycle::Geometry;
@@ -66,8 +66,9 @@ fn quantities(b: &Geometry, p: &TracePoint, summed: &mut f32) -> [f64; QUANTITIE
     let (steer, rate) = (frame.steer_rad.value, frame.steer_rate_rad_s.value);
     let (front, rear) = (frame.front_wheel_m_s.value, frame.rear_wheel_m_s.value);
     // As control::cross compares them.
-    let (sin, cos) = on_the_ground(b.lam as f32, p.roll as f32, steer);
     let (sin_roll, cos_roll) = (p.roll as f32).sin_cos();
+    let cross = CrossConfig { wheelbase_m: b.w as f32, tilt_rad: b.lam as f32, ..CrossConfig::default() };
+    let (sin, cos) = on_the_ground(&CrossPlan::new(&cross, 1000.0), (sin_roll, cos_roll), steer);
     let yaw = gy * sin_roll + gz * cos_roll - front * sin / b.w as f32;
     let turned = steer - (*summed + rate * 1e-3);
     *summed = steer - turned * (1.0 - 1.0 / 256.0);

@@ -6,6 +6,7 @@ pub mod fault;
 pub mod recording;
 pub mod semihosting;
 mod sensors;
+pub mod stack;
 pub mod time;
 mod watchdog;
 
