@@ -165,7 +165,7 @@ fn together(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String)) -> S
             group.reference
         );
         let names: Vec<&str> =
-            columns.map_or(vec![""], |axis| axis.values.iter().map(String::as_str).collect());
+            columns.map_or(vec![key.as_str()], |axis| axis.values.iter().map(String::as_str).collect());
         let corner = columns.map_or(rows.key.clone(), |axis| format!("{} \\ {}", rows.key, axis.key));
         let _ = writeln!(text, "| {corner} | {} |\n| --- {}|", names.join(" | "), "| --- ".repeat(across));
         for (i, row) in rows.values.iter().enumerate() {
