@@ -1,6 +1,6 @@
 //! The options that say who rides what under which conditions; `ride` and `basin` share them.
 
-use super::plant_args::{PlantArgs, whole_ticks};
+use super::plant_args::{LONGEST_S, PlantArgs, whole_ticks};
 use super::rider_args::{RiderArgs, step};
 use super::{Failure, law, warn};
 use crate::bicycle::onboard::fit;
@@ -186,7 +186,7 @@ impl ConditionArgs {
             AssistKind::Firmware => Assist::Firmware(Box::new(plan)),
             AssistKind::Ideal => Assist::Ideal(Box::new(law.clone())),
         };
-        let sensor_delay_ticks = whole_ticks("--sensor-delay", self.sensor_delay, step_s)?;
+        let sensor_delay_ticks = whole_ticks("--sensor-delay", self.sensor_delay, step_s, LONGEST_S)?;
         let resolved = rider.as_ref().map(|(rider, table, fit)| ResolvedRider::new(table, *fit, rider));
         let conditions = Conditions {
             rider: rider.map(|(rider, ..)| rider),

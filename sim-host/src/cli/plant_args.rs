@@ -1,17 +1,21 @@
 //! The options that say how sensors and motor depart from exact ones, and what goes wrong.
 
-use crate::plant::{ActuatorConfig, Fault, ImuMount, Plant, Sensor, SensorConfig, Supply, catalogue};
+use crate::plant::{
+    ActuatorConfig, Fault, ImuMount, Plant, Sensor, SensorConfig, SteerStop, Supply, catalogue,
+};
 use crate::range::time;
 
-/// Longest delay of a sensor or the motor \[s\].
-const LONGEST_S: f64 = 1.0;
+/// Longest delay of the motor, and of all sensors together \[s\].
+pub(super) const LONGEST_S: f64 = 1.0;
+/// Longest delay of one sensor \[s\].
+const LONGEST_SENSOR_S: f64 = 5.0;
 
 #[derive(clap::Args)]
 pub(super) struct PlantArgs {
     /// Departs a sensor from the truth, for example gyro:noise=0.01,bias=0.02,delay=5ms; may be repeated
     #[arg(long, value_name = "NAME:KEY=VALUE,...", allow_hyphen_values = true)]
     sensor: Vec<String>,
-    /// Motor and steer friction: none, davis, gazelle, a FILE, and KEY=VALUE to change it
+    /// Motor, steer friction and end-stop: none, davis, gazelle, a FILE, and KEY=VALUE to change it
     #[arg(long, value_name = "NAME|FILE|KEY=VALUE,...", default_value = "none", allow_hyphen_values = true)]
     actuator: String,
     /// Something goes wrong, for example gyro.x:stuck@1.5s..2s or motor:dead@1s; may be repeated
@@ -40,10 +44,11 @@ impl PlantArgs {
 }
 
 /// Whole control periods in a time.
-pub(super) fn whole_ticks(name: &str, time_s: f64, period_s: f64) -> Result<u16, String> {
+pub(super) fn whole_ticks(name: &str, time_s: f64, period_s: f64, most_s: f64) -> Result<u16, String> {
     let ticks = time_s / period_s;
-    if ticks > 1000.0 {
-        return Err(format!("{name} {} ms is outside 0 to {} ms", time_s * 1e3, period_s * 1e6));
+    // The ranges are those of a control period of 1 ms.
+    if ticks > most_s * 1e3 {
+        return Err(format!("{name} {} ms is outside 0 to {} ms", time_s * 1e3, most_s * period_s * 1e6));
     }
     if (ticks - ticks.round()).abs() > 1e-6 {
         let near = |n: f64| format!("{} ms", n * period_s * 1e3);
@@ -67,8 +72,8 @@ fn number(key: &str, value: &str) -> Result<f64, String> {
     value.trim().parse().map_err(|_| format!("{key}: `{value}` is not a number"))
 }
 
-fn ticks(key: &str, value: &str, period_s: f64) -> Result<u16, String> {
-    whole_ticks(key, time(value, LONGEST_S)?, period_s)
+fn ticks(key: &str, value: &str, period_s: f64, most_s: f64) -> Result<u16, String> {
+    whole_ticks(key, time(value, most_s)?, period_s, most_s)
 }
 
 /// Takes in one `NAME[.AXIS]:KEY=VALUE,...`.
@@ -101,8 +106,8 @@ fn depart(sensors: &mut SensorConfig, text: &str, period_s: f64) -> Result<(), S
                 let bias = number(key, value)?;
                 model.bias.iter_mut().take(axes.len().max(1)).for_each(|axis| *axis = bias);
             }
-            ("delay", None) => model.delay_ticks = ticks(key, value, period_s)?,
-            ("every", None) => model.every_ticks = ticks(key, value, period_s)?,
+            ("delay", None) => model.delay_ticks = ticks(key, value, period_s, LONGEST_SENSOR_S)?,
+            ("every", None) => model.every_ticks = ticks(key, value, period_s, LONGEST_SENSOR_S)?,
             ("scale", None) => model.scale = number(key, value)?,
             ("noise", None) => model.noise = number(key, value)?,
             ("quantum", None) => model.quantum = number(key, value)?,
@@ -146,20 +151,21 @@ fn actuator(text: &str, period_s: f64) -> Result<ActuatorConfig, String> {
     for pair in settings.into_iter().flat_map(pairs) {
         let (key, value) = pair?;
         match key {
-            "delay" => config.delay_ticks = ticks(key, value, period_s)?,
+            "delay" => config.delay_ticks = ticks(key, value, period_s, LONGEST_S)?,
             "time-constant" => config.time_constant_s = time(value, 10.0)?,
             "scale" => config.scale = number(key, value)?,
             "limit" => config.limit_nm = Some(number(key, value)?),
             "viscous" => config.friction.viscous_nm_s_rad = number(key, value)?,
             "coulomb" => config.friction.coulomb_nm = number(key, value)?,
             "creep" => config.friction.creep_rad_s = number(key, value)?,
+            "stop" => config.stop = Some(SteerStop::at(number(key, value)?)),
             "voltage" => supply[0] = Some(number(key, value)?),
             "resistance" => supply[1] = Some(number(key, value)?),
             "constant" => supply[2] = Some(number(key, value)?),
             _ => {
                 return Err(format!(
                     "no `{key}`; there are delay=TIME, time-constant=TIME, scale, limit, viscous, coulomb, creep, \
-                     voltage, resistance, constant"
+                     stop, voltage, resistance, constant"
                 ));
             }
         }

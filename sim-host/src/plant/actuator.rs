@@ -1,6 +1,6 @@
 //! The motor with its drive and gear: from the commanded torque to the torque on the steer axis.
 
-use super::{Friction, PlantError};
+use super::{Friction, PlantError, SteerStop};
 use crate::range::within;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -28,8 +28,8 @@ impl Supply {
     }
 }
 
-/// How the motor departs from giving the torque it is asked for, and the friction of the steer. The
-/// default does not, and has none.
+/// How the motor departs from giving the torque it is asked for, and the friction and end-stop of the
+/// steer. The default does not, and has neither.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ActuatorConfig {
@@ -45,6 +45,8 @@ pub struct ActuatorConfig {
     pub supply: Option<Supply>,
     /// Friction about the steer axis.
     pub friction: Friction,
+    /// The steer's mechanical end-stop; null is none.
+    pub stop: Option<SteerStop>,
 }
 
 impl Default for ActuatorConfig {
@@ -56,6 +58,7 @@ impl Default for ActuatorConfig {
             limit_nm: None,
             supply: None,
             friction: Friction::default(),
+            stop: None,
         }
     }
 }
@@ -78,12 +81,13 @@ impl ActuatorConfig {
             })
         };
         all().map_err(PlantError)?;
+        self.stop.map_or(Ok(()), |stop| stop.check())?;
         self.friction.check()
     }
 
     /// Whether the motor gives exactly what it is asked for.
     pub fn exact(&self) -> bool {
-        *self == Self { friction: self.friction, ..Self::default() }
+        *self == Self { friction: self.friction, stop: self.stop, ..Self::default() }
     }
 }
 

@@ -54,6 +54,7 @@ impl Channel {
                 "nan",
                 "value=X",
                 "dropout=P",
+                "slow=TIME",
             ],
             Self::Motor => &[
                 "dead",

@@ -10,6 +10,7 @@ mod friction;
 mod reading;
 mod rig;
 mod sensor;
+mod stop;
 
 pub use actuator::{Actuator, ActuatorConfig, Supply};
 pub use dice::Dice;
@@ -18,6 +19,7 @@ pub use friction::Friction;
 pub use reading::{Frame, Reading, Sensor, Traveller};
 pub use rig::{Held, Measured, Rig};
 pub use sensor::{ImuMount, SensorConfig, SensorModel, SensorState};
+pub use stop::SteerStop;
 
 /// A value of the plant that can't be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -29,7 +31,7 @@ pub struct PlantError(pub String);
 pub struct Plant {
     /// The sensors.
     pub sensors: SensorConfig,
-    /// The motor and the steer's friction.
+    /// The motor, the steer's friction and its end-stop.
     pub actuator: ActuatorConfig,
     /// What goes wrong, in the order in which it acts.
     pub faults: Vec<Fault>,
@@ -47,7 +49,7 @@ impl Plant {
         self.actuator.check()
     }
 
-    /// Whether sensors and motor are exact and nothing goes wrong; friction may be there.
+    /// Whether sensors and motor are exact and nothing goes wrong; friction and an end-stop may be there.
     pub fn exact(&self) -> bool {
         self.sensors.exact() && self.actuator.exact() && self.faults.is_empty()
     }

@@ -6,7 +6,7 @@ use crate::range::within;
 use std::collections::VecDeque;
 
 /// Most control periods a sensor can be late, or apart between samples.
-const MAX_TICKS: u16 = 1000;
+const MAX_TICKS: u16 = 5000;
 
 /// How one sensor departs from the truth, in the order in which it does. The default does not.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]

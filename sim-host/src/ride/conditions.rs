@@ -43,8 +43,8 @@ pub struct Conditions {
     pub imu: Imu,
     /// How late the simulated sensors are, beside what `plant` says \[control periods\].
     pub sensor_delay_ticks: u16,
-    /// How sensors and motor depart from exact ones, and the steer's friction. All of it but the
-    /// friction acts on [`Assist::Firmware`] only.
+    /// How sensors and motor depart from exact ones, the steer's friction and its end-stop. All of it but
+    /// these two acts on [`Assist::Firmware`] only.
     pub plant: Plant,
     /// How long a ride lasts if it does not fall \[s\].
     pub time_limit_s: f64,
@@ -99,8 +99,7 @@ impl Conditions {
         }
         self.plant.check().map_err(|e| ConditionsError(e.0))?;
         if matches!(self.assist, Assist::Ideal(_)) && !self.plant.exact() {
-            let why =
-                "the ideal law has exact sensors and an exact motor: of the plant only friction acts on it";
+            let why = "the ideal law has exact sensors and an exact motor: of the plant only friction and end-stop act on it";
             return Err(ConditionsError(why.into()));
         }
         within(

@@ -118,6 +118,12 @@ impl<const N: usize> Actuation<Lanes<N>> for Abreast<'_, N> {
         if friction.acts() {
             steer = steer + friction.torque(motion.actual.steer);
         }
+        if let Some(stop) = &self.plant.actuator.stop {
+            let (sin, cos) = motion.pose.attitude.steer;
+            for (lane, steer) in steer.0.iter_mut().enumerate() {
+                *steer += stop.torque(libm::atan2(sin.0[lane], cos.0[lane]), motion.actual.steer.0[lane]);
+            }
+        }
         Torques { roll: Lanes([0.0; N]), steer }
     }
 

@@ -76,7 +76,7 @@ pub(super) struct Period<'a> {
 
 impl Period<'_> {
     /// The torques `elapsed_s` into the period.
-    fn torques(&self, elapsed_s: f64, v: &Velocities<f64>) -> Torques<f64> {
+    fn torques(&self, elapsed_s: f64, steer_rad: f64, v: &Velocities<f64>) -> Torques<f64> {
         let actuator = &self.conditions.plant.actuator;
         let assist = match (&self.conditions.assist, self.motor) {
             (Assist::None | Assist::Firmware(_), None) => self.assist_nm,
@@ -90,6 +90,9 @@ impl Period<'_> {
         let mut steer = assist + rider;
         if actuator.friction.acts() {
             steer += actuator.friction.torque(v.steer);
+        }
+        if let Some(stop) = &actuator.stop {
+            steer += stop.torque(steer_rad, v.steer);
         }
         Torques { roll: 0.0, steer }
     }
@@ -142,7 +145,8 @@ struct Shorter<'a, 'b> {
 
 impl Actuation<f64> for Shorter<'_, '_> {
     fn torques(&mut self, _: &Geometry, stage: usize, motion: &Motion<f64>) -> Torques<f64> {
-        self.period.torques(self.offset + STAGES[stage] * self.h, &motion.actual)
+        let (sin, cos) = motion.pose.attitude.steer;
+        self.period.torques(self.offset + STAGES[stage] * self.h, libm::atan2(sin, cos), &motion.actual)
     }
 
     fn felt(
@@ -163,7 +167,7 @@ fn step(b: &Geometry, from: &FullState, (offset, h): (f64, f64), period: &mut Pe
     for (stage, part) in STAGES.into_iter().enumerate() {
         let at = stages.at;
         let (pose, velocities) = (at.pose(b), at.velocities(b));
-        let k = at.rate(b, &period.torques(offset + part * h, &velocities))?;
+        let k = at.rate(b, &period.torques(offset + part * h, at.angles[2], &velocities))?;
         let [roll, _, steer] = at.angles;
         let [roll_acc, _, _, steer_acc, _, _] = k.speeds;
         let now = Instant {

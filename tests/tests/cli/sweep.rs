@@ -387,8 +387,9 @@ fn a_study_is_answered_by_a_page() {
     };
     let part = |value| 100.0 * area(value) / area("none");
     assert!(page.contains(&format!("| {:.2} | ", area("none"))), "{page}");
-    assert!(page.contains(&format!("| {:.1} % |", part("20"))), "{page}");
+    assert!(page.contains(&format!("| {:.1} %, ", part("20"))), "{page}");
     let (lost, kept) = (part("0.5"), part("20"));
+    assert!(page.contains(&format!(", {lost:.1} % |")), "{page}");
     assert!(lost < 95.0 && kept >= 95.0, "{lost} {kept}");
     must(&bench, "sweep study little.toml --out s --pages p -q");
     let again = bench.read("p/studies/little.md");
@@ -404,7 +405,9 @@ fn a_study_is_answered_by_a_page() {
 fn wrong_studies_are_named() {
     let bench = Bench::new(PROGRAM);
     let list = must(&bench, "sweep studies");
-    assert!(list.contains("limits ") && list.contains("imu "), "{list}");
+    for study in ["limits", "imu", "compensate", "tracking", "speed", "end-stop"] {
+        assert!(list.contains(&format!("{study} ")), "{study}: {list}");
+    }
     bench.run("sweep study nothing").refused_naming(&["`nothing`", "limits, imu"]);
     bench.write("a.toml", STUDY.replace("law=h,f\"", "law=h,q\""));
     bench.run("sweep study a.toml").refused_naming(&["study a, sweep laws", "cell rider=none, law=q"]);

@@ -3,7 +3,7 @@
 use control::{Causes, Config, Loss, Mode, Sensor as Declared};
 use sim_host::bicycle::{Motion, State};
 use sim_host::plant::catalogue::load;
-use sim_host::plant::{ActuatorConfig, Plant, Sensor, SensorModel};
+use sim_host::plant::{ActuatorConfig, Plant, Sensor, SensorModel, SteerStop};
 use sim_host::ride::{Conditions, Ride, Start, TracePoint, frames, rides, traced};
 use tests::basins::{H, alone, assisted, configured, ideal};
 
@@ -237,4 +237,47 @@ fn the_ideal_law_has_an_exact_plant() {
         let refused = Conditions { plant, ..ideal(H) }.check().expect_err("refused").to_string();
         assert!(refused.contains("only friction"), "{refused}");
     }
+}
+
+/// Situation: a knock that turns the steer beyond 0.5 rad and is survived, to the right and to the left; the same with a
+/// stop there. Action: ride, alone and in a batch.
+/// Must hold: with the stop the steer goes no more than 3 degrees beyond it, where without it goes further; until it
+/// gets there both rides have the same bits; left mirrors right; the batch has the bits of the ride alone.
+#[test]
+fn the_stop_holds_the_steer() {
+    let start = |side: f64| Start { speed_m_s: 2.5, steer_rate_rad_s: 6.0 * side, roll_rate_rad_s: 0.0 };
+    let stop = SteerStop::at(0.5);
+    let stopped = actuated(ActuatorConfig { stop: Some(stop), ..ActuatorConfig::default() });
+    let (free, free_trace) = traced(&assisted(H), start(1.0));
+    let (ride, trace) = traced(&stopped, start(1.0));
+    let most = |trace: &[TracePoint]| trace.iter().map(|p| p.steer.abs()).fold(0.0, f64::max);
+    println!("{} {} fell {} {}", most(&free_trace), most(&trace), free.fell(), ride.fell());
+    assert!(!free.fell() && most(&free_trace) > 0.5 + 0.1);
+    assert!((0.5..0.5 + 3f64.to_radians()).contains(&most(&trace)));
+    let before = trace.iter().position(|p| p.steer.abs() > 0.49).unwrap();
+    assert!(before > 20 && trace[..before] == free_trace[..before]);
+    let batch = rides(&stopped, &[start(1.0), start(-1.0), start(0.5)]);
+    assert_eq!(batch[0], ride);
+    let mirrored = (batch[1].end.roll + ride.end.roll).abs();
+    assert!(mirrored < 1e-9, "{mirrored}");
+}
+
+/// Situation: the front wheel's speed through a lag of 0.5 s, and 2 s late. Action: a knock.
+/// Must hold: what the controller is told follows the first-order closed recursion of the exact readings; with the
+/// delay it is the speed of the start for the whole second that is looked at, and its sample counts as fresh.
+#[test]
+fn a_speed_lags_and_is_late() {
+    let (_, exact) = traced(&faulty("gyro:bias=1@100s"), KNOCK);
+    let front = |p: &TracePoint| p.front_speed;
+    assert!(exact.iter().any(|p| (front(p) - 4.0).abs() > 0.05));
+    let (_, lagged) = traced(&faulty("front-wheel:slow=500ms"), KNOCK);
+    let (mut said, keeps) = (4.0, (-1e-3_f64 / 0.5).exp());
+    for p in lagged.iter().take(1000) {
+        said = front(p) + (said - front(p)) * keeps;
+        assert!((p.measured_speed - said).abs() < 1e-6, "{} {said}", p.measured_speed);
+    }
+    let mut plant = Plant::default();
+    plant.sensors.model_mut(Sensor::FrontWheel).delay_ticks = 2000;
+    let (_, late) = traced(&with(plant), KNOCK);
+    assert!(late.iter().take(1000).all(|p| p.measured_speed == 4.0 && p.causes == 0));
 }

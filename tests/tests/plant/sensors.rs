@@ -127,7 +127,7 @@ fn a_model_out_of_range_is_refused() {
         (SensorModel { range: Some(0.0), ..ok }, "steer range"),
         (SensorModel { quantum: -0.1, ..ok }, "steer quantum"),
         (SensorModel { dropout: 1.1, ..ok }, "steer dropout"),
-        (SensorModel { delay_ticks: 1001, ..ok }, "steer delay"),
+        (SensorModel { delay_ticks: 5001, ..ok }, "steer delay"),
         (SensorModel { bias: [0.0, f64::INFINITY, 0.0], ..ok }, "steer bias"),
     ] {
         let mut plant = Plant::default();

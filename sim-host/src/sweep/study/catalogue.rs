@@ -6,9 +6,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Those that ship: names, and files in `data/studies/`.
-const SHIPPED: [(&str, &str); 2] = [
+const SHIPPED: [(&str, &str); 6] = [
     ("limits", include_str!("../../../../data/studies/limits.toml")),
     ("imu", include_str!("../../../../data/studies/imu.toml")),
+    ("compensate", include_str!("../../../../data/studies/compensate.toml")),
+    ("tracking", include_str!("../../../../data/studies/tracking.toml")),
+    ("speed", include_str!("../../../../data/studies/speed.toml")),
+    ("end-stop", include_str!("../../../../data/studies/end-stop.toml")),
 ];
 
 /// A question and the sweeps that answer it.
@@ -22,6 +26,9 @@ pub struct Study {
     pub title: String,
     /// What is asked, and how it is answered.
     pub question: String,
+    /// What is to be said of the answers; below them.
+    #[serde(default)]
+    pub remarks: String,
     /// The sweeps.
     #[serde(rename = "sweep")]
     pub parts: Vec<Part>,

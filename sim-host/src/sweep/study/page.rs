@@ -3,7 +3,7 @@
 use super::answer::{Answer, Group};
 use super::{Kept, Part, Study, kept};
 use crate::basin::Work;
-use crate::sweep::Grid;
+use crate::sweep::{Axis, Grid};
 use std::fmt::Write;
 
 /// What counts as enough.
@@ -36,6 +36,9 @@ pub fn page(study: &Study, grids: &[Grid], spent: Spent, figures: &str) -> Strin
     );
     for (part, grid) in study.parts.iter().zip(grids) {
         text += &section(study, part, grid, figures);
+    }
+    if !study.remarks.is_empty() {
+        let _ = writeln!(text, "## Remarks\n\n{}", study.remarks.trim());
     }
     text
 }
@@ -82,19 +85,21 @@ fn in_words(found: Kept, numbers: &[(usize, f64)], unit: &str) -> String {
     }
 }
 
+/// How many numbers of an axis are told beside each other at most; of more, every fourth.
+const BESIDE: usize = 8;
+
 /// One axis alone: a row a group.
 fn alone(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String), grid: &Grid) -> String {
     let key = &answer.along.key;
+    let told: Vec<(usize, f64)> =
+        numbers.iter().copied().step_by(if numbers.len() > BESIDE { 4 } else { 1 }).collect();
     let mut text = format!(
         "| group | area of the reference, rad m/s^2 | {key} that keeps {:.0} % (grid) | part of the area at {} |\n| --- | --- | --- | --- |\n",
         100.0 * LEAST,
-        numbers.iter().map(|n| format!("{}{unit}", n.1)).step_by(4).collect::<Vec<_>>().join(", ")
+        told.iter().map(|n| format!("{}{unit}", n.1)).collect::<Vec<_>>().join(", ")
     );
     for group in &answer.groups {
-        let part = |i: usize| {
-            group.lines[0][i].map_or("-".into(), |a| format!("{:.1} %", 100.0 * a / group.reference))
-        };
-        let parts: Vec<String> = numbers.iter().step_by(4).map(|n| part(n.0)).collect();
+        let parts: Vec<String> = told.iter().map(|n| share(group, 0, n.0)).collect();
         let _ = writeln!(
             text,
             "| {} | {:.2} | {} | {} |",
@@ -106,6 +111,30 @@ fn alone(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String), grid: &
     }
     text += "\nInterpolated between the two values of the grid in parentheses, which are the bounds of its error. ";
     text + &accuracy(answer, grid)
+}
+
+/// The part of the reference's area that a line of a group has at a place of the axis.
+fn share(group: &Group, line: usize, place: usize) -> String {
+    group.lines[line][place].map_or("-".into(), |a| format!("{:.1} %", 100.0 * a / group.reference))
+}
+
+/// Two axes: the part of the area in every cell, a table a group.
+fn shares(answer: &Answer, group: &Group, rows: &Axis) -> String {
+    let along = &answer.along;
+    let mut text = format!(
+        "{}: part of {:.2} rad m/s^2.\n\n| {} \\ {} | {} |\n| --- {}|\n",
+        group.label,
+        group.reference,
+        rows.key,
+        along.key,
+        along.values.join(" | "),
+        "| --- ".repeat(along.values.len())
+    );
+    for (line, row) in rows.values.iter().enumerate() {
+        let cells: Vec<String> = (0..along.values.len()).map(|place| share(group, line, place)).collect();
+        let _ = writeln!(text, "| {row} | {} |", cells.join(" | "));
+    }
+    text + "\n"
 }
 
 /// How sure areas are.
@@ -136,7 +165,7 @@ fn together(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String)) -> S
             group.reference
         );
         let names: Vec<&str> =
-            columns.map_or(vec![""], |axis| axis.values.iter().map(String::as_str).collect());
+            columns.map_or(vec![key.as_str()], |axis| axis.values.iter().map(String::as_str).collect());
         let corner = columns.map_or(rows.key.clone(), |axis| format!("{} \\ {}", rows.key, axis.key));
         let _ = writeln!(text, "| {corner} | {} |\n| --- {}|", names.join(" | "), "| --- ".repeat(across));
         for (i, row) in rows.values.iter().enumerate() {
@@ -145,6 +174,9 @@ fn together(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String)) -> S
             let _ = writeln!(text, "| {row} | {} |", cells.join(" | "));
         }
         text.push('\n');
+        if columns.is_none() {
+            text += &shares(answer, group, rows);
+        }
     }
     text
 }
