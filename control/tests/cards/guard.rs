@@ -1,6 +1,7 @@
 //! Flight cards: the guard never stops a sound shaper, always stops a broken one.
 
 use crate::limits::{Truth, at_speed, calls, mirrored, plain, tables};
+use control::Cause;
 use control::guard::{GuardPlan, GuardState, Violation, judge, slack};
 use control::limits::*;
 use control::shape::{Asked, ShapePlan, ShapeState, step};
@@ -74,8 +75,14 @@ fn any_break() -> impl Strategy<Value = Broken> {
     ]
 }
 
+/// Twice the usual cases, for nothing stands between the guard and the motor.
+fn twice() -> ProptestConfig {
+    let usual = ProptestConfig::default();
+    ProptestConfig { cases: 2 * usual.cases, ..usual }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
+    #![proptest_config(twice())]
 
     /// Situation: any table, rate of calls and sequence of calls; permission comes and goes, the shaper cleared
     /// without it. Action: shape, judge.
@@ -339,6 +346,25 @@ fn each_fault_of_the_shaper_is_found() {
         println!("{name}: {refusal:?}");
     }
     assert_eq!(run(Some(Broken::Glitch(500, 0.3))).map(|(i, _)| i), Some(500));
+}
+
+/// Situation: every violation. Action: ask for its cause. Must hold: the code whose page explains it.
+#[test]
+fn each_violation_has_its_cause() {
+    use Violation::*;
+    for (violations, cause) in [
+        (&[NotFinite][..], Cause::GuardNotFinite),
+        (&[NotPermitted, Authority], Cause::GuardPermission),
+        (&[Magnitude, Limp, Speed, Taper], Cause::GuardTorque),
+        (&[RiderTorque, RiderMotion], Cause::GuardOverride),
+        (&[EndStop], Cause::GuardEndStop),
+        (&[Rise, Fall], Cause::GuardRate),
+        (&[Window], Cause::GuardWindow),
+    ] {
+        for violation in violations {
+            assert_eq!(violation.cause(), cause, "{violation:?}");
+        }
+    }
 }
 
 /// Situation: the tolerance. Must hold: it is what the documentation says, and no more than 0.1 mN m at product torques.
