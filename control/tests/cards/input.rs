@@ -143,7 +143,8 @@ type Hint = (&'static str, fn(&mut SensorFrame, f32) -> f32);
 /// what counts. Must hold: stuck after its time where the motion is one that it must show, else never.
 #[test]
 fn stuck_is_told_by_what_moves() {
-    // Each changes the frame of period k and gives the torque commanded before it.
+    // Each changes the frame of period k and gives the torque commanded before it. What is just not enough is
+    // exactly what must be exceeded.
     let hints: [Hint; 12] = [
         ("nothing", |_, _| 0.0),
         ("steer turns", |f, k| {
@@ -151,7 +152,7 @@ fn stuck_is_told_by_what_moves() {
             0.0
         }),
         ("steer creeps", |f, k| {
-            f.steer_rad.value = 0.99e-3 * k;
+            f.steer_rad.value = 1e-3 * (k % 2.0);
             0.0
         }),
         ("steer rate", |f, _| {
@@ -179,7 +180,7 @@ fn stuck_is_told_by_what_moves() {
             0.0
         }),
         ("torque", |_, k| -0.0101 * k),
-        ("small torque", |_, k| 0.0099 * k),
+        ("small torque", |_, k| 0.01 * (k % 2.0)),
         ("not a number", |f, _| {
             (f.steer_rad.value, f.steer_rate_rad_s.value) = (f32::NAN, f32::NAN);
             f32::NAN
@@ -322,7 +323,7 @@ fn the_bounds_span_as_many_samples_as_declared() {
 #[test]
 fn bounds_are_scaled_and_joined() {
     let a = Bounds { low: 2.0, newest: 3.0, high: 5.0 };
-    assert_eq!(a.scaled(2.0), Bounds { low: 4.0, newest: 6.0, high: 10.0 });
+    assert_eq!(a.scaled(4.0), Bounds { low: 8.0, newest: 12.0, high: 20.0 });
     for (low, high) in [(2.5, 4.0), (1.0, 4.0), (2.5, 6.0), (1.0, 6.0)] {
         let b = Bounds { low, newest: 3.5, high };
         let both = Bounds { low: f32::min(low, 2.0), newest: 3.0, high: f32::max(high, 5.0) };

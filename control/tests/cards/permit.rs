@@ -276,6 +276,36 @@ fn ramps_take_the_time_declared() {
     }
 }
 
+/// Situation: on the way up or down. Action: release or press half-way, with another ramp.
+/// Must hold: it goes on from where it is, in its own steps, the last one no longer than the others.
+#[test]
+fn an_interrupted_ramp_goes_on_from_where_it_is() {
+    for (ramp_in_ticks, ramp_out_ticks, expected) in [
+        (
+            2,
+            4,
+            &[
+                (true, 0.5),
+                (true, 1.0),
+                (false, 0.75),
+                (false, 0.5),
+                (false, 0.25),
+                (true, 0.75),
+                (true, 1.0),
+            ][..],
+        ),
+        (4, 2, &[(true, 0.25), (true, 0.5), (true, 0.75), (false, 0.25), (false, 0.0)]),
+    ] {
+        let mut bench = Bench::new();
+        bench.config = PermitConfig { ramp_in_ticks, ramp_out_ticks, ..CONFIG };
+        bench.hold(&WELL, 20);
+        for (engage, authority) in expected {
+            let p = bench.step(&Asked { engage: *engage, ..WELL });
+            assert_eq!((p.authority, bench.state.authority()), (*authority, *authority), "{expected:?}");
+        }
+    }
+}
+
 /// Situation: all modes. Action: ask. Must hold: torque flows in two of them; names and numbers are those of the log and the wire.
 #[test]
 fn modes_have_names_and_numbers() {
