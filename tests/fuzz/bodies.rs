@@ -7,7 +7,9 @@ use control::limits::Limits;
 use control::wire::{CONFIG_BYTES, FRAME_BYTES, decode_config, decode_frame, encode_config, encode_frame};
 use control::{Config, Law, ParamError, Plan, Sample, SensorFrame, State, Triple, step};
 
-/// Control periods that a configuration is tried for once its controller drives.
+/// When the switch is pressed \[control periods\]: after the product's self-test.
+const PRESSED: u32 = 400;
+/// Control periods that a configuration is tried for, the roll rate swinging, once its controller drives.
 const TRIED: u32 = 200;
 /// Longest way to full authority that is waited for \[control periods\].
 const PATIENCE: u32 = 2_000;
@@ -39,8 +41,10 @@ pub(crate) fn configuration(bytes: &[u8]) {
     assert_eq!(encode_config(plan.config()), again);
     let period_us = (1e6 / plan.config().rate_hz) as u32;
     let mut state = State::default();
-    for tick in 0..plan.ticks_to_engage().min(PATIENCE) + TRIED {
-        checked(&plan, &mut state, &swinging(tick, period_us));
+    for tick in 0..PRESSED + plan.ticks_to_engage().min(PATIENCE) + TRIED {
+        let mut frame = straight(tick, period_us, state.torque_nm());
+        frame.gyro_rad_s.value[0] = 0.5 * (0.02 * tick as f32).sin();
+        checked(&plan, &mut state, &frame);
     }
 }
 
@@ -52,9 +56,10 @@ pub(crate) fn ride(bytes: &[u8]) {
     let plan = config.plan().expect("in range");
     let mut state = State::default();
     // From full authority on, so that the frames decide.
-    for tick in 0..plan.ticks_to_engage() {
-        checked(&plan, &mut state, &swinging(tick, 1000));
+    for tick in 0..PRESSED + plan.ticks_to_engage() {
+        checked(&plan, &mut state, &straight(tick, 1000, 0.0));
     }
+    assert_eq!(state.authority(), 1.0);
     for record in frames.as_chunks().0 {
         checked(&plan, &mut state, &decode_frame(record));
     }
@@ -62,7 +67,7 @@ pub(crate) fn ride(bytes: &[u8]) {
 
 /// The product's, the bare law's or no record at all, by the first byte; then patches of six bytes, each a
 /// place (u16, counted round) and four bytes for it. So a patch is about as large as a parameter.
-pub(crate) fn record(bytes: &[u8]) -> [u8; CONFIG_BYTES] {
+fn record(bytes: &[u8]) -> [u8; CONFIG_BYTES] {
     let (choice, patches) = bytes.split_first().unwrap_or((&0, &[]));
     let mut record = match choice % 3 {
         0 => encode_config(&product()),
@@ -83,23 +88,22 @@ fn product() -> Config {
     config
 }
 
-/// Riding upright at 4 m/s with the roll rate swinging: every sensor fresh, the switch pressed after a while.
-fn swinging(tick: u32, period_us: u32) -> SensorFrame {
-    let roll_rate = 0.5 * (0.02 * tick as f32).sin();
+/// Riding straight at 4 m/s, every sensor fresh, the motor as asked, the switch pressed after a while.
+fn straight(tick: u32, period_us: u32, torque_nm: f32) -> SensorFrame {
     let none = Sample::fresh(0.0);
     SensorFrame {
         now_us: tick.wrapping_mul(period_us),
-        gyro_rad_s: Triple::fresh([roll_rate, 0.0, 0.0]),
+        gyro_rad_s: Triple::fresh([0.0; 3]),
         accel_m_s2: Triple::fresh([0.0, 0.0, -9.81]),
         steer_rad: none,
         steer_rate_rad_s: none,
         front_wheel_m_s: Sample::fresh(4.0),
         rear_wheel_m_s: Sample::fresh(4.0),
         rider_torque_nm: none,
-        motor_torque_nm: none,
+        motor_torque_nm: Sample::fresh(torque_nm),
         heading_error_rad: none,
         lateral_error_m: none,
-        engage: tick > 400,
+        engage: tick >= PRESSED,
     }
 }
 

@@ -143,15 +143,19 @@ type Hint = (&'static str, fn(&mut SensorFrame, f32) -> f32);
 /// what counts. Must hold: stuck after its time where the motion is one that it must show, else never.
 #[test]
 fn stuck_is_told_by_what_moves() {
-    // Each changes the frame of period k and gives the torque commanded before it. What is just not enough is
+    // Each changes the frame of period k and gives the torque commanded before it. What trembles does so by
     // exactly what must be exceeded.
-    let hints: [Hint; 12] = [
+    let hints: [Hint; 14] = [
         ("nothing", |_, _| 0.0),
         ("steer turns", |f, k| {
             f.steer_rad.value = -1.01e-3 * k;
             0.0
         }),
         ("steer creeps", |f, k| {
+            f.steer_rad.value = 0.99e-3 * k;
+            0.0
+        }),
+        ("steer trembles", |f, k| {
             f.steer_rad.value = 1e-3 * (k % 2.0);
             0.0
         }),
@@ -180,7 +184,8 @@ fn stuck_is_told_by_what_moves() {
             0.0
         }),
         ("torque", |_, k| -0.0101 * k),
-        ("small torque", |_, k| 0.01 * (k % 2.0)),
+        ("small torque", |_, k| 0.0099 * k),
+        ("trembling torque", |_, k| 0.01 * (k % 2.0)),
         ("not a number", |f, _| {
             (f.steer_rad.value, f.steer_rate_rad_s.value) = (f32::NAN, f32::NAN);
             f32::NAN
