@@ -2,9 +2,11 @@
 //! that drive QEMU both stand on this.
 
 pub mod bench;
+pub mod coverage;
 pub mod document;
 pub mod image;
 pub mod instructions;
+pub mod mutants;
 pub mod process;
 pub mod qemu;
 pub mod rides;

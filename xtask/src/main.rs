@@ -5,7 +5,7 @@ use std::time::Duration;
 use xtask::bench::bench;
 use xtask::document::{self, instruction_table, size_table};
 use xtask::setup::{TargetSource, setup};
-use xtask::{Result, image, process, qemu};
+use xtask::{Result, coverage, image, mutants, process, qemu};
 
 const HELP: &str = "\
 cargo xtask <command> [--help]
@@ -16,6 +16,8 @@ cargo xtask <command> [--help]
   qemu IMAGE    run an image in QEMU
   size          what the images take of flash and RAM, against their budgets
   instructions  instructions of a control step, against the budget
+  mutants       whether the control crate's cards notice when its code is changed
+  coverage      lines of the control crate's torque path that none of its cards runs
   bench         a delayed rider's ride and basin, timed beside Python programs of the same ride
 ";
 
@@ -73,6 +75,25 @@ by more than 1e-6, or when the Python programs can't be had; the rest is printed
 3.11 or later makes a virtual environment in target/bench-python; the packages come from PyPI.
 ";
 
+const MUTANTS_HELP: &str = "\
+cargo xtask mutants [--sample N] [-- ARGUMENTS OF cargo mutants]
+
+Changes the control crate's torque path, one small thing at a time, and runs its cards: each change
+must make one fail. What is changed, and what is left out for which reason, stands in
+.cargo/mutants.toml; what was found is kept in target/mutants.out. Fails when a mutant survives. Needs
+cargo-mutants (cargo install cargo-mutants --locked).
+
+  --sample N    only N of them at most, evenly picked
+";
+
+const COVERAGE_HELP: &str = "\
+cargo xtask coverage
+
+Runs the control crate's cards and prints the lines of its torque path that none of them runs. Fails
+when there is one. Needs llvm-profdata and llvm-cov of the compiler's LLVM: rustup's component
+llvm-tools, or Debian's package llvm-NN.
+";
+
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -95,6 +116,8 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         "size" => SIZE_HELP,
         "instructions" => INSTRUCTIONS_HELP,
         "bench" => BENCH_HELP,
+        "mutants" => MUTANTS_HELP,
+        "coverage" => COVERAGE_HELP,
         "--help" | "-h" | "help" => HELP,
         other => return Err(format!("no command {other:?}\n\n{HELP}")),
     };
@@ -108,6 +131,8 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         ("firmware", []) => build_all()?,
         ("qemu", [image, arguments @ ..]) => return run(image, arguments),
         ("bench", []) => bench()?,
+        ("coverage", []) => coverage::coverage()?,
+        ("mutants", _) => mutants(rest)?,
         ("size" | "instructions", []) => measure(command)?,
         _ => return Err(format!("wrong arguments\n\n{help}")),
     }
@@ -130,6 +155,19 @@ fn test(words: &[&str]) -> Result<()> {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     cargo.current_dir(image::root()).arg("test").args(words.get(split + 1..).unwrap_or_default());
     process::must(cargo.env("STEER_ASSIST_REQUIRE_QEMU", "1"), Duration::from_secs(4800))
+}
+
+fn mutants(words: &[&str]) -> Result<()> {
+    let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
+    let sample = match words[..split] {
+        [] => None,
+        ["--sample", count] => match count.parse() {
+            Ok(count @ 1..) => Some(count),
+            _ => return Err(format!("--sample {count}: a count from 1 on is wanted")),
+        },
+        _ => return Err(format!("wrong arguments\n\n{MUTANTS_HELP}")),
+    };
+    mutants::mutants(sample, words.get(split + 1..).unwrap_or_default())
 }
 
 fn build_all() -> Result<()> {

@@ -1,6 +1,7 @@
 //! Flight cards: the guard never stops a sound shaper, always stops a broken one.
 
 use crate::limits::{Truth, at_speed, calls, mirrored, plain, tables};
+use control::Cause;
 use control::guard::{GuardPlan, GuardState, Violation, judge, slack};
 use control::limits::*;
 use control::shape::{Asked, ShapePlan, ShapeState, step};
@@ -74,8 +75,14 @@ fn any_break() -> impl Strategy<Value = Broken> {
     ]
 }
 
+/// Twice the usual cases, for nothing stands between the guard and the motor.
+fn twice() -> ProptestConfig {
+    let usual = ProptestConfig::default();
+    ProptestConfig { cases: 2 * usual.cases, ..usual }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
+    #![proptest_config(twice())]
 
     /// Situation: any table, rate of calls and sequence of calls; permission comes and goes, the shaper cleared
     /// without it. Action: shape, judge.
@@ -339,6 +346,88 @@ fn each_fault_of_the_shaper_is_found() {
         println!("{name}: {refusal:?}");
     }
     assert_eq!(run(Some(Broken::Glitch(500, 0.3))).map(|(i, _)| i), Some(500));
+}
+
+/// Situation: each limit alone, on both sides. Action: torques float by float about the limit and its slack.
+/// Must hold: what the slack takes back to the limit itself is let through, the next float refused.
+#[test]
+fn the_limit_and_its_slack_are_allowed() {
+    let off = Limits::default();
+    let seven = Limits { max_torque_nm: Some(7.0), ..off };
+    let cap = SpeedCap { speed_m_s: [1.0, 3.0, 5.0, 6.0], torque_nm: [5.0, 6.0, 4.0, 4.5] };
+    let cap = Limits { speed_cap: Some(cap), ..off };
+    let felt = Limits { rider_torque: Some(RiderTorque { allowance_nm: 1.0, multiplier: 1.0 }), ..seven };
+    let window = Limits { window: Some(Window { ms: 100, nm: 4.0 }), ..off };
+    let against = |rider: f32| Asked { rider_torque_nm: Some(rider), ..plain() };
+    for (name, table, asked, limit, why) in [
+        ("largest", seven, plain(), 7.0_f32, Violation::Magnitude),
+        ("authority", seven, Asked { authority: 0.5, ..plain() }, 3.5, Violation::Authority),
+        ("cap, slower", cap, at_speed(0.0, 0.5), 5.0, Violation::Speed),
+        ("cap, faster", cap, at_speed(0.0, 7.0), 4.5, Violation::Speed),
+        ("cap, between", cap, at_speed(0.0, 4.0), 5.0, Violation::Speed),
+        ("rider against", felt, against(-4.0), 4.0, Violation::RiderTorque),
+        ("rider takes it all", felt, against(-30.0), 0.0, Violation::RiderTorque),
+        ("window", window, plain(), 4.0, Violation::Window),
+    ] {
+        let plan = GuardPlan::new(&table, 1000.0);
+        let middle = (limit + slack(limit, 0.0)).to_bits();
+        let mut at_the_limit = 0;
+        for torque in (middle - 400..middle + 400).map(f32::from_bits) {
+            let inside = torque - slack(torque, 0.0);
+            at_the_limit += u32::from(inside == limit);
+            let expected = if inside <= limit { Ok(torque) } else { Err(why) };
+            let judged = |torque: f32, asked: &Asked| {
+                judge(&table, &plan, &mut GuardState::default(), torque, true, asked)
+            };
+            assert_eq!(judged(torque, &asked), expected, "{name}: {torque}");
+            assert_eq!(judged(-torque, &mirrored(&asked)), expected.map(|t| -t), "{name}: {torque}");
+        }
+        assert!(at_the_limit > 0, "{name}: no float is just inside");
+    }
+}
+
+/// Situation: the handlebar turns against the torque exactly as fast as is allowed, either way, then faster. Action: hold the torque.
+/// Must hold: let through for ever, then refused.
+#[test]
+fn turning_as_fast_as_allowed_is_no_override() {
+    let gives_way = RiderMotion { steer_rate_rad_s: 1.0, after_ms: 20, fade_ms: 10 };
+    let table = Limits { rider_motion: Some(gives_way), max_torque_nm: Some(7.0), ..Limits::default() };
+    for torque in [5.0_f32, -5.0] {
+        let turned = |rate: f32| Asked { steer_rate_rad_s: Some(rate * torque.signum()), ..plain() };
+        assert_eq!(first_refusal(&table, vec![(torque, turned(-1.0)); 1000]), None);
+        let refused = first_refusal(&table, vec![(torque, turned(-1.001)); 1000]);
+        assert!(refused.is_some_and(|(i, why)| (20..=31).contains(&i) && why == Violation::RiderMotion));
+    }
+}
+
+/// Situation: limping by a table without a largest torque, of which the limp fraction would be a part. Action: a huge torque.
+/// Must hold: let through, as the shaper does; a part of no limit is none.
+#[test]
+fn a_part_of_no_limit_is_none() {
+    let table = Limits { limp_fraction: Some(0.5), ..Limits::default() };
+    let huge = Asked { limp: true, wanted_nm: 0.9 * f32::MAX, ..plain() };
+    let shaped = step(&table, &ShapePlan::new(&table, 1000.0), &mut ShapeState::default(), &huge).0;
+    assert_eq!(shaped, huge.wanted_nm);
+    assert_eq!(first_refusal(&table, [(shaped, huge)]), None);
+}
+
+/// Situation: every violation. Action: ask for its cause. Must hold: the code whose page explains it.
+#[test]
+fn each_violation_has_its_cause() {
+    use Violation::*;
+    for (violations, cause) in [
+        (&[NotFinite][..], Cause::GuardNotFinite),
+        (&[NotPermitted, Authority], Cause::GuardPermission),
+        (&[Magnitude, Limp, Speed, Taper], Cause::GuardTorque),
+        (&[RiderTorque, RiderMotion], Cause::GuardOverride),
+        (&[EndStop], Cause::GuardEndStop),
+        (&[Rise, Fall], Cause::GuardRate),
+        (&[Window], Cause::GuardWindow),
+    ] {
+        for violation in violations {
+            assert_eq!(violation.cause(), cause, "{violation:?}");
+        }
+    }
 }
 
 /// Situation: the tolerance. Must hold: it is what the documentation says, and no more than 0.1 mN m at product torques.

@@ -1,6 +1,8 @@
 //! Flight cards of the control crate alone: what holds whatever the bicycle.
 
+mod fuzz;
 mod guard;
+mod input;
 mod limits;
 mod maths;
 mod permit;

@@ -205,6 +205,118 @@ fn what_can_be_done_without_is_limped_with() {
     }
 }
 
+/// Situation: engaged. Action: exactly at the limits of lying, hanging, standing and rolling back. Must hold: nothing; the limits
+/// themselves are allowed.
+#[test]
+fn at_the_limits_all_is_well() {
+    let mut bench = Bench::engaged();
+    for (roll, speed) in [(1.0, 0.3), (-1.0, -0.3)] {
+        let at = Asked { roll_rad: Some(roll), speed_m_s: Some(speed), force_m_s2: Some(3.0), ..PRESSED };
+        let p = bench.hold(&at, 100);
+        assert_eq!((p.mode, p.authority, p.causes), (Mode::Engaged, 1.0, Causes::NONE), "{roll} {speed}");
+    }
+}
+
+/// Situation: engaged; the bicycle stands, then rides on, each for less and for more than what counts.
+/// Action: step. Must hold: a pause begins, and ends, only after it has lasted one period longer than allowed without a break.
+#[test]
+fn a_pause_begins_and_ends_late() {
+    let mut bench = Bench::engaged();
+    let stands = Asked { speed_m_s: Some(0.0), ..PRESSED };
+    let mut parked = |asked: &Asked, ticks| bench.hold(asked, ticks).causes.has(Cause::Parked);
+    assert!(!parked(&stands, 3) && !parked(&PRESSED, 1) && !parked(&stands, 3));
+    assert!(parked(&stands, 1) && parked(&stands, 50));
+    assert!(parked(&PRESSED, 3) && parked(&stands, 1) && parked(&PRESSED, 3));
+    assert!(!parked(&PRESSED, 1) && !parked(&PRESSED, 50));
+}
+
+/// Situation: a fault, others while it lasts, and another after all began anew. Action: step.
+/// Must hold: every cause since that fault began is told, none of the fault before.
+#[test]
+fn a_fault_tells_all_since_it_began() {
+    let mut bench = Bench::engaged();
+    let one = |cause| Asked { causes: Causes::of(cause), ..PRESSED };
+    for cause in [Cause::GyroLost, Cause::MotorLost] {
+        bench.step(&one(cause));
+    }
+    let both = Causes::all(&[Cause::GyroLost, Cause::MotorLost]);
+    assert_eq!(bench.step(&PRESSED).causes.and(both), both);
+    assert_eq!(bench.hold(&WELL, 30).mode, Mode::Standby);
+    bench.hold(&PRESSED, 30);
+    let p = bench.step(&one(Cause::GuardRate));
+    assert_eq!(
+        (p.mode, p.causes.and(both), p.causes.has(Cause::GuardRate)),
+        (Mode::Fault, Causes::NONE, true)
+    );
+}
+
+/// Situation: ramps of many lengths, none at all too. Action: press, hold, release.
+/// Must hold: in equal steps, whole and none to the bit after exactly as many periods as declared; the longest, where
+/// rounding adds up, within 1 %.
+#[test]
+fn ramps_take_the_time_declared() {
+    for ticks in [0, 1, 2, 3, 5, 7, 10, 30, 100, 200, 500, 1000, 20_000_u16] {
+        let mut bench = Bench::new();
+        (bench.config.ramp_in_ticks, bench.config.ramp_out_ticks) = (ticks, ticks);
+        bench.hold(&WELL, 20);
+        for (asked, start) in [(PRESSED, 0.0_f32), (WELL, 1.0)] {
+            let most = 2 * usize::from(ticks) + 2;
+            let ramp: Vec<f32> = (0..most).map(|_| (bench.step(&asked).authority - start).abs()).collect();
+            let step = 1.0 / f32::from(ticks.max(1));
+            let takes = 1 + ramp.iter().position(|part| *part == 1.0).expect("arrives");
+            let declared = usize::from(ticks.max(1));
+            let late = takes.abs_diff(declared);
+            assert!(if ticks <= 1000 { late == 0 } else { late * 100 < declared }, "{ticks}: {takes}");
+            assert!(ramp[takes..].iter().all(|part| *part == 1.0), "{ticks}");
+            let even = std::iter::once(&0.0).chain(&ramp[..takes - 1]).zip(&ramp[..takes]);
+            for (before, after) in even {
+                assert!((0.4..1.6).contains(&((after - before) / step)), "{ticks}: {before} to {after}");
+            }
+        }
+    }
+}
+
+/// Situation: on the way up or down. Action: release or press half-way, with another ramp.
+/// Must hold: it goes on from where it is, in its own steps, the last one no longer than the others.
+#[test]
+fn an_interrupted_ramp_goes_on_from_where_it_is() {
+    for (ramp_in_ticks, ramp_out_ticks, expected) in [
+        (
+            2,
+            4,
+            &[
+                (true, 0.5),
+                (true, 1.0),
+                (false, 0.75),
+                (false, 0.5),
+                (false, 0.25),
+                (true, 0.75),
+                (true, 1.0),
+            ][..],
+        ),
+        (4, 2, &[(true, 0.25), (true, 0.5), (true, 0.75), (false, 0.25), (false, 0.0)]),
+    ] {
+        let mut bench = Bench::new();
+        bench.config = PermitConfig { ramp_in_ticks, ramp_out_ticks, ..CONFIG };
+        bench.hold(&WELL, 20);
+        for (engage, authority) in expected {
+            let p = bench.step(&Asked { engage: *engage, ..WELL });
+            assert_eq!((p.authority, bench.state.authority()), (*authority, *authority), "{expected:?}");
+        }
+    }
+}
+
+/// Situation: all modes. Action: ask. Must hold: torque flows in two of them; names and numbers are those of the log and the wire.
+#[test]
+fn modes_have_names_and_numbers() {
+    use Mode::*;
+    let all = [Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault];
+    let names = ["off", "initialise", "self-test", "standby", "engaged", "limp", "fault"];
+    assert_eq!(all.map(Mode::name), names);
+    assert_eq!(all.map(|mode| mode as u8), [0, 1, 2, 3, 4, 5, 6]);
+    assert_eq!(all.map(Mode::drives), [false, false, false, false, true, true, false]);
+}
+
 /// Situation: sensors missing since boot. Action: wait. Must hold: no fault, just waiting, and they are listed.
 #[test]
 fn missing_at_boot_is_no_fault() {

@@ -58,14 +58,20 @@ fn any_law() -> impl Strategy<Value = Law> {
     ]
 }
 
+/// Calls a second: the usual ones, the ends of what is accepted, and between.
+fn any_rate() -> impl Strategy<Value = f32> {
+    prop_oneof![Just(1000.0_f32), Just(100.0), Just(10_000.0), 100.0_f32..10_000.0]
+}
+
 fn any_plan() -> impl Strategy<Value = Plan> {
     let limits = (
         proptest::option::of(0.1_f32..50.0),
         proptest::option::of(1.0_f32..1e5),
         proptest::option::of((0.0_f32..4.0, 0.2_f32..5.0)),
     );
-    (any_law(), limits, 0..=MAX_LATENCY_TICKS, 0..=MAX_LATENCY_TICKS).prop_map(|(law, limits, a, b)| {
-        let mut config = Config::thesis(law);
+    let ticks = || 0..=MAX_LATENCY_TICKS;
+    (any_law(), any_rate(), limits, ticks(), ticks()).prop_map(|(law, rate_hz, limits, a, b)| {
+        let mut config = Config { rate_hz, ..Config::thesis(law) };
         config.limits.max_torque_nm = limits.0;
         config.limits.rise_nm_s = limits.1;
         config.limits.fall_nm_s = limits.1;
@@ -84,9 +90,15 @@ fn fresh(roll_rate: f32, speed: f32) -> SensorFrame {
     }
 }
 
-/// The frames at 1 kHz.
-fn timed(frames: &[SensorFrame]) -> Vec<SensorFrame> {
-    (1..).zip(frames).map(|(tick, frame)| SensorFrame { now_us: 1000 * tick, ..*frame }).collect()
+/// A control period \[us\], never too short.
+fn period_us(plan: &Plan) -> u32 {
+    (1e6 / plan.config().rate_hz).ceil() as u32
+}
+
+/// The frames a control period apart.
+fn timed(plan: &Plan, frames: &[SensorFrame]) -> Vec<SensorFrame> {
+    let period_us = period_us(plan);
+    (1..).zip(frames).map(|(tick, frame)| SensorFrame { now_us: period_us * tick, ..*frame }).collect()
 }
 
 /// The same situation in a mirror that stands along the path.
@@ -114,7 +126,7 @@ fn engaged(plan: &Plan, speed: f32) -> State {
     let ticks = plan.ticks_to_engage();
     for tick in 0..ticks {
         // So that the last one is at time zero.
-        let now_us = (tick + 1).wrapping_sub(ticks).wrapping_mul(1000);
+        let now_us = (tick + 1).wrapping_sub(ticks).wrapping_mul(period_us(plan));
         let command = step(plan, &mut state, &SensorFrame { now_us, engage: standby, ..rest });
         standby |= command.mode == Mode::Standby;
     }
@@ -131,7 +143,7 @@ proptest! {
     ) {
         let mut state = engaged(&plan, 4.0);
         let shape = plan.config().limits;
-        for frame in &timed(&frames) {
+        for frame in &timed(&plan, &frames) {
             let before = state.torque_nm();
             let command = step(&plan, &mut state, frame);
             prop_assert!(command.torque_nm.is_finite() && command.gain_nm_s_rad.is_finite());
@@ -143,7 +155,7 @@ proptest! {
                 // In f64, with room for the rounding of one f32 addition.
                 let change = (f64::from(command.torque_nm) - f64::from(before)).abs();
                 let room = f64::from(f32::EPSILON) * f64::from(before.abs().max(command.torque_nm.abs()));
-                prop_assert!(change <= f64::from(rate) / 1000.0 * (1.0 + 1e-7) + room, "{change}");
+                prop_assert!(change <= f64::from(rate / plan.config().rate_hz) * (1.0 + 1e-7) + room, "{change}");
             }
             if state.authority() == 0.0 {
                 prop_assert_eq!(command.gain_nm_s_rad, 0.0);
@@ -158,7 +170,7 @@ proptest! {
         frames in proptest::collection::vec(any_frame(), 1..100),
     ) {
         let (mut right, mut left) = (engaged(&plan, 4.0), engaged(&plan, 4.0));
-        for frame in &timed(&frames) {
+        for frame in &timed(&plan, &frames) {
             let (a, b) = (step(&plan, &mut right, frame), step(&plan, &mut left, &mirrored(frame)));
             prop_assert_eq!(a.torque_nm, -b.torque_nm);
             prop_assert_eq!((a.limits, a.mode, a.causes), (b.limits, b.mode, b.causes));
@@ -169,13 +181,14 @@ proptest! {
     #[test]
     fn equal_latencies_add_nothing(
         ticks in 0..=MAX_LATENCY_TICKS,
+        rate_hz in any_rate(),
         frames in proptest::collection::vec(plausible_frame(), 1..100),
     ) {
         let law = Law::H { cut: false };
         let latency = Latency { roll_rate_ticks: ticks, speed_ticks: ticks };
-        let plan = Config { latency, ..Config::thesis(law.clone()) }.plan().expect("in range");
+        let plan = Config { rate_hz, latency, ..Config::thesis(law.clone()) }.plan().expect("in range");
         let mut state = engaged(&plan, 4.0);
-        for frame in &timed(&frames) {
+        for frame in &timed(&plan, &frames) {
             let bare = law.gain(frame.front_wheel_m_s.value) * frame.gyro_rad_s.value[0];
             prop_assert_eq!(step(&plan, &mut state, frame).torque_nm.to_bits(), bare.to_bits());
         }
@@ -252,7 +265,7 @@ fn unbelievable_frames_are_refused_with_the_reason() {
         (SensorFrame { front_wheel_m_s: Sample::missing(), ..fresh(1.0, 4.0) }, Cause::FrontWheelLost),
     ] {
         let mut state = engaged(&plan, 4.0);
-        for frame in timed(&[fresh(0.5, 4.0); 20]) {
+        for frame in timed(&plan, &[fresh(0.5, 4.0); 20]) {
             step(&plan, &mut state, &frame);
         }
         let before = state.torque_nm();

@@ -112,6 +112,7 @@ fn each_limit_acts_as_defined() {
         ("cap below the points", cap, at_speed(10.0, 0.0), 9.0, A::SPEED),
         ("cap above the points", cap, at_speed(10.0, 9.0), 6.0, A::SPEED),
         ("cap's least inside", cap, between(1.0, 8.0), 4.0, A::SPEED),
+        ("cap, ends the other way round", cap, between(3.0, 2.0), 6.0, A::SPEED),
         ("cap, speed unknown", cap, at_speed(10.0, f32::NAN), 4.0, A::SPEED),
         ("taper", taper, ten, 5.0, A::TAPER),
         ("taper by the lowest", taper, between(2.0, 9.0), 2.5, A::TAPER),
@@ -141,6 +142,22 @@ fn each_limit_acts_as_defined() {
     assert_eq!(faded[90], (10.0, none));
     assert!((faded[125].0 - 5.0).abs() < 0.21 && faded[125].1 == A::RIDER_MOTION, "{:?}", faded[125]);
     assert!(faded[200..].iter().all(|s| s.0.abs() < 0.21 && s.1 == A::RIDER_MOTION));
+}
+
+/// Situation: the handlebar turns against the torque exactly as fast as is allowed, either way. Action: ask for the same for long.
+/// Must hold: given whole for ever.
+#[test]
+fn turning_as_fast_as_allowed_is_no_override() {
+    let gives_way = RiderMotion { steer_rate_rad_s: 1.0, after_ms: 20, fade_ms: 10 };
+    let table = Limits { rider_motion: Some(gives_way), ..Limits::default() };
+    for torque in [5.0_f32, -5.0] {
+        let turned = Asked { steer_rate_rad_s: Some(-torque.signum()), ..at_speed(torque, 5.0) };
+        assert!(
+            shaped(&table, 1000.0, &vec![turned; 1000])
+                .iter()
+                .all(|s| *s == (torque, ActiveLimits::default()))
+        );
+    }
 }
 
 /// Situation: rise at 100, fall at 1000 N m/s, 1 kHz. Action: up, over to the other side, back, and calls too early.

@@ -127,6 +127,21 @@ fn what_cannot_be_is_not_used() {
     assert!([10.0; 3].map(|x| bench.fresh(x).is_ok())[2]);
 }
 
+/// Situation: believed; samples an eighth apart, by a sensor to which an eighth a period is allowed. Action: up, down, a hair more.
+/// Must hold: exactly what is allowed is used, more is a jump.
+#[test]
+fn as_far_as_allowed_is_no_jump() {
+    let sensor = Sensor { slope_per_s: Some(128.0), qualify_samples: 1, ..SENSOR };
+    // So that the eighth is one to the bit.
+    let period_s = 1.0 / 1024.0;
+    let mut watch = Watch::<1>::default();
+    let mut fresh = |value| watch.step(&sensor, &CODES, period_s, (&[value], 0), false).value;
+    for value in [1.0, 1.125, 1.25, 1.125, 1.0] {
+        assert_eq!(fresh(value), Some(([value], 0)));
+    }
+    assert_eq!(fresh(1.125 + f32::EPSILON), Some(([1.0], 1)));
+}
+
 /// Situation: a sensor that jumped to another level and stays there. Action: wait. Must hold: lost, then believed again at
 /// that level after three good ones, for it can't be told from the truth any more.
 #[test]
