@@ -145,8 +145,10 @@ fn a_sign_that_turns_round_ends_safe() {
         println!(
             "{faults:?}: {meant:?} {told} times, median {median:.3} s; others {others:?}; driven {driven:?}"
         );
-        assert!(told > others.len() && told > 20, "{faults:?}: {told} against {others:?}");
-        assert!((0.01..within_s).contains(&median), "{faults:?}: {median} s");
+        if let Some((_, within_s)) = meant {
+            assert!(told > others.len() && told > 20, "{faults:?}: {told} against {others:?}");
+            assert!((0.01..within_s).contains(&median), "{faults:?}: {median} s");
+        }
         assert!(driven.len() * 20 <= rides().len(), "{faults:?}: {driven:?}");
     }
 }
