@@ -109,6 +109,8 @@ impl Reactions {
         use Cause::*;
         let fault = Causes::all(&[
             GyroDisagrees,
+            // One of the suspects is the gyro, without which nothing is sure.
+            YawDisagrees,
             MotorDisagrees,
             WrongResponse,
             GuardNotFinite,
@@ -120,7 +122,7 @@ impl Reactions {
             GuardEndStop,
             Timing,
         ]);
-        let limp = Causes::all(&[WheelsDisagree, SteerDisagrees, YawDisagrees]);
+        let limp = Causes::all(&[WheelsDisagree, SteerDisagrees]);
         Self {
             fault: fault.with(input.causes_of(Loss::Fault)),
             disengage: Causes::all(&[Fallen, Lifted, PolarityUnchecked, PolarityWrong, SwitchOff]),
