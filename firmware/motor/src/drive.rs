@@ -208,6 +208,8 @@ fn close(
     let wanted = wanted.inside(limit_a);
 
     let measured = park(measured, angle.sin_cos());
+    // The rotor swings about the field of an alignment; without voltage along q its own back-EMF brakes it.
+    let wanted = if mode == Mode::Aligning { Vector::new(wanted.d, measured.q) } else { wanted };
     let error = wanted.minus(measured);
     let max_v = inputs.bus_v * plan.reach;
     let reachable = plan.gains.steady(wanted, omega_rad_s).length() < 0.9 * max_v;
@@ -229,7 +231,7 @@ fn close(
         torque_nm: plan.torque_nm_a * measured.q,
         id_a: measured.d,
         iq_a: measured.q,
-        iq_wanted_a: wanted.q,
+        iq_wanted_a: if mode == Mode::Aligning { 0.0 } else { wanted.q },
         limit_a,
         stalled: mode == Mode::Running && state.stall.stalled,
         ..Output::default()

@@ -82,6 +82,8 @@ pub struct EncoderState {
     /// Where the loop believes the motor, and how fast.
     followed: Turn,
     speed_turns_s: f32,
+    /// Whether a second sample has told a speed.
+    moving: bool,
     /// Why the newest sample was not good.
     doubt: Fault,
 }
@@ -94,6 +96,7 @@ impl Default for EncoderState {
             told_age: MISSING,
             followed: Turn(0),
             speed_turns_s: 0.0,
+            moving: false,
             doubt: Fault::EncoderLost,
         }
     }
@@ -117,11 +120,12 @@ pub fn step(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age_ticks
     state.followed = state.followed.plus(Turn::of(state.speed_turns_s * plan.period_s));
     let new = age_ticks != state.told_age.saturating_add(1) && age_ticks <= config.timeout_ticks;
     state.told_age = age_ticks;
+    // A loss is told even if it ends in this call.
+    let mut faults = Faults::NONE;
+    faults.note(state.doubt, state.age > config.timeout_ticks);
     if new {
         take(plan, state, counts, age_ticks);
     }
-    let mut faults = Faults::NONE;
-    faults.note(state.doubt, state.age > config.timeout_ticks);
     let speed = state.speed_turns_s;
     faults.note(Fault::EncoderSpeed, speed.abs() > config.speed_max_turns_s);
     let since = f32::from(state.age.min(config.timeout_ticks)) * plan.period_s;
@@ -137,9 +141,15 @@ fn take(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age: u16) {
     }
     let forward = Turn(u32::from(counts).wrapping_mul(plan.count));
     let sample = if config.reversed { forward.mirrored() } else { forward };
+    let calls = f32::from(state.age.saturating_sub(age).clamp(1, 20));
+    let most = 1.25 * config.speed_max_turns_s;
     if state.age > config.timeout_ticks {
-        // The first one, or the first after a loss: the loop begins anew.
-        (state.followed, state.speed_turns_s) = (sample, 0.0);
+        // The first one, or the first after a loss: the loop begins anew, with the speed that the second one tells.
+        (state.followed, state.speed_turns_s, state.moving) = (sample, 0.0, false);
+    } else if !state.moving {
+        let speed = sample.minus(state.sample).signed() / (calls * plan.period_s);
+        (state.speed_turns_s, state.moving) = (bounded(speed, most), true);
+        state.followed = sample.plus(Turn::of(state.speed_turns_s * f32::from(age) * plan.period_s));
     }
     let now = sample.plus(Turn::of(state.speed_turns_s * f32::from(age) * plan.period_s));
     let error = now.minus(state.followed).signed();
@@ -147,10 +157,8 @@ fn take(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age: u16) {
         state.doubt = Fault::EncoderJump;
         return;
     }
-    // A sample that comes every n calls is worth n calls; more than 20 would make the loop swing.
-    let calls = f32::from(state.age.saturating_sub(age).clamp(1, 20));
+    // A sample that comes every n calls is worth n calls.
     state.followed = state.followed.plus(Turn::of(bounded(plan.angle_gain * calls, 1.0) * error));
-    let most = 1.25 * config.speed_max_turns_s;
     state.speed_turns_s = bounded(state.speed_turns_s + plan.speed_gain_s * calls * error, most);
     (state.sample, state.age, state.doubt) = (sample, age, Fault::EncoderLost);
 }

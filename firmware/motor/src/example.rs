@@ -53,7 +53,7 @@ pub const EXAMPLE: Config = Config {
         timeout_ticks: 10,
         jump_turns: 0.012,
         speed_max_turns_s: 166.0,
-        tracking_hz: 200.0,
+        tracking_hz: 300.0,
     },
     bridge: Bridge { duty_min: 0.02, duty_max: 0.95, dead_time_s: 0.5e-6, dead_time_a: 0.5 },
     current: CurrentConfig { bandwidth_hz: 1000.0, max_a: 10.0 },

@@ -42,8 +42,8 @@ pub enum Fault {
     EncoderJump = 17,
     /// The encoder turns faster than the motor can.
     EncoderSpeed = 18,
-    /// The back-EMF does not belong to the encoder's speed.
-    EncoderDisagrees = 19,
+    /// The voltage is not that which current and encoder speed explain: an encoder that stands, or a phase that is cut.
+    VoltageAstray = 19,
     /// The encoder does not follow the field, or not as far.
     AlignLag = 20,
     /// The encoder follows the field the wrong way.
@@ -61,7 +61,7 @@ pub const FAULTS: [Fault; 23] = {
     [
         OverCurrent, Overload, CurrentSensor, CurrentZero, CurrentSum, CurrentAstray, PhaseALost, PhaseBLost, PhaseCLost,
         BusLow, BusHigh, BusSensor, Hot, HeatSensor, EncoderLost, EncoderRange, EncoderJump, EncoderSpeed,
-        EncoderDisagrees, AlignLag, AlignReversed, AlignRestless, Command,
+        VoltageAstray, AlignLag, AlignReversed, AlignRestless, Command,
     ]
 };
 

@@ -45,14 +45,16 @@ impl Turn {
 
     /// Sine and cosine, to [`maths::SIN_COS_ERROR`] and a rounding.
     pub fn sin_cos(self) -> (f32, f32) {
-        let quadrant = self.0.wrapping_add(1 << 29) >> 30;
-        let rest = self.0.wrapping_sub(quadrant << 30) as i32;
+        // By the size of the angle, so that the mirrored angle gives the mirrored sine to the bit.
+        let size = (self.0 as i32).unsigned_abs();
+        let quadrant = (size + (1 << 29)) >> 30;
+        let rest = size.wrapping_sub(quadrant << 30) as i32;
         let (sin, cos) = maths::sin_cos(rest as f32 * (core::f32::consts::TAU / PARTS));
-        match quadrant & 3 {
+        let (sin, cos) = match quadrant {
             0 => (sin, cos),
             1 => (cos, -sin),
-            2 => (-sin, -cos),
-            _ => (-cos, sin),
-        }
+            _ => (-sin, -cos),
+        };
+        if (self.0 as i32) < 0 { (-sin, cos) } else { (sin, cos) }
     }
 }

@@ -26,5 +26,5 @@ impl EmfConfig {
 /// One call: `unexplained` is the voltage applied less that which current and speed explain.
 pub fn step(config: &EmfConfig, mean_v: &mut f32, unexplained: Vector) -> Option<Fault> {
     follow_mean(mean_v, unexplained.length(), 1.0 / f32::from(config.mean_ticks));
-    (*mean_v > config.error_v).then_some(Fault::EncoderDisagrees)
+    (*mean_v > config.error_v).then_some(Fault::VoltageAstray)
 }

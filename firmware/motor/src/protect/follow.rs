@@ -30,7 +30,7 @@ pub struct FollowState {
     wanted_a: [f32; 3],
 }
 
-/// A phase that carries less than this share of what it should is cut, if the others carry more than that.
+/// A phase is cut that carries less than this share of what it should, and of what either of the others carries.
 const CUT: f32 = 0.25;
 
 /// One call. `reachable`: the voltage would suffice; what it does not suffice for is no fault.
@@ -52,14 +52,16 @@ pub fn step(
     if state.error_a <= config.error_a {
         return None;
     }
-    let mut cut = [false; 3];
-    for (cut, (carried, wanted)) in cut.iter_mut().zip(state.carried_a.iter().zip(state.wanted_a)) {
-        *cut = *carried < CUT * wanted;
-    }
-    Some(match cut {
-        [true, false, false] => Fault::PhaseALost,
-        [false, true, false] => Fault::PhaseBLost,
-        [false, false, true] => Fault::PhaseCLost,
-        _ => Fault::CurrentAstray,
+    let [a, b, c] = state.carried_a;
+    let [wanted_a, wanted_b, wanted_c] = state.wanted_a;
+    let cut = |carried: f32, wanted: f32, others: f32| carried < CUT * wanted.min(others);
+    Some(if cut(a, wanted_a, b.min(c)) {
+        Fault::PhaseALost
+    } else if cut(b, wanted_b, c.min(a)) {
+        Fault::PhaseBLost
+    } else if cut(c, wanted_c, a.min(b)) {
+        Fault::PhaseCLost
+    } else {
+        Fault::CurrentAstray
     })
 }

@@ -49,7 +49,10 @@ impl SensorsConfig {
 pub fn step(config: &SensorsConfig, beyond: &mut u16, phases_a: [f32; 3]) -> Faults {
     let mut faults = Faults::NONE;
     // Written so that NaN, which compares false, is a fault.
-    faults.note(Fault::CurrentSensor, !phases_a.iter().all(|i| i.abs() <= config.range_a));
+    if !phases_a.iter().all(|i| i.abs() <= config.range_a) {
+        faults.note(Fault::CurrentSensor, true);
+        return faults;
+    }
     faults.note(Fault::OverCurrent, phases_a.iter().any(|i| i.abs() > config.trip_a));
     let [a, b, c] = phases_a;
     *beyond = if (a + b + c).abs() > config.sum_a { beyond.saturating_add(1) } else { 0 };

@@ -3,7 +3,7 @@
 use crate::machine::{Machine, Params};
 
 fn plain() -> Params {
-    Params { saturation_a: 1e9, dead_time_s: 0.0, coulomb_nm: 0.0, source_ohm: 1e-3, ..Params::default() }
+    Params { saturation_a: 1e9, dead_time_s: 0.0, coulomb_nm: 0.0, capacitor_f: 10.0, ..Params::default() }
 }
 
 /// Situation: a held rotor, one phase against the two others. Must hold: the current rises as 1 - exp(-t R/L)
