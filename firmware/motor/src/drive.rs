@@ -12,7 +12,7 @@ use crate::protect::sensors::Phases;
 use crate::protect::stall::StallState;
 use crate::protect::supply::SupplyState;
 use crate::protect::{emf, follow, heat, overload, sensors, stall, supply};
-use crate::transform::{Vector, clarke, park, phases, stator};
+use crate::transform::{Vector, clarke, park, stator};
 use crate::turn::Turn;
 use crate::zero::{self, ZeroState};
 use core::f32::consts::TAU;
@@ -70,6 +70,8 @@ pub enum Mode {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     faults: Faults,
+    /// Mode of the last call.
+    mode: Mode,
     zero: ZeroState,
     encoder: EncoderState,
     overload: OverloadState,
@@ -81,7 +83,7 @@ pub struct State {
     drive: Drive,
 }
 
-/// What is remembered while the bridge is closed, and forgotten when it opens.
+/// What is remembered while one mode lasts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Drive {
     align: AlignState,
@@ -142,6 +144,9 @@ pub fn step(plan: &Plan, state: &mut State, inputs: &Inputs) -> Output {
         (_, _, None) => Mode::Unaligned,
     };
     state.aligned &= inputs.ask == Ask::Align;
+    if mode != state.mode {
+        (state.mode, state.drive) = (mode, Drive::default());
+    }
     let closed = matches!(mode, Mode::Aligning | Mode::Running);
     let zeros = state.zero.zeros_a().unwrap_or_default();
     let offset = offset.unwrap_or_default();
@@ -149,13 +154,11 @@ pub fn step(plan: &Plan, state: &mut State, inputs: &Inputs) -> Output {
         close(plan, state, inputs, mode, &seen, core::array::from_fn(|i| raw[i] - zeros[i]), offset)
     } else {
         overload::step(&plan.config.overload, &mut state.overload, plan.period_s, 0.0, 0.0);
+        stall::step(&plan.config.stall, &mut state.stall, plan.period_s, 0.0, seen.speed_turns_s, 0.0);
         Output { mode, ..Output::default() }
     };
     if !state.faults.is_empty() {
         out = Output { mode: Mode::Off, ..Output::default() };
-    }
-    if out.duties.is_none() {
-        state.drive = Drive::default();
     }
     out.faults = state.faults;
     out.offset_turns = state.offset.map(Turn::signed).or(plan.config.encoder.offset_turns);
@@ -210,15 +213,15 @@ fn close(
     let measured = park(measured, angle.sin_cos());
     // The rotor swings about the field of an alignment; without voltage along q its own back-EMF brakes it.
     let wanted = if mode == Mode::Aligning { Vector::new(wanted.d, measured.q) } else { wanted };
-    let error = wanted.minus(measured);
     let max_v = inputs.bus_v * plan.reach;
     let reachable = plan.gains.steady(wanted, omega_rad_s).length() < 0.9 * max_v;
-    let should = phases(stator(wanted, angle.sin_cos()));
+    let error_a = wanted.minus(measured).length();
     let drive = &mut state.drive;
-    state.faults.take(follow::step(&c.follow, &mut drive.follow, error, phases_a, should, reachable));
+    state.faults.take(follow::step(&c.follow, &mut drive.follow, error_a, phases_a, reachable));
     if mode == Mode::Running {
         let unexplained = drive.voltage.minus(plan.gains.steady(measured, omega_rad_s));
-        state.faults.take(emf::step(&c.emf, &mut drive.emf_v, unexplained));
+        let resistive_v = c.motor.resistance_ohm * measured.length();
+        state.faults.take(emf::step(&c.emf, &mut drive.emf_v, unexplained, resistive_v));
     }
     drive.voltage = current::step(&plan.gains, &mut drive.current, wanted, measured, omega_rad_s, max_v);
 

@@ -72,5 +72,5 @@ pub const EXAMPLE: Config = Config {
     heat: HeatConfig { warm_c: 80.0, hot_c: 100.0 },
     stall: StallConfig { hold_a: 3.0, still_turns_s: 0.3, time_s: 2.0 },
     follow: FollowConfig { error_a: 1.5, mean_ticks: 20 },
-    emf: EmfConfig { error_v: 2.5, mean_ticks: 100 },
+    emf: EmfConfig { error_v: 1.0, resistance_part: 0.5, mean_ticks: 100 },
 };

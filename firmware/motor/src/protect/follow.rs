@@ -2,7 +2,6 @@
 
 use super::follow_mean;
 use crate::fault::Fault;
-use crate::transform::Vector;
 use control::param::{Leaf, Visit};
 
 /// How far the current may be off.
@@ -22,46 +21,41 @@ impl FollowConfig {
     }
 }
 
-/// Means of the distance, and of what each phase carries and should carry \[A\].
+/// What is remembered of the currents.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FollowState {
+    /// Mean distance of the current from what is wanted \[A\].
     error_a: f32,
-    carried_a: [f32; 3],
-    wanted_a: [f32; 3],
+    /// Calls in a row in which a phase carried nothing.
+    dead: [u16; 3],
 }
 
-/// A phase is cut that carries less than this share of what it should, and of what either of the others carries.
-const CUT: f32 = 0.25;
+/// Part of the largest distance that is as good as nothing.
+const NOTHING: f32 = 0.2;
+/// Calls without current after which a phase counts as cut, if the others carry some.
+const DEAD: u16 = 10;
 
-/// One call. `reachable`: the voltage would suffice; what it does not suffice for is no fault.
+/// One call, by the distance of the current from what is wanted. `reachable`: the voltage would suffice; what it
+/// does not suffice for is no fault.
 pub fn step(
     config: &FollowConfig,
     state: &mut FollowState,
-    error: Vector,
+    error_a: f32,
     phases_a: [f32; 3],
-    wanted_a: [f32; 3],
     reachable: bool,
 ) -> Option<Fault> {
     let gain = 1.0 / f32::from(config.mean_ticks);
-    follow_mean(&mut state.error_a, if reachable { error.length() } else { 0.0 }, gain);
-    let means = state.carried_a.iter_mut().zip(&mut state.wanted_a);
-    for ((carried, wanted), (is, should)) in means.zip(phases_a.iter().zip(wanted_a)) {
-        follow_mean(carried, is.abs(), gain);
-        follow_mean(wanted, should.abs(), gain);
+    follow_mean(&mut state.error_a, if reachable { error_a } else { 0.0 }, gain);
+    for (dead, i) in state.dead.iter_mut().zip(phases_a) {
+        *dead = if i.abs() < NOTHING * config.error_a { dead.saturating_add(1) } else { 0 };
     }
     if state.error_a <= config.error_a {
         return None;
     }
-    let [a, b, c] = state.carried_a;
-    let [wanted_a, wanted_b, wanted_c] = state.wanted_a;
-    let cut = |carried: f32, wanted: f32, others: f32| carried < CUT * wanted.min(others);
-    Some(if cut(a, wanted_a, b.min(c)) {
-        Fault::PhaseALost
-    } else if cut(b, wanted_b, c.min(a)) {
-        Fault::PhaseBLost
-    } else if cut(c, wanted_c, a.min(b)) {
-        Fault::PhaseCLost
-    } else {
-        Fault::CurrentAstray
+    Some(match state.dead.map(|calls| calls >= DEAD) {
+        [true, false, false] => Fault::PhaseALost,
+        [false, true, false] => Fault::PhaseBLost,
+        [false, false, true] => Fault::PhaseCLost,
+        _ => Fault::CurrentAstray,
     })
 }

@@ -54,6 +54,6 @@ pub fn step(
     let allowed = config.continuous_a * config.continuous_a;
     let left = share(state.heat_a2, allowed, BEGIN * allowed);
     let most = config.continuous_a.min(max_a);
-    let limit = most + (max_a - most) * left;
+    let limit = (most + (max_a - most) * left).min(max_a);
     (limit, (state.heat_a2 > FAULT * allowed).then_some(Fault::Overload))
 }

@@ -104,10 +104,10 @@ fn one_bad_sample_is_left_out() {
 }
 
 /// Situation: 4 N m; the encoder repeats one sample as if fresh while the hands turn the handlebar. Must hold: from
-/// 4 rad/s on voltage or current betray it within 10 ms. At 2 rad/s and below nothing does: a limit that docs/motor.md tells.
+/// 2 rad/s on voltage or current betray it within 20 ms. At 1 rad/s nothing does: a limit that docs/motor.md tells.
 #[test]
 fn an_encoder_that_is_stuck() {
-    for (rate, seen) in [(1.0, false), (2.0, false), (4.0, true), (6.0, true), (10.0, true), (-6.0, true)] {
+    for (rate, seen) in [(1.0, false), (2.0, true), (4.0, true), (6.0, true), (10.0, true), (-6.0, true)] {
         let mut rig = turning(rate);
         let counts = rig.inputs(Ask::Off).angle_counts;
         let records = rig.tampered(4000, Ask::Torque(4.0), |_, i| i.angle_counts = counts);
@@ -118,7 +118,7 @@ fn an_encoder_that_is_stuck() {
             last(&records).out.faults
         );
         if seen {
-            assert!(opened(&records).is_some_and(|n| (2..=200).contains(&n)));
+            assert!(opened(&records).is_some_and(|n| (2..=400).contains(&n)));
             let faults = last(&records).out.faults;
             assert!(faults == one(Fault::VoltageAstray) || faults == one(Fault::CurrentAstray), "{faults:?}");
         } else {
@@ -129,7 +129,7 @@ fn an_encoder_that_is_stuck() {
 }
 
 /// Situation: a phase is cut, at rest and at 3 rad/s, with 4 N m. Must hold: open within 10 ms; turning, the number says
-/// which phase.
+/// which phase; at rest never another one.
 #[test]
 fn a_phase_is_cut() {
     for (cut, fault) in [Fault::PhaseALost, Fault::PhaseBLost, Fault::PhaseCLost].into_iter().enumerate() {
@@ -146,17 +146,18 @@ fn a_phase_is_cut() {
             let records = rig.run(400, Ask::Torque(4.0));
             let out = last(&records).out;
             assert!(opened(&records).is_some_and(|n| (5..=200).contains(&n)), "{cut} {angle}: {out:?}");
-            let told = [fault, Fault::CurrentAstray, Fault::VoltageAstray].map(one);
-            assert!(told.contains(&out.faults), "{out:?}");
+            let may = [fault, Fault::CurrentAstray, Fault::VoltageAstray];
+            assert!(out.faults.iter().all(|f| may.contains(&f)), "{out:?}");
         }
     }
     let mut rig = turning(3.0);
     rig.machine.cut = [true; 3];
-    opens("all three cut", &rig.run(400, Ask::Torque(4.0)), Fault::CurrentAstray, 5, 200);
+    let records = rig.run(400, Ask::Torque(4.0));
+    opens("all three cut", &records, Fault::CurrentAstray, 5, 200);
 }
 
-/// Situation: a current sensor shows nothing but its zero, while 4 N m are given at 2 rad/s. Must hold: the sum tells, within
-/// half an electrical turn (49 ms at 2 rad/s: 981 calls divided by 2); no phase carries more than 15 A until then.
+/// Situation: a current sensor shows nothing but its zero, while 4 N m are given at 2 rad/s. Must hold: the sum tells
+/// within half an electrical turn (109 calls); no phase carries more than 15 A until then.
 #[test]
 fn a_current_sensor_is_dead() {
     for x in 0..3 {
@@ -167,7 +168,7 @@ fn a_current_sensor_is_dead() {
             all[x] = zero;
             i.phases = Phases::Three(all);
         });
-        opens("dead sensor", &records, Fault::CurrentSum, 5, 220);
+        opens("dead sensor", &records, Fault::CurrentSum, 5, 115);
         assert!(records.iter().all(|r| r.largest_phase_a < 15.0));
     }
 }

@@ -1,7 +1,7 @@
 //! Flight cards: the torque that is asked for, and the limits of it.
 
 use crate::rig::{Record, Rig, last, mean, opened};
-use motor::{Ask, Config, Fault, Mode};
+use motor::{Ask, Config, Fault, Mode, Phases};
 
 /// Quick enough that the loop, not the slew limit, decides.
 fn at_once(c: &mut Config) {
@@ -16,8 +16,8 @@ fn rise(records: &[Record], nm: f64) -> (f64, f64) {
 }
 
 /// Situation: handlebar held, at twelve angles of the rotor, the sensors with noise and steps. Action: 5 N m at
-/// once, either way. Must hold: 10 to 90 % in 0.1 to 0.4 ms (a loop of the first order with 1 kHz needs 0.35 ms; the
-/// delay makes it steeper), at most 20 % too far, the mean within 2 % from the fourth millisecond on, and told within 2 %.
+/// once, either way. Must hold: 10 to 90 % in 0.1 to 0.3 ms (a loop of the first order with 1 kHz needs 0.35 ms; the
+/// delay makes it steeper), 0.5 to 12 % too far in the first 2 ms, the mean within 1 % from the fourth millisecond on, and told within 1 %.
 #[test]
 fn a_step_of_torque() {
     let (mut slowest, mut farthest, mut worst): (f64, f64, f64) = (0.0, 0.0, 0.0);
@@ -29,12 +29,12 @@ fn a_step_of_torque() {
             let _ = rig.run(40, Ask::Off);
             let records = rig.run(2000, Ask::Torque(nm as f32));
             assert_eq!(opened(&records), None, "{:?}", last(&records).out);
-            let (rise_ms, over) = rise(&records, nm);
-            assert!((0.1..=0.4).contains(&rise_ms), "{angle}: {rise_ms} ms");
-            assert!((0.0..=0.2).contains(&over), "{angle}: {over}");
+            let (rise_ms, over) = rise(&records[..40], nm);
+            assert!((0.1..=0.3).contains(&rise_ms), "{angle}: {rise_ms} ms");
+            assert!((0.005..=0.12).contains(&over), "{angle}: {over}");
             let steady = mean(&records[80..], |r| r.torque_nm) / nm;
             let told = mean(&records[80..], |r| f64::from(r.out.torque_nm)) / nm;
-            assert!((0.98..=1.02).contains(&steady) && (0.98..=1.02).contains(&told), "{steady} {told}");
+            assert!((0.99..=1.01).contains(&steady) && (0.99..=1.01).contains(&told), "{steady} {told}");
             (slowest, farthest) = (slowest.max(rise_ms), farthest.max(over));
             worst = worst.max((steady - 1.0).abs());
         }
@@ -43,7 +43,7 @@ fn a_step_of_torque() {
 }
 
 /// Situation: handlebar held. The winding is 40 % hotter in resistance, the inductance 30 % off either way. Action:
-/// 5 N m at once. Must hold: settles within 5 %, at most 40 % too far.
+/// 5 N m at once. Must hold: settles within 5 %, at most 25 % too far.
 #[test]
 fn a_motor_that_is_not_as_told() {
     let mut farthest: f64 = 0.0;
@@ -55,16 +55,39 @@ fn a_motor_that_is_not_as_told() {
         p.inductance_q_h *= l;
         rig.machine.held = true;
         let records = rig.run(400, Ask::Torque(5.0));
-        let (_, over) = rise(&records, 5.0);
+        let (_, over) = rise(&records[..40], 5.0);
         let steady = mean(&records[200..], |r| r.torque_nm) / 5.0;
-        assert!(over < 0.4 && (0.95..=1.05).contains(&steady), "{r} {l}: {over} {steady}");
+        assert!(over < 0.25 && (0.95..=1.05).contains(&steady), "{r} {l}: {over} {steady}");
         farthest = farthest.max(over);
     }
     println!("overshoot {farthest:.3}");
 }
 
+/// Situation: handlebar held, the PWM at other rates, the bandwidth a 20th of it; two current sensors of the three. Action:
+/// 5 N m at once. Must hold: 10 to 90 % in 2 to 6 calls, at most 15 % too far, the mean within 1 % after 80 calls.
+#[test]
+fn other_rates_of_the_pwm() {
+    for rate_hz in [10_000.0, 30_000.0, 40_000.0_f32] {
+        let mut rig = Rig::ready(|c| {
+            at_once(c);
+            (c.rate_hz, c.current.bandwidth_hz) = (rate_hz, rate_hz / 20.0);
+        });
+        rig.machine.held = true;
+        let records = rig.tampered(400, Ask::Torque(5.0), |_, i| {
+            let [a, b, _] = i.phases.all();
+            i.phases = Phases::Two([a, b]);
+        });
+        assert_eq!(opened(&records), None, "{rate_hz}: {:?}", last(&records).out);
+        let (rise_ms, over) = rise(&records[..40], 5.0);
+        let calls = rise_ms / 0.05;
+        let steady = mean(&records[80..], |r| r.torque_nm) / 5.0;
+        assert!((2.0..=6.0).contains(&calls) && over < 0.15, "{rate_hz}: {calls} {over}");
+        assert!((0.99..=1.01).contains(&steady), "{rate_hz}: {steady}");
+    }
+}
+
 /// Situation: the handlebar turns evenly, from -8 to 8 rad/s. Action: 4 N m, given while it turns. Must hold: the torque
-/// within 3 % of it, d current within 0.2 A of none.
+/// within 1 % of it, d current within 0.2 A of none.
 #[test]
 fn a_torque_while_turning() {
     let mut worst: f64 = 0.0;
@@ -78,7 +101,7 @@ fn a_torque_while_turning() {
         let torque = mean(&records[400..], |r| r.torque_nm) / 4.0;
         let d = mean(&records[400..], |r| f64::from(r.out.id_a));
         let told = f64::from(last(&records).out.steer_rate_rad_s);
-        assert!((0.97..=1.03).contains(&torque) && d.abs() < 0.2, "{rate}: {torque} {d}");
+        assert!((0.99..=1.01).contains(&torque) && d.abs() < 0.2, "{rate}: {torque} {d}");
         assert!((told - rate).abs() < 0.1, "{told} is not {rate}");
         worst = worst.max((torque - 1.0).abs());
     }
@@ -180,7 +203,7 @@ fn closing_the_bridge_in_motion() {
 }
 
 /// Situation: the handlebar turns slowly, 4 N m are asked for. Must hold: with the dead time made up for, the torque's
-/// ripple is at most 0.8 of that without.
+/// ripple is at most half of that without.
 #[test]
 fn the_dead_time_is_made_up_for() {
     let ripple = |dead_time_s: f32| {
@@ -194,7 +217,7 @@ fn the_dead_time_is_made_up_for() {
         mean(&records[2000..], |r| (r.torque_nm - 4.0).powi(2)).sqrt()
     };
     let (with, without) = (ripple(2e-6), ripple(0.0));
-    assert!(with < 0.8 * without && without > 0.02, "{with} {without}");
+    assert!(with < 0.5 * without && without > 0.02, "{with} {without}");
     println!("{with:.3} N m rms with, {without:.3} without");
 }
 
