@@ -7,7 +7,7 @@
 //! would have asked for just the voltage that was left (Hanus's conditioning). Of the ways known it is the one
 //! that needs no case for each axis where a circle cuts both, and it forgets within the winding's own time L/R.
 
-use crate::motor::Motor;
+use crate::machine::Motor;
 use crate::transform::Vector;
 use control::maths::bounded;
 use control::param::{Leaf, Visit};

@@ -13,7 +13,7 @@
 //! The way of the data, one module each: [`zero`] (the current sensors' zeros) -> [`encoder`] (angle and speed; a
 //! [`turn`] is a whole number) -> [`protect`] (what may not go on) -> [`align`] or [`demand`] (which current is wanted) ->
 //! [`transform`] (into the rotor's axes and back) -> [`current`] (which voltage) -> [`modulate`] (which duty
-//! cycles). [`drive`] puts them together, [`config`] holds what may be chosen, [`motor`] the machine, [`fault`] the
+//! cycles). [`drive`] puts them together, [`config`] holds what may be chosen, [`machine`] motor and gear, [`fault`] the
 //! numbers, [`example`] a motor with its sources. docs/motor.md tells it at length.
 #![no_std]
 #![forbid(unsafe_code)]
@@ -26,8 +26,8 @@ pub mod drive;
 pub mod encoder;
 pub mod example;
 pub mod fault;
+pub mod machine;
 pub mod modulate;
-pub mod motor;
 pub mod protect;
 pub mod transform;
 pub mod turn;

@@ -3,7 +3,9 @@
 use motor::Config;
 use motor::example::EXAMPLE;
 
-fn refused(change: fn(&mut Config)) -> String {
+type Change = fn(&mut Config);
+
+fn refused(change: Change) -> String {
     let mut config = EXAMPLE;
     change(&mut config);
     config.plan().expect_err("must be refused").to_string()
@@ -13,7 +15,7 @@ fn refused(change: fn(&mut Config)) -> String {
 #[test]
 fn wrong_parameters_are_named() {
     assert!(EXAMPLE.plan().is_ok());
-    let cases: [(fn(&mut Config), &str); 8] = [
+    let cases: [(Change, &str); 8] = [
         (|c| c.rate_hz = f32::NAN, "rate_hz = NaN is outside 5000 to 60000"),
         (|c| c.motor.flux_wb = 0.0, "motor.flux_wb = 0 is outside"),
         (|c| c.current.bandwidth_hz = 1700.0, "current.bandwidth_hz = 1700 is outside 10 to 1666"),
