@@ -198,8 +198,8 @@ fn close(
     }
     let most = c.current.max_a * supply_share.min(heat_share);
     let measured = clarke(phases_a);
-    let square = measured.d * measured.d + measured.q * measured.q;
-    let (limit, overload) = overload::step(&c.overload, &mut state.overload, plan.period_s, square, most);
+    let (limit, overload) =
+        overload::step(&c.overload, &mut state.overload, plan.period_s, measured.square(), most);
     state.faults.take(overload);
     let (field, limit_a) = match mode {
         Mode::Aligning => (aligning(plan, state, seen, limit), limit),
@@ -214,7 +214,7 @@ fn close(
     // The rotor swings about the field of an alignment; without voltage along q its own back-EMF brakes it.
     let wanted = if mode == Mode::Aligning { Vector::new(wanted.d, measured.q) } else { wanted };
     let max_v = inputs.bus_v * plan.reach;
-    let reachable = plan.gains.steady(wanted, omega_rad_s).length() < 0.9 * max_v;
+    let reachable = plan.gains.steady(wanted, omega_rad_s).square() < (0.9 * max_v) * (0.9 * max_v);
     let error_a = wanted.minus(measured).length();
     let drive = &mut state.drive;
     state.faults.take(follow::step(&c.follow, &mut drive.follow, error_a, phases_a, reachable));

@@ -19,9 +19,14 @@ impl Vector {
         Self { d, q }
     }
 
+    /// Its length squared.
+    pub fn square(self) -> f32 {
+        self.d * self.d + self.q * self.q
+    }
+
     /// Its length.
     pub fn length(self) -> f32 {
-        libm::sqrtf(self.d * self.d + self.q * self.q)
+        libm::sqrtf(self.square())
     }
 
     /// This vector and another.
@@ -41,6 +46,9 @@ impl Vector {
 
     /// Inside a circle: d as it is as long as it fits, q what is left.
     pub fn inside(self, radius: f32) -> Self {
+        if self.square() <= radius * radius {
+            return self;
+        }
         let d = control::maths::bounded(self.d, radius);
         let left = radius * radius - d * d;
         Self::new(d, control::maths::bounded(self.q, libm::sqrtf(if left > 0.0 { left } else { 0.0 })))

@@ -103,6 +103,29 @@ fn one_bad_sample_is_left_out() {
     assert!(records.iter().all(|r| (r.torque_nm - 4.0).abs() < 0.4));
 }
 
+/// Situation: 4 N m; a blow changes the handlebar's rate, by 8 rad/s in 5 ms or in 2 ms. Must hold: no fault, less than
+/// 3 N m of error meanwhile and less than 0.4 N m after 5 ms more.
+#[test]
+fn a_blow_to_the_handlebar() {
+    let off = |records: &[Record]| records.iter().map(|r| (r.torque_nm - 4.0).abs()).fold(0.0, f64::max);
+    for (blow, calls) in [(8.0, 100), (-8.0, 100), (8.0, 40), (-8.0, 40)] {
+        let mut rig = turning(0.0);
+        let mut during = Vec::new();
+        for call in 1..=calls {
+            rig.machine.steer_rate_rad_s = blow * f64::from(call) / f64::from(calls);
+            during.push(rig.call(Ask::Torque(4.0), |_, _| ()));
+        }
+        let after = rig.run(200, Ask::Torque(4.0));
+        assert_eq!(opened(&after), None, "{blow}: {:?}", last(&after).out);
+        println!(
+            "{blow} rad/s in {calls} calls: {:.2} N m, then {:.2} N m",
+            off(&during),
+            off(&after[100..])
+        );
+        assert!(off(&after[100..]) < 0.4 && (0.05..3.0).contains(&off(&during)));
+    }
+}
+
 /// Situation: 4 N m; the encoder repeats one sample as if fresh while the hands turn the handlebar. Must hold: from
 /// 2 rad/s on voltage or current betray it within 20 ms. At 1 rad/s nothing does: a limit that docs/motor.md tells.
 #[test]
