@@ -33,6 +33,7 @@ pub(crate) struct Record {
     pub(crate) out: Output,
     /// What the machine really does.
     pub(crate) torque_nm: f64,
+    pub(crate) id_a: f64,
     pub(crate) iq_a: f64,
     pub(crate) largest_phase_a: f64,
 }
@@ -108,14 +109,14 @@ impl Rig {
         let mut inputs = self.inputs(ask);
         tamper(self.tick, &mut inputs);
         self.tick += 1;
-        let (torque_nm, [_, iq_a]) = (self.machine.torque_nm(), self.machine.dq_a());
+        let (torque_nm, [id_a, iq_a]) = (self.machine.torque_nm(), self.machine.dq_a());
         let largest_phase_a = self.machine.phases_a().into_iter().fold(0.0, |m: f64, i| m.max(i.abs()));
         let out = step(&self.plan, &mut self.state, &inputs);
         // Opening the bridge does not wait for the next period.
         let acting = if out.duties.is_none() { None } else { self.acting };
         self.machine.advance(acting.map(|d| d.map(f64::from)));
         self.acting = out.duties;
-        Record { out, torque_nm, iq_a, largest_phase_a }
+        Record { out, torque_nm, id_a, iq_a, largest_phase_a }
     }
 
     /// So many calls.
