@@ -1,0 +1,159 @@
+//! Alignment: finds the encoder's offset, and refuses one that does not follow the field.
+//!
+//! A current along d holds the rotor like a compass needle. The field goes
+//!
+//! ```text
+//! -1/4 (current rises) -> 0 (rest, A) -> +1/4 (rest, B) -> 0 (rest, C)      electrical turns
+//! ```
+//!
+//! It begins a quarter off, so that a rotor that happens to stand just against the field is not left there.
+//! From A to B the encoder must go a quarter forward, from B to C back. The offset is the mean of B's and C's,
+//! reached from either side, so that friction drops out.
+
+use crate::fault::Fault;
+use crate::turn::Turn;
+use control::param::{Leaf, Visit};
+
+/// How the alignment is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlignConfig {
+    /// Current along d \[A\].
+    pub current_a: f32,
+    /// Time in which it rises \[calls\].
+    pub ramp_ticks: u16,
+    /// Time of a move by a quarter \[calls\].
+    pub move_ticks: u16,
+    /// Time of a rest; the angle is the mean over its second half \[calls\].
+    pub rest_ticks: u16,
+    /// How far a move may differ from a quarter, and how far the encoder may move in a rest \[electrical turns\].
+    pub tolerance_turns: f32,
+}
+
+impl AlignConfig {
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        to.number(&Leaf::new("align", "current_a", 0.1, 100.0), &mut self.current_a);
+        to.count(&Leaf::new("align", "ramp_ticks", 1.0, 65535.0), &mut self.ramp_ticks);
+        to.count(&Leaf::new("align", "move_ticks", 1.0, 65535.0), &mut self.move_ticks);
+        to.count(&Leaf::new("align", "rest_ticks", 2.0, 65535.0), &mut self.rest_ticks);
+        to.number(&Leaf::new("align", "tolerance_turns", 0.001, 0.12), &mut self.tolerance_turns);
+    }
+}
+
+/// Where the alignment is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Stage {
+    #[default]
+    Ramp,
+    Move0,
+    RestA,
+    Forward,
+    RestB,
+    Back,
+    RestC,
+}
+
+/// What the alignment remembers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AlignState {
+    stage: Stage,
+    /// Calls since the stage began.
+    ticks: u16,
+    /// Electrical angle, without offset, in the rest: the first one, and sum, number and extremes of the distances
+    /// from it \[turns\].
+    first: Turn,
+    sum_turns: f32,
+    count: u16,
+    least_turns: f32,
+    most_turns: f32,
+    /// Mean angles of the rests that are over.
+    a: Turn,
+    b: Turn,
+}
+
+/// What alignment wants of this call.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Align {
+    /// A field at this electrical angle, of this d current \[A\].
+    Field(Turn, f32),
+    /// Nothing more: the offset is found \[electrical turns\].
+    Found(Turn),
+    /// Nothing more: it failed.
+    Failed(Fault),
+}
+
+/// One call; `electrical` is the encoder's angle times the pole pairs, without offset.
+pub fn step(config: &AlignConfig, state: &mut AlignState, electrical: Turn) -> Align {
+    state.ticks = state.ticks.saturating_add(1);
+    let (length, from, to) = match state.stage {
+        Stage::Ramp => (config.ramp_ticks, -0.25, -0.25),
+        Stage::Move0 => (config.move_ticks, -0.25, 0.0),
+        Stage::RestA | Stage::RestC => (config.rest_ticks, 0.0, 0.0),
+        Stage::Forward => (config.move_ticks, 0.0, 0.25),
+        Stage::RestB => (config.rest_ticks, 0.25, 0.25),
+        Stage::Back => (config.move_ticks, 0.25, 0.0),
+    };
+    let part = (f32::from(state.ticks) / f32::from(length)).min(1.0);
+    let rests = matches!(state.stage, Stage::RestA | Stage::RestB | Stage::RestC);
+    if rests && part > 0.5 {
+        watch(state, electrical);
+    }
+    let field = Turn::of(from + (to - from) * part);
+    let current = if state.stage == Stage::Ramp { config.current_a * part } else { config.current_a };
+    if state.ticks < length { Align::Field(field, current) } else { next(config, state, field) }
+}
+
+/// Takes the angle into the rest's mean.
+fn watch(state: &mut AlignState, electrical: Turn) {
+    if state.count == 0 {
+        (state.first, state.sum_turns, state.least_turns, state.most_turns) = (electrical, 0.0, 0.0, 0.0);
+    }
+    let off = electrical.minus(state.first).signed();
+    state.sum_turns += off;
+    state.count = state.count.saturating_add(1);
+    (state.least_turns, state.most_turns) = (state.least_turns.min(off), state.most_turns.max(off));
+}
+
+/// The end of a stage.
+fn next(config: &AlignConfig, state: &mut AlignState, field: Turn) -> Align {
+    let tolerance = config.tolerance_turns;
+    let mean = state.first.plus(Turn::of(state.sum_turns / f32::from(state.count.max(1))));
+    let restless = state.most_turns - state.least_turns > tolerance;
+    state.stage = match state.stage {
+        Stage::Ramp => Stage::Move0,
+        Stage::Move0 => Stage::RestA,
+        Stage::RestA if restless => return Align::Failed(Fault::AlignRestless),
+        Stage::RestA => {
+            state.a = mean;
+            Stage::Forward
+        }
+        Stage::Forward => Stage::RestB,
+        Stage::RestB => {
+            let moved = mean.minus(state.a).signed();
+            if (moved + 0.25).abs() <= tolerance {
+                return Align::Failed(Fault::AlignReversed);
+            }
+            if (moved - 0.25).abs() > tolerance {
+                return Align::Failed(Fault::AlignLag);
+            }
+            if restless {
+                return Align::Failed(Fault::AlignRestless);
+            }
+            state.b = mean;
+            Stage::Back
+        }
+        Stage::Back => Stage::RestC,
+        Stage::RestC => {
+            if (state.b.minus(mean).signed() - 0.25).abs() > tolerance {
+                return Align::Failed(Fault::AlignLag);
+            }
+            if restless {
+                return Align::Failed(Fault::AlignRestless);
+            }
+            let apart = state.b.minus(Turn::QUARTER).minus(mean).signed();
+            return Align::Found(mean.plus(Turn::of(0.5 * apart)));
+        }
+    };
+    (state.ticks, state.count) = (0, 0);
+    Align::Field(field, config.current_a)
+}

@@ -1,0 +1,137 @@
+//! What may be chosen, and what follows from it once and for all.
+
+use crate::align::AlignConfig;
+use crate::current::{CurrentConfig, Gains};
+use crate::demand::Demand;
+use crate::encoder::{EncoderConfig, EncoderPlan};
+use crate::machine::Motor;
+use crate::modulate::Bridge;
+use crate::protect::emf::EmfConfig;
+use crate::protect::follow::FollowConfig;
+use crate::protect::heat::HeatConfig;
+use crate::protect::overload::OverloadConfig;
+use crate::protect::sensors::SensorsConfig;
+use crate::protect::stall::StallConfig;
+use crate::protect::supply::SupplyConfig;
+use crate::zero::ZeroConfig;
+use control::ParamError;
+use control::param::{Checker, Leaf, Visit};
+
+/// Everything that may be chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    /// Calls of [`crate::step`] a second: the rate of the PWM \[Hz\].
+    pub rate_hz: f32,
+    /// The machine.
+    pub motor: Motor,
+    /// Its encoder.
+    pub encoder: EncoderConfig,
+    /// The bridge.
+    pub bridge: Bridge,
+    /// The current loop.
+    pub current: CurrentConfig,
+    /// Limits of the torque.
+    pub demand: Demand,
+    /// The current sensors' zeros.
+    pub zero: ZeroConfig,
+    /// The alignment.
+    pub align: AlignConfig,
+    /// The current sensors.
+    pub sensors: SensorsConfig,
+    /// The winding's heat.
+    pub overload: OverloadConfig,
+    /// The bus.
+    pub supply: SupplyConfig,
+    /// The temperature.
+    pub heat: HeatConfig,
+    /// Torque without motion.
+    pub stall: StallConfig,
+    /// Currents that do not follow.
+    pub follow: FollowConfig,
+    /// Back-EMF that does not fit.
+    pub emf: EmfConfig,
+}
+
+/// Calls from the sampling of a current to the middle of the duty cycles that answer it.
+pub const DELAY_TICKS: f32 = 1.5;
+
+/// Calls for each period of the loop's bandwidth, at least: less leaves no 45 degrees of phase margin after
+/// [`DELAY_TICKS`].
+pub const TICKS_PER_BANDWIDTH: f32 = 12.0;
+
+impl Config {
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        to.number(&Leaf::new("", "rate_hz", 5_000.0, 60_000.0), &mut self.rate_hz);
+        self.motor.leaves(to);
+        self.encoder.leaves(to);
+        self.bridge.leaves(to);
+        self.current.leaves(to);
+        self.demand.leaves(to);
+        self.zero.leaves(to);
+        self.align.leaves(to);
+        self.sensors.leaves(to);
+        self.overload.leaves(to);
+        self.supply.leaves(to);
+        self.heat.leaves(to);
+        self.stall.leaves(to);
+        self.follow.leaves(to);
+        self.emf.leaves(to);
+    }
+
+    /// Checks every value, and those that depend on each other, and readies what [`crate::step`] needs.
+    ///
+    /// # Errors
+    /// The first parameter outside its range, with its value and the range.
+    pub fn plan(mut self) -> Result<Plan, ParamError> {
+        let mut checker = Checker::default();
+        self.leaves(&mut checker);
+        let c = &self;
+        let between = |group, name, min, max, value| Leaf::new(group, name, min, max).check(value);
+        let most_hz = c.rate_hz / TICKS_PER_BANDWIDTH;
+        checker.note(between("current", "bandwidth_hz", 10.0, most_hz, c.current.bandwidth_hz));
+        checker.note(between("align", "current_a", 0.1, c.current.max_a, c.align.current_a));
+        // The trip leaves room for the loop's overshoot and for noise.
+        checker.note(between(
+            "sensors",
+            "trip_a",
+            1.2 * c.current.max_a,
+            c.sensors.range_a,
+            c.sensors.trip_a,
+        ));
+        checker.note(between("supply", "sag_v", 1.01 * c.supply.low_v, c.supply.high_v, c.supply.sag_v));
+        checker.note(between("heat", "hot_c", c.heat.warm_c + 1.0, 160.0, c.heat.hot_c));
+        // From the eighth part of an electrical turn on a jump would turn the torque.
+        let eighth = 0.125 / f32::from(c.motor.pole_pairs.max(1));
+        checker.note(between("encoder", "jump_turns", 1e-4, eighth, c.encoder.jump_turns));
+        checker.verdict()?;
+        Ok(Plan {
+            gains: Gains::new(&self.motor, &self.current, self.rate_hz),
+            encoder: EncoderPlan::new(&self.encoder, self.rate_hz),
+            period_s: 1.0 / self.rate_hz,
+            torque_nm_a: self.motor.torque_nm_a(),
+            dead_duty: self.bridge.dead_duty(self.rate_hz),
+            reach: self.bridge.reach(),
+            config: self,
+        })
+    }
+}
+
+/// A checked [`Config`] and what follows from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    pub(crate) config: Config,
+    pub(crate) gains: Gains,
+    pub(crate) encoder: EncoderPlan,
+    pub(crate) period_s: f32,
+    pub(crate) torque_nm_a: f32,
+    pub(crate) dead_duty: f32,
+    pub(crate) reach: f32,
+}
+
+impl Plan {
+    /// What was checked.
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+}

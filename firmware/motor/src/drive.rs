@@ -1,0 +1,284 @@
+//! One call of the motor's interrupt: what is measured goes in, duty cycles come out.
+
+use crate::align::{self, Align, AlignState};
+use crate::config::{DELAY_TICKS, Plan};
+use crate::current::{self, CurrentState};
+use crate::demand;
+use crate::encoder::{self, EncoderState, Seen};
+use crate::fault::{Fault, Faults};
+use crate::modulate;
+use crate::protect::overload::OverloadState;
+use crate::protect::sensors::Phases;
+use crate::protect::stall::StallState;
+use crate::protect::supply::SupplyState;
+use crate::protect::{emf, follow, heat, overload, sensors, stall, supply};
+use crate::transform::{Vector, clarke, park, stator};
+use crate::turn::Turn;
+use crate::zero::{self, ZeroState};
+use core::f32::consts::TAU;
+
+/// What is wanted of the motor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Ask {
+    /// Nothing: the bridge is open.
+    #[default]
+    Off,
+    /// Find the encoder's offset, once until something else is asked for. The motor first moves by half an electrical
+    /// turn at most, then a quarter there and back.
+    Align,
+    /// A torque on the steer axis, to the right \[N m\].
+    Torque(f32),
+}
+
+/// What is measured, at one instant in the middle of a PWM period.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inputs {
+    /// Phase currents.
+    pub phases: Phases,
+    /// Voltage of the bus \[V\].
+    pub bus_v: f32,
+    /// The encoder's newest counts.
+    pub angle_counts: u16,
+    /// Their age \[calls\]; `control::frame::MISSING` for none.
+    pub angle_age_ticks: u16,
+    /// The hottest of what is measured \[deg C\].
+    pub temperature_c: f32,
+    /// What is wanted.
+    pub ask: Ask,
+}
+
+/// What the motor does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Mode {
+    /// The bridge is open while the current sensors' zeros are taken.
+    #[default]
+    Zeroing = 0,
+    /// Open; the encoder's offset is not known, torque will not be given.
+    Unaligned = 1,
+    /// Open; torque is given when asked for.
+    Ready = 2,
+    /// The offset is being found.
+    Aligning = 3,
+    /// Torque is given.
+    Running = 4,
+    /// Open for good: something is wrong. Only a new [`State`] leaves it.
+    Off = 5,
+}
+
+/// What is remembered. `State::default()` is that of a start: no zeros, no faults.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct State {
+    faults: Faults,
+    /// Mode of the last call.
+    mode: Mode,
+    zero: ZeroState,
+    encoder: EncoderState,
+    overload: OverloadState,
+    stall: StallState,
+    /// The offset that alignment found.
+    offset: Option<Turn>,
+    /// Whether the alignment that is still asked for is over.
+    aligned: bool,
+    drive: Drive,
+}
+
+/// What is remembered while one mode lasts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Drive {
+    align: AlignState,
+    current: CurrentState,
+    torque_nm: f32,
+    voltage: Vector,
+    sum_beyond: u16,
+    supply: SupplyState,
+    follow: follow::FollowState,
+    emf_v: f32,
+}
+
+/// What comes out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Output {
+    /// Duty cycles of the upper switches of a, b and c; `None`: all six switches open.
+    pub duties: Option<[f32; 3]>,
+    /// What the motor does.
+    pub mode: Mode,
+    /// Everything that has gone wrong since the start.
+    pub faults: Faults,
+    /// Torque on the steer axis by the measured current, to the right \[N m\].
+    pub torque_nm: f32,
+    /// Measured current along the rotor's flux \[A\].
+    pub id_a: f32,
+    /// Measured current a quarter turn ahead of it \[A\].
+    pub iq_a: f32,
+    /// q current that is wanted \[A\].
+    pub iq_wanted_a: f32,
+    /// Largest current that heat, supply and stall leave now \[A\].
+    pub limit_a: f32,
+    /// Whether only the holding current is left because the motor stands.
+    pub stalled: bool,
+    /// Speed of the steer by the encoder, to the right \[rad/s\].
+    pub steer_rate_rad_s: f32,
+    /// The encoder's offset in use, to be kept as `encoder.offset_turns`.
+    pub offset_turns: Option<f32>,
+}
+
+/// One call, once each PWM period; the duty cycles are to be used for the whole of the next one. An open bridge is
+/// to be opened at once.
+///
+/// Whatever the inputs, duty cycles are inside the bridge's limits, and a fault opens the bridge in the call in
+/// which it is seen.
+pub fn step(plan: &Plan, state: &mut State, inputs: &Inputs) -> Output {
+    let seen = encoder::step(&plan.encoder, &mut state.encoder, inputs.angle_counts, inputs.angle_age_ticks);
+    let raw = inputs.phases.all();
+    let offset = state.offset.or(plan.config.encoder.offset_turns.map(Turn::of));
+    let mode = match (state.zero.zeros_a(), inputs.ask, offset) {
+        _ if !state.faults.is_empty() => Mode::Off,
+        (None, ..) => {
+            state.faults.take(zero::step(&plan.config.zero, &mut state.zero, raw));
+            if state.faults.is_empty() { Mode::Zeroing } else { Mode::Off }
+        }
+        (_, Ask::Align, _) if !state.aligned => Mode::Aligning,
+        (_, Ask::Torque(_), Some(_)) => Mode::Running,
+        (_, _, Some(_)) => Mode::Ready,
+        (_, _, None) => Mode::Unaligned,
+    };
+    state.aligned &= inputs.ask == Ask::Align;
+    if mode != state.mode {
+        (state.mode, state.drive) = (mode, Drive::default());
+    }
+    let closed = matches!(mode, Mode::Aligning | Mode::Running);
+    let zeros = state.zero.zeros_a().unwrap_or_default();
+    let offset = offset.unwrap_or_default();
+    let mut out = if closed {
+        close(plan, state, inputs, mode, &seen, core::array::from_fn(|i| raw[i] - zeros[i]), offset)
+    } else {
+        overload::step(&plan.config.overload, &mut state.overload, plan.period_s, 0.0, 0.0);
+        stall::step(&plan.config.stall, &mut state.stall, plan.period_s, 0.0, seen.speed_turns_s, 0.0);
+        Output { mode, ..Output::default() }
+    };
+    if !state.faults.is_empty() {
+        out = Output { mode: Mode::Off, ..Output::default() };
+    }
+    out.faults = state.faults;
+    out.offset_turns = state.offset.map(Turn::signed).or(plan.config.encoder.offset_turns);
+    let sign = if plan.config.motor.reversed { -TAU } else { TAU };
+    out.steer_rate_rad_s = sign * seen.speed_turns_s / plan.config.motor.ratio;
+    out
+}
+
+/// Where the field stands in this call, and what is wanted of it.
+struct Field {
+    angle: Turn,
+    omega_rad_s: f32,
+    wanted: Vector,
+}
+
+/// A call with the bridge closed. Faults go into the state; what comes out then does not count.
+fn close(
+    plan: &Plan,
+    state: &mut State,
+    inputs: &Inputs,
+    mode: Mode,
+    seen: &Seen,
+    phases_a: [f32; 3],
+    offset: Turn,
+) -> Output {
+    let c = &plan.config;
+    let mut faults = sensors::step(&c.sensors, &mut state.drive.sum_beyond, phases_a);
+    let (supply_share, low) = supply::step(&c.supply, &mut state.drive.supply, inputs.bus_v);
+    let (heat_share, hot) = heat::judge(&c.heat, inputs.temperature_c);
+    faults.take(low);
+    faults.take(hot);
+    faults = faults.with(seen.faults);
+    faults.note(Fault::Command, matches!(inputs.ask, Ask::Torque(nm) if !nm.is_finite()));
+    if !faults.is_empty() {
+        state.faults = faults;
+        return Output::default();
+    }
+    let most = c.current.max_a * supply_share.min(heat_share);
+    let measured = clarke(phases_a);
+    let (limit, overload) =
+        overload::step(&c.overload, &mut state.overload, plan.period_s, measured.square(), most);
+    state.faults.take(overload);
+    let (field, limit_a) = match mode {
+        Mode::Aligning => (aligning(plan, state, seen, limit), limit),
+        _ => running(plan, state, inputs.ask, seen, offset, limit),
+    };
+    let Some(Field { angle, omega_rad_s, wanted }) = field else {
+        return Output { mode: Mode::Ready, ..Output::default() };
+    };
+    let wanted = wanted.inside(limit_a);
+
+    let measured = park(measured, angle.sin_cos());
+    // The rotor swings about the field of an alignment; without voltage along q its own back-EMF brakes it.
+    let wanted = if mode == Mode::Aligning { Vector::new(wanted.d, measured.q) } else { wanted };
+    let max_v = inputs.bus_v * plan.reach;
+    let reachable = plan.gains.steady(wanted, omega_rad_s).square() < (0.9 * max_v) * (0.9 * max_v);
+    let error_a = wanted.minus(measured).length();
+    let drive = &mut state.drive;
+    state.faults.take(follow::step(&c.follow, &mut drive.follow, error_a, phases_a, reachable));
+    if mode == Mode::Running {
+        let unexplained = drive.voltage.minus(plan.gains.steady(measured, omega_rad_s));
+        let resistive_v = c.motor.resistance_ohm * measured.length();
+        state.faults.take(emf::step(&c.emf, &mut drive.emf_v, unexplained, resistive_v));
+    }
+    drive.voltage = current::step(&plan.gains, &mut drive.current, wanted, measured, omega_rad_s, max_v);
+
+    let ahead = Turn::of(omega_rad_s / TAU * DELAY_TICKS * plan.period_s);
+    let then = angle.plus(ahead).sin_cos();
+    let (voltage, current) = (stator(drive.voltage, then), stator(wanted, then));
+    Output {
+        duties: Some(modulate::duties(&c.bridge, plan.dead_duty, voltage, current, inputs.bus_v)),
+        mode,
+        torque_nm: plan.torque_nm_a * measured.q,
+        id_a: measured.d,
+        iq_a: measured.q,
+        iq_wanted_a: if mode == Mode::Aligning { 0.0 } else { wanted.q },
+        limit_a,
+        stalled: mode == Mode::Running && state.stall.stalled,
+        ..Output::default()
+    }
+}
+
+/// The field of the alignment; `None` when it is over.
+fn aligning(plan: &Plan, state: &mut State, seen: &Seen, limit_a: f32) -> Option<Field> {
+    let electrical = seen.angle.times(plan.config.motor.pole_pairs);
+    match align::step(&plan.config.align, &mut state.drive.align, electrical) {
+        Align::Field(angle, d) => {
+            Some(Field { angle, omega_rad_s: 0.0, wanted: Vector::new(d.min(limit_a), 0.0) })
+        }
+        Align::Found(offset) => {
+            (state.offset, state.aligned) = (Some(offset), true);
+            None
+        }
+        Align::Failed(fault) => {
+            state.faults.take(Some(fault));
+            None
+        }
+    }
+}
+
+/// The field that goes with the rotor and carries the torque asked for, and the current that is left by a stall.
+fn running(
+    plan: &Plan,
+    state: &mut State,
+    ask: Ask,
+    seen: &Seen,
+    offset: Turn,
+    limit_a: f32,
+) -> (Option<Field>, f32) {
+    let c = &plan.config;
+    let asked_nm = if let Ask::Torque(nm) = ask { nm } else { 0.0 };
+    let speed = seen.speed_turns_s;
+    let asked_a = asked_nm / plan.torque_nm_a;
+    let limit_a = stall::step(&c.stall, &mut state.stall, plan.period_s, asked_a, speed, limit_a);
+    let torque = &mut state.drive.torque_nm;
+    *torque = demand::step(&c.demand, plan.period_s, *torque, asked_nm, limit_a, plan.torque_nm_a);
+    let field = Field {
+        angle: seen.angle.times(c.motor.pole_pairs).minus(offset),
+        omega_rad_s: TAU * f32::from(c.motor.pole_pairs) * speed,
+        wanted: Vector::new(0.0, *torque / plan.torque_nm_a),
+    };
+    (Some(field), limit_a)
+}

@@ -1,0 +1,164 @@
+//! The motor's angle and speed from an encoder's counts: a tracking loop that also judges each sample.
+//!
+//! The angle is the newest good sample, carried on with the speed for its age; only the speed is filtered, so that
+//! a blow does not turn the field away from the rotor.
+
+use crate::fault::{Fault, Faults};
+use crate::turn::Turn;
+use control::frame::MISSING;
+use control::maths::bounded;
+use control::param::{Leaf, Visit};
+use core::f32::consts::TAU;
+
+/// The encoder on the motor's shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EncoderConfig {
+    /// Counts of one turn.
+    pub counts: u16,
+    /// Whether the counts fall when the motor turns forward.
+    pub reversed: bool,
+    /// Electrical angle at which the counts read zero, the other way round, as part of a turn; what alignment finds.
+    /// `None`: not known, no torque before alignment.
+    pub offset_turns: Option<f32>,
+    /// Age at which a sample is too old \[calls\].
+    pub timeout_ticks: u16,
+    /// Largest distance of a sample from where the speed led \[turns of the motor\]; well below the 8th part of an
+    /// electrical turn.
+    pub jump_turns: f32,
+    /// Largest speed \[turns/s of the motor\].
+    pub speed_max_turns_s: f32,
+    /// Bandwidth of the speed \[Hz\].
+    pub tracking_hz: f32,
+}
+
+impl EncoderConfig {
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        to.count(&Leaf::new("encoder", "counts", 16.0, 65535.0), &mut self.counts);
+        to.switch(&Leaf::switch("encoder", "reversed"), &mut self.reversed);
+        to.limit(&Leaf::new("encoder", "offset_turns", -0.5, 0.5), &mut self.offset_turns);
+        to.count(&Leaf::new("encoder", "timeout_ticks", 1.0, 1000.0), &mut self.timeout_ticks);
+        to.number(&Leaf::new("encoder", "jump_turns", 1e-4, 0.125), &mut self.jump_turns);
+        to.number(&Leaf::new("encoder", "speed_max_turns_s", 1.0, 1000.0), &mut self.speed_max_turns_s);
+        to.number(&Leaf::new("encoder", "tracking_hz", 5.0, 1000.0), &mut self.tracking_hz);
+    }
+}
+
+/// What follows from the encoder and the rate of calls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EncoderPlan {
+    config: EncoderConfig,
+    /// Parts of [`Turn`] of one count.
+    count: u32,
+    period_s: f32,
+    /// Correction of angle and speed by a turn's error that is one period old; both poles at the bandwidth.
+    angle_gain: f32,
+    speed_gain_s: f32,
+}
+
+impl EncoderPlan {
+    /// For `rate_hz` calls a second.
+    pub fn new(config: &EncoderConfig, rate_hz: f32) -> Self {
+        let pole = TAU * config.tracking_hz;
+        Self {
+            config: *config,
+            count: ((1_u64 << 32) / u64::from(config.counts.max(1))) as u32,
+            period_s: 1.0 / rate_hz,
+            angle_gain: 2.0 * pole / rate_hz,
+            speed_gain_s: pole * pole / rate_hz,
+        }
+    }
+}
+
+/// What is remembered of the encoder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EncoderState {
+    /// The last good sample, in the sense of the motor.
+    sample: Turn,
+    /// Its age \[calls\].
+    age: u16,
+    /// The age told with the last sample.
+    told_age: u16,
+    /// Where the loop believes the motor, and how fast.
+    followed: Turn,
+    speed_turns_s: f32,
+    /// Whether a second sample has told a speed.
+    moving: bool,
+    /// Why the newest sample was not good.
+    doubt: Fault,
+}
+
+impl Default for EncoderState {
+    fn default() -> Self {
+        Self {
+            sample: Turn(0),
+            age: MISSING,
+            told_age: MISSING,
+            followed: Turn(0),
+            speed_turns_s: 0.0,
+            moving: false,
+            doubt: Fault::EncoderLost,
+        }
+    }
+}
+
+/// The motor as the encoder sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// Angle of the motor now, forward positive.
+    pub angle: Turn,
+    /// Speed of the motor \[turns/s\].
+    pub speed_turns_s: f32,
+    /// What is wrong with it.
+    pub faults: Faults,
+}
+
+/// One call, with the newest sample's counts and its age in calls ([`MISSING`]: none yet).
+pub fn step(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age_ticks: u16) -> Seen {
+    let config = &plan.config;
+    state.age = state.age.saturating_add(1);
+    state.followed = state.followed.plus(Turn::of(state.speed_turns_s * plan.period_s));
+    let new = age_ticks != state.told_age.saturating_add(1) && age_ticks <= config.timeout_ticks;
+    state.told_age = age_ticks;
+    // A loss is told even if it ends in this call.
+    let mut faults = Faults::NONE;
+    faults.note(state.doubt, state.age > config.timeout_ticks);
+    if new {
+        take(plan, state, counts, age_ticks);
+    }
+    let speed = state.speed_turns_s;
+    faults.note(Fault::EncoderSpeed, speed.abs() > config.speed_max_turns_s);
+    let since = f32::from(state.age.min(config.timeout_ticks)) * plan.period_s;
+    Seen { angle: state.sample.plus(Turn::of(speed * since)), speed_turns_s: speed, faults }
+}
+
+/// A new sample.
+fn take(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age: u16) {
+    let config = &plan.config;
+    if counts >= config.counts {
+        state.doubt = Fault::EncoderRange;
+        return;
+    }
+    let forward = Turn(u32::from(counts).wrapping_mul(plan.count));
+    let sample = if config.reversed { forward.mirrored() } else { forward };
+    let calls = f32::from(state.age.saturating_sub(age).clamp(1, 20));
+    let most = 1.25 * config.speed_max_turns_s;
+    if state.age > config.timeout_ticks {
+        // The first one, or the first after a loss: the loop begins anew, with the speed that the second one tells.
+        (state.followed, state.speed_turns_s, state.moving) = (sample, 0.0, false);
+    } else if !state.moving {
+        let speed = sample.minus(state.sample).signed() / (calls * plan.period_s);
+        (state.speed_turns_s, state.moving) = (bounded(speed, most), true);
+        state.followed = sample.plus(Turn::of(state.speed_turns_s * f32::from(age) * plan.period_s));
+    }
+    let now = sample.plus(Turn::of(state.speed_turns_s * f32::from(age) * plan.period_s));
+    let error = now.minus(state.followed).signed();
+    if error.abs() > config.jump_turns {
+        state.doubt = Fault::EncoderJump;
+        return;
+    }
+    // A sample that comes every n calls is worth n calls.
+    state.followed = state.followed.plus(Turn::of(bounded(plan.angle_gain * calls, 1.0) * error));
+    state.speed_turns_s = bounded(state.speed_turns_s + plan.speed_gain_s * calls * error, most);
+    (state.sample, state.age, state.doubt) = (sample, age, Fault::EncoderLost);
+}

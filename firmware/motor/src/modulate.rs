@@ -1,0 +1,57 @@
+//! From a voltage to three duty cycles.
+
+use crate::transform::{Vector, phases};
+use control::maths::bounded;
+use control::param::{Leaf, Visit};
+
+/// The bridge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bridge {
+    /// Least duty cycle of the upper switch.
+    pub duty_min: f32,
+    /// Largest one. Shunts in the lower side need it below 1, for the time of a sample.
+    pub duty_max: f32,
+    /// Time for which both switches of a phase are open at each change \[s\]; 0 if it is not to be made up for.
+    pub dead_time_s: f32,
+    /// Phase current below which the dead time's voltage is made up for only in part \[A\]: the sign of a smaller
+    /// current is not known.
+    pub dead_time_a: f32,
+}
+
+impl Bridge {
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        to.number(&Leaf::new("bridge", "duty_min", 0.0, 0.4), &mut self.duty_min);
+        to.number(&Leaf::new("bridge", "duty_max", 0.6, 1.0), &mut self.duty_max);
+        to.number(&Leaf::new("bridge", "dead_time_s", 0.0, 2e-6), &mut self.dead_time_s);
+        to.number(&Leaf::new("bridge", "dead_time_a", 0.01, 50.0), &mut self.dead_time_a);
+    }
+
+    /// Largest voltage, as a vector of any direction, per volt of the bus.
+    pub fn reach(&self) -> f32 {
+        (self.duty_max - self.duty_min) * 0.577_350_26
+    }
+
+    /// Duty lost to the dead time at each `rate_hz` cycle.
+    pub fn dead_duty(&self, rate_hz: f32) -> f32 {
+        self.dead_time_s * rate_hz
+    }
+}
+
+/// Duty cycles for a voltage in the stator's axes, from a bus of `bus_v`.
+///
+/// Half of the largest and the least phase is taken from all three (min-max injection: the waveform of space
+/// vector modulation), which gives 15 % more voltage than three sines. `current` is what flows at that time, for the
+/// `dead_duty` of [`Bridge::dead_duty`]. The result is inside the bridge's limits whatever goes in.
+pub fn duties(bridge: &Bridge, dead_duty: f32, voltage: Vector, current: Vector, bus_v: f32) -> [f32; 3] {
+    let [a, b, c] = phases(voltage);
+    let [ia, ib, ic] = phases(current);
+    let common = 0.5 * (a.max(b).max(c) + a.min(b).min(c));
+    let (middle, half) =
+        (0.5 * (bridge.duty_max + bridge.duty_min), 0.5 * (bridge.duty_max - bridge.duty_min));
+    let duty = |v: f32, i: f32| {
+        let lost = dead_duty * bounded(i / bridge.dead_time_a, 1.0);
+        (middle + bounded((v - common) / bus_v + lost, half)).max(bridge.duty_min).min(bridge.duty_max)
+    };
+    [duty(a, ia), duty(b, ib), duty(c, ic)]
+}

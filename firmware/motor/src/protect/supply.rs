@@ -1,0 +1,56 @@
+//! The bus: less current as it sags, none when it is too low or too high.
+
+use super::share;
+use crate::fault::Fault;
+use control::param::{Leaf, Visit};
+
+/// Voltages of the bus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupplyConfig {
+    /// Below it the bridge goes off \[V\].
+    pub low_v: f32,
+    /// Below it the current is limited, down to none at `low_v` \[V\].
+    pub sag_v: f32,
+    /// Above it the bridge goes off \[V\].
+    pub high_v: f32,
+    /// Calls for which the bus may be outside.
+    pub persist_ticks: u16,
+}
+
+impl SupplyConfig {
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        to.number(&Leaf::new("supply", "low_v", 1.0, 100.0), &mut self.low_v);
+        to.number(&Leaf::new("supply", "sag_v", 1.0, 100.0), &mut self.sag_v);
+        to.number(&Leaf::new("supply", "high_v", 1.0, 100.0), &mut self.high_v);
+        to.count(&Leaf::new("supply", "persist_ticks", 0.0, 1000.0), &mut self.persist_ticks);
+    }
+}
+
+/// Least voltage that is one at all: the controller itself would not run by less \[V\].
+const NONE_V: f32 = 1.0;
+/// Voltage that no bus here has \[V\].
+const ABSURD_V: f32 = 200.0;
+
+/// Calls outside so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SupplyState {
+    low: u16,
+    high: u16,
+}
+
+/// One call: the share of the current that may flow, and what is wrong.
+pub fn step(config: &SupplyConfig, state: &mut SupplyState, bus_v: f32) -> (f32, Option<Fault>) {
+    if !(NONE_V..=ABSURD_V).contains(&bus_v) {
+        return (0.0, Some(Fault::BusSensor));
+    }
+    let count = |calls: u16, outside: bool| if outside { calls.saturating_add(1) } else { 0 };
+    state.low = count(state.low, bus_v < config.low_v);
+    state.high = count(state.high, bus_v > config.high_v);
+    let fault = if state.low > config.persist_ticks {
+        Some(Fault::BusLow)
+    } else {
+        (state.high > config.persist_ticks).then_some(Fault::BusHigh)
+    };
+    (share(bus_v, config.low_v, config.sag_v), fault)
+}

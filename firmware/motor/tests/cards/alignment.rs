@@ -1,0 +1,139 @@
+//! Flight cards: the encoder's offset is found, or refused.
+
+use crate::machine::Params;
+use crate::rig::{Record, Rig, last, mean};
+use motor::example::EXAMPLE;
+use motor::{Ask, Config, Fault, Mode};
+
+/// Calls of a whole alignment: a ramp, three moves, three rests of half a second each.
+const CALLS: usize = 70_000;
+
+fn zeroed(config: Config) -> Rig {
+    let mut rig = Rig::new(config, Params::default());
+    let records = rig.run(usize::from(config.zero.samples) + 1, Ask::Off);
+    assert_eq!(last(&records).out.mode, Mode::Unaligned);
+    rig
+}
+
+fn refused(records: &[Record], fault: Fault) {
+    let out = last(records).out;
+    let told: Vec<Fault> = out.faults.iter().collect();
+    assert!(told == [fault] && out.duties.is_none() && out.offset_turns.is_none(), "{out:?}");
+}
+
+/// Distance of two angles \[electrical degrees\].
+fn apart_deg(a: f64, b: f64) -> f64 {
+    ((a - b + 0.5).rem_euclid(1.0) - 0.5).abs() * 360.0
+}
+
+/// Situation: a free steer with friction of 0.15 or 1 N m, the rotor anywhere, the encoder mounted anywhere and either way round. Action:
+/// alignment, then 3 N m against a held handlebar. Must hold: the offset within 4 electrical degrees of the truth, the
+/// torque within 2 % of what it would be.
+#[test]
+fn the_offset_is_found() {
+    let mut worst: f64 = 0.0;
+    let cases = [
+        (0.0, 0.0, false, 0.15),
+        (0.25, 0.13, false, 0.15),
+        (0.5, 0.77, true, 0.15),
+        (0.75, 0.5, false, 0.15),
+        (0.9, 0.31, true, 0.15),
+        (0.4, 0.4, false, 1.0),
+    ];
+    for (start, zero, reversed, friction_nm) in cases {
+        let mut config = EXAMPLE;
+        config.encoder.reversed = reversed;
+        let mut rig = zeroed(config);
+        rig.machine.motor_turns = start / 8.0;
+        rig.machine.params.coulomb_nm = friction_nm;
+        rig.encoder_zero = zero;
+        let _ = rig.run(20, Ask::Off);
+        assert_eq!(last(&rig.run(10, Ask::Torque(1.0))).out.mode, Mode::Unaligned);
+        let records = rig.run(CALLS + 10, Ask::Align);
+        let out = last(&records).out;
+        assert_eq!((out.mode, out.duties), (Mode::Ready, None), "{start} {zero}: {out:?}");
+        let most = records.iter().map(|r| r.iq_a.hypot(0.0)).fold(0.0, f64::max);
+        assert!(most < 7.0, "{most}");
+        let offset = f64::from(out.offset_turns.expect("an offset"));
+        let error = apart_deg(offset, zero * 8.0);
+        assert!(error < 4.0, "{start} {zero}: {offset}, {error} deg");
+        println!("friction {friction_nm} N m: {error:.2} electrical degrees off");
+        worst = worst.max(error);
+        rig.machine.held = true;
+        rig.machine.steer_rate_rad_s = 0.0;
+        let _ = rig.run(20, Ask::Off);
+        let records = rig.run(1000, Ask::Torque(3.0));
+        let torque = mean(&records[500..], |r| r.torque_nm) / 3.0;
+        assert!((0.98..=1.02).contains(&torque), "{torque}");
+    }
+    println!("worst offset {worst:.2} electrical degrees");
+}
+
+/// Situation: an offset is known; an alignment is broken off in the middle, torque is asked for, then alignment again. Must
+/// hold: the second alignment takes as long as a whole one and finds the truth.
+#[test]
+fn a_broken_off_alignment_begins_anew() {
+    let mut config = EXAMPLE;
+    config.encoder.offset_turns = Some(-0.3);
+    let mut rig = Rig::new(config, Params::default());
+    rig.encoder_zero = 0.2;
+    let _ = rig.run(usize::from(config.zero.samples) + 1, Ask::Off);
+    let _ = rig.run(CALLS / 2, Ask::Align);
+    assert_eq!(last(&rig.run(100, Ask::Torque(0.0))).out.mode, Mode::Running);
+    let records = rig.run(CALLS + 10, Ask::Align);
+    let took = records.iter().position(|r| r.out.mode == Mode::Ready).expect("an end") + 1;
+    assert_eq!(took, CALLS);
+    let offset = f64::from(last(&records).out.offset_turns.expect("an offset"));
+    assert!(apart_deg(offset, 0.2 * 8.0) < 4.0, "{offset}");
+}
+
+/// Situation: the encoder counts the other way than told. Must hold: refused as reversed.
+#[test]
+fn a_reversed_encoder_is_refused() {
+    let mut rig = zeroed(EXAMPLE);
+    rig.encoder_reversed = true;
+    refused(&rig.run(CALLS, Ask::Align), Fault::AlignReversed);
+}
+
+/// Situation: the encoder slips, or is geared: 0, 0.5, 0.7 or 1.5 of the motion reach it. Must hold: refused, not followed.
+#[test]
+fn a_slipping_encoder_is_refused() {
+    // The tolerance is 0.06 of a turn: from 0.76 to 1.24 of a quarter counts as followed.
+    for grip in [0.0, 0.5, 0.7, 1.5] {
+        let mut rig = zeroed(EXAMPLE);
+        rig.encoder_grip = grip;
+        refused(&rig.run(CALLS, Ask::Align), Fault::AlignLag);
+    }
+}
+
+/// Situation: somebody holds the handlebar. Must hold: refused, not followed.
+#[test]
+fn a_held_handlebar_is_refused() {
+    let mut rig = zeroed(EXAMPLE);
+    rig.machine.held = true;
+    refused(&rig.run(CALLS, Ask::Align), Fault::AlignLag);
+}
+
+/// Situation: somebody shakes the handlebar, 4 N m at 5 Hz. Must hold: refused, restless.
+#[test]
+fn a_shaken_handlebar_is_refused() {
+    let mut rig = zeroed(EXAMPLE);
+    let mut records = Vec::new();
+    for i in 0..CALLS {
+        rig.machine.load_nm = 4.0 * (i as f64 / 20_000.0 * 5.0 * std::f64::consts::TAU).sin();
+        records.push(rig.call(Ask::Align, |_, _| ()));
+    }
+    refused(&records, Fault::AlignRestless);
+}
+
+/// Situation: a phase is cut. Must hold: no offset.
+#[test]
+fn a_cut_phase_gives_no_offset() {
+    for cut in 0..3 {
+        let mut rig = zeroed(EXAMPLE);
+        rig.machine.cut[cut] = true;
+        let records = rig.run(CALLS, Ask::Align);
+        let out = last(&records).out;
+        assert!(!out.faults.is_empty() && out.offset_turns.is_none(), "{out:?}");
+    }
+}

@@ -1,0 +1,11 @@
+//! Flight cards of the motor's loop, on a motor that is simulated.
+
+mod alignment;
+mod config;
+mod faults;
+mod machine;
+mod maths;
+mod model;
+mod properties;
+mod rig;
+mod torque;
