@@ -8,7 +8,7 @@
 //!   known, but muscles are slow.
 //!
 //! How much must happen before a slope counts is from rides inside the basins of `h`, alone and with riders: the
-//! gyro's slope stays above 0.9 in them (0.4 with 0.02 rad/s and 1 m/s^2 of noise), the motor's above 0. In
+//! gyro's slope stays above 0.75 in them, or 0.3 with the noise of a real bicycle, the motor's above 0. In
 //! small motions a rider may push the other way as quickly as the motor does.
 
 use crate::estimate::{EstimateConfig, Motion};
@@ -17,13 +17,16 @@ use crate::input::Believed;
 use crate::param::{Leaf, Visit, optional};
 use crate::slope::{Slope, SlopeConfig, Stretch};
 
-/// Length of the motor's stretches; the gyro's are twice as long \[s\].
+/// Length of the motor's stretches \[s\].
 const STRETCH_S: f32 = 0.008;
+/// How many of them the gyro's are long: what a noisy gyro, sampled at 100 Hz, shows as acceleration is then small.
+const GYRO_STRETCHES: u16 = 6;
 
 /// The sideways force \[m/s^2\].
-const GYRO: SlopeConfig = SlopeConfig { slow_s: 0.2, forget_s: 0.3, most: 20.0, enough: 0.1 };
-/// Below this slope the gyro is wrong. A reversed x axis gives about -1, a reversed z axis less.
-const GYRO_WRONG: f32 = -0.2;
+const GYRO: SlopeConfig = SlopeConfig { slow_s: 0.3, forget_s: 0.4, most: 20.0, enough: 0.2 };
+/// Below this slope the gyro is wrong. A reversed x axis gives about -1, a reversed z axis less; a blow
+/// that turns the frame at once, which no force at rest shows, up to -0.2 for a moment.
+const GYRO_WRONG: f32 = -0.4;
 
 /// The steer acceleration \[rad/s^2\].
 const MOTOR: SlopeConfig = SlopeConfig { slow_s: 0.05, forget_s: 0.2, most: 60.0, enough: 5.0 };
@@ -102,9 +105,10 @@ pub fn stretch_ticks(rate_hz: f32) -> u16 {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ResponseState {
     tick: u16,
+    motor_tick: u16,
     gyro: Stretch<5>,
-    /// Roll acceleration and yaw acceleration of the last stretches \[rad/s^2\], and the sideways force they leave.
     gyro_slope: Slope,
+    /// What was expected and seen at the stretch before.
     gyro_before: Option<[f32; 2]>,
     motor: Stretch<6>,
     motor_slope: Slope,
@@ -130,10 +134,12 @@ pub fn step(
 ) -> Causes {
     let (ticks, period_s) = stretch;
     let dt_s = period_s * f32::from(ticks);
-    state.tick = if state.tick < 2 * ticks { state.tick + 1 } else { 1 };
+    let whole = GYRO_STRETCHES * ticks;
+    state.tick = if state.tick < whole { state.tick + 1 } else { 1 };
+    state.motor_tick = if state.motor_tick < ticks { state.motor_tick + 1 } else { 1 };
     // Each at its own tick, so that no control period has to do both.
     let gyro_end = state.tick == ticks / 2;
-    let motor_end = state.tick == ticks || state.tick == 2 * ticks;
+    let motor_end = state.motor_tick == ticks;
     let speed = believed.rear_wheel_m_s.or(believed.front_wheel_m_s);
     let mut causes = Causes::NONE;
 
@@ -141,7 +147,7 @@ pub fn step(
         (Some([wx, wy, wz]), Some([_, force, _]), Some(speed)) if config.gyro => {
             let means = state.gyro.step([wx, wy, wz, force, speed.newest], gyro_end);
             if let Some((now, before)) = means {
-                let slope = state.sideways(place, 2.0 * dt_s, now, before);
+                let slope = state.sideways(place, f32::from(GYRO_STRETCHES) * dt_s, now, before);
                 causes.note(Cause::GyroDisagrees, slope.is_some_and(|s| s < GYRO_WRONG));
             }
         }

@@ -29,8 +29,11 @@ fn moves(size: f32) -> Vec<Hands> {
     rest().chain(lean).chain(rest()).chain(steer).chain(rest()).chain(push).collect()
 }
 
+/// What is wrong with a frame.
+type Wrong = fn(&mut SensorFrame);
+
 /// The sensors' frames, with a little noise so that none counts as stuck; each then changed by `wrong`.
-fn frames(hands: &[Hands], engage: bool, wrong: fn(&mut SensorFrame)) -> Vec<SensorFrame> {
+fn frames(hands: &[Hands], engage: bool, wrong: Wrong) -> Vec<SensorFrame> {
     hands
         .iter()
         .enumerate()
@@ -118,7 +121,7 @@ fn only_who_passed_engages() {
 /// Situation: one sign is wrong. Action: the moves. Must hold: found at the move that shows it, told, and not forgotten.
 #[test]
 fn every_wrong_sign_is_found() {
-    let wrong: [(&str, Move, fn(&mut SensorFrame)); 6] = [
+    let wrong: [(&str, Move, Wrong); 6] = [
         ("gyro", Move::Lean, |f| f.gyro_rad_s.value[0] = -f.gyro_rad_s.value[0]),
         ("accelerometer", Move::Lean, |f| f.accel_m_s2.value[1] = -f.accel_m_s2.value[1]),
         ("steer angle", Move::Steer, |f| f.steer_rad.value = -f.steer_rad.value),
@@ -135,7 +138,7 @@ fn every_wrong_sign_is_found() {
     // A calibration that says so makes it right.
     let mut config = Config::product();
     config.calibration.steer_reversed = true;
-    let reversed: fn(&mut SensorFrame) = |f| f.steer_rad.value = -f.steer_rad.value;
+    let reversed: Wrong = |f| f.steer_rad.value = -f.steer_rad.value;
     let (asked, ..) = checked(&config.plan().expect("in range"), &frames(&moves(0.5), false, reversed));
     assert_eq!(asked.last(), Some(&Move::Passed));
 }
@@ -154,7 +157,7 @@ fn a_law_of_the_wrong_sign_is_found() {
 /// Must hold: nothing is passed and nothing accused.
 #[test]
 fn what_does_not_show_decides_nothing() {
-    let cases: [(&str, f32, fn(&mut SensorFrame), Move); 3] = [
+    let cases: [(&str, f32, Wrong, Move); 3] = [
         ("small", 0.1, |_| (), Move::Lean),
         ("bias", 0.0, |f| f.gyro_rad_s.value[0] += 0.06, Move::Lean),
         ("steer lost", 0.5, |f| f.steer_rad = Sample::missing(), Move::Steer),
