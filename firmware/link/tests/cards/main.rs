@@ -1,0 +1,10 @@
+//! Flight cards of the link and the store, on the host with simulated flash.
+
+mod corruption;
+mod flash;
+mod frames;
+mod messages;
+mod parameters;
+mod power;
+mod sender;
+mod store;
