@@ -11,7 +11,7 @@ use control::param::ParamError;
 /// The layout of a record. Another one is not read.
 pub const LAYOUT: u8 = 1;
 /// Most parameters of a record, those of other versions included.
-pub const MAX_ENTRIES: usize = 256;
+pub const MAX_ENTRIES: usize = 384;
 /// A parameter's hash and the bits of its value.
 const ENTRY_BYTES: usize = 8;
 /// Most bytes of a record: layout, number, length of the law, law, and each parameter.

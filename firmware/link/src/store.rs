@@ -67,7 +67,7 @@ pub enum Found {
     Doubt(Doubt),
 }
 
-/// Why nothing was stored. What was stored before still is, unless it could not be read anyway.
+/// Why nothing was stored. What was stored before still is, unless the flash took nothing beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotStored {
     /// The configuration would not be accepted.
@@ -122,26 +122,35 @@ impl<F: NorFlash> Store<F> {
 
     /// Stores a configuration, and reads it back.
     ///
-    /// The chip stands still for as long as the flash erases; never call it while torque may flow. What can't be
-    /// read is erased first.
+    /// Where that fails it is tried once more beside the damage, then with everything erased. The chip stands still
+    /// for as long as the flash erases; never call it while torque may flow.
     ///
     /// # Errors
     /// As of [`NotStored`].
     pub async fn save(&mut self, config: &Config, room: &mut Room) -> Result<(), NotStored> {
         config.clone().plan().map_err(NotStored::Refused)?;
         let Room { record: bytes, item } = room;
-        if matches!(self.newest(item).await, Err(Doubt::Unreadable)) {
-            self.erase().await?;
-        }
         let newest = self.number(item).await.ok().flatten().unwrap_or_default();
         let before = self.record(item).await.ok().flatten();
         let number = before.map_or(0, |before| before.number).max(newest).wrapping_add(1);
         let used = record::encode(config, number, before.as_ref(), bytes).ok_or(NotStored::TooMany)?;
-        let bytes: &[u8] = bytes.get(..used).ok_or(NotStored::TooMany)?;
+        let bytes = bytes.get(..used).ok_or(NotStored::TooMany)?;
+        for _ in 0..2 {
+            if self.write(number, bytes, item).await.is_ok() {
+                return Ok(());
+            }
+        }
+        self.erase().await?;
+        self.write(number, bytes, item).await
+    }
+
+    /// Writes a record and its number, and reads both back.
+    async fn write(&mut self, number: u32, bytes: &[u8], item: &mut [u8]) -> Result<(), NotStored> {
         self.map.store_item(item, &RECORD, &bytes).await.map_err(|_| NotStored::Flash)?;
         self.map.store_item(item, &NEWEST, &number).await.map_err(|_| NotStored::Flash)?;
+        let numbered = self.number(item).await == Ok(Some(number));
         match self.map.fetch_item::<&[u8]>(item, &RECORD).await {
-            Ok(Some(kept)) if kept == bytes => Ok(()),
+            Ok(Some(kept)) if numbered && kept == bytes => Ok(()),
             _ => Err(NotStored::Flash),
         }
     }
