@@ -28,6 +28,7 @@ pub mod report;
 pub mod sender;
 pub mod store;
 pub mod telemetry;
+mod words;
 
 pub use frame::{Decoder, Received};
 pub use key::Key;

@@ -6,6 +6,7 @@
 //! damage to a newer, and is not believed.
 
 use crate::record::{self, Applied, NoRecord, RECORD_BYTES, Record};
+use crate::words::Words;
 use control::Config;
 use control::param::ParamError;
 use core::ops::Range;
@@ -21,6 +22,11 @@ const NEWEST: u8 = 2;
 const OVERHEAD: usize = 512;
 /// Bytes that a page must have: two records, so that one can be carried over beside a new one.
 pub const MIN_PAGE: usize = 2 * RECORD_BYTES + OVERHEAD;
+
+/// Pages that a store must have. With two, an erase that was interrupted could take the only copy with it: the
+/// half-erased page may still look whole, and would then be copied over the good one. With three, the page that is
+/// erased holds nothing but what is out of date.
+pub const MIN_PAGES: usize = 3;
 
 /// What the store works in; beside the stack, as it is large.
 #[derive(Debug)]
@@ -80,21 +86,22 @@ pub enum NotStored {
 
 /// Parameters in a range of flash.
 pub struct Store<F: NorFlash> {
-    map: MapStorage<u8, F, Cache<Uncached, Uncached, Uncached, u8>>,
+    map: MapStorage<u8, Words<F>, Cache<Uncached, Uncached, Uncached, u8>>,
 }
 
 impl<F: NorFlash> Store<F> {
-    /// In a range of whole pages, at least two, of at least [`MIN_PAGE`] bytes each; `None` for any other.
+    /// In a range of whole pages, at least [`MIN_PAGES`] of at least [`MIN_PAGE`] bytes each; `None` for any other.
     pub fn new(flash: F, range: Range<u32>) -> Option<Self> {
-        let fits =
-            range.end as usize <= flash.capacity() && range.start < range.end && F::ERASE_SIZE >= MIN_PAGE;
+        let length = range.end.saturating_sub(range.start) as usize;
+        let large = F::ERASE_SIZE >= MIN_PAGE && length / F::ERASE_SIZE >= MIN_PAGES;
+        let fits = large && range.end as usize <= flash.capacity();
         let config = fits.then(|| MapConfig::try_new(range).ok()).flatten()?;
-        Some(Self { map: MapStorage::new(flash, config, Cache::new_uncached()) })
+        Some(Self { map: MapStorage::new(Words(flash), config, Cache::new_uncached()) })
     }
 
     /// The flash back.
     pub fn into_flash(self) -> F {
-        self.map.destroy().0
+        self.map.destroy().0.0
     }
 
     /// The stored configuration, or `defaults`. Always one that `Config::plan` accepts if it accepts `defaults`;

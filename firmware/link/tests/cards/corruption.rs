@@ -1,9 +1,11 @@
 //! Flash that does not hold what was written.
 
-use crate::flash::{Flash, load, random, save};
+use crate::flash::{Flash, PAGE, PAGES, load, random, save};
 use control::Config;
 use link::store::{Doubt, Found};
 use proptest::prelude::*;
+
+const SIZE: usize = PAGE * PAGES;
 
 fn numbered(i: u16) -> Config {
     let mut config = Config::product();
@@ -42,19 +44,17 @@ fn a_turned_bit_never_brings_back_an_older_configuration() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
-
     /// Situation: flash full of anything, or a good store of which a stretch is anything.
     /// Action: start; store; start again.
     /// Must hold: no panic; the configuration is one that `plan` accepts; one that is not the stored one is unchecked; the
     /// store says honestly whether it succeeded, and a good store that lost a stretch succeeds.
     #[test]
     fn any_flash_is_survived(
-        good in any::<bool>(), from in 0_usize..16384, length in 1_usize..16384, seed in any::<u64>()
+        good in any::<bool>(), from in 0..SIZE, length in 1..SIZE, seed in any::<u64>()
     ) {
         let mut flash = if good { save(Flash::new(), &numbered(1)).1 } else { Flash::new() };
         let mut seed = seed;
-        let (from, length) = if good { (from, length) } else { (0, 16384) };
+        let (from, length) = if good { (from, length) } else { (0, SIZE) };
         flash.bytes.iter_mut().skip(from).take(length).for_each(|byte| *byte = random(&mut seed) as u8);
         let (found, _, flash) = load(flash, &Config::product());
         prop_assert!(found.clone().plan().is_ok());

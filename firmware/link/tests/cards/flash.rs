@@ -1,13 +1,15 @@
 //! Simulated NOR flash whose power may go at any word or in the middle of an erase.
 
 use embassy_futures::block_on;
-use embedded_storage_async::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
+use embedded_storage_async::nor_flash::{
+    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+};
 use link::Store;
 use link::store::{Found, NotStored, Room};
 
 /// Bytes of a page: a few records, so that pages change often.
 pub(crate) const PAGE: usize = 8192;
-const PAGES: usize = 2;
+pub(crate) const PAGES: usize = 3;
 /// Steps that an erase takes.
 const ERASE_STEPS: u64 = 8;
 
@@ -109,7 +111,10 @@ impl NorFlash for Flash {
     const ERASE_SIZE: usize = PAGE;
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Gone> {
-        assert!((from as usize).is_multiple_of(PAGE) && (to as usize).is_multiple_of(PAGE), "erases whole pages");
+        assert!(
+            (from as usize).is_multiple_of(PAGE) && (to as usize).is_multiple_of(PAGE),
+            "erases whole pages"
+        );
         for page in (from as usize..to as usize).step_by(PAGE) {
             let part = PAGE / ERASE_STEPS as usize;
             for at in (page..page + PAGE).step_by(part) {

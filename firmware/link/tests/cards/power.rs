@@ -32,7 +32,7 @@ fn strange(found: &Config, old: &Config, new: &Config) -> Vec<String> {
     found.into_iter().filter(|pair| !old.contains(pair) && !new.contains(pair)).map(|(key, _)| key).collect()
 }
 
-/// Situation: parameters stored fourteen times over, so that every page was filled and erased.
+/// Situation: parameters stored eighteen times over, so that every page was filled and erased.
 /// Action: at each of these, cut the power after every single word and every part of an erase; start again;
 /// then store once more.
 /// Must hold: each parameter has its old or its new value, and all of them together the old or the new ones;
@@ -43,7 +43,7 @@ fn power_lost_at_any_word_leaves_the_old_or_the_new() {
     let defaults = Config::product();
     let (mut flash, mut old) = (Flash::new(), defaults.clone());
     let (mut cuts, mut kept_old, mut kept_new) = (0, 0, 0);
-    for i in 1..=14 {
+    for i in 1..=18 {
         let new = numbered(i);
         let (done, after) = save(flash.clone(), &new);
         assert_eq!(done, Ok(()));
@@ -53,7 +53,11 @@ fn power_lost_at_any_word_leaves_the_old_or_the_new() {
             assert_eq!(strange(&found, &old, &new), Vec::<String>::new(), "store {i}, cut {cut}");
             assert!(found == old || found == new, "a mixture: store {i}, cut {cut}");
             cuts += 1;
-            if found == new { kept_new += 1 } else { kept_old += 1 }
+            if found == new {
+                kept_new += 1
+            } else {
+                kept_old += 1
+            }
             let (done, later) = save(restarted, &numbered(i + 1));
             assert_eq!(done, Ok(()), "store {i}, cut {cut}");
             assert_eq!(load(later, &defaults).0, numbered(i + 1), "store {i}, cut {cut}");
@@ -62,20 +66,18 @@ fn power_lost_at_any_word_leaves_the_old_or_the_new() {
     }
     println!("{cuts} cuts: old {kept_old}, new {kept_new}; {} erases", flash.erases);
     assert!(flash.erases >= 2 && flash.overwritten == 0);
-    assert!(kept_old > 1000 && kept_new >= 14, "{kept_old} {kept_new}");
+    assert!(kept_old > 1000 && kept_new >= 18, "{kept_old} {kept_new}");
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
-
     /// Situation: any number of stores before; power that goes again and again, while storing and while the damage
     /// is mended at the next start, in the middle of words and erases, of which any bits have changed.
     /// Action: start with the power back.
-    /// Must hold: no panic; all parameters together as they were or as they were to be, or the defaults, not to be
-    /// engaged with; and a store then succeeds and is found.
+    /// Must hold: no panic; all parameters together as they were or as they were to be; before anything was stored, the
+    /// defaults, not to be engaged with; and a store then succeeds and is found.
     #[test]
     fn power_lost_again_and_again(
-        before in 0_u16..8, cuts in prop::collection::vec(0_u64..1200, 1..6), seed in any::<u64>()
+        before in 0_u16..16, cuts in prop::collection::vec(0_u64..1200, 1..6), seed in any::<u64>()
     ) {
         let defaults = Config::product();
         let (mut flash, mut old) = (Flash::new(), defaults.clone());
@@ -92,7 +94,7 @@ proptest! {
         let (found, why, flash) = load(flash, &defaults);
         let believed = found == old || found == new;
         let unchecked = found == defaults && matches!(why, Found::Nothing | Found::Doubt(_));
-        prop_assert!(believed || unchecked, "{why:?} {:?}", strange(&found, &old, &new));
+        prop_assert!(believed || (before == 0 && unchecked), "{why:?} {:?}", strange(&found, &old, &new));
         let (done, flash) = save(flash, &numbered(30));
         prop_assert_eq!(done, Ok(()));
         prop_assert_eq!(load(flash, &defaults).0, numbered(30));

@@ -1,13 +1,13 @@
 //! What is stored comes back; what another version stored is taken with care.
 
-use crate::flash::{Flash, PAGE, load, save};
+use crate::flash::{Flash, PAGE, PAGES, load, save};
 use control::{Config, Law, LawTable};
 use embassy_futures::block_on;
 use link::Key;
 use link::bytes::Reader;
 use link::leaves::{each, each_but_law};
 use link::record::{Applied, LAYOUT, NoRecord, RECORD_BYTES, decode, encode};
-use link::store::{Doubt, Found, MIN_PAGE, NotStored, Store};
+use link::store::{Doubt, Found, MIN_PAGE, MIN_PAGES, NotStored, Store};
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 
@@ -65,7 +65,9 @@ fn what_is_stored_comes_back() {
     boastful.calibration.polarity_checked = true;
     let (config, found, flash) = load(Flash::new(), &boastful);
     assert_eq!((config, found), (Config::product(), Found::Nothing));
-    for law in [own().law, Law::Cl2 { k: 2.5 }, Law::BalanceAssist { kappa: 3.9 }, Law::None, Law::H { cut: true }] {
+    for law in
+        [own().law, Law::Cl2 { k: 2.5 }, Law::BalanceAssist { kappa: 3.9 }, Law::None, Law::H { cut: true }]
+    {
         let config = Config { law, ..own() };
         let (done, flash) = save(flash.clone(), &config);
         assert_eq!(done, Ok(()));
@@ -131,11 +133,14 @@ fn values_of_another_version_are_kept_and_ignored() {
     assert_eq!(why, Found::Record(Applied { unknown: 1, missing: 1, ..Applied::default() }));
     config.permit.ramp_in_ticks = Config::product().permit.ramp_in_ticks;
     assert_eq!(found, config);
-    for _ in 0..10 {
+    for _ in 0..20 {
         let (done, after) = save(flash, &found);
         assert_eq!(done, Ok(()));
         let (again, why, after) = load(after, &Config::product());
-        assert_eq!((again, why), (found.clone(), Found::Record(Applied { unknown: 1, ..Applied::default() })));
+        assert_eq!(
+            (again, why),
+            (found.clone(), Found::Record(Applied { unknown: 1, ..Applied::default() }))
+        );
         flash = after;
     }
     assert!(flash.erases > 0);
@@ -236,15 +241,26 @@ fn what_does_not_fit_together_is_not_believed() {
     assert!(Reader(&whole).u8() == Some(LAYOUT));
 }
 
-/// Situation: ranges of flash that are no store: one page, half pages, beyond the end, none.
+/// Situation: ranges of flash that are no store: two pages, half pages, beyond the end, none.
 /// Action: open a store there.
-/// Must hold: none; two pages are one, and a page of the simulated flash is large enough.
+/// Must hold: none; three pages are one, and a page of the simulated flash is large enough.
 #[test]
-fn a_store_needs_two_whole_pages() {
-    const { assert!(PAGE >= MIN_PAGE) };
+fn a_store_needs_three_whole_pages() {
+    const { assert!(PAGE >= MIN_PAGE && PAGES == MIN_PAGES) };
     let page = PAGE as u32;
-    for range in [0..page, 0..page + page / 2, page / 2..2 * page, 0..3 * page, 2 * page..4 * page, page..page, page..0] {
+    let end = page * PAGES as u32;
+    let half = page / 2;
+    for range in [
+        0..2 * page,
+        0..end - half,
+        half..end,
+        half..end + half,
+        0..end + page,
+        page..end + page,
+        page..page,
+        end..0,
+    ] {
         assert!(Store::new(Flash::new(), range.clone()).is_none(), "{range:?}");
     }
-    assert!(Store::new(Flash::new(), 0..2 * page).is_some());
+    assert!(Store::new(Flash::new(), 0..end).is_some());
 }
