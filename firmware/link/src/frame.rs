@@ -83,10 +83,13 @@ pub fn encode_with(
     let check = CRC.checksum(plain.get(..used)?);
     Writer::new(plain.get_mut(used..)?).u32(check);
     let plain = plain.get(..used + 4)?;
-    if to.len() < cobs::max_encoding_length(plain.len()) + 2 {
+    let (before, to) = to.split_first_mut()?;
+    if to.len() <= cobs::max_encoding_length(plain.len()) {
         return None;
     }
-    cobs::try_encode_including_sentinels(plain, to).ok()
+    let stuffed = cobs::try_encode(plain, to).ok()?;
+    (*before, *to.get_mut(stuffed)?) = (0, 0);
+    Some(stuffed + 2)
 }
 
 /// Finds frames in a stream of bytes.

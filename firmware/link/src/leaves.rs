@@ -64,14 +64,19 @@ impl Seen {
 ///
 /// What can't be that value (off, for what is no limit) leaves it as it was. A value inside a group
 /// that is off is forgotten with the group.
-pub fn each(config: &mut Config, to: impl FnMut(&Seen) -> Option<f32>) {
-    let mut walk = Walk(to);
-    law(&mut config.law, &mut walk);
-    config.leaves(&mut walk);
+pub fn each(config: &mut Config, mut to: impl FnMut(&Seen) -> Option<f32>) {
+    law(&mut config.law, &mut Walk(&mut to));
+    walk(config, &mut to);
 }
 
 /// As [`each`], but not the law's.
-pub fn each_but_law(config: &mut Config, to: impl FnMut(&Seen) -> Option<f32>) {
+pub fn each_but_law(config: &mut Config, mut to: impl FnMut(&Seen) -> Option<f32>) {
+    walk(config, &mut to);
+}
+
+/// One copy in the image for whatever is done with the parameters: there are many of them.
+#[inline(never)]
+fn walk(config: &mut Config, to: Each<'_>) {
     config.leaves(&mut Walk(to));
 }
 
@@ -87,7 +92,7 @@ pub fn get(config: &Config, key: Key<'_>) -> Option<Seen> {
     found
 }
 
-fn law<V: Visit>(law: &mut Law, to: &mut V) {
+fn law(law: &mut Law, to: &mut Walk<'_>) {
     let (mut number, mut slope) = (law.number(), law.slope());
     to.choice(&LAW, LAW_NAMES, &mut number);
     match law {
@@ -102,15 +107,17 @@ fn law<V: Visit>(law: &mut Law, to: &mut V) {
     *law = Law::numbered(number, slope, table).unwrap_or_default();
 }
 
-struct Walk<F>(F);
+type Each<'a> = &'a mut dyn FnMut(&Seen) -> Option<f32>;
 
-impl<F: FnMut(&Seen) -> Option<f32>> Walk<F> {
+struct Walk<'a>(Each<'a>);
+
+impl Walk<'_> {
     fn show(&mut self, leaf: &Leaf, kind: Kind, value: Option<f32>) -> Option<f32> {
         (self.0)(&Seen { leaf: *leaf, kind, names: &[], value })
     }
 }
 
-impl<F: FnMut(&Seen) -> Option<f32>> Visit for Walk<F> {
+impl Visit for Walk<'_> {
     fn number(&mut self, leaf: &Leaf, value: &mut f32) {
         if let Some(x) = self.show(leaf, Kind::Number, Some(*value)) {
             *value = x;
