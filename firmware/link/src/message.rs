@@ -17,7 +17,6 @@ use control::{Command, SensorFrame};
 
 /// A message, to or from the board.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "no allocator to box the telemetry with")]
 pub enum Message<'a> {
     /// To the board: who are you? Answer: [`Message::Hello`].
     AskHello,

@@ -154,11 +154,10 @@ pub fn set<'a>(config: &mut Config, key: Key<'a>, value: Option<f32>) -> Result<
     if draft.calibration != config.calibration {
         draft.calibration.polarity_checked = false;
     }
-    draft.clone().plan()?;
     if get(&draft, key).map(|seen| seen.value) != Some(value) {
         return Err(Refusal::about(Why::GroupOff, key));
     }
-    *config = draft;
+    *config = draft.plan()?.config().clone();
     Ok(())
 }
 
@@ -186,24 +185,43 @@ pub fn set_law(config: &mut Config, bytes: &[u8]) -> Result<(), Refusal<'static>
         NoLaw::Malformed => Refusal::of(Why::Malformed),
         NoLaw::Refused(error) => error.into(),
     })?;
-    let draft = Config { law, ..config.clone() };
-    draft.clone().plan()?;
-    *config = draft;
+    *config = Config { law, ..config.clone() }.plan()?.config().clone();
     Ok(())
 }
 
-/// What was received, as a request to be carried out; otherwise what to answer at once.
+/// Why what was received is no request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoRequest {
+    /// It is of this version.
+    WrongVersion(u8),
+    /// The frame of this number is of no kind there is.
+    Unknown(u16),
+    /// The frame of this number can't be read.
+    Malformed(u16),
+}
+
+impl NoRequest {
+    /// What to answer, and under which number; 0 where that of the request is not known.
+    pub fn answer(self) -> (u16, Message<'static>) {
+        match self {
+            NoRequest::WrongVersion(theirs) => (0, Message::WrongVersion { theirs }),
+            NoRequest::Unknown(sequence) => (sequence, Message::Refused(Refusal::of(Why::UnknownRequest))),
+            NoRequest::Malformed(sequence) => (sequence, Message::Refused(Refusal::of(Why::Malformed))),
+        }
+    }
+}
+
+/// What was received as a request and its number.
 ///
 /// # Errors
-/// The answer to what is no request: another version, or a frame that is no message.
-pub fn request<'a>(received: &Received<'a>) -> Result<(u16, Message<'a>), (u16, Message<'a>)> {
-    let refused = |why| Message::Refused(Refusal::of(why));
+/// As of [`NoRequest`], which has the answer to it.
+pub fn request<'a>(received: &Received<'a>) -> Result<(u16, Message<'a>), NoRequest> {
     match received {
-        Received::WrongVersion { theirs } => Err((0, Message::WrongVersion { theirs: *theirs })),
+        Received::WrongVersion { theirs } => Err(NoRequest::WrongVersion(*theirs)),
         Received::Frame(frame) => match Message::decode(frame) {
             Ok(message) => Ok((frame.sequence, message)),
-            Err(NoMessage::UnknownKind(_)) => Err((frame.sequence, refused(Why::UnknownRequest))),
-            Err(NoMessage::Malformed(_)) => Err((frame.sequence, refused(Why::Malformed))),
+            Err(NoMessage::UnknownKind(_)) => Err(NoRequest::Unknown(frame.sequence)),
+            Err(NoMessage::Malformed(_)) => Err(NoRequest::Malformed(frame.sequence)),
         },
     }
 }

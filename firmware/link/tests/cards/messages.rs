@@ -174,14 +174,17 @@ fn every_number_means_one_thing() {
 /// Must hold: each but the good one is answered with what is wrong, under its number where that is known.
 #[test]
 fn what_is_no_request_is_answered() {
-    let wrong = request(&Received::WrongVersion { theirs: VERSION + 1 });
-    assert_eq!(wrong, Err((0, Message::WrongVersion { theirs: VERSION + 1 })));
-    let of = |kind, payload| request(&Received::Frame(Frame { kind, sequence: 44, payload }));
-    let refused = |why| Err((44, Message::Refused(Refusal::of(why))));
-    assert_eq!(of(0x7f, &[]), refused(Why::UnknownRequest));
-    assert_eq!(of(0x02, &[1]), refused(Why::Malformed));
-    assert_eq!(of(0x03, &[2, 0xff, 0xff]), refused(Why::Malformed));
-    assert_eq!(of(0x02, &[1, 0]), Ok((44, Message::List { from: 1 })));
+    let refused = |why| Message::Refused(Refusal::of(why));
+    let of = |kind, payload| Received::Frame(Frame { kind, sequence: 44, payload });
+    for (received, answer) in [
+        (Received::WrongVersion { theirs: VERSION + 1 }, (0, Message::WrongVersion { theirs: VERSION + 1 })),
+        (of(0x7f, &[][..]), (44, refused(Why::UnknownRequest))),
+        (of(0x02, &[1]), (44, refused(Why::Malformed))),
+        (of(0x03, &[2, 0xff, 0xff]), (44, refused(Why::Malformed))),
+    ] {
+        assert_eq!(request(&received).expect_err("no request").answer(), answer);
+    }
+    assert_eq!(request(&of(0x02, &[1, 0])), Ok((44, Message::List { from: 1 })));
 }
 
 /// Situation: words longer than a frame, of letters of two bytes each.
