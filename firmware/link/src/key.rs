@@ -39,7 +39,8 @@ impl<'a> Key<'a> {
         digest.finalize()
     }
 
-    /// The unit its name ends with; empty for a plain number, or one whose unit is that of its sensor.
+    /// The unit its name ends with; empty for a plain number, or one whose unit is that of its sensor. One that begins
+    /// with a stroke is per that, of whatever the sensor measures.
     pub fn unit(self) -> &'static str {
         let ends = |suffix: &str| {
             let before = self.name.strip_suffix(suffix);
@@ -51,8 +52,8 @@ impl<'a> Key<'a> {
 
 /// The endings of names and their units, the longer before the shorter.
 const UNITS: &[(&str, &str)] = &[
-    ("per_nm", "1/(N m)"),
-    ("per_s", "1/s"),
+    ("per_nm", "/(N m)"),
+    ("per_s", "/s"),
     ("rad_s", "rad/s"),
     ("nm_s", "N m/s"),
     ("m_s2", "m/s^2"),

@@ -132,7 +132,7 @@ fn every_parameter_is_listed() {
         ("permit.lifted_m_s2", "m/s^2"),
         ("limits.window.ms", "ms"),
         ("limits.rise_nm_s", "N m/s"),
-        ("input.gyro.slope_per_s", "1/s"),
+        ("input.gyro.slope_per_s", "/s"),
         ("input.gyro.max", ""),
         ("calibration.motor_reversed", ""),
     ] {
