@@ -129,8 +129,8 @@ impl<F: NorFlash> Store<F> {
 
     /// Stores a configuration, and reads it back.
     ///
-    /// Where that fails it is tried once more beside the damage, then with everything erased. The chip stands still
-    /// for as long as the flash erases; never call it while torque may flow.
+    /// Where that fails because of damage, everything is erased and it is tried once more. The chip stands still for
+    /// as long as the flash erases; never call it while torque may flow.
     ///
     /// # Errors
     /// As of [`NotStored`].
@@ -142,10 +142,8 @@ impl<F: NorFlash> Store<F> {
         let number = before.map_or(0, |before| before.number).max(newest).wrapping_add(1);
         let used = record::encode(config, number, before.as_ref(), bytes).ok_or(NotStored::TooMany)?;
         let bytes = bytes.get(..used).ok_or(NotStored::TooMany)?;
-        for _ in 0..2 {
-            if self.write(number, bytes, item).await.is_ok() {
-                return Ok(());
-            }
+        if self.write(number, bytes, item).await.is_ok() {
+            return Ok(());
         }
         self.erase().await?;
         self.write(number, bytes, item).await

@@ -69,6 +69,37 @@ fn power_lost_at_any_word_leaves_the_old_or_the_new() {
     assert!(kept_old > 1000 && kept_new >= 18, "{kept_old} {kept_new}");
 }
 
+/// Situation: a store that must erase a page.
+/// Action: cut the power in the middle of the erase, which leaves any of the page's bits erased, 500 ways; start.
+/// Must hold: the old configuration, whatever the page looks like; the store then succeeds and is found.
+#[test]
+fn a_page_left_in_any_state_by_an_erase_takes_nothing() {
+    let defaults = Config::product();
+    let (mut flash, mut last) = (Flash::new(), 0);
+    let mut after = flash.clone();
+    while after.erases == 0 {
+        flash = after;
+        last += 1;
+        after = save(flash.clone(), &numbered(last)).1;
+    }
+    let (new, old) = (numbered(last), numbered(last - 1));
+    let cuts = after.steps - flash.steps;
+    let within = |cut: &u64| {
+        let torn = save(flash.cut(*cut, Tear::Whole), &new).1;
+        torn.bytes.iter().zip(&flash.bytes).filter(|(now, before)| *now & !*before != 0).count() > 0
+    };
+    let erasing = (0..cuts).find(|cut| within(cut)).expect("a cut within the erase");
+    let mut seed = 1;
+    for _ in 0..500 {
+        let torn = save(flash.cut(erasing, Tear::Bits(random(&mut seed))), &new).1;
+        let (found, why, restarted) = load(torn.restarted(), &defaults);
+        assert_eq!(strange(&found, &old, &old), Vec::<String>::new(), "{why:?}");
+        let (done, restarted) = save(restarted, &new);
+        assert_eq!(done, Ok(()));
+        assert_eq!(load(restarted, &defaults).0, new);
+    }
+}
+
 proptest! {
     /// Situation: any number of stores before; power that goes again and again, while storing and while the damage
     /// is mended at the next start, in the middle of words and erases, of which any bits have changed.
