@@ -96,10 +96,10 @@ proptest! {
                 _ => bytes.insert(at, byte),
             }
         }
-        let mut decoder = Decoder::default();
-        let got = feed(&mut decoder, &bytes);
+        bytes.extend_from_slice(&line(8, 10, b"next"));
+        let mut got = feed(&mut Decoder::default(), &bytes);
+        prop_assert_eq!(got.pop(), Some(Got::Frame(8, 10, b"next".to_vec())));
         prop_assert!(got.is_empty() || got == vec![Got::Frame(7, 9, payload)], "{:?}", got);
-        prop_assert_eq!(feed(&mut decoder, &line(8, 10, b"next")), vec![Got::Frame(8, 10, b"next".to_vec())]);
     }
 
     /// Situation: a frame that is cut anywhere within: the decoder starts there, or the sender stops there.

@@ -1,6 +1,7 @@
 //! Flight cards of the link and the store, on the host with simulated flash.
 
 mod corruption;
+mod documented;
 mod flash;
 mod frames;
 mod messages;

@@ -1,7 +1,7 @@
 //! Every message through its frame and back.
 
 use control::wire::{decode_frame, encode_command, encode_frame};
-use control::{ActiveLimits, CAUSES, Causes, Command, Mode};
+use control::{ActiveLimits, CAUSES, Causes, Command, Mode, SensorFrame};
 use link::Key;
 use link::frame::{Decoder, Frame, MAX_FRAME, MAX_PAYLOAD, Received, VERSION};
 use link::message::{Message, NoMessage};
@@ -91,7 +91,7 @@ proptest! {
 }
 
 /// Every message with something in each field.
-fn all() -> Vec<Message<'static>> {
+pub(crate) fn all() -> Vec<Message<'static>> {
     let parted = Key { group: "limits.end_stop", name: "soft_rad" };
     let refusal = Refusal { why: Why::OutOfRange, key: parted, value: 9.0, min: 0.5, max: 1.5 };
     let hello = Hello {
@@ -108,6 +108,9 @@ fn all() -> Vec<Message<'static>> {
         registers: [1, 2, 3, 4, 5, 6],
         text: "bus fault",
     };
+    let (torque_nm, gain_nm_s_rad) = (1.5, -2.5);
+    let command =
+        Command { torque_nm, gain_nm_s_rad, limits: ActiveLimits::RATE, mode: Mode::Limp, causes: Causes(6) };
     vec![
         Message::AskHello,
         Message::List { from: 300 },
@@ -126,6 +129,16 @@ fn all() -> Vec<Message<'static>> {
         Message::Done,
         Message::Refused(refusal),
         Message::WrongVersion { theirs: 9 },
+        Message::PilFrame(SensorFrame::missing()),
+        Message::PilCommand(command),
+        Message::Telemetry(Telemetry {
+            steps: 5,
+            late: 0,
+            driven: false,
+            frame: SensorFrame::missing(),
+            command,
+            slopes: [None, Some(0.5)],
+        }),
         Message::Fault(fault),
         Message::Log("steer sensor found; 7 \u{b5}s"),
     ]
