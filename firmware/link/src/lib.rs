@@ -6,7 +6,7 @@
 //! * [`frame`]: bytes on the line to checked frames and back;
 //! * [`message`]: what a frame can say, with [`telemetry`] and [`report`] as the larger ones;
 //! * [`leaves`]: every parameter by its [`key`], the [`law`] too; [`page`] lists them, [`parameters`]
-//!   answers what is asked of them;
+//!   answers what is asked of them, or with a [`refusal`];
 //! * [`store`]: the parameters in flash, as a [`record`];
 //! * [`sender`]: what waits to go out, and what is dropped when too much does.
 //!
@@ -61,6 +61,7 @@ pub mod message;
 pub mod page;
 pub mod parameters;
 pub mod record;
+pub mod refusal;
 pub mod report;
 pub mod sender;
 pub mod store;

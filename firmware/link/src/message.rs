@@ -9,7 +9,7 @@ use crate::bytes::{Reader, Writer};
 use crate::frame::{Frame, MAX_PAYLOAD, encode_with};
 use crate::key::Key;
 use crate::page::Page;
-use crate::parameters::Refusal;
+use crate::refusal::Refusal;
 use crate::report::{FaultRecord, Hello, cut};
 use crate::telemetry::{self, Telemetry};
 use control::wire::{encode_command, encode_frame};

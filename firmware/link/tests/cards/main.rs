@@ -4,6 +4,7 @@ mod corruption;
 mod documented;
 mod flash;
 mod frames;
+mod listing;
 mod messages;
 mod parameters;
 mod power;
