@@ -1,0 +1,62 @@
+//! The law as bytes: its number, its slope and the points of its table, as `control::wire` puts it
+//! into a configuration, but only as many points as there are.
+
+use crate::bytes::{Reader, Writer};
+use crate::leaves::LAW;
+use control::param::ParamError;
+use control::table::TABLE_POINTS;
+use control::{Law, LawTable};
+use heapless::Vec;
+
+/// Most bytes of a law: number, slope, count, and speed and gain of each point.
+pub const LAW_BYTES: usize = 1 + 4 + 1 + 8 * TABLE_POINTS;
+
+/// Why bytes are no law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoLaw {
+    /// Too few bytes, or more points than there is room for.
+    Malformed,
+    /// A law that does not exist, or one with a value outside its range.
+    Refused(ParamError),
+}
+
+/// Writes a law.
+pub fn encode(law: &Law, to: &mut Writer<'_>) {
+    let points = match law {
+        Law::Table(table) => table.points(),
+        _ => &[],
+    };
+    to.u8(law.number());
+    to.f32(law.slope());
+    to.u8(points.len() as u8);
+    for (speed_m_s, gain_nm_s_rad) in points {
+        to.f32(*speed_m_s);
+        to.f32(*gain_nm_s_rad);
+    }
+}
+
+/// Reads a law and checks it.
+///
+/// # Errors
+/// As of [`NoLaw`].
+pub fn decode(from: &mut Reader<'_>) -> Result<Law, NoLaw> {
+    let (number, slope, points) = read(from).ok_or(NoLaw::Malformed)?;
+    let table = match points.is_empty() {
+        true => LawTable::default(),
+        false => LawTable::new(&points).map_err(NoLaw::Refused)?,
+    };
+    let law = Law::numbered(number, slope, table).ok_or(NoLaw::Refused(LAW.error(f32::from(number))))?;
+    law.validate().map_err(NoLaw::Refused)?;
+    Ok(law)
+}
+
+type Parts = (u8, f32, Vec<(f32, f32), TABLE_POINTS>);
+
+fn read(from: &mut Reader<'_>) -> Option<Parts> {
+    let (number, slope, count) = (from.u8()?, from.f32()?, from.u8()?);
+    let mut points = Vec::new();
+    for _ in 0..count {
+        points.push((from.f32()?, from.f32()?)).ok()?;
+    }
+    Some((number, slope, points))
+}

@@ -1,0 +1,93 @@
+//! The list of parameters, as many as one frame holds at a time.
+
+use crate::bytes::{Reader, Writer};
+use crate::frame::MAX_PAYLOAD;
+use crate::key::Key;
+use crate::leaves::{Kind, Seen, each, get};
+use control::Config;
+
+/// Most bytes of a page's entries: what a frame holds beside the three numbers before them.
+pub const PAGE_BYTES: usize = MAX_PAYLOAD - 5;
+
+/// A page of the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Page<'a> {
+    /// The place of its first entry in the list.
+    pub from: u16,
+    /// How many parameters there are.
+    pub total: u16,
+    /// How many of them are on this page; none only past the end.
+    pub count: u8,
+    /// The entries, one after the other; [`Page::entries`] reads them.
+    pub bytes: &'a [u8],
+}
+
+/// A parameter as the list shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry<'a> {
+    /// Its name.
+    pub key: Key<'a>,
+    /// What its numbers mean.
+    pub kind: Kind,
+    /// Its value; `None` is a limit that is off.
+    pub value: Option<f32>,
+    /// What a reset makes it.
+    pub default: Option<f32>,
+    /// Least allowed value.
+    pub min: f32,
+    /// Largest allowed value.
+    pub max: f32,
+    /// The names of a choice, in the order of their numbers, a blank between them; empty for all others.
+    pub names: &'a str,
+}
+
+impl Entry<'_> {
+    /// The unit, by the end of its key.
+    pub fn unit(&self) -> &'static str {
+        self.key.unit()
+    }
+}
+
+/// Writes the page that begins with the parameter `from`.
+pub fn fill<'a>(defaults: &Config, config: &Config, from: u16, room: &'a mut [u8; PAGE_BYTES]) -> Page<'a> {
+    let (mut total, mut count, mut used, mut full) = (0, 0, 0, false);
+    each(&mut config.clone(), |seen| {
+        if total >= from && !full {
+            let mut writer = Writer::new(room.get_mut(used..).unwrap_or_default());
+            encode(seen, get(defaults, seen.key()).map_or(seen.value, |known| known.value), &mut writer);
+            match writer.used() {
+                Some(bytes) => (used, count) = (used + bytes, count + 1),
+                None => full = true,
+            }
+        }
+        total += 1;
+        seen.value
+    });
+    Page { from, total, count, bytes: room.get(..used).unwrap_or_default() }
+}
+
+fn encode(seen: &Seen, default: Option<f32>, to: &mut Writer<'_>) {
+    to.u8(seen.kind as u8);
+    to.scalar(seen.value);
+    to.scalar(default);
+    to.f32(seen.leaf.min);
+    to.f32(seen.leaf.max);
+    to.text(seen.key().parts());
+    let parts = seen.names.iter().enumerate().flat_map(|(i, name)| [if i == 0 { "" } else { " " }, *name]);
+    to.text(parts);
+}
+
+fn decode<'a>(from: &mut Reader<'a>) -> Option<Entry<'a>> {
+    let kind = Kind::numbered(from.u8()?)?;
+    let (value, default) = (from.scalar()?, from.scalar()?);
+    let (min, max) = (from.f32()?, from.f32()?);
+    Some(Entry { kind, value, default, min, max, key: Key::whole(from.text()?), names: from.text()? })
+}
+
+impl<'a> Page<'a> {
+    /// The entries. What can't be read ends them early: fewer than [`Page::count`].
+    pub fn entries(&self) -> impl Iterator<Item = Entry<'a>> + use<'a> {
+        let mut from = Reader(self.bytes);
+        (0..self.count).map_while(move |_| decode(&mut from))
+    }
+}

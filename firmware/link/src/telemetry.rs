@@ -1,0 +1,68 @@
+//! What a control step saw and did.
+
+use crate::bytes::{Reader, Writer};
+use control::wire::{FRAME_BYTES, decode_frame, encode_command, encode_frame};
+use control::{ActiveLimits, Causes, Command, Mode, SensorFrame};
+
+/// One control step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Telemetry {
+    /// Steps done, this one included, wrapping.
+    pub steps: u32,
+    /// Steps that ended too late, wrapping.
+    pub late: u32,
+    /// Whether the motor got the command.
+    pub driven: bool,
+    /// The sensors of this step.
+    pub frame: SensorFrame,
+    /// The command made of them, with mode, causes and limits.
+    pub command: Command,
+    /// How much of what they should do gyro and motor do; [`control::State::slopes`].
+    pub slopes: [Option<f32>; 2],
+}
+
+impl Telemetry {
+    /// Writes it.
+    pub fn encode(&self, to: &mut Writer<'_>) {
+        to.u32(self.steps);
+        to.u32(self.late);
+        to.u8(u8::from(self.driven));
+        to.put(encode_frame(&self.frame));
+        to.put(encode_command(&self.command));
+        self.slopes.into_iter().for_each(|slope| to.scalar(slope));
+    }
+
+    /// Reads it; `None` where there are too few bytes or a mode that does not exist.
+    pub fn decode(from: &mut Reader<'_>) -> Option<Self> {
+        Some(Self {
+            steps: from.u32()?,
+            late: from.u32()?,
+            driven: from.u8()? == 1,
+            frame: frame(from)?,
+            command: command(from)?,
+            slopes: [from.scalar()?, from.scalar()?],
+        })
+    }
+}
+
+/// Reads a sensor frame; every bit pattern is one.
+pub fn frame(from: &mut Reader<'_>) -> Option<SensorFrame> {
+    from.take::<FRAME_BYTES>().map(|bytes| decode_frame(&bytes))
+}
+
+/// Reads a command as [`encode_command`] writes it; `None` for a mode that does not exist.
+pub fn command(from: &mut Reader<'_>) -> Option<Command> {
+    Some(Command {
+        torque_nm: from.f32()?,
+        gain_nm_s_rad: from.f32()?,
+        limits: ActiveLimits(from.u16()?),
+        mode: mode(from.u8()?)?,
+        causes: Causes(from.u64()?),
+    })
+}
+
+/// The mode of a number on the wire.
+pub fn mode(number: u8) -> Option<Mode> {
+    use Mode::*;
+    [Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault].into_iter().find(|mode| *mode as u8 == number)
+}

@@ -1,0 +1,176 @@
+//! Simulated NOR flash whose power may go at any word or in the middle of an erase.
+
+use embassy_futures::block_on;
+use embedded_storage_async::nor_flash::{
+    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+};
+use link::Store;
+use link::store::{Found, NotStored, Room};
+
+/// Bytes of a page: a few records, so that pages change often.
+pub(crate) const PAGE: usize = 8192;
+pub(crate) const PAGES: usize = 3;
+/// Steps that an erase takes.
+const ERASE_STEPS: u64 = 8;
+
+/// What the step leaves behind that the power goes in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Tear {
+    /// A word is written or not; an erase has come so far from the start of its page.
+    Whole,
+    /// Any of the bits that were to change have, of the word or of the page, by this seed.
+    Bits(u64),
+}
+
+/// Pages of words that can be cleared bit by bit and set only all at once.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Flash {
+    pub(crate) bytes: Vec<u8>,
+    /// Steps until the power goes; a step is a word written or a part of a page erased.
+    pub(crate) left: Option<u64>,
+    pub(crate) tear: Tear,
+    /// Steps done.
+    pub(crate) steps: u64,
+    pub(crate) erases: u64,
+    /// Words written that were not erased before.
+    pub(crate) overwritten: u64,
+}
+
+/// The power is gone, or the access is not allowed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Gone;
+
+impl NorFlashError for Gone {
+    fn kind(&self) -> NorFlashErrorKind {
+        NorFlashErrorKind::Other
+    }
+}
+
+/// SplitMix64.
+pub(crate) fn random(seed: &mut u64) -> u64 {
+    *seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (*seed ^ (*seed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+impl Flash {
+    pub(crate) fn new() -> Self {
+        Self {
+            bytes: vec![0xff; PAGE * PAGES],
+            left: None,
+            tear: Tear::Whole,
+            steps: 0,
+            erases: 0,
+            overwritten: 0,
+        }
+    }
+
+    /// The same, but the power goes after so many steps more.
+    pub(crate) fn cut(&self, after: u64, tear: Tear) -> Self {
+        Self { left: Some(after), tear, ..self.clone() }
+    }
+
+    /// The same with the power back.
+    pub(crate) fn restarted(&self) -> Self {
+        Self { left: None, ..self.clone() }
+    }
+
+    /// One step, or the end of the power.
+    fn step(&mut self) -> Result<(), Gone> {
+        match &mut self.left {
+            Some(0) => return Err(Gone),
+            Some(left) => *left -= 1,
+            None => {}
+        }
+        self.steps += 1;
+        Ok(())
+    }
+}
+
+impl ErrorType for Flash {
+    type Error = Gone;
+}
+
+impl ReadNorFlash for Flash {
+    const READ_SIZE: usize = 1;
+
+    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Gone> {
+        let from = self.bytes.get(offset as usize..offset as usize + bytes.len()).ok_or(Gone)?;
+        bytes.copy_from_slice(from);
+        Ok(())
+    }
+
+    fn capacity(&self) -> usize {
+        self.bytes.len()
+    }
+}
+
+impl NorFlash for Flash {
+    const WRITE_SIZE: usize = 4;
+    const ERASE_SIZE: usize = PAGE;
+
+    async fn erase(&mut self, from: u32, to: u32) -> Result<(), Gone> {
+        assert!(
+            (from as usize).is_multiple_of(PAGE) && (to as usize).is_multiple_of(PAGE),
+            "erases whole pages"
+        );
+        for page in (from as usize..to as usize).step_by(PAGE) {
+            let part = PAGE / ERASE_STEPS as usize;
+            for at in (page..page + PAGE).step_by(part) {
+                if self.step().is_err() {
+                    if let Tear::Bits(mut seed) = self.tear
+                        && self.left == Some(0)
+                    {
+                        self.bytes[page..page + PAGE].iter_mut().for_each(|b| *b |= random(&mut seed) as u8);
+                    }
+                    self.tear = Tear::Whole;
+                    return Err(Gone);
+                }
+                if self.tear == Tear::Whole || self.left.is_none() {
+                    self.bytes[at..at + part].fill(0xff);
+                }
+            }
+            self.bytes[page..page + PAGE].fill(0xff);
+            self.erases += 1;
+        }
+        Ok(())
+    }
+
+    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Gone> {
+        assert!(offset.is_multiple_of(4) && bytes.len().is_multiple_of(4), "writes whole words");
+        for (i, word) in bytes.chunks(4).enumerate() {
+            let at = offset as usize + 4 * i;
+            let mut keep = 0_u64;
+            let done = self.step();
+            if done.is_err() {
+                let Tear::Bits(mut seed) = self.tear else { return Err(Gone) };
+                keep = random(&mut seed);
+                self.tear = Tear::Whole;
+            }
+            let place = &mut self.bytes[at..at + 4];
+            self.overwritten += u64::from(place != [0xff; 4]);
+            for ((old, new), keep) in place.iter_mut().zip(word).zip(keep.to_le_bytes()) {
+                *old &= new | keep;
+            }
+            done?;
+        }
+        Ok(())
+    }
+}
+
+/// The configuration that a start finds, and the flash it leaves.
+pub(crate) fn load(flash: Flash, defaults: &control::Config) -> (control::Config, Found, Flash) {
+    let range = 0..flash.bytes.len() as u32;
+    let mut store = Store::new(flash, range).expect("a range of pages");
+    let (config, found) = block_on(store.load(defaults, &mut Room::new()));
+    (config, found, store.into_flash())
+}
+
+/// Stores a configuration; the flash it leaves.
+pub(crate) fn save(flash: Flash, config: &control::Config) -> (Result<(), NotStored>, Flash) {
+    let range = 0..flash.bytes.len() as u32;
+    let mut store = Store::new(flash, range).expect("a range of pages");
+    let done = block_on(store.save(config, &mut Room::new()));
+    (done, store.into_flash())
+}

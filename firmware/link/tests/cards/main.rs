@@ -1,0 +1,12 @@
+//! Flight cards of the link and the store, on the host with simulated flash.
+
+mod corruption;
+mod documented;
+mod flash;
+mod frames;
+mod listing;
+mod messages;
+mod parameters;
+mod power;
+mod sender;
+mod store;

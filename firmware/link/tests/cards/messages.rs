@@ -1,0 +1,232 @@
+//! Every message through its frame and back.
+
+use control::wire::{decode_frame, encode_command, encode_frame};
+use control::{ActiveLimits, CAUSES, Causes, Command, Mode, SensorFrame};
+use link::Key;
+use link::frame::{Decoder, Frame, MAX_FRAME, MAX_PAYLOAD, Received, VERSION};
+use link::message::{Message, NoMessage};
+use link::page::Page;
+use link::parameters::request;
+use link::refusal::{Refusal, Why};
+use link::report::{FaultKind, FaultRecord, Hello, config_hash};
+use link::telemetry::{Telemetry, mode};
+use proptest::prelude::*;
+
+const MODES: [Mode; 7] = {
+    use Mode::*;
+    [Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault]
+};
+
+/// Sends a message and hands what arrives to `seen`; its sequence number.
+fn through(message: &Message<'_>, seen: impl FnOnce(&Message<'_>)) -> u16 {
+    let (mut bytes, mut decoder) = ([0; MAX_FRAME], Decoder::default());
+    let used = message.encode(513, &mut bytes).expect("room");
+    for byte in &bytes[..used - 1] {
+        assert_eq!(decoder.feed(*byte), None);
+    }
+    match decoder.feed(0) {
+        Some(Received::Frame(frame)) => {
+            assert_eq!(frame.kind, message.kind());
+            seen(&Message::decode(&frame).expect("a message"));
+            frame.sequence
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+fn commands() -> impl Strategy<Value = Command> {
+    let numbers = (-50.0_f32..50.0, -200.0_f32..200.0);
+    (numbers, any::<u16>(), 0..MODES.len(), any::<u64>()).prop_map(
+        |((torque_nm, gain_nm_s_rad), limits, mode, causes)| {
+            let (limits, mode, causes) = (ActiveLimits(limits), MODES[mode], Causes(causes));
+            Command { torque_nm, gain_nm_s_rad, limits, mode, causes }
+        },
+    )
+}
+
+fn slopes() -> impl Strategy<Value = [Option<f32>; 2]> {
+    prop::array::uniform2(prop::option::of(-2.0_f32..2.0))
+}
+
+proptest! {
+    /// Situation: any sensor frame's bits, any command, any slopes.
+    /// Action: telemetry and the processor in the loop's frames through the link.
+    /// Must hold: the same in every bit.
+    #[test]
+    fn what_a_step_saw_and_did_comes_through(
+        bits in prop::collection::vec(any::<u8>(), 81), command in commands(), slopes in slopes(), steps in any::<u32>()
+    ) {
+        let frame = decode_frame(&bits.try_into().expect("81 bytes"));
+        let sent = Telemetry { steps, late: 3, driven: true, frame, command, slopes };
+        through(&Message::Telemetry(sent), |got| {
+            let Message::Telemetry(got) = got else { panic!("{got:?}") };
+            assert_eq!(encode_frame(&got.frame), encode_frame(&frame));
+            assert_eq!(encode_command(&got.command), encode_command(&command));
+            assert_eq!((got.steps, got.late, got.driven, got.slopes), (steps, 3, true, slopes));
+        });
+        through(&Message::PilFrame(frame), |got| {
+            let Message::PilFrame(got) = got else { panic!("{got:?}") };
+            assert_eq!(encode_frame(got), encode_frame(&frame));
+        });
+        through(&Message::PilCommand(command), |got| assert_eq!(*got, Message::PilCommand(command)));
+    }
+
+    /// Situation: a frame of any kind with any payload.
+    /// Action: read it as a message, and as a page's entries; write again what was read.
+    /// Must hold: no panic; what is a message can be written.
+    #[test]
+    fn any_payload_is_a_message_or_refused(
+        kind in any::<u8>(), payload in prop::collection::vec(any::<u8>(), 0..=MAX_PAYLOAD)
+    ) {
+        let frame = Frame { kind, sequence: 0, payload: &payload };
+        match Message::decode(&frame) {
+            Ok(message) => {
+                if let Message::Page(page) = message {
+                    prop_assert!(page.entries().count() <= usize::from(page.count));
+                }
+                prop_assert!(message.encode(0, &mut [0; MAX_FRAME]).is_some());
+            }
+            Err(error) => prop_assert!(error == NoMessage::UnknownKind(kind) || error == NoMessage::Malformed(kind)),
+        }
+    }
+}
+
+/// Every message with something in each field.
+pub(crate) fn all() -> Vec<Message<'static>> {
+    let parted = Key { group: "limits.end_stop", name: "soft_rad" };
+    let refusal = Refusal { why: Why::OutOfRange, key: parted, value: 9.0, min: 0.5, max: 1.5 };
+    let hello = Hello {
+        image: "board-stm32f405",
+        version: "0.1.0",
+        commit: "0123456789ab",
+        config_hash: 0xdead_beef,
+    };
+    let fault = FaultRecord {
+        kind: FaultKind::Exception,
+        steps: 77,
+        causes: Causes::all(&CAUSES),
+        exception: 3,
+        registers: [1, 2, 3, 4, 5, 6],
+        text: "bus fault",
+    };
+    let (torque_nm, gain_nm_s_rad) = (1.5, -2.5);
+    let command =
+        Command { torque_nm, gain_nm_s_rad, limits: ActiveLimits::RATE, mode: Mode::Limp, causes: Causes(6) };
+    vec![
+        Message::AskHello,
+        Message::List { from: 300 },
+        Message::Get { key: parted },
+        Message::Set { key: parted, value: None },
+        Message::Set { key: parted, value: Some(1.25) },
+        Message::GetLaw,
+        Message::SetLaw(&[1, 2, 3]),
+        Message::Store,
+        Message::Reset,
+        Message::PilReset,
+        Message::Hello(hello),
+        Message::Page(Page { from: 1, total: 2, count: 0, bytes: &[] }),
+        Message::Value { key: parted, value: Some(-0.0) },
+        Message::Law(&[0, 0, 0]),
+        Message::Done,
+        Message::Refused(refusal),
+        Message::WrongVersion { theirs: 9 },
+        Message::PilFrame(SensorFrame::missing()),
+        Message::PilCommand(command),
+        Message::Telemetry(Telemetry {
+            steps: 5,
+            late: 0,
+            driven: false,
+            frame: SensorFrame::missing(),
+            command,
+            slopes: [None, Some(0.5)],
+        }),
+        Message::Fault(fault),
+        Message::Log("steer sensor found; 7 \u{b5}s"),
+    ]
+}
+
+/// Situation: every message.
+/// Action: through the link; then with a byte more, and with one less than it needs.
+/// Must hold: the same message under the same number; more bytes change nothing; too few are refused.
+#[test]
+fn every_message_comes_through() {
+    for message in all() {
+        assert_eq!(through(&message, |got| assert_eq!(*got, message)), 513);
+        let mut bytes = [0; MAX_FRAME];
+        let used = message.encode(513, &mut bytes).expect("room");
+        let mut plain = [0; MAX_FRAME];
+        let length = cobs::decode(&bytes[1..used], &mut plain).expect("stuffed").frame_size();
+        let payload = &plain[4..length - 4];
+        let of = |payload| Message::decode(&Frame { kind: message.kind(), sequence: 0, payload });
+        let raw =
+            matches!(message, Message::SetLaw(_) | Message::Law(_) | Message::Log(_) | Message::Page(_));
+        if !raw && !payload.is_empty() {
+            assert_eq!(of(&plain[4..length - 3]), Ok(message), "one more");
+            let less = of(&payload[..payload.len() - 1]);
+            assert!(matches!(less, Err(NoMessage::Malformed(kind)) if kind == message.kind()), "{less:?}");
+        }
+    }
+}
+
+/// Situation: every reason, mode and kind of fault there is, and numbers beyond them.
+/// Action: to its number and back.
+/// Must hold: the same; beyond them none.
+#[test]
+fn every_number_means_one_thing() {
+    for number in 0..=255 {
+        assert_eq!(Why::numbered(number).map(|why| why as u8), (1..=11).contains(&number).then_some(number));
+        assert_eq!(mode(number).map(|mode| mode as u8), (0..=6).contains(&number).then_some(number));
+        assert_eq!(
+            FaultKind::numbered(number).map(|kind| kind as u8),
+            (1..=4).contains(&number).then_some(number)
+        );
+    }
+}
+
+/// Situation: a frame of another version; of a kind that does not exist; of a kind that is too short; a good one.
+/// Action: take them as requests.
+/// Must hold: each but the good one is answered with what is wrong, under its number where that is known.
+#[test]
+fn what_is_no_request_is_answered() {
+    let refused = |why| Message::Refused(Refusal::of(why));
+    let of = |kind, payload| Received::Frame(Frame { kind, sequence: 44, payload });
+    for (received, answer) in [
+        (Received::WrongVersion { theirs: VERSION + 1 }, (0, Message::WrongVersion { theirs: VERSION + 1 })),
+        (of(0x7f, &[][..]), (44, refused(Why::UnknownRequest))),
+        (of(0x02, &[1]), (44, refused(Why::Malformed))),
+        (of(0x03, &[2, 0xff, 0xff]), (44, refused(Why::Malformed))),
+    ] {
+        assert_eq!(request(&received).expect_err("no request").answer(), answer);
+    }
+    assert_eq!(request(&of(0x02, &[1, 0])), Ok((44, Message::List { from: 1 })));
+}
+
+/// Situation: words longer than a frame, of letters of two bytes each.
+/// Action: as a log line and as a fault's text.
+/// Must hold: their beginning comes through, whole letters.
+#[test]
+fn long_words_are_cut_between_letters() {
+    let long = "\u{e9}".repeat(400);
+    through(&Message::Log(&long), |got| assert_eq!(*got, Message::Log(&long[..MAX_PAYLOAD])));
+    let record = |text| FaultRecord {
+        kind: FaultKind::Panic,
+        steps: 0,
+        causes: Causes::NONE,
+        exception: 0,
+        registers: [0; 6],
+        text,
+    };
+    through(&Message::Fault(record(&long)), |got| assert_eq!(*got, Message::Fault(record(&long[..254]))));
+}
+
+/// Situation: two configurations that differ in one parameter.
+/// Action: their hashes.
+/// Must hold: one each, the same every time.
+#[test]
+fn the_configuration_has_a_hash() {
+    let mut other = control::Config::product();
+    other.permit.ramp_in_ticks += 1;
+    let hash = config_hash(&control::Config::product());
+    assert_ne!(hash, config_hash(&other));
+    assert_eq!(hash, config_hash(&control::Config::product()));
+}
