@@ -1,7 +1,7 @@
 //! The polarity check: a sign error steers out of the fall, so nobody engages before this was passed.
 //!
 //! With the motor off, somebody beside the bicycle leans it to the right, turns the handlebar to the right and
-//! pushes the bicycle forward, in this order. What each sensor says of it must have the right sign, and the
+//! pushes the bicycle forward, in this order; the first two count only while it stands. What each sensor says of it must have the right sign, and the
 //! torque the law would ask for while it leans must be to the right.
 
 use crate::input::{Believed, InputConfig};
@@ -29,7 +29,7 @@ const LEAN_RAD: f32 = 0.25;
 const FORCE_M_S2: f32 = 1.0;
 /// Turn of the handlebar that counts \[rad\].
 const STEER_RAD: f32 = 0.3;
-/// Speed that counts as pushed \[m/s\].
+/// Speed that counts as pushed; below it the bicycle stands \[m/s\].
 const PUSH_M_S: f32 = 0.3;
 /// Torque of the hand on the handlebar that counts \[N m\].
 const HAND_NM: f32 = 0.2;
@@ -90,6 +90,14 @@ pub fn step(
 ) -> f32 {
     let roll_rate = believed.gyro_rad_s.map(|[x, ..]| x);
     let shown_nm = gain_nm_s_rad * roll_rate.unwrap_or(0.0);
+    let wheels = [believed.front_wheel_m_s, believed.rear_wheel_m_s];
+    let stands = wheels.iter().any(Option::is_some)
+        && wheels.iter().flatten().all(|speed| speed.newest.abs() < PUSH_M_S);
+    if !stands && matches!(state.next, Move::Lean | Move::Steer) {
+        // A ride is no check, and a fall to the right none at all.
+        *state = PolarityState { next: state.next, ..PolarityState::default() };
+        return shown_nm;
+    }
     let rate = match state.next {
         Move::Lean => roll_rate,
         Move::Steer => believed.steer_rate_rad_s,

@@ -118,6 +118,17 @@ fn only_who_passed_engages() {
     }
 }
 
+/// Situation: somebody rides, leaning and steering as in the check. Action: ride on. Must hold: nothing is passed, nothing
+/// accused.
+#[test]
+fn a_ride_is_no_check() {
+    let mut riding = moves(0.5);
+    riding.iter_mut().for_each(|h| h.speed_m_s = 4.0);
+    let (asked, causes, _) = checked(&flashed(), &frames(&riding, false, |_| ()));
+    assert_eq!(asked, [Move::Lean]);
+    assert!(!causes.contains(&Cause::PolarityWrong), "{causes:?}");
+}
+
 /// Situation: one sign is wrong. Action: the moves. Must hold: found at the move that shows it, told, and not forgotten.
 #[test]
 fn every_wrong_sign_is_found() {
