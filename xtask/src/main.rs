@@ -62,8 +62,9 @@ image is over its budget.
 const INSTRUCTIONS_HELP: &str = "\
 cargo xtask instructions
 
-Counts the instructions of every control step over the border ride for each law and configuration,
-prints them and writes docs/images.md anew. Fails when a step takes more than 600.
+Counts the instructions and the stack of every control step: over the border ride for each law and
+configuration, over a ride with every sensor, and with each sensor broken in it. Prints them and
+writes docs/images.md anew. Fails when a step is over its budget, which stands in that page.
 ";
 
 const BENCH_HELP: &str = "\
