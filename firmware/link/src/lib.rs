@@ -8,7 +8,8 @@
 //! * [`leaves`]: every parameter by its [`key`], the [`law`] too; [`page`] lists them, [`parameters`]
 //!   answers what is asked of them, or with a [`refusal`];
 //! * [`store`]: the parameters in flash, as a [`record`];
-//! * [`sender`]: what waits to go out, and what is dropped when too much does.
+//! * [`sender`]: what waits to go out, and what is dropped when too much does;
+//! * [`lockstep`]: what goes over in a control period when the board is emulated.
 //!
 //! A board takes each byte that comes in, and sends each that goes out:
 //!
@@ -57,6 +58,7 @@ pub mod frame;
 pub mod key;
 pub mod law;
 pub mod leaves;
+pub mod lockstep;
 pub mod message;
 pub mod page;
 pub mod parameters;

@@ -45,8 +45,16 @@ pub enum Message<'a> {
     Store,
     /// To the board: all parameters to their defaults, not yet in flash. Answer: [`Message::Done`].
     Reset,
-    /// To the board, processor in the loop: begin anew with the parameters as they are. Answer: [`Message::Done`].
+    /// To the board, processor in the loop: begin anew, with the configuration whose bytes came before if they are
+    /// all there, else with the one in force. Answer: [`Message::Done`].
     PilReset,
+    /// To the board, processor in the loop: bytes of a configuration as of [`control::wire::encode_config`]. No answer.
+    PilConfig {
+        /// The place of the first of them.
+        at: u16,
+        /// The bytes.
+        bytes: &'a [u8],
+    },
     /// To the board, processor in the loop: a control step of these sensors. Answer: [`Message::PilCommand`].
     PilFrame(SensorFrame),
     /// From the board: who it is.
@@ -71,8 +79,13 @@ pub enum Message<'a> {
         /// The version that came in.
         theirs: u8,
     },
-    /// From the board, processor in the loop: the command of a step.
-    PilCommand(Command),
+    /// From the board, processor in the loop: the command of a step. Its number is that of the newest sensor frame.
+    PilCommand {
+        /// The command.
+        command: Command,
+        /// The part of the torque that is permitted, 0 to 1.
+        authority: f32,
+    },
     /// From the board, unasked: a control step.
     Telemetry(Telemetry),
     /// From the board, unasked: a fault.
@@ -104,6 +117,7 @@ impl<'a> Message<'a> {
             Message::Reset => 0x08,
             Message::PilReset => 0x10,
             Message::PilFrame(_) => 0x11,
+            Message::PilConfig { .. } => 0x12,
             Message::Hello(_) => 0x81,
             Message::Page(_) => 0x82,
             Message::Value { .. } => 0x83,
@@ -111,7 +125,7 @@ impl<'a> Message<'a> {
             Message::Done => 0x85,
             Message::Refused(_) => 0x86,
             Message::WrongVersion { .. } => 0x87,
-            Message::PilCommand(_) => 0x91,
+            Message::PilCommand { .. } => 0x91,
             Message::Telemetry(_) => 0xa0,
             Message::Fault(_) => 0xa1,
             Message::Log(_) => 0xa2,
@@ -143,7 +157,14 @@ impl<'a> Message<'a> {
             }
             Message::Refused(refusal) => refusal.encode(to),
             Message::WrongVersion { theirs } => to.u8(*theirs),
-            Message::PilCommand(command) => to.put(encode_command(command)),
+            Message::PilConfig { at, bytes } => {
+                to.u16(*at);
+                to.put(bytes.iter().copied());
+            }
+            Message::PilCommand { command, authority } => {
+                to.put(encode_command(command));
+                to.f32(*authority);
+            }
             Message::Telemetry(telemetry) => telemetry.encode(to),
             Message::Fault(fault) => fault.encode(to),
             Message::Log(text) => to.put(cut(text, MAX_PAYLOAD).bytes()),
@@ -173,6 +194,7 @@ impl<'a> Message<'a> {
             0x08 => Some(Message::Reset),
             0x10 => Some(Message::PilReset),
             0x11 => telemetry::frame(&mut from).map(Message::PilFrame),
+            0x12 => from.u16().map(|at| Message::PilConfig { at, bytes: from.0 }),
             0x81 => Hello::decode(&mut from).map(Message::Hello),
             0x82 => page(&mut from).map(Message::Page),
             0x83 => valued(&mut from).map(|(key, value)| Message::Value { key, value }),
@@ -180,7 +202,7 @@ impl<'a> Message<'a> {
             0x85 => Some(Message::Done),
             0x86 => Refusal::decode(&mut from).map(Message::Refused),
             0x87 => from.u8().map(|theirs| Message::WrongVersion { theirs }),
-            0x91 => telemetry::command(&mut from).map(Message::PilCommand),
+            0x91 => pil_command(&mut from),
             0xa0 => Telemetry::decode(&mut from).map(Message::Telemetry),
             0xa1 => FaultRecord::decode(&mut from).map(Message::Fault),
             0xa2 => core::str::from_utf8(frame.payload).ok().map(Message::Log),
@@ -193,6 +215,10 @@ impl<'a> Message<'a> {
 fn valued<'a>(from: &mut Reader<'a>) -> Option<(Key<'a>, Option<f32>)> {
     let value = from.scalar()?;
     Some((Key::whole(from.text()?), value))
+}
+
+fn pil_command<'a>(from: &mut Reader<'a>) -> Option<Message<'a>> {
+    Some(Message::PilCommand { command: telemetry::command(from)?, authority: from.f32()? })
 }
 
 fn page<'a>(from: &mut Reader<'a>) -> Option<Page<'a>> {

@@ -5,6 +5,7 @@ mod documented;
 mod flash;
 mod frames;
 mod listing;
+mod lockstep;
 mod messages;
 mod parameters;
 mod power;

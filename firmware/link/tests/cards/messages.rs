@@ -68,7 +68,8 @@ proptest! {
             let Message::PilFrame(got) = got else { panic!("{got:?}") };
             assert_eq!(encode_frame(got), encode_frame(&frame));
         });
-        through(&Message::PilCommand(command), |got| assert_eq!(*got, Message::PilCommand(command)));
+        let message = Message::PilCommand { command, authority: 0.25 };
+        through(&message, |got| assert_eq!(*got, message));
     }
 
     /// Situation: a frame of any kind with any payload.
@@ -131,7 +132,8 @@ pub(crate) fn all() -> Vec<Message<'static>> {
         Message::Refused(refusal),
         Message::WrongVersion { theirs: 9 },
         Message::PilFrame(SensorFrame::missing()),
-        Message::PilCommand(command),
+        Message::PilCommand { command, authority: 0.5 },
+        Message::PilConfig { at: 512, bytes: &[9, 8, 7] },
         Message::Telemetry(Telemetry {
             steps: 5,
             late: 0,
@@ -158,8 +160,14 @@ fn every_message_comes_through() {
         let length = cobs::decode(&bytes[1..used], &mut plain).expect("stuffed").frame_size();
         let payload = &plain[4..length - 4];
         let of = |payload| Message::decode(&Frame { kind: message.kind(), sequence: 0, payload });
-        let raw =
-            matches!(message, Message::SetLaw(_) | Message::Law(_) | Message::Log(_) | Message::Page(_));
+        let raw = matches!(
+            message,
+            Message::SetLaw(_)
+                | Message::Law(_)
+                | Message::Log(_)
+                | Message::Page(_)
+                | Message::PilConfig { .. }
+        );
         if !raw && !payload.is_empty() {
             assert_eq!(of(&plain[4..length - 3]), Ok(message), "one more");
             let less = of(&payload[..payload.len() - 1]);

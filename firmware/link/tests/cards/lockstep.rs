@@ -1,0 +1,42 @@
+//! What host and board hand each other in a period.
+
+use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
+use proptest::prelude::*;
+
+fn bytes() -> impl Strategy<Value = Vec<u8>> {
+    prop::collection::vec(any::<u8>(), 0..600)
+}
+
+proptest! {
+    /// Situation: any bytes for loop and line, any time.
+    /// Action: write and read, both ways; then with a byte more and a byte less.
+    /// Must hold: the same; any other length is refused.
+    #[test]
+    fn loop_and_line_stay_apart(first in bytes(), second in bytes(), time_ms in any::<u32>(), starts in any::<u16>()) {
+        let mut room = [0; MAX_CHUNK];
+        let board = FromBoard { time_ms, starts, motor: &first, line: &second };
+        let used = board.encode(&mut room).expect("room");
+        prop_assert_eq!(FromBoard::decode(&room[..used]), Some(board));
+        prop_assert_eq!(FromBoard::decode(&room[..used + 1]), None);
+        prop_assert_eq!(FromBoard::decode(&room[..used - 1]), None);
+        let host = ToBoard { sensors: &first, line: &second };
+        let used = host.encode(&mut room).expect("room");
+        prop_assert_eq!(ToBoard::decode(&room[..used]), Some(host));
+        prop_assert_eq!(ToBoard::decode(&room[..used + 1]), None);
+        prop_assert_eq!(ToBoard::decode(&room[..used - 1]), None);
+        prop_assert_eq!(host.encode(&mut room[..used - 1]), None);
+    }
+
+    /// Situation: any bytes at all.
+    /// Action: read them as what came from either side.
+    /// Must hold: no panic; what is read takes just these bytes.
+    #[test]
+    fn any_bytes_are_read_or_refused(any in bytes()) {
+        if let Some(board) = FromBoard::decode(&any) {
+            prop_assert_eq!(board.encode(&mut [0; MAX_CHUNK]), Some(any.len()));
+        }
+        if let Some(host) = ToBoard::decode(&any) {
+            prop_assert_eq!(host.encode(&mut [0; MAX_CHUNK]), Some(any.len()));
+        }
+    }
+}
