@@ -10,7 +10,7 @@ use crate::frame::{Frame, MAX_PAYLOAD, encode_with};
 use crate::key::Key;
 use crate::page::Page;
 use crate::refusal::Refusal;
-use crate::report::{FaultRecord, Hello, cut};
+use crate::report::{FaultRecord, Hello, KeptFault, cut};
 use crate::telemetry::{self, Telemetry};
 use control::wire::{encode_command, encode_frame};
 use control::{Command, SensorFrame};
@@ -45,6 +45,13 @@ pub enum Message<'a> {
     Store,
     /// To the board: all parameters to their defaults, not yet in flash. Answer: [`Message::Done`].
     Reset,
+    /// To the board: a fault that was kept. Answer: [`Message::KeptFault`].
+    ListFaults {
+        /// Its place, the newest at 0.
+        from: u16,
+    },
+    /// To the board: forget the faults. Answer: [`Message::Done`].
+    ClearFaults,
     /// To the board, processor in the loop: begin anew with the parameters as they are. Answer: [`Message::Done`].
     PilReset,
     /// To the board, processor in the loop: a control step of these sensors. Answer: [`Message::PilCommand`].
@@ -71,6 +78,8 @@ pub enum Message<'a> {
         /// The version that came in.
         theirs: u8,
     },
+    /// From the board: a fault that was kept, and how many there are.
+    KeptFault(KeptFault<'a>),
     /// From the board, processor in the loop: the command of a step.
     PilCommand(Command),
     /// From the board, unasked: a control step.
@@ -102,6 +111,8 @@ impl<'a> Message<'a> {
             Message::SetLaw(_) => 0x06,
             Message::Store => 0x07,
             Message::Reset => 0x08,
+            Message::ListFaults { .. } => 0x09,
+            Message::ClearFaults => 0x0a,
             Message::PilReset => 0x10,
             Message::PilFrame(_) => 0x11,
             Message::Hello(_) => 0x81,
@@ -111,6 +122,7 @@ impl<'a> Message<'a> {
             Message::Done => 0x85,
             Message::Refused(_) => 0x86,
             Message::WrongVersion { .. } => 0x87,
+            Message::KeptFault(_) => 0x88,
             Message::PilCommand(_) => 0x91,
             Message::Telemetry(_) => 0xa0,
             Message::Fault(_) => 0xa1,
@@ -126,7 +138,7 @@ impl<'a> Message<'a> {
 
     fn fill(&self, to: &mut Writer<'_>) {
         match self {
-            Message::List { from } => to.u16(*from),
+            Message::List { from } | Message::ListFaults { from } => to.u16(*from),
             Message::Get { key } => to.text(key.parts()),
             Message::Set { key, value } | Message::Value { key, value } => {
                 to.scalar(*value);
@@ -143,6 +155,7 @@ impl<'a> Message<'a> {
             }
             Message::Refused(refusal) => refusal.encode(to),
             Message::WrongVersion { theirs } => to.u8(*theirs),
+            Message::KeptFault(kept) => kept.encode(to),
             Message::PilCommand(command) => to.put(encode_command(command)),
             Message::Telemetry(telemetry) => telemetry.encode(to),
             Message::Fault(fault) => fault.encode(to),
@@ -151,6 +164,7 @@ impl<'a> Message<'a> {
             | Message::GetLaw
             | Message::Store
             | Message::Reset
+            | Message::ClearFaults
             | Message::PilReset
             | Message::Done => {}
         }
@@ -171,6 +185,8 @@ impl<'a> Message<'a> {
             0x06 => Some(Message::SetLaw(frame.payload)),
             0x07 => Some(Message::Store),
             0x08 => Some(Message::Reset),
+            0x09 => from.u16().map(|from| Message::ListFaults { from }),
+            0x0a => Some(Message::ClearFaults),
             0x10 => Some(Message::PilReset),
             0x11 => telemetry::frame(&mut from).map(Message::PilFrame),
             0x81 => Hello::decode(&mut from).map(Message::Hello),
@@ -180,6 +196,7 @@ impl<'a> Message<'a> {
             0x85 => Some(Message::Done),
             0x86 => Refusal::decode(&mut from).map(Message::Refused),
             0x87 => from.u8().map(|theirs| Message::WrongVersion { theirs }),
+            0x88 => KeptFault::decode(&mut from).map(Message::KeptFault),
             0x91 => telemetry::command(&mut from).map(Message::PilCommand),
             0xa0 => Telemetry::decode(&mut from).map(Message::Telemetry),
             0xa1 => FaultRecord::decode(&mut from).map(Message::Fault),
