@@ -38,13 +38,18 @@ pub fn starts() -> u32 {
     START.load(Ordering::Relaxed)
 }
 
+/// Why it did this time.
+pub fn cause() -> ResetCause {
+    ResetCause::numbered(CAUSE.load(Ordering::Relaxed) as u8).unwrap_or_default()
+}
+
 /// Keeps a fault with what the controller did last. From any context.
 pub fn note(kind: FaultKind, registers: Registers, text: &str) {
     let latest = tasks::latest();
     retained::note(&FaultRecord {
         kind,
         boot: starts(),
-        reset: ResetCause::numbered(CAUSE.load(Ordering::Relaxed) as u8).unwrap_or_default(),
+        reset: cause(),
         mode: latest.as_ref().map_or(Mode::Off, |t| t.command.mode),
         steps: latest.as_ref().map_or(0, |t| t.deadlines.steps),
         frame_us: latest.as_ref().map_or(0, |t| t.frame.now_us),

@@ -88,6 +88,19 @@ impl ResetCause {
         let all = [Unknown, PowerOn, BrownOut, Pin, Software, Watchdog, LowPower];
         all.into_iter().find(|cause| *cause as u8 == number)
     }
+
+    /// In words.
+    pub const fn name(self) -> &'static str {
+        match self {
+            ResetCause::Unknown => "unknown",
+            ResetCause::PowerOn => "power-on",
+            ResetCause::BrownOut => "brown-out",
+            ResetCause::Pin => "reset pin",
+            ResetCause::Software => "software",
+            ResetCause::Watchdog => "watchdog",
+            ResetCause::LowPower => "low power",
+        }
+    }
 }
 
 /// Most bytes of a fault's text; a longer one is cut.

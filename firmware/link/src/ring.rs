@@ -77,9 +77,14 @@ pub fn note(memory: &mut [u8; RING_BYTES], fault: &FaultRecord<'_>) {
     Head { noted: head.noted.wrapping_add(1), ..head }.write(memory);
 }
 
+/// Faults noted since the memory was last empty, wrapping; 0 where there is no ring.
+pub fn noted(memory: &[u8; RING_BYTES]) -> u16 {
+    Head::read(memory).map_or(0, |head| head.noted)
+}
+
 /// The faults that are kept and whole, the newest first.
 pub fn faults(memory: &[u8; RING_BYTES]) -> impl Iterator<Item = FaultRecord<'_>> {
-    let noted = Head::read(memory).map_or(0, |head| head.noted);
+    let noted = noted(memory);
     (0..SLOTS).filter_map(move |back| {
         let place = usize::from(noted.wrapping_sub(back as u16 + 1)) % SLOTS;
         let slot = memory.get(HEAD..)?.get(place * SLOT..)?;

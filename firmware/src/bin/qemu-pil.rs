@@ -24,8 +24,7 @@ fn main() -> ! {
         exit(Exit::Input)
     }
     let kept = KEPT.init(Kept::open());
-    let (plan, found) = settings::start(kept, &Config::product());
-    text::line(format_args!("parameters: {found:?}"));
+    let plan = settings::start(kept, &Config::product());
     board::run(
         |control| {
             control.spawn(tasks::control(plan).unwrap());

@@ -43,6 +43,8 @@ pub struct Telemetry {
     pub slopes: [Option<f32>; 2],
     /// Where the polarity check stands.
     pub polarity: Move,
+    /// The torque that it shows \[N m\].
+    pub shown_nm: f32,
     /// Whether the motor got it.
     pub drive: Result<(), Refusal>,
 }
@@ -76,8 +78,16 @@ pub async fn control(plan: &'static mut Plan) {
         let command = step(plan, &mut state, &frame);
         let drive = board::drive(&command);
         deadlines.finished(release, Instant::now());
-        let (authority, slopes, polarity) = (state.authority(), state.slopes(), state.polarity());
-        let telemetry = Telemetry { deadlines, frame, command, authority, slopes, polarity, drive };
+        let telemetry = Telemetry {
+            deadlines,
+            frame,
+            command,
+            authority: state.authority(),
+            slopes: state.slopes(),
+            polarity: state.polarity(),
+            shown_nm: state.shown_nm(),
+            drive,
+        };
         LATEST.lock(|latest| latest.set(Some(telemetry)));
         if command.mode == Mode::Fault && mode != Mode::Fault {
             crash::note(FaultKind::Controller, crash::Registers::default(), "");

@@ -63,6 +63,7 @@ pub struct Kept {
     /// The flash's pages; `None` if the board has none.
     store: Option<Store<board::Flash>>,
     room: &'static mut Room,
+    found: Found,
 }
 
 impl Kept {
@@ -73,17 +74,24 @@ impl Kept {
     pub fn open() -> Self {
         static ROOM: ConstStaticCell<Room> = ConstStaticCell::new(Room::new());
         let (flash, range) = board::flash();
-        Self { store: Store::new(flash, range), room: ROOM.take() }
+        Self { store: Store::new(flash, range), room: ROOM.take(), found: Found::Nothing }
     }
 
     /// The stored configuration, or the defaults with the polarity check not passed.
-    pub async fn load(&mut self, defaults: &Config) -> (Config, Found) {
-        let mut unchecked = defaults.clone();
-        unchecked.calibration.polarity_checked = false;
-        match &mut self.store {
-            Some(store) => store.load(defaults, self.room).await,
-            None => (unchecked, Found::Nothing),
-        }
+    async fn load(&mut self, defaults: &Config) -> Config {
+        let Some(store) = &mut self.store else {
+            let mut unchecked = defaults.clone();
+            unchecked.calibration.polarity_checked = false;
+            return unchecked;
+        };
+        let (config, found) = store.load(defaults, self.room).await;
+        self.found = found;
+        config
+    }
+
+    /// What was found at the start.
+    pub fn found(&self) -> &Found {
+        &self.found
     }
 
     /// Stores a configuration. The chip may stand still for as long as the flash erases, so only while no torque flows.
@@ -101,16 +109,15 @@ impl Kept {
     }
 }
 
-/// The plan to start with: of the stored configuration, or of the defaults. It is also what is in force; what was found
-/// is told beside.
+/// The plan to start with: of the stored configuration, or of the defaults. It is also what is in force.
 ///
 /// # Panics
 /// When called a second time.
 #[inline(never)]
-pub fn start(kept: &mut Kept, defaults: &Config) -> (&'static mut Plan, Found) {
+pub fn start(kept: &mut Kept, defaults: &Config) -> &'static mut Plan {
     static PLAN: StaticCell<Plan> = StaticCell::new();
-    let (config, found) = embassy_futures::block_on(kept.load(defaults));
+    let config = embassy_futures::block_on(kept.load(defaults));
     CONFIG.lock(|in_force| in_force.replace(Some(config.clone())));
     // What a store gives passes: else it gave the defaults, which are the program's own.
-    (PLAN.init(config.plan().expect("a plan of the defaults")), found)
+    PLAN.init(config.plan().expect("a plan of the defaults"))
 }

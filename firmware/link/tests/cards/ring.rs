@@ -2,7 +2,7 @@
 
 use control::{CAUSES, Causes, Mode};
 use link::report::{FaultKind, FaultRecord, ResetCause};
-use link::ring::{RING_BYTES, SLOTS, clear, faults, note, start};
+use link::ring::{RING_BYTES, SLOTS, clear, faults, note, noted, start};
 use proptest::prelude::*;
 
 fn fault(steps: u32, text: &str) -> FaultRecord<'_> {
@@ -36,13 +36,13 @@ fn the_newest_faults_are_kept() {
     for n in 1..=3 * SLOTS as u32 + 2 {
         note(&mut memory, &fault(n, "panicked at control.rs"));
         let expected: Vec<u32> = (1..=n).rev().take(SLOTS).collect();
-        assert_eq!(steps(&memory), expected);
+        assert_eq!((steps(&memory), noted(&memory)), (expected, n as u16));
     }
     assert_eq!(start(&mut memory), 2);
     let newest = faults(&memory).next();
     assert_eq!(newest, Some(fault(3 * SLOTS as u32 + 2, "panicked at control.rs")));
     clear(&mut memory);
-    assert_eq!(steps(&memory), []);
+    assert_eq!((steps(&memory), noted(&memory)), (vec![], 0));
     assert_eq!(start(&mut memory), 3);
 }
 
