@@ -1,9 +1,9 @@
 //! What is kept when something goes wrong, and what is done first: the outputs go off.
 
 use crate::{board, retained, tasks};
-use control::{Causes, Mode};
 use core::sync::atomic::{AtomicU32, Ordering};
 use link::report::{FaultKind, FaultRecord, ResetCause};
+use link::ring::{self, LastStep};
 
 /// How often the program started, and why this time.
 static START: AtomicU32 = AtomicU32::new(0);
@@ -25,11 +25,12 @@ pub fn start(cause: ResetCause) {
     START.store(starts, Ordering::Relaxed);
     CAUSE.store(cause as u32, Ordering::Relaxed);
     let told = retained::with(|ring| {
-        let newest = link::ring::faults(ring).next();
+        let newest = ring::faults(ring).next();
         newest.is_some_and(|f| f.kind == FaultKind::Watchdog && f.boot.wrapping_add(1) == starts)
     });
     if cause == ResetCause::Watchdog && told == Some(false) {
-        note(FaultKind::Watchdog, Registers::default(), "the lowest priority stood still");
+        let last = retained::with(|ring| ring::last_step(ring)).flatten().unwrap_or_default();
+        keep(FaultKind::Watchdog, &last, Registers::default(), "the lowest priority stood still");
     }
 }
 
@@ -45,17 +46,23 @@ pub fn cause() -> ResetCause {
 
 /// Keeps a fault with what the controller did last. From any context.
 pub fn note(kind: FaultKind, registers: Registers, text: &str) {
-    let latest = tasks::latest();
+    keep(kind, &tasks::latest().map_or_else(LastStep::default, |t| t.last_step()), registers, text);
+}
+
+fn keep(kind: FaultKind, last: &LastStep, registers: Registers, text: &str) {
+    let LastStep { steps, frame_us, causes, mode } = *last;
+    let (boot, reset) = (starts(), cause());
+    let Registers { exception, values: registers } = registers;
     retained::note(&FaultRecord {
         kind,
-        boot: starts(),
-        reset: cause(),
-        mode: latest.as_ref().map_or(Mode::Off, |t| t.command.mode),
-        steps: latest.as_ref().map_or(0, |t| t.deadlines.steps),
-        frame_us: latest.as_ref().map_or(0, |t| t.frame.now_us),
-        causes: latest.as_ref().map_or(Causes::NONE, |t| t.command.causes),
-        exception: registers.exception,
-        registers: registers.values,
+        boot,
+        reset,
+        mode,
+        steps,
+        frame_us,
+        causes,
+        exception,
+        registers,
         text,
     });
 }

@@ -3,7 +3,7 @@
 use super::settings;
 use crate::alive::Task;
 use crate::deadline::{Deadlines, PERIOD};
-use crate::{board, crash};
+use crate::{board, crash, retained};
 use ::control::polarity::Move;
 use ::control::{Command, Mode, Plan, SensorFrame, State, step};
 use core::cell::Cell;
@@ -11,6 +11,7 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_time::{Instant, Timer};
 use link::report::FaultKind;
+use link::ring::{self, LastStep};
 
 /// Why a board gives no torque, whatever is commanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +48,18 @@ pub struct Telemetry {
     pub shown_nm: f32,
     /// Whether the motor got it.
     pub drive: Result<(), Refusal>,
+}
+
+impl Telemetry {
+    /// Where the controller stood.
+    pub fn last_step(&self) -> LastStep {
+        LastStep {
+            steps: self.deadlines.steps,
+            frame_us: self.frame.now_us,
+            causes: self.command.causes,
+            mode: self.command.mode,
+        }
+    }
 }
 
 static LATEST: Mutex<CriticalSectionRawMutex, Cell<Option<Telemetry>>> = Mutex::new(Cell::new(None));
@@ -89,6 +102,7 @@ pub async fn control(plan: &'static mut Plan) {
             drive,
         };
         LATEST.lock(|latest| latest.set(Some(telemetry)));
+        retained::with(|ring| ring::stepped(ring, &telemetry.last_step()));
         if command.mode == Mode::Fault && mode != Mode::Fault {
             crash::note(FaultKind::Controller, crash::Registers::default(), "");
         }

@@ -4,4 +4,5 @@ mod budgets;
 mod deadlines;
 mod faults;
 mod no_panic;
+mod outputs;
 mod replay;
