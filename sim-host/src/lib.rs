@@ -3,6 +3,7 @@
 
 pub mod basin;
 pub mod bicycle;
+pub mod board;
 pub mod cli;
 pub mod design;
 pub mod eigen;

@@ -1,0 +1,14 @@
+//! A board at the other end of a line.
+
+pub mod compare;
+mod controller;
+mod error;
+mod link_fault;
+mod lockstep;
+pub mod qemu;
+mod watch;
+
+pub use controller::{Controller, Tally};
+pub use error::BoardError;
+pub use link_fault::{Harm, LinkFault, Way};
+pub use lockstep::Lockstep;
