@@ -17,8 +17,34 @@ pub mod board;
 #[path = "board/stm32f405/mod.rs"]
 pub mod board;
 
+pub mod alive;
+pub mod crash;
 pub mod deadline;
+pub mod retained;
 pub mod tasks;
+
+/// Which image this is.
+#[derive(Clone, Copy, Debug)]
+pub struct Image {
+    /// Its name.
+    pub name: &'static str,
+    /// The program's version.
+    pub version: &'static str,
+    /// The commit it is made from.
+    pub commit: &'static str,
+}
+
+/// The [`Image`] that is being compiled.
+#[macro_export]
+macro_rules! image {
+    () => {
+        $crate::Image {
+            name: env!("CARGO_BIN_NAME"),
+            version: env!("CARGO_PKG_VERSION"),
+            commit: env!("FIRMWARE_COMMIT").trim_ascii_end(),
+        }
+    };
+}
 
 /// Which image this is: its name, version and commit, one blank between them.
 #[macro_export]

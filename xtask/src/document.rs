@@ -26,7 +26,7 @@ Written by `cargo xtask size` and `cargo xtask instructions`; a test compares it
 
 ## Size
 
-Bytes, profile `firmware`. Flash is text + data, RAM is data + bss + 12 KiB of stack.
+Bytes, profile `firmware`. Flash is text + data, RAM is data + bss + 32 KiB of stack.
 
 {}
 ## Instructions of a control step

@@ -7,7 +7,7 @@ use std::process::Command;
 use std::time::Duration;
 
 /// The stack's room in memory.x \[bytes\].
-const STACK: u32 = 12 * 1024;
+const STACK: u32 = 32 * 1024;
 
 /// An image's sections \[bytes\].
 #[derive(Clone, Copy, Debug)]

@@ -8,6 +8,7 @@
 //! * [`leaves`]: every parameter by its [`key`], the [`law`] too; [`page`] lists them, [`parameters`]
 //!   answers what is asked of them, or with a [`refusal`];
 //! * [`store`]: the parameters in flash, as a [`record`];
+//! * [`ring`]: the last faults, in memory that keeps them through a reset;
 //! * [`sender`]: what waits to go out, and what is dropped when too much does;
 //! * [`lockstep`]: what goes over in a control period when the board is emulated.
 //!
@@ -65,6 +66,7 @@ pub mod parameters;
 pub mod record;
 pub mod refusal;
 pub mod report;
+pub mod ring;
 pub mod sender;
 pub mod store;
 pub mod telemetry;

@@ -10,7 +10,7 @@ use crate::frame::{Frame, MAX_PAYLOAD, encode_with};
 use crate::key::Key;
 use crate::page::Page;
 use crate::refusal::Refusal;
-use crate::report::{FaultRecord, Hello, cut};
+use crate::report::{FaultRecord, Hello, KeptFault, cut};
 use crate::telemetry::{self, Telemetry};
 use control::wire::{encode_command, encode_frame};
 use control::{Command, SensorFrame};
@@ -45,6 +45,13 @@ pub enum Message<'a> {
     Store,
     /// To the board: all parameters to their defaults, not yet in flash. Answer: [`Message::Done`].
     Reset,
+    /// To the board: a fault that was kept. Answer: [`Message::KeptFault`].
+    ListFaults {
+        /// Its place, the newest at 0.
+        from: u16,
+    },
+    /// To the board: forget the faults. Answer: [`Message::Done`].
+    ClearFaults,
     /// To the board, processor in the loop: begin anew, with the configuration whose bytes came before if they are
     /// all there, else with the one in force. Answer: [`Message::Done`].
     PilReset,
@@ -79,6 +86,8 @@ pub enum Message<'a> {
         /// The version that came in.
         theirs: u8,
     },
+    /// From the board: a fault that was kept, and how many there are.
+    KeptFault(KeptFault<'a>),
     /// From the board, processor in the loop: the command of a step. Its number is that of the newest sensor frame.
     PilCommand {
         /// The command.
@@ -115,6 +124,8 @@ impl<'a> Message<'a> {
             Message::SetLaw(_) => 0x06,
             Message::Store => 0x07,
             Message::Reset => 0x08,
+            Message::ListFaults { .. } => 0x09,
+            Message::ClearFaults => 0x0a,
             Message::PilReset => 0x10,
             Message::PilFrame(_) => 0x11,
             Message::PilConfig { .. } => 0x12,
@@ -125,6 +136,7 @@ impl<'a> Message<'a> {
             Message::Done => 0x85,
             Message::Refused(_) => 0x86,
             Message::WrongVersion { .. } => 0x87,
+            Message::KeptFault(_) => 0x88,
             Message::PilCommand { .. } => 0x91,
             Message::Telemetry(_) => 0xa0,
             Message::Fault(_) => 0xa1,
@@ -140,7 +152,7 @@ impl<'a> Message<'a> {
 
     fn fill(&self, to: &mut Writer<'_>) {
         match self {
-            Message::List { from } => to.u16(*from),
+            Message::List { from } | Message::ListFaults { from } => to.u16(*from),
             Message::Get { key } => to.text(key.parts()),
             Message::Set { key, value } | Message::Value { key, value } => {
                 to.scalar(*value);
@@ -157,6 +169,7 @@ impl<'a> Message<'a> {
             }
             Message::Refused(refusal) => refusal.encode(to),
             Message::WrongVersion { theirs } => to.u8(*theirs),
+            Message::KeptFault(kept) => kept.encode(to),
             Message::PilConfig { at, bytes } => {
                 to.u16(*at);
                 to.put(bytes.iter().copied());
@@ -172,6 +185,7 @@ impl<'a> Message<'a> {
             | Message::GetLaw
             | Message::Store
             | Message::Reset
+            | Message::ClearFaults
             | Message::PilReset
             | Message::Done => {}
         }
@@ -192,6 +206,8 @@ impl<'a> Message<'a> {
             0x06 => Some(Message::SetLaw(frame.payload)),
             0x07 => Some(Message::Store),
             0x08 => Some(Message::Reset),
+            0x09 => from.u16().map(|from| Message::ListFaults { from }),
+            0x0a => Some(Message::ClearFaults),
             0x10 => Some(Message::PilReset),
             0x11 => telemetry::frame(&mut from).map(Message::PilFrame),
             0x12 => from.u16().map(|at| Message::PilConfig { at, bytes: from.0 }),
@@ -202,6 +218,7 @@ impl<'a> Message<'a> {
             0x85 => Some(Message::Done),
             0x86 => Refusal::decode(&mut from).map(Message::Refused),
             0x87 => from.u8().map(|theirs| Message::WrongVersion { theirs }),
+            0x88 => KeptFault::decode(&mut from).map(Message::KeptFault),
             0x91 => pil_command(&mut from),
             0xa0 => Telemetry::decode(&mut from).map(Message::Telemetry),
             0xa1 => FaultRecord::decode(&mut from).map(Message::Fault),

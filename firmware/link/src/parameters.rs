@@ -115,8 +115,8 @@ pub fn request<'a>(received: &Received<'a>) -> Result<(u16, Message<'a>), NoRequ
 
 /// Carries out what is asked of the parameters and answers it; the answer is put together in `room`.
 ///
-/// `None`: the caller answers, for it has the flash, the image's name or the loop: `AskHello`, `Store` when not
-/// engaged, `PilReset`, `PilFrame`. What comes from a board is no request, and gets `None` as well.
+/// `None`: the caller answers, for it has the flash, the image's name, the faults or the loop: `AskHello`, `Store`
+/// when not engaged, `ListFaults`, `ClearFaults`, `PilReset`, `PilFrame`. What comes from a board is no request, and gets `None` as well.
 pub fn answer<'a>(
     defaults: &Config,
     config: &mut Config,

@@ -2,8 +2,9 @@
 
 use crate::bytes::{Reader, Writer};
 use crate::frame::CRC;
+use crate::telemetry;
 use control::wire::encode_config;
-use control::{Causes, Config};
+use control::{Causes, Config, Mode};
 
 /// Who the board is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +36,7 @@ impl<'a> Hello<'a> {
     }
 }
 
-/// What ended the program the last time.
+/// What a fault record is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum FaultKind {
@@ -47,58 +48,135 @@ pub enum FaultKind {
     Watchdog = 3,
     /// The controller went to `control::Mode::Fault`; the causes tell why. The program went on.
     Controller = 4,
+    /// The supply went below what the chip needs.
+    BrownOut = 5,
 }
 
 impl FaultKind {
     /// The kind of a number on the wire.
-    pub const fn numbered(number: u8) -> Option<Self> {
-        Some(match number {
-            1 => FaultKind::Panic,
-            2 => FaultKind::Exception,
-            3 => FaultKind::Watchdog,
-            4 => FaultKind::Controller,
-            _ => return None,
-        })
+    pub fn numbered(number: u8) -> Option<Self> {
+        use FaultKind::*;
+        [Panic, Exception, Watchdog, Controller, BrownOut].into_iter().find(|kind| *kind as u8 == number)
     }
 }
 
+/// Why the program was started.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum ResetCause {
+    /// The board can't tell.
+    #[default]
+    Unknown = 0,
+    /// Power came.
+    PowerOn = 1,
+    /// The supply was too low for a while.
+    BrownOut = 2,
+    /// The reset pin: a button or a debugger.
+    Pin = 3,
+    /// The program itself, as after a panic.
+    Software = 4,
+    /// A watchdog that was not fed.
+    Watchdog = 5,
+    /// A sleep that is not allowed.
+    LowPower = 6,
+}
+
+impl ResetCause {
+    /// The cause of a number on the wire.
+    pub fn numbered(number: u8) -> Option<Self> {
+        use ResetCause::*;
+        let all = [Unknown, PowerOn, BrownOut, Pin, Software, Watchdog, LowPower];
+        all.into_iter().find(|cause| *cause as u8 == number)
+    }
+}
+
+/// Most bytes of a fault's text; a longer one is cut.
+pub const FAULT_TEXT_BYTES: usize = 200;
+/// Most bytes of a fault record on the wire.
+pub const FAULT_BYTES: usize = 51 + 1 + FAULT_TEXT_BYTES;
+
 /// A fault, as it was kept. What does not belong to its kind is 0 or empty.
+///
+/// Steps, time, mode and causes are those of the last control step before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaultRecord<'a> {
     /// What kind of fault.
     pub kind: FaultKind,
-    /// Control steps done before it.
+    /// Number of the program's start that recorded it, from 1; a watchdog's is recorded by the start after it.
+    pub boot: u32,
+    /// Why the program was started that time.
+    pub reset: ResetCause,
+    /// The controller's mode.
+    pub mode: Mode,
+    /// Control steps done.
     pub steps: u32,
-    /// The controller's causes at the last step.
+    /// [`control::SensorFrame::now_us`] of the last frame \[us\], wrapping.
+    pub frame_us: u32,
+    /// The controller's causes.
     pub causes: Causes,
     /// The exception's number.
     pub exception: u32,
     /// The core's registers: configurable and hard fault status, bus fault address, stack pointer,
     /// program counter, link register.
     pub registers: [u32; 6],
-    /// In words, cut to what a frame holds.
+    /// In words, cut to [`FAULT_TEXT_BYTES`].
     pub text: &'a str,
 }
 
 impl<'a> FaultRecord<'a> {
     pub(crate) fn encode(&self, to: &mut Writer<'_>) {
         to.u8(self.kind as u8);
+        to.u32(self.boot);
+        to.u8(self.reset as u8);
+        to.u8(self.mode as u8);
         to.u32(self.steps);
+        to.u32(self.frame_us);
         to.u64(self.causes.0);
         to.u32(self.exception);
         self.registers.into_iter().for_each(|register| to.u32(register));
-        to.text([cut(self.text, 255)].into_iter());
+        to.text([cut(self.text, FAULT_TEXT_BYTES)].into_iter());
     }
 
     pub(crate) fn decode(from: &mut Reader<'a>) -> Option<Self> {
         Some(Self {
             kind: FaultKind::numbered(from.u8()?)?,
+            boot: from.u32()?,
+            reset: ResetCause::numbered(from.u8()?)?,
+            mode: telemetry::mode(from.u8()?)?,
             steps: from.u32()?,
+            frame_us: from.u32()?,
             causes: Causes(from.u64()?),
             exception: from.u32()?,
             registers: [from.u32()?, from.u32()?, from.u32()?, from.u32()?, from.u32()?, from.u32()?],
             text: from.text()?,
         })
+    }
+}
+
+/// One place of the faults that were kept, the newest at 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KeptFault<'a> {
+    /// Its place.
+    pub place: u16,
+    /// How many are kept.
+    pub total: u16,
+    /// What is there; `None` past the end.
+    pub record: Option<FaultRecord<'a>>,
+}
+
+impl<'a> KeptFault<'a> {
+    pub(crate) fn encode(&self, to: &mut Writer<'_>) {
+        to.u16(self.place);
+        to.u16(self.total);
+        if let Some(record) = &self.record {
+            record.encode(to);
+        }
+    }
+
+    pub(crate) fn decode(from: &mut Reader<'a>) -> Option<Self> {
+        let (place, total) = (from.u16()?, from.u16()?);
+        let record = if place < total { Some(FaultRecord::decode(from)?) } else { None };
+        Some(Self { place, total, record })
     }
 }
 

@@ -9,6 +9,7 @@
 use control::{Config, Plan};
 use cortex_m_semihosting::hprintln;
 use embassy_time::{Duration, Instant, Timer};
+use firmware::alive::Task;
 use firmware::board::semihosting::{argument, exit};
 use firmware::board::{self, Exit, executor};
 use firmware::tasks;
@@ -58,7 +59,7 @@ fn main() -> ! {
     // The made-up sensors are as drawn.
     config.calibration.polarity_checked = true;
     let Ok(plan) = config.plan() else { exit(Exit::Input) };
-    let plan: &'static Plan = PLAN.init(plan);
+    let plan = PLAN.init(plan);
     let length = Duration::from_secs(argument("seconds").unwrap_or(5).into());
     let every = Duration::from_millis(argument("every_ms").unwrap_or(100).into());
     let hold = argument("block_us").map(|us| Duration::from_micros(us.into()));
@@ -70,7 +71,7 @@ fn main() -> ! {
             }
         },
         |thread| {
-            thread.spawn(tasks::supervise().unwrap());
+            thread.spawn(tasks::supervise(&[Task::Control, Task::Report]).unwrap());
             thread.spawn(tasks::report().unwrap());
             thread.spawn(hog().unwrap());
             thread.spawn(judge(length).unwrap());

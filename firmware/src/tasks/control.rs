@@ -1,12 +1,16 @@
 //! The 1 kHz task: sensors in, one step, torque out. It waits for nothing but its next release.
 
-use crate::board;
+use super::settings;
+use crate::alive::Task;
 use crate::deadline::{Deadlines, PERIOD};
-use ::control::{Command, Plan, SensorFrame, State, step};
+use crate::{board, crash};
+use ::control::polarity::Move;
+use ::control::{Command, Mode, Plan, SensorFrame, State, step};
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_time::{Instant, Timer};
+use link::report::FaultKind;
 
 /// Why a board gives no torque, whatever is commanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +37,12 @@ pub struct Telemetry {
     pub frame: SensorFrame,
     /// The command made of them.
     pub command: Command,
+    /// The part of the torque that is permitted, 0 to 1.
+    pub authority: f32,
+    /// As of [`State::slopes`].
+    pub slopes: [Option<f32>; 2],
+    /// Where the polarity check stands.
+    pub polarity: Move,
     /// Whether the motor got it.
     pub drive: Result<(), Refusal>,
 }
@@ -44,22 +54,35 @@ pub fn latest() -> Option<Telemetry> {
     LATEST.lock(Cell::get)
 }
 
-/// Runs one [`step`] at every whole [`PERIOD`] of the clock, the first at the one after its start.
+/// Runs one [`step`] at every whole [`PERIOD`] of the clock, the first at the one after its start, with the plan that
+/// [`settings::offer`] offered last.
 ///
 /// A step held up is done as soon as possible, and so are those released meanwhile: their number
 /// is always that of the periods gone by, and each late one is counted.
 #[embassy_executor::task]
-pub async fn control(plan: &'static Plan) {
+pub async fn control(plan: &'static mut Plan) {
     let mut state = State::default();
     let mut deadlines = Deadlines::default();
+    let mut mode = Mode::Off;
     let mut release = Instant::from_millis(Instant::now().as_millis());
     loop {
         release += PERIOD;
         Timer::at(release).await;
+        if let Some(next) = settings::take(mode) {
+            *plan = next;
+            (state, mode) = (State::default(), Mode::Off);
+        }
         let frame = board::sense();
         let command = step(plan, &mut state, &frame);
         let drive = board::drive(&command);
         deadlines.finished(release, Instant::now());
-        LATEST.lock(|latest| latest.set(Some(Telemetry { deadlines, frame, command, drive })));
+        let (authority, slopes, polarity) = (state.authority(), state.slopes(), state.polarity());
+        let telemetry = Telemetry { deadlines, frame, command, authority, slopes, polarity, drive };
+        LATEST.lock(|latest| latest.set(Some(telemetry)));
+        if command.mode == Mode::Fault && mode != Mode::Fault {
+            crash::note(FaultKind::Controller, crash::Registers::default(), "");
+        }
+        mode = command.mode;
+        Task::Control.report();
     }
 }

@@ -2,18 +2,24 @@
 //!
 //! | task | priority | does |
 //! | --- | --- | --- |
-//! | [`control`] | its own executor in an interrupt, above all but the clock | the 1 kHz step |
-//! | [`supervise`] | thread | feeds the watchdog while steps are being done |
+//! | [`control`] | its own executor in an interrupt, above all but clock and motor | the 1 kHz step |
+//! | [`line`] | thread | the engineer's line: parameters, kept faults, telemetry |
 //! | [`report`] | thread | says once a second what the control task did |
+//! | [`supervise`] | thread | feeds the watchdog while all tasks report |
 //!
-//! A board is a module with these functions: `run` (starts the clock and both executors), `sense`
-//! and `drive` (the sensors and the motor, at every step), `report` (one line to the engineer)
-//! and `feed_watchdog`.
+//! A board is a module with these functions: `run` (starts the clock and the executors), `sense`
+//! and `drive` (the sensors and the motor, at every step), `report` (one line to the engineer),
+//! `line::read` and `line::write` (bytes from and to the engineer's computer), `flash` (where parameters
+//! are kept), `feed_watchdog` and `watchdog_patience`, `reset_cause`, `outputs_off` and `restart`.
+//! Its handlers of panics, exceptions and a failing supply end in [`crate::crash`].
 
 mod control;
+mod line;
 mod report;
+pub mod settings;
 mod supervise;
 
 pub use control::{Refusal, Telemetry, control, latest};
+pub use line::line;
 pub use report::report;
 pub use supervise::{WATCHDOG, supervise};

@@ -1,15 +1,23 @@
-//! Telemetry for the engineer, from the lowest priority.
+//! A line of text for the engineer, from the lowest priority.
 
 use super::latest;
+use crate::alive::Task;
 use crate::board;
 use embassy_time::{Duration, Ticker};
+
+/// How often the task reports that it is alive, and how many of these make a second.
+const BEAT: Duration = Duration::from_millis(20);
+const BEATS: u32 = 50;
 
 /// Says once a second what the control task did last.
 #[embassy_executor::task]
 pub async fn report() {
-    let mut second = Ticker::every(Duration::from_secs(1));
+    let mut beat = Ticker::every(BEAT);
     loop {
-        second.next().await;
+        for _ in 0..BEATS {
+            beat.next().await;
+            Task::Report.report();
+        }
         if let Some(telemetry) = latest() {
             board::report(&telemetry);
         }

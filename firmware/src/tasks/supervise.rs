@@ -1,24 +1,26 @@
-//! Lets the watchdog bite when control stands still. It runs at the lowest priority, so that an
-//! interrupt or a task that never ends is caught as well.
+//! Lets the watchdog bite when a task stands still. It runs at the lowest priority, so that an interrupt or a task that
+//! never ends is caught as well.
 
-use super::latest;
-use crate::board;
+use crate::alive::{Task, silent};
+use crate::{board, crash};
+use core::future::pending;
 use embassy_time::{Duration, Ticker};
+use link::report::FaultKind;
 
 /// How long the watchdog waits for food before it resets the chip.
 pub const WATCHDOG: Duration = Duration::from_millis(100);
 
-/// Feeds the watchdog ten times in its patience, each time only if a step was done since the last.
+/// Feeds the watchdog ten times in its patience, as long as each of `tasks` reports. After the first that does not it is
+/// never fed again.
 #[embassy_executor::task]
-pub async fn supervise() {
+pub async fn supervise(tasks: &'static [Task]) {
     let mut check = Ticker::every(WATCHDOG / 10);
-    let mut seen = 0;
     loop {
         check.next().await;
-        let steps = latest().map_or(0, |telemetry| telemetry.deadlines.steps);
-        if steps != seen {
-            board::feed_watchdog();
+        if let Some(task) = silent(tasks) {
+            crash::note(FaultKind::Watchdog, crash::Registers::default(), task.name());
+            pending::<()>().await;
         }
-        seen = steps;
+        board::feed_watchdog();
     }
 }

@@ -5,6 +5,7 @@ use control::{Config, Plan};
 use link::frame::{MAX_FRAME, MAX_PAYLOAD, VERSION};
 use link::leaves::each_but_law;
 use link::record::{LAYOUT, MAX_ENTRIES, RECORD_BYTES, encode};
+use link::report::{FAULT_BYTES, FAULT_TEXT_BYTES};
 use link::store::MIN_PAGE;
 
 const PAGE: &str = include_str!("../../../../docs/link.md");
@@ -32,6 +33,7 @@ fn the_page_has_the_programs_numbers() {
         format!("the payload; {MAX_FRAME} at most, {telemetry} for telemetry"),
         format!("{} telemetry frames a second fill the line", 11_520 / telemetry),
         format!("takes {:.0} % of it", 100.0 * 50.0 * telemetry as f64 / 11_520.0),
+        format!("fault record is at most {FAULT_BYTES} bytes, its text {FAULT_TEXT_BYTES}"),
         format!("configuration is {} bytes", size_of::<Config>()),
         format!("a `Plan` ({} included)", size_of::<Plan>()),
         format!("u8 layout ({LAYOUT})"),

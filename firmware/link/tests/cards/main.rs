@@ -9,5 +9,6 @@ mod lockstep;
 mod messages;
 mod parameters;
 mod power;
+mod ring;
 mod sender;
 mod store;

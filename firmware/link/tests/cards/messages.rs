@@ -8,7 +8,9 @@ use link::message::{Message, NoMessage};
 use link::page::Page;
 use link::parameters::request;
 use link::refusal::{Refusal, Why};
-use link::report::{FaultKind, FaultRecord, Hello, config_hash};
+use link::report::{
+    FAULT_BYTES, FAULT_TEXT_BYTES, FaultKind, FaultRecord, Hello, KeptFault, ResetCause, config_hash,
+};
 use link::telemetry::{Telemetry, mode};
 use proptest::prelude::*;
 
@@ -104,7 +106,11 @@ pub(crate) fn all() -> Vec<Message<'static>> {
     };
     let fault = FaultRecord {
         kind: FaultKind::Exception,
+        boot: 12,
+        reset: ResetCause::Watchdog,
+        mode: Mode::Limp,
         steps: 77,
+        frame_us: 123_456_789,
         causes: Causes::all(&CAUSES),
         exception: 3,
         registers: [1, 2, 3, 4, 5, 6],
@@ -123,6 +129,8 @@ pub(crate) fn all() -> Vec<Message<'static>> {
         Message::SetLaw(&[1, 2, 3]),
         Message::Store,
         Message::Reset,
+        Message::ListFaults { from: 3 },
+        Message::ClearFaults,
         Message::PilReset,
         Message::Hello(hello),
         Message::Page(Page { from: 1, total: 2, count: 0, bytes: &[] }),
@@ -131,6 +139,8 @@ pub(crate) fn all() -> Vec<Message<'static>> {
         Message::Done,
         Message::Refused(refusal),
         Message::WrongVersion { theirs: 9 },
+        Message::KeptFault(KeptFault { place: 1, total: 2, record: Some(fault) }),
+        Message::KeptFault(KeptFault { place: 2, total: 2, record: None }),
         Message::PilFrame(SensorFrame::missing()),
         Message::PilCommand { command, authority: 0.5 },
         Message::PilConfig { at: 512, bytes: &[9, 8, 7] },
@@ -176,7 +186,7 @@ fn every_message_comes_through() {
     }
 }
 
-/// Situation: every reason, mode and kind of fault there is, and numbers beyond them.
+/// Situation: every reason, mode, kind of fault and cause of a reset there is, and numbers beyond them.
 /// Action: to its number and back.
 /// Must hold: the same; beyond them none.
 #[test]
@@ -186,7 +196,11 @@ fn every_number_means_one_thing() {
         assert_eq!(mode(number).map(|mode| mode as u8), (0..=6).contains(&number).then_some(number));
         assert_eq!(
             FaultKind::numbered(number).map(|kind| kind as u8),
-            (1..=4).contains(&number).then_some(number)
+            (1..=5).contains(&number).then_some(number)
+        );
+        assert_eq!(
+            ResetCause::numbered(number).map(|cause| cause as u8),
+            (0..=6).contains(&number).then_some(number)
         );
     }
 }
@@ -216,15 +230,39 @@ fn what_is_no_request_is_answered() {
 fn long_words_are_cut_between_letters() {
     let long = "\u{e9}".repeat(400);
     through(&Message::Log(&long), |got| assert_eq!(*got, Message::Log(&long[..MAX_PAYLOAD])));
-    let record = |text| FaultRecord {
+    through(&Message::Fault(panic_of(&long)), |got| {
+        assert_eq!(*got, Message::Fault(panic_of(&long[..FAULT_TEXT_BYTES])))
+    });
+}
+
+fn panic_of(text: &str) -> FaultRecord<'_> {
+    FaultRecord {
         kind: FaultKind::Panic,
+        boot: 1,
+        reset: ResetCause::PowerOn,
+        mode: Mode::Off,
         steps: 0,
+        frame_us: 0,
         causes: Causes::NONE,
         exception: 0,
         registers: [0; 6],
         text,
-    };
-    through(&Message::Fault(record(&long)), |got| assert_eq!(*got, Message::Fault(record(&long[..254]))));
+    }
+}
+
+/// Situation: a fault record with the longest text.
+/// Action: kept, and through the link.
+/// Must hold: it takes as many bytes as its size says, and a frame has room for it and its place.
+#[test]
+fn the_largest_fault_record_has_its_size() {
+    let text = "x".repeat(FAULT_TEXT_BYTES);
+    let kept = KeptFault { place: 0, total: 1, record: Some(panic_of(&text)) };
+    let mut bytes = [0; MAX_FRAME];
+    let used = Message::KeptFault(kept).encode(1, &mut bytes).expect("room");
+    let plain = cobs::decode(&bytes[1..used], &mut [0; MAX_FRAME]).expect("stuffed").frame_size();
+    assert_eq!(plain - 8, 4 + FAULT_BYTES);
+    assert!((200..=300).contains(&(4 + FAULT_BYTES)));
+    through(&Message::KeptFault(kept), |got| assert_eq!(*got, Message::KeptFault(kept)));
 }
 
 /// Situation: two configurations that differ in one parameter.

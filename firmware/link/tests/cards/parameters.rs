@@ -204,6 +204,8 @@ fn what_others_answer_is_left_to_them() {
     for request in [
         Message::AskHello,
         Message::Store,
+        Message::ListFaults { from: 0 },
+        Message::ClearFaults,
         Message::PilReset,
         Message::Done,
         Message::WrongVersion { theirs: 2 },

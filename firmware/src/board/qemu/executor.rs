@@ -1,4 +1,4 @@
-//! Three executors: two in interrupts of peripherals that the board does not use, one in the thread.
+//! Four executors: three in interrupts of peripherals that the board does not use, one in the thread.
 #![allow(unsafe_code)]
 
 use super::{fault, time};
@@ -10,6 +10,7 @@ use static_cell::StaticCell;
 use stm32_metapac::{Interrupt, interrupt};
 
 static CONTROL: InterruptExecutor = InterruptExecutor::new();
+static BELOW_CONTROL: InterruptExecutor = InterruptExecutor::new();
 static ABOVE_CONTROL: InterruptExecutor = InterruptExecutor::new();
 
 /// Starts the clock and the executors: `control` gets the one at control's priority, `thread` the
@@ -26,6 +27,7 @@ pub fn run(control: impl FnOnce(SendSpawner), thread: impl FnOnce(Spawner)) -> !
         core.SCB.set_priority(SystemHandler::SysTick, 0x00);
         core.NVIC.set_priority(Interrupt::USART6, 0x20);
         core.NVIC.set_priority(Interrupt::UART5, 0x40);
+        core.NVIC.set_priority(Interrupt::USART3, 0x60);
     }
     time::start(core.SYST);
 
@@ -52,6 +54,17 @@ pub fn run(control: impl FnOnce(SendSpawner), thread: impl FnOnce(Spawner)) -> !
 /// Starts an executor whose tasks interrupt control: for tests that hold it up.
 pub fn above_control() -> SendSpawner {
     ABOVE_CONTROL.start(Interrupt::USART6)
+}
+
+/// Starts an executor whose tasks control interrupts and the thread does not: for what is hardware elsewhere.
+pub fn below_control() -> SendSpawner {
+    BELOW_CONTROL.start(Interrupt::USART3)
+}
+
+#[interrupt]
+fn USART3() {
+    // SAFETY: the handler of the interrupt that BELOW_CONTROL was started with.
+    unsafe { BELOW_CONTROL.on_interrupt() }
 }
 
 #[interrupt]

@@ -3,19 +3,26 @@
 
 pub mod executor;
 pub mod fault;
+mod flash;
+pub mod line;
+pub mod mishap;
+pub mod pil;
 pub mod recording;
+mod reset;
 pub mod semihosting;
 mod sensors;
 pub mod stack;
+pub mod text;
 pub mod time;
 mod watchdog;
 
 pub use executor::run;
+pub use flash::{Flash, flash};
+pub use reset::{outputs_off, reset_cause, restart, restarts};
 pub use sensors::{drive, sense};
-pub use watchdog::feed_watchdog;
+pub use watchdog::{feed_watchdog, watchdog_patience};
 
 use crate::tasks::Telemetry;
-use cortex_m_semihosting::hprintln;
 
 /// How an image ends: the exit status of QEMU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,9 +44,9 @@ pub enum Exit {
     Watchdog = 104,
 }
 
-/// One line on QEMU's standard output; the torque in mN m, since printing an f32 takes 20 KB of flash.
+/// One line of text; the torque in mN m, since printing an f32 takes 20 KB of flash.
 pub fn report(t: &Telemetry) {
-    hprintln!(
+    text::line(format_args!(
         "steps={} late={} worst_us={} torque_mn_m={} mode={} drive={:?}",
         t.deadlines.steps,
         t.deadlines.late,
@@ -47,5 +54,5 @@ pub fn report(t: &Telemetry) {
         (t.command.torque_nm * 1e3) as i32,
         t.command.mode.name(),
         t.drive
-    );
+    ));
 }

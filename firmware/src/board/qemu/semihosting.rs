@@ -39,15 +39,20 @@ impl File {
     /// Fills `bytes`; `false` when the file ends before.
     pub fn read_exact(&mut self, mut bytes: &mut [u8]) -> bool {
         while !bytes.is_empty() {
-            // SAFETY: the arguments of SYS_READ: handle, a buffer the host may write, its length.
-            let left = unsafe { syscall!(READ, self.0, bytes.as_mut_ptr(), bytes.len()) };
-            let got = bytes.len() - left.min(bytes.len());
+            let got = self.read_some(bytes);
             if got == 0 {
                 return false;
             }
             bytes = &mut bytes[got..];
         }
         true
+    }
+
+    /// Waits for bytes, and takes as many as are there and fit; how many, 0 at the end.
+    fn read_some(&mut self, bytes: &mut [u8]) -> usize {
+        // SAFETY: the arguments of SYS_READ: handle, a buffer the host may write, its length.
+        let left = unsafe { syscall!(READ, self.0, bytes.as_mut_ptr(), bytes.len()) };
+        bytes.len() - left.min(bytes.len())
     }
 
     /// Writes all of `bytes`.
@@ -58,6 +63,49 @@ impl File {
         // SAFETY: the arguments of SYS_WRITE: handle, a buffer the host may read, its length.
         let left = unsafe { syscall!(WRITE, self.0, bytes.as_ptr(), bytes.len()) };
         assert!(left == 0, "the host took {left} bytes too few");
+    }
+}
+
+/// QEMU's standard input and output.
+pub struct Stream {
+    input: File,
+    output: File,
+}
+
+impl Stream {
+    /// Opens both.
+    ///
+    /// # Panics
+    /// When the host can't.
+    pub fn open() -> Self {
+        Self {
+            input: File::open(c":tt", nr::open::R_BINARY),
+            output: File::open(c":tt", nr::open::RW_TRUNC_BINARY),
+        }
+    }
+
+    /// Writes all of `bytes`.
+    ///
+    /// # Panics
+    /// When the host can't take them.
+    pub fn write(&mut self, bytes: &[u8]) {
+        self.output.write_all(bytes);
+    }
+
+    /// Waits for one whole chunk, whose length `whole` tells of its beginning; how many bytes it has. Ends QEMU with
+    /// success when the host is gone.
+    pub fn read(&mut self, to: &mut [u8], whole: impl Fn(&[u8]) -> Option<usize>) -> usize {
+        let mut have = 0;
+        loop {
+            let got = self.input.read_some(&mut to[have..]);
+            if got == 0 {
+                exit(Exit::Success)
+            }
+            have += got;
+            if whole(&to[..have]).is_some_and(|length| have >= length) {
+                return have;
+            }
+        }
     }
 }
 

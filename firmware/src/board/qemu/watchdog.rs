@@ -1,23 +1,35 @@
 //! Stands in for the chip's independent watchdog, which QEMU does not have: looked at by the clock's
-//! interrupt, it ends QEMU where the chip would reset.
+//! interrupt, it resets the chip, or ends QEMU.
 
 use super::semihosting::exit;
-use super::{Exit, time};
+use super::{Exit, reset, text, time};
 use crate::tasks::WATCHDOG;
 use core::sync::atomic::{AtomicU32, Ordering};
-use cortex_m_semihosting::hprintln;
+use embassy_time::Duration;
+use link::report::ResetCause;
 
 static FED_MS: AtomicU32 = AtomicU32::new(0);
+static PATIENCE_MS: AtomicU32 = AtomicU32::new(WATCHDOG.as_millis() as u32);
 
 /// Starts the watchdog's patience anew.
 pub fn feed_watchdog() {
     FED_MS.store(time::milliseconds(), Ordering::Relaxed);
 }
 
+/// Feeds the watchdog, and sets how long it waits from now on.
+pub fn watchdog_patience(patience: Duration) {
+    PATIENCE_MS.store(patience.as_millis() as u32, Ordering::Relaxed);
+    feed_watchdog();
+}
+
 /// Bites when it was not fed for longer than its patience.
 pub(super) fn check(now_ms: u32) {
-    if u64::from(now_ms.saturating_sub(FED_MS.load(Ordering::Relaxed))) > WATCHDOG.as_millis() {
-        hprintln!("watchdog: control stood still, {} ms after start", now_ms);
+    let hungry_ms = now_ms.saturating_sub(FED_MS.load(Ordering::Relaxed));
+    if hungry_ms > PATIENCE_MS.load(Ordering::Relaxed) {
+        if reset::does_restart() {
+            reset::reset(ResetCause::Watchdog)
+        }
+        text::line(format_args!("watchdog: control stood still, {now_ms} ms after start"));
         exit(Exit::Watchdog)
     }
 }

@@ -1,0 +1,99 @@
+//! The last faults, in memory that keeps its bits through a reset.
+//!
+//! The memory may hold anything: at power-on it is noise. Every slot has a check of its own, so that what was
+//! whole before stays readable, whatever happened while another was written.
+//!
+//! | bytes | |
+//! | --- | --- |
+//! | 0..4 | CRC-32 of the next 10 |
+//! | 4..8 | a mark |
+//! | 8..12 | how often the program started |
+//! | 12..14 | faults noted since the memory was last empty, wrapping; the slot of the next follows from it |
+//! | then for each slot | CRC-32 of what follows, u16 length, the record as of [`crate::Message::Fault`] |
+
+use crate::bytes::{Reader, Writer};
+use crate::frame::CRC;
+use crate::report::{FAULT_BYTES, FaultRecord};
+
+/// Faults that are kept; the oldest gives way.
+pub const SLOTS: usize = 8;
+/// Bytes of memory it takes.
+pub const RING_BYTES: usize = HEAD + SLOTS * SLOT;
+const HEAD: usize = 14;
+const SLOT: usize = 4 + 2 + FAULT_BYTES;
+/// Says that this is such a ring, of this layout.
+const MARK: u32 = 0x5341_4601;
+
+/// What the head says.
+#[derive(Clone, Copy, Default)]
+struct Head {
+    starts: u32,
+    noted: u16,
+}
+
+impl Head {
+    fn read(memory: &[u8; RING_BYTES]) -> Option<Self> {
+        let mut from = Reader(memory);
+        let (check, mark) = (from.u32()?, from.u32()?);
+        let head = Self { starts: from.u32()?, noted: from.u16()? };
+        (mark == MARK && check == CRC.checksum(memory.get(4..HEAD)?)).then_some(head)
+    }
+
+    fn write(self, memory: &mut [u8; RING_BYTES]) {
+        let mut writer = Writer::new(memory.get_mut(4..HEAD).unwrap_or_default());
+        writer.u32(MARK);
+        writer.u32(self.starts);
+        writer.u16(self.noted);
+        let check = CRC.checksum(writer.finish().unwrap_or_default());
+        Writer::new(memory).u32(check);
+    }
+}
+
+/// To be called once at every start: what is no ring becomes an empty one. How often the program has started since
+/// then, this time included.
+pub fn start(memory: &mut [u8; RING_BYTES]) -> u32 {
+    let head = Head::read(memory).unwrap_or_else(|| {
+        memory.fill(0);
+        Head::default()
+    });
+    let starts = head.starts.saturating_add(1);
+    Head { starts, ..head }.write(memory);
+    starts
+}
+
+/// Keeps a fault; before [`start`] nothing is kept.
+pub fn note(memory: &mut [u8; RING_BYTES], fault: &FaultRecord<'_>) {
+    let Some(head) = Head::read(memory) else { return };
+    let at = HEAD + usize::from(head.noted) % SLOTS * SLOT;
+    let Some(slot) = memory.get_mut(at..at + SLOT) else { return };
+    let Some((check, body)) = slot.split_at_mut_checked(4) else { return };
+    let (length, record) = body.split_at_mut(2);
+    let mut writer = Writer::new(record);
+    fault.encode(&mut writer);
+    let used = writer.used().unwrap_or_default();
+    Writer::new(length).u16(used as u16);
+    let sum = CRC.checksum(body.get(..2 + used).unwrap_or_default());
+    Writer::new(check).u32(sum);
+    Head { noted: head.noted.wrapping_add(1), ..head }.write(memory);
+}
+
+/// The faults that are kept and whole, the newest first.
+pub fn faults(memory: &[u8; RING_BYTES]) -> impl Iterator<Item = FaultRecord<'_>> {
+    let noted = Head::read(memory).map_or(0, |head| head.noted);
+    (0..SLOTS).filter_map(move |back| {
+        let place = usize::from(noted.wrapping_sub(back as u16 + 1)) % SLOTS;
+        let slot = memory.get(HEAD..)?.get(place * SLOT..)?;
+        let (check, body) = slot.get(..SLOT)?.split_first_chunk()?;
+        let length = usize::from(Reader(body).u16()?);
+        let whole = body.get(..2 + length)?;
+        let empty = u32::from_le_bytes(*check) != CRC.checksum(whole) || length == 0;
+        if empty { None } else { FaultRecord::decode(&mut Reader(whole.get(2..)?)) }
+    })
+}
+
+/// Forgets the faults, not how often the program started.
+pub fn clear(memory: &mut [u8; RING_BYTES]) {
+    let Some(head) = Head::read(memory) else { return };
+    memory.fill(0);
+    Head { noted: 0, ..head }.write(memory);
+}

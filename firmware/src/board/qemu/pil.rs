@@ -1,0 +1,218 @@
+//! Processor in the loop: the host's bicycle instead of sensors and motor.
+//!
+//! Once a millisecond, after the control step, the board hands its command to the host, then waits for the
+//! sensors of the next step. QEMU's clock stands still meanwhile. What goes over: [`link::lockstep`].
+
+use super::semihosting::{Stream, exit};
+use super::{Exit, line, reset, text};
+use crate::{crash, tasks};
+use control::wire::{CONFIG_BYTES, decode_config};
+use control::{Config, Plan, SensorFrame};
+use core::cell::RefCell;
+use critical_section::Mutex;
+use embassy_time::{Instant, Timer};
+use link::frame::{Decoder, Received};
+use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
+use link::message::Message;
+use link::refusal::{Refusal, Why};
+use static_cell::ConstStaticCell;
+
+/// One control period \[us\].
+const PERIOD_US: u32 = crate::deadline::PERIOD.as_micros() as u32;
+
+/// Most bytes of the engineer's line in a period: ten times what a line of 115200 baud carries.
+const LINE_BYTES: usize = 115;
+
+/// What the controller is told.
+struct Sensors {
+    /// By the last step.
+    frame: SensorFrame,
+    /// Came since, with the number of the step it is for.
+    fresh: Option<(u16, SensorFrame)>,
+    /// The number of the next step.
+    step: u16,
+    /// The number of the newest frame that was used.
+    used: u16,
+}
+
+impl Sensors {
+    const NONE: Self = Self { frame: SensorFrame::missing(), fresh: None, step: 0, used: u16::MAX };
+}
+
+static SENSORS: Mutex<RefCell<Option<Sensors>>> = Mutex::new(RefCell::new(None));
+
+/// The sensors of this instant, as far as they came; `None` where no host takes part.
+pub(super) fn sense() -> Option<SensorFrame> {
+    critical_section::with(|cs| {
+        let mut sensors = SENSORS.borrow(cs).borrow_mut();
+        let s = sensors.as_mut()?;
+        let (frame, late) = match s.fresh.take() {
+            Some((number, frame)) => {
+                s.used = number;
+                (frame, s.step.wrapping_sub(number))
+            }
+            None if s.used == u16::MAX => (SensorFrame::missing(), 0),
+            None => (s.frame, 1),
+        };
+        s.frame = later(frame, late);
+        s.step = s.step.wrapping_add(1);
+        Some(s.frame)
+    })
+}
+
+/// The same samples so many periods later.
+fn later(mut frame: SensorFrame, ticks: u16) -> SensorFrame {
+    frame.now_us = frame.now_us.wrapping_add(PERIOD_US * u32::from(ticks));
+    for triple in [&mut frame.gyro_rad_s, &mut frame.accel_m_s2] {
+        triple.age_ticks = triple.age_ticks.saturating_add(ticks);
+    }
+    for sample in [
+        &mut frame.steer_rad,
+        &mut frame.steer_rate_rad_s,
+        &mut frame.front_wheel_m_s,
+        &mut frame.rear_wheel_m_s,
+        &mut frame.rider_torque_nm,
+        &mut frame.motor_torque_nm,
+        &mut frame.heading_error_rad,
+        &mut frame.lateral_error_m,
+    ] {
+        sample.age_ticks = sample.age_ticks.saturating_add(ticks);
+    }
+    frame
+}
+
+/// Bytes of the loop on their way to the host.
+struct Out {
+    bytes: [u8; MAX_CHUNK / 4],
+    used: usize,
+}
+
+impl Out {
+    /// Puts a frame behind the others; one without room is lost, as on a line.
+    fn put(&mut self, message: &Message<'_>, sequence: u16) {
+        self.used += message.encode(sequence, &mut self.bytes[self.used..]).unwrap_or(0);
+    }
+}
+
+/// A configuration on its way from the host.
+struct Incoming {
+    bytes: [u8; CONFIG_BYTES],
+    /// How many of them came, in order.
+    have: usize,
+}
+
+impl Incoming {
+    fn take(&mut self, at: u16, piece: &[u8]) {
+        let at = usize::from(at);
+        if at == 0 {
+            self.have = 0;
+        }
+        if at == self.have
+            && let Some(place) = self.bytes.get_mut(at..at + piece.len())
+        {
+            place.copy_from_slice(piece);
+            self.have += piece.len();
+        }
+    }
+
+    /// The plan of what came, or of the configuration in force if less than all of it did.
+    fn plan(&mut self) -> Result<Plan, Refusal<'static>> {
+        let whole = core::mem::take(&mut self.have) == CONFIG_BYTES;
+        let config = if whole { decode_config(&self.bytes)? } else { tasks::settings::config() };
+        let right = config.rate_hz * PERIOD_US as f32 == 1e6;
+        if right { Ok(config.plan()?) } else { Err(wrong_rate(&config)) }
+    }
+}
+
+/// The board steps once a period, whatever the configuration says.
+fn wrong_rate(config: &Config) -> Refusal<'static> {
+    let rate_hz = 1e6 / PERIOD_US as f32;
+    let about = Refusal::about(Why::OutOfRange, link::Key::whole("rate_hz"));
+    Refusal { value: config.rate_hz, min: rate_hz, max: rate_hz, ..about }
+}
+
+/// The host takes part from now on: text goes aside.
+pub fn begin() {
+    text::aside();
+    critical_section::with(|cs| SENSORS.borrow(cs).replace(Some(Sensors::NONE)));
+}
+
+/// Exchanges with the host once a millisecond, right after the control step.
+#[embassy_executor::task]
+pub async fn exchange() {
+    static CHUNK: ConstStaticCell<[u8; MAX_CHUNK]> = ConstStaticCell::new([0; MAX_CHUNK]);
+    static OUT: ConstStaticCell<Out> = ConstStaticCell::new(Out { bytes: [0; MAX_CHUNK / 4], used: 0 });
+    static INCOMING: ConstStaticCell<Incoming> =
+        ConstStaticCell::new(Incoming { bytes: [0; CONFIG_BYTES], have: 0 });
+    let (chunk, out, incoming) = (CHUNK.take(), OUT.take(), INCOMING.take());
+    let (mut decoder, mut host) = (Decoder::default(), Stream::open());
+    let mut now_ms = Instant::now().as_millis();
+    loop {
+        now_ms += 1;
+        Timer::at(Instant::from_millis(now_ms)).await;
+        hand_over(&mut host, chunk, out);
+        let length = host.read(chunk, whole);
+        let Some(ToBoard { sensors, line: bytes }) = ToBoard::decode(&chunk[..length]) else {
+            text::line(format_args!("the host handed over {length} bytes that are no chunk"));
+            exit(Exit::Input)
+        };
+        // Bytes that find no room are lost, as on any line.
+        let _ = line::IN.try_write(bytes);
+        for byte in sensors {
+            if let Some(Received::Frame(frame)) = decoder.feed(*byte)
+                && let Ok(message) = Message::decode(&frame)
+            {
+                take(&message, frame.sequence, incoming, out);
+            }
+        }
+    }
+}
+
+/// How long a chunk from the host is, by its head.
+fn whole(start: &[u8]) -> Option<usize> {
+    let [a, b, c, d] = *start.first_chunk()?;
+    Some(4 + usize::from(u16::from_le_bytes([a, b])) + usize::from(u16::from_le_bytes([c, d])))
+}
+
+fn hand_over(host: &mut Stream, chunk: &mut [u8; MAX_CHUNK], out: &mut Out) {
+    if let Some(t) = tasks::latest() {
+        let number = critical_section::with(|cs| {
+            SENSORS.borrow(cs).borrow().as_ref().map_or(u16::MAX, |sensors| sensors.used)
+        });
+        out.put(&Message::PilCommand { command: t.command, authority: t.authority }, number);
+    }
+    let mut said = [0; LINE_BYTES];
+    let length = line::OUT.try_read(&mut said).unwrap_or(0);
+    let from = FromBoard {
+        time_ms: reset::total_ms(),
+        starts: crash::starts() as u16,
+        motor: &out.bytes[..out.used],
+        line: &said[..length],
+    };
+    let used = from.encode(chunk).unwrap_or(0);
+    host.write(&chunk[..used]);
+    out.used = 0;
+}
+
+fn take(message: &Message<'_>, sequence: u16, incoming: &mut Incoming, out: &mut Out) {
+    match message {
+        Message::PilFrame(frame) => critical_section::with(|cs| {
+            if let Some(sensors) = SENSORS.borrow(cs).borrow_mut().as_mut() {
+                sensors.fresh = Some((sequence, *frame));
+            }
+        }),
+        Message::PilConfig { at, bytes } => incoming.take(*at, bytes),
+        Message::PilReset => {
+            let answer = match incoming.plan() {
+                Ok(plan) => {
+                    tasks::settings::offer(plan, true);
+                    critical_section::with(|cs| SENSORS.borrow(cs).replace(Some(Sensors::NONE)));
+                    Message::Done
+                }
+                Err(refusal) => Message::Refused(refusal),
+            };
+            out.put(&answer, sequence);
+        }
+        _ => out.put(&Message::Refused(Refusal::of(Why::NotHere)), sequence),
+    }
+}

@@ -1,0 +1,127 @@
+//! The engineer's line: parameters, kept faults, telemetry. At the lowest priority; nothing waits for it.
+
+use super::settings::{self, Kept};
+use super::{Telemetry, latest};
+use crate::alive::Task;
+use crate::{Image, board, retained};
+use ::control::{Config, polarity::Move};
+use embassy_futures::select::{Either, select};
+use embassy_time::{Duration, Ticker};
+use link::message::Message;
+use link::page::PAGE_BYTES;
+use link::refusal::{Refusal, Why};
+use link::report::{Hello, KeptFault, config_hash};
+use link::{Decoder, Sender, parameters, ring};
+
+/// How often telemetry is told: half of a line of 115200 baud.
+const TELL: Duration = Duration::from_millis(20);
+
+/// Answers and telemetry that wait.
+type Waiting = Sender<2048, 1024>;
+
+/// Takes requests, answers them, and tells telemetry in between.
+#[embassy_executor::task]
+pub async fn line(image: Image, kept: &'static mut Kept) {
+    let (mut decoder, mut waiting) = (Decoder::default(), Waiting::new(1));
+    let mut tell = Ticker::every(TELL);
+    let mut bytes = [0; 64];
+    loop {
+        Task::Line.report();
+        match select(board::line::read(&mut bytes), tell.next()).await {
+            Either::First(taken) => {
+                for byte in bytes.iter().take(taken) {
+                    feed(*byte, &mut decoder, image, kept, &mut waiting).await;
+                }
+            }
+            Either::Second(()) => {
+                if let Some(telemetry) = latest() {
+                    if telemetry.polarity == Move::Passed {
+                        settings::polarity_passed();
+                    }
+                    waiting.step(&told(&telemetry));
+                }
+            }
+        }
+        send(&mut waiting).await;
+    }
+}
+
+/// Sends what waits, a little at a time.
+async fn send(waiting: &mut Waiting) {
+    let mut bytes = [0; 64];
+    loop {
+        let mut used = 0;
+        while used < bytes.len() {
+            let Some(byte) = waiting.next_byte() else { break };
+            bytes[used] = byte;
+            used += 1;
+        }
+        if used == 0 {
+            return;
+        }
+        board::line::write(&bytes[..used]).await;
+        Task::Line.report();
+    }
+}
+
+/// Takes a byte, and answers the request it completes.
+async fn feed(byte: u8, decoder: &mut Decoder, image: Image, kept: &mut Kept, waiting: &mut Waiting) {
+    let Some(received) = decoder.feed(byte) else { return };
+    let (sequence, request) = match parameters::request(&received) {
+        Ok(request) => request,
+        Err(wrong) => {
+            let (sequence, answer) = wrong.answer();
+            waiting.answer(&answer, sequence);
+            return;
+        }
+    };
+    match request {
+        Message::AskHello => {
+            let Image { name, version, commit } = image;
+            let config_hash = config_hash(&settings::config());
+            waiting.answer(&Message::Hello(Hello { image: name, version, commit, config_hash }), sequence);
+        }
+        Message::Store if !settings::engaged() => {
+            let stored = kept.save(&settings::config()).await;
+            let refused = |_| Message::Refused(Refusal::of(Why::NotStored));
+            waiting.answer(&stored.map_or_else(refused, |()| Message::Done), sequence);
+        }
+        Message::ListFaults { from } => {
+            retained::with(|kept| {
+                let total = ring::faults(kept).count() as u16;
+                let record = ring::faults(kept).nth(from.into());
+                waiting.answer(&Message::KeptFault(KeptFault { place: from, total, record }), sequence);
+            });
+        }
+        Message::ClearFaults => {
+            retained::with(ring::clear);
+            waiting.answer(&Message::Done, sequence);
+        }
+        request => change(&request, sequence, waiting),
+    }
+}
+
+/// Answers what is asked of the parameters; the controller gets those that changed.
+fn change(request: &Message<'_>, sequence: u16, waiting: &mut Waiting) {
+    let before = settings::config();
+    let (mut config, mut room) = (before.clone(), [0; PAGE_BYTES]);
+    let answer = parameters::answer(&Config::product(), &mut config, settings::engaged(), request, &mut room);
+    if config != before
+        && let Ok(plan) = config.plan()
+    {
+        settings::offer(plan, false);
+    }
+    waiting.answer(&answer.unwrap_or(Message::Refused(Refusal::of(Why::NotHere))), sequence);
+}
+
+/// A control step as it is told.
+fn told(latest: &Telemetry) -> link::telemetry::Telemetry {
+    link::telemetry::Telemetry {
+        steps: latest.deadlines.steps,
+        late: latest.deadlines.late,
+        driven: latest.drive.is_ok(),
+        frame: latest.frame,
+        command: latest.command,
+        slopes: latest.slopes,
+    }
+}

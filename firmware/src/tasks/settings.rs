@@ -1,0 +1,116 @@
+//! The configuration: the one the controller runs with, the next one on its way to it, the one in flash.
+
+use super::{WATCHDOG, latest};
+use crate::{alive, board};
+use ::control::{Config, Mode, Plan};
+use core::cell::RefCell;
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_time::Duration;
+use link::Store;
+use link::store::{Found, NotStored, Room};
+use static_cell::{ConstStaticCell, StaticCell};
+
+/// How long the watchdog waits while flash is erased: three sectors of 16 KiB take 1.5 s at most (data sheet of the
+/// STM32F405, table 40: 500 ms each).
+const ERASING: Duration = Duration::from_secs(3);
+
+/// A plan that the controller has not taken yet.
+struct Next {
+    plan: Plan,
+    /// Whatever the controller is doing.
+    at_once: bool,
+}
+
+static NEXT: Mutex<CriticalSectionRawMutex, RefCell<Option<Next>>> = Mutex::new(RefCell::new(None));
+static CONFIG: Mutex<CriticalSectionRawMutex, RefCell<Option<Config>>> = Mutex::new(RefCell::new(None));
+
+/// Whether torque may flow, or does: nothing may be changed then.
+pub fn engaged() -> bool {
+    latest().is_some_and(|t| t.command.mode.drives() || t.command.torque_nm != 0.0)
+}
+
+/// The configuration in force, or about to be; the defaults before the first was offered.
+pub fn config() -> Config {
+    CONFIG.lock(|config| config.borrow().clone()).unwrap_or_else(Config::product)
+}
+
+/// The controller begins anew with this plan as soon as no torque flows, or at once.
+pub fn offer(plan: Plan, at_once: bool) {
+    CONFIG.lock(|config| config.replace(Some(plan.config().clone())));
+    NEXT.lock(|next| next.replace(Some(Next { plan, at_once })));
+}
+
+/// Remembers that the polarity check was passed; the controller itself knows already.
+pub(super) fn polarity_passed() {
+    CONFIG.lock(|config| {
+        if let Some(config) = config.borrow_mut().as_mut() {
+            config.calibration.polarity_checked = true;
+        }
+    });
+}
+
+/// The plan that is offered, if a controller in this mode may take it.
+pub(super) fn take(mode: Mode) -> Option<Plan> {
+    NEXT.lock(|next| {
+        let may = next.borrow().as_ref().is_some_and(|next| next.at_once || !mode.drives());
+        may.then(|| next.take()).flatten().map(|next| next.plan)
+    })
+}
+
+/// The stored parameters, and what they are worked on in.
+pub struct Kept {
+    /// The flash's pages; `None` if the board has none.
+    store: Option<Store<board::Flash>>,
+    room: &'static mut Room,
+}
+
+impl Kept {
+    /// In the board's flash.
+    ///
+    /// # Panics
+    /// When called a second time.
+    pub fn open() -> Self {
+        static ROOM: ConstStaticCell<Room> = ConstStaticCell::new(Room::new());
+        let (flash, range) = board::flash();
+        Self { store: Store::new(flash, range), room: ROOM.take() }
+    }
+
+    /// The stored configuration, or the defaults with the polarity check not passed.
+    pub async fn load(&mut self, defaults: &Config) -> (Config, Found) {
+        let mut unchecked = defaults.clone();
+        unchecked.calibration.polarity_checked = false;
+        match &mut self.store {
+            Some(store) => store.load(defaults, self.room).await,
+            None => (unchecked, Found::Nothing),
+        }
+    }
+
+    /// Stores a configuration. The chip may stand still for as long as the flash erases, so only while no torque flows.
+    ///
+    /// # Errors
+    /// As of [`NotStored`].
+    pub async fn save(&mut self, config: &Config) -> Result<(), NotStored> {
+        let Some(store) = &mut self.store else { return Err(NotStored::Flash) };
+        board::watchdog_patience(ERASING);
+        alive::excuse(true);
+        let stored = store.save(config, self.room).await;
+        alive::excuse(false);
+        board::watchdog_patience(WATCHDOG);
+        stored
+    }
+}
+
+/// The plan to start with: of the stored configuration, or of the defaults. It is also what is in force; what was found
+/// is told beside.
+///
+/// # Panics
+/// When called a second time.
+#[inline(never)]
+pub fn start(kept: &mut Kept, defaults: &Config) -> (&'static mut Plan, Found) {
+    static PLAN: StaticCell<Plan> = StaticCell::new();
+    let (config, found) = embassy_futures::block_on(kept.load(defaults));
+    CONFIG.lock(|in_force| in_force.replace(Some(config.clone())));
+    // What a store gives passes: else it gave the defaults, which are the program's own.
+    (PLAN.init(config.plan().expect("a plan of the defaults")), found)
+}

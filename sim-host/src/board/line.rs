@@ -1,0 +1,53 @@
+//! A two-way line of bytes to a board.
+
+use std::io;
+use std::time::Duration;
+
+/// A two-way line of bytes to a board.
+pub trait Line {
+    /// Sends all of `bytes`.
+    ///
+    /// # Errors
+    /// The line is lost, or only goes the other way.
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LineError>;
+
+    /// What came in since the last call, waiting up to `patience` of real time for the first byte; empty when
+    /// nothing came.
+    ///
+    /// # Errors
+    /// The line is lost, or has come to its end.
+    fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError>;
+}
+
+/// Why nothing goes over a line. Each names the device or file.
+#[derive(Debug, thiserror::Error)]
+pub enum LineError {
+    /// It can't be opened.
+    #[error("can't open {line}: {source}")]
+    Open {
+        /// The device or file.
+        line: String,
+        /// Why not.
+        source: io::Error,
+    },
+    /// It was there, and is no more.
+    #[error("lost {line}: {source}")]
+    Lost {
+        /// The device or file.
+        line: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// A recording is at its end.
+    #[error("{line} is at its end")]
+    Ended {
+        /// The file.
+        line: String,
+    },
+    /// A recording is no board: nothing can be asked of it.
+    #[error("{line} is a recording; nothing can be sent to it")]
+    OneWay {
+        /// The file.
+        line: String,
+    },
+}
