@@ -84,7 +84,7 @@ impl FakeBoard {
         };
         let command = control::step(&self.plan, &mut self.controller, &frame);
         let authority = self.controller.authority();
-        let of = self.newest.map_or(self.step, |(number, _)| number);
+        let of = self.newest.map_or(u16::MAX, |(number, _)| number);
         self.say(&Message::PilCommand { command, authority }, of);
         self.step = self.step.wrapping_add(1);
         self.time_ms += 1;

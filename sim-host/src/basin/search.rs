@@ -2,7 +2,7 @@
 
 use super::{Basin, Column, Island, ScanPoint, Work};
 use crate::range::within;
-use crate::ride::{Conditions, ConditionsError, Ride, Start, rides};
+use crate::ride::{Conditions, ConditionsError, RemoteError, Ride, Start, rides};
 use rayon::prelude::*;
 use std::convert::Infallible;
 
@@ -49,6 +49,12 @@ pub struct SearchError(pub String);
 
 impl From<ConditionsError> for SearchError {
     fn from(error: ConditionsError) -> Self {
+        Self(error.0)
+    }
+}
+
+impl From<SearchError> for RemoteError {
+    fn from(error: SearchError) -> Self {
         Self(error.0)
     }
 }

@@ -7,7 +7,7 @@ use crate::ride::{Remote, RemoteError, Start, Stepped};
 use control::wire::encode_config;
 use control::{Plan, SensorFrame};
 use link::frame::MAX_FRAME;
-use link::lockstep::ToBoard;
+use link::lockstep::{COMMAND_TIMEOUT_MS, ToBoard};
 use link::message::NoMessage;
 use link::{Decoder, Message, Received};
 
@@ -51,17 +51,17 @@ struct RideState {
     opening: Vec<u8>,
     /// Control steps since the reset.
     step: u32,
-    /// The number of the next sensor frame.
-    sequence: u16,
+    /// The control step that the board counts as number 0.
+    step_zero: u32,
     /// Control steps from t = 0; `None` before.
     tick: Option<u32>,
     sensors: Passage,
     motor: Passage,
     decoder: Decoder,
-    /// The newest command.
-    held: Stepped,
-    /// Control steps that the board has gone on alone, and the command at their end.
-    ahead: Option<(u32, Stepped)>,
+    /// The newest command, and the control steps that it was held for.
+    held: (Stepped, u32),
+    /// Control steps that the board has gone on alone, and the command that came at their end.
+    ahead: Option<(u32, Option<Stepped>)>,
     /// Whether the chip started anew, and no longer counts the ride's steps.
     restarted: bool,
 }
@@ -73,15 +73,30 @@ impl RideState {
             number,
             opening: Vec::new(),
             step: 0,
-            sequence: 0,
+            step_zero: 0,
             tick: None,
             sensors: passage(Way::Sensors),
             motor: passage(Way::Motor),
             decoder: Decoder::default(),
-            held: Stepped::OFF,
+            held: (Stepped::OFF, 0),
             ahead: None,
             restarted: false,
         }
+    }
+
+    /// The number of this control step's sensor frame.
+    fn sequence(&self) -> u16 {
+        self.step.wrapping_sub(self.step_zero) as u16
+    }
+
+    /// What the motor does in a control step: by a new command, or by the one before as long as it may be held.
+    fn motor(&mut self, newest: Option<Stepped>) -> Stepped {
+        self.held = match (newest, self.held) {
+            (Some(newest), _) => (newest, 0),
+            (None, (held, periods)) if periods < COMMAND_TIMEOUT_MS => (held, periods + 1),
+            (None, _) => (Stepped::OFF, COMMAND_TIMEOUT_MS),
+        };
+        self.held.0
     }
 
     fn astray(&self, what: impl Into<String>) -> BoardError {
@@ -105,7 +120,8 @@ impl<B: Lockstep> Controller<B> {
     fn exchange(&mut self, frame: &SensorFrame) -> Result<Option<Stepped>, BoardError> {
         let ride = &mut self.ride;
         let mut sensors = Vec::with_capacity(MAX_FRAME);
-        put(&Message::PilFrame(*frame), ride.sequence, &mut sensors);
+        let sequence = ride.sequence();
+        put(&Message::PilFrame(*frame), sequence, &mut sensors);
         if let Some(tick) = ride.tick {
             ride.sensors.pass(tick, &mut sensors);
         }
@@ -138,8 +154,8 @@ impl<B: Lockstep> Controller<B> {
             return Err(ride.astray("the reset was not answered"));
         }
         match command {
-            Some((_, of)) if of != ride.sequence && ride.sensors.safe() && !ride.restarted => {
-                Err(ride.astray(format!("a command of frame {of} in answer to frame {}", ride.sequence)))
+            Some((_, of)) if of != sequence && ride.sensors.safe() && !ride.restarted => {
+                Err(ride.astray(format!("a command of frame {of} in answer to frame {sequence}")))
             }
             Some((stepped, _)) => Ok(Some(stepped)),
             None => Ok(None),
@@ -157,21 +173,19 @@ impl<B: Lockstep> Controller<B> {
             return Err(ride.astray(format!("the board's time went from {before_ms} ms to {now_ms} ms")));
         }
         if started > 0 {
-            // It counts from its start, and drives no motor until it says so.
-            (ride.restarted, ride.sequence, ride.held) = (true, 0, Stepped::OFF);
+            // It counts the steps from its start on, of which there was one.
+            (ride.restarted, ride.step_zero) = (true, ride.step + gone_ms - 1);
             self.tally.restarts += u64::from(started);
         }
         if newest.is_none() && ride.motor.safe() && !ride.restarted {
             return Err(ride.astray("the board gave no command"));
         }
-        let newest = newest.unwrap_or(ride.held);
-        if gone_ms > 1 {
-            ride.ahead = Some((gone_ms - 1, newest));
-            self.tally.missed += 1;
-        } else {
-            ride.held = newest;
+        if gone_ms == 1 {
+            return Ok(ride.motor(newest));
         }
-        Ok(ride.held)
+        ride.ahead = Some((gone_ms - 1, newest));
+        self.tally.missed += 1;
+        Ok(ride.motor(None))
     }
 }
 
@@ -197,14 +211,11 @@ impl<B: Lockstep> Remote for Controller<B> {
     fn step(&mut self, frame: &SensorFrame) -> Result<Stepped, RemoteError> {
         let harmed = self.ride.sensors.harmed + self.ride.motor.harmed;
         let stepped = match self.ride.ahead.take() {
-            Some((1, newest)) => {
-                self.ride.held = newest;
-                newest
-            }
+            Some((1, newest)) => self.ride.motor(newest),
             Some((periods, newest)) => {
                 self.ride.ahead = Some((periods - 1, newest));
                 self.tally.missed += 1;
-                self.ride.held
+                self.ride.motor(None)
             }
             None => self.stepped(frame)?,
         };
@@ -212,7 +223,6 @@ impl<B: Lockstep> Remote for Controller<B> {
         self.tally.harmed += u64::from(ride.sensors.harmed + ride.motor.harmed - harmed);
         self.tally.steps += 1;
         ride.step += 1;
-        ride.sequence = ride.sequence.wrapping_add(1);
         ride.tick = ride.tick.map(|tick| tick + 1);
         Ok(stepped)
     }

@@ -1,5 +1,6 @@
 //! What can go wrong with a board in the loop.
 
+use crate::ride::RemoteError;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -58,4 +59,10 @@ pub enum BoardError {
     /// It steps at one rate only.
     #[error("rate_hz = {0}: an emulated board steps at 1000 Hz only")]
     Rate(f32),
+}
+
+impl From<BoardError> for RemoteError {
+    fn from(error: BoardError) -> Self {
+        Self(error.to_string())
+    }
 }

@@ -27,7 +27,9 @@ impl Stepped {
 }
 
 /// Why a processor of its own gave no answer.
-pub type RemoteError = Box<dyn std::error::Error + Send + Sync>;
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct RemoteError(pub String);
 
 /// A controller on a processor of its own.
 pub trait Remote {
