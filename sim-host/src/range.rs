@@ -26,3 +26,17 @@ pub(crate) fn time(text: &str, max: f64) -> Result<f64, String> {
     let value = number.trim().parse::<f64>().map_err(|_| wrong())? / per_s;
     if (0.0..=max).contains(&value) { Ok(value) } else { Err(format!("{text} is outside 0 s to {max} s")) }
 }
+
+/// Latest time of a ride that something can begin or end at \[s\].
+const LATEST_S: f64 = 3600.0;
+
+/// From when to when, `FROM[..TO]`; without an end it is infinite \[s\].
+///
+/// # Errors
+/// Names the text and what was expected.
+pub(crate) fn span(text: &str) -> Result<(f64, f64), String> {
+    let (from, to) = text.split_once("..").map_or((text, None), |(from, to)| (from, Some(to)));
+    let from_s = time(from, LATEST_S)?;
+    let to_s = to.map_or(Ok(f64::INFINITY), |to| time(to, LATEST_S))?;
+    if to_s > from_s { Ok((from_s, to_s)) } else { Err(format!("it ends at {to_s} s, not after {from_s} s")) }
+}

@@ -4,6 +4,7 @@ pub mod basins;
 pub mod cli;
 pub mod derived;
 pub mod draws;
+pub mod fake_board;
 pub mod fault_cards;
 pub mod felt;
 pub mod flow;

@@ -19,6 +19,8 @@ use crate::bytes::{Reader, Writer};
 
 /// Most bytes handed over at once, head included: a pipe takes them in one piece.
 pub const MAX_CHUNK: usize = 4096;
+/// Longest that a motor goes on with a command: without a newer one it gives no torque \[ms\].
+pub const COMMAND_TIMEOUT_MS: u32 = 5;
 /// Bytes before those of loop and line, from the board.
 pub const BOARD_HEAD: usize = 10;
 /// Bytes before those of loop and line, to the board.

@@ -9,5 +9,5 @@ mod sensitivity;
 pub use compare::{Rmse, rmse};
 pub use outline::{Basin, Column, Island, ScanPoint, Work, area};
 pub use plane::{Plane, PlaneSearch, Ray, plane};
-pub use search::{Axis, Search, SearchError, basin, border, column};
+pub use search::{Axis, Search, SearchError, basin, basin_by, border, column};
 pub use sensitivity::{Quantity, Sensitivity, sensitivities};

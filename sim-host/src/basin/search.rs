@@ -2,8 +2,9 @@
 
 use super::{Basin, Column, Island, ScanPoint, Work};
 use crate::range::within;
-use crate::ride::{Conditions, ConditionsError, Ride, Start, rides};
+use crate::ride::{Conditions, ConditionsError, RemoteError, Ride, Start, rides};
 use rayon::prelude::*;
+use std::convert::Infallible;
 
 /// Which rate the disturbance changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
@@ -52,6 +53,12 @@ impl From<ConditionsError> for SearchError {
     }
 }
 
+impl From<SearchError> for RemoteError {
+    fn from(error: SearchError) -> Self {
+        Self(error.0)
+    }
+}
+
 /// Rides between two known ends in one round of narrowing: as many as go side by side.
 const SECTIONS: usize = 8;
 
@@ -83,59 +90,83 @@ pub fn basin(
     finished: impl Fn(&Column) + Sync,
     stop: impl Fn() -> bool + Sync,
 ) -> Result<Basin, SearchError> {
+    basin_by(conditions, search, |starts| Ok(rides(conditions, starts)), finished, stop)
+}
+
+/// As [`basin`], the rides by `rides`, which gives them in the order of the starts.
+///
+/// # Errors
+/// When the search or the conditions fail their checks, and those of `rides`.
+pub fn basin_by<E: From<SearchError> + Send>(
+    conditions: &Conditions,
+    search: &Search,
+    rides: impl Fn(&[Start]) -> Result<Vec<Ride>, E> + Sync,
+    finished: impl Fn(&Column) + Sync,
+    stop: impl Fn() -> bool + Sync,
+) -> Result<Basin, E> {
     search.check()?;
-    conditions.check()?;
-    let columns: Vec<Option<Column>> = search
+    conditions.check().map_err(SearchError::from)?;
+    let columns: Result<Vec<Option<Column>>, E> = search
         .speeds
         .par_iter()
         .map(|&speed| {
             if stop() {
-                return None;
+                return Ok(None);
             }
-            let column = column(conditions, search, speed);
+            let column = explored(&rides, search, &|rate| search.axis.start(speed, rate), usize::MAX)?;
             finished(&column);
-            Some(column)
+            Ok(Some(column))
         })
         .collect();
-    Ok(Basin { columns: columns.into_iter().flatten().collect() })
+    Ok(Basin { columns: columns?.into_iter().flatten().collect() })
 }
 
 /// The basin at one speed.
 pub fn column(conditions: &Conditions, search: &Search, speed: f64) -> Column {
-    explored(conditions, search, &|rate| search.axis.start(speed, rate), usize::MAX)
+    along(conditions, search, &|rate| search.axis.start(speed, rate))
 }
 
 /// The basin along any line of disturbances: `start` makes the initial state of a disturbance of 0 to
 /// `search.max_rate`. The search's axis is of no meaning.
 pub(super) fn along(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Start) -> Column {
-    explored(conditions, search, start, usize::MAX)
+    let Ok(column) = explored(&ridden(conditions), search, start, usize::MAX);
+    column
 }
 
 /// The basin at one speed without what lies beyond: the scan ends soon after the first fall, and there
 /// are no islands. `upper` is that of [`column`].
 pub fn border(conditions: &Conditions, search: &Search, speed: f64) -> Column {
-    Column {
-        islands: Vec::new(),
-        ..explored(conditions, search, &|rate| search.axis.start(speed, rate), SECTIONS)
-    }
+    let start = |rate| search.axis.start(speed, rate);
+    let Ok(column) = explored(&ridden(conditions), search, &start, SECTIONS);
+    Column { islands: Vec::new(), ..column }
+}
+
+/// [`rides`], as what can't fail.
+fn ridden(conditions: &Conditions) -> impl Fn(&[Start]) -> Result<Vec<Ride>, Infallible> {
+    |starts| Ok(rides(conditions, starts))
 }
 
 /// The scan in groups of `group` rides, to its end or the first group with a fall; and its borders.
-fn explored(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Start, group: usize) -> Column {
+fn explored<E>(
+    rides: &impl Fn(&[Start]) -> Result<Vec<Ride>, E>,
+    search: &Search,
+    start: &dyn Fn(f64) -> Start,
+    group: usize,
+) -> Result<Column, E> {
     let speed = start(0.0).speed_m_s;
     let mut work = Work::default();
-    let mut ride = |rates: &[f64]| -> Vec<Ride> {
+    let mut ride = |rates: &[f64]| -> Result<Vec<Ride>, E> {
         let starts: Vec<Start> = rates.iter().map(|&r| start(r)).collect();
-        let done = rides(conditions, &starts);
+        let done = rides(&starts)?;
         work.add(&done);
-        done
+        Ok(done)
     };
     // The last point is the cap itself, also when the step does not divide it.
     let points = (search.max_rate / search.scan_step - 1e-9).ceil() as usize;
     let rates: Vec<f64> = (1..=points).map(|i| (i as f64 * search.scan_step).min(search.max_rate)).collect();
     let mut scan: Vec<Ride> = Vec::new();
     for group in rates.chunks(group.min(points.max(1))) {
-        scan.extend(ride(group));
+        scan.extend(ride(group)?);
         if scan.iter().any(Ride::fell) {
             break;
         }
@@ -147,7 +178,7 @@ fn explored(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Sta
     let (mut last_rate, mut last_fell, mut last_ride) = (0.0, false, None);
     for (&rate, now) in rates.iter().zip(&scan) {
         if now.fell() && !last_fell {
-            let (to, at) = narrow(&mut ride, last_rate, rate, search.tolerance, last_ride);
+            let (to, at) = narrow(&mut ride, last_rate, rate, search.tolerance, last_ride)?;
             if let Some((from, _)) = open.take() {
                 runs.push(Island { from, to });
                 if runs.len() == 1 {
@@ -155,7 +186,7 @@ fn explored(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Sta
                 }
             }
         } else if !now.fell() && last_fell {
-            let (from, at) = narrow(&mut ride, rate, last_rate, search.tolerance, Some(*now));
+            let (from, at) = narrow(&mut ride, rate, last_rate, search.tolerance, Some(*now))?;
             open = Some((from, at));
         }
         (last_rate, last_fell, last_ride) = (rate, now.fell(), Some(*now));
@@ -169,22 +200,22 @@ fn explored(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Sta
     }
     let upper = runs.first().map_or(0.0, |run| run.to);
     let scan = rates.iter().zip(&scan).map(|(&rate, r)| ScanPoint { rate, outcome: r.outcome }).collect();
-    Column { speed, upper, capped, islands: runs.split_off(1), scan, border, work }
+    Ok(Column { speed, upper, capped, islands: runs.split_off(1), scan, border, work })
 }
 
 /// The rate closest to a border that was seen not to fall, within `tolerance` of one that fell, and
 /// its ride. `safe` did not fall, `fell` did; each may be the larger.
-pub(super) fn narrow(
-    ride: &mut impl FnMut(&[f64]) -> Vec<Ride>,
+pub(super) fn narrow<E>(
+    ride: &mut impl FnMut(&[f64]) -> Result<Vec<Ride>, E>,
     mut safe: f64,
     mut fell: f64,
     tolerance: f64,
     mut at: Option<Ride>,
-) -> (f64, Option<Ride>) {
+) -> Result<(f64, Option<Ride>), E> {
     while (fell - safe).abs() > tolerance {
         let cell = (fell - safe) / (SECTIONS + 1) as f64;
         let rates: Vec<f64> = (1..=SECTIONS).map(|i| safe + i as f64 * cell).collect();
-        let done = ride(&rates);
+        let done = ride(&rates)?;
         match done.iter().position(Ride::fell) {
             Some(first) => {
                 fell = rates[first];
@@ -195,5 +226,5 @@ pub(super) fn narrow(
             None => (safe, at) = (rates[SECTIONS - 1], Some(done[SECTIONS - 1])),
         }
     }
-    (safe, at)
+    Ok((safe, at))
 }

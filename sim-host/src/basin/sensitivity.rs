@@ -5,6 +5,7 @@ use crate::bicycle::{self, Geometry, Parameters};
 use crate::ride::{Conditions, Ride, rides};
 use crate::rider::{KEYS, Rider, Schedule};
 use rayon::prelude::*;
+use std::convert::Infallible;
 
 /// A quantity of the bicycle or its rider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,19 +164,20 @@ pub fn sensitivities(
 /// Eight rides around it, wider and wider until the first does not fall and another does; then as
 /// every border is narrowed.
 fn near(conditions: &Conditions, speed: f64, guess: f64, tolerance: f64) -> f64 {
-    let mut ride = |rates: &[f64]| -> Vec<Ride> {
+    let mut ride = |rates: &[f64]| -> Result<Vec<Ride>, Infallible> {
         let starts: Vec<_> = rates.iter().map(|&rate| Axis::SteerRate.start(speed, rate)).collect();
-        rides(conditions, &starts)
+        Ok(rides(conditions, &starts))
     };
     let mut width = 8e-3;
     loop {
         let away = [-1.0, -0.25, -0.0625, -0.015, 0.015, 0.0625, 0.25, 1.0];
         let rates = away.map(|part| (guess + width * part).max(0.0));
-        let done = ride(&rates);
+        let Ok(done) = ride(&rates);
         let first = done.iter().position(Ride::fell);
         match first {
             Some(first) if first > 0 => {
-                return narrow(&mut ride, rates[first - 1], rates[first], tolerance, None).0;
+                let Ok((border, _)) = narrow(&mut ride, rates[first - 1], rates[first], tolerance, None);
+                return border;
             }
             _ if width > guess.max(1.0) => return if first.is_none() { rates[7] } else { 0.0 },
             _ => width *= 8.0,

@@ -1,7 +1,7 @@
 //! `sim-host basin`.
 
-use super::conditions::ConditionArgs;
-use super::outputs::{OutputArgs, Results, complain};
+use super::conditions::{ConditionArgs, Setup};
+use super::outputs::{OutputArgs, Outputs, Results, complain};
 use super::{Ended, Failure, interrupt, speeds};
 use crate::basin::{Axis, Basin, Column, Search, Work, basin};
 use crate::bicycle::linear::Linear;
@@ -28,18 +28,25 @@ Examples:
   sim-host basin compare 'young=--rider young' 'smart=--rider smart' --svg riders.svg
   sim-host basin plane --speed 4 --rider smart --law h --svg plane.svg";
 
-/// Options of `basin`.
+/// Options of `basin`, and what may be said instead.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub(super) struct Args {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
-    conditions: ConditionArgs,
+    basin: BasinArgs,
+}
+
+/// Options of `basin`, and of a basin ridden on boards.
+#[derive(clap::Args)]
+pub(super) struct BasinArgs {
     #[command(flatten)]
-    search: SearchArgs,
+    pub(super) conditions: ConditionArgs,
     #[command(flatten)]
-    outputs: OutputArgs,
+    pub(super) search: SearchArgs,
+    #[command(flatten)]
+    pub(super) outputs: OutputArgs,
 }
 
 #[derive(clap::Subcommand)]
@@ -112,6 +119,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         Some(Command::Plane(args)) => return super::plane::run(args),
         None => {}
     }
+    let args = &args.basin;
     let setup = args.conditions.setup()?;
     let search = args.search.search(args.conditions.ridden())?;
     let outputs = args.outputs.open(None)?;
@@ -122,20 +130,31 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let result = pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
     let seconds = begin.elapsed().as_secs_f64();
     bar.finish_and_clear();
-    let result = result?;
+    write(&setup, &search, &outputs, &result?, seconds, "")
+}
+
+/// Writes a basin, or what there is of it; `said` is added to the text.
+pub(super) fn write(
+    setup: &Setup,
+    search: &Search,
+    outputs: &Outputs,
+    result: &Basin,
+    seconds: f64,
+    said: &str,
+) -> Result<Ended, Failure> {
     if result.columns.is_empty() {
         complain("interrupted: no speed is done, nothing is written");
         return Ok(Ended::Interrupted);
     }
     let complete = result.columns.len() == search.speeds.len();
-    let resolved = ResolvedSearch::new(&search);
-    let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, &result, seconds);
+    let resolved = ResolvedSearch::new(search);
+    let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, result, seconds);
     let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
     let label = setup.config.label();
     let cut = if complete { "" } else { ", interrupted" };
     let title = format!("Basin of attraction: {label}, {}{cut}", setup.config.assist);
     let figure = BasinFigure {
-        series: &[("", &result)],
+        series: &[("", result)],
         self_stable: uncontrolled.v_w.zip(uncontrolled.v_c),
         axis: search.axis,
         cap: search.max_rate,
@@ -145,8 +164,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     outputs.write(Results {
         document: &document,
         config: &config,
-        summary: || terminal::basin(&figure, 80) + &summary(&result, &search, seconds),
-        table: || table::table(&config, &table::basin_rows(&result)),
+        summary: || terminal::basin(&figure, 80) + &summary(result, search, seconds) + said,
+        table: || table::table(&config, &table::basin_rows(result)),
         figure: || figure::basin(&figure),
     })?;
     if complete {

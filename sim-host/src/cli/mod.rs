@@ -11,6 +11,8 @@ mod eigen;
 mod interrupt;
 mod law;
 mod outputs;
+mod pil;
+mod pil_basin;
 mod plane;
 mod plant_args;
 mod ride;
@@ -45,6 +47,7 @@ Examples:
   sim-host basin --svg basin.svg               the basin of the thesis bicycle under law h
   sim-host ride --speed 4 --steer-rate 5       one ride
   sim-host sweep --over law=h,f,g --out laws   basins over a grid of conditions
+  sim-host pil --speed 4 --steer-rate 5        the same on an emulated board
   sim-host eigen --law cl2:4                   eigenvalues over speed
   sim-host bicycle list                        the bicycles that ship
   sim-host rider list                          the riders that ship
@@ -65,7 +68,10 @@ enum Command {
     /// The basin of attraction over forward speed.
     Basin(Box<basin::Args>),
     /// One ride after a disturbance.
+    #[command(after_help = ride::EXAMPLES)]
     Ride(Box<ride::Args>),
+    /// Rides and basins with the control step on a board in QEMU: processor in the loop.
+    Pil(Box<pil::Args>),
     /// Basins over a grid of conditions: resumed where it stopped, split over machines.
     Sweep(Box<sweep::Args>),
     /// Eigenvalues of the linearised bicycle over speed, and its critical speeds.
@@ -99,6 +105,7 @@ pub fn run() -> ExitCode {
         Command::Basin(args) => basin::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Ride(args) => ride::run(&args),
+        Command::Pil(args) => pil::run(&args),
         Command::Eigen(args) => eigen::run(&args),
         Command::Thesis(args) => thesis::run(&args),
         Command::Bicycle(command) => bicycle::run(&command),

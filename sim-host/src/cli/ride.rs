@@ -1,31 +1,31 @@
 //! `sim-host ride`.
 
-use super::conditions::ConditionArgs;
-use super::outputs::{OutputArgs, Results};
+use super::conditions::{ConditionArgs, Setup};
+use super::outputs::{OutputArgs, Outputs, Results};
 use super::{Ended, Failure};
 use crate::range::within;
 use crate::report::document::RideDocument;
 use crate::report::figure::{self, RideFigure};
 use crate::report::{table, terminal};
-use crate::ride::{Ride, Start, frames, traced};
+use crate::ride::{Ride, Start, TracePoint, frames, traced};
+use control::SensorFrame;
 use control::wire::encode_frame;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-const EXAMPLES: &str = "\
+pub(super) const EXAMPLES: &str = "\
 Examples:
   sim-host ride --speed 4 --steer-rate 5
   sim-host ride --law none --speed 6 --steer-rate 1 --svg ride.svg --csv ride.csv
   sim-host ride --rider smart --law h --speed 4 --steer-rate 5
   sim-host ride --preset product --speed 3 --roll-rate 0.5 --json";
 
-/// Options of `ride`.
+/// Options of `ride`, and of a ride on a board.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLES)]
 pub(super) struct Args {
     #[command(flatten)]
-    conditions: ConditionArgs,
+    pub(super) conditions: ConditionArgs,
     /// Forward speed at the start, in m/s
     #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
     speed: f64,
@@ -42,36 +42,60 @@ pub(super) struct Args {
     outputs: OutputArgs,
 }
 
+impl Args {
+    /// How the ride begins, checked.
+    pub(super) fn start(&self) -> Result<Start, Failure> {
+        within("--speed (m/s)", self.speed, 0.0, 30.0)?;
+        within("--steer-rate (rad/s)", self.steer_rate, -100.0, 100.0)?;
+        within("--roll-rate (rad/s)", self.roll_rate, -100.0, 100.0)?;
+        Ok(Start {
+            speed_m_s: self.speed,
+            steer_rate_rad_s: self.steer_rate,
+            roll_rate_rad_s: self.roll_rate,
+        })
+    }
+
+    /// Tries every output asked for.
+    pub(super) fn open(&self) -> Result<Outputs, Failure> {
+        self.outputs.open(self.frames.as_deref())
+    }
+}
+
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    within("--speed (m/s)", args.speed, 0.0, 30.0)?;
-    within("--steer-rate (rad/s)", args.steer_rate, -100.0, 100.0)?;
-    within("--roll-rate (rad/s)", args.roll_rate, -100.0, 100.0)?;
+    let start = args.start()?;
     let setup = args.conditions.setup()?;
-    let outputs = args.outputs.open(args.frames.as_deref())?;
-    let start =
-        Start { speed_m_s: args.speed, steer_rate_rad_s: args.steer_rate, roll_rate_rad_s: args.roll_rate };
+    let outputs = args.open()?;
     let (ride, trace) = traced(&setup.conditions, start);
-    let document = RideDocument::new(setup.config.clone(), &ride);
+    let sensed = || frames(&setup.conditions, start, &trace);
+    write(&setup, &outputs, (&ride, &trace), sensed, "")?;
+    Ok(Ended::Done)
+}
+
+/// Writes a ride with its trace and the frames its controller got; `said` is added to the text.
+pub(super) fn write(
+    setup: &Setup,
+    outputs: &Outputs,
+    (ride, trace): (&Ride, &[TracePoint]),
+    sensed: impl FnOnce() -> Vec<SensorFrame>,
+    said: &str,
+) -> Result<(), Failure> {
+    let document = RideDocument::new(setup.config.clone(), ride);
+    let Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s } = ride.start;
     let title = format!(
-        "{}: {} m/s, steer rate {} rad/s, roll rate {} rad/s",
+        "{}: {speed_m_s} m/s, steer rate {steer_rate_rad_s} rad/s, roll rate {roll_rate_rad_s} rad/s",
         setup.config.label(),
-        args.speed,
-        args.steer_rate,
-        args.roll_rate
     );
-    let figure = RideFigure { trace: &trace, outcome: ride.outcome, title: &title };
+    let figure = RideFigure { trace, outcome: ride.outcome, title: &title };
     let config = json!({"config": document.config, "start": document.start});
-    let framed = outputs
-        .write_frames(|| frames(&setup.conditions, start, &trace).iter().flat_map(encode_frame).collect());
+    let framed = outputs.write_frames(|| sensed().iter().flat_map(encode_frame).collect());
     outputs.write(Results {
         document: &document,
         config: &config,
-        summary: || terminal::ride(&figure, 80) + &summary(&ride, setup.conditions.rider.is_some()),
-        table: || table::table(&config, &trace),
+        summary: || terminal::ride(&figure, 80) + &summary(ride, setup.conditions.rider.is_some()) + said,
+        table: || table::table(&config, trace),
         figure: || figure::ride(&figure),
     })?;
-    framed?;
-    Ok(Ended::Done)
+    framed
 }
 
 fn summary(ride: &Ride, ridden: bool) -> String {

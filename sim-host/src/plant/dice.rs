@@ -41,6 +41,11 @@ impl Dice {
         }
     }
 
+    /// A whole number from 0 to below `n`, each as likely.
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.uniform() * n as f64) as usize
+    }
+
     /// True with a probability of `p`.
     pub fn chance(&mut self, p: f64) -> bool {
         self.uniform() < p

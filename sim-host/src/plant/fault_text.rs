@@ -2,12 +2,10 @@
 
 use super::fault::{Channel, Fault, Kind};
 use super::{PlantError, Sensor};
-use crate::range::{time, within};
+use crate::range::{span, time, within};
 use std::fmt;
 use std::str::FromStr;
 
-/// Latest time of a fault \[s\].
-const LATEST_S: f64 = 3600.0;
 /// Largest magnitude of a fault's amount.
 const LARGEST: f64 = 1e6;
 /// Longest delay or time constant \[s\].
@@ -169,13 +167,6 @@ fn placed(text: &str) -> Result<(Channel, Option<u8>), String> {
         _ => format!("{name} has no axis `{axis}`; it has {}", axes.join(", ")),
     })?;
     Ok((channel, Some(index as u8)))
-}
-
-fn span(text: &str) -> Result<(f64, f64), String> {
-    let (from, to) = text.split_once("..").map_or((text, None), |(from, to)| (from, Some(to)));
-    let from_s = time(from, LATEST_S)?;
-    let to_s = to.map_or(Ok(f64::INFINITY), |to| time(to, LATEST_S))?;
-    if to_s > from_s { Ok((from_s, to_s)) } else { Err(format!("it ends at {to_s} s, not after {from_s} s")) }
 }
 
 fn kind(channel: Channel, text: &str) -> Result<Kind, String> {

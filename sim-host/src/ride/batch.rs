@@ -2,7 +2,8 @@
 #![allow(unsafe_code)]
 
 use super::lanes::{WIDTH, run};
-use super::{Conditions, Ride, Start, TracePoint};
+use super::processor::Processor;
+use super::{Conditions, Remote, RemoteError, Ride, Start, TracePoint};
 
 /// Every ride to its end, in the order of `starts`.
 ///
@@ -14,18 +15,47 @@ pub fn rides(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
         // SAFETY: the machine was just seen to have AVX2.
         return unsafe { rides_avx2(conditions, starts) };
     }
-    run::<1>(conditions, starts, None)
+    run::<1>(conditions, starts, None, &mut Processor::Here)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn rides_avx2(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
-    run::<WIDTH>(conditions, starts, None)
+    run::<WIDTH>(conditions, starts, None, &mut Processor::Here)
 }
 
 /// One ride with every control period written down; the same bits as in a batch.
 pub fn traced(conditions: &Conditions, start: Start) -> (Ride, Vec<TracePoint>) {
     let mut trace = Vec::with_capacity(conditions.steps() as usize);
-    let mut done = run::<1>(conditions, &[start], Some(&mut trace));
+    let mut done = run::<1>(conditions, &[start], Some(&mut trace), &mut Processor::Here);
     (done.remove(0), trace)
+}
+
+/// As [`rides`], one after the other, the control step on a processor of its own.
+///
+/// # Errors
+/// The processor's.
+pub fn rides_on(
+    conditions: &Conditions,
+    starts: &[Start],
+    remote: &mut dyn Remote,
+) -> Result<Vec<Ride>, RemoteError> {
+    let mut processor = Processor::away(remote);
+    let done = run::<1>(conditions, starts, None, &mut processor);
+    processor.end().map(|()| done)
+}
+
+/// As [`traced`], the control step on a processor of its own.
+///
+/// # Errors
+/// The processor's.
+pub fn traced_on(
+    conditions: &Conditions,
+    start: Start,
+    remote: &mut dyn Remote,
+) -> Result<(Ride, Vec<TracePoint>), RemoteError> {
+    let mut trace = Vec::with_capacity(conditions.steps() as usize);
+    let mut processor = Processor::away(remote);
+    let mut done = run::<1>(conditions, &[start], Some(&mut trace), &mut processor);
+    processor.end().map(|()| (done.remove(0), trace))
 }

@@ -4,6 +4,7 @@ use super::human::{Human, Humans};
 use super::logbook::{Logbook, Pushes};
 use super::outfit::{self, Outfit, lane_frame, told_signals};
 use super::preroll::Readied;
+use super::processor::Processor;
 use super::refine::{Period, Segment, quickness, refined, too_quick};
 use super::sensor::{Reading, readings};
 use super::{Assist, Conditions, Ride, Start, TracePoint};
@@ -17,8 +18,9 @@ use crate::rider::Instant;
 pub(super) const WIDTH: usize = 8;
 
 /// The rides in the lanes, as what acts on their bicycles.
-struct Abreast<'a, const N: usize> {
+struct Abreast<'a, 'p, const N: usize> {
     conditions: &'a Conditions,
+    processor: &'a mut Processor<'p>,
     /// The conditions' plant, every delay in it.
     plant: Plant,
     lanes: [Option<Logbook>; N],
@@ -36,7 +38,7 @@ struct Abreast<'a, const N: usize> {
     trace: Option<&'a mut Vec<TracePoint>>,
 }
 
-impl<const N: usize> Abreast<'_, N> {
+impl<const N: usize> Abreast<'_, '_, N> {
     /// The control instant at a step's start: sensors, controllers, new torques.
     fn control(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
         self.quickness = quickness(b, motion);
@@ -55,7 +57,7 @@ impl<const N: usize> Abreast<'_, N> {
                     };
                     let (rider_nm, initial) = (self.human.0[lane], self.initial.0[lane]);
                     let told = outfit.told(self.conditions, &self.plant, &at, rider_nm, initial);
-                    let answer = ride.answer(plan, outfit::frame(plan, &told));
+                    let answer = ride.answer(plan, self.processor, outfit::frame(plan, &told));
                     outfit.commanded(self.conditions, &self.plant, answer.torque_nm);
                     let middle_s = 0.5 * self.conditions.step_s;
                     self.assist.0[lane] =
@@ -69,7 +71,7 @@ impl<const N: usize> Abreast<'_, N> {
                         None => (rate.0[lane], speed.0[lane]),
                     };
                     let told = ride.sensors.delayed(Reading { roll_rate_rad_s: rate, speed_m_s: speed });
-                    let answer = ride.command(&self.conditions.assist, &told);
+                    let answer = ride.command(&self.conditions.assist, self.processor, &told);
                     self.assist.0[lane] = answer.torque_nm;
                     (told, answer)
                 }
@@ -104,7 +106,7 @@ impl<const N: usize> Abreast<'_, N> {
     }
 }
 
-impl<const N: usize> Actuation<Lanes<N>> for Abreast<'_, N> {
+impl<const N: usize> Actuation<Lanes<N>> for Abreast<'_, '_, N> {
     #[inline(always)]
     fn torques(&mut self, b: &Geometry, stage: usize, motion: &Motion<Lanes<N>>) -> Torques<Lanes<N>> {
         if stage == 0 {
@@ -148,7 +150,8 @@ impl<const N: usize> Actuation<Lanes<N>> for Abreast<'_, N> {
     }
 }
 
-/// Every ride to its end, in the order of `starts`; with `trace`, every instant of lane 0's rides.
+/// Every ride to its end, in the order of `starts`; with `trace`, every instant of lane 0's rides. When the
+/// processor fails, the rides under way are not among them.
 ///
 /// A lane's arithmetic does not depend on its neighbours, so a ride has the same bits in any lane.
 #[inline(always)]
@@ -156,6 +159,7 @@ pub(super) fn run<const N: usize>(
     conditions: &Conditions,
     starts: &[Start],
     trace: Option<&mut Vec<TracePoint>>,
+    processor: &mut Processor<'_>,
 ) -> Vec<Ride> {
     let (b, h) = (&conditions.bicycle, conditions.step_s);
     let mut waiting = starts.iter().copied().enumerate();
@@ -163,6 +167,7 @@ pub(super) fn run<const N: usize>(
     let mut state = State::upright(b, still);
     let mut abreast = Abreast {
         conditions,
+        processor,
         plant: conditions.plant.delayed(conditions.sensor_delay_ticks),
         lanes: std::array::from_fn(|_| None),
         initial: still,
@@ -190,17 +195,23 @@ pub(super) fn run<const N: usize>(
                 humans.restart(lane);
             }
             abreast.lanes[lane] = next.map(|(index, start)| {
+                let processor = &mut *abreast.processor;
+                if let Assist::Firmware(plan) = &conditions.assist {
+                    processor.begin(plan, &start);
+                }
                 let (outfit, ready) = match &conditions.assist {
                     Assist::Firmware(plan) if fitted_out => {
-                        let (outfit, ready) = Outfit::new(conditions, plan, &abreast.plant, &start, |_| ());
+                        let plant = &abreast.plant;
+                        let (outfit, ready) = Outfit::new(conditions, plan, plant, &start, processor, |_| ());
                         (Some(Box::new(outfit)), Some(ready))
                     }
-                    _ => (None, readied.at(conditions, start.speed_m_s)),
+                    _ => (None, readied.at(conditions, processor, start.speed_m_s)),
                 };
+                processor.disturb();
                 Logbook::new(conditions, index, start, ready, outfit)
             });
         }
-        if abreast.lanes.iter().all(Option::is_none) {
+        if abreast.lanes.iter().all(Option::is_none) || abreast.processor.failed() {
             break;
         }
         if let Some(humans) = &mut abreast.humans {

@@ -3,6 +3,7 @@
 use super::event::{at_fall, fallen, time_of_fall};
 use super::outfit::Outfit;
 use super::preroll::Ready;
+use super::processor::Processor;
 use super::refine::Segment;
 use super::sensor::{Reading, Sensors, frame};
 use super::{Assist, Conditions, Effort, FinalState, Outcome, Ride, Start};
@@ -87,12 +88,12 @@ impl Logbook {
     }
 
     /// The controller's answer to this instant's reading, by exact sensors.
-    pub(super) fn command(&mut self, assist: &Assist, told: &Reading) -> Answer {
+    pub(super) fn command(&mut self, assist: &Assist, processor: &mut Processor, told: &Reading) -> Answer {
         match assist {
             Assist::None => Answer::NONE,
             Assist::Firmware(plan) => {
                 let ticks = self.controller.as_ref().map_or(0, |ready| ready.ticks);
-                self.answer(plan, frame(plan, told, ticks, true))
+                self.answer(plan, processor, frame(plan, told, ticks, true))
             }
             Assist::Ideal(law) => {
                 Answer { torque_nm: law.gain(told.speed_m_s) * told.roll_rate_rad_s, ..Answer::NONE }
@@ -101,9 +102,9 @@ impl Logbook {
     }
 
     /// The controller's answer to a frame.
-    pub(super) fn answer(&mut self, plan: &Plan, frame: SensorFrame) -> Answer {
+    pub(super) fn answer(&mut self, plan: &Plan, processor: &mut Processor, frame: SensorFrame) -> Answer {
         let Some(Ready { controller, ticks }) = &mut self.controller else { return Answer::NONE };
-        let command = control::step(plan, controller, &frame);
+        let command = processor.step(plan, controller, &frame).command;
         *ticks = ticks.wrapping_add(1);
         Answer {
             frame,

@@ -10,12 +10,14 @@ mod logbook;
 mod outcome;
 mod outfit;
 mod preroll;
+mod processor;
 mod refine;
 mod sensor;
 mod trace;
 
 pub use assist::Assist;
-pub use batch::{rides, traced};
+pub use batch::{rides, rides_on, traced, traced_on};
 pub use conditions::{Conditions, ConditionsError, Imu, ScheduleSpeed, Start};
 pub use outcome::{Effort, FinalState, Outcome, Ride};
+pub use processor::{Remote, RemoteError, Stepped};
 pub use trace::{TracePoint, frames};

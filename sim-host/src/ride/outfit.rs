@@ -2,6 +2,7 @@
 //! and motor are exact, and whose controller needs roll rate and one speed only, go without.
 
 use super::preroll::{Ready, preroll};
+use super::processor::Processor;
 use super::sensor::Reading as Signals;
 use super::{Assist, Conditions, ScheduleSpeed, Start};
 use crate::bicycle::{Motion, Velocities};
@@ -33,6 +34,7 @@ impl Outfit {
         plan: &Plan,
         plant: &Plant,
         start: &Start,
+        processor: &mut Processor,
         mut frames: impl FnMut(&SensorFrame),
     ) -> (Self, Ready) {
         let steady = Reading::steady(start.speed_m_s, conditions.bicycle.g);
@@ -44,7 +46,7 @@ impl Outfit {
             let motor_torque_nm = motor.torque(&plant.actuator, conditions.step_s, 0.0);
             frame(plan, &rig.measure(plant, &Reading { motor_torque_nm, ..steady }, pressed))
         };
-        let ready = preroll(plan, told, |frame, _| frames(frame));
+        let ready = preroll(plan, processor, told, |frame, _| frames(frame));
         rig.begin();
         (Self { rig, traveller: Traveller::default(), motor }, ready)
     }

@@ -1,6 +1,7 @@
 //! Before the disturbance: the bicycle rides upright and straight, the controller boots, tests
 //! itself, and is engaged by a fresh press of the switch, all by the step that is flashed.
 
+use super::processor::{Processor, Stepped};
 use super::sensor::{Reading, frame};
 use super::{Assist, Conditions};
 use control::{Command, Plan, SensorFrame, State};
@@ -19,6 +20,7 @@ pub(super) struct Ready {
 /// engage is given up after ten times the time it should take, and rides on without.
 pub(super) fn preroll(
     plan: &Plan,
+    processor: &mut Processor,
     mut told: impl FnMut(u32, bool, f64) -> SensorFrame,
     mut seen: impl FnMut(&SensorFrame, &Command),
 ) -> Ready {
@@ -26,12 +28,12 @@ pub(super) fn preroll(
     let (mut pressed, mut ticks, mut torque_nm) = (false, 0, 0.0);
     while ticks < 10 * plan.ticks_to_engage() {
         let told = told(ticks, pressed, torque_nm);
-        let command = control::step(plan, &mut controller, &told);
+        let Stepped { command, authority } = processor.step(plan, &mut controller, &told);
         ticks += 1;
         torque_nm = f64::from(command.torque_nm);
         seen(&told, &command);
         pressed |= command.mode == control::Mode::Standby;
-        if controller.authority() == 1.0 {
+        if authority == 1.0 || processor.failed() {
             break;
         }
     }
@@ -44,18 +46,23 @@ pub(super) fn steady(plan: &Plan, speed_m_s: f64) -> impl FnMut(u32, bool, f64) 
     move |ticks, pressed, _| frame(plan, &reading, ticks, pressed)
 }
 
-/// The last controller readied: rides from the same speed share it.
+/// The last controller readied: rides from the same speed share it, where it runs here.
 #[derive(Default)]
 pub(super) struct Readied(Option<(f64, Ready)>);
 
 impl Readied {
     /// A controller ready at this speed \[m/s\], if there is one to be.
-    pub(super) fn at(&mut self, conditions: &Conditions, speed_m_s: f64) -> Option<Ready> {
+    pub(super) fn at(
+        &mut self,
+        conditions: &Conditions,
+        processor: &mut Processor,
+        speed_m_s: f64,
+    ) -> Option<Ready> {
         let Assist::Firmware(plan) = &conditions.assist else { return None };
         match &self.0 {
-            Some((speed, ready)) if *speed == speed_m_s => Some(ready.clone()),
+            Some((speed, ready)) if *speed == speed_m_s && processor.shares() => Some(ready.clone()),
             _ => {
-                let ready = preroll(plan, steady(plan, speed_m_s), |_, _| ());
+                let ready = preroll(plan, processor, steady(plan, speed_m_s), |_, _| ());
                 self.0 = Some((speed_m_s, ready.clone()));
                 Some(ready)
             }

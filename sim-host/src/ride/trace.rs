@@ -4,6 +4,7 @@ use super::assist::{front_speed, rear_speed};
 use super::logbook::{Answer, Pushes};
 use super::outfit::{self, Outfit};
 use super::preroll::{preroll, steady};
+use super::processor::Processor;
 use super::sensor::Reading;
 use super::{Assist, Conditions, Start};
 use crate::bicycle::{Geometry, Motion};
@@ -97,9 +98,9 @@ pub fn frames(conditions: &Conditions, start: Start, trace: &[TracePoint]) -> Ve
     let mut frames = Vec::with_capacity(trace.len());
     if outfit::needed(conditions) {
         let plant = conditions.plant.delayed(conditions.sensor_delay_ticks);
-        Outfit::new(conditions, plan, &plant, &start, |frame| frames.push(*frame));
+        Outfit::new(conditions, plan, &plant, &start, &mut Processor::Here, |frame| frames.push(*frame));
     } else {
-        preroll(plan, steady(plan, start.speed_m_s), |frame, _| frames.push(*frame));
+        preroll(plan, &mut Processor::Here, steady(plan, start.speed_m_s), |frame, _| frames.push(*frame));
     }
     frames.extend(trace.iter().map(|p| p.frame));
     frames

@@ -1,0 +1,237 @@
+//! The controller of a ride on a board in lockstep.
+
+use super::link_fault::Passage;
+use super::{BoardError, LinkFault, Lockstep, Way};
+use crate::plant::Dice;
+use crate::ride::{Remote, RemoteError, Start, Stepped};
+use control::wire::encode_config;
+use control::{Plan, SensorFrame};
+use link::frame::MAX_FRAME;
+use link::lockstep::{COMMAND_TIMEOUT_MS, ToBoard};
+use link::message::NoMessage;
+use link::{Decoder, Message, Received};
+
+/// Bytes of a configuration in one message.
+const PIECE: usize = 300;
+/// The only control rate of an emulated board \[Hz\].
+const RATE_HZ: f32 = 1000.0;
+/// The link's faults draw from streams of their own, apart from those of sensors and their faults.
+const DICE: u64 = 1 << 32;
+
+/// What a controller did since it was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Control steps.
+    pub steps: u64,
+    /// Control steps that a fault of the link acted on.
+    pub harmed: u64,
+    /// Control steps for which the board was not there in time, or not at all.
+    pub missed: u64,
+    /// How often the chip started anew during a ride.
+    pub restarts: u64,
+}
+
+/// The controller on a board: rides hand it sensor frames and get its commands.
+#[derive(Debug)]
+pub struct Controller<B> {
+    /// The board.
+    pub board: B,
+    faults: Vec<LinkFault>,
+    seed: u64,
+    ride: RideState,
+    tally: Tally,
+}
+
+/// What is remembered of the ride under way.
+#[derive(Debug)]
+struct RideState {
+    /// The number of its reset.
+    number: u16,
+    /// Configuration and reset, until they went out.
+    opening: Vec<u8>,
+    /// Control steps since the reset.
+    step: u32,
+    /// The control step that the board counts as number 0.
+    step_zero: u32,
+    /// Control steps from t = 0; `None` before.
+    tick: Option<u32>,
+    sensors: Passage,
+    motor: Passage,
+    decoder: Decoder,
+    /// The newest command, and the control steps that it was held for.
+    held: (Stepped, u32),
+    /// Control steps that the board has gone on alone, and the command that came at their end.
+    ahead: Option<(u32, Option<Stepped>)>,
+    /// Whether the chip started anew, and no longer counts the ride's steps.
+    restarted: bool,
+}
+
+impl RideState {
+    fn new(number: u16, faults: &[LinkFault], seed: u64, start: &Start) -> Self {
+        let passage = |way: Way| Passage::new(faults, way, Dice::new(seed, start, DICE + way as u64));
+        Self {
+            number,
+            opening: Vec::new(),
+            step: 0,
+            step_zero: 0,
+            tick: None,
+            sensors: passage(Way::Sensors),
+            motor: passage(Way::Motor),
+            decoder: Decoder::default(),
+            held: (Stepped::OFF, 0),
+            ahead: None,
+            restarted: false,
+        }
+    }
+
+    /// The number of this control step's sensor frame.
+    fn sequence(&self) -> u16 {
+        self.step.wrapping_sub(self.step_zero) as u16
+    }
+
+    /// What the motor does in a control step: by a new command, or by the one before as long as it may be held.
+    fn motor(&mut self, newest: Option<Stepped>) -> Stepped {
+        self.held = match (newest, self.held) {
+            (Some(newest), _) => (newest, 0),
+            (None, (held, periods)) if periods < COMMAND_TIMEOUT_MS => (held, periods + 1),
+            (None, _) => (Stepped::OFF, COMMAND_TIMEOUT_MS),
+        };
+        self.held.0
+    }
+
+    fn astray(&self, what: impl Into<String>) -> BoardError {
+        BoardError::Astray { step: self.step, what: what.into() }
+    }
+}
+
+impl<B: Lockstep> Controller<B> {
+    /// On this board, over a link with these faults; `seed` is of their random numbers.
+    pub fn new(board: B, faults: &[LinkFault], seed: u64) -> Self {
+        let ride = RideState::new(0, faults, seed, &Start::default());
+        Self { board, faults: faults.into(), seed, ride, tally: Tally::default() }
+    }
+
+    /// What it did so far.
+    pub fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// One exchange; the command that came, if one did.
+    fn exchange(&mut self, frame: &SensorFrame) -> Result<Option<Stepped>, BoardError> {
+        let ride = &mut self.ride;
+        let mut sensors = Vec::with_capacity(MAX_FRAME);
+        let sequence = ride.sequence();
+        put(&Message::PilFrame(*frame), sequence, &mut sensors);
+        if let Some(tick) = ride.tick {
+            ride.sensors.pass(tick, &mut sensors);
+        }
+        let resets = !ride.opening.is_empty();
+        if resets {
+            ride.opening.append(&mut sensors);
+            sensors = std::mem::take(&mut ride.opening);
+        }
+        self.board.exchange(&ToBoard { sensors: &sensors, line: &[] })?;
+        let mut motor = self.board.last().motor.to_vec();
+        if let Some(tick) = ride.tick {
+            ride.motor.pass(tick, &mut motor);
+        }
+        let (mut command, mut reset) = (None, !resets);
+        for byte in motor {
+            let Some(Received::Frame(received)) = ride.decoder.feed(byte) else { continue };
+            match Message::decode(&received) {
+                Ok(Message::PilCommand { command: newest, authority }) => {
+                    command = Some((Stepped { command: newest, authority }, received.sequence));
+                }
+                Ok(Message::Done) => reset |= received.sequence == ride.number,
+                Ok(Message::Refused(refusal)) => return Err(BoardError::Refused(refusal.to_string())),
+                Ok(_) => {}
+                Err(NoMessage::UnknownKind(kind) | NoMessage::Malformed(kind)) => {
+                    return Err(ride.astray(format!("a message of kind {kind:#04x} that can't be read")));
+                }
+            }
+        }
+        if !reset {
+            return Err(ride.astray("the reset was not answered"));
+        }
+        match command {
+            Some((_, of)) if of != sequence && ride.sensors.safe() && !ride.restarted => {
+                Err(ride.astray(format!("a command of frame {of} in answer to frame {sequence}")))
+            }
+            Some((stepped, _)) => Ok(Some(stepped)),
+            None => Ok(None),
+        }
+    }
+
+    /// A control step that the board takes part in.
+    fn stepped(&mut self, frame: &SensorFrame) -> Result<Stepped, BoardError> {
+        let (before_ms, starts) = (self.board.last().time_ms, self.board.last().starts);
+        let newest = self.exchange(frame)?;
+        let (now_ms, started) = (self.board.last().time_ms, self.board.last().starts.wrapping_sub(starts));
+        let ride = &mut self.ride;
+        let gone_ms = now_ms.wrapping_sub(before_ms);
+        if gone_ms == 0 || gone_ms > i32::MAX as u32 {
+            return Err(ride.astray(format!("the board's time went from {before_ms} ms to {now_ms} ms")));
+        }
+        if started > 0 {
+            // It counts the steps from its start on, of which there was one.
+            (ride.restarted, ride.step_zero) = (true, ride.step + gone_ms - 1);
+            self.tally.restarts += u64::from(started);
+        }
+        if newest.is_none() && ride.motor.safe() && !ride.restarted {
+            return Err(ride.astray("the board gave no command"));
+        }
+        if gone_ms == 1 {
+            return Ok(ride.motor(newest));
+        }
+        ride.ahead = Some((gone_ms - 1, newest));
+        self.tally.missed += 1;
+        Ok(ride.motor(None))
+    }
+}
+
+impl<B: Lockstep> Remote for Controller<B> {
+    fn begin(&mut self, plan: &Plan, start: &Start) -> Result<(), RemoteError> {
+        let config = plan.config();
+        if config.rate_hz != RATE_HZ {
+            return Err(BoardError::Rate(config.rate_hz).into());
+        }
+        let number = self.ride.number.wrapping_add(1);
+        self.ride = RideState::new(number, &self.faults, self.seed, start);
+        for (piece, bytes) in encode_config(config).chunks(PIECE).enumerate() {
+            put(&Message::PilConfig { at: (piece * PIECE) as u16, bytes }, number, &mut self.ride.opening);
+        }
+        put(&Message::PilReset, number, &mut self.ride.opening);
+        Ok(())
+    }
+
+    fn disturb(&mut self) {
+        self.ride.tick = Some(0);
+    }
+
+    fn step(&mut self, frame: &SensorFrame) -> Result<Stepped, RemoteError> {
+        let harmed = self.ride.sensors.harmed + self.ride.motor.harmed;
+        let stepped = match self.ride.ahead.take() {
+            Some((1, newest)) => self.ride.motor(newest),
+            Some((periods, newest)) => {
+                self.ride.ahead = Some((periods - 1, newest));
+                self.tally.missed += 1;
+                self.ride.motor(None)
+            }
+            None => self.stepped(frame)?,
+        };
+        let ride = &mut self.ride;
+        self.tally.harmed += u64::from(ride.sensors.harmed + ride.motor.harmed - harmed);
+        self.tally.steps += 1;
+        ride.step += 1;
+        ride.tick = ride.tick.map(|tick| tick + 1);
+        Ok(stepped)
+    }
+}
+
+/// Puts a message on the link.
+fn put(message: &Message<'_>, sequence: u16, to: &mut Vec<u8>) {
+    let mut room = [0; MAX_FRAME];
+    // Any of the loop's messages fits.
+    let used = message.encode(sequence, &mut room).unwrap_or(0);
+    to.extend_from_slice(&room[..used]);
+}

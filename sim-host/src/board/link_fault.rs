@@ -1,0 +1,172 @@
+//! Faults of the loop's link, as text: `WAY:HARM[=TIME][@FROM[..TO]]`, for example `sensors:late=3ms@1.5s..2s`.
+
+use crate::plant::Dice;
+use crate::range::{span, time};
+use std::collections::VecDeque;
+use std::fmt;
+use std::str::FromStr;
+
+/// Latest that bytes can be \[s\].
+const LATEST_S: f64 = 1.0;
+/// A control period \[s\].
+const PERIOD_S: f64 = 1e-3;
+
+/// Which way bytes go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// To the board.
+    Sensors,
+    /// From the board.
+    Motor,
+}
+
+impl Way {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Sensors, Self::Motor];
+
+    /// Its name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sensors => "sensors",
+            Self::Motor => "motor",
+        }
+    }
+}
+
+/// What happens to them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Harm {
+    /// They are lost.
+    Drop,
+    /// They come later by so many control periods. What a newer period's overtake is lost.
+    Late(u32),
+    /// One byte of each period's is another.
+    Corrupt,
+}
+
+/// A fault of the link. Its text form parses back to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkFault {
+    /// Which way.
+    pub way: Way,
+    /// What happens.
+    pub harm: Harm,
+    /// From this time of the ride \[s\], ...
+    pub from_s: f64,
+    /// ... up to this time, which may be infinite \[s\].
+    pub to_s: f64,
+}
+
+impl LinkFault {
+    fn acts(&self, tick: u32) -> bool {
+        let begun = |at_s: f64| f64::from(tick) >= (at_s / PERIOD_S).round();
+        begun(self.from_s) && !begun(self.to_s)
+    }
+}
+
+impl fmt::Display for LinkFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:", self.way.name())?;
+        match self.harm {
+            Harm::Drop => write!(f, "drop")?,
+            Harm::Late(ticks) => write!(f, "late={ticks}ms")?,
+            Harm::Corrupt => write!(f, "corrupt")?,
+        }
+        if self.from_s != 0.0 || self.to_s.is_finite() {
+            write!(f, "@{}s", self.from_s)?;
+        }
+        if self.to_s.is_finite() {
+            write!(f, "..{}s", self.to_s)?;
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for LinkFault {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        parsed(text).map_err(|why| format!("`{text}`: {why}"))
+    }
+}
+
+fn parsed(text: &str) -> Result<LinkFault, String> {
+    let form = "expected WAY:HARM[=TIME][@FROM[..TO]], for example sensors:late=3ms@1.5s..2s";
+    let (way, what) = text.split_once(':').ok_or(form)?;
+    let way = Way::ALL
+        .into_iter()
+        .find(|known| known.name() == way)
+        .ok_or_else(|| format!("no way `{way}`; there are {}", Way::ALL.map(Way::name).join(", ")))?;
+    let (what, when) = what.split_once('@').map_or((what, None), |(what, when)| (what, Some(when)));
+    let harm = match what.split_once('=').map_or((what, None), |(name, value)| (name, Some(value))) {
+        ("drop", None) => Harm::Drop,
+        ("corrupt", None) => Harm::Corrupt,
+        ("late", Some(by)) => Harm::Late(periods(by)?),
+        ("late", None) => return Err("late needs a value: late=TIME".into()),
+        ("drop" | "corrupt", Some(_)) => return Err(format!("{what}: it takes no value")),
+        _ => return Err(format!("no harm `{what}`; there are drop, late=TIME, corrupt")),
+    };
+    let (from_s, to_s) = when.map_or(Ok((0.0, f64::INFINITY)), span)?;
+    Ok(LinkFault { way, harm, from_s, to_s })
+}
+
+fn periods(text: &str) -> Result<u32, String> {
+    let periods = time(text, LATEST_S)? / PERIOD_S;
+    if periods >= 0.5 && (periods - periods.round()).abs() < 1e-6 {
+        return Ok(periods.round() as u32);
+    }
+    Err(format!("late={text} is not a whole number of control periods of 1 ms, 1 ms to {LATEST_S} s"))
+}
+
+/// One way of the link in one ride.
+#[derive(Debug)]
+pub(super) struct Passage {
+    faults: Vec<LinkFault>,
+    dice: Dice,
+    /// What is late, and the period when it comes.
+    late: VecDeque<(u32, Vec<u8>)>,
+    /// Periods whose bytes a fault acted on.
+    pub(super) harmed: u32,
+}
+
+impl Passage {
+    /// The faults of one way among all of them.
+    pub(super) fn new(faults: &[LinkFault], way: Way, dice: Dice) -> Self {
+        let faults = faults.iter().filter(|fault| fault.way == way).copied().collect();
+        Self { faults, dice, late: VecDeque::new(), harmed: 0 }
+    }
+
+    /// Whether nothing ever happens on it.
+    pub(super) fn safe(&self) -> bool {
+        self.faults.is_empty()
+    }
+
+    /// What of a period's `bytes`, and of those before, arrives in the period `tick` from t = 0.
+    pub(super) fn pass(&mut self, tick: u32, bytes: &mut Vec<u8>) {
+        let (mut lost, mut late) = (false, 0);
+        let acting = self.faults.iter().filter(|fault| fault.acts(tick));
+        for fault in acting.clone() {
+            match fault.harm {
+                Harm::Drop => lost = true,
+                Harm::Late(ticks) => late += ticks,
+                Harm::Corrupt if bytes.is_empty() => {}
+                Harm::Corrupt => {
+                    let place = self.dice.below(bytes.len());
+                    bytes[place] ^= 1 << self.dice.below(8);
+                }
+            }
+        }
+        self.harmed += u32::from(acting.count() > 0);
+        if !lost && late == 0 {
+            self.late.clear();
+            return;
+        }
+        if !lost {
+            self.late.push_back((tick + late, bytes.clone()));
+        }
+        bytes.clear();
+        while self.late.front().is_some_and(|(due, _)| *due <= tick) {
+            self.late.pop_front().into_iter().for_each(|(_, arrived)| *bytes = arrived);
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! A board in QEMU, which hands over on its standard output and takes from its standard input.
+
+use super::watch::{Watch, locked};
+use super::{BoardError, Lockstep};
+use link::lockstep::{BOARD_HEAD, FromBoard, MAX_CHUNK, ToBoard};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::{Arc, Mutex};
+use std::thread::{JoinHandle, sleep, spawn};
+use std::time::Duration;
+
+/// Longest that an exchange may take, a thousand times what it does.
+pub const LIMIT: Duration = Duration::from_secs(10);
+/// Longest from the end of its output to its own end \[ms\].
+const GRACE_MS: u32 = 1000;
+/// Most bytes kept of what the board writes for people: its last words.
+const KEPT: usize = 1 << 14;
+
+/// Where `cargo xtask firmware` leaves the image of the loop.
+pub fn default_image() -> PathBuf {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = manifest.parent().unwrap_or(manifest);
+    root.join("target/firmware/thumbv7em-none-eabihf/firmware/qemu-pil")
+}
+
+/// An image that runs in QEMU, ended with this value.
+#[derive(Debug)]
+pub struct Qemu {
+    image: PathBuf,
+    child: Arc<Mutex<Child>>,
+    /// `None` once it was ended.
+    to: Option<ChildStdin>,
+    from: ChildStdout,
+    watch: Watch,
+    words: Arc<Mutex<Vec<u8>>>,
+    listener: Option<JoinHandle<()>>,
+    exchanges: u64,
+    room: [u8; MAX_CHUNK],
+    /// Bytes of the chunk in `room`.
+    used: usize,
+}
+
+impl Qemu {
+    /// Starts an image with words as its arguments, and waits until it handed over for the first time; `limit` is
+    /// the longest that any exchange may take.
+    ///
+    /// # Errors
+    /// There is no image or no QEMU, or it does not get that far.
+    pub fn start(image: &Path, words: &[&str], limit: Duration) -> Result<Self, BoardError> {
+        if !image.is_file() {
+            return Err(BoardError::NoImage(image.into()));
+        }
+        let mut child = command(image, words).spawn().map_err(BoardError::NoQemu)?;
+        let (to, from, err) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
+        let child = Arc::new(Mutex::new(child));
+        let (Some(to), Some(from), Some(err)) = (to, from, err) else {
+            return Err(BoardError::NoQemu(std::io::ErrorKind::BrokenPipe.into()));
+        };
+        let said = Arc::new(Mutex::new(Vec::new()));
+        let listener = listen(err, Arc::clone(&said));
+        let mut qemu = Self {
+            image: image.into(),
+            watch: Watch::new(Arc::clone(&child), limit),
+            child,
+            to: Some(to),
+            from,
+            words: said,
+            listener: Some(listener),
+            exchanges: 0,
+            room: [0; MAX_CHUNK],
+            used: 0,
+        };
+        qemu.watch.begin(1);
+        qemu.take()?;
+        qemu.watch.end();
+        Ok(qemu)
+    }
+
+    /// What the board wrote for people so far, its last words.
+    pub fn said(&self) -> String {
+        String::from_utf8_lossy(&locked(&self.words)).trim_end().into()
+    }
+
+    /// Takes the next chunk.
+    fn take(&mut self) -> Result<(), BoardError> {
+        self.used = 0;
+        let mut whole = BOARD_HEAD;
+        while self.used < whole {
+            match self.from.read(&mut self.room[self.used..]) {
+                Ok(0) | Err(_) => return Err(self.ended()),
+                Ok(got) => self.used += got,
+            }
+            if self.used >= BOARD_HEAD {
+                let length = |at: usize| usize::from(u16::from_le_bytes([self.room[at], self.room[at + 1]]));
+                whole = BOARD_HEAD + length(BOARD_HEAD - 4) + length(BOARD_HEAD - 2);
+            }
+            if whole > MAX_CHUNK || self.used > whole {
+                let begin = &self.room[..self.used.min(BOARD_HEAD)];
+                return Err(BoardError::NoChunk(format!("{} bytes beginning {begin:02x?}", self.used)));
+            }
+        }
+        Ok(())
+    }
+
+    /// How it ended; it is ended if it does not end by itself.
+    fn last_status(&mut self) -> String {
+        let mut child = locked(&self.child);
+        for _ in 0..GRACE_MS {
+            match child.try_wait() {
+                Ok(Some(status)) => return status.to_string(),
+                Ok(None) => sleep(Duration::from_millis(1)),
+                Err(why) => return why.to_string(),
+            }
+        }
+        // It may have ended just now.
+        let _ = child.kill();
+        child.wait().map_or_else(|why| why.to_string(), |_| "its output ended before it did".into())
+    }
+
+    /// Why it is gone.
+    fn ended(&mut self) -> BoardError {
+        self.to = None;
+        let status = self.last_status();
+        // The last words are there when the listener is done.
+        let _ = self.listener.take().map(JoinHandle::join);
+        let said = match self.said() {
+            said if said.is_empty() => said,
+            said => format!("; it said:\n{said}"),
+        };
+        let (image, exchanges) = (self.image.clone(), self.exchanges);
+        match self.watch.bitten() {
+            true => BoardError::Silent { image, limit: self.watch.limit, exchanges, said },
+            false => BoardError::Ended { image, status, exchanges, said },
+        }
+    }
+}
+
+impl Lockstep for Qemu {
+    fn last(&self) -> FromBoard<'_> {
+        // A whole chunk by its lengths is one.
+        let none = FromBoard { time_ms: 0, starts: 0, motor: &[], line: &[] };
+        FromBoard::decode(&self.room[..self.used]).unwrap_or(none)
+    }
+
+    fn exchange(&mut self, chunk: &ToBoard<'_>) -> Result<(), BoardError> {
+        let mut room = [0; MAX_CHUNK];
+        let too_much = || BoardError::TooMuch(chunk.sensors.len(), chunk.line.len());
+        let used = chunk.encode(&mut room).ok_or_else(too_much)?;
+        self.watch.begin(self.exchanges + 2);
+        let sent = self.to.as_mut().is_some_and(|to| to.write_all(&room[..used]).is_ok());
+        if !sent {
+            return Err(self.ended());
+        }
+        self.take()?;
+        self.watch.end();
+        self.exchanges += 1;
+        Ok(())
+    }
+}
+
+impl Drop for Qemu {
+    fn drop(&mut self) {
+        let mut child = locked(&self.child);
+        // It may have ended by itself.
+        let _ = child.kill();
+        let _ = child.wait();
+    }
+}
+
+fn command(image: &Path, words: &[&str]) -> Command {
+    let name = image.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let words = words.iter().fold(format!(",arg={name}"), |line, word| format!("{line},arg={word}"));
+    let mut qemu = Command::new("qemu-system-arm");
+    qemu.args(["-machine", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "none"]);
+    // An instruction lasts 32 ns of simulated time, and waiting none of the host's.
+    qemu.args(["-icount", "shift=5,sleep=off"]);
+    qemu.arg("-semihosting-config").arg(format!("enable=on,target=native{words}"));
+    qemu.arg("-kernel").arg(image);
+    qemu.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    // Ctrl-C is for this program, which may want to finish a ride.
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut qemu, 0);
+    qemu
+}
+
+/// Keeps the last of what the board writes for people.
+fn listen(mut from: ChildStderr, to: Arc<Mutex<Vec<u8>>>) -> JoinHandle<()> {
+    spawn(move || {
+        let mut room = [0; 1024];
+        while let Ok(got @ 1..) = from.read(&mut room) {
+            let mut kept = locked(&to);
+            kept.extend_from_slice(&room[..got]);
+            let much = kept.len().saturating_sub(KEPT);
+            kept.drain(..much);
+        }
+    })
+}

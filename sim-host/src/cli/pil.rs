@@ -1,0 +1,162 @@
+//! `sim-host pil`: a ride with its control step on a board in QEMU.
+
+use super::conditions::Setup;
+use super::outputs::{complain, print};
+use super::{Ended, Failure, pil_basin, ride};
+use crate::board::compare::{Recorder, same_ride};
+use crate::board::qemu::{LIMIT, Qemu, default_image};
+use crate::board::{BoardError, Controller, LinkFault};
+use crate::ride::{Assist, rides_on, traced_on};
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::time::Instant;
+
+const EXAMPLES: &str = "\
+Examples:
+  sim-host pil --speed 4 --steer-rate 5 --compare
+  sim-host pil --preset product --speed 4 --steer-rate 3 --inject sensors:drop@1s..1.05s
+  sim-host pil --preset product --speed 4 --steer-rate 3 --fault gyro:stuck@300ms --csv ride.csv
+  sim-host pil --preset product --speed 4 --steer-rate 3 --bench
+  sim-host pil basin --speeds 3:6:1 --tolerance 0.1 --compare";
+
+/// Options of `pil`.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(super) struct Args {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    ride: Option<RideArgs>,
+}
+
+#[derive(clap::Subcommand)]
+enum Command {
+    /// The basin of attraction, every ride on a board
+    Basin(Box<pil_basin::Args>),
+}
+
+/// A ride on a board.
+#[derive(clap::Args)]
+struct RideArgs {
+    #[command(flatten)]
+    ride: ride::Args,
+    #[command(flatten)]
+    board: BoardArgs,
+    /// Ride it five times, and tell how fast, as the median
+    #[arg(long, conflicts_with = "compare")]
+    bench: bool,
+}
+
+/// Which board, over which link.
+#[derive(clap::Args)]
+pub(super) struct BoardArgs {
+    /// The board's image [default: where `cargo xtask firmware` builds it]
+    #[arg(long, value_name = "FILE")]
+    image: Option<PathBuf>,
+    /// The link goes wrong, for example sensors:late=3ms@1s..2s or motor:drop@1s; may be repeated
+    #[arg(long, value_name = "WAY:HARM@FROM..TO", conflicts_with = "compare")]
+    inject: Vec<String>,
+    /// Do the same in this program, and fail at the first bit that differs
+    #[arg(long)]
+    pub(super) compare: bool,
+}
+
+impl BoardArgs {
+    /// What starts a board and its controller for rides under these conditions, checked.
+    pub(super) fn starter(
+        &self,
+        setup: &Setup,
+    ) -> Result<impl Fn() -> Result<Controller<Qemu>, BoardError> + use<>, Failure> {
+        let conditions = &setup.conditions;
+        let Assist::Firmware(plan) = &conditions.assist else {
+            return Err(
+                "a board in the loop needs a controller: --assist firmware and a --law but none".into()
+            );
+        };
+        let rate_hz = plan.config().rate_hz;
+        if rate_hz != 1000.0 || conditions.step_s != 1e-3 {
+            return Err(BoardError::Rate(rate_hz).into());
+        }
+        let faults: Result<Vec<LinkFault>, _> = self.inject.iter().map(|text| text.parse()).collect();
+        let faults = faults.map_err(|why| format!("--inject {why}"))?;
+        let image = self.image.clone().unwrap_or_else(default_image);
+        let seed = conditions.plant.seed;
+        Ok(move || Ok(Controller::new(Qemu::start(&image, &[], LIMIT)?, &faults, seed)))
+    }
+}
+
+pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    match (&args.command, &args.ride) {
+        (Some(Command::Basin(args)), _) => pil_basin::run(args),
+        (None, Some(args)) => on_board(args),
+        (None, None) => Err("--speed must be given".into()),
+    }
+}
+
+fn on_board(args: &RideArgs) -> Result<Ended, Failure> {
+    let start = args.ride.start()?;
+    let setup = args.ride.conditions.setup()?;
+    let start_board = args.board.starter(&setup)?;
+    let outputs = args.ride.open()?;
+    let mut controller = start_board()?;
+    if args.bench {
+        let times = (0..5).map(|_| {
+            let (begin, before) = (Instant::now(), controller.tally().steps);
+            rides_on(&setup.conditions, &[start], &mut controller)?;
+            Ok(speed(controller.tally().steps - before, begin.elapsed().as_secs_f64()))
+        });
+        let mut times: Vec<f64> = times.collect::<Result<_, Failure>>()?;
+        times.sort_by(f64::total_cmp);
+        print(&format!(
+            "median of 5 rides: {:.1} times as fast as in real time ({:.1} to {:.1})\n",
+            times[2], times[0], times[4]
+        ))?;
+        return Ok(Ended::Done);
+    }
+    let begin = Instant::now();
+    let mut recorder = Recorder::new(&mut controller);
+    let (ride, trace) = traced_on(&setup.conditions, start, &mut recorder)?;
+    let seconds = begin.elapsed().as_secs_f64();
+    let steps = recorder.steps;
+    let mut said = told(&controller, seconds);
+    let same = args.board.compare.then(|| same_ride(&setup.conditions, &steps, &ride, &trace));
+    if let Some(Ok(())) = same {
+        let _ = writeln!(
+            said,
+            "the same bits as in this program: {} control steps, {} instants, the ride's end",
+            steps.len(),
+            trace.len()
+        );
+    }
+    let sensed = || steps.iter().map(|(frame, _)| *frame).collect();
+    ride::write(&setup, &outputs, (&ride, &trace), sensed, &said)?;
+    same.unwrap_or(Ok(())).map_err(|difference| format!("--compare: {difference}"))?;
+    Ok(Ended::Done)
+}
+
+/// How many times as fast as in real time.
+fn speed(steps: u64, seconds: f64) -> f64 {
+    steps as f64 * 1e-3 / seconds
+}
+
+/// What a controller did in so many seconds, in words.
+fn told(controller: &Controller<Qemu>, seconds: f64) -> String {
+    let tally = controller.tally();
+    let steps = tally.steps;
+    let mut said = format!(
+        "board: {steps} control steps in {seconds:.2} s, {:.1} times as fast as in real time\n",
+        speed(steps, seconds)
+    );
+    if tally.harmed > 0 {
+        let _ = writeln!(said, "a fault of the link acted on {} control steps", tally.harmed);
+    }
+    if tally.missed > 0 || tally.restarts > 0 {
+        let _ = writeln!(
+            said,
+            "the board missed {} control steps, its chip started anew {} times",
+            tally.missed, tally.restarts
+        );
+        complain(&format!("note: the board said:\n{}", controller.board.said()));
+    }
+    said
+}

@@ -1,0 +1,92 @@
+//! `sim-host pil basin`: a basin whose every ride has its control step on a board in QEMU.
+
+use super::basin::{BasinArgs, progress, write};
+use super::pil::BoardArgs;
+use super::{Ended, Failure, interrupt};
+use crate::basin::{Search, basin, basin_by};
+use crate::board::compare::same_basin;
+use crate::board::qemu::Qemu;
+use crate::board::{Controller, Tally};
+use crate::ride::{RemoteError, rides_on};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+const EXAMPLES: &str = "\
+Examples:
+  sim-host pil basin --speeds 3:6:1 --tolerance 0.1 --compare
+  sim-host pil basin --speeds 0:10:0.1 --threads 2 --svg basin.svg --json basin.json";
+
+/// Options of `pil basin`.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    #[command(flatten)]
+    basin: BasinArgs,
+    #[command(flatten)]
+    board: BoardArgs,
+}
+
+pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    let BasinArgs { conditions, search, outputs } = &args.basin;
+    let setup = conditions.setup()?;
+    let searched = search.search(conditions.ridden())?;
+    let start_board = args.board.starter(&setup)?;
+    let outputs = outputs.open(None)?;
+    // One is tried before the work begins; each thread has one of its own.
+    let boards = Mutex::new(vec![start_board()?]);
+    let ride = |starts: &[_]| -> Result<_, RemoteError> {
+        let idle = locked(&boards).pop();
+        let mut board = idle.map_or_else(&start_board, Ok)?;
+        let done = rides_on(&setup.conditions, starts, &mut board)?;
+        locked(&boards).push(board);
+        Ok(done)
+    };
+    interrupt::install();
+    let pool = search.pool()?;
+    let bar = progress(outputs.shows_progress(), "pil basin", searched.speeds.len(), "speeds");
+    let begin = Instant::now();
+    let result =
+        pool.install(|| basin_by(&setup.conditions, &searched, ride, |_| bar.inc(1), interrupt::stopped));
+    let seconds = begin.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    let result = result?;
+    let mut said = told(&locked(&boards), seconds);
+    let mut same = Ok(());
+    if args.board.compare && !result.columns.is_empty() {
+        let speeds = result.columns.iter().map(|column| column.speed).collect();
+        let done = Search { speeds, ..searched.clone() };
+        let here = pool.install(|| basin(&setup.conditions, &done, |_| (), || false))?;
+        same = same_basin(&here, &result);
+        if same.is_ok() {
+            said += &format!("the same bits as in this program: {} speeds\n", result.columns.len());
+        }
+    }
+    let ended = write(&setup, &searched, &outputs, &result, seconds, &said)?;
+    same.map_err(|difference| format!("--compare: {difference}"))?;
+    Ok(ended)
+}
+
+/// What the boards did in so many seconds, in words.
+fn told(boards: &[Controller<Qemu>], seconds: f64) -> String {
+    let sum = |of: fn(Tally) -> u64| boards.iter().map(|board| of(board.tally())).sum::<u64>();
+    let (steps, harmed) = (sum(|t| t.steps), sum(|t| t.harmed));
+    let mut said = format!(
+        "{} boards: {steps} control steps, {:.1} times as fast as in real time\n",
+        boards.len(),
+        steps as f64 * 1e-3 / seconds
+    );
+    if harmed > 0 {
+        said += &format!("a fault of the link acted on {harmed} control steps\n");
+    }
+    let (missed, restarts) = (sum(|t| t.missed), sum(|t| t.restarts));
+    if missed > 0 || restarts > 0 {
+        said +=
+            &format!("the boards missed {missed} control steps, their chips started anew {restarts} times\n");
+    }
+    said
+}
+
+/// The boards, whatever happened to a thread that held them.
+fn locked(boards: &Mutex<Vec<Controller<Qemu>>>) -> std::sync::MutexGuard<'_, Vec<Controller<Qemu>>> {
+    boards.lock().unwrap_or_else(PoisonError::into_inner)
+}
