@@ -6,3 +6,4 @@ mod faults;
 mod no_panic;
 mod outputs;
 mod replay;
+mod resets;
