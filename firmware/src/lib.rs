@@ -18,6 +18,7 @@ pub mod board;
 pub mod board;
 
 pub mod deadline;
+pub mod reset;
 pub mod tasks;
 
 /// Which image this is: its name, version and commit, one blank between them.

@@ -1,6 +1,7 @@
 //! 168 MHz from the 8 MHz crystal.
 
 use embassy_stm32::Config;
+use embassy_stm32::pac::RCC;
 use embassy_stm32::rcc::{
     AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllQDiv, PllSource, Sysclk,
 };
@@ -24,4 +25,14 @@ pub(super) fn config() -> Config {
     config.rcc.apb1_pre = APBPrescaler::DIV4;
     config.rcc.apb2_pre = APBPrescaler::DIV2;
     config
+}
+
+/// Watches the crystal: without it the break opens the bridge, and the chip starts anew on its own oscillator.
+pub(super) fn watch_crystal() {
+    RCC.cr().modify(|w| w.set_csson(true));
+}
+
+#[cortex_m_rt::exception]
+unsafe fn NonMaskableInt() -> ! {
+    super::restart()
 }
