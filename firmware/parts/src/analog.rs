@@ -96,6 +96,6 @@ impl Gauge {
         let part = (f32::from(counts) - f32::from(self.least_counts)) / span;
         (self.least_counts..=self.most_counts)
             .contains(&counts)
-            .then(|| self.at_least + part * (self.at_most - self.at_least))
+            .then_some(self.at_least + part * (self.at_most - self.at_least))
     }
 }

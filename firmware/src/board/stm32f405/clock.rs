@@ -24,6 +24,7 @@ pub(super) fn config() -> Config {
     config.rcc.ahb_pre = AHBPrescaler::DIV1;
     config.rcc.apb1_pre = APBPrescaler::DIV4;
     config.rcc.apb2_pre = APBPrescaler::DIV2;
+    config.dma_interrupt_priority = super::priority::REST;
     config
 }
 

@@ -1,6 +1,6 @@
 //! The flash of the parameters: three sectors of 16 KiB that `memory.x` keeps free of code.
 
-use super::{motor, watchdog};
+use super::{pwm, shared, watchdog};
 use core::ops::Range;
 use embassy_stm32::flash::{Async, Bank1Region1, Error, Flash as Chip, InterruptHandler};
 use embassy_stm32::peripherals::FLASH;
@@ -37,7 +37,9 @@ struct Standstill;
 
 impl Standstill {
     fn begin() -> Self {
-        motor::hold_open(true);
+        // The interrupt would close it again, so that it is told first.
+        shared::set_hold(true);
+        pwm::open();
         watchdog::standstill(true);
         Self
     }
@@ -46,7 +48,7 @@ impl Standstill {
 impl Drop for Standstill {
     fn drop(&mut self) {
         watchdog::standstill(false);
-        motor::hold_open(false);
+        shared::set_hold(false);
     }
 }
 

@@ -28,10 +28,10 @@ pub(super) fn start(link: Link) {
     let mut config = Config::default();
     config.baudrate = 115_200;
     let line = BufferedUart::new(link.uart, link.rx, link.tx, TO_SEND.take(), RECEIVED.take(), Line, config);
-    if let Ok((to, from)) = line.map(BufferedUart::split) {
-        if let (Ok(mut tx), Ok(mut rx)) = (TX.try_lock(), RX.try_lock()) {
-            (*tx, *rx) = (Some(to), Some(from));
-        }
+    if let Ok((to, from)) = line.map(BufferedUart::split)
+        && let (Ok(mut tx), Ok(mut rx)) = (TX.try_lock(), RX.try_lock())
+    {
+        (*tx, *rx) = (Some(to), Some(from));
     }
 }
 

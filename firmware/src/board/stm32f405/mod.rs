@@ -11,12 +11,13 @@ mod gate;
 mod imu;
 mod lamps;
 pub mod line;
-pub mod motor;
+mod motor;
 mod pins;
 mod priority;
 mod pwm;
 mod reset;
 mod sensors;
+mod shared;
 mod soft_spi;
 mod watchdog;
 mod wheels;
@@ -24,6 +25,7 @@ mod wheels;
 pub use flash::{Flash, flash};
 pub use reset::{reset_cause, restart};
 pub use sensors::sense;
+pub use shared::{Report, order, report as motor_report};
 pub use watchdog::feed_watchdog;
 
 use crate::tasks::{Refusal, Telemetry};
@@ -33,7 +35,7 @@ use defmt_rtt as _;
 use embassy_executor::{Executor, InterruptExecutor, SendSpawner, Spawner};
 use embassy_stm32::gpio::{Input, Level, Pull};
 use embassy_stm32::interrupt;
-use embassy_stm32::pac::{GPIOB, TIM1};
+use embassy_stm32::pac::GPIOB;
 use panic_probe as _;
 use pins::{Pins, fixed};
 use sensors::Sensors;
@@ -96,10 +98,10 @@ fn start(peripherals: embassy_stm32::Peripherals) {
 }
 
 /// Half clocks of the buses \[cycles of 6 ns\]: gate driver 1 MHz, IMU below 2 MHz (its clock's pin is a slow one), the
-/// encoder's as fast as pins are moved.
+/// encoder below its 10 MHz.
 const GATE_CYCLES: u32 = 84;
 const IMU_CYCLES: u32 = 42;
-const ENCODER_CYCLES: u32 = 8;
+const ENCODER_CYCLES: u32 = 10;
 
 #[interrupt]
 fn UART5() {
@@ -110,9 +112,10 @@ fn UART5() {
 /// Opens all six switches and turns the gate driver off, until the next start. From any context, fault handlers included:
 /// it writes three words and needs nothing but their addresses.
 pub fn outputs_off() {
-    TIM1.bdtr().modify(|w| w.set_moe(false));
+    // First, so that the motor's interrupt does not close again what is opened here.
+    shared::set_off();
+    pwm::open();
     GPIOB.bsrr().write(|w| w.set_br(pins::GATE_ENABLE, true));
-    motor::off();
 }
 
 /// Gives the command to the motor's interrupt, which opens the bridge where the next one does not come in time.
@@ -121,8 +124,8 @@ pub fn outputs_off() {
 /// Why no torque is given, as the interrupt last saw it.
 pub fn drive(command: &Command) -> Result<(), Refusal> {
     let wanted = command.torque_nm != 0.0 || matches!(command.mode, Mode::Engaged | Mode::Limp);
-    let refusal = motor::refusal();
-    motor::order(if wanted { Ask::Torque(command.torque_nm) } else { Ask::Off });
+    let refusal = motor_report().refusal();
+    order(if wanted { Ask::Torque(command.torque_nm) } else { Ask::Off });
     lamps::show(refusal.is_none());
     refusal.map_or(Ok(()), Err)
 }
@@ -156,16 +159,16 @@ pub fn report(t: &Telemetry) {
         f.rider_torque_nm.age_ticks,
         f.engage
     );
-    let m = motor::report();
+    let m = motor_report();
     defmt::info!(
-        "calls={=u32} late={=u32} mode={=u32} faults={=u32:#x} supply_v={=f32} board_c={=f32} encoder={=u16} age={=u16} \
-         steer_rad_s={=f32} iq_a={=f32} torque_nm={=f32} offset_turns={=f32}",
+        "calls={=u32} late={=u32} mode={=u8} faults={=u32:#x} supply_v={=f32} board_c={=f32} encoder={=u16} age={=u16} \
+         steer_rad_s={=f32} iq_a={=f32} torque_nm={=f32} offset_turns={}",
         m.calls,
         m.late,
-        m.mode,
+        m.mode as u8,
         m.faults.0,
         m.supply_v,
-        m.board_c,
+        shared::heat_c(),
         m.encoder_counts,
         m.encoder_age,
         m.steer_rate_rad_s,

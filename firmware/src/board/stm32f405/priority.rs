@@ -12,7 +12,7 @@ const CLOCK: Priority = Priority::P3;
 /// Control's executor.
 const CONTROL: Priority = Priority::P4;
 /// Whatever else.
-const REST: Priority = Priority::P8;
+pub(super) const REST: Priority = Priority::P8;
 
 /// Interrupts of the chip, by their numbers.
 const INTERRUPTS: usize = 82;

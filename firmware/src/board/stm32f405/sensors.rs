@@ -1,7 +1,7 @@
 //! What control sees: the newest samples of everything, with their ages.
 
 use super::imu;
-use super::motor::{self, Report};
+use super::shared::{Report, report, set_heat};
 use super::soft_spi::SoftSpi;
 use super::wheels::Edges;
 use ::motor::Mode;
@@ -83,15 +83,15 @@ impl Sensors {
         let elapsed_us = now.saturating_duration_since(self.before).as_micros() as u32;
         self.before = now;
         self.look_at_imu();
-        let report = motor::report();
+        let report = report();
         let alive = report.calls != self.calls;
         self.calls = report.calls;
-        motor::heat(BOARD_HEAT.celsius(report.board_heat));
+        set_heat(BOARD_HEAT.celsius(report.board_heat));
         let [front, rear] =
             [0, 1].map(|i| wheel::step(&self.wheel, &mut self.wheels[i], self.edges[i].age_us(), elapsed_us));
         let closed = report.switch < SWITCH_COUNTS;
         // A drive that is not able to give torque says nothing, so control does not engage.
-        let able = report.mode == Mode::Ready as u32 || report.mode == Mode::Running as u32;
+        let able = matches!(report.mode, Mode::Ready | Mode::Running) && !report.gate_fault && !report.off;
         SensorFrame {
             now_us: now.as_micros() as u32,
             gyro_rad_s: Triple { value: self.gyro.0, age_ticks: self.gyro.1.now() },
