@@ -2,7 +2,7 @@
 
 use crate::age::Age;
 use control::frame::Sample;
-use control::pulses::{Direction, Pulses, PulsesConfig, PulsesState, step as speed};
+use control::pulses::{Pulses, PulsesConfig, PulsesState, step as speed};
 
 /// Speed beyond which an edge is a disturbance of the line and no pulse \[m/s\].
 const FASTEST_M_S: f32 = 30.0;
@@ -12,14 +12,13 @@ const FASTEST_M_S: f32 = 30.0;
 pub struct WheelState {
     pulses: Pulses,
     state: PulsesState,
-    told_m_s: f32,
     age: Age,
 }
 
 impl Default for WheelState {
     fn default() -> Self {
         let pulses = Pulses { last_edge_age_us: u32::MAX, ..Pulses::default() };
-        Self { pulses, state: PulsesState::default(), told_m_s: 0.0, age: Age::default() }
+        Self { pulses, state: PulsesState::default(), age: Age::default() }
     }
 }
 
@@ -33,8 +32,8 @@ impl WheelState {
 /// One control period of `elapsed_us`, in which an edge came `edge_age_us` before its end, or none did. At most one
 /// edge a period is seen, so pulses must stay apart by more than that.
 ///
-/// The sample is new when a pulse came, when the silence by itself lowers the speed, and while the wheel stands. A
-/// sensor that never says anything is a wheel that stands. The direction is not known: rolling back is positive too.
+/// The sample is new when a pulse came, while the next one is overdue, as that is news as well, and while the wheel
+/// stands. A sensor that never says anything is a wheel that stands. The direction is not known: rolling back is positive too.
 pub fn step(
     config: &PulsesConfig,
     wheel: &mut WheelState,
@@ -56,10 +55,9 @@ pub fn step(
             (p.count, p.last_edge_age_us) = (p.count.wrapping_add(1), age_us);
         }
     }
-    p.direction = Direction::Unknown;
     let value = speed(config, &mut wheel.state, p, elapsed_us).speed_m_s;
-    let new = pulse || value == 0.0 || value < wheel.told_m_s;
-    wheel.told_m_s = value;
+    let overdue = p.last_edge_age_us > p.last_period_us;
+    let new = pulse || overdue || value == 0.0;
     Sample { value, age_ticks: wheel.age.step(new) }
 }
 
