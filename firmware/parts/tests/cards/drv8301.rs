@@ -43,8 +43,8 @@ fn settings_arrive() {
     let mut chip = Chip::new();
     chip.word(write(Register::Control1, GATE_DRIVER.control1()));
     chip.word(write(Register::Control2, GATE_DRIVER.control2()));
-    assert_eq!(chip.ask(Register::Control1), Some(0b00110_01_0_0_10), "step 6, latched, 6 inputs, 0.25 A");
-    assert_eq!(chip.ask(Register::Control2), Some(0b0_0_0_01_00), "20 V/V, all faults told");
+    assert_eq!(chip.ask(Register::Control1), Some(6 << 6 | 1 << 4 | 2), "step 6, latched, 6 inputs, 0.25 A");
+    assert_eq!(chip.ask(Register::Control2), Some(1 << 2), "20 V/V, all faults told");
     assert_eq!(chip.ask(Register::Status1), Some(0));
     assert!(is_present(chip.ask(Register::Status2).expect("an answer")));
 }
