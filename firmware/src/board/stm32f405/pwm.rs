@@ -65,10 +65,10 @@ pub(super) fn start(bridge: [Pin; 6]) -> bool {
     for pin in bridge {
         timer(pin, FUNCTION, AfType::output(OutputType::PushPull, Speed::High));
     }
-    // Every second end of a ramp, and because this stands before the counter starts, those at the top.
-    TIM1.rcr().write(|w| w.set_rep(1));
+    // From now on every second end of a ramp takes over. The counter of ends is still 0 here, so the first one does, at the
+    // top, and with it every other at the top.
     TIM1.egr().write(|w| w.set_ug(true));
-    TIM1.sr().modify(|w| w.set_uif(false));
+    TIM1.rcr().write(|w| w.set_rep(1));
     TIM1.cr1().modify(|w| w.set_cen(true));
     takes_over_at_top()
 }
@@ -92,6 +92,8 @@ pub(super) fn duties(duties: [f32; 3]) {
 /// Lets the duty cycles act; whether the break allows it.
 pub(super) fn close() -> bool {
     TIM1.bdtr().modify(|w| w.set_moe(true));
+    // The timer takes some cycles to show what was written.
+    cortex_m::asm::delay(16);
     TIM1.bdtr().read().moe()
 }
 
