@@ -1,34 +1,4 @@
-//! Every pin in use, in one table.
-//!
-//! Source: `hwconf/trampa/vesc6/hw_60_core.h` (hardware 60_MK6) in the public repository vedderb/bldc; what it says of a
-//! pin stands in the middle column. CAN's two pins are that project's default in `hwconf/hw.h`.
-//!
-//! | pin | there | here |
-//! | --- | --- | --- |
-//! | PA8, PA9, PA10 | TIM1 channels 1 to 3 | upper switches of a, b, c |
-//! | PB13, PB14, PB15 | TIM1 channels 1N to 3N | lower switches of a, b, c |
-//! | PB5 | gate enable | gate driver on, high |
-//! | PB7 | gate driver's fault, low | the same, read in every call of the motor's interrupt |
-//! | PC9, PC10, PB4, PB3 | DRV8301 select, clock, in, out | the same |
-//! | PC0, PC1, PC2 | current 1 to 3, IN10 to IN12 | phase currents of a, b, c |
-//! | PC3 | supply, IN13 | the same |
-//! | PA3 | board's temperature, IN3 | the same |
-//! | PD2 | current filter on, high | the same |
-//! | PC5 | power held, high | the same |
-//! | PA4 | sensor port: high 5 V, low 3.3 V | low |
-//! | PA15, PC15, PB2, PB12 | IMU (BMI160) select, clock, in, out | the same |
-//! | PC6, PC7, PC8 | hall or encoder 1 to 3 | encoder AS5047P: clock, out, select |
-//! | PC4 | motor's temperature, IN14, pulled up | the rider's switch, to ground |
-//! | PA5 | COMM port ADC1, IN5 | steer sensor |
-//! | PA6 | COMM port ADC2, IN6 | rider's torque sensor |
-//! | PA7 | COMM port MOSI | rear wheel, TIM3 channel 2 |
-//! | PB6 | servo, TIM4 channel 1 | front wheel, TIM4 channel 1 |
-//! | PB10, PB11 | COMM port TX, RX | link, USART3 |
-//! | PB0, PB1 | LED green, red | steps are done; no torque |
-//! | PB8, PB9 | CAN receive, transmit | not used |
-//! | PA0, PA1, PA2, PC13 | phase voltages and their filter | not used |
-//! | PA11, PA12 | USB | not used |
-//! | PA13, PA14 | SWD | SWD |
+//! Every pin in use. The table of docs/hardware.md, as types: what is on which pin, and where that is known from.
 
 use embassy_stm32::gpio::{AfType, AnyPin, Flex, Level, Output, Speed};
 use embassy_stm32::peripherals::{FLASH, PB10, PB11, USART3};
@@ -80,7 +50,7 @@ pub(super) struct Pins {
 }
 
 impl Pins {
-    /// The table above, as types. The pins are the board's own from now on.
+    /// The pins are the board's own from now on.
     pub(super) fn of(p: Peripherals) -> Self {
         Self {
             bridge: [p.PA8.into(), p.PA9.into(), p.PA10.into(), p.PB13.into(), p.PB14.into(), p.PB15.into()],
