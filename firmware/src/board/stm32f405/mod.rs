@@ -6,6 +6,7 @@ mod adc;
 mod brown_out;
 mod clock;
 mod critical;
+mod fault;
 mod flash;
 mod gate;
 mod imu;

@@ -21,8 +21,18 @@ struct Loop {
     gate_fault: Input<'static>,
     /// What the last call said; this one's begins with it.
     report: Report,
-    /// Whether the last call had duty cycles, so that the timer has taken them by now.
-    had_duties: bool,
+    bridge: Bridge,
+}
+
+/// The bridge as the last call left it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Bridge {
+    /// All six switches open.
+    Open,
+    /// Still open; the timer takes the first duty cycles meanwhile.
+    Loaded,
+    /// By the duty cycles.
+    Closed,
 }
 
 struct Cell(UnsafeCell<Option<Loop>>);
@@ -43,7 +53,7 @@ pub(super) fn start(plan: Plan, driver: bool, encoder: SoftSpi, gate_fault: Inpu
         encoder,
         gate_fault,
         report: Report { gate_fault: !driver, ..Report::NONE },
-        had_duties: false,
+        bridge: Bridge::Open,
     };
     // SAFETY: the interrupt is not let through yet, so nobody else has the cell.
     unsafe { *LOOP.0.get() = Some(motor) }
@@ -111,21 +121,26 @@ impl Loop {
         }
     }
 
-    /// Moves the bridge. It closes in the call after the first duty cycles, when the timer has taken them.
+    /// Moves the bridge. It is closed once: a break that opened it since is never undone.
     fn switch(&mut self, out: &Output) {
-        match out.duties {
-            Some(duties) => {
-                pwm::duties(duties);
-                // Not closed although it was told to: the break.
-                if self.had_duties && !pwm::close() {
+        let Some(duties) = out.duties else {
+            pwm::open();
+            self.bridge = Bridge::Open;
+            return;
+        };
+        pwm::duties(duties);
+        self.bridge = match self.bridge {
+            Bridge::Open => Bridge::Loaded,
+            Bridge::Loaded => {
+                pwm::close();
+                Bridge::Closed
+            }
+            Bridge::Closed => {
+                if !pwm::is_closed() {
                     outputs_off();
                 }
-                self.had_duties = true;
+                Bridge::Closed
             }
-            None => {
-                pwm::open();
-                self.had_duties = false;
-            }
-        }
+        };
     }
 }

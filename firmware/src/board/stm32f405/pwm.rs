@@ -89,11 +89,13 @@ pub(super) fn duties(duties: [f32; 3]) {
     }
 }
 
-/// Lets the duty cycles act; whether the break allows it.
-pub(super) fn close() -> bool {
+/// Lets the duty cycles act, unless the break is in the way.
+pub(super) fn close() {
     TIM1.bdtr().modify(|w| w.set_moe(true));
-    // The timer takes some cycles to show what was written.
-    cortex_m::asm::delay(16);
+}
+
+/// Whether duty cycles act. To be asked some cycles after [`close`], which the timer takes to show it.
+pub(super) fn is_closed() -> bool {
     TIM1.bdtr().read().moe()
 }
 
