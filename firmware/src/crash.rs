@@ -67,11 +67,11 @@ fn keep(kind: FaultKind, last: &LastStep, registers: Registers, text: &str) {
     });
 }
 
-/// The program can't go on: outputs off, then the record, then a new start.
+/// The program can't go on: outputs off, then the record, then the board's end, a new start.
 pub fn end(kind: FaultKind, registers: Registers, text: &str) -> ! {
     board::outputs_off();
     note(kind, registers, text);
-    board::restart()
+    board::end(kind, &registers, text)
 }
 
 /// The supply falls below what the chip needs. To be called by the board's warning, above all else but the motor.

@@ -58,6 +58,17 @@ impl FaultKind {
         use FaultKind::*;
         [Panic, Exception, Watchdog, Controller, BrownOut].into_iter().find(|kind| *kind as u8 == number)
     }
+
+    /// In words.
+    pub const fn name(self) -> &'static str {
+        match self {
+            FaultKind::Panic => "panic",
+            FaultKind::Exception => "exception",
+            FaultKind::Watchdog => "watchdog",
+            FaultKind::Controller => "controller",
+            FaultKind::BrownOut => "brown-out",
+        }
+    }
 }
 
 /// Why the program was started.

@@ -16,15 +16,30 @@ use link::ring::{self, LastStep};
 /// Why a board gives no torque, whatever is commanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// There are no drivers yet for this board's sensors and motor.
-    NoSensorAndMotorDrivers,
+    /// The motor is not ready yet: the zeros of its current sensors are being taken.
+    NotReady,
+    /// The offset of the motor's encoder is not known.
+    NotAligned,
+    /// The last command came too late; the bridge was open meanwhile.
+    Stale,
+    /// The gate driver did not take its settings, or told of a fault.
+    GateDriver,
+    /// The outputs were switched off until the next start.
+    OutputsOff,
+    /// The motor's loop found a fault, of this number in docs/motor.md: over-current is 1.
+    MotorFault(u8),
 }
 
 impl Refusal {
     /// The reason in words.
     pub const fn reason(self) -> &'static str {
         match self {
-            Refusal::NoSensorAndMotorDrivers => "no sensor and motor drivers",
+            Refusal::NotReady => "not ready",
+            Refusal::NotAligned => "not aligned",
+            Refusal::Stale => "command too late",
+            Refusal::GateDriver => "gate driver",
+            Refusal::OutputsOff => "outputs off",
+            Refusal::MotorFault(_) => "motor fault",
         }
     }
 }

@@ -1,19 +1,14 @@
 //! The configuration: the one the controller runs with, the next one on its way to it, the one in flash.
 
-use super::{WATCHDOG, latest};
+use super::latest;
 use crate::{alive, board};
 use ::control::{Config, Mode, Plan};
 use core::cell::RefCell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use embassy_time::Duration;
 use link::Store;
 use link::store::{Found, NotStored, Room};
 use static_cell::{ConstStaticCell, StaticCell};
-
-/// How long the watchdog waits while flash is erased: three sectors of 16 KiB take 1.5 s at most (data sheet of the
-/// STM32F405, table 40: 500 ms each).
-const ERASING: Duration = Duration::from_secs(3);
 
 /// A plan that the controller has not taken yet.
 struct Next {
@@ -73,8 +68,8 @@ impl Kept {
     /// When called a second time.
     pub fn open() -> Self {
         static ROOM: ConstStaticCell<Room> = ConstStaticCell::new(Room::new());
-        let (flash, range) = board::flash();
-        Self { store: Store::new(flash, range), room: ROOM.take(), found: Found::Nothing }
+        let store = board::flash().and_then(|(flash, range)| Store::new(flash, range));
+        Self { store, room: ROOM.take(), found: Found::Nothing }
     }
 
     /// The stored configuration, or the defaults with the polarity check not passed.
@@ -100,11 +95,9 @@ impl Kept {
     /// As of [`NotStored`].
     pub async fn save(&mut self, config: &Config) -> Result<(), NotStored> {
         let Some(store) = &mut self.store else { return Err(NotStored::Flash) };
-        board::watchdog_patience(ERASING);
         alive::excuse(true);
         let stored = store.save(config, self.room).await;
         alive::excuse(false);
-        board::watchdog_patience(WATCHDOG);
         stored
     }
 }

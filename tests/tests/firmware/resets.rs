@@ -5,7 +5,8 @@ use link::frame::{Decoder, MAX_FRAME, Received};
 use link::lockstep::ToBoard;
 use link::message::Message;
 use link::report::{FaultKind, ResetCause};
-use sim_host::board::{Lockstep, Qemu};
+use sim_host::board::Lockstep;
+use sim_host::board::qemu::Qemu;
 use std::time::Duration;
 use xtask::{image, rides};
 
