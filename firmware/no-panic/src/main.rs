@@ -1,4 +1,4 @@
-//! Links only when no public entry of `control` and `motor`, and none of `link` but the store, has a panic path:
+//! Links only when no public entry of `control`, `motor` and `parts`, and none of `link` but the store, has a panic path:
 //! the panic handler calls a symbol that does not exist, and the linker drops the handler only if nothing can
 //! reach it. Never run.
 //!
@@ -23,6 +23,10 @@ use link::page::PAGE_BYTES;
 use link::report::config_hash;
 use link::ring::{self, RING_BYTES};
 use link::{Decoder, Sender, parameters};
+use parts::order::{self, Deadline};
+use parts::vesc6::{BOARD_HEAT, GATE_DRIVER, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
+use parts::wheel::{self, WheelState};
+use parts::{as5047, bmi160, drv8301};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
@@ -50,8 +54,9 @@ pub extern "C" fn _start() -> ! {
         limits(&config);
         let mut history = black_box(History::default());
         used(history.align(&black_box(Latency::default()), black_box(Aligned::default())));
-        wheel();
+        pulses_of_a_wheel();
         motor();
+        board();
         engineer(config.clone());
         if let Ok(plan) = black_box(config).plan() {
             run(&black_box(plan));
@@ -107,7 +112,7 @@ fn run(plan: &Plan) {
 }
 
 /// Pulses of a wheel, any number of them at any time.
-fn wheel() {
+fn pulses_of_a_wheel() {
     let config = black_box(PulsesConfig::default());
     used(pulses::step(
         &config,
@@ -128,6 +133,23 @@ fn motor() {
         let inputs = motor::Inputs { phases, bus_v, angle_counts, angle_age_ticks, temperature_c, ask };
         used(motor::step(&plan, &mut state, &inputs));
     }
+}
+
+/// The parts of a board, which say anything.
+fn board() {
+    let counts = black_box(0_u16);
+    used((SHUNT.ampere(counts), SUPPLY.volt(counts), BOARD_HEAT.celsius(counts)));
+    used((STEER_RAD.value(counts), RIDER_NM.value(counts), as5047::angle_counts(counts)));
+    used(bmi160::sample(&black_box([0; bmi160::BURST])));
+    let settings = black_box(GATE_DRIVER);
+    used((settings.control1(), settings.control2(), drv8301::Status(counts).names().count()));
+    used(drv8301::data(black_box(drv8301::Register::Status1), counts).map(drv8301::is_present));
+    let ask = order::ask(order::word(order::ask(black_box(0))));
+    used(black_box(Deadline::default()).step(black_box(1), ask, counts));
+    let (mut switch, mut wheel) =
+        (black_box(parts::switch::Switch::default()), black_box(WheelState::default()));
+    used(switch.step(black_box(true), counts));
+    used(wheel::step(&black_box(PulsesConfig::default()), &mut wheel, black_box(None), black_box(1)));
 }
 
 /// The engineer's line: any bytes in, whatever they ask for, and all that goes out; the kept faults; the loop's chunks.

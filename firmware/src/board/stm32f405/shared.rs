@@ -147,7 +147,8 @@ pub(super) fn heat_c() -> f32 {
 
 /// Keeps the bridge open until the next start.
 pub(super) fn set_off() {
-    OFF.store(true, Ordering::Relaxed);
+    // What the caller does next to the registers comes after this.
+    OFF.store(true, Ordering::SeqCst);
 }
 
 /// Whether it is kept open until the next start.
@@ -157,7 +158,7 @@ pub(super) fn is_off() -> bool {
 
 /// Keeps the bridge open, or no longer.
 pub(super) fn set_hold(hold: bool) {
-    HOLD.store(hold, Ordering::Relaxed);
+    HOLD.store(hold, Ordering::SeqCst);
 }
 
 /// Whether it is kept open for a while.
