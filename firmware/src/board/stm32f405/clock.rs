@@ -2,7 +2,7 @@
 
 use crate::crash::{self, Registers};
 use embassy_stm32::Config;
-use embassy_stm32::pac::RCC;
+use embassy_stm32::pac::{FLASH, RCC};
 use embassy_stm32::rcc::{
     AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllQDiv, PllSource, Sysclk,
 };
@@ -28,6 +28,15 @@ pub(super) fn config() -> Config {
     config.rcc.apb2_pre = APBPrescaler::DIV2;
     config.dma_interrupt_priority = super::priority::REST;
     config
+}
+
+/// Lets the flash read ahead and keep what it read. The HAL leaves that off, and each word then takes 6 cycles.
+pub(super) fn quicken_flash() {
+    FLASH.acr().modify(|w| {
+        w.set_prften(true);
+        w.set_icen(true);
+        w.set_dcen(true);
+    });
 }
 
 /// Watches the crystal: without it the break opens the bridge, and the chip starts anew on its own oscillator.

@@ -54,6 +54,7 @@ pub fn start() {
         priority::set(&mut core);
     }
     let peripherals = embassy_stm32::init(clock::config());
+    clock::quicken_flash();
     start_parts(peripherals);
 }
 
