@@ -140,7 +140,7 @@ fn board() {
     let counts = black_box(0_u16);
     used((SHUNT.ampere(counts), SUPPLY.volt(counts), BOARD_HEAT.celsius(counts)));
     used((STEER_RAD.value(counts), RIDER_NM.value(counts), as5047::angle_counts(counts)));
-    used(bmi160::sample(&black_box([0; bmi160::BURST])));
+    used(bmi160::sample(black_box(0), &black_box([0; bmi160::BURST])));
     let settings = black_box(GATE_DRIVER);
     used((settings.control1(), settings.control2(), drv8301::Status(counts).names().count()));
     used(drv8301::data(black_box(drv8301::Register::Status1), counts).map(drv8301::is_present));

@@ -7,10 +7,12 @@
 pub const CHIP: u8 = 0x00;
 /// The chip's number.
 pub const CHIP_ID: u8 = 0xd1;
+/// Register that tells which values were not read yet. It forgets as soon as one of them is read, so it comes first.
+pub const STATUS: u8 = 0x1b;
 /// First of the [`BURST`] registers.
 pub const FIRST: u8 = 0x0c;
-/// Bytes of gyro, accelerometer, time and status, from [`FIRST`].
-pub const BURST: usize = 16;
+/// Bytes of gyro, accelerometer and time, from [`FIRST`].
+pub const BURST: usize = 15;
 
 /// The byte that reads from a register on.
 pub const fn read(register: u8) -> u8 {
@@ -60,9 +62,9 @@ pub struct Imu {
     pub accel_new: bool,
 }
 
-/// The sample in the bytes from [`FIRST`] on.
-pub fn sample(bytes: &[u8; BURST]) -> Imu {
-    let [gx, gxh, gy, gyh, gz, gzh, ax, axh, ay, ayh, az, azh, t0, t1, t2, status] = *bytes;
+/// The sample in the bytes from [`FIRST`] on, after the value of [`STATUS`] just before.
+pub fn sample(status: u8, bytes: &[u8; BURST]) -> Imu {
+    let [gx, gxh, gy, gyh, gz, gzh, ax, axh, ay, ayh, az, azh, t0, t1, t2] = *bytes;
     let gyro = [[gx, gxh], [gy, gyh], [gz, gzh]];
     let accel = [[ax, axh], [ay, ayh], [az, azh]];
     Imu {

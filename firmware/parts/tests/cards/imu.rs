@@ -2,14 +2,13 @@
 
 use parts::bmi160::{BURST, SET_UP, read, sample};
 
-/// Registers from 0x0c on for a gyro, an accelerometer, a time and a status.
-fn bytes(gyro: [i16; 3], accel: [i16; 3], time: u32, status: u8) -> [u8; BURST] {
+/// Registers from 0x0c on for a gyro, an accelerometer and a time.
+fn bytes(gyro: [i16; 3], accel: [i16; 3], time: u32) -> [u8; BURST] {
     let mut bytes = [0; BURST];
     for (place, value) in gyro.into_iter().chain(accel).enumerate() {
         bytes[2 * place..2 * place + 2].copy_from_slice(&value.to_le_bytes());
     }
     bytes[12..15].copy_from_slice(&time.to_le_bytes()[..3]);
-    bytes[15] = status;
     bytes
 }
 
@@ -17,7 +16,7 @@ fn bytes(gyro: [i16; 3], accel: [i16; 3], time: u32, status: u8) -> [u8; BURST] 
 /// forces are those, each on its own axis, and the flags tell what is new.
 #[test]
 fn a_sample_is_read() {
-    let imu = sample(&bytes([1640, 0, -1640], [0, 1024, -2048], 0x00ab_cdef, 0xc0));
+    let imu = sample(0xc0, &bytes([1640, 0, -1640], [0, 1024, -2048], 0x00ab_cdef));
     let hundred = 100.0_f64.to_radians();
     let [x, y, z] = imu.gyro_rad_s.map(f64::from);
     assert!((x - hundred).abs() < 1e-5 && y == 0.0 && (z + hundred).abs() < 1e-5, "{:?}", imu.gyro_rad_s);
@@ -25,7 +24,7 @@ fn a_sample_is_read() {
     assert!(x == 0.0 && (y - 4.903_325).abs() < 1e-5 && (z + 9.806_65).abs() < 1e-5, "{:?}", imu.accel_m_s2);
     assert_eq!((imu.time, imu.gyro_new, imu.accel_new), (0x00ab_cdef, true, true));
     let one = |status| {
-        let imu = sample(&bytes([0; 3], [0; 3], 0, status));
+        let imu = sample(status, &bytes([0; 3], [0; 3], 0));
         (imu.gyro_new, imu.accel_new)
     };
     assert_eq!(
@@ -38,7 +37,7 @@ fn a_sample_is_read() {
 /// value stands for either; one count less is a value near the scale's end.
 #[test]
 fn the_end_of_the_scale_is_no_value() {
-    let imu = sample(&bytes([i16::MAX, i16::MIN, i16::MAX - 1], [i16::MIN, i16::MAX, 0], 0, 0xc0));
+    let imu = sample(0xc0, &bytes([i16::MAX, i16::MIN, i16::MAX - 1], [i16::MIN, i16::MAX, 0], 0));
     assert_eq!(imu.gyro_rad_s[0], f32::INFINITY);
     assert_eq!(imu.gyro_rad_s[1], f32::NEG_INFINITY);
     assert!((34.8..35.0).contains(&imu.gyro_rad_s[2]), "{}", imu.gyro_rad_s[2]);

@@ -2,7 +2,7 @@
 
 use super::soft_spi::SoftSpi;
 use embassy_time::{Duration, block_for};
-use parts::bmi160::{BURST, CHIP, CHIP_ID, FIRST, Imu, SET_UP, read, sample};
+use parts::bmi160::{BURST, CHIP, CHIP_ID, FIRST, Imu, SET_UP, STATUS, read, sample};
 
 /// Sets it up; whether it is there. Takes a fifth of a second.
 pub(super) fn start(bus: &mut SoftSpi) -> bool {
@@ -20,11 +20,12 @@ pub(super) fn start(bus: &mut SoftSpi) -> bool {
 
 /// Its newest sample.
 pub(super) fn newest(bus: &mut SoftSpi) -> Imu {
+    let status = register(bus, STATUS);
     let mut bytes = [0; 1 + BURST];
     bytes[0] = read(FIRST);
     bus.bytes(&mut bytes);
     let [_, burst @ ..] = bytes;
-    sample(&burst)
+    sample(status, &burst)
 }
 
 fn register(bus: &mut SoftSpi, register: u8) -> u8 {
