@@ -15,11 +15,11 @@ const WAKE: Duration = Duration::from_millis(20);
 pub(super) fn start(enable: Pin, bus: &mut SoftSpi) -> bool {
     fixed(enable, Level::High);
     block_for(WAKE);
+    // The first word may be lost, and the first reading takes away what waking up left behind.
+    ask(bus, Register::Status1);
     let (control1, control2) = (GATE_DRIVER.control1(), GATE_DRIVER.control2());
     bus.word(write(Register::Control1, control1));
     bus.word(write(Register::Control2, control2));
-    // The first reading takes away what waking up left behind.
-    ask(bus, Register::Status1);
     let told = [Register::Status2, Register::Status1, Register::Control1, Register::Control2]
         .map(|register| ask(bus, register));
     let good = match told {
