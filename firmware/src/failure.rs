@@ -1,6 +1,7 @@
 //! Panics, exceptions and stray interrupts, on every board: all end in [`crash::end`].
 #![allow(unsafe_code)]
 
+use crate::board;
 use crate::crash::{self, Registers};
 use core::fmt::Write;
 use core::panic::PanicInfo;
@@ -70,6 +71,7 @@ unsafe fn DefaultHandler(interrupt: i16) -> ! {
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
+    board::outputs_off();
     let mut words = String::<FAULT_TEXT_BYTES>::new();
     // What does not fit is cut.
     let _ = write!(words, "{info}");

@@ -72,8 +72,10 @@ pub fn strikes(task: Task) -> bool {
     {
         return false;
     }
-    while kind >= SPIN {
-        core::hint::spin_loop();
+    if kind >= SPIN {
+        loop {
+            core::hint::spin_loop();
+        }
     }
     true
 }

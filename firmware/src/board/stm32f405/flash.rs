@@ -3,6 +3,8 @@
 use super::{pwm, shared, watchdog};
 use core::ops::Range;
 use embassy_stm32::flash::{Async, Bank1Region1, Error, Flash as Chip, InterruptHandler};
+use embassy_stm32::pac;
+use embassy_stm32::pac::flash::vals::Psize;
 use embassy_stm32::peripherals::FLASH;
 use embassy_stm32::{Peri, bind_interrupts};
 use embassy_sync::blocking_mutex::Mutex;
@@ -21,8 +23,15 @@ pub struct Flash(Bank1Region1<'static, Async>);
 static FLASH_LEFT: Mutex<CriticalSectionRawMutex, core::cell::Cell<Option<Peri<'static, FLASH>>>> =
     Mutex::new(core::cell::Cell::new(None));
 
-/// Puts the peripheral where [`flash`] finds it.
+/// What unlocks the flash's control register.
+const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
+
+/// Puts the peripheral where [`flash`] finds it. Sectors are erased by words from now on, 0.5 s at most each; out of reset
+/// it is by bytes, 0.8 s (data sheet of the STM32F405, table 40), and the HAL leaves it so.
 pub(super) fn start(peripheral: Peri<'static, FLASH>) {
+    KEYS.into_iter().for_each(|key| pac::FLASH.keyr().write_value(key));
+    pac::FLASH.cr().modify(|w| w.set_psize(Psize::PSIZE32));
+    pac::FLASH.cr().modify(|w| w.set_lock(true));
     FLASH_LEFT.lock(|left| left.set(Some(peripheral)));
 }
 

@@ -1,7 +1,7 @@
 //! Why the chip started, and starting it anew.
 
 use crate::crash::Registers;
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use embassy_stm32::pac::RCC;
 use embassy_stm32::pac::rcc::regs::Csr;
 use link::report::{FaultKind, ResetCause};
@@ -30,8 +30,15 @@ pub fn reset_cause() -> ResetCause {
     }
 }
 
-/// The last words over RTT, then a new start.
+/// Whether the last words are being said.
+static ENDING: AtomicBool = AtomicBool::new(false);
+
+/// The last words over RTT, then a new start. Without them where saying them is what failed: a log line that breaks off
+/// can't be followed by another.
 pub fn end(kind: FaultKind, registers: &Registers, words: &str) -> ! {
+    if ENDING.swap(true, Ordering::Relaxed) {
+        cortex_m::peripheral::SCB::sys_reset()
+    }
     defmt::error!(
         "{=str}: {=str} exception={=u32} registers={:08x}",
         kind.name(),

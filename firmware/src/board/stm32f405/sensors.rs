@@ -105,7 +105,7 @@ impl Sensors {
             rear_wheel_m_s: rear,
             rider_torque_nm: newest(&mut self.rider, RIDER_NM.value(report.rider_torque).filter(|_| alive)),
             motor_torque_nm: Sample { value: report.torque_nm, age_ticks: self.torque.step(alive && able) },
-            engage: alive && self.switch.step(closed, SWITCH_TICKS),
+            engage: self.switch.step(closed && alive, SWITCH_TICKS),
             ..SensorFrame::missing()
         }
     }
