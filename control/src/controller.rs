@@ -70,6 +70,13 @@ impl Plan {
         &self.config
     }
 
+    /// Whether a press of the switch in the period after this command would engage, if nothing changes: in standby, and
+    /// nothing is missing but the press.
+    pub fn ready(&self, command: &Command) -> bool {
+        let refusing = command.causes.and(self.reactions.refusals());
+        command.mode == Mode::Standby && refusing == Causes::of(Cause::SwitchOff)
+    }
+
     /// Control periods from boot to full authority, if every sensor is good from the start and the
     /// switch is pressed at once when it may be.
     pub fn ticks_to_engage(&self) -> u32 {

@@ -110,7 +110,7 @@ pub enum Cause {
     Backwards = 50,
     /// The bicycle stands.
     Parked = 51,
-    /// The switch was on when the controller started or came back from a fault.
+    /// The switch is on, but was not pressed afresh while nothing refused.
     SwitchHeld = 52,
     /// The rider has not asked for assist.
     SwitchOff = 53,

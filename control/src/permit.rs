@@ -1,7 +1,7 @@
 //! May torque flow, how much of it, and if not, why not.
 //!
 //! Permission is off at boot, given only on a fresh press of the rider's switch, and taken away by
-//! any listed cause. All causes present are told at once.
+//! any listed cause. A press that is refused is used up. All causes present are told at once.
 
 use crate::fault::{Cause, Causes};
 use crate::input::InputConfig;
@@ -131,6 +131,11 @@ impl Reactions {
             lasting: limp,
         }
     }
+
+    /// What refuses a press of the switch in standby.
+    pub fn refusals(&self) -> Causes {
+        self.disengage.with(self.pause)
+    }
 }
 
 /// What the permission remembers.
@@ -139,7 +144,7 @@ pub struct PermitState {
     mode: Mode,
     /// Control periods in this mode.
     ticks: u16,
-    /// Whether the switch was seen released since boot or the last disengagement.
+    /// Whether the switch was off in the period before: only then a press is a fresh one.
     released: bool,
     authority: f32,
     /// Causes since the fault began.
@@ -255,32 +260,22 @@ impl PermitState {
 
     /// The mode that follows.
     fn next(&mut self, config: &PermitConfig, reactions: &Reactions, asked: &Asked, causes: Causes) -> Mode {
+        let pressed = asked.engage && self.released;
+        self.released = !asked.engage;
         // At boot sensors are expected to be missing; that is no fault yet.
         let broken = causes.and(reactions.fault);
         let started = !matches!(self.mode, Mode::Off | Mode::Initialise);
         if started && !broken.is_empty() {
             self.latched = if self.mode == Mode::Fault { self.latched.with(broken) } else { broken };
-            self.released = false;
             return Mode::Fault;
         }
-        let before = self.released;
-        self.released |= !asked.engage;
         match self.mode {
             Mode::Off => Mode::Initialise,
             Mode::Initialise if broken.is_empty() => Mode::SelfTest,
             Mode::SelfTest if self.ticks >= config.self_test_ticks => Mode::Standby,
-            Mode::Standby => {
-                let blocked = reactions.disengage.with(reactions.pause);
-                if before && !causes.any(blocked) { engaged(reactions, causes) } else { Mode::Standby }
-            }
-            Mode::Engaged | Mode::Limp => {
-                if causes.any(reactions.disengage) {
-                    self.released = !asked.engage;
-                    Mode::Standby
-                } else {
-                    engaged(reactions, causes)
-                }
-            }
+            Mode::Standby if pressed && !causes.any(reactions.refusals()) => engaged(reactions, causes),
+            Mode::Engaged | Mode::Limp if causes.any(reactions.disengage) => Mode::Standby,
+            Mode::Engaged | Mode::Limp => engaged(reactions, causes),
             Mode::Fault if self.released => Mode::Initialise,
             same => same,
         }
