@@ -122,6 +122,9 @@ pub struct Watch<const N: usize> {
     still: u16,
     /// Whether it is believed.
     trusted: bool,
+    /// Whether it is believed, and the period before brought a fresh sample that was not the same again: then the next
+    /// one has nothing but itself to be judged by.
+    steady: bool,
     /// Why the newest sample was not good.
     doubt: Option<Cause>,
 }
@@ -137,6 +140,7 @@ impl<const N: usize> Default for Watch<N> {
             moved: 0,
             still: 0,
             trusted: false,
+            steady: false,
             doubt: None,
         }
     }
@@ -163,10 +167,37 @@ impl<const N: usize> Watch<N> {
         sample: (&[f32; N], u16),
         moves: bool,
     ) -> Told<N> {
-        if !sensor.fitted {
+        let (value, age) = (*sample.0, sample.1);
+        let follows = self.steady
+            && age == 0
+            && inside(sensor, &value)
+            && !self.jumps(sensor, period_s, &value, 1.0)
+            && !(moves && self.repeats(&value));
+        if follows {
+            self.value = value;
+        } else if sensor.fitted {
+            self.judge(sensor, codes, period_s, &value, age, moves);
+        } else {
             return Told { value: None, lost: None };
         }
-        let (value, age) = sample;
+        if self.trusted {
+            Told { value: Some((self.value, self.age)), lost: None }
+        } else {
+            Told { value: None, lost: Some(self.doubt.unwrap_or(codes.lost)) }
+        }
+    }
+
+    /// The long way, for what is not just one good sample after the other.
+    #[inline(never)]
+    fn judge(
+        &mut self,
+        sensor: &Sensor,
+        codes: &Codes,
+        period_s: f32,
+        value: &[f32; N],
+        age: u16,
+        moves: bool,
+    ) {
         self.age = self.age.saturating_add(1);
         self.moved = self.moved.saturating_add(u16::from(moves));
         if age != self.told_age.saturating_add(1) && age != MISSING {
@@ -185,33 +216,19 @@ impl<const N: usize> Watch<N> {
         } else if self.good >= sensor.qualify_samples {
             self.trusted = true;
         }
-        if self.trusted {
-            Told { value: Some((self.value, self.age)), lost: None }
-        } else {
-            Told { value: None, lost: Some(self.doubt.unwrap_or(codes.lost)) }
-        }
+        self.steady = self.trusted && self.age == 0 && self.still == 0;
     }
 
     /// A new sample.
-    #[inline(always)]
     fn take(&mut self, sensor: &Sensor, codes: &Codes, period_s: f32, value: &[f32; N], age: u16) {
-        // Written so that NaN, which compares false, is refused.
-        let inside = value.iter().all(|x| x.abs() <= sensor.max);
-        if !inside {
+        if !inside(sensor, value) {
             self.doubt = Some(codes.range);
             self.good = 0;
             return;
         }
-        let change = |(a, b): (&f32, &f32)| (a - b).abs();
         // Samples that were refused give a jump no more time.
-        let between = self.gap.saturating_add(1);
-        let jumps = match sensor.slope_per_s {
-            Some(slope) if self.age != MISSING => {
-                let most = sensor.step + slope * period_s * f32::from(between);
-                value.iter().zip(&self.value).map(change).any(|moved| moved > most)
-            }
-            _ => false,
-        };
+        let between = f32::from(self.gap.saturating_add(1));
+        let jumps = self.age != MISSING && self.jumps(sensor, period_s, value, between);
         if jumps && self.trusted {
             self.doubt = Some(codes.jump);
             self.good = 0;
@@ -225,11 +242,31 @@ impl<const N: usize> Watch<N> {
             self.doubt = None;
             self.good = self.good.saturating_add(1);
         }
-        let same = value.iter().zip(&self.value).all(|(a, b)| a.to_bits() == b.to_bits());
-        self.still = if same { self.still.saturating_add(self.moved) } else { 0 };
+        self.still = if self.repeats(value) { self.still.saturating_add(self.moved) } else { 0 };
         self.moved = 0;
         self.gap = 0;
         self.value = *value;
         self.age = age;
     }
+
+    /// Whether a sample so many control periods after the last good one is too far from it.
+    #[inline(always)]
+    fn jumps(&self, sensor: &Sensor, period_s: f32, value: &[f32; N], between: f32) -> bool {
+        sensor.slope_per_s.is_some_and(|slope| {
+            let most = sensor.step + slope * period_s * between;
+            value.iter().zip(&self.value).any(|(a, b)| (a - b).abs() > most)
+        })
+    }
+
+    /// Whether a sample is the last good one in every bit.
+    #[inline(always)]
+    fn repeats(&self, value: &[f32; N]) -> bool {
+        value.iter().zip(&self.value).all(|(a, b)| a.to_bits() == b.to_bits())
+    }
+}
+
+/// Whether a sample is in range; written so that NaN, which compares false, is not.
+#[inline(always)]
+fn inside<const N: usize>(sensor: &Sensor, value: &[f32; N]) -> bool {
+    value.iter().all(|x| x.abs() <= sensor.max)
 }
