@@ -92,8 +92,10 @@ impl GuardPlan {
 pub struct GuardState {
     torque_nm: f32,
     turned_us: u32,
-    watches: [Watch; WATCHES],
-    oldest: u8,
+    /// The least size of the torque since each watch was started, the newest first \[N m\].
+    watches: [f32; WATCHES],
+    /// [`side`] of the torque; when it changes, every watch has seen zero.
+    side: f32,
     since_us: u32,
 }
 
@@ -141,7 +143,7 @@ struct Torque<'a> {
     plan: &'a GuardPlan,
     /// Size beyond the slack \[N m\]; negative when too small to matter.
     size: f32,
-    /// +1 to the right, -1 to the left.
+    /// [`side`] of it.
     side: f32,
     /// How far it shrank, on the side where it was, and how far it grew, each less the slack \[N m\].
     shrunk: f32,
@@ -174,7 +176,7 @@ impl<'a> Torque<'a> {
         let retreats = limits.fall_nm_s.is_some()
             && !crossed
             && (shrunk + slack) * plan.fall_s_nm >= time_s.0 * (1.0 - 1e-6);
-        let side = if torque < 0.0 { -1.0 } else { 1.0 };
+        let side = side(torque);
         // The time to zero is a matter of the torque that was: a huge one the other way gives it nothing.
         let shrunk = shrunk - if crossed { slack_before } else { slack };
         let (size, grown) = (size - slack, grown - slack);
@@ -269,13 +271,6 @@ impl<'a> Torque<'a> {
 /// How many watches cover a window, each started an eighth of it after the one before.
 const WATCHES: usize = 8;
 
-/// The extremes of the torque since the watch was started \[N m\].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Watch {
-    low_nm: f32,
-    high_nm: f32,
-}
-
 impl GuardState {
     /// The last output was in force for the time that passed.
     fn pass_time(&mut self, limits: &Limits, plan: &GuardPlan, asked: &Asked) {
@@ -295,30 +290,36 @@ impl GuardState {
             };
         }
         if limits.window.is_some() {
+            let (size, side) = (last.abs(), side(last));
+            if side != self.side {
+                (self.watches, self.side) = ([0.0; WATCHES], side);
+            }
+            // An older watch has seen all that a newer one has.
+            for watch in self.watches.iter_mut().take_while(|watch| **watch > size) {
+                *watch = size;
+            }
             self.since_us = self.since_us.saturating_add(asked.elapsed_us);
             let mut restarts = 0;
             while self.since_us >= plan.stagger_us && restarts < WATCHES {
                 self.since_us -= plan.stagger_us;
                 restarts += 1;
-                if let Some(watch) = self.watches.get_mut(usize::from(self.oldest)) {
-                    *watch = Watch { low_nm: last, high_nm: last };
-                }
-                self.oldest = (self.oldest + 1) % WATCHES as u8;
+                let [a, b, c, d, e, f, g, _] = self.watches;
+                self.watches = [size, a, b, c, d, e, f, g];
             }
             self.since_us = self.since_us.min(plan.stagger_us);
-            for watch in &mut self.watches {
-                watch.low_nm = at_most(last, watch.low_nm);
-                watch.high_nm = at_least(last, watch.high_nm);
-            }
         }
     }
 
     /// The least torque on this side of zero since the oldest watch was started.
     fn start(&self, side: f32) -> f32 {
-        let watch = self.watches.get(usize::from(self.oldest)).copied().unwrap_or_default();
-        let least = if side > 0.0 { watch.low_nm } else { -watch.high_nm };
-        at_least(0.0, least)
+        let [.., oldest] = self.watches;
+        if side == self.side { oldest } else { 0.0 }
     }
+}
+
+/// +1 to the right, -1 to the left; zero is neither, and counts as right.
+fn side(torque: f32) -> f32 {
+    if torque < 0.0 { -1.0 } else { 1.0 }
 }
 
 fn known_value(value: Option<f32>) -> Option<f32> {

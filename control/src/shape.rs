@@ -110,8 +110,8 @@ pub fn step(limits: &Limits, plan: &ShapePlan, state: &mut ShapeState, asked: &A
     }
     if let Some(Window { nm, .. }) = limits.window {
         state.past.hold(last, asked.elapsed_us, plan.part_us);
-        let (low, high) = state.past.extremes();
-        shaping.cut(ActiveLimits::WINDOW, at_most(high, 0.0) - nm, at_least(low, 0.0) + nm);
+        let (left, right) = state.past.least();
+        shaping.cut(ActiveLimits::WINDOW, -left - nm, right + nm);
     }
     if plan.rise_step_nm.is_some() || plan.fall_step_nm.is_some() {
         let (low, high) = reach(plan, last, asked.elapsed_us);
@@ -221,10 +221,13 @@ fn reach(plan: &ShapePlan, last: f32, elapsed_us: u32) -> (f32, f32) {
 /// Parts of the window: one that is being filled, and as many full ones as cover it.
 const PARTS: usize = 9;
 
-/// The torques of the recent past: their extremes in each part of the window.
+/// The torques of the recent past.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Past {
-    parts: [(f32, f32); PARTS],
+    /// The least size of the torque in each part of the window \[N m\]; zero where it was not on the side where it is
+    /// now, for then it has been zero within the window.
+    parts: [f32; PARTS],
+    right: bool,
     newest: u8,
     filled_us: u32,
 }
@@ -232,6 +235,10 @@ struct Past {
 impl Past {
     /// `torque` was in force for the time that passed.
     fn hold(&mut self, torque: f32, elapsed_us: u32, part_us: u32) {
+        let (size, right) = (torque.abs(), torque > 0.0);
+        if right != self.right {
+            (self.parts, self.right) = ([0.0; PARTS], right);
+        }
         self.filled_us = self.filled_us.saturating_add(elapsed_us);
         for _ in 0..PARTS {
             if self.filled_us < part_us {
@@ -240,22 +247,21 @@ impl Past {
             self.filled_us -= part_us;
             self.newest = (self.newest + 1) % PARTS as u8;
             if let Some(part) = self.parts.get_mut(usize::from(self.newest)) {
-                *part = (torque, torque);
+                *part = size;
             }
         }
         if self.filled_us >= part_us {
             self.filled_us = 0;
         }
-        if let Some((low, high)) = self.parts.get_mut(usize::from(self.newest)) {
-            *low = at_most(*low, torque);
-            *high = at_least(*high, torque);
+        if let Some(part) = self.parts.get_mut(usize::from(self.newest)) {
+            *part = at_most(size, *part);
         }
     }
 
-    /// Lowest and highest torque in force at any time within the window.
-    fn extremes(&self) -> (f32, f32) {
-        let both = |(l, h): (f32, f32), part: &(f32, f32)| (at_most(l, part.0), at_least(h, part.1));
-        self.parts.iter().fold((f32::MAX, f32::MIN), both)
+    /// How far to the left, and to the right, the torque was at the least within the window \[N m\].
+    fn least(&self) -> (f32, f32) {
+        let least = self.parts.iter().fold(f32::MAX, |least, part| at_most(*part, least));
+        if self.right { (0.0, least) } else { (least, 0.0) }
     }
 }
 
