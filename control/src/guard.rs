@@ -184,30 +184,38 @@ impl<'a> Torque<'a> {
     }
 
     fn judge(&self, state: &GuardState, asked: &Asked) -> Result<(), Violation> {
-        let Limits { limp_fraction, speed_cap, taper, rider_torque, rider_motion, end_stop, window, .. } =
+        refuse(Violation::Magnitude, self.size > self.plan.max_nm)?;
+        if self.size > 0.0 && !self.retreats {
+            self.in_bounds(state, asked)?;
+        }
+        self.in_time()?;
+        match self.limits.window {
+            Some(w) => refuse(Violation::Window, self.size > state.start(self.side) + w.nm),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether a torque that does not go back to zero is inside all that depends on bicycle, rider and permission.
+    fn in_bounds(&self, state: &GuardState, asked: &Asked) -> Result<(), Violation> {
+        let Limits { limp_fraction, speed_cap, taper, rider_torque, rider_motion, end_stop, .. } =
             self.limits;
         let max = self.plan.max_nm;
-        let refuse = |violation, found: bool| if found { Err(violation) } else { Ok(()) };
-
-        refuse(Violation::Magnitude, self.size > max)?;
         refuse(Violation::Authority, self.beyond(max, asked.authority, 1.0))?;
         if let (Some(part), true) = (*limp_fraction, asked.limp) {
-            refuse(Violation::Limp, self.plan.max_nm < f32::MAX && self.beyond(max, part, 1.0))?;
+            refuse(Violation::Limp, max < f32::MAX && self.beyond(max, part, 1.0))?;
         }
         let (slow, fast) = (asked.speed_low_m_s, asked.speed_high_m_s);
         let known = slow <= fast || fast <= slow;
         let (slow, fast) = if known { (at_most(fast, slow), at_least(fast, slow)) } else { (-1e9, 1e9) };
         if let Some(cap) = speed_cap {
-            let beyond = self.above_line(&cap.speed_m_s, &cap.torque_nm, slow, fast);
-            refuse(Violation::Speed, beyond && !self.retreats)?;
+            refuse(Violation::Speed, self.above_line(&cap.speed_m_s, &cap.torque_nm, slow, fast))?;
         }
         if let Some(t) = taper {
             refuse(Violation::Taper, self.beyond(max, slow - t.zero_m_s, t.full_m_s - t.zero_m_s))?;
         }
         if let (Some(r), Some(rider)) = (rider_torque, known_value(asked.rider_torque_nm)) {
             let along = rider * self.side;
-            let over = self.size > 0.0 && self.size - max > (r.allowance_nm + along) * r.multiplier;
-            refuse(Violation::RiderTorque, over && !self.retreats)?;
+            refuse(Violation::RiderTorque, self.size - max > (r.allowance_nm + along) * r.multiplier)?;
         }
         if let Some(r) = rider_motion {
             let fade = f32::from(r.fade_ms);
@@ -218,17 +226,13 @@ impl<'a> Torque<'a> {
             let way_left = e.hard_rad - steer * self.side;
             refuse(Violation::EndStop, self.beyond(max, way_left, e.hard_rad - e.soft_rad))?;
         }
-        self.in_time()?;
-        match window {
-            Some(w) => refuse(Violation::Window, self.size > state.start(self.side) + w.nm),
-            None => Ok(()),
-        }
+        Ok(())
     }
 
-    /// Whether more than `part` of `whole` of the largest torque, and not on its way back.
+    /// Whether more than `part` of `whole` of the largest torque.
     fn beyond(&self, max: f32, part: f32, whole: f32) -> bool {
         let part = if part > 0.0 { at_most(whole, part) } else { 0.0 };
-        self.size > 0.0 && self.size * whole > max * part && !self.retreats
+        self.size * whole > max * part
     }
 
     /// Whether anywhere between `slow` and `fast` it lies above the line through the points.
@@ -242,16 +246,15 @@ impl<'a> Torque<'a> {
         let ([first, .., last], [start, .., end]) = (speeds, torques);
         let outside = (slow <= *first && self.size > *start) || (fast >= *last && self.size > *end);
         let mut pieces = speeds.windows(2).zip(torques.windows(2));
-        self.size > 0.0
-            && (outside
-                || pieces.any(|piece| match piece {
-                    (&[v0, v1], &[t0, t1]) if slow <= v1 && v0 <= fast => {
-                        // Both ends of what the piece and the interval share, by the lever rule.
-                        let above = |v: f32| self.size * (v1 - v0) > t0 * (v1 - v) + t1 * (v - v0);
-                        above(at_least(slow, v0)) || above(at_most(fast, v1))
-                    }
-                    _ => false,
-                }))
+        outside
+            || pieces.any(|piece| match piece {
+                (&[v0, v1], &[t0, t1]) if slow <= v1 && v0 <= fast => {
+                    // Both ends of what the piece and the interval share, by the lever rule.
+                    let above = |v: f32| self.size * (v1 - v0) > t0 * (v1 - v) + t1 * (v - v0);
+                    above(at_least(slow, v0)) || above(at_most(fast, v1))
+                }
+                _ => false,
+            })
     }
 
     /// Whether there was time for the change.
@@ -315,6 +318,10 @@ impl GuardState {
         let [.., oldest] = self.watches;
         if side == self.side { oldest } else { 0.0 }
     }
+}
+
+fn refuse(violation: Violation, found: bool) -> Result<(), Violation> {
+    if found { Err(violation) } else { Ok(()) }
 }
 
 /// +1 to the right, -1 to the left; zero is neither, and counts as right.

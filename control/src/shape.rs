@@ -129,12 +129,21 @@ struct Shaping {
 
 impl Shaping {
     fn cut(&mut self, limit: ActiveLimits, low: f32, high: f32) {
-        self.acted.note(limit, self.torque < low || self.torque > high);
-        self.torque = at_least(low, at_most(high, self.torque));
+        let cut = if self.torque > high {
+            high
+        } else if self.torque < low {
+            low
+        } else {
+            return;
+        };
+        self.acted.note(limit, true);
+        self.torque = cut;
     }
     fn scale(&mut self, limit: ActiveLimits, share: f32) {
-        self.acted.note(limit, share < 1.0 && self.torque != 0.0);
-        self.torque *= share;
+        if share < 1.0 {
+            self.acted.note(limit, self.torque != 0.0);
+            self.torque *= share;
+        }
     }
 }
 
