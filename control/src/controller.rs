@@ -162,8 +162,8 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     state.before_us = Some(frame.now_us);
     let last_nm = state.torque_nm();
 
-    let frame = plan.calibration.frame(frame);
-    let believed = input::step(&config.input, plan.period_s, &mut state.input, &frame, last_nm);
+    let believed =
+        input::step(&config.input, &plan.calibration, plan.period_s, &mut state.input, frame, last_nm);
     let motion = motion(plan, &mut state.estimate, &believed, elapsed_us);
     let ahead = predict::step(&config.predict, &motion);
     let crossed =

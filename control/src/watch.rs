@@ -122,9 +122,9 @@ pub struct Watch<const N: usize> {
     still: u16,
     /// Whether it is believed.
     trusted: bool,
-    /// Whether it is believed, and the period before brought a fresh sample that was not the same again: then the next
-    /// one has nothing but itself to be judged by.
-    steady: bool,
+    /// Change up to which a fresh sample is as good as the last one; -1 unless that was fresh, believed, and not one of
+    /// several that stood still.
+    near: f32,
     /// Why the newest sample was not good.
     doubt: Option<Cause>,
 }
@@ -140,7 +140,7 @@ impl<const N: usize> Default for Watch<N> {
             moved: 0,
             still: 0,
             trusted: false,
-            steady: false,
+            near: -1.0,
             doubt: None,
         }
     }
@@ -164,22 +164,19 @@ impl<const N: usize> Watch<N> {
         sensor: &Sensor,
         codes: &Codes,
         period_s: f32,
-        sample: (&[f32; N], u16),
+        sample: ([f32; N], u16),
         moves: bool,
     ) -> Told<N> {
-        let (value, age) = (*sample.0, sample.1);
-        let follows = self.steady
-            && age == 0
-            && inside(sensor, &value)
-            && !self.jumps(sensor, period_s, &value, 1.0)
-            && !(moves && self.repeats(&value));
-        if follows {
+        let (value, age) = sample;
+        // As nearly always: one good sample after the other.
+        if age == 0 && inside(sensor, &value) && self.near(&value) && !(moves && value == self.value) {
             self.value = value;
-        } else if sensor.fitted {
-            self.judge(sensor, codes, period_s, &value, age, moves);
-        } else {
+            return Told { value: Some((value, 0)), lost: None };
+        }
+        if !sensor.fitted {
             return Told { value: None, lost: None };
         }
+        self.judge(sensor, codes, period_s, &{ value }, age, moves);
         if self.trusted {
             Told { value: Some((self.value, self.age)), lost: None }
         } else {
@@ -187,7 +184,7 @@ impl<const N: usize> Watch<N> {
         }
     }
 
-    /// The long way, for what is not just one good sample after the other.
+    /// The long way.
     #[inline(never)]
     fn judge(
         &mut self,
@@ -216,7 +213,8 @@ impl<const N: usize> Watch<N> {
         } else if self.good >= sensor.qualify_samples {
             self.trusted = true;
         }
-        self.steady = self.trusted && self.age == 0 && self.still == 0;
+        let steady = self.trusted && self.age == 0 && self.still == 0;
+        self.near = if steady { most_change(sensor, period_s, 1.0) } else { -1.0 };
     }
 
     /// A new sample.
@@ -228,7 +226,10 @@ impl<const N: usize> Watch<N> {
         }
         // Samples that were refused give a jump no more time.
         let between = f32::from(self.gap.saturating_add(1));
-        let jumps = self.age != MISSING && self.jumps(sensor, period_s, value, between);
+        let most = most_change(sensor, period_s, between);
+        let change = |(a, b): (&f32, &f32)| (a - b).abs();
+        let jumps =
+            self.age != MISSING && value.iter().zip(&self.value).map(change).any(|moved| moved > most);
         if jumps && self.trusted {
             self.doubt = Some(codes.jump);
             self.good = 0;
@@ -249,13 +250,10 @@ impl<const N: usize> Watch<N> {
         self.age = age;
     }
 
-    /// Whether a sample so many control periods after the last good one is too far from it.
+    /// Whether no axis is further from the last good sample than [`Watch::near`].
     #[inline(always)]
-    fn jumps(&self, sensor: &Sensor, period_s: f32, value: &[f32; N], between: f32) -> bool {
-        sensor.slope_per_s.is_some_and(|slope| {
-            let most = sensor.step + slope * period_s * between;
-            value.iter().zip(&self.value).any(|(a, b)| (a - b).abs() > most)
-        })
+    fn near(&self, value: &[f32; N]) -> bool {
+        value.iter().zip(&self.value).all(|(a, b)| (a - b).abs() <= self.near)
     }
 
     /// Whether a sample is the last good one in every bit.
@@ -263,6 +261,11 @@ impl<const N: usize> Watch<N> {
     fn repeats(&self, value: &[f32; N]) -> bool {
         value.iter().zip(&self.value).all(|(a, b)| a.to_bits() == b.to_bits())
     }
+}
+
+/// The largest believable change in so many control periods; infinite where any is.
+fn most_change(sensor: &Sensor, period_s: f32, periods: f32) -> f32 {
+    sensor.slope_per_s.map_or(f32::INFINITY, |slope| sensor.step + slope * period_s * periods)
 }
 
 /// Whether a sample is in range; written so that NaN, which compares false, is not.
