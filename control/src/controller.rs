@@ -2,7 +2,7 @@
 
 use crate::calibrate::CalibrationPlan;
 use crate::config::Config;
-use crate::cross::{self, CrossPlan, CrossState};
+use crate::cross::{self, CrossPlan, CrossState, Crossed};
 use crate::estimate::{self, EstimateState, Felt, Motion};
 use crate::fault::{Cause, Causes};
 use crate::frame::{SensorFrame, Wheel};
@@ -172,10 +172,10 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let place = &config.estimate;
     let seen = (&believed, &motion);
     let answered = response::step(&config.response, place, stretch, &mut state.response, seen, last_nm);
-    let mut causes = believed.causes.with(crossed).with(answered).with(state.found);
+    let mut causes = believed.causes.with(crossed.causes).with(answered).with(state.found);
     causes.note(Cause::Timing, config.input.max_gap_ms.is_some_and(|ms| elapsed_us as f32 > 1e3 * ms));
 
-    let speed = speed(plan, &believed, &motion, causes.has(Cause::WheelsDisagree));
+    let speed = speed(plan, &believed, motion.roll_sin_cos, &crossed);
     let now = match (believed.gyro_rad_s, speed) {
         (Some(_), Some(speed)) => {
             let newest = Aligned { roll_rate_rad_s: ahead.roll_rate_rad_s, speed };
@@ -293,7 +293,8 @@ fn motion(plan: &Plan, state: &mut EstimateState, believed: &Believed, elapsed_u
 
 /// Between which speeds of the scheduling wheel the truth lies: by that wheel's sensor; by the other's
 /// and the steer angle while it is lost; by both when they disagree.
-fn speed(plan: &Plan, believed: &Believed, motion: &Motion, disagree: bool) -> Option<Bounds> {
+fn speed(plan: &Plan, believed: &Believed, roll_sin_cos: (f32, f32), crossed: &Crossed) -> Option<Bounds> {
+    let disagree = crossed.causes.has(Cause::WheelsDisagree);
     let (front, rear) = (believed.front_wheel_m_s, believed.rear_wheel_m_s);
     let wheel = plan.config.input.wheel;
     let (own, other) = match wheel {
@@ -306,9 +307,10 @@ fn speed(plan: &Plan, believed: &Believed, motion: &Motion, disagree: bool) -> O
         (_, None) => None,
         (_, Some(other)) => {
             // The front wheel goes the longer way, at most about twice as long.
-            let cos = match believed.steer_rad {
-                Some(steer) => cross::on_the_ground(&plan.cross, motion.roll_sin_cos, steer).1,
-                None => LEAST_COS,
+            let cos = match (crossed.ground, believed.steer_rad) {
+                (Some((_, cos)), _) => cos,
+                (None, Some(steer)) => cross::on_the_ground(&plan.cross, roll_sin_cos, steer).1,
+                (None, None) => LEAST_COS,
             };
             let cos = if cos > LEAST_COS { cos } else { LEAST_COS };
             let ratio = if wheel == Wheel::Front { 1.0 / cos } else { cos };

@@ -104,6 +104,15 @@ impl Lasting {
     }
 }
 
+/// What the checks found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Crossed {
+    /// The disagreements that have lasted.
+    pub causes: Causes,
+    /// Of [`on_the_ground`], where a check needed it.
+    pub ground: Option<(f32, f32)>,
+}
+
 /// How quickly the sums forget: the part of the difference that one period takes away.
 const FORGET: f32 = 1.0 / 256.0;
 
@@ -116,7 +125,7 @@ pub fn step(
     believed: &Believed,
     roll_sin_cos: (f32, f32),
     torque_nm: f32,
-) -> Causes {
+) -> Crossed {
     let mut causes = Causes::NONE;
     let persist = config.persist_ticks;
     let front = believed.front_wheel_m_s.map(|v| v.newest);
@@ -174,7 +183,7 @@ pub fn step(
     causes.note(Cause::MotorDisagrees, state.motor.beyond(config.motor_nm, motor, persist));
     let closer = |bound: f32| bound + 4.0 * FORGET * (torque_nm - bound);
     state.asked_nm = (at_most(torque_nm, closer(low)), at_least(torque_nm, closer(high)));
-    causes
+    Crossed { causes, ground }
 }
 
 /// Sine and cosine of the angle between the front wheel's and the rear frame's tracks on the ground:

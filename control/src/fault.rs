@@ -196,6 +196,11 @@ impl Causes {
         self.0 == 0
     }
 
+    /// With `cause` added if it is not in it, else taken away.
+    pub const fn turned(self, cause: Cause) -> Self {
+        Causes(self.0 ^ Self::of(cause).0)
+    }
+
     /// Adds `cause` when `present`.
     pub fn note(&mut self, cause: Cause, present: bool) {
         if present {

@@ -151,10 +151,7 @@ pub struct PermitState {
     latched: Causes,
     /// Disagreements since the rider asked.
     lasting: Causes,
-    fallen: Persistent,
-    parked: Persistent,
-    backwards: Persistent,
-    lifted: Persistent,
+    position: Persistent,
 }
 
 /// The permission of one control period.
@@ -185,18 +182,27 @@ pub struct Asked {
     pub force_m_s2: Option<f32>,
 }
 
-/// Something that counts once it has lasted, and no longer when it has been gone as long.
+/// The causes of the bicycle's position and motion: each counts once it has lasted, and no longer when it has been
+/// gone as long.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Persistent {
-    ticks: u16,
-    holds: bool,
+    holds: Causes,
+    /// For how long each has been other than it counts \[control periods\].
+    ticks: [u16; 4],
 }
 
 impl Persistent {
-    fn step(&mut self, now: bool, persist_ticks: u16) -> bool {
-        self.ticks = if now == self.holds { 0 } else { self.ticks.saturating_add(1) };
-        if self.ticks > persist_ticks {
-            (self.holds, self.ticks) = (now, 0);
+    fn step(&mut self, now: Causes, persist_ticks: u16) -> Causes {
+        // As nearly always.
+        if now == self.holds && self.ticks == [0; 4] {
+            return now;
+        }
+        let causes = [Cause::Fallen, Cause::Lifted, Cause::Backwards, Cause::Parked];
+        for (cause, ticks) in causes.into_iter().zip(&mut self.ticks) {
+            *ticks = if now.has(cause) == self.holds.has(cause) { 0 } else { ticks.saturating_add(1) };
+            if *ticks > persist_ticks {
+                (self.holds, *ticks) = (self.holds.turned(cause), 0);
+            }
         }
         self.holds
     }
@@ -237,19 +243,18 @@ impl PermitState {
 
     /// Everything that stands in the way now.
     fn causes(&mut self, config: &PermitConfig, asked: &Asked) -> Causes {
-        let mut causes = asked.causes;
-        let persist = config.persist_ticks;
         // Comparisons with what is not known are false.
         let beyond =
             |value: Option<f32>, limit: Option<f32>| matches!((value, limit), (Some(v), Some(l)) if v > l);
         let roll = asked.roll_rad.map(f32::abs);
         let backwards = asked.speed_m_s.map(|v| -v);
         let slow = beyond(config.parked_m_s, asked.speed_m_s.map(f32::abs));
-        causes.note(Cause::Fallen, self.fallen.step(beyond(roll, config.fallen_rad), persist));
-        causes.note(Cause::Parked, self.parked.step(slow, persist));
-        causes.note(Cause::Backwards, self.backwards.step(beyond(backwards, config.backwards_m_s), persist));
-        let light = beyond(config.lifted_m_s2, asked.force_m_s2);
-        causes.note(Cause::Lifted, self.lifted.step(light, persist));
+        let mut now = Causes::NONE;
+        now.note(Cause::Fallen, beyond(roll, config.fallen_rad));
+        now.note(Cause::Lifted, beyond(config.lifted_m_s2, asked.force_m_s2));
+        now.note(Cause::Backwards, beyond(backwards, config.backwards_m_s));
+        now.note(Cause::Parked, slow);
+        let mut causes = asked.causes.with(self.position.step(now, config.persist_ticks));
         causes.note(Cause::PolarityUnchecked, config.need_polarity && !asked.polarity_checked);
         causes.note(Cause::SwitchOff, !asked.engage);
         causes.note(Cause::SwitchHeld, asked.engage && !self.released && !self.mode.drives());
@@ -289,15 +294,16 @@ fn engaged(reactions: &Reactions, causes: Causes) -> Mode {
 
 /// A step of a ramp that takes `ticks` from 0 to 1; none is at once.
 fn towards(from: f32, to: f32, ticks: u16) -> f32 {
+    if from == to {
+        return to;
+    }
     let step = 1.0 / f32::from(ticks.max(1));
-    if from < to {
-        let next = from + step;
-        // So that rounding does not leave it a hair below the whole.
-        if next > to - 0.5 * step { to } else { next }
-    } else if from > to {
-        let next = from - step;
-        if next < to + 0.5 * step { to } else { next }
-    } else {
+    // So that rounding does not leave it a hair from where it goes.
+    if (to - from).abs() < 1.5 * step {
         to
+    } else if from < to {
+        from + step
+    } else {
+        from - step
     }
 }
