@@ -200,7 +200,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
         polarity_checked: !plan.check_polarity || state.polarity.next == Move::Passed,
         roll_rad: (plan.estimates && believed.gyro_rad_s.is_some()).then_some(motion.roll_rad),
         speed_m_s: speed.map(|v| v.newest),
-        force_m_s2: config.permit.lifted_m_s2.and(believed.accel_m_s2).map(estimate::size),
+        force_m_s2: motion.force_m_s2,
     };
     let permission = permit::step(&config.permit, &plan.reactions, &mut state.permit, &asked);
 
@@ -287,6 +287,7 @@ fn motion(plan: &Plan, state: &mut EstimateState, believed: &Believed, elapsed_u
         speed_m_s: felt.speed_m_s,
         roll_sin_cos: (0.0, 1.0),
         roll_bound_rad: core::f32::consts::PI,
+        force_m_s2: felt.accel_m_s2.map(estimate::size),
         ..Motion::default()
     }
 }

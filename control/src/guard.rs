@@ -231,7 +231,8 @@ impl<'a> Torque<'a> {
 
     /// Whether more than `part` of `whole` of the largest torque.
     fn beyond(&self, max: f32, part: f32, whole: f32) -> bool {
-        let part = if part > 0.0 { at_most(whole, part) } else { 0.0 };
+        // NaN, as nothing and less, is no part. More than the whole does no harm: the largest torque has been asked.
+        let part = if part > 0.0 { part } else { 0.0 };
         self.size * whole > max * part
     }
 

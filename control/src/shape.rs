@@ -188,6 +188,9 @@ fn taper_share(taper: &Taper, speed: f32) -> f32 {
 }
 
 fn stop_share(stop: &EndStop, steer: f32) -> f32 {
+    if steer.abs() <= stop.soft_rad {
+        return 1.0;
+    }
     share((stop.hard_rad - steer.abs()) / (stop.hard_rad - stop.soft_rad))
 }
 
@@ -204,16 +207,18 @@ fn against(rider: &RiderMotion, before_us: u32, torque: f32, asked: &Asked) -> u
 }
 
 fn motion_share(rider: &RiderMotion, against_us: u32) -> f32 {
-    let most = (u32::from(rider.after_ms) + u32::from(rider.fade_ms)) * 1000;
-    let left = most.saturating_sub(against_us);
-    share(left as f32 / (f32::from(rider.fade_ms) * 1e3))
+    let (after_us, fade_us) = (1000 * u32::from(rider.after_ms), 1000 * u32::from(rider.fade_ms));
+    let over_us = against_us.saturating_sub(after_us);
+    if over_us == 0 { 1.0 } else { fade_us.saturating_sub(over_us) as f32 / fade_us as f32 }
 }
 
 /// The torques one step reaches from `last`.
 fn reach(plan: &ShapePlan, last: f32, elapsed_us: u32) -> (f32, f32) {
-    let late = elapsed_us >= plan.period_us;
-    let part = if late { 1.0 } else { elapsed_us as f32 / plan.period_us as f32 };
-    let [rise, fall] = [plan.rise_step_nm, plan.fall_step_nm].map(|step| step.map(|s| s * part));
+    let (mut rise, mut fall) = (plan.rise_step_nm, plan.fall_step_nm);
+    if elapsed_us < plan.period_us {
+        let part = elapsed_us as f32 / plan.period_us as f32;
+        (rise, fall) = (rise.map(|step| step * part), fall.map(|step| step * part));
+    }
     let lowest = |from: f32| {
         let rise = rise.unwrap_or(f32::MAX);
         match fall {
