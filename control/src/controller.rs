@@ -13,7 +13,7 @@ use crate::limits::ActiveLimits;
 use crate::permit::{self, Mode, PermitState, Reactions};
 use crate::polarity::{self, Move, PolarityState};
 use crate::predict;
-use crate::response::{self, ResponseState};
+use crate::response::{self, ResponsePlan, ResponseState};
 use crate::shape::{self, ShapePlan, ShapeState};
 use crate::track::{self, PathError, TrackState};
 
@@ -25,11 +25,10 @@ pub struct Plan {
     period_us: u32,
     calibration: CalibrationPlan,
     cross: CrossPlan,
+    response: ResponsePlan,
     reactions: Reactions,
     shape: ShapePlan,
     guard: GuardPlan,
-    /// Control periods of a stretch of the response's judgement.
-    stretch_ticks: u16,
     /// The polarity check is still to be passed.
     check_polarity: bool,
     /// The law's gain that the polarity check shows.
@@ -48,10 +47,10 @@ impl Plan {
             period_us: (1e6 / c.rate_hz) as u32,
             calibration: c.calibration.plan(),
             cross: CrossPlan::new(&c.cross, c.rate_hz),
+            response: ResponsePlan::new(&c.response, &c.estimate, c.rate_hz),
             reactions: Reactions::new(&c.input),
             shape: ShapePlan::new(&c.limits, c.rate_hz),
             guard: GuardPlan::new(&c.limits, c.rate_hz),
-            stretch_ticks: response::stretch_ticks(c.rate_hz),
             check_polarity: c.permit.need_polarity && !c.calibration.polarity_checked,
             shown_gain_nm_s_rad: c.law.gain(polarity::SHOWN_AT_M_S),
             estimates: c.estimate.roll_rate == estimate::Source::Estimate
@@ -168,10 +167,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let ahead = predict::step(&config.predict, &motion);
     let crossed =
         cross::step(&config.cross, &plan.cross, &mut state.cross, &believed, motion.roll_sin_cos, last_nm);
-    let stretch = (plan.stretch_ticks, plan.period_s);
-    let place = &config.estimate;
-    let seen = (&believed, &motion);
-    let answered = response::step(&config.response, place, stretch, &mut state.response, seen, last_nm);
+    let answered = response::step(&plan.response, &mut state.response, &believed, &motion, last_nm);
     let mut causes = believed.causes.with(crossed.causes).with(answered).with(state.found);
     causes.note(Cause::Timing, config.input.max_gap_ms.is_some_and(|ms| elapsed_us as f32 > 1e3 * ms));
 

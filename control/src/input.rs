@@ -329,14 +329,18 @@ impl Recent {
             self.known = 0;
             return None;
         };
-        if age == 0 || self.known == 0 {
-            let [a, b, c, d, e, _] = self.samples;
-            self.samples = [newest, a, b, c, d, e];
-            self.known = self.known.saturating_add(1).min(config.recent_samples);
+        let new = age == 0 || self.known == 0;
+        if new {
+            self.known = self.known.min(config.recent_samples.saturating_sub(1));
         }
         let (mut low, mut high) = (newest, newest);
         for sample in self.samples.iter().take(usize::from(self.known)) {
             (low, high) = (at_most(*sample, low), at_least(*sample, high));
+        }
+        if new {
+            let [a, b, c, d, e, _] = self.samples;
+            self.samples = [newest, a, b, c, d, e];
+            self.known += 1;
         }
         let late = age.saturating_sub(config.drift_after_ticks);
         if late > 0 {
