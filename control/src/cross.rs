@@ -98,9 +98,16 @@ impl Lasting {
     /// Whether a `difference` beyond the `limit` has lasted longer than allowed. What can't be
     /// compared breaks off the count.
     fn beyond(&mut self, limit: Option<f32>, difference: Option<f32>, persist_ticks: u16) -> bool {
-        let beyond = matches!((limit, difference), (Some(l), Some(d)) if d > l || d < -l);
-        self.0 = if beyond { self.0.saturating_add(1) } else { 0 };
-        self.0 > persist_ticks
+        match (limit, difference) {
+            (Some(limit), Some(difference)) if difference.abs() > limit => {
+                self.0 = self.0.saturating_add(1);
+                self.0 > persist_ticks
+            }
+            _ => {
+                self.0 = 0;
+                false
+            }
+        }
     }
 }
 

@@ -218,9 +218,11 @@ impl<'a> Torque<'a> {
             refuse(Violation::RiderTorque, self.size - max > (r.allowance_nm + along) * r.multiplier)?;
         }
         if let Some(r) = rider_motion {
-            let fade = f32::from(r.fade_ms);
             let over = state.turned_us.saturating_sub(u32::from(r.after_ms) * 1000);
-            refuse(Violation::RiderMotion, self.beyond(max, fade - over as f32 * 1e-3, fade))?;
+            if over > 0 {
+                let fade = f32::from(r.fade_ms);
+                refuse(Violation::RiderMotion, self.beyond(max, fade - over as f32 * 1e-3, fade))?;
+            }
         }
         if let (Some(e), Some(steer)) = (end_stop, known_value(asked.steer_rad)) {
             let way_left = e.hard_rad - steer * self.side;
