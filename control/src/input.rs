@@ -213,16 +213,23 @@ pub struct InputState {
     front_recent: Recent,
     rear_recent: Recent,
     /// The frame before.
-    before: Option<Before>,
+    before: Before,
 }
 
-/// What tells whether the bicycle moves.
+/// What tells whether the bicycle moves; NaN is not known.
 #[derive(Clone, Copy, Debug)]
 struct Before {
     steer_rad: f32,
     front_wheel_m_s: f32,
     rear_wheel_m_s: f32,
     torque_nm: f32,
+}
+
+impl Default for Before {
+    fn default() -> Self {
+        let unknown = f32::NAN;
+        Self { steer_rad: unknown, front_wheel_m_s: unknown, rear_wheel_m_s: unknown, torque_nm: unknown }
+    }
 }
 
 /// One control period, from a frame as told and the torque commanded last in the bicycle's sign \[N m\]; what comes out is
@@ -241,14 +248,14 @@ pub fn step(
     let steer_rate_rad_s = calibration.steer_rate(&frame.steer_rate_rad_s);
     let [front_m_s, rear_m_s] = [frame.front_wheel_m_s.value, frame.rear_wheel_m_s.value];
     let now = Before { steer_rad, front_wheel_m_s: front_m_s, rear_wheel_m_s: rear_m_s, torque_nm };
-    let was = s.before.replace(now).unwrap_or(now);
+    let was = core::mem::replace(&mut s.before, now);
     // What other sensors say of it; NaN says nothing.
     let turned = (steer_rad - was.steer_rad).abs() > TURNED_RAD;
     let turns = steer_rate_rad_s.abs() > TURNING_RAD_S;
     let turning = turned || turns;
     let swinging = gyro_rad_s.iter().any(|rate| rate.abs() > SWINGING_RAD_S);
-    let front_changes = front_m_s.to_bits() != was.front_wheel_m_s.to_bits();
-    let rear_changes = rear_m_s.to_bits() != was.rear_wheel_m_s.to_bits();
+    let front_changes = (front_m_s - was.front_wheel_m_s).abs() > 0.0;
+    let rear_changes = (rear_m_s - was.rear_wheel_m_s).abs() > 0.0;
     let torque_changes = (torque_nm - was.torque_nm).abs() > TORQUE_CHANGE_NM;
 
     let mut causes = Causes::NONE;
