@@ -1,6 +1,6 @@
 //! From the sensors' own axes, zeros and signs to the bicycle's, and from its torque to the motor's.
 
-use crate::frame::{Sample, SensorFrame, Triple};
+use crate::frame::{Sample, Triple};
 use crate::param::{Leaf, Visit};
 use core::f32::consts::PI;
 
@@ -53,58 +53,82 @@ impl Calibration {
         to.switch(&Leaf::switch(G, "polarity_checked"), &mut self.polarity_checked);
     }
 
-    /// What [`CalibrationPlan::frame`] needs.
+    /// What [`CalibrationPlan`]'s functions need.
     pub fn plan(&self) -> CalibrationPlan {
         let turned = self.imu_rad.iter().any(|angle| *angle != 0.0);
-        CalibrationPlan { calibration: *self, imu: turned.then(|| rotation(self.imu_rad)) }
+        let sign = |reversed: bool| if reversed { -1.0 } else { 1.0 };
+        CalibrationPlan {
+            imu: turned.then(|| rotation(self.imu_rad)),
+            gyro_bias_rad_s: self.gyro_bias_rad_s,
+            accel_bias_m_s2: self.accel_bias_m_s2,
+            steer_zero_rad: self.steer_zero_rad,
+            steer_sign: sign(self.steer_reversed),
+            steer_rate_sign: sign(self.steer_rate_reversed),
+            rider_torque_sign: sign(self.rider_torque_reversed),
+            motor_sign: sign(self.motor_reversed),
+        }
     }
 }
 
-/// A calibration with what is derived from it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// What follows from a calibration: brings each sensor to the bicycle's axes, zero and sign. What needs no change keeps
+/// its bits.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationPlan {
-    calibration: Calibration,
     /// Rows of the rotation from the IMU's to the frame's axes; `None` where they are the same.
     imu: Option<[[f32; 3]; 3]>,
+    gyro_bias_rad_s: [f32; 3],
+    accel_bias_m_s2: [f32; 3],
+    steer_zero_rad: f32,
+    /// +1, or -1 where it is reversed.
+    steer_sign: f32,
+    steer_rate_sign: f32,
+    rider_torque_sign: f32,
+    motor_sign: f32,
 }
 
 impl CalibrationPlan {
-    /// The frame in the bicycle's axes, zeros and signs. What needs no change keeps its bits.
-    pub fn frame(&self, told: &SensorFrame) -> SensorFrame {
-        let c = &self.calibration;
-        SensorFrame {
-            gyro_rad_s: self.turned(&told.gyro_rad_s, &c.gyro_bias_rad_s),
-            accel_m_s2: self.turned(&told.accel_m_s2, &c.accel_bias_m_s2),
-            steer_rad: signed(
-                Sample { value: told.steer_rad.value - c.steer_zero_rad, ..told.steer_rad },
-                c.steer_reversed,
-            ),
-            steer_rate_rad_s: signed(told.steer_rate_rad_s, c.steer_rate_reversed),
-            rider_torque_nm: signed(told.rider_torque_nm, c.rider_torque_reversed),
-            motor_torque_nm: signed(told.motor_torque_nm, c.motor_reversed),
-            ..*told
-        }
+    /// Angular velocity \[rad/s\].
+    pub fn gyro(&self, told: &Triple) -> [f32; 3] {
+        self.turned(told.value, &self.gyro_bias_rad_s)
+    }
+
+    /// Specific force \[m/s^2\].
+    pub fn accel(&self, told: &Triple) -> [f32; 3] {
+        self.turned(told.value, &self.accel_bias_m_s2)
+    }
+
+    /// Steer angle \[rad\].
+    pub fn steer(&self, told: &Sample) -> f32 {
+        self.steer_sign * (told.value - self.steer_zero_rad)
+    }
+
+    /// Steer rate \[rad/s\].
+    pub fn steer_rate(&self, told: &Sample) -> f32 {
+        self.steer_rate_sign * told.value
+    }
+
+    /// The rider's torque \[N m\].
+    pub fn rider_torque(&self, told: &Sample) -> f32 {
+        self.rider_torque_sign * told.value
+    }
+
+    /// The torque that the drive says it gives \[N m\].
+    pub fn motor_report(&self, told: &Sample) -> f32 {
+        self.motor_sign * told.value
     }
 
     /// The torque as the motor must be told it \[N m\].
     pub fn motor(&self, torque_nm: f32) -> f32 {
-        if self.calibration.motor_reversed { -torque_nm } else { torque_nm }
+        self.motor_sign * torque_nm
     }
 
-    fn turned(&self, told: &Triple, bias: &[f32; 3]) -> Triple {
-        let [x, y, z] = told.value;
-        let [bx, by, bz] = *bias;
+    fn turned(&self, [x, y, z]: [f32; 3], [bx, by, bz]: &[f32; 3]) -> [f32; 3] {
         let (x, y, z) = (x - bx, y - by, z - bz);
-        let value = match &self.imu {
+        match &self.imu {
             None => [x, y, z],
             Some(rows) => rows.map(|[a, b, c]| a * x + b * y + c * z),
-        };
-        Triple { value, ..*told }
+        }
     }
-}
-
-fn signed(sample: Sample, reversed: bool) -> Sample {
-    if reversed { Sample { value: -sample.value, ..sample } } else { sample }
 }
 
 /// Rows of the rotation that takes vectors from axes turned by roll, pitch and yaw to the axes they

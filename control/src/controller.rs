@@ -2,7 +2,7 @@
 
 use crate::calibrate::CalibrationPlan;
 use crate::config::Config;
-use crate::cross::{self, CrossPlan, CrossState};
+use crate::cross::{self, CrossPlan, CrossState, Crossed};
 use crate::estimate::{self, EstimateState, Felt, Motion};
 use crate::fault::{Cause, Causes};
 use crate::frame::{SensorFrame, Wheel};
@@ -13,7 +13,7 @@ use crate::limits::ActiveLimits;
 use crate::permit::{self, Mode, PermitState, Reactions};
 use crate::polarity::{self, Move, PolarityState};
 use crate::predict;
-use crate::response::{self, ResponseState};
+use crate::response::{self, ResponsePlan, ResponseState};
 use crate::shape::{self, ShapePlan, ShapeState};
 use crate::track::{self, PathError, TrackState};
 
@@ -25,11 +25,10 @@ pub struct Plan {
     period_us: u32,
     calibration: CalibrationPlan,
     cross: CrossPlan,
+    response: ResponsePlan,
     reactions: Reactions,
     shape: ShapePlan,
     guard: GuardPlan,
-    /// Control periods of a stretch of the response's judgement.
-    stretch_ticks: u16,
     /// The polarity check is still to be passed.
     check_polarity: bool,
     /// The law's gain that the polarity check shows.
@@ -48,10 +47,10 @@ impl Plan {
             period_us: (1e6 / c.rate_hz) as u32,
             calibration: c.calibration.plan(),
             cross: CrossPlan::new(&c.cross, c.rate_hz),
+            response: ResponsePlan::new(&c.response, &c.estimate, c.rate_hz),
             reactions: Reactions::new(&c.input),
             shape: ShapePlan::new(&c.limits, c.rate_hz),
             guard: GuardPlan::new(&c.limits, c.rate_hz),
-            stretch_ticks: response::stretch_ticks(c.rate_hz),
             check_polarity: c.permit.need_polarity && !c.calibration.polarity_checked,
             shown_gain_nm_s_rad: c.law.gain(polarity::SHOWN_AT_M_S),
             estimates: c.estimate.roll_rate == estimate::Source::Estimate
@@ -68,6 +67,13 @@ impl Plan {
     /// The configuration it was made from.
     pub fn config(&self) -> &Config {
         &self.config
+    }
+
+    /// Whether a press of the switch in the period after this command would engage, if nothing changes: in standby, and
+    /// nothing is missing but the press.
+    pub fn ready(&self, command: &Command) -> bool {
+        let refusing = command.causes.and(self.reactions.refusals());
+        command.mode == Mode::Standby && refusing == Causes::of(Cause::SwitchOff)
     }
 
     /// Control periods from boot to full authority, if every sensor is good from the start and the
@@ -155,20 +161,17 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     state.before_us = Some(frame.now_us);
     let last_nm = state.torque_nm();
 
-    let frame = plan.calibration.frame(frame);
-    let believed = input::step(&config.input, plan.period_s, &mut state.input, &frame, last_nm);
+    let believed =
+        input::step(&config.input, &plan.calibration, plan.period_s, &mut state.input, frame, last_nm);
     let motion = motion(plan, &mut state.estimate, &believed, elapsed_us);
     let ahead = predict::step(&config.predict, &motion);
     let crossed =
         cross::step(&config.cross, &plan.cross, &mut state.cross, &believed, motion.roll_sin_cos, last_nm);
-    let stretch = (plan.stretch_ticks, plan.period_s);
-    let place = &config.estimate;
-    let seen = (&believed, &motion);
-    let answered = response::step(&config.response, place, stretch, &mut state.response, seen, last_nm);
-    let mut causes = believed.causes.with(crossed).with(answered).with(state.found);
+    let answered = response::step(&plan.response, &mut state.response, &believed, &motion, last_nm);
+    let mut causes = believed.causes.with(crossed.causes).with(answered).with(state.found);
     causes.note(Cause::Timing, config.input.max_gap_ms.is_some_and(|ms| elapsed_us as f32 > 1e3 * ms));
 
-    let speed = speed(plan, &believed, &motion, causes.has(Cause::WheelsDisagree));
+    let speed = speed(plan, &believed, motion.roll_sin_cos, &crossed);
     let now = match (believed.gyro_rad_s, speed) {
         (Some(_), Some(speed)) => {
             let newest = Aligned { roll_rate_rad_s: ahead.roll_rate_rad_s, speed };
@@ -193,7 +196,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
         polarity_checked: !plan.check_polarity || state.polarity.next == Move::Passed,
         roll_rad: (plan.estimates && believed.gyro_rad_s.is_some()).then_some(motion.roll_rad),
         speed_m_s: speed.map(|v| v.newest),
-        force_m_s2: config.permit.lifted_m_s2.and(believed.accel_m_s2).map(estimate::size),
+        force_m_s2: motion.force_m_s2,
     };
     let permission = permit::step(&config.permit, &plan.reactions, &mut state.permit, &asked);
 
@@ -280,13 +283,15 @@ fn motion(plan: &Plan, state: &mut EstimateState, believed: &Believed, elapsed_u
         speed_m_s: felt.speed_m_s,
         roll_sin_cos: (0.0, 1.0),
         roll_bound_rad: core::f32::consts::PI,
+        force_m_s2: felt.accel_m_s2.map(estimate::size),
         ..Motion::default()
     }
 }
 
 /// Between which speeds of the scheduling wheel the truth lies: by that wheel's sensor; by the other's
 /// and the steer angle while it is lost; by both when they disagree.
-fn speed(plan: &Plan, believed: &Believed, motion: &Motion, disagree: bool) -> Option<Bounds> {
+fn speed(plan: &Plan, believed: &Believed, roll_sin_cos: (f32, f32), crossed: &Crossed) -> Option<Bounds> {
+    let disagree = crossed.causes.has(Cause::WheelsDisagree);
     let (front, rear) = (believed.front_wheel_m_s, believed.rear_wheel_m_s);
     let wheel = plan.config.input.wheel;
     let (own, other) = match wheel {
@@ -299,9 +304,10 @@ fn speed(plan: &Plan, believed: &Believed, motion: &Motion, disagree: bool) -> O
         (_, None) => None,
         (_, Some(other)) => {
             // The front wheel goes the longer way, at most about twice as long.
-            let cos = match believed.steer_rad {
-                Some(steer) => cross::on_the_ground(&plan.cross, motion.roll_sin_cos, steer).1,
-                None => LEAST_COS,
+            let cos = match (crossed.ground, believed.steer_rad) {
+                (Some((_, cos)), _) => cos,
+                (None, Some(steer)) => cross::on_the_ground(&plan.cross, roll_sin_cos, steer).1,
+                (None, None) => LEAST_COS,
             };
             let cos = if cos > LEAST_COS { cos } else { LEAST_COS };
             let ratio = if wheel == Wheel::Front { 1.0 / cos } else { cos };

@@ -98,10 +98,26 @@ impl Lasting {
     /// Whether a `difference` beyond the `limit` has lasted longer than allowed. What can't be
     /// compared breaks off the count.
     fn beyond(&mut self, limit: Option<f32>, difference: Option<f32>, persist_ticks: u16) -> bool {
-        let beyond = matches!((limit, difference), (Some(l), Some(d)) if d > l || d < -l);
-        self.0 = if beyond { self.0.saturating_add(1) } else { 0 };
-        self.0 > persist_ticks
+        match (limit, difference) {
+            (Some(limit), Some(difference)) if difference.abs() > limit => {
+                self.0 = self.0.saturating_add(1);
+                self.0 > persist_ticks
+            }
+            _ => {
+                self.0 = 0;
+                false
+            }
+        }
     }
+}
+
+/// What the checks found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Crossed {
+    /// The disagreements that have lasted.
+    pub causes: Causes,
+    /// Of [`on_the_ground`], where a check needed it.
+    pub ground: Option<(f32, f32)>,
 }
 
 /// How quickly the sums forget: the part of the difference that one period takes away.
@@ -116,7 +132,7 @@ pub fn step(
     believed: &Believed,
     roll_sin_cos: (f32, f32),
     torque_nm: f32,
-) -> Causes {
+) -> Crossed {
     let mut causes = Causes::NONE;
     let persist = config.persist_ticks;
     let front = believed.front_wheel_m_s.map(|v| v.newest);
@@ -174,7 +190,7 @@ pub fn step(
     causes.note(Cause::MotorDisagrees, state.motor.beyond(config.motor_nm, motor, persist));
     let closer = |bound: f32| bound + 4.0 * FORGET * (torque_nm - bound);
     state.asked_nm = (at_most(torque_nm, closer(low)), at_least(torque_nm, closer(high)));
-    causes
+    Crossed { causes, ground }
 }
 
 /// Sine and cosine of the angle between the front wheel's and the rear frame's tracks on the ground:

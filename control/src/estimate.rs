@@ -71,6 +71,8 @@ pub struct Motion {
     pub roll_bound_rad: f32,
     /// Biases of the gyros, as far as known \[rad/s\].
     pub gyro_bias_rad_s: [f32; 3],
+    /// Size of the specific force \[m/s^2\], if it is felt.
+    pub force_m_s2: Option<f32>,
 }
 
 /// What the estimator remembers.
@@ -156,8 +158,9 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
     let lever = place.up_m * ((wx - run.smooth[0]) / OBSERVED_S)
         + place.forward_m * ((wz - run.smooth[1]) / OBSERVED_S);
     let seen = felt.accel_m_s2.is_some() || speed >= BALANCING_M_S;
+    let force_m_s2 = felt.accel_m_s2.map(|_| size(force));
     if seen && dt > 0.0 {
-        let pull = size(force) - G;
+        let pull = force_m_s2.unwrap_or(G) - G;
         let violence = (lever * lever + pull * pull) / (c.violent_m_s2 * c.violent_m_s2);
         let variance = noise * noise * (1.0 + violence) / dt;
         run.roll.observe((lever - run.unexplained_m_s2) / G, variance, c.bias_max_rad_s);
@@ -186,6 +189,7 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
         roll_accel_rad_s2,
         roll_bound_rad: bounded(bound, core::f32::consts::PI),
         gyro_bias_rad_s: [run.roll.bias_rad_s, state.bias[0], state.bias[1]],
+        force_m_s2,
     }
 }
 

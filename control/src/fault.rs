@@ -110,7 +110,7 @@ pub enum Cause {
     Backwards = 50,
     /// The bicycle stands.
     Parked = 51,
-    /// The switch was on when the controller started or came back from a fault.
+    /// The switch is on, but was not pressed afresh while nothing refused.
     SwitchHeld = 52,
     /// The rider has not asked for assist.
     SwitchOff = 53,
@@ -194,6 +194,11 @@ impl Causes {
     /// Whether there is none.
     pub const fn is_empty(self) -> bool {
         self.0 == 0
+    }
+
+    /// With `cause` added if it is not in it, else taken away.
+    pub const fn turned(self, cause: Cause) -> Self {
+        Causes(self.0 ^ Self::of(cause).0)
     }
 
     /// Adds `cause` when `present`.

@@ -92,8 +92,10 @@ impl GuardPlan {
 pub struct GuardState {
     torque_nm: f32,
     turned_us: u32,
-    watches: [Watch; WATCHES],
-    oldest: u8,
+    /// The least size of the torque since each watch was started, the newest first \[N m\].
+    watches: [f32; WATCHES],
+    /// [`side`] of the torque; when it changes, every watch has seen zero.
+    side: f32,
     since_us: u32,
 }
 
@@ -141,7 +143,7 @@ struct Torque<'a> {
     plan: &'a GuardPlan,
     /// Size beyond the slack \[N m\]; negative when too small to matter.
     size: f32,
-    /// +1 to the right, -1 to the left.
+    /// [`side`] of it.
     side: f32,
     /// How far it shrank, on the side where it was, and how far it grew, each less the slack \[N m\].
     shrunk: f32,
@@ -174,7 +176,7 @@ impl<'a> Torque<'a> {
         let retreats = limits.fall_nm_s.is_some()
             && !crossed
             && (shrunk + slack) * plan.fall_s_nm >= time_s.0 * (1.0 - 1e-6);
-        let side = if torque < 0.0 { -1.0 } else { 1.0 };
+        let side = side(torque);
         // The time to zero is a matter of the torque that was: a huge one the other way gives it nothing.
         let shrunk = shrunk - if crossed { slack_before } else { slack };
         let (size, grown) = (size - slack, grown - slack);
@@ -182,51 +184,58 @@ impl<'a> Torque<'a> {
     }
 
     fn judge(&self, state: &GuardState, asked: &Asked) -> Result<(), Violation> {
-        let Limits { limp_fraction, speed_cap, taper, rider_torque, rider_motion, end_stop, window, .. } =
+        refuse(Violation::Magnitude, self.size > self.plan.max_nm)?;
+        if self.size > 0.0 && !self.retreats {
+            self.in_bounds(state, asked)?;
+        }
+        self.in_time()?;
+        match self.limits.window {
+            Some(w) => refuse(Violation::Window, self.size > state.start(self.side) + w.nm),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether a torque that does not go back to zero is inside all that depends on bicycle, rider and permission.
+    fn in_bounds(&self, state: &GuardState, asked: &Asked) -> Result<(), Violation> {
+        let Limits { limp_fraction, speed_cap, taper, rider_torque, rider_motion, end_stop, .. } =
             self.limits;
         let max = self.plan.max_nm;
-        let refuse = |violation, found: bool| if found { Err(violation) } else { Ok(()) };
-
-        refuse(Violation::Magnitude, self.size > max)?;
         refuse(Violation::Authority, self.beyond(max, asked.authority, 1.0))?;
         if let (Some(part), true) = (*limp_fraction, asked.limp) {
-            refuse(Violation::Limp, self.plan.max_nm < f32::MAX && self.beyond(max, part, 1.0))?;
+            refuse(Violation::Limp, max < f32::MAX && self.beyond(max, part, 1.0))?;
         }
         let (slow, fast) = (asked.speed_low_m_s, asked.speed_high_m_s);
         let known = slow <= fast || fast <= slow;
         let (slow, fast) = if known { (at_most(fast, slow), at_least(fast, slow)) } else { (-1e9, 1e9) };
         if let Some(cap) = speed_cap {
-            let beyond = self.above_line(&cap.speed_m_s, &cap.torque_nm, slow, fast);
-            refuse(Violation::Speed, beyond && !self.retreats)?;
+            refuse(Violation::Speed, self.above_line(&cap.speed_m_s, &cap.torque_nm, slow, fast))?;
         }
         if let Some(t) = taper {
             refuse(Violation::Taper, self.beyond(max, slow - t.zero_m_s, t.full_m_s - t.zero_m_s))?;
         }
         if let (Some(r), Some(rider)) = (rider_torque, known_value(asked.rider_torque_nm)) {
             let along = rider * self.side;
-            let over = self.size > 0.0 && self.size - max > (r.allowance_nm + along) * r.multiplier;
-            refuse(Violation::RiderTorque, over && !self.retreats)?;
+            refuse(Violation::RiderTorque, self.size - max > (r.allowance_nm + along) * r.multiplier)?;
         }
         if let Some(r) = rider_motion {
-            let fade = f32::from(r.fade_ms);
             let over = state.turned_us.saturating_sub(u32::from(r.after_ms) * 1000);
-            refuse(Violation::RiderMotion, self.beyond(max, fade - over as f32 * 1e-3, fade))?;
+            if over > 0 {
+                let fade = f32::from(r.fade_ms);
+                refuse(Violation::RiderMotion, self.beyond(max, fade - over as f32 * 1e-3, fade))?;
+            }
         }
         if let (Some(e), Some(steer)) = (end_stop, known_value(asked.steer_rad)) {
             let way_left = e.hard_rad - steer * self.side;
             refuse(Violation::EndStop, self.beyond(max, way_left, e.hard_rad - e.soft_rad))?;
         }
-        self.in_time()?;
-        match window {
-            Some(w) => refuse(Violation::Window, self.size > state.start(self.side) + w.nm),
-            None => Ok(()),
-        }
+        Ok(())
     }
 
-    /// Whether more than `part` of `whole` of the largest torque, and not on its way back.
+    /// Whether more than `part` of `whole` of the largest torque.
     fn beyond(&self, max: f32, part: f32, whole: f32) -> bool {
-        let part = if part > 0.0 { at_most(whole, part) } else { 0.0 };
-        self.size > 0.0 && self.size * whole > max * part && !self.retreats
+        // NaN, as nothing and less, is no part. More than the whole does no harm: the largest torque has been asked.
+        let part = if part > 0.0 { part } else { 0.0 };
+        self.size * whole > max * part
     }
 
     /// Whether anywhere between `slow` and `fast` it lies above the line through the points.
@@ -240,16 +249,15 @@ impl<'a> Torque<'a> {
         let ([first, .., last], [start, .., end]) = (speeds, torques);
         let outside = (slow <= *first && self.size > *start) || (fast >= *last && self.size > *end);
         let mut pieces = speeds.windows(2).zip(torques.windows(2));
-        self.size > 0.0
-            && (outside
-                || pieces.any(|piece| match piece {
-                    (&[v0, v1], &[t0, t1]) if slow <= v1 && v0 <= fast => {
-                        // Both ends of what the piece and the interval share, by the lever rule.
-                        let above = |v: f32| self.size * (v1 - v0) > t0 * (v1 - v) + t1 * (v - v0);
-                        above(at_least(slow, v0)) || above(at_most(fast, v1))
-                    }
-                    _ => false,
-                }))
+        outside
+            || pieces.any(|piece| match piece {
+                (&[v0, v1], &[t0, t1]) if slow <= v1 && v0 <= fast => {
+                    // Both ends of what the piece and the interval share, by the lever rule.
+                    let above = |v: f32| self.size * (v1 - v0) > t0 * (v1 - v) + t1 * (v - v0);
+                    above(at_least(slow, v0)) || above(at_most(fast, v1))
+                }
+                _ => false,
+            })
     }
 
     /// Whether there was time for the change.
@@ -268,13 +276,6 @@ impl<'a> Torque<'a> {
 
 /// How many watches cover a window, each started an eighth of it after the one before.
 const WATCHES: usize = 8;
-
-/// The extremes of the torque since the watch was started \[N m\].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Watch {
-    low_nm: f32,
-    high_nm: f32,
-}
 
 impl GuardState {
     /// The last output was in force for the time that passed.
@@ -295,30 +296,40 @@ impl GuardState {
             };
         }
         if limits.window.is_some() {
+            let (size, side) = (last.abs(), side(last));
+            if side != self.side {
+                (self.watches, self.side) = ([0.0; WATCHES], side);
+            }
+            // An older watch has seen all that a newer one has.
+            for watch in self.watches.iter_mut().take_while(|watch| **watch > size) {
+                *watch = size;
+            }
             self.since_us = self.since_us.saturating_add(asked.elapsed_us);
             let mut restarts = 0;
             while self.since_us >= plan.stagger_us && restarts < WATCHES {
                 self.since_us -= plan.stagger_us;
                 restarts += 1;
-                if let Some(watch) = self.watches.get_mut(usize::from(self.oldest)) {
-                    *watch = Watch { low_nm: last, high_nm: last };
-                }
-                self.oldest = (self.oldest + 1) % WATCHES as u8;
+                let [a, b, c, d, e, f, g, _] = self.watches;
+                self.watches = [size, a, b, c, d, e, f, g];
             }
             self.since_us = self.since_us.min(plan.stagger_us);
-            for watch in &mut self.watches {
-                watch.low_nm = at_most(last, watch.low_nm);
-                watch.high_nm = at_least(last, watch.high_nm);
-            }
         }
     }
 
     /// The least torque on this side of zero since the oldest watch was started.
     fn start(&self, side: f32) -> f32 {
-        let watch = self.watches.get(usize::from(self.oldest)).copied().unwrap_or_default();
-        let least = if side > 0.0 { watch.low_nm } else { -watch.high_nm };
-        at_least(0.0, least)
+        let [.., oldest] = self.watches;
+        if side == self.side { oldest } else { 0.0 }
     }
+}
+
+fn refuse(violation: Violation, found: bool) -> Result<(), Violation> {
+    if found { Err(violation) } else { Ok(()) }
+}
+
+/// +1 to the right, -1 to the left; zero is neither, and counts as right.
+fn side(torque: f32) -> f32 {
+    if torque < 0.0 { -1.0 } else { 1.0 }
 }
 
 fn known_value(value: Option<f32>) -> Option<f32> {

@@ -6,7 +6,6 @@
 
 use crate::input::Bounds;
 use crate::param::{Leaf, Visit};
-use heapless::Deque;
 
 /// Most control periods by which two sensors' latencies may differ.
 pub const MAX_LATENCY_TICKS: u16 = 31;
@@ -40,16 +39,20 @@ pub struct Aligned {
     pub speed: Bounds,
 }
 
-/// The believed values of the last periods, newest last, without gaps.
+/// The believed values of the last periods, without gaps.
 #[derive(Clone, Debug, Default)]
 pub struct History {
-    recent: Deque<Aligned, CAPACITY>,
+    recent: [Aligned; CAPACITY],
+    /// Where the newest stands; the one before it stands before it, round the end.
+    newest: usize,
+    /// How many periods there are since the last gap, as far as they matter.
+    known: u16,
 }
 
 impl History {
     /// Forgets everything; call it when a period brought no believable frame.
     pub fn clear(&mut self) {
-        self.recent.clear();
+        self.known = 0;
     }
 
     /// Takes in the newest values and gives back one instant's, or `None` while the faster
@@ -59,16 +62,20 @@ impl History {
         if roll_rate_ticks == speed_ticks {
             return Some(newest);
         }
-        if self.recent.is_full() {
-            let _ = self.recent.pop_front();
+        self.newest = (self.newest + 1) % CAPACITY;
+        if let Some(place) = self.recent.get_mut(self.newest) {
+            *place = newest;
         }
-        // There is room: the oldest was dropped above.
-        let _ = self.recent.push_back(newest);
-        let newest = self.recent.len().saturating_sub(1);
-        let back = |ticks: u16| newest.checked_sub(usize::from(ticks)).and_then(|at| self.recent.get(at));
-        let slowest = roll_rate_ticks.max(speed_ticks);
-        let roll_rate = back(slowest.saturating_sub(roll_rate_ticks))?;
-        let speed = back(slowest.saturating_sub(speed_ticks))?;
-        Some(Aligned { roll_rate_rad_s: roll_rate.roll_rate_rad_s, speed: speed.speed })
+        self.known = self.known.saturating_add(1);
+        let apart = roll_rate_ticks.abs_diff(speed_ticks);
+        if self.known <= apart {
+            return None;
+        }
+        let then = self.recent.get((self.newest + CAPACITY - usize::from(apart)) % CAPACITY)?;
+        Some(if roll_rate_ticks > speed_ticks {
+            Aligned { speed: then.speed, ..newest }
+        } else {
+            Aligned { speed: newest.speed, ..*then }
+        })
     }
 }

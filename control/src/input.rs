@@ -1,7 +1,8 @@
 //! Which sensors may be believed, decided before any arithmetic; and between which bounds the speed is.
 
+use crate::calibrate::CalibrationPlan;
 use crate::fault::{Cause, Causes};
-use crate::frame::{Sample, SensorFrame, Wheel};
+use crate::frame::{SensorFrame, Wheel};
 use crate::maths::{at_least, at_most};
 use crate::param::{Leaf, Visit};
 use crate::watch::{Codes, Loss, Sensor, Told, Watch};
@@ -212,10 +213,10 @@ pub struct InputState {
     front_recent: Recent,
     rear_recent: Recent,
     /// The frame before.
-    before: Option<Before>,
+    before: Before,
 }
 
-/// What tells whether the bicycle moves.
+/// What tells whether the bicycle moves; NaN is not known.
 #[derive(Clone, Copy, Debug)]
 struct Before {
     steer_rad: f32,
@@ -224,60 +225,79 @@ struct Before {
     torque_nm: f32,
 }
 
-/// One control period, from a frame in the bicycle's axes and the torque commanded last \[N m\].
+impl Default for Before {
+    fn default() -> Self {
+        let unknown = f32::NAN;
+        Self { steer_rad: unknown, front_wheel_m_s: unknown, rear_wheel_m_s: unknown, torque_nm: unknown }
+    }
+}
+
+/// One control period, from a frame as told and the torque commanded last in the bicycle's sign \[N m\]; what comes out is
+/// in the bicycle's axes, zeros and signs.
 pub fn step(
     config: &InputConfig,
+    calibration: &CalibrationPlan,
     period_s: f32,
     state: &mut InputState,
     frame: &SensorFrame,
     torque_nm: f32,
 ) -> Believed {
     let s = state;
-    let now = Before::of(frame, torque_nm);
-    let was = s.before.replace(now).unwrap_or(now);
+    let gyro_rad_s = calibration.gyro(&frame.gyro_rad_s);
+    let steer_rad = calibration.steer(&frame.steer_rad);
+    let steer_rate_rad_s = calibration.steer_rate(&frame.steer_rate_rad_s);
+    let [front_m_s, rear_m_s] = [frame.front_wheel_m_s.value, frame.rear_wheel_m_s.value];
+    let now = Before { steer_rad, front_wheel_m_s: front_m_s, rear_wheel_m_s: rear_m_s, torque_nm };
+    let was = core::mem::replace(&mut s.before, now);
     // What other sensors say of it; NaN says nothing.
-    let turned = (frame.steer_rad.value - was.steer_rad).abs() > TURNED_RAD;
-    let turns = frame.steer_rate_rad_s.value.abs() > TURNING_RAD_S;
+    let turned = (steer_rad - was.steer_rad).abs() > TURNED_RAD;
+    let turns = steer_rate_rad_s.abs() > TURNING_RAD_S;
     let turning = turned || turns;
-    let swinging = frame.gyro_rad_s.value.iter().any(|rate| rate.abs() > SWINGING_RAD_S);
-    let front_changes = frame.front_wheel_m_s.value.to_bits() != was.front_wheel_m_s.to_bits();
-    let rear_changes = frame.rear_wheel_m_s.value.to_bits() != was.rear_wheel_m_s.to_bits();
+    let swinging = gyro_rad_s.iter().any(|rate| rate.abs() > SWINGING_RAD_S);
+    let front_changes = (front_m_s - was.front_wheel_m_s).abs() > 0.0;
+    let rear_changes = (rear_m_s - was.rear_wheel_m_s).abs() > 0.0;
     let torque_changes = (torque_nm - was.torque_nm).abs() > TORQUE_CHANGE_NM;
 
     let mut causes = Causes::NONE;
     let gyro = {
-        let sample = (&frame.gyro_rad_s.value, frame.gyro_rad_s.age_ticks);
+        let sample = (gyro_rad_s, frame.gyro_rad_s.age_ticks);
         told(&mut causes, s.gyro.step(&config.gyro, &GYRO, period_s, sample, turning))
     };
     let accel = {
-        let sample = (&frame.accel_m_s2.value, frame.accel_m_s2.age_ticks);
+        let sample = (calibration.accel(&frame.accel_m_s2), frame.accel_m_s2.age_ticks);
         told(&mut causes, s.accel.step(&config.accel, &ACCEL, period_s, sample, swinging))
     };
-    let mut one = |watch: &mut Watch<1>, sensor: &Sensor, codes: &Codes, sample: &Sample, moves: bool| {
-        let sample = (&[sample.value], sample.age_ticks);
+    let mut one = |watch: &mut Watch<1>, sensor: &Sensor, codes: &Codes, sample: (f32, u16), moves: bool| {
+        let sample = ([sample.0], sample.1);
         told(&mut causes, watch.step(sensor, codes, period_s, sample, moves))
             .map(|([value], age)| (value, age))
     };
-    let steer = one(&mut s.steer, &config.steer, &STEER, &frame.steer_rad, turns);
-    let steer_rate = one(&mut s.steer_rate, &config.steer_rate, &STEER_RATE, &frame.steer_rate_rad_s, turned);
-    let front =
-        one(&mut s.front_wheel, &config.front_wheel, &FRONT_WHEEL, &frame.front_wheel_m_s, rear_changes);
-    let rear = one(&mut s.rear_wheel, &config.rear_wheel, &REAR_WHEEL, &frame.rear_wheel_m_s, front_changes);
-    let rider =
-        one(&mut s.rider_torque, &config.rider_torque, &RIDER_TORQUE, &frame.rider_torque_nm, turning);
-    let motor = one(&mut s.motor, &config.motor, &MOTOR, &frame.motor_torque_nm, torque_changes);
+    let steer = (steer_rad, frame.steer_rad.age_ticks);
+    let steer = one(&mut s.steer, &config.steer, &STEER, steer, turns);
+    let steer_rate = (steer_rate_rad_s, frame.steer_rate_rad_s.age_ticks);
+    let steer_rate = one(&mut s.steer_rate, &config.steer_rate, &STEER_RATE, steer_rate, turned);
+    let front = (front_m_s, frame.front_wheel_m_s.age_ticks);
+    let front = one(&mut s.front_wheel, &config.front_wheel, &FRONT_WHEEL, front, rear_changes);
+    let front_wheel_m_s = s.front_recent.bounds(config, period_s, front);
+    let rear = (rear_m_s, frame.rear_wheel_m_s.age_ticks);
+    let rear = one(&mut s.rear_wheel, &config.rear_wheel, &REAR_WHEEL, rear, front_changes);
+    let rear_wheel_m_s = s.rear_recent.bounds(config, period_s, rear);
+    let rider = (calibration.rider_torque(&frame.rider_torque_nm), frame.rider_torque_nm.age_ticks);
+    let rider = one(&mut s.rider_torque, &config.rider_torque, &RIDER_TORQUE, rider, turning);
+    let motor = (calibration.motor_report(&frame.motor_torque_nm), frame.motor_torque_nm.age_ticks);
+    let motor = one(&mut s.motor, &config.motor, &MOTOR, motor, torque_changes);
     let path = {
         let values = [frame.heading_error_rad.value, frame.lateral_error_m.value];
         let age = frame.heading_error_rad.age_ticks.max(frame.lateral_error_m.age_ticks);
-        told(&mut causes, s.path.step(&config.path, &PATH, period_s, (&values, age), false))
+        told(&mut causes, s.path.step(&config.path, &PATH, period_s, (values, age), false))
     };
     Believed {
         gyro_rad_s: gyro.map(|(value, _)| value),
         accel_m_s2: accel.map(|(value, _)| value),
         steer_rad: steer.map(|(value, _)| value),
         steer_rate_rad_s: steer_rate.map(|(value, _)| value),
-        front_wheel_m_s: s.front_recent.bounds(config, period_s, front),
-        rear_wheel_m_s: s.rear_recent.bounds(config, period_s, rear),
+        front_wheel_m_s,
+        rear_wheel_m_s,
         rider_torque_nm: rider.map(|(value, _)| value),
         motor_torque_nm: motor.map(|(value, _)| value),
         path: path.map(|(value, _)| value),
@@ -293,17 +313,6 @@ const TURNING_RAD_S: f32 = 1.0;
 const SWINGING_RAD_S: f32 = 0.5;
 /// Change of torque in one period that the drive must show \[N m\].
 const TORQUE_CHANGE_NM: f32 = 0.01;
-
-impl Before {
-    fn of(frame: &SensorFrame, torque_nm: f32) -> Self {
-        Self {
-            steer_rad: frame.steer_rad.value,
-            front_wheel_m_s: frame.front_wheel_m_s.value,
-            rear_wheel_m_s: frame.rear_wheel_m_s.value,
-            torque_nm,
-        }
-    }
-}
 
 /// A watch's value; what is wrong goes to the causes.
 fn told<const N: usize>(causes: &mut Causes, told: Told<N>) -> Option<([f32; N], u16)> {
@@ -327,14 +336,18 @@ impl Recent {
             self.known = 0;
             return None;
         };
-        if age == 0 || self.known == 0 {
-            let [a, b, c, d, e, _] = self.samples;
-            self.samples = [newest, a, b, c, d, e];
-            self.known = self.known.saturating_add(1).min(config.recent_samples);
+        let new = age == 0 || self.known == 0;
+        if new {
+            self.known = self.known.min(config.recent_samples.saturating_sub(1));
         }
         let (mut low, mut high) = (newest, newest);
         for sample in self.samples.iter().take(usize::from(self.known)) {
             (low, high) = (at_most(*sample, low), at_least(*sample, high));
+        }
+        if new {
+            let [a, b, c, d, e, _] = self.samples;
+            self.samples = [newest, a, b, c, d, e];
+            self.known += 1;
         }
         let late = age.saturating_sub(config.drift_after_ticks);
         if late > 0 {

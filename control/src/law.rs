@@ -91,12 +91,14 @@ impl Law {
     ///
     /// One speed given twice gives the bits of [`Law::gain`]. Exact but for the rounding of `gain`.
     pub fn gain_towards_zero(&self, one_m_s: f32, other_m_s: f32) -> f32 {
-        let least = self.gain(one_m_s);
         if one_m_s == other_m_s {
-            return least;
+            return self.gain(one_m_s);
         }
         let (low, high) = if one_m_s < other_m_s { (one_m_s, other_m_s) } else { (other_m_s, one_m_s) };
-        let least = nearer_zero(least, self.gain(other_m_s));
+        if self.falls_to_zero(low, high) {
+            return self.gain(high);
+        }
+        let least = nearer_zero(self.gain(one_m_s), self.gain(other_m_s));
         let inside = |v: f32| low < v && v < high;
         // Every other law has no least magnitude but at the ends of the range and where it changes its sign.
         match self {
@@ -106,6 +108,18 @@ impl Law {
                 kinks.fold(least, |least, (_, gain)| nearer_zero(least, *gain))
             }
             _ => least,
+        }
+    }
+
+    /// Whether the gain only falls from one speed \[m/s\] to a higher one and stays positive, for the laws of which one
+    /// evaluation costs as much as all else here.
+    fn falls_to_zero(&self, low_m_s: f32, high_m_s: f32) -> bool {
+        match self {
+            // The derivative is zero at -1.79 and 9.29 m/s, the gain at 7.5 m/s.
+            Law::H { .. } => low_m_s >= -1.7 && high_m_s <= 7.5,
+            // The derivative is zero at 42.9 m/s, the gain at 40 m/s.
+            Law::G => high_m_s <= 40.0,
+            _ => false,
         }
     }
 

@@ -1,7 +1,7 @@
 //! May torque flow, how much of it, and if not, why not.
 //!
 //! Permission is off at boot, given only on a fresh press of the rider's switch, and taken away by
-//! any listed cause. All causes present are told at once.
+//! any listed cause. A press that is refused is used up. All causes present are told at once.
 
 use crate::fault::{Cause, Causes};
 use crate::input::InputConfig;
@@ -131,6 +131,11 @@ impl Reactions {
             lasting: limp,
         }
     }
+
+    /// What refuses a press of the switch in standby.
+    pub fn refusals(&self) -> Causes {
+        self.disengage.with(self.pause)
+    }
 }
 
 /// What the permission remembers.
@@ -139,17 +144,14 @@ pub struct PermitState {
     mode: Mode,
     /// Control periods in this mode.
     ticks: u16,
-    /// Whether the switch was seen released since boot or the last disengagement.
+    /// Whether the switch was off in the period before: only then a press is a fresh one.
     released: bool,
     authority: f32,
     /// Causes since the fault began.
     latched: Causes,
     /// Disagreements since the rider asked.
     lasting: Causes,
-    fallen: Persistent,
-    parked: Persistent,
-    backwards: Persistent,
-    lifted: Persistent,
+    position: Persistent,
 }
 
 /// The permission of one control period.
@@ -180,18 +182,27 @@ pub struct Asked {
     pub force_m_s2: Option<f32>,
 }
 
-/// Something that counts once it has lasted, and no longer when it has been gone as long.
+/// The causes of the bicycle's position and motion: each counts once it has lasted, and no longer when it has been
+/// gone as long.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Persistent {
-    ticks: u16,
-    holds: bool,
+    holds: Causes,
+    /// For how long each has been other than it counts \[control periods\].
+    ticks: [u16; 4],
 }
 
 impl Persistent {
-    fn step(&mut self, now: bool, persist_ticks: u16) -> bool {
-        self.ticks = if now == self.holds { 0 } else { self.ticks.saturating_add(1) };
-        if self.ticks > persist_ticks {
-            (self.holds, self.ticks) = (now, 0);
+    fn step(&mut self, now: Causes, persist_ticks: u16) -> Causes {
+        // As nearly always.
+        if now == self.holds && self.ticks == [0; 4] {
+            return now;
+        }
+        let causes = [Cause::Fallen, Cause::Lifted, Cause::Backwards, Cause::Parked];
+        for (cause, ticks) in causes.into_iter().zip(&mut self.ticks) {
+            *ticks = if now.has(cause) == self.holds.has(cause) { 0 } else { ticks.saturating_add(1) };
+            if *ticks > persist_ticks {
+                (self.holds, *ticks) = (self.holds.turned(cause), 0);
+            }
         }
         self.holds
     }
@@ -232,19 +243,18 @@ impl PermitState {
 
     /// Everything that stands in the way now.
     fn causes(&mut self, config: &PermitConfig, asked: &Asked) -> Causes {
-        let mut causes = asked.causes;
-        let persist = config.persist_ticks;
         // Comparisons with what is not known are false.
         let beyond =
             |value: Option<f32>, limit: Option<f32>| matches!((value, limit), (Some(v), Some(l)) if v > l);
         let roll = asked.roll_rad.map(f32::abs);
         let backwards = asked.speed_m_s.map(|v| -v);
         let slow = beyond(config.parked_m_s, asked.speed_m_s.map(f32::abs));
-        causes.note(Cause::Fallen, self.fallen.step(beyond(roll, config.fallen_rad), persist));
-        causes.note(Cause::Parked, self.parked.step(slow, persist));
-        causes.note(Cause::Backwards, self.backwards.step(beyond(backwards, config.backwards_m_s), persist));
-        let light = beyond(config.lifted_m_s2, asked.force_m_s2);
-        causes.note(Cause::Lifted, self.lifted.step(light, persist));
+        let mut now = Causes::NONE;
+        now.note(Cause::Fallen, beyond(roll, config.fallen_rad));
+        now.note(Cause::Lifted, beyond(config.lifted_m_s2, asked.force_m_s2));
+        now.note(Cause::Backwards, beyond(backwards, config.backwards_m_s));
+        now.note(Cause::Parked, slow);
+        let mut causes = asked.causes.with(self.position.step(now, config.persist_ticks));
         causes.note(Cause::PolarityUnchecked, config.need_polarity && !asked.polarity_checked);
         causes.note(Cause::SwitchOff, !asked.engage);
         causes.note(Cause::SwitchHeld, asked.engage && !self.released && !self.mode.drives());
@@ -255,32 +265,22 @@ impl PermitState {
 
     /// The mode that follows.
     fn next(&mut self, config: &PermitConfig, reactions: &Reactions, asked: &Asked, causes: Causes) -> Mode {
+        let pressed = asked.engage && self.released;
+        self.released = !asked.engage;
         // At boot sensors are expected to be missing; that is no fault yet.
         let broken = causes.and(reactions.fault);
         let started = !matches!(self.mode, Mode::Off | Mode::Initialise);
         if started && !broken.is_empty() {
             self.latched = if self.mode == Mode::Fault { self.latched.with(broken) } else { broken };
-            self.released = false;
             return Mode::Fault;
         }
-        let before = self.released;
-        self.released |= !asked.engage;
         match self.mode {
             Mode::Off => Mode::Initialise,
             Mode::Initialise if broken.is_empty() => Mode::SelfTest,
             Mode::SelfTest if self.ticks >= config.self_test_ticks => Mode::Standby,
-            Mode::Standby => {
-                let blocked = reactions.disengage.with(reactions.pause);
-                if before && !causes.any(blocked) { engaged(reactions, causes) } else { Mode::Standby }
-            }
-            Mode::Engaged | Mode::Limp => {
-                if causes.any(reactions.disengage) {
-                    self.released = !asked.engage;
-                    Mode::Standby
-                } else {
-                    engaged(reactions, causes)
-                }
-            }
+            Mode::Standby if pressed && !causes.any(reactions.refusals()) => engaged(reactions, causes),
+            Mode::Engaged | Mode::Limp if causes.any(reactions.disengage) => Mode::Standby,
+            Mode::Engaged | Mode::Limp => engaged(reactions, causes),
             Mode::Fault if self.released => Mode::Initialise,
             same => same,
         }
@@ -294,15 +294,16 @@ fn engaged(reactions: &Reactions, causes: Causes) -> Mode {
 
 /// A step of a ramp that takes `ticks` from 0 to 1; none is at once.
 fn towards(from: f32, to: f32, ticks: u16) -> f32 {
+    if from == to {
+        return to;
+    }
     let step = 1.0 / f32::from(ticks.max(1));
-    if from < to {
-        let next = from + step;
-        // So that rounding does not leave it a hair below the whole.
-        if next > to - 0.5 * step { to } else { next }
-    } else if from > to {
-        let next = from - step;
-        if next < to + 0.5 * step { to } else { next }
-    } else {
+    // So that rounding does not leave it a hair from where it goes.
+    if (to - from).abs() < 1.5 * step {
         to
+    } else if from < to {
+        from + step
+    } else {
+        from - step
     }
 }

@@ -11,11 +11,11 @@
 //! gyro's slope stays above 0.75 in them, or 0.3 with the noise of a real bicycle, the motor's above 0. In
 //! small motions a rider may push the other way as quickly as the motor does.
 
-use crate::estimate::{EstimateConfig, Motion};
+use crate::estimate::{EstimateConfig, Motion, Place};
 use crate::fault::{Cause, Causes};
 use crate::input::Believed;
 use crate::param::{Leaf, Visit, optional};
-use crate::slope::{Slope, SlopeConfig, Stretch};
+use crate::slope::{Slope, SlopeConfig, SlopePlan, Stretch};
 
 /// Length of the motor's stretches \[s\].
 const STRETCH_S: f32 = 0.008;
@@ -95,16 +95,42 @@ impl ResponseConfig {
     }
 }
 
-/// How many control periods a stretch of the motor's has.
-pub fn stretch_ticks(rate_hz: f32) -> u16 {
-    // At most 80 at the fastest rate there is.
-    ((STRETCH_S * rate_hz) as u16).max(2)
+/// What follows from the parameters and the rate of calls alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ResponsePlan {
+    config: ResponseConfig,
+    /// Where the IMU sits.
+    imu: Place,
+    wheel_radius_m: f32,
+    /// Control periods of a stretch of the motor's, and of the gyro's.
+    motor_ticks: u16,
+    gyro_ticks: u16,
+    motor: SlopePlan,
+    gyro: SlopePlan,
+}
+
+impl ResponsePlan {
+    /// For `rate_hz` calls a second.
+    pub fn new(config: &ResponseConfig, place: &EstimateConfig, rate_hz: f32) -> Self {
+        // At most 80 at the fastest rate there is.
+        let motor_ticks = ((STRETCH_S * rate_hz) as u16).max(2);
+        let dt_s = 1.0 / rate_hz * f32::from(motor_ticks);
+        Self {
+            config: *config,
+            imu: place.imu,
+            wheel_radius_m: place.wheel_radius_m,
+            motor_ticks,
+            gyro_ticks: GYRO_STRETCHES * motor_ticks,
+            motor: SlopePlan::new(MOTOR, dt_s),
+            gyro: SlopePlan::new(GYRO, f32::from(GYRO_STRETCHES) * dt_s),
+        }
+    }
 }
 
 /// What the judgement remembers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ResponseState {
-    tick: u16,
+    gyro_tick: u16,
     motor_tick: u16,
     gyro: Stretch<5>,
     gyro_slope: Slope,
@@ -125,39 +151,35 @@ impl ResponseState {
 /// One control period: the sensors, the motion estimated from them, and the torque asked for in the period
 /// before, in the bicycle's sign \[N m\].
 pub fn step(
-    config: &ResponseConfig,
-    place: &EstimateConfig,
-    stretch: (u16, f32),
+    plan: &ResponsePlan,
     state: &mut ResponseState,
-    (believed, motion): (&Believed, &Motion),
+    believed: &Believed,
+    motion: &Motion,
     torque_nm: f32,
 ) -> Causes {
-    let (ticks, period_s) = stretch;
-    let dt_s = period_s * f32::from(ticks);
-    let whole = GYRO_STRETCHES * ticks;
-    state.tick = if state.tick < whole { state.tick + 1 } else { 1 };
-    state.motor_tick = if state.motor_tick < ticks { state.motor_tick + 1 } else { 1 };
+    state.gyro_tick = if state.gyro_tick < plan.gyro_ticks { state.gyro_tick + 1 } else { 1 };
+    state.motor_tick = if state.motor_tick < plan.motor_ticks { state.motor_tick + 1 } else { 1 };
     // Each at its own tick, so that no control period has to do both.
-    let gyro_end = state.tick == ticks / 2;
-    let motor_end = state.motor_tick == ticks;
+    let gyro_end = state.gyro_tick == plan.motor_ticks / 2;
+    let motor_end = state.motor_tick == plan.motor_ticks;
     let speed = believed.rear_wheel_m_s.or(believed.front_wheel_m_s);
     let mut causes = Causes::NONE;
 
     match (believed.gyro_rad_s, believed.accel_m_s2, speed) {
-        (Some([wx, wy, wz]), Some([_, force, _]), Some(speed)) if config.gyro => {
+        (Some([wx, wy, wz]), Some([_, force, _]), Some(speed)) if plan.config.gyro => {
             let means = state.gyro.step([wx, wy, wz, force, speed.newest], gyro_end);
             if let Some((now, before)) = means {
-                let slope = state.sideways(place, f32::from(GYRO_STRETCHES) * dt_s, now, before);
+                let slope = state.sideways(plan, now, before);
                 causes.note(Cause::GyroDisagrees, slope.is_some_and(|s| s < GYRO_WRONG));
             }
         }
         _ => (state.gyro, state.gyro_before, state.gyro_slope) = Default::default(),
     }
-    match (config.motor, believed.steer_rad, believed.steer_rate_rad_s, believed.gyro_rad_s, speed) {
+    match (plan.config.motor, believed.steer_rad, believed.steer_rate_rad_s, believed.gyro_rad_s, speed) {
         (Some(model), Some(steer), Some(rate), Some(_), Some(speed)) => {
             let values = [motion.roll_rad, motion.roll_rate_rad_s, steer, rate, speed.newest, torque_nm];
             if let Some((now, before)) = state.motor.step(values, motor_end) {
-                let slope = state.turning(&model, dt_s, now, before);
+                let slope = state.turning(&model, &plan.motor, now, before);
                 causes.note(Cause::WrongResponse, slope.is_some_and(|s| s < MOTOR_WRONG));
             }
         }
@@ -168,38 +190,32 @@ pub fn step(
 
 impl ResponseState {
     /// The gyro's slope at the instant between two stretches.
-    fn sideways(
-        &mut self,
-        place: &EstimateConfig,
-        dt_s: f32,
-        now: [f32; 5],
-        before: [f32; 5],
-    ) -> Option<f32> {
+    fn sideways(&mut self, plan: &ResponsePlan, now: [f32; 5], before: [f32; 5]) -> Option<f32> {
+        let ResponsePlan { imu, wheel_radius_m, gyro, .. } = plan;
         let [wx, wy, wz, force, speed] = between(now, before);
-        let rate = |i: usize| (now.get(i).unwrap_or(&0.0) - before.get(i).unwrap_or(&0.0)) / dt_s;
-        let imu = &place.imu;
-        let rolling = speed - wy * place.wheel_radius_m;
-        let swing = wy * (wx * imu.forward_m + wz * (place.wheel_radius_m - imu.up_m));
+        let rate = |i: usize| (now.get(i).unwrap_or(&0.0) - before.get(i).unwrap_or(&0.0)) / gyro.dt_s;
+        let rolling = speed - wy * wheel_radius_m;
+        let swing = wy * (wx * imu.forward_m + wz * (wheel_radius_m - imu.up_m));
         let seen = force - rolling * wz - imu.forward_m * rate(2) - swing;
         let expected = imu.up_m * rate(0);
         let [expected_before, seen_before] = self.gyro_before.replace([expected, seen])?;
         // Gravity's part is the sum of the rate: what it changes by is the rate.
         let [wx_before, ..] = before;
-        let more = expected - expected_before - G * dt_s * wx_before;
-        self.gyro_slope.step(&GYRO, dt_s, more, seen - seen_before)
+        let more = expected - expected_before - G * gyro.dt_s * wx_before;
+        self.gyro_slope.step(gyro, more, seen - seen_before)
     }
 
     /// The motor's slope at the instant between two stretches.
-    fn turning(&mut self, m: &SteerModel, dt_s: f32, now: [f32; 6], before: [f32; 6]) -> Option<f32> {
+    fn turning(&mut self, m: &SteerModel, plan: &SlopePlan, now: [f32; 6], before: [f32; 6]) -> Option<f32> {
         let [roll, roll_rate, steer, steer_rate, v, torque] = between(now, before);
         let ([.., rate_now, _, _], [.., rate_before, _, _]) = (now, before);
         let explained = v * (m.roll_rate * roll_rate + m.steer_rate * steer_rate)
             + (m.roll + v * v * m.roll_v2) * roll
             + (m.steer + v * v * m.steer_v2) * steer;
-        let seen = (rate_now - rate_before) / dt_s - explained;
+        let seen = (rate_now - rate_before) / plan.dt_s - explained;
         let expected = m.per_nm * torque;
         let [expected_before, seen_before] = self.motor_before.replace([expected, seen])?;
-        self.motor_slope.step(&MOTOR, dt_s, expected - expected_before, seen - seen_before)
+        self.motor_slope.step(plan, expected - expected_before, seen - seen_before)
     }
 }
 

@@ -110,8 +110,8 @@ pub fn step(limits: &Limits, plan: &ShapePlan, state: &mut ShapeState, asked: &A
     }
     if let Some(Window { nm, .. }) = limits.window {
         state.past.hold(last, asked.elapsed_us, plan.part_us);
-        let (low, high) = state.past.extremes();
-        shaping.cut(ActiveLimits::WINDOW, at_most(high, 0.0) - nm, at_least(low, 0.0) + nm);
+        let (left, right) = state.past.least();
+        shaping.cut(ActiveLimits::WINDOW, -left - nm, right + nm);
     }
     if plan.rise_step_nm.is_some() || plan.fall_step_nm.is_some() {
         let (low, high) = reach(plan, last, asked.elapsed_us);
@@ -129,12 +129,21 @@ struct Shaping {
 
 impl Shaping {
     fn cut(&mut self, limit: ActiveLimits, low: f32, high: f32) {
-        self.acted.note(limit, self.torque < low || self.torque > high);
-        self.torque = at_least(low, at_most(high, self.torque));
+        let cut = if self.torque > high {
+            high
+        } else if self.torque < low {
+            low
+        } else {
+            return;
+        };
+        self.acted.note(limit, true);
+        self.torque = cut;
     }
     fn scale(&mut self, limit: ActiveLimits, share: f32) {
-        self.acted.note(limit, share < 1.0 && self.torque != 0.0);
-        self.torque *= share;
+        if share < 1.0 {
+            self.acted.note(limit, self.torque != 0.0);
+            self.torque *= share;
+        }
     }
 }
 
@@ -179,6 +188,9 @@ fn taper_share(taper: &Taper, speed: f32) -> f32 {
 }
 
 fn stop_share(stop: &EndStop, steer: f32) -> f32 {
+    if steer.abs() <= stop.soft_rad {
+        return 1.0;
+    }
     share((stop.hard_rad - steer.abs()) / (stop.hard_rad - stop.soft_rad))
 }
 
@@ -195,16 +207,18 @@ fn against(rider: &RiderMotion, before_us: u32, torque: f32, asked: &Asked) -> u
 }
 
 fn motion_share(rider: &RiderMotion, against_us: u32) -> f32 {
-    let most = (u32::from(rider.after_ms) + u32::from(rider.fade_ms)) * 1000;
-    let left = most.saturating_sub(against_us);
-    share(left as f32 / (f32::from(rider.fade_ms) * 1e3))
+    let (after_us, fade_us) = (1000 * u32::from(rider.after_ms), 1000 * u32::from(rider.fade_ms));
+    let over_us = against_us.saturating_sub(after_us);
+    if over_us == 0 { 1.0 } else { fade_us.saturating_sub(over_us) as f32 / fade_us as f32 }
 }
 
 /// The torques one step reaches from `last`.
 fn reach(plan: &ShapePlan, last: f32, elapsed_us: u32) -> (f32, f32) {
-    let late = elapsed_us >= plan.period_us;
-    let part = if late { 1.0 } else { elapsed_us as f32 / plan.period_us as f32 };
-    let [rise, fall] = [plan.rise_step_nm, plan.fall_step_nm].map(|step| step.map(|s| s * part));
+    let (mut rise, mut fall) = (plan.rise_step_nm, plan.fall_step_nm);
+    if elapsed_us < plan.period_us {
+        let part = elapsed_us as f32 / plan.period_us as f32;
+        (rise, fall) = (rise.map(|step| step * part), fall.map(|step| step * part));
+    }
     let lowest = |from: f32| {
         let rise = rise.unwrap_or(f32::MAX);
         match fall {
@@ -221,10 +235,13 @@ fn reach(plan: &ShapePlan, last: f32, elapsed_us: u32) -> (f32, f32) {
 /// Parts of the window: one that is being filled, and as many full ones as cover it.
 const PARTS: usize = 9;
 
-/// The torques of the recent past: their extremes in each part of the window.
+/// The torques of the recent past.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Past {
-    parts: [(f32, f32); PARTS],
+    /// The least size of the torque in each part of the window \[N m\]; zero where it was not on the side where it is
+    /// now, for then it has been zero within the window.
+    parts: [f32; PARTS],
+    right: bool,
     newest: u8,
     filled_us: u32,
 }
@@ -232,6 +249,10 @@ struct Past {
 impl Past {
     /// `torque` was in force for the time that passed.
     fn hold(&mut self, torque: f32, elapsed_us: u32, part_us: u32) {
+        let (size, right) = (torque.abs(), torque > 0.0);
+        if right != self.right {
+            (self.parts, self.right) = ([0.0; PARTS], right);
+        }
         self.filled_us = self.filled_us.saturating_add(elapsed_us);
         for _ in 0..PARTS {
             if self.filled_us < part_us {
@@ -240,22 +261,21 @@ impl Past {
             self.filled_us -= part_us;
             self.newest = (self.newest + 1) % PARTS as u8;
             if let Some(part) = self.parts.get_mut(usize::from(self.newest)) {
-                *part = (torque, torque);
+                *part = size;
             }
         }
         if self.filled_us >= part_us {
             self.filled_us = 0;
         }
-        if let Some((low, high)) = self.parts.get_mut(usize::from(self.newest)) {
-            *low = at_most(*low, torque);
-            *high = at_least(*high, torque);
+        if let Some(part) = self.parts.get_mut(usize::from(self.newest)) {
+            *part = at_most(size, *part);
         }
     }
 
-    /// Lowest and highest torque in force at any time within the window.
-    fn extremes(&self) -> (f32, f32) {
-        let both = |(l, h): (f32, f32), part: &(f32, f32)| (at_most(l, part.0), at_least(h, part.1));
-        self.parts.iter().fold((f32::MAX, f32::MIN), both)
+    /// How far to the left, and to the right, the torque was at the least within the window \[N m\].
+    fn least(&self) -> (f32, f32) {
+        let least = self.parts.iter().fold(f32::MAX, |least, part| at_most(*part, least));
+        if self.right { (0.0, least) } else { (least, 0.0) }
     }
 }
 

@@ -20,6 +20,25 @@ pub struct SlopeConfig {
     pub enough: f32,
 }
 
+/// What follows from it for steps of one length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlopePlan {
+    config: SlopeConfig,
+    /// Length of a step \[s\].
+    pub dt_s: f32,
+    /// What a step leaves of what is slow, and of the past.
+    keep: f32,
+    forget: f32,
+}
+
+impl SlopePlan {
+    /// For steps of `dt_s`.
+    pub fn new(config: SlopeConfig, dt_s: f32) -> Self {
+        let (keep, forget) = (1.0 / (1.0 + dt_s / config.slow_s), 1.0 / (1.0 + dt_s / config.forget_s));
+        Self { config, dt_s, keep, forget }
+    }
+}
+
 /// What is remembered.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slope {
@@ -30,16 +49,15 @@ pub struct Slope {
 }
 
 impl Slope {
-    /// Takes in by how much both have changed in `dt_s`; the slope, if enough has happened.
-    pub fn step(&mut self, config: &SlopeConfig, dt_s: f32, expected: f32, seen: f32) -> Option<f32> {
-        let keep = 1.0 / (1.0 + dt_s / config.slow_s);
+    /// Takes in by how much both have changed in a step; the slope, if enough has happened.
+    pub fn step(&mut self, plan: &SlopePlan, expected: f32, seen: f32) -> Option<f32> {
+        let SlopePlan { config, dt_s, keep, forget } = *plan;
         self.expected = keep * (self.expected + expected);
         self.seen = keep * (self.seen + seen);
-        let forget = 1.0 / (1.0 + dt_s / config.forget_s);
         let y = bounded(self.seen, config.most);
         self.square = forget * (self.square + dt_s * self.expected * self.expected);
         self.product = forget * (self.product + dt_s * self.expected * y);
-        self.told(config)
+        self.told(&config)
     }
 
     /// The slope, if enough has happened.

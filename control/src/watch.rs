@@ -122,6 +122,9 @@ pub struct Watch<const N: usize> {
     still: u16,
     /// Whether it is believed.
     trusted: bool,
+    /// Change up to which a fresh sample is as good as the last one; -1 unless that was fresh, believed, and not one of
+    /// several that stood still.
+    near: f32,
     /// Why the newest sample was not good.
     doubt: Option<Cause>,
 }
@@ -137,6 +140,7 @@ impl<const N: usize> Default for Watch<N> {
             moved: 0,
             still: 0,
             trusted: false,
+            near: -1.0,
             doubt: None,
         }
     }
@@ -160,13 +164,37 @@ impl<const N: usize> Watch<N> {
         sensor: &Sensor,
         codes: &Codes,
         period_s: f32,
-        sample: (&[f32; N], u16),
+        sample: ([f32; N], u16),
         moves: bool,
     ) -> Told<N> {
+        let (value, age) = sample;
+        // As nearly always: one good sample after the other.
+        if age == 0 && inside(sensor, &value) && self.near(&value) && !(moves && value == self.value) {
+            self.value = value;
+            return Told { value: Some((value, 0)), lost: None };
+        }
         if !sensor.fitted {
             return Told { value: None, lost: None };
         }
-        let (value, age) = sample;
+        self.judge(sensor, codes, period_s, &{ value }, age, moves);
+        if self.trusted {
+            Told { value: Some((self.value, self.age)), lost: None }
+        } else {
+            Told { value: None, lost: Some(self.doubt.unwrap_or(codes.lost)) }
+        }
+    }
+
+    /// The long way.
+    #[inline(never)]
+    fn judge(
+        &mut self,
+        sensor: &Sensor,
+        codes: &Codes,
+        period_s: f32,
+        value: &[f32; N],
+        age: u16,
+        moves: bool,
+    ) {
         self.age = self.age.saturating_add(1);
         self.moved = self.moved.saturating_add(u16::from(moves));
         if age != self.told_age.saturating_add(1) && age != MISSING {
@@ -185,33 +213,23 @@ impl<const N: usize> Watch<N> {
         } else if self.good >= sensor.qualify_samples {
             self.trusted = true;
         }
-        if self.trusted {
-            Told { value: Some((self.value, self.age)), lost: None }
-        } else {
-            Told { value: None, lost: Some(self.doubt.unwrap_or(codes.lost)) }
-        }
+        let steady = self.trusted && self.age == 0 && self.still == 0;
+        self.near = if steady { most_change(sensor, period_s, 1.0) } else { -1.0 };
     }
 
     /// A new sample.
-    #[inline(always)]
     fn take(&mut self, sensor: &Sensor, codes: &Codes, period_s: f32, value: &[f32; N], age: u16) {
-        // Written so that NaN, which compares false, is refused.
-        let inside = value.iter().all(|x| x.abs() <= sensor.max);
-        if !inside {
+        if !inside(sensor, value) {
             self.doubt = Some(codes.range);
             self.good = 0;
             return;
         }
-        let change = |(a, b): (&f32, &f32)| (a - b).abs();
         // Samples that were refused give a jump no more time.
-        let between = self.gap.saturating_add(1);
-        let jumps = match sensor.slope_per_s {
-            Some(slope) if self.age != MISSING => {
-                let most = sensor.step + slope * period_s * f32::from(between);
-                value.iter().zip(&self.value).map(change).any(|moved| moved > most)
-            }
-            _ => false,
-        };
+        let between = f32::from(self.gap.saturating_add(1));
+        let most = most_change(sensor, period_s, between);
+        let change = |(a, b): (&f32, &f32)| (a - b).abs();
+        let jumps =
+            self.age != MISSING && value.iter().zip(&self.value).map(change).any(|moved| moved > most);
         if jumps && self.trusted {
             self.doubt = Some(codes.jump);
             self.good = 0;
@@ -225,11 +243,33 @@ impl<const N: usize> Watch<N> {
             self.doubt = None;
             self.good = self.good.saturating_add(1);
         }
-        let same = value.iter().zip(&self.value).all(|(a, b)| a.to_bits() == b.to_bits());
-        self.still = if same { self.still.saturating_add(self.moved) } else { 0 };
+        self.still = if self.repeats(value) { self.still.saturating_add(self.moved) } else { 0 };
         self.moved = 0;
         self.gap = 0;
         self.value = *value;
         self.age = age;
     }
+
+    /// Whether no axis is further from the last good sample than [`Watch::near`].
+    #[inline(always)]
+    fn near(&self, value: &[f32; N]) -> bool {
+        value.iter().zip(&self.value).all(|(a, b)| (a - b).abs() <= self.near)
+    }
+
+    /// Whether a sample is the last good one in every bit.
+    #[inline(always)]
+    fn repeats(&self, value: &[f32; N]) -> bool {
+        value.iter().zip(&self.value).all(|(a, b)| a.to_bits() == b.to_bits())
+    }
+}
+
+/// The largest believable change in so many control periods; infinite where any is.
+fn most_change(sensor: &Sensor, period_s: f32, periods: f32) -> f32 {
+    sensor.slope_per_s.map_or(f32::INFINITY, |slope| sensor.step + slope * period_s * periods)
+}
+
+/// Whether a sample is in range; written so that NaN, which compares false, is not.
+#[inline(always)]
+fn inside<const N: usize>(sensor: &Sensor, value: &[f32; N]) -> bool {
+    value.iter().all(|x| x.abs() <= sensor.max)
 }

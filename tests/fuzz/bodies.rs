@@ -5,10 +5,8 @@
 
 use control::limits::Limits;
 use control::wire::{CONFIG_BYTES, FRAME_BYTES, decode_config, decode_frame, encode_config, encode_frame};
-use control::{Config, Law, ParamError, Plan, Sample, SensorFrame, State, Triple, step};
+use control::{Command, Config, Law, ParamError, Plan, Sample, SensorFrame, State, Triple, step};
 
-/// When the switch is pressed \[control periods\]: after the product's self-test.
-const PRESSED: u32 = 400;
 /// Control periods that a configuration is tried for, the roll rate swinging, once its controller drives.
 const TRIED: u32 = 200;
 /// Longest way to full authority that is waited for \[control periods\].
@@ -40,11 +38,11 @@ pub(crate) fn configuration(bytes: &[u8]) {
     };
     assert_eq!(encode_config(plan.config()), again);
     let period_us = (1e6 / plan.config().rate_hz) as u32;
-    let mut state = State::default();
-    for tick in 0..PRESSED + plan.ticks_to_engage().min(PATIENCE) + TRIED {
-        let mut frame = straight(tick, period_us, state.torque_nm());
+    let (mut state, mut pressed) = (State::default(), false);
+    for tick in 0..plan.ticks_to_engage().min(PATIENCE) + TRIED {
+        let mut frame = straight(tick, period_us, state.torque_nm(), pressed);
         frame.gyro_rad_s.value[0] = 0.5 * (0.02 * tick as f32).sin();
-        checked(&plan, &mut state, &frame);
+        pressed |= plan.ready(&checked(&plan, &mut state, &frame));
     }
 }
 
@@ -54,10 +52,10 @@ pub(crate) fn ride(bytes: &[u8]) {
     let Some((choice, frames)) = bytes.split_first() else { return };
     let config = if choice % 2 == 0 { product() } else { Config::thesis(Law::H { cut: false }) };
     let plan = config.plan().expect("in range");
-    let mut state = State::default();
+    let (mut state, mut pressed) = (State::default(), false);
     // From full authority on, so that the frames decide.
-    for tick in 0..PRESSED + plan.ticks_to_engage() {
-        checked(&plan, &mut state, &straight(tick, 1000, 0.0));
+    for tick in 0..plan.ticks_to_engage() {
+        pressed |= plan.ready(&checked(&plan, &mut state, &straight(tick, 1000, 0.0, pressed)));
     }
     assert_eq!(state.authority(), 1.0);
     for record in frames.as_chunks().0 {
@@ -88,8 +86,8 @@ fn product() -> Config {
     config
 }
 
-/// Riding straight at 4 m/s, every sensor fresh, the motor as asked, the switch pressed after a while.
-fn straight(tick: u32, period_us: u32, torque_nm: f32) -> SensorFrame {
+/// Riding straight at 4 m/s, every sensor fresh, the motor as asked.
+fn straight(tick: u32, period_us: u32, torque_nm: f32, engage: bool) -> SensorFrame {
     let none = Sample::fresh(0.0);
     SensorFrame {
         now_us: tick.wrapping_mul(period_us),
@@ -103,7 +101,7 @@ fn straight(tick: u32, period_us: u32, torque_nm: f32) -> SensorFrame {
         motor_torque_nm: Sample::fresh(torque_nm),
         heading_error_rad: none,
         lateral_error_m: none,
-        engage: tick >= PRESSED,
+        engage,
     }
 }
 
@@ -113,9 +111,9 @@ fn refused(why: &ParamError) {
     assert!(!(value >= leaf.min && value <= leaf.max), "{why}");
 }
 
-/// One step, and what holds for every one: a finite torque that is zero or inside the largest torque
+/// One step and its command, and what holds for every one: a finite torque that is zero or inside the largest torque
 /// and, from the one before, inside both rates.
-fn checked(plan: &Plan, state: &mut State, frame: &SensorFrame) {
+fn checked(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let before = state.torque_nm();
     let command = step(plan, state, frame);
     let (torque, authority) = (command.torque_nm, state.authority());
@@ -131,4 +129,5 @@ fn checked(plan: &Plan, state: &mut State, frame: &SensorFrame) {
         let room = f64::from(f32::EPSILON) * f64::from(before.abs() + torque.abs());
         assert!(torque == 0.0 || change <= most * (1.0 + 1e-6) + room, "{change} {command:?}");
     }
+    command
 }

@@ -171,6 +171,7 @@ pub fn fresh(ride: &[SensorFrame]) -> Vec<SensorFrame> {
 
 /// Pseudo-random frames: stretches of plausible, fresh ones, so that the law runs, and between
 /// them anything: every bit pattern, the edges of the ranges, late and missing samples.
+/// The switch is pressed anew five times a second, for a press that was refused is used up.
 pub fn random_frames(seed: u64, frames: usize) -> Vec<SensorFrame> {
     let mut random = Random(seed);
     let (mut calm, mut switch, mut now_us) = (0, 0, 0_u32);
@@ -178,7 +179,7 @@ pub fn random_frames(seed: u64, frames: usize) -> Vec<SensorFrame> {
     (0..frames)
         .map(|_| {
             calm = if calm == 0 { random.below(2000) } else { calm - 1 };
-            switch = if switch == 0 { random.below(4000) } else { switch - 1 };
+            switch = if switch == 0 { random.below(400) } else { switch - 1 };
             let wild = calm < 40 && random.below(3) == 0;
             now_us = now_us.wrapping_add(if wild { random.next() as u32 } else { 1000 });
             for (walk, reach) in walks.iter_mut().zip(REACH) {
@@ -202,7 +203,7 @@ pub fn random_frames(seed: u64, frames: usize) -> Vec<SensorFrame> {
                 motor_torque_nm: motor,
                 heading_error_rad: heading,
                 lateral_error_m: lateral,
-                engage: switch > 40,
+                engage: switch > 3,
             }
         })
         .collect()

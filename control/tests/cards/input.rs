@@ -1,9 +1,16 @@
 //! Flight cards: the declared sensors, each believed, doubted and told by its own codes; the speed's bounds.
 
-use control::input::{Believed, Bounds, InputState, RECENT, step};
-use control::{Cause, Causes, Config, InputConfig, Loss, Sample, Sensor, SensorFrame, Triple, Wheel};
+use control::input::{self, Believed, Bounds, InputState, RECENT};
+use control::{
+    Calibration, Cause, Causes, Config, InputConfig, Loss, Sample, Sensor, SensorFrame, Triple, Wheel,
+};
 
 const PERIOD_S: f32 = 1e-3;
+
+/// A step at 1 kHz on a bicycle on which all is as drawn.
+fn step(config: &InputConfig, state: &mut InputState, frame: &SensorFrame, torque_nm: f32) -> Believed {
+    input::step(config, &Calibration::default().plan(), PERIOD_S, state, frame, torque_nm)
+}
 
 /// A sensor: where it is declared, where its sample stands, what is believed of it, and its four codes.
 struct Case {
@@ -120,7 +127,7 @@ fn each_sensor_has_its_place_and_its_codes() {
             let mut at = |value, age| {
                 let mut frame = SensorFrame::missing();
                 (case.set)(&mut frame, value, age);
-                step(&config, PERIOD_S, &mut state, &frame, 0.0)
+                step(&config, &mut state, &frame, 0.0)
             };
             for value in [2.0, 2.5] {
                 let b = at(value, 0);
@@ -212,7 +219,7 @@ fn stuck_is_told_by_what_moves() {
                     // From 1 on, for a small difference of large numbers is not what it should be.
                     let torque = hint(&mut frame, 1.0 + f32::from(k));
                     (case.set)(&mut frame, 0.25, 0);
-                    step(&config, PERIOD_S, &mut state, &frame, torque).causes
+                    step(&config, &mut state, &frame, torque).causes
                 })
                 .collect();
             let stuck = told.iter().any(|causes| causes.has(case.codes[3]));
@@ -233,7 +240,7 @@ fn the_path_is_as_old_as_its_older_error() {
             ages[late] = age;
             let [heading_error_rad, lateral_error_m] = ages.map(|age_ticks| Sample { value: 0.5, age_ticks });
             let frame = SensorFrame { heading_error_rad, lateral_error_m, ..SensorFrame::missing() };
-            step(&config, PERIOD_S, &mut state, &frame, 0.0)
+            step(&config, &mut state, &frame, 0.0)
         };
         for age in 0..=2 {
             assert_eq!(at(age).path, Some([0.5; 2]), "{late} {age}");
@@ -265,7 +272,7 @@ fn the_speed_lies_between_the_recent_samples() {
     let mut state = InputState::default();
     let mut at = |front, rear| {
         let frame = SensorFrame { front_wheel_m_s: front, rear_wheel_m_s: rear, ..SensorFrame::missing() };
-        let told = step(&config, PERIOD_S, &mut state, &frame, 0.0);
+        let told = step(&config, &mut state, &frame, 0.0);
         (told.front_wheel_m_s, told.rear_wheel_m_s)
     };
     let steady = Some(Bounds { low: 7.0, newest: 7.0, high: 7.0 });
@@ -304,7 +311,7 @@ fn a_late_first_sample_has_bounds() {
     let mut state = InputState::default();
     let frame =
         SensorFrame { front_wheel_m_s: Sample { value: 5.0, age_ticks: 1 }, ..SensorFrame::missing() };
-    let told = step(&config, PERIOD_S, &mut state, &frame, 0.0);
+    let told = step(&config, &mut state, &frame, 0.0);
     assert_eq!(told.front_wheel_m_s, Some(Bounds { low: 5.0, newest: 5.0, high: 5.0 }));
 }
 
@@ -318,7 +325,7 @@ fn the_bounds_span_as_many_samples_as_declared() {
         for k in 0_u16..20 {
             let speed = f32::from(k);
             let frame = SensorFrame { front_wheel_m_s: Sample::fresh(speed), ..SensorFrame::missing() };
-            let told = step(&config, PERIOD_S, &mut state, &frame, 0.0).front_wheel_m_s.expect("fresh");
+            let told = step(&config, &mut state, &frame, 0.0).front_wheel_m_s.expect("fresh");
             assert_eq!((told.low, told.high), (f32::from(k.saturating_sub(count - 1)), speed), "{count}");
         }
     }

@@ -102,6 +102,41 @@ fn a_switch_held_at_boot_does_not_engage() {
     assert_eq!(bench.step(&PRESSED).mode, Mode::Engaged);
 }
 
+/// Situation: something refuses in standby, or the self-test is not over. Action: press, hold; then what refused is gone.
+/// Must hold: the press is used up and told as a held switch, however long it is held; released and pressed again it engages.
+#[test]
+fn a_refused_press_is_used_up() {
+    let refusals = [
+        (Asked { polarity_checked: false, ..WELL }, Cause::PolarityUnchecked),
+        (Asked { causes: Causes::of(Cause::PolarityWrong), ..WELL }, Cause::PolarityWrong),
+        (Asked { roll_rad: Some(1.2), ..WELL }, Cause::Fallen),
+        (Asked { force_m_s2: Some(1.0), ..WELL }, Cause::Lifted),
+        (Asked { speed_m_s: Some(0.1), ..WELL }, Cause::Parked),
+        (Asked { speed_m_s: Some(-1.0), ..WELL }, Cause::Backwards),
+        (WELL, Cause::SelfTest),
+    ];
+    for (asked, cause) in refusals {
+        let mut bench = Bench::new();
+        bench.hold(&asked, if cause == Cause::SelfTest { 5 } else { 30 });
+        let p = bench.step(&Asked { engage: true, ..asked });
+        assert!(!p.mode.drives() && p.causes.has(cause), "{cause:?}: {p:?}");
+        for _ in 0..200 {
+            let p = bench.step(&PRESSED);
+            assert!(
+                !p.mode.drives() && p.authority == 0.0 && p.causes.has(Cause::SwitchHeld),
+                "{cause:?}: {p:?}"
+            );
+        }
+        assert_eq!(
+            bench.step(&PRESSED).causes,
+            Causes::of(Cause::SwitchHeld),
+            "{cause:?}: nothing else is left"
+        );
+        assert_eq!(bench.step(&WELL).mode, Mode::Standby, "{cause:?}");
+        assert_eq!(bench.step(&PRESSED).mode, Mode::Engaged, "{cause:?}");
+    }
+}
+
 /// Situation: several things stand in the way at once. Action: press. Must hold: refused, and all are told at once.
 #[test]
 fn every_refusal_is_listed() {

@@ -1,7 +1,9 @@
 //! Flight cards: the polarity check, and what it lets through.
 
 use control::polarity::Move;
-use control::{Cause, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State, Triple, step};
+use control::{
+    Cause, Causes, Command, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State, Triple, step,
+};
 
 /// What somebody does with the bicycle in one control period.
 #[derive(Clone, Copy, Default)]
@@ -97,17 +99,18 @@ fn a_sound_bicycle_passes() {
     assert!((0.95..1.05).contains(&(shown / expected)), "{shown} against {expected}");
 }
 
-/// Situation: passed, at rest. Action: press the switch without, then with the check. Must hold: refused with the cause before
-/// it; after it the press engages.
+/// Situation: the moves, large enough to pass and too small; then somebody rides. Action: press the switch.
+/// Must hold: without the check refused with the cause; with it the press engages.
 #[test]
 fn only_who_passed_engages() {
     let plan = flashed();
     for (size, drives) in [(0.5, true), (0.05, false)] {
         let mut state = State::default();
         let passing = frames(&moves(size), false, |_| ());
-        let riding = frames(&[Hands { speed_m_s: 2.0, ..Hands::default() }; 1500], true, |_| ());
+        let on = [Hands { speed_m_s: 2.0, ..Hands::default() }; 1500];
+        let (riding, pressed) = (frames(&on, false, |_| ()), frames(&on, true, |_| ()));
         let mut last = None;
-        for (i, frame) in passing.iter().chain(&riding).enumerate() {
+        for (i, frame) in passing.iter().chain(&riding).chain(&pressed).enumerate() {
             let frame = SensorFrame { now_us: 1000 * i as u32, ..*frame };
             last = Some(step(&plan, &mut state, &frame));
         }
@@ -116,6 +119,35 @@ fn only_who_passed_engages() {
         assert_eq!(last.causes.has(Cause::PolarityUnchecked), !drives);
         assert!(drives || last.mode == Mode::Standby);
     }
+}
+
+/// Situation: from boot through the moves to a ride, the switch off. Action: press it in any period.
+/// Must hold: it engages where the controller said that it was ready, and nowhere else but where a cause comes or goes
+/// in that very period; not before the push, and throughout the ride once it counts as one.
+#[test]
+fn ready_says_when_a_press_engages() {
+    let plan = flashed();
+    let on = [Hands { speed_m_s: 2.0, ..Hands::default() }; 1000];
+    let ride: Vec<SensorFrame> =
+        frames(&moves(0.5), false, |_| ()).into_iter().chain(frames(&on, false, |_| ())).collect();
+    let switch = Causes::all(&[Cause::SwitchOff, Cause::SwitchHeld]);
+    let others = |causes: Causes| Causes(causes.0 & !switch.0);
+    let (mut state, mut ready) = (State::default(), Vec::new());
+    let mut before: Option<Command> = None;
+    for (i, frame) in ride.iter().enumerate() {
+        let frame = SensorFrame { now_us: 1000 * i as u32, ..*frame };
+        let pressed = step(&plan, &mut state.clone(), &SensorFrame { engage: true, ..frame });
+        if let Some(before) = before.filter(|b| others(b.causes) == others(pressed.causes)) {
+            assert_eq!(pressed.mode.drives(), plan.ready(&before), "{i}: {before:?}");
+        }
+        let command = step(&plan, &mut state, &frame);
+        ready.push(plan.ready(&command));
+        before = Some(command);
+    }
+    let (moving, riding) = ready.split_at(ride.len() - 1000);
+    // The push, which ends the check, takes the last 2000 periods of the moves.
+    assert!(!moving[..moving.len() - 2000].contains(&true));
+    assert!(riding[500..].iter().all(|ready| *ready));
 }
 
 /// Situation: somebody rides, leaning and steering as in the check. Action: ride on. Must hold: nothing is passed, nothing

@@ -2,7 +2,7 @@
 
 use control::history::{Latency, MAX_LATENCY_TICKS};
 use control::{
-    ActiveLimits, Cause, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State, Taper, Triple, step,
+    ActiveLimits, Cause, Config, Law, LawTable, Plan, Sample, SensorFrame, State, Taper, Triple, step,
 };
 use proptest::prelude::*;
 
@@ -122,13 +122,13 @@ fn mirrored(frame: &SensorFrame) -> SensorFrame {
 fn engaged(plan: &Plan, speed: f32) -> State {
     let mut state = State::default();
     let rest = fresh(0.0, speed);
-    let mut standby = false;
+    let mut pressed = false;
     let ticks = plan.ticks_to_engage();
     for tick in 0..ticks {
         // So that the last one is at time zero.
         let now_us = (tick + 1).wrapping_sub(ticks).wrapping_mul(period_us(plan));
-        let command = step(plan, &mut state, &SensorFrame { now_us, engage: standby, ..rest });
-        standby |= command.mode == Mode::Standby;
+        let command = step(plan, &mut state, &SensorFrame { now_us, engage: pressed, ..rest });
+        pressed |= plan.ready(&command);
     }
     assert_eq!(state.authority(), 1.0);
     state

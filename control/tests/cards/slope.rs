@@ -1,9 +1,13 @@
 //! Flight cards: the slope of what is seen over what is expected.
 
-use control::slope::{Slope, SlopeConfig, Stretch};
+use control::slope::{Slope, SlopeConfig, SlopePlan, Stretch};
 
 const CONFIG: SlopeConfig = SlopeConfig { slow_s: 0.3, forget_s: 0.5, most: 20.0, enough: 0.01 };
 const DT_S: f32 = 0.008;
+
+fn plan() -> SlopePlan {
+    SlopePlan::new(CONFIG, DT_S)
+}
 
 /// Changes of a swing of 1 Hz, and of what is seen of it with noise.
 fn told(part: f32, noise: f32, steps: usize) -> Vec<Option<f32>> {
@@ -16,7 +20,7 @@ fn told(part: f32, noise: f32, steps: usize) -> Vec<Option<f32>> {
             let noisy = if i / 2 % 2 == 0 { noise } else { -noise };
             let (dx, dn) = (next - x, noisy - n);
             (x, n) = (next, noisy);
-            slope.step(&CONFIG, DT_S, dx, part * dx + dn)
+            slope.step(&plan(), dx, part * dx + dn)
         })
         .collect()
 }
@@ -37,7 +41,7 @@ fn the_slope_is_the_part_that_happens() {
 #[test]
 fn too_little_is_not_judged() {
     let mut slope = Slope::default();
-    assert!((0..1000).all(|_| slope.step(&CONFIG, DT_S, 0.0, 1.0).is_none()));
+    assert!((0..1000).all(|_| slope.step(&plan(), 0.0, 1.0).is_none()));
     let first = told(1.0, 0.0, 250).iter().position(Option::is_some).expect("in the end");
     assert!((5..60).contains(&first), "{first}");
 }
@@ -52,7 +56,7 @@ fn a_reversal_shows_soon() {
         let swing = |i: i32| (core::f32::consts::TAU * DT_S * i as f32).sin();
         let dx = swing(i) - swing(i - 1);
         let sign = if i > 250 { -1.0 } else { 1.0 };
-        last = slope.step(&CONFIG, DT_S, dx, sign * dx).unwrap_or(0.0);
+        last = slope.step(&plan(), dx, sign * dx).unwrap_or(0.0);
         if i > 250 && last < 0.0 && below.is_none() {
             below = Some(i - 250);
         }

@@ -28,7 +28,7 @@ struct Bench(Watch<1>);
 
 impl Bench {
     fn step(&mut self, value: f32, age: u16, moves: bool) -> Told<1> {
-        self.0.step(&SENSOR, &CODES, 1e-3, (&[value], age), moves)
+        self.0.step(&SENSOR, &CODES, 1e-3, ([value], age), moves)
     }
 
     /// A fresh sample: what is believed of it, or why it is not.
@@ -52,7 +52,7 @@ impl Bench {
 fn what_is_not_there_is_not_missed() {
     let mut watch = Watch::<1>::default();
     for k in 0..100 {
-        let told = watch.step(&Sensor::default(), &CODES, 1e-3, (&[f32::NAN], k), true);
+        let told = watch.step(&Sensor::default(), &CODES, 1e-3, ([f32::NAN], k), true);
         assert_eq!(told, Told { value: None, lost: None });
     }
 }
@@ -95,10 +95,10 @@ fn a_jump_does_not_become_true_by_waiting() {
     let stepping = Sensor { step: 0.2, ..SENSOR };
     let mut watch = bench.0;
     watch = (0..3).fold(watch, |mut watch, _| {
-        watch.step(&stepping, &CODES, 1e-3, (&[1.25], 0), false);
+        watch.step(&stepping, &CODES, 1e-3, ([1.25], 0), false);
         watch
     });
-    let told = watch.step(&stepping, &CODES, 1e-3, (&[1.54], 0), false);
+    let told = watch.step(&stepping, &CODES, 1e-3, ([1.54], 0), false);
     assert_eq!(told.value, Some(([1.54], 0)), "a step of 0.2 and a period's slope");
 }
 
@@ -135,7 +135,7 @@ fn as_far_as_allowed_is_no_jump() {
     // So that the eighth is one to the bit.
     let period_s = 1.0 / 1024.0;
     let mut watch = Watch::<1>::default();
-    let mut fresh = |value| watch.step(&sensor, &CODES, period_s, (&[value], 0), false).value;
+    let mut fresh = |value| watch.step(&sensor, &CODES, period_s, ([value], 0), false).value;
     for value in [1.0, 1.125, 1.25, 1.125, 1.0] {
         assert_eq!(fresh(value), Some(([value], 0)));
     }

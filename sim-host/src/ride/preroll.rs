@@ -15,8 +15,8 @@ pub(super) struct Ready {
 }
 
 /// Rides steadily by what the sensors tell, given the control periods since boot, the switch and the torque commanded
-/// last \[N m\], until
-/// the assist has its whole authority; `seen` gets every frame and command. A controller that does not
+/// last \[N m\], until the assist has its whole authority; `seen` gets every frame and command. The switch is
+/// pressed once nothing else is missing, and let go if the press is refused. A controller that does not
 /// engage is given up after ten times the time it should take, and rides on without.
 pub(super) fn preroll(
     plan: &Plan,
@@ -32,7 +32,7 @@ pub(super) fn preroll(
         ticks += 1;
         torque_nm = f64::from(command.torque_nm);
         seen(&told, &command);
-        pressed |= command.mode == control::Mode::Standby;
+        pressed = plan.ready(&command) || command.mode.drives();
         if authority == 1.0 || processor.failed() {
             break;
         }
