@@ -21,6 +21,7 @@ Examples:
 
 /// Options of `pil`.
 #[derive(clap::Args)]
+#[group(skip)]
 #[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(super) struct Args {
     #[command(subcommand)]

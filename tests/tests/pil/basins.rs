@@ -9,7 +9,7 @@ use tests::basins::{H, assisted, search};
 use tests::fake_board::FakeBoard;
 
 /// A basin on boards that are made as they are needed.
-pub fn on_boards<B: Lockstep + Send>(
+pub(crate) fn on_boards<B: Lockstep + Send>(
     conditions: &Conditions,
     search: &Search,
     board: impl Fn() -> Result<B, BoardError> + Sync,
@@ -26,7 +26,7 @@ pub fn on_boards<B: Lockstep + Send>(
 }
 
 /// Law h, two seconds, three speeds.
-pub fn coarse() -> (Conditions, Search) {
+pub(crate) fn coarse() -> (Conditions, Search) {
     let conditions = Conditions { time_limit_s: 2.0, ..assisted(H) };
     (conditions, Search { scan_step: 2.0, tolerance: 0.2, ..search(&[2.0, 4.0, 7.0], 16.0) })
 }

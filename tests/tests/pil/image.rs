@@ -15,7 +15,7 @@ use tests::tape::Taped;
 use xtask::image;
 
 /// The image with words as its arguments, just started.
-pub fn started(words: &[&str]) -> Qemu {
+pub(crate) fn started(words: &[&str]) -> Qemu {
     Qemu::start(&image::path("qemu-pil"), words, LIMIT).unwrap_or_else(|why| panic!("{why}"))
 }
 

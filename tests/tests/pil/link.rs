@@ -70,7 +70,7 @@ fn expected(
 /// Situation: a product ride with a noisy gyro. Action: sensor frames are dropped, damaged, or late by 3 ms, from 0.2 s to 0.25 s.
 /// Must hold: each command is that of the last frame that came, older by as many ticks as it is late; dropped and damaged ones
 /// are the same; the ride differs from the undisturbed one; as many steps are told to be harmed.
-pub fn sensors_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) {
+pub(crate) fn sensors_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) {
     let mut conditions = Conditions { time_limit_s: 0.8, ..product() };
     conditions.plant.sensors.model_mut(sim_host::plant::Sensor::Gyro).noise = 0.02;
     let mut ride = |fault: &str| {
@@ -102,7 +102,7 @@ pub fn sensors_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) {
 /// Situation: a product ride that engages. Action: its commands are dropped, damaged, or late by 2 ms, from 0.2 s to 0.25 s.
 /// Must hold: dropped and damaged, the motor holds the last command for 5 ms and then gives no torque until the next one; late,
 /// it does what was commanded 2 ms before.
-pub fn commands_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) {
+pub(crate) fn commands_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) {
     let conditions = Conditions { time_limit_s: 0.4, ..product() };
     let mut ride = |fault: &str| {
         let mut controller = Controller::new(board(), &link_faults(&[fault]), 7);
