@@ -1,9 +1,9 @@
 //! What is kept when something goes wrong, and what is done first: the outputs go off.
 
 use crate::{board, retained, tasks};
-use control::{Causes, Mode};
 use core::sync::atomic::{AtomicU32, Ordering};
 use link::report::{FaultKind, FaultRecord, ResetCause};
+use link::ring::{self, LastStep};
 
 /// How often the program started, and why this time.
 static START: AtomicU32 = AtomicU32::new(0);
@@ -25,11 +25,12 @@ pub fn start(cause: ResetCause) {
     START.store(starts, Ordering::Relaxed);
     CAUSE.store(cause as u32, Ordering::Relaxed);
     let told = retained::with(|ring| {
-        let newest = link::ring::faults(ring).next();
+        let newest = ring::faults(ring).next();
         newest.is_some_and(|f| f.kind == FaultKind::Watchdog && f.boot.wrapping_add(1) == starts)
     });
     if cause == ResetCause::Watchdog && told == Some(false) {
-        note(FaultKind::Watchdog, Registers::default(), "the lowest priority stood still");
+        let last = retained::with(|ring| ring::last_step(ring)).flatten().unwrap_or_default();
+        keep(FaultKind::Watchdog, &last, Registers::default(), "the lowest priority stood still");
     }
 }
 
@@ -38,28 +39,39 @@ pub fn starts() -> u32 {
     START.load(Ordering::Relaxed)
 }
 
+/// Why it did this time.
+pub fn cause() -> ResetCause {
+    ResetCause::numbered(CAUSE.load(Ordering::Relaxed) as u8).unwrap_or_default()
+}
+
 /// Keeps a fault with what the controller did last. From any context.
 pub fn note(kind: FaultKind, registers: Registers, text: &str) {
-    let latest = tasks::latest();
+    keep(kind, &tasks::latest().map_or_else(LastStep::default, |t| t.last_step()), registers, text);
+}
+
+fn keep(kind: FaultKind, last: &LastStep, registers: Registers, text: &str) {
+    let LastStep { steps, frame_us, causes, mode } = *last;
+    let (boot, reset) = (starts(), cause());
+    let Registers { exception, values: registers } = registers;
     retained::note(&FaultRecord {
         kind,
-        boot: starts(),
-        reset: ResetCause::numbered(CAUSE.load(Ordering::Relaxed) as u8).unwrap_or_default(),
-        mode: latest.as_ref().map_or(Mode::Off, |t| t.command.mode),
-        steps: latest.as_ref().map_or(0, |t| t.deadlines.steps),
-        frame_us: latest.as_ref().map_or(0, |t| t.frame.now_us),
-        causes: latest.as_ref().map_or(Causes::NONE, |t| t.command.causes),
-        exception: registers.exception,
-        registers: registers.values,
+        boot,
+        reset,
+        mode,
+        steps,
+        frame_us,
+        causes,
+        exception,
+        registers,
         text,
     });
 }
 
-/// The program can't go on: outputs off, then the record, then a new start.
+/// The program can't go on: outputs off, then the record, then the board's end, a new start.
 pub fn end(kind: FaultKind, registers: Registers, text: &str) -> ! {
     board::outputs_off();
     note(kind, registers, text);
-    board::restart()
+    board::end(kind, &registers, text)
 }
 
 /// The supply falls below what the chip needs. To be called by the board's warning, above all else but the motor.

@@ -20,6 +20,7 @@ pub mod board;
 pub mod alive;
 pub mod crash;
 pub mod deadline;
+pub mod failure;
 pub mod retained;
 pub mod tasks;
 

@@ -20,9 +20,10 @@ static RING: Mutex<RefCell<Option<&'static mut [u8; RING_BYTES]>>> = Mutex::new(
 
 /// To be called once, at the start of the program; how often it has started since power came.
 pub fn start() -> u32 {
+    let at = &raw mut RETAINED;
     // SAFETY: the linker script gives this memory to nobody else, and the cell hands it out to one at a time. It may
     // hold any bytes, which u8 allows; that nobody wrote them the compiler can't know.
-    let memory = unsafe { &mut *(&raw mut RETAINED) };
+    let memory = unsafe { &mut *at };
     critical_section::with(|cs| {
         let starts = ring::start(memory);
         RING.borrow(cs).replace(Some(memory));

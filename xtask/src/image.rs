@@ -24,13 +24,14 @@ pub struct Image {
 }
 
 /// Every image.
-pub const IMAGES: [Image; 6] = [
-    Image { name: "qemu-control", board: "board-qemu", flash: 80 << 10, ram: 24 << 10 },
-    Image { name: "qemu-pil", board: "board-qemu", flash: 192 << 10, ram: 96 << 10 },
-    Image { name: "qemu-replay", board: "board-qemu", flash: 128 << 10, ram: 48 << 10 },
-    Image { name: "qemu-instructions", board: "board-qemu", flash: 128 << 10, ram: 48 << 10 },
-    Image { name: "qemu-fault", board: "board-qemu", flash: 64 << 10, ram: 32 << 10 },
-    Image { name: "board-stm32f405", board: "board-stm32f405", flash: 80 << 10, ram: 24 << 10 },
+pub const IMAGES: [Image; 7] = [
+    Image { name: "qemu-control", board: "board-qemu", flash: 96 << 10, ram: 48 << 10 },
+    Image { name: "qemu-pil", board: "board-qemu", flash: 256 << 10, ram: 72 << 10 },
+    Image { name: "qemu-replay", board: "board-qemu", flash: 128 << 10, ram: 64 << 10 },
+    Image { name: "qemu-instructions", board: "board-qemu", flash: 128 << 10, ram: 64 << 10 },
+    Image { name: "qemu-fault", board: "board-qemu", flash: 64 << 10, ram: 48 << 10 },
+    Image { name: "board-stm32f405", board: "board-stm32f405", flash: 256 << 10, ram: 64 << 10 },
+    Image { name: "board-stm32f405-align", board: "board-stm32f405", flash: 64 << 10, ram: 48 << 10 },
 ];
 
 const BUILD_LIMIT: Duration = Duration::from_secs(1200);

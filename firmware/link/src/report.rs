@@ -58,6 +58,17 @@ impl FaultKind {
         use FaultKind::*;
         [Panic, Exception, Watchdog, Controller, BrownOut].into_iter().find(|kind| *kind as u8 == number)
     }
+
+    /// In words.
+    pub const fn name(self) -> &'static str {
+        match self {
+            FaultKind::Panic => "panic",
+            FaultKind::Exception => "exception",
+            FaultKind::Watchdog => "watchdog",
+            FaultKind::Controller => "controller",
+            FaultKind::BrownOut => "brown-out",
+        }
+    }
 }
 
 /// Why the program was started.
@@ -87,6 +98,19 @@ impl ResetCause {
         use ResetCause::*;
         let all = [Unknown, PowerOn, BrownOut, Pin, Software, Watchdog, LowPower];
         all.into_iter().find(|cause| *cause as u8 == number)
+    }
+
+    /// In words.
+    pub const fn name(self) -> &'static str {
+        match self {
+            ResetCause::Unknown => "unknown",
+            ResetCause::PowerOn => "power-on",
+            ResetCause::BrownOut => "brown-out",
+            ResetCause::Pin => "reset pin",
+            ResetCause::Software => "software",
+            ResetCause::Watchdog => "watchdog",
+            ResetCause::LowPower => "low power",
+        }
     }
 }
 

@@ -10,19 +10,60 @@
 //! | 8..12 | how often the program started |
 //! | 12..14 | faults noted since the memory was last empty, wrapping; the slot of the next follows from it |
 //! | then for each slot | CRC-32 of what follows, u16 length, the record as of [`crate::Message::Fault`] |
+//! | at the end | CRC-32 of the next 17; u32 steps, u32 us of the frame, u64 causes, u8 mode of the last control step |
 
 use crate::bytes::{Reader, Writer};
 use crate::frame::CRC;
 use crate::report::{FAULT_BYTES, FaultRecord};
+use crate::telemetry;
+use control::{Causes, Mode};
 
 /// Faults that are kept; the oldest gives way.
 pub const SLOTS: usize = 8;
 /// Bytes of memory it takes.
-pub const RING_BYTES: usize = HEAD + SLOTS * SLOT;
+pub const RING_BYTES: usize = LAST + 4 + STEP;
+/// Where the last control step stands, and its bytes.
+const LAST: usize = HEAD + SLOTS * SLOT;
+const STEP: usize = 17;
 const HEAD: usize = 14;
 const SLOT: usize = 4 + 2 + FAULT_BYTES;
 /// Says that this is such a ring, of this layout.
 const MARK: u32 = 0x5341_4601;
+
+/// Where the controller stood at a control step; the default is that of none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LastStep {
+    /// Control steps done.
+    pub steps: u32,
+    /// [`control::SensorFrame::now_us`] of its frame \[us\], wrapping.
+    pub frame_us: u32,
+    /// The controller's causes.
+    pub causes: Causes,
+    /// The controller's mode.
+    pub mode: Mode,
+}
+
+/// Keeps where the controller stands, so that the next start can tell if nobody else could.
+pub fn stepped(memory: &mut [u8; RING_BYTES], last: &LastStep) {
+    let Some((check, step)) = memory.get_mut(LAST..).and_then(|bytes| bytes.split_at_mut_checked(4)) else {
+        return;
+    };
+    let mut writer = Writer::new(step);
+    writer.u32(last.steps);
+    writer.u32(last.frame_us);
+    writer.u64(last.causes.0);
+    writer.u8(last.mode as u8);
+    Writer::new(check).u32(CRC.checksum(step));
+}
+
+/// Where the controller stood last, also before a reset; `None` if that is not whole.
+pub fn last_step(memory: &[u8; RING_BYTES]) -> Option<LastStep> {
+    let mut from = Reader(memory.get(LAST..)?);
+    let check = from.u32()?;
+    let whole = check == CRC.checksum(from.0);
+    let (steps, frame_us, causes) = (from.u32()?, from.u32()?, Causes(from.u64()?));
+    whole.then_some(LastStep { steps, frame_us, causes, mode: telemetry::mode(from.u8()?)? })
+}
 
 /// What the head says.
 #[derive(Clone, Copy, Default)]
@@ -77,9 +118,14 @@ pub fn note(memory: &mut [u8; RING_BYTES], fault: &FaultRecord<'_>) {
     Head { noted: head.noted.wrapping_add(1), ..head }.write(memory);
 }
 
+/// Faults noted since the memory was last empty, wrapping; 0 where there is no ring.
+pub fn noted(memory: &[u8; RING_BYTES]) -> u16 {
+    Head::read(memory).map_or(0, |head| head.noted)
+}
+
 /// The faults that are kept and whole, the newest first.
 pub fn faults(memory: &[u8; RING_BYTES]) -> impl Iterator<Item = FaultRecord<'_>> {
-    let noted = Head::read(memory).map_or(0, |head| head.noted);
+    let noted = noted(memory);
     (0..SLOTS).filter_map(move |back| {
         let place = usize::from(noted.wrapping_sub(back as u16 + 1)) % SLOTS;
         let slot = memory.get(HEAD..)?.get(place * SLOT..)?;

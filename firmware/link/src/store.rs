@@ -9,6 +9,7 @@ use crate::record::{self, Applied, NoRecord, RECORD_BYTES, Record};
 use crate::words::Words;
 use control::Config;
 use control::param::ParamError;
+use core::fmt;
 use core::ops::Range;
 use embedded_storage_async::nor_flash::NorFlash;
 use sequential_storage::cache::{Cache, Uncached};
@@ -71,6 +72,38 @@ pub enum Found {
     Record(Applied),
     /// Something that is not believed: these are the defaults.
     Doubt(Doubt),
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Found::Nothing => write!(f, "none stored, defaults"),
+            Found::Record(applied) => {
+                write!(f, "stored ones")?;
+                if let Some(first) = &applied.first_refused {
+                    write!(f, "; {} refused, first {first}", applied.refused)?;
+                }
+                if applied.missing > 0 {
+                    write!(f, "; {} not among them have their defaults", applied.missing)?;
+                }
+                if applied.unknown > 0 {
+                    write!(f, "; {} of another version ignored", applied.unknown)?;
+                }
+                Ok(())
+            }
+            Found::Doubt(Doubt::Unreadable) => write!(f, "flash can't be read, defaults"),
+            Found::Doubt(Doubt::Lost) => write!(f, "the newest ones are lost, defaults"),
+            Found::Doubt(Doubt::NoRecord(NoRecord::Layout(layout))) => {
+                write!(f, "stored in layout {layout}, which is not known, defaults")
+            }
+            Found::Doubt(Doubt::NoRecord(NoRecord::Malformed)) => {
+                write!(f, "stored ones are damaged, defaults")
+            }
+            Found::Doubt(Doubt::Unfit(error)) => {
+                write!(f, "stored ones do not fit together: {error}; defaults")
+            }
+        }
+    }
 }
 
 /// Why nothing was stored. What was stored before still is, unless the flash took nothing beside it.

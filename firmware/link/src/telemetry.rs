@@ -19,6 +19,10 @@ pub struct Telemetry {
     pub command: Command,
     /// How much of what they should do gyro and motor do; [`control::State::slopes`].
     pub slopes: [Option<f32>; 2],
+    /// What is to be done next in the polarity check, as the number of [`control::polarity::Move`].
+    pub polarity: u8,
+    /// The torque that the law would ask for during the check \[N m\]; [`control::State::shown_nm`].
+    pub shown_nm: f32,
 }
 
 impl Telemetry {
@@ -30,6 +34,8 @@ impl Telemetry {
         to.put(encode_frame(&self.frame));
         to.put(encode_command(&self.command));
         self.slopes.into_iter().for_each(|slope| to.scalar(slope));
+        to.u8(self.polarity);
+        to.f32(self.shown_nm);
     }
 
     /// Reads it; `None` where there are too few bytes or a mode that does not exist.
@@ -41,6 +47,8 @@ impl Telemetry {
             frame: frame(from)?,
             command: command(from)?,
             slopes: [from.scalar()?, from.scalar()?],
+            polarity: from.u8()?,
+            shown_nm: from.f32()?,
         })
     }
 }

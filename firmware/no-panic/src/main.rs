@@ -1,28 +1,40 @@
-//! Links only when no public entry of `control` has a panic path: the panic handler calls a symbol
-//! that does not exist, and the linker drops the handler only if nothing can reach it. Never run.
+//! Links only when no public entry of `control`, `motor` and `parts`, and none of `link` but the store, has a panic path:
+//! the panic handler calls a symbol that does not exist, and the linker drops the handler only if nothing can
+//! reach it. Never run.
 //!
-//! Left out is printing a `ParamError`: core's own printing of f32 has assertions. Nothing in
-//! `control` prints.
+//! Left out are printing a `ParamError` and a `Refusal`, as core's own printing of f32 has assertions, and the store,
+//! which has those of `sequential-storage`.
 #![no_std]
 #![no_main]
 #![allow(unsafe_code)]
 
 use control::guard::{self, GuardPlan, GuardState};
 use control::history::{Aligned, History, Latency};
+use control::pulses::{self, Pulses, PulsesConfig, PulsesState};
 use control::shape::{self, Asked, ShapePlan, ShapeState};
 use control::track::{self, Seen, Track, TrackState};
 use control::{
     ActiveLimits, CAUSES, Causes, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State, wire,
 };
 use core::hint::black_box;
+use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
+use link::message::Message;
+use link::page::PAGE_BYTES;
+use link::report::config_hash;
+use link::ring::{self, RING_BYTES};
+use link::{Decoder, Sender, parameters};
+use parts::order::{self, Deadline};
+use parts::vesc6::{BOARD_HEAT, GATE_DRIVER, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
+use parts::wheel::{self, WheelState};
+use parts::{as5047, bmi160, drv8301};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     unsafe extern "C" {
-        fn control_has_a_panic_path() -> !;
+        fn there_is_a_panic_path() -> !;
     }
     // SAFETY: never executed; an image with this call in it does not link.
-    unsafe { control_has_a_panic_path() }
+    unsafe { there_is_a_panic_path() }
 }
 
 /// Uses a result where the optimiser can't see it.
@@ -30,7 +42,7 @@ fn used<T>(value: T) {
     let _ = black_box(value);
 }
 
-/// The linker's entry: every public function of `control`, each with input the compiler can't see.
+/// The linker's entry: every public function, each with input the compiler can't see.
 #[unsafe(no_mangle)]
 pub extern "C" fn _start() -> ! {
     loop {
@@ -42,6 +54,10 @@ pub extern "C" fn _start() -> ! {
         limits(&config);
         let mut history = black_box(History::default());
         used(history.align(&black_box(Latency::default()), black_box(Aligned::default())));
+        pulses_of_a_wheel();
+        motor();
+        board();
+        engineer(config.clone());
         if let Ok(plan) = black_box(config).plan() {
             run(&black_box(plan));
         }
@@ -92,5 +108,87 @@ fn run(plan: &Plan) {
         #[cfg(feature = "unwrap")]
         let first = Some(first.unwrap());
         used((first, state.torque_nm(), plan.config().rate_hz, plan.ticks_to_engage()));
+    }
+}
+
+/// Pulses of a wheel, any number of them at any time.
+fn pulses_of_a_wheel() {
+    let config = black_box(PulsesConfig::default());
+    used(pulses::step(
+        &config,
+        &mut black_box(PulsesState::default()),
+        &black_box(Pulses::default()),
+        black_box(1),
+    ));
+}
+
+/// The current loop, told anything.
+fn motor() {
+    let Ok(plan) = black_box(motor::example::EXAMPLE).plan() else { return };
+    let mut state = black_box(motor::State::default());
+    let phases = black_box(motor::Phases::Three([0.0; 3]));
+    for ask in black_box([motor::Ask::Off, motor::Ask::Align, motor::Ask::Torque(1.0)]) {
+        let (angle_counts, angle_age_ticks) = (black_box(0), black_box(0));
+        let (bus_v, temperature_c) = (black_box(24.0), black_box(20.0));
+        let inputs = motor::Inputs { phases, bus_v, angle_counts, angle_age_ticks, temperature_c, ask };
+        used(motor::step(&plan, &mut state, &inputs));
+    }
+}
+
+/// The parts of a board, which say anything.
+fn board() {
+    let counts = black_box(0_u16);
+    used((SHUNT.ampere(counts), SUPPLY.volt(counts), BOARD_HEAT.celsius(counts)));
+    used((STEER_RAD.value(counts), RIDER_NM.value(counts), as5047::angle_counts(counts)));
+    used(bmi160::sample(black_box(0), &black_box([0; bmi160::BURST])));
+    let settings = black_box(GATE_DRIVER);
+    used((settings.control1(), settings.control2(), drv8301::Status(counts).names().count()));
+    used(drv8301::data(black_box(drv8301::Register::Status1), counts).map(drv8301::is_present));
+    let ask = order::ask(order::word(order::ask(black_box(0))));
+    used(black_box(Deadline::default()).step(black_box(1), ask, counts));
+    let (mut switch, mut wheel) =
+        (black_box(parts::switch::Switch::default()), black_box(WheelState::default()));
+    used(switch.step(black_box(true), counts));
+    used(wheel::step(&black_box(PulsesConfig::default()), &mut wheel, black_box(None), black_box(1)));
+}
+
+/// The engineer's line: any bytes in, whatever they ask for, and all that goes out; the kept faults; the loop's chunks.
+fn engineer(mut config: Config) {
+    let (mut decoder, mut sender) = (Decoder::default(), Sender::<1024, 1024>::new(1));
+    let (mut ring, mut chunk) = (black_box([0; RING_BYTES]), black_box([0; MAX_CHUNK]));
+    used((ring::start(&mut ring), ring::noted(&ring)));
+    for byte in black_box([0_u8; 64]) {
+        let Some(received) = decoder.feed(byte) else { continue };
+        match parameters::request(&received) {
+            Ok((sequence, request)) => {
+                let mut room = [0; PAGE_BYTES];
+                let engaged = black_box(false);
+                let answer =
+                    parameters::answer(&Config::product(), &mut config, engaged, &request, &mut room);
+                used(sender.answer(&answer.unwrap_or(request), sequence));
+                if let Message::Fault(fault) = request {
+                    ring::note(&mut ring, &fault);
+                }
+                if let Message::Telemetry(telemetry) = request {
+                    sender.step(&telemetry);
+                }
+            }
+            Err(wrong) => {
+                let (sequence, answer) = wrong.answer();
+                used(sender.answer(&answer, sequence));
+            }
+        }
+    }
+    ring::faults(&ring).for_each(|fault| sender.tell(&Message::Fault(fault)));
+    ring::clear(&mut ring);
+    while let Some(byte) = sender.next_byte() {
+        used(byte);
+    }
+    used((decoder.dropped(), sender.dropped(), config_hash(&config)));
+    if let Some(board) = FromBoard::decode(&black_box([0; 64])) {
+        used(board.encode(&mut chunk));
+    }
+    if let Some(host) = ToBoard::decode(&black_box([0; 64])) {
+        used(host.encode(&mut chunk));
     }
 }

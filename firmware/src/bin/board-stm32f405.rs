@@ -1,22 +1,39 @@
-//! The image for a board with an STM32F405 (VESC-6 class). It gives no torque: the reason is in its
-//! telemetry.
+//! The image for a VESC 6 (STM32F405): all tasks. It gives no torque until the motor's encoder is aligned and the
+//! polarity check was passed; the reasons are in its log and telemetry.
 #![no_std]
 #![no_main]
 
-use control::{Config, Plan};
-use firmware::{board, tasks};
+use control::Config;
+use firmware::alive::Task;
+use firmware::tasks::settings::{self, Kept};
+use firmware::{board, crash, tasks};
+use link::report::config_hash;
 use static_cell::StaticCell;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static PLAN: StaticCell<Plan> = StaticCell::new();
-    defmt::info!("{=str}", firmware::identity!());
-    let plan: &'static Plan = PLAN.init(defmt::unwrap!(Config::product().plan().ok()));
+    static KEPT: StaticCell<Kept> = StaticCell::new();
+    crash::start(board::reset_cause());
+    defmt::info!(
+        "{=str} start {=u32} after {=str}",
+        firmware::identity!(),
+        crash::starts(),
+        crash::cause().name()
+    );
+    board::start();
+    let kept = KEPT.init(Kept::open());
+    let plan = settings::start(kept, &Config::product());
+    defmt::info!(
+        "configuration {=u32:08x}, parameters: {}",
+        config_hash(plan.config()),
+        defmt::Display2Format(kept.found())
+    );
     board::run(
         |control| control.spawn(defmt::unwrap!(tasks::control(plan).ok())),
         |thread| {
-            thread.spawn(defmt::unwrap!(tasks::supervise().ok()));
+            thread.spawn(defmt::unwrap!(tasks::line(firmware::image!(), kept).ok()));
             thread.spawn(defmt::unwrap!(tasks::report().ok()));
+            thread.spawn(defmt::unwrap!(tasks::supervise(&[Task::Control, Task::Line, Task::Report]).ok()));
         },
     )
 }

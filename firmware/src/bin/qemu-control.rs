@@ -13,6 +13,7 @@ use firmware::alive::Task;
 use firmware::board::semihosting::{argument, exit};
 use firmware::board::{self, Exit, executor};
 use firmware::tasks;
+use link::report::config_hash;
 use static_cell::StaticCell;
 
 /// The thread without a moment's rest, giving way to its other tasks every 0.3 ms.
@@ -60,6 +61,7 @@ fn main() -> ! {
     config.calibration.polarity_checked = true;
     let Ok(plan) = config.plan() else { exit(Exit::Input) };
     let plan = PLAN.init(plan);
+    hprintln!("configuration {:08x}", config_hash(plan.config()));
     let length = Duration::from_secs(argument("seconds").unwrap_or(5).into());
     let every = Duration::from_millis(argument("every_ms").unwrap_or(100).into());
     let hold = argument("block_us").map(|us| Duration::from_micros(us.into()));

@@ -7,8 +7,9 @@ use core::hint::black_box;
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 use cortex_m_semihosting::hprintln;
+use firmware::board::Exit;
 use firmware::board::semihosting::{command_line, exit};
-use firmware::board::{Exit, fault};
+use firmware::failure;
 use stm32_metapac::Interrupt;
 
 #[expect(unconditional_recursion, reason = "to run out of stack")]
@@ -20,7 +21,7 @@ fn recurse(depth: u32) -> u32 {
 #[cortex_m_rt::entry]
 fn main() -> ! {
     hprintln!("{}", firmware::identity!());
-    fault::enable();
+    failure::enable();
     match command_line().split(' ').nth(1) {
         Some("panic") => panic!("on purpose"),
         Some("stack") => {

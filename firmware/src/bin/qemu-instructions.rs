@@ -14,10 +14,11 @@ use cortex_m::Peripherals;
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_semihosting::hprintln;
+use firmware::board::Exit;
 use firmware::board::recording::{BLOCK, Recording};
 use firmware::board::semihosting::exit;
 use firmware::board::stack;
-use firmware::board::{Exit, fault};
+use firmware::failure;
 use static_cell::ConstStaticCell;
 
 static FRAMES: ConstStaticCell<[[u8; FRAME_BYTES]; BLOCK]> = ConstStaticCell::new([[0; FRAME_BYTES]; BLOCK]);
@@ -48,7 +49,7 @@ fn instructions(run: impl FnOnce()) -> u32 {
 #[cortex_m_rt::entry]
 fn main() -> ! {
     hprintln!("{}", firmware::identity!());
-    fault::enable();
+    failure::enable();
     let mut systick = Peripherals::take().expect("taken once").SYST;
     systick.set_clock_source(SystClkSource::Core);
     systick.set_reload(RELOAD);

@@ -10,6 +10,7 @@ use firmware::board::semihosting::exit;
 use firmware::board::{self, Exit, executor, mishap, pil, text};
 use firmware::tasks::settings::{self, Kept};
 use firmware::{crash, tasks};
+use link::report::config_hash;
 use static_cell::StaticCell;
 
 #[cortex_m_rt::entry]
@@ -24,8 +25,12 @@ fn main() -> ! {
         exit(Exit::Input)
     }
     let kept = KEPT.init(Kept::open());
-    let (plan, found) = settings::start(kept, &Config::product());
-    text::line(format_args!("parameters: {found:?}"));
+    let plan = settings::start(kept, &Config::product());
+    text::line(format_args!(
+        "configuration {:08x}, parameters: {}",
+        config_hash(plan.config()),
+        kept.found()
+    ));
     board::run(
         |control| {
             control.spawn(tasks::control(plan).unwrap());

@@ -6,9 +6,10 @@
 use control::wire::{COMMAND_BYTES, FRAME_BYTES, decode_frame, encode_command};
 use control::{State, step};
 use cortex_m_semihosting::hprintln;
+use firmware::board::Exit;
 use firmware::board::recording::{BLOCK, Recording};
 use firmware::board::semihosting::{File, exit};
-use firmware::board::{Exit, fault};
+use firmware::failure;
 use static_cell::ConstStaticCell;
 
 static FRAMES: ConstStaticCell<[[u8; FRAME_BYTES]; BLOCK]> = ConstStaticCell::new([[0; FRAME_BYTES]; BLOCK]);
@@ -18,7 +19,7 @@ static COMMANDS: ConstStaticCell<[[u8; COMMAND_BYTES]; BLOCK]> =
 #[cortex_m_rt::entry]
 fn main() -> ! {
     hprintln!("{}", firmware::identity!());
-    fault::enable();
+    failure::enable();
     let (block, commands) = (FRAMES.take(), COMMANDS.take());
     let mut recording = Recording::open();
     let mut output = File::write_to(c"commands.bin");

@@ -3,7 +3,7 @@
 use super::settings;
 use crate::alive::Task;
 use crate::deadline::{Deadlines, PERIOD};
-use crate::{board, crash};
+use crate::{board, crash, retained};
 use ::control::polarity::Move;
 use ::control::{Command, Mode, Plan, SensorFrame, State, step};
 use core::cell::Cell;
@@ -11,19 +11,35 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_time::{Instant, Timer};
 use link::report::FaultKind;
+use link::ring::{self, LastStep};
 
 /// Why a board gives no torque, whatever is commanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// There are no drivers yet for this board's sensors and motor.
-    NoSensorAndMotorDrivers,
+    /// The motor is not ready yet: the zeros of its current sensors are being taken.
+    NotReady,
+    /// The offset of the motor's encoder is not known.
+    NotAligned,
+    /// The last command came too late; the bridge was open meanwhile.
+    Stale,
+    /// The gate driver did not take its settings, or told of a fault.
+    GateDriver,
+    /// The outputs were switched off until the next start.
+    OutputsOff,
+    /// The motor's loop found a fault, of this number in docs/motor.md: over-current is 1.
+    MotorFault(u8),
 }
 
 impl Refusal {
     /// The reason in words.
     pub const fn reason(self) -> &'static str {
         match self {
-            Refusal::NoSensorAndMotorDrivers => "no sensor and motor drivers",
+            Refusal::NotReady => "not ready",
+            Refusal::NotAligned => "not aligned",
+            Refusal::Stale => "command too late",
+            Refusal::GateDriver => "gate driver",
+            Refusal::OutputsOff => "outputs off",
+            Refusal::MotorFault(_) => "motor fault",
         }
     }
 }
@@ -43,8 +59,22 @@ pub struct Telemetry {
     pub slopes: [Option<f32>; 2],
     /// Where the polarity check stands.
     pub polarity: Move,
+    /// The torque that it shows \[N m\].
+    pub shown_nm: f32,
     /// Whether the motor got it.
     pub drive: Result<(), Refusal>,
+}
+
+impl Telemetry {
+    /// Where the controller stood.
+    pub fn last_step(&self) -> LastStep {
+        LastStep {
+            steps: self.deadlines.steps,
+            frame_us: self.frame.now_us,
+            causes: self.command.causes,
+            mode: self.command.mode,
+        }
+    }
 }
 
 static LATEST: Mutex<CriticalSectionRawMutex, Cell<Option<Telemetry>>> = Mutex::new(Cell::new(None));
@@ -76,9 +106,18 @@ pub async fn control(plan: &'static mut Plan) {
         let command = step(plan, &mut state, &frame);
         let drive = board::drive(&command);
         deadlines.finished(release, Instant::now());
-        let (authority, slopes, polarity) = (state.authority(), state.slopes(), state.polarity());
-        let telemetry = Telemetry { deadlines, frame, command, authority, slopes, polarity, drive };
+        let telemetry = Telemetry {
+            deadlines,
+            frame,
+            command,
+            authority: state.authority(),
+            slopes: state.slopes(),
+            polarity: state.polarity(),
+            shown_nm: state.shown_nm(),
+            drive,
+        };
         LATEST.lock(|latest| latest.set(Some(telemetry)));
+        retained::with(|ring| ring::stepped(ring, &telemetry.last_step()));
         if command.mode == Mode::Fault && mode != Mode::Fault {
             crash::note(FaultKind::Controller, crash::Registers::default(), "");
         }

@@ -3,10 +3,13 @@
 use super::settings::{self, Kept};
 use super::{Telemetry, latest};
 use crate::alive::Task;
-use crate::{Image, board, retained};
+use crate::{Image, board, crash, retained};
 use ::control::{Config, polarity::Move};
+use core::fmt::Write;
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Ticker};
+use heapless::String;
+use link::frame::MAX_PAYLOAD;
 use link::message::Message;
 use link::page::PAGE_BYTES;
 use link::refusal::{Refusal, Why};
@@ -19,10 +22,21 @@ const TELL: Duration = Duration::from_millis(20);
 /// Answers and telemetry that wait.
 type Waiting = Sender<2048, 1024>;
 
-/// Takes requests, answers them, and tells telemetry in between.
+/// Takes requests, answers them, and tells telemetry in between, new faults, and first of all how the program started.
 #[embassy_executor::task]
 pub async fn line(image: Image, kept: &'static mut Kept) {
     let (mut decoder, mut waiting) = (Decoder::default(), Waiting::new(1));
+    let mut words = String::<{ MAX_PAYLOAD }>::new();
+    // What does not fit is cut.
+    let _ = write!(
+        words,
+        "start {} after {}; parameters: {}",
+        crash::starts(),
+        crash::cause().name(),
+        kept.found()
+    );
+    waiting.tell(&Message::Log(&words));
+    let mut faults = retained::with(|ring| ring::noted(ring)).unwrap_or(0);
     let mut tell = Ticker::every(TELL);
     let mut bytes = [0; 64];
     loop {
@@ -40,6 +54,12 @@ pub async fn line(image: Image, kept: &'static mut Kept) {
                     }
                     waiting.step(&told(&telemetry));
                 }
+                retained::with(|ring| {
+                    let before = core::mem::replace(&mut faults, ring::noted(ring));
+                    if let (true, Some(newest)) = (faults != before, ring::faults(ring).next()) {
+                        waiting.tell(&Message::Fault(newest));
+                    }
+                });
             }
         }
         send(&mut waiting).await;
@@ -123,5 +143,7 @@ fn told(latest: &Telemetry) -> link::telemetry::Telemetry {
         frame: latest.frame,
         command: latest.command,
         slopes: latest.slopes,
+        polarity: latest.polarity as u8,
+        shown_nm: latest.shown_nm,
     }
 }

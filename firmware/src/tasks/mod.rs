@@ -10,8 +10,8 @@
 //! A board is a module with these functions: `run` (starts the clock and the executors), `sense`
 //! and `drive` (the sensors and the motor, at every step), `report` (one line to the engineer),
 //! `line::read` and `line::write` (bytes from and to the engineer's computer), `flash` (where parameters
-//! are kept), `feed_watchdog` and `watchdog_patience`, `reset_cause`, `outputs_off` and `restart`.
-//! Its handlers of panics, exceptions and a failing supply end in [`crate::crash`].
+//! are kept; it gives the watchdog more patience while it erases), `feed_watchdog`, `reset_cause`, `outputs_off` and `end`
+//! (the last words, then a new start). Its warning of a failing supply ends in [`crate::crash`].
 
 mod control;
 mod line;

@@ -1,19 +1,14 @@
 //! The configuration: the one the controller runs with, the next one on its way to it, the one in flash.
 
-use super::{WATCHDOG, latest};
+use super::latest;
 use crate::{alive, board};
 use ::control::{Config, Mode, Plan};
 use core::cell::RefCell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use embassy_time::Duration;
 use link::Store;
 use link::store::{Found, NotStored, Room};
 use static_cell::{ConstStaticCell, StaticCell};
-
-/// How long the watchdog waits while flash is erased: three sectors of 16 KiB take 1.5 s at most (data sheet of the
-/// STM32F405, table 40: 500 ms each).
-const ERASING: Duration = Duration::from_secs(3);
 
 /// A plan that the controller has not taken yet.
 struct Next {
@@ -63,6 +58,7 @@ pub struct Kept {
     /// The flash's pages; `None` if the board has none.
     store: Option<Store<board::Flash>>,
     room: &'static mut Room,
+    found: Found,
 }
 
 impl Kept {
@@ -72,18 +68,25 @@ impl Kept {
     /// When called a second time.
     pub fn open() -> Self {
         static ROOM: ConstStaticCell<Room> = ConstStaticCell::new(Room::new());
-        let (flash, range) = board::flash();
-        Self { store: Store::new(flash, range), room: ROOM.take() }
+        let store = board::flash().and_then(|(flash, range)| Store::new(flash, range));
+        Self { store, room: ROOM.take(), found: Found::Nothing }
     }
 
     /// The stored configuration, or the defaults with the polarity check not passed.
-    pub async fn load(&mut self, defaults: &Config) -> (Config, Found) {
-        let mut unchecked = defaults.clone();
-        unchecked.calibration.polarity_checked = false;
-        match &mut self.store {
-            Some(store) => store.load(defaults, self.room).await,
-            None => (unchecked, Found::Nothing),
-        }
+    async fn load(&mut self, defaults: &Config) -> Config {
+        let Some(store) = &mut self.store else {
+            let mut unchecked = defaults.clone();
+            unchecked.calibration.polarity_checked = false;
+            return unchecked;
+        };
+        let (config, found) = store.load(defaults, self.room).await;
+        self.found = found;
+        config
+    }
+
+    /// What was found at the start.
+    pub fn found(&self) -> &Found {
+        &self.found
     }
 
     /// Stores a configuration. The chip may stand still for as long as the flash erases, so only while no torque flows.
@@ -92,25 +95,22 @@ impl Kept {
     /// As of [`NotStored`].
     pub async fn save(&mut self, config: &Config) -> Result<(), NotStored> {
         let Some(store) = &mut self.store else { return Err(NotStored::Flash) };
-        board::watchdog_patience(ERASING);
         alive::excuse(true);
         let stored = store.save(config, self.room).await;
         alive::excuse(false);
-        board::watchdog_patience(WATCHDOG);
         stored
     }
 }
 
-/// The plan to start with: of the stored configuration, or of the defaults. It is also what is in force; what was found
-/// is told beside.
+/// The plan to start with: of the stored configuration, or of the defaults. It is also what is in force.
 ///
 /// # Panics
 /// When called a second time.
 #[inline(never)]
-pub fn start(kept: &mut Kept, defaults: &Config) -> (&'static mut Plan, Found) {
+pub fn start(kept: &mut Kept, defaults: &Config) -> &'static mut Plan {
     static PLAN: StaticCell<Plan> = StaticCell::new();
-    let (config, found) = embassy_futures::block_on(kept.load(defaults));
+    let config = embassy_futures::block_on(kept.load(defaults));
     CONFIG.lock(|in_force| in_force.replace(Some(config.clone())));
     // What a store gives passes: else it gave the defaults, which are the program's own.
-    (PLAN.init(config.plan().expect("a plan of the defaults")), found)
+    PLAN.init(config.plan().expect("a plan of the defaults"))
 }

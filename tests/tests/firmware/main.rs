@@ -4,4 +4,6 @@ mod budgets;
 mod deadlines;
 mod faults;
 mod no_panic;
+mod outputs;
 mod replay;
+mod resets;

@@ -2,7 +2,7 @@
 
 use control::{CAUSES, Causes, Mode};
 use link::report::{FaultKind, FaultRecord, ResetCause};
-use link::ring::{RING_BYTES, SLOTS, clear, faults, note, start};
+use link::ring::{LastStep, RING_BYTES, SLOTS, clear, faults, last_step, note, noted, start, stepped};
 use proptest::prelude::*;
 
 fn fault(steps: u32, text: &str) -> FaultRecord<'_> {
@@ -36,17 +36,36 @@ fn the_newest_faults_are_kept() {
     for n in 1..=3 * SLOTS as u32 + 2 {
         note(&mut memory, &fault(n, "panicked at control.rs"));
         let expected: Vec<u32> = (1..=n).rev().take(SLOTS).collect();
-        assert_eq!(steps(&memory), expected);
+        assert_eq!((steps(&memory), noted(&memory)), (expected, n as u16));
     }
     assert_eq!(start(&mut memory), 2);
     let newest = faults(&memory).next();
     assert_eq!(newest, Some(fault(3 * SLOTS as u32 + 2, "panicked at control.rs")));
     clear(&mut memory);
-    assert_eq!(steps(&memory), []);
+    assert_eq!((steps(&memory), noted(&memory)), (vec![], 0));
     assert_eq!(start(&mut memory), 3);
 }
 
 proptest! {
+    /// Situation: any memory.
+    /// Action: start; keep where the controller stands; start again; turn any byte of it.
+    /// Must hold: it is told through a start; damage is told as the same or not at all.
+    #[test]
+    fn the_last_step_is_kept(
+        fill in any::<u8>(), steps in any::<u32>(), frame_us in any::<u32>(), causes in any::<u64>(), at in 0..RING_BYTES
+    ) {
+        let mut memory = [fill; RING_BYTES];
+        start(&mut memory);
+        prop_assert_eq!(last_step(&memory), None);
+        let last = LastStep { steps, frame_us, causes: Causes(causes), mode: Mode::Limp };
+        stepped(&mut memory, &last);
+        start(&mut memory);
+        prop_assert_eq!(last_step(&memory), Some(last));
+        memory[at] ^= 1;
+        let told = last_step(&memory);
+        prop_assert!(told == if at < RING_BYTES - 21 { Some(last) } else { None }, "{:?}", told);
+    }
+
     /// Situation: any bytes in memory.
     /// Action: read them; start, note a fault with any text.
     /// Must hold: no panic; the fault is there, its text cut between letters at most.

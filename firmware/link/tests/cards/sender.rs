@@ -22,6 +22,8 @@ fn telemetry(steps: u32) -> Telemetry {
         frame: SensorFrame::missing(),
         command,
         slopes: [None, Some(0.9)],
+        polarity: 0,
+        shown_nm: 0.0,
     }
 }
 

@@ -1,7 +1,8 @@
 //! Four executors: three in interrupts of peripherals that the board does not use, one in the thread.
 #![allow(unsafe_code)]
 
-use super::{fault, time};
+use super::time;
+use crate::failure;
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::scb::SystemHandler;
 use cortex_m::peripheral::{NVIC, Peripherals};
@@ -21,7 +22,7 @@ static ABOVE_CONTROL: InterruptExecutor = InterruptExecutor::new();
 pub fn run(control: impl FnOnce(SendSpawner), thread: impl FnOnce(Spawner)) -> ! {
     static THREAD: StaticCell<raw::Executor> = StaticCell::new();
     let mut core = Peripherals::take().expect("the board is run once");
-    fault::enable();
+    failure::enable();
     // SAFETY: no critical section is built on priorities here, and no handler runs yet.
     unsafe {
         core.SCB.set_priority(SystemHandler::SysTick, 0x00);

@@ -42,8 +42,8 @@ impl Flash {
     }
 }
 
-/// The memory and the range for parameters. To be called once.
-pub fn flash() -> (Flash, Range<u32>) {
+/// The memory and the range for parameters; there always is one. To be called once.
+pub fn flash() -> Option<(Flash, Range<u32>)> {
     let at = (&raw mut RETAINED).cast::<u8>();
     // SAFETY: the linker script gives this memory to the ring and to this function alone, which is called once and takes
     // only what lies behind the ring. It may hold any bytes; that nobody wrote them the compiler can't know.
@@ -53,7 +53,7 @@ pub fn flash() -> (Flash, Range<u32>) {
         bytes.fill(0xff);
         *mark = MARK.to_le_bytes();
     }
-    (Flash(bytes), 0..BYTES as u32)
+    Some((Flash(bytes), 0..BYTES as u32))
 }
 
 impl ErrorType for Flash {

@@ -58,7 +58,7 @@ pub async fn strike() {
     Timer::at(Instant::from_millis(at_ms.into())).await;
     match kind {
         PANIC => panic!("on purpose"),
-        BUS => super::fault::touch_nothing(),
+        BUS => super::end::touch_nothing(),
         _ => crash::brown_out(),
     }
 }
@@ -72,8 +72,10 @@ pub fn strikes(task: Task) -> bool {
     {
         return false;
     }
-    while kind >= SPIN {
-        core::hint::spin_loop();
+    if kind >= SPIN {
+        loop {
+            core::hint::spin_loop();
+        }
     }
     true
 }

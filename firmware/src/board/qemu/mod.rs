@@ -1,8 +1,8 @@
 //! The STM32F405 as QEMU's machine `netduinoplus2` has it: core, SysTick, NVIC, memories. Its RCC
 //! and PWR are not modelled, so the chip's HAL does not start there; this thin layer does.
 
+mod end;
 pub mod executor;
-pub mod fault;
 mod flash;
 pub mod line;
 pub mod mishap;
@@ -16,11 +16,12 @@ pub mod text;
 pub mod time;
 mod watchdog;
 
+pub use end::end;
 pub use executor::run;
 pub use flash::{Flash, flash};
-pub use reset::{outputs_off, reset_cause, restart, restarts};
+pub use reset::{outputs_off, reset_cause, restarts};
 pub use sensors::{drive, sense};
-pub use watchdog::{feed_watchdog, watchdog_patience};
+pub use watchdog::feed_watchdog;
 
 use crate::tasks::Telemetry;
 

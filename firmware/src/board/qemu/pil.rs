@@ -4,7 +4,7 @@
 //! sensors of the next step. QEMU's clock stands still meanwhile. What goes over: [`link::lockstep`].
 
 use super::semihosting::{Stream, exit};
-use super::{Exit, line, reset, text};
+use super::{Exit, line, reset, stack, text, time};
 use crate::{crash, tasks};
 use control::wire::{CONFIG_BYTES, decode_config};
 use control::{Config, Plan, SensorFrame};
@@ -131,8 +131,9 @@ fn wrong_rate(config: &Config) -> Refusal<'static> {
     Refusal { value: config.rate_hz, min: rate_hz, max: rate_hz, ..about }
 }
 
-/// The host takes part from now on: text goes aside.
+/// The host takes part from now on, until it closes its end: text goes aside.
 pub fn begin() {
+    stack::paint_all();
     text::aside();
     critical_section::with(|cs| SENSORS.borrow(cs).replace(Some(Sensors::NONE)));
 }
@@ -150,8 +151,13 @@ pub async fn exchange() {
     loop {
         now_ms += 1;
         Timer::at(Instant::from_millis(now_ms)).await;
+        // What stands for hardware takes no time.
+        time::hold(true);
         hand_over(&mut host, chunk, out);
-        let length = host.read(chunk, whole);
+        let Some(length) = host.read(chunk, whole) else {
+            text::line(format_args!("done: stack_left={}", stack::never_used()));
+            exit(Exit::Success)
+        };
         let Some(ToBoard { sensors, line: bytes }) = ToBoard::decode(&chunk[..length]) else {
             text::line(format_args!("the host handed over {length} bytes that are no chunk"));
             exit(Exit::Input)
@@ -165,6 +171,7 @@ pub async fn exchange() {
                 take(&message, frame.sequence, incoming, out);
             }
         }
+        time::hold(false);
     }
 }
 

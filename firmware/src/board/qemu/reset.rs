@@ -65,10 +65,5 @@ pub(super) fn reset(cause: ResetCause) -> ! {
     cortex_m::peripheral::SCB::sys_reset()
 }
 
-/// Starts the program anew.
-pub fn restart() -> ! {
-    reset(ResetCause::Software)
-}
-
 /// The motor is off: there is none.
 pub fn outputs_off() {}

@@ -92,18 +92,18 @@ impl Stream {
         self.output.write_all(bytes);
     }
 
-    /// Waits for one whole chunk, whose length `whole` tells of its beginning; how many bytes it has. Ends QEMU with
-    /// success when the host is gone.
-    pub fn read(&mut self, to: &mut [u8], whole: impl Fn(&[u8]) -> Option<usize>) -> usize {
+    /// Waits for one whole chunk, whose length `whole` tells of its beginning; how many bytes it has. `None`: the host
+    /// is gone.
+    pub fn read(&mut self, to: &mut [u8], whole: impl Fn(&[u8]) -> Option<usize>) -> Option<usize> {
         let mut have = 0;
         loop {
             let got = self.input.read_some(&mut to[have..]);
             if got == 0 {
-                exit(Exit::Success)
+                return None;
             }
             have += got;
             if whole(&to[..have]).is_some_and(|length| have >= length) {
-                return have;
+                return Some(have);
             }
         }
     }

@@ -31,3 +31,31 @@ pub fn depth(top: usize) -> u32 {
     let whole = (0..WORDS).take_while(painted).count();
     (GAP + 4 * (WORDS - whole)) as u32
 }
+
+unsafe extern "C" {
+    static mut _stack_end: u32;
+}
+
+/// Paints all of the stack that lies below the caller.
+#[inline(never)]
+pub fn paint_all() {
+    let here = 0_u32;
+    let top = (&raw const *black_box(&here)) as usize & !3;
+    let mut word = &raw mut _stack_end;
+    while (word as usize) < top - GAP {
+        // SAFETY: inside the stack's memory, below the frame of this function.
+        unsafe {
+            word.write_volatile(PAINT);
+            word = word.add(1);
+        }
+    }
+}
+
+/// How many bytes at the stack's end were never written since [`paint_all`].
+#[inline(never)]
+pub fn never_used() -> u32 {
+    let end = &raw const _stack_end;
+    // SAFETY: inside the stack's memory: the frame of this function is above, and is not paint.
+    let whole = (0..).take_while(|word| unsafe { end.add(*word).read_volatile() } == PAINT).count();
+    4 * whole as u32
+}

@@ -34,6 +34,14 @@ pub(super) fn start(mut systick: SYST) {
     systick.enable_interrupt();
 }
 
+/// Lets the clock stand still, or go on where it stood.
+pub(super) fn hold(still: bool) {
+    // SAFETY: one bit of the clock's own register, which nothing else writes after its start.
+    unsafe {
+        (*SYST::PTR).csr.modify(|bits| if still { bits & !1 } else { bits | 1 });
+    }
+}
+
 /// Whole milliseconds since [`start`].
 pub(super) fn milliseconds() -> u32 {
     CLOCK.ms.load(Ordering::Relaxed)

@@ -5,27 +5,19 @@ use super::semihosting::exit;
 use super::{Exit, reset, text, time};
 use crate::tasks::WATCHDOG;
 use core::sync::atomic::{AtomicU32, Ordering};
-use embassy_time::Duration;
 use link::report::ResetCause;
 
 static FED_MS: AtomicU32 = AtomicU32::new(0);
-static PATIENCE_MS: AtomicU32 = AtomicU32::new(WATCHDOG.as_millis() as u32);
 
 /// Starts the watchdog's patience anew.
 pub fn feed_watchdog() {
     FED_MS.store(time::milliseconds(), Ordering::Relaxed);
 }
 
-/// Feeds the watchdog, and sets how long it waits from now on.
-pub fn watchdog_patience(patience: Duration) {
-    PATIENCE_MS.store(patience.as_millis() as u32, Ordering::Relaxed);
-    feed_watchdog();
-}
-
 /// Bites when it was not fed for longer than its patience.
 pub(super) fn check(now_ms: u32) {
     let hungry_ms = now_ms.saturating_sub(FED_MS.load(Ordering::Relaxed));
-    if hungry_ms > PATIENCE_MS.load(Ordering::Relaxed) {
+    if u64::from(hungry_ms) > WATCHDOG.as_millis() {
         if reset::does_restart() {
             reset::reset(ResetCause::Watchdog)
         }

@@ -1,39 +1,116 @@
-//! An STM32F405RG on a VESC-6 class motor drive: 8 MHz crystal, SWD. Its sensors and motor have no
-//! drivers yet, so every torque is refused.
+//! An STM32F405RG on a VESC 6 MK6: gate driver, shunts, IMU and clock of the board; encoder, steer sensor, wheels, switch
+//! and link wired to it as [`pins`] and docs/hardware.md say. Nothing of it ran on hardware yet.
 #![allow(unsafe_code)]
 
+mod adc;
+mod brown_out;
 mod clock;
+mod critical;
+mod flash;
+mod gate;
+mod imu;
+mod lamps;
+pub mod line;
+mod motor;
+mod pins;
+mod priority;
+mod pwm;
+mod reset;
+mod sensors;
+mod shared;
+mod soft_spi;
 mod watchdog;
+mod wheels;
 
+pub use flash::{Flash, flash};
+pub use reset::{end, reset_cause};
+pub use sensors::sense;
+pub use shared::{Report, order, report as motor_report};
 pub use watchdog::feed_watchdog;
 
+use crate::failure;
 use crate::tasks::{Refusal, Telemetry};
-use control::{Command, SensorFrame};
+use ::motor::Ask;
+use control::{Command, Mode};
 use defmt_rtt as _;
 use embassy_executor::{Executor, InterruptExecutor, SendSpawner, Spawner};
+use embassy_stm32::gpio::{Input, Level, Pull};
 use embassy_stm32::interrupt;
-use embassy_stm32::interrupt::{InterruptExt, Priority};
-use panic_probe as _;
+use embassy_stm32::pac::GPIOB;
+use pins::{Pins, fixed};
+use sensors::Sensors;
+use soft_spi::{Edge, SoftSpi};
 use static_cell::StaticCell;
 
 static CONTROL: InterruptExecutor = InterruptExecutor::new();
 
-/// Starts clocks, watchdog and executors: `control` gets the one above everything but the clock's
-/// interrupt, `thread` the lowest one.
+/// Starts the chip and the parts around it; the motor's interrupt runs from now on, the watchdog is hungry.
+///
+/// # Panics
+/// When called a second time.
+pub fn start() {
+    failure::enable();
+    if let Some(mut core) = cortex_m::Peripherals::take() {
+        priority::set(&mut core);
+    }
+    let peripherals = embassy_stm32::init(clock::config());
+    clock::quicken_flash();
+    start_parts(peripherals);
+}
+
+/// Starts the executors, `control`'s above `thread`'s.
 ///
 /// # Panics
 /// When called a second time.
 pub fn run(control: impl FnOnce(SendSpawner), thread: impl FnOnce(Spawner)) -> ! {
     static THREAD: StaticCell<Executor> = StaticCell::new();
-    let peripherals = embassy_stm32::init(clock::config());
-    watchdog::start(peripherals.IWDG);
-    // The board does not use UART5: its interrupt is the control executor's.
-    interrupt::UART5.set_priority(Priority::P4);
     THREAD.init(Executor::new()).run(|spawner| {
         thread(spawner);
+        // The board does not use UART5: its interrupt is the control executor's.
         control(CONTROL.start(interrupt::UART5));
     })
 }
+
+/// Everything between the clocks and the executors, the way to open the bridge first.
+fn start_parts(peripherals: embassy_stm32::Peripherals) {
+    static SENSORS: StaticCell<Sensors> = StaticCell::new();
+    let pins = Pins::of(peripherals);
+    // The button holds the power only while it is pressed.
+    fixed(pins.hold_power, Level::High);
+    fixed(pins.current_filter, Level::High);
+    fixed(pins.sensor_port_5v, Level::Low);
+    watchdog::start();
+    brown_out::start();
+
+    let in_step = pwm::start(pins.bridge);
+    clock::watch_crystal();
+    let driver = gate::start(pins.gate_enable, &mut SoftSpi::new(pins.gate_bus, Edge::Falling, GATE_CYCLES));
+    adc::start(pins.analog);
+    let plan = parts::vesc6::MOTOR.plan();
+    if !in_step || plan.is_err() {
+        defmt::error!("motor: timer in step={=bool}, configuration good={=bool}", in_step, plan.is_ok());
+        outputs_off();
+    }
+    if let Ok(plan) = plan {
+        let encoder = SoftSpi::new(pins.encoder_bus, Edge::Falling, ENCODER_CYCLES);
+        motor::start(plan, driver, encoder, Input::new(pins.gate_fault, Pull::Up));
+    }
+
+    let mut imu = SoftSpi::new(pins.imu_bus, Edge::Rising, IMU_CYCLES);
+    let imu = imu::start(&mut imu).then_some(imu);
+    let edges = wheels::start(pins.front_wheel, pins.rear_wheel);
+    sensors::start(SENSORS.init(Sensors::new(imu, edges)));
+    lamps::start(pins.green, pins.red);
+    line::start(pins.link);
+    flash::start(pins.flash);
+    watchdog::standstill(false);
+}
+
+/// Half clocks of the buses \[cycles of 6 ns\]: gate driver 1 MHz, IMU below 2 MHz (its clock's pin is a slow one), the
+/// encoder below its 10 MHz.
+const GATE_CYCLES: u32 = 84;
+const IMU_CYCLES: u32 = 42;
+const ENCODER_CYCLES: u32 = 10;
 
 #[interrupt]
 fn UART5() {
@@ -41,20 +118,28 @@ fn UART5() {
     unsafe { CONTROL.on_interrupt() }
 }
 
-/// The sensors of this instant: none.
-pub fn sense() -> SensorFrame {
-    SensorFrame::missing()
+/// Opens all six switches and turns the gate driver off, until the next start. From any context, fault handlers included:
+/// it writes three words and needs nothing but their addresses.
+pub fn outputs_off() {
+    // First, so that the motor's interrupt does not close again what is opened here.
+    shared::set_off();
+    pwm::open();
+    GPIOB.bsrr().write(|w| w.set_br(pins::GATE_ENABLE, true));
 }
 
-/// Gives the command to the motor.
+/// Gives the command to the motor's interrupt, which opens the bridge where the next one does not come in time.
 ///
 /// # Errors
-/// Always: there is no driver for it.
-pub fn drive(_: &Command) -> Result<(), Refusal> {
-    Err(Refusal::NoSensorAndMotorDrivers)
+/// Why no torque is given, as the interrupt last saw it.
+pub fn drive(command: &Command) -> Result<(), Refusal> {
+    let wanted = command.torque_nm != 0.0 || matches!(command.mode, Mode::Engaged | Mode::Limp);
+    let refusal = motor_report().refusal();
+    order(if wanted { Ask::Torque(command.torque_nm) } else { Ask::Off });
+    lamps::show(refusal.is_none());
+    refusal.map_or(Ok(()), Err)
 }
 
-/// One line of defmt over RTT.
+/// A second's state over RTT: what was done, what was sensed, what the motor's interrupt says.
 pub fn report(t: &Telemetry) {
     defmt::info!(
         "steps={=u32} late={=u32} worst_us={=u32} torque_nm={=f32} mode={=str} motor={=str}",
@@ -63,6 +148,41 @@ pub fn report(t: &Telemetry) {
         t.deadlines.worst_us,
         t.command.torque_nm,
         t.command.mode.name(),
-        t.drive.map_or_else(Refusal::reason, |()| "driven")
+        t.drive.map_or_else(Refusal::reason, |()| "able")
+    );
+    let f = &t.frame;
+    defmt::info!(
+        "gyro_rad_s={} age={=u16} accel_m_s2={} age={=u16} steer_rad={=f32} age={=u16} front_m_s={=f32} age={=u16} \
+         rear_m_s={=f32} age={=u16} rider_nm={=f32} age={=u16} switch={=bool}",
+        f.gyro_rad_s.value,
+        f.gyro_rad_s.age_ticks,
+        f.accel_m_s2.value,
+        f.accel_m_s2.age_ticks,
+        f.steer_rad.value,
+        f.steer_rad.age_ticks,
+        f.front_wheel_m_s.value,
+        f.front_wheel_m_s.age_ticks,
+        f.rear_wheel_m_s.value,
+        f.rear_wheel_m_s.age_ticks,
+        f.rider_torque_nm.value,
+        f.rider_torque_nm.age_ticks,
+        f.engage
+    );
+    let m = motor_report();
+    defmt::info!(
+        "calls={=u32} late={=u32} mode={=u8} faults={=u32:#x} supply_v={=f32} board_c={=f32} encoder={=u16} age={=u16} \
+         steer_rad_s={=f32} iq_a={=f32} torque_nm={=f32} offset_turns={}",
+        m.calls,
+        m.late,
+        m.mode as u8,
+        m.faults.0,
+        m.supply_v,
+        shared::heat_c(),
+        m.encoder_counts,
+        m.encoder_age,
+        m.steer_rate_rad_s,
+        m.iq_a,
+        m.torque_nm,
+        m.offset_turns
     );
 }

@@ -1,29 +1,45 @@
 //! The independent watchdog: runs from its own oscillator and can't be stopped once started.
 
 use crate::tasks::WATCHDOG;
-use core::cell::RefCell;
-use embassy_stm32::Peri;
-use embassy_stm32::peripherals::IWDG;
-use embassy_stm32::wdg::IndependentWatchdog;
-use embassy_sync::blocking_mutex::Mutex;
-use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_stm32::pac::IWDG;
+use embassy_stm32::pac::iwdg::vals::{Key, Pr};
+use embassy_time::Duration;
 
-type Dog = IndependentWatchdog<'static, IWDG>;
+/// Patience while the chip stands still: at start, and in an erase of a sector, 0.5 s at most.
+const STANDSTILL: Duration = Duration::from_millis(2000);
 
-static DOG: Mutex<CriticalSectionRawMutex, RefCell<Option<Dog>>> = Mutex::new(RefCell::new(None));
+/// One count, of 32 kHz / 64; the oscillator is anything from 17 to 47 kHz.
+const COUNT: Duration = Duration::from_millis(2);
 
-/// Starts it: from now on the chip resets unless [`feed_watchdog`] is called in time.
-pub(super) fn start(peripheral: Peri<'static, IWDG>) {
-    let mut dog = IndependentWatchdog::new(peripheral, WATCHDOG.as_micros() as u32);
-    dog.unleash();
-    DOG.lock(|cell| cell.replace(Some(dog)));
+/// Starts it, with the patience of a standstill.
+pub(super) fn start() {
+    IWDG.kr().write(|w| w.set_key(Key::START));
+    IWDG.kr().write(|w| w.set_key(Key::ENABLE));
+    IWDG.pr().write(|w| w.set_pr(Pr::DIVIDE_BY64));
+    standstill(true);
+}
+
+/// Lengthens its patience for a standstill, or makes it [`WATCHDOG`]; either begins anew.
+pub(super) fn standstill(is: bool) {
+    let patience = if is { STANDSTILL } else { WATCHDOG };
+    settled();
+    IWDG.kr().write(|w| w.set_key(Key::ENABLE));
+    IWDG.rlr().write(|w| w.set_rl((patience.as_ticks() / COUNT.as_ticks()) as u16));
+    settled();
+    feed_watchdog();
+}
+
+/// Waits, not for ever, until the registers took what was written last: five of the oscillator's cycles.
+fn settled() {
+    for _ in 0..100_000 {
+        let status = IWDG.sr().read();
+        if !status.pvu() && !status.rvu() {
+            break;
+        }
+    }
 }
 
 /// Starts the watchdog's patience anew.
 pub fn feed_watchdog() {
-    DOG.lock(|cell| {
-        if let Some(dog) = cell.borrow_mut().as_mut() {
-            dog.pet();
-        }
-    });
+    IWDG.kr().write(|w| w.set_key(Key::RESET));
 }

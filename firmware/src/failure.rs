@@ -1,9 +1,7 @@
-//! Whatever goes wrong starts the chip anew where the image says so, else it ends QEMU with a report and a status that is
-//! not zero.
+//! Panics, exceptions and stray interrupts, on every board: all end in [`crash::end`].
 #![allow(unsafe_code)]
 
-use super::semihosting::exit;
-use super::{Exit, reset, text};
+use crate::board;
 use crate::crash::{self, Registers};
 use core::fmt::Write;
 use core::panic::PanicInfo;
@@ -11,7 +9,8 @@ use cortex_m::peripheral::SCB;
 use heapless::String;
 use link::report::{FAULT_TEXT_BYTES, FaultKind};
 
-// A fault may come from a stack that has run out: report on a fresh one.
+// A fault may come from a stack that has run out: then go on with a fresh one. Otherwise stay on the one that has
+// what the core stacked.
 core::arch::global_asm!(
     ".macro fault name",
     ".global \\name",
@@ -20,9 +19,13 @@ core::arch::global_asm!(
     "\\name:",
     "mrs r0, msp",
     "mrs r1, ipsr",
+    "ldr r2, =_stack_end",
+    "add.w r2, r2, #2048",
+    "cmp r0, r2",
+    "bhs 1f",
     "ldr r2, =_stack_start",
     "msr msp, r2",
-    "b fault_report",
+    "1: b fault_report",
     ".endm",
     "fault HardFault",
     "fault MemoryManagement",
@@ -31,7 +34,7 @@ core::arch::global_asm!(
     ".ltorg",
 );
 
-/// Gives each kind of fault its own exception, so that the report names it.
+/// Gives each kind of fault its own exception, so that the record names it.
 pub fn enable() {
     const SHCSR_ALL_FAULTS: u32 = 0b111 << 16;
     // SAFETY: sets bits of the core's own register that nothing else writes.
@@ -44,14 +47,8 @@ extern "C" fn fault_report(sp: u32, exception: u32) -> ! {
     // SAFETY: the core's own registers, reading them has no effect.
     let [cfsr, hfsr, bfar] = [0xE000_ED28, 0xE000_ED2C, 0xE000_ED38]
         .map(|at: usize| unsafe { (at as *const u32).read_volatile() });
-    text::line(format_args!(
-        "fault: exception={exception} cfsr={cfsr:08x} hfsr={hfsr:08x} bfar={bfar:08x} sp={sp:08x}"
-    ));
-    if reset::does_restart() {
-        let [pc, lr] = stacked(sp).unwrap_or_default();
-        crash::end(FaultKind::Exception, Registers { exception, values: [cfsr, hfsr, bfar, sp, pc, lr] }, "")
-    }
-    exit(Exit::Fault)
+    let [pc, lr] = stacked(sp).unwrap_or_default();
+    crash::end(FaultKind::Exception, Registers { exception, values: [cfsr, hfsr, bfar, sp, pc, lr] }, "")
 }
 
 /// Where it happened and who called, as the core stacked them; `None` if they lie outside the stack.
@@ -66,31 +63,17 @@ fn stacked(sp: u32) -> Option<[u32; 2]> {
     inside.then(|| [24, 20].map(|at| unsafe { ((sp + at) as *const u32).read_volatile() }))
 }
 
-/// Reads memory that is not there.
-pub(super) fn touch_nothing() -> ! {
-    // SAFETY: there is no memory at this address; the bus fault is the point.
-    unsafe { core::hint::black_box((0x6000_0000 as *const u32).read_volatile()) };
-    unreachable!("the read is a bus fault")
-}
-
 #[cortex_m_rt::exception]
 unsafe fn DefaultHandler(interrupt: i16) -> ! {
-    text::line(format_args!("stray interrupt {interrupt}"));
-    if reset::does_restart() {
-        let exception = (interrupt + 16) as u32;
-        crash::end(FaultKind::Exception, Registers { exception, values: [0; 6] }, "stray interrupt")
-    }
-    exit(Exit::StrayInterrupt)
+    let exception = (i32::from(interrupt) + 16) as u32;
+    crash::end(FaultKind::Exception, Registers { exception, values: [0; 6] }, "stray interrupt")
 }
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    text::line(format_args!("{info}"));
-    if reset::does_restart() {
-        let mut words = String::<FAULT_TEXT_BYTES>::new();
-        // What does not fit is cut.
-        let _ = write!(words, "{info}");
-        crash::end(FaultKind::Panic, Registers::default(), &words)
-    }
-    exit(Exit::Panic)
+    board::outputs_off();
+    let mut words = String::<FAULT_TEXT_BYTES>::new();
+    // What does not fit is cut.
+    let _ = write!(words, "{info}");
+    crash::end(FaultKind::Panic, Registers::default(), &words)
 }

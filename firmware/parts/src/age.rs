@@ -1,0 +1,26 @@
+//! How old a sample is, in control periods.
+
+use control::frame::MISSING;
+
+/// The age of a sensor's newest sample; [`MISSING`] before the first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Age(u16);
+
+impl Default for Age {
+    fn default() -> Self {
+        Self(MISSING)
+    }
+}
+
+impl Age {
+    /// The age now [control periods].
+    pub fn now(self) -> u16 {
+        self.0
+    }
+
+    /// One control period, in which a new sample came or none did; the age now \[control periods\].
+    pub fn step(&mut self, new: bool) -> u16 {
+        self.0 = if new { 0 } else { self.0.saturating_add(1) };
+        self.0
+    }
+}

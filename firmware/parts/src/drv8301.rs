@@ -1,0 +1,150 @@
+//! The gate driver DRV8301: its registers as words.
+//!
+//! 16 bits, the highest first, clock low at rest, data taken at its falling edge. Bit 15 asks for a read, bits 14..11
+//! are the register, bits 10..0 the data. A word is answered in the next transfer, with bit 15 set where the frame was
+//! damaged. Source: its data sheet, SLOS719.
+
+/// A register.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Register {
+    /// What is wrong now, bits of [`Status`].
+    Status1 = 0,
+    /// One more bit of it, and the kind of device.
+    Status2 = 1,
+    /// Gates and over-current.
+    Control1 = 2,
+    /// Amplifiers.
+    Control2 = 3,
+}
+
+/// The word that reads a register.
+pub const fn read(register: Register) -> u16 {
+    0x8000 | (register as u16) << 11
+}
+
+/// The word that writes a register.
+pub const fn write(register: Register, data: u16) -> u16 {
+    (register as u16) << 11 | data & 0x07ff
+}
+
+/// The data in an answer; `None` where the frame was damaged or the answer is that of another register.
+///
+/// A line held low or high by a driver that is not there is refused as well, but for a zero of [`Register::Status1`]:
+/// judge that one only after [`is_present`].
+pub const fn data(register: Register, answer: u16) -> Option<u16> {
+    let right = answer & 0x8000 == 0 && answer >> 11 & 0xf == register as u16;
+    if right { Some(answer & 0x07ff) } else { None }
+}
+
+/// Whether the data of [`Register::Status2`] are those of a DRV8301.
+pub const fn is_present(status2: u16) -> bool {
+    status2 & 0x000f == 1
+}
+
+/// Peak current into the gates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum GateCurrent {
+    /// 1.7 A.
+    A1_7 = 0,
+    /// 0.7 A.
+    A0_7 = 1,
+    /// 0.25 A.
+    A0_25 = 2,
+}
+
+/// What too much current through a switch does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum OverCurrent {
+    /// The switch opens for the rest of the cycle.
+    Limit = 0,
+    /// All switches open and stay open.
+    Latch = 1,
+    /// It is told, and no more.
+    Report = 2,
+    /// Nothing.
+    Off = 3,
+}
+
+/// Gain of its own two amplifiers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Gain {
+    /// 10 V/V.
+    X10 = 0,
+    /// 20 V/V.
+    X20 = 1,
+    /// 40 V/V.
+    X40 = 2,
+    /// 80 V/V.
+    X80 = 3,
+}
+
+/// Voltage across a closed switch that counts as over-current, by its number in the data sheet \[mV\].
+pub const OVER_CURRENT_MV: [u16; 32] = [
+    60, 68, 76, 86, 97, 109, 123, 138, 155, 175, 197, 222, 250, 282, 317, 358, 403, 454, 511, 576, 648, 730,
+    822, 926, 1043, 1175, 1324, 1491, 1679, 1892, 2131, 2400,
+];
+
+/// What the gate driver is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Current into the gates.
+    pub gate_current: GateCurrent,
+    /// What over-current does.
+    pub over_current: OverCurrent,
+    /// Voltage across a closed switch that counts as over-current \[mV\]; the next one of [`OVER_CURRENT_MV`] that is not
+    /// above it is taken, or the least.
+    pub over_current_mv: u16,
+    /// Gain of its amplifiers.
+    pub gain: Gain,
+}
+
+impl Settings {
+    /// Number of the over-current voltage, and the voltage \[mV\].
+    pub const fn over_current_step(&self) -> (u16, u16) {
+        let mut step = OVER_CURRENT_MV.len() - 1;
+        while step > 0 && OVER_CURRENT_MV[step] > self.over_current_mv {
+            step -= 1;
+        }
+        (step as u16, OVER_CURRENT_MV[step])
+    }
+
+    /// Data of [`Register::Control1`]: six inputs, no reset.
+    pub const fn control1(&self) -> u16 {
+        self.over_current_step().0 << 6 | (self.over_current as u16) << 4 | self.gate_current as u16
+    }
+
+    /// Data of [`Register::Control2`]: all faults on the fault pin, amplifiers on, over-current cycle by cycle.
+    pub const fn control2(&self) -> u16 {
+        (self.gain as u16) << 2
+    }
+}
+
+/// What the gate driver says is wrong: the data of [`Register::Status1`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Status(pub u16);
+
+/// Names of the bits of [`Status`], from bit 0.
+pub const STATUS: [&str; 11] = [
+    "over-current low c",
+    "over-current high c",
+    "over-current low b",
+    "over-current high b",
+    "over-current low a",
+    "over-current high a",
+    "hot",
+    "too hot",
+    "supply low",
+    "gate supply low",
+    "fault",
+];
+
+impl Status {
+    /// What is wrong, in words.
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        STATUS.into_iter().enumerate().filter(move |(bit, _)| self.0 >> bit & 1 == 1).map(|(_, name)| name)
+    }
+}

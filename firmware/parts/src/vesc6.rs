@@ -1,0 +1,63 @@
+//! A VESC 6 MK6 on a bicycle, in numbers: what is on the board, and what is wired to it here.
+//!
+//! The board's own are facts of the public hardware definition (`hwconf/trampa/vesc6/hw_60_core.h` in the repository
+//! vedderb/bldc, hardware 60_MK6). What is wired to it (encoder, steer sensor, wheels, torque sensor) and every
+//! threshold is chosen here; docs/hardware.md tells the wiring.
+
+use crate::analog::{Divider, Gauge, Shunt, Thermistor};
+use crate::as5047;
+use crate::drv8301::{Gain, GateCurrent, OverCurrent, Settings};
+use control::pulses::PulsesConfig;
+use core::f32::consts::FRAC_PI_2;
+use motor::example::EXAMPLE;
+
+/// Supply and reference of the converter \[V\].
+const REFERENCE_V: f32 = 3.3;
+
+/// The shunts in the three phases.
+pub const SHUNT: Shunt =
+    Shunt { resistance_ohm: 0.5e-3, gain: 20.0, reference_v: REFERENCE_V, reversed: false };
+
+/// The supply's divider.
+pub const SUPPLY: Divider = Divider { upper_ohm: 39_000.0, lower_ohm: 2_200.0, reference_v: REFERENCE_V };
+
+/// The thermistor beside the switches.
+pub const BOARD_HEAT: Thermistor = Thermistor { lower_ohm: 10_000.0, nominal_ohm: 10_000.0, beta_k: 3380.0 };
+
+/// The gate driver: small gate current; a switch that drops more than 123 mV opens all six until the next start. Its
+/// amplifiers are not used, as the shunts have their own.
+pub const GATE_DRIVER: Settings = Settings {
+    gate_current: GateCurrent::A0_25,
+    over_current: OverCurrent::Latch,
+    over_current_mv: 123,
+    gain: Gain::X20,
+};
+
+/// The motor: the example's, with the encoder wired here. The offset is not known until it was aligned and written down
+/// here, and without it no torque is given.
+pub const MOTOR: motor::Config = motor::Config {
+    encoder: motor::encoder::EncoderConfig { counts: as5047::COUNTS, ..EXAMPLE.encoder },
+    ..EXAMPLE
+};
+
+/// Silence of control after which the bridge opens \[calls of the motor's interrupt\]: 5 ms, as long as
+/// `input.max_gap_ms` of `control::Config::product`.
+pub const PATIENCE_CALLS: u16 = 100;
+
+/// The steer sensor: 10 to 90 % of the reference over 180 degrees, rising to the right.
+pub const STEER_RAD: Gauge =
+    Gauge { least_counts: 410, most_counts: 3685, at_least: -FRAC_PI_2, at_most: FRAC_PI_2 };
+
+/// The rider's torque sensor, where there is one: 10 to 90 % of the reference over 40 N m, rising to the right.
+pub const RIDER_NM: Gauge = Gauge { least_counts: 410, most_counts: 3685, at_least: -20.0, at_most: 20.0 };
+
+/// Counts below which the rider's switch is closed: a contact to ground under a pull-up, so a cut wire is open.
+pub const SWITCH_COUNTS: u16 = 1365;
+
+/// Control periods for which the switch must seem otherwise.
+pub const SWITCH_TICKS: u16 = 10;
+
+/// Both wheels: 16 magnets on 0.35 m.
+pub fn wheel() -> PulsesConfig {
+    PulsesConfig::default()
+}

@@ -1,0 +1,93 @@
+//! The flash of the parameters: three sectors of 16 KiB that `memory.x` keeps free of code.
+
+use super::{pwm, shared, watchdog};
+use core::ops::Range;
+use embassy_stm32::flash::{Async, Bank1Region1, Error, Flash as Chip, InterruptHandler};
+use embassy_stm32::pac;
+use embassy_stm32::pac::flash::vals::Psize;
+use embassy_stm32::peripherals::FLASH;
+use embassy_stm32::{Peri, bind_interrupts};
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embedded_storage_async::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
+
+bind_interrupts!(struct Lines { FLASH => InterruptHandler; });
+
+/// Sectors 1 to 3. Sector 0 has the vector table.
+const STORE: Range<u32> = 0x4000..0x1_0000;
+
+/// The flash as the store sees it. The motor's bridge is open while it is written or erased, because the chip stands
+/// still meanwhile and would not watch the current; so does the watchdog get more patience.
+pub struct Flash(Bank1Region1<'static, Async>);
+
+static FLASH_LEFT: Mutex<CriticalSectionRawMutex, core::cell::Cell<Option<Peri<'static, FLASH>>>> =
+    Mutex::new(core::cell::Cell::new(None));
+
+/// What unlocks the flash's control register.
+const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
+
+/// Puts the peripheral where [`flash`] finds it. Sectors are erased by words from now on, 0.5 s at most each; out of reset
+/// it is by bytes, 0.8 s (data sheet of the STM32F405, table 40), and the HAL leaves it so.
+pub(super) fn start(peripheral: Peri<'static, FLASH>) {
+    KEYS.into_iter().for_each(|key| pac::FLASH.keyr().write_value(key));
+    pac::FLASH.cr().modify(|w| w.set_psize(Psize::PSIZE32));
+    pac::FLASH.cr().modify(|w| w.set_lock(true));
+    FLASH_LEFT.lock(|left| left.set(Some(peripheral)));
+}
+
+/// The flash, and the range in it that is the store's; `None` when it was given away already.
+pub fn flash() -> Option<(Flash, Range<u32>)> {
+    let peripheral = FLASH_LEFT.lock(core::cell::Cell::take)?;
+    Some((Flash(Chip::new(peripheral, Lines).into_regions().bank1_region1), STORE))
+}
+
+/// While it lives the bridge is open and the watchdog patient.
+struct Standstill;
+
+impl Standstill {
+    fn begin() -> Self {
+        // The interrupt would close it again, so that it is told first.
+        shared::set_hold(true);
+        pwm::open();
+        watchdog::standstill(true);
+        Self
+    }
+}
+
+impl Drop for Standstill {
+    fn drop(&mut self) {
+        watchdog::standstill(false);
+        shared::set_hold(false);
+    }
+}
+
+impl ErrorType for Flash {
+    type Error = Error;
+}
+
+impl ReadNorFlash for Flash {
+    const READ_SIZE: usize = Bank1Region1::<Async>::READ_SIZE;
+
+    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Error> {
+        self.0.read(offset, bytes).await
+    }
+
+    fn capacity(&self) -> usize {
+        self.0.capacity()
+    }
+}
+
+impl NorFlash for Flash {
+    const WRITE_SIZE: usize = Bank1Region1::<Async>::WRITE_SIZE;
+    const ERASE_SIZE: usize = Bank1Region1::<Async>::ERASE_SIZE;
+
+    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Error> {
+        let _standstill = Standstill::begin();
+        self.0.write(offset, bytes).await
+    }
+
+    async fn erase(&mut self, from: u32, to: u32) -> Result<(), Error> {
+        let _standstill = Standstill::begin();
+        self.0.erase(from, to).await
+    }
+}

@@ -1,0 +1,33 @@
+//! The board's two lamps: green blinks while steps are done, red is on while no torque can be given.
+
+use super::pins::Pin;
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use embassy_stm32::gpio::Level;
+use embassy_stm32::pac::GPIOB;
+
+/// Their numbers on port B.
+const GREEN: usize = 0;
+const RED: usize = 1;
+
+/// Steps between two changes of the green one.
+const BLINK: u32 = 500;
+
+static STEPS: AtomicU32 = AtomicU32::new(0);
+
+/// Both on.
+pub(super) fn start(green: Pin, red: Pin) {
+    [green, red].into_iter().for_each(|pin| super::pins::fixed(pin, Level::High));
+}
+
+/// One step was done; whether torque can be given.
+pub(super) fn show(able: bool) {
+    let steps = STEPS.load(Relaxed).wrapping_add(1);
+    STEPS.store(steps, Relaxed);
+    GPIOB.bsrr().write(|w| {
+        let dark = steps / BLINK % 2 == 1;
+        w.set_bs(GREEN, !dark);
+        w.set_br(GREEN, dark);
+        w.set_bs(RED, !able);
+        w.set_br(RED, able);
+    });
+}
