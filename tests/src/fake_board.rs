@@ -4,7 +4,7 @@
 use control::wire::{CONFIG_BYTES, decode_config};
 use control::{Config, Plan, Sample, SensorFrame, State, Triple};
 use link::frame::MAX_FRAME;
-use link::lockstep::{FromBoard, ToBoard};
+use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
 use link::refusal::{Refusal, Why};
 use link::{Decoder, Message, Received};
 use sim_host::board::{BoardError, Lockstep};
@@ -15,8 +15,6 @@ pub struct FakeBoard {
     pub reset_at_ms: Option<(u32, u32)>,
     /// At this time it is held up for so many milliseconds, and then makes up for every step.
     pub held_up_at_ms: Option<(u32, u32)>,
-    /// Every chunk that went either way, in order.
-    pub chunks: Vec<Vec<u8>>,
     config: Vec<u8>,
     plan: Plan,
     controller: State,
@@ -35,7 +33,6 @@ impl Default for FakeBoard {
         let mut board = Self {
             reset_at_ms: None,
             held_up_at_ms: None,
-            chunks: Vec::new(),
             config: Vec::new(),
             plan: plan(&Config::product()).expect("the product"),
             controller: State::default(),
@@ -55,8 +52,8 @@ fn plan(config: &Config) -> Result<Plan, Refusal<'static>> {
     config.clone().plan().map_err(Refusal::from)
 }
 
-/// The frame `late` control periods after its own.
-fn aged(frame: &SensorFrame, late: u16) -> SensorFrame {
+/// The frame so many control periods after its own.
+pub fn aged(frame: &SensorFrame, late: u16) -> SensorFrame {
     let one = |s: Sample| Sample { age_ticks: s.age_ticks.saturating_add(late), ..s };
     let three = |t: Triple| Triple { age_ticks: t.age_ticks.saturating_add(late), ..t };
     SensorFrame {
@@ -137,14 +134,12 @@ impl Lockstep for FakeBoard {
     }
 
     fn exchange(&mut self, to: &ToBoard<'_>) -> Result<(), BoardError> {
-        let mut room = [0; link::lockstep::MAX_CHUNK];
-        let used = to.encode(&mut room).ok_or(BoardError::TooMuch(to.sensors.len(), to.line.len()))?;
-        self.chunks.push(room[..used].into());
+        to.encode(&mut [0; MAX_CHUNK]).ok_or(BoardError::TooMuch(to.sensors.len(), to.line.len()))?;
         self.motor.clear();
         let due = |at: Option<(u32, u32)>, now| at.filter(|(at, _)| *at == now).map(|(_, gone)| gone);
         if let Some(gone_ms) = due(self.reset_at_ms, self.time_ms) {
-            let kept = Self { chunks: std::mem::take(&mut self.chunks), ..Self::default() };
-            *self = Self { time_ms: self.time_ms + gone_ms, starts: self.starts + 1, ..kept };
+            let (time_ms, starts) = (self.time_ms + gone_ms, self.starts + 1);
+            *self = Self { time_ms, starts, ..Self::default() };
         } else {
             self.take(to.sensors);
             for _ in 0..due(self.held_up_at_ms, self.time_ms).unwrap_or(0) {
@@ -153,8 +148,6 @@ impl Lockstep for FakeBoard {
             }
             self.control();
         }
-        let used = self.chunk().encode(&mut room).expect("a chunk holds it");
-        self.chunks.push(room[..used].into());
         Ok(())
     }
 }

@@ -14,6 +14,8 @@ pub mod late;
 pub mod linearised;
 pub mod model;
 pub mod newton_euler;
+pub mod pil;
 pub mod published;
 pub mod riders;
 pub mod rides;
+pub mod tape;

@@ -116,8 +116,8 @@ impl<B: Lockstep> Controller<B> {
         self.tally
     }
 
-    /// One exchange; the command that came, if one did.
-    fn exchange(&mut self, frame: &SensorFrame) -> Result<Option<Stepped>, BoardError> {
+    /// One exchange; the command that came, if one did, and the number of its frame.
+    fn exchange(&mut self, frame: &SensorFrame) -> Result<Option<(Stepped, u16)>, BoardError> {
         let ride = &mut self.ride;
         let mut sensors = Vec::with_capacity(MAX_FRAME);
         let sequence = ride.sequence();
@@ -153,18 +153,13 @@ impl<B: Lockstep> Controller<B> {
         if !reset {
             return Err(ride.astray("the reset was not answered"));
         }
-        match command {
-            Some((_, of)) if of != sequence && ride.sensors.safe() && !ride.restarted => {
-                Err(ride.astray(format!("a command of frame {of} in answer to frame {sequence}")))
-            }
-            Some((stepped, _)) => Ok(Some(stepped)),
-            None => Ok(None),
-        }
+        Ok(command)
     }
 
     /// A control step that the board takes part in.
     fn stepped(&mut self, frame: &SensorFrame) -> Result<Stepped, BoardError> {
         let (before_ms, starts) = (self.board.last().time_ms, self.board.last().starts);
+        let sequence = self.ride.sequence();
         let newest = self.exchange(frame)?;
         let (now_ms, started) = (self.board.last().time_ms, self.board.last().starts.wrapping_sub(starts));
         let ride = &mut self.ride;
@@ -177,9 +172,15 @@ impl<B: Lockstep> Controller<B> {
             (ride.restarted, ride.step_zero) = (true, ride.step + gone_ms - 1);
             self.tally.restarts += u64::from(started);
         }
-        if newest.is_none() && ride.motor.safe() && !ride.restarted {
-            return Err(ride.astray("the board gave no command"));
+        let sure = ride.sensors.safe() && ride.motor.safe() && !ride.restarted;
+        match newest {
+            None if sure => return Err(ride.astray("the board gave no command")),
+            Some((_, of)) if sure && of != sequence => {
+                return Err(ride.astray(format!("a command of frame {of} in answer to frame {sequence}")));
+            }
+            _ => {}
         }
+        let newest = newest.map(|(stepped, _)| stepped);
         if gone_ms == 1 {
             return Ok(ride.motor(newest));
         }

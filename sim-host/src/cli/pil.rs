@@ -21,12 +21,13 @@ Examples:
 
 /// Options of `pil`.
 #[derive(clap::Args)]
+#[group(skip)]
 #[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(super) struct Args {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
-    ride: Option<RideArgs>,
+    ride: RideArgs,
 }
 
 #[derive(clap::Subcommand)]
@@ -86,10 +87,9 @@ impl BoardArgs {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    match (&args.command, &args.ride) {
-        (Some(Command::Basin(args)), _) => pil_basin::run(args),
-        (None, Some(args)) => on_board(args),
-        (None, None) => Err("--speed must be given".into()),
+    match &args.command {
+        Some(Command::Basin(args)) => pil_basin::run(args),
+        None => on_board(&args.ride),
     }
 }
 

@@ -27,8 +27,8 @@ pub(super) struct Args {
     #[command(flatten)]
     pub(super) conditions: ConditionArgs,
     /// Forward speed at the start, in m/s
-    #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
-    speed: f64,
+    #[arg(long, required = true, value_name = "M/S", allow_negative_numbers = true)]
+    speed: Option<f64>,
     /// Steer rate at the start, in rad/s, right positive
     #[arg(long, default_value_t = 0.0, value_name = "RAD/S", allow_negative_numbers = true)]
     steer_rate: f64,
@@ -45,14 +45,12 @@ pub(super) struct Args {
 impl Args {
     /// How the ride begins, checked.
     pub(super) fn start(&self) -> Result<Start, Failure> {
-        within("--speed (m/s)", self.speed, 0.0, 30.0)?;
+        // Without it no command but a subcommand gets here.
+        let speed_m_s = self.speed.ok_or("--speed must be given")?;
+        within("--speed (m/s)", speed_m_s, 0.0, 30.0)?;
         within("--steer-rate (rad/s)", self.steer_rate, -100.0, 100.0)?;
         within("--roll-rate (rad/s)", self.roll_rate, -100.0, 100.0)?;
-        Ok(Start {
-            speed_m_s: self.speed,
-            steer_rate_rad_s: self.steer_rate,
-            roll_rate_rad_s: self.roll_rate,
-        })
+        Ok(Start { speed_m_s, steer_rate_rad_s: self.steer_rate, roll_rate_rad_s: self.roll_rate })
     }
 
     /// Tries every output asked for.

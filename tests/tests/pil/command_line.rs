@@ -1,0 +1,113 @@
+//! `sim-host pil`.
+
+use std::path::PathBuf;
+use tests::cli::Bench;
+use xtask::image;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+const RIDE: &str = "--preset product --speed 4 --steer-rate 5 --time-limit 1";
+
+/// The image as an option.
+fn on_image() -> String {
+    let image: PathBuf = image::path("qemu-pil");
+    format!("--image {}", image.display())
+}
+
+/// Situation: options that no board can be ridden with. Action: `pil`.
+/// Must hold: refused, naming the option, the value and what there is.
+#[test]
+fn what_can_not_be_ridden_is_refused_by_name() {
+    let bench = Bench::new(PROGRAM);
+    for (line, named) in [
+        ("pil --speed 4 --law none", vec!["--law"]),
+        ("pil --speed 4 --assist ideal", vec!["--assist firmware"]),
+        ("pil --speed 4 --set rate_hz=500", vec!["rate_hz = 500", "1000 Hz"]),
+        ("pil --speed 40", vec!["--speed", "0 to 30"]),
+        ("pil --speed 4 --image no/such/image", vec!["no/such/image", "cargo xtask firmware"]),
+        ("pil --speed 4 --inject gyro:drop", vec!["--inject", "gyro:drop", "sensors, motor"]),
+        ("pil --speed 4 --json no/such/folder.json", vec!["no/such"]),
+        ("pil basin --law none", vec!["--law"]),
+        ("pil basin --image no/such/image", vec!["no/such/image"]),
+        ("pil basin --speeds 4 --max-rate 1000", vec!["max rate", "100"]),
+    ] {
+        bench.run(line).refused_naming(&named);
+    }
+    for line in ["pil", "pil --speed 4 --compare --inject sensors:drop", "pil --speed 4 --compare --bench"] {
+        assert_eq!(bench.run(line).code, Some(2), "{line}");
+    }
+    assert_eq!(bench.files(), [""; 0]);
+}
+
+/// Situation: a product ride with a fault. Action: `pil --compare` and `ride`, each with all outputs.
+/// Must hold: exit 0, and the text says how many steps were the same; document, table, figure and frames are the same bytes.
+#[test]
+fn a_ride_on_the_chip_writes_what_a_ride_writes() {
+    if !image::ready() {
+        return;
+    }
+    let bench = Bench::new(PROGRAM);
+    let outputs = |name: &str| {
+        format!(
+            "--json {name}.json --csv {name}.csv --svg {name}.svg --frames {name}.frames --fault gyro:stuck@300ms"
+        )
+    };
+    let chip = bench.run(&format!("pil {RIDE} {} --compare {}", on_image(), outputs("chip")));
+    assert_eq!(chip.code, Some(0), "{chip:?}");
+    assert!(chip.stdout.contains("the same bits as in this program: "), "{}", chip.stdout);
+    assert!(chip.stdout.contains("times as fast as in real time"), "{}", chip.stdout);
+    let here = bench.run(&format!("ride {RIDE} {}", outputs("here")));
+    assert_eq!(here.code, Some(0), "{here:?}");
+    for ending in ["json", "csv", "svg", "frames"] {
+        let [chip, here] =
+            ["chip", "here"].map(|name| std::fs::read(bench.path(&format!("{name}.{ending}"))).unwrap());
+        assert!(chip == here && chip.len() > 1000, "{ending}");
+    }
+}
+
+/// Situation: a link that loses sensors for 50 ms. Action: `pil --inject`.
+/// Must hold: exit 0; the text says on how many steps it acted; the document is another one than without.
+#[test]
+fn a_fault_of_the_link_is_told() {
+    if !image::ready() {
+        return;
+    }
+    let bench = Bench::new(PROGRAM);
+    let fault = "--inject sensors:drop@0.2s..0.25s";
+    let run = bench.run(&format!("pil {RIDE} {} {fault} --csv lost.csv", on_image()));
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(run.stdout.contains("a fault of the link acted on 50 control steps"), "{}", run.stdout);
+    assert_eq!(bench.run(&format!("ride {RIDE} --csv plain.csv")).code, Some(0));
+    assert!(bench.read("lost.csv") != bench.read("plain.csv"));
+}
+
+/// Situation: a short ride. Action: `pil --bench`. Must hold: one line with the median; no other output.
+#[test]
+fn the_speed_is_told_as_a_median() {
+    if !image::ready() {
+        return;
+    }
+    let run = Bench::new(PROGRAM).run(&format!("pil {RIDE} {} --bench", on_image()));
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(
+        run.stdout.starts_with("median of 5 rides: ") && run.stdout.lines().count() == 1,
+        "{}",
+        run.stdout
+    );
+}
+
+/// Situation: a coarse basin. Action: `pil basin --compare` on two boards, and `basin`.
+/// Must hold: exit 0, and the text says that it is the same; the tables are the same bytes.
+#[test]
+fn a_basin_on_chips_writes_what_a_basin_writes() {
+    if !image::ready() {
+        return;
+    }
+    let bench = Bench::new(PROGRAM);
+    let search = "--speeds 3:5:1 --scan-step 5 --max-rate 10 --tolerance 2 --time-limit 0.5";
+    let run = bench.run(&format!("pil basin {search} --threads 2 {} --compare --csv chip.csv", on_image()));
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(run.stdout.contains("the same bits as in this program: 3 speeds"), "{}", run.stdout);
+    assert!(run.stdout.contains("boards: "), "{}", run.stdout);
+    assert_eq!(bench.run(&format!("basin {search} --csv here.csv")).code, Some(0));
+    assert_eq!(bench.read("chip.csv"), bench.read("here.csv"));
+}

@@ -1,0 +1,38 @@
+//! What befalls the chip in a ride, and what the ride makes of it.
+
+use super::image::started;
+use sim_host::board::{Controller, Lockstep};
+use sim_host::ride::Conditions;
+use tests::pil::{KNOCK, Ridden, product, ridden};
+use xtask::image;
+
+/// Situation: a product ride, engaged. Action: at 1 s of the chip's time its control task never ends, it panics, or its supply
+/// warns. Must hold: up to then the bits of an undisturbed ride; the motor holds the command for at most 5 ms, then gives none to
+/// the end, for the chip that came back has the stored configuration, without a polarity check; the ride lasts to its end; the
+/// chip started anew once, after a hung task when the watchdog had bitten, else within milliseconds.
+#[test]
+fn a_chip_that_fails_takes_the_torque_away() {
+    if !image::ready() {
+        return;
+    }
+    let conditions = Conditions { time_limit_s: 1.5, ..product() };
+    let plain = ridden(&conditions, KNOCK, &mut Controller::new(started(&[]), &[], 0)).unwrap();
+    for (mishap, missed) in [("control-spin", 50..250), ("panic", 0..60), ("brown-out", 0..200)] {
+        let chip = started(&[&format!("mishap={mishap}"), "at_ms=1000"]);
+        let begin_ms = chip.last().time_ms;
+        let mut controller = Controller::new(chip, &[], 0);
+        let Ridden { ride, steps, .. } = ridden(&conditions, KNOCK, &mut controller).unwrap();
+        let (tally, said) = (controller.tally(), controller.board.said());
+        println!("{mishap}: {tally:?}, {said}");
+        let at = (1000 - begin_ms) as usize;
+        let torque = |k: usize| steps[k].1.command.torque_nm;
+        let same = steps.iter().zip(&plain.steps).take_while(|(a, b)| a == b).count();
+        assert!((at - 2..at + 3).contains(&same), "{mishap}: alike for {same} steps, {at} expected");
+        assert!(torque(at - 2) != 0.0);
+        assert!((at + 7..steps.len()).all(|k| torque(k) == 0.0), "{mishap}");
+        assert_eq!(tally.restarts, 1, "{mishap}");
+        assert!(missed.contains(&tally.missed), "{mishap}: {} missed", tally.missed);
+        let fell_or_lasted = ride.fell() || ride.steps == 1500;
+        assert!(fell_or_lasted, "{ride:?}");
+    }
+}
