@@ -54,6 +54,16 @@ impl Parameter {
         }
     }
 
+    /// What it may be, in words: a range, names, or both.
+    pub fn allowed(&self) -> String {
+        let words = self.words().join(", ");
+        match self.kind {
+            Kind::Switch | Kind::Choice => words,
+            Kind::Limit => format!("{} to {} or {words}", self.min, self.max),
+            Kind::Number | Kind::Count => format!("{} to {}", self.min, self.max),
+        }
+    }
+
     /// A value in words; [`Parameter::parse`] reads it again, bit for bit.
     pub fn text(&self, value: Option<f32>) -> String {
         let Some(number) = value else { return "none".into() };
@@ -78,15 +88,14 @@ impl Parameter {
             }
             (Kind::Number | Kind::Limit | Kind::Count, _) => {}
         }
-        let or = words.first().map_or(String::new(), |word| format!(" or {word}"));
-        let range = format!("{min} to {max}{or}");
+        let allowed = self.allowed();
         let number: f32 =
-            text.parse().map_err(|_| format!("{key} = `{text}` is no number; it may be {range}"))?;
+            text.parse().map_err(|_| format!("{key} = `{text}` is no number; allowed: {allowed}"))?;
         if !(number >= *min && number <= *max) {
-            return Err(format!("{key} = {text} is outside {range}"));
+            return Err(format!("{key} = {text} is outside {allowed}"));
         }
         if self.kind == Kind::Count && number % 1.0 != 0.0 {
-            return Err(format!("{key} = {text} is not a whole number of {range}"));
+            return Err(format!("{key} = {text} is not a whole number of {allowed}"));
         }
         Ok(Some(number))
     }
