@@ -51,7 +51,7 @@ impl Monitor {
 
     fn step(&mut self, sequence: u16, step: Telemetry) -> News {
         let now_us = step.frame.now_us;
-        match &self.newest {
+        match self.newest {
             // A board that starts anew numbers its frames anew.
             Some(before) if (step.steps.wrapping_sub(before.steps) as i32) < 0 => {
                 self.restarts += 1;
@@ -70,9 +70,10 @@ impl Monitor {
         News::Step(Box::new(Row::new(self.t, &step)))
     }
 
+    /// Numbers that go back are those of a board that started anew, and no gap.
     fn count(&mut self, sequence: u16) {
         let gap = self.sequence.map_or(0, |last| sequence.wrapping_sub(last).wrapping_sub(1));
-        self.missing += u64::from(gap);
+        self.missing += if gap > u16::MAX / 2 { 0 } else { u64::from(gap) };
         self.sequence = Some(sequence);
     }
 }

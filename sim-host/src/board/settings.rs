@@ -8,7 +8,7 @@ use control::Law;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Setting {
     /// The whole law.
-    Law(Law),
+    Law(Box<Law>),
     /// A parameter.
     Value {
         /// Its name.
@@ -64,7 +64,7 @@ impl Settings {
     /// All of it as settings.
     pub fn all(&self) -> Vec<Setting> {
         let value = |one: &Parameter| Setting::Value { key: one.key.clone(), value: one.value };
-        std::iter::once(Setting::Law(self.law.clone())).chain(self.but_law().map(value)).collect()
+        std::iter::once(Setting::Law(self.law.clone().into())).chain(self.but_law().map(value)).collect()
     }
 
     /// The settings that words stand for: a law, and values by key.
@@ -72,7 +72,7 @@ impl Settings {
     /// # Errors
     /// Everything that is wrong: keys that the board does not have, values that they may not be.
     pub fn understand(&self, law: Option<&Law>, values: &[(String, String)]) -> Result<Vec<Setting>, String> {
-        let mut wanted: Vec<_> = law.cloned().map(Setting::Law).into_iter().collect();
+        let mut wanted: Vec<_> = law.map(|law| Setting::Law(law.clone().into())).into_iter().collect();
         let mut wrong = Vec::new();
         for (key, text) in values {
             let known = self.but_law().find(|one| one.key == *key);
@@ -90,7 +90,7 @@ impl Settings {
     /// Whether it has this, to the bit.
     pub fn has(&self, setting: &Setting) -> bool {
         match setting {
-            Setting::Law(law) => self.law == *law,
+            Setting::Law(law) => self.law == **law,
             Setting::Value { key, value } => self.find(key).is_some_and(|one| one.has(*value)),
         }
     }

@@ -11,6 +11,8 @@ mod eigen;
 mod faults;
 mod interrupt;
 mod law;
+mod monitor;
+mod monitor_view;
 mod outputs;
 mod param;
 mod parameter_file;
@@ -86,6 +88,8 @@ enum Command {
     Design(design::Args),
     /// Studies: a question computed, its answer as a page with a figure.
     Study(study::Args),
+    /// What a board does now: live values, causes and limits in words; a table, a recording.
+    Monitor(monitor::Args),
     /// A board's parameters: list, get, set, store, reset, export, import.
     #[command(subcommand, after_help = param::EXAMPLES)]
     Param(param::Command),
@@ -114,6 +118,7 @@ pub fn run() -> ExitCode {
         Command::Rider(command) => rider::run(&command),
         Command::Design(args) => design::run(&args),
         Command::Study(args) => study::run(&args),
+        Command::Monitor(args) => monitor::run(&args),
         Command::Param(command) => param::run(&command),
         Command::Faults(args) => faults::run(&args),
         Command::Schema { document } => schema(&document),

@@ -173,7 +173,7 @@ fn set(key: &str, words: &str, port: &PortArgs) -> Result<(), Failure> {
     let (mut client, _) = port.connect()?;
     let before = Settings::read(&mut client)?;
     let setting = match law {
-        Some(law) => Setting::Law(law),
+        Some(law) => Setting::Law(law.into()),
         None => Setting::Value { key: key.into(), value: known(&before, key)?.parse(words)? },
     };
     apply(&mut client, &before, &[setting], &[key])

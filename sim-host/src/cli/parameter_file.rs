@@ -57,7 +57,7 @@ impl ParameterFile {
     /// Puts its parameters into a simulated controller. The calibration is that of the board alone: it is checked, and
     /// left out.
     pub(super) fn apply(&self, config: &mut Config) -> Result<(), String> {
-        let calibration = config.calibration.clone();
+        let calibration = config.calibration;
         for (key, words) in &self.values {
             leaves::set(config, key, words)
                 .map_err(|why| format!("{}: {key} = {words}: {why}", self.path))?;
