@@ -1,6 +1,7 @@
 //! What the flight cards in `tests/tests/` share; the cards themselves are the tests.
 
 pub mod basins;
+pub mod board;
 pub mod cli;
 pub mod derived;
 pub mod draws;
@@ -13,6 +14,7 @@ pub mod late;
 pub mod linearised;
 pub mod model;
 pub mod newton_euler;
+pub mod pty;
 pub mod published;
 pub mod riders;
 pub mod rides;
