@@ -70,7 +70,10 @@ fn a_refusal_names_what_and_why() {
         assert_eq!(lock(&board).config, Config::product());
     };
     refused(&|c| c.get("limits.nonsense"), &["get limits.nonsense", "no parameter limits.nonsense"]);
-    refused(&|c| c.set("limits.max_torque_nm", Some(70.0)), &["limits.max_torque_nm = 70 is outside 0.1 to 50"]);
+    refused(
+        &|c| c.set("limits.max_torque_nm", Some(70.0)),
+        &["limits.max_torque_nm = 70 is outside 0.1 to 50"],
+    );
     refused(&|c| c.set("permit.ramp_in_ticks", Some(1.5)), &["not a whole number"]);
     refused(&|c| c.set("rate_hz", None), &["set rate_hz to none", "can't be off"]);
     lock(&board).engaged = true;

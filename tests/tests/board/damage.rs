@@ -4,18 +4,26 @@ use crate::client::SHORT;
 use control::Config;
 use proptest::prelude::*;
 use sim_host::board::client::{Client, ClientError};
-use tests::board::{Fate, FakeBoard, Passage, Wire, lock, shared};
+use tests::board::{FakeBoard, Fate, Passage, Wire, lock, shared};
 
 /// What a line does to what goes over it, one after the other, then from the start.
 #[derive(Clone, Debug)]
 enum Harm {
     None,
     /// A byte is another.
-    Turned { at: usize, by: u8 },
+    Turned {
+        at: usize,
+        by: u8,
+    },
     /// It ends early.
-    Cut { at: usize },
+    Cut {
+        at: usize,
+    },
     /// A byte more.
-    Grown { at: usize, byte: u8 },
+    Grown {
+        at: usize,
+        byte: u8,
+    },
     Dropped,
     Late,
 }
@@ -90,7 +98,10 @@ fn what_is_lost_is_asked_for_again() {
         let mut client = Client::new(Box::new(wire), SHORT);
         let listed = client.list().expect("a list");
         for i in 1..=10_u8 {
-            assert_eq!(client.set("limits.max_torque_nm", Some(f32::from(i))).expect("set"), Some(f32::from(i)));
+            assert_eq!(
+                client.set("limits.max_torque_nm", Some(f32::from(i))).expect("set"),
+                Some(f32::from(i))
+            );
         }
         (listed, lock(board).requests)
     };

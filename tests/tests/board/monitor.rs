@@ -149,18 +149,40 @@ fn a_row_has_every_sensor_under_its_name() {
     let columns = |told: &Telemetry| serde_json::to_value(Row::new(0.007, told)).expect("a row");
     let row = columns(&told);
     for (column, value) in [
-        ("t", 0.007), ("steps", 7.0), ("late", 2.0), ("mode", 4.0), ("limits", 4.0), ("torque", 1.5), ("gain", 6.0),
-        ("measured_roll_rate", 0.25), ("measured_pitch_rate", -0.5), ("measured_yaw_rate", 0.125), ("gyro_age", 0.0),
-        ("measured_accel_x", 1.0), ("measured_accel_y", 2.0), ("measured_accel_z", 3.0), ("accel_age", 4.0),
-        ("measured_steer", 0.1), ("steer_age", 1.0), ("measured_steer_rate", 0.2), ("steer_rate_age", 2.0),
-        ("measured_front_speed", 4.0), ("front_speed_age", 0.0), ("measured_rear_speed", 3.9), ("rear_speed_age", 3.0),
-        ("measured_rider_torque", 0.5), ("rider_torque_age", 5.0), ("motor_slope", 0.5),
+        ("t", 0.007),
+        ("steps", 7.0),
+        ("late", 2.0),
+        ("mode", 4.0),
+        ("limits", 4.0),
+        ("torque", 1.5),
+        ("gain", 6.0),
+        ("measured_roll_rate", 0.25),
+        ("measured_pitch_rate", -0.5),
+        ("measured_yaw_rate", 0.125),
+        ("gyro_age", 0.0),
+        ("measured_accel_x", 1.0),
+        ("measured_accel_y", 2.0),
+        ("measured_accel_z", 3.0),
+        ("accel_age", 4.0),
+        ("measured_steer", 0.1),
+        ("steer_age", 1.0),
+        ("measured_steer_rate", 0.2),
+        ("steer_rate_age", 2.0),
+        ("measured_front_speed", 4.0),
+        ("front_speed_age", 0.0),
+        ("measured_rear_speed", 3.9),
+        ("rear_speed_age", 3.0),
+        ("measured_rider_torque", 0.5),
+        ("rider_torque_age", 5.0),
+        ("motor_slope", 0.5),
     ] {
         let got = row[column].as_f64().unwrap_or_else(|| panic!("{column}: {row}"));
         assert!((got - value).abs() < 1e-6, "{column} {got}");
     }
     assert_eq!(row["causes"], told.command.causes.0);
-    assert!(["measured_motor_torque", "motor_torque_age", "gyro_slope"].iter().all(|name| row[*name].is_null()));
+    assert!(
+        ["measured_motor_torque", "motor_torque_age", "gyro_slope"].iter().all(|name| row[*name].is_null())
+    );
     let none = columns(&Telemetry { frame: control::SensorFrame::missing(), ..told });
     let empty = none.as_object().expect("columns").values().filter(|value| value.is_null()).count();
     assert_eq!(empty, 22, "{none}");

@@ -77,7 +77,8 @@ fn bad_input_is_told() {
     run("set limits.end_stop maybe").refused_naming(&["limits.end_stop = `maybe`", "off, on"]);
     run("set input.wheel left").refused_naming(&["input.wheel", "front, rear"]);
     run("set law cl3").refused_naming(&["unknown law `cl3`", "h-cut"]);
-    run("set limits.taper.zero_m_s 9").refused_naming(&["limits.taper.full_m_s = 1.5 is outside 9.1 to 10", "nothing is set"]);
+    run("set limits.taper.zero_m_s 9")
+        .refused_naming(&["limits.taper.full_m_s = 1.5 is outside 9.1 to 10", "nothing is set"]);
     lock(&board).engaged = true;
     for line in ["set limits.max_torque_nm 5", "store", "reset"] {
         run(line).refused_naming(&["refused while engaged"]);
@@ -85,7 +86,14 @@ fn bad_input_is_told() {
     assert_eq!(lock(&board).config, Config::product());
     bench.run("param list --port /no/such/port").refused_naming(&["can't open /no/such/port"]);
     bench.write("noise.link", [7; 100]);
-    for usage in ["param list", "monitor", "faults", "param list --port x --baud 7", "monitor --file a --port b", "faults --file a --clear"] {
+    for usage in [
+        "param list",
+        "monitor",
+        "faults",
+        "param list --port x --baud 7",
+        "monitor --file a --port b",
+        "faults --file a --clear",
+    ] {
         assert_eq!(bench.run(usage).code, Some(2), "{usage}");
     }
     lock(&board).version = 3;
@@ -120,7 +128,9 @@ fn an_export_is_imported_and_ridden() {
     assert_eq!(ride["config"]["law"]["points"][1], serde_json::json!([2.7, 8.1]));
     assert_eq!(ride["config"]["torque_limit_nm"], 4.3);
     assert!(ride["config"]["parameters"]["calibration.motor_reversed"].is_null());
-    let without = bench.json("ride --speed 4 --steer-rate 2 --parameters board.toml --set limits.max_torque_nm=2 --law none");
+    let without = bench.json(
+        "ride --speed 4 --steer-rate 2 --parameters board.toml --set limits.max_torque_nm=2 --law none",
+    );
     assert_eq!(without["config"]["law"]["name"], "none");
     lock(&board).config.calibration.polarity_checked = true;
     done(&run("export checked.toml"));
@@ -145,8 +155,14 @@ fn a_wrong_file_sets_nothing() {
         ("[law]\nspeed_m_s = [1, 0]\ngain_nm_s_rad = [1, 2]\n", &["wrong.toml", "rise"]),
         ("[parameters]\n\"law.cl2.k\" = 3\n", &["wrong.toml", "law.cl2.k", "above"]),
         ("[parameters]\nrate_hz = [1]\n", &["wrong.toml", "rate_hz", "array"]),
-        ("[parameters]\n\"limits.fall_nm_s\" = 50\n\"limits.nonsense\" = 3\n", &["wrong.toml", "limits.nonsense"]),
-        ("[parameters]\n\"limits.fall_nm_s\" = 50\n\"limits.max_torque_nm\" = 70\n", &["wrong.toml", "limits.max_torque_nm = 70", "0.1 to 50"]),
+        (
+            "[parameters]\n\"limits.fall_nm_s\" = 50\n\"limits.nonsense\" = 3\n",
+            &["wrong.toml", "limits.nonsense"],
+        ),
+        (
+            "[parameters]\n\"limits.fall_nm_s\" = 50\n\"limits.max_torque_nm\" = 70\n",
+            &["wrong.toml", "limits.max_torque_nm = 70", "0.1 to 50"],
+        ),
         ("[parameters]\nrate_hz = \"on\"\n", &["wrong.toml", "rate_hz", "`on`"]),
     ] {
         bench.write("wrong.toml", text);
@@ -193,7 +209,8 @@ const KEYS: [&str; 8] = [
 /// Must hold: all in words, the newest first; then none.
 #[test]
 fn faults_are_told_and_cleared() {
-    let (bench, board) = (Bench::new(PROGRAM), shared(FakeBoard { faults: faults(), ..FakeBoard::default() }));
+    let (bench, board) =
+        (Bench::new(PROGRAM), shared(FakeBoard { faults: faults(), ..FakeBoard::default() }));
     let port = telling(&board);
     let line = format!("faults --port {}", port.name);
     let document = bench.json(&line);
@@ -223,7 +240,8 @@ fn documents_fit_their_committed_schemas() {
     assert_eq!(document["parameters"][0]["key"], "limits.max_torque_nm");
     for name in ["param-list", "faults"] {
         let own = bench.run(&format!("schema {name}"));
-        let file = std::fs::read_to_string(repository(&format!("docs/schema/{name}.json"))).expect("a schema");
+        let file =
+            std::fs::read_to_string(repository(&format!("docs/schema/{name}.json"))).expect("a schema");
         assert!(own.stdout == file, "run: sim-host schema {name} > docs/schema/{name}.json");
     }
 }
@@ -246,23 +264,36 @@ fn a_ride_is_watched_recorded_and_watched_again() {
     });
     let live = bench.run(&format!("monitor --port {} --for 1s --csv live.csv --record ride.link", port.name));
     for word in [
-        "fake 0.1.0 commit 0123456789ab", " s engaged, torque 1.50 N m, gain 6.00", "roll rate 0.25 rad/s, speed front 4.00 rear -",
-        "limits rate, causes 17 FrontWheelLost + 46 PolarityUnchecked, late 2", "docs/faults/46-polarity-unchecked.md",
-        "fault: controller in start 5", " 0 damaged, 0 restarts",
+        "fake 0.1.0 commit 0123456789ab",
+        " s engaged, torque 1.50 N m, gain 6.00",
+        "roll rate 0.25 rad/s, speed front 4.00 rear -",
+        "limits rate, causes 17 FrontWheelLost + 46 PolarityUnchecked, late 2",
+        "docs/faults/46-polarity-unchecked.md",
+        "fault: controller in start 5",
+        " 0 damaged, 0 restarts",
     ] {
         assert!(done(&live).contains(word), "no `{word}` in {}", live.stdout);
     }
     let replayed = bench.run("monitor --file ride.link --csv replayed.csv");
-    assert!(done(&replayed).contains("a recording") && replayed.stdout.contains("0 damaged"), "{}", replayed.stdout);
+    assert!(
+        done(&replayed).contains("a recording") && replayed.stdout.contains("0 damaged"),
+        "{}",
+        replayed.stdout
+    );
     let rows = |name: &str| bench.read(name).lines().skip(2).map(String::from).collect::<Vec<_>>();
     assert_eq!(rows("live.csv"), rows("replayed.csv"));
     assert!(rows("live.csv").len() > 10 && rows("live.csv")[0].starts_with("t,steps,late,"));
-    assert!(bench.read("live.csv").starts_with("# sim-host ") && bench.read("live.csv").contains("\"image\":\"fake\""));
+    assert!(
+        bench.read("live.csv").starts_with("# sim-host ")
+            && bench.read("live.csv").contains("\"image\":\"fake\"")
+    );
     let faults = bench.json("faults --file ride.link");
     assert_eq!((faults["faults"][0]["kind"].as_str(), &faults["board"]), (Some("controller"), &Value::Null));
     let table = bench.run("monitor --file ride.link --csv -");
     assert_eq!(done(&table).lines().skip(2).collect::<Vec<_>>(), rows("live.csv"));
-    bench.run(&format!("monitor --port {} --csv same --record same", port.name)).refused_naming(&["--csv and --record"]);
+    bench
+        .run(&format!("monitor --port {} --csv same --record same", port.name))
+        .refused_naming(&["--csv and --record"]);
     bench.run("monitor --file ride.link --csv no/such/folder.csv").refused_naming(&["no/such"]);
 }
 
@@ -273,13 +304,18 @@ fn a_ride_is_watched_recorded_and_watched_again() {
 fn a_damaged_recording_is_read_as_far_as_it_goes() {
     let bench = Bench::new(PROGRAM);
     let mut board = FakeBoard::default();
-    let mut bytes: Vec<u8> = (1..=100).flat_map(|i| board.tell(&Message::Telemetry(telemetry(20 * i)))).collect();
+    let mut bytes: Vec<u8> =
+        (1..=100).flat_map(|i| board.tell(&Message::Telemetry(telemetry(20 * i)))).collect();
     for frame in [10, 20, 30] {
         bytes[frame * 128 + 60] ^= 0x11;
     }
     bench.write("ride.link", bytes);
     let run = bench.run("monitor --file ride.link");
-    assert!(done(&run).ends_with("97 frames, 3 missing, 3 damaged, 0 restarts; the board's clock at 2.000 s\n"), "{}", run.stdout);
+    assert!(
+        done(&run).ends_with("97 frames, 3 missing, 3 damaged, 0 restarts; the board's clock at 2.000 s\n"),
+        "{}",
+        run.stdout
+    );
     bench.write("noise.link", (0..5000_u32).map(|i| (i * i / 7) as u8).collect::<Vec<_>>());
     let noise = bench.run("monitor --file noise.link");
     assert!(done(&noise).contains("\n0 frames, 0 missing, "), "{}", noise.stdout);
@@ -293,7 +329,8 @@ fn a_damaged_recording_is_read_as_far_as_it_goes() {
 fn ctrl_c_ends_a_monitor_and_keeps_what_was_written() {
     let (bench, board) = (Bench::new(PROGRAM), shared(FakeBoard::default()));
     let port = telling(&board);
-    let mut command = bench.command(&format!("monitor --port {} --csv ride.csv --record ride.link", port.name));
+    let mut command =
+        bench.command(&format!("monitor --port {} --csv ride.csv --record ride.link", port.name));
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
     let mut told = [0; 300];
     let out = child.stdout.as_mut().expect("piped");

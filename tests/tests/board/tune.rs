@@ -117,13 +117,21 @@ fn what_cannot_be_put_back_is_told() {
     let mut client = client(Wire::new(&board, Box::new(engages), Box::new(Passage::Arrives)));
     let before = Settings::read(&mut client).expect("settings");
     let keys = ["limits.rise_nm_s", "limits.fall_nm_s", "limits.max_torque_nm", "permit.ramp_in_ticks"];
-    let wanted: Vec<_> = keys.iter().map(|key| Setting::Value { key: (*key).into(), value: Some(40.0) }).collect();
+    let wanted: Vec<_> =
+        keys.iter().map(|key| Setting::Value { key: (*key).into(), value: Some(40.0) }).collect();
     let error = tune(&mut client, &before, &wanted).map(drop).expect_err("engaged").to_string();
-    for word in ["refused while engaged", "set: limits.rise_nm_s, limits.fall_nm_s, limits.max_torque_nm;", "can't be put back"] {
+    for word in [
+        "refused while engaged",
+        "set: limits.rise_nm_s, limits.fall_nm_s, limits.max_torque_nm;",
+        "can't be put back",
+    ] {
         assert!(error.contains(word), "{error}");
     }
     let now = lock(&board).config.clone();
-    assert_eq!((now.limits.max_torque_nm, now.permit.ramp_in_ticks), (Some(40.0), start.permit.ramp_in_ticks));
+    assert_eq!(
+        (now.limits.max_torque_nm, now.permit.ramp_in_ticks),
+        (Some(40.0), start.permit.ramp_in_ticks)
+    );
 }
 
 /// What a line does from the frame of a number on.
@@ -143,7 +151,14 @@ enum Break {
 /// silence none.
 #[test]
 fn a_line_that_fails_half_way_is_told_honestly() {
-    let keys = ["rise_nm_s", "fall_nm_s", "max_torque_nm", "rider_torque.multiplier", "taper.full_m_s", "taper.zero_m_s"];
+    let keys = [
+        "rise_nm_s",
+        "fall_nm_s",
+        "max_torque_nm",
+        "rider_torque.multiplier",
+        "taper.full_m_s",
+        "taper.zero_m_s",
+    ];
     let keys = keys.map(|key| format!("limits.{key}"));
     for broken in [Break::Before, Break::After, Break::Mute] {
         for at in 0..keys.len() as u32 {

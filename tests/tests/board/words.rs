@@ -95,10 +95,16 @@ fn an_exception_has_words() {
     assert_eq!(fault.name, "bus fault");
     let begins: Vec<_> = fault.status.iter().filter_map(|text| text.split(':').next()).collect();
     assert_eq!(begins, ["PRECISERR", "BFARVALID", "FORCED"]);
-    assert_eq!((fault.bfar.as_str(), fault.sp.as_str(), fault.lr.as_str()), ("deadbeef", "00000001", "00000003"));
+    assert_eq!(
+        (fault.bfar.as_str(), fault.sp.as_str(), fault.lr.as_str()),
+        ("deadbeef", "00000001", "00000003")
+    );
     assert_eq!(Exception::new(3, [!0; 6]).status.len(), 19 + 3);
     let name = |number| Exception::new(number, [0; 6]).name;
-    assert_eq!([name(3), name(15), name(16 + 37), name(7)], ["hard fault", "system tick", "interrupt 37", "reserved"]);
+    assert_eq!(
+        [name(3), name(15), name(16 + 37), name(7)],
+        ["hard fault", "system tick", "interrupt 37", "reserved"]
+    );
 }
 
 /// Situation: a fault of every kind.
