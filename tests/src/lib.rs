@@ -1,7 +1,7 @@
 //! What the flight cards in `tests/tests/` share; the cards themselves are the tests.
 
 pub mod basins;
-pub mod board;
+
 pub mod cli;
 pub mod derived;
 pub mod draws;
@@ -12,8 +12,10 @@ pub mod inside;
 pub mod json_schema;
 pub mod late;
 pub mod linearised;
+pub mod link_board;
 pub mod model;
 pub mod newton_euler;
+#[cfg(unix)]
 pub mod pty;
 pub mod published;
 pub mod riders;

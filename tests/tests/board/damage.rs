@@ -4,7 +4,7 @@ use crate::client::SHORT;
 use control::Config;
 use proptest::prelude::*;
 use sim_host::board::client::{Client, ClientError};
-use tests::board::{FakeBoard, Fate, Passage, Wire, lock, shared};
+use tests::link_board::{Fate, LinkBoard, Passage, Wire, lock, shared};
 
 /// What a line does to what goes over it, one after the other, then from the start.
 #[derive(Clone, Debug)]
@@ -69,7 +69,7 @@ proptest! {
     /// a refusal; what a set that failed left is the old or the new value.
     #[test]
     fn an_answer_is_true_or_there_is_none(there in harms(), back in harms()) {
-        let board = shared(FakeBoard::default());
+        let board = shared(LinkBoard::default());
         let mut client = Client::new(Box::new(Wire::new(&board, fate(there), fate(back))), SHORT);
         let now = || lock(&board).config.limits.max_torque_nm;
         for i in 1..=12_u8 {
@@ -94,7 +94,7 @@ proptest! {
 /// Must hold: all of it succeeds, with the board asked 1.1 to 1.7 times as often as over a good line.
 #[test]
 fn what_is_lost_is_asked_for_again() {
-    let count = |board: &tests::board::Shared, wire: Wire| {
+    let count = |board: &tests::link_board::Shared, wire: Wire| {
         let mut client = Client::new(Box::new(wire), SHORT);
         let listed = client.list().expect("a list");
         for i in 1..=10_u8 {
@@ -105,11 +105,11 @@ fn what_is_lost_is_asked_for_again() {
         }
         (listed, lock(board).requests)
     };
-    let good = shared(FakeBoard::default());
+    let good = shared(LinkBoard::default());
     let (listed, few) = count(&good, Wire::good(&good));
     let turned = vec![Harm::Turned { at: 5, by: 9 }, Harm::None, Harm::None];
     let dropped = vec![Harm::None, Harm::Dropped, Harm::None, Harm::None];
-    let bad = shared(FakeBoard::default());
+    let bad = shared(LinkBoard::default());
     let (heard, many) = count(&bad, Wire::new(&bad, fate(turned), fate(dropped)));
     assert_eq!(heard, listed);
     let expected = Config { limits: lock(&good).config.limits, ..Config::product() };

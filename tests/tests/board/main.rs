@@ -3,6 +3,7 @@
 mod client;
 mod damage;
 mod monitor;
+#[cfg(unix)]
 mod program;
 mod tune;
 mod words;

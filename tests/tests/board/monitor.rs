@@ -11,7 +11,7 @@ use sim_host::board::recorded::{Recorder, Recording};
 use sim_host::board::row::Row;
 use std::time::Duration;
 use tempfile::TempDir;
-use tests::board::{FakeBoard, telemetry};
+use tests::link_board::{LinkBoard, telemetry};
 
 /// Bytes that come in so many at a time, then the end.
 struct Pieces(Vec<u8>, usize);
@@ -38,7 +38,7 @@ fn hear(line: Box<dyn Line>) -> (Monitor, Vec<News>, u32) {
     (monitor, news, client.damaged())
 }
 
-fn step(board: &mut FakeBoard, steps: u32) -> Vec<u8> {
+fn step(board: &mut LinkBoard, steps: u32) -> Vec<u8> {
     board.tell(&Message::Telemetry(telemetry(steps)))
 }
 
@@ -47,7 +47,7 @@ fn step(board: &mut FakeBoard, steps: u32) -> Vec<u8> {
 /// Must hold: 396 frames, four missing by their numbers, one of them damaged; the clock at the last step; no restart.
 #[test]
 fn what_is_missing_and_what_is_damaged_is_counted() {
-    let mut board = FakeBoard::default();
+    let mut board = LinkBoard::default();
     let mut bytes = Vec::new();
     for i in 1..=400 {
         let mut frame = step(&mut board, 20 * i);
@@ -71,7 +71,7 @@ fn what_is_missing_and_what_is_damaged_is_counted() {
 /// Must hold: time goes on over the ends; the restart is counted, is no gap, and its time begins anew.
 #[test]
 fn a_clock_that_wraps_goes_on_and_a_restart_is_told() {
-    let (mut board, mut bytes) = (FakeBoard::default(), Vec::new());
+    let (mut board, mut bytes) = (LinkBoard::default(), Vec::new());
     let at = |now_us: u32, steps: u32| {
         let mut step = telemetry(steps);
         step.frame.now_us = now_us;
@@ -84,7 +84,7 @@ fn a_clock_that_wraps_goes_on_and_a_restart_is_told() {
     let before = f64::from(u32::MAX - 5_000) * 1e-6;
     let (monitor, ..) = hear(Box::new(Pieces(bytes.clone(), 100)));
     assert!((monitor.t - before - 0.009).abs() < 1e-6 && monitor.restarts == 0, "{monitor:?}");
-    board.restart();
+    board.sequence = 0;
     bytes.extend((1..=3_u32).flat_map(|i| board.tell(&Message::Telemetry(at(i * 1_000, i)))));
     let (monitor, ..) = hear(Box::new(Pieces(bytes, 100)));
     assert_eq!((monitor.frames, monitor.missing, monitor.restarts), (13, 0, 1));
@@ -96,9 +96,9 @@ fn a_clock_that_wraps_goes_on_and_a_restart_is_told() {
 /// Must hold: each told as what it is; none is a gap.
 #[test]
 fn faults_and_words_are_told() {
-    let mut board = FakeBoard::default();
+    let mut board = LinkBoard::default();
     let mut bytes = step(&mut board, 1);
-    bytes.extend(board.tell(&Message::Fault(tests::board::faults()[4])));
+    bytes.extend(board.tell(&Message::Fault(tests::link_board::faults()[4])));
     bytes.extend(board.tell(&Message::Log("steer sensor found")));
     let mut frame = [0; link::frame::MAX_FRAME];
     let used = link::frame::encode(0xbf, 3, &[1, 2, 3], &mut frame).expect("room");
@@ -117,7 +117,7 @@ fn faults_and_words_are_told() {
 fn a_recording_is_what_was_heard() {
     let folder = TempDir::new().expect("a folder");
     let path = folder.path().join("ride.link");
-    let mut board = FakeBoard::default();
+    let mut board = LinkBoard::default();
     let mut bytes: Vec<u8> = (1..=90).flat_map(|i| step(&mut board, i)).collect();
     bytes.truncate(bytes.len() - 3);
     let file = Box::new(std::fs::File::create(&path).expect("a file"));
@@ -185,5 +185,5 @@ fn a_row_has_every_sensor_under_its_name() {
     );
     let none = columns(&Telemetry { frame: control::SensorFrame::missing(), ..told });
     let empty = none.as_object().expect("columns").values().filter(|value| value.is_null()).count();
-    assert_eq!(empty, 22, "{none}");
+    assert_eq!(empty, 20 + 1, "the sensors, their ages and a slope: {none}");
 }

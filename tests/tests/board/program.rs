@@ -1,14 +1,13 @@
 //! The program, on a board at a serial port.
-#![cfg(unix)]
 
 use control::{Config, Law, LawTable};
 use link::message::Message;
 use serde_json::Value;
 use std::io::Read;
 use std::process::{Command, Stdio};
-use tests::board::{FakeBoard, Shared, faults, lock, shared, telemetry};
 use tests::cli::{Bench, Run, repository};
 use tests::json_schema::violations;
+use tests::link_board::{LinkBoard, Shared, faults, lock, shared, telemetry};
 use tests::pty::Port;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
@@ -32,7 +31,7 @@ fn done(run: &Run) -> &str {
 /// Must hold: each tells what the board has; a set is told with what was, is in force and not stored; then it is stored.
 #[test]
 fn a_parameter_is_seen_set_and_stored() {
-    let (bench, board) = (Bench::new(PROGRAM), shared(FakeBoard::default()));
+    let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let port = telling(&board);
     let run = |line: &str| bench.run(&format!("param {line} --port {}", port.name));
     let all = run("list");
@@ -67,7 +66,7 @@ fn a_parameter_is_seen_set_and_stored() {
 /// Must hold: exit code 1 and what is wrong, with key, value and what is allowed; usage is 2; nothing set.
 #[test]
 fn bad_input_is_told() {
-    let (bench, board) = (Bench::new(PROGRAM), shared(FakeBoard::default()));
+    let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let port = Port::quiet(&board);
     let run = |line: &str| bench.run(&format!("param {line} --port {}", port.name));
     run("get limits.nonsense").refused_naming(&["no parameter limits.nonsense", "param list"]);
@@ -106,7 +105,7 @@ fn bad_input_is_told() {
 /// law and parameters of the file, and its own calibration.
 #[test]
 fn an_export_is_imported_and_ridden() {
-    let (bench, board) = (Bench::new(PROGRAM), shared(FakeBoard::default()));
+    let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let mut config = Config::product();
     config.law = Law::Table(LawTable::new(&[(0.0, 12.0), (2.7, 8.1), (6.0, 0.0)]).expect("a table"));
     (config.limits.max_torque_nm, config.limits.end_stop) = (Some(0.3 + 4.0), None);
@@ -145,7 +144,7 @@ fn an_export_is_imported_and_ridden() {
 /// Must hold: refused with file, key and value; nothing set, though other values in the file are right.
 #[test]
 fn a_wrong_file_sets_nothing() {
-    let (bench, board) = (Bench::new(PROGRAM), shared(FakeBoard::default()));
+    let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let port = Port::quiet(&board);
     for (text, named) in [
         ("law = h", &["wrong.toml"][..]),
@@ -178,7 +177,7 @@ fn a_wrong_file_sets_nothing() {
 /// Must hold: exit code 1, not that of a reader that goes away; what was set, what was not and what is not known.
 #[test]
 fn a_board_pulled_out_half_way_is_told() {
-    let (bench, board) = (Bench::new(PROGRAM), shared(FakeBoard::default()));
+    let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let values: Vec<_> = (0..8).map(|i| format!("\"{}\" = {}\n", KEYS[i], i + 1)).collect();
     bench.write("eight.toml", format!("[parameters]\n{}", values.concat()));
     let mut requests = None;
@@ -210,7 +209,7 @@ const KEYS: [&str; 8] = [
 #[test]
 fn faults_are_told_and_cleared() {
     let (bench, board) =
-        (Bench::new(PROGRAM), shared(FakeBoard { faults: faults(), ..FakeBoard::default() }));
+        (Bench::new(PROGRAM), shared(LinkBoard { faults: faults(), ..LinkBoard::default() }));
     let port = telling(&board);
     let line = format!("faults --port {}", port.name);
     let document = bench.json(&line);
@@ -233,7 +232,7 @@ fn schema(name: &str) -> Value {
 /// Must hold: they fit; the same.
 #[test]
 fn documents_fit_their_committed_schemas() {
-    let (bench, board) = (Bench::new(PROGRAM), shared(FakeBoard::default()));
+    let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let port = Port::quiet(&board);
     let document = bench.json(&format!("param list limits --port {}", port.name));
     assert_eq!(violations(&schema("param-list"), &document), [""; 0]);
@@ -252,7 +251,7 @@ fn documents_fit_their_committed_schemas() {
 /// told it; the fault is in it.
 #[test]
 fn a_ride_is_watched_recorded_and_watched_again() {
-    let (bench, board) = (Bench::new(PROGRAM), shared(FakeBoard::default()));
+    let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let mut steps = 0;
     let port = Port::new(&board, move |board| {
         steps += 20;
@@ -303,7 +302,7 @@ fn a_ride_is_watched_recorded_and_watched_again() {
 #[test]
 fn a_damaged_recording_is_read_as_far_as_it_goes() {
     let bench = Bench::new(PROGRAM);
-    let mut board = FakeBoard::default();
+    let mut board = LinkBoard::default();
     let mut bytes: Vec<u8> =
         (1..=100).flat_map(|i| board.tell(&Message::Telemetry(telemetry(20 * i)))).collect();
     for frame in [10, 20, 30] {
@@ -327,7 +326,7 @@ fn a_damaged_recording_is_read_as_far_as_it_goes() {
 /// Must hold: exit code 130; the summary; whole lines in the table, as many as whole frames in the recording.
 #[test]
 fn ctrl_c_ends_a_monitor_and_keeps_what_was_written() {
-    let (bench, board) = (Bench::new(PROGRAM), shared(FakeBoard::default()));
+    let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let port = telling(&board);
     let mut command =
         bench.command(&format!("monitor --port {} --csv ride.csv --record ride.link", port.name));
@@ -352,7 +351,7 @@ fn ctrl_c_ends_a_monitor_and_keeps_what_was_written() {
 /// Must hold: exit code 1, the line named; the summary told, the table whole.
 #[test]
 fn a_board_pulled_out_while_watched_is_told() {
-    let (bench, board) = (Bench::new(PROGRAM), shared(FakeBoard::default()));
+    let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let mut steps = 0;
     let port = Port::new(&board, move |board| {
         let watched = lock(board).requests > 0;

@@ -6,10 +6,10 @@ use control::{Config, Law, LawTable, Taper};
 use sim_host::board::Client;
 use sim_host::board::settings::{Setting, Settings};
 use sim_host::board::tune::{Tuned, tune};
-use tests::board::{FakeBoard, Passage, Shared, Wire, lock, shared};
+use tests::link_board::{LinkBoard, Passage, Shared, Wire, lock, shared};
 
 fn board(config: &Config) -> Shared {
-    shared(FakeBoard { config: config.clone(), ..FakeBoard::default() })
+    shared(LinkBoard { config: config.clone(), ..LinkBoard::default() })
 }
 
 fn client(wire: Wire) -> Client {

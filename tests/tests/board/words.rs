@@ -10,11 +10,11 @@ use sim_host::board::fault::Fault;
 use sim_host::board::parameter::Parameter;
 use sim_host::board::{Client, causes};
 use std::collections::BTreeSet;
-use tests::board::{FakeBoard, Wire, faults, shared};
 use tests::cli::repository;
+use tests::link_board::{LinkBoard, Wire, faults, shared};
 
 fn listed() -> Vec<Parameter> {
-    Client::new(Box::new(Wire::good(&shared(FakeBoard::default()))), SHORT).list().expect("a list")
+    Client::new(Box::new(Wire::good(&shared(LinkBoard::default()))), SHORT).list().expect("a list")
 }
 
 /// Situation: every parameter of a board.

@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// A board without hardware.
-pub struct FakeBoard {
+pub struct LinkBoard {
     /// The configuration in force.
     pub config: Config,
     /// What is in its flash.
@@ -28,11 +28,13 @@ pub struct FakeBoard {
     pub version: u8,
     /// Requests that reached it whole.
     pub requests: u32,
-    decoder: Decoder,
-    sequence: u16,
+    /// What it is receiving.
+    pub decoder: Decoder,
+    /// The number of what it says unasked next.
+    pub sequence: u16,
 }
 
-impl Default for FakeBoard {
+impl Default for LinkBoard {
     fn default() -> Self {
         Self {
             config: Config::product(),
@@ -47,7 +49,7 @@ impl Default for FakeBoard {
     }
 }
 
-impl FakeBoard {
+impl LinkBoard {
     /// Takes what came over the line; what goes back.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
@@ -108,11 +110,6 @@ impl FakeBoard {
         let bytes = encoded(message, self.sequence);
         self.sequence = self.sequence.wrapping_add(1);
         bytes
-    }
-
-    /// It starts anew: its numbers begin anew.
-    pub fn restart(&mut self) {
-        self.sequence = 0;
     }
 }
 
@@ -180,15 +177,15 @@ pub fn faults() -> Vec<FaultRecord<'static>> {
 }
 
 /// A board that several hold.
-pub type Shared = Arc<Mutex<FakeBoard>>;
+pub type Shared = Arc<Mutex<LinkBoard>>;
 
 /// A board to be shared.
-pub fn shared(board: FakeBoard) -> Shared {
+pub fn shared(board: LinkBoard) -> Shared {
     Arc::new(Mutex::new(board))
 }
 
 /// The board, also after another thread died with it.
-pub fn lock(board: &Shared) -> MutexGuard<'_, FakeBoard> {
+pub fn lock(board: &Shared) -> MutexGuard<'_, LinkBoard> {
     board.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
