@@ -1,6 +1,7 @@
 //! What the flight cards in `tests/tests/` share; the cards themselves are the tests.
 
 pub mod basins;
+
 pub mod cli;
 pub mod derived;
 pub mod draws;
@@ -12,9 +13,12 @@ pub mod inside;
 pub mod json_schema;
 pub mod late;
 pub mod linearised;
+pub mod link_board;
 pub mod model;
 pub mod newton_euler;
 pub mod pil;
+#[cfg(unix)]
+pub mod pty;
 pub mod published;
 pub mod riders;
 pub mod rides;

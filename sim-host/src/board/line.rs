@@ -20,23 +20,26 @@ pub trait Line {
 }
 
 /// Why nothing goes over a line. Each names the device or file.
+///
+/// None tells its cause as a source: a device that hangs up is a broken pipe to the system, and must not be taken for a
+/// reader of standard output that goes away.
 #[derive(Debug, thiserror::Error)]
 pub enum LineError {
     /// It can't be opened.
-    #[error("can't open {line}: {source}")]
+    #[error("can't open {line}: {why}")]
     Open {
         /// The device or file.
         line: String,
         /// Why not.
-        source: io::Error,
+        why: io::Error,
     },
     /// It was there, and is no more.
-    #[error("lost {line}: {source}")]
+    #[error("lost {line}: {why}")]
     Lost {
         /// The device or file.
         line: String,
         /// Why.
-        source: io::Error,
+        why: io::Error,
     },
     /// A recording is at its end.
     #[error("{line} is at its end")]
@@ -49,5 +52,13 @@ pub enum LineError {
     OneWay {
         /// The file.
         line: String,
+    },
+    /// What came in can't be kept.
+    #[error("can't write {file}: {why}")]
+    Record {
+        /// The file.
+        file: String,
+        /// Why not.
+        why: io::Error,
     },
 }

@@ -1,10 +1,12 @@
 //! The options that say who rides what under which conditions; `ride` and `basin` share them.
 
+use super::parameter_file::ParameterFile;
 use super::plant_args::{LONGEST_S, PlantArgs, whole_ticks};
 use super::rider_args::{RiderArgs, step};
 use super::{Failure, law, warn};
 use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
+use crate::board::parameter::law_name;
 use crate::leaves;
 use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
@@ -12,6 +14,7 @@ use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
 use clap::ValueEnum;
 use control::param::Leaf;
 use control::{Config, Law, Limits, Taper, Wheel};
+use std::path::PathBuf;
 
 /// Where defaults come from.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -67,6 +70,9 @@ pub(super) struct ConditionArgs {
     sensor_delay: f64,
     #[command(flatten)]
     plant: PlantArgs,
+    /// Law and parameters of the flashed code from a file, as `param export` writes it; other options win
+    #[arg(long, value_name = "FILE")]
+    parameters: Option<PathBuf>,
     /// Any parameter of the flashed code, as limits.rise_nm_s=50 or limits.end_stop=on; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -133,17 +139,26 @@ impl ConditionArgs {
         };
         let product = self.preset == Preset::Product;
         let rider = self.rider.load()?;
-        let law_name = self.law.as_deref().unwrap_or(match (product, &rider) {
-            (true, _) => "h-cut",
-            (false, Some(_)) => "none",
-            (false, None) => "h",
-        });
-        let law = law::parse(law_name)?;
+        let file = self.parameters.as_deref().map(ParameterFile::read).transpose()?;
+        let (law_name, law) = match (&self.law, file.as_ref().and_then(|file| file.law.clone())) {
+            (None, Some(law)) => (law_name(&law), law),
+            (name, _) => {
+                let name = name.as_deref().unwrap_or(match (product, &rider) {
+                    (true, _) => "h-cut",
+                    (false, Some(_)) => "none",
+                    (false, None) => "h",
+                });
+                (name.to_owned(), law::parse(name)?)
+            }
+        };
         let mut config = Config { law: law.clone(), ..base };
         config.input = config.input.scheduled_by(match self.schedule_speed {
             ScheduleSpeed::Front | ScheduleSpeed::Initial => Wheel::Front,
             ScheduleSpeed::Rear => Wheel::Rear,
         });
+        if let Some(file) = &file {
+            file.apply(&mut config)?;
+        }
         // The simulated bicycle is put together as drawn.
         config.calibration.polarity_checked = true;
         if let Some(Limit(limit)) = self.torque_limit {
@@ -201,7 +216,7 @@ impl ConditionArgs {
         };
         conditions.check()?;
         let preset = if product { "product" } else { "thesis" };
-        let law = ResolvedLaw::new(law_name, &law);
+        let law = ResolvedLaw::new(&law_name, &law);
         let config = ResolvedConfig::new(preset, &bicycle, resolved, law, &conditions);
         Ok(Setup { conditions, config, parameters: bicycle.parameters })
     }

@@ -54,6 +54,19 @@ pub(super) fn capsize(text: &str) -> Result<Capsize, String> {
     Ok(capsize)
 }
 
+/// The law that a parameter file holds: a name, or a table.
+pub(super) fn of_value(value: toml::Value) -> Result<Law, String> {
+    match value {
+        toml::Value::String(name) => match parse(&name) {
+            Ok(Law::Table(_)) => Err(format!("law `{name}` is a file; put its table here")),
+            law => law,
+        },
+        table => {
+            of_table(table.try_into().map_err(|e: toml::de::Error| format!("law: {}", e.message()))?, "law")
+        }
+    }
+}
+
 fn table(path: &str) -> Result<Law, String> {
     if !std::path::Path::new(path).exists() {
         return Err(format!("unknown law `{path}`: no such file, and not one of {HELP}"));
@@ -61,16 +74,18 @@ fn table(path: &str) -> Result<Law, String> {
     let text = std::fs::read_to_string(path).map_err(|e| format!("can't read law file {path}: {e}"))?;
     let file: TableFile =
         toml::from_str(&text).map_err(|e| format!("law file {path}: {}", e.to_string().trim()))?;
+    of_table(file, &format!("law file {path}"))
+}
+
+fn of_table(file: TableFile, place: &str) -> Result<Law, String> {
     let (n, m) = (file.speed_m_s.len(), file.gain_nm_s_rad.len());
     if n != m {
-        return Err(format!(
-            "law file {path}: speed_m_s has {n} values, gain_nm_s_rad has {m}; they must match"
-        ));
+        return Err(format!("{place}: speed_m_s has {n} values, gain_nm_s_rad has {m}; they must match"));
     }
     let points: Vec<(f32, f32)> = file.speed_m_s.into_iter().zip(file.gain_nm_s_rad).collect();
     let table = LawTable::new(&points).map_err(|e| {
         let rising = if e.leaf.name.contains("speed") { " (speeds must rise)" } else { "" };
-        format!("law file {path}: {e}{rising}")
+        format!("{place}: {e}{rising}")
     })?;
     Ok(Law::Table(table))
 }

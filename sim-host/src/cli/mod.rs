@@ -8,13 +8,19 @@ mod compare;
 mod conditions;
 mod design;
 mod eigen;
+mod faults;
 mod interrupt;
 mod law;
+mod monitor;
+mod monitor_view;
 mod outputs;
+mod param;
+mod parameter_file;
 mod pil;
 mod pil_basin;
 mod plane;
 mod plant_args;
+mod port_args;
 mod ride;
 mod rider;
 mod rider_args;
@@ -88,11 +94,18 @@ enum Command {
     Design(design::Args),
     /// Studies: a question computed, its answer as a page with a figure.
     Study(study::Args),
+    /// What a board does now: live values, causes and limits in words; a table, a recording.
+    Monitor(monitor::Args),
+    /// A board's parameters: list, get, set, store, reset, export, import.
+    #[command(subcommand, after_help = param::EXAMPLES)]
+    Param(param::Command),
+    /// The faults that a board kept, in words.
+    Faults(faults::Args),
     /// The JSON schema of a command's `--json` document.
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
-        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design"])]
+        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design", "param-list", "faults"])]
         document: String,
     },
 }
@@ -112,6 +125,9 @@ pub fn run() -> ExitCode {
         Command::Rider(command) => rider::run(&command),
         Command::Design(args) => design::run(&args),
         Command::Study(args) => study::run(&args),
+        Command::Monitor(args) => monitor::run(&args),
+        Command::Param(command) => param::run(&command),
+        Command::Faults(args) => faults::run(&args),
         Command::Schema { document } => schema(&document),
     };
     match ended {

@@ -268,6 +268,8 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "rider-show" => generator.into_root_schema_for::<super::rider::RiderDocument>(),
         "sweep" => generator.into_root_schema_for::<super::sweep::SweepDocument>(),
         "design" => generator.into_root_schema_for::<super::design::DesignDocument>(),
+        "param-list" => generator.into_root_schema_for::<super::board::ParametersDocument>(),
+        "faults" => generator.into_root_schema_for::<super::board::FaultsDocument>(),
         "thesis" => generator.into_root_schema_for::<crate::thesis::document::ThesisDocument>(),
         _ => return None,
     };

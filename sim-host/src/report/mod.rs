@@ -1,5 +1,6 @@
 //! What leaves the program: documents, tables, figures, files.
 
+pub mod board;
 pub mod compare;
 pub mod design;
 pub mod document;

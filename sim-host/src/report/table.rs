@@ -4,7 +4,7 @@ use super::resolved::Tool;
 use serde::Serialize;
 
 /// A header comment: the program, then `config` as one line of JSON.
-fn heading(config: &impl Serialize) -> String {
+pub fn heading(config: &impl Serialize) -> String {
     let tool = Tool::this();
     let config = serde_json::to_string(config).unwrap_or_default();
     format!("# {} {} commit {}\n# {config}\n", tool.name, tool.version, tool.commit)

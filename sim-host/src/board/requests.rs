@@ -1,0 +1,169 @@
+//! What a board can be asked for.
+
+use super::client::{Client, ClientError};
+use super::fault::Fault;
+use super::parameter::{Parameter, law_bytes, law_of};
+use control::Law;
+use link::Key;
+use link::message::Message;
+
+/// Who the board is.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
+pub struct BoardName {
+    /// The image's name.
+    pub image: String,
+    /// The program's version.
+    pub version: String,
+    /// The commit it is made from.
+    pub commit: String,
+    /// What stands for the configuration in force: CRC-32 of its bytes, hexadecimal.
+    pub configuration: String,
+}
+
+impl BoardName {
+    /// In a few words.
+    pub fn label(&self) -> String {
+        let Self { image, version, commit, configuration } = self;
+        format!("{image} {version} commit {commit}, configuration {configuration}")
+    }
+}
+
+impl Client {
+    /// Who is there? To be asked first: it tells whether both speak the same version.
+    ///
+    /// # Errors
+    /// As of [`ClientError`].
+    pub fn hello(&mut self) -> Result<BoardName, ClientError> {
+        self.ask(&Message::AskHello, "who are you", |answer| match answer {
+            Message::Hello(hello) => Some(BoardName {
+                image: hello.image.into(),
+                version: hello.version.into(),
+                commit: hello.commit.into(),
+                configuration: format!("{:08x}", hello.config_hash),
+            }),
+            _ => None,
+        })
+    }
+
+    /// All parameters, in the board's order.
+    ///
+    /// # Errors
+    /// As of [`ClientError`].
+    pub fn list(&mut self) -> Result<Vec<Parameter>, ClientError> {
+        let mut listed = Vec::new();
+        loop {
+            let from = listed.len() as u16;
+            let asked = format!("list from {from}");
+            let (page, total) = self.ask(&Message::List { from }, &asked, |answer| match answer {
+                Message::Page(page) if page.from == from => {
+                    let entries: Vec<_> = page.entries().map(Parameter::from).collect();
+                    let whole = entries.len() == usize::from(page.count);
+                    let goes_on = !entries.is_empty() || from >= page.total;
+                    (whole && goes_on).then_some((entries, page.total))
+                }
+                _ => None,
+            })?;
+            listed.extend(page);
+            if listed.len() >= usize::from(total) {
+                return Ok(listed);
+            }
+        }
+    }
+
+    /// A parameter's value.
+    ///
+    /// # Errors
+    /// As of [`ClientError`].
+    pub fn get(&mut self, key: &str) -> Result<Option<f32>, ClientError> {
+        let request = Message::Get { key: Key::whole(key) };
+        self.ask(&request, &format!("get {key}"), |answer| value_of(key, answer))
+    }
+
+    /// Sets a parameter; its value now.
+    ///
+    /// # Errors
+    /// As of [`ClientError`].
+    pub fn set(&mut self, key: &str, value: Option<f32>) -> Result<Option<f32>, ClientError> {
+        let request = Message::Set { key: Key::whole(key), value };
+        let asked = format!("set {key} to {}", value.map_or("none".into(), |value| value.to_string()));
+        self.ask(&request, &asked, |answer| value_of(key, answer))
+    }
+
+    /// The law.
+    ///
+    /// # Errors
+    /// As of [`ClientError`]; unfit for a law that this program does not know.
+    pub fn law(&mut self) -> Result<Law, ClientError> {
+        self.ask(&Message::GetLaw, "get law", law_answered)
+    }
+
+    /// Sets the whole law; the law now.
+    ///
+    /// # Errors
+    /// As of [`ClientError`].
+    pub fn set_law(&mut self, law: &Law) -> Result<Law, ClientError> {
+        self.ask(&Message::SetLaw(&law_bytes(law)), "set law", law_answered)
+    }
+
+    /// Keeps the parameters in the board's flash.
+    ///
+    /// # Errors
+    /// As of [`ClientError`].
+    pub fn store(&mut self) -> Result<(), ClientError> {
+        self.ask(&Message::Store, "store", done)
+    }
+
+    /// All parameters to their defaults, not yet in flash.
+    ///
+    /// # Errors
+    /// As of [`ClientError`].
+    pub fn reset(&mut self) -> Result<(), ClientError> {
+        self.ask(&Message::Reset, "reset", done)
+    }
+
+    /// The faults that the board kept, the newest first.
+    ///
+    /// # Errors
+    /// As of [`ClientError`].
+    pub fn faults(&mut self) -> Result<Vec<Fault>, ClientError> {
+        let mut kept = Vec::new();
+        loop {
+            let from = kept.len() as u16;
+            let asked = format!("list faults from {from}");
+            let fault = self.ask(&Message::ListFaults { from }, &asked, |answer| match answer {
+                Message::KeptFault(fault) if fault.place == from => Some(fault.record.map(Fault::from)),
+                _ => None,
+            })?;
+            match fault {
+                Some(fault) => kept.push(fault),
+                None => return Ok(kept),
+            }
+        }
+    }
+
+    /// Forgets the faults that the board kept.
+    ///
+    /// # Errors
+    /// As of [`ClientError`].
+    pub fn clear_faults(&mut self) -> Result<(), ClientError> {
+        self.ask(&Message::ClearFaults, "clear faults", done)
+    }
+}
+
+fn value_of(key: &str, answer: &Message<'_>) -> Option<Option<f32>> {
+    match answer {
+        Message::Value { key: of, value } if *of == Key::whole(key) => Some(*value),
+        _ => None,
+    }
+}
+
+fn law_answered(answer: &Message<'_>) -> Option<Law> {
+    match answer {
+        Message::Law(bytes) => law_of(bytes),
+        _ => None,
+    }
+}
+
+fn done(answer: &Message<'_>) -> Option<()> {
+    (*answer == Message::Done).then_some(())
+}

@@ -1,0 +1,135 @@
+//! A control step that a board told, as a line of a table. What `ride` has a column for has the same name here.
+
+use control::{Sample, Triple, frame::MISSING};
+use link::telemetry::Telemetry;
+use serde::Serialize;
+
+/// A control step that a board told. Sensors are in their own axes, zeros and signs, as they were read; one without a
+/// sample is empty.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// The board's clock \[s\].
+    pub t: f64,
+    /// Control steps done, this one included.
+    pub steps: u32,
+    /// Steps that ended too late.
+    pub late: u32,
+    /// Whether the motor got the command.
+    pub driven: bool,
+    /// Where the controller stood, as the number of [`control::Mode`].
+    pub mode: u8,
+    /// What stood in the way of the torque, as bits of [`control::Causes`].
+    pub causes: u64,
+    /// Limits that changed the torque, as bits of [`control::ActiveLimits`].
+    pub limits: u16,
+    /// The steer torque the assist commanded \[N m\].
+    pub torque: f32,
+    /// The gain \[N m s/rad\].
+    pub gain: f32,
+    /// Whether the rider's switch asks for assist.
+    pub engage: bool,
+    /// The gyro about x \[rad/s\].
+    pub measured_roll_rate: Option<f32>,
+    /// The gyro about y \[rad/s\].
+    pub measured_pitch_rate: Option<f32>,
+    /// The gyro about z \[rad/s\].
+    pub measured_yaw_rate: Option<f32>,
+    /// Control periods since the gyro's sample.
+    pub gyro_age: Option<u16>,
+    /// Specific force along x \[m/s^2\].
+    pub measured_accel_x: Option<f32>,
+    /// Specific force along y \[m/s^2\].
+    pub measured_accel_y: Option<f32>,
+    /// Specific force along z \[m/s^2\].
+    pub measured_accel_z: Option<f32>,
+    /// Control periods since the accelerometer's sample.
+    pub accel_age: Option<u16>,
+    /// Steer angle \[rad\].
+    pub measured_steer: Option<f32>,
+    /// Control periods since its sample.
+    pub steer_age: Option<u16>,
+    /// Steer rate \[rad/s\].
+    pub measured_steer_rate: Option<f32>,
+    /// Control periods since its sample.
+    pub steer_rate_age: Option<u16>,
+    /// Front wheel's forward speed \[m/s\].
+    pub measured_front_speed: Option<f32>,
+    /// Control periods since its sample.
+    pub front_speed_age: Option<u16>,
+    /// Rear wheel's forward speed \[m/s\].
+    pub measured_rear_speed: Option<f32>,
+    /// Control periods since its sample.
+    pub rear_speed_age: Option<u16>,
+    /// The rider's steer torque \[N m\].
+    pub measured_rider_torque: Option<f32>,
+    /// Control periods since its sample.
+    pub rider_torque_age: Option<u16>,
+    /// The torque that the drive says it gives \[N m\].
+    pub measured_motor_torque: Option<f32>,
+    /// Control periods since its sample.
+    pub motor_torque_age: Option<u16>,
+    /// How much of what it should do the gyro does.
+    pub gyro_slope: Option<f32>,
+    /// How much of what it should do the motor does.
+    pub motor_slope: Option<f32>,
+}
+
+impl Row {
+    /// Of a step at `t` by the board's clock \[s\].
+    pub fn new(t: f64, told: &Telemetry) -> Self {
+        let Telemetry { steps, late, driven, frame, command, slopes } = told;
+        let ([roll_rate, pitch_rate, yaw_rate], gyro_age) = triple(&frame.gyro_rad_s);
+        let ([x, y, z], accel_age) = triple(&frame.accel_m_s2);
+        let (steer, steer_age) = sample(&frame.steer_rad);
+        let (steer_rate, steer_rate_age) = sample(&frame.steer_rate_rad_s);
+        let (front_speed, front_speed_age) = sample(&frame.front_wheel_m_s);
+        let (rear_speed, rear_speed_age) = sample(&frame.rear_wheel_m_s);
+        let (rider_torque, rider_torque_age) = sample(&frame.rider_torque_nm);
+        let (motor_torque, motor_torque_age) = sample(&frame.motor_torque_nm);
+        let [gyro_slope, motor_slope] = *slopes;
+        Self {
+            t,
+            steps: *steps,
+            late: *late,
+            driven: *driven,
+            mode: command.mode as u8,
+            causes: command.causes.0,
+            limits: command.limits.0,
+            torque: command.torque_nm,
+            gain: command.gain_nm_s_rad,
+            engage: frame.engage,
+            measured_roll_rate: roll_rate,
+            measured_pitch_rate: pitch_rate,
+            measured_yaw_rate: yaw_rate,
+            gyro_age,
+            measured_accel_x: x,
+            measured_accel_y: y,
+            measured_accel_z: z,
+            accel_age,
+            measured_steer: steer,
+            steer_age,
+            measured_steer_rate: steer_rate,
+            steer_rate_age,
+            measured_front_speed: front_speed,
+            front_speed_age,
+            measured_rear_speed: rear_speed,
+            rear_speed_age,
+            measured_rider_torque: rider_torque,
+            rider_torque_age,
+            measured_motor_torque: motor_torque,
+            motor_torque_age,
+            gyro_slope,
+            motor_slope,
+        }
+    }
+}
+
+fn sample(sample: &Sample) -> (Option<f32>, Option<u16>) {
+    let there = sample.age_ticks != MISSING;
+    (there.then_some(sample.value), there.then_some(sample.age_ticks))
+}
+
+fn triple(triple: &Triple) -> ([Option<f32>; 3], Option<u16>) {
+    let there = triple.age_ticks != MISSING;
+    (triple.value.map(|value| there.then_some(value)), there.then_some(triple.age_ticks))
+}

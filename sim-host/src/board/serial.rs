@@ -1,0 +1,54 @@
+//! A serial port.
+
+use super::line::{Line, LineError};
+use serialport::{ClearBuffer, SerialPort};
+use std::io::{self, ErrorKind, Read, Write};
+use std::time::Duration;
+
+/// Longest time to send a frame; at 9600 baud the largest takes 0.35 s.
+const SENDING: Duration = Duration::from_secs(2);
+
+/// A serial port, 8 data bits, no parity, one stop bit.
+pub struct Serial {
+    name: String,
+    port: Box<dyn SerialPort>,
+}
+
+impl Serial {
+    /// Opens `name` and forgets what waits there from before. Where the baud rate means nothing, as for USB, any does.
+    ///
+    /// # Errors
+    /// [`LineError::Open`].
+    pub fn open(name: &str, baud: u32) -> Result<Self, LineError> {
+        let opened = serialport::new(name, baud).timeout(SENDING).open();
+        let port = opened.and_then(|port| port.clear(ClearBuffer::Input).map(|()| port));
+        let failed =
+            |why: serialport::Error| LineError::Open { line: name.into(), why: io::Error::other(why) };
+        Ok(Self { name: name.into(), port: port.map_err(failed)? })
+    }
+
+    fn lost(&self, why: io::Error) -> LineError {
+        LineError::Lost { line: self.name.clone(), why }
+    }
+}
+
+impl Line for Serial {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LineError> {
+        let sent = self.port.set_timeout(SENDING).map_err(io::Error::from);
+        sent.and_then(|()| self.port.write_all(bytes)).map_err(|why| self.lost(why))
+    }
+
+    fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError> {
+        let mut bytes = vec![0; 4096];
+        let ready = self.port.set_timeout(patience).map_err(io::Error::from);
+        match ready.and_then(|()| self.port.read(&mut bytes)) {
+            Ok(0) => Err(self.lost(ErrorKind::UnexpectedEof.into())),
+            Ok(length) => {
+                bytes.truncate(length);
+                Ok(bytes)
+            }
+            Err(why) if matches!(why.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => Ok(Vec::new()),
+            Err(why) => Err(self.lost(why)),
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! `sim-host monitor`.
+
+use super::monitor_view::{View, summary};
+use super::port_args::{PortArgs, board};
+use super::{Ended, Failure, interrupt};
+use crate::board::monitor::{Monitor, News};
+use crate::board::recorded::{Recorder, Recording};
+use crate::board::row::Row;
+use crate::board::told::Told;
+use crate::board::{BoardName, Client, ClientError, Line, LineError, Patience};
+use crate::range::time;
+use crate::report::output::Output;
+use crate::report::table::heading;
+use serde_json::json;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+const EXAMPLES: &str = "\
+Ends by Ctrl-C, after --for, at the end of --file, or when the line is lost; what was written stays.
+Not on a terminal it prints a line a second and one for every change of mode, causes, drive or lateness.
+
+Examples:
+  sim-host monitor --port /dev/ttyACM0
+  sim-host monitor --port /dev/ttyACM0 --record ride.link --csv ride.csv
+  sim-host monitor --file ride.link --csv ride.csv";
+
+/// Longest silence that is not told.
+const SILENCE: Duration = Duration::from_secs(2);
+
+/// Options of `monitor`.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES, group = board().arg("file"))]
+pub(super) struct Args {
+    #[command(flatten)]
+    port: PortArgs,
+    /// A recording of --record, as fast as it can be read
+    #[arg(long, value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// Write every control step that is told as a CSV table, at once; - is standard output
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write the raw bytes as they come, for --file; - is standard output
+    #[arg(long, value_name = "FILE", conflicts_with = "file")]
+    record: Option<PathBuf>,
+    /// End after this time, as 10s [default: never]
+    #[arg(long = "for", value_name = "TIME", value_parser = duration, conflicts_with = "file")]
+    length: Option<f64>,
+}
+
+fn duration(text: &str) -> Result<f64, String> {
+    time(text, 1e6)
+}
+
+/// All that a monitor works with.
+struct Session {
+    client: Client,
+    monitor: Monitor,
+    view: View,
+    table: Option<Table>,
+    /// Damaged frames before it began: the first one is heard from its middle.
+    damaged_before: u32,
+}
+
+pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    let place = |path: &Option<PathBuf>| path.as_deref().map(Output::create).transpose();
+    let (csv, record) = (place(&args.csv)?, place(&args.record)?);
+    if let (Some(csv), Some(record)) = (&csv, &record)
+        && csv.collides(record)
+    {
+        return Err("--csv and --record have the same place to write to".into());
+    }
+    let quiet = [&csv, &record].into_iter().flatten().any(Output::is_standard);
+    interrupt::install_saying("ending");
+    let mut client = Client::new(line(args)?, Patience::default());
+    let board = if args.file.is_some() { None } else { Some(client.hello()?) };
+    let title = board.as_ref().map_or("a recording".to_owned(), BoardName::label);
+    let table = args.csv.as_deref().map(|path| Table::create(path, &json!({"board": board}))).transpose()?;
+    let view = if quiet { View::None } else { View::new(title)? };
+    let damaged_before = client.damaged();
+    let mut session = Session { client, monitor: Monitor::default(), view, table, damaged_before };
+    let ended = session.hear(args.length.map(Duration::from_secs_f64));
+    let told = session.end();
+    let ended = ended?;
+    told?;
+    Ok(ended)
+}
+
+/// The line to hear, kept as a file if that was asked for.
+fn line(args: &Args) -> Result<Box<dyn Line>, Failure> {
+    let line: Box<dyn Line> = match (&args.file, args.port.open()?) {
+        (Some(file), _) => Box::new(Recording::open(file)?),
+        (None, Some(line)) => line,
+        (None, None) => return Err("no board is named; see --port".into()),
+    };
+    Ok(match &args.record {
+        Some(path) => Box::new(Recorder::new(line, &path.display().to_string(), open(path)?)),
+        None => line,
+    })
+}
+
+impl Session {
+    /// Hears and shows until there is an end.
+    fn hear(&mut self, length: Option<Duration>) -> Result<Ended, Failure> {
+        let (begin, mut heard, mut silence_told) = (Instant::now(), Instant::now(), false);
+        loop {
+            if interrupt::stopped() {
+                return Ok(Ended::Interrupted);
+            }
+            if length.is_some_and(|length| begin.elapsed() >= length) {
+                return Ok(Ended::Done);
+            }
+            let told = match self.client.listen(Duration::from_millis(50)) {
+                Ok(told) => told,
+                Err(ClientError::Line(LineError::Ended { .. })) => return Ok(Ended::Done),
+                Err(error) => return Err(error.into()),
+            };
+            if !told.is_empty() {
+                (heard, silence_told) = (Instant::now(), false);
+            } else if heard.elapsed() > SILENCE && !std::mem::replace(&mut silence_told, true) {
+                self.view.say(&format!("nothing heard for {} s", SILENCE.as_secs()))?;
+            }
+            told.iter().try_for_each(|told| self.take(told))?;
+            self.table.as_mut().map_or(Ok(()), Table::flush)?;
+            self.view.draw(&self.monitor, self.damaged())?;
+        }
+    }
+
+    fn take(&mut self, told: &Told) -> Result<(), Failure> {
+        match self.monitor.take(told) {
+            News::Step(row) => {
+                self.table.as_mut().map_or(Ok(()), |table| table.write(&row))?;
+                self.view.step(&self.monitor, self.damaged())
+            }
+            News::Fault(fault) => self.view.say(&format!("fault: {fault}")),
+            News::Log(words) => self.view.say(&format!("log: {words}")),
+            News::Unknown => Ok(()),
+        }
+    }
+
+    /// What was heard in all; the table whole.
+    fn end(&mut self) -> Result<(), Failure> {
+        self.table.as_mut().map_or(Ok(()), Table::flush)?;
+        self.view.say(&summary(&self.monitor, self.damaged()))
+    }
+
+    fn damaged(&self) -> u32 {
+        self.client.damaged().wrapping_sub(self.damaged_before)
+    }
+}
+
+/// A table that is written as it comes.
+struct Table {
+    path: String,
+    rows: csv::Writer<Box<dyn Write>>,
+}
+
+impl Table {
+    fn create(path: &Path, config: &serde_json::Value) -> Result<Self, Failure> {
+        let mut file = open(path)?;
+        file.write_all(heading(config).as_bytes())?;
+        Ok(Self { path: path.display().to_string(), rows: csv::Writer::from_writer(file) })
+    }
+
+    fn write(&mut self, row: &Row) -> Result<(), Failure> {
+        self.rows.serialize(row).map_err(|error| failed(&self.path, error.into()))
+    }
+
+    fn flush(&mut self) -> Result<(), Failure> {
+        self.rows.flush().map_err(|error| failed(&self.path, error))
+    }
+}
+
+/// Opens a file that is written as things come: an older one is lost at once.
+fn open(path: &Path) -> Result<Box<dyn Write>, Failure> {
+    if path == Path::new("-") {
+        return Ok(Box::new(io::stdout()));
+    }
+    let file = File::create(path).map_err(|error| failed(&path.display().to_string(), error))?;
+    Ok(Box::new(file))
+}
+
+/// A reader of standard output that goes away stays one; a file is named.
+fn failed(path: &str, error: io::Error) -> Failure {
+    if path == "-" { error.into() } else { format!("can't write {path}: {error}").into() }
+}

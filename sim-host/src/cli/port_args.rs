@@ -1,0 +1,40 @@
+//! The options that say where a board is.
+
+use super::Failure;
+use crate::board::serial::Serial;
+use crate::board::{BoardName, Client, Line, Patience};
+use clap::ArgGroup;
+
+/// One board must be named.
+pub(super) fn board() -> ArgGroup {
+    ArgGroup::new("board").required(true).arg("port")
+}
+
+/// Options of all commands that speak with a board.
+#[derive(clap::Args)]
+pub(super) struct PortArgs {
+    /// Serial port of the board, as /dev/ttyACM0
+    #[arg(long, value_name = "DEVICE")]
+    port: Option<String>,
+    /// Baud rate of the serial port; means nothing over USB
+    #[arg(long, default_value_t = 115_200, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(300..=4_000_000))]
+    baud: u32,
+}
+
+impl PortArgs {
+    /// Opens the line; none if no board is named.
+    pub(super) fn open(&self) -> Result<Option<Box<dyn Line>>, Failure> {
+        match &self.port {
+            Some(port) => Ok(Some(Box::new(Serial::open(port, self.baud)?))),
+            None => Ok(None),
+        }
+    }
+
+    /// The board and who it is, asked first: it tells whether both speak the same version.
+    pub(super) fn connect(&self) -> Result<(Client, BoardName), Failure> {
+        let line = self.open()?.ok_or("no board is named; see --port")?;
+        let mut client = Client::new(line, Patience::default());
+        let board = client.hello()?;
+        Ok((client, board))
+    }
+}

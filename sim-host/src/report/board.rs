@@ -1,0 +1,88 @@
+//! The JSON documents of `param list` and `faults`.
+
+use super::document::SCHEMA;
+use super::resolved::{ResolvedLaw, Tool};
+use crate::board::BoardName;
+use crate::board::fault::Fault;
+use crate::board::parameter::{Parameter, law_name};
+use crate::board::settings::Settings;
+use link::leaves::Kind;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// `param list`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ParametersDocument {
+    /// 1.
+    #[schemars(extend("const" = SCHEMA))]
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// The board.
+    pub board: BoardName,
+    /// Its law.
+    pub law: ResolvedLaw,
+    /// Its parameters, in its order.
+    pub parameters: Vec<ListedParameter>,
+}
+
+impl ParametersDocument {
+    /// Of what `board` has, those of `parameters` only.
+    pub fn new(board: BoardName, settings: &Settings, parameters: &[&Parameter]) -> Self {
+        Self {
+            schema: SCHEMA,
+            tool: Tool::this(),
+            board,
+            law: ResolvedLaw::new(&law_name(&settings.law), &settings.law),
+            parameters: parameters.iter().map(|one| ListedParameter::new(one)).collect(),
+        }
+    }
+}
+
+/// A parameter of a board. Values are in the words of `--set`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ListedParameter {
+    /// Its name.
+    pub key: String,
+    /// Its value.
+    pub value: String,
+    /// What a reset makes it.
+    pub default: String,
+    /// Its unit; empty for a plain number.
+    pub unit: &'static str,
+    /// Least allowed value; null where only words are.
+    pub min: Option<f32>,
+    /// Largest allowed value; null where only words are.
+    pub max: Option<f32>,
+    /// The words that it may be; none for a plain number.
+    pub words: Vec<String>,
+}
+
+impl ListedParameter {
+    fn new(one: &Parameter) -> Self {
+        let numbers = !matches!(one.kind, Kind::Switch | Kind::Choice);
+        Self {
+            key: one.key.clone(),
+            value: one.text(one.value),
+            default: one.text(one.default),
+            unit: one.unit,
+            min: numbers.then_some(one.min),
+            max: numbers.then_some(one.max),
+            words: one.words().into_iter().map(String::from).collect(),
+        }
+    }
+}
+
+/// `faults`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct FaultsDocument {
+    /// 1.
+    #[schemars(extend("const" = SCHEMA))]
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// The board; null for a recording.
+    pub board: Option<BoardName>,
+    /// The faults it kept, the newest first; of a recording those told in it, in its order.
+    pub faults: Vec<Fault>,
+}

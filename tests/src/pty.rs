@@ -1,0 +1,78 @@
+//! A board behind a pseudo terminal, for programs that open it as a serial port.
+
+use crate::link_board::{Shared, lock};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use std::fs::File;
+use std::io::{Read, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{JoinHandle, spawn};
+
+/// Between two looks at the line, where nothing comes in: 4 ms.
+const LOOK: Timespec = Timespec { tv_sec: 0, tv_nsec: 4_000_000 };
+
+/// A board at a pseudo terminal, as long as this lives.
+pub struct Port {
+    /// The device's name.
+    pub name: String,
+    gone: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+    /// Kept, so that the terminal stays when a program closes it.
+    _device: File,
+}
+
+impl Port {
+    /// Answers as `board` does. After every look at the line `also` says what else goes out, or with `None` that the
+    /// board is pulled out.
+    pub fn new(board: &Shared, mut also: impl FnMut(&Shared) -> Option<Vec<u8>> + Send + 'static) -> Self {
+        let (mut end, name, device) = open().expect("a pseudo terminal");
+        let (gone, board) = (Arc::new(AtomicBool::new(false)), board.clone());
+        let thread = spawn({
+            let gone = gone.clone();
+            move || {
+                let mut bytes = [0; 4096];
+                while !gone.load(Ordering::SeqCst) {
+                    let _ = poll(&mut [PollFd::new(&end, PollFlags::IN)], Some(&LOOK));
+                    let length = end.read(&mut bytes).unwrap_or(0);
+                    let mut out = lock(&board).take(&bytes[..length]);
+                    let Some(mut more) = also(&board) else { return };
+                    out.append(&mut more);
+                    // Where nobody listens it is lost, as on a wire.
+                    let _ = end.write(&out);
+                }
+            }
+        });
+        Self { name, gone, thread: Some(thread), _device: device }
+    }
+
+    /// One that only answers.
+    pub fn quiet(board: &Shared) -> Self {
+        Self::new(board, |_| Some(Vec::new()))
+    }
+}
+
+/// The board's end, which does not block, and the raw device with its name. No other program inherits them, or the
+/// device would not hang up.
+fn open() -> std::io::Result<(File, String, File)> {
+    let end = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
+    grantpt(&end)?;
+    unlockpt(&end)?;
+    rustix::io::ioctl_fionbio(&end, true)?;
+    let name = ptsname(&end, Vec::new())?.to_string_lossy().into_owned();
+    let device = File::options().read(true).write(true).open(&name)?;
+    let mut raw = tcgetattr(&device)?;
+    raw.make_raw();
+    tcsetattr(&device, OptionalActions::Now, &raw)?;
+    Ok((end.into(), name, device))
+}
+
+impl Drop for Port {
+    fn drop(&mut self) {
+        self.gone.store(true, Ordering::SeqCst);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}

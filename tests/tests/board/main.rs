@@ -1,0 +1,9 @@
+//! Flight cards: the tools for a board, on a board made of the `link` crate.
+
+mod client;
+mod damage;
+mod monitor;
+#[cfg(unix)]
+mod program;
+mod tune;
+mod words;
