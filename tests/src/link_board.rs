@@ -145,7 +145,16 @@ pub fn telemetry(steps: u32) -> Telemetry {
         mode: Mode::Engaged,
         causes: Causes::all(&[CAUSES[16], CAUSES[45]]),
     };
-    Telemetry { steps, late: 2, driven: true, frame, command, slopes: [None, Some(0.5)] }
+    Telemetry {
+        steps,
+        late: 2,
+        driven: true,
+        frame,
+        command,
+        slopes: [None, Some(0.5)],
+        polarity: 3,
+        shown_nm: 0.0,
+    }
 }
 
 /// A fault of each kind, the newest first.

@@ -2,7 +2,7 @@
 
 use super::causes::{NamedCause, named};
 use super::exception::Exception;
-use link::report::{FaultKind, FaultRecord, ResetCause};
+use link::report::{FaultKind, FaultRecord};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
@@ -34,9 +34,9 @@ impl From<FaultRecord<'_>> for Fault {
     fn from(record: FaultRecord<'_>) -> Self {
         let of_core = record.kind == FaultKind::Exception;
         Self {
-            kind: kind(record.kind),
+            kind: record.kind.name(),
             boot: record.boot,
-            reset: reset(record.reset),
+            reset: record.reset.name(),
             mode: record.mode.name(),
             steps: record.steps,
             frame_s: f64::from(record.frame_us) * 1e-6,
@@ -44,28 +44,6 @@ impl From<FaultRecord<'_>> for Fault {
             exception: of_core.then(|| Exception::new(record.exception, record.registers)),
             text: record.text.into(),
         }
-    }
-}
-
-fn kind(kind: FaultKind) -> &'static str {
-    match kind {
-        FaultKind::Panic => "panic",
-        FaultKind::Exception => "exception",
-        FaultKind::Watchdog => "watchdog",
-        FaultKind::Controller => "controller",
-        FaultKind::BrownOut => "brown-out",
-    }
-}
-
-fn reset(cause: ResetCause) -> &'static str {
-    match cause {
-        ResetCause::Unknown => "unknown",
-        ResetCause::PowerOn => "power-on",
-        ResetCause::BrownOut => "brown-out",
-        ResetCause::Pin => "reset pin",
-        ResetCause::Software => "software",
-        ResetCause::Watchdog => "watchdog",
-        ResetCause::LowPower => "low power",
     }
 }
 

@@ -15,6 +15,7 @@ pub mod parameter;
 pub mod qemu;
 pub mod recorded;
 pub mod requests;
+pub mod rolling;
 pub mod row;
 pub mod serial;
 pub mod settings;

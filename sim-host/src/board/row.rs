@@ -72,12 +72,16 @@ pub struct Row {
     pub gyro_slope: Option<f32>,
     /// How much of what it should do the motor does.
     pub motor_slope: Option<f32>,
+    /// What is to be done next in the polarity check, as the number of [`control::polarity::Move`].
+    pub polarity: u8,
+    /// The torque that the law would ask for during the check \[N m\].
+    pub shown_torque: f32,
 }
 
 impl Row {
     /// Of a step at `t` by the board's clock \[s\].
     pub fn new(t: f64, told: &Telemetry) -> Self {
-        let Telemetry { steps, late, driven, frame, command, slopes } = told;
+        let Telemetry { steps, late, driven, frame, command, slopes, polarity, shown_nm } = told;
         let ([roll_rate, pitch_rate, yaw_rate], gyro_age) = triple(&frame.gyro_rad_s);
         let ([x, y, z], accel_age) = triple(&frame.accel_m_s2);
         let (steer, steer_age) = sample(&frame.steer_rad);
@@ -120,6 +124,8 @@ impl Row {
             motor_torque_age,
             gyro_slope,
             motor_slope,
+            polarity: *polarity,
+            shown_torque: *shown_nm,
         }
     }
 }

@@ -5,7 +5,8 @@ use super::outputs::print;
 use crate::board::causes::{limits, named};
 use crate::board::monitor::Monitor;
 use console::{Term, truncate_str};
-use control::{Causes, Sample};
+use control::polarity::Move;
+use control::{Cause, Causes, Sample};
 use link::telemetry::Telemetry;
 use std::time::{Duration, Instant};
 
@@ -119,6 +120,17 @@ fn line(monitor: &Monitor, step: &Telemetry, damaged: u32) -> String {
     )
 }
 
+/// What is to be done next in the polarity check (docs/safety.md), motor off.
+fn todo(polarity: u8) -> &'static str {
+    match polarity {
+        n if n == Move::Lean as u8 => "polarity: lean the bicycle to the right",
+        n if n == Move::Steer as u8 => "polarity: turn the handlebar to the right",
+        n if n == Move::Push as u8 => "polarity: push the bicycle forward",
+        n if n == Move::Passed as u8 => "polarity: passed",
+        _ => "polarity: a sign is wrong",
+    }
+}
+
 fn panel(title: &str, monitor: &Monitor, damaged: u32) -> Vec<String> {
     let mut lines = vec![title.to_owned()];
     if let Some(step) = &monitor.newest {
@@ -154,6 +166,9 @@ fn panel(title: &str, monitor: &Monitor, damaged: u32) -> Vec<String> {
             ),
             format!("limits     {}", limits(command.limits).join(", ")),
         ]);
+        if command.causes.has(Cause::PolarityUnchecked) || command.causes.has(Cause::PolarityWrong) {
+            lines.push(format!("check      {}; torque shown {:.2} N m", todo(step.polarity), step.shown_nm));
+        }
         lines.extend(named(command.causes).iter().map(|cause| {
             format!("cause {:4} {}: {} ({})", cause.code, cause.name, cause.meaning, cause.page)
         }));

@@ -1,13 +1,16 @@
 //! The options that say where a board is.
 
 use super::Failure;
+use crate::board::qemu::default_image;
+use crate::board::rolling::Rolling;
 use crate::board::serial::Serial;
 use crate::board::{BoardName, Client, Line, Patience};
 use clap::ArgGroup;
+use std::path::PathBuf;
 
 /// One board must be named.
 pub(super) fn board() -> ArgGroup {
-    ArgGroup::new("board").required(true).arg("port")
+    ArgGroup::new("board").required(true).args(["port", "qemu"])
 }
 
 /// Options of all commands that speak with a board.
@@ -16,6 +19,9 @@ pub(super) struct PortArgs {
     /// Serial port of the board, as /dev/ttyACM0
     #[arg(long, value_name = "DEVICE")]
     port: Option<String>,
+    /// The board's image in QEMU, on a bicycle that rolls upright at 4 m/s [default IMAGE: where `cargo xtask firmware` builds it]
+    #[arg(long, value_name = "IMAGE", num_args = 0..=1, default_missing_value = "")]
+    qemu: Option<PathBuf>,
     /// Baud rate of the serial port; means nothing over USB
     #[arg(long, default_value_t = 115_200, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(300..=4_000_000))]
     baud: u32,
@@ -24,15 +30,19 @@ pub(super) struct PortArgs {
 impl PortArgs {
     /// Opens the line; none if no board is named.
     pub(super) fn open(&self) -> Result<Option<Box<dyn Line>>, Failure> {
-        match &self.port {
-            Some(port) => Ok(Some(Box::new(Serial::open(port, self.baud)?))),
-            None => Ok(None),
+        match (&self.port, &self.qemu) {
+            (Some(port), _) => Ok(Some(Box::new(Serial::open(port, self.baud)?))),
+            (None, Some(image)) if image.as_os_str().is_empty() => {
+                Ok(Some(Box::new(Rolling::start(&default_image())?)))
+            }
+            (None, Some(image)) => Ok(Some(Box::new(Rolling::start(image)?))),
+            (None, None) => Ok(None),
         }
     }
 
     /// The board and who it is, asked first: it tells whether both speak the same version.
     pub(super) fn connect(&self) -> Result<(Client, BoardName), Failure> {
-        let line = self.open()?.ok_or("no board is named; see --port")?;
+        let line = self.open()?.ok_or("no board is named; see --port and --qemu")?;
         let mut client = Client::new(line, Patience::default());
         let board = client.hello()?;
         Ok((client, board))

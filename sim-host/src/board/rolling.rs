@@ -1,0 +1,97 @@
+//! A board in QEMU, on a bicycle that rolls straight and upright, the rider's switch off: for whoever wants to ask or
+//! watch a board and has none.
+
+use super::line::{Line, LineError};
+use super::qemu::{LIMIT, Qemu};
+use super::{BoardError, Lockstep};
+use control::{Sample, SensorFrame, Triple};
+use link::frame::MAX_FRAME;
+use link::lockstep::ToBoard;
+use link::message::Message;
+use std::io;
+use std::path::Path;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// The bicycle's speed \[m/s\].
+const SPEED_M_S: f32 = 4.0;
+/// Gravity \[m/s^2\].
+const G_M_S2: f32 = 9.81;
+/// Most bytes that go to the board in a millisecond: ten times what a line of 115200 baud carries.
+const LINE_BYTES: usize = 115;
+
+/// The line of such a board. Its time goes on only while somebody waits for it, and never faster than the clock's.
+pub struct Rolling {
+    name: String,
+    board: Qemu,
+    /// Bytes that wait to go to the board.
+    waiting: Vec<u8>,
+    /// Number of the next sensor frame, from the chip's start.
+    number: u16,
+    now_us: u32,
+    /// When the last millisecond went over.
+    last: Instant,
+}
+
+impl Rolling {
+    /// Starts the image.
+    ///
+    /// # Errors
+    /// There is no image or no QEMU, or it does not start.
+    pub fn start(image: &Path) -> Result<Self, BoardError> {
+        let board = Qemu::start(image, &[], LIMIT)?;
+        let name = format!("{} in QEMU", image.display());
+        // The chip has done its first step, without sensors.
+        Ok(Self { name, board, waiting: Vec::new(), number: 1, now_us: 0, last: Instant::now() })
+    }
+
+    /// One millisecond; what the board said in it.
+    fn millisecond(&mut self) -> Result<Vec<u8>, LineError> {
+        let mut room = [0; MAX_FRAME];
+        let used = Message::PilFrame(self.sensors()).encode(self.number, &mut room).unwrap_or(0);
+        let line: Vec<u8> = self.waiting.drain(..self.waiting.len().min(LINE_BYTES)).collect();
+        let starts = self.board.last().starts;
+        let exchanged = self.board.exchange(&ToBoard { sensors: &room[..used], line: &line });
+        exchanged.map_err(|why| LineError::Lost {
+            line: self.name.clone(),
+            why: io::Error::other(why.to_string()),
+        })?;
+        let said = self.board.last();
+        self.number = if said.starts == starts { self.number.wrapping_add(1) } else { 1 };
+        self.now_us = self.now_us.wrapping_add(1000);
+        Ok(said.line.to_vec())
+    }
+
+    fn sensors(&self) -> SensorFrame {
+        SensorFrame {
+            now_us: self.now_us,
+            gyro_rad_s: Triple::fresh([0.0; 3]),
+            accel_m_s2: Triple::fresh([0.0, 0.0, -G_M_S2]),
+            steer_rad: Sample::fresh(0.0),
+            steer_rate_rad_s: Sample::fresh(0.0),
+            front_wheel_m_s: Sample::fresh(SPEED_M_S),
+            rear_wheel_m_s: Sample::fresh(SPEED_M_S),
+            motor_torque_nm: Sample::fresh(0.0),
+            ..SensorFrame::missing()
+        }
+    }
+}
+
+impl Line for Rolling {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LineError> {
+        self.waiting.extend(bytes);
+        Ok(())
+    }
+
+    fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError> {
+        let begin = Instant::now();
+        loop {
+            sleep(Duration::from_millis(1).saturating_sub(self.last.elapsed()));
+            self.last = Instant::now();
+            let said = self.millisecond()?;
+            if !said.is_empty() || begin.elapsed() >= patience {
+                return Ok(said);
+            }
+        }
+    }
+}
