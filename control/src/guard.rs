@@ -148,10 +148,10 @@ struct Torque<'a> {
     /// How far it shrank, on the side where it was, and how far it grew, each less the slack \[N m\].
     shrunk: f32,
     grown: f32,
-    /// The time there was, at least and at most \[s\].
-    time_s: (f32, f32),
-    /// Whether it goes back to zero as fast as it may.
-    retreats: bool,
+    /// How far it may have gone back towards zero, slack included; `None` if it changed sides \[N m\].
+    back: Option<f32>,
+    /// Time since the last call \[us\].
+    elapsed_us: f32,
 }
 
 impl<'a> Torque<'a> {
@@ -167,26 +167,32 @@ impl<'a> Torque<'a> {
         let (size, before) = (torque.abs(), last.abs());
         let crossed = (torque < 0.0 && last > 0.0) || (torque > 0.0 && last < 0.0);
         let (shrunk, grown) = if crossed { (before, size) } else { (before - size, size - before) };
-        let within = |us: f32| {
-            let s = us * 1e-6;
-            if s < plan.period_s { s } else { plan.period_s }
-        };
-        let elapsed = elapsed_us as f32;
-        let time_s = (within(elapsed), within(elapsed + 1.0));
-        let retreats = limits.fall_nm_s.is_some()
-            && !crossed
-            && (shrunk + slack) * plan.fall_s_nm >= time_s.0 * (1.0 - 1e-6);
+        let back = (!crossed).then_some(shrunk + slack);
         let side = side(torque);
         // The time to zero is a matter of the torque that was: a huge one the other way gives it nothing.
         let shrunk = shrunk - if crossed { slack_before } else { slack };
         let (size, grown) = (size - slack, grown - slack);
-        Self { limits, plan, size, side, shrunk, grown, time_s, retreats }
+        Self { limits, plan, size, side, shrunk, grown, back, elapsed_us: elapsed_us as f32 }
+    }
+
+    /// So long, or a control period if that is shorter \[s\].
+    fn within(&self, us: f32) -> f32 {
+        at_most(self.plan.period_s, us * 1e-6)
+    }
+
+    /// Whether it goes back to zero as fast as it may in the least time there was.
+    fn retreats(&self) -> bool {
+        let takes = |way: f32| way * self.plan.fall_s_nm >= self.within(self.elapsed_us) * (1.0 - 1e-6);
+        self.limits.fall_nm_s.is_some() && self.back.is_some_and(takes)
     }
 
     fn judge(&self, state: &GuardState, asked: &Asked) -> Result<(), Violation> {
         refuse(Violation::Magnitude, self.size > self.plan.max_nm)?;
-        if self.size > 0.0 && !self.retreats {
-            self.in_bounds(state, asked)?;
+        if self.size > 0.0
+            && let Err(violation) = self.in_bounds(state, asked)
+            && !self.retreats()
+        {
+            return Err(violation);
         }
         self.in_time()?;
         match self.limits.window {
@@ -195,7 +201,7 @@ impl<'a> Torque<'a> {
         }
     }
 
-    /// Whether a torque that does not go back to zero is inside all that depends on bicycle, rider and permission.
+    /// Whether it is inside all that depends on bicycle, rider and permission. One that goes back to zero need not be.
     fn in_bounds(&self, state: &GuardState, asked: &Asked) -> Result<(), Violation> {
         let Limits { limp_fraction, speed_cap, taper, rider_torque, rider_motion, end_stop, .. } =
             self.limits;
@@ -264,7 +270,7 @@ impl<'a> Torque<'a> {
     fn in_time(&self) -> Result<(), Violation> {
         let takes = |way: f32, s_nm: f32| if way > 0.0 { way * s_nm } else { 0.0 };
         let (down, up) = (takes(self.shrunk, self.plan.fall_s_nm), takes(self.grown, self.plan.rise_s_nm));
-        if down + up <= self.time_s.1 * (1.0 + 1e-5) {
+        if down + up <= self.within(self.elapsed_us + 1.0) * (1.0 + 1e-5) {
             Ok(())
         } else if up > 0.0 {
             Err(Violation::Rise)

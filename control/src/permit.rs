@@ -7,6 +7,7 @@ use crate::fault::{Cause, Causes};
 use crate::input::InputConfig;
 use crate::param::{Leaf, Visit};
 use crate::watch::Loss;
+use core::hint::cold_path;
 
 /// Where the controller stands. The number is the one on the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -197,6 +198,7 @@ impl Persistent {
         if now == self.holds && self.ticks == [0; 4] {
             return now;
         }
+        cold_path();
         let causes = [Cause::Fallen, Cause::Lifted, Cause::Backwards, Cause::Parked];
         for (cause, ticks) in causes.into_iter().zip(&mut self.ticks) {
             *ticks = if now.has(cause) == self.holds.has(cause) { 0 } else { ticks.saturating_add(1) };

@@ -6,6 +6,7 @@
 
 use crate::limits::{ActiveLimits, EndStop, Limits, RiderMotion, RiderTorque, SpeedCap, Taper, Window};
 use crate::maths::{at_least, at_most};
+use core::hint::cold_path;
 
 /// What the shaper is asked for, and what the limits depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,6 +142,7 @@ impl Shaping {
     }
     fn scale(&mut self, limit: ActiveLimits, share: f32) {
         if share < 1.0 {
+            cold_path();
             self.acted.note(limit, self.torque != 0.0);
             self.torque *= share;
         }
@@ -282,12 +284,10 @@ impl Past {
 /// Speeds in order; if any is NaN, all speeds there are.
 fn interval(a: f32, b: f32) -> (f32, f32) {
     if a <= b {
-        (a, b)
-    } else if b < a {
-        (b, a)
-    } else {
-        (f32::MIN, f32::MAX)
+        return (a, b);
     }
+    cold_path();
+    if b < a { (b, a) } else { (f32::MIN, f32::MAX) }
 }
 
 fn finite(value: Option<f32>) -> Option<f32> {

@@ -4,6 +4,7 @@
 use crate::fault::{Cause, Causes};
 use crate::frame::MISSING;
 use crate::param::{Leaf, Visit};
+use core::hint::cold_path;
 
 /// What the loss of a sensor means.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -169,7 +170,7 @@ impl<const N: usize> Watch<N> {
     ) -> Told<N> {
         let (value, age) = sample;
         // As nearly always: one good sample after the other.
-        if age == 0 && inside(sensor, &value) && self.near(&value) && !(moves && value == self.value) {
+        if age == 0 && inside(sensor, &value) && self.near(&value) && !self.stands(&value, moves) {
             self.value = value;
             return Told { value: Some((value, 0)), lost: None };
         }
@@ -254,6 +255,17 @@ impl<const N: usize> Watch<N> {
     #[inline(always)]
     fn near(&self, value: &[f32; N]) -> bool {
         value.iter().zip(&self.value).all(|(a, b)| (a - b).abs() <= self.near)
+    }
+
+    /// Whether a sample is the last good one again although something `moves`.
+    #[inline(always)]
+    fn stands(&self, value: &[f32; N], moves: bool) -> bool {
+        if *value == self.value {
+            cold_path();
+            moves
+        } else {
+            false
+        }
     }
 
     /// Whether a sample is the last good one in every bit.
