@@ -72,6 +72,16 @@ impl Parameter {
         name.unwrap_or_else(|| number.to_string())
     }
 
+    /// Its value in TOML; in words again it is that of [`Parameter::text`].
+    pub fn toml(&self) -> String {
+        match (self.kind, self.value) {
+            // With a point or an exponent: the largest are beyond TOML's whole numbers.
+            (Kind::Number | Kind::Limit, Some(number)) => format!("{number:?}"),
+            (Kind::Count, Some(number)) => number.to_string(),
+            _ => format!("\"{}\"", self.text(self.value)),
+        }
+    }
+
     /// The value that words stand for, if it may be that.
     ///
     /// # Errors

@@ -22,6 +22,16 @@ Examples:
   sim-host param export board.toml --port /dev/ttyACM0
   sim-host ride --speed 4 --steer-rate 3 --parameters board.toml";
 
+const LIST_HELP: &str = "\
+Examples:
+  sim-host param list --port /dev/ttyACM0
+  sim-host param list taper --port /dev/ttyACM0 --json";
+
+const GET_HELP: &str = "\
+Examples:
+  sim-host param get rate_hz --port /dev/ttyACM0
+  sim-host param get law --port /dev/ttyACM0";
+
 const SET_HELP: &str = "\
 VALUE is a number, none, on, off or a name, as `param list` shows; for the law one of --law: a name,
 or a TOML file with speed_m_s and gain_nm_s_rad. It is lost with the power until `param store`.
@@ -32,8 +42,8 @@ Examples:
   sim-host param set law cl2:3 --port /dev/ttyACM0";
 
 const IMPORT_HELP: &str = "\
-All keys and values are checked before anything is set. What the board then refuses makes it put back
-what was set before. That a polarity check was passed is never imported.
+All keys and values are checked before anything is set. If the board then refuses one, what was set
+before is put back. That a polarity check was passed is never imported.
 
 Example:
   sim-host param import board.toml --port /dev/ttyACM0";
@@ -41,9 +51,7 @@ Example:
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
     /// The board's parameters: value, unit, what is allowed, default where it is another
-    #[command(
-        after_help = "Examples:\n  sim-host param list --port /dev/ttyACM0\n  sim-host param list taper --port /dev/ttyACM0 --json"
-    )]
+    #[command(group = board(), after_help = LIST_HELP)]
     List {
         /// Only those with this in their name
         #[arg(default_value = "")]
@@ -55,9 +63,7 @@ pub(super) enum Command {
         port: PortArgs,
     },
     /// One parameter's value
-    #[command(
-        after_help = "Examples:\n  sim-host param get rate_hz --port /dev/ttyACM0\n  sim-host param get law --port /dev/ttyACM0"
-    )]
+    #[command(group = board(), after_help = GET_HELP)]
     Get {
         /// Its name
         key: String,

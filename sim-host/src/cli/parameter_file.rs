@@ -58,7 +58,11 @@ impl ParameterFile {
     /// left out.
     pub(super) fn apply(&self, config: &mut Config) -> Result<(), String> {
         let calibration = config.calibration;
+        let known = leaves::list(config);
         for (key, words) in &self.values {
+            if !known.iter().any(|(name, _)| name == key) {
+                return Err(format!("{}: {key} = {words}: no parameter {key}", self.path));
+            }
             leaves::set(config, key, words)
                 .map_err(|why| format!("{}: {key} = {words}: {why}", self.path))?;
         }
@@ -93,10 +97,8 @@ pub(super) fn text(settings: &Settings, remark: &str) -> String {
     }
     text += "\n[parameters]\n";
     for one in settings.but_law() {
-        let words = one.text(one.value);
-        let value = if words.parse::<f32>().is_ok() { words } else { format!("\"{words}\"") };
         let unit = if one.unit.is_empty() { String::new() } else { format!(" {},", one.unit) };
-        let _ = writeln!(text, "\"{}\" = {value} #{unit} {}", one.key, one.allowed());
+        let _ = writeln!(text, "\"{}\" = {} #{unit} {}", one.key, one.toml(), one.allowed());
     }
     text
 }

@@ -53,10 +53,10 @@ proptest! {
         let number = f32::from_bits(bits);
         prop_assume!(number.is_finite());
         let one = Parameter {
-            key: "any".into(), kind: Kind::Number, value: None, default: None,
+            key: "any".into(), kind: Kind::Number, value: Some(number), default: None,
             min: f32::MIN, max: f32::MAX, unit: "", names: vec![],
         };
-        let written = format!("any = {}", one.text(Some(number)));
+        let written = format!("any = {}", one.toml());
         let table: toml::Table = written.parse().expect("TOML");
         let words = match &table["any"] {
             toml::Value::Integer(number) => number.to_string(),

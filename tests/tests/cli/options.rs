@@ -93,6 +93,16 @@ fn every_help_has_examples_whose_options_exist() {
         "bicycle show",
         "bicycle check",
         "bicycle accel",
+        "monitor",
+        "param",
+        "param list",
+        "param get",
+        "param set",
+        "param store",
+        "param reset",
+        "param export",
+        "param import",
+        "faults",
     ] {
         let help = bench.run(&format!("{command} --help"));
         assert_eq!(help.code, Some(0), "{command}");
