@@ -6,3 +6,4 @@ mod command_line;
 mod image;
 mod link;
 mod mishaps;
+mod stopping;

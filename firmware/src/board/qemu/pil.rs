@@ -153,8 +153,8 @@ pub async fn exchange() {
         Timer::at(Instant::from_millis(now_ms)).await;
         // What stands for hardware takes no time.
         time::hold(true);
-        hand_over(&mut host, chunk, out);
-        let Some(length) = host.read(chunk, whole) else {
+        let taken = hand_over(&mut host, chunk, out);
+        let Some(length) = taken.then(|| host.read(chunk, whole)).flatten() else {
             text::line(format_args!("done: stack_left={}", stack::never_used()));
             exit(Exit::Success)
         };
@@ -181,7 +181,8 @@ fn whole(start: &[u8]) -> Option<usize> {
     Some(4 + usize::from(u16::from_le_bytes([a, b])) + usize::from(u16::from_le_bytes([c, d])))
 }
 
-fn hand_over(host: &mut Stream, chunk: &mut [u8; MAX_CHUNK], out: &mut Out) {
+/// `false`: the host is gone.
+fn hand_over(host: &mut Stream, chunk: &mut [u8; MAX_CHUNK], out: &mut Out) -> bool {
     if let Some(t) = tasks::latest() {
         let number = critical_section::with(|cs| {
             SENSORS.borrow(cs).borrow().as_ref().map_or(u16::MAX, |sensors| sensors.used)
@@ -197,8 +198,8 @@ fn hand_over(host: &mut Stream, chunk: &mut [u8; MAX_CHUNK], out: &mut Out) {
         line: &said[..length],
     };
     let used = from.encode(chunk).unwrap_or(0);
-    host.write(&chunk[..used]);
     out.used = 0;
+    host.write(&chunk[..used])
 }
 
 fn take(message: &Message<'_>, sequence: u16, incoming: &mut Incoming, out: &mut Out) {

@@ -60,9 +60,35 @@ impl File {
     /// # Panics
     /// When the host can't take them.
     pub fn write_all(&mut self, bytes: &[u8]) {
+        assert!(self.write(bytes), "the host does not take {} bytes", bytes.len());
+    }
+
+    /// Writes all of `bytes`, unless the host does not take them: then `false`.
+    fn write(&mut self, bytes: &[u8]) -> bool {
         // SAFETY: the arguments of SYS_WRITE: handle, a buffer the host may read, its length.
         let left = unsafe { syscall!(WRITE, self.0, bytes.as_ptr(), bytes.len()) };
-        assert!(left == 0, "the host took {left} bytes too few");
+        left == 0
+    }
+}
+
+/// QEMU's standard output or standard error, for text.
+pub struct Text(File);
+
+impl Text {
+    /// Standard output.
+    pub fn out() -> Self {
+        Self(File::open(c":tt", nr::open::RW_TRUNC_BINARY))
+    }
+
+    /// Standard error.
+    pub fn err() -> Self {
+        Self(File::open(c":tt", nr::open::RW_APPEND_BINARY))
+    }
+}
+
+impl Write for Text {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        if self.0.write(text.as_bytes()) { Ok(()) } else { Err(core::fmt::Error) }
     }
 }
 
@@ -84,12 +110,9 @@ impl Stream {
         }
     }
 
-    /// Writes all of `bytes`.
-    ///
-    /// # Panics
-    /// When the host can't take them.
-    pub fn write(&mut self, bytes: &[u8]) {
-        self.output.write_all(bytes);
+    /// Writes all of `bytes`; `false`: the host is gone.
+    pub fn write(&mut self, bytes: &[u8]) -> bool {
+        self.output.write(bytes)
     }
 
     /// Waits for one whole chunk, whose length `whole` tells of its beginning; how many bytes it has. `None`: the host

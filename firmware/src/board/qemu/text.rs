@@ -1,8 +1,8 @@
 //! Text to QEMU's standard output; to its standard error while that carries the loop's bytes.
 
+use super::semihosting::Text;
 use core::fmt::{Arguments, Write};
 use core::sync::atomic::{AtomicBool, Ordering};
-use cortex_m_semihosting::hio;
 
 static ASIDE: AtomicBool = AtomicBool::new(false);
 
@@ -13,8 +13,6 @@ pub fn aside() {
 
 /// Writes a line. A host that does not take it changes nothing.
 pub fn line(text: Arguments<'_>) {
-    let host = if ASIDE.load(Ordering::Relaxed) { hio::hstderr() } else { hio::hstdout() };
-    if let Ok(mut host) = host {
-        let _ = host.write_fmt(text).and_then(|()| host.write_str("\n"));
-    }
+    let mut host = if ASIDE.load(Ordering::Relaxed) { Text::err() } else { Text::out() };
+    let _ = host.write_fmt(text).and_then(|()| host.write_str("\n"));
 }

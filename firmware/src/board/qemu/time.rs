@@ -42,9 +42,29 @@ pub(super) fn hold(still: bool) {
     }
 }
 
+/// Nothing is to be done before the next whole millisecond: it is now. To be called with interrupts off.
+pub(super) fn skip() {
+    if SCB::is_pendst_pending() {
+        return;
+    }
+    // SAFETY: the clock's own register, which nothing else writes after its start; any value sets it to zero, without
+    // an interrupt, from where it counts a whole millisecond.
+    unsafe {
+        (*SYST::PTR).cvr.write(0);
+    }
+    SCB::set_pendst();
+}
+
 /// Whole milliseconds since [`start`].
 pub(super) fn milliseconds() -> u32 {
     CLOCK.ms.load(Ordering::Relaxed)
+}
+
+impl SysTickClock {
+    /// The last whole millisecond, when alarms ring \[us\]. QEMU takes its time for a look at the counter.
+    fn whole_us(&self) -> u64 {
+        u64::from(self.ms.load(Ordering::Relaxed)) * 1000
+    }
 }
 
 impl Driver for SysTickClock {
@@ -67,7 +87,7 @@ impl Driver for SysTickClock {
             let mut queue = self.queue.borrow(cs).borrow_mut();
             if queue.schedule_wake(at, waker) {
                 // The next interrupt looks at the queue anyway; this wakes what is already due.
-                queue.next_expiration(self.now());
+                queue.next_expiration(self.whole_us());
             }
         });
     }
@@ -78,5 +98,5 @@ fn SysTick() {
     let ms = CLOCK.ms.load(Ordering::Relaxed) + 1;
     CLOCK.ms.store(ms, Ordering::Relaxed);
     watchdog::check(ms);
-    critical_section::with(|cs| CLOCK.queue.borrow(cs).borrow_mut().next_expiration(CLOCK.now()));
+    critical_section::with(|cs| CLOCK.queue.borrow(cs).borrow_mut().next_expiration(CLOCK.whole_us()));
 }

@@ -1,0 +1,87 @@
+//! What becomes of the emulators when the program stops.
+#![cfg(target_os = "linux")]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use tests::cli::{Bench, Run};
+use xtask::image;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+
+fn spawn(bench: &Bench, line: &str) -> Child {
+    let line = format!("{line} --image {}", image::path("qemu-pil").display());
+    let mut command = bench.command(&line);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts")
+}
+
+/// Waits for something, half a minute at most.
+fn wait_for<T>(mut look: impl FnMut() -> Option<T>) -> T {
+    let begin = Instant::now();
+    loop {
+        if let Some(found) = look() {
+            return found;
+        }
+        assert!(begin.elapsed() < Duration::from_secs(30), "it never comes");
+        sleep(Duration::from_millis(5));
+    }
+}
+
+/// The emulator that a program started, once it has computed for a while.
+fn emulator(child: &Child) -> PathBuf {
+    let tasks = PathBuf::from(format!("/proc/{}/task", child.id()));
+    wait_for(|| {
+        let threads = std::fs::read_dir(&tasks).expect("the program runs").flatten();
+        let children =
+            threads.filter_map(|thread| std::fs::read_to_string(thread.path().join("children")).ok());
+        let one = children.flat_map(|ids| ids.split_whitespace().next().map(str::to_owned)).next()?;
+        let place = Path::new("/proc").join(one);
+        let stat = std::fs::read_to_string(place.join("stat")).ok()?;
+        // The twelfth field after the name is the user time in hundredths of a second.
+        let used: u32 = stat.rsplit_once(')')?.1.split_whitespace().nth(11)?.parse().ok()?;
+        (used >= 100).then_some(place)
+    })
+}
+
+fn signal(name: &str, child: &Child) {
+    let kill = Command::new("sh").args(["-c", &format!("kill -{name} {}", child.id())]).status();
+    assert!(kill.expect("sh runs").success());
+}
+
+/// Situation: a basin of many short columns on the chip, some of it done. Action: Ctrl-C.
+/// Must hold: exit code 130; what is done is kept and written, the rest is null; the emulator is gone.
+#[test]
+fn an_interrupted_basin_on_the_chip_keeps_what_is_done() {
+    if !image::ready() {
+        return;
+    }
+    let bench = Bench::new(PROGRAM);
+    let many = "pil basin --speeds 3:9:0.001 --time-limit 0.05 --scan-step 10 --max-rate 10 --tolerance 10";
+    let child = spawn(&bench, &format!("{many} --threads 1 --json out.json"));
+    let emulator = emulator(&child);
+    signal("INT", &child);
+    let run = Run::from(child.wait_with_output().unwrap());
+    assert_eq!(run.code, Some(130), "{run:?}");
+    assert!(run.stderr.contains("of 6001 speeds are done and kept"), "{}", run.stderr);
+    let document: Value = serde_json::from_str(&bench.read("out.json")).unwrap();
+    let upper = document["height"]["upper"].as_array().unwrap();
+    let done = upper.iter().filter(|u| u.is_number()).count();
+    assert!(done > 0 && done < 6001, "{done}");
+    assert!(!emulator.exists());
+}
+
+/// Situation: a ride on the chip. Action: the program is killed, without a chance to end its emulator.
+/// Must hold: the emulator ends by itself.
+#[test]
+fn an_emulator_does_not_outlive_its_program() {
+    if !image::ready() {
+        return;
+    }
+    let mut child = spawn(&Bench::new(PROGRAM), "pil --speed 4 --time-limit 3600");
+    let emulator = emulator(&child);
+    signal("KILL", &child);
+    child.wait().unwrap();
+    wait_for(|| (!emulator.exists()).then_some(()));
+}
