@@ -20,9 +20,8 @@ fn an_image_answers_as_a_board() {
     if !image::ready() {
         return;
     }
-    let board =
-        Qemu::start(&image::path("qemu-pil"), &[], Duration::from_secs(60)).expect("the image starts");
-    let mut client = Client::new(Box::new(Emulated::new(board, "qemu-pil")), Patience::default());
+    let board = Rolling::start(&image::path("qemu-pil")).expect("the image starts");
+    let mut client = Client::new(Box::new(board), Patience::default());
     let hello = client.hello().expect("an answer");
     assert_eq!(hello.image, "qemu-pil");
     let before = Settings::read(&mut client).expect("settings");
