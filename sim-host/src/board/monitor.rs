@@ -19,6 +19,7 @@ pub struct Monitor {
     pub newest: Option<Telemetry>,
     /// The board's clock at that step \[s\].
     pub t: f64,
+    time_us: u64,
     sequence: Option<u16>,
 }
 
@@ -55,17 +56,18 @@ impl Monitor {
             // A board that starts anew numbers its frames anew.
             Some(before) if (step.steps.wrapping_sub(before.steps) as i32) < 0 => {
                 self.restarts += 1;
-                (self.sequence, self.t) = (Some(sequence), f64::from(now_us) * 1e-6);
+                (self.sequence, self.time_us) = (Some(sequence), now_us.into());
             }
             Some(before) => {
                 self.count(sequence);
-                self.t += f64::from(now_us.wrapping_sub(before.frame.now_us)) * 1e-6;
+                self.time_us += u64::from(now_us.wrapping_sub(before.frame.now_us));
             }
             None => {
                 self.count(sequence);
-                self.t = f64::from(now_us) * 1e-6;
+                self.time_us = now_us.into();
             }
         }
+        self.t = self.time_us as f64 / 1e6;
         self.newest = Some(step);
         News::Step(Box::new(Row::new(self.t, &step)))
     }

@@ -3,6 +3,7 @@
 mod budgets;
 mod deadlines;
 mod faults;
+mod line;
 mod no_panic;
 mod outputs;
 mod replay;

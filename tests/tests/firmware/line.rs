@@ -1,0 +1,79 @@
+//! The tools for a board on an image in QEMU: the same requests that other cards put to a board of the link.
+
+use control::{Config, Law};
+use link::leaves::each;
+use link::message::Message;
+use sim_host::board::rolling::Rolling;
+use sim_host::board::settings::{Setting, Settings};
+use sim_host::board::tune::tune;
+use sim_host::board::{Client, Patience};
+use std::time::Duration;
+use tests::cli::Bench;
+use xtask::image;
+
+/// Situation: the image with every task, on a bicycle that rolls upright.
+/// Action: ask who it is; list; set a parameter, the law and a group; store; ask for faults; listen.
+/// Must hold: every parameter of the flashed code is listed; what is set is read back, and stands for another
+/// configuration; there is no fault; telemetry goes on, its steps 10 to 40 apart.
+#[test]
+fn an_image_answers_as_a_board() {
+    if !image::ready() {
+        return;
+    }
+    let board = Rolling::start(&image::path("qemu-pil")).expect("the image starts");
+    let mut client = Client::new(Box::new(board), Patience::default());
+    let hello = client.hello().expect("an answer");
+    assert_eq!(hello.image, "qemu-pil");
+    let before = Settings::read(&mut client).expect("settings");
+    let mut names = Vec::new();
+    each(&mut Config::product(), |seen| {
+        names.push(seen.key().to_string());
+        seen.value
+    });
+    assert_eq!(before.parameters.iter().map(|one| one.key.clone()).collect::<Vec<_>>(), names);
+    let of = |key: &str, value| Setting::Value { key: key.into(), value: Some(value) };
+    let wanted = [
+        of("limits.max_torque_nm", 5.0),
+        of("limits.end_stop", 0.0),
+        Setting::Law(Law::Cl2 { k: 3.0 }.into()),
+    ];
+    let tuned = tune(&mut client, &before, &wanted).expect("set");
+    assert_eq!((tuned.set.len(), tuned.differing.len()), (3, 0), "{:?}", tuned.differing);
+    client.store().expect("stored");
+    assert_ne!(client.hello().expect("an answer").configuration, hello.configuration);
+    assert_eq!(client.faults().expect("faults"), []);
+    let mut steps = Vec::new();
+    while steps.len() < 5 {
+        for told in client.listen(Duration::from_secs(1)).expect("it goes on") {
+            if let Ok(Message::Telemetry(step)) = told.message() {
+                steps.push(step.steps);
+            }
+        }
+    }
+    assert!(steps.windows(2).all(|two| (10..=40).contains(&(two[1] - two[0]))), "{steps:?}");
+}
+
+/// Situation: the same image, by the program.
+/// Action: get a parameter, list faults, monitor.
+/// Must hold: they succeed and say what the board is; an image that is not there is named.
+#[test]
+fn the_program_takes_an_image_for_a_board() {
+    if !image::ready() {
+        return;
+    }
+    let bench = Bench::new(env!("CARGO_BIN_EXE_sim-host-under-test"));
+    let image = image::path("qemu-pil").display().to_string();
+    let run = |line: &str| {
+        let run = bench.run(&format!("{line} --qemu {image}"));
+        assert_eq!(run.code, Some(0), "{line}: {run:?}");
+        run.stdout
+    };
+    assert!(run("param get rate_hz").contains("1000 Hz"));
+    assert_eq!(run("faults"), "no faults\n");
+    let watched = run("monitor --for 1s");
+    assert!(
+        watched.contains("qemu-pil") && watched.contains(" 0 missing, 0 damaged, 0 restarts"),
+        "{watched}"
+    );
+    bench.run("param list --qemu no-such-image").refused_naming(&["no-such-image", "cargo xtask firmware"]);
+}
