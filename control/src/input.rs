@@ -6,6 +6,7 @@ use crate::frame::{SensorFrame, Wheel};
 use crate::maths::{at_least, at_most};
 use crate::param::{Leaf, Visit};
 use crate::watch::{Codes, Loss, Sensor, Told, Watch};
+use core::hint::cold_path;
 
 /// The declared sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -351,6 +352,7 @@ impl Recent {
         }
         let late = age.saturating_sub(config.drift_after_ticks);
         if late > 0 {
+            cold_path();
             let drift = config.drift_m_s2 * period_s * f32::from(late);
             (low, high) = (low - drift, high + drift);
         }

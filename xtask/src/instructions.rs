@@ -5,9 +5,8 @@ use control::{Config, SensorFrame};
 use std::str::FromStr;
 use std::time::Duration;
 
-/// The most instructions a step may take, of the 168,000 clock cycles of a period. The goal is 3,000; the flashed
-/// configuration with every sensor is above it.
-pub const BUDGET: u32 = 4500;
+/// The most instructions a step may take, of the 168,000 clock cycles of a period.
+pub const BUDGET: u32 = 3000;
 /// The most stack a step may take \[bytes\].
 pub const STACK_BUDGET: u32 = 1024;
 

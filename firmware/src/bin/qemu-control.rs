@@ -42,7 +42,8 @@ async fn judge(length: Duration) {
     let Some(t) = tasks::latest() else { exit(Exit::Failure) };
     let expected = (length.as_micros() / firmware::deadline::PERIOD.as_micros()) as u32;
     let missed = t.deadlines.missed(length);
-    hprintln!("done: steps={} missed={} worst_us={}", t.deadlines.steps, missed, t.deadlines.worst_us);
+    let (steps, worst_us, mode) = (t.deadlines.steps, t.deadlines.worst_us, t.command.mode.name());
+    hprintln!("done: steps={} missed={} worst_us={} mode={}", steps, missed, worst_us, mode);
     exit(if t.deadlines.steps == expected && missed == 0 { Exit::Success } else { Exit::Failure })
 }
 

@@ -37,7 +37,7 @@ fn expected_misses(seconds: u32, hold_us: u32) -> u32 {
 /// Situation: the product's control task, the thread never idle.
 /// Action: 5 simulated seconds.
 /// Must hold: exactly 5000 steps, no deadline missed, every step done within a tenth of its
-/// period, success.
+/// period, engaged at the end, success.
 #[test]
 fn five_busy_seconds_miss_no_deadline() {
     if !image::ready() {
@@ -47,6 +47,7 @@ fn five_busy_seconds_miss_no_deadline() {
     assert_eq!(result(&outcome), (5000, 0));
     let worst_us: u32 = field(last_line(&outcome), "worst_us").unwrap();
     assert!(worst_us < 100, "a step ended {worst_us} us after its release");
+    assert!(last_line(&outcome).ends_with(" mode=engaged"), "{outcome:?}");
     assert_eq!(outcome.status, Some(0));
 }
 

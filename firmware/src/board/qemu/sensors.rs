@@ -1,5 +1,5 @@
-//! Made-up sensors for tests of timing: a bicycle at 4 m/s whose roll rate swings by 0.5 rad/s
-//! once a second, and a rider who asks for assist. The motor takes every torque.
+//! Made-up sensors for tests of timing: a bicycle at 4 m/s whose roll rate swings by 0.1 rad/s
+//! once a second, and a rider who asks for assist. The motor gives every torque; the handlebar is held.
 
 use crate::tasks::Refusal;
 use control::{Command, Sample, SensorFrame, Triple};
@@ -8,27 +8,37 @@ use core::f32::consts::TAU;
 use critical_section::Mutex;
 use embassy_time::Instant;
 
-/// When the rider presses the switch \[ms\]: after the self-test.
+/// When the rider presses the switch \[ms\]: after the self-test, with nothing left that would refuse the press.
 const SWITCH_AFTER_MS: u64 = 400;
 
 /// Roll rate and its quarter-period companion \[rad/s\].
-static SWING: Mutex<Cell<(f32, f32)>> = Mutex::new(Cell::new((0.5, 0.0)));
+static SWING: Mutex<Cell<(f32, f32)>> = Mutex::new(Cell::new((0.1, 0.0)));
+
+/// The torque commanded last \[N m\].
+static TORQUE: Mutex<Cell<f32>> = Mutex::new(Cell::new(0.0));
 
 /// The sensors of this instant.
 pub fn sense() -> SensorFrame {
     let angle = TAU / 1000.0;
-    let roll_rate = critical_section::with(|cs| {
+    let (roll_rate, companion, torque_nm) = critical_section::with(|cs| {
         let (a, b) = SWING.borrow(cs).get();
         // Each half uses the other's newest value, which keeps the swing's size for ever.
         let a = a - angle * b;
-        SWING.borrow(cs).set((a, b + angle * a));
-        a
+        let b = b + angle * a;
+        SWING.borrow(cs).set((a, b));
+        (a, b, TORQUE.borrow(cs).get())
     });
+    let roll = companion / TAU;
     let now = Instant::now();
     SensorFrame {
         now_us: now.as_micros() as u32,
         gyro_rad_s: Triple::fresh([roll_rate, 0.0, 0.0]),
+        accel_m_s2: Triple::fresh([0.0, -9.81 * roll, -9.81]),
+        steer_rad: Sample::fresh(0.0),
+        steer_rate_rad_s: Sample::fresh(0.0),
         front_wheel_m_s: Sample::fresh(4.0),
+        rear_wheel_m_s: Sample::fresh(4.0),
+        motor_torque_nm: Sample::fresh(torque_nm),
         engage: now.as_millis() > SWITCH_AFTER_MS,
         ..SensorFrame::missing()
     }
@@ -38,6 +48,7 @@ pub fn sense() -> SensorFrame {
 ///
 /// # Errors
 /// None on this board.
-pub fn drive(_: &Command) -> Result<(), Refusal> {
+pub fn drive(command: &Command) -> Result<(), Refusal> {
+    critical_section::with(|cs| TORQUE.borrow(cs).set(command.torque_nm));
     Ok(())
 }
