@@ -265,10 +265,12 @@ impl Line for Wire {
         Ok(())
     }
 
-    fn receive(&mut self, _: Duration) -> Result<Vec<u8>, LineError> {
+    fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError> {
         let bytes = std::mem::take(&mut self.waiting);
         if bytes.is_empty() {
             self.check()?;
+            // Nothing comes before something is sent.
+            std::thread::sleep(patience);
         }
         Ok(bytes)
     }
