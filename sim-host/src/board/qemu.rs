@@ -3,9 +3,11 @@
 use super::watch::{Watch, locked};
 use super::{BoardError, Lockstep};
 use link::lockstep::{BOARD_HEAD, FromBoard, MAX_CHUNK, ToBoard};
+use std::cell::Cell;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::{JoinHandle, sleep, spawn};
 use std::time::Duration;
@@ -51,6 +53,7 @@ impl Qemu {
         if !image.is_file() {
             return Err(BoardError::NoImage(image.into()));
         }
+        stay_on_one_core();
         let mut child = command(image, words).spawn().map_err(BoardError::NoQemu)?;
         let (to, from, err) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         let child = Arc::new(Mutex::new(child));
@@ -165,6 +168,22 @@ impl Drop for Qemu {
         // It may have ended by itself.
         let _ = child.kill();
         let _ = child.wait();
+    }
+}
+
+/// Keeps this thread, and the QEMU that it starts next, on one core, each thread on another as far as there are any.
+///
+/// Host and board take turns, so that one core is enough for both; with two, each would wait for the other's core to
+/// wake up, which takes longer than a control step. Where the system does not let it, nothing changes.
+fn stay_on_one_core() {
+    static NEXT: AtomicUsize = AtomicUsize::new(0);
+    thread_local!(static PINNED: Cell<bool> = const { Cell::new(false) });
+    if PINNED.replace(true) {
+        return;
+    }
+    let cores = core_affinity::get_core_ids().unwrap_or_default();
+    if let Some(core) = cores.get(NEXT.fetch_add(1, Ordering::Relaxed) % cores.len().max(1)) {
+        core_affinity::set_for_current(*core);
     }
 }
 

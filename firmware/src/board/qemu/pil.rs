@@ -11,7 +11,7 @@ use control::{Config, Plan, SensorFrame};
 use core::cell::RefCell;
 use critical_section::Mutex;
 use embassy_time::{Instant, Timer};
-use link::frame::{Decoder, Received};
+use link::frame::{Decoder, MAX_FRAME, Received};
 use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
 use link::message::Message;
 use link::refusal::{Refusal, Why};
@@ -23,6 +23,9 @@ const PERIOD_US: u32 = crate::deadline::PERIOD.as_micros() as u32;
 /// Most bytes of the engineer's line in a period: ten times what a line of 115200 baud carries.
 const LINE_BYTES: usize = 115;
 
+/// Bytes of the loop that hold more than sensor frames.
+const LONG: usize = 3 * MAX_FRAME / 2;
+
 /// What the controller is told.
 struct Sensors {
     /// By the last step.
@@ -31,12 +34,12 @@ struct Sensors {
     fresh: Option<(u16, SensorFrame)>,
     /// The number of the next step.
     step: u16,
-    /// The number of the newest frame that was used.
-    used: u16,
+    /// The number of the newest frame that was used; `None` before the first.
+    used: Option<u16>,
 }
 
 impl Sensors {
-    const NONE: Self = Self { frame: SensorFrame::missing(), fresh: None, step: 0, used: u16::MAX };
+    const NONE: Self = Self { frame: SensorFrame::missing(), fresh: None, step: 0, used: None };
 }
 
 static SENSORS: Mutex<RefCell<Option<Sensors>>> = Mutex::new(RefCell::new(None));
@@ -48,10 +51,10 @@ pub(super) fn sense() -> Option<SensorFrame> {
         let s = sensors.as_mut()?;
         let (frame, late) = match s.fresh.take() {
             Some((number, frame)) => {
-                s.used = number;
+                s.used = Some(number);
                 (frame, s.step.wrapping_sub(number))
             }
-            None if s.used == u16::MAX => (SensorFrame::missing(), 0),
+            None if s.used.is_none() => (SensorFrame::missing(), 0),
             None => (s.frame, 1),
         };
         s.frame = later(frame, late);
@@ -135,6 +138,7 @@ fn wrong_rate(config: &Config) -> Refusal<'static> {
 pub fn begin() {
     stack::paint_all();
     text::aside();
+    time::coarse();
     critical_section::with(|cs| SENSORS.borrow(cs).replace(Some(Sensors::NONE)));
 }
 
@@ -149,10 +153,9 @@ pub async fn exchange() {
     let (mut decoder, mut host) = (Decoder::default(), Stream::open());
     let mut now_ms = Instant::now().as_millis();
     loop {
-        now_ms += 1;
+        // Held up, it leaves out what it missed.
+        now_ms = Instant::now().as_millis().max(now_ms) + 1;
         Timer::at(Instant::from_millis(now_ms)).await;
-        // What stands for hardware takes no time.
-        time::hold(true);
         let taken = hand_over(&mut host, chunk, out);
         let Some(length) = taken.then(|| host.read(chunk, whole)).flatten() else {
             text::line(format_args!("done: stack_left={}", stack::never_used()));
@@ -164,14 +167,17 @@ pub async fn exchange() {
         };
         // Bytes that find no room are lost, as on any line.
         let _ = line::IN.try_write(bytes);
-        for byte in sensors {
-            if let Some(Received::Frame(frame)) = decoder.feed(*byte)
-                && let Ok(message) = Message::decode(&frame)
-            {
-                take(&message, frame.sequence, incoming, out);
+        let mut all = || {
+            for byte in sensors {
+                if let Some(Received::Frame(frame)) = decoder.feed(*byte)
+                    && let Ok(message) = Message::decode(&frame)
+                {
+                    take(&message, frame.sequence, incoming, out);
+                }
             }
-        }
-        time::hold(false);
+        };
+        // What stands for hardware takes no time; a configuration would take more than a period.
+        if sensors.len() > LONG { time::held(all) } else { all() }
     }
 }
 
@@ -185,7 +191,7 @@ fn whole(start: &[u8]) -> Option<usize> {
 fn hand_over(host: &mut Stream, chunk: &mut [u8; MAX_CHUNK], out: &mut Out) -> bool {
     if let Some(t) = tasks::latest() {
         let number = critical_section::with(|cs| {
-            SENSORS.borrow(cs).borrow().as_ref().map_or(u16::MAX, |sensors| sensors.used)
+            SENSORS.borrow(cs).borrow().as_ref().and_then(|sensors| sensors.used).unwrap_or(u16::MAX)
         });
         out.put(&Message::PilCommand { command: t.command, authority: t.authority }, number);
     }

@@ -1,10 +1,14 @@
-//! Embassy's clock on SysTick: an interrupt every millisecond, 168 counts of the 168 MHz processor
-//! clock to the microsecond in between. Alarms ring at whole milliseconds.
+//! Embassy's clock on SysTick: 168 counts of the 168 MHz processor clock to the microsecond. Alarms ring at whole
+//! milliseconds.
+//!
+//! The counter runs round once a millisecond of instructions and is never written after its start: QEMU would wake
+//! another of its threads each time, which takes longer than a control step. A millisecond that is left out, or a
+//! time in which the clock is held, is reckoned instead, by where the counter stood.
 #![allow(unsafe_code)]
 
 use super::watchdog;
 use core::cell::RefCell;
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use core::task::Waker;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{SCB, SYST};
@@ -15,13 +19,29 @@ use embassy_time_queue_utils::Queue;
 const COUNTS_PER_US: u32 = 168;
 const COUNTS_PER_MS: u32 = 1000 * COUNTS_PER_US;
 
+/// Where the clock stands. Touched with interrupts off only, by everybody but the clock's interrupt.
 struct SysTickClock {
     ms: AtomicU32,
+    /// Counter at the start of this millisecond.
+    from: AtomicU32,
+    /// Rounds of the counter since.
+    rounds: AtomicU32,
+    /// The next interrupt ends the millisecond, however little of it is over.
+    skipping: AtomicBool,
+    /// The clock stands still.
+    held: AtomicBool,
+    /// Nobody looks between whole milliseconds.
+    coarse: AtomicBool,
     queue: Mutex<RefCell<Queue>>,
 }
 
 embassy_time_driver::time_driver_impl!(static CLOCK: SysTickClock = SysTickClock {
     ms: AtomicU32::new(0),
+    from: AtomicU32::new(COUNTS_PER_MS),
+    rounds: AtomicU32::new(0),
+    skipping: AtomicBool::new(false),
+    held: AtomicBool::new(false),
+    coarse: AtomicBool::new(false),
     queue: Mutex::new(RefCell::new(Queue::new())),
 });
 
@@ -34,24 +54,29 @@ pub(super) fn start(mut systick: SYST) {
     systick.enable_interrupt();
 }
 
-/// Lets the clock stand still, or go on where it stood.
-pub(super) fn hold(still: bool) {
-    // SAFETY: one bit of the clock's own register, which nothing else writes after its start.
-    unsafe {
-        (*SYST::PTR).csr.modify(|bits| if still { bits & !1 } else { bits | 1 });
-    }
+/// From now on the time is that of the last whole millisecond: each look at the counter costs QEMU as much as a
+/// thousand instructions.
+pub(super) fn coarse() {
+    CLOCK.coarse.store(true, Ordering::Relaxed);
+}
+
+/// Does something that takes no time by this clock.
+pub(super) fn held<T>(what: impl FnOnce() -> T) -> T {
+    let counts = critical_section::with(|_| {
+        CLOCK.held.store(true, Ordering::Relaxed);
+        CLOCK.counts()
+    });
+    let done = what();
+    critical_section::with(|_| {
+        CLOCK.begin(counts);
+        CLOCK.held.store(false, Ordering::Relaxed);
+    });
+    done
 }
 
 /// Nothing is to be done before the next whole millisecond: it is now. To be called with interrupts off.
 pub(super) fn skip() {
-    if SCB::is_pendst_pending() {
-        return;
-    }
-    // SAFETY: the clock's own register, which nothing else writes after its start; any value sets it to zero, without
-    // an interrupt, from where it counts a whole millisecond.
-    unsafe {
-        (*SYST::PTR).cvr.write(0);
-    }
+    CLOCK.skipping.store(true, Ordering::Relaxed);
     SCB::set_pendst();
 }
 
@@ -65,19 +90,46 @@ impl SysTickClock {
     fn whole_us(&self) -> u64 {
         u64::from(self.ms.load(Ordering::Relaxed)) * 1000
     }
+
+    /// Counts since the start of this millisecond.
+    fn counts(&self) -> u32 {
+        let before = left();
+        // The round has ended, perhaps just now, and its interrupt still waits.
+        let ended = SCB::is_pendst_pending() && !self.skipping.load(Ordering::Relaxed);
+        let left = if ended { left() } else { before };
+        let rounds = self.rounds.load(Ordering::Relaxed) + u32::from(ended);
+        (self.from.load(Ordering::Relaxed) + rounds * COUNTS_PER_MS).saturating_sub(left)
+    }
+
+    /// A millisecond of which so many counts are over begins here.
+    fn begin(&self, counts: u32) {
+        // A round that ended before the look at the counter does not count, its interrupt neither.
+        SCB::clear_pendst();
+        let mut from = left();
+        if SCB::is_pendst_pending() {
+            SCB::clear_pendst();
+            from = left();
+        }
+        self.from.store(from + counts, Ordering::Relaxed);
+        self.rounds.store(0, Ordering::Relaxed);
+    }
+}
+
+/// What the counter still has to count in this round: 1 to a whole millisecond. Its interrupt comes with zero, which
+/// belongs to the next round.
+fn left() -> u32 {
+    match SYST::get_current() {
+        0 => COUNTS_PER_MS,
+        left => left,
+    }
 }
 
 impl Driver for SysTickClock {
     fn now(&self) -> u64 {
-        let (ms, counts) = critical_section::with(|_| {
-            let ms = self.ms.load(Ordering::Relaxed);
-            let left = SYST::get_current();
-            // Wrapped, and its interrupt still waits.
-            let (ms, left) =
-                if SCB::is_pendst_pending() { (ms + 1, SYST::get_current()) } else { (ms, left) };
-            // The interrupt comes with the count of zero: that belongs to the new millisecond.
-            (ms, if left == 0 { 0 } else { COUNTS_PER_MS - left })
-        });
+        if self.coarse.load(Ordering::Relaxed) {
+            return self.whole_us();
+        }
+        let (ms, counts) = critical_section::with(|_| (self.ms.load(Ordering::Relaxed), self.counts()));
         // 32-bit division: the 64-bit one takes longer the longer the clock runs.
         u64::from(ms) * 1000 + u64::from(counts / COUNTS_PER_US)
     }
@@ -95,8 +147,18 @@ impl Driver for SysTickClock {
 
 #[cortex_m_rt::exception]
 fn SysTick() {
-    let ms = CLOCK.ms.load(Ordering::Relaxed) + 1;
-    CLOCK.ms.store(ms, Ordering::Relaxed);
+    if CLOCK.skipping.swap(false, Ordering::Relaxed) {
+        CLOCK.begin(0);
+    } else if CLOCK.held.load(Ordering::Relaxed) {
+        return;
+    } else {
+        CLOCK.rounds.fetch_add(1, Ordering::Relaxed);
+        if CLOCK.counts() < COUNTS_PER_MS {
+            return;
+        }
+        CLOCK.rounds.fetch_sub(1, Ordering::Relaxed);
+    }
+    let ms = CLOCK.ms.fetch_add(1, Ordering::Relaxed) + 1;
     watchdog::check(ms);
     critical_section::with(|cs| CLOCK.queue.borrow(cs).borrow_mut().next_expiration(CLOCK.whole_us()));
 }
