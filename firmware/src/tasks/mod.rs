@@ -7,7 +7,8 @@
 //! | [`report`] | thread | says once a second what the control task did |
 //! | [`supervise`] | thread | feeds the watchdog while all tasks report |
 //!
-//! A board is a module with these functions: `run` (starts the clock and the executors), `sense`
+//! A board is a module with these functions: `run` (starts the clock and the executors; what must run before, the board of
+//! the chip starts with `start`), `sense`
 //! and `drive` (the sensors and the motor, at every step), `report` (one line to the engineer),
 //! `line::read` and `line::write` (bytes from and to the engineer's computer), `flash` (where parameters
 //! are kept; it gives the watchdog more patience while it erases), `feed_watchdog`, `reset_cause`, `outputs_off` and `end`

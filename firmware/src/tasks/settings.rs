@@ -37,7 +37,12 @@ pub fn offer(plan: Plan, at_once: bool) {
 }
 
 /// Remembers that the polarity check was passed; the controller itself knows already.
+///
+/// Not while a plan waits for the controller: it passed with the calibration before, which may be another.
 pub(super) fn polarity_passed() {
+    if NEXT.lock(|next| next.borrow().is_some()) {
+        return;
+    }
     CONFIG.lock(|config| {
         if let Some(config) = config.borrow_mut().as_mut() {
             config.calibration.polarity_checked = true;
