@@ -2,7 +2,7 @@
 
 use crate::calibrate::CalibrationPlan;
 use crate::fault::{Cause, Causes};
-use crate::frame::{SensorFrame, Wheel};
+use crate::frame::{MISSING, SensorFrame, Wheel};
 use crate::maths::{at_least, at_most};
 use crate::param::{Leaf, Visit};
 use crate::watch::{Codes, Loss, Sensor, Told, Watch};
@@ -323,39 +323,59 @@ fn told<const N: usize>(causes: &mut Causes, told: Told<N>) -> Option<([f32; N],
     told.value
 }
 
-/// The newest samples of a wheel, the newest first.
-#[derive(Clone, Copy, Debug, Default)]
+/// The newest samples of a wheel.
+#[derive(Clone, Copy, Debug)]
 struct Recent {
-    samples: [f32; RECENT],
+    /// Those before the newest, in a ring.
+    samples: [f32; RECENT - 1],
     known: u16,
+    next: u16,
+    /// Between which they all are.
+    low: f32,
+    high: f32,
+    /// The age at which the newest sample is still the one of the period before.
+    held: u16,
+}
+
+impl Default for Recent {
+    fn default() -> Self {
+        Self { samples: [0.0; RECENT - 1], known: 0, next: 0, low: 0.0, high: 0.0, held: MISSING }
+    }
 }
 
 impl Recent {
     /// The bounds of a speed from its newest sample and age, and the samples before it.
     fn bounds(&mut self, config: &InputConfig, period_s: f32, newest: Option<(f32, u16)>) -> Option<Bounds> {
         let Some((newest, age)) = newest else {
-            self.known = 0;
+            *self = Self::default();
             return None;
         };
-        let new = age == 0 || self.known == 0;
-        if new {
-            self.known = self.known.min(config.recent_samples.saturating_sub(1));
+        if age != self.held {
+            self.take(config.recent_samples, newest);
         }
+        self.held = age.saturating_add(1);
+        let (mut low, mut high) = (self.low, self.high);
+        if age > config.drift_after_ticks {
+            cold_path();
+            let late = f32::from(age - config.drift_after_ticks);
+            let drift = config.drift_m_s2 * period_s * late;
+            (low, high) = (low - drift, high + drift);
+        }
+        Some(Bounds { low, newest, high })
+    }
+
+    /// A new sample, of which so many count.
+    fn take(&mut self, recent_samples: u16, newest: f32) {
         let (mut low, mut high) = (newest, newest);
         for sample in self.samples.iter().take(usize::from(self.known)) {
             (low, high) = (at_most(*sample, low), at_least(*sample, high));
         }
-        if new {
-            let [a, b, c, d, e, _] = self.samples;
-            self.samples = [newest, a, b, c, d, e];
-            self.known += 1;
+        (self.low, self.high) = (low, high);
+        if let Some(place) = self.samples.get_mut(usize::from(self.next)) {
+            *place = newest;
         }
-        let late = age.saturating_sub(config.drift_after_ticks);
-        if late > 0 {
-            cold_path();
-            let drift = config.drift_m_s2 * period_s * f32::from(late);
-            (low, high) = (low - drift, high + drift);
-        }
-        Some(Bounds { low, newest, high })
+        let places = recent_samples.saturating_sub(1);
+        self.known = places.min(self.known + 1);
+        self.next = if self.next + 1 < places { self.next + 1 } else { 0 };
     }
 }

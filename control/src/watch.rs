@@ -31,8 +31,7 @@ pub struct Sensor {
     pub slope_per_s: Option<f32>,
     /// Age at which a held sample is too old \[control periods\].
     pub timeout_ticks: u16,
-    /// Time for which new samples may be equal to the bit while what they measure moves
-    /// \[control periods\]; 0 is for ever.
+    /// Time for which new samples may be equal while what they measure moves \[control periods\]; 0 is for ever.
     pub stuck_ticks: u16,
     /// Good samples in a row after which a lost sensor, or one just started, is believed.
     pub qualify_samples: u16,
@@ -109,23 +108,21 @@ impl Codes {
 pub struct Watch<const N: usize> {
     /// The last good sample.
     value: [f32; N],
-    /// Its age \[control periods\].
+    /// Change up to which the next one is believed, any at first. It grows with each control period without any sample; those that
+    /// were refused give a jump no more time.
+    most: f32,
+    /// The same while the short way will do, the sensor being believed and its newest sample there and good; -1 otherwise.
+    near: f32,
+    /// Age of the last good sample \[control periods\].
     age: u16,
     /// The age that the frame gave for its sample.
     told_age: u16,
     /// Good samples in a row.
     good: u16,
-    /// Control periods without any sample since the last good one.
-    gap: u16,
-    /// Control periods in which something moved since the last sample, ...
-    moved: u16,
-    /// ... and in which the samples stood still meanwhile.
+    /// Control periods in which something moved since the samples changed.
     still: u16,
     /// Whether it is believed.
     trusted: bool,
-    /// Change up to which a fresh sample is as good as the last one; -1 unless that was fresh, believed, and not one of
-    /// several that stood still.
-    near: f32,
     /// Why the newest sample was not good.
     doubt: Option<Cause>,
 }
@@ -134,14 +131,13 @@ impl<const N: usize> Default for Watch<N> {
     fn default() -> Self {
         Self {
             value: [0.0; N],
-            age: MISSING,
+            most: f32::INFINITY,
+            near: -1.0,
+            age: 0,
             told_age: MISSING,
             good: 0,
-            gap: 0,
-            moved: 0,
             still: 0,
             trusted: false,
-            near: -1.0,
             doubt: None,
         }
     }
@@ -170,9 +166,15 @@ impl<const N: usize> Watch<N> {
     ) -> Told<N> {
         let (value, age) = sample;
         // As nearly always: one good sample after the other.
-        if age == 0 && inside(sensor, &value) && self.near(&value) && !self.stands(&value, moves) {
-            self.value = value;
-            return Told { value: Some((value, 0)), lost: None };
+        if age <= self.age && inside(sensor, &value) && self.near(&value, self.near) {
+            let still = self.still(&value, moves);
+            if !stuck(sensor, still) {
+                (self.value, self.still) = (value, still);
+                if self.age > 0 {
+                    self.renew(sensor, period_s, age);
+                }
+                return Told { value: Some((value, age)), lost: None };
+            }
         }
         if !sensor.fitted {
             return Told { value: None, lost: None };
@@ -196,88 +198,102 @@ impl<const N: usize> Watch<N> {
         age: u16,
         moves: bool,
     ) {
-        self.age = self.age.saturating_add(1);
-        self.moved = self.moved.saturating_add(u16::from(moves));
+        let older = self.age.saturating_add(1);
+        // The last good one still.
+        if age == older && age <= sensor.timeout_ticks && self.near >= 0.0 {
+            self.hold(sensor, period_s, age, moves);
+            (self.told_age, self.near) = (age, self.most);
+            return;
+        }
         if age != self.told_age.saturating_add(1) && age != MISSING {
-            self.take(sensor, codes, period_s, value, age);
+            self.age = older;
+            self.take(sensor, codes, period_s, value, age, moves);
         } else {
-            self.gap = self.gap.saturating_add(1);
+            self.hold(sensor, period_s, older, moves);
         }
         self.told_age = age;
-        let stuck = sensor.stuck_ticks > 0 && self.still >= sensor.stuck_ticks;
-        if stuck {
-            self.doubt = Some(codes.stuck);
-        }
-        if stuck || self.age > sensor.timeout_ticks {
+        if self.age > sensor.timeout_ticks {
             self.trusted = false;
             self.good = 0;
         } else if self.good >= sensor.qualify_samples {
             self.trusted = true;
         }
-        let steady = self.trusted && self.age == 0 && self.still == 0;
-        self.near = if steady { most_change(sensor, period_s, 1.0) } else { -1.0 };
+        let easy = self.trusted && self.doubt.is_none() && age != MISSING;
+        self.near = if easy { self.most } else { -1.0 };
+    }
+
+    /// No new sample: the last one is of this age now.
+    #[inline(always)]
+    fn hold(&mut self, sensor: &Sensor, period_s: f32, age: u16, moves: bool) {
+        self.age = age;
+        self.still = self.still.saturating_add(u16::from(moves));
+        self.most += sensor.slope_per_s.unwrap_or(0.0) * period_s;
+    }
+
+    /// A good sample of this age.
+    #[inline(always)]
+    fn renew(&mut self, sensor: &Sensor, period_s: f32, age: u16) {
+        (self.age, self.told_age) = (age, age);
+        self.most = sensor.slope_per_s.map_or(f32::INFINITY, |slope| sensor.step + slope * period_s);
+        self.near = self.most;
     }
 
     /// A new sample.
-    fn take(&mut self, sensor: &Sensor, codes: &Codes, period_s: f32, value: &[f32; N], age: u16) {
-        if !inside(sensor, value) {
-            self.doubt = Some(codes.range);
-            self.good = 0;
-            return;
-        }
-        // Samples that were refused give a jump no more time.
-        let between = f32::from(self.gap.saturating_add(1));
-        let most = most_change(sensor, period_s, between);
-        let change = |(a, b): (&f32, &f32)| (a - b).abs();
-        let jumps =
-            self.age != MISSING && value.iter().zip(&self.value).map(change).any(|moved| moved > most);
-        if jumps && self.trusted {
-            self.doubt = Some(codes.jump);
-            self.good = 0;
-            return;
-        }
+    fn take(
+        &mut self,
+        sensor: &Sensor,
+        codes: &Codes,
+        period_s: f32,
+        value: &[f32; N],
+        age: u16,
+        moves: bool,
+    ) {
+        let jumps = !self.near(value, self.most);
         // One that is not trusted is judged by what it says from now on.
-        if jumps {
-            self.doubt = Some(codes.jump);
-            self.good = 0;
+        let refused = if !inside(sensor, value) {
+            Some(codes.range)
         } else {
-            self.doubt = None;
-            self.good = self.good.saturating_add(1);
+            Some(codes.jump).filter(|_| jumps && self.trusted)
+        };
+        if refused.is_some() {
+            self.still = self.still.saturating_add(u16::from(moves));
+            (self.doubt, self.good) = (refused, 0);
+            return;
         }
-        self.still = if self.repeats(value) { self.still.saturating_add(self.moved) } else { 0 };
-        self.moved = 0;
-        self.gap = 0;
+        (self.doubt, self.good) = (None, self.good.saturating_add(1));
+        if jumps {
+            (self.doubt, self.good) = (Some(codes.jump), 0);
+        }
+        self.still = self.still(value, moves);
+        if stuck(sensor, self.still) {
+            (self.doubt, self.good, self.trusted) = (Some(codes.stuck), 0, false);
+        }
         self.value = *value;
-        self.age = age;
+        self.renew(sensor, period_s, age);
     }
 
-    /// Whether no axis is further from the last good sample than [`Watch::near`].
+    /// Whether no axis is further than this from the last good sample.
     #[inline(always)]
-    fn near(&self, value: &[f32; N]) -> bool {
-        value.iter().zip(&self.value).all(|(a, b)| (a - b).abs() <= self.near)
+    fn near(&self, value: &[f32; N], most: f32) -> bool {
+        value.iter().zip(&self.value).all(|(a, b)| (a - b).abs() <= most)
     }
 
-    /// Whether a sample is the last good one again although something `moves`.
+    /// For how long something has moved with a sample that may be the last good one again.
     #[inline(always)]
-    fn stands(&self, value: &[f32; N], moves: bool) -> bool {
+    fn still(&self, value: &[f32; N], moves: bool) -> u16 {
         if *value == self.value {
             cold_path();
-            moves
+            self.still.saturating_add(u16::from(moves))
         } else {
-            false
+            0
         }
-    }
-
-    /// Whether a sample is the last good one in every bit.
-    #[inline(always)]
-    fn repeats(&self, value: &[f32; N]) -> bool {
-        value.iter().zip(&self.value).all(|(a, b)| a.to_bits() == b.to_bits())
     }
 }
 
-/// The largest believable change in so many control periods; infinite where any is.
-fn most_change(sensor: &Sensor, period_s: f32, periods: f32) -> f32 {
-    sensor.slope_per_s.map_or(f32::INFINITY, |slope| sensor.step + slope * period_s * periods)
+/// Whether samples have stood still for too long.
+#[inline(always)]
+fn stuck(sensor: &Sensor, still: u16) -> bool {
+    sensor.stuck_ticks > 0 && still >= sensor.stuck_ticks
 }
 
 /// Whether a sample is in range; written so that NaN, which compares false, is not.

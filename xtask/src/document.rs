@@ -32,10 +32,9 @@ Bytes, profile `firmware`. Flash is text + data, RAM is data + bss + 32 KiB of s
 ## Instructions of a control step
 
 Counted in QEMU, call included: over the border ride of law h, with gyro and front wheel; over a ride with every
-sensor; and over that ride with each sensor lost, wrong or out of range from its middle on. At most {BUDGET} are
-allowed, of the 168,000 clock cycles of a period. All other sensors bring a sample in every period; what is held between
-samples takes a longer way through its watch, which no ride here counts: with all sensors held up to 3,122 (product) and 3,804
-(everything on) were measured once. Instructions are not cycles: the chip adds wait
+sensor; over that ride with each sensor lost, wrong or out of range from its middle on; and over the last two with all sensors
+slower than the control, a sample in each second, fifth or eighth period and all in the same one. At most {BUDGET} are
+allowed, of the 168,000 clock cycles of a period. Instructions are not cycles: the chip adds wait
 states of the flash, divisions of 14 cycles and interrupts. The stack is painted before and looked at after; at most
 {STACK_BUDGET} bytes are allowed.
 

@@ -10,6 +10,9 @@ pub const BUDGET: u32 = 3000;
 /// The most stack a step may take \[bytes\].
 pub const STACK_BUDGET: u32 = 1024;
 
+/// How many periods sensors hold their samples in the rides with slow ones; the gyro is lost after ten.
+const HELD: [u16; 3] = [2, 5, 8];
+
 /// The steps of one configuration over the border ride, or over the rides with every sensor.
 #[derive(Clone, Copy, Debug)]
 pub struct Count {
@@ -35,12 +38,33 @@ pub fn counts() -> Result<Vec<Count>> {
         configurations.iter().map(|(name, config)| (*name, config, border.as_slice())).collect();
     let (product, everything) = (rides::product(), rides::everything());
     rides.push(("product, polarity unchecked", &unchecked, &whole));
-    for (config, name, name_broken) in [
-        (&product, "product, every sensor", "product, each sensor broken in turn"),
-        (&everything, "everything on", "everything on, each sensor broken in turn"),
+    let slow = HELD.map(|periods| rides::held(&whole, periods));
+    let slow_broken = broken.iter().flat_map(|ride| HELD.map(|periods| rides::held(ride, periods)));
+    let slow_broken: Vec<_> = slow_broken.collect();
+    for (config, [name, name_broken, name_slow, name_slow_broken]) in [
+        (
+            &product,
+            [
+                "product, every sensor",
+                "product, each sensor broken in turn",
+                "product, sensors slower than the control",
+                "product, slower and each broken in turn",
+            ],
+        ),
+        (
+            &everything,
+            [
+                "everything on",
+                "everything on, each sensor broken in turn",
+                "everything on, sensors slower than the control",
+                "everything on, slower and each broken in turn",
+            ],
+        ),
     ] {
         rides.push((name, config, &whole));
         rides.extend(broken.iter().map(|ride| (name_broken, config, ride.as_slice())));
+        rides.extend(slow.iter().map(|ride| (name_slow, config, ride.as_slice())));
+        rides.extend(slow_broken.iter().map(|ride| (name_slow_broken, config, ride.as_slice())));
     }
     let files: Vec<(&Config, &[SensorFrame])> =
         rides.iter().map(|(_, config, ride)| (*config, *ride)).collect();

@@ -132,6 +132,32 @@ pub fn broken_rides() -> Vec<Vec<SensorFrame>> {
     breaks.into_iter().map(broken).collect()
 }
 
+/// A ride of which every sensor brings a sample only once in so many periods, all in the same one.
+pub fn held(ride: &[SensorFrame], periods: u16) -> Vec<SensorFrame> {
+    let aged = |age: u16, by: usize| age.saturating_add(by as u16);
+    ride.chunks(usize::from(periods))
+        .flat_map(|chunk| chunk.iter().enumerate().map(move |(by, frame)| (by, frame, chunk[0])))
+        .map(|(by, frame, first)| {
+            let triple = |of: Triple| Triple { age_ticks: aged(of.age_ticks, by), ..of };
+            let sample = |of: Sample| Sample { age_ticks: aged(of.age_ticks, by), ..of };
+            SensorFrame {
+                now_us: frame.now_us,
+                gyro_rad_s: triple(first.gyro_rad_s),
+                accel_m_s2: triple(first.accel_m_s2),
+                steer_rad: sample(first.steer_rad),
+                steer_rate_rad_s: sample(first.steer_rate_rad_s),
+                front_wheel_m_s: sample(first.front_wheel_m_s),
+                rear_wheel_m_s: sample(first.rear_wheel_m_s),
+                rider_torque_nm: sample(first.rider_torque_nm),
+                motor_torque_nm: sample(first.motor_torque_nm),
+                heading_error_rad: sample(first.heading_error_rad),
+                lateral_error_m: sample(first.lateral_error_m),
+                engage: frame.engage,
+            }
+        })
+        .collect()
+}
+
 /// A ride made up for its reach: 20 s at 1 kHz, the roll rate swings ever wider while the speed falls
 /// from 8 to 1 m/s, then dies away as the speed comes back. The wheel's pulses come every 20 ms.
 pub fn swinging_ride() -> Vec<SensorFrame> {

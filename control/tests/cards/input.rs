@@ -315,6 +315,25 @@ fn a_late_first_sample_has_bounds() {
     assert_eq!(told.front_wheel_m_s, Some(Bounds { low: 5.0, newest: 5.0, high: 5.0 }));
 }
 
+/// Situation: a wheel of which each sample comes two periods late, and one whose samples, held twice, are never fresh.
+/// Action: step over rising speeds. Must hold: bounds over the newest three all the same.
+#[test]
+fn samples_that_are_never_fresh_are_all_taken() {
+    let config = InputConfig { drift_m_s2: 0.0, ..wheels() };
+    let mut state = InputState::default();
+    for k in 0_u16..30 {
+        let (late, slow) = (f32::from(k), f32::from(k / 3));
+        let frame = SensorFrame {
+            front_wheel_m_s: Sample { value: late, age_ticks: 2 },
+            rear_wheel_m_s: Sample { value: slow, age_ticks: 1 + k % 3 },
+            ..SensorFrame::missing()
+        };
+        let told = step(&config, &mut state, &frame, 0.0);
+        let bounds = |newest: f32| Some(Bounds { low: (newest - 2.0).max(0.0), newest, high: newest });
+        assert_eq!((told.front_wheel_m_s, told.rear_wheel_m_s), (bounds(late), bounds(slow)), "{k}");
+    }
+}
+
 /// Situation: each count of samples that may be declared. Action: step over rising speeds. Must hold: bounds over exactly so
 /// many.
 #[test]

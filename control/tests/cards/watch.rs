@@ -168,7 +168,123 @@ fn stuck_only_counts_while_something_moves() {
     assert!(bench.fresh(1.01).is_err() && bench.fresh(1.02).is_err() && bench.fresh(1.03).is_ok());
 }
 
+/// Situation: a sensor that brings a sample every fourth period. Action: the same sample with motion in every other
+/// period, then others. Must hold: the periods between count, so it is stuck with the fourth equal sample; another one clears it.
+#[test]
+fn a_slow_sensor_is_stuck_by_what_moved_between_its_samples() {
+    let mut bench = Bench::trusted();
+    let told: Vec<_> = (0..24_u16).map(|k| bench.step(1.002, k % 4, k % 2 == 1).lost).collect();
+    // Two moves are over with each sample: eight with the one of period 16.
+    let stuck: Vec<usize> = (0..24).filter(|k| told[*k] == Some(Cause::SteerStuck)).collect();
+    assert_eq!(stuck, (16..24).collect::<Vec<_>>());
+    for k in 0..3_u8 {
+        let told = bench.step(1.05 + 0.05 * f32::from(k), 0, true);
+        assert_eq!(told.value.is_some(), k == 2, "{k}");
+    }
+}
+
+/// Situation: a sensor that is always two periods late, and one that brings a sample every third period. Action: step.
+/// Must hold: each sample is used with its age, and allowed to differ by as many periods' slope as lie between, not more.
+#[test]
+fn late_and_slow_samples_are_used() {
+    let mut bench = Bench::trusted();
+    for k in 0..20_u8 {
+        let value = 1.05 + 0.09 * f32::from(k % 2);
+        assert_eq!(bench.step(value, 2, true).value, Some(([value], 2)), "{k}");
+    }
+    let mut bench = Bench::trusted();
+    for k in 0..20_u8 {
+        let value = 1.0 + 0.29 * f32::from(k % 2);
+        for age in 1..=2 {
+            assert!(bench.step(value, age, true).value.is_some_and(|(_, told)| told == age));
+        }
+        assert_eq!(bench.step(value, 0, true).value, Some(([value], 0)), "{k}");
+    }
+    let (held, refused) = (bench.0, 1.29 - 0.31);
+    assert_eq!([1, 2, 0].map(|age| bench.step(refused, age, true).value)[2], Some(([1.29], 3)));
+    bench.0 = held;
+    assert_eq!([1, 2, 3, 0].map(|age| bench.step(refused, age, true).value)[3], Some(([refused], 0)));
+}
+
+/// What a watch is to say, worked out anew for each sample and in one way only.
+struct Plain {
+    last: f32,
+    allowed: f32,
+    age: u16,
+    told_age: Option<u16>,
+    good: u16,
+    still: u16,
+    trusted: bool,
+    doubt: Option<Cause>,
+}
+
+impl Plain {
+    /// As if zero had been the last sample, from which any change is allowed.
+    const START: Self = Self {
+        last: 0.0,
+        allowed: f32::INFINITY,
+        age: 0,
+        told_age: None,
+        good: 0,
+        still: 0,
+        trusted: false,
+        doubt: None,
+    };
+
+    fn step(&mut self, value: f32, age: u16, moves: bool) -> Told<1> {
+        let slope = SENSOR.slope_per_s.map_or(f32::INFINITY, |slope| slope * 1e-3);
+        let held = self.told_age.is_some_and(|told| age == told + 1);
+        (self.age, self.told_age) = (self.age.saturating_add(1), (age != MISSING).then_some(age));
+        let still = self.still + u16::from(moves);
+        let jumps = (value - self.last).abs() > self.allowed;
+        if held || age == MISSING {
+            (self.still, self.allowed) = (still, self.allowed + slope);
+        } else if value.is_nan() || value.abs() > SENSOR.max {
+            (self.still, self.good, self.doubt) = (still, 0, Some(CODES.range));
+        } else if jumps && self.trusted {
+            (self.still, self.good, self.doubt) = (still, 0, Some(CODES.jump));
+        } else {
+            self.still = if self.last == value { still } else { 0 };
+            (self.good, self.doubt) = if jumps { (0, Some(CODES.jump)) } else { (self.good + 1, None) };
+            (self.last, self.age, self.allowed) = (value, age, slope);
+            if self.still >= SENSOR.stuck_ticks {
+                (self.good, self.trusted, self.doubt) = (0, false, Some(CODES.stuck));
+            }
+        }
+        if self.age > SENSOR.timeout_ticks {
+            (self.good, self.trusted) = (0, false);
+        }
+        self.trusted |= self.good >= SENSOR.qualify_samples;
+        let lost = (!self.trusted).then_some(self.doubt.unwrap_or(CODES.lost));
+        Told { value: self.trusted.then_some(([self.last], self.age)), lost }
+    }
+}
+
 proptest! {
+    /// Situation: samples of every kind, now fresh, now late, held, missing, equal, out of range, with motion and without.
+    /// Action: watch. Must hold: what is said is what the rules say, worked out one by one.
+    #[test]
+    fn the_short_way_says_what_the_long_one_says(
+        samples in proptest::collection::vec((0_u8..16, -1.0_f32..1.0, 0_u16..8, any::<bool>()), 1..400)
+    ) {
+        let (mut bench, mut plain) = (Bench(Watch::default()), Plain::START);
+        let (mut value, mut age) = (0.0, 0);
+        for (kind, by, late, moves) in samples {
+            (value, age) = match kind {
+                0..=5 => (value + 0.12 * by, 0),
+                6 | 7 => (value, 0),
+                8..=11 => (value, age + 1),
+                12 => (value + 0.2 * by, late),
+                13 => (value + by, 0),
+                14 => (12.0 * by, 0),
+                _ => (f32::NAN, 0),
+            };
+            let told_age = if kind == 8 { MISSING } else { age };
+            prop_assert_eq!(bench.step(value, told_age, moves), plain.step(value, told_age, moves));
+            value = if value.abs() <= 10.0 { value } else { 0.0 };
+        }
+    }
+
     /// Situation: any samples, ages and motion. Action: watch. Must hold: what is believed is finite, within range, no older
     /// than allowed, and no further from the one believed before than the slope allows over the time between.
     #[test]
