@@ -153,7 +153,7 @@ fn a_new_level_must_prove_itself() {
     assert!((2..=4).contains(&back), "{answers:?}");
 }
 
-/// Situation: every new sample has the same bits. Action: with and without motion. Must hold: stuck after eight periods of
+/// Situation: every new sample is the same. Action: with and without motion. Must hold: stuck after eight periods of
 /// motion, never without; one other sample clears it.
 #[test]
 fn stuck_only_counts_while_something_moves() {
