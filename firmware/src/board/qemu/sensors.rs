@@ -1,5 +1,6 @@
 //! Made-up sensors for tests of timing: a bicycle at 4 m/s whose roll rate swings by 0.1 rad/s
-//! once a second, and a rider who asks for assist. The motor gives every torque; the handlebar is held.
+//! once a second, and a rider who asks for assist. The motor gives every torque; the handlebar is held, which five times
+//! the swing would make look like a motor that turns the wrong way (fault 37).
 
 use super::pil;
 use crate::tasks::Refusal;
