@@ -165,11 +165,14 @@ pub async fn exchange() {
             text::line(format_args!("the host handed over {length} bytes that are no chunk"));
             exit(Exit::Input)
         };
-        // Bytes that find no room are lost, as on any line.
-        let _ = line::IN.try_write(bytes);
+        if !bytes.is_empty() {
+            // What finds no room is lost, as on any line.
+            let _ = line::IN.try_write(bytes);
+        }
+        let mut sensors_left = sensors;
         let mut all = || {
-            for byte in sensors {
-                if let Some(Received::Frame(frame)) = decoder.feed(*byte)
+            while !sensors_left.is_empty() {
+                if let Some(Received::Frame(frame)) = decoder.take(&mut sensors_left)
                     && let Ok(message) = Message::decode(&frame)
                 {
                     take(&message, frame.sequence, incoming, out);
