@@ -89,11 +89,16 @@ impl<'a> Writer<'a> {
 pub struct Reader<'a>(pub &'a [u8]);
 
 impl<'a> Reader<'a> {
-    /// `N` bytes as they are.
-    pub fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+    /// `N` bytes as they are, where they are.
+    pub fn chunk<const N: usize>(&mut self) -> Option<&'a [u8; N]> {
         let (bytes, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
-        Some(*bytes)
+        Some(bytes)
+    }
+
+    /// `N` bytes as they are.
+    pub fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        self.chunk().copied()
     }
 
     /// One byte.

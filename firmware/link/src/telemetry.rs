@@ -55,7 +55,7 @@ impl Telemetry {
 
 /// Reads a sensor frame; every bit pattern is one.
 pub fn frame(from: &mut Reader<'_>) -> Option<SensorFrame> {
-    from.take::<FRAME_BYTES>().map(|bytes| decode_frame(&bytes))
+    from.chunk::<FRAME_BYTES>().map(decode_frame)
 }
 
 /// Reads a command as [`encode_command`] writes it; `None` for a mode that does not exist.

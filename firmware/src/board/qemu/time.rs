@@ -65,7 +65,13 @@ pub(super) fn held<T>(what: impl FnOnce() -> T) -> T {
     });
     let done = what();
     critical_section::with(|_| {
-        CLOCK.begin(counts);
+        let mut from = left();
+        // A round that ended before does not count, its interrupt neither.
+        if SCB::is_pendst_pending() {
+            SCB::clear_pendst();
+            from = left();
+        }
+        CLOCK.begin(from + counts);
         CLOCK.held.store(false, Ordering::Relaxed);
     });
     done
@@ -73,7 +79,13 @@ pub(super) fn held<T>(what: impl FnOnce() -> T) -> T {
 
 /// Nothing is to be done before the next whole millisecond: it is now. To be called with interrupts off.
 pub(super) fn skip() {
-    CLOCK.begin(0);
+    let left = left();
+    let rounds = CLOCK.rounds.load(Ordering::Relaxed);
+    if left > CLOCK.from.load(Ordering::Relaxed) + rounds * COUNTS_PER_MS {
+        // The round ended since interrupts are off; its own would count it for the next millisecond.
+        SCB::clear_pendst();
+    }
+    CLOCK.begin(left);
     CLOCK.tick();
 }
 
@@ -98,15 +110,9 @@ impl SysTickClock {
         (self.from.load(Ordering::Relaxed) + rounds * COUNTS_PER_MS).saturating_sub(left)
     }
 
-    /// A millisecond of which so many counts are over begins here.
-    fn begin(&self, counts: u32) {
-        let mut from = left();
-        // A round that ended before does not count, its interrupt neither.
-        if SCB::is_pendst_pending() {
-            SCB::clear_pendst();
-            from = left();
-        }
-        self.from.store(from + counts, Ordering::Relaxed);
+    /// A millisecond begins with this counter.
+    fn begin(&self, from: u32) {
+        self.from.store(from, Ordering::Relaxed);
         self.rounds.store(0, Ordering::Relaxed);
     }
 
