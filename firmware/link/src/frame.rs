@@ -63,7 +63,7 @@ pub struct Dropped {
 ///
 /// [`MAX_FRAME`] bytes are always room enough.
 pub fn encode(kind: u8, sequence: u16, payload: &[u8], to: &mut [u8]) -> Option<usize> {
-    encode_with(kind, sequence, |w| w.put(payload.iter().copied()), to)
+    encode_with(kind, sequence, |w| w.put(payload), to)
 }
 
 /// As [`encode`], of a payload that is written by `fill`.
