@@ -1,8 +1,7 @@
 //! Four executors: three that interrupt, by interrupts of peripherals that the board does not use, and the thread's.
 //!
-//! An interrupt takes QEMU longer than a control step. So one is asked for only where something is to be interrupted:
-//! while nothing runs, the thread itself polls what was woken, the urgent first, with the priority that its interrupt
-//! would have.
+//! Interrupts are dear in QEMU. So one is asked for only where something is to be interrupted: while nothing runs, the
+//! thread itself polls what was woken, the urgent first, with the priority that its interrupt would have.
 #![allow(unsafe_code)]
 
 use super::time;
