@@ -29,41 +29,39 @@ impl<'a> Writer<'a> {
     }
 
     /// Bytes as they are.
-    pub fn put(&mut self, bytes: impl IntoIterator<Item = u8>) {
-        for byte in bytes {
-            match self.to.get_mut(self.used) {
-                Some(place) => {
-                    *place = byte;
-                    self.used += 1;
-                }
-                None => self.full = true,
+    pub fn put(&mut self, bytes: &[u8]) {
+        match self.to.get_mut(self.used..).and_then(|room| room.get_mut(..bytes.len())) {
+            Some(place) => {
+                place.copy_from_slice(bytes);
+                self.used += bytes.len();
             }
+            None => self.full = true,
         }
     }
 
     /// One byte.
     pub fn u8(&mut self, value: u8) {
-        self.put([value]);
+        self.put(&[value]);
     }
 
     /// Two bytes.
     pub fn u16(&mut self, value: u16) {
-        self.put(value.to_le_bytes());
+        self.put(&value.to_le_bytes());
     }
 
     /// Four bytes.
     pub fn u32(&mut self, value: u32) {
-        self.put(value.to_le_bytes());
+        self.put(&value.to_le_bytes());
     }
 
     /// Eight bytes.
     pub fn u64(&mut self, value: u64) {
-        self.put(value.to_le_bytes());
+        self.put(&value.to_le_bytes());
     }
 
     /// The bits of a number.
     pub fn f32(&mut self, value: f32) {
-        self.put(value.to_le_bytes());
+        self.put(&value.to_le_bytes());
     }
 
     /// The bits of a number that may be off.
@@ -77,7 +75,7 @@ impl<'a> Writer<'a> {
         match u8::try_from(length) {
             Ok(length) => {
                 self.u8(length);
-                parts.for_each(|part| self.put(part.bytes()));
+                parts.for_each(|part| self.put(part.as_bytes()));
             }
             Err(_) => self.full = true,
         }
@@ -89,11 +87,16 @@ impl<'a> Writer<'a> {
 pub struct Reader<'a>(pub &'a [u8]);
 
 impl<'a> Reader<'a> {
-    /// `N` bytes as they are.
-    pub fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+    /// `N` bytes as they are, where they are.
+    pub fn chunk<const N: usize>(&mut self) -> Option<&'a [u8; N]> {
         let (bytes, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
-        Some(*bytes)
+        Some(bytes)
+    }
+
+    /// `N` bytes as they are.
+    pub fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        self.chunk().copied()
     }
 
     /// One byte.

@@ -6,6 +6,7 @@
 
 use crate::bytes::{Reader, Writer};
 use cobs::{DecodeResult, DecoderState};
+use core::{mem, slice};
 use crc::{CRC_32_ISO_HDLC, Crc};
 
 /// The version spoken here. A frame's first byte, and the CRC its last four, in every version there will be.
@@ -62,7 +63,7 @@ pub struct Dropped {
 ///
 /// [`MAX_FRAME`] bytes are always room enough.
 pub fn encode(kind: u8, sequence: u16, payload: &[u8], to: &mut [u8]) -> Option<usize> {
-    encode_with(kind, sequence, |w| w.put(payload.iter().copied()), to)
+    encode_with(kind, sequence, |w| w.put(payload), to)
 }
 
 /// As [`encode`], of a payload that is written by `fill`.
@@ -114,33 +115,45 @@ impl Decoder {
         self.dropped
     }
 
-    /// Takes the next byte; what it completes, if it does.
+    /// Takes bytes from the front of `from`, all of them or up to where one may have ended a frame; what they
+    /// completed, if they did. To be called as long as there are any.
     ///
     /// Any byte may come. What is no frame is dropped and counted; the frame after the next 0 is found again.
+    pub fn take(&mut self, from: &mut &[u8]) -> Option<Received<'_>> {
+        if self.fill(from) { self.complete() } else { None }
+    }
+
+    /// Takes the next byte; what it completes, if it does. As [`Decoder::take`].
     pub fn feed(&mut self, byte: u8) -> Option<Received<'_>> {
-        match self.stuffing.feed(byte) {
-            Ok(DecodeResult::NoData) => None,
-            Ok(DecodeResult::DataStart) => {
-                self.length = 0;
-                None
-            }
-            Ok(DecodeResult::DataContinue(byte)) => {
-                if let Some(place) = self.plain.get_mut(self.length) {
-                    *place = byte;
+        self.take(&mut slice::from_ref(&byte))
+    }
+
+    /// Takes bytes, up to the end of a frame if one ends; whether it does.
+    fn fill(&mut self, from: &mut &[u8]) -> bool {
+        // In registers while the bytes pass.
+        let (mut stuffing, mut length) = (mem::take(&mut self.stuffing), self.length);
+        let mut bytes = from.iter();
+        let complete = bytes.by_ref().any(|byte| {
+            match stuffing.feed(*byte) {
+                Ok(DecodeResult::NoData) => {}
+                Ok(DecodeResult::DataStart) => length = 0,
+                Ok(DecodeResult::DataContinue(byte)) => {
+                    if let Some(place) = self.plain.get_mut(length) {
+                        *place = byte;
+                        length += 1;
+                    } else {
+                        length = MAX_PLAIN + 1;
+                    }
                 }
-                self.length = (self.length + 1).min(MAX_PLAIN + 1);
-                None
+                Ok(DecodeResult::DataComplete) => return true,
+                Err(_) if length > MAX_PLAIN => count(&mut self.dropped.too_long),
+                Err(_) => count(&mut self.dropped.garbled),
             }
-            Ok(DecodeResult::DataComplete) => self.complete(),
-            Err(_) => {
-                count(if self.length > MAX_PLAIN {
-                    &mut self.dropped.too_long
-                } else {
-                    &mut self.dropped.garbled
-                });
-                None
-            }
-        }
+            false
+        });
+        *from = bytes.as_slice();
+        (self.stuffing, self.length) = (stuffing, length);
+        complete
     }
 
     fn complete(&mut self) -> Option<Received<'_>> {

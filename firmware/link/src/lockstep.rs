@@ -82,8 +82,8 @@ impl<'a> ToBoard<'a> {
 fn put(writer: &mut Writer<'_>, in_loop: &[u8], line: &[u8]) -> Option<usize> {
     writer.u16(u16::try_from(in_loop.len()).ok()?);
     writer.u16(u16::try_from(line.len()).ok()?);
-    writer.put(in_loop.iter().copied());
-    writer.put(line.iter().copied());
+    writer.put(in_loop);
+    writer.put(line);
     writer.used()
 }
 

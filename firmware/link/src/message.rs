@@ -158,29 +158,29 @@ impl<'a> Message<'a> {
                 to.scalar(*value);
                 to.text(key.parts());
             }
-            Message::SetLaw(law) | Message::Law(law) => to.put(law.iter().copied()),
-            Message::PilFrame(frame) => to.put(encode_frame(frame)),
+            Message::SetLaw(law) | Message::Law(law) => to.put(law),
+            Message::PilFrame(frame) => to.put(&encode_frame(frame)),
             Message::Hello(hello) => hello.encode(to),
             Message::Page(page) => {
                 to.u16(page.from);
                 to.u16(page.total);
                 to.u8(page.count);
-                to.put(page.bytes.iter().copied());
+                to.put(page.bytes);
             }
             Message::Refused(refusal) => refusal.encode(to),
             Message::WrongVersion { theirs } => to.u8(*theirs),
             Message::KeptFault(kept) => kept.encode(to),
             Message::PilConfig { at, bytes } => {
                 to.u16(*at);
-                to.put(bytes.iter().copied());
+                to.put(bytes);
             }
             Message::PilCommand { command, authority } => {
-                to.put(encode_command(command));
+                to.put(&encode_command(command));
                 to.f32(*authority);
             }
             Message::Telemetry(telemetry) => telemetry.encode(to),
             Message::Fault(fault) => fault.encode(to),
-            Message::Log(text) => to.put(cut(text, MAX_PAYLOAD).bytes()),
+            Message::Log(text) => to.put(cut(text, MAX_PAYLOAD).as_bytes()),
             Message::AskHello
             | Message::GetLaw
             | Message::Store

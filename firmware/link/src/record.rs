@@ -68,7 +68,7 @@ pub fn encode(
     writer.u8(LAYOUT);
     writer.u32(number);
     writer.u16(law.len() as u16);
-    writer.put(law.iter().copied());
+    writer.put(law);
     let head = writer.used()?;
     each_but_law(&mut config.clone(), |seen| {
         writer.u32(seen.key().hash());

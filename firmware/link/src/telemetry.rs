@@ -31,8 +31,8 @@ impl Telemetry {
         to.u32(self.steps);
         to.u32(self.late);
         to.u8(u8::from(self.driven));
-        to.put(encode_frame(&self.frame));
-        to.put(encode_command(&self.command));
+        to.put(&encode_frame(&self.frame));
+        to.put(&encode_command(&self.command));
         self.slopes.into_iter().for_each(|slope| to.scalar(slope));
         to.u8(self.polarity);
         to.f32(self.shown_nm);
@@ -55,7 +55,7 @@ impl Telemetry {
 
 /// Reads a sensor frame; every bit pattern is one.
 pub fn frame(from: &mut Reader<'_>) -> Option<SensorFrame> {
-    from.take::<FRAME_BYTES>().map(|bytes| decode_frame(&bytes))
+    from.chunk::<FRAME_BYTES>().map(decode_frame)
 }
 
 /// Reads a command as [`encode_command`] writes it; `None` for a mode that does not exist.

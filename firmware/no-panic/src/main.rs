@@ -157,8 +157,10 @@ fn engineer(mut config: Config) {
     let (mut decoder, mut sender) = (Decoder::default(), Sender::<1024, 1024>::new(1));
     let (mut ring, mut chunk) = (black_box([0; RING_BYTES]), black_box([0; MAX_CHUNK]));
     used((ring::start(&mut ring), ring::noted(&ring)));
-    for byte in black_box([0_u8; 64]) {
-        let Some(received) = decoder.feed(byte) else { continue };
+    let bytes = black_box([0_u8; 64]);
+    let mut bytes = &bytes[..];
+    while !bytes.is_empty() {
+        let Some(received) = decoder.take(&mut bytes) else { continue };
         match parameters::request(&received) {
             Ok((sequence, request)) => {
                 let mut room = [0; PAGE_BYTES];

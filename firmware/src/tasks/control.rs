@@ -6,7 +6,7 @@ use crate::deadline::{Deadlines, PERIOD};
 use crate::{board, crash, retained};
 use ::control::polarity::Move;
 use ::control::{Command, Mode, Plan, SensorFrame, State, step};
-use core::cell::Cell;
+use core::cell::RefCell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_time::{Instant, Timer};
@@ -77,11 +77,17 @@ impl Telemetry {
     }
 }
 
-static LATEST: Mutex<CriticalSectionRawMutex, Cell<Option<Telemetry>>> = Mutex::new(Cell::new(None));
+static LATEST: Mutex<CriticalSectionRawMutex, RefCell<Option<Telemetry>>> = Mutex::new(RefCell::new(None));
 
-/// What the control task did last; `None` before its first step.
+/// What the control task did last; `None` before its first step, and in a fault of it while it writes.
 pub fn latest() -> Option<Telemetry> {
-    LATEST.lock(Cell::get)
+    LATEST.lock(|latest| latest.try_borrow().ok().and_then(|latest| *latest))
+}
+
+/// The command of the last step and its authority, as of [`latest`].
+pub fn commanded() -> Option<(Command, f32)> {
+    let of = |t: &Telemetry| (t.command, t.authority);
+    LATEST.lock(|latest| latest.try_borrow().ok().and_then(|latest| latest.as_ref().map(of)))
 }
 
 /// Runs one [`step`] at every whole [`PERIOD`] of the clock, the first at the one after its start, with the plan that
@@ -116,7 +122,7 @@ pub async fn control(plan: &'static mut Plan) {
             shown_nm: state.shown_nm(),
             drive,
         };
-        LATEST.lock(|latest| latest.set(Some(telemetry)));
+        LATEST.lock(|latest| *latest.borrow_mut() = Some(telemetry));
         retained::with(|ring| ring::stepped(ring, &telemetry.last_step()));
         if command.mode == Mode::Fault && mode != Mode::Fault {
             crash::note(FaultKind::Controller, crash::Registers::default(), "");

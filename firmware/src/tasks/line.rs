@@ -43,8 +43,9 @@ pub async fn line(image: Image, kept: &'static mut Kept) {
         Task::Line.report();
         match select(board::line::read(&mut bytes), tell.next()).await {
             Either::First(taken) => {
-                for byte in bytes.iter().take(taken) {
-                    feed(*byte, &mut decoder, image, kept, &mut waiting).await;
+                let mut bytes = bytes.get(..taken).unwrap_or_default();
+                while !bytes.is_empty() {
+                    take(&mut bytes, &mut decoder, image, kept, &mut waiting).await;
                 }
             }
             Either::Second(()) => {
@@ -84,9 +85,15 @@ async fn send(waiting: &mut Waiting) {
     }
 }
 
-/// Takes a byte, and answers the request it completes.
-async fn feed(byte: u8, decoder: &mut Decoder, image: Image, kept: &mut Kept, waiting: &mut Waiting) {
-    let Some(received) = decoder.feed(byte) else { return };
+/// Takes bytes up to the end of a request, and answers it.
+async fn take(
+    bytes: &mut &[u8],
+    decoder: &mut Decoder,
+    image: Image,
+    kept: &mut Kept,
+    waiting: &mut Waiting,
+) {
+    let Some(received) = decoder.take(bytes) else { return };
     let (sequence, request) = match parameters::request(&received) {
         Ok(request) => request,
         Err(wrong) => {

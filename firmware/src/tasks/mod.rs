@@ -20,7 +20,7 @@ mod report;
 pub mod settings;
 mod supervise;
 
-pub use control::{Refusal, Telemetry, control, latest};
+pub use control::{Refusal, Telemetry, commanded, control, latest};
 pub use line::line;
 pub use report::report;
 pub use supervise::{WATCHDOG, supervise};

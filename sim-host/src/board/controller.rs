@@ -136,8 +136,9 @@ impl<B: Lockstep> Controller<B> {
             ride.motor.pass(tick, &mut motor);
         }
         let (mut command, mut reset) = (None, !resets);
-        for byte in motor {
-            let Some(Received::Frame(received)) = ride.decoder.feed(byte) else { continue };
+        let mut bytes = &motor[..];
+        while !bytes.is_empty() {
+            let Some(Received::Frame(received)) = ride.decoder.take(&mut bytes) else { continue };
             match Message::decode(&received) {
                 Ok(Message::PilCommand { command: newest, authority }) => {
                     command = Some((Stepped { command: newest, authority }, received.sequence));

@@ -192,8 +192,8 @@ fn command(image: &Path, words: &[&str]) -> Command {
     let words = words.iter().fold(format!(",arg={name}"), |line, word| format!("{line},arg={word}"));
     let mut qemu = Command::new("qemu-system-arm");
     qemu.args(["-machine", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "none"]);
-    // An instruction lasts 32 ns of simulated time, and waiting none of the host's.
-    qemu.args(["-icount", "shift=5,sleep=off"]);
+    // An instruction lasts 16 ns of simulated time, 2.7 clocks of the chip, and waiting none of the host's.
+    qemu.args(["-icount", "shift=4,sleep=off"]);
     qemu.arg("-semihosting-config").arg(format!("enable=on,target=native{words}"));
     qemu.arg("-kernel").arg(image);
     qemu.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());

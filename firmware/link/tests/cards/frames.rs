@@ -10,16 +10,26 @@ enum Got {
     Wrong(u8),
 }
 
-fn feed(decoder: &mut Decoder, bytes: &[u8]) -> Vec<Got> {
-    let mut got = Vec::new();
-    for byte in bytes {
-        match decoder.feed(*byte) {
-            Some(Received::Frame(Frame { kind, sequence, payload })) => {
-                got.push(Got::Frame(kind, sequence, payload.to_vec()));
+impl Got {
+    fn of(received: Received<'_>) -> Self {
+        match received {
+            Received::Frame(Frame { kind, sequence, payload }) => {
+                Got::Frame(kind, sequence, payload.to_vec())
             }
-            Some(Received::WrongVersion { theirs }) => got.push(Got::Wrong(theirs)),
-            None => {}
+            Received::WrongVersion { theirs } => Got::Wrong(theirs),
         }
+    }
+}
+
+fn feed(decoder: &mut Decoder, bytes: &[u8]) -> Vec<Got> {
+    bytes.iter().filter_map(|byte| decoder.feed(*byte).map(Got::of)).collect()
+}
+
+/// As [`feed`], all bytes at once.
+fn take(decoder: &mut Decoder, mut bytes: &[u8]) -> Vec<Got> {
+    let mut got = Vec::new();
+    while !bytes.is_empty() {
+        got.extend(decoder.take(&mut bytes).map(Got::of));
     }
     got
 }
@@ -65,6 +75,33 @@ proptest! {
             prop_assert_eq!(feed(&mut decoder, &bytes), vec![Got::Frame(kind, sequence, payload)]);
         }
         prop_assert_eq!(decoder.dropped(), Dropped::default());
+    }
+
+    /// Situation: frames with any bytes before, between and in them, cut into pieces anywhere.
+    /// Action: decode them byte by byte, and piece by piece.
+    /// Must hold: the same frames, and as much dropped of each kind.
+    #[test]
+    fn pieces_say_what_their_bytes_say(
+        parts in prop::collection::vec((prop::collection::vec(any::<u8>(), 0..400), payloads()), 1..5),
+        harm in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..4),
+        cuts in prop::collection::vec(any::<prop::sample::Index>(), 0..6),
+    ) {
+        let mut bytes: Vec<u8> =
+            parts.iter().flat_map(|(garbage, payload)| [&garbage[..], &line(7, 9, payload)].concat()).collect();
+        for (at, byte) in harm {
+            let at = at.index(bytes.len());
+            bytes[at] = byte;
+        }
+        let (mut one, mut other) = (Decoder::default(), Decoder::default());
+        let mut ends: Vec<usize> = cuts.iter().map(|cut| cut.index(bytes.len())).chain([bytes.len()]).collect();
+        ends.sort_unstable();
+        let mut begin = 0;
+        for end in ends {
+            let piece = &bytes[begin..end];
+            prop_assert_eq!(feed(&mut one, piece), take(&mut other, piece));
+            prop_assert_eq!(one.dropped(), other.dropped());
+            begin = end;
+        }
     }
 
     /// Situation: any bytes, then a frame.

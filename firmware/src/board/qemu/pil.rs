@@ -28,10 +28,10 @@ const LONG: usize = 3 * MAX_FRAME / 2;
 
 /// What the controller is told.
 struct Sensors {
-    /// By the last step.
+    /// Of the last step, or newer.
     frame: SensorFrame,
-    /// Came since, with the number of the step it is for.
-    fresh: Option<(u16, SensorFrame)>,
+    /// It came since the last step, and is for the step of this number.
+    fresh: Option<u16>,
     /// The number of the next step.
     step: u16,
     /// The number of the newest frame that was used; `None` before the first.
@@ -49,22 +49,24 @@ pub(super) fn sense() -> Option<SensorFrame> {
     critical_section::with(|cs| {
         let mut sensors = SENSORS.borrow(cs).borrow_mut();
         let s = sensors.as_mut()?;
-        let (frame, late) = match s.fresh.take() {
-            Some((number, frame)) => {
+        let late = match s.fresh.take() {
+            Some(number) => {
                 s.used = Some(number);
-                (frame, s.step.wrapping_sub(number))
+                s.step.wrapping_sub(number)
             }
-            None if s.used.is_none() => (SensorFrame::missing(), 0),
-            None => (s.frame, 1),
+            // Before the first frame every sensor is missing, and stays so.
+            None => u16::from(s.used.is_some()),
         };
-        s.frame = later(frame, late);
+        if late > 0 {
+            age(&mut s.frame, late);
+        }
         s.step = s.step.wrapping_add(1);
         Some(s.frame)
     })
 }
 
-/// The same samples so many periods later.
-fn later(mut frame: SensorFrame, ticks: u16) -> SensorFrame {
+/// Makes them the same samples so many periods later.
+fn age(frame: &mut SensorFrame, ticks: u16) {
     frame.now_us = frame.now_us.wrapping_add(PERIOD_US * u32::from(ticks));
     for triple in [&mut frame.gyro_rad_s, &mut frame.accel_m_s2] {
         triple.age_ticks = triple.age_ticks.saturating_add(ticks);
@@ -81,7 +83,6 @@ fn later(mut frame: SensorFrame, ticks: u16) -> SensorFrame {
     ] {
         sample.age_ticks = sample.age_ticks.saturating_add(ticks);
     }
-    frame
 }
 
 /// Bytes of the loop on their way to the host.
@@ -165,11 +166,14 @@ pub async fn exchange() {
             text::line(format_args!("the host handed over {length} bytes that are no chunk"));
             exit(Exit::Input)
         };
-        // Bytes that find no room are lost, as on any line.
-        let _ = line::IN.try_write(bytes);
+        if !bytes.is_empty() {
+            // What finds no room is lost, as on any line.
+            let _ = line::IN.try_write(bytes);
+        }
+        let mut sensors_left = sensors;
         let mut all = || {
-            for byte in sensors {
-                if let Some(Received::Frame(frame)) = decoder.feed(*byte)
+            while !sensors_left.is_empty() {
+                if let Some(Received::Frame(frame)) = decoder.take(&mut sensors_left)
                     && let Ok(message) = Message::decode(&frame)
                 {
                     take(&message, frame.sequence, incoming, out);
@@ -189,11 +193,11 @@ fn whole(start: &[u8]) -> Option<usize> {
 
 /// `false`: the host is gone.
 fn hand_over(host: &mut Stream, chunk: &mut [u8; MAX_CHUNK], out: &mut Out) -> bool {
-    if let Some(t) = tasks::latest() {
+    if let Some((command, authority)) = tasks::commanded() {
         let number = critical_section::with(|cs| {
             SENSORS.borrow(cs).borrow().as_ref().and_then(|sensors| sensors.used).unwrap_or(u16::MAX)
         });
-        out.put(&Message::PilCommand { command: t.command, authority: t.authority }, number);
+        out.put(&Message::PilCommand { command, authority }, number);
     }
     let mut said = [0; LINE_BYTES];
     let length = line::OUT.try_read(&mut said).unwrap_or(0);
@@ -212,7 +216,7 @@ fn take(message: &Message<'_>, sequence: u16, incoming: &mut Incoming, out: &mut
     match message {
         Message::PilFrame(frame) => critical_section::with(|cs| {
             if let Some(sensors) = SENSORS.borrow(cs).borrow_mut().as_mut() {
-                sensors.fresh = Some((sequence, *frame));
+                (sensors.frame, sensors.fresh) = (*frame, Some(sequence));
             }
         }),
         Message::PilConfig { at, bytes } => incoming.take(*at, bytes),

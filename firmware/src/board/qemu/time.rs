@@ -26,8 +26,6 @@ struct SysTickClock {
     from: AtomicU32,
     /// Rounds of the counter since.
     rounds: AtomicU32,
-    /// The next interrupt ends the millisecond, however little of it is over.
-    skipping: AtomicBool,
     /// The clock stands still.
     held: AtomicBool,
     /// Nobody looks between whole milliseconds.
@@ -39,7 +37,6 @@ embassy_time_driver::time_driver_impl!(static CLOCK: SysTickClock = SysTickClock
     ms: AtomicU32::new(0),
     from: AtomicU32::new(COUNTS_PER_MS),
     rounds: AtomicU32::new(0),
-    skipping: AtomicBool::new(false),
     held: AtomicBool::new(false),
     coarse: AtomicBool::new(false),
     queue: Mutex::new(RefCell::new(Queue::new())),
@@ -68,7 +65,13 @@ pub(super) fn held<T>(what: impl FnOnce() -> T) -> T {
     });
     let done = what();
     critical_section::with(|_| {
-        CLOCK.begin(counts);
+        let mut from = left();
+        // A round that ended before does not count, its interrupt neither.
+        if SCB::is_pendst_pending() {
+            SCB::clear_pendst();
+            from = left();
+        }
+        CLOCK.begin(from + counts);
         CLOCK.held.store(false, Ordering::Relaxed);
     });
     done
@@ -76,8 +79,14 @@ pub(super) fn held<T>(what: impl FnOnce() -> T) -> T {
 
 /// Nothing is to be done before the next whole millisecond: it is now. To be called with interrupts off.
 pub(super) fn skip() {
-    CLOCK.skipping.store(true, Ordering::Relaxed);
-    SCB::set_pendst();
+    let left = left();
+    let rounds = CLOCK.rounds.load(Ordering::Relaxed);
+    if left > CLOCK.from.load(Ordering::Relaxed) + rounds * COUNTS_PER_MS {
+        // The round ended since interrupts are off; its own would count it for the next millisecond.
+        SCB::clear_pendst();
+    }
+    CLOCK.begin(left);
+    CLOCK.tick();
 }
 
 /// Whole milliseconds since [`start`].
@@ -95,23 +104,23 @@ impl SysTickClock {
     fn counts(&self) -> u32 {
         let before = left();
         // The round has ended, perhaps just now, and its interrupt still waits.
-        let ended = SCB::is_pendst_pending() && !self.skipping.load(Ordering::Relaxed);
+        let ended = SCB::is_pendst_pending();
         let left = if ended { left() } else { before };
         let rounds = self.rounds.load(Ordering::Relaxed) + u32::from(ended);
         (self.from.load(Ordering::Relaxed) + rounds * COUNTS_PER_MS).saturating_sub(left)
     }
 
-    /// A millisecond of which so many counts are over begins here.
-    fn begin(&self, counts: u32) {
-        // A round that ended before the look at the counter does not count, its interrupt neither.
-        SCB::clear_pendst();
-        let mut from = left();
-        if SCB::is_pendst_pending() {
-            SCB::clear_pendst();
-            from = left();
-        }
-        self.from.store(from + counts, Ordering::Relaxed);
+    /// A millisecond begins with this counter.
+    fn begin(&self, from: u32) {
+        self.from.store(from, Ordering::Relaxed);
         self.rounds.store(0, Ordering::Relaxed);
+    }
+
+    /// A millisecond is over: what is due then is woken.
+    fn tick(&self) {
+        let ms = self.ms.fetch_add(1, Ordering::Relaxed) + 1;
+        watchdog::check(ms);
+        critical_section::with(|cs| self.queue.borrow(cs).borrow_mut().next_expiration(self.whole_us()));
     }
 }
 
@@ -147,18 +156,12 @@ impl Driver for SysTickClock {
 
 #[cortex_m_rt::exception]
 fn SysTick() {
-    if CLOCK.skipping.swap(false, Ordering::Relaxed) {
-        CLOCK.begin(0);
-    } else if CLOCK.held.load(Ordering::Relaxed) {
+    if CLOCK.held.load(Ordering::Relaxed) {
         return;
-    } else {
-        CLOCK.rounds.fetch_add(1, Ordering::Relaxed);
-        if CLOCK.counts() < COUNTS_PER_MS {
-            return;
-        }
-        CLOCK.rounds.fetch_sub(1, Ordering::Relaxed);
     }
-    let ms = CLOCK.ms.fetch_add(1, Ordering::Relaxed) + 1;
-    watchdog::check(ms);
-    critical_section::with(|cs| CLOCK.queue.borrow(cs).borrow_mut().next_expiration(CLOCK.whole_us()));
+    CLOCK.rounds.fetch_add(1, Ordering::Relaxed);
+    if CLOCK.counts() >= COUNTS_PER_MS {
+        CLOCK.rounds.fetch_sub(1, Ordering::Relaxed);
+        CLOCK.tick();
+    }
 }
