@@ -182,7 +182,7 @@ impl<'a> Torque<'a> {
 
     /// Whether it goes back to zero as fast as it may in the least time there was.
     fn retreats(&self) -> bool {
-        let takes = |way: f32| way * self.plan.fall_s_nm >= self.within(self.elapsed_us) * (1.0 - 1e-6);
+        let takes = |way: f32| way * self.plan.fall_s_nm >= self.within(self.elapsed_us);
         self.limits.fall_nm_s.is_some() && self.back.is_some_and(takes)
     }
 

@@ -327,7 +327,7 @@ fn told<const N: usize>(causes: &mut Causes, told: Told<N>) -> Option<([f32; N],
 #[derive(Clone, Copy, Debug)]
 struct Recent {
     /// Those before the newest, in a ring.
-    samples: [f32; RECENT - 1],
+    samples: [f32; RECENT],
     known: u16,
     next: u16,
     /// Between which they all are.
@@ -339,7 +339,7 @@ struct Recent {
 
 impl Default for Recent {
     fn default() -> Self {
-        Self { samples: [0.0; RECENT - 1], known: 0, next: 0, low: 0.0, high: 0.0, held: MISSING }
+        Self { samples: [0.0; RECENT], known: 0, next: 0, low: 0.0, high: 0.0, held: MISSING }
     }
 }
 
