@@ -165,8 +165,7 @@ pub async fn exchange() {
             text::line(format_args!("the host handed over {length} bytes that are no chunk"));
             exit(Exit::Input)
         };
-        // Bytes that find no room are lost, as on any line.
-        let _ = line::IN.try_write(bytes);
+        line::came(bytes);
         let mut all = || {
             for byte in sensors {
                 if let Some(Received::Frame(frame)) = decoder.feed(*byte)
