@@ -2,6 +2,7 @@
 
 use crate::rig::Rig;
 use control::Mode;
+use link::Key;
 use link::message::Message;
 use link::report::{FaultKind, ResetCause};
 use xtask::{image, rides};
@@ -70,4 +71,38 @@ fn whatever_goes_wrong_ends_in_a_new_start_without_torque() {
         rig.ride(2000, true);
         assert_eq!((rig.mode(), rig.starts()), (Mode::Engaged, 2), "{mishap}: a fresh press engages");
     }
+}
+
+/// Longest that silence does not count while parameters are stored \[ms\].
+const EXCUSE_MS: u32 = 4000;
+
+/// Situation: the product at rest, its configuration in flash, all tasks run.
+/// Action: a parameter is changed and stored; the flash never takes it.
+/// Must hold: silence is excused for 4 s, and no longer: then a new start within 60 to 170 ms, and just one; the silent task
+/// is kept; what was stored before is in force.
+#[test]
+fn a_store_that_never_ends_is_not_excused_for_ever() {
+    if !image::ready() {
+        return;
+    }
+    let mut rig = Rig::start(&["mishap=flash-stuck", "at_ms=1000"]);
+    rig.ride(1500, false);
+    let key = Key { group: "limits", name: "max_torque_nm" };
+    rig.ask(&Message::Set { key, value: Some(5.0) });
+    rig.ride(40, false);
+    assert_eq!(rig.values, [Some(5.0)]);
+    rig.ask(&Message::Store);
+    let from = rig.time_ms();
+    while rig.starts() == 1 && rig.time_ms() < from + 2 * EXCUSE_MS {
+        rig.ride(1, false);
+    }
+    let took = rig.time_ms() - from;
+    assert!((EXCUSE_MS + 60..EXCUSE_MS + 170).contains(&took), "{took} ms");
+    rig.ask(&Message::Get { key });
+    rig.ask(&Message::ListFaults { from: 0 });
+    rig.ride(2000, false);
+    assert_eq!((rig.starts(), rig.done), (2, 1), "one new start, nothing stored but before");
+    assert_eq!(rig.values, [Some(5.0), Some(7.0)]);
+    let kept = &rig.kept[0];
+    assert_eq!((kept.kind, kept.boot, &*kept.text), (FaultKind::Watchdog, 1, "line"));
 }
