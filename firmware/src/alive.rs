@@ -18,9 +18,15 @@ pub enum Task {
 /// 115200 baud: 29 ms.
 pub const PATIENCE_MS: u32 = 50;
 
+/// Longest that nobody is blamed \[ms\]. The longest store erases five sectors of 16 KiB, 0.5 s at most each (data sheet of
+/// the STM32F405, table 40): one for each of two items, then, after damage, all three; what it writes takes 0.1 s.
+pub const EXCUSE_MS: u32 = 4000;
+
 static LAST_MS: [AtomicU32; 3] = [const { AtomicU32::new(0) }; 3];
 /// While flash is erased everything stands still, and nobody is blamed.
 static EXCUSED: AtomicBool = AtomicBool::new(false);
+/// Since when \[ms\].
+static EXCUSED_FROM_MS: AtomicU32 = AtomicU32::new(0);
 
 impl Task {
     /// Its name.
@@ -44,18 +50,20 @@ impl Task {
 
 /// The first of `tasks` that was silent for too long.
 pub fn silent(tasks: &[Task]) -> Option<Task> {
-    if EXCUSED.load(Ordering::Relaxed) {
+    let now = now_ms();
+    let excused_ms = now.wrapping_sub(EXCUSED_FROM_MS.load(Ordering::Relaxed));
+    if EXCUSED.load(Ordering::Relaxed) && excused_ms <= EXCUSE_MS {
         return None;
     }
-    let now = now_ms();
     let last = |task: Task| LAST_MS[task as usize].load(Ordering::Relaxed);
     tasks.iter().copied().find(|task| now.saturating_sub(last(*task)) > PATIENCE_MS)
 }
 
-/// From now on nobody is blamed, or again everybody, their silence until now forgiven.
+/// From now on nobody is blamed for [`EXCUSE_MS`], or again everybody; silence until now is forgiven.
 pub fn excuse(excused: bool) {
     let now = now_ms();
     LAST_MS.iter().for_each(|last| last.store(now, Ordering::Relaxed));
+    EXCUSED_FROM_MS.store(now, Ordering::Relaxed);
     EXCUSED.store(excused, Ordering::Relaxed);
 }
 

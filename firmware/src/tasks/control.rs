@@ -57,6 +57,8 @@ pub struct Telemetry {
     pub authority: f32,
     /// As of [`State::slopes`].
     pub slopes: [Option<f32>; 2],
+    /// The number of the configuration it stepped with, as of [`settings::take`].
+    pub configuration: u32,
     /// Where the polarity check stands.
     pub polarity: Move,
     /// The torque that it shows \[N m\].
@@ -99,13 +101,13 @@ pub fn commanded() -> Option<(Command, f32)> {
 pub async fn control(plan: &'static mut Plan) {
     let mut state = State::default();
     let mut deadlines = Deadlines::default();
-    let mut mode = Mode::Off;
+    let (mut mode, mut configuration) = (Mode::Off, 0);
     let mut release = Instant::from_millis(Instant::now().as_millis());
     loop {
         release += PERIOD;
         Timer::at(release).await;
-        if let Some(next) = settings::take(mode) {
-            *plan = next;
+        if let Some((next, number)) = settings::take(mode) {
+            (*plan, configuration) = (next, number);
             (state, mode) = (State::default(), Mode::Off);
         }
         let frame = board::sense();
@@ -118,6 +120,7 @@ pub async fn control(plan: &'static mut Plan) {
             command,
             authority: state.authority(),
             slopes: state.slopes(),
+            configuration,
             polarity: state.polarity(),
             shown_nm: state.shown_nm(),
             drive,

@@ -51,7 +51,7 @@ pub async fn line(image: Image, kept: &'static mut Kept) {
             Either::Second(()) => {
                 if let Some(telemetry) = latest() {
                     if telemetry.polarity == Move::Passed {
-                        settings::polarity_passed();
+                        settings::polarity_passed(telemetry.configuration);
                     }
                     waiting.step(&told(&telemetry));
                 }

@@ -17,8 +17,17 @@ struct Next {
     at_once: bool,
 }
 
-static NEXT: Mutex<CriticalSectionRawMutex, RefCell<Option<Next>>> = Mutex::new(RefCell::new(None));
-static CONFIG: Mutex<CriticalSectionRawMutex, RefCell<Option<Config>>> = Mutex::new(RefCell::new(None));
+/// What is in force, or about to be.
+struct Settings {
+    /// `None` before the first was offered.
+    config: Option<Config>,
+    /// Which one that is, counted from the start.
+    number: u32,
+    next: Option<Next>,
+}
+
+static SETTINGS: Mutex<CriticalSectionRawMutex, RefCell<Settings>> =
+    Mutex::new(RefCell::new(Settings { config: None, number: 0, next: None }));
 
 /// Whether torque may flow, or does: nothing may be changed then.
 pub fn engaged() -> bool {
@@ -27,34 +36,39 @@ pub fn engaged() -> bool {
 
 /// The configuration in force, or about to be; the defaults before the first was offered.
 pub fn config() -> Config {
-    CONFIG.lock(|config| config.borrow().clone()).unwrap_or_else(Config::product)
+    SETTINGS.lock(|settings| settings.borrow().config.clone()).unwrap_or_else(Config::product)
 }
 
 /// The controller begins anew with this plan as soon as no torque flows, or at once.
 pub fn offer(plan: Plan, at_once: bool) {
-    CONFIG.lock(|config| config.replace(Some(plan.config().clone())));
-    NEXT.lock(|next| next.replace(Some(Next { plan, at_once })));
+    SETTINGS.lock(|settings| {
+        let mut settings = settings.borrow_mut();
+        settings.config = Some(plan.config().clone());
+        settings.number = settings.number.wrapping_add(1);
+        settings.next = Some(Next { plan, at_once });
+    });
 }
 
-/// Remembers that the polarity check was passed; the controller itself knows already.
+/// Remembers that the polarity check was passed with the configuration of this number; the controller itself knows already.
 ///
-/// Not while a plan waits for the controller: it passed with the calibration before, which may be another.
-pub(super) fn polarity_passed() {
-    if NEXT.lock(|next| next.borrow().is_some()) {
-        return;
-    }
-    CONFIG.lock(|config| {
-        if let Some(config) = config.borrow_mut().as_mut() {
+/// Another one that came since, taken by the controller or not, has a calibration that nobody checked.
+pub(super) fn polarity_passed(number: u32) {
+    SETTINGS.lock(|settings| {
+        let mut settings = settings.borrow_mut();
+        if settings.number == number
+            && let Some(config) = settings.config.as_mut()
+        {
             config.calibration.polarity_checked = true;
         }
     });
 }
 
-/// The plan that is offered, if a controller in this mode may take it.
-pub(super) fn take(mode: Mode) -> Option<Plan> {
-    NEXT.lock(|next| {
-        let may = next.borrow().as_ref().is_some_and(|next| next.at_once || !mode.drives());
-        may.then(|| next.take()).flatten().map(|next| next.plan)
+/// The plan that is offered and its number, if a controller in this mode may take it.
+pub(super) fn take(mode: Mode) -> Option<(Plan, u32)> {
+    SETTINGS.lock(|settings| {
+        let mut settings = settings.borrow_mut();
+        let next = settings.next.take_if(|next| next.at_once || !mode.drives())?;
+        Some((next.plan, settings.number))
     })
 }
 
@@ -115,7 +129,7 @@ impl Kept {
 pub fn start(kept: &mut Kept, defaults: &Config) -> &'static mut Plan {
     static PLAN: StaticCell<Plan> = StaticCell::new();
     let config = embassy_futures::block_on(kept.load(defaults));
-    CONFIG.lock(|in_force| in_force.replace(Some(config.clone())));
+    SETTINGS.lock(|settings| settings.borrow_mut().config = Some(config.clone()));
     // What a store gives passes: else it gave the defaults, which are the program's own.
     PLAN.init(config.plan().expect("a plan of the defaults"))
 }

@@ -138,6 +138,11 @@ impl Client {
         Ok(self.told.drain(..).collect())
     }
 
+    /// Opens the line anew after it was lost; `None` for one that never comes back. Who is there now is to be asked.
+    pub fn reopen(&mut self) -> Option<Result<(), LineError>> {
+        self.line.reopen()
+    }
+
     /// Frames that came damaged, since the start, wrapping.
     pub fn damaged(&self) -> u32 {
         let dropped = self.decoder.dropped();

@@ -17,6 +17,11 @@ pub trait Line {
     /// # Errors
     /// The line is lost, or has come to its end.
     fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError>;
+
+    /// Opens a lost line anew; `None` for one that never comes back.
+    fn reopen(&mut self) -> Option<Result<(), LineError>> {
+        None
+    }
 }
 
 /// Why nothing goes over a line. Each names the device or file.

@@ -11,7 +11,7 @@ use link::telemetry::Telemetry;
 pub struct Monitor {
     /// Frames that came in.
     pub frames: u64,
-    /// Frames that did not, by the gaps in their numbers.
+    /// Frames that did not, by the gaps in their numbers; where these went round meanwhile, by the control steps as well.
     pub missing: u64,
     /// Starts of the board while it was heard.
     pub restarts: u32,
@@ -20,8 +20,45 @@ pub struct Monitor {
     /// The board's clock at that step \[s\].
     pub t: f64,
     time_us: u64,
-    sequence: Option<u16>,
+    counted: Counted,
 }
+
+/// How far frames are counted.
+#[derive(Debug, Default)]
+struct Counted {
+    /// The number of the frame up to which they are.
+    sequence: Option<u16>,
+    /// Frames that came in since.
+    since: u16,
+    /// Control steps that went by, and frames that were sent in them, as far as is known.
+    steps: u64,
+    frames: u64,
+}
+
+impl Counted {
+    /// From a frame of this number on.
+    fn from(sequence: u16) -> Self {
+        Self { sequence: Some(sequence), ..Self::default() }
+    }
+
+    /// Frames lost before that of number `sequence`, so many control steps after the last one that was counted.
+    ///
+    /// The numbers tell it but for whole rounds; how many of these, the steps tell, at the rate of frames until then. Numbers
+    /// that go back are no gap.
+    fn lost(&mut self, sequence: u16, steps: u32) -> u64 {
+        let heard = u64::from(std::mem::take(&mut self.since)) + 1;
+        let Some(last) = self.sequence.replace(sequence) else { return 0 };
+        let sent = i64::from(sequence.wrapping_sub(last));
+        let expected = f64::from(steps) * self.frames as f64 / self.steps.max(1) as f64;
+        let rounds = ((expected - sent as f64) / ROUND as f64).round() as i64;
+        let sent = u64::try_from(sent + rounds * ROUND).unwrap_or(0).max(heard);
+        (self.steps, self.frames) = (self.steps + u64::from(steps), self.frames + sent);
+        sent - heard
+    }
+}
+
+/// Frames after which their numbers begin anew.
+const ROUND: i64 = 1 << 16;
 
 /// Something that was told.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +83,10 @@ impl Monitor {
             Ok(Message::Log(words)) => News::Log(words.into()),
             Ok(_) | Err(_) => News::Unknown,
         };
-        self.count(told.sequence);
+        match self.counted.sequence {
+            Some(_) => self.counted.since = self.counted.since.wrapping_add(1),
+            None => self.counted = Counted::from(told.sequence),
+        }
         news
     }
 
@@ -56,26 +96,19 @@ impl Monitor {
             // A board that starts anew numbers its frames anew.
             Some(before) if (step.steps.wrapping_sub(before.steps) as i32) < 0 => {
                 self.restarts += 1;
-                (self.sequence, self.time_us) = (Some(sequence), now_us.into());
+                (self.counted, self.time_us) = (Counted::from(sequence), now_us.into());
             }
             Some(before) => {
-                self.count(sequence);
+                self.missing += self.counted.lost(sequence, step.steps.wrapping_sub(before.steps));
                 self.time_us += u64::from(now_us.wrapping_sub(before.frame.now_us));
             }
             None => {
-                self.count(sequence);
+                self.missing += self.counted.lost(sequence, 0);
                 self.time_us = now_us.into();
             }
         }
         self.t = self.time_us as f64 / 1e6;
         self.newest = Some(step);
         News::Step(Box::new(Row::new(self.t, &step)))
-    }
-
-    /// Numbers that go back are those of a board that started anew, and no gap.
-    fn count(&mut self, sequence: u16) {
-        let gap = self.sequence.map_or(0, |last| sequence.wrapping_sub(last).wrapping_sub(1));
-        self.missing += if gap > u16::MAX / 2 { 0 } else { u64::from(gap) };
-        self.sequence = Some(sequence);
     }
 }

@@ -121,13 +121,19 @@ impl Qemu {
         child.wait().map_or_else(|why| why.to_string(), |_| "its output ended before it did".into())
     }
 
-    /// Why it is gone.
-    fn ended(&mut self) -> BoardError {
+    /// Closes this end, at which the image ends by itself; how it did, and all it wrote for people, its last words.
+    pub fn close(&mut self) -> (String, String) {
         self.to = None;
         let status = self.last_status();
         // The last words are there when the listener is done.
         let _ = self.listener.take().map(JoinHandle::join);
-        let said = match self.said() {
+        (status, self.said())
+    }
+
+    /// Why it is gone.
+    fn ended(&mut self) -> BoardError {
+        let (status, said) = self.close();
+        let said = match said {
             said if said.is_empty() => said,
             said => format!("; it said:\n{said}"),
         };

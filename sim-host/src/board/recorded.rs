@@ -66,4 +66,8 @@ impl Line for Recorder {
         written.map_err(|why| LineError::Record { file: self.name.clone(), why })?;
         Ok(bytes)
     }
+
+    fn reopen(&mut self) -> Option<Result<(), LineError>> {
+        self.line.reopen()
+    }
 }

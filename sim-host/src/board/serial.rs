@@ -11,6 +11,7 @@ const SENDING: Duration = Duration::from_secs(2);
 /// A serial port, 8 data bits, no parity, one stop bit.
 pub struct Serial {
     name: String,
+    baud: u32,
     port: Box<dyn SerialPort>,
 }
 
@@ -24,7 +25,7 @@ impl Serial {
         let port = opened.and_then(|port| port.clear(ClearBuffer::Input).map(|()| port));
         let failed =
             |why: serialport::Error| LineError::Open { line: name.into(), why: io::Error::other(why) };
-        Ok(Self { name: name.into(), port: port.map_err(failed)? })
+        Ok(Self { name: name.into(), baud, port: port.map_err(failed)? })
     }
 
     fn lost(&self, why: io::Error) -> LineError {
@@ -50,5 +51,9 @@ impl Line for Serial {
             Err(why) if matches!(why.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => Ok(Vec::new()),
             Err(why) => Err(self.lost(why)),
         }
+    }
+
+    fn reopen(&mut self) -> Option<Result<(), LineError>> {
+        Some(Self::open(&self.name, self.baud).map(|anew| *self = anew))
     }
 }

@@ -26,8 +26,8 @@ mod rider;
 mod rider_args;
 mod speeds;
 mod study;
+mod study_swept;
 mod sweep;
-mod sweep_study;
 mod thesis;
 mod words;
 
@@ -92,8 +92,11 @@ enum Command {
     Rider(rider::Command),
     /// A gain schedule with the largest worst basin, judged beside the known laws.
     Design(design::Args),
-    /// Studies: a question computed, its answer as a page with a figure.
+    /// A study: a question computed, its answer as a page with figures.
     Study(study::Args),
+    /// The studies that ship, each with its question.
+    #[command(after_help = "Example:\n  sim-host studies")]
+    Studies,
     /// What a board does now: live values, causes and limits in words; a table, a recording.
     Monitor(monitor::Args),
     /// A board's parameters: list, get, set, store, reset, export, import.
@@ -125,6 +128,7 @@ pub fn run() -> ExitCode {
         Command::Rider(command) => rider::run(&command),
         Command::Design(args) => design::run(&args),
         Command::Study(args) => study::run(&args),
+        Command::Studies => study::list(),
         Command::Monitor(args) => monitor::run(&args),
         Command::Param(command) => param::run(&command),
         Command::Faults(args) => faults::run(&args),

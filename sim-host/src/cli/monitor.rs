@@ -15,10 +15,12 @@ use serde_json::json;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 const EXAMPLES: &str = "\
 Ends by Ctrl-C, after --for, at the end of --file, or when the line is lost; what was written stays.
+A serial port that goes away is opened again as soon as it is back, for as long as --reopen says.
 Not on a terminal it prints a line a second and one for every change of mode, causes, drive or lateness.
 
 Examples:
@@ -28,6 +30,9 @@ Examples:
 
 /// Longest silence that is not told.
 const SILENCE: Duration = Duration::from_secs(2);
+
+/// Between two looks whether a lost line is back.
+const LOOK: Duration = Duration::from_millis(200);
 
 /// Options of `monitor`.
 #[derive(clap::Args)]
@@ -47,6 +52,9 @@ pub(super) struct Args {
     /// End after this time, as 10s [default: never]
     #[arg(long = "for", value_name = "TIME", value_parser = duration, conflicts_with = "file")]
     length: Option<f64>,
+    /// How long a serial port that went away is waited for; with 0s not at all
+    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "60s", conflicts_with = "file")]
+    reopen: f64,
 }
 
 fn duration(text: &str) -> Result<f64, String> {
@@ -61,6 +69,11 @@ struct Session {
     table: Option<Table>,
     /// Damaged frames before it began: the first one is heard from its middle.
     damaged_before: u32,
+    begin: Instant,
+    /// When to end.
+    length: Option<Duration>,
+    /// How long a line that was lost is waited for.
+    reopen: Duration,
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
@@ -79,8 +92,17 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let table = args.csv.as_deref().map(|path| Table::create(path, &json!({"board": board}))).transpose()?;
     let view = if quiet { View::None } else { View::new(title)? };
     let damaged_before = client.damaged();
-    let mut session = Session { client, monitor: Monitor::default(), view, table, damaged_before };
-    let ended = session.hear(args.length.map(Duration::from_secs_f64));
+    let mut session = Session {
+        client,
+        monitor: Monitor::default(),
+        view,
+        table,
+        damaged_before,
+        begin: Instant::now(),
+        length: args.length.map(Duration::from_secs_f64),
+        reopen: Duration::from_secs_f64(args.reopen),
+    };
+    let ended = session.hear();
     let told = session.end();
     let ended = ended?;
     told?;
@@ -92,7 +114,7 @@ fn line(args: &Args) -> Result<Box<dyn Line>, Failure> {
     let line: Box<dyn Line> = match (&args.file, args.port.open()?) {
         (Some(file), _) => Box::new(Recording::open(file)?),
         (None, Some(line)) => line,
-        (None, None) => return Err("no board is named; see --port".into()),
+        (None, None) => return Err("no board is named; see --port, --qemu and --file".into()),
     };
     Ok(match &args.record {
         Some(path) => Box::new(Recorder::new(line, &path.display().to_string(), open(path)?)),
@@ -102,18 +124,19 @@ fn line(args: &Args) -> Result<Box<dyn Line>, Failure> {
 
 impl Session {
     /// Hears and shows until there is an end.
-    fn hear(&mut self, length: Option<Duration>) -> Result<Ended, Failure> {
-        let (begin, mut heard, mut silence_told) = (Instant::now(), Instant::now(), false);
+    fn hear(&mut self) -> Result<Ended, Failure> {
+        let (mut heard, mut silence_told) = (Instant::now(), false);
         loop {
-            if interrupt::stopped() {
-                return Ok(Ended::Interrupted);
-            }
-            if length.is_some_and(|length| begin.elapsed() >= length) {
-                return Ok(Ended::Done);
+            if let Some(ended) = self.ended() {
+                return Ok(ended);
             }
             let told = match self.client.listen(Duration::from_millis(50)) {
                 Ok(told) => told,
                 Err(ClientError::Line(LineError::Ended { .. })) => return Ok(Ended::Done),
+                Err(ClientError::Line(lost @ LineError::Lost { .. })) => match self.wait(lost)? {
+                    Some(ended) => return Ok(ended),
+                    None => continue,
+                },
                 Err(error) => return Err(error.into()),
             };
             if !told.is_empty() {
@@ -125,6 +148,45 @@ impl Session {
             self.table.as_mut().map_or(Ok(()), Table::flush)?;
             self.view.draw(&self.monitor, self.damaged())?;
         }
+    }
+
+    /// Whether it is to end, and how.
+    fn ended(&self) -> Option<Ended> {
+        let over = self.length.is_some_and(|length| self.begin.elapsed() >= length);
+        if interrupt::stopped() { Some(Ended::Interrupted) } else { over.then_some(Ended::Done) }
+    }
+
+    /// Waits for a line that was lost; `None` when a board answers there again.
+    fn wait(&mut self, lost: LineError) -> Result<Option<Ended>, Failure> {
+        let (since, seconds) = (Instant::now(), self.reopen.as_secs_f64());
+        let mut told = false;
+        while since.elapsed() < self.reopen {
+            let Some(opened) = self.client.reopen() else { return Err(lost.into()) };
+            if !std::mem::replace(&mut told, true) {
+                self.view.say(&format!("{lost}; waiting up to {seconds} s for it"))?;
+            }
+            if opened.is_ok() {
+                match self.client.hello() {
+                    Ok(board) => {
+                        self.view.say(&format!(
+                            "back after {:.1} s: {}",
+                            since.elapsed().as_secs_f64(),
+                            board.label()
+                        ))?;
+                        return Ok(None);
+                    }
+                    Err(error @ ClientError::Version { .. }) => return Err(error.into()),
+                    // It may be on its way up.
+                    Err(_) => {}
+                }
+            }
+            if let Some(ended) = self.ended() {
+                return Ok(Some(ended));
+            }
+            sleep(LOOK);
+        }
+        let waited = if told { format!("; not back within {seconds} s") } else { String::new() };
+        Err(format!("{lost}{waited}").into())
     }
 
     fn take(&mut self, told: &Told) -> Result<(), Failure> {

@@ -1,72 +1,120 @@
-//! `sim-host study`.
+//! `sim-host study` and `sim-host studies`.
 
 use super::basin::{ThreadArgs, progress};
-use super::outputs::complain;
-use super::{Ended, Failure, interrupt};
+use super::outputs::{complain, print};
+use super::{Ended, Failure, interrupt, study_swept};
+use crate::study::catalogue::{Study, load, shipped};
 use crate::study::page::{Page, Places};
 use crate::study::{balance_assist, prototype};
-use clap::ValueEnum;
-use std::path::PathBuf;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
-  sim-host study balance-assist                the pages in docs/studies, made again
-  sim-host study prototype --out look --quick  coarser, elsewhere";
+  sim-host study limits --out limits --pages docs       the page in docs/studies, made again
+  sim-host study prototype --quick --out look           coarser, elsewhere
+  sim-host study my-study.toml --out mine               sweeps of your own";
 
 /// Options of `study`.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Which study
-    study: Study,
-    /// Folder that NAME.md and NAME.svg are written to
-    #[arg(long, default_value = "docs/studies", value_name = "DIR")]
-    out: PathBuf,
-    /// Coarser speeds
+    /// A shipped study (see `studies`), or FILE
+    #[arg(value_name = "NAME|FILE")]
+    study: String,
+    /// Folder of what is computed; the sweeps of the same study are gone on with
+    #[arg(long, default_value = "study", value_name = "DIR")]
+    pub(super) out: PathBuf,
+    /// Folder of the page, studies/NAME.md, and its figures [default: that of --out]
+    #[arg(long, value_name = "DIR")]
+    pages: Option<PathBuf>,
+    /// Coarser speeds; `prototype` only
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
-    threads: ThreadArgs,
+    pub(super) threads: ThreadArgs,
     /// No text or progress bar
     #[arg(long, short)]
-    quiet: bool,
+    pub(super) quiet: bool,
 }
 
-/// A study.
-#[derive(Clone, Copy, ValueEnum)]
-enum Study {
-    /// Stable speeds and measured weave of the balance-assist prototype beside the model's
-    BalanceAssist,
-    /// Basins of the prototype's law beside those of h, at 7 N m
-    Prototype,
+impl Args {
+    /// Folder of pages and figures.
+    pub(super) fn pages(&self) -> &Path {
+        self.pages.as_deref().unwrap_or(&self.out)
+    }
+}
+
+pub(super) fn list() -> Result<Ended, Failure> {
+    let mut text = String::new();
+    for study in shipped()? {
+        let _ = writeln!(text, "{:14} {}", study.name(), study.title());
+        for line in study.question().lines() {
+            let _ = writeln!(text, "    {line}");
+        }
+    }
+    print(&text)?;
+    Ok(Ended::Done)
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let name = match args.study {
-        Study::BalanceAssist => balance_assist::NAME,
-        Study::Prototype => prototype::NAME,
-    };
-    let places = Places::create(&args.out, name)?;
-    let pool = args.threads.pool()?;
-    let page = match args.study {
-        Study::BalanceAssist => Some(pool.install(balance_assist::study)?),
-        Study::Prototype => {
-            interrupt::install();
-            let search = prototype::search(if args.quick { 1.1 } else { 0.25 });
-            let bar = progress(!args.quiet, "study", prototype::work(&search), "columns");
-            let page = pool.install(|| prototype::study(&search, &|| bar.inc(1), &interrupt::stopped));
-            bar.finish_and_clear();
-            page?
-        }
-    };
-    let Some(page) = page else {
+    let study = load(&args.study)?;
+    if args.quick && study != Study::Prototype {
+        return Err(format!(
+            "--quick: study {} has one fineness; only prototype has a coarser one",
+            study.name()
+        )
+        .into());
+    }
+    match study {
+        Study::BalanceAssist => one_page(args, balance_assist::NAME, || balance_assist::study().map(Some)),
+        Study::Prototype => one_page(args, prototype::NAME, || prototype(args)),
+        Study::Swept(study) => study_swept::run(args, &study),
+    }
+}
+
+/// The prototype's page; `None` if it was interrupted.
+fn prototype(args: &Args) -> Result<Option<Page>, String> {
+    interrupt::install();
+    let search = prototype::search(if args.quick { 1.1 } else { 0.25 });
+    let bar = progress(!args.quiet, "study", prototype::work(&search), "columns");
+    let page = prototype::study(&search, &|| bar.inc(1), &interrupt::stopped);
+    bar.finish_and_clear();
+    page
+}
+
+/// A study that is one page and a figure beside it.
+fn one_page(
+    args: &Args,
+    name: &str,
+    compute: impl FnOnce() -> Result<Option<Page>, String> + Send,
+) -> Result<Ended, Failure> {
+    let folder = made(args.pages(), "studies")?;
+    let places = Places::create(&folder, name)?;
+    let Some(page) = args.threads.pool()?.install(compute)? else {
         complain("interrupted: nothing is written");
         return Ok(Ended::Interrupted);
     };
     places.write(&page)?;
+    told(args, &page_path(args, name))
+}
+
+/// Where a study's page lies.
+pub(super) fn page_path(args: &Args, name: &str) -> PathBuf {
+    args.pages().join("studies").join(format!("{name}.md"))
+}
+
+/// Tells where the page is.
+pub(super) fn told(args: &Args, page: &Path) -> Result<Ended, Failure> {
     if !args.quiet {
-        let Page { text, .. } = page;
-        super::outputs::print(&text)?;
+        print(&format!("{}\n", page.display()))?;
     }
     Ok(Ended::Done)
+}
+
+/// A folder below `pages`, made if it is not there.
+pub(super) fn made(pages: &Path, folder: &str) -> Result<PathBuf, Failure> {
+    let folder = pages.join(folder);
+    std::fs::create_dir_all(&folder).map_err(|e| format!("can't make {}: {e}", folder.display()))?;
+    Ok(folder)
 }

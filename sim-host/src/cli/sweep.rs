@@ -67,10 +67,6 @@ struct Told {
 enum Command {
     /// Puts the parts of a sweep together
     Merge(Merge),
-    /// Answers a question by sweeps that are written down: a page with tables and figures
-    Study(super::sweep_study::Args),
-    /// The studies that ship
-    Studies,
 }
 
 /// Options of `sweep merge`.
@@ -87,11 +83,8 @@ struct Merge {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    match &args.command {
-        Some(Command::Merge(args)) => return merge(args),
-        Some(Command::Study(args)) => return super::sweep_study::run(args),
-        Some(Command::Studies) => return super::sweep_study::list(),
-        None => {}
+    if let Some(Command::Merge(args)) = &args.command {
+        return merge(args);
     }
     let resolved = resolve(&args.over, args.conditions.words(), |ridden| args.search.search(ridden))?;
     let mine = args.shard.unwrap_or(Shard::WHOLE).of(&resolved.plan.cells);

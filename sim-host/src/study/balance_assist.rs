@@ -13,6 +13,12 @@ use std::fmt::Write;
 
 /// The name of the page.
 pub const NAME: &str = "balance-assist";
+/// Above the page.
+pub const TITLE: &str = "The balance assist of the Gazelle and TU Delft prototype";
+/// What is asked.
+pub const QUESTION: &str =
+    "From which speed is the published bicycle stable under the prototype's balance assist, and is the weave
+that was measured on it the model's?";
 /// The bicycle with the steer motor, as it was pushed off to ride alone.
 pub const RIDERLESS: &str = "balanceassistv1";
 /// The same with a rigid rider.
@@ -107,8 +113,8 @@ pub fn study() -> Result<Page, String> {
     let (riderless, ridden) = (load(RIDERLESS)?, load(RIDDEN)?);
     let published = published();
     let fits = fits(&riderless, &published.weave);
-    let mut text = String::from(
-        "# The balance assist of the Gazelle and TU Delft prototype\n\n\
+    let mut text = format!(
+        "# {TITLE}\n\n\
          Made by `sim-host study balance-assist`; published numbers and their sources are in\n\
          [data/balance_assist.toml](../../data/balance_assist.toml), parameters in\n\
          [data/bicycles.toml](../../data/bicycles.toml).\n\n\

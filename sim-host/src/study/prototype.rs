@@ -8,6 +8,11 @@ use control::{Law, Limits};
 
 /// The name of the page.
 pub const NAME: &str = "prototype";
+/// Above the page.
+pub const TITLE: &str = "The prototype's law beside h";
+/// What is asked.
+pub const QUESTION: &str =
+    "Which law has the larger basin of attraction behind the prototype's 7 N m: its own, or h?";
 /// The largest torque of the published prototype \[N m\].
 pub const LIMIT_NM: f32 = 7.0;
 /// The product's largest change of torque \[N m/s\].
@@ -140,7 +145,7 @@ fn text(groups: &[Group], outlines: &[Vec<Outline>], search: &Search) -> String 
     let step = search.speeds.get(1).map_or(0.0, |v| v - search.speeds[0]);
     let verdict = verdict(groups, outlines);
     format!(
-        "# The prototype's law beside h\n\n\
+        "# {TITLE}\n\n\
          Made by `sim-host study prototype`. Both laws are given the prototype's {LIMIT_NM} N m, the flashed code at\n\
          1 kHz and exact sensors without delay. Areas of the basin under a steer rate, {} to {} m/s in steps of {step:.2} m/s,\n\
          in rad m/s^2; borders within {} rad/s. A ride that does not fall within 6 s counts, so that slow growth at\n\

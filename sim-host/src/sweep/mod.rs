@@ -10,7 +10,6 @@ mod plan;
 mod run;
 mod seal;
 mod shard;
-pub mod study;
 mod unit;
 mod write;
 

@@ -66,6 +66,29 @@ fn what_is_missing_and_what_is_damaged_is_counted() {
     }
 }
 
+/// Situation: steps told every 20 ms, words now and then; for long enough that the frames' numbers go round, once and
+/// twice, nothing comes over.
+/// Action: hear.
+/// Must hold: every frame that is missing is counted; no restart.
+#[test]
+fn a_long_gap_is_counted_whole() {
+    for gap in [0, 5, 32_767, 32_768, 60_000, 65_535, 65_536, 70_000, 150_000_u32] {
+        let (mut board, mut bytes) = (LinkBoard::default(), Vec::new());
+        for i in 1..=200 {
+            if i == 101 {
+                board.sequence = board.sequence.wrapping_add(gap as u16);
+            }
+            let steps = 20 * (i + if i > 100 { gap } else { 0 });
+            bytes.extend(step(&mut board, steps));
+            if i % 50 == 0 {
+                bytes.extend(board.tell(&Message::Log("words")));
+            }
+        }
+        let (monitor, ..) = hear(Box::new(Pieces(bytes, 4096)));
+        assert_eq!((monitor.frames, monitor.missing, monitor.restarts), (204, gap.into(), 0));
+    }
+}
+
 /// Situation: the board's clock and step count go over their ends; later it starts anew.
 /// Action: hear.
 /// Must hold: time goes on over the ends; the restart is counted, is no gap, and its time begins anew.

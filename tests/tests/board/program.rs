@@ -3,7 +3,8 @@
 use control::{Config, Law, LawTable};
 use link::message::Message;
 use serde_json::Value;
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
+use std::os::unix::fs::symlink;
 use std::process::{Command, Stdio};
 use tests::cli::{Bench, Run, repository};
 use tests::json_schema::violations;
@@ -346,21 +347,70 @@ fn ctrl_c_ends_a_monitor_and_keeps_what_was_written() {
     assert_eq!(bench.read("replayed.csv").lines().count(), table.lines().count());
 }
 
+/// A board that is pulled out after 50 steps that were watched, from `steps` on.
+fn pulled_out(board: &Shared, mut steps: u32) -> Port {
+    let last = steps + 1000;
+    let asked = lock(board).requests;
+    Port::new(board, move |board| {
+        let watched = lock(board).requests > asked;
+        if !watched {
+            return Some(Vec::new());
+        }
+        steps += 20;
+        (steps < last).then(|| lock(board).tell(&Message::Telemetry(telemetry(steps))))
+    })
+}
+
 /// Situation: a board that is pulled out while it is watched.
-/// Action: monitor.
-/// Must hold: exit code 1, the line named; the summary told, the table whole.
+/// Action: monitor, without waiting and waiting a second.
+/// Must hold: exit code 1, the line named, and the time if it was waited for; the summary told, the table whole.
 #[test]
 fn a_board_pulled_out_while_watched_is_told() {
+    for (reopen, told) in [("0s", ""), ("1s", "; not back within 1 s")] {
+        let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
+        let port = pulled_out(&board, 0);
+        let run = bench.run(&format!("monitor --port {} --csv ride.csv --reopen {reopen}", port.name));
+        assert_eq!(run.code, Some(1), "{run:?}");
+        assert!(run.stderr.starts_with("error: lost /dev/"), "{}", run.stderr);
+        assert!(run.stderr.trim_end().ends_with(told), "{}", run.stderr);
+        assert_eq!(run.stdout.contains("waiting up to 1 s for it"), !told.is_empty(), "{}", run.stdout);
+        assert!(run.stdout.contains(" 0 missing, 0 damaged"), "{}", run.stdout);
+        assert!((5..=60).contains(&bench.read("ride.csv").lines().count()));
+    }
+}
+
+/// Situation: a board that is pulled out while it is watched and recorded, and put in again at another device, to which the
+/// port's name then leads. Action: monitor; pull it out for good.
+/// Must hold: that it is lost, and back, and who it is, is told; table and recording have the steps of both times, and no more.
+#[test]
+fn a_board_that_comes_back_is_heard_again() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
-    let mut steps = 0;
-    let port = Port::new(&board, move |board| {
-        let watched = lock(board).requests > 0;
-        steps += if watched { 20 } else { 0 };
-        (steps < 1000).then(|| lock(board).tell(&Message::Telemetry(telemetry(steps))))
-    });
-    let run = bench.run(&format!("monitor --port {} --csv ride.csv", port.name));
+    let first = pulled_out(&board, 0);
+    symlink(&first.name, bench.path("port")).expect("a link");
+    let words = "monitor --port port --csv ride.csv --record ride.link --reopen 3s";
+    let mut command = bench.command(words);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
+    let mut lines =
+        BufReader::new(child.stdout.take().expect("piped")).lines().map(|line| line.expect("text"));
+    assert!(lines.any(|line| line.starts_with("lost port: ") && line.ends_with("waiting up to 3 s for it")));
+    let second = pulled_out(&board, 2000);
+    std::fs::remove_file(bench.path("port")).expect("the link");
+    symlink(&second.name, bench.path("port")).expect("a link");
+    let rest: Vec<String> = lines.collect();
+    let run = Run::from(child.wait_with_output().expect("it ends"));
     assert_eq!(run.code, Some(1), "{run:?}");
-    assert!(run.stderr.starts_with("error: lost /dev/"), "{}", run.stderr);
-    assert!(run.stdout.contains(" 0 missing, 0 damaged"), "{}", run.stdout);
-    assert!((5..=60).contains(&bench.read("ride.csv").lines().count()));
+    let back = rest.iter().find(|line| line.starts_with("back after ")).unwrap_or_else(|| panic!("{rest:?}"));
+    assert!(back.contains("fake 0.1.0 commit 0123456789ab"), "{back}");
+    assert!(rest.last().is_some_and(|line| line.contains(" 0 restarts")), "{rest:?}");
+    assert!(run.stderr.contains("not back within 3 s"), "{}", run.stderr);
+    let table = bench.read("ride.csv");
+    let of = |line: &str| line.split(',').nth(1).and_then(|steps| steps.parse::<u32>().ok());
+    let steps: Vec<u32> =
+        table.lines().skip(3).map(|line| of(line).unwrap_or_else(|| panic!("{line}"))).collect();
+    assert!(steps.windows(2).all(|two| two[0] < two[1]), "{steps:?}");
+    let (before, after) =
+        steps.split_at(steps.iter().position(|steps| *steps > 2000).expect("of the second time"));
+    assert!((5..=50).contains(&before.len()) && (5..=50).contains(&after.len()), "{steps:?}");
+    done(&bench.run("monitor --file ride.link --csv replayed.csv"));
+    assert_eq!(bench.read("replayed.csv").lines().count(), table.lines().count());
 }

@@ -79,7 +79,6 @@ fn every_option_is_documented_with_its_default() {
         "basin plane",
         "sweep",
         "sweep merge",
-        "sweep study",
         "thesis",
         "study",
         "design",

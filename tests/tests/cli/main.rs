@@ -10,4 +10,5 @@ mod outputs;
 mod parsers;
 mod plant;
 mod riders;
+mod study;
 mod sweep;

@@ -34,7 +34,8 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-fn must(bench: &Bench, line: &str) -> String {
+/// What a command that must succeed says.
+pub(crate) fn must(bench: &Bench, line: &str) -> String {
     let run = bench.run(line);
     assert_eq!(run.code, Some(0), "{line}: {}", run.stderr);
     run.stdout + &run.stderr
@@ -338,82 +339,4 @@ fn ranges_of_n_values_are_even() {
             Ok(())
         })
         .unwrap();
-}
-
-/// A study of two small sweeps.
-const STUDY: &str = r#"
-title = "Little"
-question = "Is it?"
-[[sweep]]
-name = "torque"
-title = "Torque"
-options = "--law h --speeds 4:5:1 --max-rate 12 --scan-step 2 --tolerance 0.1 --time-limit 1.5"
-over = ["torque-limit=0.5:20/log4,none"]
-reference = { torque-limit = "none" }
-along = "torque-limit"
-[[sweep]]
-name = "laws"
-title = "Laws"
-options = "--speeds 4:5:1 --max-rate 12 --scan-step 2 --tolerance 0.1 --time-limit 1.5"
-over = ["rider=none,smart", "law=h,f"]
-reference = { law = "h" }
-along = "law"
-"#;
-
-/// Situation: a study of one's own, of an axis of numbers and one of words.
-/// Action: compute it, and again.
-/// Must hold: the page has both answers with the numbers of the sweeps' tables, and the figures it shows;
-/// computed again, only the time taken is missing.
-#[test]
-fn a_study_is_answered_by_a_page() {
-    let bench = Bench::new(PROGRAM);
-    bench.write("little.toml", STUDY);
-    let said = must(&bench, "sweep study little.toml --out s --pages p");
-    assert_eq!(said, "p/studies/little.md\n");
-    let page = bench.read("p/studies/little.md");
-    for words in ["# Little\n", "## Torque\n", "--over torque-limit=0.5:20/log4,none", "| rider smart | "] {
-        assert!(page.contains(words), "{words}: {page}");
-    }
-    let figures: Vec<&str> =
-        page.split("](../").skip(1).map(|rest| rest.split(')').next().unwrap()).collect();
-    assert_eq!(figures, ["img/studies/little-torque.svg", "img/studies/little-laws.svg"]);
-    for figure in figures {
-        assert!(bench.read(&format!("p/{figure}")).starts_with("<svg"));
-    }
-    let table = bench.read("s/torque/sweep.csv");
-    let area = |value: &str| -> f64 {
-        let row = table.lines().find(|l| l.starts_with(&format!("{value},"))).unwrap();
-        row.split(',').nth(1).unwrap().parse().unwrap()
-    };
-    let part = |value| 100.0 * area(value) / area("none");
-    assert!(page.contains(&format!("| {:.2} | ", area("none"))), "{page}");
-    assert!(page.contains(&format!("| {:.1} %, ", part("20"))), "{page}");
-    let (lost, kept) = (part("0.5"), part("20"));
-    assert!(page.contains(&format!(", {lost:.1} % |")), "{page}");
-    assert!(lost < 95.0 && kept >= 95.0, "{lost} {kept}");
-    must(&bench, "sweep study little.toml --out s --pages p -q");
-    let again = bench.read("p/studies/little.md");
-    let timeless = |page: &str| page.lines().filter(|l| !l.starts_with("This page")).collect::<String>();
-    assert!(page.contains(" min on ") && !again.contains(" min on "));
-    assert_eq!(timeless(&page), timeless(&again));
-}
-
-/// Situation: the studies that ship, and ones that are wrong.
-/// Action: list them; compute the wrong ones.
-/// Must hold: listed by name; study, sweep and value named.
-#[test]
-fn wrong_studies_are_named() {
-    let bench = Bench::new(PROGRAM);
-    let list = must(&bench, "sweep studies");
-    for study in ["limits", "imu", "compensate", "tracking", "speed", "end-stop"] {
-        assert!(list.contains(&format!("{study} ")), "{study}: {list}");
-    }
-    bench.run("sweep study nothing").refused_naming(&["`nothing`", "limits, imu"]);
-    bench.write("a.toml", STUDY.replace("law=h,f\"", "law=h,q\""));
-    bench.run("sweep study a.toml").refused_naming(&["study a, sweep laws", "cell rider=none, law=q"]);
-    bench.write("a.toml", STUDY.replace("--law h --speeds", "--law h --speed"));
-    bench.run("sweep study a.toml").refused_naming(&["study a, sweep torque", "--speed"]);
-    bench.write("a.toml", STUDY.replace("along = \"law\"", "along = \"rider\""));
-    bench.run("sweep study a.toml").refused_naming(&["study a", "sweep laws", "`rider`"]);
-    assert_eq!(bench.files(), ["a.toml"]);
 }

@@ -1,6 +1,8 @@
 //! The tools for a board on an image in QEMU: the same requests that other cards put to a board of the link.
 
+use crate::rig::Rig;
 use control::{Config, Law};
+use link::Key;
 use link::leaves::each;
 use link::message::Message;
 use sim_host::board::rolling::Rolling;
@@ -78,4 +80,20 @@ fn the_program_takes_an_image_for_a_board() {
         "{watched}"
     );
     bench.run("param list --qemu no-such-image").refused_naming(&["no-such-image", "cargo xtask firmware"]);
+}
+
+/// Situation: image qemu-pil at rest. Action: ask for a parameter again and again, some kilobytes in all.
+/// Must hold: every request is answered, and once.
+#[test]
+fn no_request_is_lost() {
+    if !image::ready() {
+        return;
+    }
+    let mut rig = Rig::with(&[], &Config::product());
+    let asked = 150;
+    for _ in 0..asked {
+        rig.ask(&Message::Get { key: Key::whole("rate_hz") });
+        rig.ride(30, false);
+    }
+    assert_eq!((rig.values.len(), rig.values[0]), (asked, Some(1000.0)));
 }

@@ -6,5 +6,7 @@ mod faults;
 mod line;
 mod no_panic;
 mod outputs;
+mod polarity;
 mod replay;
 mod resets;
+mod rig;

@@ -1,160 +1,11 @@
 //! What the image does when something goes wrong in it: every task as on the board, in QEMU.
 
-use control::{Command, Config, Mode, SensorFrame};
-use link::frame::{Decoder, MAX_FRAME, Received};
-use link::lockstep::ToBoard;
+use crate::rig::Rig;
+use control::Mode;
+use link::Key;
 use link::message::Message;
 use link::report::{FaultKind, ResetCause};
-use sim_host::board::Lockstep;
-use sim_host::board::qemu::Qemu;
-use std::time::Duration;
 use xtask::{image, rides};
-
-/// What a fault record tells.
-#[derive(Debug, PartialEq)]
-struct Kept {
-    kind: FaultKind,
-    boot: u32,
-    mode: Mode,
-    steps: u32,
-    text: String,
-}
-
-/// A board that rides steadily, upright.
-struct Rig {
-    board: Qemu,
-    motor: Decoder,
-    line: Decoder,
-    /// The number of the next step since the loop began anew.
-    step: u16,
-    now_us: u32,
-    /// Sent with the next exchange.
-    request: Vec<u8>,
-    /// What the board said over the line, as far as it was asked for.
-    kept: Vec<Kept>,
-    logs: Vec<String>,
-    done: u32,
-    hash: Option<u32>,
-    latest: Option<Command>,
-    /// What the sensors say, upright.
-    steady: SensorFrame,
-}
-
-impl Rig {
-    /// Started with these words; the product with every sensor rides, its configuration is in flash.
-    fn start(words: &[&str]) -> Self {
-        let board =
-            Qemu::start(&image::path("qemu-pil"), words, Duration::from_secs(60)).expect("the image starts");
-        let mut rig = Self {
-            board,
-            motor: Decoder::default(),
-            line: Decoder::default(),
-            step: 0,
-            now_us: 0,
-            request: Vec::new(),
-            kept: Vec::new(),
-            logs: Vec::new(),
-            done: 0,
-            hash: None,
-            latest: None,
-            steady: rides::all_sensors_ride()[200],
-        };
-        let mut config = rides::product();
-        config.calibration.polarity_checked = true;
-        rig.begin(&config);
-        rig.ask(&Message::Store);
-        rig.ride(20, false);
-        assert_eq!(rig.done, 1, "stored");
-        rig
-    }
-
-    fn begin(&mut self, config: &Config) {
-        let bytes = control::wire::encode_config(config);
-        let mut sensors = Vec::new();
-        for (i, piece) in bytes.chunks(256).enumerate() {
-            put(&Message::PilConfig { at: 256 * i as u16, bytes: piece }, 0, &mut sensors);
-        }
-        put(&Message::PilReset, 0, &mut sensors);
-        put(&Message::PilFrame(self.steady), 0, &mut sensors);
-        (self.step, self.now_us) = (1, self.steady.now_us.wrapping_add(1000));
-        self.exchange(&sensors);
-    }
-
-    fn ask(&mut self, message: &Message<'_>) {
-        put(message, 9, &mut self.request);
-    }
-
-    /// So many milliseconds with the switch so.
-    fn ride(&mut self, ms: u32, engage: bool) {
-        for _ in 0..ms {
-            let steady = self.steady;
-            let frame = SensorFrame { now_us: self.now_us, engage, ..steady };
-            let mut sensors = Vec::new();
-            put(&Message::PilFrame(frame), self.step, &mut sensors);
-            (self.step, self.now_us) = (self.step.wrapping_add(1), self.now_us.wrapping_add(1000));
-            self.exchange(&sensors);
-        }
-    }
-
-    fn exchange(&mut self, sensors: &[u8]) {
-        let line = std::mem::take(&mut self.request);
-        let starts = self.starts();
-        self.board.exchange(&ToBoard { sensors, line: &line }).expect("the board goes on");
-        if self.starts() != starts {
-            // A new program counts its steps anew; it has done the first before it hands over.
-            self.step = 1;
-        }
-        let said = self.board.last();
-        for byte in said.motor {
-            if let Some(Received::Frame(frame)) = self.motor.feed(*byte) {
-                match Message::decode(&frame) {
-                    Ok(Message::PilCommand { command, .. }) => self.latest = Some(command),
-                    Ok(Message::Done) => {}
-                    other => panic!("{other:?}"),
-                }
-            }
-        }
-        for byte in said.line {
-            if let Some(Received::Frame(frame)) = self.line.feed(*byte) {
-                match Message::decode(&frame) {
-                    Ok(Message::KeptFault(kept)) => self.kept.extend(kept.record.map(|record| Kept {
-                        kind: record.kind,
-                        boot: record.boot,
-                        mode: record.mode,
-                        steps: record.steps,
-                        text: record.text.into(),
-                    })),
-                    Ok(Message::Log(text)) => self.logs.push(text.into()),
-                    Ok(Message::Hello(hello)) => self.hash = Some(hello.config_hash),
-                    Ok(Message::Done) => self.done += 1,
-                    _ => {}
-                }
-            }
-        }
-    }
-
-    fn starts(&self) -> u16 {
-        self.board.last().starts
-    }
-
-    fn time_ms(&self) -> u32 {
-        self.board.last().time_ms
-    }
-
-    fn mode(&self) -> Mode {
-        self.latest.expect("a command").mode
-    }
-
-    fn torque_nm(&self) -> f32 {
-        self.latest.expect("a command").torque_nm
-    }
-}
-
-fn put(message: &Message<'_>, sequence: u16, to: &mut Vec<u8>) {
-    let mut room = [0; MAX_FRAME];
-    let used = message.encode(sequence, &mut room).expect("room");
-    to.extend(&room[..used]);
-}
 
 /// When the mishap happens \[ms\]: long after the switch was pressed and the assist has its authority.
 const AT_MS: u32 = 2500;
@@ -220,4 +71,38 @@ fn whatever_goes_wrong_ends_in_a_new_start_without_torque() {
         rig.ride(2000, true);
         assert_eq!((rig.mode(), rig.starts()), (Mode::Engaged, 2), "{mishap}: a fresh press engages");
     }
+}
+
+/// Longest that silence does not count while parameters are stored \[ms\].
+const EXCUSE_MS: u32 = 4000;
+
+/// Situation: the product at rest, its configuration in flash, all tasks run.
+/// Action: a parameter is changed and stored; the flash never takes it.
+/// Must hold: silence is excused for 4 s, and no longer: then a new start within 60 to 170 ms, and just one; the silent task
+/// is kept; what was stored before is in force.
+#[test]
+fn a_store_that_never_ends_is_not_excused_for_ever() {
+    if !image::ready() {
+        return;
+    }
+    let mut rig = Rig::start(&["mishap=flash-stuck", "at_ms=1000"]);
+    rig.ride(1500, false);
+    let key = Key { group: "limits", name: "max_torque_nm" };
+    rig.ask(&Message::Set { key, value: Some(5.0) });
+    rig.ride(40, false);
+    assert_eq!(rig.values, [Some(5.0)]);
+    rig.ask(&Message::Store);
+    let from = rig.time_ms();
+    while rig.starts() == 1 && rig.time_ms() < from + 2 * EXCUSE_MS {
+        rig.ride(1, false);
+    }
+    let took = rig.time_ms() - from;
+    assert!((EXCUSE_MS + 60..EXCUSE_MS + 170).contains(&took), "{took} ms");
+    rig.ask(&Message::Get { key });
+    rig.ask(&Message::ListFaults { from: 0 });
+    rig.ride(2000, false);
+    assert_eq!((rig.starts(), rig.done), (2, 1), "one new start, nothing stored but before");
+    assert_eq!(rig.values, [Some(5.0), Some(7.0)]);
+    let kept = &rig.kept[0];
+    assert_eq!((kept.kind, kept.boot, &*kept.text), (FaultKind::Watchdog, 1, "line"));
 }

@@ -2,7 +2,9 @@
 //! erased as the chip's, but takes no time.
 #![allow(unsafe_code)]
 
+use super::mishap;
 use crate::retained::USED;
+use core::future::pending;
 use core::ops::Range;
 use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
@@ -84,6 +86,9 @@ impl NorFlash for Flash {
     }
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Wrong> {
+        if mishap::flash_is_stuck() {
+            pending::<()>().await;
+        }
         let from = offset as usize;
         let places = self.span(from, from + bytes.len(), Self::WRITE_SIZE)?;
         // Programming only ever clears bits.

@@ -6,6 +6,7 @@
 //! | `control-spin`, `line-spin`, `report-spin` | the task never ends |
 //! | `panic`, `bus` | a panic; an access to memory that is not there |
 //! | `brown-out` | the supply's warning |
+//! | `flash-stuck` | what is written to the flash from then on never gets there |
 
 use super::semihosting::{argument, command_line};
 use crate::alive::Task;
@@ -18,7 +19,7 @@ static AT_MS: AtomicU32 = AtomicU32::new(u32::MAX);
 /// What, as a place in [`KINDS`].
 static KIND: AtomicU32 = AtomicU32::new(0);
 
-const KINDS: [&str; 9] = [
+const KINDS: [&str; 10] = [
     "control-mute",
     "line-mute",
     "report-mute",
@@ -28,10 +29,12 @@ const KINDS: [&str; 9] = [
     "panic",
     "bus",
     "brown-out",
+    "flash-stuck",
 ];
 const SPIN: usize = 3;
 const PANIC: usize = 6;
 const BUS: usize = 7;
+const FLASH: usize = 9;
 
 /// Reads the arguments; what happens besides the tasks' own, if any, is to be spawned as [`strike`]. `false`: there is no
 /// such mishap.
@@ -52,7 +55,7 @@ pub fn prepare() -> bool {
 #[embassy_executor::task]
 pub async fn strike() {
     let (kind, at_ms) = (KIND.load(Ordering::Relaxed) as usize, AT_MS.load(Ordering::Relaxed));
-    if kind < PANIC || at_ms == u32::MAX {
+    if kind < PANIC || kind == FLASH || at_ms == u32::MAX {
         return;
     }
     Timer::at(Instant::from_millis(at_ms.into())).await;
@@ -61,6 +64,12 @@ pub async fn strike() {
         BUS => super::end::touch_nothing(),
         _ => crash::brown_out(),
     }
+}
+
+/// Whether the flash takes nothing any more.
+pub(super) fn flash_is_stuck() -> bool {
+    KIND.load(Ordering::Relaxed) as usize == FLASH
+        && super::time::milliseconds() >= AT_MS.load(Ordering::Relaxed)
 }
 
 /// Whether this task's report gets lost. Spins for ever where that is the mishap.

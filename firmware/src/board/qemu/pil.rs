@@ -166,10 +166,7 @@ pub async fn exchange() {
             text::line(format_args!("the host handed over {length} bytes that are no chunk"));
             exit(Exit::Input)
         };
-        if !bytes.is_empty() {
-            // What finds no room is lost, as on any line.
-            let _ = line::IN.try_write(bytes);
-        }
+        line::came(bytes);
         let mut sensors_left = sensors;
         let mut all = || {
             while !sensors_left.is_empty() {

@@ -1,19 +1,8 @@
-//! Studies by name or from TOML files.
+//! A study as a TOML file says it.
 
 use crate::sweep::Axis;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::path::Path;
-
-/// Those that ship: names, and files in `data/studies/`.
-const SHIPPED: [(&str, &str); 6] = [
-    ("limits", include_str!("../../../../data/studies/limits.toml")),
-    ("imu", include_str!("../../../../data/studies/imu.toml")),
-    ("compensate", include_str!("../../../../data/studies/compensate.toml")),
-    ("tracking", include_str!("../../../../data/studies/tracking.toml")),
-    ("speed", include_str!("../../../../data/studies/speed.toml")),
-    ("end-stop", include_str!("../../../../data/studies/end-stop.toml")),
-];
 
 /// A question and the sweeps that answer it.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -64,32 +53,11 @@ pub struct Part {
 #[error("{0}")]
 pub struct StudyError(pub String);
 
-/// The shipped studies.
-pub fn shipped() -> impl Iterator<Item = Result<Study, StudyError>> {
-    SHIPPED.iter().map(|(name, text)| parse(name, text))
-}
-
-/// A study by `name`: a shipped one, or a `FILE`. Names win over files.
+/// The study `name` in the text of a TOML file.
 ///
 /// # Errors
-/// Names file and key.
-pub fn load(name: &str) -> Result<Study, StudyError> {
-    if let Some((name, text)) = SHIPPED.iter().find(|(n, _)| *n == name) {
-        return parse(name, text);
-    }
-    let path = Path::new(name);
-    if !path.exists() {
-        let known: Vec<&str> = SHIPPED.iter().map(|(name, _)| *name).collect();
-        let known = known.join(", ");
-        return Err(StudyError(format!("unknown study `{name}`: no such file; shipped are {known}")));
-    }
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| StudyError(format!("can't read study file {name}: {e}")))?;
-    let stem = path.file_stem().map_or(name.into(), |s| s.to_string_lossy().into_owned());
-    parse(&stem, &text)
-}
-
-fn parse(name: &str, text: &str) -> Result<Study, StudyError> {
+/// Names study, sweep and key.
+pub fn parse(name: &str, text: &str) -> Result<Study, StudyError> {
     let wrong = |what: &str| StudyError(format!("study {name}: {}", what.trim()));
     let mut study: Study = toml::from_str(text).map_err(|e| wrong(&e.to_string()))?;
     study.name = name.into();
@@ -133,13 +101,6 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn shipped_studies_are_right() {
-        for study in shipped() {
-            assert!(!study.unwrap().parts.is_empty());
-        }
-    }
 
     #[test]
     fn what_is_wrong_is_named() {

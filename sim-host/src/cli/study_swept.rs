@@ -1,45 +1,20 @@
-//! `sim-host sweep study` and `sim-host sweep studies`.
+//! `sim-host study` of sweeps that are written down.
 
 use super::basin::{SearchArgs, progress};
 use super::cells::{Resolved, resolve};
 use super::conditions::ConditionArgs;
-use super::outputs::{complain, print};
+use super::outputs::complain;
+use super::study::{Args, made, page_path, told};
 use super::sweep::{finish, to_do};
 use super::words::{Words, why};
 use super::{Ended, Failure, interrupt};
 use crate::report::output::Output;
 use crate::report::picture::{caption, svg_with_caption};
-use crate::sweep::study::{Part, Spent, Study, figures, load, page, shipped};
+use crate::study::swept::{self, Part, Spent, Study};
 use crate::sweep::{self, Folder, Grid, Progress, Shard};
 use clap::Parser;
-use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
-
-const EXAMPLES: &str = "\
-Examples:
-  sim-host sweep study limits --out limits
-  sim-host sweep study my-study.toml --pages my-docs";
-
-/// Options of `sweep study`.
-#[derive(clap::Args)]
-#[command(after_help = EXAMPLES)]
-pub(super) struct Args {
-    /// A shipped study (see `sweep studies`), or FILE
-    #[arg(value_name = "NAME|FILE")]
-    study: String,
-    /// Folder of the sweeps; one of the same study is gone on with
-    #[arg(long, default_value = "study", value_name = "DIR")]
-    out: PathBuf,
-    /// Folder of the page, studies/NAME.md, and its figures, img/studies/ [default: that of --out]
-    #[arg(long, value_name = "DIR")]
-    pages: Option<PathBuf>,
-    #[command(flatten)]
-    threads: super::basin::ThreadArgs,
-    /// No text or progress bar
-    #[arg(long, short)]
-    quiet: bool,
-}
 
 /// The options of a study's sweep.
 #[derive(Parser)]
@@ -51,25 +26,16 @@ struct PartArgs {
     conditions: Words<ConditionArgs>,
 }
 
-pub(super) fn list() -> Result<Ended, Failure> {
-    let mut text = String::new();
-    for study in shipped() {
-        let study = study?;
-        let _ = writeln!(text, "{:10} {}", study.name, study.title);
-    }
-    print(&text)?;
-    Ok(Ended::Done)
-}
-
-pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let study = load(&args.study)?;
+pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
     let named = |part: &Part, e: Failure| format!("study {}, sweep {}: {e}", study.name, part.name);
     let sweeps: Vec<Resolved> =
         study.parts.iter().map(|p| resolved(p).map_err(|e| named(p, e))).collect::<Result<_, _>>()?;
     let folder = |(part, sweep): (&Part, &Resolved)| Folder::open(&args.out.join(&part.name), &sweep.plan);
     let folders: Vec<Folder> = study.parts.iter().zip(&sweeps).map(folder).collect::<Result<_, _>>()?;
-    let pages = args.pages.as_deref().unwrap_or(&args.out);
-    let page = page_place(pages, &study)?;
+    made(args.pages(), "studies")?;
+    let figures = made(args.pages(), "img/studies")?;
+    let page = page_path(args, &study.name);
+    let place = Output::create(&page)?;
     interrupt::install();
     let pool = args.threads.pool()?;
     let (mut grids, mut afresh, begin) = (Vec::new(), true, Instant::now());
@@ -90,11 +56,10 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         grids.push(grid);
     }
     let seconds = afresh.then(|| begin.elapsed().as_secs_f64());
-    write(&study, &grids, Spent { seconds, threads: pool.current_num_threads() }, pages, &page)?;
-    if !args.quiet {
-        print(&format!("{}\n", page_name(pages, &study).display()))?;
-    }
-    Ok(Ended::Done)
+    let spent = Spent { seconds, threads: pool.current_num_threads() };
+    write_figures(study, &grids, &figures)?;
+    place.finish(swept::page(study, &grids, spent, "../img/studies").as_bytes())?;
+    told(args, &page)
 }
 
 fn resolved(part: &Part) -> Result<Resolved, Failure> {
@@ -103,27 +68,14 @@ fn resolved(part: &Part) -> Result<Resolved, Failure> {
     resolve(&part.axes()?, args.conditions.words(), |ridden| args.search.search(ridden))
 }
 
-fn page_name(pages: &Path, study: &Study) -> PathBuf {
-    pages.join("studies").join(format!("{}.md", study.name))
-}
-
-/// The page's place, tried before the work.
-fn page_place(pages: &Path, study: &Study) -> Result<Output, Failure> {
-    for folder in ["studies", "img/studies"] {
-        let folder = pages.join(folder);
-        std::fs::create_dir_all(&folder).map_err(|e| format!("can't make {}: {e}", folder.display()))?;
-    }
-    Ok(Output::create(&page_name(pages, study))?)
-}
-
-fn write(study: &Study, grids: &[Grid], spent: Spent, pages: &Path, place: &Output) -> Result<(), Failure> {
+fn write_figures(study: &Study, grids: &[Grid], folder: &Path) -> Result<(), Failure> {
     for (part, grid) in study.parts.iter().zip(grids) {
         // The page has the command; the full configuration is with the sweep.
         let about = caption(&serde_json::json!({"options": part.options, "over": part.over}));
-        for (name, picture) in figures(part, grid) {
-            let path = pages.join("img/studies").join(format!("{}-{name}.svg", study.name));
+        for (name, picture) in swept::figures(part, grid) {
+            let path = folder.join(format!("{}-{name}.svg", study.name));
             Output::create(&path)?.finish(svg_with_caption(&picture.svg(), &about).as_bytes())?;
         }
     }
-    Ok(place.finish(page(study, grids, spent, "../img/studies").as_bytes())?)
+    Ok(())
 }

@@ -31,7 +31,7 @@ pub fn page(study: &Study, grids: &[Grid], spent: Spent, figures: &str) -> Strin
     });
     let _ = writeln!(
         text,
-        "This page is what `sim-host sweep study {}` wrote ({commit}): {} rides, {:.1e} right-hand sides{time}.\n",
+        "This page is what `sim-host study {}` wrote ({commit}): {} rides, {:.1e} right-hand sides{time}.\n",
         study.name, work.rides, work.right_hand_sides as f64
     );
     for (part, grid) in study.parts.iter().zip(grids) {

@@ -1,0 +1,97 @@
+//! Studies by name or from TOML files.
+
+use super::swept::{self, StudyError, parse};
+use super::{balance_assist, prototype};
+use std::path::Path;
+
+/// The sweeps that ship: names, and files in `data/studies/`.
+const SWEPT: [(&str, &str); 6] = [
+    ("limits", include_str!("../../../data/studies/limits.toml")),
+    ("imu", include_str!("../../../data/studies/imu.toml")),
+    ("compensate", include_str!("../../../data/studies/compensate.toml")),
+    ("tracking", include_str!("../../../data/studies/tracking.toml")),
+    ("speed", include_str!("../../../data/studies/speed.toml")),
+    ("end-stop", include_str!("../../../data/studies/end-stop.toml")),
+];
+
+/// A study, by how it is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Study {
+    /// [`balance_assist`].
+    BalanceAssist,
+    /// [`prototype`].
+    Prototype,
+    /// By sweeps that are written down.
+    Swept(swept::Study),
+}
+
+impl Study {
+    /// Its name, which is that of its page.
+    pub fn name(&self) -> &str {
+        match self {
+            Study::BalanceAssist => balance_assist::NAME,
+            Study::Prototype => prototype::NAME,
+            Study::Swept(study) => &study.name,
+        }
+    }
+
+    /// Above its page.
+    pub fn title(&self) -> &str {
+        match self {
+            Study::BalanceAssist => balance_assist::TITLE,
+            Study::Prototype => prototype::TITLE,
+            Study::Swept(study) => &study.title,
+        }
+    }
+
+    /// What is asked.
+    pub fn question(&self) -> &str {
+        match self {
+            Study::BalanceAssist => balance_assist::QUESTION,
+            Study::Prototype => prototype::QUESTION,
+            Study::Swept(study) => study.question.trim(),
+        }
+    }
+}
+
+/// The shipped studies.
+///
+/// # Errors
+/// When the file of one is wrong.
+pub fn shipped() -> Result<Vec<Study>, StudyError> {
+    let swept = SWEPT.iter().map(|(name, text)| parse(name, text).map(Study::Swept));
+    [Study::BalanceAssist, Study::Prototype].into_iter().map(Ok).chain(swept).collect()
+}
+
+/// A study by `name`: a shipped one, or a `FILE`. Names win over files.
+///
+/// # Errors
+/// Names file and key.
+pub fn load(name: &str) -> Result<Study, StudyError> {
+    let mut shipped = shipped()?;
+    if let Some(at) = shipped.iter().position(|study| study.name() == name) {
+        return Ok(shipped.swap_remove(at));
+    }
+    let path = Path::new(name);
+    if !path.exists() {
+        let known: Vec<&str> = shipped.iter().map(Study::name).collect();
+        let known = known.join(", ");
+        return Err(StudyError(format!("unknown study `{name}`: no such file; shipped are {known}")));
+    }
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| StudyError(format!("can't read study file {name}: {e}")))?;
+    let stem = path.file_stem().map_or(name.into(), |s| s.to_string_lossy().into_owned());
+    parse(&stem, &text).map(Study::Swept)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shipped_studies_are_right() {
+        for study in shipped().unwrap() {
+            assert!(!study.question().is_empty() && load(study.name()).unwrap() == study);
+        }
+    }
+}
