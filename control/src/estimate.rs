@@ -11,7 +11,7 @@ mod steer;
 
 pub use config::{EstimateConfig, Place, SOURCES, Source};
 
-use crate::maths::{at_least, at_most, bounded, per_root, sin_cos};
+use crate::maths::{at_least, at_most, bounded, per_root, sin_cos, sin_cos_within};
 use roll::{G, Roll};
 use steer::Steer;
 
@@ -141,7 +141,7 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
         state.bias = [by + gain * wy, bz + gain * wz].map(|b| bounded(b, c.bias_max_rad_s));
     }
 
-    let (sin_roll, cos_roll) = sin_cos(run.roll.angle_rad);
+    let (sin_roll, cos_roll) = sin_cos_within(run.roll.angle_rad);
     // As if roll were nearer to upright than 72 degrees: the division must not blow up.
     let yaw_rate = (wz * cos_pitch - wx * sin_pitch) / at_least(0.3, cos_roll);
     // What the rear wheel's contact moves with: its rate seen from the ground.

@@ -12,7 +12,12 @@ pub const SIN_COS_ERROR: f32 = 2e-7;
 /// Sine and cosine of an angle \[rad\]; one beyond a quarter turn counts as a quarter turn, NaN as 0.
 #[inline]
 pub fn sin_cos(angle_rad: f32) -> (f32, f32) {
-    let x = bounded(angle_rad, QUARTER);
+    sin_cos_within(bounded(angle_rad, QUARTER))
+}
+
+/// The same of an angle that is within a quarter turn.
+#[inline]
+pub fn sin_cos_within(x: f32) -> (f32, f32) {
     let q = x * x;
     let odd = -0.166_666_66 + q * (0.008_333_242 + q * (-0.000_198_227_4 + q * 2.634_756e-6));
     let even = 0.041_666_66 + q * (-0.001_388_865_2 + q * (2.477_458e-5 + q * -2.629_751e-7));
