@@ -33,10 +33,12 @@ there already stays as it is. Fails with a list of what could not be had and how
 ";
 
 const TEST_HELP: &str = "\
-cargo xtask test [--target-source auto|rustup|debian] [-- ARGUMENTS OF cargo test]
+cargo xtask test [--target-source auto|rustup|debian] [--mutants N] [-- ARGUMENTS OF cargo test]
 
 Runs the set-up, builds the firmware images, then `cargo test` with the tests in QEMU required: a
 missing QEMU or target is a failure, not a skip.
+
+  --mutants N  then `cargo xtask mutants --sample N`
 ";
 
 const FIRMWARE_HELP: &str = "\
@@ -127,7 +129,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     match (*command, rest) {
-        ("setup", _) => setup(target_source(rest)?)?,
+        ("setup", _) => setup(target_source(rest, help)?)?,
         ("test", _) => test(rest)?,
         ("firmware", []) => build_all()?,
         ("qemu", [image, arguments @ ..]) => return run(image, arguments),
@@ -140,32 +142,34 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn target_source(words: &[&str]) -> Result<TargetSource> {
+fn target_source(words: &[&str], help: &str) -> Result<TargetSource> {
     match words {
         [] | ["--target-source", "auto"] => Ok(TargetSource::Auto),
         ["--target-source", "rustup"] => Ok(TargetSource::Rustup),
         ["--target-source", "debian"] => Ok(TargetSource::Debian),
-        other => Err(format!("wrong arguments {other:?}\n\n{SETUP_HELP}")),
+        other => Err(format!("wrong arguments {other:?}\n\n{help}")),
     }
 }
 
 fn test(words: &[&str]) -> Result<()> {
     let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
-    setup(target_source(&words[..split])?)?;
+    let (source, sample) = match words[..split] {
+        [ref source @ .., "--mutants", count] => (source, Some(mutants::sample(count)?)),
+        ref source => (source, None),
+    };
+    setup(target_source(source, TEST_HELP)?)?;
     build_all()?;
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     cargo.current_dir(image::root()).arg("test").args(words.get(split + 1..).unwrap_or_default());
-    process::must(cargo.env("STEER_ASSIST_REQUIRE_QEMU", "1"), Duration::from_secs(4800))
+    process::must(cargo.env("STEER_ASSIST_REQUIRE_QEMU", "1"), Duration::from_secs(4800))?;
+    sample.map_or(Ok(()), |sample| mutants::mutants(Some(sample), &[]))
 }
 
 fn mutants(words: &[&str]) -> Result<()> {
     let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
     let sample = match words[..split] {
         [] => None,
-        ["--sample", count] => match count.parse() {
-            Ok(count @ 1..) => Some(count),
-            _ => return Err(format!("--sample {count}: a count from 1 on is wanted")),
-        },
+        ["--sample", count] => Some(mutants::sample(count)?),
         _ => return Err(format!("wrong arguments\n\n{MUTANTS_HELP}")),
     };
     mutants::mutants(sample, words.get(split + 1..).unwrap_or_default())

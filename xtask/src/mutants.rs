@@ -8,6 +8,15 @@ use std::time::Duration;
 
 const MISSING: &str = "cargo-mutants is missing: cargo install cargo-mutants --locked";
 
+/// A number of mutants as typed.
+///
+/// # Errors
+/// It is no count from 1 on.
+pub fn sample(count: &str) -> Result<usize> {
+    let typed = count.parse().ok().filter(|count| *count > 0);
+    typed.ok_or_else(|| format!("{count:?} mutants: a count from 1 on is wanted"))
+}
+
 /// Tests every mutant, or at most `sample` of them, evenly picked; `arguments` go to cargo-mutants.
 /// What it found is kept in target/mutants.out.
 ///
