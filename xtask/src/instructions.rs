@@ -7,13 +7,15 @@ use std::time::Duration;
 
 /// The most instructions a step may take, of the 168,000 clock cycles of a period.
 pub const BUDGET: u32 = 3000;
-/// The most stack a step may take \[bytes\].
+/// The most that a call of the motor's loop may take: half of the clock cycles of a PWM period at 40 kHz, the fastest.
+pub const MOTOR_BUDGET: u32 = 2100;
+/// The most stack a step or call may take \[bytes\].
 pub const STACK_BUDGET: u32 = 1024;
 
 /// How many periods sensors hold their samples in the rides with slow ones; the gyro is lost after ten.
 const HELD: [u16; 3] = [2, 5, 8];
 
-/// The steps of one configuration over the border ride, or over the rides with every sensor.
+/// The steps of one configuration over the border ride, or over the rides with every sensor; or the calls of the motor's loop.
 #[derive(Clone, Copy, Debug)]
 pub struct Count {
     /// The configuration's name, and what is ridden.
@@ -22,9 +24,14 @@ pub struct Count {
     pub mean: u32,
     /// Largest number of instructions of a step.
     pub max: u32,
+    /// The most there may be.
+    pub budget: u32,
     /// The deepest the stack went \[bytes\].
     pub stack: u32,
 }
+
+/// What the image counts after the rides: a motor that turns, and one that breaks in one way after the other.
+const MOTOR: [&str; 2] = ["motor's loop, turning", "motor's loop, broken in turn"];
 
 /// Counts for every configuration. The images must be built.
 ///
@@ -71,19 +78,17 @@ pub fn counts() -> Result<Vec<Count>> {
     let directory = qemu::directory("instructions")?;
     std::fs::write(directory.join("rides.bin"), rides::encode(&files)).map_err(|e| e.to_string())?;
     let outcome = qemu::run("qemu-instructions", &[], &directory, qemu::COUNTED, Duration::from_secs(300))?;
-    let lines = outcome.stdout.lines().filter(|line| line.starts_with("steps="));
+    let names = rides.iter().map(|(name, ..)| (*name, BUDGET));
+    let names = names.chain(MOTOR.map(|name| (name, MOTOR_BUDGET)));
+    let lines = outcome.stdout.lines().filter(|line| field::<u32>(line, "steps").is_some());
     let counts: Vec<Count> = lines
-        .zip(&rides)
-        .filter_map(|(line, (name, ..))| {
-            Some(Count {
-                name,
-                mean: field(line, "mean")?,
-                max: field(line, "max")?,
-                stack: field(line, "stack")?,
-            })
+        .zip(names)
+        .filter_map(|(line, (name, budget))| {
+            let [mean, max, stack] = ["mean", "max", "stack"].map(|key| field(line, key));
+            Some(Count { name, mean: mean?, max: max?, budget, stack: stack? })
         })
         .collect();
-    if outcome.status == Some(0) && counts.len() == rides.len() {
+    if outcome.status == Some(0) && counts.len() == rides.len() + MOTOR.len() {
         Ok(joined(counts))
     } else {
         Err(format!("qemu-instructions: {outcome:?}"))

@@ -1,4 +1,5 @@
-//! Counts the instructions of every control step over the rides of `rides.bin`, and the stack they take.
+//! Counts the instructions of every control step over the rides of `rides.bin`, then of every call of the motor's loop,
+//! and the stack they take.
 //!
 //! Under `-icount shift=10` an instruction lasts 1.024 us, 172 counts of SysTick, so that a
 //! difference of counts is a whole number of instructions. Instructions are not cycles: there are
@@ -8,6 +9,7 @@
 
 use control::wire::{FRAME_BYTES, decode_frame};
 use control::{Command, Plan, SensorFrame, State, step};
+use core::fmt::{self, Display, Formatter};
 use core::hint::black_box;
 use core::sync::atomic::{Ordering, compiler_fence};
 use cortex_m::Peripherals;
@@ -16,9 +18,12 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_semihosting::hprintln;
 use firmware::board::Exit;
 use firmware::board::recording::{BLOCK, Recording};
+use firmware::board::rotor::Rotor;
 use firmware::board::semihosting::exit;
 use firmware::board::stack;
 use firmware::failure;
+use motor::example::EXAMPLE;
+use motor::{Ask, Fault, Inputs, Mode, Output};
 use static_cell::ConstStaticCell;
 
 static FRAMES: ConstStaticCell<[[u8; FRAME_BYTES]; BLOCK]> = ConstStaticCell::new([[0; FRAME_BYTES]; BLOCK]);
@@ -60,7 +65,7 @@ fn main() -> ! {
     let mut recording = Recording::open();
     while let Some(mut ride) = recording.next_ride() {
         let (mut state, mut command) = (State::default(), None);
-        let (mut steps, mut sum, mut max, mut deep) = (0_u32, 0_u64, 0_u32, 0_u32);
+        let mut tally = Tally::default();
         loop {
             let frames = recording.next_block(&mut ride, block);
             if frames.is_empty() {
@@ -73,12 +78,130 @@ fn main() -> ! {
                 let around = instructions(|| nothing(plan, &mut state, frame, &mut command));
                 let whole = instructions(|| measured(plan, &mut state, frame, &mut command));
                 black_box(&command);
-                let step = whole.saturating_sub(around);
-                (steps, sum, max) = (steps + 1, sum + u64::from(step), max.max(step));
+                tally.count(whole.saturating_sub(around));
             }
-            deep = deep.max(stack::depth(top));
+            tally.deep = tally.deep.max(stack::depth(top));
         }
-        hprintln!("steps={} mean={} max={} stack={}", steps, sum / u64::from(steps.max(1)), max, deep);
+        hprintln!("{}", tally);
     }
+    let plan = EXAMPLE_ALIGNED.plan().expect("the example is a valid one");
+    let mut turning = Tally::default();
+    for (torque_nm, turns_s) in TURNS {
+        let mut motor = Motor::new(&plan, turns_s);
+        motor.run(&mut turning, TURNING, torque_nm, |_| ());
+        assert!(
+            motor.output.mode == Mode::Running,
+            "{} mN m: {:?}",
+            (1e3 * torque_nm) as i32,
+            motor.output.faults
+        );
+    }
+    hprintln!("motor {}", turning);
+    let mut broken = Tally::default();
+    for (fault, change) in FAULTS {
+        let mut motor = Motor::new(&plan, 10.0);
+        motor.run(&mut broken, BROKEN, 5.0, |_| ());
+        motor.run(&mut broken, BROKEN, 5.0, change);
+        assert!(motor.output.faults.has(fault), "{:?} but {:?}", fault, motor.output.faults);
+    }
+    hprintln!("motor {}", broken);
     exit(Exit::Success)
+}
+
+/// What was counted.
+#[derive(Default)]
+struct Tally {
+    steps: u32,
+    sum: u64,
+    max: u32,
+    /// The deepest the stack went \[bytes\].
+    deep: u32,
+}
+
+impl Tally {
+    fn count(&mut self, instructions: u32) {
+        (self.steps, self.sum) = (self.steps + 1, self.sum + u64::from(instructions));
+        self.max = self.max.max(instructions);
+    }
+}
+
+impl Display for Tally {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { steps, sum, max, deep } = *self;
+        write!(f, "steps={} mean={} max={} stack={}", steps, sum / u64::from(steps.max(1)), max, deep)
+    }
+}
+
+/// The example's motor on a bench that knows where its encoder stands.
+const EXAMPLE_ALIGNED: motor::Config = motor::Config {
+    encoder: motor::encoder::EncoderConfig { offset_turns: Some(0.0), ..EXAMPLE.encoder },
+    ..EXAMPLE
+};
+
+/// Torques \[N m\] asked for while the motor turns so many times a second: the handlebar at up to 14.5 rad/s, the last more
+/// than the bus can give.
+const TURNS: [(f32, f32); 6] = [(0.0, 0.0), (5.0, 0.1), (3.0, -10.0), (-7.0, 20.0), (2.0, 46.0), (7.0, 83.0)];
+/// Calls of each, and before and after something breaks.
+const TURNING: u32 = 4000;
+const BROKEN: u32 = 400;
+
+/// What breaks, and how the loop calls it.
+const FAULTS: [(Fault, fn(&mut Inputs)); 9] = [
+    (Fault::CurrentSensor, |i| i.phases = motor::Phases::Three([f32::NAN; 3])),
+    (Fault::OverCurrent, |i| i.phases = motor::Phases::Three([20.0, -10.0, -10.0])),
+    (Fault::CurrentAstray, |i| i.phases = motor::Phases::Three([0.1, 0.1, -0.2])),
+    (Fault::CurrentSum, |i| i.phases = motor::Phases::Three([4.0, 4.0, 4.0])),
+    (Fault::BusLow, |i| i.bus_v = 10.0),
+    (Fault::Hot, |i| i.temperature_c = 110.0),
+    (Fault::EncoderLost, |i| i.angle_age_ticks = u16::MAX),
+    (Fault::EncoderRange, |i| i.angle_counts = u16::MAX),
+    (Fault::Command, |i| i.ask = Ask::Torque(f32::NAN)),
+];
+
+/// The loop and its motor.
+struct Motor<'a> {
+    plan: &'a motor::Plan,
+    state: motor::State,
+    rotor: Rotor,
+    output: Output,
+}
+
+impl<'a> Motor<'a> {
+    /// Ready, the zeros of its current sensors taken.
+    fn new(plan: &'a motor::Plan, turns_s: f32) -> Self {
+        let rotor = Rotor::new(plan, turns_s);
+        let mut motor = Self { plan, state: motor::State::default(), rotor, output: Output::default() };
+        for _ in 0..=EXAMPLE.zero.samples {
+            motor.output = motor::step(plan, &mut motor.state, &motor.rotor.inputs(plan, Ask::Off));
+            motor.rotor.advance(plan, &motor.output);
+        }
+        motor
+    }
+
+    /// So many calls, each with its inputs changed.
+    fn run(&mut self, tally: &mut Tally, calls: u32, torque_nm: f32, change: fn(&mut Inputs)) {
+        let top = stack::paint();
+        for _ in 0..calls {
+            let mut inputs = self.rotor.inputs(self.plan, Ask::Torque(torque_nm));
+            change(&mut inputs);
+            let (plan, inputs) = (black_box(self.plan), black_box(&inputs));
+            let around = instructions(|| no_call(plan, &mut self.state, inputs, &mut self.output));
+            let whole = instructions(|| called(plan, &mut self.state, inputs, &mut self.output));
+            black_box(&self.output);
+            tally.count(whole.saturating_sub(around));
+            self.rotor.advance(plan, &self.output);
+        }
+        tally.deep = tally.deep.max(stack::depth(top));
+    }
+}
+
+/// The call as the motor's interrupt makes it.
+#[inline(never)]
+fn called(plan: &motor::Plan, state: &mut motor::State, inputs: &Inputs, output: &mut Output) {
+    *output = motor::step(plan, state, inputs);
+}
+
+#[inline(never)]
+fn no_call(_: &motor::Plan, _: &mut motor::State, _: &Inputs, output: &mut Output) {
+    black_box(output);
 }

@@ -23,7 +23,7 @@ fn images_keep_their_budgets_and_the_document_is_true() {
 /// Must hold: the rows are named; the right document has none.
 #[test]
 fn a_stale_document_is_noticed() {
-    let count = |name, max| instructions::Count { name, mean: 100, max, stack: 500 };
+    let count = |name, max| instructions::Count { name, mean: 100, max, budget: 200, stack: 500 };
     let right = text(&[], &[count("h", 150), count("f", 80)]);
     assert_eq!(stale(&right, &right), [""; 0]);
     assert_eq!(stale(&text(&[], &[count("h", 165), count("f", 81)]), &right).len(), 1);

@@ -9,6 +9,7 @@ pub mod mishap;
 pub mod pil;
 pub mod recording;
 mod reset;
+pub mod rotor;
 pub mod semihosting;
 mod sensors;
 pub mod stack;

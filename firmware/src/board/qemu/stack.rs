@@ -4,7 +4,7 @@
 use core::hint::black_box;
 
 const PAINT: u32 = 0xa5c3_96e7;
-/// Words that are painted: 4 KiB of the stack's 12.
+/// Words that are painted: 4 KiB of the stack's 32.
 const WORDS: usize = 1024;
 /// Left out below the caller, for the frame of [`paint`] itself \[bytes\].
 const GAP: usize = 64;
@@ -16,7 +16,7 @@ pub fn paint() -> usize {
     let top = (&raw const *black_box(&here)) as usize & !3;
     for word in 0..WORDS {
         // SAFETY: below the frame of this function nothing is alive, interrupts use no stack of their own before
-        // they happen, and the stack is three times as deep.
+        // they happen, and the stack is eight times as deep.
         unsafe { ((top - GAP - 4 * word) as *mut u32).write_volatile(PAINT) }
     }
     top
