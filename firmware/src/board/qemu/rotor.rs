@@ -27,10 +27,11 @@ impl Rotor {
 
     /// What is measured now, while this is asked for.
     pub fn inputs(&self, plan: &Plan, ask: Ask) -> Inputs {
+        let counts = u32::from(plan.config().encoder.counts);
         Inputs {
             phases: Phases::Three(phases(self.current)),
             bus_v: BUS_V,
-            angle_counts: ((self.angle.0 >> 16) * u32::from(plan.config().encoder.counts) >> 16) as u16,
+            angle_counts: (((self.angle.0 >> 16) * counts) >> 16) as u16,
             angle_age_ticks: 0,
             temperature_c: 25.0,
             ask,
