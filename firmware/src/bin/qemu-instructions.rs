@@ -145,8 +145,11 @@ const TURNS: [(f32, f32); 6] = [(0.0, 0.0), (5.0, 0.1), (3.0, -10.0), (-7.0, 20.
 const TURNING: u32 = 4000;
 const BROKEN: u32 = 400;
 
+/// Changes what is measured.
+type Change = fn(&mut Inputs);
+
 /// What breaks, and how the loop calls it.
-const FAULTS: [(Fault, fn(&mut Inputs)); 9] = [
+const FAULTS: [(Fault, Change); 9] = [
     (Fault::CurrentSensor, |i| i.phases = motor::Phases::Three([f32::NAN; 3])),
     (Fault::OverCurrent, |i| i.phases = motor::Phases::Three([20.0, -10.0, -10.0])),
     (Fault::CurrentAstray, |i| i.phases = motor::Phases::Three([0.1, 0.1, -0.2])),
@@ -179,7 +182,7 @@ impl<'a> Motor<'a> {
     }
 
     /// So many calls, each with its inputs changed.
-    fn run(&mut self, tally: &mut Tally, calls: u32, torque_nm: f32, change: fn(&mut Inputs)) {
+    fn run(&mut self, tally: &mut Tally, calls: u32, torque_nm: f32, change: Change) {
         let top = stack::paint();
         for _ in 0..calls {
             let mut inputs = self.rotor.inputs(self.plan, Ask::Torque(torque_nm));
