@@ -51,6 +51,8 @@ pub(super) fn start(receive: Pin, transmit: Pin) {
         w.set_ts(1, timing.segment_2 - 1);
         w.set_sjw(timing.jump - 1);
     });
+    // Without a filter that is active, what others send is acknowledged and dropped.
+    CAN1.fmr().modify(|w| w.set_finit(false));
     CAN1.mcr().modify(|w| w.set_inrq(false));
     defmt::info!("can: bus quiet={=bool}", within_patience(|| !CAN1.msr().read().inak()));
 }
