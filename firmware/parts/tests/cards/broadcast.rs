@@ -73,6 +73,35 @@ fn bytes_are_as_documented() {
     assert_eq!(causes.frame(), Frame { identifier: 0x322, bytes });
 }
 
+/// Situation: the page that describes the frames. Must hold: identifiers, units, ranges and times there are the program's.
+#[test]
+fn the_page_has_the_programs_numbers() {
+    let page = include_str!("../../../../docs/link.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let range = |unit: f32| 32_767.0 * f64::from((unit * 1e4).round()) / 1e4;
+    // The longest frame of eight bytes, with the bits that are stuffed in and the pause after it.
+    let ms = 3.0 * 1e3 * 135.0 / f64::from(BIT_HZ);
+    for words in [
+        format!("{} kbit/s", BIT_HZ / 1000),
+        format!(
+            "every {PERIOD_MS} ms (at most {ms:.2} ms of the bus, {:.0} %)",
+            100.0 * ms / PERIOD_MS as f64
+        ),
+        format!("rises by {PERIOD_MS} or"),
+        format!("| {STATE:#x} state | 0 |"),
+        format!("| {MOTION:#x} motion | 0..2 |"),
+        format!("| {CAUSES:#x} causes | 0..8 |"),
+        format!("| 4 | authority, u8 | {AUTHORITY} |"),
+        format!("wheel, i16 | {SPEED_M_S} m/s | -{0} to {0}, forward + |", range(SPEED_M_S)),
+        format!("gyro, i16 | {ROLL_RATE_RAD_S} rad/s | -{0} to {0}, right + |", range(ROLL_RATE_RAD_S)),
+        format!("steer angle, i16 | {STEER_RAD} rad | -{0} to {0}, right + |", range(STEER_RAD)),
+        format!("commanded, i16 | {TORQUE_NM} N m | -{0} to {0}, right + |", range(TORQUE_NM)),
+        format!("motor, i16 | {TORQUE_NM} N m | -{0} to {0}, right + |", range(TORQUE_NM)),
+        format!("no sample for {STALE_TICKS} ms"),
+    ] {
+        assert!(page.contains(&words), "docs/link.md does not say {words:?}");
+    }
+}
+
 /// Situation: a calibration that turns everything round and moves the steer's zero, fresh samples and stale ones, a motor
 /// that says nothing. Must hold: what is told is the bicycle's; what is stale or missing is not known.
 #[test]
