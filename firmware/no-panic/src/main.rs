@@ -14,7 +14,8 @@ use control::pulses::{self, Pulses, PulsesConfig, PulsesState};
 use control::shape::{self, Asked, ShapePlan, ShapeState};
 use control::track::{self, Seen, Track, TrackState};
 use control::{
-    ActiveLimits, CAUSES, Causes, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State, wire,
+    ActiveLimits, CAUSES, Causes, Command, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State,
+    wire,
 };
 use core::hint::black_box;
 use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
@@ -23,6 +24,9 @@ use link::page::PAGE_BYTES;
 use link::report::config_hash;
 use link::ring::{self, RING_BYTES};
 use link::{Decoder, Sender, parameters};
+use parts::bit_timing::bit_timing;
+use parts::broadcast::{Frame, Message as CanMessage, Motion};
+use parts::mailbox::{Counts, Mailbox};
 use parts::order::{self, Deadline};
 use parts::vesc6::{BOARD_HEAT, GATE_DRIVER, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
 use parts::wheel::{self, WheelState};
@@ -150,6 +154,23 @@ fn board() {
         (black_box(parts::switch::Switch::default()), black_box(WheelState::default()));
     used(switch.step(black_box(true), counts));
     used(wheel::step(&black_box(PulsesConfig::default()), &mut wheel, black_box(None), black_box(1)));
+    can();
+}
+
+/// Frames on CAN, with anything in them, and the bits they are made of.
+fn can() {
+    let timing = bit_timing(black_box(0), black_box(0));
+    used(timing.map(|timing| timing.sample_point()));
+    let frame = black_box(Frame { identifier: 0, bytes: [0; 8] });
+    used(CanMessage::of(&frame).map(|message| message.frame()));
+    let sensors = wire::decode_frame(&black_box([0; wire::FRAME_BYTES]));
+    let calibration = black_box(Config::product()).calibration.plan();
+    let (torque_nm, gain_nm_s_rad) = black_box((0.0, 0.0));
+    let (limits, mode, causes) = black_box((ActiveLimits::default(), Mode::Off, Causes::NONE));
+    let command = Command { torque_nm, gain_nm_s_rad, limits, mode, causes };
+    used(CanMessage::Motion(Motion::of(&calibration, &sensors, &command)).frame());
+    let mailbox = black_box(Mailbox { empty: true, completed: true, acknowledged: true });
+    used(black_box(Counts::default()).step(mailbox));
 }
 
 /// The engineer's line: any bytes in, whatever they ask for, and all that goes out; the kept faults; the loop's chunks.

@@ -57,6 +57,9 @@ pub const SWITCH_COUNTS: u16 = 1365;
 /// Control periods for which the switch must seem otherwise.
 pub const SWITCH_TICKS: u16 = 10;
 
+/// The CAN controller's clock: APB1, a quarter of the core's \[Hz\].
+pub const CAN_CLOCK_HZ: u32 = 42_000_000;
+
 /// Both wheels: 16 magnets on 0.35 m.
 pub fn wheel() -> PulsesConfig {
     PulsesConfig::default()

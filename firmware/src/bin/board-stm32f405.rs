@@ -33,6 +33,7 @@ fn main() -> ! {
         |thread| {
             thread.spawn(defmt::unwrap!(tasks::line(firmware::image!(), kept).ok()));
             thread.spawn(defmt::unwrap!(tasks::report().ok()));
+            thread.spawn(defmt::unwrap!(board::broadcast().ok()));
             thread.spawn(defmt::unwrap!(tasks::supervise(&[Task::Control, Task::Line, Task::Report]).ok()));
         },
     )

@@ -1,9 +1,12 @@
 //! Flight cards of the parts around the chip.
 
 mod analog;
+mod bit_timing;
+mod broadcast;
 mod drv8301;
 mod encoder;
 mod imu;
+mod mailbox;
 mod order;
 mod switch;
 mod vesc6;

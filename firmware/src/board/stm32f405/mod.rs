@@ -4,6 +4,7 @@
 
 mod adc;
 mod brown_out;
+mod can;
 mod clock;
 mod critical;
 mod flash;
@@ -22,6 +23,7 @@ mod soft_spi;
 mod watchdog;
 mod wheels;
 
+pub use can::broadcast;
 pub use flash::{Flash, flash};
 pub use reset::{end, reset_cause};
 pub use sensors::sense;
@@ -102,6 +104,7 @@ fn start_parts(peripherals: embassy_stm32::Peripherals) {
     sensors::start(SENSORS.init(Sensors::new(imu, edges)));
     lamps::start(pins.green, pins.red);
     line::start(pins.link);
+    can::start(pins.can_receive, pins.can_transmit);
     flash::start(pins.flash);
     watchdog::standstill(false);
 }

@@ -43,6 +43,8 @@ pub(super) struct Pins {
     pub(super) front_wheel: Pin,
     pub(super) rear_wheel: Pin,
     pub(super) link: Link,
+    pub(super) can_receive: Pin,
+    pub(super) can_transmit: Pin,
     pub(super) green: Pin,
     pub(super) red: Pin,
     /// No pin, but on its way with them.
@@ -90,6 +92,8 @@ impl Pins {
             front_wheel: p.PB6.into(),
             rear_wheel: p.PA7.into(),
             link: Link { uart: p.USART3, tx: p.PB10, rx: p.PB11 },
+            can_receive: p.PB8.into(),
+            can_transmit: p.PB9.into(),
             green: p.PB0.into(),
             red: p.PB1.into(),
             flash: p.FLASH,
@@ -103,8 +107,8 @@ pub(super) fn fixed(pin: Pin, level: Level) {
     core::mem::forget(Output::new(pin, level, Speed::Low));
 }
 
-/// Gives a pin to a timer for good, as its alternate function of this number.
-pub(super) fn timer(pin: Pin, function: u8, kind: AfType) {
+/// Gives a pin to a timer or CAN for good, as its alternate function of this number.
+pub(super) fn alternate(pin: Pin, function: u8, kind: AfType) {
     let mut pin = Flex::new(pin);
     pin.set_as_af_unchecked(function, kind);
     core::mem::forget(pin);

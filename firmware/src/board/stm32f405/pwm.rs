@@ -8,7 +8,7 @@
 //! The break opens all six switches without the program when the crystal fails. The gate driver's fault is not wired to
 //! it on this board (TIM1's break inputs, PA6 and PB12, have other uses); the driver opens the switches itself.
 
-use super::pins::{Pin, timer};
+use super::pins::{Pin, alternate};
 use embassy_stm32::gpio::{AfType, OutputType, Speed};
 use embassy_stm32::pac::TIM1;
 use embassy_stm32::pac::timer::vals::{Bkp, Cms, Dir, Mms, Ocm, Ossi, Ossr};
@@ -63,7 +63,7 @@ pub(super) fn start(bridge: [Pin; 6]) -> bool {
         }
     });
     for pin in bridge {
-        timer(pin, FUNCTION, AfType::output(OutputType::PushPull, Speed::High));
+        alternate(pin, FUNCTION, AfType::output(OutputType::PushPull, Speed::High));
     }
     // From now on every second end of a ramp takes over. The counter of ends is still 0 here, so the first one does, at the
     // top, and with it every other at the top.

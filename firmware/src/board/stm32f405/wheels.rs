@@ -1,6 +1,6 @@
 //! The wheels' pulses: two timers that note the time of an edge; nobody is interrupted.
 
-use super::pins::{Pin, timer};
+use super::pins::{Pin, alternate};
 use embassy_stm32::gpio::{AfType, Pull};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::pac::timer::vals::{CcmrInputCcs, Ckd, FilterValue};
@@ -20,7 +20,7 @@ pub(super) fn start(front: Pin, rear: Pin) -> [Edges; 2] {
     rcc::enable_and_reset::<peripherals::TIM4>();
     rcc::enable_and_reset::<peripherals::TIM3>();
     [(front, TIM4, 0), (rear, TIM3, 1)].map(|(pin, tim, channel)| {
-        timer(pin, FUNCTION, AfType::input(Pull::Up));
+        alternate(pin, FUNCTION, AfType::input(Pull::Up));
         tim.psc().write_value(TO_1_MHZ);
         tim.cr1().modify(|w| w.set_ckd(Ckd::DIV4));
         tim.ccmr_input(0).modify(|w| {
