@@ -20,8 +20,8 @@ pub(super) struct PortArgs {
     #[arg(long, value_name = "DEVICE")]
     port: Option<String>,
     /// The board's image in QEMU, on a bicycle that rolls upright at 4 m/s [default IMAGE: where `cargo xtask firmware` builds it]
-    #[arg(long, value_name = "IMAGE", num_args = 0..=1, default_missing_value = "")]
-    qemu: Option<PathBuf>,
+    #[arg(long, value_name = "IMAGE", require_equals = true)]
+    qemu: Option<Option<PathBuf>>,
     /// Baud rate of the serial port; means nothing over USB
     #[arg(long, default_value_t = 115_200, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(300..=4_000_000))]
     baud: u32,
@@ -32,10 +32,9 @@ impl PortArgs {
     pub(super) fn open(&self) -> Result<Option<Box<dyn Line>>, Failure> {
         match (&self.port, &self.qemu) {
             (Some(port), _) => Ok(Some(Box::new(Serial::open(port, self.baud)?))),
-            (None, Some(image)) if image.as_os_str().is_empty() => {
-                Ok(Some(Box::new(Rolling::start(&default_image())?)))
+            (None, Some(image)) => {
+                Ok(Some(Box::new(Rolling::start(image.as_ref().unwrap_or(&default_image()))?)))
             }
-            (None, Some(image)) => Ok(Some(Box::new(Rolling::start(image)?))),
             (None, None) => Ok(None),
         }
     }

@@ -58,8 +58,8 @@ fn an_image_answers_as_a_board() {
 }
 
 /// Situation: the same image, by the program.
-/// Action: get a parameter, list faults, monitor.
-/// Must hold: they succeed and say what the board is; an image that is not there is named.
+/// Action: get a parameter, list faults, monitor, by the image's name and without.
+/// Must hold: they succeed and say what the board is; what stands behind is no image; an image that is not there is named.
 #[test]
 fn the_program_takes_an_image_for_a_board() {
     if !image::ready() {
@@ -68,18 +68,19 @@ fn the_program_takes_an_image_for_a_board() {
     let bench = Bench::new(env!("CARGO_BIN_EXE_sim-host-under-test"));
     let image = image::path("qemu-pil").display().to_string();
     let run = |line: &str| {
-        let run = bench.run(&format!("{line} --qemu {image}"));
+        let run = bench.run(line);
         assert_eq!(run.code, Some(0), "{line}: {run:?}");
         run.stdout
     };
-    assert!(run("param get rate_hz").contains("1000 Hz"));
-    assert_eq!(run("faults"), "no faults\n");
-    let watched = run("monitor --for 1s");
+    assert!(run(&format!("param get rate_hz --qemu={image}")).contains("1000 Hz"));
+    assert!(run("param get --qemu rate_hz").contains("1000 Hz"));
+    assert_eq!(run("faults --qemu"), "no faults\n");
+    let watched = run("monitor --qemu --for 1s");
     assert!(
         watched.contains("qemu-pil") && watched.contains(" 0 missing, 0 damaged, 0 restarts"),
         "{watched}"
     );
-    bench.run("param list --qemu no-such-image").refused_naming(&["no-such-image", "cargo xtask firmware"]);
+    bench.run("param list --qemu=no-such-image").refused_naming(&["no-such-image", "cargo xtask firmware"]);
 }
 
 /// Situation: image qemu-pil at rest. Action: ask for a parameter again and again, some kilobytes in all.
