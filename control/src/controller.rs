@@ -18,6 +18,8 @@ use crate::shape::{self, ShapePlan, ShapeState};
 use crate::track::{self, PathError, TrackState};
 
 /// A checked [`Config`] with what is derived from it. Read-only while the controller runs.
+///
+/// In this order in memory, for the reason given at [`State`]; the long configuration last.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C)]
 pub struct Plan {

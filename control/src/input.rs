@@ -326,7 +326,7 @@ fn told<const N: usize>(causes: &mut Causes, told: Told<N>) -> Option<([f32; N],
 /// The newest samples of a wheel.
 #[derive(Clone, Copy, Debug)]
 struct Recent {
-    /// Those before the newest, in a ring.
+    /// In a ring; `next` is the place of the one to come.
     samples: [f32; RECENT],
     known: u16,
     next: u16,

@@ -15,7 +15,7 @@ pub fn sin_cos(angle_rad: f32) -> (f32, f32) {
     sin_cos_within(bounded(angle_rad, QUARTER))
 }
 
-/// The same of an angle that is within a quarter turn.
+/// The same of an angle \[rad\] that is known to be within a quarter turn; of others it is not.
 #[inline]
 pub fn sin_cos_within(x: f32) -> (f32, f32) {
     let q = x * x;
