@@ -2,7 +2,8 @@
 //! time. Ends with success only if every period had its step and no step was late.
 //!
 //! Arguments: `seconds=5`; `block_us=N` holds control up for N us once every `every_ms=100`
-//! milliseconds, from a priority above it, beginning at a release.
+//! milliseconds, from a priority above it, beginning at a release; `start_ms=N`: the tasks begin N ms after the clock, as on
+//! a board whose parts take that long to start.
 #![no_std]
 #![no_main]
 
@@ -49,6 +50,14 @@ async fn judge(length: Duration) {
     exit(if t.deadlines.steps == expected && missed == 0 { Exit::Success } else { Exit::Failure })
 }
 
+/// The start of a board with slow parts, whose watchdog is patient meanwhile.
+fn start_slowly(length: Duration) {
+    let end = Instant::now() + length;
+    while Instant::now() < end {
+        board::feed_watchdog();
+    }
+}
+
 fn spin_until(end: Instant) {
     while Instant::now() < end {}
 }
@@ -65,6 +74,7 @@ fn main() -> ! {
     hprintln!("configuration {:08x}", config_hash(plan.config()));
     let length = Duration::from_secs(argument("seconds").unwrap_or(5).into());
     let every = Duration::from_millis(argument("every_ms").unwrap_or(100).into());
+    let start = Duration::from_millis(argument("start_ms").unwrap_or(0).into());
     let hold = argument("block_us").map(|us| Duration::from_micros(us.into()));
     board::run(
         |control| {
@@ -74,6 +84,7 @@ fn main() -> ! {
             }
         },
         |thread| {
+            start_slowly(start);
             thread.spawn(tasks::supervise(&[Task::Control, Task::Report]).unwrap());
             thread.spawn(tasks::report().unwrap());
             thread.spawn(hog().unwrap());

@@ -1,7 +1,7 @@
 //! Lets the watchdog bite when a task stands still. It runs at the lowest priority, so that an interrupt or a task that
 //! never ends is caught as well.
 
-use crate::alive::{Task, silent};
+use crate::alive::{self, Task};
 use crate::{board, crash};
 use core::future::pending;
 use embassy_time::{Duration, Ticker};
@@ -10,14 +10,15 @@ use link::report::FaultKind;
 /// How long the watchdog waits for food before it resets the chip.
 pub const WATCHDOG: Duration = Duration::from_millis(100);
 
-/// Feeds the watchdog ten times in its patience, as long as each of `tasks` reports. After the first that does not it is
-/// never fed again.
+/// Feeds the watchdog ten times in its patience, as long as each of `tasks` reports, counted from the start of this task.
+/// After the first that does not it is never fed again.
 #[embassy_executor::task]
 pub async fn supervise(tasks: &'static [Task]) {
+    alive::begin();
     let mut check = Ticker::every(WATCHDOG / 10);
     loop {
         check.next().await;
-        if let Some(task) = silent(tasks) {
+        if let Some(task) = alive::silent(tasks) {
             crash::note(FaultKind::Watchdog, crash::Registers::default(), task.name());
             pending::<()>().await;
         }

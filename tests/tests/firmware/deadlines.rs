@@ -83,6 +83,19 @@ fn the_watchdog_bites_when_control_stands_still() {
     assert!((590..=601).contains(&at), "held up from 500 ms, bitten at {at} ms");
 }
 
+/// Situation: a board whose parts take 300 ms to start, six times as long as a task may be silent, with the clock running.
+/// Action: 2 simulated seconds from the start of the tasks.
+/// Must hold: no task is blamed for the start: no reset, every step done in time, success.
+#[test]
+fn no_task_is_blamed_for_a_slow_start() {
+    if !image::ready() {
+        return;
+    }
+    let outcome = fly("slow-start", &["seconds=2", "start_ms=300"]);
+    assert_eq!(outcome.status, Some(0), "{outcome:?}");
+    assert_eq!(result(&outcome), (2000, 0));
+}
+
 /// Situation: any run.
 /// Action: the same run twice.
 /// Must hold: the same output, byte for byte: time is simulated, not the host's.
