@@ -1,7 +1,7 @@
 //! Every pin in use. The table of docs/hardware.md, as types: what is on which pin, and where that is known from.
 
 use embassy_stm32::gpio::{AfType, AnyPin, Flex, Level, Output, Speed};
-use embassy_stm32::peripherals::{FLASH, PB10, PB11, USART3};
+use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, FLASH, PB10, USART3};
 use embassy_stm32::{Peri, Peripherals};
 
 /// A pin of which only the number matters.
@@ -19,11 +19,13 @@ pub(super) struct Bus {
     pub(super) from_part: Pin,
 }
 
-/// The link's serial port.
+/// The link's serial port, and the streams that carry its bytes.
 pub(super) struct Link {
     pub(super) uart: Peri<'static, USART3>,
     pub(super) tx: Peri<'static, PB10>,
-    pub(super) rx: Peri<'static, PB11>,
+    pub(super) rx: Pin,
+    pub(super) tx_stream: Peri<'static, DMA1_CH3>,
+    pub(super) rx_stream: Peri<'static, DMA1_CH1>,
 }
 
 /// The pins by what is on them.
@@ -91,7 +93,13 @@ impl Pins {
             },
             front_wheel: p.PB6.into(),
             rear_wheel: p.PA7.into(),
-            link: Link { uart: p.USART3, tx: p.PB10, rx: p.PB11 },
+            link: Link {
+                uart: p.USART3,
+                tx: p.PB10,
+                rx: p.PB11.into(),
+                tx_stream: p.DMA1_CH3,
+                rx_stream: p.DMA1_CH1,
+            },
             can_receive: p.PB8.into(),
             can_transmit: p.PB9.into(),
             green: p.PB0.into(),
@@ -107,7 +115,7 @@ pub(super) fn fixed(pin: Pin, level: Level) {
     core::mem::forget(Output::new(pin, level, Speed::Low));
 }
 
-/// Gives a pin to a timer or CAN for good, as its alternate function of this number.
+/// Gives a pin to a timer, CAN or the serial port for good, as its alternate function of this number.
 pub(super) fn alternate(pin: Pin, function: u8, kind: AfType) {
     let mut pin = Flex::new(pin);
     pin.set_as_af_unchecked(function, kind);
