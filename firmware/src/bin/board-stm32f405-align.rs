@@ -8,7 +8,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use embassy_time::{Duration, Instant, Ticker, Timer};
-use firmware::board;
+use firmware::{board, crash};
 use motor::Ask;
 
 /// Periods done by [`hold`].
@@ -16,7 +16,14 @@ static PERIODS: AtomicU32 = AtomicU32::new(0);
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    defmt::info!("{=str}", firmware::identity!());
+    crash::start(board::reset_cause());
+    defmt::info!(
+        "{=str} start {=u32} after {=str}",
+        firmware::identity!(),
+        crash::starts(),
+        crash::cause().name()
+    );
+    board::log_kept_fault();
     board::start();
     board::run(
         |control| control.spawn(defmt::unwrap!(hold().ok())),

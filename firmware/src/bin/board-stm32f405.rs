@@ -20,6 +20,7 @@ fn main() -> ! {
         crash::starts(),
         crash::cause().name()
     );
+    board::log_kept_fault();
     board::start();
     let kept = KEPT.init(Kept::open());
     let plan = settings::start(kept, &Config::product());

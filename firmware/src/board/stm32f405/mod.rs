@@ -25,7 +25,7 @@ mod wheels;
 
 pub use can::broadcast;
 pub use flash::{Flash, flash};
-pub use reset::{end, reset_cause};
+pub use reset::{end, log_kept_fault, reset_cause};
 pub use sensors::sense;
 pub use shared::{Report, order, report as motor_report};
 pub use watchdog::feed_watchdog;

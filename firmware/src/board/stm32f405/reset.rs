@@ -1,10 +1,12 @@
 //! Why the chip started, and starting it anew.
 
 use crate::crash::Registers;
+use crate::retained;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use embassy_stm32::pac::RCC;
 use embassy_stm32::pac::rcc::regs::Csr;
 use link::report::{FaultKind, ResetCause};
+use link::ring;
 
 /// Bit that no reset cause has: the register was read.
 const READ: u32 = 1;
@@ -28,6 +30,27 @@ pub fn reset_cause() -> ResetCause {
         f if f.borrstf() => ResetCause::BrownOut,
         _ => ResetCause::Pin,
     }
+}
+
+/// The newest fault that was kept, over RTT: the last words themselves are lost with the log's buffer, which each start
+/// empties, and a watchdog's reset has none.
+pub fn log_kept_fault() {
+    retained::with(|memory| {
+        let Some(fault) = ring::faults(memory).next() else { return };
+        defmt::warn!(
+            "newest fault, of start {=u32} after {=str}: {=str}: {=str} mode={=str} steps={=u32} causes={=u64:#x} exception={=u32} \
+             cfsr, hfsr, bfar, sp, pc, lr: {:08x}",
+            fault.boot,
+            fault.reset.name(),
+            fault.kind.name(),
+            fault.text,
+            fault.mode.name(),
+            fault.steps,
+            fault.causes.0,
+            fault.exception,
+            fault.registers
+        );
+    });
 }
 
 /// Whether the last words are being said.
