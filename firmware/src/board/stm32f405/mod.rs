@@ -9,6 +9,7 @@ mod clock;
 mod critical;
 mod flash;
 mod gate;
+mod halt;
 mod imu;
 mod lamps;
 pub mod line;
@@ -52,6 +53,7 @@ static CONTROL: InterruptExecutor = InterruptExecutor::new();
 /// When called a second time.
 pub fn start() {
     failure::enable();
+    halt::start();
     if let Some(mut core) = cortex_m::Peripherals::take() {
         priority::set(&mut core);
     }
