@@ -152,7 +152,7 @@ fn board() {
     used(black_box(Deadline::default()).step(black_box(1), ask, counts));
     let (mut switch, mut wheel) =
         (black_box(parts::switch::Switch::default()), black_box(WheelState::default()));
-    used(switch.step(black_box(true), counts));
+    used((switch.step(black_box(true), counts), parts::ticks::ticks(black_box(1), black_box(2))));
     used(wheel::step(&black_box(PulsesConfig::default()), &mut wheel, black_box(None), black_box(1)));
     can();
 }

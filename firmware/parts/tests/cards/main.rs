@@ -9,5 +9,6 @@ mod imu;
 mod mailbox;
 mod order;
 mod switch;
+mod ticks;
 mod vesc6;
 mod wheel;

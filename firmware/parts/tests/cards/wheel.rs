@@ -88,3 +88,44 @@ fn edges_too_close_are_no_pulses() {
     let speed = step(&config, &mut disturbed, None, 1000).value;
     assert!((4.0..4.1).contains(&speed), "{speed}");
 }
+
+/// A standstill of the chip of 500 ms, in which the wheel goes a way, and an edge comes, by a timer of 16 bits
+/// `edge_age_us` ago.
+fn stand_still(rig: &mut Rig, way_m: f64, edge_age_us: Option<u32>) -> Sample {
+    let pulse_m = TAU * f64::from(rig.config.radius_m) / f64::from(rig.config.pulses_per_turn);
+    rig.way_m += way_m;
+    rig.pulses = (rig.way_m / pulse_m).floor();
+    step(&rig.config, &mut rig.state, edge_age_us, 500_000)
+}
+
+/// Situation: rolling at 4 m/s, the chip stands still for 0.5 s, 14 pulses long, and then sees that an edge came. Must hold:
+/// no speed is told until two more pulses came; from then on it is that of the wheel, and never a wrong one in between.
+#[test]
+fn an_edge_in_a_standstill_has_no_age() {
+    for edge_age_us in [0, 900, 33_000, 65_000] {
+        let mut rig = Rig::new();
+        (0..2000).for_each(|_| _ = rig.roll(4.0));
+        assert_eq!(stand_still(&mut rig, 2.0, Some(edge_age_us)).age_ticks, control::frame::MISSING);
+        let after: Vec<_> = (0..300).map(|_| rig.roll(4.0)).collect();
+        let told = after.iter().position(|sample| sample.age_ticks != control::frame::MISSING);
+        assert!(told.is_some_and(|ms| (30..=75).contains(&ms)), "{told:?}");
+        let settled = &after[told.unwrap_or_default()..];
+        assert!(settled.iter().all(|sample| (sample.value - 4.0).abs() < 0.2), "{settled:?}");
+    }
+}
+
+/// Situation: the same, but the wheel was braked meanwhile and stands from then on; and a wheel that stood all the time. Must
+/// hold: the first is missing for 1 s, then stands; the other stands at once.
+#[test]
+fn a_wheel_that_stands_after_a_standstill_is_known_to() {
+    let mut rig = Rig::new();
+    (0..2000).for_each(|_| _ = rig.roll(4.0));
+    stand_still(&mut rig, 0.5, Some(100));
+    let after: Vec<_> = (0..2000).map(|_| rig.roll(0.0)).collect();
+    let told = after.iter().position(|sample| sample.age_ticks != control::frame::MISSING);
+    assert!(told.is_some_and(|ms| (990..=1000).contains(&ms)), "{told:?}");
+    assert!(after[1000..].iter().all(|sample| *sample == Sample::fresh(0.0)));
+    let mut standing = Rig::new();
+    assert_eq!(stand_still(&mut standing, 0.0, None), Sample::fresh(0.0));
+    assert_eq!(standing.roll(0.0), Sample::fresh(0.0));
+}

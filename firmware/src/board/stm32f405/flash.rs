@@ -26,13 +26,19 @@ static FLASH_LEFT: Mutex<CriticalSectionRawMutex, core::cell::Cell<Option<Peri<'
 /// What unlocks the flash's control register.
 const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
 
-/// Puts the peripheral where [`flash`] finds it. Sectors are erased by words from now on, 0.5 s at most each; out of reset
-/// it is by bytes, 0.8 s (data sheet of the STM32F405, table 40), and the HAL leaves it so.
+/// Puts the peripheral where [`flash`] finds it.
 pub(super) fn start(peripheral: Peri<'static, FLASH>) {
-    KEYS.into_iter().for_each(|key| pac::FLASH.keyr().write_value(key));
-    pac::FLASH.cr().modify(|w| w.set_psize(Psize::PSIZE32));
-    pac::FLASH.cr().modify(|w| w.set_lock(true));
     FLASH_LEFT.lock(|left| left.set(Some(peripheral)));
+}
+
+/// The next erases are done by words, 0.5 s at most for a sector of 16 KiB; by bytes it is 0.8 s (data sheet of the
+/// STM32F405, table 40). To be called before each: the HAL's writing sets the register back (embassy-stm32 0.6.0,
+/// `flash/f4.rs`, `disable_write`; embassy's pull request 7046).
+fn erase_by_words() {
+    if pac::FLASH.cr().read().lock() {
+        KEYS.into_iter().for_each(|key| pac::FLASH.keyr().write_value(key));
+    }
+    pac::FLASH.cr().modify(|w| w.set_psize(Psize::PSIZE32));
 }
 
 /// The flash, and the range in it that is the store's; `None` when it was given away already.
@@ -41,7 +47,8 @@ pub fn flash() -> Option<(Flash, Range<u32>)> {
     Some((Flash(Chip::new(peripheral, Lines).into_regions().bank1_region1), STORE))
 }
 
-/// While it lives the bridge is open and the watchdog patient.
+/// While it lives the bridge is open, the watchdog patient and the data cache off. The cache keeps what an erase takes away,
+/// and may be emptied only while it is off (RM0090, 3.6.4).
 struct Standstill;
 
 impl Standstill {
@@ -50,12 +57,16 @@ impl Standstill {
         shared::set_hold(true);
         pwm::open();
         watchdog::standstill(true);
+        pac::FLASH.acr().modify(|w| w.set_dcen(false));
         Self
     }
 }
 
 impl Drop for Standstill {
     fn drop(&mut self) {
+        pac::FLASH.acr().modify(|w| w.set_dcrst(true));
+        pac::FLASH.acr().modify(|w| w.set_dcrst(false));
+        pac::FLASH.acr().modify(|w| w.set_dcen(true));
         watchdog::standstill(false);
         shared::set_hold(false);
     }
@@ -88,6 +99,7 @@ impl NorFlash for Flash {
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Error> {
         let _standstill = Standstill::begin();
+        erase_by_words();
         self.0.erase(from, to).await
     }
 }

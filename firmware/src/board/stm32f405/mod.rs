@@ -21,6 +21,7 @@ mod reset;
 mod sensors;
 mod shared;
 mod soft_spi;
+mod time;
 mod watchdog;
 mod wheels;
 
@@ -58,6 +59,7 @@ pub fn start() {
         priority::set(&mut core);
     }
     let peripherals = embassy_stm32::init(clock::config());
+    time::start();
     clock::quicken_flash();
     start_parts(peripherals);
 }
