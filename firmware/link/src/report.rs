@@ -50,13 +50,17 @@ pub enum FaultKind {
     Controller = 4,
     /// The supply went below what the chip needs.
     BrownOut = 5,
+    /// The motor's bridge was opened until the next start; the text tells why. The program went on.
+    Drive = 6,
 }
 
 impl FaultKind {
     /// The kind of a number on the wire.
     pub fn numbered(number: u8) -> Option<Self> {
         use FaultKind::*;
-        [Panic, Exception, Watchdog, Controller, BrownOut].into_iter().find(|kind| *kind as u8 == number)
+        [Panic, Exception, Watchdog, Controller, BrownOut, Drive]
+            .into_iter()
+            .find(|kind| *kind as u8 == number)
     }
 
     /// In words.
@@ -67,6 +71,7 @@ impl FaultKind {
             FaultKind::Watchdog => "watchdog",
             FaultKind::Controller => "controller",
             FaultKind::BrownOut => "brown-out",
+            FaultKind::Drive => "drive",
         }
     }
 }

@@ -39,4 +39,10 @@ impl Motor {
         let size = 1.5 * f32::from(self.pole_pairs) * self.flux_wb * self.ratio;
         if self.reversed { -size } else { size }
     }
+
+    /// Speed of the motor at which the back-EMF between two terminals peaks at `volt`, the bridge open \[turns/s\].
+    pub fn turns_s_at(&self, volt: f32) -> f32 {
+        const SQRT_3: f32 = 1.732_050_8;
+        volt / (SQRT_3 * self.flux_wb * f32::from(self.pole_pairs) * core::f32::consts::TAU)
+    }
 }

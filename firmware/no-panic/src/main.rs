@@ -28,7 +28,7 @@ use parts::bit_timing::bit_timing;
 use parts::broadcast::{Frame, Message as CanMessage, Motion};
 use parts::mailbox::{Counts, Mailbox};
 use parts::order::{self, Deadline};
-use parts::vesc6::{BOARD_HEAT, GATE_DRIVER, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
+use parts::vesc6::{BOARD_HEAT, GATE_DRIVER, MOTOR, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
 use parts::wheel::{self, WheelState};
 use parts::{as5047, bmi160, drv8301};
 
@@ -146,7 +146,11 @@ fn board() {
     used((STEER_RAD.value(counts), RIDER_NM.value(counts), as5047::angle_counts(counts)));
     used(bmi160::sample(black_box(0), &black_box([0; bmi160::BURST])));
     let settings = black_box(GATE_DRIVER);
-    used((settings.control1(), settings.control2(), drv8301::Status(counts).names().count()));
+    used((settings.control1(), settings.control2(), drv8301::Status(counts, counts).names().count()));
+    used(black_box(parts::fault_pin::FaultPin::default()).step(black_box(true)));
+    used(
+        black_box(parts::slow::Slow::default()).step(black_box(None), MOTOR.motor.turns_s_at(black_box(8.5))),
+    );
     used(drv8301::data(black_box(drv8301::Register::Status1), counts).map(drv8301::is_present));
     let ask = order::ask(order::word(order::ask(black_box(0))));
     used(black_box(Deadline::default()).step(black_box(1), ask, counts));

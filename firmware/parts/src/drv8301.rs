@@ -123,11 +123,14 @@ impl Settings {
     }
 }
 
-/// What the gate driver says is wrong: the data of [`Register::Status1`].
+/// What the gate driver says is wrong: the data of [`Register::Status1`] and [`Register::Status2`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Status(pub u16);
+pub struct Status(pub u16, pub u16);
 
-/// Names of the bits of [`Status`], from bit 0.
+/// Bit of [`Register::Status2`]: the supply of the gates is too high.
+const GATE_SUPPLY_HIGH: u16 = 0x80;
+
+/// Names of the bits of [`Register::Status1`], from bit 0.
 pub const STATUS: [&str; 11] = [
     "over-current low c",
     "over-current high c",
@@ -145,6 +148,8 @@ pub const STATUS: [&str; 11] = [
 impl Status {
     /// What is wrong, in words.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
-        STATUS.into_iter().enumerate().filter(move |(bit, _)| self.0 >> bit & 1 == 1).map(|(_, name)| name)
+        let first = STATUS.into_iter().enumerate().filter(move |(bit, _)| self.0 >> bit & 1 == 1);
+        let high = self.1 & GATE_SUPPLY_HIGH != 0;
+        first.map(|(_, name)| name).chain(high.then_some("gate supply high"))
     }
 }

@@ -27,7 +27,10 @@ fn main() -> ! {
     board::start();
     board::run(
         |control| control.spawn(defmt::unwrap!(hold().ok())),
-        |thread| thread.spawn(defmt::unwrap!(tell().ok())),
+        |thread| {
+            thread.spawn(defmt::unwrap!(tell().ok()));
+            thread.spawn(defmt::unwrap!(board::watch_drive().ok()));
+        },
     )
 }
 

@@ -35,6 +35,7 @@ fn main() -> ! {
             thread.spawn(defmt::unwrap!(tasks::line(firmware::image!(), kept).ok()));
             thread.spawn(defmt::unwrap!(tasks::report().ok()));
             thread.spawn(defmt::unwrap!(board::broadcast().ok()));
+            thread.spawn(defmt::unwrap!(board::watch_drive().ok()));
             thread.spawn(defmt::unwrap!(tasks::supervise(&[Task::Control, Task::Line, Task::Report]).ok()));
         },
     )

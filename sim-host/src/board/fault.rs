@@ -10,7 +10,7 @@ use std::fmt;
 /// A fault record in words.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Fault {
-    /// "panic", "exception", "watchdog", "controller" or "brown-out".
+    /// "panic", "exception", "watchdog", "controller", "brown-out" or "drive".
     pub kind: &'static str,
     /// Number of the program's start that recorded it; a watchdog's is recorded by the start after it.
     pub boot: u32,

@@ -199,7 +199,7 @@ fn every_number_means_one_thing() {
         assert_eq!(mode(number).map(|mode| mode as u8), (0..=6).contains(&number).then_some(number));
         assert_eq!(
             FaultKind::numbered(number).map(|kind| kind as u8),
-            (1..=5).contains(&number).then_some(number)
+            (1..=6).contains(&number).then_some(number)
         );
         assert_eq!(
             ResetCause::numbered(number).map(|cause| cause as u8),

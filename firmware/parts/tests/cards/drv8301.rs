@@ -43,7 +43,7 @@ fn settings_arrive() {
     let mut chip = Chip::new();
     chip.word(write(Register::Control1, GATE_DRIVER.control1()));
     chip.word(write(Register::Control2, GATE_DRIVER.control2()));
-    assert_eq!(chip.ask(Register::Control1), Some(6 << 6 | 1 << 4 | 2), "step 6, latched, 6 inputs, 0.25 A");
+    assert_eq!(chip.ask(Register::Control1), Some(12 << 6 | 1 << 4), "step 12, latched, 6 inputs, 1.7 A");
     assert_eq!(chip.ask(Register::Control2), Some(1 << 2), "20 V/V, all faults told");
     assert_eq!(chip.ask(Register::Status1), Some(0));
     assert!(is_present(chip.ask(Register::Status2).expect("an answer")));
@@ -81,10 +81,12 @@ fn over_current_is_never_above_what_is_asked() {
     }
 }
 
-/// Situation: a phase's lower switch drew too much. Must hold: the names say which, and that is all they say.
+/// Situation: a phase's lower switch drew too much; then the gates' supply is too high. Must hold: the names say which, and
+/// that is all they say; the kind of device is no fault.
 #[test]
 fn faults_have_names() {
-    let names: Vec<_> = Status(1 << 10 | 1 << 4).names().collect();
+    let names: Vec<_> = Status(1 << 10 | 1 << 4, 1).names().collect();
     assert_eq!(names, ["over-current low a", "fault"]);
-    assert_eq!(Status(0).names().count(), 0);
+    assert_eq!(Status(1 << 10, 0x81).names().collect::<Vec<_>>(), ["fault", "gate supply high"]);
+    assert_eq!(Status(0, 1).names().count(), 0);
 }

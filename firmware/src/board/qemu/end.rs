@@ -23,7 +23,7 @@ pub fn end(kind: FaultKind, registers: &Registers, words: &str) -> ! {
             text::line(format_args!("{words} {}", exception - INTERRUPTS));
             Exit::StrayInterrupt
         }
-        FaultKind::Panic | FaultKind::Watchdog | FaultKind::Controller | FaultKind::BrownOut => {
+        _ => {
             text::line(format_args!("{words}"));
             Exit::Panic
         }

@@ -22,6 +22,7 @@ mod sensors;
 mod shared;
 mod soft_spi;
 mod time;
+mod watch;
 mod watchdog;
 mod wheels;
 
@@ -30,6 +31,7 @@ pub use flash::{Flash, flash};
 pub use reset::{end, log_kept_fault, reset_cause};
 pub use sensors::sense;
 pub use shared::{Report, order, report as motor_report};
+pub use watch::watch_drive;
 pub use watchdog::feed_watchdog;
 
 use crate::failure;
@@ -90,7 +92,9 @@ fn start_parts(peripherals: embassy_stm32::Peripherals) {
 
     let in_step = pwm::start(pins.bridge);
     clock::watch_crystal();
-    let driver = gate::start(pins.gate_enable, &mut SoftSpi::new(pins.gate_bus, Edge::Falling, GATE_CYCLES));
+    let mut encoder = SoftSpi::new(pins.encoder_bus, Edge::Falling, ENCODER_CYCLES);
+    let bus = SoftSpi::new(pins.gate_bus, Edge::Falling, GATE_CYCLES);
+    let driver = gate::start(pins.gate_enable, bus, &mut encoder);
     adc::start(pins.analog);
     let plan = parts::vesc6::MOTOR.plan();
     if !in_step || plan.is_err() {
@@ -98,7 +102,6 @@ fn start_parts(peripherals: embassy_stm32::Peripherals) {
         outputs_off();
     }
     if let Ok(plan) = plan {
-        let encoder = SoftSpi::new(pins.encoder_bus, Edge::Falling, ENCODER_CYCLES);
         motor::start(plan, driver, encoder, Input::new(pins.gate_fault, Pull::Up));
     }
 
@@ -177,12 +180,13 @@ pub fn report(t: &Telemetry) {
     );
     let m = motor_report();
     defmt::info!(
-        "calls={=u32} late={=u32} mode={=u8} faults={=u32:#x} supply_v={=f32} board_c={=f32} encoder={=u16} age={=u16} \
+        "calls={=u32} late={=u32} mode={=u8} faults={=u32:#x} gate_pulses={=u32} supply_v={=f32} board_c={=f32} encoder={=u16} age={=u16} \
          steer_rad_s={=f32} iq_a={=f32} torque_nm={=f32} offset_turns={}",
         m.calls,
         m.late,
         m.mode as u8,
         m.faults.0,
+        m.gate_pulses,
         m.supply_v,
         shared::heat_c(),
         m.encoder_counts,

@@ -1,6 +1,6 @@
 //! The motor's interrupt: samples in, one call of the motor's loop, duty cycles out, 20 000 times a second.
 
-use super::shared::{Report, heat_c, is_held, is_off, ordered, tell};
+use super::shared::{Report, heat_c, is_held, is_off, ordered, set_off, tell};
 use super::soft_spi::SoftSpi;
 use super::{adc, outputs_off, pwm};
 use core::cell::UnsafeCell;
@@ -9,6 +9,7 @@ use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::InterruptExt;
 use motor::{Ask, Inputs, Output, Phases, Plan, State};
 use parts::as5047::{ASK_ANGLE, angle_counts};
+use parts::fault_pin::FaultPin;
 use parts::order::Deadline;
 use parts::vesc6::{PATIENCE_CALLS, SHUNT, SUPPLY};
 
@@ -19,6 +20,7 @@ struct Loop {
     deadline: Deadline,
     encoder: SoftSpi,
     gate_fault: Input<'static>,
+    gate_pin: FaultPin,
     /// What the last call said; this one's begins with it.
     report: Report,
     bridge: Bridge,
@@ -52,6 +54,7 @@ pub(super) fn start(plan: Plan, driver: bool, encoder: SoftSpi, gate_fault: Inpu
         deadline: Deadline::default(),
         encoder,
         gate_fault,
+        gate_pin: FaultPin::default(),
         report: Report { gate_fault: !driver, ..Report::NONE },
         bridge: Bridge::Open,
     };
@@ -74,9 +77,10 @@ impl Loop {
     fn call(&mut self) {
         let counts = adc::counts();
         self.ask_encoder();
-        if self.gate_fault.is_low() {
+        if self.gate_pin.step(self.gate_fault.is_low()) {
             self.report.gate_fault = true;
-            outputs_off();
+            // The driver has opened the switches by itself, and stays enabled until it was asked why.
+            set_off();
         }
         let (beat, asked) = ordered();
         let ask = self.deadline.step(beat, asked, PATIENCE_CALLS);
@@ -96,6 +100,7 @@ impl Loop {
             late: self.report.late.wrapping_add(u32::from(adc::again())),
             mode: out.mode,
             faults: out.faults,
+            gate_pulses: self.gate_pin.pulses,
             silent: self.deadline.is_over(PATIENCE_CALLS),
             off: is_off(),
             torque_nm: out.torque_nm,

@@ -7,7 +7,7 @@ use embassy_stm32::{Peri, Peripherals};
 /// A pin of which only the number matters.
 pub(super) type Pin = Peri<'static, AnyPin>;
 
-/// Number of the gate driver's enabling pin on port B, for [`super::outputs_off`].
+/// Number of the gate driver's enabling pin on port B.
 pub(super) const GATE_ENABLE: usize = 5;
 
 /// A serial bus that is moved by hand.

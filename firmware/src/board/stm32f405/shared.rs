@@ -31,6 +31,8 @@ pub struct Report {
     pub faults: Faults,
     /// The gate driver is missing, or told of a fault.
     pub gate_fault: bool,
+    /// Pulses of its fault pin that were too short to be one.
+    pub gate_pulses: u32,
     /// No order came in time.
     pub silent: bool,
     /// The outputs were switched off until the next start.
@@ -67,6 +69,7 @@ impl Report {
         mode: Mode::Zeroing,
         faults: Faults::NONE,
         gate_fault: false,
+        gate_pulses: 0,
         silent: true,
         off: false,
         torque_nm: 0.0,

@@ -1,0 +1,40 @@
+//! What opened the bridge until the next start: found out, logged and kept, from the lowest priority.
+
+use super::{gate, motor_report, outputs_off};
+use crate::crash::{self, Registers};
+use core::fmt::Write;
+use embassy_time::{Duration, Timer};
+use heapless::String;
+use link::report::{FAULT_TEXT_BYTES, FaultKind};
+
+/// How often it is looked.
+const LOOK: Duration = Duration::from_millis(10);
+
+/// Keeps a fault of the gate driver with what the driver says of it, and the first faults of the motor's loop.
+#[embassy_executor::task]
+pub async fn watch_drive() {
+    // One that was not started is in the log of the start.
+    let (mut gate, mut motor) = (!gate::is_started(), false);
+    loop {
+        Timer::after(LOOK).await;
+        let report = motor_report();
+        let mut words = String::<FAULT_TEXT_BYTES>::new();
+        // What does not fit is cut.
+        if report.gate_fault && !gate {
+            gate = true;
+            let _ = write!(words, "gate driver: ").and_then(|()| gate::describe(&mut words));
+            outputs_off();
+            keep(&words);
+        } else if !report.faults.is_empty() && !motor {
+            motor = true;
+            let _ = write!(words, "motor fault");
+            report.faults.iter().for_each(|fault| _ = write!(words, " {}", fault.code()));
+            keep(&words);
+        }
+    }
+}
+
+fn keep(words: &str) {
+    defmt::error!("{=str}", words);
+    crash::note(FaultKind::Drive, Registers::default(), words);
+}
