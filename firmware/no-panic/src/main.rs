@@ -143,7 +143,7 @@ fn motor() {
 fn board() {
     let counts = black_box(0_u16);
     used((SHUNT.ampere(counts), SUPPLY.volt(counts), BOARD_HEAT.celsius(counts)));
-    used((STEER_RAD.value(counts), RIDER_NM.value(counts), as5047::angle_counts(counts)));
+    used((STEER_RAD.value(counts), RIDER_NM.value(counts), black_box(as5047::Line::default()).step(counts)));
     used(bmi160::sample(black_box(0), &black_box([0; bmi160::BURST])));
     let settings = black_box(GATE_DRIVER);
     used((settings.control1(), settings.control2(), drv8301::Status(counts, counts).names().count()));

@@ -11,7 +11,7 @@ use embassy_stm32::pac::GPIOB;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_time::{Duration, Instant, block_for};
-use parts::as5047::{ASK_ANGLE, angle_counts};
+use parts::as5047::{ASK_ANGLE, Line};
 use parts::drv8301::{Register, Status, data, is_present, read, write};
 use parts::slow::Slow;
 use parts::vesc6::{ENABLE_V, GATE_DRIVER, MOTOR};
@@ -50,9 +50,10 @@ pub(super) fn is_started() -> bool {
 /// Whether the rotor is slow, or becomes so in time: turned by hand, its terminals must not reach [`ENABLE_V`].
 fn is_slow(encoder: &mut SoftSpi) -> bool {
     let most_turns_s = MOTOR.motor.turns_s_at(ENABLE_V);
-    let (mut slow, end) = (Slow::default(), Instant::now() + WAIT);
+    let (mut line, mut slow) = (Line::default(), Slow::default());
+    let end = Instant::now() + WAIT;
     while Instant::now() < end {
-        if slow.step(angle_counts(encoder.word(ASK_ANGLE)), most_turns_s) {
+        if slow.step(line.step(encoder.word(ASK_ANGLE)), most_turns_s) {
             return true;
         }
         block_for(Duration::from_millis(1));

@@ -181,7 +181,7 @@ pub fn report(t: &Telemetry) {
     let m = motor_report();
     defmt::info!(
         "calls={=u32} late={=u32} mode={=u8} faults={=u32:#x} gate_pulses={=u32} supply_v={=f32} board_c={=f32} encoder={=u16} age={=u16} \
-         steer_rad_s={=f32} iq_a={=f32} torque_nm={=f32} offset_turns={}",
+         flagged={=u32} damaged={=u32} steer_rad_s={=f32} iq_a={=f32} torque_nm={=f32} offset_turns={}",
         m.calls,
         m.late,
         m.mode as u8,
@@ -191,6 +191,8 @@ pub fn report(t: &Telemetry) {
         shared::heat_c(),
         m.encoder_counts,
         m.encoder_age,
+        m.encoder_flagged,
+        m.encoder_damaged,
         m.steer_rate_rad_s,
         m.iq_a,
         m.torque_nm,

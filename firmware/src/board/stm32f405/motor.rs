@@ -8,7 +8,7 @@ use embassy_stm32::gpio::Input;
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::InterruptExt;
 use motor::{Ask, Inputs, Output, Phases, Plan, State};
-use parts::as5047::{ASK_ANGLE, angle_counts};
+use parts::as5047::{ASK_ANGLE, Line};
 use parts::fault_pin::FaultPin;
 use parts::order::Deadline;
 use parts::vesc6::{PATIENCE_CALLS, SHUNT, SUPPLY};
@@ -19,6 +19,7 @@ struct Loop {
     state: State,
     deadline: Deadline,
     encoder: SoftSpi,
+    line: Line,
     gate_fault: Input<'static>,
     gate_pin: FaultPin,
     /// What the last call said; this one's begins with it.
@@ -53,6 +54,7 @@ pub(super) fn start(plan: Plan, driver: bool, encoder: SoftSpi, gate_fault: Inpu
         state: State::default(),
         deadline: Deadline::default(),
         encoder,
+        line: Line::default(),
         gate_fault,
         gate_pin: FaultPin::default(),
         report: Report { gate_fault: !driver, ..Report::NONE },
@@ -101,6 +103,8 @@ impl Loop {
             mode: out.mode,
             faults: out.faults,
             gate_pulses: self.gate_pin.pulses,
+            encoder_flagged: self.line.flagged,
+            encoder_damaged: self.line.damaged,
             silent: self.deadline.is_over(PATIENCE_CALLS),
             off: is_off(),
             torque_nm: out.torque_nm,
@@ -120,7 +124,7 @@ impl Loop {
     /// The answer to the last transfer is the angle at its time, one call ago.
     fn ask_encoder(&mut self) {
         let report = &mut self.report;
-        match angle_counts(self.encoder.word(ASK_ANGLE)) {
+        match self.line.step(self.encoder.word(ASK_ANGLE)) {
             Some(counts) => (report.encoder_counts, report.encoder_age) = (counts, 1),
             None => report.encoder_age = report.encoder_age.saturating_add(1),
         }

@@ -49,6 +49,10 @@ pub struct Report {
     pub encoder_counts: u16,
     /// Their age \[calls\].
     pub encoder_age: u16,
+    /// Answers of the encoder with its error flag, and damaged ones.
+    pub encoder_flagged: u32,
+    /// As of [`Report::encoder_flagged`].
+    pub encoder_damaged: u32,
     /// The supply \[V\].
     pub supply_v: f32,
     /// The steer sensor \[counts\].
@@ -78,6 +82,8 @@ impl Report {
         offset_turns: None,
         encoder_counts: 0,
         encoder_age: u16::MAX,
+        encoder_flagged: 0,
+        encoder_damaged: 0,
         supply_v: 0.0,
         steer: 0,
         rider_torque: 0,

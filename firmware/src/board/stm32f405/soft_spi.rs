@@ -1,7 +1,9 @@
 //! A serial bus moved by hand, because the board's wires lead to no serial peripheral of the chip.
 
-use super::pins::Bus;
-use embassy_stm32::gpio::{Input, Level, Output, Pull, Speed};
+use super::pins::{Bus, Pin};
+use embassy_stm32::gpio::{Input, Level, Output, Pin as _, Pull, Speed};
+use embassy_stm32::pac::gpio::Gpio;
+use embassy_stm32::pac::{GPIOA, GPIOB, GPIOC, GPIOD};
 
 /// The edge of the clock, low at rest, at which both sides take the data.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -14,12 +16,17 @@ pub(super) enum Edge {
 /// the AS5047P wants.
 const SELECT_CYCLES: u32 = 70;
 
+/// Readings of a bit at the falling edge, which is what most of them say: from a part whose wires run beside the bridge's: encoder and gate driver, as the drive's own firmware reads
+/// the encoder (`driver/spi_bb.c` in vedderb/bldc). The IMU's 152 bits a millisecond are read once.
+const LOOKS: u32 = 5;
+
 /// The bus and its only part.
 pub(super) struct SoftSpi {
     select: Output<'static>,
     clock: Output<'static>,
     to_part: Option<Output<'static>>,
-    from_part: Input<'static>,
+    /// The port that the part's pin is on, and its number there.
+    from_part: (Gpio, u8),
     edge: Edge,
     half_cycles: u32,
 }
@@ -31,7 +38,7 @@ impl SoftSpi {
             select: Output::new(bus.select, Level::High, Speed::Medium),
             clock: Output::new(bus.clock, Level::Low, Speed::Medium),
             to_part: bus.to_part.map(|pin| Output::new(pin, Level::High, Speed::Medium)),
-            from_part: Input::new(bus.from_part, Pull::Up),
+            from_part: input(bus.from_part),
             edge,
             half_cycles,
         }
@@ -72,12 +79,12 @@ impl SoftSpi {
             }
             if self.edge == Edge::Rising {
                 self.wait();
-                answer = answer << 1 | u16::from(self.from_part.is_high());
+                answer = answer << 1 | self.bit();
             }
             self.clock.set_high();
             self.wait();
             if self.edge == Edge::Falling {
-                answer = answer << 1 | u16::from(self.from_part.is_high());
+                answer = answer << 1 | self.bit();
             }
             self.clock.set_low();
             if self.edge == Edge::Falling {
@@ -87,7 +94,25 @@ impl SoftSpi {
         answer
     }
 
+    /// The bit that the part holds now.
+    fn bit(&self) -> u16 {
+        let looks = if self.edge == Edge::Falling { LOOKS } else { 1 };
+        let (port, pin) = self.from_part;
+        let high: u32 = (0..looks).map(|_| port.idr().read().0 >> pin & 1).sum();
+        u16::from(2 * high > looks)
+    }
+
     fn wait(&self) {
         cortex_m::asm::delay(self.half_cycles);
     }
+}
+
+/// The chip's ports, by their numbers; the others have no pins on it.
+const PORTS: [Gpio; 4] = [GPIOA, GPIOB, GPIOC, GPIOD];
+
+/// Makes a pin an input for good, pulled up; where it is read.
+fn input(pin: Pin) -> (Gpio, u8) {
+    let place = (PORTS[usize::from(pin.port())], pin.pin());
+    core::mem::forget(Input::new(pin, Pull::Up));
+    place
 }
