@@ -51,7 +51,7 @@ fn the_set_up_is_the_one_that_samples_are_read_by() {
     assert!(SET_UP.iter().all(|step| read(step.register) != step.register && step.then_ms > 0));
     assert_eq!((SET_UP[0].register, SET_UP[0].value), (0x7e, 0xb6));
     let last = |register| SET_UP.iter().rev().find(|step| step.register == register).map(|step| step.value);
-    assert_eq!([0x40, 0x41, 0x42, 0x43].map(last), [Some(0x2c), Some(0x0c), Some(0x2c), Some(0x00)]);
+    assert_eq!([0x40, 0x41, 0x42, 0x43].map(last), [Some(0x1c), Some(0x0c), Some(0x1c), Some(0x00)]);
     let time_ms: u32 = SET_UP.iter().map(|step| u32::from(step.then_ms)).sum();
     assert!((190..300).contains(&time_ms), "{time_ms} ms");
 }
