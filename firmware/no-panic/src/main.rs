@@ -151,6 +151,7 @@ fn board() {
     used(
         black_box(parts::slow::Slow::default()).step(black_box(None), MOTOR.motor.turns_s_at(black_box(8.5))),
     );
+    used(parts::silicon::has_prefetch(counts, counts));
     used(drv8301::data(black_box(drv8301::Register::Status1), counts).map(drv8301::is_present));
     let ask = order::ask(order::word(order::ask(black_box(0))));
     used(black_box(Deadline::default()).step(black_box(1), ask, counts));

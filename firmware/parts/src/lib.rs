@@ -3,7 +3,7 @@
 //! Everything here is plain data and pure functions, tried on the host; a board moves the bits. One module each:
 //! [`analog`] (counts of the converter to amperes, volts, degrees, radians), [`drv8301`] (gate driver), [`bmi160`]
 //! (IMU), [`as5047`] (encoder), [`wheel`] (pulses to a speed with its age), [`switch`] (debounced), [`age`] (how old a
-//! sample is), [`order`] (what control asks of the motor's interrupt, in one word), [`ticks`] (the clock), [`fault_pin`], [`slow`] (a rotor), [`broadcast`] (frames on CAN),
+//! sample is), [`order`] (what control asks of the motor's interrupt, in one word), [`ticks`] (the clock), [`fault_pin`], [`slow`] (a rotor), [`silicon`] (the chip's revision), [`broadcast`] (frames on CAN),
 //! [`bit_timing`] and [`mailbox`] (the CAN controller), [`vesc6`] (a board and its wiring, in numbers).
 #![no_std]
 #![forbid(unsafe_code)]
@@ -18,6 +18,7 @@ pub mod drv8301;
 pub mod fault_pin;
 pub mod mailbox;
 pub mod order;
+pub mod silicon;
 pub mod slow;
 pub mod switch;
 pub mod ticks;

@@ -9,6 +9,7 @@ mod fault_pin;
 mod imu;
 mod mailbox;
 mod order;
+mod silicon;
 mod slow;
 mod switch;
 mod ticks;

@@ -2,12 +2,13 @@
 
 use crate::crash::{self, Registers};
 use embassy_stm32::Config;
-use embassy_stm32::pac::{FLASH, RCC};
+use embassy_stm32::pac::{DBGMCU, FLASH, RCC};
 use embassy_stm32::rcc::{
     AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllQDiv, PllSource, Sysclk,
 };
 use embassy_stm32::time::Hertz;
 use link::report::FaultKind;
+use parts::silicon::has_prefetch;
 
 /// The fastest the chip allows: core 168 MHz, APB1 42 MHz, APB2 84 MHz, USB 48 MHz.
 pub(super) fn config() -> Config {
@@ -30,10 +31,19 @@ pub(super) fn config() -> Config {
     config
 }
 
-/// Lets the flash read ahead and keep what it read. The HAL leaves that off, and each word then takes 6 cycles.
+/// Lets the flash keep what it read, and read ahead where the chip can. The HAL leaves that off, and each word then takes
+/// 6 cycles.
 pub(super) fn quicken_flash() {
+    let chip = DBGMCU.idcode().read();
+    let prefetch = has_prefetch(chip.dev_id(), chip.rev_id());
+    defmt::info!(
+        "chip: device={=u16:#x} revision={=u16:#x} prefetch={=bool}",
+        chip.dev_id(),
+        chip.rev_id(),
+        prefetch
+    );
     FLASH.acr().modify(|w| {
-        w.set_prften(true);
+        w.set_prften(prefetch);
         w.set_icen(true);
         w.set_dcen(true);
     });
