@@ -1,4 +1,5 @@
-//! The image that finds the offset of the motor's encoder, once for each motor, encoder and wiring.
+//! The image that finds the offset of the motor's encoder, once for each motor, encoder and wiring. It also sets the chip's
+//! brown-out reset, once for each board.
 //!
 //! While the rider's switch is held, the motor moves the handlebar by less than a degree there and back, for 3.5 s. The
 //! offset comes over RTT; it is written down as `encoder.offset_turns` of `parts::vesc6::MOTOR`. Released, the switch
@@ -25,6 +26,7 @@ fn main() -> ! {
     );
     board::log_kept_fault();
     board::start();
+    board::raise_level();
     board::run(
         |control| control.spawn(defmt::unwrap!(hold().ok())),
         |thread| {

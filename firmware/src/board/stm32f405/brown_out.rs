@@ -1,12 +1,20 @@
-//! The supply's warning: 3.3 V has fallen to 2.9 V, and some time is left.
+//! The supply's warning: 3.3 V has fallen to 2.9 V, and some time is left. Below it the chip's own reset: 2.8 V where the option
+//! bytes say so; 168 MHz and programming by words need 2.7 V (data sheet of the STM32F405).
 
+use super::flash::Standstill;
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::InterruptExt;
-use embassy_stm32::pac::{EXTI, PWR};
+use embassy_stm32::pac::{EXTI, FLASH, PWR};
 
 /// The line of the voltage detector, and the highest of its thresholds.
 const LINE: usize = 16;
 const V2_9: u8 = 7;
+
+/// Level 3 of the brown-out reset in the option bytes, 2.8 V; 2 and 1 are lower, 3 is none, as a chip comes.
+const LEVEL_3: u8 = 0;
+
+/// What unlocks the option bytes.
+const KEYS: [u32; 2] = [0x0819_2a3b, 0x4c5d_6e7f];
 
 /// Waits until the supply is there, and starts the watch.
 pub(super) fn start() {
@@ -15,11 +23,35 @@ pub(super) fn start() {
         w.set_pvde(true);
     });
     while PWR.csr1().read().pvdo() {}
+    let level = FLASH.optcr().read().bor_lev();
+    if level != LEVEL_3 {
+        defmt::warn!(
+            "supply: brown-out reset at {=u8}, of 0 (2.8 V) wanted: run the alignment image once",
+            level
+        );
+    }
     // Its output rises when the supply falls.
     EXTI.rtsr(0).modify(|w| w.set_line(LINE, true));
     EXTI.imr(0).modify(|w| w.set_line(LINE, true));
     // SAFETY: its priority is one that critical sections stop; the handler below is all that runs.
     unsafe { interrupt::PVD.enable() }
+}
+
+/// Sets the brown-out reset to level 3 for good, once; it acts from the next reset on (RM0090, 3.7.2). For the bench only: a
+/// supply that fails in the middle of it can leave the chip protected against reading, and a probe must then erase it. The bridge is
+/// open meanwhile.
+pub fn raise_level() {
+    if FLASH.optcr().read().bor_lev() == LEVEL_3 {
+        return;
+    }
+    let _standstill = Standstill::begin();
+    KEYS.into_iter().for_each(|key| FLASH.optkeyr().write_value(key));
+    while FLASH.sr().read().bsy() {}
+    FLASH.optcr().modify(|w| w.set_bor_lev(LEVEL_3));
+    FLASH.optcr().modify(|w| w.set_optstrt(true));
+    while FLASH.sr().read().bsy() {}
+    FLASH.optcr().modify(|w| w.set_optlock(true));
+    defmt::info!("supply: brown-out reset set to 2.8 V, from the next reset on");
 }
 
 #[interrupt]

@@ -49,10 +49,10 @@ pub fn flash() -> Option<(Flash, Range<u32>)> {
 
 /// While it lives the bridge is open, the watchdog patient and the data cache off. The cache keeps what an erase takes away,
 /// and may be emptied only while it is off (RM0090, 3.6.4).
-struct Standstill;
+pub(super) struct Standstill;
 
 impl Standstill {
-    fn begin() -> Self {
+    pub(super) fn begin() -> Self {
         // The interrupt would close it again, so that it is told first.
         shared::set_hold(true);
         pwm::open();

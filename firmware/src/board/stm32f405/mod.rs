@@ -26,6 +26,7 @@ mod watch;
 mod watchdog;
 mod wheels;
 
+pub use brown_out::raise_level;
 pub use can::broadcast;
 pub use flash::{Flash, flash};
 pub use reset::{end, log_kept_fault, reset_cause};
@@ -87,6 +88,8 @@ fn start_parts(peripherals: embassy_stm32::Peripherals) {
     fixed(pins.hold_power, Level::High);
     fixed(pins.current_filter, Level::High);
     fixed(pins.sensor_port_5v, Level::Low);
+    fixed(pins.phase_filter, Level::Low);
+    pins.phase_voltages.into_iter().for_each(pins::analog);
     watchdog::start();
     brown_out::start();
 

@@ -77,6 +77,7 @@ fn ADC() {
 
 impl Loop {
     fn call(&mut self) {
+        pwm::begin();
         let counts = adc::counts();
         self.ask_encoder();
         if self.gate_pin.step(self.gate_fault.is_low()) {
@@ -97,9 +98,10 @@ impl Loop {
         };
         let out = motor::step(&self.plan, &mut self.state, &inputs);
         self.switch(&out);
+        let late = pwm::is_over() || adc::again();
         self.report = Report {
             calls: self.report.calls.wrapping_add(1),
-            late: self.report.late.wrapping_add(u32::from(adc::again())),
+            late: self.report.late.wrapping_add(u32::from(late)),
             mode: out.mode,
             faults: out.faults,
             gate_pulses: self.gate_pin.pulses,

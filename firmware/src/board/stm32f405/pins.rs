@@ -37,6 +37,9 @@ pub(super) struct Pins {
     pub(super) gate_bus: Bus,
     /// Everything that a converter reads.
     pub(super) analog: [Pin; 8],
+    /// Dividers of the phases' voltages, which nothing reads.
+    pub(super) phase_voltages: [Pin; 3],
+    pub(super) phase_filter: Pin,
     pub(super) current_filter: Pin,
     pub(super) hold_power: Pin,
     pub(super) sensor_port_5v: Pin,
@@ -76,6 +79,8 @@ impl Pins {
                 p.PA5.into(),
                 p.PA6.into(),
             ],
+            phase_voltages: [p.PA0.into(), p.PA1.into(), p.PA2.into()],
+            phase_filter: p.PC13.into(),
             current_filter: p.PD2.into(),
             hold_power: p.PC5.into(),
             sensor_port_5v: p.PA4.into(),

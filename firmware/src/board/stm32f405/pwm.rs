@@ -89,6 +89,16 @@ pub(super) fn duties(duties: [f32; 3]) {
     }
 }
 
+/// From now on [`is_over`] tells of the next top.
+pub(super) fn begin() {
+    TIM1.sr().modify(|w| w.set_uif(false));
+}
+
+/// Whether a top has passed since [`begin`]: duty cycles that are set only now act a period too late.
+pub(super) fn is_over() -> bool {
+    TIM1.sr().read().uif()
+}
+
 /// Lets the duty cycles act, unless the break is in the way.
 pub(super) fn close() {
     TIM1.bdtr().modify(|w| w.set_moe(true));

@@ -23,7 +23,7 @@ static HEAT_C: AtomicU32 = AtomicU32::new(f32::NAN.to_bits());
 pub struct Report {
     /// Calls since the start, wrapping.
     pub calls: u32,
-    /// Calls that ended after the next samples were there.
+    /// Calls whose duty cycles were set only after the top that was to take them over, 42.6 us after the interrupt.
     pub late: u32,
     /// What the motor's loop does.
     pub mode: Mode,
