@@ -6,6 +6,7 @@
 use control::calibrate::CalibrationPlan;
 use control::polarity::Move;
 use control::{ActiveLimits, Causes, Command, Mode, SensorFrame};
+use micromath::F32;
 
 /// Bit rate \[bit/s\].
 pub const BIT_HZ: u32 = 500_000;
@@ -164,7 +165,7 @@ impl Message {
 /// A value in units of `unit`, from -32767 to 32767.
 fn word(value: Option<f32>, unit: f32) -> i16 {
     match value {
-        Some(value) if !value.is_nan() => (libm::roundf(value / unit) as i16).max(-i16::MAX),
+        Some(value) if !value.is_nan() => (F32(value / unit).round().0 as i16).max(-i16::MAX),
         _ => UNKNOWN,
     }
 }
@@ -178,7 +179,7 @@ fn value(bytes: [u8; 2], unit: f32) -> Option<f32> {
 /// A part from 0 to 1 in units of [`AUTHORITY`].
 fn part(part: Option<f32>) -> u8 {
     match part {
-        Some(part) if !part.is_nan() => libm::roundf(part.clamp(0.0, 1.0) / AUTHORITY) as u8,
+        Some(part) if !part.is_nan() => F32(part.clamp(0.0, 1.0) / AUTHORITY).round().0 as u8,
         _ => UNKNOWN_U8,
     }
 }

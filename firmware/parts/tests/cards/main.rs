@@ -1,6 +1,7 @@
 //! Flight cards of the parts around the chip.
 
 mod analog;
+mod approximations;
 mod bit_timing;
 mod broadcast;
 mod drv8301;
