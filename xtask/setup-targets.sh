@@ -75,7 +75,9 @@ edit(library/'Cargo.toml', lambda s: s.replace('  "coretests",\n', '').replace('
 (library/'Cargo.lock').unlink(missing_ok=True)
 PY
 
-# 3. Build and install. `alloc` brings `core` and `compiler_builtins` with it.
+# 3. Build and install. `alloc` brings `core` and `compiler_builtins` with it. Nobody's own settings count: the same
+# bytes on every machine.
+unset ${!CARGO_PROFILE_@} CARGO_INCREMENTAL RUSTC_WORKSPACE_WRAPPER
 for target in "${missing[@]}"; do
   echo "setup-targets: building core and alloc for $target"
   env -u CARGO_ENCODED_RUSTFLAGS -u RUSTC_WRAPPER RUSTC_BOOTSTRAP=1 \

@@ -8,8 +8,7 @@ use crate::{Result, instructions, size};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// How far a committed number may be from a fresh one: another patch release of the compiler, or
-/// the length of a source path in a panic message, is no news.
+/// How far a committed number may be from a fresh one: another patch release of the compiler is no news.
 const TOLERANCE: f64 = 0.03;
 
 /// Where it lies.

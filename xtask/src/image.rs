@@ -2,6 +2,7 @@
 
 use crate::process::{Outcome, capture, must};
 use crate::{Result, setup};
+use std::ffi::{OsStr, OsString};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -49,7 +50,29 @@ pub fn target_dir() -> PathBuf {
 
 /// Where a built image lies.
 pub fn path(name: &str) -> PathBuf {
-    target_dir().join(TARGET).join("firmware").join(name)
+    path_in(root(), name)
+}
+
+/// Where an image built in this clone lies.
+pub(crate) fn path_in(root: &Path, name: &str) -> PathBuf {
+    root.join("target/firmware").join(TARGET).join("firmware").join(name)
+}
+
+/// The bytes of an image that go to the chip's flash, without what is for the debugger.
+///
+/// # Errors
+/// `objcopy` or the image is missing.
+pub fn loaded(image: &Path) -> Result<Vec<u8>> {
+    let bytes = image.with_extension("bin");
+    let mut objcopy = Command::new("arm-none-eabi-objcopy");
+    must(objcopy.args(["-O", "binary"]).arg(image).arg(&bytes), Duration::from_secs(60))?;
+    std::fs::read(&bytes).map_err(|why| format!("{}: {why}", bytes.display()))
+}
+
+/// Where cargo keeps what it downloads.
+pub fn cargo_home() -> Option<PathBuf> {
+    let set = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    set.or_else(|| Some(std::env::home_dir()?.join(".cargo")))
 }
 
 /// Builds the images of one board.
@@ -91,13 +114,58 @@ pub fn ready() -> bool {
     })
 }
 
+/// Builds an image as [`build`] does and gives it to the runner of `.cargo/config.toml`, which flashes it and shows its log.
+///
+/// # Errors
+/// There is no such image, or cargo or the runner failed.
+pub fn flash(name: &str) -> Result<()> {
+    let known = IMAGES.iter().find(|image| image.name == name && image.board != "board-qemu");
+    let image = known.ok_or_else(|| format!("no image for a board is called {name:?}"))?;
+    must(cargo("run", "firmware", image.board).args(["--bin", image.name]), Duration::MAX)
+}
+
 fn cargo_build(package: &str, feature: &str) -> Command {
+    let mut build = cargo("build", package, feature);
+    build.arg("--quiet");
+    build
+}
+
+/// Cargo with what every image is built by, so that its bytes depend on the source and the compiler only.
+fn cargo(command: &str, package: &str, feature: &str) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    cargo.current_dir(root()).args(["build", "--quiet", "--profile", "firmware", "--target", TARGET]);
+    cargo.current_dir(root()).args([command, "--profile", "firmware", "--target", TARGET]);
     cargo.args(["--package", package, "--features", feature, "--target-dir"]).arg(target_dir());
-    // Flags meant for the host, such as coverage, are not for the chip.
-    for flags in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER"] {
-        cargo.env_remove(flags);
+    // Settings meant for the host, such as coverage, are not for the chip.
+    for setting in ["RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER", "CARGO_INCREMENTAL"] {
+        cargo.env_remove(setting);
     }
+    let profile =
+        std::env::vars_os().filter(|(name, _)| name.to_string_lossy().starts_with("CARGO_PROFILE_"));
+    profile.for_each(|(name, _)| _ = cargo.env_remove(name));
+    // These replace the flags of every configuration file, too.
+    cargo.env("CARGO_ENCODED_RUSTFLAGS", encoded(&remaps()));
     cargo
+}
+
+/// The folders of this machine whose names a panic message could carry into an image, and the name that each gets there.
+/// Of two that match the later one counts.
+fn remaps() -> Vec<(PathBuf, &'static str)> {
+    let home = cargo_home();
+    // Named for the registry's address, which differs where a mirror is used.
+    let registries = home.iter().flat_map(|home| home.join("registry/src").read_dir()).flatten().flatten();
+    let registries = registries.map(|folder| (folder.path(), "/crates"));
+    let fixed = [(home.clone(), "/cargo"), (Some(root().into()), "/steer-assist")];
+    fixed.into_iter().filter_map(|(folder, name)| Some((folder?, name))).chain(registries).collect()
+}
+
+/// The compiler's flags for these names, as `CARGO_ENCODED_RUSTFLAGS` has them.
+fn encoded(remaps: &[(PathBuf, &str)]) -> OsString {
+    let flags = remaps.iter().map(|(folder, name)| {
+        let mut flag = OsString::from("--remap-path-prefix=");
+        flag.push(folder);
+        flag.push("=");
+        flag.push(name);
+        flag
+    });
+    flags.collect::<Vec<_>>().join(OsStr::new("\x1f"))
 }

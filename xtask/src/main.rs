@@ -4,8 +4,9 @@ use std::process::{Command, ExitCode};
 use std::time::Duration;
 use xtask::bench::bench;
 use xtask::document::{self, instruction_table, size_table};
+use xtask::reproducible::reproducible;
 use xtask::setup::{TargetSource, setup};
-use xtask::{Result, coverage, image, mutants, process, qemu};
+use xtask::{Result, coverage, image, mutants, progress, qemu};
 
 const HELP: &str = "\
 cargo xtask <command> [--help]
@@ -14,6 +15,8 @@ cargo xtask <command> [--help]
   test          set-up, build the firmware, run all tests, those in QEMU included
   firmware      build all firmware images
   qemu IMAGE    run an image in QEMU
+  flash IMAGE   build a board's image, flash it and show its log
+  reproducible  whether the images have the same bytes in clones in other folders
   size          what the images take of flash and RAM, against their budgets
   instructions  instructions of a control step, against the budget
   mutants       whether the control crate's cards notice when its code is changed
@@ -33,11 +36,14 @@ there already stays as it is. Fails with a list of what could not be had and how
 ";
 
 const TEST_HELP: &str = "\
-cargo xtask test [--target-source auto|rustup|debian] [--mutants N] [-- ARGUMENTS OF cargo test]
+cargo xtask test [--target-source auto|rustup|debian] [--all] [--mutants N] [-- ARGUMENTS OF cargo test]
 
 Runs the set-up, builds the firmware images, then `cargo test` with the tests in QEMU required: a
-missing QEMU or target is a failure, not a skip.
+missing QEMU or target is a failure, not a skip. There is no time limit; every five minutes a line
+says what is running.
 
+  --all        the slow tests, too, and the whole sets of those that run a part of one by default
+               (STEER_ASSIST_SLOW=1); which they are: docs/testing.md
   --mutants N  then `cargo xtask mutants --sample N`
 ";
 
@@ -52,6 +58,22 @@ cargo xtask qemu IMAGE [NAME=VALUE...]
 
 Builds and runs a QEMU image in simulated time, in the current directory, for at most two minutes;
 the exit status is the image's. Try: cargo xtask qemu qemu-control seconds=5 block_us=1500
+";
+
+const FLASH_HELP: &str = "\
+cargo xtask flash IMAGE
+
+Builds a board's image, as `cargo xtask firmware` does, and hands it to the runner of
+.cargo/config.toml: probe-rs, which flashes it and shows its log until Ctrl-C. The images:
+board-stm32f405 and board-stm32f405-align.
+";
+
+const REPRODUCIBLE_HELP: &str = "\
+cargo xtask reproducible
+
+Clones the commit of the work tree into three folders of different length, each with a commit and a
+CARGO_HOME of its own, builds all images in each and compares the bytes that would be flashed, the
+commit's name left out. Fails when they differ. About four minutes of processor time.
 ";
 
 const SIZE_HELP: &str = "\
@@ -116,6 +138,8 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         "test" => TEST_HELP,
         "firmware" => FIRMWARE_HELP,
         "qemu" => QEMU_HELP,
+        "flash" => FLASH_HELP,
+        "reproducible" => REPRODUCIBLE_HELP,
         "size" => SIZE_HELP,
         "instructions" => INSTRUCTIONS_HELP,
         "bench" => BENCH_HELP,
@@ -133,6 +157,8 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         ("test", _) => test(rest)?,
         ("firmware", []) => build_all()?,
         ("qemu", [image, arguments @ ..]) => return run(image, arguments),
+        ("flash", [image]) => image::flash(image)?,
+        ("reproducible", []) => reproducible()?,
         ("bench", []) => bench()?,
         ("coverage", []) => coverage::coverage()?,
         ("mutants", _) => mutants(rest)?,
@@ -153,15 +179,24 @@ fn target_source(words: &[&str], help: &str) -> Result<TargetSource> {
 
 fn test(words: &[&str]) -> Result<()> {
     let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
-    let (source, sample) = match words[..split] {
-        [ref source @ .., "--mutants", count] => (source, Some(mutants::sample(count)?)),
-        ref source => (source, None),
+    let (rest, sample) = match words[..split] {
+        [ref rest @ .., "--mutants", count] => (rest, Some(mutants::sample(count)?)),
+        ref rest => (rest, None),
+    };
+    let (source, all) = match rest {
+        [source @ .., "--all"] => (source, true),
+        source => (source, false),
     };
     setup(target_source(source, TEST_HELP)?)?;
     build_all()?;
+    let arguments = words.get(split + 1..).unwrap_or_default();
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    cargo.current_dir(image::root()).arg("test").args(words.get(split + 1..).unwrap_or_default());
-    process::must(cargo.env("STEER_ASSIST_REQUIRE_QEMU", "1"), Duration::from_secs(4800))?;
+    cargo.current_dir(image::root()).arg("test").args(arguments).env("STEER_ASSIST_REQUIRE_QEMU", "1");
+    if all {
+        let separator = (!arguments.contains(&"--")).then_some("--");
+        cargo.env("STEER_ASSIST_SLOW", "1").args(separator).arg("--include-ignored");
+    }
+    progress::must_whenever(&mut cargo)?;
     sample.map_or(Ok(()), |sample| mutants::mutants(Some(sample), &[]))
 }
 

@@ -1,6 +1,7 @@
-//! Other programs, never without a time limit.
+//! Other programs, with a time limit.
 
 use crate::Result;
+use std::fmt::Display;
 use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::thread::{JoinHandle, sleep, spawn};
@@ -38,7 +39,16 @@ pub fn capture(command: &mut Command, limit: Duration) -> Result<Outcome> {
 /// It can't be started, did not end within the limit and was killed, or failed.
 pub fn must(command: &mut Command, limit: Duration) -> Result<()> {
     let mut child = start(command.stdin(Stdio::null()))?;
-    match wait(&mut child, limit) {
+    let outcome = wait(&mut child, limit);
+    ended(command, outcome)
+}
+
+/// Success, or what the program ended with.
+pub(crate) fn ended(
+    command: &Command,
+    outcome: std::result::Result<Option<i32>, impl Display>,
+) -> Result<()> {
+    match outcome {
         Ok(Some(0)) => Ok(()),
         Ok(status) => {
             Err(format!("{command:?} failed ({})", status.map_or("signal".into(), |s| s.to_string())))
@@ -47,7 +57,7 @@ pub fn must(command: &mut Command, limit: Duration) -> Result<()> {
     }
 }
 
-fn start(command: &mut Command) -> Result<Child> {
+pub(crate) fn start(command: &mut Command) -> Result<Child> {
     command.spawn().map_err(|e| format!("can't start {:?}: {e}", command.get_program()))
 }
 

@@ -1,4 +1,4 @@
-//! What the images take of the chip, and whether the documented numbers are true.
+//! What the images take of the chip, whether the documented numbers are true, and what no image may contain.
 
 use xtask::document::{over_budget, path, stale, text};
 use xtask::{image, instructions, size};
@@ -46,5 +46,28 @@ fn every_image_carries_its_identity() {
         let commit = at.map(|at| &bytes[at + identity.len()..][..7]);
         let known = |commit: &[u8]| commit == b"unknown" || commit.iter().all(u8::is_ascii_hexdigit);
         assert!(commit.is_some_and(known), "{}", image.name);
+    }
+}
+
+/// Situation: the built images, in whose panic messages the names of source files stand.
+/// Action: look in the bytes that are flashed for the clone's folder and cargo's.
+/// Must hold: none is there, so that the same source gives the same bytes in any folder; a source file's name is, so that
+/// the search looks at the right bytes.
+#[test]
+fn no_image_names_a_folder_of_this_machine() {
+    if !image::ready() {
+        return;
+    }
+    image::build("board-stm32f405").expect("the board's image builds");
+    let folders = [Some(image::root().to_owned()), image::cargo_home(), std::env::home_dir()];
+    let folders: Vec<String> =
+        folders.into_iter().flatten().map(|folder| folder.display().to_string()).collect();
+    let contain = |bytes: &[u8], word: &str| bytes.windows(word.len()).any(|w| w == word.as_bytes());
+    for image in image::IMAGES {
+        let bytes = image::loaded(&image::path(image.name)).unwrap();
+        for folder in &folders {
+            assert!(!contain(&bytes, folder), "{}: {folder}", image.name);
+        }
+        assert!(contain(&bytes, "src/"), "{}: no source file's name", image.name);
     }
 }

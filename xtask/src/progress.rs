@@ -1,0 +1,95 @@
+//! A program that may take as long as it needs: what it is doing is said from time to time.
+
+use crate::Result;
+use crate::process::{ended, start};
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Between two lines about a program that goes on.
+const SAID_EVERY: Duration = Duration::from_secs(300);
+/// Between two looks at the programs that it started.
+const LOOK: Duration = Duration::from_millis(500);
+
+/// Runs a program that writes to the terminal itself, without a time limit; anything but success is an error. Every five
+/// minutes a line on standard error names the programs that it started and for how long they have been running.
+///
+/// # Errors
+/// It can't be started, or failed.
+pub fn must_whenever(command: &mut Command) -> Result<()> {
+    let mut child = start(command.stdin(Stdio::null()))?;
+    let (begin, mut said) = (Instant::now(), Instant::now());
+    let mut running: Vec<(String, Instant)> = Vec::new();
+    loop {
+        match child.try_wait() {
+            Ok(None) => sleep(LOOK),
+            outcome => return ended(command, outcome.map(|status| status.and_then(|status| status.code()))),
+        }
+        follow(&mut running, started_by(child.id()));
+        if said.elapsed() >= SAID_EVERY {
+            said = Instant::now();
+            eprintln!("xtask: after {}: {}", minutes(begin.elapsed()), described(&running));
+        }
+    }
+}
+
+/// Keeps since when each is running.
+fn follow(running: &mut Vec<(String, Instant)>, now: Vec<String>) {
+    running.retain(|(name, _)| now.contains(name));
+    for name in now {
+        if running.iter().all(|(known, _)| *known != name) {
+            running.push((name, Instant::now()));
+        }
+    }
+}
+
+fn described(running: &[(String, Instant)]) -> String {
+    let each = running.iter().map(|(name, since)| format!("{name} for {}", minutes(since.elapsed())));
+    let each: Vec<String> = each.collect();
+    if each.is_empty() { "still running".into() } else { format!("running {}", each.join(", ")) }
+}
+
+fn minutes(time: Duration) -> String {
+    let seconds = time.as_secs();
+    format!("{} min {:02} s", seconds / 60, seconds % 60)
+}
+
+/// The commands of the programs that a process started, as Linux lists them; elsewhere none.
+fn started_by(process: u32) -> Vec<String> {
+    // A child is listed with the thread that started it.
+    let threads = std::fs::read_dir(format!("/proc/{process}/task")).into_iter().flatten().flatten();
+    let children = threads.filter_map(|thread| std::fs::read_to_string(thread.path().join("children")).ok());
+    let children: String = children.collect();
+    let command = |child| std::fs::read(format!("/proc/{child}/cmdline")).unwrap_or_default();
+    children.split_whitespace().map(|child| named(&command(child))).collect()
+}
+
+/// A program and the first of its arguments that says what it works on: a crate of the compiler's.
+fn named(command: &[u8]) -> String {
+    let words: Vec<_> = command.split(|byte| *byte == 0).map(String::from_utf8_lossy).collect();
+    let program = words.first().map_or("", |word| word.rsplit('/').next().unwrap_or_default());
+    let crate_name = words.iter().position(|word| word == "--crate-name").and_then(|at| words.get(at + 1));
+    crate_name.map_or_else(|| program.into(), |name| format!("{program} {name}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Situation: this program, which starts another. Action: look at what it started. Must hold: the other is named, with no
+    /// path; it is gone from the list when it has ended, and what goes on keeps its time.
+    #[test]
+    fn programs_are_named_while_they_run() {
+        let mut child = Command::new("sleep").arg("60").spawn().unwrap();
+        let mut running = Vec::new();
+        follow(&mut running, started_by(std::process::id()));
+        let known = cfg!(target_os = "linux");
+        assert_eq!(described(&running).contains("sleep for 0 min 0"), known, "{running:?}");
+        child.kill().unwrap();
+        child.wait().unwrap();
+        follow(&mut running, started_by(std::process::id()));
+        assert!(!described(&running).contains("sleep"), "{running:?}");
+        assert_eq!(named(b"/a/b/rustc\0--crate-name\0sil\0"), "rustc sil");
+        assert_eq!(minutes(Duration::from_secs(3725)), "62 min 05 s");
+    }
+}

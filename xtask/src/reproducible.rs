@@ -1,0 +1,87 @@
+//! Whether an image's bytes depend on the source and the compiler only: clones in three folders, compared.
+
+use crate::image::{IMAGES, loaded, root};
+use crate::process::{capture, must};
+use crate::{Result, image};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+/// Names of different length. Each clone has its own `CARGO_HOME`, so that the crates lie elsewhere, too.
+const FOLDERS: [&str; 3] =
+    ["a", "another-folder", "a-folder-whose-name-is-much-longer-than-those-of-the-others"];
+
+const BUILD: Duration = Duration::from_secs(3600);
+const GIT: Duration = Duration::from_secs(120);
+
+/// Clones the commit of the work tree three times, gives two of the clones a commit of their own, builds all images in
+/// each, and compares the bytes that would be flashed, the commit's name left out.
+///
+/// # Errors
+/// A build failed, or two clones disagree: the images and the number of bytes that differ.
+pub fn reproducible() -> Result<()> {
+    let place = std::env::temp_dir().join(format!("steer-assist-{}", std::process::id()));
+    let outcome = compare(&place);
+    // What is left there is of no more use, whatever the outcome.
+    let _ = std::fs::remove_dir_all(&place);
+    outcome
+}
+
+fn compare(place: &Path) -> Result<()> {
+    let clones = FOLDERS.map(|name| clone(&place.join(name), name));
+    let [first, rest @ ..] = clones;
+    let (first, mut apart) = (first?, Vec::new());
+    for other in rest {
+        for ((image, one), other) in IMAGES.iter().zip(&first).zip(&other?) {
+            let differing =
+                one.iter().zip(other).filter(|(a, b)| a != b).count() + one.len().abs_diff(other.len());
+            println!("{}: {} bytes, {differing} differ", image.name, one.len());
+            if differing > 0 {
+                apart.push(image.name);
+            }
+        }
+    }
+    if apart.is_empty() { Ok(()) } else { Err(format!("not the same in every folder: {}", apart.join(", "))) }
+}
+
+/// The images' bytes in a new clone, without the commit's name.
+fn clone(folder: &Path, name: &str) -> Result<Vec<Vec<u8>>> {
+    let git = |arguments: &[&str]| {
+        let mut git = Command::new("git");
+        git.arg("-C").arg(folder).args(["-c", "user.name=xtask", "-c", "user.email=xtask"]).args(arguments);
+        capture(&mut git, GIT)
+    };
+    must(Command::new("git").args(["clone", "--quiet"]).arg(root()).arg(folder), GIT)?;
+    git(&["commit", "--quiet", "--allow-empty", "--message", name])?;
+    let commit = git(&["rev-parse", "--short=12", "HEAD"])?.stdout;
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    cargo.current_dir(folder).args(["xtask", "firmware"]).env("CARGO_HOME", cargo_home(folder)?);
+    must(&mut cargo, BUILD)?;
+    IMAGES
+        .iter()
+        .map(|image| Ok(without(&loaded(&image::path_in(folder, image.name))?, commit.trim())))
+        .collect()
+}
+
+/// A `CARGO_HOME` beside the clone that shares the downloads of the real one.
+fn cargo_home(folder: &Path) -> Result<PathBuf> {
+    let home = folder.with_extension("cargo-home");
+    let make = || {
+        std::fs::create_dir_all(&home)?;
+        let real = image::cargo_home().unwrap_or_default();
+        std::os::unix::fs::symlink(real.join("registry"), home.join("registry"))
+    };
+    make().map_err(|why| format!("{}: {why}", home.display()))?;
+    Ok(home)
+}
+
+/// The bytes with zeros in place of the word.
+fn without(bytes: &[u8], word: &str) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    let places = bytes.windows(word.len()).enumerate().filter(|(_, w)| *w == word.as_bytes());
+    let places: Vec<usize> = places.map(|(at, _)| at).collect();
+    for at in places {
+        bytes[at..at + word.len()].fill(0);
+    }
+    bytes
+}
