@@ -23,3 +23,4 @@ pub mod published;
 pub mod riders;
 pub mod rides;
 pub mod tape;
+pub mod wait;

@@ -3,7 +3,6 @@
 use crate::{Result, qemu, rides};
 use control::{Config, SensorFrame};
 use std::str::FromStr;
-use std::time::Duration;
 
 /// The most instructions a step may take, of the 168,000 clock cycles of a period.
 pub const BUDGET: u32 = 3000;
@@ -77,7 +76,7 @@ pub fn counts() -> Result<Vec<Count>> {
         rides.iter().map(|(_, config, ride)| (*config, *ride)).collect();
     let directory = qemu::directory("instructions")?;
     std::fs::write(directory.join("rides.bin"), rides::encode(&files)).map_err(|e| e.to_string())?;
-    let outcome = qemu::run("qemu-instructions", &[], &directory, qemu::COUNTED, Duration::from_secs(300))?;
+    let outcome = qemu::run("qemu-instructions", &[], &directory, qemu::COUNTED, qemu::LIMIT)?;
     let names = rides.iter().map(|(name, ..)| (*name, BUDGET));
     let names = names.chain(MOTOR.map(|name| (name, MOTOR_BUDGET)));
     let lines = outcome.stdout.lines().filter(|line| field::<u32>(line, "steps").is_some());

@@ -24,7 +24,7 @@ pub fn sample(count: &str) -> Result<usize> {
 /// cargo-mutants is missing, or a mutant survived, did not end in time, or the cards fail without one.
 pub fn mutants(sample: Option<usize>, arguments: &[&str]) -> Result<()> {
     let mut all = cargo_mutants(arguments);
-    let outcome = capture(all.arg("--list"), Duration::from_secs(60))?;
+    let outcome = capture(all.arg("--list"), Duration::from_secs(600))?;
     if outcome.status != Some(0) {
         let missing = outcome.stderr.contains("no such command");
         return Err(if missing { MISSING.into() } else { outcome.stderr });

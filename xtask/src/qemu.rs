@@ -2,9 +2,13 @@
 
 use crate::process::{Outcome, capture};
 use crate::{Result, image};
-use std::path::Path;
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
+
+/// Longer than any image here takes, however busy the machine.
+pub const LIMIT: Duration = Duration::from_secs(1800);
 
 /// Simulated time: an instruction lasts 2^5 ns, 31,250 of them a millisecond.
 pub const TIMED: Option<u8> = Some(5);
@@ -36,15 +40,35 @@ pub fn run(
     capture(qemu.arg("-kernel").arg(image::path(image)), limit)
 }
 
-/// An empty directory for one run's files, under `target`: what is left there after a failure can
-/// be looked at.
+/// A directory for one run's files, under `target`. It goes with this value, but not while a test fails: what is left
+/// then can be looked at.
+pub struct Directory(PathBuf);
+
+impl Deref for Directory {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for Directory {
+    fn drop(&mut self) {
+        if !std::thread::panicking() {
+            // What can't be removed is in nobody's way.
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+}
+
+/// An empty directory, which no other program uses.
 ///
 /// # Errors
 /// It can't be made.
-pub fn directory(name: &str) -> Result<std::path::PathBuf> {
-    let directory = image::root().join("target/qemu").join(name);
+pub fn directory(name: &str) -> Result<Directory> {
+    let directory = image::root().join("target/qemu").join(format!("{name}-{}", std::process::id()));
     // There may be none yet.
     let _ = std::fs::remove_dir_all(&directory);
     std::fs::create_dir_all(&directory).map_err(|e| format!("{}: {e}", directory.display()))?;
-    Ok(directory)
+    Ok(Directory(directory))
 }

@@ -56,7 +56,7 @@ fn add_target(source: TargetSource) -> Result<()> {
     };
     let debian = || {
         let script = root().join("xtask/setup-targets.sh");
-        must(Command::new("bash").arg(script).arg(TARGET), Duration::from_secs(1200))
+        must(Command::new("bash").arg(script).arg(TARGET), Duration::from_secs(2 * 3600))
     };
     // Cargo does not notice another `core` of the same release: nothing built with an earlier one may
     // stay. There may be nothing.
@@ -79,7 +79,7 @@ fn add_tools() -> Result<()> {
     let apt = |arguments: &[&str]| {
         let mut apt = Command::new("apt-get");
         apt.env("DEBIAN_FRONTEND", "noninteractive").args(arguments);
-        must(&mut apt, Duration::from_secs(900))
+        must(&mut apt, Duration::from_secs(3600))
     };
     apt(&["update", "-qq"])?;
     apt(&[&["install", "-y", "-qq", "--no-install-recommends"], packages.as_slice()].concat())

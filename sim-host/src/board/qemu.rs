@@ -15,7 +15,7 @@ use std::time::Duration;
 /// Longest that an exchange may take, a thousand times what it does.
 pub const LIMIT: Duration = Duration::from_secs(10);
 /// Longest from the end of its output to its own end \[ms\].
-const GRACE_MS: u32 = 1000;
+const GRACE_MS: u32 = 10_000;
 /// Most bytes kept of what the board writes for people: its last words.
 const KEPT: usize = 1 << 14;
 

@@ -2,11 +2,12 @@
 #![cfg(target_os = "linux")]
 
 use serde_json::Value;
+use std::io::Read;
 use std::os::unix::process::ExitStatusExt;
 use std::process::{Child, Command, Stdio};
-use std::thread::sleep;
 use std::time::{Duration, Instant};
 use tests::cli::{Bench, Run};
+use tests::wait::until_used;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 /// Many short columns, together far more than the test waits for.
@@ -16,24 +17,21 @@ const LONG: &str = "basin --speeds 6 --time-limit 3600 --max-rate 0.5 --scan-ste
 
 /// Waits until the child has computed for a while.
 fn wait_for_work(child: &Child) {
-    let stat = format!("/proc/{}/stat", child.id());
-    let begin = Instant::now();
-    loop {
-        let text = std::fs::read_to_string(&stat).expect("the program runs");
-        let (_, fields) = text.rsplit_once(')').expect("a name in parentheses");
-        // The twelfth field after the name is the user time in hundredths of a second.
-        let used: u32 = fields.split_whitespace().nth(11).and_then(|f| f.parse().ok()).expect("a time");
-        if used >= 30 {
-            return;
-        }
-        assert!(begin.elapsed() < Duration::from_secs(30), "it does nothing");
-        sleep(Duration::from_millis(5));
-    }
+    until_used(child, 0.3);
 }
 
 fn press_ctrl_c(child: &Child) {
     let kill = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status();
     assert!(kill.expect("sh runs").success());
+}
+
+/// Reads until these words have come.
+fn wait_for_word(from: &mut impl Read, word: &str) {
+    let (mut text, mut byte) = (Vec::new(), [0]);
+    while !text.ends_with(word.as_bytes()) {
+        from.read_exact(&mut byte).unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&text)));
+        text.extend(byte);
+    }
 }
 
 fn spawn(bench: &Bench, line: &str) -> Child {
@@ -77,15 +75,16 @@ fn an_interrupted_basin_keeps_what_is_done() {
 fn a_second_ctrl_c_quits_at_once_and_leaves_nothing() {
     let bench = Bench::new(PROGRAM);
     bench.write("old.json", "older result");
-    let child = spawn(&bench, &format!("{LONG} --json old.json --csv new.csv"));
+    let mut child = spawn(&bench, &format!("{LONG} --json old.json --csv new.csv"));
     wait_for_work(&child);
     let begin = Instant::now();
     press_ctrl_c(&child);
-    sleep(Duration::from_millis(200));
+    wait_for_word(child.stderr.as_mut().expect("piped"), "again to quit at once");
     press_ctrl_c(&child);
     let run = Run::from(child.wait_with_output().unwrap());
     assert_eq!(run.code, Some(130), "{run:?}");
-    assert!(begin.elapsed() < Duration::from_secs(5));
+    // Far less than the column takes.
+    assert!(begin.elapsed() < Duration::from_secs(30), "{:?}", begin.elapsed());
     assert_eq!((bench.files(), bench.read("old.json").as_str()), (vec!["old.json".into()], "older result"));
 }
 
@@ -97,7 +96,7 @@ fn a_killed_run_leaves_nothing() {
     let bench = Bench::new(PROGRAM);
     for line in ["ride --speed 6 --time-limit 3600", LONG] {
         let mut child = spawn(&bench, &format!("{line} --json new.json --csv new.csv"));
-        sleep(Duration::from_millis(300));
+        wait_for_work(&child);
         child.kill().unwrap();
         assert_eq!(child.wait().unwrap().signal(), Some(9), "{line}: over before it was killed");
         assert_eq!(bench.files(), [""; 0], "{line}");

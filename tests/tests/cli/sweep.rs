@@ -9,10 +9,11 @@ use sim_host::sweep::Axis;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Child, Stdio};
-use std::time::{Duration, Instant};
+
 use tests::cli::{Bench, repository};
 use tests::draws::runner;
 use tests::json_schema::violations;
+use tests::wait::until;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 /// Four cells of two columns, coarse and short.
@@ -79,14 +80,11 @@ fn a_cell_is_what_basin_finds() {
 
 /// Waits until a cell of the folder is done.
 fn wait_for_unit(child: &mut Child, units: &Path) {
-    let begin = Instant::now();
-    while !std::fs::read_dir(units)
-        .is_ok_and(|mut dir| dir.any(|e| e.is_ok_and(|e| e.path().extension().is_some_and(|x| x == "json"))))
-    {
-        assert!(begin.elapsed() < Duration::from_secs(60), "it does nothing");
+    let is_done = |entry: std::fs::DirEntry| entry.path().extension().is_some_and(|x| x == "json");
+    until("a cell", || {
         assert!(child.try_wait().unwrap().is_none(), "over before a cell is done");
-        std::thread::sleep(Duration::from_millis(2));
-    }
+        std::fs::read_dir(units).ok()?.flatten().any(is_done).then_some(())
+    });
 }
 
 /// Situation: a sweep of sixty cells.

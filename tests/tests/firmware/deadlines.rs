@@ -1,6 +1,5 @@
 //! The 1 kHz task in simulated time: every period its step, every step in its period.
 
-use std::time::Duration;
 use xtask::instructions::field;
 use xtask::process::Outcome;
 use xtask::{image, qemu};
@@ -10,7 +9,7 @@ const EVERY_MS: u32 = 100;
 
 fn fly(name: &str, arguments: &[&str]) -> Outcome {
     let directory = qemu::directory(name).unwrap();
-    qemu::run("qemu-control", arguments, &directory, qemu::TIMED, Duration::from_secs(120)).unwrap()
+    qemu::run("qemu-control", arguments, &directory, qemu::TIMED, qemu::LIMIT).unwrap()
 }
 
 /// The image's last line.

@@ -1,6 +1,5 @@
 //! Whatever goes wrong on the chip ends with a report and a status of its own.
 
-use std::time::Duration;
 use xtask::{image, qemu};
 
 /// Situation: the image that fails on purpose.
@@ -20,8 +19,7 @@ fn every_failure_is_reported_and_none_exits_with_success() {
         ("interrupt", 103, "stray interrupt"),
     ] {
         let directory = qemu::directory("fault").unwrap();
-        let outcome =
-            qemu::run("qemu-fault", &[failure], &directory, qemu::TIMED, Duration::from_secs(60)).unwrap();
+        let outcome = qemu::run("qemu-fault", &[failure], &directory, qemu::TIMED, qemu::LIMIT).unwrap();
         assert_eq!(outcome.status, Some(status), "{failure}: {outcome:?}");
         assert!(outcome.stdout.contains(report), "{failure}: {outcome:?}");
         assert!(outcome.stdout.starts_with("qemu-fault "), "{failure}: {outcome:?}");
@@ -46,8 +44,7 @@ fn a_bad_file_of_rides_is_refused() {
     ] {
         let directory = qemu::directory(name).unwrap();
         std::fs::write(directory.join("rides.bin"), bytes).unwrap();
-        let outcome =
-            qemu::run("qemu-replay", &[], &directory, qemu::UNTIMED, Duration::from_secs(60)).unwrap();
+        let outcome = qemu::run("qemu-replay", &[], &directory, qemu::UNTIMED, qemu::LIMIT).unwrap();
         assert_eq!(outcome.status, Some(2), "{outcome:?}");
         assert!(outcome.stdout.contains(reason), "{outcome:?}");
         assert_eq!(std::fs::read(directory.join("commands.bin")).unwrap(), Vec::<u8>::new());

@@ -6,12 +6,9 @@ use control::{Config, SensorFrame};
 use expect_test::{ExpectFile, expect_file};
 use std::fmt::Write;
 use std::path::Path;
-use std::time::Duration;
 use xtask::instructions::field;
 use xtask::process::Outcome;
 use xtask::{image, qemu, rides};
-
-const LIMIT: Duration = Duration::from_secs(120);
 
 /// What changes from commit to commit, or from QEMU to QEMU, and means nothing here.
 const VARIES: [&str; 3] = ["worst_us=", "sp=", "stack_left="];
@@ -39,7 +36,7 @@ fn said<'a>(arguments: &str, lines: impl Iterator<Item = &'a str>, status: &str)
 }
 
 fn run(image: &str, arguments: &[&str], directory: &Path) -> String {
-    let outcome = qemu::run(image, arguments, directory, qemu::TIMED, LIMIT).unwrap();
+    let outcome = qemu::run(image, arguments, directory, qemu::TIMED, qemu::LIMIT).unwrap();
     let Outcome { status, stdout, stderr } = &outcome;
     let lines = stdout.lines().chain(stderr.lines());
     said(&format!("{image} {}", arguments.join(" ")), lines, &format!("status {status:?}"))
@@ -69,7 +66,7 @@ fn every_image_says_what_it_said() {
     let ride = rides::encode(&[(&Config::product(), &[SensorFrame::missing(); 300])]);
     std::fs::write(empty.join("rides.bin"), &ride).unwrap();
     let whole = run("qemu-replay", &[], &empty);
-    let counted = qemu::run("qemu-instructions", &[], &empty, qemu::COUNTED, LIMIT).unwrap();
+    let counted = qemu::run("qemu-instructions", &[], &empty, qemu::COUNTED, qemu::LIMIT).unwrap();
     assert!(counted.stdout.contains("steps=300 mean="), "{counted:?}");
     std::fs::write(empty.join("rides.bin"), &ride[..ride.len() - 1]).unwrap();
     let cut = run("qemu-replay", &[], &empty);

@@ -7,7 +7,7 @@ use link::message::Message;
 use link::report::FaultKind;
 use sim_host::board::Lockstep;
 use sim_host::board::qemu::Qemu;
-use std::time::Duration;
+use tests::wait::LONG;
 use xtask::{image, rides};
 
 /// What a fault record tells.
@@ -54,8 +54,7 @@ impl Rig {
 
     /// Started with these words; this configuration rides.
     pub(crate) fn with(words: &[&str], config: &Config) -> Self {
-        let board =
-            Qemu::start(&image::path("qemu-pil"), words, Duration::from_secs(60)).expect("the image starts");
+        let board = Qemu::start(&image::path("qemu-pil"), words, LONG).expect("the image starts");
         let mut rig = Self {
             board,
             motor: Decoder::default(),

@@ -5,18 +5,19 @@ use super::link::{commands_lost_and_late, sensors_lost_and_late};
 use control::Mode;
 use sim_host::basin::{Search, basin};
 use sim_host::board::compare::{same_basin, same_ride};
-use sim_host::board::qemu::{LIMIT, Qemu};
+use sim_host::board::qemu::Qemu;
 use sim_host::board::{BoardError, Controller, Lockstep};
 use std::path::Path;
 use std::time::Duration;
 use tests::fake_board::FakeBoard;
 use tests::pil::{FALL, KNOCK, Ridden, link_faults, product, ridden, varied};
 use tests::tape::Taped;
+use tests::wait::LONG;
 use xtask::image;
 
 /// The image with words as its arguments, just started.
 pub(crate) fn started(words: &[&str]) -> Qemu {
-    Qemu::start(&image::path("qemu-pil"), words, LIMIT).unwrap_or_else(|why| panic!("{why}"))
+    Qemu::start(&image::path("qemu-pil"), words, LONG).unwrap_or_else(|why| panic!("{why}"))
 }
 
 /// Situation: rides with exact and with noisy sensors, with faults, with a rider, one that falls.
@@ -98,8 +99,7 @@ fn a_basin_on_chips_has_the_same_bits() {
     }
     let (conditions, search) = coarse();
     let search = Search { speeds: vec![2.0, 4.0], scan_step: 4.0, tolerance: 1.0, ..search };
-    let there =
-        on_boards(&conditions, &search, || Qemu::start(&image::path("qemu-pil"), &[], LIMIT)).unwrap();
+    let there = on_boards(&conditions, &search, || Qemu::start(&image::path("qemu-pil"), &[], LONG)).unwrap();
     let here = basin(&conditions, &search, |_| (), || false).unwrap();
     same_basin(&here, &there).unwrap();
 }
@@ -116,18 +116,18 @@ fn what_is_no_board_in_the_loop_is_told() {
     if !image::ready() {
         return;
     }
-    let prints = failure("qemu-control", &["seconds=1"], LIMIT);
+    let prints = failure("qemu-control", &["seconds=1"], LONG);
     assert!(prints.contains("no chunk") && prints.contains("version"), "{prints}");
     let slow = failure("qemu-pil", &[], Duration::from_millis(2));
     assert!(["qemu-pil", "did not answer within 2ms"].iter().all(|word| slow.contains(word)), "{slow}");
-    let ends = failure("qemu-pil", &["mishap=none-of-them", "at_ms=5"], LIMIT);
+    let ends = failure("qemu-pil", &["mishap=none-of-them", "at_ms=5"], LONG);
     assert!(["qemu-pil", "ended", "no such mishap"].iter().all(|word| ends.contains(word)), "{ends}");
 }
 
 /// Situation: no image. Action: start it. Must hold: the error names the file and how it is built.
 #[test]
 fn a_missing_image_is_told() {
-    let why = Qemu::start(Path::new("no/such/image"), &[], LIMIT).expect_err("there is none");
+    let why = Qemu::start(Path::new("no/such/image"), &[], LONG).expect_err("there is none");
     assert!(matches!(&why, BoardError::NoImage(_)));
     let why = why.to_string();
     assert!(why.contains("no/such/image") && why.contains("cargo xtask firmware"), "{why}");

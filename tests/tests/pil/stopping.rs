@@ -4,9 +4,8 @@
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
 use tests::cli::{Bench, Run};
+use tests::wait::{until, used_s};
 use xtask::image;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
@@ -17,31 +16,15 @@ fn spawn(bench: &Bench, line: &str) -> Child {
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts")
 }
 
-/// Waits for something, half a minute at most.
-fn wait_for<T>(mut look: impl FnMut() -> Option<T>) -> T {
-    let begin = Instant::now();
-    loop {
-        if let Some(found) = look() {
-            return found;
-        }
-        assert!(begin.elapsed() < Duration::from_secs(30), "it never comes");
-        sleep(Duration::from_millis(5));
-    }
-}
-
 /// The emulator that a program started, once it has computed for a while.
 fn emulator(child: &Child) -> PathBuf {
     let tasks = PathBuf::from(format!("/proc/{}/task", child.id()));
-    wait_for(|| {
+    until("an emulator at work", || {
         let threads = std::fs::read_dir(&tasks).expect("the program runs").flatten();
         let children =
             threads.filter_map(|thread| std::fs::read_to_string(thread.path().join("children")).ok());
         let one = children.flat_map(|ids| ids.split_whitespace().next().map(str::to_owned)).next()?;
-        let place = Path::new("/proc").join(one);
-        let stat = std::fs::read_to_string(place.join("stat")).ok()?;
-        // The twelfth field after the name is the user time in hundredths of a second.
-        let used: u32 = stat.rsplit_once(')')?.1.split_whitespace().nth(11)?.parse().ok()?;
-        (used >= 100).then_some(place)
+        (used_s(one.parse().ok()?)? >= 1.0).then(|| Path::new("/proc").join(one))
     })
 }
 
@@ -83,5 +66,5 @@ fn an_emulator_does_not_outlive_its_program() {
     let emulator = emulator(&child);
     signal("KILL", &child);
     child.wait().unwrap();
-    wait_for(|| (!emulator.exists()).then_some(()));
+    until("the emulator's end", || (!emulator.exists()).then_some(()));
 }
