@@ -22,5 +22,6 @@ pub mod pty;
 pub mod published;
 pub mod riders;
 pub mod rides;
+pub mod sets;
 pub mod tape;
 pub mod wait;

@@ -7,6 +7,7 @@ use sim_host::study::trial::Trial;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicU32, Ordering};
 use tests::cli::Bench;
+use tests::sets::whole;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 /// Three speeds, a scan that ends early.
@@ -36,18 +37,20 @@ fn found(plan: &Plan) -> Found {
 }
 
 /// Situation: a small search, begun with a weak law.
-/// Action: run it twice, on one thread and on two; with another seed; with fewer schedules.
+/// Action: run it on one thread and on two, by default with fewer schedules on one.
 /// Must hold: the same to the bit; as many schedules as asked; never worse than the start, and better at the end;
 /// a shorter search is the beginning of a longer; every improvement is one.
 #[test]
 fn a_design_is_the_same_for_a_seed_and_a_number_of_schedules() {
     let first = found(&plan(1, 24));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    assert_eq!(pool.install(|| found(&plan(1, 24))), first);
+    if whole() {
+        assert_eq!(pool.install(|| found(&plan(1, 24))), first);
+    }
     assert!(first.complete && first.evaluations == 24);
     assert!(first.worst_area > first.start_area + 0.3, "{first:?}");
     assert!(first.history.windows(2).all(|w| w[0].0 < w[1].0 && w[0].1 < w[1].1), "{first:?}");
-    let shorter = found(&plan(1, 12));
+    let shorter = pool.install(|| found(&plan(1, 12)));
     assert_eq!(first.history[..shorter.history.len()], shorter.history);
     assert!(first.gains.iter().all(|gain| (-10.0..=40.0).contains(gain)));
     let judged = judge(

@@ -6,6 +6,7 @@ use sim_host::basin::{Axis, Search, border};
 use sim_host::plant::Plant;
 use sim_host::ride::Conditions;
 use tests::fault_cards::{product, smart};
+use tests::sets::every;
 
 /// Forward speeds \[m/s\].
 const SPEEDS: [f64; 5] = [2.0, 3.0, 4.3, 6.0, 7.3];
@@ -43,15 +44,16 @@ fn heights(factor: f32, lost: &str) -> [f64; 3] {
 
 /// Situation: limping, the steer angle or the front wheel's speed lost; the gain right, twice and half what it should be. Action:
 /// leave none, half and all of the torque. Must hold: more torque is no less height; half leaves most of what all of it is
-/// worth.
+/// worth. By default with the right gain only.
 #[test]
 fn half_the_torque_leaves_most_of_the_use() {
-    for (factor, lost, least, most) in [
+    let cases = [
         (1.0, "steer:missing", 0.6, 0.75),
         (2.0, "steer:missing", 0.55, 0.75),
         (0.5, "steer:missing", 0.75, 0.95),
         (1.0, "front-wheel:missing", 0.85, 0.98),
-    ] {
+    ];
+    for (factor, lost, least, most) in every(3, cases) {
         let [none, half, all] = heights(factor, lost);
         assert!(none < half && half < all, "{lost}, {factor} times h");
         let worth = (half - none) / (all - none);

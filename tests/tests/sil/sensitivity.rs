@@ -25,6 +25,7 @@ fn height(conditions: &Conditions) -> f64 {
 /// more. Both ways must tell the same elasticity, which must not be nothing; quantities that the
 /// height can't depend on do not exist: all seven gains, three of the body, 26 of the bicycle.
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn elasticities_are_those_of_whole_searches() {
     let parameters = shipped("rigid_jason").parameters;
     let table = catalogue::load("smart").unwrap_or_else(|e| panic!("{e}"));

@@ -180,6 +180,7 @@ fn the_page_is_what_the_study_makes() {
 /// Must hold: at equal torque h survives more at 2 m/s in every case, at 7.5 m/s, where both laws end, both are
 /// the bicycle alone; nothing of a stopped study.
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn h_beside_the_prototypes_law() {
     let ends = prototype::search(5.5);
     assert_eq!(ends.speeds, [2.0, 7.5]);

@@ -107,6 +107,7 @@ fn ways(delay_s: f64) -> [Ahead; 3] {
 /// the border without compensation, with a lead, with the linear bicycle. The lead must win back more
 /// than half of what is lost, the model hardly more than the lead.
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn what_each_way_wins_back() {
     let mut lines = vec![Line::new(0, Ahead::Off)];
     for ms in [5, 10, 20, 30, 50] {
@@ -159,6 +160,7 @@ fn a_wrong_delay_and_another_bicycle() {
 /// Situation: the smart old rider with the law h. Action: search the border with sensors up to 50 ms
 /// late. The lead must not cost the rider anything.
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn with_the_smart_rider() {
     let mut lines = vec![Line { rider: true, ..Line::new(0, Ahead::Off) }];
     for ms in [10, 30, 50] {
@@ -175,6 +177,7 @@ fn with_the_smart_rider() {
 /// Situation: the noise of a consumer IMU. Action: search the border; ride straight on at 5 m/s and
 /// take the torque that the noise makes. The lead must still win.
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn with_noise() {
     let mut lines = Vec::new();
     for ms in [10, 30, 50] {
