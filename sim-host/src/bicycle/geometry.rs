@@ -50,6 +50,10 @@ pub struct Geometry {
     pub rear: Gyrostat,
     /// Front frame with front wheel; `com` is measured from the steer axis, at P's height along it.
     pub front: Gyrostat,
+    /// Inertia of a motor's rotor seen at the steer axis, the gear's ratio squared times its own \[kg m^2\]. It adds to
+    /// the steer's in the mass matrix; what couples the rotor to the frame's own turning is the ratio times smaller, and
+    /// left out. [`Self::new`] has none.
+    pub rotor_kg_m2: f64,
 }
 
 impl Geometry {
@@ -71,7 +75,19 @@ impl Geometry {
             (p.mF, [d3, Q[1]], p.IFxx, p.IFyy),
             (p.mH, [H[0] - d1, H[1]], tilt([p.IHxx, p.IHyy, p.IHzz, p.IHxz], s, c)),
         );
-        Self { w: p.w, rR: p.rR, rF: p.rF, lam: p.lam, g: p.g, d1, d2: Q[1], d3, rear, front }
+        Self {
+            w: p.w,
+            rR: p.rR,
+            rF: p.rF,
+            lam: p.lam,
+            g: p.g,
+            d1,
+            d2: Q[1],
+            d3,
+            rear,
+            front,
+            rotor_kg_m2: 0.0,
+        }
     }
 }
 

@@ -109,7 +109,7 @@ impl<S: Scalar> Inertia<S> {
             steer: self.steer_angular.dot(v.omega)
                 + self.steer_momentum.x * axle.x
                 + self.steer_momentum.y * axle.y
-                + v.steer * (b.front.inertia[2] + b.front.moment[0] * b.front.com[0]),
+                + v.steer * (b.front.inertia[2] + b.front.moment[0] * b.front.com[0] + b.rotor_kg_m2),
             rear_axle: v.rolling * b.rear.spin_inertia,
             front_axle: spin + about_f2 * b.front.spin_inertia,
         }

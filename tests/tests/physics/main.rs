@@ -6,6 +6,7 @@ mod newton_euler;
 mod order;
 mod pitch;
 mod published;
+mod rotor;
 mod speeds;
 mod symmetry;
 mod table1;
