@@ -32,7 +32,7 @@ pub const IMAGES: [Image; 7] = [
     Image { name: "qemu-instructions", board: "board-qemu", flash: 144 << 10, ram: 64 << 10 },
     Image { name: "qemu-fault", board: "board-qemu", flash: 64 << 10, ram: 48 << 10 },
     Image { name: "board-stm32f405", board: "board-stm32f405", flash: 256 << 10, ram: 64 << 10 },
-    Image { name: "board-stm32f405-align", board: "board-stm32f405", flash: 64 << 10, ram: 48 << 10 },
+    Image { name: "board-stm32f405-align", board: "board-stm32f405", flash: 96 << 10, ram: 48 << 10 },
 ];
 
 /// Longer than a build takes, however busy the machine.

@@ -7,7 +7,7 @@
 //! * [`message`]: what a frame can say, with [`telemetry`] and [`report`] as the larger ones;
 //! * [`leaves`]: every parameter by its [`key`], the [`law`] too; [`page`] lists them, [`parameters`]
 //!   answers what is asked of them, or with a [`refusal`];
-//! * [`store`]: the parameters in flash, as a [`record`];
+//! * [`store`]: the parameters in flash, as a [`record`], and the encoder's offset, as an [`alignment`];
 //! * [`ring`]: the last faults, in memory that keeps them through a reset;
 //! * [`sender`]: what waits to go out, and what is dropped when too much does;
 //! * [`lockstep`]: what goes over in a control period when the board is emulated.
@@ -54,6 +54,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod alignment;
 pub mod bytes;
 pub mod frame;
 pub mod key;

@@ -1,10 +1,11 @@
-//! The parameters in flash: kept whole, read back with suspicion.
+//! The parameters and the encoder's offset in flash: kept whole, read back with suspicion.
 //!
 //! A configuration is stored as one item of `sequential-storage`: after a loss of power there is the old one
 //! or the new one, never a mixture that nobody checked (a motor's old sign with the new "polarity checked").
 //! After it its number is stored. A record with a smaller number than that is an old one, laid bare by
-//! damage to a newer, and is not believed.
+//! damage to a newer, and is not believed. The same holds of the encoder's offset, in two items of its own.
 
+use crate::alignment::Alignment;
 use crate::record::{self, Applied, NoRecord, RECORD_BYTES, Record};
 use crate::words::Words;
 use control::Config;
@@ -15,10 +16,16 @@ use embedded_storage_async::nor_flash::NorFlash;
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
 
-/// The record.
-const RECORD: u8 = 1;
-/// The number of the newest record that was stored to the end.
-const NEWEST: u8 = 2;
+/// The keys of two items: what is kept, and the number of the newest that was stored to the end.
+#[derive(Clone, Copy)]
+struct Keys {
+    kept: u8,
+    newest: u8,
+}
+
+const PARAMETERS: Keys = Keys { kept: 1, newest: 2 };
+const ALIGNMENT: Keys = Keys { kept: 3, newest: 4 };
+
 /// Bytes of a page beside the items, and of the items beside the record, at words of up to 32 bytes.
 const OVERHEAD: usize = 512;
 /// Bytes that a page must have: two records, so that one can be carried over beside a new one.
@@ -117,7 +124,7 @@ pub enum NotStored {
     Flash,
 }
 
-/// Parameters in a range of flash.
+/// Parameters and the encoder's offset in a range of flash.
 pub struct Store<F: NorFlash> {
     map: MapStorage<u8, Words<F>, Cache<Uncached, Uncached, Uncached, u8>>,
 }
@@ -162,32 +169,78 @@ impl<F: NorFlash> Store<F> {
 
     /// Stores a configuration, and reads it back.
     ///
-    /// Where that fails because of damage, everything is erased and it is tried once more. The chip stands still for
-    /// as long as the flash erases; never call it while torque may flow.
+    /// Where that fails because of damage, everything but the encoder's offset is erased and it is tried once more. The
+    /// chip stands still for as long as the flash erases; never call it while torque may flow.
     ///
     /// # Errors
     /// As of [`NotStored`].
     pub async fn save(&mut self, config: &Config, room: &mut Room) -> Result<(), NotStored> {
         config.clone().plan().map_err(NotStored::Refused)?;
         let Room { record: bytes, item } = room;
-        let newest = self.number(item).await.ok().flatten().unwrap_or_default();
+        let newest = self.number(PARAMETERS, item).await.ok().flatten().unwrap_or_default();
         let before = self.record(item).await.ok().flatten();
         let number = before.map_or(0, |before| before.number).max(newest).wrapping_add(1);
         let used = record::encode(config, number, before.as_ref(), bytes).ok_or(NotStored::TooMany)?;
         let bytes = bytes.get(..used).ok_or(NotStored::TooMany)?;
-        if self.write(number, bytes, item).await.is_ok() {
+        // Before the write, after which damage may hide it.
+        let aligned = self.numbered_alignment(item).await.ok().flatten();
+        if self.write(PARAMETERS, number, bytes, item).await.is_ok() {
             return Ok(());
         }
         self.erase().await?;
-        self.write(number, bytes, item).await
+        if let Some((number, alignment)) = aligned {
+            self.write(ALIGNMENT, number, &alignment.encode(number), item).await?;
+        }
+        self.write(PARAMETERS, number, bytes, item).await
     }
 
-    /// Writes a record and its number, and reads both back.
-    async fn write(&mut self, number: u32, bytes: &[u8], item: &mut [u8]) -> Result<(), NotStored> {
-        self.map.store_item(item, &RECORD, &bytes).await.map_err(|_| NotStored::Flash)?;
-        self.map.store_item(item, &NEWEST, &number).await.map_err(|_| NotStored::Flash)?;
-        let numbered = self.number(item).await == Ok(Some(number));
-        match self.map.fetch_item::<&[u8]>(item, &RECORD).await {
+    /// The newest alignment of the encoder; `None` if none was ever stored.
+    ///
+    /// # Errors
+    /// Why what is stored is not believed.
+    pub async fn alignment(&mut self, room: &mut Room) -> Result<Option<Alignment>, Doubt> {
+        let numbered = self.numbered_alignment(&mut room.item).await?;
+        Ok(numbered.map(|(_, alignment)| alignment))
+    }
+
+    /// Stores an alignment of the encoder, and reads it back.
+    ///
+    /// Where that fails because of damage, everything but parameters that are believed is erased and it is tried once
+    /// more. The chip stands still as of [`Store::save`].
+    ///
+    /// # Errors
+    /// [`NotStored::Flash`].
+    pub async fn save_alignment(&mut self, alignment: &Alignment, room: &mut Room) -> Result<(), NotStored> {
+        let Room { record: parameters, item } = room;
+        let newest = self.number(ALIGNMENT, item).await.ok().flatten().unwrap_or_default();
+        let before = self.kept_alignment(item).await.ok().flatten();
+        let number = before.map_or(0, |(number, _)| number).max(newest).wrapping_add(1);
+        let bytes = alignment.encode(number);
+        // Before the write, after which damage may hide them.
+        let believed = self.newest(item).await.ok().flatten().map(|record| record.number);
+        let copied = self.copy(PARAMETERS, item, parameters).await;
+        if self.write(ALIGNMENT, number, &bytes, item).await.is_ok() {
+            return Ok(());
+        }
+        self.erase().await?;
+        if let (Some(number), Some(parameters)) = (believed, copied) {
+            self.write(PARAMETERS, number, parameters, item).await?;
+        }
+        self.write(ALIGNMENT, number, &bytes, item).await
+    }
+
+    /// Writes an item and its number, and reads both back.
+    async fn write(
+        &mut self,
+        keys: Keys,
+        number: u32,
+        bytes: &[u8],
+        item: &mut [u8],
+    ) -> Result<(), NotStored> {
+        self.map.store_item(item, &keys.kept, &bytes).await.map_err(|_| NotStored::Flash)?;
+        self.map.store_item(item, &keys.newest, &number).await.map_err(|_| NotStored::Flash)?;
+        let numbered = self.number(keys, item).await == Ok(Some(number));
+        match self.kept(keys, item).await {
             Ok(Some(kept)) if numbered && kept == bytes => Ok(()),
             _ => Err(NotStored::Flash),
         }
@@ -203,20 +256,54 @@ impl<F: NorFlash> Store<F> {
 
     /// The newest record, if it may be believed.
     async fn newest<'r>(&mut self, item: &'r mut [u8]) -> Result<Option<Record<'r>>, Doubt> {
-        let newest = self.number(item).await?;
-        match (self.record(item).await?, newest) {
-            (Some(record), Some(newest)) if record.number < newest => Err(Doubt::Lost),
-            (None, Some(_)) => Err(Doubt::Lost),
-            (record, _) => Ok(record),
-        }
+        let newest = self.number(PARAMETERS, item).await?;
+        let record = self.record(item).await?;
+        believed(record, |record| record.number, newest)
+    }
+
+    /// The newest alignment and its number, if it may be believed.
+    async fn numbered_alignment(&mut self, item: &mut [u8]) -> Result<Option<(u32, Alignment)>, Doubt> {
+        let newest = self.number(ALIGNMENT, item).await?;
+        let kept = self.kept_alignment(item).await?;
+        believed(kept, |(number, _)| *number, newest)
     }
 
     async fn record<'r>(&mut self, item: &'r mut [u8]) -> Result<Option<Record<'r>>, Doubt> {
-        let bytes = self.map.fetch_item::<&[u8]>(item, &RECORD).await.map_err(|_| Doubt::Unreadable)?;
+        let bytes = self.kept(PARAMETERS, item).await?;
         bytes.map(|bytes| record::decode(bytes).map_err(Doubt::NoRecord)).transpose()
     }
 
-    async fn number(&mut self, item: &mut [u8]) -> Result<Option<u32>, Doubt> {
-        self.map.fetch_item::<u32>(item, &NEWEST).await.map_err(|_| Doubt::Unreadable)
+    async fn kept_alignment(&mut self, item: &mut [u8]) -> Result<Option<(u32, Alignment)>, Doubt> {
+        let bytes = self.kept(ALIGNMENT, item).await?;
+        bytes.map(|bytes| Alignment::decode(bytes).map_err(Doubt::NoRecord)).transpose()
+    }
+
+    async fn kept<'r>(&mut self, keys: Keys, item: &'r mut [u8]) -> Result<Option<&'r [u8]>, Doubt> {
+        self.map.fetch_item::<&[u8]>(item, &keys.kept).await.map_err(|_| Doubt::Unreadable)
+    }
+
+    async fn number(&mut self, keys: Keys, item: &mut [u8]) -> Result<Option<u32>, Doubt> {
+        self.map.fetch_item::<u32>(item, &keys.newest).await.map_err(|_| Doubt::Unreadable)
+    }
+
+    /// Copies what is kept; `None` if nothing is, or it can't be read or is too long.
+    async fn copy<'t>(&mut self, keys: Keys, item: &mut [u8], to: &'t mut [u8]) -> Option<&'t [u8]> {
+        let kept = self.kept(keys, item).await.ok().flatten()?;
+        let to = to.get_mut(..kept.len())?;
+        to.copy_from_slice(kept);
+        Some(to)
+    }
+}
+
+/// What was found, unless it is older than the newest that was stored to the end.
+fn believed<T>(
+    found: Option<T>,
+    number: impl Fn(&T) -> u32,
+    newest: Option<u32>,
+) -> Result<Option<T>, Doubt> {
+    match (found, newest) {
+        (Some(found), Some(newest)) if number(&found) < newest => Err(Doubt::Lost),
+        (None, Some(_)) => Err(Doubt::Lost),
+        (found, _) => Ok(found),
     }
 }

@@ -79,6 +79,26 @@ impl Config {
         self.emf.leaves(to);
     }
 
+    /// A check value of the motor and encoder that an encoder's offset belongs to: 32 bits of FNV-1a over pole pairs,
+    /// winding, flux, and the encoder's counts and sense. Gear and sense of the steer have no part in the offset.
+    pub fn motor_id(&self) -> u32 {
+        let Self { motor, encoder, .. } = self;
+        let words = [
+            u32::from(motor.pole_pairs),
+            motor.resistance_ohm.to_bits(),
+            motor.inductance_d_h.to_bits(),
+            motor.inductance_q_h.to_bits(),
+            motor.flux_wb.to_bits(),
+            u32::from(encoder.counts),
+            u32::from(encoder.reversed),
+        ];
+        let mut id = 0x811c_9dc5_u32;
+        for byte in words.into_iter().flat_map(u32::to_le_bytes) {
+            id = (id ^ u32::from(byte)).wrapping_mul(0x0100_0193);
+        }
+        id
+    }
+
     /// Checks every value, and those that depend on each other, and readies what [`crate::step`] needs.
     ///
     /// # Errors

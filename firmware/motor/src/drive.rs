@@ -121,6 +121,8 @@ pub struct Output {
     pub steer_rate_rad_s: f32,
     /// The encoder's offset in use, to be kept as `encoder.offset_turns`.
     pub offset_turns: Option<f32>,
+    /// Whether the alignment that is asked for is over and found the offset; until something else is asked for.
+    pub aligned: bool,
 }
 
 /// One call, once each PWM period; the duty cycles are to be used for the whole of the next one. An open bridge is
@@ -162,6 +164,7 @@ pub fn step(plan: &Plan, state: &mut State, inputs: &Inputs) -> Output {
     }
     out.faults = state.faults;
     out.offset_turns = state.offset.map(Turn::signed).or(plan.config.encoder.offset_turns);
+    out.aligned = state.aligned;
     let sign = if plan.config.motor.reversed { -TAU } else { TAU };
     out.steer_rate_rad_s = sign * seen.speed_turns_s / plan.config.motor.ratio;
     out

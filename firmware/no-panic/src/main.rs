@@ -18,6 +18,7 @@ use control::{
     wire,
 };
 use core::hint::black_box;
+use link::alignment::{ALIGNMENT_BYTES, Alignment, Offset};
 use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
 use link::message::Message;
 use link::page::PAGE_BYTES;
@@ -60,6 +61,7 @@ pub extern "C" fn _start() -> ! {
         used(history.align(&black_box(Latency::default()), black_box(Aligned::default())));
         pulses_of_a_wheel();
         motor();
+        offset();
         board();
         engineer(config.clone());
         if let Ok(plan) = black_box(config).plan() {
@@ -128,6 +130,7 @@ fn pulses_of_a_wheel() {
 
 /// The current loop, told anything.
 fn motor() {
+    used(black_box(motor::example::EXAMPLE).motor_id());
     let Ok(plan) = black_box(motor::example::EXAMPLE).plan() else { return };
     let mut state = black_box(motor::State::default());
     let phases = black_box(motor::Phases::Three([0.0; 3]));
@@ -176,6 +179,14 @@ fn can() {
     used(CanMessage::Motion(Motion::of(&calibration, &sensors, &command)).frame());
     let mailbox = black_box(Mailbox { empty: true, completed: true, acknowledged: true });
     used(black_box(Counts::default()).step(mailbox));
+}
+
+/// The encoder's offset, of any bytes.
+fn offset() {
+    let found = Alignment::decode(&black_box([0; ALIGNMENT_BYTES])).ok();
+    used(found.map(|(number, alignment)| alignment.encode(number)));
+    let stored = black_box(Ok(found.map(|(_, alignment)| alignment)));
+    used(Offset::choose(black_box(None), stored, black_box(0)).turns());
 }
 
 /// The engineer's line: any bytes in, whatever they ask for, and all that goes out; the kept faults; the loop's chunks.

@@ -43,12 +43,8 @@ pub const GATE_DRIVER: Settings = Settings {
     gain: Gain::X20,
 };
 
-/// Voltage of the motor's terminals from which on the gate driver may not start rightly when it is enabled \[V\]: DRV8301
-/// data sheet, rev. F, 8.1.1.
-pub const ENABLE_V: f32 = 8.5;
-
-/// The motor: the example's, with the encoder wired here. The offset is not known until it was aligned and written down
-/// here, and without it no torque is given.
+/// The motor: the example's, with the encoder wired here. Its offset is that in flash, which alignment leaves there; one
+/// that is written down here as `encoder.offset_turns` is used instead. Without either no torque is given.
 pub const MOTOR: motor::Config = motor::Config {
     encoder: motor::encoder::EncoderConfig { counts: as5047::COUNTS, ..EXAMPLE.encoder },
     ..EXAMPLE

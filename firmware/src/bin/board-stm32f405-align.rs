@@ -1,22 +1,31 @@
-//! The image that finds the offset of the motor's encoder, once for each motor, encoder and wiring. It also sets the chip's
-//! brown-out reset, once for each board.
+//! The image that finds the offset of the motor's encoder, once for each motor, encoder and wiring, and stores it in flash.
 //!
-//! While the rider's switch is held, the motor moves the handlebar by less than a degree there and back, for 3.5 s. The
-//! offset comes over RTT; it is written down as `encoder.offset_turns` of `parts::vesc6::MOTOR`. Released, the switch
-//! opens the bridge at once. Nothing else makes torque in this image.
+//! While the rider's switch is held, the motor moves the handlebar by less than a degree there and back, for 3.5 s; then
+//! the bridge opens and the offset is stored. Held anew, the switch does it again. Released, it opens the bridge at once.
+//! Nothing else makes torque in this image.
 #![no_std]
 #![no_main]
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant, Ticker, Timer};
+use firmware::tasks::settings::Kept;
 use firmware::{board, crash};
+use link::alignment::Alignment;
 use motor::Ask;
+use parts::vesc6::MOTOR;
+use static_cell::StaticCell;
 
 /// Periods done by [`hold`].
 static PERIODS: AtomicU32 = AtomicU32::new(0);
 
+/// An offset that was found and is not stored yet \[electrical turns\].
+static FOUND: Signal<CriticalSectionRawMutex, f32> = Signal::new();
+
 #[cortex_m_rt::entry]
 fn main() -> ! {
+    static KEPT: StaticCell<Kept> = StaticCell::new();
     crash::start(board::reset_cause());
     defmt::info!(
         "{=str} start {=u32} after {=str}",
@@ -25,33 +34,38 @@ fn main() -> ! {
         crash::cause().name()
     );
     board::log_kept_fault();
-    board::start();
-    board::raise_level();
+    let motor = board::start();
+    let kept = KEPT.init(Kept::open());
+    // Not that of the program or the flash: what is shown is what was found.
+    motor.start(None);
     board::run(
         |control| control.spawn(defmt::unwrap!(hold().ok())),
-        |thread| {
-            thread.spawn(defmt::unwrap!(tell().ok()));
-            thread.spawn(defmt::unwrap!(board::watch_drive().ok()));
-        },
+        |thread| thread.spawn(defmt::unwrap!(tell(kept).ok())),
     )
 }
 
-/// Asks for the alignment while the switch is held, in place of control.
+/// Asks for one alignment each time the switch is held, in place of control.
 #[embassy_executor::task]
 async fn hold() {
     let mut release = Instant::from_millis(Instant::now().as_millis());
+    let mut found = false;
     loop {
         release += Duration::from_millis(1);
         Timer::at(release).await;
         let held = board::sense().engage;
-        board::order(if held { Ask::Align } else { Ask::Off });
+        let report = board::motor_report();
+        if let (true, false, Some(offset_turns)) = (report.aligned, found, report.offset_turns) {
+            FOUND.signal(offset_turns);
+        }
+        found = held && (found || report.aligned);
+        board::order(if held && !found { Ask::Align } else { Ask::Off });
         PERIODS.store(PERIODS.load(Relaxed).wrapping_add(1), Relaxed);
     }
 }
 
-/// Says twice a second what the motor does, and feeds the watchdog while [`hold`] is alive.
+/// Says twice a second what the motor does, stores what was found, and feeds the watchdog while [`hold`] is alive.
 #[embassy_executor::task]
-async fn tell() {
+async fn tell(kept: &'static mut Kept) {
     let mut tick = Ticker::every(Duration::from_millis(10));
     let mut seen = 0;
     for count in (0..50_u32).cycle() {
@@ -61,6 +75,9 @@ async fn tell() {
             board::feed_watchdog();
         }
         seen = periods;
+        if let Some(offset_turns) = FOUND.try_take() {
+            store(kept, offset_turns).await;
+        }
         if count == 0 {
             let report = board::motor_report();
             defmt::info!(
@@ -72,5 +89,19 @@ async fn tell() {
                 report.offset_turns
             );
         }
+    }
+}
+
+/// Stores an offset; the bridge is open, as nothing asks for anything else once it is found.
+async fn store(kept: &mut Kept, offset_turns: f32) {
+    let alignment = Alignment { offset_turns, motor_id: MOTOR.motor_id() };
+    match kept.save_alignment(&alignment).await {
+        Ok(()) => defmt::info!("encoder offset: {=f32} turns, stored", offset_turns),
+        Err(_) => {
+            defmt::error!("encoder offset: {=f32} turns, not stored: the flash did not keep it", offset_turns)
+        }
+    }
+    if let Some(program) = MOTOR.encoder.offset_turns {
+        defmt::warn!("encoder offset: that of the program is used instead: {=f32} turns", program);
     }
 }

@@ -8,6 +8,7 @@ use firmware::alive::Task;
 use firmware::tasks::settings::{self, Kept};
 use firmware::{board, crash, tasks};
 use link::report::config_hash;
+use parts::vesc6::MOTOR;
 use static_cell::StaticCell;
 
 #[cortex_m_rt::entry]
@@ -21,7 +22,7 @@ fn main() -> ! {
         crash::cause().name()
     );
     board::log_kept_fault();
-    board::start();
+    let motor = board::start();
     let kept = KEPT.init(Kept::open());
     let plan = settings::start(kept, &Config::product());
     defmt::info!(
@@ -29,6 +30,9 @@ fn main() -> ! {
         config_hash(plan.config()),
         defmt::Display2Format(kept.found())
     );
+    let offset = kept.choose_offset(MOTOR.encoder.offset_turns, MOTOR.motor_id());
+    defmt::info!("encoder offset: {}", defmt::Display2Format(&offset));
+    motor.start(offset.turns());
     board::run(
         |control| control.spawn(defmt::unwrap!(tasks::control(plan).ok())),
         |thread| {

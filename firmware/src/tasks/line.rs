@@ -35,6 +35,9 @@ pub async fn line(image: Image, kept: &'static mut Kept) {
         crash::cause().name(),
         kept.found()
     );
+    if let Some(offset) = kept.offset() {
+        let _ = write!(words, "; encoder offset: {offset}");
+    }
     waiting.tell(&Message::Log(&words));
     let mut faults = retained::with(|ring| ring::noted(ring)).unwrap_or(0);
     let mut tell = Ticker::every(TELL);

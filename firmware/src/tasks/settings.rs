@@ -1,13 +1,16 @@
-//! The configuration: the one the controller runs with, the next one on its way to it, the one in flash.
+//! The configuration: the one the controller runs with, the next one on its way to it, the one in flash. Beside that in
+//! flash, the offset of the motor's encoder.
 
 use super::latest;
 use crate::{alive, board};
 use ::control::{Config, Mode, Plan};
 use core::cell::RefCell;
+use embassy_futures::block_on;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use link::Store;
-use link::store::{Found, NotStored, Room};
+use link::alignment::{Alignment, Offset};
+use link::store::{Doubt, Found, NotStored, Room};
 use static_cell::{ConstStaticCell, StaticCell};
 
 /// A plan that the controller has not taken yet.
@@ -72,12 +75,13 @@ pub(super) fn take(mode: Mode) -> Option<(Plan, u32)> {
     })
 }
 
-/// The stored parameters, and what they are worked on in.
+/// The stored parameters and encoder's offset, and what they are worked on in.
 pub struct Kept {
     /// The flash's pages; `None` if the board has none.
     store: Option<Store<board::Flash>>,
     room: &'static mut Room,
     found: Found,
+    offset: Option<Offset>,
 }
 
 impl Kept {
@@ -88,7 +92,7 @@ impl Kept {
     pub fn open() -> Self {
         static ROOM: ConstStaticCell<Room> = ConstStaticCell::new(Room::new());
         let store = board::flash().and_then(|(flash, range)| Store::new(flash, range));
-        Self { store, room: ROOM.take(), found: Found::Nothing }
+        Self { store, room: ROOM.take(), found: Found::Nothing, offset: None }
     }
 
     /// The stored configuration, or the defaults with the polarity check not passed.
@@ -106,6 +110,29 @@ impl Kept {
     /// What was found at the start.
     pub fn found(&self) -> &Found {
         &self.found
+    }
+
+    /// The offset of the encoder to begin with: the program's own, else that stored with this motor.
+    pub fn choose_offset(&mut self, program: Option<f32>, motor_id: u32) -> Offset {
+        let stored = match &mut self.store {
+            Some(store) => block_on(store.alignment(self.room)),
+            None => Err(Doubt::Unreadable),
+        };
+        *self.offset.insert(Offset::choose(program, stored, motor_id))
+    }
+
+    /// The offset that was chosen at the start; `None` on a board without encoder.
+    pub fn offset(&self) -> Option<&Offset> {
+        self.offset.as_ref()
+    }
+
+    /// Stores an alignment of the encoder. The chip may stand still as of [`Kept::save`].
+    ///
+    /// # Errors
+    /// As of [`NotStored`].
+    pub async fn save_alignment(&mut self, alignment: &Alignment) -> Result<(), NotStored> {
+        let Some(store) = &mut self.store else { return Err(NotStored::Flash) };
+        store.save_alignment(alignment, self.room).await
     }
 
     /// Stores a configuration. The chip may stand still for as long as the flash erases, so only while no torque flows.
@@ -128,7 +155,7 @@ impl Kept {
 #[inline(never)]
 pub fn start(kept: &mut Kept, defaults: &Config) -> &'static mut Plan {
     static PLAN: StaticCell<Plan> = StaticCell::new();
-    let config = embassy_futures::block_on(kept.load(defaults));
+    let config = block_on(kept.load(defaults));
     SETTINGS.lock(|settings| settings.borrow_mut().config = Some(config.clone()));
     // What a store gives passes: else it gave the defaults, which are the program's own.
     PLAN.init(config.plan().expect("a plan of the defaults"))

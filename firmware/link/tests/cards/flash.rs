@@ -5,7 +5,8 @@ use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 use link::Store;
-use link::store::{Found, NotStored, Room};
+use link::alignment::Alignment;
+use link::store::{Doubt, Found, NotStored, Room};
 
 /// Bytes of a page: a few records, so that pages change often.
 pub(crate) const PAGE: usize = 8192;
@@ -172,5 +173,21 @@ pub(crate) fn save(flash: Flash, config: &control::Config) -> (Result<(), NotSto
     let range = 0..flash.bytes.len() as u32;
     let mut store = Store::new(flash, range).expect("a range of pages");
     let done = block_on(store.save(config, &mut Room::new()));
+    (done, store.into_flash())
+}
+
+/// The alignment that a start finds, and the flash it leaves.
+pub(crate) fn load_alignment(flash: Flash) -> (Result<Option<Alignment>, Doubt>, Flash) {
+    let range = 0..flash.bytes.len() as u32;
+    let mut store = Store::new(flash, range).expect("a range of pages");
+    let found = block_on(store.alignment(&mut Room::new()));
+    (found, store.into_flash())
+}
+
+/// Stores an alignment; the flash it leaves.
+pub(crate) fn save_alignment(flash: Flash, alignment: &Alignment) -> (Result<(), NotStored>, Flash) {
+    let range = 0..flash.bytes.len() as u32;
+    let mut store = Store::new(flash, range).expect("a range of pages");
+    let done = block_on(store.save_alignment(alignment, &mut Room::new()));
     (done, store.into_flash())
 }

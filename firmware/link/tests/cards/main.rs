@@ -1,5 +1,6 @@
 //! Flight cards of the link and the store, on the host with simulated flash.
 
+mod alignment;
 mod corruption;
 mod documented;
 mod flash;

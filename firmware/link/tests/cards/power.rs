@@ -1,7 +1,8 @@
 //! Loss of power while the parameters are stored.
 
-use crate::flash::{Flash, Tear, load, random, save};
+use crate::flash::{Flash, Tear, load, load_alignment, random, save, save_alignment};
 use control::Config;
+use link::alignment::Alignment;
 use link::leaves::each;
 use link::store::Found;
 use proptest::prelude::*;
@@ -18,6 +19,11 @@ fn numbered(i: u16) -> Config {
     config
 }
 
+/// An alignment that differs from others in offset and motor.
+fn aligned(i: u16) -> Alignment {
+    Alignment { offset_turns: 0.001 * f32::from(i) - 0.4, motor_id: 0x1234_0000 + u32::from(i) }
+}
+
 /// Each parameter of `found` that is neither the one's nor the other's.
 fn strange(found: &Config, old: &Config, new: &Config) -> Vec<String> {
     let values = |config: &Config| {
@@ -32,16 +38,17 @@ fn strange(found: &Config, old: &Config, new: &Config) -> Vec<String> {
     found.into_iter().filter(|pair| !old.contains(pair) && !new.contains(pair)).map(|(key, _)| key).collect()
 }
 
-/// Situation: parameters stored eighteen times over, so that every page was filled and erased.
+/// Situation: an alignment in flash, and parameters stored eighteen times over, so that every page was filled and erased.
 /// Action: at each of these, cut the power after every single word and every part of an erase; start again;
 /// then store once more.
 /// Must hold: each parameter has its old or its new value, and all of them together the old or the new ones;
-/// before the first store was whole, the defaults, not to be engaged with. The later store succeeds and is found.
+/// before the first store was whole, the defaults, not to be engaged with; the alignment as it was. The later store
+/// succeeds and is found.
 /// No word is written twice between erases.
 #[test]
 fn power_lost_at_any_word_leaves_the_old_or_the_new() {
     let defaults = Config::product();
-    let (mut flash, mut old) = (Flash::new(), defaults.clone());
+    let (mut flash, mut old) = (save_alignment(Flash::new(), &aligned(0)).1, defaults.clone());
     let (mut cuts, mut kept_old, mut kept_new) = (0, 0, 0);
     for i in 1..=18 {
         let new = numbered(i);
@@ -49,7 +56,9 @@ fn power_lost_at_any_word_leaves_the_old_or_the_new() {
         assert_eq!(done, Ok(()));
         for cut in 0..after.steps - flash.steps {
             let (_, torn) = save(flash.cut(cut, Tear::Whole), &new);
-            let (found, _, restarted) = load(torn.restarted(), &defaults);
+            let (alignment, torn) = load_alignment(torn.restarted());
+            assert_eq!(alignment, Ok(Some(aligned(0))), "store {i}, cut {cut}");
+            let (found, _, restarted) = load(torn, &defaults);
             assert_eq!(strange(&found, &old, &new), Vec::<String>::new(), "store {i}, cut {cut}");
             assert!(found == old || found == new, "a mixture: store {i}, cut {cut}");
             cuts += 1;
@@ -67,6 +76,43 @@ fn power_lost_at_any_word_leaves_the_old_or_the_new() {
     println!("{cuts} cuts: old {kept_old}, new {kept_new}; {} erases", flash.erases);
     assert!(flash.erases >= 2 && flash.overwritten == 0);
     assert!(kept_old > 1000 && kept_new >= 18, "{kept_old} {kept_new}");
+}
+
+/// Situation: a configuration in flash, and alignments stored so often that every page was filled and erased.
+/// Action: at each of the first few, and each that begins a page or erases one, cut the power after every single word and
+/// every part of an erase; start again; then store once more.
+/// Must hold: the old or the new alignment, offset and motor together, or none before the first; the configuration as it
+/// was. The later store succeeds and is found.
+#[test]
+fn power_lost_at_any_word_leaves_the_old_or_the_new_alignment() {
+    let defaults = Config::product();
+    let (mut flash, mut old) = (save(Flash::new(), &numbered(1)).1, None);
+    let (mut kept_old, mut kept_new) = (0, 0);
+    for i in 1..=700 {
+        let new = aligned(i);
+        let (done, after) = save_alignment(flash.clone(), &new);
+        assert_eq!(done, Ok(()));
+        let steps = after.steps - flash.steps;
+        for cut in 0..if i <= 8 || steps > 20 { steps } else { 0 } {
+            let (_, torn) = save_alignment(flash.cut(cut, Tear::Whole), &new);
+            let (found, torn) = load_alignment(torn.restarted());
+            assert!(found == Ok(old) || found == Ok(Some(new)), "alignment {i}, cut {cut}: {found:?}");
+            let (parameters, _, restarted) = load(torn, &defaults);
+            assert_eq!(parameters, numbered(1), "alignment {i}, cut {cut}");
+            if found == Ok(old) {
+                kept_old += 1
+            } else {
+                kept_new += 1
+            }
+            let (done, later) = save_alignment(restarted, &aligned(i + 1));
+            assert_eq!(done, Ok(()), "alignment {i}, cut {cut}");
+            assert_eq!(load_alignment(later).0, Ok(Some(aligned(i + 1))), "alignment {i}, cut {cut}");
+        }
+        (flash, old) = (after, Some(new));
+    }
+    println!("cuts: old {kept_old}, new {kept_new}; {} erases", flash.erases);
+    assert!(flash.erases >= 2 && flash.overwritten == 0);
+    assert!(kept_old >= 50 && kept_new >= 400, "{kept_old} {kept_new}");
 }
 
 /// Situation: a store that must erase a page.
@@ -105,13 +151,13 @@ proptest! {
     /// is mended at the next start, in the middle of words and erases, of which any bits have changed.
     /// Action: start with the power back.
     /// Must hold: no panic; all parameters together as they were or as they were to be; before anything was stored, the
-    /// defaults, not to be engaged with; and a store then succeeds and is found.
+    /// defaults, not to be engaged with; the alignment that was stored first of all; and a store then succeeds and is found.
     #[test]
     fn power_lost_again_and_again(
         before in 0_u16..16, cuts in prop::collection::vec(0_u64..1200, 1..6), seed in any::<u64>()
     ) {
         let defaults = Config::product();
-        let (mut flash, mut old) = (Flash::new(), defaults.clone());
+        let (mut flash, mut old) = (save_alignment(Flash::new(), &aligned(0)).1, defaults.clone());
         for i in 1..=before {
             old = numbered(i);
             flash = save(flash, &old).1;
@@ -122,6 +168,8 @@ proptest! {
             let mending = torn.restarted().cut(random(&mut seed) % 40, Tear::Bits(random(&mut seed)));
             flash = load(mending, &defaults).2.restarted();
         }
+        let (alignment, flash) = load_alignment(flash);
+        prop_assert_eq!(alignment, Ok(Some(aligned(0))));
         let (found, why, flash) = load(flash, &defaults);
         let believed = found == old || found == new;
         let unchecked = found == defaults && matches!(why, Found::Nothing | Found::Doubt(_));

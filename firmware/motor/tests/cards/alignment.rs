@@ -28,7 +28,7 @@ fn apart_deg(a: f64, b: f64) -> f64 {
 
 /// Situation: a free steer with friction of 0.15 or 1 N m, the rotor anywhere, the encoder mounted anywhere and either way round. Action:
 /// alignment, then 3 N m against a held handlebar. Must hold: the offset within 4 electrical degrees of the truth, the
-/// torque within 2 % of what it would be.
+/// torque within 2 % of what it would be. `aligned` tells of it from the call that found it until something else is asked for.
 #[test]
 fn the_offset_is_found() {
     let mut worst: f64 = 0.0;
@@ -52,6 +52,9 @@ fn the_offset_is_found() {
         let records = rig.run(CALLS + 10, Ask::Align);
         let out = last(&records).out;
         assert_eq!((out.mode, out.duties), (Mode::Ready, None), "{start} {zero}: {out:?}");
+        let first = records.iter().position(|r| r.out.aligned).expect("it is told");
+        assert!(first.abs_diff(CALLS) <= 2 && records[first..].iter().all(|r| r.out.aligned), "{first}");
+        assert!(records[..first].iter().all(|r| r.out.offset_turns.is_none()));
         let most = records.iter().map(|r| r.iq_a.hypot(0.0)).fold(0.0, f64::max);
         assert!(most < 7.0, "{most}");
         let offset = f64::from(out.offset_turns.expect("an offset"));
@@ -61,7 +64,7 @@ fn the_offset_is_found() {
         worst = worst.max(error);
         rig.machine.held = true;
         rig.machine.steer_rate_rad_s = 0.0;
-        let _ = rig.run(20, Ask::Off);
+        assert!(rig.run(20, Ask::Off).iter().all(|r| !r.out.aligned));
         let records = rig.run(1000, Ask::Torque(3.0));
         let torque = mean(&records[500..], |r| r.torque_nm) / 3.0;
         assert!((0.98..=1.02).contains(&torque), "{torque}");

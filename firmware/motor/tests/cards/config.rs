@@ -30,3 +30,35 @@ fn wrong_parameters_are_named() {
         assert!(text.starts_with(told), "{text}");
     }
 }
+
+/// Situation: an offset kept beside the check value of its motor.
+/// Action: change what the offset depends on, each alone; change what it does not depend on.
+/// Must hold: another value for each of the former, the same for the latter; and that of the example stays what it is in
+/// the flash of boards.
+#[test]
+fn an_offset_belongs_to_a_motor_and_its_encoder() {
+    let id = EXAMPLE.motor_id();
+    let changes: [fn(&mut Config); 7] = [
+        |c| c.motor.pole_pairs = 7,
+        |c| c.motor.resistance_ohm *= 1.01,
+        |c| c.motor.inductance_d_h *= 1.01,
+        |c| c.motor.inductance_q_h *= 1.01,
+        |c| c.motor.flux_wb *= 1.01,
+        |c| c.encoder.counts = 4096,
+        |c| c.encoder.reversed = true,
+    ];
+    let mut ids = vec![id];
+    for change in changes {
+        let mut config = EXAMPLE;
+        change(&mut config);
+        ids.push(config.motor_id());
+    }
+    ids.sort_unstable();
+    ids.dedup();
+    assert_eq!(ids.len(), 8, "{ids:08x?}");
+    let mut same = EXAMPLE;
+    (same.motor.reversed, same.motor.ratio, same.encoder.offset_turns) = (true, 20.0, Some(0.1));
+    same.demand.max_nm = 1.0;
+    assert_eq!(same.motor_id(), id);
+    assert_eq!(id, 0xe512_477e);
+}

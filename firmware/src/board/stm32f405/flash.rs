@@ -1,4 +1,4 @@
-//! The flash of the parameters: three sectors of 16 KiB that `memory.x` keeps free of code.
+//! The flash of the parameters and the encoder's offset: three sectors of 16 KiB that `memory.x` keeps free of code.
 
 use super::{pwm, shared, watchdog};
 use core::ops::Range;

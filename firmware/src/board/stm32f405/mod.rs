@@ -44,6 +44,7 @@ use embassy_executor::{Executor, InterruptExecutor, SendSpawner, Spawner};
 use embassy_stm32::gpio::{Input, Level, Pull};
 use embassy_stm32::interrupt;
 use embassy_stm32::pac::GPIOB;
+use parts::vesc6::MOTOR;
 use pins::{Pins, fixed};
 use sensors::Sensors;
 use soft_spi::{Edge, SoftSpi};
@@ -51,11 +52,11 @@ use static_cell::StaticCell;
 
 static CONTROL: InterruptExecutor = InterruptExecutor::new();
 
-/// Starts the chip and the parts around it; the motor's interrupt runs from now on, the watchdog is hungry.
+/// Starts the chip and the parts around it but for the motor's interrupt; the watchdog is hungry from now on.
 ///
 /// # Panics
 /// When called a second time.
-pub fn start() {
+pub fn start() -> MotorParts {
     failure::enable();
     halt::start();
     if let Some(mut core) = cortex_m::Peripherals::take() {
@@ -64,7 +65,36 @@ pub fn start() {
     let peripherals = embassy_stm32::init(clock::config());
     time::start();
     clock::quicken_flash();
-    start_parts(peripherals);
+    start_parts(peripherals)
+}
+
+/// What the motor's interrupt works with, each started.
+#[must_use]
+pub struct MotorParts {
+    timer_in_step: bool,
+    gate_driver_good: bool,
+    encoder: SoftSpi,
+    gate_fault: Input<'static>,
+}
+
+impl MotorParts {
+    /// Starts the motor's interrupt, with the encoder's offset where it is known \[electrical turns\].
+    pub fn start(self, offset_turns: Option<f32>) {
+        let mut config = MOTOR;
+        config.encoder.offset_turns = offset_turns;
+        let plan = config.plan();
+        if !self.timer_in_step || plan.is_err() {
+            defmt::error!(
+                "motor: timer in step={=bool}, configuration good={=bool}",
+                self.timer_in_step,
+                plan.is_ok()
+            );
+            outputs_off();
+        }
+        if let Ok(plan) = plan {
+            motor::start(plan, self.gate_driver_good, self.encoder, self.gate_fault);
+        }
+    }
 }
 
 /// Starts the executors, `control`'s above `thread`'s.
@@ -81,7 +111,7 @@ pub fn run(control: impl FnOnce(SendSpawner), thread: impl FnOnce(Spawner)) -> !
 }
 
 /// Everything between the clocks and the executors, the way to open the bridge first.
-fn start_parts(peripherals: embassy_stm32::Peripherals) {
+fn start_parts(peripherals: embassy_stm32::Peripherals) -> MotorParts {
     static SENSORS: StaticCell<Sensors> = StaticCell::new();
     let pins = Pins::of(peripherals);
     // The button holds the power only while it is pressed.
@@ -93,20 +123,11 @@ fn start_parts(peripherals: embassy_stm32::Peripherals) {
     watchdog::start();
     brown_out::start();
 
-    let in_step = pwm::start(pins.bridge);
+    let timer_in_step = pwm::start(pins.bridge);
     clock::watch_crystal();
-    let mut encoder = SoftSpi::new(pins.encoder_bus, Edge::Falling, ENCODER_CYCLES);
-    let bus = SoftSpi::new(pins.gate_bus, Edge::Falling, GATE_CYCLES);
-    let driver = gate::start(pins.gate_enable, bus, &mut encoder);
+    let gate_driver_good =
+        gate::start(pins.gate_enable, &mut SoftSpi::new(pins.gate_bus, Edge::Falling, GATE_CYCLES));
     adc::start(pins.analog);
-    let plan = parts::vesc6::MOTOR.plan();
-    if !in_step || plan.is_err() {
-        defmt::error!("motor: timer in step={=bool}, configuration good={=bool}", in_step, plan.is_ok());
-        outputs_off();
-    }
-    if let Ok(plan) = plan {
-        motor::start(plan, driver, encoder, Input::new(pins.gate_fault, Pull::Up));
-    }
 
     let mut imu = SoftSpi::new(pins.imu_bus, Edge::Rising, IMU_CYCLES);
     let imu = imu::start(&mut imu).then_some(imu);
@@ -117,6 +138,12 @@ fn start_parts(peripherals: embassy_stm32::Peripherals) {
     can::start(pins.can_receive, pins.can_transmit);
     flash::start(pins.flash);
     watchdog::standstill(false);
+    MotorParts {
+        timer_in_step,
+        gate_driver_good,
+        encoder: SoftSpi::new(pins.encoder_bus, Edge::Falling, ENCODER_CYCLES),
+        gate_fault: Input::new(pins.gate_fault, Pull::Up),
+    }
 }
 
 /// Half clocks of the buses \[cycles of 6 ns\]: gate driver 1 MHz, IMU below 2 MHz (its clock's pin is a slow one), the

@@ -113,6 +113,7 @@ impl Loop {
             iq_a: out.iq_a,
             steer_rate_rad_s: out.steer_rate_rad_s,
             offset_turns: out.offset_turns,
+            aligned: out.aligned,
             supply_v,
             steer: counts.steer,
             rider_torque: counts.rider_torque,

@@ -43,8 +43,10 @@ pub struct Report {
     pub iq_a: f32,
     /// Speed of the steer by the encoder, to the right \[rad/s\].
     pub steer_rate_rad_s: f32,
-    /// The encoder's offset in use, to be written down as `encoder.offset_turns`.
+    /// The encoder's offset in use.
     pub offset_turns: Option<f32>,
+    /// The alignment that is asked for is over and found it.
+    pub aligned: bool,
     /// The encoder's counts.
     pub encoder_counts: u16,
     /// Their age \[calls\].
@@ -80,6 +82,7 @@ impl Report {
         iq_a: 0.0,
         steer_rate_rad_s: 0.0,
         offset_turns: None,
+        aligned: false,
         encoder_counts: 0,
         encoder_age: u16::MAX,
         encoder_flagged: 0,
