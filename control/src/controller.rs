@@ -8,9 +8,9 @@ use crate::fault::{Cause, Causes};
 use crate::frame::{SensorFrame, Wheel};
 use crate::guard::{self, GuardPlan, GuardState};
 use crate::history::{Aligned, History};
-use crate::input::{self, Believed, Bounds, InputState};
+use crate::input::{self, Believed, Bounds, InputPlan, InputState};
 use crate::limits::ActiveLimits;
-use crate::permit::{self, Mode, PermitState, Reactions};
+use crate::permit::{self, Mode, PermitPlan, PermitState, Reactions};
 use crate::polarity::{self, Move, PolarityState};
 use crate::predict;
 use crate::response::{self, ResponsePlan, ResponseState};
@@ -25,9 +25,13 @@ use crate::track::{self, PathError, TrackState};
 pub struct Plan {
     period_s: f32,
     period_us: u32,
+    /// Longest time between two steps \[us\]; infinite without a limit.
+    max_gap_us: f32,
     calibration: CalibrationPlan,
+    input: InputPlan,
     cross: CrossPlan,
     response: ResponsePlan,
+    permit: PermitPlan,
     reactions: Reactions,
     shape: ShapePlan,
     guard: GuardPlan,
@@ -48,9 +52,12 @@ impl Plan {
         Self {
             period_s: 1.0 / c.rate_hz,
             period_us: (1e6 / c.rate_hz) as u32,
+            max_gap_us: c.input.max_gap_ms.map_or(f32::INFINITY, |ms| 1e3 * ms),
             calibration: c.calibration.plan(),
+            input: InputPlan::new(&c.input, 1.0 / c.rate_hz),
             cross: CrossPlan::new(&c.cross, c.rate_hz),
             response: ResponsePlan::new(&c.response, &c.estimate, c.rate_hz),
+            permit: PermitPlan::new(&c.permit),
             reactions: Reactions::new(&c.input),
             shape: ShapePlan::new(&c.limits, c.rate_hz),
             guard: GuardPlan::new(&c.limits, c.rate_hz),
@@ -168,17 +175,17 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let last_nm = state.torque_nm();
 
     let believed =
-        input::step(&config.input, &plan.calibration, plan.period_s, &mut state.input, frame, last_nm);
+        input::step(&config.input, &plan.input, &plan.calibration, &mut state.input, frame, last_nm);
     let motion = motion(plan, &mut state.estimate, &believed, elapsed_us);
     let ahead = predict::step(&config.predict, &motion);
     let crossed =
         cross::step(&config.cross, &plan.cross, &mut state.cross, &believed, motion.roll_sin_cos, last_nm);
     let answered = response::step(&plan.response, &mut state.response, &believed, &motion, last_nm);
     let mut causes = believed.causes.with(crossed.causes).with(answered).with(state.found);
-    causes.note(Cause::Timing, config.input.max_gap_ms.is_some_and(|ms| elapsed_us as f32 > 1e3 * ms));
+    causes.note(Cause::Timing, elapsed_us as f32 > plan.max_gap_us);
 
-    let speed = speed(plan, &believed, motion.roll_sin_cos, &crossed);
-    let now = match (believed.gyro_rad_s, speed) {
+    let speed = speed(plan, &believed, &crossed);
+    let now = match (believed.gyro_rad_s(), speed) {
         (Some(_), Some(speed)) => {
             let newest = Aligned { roll_rate_rad_s: ahead.roll_rate_rad_s, speed };
             let now = state.history.align(&config.latency, newest);
@@ -200,11 +207,11 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
         causes,
         engage: frame.engage,
         polarity_checked: !plan.check_polarity || state.polarity.next == Move::Passed,
-        roll_rad: (plan.estimates && believed.gyro_rad_s.is_some()).then_some(motion.roll_rad),
+        roll_rad: (plan.estimates && believed.gyro_rad_s().is_some()).then_some(motion.roll_rad),
         speed_m_s: speed.map(|v| v.newest),
         force_m_s2: motion.force_m_s2,
     };
-    let permission = permit::step(&config.permit, &plan.reactions, &mut state.permit, &asked);
+    let permission = permit::step(&config.permit, &plan.permit, &plan.reactions, &mut state.permit, &asked);
 
     let (gain, law_nm, bounds) = match now {
         Some(Aligned { roll_rate_rad_s, speed }) => {
@@ -224,8 +231,8 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
             roll_rate_rad_s: motion.roll_rate_rad_s,
             steer_rate_rad_s: motion.steer_rate_rad_s,
             speed_m_s: motion.speed_m_s,
-            path: believed.path.map(|[heading_rad, lateral_m]| PathError { heading_rad, lateral_m }),
-            rider_torque_nm: believed.rider_torque_nm,
+            path: believed.path().map(|[heading_rad, lateral_m]| PathError { heading_rad, lateral_m }),
+            rider_torque_nm: believed.rider_torque_nm(),
             acted: state.acted,
             authority: permission.authority,
             elapsed_us,
@@ -239,9 +246,9 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
         limp: permission.mode == Mode::Limp,
         speed_low_m_s: bounds.low,
         speed_high_m_s: bounds.high,
-        steer_rad: believed.steer_rad,
-        steer_rate_rad_s: believed.steer_rate_rad_s,
-        rider_torque_nm: believed.rider_torque_nm,
+        steer_rad: believed.steer_rad(),
+        steer_rate_rad_s: believed.steer_rate_rad_s(),
+        rider_torque_nm: believed.rider_torque_nm(),
         elapsed_us,
     };
     let permitted = permission.mode >= Mode::Standby;
@@ -269,12 +276,12 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
 
 /// The motion from what is believed; if nothing needs more, just what the sensors say.
 fn motion(plan: &Plan, state: &mut EstimateState, believed: &Believed, elapsed_us: u32) -> Motion {
-    let rear = believed.rear_wheel_m_s.or(believed.front_wheel_m_s);
+    let rear = believed.rear_wheel_m_s().or(believed.front_wheel_m_s());
     let felt = Felt {
-        gyro_rad_s: believed.gyro_rad_s.unwrap_or_default(),
-        accel_m_s2: believed.accel_m_s2,
-        steer_rad: believed.steer_rad,
-        steer_rate_rad_s: believed.steer_rate_rad_s,
+        gyro_rad_s: believed.gyro_or_zero_rad_s(),
+        accel_m_s2: believed.accel_m_s2(),
+        steer_rad: believed.steer_rad(),
+        steer_rate_rad_s: believed.steer_rate_rad_s(),
         speed_m_s: rear.map_or(0.0, |v| v.newest),
         elapsed_us,
     };
@@ -296,9 +303,9 @@ fn motion(plan: &Plan, state: &mut EstimateState, believed: &Believed, elapsed_u
 
 /// Between which speeds of the scheduling wheel the truth lies: by that wheel's sensor; by the other's
 /// and the steer angle while it is lost; by both when they disagree.
-fn speed(plan: &Plan, believed: &Believed, roll_sin_cos: (f32, f32), crossed: &Crossed) -> Option<Bounds> {
+fn speed(plan: &Plan, believed: &Believed, crossed: &Crossed) -> Option<Bounds> {
     let disagree = crossed.causes.has(Cause::WheelsDisagree);
-    let (front, rear) = (believed.front_wheel_m_s, believed.rear_wheel_m_s);
+    let (front, rear) = (believed.front_wheel_m_s(), believed.rear_wheel_m_s());
     let wheel = plan.config.input.wheel;
     let (own, other) = match wheel {
         Wheel::Front => (front, rear),
@@ -310,12 +317,8 @@ fn speed(plan: &Plan, believed: &Believed, roll_sin_cos: (f32, f32), crossed: &C
         (_, None) => None,
         (_, Some(other)) => {
             // The front wheel goes the longer way, at most about twice as long.
-            let cos = match (crossed.ground, believed.steer_rad) {
-                (Some((_, cos)), _) => cos,
-                (None, Some(steer)) => cross::on_the_ground(&plan.cross, roll_sin_cos, steer).1,
-                (None, None) => LEAST_COS,
-            };
-            let cos = if cos > LEAST_COS { cos } else { LEAST_COS };
+            let cos =
+                crossed.ground.map_or(LEAST_COS, |(_, cos)| if cos > LEAST_COS { cos } else { LEAST_COS });
             let ratio = if wheel == Wheel::Front { 1.0 / cos } else { cos };
             let other = other.spanning(other.scaled(ratio));
             Some(own.map_or(other, |own| own.spanning(other)))

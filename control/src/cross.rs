@@ -64,6 +64,11 @@ pub struct CrossPlan {
     period_s: f32,
     per_wheelbase: f32,
     tilt_sin_cos: (f32, f32),
+    /// The tolerances, infinite where a check is off \[m/s, rad/s, rad, N m\].
+    wheels_m_s: f32,
+    yaw_rad_s: f32,
+    steer_rad: f32,
+    motor_nm: f32,
 }
 
 impl CrossPlan {
@@ -73,6 +78,10 @@ impl CrossPlan {
             period_s: 1.0 / rate_hz,
             per_wheelbase: 1.0 / config.wheelbase_m,
             tilt_sin_cos: sin_cos(config.tilt_rad),
+            wheels_m_s: config.wheels_m_s.unwrap_or(f32::INFINITY),
+            yaw_rad_s: config.yaw_rad_s.unwrap_or(f32::INFINITY),
+            steer_rad: config.steer_rad.unwrap_or(f32::INFINITY),
+            motor_nm: config.motor_nm.unwrap_or(f32::INFINITY),
         }
     }
 }
@@ -97,9 +106,9 @@ struct Lasting(u16);
 impl Lasting {
     /// Whether a `difference` beyond the `limit` has lasted longer than allowed. What can't be
     /// compared breaks off the count.
-    fn beyond(&mut self, limit: Option<f32>, difference: Option<f32>, persist_ticks: u16) -> bool {
-        match (limit, difference) {
-            (Some(limit), Some(difference)) if difference.abs() > limit => {
+    fn beyond(&mut self, limit: f32, difference: Option<f32>, persist_ticks: u16) -> bool {
+        match difference {
+            Some(difference) if difference.abs() > limit => {
                 self.0 = self.0.saturating_add(1);
                 self.0 > persist_ticks
             }
@@ -116,7 +125,7 @@ impl Lasting {
 pub struct Crossed {
     /// The disagreements that have lasted.
     pub causes: Causes,
-    /// Of [`on_the_ground`], where a check needed it.
+    /// Of [`on_the_ground`], if the steer angle is known.
     pub ground: Option<(f32, f32)>,
 }
 
@@ -135,18 +144,15 @@ pub fn step(
 ) -> Crossed {
     let mut causes = Causes::NONE;
     let persist = config.persist_ticks;
-    let front = believed.front_wheel_m_s.map(|v| v.newest);
-    let rear = believed.rear_wheel_m_s.map(|v| v.newest);
-    let ground = match (config.wheels_m_s, config.yaw_rad_s, believed.steer_rad) {
-        (None, None, _) | (_, _, None) => None,
-        (_, _, Some(steer)) => Some(on_the_ground(plan, roll_sin_cos, steer)),
-    };
+    let front = believed.front_wheel_m_s().map(|v| v.newest);
+    let rear = believed.rear_wheel_m_s().map(|v| v.newest);
+    let ground = believed.steer_rad().map(|steer| on_the_ground(plan, roll_sin_cos, steer));
 
     let wheels = match (front, rear, ground) {
         (Some(front), Some(rear), Some((_, cos))) => Some(front * cos - rear),
         _ => None,
     };
-    causes.note(Cause::WheelsDisagree, state.wheels.beyond(config.wheels_m_s, wheels, persist));
+    causes.note(Cause::WheelsDisagree, state.wheels.beyond(plan.wheels_m_s, wheels, persist));
 
     // The front wheel moves sideways by its speed times the sine; without it the rear one must do.
     let sideways = match (front, rear, ground) {
@@ -154,16 +160,16 @@ pub fn step(
         (None, Some(rear), Some((sin, cos))) if cos > 0.2 => Some(rear * sin / cos),
         _ => None,
     };
-    let yaw = match (sideways, believed.gyro_rad_s) {
+    let yaw = match (sideways, believed.gyro_rad_s()) {
         (Some(sideways), Some([_, y, z])) => {
             let (sin, cos) = roll_sin_cos;
             Some(y * sin + z * cos - sideways * plan.per_wheelbase)
         }
         _ => None,
     };
-    causes.note(Cause::YawDisagrees, state.yaw.beyond(config.yaw_rad_s, yaw, persist));
+    causes.note(Cause::YawDisagrees, state.yaw.beyond(plan.yaw_rad_s, yaw, persist));
 
-    let steer = match (believed.steer_rad, believed.steer_rate_rad_s) {
+    let steer = match (believed.steer_rad(), believed.steer_rate_rad_s()) {
         (Some(angle), Some(rate)) => {
             let expected = state.offset_rad.unwrap_or(angle) + rate * plan.period_s;
             let difference = angle - expected;
@@ -175,10 +181,10 @@ pub fn step(
             None
         }
     };
-    causes.note(Cause::SteerDisagrees, state.steer.beyond(config.steer_rad, steer, persist));
+    causes.note(Cause::SteerDisagrees, state.steer.beyond(plan.steer_rad, steer, persist));
 
     let (low, high) = state.asked_nm;
-    let motor = believed.motor_torque_nm.map(|given| {
+    let motor = believed.motor_torque_nm().map(|given| {
         if given > high {
             given - high
         } else if given < low {
@@ -187,7 +193,7 @@ pub fn step(
             0.0
         }
     });
-    causes.note(Cause::MotorDisagrees, state.motor.beyond(config.motor_nm, motor, persist));
+    causes.note(Cause::MotorDisagrees, state.motor.beyond(plan.motor_nm, motor, persist));
     let closer = |bound: f32| bound + 4.0 * FORGET * (torque_nm - bound);
     state.asked_nm = (at_most(torque_nm, closer(low)), at_least(torque_nm, closer(high)));
     Crossed { causes, ground }

@@ -12,6 +12,7 @@ mod steer;
 pub use config::{EstimateConfig, Place, SOURCES, Source};
 
 use crate::maths::{at_least, at_most, bounded, per_root, sin_cos, sin_cos_within};
+use core::hint::cold_path;
 use roll::{G, Roll};
 use steer::Steer;
 
@@ -100,8 +101,10 @@ struct Running {
 
 /// One control period.
 pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> Motion {
-    let dt = 1e-6 * felt.elapsed_us.min(GAP_US) as f32;
+    let mut dt = 1e-6 * felt.elapsed_us as f32;
     if felt.elapsed_us > GAP_US {
+        cold_path();
+        dt = 1e-6 * GAP_US as f32;
         state.running = None;
         state.steer = Steer::default();
     }
@@ -130,8 +133,8 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
     bias_variance = at_most(at_first, bias_variance + dt * c.bias_walk_rad_s * c.bias_walk_rad_s);
 
     // At rest the gyros show nothing but their bias.
-    let quiet = told.iter().all(|w| w.abs() <= c.bias_max_rad_s);
-    run.still_s = if quiet && speed.abs() <= STANDING_M_S { run.still_s + dt } else { 0.0 };
+    let still = speed.abs() <= STANDING_M_S && told.iter().all(|w| w.abs() <= c.bias_max_rad_s);
+    run.still_s = if still { run.still_s + dt } else { 0.0 };
     if run.still_s > STILL_S {
         run.still_s = 2.0 * STILL_S;
         let seen = c.gyro_walk_rad * c.gyro_walk_rad / at_least(1e-6, dt);
@@ -177,8 +180,7 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
         roll_rad: run.roll.angle_rad,
         roll_sin_cos: (sin_roll, cos_roll),
         roll_rate_rad_s: match c.roll_rate {
-            Source::GyroX if gyro_x.is_finite() => gyro_x,
-            Source::GyroX => 0.0,
+            Source::GyroX => bounded(gyro_x, f32::MAX),
             Source::Estimate => roll_rate,
         },
         yaw_rate_rad_s: yaw_rate,

@@ -10,8 +10,9 @@
 
 use crate::fault::Cause;
 use crate::limits::{CAP_POINTS, Limits};
-use crate::maths::{at_least, at_most};
+use crate::maths::{at_most, is_finite};
 use crate::shape::Asked;
+use core::hint::cold_path;
 
 /// What is wrong with a torque. The numbers stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +93,8 @@ impl GuardPlan {
 pub struct GuardState {
     torque_nm: f32,
     turned_us: u32,
-    /// The least size of the torque since each watch was started, the newest first \[N m\].
+    /// The least size of the torque since each watch was started, the newest first \[N m\]. The older ones learn what the
+    /// newest has seen when the next one is started.
     watches: [f32; WATCHES],
     /// [`side`] of the torque; when it changes, every watch has seen zero.
     side: f32,
@@ -115,7 +117,7 @@ pub fn judge(
     asked: &Asked,
 ) -> Result<f32, Violation> {
     state.pass_time(limits, plan, asked);
-    let verdict = if !torque_nm.is_finite() {
+    let verdict = if !is_finite(torque_nm) {
         Err(Violation::NotFinite)
     } else if permitted {
         Torque::new(limits, plan, state, torque_nm, asked.elapsed_us).judge(state, asked)
@@ -163,16 +165,25 @@ impl<'a> Torque<'a> {
         elapsed_us: u32,
     ) -> Self {
         let last = state.torque_nm;
-        let (slack, slack_before) = (slack(torque, last), slack(0.0, last));
+        let slack = slack(torque, last);
         let (size, before) = (torque.abs(), last.abs());
-        let crossed = (torque < 0.0 && last > 0.0) || (torque > 0.0 && last < 0.0);
-        let (shrunk, grown) = if crossed { (before, size) } else { (before - size, size - before) };
-        let back = (!crossed).then_some(shrunk + slack);
-        let side = side(torque);
-        // The time to zero is a matter of the torque that was: a huge one the other way gives it nothing.
-        let shrunk = shrunk - if crossed { slack_before } else { slack };
-        let (size, grown) = (size - slack, grown - slack);
-        Self { limits, plan, size, side, shrunk, grown, back, elapsed_us: elapsed_us as f32 }
+        let crossed = if last < 0.0 { torque > 0.0 } else { torque < 0.0 && last > 0.0 };
+        let (shrunk, grown, back) = if crossed {
+            // The time to zero is a matter of the torque that was: a huge one the other way gives it nothing.
+            (before - self::slack(0.0, last), size, None)
+        } else {
+            (before - size - slack, size - before, Some(before - size + slack))
+        };
+        Self {
+            limits,
+            plan,
+            size: size - slack,
+            side: side(torque),
+            shrunk,
+            grown: grown - slack,
+            back,
+            elapsed_us: elapsed_us as f32,
+        }
     }
 
     /// So long, or a control period if that is shorter \[s\].
@@ -211,8 +222,15 @@ impl<'a> Torque<'a> {
             refuse(Violation::Limp, max < f32::MAX && self.beyond(max, part, 1.0))?;
         }
         let (slow, fast) = (asked.speed_low_m_s, asked.speed_high_m_s);
-        let known = slow <= fast || fast <= slow;
-        let (slow, fast) = if known { (at_most(fast, slow), at_least(fast, slow)) } else { (-1e9, 1e9) };
+        let (slow, fast) = if slow <= fast {
+            (slow, fast)
+        } else if fast < slow {
+            cold_path();
+            (fast, slow)
+        } else {
+            cold_path();
+            (-1e9, 1e9)
+        };
         if let Some(cap) = speed_cap {
             refuse(Violation::Speed, self.above_line(&cap.speed_m_s, &cap.torque_nm, slow, fast))?;
         }
@@ -237,11 +255,11 @@ impl<'a> Torque<'a> {
         Ok(())
     }
 
-    /// Whether more than `part` of `whole` of the largest torque.
+    /// Whether more than `part` of `whole` of the largest torque. NaN, as nothing and less, is no part; more than the whole
+    /// does no harm: the largest torque has been judged.
     fn beyond(&self, max: f32, part: f32, whole: f32) -> bool {
-        // NaN, as nothing and less, is no part. More than the whole does no harm: the largest torque has been asked.
-        let part = if part > 0.0 { part } else { 0.0 };
-        self.size * whole > max * part
+        let inside = self.size * whole <= max * part;
+        !inside
     }
 
     /// Whether anywhere between `slow` and `fast` it lies above the line through the points.
@@ -258,9 +276,9 @@ impl<'a> Torque<'a> {
         outside
             || pieces.any(|piece| match piece {
                 (&[v0, v1], &[t0, t1]) if slow <= v1 && v0 <= fast => {
-                    // Both ends of what the piece and the interval share, by the lever rule.
+                    // By the lever rule. Where a piece begins, the one before it ends.
                     let above = |v: f32| self.size * (v1 - v0) > t0 * (v1 - v) + t1 * (v - v0);
-                    above(at_least(slow, v0)) || above(at_most(fast, v1))
+                    (slow >= v0 && above(slow)) || above(at_most(fast, v1))
                 }
                 _ => false,
             })
@@ -304,28 +322,43 @@ impl GuardState {
         if limits.window.is_some() {
             let (size, side) = (last.abs(), side(last));
             if side != self.side {
+                // At the start. The shaper closes a part of the window every eighth of it too; the two are half of that apart,
+                // so that hardly any control period has to do both.
+                if self.side == 0.0 {
+                    self.since_us = plan.stagger_us / 2;
+                }
                 (self.watches, self.side) = ([0.0; WATCHES], side);
             }
-            // An older watch has seen all that a newer one has.
-            for watch in self.watches.iter_mut().take_while(|watch| **watch > size) {
-                *watch = size;
-            }
+            let [newest, ..] = &mut self.watches;
+            *newest = at_most(size, *newest);
             self.since_us = self.since_us.saturating_add(asked.elapsed_us);
-            let mut restarts = 0;
-            while self.since_us >= plan.stagger_us && restarts < WATCHES {
-                self.since_us -= plan.stagger_us;
-                restarts += 1;
-                let [a, b, c, d, e, f, g, _] = self.watches;
-                self.watches = [size, a, b, c, d, e, f, g];
+            if self.since_us >= plan.stagger_us {
+                self.restart(plan.stagger_us, size);
             }
-            self.since_us = self.since_us.min(plan.stagger_us);
         }
+    }
+
+    /// Starts the watches that are due, the oldest ones anew.
+    fn restart(&mut self, stagger_us: u32, size: f32) {
+        let [newest, older @ ..] = &mut self.watches;
+        // An older watch has seen all that a newer one has.
+        for watch in older.iter_mut().take_while(|watch| **watch > *newest) {
+            *watch = *newest;
+        }
+        let mut restarts = 0;
+        while self.since_us >= stagger_us && restarts < WATCHES {
+            self.since_us -= stagger_us;
+            restarts += 1;
+            let [a, b, c, d, e, f, g, _] = self.watches;
+            self.watches = [size, a, b, c, d, e, f, g];
+        }
+        self.since_us = self.since_us.min(stagger_us);
     }
 
     /// The least torque on this side of zero since the oldest watch was started.
     fn start(&self, side: f32) -> f32 {
-        let [.., oldest] = self.watches;
-        if side == self.side { oldest } else { 0.0 }
+        let [newest, .., oldest] = self.watches;
+        if side == self.side { at_most(newest, oldest) } else { 0.0 }
     }
 }
 
@@ -339,5 +372,5 @@ fn side(torque: f32) -> f32 {
 }
 
 fn known_value(value: Option<f32>) -> Option<f32> {
-    value.filter(|v| v.abs() < f32::INFINITY)
+    value.filter(|v| is_finite(*v))
 }

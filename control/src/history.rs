@@ -46,7 +46,7 @@ pub struct History {
     /// Where the newest stands; the one before it stands before it, round the end.
     newest: usize,
     /// How many periods there are since the last gap, as far as they matter.
-    known: u16,
+    known: usize,
 }
 
 impl History {
@@ -67,11 +67,11 @@ impl History {
             *place = newest;
         }
         self.known = self.known.saturating_add(1);
-        let apart = roll_rate_ticks.abs_diff(speed_ticks);
+        let apart = usize::from(roll_rate_ticks.abs_diff(speed_ticks));
         if self.known <= apart {
             return None;
         }
-        let then = self.recent.get((self.newest + CAPACITY - usize::from(apart)) % CAPACITY)?;
+        let then = self.recent.get((self.newest + CAPACITY - apart) % CAPACITY)?;
         Some(if roll_rate_ticks > speed_ticks {
             Aligned { speed: then.speed, ..newest }
         } else {

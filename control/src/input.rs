@@ -5,7 +5,7 @@ use crate::fault::{Cause, Causes};
 use crate::frame::{MISSING, SensorFrame, Wheel};
 use crate::maths::{at_least, at_most};
 use crate::param::{Leaf, Visit};
-use crate::watch::{Codes, Loss, Sensor, Told, Watch};
+use crate::watch::{Codes, Loss, Reach, Sensor, Told, Watch};
 use core::hint::cold_path;
 
 /// The declared sensors.
@@ -132,6 +132,43 @@ impl InputConfig {
     }
 }
 
+/// What follows from the declarations and the rate of calls alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InputPlan {
+    gyro: Reach,
+    accel: Reach,
+    steer: Reach,
+    steer_rate: Reach,
+    front_wheel: Reach,
+    rear_wheel: Reach,
+    rider_torque: Reach,
+    motor: Reach,
+    path: Reach,
+    /// How many samples before the newest the speed's bounds span.
+    before: usize,
+    /// How much the speed may change in a control period without a sample \[m/s\].
+    drift_m_s: f32,
+}
+
+impl InputPlan {
+    /// For one call every `period_s`.
+    pub fn new(config: &InputConfig, period_s: f32) -> Self {
+        Self {
+            gyro: Reach::new(&config.gyro, period_s),
+            accel: Reach::new(&config.accel, period_s),
+            steer: Reach::new(&config.steer, period_s),
+            steer_rate: Reach::new(&config.steer_rate, period_s),
+            front_wheel: Reach::new(&config.front_wheel, period_s),
+            rear_wheel: Reach::new(&config.rear_wheel, period_s),
+            rider_torque: Reach::new(&config.rider_torque, period_s),
+            motor: Reach::new(&config.motor, period_s),
+            path: Reach::new(&config.path, period_s),
+            before: usize::from(config.recent_samples).saturating_sub(1),
+            drift_m_s: config.drift_m_s2 * period_s,
+        }
+    }
+}
+
 macro_rules! codes {
     ($name:ident, $lost:ident, $range:ident, $jump:ident, $stuck:ident) => {
         const $name: Codes =
@@ -174,29 +211,103 @@ impl Bounds {
     }
 }
 
-/// The sensors' values, `None` where a sensor is not fitted or not believed.
+/// The sensors' values, where a sensor is fitted and believed.
+///
+/// Which are known stands in bits: one register through the whole control period, where nine options would take nine.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Believed {
-    /// Angular velocity of the frame \[rad/s\].
-    pub gyro_rad_s: Option<[f32; 3]>,
-    /// Specific force \[m/s^2\].
-    pub accel_m_s2: Option<[f32; 3]>,
-    /// Steer angle \[rad\].
-    pub steer_rad: Option<f32>,
-    /// Steer rate \[rad/s\].
-    pub steer_rate_rad_s: Option<f32>,
-    /// Speed of the front wheel \[m/s\].
-    pub front_wheel_m_s: Option<Bounds>,
-    /// Speed of the rear wheel \[m/s\].
-    pub rear_wheel_m_s: Option<Bounds>,
-    /// The rider's torque \[N m\].
-    pub rider_torque_nm: Option<f32>,
-    /// The drive's torque \[N m\].
-    pub motor_torque_nm: Option<f32>,
-    /// Heading \[rad\] and lateral \[m\] error.
-    pub path: Option<[f32; 2]>,
+    known: u16,
+    // Zero where nothing is known.
+    gyro_rad_s: [f32; 3],
+    accel_m_s2: [f32; 3],
+    steer_rad: f32,
+    steer_rate_rad_s: f32,
+    front_wheel_m_s: Bounds,
+    rear_wheel_m_s: Bounds,
+    rider_torque_nm: f32,
+    motor_torque_nm: f32,
+    path: [f32; 2],
     /// What is wrong with the others.
     pub causes: Causes,
+}
+
+/// The bits of [`Believed::known`].
+const GYRO_KNOWN: u16 = 1;
+const ACCEL_KNOWN: u16 = 1 << 1;
+const STEER_KNOWN: u16 = 1 << 2;
+const STEER_RATE_KNOWN: u16 = 1 << 3;
+const FRONT_WHEEL_KNOWN: u16 = 1 << 4;
+const REAR_WHEEL_KNOWN: u16 = 1 << 5;
+const RIDER_TORQUE_KNOWN: u16 = 1 << 6;
+const MOTOR_KNOWN: u16 = 1 << 7;
+const PATH_KNOWN: u16 = 1 << 8;
+
+impl Believed {
+    /// What a sensor's watch says: its value and age, if it is known; what is wrong goes to the causes.
+    #[inline(always)]
+    fn note<const N: usize>(&mut self, sensor: u16, told: Told<N>) -> Option<([f32; N], u16)> {
+        if let Some(cause) = told.lost {
+            self.causes.note(cause, true);
+        }
+        if told.value.is_some() {
+            self.known |= sensor;
+        }
+        told.value
+    }
+
+    fn has(&self, sensor: u16) -> bool {
+        self.known & sensor != 0
+    }
+
+    /// Angular velocity of the frame \[rad/s\].
+    pub fn gyro_rad_s(&self) -> Option<[f32; 3]> {
+        self.has(GYRO_KNOWN).then_some(self.gyro_rad_s)
+    }
+
+    /// Angular velocity of the frame \[rad/s\], zero if it is not known.
+    pub fn gyro_or_zero_rad_s(&self) -> [f32; 3] {
+        self.gyro_rad_s
+    }
+
+    /// Specific force \[m/s^2\].
+    pub fn accel_m_s2(&self) -> Option<[f32; 3]> {
+        self.has(ACCEL_KNOWN).then_some(self.accel_m_s2)
+    }
+
+    /// Steer angle \[rad\].
+    pub fn steer_rad(&self) -> Option<f32> {
+        self.has(STEER_KNOWN).then_some(self.steer_rad)
+    }
+
+    /// Steer rate \[rad/s\].
+    pub fn steer_rate_rad_s(&self) -> Option<f32> {
+        self.has(STEER_RATE_KNOWN).then_some(self.steer_rate_rad_s)
+    }
+
+    /// Speed of the front wheel \[m/s\].
+    pub fn front_wheel_m_s(&self) -> Option<Bounds> {
+        self.has(FRONT_WHEEL_KNOWN).then_some(self.front_wheel_m_s)
+    }
+
+    /// Speed of the rear wheel \[m/s\].
+    pub fn rear_wheel_m_s(&self) -> Option<Bounds> {
+        self.has(REAR_WHEEL_KNOWN).then_some(self.rear_wheel_m_s)
+    }
+
+    /// The rider's torque \[N m\].
+    pub fn rider_torque_nm(&self) -> Option<f32> {
+        self.has(RIDER_TORQUE_KNOWN).then_some(self.rider_torque_nm)
+    }
+
+    /// The drive's torque \[N m\].
+    pub fn motor_torque_nm(&self) -> Option<f32> {
+        self.has(MOTOR_KNOWN).then_some(self.motor_torque_nm)
+    }
+
+    /// Heading \[rad\] and lateral \[m\] error.
+    pub fn path(&self) -> Option<[f32; 2]> {
+        self.has(PATH_KNOWN).then_some(self.path)
+    }
 }
 
 /// What is remembered of the sensors.
@@ -237,8 +348,8 @@ impl Default for Before {
 /// in the bicycle's axes, zeros and signs.
 pub fn step(
     config: &InputConfig,
+    plan: &InputPlan,
     calibration: &CalibrationPlan,
-    period_s: f32,
     state: &mut InputState,
     frame: &SensorFrame,
     torque_nm: f32,
@@ -248,62 +359,63 @@ pub fn step(
     let steer_rad = calibration.steer(&frame.steer_rad);
     let steer_rate_rad_s = calibration.steer_rate(&frame.steer_rate_rad_s);
     let [front_m_s, rear_m_s] = [frame.front_wheel_m_s.value, frame.rear_wheel_m_s.value];
-    let now = Before { steer_rad, front_wheel_m_s: front_m_s, rear_wheel_m_s: rear_m_s, torque_nm };
-    let was = core::mem::replace(&mut s.before, now);
+    let was = &s.before;
     // What other sensors say of it; NaN says nothing.
-    let turned = (steer_rad - was.steer_rad).abs() > TURNED_RAD;
-    let turns = steer_rate_rad_s.abs() > TURNING_RAD_S;
-    let turning = turned || turns;
-    let swinging = gyro_rad_s.iter().any(|rate| rate.abs() > SWINGING_RAD_S);
-    let front_changes = (front_m_s - was.front_wheel_m_s).abs() > 0.0;
-    let rear_changes = (rear_m_s - was.rear_wheel_m_s).abs() > 0.0;
-    let torque_changes = (torque_nm - was.torque_nm).abs() > TORQUE_CHANGE_NM;
+    let turned = || (steer_rad - was.steer_rad).abs() > TURNED_RAD;
+    let turns = || steer_rate_rad_s.abs() > TURNING_RAD_S;
+    let turning = || turned() || turns();
+    let swinging = || gyro_rad_s.iter().any(|rate| rate.abs() > SWINGING_RAD_S);
+    let front_changes = || (front_m_s - was.front_wheel_m_s).abs() > 0.0;
+    let rear_changes = || (rear_m_s - was.rear_wheel_m_s).abs() > 0.0;
+    let torque_changes = || (torque_nm - was.torque_nm).abs() > TORQUE_CHANGE_NM;
 
-    let mut causes = Causes::NONE;
-    let gyro = {
-        let sample = (gyro_rad_s, frame.gyro_rad_s.age_ticks);
-        told(&mut causes, s.gyro.step(&config.gyro, &GYRO, period_s, sample, turning))
-    };
-    let accel = {
-        let sample = (calibration.accel(&frame.accel_m_s2), frame.accel_m_s2.age_ticks);
-        told(&mut causes, s.accel.step(&config.accel, &ACCEL, period_s, sample, swinging))
-    };
-    let mut one = |watch: &mut Watch<1>, sensor: &Sensor, codes: &Codes, sample: (f32, u16), moves: bool| {
-        let sample = ([sample.0], sample.1);
-        told(&mut causes, watch.step(sensor, codes, period_s, sample, moves))
-            .map(|([value], age)| (value, age))
-    };
-    let steer = (steer_rad, frame.steer_rad.age_ticks);
-    let steer = one(&mut s.steer, &config.steer, &STEER, steer, turns);
-    let steer_rate = (steer_rate_rad_s, frame.steer_rate_rad_s.age_ticks);
-    let steer_rate = one(&mut s.steer_rate, &config.steer_rate, &STEER_RATE, steer_rate, turned);
-    let front = (front_m_s, frame.front_wheel_m_s.age_ticks);
-    let front = one(&mut s.front_wheel, &config.front_wheel, &FRONT_WHEEL, front, rear_changes);
-    let front_wheel_m_s = s.front_recent.bounds(config, period_s, front);
-    let rear = (rear_m_s, frame.rear_wheel_m_s.age_ticks);
-    let rear = one(&mut s.rear_wheel, &config.rear_wheel, &REAR_WHEEL, rear, front_changes);
-    let rear_wheel_m_s = s.rear_recent.bounds(config, period_s, rear);
-    let rider = (calibration.rider_torque(&frame.rider_torque_nm), frame.rider_torque_nm.age_ticks);
-    let rider = one(&mut s.rider_torque, &config.rider_torque, &RIDER_TORQUE, rider, turning);
-    let motor = (calibration.motor_report(&frame.motor_torque_nm), frame.motor_torque_nm.age_ticks);
-    let motor = one(&mut s.motor, &config.motor, &MOTOR, motor, torque_changes);
-    let path = {
-        let values = [frame.heading_error_rad.value, frame.lateral_error_m.value];
-        let age = frame.heading_error_rad.age_ticks.max(frame.lateral_error_m.age_ticks);
-        told(&mut causes, s.path.step(&config.path, &PATH, period_s, (values, age), false))
-    };
-    Believed {
-        gyro_rad_s: gyro.map(|(value, _)| value),
-        accel_m_s2: accel.map(|(value, _)| value),
-        steer_rad: steer.map(|(value, _)| value),
-        steer_rate_rad_s: steer_rate.map(|(value, _)| value),
-        front_wheel_m_s,
-        rear_wheel_m_s,
-        rider_torque_nm: rider.map(|(value, _)| value),
-        motor_torque_nm: motor.map(|(value, _)| value),
-        path: path.map(|(value, _)| value),
-        causes,
+    let mut b = Believed::default();
+    let sample = (gyro_rad_s, frame.gyro_rad_s.age_ticks);
+    let told = s.gyro.step(&config.gyro, &plan.gyro, &GYRO, sample, turning);
+    if let Some((value, _)) = b.note(GYRO_KNOWN, told) {
+        b.gyro_rad_s = value;
     }
+    let sample = (calibration.accel(&frame.accel_m_s2), frame.accel_m_s2.age_ticks);
+    let told = s.accel.step(&config.accel, &plan.accel, &ACCEL, sample, swinging);
+    if let Some((value, _)) = b.note(ACCEL_KNOWN, told) {
+        b.accel_m_s2 = value;
+    }
+    let sample = ([steer_rad], frame.steer_rad.age_ticks);
+    let told = s.steer.step(&config.steer, &plan.steer, &STEER, sample, turns);
+    if let Some(([value], _)) = b.note(STEER_KNOWN, told) {
+        b.steer_rad = value;
+    }
+    let sample = ([steer_rate_rad_s], frame.steer_rate_rad_s.age_ticks);
+    let told = s.steer_rate.step(&config.steer_rate, &plan.steer_rate, &STEER_RATE, sample, turned);
+    if let Some(([value], _)) = b.note(STEER_RATE_KNOWN, told) {
+        b.steer_rate_rad_s = value;
+    }
+    let sample = ([front_m_s], frame.front_wheel_m_s.age_ticks);
+    let told = s.front_wheel.step(&config.front_wheel, &plan.front_wheel, &FRONT_WHEEL, sample, rear_changes);
+    let front = b.note(FRONT_WHEEL_KNOWN, told);
+    b.front_wheel_m_s = s.front_recent.bounds(config, plan, front).unwrap_or_default();
+    let sample = ([rear_m_s], frame.rear_wheel_m_s.age_ticks);
+    let told = s.rear_wheel.step(&config.rear_wheel, &plan.rear_wheel, &REAR_WHEEL, sample, front_changes);
+    let rear = b.note(REAR_WHEEL_KNOWN, told);
+    b.rear_wheel_m_s = s.rear_recent.bounds(config, plan, rear).unwrap_or_default();
+    let sample = ([calibration.rider_torque(&frame.rider_torque_nm)], frame.rider_torque_nm.age_ticks);
+    let told = s.rider_torque.step(&config.rider_torque, &plan.rider_torque, &RIDER_TORQUE, sample, turning);
+    if let Some(([value], _)) = b.note(RIDER_TORQUE_KNOWN, told) {
+        b.rider_torque_nm = value;
+    }
+    let sample = ([calibration.motor_report(&frame.motor_torque_nm)], frame.motor_torque_nm.age_ticks);
+    let told = s.motor.step(&config.motor, &plan.motor, &MOTOR, sample, torque_changes);
+    if let Some(([value], _)) = b.note(MOTOR_KNOWN, told) {
+        b.motor_torque_nm = value;
+    }
+    let values = [frame.heading_error_rad.value, frame.lateral_error_m.value];
+    let age = frame.heading_error_rad.age_ticks.max(frame.lateral_error_m.age_ticks);
+    let told = s.path.step(&config.path, &plan.path, &PATH, (values, age), || false);
+    if let Some((value, _)) = b.note(PATH_KNOWN, told) {
+        b.path = value;
+    }
+    s.before = Before { steer_rad, front_wheel_m_s: front_m_s, rear_wheel_m_s: rear_m_s, torque_nm };
+    b
 }
 
 /// Steer in one period that counts as turning \[rad\]: 1 rad/s at 1 kHz.
@@ -315,22 +427,13 @@ const SWINGING_RAD_S: f32 = 0.5;
 /// Change of torque in one period that the drive must show \[N m\].
 const TORQUE_CHANGE_NM: f32 = 0.01;
 
-/// A watch's value; what is wrong goes to the causes.
-fn told<const N: usize>(causes: &mut Causes, told: Told<N>) -> Option<([f32; N], u16)> {
-    if let Some(cause) = told.lost {
-        causes.note(cause, true);
-    }
-    told.value
-}
-
 /// The newest samples of a wheel.
 #[derive(Clone, Copy, Debug)]
 struct Recent {
-    /// In a ring; `next` is the place of the one to come.
-    samples: [f32; RECENT],
-    known: u16,
-    next: u16,
-    /// Between which they all are.
+    /// Those before the newest, in a ring, NaN where there was none; `next` is the place of the one to come.
+    samples: [f32; RECENT - 1],
+    next: usize,
+    /// Between which they and the newest are.
     low: f32,
     high: f32,
     /// The age at which the newest sample is still the one of the period before.
@@ -339,43 +442,46 @@ struct Recent {
 
 impl Default for Recent {
     fn default() -> Self {
-        Self { samples: [0.0; RECENT], known: 0, next: 0, low: 0.0, high: 0.0, held: MISSING }
+        Self { samples: [f32::NAN; RECENT - 1], next: 0, low: 0.0, high: 0.0, held: MISSING }
     }
 }
 
 impl Recent {
     /// The bounds of a speed from its newest sample and age, and the samples before it.
-    fn bounds(&mut self, config: &InputConfig, period_s: f32, newest: Option<(f32, u16)>) -> Option<Bounds> {
-        let Some((newest, age)) = newest else {
+    fn bounds(
+        &mut self,
+        config: &InputConfig,
+        plan: &InputPlan,
+        newest: Option<([f32; 1], u16)>,
+    ) -> Option<Bounds> {
+        let Some(([newest], age)) = newest else {
             *self = Self::default();
             return None;
         };
         if age != self.held {
-            self.take(config.recent_samples, newest);
+            self.take(plan.before, newest);
         }
         self.held = age.saturating_add(1);
         let (mut low, mut high) = (self.low, self.high);
         if age > config.drift_after_ticks {
             cold_path();
             let late = f32::from(age - config.drift_after_ticks);
-            let drift = config.drift_m_s2 * period_s * late;
+            let drift = plan.drift_m_s * late;
             (low, high) = (low - drift, high + drift);
         }
         Some(Bounds { low, newest, high })
     }
 
-    /// A new sample, of which so many count.
-    fn take(&mut self, recent_samples: u16, newest: f32) {
+    /// A new sample, with so many before it that count.
+    fn take(&mut self, before: usize, newest: f32) {
         let (mut low, mut high) = (newest, newest);
-        for sample in self.samples.iter().take(usize::from(self.known)) {
+        for sample in self.samples.iter().take(before) {
             (low, high) = (at_most(*sample, low), at_least(*sample, high));
         }
         (self.low, self.high) = (low, high);
-        if let Some(place) = self.samples.get_mut(usize::from(self.next)) {
+        if let Some(place) = self.samples.get_mut(self.next) {
             *place = newest;
         }
-        let places = recent_samples.saturating_sub(1);
-        self.known = places.min(self.known + 1);
-        self.next = if self.next + 1 < places { self.next + 1 } else { 0 };
+        self.next = if self.next + 1 < before { self.next + 1 } else { 0 };
     }
 }

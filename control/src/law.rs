@@ -66,11 +66,11 @@ impl Law {
                 if *cut && v >= R::lit(7.5) {
                     zero
                 } else {
-                    (R::lit(30.0) - R::lit(4.0) * v) * (R::lit(-0.03) * v * v).exp()
+                    h(v)
                 }
             }
             Law::F => R::lit(0.88) * v * v - R::lit(12.0) * v + R::lit(41.0),
-            Law::G => (R::lit(40.0) - v) * (R::lit(-0.35) * v).exp(),
+            Law::G => g(v),
             Law::Cl1 if v < R::lit(6.7) => R::lit(5.97) * (R::lit(6.7) - v),
             Law::Cl2 { k } if v < R::lit(10.0) => R::lit(f64::from(*k)) * (R::lit(10.0) - v),
             Law::BalanceAssist { kappa } if v > zero && v < R::lit(BALANCE_OFF_M_S) => {
@@ -91,12 +91,15 @@ impl Law {
     ///
     /// One speed given twice gives the bits of [`Law::gain`]. Exact but for the rounding of `gain`.
     pub fn gain_towards_zero(&self, one_m_s: f32, other_m_s: f32) -> f32 {
-        if one_m_s == other_m_s {
-            return self.gain(one_m_s);
-        }
         let (low, high) = if one_m_s < other_m_s { (one_m_s, other_m_s) } else { (other_m_s, one_m_s) };
-        if self.falls_to_zero(low, high) {
-            return self.gain(high);
+        // Where the gain only falls with speed and stays positive; of these laws one evaluation costs as much as all else here.
+        match self {
+            // The derivative is zero at -1.79 and 9.29 m/s, the gain at 7.5 m/s.
+            Law::H { .. } if low >= -1.7 && high <= 7.5 => return h(high),
+            // The derivative is zero at 42.9 m/s, the gain at 40 m/s.
+            Law::G if high <= 40.0 => return g(high),
+            _ if low == high => return self.gain(high),
+            _ => {}
         }
         let least = nearer_zero(self.gain(one_m_s), self.gain(other_m_s));
         let inside = |v: f32| low < v && v < high;
@@ -108,18 +111,6 @@ impl Law {
                 kinks.fold(least, |least, (_, gain)| nearer_zero(least, *gain))
             }
             _ => least,
-        }
-    }
-
-    /// Whether the gain only falls from one speed \[m/s\] to a higher one and stays positive, for the laws of which one
-    /// evaluation costs as much as all else here.
-    fn falls_to_zero(&self, low_m_s: f32, high_m_s: f32) -> bool {
-        match self {
-            // The derivative is zero at -1.79 and 9.29 m/s, the gain at 7.5 m/s.
-            Law::H { .. } => low_m_s >= -1.7 && high_m_s <= 7.5,
-            // The derivative is zero at 42.9 m/s, the gain at 40 m/s.
-            Law::G => high_m_s <= 40.0,
-            _ => false,
         }
     }
 
@@ -194,6 +185,18 @@ impl Law {
             _ => Ok(()),
         }
     }
+}
+
+/// The gain of [`Law::H`], not cut.
+#[inline]
+fn h<R: Real>(v: R) -> R {
+    (R::lit(30.0) - R::lit(4.0) * v) * (R::lit(-0.03) * v * v).exp()
+}
+
+/// The gain of [`Law::G`].
+#[inline]
+fn g<R: Real>(v: R) -> R {
+    (R::lit(40.0) - v) * (R::lit(-0.35) * v).exp()
 }
 
 /// The one of less magnitude, or 0 between gains of different sign.

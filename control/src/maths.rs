@@ -3,8 +3,17 @@
 //! Polynomials through the Chebyshev nodes of the quarter turn. `+`, `-` and `*` only: host and chip
 //! agree in every bit, and `sin(-x)` is `-sin(x)` to the bit.
 
+use core::f32::consts::LOG2_E;
+use core::hint::cold_path;
+
 /// A quarter turn \[rad\].
 pub const QUARTER: f32 = core::f32::consts::FRAC_PI_2;
+
+/// Whether `x` is finite, without a detour through the integer registers: infinite or NaN times 0 is NaN.
+#[inline]
+pub fn is_finite(x: f32) -> bool {
+    x * 0.0 == 0.0
+}
 
 /// Largest error of [`sin_cos`] within a quarter turn either way, rounding included.
 pub const SIN_COS_ERROR: f32 = 2e-7;
@@ -29,8 +38,10 @@ pub fn sin_cos_within(x: f32) -> (f32, f32) {
 pub fn bounded(x: f32, max: f32) -> f32 {
     // What is inside, as nearly always, takes one comparison.
     if x.abs() <= max {
-        x
-    } else if x > max {
+        return x;
+    }
+    cold_path();
+    if x > max {
         max
     } else if x < -max {
         -max
@@ -39,19 +50,37 @@ pub fn bounded(x: f32, max: f32) -> f32 {
     }
 }
 
+/// `e` to the power of `x`: the bits of [`libm::expf`], whose arithmetic this is (musl, after FreeBSD's `e_expf.c`), without
+/// its branches where none is needed.
+#[inline]
+pub fn exp(x: f32) -> f32 {
+    let size = x.abs();
+    if !(size > 1.220_703_1e-4 && size <= 87.0) {
+        cold_path();
+        return libm::expf(x);
+    }
+    // x = k ln 2 + r, ln 2 in two parts, of which the upper one times k is exact.
+    let k = (LOG2_E * x + if x < 0.0 { -0.5 } else { 0.5 }) as i32;
+    let (upper, lower) = (x - k as f32 * 0.693_145_75, k as f32 * 1.428_606_8e-6);
+    let r = upper - lower;
+    let rr = r * r;
+    let c = r - rr * (0.166_666_25 - rr * 0.002_766_733_3);
+    let power = 1.0 + (r * c / (2.0 - c) - lower + upper);
+    power * f32::from_bits(((127 + k) as u32) << 23)
+}
+
 /// Largest relative error of [`per_root`], for what is neither 0, denormal nor beyond `1e38`.
 pub const PER_ROOT_ERROR: f32 = 2e-7;
 
-/// One over the square root, for positive numbers; finite for every other. A square root in software takes four times
-/// as long.
+/// One over the square root of a number that is known to be neither negative nor infinite nor NaN; finite for 0 too. A
+/// square root in software takes four times as long.
 #[inline]
 pub fn per_root(x: f32) -> f32 {
     // Half the exponent, negated, with the constant of least error; each of Newton's steps squares it.
-    let guess = f32::from_bits(0x5f37_5a86_u32.wrapping_sub((x.to_bits() & 0x7fff_ffff) >> 1));
+    let guess = f32::from_bits(0x5f37_5a86_u32.wrapping_sub(x.to_bits() >> 1));
     let better = guess * (1.5 - 0.5 * x * guess * guess);
     let better = better * (1.5 - 0.5 * x * better * better);
-    let best = better * (1.5 - 0.5 * x * better * better);
-    bounded(best, f32::MAX)
+    better * (1.5 - 0.5 * x * better * better)
 }
 
 /// The lesser; `x` if they are equal or `bound` is NaN. `f32::min` is a call on the chip.

@@ -104,6 +104,27 @@ pub struct Reactions {
     pub lasting: Causes,
 }
 
+/// What follows from the conditions alone: a condition that is off can't be met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PermitPlan {
+    fallen_rad: f32,
+    parked_m_s: f32,
+    backwards_m_s: f32,
+    lifted_m_s2: f32,
+}
+
+impl PermitPlan {
+    /// Of checked conditions.
+    pub fn new(config: &PermitConfig) -> Self {
+        Self {
+            fallen_rad: config.fallen_rad.unwrap_or(f32::INFINITY),
+            parked_m_s: config.parked_m_s.unwrap_or(0.0),
+            backwards_m_s: config.backwards_m_s.unwrap_or(f32::INFINITY),
+            lifted_m_s2: config.lifted_m_s2.unwrap_or(0.0),
+        }
+    }
+}
+
 impl Reactions {
     /// The reactions under these declarations.
     pub fn new(input: &InputConfig) -> Self {
@@ -213,11 +234,12 @@ impl Persistent {
 /// One control period.
 pub fn step(
     config: &PermitConfig,
+    plan: &PermitPlan,
     reactions: &Reactions,
     state: &mut PermitState,
     asked: &Asked,
 ) -> Permission {
-    let causes = state.causes(config, asked).with(state.lasting);
+    let causes = state.causes(config, plan, asked).with(state.lasting);
     state.lasting = if state.mode.drives() { causes.and(reactions.lasting) } else { Causes::NONE };
     let mode = state.next(config, reactions, asked, causes);
     if mode != state.mode {
@@ -244,18 +266,14 @@ impl PermitState {
     }
 
     /// Everything that stands in the way now.
-    fn causes(&mut self, config: &PermitConfig, asked: &Asked) -> Causes {
-        // Comparisons with what is not known are false.
-        let beyond =
-            |value: Option<f32>, limit: Option<f32>| matches!((value, limit), (Some(v), Some(l)) if v > l);
-        let roll = asked.roll_rad.map(f32::abs);
-        let backwards = asked.speed_m_s.map(|v| -v);
-        let slow = beyond(config.parked_m_s, asked.speed_m_s.map(f32::abs));
+    fn causes(&mut self, config: &PermitConfig, plan: &PermitPlan, asked: &Asked) -> Causes {
         let mut now = Causes::NONE;
-        now.note(Cause::Fallen, beyond(roll, config.fallen_rad));
-        now.note(Cause::Lifted, beyond(config.lifted_m_s2, asked.force_m_s2));
-        now.note(Cause::Backwards, beyond(backwards, config.backwards_m_s));
-        now.note(Cause::Parked, slow);
+        now.note(Cause::Fallen, asked.roll_rad.is_some_and(|roll| roll.abs() > plan.fallen_rad));
+        now.note(Cause::Lifted, asked.force_m_s2.is_some_and(|force| force < plan.lifted_m_s2));
+        if let Some(speed) = asked.speed_m_s {
+            now.note(Cause::Backwards, -speed > plan.backwards_m_s);
+            now.note(Cause::Parked, speed.abs() < plan.parked_m_s);
+        }
         let mut causes = asked.causes.with(self.position.step(now, config.persist_ticks));
         causes.note(Cause::PolarityUnchecked, config.need_polarity && !asked.polarity_checked);
         causes.note(Cause::SwitchOff, !asked.engage);

@@ -88,9 +88,9 @@ pub fn step(
     believed: &Believed,
     gain_nm_s_rad: f32,
 ) -> f32 {
-    let roll_rate = believed.gyro_rad_s.map(|[x, ..]| x);
+    let roll_rate = believed.gyro_rad_s().map(|[x, ..]| x);
     let shown_nm = gain_nm_s_rad * roll_rate.unwrap_or(0.0);
-    let wheels = [believed.front_wheel_m_s, believed.rear_wheel_m_s];
+    let wheels = [believed.front_wheel_m_s(), believed.rear_wheel_m_s()];
     let stands = wheels.iter().any(Option::is_some)
         && wheels.iter().flatten().all(|speed| speed.newest.abs() < PUSH_M_S);
     if !stands && matches!(state.next, Move::Lean | Move::Steer) {
@@ -100,14 +100,14 @@ pub fn step(
     }
     let rate = match state.next {
         Move::Lean => roll_rate,
-        Move::Steer => believed.steer_rate_rad_s,
+        Move::Steer => believed.steer_rate_rad_s(),
         _ => None,
     };
     state.summed_rad += period_s * (rate.unwrap_or(0.0) - state.summed_rad / FORGET_S);
     let summed = state.summed_rad;
     let said = match state.next {
         Move::Lean => {
-            let force = believed.accel_m_s2.map(|[_, y, _]| -y);
+            let force = believed.accel_m_s2().map(|[_, y, _]| -y);
             let leans = Says::of(summed, LEAN_RAD);
             let law = if gain_nm_s_rad < 0.0 { Says::Wrong } else { Says::Right };
             // The force tells the lean only as far as there is one.
@@ -117,19 +117,19 @@ pub fn step(
             }
         }
         Move::Steer => {
-            let turned = believed.steer_rad.map(|now| now - *state.from_rad.get_or_insert(now));
-            let rate = believed.steer_rate_rad_s.map(|_| summed);
+            let turned = believed.steer_rad().map(|now| now - *state.from_rad.get_or_insert(now));
+            let rate = believed.steer_rate_rad_s().map(|_| summed);
             [
                 Says::fitted(input.steer.fitted, turned, STEER_RAD),
                 Says::fitted(input.steer_rate.fitted, rate, STEER_RAD),
-                Says::fitted(input.rider_torque.fitted, believed.rider_torque_nm, HAND_NM),
+                Says::fitted(input.rider_torque.fitted, believed.rider_torque_nm(), HAND_NM),
             ]
         }
         Move::Push => {
             let speed = |bounds: Option<crate::input::Bounds>| bounds.map(|b| b.newest);
             [
-                Says::fitted(input.front_wheel.fitted, speed(believed.front_wheel_m_s), PUSH_M_S),
-                Says::fitted(input.rear_wheel.fitted, speed(believed.rear_wheel_m_s), PUSH_M_S),
+                Says::fitted(input.front_wheel.fitted, speed(believed.front_wheel_m_s()), PUSH_M_S),
+                Says::fitted(input.rear_wheel.fitted, speed(believed.rear_wheel_m_s()), PUSH_M_S),
                 Says::Right,
             ]
         }

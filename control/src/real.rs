@@ -15,7 +15,7 @@ pub trait Real:
 {
     /// A literal of a formula, rounded once to the type.
     fn lit(value: f64) -> Self;
-    /// e to the power of `self`, by [`libm`] (error below 1 ulp; the same bits on every machine).
+    /// e to the power of `self`, as [`libm`] has it (error below 1 ulp; the same bits on every machine).
     fn exp(self) -> Self;
 }
 
@@ -26,7 +26,7 @@ impl Real for f32 {
     }
     #[inline]
     fn exp(self) -> Self {
-        libm::expf(self)
+        crate::maths::exp(self)
     }
 }
 

@@ -162,24 +162,31 @@ pub fn step(
     // Each at its own tick, so that no control period has to do both.
     let gyro_end = state.gyro_tick == plan.motor_ticks / 2;
     let motor_end = state.motor_tick == plan.motor_ticks;
-    let speed = believed.rear_wheel_m_s.or(believed.front_wheel_m_s);
+    let speed = believed.rear_wheel_m_s().or(believed.front_wheel_m_s());
     let mut causes = Causes::NONE;
 
-    match (believed.gyro_rad_s, believed.accel_m_s2, speed) {
+    match (believed.gyro_rad_s(), believed.accel_m_s2(), speed) {
         (Some([wx, wy, wz]), Some([_, force, _]), Some(speed)) if plan.config.gyro => {
-            let means = state.gyro.step([wx, wy, wz, force, speed.newest], gyro_end);
-            if let Some((now, before)) = means {
-                let slope = state.sideways(plan, now, before);
+            state.gyro.add([wx, wy, wz, force, speed.newest]);
+            if gyro_end {
+                let slope = state.sideways(plan);
                 causes.note(Cause::GyroDisagrees, slope.is_some_and(|s| s < GYRO_WRONG));
             }
         }
         _ => (state.gyro, state.gyro_before, state.gyro_slope) = Default::default(),
     }
-    match (plan.config.motor, believed.steer_rad, believed.steer_rate_rad_s, believed.gyro_rad_s, speed) {
+    match (
+        &plan.config.motor,
+        believed.steer_rad(),
+        believed.steer_rate_rad_s(),
+        believed.gyro_rad_s(),
+        speed,
+    ) {
         (Some(model), Some(steer), Some(rate), Some(_), Some(speed)) => {
-            let values = [motion.roll_rad, motion.roll_rate_rad_s, steer, rate, speed.newest, torque_nm];
-            if let Some((now, before)) = state.motor.step(values, motor_end) {
-                let slope = state.turning(&model, &plan.motor, now, before);
+            let Motion { roll_rad, roll_rate_rad_s, .. } = *motion;
+            state.motor.add([roll_rad, roll_rate_rad_s, steer, rate, speed.newest, torque_nm]);
+            if motor_end {
+                let slope = state.turning(model, &plan.motor);
                 causes.note(Cause::WrongResponse, slope.is_some_and(|s| s < MOTOR_WRONG));
             }
         }
@@ -189,8 +196,9 @@ pub fn step(
 }
 
 impl ResponseState {
-    /// The gyro's slope at the instant between two stretches.
-    fn sideways(&mut self, plan: &ResponsePlan, now: [f32; 5], before: [f32; 5]) -> Option<f32> {
+    /// Ends the gyro's stretch: the slope at the instant between it and the one before.
+    fn sideways(&mut self, plan: &ResponsePlan) -> Option<f32> {
+        let (now, before) = self.gyro.end()?;
         let ResponsePlan { imu, wheel_radius_m, gyro, .. } = plan;
         let [wx, wy, wz, force, speed] = between(now, before);
         let rate = |i: usize| (now.get(i).unwrap_or(&0.0) - before.get(i).unwrap_or(&0.0)) / gyro.dt_s;
@@ -205,8 +213,9 @@ impl ResponseState {
         self.gyro_slope.step(gyro, more, seen - seen_before)
     }
 
-    /// The motor's slope at the instant between two stretches.
-    fn turning(&mut self, m: &SteerModel, plan: &SlopePlan, now: [f32; 6], before: [f32; 6]) -> Option<f32> {
+    /// Ends the motor's stretch: the slope at the instant between it and the one before.
+    fn turning(&mut self, m: &SteerModel, plan: &SlopePlan) -> Option<f32> {
+        let (now, before) = self.motor.end()?;
         let [roll, roll_rate, steer, steer_rate, v, torque] = between(now, before);
         let ([.., rate_now, _, _], [.., rate_before, _, _]) = (now, before);
         let explained = v * (m.roll_rate * roll_rate + m.steer_rate * steer_rate)

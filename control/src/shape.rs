@@ -5,7 +5,7 @@
 //! window never keeps it from zero and never excludes where it is, so the rate has the last word.
 
 use crate::limits::{ActiveLimits, EndStop, Limits, RiderMotion, RiderTorque, SpeedCap, Taper, Window};
-use crate::maths::{at_least, at_most};
+use crate::maths::{at_least, at_most, is_finite};
 use core::hint::cold_path;
 
 /// What the shaper is asked for, and what the limits depend on.
@@ -156,27 +156,27 @@ fn rider_band(limit: &RiderTorque, max: f32, rider: f32) -> (f32, f32) {
     (-at_least(low, 0.0), at_least(high, 0.0))
 }
 
-/// The smallest torque of the cap anywhere in the interval of speeds.
+/// The smallest torque of the cap anywhere in the interval of speeds: at its ends and at the points between.
 fn lowest_in(cap: &SpeedCap, (slow, fast): (f32, f32)) -> f32 {
-    let mut least = at_most(at(cap, slow), at(cap, fast));
-    for (v, t) in cap.speed_m_s.iter().zip(&cap.torque_nm) {
-        if slow < *v && *v < fast {
-            least = at_most(least, *t);
-        }
-    }
-    least
-}
-
-/// The cap at a speed.
-fn at(cap: &SpeedCap, speed: f32) -> f32 {
+    let mut least = f32::MAX;
     let mut before: Option<(f32, f32)> = None;
     for (&v, &t) in cap.speed_m_s.iter().zip(&cap.torque_nm) {
-        if speed <= v {
-            return before.map_or(t, |(v0, t0)| t0 + (t - t0) * ((speed - v0) / (v - v0)));
+        let at = |speed| before.map_or(t, |(v0, t0)| t0 + (t - t0) * ((speed - v0) / (v - v0)));
+        if slow <= v {
+            // Here it begins.
+            if before.is_none_or(|(v0, _)| slow > v0) {
+                least = at(slow);
+            }
+            if fast <= v {
+                return at_most(least, at(fast));
+            }
+            if slow < v {
+                least = at_most(t, least);
+            }
         }
         before = Some((v, t));
     }
-    before.map_or(0.0, |(_, t)| t)
+    before.map_or(least, |(_, t)| at_most(t, least))
 }
 
 fn taper_share(taper: &Taper, speed: f32) -> f32 {
@@ -200,7 +200,8 @@ fn stop_share(stop: &EndStop, steer: f32) -> f32 {
 fn against(rider: &RiderMotion, before_us: u32, torque: f32, asked: &Asked) -> u32 {
     let rate = asked.steer_rate_rad_s.unwrap_or(0.0);
     let limit = rider.steer_rate_rad_s;
-    if (torque > 0.0 && rate < -limit) || (torque < 0.0 && rate > limit) {
+    let back = if torque > 0.0 { -rate } else { rate };
+    if back > limit && torque != 0.0 {
         let most = (u32::from(rider.after_ms) + u32::from(rider.fade_ms)) * 1000;
         before_us.saturating_add(asked.elapsed_us).min(most)
     } else {
@@ -221,17 +222,21 @@ fn reach(plan: &ShapePlan, last: f32, elapsed_us: u32) -> (f32, f32) {
         let part = elapsed_us as f32 / plan.period_us as f32;
         (rise, fall) = (rise.map(|step| step * part), fall.map(|step| step * part));
     }
-    let lowest = |from: f32| {
-        let rise = rise.unwrap_or(f32::MAX);
-        match fall {
-            _ if from <= 0.0 => from - rise,
-            None => -rise,
-            Some(fall) if from >= fall => from - fall,
-            Some(fall) => (from - fall) * plan.crossing,
-        }
+    let rise = rise.unwrap_or(f32::MAX);
+    let back = |from: f32| match fall {
+        None => -rise,
+        Some(fall) if from >= fall => from - fall,
+        Some(fall) => (from - fall) * plan.crossing,
     };
+    let away = |from: f32| from - rise;
     // Not a mere minus: zero stays a positive zero.
-    (lowest(last), 0.0 - lowest(-last))
+    if last > 0.0 {
+        (back(last), 0.0 - away(-last))
+    } else if last < 0.0 {
+        (away(last), 0.0 - back(-last))
+    } else {
+        (away(last), 0.0 - away(-last))
+    }
 }
 
 /// Parts of the window: one that is being filled, and as many full ones as cover it.
@@ -243,8 +248,10 @@ struct Past {
     /// The least size of the torque in each part of the window \[N m\]; zero where it was not on the side where it is
     /// now, for then it has been zero within the window.
     parts: [f32; PARTS],
+    /// The least of them \[N m\].
+    least: f32,
     right: bool,
-    newest: u8,
+    newest: usize,
     filled_us: u32,
 }
 
@@ -253,31 +260,38 @@ impl Past {
     fn hold(&mut self, torque: f32, elapsed_us: u32, part_us: u32) {
         let (size, right) = (torque.abs(), torque > 0.0);
         if right != self.right {
-            (self.parts, self.right) = ([0.0; PARTS], right);
+            (self.parts, self.least, self.right) = ([0.0; PARTS], 0.0, right);
         }
         self.filled_us = self.filled_us.saturating_add(elapsed_us);
+        if self.filled_us >= part_us {
+            self.close(size, part_us);
+        } else if let Some(part) = self.parts.get_mut(self.newest) {
+            *part = at_most(size, *part);
+            self.least = at_most(size, self.least);
+        }
+    }
+
+    /// Closes the part that is full, and more of them after a gap; the oldest ones are forgotten.
+    fn close(&mut self, size: f32, part_us: u32) {
         for _ in 0..PARTS {
             if self.filled_us < part_us {
                 break;
             }
             self.filled_us -= part_us;
-            self.newest = (self.newest + 1) % PARTS as u8;
-            if let Some(part) = self.parts.get_mut(usize::from(self.newest)) {
+            self.newest = if self.newest + 1 < PARTS { self.newest + 1 } else { 0 };
+            if let Some(part) = self.parts.get_mut(self.newest) {
                 *part = size;
             }
         }
         if self.filled_us >= part_us {
             self.filled_us = 0;
         }
-        if let Some(part) = self.parts.get_mut(usize::from(self.newest)) {
-            *part = at_most(size, *part);
-        }
+        self.least = self.parts.iter().fold(f32::MAX, |least, part| at_most(*part, least));
     }
 
     /// How far to the left, and to the right, the torque was at the least within the window \[N m\].
     fn least(&self) -> (f32, f32) {
-        let least = self.parts.iter().fold(f32::MAX, |least, part| at_most(*part, least));
-        if self.right { (0.0, least) } else { (least, 0.0) }
+        if self.right { (0.0, self.least) } else { (self.least, 0.0) }
     }
 }
 
@@ -291,7 +305,7 @@ fn interval(a: f32, b: f32) -> (f32, f32) {
 }
 
 fn finite(value: Option<f32>) -> Option<f32> {
-    value.filter(|v| v.is_finite())
+    value.filter(|v| is_finite(*v))
 }
 
 /// `x` within 0..=1; NaN is 0.

@@ -81,15 +81,17 @@ impl<const N: usize> Default for Stretch<N> {
 }
 
 impl<const N: usize> Stretch<N> {
-    /// Takes in a control period's values; at the `end` of a stretch its means, and those of the one before.
-    pub fn step(&mut self, values: [f32; N], end: bool) -> Option<([f32; N], [f32; N])> {
+    /// Takes in a control period's values.
+    #[inline]
+    pub fn add(&mut self, values: [f32; N]) {
         for (sum, value) in self.sums.iter_mut().zip(values) {
             *sum += value;
         }
         self.periods = self.periods.saturating_add(1);
-        if !end {
-            return None;
-        }
+    }
+
+    /// Ends the stretch: its means, and those of the one before.
+    pub fn end(&mut self) -> Option<([f32; N], [f32; N])> {
         let share = 1.0 / f32::from(self.periods);
         let means = self.sums.map(|sum| share * sum);
         let before = self.before.replace(means);

@@ -11,6 +11,7 @@
 //! the torque is not wholly its own.
 
 use crate::limits::ActiveLimits;
+use crate::maths::{at_least, at_most, bounded};
 use crate::param::{Leaf, ParamError, Visit};
 
 /// Points of the gain table.
@@ -189,7 +190,8 @@ pub fn step(track: &Track, state: &mut TrackState, seen: &Seen) -> f32 {
     let follows = path.is_some() && permitted && !pushed && !overridden;
 
     let change = elapsed_s / (f32::from(track.fade_ms) * 1e-3);
-    state.strength = within(state.strength + if follows { change } else { -change }, 0.0, 1.0);
+    state.strength =
+        if follows { at_most(1.0, state.strength + change) } else { at_least(0.0, state.strength - change) };
     // A lost path is held while it fades.
     state.path = path.unwrap_or(state.path);
     if state.strength == 0.0 {
@@ -202,21 +204,19 @@ pub fn step(track: &Track, state: &mut TrackState, seen: &Seen) -> f32 {
         seen.steer_rad,
         seen.roll_rate_rad_s,
         seen.steer_rate_rad_s,
-        within(heading_rad, -track.heading_max_rad, track.heading_max_rad),
-        within(lateral_m, -track.lateral_max_m, track.lateral_max_m),
+        bounded(heading_rad, track.heading_max_rad),
+        bounded(lateral_m, track.lateral_max_m),
         state.integral_m_s,
     ];
     let wanted = -track.against(seen.speed_m_s, &errors);
-    let wanted = if wanted.is_finite() { wanted } else { 0.0 };
-    let bounded = within(wanted, -track.max_torque_nm, track.max_torque_nm) * state.strength;
+    let faded = bounded(wanted, track.max_torque_nm) * state.strength;
     let slew = track.slew_nm_s * elapsed_s;
-    let torque = within(bounded, state.torque_nm - slew, state.torque_nm + slew);
+    let torque = within(faded, state.torque_nm - slew, state.torque_nm + slew);
 
     let whole = state.strength == 1.0 && seen.authority >= 1.0 && seen.acted.is_empty();
     if whole && torque == wanted {
-        let rate = within(lateral_m, -track.integrate_max_m, track.integrate_max_m);
-        let most = track.integral_max_m_s;
-        state.integral_m_s = within(state.integral_m_s + rate * elapsed_s, -most, most);
+        let rate = bounded(lateral_m, track.integrate_max_m);
+        state.integral_m_s = bounded(state.integral_m_s + rate * elapsed_s, track.integral_max_m_s);
     }
     state.torque_nm = torque;
     torque

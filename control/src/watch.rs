@@ -83,6 +83,25 @@ impl Sensor {
     }
 }
 
+/// How far a sample may be from the last good one to be believed, which follows from the sensor and the rate of calls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// In the control period after that one, in the sensor's unit.
+    fresh: f32,
+    /// Further by each period without any sample.
+    growth: f32,
+}
+
+impl Reach {
+    /// For one call every `period_s`.
+    pub fn new(sensor: &Sensor, period_s: f32) -> Self {
+        match sensor.slope_per_s {
+            Some(slope) => Self { fresh: sensor.step + slope * period_s, growth: slope * period_s },
+            None => Self { fresh: f32::INFINITY, growth: 0.0 },
+        }
+    }
+}
+
 /// What is wrong with a sensor, as its four codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Codes {
@@ -154,24 +173,32 @@ pub struct Told<const N: usize> {
 
 impl<const N: usize> Watch<N> {
     /// One control period: the frame's sample, and whether what it measures `moves` by what other
-    /// sensors say.
+    /// sensors say, which only counts when no new value comes.
     #[inline(always)]
     pub fn step(
         &mut self,
         sensor: &Sensor,
+        reach: &Reach,
         codes: &Codes,
-        period_s: f32,
         sample: ([f32; N], u16),
-        moves: bool,
+        moves: impl Fn() -> bool,
     ) -> Told<N> {
         let (value, age) = sample;
-        // As nearly always: one good sample after the other.
-        if age <= self.age && inside(sensor, &value) && self.near(&value, self.near) {
-            let still = self.still(&value, moves);
-            if !stuck(sensor, still) {
-                (self.value, self.still) = (value, still);
+        // As nearly always: a good sample in this very period.
+        if age == 0 && inside(sensor, &value) && self.near(&value, self.near) {
+            let mut passes = true;
+            if !self.repeats(&value) {
+                self.still = 0;
+            } else if moves() {
+                cold_path();
+                let still = self.still.saturating_add(1);
+                passes = !stuck(sensor, still);
+                self.still = if passes { still } else { self.still };
+            }
+            if passes {
+                self.value = value;
                 if self.age > 0 {
-                    self.renew(sensor, period_s, age);
+                    self.renew(reach, age);
                 }
                 return Told { value: Some((value, age)), lost: None };
             }
@@ -179,7 +206,7 @@ impl<const N: usize> Watch<N> {
         if !sensor.fitted {
             return Told { value: None, lost: None };
         }
-        self.judge(sensor, codes, period_s, &{ value }, age, moves);
+        self.judge(sensor, reach, codes, &{ value }, age, moves());
         if self.trusted {
             Told { value: Some((self.value, self.age)), lost: None }
         } else {
@@ -192,8 +219,8 @@ impl<const N: usize> Watch<N> {
     fn judge(
         &mut self,
         sensor: &Sensor,
+        reach: &Reach,
         codes: &Codes,
-        period_s: f32,
         value: &[f32; N],
         age: u16,
         moves: bool,
@@ -201,15 +228,16 @@ impl<const N: usize> Watch<N> {
         let older = self.age.saturating_add(1);
         // The last good one still.
         if age == older && age <= sensor.timeout_ticks && self.near >= 0.0 {
-            self.hold(sensor, period_s, age, moves);
-            (self.told_age, self.near) = (age, self.most);
+            self.hold(reach, age, moves);
+            self.told_age = age;
+            self.near = if moves && stuck(sensor, self.still) { -1.0 } else { self.most };
             return;
         }
         if age != self.told_age.saturating_add(1) && age != MISSING {
             self.age = older;
-            self.take(sensor, codes, period_s, value, age, moves);
+            self.take(sensor, reach, codes, value, age, moves);
         } else {
-            self.hold(sensor, period_s, older, moves);
+            self.hold(reach, older, moves);
         }
         self.told_age = age;
         if self.age > sensor.timeout_ticks {
@@ -218,23 +246,28 @@ impl<const N: usize> Watch<N> {
         } else if self.good >= sensor.qualify_samples {
             self.trusted = true;
         }
-        let easy = self.trusted && self.doubt.is_none() && age != MISSING;
-        self.near = if easy { self.most } else { -1.0 };
+        self.near = -1.0;
+        if self.trusted && self.doubt.is_none() && age != MISSING {
+            // What is held may be stuck.
+            if self.age == 0 || !stuck(sensor, self.still) {
+                self.near = self.most;
+            }
+        }
     }
 
     /// No new sample: the last one is of this age now.
     #[inline(always)]
-    fn hold(&mut self, sensor: &Sensor, period_s: f32, age: u16, moves: bool) {
+    fn hold(&mut self, reach: &Reach, age: u16, moves: bool) {
         self.age = age;
         self.still = self.still.saturating_add(u16::from(moves));
-        self.most += sensor.slope_per_s.unwrap_or(0.0) * period_s;
+        self.most += reach.growth;
     }
 
     /// A good sample of this age.
     #[inline(always)]
-    fn renew(&mut self, sensor: &Sensor, period_s: f32, age: u16) {
+    fn renew(&mut self, reach: &Reach, age: u16) {
         (self.age, self.told_age) = (age, age);
-        self.most = sensor.slope_per_s.map_or(f32::INFINITY, |slope| sensor.step + slope * period_s);
+        self.most = reach.fresh;
         self.near = self.most;
     }
 
@@ -242,8 +275,8 @@ impl<const N: usize> Watch<N> {
     fn take(
         &mut self,
         sensor: &Sensor,
+        reach: &Reach,
         codes: &Codes,
-        period_s: f32,
         value: &[f32; N],
         age: u16,
         moves: bool,
@@ -264,12 +297,12 @@ impl<const N: usize> Watch<N> {
         if jumps {
             (self.doubt, self.good) = (Some(codes.jump), 0);
         }
-        self.still = self.still(value, moves);
+        self.still = self.still(value, || moves);
         if stuck(sensor, self.still) {
             (self.doubt, self.good, self.trusted) = (Some(codes.stuck), 0, false);
         }
         self.value = *value;
-        self.renew(sensor, period_s, age);
+        self.renew(reach, age);
     }
 
     /// Whether no axis is further than this from the last good sample.
@@ -280,13 +313,20 @@ impl<const N: usize> Watch<N> {
 
     /// For how long something has moved with a sample that may be the last good one again.
     #[inline(always)]
-    fn still(&self, value: &[f32; N], moves: bool) -> u16 {
-        if *value == self.value {
-            cold_path();
-            self.still.saturating_add(u16::from(moves))
-        } else {
+    fn still(&self, value: &[f32; N], moves: impl Fn() -> bool) -> u16 {
+        if !self.repeats(value) {
             0
+        } else if moves() {
+            self.still.saturating_add(1)
+        } else {
+            self.still
         }
+    }
+
+    /// Whether this is the last good sample again.
+    #[inline(always)]
+    fn repeats(&self, value: &[f32; N]) -> bool {
+        value.iter().zip(&self.value).all(|(a, b)| a == b)
     }
 }
 

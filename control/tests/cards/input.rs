@@ -1,6 +1,6 @@
 //! Flight cards: the declared sensors, each believed, doubted and told by its own codes; the speed's bounds.
 
-use control::input::{self, Believed, Bounds, InputState, RECENT};
+use control::input::{self, Believed, Bounds, InputPlan, InputState, RECENT};
 use control::{
     Calibration, Cause, Causes, Config, InputConfig, Loss, Sample, Sensor, SensorFrame, Triple, Wheel,
 };
@@ -9,7 +9,8 @@ const PERIOD_S: f32 = 1e-3;
 
 /// A step at 1 kHz on a bicycle on which all is as drawn.
 fn step(config: &InputConfig, state: &mut InputState, frame: &SensorFrame, torque_nm: f32) -> Believed {
-    input::step(config, &Calibration::default().plan(), PERIOD_S, state, frame, torque_nm)
+    let plan = InputPlan::new(config, PERIOD_S);
+    input::step(config, &plan, &Calibration::default().plan(), state, frame, torque_nm)
 }
 
 /// A sensor: where it is declared, where its sample stands, what is believed of it, and its four codes.
@@ -32,56 +33,56 @@ fn cases() -> [Case; 9] {
             name: "gyro",
             declared: |c| &mut c.gyro,
             set: |f, value, age| f.gyro_rad_s = triple(value, age),
-            believed: |b| b.gyro_rad_s.map(|v| v[2]),
+            believed: |b| b.gyro_rad_s().map(|v| v[2]),
             codes: [GyroLost, GyroRange, GyroJump, GyroStuck],
         },
         Case {
             name: "accel",
             declared: |c| &mut c.accel,
             set: |f, value, age| f.accel_m_s2 = triple(value, age),
-            believed: |b| b.accel_m_s2.map(|v| v[2]),
+            believed: |b| b.accel_m_s2().map(|v| v[2]),
             codes: [AccelLost, AccelRange, AccelJump, AccelStuck],
         },
         Case {
             name: "steer",
             declared: |c| &mut c.steer,
             set: |f, value, age_ticks| f.steer_rad = Sample { value, age_ticks },
-            believed: |b| b.steer_rad,
+            believed: |b| b.steer_rad(),
             codes: [SteerLost, SteerRange, SteerJump, SteerStuck],
         },
         Case {
             name: "steer rate",
             declared: |c| &mut c.steer_rate,
             set: |f, value, age_ticks| f.steer_rate_rad_s = Sample { value, age_ticks },
-            believed: |b| b.steer_rate_rad_s,
+            believed: |b| b.steer_rate_rad_s(),
             codes: [SteerRateLost, SteerRateRange, SteerRateJump, SteerRateStuck],
         },
         Case {
             name: "front wheel",
             declared: |c| &mut c.front_wheel,
             set: |f, value, age_ticks| f.front_wheel_m_s = Sample { value, age_ticks },
-            believed: |b| b.front_wheel_m_s.map(|v| v.newest),
+            believed: |b| b.front_wheel_m_s().map(|v| v.newest),
             codes: [FrontWheelLost, FrontWheelRange, FrontWheelJump, FrontWheelStuck],
         },
         Case {
             name: "rear wheel",
             declared: |c| &mut c.rear_wheel,
             set: |f, value, age_ticks| f.rear_wheel_m_s = Sample { value, age_ticks },
-            believed: |b| b.rear_wheel_m_s.map(|v| v.newest),
+            believed: |b| b.rear_wheel_m_s().map(|v| v.newest),
             codes: [RearWheelLost, RearWheelRange, RearWheelJump, RearWheelStuck],
         },
         Case {
             name: "rider's torque",
             declared: |c| &mut c.rider_torque,
             set: |f, value, age_ticks| f.rider_torque_nm = Sample { value, age_ticks },
-            believed: |b| b.rider_torque_nm,
+            believed: |b| b.rider_torque_nm(),
             codes: [RiderTorqueLost, RiderTorqueRange, RiderTorqueJump, RiderTorqueStuck],
         },
         Case {
             name: "motor",
             declared: |c| &mut c.motor,
             set: |f, value, age_ticks| f.motor_torque_nm = Sample { value, age_ticks },
-            believed: |b| b.motor_torque_nm,
+            believed: |b| b.motor_torque_nm(),
             codes: [MotorLost, MotorRange, MotorJump, MotorStuck],
         },
         Case {
@@ -90,7 +91,7 @@ fn cases() -> [Case; 9] {
             set: |f, value, age_ticks| {
                 (f.heading_error_rad, f.lateral_error_m) = (Sample::fresh(0.0), Sample { value, age_ticks });
             },
-            believed: |b| b.path.map(|[_, lateral]| lateral),
+            believed: |b| b.path().map(|[_, lateral]| lateral),
             codes: [PathLost; 4],
         },
     ]
@@ -243,10 +244,10 @@ fn the_path_is_as_old_as_its_older_error() {
             step(&config, &mut state, &frame, 0.0)
         };
         for age in 0..=2 {
-            assert_eq!(at(age).path, Some([0.5; 2]), "{late} {age}");
+            assert_eq!(at(age).path(), Some([0.5; 2]), "{late} {age}");
         }
         let told = at(3);
-        assert_eq!((told.path, told.causes), (None, Causes::of(Cause::PathLost)), "{late}");
+        assert_eq!((told.path(), told.causes), (None, Causes::of(Cause::PathLost)), "{late}");
     }
 }
 
@@ -273,7 +274,7 @@ fn the_speed_lies_between_the_recent_samples() {
     let mut at = |front, rear| {
         let frame = SensorFrame { front_wheel_m_s: front, rear_wheel_m_s: rear, ..SensorFrame::missing() };
         let told = step(&config, &mut state, &frame, 0.0);
-        (told.front_wheel_m_s, told.rear_wheel_m_s)
+        (told.front_wheel_m_s(), told.rear_wheel_m_s())
     };
     let steady = Some(Bounds { low: 7.0, newest: 7.0, high: 7.0 });
     for (speed, low, high) in [
@@ -312,7 +313,7 @@ fn a_late_first_sample_has_bounds() {
     let frame =
         SensorFrame { front_wheel_m_s: Sample { value: 5.0, age_ticks: 1 }, ..SensorFrame::missing() };
     let told = step(&config, &mut state, &frame, 0.0);
-    assert_eq!(told.front_wheel_m_s, Some(Bounds { low: 5.0, newest: 5.0, high: 5.0 }));
+    assert_eq!(told.front_wheel_m_s(), Some(Bounds { low: 5.0, newest: 5.0, high: 5.0 }));
 }
 
 /// Situation: a wheel of which each sample comes two periods late, and one whose samples, held twice, are never fresh.
@@ -330,7 +331,7 @@ fn samples_that_are_never_fresh_are_all_taken() {
         };
         let told = step(&config, &mut state, &frame, 0.0);
         let bounds = |newest: f32| Some(Bounds { low: (newest - 2.0).max(0.0), newest, high: newest });
-        assert_eq!((told.front_wheel_m_s, told.rear_wheel_m_s), (bounds(late), bounds(slow)), "{k}");
+        assert_eq!((told.front_wheel_m_s(), told.rear_wheel_m_s()), (bounds(late), bounds(slow)), "{k}");
     }
 }
 
@@ -344,7 +345,7 @@ fn the_bounds_span_as_many_samples_as_declared() {
         for k in 0_u16..20 {
             let speed = f32::from(k);
             let frame = SensorFrame { front_wheel_m_s: Sample::fresh(speed), ..SensorFrame::missing() };
-            let told = step(&config, &mut state, &frame, 0.0).front_wheel_m_s.expect("fresh");
+            let told = step(&config, &mut state, &frame, 0.0).front_wheel_m_s().expect("fresh");
             assert_eq!((told.low, told.high), (f32::from(k.saturating_sub(count - 1)), speed), "{count}");
         }
     }

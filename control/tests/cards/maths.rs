@@ -1,6 +1,6 @@
 //! Flight cards: the polynomials of the control crate.
 
-use control::maths::{PER_ROOT_ERROR, QUARTER, SIN_COS_ERROR, bounded, per_root, sin_cos};
+use control::maths::{PER_ROOT_ERROR, QUARTER, SIN_COS_ERROR, bounded, exp, is_finite, per_root, sin_cos};
 
 /// Situation: every 61st float of a quarter turn, both ways. Action: compare with double precision. The
 /// error must stay within the stated bound, which must be no looser than twice what is needed.
@@ -34,11 +34,12 @@ fn one_over_the_root_within_its_bound() {
     assert!(worst < bound && worst > 0.5 * bound, "{worst:e}");
 }
 
-/// Situation: zero, negative, infinite, not a number, denormal. Action: one over the root. Must hold: finite.
+/// Situation: every 61st finite float from zero on, denormal ones and the largest. Action: one over the root. Must hold:
+/// finite and positive.
 #[test]
-fn one_over_the_root_of_anything_is_finite() {
-    for x in [0.0, -0.0, -1.0, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 1e-45, f32::MAX] {
-        assert!(per_root(x).is_finite(), "{x}");
+fn one_over_the_root_is_finite() {
+    for x in (0..=f32::MAX.to_bits()).step_by(61).map(f32::from_bits).chain([f32::MAX]) {
+        assert!(per_root(x).is_finite() && per_root(x) > 0.0, "{x}");
     }
     assert_eq!(0.0 * per_root(0.0), 0.0);
 }
@@ -53,4 +54,28 @@ fn beyond_a_quarter_turn() {
     assert_eq!(sin_cos(-0.0).0.to_bits(), (-0.0_f32).to_bits());
     assert_eq!(bounded(-0.0, 1.0).to_bits(), (-0.0_f32).to_bits());
     assert_eq!(bounded(f32::NAN, 1.0), 0.0);
+}
+
+/// Situation: every 61st float, both signs, and the neighbours of where the short way begins and ends. Action: take `e` to its
+/// power, by the short way and by libm. Must hold: the same bits.
+#[test]
+fn the_exponential_has_the_bits_of_libm() {
+    let edges = [1.220_703_1e-4_f32, 0.5 * std::f32::consts::LN_2, 1.5 * std::f32::consts::LN_2, 87.0, 88.8];
+    let near =
+        edges.into_iter().flat_map(|edge| (edge.to_bits() - 9..edge.to_bits() + 9).map(f32::from_bits));
+    let every = (0..=f32::INFINITY.to_bits()).step_by(61).map(f32::from_bits);
+    for x in every.chain(near) {
+        for x in [x, -x] {
+            assert_eq!(exp(x).to_bits(), libm::expf(x).to_bits(), "{x:e}");
+        }
+    }
+    assert!(exp(f32::NAN).is_nan());
+}
+
+/// Situation: zero, the least and the largest, infinite, not a number, both signs. Must hold: finite as `f32::is_finite` has it.
+#[test]
+fn finite_is_finite() {
+    for x in [0.0, 1.0, 1e-45, f32::MIN_POSITIVE, f32::MAX, f32::INFINITY, f32::NAN] {
+        assert_eq!([is_finite(x), is_finite(-x)], [x.is_finite(); 2], "{x:e}");
+    }
 }

@@ -1,6 +1,6 @@
 //! Flight cards: when torque may flow, and what takes the permission away.
 
-use control::permit::{Asked, Permission, PermitState, Reactions, step};
+use control::permit::{Asked, Permission, PermitPlan, PermitState, Reactions, step};
 use control::{Cause, Causes, Config, Mode, PermitConfig};
 
 const CONFIG: PermitConfig = PermitConfig {
@@ -40,7 +40,7 @@ impl Bench {
     }
 
     fn step(&mut self, asked: &Asked) -> Permission {
-        step(&self.config, &self.reactions, &mut self.state, asked)
+        step(&self.config, &PermitPlan::new(&self.config), &self.reactions, &mut self.state, asked)
     }
 
     /// The permission after so many periods of the same.

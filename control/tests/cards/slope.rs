@@ -73,7 +73,8 @@ fn stretches_have_their_means() {
     let mut told = Vec::new();
     for i in 0..12_i16 {
         let value = f32::from(i);
-        told.push(stretch.step([value, -value], i % 4 == 3));
+        stretch.add([value, -value]);
+        told.push(if i % 4 == 3 { stretch.end() } else { None });
     }
     let expected = [(7, [5.5, -5.5], [1.5, -1.5]), (11, [9.5, -9.5], [5.5, -5.5])];
     for (at, now, before) in expected {

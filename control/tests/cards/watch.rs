@@ -1,7 +1,7 @@
 //! Flight cards: one sensor watched.
 
 use control::frame::MISSING;
-use control::watch::{Codes, Told, Watch};
+use control::watch::{Codes, Reach, Told, Watch};
 use control::{Cause, Loss, Sensor};
 use proptest::prelude::*;
 
@@ -24,11 +24,16 @@ const SENSOR: Sensor = Sensor {
     loss: Loss::Limp,
 };
 
+/// At 1 kHz.
+fn reach(sensor: &Sensor) -> Reach {
+    Reach::new(sensor, 1e-3)
+}
+
 struct Bench(Watch<1>);
 
 impl Bench {
     fn step(&mut self, value: f32, age: u16, moves: bool) -> Told<1> {
-        self.0.step(&SENSOR, &CODES, 1e-3, ([value], age), moves)
+        self.0.step(&SENSOR, &reach(&SENSOR), &CODES, ([value], age), || moves)
     }
 
     /// A fresh sample: what is believed of it, or why it is not.
@@ -52,7 +57,8 @@ impl Bench {
 fn what_is_not_there_is_not_missed() {
     let mut watch = Watch::<1>::default();
     for k in 0..100 {
-        let told = watch.step(&Sensor::default(), &CODES, 1e-3, ([f32::NAN], k), true);
+        let sensor = Sensor::default();
+        let told = watch.step(&sensor, &reach(&sensor), &CODES, ([f32::NAN], k), || true);
         assert_eq!(told, Told { value: None, lost: None });
     }
 }
@@ -95,10 +101,10 @@ fn a_jump_does_not_become_true_by_waiting() {
     let stepping = Sensor { step: 0.2, ..SENSOR };
     let mut watch = bench.0;
     watch = (0..3).fold(watch, |mut watch, _| {
-        watch.step(&stepping, &CODES, 1e-3, ([1.25], 0), false);
+        watch.step(&stepping, &reach(&stepping), &CODES, ([1.25], 0), || false);
         watch
     });
-    let told = watch.step(&stepping, &CODES, 1e-3, ([1.54], 0), false);
+    let told = watch.step(&stepping, &reach(&stepping), &CODES, ([1.54], 0), || false);
     assert_eq!(told.value, Some(([1.54], 0)), "a step of 0.2 and a period's slope");
 }
 
@@ -133,9 +139,9 @@ fn what_cannot_be_is_not_used() {
 fn as_far_as_allowed_is_no_jump() {
     let sensor = Sensor { slope_per_s: Some(128.0), qualify_samples: 1, ..SENSOR };
     // So that the eighth is one to the bit.
-    let period_s = 1.0 / 1024.0;
+    let reach = Reach::new(&sensor, 1.0 / 1024.0);
     let mut watch = Watch::<1>::default();
-    let mut fresh = |value| watch.step(&sensor, &CODES, period_s, ([value], 0), false).value;
+    let mut fresh = |value| watch.step(&sensor, &reach, &CODES, ([value], 0), || false).value;
     for value in [1.0, 1.125, 1.25, 1.125, 1.0] {
         assert_eq!(fresh(value), Some(([value], 0)));
     }
