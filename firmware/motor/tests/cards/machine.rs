@@ -123,8 +123,14 @@ impl Machine {
 
     /// One PWM period.
     pub(crate) fn advance(&mut self, duties: Option<[f64; 3]>) {
-        let dt = 1.0 / self.params.rate_hz / STEPS as f64;
-        for _ in 0..STEPS {
+        self.advance_for(duties, 1.0 / self.params.rate_hz);
+    }
+
+    /// A part of a PWM period, or more than one \[s\].
+    pub(crate) fn advance_for(&mut self, duties: Option<[f64; 3]>, seconds: f64) {
+        let steps = (seconds * self.params.rate_hz * STEPS as f64).ceil().max(1.0);
+        let dt = seconds / steps;
+        for _ in 0..steps as usize {
             let bus_a = self.windings(duties, dt);
             self.steer(dt);
             let p = &self.params;

@@ -1,0 +1,83 @@
+//! What the converters measure: physical values to counts of 12 bits at 3.3 V.
+
+use parts::vesc6::{BOARD_HEAT, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
+
+const FULL_SCALE: f64 = 4095.0;
+
+/// The sensors on analog pins.
+#[derive(Clone, Debug)]
+pub struct Analog {
+    /// Zeros of the three current amplifiers, from the middle of the range \[counts\].
+    pub current_zero_counts: [f64; 3],
+    /// Which phase's current reaches which amplifier.
+    pub current_wiring: [usize; 3],
+    /// An amplifier whose shunt is turned round.
+    pub current_reversed: [bool; 3],
+    /// The rider's switch is closed.
+    pub switch_closed: bool,
+    /// Torque of the rider \[N m\]; `None`: no such sensor, the input floats at 0.
+    pub rider_torque_nm: Option<f64>,
+    /// The steer sensor's plug is in.
+    pub steer_connected: bool,
+    /// Temperature beside the switches of the bridge \[deg C\].
+    pub board_c: f64,
+}
+
+impl Default for Analog {
+    /// A board at 25 deg C with amplifiers that are off by a few counts, everything connected but a torque sensor.
+    fn default() -> Self {
+        Self {
+            current_zero_counts: [3.0, -4.0, 2.0],
+            current_wiring: [0, 1, 2],
+            current_reversed: [false; 3],
+            switch_closed: false,
+            rider_torque_nm: None,
+            steer_connected: true,
+            board_c: 25.0,
+        }
+    }
+}
+
+impl Analog {
+    pub(crate) fn current_counts(&self, phases_a: [f64; 3], amplifier: usize) -> u16 {
+        let current_a = phases_a[self.current_wiring[amplifier]];
+        let sign = if self.current_reversed[amplifier] { -1.0 } else { 1.0 };
+        let counts = sign * current_a / f64::from(SHUNT.ampere_per_count());
+        clamped(0.5 * FULL_SCALE + counts + self.current_zero_counts[amplifier])
+    }
+
+    pub(crate) fn steer_counts(&self, steer_rad: f64) -> u16 {
+        if self.steer_connected { gauge(&STEER_RAD, steer_rad) } else { 0 }
+    }
+
+    pub(crate) fn rider_torque_counts(&self) -> u16 {
+        self.rider_torque_nm.map_or(0, |torque_nm| gauge(&RIDER_NM, torque_nm))
+    }
+
+    /// A contact to ground under a pull-up.
+    pub(crate) fn switch_counts(&self) -> u16 {
+        if self.switch_closed { 0 } else { FULL_SCALE as u16 }
+    }
+
+    pub(crate) fn board_temperature_counts(&self) -> u16 {
+        let kelvin = self.board_c + 273.15;
+        let ohm = f64::from(BOARD_HEAT.nominal_ohm)
+            * (f64::from(BOARD_HEAT.beta_k) * (1.0 / kelvin - 1.0 / 298.15)).exp();
+        clamped(FULL_SCALE * f64::from(BOARD_HEAT.lower_ohm) / (f64::from(BOARD_HEAT.lower_ohm) + ohm))
+    }
+
+    pub(crate) fn supply_counts(&self, bus_v: f64) -> u16 {
+        let part = f64::from(SUPPLY.lower_ohm) / f64::from(SUPPLY.upper_ohm + SUPPLY.lower_ohm);
+        clamped(FULL_SCALE * bus_v * part / f64::from(SUPPLY.reference_v))
+    }
+}
+
+fn gauge(gauge: &parts::analog::Gauge, value: f64) -> u16 {
+    let part = (value - f64::from(gauge.at_least)) / f64::from(gauge.at_most - gauge.at_least);
+    let span = f64::from(gauge.most_counts - gauge.least_counts);
+    clamped(f64::from(gauge.least_counts) + part * span)
+}
+
+fn clamped(counts: f64) -> u16 {
+    counts.round().clamp(0.0, FULL_SCALE) as u16
+}

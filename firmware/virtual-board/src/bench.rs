@@ -1,0 +1,401 @@
+//! A board on the bench: power on, let time go by, look and change in between.
+//!
+//! The core runs in a thread of its own and stops at the instants it is asked to; between two of them a test holds the
+//! board in its hands.
+
+use crate::board::{CORE_HZ, Options, Vesc6};
+use crate::chip::memory::FLASH;
+use crate::flash::{Array, Pace};
+use crate::image::Functions;
+use crate::inject::put_back;
+use crate::log::{self, Log, Rtt};
+use crate::wiring::Wiring;
+use rigless::emulator::{self, Driver, Host, Settled, Start, Stop};
+use rigless::image::Image;
+use rigless::session::{Reset, Session};
+use rigless::soc::Width;
+use rigless::time::VirtualNanos;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// How often the log is fetched and the run is looked at for gaps \[ns\].
+const LOOK_NS: u64 = 1_000_000;
+
+/// The flash of the parameters, as `memory.x` keeps it free.
+const STORE: std::ops::Range<u64> = 0x0800_4000..0x0801_0000;
+
+/// What can go wrong.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The image can't be read, or is not one.
+    #[error("{path}: {why}")]
+    Image {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// The emulator refused to start or failed.
+    #[error("the emulator: {0}")]
+    Emulator(String),
+    /// The program did something that no model answers for.
+    #[error("at {at_ms:.3} ms: {what}")]
+    Gap {
+        /// When it was noticed \[ms\].
+        at_ms: f64,
+        /// What it was, with the instruction and the function where they are known.
+        what: String,
+    },
+    /// Something that was waited for did not happen.
+    #[error("at {at_ms:.3} ms: still no {what}; the last register was accessed {by}")]
+    Endless {
+        /// When it was given up \[ms\].
+        at_ms: f64,
+        /// What was waited for.
+        what: String,
+        /// The instruction that accessed a register last, and its function.
+        by: String,
+    },
+    /// The emulator took longer for a step than [`Options::patience`].
+    #[error("at {at_ms:.3} ms: the emulator did not come back within {patience:?}")]
+    Stuck {
+        /// Simulated time at the step's begin \[ms\].
+        at_ms: f64,
+        /// The limit.
+        patience: Duration,
+    },
+}
+
+type Work = Box<dyn FnOnce(&mut Session<Vesc6>, &mut dyn Host) + Send>;
+
+enum Order {
+    RunUntil(u64),
+    Work(Work),
+}
+
+/// The driver's side of the thread.
+struct Stepper {
+    orders: Receiver<Order>,
+    reached: Sender<Reached>,
+}
+
+/// Where the core stands.
+#[derive(Clone, Copy)]
+struct Reached {
+    at_ns: u64,
+    instructions: u64,
+}
+
+impl Driver<Vesc6> for Stepper {
+    fn on_settled(&mut self, session: &mut Session<Vesc6>, host: &mut dyn Host, settled: Settled) {
+        if let Settled::Access { access, .. } = settled
+            && let Some(counter) = access.program_counter
+        {
+            session.board_mut().last_access = counter as u32;
+            // The session itself keeps no instruction of these.
+            let troubled = !session.refused().is_empty() || session.told().next().is_some();
+            if troubled && session.board().troubled_by.is_none() {
+                session.board_mut().troubled_by = Some(counter as u32);
+            }
+        }
+        if let Settled::Hit(hit) = settled {
+            session.board_mut().hits.push((hit.at.0, hit.address as u32));
+        }
+        if matches!(settled, Settled::Stop(_)) && !session.board().damage.is_empty() {
+            put_back(session, host);
+        }
+        if session.board().flash.concerns(&settled) {
+            let board = session.board_mut();
+            let mut flash = std::mem::replace(&mut board.flash, Array::new(Pace::Typical));
+            flash.settled(session, host, settled);
+            session.board_mut().flash = flash;
+        }
+    }
+
+    fn on_stop(
+        &mut self,
+        session: &mut Session<Vesc6>,
+        stop: Stop,
+        host: &mut dyn Host,
+    ) -> Option<VirtualNanos> {
+        session.board_mut().chip.wiring.advance(stop.at.0);
+        // A bench that is gone ends the run.
+        let reached = Reached { at_ns: stop.at.0, instructions: stop.instruction_count };
+        self.reached.send(reached).ok()?;
+        loop {
+            match self.orders.recv().ok()? {
+                Order::RunUntil(at_ns) => return Some(VirtualNanos(at_ns)),
+                Order::Work(work) => work(session, host),
+            }
+        }
+    }
+}
+
+/// A board that is powered.
+pub struct Bench {
+    orders: Option<Sender<Order>>,
+    reached: Receiver<Reached>,
+    thread: Option<JoinHandle<Result<(), String>>>,
+    now_ns: u64,
+    instructions: u64,
+    cycles_per_instruction: f64,
+    log: Log,
+    rtt: Rtt,
+    functions: Functions,
+    image: PathBuf,
+    patience: Duration,
+}
+
+impl Bench {
+    /// Powers a board with this image in its flash.
+    ///
+    /// # Errors
+    /// An image that can't be read or is not for this chip.
+    pub fn power_on(image: &Path, options: Options, wiring: Wiring) -> Result<Self, Error> {
+        Self::power_on_with_store(image, options, wiring, None)
+    }
+
+    /// The same with what an earlier board had in the flash of its parameters, as of [`Self::store`].
+    ///
+    /// # Errors
+    /// An image that can't be read or is not for this chip.
+    pub fn power_on_with_store(
+        image: &Path,
+        options: Options,
+        wiring: Wiring,
+        store: Option<&[u8]>,
+    ) -> Result<Self, Error> {
+        let wrong = |why: String| Error::Image { path: image.to_owned(), why };
+        let bytes = std::fs::read(image).map_err(|e| wrong(e.to_string()))?;
+        let functions = Functions::read(&bytes).map_err(wrong)?;
+        let log = Log::new(&bytes).map_err(wrong)?;
+        let rtt = Rtt::find(&bytes).map_err(wrong)?;
+        let mut images = vec![Image::new(image, bytes, None).map_err(|e| wrong(e.to_string()))?];
+        if let Some(store) = store {
+            let kept = Image::new(Path::new("the store"), store.to_vec(), Some(STORE.start));
+            images.push(kept.map_err(|e| wrong(e.to_string()))?);
+        }
+        let board = Vesc6::new(options, wiring).map_err(|e| Error::Emulator(e.to_string()))?;
+        let session =
+            Session::new(Box::new(board), 0, VirtualNanos(0)).map_err(|e| Error::Emulator(e.to_string()))?;
+        let ((orders, to_do), (done, reached)) = (channel(), channel());
+        let thread = std::thread::spawn(move || {
+            let stepper = Stepper { orders: to_do, reached: done };
+            emulator::run(session, &Start::new(&images), stepper).map(|_| ()).map_err(|e| e.to_string())
+        });
+        let mut bench = Self {
+            orders: Some(orders),
+            reached,
+            thread: Some(thread),
+            now_ns: 0,
+            instructions: 0,
+            cycles_per_instruction: options.cycles_per_instruction,
+            log,
+            rtt,
+            functions,
+            image: image.to_owned(),
+            patience: options.patience,
+        };
+        bench.wait()?;
+        Ok(bench)
+    }
+
+    /// Lets time go by \[ms\].
+    ///
+    /// # Errors
+    /// [`Error::Gap`] where the program used what no model has.
+    pub fn run_ms(&mut self, ms: f64) -> Result<(), Error> {
+        self.run_until_ns(self.now_ns + (ms * 1e6).round() as u64)
+    }
+
+    /// Lets time go by until an instant after power-on \[ns\].
+    ///
+    /// # Errors
+    /// As of [`Self::run_ms`].
+    pub fn run_until_ns(&mut self, end_ns: u64) -> Result<(), Error> {
+        while self.now_ns < end_ns {
+            let look_ns = (self.now_ns / LOOK_NS + 1) * LOOK_NS;
+            self.order(Order::RunUntil(look_ns.min(end_ns)));
+            self.wait()?;
+            if self.now_ns >= look_ns {
+                self.look()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Lets time go by until something is so, looked at each millisecond; `what` is its name in the error.
+    ///
+    /// # Errors
+    /// [`Error::Endless`] after `limit_ms`, and as of [`Self::run_ms`].
+    pub fn run_until(
+        &mut self,
+        limit_ms: f64,
+        what: &str,
+        mut so: impl FnMut(&mut Self) -> bool,
+    ) -> Result<(), Error> {
+        let end_ms = self.now_ms() + limit_ms;
+        while !so(self) {
+            if self.now_ms() >= end_ms {
+                let counter = self.with(|board| board.last_access);
+                let (at_ms, by) = (self.now_ms(), self.place(counter));
+                return Err(Error::Endless { at_ms, what: what.into(), by });
+            }
+            self.run_ms(1.0)?;
+        }
+        Ok(())
+    }
+
+    /// Where the only function of this name begins.
+    ///
+    /// # Errors
+    /// [`Error::Image`] where none or several have it.
+    pub fn function(&self, name: &str) -> Result<u32, Error> {
+        self.functions.start(name).map_err(|why| Error::Image { path: self.image.clone(), why })
+    }
+
+    fn place(&self, counter: u32) -> String {
+        let function = self.functions.at(counter).unwrap_or("no function");
+        format!("by the instruction at {counter:#010x} in {function}")
+    }
+
+    /// Time since power-on \[ns\].
+    pub fn now_ns(&self) -> u64 {
+        self.now_ns
+    }
+
+    /// Time since power-on \[ms\].
+    pub fn now_ms(&self) -> f64 {
+        self.now_ns as f64 * 1e-6
+    }
+
+    /// Time that the core worked since power-on, as far as it did not wait for an interrupt \[ms\].
+    pub fn busy_ms(&self) -> f64 {
+        self.instructions as f64 * self.cycles_per_instruction / CORE_HZ as f64 * 1e3
+    }
+
+    /// The lines of the log so far, each with its instant \[ms\].
+    pub fn log(&self) -> &[log::Line] {
+        self.log.lines()
+    }
+
+    /// Works on the board while it stands between two instructions.
+    pub fn with<T: Send + 'static>(&mut self, work: impl FnOnce(&mut Vesc6) -> T + Send + 'static) -> T {
+        self.with_session(|session, _| work(session.board_mut()))
+    }
+
+    /// Sends bytes on the serial line from now on.
+    pub fn send(&mut self, bytes: &[u8]) {
+        let (bytes, now_ns) = (bytes.to_vec(), self.now_ns);
+        self.with(move |board| board.computer().send(&bytes, now_ns));
+    }
+
+    /// The bytes that the board sent since the last call.
+    pub fn received(&mut self) -> Vec<u8> {
+        self.with(|board| board.computer().take())
+    }
+
+    /// The resets so far.
+    pub fn resets(&mut self) -> Vec<Reset> {
+        self.with_session(|session, _| session.resets().to_vec())
+    }
+
+    /// Works on the session and the core's memory.
+    pub fn with_session<T: Send + 'static>(
+        &mut self,
+        work: impl FnOnce(&mut Session<Vesc6>, &mut dyn Host) -> T + Send + 'static,
+    ) -> T {
+        let (send, answer) = channel();
+        self.order(Order::Work(Box::new(move |session, host| {
+            // The receiver waits just below.
+            let _ = send.send(work(session, host));
+        })));
+        answer.recv().expect("the emulator's thread runs while the bench lives")
+    }
+
+    fn order(&self, order: Order) {
+        if let Some(orders) = &self.orders {
+            // A thread that is gone is found by the next wait.
+            let _ = orders.send(order);
+        }
+    }
+
+    fn wait(&mut self) -> Result<(), Error> {
+        match self.reached.recv_timeout(self.patience) {
+            Ok(Reached { at_ns, instructions }) => {
+                (self.now_ns, self.instructions) = (at_ns, instructions);
+                Ok(())
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                // It is left to itself: nothing can stop it.
+                self.thread = None;
+                Err(Error::Stuck { at_ms: self.now_ms(), patience: self.patience })
+            }
+            Err(RecvTimeoutError::Disconnected) => Err(Error::Emulator(self.end())),
+        }
+    }
+
+    /// Why the thread ended.
+    fn end(&mut self) -> String {
+        let ended = self.thread.take().map(JoinHandle::join);
+        match ended {
+            Some(Ok(Err(why))) => why,
+            Some(Ok(Ok(()))) | None => "the run ended".into(),
+            Some(Err(_)) => "the emulator's thread panicked".into(),
+        }
+    }
+
+    /// Fetches the log, and looks for accesses that no model answered.
+    fn look(&mut self) -> Result<(), Error> {
+        let rtt = self.rtt;
+        let (bytes, gap) = self.with_session(move |session, host| (rtt.drain(host), gap(session)));
+        self.log.push(&bytes, self.now_ns as f64 * 1e-6);
+        let Some((what, counter)) = gap else { return Ok(()) };
+        let by = counter.map_or_else(String::new, |counter| format!(", {}", self.place(counter)));
+        Err(Error::Gap { at_ms: self.now_ms(), what: format!("{what}{by}") })
+    }
+
+    /// What is in the flash of the parameters: sectors 1 to 3.
+    pub fn store(&mut self) -> Vec<u8> {
+        self.with_session(|_, host| {
+            let words = STORE.step_by(4).map(|at| host.read(at, Width::W32).unwrap_or(0) as u32);
+            words.flat_map(u32::to_le_bytes).collect()
+        })
+    }
+
+    /// A word of memory.
+    pub fn word(&mut self, address: u32) -> Option<u32> {
+        self.with_session(move |_, host| {
+            host.read(u64::from(address), Width::W32).ok().map(|word| word as u32)
+        })
+    }
+}
+
+impl Drop for Bench {
+    fn drop(&mut self) {
+        self.orders = None;
+        if let Some(thread) = self.thread.take() {
+            // What it failed with was told by the call that met it.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The first thing the program did that no model answers for, and the instruction where it is known.
+fn gap(session: &Session<Vesc6>) -> Option<(String, Option<u32>)> {
+    let by = session.board().troubled_by;
+    // Stores into the flash array are the array's.
+    let unmapped = session.unmapped().into_iter().find(|at| !FLASH.contains(&at.address));
+    let unmapped =
+        unmapped.map(|at| (format!("no register at {:#010x}", at.address), Some(at.program_counter as u32)));
+    let refused = session.refused().iter().next().map(|(at, fault)| (format!("{at:#010x}: {fault}"), by));
+    let unimplemented = session.unimplemented().iter().next().map(|(at, seen)| {
+        let what = format!("{}.{} at {at:#010x} has no model", seen.instance, seen.register);
+        (what, Some(seen.program_counter as u32))
+    });
+    let told = session.told().next();
+    let told = told.map(|told| (format!("{}.{}: {}", told.instance, told.register, told.reason), by));
+    unmapped.or(refused).or(unimplemented).or(told)
+}

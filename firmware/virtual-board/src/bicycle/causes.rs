@@ -1,0 +1,141 @@
+//! Why board and simulator differ: each cause as the simulator's own model of it.
+//!
+//! The numbers are those of the board's own configuration, not fitted to any ride.
+
+use super::rides::{PERIOD_S, Reason};
+use crate::power;
+use parts::vesc6::{MOTOR, SHUNT, STEER_RAD};
+use sim_host::plant::{self, Sensor, Supply};
+use sim_host::ride::Conditions;
+use std::f64::consts::TAU;
+
+/// What the board has and the exact simulator has not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// The rotor's inertia behind the gear.
+    Rotor,
+    /// Friction of steer bearing and gear.
+    Friction,
+    /// The current loop: its bandwidth, and the calls from a sample to the duty cycles that answer it.
+    CurrentLoop,
+    /// Bus transfers and the control step itself, from the release to the order: most of a period.
+    Computing,
+    /// Largest torque of the drive.
+    Limit,
+    /// Voltage of the supply against the winding and its back-EMF.
+    Supply,
+    /// The drive reports measured currents, in counts: never the same twice, even at its limit.
+    Report,
+    /// Counts of the IMU; its samples are up to a period old when they are read.
+    Imu,
+    /// Counts of the steer sensor.
+    Steer,
+    /// The encoder's tracking loop, two poles.
+    SteerRate,
+    /// A wheel's speed is known at its pulses, as the mean since the one before.
+    Wheels,
+}
+
+impl Cause {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::Rotor,
+        Self::Friction,
+        Self::CurrentLoop,
+        Self::Computing,
+        Self::Limit,
+        Self::Supply,
+        Self::Report,
+        Self::Imu,
+        Self::Steer,
+        Self::SteerRate,
+        Self::Wheels,
+    ];
+
+    /// What it is, and how the simulator has it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rotor => "rotor behind the gear (inertia on the steer)",
+            Self::Friction => "friction of the Davis bicycle (`--actuator davis`)",
+            Self::CurrentLoop => "current loop (first order, 1/bandwidth and 1.5 calls)",
+            Self::Computing => "buses and control step (first order, 0.5 ms)",
+            Self::Limit => "largest torque of the drive",
+            Self::Supply => "supply, winding, back-EMF",
+            Self::Report => "motor's report: white noise of a count of the current",
+            Self::Imu => "IMU: counts, a period late",
+            Self::Steer => "steer sensor: counts",
+            Self::SteerRate => "steer rate: tracking loop, a period late",
+            Self::Wheels => "wheels: a sample each pulse, half a pulse late",
+        }
+    }
+
+    /// Switches it on in the simulator, for a ride at this speed \[m/s\].
+    ///
+    /// # Errors
+    /// The shipped friction is not there.
+    pub fn act(self, conditions: &mut Conditions, speed_m_s: f64) -> Result<(), Reason> {
+        let Conditions { bicycle, plant, .. } = conditions;
+        let (sensors, actuator) = (&mut plant.sensors, &mut plant.actuator);
+        match self {
+            Self::Rotor => bicycle.rotor_kg_m2 = power::ROTOR_KG_M2,
+            Self::Friction => actuator.friction = plant::catalogue::load("davis")?.friction,
+            Self::CurrentLoop => {
+                let answered_s = f64::from(motor::config::DELAY_TICKS / MOTOR.rate_hz);
+                actuator.time_constant_s += 1.0 / (TAU * f64::from(MOTOR.current.bandwidth_hz)) + answered_s;
+            }
+            Self::Computing => actuator.time_constant_s += 0.5 * PERIOD_S,
+            Self::Limit => actuator.limit_nm = Some(MOTOR.demand.max_nm.into()),
+            Self::Supply => actuator.supply = Some(supply()),
+            Self::Report => {
+                let rounding_a = f64::from(SHUNT.ampere_per_count()) / 12.0_f64.sqrt();
+                sensors.model_mut(Sensor::MotorReport).noise = torque_nm_a() * rounding_a;
+            }
+            Self::Imu => {
+                let counts = [
+                    (Sensor::Gyro, parts::bmi160::RAD_S_PER_COUNT),
+                    (Sensor::Accel, parts::bmi160::M_S2_PER_COUNT),
+                ];
+                for (sensor, count) in counts {
+                    let model = sensors.model_mut(sensor);
+                    (model.quantum, model.delay_ticks) = (count.into(), 1);
+                }
+            }
+            Self::Steer => {
+                let counts = f64::from(STEER_RAD.most_counts - STEER_RAD.least_counts);
+                sensors.model_mut(Sensor::Steer).quantum =
+                    f64::from(STEER_RAD.at_most - STEER_RAD.at_least) / counts;
+            }
+            Self::SteerRate => {
+                let late_s = 2.0 / (TAU * f64::from(MOTOR.encoder.tracking_hz));
+                sensors.model_mut(Sensor::SteerRate).delay_ticks = (late_s / PERIOD_S).round() as u16;
+            }
+            Self::Wheels => {
+                let wheel = parts::vesc6::wheel();
+                let way_m = TAU * f64::from(wheel.radius_m) / f64::from(wheel.pulses_per_turn);
+                let ticks = (way_m / speed_m_s / PERIOD_S).round() as u16;
+                for sensor in [Sensor::FrontWheel, Sensor::RearWheel] {
+                    let model = sensors.model_mut(sensor);
+                    (model.every_ticks, model.delay_ticks) = (ticks, ticks / 2);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Torque on the steer for a q current \[N m/A\].
+fn torque_nm_a() -> f64 {
+    MOTOR.motor.torque_nm_a().into()
+}
+
+/// The example's winding and supply at the steer axis.
+fn supply() -> Supply {
+    // Largest phase voltage over the bus, by the square root of 3 for the circle; 1.5 for three phases.
+    let reach = f64::from(MOTOR.bridge.duty_max - MOTOR.bridge.duty_min) / 3.0_f64.sqrt();
+    // Torque k i of the phase current i = (v - w flux) / R, seen as a machine with the voltage constant k.
+    Supply {
+        voltage_v: 1.5 * reach * power::SOURCE_V,
+        resistance_ohm: 1.5 * f64::from(MOTOR.motor.resistance_ohm),
+        constant_nm_a: torque_nm_a(),
+    }
+}

@@ -1,0 +1,211 @@
+//! The virtual board as a program: a live board with its log and its serial line.
+
+use clap::Parser;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+use virtual_board::pty::Pty;
+use virtual_board::wiring::Wiring;
+use virtual_board::{Bench, Error, Options};
+
+/// How much simulated time goes by between two looks at the serial line \[ms\].
+const LOOK_MS: f64 = 2.0;
+
+/// A VESC 6 with the flashed image, executed at register level: its log here, its serial line at a pseudo terminal.
+#[derive(Parser)]
+#[command(
+    version,
+    after_help = "\
+Examples:
+  virtual-board                                   # the product image, until Ctrl-C
+  virtual-board --align --switch --seconds 5      # align the encoder of the virtual motor
+  virtual-board --store board.flash --seconds 3   # parameters kept from one run to the next
+  sim-host monitor --port /dev/pts/5              # in another terminal, with the device that was printed
+
+Exit status: 0 after the time asked for or Ctrl-C; 1 where the program did something that no model answers for;
+2 for wrong options and images that can't be used."
+)]
+struct Arguments {
+    /// The image [default: where `cargo xtask firmware` builds it]
+    #[arg(long, value_name = "ELF")]
+    image: Option<PathBuf>,
+    /// Take the image that aligns the encoder instead of the product's
+    #[arg(long, conflicts_with = "image")]
+    align: bool,
+    /// Simulated time to run [s]; without it until Ctrl-C
+    #[arg(long, value_name = "TIME", value_parser = positive)]
+    seconds: Option<f64>,
+    /// The rider's switch is held
+    #[arg(long)]
+    switch: bool,
+    /// File with the flash of the parameters: read at the start where there is one, written at the end
+    #[arg(long, value_name = "FILE")]
+    store: Option<PathBuf>,
+    /// Clock cycles that an instruction is taken to last
+    #[arg(long, value_name = "CYCLES", default_value_t = Options::default().cycles_per_instruction, value_parser = cycles)]
+    cycles_per_instruction: f64,
+    /// The serial line is standard input and output, the log goes to standard error
+    #[arg(long)]
+    stdio: bool,
+    /// A second node on the CAN bus acknowledges; what it takes is printed
+    #[arg(long)]
+    can: bool,
+    /// As fast as it goes, not held to real time
+    #[arg(long)]
+    fast: bool,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    in_range(text, 1e-3, 1e5)
+}
+
+fn cycles(text: &str) -> Result<f64, String> {
+    in_range(text, 1.0, 4.0)
+}
+
+fn in_range(text: &str, least: f64, most: f64) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_string())?;
+    if (least..=most).contains(&value) { Ok(value) } else { Err(format!("must be from {least} to {most}")) }
+}
+
+/// The serial line's other end.
+enum Line {
+    Pty(Box<Pty>),
+    Stdio(Receiver<Vec<u8>>),
+}
+
+impl Line {
+    /// Bytes for the board; `None` where nobody can send any more.
+    fn read(&mut self) -> Option<Vec<u8>> {
+        match self {
+            Line::Pty(pty) => Some(pty.read()),
+            Line::Stdio(bytes) => match bytes.try_recv() {
+                Ok(bytes) => Some(bytes),
+                Err(std::sync::mpsc::TryRecvError::Empty) => Some(Vec::new()),
+                Err(std::sync::mpsc::TryRecvError::Disconnected) => None,
+            },
+        }
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        match self {
+            Line::Pty(pty) => pty.write(bytes),
+            Line::Stdio(_) => {
+                let mut out = std::io::stdout().lock();
+                // A reader that is gone is noticed at its end of the input.
+                let _ = out.write_all(bytes).and_then(|()| out.flush());
+            }
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("virtual-board: {why}");
+            ExitCode::from(if matches!(why, Failure::Board(Error::Gap { .. })) { 1 } else { 2 })
+        }
+    }
+}
+
+#[derive(Debug, thiserror::Error)]
+enum Failure {
+    #[error(transparent)]
+    Board(#[from] Error),
+    #[error("{0}: {1}")]
+    File(PathBuf, std::io::Error),
+    #[error("no pseudo terminal: {0}")]
+    Pty(std::io::Error),
+    #[error("Ctrl-C can't be caught: {0}")]
+    Interrupt(ctrlc::Error),
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let asked = Arc::clone(&stop);
+    ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed)).map_err(Failure::Interrupt)?;
+    let store = arguments.store.as_deref().map(kept).transpose()?.flatten();
+    let mut wiring = Wiring::new();
+    wiring.analog.switch_closed = arguments.switch;
+    wiring.can.network.node = arguments.can;
+    let options = Options { cycles_per_instruction: arguments.cycles_per_instruction, ..Options::default() };
+    let image = arguments.image.clone().unwrap_or_else(|| built(arguments.align));
+    let mut bench = Bench::power_on_with_store(&image, options, wiring, store.as_deref())?;
+    let mut line = if arguments.stdio {
+        Line::Stdio(standard_input())
+    } else {
+        Line::Pty(Box::new(Pty::open().map_err(Failure::Pty)?))
+    };
+    if let Line::Pty(pty) = &line {
+        eprintln!("serial line at {}: sim-host monitor --port {}", pty.name, pty.name);
+    }
+    let (begin, mut shown) = (Instant::now(), 0);
+    let end_ms = arguments.seconds.map_or(f64::INFINITY, |seconds| seconds * 1e3);
+    let mut result = Ok(());
+    while result.is_ok() && bench.now_ms() < end_ms && !stop.load(Ordering::Relaxed) {
+        let Some(bytes) = line.read() else { break };
+        bench.send(&bytes);
+        result = bench.run_ms(LOOK_MS.min(end_ms - bench.now_ms()));
+        line.write(&bench.received());
+        for entry in &bench.log()[shown..] {
+            eprintln!("{:10.3} ms {:5} {}", entry.at_us as f64 * 1e-3, entry.level, entry.text);
+        }
+        shown = bench.log().len();
+        if arguments.can {
+            show_can(&mut bench);
+        }
+        let ahead = Duration::from_secs_f64(bench.now_ms() * 1e-3).saturating_sub(begin.elapsed());
+        if !arguments.fast {
+            std::thread::sleep(ahead);
+        }
+    }
+    if let Some(file) = &arguments.store {
+        std::fs::write(file, bench.store()).map_err(|e| Failure::File(file.clone(), e))?;
+    }
+    Ok(result?)
+}
+
+/// Prints what the second node took.
+fn show_can(bench: &mut Bench) {
+    for frame in bench.with(|board| std::mem::take(&mut board.chip.wiring.can.network.received)) {
+        let bytes: String =
+            frame.bytes[..frame.length.into()].iter().map(|byte| format!("{byte:02X}")).collect();
+        eprintln!("({:.6}) can0 {:03X}#{bytes}", frame.at_ns as f64 * 1e-9, frame.identifier);
+    }
+}
+
+/// What is in a file, if there is one.
+fn kept(file: &Path) -> Result<Option<Vec<u8>>, Failure> {
+    match std::fs::read(file) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(why) if why.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(why) => Err(Failure::File(file.to_owned(), why)),
+    }
+}
+
+/// Where `cargo xtask firmware` leaves the board's images.
+fn built(align: bool) -> PathBuf {
+    let name = if align { "board-stm32f405-align" } else { "board-stm32f405" };
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../target/firmware/thumbv7em-none-eabihf/firmware")
+        .join(name)
+}
+
+/// Standard input, read by a thread; its end closes the channel.
+fn standard_input() -> Receiver<Vec<u8>> {
+    let (send, bytes) = channel();
+    std::thread::spawn(move || {
+        let mut room = [0; 4096];
+        while let Ok(length @ 1..) = std::io::stdin().read(&mut room) {
+            if send.send(room[..length].to_vec()).is_err() {
+                return;
+            }
+        }
+    });
+    bytes
+}

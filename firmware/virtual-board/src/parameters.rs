@@ -1,0 +1,70 @@
+//! Parameters and the encoder's offset that lie in the flash before power-on, written by the crate that the board reads
+//! them with.
+
+use control::Config;
+use embassy_futures::block_on;
+use embedded_storage_async::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
+use link::Store;
+use link::alignment::Alignment;
+use link::store::{NotStored, Room};
+use std::ops::Range;
+
+/// The store's sectors 1 to 3 in the flash (docs/hardware.md).
+const STORE: Range<u32> = 0x4000..0x1_0000;
+
+/// The bytes of the store's sectors after this configuration and this offset of the encoder \[electrical turns\] were stored,
+/// for [`crate::Bench::power_on_with_store`].
+///
+/// # Errors
+/// A configuration that the board would refuse.
+pub fn stored(config: &Config, offset_turns: f32) -> Result<Vec<u8>, NotStored> {
+    let erased = Flash(vec![0xff; STORE.end as usize]);
+    let mut store = Store::new(erased, STORE).ok_or(NotStored::Flash)?;
+    let room = &mut Room::new();
+    block_on(store.save(config, room))?;
+    let alignment = Alignment { offset_turns, motor_id: parts::vesc6::MOTOR.motor_id() };
+    block_on(store.save_alignment(&alignment, room))?;
+    Ok(store.into_flash().0.split_off(STORE.start as usize))
+}
+
+/// The flash up to the store's end; a written bit is only ever cleared.
+struct Flash(Vec<u8>);
+
+impl Flash {
+    fn range(&mut self, offset: u32, length: usize) -> Result<&mut [u8], NorFlashErrorKind> {
+        let from = offset as usize;
+        self.0.get_mut(from..from + length).ok_or(NorFlashErrorKind::OutOfBounds)
+    }
+}
+
+impl ErrorType for Flash {
+    type Error = NorFlashErrorKind;
+}
+
+impl ReadNorFlash for Flash {
+    const READ_SIZE: usize = 1;
+
+    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), NorFlashErrorKind> {
+        bytes.copy_from_slice(self.range(offset, bytes.len())?);
+        Ok(())
+    }
+
+    fn capacity(&self) -> usize {
+        self.0.len()
+    }
+}
+
+impl NorFlash for Flash {
+    const WRITE_SIZE: usize = 4;
+    const ERASE_SIZE: usize = 16 << 10;
+
+    async fn erase(&mut self, from: u32, to: u32) -> Result<(), NorFlashErrorKind> {
+        self.range(from, to.saturating_sub(from) as usize)?.fill(0xff);
+        Ok(())
+    }
+
+    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), NorFlashErrorKind> {
+        self.range(offset, bytes.len())?.iter_mut().zip(bytes).for_each(|(cell, byte)| *cell &= byte);
+        Ok(())
+    }
+}

@@ -1,0 +1,117 @@
+//! The gate driver DRV8301 (SLOS719): enabling, four registers, fault pin.
+
+use super::shift::{Event, Lines, Take};
+
+/// From enabling to ready \[ns\]; the data sheet says 5 to 10 ms.
+const WAKE_NS: u64 = 10_000_000;
+/// Data of status register 2: the device's number.
+const DEVICE: u16 = 1;
+
+/// The driver.
+#[derive(Clone, Debug)]
+pub struct Drv8301 {
+    lines: Lines,
+    registers: [u16; 4],
+    received: u16,
+    bits: u32,
+    answer: u16,
+    shifting: u16,
+    enabled_ns: Option<u64>,
+    /// Words that came since power-on.
+    pub words: Vec<u16>,
+    /// It is not fitted, or its bus is cut.
+    pub absent: bool,
+    /// It reports this as the data of status register 1 and pulls its fault pin.
+    pub fault: Option<u16>,
+    /// Its fault pin is shorted to ground although it reports nothing.
+    pub fault_pin_shorted: bool,
+}
+
+impl Drv8301 {
+    /// After power-on, not enabled.
+    pub const fn new() -> Self {
+        Self {
+            lines: Lines::new(),
+            registers: [0, DEVICE, 0, 0],
+            received: 0,
+            bits: 0,
+            answer: 0,
+            shifting: 0,
+            enabled_ns: None,
+            words: Vec::new(),
+            absent: false,
+            fault: None,
+            fault_pin_shorted: false,
+        }
+    }
+
+    /// Whether its enabling input is high.
+    pub const fn is_enabled(&self) -> bool {
+        self.enabled_ns.is_some()
+    }
+
+    /// Enables it or not; disabled, it forgets its registers.
+    pub fn enable(&mut self, enabled: bool, now_ns: u64) {
+        self.enabled_ns = enabled.then_some(now_ns + WAKE_NS);
+        if !enabled {
+            (self.registers, self.fault) = ([0, DEVICE, 0, 0], None);
+        }
+    }
+
+    /// Whether it passes its inputs on to the gates.
+    pub const fn drives(&self) -> bool {
+        self.is_enabled() && self.fault.is_none() && !self.absent
+    }
+
+    /// The fault pin, an open drain.
+    pub const fn fault_pin(&self) -> Option<bool> {
+        if self.fault.is_some() || self.fault_pin_shorted { Some(false) } else { None }
+    }
+
+    /// Its data output, while selected and enabled.
+    pub fn output(&self) -> Option<bool> {
+        let speaks = self.lines.is_selected() && self.is_enabled() && !self.absent;
+        speaks.then_some(self.shifting & 0x8000 != 0)
+    }
+
+    /// The lines of its bus as they are now.
+    pub fn lines(&mut self, select: bool, clock: bool, data: bool) {
+        match self.lines.step(Take::Falling, select, clock, data) {
+            Event::None => (),
+            Event::Selected => (self.received, self.bits, self.shifting) = (0, 0, self.answer),
+            Event::Bit(bit) => {
+                (self.received, self.bits) = (self.received << 1 | u16::from(bit), self.bits + 1);
+            }
+            // The first bit is out since the selection.
+            Event::Next if self.bits > 0 => self.shifting <<= 1,
+            Event::Next => (),
+            Event::Released => self.word(),
+        }
+    }
+
+    fn word(&mut self) {
+        if !self.is_enabled() || self.absent || self.bits == 0 {
+            return;
+        }
+        if self.bits != 16 {
+            self.answer = 0x8000;
+            return;
+        }
+        let (word, register) = (self.received, usize::from(self.received >> 11 & 0xf));
+        self.words.push(word);
+        if word & 0x8000 == 0 && (2..4).contains(&register) {
+            self.registers[register] = word & 0x07ff;
+        }
+        let data = match register {
+            0 => self.fault.unwrap_or(0),
+            _ => self.registers.get(register).copied().unwrap_or(0),
+        };
+        self.answer = (register as u16) << 11 | data;
+    }
+}
+
+impl Default for Drv8301 {
+    fn default() -> Self {
+        Self::new()
+    }
+}
