@@ -1,0 +1,111 @@
+//! Images and runs that can't be: what the error says.
+
+use crate::rig::{ALIGN, image};
+use std::path::Path;
+use std::time::Duration;
+use virtual_board::wiring::Wiring;
+use virtual_board::{Bench, Options};
+
+/// What power-on says of an image.
+fn refused(image: &Path) -> String {
+    match Bench::power_on(image, Options::default(), Wiring::new()) {
+        Ok(_) => panic!("{} runs", image.display()),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// The aligning image with some of its bytes changed, in a file of its own.
+fn changed(change: impl FnOnce(&mut Vec<u8>)) -> String {
+    let mut bytes = std::fs::read(image(ALIGN)).expect("`cargo xtask firmware` builds the images");
+    change(&mut bytes);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("image");
+    std::fs::write(&path, bytes).unwrap();
+    refused(&path)
+}
+
+/// Where the vector table is in the file: the stack's top, then the program's start in flash, with the bit of Thumb code.
+fn vectors(bytes: &[u8]) -> usize {
+    let is_table = |words: &[u8]| {
+        let word = |at: usize| u32::from_le_bytes([words[at], words[at + 1], words[at + 2], words[at + 3]]);
+        word(0) == 0x2000_8000 && word(4) >> 16 == 0x0801 && word(4) & 1 == 1
+    };
+    bytes.windows(8).position(is_table).expect("a vector table")
+}
+
+/// Must hold: an image that can't run on this chip is refused by a sentence that names the file and what is wrong.
+#[test]
+fn an_image_that_is_not_for_this_chip_is_refused() {
+    let missing = refused(Path::new("/no/such/image"));
+    assert!(missing.starts_with("/no/such/image: No such file"), "{missing}");
+    let text = changed(|bytes| *bytes = b"no image".to_vec());
+    assert!(text.ends_with(": not an ELF file"), "{text}");
+    let cut = changed(|bytes| bytes.truncate(40));
+    assert!(cut.ends_with(": not an ELF file"), "{cut}");
+    let host = refused(&std::env::current_exe().unwrap());
+    assert!(host.ends_with(", not for a 32-bit Arm core"), "{host}");
+    let other = changed(|bytes| {
+        let at = vectors(bytes);
+        bytes[at..at + 4].copy_from_slice(&0x2003_0000_u32.to_le_bytes());
+    });
+    assert!(
+        other.contains("its stack begins at 0x20030000, outside this chip's RAM, 0x20000000 to 0x20020000"),
+        "{other}"
+    );
+    let start = changed(|bytes| {
+        let at = vectors(bytes) + 4;
+        bytes[at..at + 4].copy_from_slice(&0x0000_0101_u32.to_le_bytes());
+    });
+    assert!(start.contains("its program begins at 0x00000101, which is no Thumb code"), "{start}");
+    let nothing = changed(|bytes| {
+        // No sections any more: neither symbols nor the table of the log.
+        bytes[32..36].fill(0);
+        bytes[48..52].fill(0);
+    });
+    assert!(nothing.ends_with(": no symbols in it"), "{nothing}");
+    let silent = changed(|bytes| {
+        // The names of the sections stand behind everything else that could have such bytes.
+        let at = bytes.windows(7).rposition(|word| word == b".defmt\0").expect("the section's name");
+        bytes[at + 1] = b'x';
+    });
+    assert!(silent.contains(".defmt"), "{silent}");
+}
+
+/// Situation: the aligning image. Action: what the motor's interrupt reads is a register that no model has. Must hold: the
+/// run ends, with the register's address, the instant, the instruction and its function.
+#[test]
+fn a_register_without_a_model_ends_the_run() {
+    // movw r0, #0x5c00; movt r0, #0x4001; ldr r0, [r0]: a reserved address (RM0090 rev 22, table 1).
+    const READ_0X40015C00: [u16; 5] = [0xf645, 0x4000, 0xf2c4, 0x0001, 0x6800];
+    let mut bench = Bench::power_on(&image(ALIGN), Options::default(), Wiring::new()).unwrap();
+    bench.damage("_defmt_acquire", &READ_0X40015C00).unwrap();
+    let error = bench.run_ms(5.0).unwrap_err().to_string();
+    let parts = ["at ", "no register at 0x40015c00", "by the instruction at 0x080", "in _defmt_acquire"];
+    assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+
+    // movw r0, #0x7c00; movt r0, #0x4000; ldr r0, [r0]: a peripheral whose clock is off.
+    const READ_0X40007C00: [u16; 5] = [0xf647, 0x4000, 0xf2c4, 0x0000, 0x6800];
+    let mut bench = Bench::power_on(&image(ALIGN), Options::default(), Wiring::new()).unwrap();
+    bench.damage("_defmt_acquire", &READ_0X40007C00).unwrap();
+    let error = bench.run_ms(5.0).unwrap_err().to_string();
+    let parts =
+        ["at ", "0x40007c00: UART8.SR is gated by RCC", "by the instruction at 0x080", "in _defmt_acquire"];
+    assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+}
+
+/// Situation: the aligning image with the switch open. Must hold: a wait that never ends is given up after its limit, with
+/// the instant, what was waited for and where the program is; a step that takes the emulator too long, too.
+#[test]
+fn a_wait_without_end_is_given_up() {
+    let mut bench = Bench::power_on(&image(ALIGN), Options::default(), Wiring::new()).unwrap();
+    let waited = bench
+        .run_until(10.0, "closed bridge", |bench| bench.with(|board| board.chip.wiring.tim1.main_output()));
+    let error = waited.unwrap_err().to_string();
+    let parts = ["at 10.0", "still no closed bridge", "by the instruction at 0x080", " in "];
+    assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+
+    let hasty = Options { patience: Duration::from_nanos(1), ..Options::default() };
+    let stuck = Bench::power_on(&image(ALIGN), hasty, Wiring::new()).and_then(|mut bench| bench.run_ms(5.0));
+    let error = stuck.unwrap_err().to_string();
+    assert!(error.contains("the emulator did not come back within 1ns"), "{error}");
+}

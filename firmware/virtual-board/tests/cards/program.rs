@@ -1,0 +1,52 @@
+//! The program `virtual-board`: options, exit status, errors.
+
+use crate::bed::product;
+use sim_host::board::virtual_board::VirtualBoard;
+use sim_host::board::{Client, Patience};
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn virtual_board(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_virtual-board")).args(arguments).output().expect("it can be started")
+}
+
+/// Situation: options that are wrong, and images that are none. Action: start the program. Must hold: exit status 2, and
+/// one line that names the option or file and says what is wrong with it.
+#[test]
+fn wrong_options_and_images_are_named() {
+    let here = env!("CARGO_MANIFEST_DIR");
+    let text = format!("{here}/Cargo.toml");
+    let own = env!("CARGO_BIN_EXE_virtual-board");
+    for (arguments, words) in [
+        (vec!["--seconds", "0"], vec!["--seconds", "0.001", "100000"]),
+        (vec!["--cycles-per-instruction", "0.5"], vec!["--cycles-per-instruction", "1", "4"]),
+        (vec!["--image", "no-such-image"], vec!["no-such-image", "No such file"]),
+        (vec!["--image", &text], vec!["Cargo.toml"]),
+        (vec!["--image", own], vec!["virtual-board"]),
+        (vec!["--image", "x", "--align"], vec!["--align"]),
+    ] {
+        let output = virtual_board(&arguments);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+        assert!(words.iter().all(|word| error.contains(word)), "{arguments:?}: {error}");
+    }
+}
+
+/// Situation: the program with its serial line on standard input and output, as `sim-host --virtual-board` starts it.
+/// Action: ask who it is, for a parameter, set another, ask for its faults; then with an image that is none. Must hold:
+/// the product's image answers as a board would, with the parameter's new value and no faults; the image that is none is
+/// named.
+#[test]
+fn the_tools_of_a_board_reach_it() {
+    let Some(image) = product() else { return };
+    let program = Path::new(env!("CARGO_BIN_EXE_virtual-board"));
+    let line = VirtualBoard::start(program, Some(&image)).expect("it starts");
+    let mut client = Client::new(Box::new(line), Patience { tries: 50, ..Patience::default() });
+    assert_eq!(client.hello().expect("an answer").image, "board-stm32f405");
+    let rate_hz = client.get("rate_hz").expect("an answer");
+    assert_eq!(rate_hz, Some(1000.0));
+    assert_eq!(client.set("limits.max_torque_nm", Some(0.5)).expect("an answer"), Some(0.5));
+    assert!(client.faults().expect("an answer").is_empty());
+    let refused = VirtualBoard::start(program, Some(Path::new("no-such-image"))).err().expect("no image");
+    assert!(refused.to_string().contains("no-such-image"), "{refused}");
+}

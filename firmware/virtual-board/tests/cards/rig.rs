@@ -1,0 +1,102 @@
+//! Boards to try things on, and what is asked of them over the serial line.
+
+use link::frame::{Decoder, MAX_FRAME, Received};
+use link::message::Message;
+use std::path::PathBuf;
+use virtual_board::wiring::Wiring;
+use virtual_board::{Bench, Options};
+
+/// The image that is flashed for the product, and the one that aligns the encoder.
+pub(crate) const PRODUCT: &str = "board-stm32f405";
+pub(crate) const ALIGN: &str = "board-stm32f405-align";
+
+/// Where `cargo xtask firmware` builds an image.
+pub(crate) fn image(name: &str) -> PathBuf {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../target");
+    root.join("firmware/thumbv7em-none-eabihf/firmware").join(name)
+}
+
+/// A board with this image, powered.
+pub(crate) fn powered(name: &str, wiring: Wiring) -> Bench {
+    Bench::power_on(&image(name), Options::default(), wiring)
+        .unwrap_or_else(|error| panic!("{error}; `cargo xtask firmware` builds the images"))
+}
+
+/// The board of [`ALIGN`] with the switch held and the bridge just closed.
+pub(crate) fn closed(wiring: Wiring) -> Bench {
+    let mut bench = powered(ALIGN, with_switch(wiring));
+    close(&mut bench);
+    bench
+}
+
+/// The rider's switch is held.
+pub(crate) fn with_switch(mut wiring: Wiring) -> Wiring {
+    wiring.analog.switch_closed = true;
+    wiring
+}
+
+/// Waits until the bridge is closed, and 20 ms more.
+pub(crate) fn close(bench: &mut Bench) {
+    bench.run_until(500.0, "closed bridge", is_closed).unwrap();
+    bench.run_ms(20.0).unwrap();
+}
+
+pub(crate) fn is_closed(bench: &mut Bench) -> bool {
+    bench.with(|board| board.chip.wiring.tim1.main_output())
+}
+
+/// Runs on until the bridge is open; from now to its opening \[us\].
+pub(crate) fn opens_us(bench: &mut Bench, limit_ms: f64) -> f64 {
+    assert!(is_closed(bench), "the bridge is closed");
+    let from_ms = bench.now_ms();
+    bench.run_until(limit_ms, "open bridge", |bench| !is_closed(bench)).unwrap();
+    let opened_ns = bench.with(move |board| {
+        let changes = &board.chip.wiring.main_output;
+        changes.iter().find(|(at_ns, on)| *at_ns as f64 >= from_ms * 1e6 && !on).map(|(at_ns, _)| *at_ns)
+    });
+    opened_ns.expect("noted") as f64 * 1e-3 - from_ms * 1e3
+}
+
+/// Words of the log since an instant \[ms\].
+pub(crate) fn says(bench: &Bench, since_ms: f64, words: &str) -> bool {
+    bench.log().iter().any(|line| line.at_us as f64 >= since_ms * 1e3 && line.text.contains(words))
+}
+
+/// Waits for words in the log.
+pub(crate) fn hear(bench: &mut Bench, limit_ms: f64, words: &str) {
+    let from_ms = bench.now_ms();
+    let heard = bench.run_until(limit_ms, words, |bench| says(bench, from_ms, words));
+    heard.unwrap_or_else(|error| panic!("{error}; the log: {:#?}", bench.log()));
+}
+
+/// Asks for something and waits for an answer that is looked for, at most this time \[ms\].
+pub(crate) fn ask<T>(
+    bench: &mut Bench,
+    request: &Message<'_>,
+    limit_ms: f64,
+    mut look: impl FnMut(&Message<'_>) -> Option<T>,
+) -> T {
+    let mut frame = [0; MAX_FRAME];
+    let length = request.encode(7, &mut frame).expect("room");
+    // What came before is of another time.
+    bench.received();
+    bench.send(&frame[..length]);
+    let (mut decoder, mut found) = (Decoder::default(), None);
+    let answered = bench.run_until(limit_ms, "answer on the serial line", |bench| {
+        for byte in bench.received() {
+            if let Some(Received::Frame(frame)) = decoder.feed(byte)
+                && let Ok(message) = Message::decode(&frame)
+            {
+                found = found.take().or(look(&message));
+            }
+        }
+        found.is_some()
+    });
+    answered.unwrap_or_else(|error| panic!("{request:?}: {error}"));
+    found.expect("answered")
+}
+
+/// Whether what takes minutes is to be tried as well.
+pub(crate) fn slow() -> bool {
+    std::env::var_os("STEER_ASSIST_SLOW").is_some()
+}
