@@ -18,9 +18,9 @@ pub enum Task {
 /// 115200 baud: 29 ms.
 pub const PATIENCE_MS: u32 = 50;
 
-/// Longest that nobody is blamed \[ms\]. The longest store erases five sectors of 16 KiB: one for each of two items, then,
-/// after damage, all three. Each takes 0.5 s at most (data sheet of the STM32F405, table 40), and then 0.3 s in which control
-/// makes up for its steps; what is written takes 0.1 s.
+/// Longest that nobody is blamed \[ms\]. The longest store erases five sectors of 16 KiB: one for each of two items,
+/// then, after damage, all three. Each takes 0.5 s at most (data sheet of the STM32F405, table 40), and then 0.3 s in
+/// which control makes up for its steps; what is written takes 0.1 s.
 pub const EXCUSE_MS: u32 = 5000;
 
 static LAST_MS: [AtomicU32; 3] = [const { AtomicU32::new(0) }; 3];

@@ -50,7 +50,7 @@ pub enum FaultKind {
     Controller = 4,
     /// The supply went below what the chip needs.
     BrownOut = 5,
-    /// The motor's bridge was opened until the next start; the text tells why. The program went on.
+    /// The motor's bridge was opened until the next start, for the reason in the text. The program went on.
     Drive = 6,
 }
 

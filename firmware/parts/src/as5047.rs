@@ -24,14 +24,15 @@ pub struct Line {
 }
 
 impl Line {
-    /// The angle in an answer to [`ASK_ANGLE`] \[counts\]; `None` where it is damaged, or flagged for the first [`FLAGGED`]
-    /// times in a row.
+    /// The angle in an answer to [`ASK_ANGLE`] \[counts\]; `None` where it is damaged, or flagged for the first
+    /// [`FLAGGED`] times in a row.
     ///
-    /// The flag tells of a command frame, not of the angle beside it. Its command being all ones, the only damage is a wrong number
-    /// of clocks: a frame cut by a reset, an edge too many. The register that would clear the flag can't be read without a wire to the encoder, and
-    /// the sister AS5050 keeps it until then (its data sheet, "Clear error flag command"); a flag for good must not be an encoder lost until
-    /// power is cut. The drive's own firmware ignores it in this wiring (`encoder/enc_as504x.c` in vedderb/bldc).
-    /// Parity and the motor's own check of jumps remain. A cut line, pulled up, reads as all ones: that is no angle ever.
+    /// The flag is about a command frame, not about the angle beside it. Its command being all ones, the only damage is
+    /// a wrong number of clocks: a frame cut by a reset, an edge too many. The register that would clear the flag can't
+    /// be read without a wire to the encoder, and the sister AS5050 keeps it until then (its data sheet, "Clear error
+    /// flag command"); a flag for good must not be an encoder lost until power is cut. The drive's own firmware ignores
+    /// it in this wiring (`encoder/enc_as504x.c` in vedderb/bldc). Parity and the motor's own check of jumps remain. A
+    /// cut line, pulled up, reads as all ones: that is no angle ever.
     pub const fn step(&mut self, answer: u16) -> Option<u16> {
         let even = answer.count_ones().is_multiple_of(2);
         if !even || answer == 0xffff {

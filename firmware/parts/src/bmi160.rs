@@ -33,9 +33,9 @@ pub struct Write {
 /// Set-up: reset; both sensors on; 1600 samples a second with twofold oversampling (the gyro's bandwidth 255 Hz, the
 /// accelerometer's 324), 16 g, 2000 degrees a second.
 ///
-/// Read 1000 times a second, what is above 745 Hz folds into that bandwidth. Without oversampling it is 524 Hz, and what folds below it
-/// begins at 476 Hz: hardly filtered. Fourfold is 136 Hz. Taken for filters of the second order the three lag by 0.4, 0.9 and 1.7 ms,
-/// and 5 ms cost 5 % of the basin at 2.5 m/s (docs/delay.md).
+/// Read 1000 times a second, what is above 745 Hz folds into that bandwidth. Without oversampling it is 524 Hz, and
+/// what folds below it begins at 476 Hz: hardly filtered. Fourfold is 136 Hz. Taken for filters of the second order the
+/// three lag by 0.4, 0.9 and 1.7 ms, and 5 ms cost 5 % of the basin at 2.5 m/s (docs/delay.md).
 pub const SET_UP: [Write; 7] = [
     Write { register: 0x7e, value: 0xb6, then_ms: 100 },
     Write { register: 0x7e, value: 0x11, then_ms: 10 },

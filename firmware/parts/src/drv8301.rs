@@ -95,8 +95,8 @@ pub struct Settings {
     pub gate_current: GateCurrent,
     /// What over-current does.
     pub over_current: OverCurrent,
-    /// Voltage across a closed switch that counts as over-current \[mV\]; the next one of [`OVER_CURRENT_MV`] that is not
-    /// above it is taken, or the least.
+    /// Voltage across a closed switch that counts as over-current \[mV\]; the next one of [`OVER_CURRENT_MV`] that is
+    /// not above it is taken, or the least.
     pub over_current_mv: u16,
     /// Gain of its amplifiers.
     pub gain: Gain,
@@ -123,7 +123,7 @@ impl Settings {
     }
 }
 
-/// What the gate driver says is wrong: the data of [`Register::Status1`] and [`Register::Status2`].
+/// What is wrong at the gate driver: the data of [`Register::Status1`] and [`Register::Status2`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Status(pub u16, pub u16);
 

@@ -10,8 +10,8 @@ pub struct FaultPin {
 }
 
 impl FaultPin {
-    /// One sample; whether there is a fault: two of the last three are low. A disturbance beside a switching bridge is shorter
-    /// than the time between two samples; a fault stays.
+    /// One sample; whether there is a fault: two of the last three are low. A disturbance beside a switching bridge is
+    /// shorter than the time between two samples; a fault stays.
     pub fn step(&mut self, low: bool) -> bool {
         self.low = self.low << 1 | u8::from(low);
         let last = self.low & 0b111;

@@ -3,8 +3,9 @@
 //! Everything here is plain data and pure functions, tried on the host; a board moves the bits. One module each:
 //! [`analog`] (counts of the converter to amperes, volts, degrees, radians), [`drv8301`] (gate driver), [`bmi160`]
 //! (IMU), [`as5047`] (encoder), [`wheel`] (pulses to a speed with its age), [`switch`] (debounced), [`age`] (how old a
-//! sample is), [`order`] (what control asks of the motor's interrupt, in one word), [`ticks`] (the clock), [`fault_pin`], [`slow`] (a rotor), [`silicon`] (the chip's revision), [`broadcast`] (frames on CAN),
-//! [`bit_timing`] and [`mailbox`] (the CAN controller), [`vesc6`] (a board and its wiring, in numbers).
+//! sample is), [`order`] (what control asks of the motor's interrupt, in one word), [`ticks`] (the clock),
+//! [`fault_pin`], [`slow`] (a rotor), [`silicon`] (the chip's revision), [`broadcast`] (frames on CAN), [`bit_timing`]
+//! and [`mailbox`] (the CAN controller), [`vesc6`] (a board and its wiring, in numbers).
 #![no_std]
 #![forbid(unsafe_code)]
 

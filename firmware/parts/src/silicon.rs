@@ -1,17 +1,18 @@
-//! The chip's revision, as it tells it in DBGMCU_IDCODE.
+//! The chip's revision, by DBGMCU_IDCODE.
 
-/// Device of the STM32F405, and that which its revision A says it is.
+/// Device number of the STM32F405, and that of the STM32F2, which its revision A has.
 const F405: u16 = 0x413;
-const SAYS_F2: u16 = 0x411;
+const F2: u16 = 0x411;
 /// Revision A.
 const REVISION_A: u16 = 0x1000;
 
-/// Whether the flash's prefetch may be used: not on revision A (ES0182, "ART Accelerator prefetch queue instruction is not
-/// supported"), which gives another device's number, 0x411 with revision 0x2000 (ES0182, "MCU device ID is incorrect").
+/// Whether the flash's prefetch may be used: not on revision A (ES0182, "ART Accelerator prefetch queue instruction is
+/// not supported"), which gives another device's number, 0x411 with revision 0x2000 (ES0182, "MCU device ID is
+/// incorrect").
 pub const fn has_prefetch(device: u16, revision: u16) -> bool {
     match device {
         F405 => revision != REVISION_A,
-        SAYS_F2 => false,
+        F2 => false,
         _ => true,
     }
 }

@@ -15,8 +15,8 @@ pub struct Slow {
 }
 
 impl Slow {
-    /// One millisecond later: the encoder's counts, if it gave some; whether the rotor has been slower than `most_turns_s`
-    /// for the last ten of them.
+    /// One millisecond later: the encoder's counts, if it gave some; whether the rotor has been slower than
+    /// `most_turns_s` for the last ten of them.
     pub fn step(&mut self, counts: Option<u16>, most_turns_s: f32) -> bool {
         let before = core::mem::replace(&mut self.counts, counts);
         self.turns_s = before.zip(counts).map(|(before, now)| turns_s(before, now));

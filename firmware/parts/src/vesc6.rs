@@ -24,16 +24,18 @@ pub const SUPPLY: Divider = Divider { upper_ohm: 39_000.0, lower_ohm: 2_200.0, r
 /// The thermistor beside the switches.
 pub const BOARD_HEAT: Thermistor = Thermistor { lower_ohm: 10_000.0, nominal_ohm: 10_000.0, beta_k: 3380.0 };
 
-/// The gate driver. The drive's own firmware runs this board with 1.7 A, 403 mV and cycle-by-cycle limiting, dead time 0.36 us
-/// (`hwconf/drv8301.c`, `mcconf_default.h` in vedderb/bldc).
+/// The gate driver. The drive's own firmware runs this board with 1.7 A, 403 mV and cycle-by-cycle limiting, dead time
+/// 0.36 us (`hwconf/drv8301.c`, `mcconf_default.h` in vedderb/bldc).
 ///
-/// Gate current: as there, since it is the one the board is known to switch well with. With 0.25 A a gate takes seven times as
-/// long, which a dead time of 0.5 us need not cover, and the over-current comparators look at switches that are not closed yet.
+/// Gate current: as there, since it is the one the board is known to switch well with. With 0.25 A a gate takes seven
+/// times as long, which a dead time of 0.5 us need not cover, and the over-current comparators look at switches that
+/// are not closed yet.
 ///
-/// Over-current: the board carries 150 A there without passing 403 mV, so a switch has 2.7 mohm at most. Here the motor's loop
-/// opens the bridge at 15 A, 19.5 A at the worst, which is 53 mV at most: 250 mV is nearly five times that. What passes it is a short outside
-/// the winding, too fast for a call each 50 us; it has no business being tried again in the next cycle, so the driver latches,
-/// which also is the only mode that it shows on its fault pin (its data sheet: limiting is shown on nOCTW, not wired here).
+/// Over-current: the board carries 150 A there without passing 403 mV, so a switch has 2.7 mohm at most. Here the
+/// motor's loop opens the bridge at 15 A, 19.5 A at the worst, which is 53 mV at most: 250 mV is nearly five times
+/// that. What passes it is a short outside the winding, too fast for a call each 50 us, and is not to be tried again in
+/// the next cycle. So the driver latches, which also is the only mode shown on its fault pin (its data sheet: limiting
+/// is shown on nOCTW, not wired here).
 ///
 /// Its amplifiers are not used, as the shunts have their own.
 pub const GATE_DRIVER: Settings = Settings {
@@ -42,6 +44,10 @@ pub const GATE_DRIVER: Settings = Settings {
     over_current_mv: 250,
     gain: Gain::X20,
 };
+
+/// Voltage of the motor's terminals from which on the gate driver may not start rightly when it is enabled \[V\]:
+/// DRV8301 data sheet, rev. F, 8.1.1.
+pub const ENABLE_V: f32 = 8.5;
 
 /// The motor: the example's, with the encoder wired here. Its offset is that in flash, which alignment leaves there; one
 /// that is written down here as `encoder.offset_turns` is used instead. Without either no torque is given.

@@ -10,8 +10,8 @@ const FASTEST_M_S: f32 = 30.0;
 /// Period from which on it is not known when an edge came: the board's timers are of 16 bits \[us\].
 pub const SPAN_US: u32 = 1 << 16;
 
-/// Silence after which a wheel stands whose last pulses are not known \[us\]: between two of them a wheel of 0.2 m/s takes
-/// 0.69 s.
+/// Silence after which a wheel stands whose last pulses are not known \[us\]: between two of them a wheel of 0.2 m/s
+/// takes 0.69 s.
 const STANDS_US: u32 = 1_000_000;
 
 /// What is remembered of a wheel.
@@ -20,7 +20,7 @@ pub struct WheelState {
     pulses: Pulses,
     state: PulsesState,
     age: Age,
-    /// The sample says nothing until the next two pulses, or until there is none for [`STANDS_US`].
+    /// The sample is missing until the next two pulses, or until there is none for [`STANDS_US`].
     lost: bool,
     /// Time since that began \[us\].
     lost_us: u32,
@@ -47,7 +47,8 @@ impl WheelState {
 /// come with it: the wheel begins anew, and its sample is missing until two more pulses, or none for [`STANDS_US`].
 ///
 /// The sample is new when a pulse came, while the next one is overdue, as that is news as well, and while the wheel
-/// stands. A sensor that never says anything is a wheel that stands. The direction is not known: rolling back is positive too.
+/// stands. A sensor that never says anything is a wheel that stands. The direction is not known: rolling back is
+/// positive too.
 pub fn step(
     config: &PulsesConfig,
     wheel: &mut WheelState,

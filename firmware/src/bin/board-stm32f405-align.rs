@@ -1,4 +1,5 @@
 //! The image that finds the offset of the motor's encoder, once for each motor, encoder and wiring, and stores it in flash.
+//! It also sets the chip's brown-out reset, once for each board.
 //!
 //! While the rider's switch is held, the motor moves the handlebar by less than a degree there and back, for 3.5 s; then
 //! the bridge opens and the offset is stored. Held anew, the switch does it again. Released, it opens the bridge at once.
@@ -35,12 +36,16 @@ fn main() -> ! {
     );
     board::log_kept_fault();
     let motor = board::start();
+    board::raise_level();
     let kept = KEPT.init(Kept::open());
     // Not that of the program or the flash: what is shown is what was found.
     motor.start(None);
     board::run(
         |control| control.spawn(defmt::unwrap!(hold().ok())),
-        |thread| thread.spawn(defmt::unwrap!(tell(kept).ok())),
+        |thread| {
+            thread.spawn(defmt::unwrap!(tell(kept).ok()));
+            thread.spawn(defmt::unwrap!(board::watch_drive().ok()));
+        },
     )
 }
 

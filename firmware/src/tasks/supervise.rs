@@ -10,8 +10,8 @@ use link::report::FaultKind;
 /// How long the watchdog waits for food before it resets the chip.
 pub const WATCHDOG: Duration = Duration::from_millis(100);
 
-/// Feeds the watchdog ten times in its patience, as long as each of `tasks` reports, counted from the start of this task.
-/// After the first that does not it is never fed again.
+/// Feeds the watchdog ten times in its patience, as long as each of `tasks` reports, counted from the start of this
+/// task. After the first that does not it is never fed again.
 #[embassy_executor::task]
 pub async fn supervise(tasks: &'static [Task]) {
     alive::begin();

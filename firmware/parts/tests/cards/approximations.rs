@@ -9,8 +9,8 @@ fn most(errors: impl Iterator<Item = f64>) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-/// Situation: numbers to be sent, from far below a unit to the ends of the range. Must hold: micromath rounds each as libm does, but
-/// for the last number below a half.
+/// Situation: numbers to be sent, from far below a unit to the ends of the range. Must hold: micromath rounds each as
+/// libm does, but for the last number below a half.
 #[test]
 fn rounding_is_that_of_libm() {
     let apart: Vec<f32> = (0..=u32::MAX)
@@ -22,8 +22,8 @@ fn rounding_is_that_of_libm() {
     assert_eq!(apart, [0.499_999_97, -0.499_999_97]);
 }
 
-/// Situation: every count of the thermistor from -40 to 180 deg C, its logarithm by micromath. Must hold: up to 7 K from the
-/// truth, as its inverse is one of 12 %; as it is done, no more than 0.01 K.
+/// Situation: every count of the thermistor from -40 to 180 deg C, its logarithm by micromath. Must hold: up to 7 K
+/// from the truth, as its inverse is one of 12 %; as it is done, no more than 0.01 K.
 #[test]
 fn a_logarithm_below_one_is_no_temperature() {
     let celsius = |ln: f64| 1.0 / (ln / f64::from(BOARD_HEAT.beta_k) + 1.0 / 298.15) - 273.15;
@@ -39,8 +39,8 @@ fn a_logarithm_below_one_is_no_temperature() {
     assert!((6.9..7.2).contains(&by_micromath) && as_done < 0.01, "{by_micromath} K, {as_done} K");
 }
 
-/// Situation: a turn, and lengths of any size. Must hold: sine and cosine within 1.1e-3, a root within 6.1 %, 1.6e-6 after two steps
-/// of Newton, whose root of infinity is no number.
+/// Situation: a turn, and lengths of any size. Must hold: sine and cosine within 1.1e-3, a root within 6.1 %, 1.6e-6
+/// after two steps of Newton, whose root of infinity is no number.
 #[test]
 fn angles_and_lengths_are_rough() {
     let turn = || (-100_000..100_000).map(|i| f64::from(i) * PI / 100_000.0);

@@ -81,8 +81,8 @@ fn over_current_is_never_above_what_is_asked() {
     }
 }
 
-/// Situation: a phase's lower switch drew too much; then the gates' supply is too high. Must hold: the names say which, and
-/// that is all they say; the kind of device is no fault.
+/// Situation: a phase's lower switch drew too much; then the gates' supply is too high. Must hold: those are the names,
+/// and no others; the kind of device is no fault.
 #[test]
 fn faults_have_names() {
     let names: Vec<_> = Status(1 << 10 | 1 << 4, 1).names().collect();

@@ -27,9 +27,9 @@ fn every_angle_is_read_and_no_damaged_one() {
     }
 }
 
-/// Situation: a frame is cut, and the next answers have the error flag: one, then for good. Must hold: the first few are no
-/// angles, fewer than make the encoder lost to the motor's loop; from then on all are, and each is counted; once the flag is gone, it
-/// refuses anew.
+/// Situation: a frame is cut, and the next answers have the error flag: one, then for good. Must hold: the first few
+/// are no angles, fewer than make the encoder lost to the motor's loop; from then on all are, and each is counted; once
+/// the flag is gone, it refuses anew.
 #[test]
 fn the_error_flag_refuses_a_few_answers_only() {
     let mut line = Line::default();
@@ -44,8 +44,8 @@ fn the_error_flag_refuses_a_few_answers_only() {
     assert_eq!([with_parity(78), flagged].map(|answer| line.step(answer)), [Some(78), None]);
 }
 
-/// Situation: the encoder's wire is cut and pulled up; one bit of a flagged answer is wrong. Must hold: never an angle, however long
-/// it lasts.
+/// Situation: the encoder's wire is cut and pulled up; one bit of a flagged answer is wrong. Must hold: never an angle,
+/// however long it lasts.
 #[test]
 fn a_cut_line_is_no_angle_ever() {
     let mut line = Line::default();

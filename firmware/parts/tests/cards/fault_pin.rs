@@ -2,8 +2,8 @@
 
 use parts::fault_pin::FaultPin;
 
-/// Situation: no fault for a second. Action: the pin goes low for good. Must hold: a fault at the second low sample, not at
-/// the first, and at every one from then on.
+/// Situation: no fault for a second. Action: the pin goes low for good. Must hold: a fault at the second low sample,
+/// not at the first, and at every one from then on.
 #[test]
 fn a_fault_is_one_at_the_second_sample() {
     let mut pin = FaultPin::default();

@@ -98,8 +98,9 @@ fn stand_still(rig: &mut Rig, way_m: f64, edge_age_us: Option<u32>) -> Sample {
     step(&rig.config, &mut rig.state, edge_age_us, 500_000)
 }
 
-/// Situation: rolling at 4 m/s, the chip stands still for 0.5 s, 14 pulses long, and then sees that an edge came. Must hold:
-/// no speed is told until two more pulses came; from then on it is that of the wheel, and never a wrong one in between.
+/// Situation: rolling at 4 m/s, the chip stands still for 0.5 s, 14 pulses long, and then sees that an edge came. Must
+/// hold: there is no speed until two more pulses came; from then on it is that of the wheel, and never a wrong one in
+/// between.
 #[test]
 fn an_edge_in_a_standstill_has_no_age() {
     for edge_age_us in [0, 900, 33_000, 65_000] {
@@ -107,23 +108,23 @@ fn an_edge_in_a_standstill_has_no_age() {
         (0..2000).for_each(|_| _ = rig.roll(4.0));
         assert_eq!(stand_still(&mut rig, 2.0, Some(edge_age_us)).age_ticks, control::frame::MISSING);
         let after: Vec<_> = (0..300).map(|_| rig.roll(4.0)).collect();
-        let told = after.iter().position(|sample| sample.age_ticks != control::frame::MISSING);
-        assert!(told.is_some_and(|ms| (30..=75).contains(&ms)), "{told:?}");
-        let settled = &after[told.unwrap_or_default()..];
+        let known = after.iter().position(|sample| sample.age_ticks != control::frame::MISSING);
+        assert!(known.is_some_and(|ms| (30..=75).contains(&ms)), "{known:?}");
+        let settled = &after[known.unwrap_or_default()..];
         assert!(settled.iter().all(|sample| (sample.value - 4.0).abs() < 0.2), "{settled:?}");
     }
 }
 
-/// Situation: the same, but the wheel was braked meanwhile and stands from then on; and a wheel that stood all the time. Must
-/// hold: the first is missing for 1 s, then stands; the other stands at once.
+/// Situation: the same, but the wheel was braked meanwhile and stands from then on; and a wheel that stood all the
+/// time. Must hold: the first is missing for 1 s, then stands; the other stands at once.
 #[test]
 fn a_wheel_that_stands_after_a_standstill_is_known_to() {
     let mut rig = Rig::new();
     (0..2000).for_each(|_| _ = rig.roll(4.0));
     stand_still(&mut rig, 0.5, Some(100));
     let after: Vec<_> = (0..2000).map(|_| rig.roll(0.0)).collect();
-    let told = after.iter().position(|sample| sample.age_ticks != control::frame::MISSING);
-    assert!(told.is_some_and(|ms| (990..=1000).contains(&ms)), "{told:?}");
+    let known = after.iter().position(|sample| sample.age_ticks != control::frame::MISSING);
+    assert!(known.is_some_and(|ms| (990..=1000).contains(&ms)), "{known:?}");
     assert!(after[1000..].iter().all(|sample| *sample == Sample::fresh(0.0)));
     let mut standing = Rig::new();
     assert_eq!(stand_still(&mut standing, 0.0, None), Sample::fresh(0.0));

@@ -1,5 +1,5 @@
-//! The supply's warning: 3.3 V has fallen to 2.9 V, and some time is left. Below it the chip's own reset: 2.8 V where the option
-//! bytes say so; 168 MHz and programming by words need 2.7 V (data sheet of the STM32F405).
+//! The supply's warning: 3.3 V has fallen to 2.9 V, and some time is left. Below it the chip's own reset: 2.8 V where
+//! the option bytes say so; 168 MHz and programming by words need 2.7 V (data sheet of the STM32F405).
 
 use super::flash::Standstill;
 use embassy_stm32::interrupt;
@@ -37,9 +37,9 @@ pub(super) fn start() {
     unsafe { interrupt::PVD.enable() }
 }
 
-/// Sets the brown-out reset to level 3 for good, once; it acts from the next reset on (RM0090, 3.7.2). For the bench only: a
-/// supply that fails in the middle of it can leave the chip protected against reading, and a probe must then erase it. The bridge is
-/// open meanwhile.
+/// Sets the brown-out reset to level 3 for good, once; it acts from the next reset on (RM0090, 3.7.2). For the bench
+/// only: a supply that fails in the middle of it can leave the chip protected against reading, and a probe must then
+/// erase it. The bridge is open meanwhile.
 pub fn raise_level() {
     if FLASH.optcr().read().bor_lev() == LEVEL_3 {
         return;

@@ -31,8 +31,8 @@ pub(super) fn config() -> Config {
     config
 }
 
-/// Lets the flash keep what it read, and read ahead where the chip can. The HAL leaves that off, and each word then takes
-/// 6 cycles.
+/// Lets the flash keep what it read, and read ahead where the chip can. The HAL leaves that off, and each word then
+/// takes 6 cycles.
 pub(super) fn quicken_flash() {
     let chip = DBGMCU.idcode().read();
     let prefetch = has_prefetch(chip.dev_id(), chip.rev_id());

@@ -47,8 +47,8 @@ pub fn flash() -> Option<(Flash, Range<u32>)> {
     Some((Flash(Chip::new(peripheral, Lines).into_regions().bank1_region1), STORE))
 }
 
-/// While it lives the bridge is open, the watchdog patient and the data cache off. The cache keeps what an erase takes away,
-/// and may be emptied only while it is off (RM0090, 3.6.4).
+/// While it lives the bridge is open, the watchdog patient and the data cache off. The cache keeps what an erase takes
+/// away, and may be emptied only while it is off (RM0090, 3.6.4).
 pub(super) struct Standstill;
 
 impl Standstill {
@@ -97,9 +97,14 @@ impl NorFlash for Flash {
         self.0.write(offset, bytes).await
     }
 
+    /// Each sector is a standstill of its own: after 0.5 s of erasing control makes up for its steps, and three sectors in one
+    /// would outlast the watchdog.
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Error> {
-        let _standstill = Standstill::begin();
-        erase_by_words();
-        self.0.erase(from, to).await
+        for sector in (from..to).step_by(Self::ERASE_SIZE) {
+            let _standstill = Standstill::begin();
+            erase_by_words();
+            self.0.erase(sector, to.min(sector + Self::ERASE_SIZE as u32)).await?;
+        }
+        Ok(())
     }
 }

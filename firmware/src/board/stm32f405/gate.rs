@@ -1,5 +1,4 @@
-//! The gate driver: enabled once the rotor is slow, given its settings, asked whether it took them; asked again when it
-//! opened the bridge.
+//! The gate driver: enabled once the rotor is slow, configured, read back; its status is read when it opened the bridge.
 
 use super::pins::{GATE_ENABLE, Pin, fixed};
 use super::soft_spi::SoftSpi;
@@ -19,8 +18,8 @@ use parts::vesc6::{ENABLE_V, GATE_DRIVER, MOTOR};
 /// From enabling to ready; its data sheet says 5 to 10 ms.
 const WAKE: Duration = Duration::from_millis(20);
 
-/// How long the start waits for a slow rotor. A handlebar that is faster than the limit, 5.6 rad/s, goes from end to end in this
-/// time; the watchdog's patience in a start is more than twice that.
+/// How long the start waits for a slow rotor. A handlebar that is faster than the limit, 5.6 rad/s, goes from end to
+/// end in this time; the watchdog's patience in a start is more than twice that.
 const WAIT: Duration = Duration::from_millis(500);
 
 /// Whether it was started well.
@@ -93,13 +92,13 @@ fn configure(bus: &mut SoftSpi) -> bool {
     good
 }
 
-/// What it says is wrong, in words. It must still be enabled: disabled, it forgets. Takes 0.3 ms, too long for the motor's
+/// Its status in words. It must still be enabled: disabling clears the status. Takes 0.3 ms, too long for the motor's
 /// interrupt.
 pub(super) fn describe(words: &mut impl Write) -> core::fmt::Result {
     let Some(mut bus) = BUS.lock(Cell::take) else { return Ok(()) };
-    let told = [Register::Status1, Register::Status2].map(|register| ask(&mut bus, register));
+    let answers = [Register::Status1, Register::Status2].map(|register| ask(&mut bus, register));
     BUS.lock(|cell| cell.set(Some(bus)));
-    let [Some(one), Some(two)] = told else { return write!(words, "no answer") };
+    let [Some(one), Some(two)] = answers else { return write!(words, "no answer") };
     Status(one, two).names().try_for_each(|name| write!(words, "{name}, "))?;
     write!(words, "status {one:03x} {two:03x}")
 }

@@ -1,11 +1,11 @@
 //! The serial line of the link: USART3 at 115200 baud, 8 bits, no parity, both ways by DMA.
 //!
-//! The USART has one data register and no FIFO, and control holds the core for a third of each millisecond, in which four
-//! bytes come. So a DMA stream takes every byte as it comes, into a ring that the line's task empties once a millisecond.
-//! Only the stream reads the data register: the HAL's own ring also reads it with the core, to find an idle line
-//! (embassy-stm32 0.6.0, `usart/ringbuffered.rs`), and can take away a byte that has just come. Noise, framing and
-//! overrun errors have no interrupt here and do not stop the stream (RM0090, 30.3.13); a frame with a wrong byte has
-//! a wrong check.
+//! The USART has one data register and no FIFO, and control holds the core for a third of each millisecond, in which
+//! four bytes come. So a DMA stream takes every byte as it comes, into a ring that the line's task empties once a
+//! millisecond. Only the stream reads the data register: the HAL's own ring also reads it with the core, to find an
+//! idle line (embassy-stm32 0.6.0, `usart/ringbuffered.rs`), and can take away a byte that has just come. Noise,
+//! framing and overrun errors have no interrupt here and do not stop the stream (RM0090, 30.3.13); a frame with a wrong
+//! byte has a wrong check.
 
 use super::pins::{Link, alternate};
 use embassy_stm32::dma::{Channel, InterruptHandler, ReadableRingBuffer, TransferOptions};
@@ -27,9 +27,9 @@ bind_interrupts!(struct Streams {
 /// Pins' function that is USART3.
 const FUNCTION: u8 = 7;
 
-/// Bytes that wait to be taken. The task does not look while it sends; a telemetry frame takes 11.5 ms at 115200 baud, the
-/// longest answer 29 ms. Meanwhile at most one request of 332 bytes comes from a host that waits for answers; from one that
-/// does not, this is 22 ms at 921600 baud, 178 ms at 115200.
+/// Bytes that wait to be taken. The task does not look while it sends; a telemetry frame takes 11.5 ms at 115200 baud,
+/// the longest answer 29 ms. Meanwhile at most one request of 332 bytes comes from a host that waits for answers; from
+/// one that does not, this is 22 ms at 921600 baud, 178 ms at 115200.
 const WAITING: usize = 2048;
 
 /// How often the task looks for bytes.
@@ -80,7 +80,7 @@ pub async fn read(into: &mut [u8]) -> usize {
 /// Waits until all bytes are on their way.
 pub async fn write(bytes: &[u8]) {
     match TX.lock().await.as_mut() {
-        // The HAL's stream has no error to tell of.
+        // The HAL gives no error here.
         Some(tx) => tx.write(bytes).await.unwrap_or(()),
         None => core::future::pending().await,
     }

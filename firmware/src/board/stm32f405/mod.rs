@@ -1,5 +1,5 @@
-//! An STM32F405RG on a VESC 6 MK6: gate driver, shunts, IMU and clock of the board; encoder, steer sensor, wheels, switch
-//! and link wired to it as [`pins`] and docs/hardware.md say. Nothing of it ran on hardware yet.
+//! An STM32F405RG on a VESC 6 MK6: gate driver, shunts, IMU and clock of the board; encoder, steer sensor, wheels,
+//! switch and link wired to it as [`pins`] and docs/hardware.md say. Nothing of it ran on hardware yet.
 #![allow(unsafe_code)]
 
 mod adc;
@@ -125,8 +125,9 @@ fn start_parts(peripherals: embassy_stm32::Peripherals) -> MotorParts {
 
     let timer_in_step = pwm::start(pins.bridge);
     clock::watch_crystal();
-    let gate_driver_good =
-        gate::start(pins.gate_enable, &mut SoftSpi::new(pins.gate_bus, Edge::Falling, GATE_CYCLES));
+    let mut encoder = SoftSpi::new(pins.encoder_bus, Edge::Falling, ENCODER_CYCLES);
+    let bus = SoftSpi::new(pins.gate_bus, Edge::Falling, GATE_CYCLES);
+    let gate_driver_good = gate::start(pins.gate_enable, bus, &mut encoder);
     adc::start(pins.analog);
 
     let mut imu = SoftSpi::new(pins.imu_bus, Edge::Rising, IMU_CYCLES);
@@ -138,12 +139,7 @@ fn start_parts(peripherals: embassy_stm32::Peripherals) -> MotorParts {
     can::start(pins.can_receive, pins.can_transmit);
     flash::start(pins.flash);
     watchdog::standstill(false);
-    MotorParts {
-        timer_in_step,
-        gate_driver_good,
-        encoder: SoftSpi::new(pins.encoder_bus, Edge::Falling, ENCODER_CYCLES),
-        gate_fault: Input::new(pins.gate_fault, Pull::Up),
-    }
+    MotorParts { timer_in_step, gate_driver_good, encoder, gate_fault: Input::new(pins.gate_fault, Pull::Up) }
 }
 
 /// Half clocks of the buses \[cycles of 6 ns\]: gate driver 1 MHz, IMU below 2 MHz (its clock's pin is a slow one), the
@@ -158,8 +154,8 @@ fn UART5() {
     unsafe { CONTROL.on_interrupt() }
 }
 
-/// Opens all six switches and turns the gate driver off, until the next start. From any context, fault handlers included:
-/// it writes three words and needs nothing but their addresses.
+/// Opens all six switches and turns the gate driver off, until the next start. From any context, fault handlers
+/// included: it writes three words and needs nothing but their addresses.
 pub fn outputs_off() {
     // First, so that the motor's interrupt does not close again what is opened here.
     shared::set_off();

@@ -82,7 +82,7 @@ impl Loop {
         self.ask_encoder();
         if self.gate_pin.step(self.gate_fault.is_low()) {
             self.report.gate_fault = true;
-            // The driver has opened the switches by itself, and stays enabled until it was asked why.
+            // The driver has opened the switches by itself; it stays enabled until its status was read.
             set_off();
         }
         let (beat, asked) = ordered();

@@ -65,8 +65,8 @@ pub(super) fn start(bridge: [Pin; 6]) -> bool {
     for pin in bridge {
         alternate(pin, FUNCTION, AfType::output(OutputType::PushPull, Speed::High));
     }
-    // From now on every second end of a ramp takes over. The counter of ends is still 0 here, so the first one does, at the
-    // top, and with it every other at the top.
+    // From now on every second end of a ramp takes over. The counter of ends is still 0 here, so the first one does, at
+    // the top, and with it every other at the top.
     TIM1.egr().write(|w| w.set_ug(true));
     TIM1.rcr().write(|w| w.set_rep(1));
     TIM1.cr1().modify(|w| w.set_cen(true));
@@ -89,7 +89,7 @@ pub(super) fn duties(duties: [f32; 3]) {
     }
 }
 
-/// From now on [`is_over`] tells of the next top.
+/// From now on [`is_over`] is about the next top.
 pub(super) fn begin() {
     TIM1.sr().modify(|w| w.set_uif(false));
 }

@@ -15,7 +15,8 @@ static BEAT: AtomicU32 = AtomicU32::new(0);
 /// The bridge stays open: until the next start, and while the flash is at work.
 static OFF: AtomicBool = AtomicBool::new(false);
 static HOLD: AtomicBool = AtomicBool::new(false);
-/// Temperature beside the switches, as bits of an f32 \[deg C\]; control makes it of the counts, as it takes a logarithm.
+/// Temperature beside the switches, as bits of an f32 \[deg C\]; control makes it of the counts, as it takes a
+/// logarithm.
 static HEAT_C: AtomicU32 = AtomicU32::new(f32::NAN.to_bits());
 
 /// What the motor's interrupt says of its last call.

@@ -16,8 +16,9 @@ pub(super) enum Edge {
 /// the AS5047P wants.
 const SELECT_CYCLES: u32 = 70;
 
-/// Readings of a bit at the falling edge, which is what most of them say: from a part whose wires run beside the bridge's: encoder and gate driver, as the drive's own firmware reads
-/// the encoder (`driver/spi_bb.c` in vedderb/bldc). The IMU's 152 bits a millisecond are read once.
+/// Readings of a bit of encoder and gate driver, whose wires run beside the bridge's; the majority counts. So does the
+/// drive's own firmware read the encoder (`driver/spi_bb.c` in vedderb/bldc). The IMU's 152 bits a millisecond are read
+/// once.
 const LOOKS: u32 = 5;
 
 /// The bus and its only part.

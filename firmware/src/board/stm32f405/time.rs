@@ -1,8 +1,8 @@
 //! Embassy's clock on TIM5: 32 bits, 1 us to a count.
 //!
-//! While flash is erased the chip stands still, its interrupts included, for half a second a sector. The HAL's driver counts
-//! 16 bits by two interrupts a round of 65.5 ms, and loses those that come meanwhile (embassy-stm32 0.6.0, `time_driver/gp16.rs`).
-//! This one needs two in 71 minutes.
+//! While flash is erased the chip stands still, its interrupts included, for half a second a sector. The HAL's driver
+//! counts 16 bits by two interrupts a round of 65.5 ms, and loses those that come meanwhile (embassy-stm32 0.6.0,
+//! `time_driver/gp16.rs`). This one needs two in 71 minutes.
 
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering};

@@ -10,7 +10,7 @@ use link::report::{FAULT_TEXT_BYTES, FaultKind};
 /// How often it is looked.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Keeps a fault of the gate driver with what the driver says of it, and the first faults of the motor's loop.
+/// Keeps a fault of the gate driver with the driver's status, and the first faults of the motor's loop.
 #[embassy_executor::task]
 pub async fn watch_drive() {
     // One that was not started is in the log of the start.

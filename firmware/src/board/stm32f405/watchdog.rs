@@ -5,7 +5,8 @@ use embassy_stm32::pac::IWDG;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_time::Duration;
 
-/// Patience while the chip stands still: at start, and in an erase of a sector, 0.5 s at most.
+/// Patience while the chip stands still: at start, 0.8 s at most, and in an erase of a sector, 0.5 s at most and 0.3 s in
+/// which control makes up for its steps. With the fastest oscillator it is 1.36 s.
 const STANDSTILL: Duration = Duration::from_millis(2000);
 
 /// One count, of 32 kHz / 64; the oscillator is anything from 17 to 47 kHz.
