@@ -21,6 +21,7 @@ pub mod serial;
 pub mod settings;
 pub mod told;
 pub mod tune;
+pub mod virtual_board;
 mod watch;
 
 pub use client::{Client, ClientError, Patience};

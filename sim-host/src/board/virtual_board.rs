@@ -1,0 +1,107 @@
+//! The board's own image on the virtual board, a program of its own whose standard input and output are the serial line.
+
+use super::line::{Line, LineError};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread::spawn;
+use std::time::Duration;
+
+/// Longest real time from the start to the first byte of the board, which starts within 0.3 s of its own.
+const START: Duration = Duration::from_secs(60);
+
+/// Where `cargo xtask virtual-board` leaves the program.
+pub fn default_program() -> PathBuf {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
+    manifest.parent().unwrap_or(manifest).join("target/virtual-board/virtual-board")
+}
+
+/// The serial line of a virtual board, which ends with this value.
+pub struct VirtualBoard {
+    name: String,
+    child: Child,
+    to: Option<ChildStdin>,
+    from: Receiver<Vec<u8>>,
+    /// The first bytes, which came while it started.
+    first: Vec<u8>,
+}
+
+impl VirtualBoard {
+    /// Starts the program with the image that was built, or another, and waits for the first byte of the board.
+    ///
+    /// # Errors
+    /// There is no such program, or it ends before the board has started; then with its own reason.
+    pub fn start(program: &Path, image: Option<&Path>) -> Result<Self, LineError> {
+        let name = format!("{} (cargo xtask virtual-board --build makes it)", program.display());
+        let failed = |why: io::Error| LineError::Open { line: name.clone(), why };
+        let mut command = Command::new(program);
+        command.arg("--stdio").args(image.iter().flat_map(|image| [Path::new("--image"), image]));
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        // Ctrl-C is for this program.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let mut child = command.spawn().map_err(failed)?;
+        let to = child.stdin.take();
+        let from = listen(child.stdout.take());
+        let words = listen(child.stderr.take());
+        let mut board = Self { name: program.display().to_string(), child, to, from, first: Vec::new() };
+        match board.from.recv_timeout(START) {
+            Ok(bytes) => board.first = bytes,
+            Err(_) => {
+                let said: Vec<u8> = words.try_iter().flatten().collect();
+                let last = String::from_utf8_lossy(&said).lines().last().unwrap_or("no word").to_owned();
+                return Err(failed(io::Error::other(format!("the board did not start: {last}"))));
+            }
+        }
+        Ok(board)
+    }
+
+    fn lost(&self, why: io::ErrorKind) -> LineError {
+        LineError::Lost { line: self.name.clone(), why: why.into() }
+    }
+}
+
+impl Line for VirtualBoard {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LineError> {
+        let sent = self.to.as_mut().map(|to| to.write_all(bytes).and_then(|()| to.flush()));
+        match sent {
+            Some(Ok(())) => Ok(()),
+            _ => Err(self.lost(io::ErrorKind::BrokenPipe)),
+        }
+    }
+
+    fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError> {
+        if !self.first.is_empty() {
+            return Ok(std::mem::take(&mut self.first));
+        }
+        match self.from.recv_timeout(patience) {
+            Ok(bytes) => Ok(bytes),
+            Err(RecvTimeoutError::Timeout) => Ok(Vec::new()),
+            Err(RecvTimeoutError::Disconnected) => Err(self.lost(io::ErrorKind::UnexpectedEof)),
+        }
+    }
+}
+
+impl Drop for VirtualBoard {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// What the program writes, taken by a thread so that it never waits; the channel ends with the program.
+fn listen(from: Option<impl Read + Send + 'static>) -> Receiver<Vec<u8>> {
+    let (send, bytes) = channel();
+    spawn(move || {
+        let Some(mut from) = from else { return };
+        let mut room = [0; 4096];
+        while let Ok(length @ 1..) = from.read(&mut room) {
+            if send.send(room[..length].to_vec()).is_err() {
+                return;
+            }
+        }
+    });
+    bytes
+}
