@@ -182,6 +182,7 @@ pub fn faults() -> Vec<FaultRecord<'static>> {
             ..of(FaultKind::Exception, 2, "")
         },
         of(FaultKind::Panic, 1, "panicked at src/tasks/control.rs:12:5:\nattempt to divide by zero"),
+        of(FaultKind::Drive, 1, "gate driver: over-current low a, fault, status 410 001"),
     ]
 }
 

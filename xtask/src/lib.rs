@@ -14,6 +14,7 @@ pub mod reproducible;
 pub mod rides;
 pub mod setup;
 pub mod size;
+pub mod virtual_board;
 
 /// A failure in words for whoever called `cargo xtask`.
 pub type Result<T> = std::result::Result<T, String>;

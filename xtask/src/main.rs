@@ -6,7 +6,7 @@ use xtask::bench::bench;
 use xtask::document::{self, instruction_table, size_table};
 use xtask::reproducible::reproducible;
 use xtask::setup::{TargetSource, setup};
-use xtask::{Result, coverage, image, mutants, progress, qemu};
+use xtask::{Result, coverage, image, mutants, progress, qemu, virtual_board};
 
 const HELP: &str = "\
 cargo xtask <command> [--help]
@@ -15,6 +15,7 @@ cargo xtask <command> [--help]
   test          set-up, build the firmware, run all tests, those in QEMU included
   firmware      build all firmware images
   qemu IMAGE    run an image in QEMU
+  virtual-board the board's image on a virtual VESC 6, with its log and its serial line
   flash IMAGE   build a board's image, flash it and show its log
   reproducible  whether the images have the same bytes in clones in other folders
   size          what the images take of flash and RAM, against their budgets
@@ -60,6 +61,19 @@ Builds and runs a QEMU image in simulated time, in the current directory, for at
 the exit status is the image's. Try: cargo xtask qemu qemu-control seconds=5 block_us=1500
 ";
 
+const VIRTUAL_BOARD_HELP: &str = "\
+cargo xtask virtual-board [--build | --test [ARGUMENTS OF cargo test] | ARGUMENTS OF virtual-board]
+
+Builds the board's images and the virtual board (three minutes of processor time the first time), then
+runs it: the log of the image that is flashed comes here, its serial line is a pseudo terminal whose
+name is printed. `cargo xtask virtual-board -- --help` lists its own options.
+
+  --build  only builds; `sim-host monitor --virtual-board` then finds it
+  --test   runs its tests instead
+
+Try: cargo xtask virtual-board --seconds 3, or with --align --switch --seconds 5
+";
+
 const FLASH_HELP: &str = "\
 cargo xtask flash IMAGE
 
@@ -88,7 +102,8 @@ cargo xtask instructions
 
 Counts the instructions and the stack of every control step: over the border ride for each law and
 configuration, over a ride with every sensor, and with each sensor broken in it. Prints them and
-writes docs/images.md anew. Fails when a step is over its budget, which stands in that page.
+writes docs/images.md anew. Fails when a step is over its budget, or less than a tenth under it; both
+stand in that page.
 ";
 
 const BENCH_HELP: &str = "\
@@ -138,6 +153,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         "test" => TEST_HELP,
         "firmware" => FIRMWARE_HELP,
         "qemu" => QEMU_HELP,
+        "virtual-board" => VIRTUAL_BOARD_HELP,
         "flash" => FLASH_HELP,
         "reproducible" => REPRODUCIBLE_HELP,
         "size" => SIZE_HELP,
@@ -157,6 +173,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         ("test", _) => test(rest)?,
         ("firmware", []) => build_all()?,
         ("qemu", [image, arguments @ ..]) => return run(image, arguments),
+        ("virtual-board", _) => on_virtual_board(rest)?,
         ("flash", [image]) => image::flash(image)?,
         ("reproducible", []) => reproducible()?,
         ("bench", []) => bench()?,
@@ -177,6 +194,11 @@ fn target_source(words: &[&str], help: &str) -> Result<TargetSource> {
     }
 }
 
+/// What is tested: also the virtual board, whose emulated core asks for a newer Rust than it needs; not what runs on the
+/// chip only.
+const EVERYTHING: [&str; 6] =
+    ["--workspace", "--exclude", "firmware", "--exclude", "no-panic", "--ignore-rust-version"];
+
 fn test(words: &[&str]) -> Result<()> {
     let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
     let (rest, sample) = match words[..split] {
@@ -191,7 +213,11 @@ fn test(words: &[&str]) -> Result<()> {
     build_all()?;
     let arguments = words.get(split + 1..).unwrap_or_default();
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    cargo.current_dir(image::root()).arg("test").args(arguments).env("STEER_ASSIST_REQUIRE_QEMU", "1");
+    cargo.current_dir(image::root()).arg("test").env("STEER_ASSIST_REQUIRE_QEMU", "1");
+    if !arguments.iter().any(|word| word.starts_with("-p") || word.starts_with("--package")) {
+        cargo.args(EVERYTHING);
+    }
+    cargo.args(arguments);
     if all {
         let separator = (!arguments.contains(&"--")).then_some("--");
         cargo.env("STEER_ASSIST_SLOW", "1").args(separator).arg("--include-ignored");
@@ -215,6 +241,22 @@ fn build_all() -> Result<()> {
     image::build("board-stm32f405")
 }
 
+fn on_virtual_board(words: &[&str]) -> Result<()> {
+    match words {
+        ["--test", arguments @ ..] => {
+            build_all()?;
+            virtual_board::test(arguments)
+        }
+        _ => {
+            virtual_board::build()?;
+            match words {
+                ["--build"] => Ok(()),
+                ["--", arguments @ ..] | arguments => virtual_board::run(arguments),
+            }
+        }
+    }
+}
+
 fn run(name: &str, arguments: &[&str]) -> Result<ExitCode> {
     image::build("board-qemu")?;
     let here = std::env::current_dir().map_err(|e| e.to_string())?;
@@ -229,7 +271,10 @@ fn measure(command: &str) -> Result<()> {
     let (sizes, counts) = document::regenerate()?;
     let sizes_only = command == "size";
     print!("{}", if sizes_only { size_table(&sizes) } else { instruction_table(&counts) });
-    let over =
-        if sizes_only { document::over_budget(&sizes, &[]) } else { document::over_budget(&[], &counts) };
-    if over.is_empty() { Ok(()) } else { Err(format!("over budget:\n  {}", over.join("\n  "))) }
+    let over = if sizes_only {
+        document::over_budget(&sizes, &[])
+    } else {
+        [document::over_budget(&[], &counts), document::margin_too_small(&counts)].concat()
+    };
+    if over.is_empty() { Ok(()) } else { Err(format!("over budget, or too close:\n  {}", over.join("\n  "))) }
 }

@@ -49,7 +49,10 @@ fn everything_asked_for_is_answered() {
     assert_eq!(lock(&board).requests - before, 6);
     let kept = client.faults().expect("faults");
     let kinds: Vec<_> = kept.iter().map(|fault| (fault.kind, fault.boot)).collect();
-    assert_eq!(kinds, [("controller", 5), ("brown-out", 4), ("watchdog", 3), ("exception", 2), ("panic", 1)]);
+    assert_eq!(
+        kinds,
+        [("controller", 5), ("brown-out", 4), ("watchdog", 3), ("exception", 2), ("panic", 1), ("drive", 1)]
+    );
     client.clear_faults().expect("cleared");
     assert_eq!(client.faults().expect("none").len(), 0);
     assert_eq!(lock(&board).faults.len(), 0);

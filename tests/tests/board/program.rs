@@ -217,7 +217,8 @@ fn faults_are_told_and_cleared() {
     assert_eq!(violations(&schema("faults"), &document), [""; 0]);
     assert_eq!(document["faults"][3]["exception"]["bfar"], "deadbeef");
     let text = bench.run(&format!("{line} --clear"));
-    let kinds = ["controller in start 5", "brown-out", "watchdog", "exception in", "panic"];
+    let kinds =
+        ["controller in start 5", "brown-out", "watchdog", "exception in", "panic", "drive in start 1"];
     let places: Vec<_> = kinds.iter().map(|kind| done(&text).find(kind).expect("told")).collect();
     assert!(places.is_sorted(), "{}", text.stdout);
     assert_eq!(done(&bench.run(&line)), "no faults\n");

@@ -119,6 +119,7 @@ fn a_fault_has_words() {
         &["watchdog in start 3 (watchdog)"],
         &["exception 5, bus fault: pc 08001234 lr 08004321 sp 20001000 cfsr 00008200 hfsr 40000000 bfar deadbeef", "PRECISERR"],
         &["panic in start 1", "  panicked at src/tasks/control.rs:12:5:\n  attempt to divide by zero\n"],
+        &["drive in start 1", "  gate driver: over-current low a, fault, status 410 001\n"],
     ]) {
         assert!(named.iter().all(|word| text.contains(word)), "{text}");
     }

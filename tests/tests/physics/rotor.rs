@@ -33,7 +33,7 @@ fn a_rotor_takes_its_part_of_the_steer_torque() {
             worst.set(worst.get().max(off));
             let without = motion.accelerations(&d.geometry, &d.torques);
             largest.set(largest.get().max((without.steer - with.steer).abs() / size));
-            prop_assert!(off < 1e-9, "{}: {off:e}", d.name);
+            prop_assert!(off < 1e-12, "{}: {off:e}", d.name);
             Ok(())
         })
         .unwrap();

@@ -1,0 +1,54 @@
+//! The virtual board: the package `virtual-board`, which is no default member because of the emulated core's own
+//! dependencies.
+
+use crate::process::must;
+use crate::{Result, image};
+use std::path::PathBuf;
+use std::process::Command;
+use std::time::Duration;
+
+/// Building the emulated core takes three minutes of processor time.
+const BUILD_LIMIT: Duration = Duration::from_secs(3600);
+const TEST_LIMIT: Duration = Duration::from_secs(3600);
+/// A run until Ctrl-C has no end of its own.
+const RUN_LIMIT: Duration = Duration::from_secs(30 * 24 * 3600);
+
+/// Where the built program lies.
+pub fn program() -> PathBuf {
+    image::root().join("target/virtual-board/virtual-board")
+}
+
+/// Builds the program and the images it runs.
+///
+/// # Errors
+/// Cargo's failure.
+pub fn build() -> Result<()> {
+    image::build("board-stm32f405")?;
+    let mut cargo = cargo("build");
+    must(cargo.args(["--bin", "virtual-board", "--profile", "virtual-board"]), BUILD_LIMIT)
+}
+
+/// Runs the built program, with these arguments.
+///
+/// # Errors
+/// It can't be started, or failed.
+pub fn run(arguments: &[&str]) -> Result<()> {
+    must(Command::new(program()).args(arguments), RUN_LIMIT)
+}
+
+/// Runs its tests; the images must be built.
+///
+/// # Errors
+/// Cargo's failure, or a test's.
+pub fn test(arguments: &[&str]) -> Result<()> {
+    let mut cargo = cargo("test");
+    must(cargo.args(arguments).env("STEER_ASSIST_REQUIRE_QEMU", "1"), TEST_LIMIT)
+}
+
+fn cargo(command: &str) -> Command {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    cargo.current_dir(image::root()).arg(command);
+    // The emulated core asks for a newer Rust than it needs.
+    cargo.args(["--package", "virtual-board", "--ignore-rust-version"]);
+    cargo
+}
