@@ -2,7 +2,7 @@
 
 use crate::image::{IMAGES, loaded, root};
 use crate::process::{capture, must};
-use crate::{Result, image};
+use crate::{Result, image, progress};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
@@ -11,7 +11,6 @@ use std::time::Duration;
 const FOLDERS: [&str; 3] =
     ["a", "another-folder", "a-folder-whose-name-is-much-longer-than-those-of-the-others"];
 
-const BUILD: Duration = Duration::from_secs(3600);
 const GIT: Duration = Duration::from_secs(120);
 
 /// Clones the commit of the work tree three times, gives two of the clones a commit of their own, builds all images in
@@ -56,7 +55,7 @@ fn clone(folder: &Path, name: &str) -> Result<Vec<Vec<u8>>> {
     let commit = git(&["rev-parse", "--short=12", "HEAD"])?.stdout;
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     cargo.current_dir(folder).args(["xtask", "firmware"]).env("CARGO_HOME", cargo_home(folder)?);
-    must(&mut cargo, BUILD)?;
+    progress::must_whenever(&mut cargo)?;
     IMAGES
         .iter()
         .map(|image| Ok(without(&loaded(&image::path_in(folder, image.name))?, commit.trim())))

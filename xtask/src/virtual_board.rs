@@ -2,16 +2,10 @@
 //! dependencies.
 
 use crate::process::must;
-use crate::{Result, image};
+use crate::{Result, image, progress};
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
-
-/// Building the emulated core takes three minutes of processor time.
-const BUILD_LIMIT: Duration = Duration::from_secs(3600);
-const TEST_LIMIT: Duration = Duration::from_secs(3600);
-/// A run until Ctrl-C has no end of its own.
-const RUN_LIMIT: Duration = Duration::from_secs(30 * 24 * 3600);
 
 /// Where the built program lies.
 pub fn program() -> PathBuf {
@@ -25,15 +19,15 @@ pub fn program() -> PathBuf {
 pub fn build() -> Result<()> {
     image::build("board-stm32f405")?;
     let mut cargo = cargo("build");
-    must(cargo.args(["--bin", "virtual-board", "--profile", "virtual-board"]), BUILD_LIMIT)
+    progress::must_whenever(cargo.args(["--bin", "virtual-board", "--profile", "virtual-board"]))
 }
 
-/// Runs the built program, with these arguments.
+/// Runs the built program, with these arguments, until it ends.
 ///
 /// # Errors
 /// It can't be started, or failed.
 pub fn run(arguments: &[&str]) -> Result<()> {
-    must(Command::new(program()).args(arguments), RUN_LIMIT)
+    must(Command::new(program()).args(arguments), Duration::MAX)
 }
 
 /// Runs its tests; the images must be built.
@@ -42,7 +36,7 @@ pub fn run(arguments: &[&str]) -> Result<()> {
 /// Cargo's failure, or a test's.
 pub fn test(arguments: &[&str]) -> Result<()> {
     let mut cargo = cargo("test");
-    must(cargo.args(arguments).env("STEER_ASSIST_REQUIRE_QEMU", "1"), TEST_LIMIT)
+    progress::must_whenever(cargo.args(arguments).env("STEER_ASSIST_REQUIRE_QEMU", "1"))
 }
 
 fn cargo(command: &str) -> Command {

@@ -225,7 +225,7 @@ impl Wiring {
                 self.advance(now.0);
                 self.gate_driver.enable(enabled, now.0);
             }
-            self.gate_driver.lines(select, clock, data);
+            self.gate_driver.lines(select, clock, data, now.0);
         }
         if any(&[(A, 15), (C, 15), (B, 2)]) {
             let (select, clock, data) = (high(self, A, 15), low(self, C, 15), high(self, B, 2));
@@ -238,17 +238,25 @@ impl Wiring {
         }
     }
 
-    /// A converter's counts of a channel now (pins of docs/hardware.md).
-    pub(crate) fn counts(&self, channel: u8) -> u16 {
-        match channel {
+    /// A converter's counts of a channel now (pins of docs/hardware.md); `None` where nothing is wired to it or its pin
+    /// is not set to analog.
+    pub(crate) fn counts(&self, channel: u8) -> Option<u16> {
+        let (port, pin) = match channel {
+            0..=7 => (A, channel),
+            8 | 9 => (B, channel - 8),
+            10..=15 => (C, channel - 10),
+            _ => return None,
+        };
+        (self.ports[port].mode(pin) == Mode::Analog).then_some(())?;
+        Some(match channel {
             10..=12 => self.analog.current_counts(self.power.phases_a(), usize::from(channel - 10)),
             5 => self.analog.steer_counts(self.power.steer_rad()),
             6 => self.analog.rider_torque_counts(),
             14 => self.analog.switch_counts(),
             3 => self.analog.board_temperature_counts(),
             13 => self.analog.supply_counts(self.power.bus_v()),
-            _ => 0,
-        }
+            _ => return None,
+        })
     }
 }
 

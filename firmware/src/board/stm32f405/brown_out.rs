@@ -1,5 +1,6 @@
-//! The supply's warning: 3.3 V has fallen to 2.9 V, and some time is left. Below it the chip's own reset: 2.8 V where
-//! the option bytes say so; 168 MHz and programming by words need 2.7 V (data sheet of the STM32F405).
+//! The supply's warning: 3.3 V has fallen below the highest threshold, 2.9 V in the reference manual (3.03 V in the data
+//! sheet of the STM32F427), and some time is left. Below it the chip's own reset: 2.8 V where the option bytes say so;
+//! 168 MHz and programming by words need 2.7 V (data sheet of the STM32F405).
 
 use super::flash::Standstill;
 use embassy_stm32::interrupt;

@@ -91,12 +91,19 @@ impl Wiring {
         self.adc[0].event = Some((context.schedule(VirtualNanos(at)), Phase::Trigger));
     }
 
-    /// Samples all converters.
-    fn convert(&mut self) {
+    /// Samples all converters. A channel that measures nothing is reported and ends the run: nothing reads as zero in
+    /// silence.
+    fn convert(&mut self, context: &mut DeviceContext<'_>) {
         for number in 0..self.adc.len() {
             if self.adc[number].is_armed() {
                 for (rank, channel) in self.adc[number].channels().enumerate() {
-                    self.adc[number].data[rank] = self.counts(channel);
+                    match self.counts(channel) {
+                        Some(counts) => self.adc[number].data[rank] = counts,
+                        None => context.tell(
+                            Register::Jsqr.spec().name,
+                            "converts a channel without a signal, or whose pin is not analog",
+                        ),
+                    }
                 }
                 self.adc[number].sr |= JSTRT;
             }
@@ -155,7 +162,7 @@ impl<const N: usize> Device for AsAdc<N> {
         let now_ns = context.now().0;
         wiring.advance(now_ns);
         if phase == Phase::Trigger && wiring.tim1.next_trigger_ns(now_ns.saturating_sub(1)) == Some(now_ns) {
-            wiring.convert();
+            wiring.convert(context);
             let over = VirtualNanos(now_ns + wiring.adc[N].sequence_ns());
             wiring.adc[N].event = Some((context.schedule(over), Phase::Done));
             return;

@@ -16,7 +16,8 @@ pub struct Drv8301 {
     bits: u32,
     answer: u16,
     shifting: u16,
-    enabled_ns: Option<u64>,
+    /// When it is ready for words, once it is enabled \[ns\].
+    ready_ns: Option<u64>,
     /// Words that came since power-on.
     pub words: Vec<u16>,
     /// It is not fitted, or its bus is cut.
@@ -37,7 +38,7 @@ impl Drv8301 {
             bits: 0,
             answer: 0,
             shifting: 0,
-            enabled_ns: None,
+            ready_ns: None,
             words: Vec::new(),
             absent: false,
             fault: None,
@@ -47,12 +48,12 @@ impl Drv8301 {
 
     /// Whether its enabling input is high.
     pub const fn is_enabled(&self) -> bool {
-        self.enabled_ns.is_some()
+        self.ready_ns.is_some()
     }
 
     /// Enables it or not; disabled, it forgets its registers.
     pub fn enable(&mut self, enabled: bool, now_ns: u64) {
-        self.enabled_ns = enabled.then_some(now_ns + WAKE_NS);
+        self.ready_ns = enabled.then_some(now_ns + WAKE_NS);
         if !enabled {
             (self.registers, self.fault) = ([0, DEVICE, 0, 0], None);
         }
@@ -74,8 +75,8 @@ impl Drv8301 {
         speaks.then_some(self.shifting & 0x8000 != 0)
     }
 
-    /// The lines of its bus as they are now.
-    pub fn lines(&mut self, select: bool, clock: bool, data: bool) {
+    /// The lines of its bus as they are now; a word that ends before it is ready is lost.
+    pub fn lines(&mut self, select: bool, clock: bool, data: bool, now_ns: u64) {
         match self.lines.step(Take::Falling, select, clock, data) {
             Event::None => (),
             Event::Selected => (self.received, self.bits, self.shifting) = (0, 0, self.answer),
@@ -85,12 +86,13 @@ impl Drv8301 {
             // The first bit is out since the selection.
             Event::Next if self.bits > 0 => self.shifting <<= 1,
             Event::Next => (),
-            Event::Released => self.word(),
+            Event::Released if self.ready_ns.is_some_and(|ready_ns| ready_ns <= now_ns) => self.word(),
+            Event::Released => (),
         }
     }
 
     fn word(&mut self) {
-        if !self.is_enabled() || self.absent || self.bits == 0 {
+        if self.absent || self.bits == 0 {
             return;
         }
         if self.bits != 16 {
@@ -113,5 +115,32 @@ impl Drv8301 {
 impl Default for Drv8301 {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn send(driver: &mut Drv8301, word: u16, now_ns: u64) {
+        driver.lines(false, false, false, now_ns);
+        for place in (0..16).rev() {
+            let bit = word >> place & 1 == 1;
+            driver.lines(false, true, bit, now_ns);
+            driver.lines(false, false, bit, now_ns);
+        }
+        driver.lines(true, false, false, now_ns);
+    }
+
+    /// Situation: just enabled. Action: the same word just before and when it is ready. Must hold: it takes the second one.
+    #[test]
+    fn a_word_before_it_is_ready_is_lost() {
+        const CONTROL_1: u16 = 2 << 11 | 0x155;
+        let mut driver = Drv8301::new();
+        driver.enable(true, 1_000);
+        send(&mut driver, CONTROL_1, WAKE_NS + 999);
+        assert!(driver.words.is_empty(), "{:x?}", driver.words);
+        send(&mut driver, CONTROL_1, WAKE_NS + 1_000);
+        assert_eq!(driver.words, [CONTROL_1]);
     }
 }

@@ -101,8 +101,9 @@ fn what_starves_the_lowest_priority_ends_in_the_watchdog() {
 /// Situation: the bridge is closed. Action: a bus error at a converter's register, in the motor's interrupt. Must hold: open
 /// within 3 us of the next call, 50 us. Action: the crystal stops; the emulated core has no NMI, so that the vector of the
 /// supply's warning leads to its handler meanwhile. Must hold: the break opens the bridge at once, before any
-/// instruction; the next start names the crystal. Action: the chip's supply falls to 3.1 V, then to 3.0 V; the detector's highest threshold, 2.9 V in the manual, is 3.03 V for a falling supply in the data sheet. Must hold: nothing,
-/// then open within 3 us; the chip starts anew and waits with the bridge open until the supply is there; the log names it.
+/// instruction; the next start names the crystal. Action: the chip's supply falls to 3.1 V, then to 3.0 V; the detector's
+/// highest threshold, 2.9 V in the manual, is 3.03 V for a falling supply in the data sheet. Must hold: nothing, then open
+/// within 3 us; the chip starts anew and waits with the bridge open until the supply is there; the log names it.
 #[test]
 fn a_failing_bus_crystal_or_supply_opens_the_bridge() {
     const ADC1_JDR1: u64 = 0x4001_203c;

@@ -3,6 +3,7 @@
 use crate::rig::{ALIGN, image};
 use std::path::Path;
 use std::time::Duration;
+use virtual_board::chip::gpio::Port;
 use virtual_board::wiring::Wiring;
 use virtual_board::{Bench, Options};
 
@@ -90,6 +91,18 @@ fn a_register_without_a_model_ends_the_run() {
     let error = bench.run_ms(5.0).unwrap_err().to_string();
     let parts =
         ["at ", "0x40007c00: UART8.SR is gated by RCC", "by the instruction at 0x080", "in _defmt_acquire"];
+    assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+}
+
+/// Situation: the aligning image, converting. Action: the pins of port A are as after a reset, digital inputs. Must hold: the
+/// run ends within 2 ms and names the register of the channels and the motor's interrupt.
+#[test]
+fn a_conversion_of_a_pin_that_is_not_analog_ends_the_run() {
+    let mut bench = Bench::power_on(&image(ALIGN), Options::default(), Wiring::new()).unwrap();
+    bench.run_ms(300.0).unwrap();
+    bench.with(|board| board.chip.wiring.ports[0] = Port::new(0));
+    let error = bench.run_ms(2.0).unwrap_err().to_string();
+    let parts = ["at 30", "ADC1.JSQR", "whose pin is not analog", "in ADC"];
     assert!(parts.iter().all(|part| error.contains(part)), "{error}");
 }
 

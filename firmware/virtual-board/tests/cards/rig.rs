@@ -1,6 +1,6 @@
 //! Boards to try things on, and what is asked of them over the serial line.
 
-use link::frame::{Decoder, MAX_FRAME, Received};
+use crate::bed::{Listener, request as bytes_of};
 use link::message::Message;
 use std::path::PathBuf;
 use virtual_board::wiring::Wiring;
@@ -12,8 +12,7 @@ pub(crate) const ALIGN: &str = "board-stm32f405-align";
 
 /// Where `cargo xtask firmware` builds an image.
 pub(crate) fn image(name: &str) -> PathBuf {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../target");
-    root.join("firmware/thumbv7em-none-eabihf/firmware").join(name)
+    xtask::image::path(name)
 }
 
 /// A board with this image, powered.
@@ -76,20 +75,12 @@ pub(crate) fn ask<T>(
     limit_ms: f64,
     mut look: impl FnMut(&Message<'_>) -> Option<T>,
 ) -> T {
-    let mut frame = [0; MAX_FRAME];
-    let length = request.encode(7, &mut frame).expect("room");
     // What came before is of another time.
     bench.received();
-    bench.send(&frame[..length]);
-    let (mut decoder, mut found) = (Decoder::default(), None);
+    bench.send(&bytes_of(request, 7));
+    let (mut listener, mut found) = (Listener::default(), None);
     let answered = bench.run_until(limit_ms, "answer on the serial line", |bench| {
-        for byte in bench.received() {
-            if let Some(Received::Frame(frame)) = decoder.feed(byte)
-                && let Ok(message) = Message::decode(&frame)
-            {
-                found = found.take().or(look(&message));
-            }
-        }
+        listener.take(&bench.received(), |_, message| found = found.take().or(look(message)));
         found.is_some()
     });
     answered.unwrap_or_else(|error| panic!("{request:?}: {error}"));
