@@ -109,6 +109,12 @@ pub fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace").join(path)
 }
 
+/// A path as one word of a command line, whatever the folder is named.
+pub fn word(path: &Path) -> String {
+    let text = path.to_str().expect("a path in UTF-8");
+    shlex::try_quote(text).expect("no zero byte in a path").into_owned()
+}
+
 /// A flat parameter file: the benchmark bicycle with the line of `key` replaced.
 pub fn bicycle_with(key: &str, line: &str) -> String {
     let text = std::fs::read_to_string(repository("data/bicycles/example.toml")).expect("the example");

@@ -1,7 +1,7 @@
 //! What the program says to input it can't work with, and what it leaves alone.
 #![cfg(unix)]
 
-use tests::cli::{Bench, Run, bicycle_with, repository};
+use tests::cli::{Bench, Run, bicycle_with, repository, word};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
@@ -76,8 +76,10 @@ fn unknown_bicycles() {
     refused(&bench, "eigen --bicycle unicycle", &["`unicycle`", "rigid_jason", "benchmark"]);
     refused(&bench, "eigen --bicycle missing.toml#x", &["missing.toml"]);
     refused(&bench, "eigen --bicycle .", &["."]);
-    let collection = repository("data/bicycles.toml").display().to_string();
-    refused(&bench, &format!("eigen --bicycle {collection}"), &[&collection, "#NAME", "benchmark"]);
+    let path = repository("data/bicycles.toml");
+    let collection = word(&path);
+    let name = path.display().to_string();
+    refused(&bench, &format!("eigen --bicycle {collection}"), &[&name, "#NAME", "benchmark"]);
     refused(&bench, &format!("eigen --bicycle {collection}#unicycle"), &["#NAME", "benchmark"]);
     bench.write("my.toml", bicycle_with("w", "w = 1.1"));
     refused(&bench, "eigen --bicycle my.toml#city", &["my.toml", "city"]);

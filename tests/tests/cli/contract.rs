@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use sim_host::bicycle::{Geometry, Motion, State, Torques, linear::Linear, pitch_from_upright};
-use tests::cli::{Bench, repository};
+use tests::cli::{Bench, repository, word};
 use tests::json_schema::violations;
 use tests::rides::shipped;
 
@@ -37,7 +37,7 @@ fn documents_fit_their_committed_schemas() {
         ("sweep", "sweep --over law=h,none --speeds 5 --max-rate 6 --scan-step 2 --time-limit 1"),
         ("eigen", "eigen --speeds 0:10:1"),
         ("eigen", "eigen --rider smart --law h --speeds 3:4:0.5 --roots 6"),
-        ("eigen", &format!("eigen --speeds 4 --law {}", law.display())),
+        ("eigen", &format!("eigen --speeds 4 --law {}", word(&law))),
         ("bicycle-check", "bicycle check"),
         ("bicycle-check", "bicycle check --bicycle yellowrev"),
         ("rider-show", "rider show smart6"),
@@ -166,7 +166,7 @@ fn threads_do_not_change_a_bit() {
 fn a_bicycle_is_the_same_by_name_collection_and_file() {
     let bench = Bench::new(PROGRAM);
     bench.write("own.toml", bench.run("bicycle show --bicycle rigid_luke").stdout);
-    let collection = repository("data/bicycles.toml").display().to_string() + "#rigid_luke";
+    let collection = word(&repository("data/bicycles.toml")) + "#rigid_luke";
     let by = |name: &str| {
         let document = bench.json(&format!("ride --speed 5 --steer-rate 3 --bicycle {name}"));
         (document["config"]["bicycle"]["parameters"].clone(), document["final"].clone())
@@ -174,6 +174,6 @@ fn a_bicycle_is_the_same_by_name_collection_and_file() {
     let expected = by("rigid_luke");
     assert_eq!(by("own.toml"), expected);
     assert_eq!(by(&collection), expected);
-    let example = repository("data/bicycles/example.toml").display().to_string();
+    let example = word(&repository("data/bicycles/example.toml"));
     assert_eq!(by(&example), by("benchmark"));
 }

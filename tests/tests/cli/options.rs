@@ -1,7 +1,7 @@
 //! What the options mean: laws, presets, defaults, help.
 
 use serde_json::{Value, json};
-use tests::cli::{Bench, repository};
+use tests::cli::{Bench, repository, word};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
@@ -27,7 +27,7 @@ fn laws_by_name_and_by_file() {
     for (key, value) in ends[5].as_object().unwrap() {
         assert!((value.as_f64().unwrap() - line[key].as_f64().unwrap()).abs() < 1e-9, "{key}");
     }
-    assert!(end(&bench, &repository("data/laws/example.toml").display().to_string())["t"] == json!(6.0));
+    assert!(end(&bench, &word(&repository("data/laws/example.toml")))["t"] == json!(6.0));
 }
 
 /// Situation: no options, the product preset, the product preset with options of its own, ideal.

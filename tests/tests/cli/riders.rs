@@ -1,7 +1,7 @@
 //! Riders on the command line: names, files, options, and what is wrong with them.
 
 use serde_json::{Value, json};
-use tests::cli::{Bench, repository};
+use tests::cli::{Bench, repository, word};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
@@ -269,7 +269,7 @@ fn list_show_and_check() {
 fn the_example_is_a_rider() {
     let bench = Bench::new(PROGRAM);
     let example = repository("data/riders/example.toml");
-    let check = bench.run(&format!("rider check {}", example.display()));
+    let check = bench.run(&format!("rider check {}", word(&example)));
     assert!(check.stdout.contains("6 sets in 2 groups, 2.1 to 7.4 m/s, delay 30 ms"), "{check:?}");
-    assert_eq!(bench.run(&format!("ride -q --speed 4 --rider {}", example.display())).code, Some(0));
+    assert_eq!(bench.run(&format!("ride -q --speed 4 --rider {}", word(&example))).code, Some(0));
 }

@@ -10,7 +10,7 @@ use sim_host::board::settings::{Setting, Settings};
 use sim_host::board::tune::tune;
 use sim_host::board::{Client, Patience};
 use std::time::Duration;
-use tests::cli::Bench;
+use tests::cli::{Bench, word};
 use xtask::image;
 
 /// Situation: the image with every task, on a bicycle that rolls upright.
@@ -66,7 +66,7 @@ fn the_program_takes_an_image_for_a_board() {
         return;
     }
     let bench = Bench::new(env!("CARGO_BIN_EXE_sim-host-under-test"));
-    let image = image::path("qemu-pil").display().to_string();
+    let image = word(&image::path("qemu-pil"));
     let run = |line: &str| {
         let run = bench.run(line);
         assert_eq!(run.code, Some(0), "{line}: {run:?}");

@@ -1,7 +1,6 @@
 //! `sim-host pil`.
 
-use std::path::PathBuf;
-use tests::cli::Bench;
+use tests::cli::{Bench, word};
 use xtask::image;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
@@ -9,8 +8,7 @@ const RIDE: &str = "--preset product --speed 4 --steer-rate 5 --time-limit 1";
 
 /// The image as an option.
 fn on_image() -> String {
-    let image: PathBuf = image::path("qemu-pil");
-    format!("--image {}", image.display())
+    format!("--image {}", word(&image::path("qemu-pil")))
 }
 
 /// Situation: options that no board can be ridden with. Action: `pil`.

@@ -4,14 +4,14 @@
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use tests::cli::{Bench, Run};
+use tests::cli::{Bench, Run, word};
 use tests::wait::{until, used_s};
 use xtask::image;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
 fn spawn(bench: &Bench, line: &str) -> Child {
-    let line = format!("{line} --image {}", image::path("qemu-pil").display());
+    let line = format!("{line} --image {}", word(&image::path("qemu-pil")));
     let mut command = bench.command(&line);
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts")
 }
