@@ -12,6 +12,7 @@ pub mod leaves;
 pub mod num;
 pub mod plant;
 mod range;
+pub mod recording;
 pub mod report;
 pub mod ride;
 pub mod rider;

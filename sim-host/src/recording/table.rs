@@ -1,0 +1,196 @@
+//! A table of samples as text: named columns, one row a line, blank cells where a sensor had nothing new.
+//!
+//! Fields are separated by commas, semicolons or tabs, whichever the header has most of. Lines that begin with `#` are
+//! remarks of the file's own. Each line is read by itself, so that a stray quote or a cut line costs that line alone.
+
+use super::{Column, Group, Recording, Remark};
+
+/// Most remarks of one kind that are told one by one; the rest is counted.
+const TOLD: u64 = 3;
+
+/// What is wrong with rows, so that each kind is told a few times and then counted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Length,
+    Number,
+    Header,
+    Packed,
+}
+
+impl Kind {
+    /// What the rows beyond the first few have in common.
+    fn of_many(self) -> &'static str {
+        match self {
+            Kind::Length => "rows of another length than the header; left out",
+            Kind::Number => "cells that are no number; taken as blank",
+            Kind::Header => "lines that name other columns; from there on the new ones are used",
+            Kind::Packed => "lines with bytes that are no text; left out",
+        }
+    }
+}
+
+/// The remarks so far, and how many of each kind there were.
+#[derive(Default)]
+struct Remarks {
+    told: Vec<Remark>,
+    counts: Vec<(Kind, u64)>,
+}
+
+impl Remarks {
+    fn add(&mut self, kind: Kind, line: u64, column: Option<&str>, what: impl FnOnce() -> String) {
+        let count = match self.counts.iter_mut().find(|(k, _)| *k == kind) {
+            Some((_, count)) => count,
+            None => {
+                self.counts.push((kind, 0));
+                &mut self.counts.last_mut().expect("just pushed").1
+            }
+        };
+        *count += 1;
+        if *count <= TOLD {
+            let column = column.map(str::to_owned);
+            self.told.push(Remark { line: Some(line), column, what: what() });
+        }
+    }
+
+    fn done(mut self) -> Vec<Remark> {
+        for (kind, count) in self.counts {
+            if count > TOLD {
+                let what = format!("{} more {}", count - TOLD, kind.of_many());
+                self.told.push(Remark { line: None, column: None, what });
+            }
+        }
+        self.told
+    }
+}
+
+/// Reads a table. Rows and cells that can't be used become remarks; the rest is the recording.
+///
+/// # Errors
+/// No header with names, or no row below it.
+pub fn parse(text: &str) -> Result<Recording, Remark> {
+    let fails = |line: Option<u64>, what: &str| Remark { line, column: None, what: what.to_owned() };
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut lines = text
+        .lines()
+        .zip(1_u64..)
+        .map(|(line, number)| (line.trim_end_matches('\r'), number))
+        .filter(|(line, _)| !line.trim().is_empty() && !line.starts_with('#'));
+    let Some((header, at)) = lines.next() else {
+        return Err(fails(None, "the file has no line with data"));
+    };
+    let separator = separator_of(header);
+    let names = names_of(header, separator).ok_or_else(|| {
+        fails(Some(at), "a header with the columns' names was expected, not numbers; add one line with names")
+    })?;
+    if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+        return Err(fails(Some(at), &format!("two columns are called `{}`", twice.1)));
+    }
+
+    let mut columns: Vec<Column> =
+        names.iter().map(|name| Column { name: name.clone(), ..Column::default() }).collect();
+    // Which column each field of the present lines belongs to.
+    let mut places: Vec<usize> = (0..names.len()).collect();
+    let (mut numbers, mut remarks) = (Vec::new(), Remarks::default());
+    let ends_whole = text.ends_with('\n');
+    let last = text.lines().count() as u64;
+    for (line, number) in lines {
+        if line.contains('\u{fffd}') || line.contains('\0') {
+            remarks.add(Kind::Packed, number, None, || "has bytes that are no text; left out".to_owned());
+            continue;
+        }
+        if let Some(new) = names_of(line, separator) {
+            remarks.add(Kind::Header, number, None, || {
+                format!("names {} columns anew; from here on these are used", new.len())
+            });
+            places = new.iter().map(|name| place_of(&mut columns, name, numbers.len())).collect();
+            continue;
+        }
+        let fields: Vec<&str> = line.split(separator).map(str::trim).collect();
+        if fields.len() != places.len() {
+            let cut = number == last && !ends_whole;
+            remarks.add(Kind::Length, number, None, || {
+                let half = if cut { ", the file ends within it" } else { "" };
+                format!("{} fields, the header has {}{half}; left out", fields.len(), places.len())
+            });
+            continue;
+        }
+        columns.iter_mut().for_each(|column| column.values.push(f64::NAN));
+        numbers.push(number);
+        for (place, field) in places.iter().zip(fields) {
+            let column = &mut columns[*place];
+            let value = if is_blank(field) { None } else { Some(number_of(field)) };
+            match value {
+                None => {}
+                Some(Some(value)) => *column.values.last_mut().expect("a row") = value,
+                Some(None) => remarks.add(Kind::Number, number, Some(&column.name), || {
+                    format!("`{}` is no number; taken as blank", shown(field))
+                }),
+            }
+        }
+    }
+    if numbers.is_empty() {
+        return Err(remarks
+            .done()
+            .into_iter()
+            .next()
+            .unwrap_or(fails(Some(at), "there is no row below the header")));
+    }
+    let group = Group { name: String::new(), times_s: None, lines: numbers, columns };
+    Ok(Recording { groups: vec![group], remarks: remarks.done() })
+}
+
+/// The character that separates the fields of a line: of comma, semicolon and tab the most frequent.
+fn separator_of(line: &str) -> char {
+    let count = |separator: &char| line.matches(*separator).count();
+    [',', ';', '\t'].into_iter().rev().max_by_key(count).unwrap_or(',')
+}
+
+/// The names in a line, if it is a header: at least one field, and none of them a number.
+fn names_of(line: &str, separator: char) -> Option<Vec<String>> {
+    let names: Vec<String> =
+        line.split(separator).map(|name| name.trim().trim_matches('"').to_owned()).collect();
+    let named = |name: &String| !name.is_empty() && number_of(name).is_none() && !is_blank(name);
+    let says = |name: &String| name.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_' || c == '/');
+    (names.iter().all(named) && names.iter().all(says)).then_some(names)
+}
+
+/// The place of a column; one that is new has no value in the rows before.
+fn place_of(columns: &mut Vec<Column>, name: &str, rows: usize) -> usize {
+    columns.iter().position(|column| column.name == name).unwrap_or_else(|| {
+        columns.push(Column { name: name.to_owned(), values: vec![f64::NAN; rows], ..Column::default() });
+        columns.len() - 1
+    })
+}
+
+/// Whether a field says that there is no value.
+fn is_blank(field: &str) -> bool {
+    field.is_empty() || ["nan", "null", "none", "na", "-"].iter().any(|word| field.eq_ignore_ascii_case(word))
+}
+
+/// A number, or a date with a time of day, which becomes seconds from 1970; on and off are 1 and 0.
+fn number_of(field: &str) -> Option<f64> {
+    let field = field.trim_matches('"');
+    match field {
+        "true" | "on" | "True" => return Some(1.0),
+        "false" | "off" | "False" => return Some(0.0),
+        _ => {}
+    }
+    field.parse::<f64>().ok().filter(|value| value.is_finite()).or_else(|| seconds(field))
+}
+
+/// Seconds from 1970 of a date with a time of day; without a zone it is taken as universal time.
+fn seconds(field: &str) -> Option<f64> {
+    let instant = |nanoseconds: i128| nanoseconds as f64 * 1e-9;
+    let zoned = || field.parse::<jiff::Timestamp>().ok().map(|time| instant(time.as_nanosecond()));
+    let plain: Result<jiff::civil::DateTime, _> = field.parse();
+    let utc = |time: jiff::civil::DateTime| time.to_zoned(jiff::tz::TimeZone::UTC).ok();
+    // A bare date is no time stamp.
+    let plain = plain.ok().filter(|_| field.contains(':')).and_then(utc);
+    plain.map(|time| instant(time.timestamp().as_nanosecond())).or_else(zoned)
+}
+
+/// A field for a message: not longer than a line can show.
+fn shown(field: &str) -> String {
+    let short: String = field.chars().take(24).collect();
+    if short.len() < field.len() { short + "..." } else { short }
+}
