@@ -13,6 +13,7 @@ use crate::param::{Checker, Leaf, ParamError, Visit, optional};
 use crate::permit::PermitConfig;
 use crate::predict::PredictConfig;
 use crate::response::{ResponseConfig, SteerModel};
+use crate::smooth::SmoothConfig;
 use crate::track::Track;
 use crate::watch::{Loss, Sensor};
 
@@ -41,6 +42,8 @@ pub struct Config {
     pub latency: Latency,
     /// How the delay of sensors and actuator is made up for.
     pub predict: PredictConfig,
+    /// How the roll rate is smoothed before the law gets it.
+    pub smooth: SmoothConfig,
     /// How a path is followed; `None` is not at all.
     pub track: Option<Track>,
     /// Limits on the torque.
@@ -63,6 +66,7 @@ impl Config {
             permit: PermitConfig::default(),
             latency: Latency::default(),
             predict: PredictConfig::default(),
+            smooth: SmoothConfig::default(),
             track: None,
             limits: Limits::default(),
         }
@@ -102,9 +106,13 @@ impl Config {
         let cross = CrossConfig {
             wheels_m_s: Some(0.8),
             yaw_rad_s: Some(2.0),
+            yaw_slow_rad_s: Some(0.5),
+            yaw_slope: true,
             steer_rad: Some(0.1),
             motor_nm: Some(2.0),
             persist_ticks: 50,
+            slow_ticks: 300,
+            same_checks: 2,
             ..CrossConfig::default()
         };
         let response = ResponseConfig { gyro: true, motor: Some(SteerModel::default()) };
@@ -114,14 +122,26 @@ impl Config {
             ramp_out_ticks: 200,
             need_polarity: true,
             fallen_rad: Some(1.05),
+            roll_unknown_rad: Some(0.5),
+            crash_m_s2: Some(60.0),
             parked_m_s: Some(0.3),
             backwards_m_s: Some(0.3),
             lifted_m_s2: Some(3.0),
             persist_ticks: 100,
         };
         let estimate = EstimateConfig { roll_rate: Source::Estimate, ..EstimateConfig::default() };
+        let smooth = SmoothConfig { interpolate: true, lag_s: 0.0 };
         let limits = Limits::product();
-        Self { input, estimate, cross, response, permit, limits, ..Self::thesis(Law::H { cut: true }) }
+        Self {
+            input,
+            estimate,
+            cross,
+            response,
+            permit,
+            smooth,
+            limits,
+            ..Self::thesis(Law::H { cut: true })
+        }
     }
 
     /// Shows every parameter but the law's.
@@ -136,6 +156,7 @@ impl Config {
         self.permit.leaves(to);
         self.latency.leaves(to);
         self.predict.leaves(to);
+        self.smooth.leaves(to);
         optional(to, &Leaf::switch("", "track"), &mut self.track, Track::leaves);
         self.limits.leaves(to);
     }

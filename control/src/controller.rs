@@ -2,8 +2,8 @@
 
 use crate::calibrate::CalibrationPlan;
 use crate::config::Config;
-use crate::cross::{self, CrossPlan, CrossState, Crossed};
-use crate::estimate::{self, EstimateState, Felt, Motion};
+use crate::cross::{self, CrossPlan, CrossState, Crossed, Residuals};
+use crate::estimate::{self, EstimateState, Felt, Motion, RollError};
 use crate::fault::{Cause, Causes};
 use crate::frame::{SensorFrame, Wheel};
 use crate::guard::{self, GuardPlan, GuardState};
@@ -15,6 +15,7 @@ use crate::polarity::{self, Move, PolarityState};
 use crate::predict;
 use crate::response::{self, ResponsePlan, ResponseState};
 use crate::shape::{self, ShapePlan, ShapeState};
+use crate::smooth::{self, SmoothPlan, SmoothState};
 use crate::track::{self, PathError, TrackState};
 
 /// A checked [`Config`] with what is derived from it. Read-only while the controller runs.
@@ -32,6 +33,7 @@ pub struct Plan {
     cross: CrossPlan,
     response: ResponsePlan,
     permit: PermitPlan,
+    smooth: SmoothPlan,
     reactions: Reactions,
     shape: ShapePlan,
     guard: GuardPlan,
@@ -48,7 +50,10 @@ impl Plan {
     /// Of a configuration that was checked.
     pub(crate) fn new(config: Config) -> Self {
         let c = &config;
-        let crosses = c.cross.wheels_m_s.is_some() || c.cross.yaw_rad_s.is_some();
+        let crosses = c.cross.wheels_m_s.is_some()
+            || c.cross.yaw_rad_s.is_some()
+            || c.cross.yaw_slow_rad_s.is_some()
+            || c.cross.yaw_slope;
         Self {
             period_s: 1.0 / c.rate_hz,
             period_us: (1e6 / c.rate_hz) as u32,
@@ -57,7 +62,8 @@ impl Plan {
             input: InputPlan::new(&c.input, 1.0 / c.rate_hz),
             cross: CrossPlan::new(&c.cross, c.rate_hz),
             response: ResponsePlan::new(&c.response, &c.estimate, c.rate_hz),
-            permit: PermitPlan::new(&c.permit),
+            permit: PermitPlan::new(&c.permit, c.rate_hz),
+            smooth: SmoothPlan::new(&c.smooth, 1.0 / c.rate_hz),
             reactions: Reactions::new(&c.input),
             shape: ShapePlan::new(&c.limits, c.rate_hz),
             guard: GuardPlan::new(&c.limits, c.rate_hz),
@@ -119,7 +125,20 @@ pub struct State {
     acted: ActiveLimits,
     /// What the guard found in the period before.
     found: Causes,
+    roll: Roll,
+    smooth: SmoothState,
     history: History,
+}
+
+/// What the estimator says of the roll angle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Roll {
+    /// The angle, right positive \[rad\].
+    pub angle_rad: f32,
+    /// By how much it may be wrong.
+    pub error: RollError,
+    /// Size of the specific force, if it is known \[m/s^2\].
+    pub force_m_s2: Option<f32>,
 }
 
 impl State {
@@ -146,6 +165,22 @@ impl State {
     /// The part of the torque that is permitted, 0 to 1.
     pub fn authority(&self) -> f32 {
         self.permit.authority()
+    }
+
+    /// By how much the sensors of the last period differ from what the others say.
+    pub fn residuals(&self) -> Residuals {
+        self.cross.residuals()
+    }
+
+    /// How much of what it should do by speed and steer angle the yaw rate does: 1 all, -1 the opposite; `None` while too
+    /// little happens.
+    pub fn yaw_slope(&self) -> Option<f32> {
+        self.cross.yaw_slope()
+    }
+
+    /// The roll angle of the last period as estimated, and how sure that is.
+    pub fn roll(&self) -> Roll {
+        self.roll
     }
 }
 
@@ -177,6 +212,8 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let believed =
         input::step(&config.input, &plan.input, &plan.calibration, &mut state.input, frame, last_nm);
     let motion = motion(plan, &mut state.estimate, &believed, elapsed_us);
+    let Motion { roll_rad, roll_error, force_m_s2, .. } = motion;
+    state.roll = Roll { angle_rad: roll_rad, error: roll_error, force_m_s2 };
     let ahead = predict::step(&config.predict, &motion);
     let crossed =
         cross::step(&config.cross, &plan.cross, &mut state.cross, &believed, motion.roll_sin_cos, last_nm);
@@ -187,13 +224,17 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let speed = speed(plan, &believed, &crossed);
     let now = match (believed.gyro_rad_s(), speed) {
         (Some(_), Some(speed)) => {
-            let newest = Aligned { roll_rate_rad_s: ahead.roll_rate_rad_s, speed };
+            let age_ticks = frame.gyro_rad_s.age_ticks;
+            let roll_rate_rad_s =
+                smooth::step(&plan.smooth, &mut state.smooth, ahead.roll_rate_rad_s, age_ticks);
+            let newest = Aligned { roll_rate_rad_s, speed };
             let now = state.history.align(&config.latency, newest);
             causes.note(Cause::Filling, now.is_none());
             now
         }
         _ => {
             state.history.clear();
+            state.smooth = SmoothState::default();
             None
         }
     };
@@ -207,7 +248,9 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
         causes,
         engage: frame.engage,
         polarity_checked: !plan.check_polarity || state.polarity.next == Move::Passed,
-        roll_rad: (plan.estimates && believed.gyro_rad_s().is_some()).then_some(motion.roll_rad),
+        roll_rad: (plan.estimates && believed.gyro_rad_s().is_some())
+            .then_some((motion.roll_rad, motion.roll_error)),
+        rates_rad_s: [motion.roll_rate_rad_s, motion.steer_rate_rad_s],
         speed_m_s: speed.map(|v| v.newest),
         force_m_s2: motion.force_m_s2,
     };
@@ -295,7 +338,7 @@ fn motion(plan: &Plan, state: &mut EstimateState, believed: &Believed, elapsed_u
         steer_rate_rad_s: felt.steer_rate_rad_s.unwrap_or(0.0),
         speed_m_s: felt.speed_m_s,
         roll_sin_cos: (0.0, 1.0),
-        roll_bound_rad: core::f32::consts::PI,
+        roll_error: RollError::UNKNOWN,
         force_m_s2: felt.accel_m_s2.map(estimate::size),
         ..Motion::default()
     }

@@ -8,6 +8,22 @@ use crate::fault::{Cause, Causes};
 use crate::input::Believed;
 use crate::maths::{at_least, at_most, per_root, sin_cos};
 use crate::param::{Leaf, Visit};
+use crate::response::STRETCH_S;
+use crate::slope::{Slope, SlopeConfig, SlopePlan, Stretch};
+
+/// The yaw rate against the one of speed and steer angle \[rad/s\]. What is slower than a second is left out: a steer
+/// sensor's zero, a bias of the gyro.
+const YAW: SlopeConfig = SlopeConfig { slow_s: 1.0, forget_s: 1.0, most: 5.0, enough: 0.003, lasting_s: 0.0 };
+/// Length of its stretches \[s\]: three of the motor's response.
+const YAW_STRETCH_S: f32 = 3.0 * STRETCH_S;
+/// At which control period of a stretch it ends: none of those in which a slope of `response` is told, so that no
+/// period has to do both.
+const YAW_END_TICK: u16 = 2;
+/// In which control period of a stretch it is looked whether sensors say the same, for the same reason another one.
+const SAME_TICK: u16 = 6;
+/// Below this slope the gyro or the steer sensor has the wrong sign. On recorded rides of two bicycles it stays above 0
+/// where both are right, also with a steer sensor whose scale is wrong by 1.6.
+pub const YAW_WRONG: f32 = -0.4;
 
 /// The tolerances. Each check is off by default.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,12 +37,22 @@ pub struct CrossConfig {
     pub wheels_m_s: Option<f32>,
     /// Largest difference of the yaw rate from the one that speed and steer angle make \[rad/s\].
     pub yaw_rad_s: Option<f32>,
+    /// A smaller one that must not last for [`CrossConfig::slow_ticks`]: gentle riding shows a wrong sensor by little.
+    pub yaw_slow_rad_s: Option<f32>,
+    /// Whether the sign of the yaw rate is judged by how it changes with the steer angle.
+    pub yaw_slope: bool,
     /// Largest difference of the turned steer angle from the summed steer rate \[rad\].
     pub steer_rad: Option<f32>,
     /// Largest difference of the drive's torque from what it was asked for in the last periods \[N m\].
     pub motor_nm: Option<f32>,
     /// How long a difference must last \[control periods\].
     pub persist_ticks: u16,
+    /// How long the small difference of the yaw rate must last \[control periods\].
+    pub slow_ticks: u16,
+    /// How often in a row, every 24 ms, gyro or accelerometer may be found to say the same on all three axes while the bicycle
+    /// rides and another sensor changes; 0 is any number. Noise makes every sample of three axes another one; a sensor that
+    /// filters its noise away below its quantum needs more.
+    pub same_checks: u16,
 }
 
 impl Default for CrossConfig {
@@ -37,9 +63,13 @@ impl Default for CrossConfig {
             tilt_rad: 0.32,
             wheels_m_s: None,
             yaw_rad_s: None,
+            yaw_slow_rad_s: None,
+            yaw_slope: false,
             steer_rad: None,
             motor_nm: None,
             persist_ticks: 0,
+            slow_ticks: 0,
+            same_checks: 0,
         }
     }
 }
@@ -52,9 +82,13 @@ impl CrossConfig {
         to.number(&Leaf::new(g, "tilt_rad", -0.5, 1.0), &mut self.tilt_rad);
         to.limit(&Leaf::new(g, "wheels_m_s", 0.01, 10.0), &mut self.wheels_m_s);
         to.limit(&Leaf::new(g, "yaw_rad_s", 0.01, 20.0), &mut self.yaw_rad_s);
+        to.limit(&Leaf::new(g, "yaw_slow_rad_s", 0.01, 20.0), &mut self.yaw_slow_rad_s);
+        to.switch(&Leaf::switch(g, "yaw_slope"), &mut self.yaw_slope);
         to.limit(&Leaf::new(g, "steer_rad", 0.001, 3.0), &mut self.steer_rad);
         to.limit(&Leaf::new(g, "motor_nm", 0.01, 50.0), &mut self.motor_nm);
         to.count(&Leaf::new(g, "persist_ticks", 0.0, 1000.0), &mut self.persist_ticks);
+        to.count(&Leaf::new(g, "slow_ticks", 0.0, 10_000.0), &mut self.slow_ticks);
+        to.count(&Leaf::new(g, "same_checks", 0.0, 1000.0), &mut self.same_checks);
     }
 }
 
@@ -67,21 +101,32 @@ pub struct CrossPlan {
     /// The tolerances, infinite where a check is off \[m/s, rad/s, rad, N m\].
     wheels_m_s: f32,
     yaw_rad_s: f32,
+    yaw_slow_rad_s: f32,
     steer_rad: f32,
     motor_nm: f32,
+    yaw_slope: bool,
+    /// Control periods of a stretch of the slope.
+    stretch_ticks: u16,
+    slope: SlopePlan,
 }
 
 impl CrossPlan {
     /// For `rate_hz` calls a second.
     pub fn new(config: &CrossConfig, rate_hz: f32) -> Self {
+        // At most 240 at the fastest rate there is.
+        let stretch_ticks = ((YAW_STRETCH_S * rate_hz) as u16).max(8);
         Self {
             period_s: 1.0 / rate_hz,
             per_wheelbase: 1.0 / config.wheelbase_m,
             tilt_sin_cos: sin_cos(config.tilt_rad),
             wheels_m_s: config.wheels_m_s.unwrap_or(f32::INFINITY),
             yaw_rad_s: config.yaw_rad_s.unwrap_or(f32::INFINITY),
+            yaw_slow_rad_s: config.yaw_slow_rad_s.unwrap_or(f32::INFINITY),
             steer_rad: config.steer_rad.unwrap_or(f32::INFINITY),
             motor_nm: config.motor_nm.unwrap_or(f32::INFINITY),
+            yaw_slope: config.yaw_slope,
+            stretch_ticks,
+            slope: SlopePlan::new(YAW, f32::from(stretch_ticks) / rate_hz),
         }
     }
 }
@@ -91,12 +136,150 @@ impl CrossPlan {
 pub struct CrossState {
     wheels: Lasting,
     yaw: Lasting,
+    yaw_slow: Lasting,
     steer: Lasting,
     motor: Lasting,
     /// Steer angle less the summed steer rate, drifting slowly to the present one \[rad\].
     offset_rad: Option<f32>,
     /// Least and largest torque asked for in the last periods \[N m\].
     asked_nm: (f32, f32),
+    /// The differences of this period.
+    residuals: Residuals,
+    /// Expected and seen yaw rate.
+    stretch: Stretch<2>,
+    stretch_tick: u16,
+    slope: Slope,
+    /// Whether the slope is that of a wrong sign.
+    reversed: bool,
+    /// Whether a difference of the yaw rate has lasted.
+    yaw_wrong: bool,
+    same: Same,
+}
+
+/// What gyro, accelerometer and the other sensors said at the last look, and how often each of the two has said the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Same {
+    gyro_rad_s: [f32; 3],
+    accel_m_s2: [f32; 3],
+    others: [f32; 3],
+    gyro_checks: u16,
+    accel_checks: u16,
+    stuck: Causes,
+}
+
+impl Same {
+    /// Another look: at gyro (w) and accelerometer (f), NaN where one is not believed, steer angle and speeds. Each is a
+    /// value of its own, which goes by register; an array would have to lie in memory in every control period.
+    #[inline(never)]
+    #[allow(clippy::too_many_arguments, reason = "in registers")]
+    fn look(
+        &mut self,
+        checks: u16,
+        wx: f32,
+        wy: f32,
+        wz: f32,
+        fx: f32,
+        fy: f32,
+        fz: f32,
+        steer_rad: f32,
+        front_m_s: f32,
+        rear_m_s: f32,
+    ) {
+        let (gyro_rad_s, accel_m_s2) = ([wx, wy, wz], [fx, fy, fz]);
+        let others = [steer_rad, front_m_s, rear_m_s];
+        let rides = front_m_s > STANDING_M_S || rear_m_s > STANDING_M_S;
+        let [gyro, accel] = [gyro_rad_s == self.gyro_rad_s, accel_m_s2 == self.accel_m_s2];
+        let changes = others != self.others;
+        let count = |same: bool, other: bool, before: u16| {
+            if rides && same && (changes || !other) { before.saturating_add(1) } else { 0 }
+        };
+        self.gyro_checks = count(gyro, accel, self.gyro_checks);
+        self.accel_checks = count(accel, gyro, self.accel_checks);
+        self.stuck = Causes::NONE;
+        self.stuck.note(Cause::GyroStuck, self.gyro_checks >= checks);
+        self.stuck.note(Cause::AccelStuck, self.accel_checks >= checks);
+        (self.gyro_rad_s, self.accel_m_s2, self.others) = (gyro_rad_s, accel_m_s2, others);
+    }
+}
+
+impl CrossState {
+    /// The differences of the last period.
+    pub fn residuals(&self) -> Residuals {
+        self.residuals
+    }
+
+    /// How much of what it should do the yaw rate does: 1 all, -1 the opposite; `None` while too little happens.
+    pub fn yaw_slope(&self) -> Option<f32> {
+        self.slope.told(&YAW)
+    }
+}
+
+impl CrossState {
+    /// The yaw rate against the one of speed and steer angle.
+    #[inline(always)]
+    fn compare_yaw(
+        &mut self,
+        config: &CrossConfig,
+        plan: &CrossPlan,
+        believed: &Believed,
+        [front, rear]: [Option<f32>; 2],
+        ground: Option<(f32, f32)>,
+        (sin_roll, cos_roll): (f32, f32),
+    ) {
+        // The front wheel moves sideways by its speed times the sine; without it the rear one must do.
+        let sideways = match (front, rear, ground) {
+            (Some(front), _, Some((sin, _))) => Some(front * sin),
+            (None, Some(rear), Some((sin, cos))) if cos > 0.2 => Some(rear * sin / cos),
+            _ => None,
+        };
+        // A bicycle led or turned by hand need not roll where its front wheel points.
+        let rides = rear.or(front).is_some_and(|speed| speed > RIDING_M_S);
+        let (mut yaw, mut riding) = (f32::NAN, f32::NAN);
+        if let (Some(sideways), Some([_, y, z])) = (sideways, believed.gyro_rad_s()) {
+            let (seen, expected) = (y * sin_roll + z * cos_roll, sideways * plan.per_wheelbase);
+            yaw = seen - expected;
+            if rides {
+                riding = yaw;
+                self.stretch.add([expected, seen]);
+            }
+        }
+        if plan.yaw_slope && riding.is_nan() {
+            (self.stretch, self.slope) = Default::default();
+            self.reversed = false;
+        }
+        self.residuals.yaw_rad_s = yaw;
+        self.yaw_wrong = self.yaw.beyond(plan.yaw_rad_s, yaw, config.persist_ticks, 2)
+            | self.yaw_slow.beyond(plan.yaw_slow_rad_s, riding, config.slow_ticks, 2);
+    }
+
+    /// The end of a stretch: the slope is judged anew.
+    fn end_stretch(&mut self, plan: &CrossPlan) {
+        if let Some(([expected, seen], [expected_before, seen_before])) = self.stretch.end() {
+            let slope = self.slope.step(&plan.slope, expected - expected_before, seen - seen_before);
+            self.reversed = slope.is_some_and(|slope| slope < YAW_WRONG);
+        }
+    }
+}
+
+/// By how much sensors differ from what the others say; NaN where there is nothing to compare.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residuals {
+    /// Of the wheels, [`CrossConfig::wheels_m_s`].
+    pub wheels_m_s: f32,
+    /// Of the yaw rate, [`CrossConfig::yaw_rad_s`].
+    pub yaw_rad_s: f32,
+    /// Of the steer angle, [`CrossConfig::steer_rad`].
+    pub steer_rad: f32,
+    /// Of the drive's torque, [`CrossConfig::motor_nm`].
+    pub motor_nm: f32,
+}
+
+impl Default for Residuals {
+    /// Nothing was compared yet.
+    fn default() -> Self {
+        let none = f32::NAN;
+        Self { wheels_m_s: none, yaw_rad_s: none, steer_rad: none, motor_nm: none }
+    }
 }
 
 /// Counts how long something lasts.
@@ -104,18 +287,15 @@ pub struct CrossState {
 struct Lasting(u16);
 
 impl Lasting {
-    /// Whether a `difference` beyond the `limit` has lasted longer than allowed. What can't be
-    /// compared breaks off the count.
-    fn beyond(&mut self, limit: f32, difference: Option<f32>, persist_ticks: u16) -> bool {
-        match difference {
-            Some(difference) if difference.abs() > limit => {
-                self.0 = self.0.saturating_add(1);
-                self.0 > persist_ticks
-            }
-            _ => {
-                self.0 = 0;
-                false
-            }
+    /// Whether a `difference` beyond the `limit`, looked at every so many `ticks`, has lasted longer than allowed. NaN, what can't be
+    /// compared, breaks off the count.
+    fn beyond(&mut self, limit: f32, difference: f32, persist_ticks: u16, ticks: u16) -> bool {
+        if difference.abs() > limit {
+            self.0 = self.0.saturating_add(ticks);
+            self.0 > persist_ticks
+        } else {
+            self.0 = 0;
+            false
         }
     }
 }
@@ -129,6 +309,10 @@ pub struct Crossed {
     pub ground: Option<(f32, f32)>,
 }
 
+/// Speed above which no sensor of the frame's motion stands still \[m/s\].
+const STANDING_M_S: f32 = 0.5;
+/// Speed above which a bicycle is ridden, and neither led nor turned by hand \[m/s\].
+const RIDING_M_S: f32 = 1.0;
 /// How quickly the sums forget: the part of the difference that one period takes away.
 const FORGET: f32 = 1.0 / 256.0;
 
@@ -142,58 +326,60 @@ pub fn step(
     roll_sin_cos: (f32, f32),
     torque_nm: f32,
 ) -> Crossed {
-    let mut causes = Causes::NONE;
     let persist = config.persist_ticks;
+    state.stretch_tick = if state.stretch_tick < plan.stretch_ticks { state.stretch_tick + 1 } else { 1 };
     let front = believed.front_wheel_m_s().map(|v| v.newest);
     let rear = believed.rear_wheel_m_s().map(|v| v.newest);
+    if state.stretch_tick == SAME_TICK && config.same_checks > 0 {
+        // Where nothing is known nothing is the same.
+        let unknown = [f32::NAN; 3];
+        let [wx, wy, wz] = believed.gyro_rad_s().unwrap_or(unknown);
+        let [fx, fy, fz] = believed.accel_m_s2().unwrap_or(unknown);
+        let steer_rad = believed.steer_rad().unwrap_or(0.0);
+        let [front_m_s, rear_m_s] = [front, rear].map(|speed| speed.unwrap_or(0.0));
+        state.same.look(config.same_checks, wx, wy, wz, fx, fy, fz, steer_rad, front_m_s, rear_m_s);
+    }
+    let mut causes = state.same.stuck;
     let ground = believed.steer_rad().map(|steer| on_the_ground(plan, roll_sin_cos, steer));
 
     let wheels = match (front, rear, ground) {
-        (Some(front), Some(rear), Some((_, cos))) => Some(front * cos - rear),
-        _ => None,
+        (Some(front), Some(rear), Some((_, cos))) => front * cos - rear,
+        _ => f32::NAN,
     };
-    causes.note(Cause::WheelsDisagree, state.wheels.beyond(plan.wheels_m_s, wheels, persist));
+    causes.note(Cause::WheelsDisagree, state.wheels.beyond(plan.wheels_m_s, wheels, persist, 1));
 
-    // The front wheel moves sideways by its speed times the sine; without it the rear one must do.
-    let sideways = match (front, rear, ground) {
-        (Some(front), _, Some((sin, _))) => Some(front * sin),
-        (None, Some(rear), Some((sin, cos))) if cos > 0.2 => Some(rear * sin / cos),
-        _ => None,
-    };
-    let yaw = match (sideways, believed.gyro_rad_s()) {
-        (Some(sideways), Some([_, y, z])) => {
-            let (sin, cos) = roll_sin_cos;
-            Some(y * sin + z * cos - sideways * plan.per_wheelbase)
-        }
-        _ => None,
-    };
-    causes.note(Cause::YawDisagrees, state.yaw.beyond(plan.yaw_rad_s, yaw, persist));
+    // Every other period will do for the yaw rate; the ends of the stretches are in those between.
+    if state.stretch_tick % 2 == 1 {
+        state.compare_yaw(config, plan, believed, [front, rear], ground, roll_sin_cos);
+    } else if plan.yaw_slope && state.stretch_tick == YAW_END_TICK {
+        state.end_stretch(plan);
+    }
+    causes.note(Cause::YawDisagrees, state.yaw_wrong | state.reversed);
 
     let steer = match (believed.steer_rad(), believed.steer_rate_rad_s()) {
         (Some(angle), Some(rate)) => {
             let expected = state.offset_rad.unwrap_or(angle) + rate * plan.period_s;
             let difference = angle - expected;
             state.offset_rad = Some(expected + FORGET * difference);
-            Some(difference)
+            difference
         }
         _ => {
             state.offset_rad = None;
-            None
+            f32::NAN
         }
     };
-    causes.note(Cause::SteerDisagrees, state.steer.beyond(plan.steer_rad, steer, persist));
+    causes.note(Cause::SteerDisagrees, state.steer.beyond(plan.steer_rad, steer, persist, 1));
 
     let (low, high) = state.asked_nm;
-    let motor = believed.motor_torque_nm().map(|given| {
-        if given > high {
-            given - high
-        } else if given < low {
-            given - low
-        } else {
-            0.0
-        }
-    });
-    causes.note(Cause::MotorDisagrees, state.motor.beyond(plan.motor_nm, motor, persist));
+    let motor = match believed.motor_torque_nm() {
+        Some(given) if given > high => given - high,
+        Some(given) if given < low => given - low,
+        Some(_) => 0.0,
+        None => f32::NAN,
+    };
+    causes.note(Cause::MotorDisagrees, state.motor.beyond(plan.motor_nm, motor, persist, 1));
+    let residuals = &mut state.residuals;
+    (residuals.wheels_m_s, residuals.steer_rad, residuals.motor_nm) = (wheels, steer, motor);
     let closer = |bound: f32| bound + 4.0 * FORGET * (torque_nm - bound);
     state.asked_nm = (at_most(torque_nm, closer(low)), at_least(torque_nm, closer(high)));
     Crossed { causes, ground }

@@ -23,8 +23,10 @@ const OBSERVED_S: f32 = 0.1;
 /// Speed below which the bicycle stands \[m/s\], and above which it balances by riding.
 const STANDING_M_S: f32 = 0.05;
 const BALANCING_M_S: f32 = 1.5;
-/// How long it must stand and be still before the gyros show their bias \[s\].
-const STILL_S: f32 = 0.5;
+/// How long it must stand and be still before the gyros show their bias \[s\], and how far their smoothed rates may
+/// wander in that time \[rad/s\]: on a bicycle held by hand they sway by more, one that leans on something by less.
+const STILL_S: f32 = 1.0;
+const STILL_RAD_S: f32 = 0.003;
 /// A gap after which the past is worth nothing \[us\].
 const GAP_US: u32 = 100_000;
 /// Angle beyond which the fit of the pitch is not trusted \[rad\].
@@ -68,12 +70,37 @@ pub struct Motion {
     pub speed_m_s: f32,
     /// Roll acceleration, [`EstimateConfig::accel_lag_s`] late \[rad/s^2\].
     pub roll_accel_rad_s2: f32,
-    /// The roll angle is wrong by no more than this; pi when nothing is known \[rad\].
-    pub roll_bound_rad: f32,
+    /// By how much the roll angle may be wrong.
+    pub roll_error: RollError,
     /// Biases of the gyros, as far as known \[rad/s\].
     pub gyro_bias_rad_s: [f32; 3],
     /// Size of the specific force \[m/s^2\], if it is felt.
     pub force_m_s2: Option<f32>,
+}
+
+/// By how much the roll angle may be wrong, in parts from which [`RollError::bound_rad`] is worked out where it is needed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RollError {
+    /// Three standard deviations of what averages out, squared \[rad^2\].
+    pub square_rad2: f32,
+    /// What does not average out \[rad\].
+    pub systematic_rad: f32,
+}
+
+impl RollError {
+    /// Nothing is known.
+    pub const UNKNOWN: Self = Self { square_rad2: 0.0, systematic_rad: core::f32::consts::PI };
+
+    /// The roll angle is wrong by no more than this; pi when nothing is known \[rad\].
+    pub fn bound_rad(&self) -> f32 {
+        bounded(root(self.square_rad2) + self.systematic_rad, core::f32::consts::PI)
+    }
+
+    /// Whether the bound is larger than this \[rad\].
+    pub fn is_beyond(&self, limit_rad: f32) -> bool {
+        let left = limit_rad - self.systematic_rad;
+        left < 0.0 || self.square_rad2 > left * left
+    }
 }
 
 /// What the estimator remembers.
@@ -81,9 +108,9 @@ pub struct Motion {
 pub struct EstimateState {
     /// `None` before the first step and after a gap.
     running: Option<Running>,
-    /// Biases about y and z \[rad/s\], and their variance. They show only while standing still.
+    /// Biases about y and z \[rad/s\], and their standard deviation. They show only while standing still.
     bias: [f32; 2],
-    bias_variance: Option<f32>,
+    bias_deviation: Option<f32>,
     steer: Steer,
 }
 
@@ -97,6 +124,26 @@ struct Running {
     /// Roll rate, smoothed for the roll acceleration \[rad/s\].
     roll_rate: f32,
     still_s: f32,
+    /// At rest the rates as told, smoothed, now and when it became still \[rad/s\].
+    resting: [f32; 3],
+    still_at: [f32; 3],
+}
+
+impl Running {
+    /// Time goes on at rest: it counts while the rates neither are larger than a bias nor wander.
+    fn stand(&mut self, (x, y, z): (f32, f32, f32), dt: f32, bias_max: f32) {
+        let keep = dt / (OBSERVED_S + dt);
+        let mut still = true;
+        for ((rate, smooth), at) in [x, y, z].iter().zip(&mut self.resting).zip(&self.still_at) {
+            *smooth += keep * (rate - *smooth);
+            still &= rate.abs() <= bias_max && (*smooth - at).abs() <= STILL_RAD_S;
+        }
+        if still {
+            self.still_s += dt;
+        } else {
+            (self.still_s, self.still_at) = (0.0, self.resting);
+        }
+    }
 }
 
 /// One control period.
@@ -113,8 +160,8 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
         state.steer.step(c.steer_lag_s, dt, felt.steer_rad, felt.steer_rate_rad_s);
     let speed = bounded(felt.speed_m_s, MOST.2);
     let told = felt.gyro_rad_s.map(|w| bounded(w, MOST.0));
-    let at_first = c.bias_max_rad_s * c.bias_max_rad_s / 9.0;
-    let mut bias_variance = state.bias_variance.unwrap_or(at_first);
+    let at_first = c.bias_max_rad_s / 3.0;
+    let mut bias_deviation = state.bias_deviation.unwrap_or(at_first);
 
     let [by, bz] = state.bias;
     let [wy, wz] = [told[1] - by, told[2] - bz];
@@ -124,23 +171,33 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
         smooth: [told[0], wz],
         roll_rate: told[0],
         still_s: 0.0,
+        resting: [0.0; 3],
+        still_at: [0.0; 3],
     });
     let wx = told[0] - run.roll.bias_rad_s;
     let pitch_rad = pitch(&c.pitch, run.roll.angle_rad, steer_rad);
     let (sin_pitch, cos_pitch) = sin_cos(pitch_rad);
     let roll_rate = wx * cos_pitch + wz * sin_pitch;
     run.roll.turn(roll_rate, dt, (c.gyro_walk_rad, c.bias_walk_rad_s), c.bias_max_rad_s);
-    bias_variance = at_most(at_first, bias_variance + dt * c.bias_walk_rad_s * c.bias_walk_rad_s);
+    // The square grows by that of the walk; to first order, which is more.
+    let walk = c.bias_walk_rad_s * c.bias_walk_rad_s;
+    bias_deviation = at_most(at_first, bias_deviation + 0.5 * dt * walk / at_least(1e-5, bias_deviation));
 
     // At rest the gyros show nothing but their bias.
-    let still = speed.abs() <= STANDING_M_S && told.iter().all(|w| w.abs() <= c.bias_max_rad_s);
-    run.still_s = if still { run.still_s + dt } else { 0.0 };
+    if speed.abs() > STANDING_M_S {
+        run.still_s = 0.0;
+    } else {
+        cold_path();
+        let [x, y, z] = told;
+        run.stand((x, y, z), dt, c.bias_max_rad_s);
+    }
     if run.still_s > STILL_S {
         run.still_s = 2.0 * STILL_S;
         let seen = c.gyro_walk_rad * c.gyro_walk_rad / at_least(1e-6, dt);
         let _ = run.roll.observe_bias(wx, seen, c.bias_max_rad_s);
-        let gain = bias_variance / (bias_variance + seen);
-        bias_variance -= gain * bias_variance;
+        let variance = bias_deviation * bias_deviation;
+        let gain = variance / (variance + seen);
+        bias_deviation = root(variance - gain * variance);
         state.bias = [by + gain * wy, bz + gain * wz].map(|b| bounded(b, c.bias_max_rad_s));
     }
 
@@ -171,10 +228,10 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
 
     run.roll_rate += dt / (c.accel_lag_s + dt) * (roll_rate - run.roll_rate);
     let roll_accel_rad_s2 = (roll_rate - run.roll_rate) / c.accel_lag_s;
-    let yaw_error = 3.0 * libm::sqrtf(bias_variance) + c.speed_error * yaw_rate.abs();
+    let yaw_error = 3.0 * bias_deviation + c.speed_error * yaw_rate.abs();
     let systematic = error + speed.abs() * yaw_error / G;
-    let bound = libm::sqrtf(run.roll.spread()) + systematic;
-    state.bias_variance = Some(bias_variance);
+    let roll_error = RollError { square_rad2: run.roll.spread(), systematic_rad: systematic };
+    state.bias_deviation = Some(bias_deviation);
     let gyro_x = felt.gyro_rad_s[0];
     Motion {
         roll_rad: run.roll.angle_rad,
@@ -189,7 +246,7 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
         steer_rate_rad_s,
         speed_m_s: speed,
         roll_accel_rad_s2,
-        roll_bound_rad: bounded(bound, core::f32::consts::PI),
+        roll_error,
         gyro_bias_rad_s: [run.roll.bias_rad_s, state.bias[0], state.bias[1]],
         force_m_s2,
     }
@@ -197,7 +254,11 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, felt: &Felt) -> 
 
 /// Length of a vector.
 pub(crate) fn size([x, y, z]: [f32; 3]) -> f32 {
-    let square = x * x + y * y + z * z;
+    root(x * x + y * y + z * z)
+}
+
+/// Square root of a number that is known to be neither negative nor infinite nor NaN.
+fn root(square: f32) -> f32 {
     square * per_root(square)
 }
 

@@ -122,11 +122,15 @@ pub enum Cause {
     PathLost = 56,
     /// The polarity check found a wrong sign.
     PolarityWrong = 57,
+    /// The roll angle is not known well enough to tell whether the bicycle has fallen.
+    RollUnknown = 58,
+    /// The bicycle tumbles: forces and rates together are those of no ride.
+    Crash = 59,
 }
 
 /// Every cause, in the order of the codes.
 #[rustfmt::skip]
-pub const CAUSES: [Cause; 57] = {
+pub const CAUSES: [Cause; 59] = {
     use Cause::*;
     [
         GyroLost, GyroRange, GyroJump, GyroStuck, AccelLost, AccelRange, AccelJump, AccelStuck,
@@ -136,7 +140,7 @@ pub const CAUSES: [Cause; 57] = {
         MotorJump, MotorStuck, WheelsDisagree, GyroDisagrees, SteerDisagrees, MotorDisagrees, WrongResponse, YawDisagrees,
         GuardNotFinite, GuardPermission, GuardTorque, GuardRate, GuardWindow, GuardOverride, GuardEndStop,
         PolarityUnchecked, Filling, Fallen, Lifted, Backwards, Parked, SwitchHeld, SwitchOff, SelfTest, Timing, PathLost,
-        PolarityWrong,
+        PolarityWrong, RollUnknown, Crash,
     ]
 };
 

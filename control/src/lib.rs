@@ -16,7 +16,7 @@
 //! bicycle's axes) -> [`input`] (may it be believed; [`watch`] is one sensor) -> [`estimate`] (the motion)
 //! -> [`cross`] (do the sensors fit each other) -> [`response`] (do gyro and motor act with the right sign;
 //! by a [`slope`]) -> [`polarity`] (the check before the first ride) -> [`permit`] (may torque flow, and why not) ->
-//! [`predict`] (as it will be when the torque acts) -> [`history`] (sensors of different latency brought
+//! [`predict`] (as it will be when the torque acts) -> [`smooth`] (without steps and vibration) -> [`history`] (sensors of different latency brought
 //! to one instant) -> [`law`] (the wanted torque; [`table`] for one of a user's own, [`capsize`] and
 //! [`track`] for what may be added to it) -> [`shape`] (inside the
 //! [`limits`]) -> [`guard`] (judges it by them). [`controller`] puts them together, [`config`] holds what
@@ -48,6 +48,7 @@ pub mod real;
 pub mod response;
 pub mod shape;
 pub mod slope;
+pub mod smooth;
 pub mod table;
 pub mod track;
 pub mod watch;

@@ -3,6 +3,7 @@
 //! Permission is off at boot, given only on a fresh press of the rider's switch, and taken away by
 //! any listed cause. A press that is refused is used up. All causes present are told at once.
 
+use crate::estimate::RollError;
 use crate::fault::{Cause, Causes};
 use crate::input::InputConfig;
 use crate::param::{Leaf, Visit};
@@ -61,8 +62,12 @@ pub struct PermitConfig {
     pub ramp_out_ticks: u16,
     /// Refuse to engage until a polarity check was passed.
     pub need_polarity: bool,
-    /// Roll angle, either way, beyond which the bicycle has fallen \[rad\].
+    /// Roll angle, either way, beyond which the bicycle has fallen, as far as the angle is sure \[rad\].
     pub fallen_rad: Option<f32>,
+    /// Bound of the roll angle beyond which nobody can say whether the bicycle has fallen \[rad\]; only told.
+    pub roll_unknown_rad: Option<f32>,
+    /// Specific force beyond which, together with a fast roll or steer rate, the bicycle tumbles \[m/s^2\].
+    pub crash_m_s2: Option<f32>,
     /// Speed below which the bicycle is parked \[m/s\]; torque pauses.
     pub parked_m_s: Option<f32>,
     /// Speed backwards beyond which torque pauses \[m/s\].
@@ -82,12 +87,19 @@ impl PermitConfig {
         to.count(&Leaf::new(g, "ramp_out_ticks", 0.0, 20_000.0), &mut self.ramp_out_ticks);
         to.switch(&Leaf::switch(g, "need_polarity"), &mut self.need_polarity);
         to.limit(&Leaf::new(g, "fallen_rad", 0.3, 3.2), &mut self.fallen_rad);
+        to.limit(&Leaf::new(g, "roll_unknown_rad", 0.05, 3.2), &mut self.roll_unknown_rad);
+        to.limit(&Leaf::new(g, "crash_m_s2", 20.0, 1000.0), &mut self.crash_m_s2);
         to.limit(&Leaf::new(g, "parked_m_s", 0.01, 3.0), &mut self.parked_m_s);
         to.limit(&Leaf::new(g, "backwards_m_s", 0.01, 3.0), &mut self.backwards_m_s);
         to.limit(&Leaf::new(g, "lifted_m_s2", 0.1, 9.0), &mut self.lifted_m_s2);
         to.count(&Leaf::new(g, "persist_ticks", 0.0, 1000.0), &mut self.persist_ticks);
     }
 }
+
+/// For how long after the force of a crash its rate may come \[s\].
+const CRASH_S: f32 = 0.1;
+/// Roll rate and steer rate of a tumble \[rad/s\]: beyond those of calm riding; hard riding has them without the force.
+const CRASH_RAD_S: [f32; 2] = [2.0, 8.0];
 
 /// What each cause does, from the sensors' declarations and for the rest once and for all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -108,6 +120,10 @@ pub struct Reactions {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PermitPlan {
     fallen_rad: f32,
+    roll_unknown_rad: f32,
+    crash_m_s2: f32,
+    /// How long after it a force counts \[control periods\].
+    crash_ticks: u16,
     parked_m_s: f32,
     backwards_m_s: f32,
     lifted_m_s2: f32,
@@ -115,9 +131,12 @@ pub struct PermitPlan {
 
 impl PermitPlan {
     /// Of checked conditions.
-    pub fn new(config: &PermitConfig) -> Self {
+    pub fn new(config: &PermitConfig, rate_hz: f32) -> Self {
         Self {
             fallen_rad: config.fallen_rad.unwrap_or(f32::INFINITY),
+            roll_unknown_rad: config.roll_unknown_rad.unwrap_or(f32::INFINITY),
+            crash_m_s2: config.crash_m_s2.unwrap_or(f32::INFINITY),
+            crash_ticks: (CRASH_S * rate_hz) as u16,
             parked_m_s: config.parked_m_s.unwrap_or(0.0),
             backwards_m_s: config.backwards_m_s.unwrap_or(f32::INFINITY),
             lifted_m_s2: config.lifted_m_s2.unwrap_or(0.0),
@@ -143,6 +162,7 @@ impl Reactions {
             GuardOverride,
             GuardEndStop,
             Timing,
+            Crash,
         ]);
         let limp = Causes::all(&[WheelsDisagree, SteerDisagrees]);
         Self {
@@ -174,6 +194,8 @@ pub struct PermitState {
     /// Disagreements since the rider asked.
     lasting: Causes,
     position: Persistent,
+    /// For how long the last force of a crash still counts \[control periods\].
+    struck_ticks: u16,
 }
 
 /// The permission of one control period.
@@ -196,8 +218,10 @@ pub struct Asked {
     pub engage: bool,
     /// A polarity check was passed.
     pub polarity_checked: bool,
-    /// Roll angle \[rad\], if known.
-    pub roll_rad: Option<f32>,
+    /// Roll angle \[rad\] and by how much it may be wrong, if it is estimated.
+    pub roll_rad: Option<(f32, RollError)>,
+    /// Roll rate, and steer rate as far as known \[rad/s\].
+    pub rates_rad_s: [f32; 2],
     /// Forward speed \[m/s\], if known.
     pub speed_m_s: Option<f32>,
     /// Size of the specific force \[m/s^2\], if known.
@@ -268,19 +292,42 @@ impl PermitState {
     /// Everything that stands in the way now.
     fn causes(&mut self, config: &PermitConfig, plan: &PermitPlan, asked: &Asked) -> Causes {
         let mut now = Causes::NONE;
-        now.note(Cause::Fallen, asked.roll_rad.is_some_and(|roll| roll.abs() > plan.fallen_rad));
-        now.note(Cause::Lifted, asked.force_m_s2.is_some_and(|force| force < plan.lifted_m_s2));
+        let mut told = Causes::NONE;
+        if let Some((roll, error)) = asked.roll_rad {
+            // The bound only where it matters.
+            let lies = roll.abs() > plan.fallen_rad && roll.abs() - error.bound_rad() > plan.fallen_rad;
+            now.note(Cause::Fallen, lies);
+            told.note(Cause::RollUnknown, error.is_beyond(plan.roll_unknown_rad));
+        }
+        if let Some(force) = asked.force_m_s2 {
+            now.note(Cause::Lifted, force < plan.lifted_m_s2);
+            told.note(Cause::Crash, self.crashes(plan, force, asked.rates_rad_s));
+        }
         if let Some(speed) = asked.speed_m_s {
             now.note(Cause::Backwards, -speed > plan.backwards_m_s);
             now.note(Cause::Parked, speed.abs() < plan.parked_m_s);
         }
-        let mut causes = asked.causes.with(self.position.step(now, config.persist_ticks));
+        let mut causes = asked.causes.with(told).with(self.position.step(now, config.persist_ticks));
         causes.note(Cause::PolarityUnchecked, config.need_polarity && !asked.polarity_checked);
         causes.note(Cause::SwitchOff, !asked.engage);
         causes.note(Cause::SwitchHeld, asked.engage && !self.released && !self.mode.drives());
         let testing = matches!(self.mode, Mode::Off | Mode::Initialise | Mode::SelfTest);
         causes.note(Cause::SelfTest, testing);
         causes
+    }
+
+    /// Whether a force of no ride came, and with it or within a tenth of a second after it a rate of no calm one.
+    fn crashes(&mut self, plan: &PermitPlan, force_m_s2: f32, [roll, steer]: [f32; 2]) -> bool {
+        if force_m_s2 > plan.crash_m_s2 {
+            self.struck_ticks = plan.crash_ticks;
+        }
+        // As nearly always.
+        if self.struck_ticks == 0 {
+            return false;
+        }
+        cold_path();
+        self.struck_ticks -= 1;
+        roll.abs() > CRASH_RAD_S[0] || steer.abs() > CRASH_RAD_S[1]
     }
 
     /// The mode that follows.

@@ -16,22 +16,24 @@ use crate::fault::{Cause, Causes};
 use crate::input::Believed;
 use crate::param::{Leaf, Visit, optional};
 use crate::slope::{Slope, SlopeConfig, SlopePlan, Stretch};
+use core::hint::cold_path;
 
 /// Length of the motor's stretches \[s\].
-const STRETCH_S: f32 = 0.008;
+pub(crate) const STRETCH_S: f32 = 0.008;
 /// How many of them the gyro's are long: what a noisy gyro, sampled at 100 Hz, shows as acceleration is then small.
 const GYRO_STRETCHES: u16 = 6;
 
 /// The sideways force \[m/s^2\].
-const GYRO: SlopeConfig = SlopeConfig { slow_s: 0.3, forget_s: 0.4, most: 20.0, enough: 0.2 };
+const GYRO: SlopeConfig = SlopeConfig { slow_s: 0.3, forget_s: 0.4, most: 20.0, enough: 0.2, lasting_s: 0.0 };
 /// Below this slope the gyro is wrong. A reversed x axis gives about -1, a reversed z axis less; a blow
 /// that turns the frame at once, which no force at rest shows, up to -0.2 for a moment.
-const GYRO_WRONG: f32 = -0.4;
+pub const GYRO_WRONG: f32 = -0.4;
 
 /// The steer acceleration \[rad/s^2\].
-const MOTOR: SlopeConfig = SlopeConfig { slow_s: 0.05, forget_s: 0.2, most: 60.0, enough: 5.0 };
+const MOTOR: SlopeConfig =
+    SlopeConfig { slow_s: 0.05, forget_s: 0.2, most: 60.0, enough: 5.0, lasting_s: 0.15 };
 /// Below this slope the motor is wrong.
-const MOTOR_WRONG: f32 = -0.2;
+pub const MOTOR_WRONG: f32 = -0.2;
 
 /// What is judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -136,9 +138,13 @@ pub struct ResponseState {
     gyro_slope: Slope,
     /// What was expected and seen at the stretch before.
     gyro_before: Option<[f32; 2]>,
+    /// Whether the slope at the end of the last stretch was that of a wrong sign.
+    gyro_reversed: bool,
     motor: Stretch<6>,
     motor_slope: Slope,
     motor_before: Option<[f32; 2]>,
+    /// See `gyro_reversed`.
+    motor_reversed: bool,
 }
 
 impl ResponseState {
@@ -162,18 +168,26 @@ pub fn step(
     // Each at its own tick, so that no control period has to do both.
     let gyro_end = state.gyro_tick == plan.motor_ticks / 2;
     let motor_end = state.motor_tick == plan.motor_ticks;
+    // Every other period will do for the means, and none in which a stretch ends.
+    let adds = state.motor_tick % 2 == 1;
     let speed = believed.rear_wheel_m_s().or(believed.front_wheel_m_s());
     let mut causes = Causes::NONE;
 
     match (believed.gyro_rad_s(), believed.accel_m_s2(), speed) {
         (Some([wx, wy, wz]), Some([_, force, _]), Some(speed)) if plan.config.gyro => {
-            state.gyro.add([wx, wy, wz, force, speed.newest]);
+            if adds {
+                state.gyro.add([wx, wy, wz, force, speed.newest]);
+            }
             if gyro_end {
-                let slope = state.sideways(plan);
-                causes.note(Cause::GyroDisagrees, slope.is_some_and(|s| s < GYRO_WRONG));
+                state.gyro_reversed = state.sideways(plan).is_some_and(|s| s < GYRO_WRONG);
             }
         }
-        _ => (state.gyro, state.gyro_before, state.gyro_slope) = Default::default(),
+        _ if plan.config.gyro => {
+            cold_path();
+            (state.gyro, state.gyro_before) = Default::default();
+            (state.gyro_slope, state.gyro_reversed) = Default::default();
+        }
+        _ => {}
     }
     match (
         &plan.config.motor,
@@ -184,14 +198,22 @@ pub fn step(
     ) {
         (Some(model), Some(steer), Some(rate), Some(_), Some(speed)) => {
             let Motion { roll_rad, roll_rate_rad_s, .. } = *motion;
-            state.motor.add([roll_rad, roll_rate_rad_s, steer, rate, speed.newest, torque_nm]);
+            if adds {
+                state.motor.add([roll_rad, roll_rate_rad_s, steer, rate, speed.newest, torque_nm]);
+            }
             if motor_end {
-                let slope = state.turning(model, &plan.motor);
-                causes.note(Cause::WrongResponse, slope.is_some_and(|s| s < MOTOR_WRONG));
+                state.motor_reversed = state.turning(model, &plan.motor).is_some_and(|s| s < MOTOR_WRONG);
             }
         }
-        _ => (state.motor, state.motor_before, state.motor_slope) = Default::default(),
+        (Some(_), ..) => {
+            cold_path();
+            (state.motor, state.motor_before) = Default::default();
+            (state.motor_slope, state.motor_reversed) = Default::default();
+        }
+        (None, ..) => {}
     }
+    causes.note(Cause::GyroDisagrees, state.gyro_reversed);
+    causes.note(Cause::WrongResponse, state.motor_reversed);
     causes
 }
 

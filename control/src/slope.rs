@@ -18,6 +18,8 @@ pub struct SlopeConfig {
     /// What the square of what is expected, summed over time, must reach before a slope is told, in its unit
     /// squared, times s.
     pub enough: f32,
+    /// For how long it must have been enough \[s\]: the first moments of an excitation are told by few steps.
+    pub lasting_s: f32,
 }
 
 /// What follows from it for steps of one length.
@@ -46,6 +48,8 @@ pub struct Slope {
     seen: f32,
     square: f32,
     product: f32,
+    /// For how long enough has happened \[s\].
+    lasted_s: f32,
 }
 
 impl Slope {
@@ -57,12 +61,13 @@ impl Slope {
         let y = bounded(self.seen, config.most);
         self.square = forget * (self.square + dt_s * self.expected * self.expected);
         self.product = forget * (self.product + dt_s * self.expected * y);
+        self.lasted_s = if self.square > config.enough { self.lasted_s + dt_s } else { 0.0 };
         self.told(&config)
     }
 
     /// The slope, if enough has happened.
     pub fn told(&self, config: &SlopeConfig) -> Option<f32> {
-        (self.square > config.enough).then(|| self.product / self.square)
+        (self.lasted_s > config.lasting_s).then(|| self.product / self.square)
     }
 }
 
@@ -90,8 +95,13 @@ impl<const N: usize> Stretch<N> {
         self.periods = self.periods.saturating_add(1);
     }
 
-    /// Ends the stretch: its means, and those of the one before.
+    /// Ends the stretch: its means, and those of the one before. One without any values has none, and none is before
+    /// the next.
     pub fn end(&mut self) -> Option<([f32; N], [f32; N])> {
+        if self.periods == 0 {
+            *self = Self::default();
+            return None;
+        }
         let share = 1.0 / f32::from(self.periods);
         let means = self.sums.map(|sum| share * sum);
         let before = self.before.replace(means);

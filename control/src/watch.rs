@@ -127,8 +127,8 @@ impl Codes {
 pub struct Watch<const N: usize> {
     /// The last good sample.
     value: [f32; N],
-    /// Change up to which the next one is believed, any at first. It grows with each control period without any sample; those that
-    /// were refused give a jump no more time.
+    /// Change up to which the next one is believed, any at first. It grows with each control period without a new sample; from
+    /// a refused one on it does not, until a sample is good again: a jump that stays gets no more time by being repeated.
     most: f32,
     /// The same while the short way will do, the sensor being believed and its newest sample there and good; -1 otherwise.
     near: f32,
@@ -228,7 +228,7 @@ impl<const N: usize> Watch<N> {
         let older = self.age.saturating_add(1);
         // The last good one still.
         if age == older && age <= sensor.timeout_ticks && self.near >= 0.0 {
-            self.hold(reach, age, moves);
+            self.hold(reach.growth, age, moves);
             self.told_age = age;
             self.near = if moves && stuck(sensor, self.still) { -1.0 } else { self.most };
             return;
@@ -237,7 +237,7 @@ impl<const N: usize> Watch<N> {
             self.age = older;
             self.take(sensor, reach, codes, value, age, moves);
         } else {
-            self.hold(reach, older, moves);
+            self.hold(if self.doubt.is_none() { reach.growth } else { 0.0 }, older, moves);
         }
         self.told_age = age;
         if self.age > sensor.timeout_ticks {
@@ -255,12 +255,12 @@ impl<const N: usize> Watch<N> {
         }
     }
 
-    /// No new sample: the last one is of this age now.
+    /// No new sample: the last one is of this age now, and the next may be further from it by `growth`.
     #[inline(always)]
-    fn hold(&mut self, reach: &Reach, age: u16, moves: bool) {
+    fn hold(&mut self, growth: f32, age: u16, moves: bool) {
         self.age = age;
         self.still = self.still.saturating_add(u16::from(moves));
-        self.most += reach.growth;
+        self.most += growth;
     }
 
     /// A good sample of this age.

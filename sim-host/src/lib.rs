@@ -13,6 +13,7 @@ pub mod num;
 pub mod plant;
 mod range;
 pub mod recording;
+pub mod replay;
 pub mod report;
 pub mod ride;
 pub mod rider;

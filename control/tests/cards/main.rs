@@ -1,5 +1,6 @@
 //! Flight cards of the control crate alone: what holds whatever the bicycle.
 
+mod cross;
 mod fuzz;
 mod guard;
 mod input;
@@ -11,5 +12,6 @@ mod properties;
 mod pulses;
 mod shape;
 mod slope;
+mod smooth;
 mod watch;
 mod wire;

@@ -2,7 +2,8 @@
 
 use control::slope::{Slope, SlopeConfig, SlopePlan, Stretch};
 
-const CONFIG: SlopeConfig = SlopeConfig { slow_s: 0.3, forget_s: 0.5, most: 20.0, enough: 0.01 };
+const CONFIG: SlopeConfig =
+    SlopeConfig { slow_s: 0.3, forget_s: 0.5, most: 20.0, enough: 0.01, lasting_s: 0.0 };
 const DT_S: f32 = 0.008;
 
 fn plan() -> SlopePlan {
@@ -46,6 +47,27 @@ fn too_little_is_not_judged() {
     assert!((5..60).contains(&first), "{first}");
 }
 
+/// Situation: enough must have lasted for 0.15 s. Action: swing. Must hold: the first slope comes 0.15 s after the one without
+/// that condition, within two steps, and is the same.
+#[test]
+fn enough_must_last() {
+    let patient = SlopePlan::new(SlopeConfig { lasting_s: 0.15, ..CONFIG }, DT_S);
+    let (mut slope, mut first) = (Slope::default(), None);
+    let all = told(1.0, 0.0, 250);
+    for i in 1..=250_u16 {
+        let swing = |i: u16| (core::f32::consts::TAU * DT_S * f32::from(i)).sin();
+        let dx = swing(i) - swing(i - 1);
+        if let Some(told) = slope.step(&patient, dx, dx) {
+            first.get_or_insert((i, told));
+        }
+    }
+    let at_once = 1 + all.iter().position(Option::is_some).expect("enough");
+    let (after, told) = first.expect("enough");
+    let late_s = DT_S * (f32::from(after) - at_once as f32);
+    assert!((0.13..=0.17).contains(&late_s), "{late_s} s");
+    assert!((told - 1.0).abs() < 1e-4, "{told}");
+}
+
 /// Situation: the sign is reversed after 2 s. Action: step on. Must hold: below 0 within one and a half times of forgetting, and -1 in the end.
 #[test]
 fn a_reversal_shows_soon() {
@@ -81,4 +103,23 @@ fn stretches_have_their_means() {
         assert_eq!(told[at], Some((now, before)));
     }
     assert_eq!(told.iter().flatten().count(), expected.len());
+}
+
+/// Situation: a stretch without any values, the first or between others. Action: end it. Must hold: no means, no numbers that are none
+/// afterwards; the next full one has none before it.
+#[test]
+fn an_empty_stretch_has_no_means() {
+    let mut stretch = Stretch::<1>::default();
+    assert_eq!(stretch.end(), None);
+    let mut full = |value: f32, empty: bool| {
+        if !empty {
+            stretch.add([value]);
+        }
+        stretch.end()
+    };
+    assert_eq!(full(1.0, false), None);
+    assert_eq!(full(2.0, false), Some(([2.0], [1.0])));
+    assert_eq!(full(0.0, true), None);
+    assert_eq!(full(3.0, false), None);
+    assert_eq!(full(4.0, false), Some(([4.0], [3.0])));
 }

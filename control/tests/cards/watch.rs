@@ -108,6 +108,33 @@ fn a_jump_does_not_become_true_by_waiting() {
     assert_eq!(told.value, Some(([1.54], 0)), "a step of 0.2 and a period's slope");
 }
 
+/// Situation: a sensor with a sample every so many periods, from 1 to 50, believed; 250 periods are too late. Action: it jumps
+/// from 1 to 20 for good. Must hold: whatever the sampling period it is held for 250 periods, then lost by the jump.
+#[test]
+fn a_jump_that_stays_has_the_same_cause_at_every_sampling_period() {
+    for every in [1, 2, 5, 10, 20, 50_u16] {
+        let sensor = Sensor { max: 30.0, timeout_ticks: 250, ..SENSOR };
+        let mut watch = Watch::<1>::default();
+        let mut lost = None;
+        for k in 0..1000_u16 {
+            let (age, good) = (k % every, k / every < 5);
+            let value = if good { 1.0 } else { 20.0 };
+            let told = watch.step(&sensor, &reach(&sensor), &CODES, ([value], age), || false);
+            let jumped = k - k.min(5 * every);
+            if !good && told.value.is_none() && lost.is_none() {
+                lost = Some((jumped + every, told.lost));
+            }
+            assert!(
+                lost.is_some() || told.value.is_none_or(|(value, _)| value == [1.0]),
+                "{every} {k}: {told:?}"
+            );
+        }
+        let (after, cause) = lost.expect("lost at last");
+        assert_eq!(cause, Some(Cause::SteerJump), "every {every}");
+        assert!((250..=252 + every).contains(&after), "every {every}: after {after}");
+    }
+}
+
 /// Situation: believed. Action: samples that can't be, for as long as may be and longer. Must hold: the last good one is held,
 /// then it is lost with the reason; a single one is forgotten.
 #[test]
@@ -244,7 +271,8 @@ impl Plain {
         let still = self.still + u16::from(moves);
         let jumps = (value - self.last).abs() > self.allowed;
         if held || age == MISSING {
-            (self.still, self.allowed) = (still, self.allowed + slope);
+            let more = if self.doubt.is_none() { slope } else { 0.0 };
+            (self.still, self.allowed) = (still, self.allowed + more);
         } else if value.is_nan() || value.abs() > SENSOR.max {
             (self.still, self.good, self.doubt) = (still, 0, Some(CODES.range));
         } else if jumps && self.trusted {

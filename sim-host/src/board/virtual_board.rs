@@ -25,6 +25,8 @@ pub struct VirtualBoard {
     from: Receiver<Vec<u8>>,
     /// The first bytes, which came while it started.
     first: Vec<u8>,
+    /// What it writes to standard error: its log, at the end why it ended.
+    words: Receiver<Vec<u8>>,
 }
 
 impl VirtualBoard {
@@ -45,20 +47,30 @@ impl VirtualBoard {
         let to = child.stdin.take();
         let from = listen(child.stdout.take());
         let words = listen(child.stderr.take());
-        let mut board = Self { name: program.display().to_string(), child, to, from, first: Vec::new() };
+        let mut board = Self { name: program.display().to_string(), child, to, from, first: Vec::new(), words };
         match board.from.recv_timeout(START) {
             Ok(bytes) => board.first = bytes,
             Err(_) => {
-                let said: Vec<u8> = words.try_iter().flatten().collect();
-                let last = String::from_utf8_lossy(&said).lines().last().unwrap_or("no word").to_owned();
+                let last = board.last_words();
                 return Err(failed(io::Error::other(format!("the board did not start: {last}"))));
             }
         }
         Ok(board)
     }
 
+    /// The program is gone, or does not listen: with its own reason.
     fn lost(&self, why: io::ErrorKind) -> LineError {
-        LineError::Lost { line: self.name.clone(), why: why.into() }
+        LineError::Lost { line: self.name.clone(), why: io::Error::new(why, self.last_words()) }
+    }
+
+    /// The last line that it wrote to standard error; it is waited for a moment, for the two streams of a program that
+    /// ends close in any order.
+    fn last_words(&self) -> String {
+        let mut said = Vec::new();
+        while let Ok(bytes) = self.words.recv_timeout(Duration::from_millis(200)) {
+            said.extend(bytes);
+        }
+        String::from_utf8_lossy(&said).lines().last().unwrap_or("no word").to_owned()
     }
 }
 

@@ -18,7 +18,7 @@ use std::path::PathBuf;
 
 /// Where defaults come from.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Preset {
+pub(super) enum Preset {
     /// The published conditions: law h, every limit off.
     Thesis,
     /// What is flashed: law h-cut, torque and rate limit, taper.

@@ -21,6 +21,7 @@ mod pil_basin;
 mod plane;
 mod plant_args;
 mod port_args;
+mod replay;
 mod ride;
 mod rider;
 mod rider_args;
@@ -53,6 +54,7 @@ Examples:
   sim-host basin --svg basin.svg               the basin of the thesis bicycle under law h
   sim-host ride --speed 4 --steer-rate 5       one ride
   sim-host sweep --over law=h,f,g --out laws   basins over a grid of conditions
+  sim-host replay ride.csv --map extract       a recorded ride through the flashed code
   sim-host pil --speed 4 --steer-rate 5        the same on an emulated board
   sim-host eigen --law cl2:4                   eigenvalues over speed
   sim-host bicycle list                        the bicycles that ship
@@ -76,6 +78,9 @@ enum Command {
     /// One ride after a disturbance.
     #[command(after_help = ride::EXAMPLES)]
     Ride(Box<ride::Args>),
+    /// Recorded rides through the flashed code: modes, causes, margins of every check.
+    #[command(after_help = replay::EXAMPLES)]
+    Replay(Box<replay::Args>),
     /// Rides and basins with the control step on a board in QEMU: processor in the loop.
     Pil(Box<pil::Args>),
     /// Basins over a grid of conditions: resumed where it stopped, split over machines.
@@ -108,7 +113,7 @@ enum Command {
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
-        #[arg(value_parser = ["basin", "ride", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design", "param-list", "faults"])]
+        #[arg(value_parser = ["basin", "ride", "replay", "replay-many", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design", "param-list", "faults"])]
         document: String,
     },
 }
@@ -121,6 +126,7 @@ pub fn run() -> ExitCode {
         Command::Basin(args) => basin::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Ride(args) => ride::run(&args),
+        Command::Replay(args) => replay::run(&args),
         Command::Pil(args) => pil::run(&args),
         Command::Eigen(args) => eigen::run(&args),
         Command::Thesis(args) => thesis::run(&args),

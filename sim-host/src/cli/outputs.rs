@@ -54,6 +54,12 @@ pub(super) struct Results<D, C, S, T, F> {
 }
 
 impl OutputArgs {
+    /// Refuses figures of results that have none.
+    pub(super) fn refuse_figures(&self, why: &str) -> Result<(), Failure> {
+        let asked = [("--svg", &self.svg), ("--png", &self.png)].into_iter().find(|(_, path)| path.is_some());
+        asked.map_or(Ok(()), |(option, _)| Err(format!("{option}: {why}").into()))
+    }
+
     /// Tries every output asked for; `frames` is one of `ride`.
     pub(super) fn open(&self, frames: Option<&Path>) -> Result<Outputs, Failure> {
         let open = |path: &Option<PathBuf>| path.as_deref().map(Output::create).transpose();
@@ -116,13 +122,7 @@ impl Outputs {
         F: FnOnce() -> Picture,
     {
         let Results { document, config, summary, table, figure } = results;
-        let mut done = Vec::new();
-        if let Some(output) = &self.json {
-            done.push(write_json(output, &document));
-        }
-        if let Some(output) = &self.csv {
-            done.push(table().map_err(Failure::from).and_then(|table| Ok(output.finish(&table)?)));
-        }
+        let mut done = self.data(&document, table);
         if self.svg.is_some() || self.png.is_some() {
             let (figure, caption) = (figure(), caption(&config));
             if let Some(output) = &self.svg {
@@ -134,6 +134,39 @@ impl Outputs {
                 done.push(png.and_then(|png| Ok(output.finish(&png_with_caption(&png, &caption))?)));
             }
         }
+        self.ended(done, summary)
+    }
+
+    /// The same for results that have no figure, which [`OutputArgs::refuse_figures`] has refused before.
+    pub(super) fn write_data(
+        &self,
+        document: &impl Serialize,
+        table: impl FnOnce() -> Result<Vec<u8>, csv::Error>,
+        summary: impl FnOnce() -> String,
+    ) -> Result<(), Failure> {
+        self.ended(self.data(document, table), summary)
+    }
+
+    /// The document and the table, where they were asked for.
+    fn data(
+        &self,
+        document: &impl Serialize,
+        table: impl FnOnce() -> Result<Vec<u8>, csv::Error>,
+    ) -> Vec<Result<(), Failure>> {
+        let json = self.json.as_ref().map(|output| write_json(output, document));
+        let csv = self
+            .csv
+            .as_ref()
+            .map(|output| table().map_err(Failure::from).and_then(|table| Ok(output.finish(&table)?)));
+        json.into_iter().chain(csv).collect()
+    }
+
+    /// The text for people, and what could not be written.
+    fn ended(
+        &self,
+        mut done: Vec<Result<(), Failure>>,
+        summary: impl FnOnce() -> String,
+    ) -> Result<(), Failure> {
         if !self.quiet && !self.all().iter().any(|(_, output)| output.is_standard()) {
             done.push(print(&summary()));
         }

@@ -17,6 +17,7 @@ pub use dice::Dice;
 pub use fault::{Channel, Fault, FaultState, Kind};
 pub use friction::Friction;
 pub use reading::{Frame, Reading, Sensor, Traveller};
+pub(crate) use rig::faulty;
 pub use rig::{Held, Measured, Rig};
 pub use sensor::{ImuMount, SensorConfig, SensorModel, SensorState};
 pub use stop::SteerStop;

@@ -25,6 +25,11 @@ pub struct Measured {
 }
 
 impl Measured {
+    /// Of the newest sample of each sensor, in the order of [`Sensor::ALL`].
+    pub fn new(held: [Held; Sensor::ALL.len()], now_us: u32, engage: bool) -> Self {
+        Self { held, now_us, engage }
+    }
+
     /// The newest sample of a sensor.
     pub fn of(&self, sensor: Sensor) -> &Held {
         &self.held[sensor as usize]
@@ -118,7 +123,7 @@ impl Rig {
 }
 
 /// A channel's word through all its faults, in the order in which they were given.
-fn faulty(
+pub(crate) fn faulty(
     faults: &[Fault],
     states: &mut [FaultState],
     channel: Channel,

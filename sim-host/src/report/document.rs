@@ -263,6 +263,8 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "basin-compare" => generator.into_root_schema_for::<super::compare::CompareDocument>(),
         "basin-plane" => generator.into_root_schema_for::<super::plane::PlaneDocument>(),
         "ride" => generator.into_root_schema_for::<RideDocument>(),
+        "replay" => generator.into_root_schema_for::<super::replay::ReplayDocument>(),
+        "replay-many" => generator.into_root_schema_for::<super::replay::ReplaysDocument>(),
         "eigen" => generator.into_root_schema_for::<EigenDocument>(),
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
         "rider-show" => generator.into_root_schema_for::<super::rider::RiderDocument>(),

@@ -8,6 +8,7 @@ pub mod figure;
 pub mod output;
 pub mod picture;
 pub mod plane;
+pub mod replay;
 pub mod resolved;
 pub mod rider;
 pub mod sweep;

@@ -20,4 +20,5 @@ pub use batch::{rides, rides_on, traced, traced_on};
 pub use conditions::{Conditions, ConditionsError, Imu, ScheduleSpeed, Start};
 pub use outcome::{Effort, FinalState, Outcome, Ride};
 pub use processor::{Remote, RemoteError, Stepped};
+pub(crate) use outfit::frame as frame_of;
 pub use trace::{TracePoint, frames};

@@ -81,7 +81,7 @@ impl Outfit {
 }
 
 /// What the firmware gets of it: the declared sensors.
-pub(super) fn frame(plan: &Plan, told: &Measured) -> SensorFrame {
+pub(crate) fn frame(plan: &Plan, told: &Measured) -> SensorFrame {
     let input = &plan.config().input;
     let of = |sensor| -> &Held { told.of(sensor) };
     let one = |fitted: bool, sensor: Sensor, axis: usize| match fitted {

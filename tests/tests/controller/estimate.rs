@@ -76,7 +76,7 @@ fn estimated_in(conditions: &Conditions, config: &EstimateConfig, sensors: Senso
         let m = step(config, &mut state, &felt);
         let e = |estimate: f32, truth: f64| (f64::from(estimate) - truth).abs();
         let roll = e(m.roll_rad, is.roll);
-        errors.margin = errors.margin.min(f64::from(m.roll_bound_rad) - roll);
+        errors.margin = errors.margin.min(f64::from(m.roll_error.bound_rad()) - roll);
         errors.last = m;
         if i < before {
             continue;
@@ -195,7 +195,7 @@ fn bias_and_noise_leave_a_useful_roll_angle() {
             assert!((0.05..0.35).contains(&e.roll_rate), "{v} {kick}: {}", e.roll_rate);
             assert!((f64::from(e.last.gyro_bias_rad_s[0]) - 0.05).abs() < 0.01, "{:?}", e.last);
             assert!(e.margin > 0.0, "{v} {kick}: {}", e.margin);
-            assert!(e.last.roll_bound_rad < 0.15, "{v} {kick}: {}", e.last.roll_bound_rad);
+            assert!(e.last.roll_error.bound_rad() < 0.15, "{v} {kick}: {}", e.last.roll_error.bound_rad());
         }
     }
 }
@@ -211,7 +211,7 @@ fn fewer_sensors_cost_accuracy_and_say_so() {
         let straight = estimated(&config, Sensors { steer: false, ..REAL }, knock(v, kick));
         println!("{v} {kick}: {whole:?} {rates:?} {straight:?}");
         assert!(rates.roll < 0.1 && rates.margin > 0.0, "{v} {kick}: {rates:?}");
-        assert!(rates.last.roll_bound_rad > whole.last.roll_bound_rad + 0.05, "{v} {kick}");
+        assert!(rates.last.roll_error.bound_rad() > whole.last.roll_error.bound_rad() + 0.05, "{v} {kick}");
         assert!(straight.roll < 0.12 && straight.margin > 0.0, "{v} {kick}: {straight:?}");
         assert!(straight.last.pitch_rad == 0.0 && straight.last.steer_rad == 0.0, "{v} {kick}");
     }
@@ -228,13 +228,13 @@ fn without_anything_to_see_the_bound_grows() {
     let riding = truth(b, &State::upright(b, 4.0), &FREE, &config.imu).felt(1000);
     let mut bound = f32::MAX;
     for _ in 0..3000 {
-        bound = step(&config, &mut state, &riding).roll_bound_rad;
+        bound = step(&config, &mut state, &riding).roll_error.bound_rad();
     }
     assert!(bound < 0.15, "{bound}");
     let blind = Felt { accel_m_s2: None, speed_m_s: 0.5, ..riding };
     let mut last = 0.0;
     for i in 0..120_000 {
-        let now = step(&config, &mut state, &blind).roll_bound_rad;
+        let now = step(&config, &mut state, &blind).roll_error.bound_rad();
         assert!(now >= last || i == 0, "{i}: {last} {now}");
         last = now;
     }
@@ -357,7 +357,7 @@ fn numbers(m: &Motion) -> [f32; 12] {
         by,
         m.pitch_rad,
         m.speed_m_s,
-        m.roll_bound_rad,
+        m.roll_error.bound_rad(),
     ]
 }
 
@@ -372,7 +372,7 @@ proptest! {
             let m = step(&config, &mut state, &felt);
             prop_assert!(numbers(&m).iter().all(|x| x.is_finite()), "{felt:?} {m:?}");
             prop_assert!(m.roll_rad.abs() <= std::f32::consts::FRAC_PI_2);
-            prop_assert!((0.0..=std::f32::consts::PI).contains(&m.roll_bound_rad));
+            prop_assert!((0.0..=std::f32::consts::PI).contains(&m.roll_error.bound_rad()));
         }
     }
 
@@ -411,5 +411,8 @@ fn a_gap_makes_the_roll_angle_unknown() {
     let before = (0..2000).map(|_| step(&config, &mut state, &riding)).last().expect("steps");
     let after =
         step(&config, &mut state, &Felt { elapsed_us: 200_000, accel_m_s2: None, speed_m_s: 0.0, ..riding });
-    assert!(before.roll_bound_rad < 0.2 && after.roll_bound_rad > 2.0, "{before:?} {after:?}");
+    assert!(
+        before.roll_error.bound_rad() < 0.2 && after.roll_error.bound_rad() > 2.0,
+        "{before:?} {after:?}"
+    );
 }

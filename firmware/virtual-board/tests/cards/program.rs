@@ -1,10 +1,12 @@
 //! The program `virtual-board`: options, exit status, errors.
 
 use crate::bed::product;
+use sim_host::board::serial::Serial;
 use sim_host::board::virtual_board::VirtualBoard;
 use sim_host::board::{Client, Patience};
+use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn virtual_board(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_virtual-board")).args(arguments).output().expect("it can be started")
@@ -49,4 +51,29 @@ fn the_tools_of_a_board_reach_it() {
     assert!(client.faults().expect("an answer").is_empty());
     let refused = VirtualBoard::start(program, Some(Path::new("no-such-image"))).err().expect("no image");
     assert!(refused.to_string().contains("no-such-image"), "{refused}");
+}
+
+/// Situation: the program as a user starts it, for 3 s, its serial line at a pseudo terminal. Action: open the device it
+/// names as a serial port, ask who is there, close it, open it again and set a parameter. Must hold: both are answered;
+/// the program ends by itself with status 0, and its log was written: the image's name, and that no motor is aligned.
+#[test]
+fn its_pseudo_terminal_is_a_serial_port() {
+    let Some(image) = product() else { return };
+    let mut command = Command::new(env!("CARGO_BIN_EXE_virtual-board"));
+    command.args(["--seconds", "3", "--image"]).arg(image).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("it starts");
+    let mut lines = BufReader::new(child.stderr.take().expect("its log")).lines().map(|line| line.expect("text"));
+    let first = lines.next().expect("a line");
+    let device = first.rsplit(' ').next().expect("a device");
+    let open = || {
+        let port = Serial::open(device, 115_200).expect("it can be opened");
+        Client::new(Box::new(port), Patience { tries: 50, ..Patience::default() })
+    };
+    assert_eq!(open().hello().expect("an answer").image, "board-stm32f405");
+    assert_eq!(open().set("limits.max_torque_nm", Some(0.5)).expect("an answer"), Some(0.5));
+    let log: Vec<_> = lines.collect();
+    assert!(child.wait().expect("an end").success(), "{log:#?}");
+    for words in ["board-stm32f405", "motor"] {
+        assert!(log.iter().any(|line| line.contains(words)), "{words}: {log:#?}");
+    }
 }

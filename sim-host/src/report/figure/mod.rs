@@ -15,9 +15,11 @@ mod outlines;
 mod panel;
 mod picture;
 mod plane;
+mod replay;
 mod ride;
 pub(super) mod scale;
 mod shape;
+mod thin;
 mod time_scale;
 
 pub use basin::{BasinFigure, basin};
@@ -27,6 +29,7 @@ pub use heatmap::{HeatMap, heatmap};
 pub use marker::Marker;
 pub use picture::{Picture, PictureError};
 pub use plane::{PlaneFigure, plane};
+pub use replay::{ReplayFigure, replay};
 pub(super) use ride::Curve;
 pub use ride::{RideFigure, ride};
 

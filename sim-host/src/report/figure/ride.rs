@@ -6,6 +6,7 @@ use super::legend::{Sign, column, entry};
 use super::panel::Panel;
 use super::picture::Picture;
 use super::scale::nice;
+use super::thin::thinned;
 use crate::ride::{Outcome, TracePoint};
 use control::ActiveLimits;
 use kuva::render::render::TextAnchor;
@@ -85,7 +86,8 @@ pub fn ride(figure: &RideFigure) -> Picture {
                 continue;
             }
             let stroke = Stroke::solid(SERIES[k], 1.8);
-            panel.line(&mut canvas, thinned(figure.trace, *of, x.1 / WIDTH), stroke);
+            let points = figure.trace.iter().map(|p| (p.t, of(p)));
+            panel.line(&mut canvas, thinned(points, x.1 / WIDTH), stroke);
             legend.insert(k, entry(Sign::Line(stroke), *name));
         }
         if let Some(t) = fall {
@@ -103,7 +105,7 @@ pub fn ride(figure: &RideFigure) -> Picture {
 }
 
 /// A range with some room above and below, for lines that lie on its ends.
-fn padded((low, high): (f64, f64)) -> (f64, f64) {
+pub(super) fn padded((low, high): (f64, f64)) -> (f64, f64) {
     let room = 0.06 * (high - low);
     (low - room, high + room)
 }
@@ -144,24 +146,4 @@ fn active(trace: &[TracePoint], limit: ActiveLimits) -> Vec<(f64, f64)> {
         open = on;
     }
     spans
-}
-
-/// A curve's first, least, greatest and last value in every `bin` of time: no peak is lost, however
-/// long the ride.
-fn thinned(trace: &[TracePoint], of: fn(&TracePoint) -> f64, bin: f64) -> Vec<(f64, f64)> {
-    let data: Vec<_> = trace.iter().map(|p| (p.t, of(p))).filter(|(_, y)| y.is_finite()).collect();
-    let mut kept = Vec::new();
-    for part in data.chunk_by(|a, b| (a.0 / bin).floor() == (b.0 / bin).floor()) {
-        let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-        let mut of_part: Vec<(f64, f64)> =
-            [part.first(), part.iter().min_by(by_value), part.iter().max_by(by_value), part.last()]
-                .into_iter()
-                .flatten()
-                .copied()
-                .collect();
-        of_part.sort_by(|a, b| a.0.total_cmp(&b.0));
-        of_part.dedup();
-        kept.extend(of_part);
-    }
-    kept
 }

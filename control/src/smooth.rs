@@ -1,0 +1,97 @@
+//! The roll rate as the law gets it: without steps between two samples of a slow gyro, and without vibration.
+//!
+//! * **Interpolation**: a gyro of 100 Hz changes every ten control periods of 1 ms by as much as the bicycle moves in
+//!   10 ms. Held, each change is a step of the torque; on a straight line from sample to sample it is none, and each
+//!   sample counts in full one sampling period late. A gyro as fast as the control loop passes unchanged.
+//! * **Low-pass**: vibration of road and motor lies above 10 Hz, a fall of a bicycle below 2 Hz. Of first order, it delays
+//!   by its time constant.
+
+use crate::param::{Leaf, Visit};
+
+/// Longest time between two samples that is bridged \[control periods\]; after a longer one the next sample counts at once.
+const LONGEST_TICKS: u16 = 100;
+
+/// How the roll rate is smoothed. The default leaves it as it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SmoothConfig {
+    /// Whether it moves on a straight line between two samples of a gyro slower than the control loop.
+    pub interpolate: bool,
+    /// Time constant of the low-pass \[s\]; 0 is none.
+    pub lag_s: f32,
+}
+
+impl SmoothConfig {
+    /// Shows every parameter.
+    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
+        to.switch(&Leaf::switch("smooth", "interpolate"), &mut self.interpolate);
+        to.number(&Leaf::new("smooth", "lag_s", 0.0, 0.1), &mut self.lag_s);
+    }
+}
+
+/// What follows from it for calls of one rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothPlan {
+    interpolate: bool,
+    /// Part of the difference that one period takes away; 1 without a low-pass.
+    keep: f32,
+}
+
+impl SmoothPlan {
+    /// For one call every `period_s`.
+    pub fn new(config: &SmoothConfig, period_s: f32) -> Self {
+        Self { interpolate: config.interpolate, keep: period_s / (config.lag_s + period_s) }
+    }
+}
+
+/// What is remembered.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SmoothState {
+    /// Age of the gyro's sample in the period before.
+    age_ticks: u16,
+    /// Periods that are left to the newest sample, the change in each, and where the line is.
+    left_ticks: u16,
+    change_rad_s: f32,
+    line_rad_s: f32,
+    /// The low-pass; none before the first period.
+    low_rad_s: Option<f32>,
+}
+
+/// One control period: the roll rate \[rad/s\] by a gyro's sample of this age.
+#[inline]
+pub fn step(plan: &SmoothPlan, state: &mut SmoothState, rate_rad_s: f32, age_ticks: u16) -> f32 {
+    let mut out_rad_s = rate_rad_s;
+    // As nearly always the gyro is as fast as the control loop.
+    if plan.interpolate && (age_ticks | state.age_ticks) > 0 {
+        out_rad_s = state.between(rate_rad_s, age_ticks);
+    }
+    if plan.keep < 1.0 {
+        let low_rad_s = state.low_rad_s.unwrap_or(out_rad_s);
+        out_rad_s = low_rad_s + plan.keep * (out_rad_s - low_rad_s);
+        state.low_rad_s = Some(out_rad_s);
+    }
+    out_rad_s
+}
+
+impl SmoothState {
+    /// The line's value.
+    #[inline(never)]
+    fn between(&mut self, rate_rad_s: f32, age_ticks: u16) -> f32 {
+        let apart_ticks = self.age_ticks.saturating_add(1);
+        if apart_ticks == 1 && self.left_ticks == 0 {
+            // Nothing is bridged: the last period had this sample for its own.
+            self.line_rad_s = rate_rad_s;
+        }
+        self.age_ticks = age_ticks;
+        if age_ticks == 0 && apart_ticks <= LONGEST_TICKS {
+            self.left_ticks = apart_ticks;
+            self.change_rad_s = (rate_rad_s - self.line_rad_s) / f32::from(apart_ticks);
+        }
+        if self.left_ticks > 1 {
+            self.left_ticks -= 1;
+            self.line_rad_s += self.change_rad_s;
+        } else {
+            (self.left_ticks, self.line_rad_s) = (0, rate_rad_s);
+        }
+        self.line_rad_s
+    }
+}

@@ -1,0 +1,356 @@
+//! `sim-host replay`.
+
+use super::conditions::Preset;
+use super::interrupt;
+use super::outputs::{OutputArgs, Outputs, Results, complain};
+use super::parameter_file::ParameterFile;
+use super::{Ended, Failure, law, warn};
+use crate::bicycle::onboard::fit;
+use crate::bicycle::{Geometry, catalogue};
+use crate::board::parameter::law_name;
+use crate::leaves;
+use crate::plant::{Fault, ImuMount};
+use crate::recording::{ReadOptions, read};
+use crate::replay::{
+    Feed, FeedOptions, Fitted, Map, Press, Replayed, Resample, RunOptions, Samples, Summary, fitted, frames,
+    run as run_through, samples,
+};
+use crate::report::document::SCHEMA;
+use crate::report::figure::{self, ReplayFigure};
+use crate::report::replay::{
+    ReplayConfig, ReplayDocument, ReplayResult, ReplaysDocument, summary_text, text,
+};
+use crate::report::resolved::Tool;
+use crate::report::table;
+use crate::ride::frame_of;
+use control::wire::encode_frame;
+use control::{Config, Law, SensorFrame};
+use std::path::{Path, PathBuf};
+
+pub(super) const EXAMPLES: &str = "\
+FILE is a table of samples with named columns (also gzipped), what `monitor --csv` writes, a recording of
+CAN frames (candump, ASC, MDF4) with its DBC, or frames of `ride --frames` (81 bytes each).
+A map says what the columns mean; docs/replay.md. Those that ship: extract, monitor, robot-bicycle, can-bicycle.
+Replay is open loop: the torque that comes out did not act on the bicycle that was recorded.
+
+Exit codes: 0 ran, 1 bad input or nothing usable, 2 usage, 130 interrupted; alarms are a result.
+
+Examples:
+  sim-host replay ride.csv --map extract --json
+  sim-host replay robot/*.csv.gz --map robot-bicycle
+  sim-host replay ride.csv --map my.toml --fault gyro:flip@2s --svg ride.svg
+  sim-host replay can.log --dbc bicycle.dbc --map can.toml --set permit.fallen_rad=0.9
+  sim-host replay border.frames --frames again.frames";
+
+/// Options of `replay`.
+#[derive(clap::Args)]
+pub(super) struct Args {
+    /// Recordings
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// What the columns mean: the name of a map that ships, or a FILE [default: by the columns]
+    #[arg(long, value_name = "NAME|FILE")]
+    map: Option<String>,
+    /// Database that decodes CAN frames; may be repeated
+    #[arg(long, value_name = "FILE")]
+    dbc: Vec<PathBuf>,
+    /// Refuse a recording for the first line that can't be used, instead of using the rest
+    #[arg(long)]
+    strict: bool,
+    /// Between two samples: hold the older, or interpolate [default: the map's]
+    #[arg(long)]
+    resample: Option<Resample>,
+    /// Longest time between two samples that is interpolated, in seconds
+    #[arg(long, value_name = "S", default_value_t = 0.5, value_parser = positive)]
+    longest_gap: f64,
+    /// When the switch is pressed in a recording without one
+    #[arg(long, default_value = "again")]
+    press: Press,
+    /// Defaults of the parameters
+    #[arg(long, default_value = "product")]
+    preset: Preset,
+    /// Roll-rate law, as in `ride` [default: product: h-cut; thesis: h]
+    #[arg(long)]
+    law: Option<String>,
+    /// Bicycle whose geometry the flashed code is told: shipped, FILE, or FILE#NAME
+    #[arg(long, value_name = "NAME|FILE")]
+    bicycle: Option<String>,
+    /// Law and parameters from a file, as `param export` writes it; --law and --set win
+    #[arg(long, value_name = "FILE")]
+    parameters: Option<PathBuf>,
+    /// Any parameter of the flashed code, as cross.yaw_rad_s=1; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Something goes wrong beside what was recorded, for example gyro:flip@2s; may be repeated
+    #[arg(long, value_name = "CHANNEL:KIND@FROM..TO", allow_hyphen_values = true)]
+    fault: Vec<String>,
+    /// Seed of the faults' noise and dropouts
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+    /// Time between two rows of the table, in seconds
+    #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = positive)]
+    every: f64,
+    /// Write the frames that the flashed code got, 81 bytes each, for the chip; one recording only
+    #[arg(long, value_name = "FILE")]
+    frames: Option<PathBuf>,
+    #[command(flatten)]
+    outputs: OutputArgs,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if (1e-6..=3600.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err(format!("{text} is outside 0.000001 to 3600"))
+    }
+}
+
+/// What all recordings have in common.
+struct Common {
+    config: Config,
+    law_name: String,
+    file: Option<ParameterFile>,
+    faults: Vec<Fault>,
+    map: Option<Map>,
+}
+
+/// One recording, done.
+struct Done {
+    replayed: Replayed,
+    result: ReplayResult,
+    config: ReplayConfig,
+    frames: Vec<SensorFrame>,
+}
+
+pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    if args.files.len() > 1 {
+        args.outputs.refuse_figures("a figure is of one recording only")?;
+        if args.frames.is_some() {
+            return Err("--frames: frames are of one recording only".into());
+        }
+    }
+    let common = common(args)?;
+    let outputs = args.outputs.open(args.frames.as_deref())?;
+    if let [file] = args.files.as_slice() {
+        let done = one(args, &common, file)?;
+        return write_one(args, &outputs, &done);
+    }
+    interrupt::install_saying("the recordings that are done are told");
+    let (mut all, mut unusable) = (Vec::new(), Vec::new());
+    for file in &args.files {
+        if interrupt::stopped() {
+            break;
+        }
+        match one(args, &common, file) {
+            Ok(done) => all.push(done),
+            Err(why) => {
+                complain(&format!("error: {why}"));
+                unusable.push(why.to_string());
+            }
+        }
+    }
+    let ended = if interrupt::stopped() { Ended::Interrupted } else { Ended::Done };
+    write_many(&common, &outputs, all, unusable)?;
+    Ok(ended)
+}
+
+fn common(args: &Args) -> Result<Common, Failure> {
+    let base = match args.preset {
+        Preset::Thesis => Config::thesis(Law::H { cut: false }),
+        Preset::Product => Config::product(),
+    };
+    let file = args.parameters.as_deref().map(ParameterFile::read).transpose()?;
+    let law = match (&args.law, file.as_ref().and_then(|file| file.law.clone())) {
+        (Some(name), _) => law::parse(name)?,
+        (None, Some(law)) => law,
+        (None, None) => base.law.clone(),
+    };
+    let faults = args.fault.iter().map(|text| text.parse::<Fault>());
+    let faults = faults.collect::<Result<_, _>>().map_err(|e| format!("--fault: {e}"))?;
+    let map = args.map.as_deref().map(Map::load).transpose().map_err(|why| format!("--map {why}"))?;
+    let law_name = law_name(&law);
+    let mut config = Config { law, ..base };
+    if let Some(name) = &args.bicycle {
+        let bicycle = catalogue::load(name)?;
+        warn(&bicycle);
+        fit(&mut config, &Geometry::new(&bicycle.parameters), ImuMount::default().point_m);
+    }
+    Ok(Common { config, law_name, file, faults, map })
+}
+
+impl Common {
+    /// The plan for a recording with these samples.
+    fn plan(
+        &self,
+        args: &Args,
+        recorded: Option<(&Samples, &Map)>,
+    ) -> Result<(control::Plan, Fitted), Failure> {
+        let mut config = self.config.clone();
+        config.calibration.polarity_checked = true;
+        let told = match recorded {
+            Some((samples, map)) => {
+                fitted(&mut config, samples, map).map_err(|why| format!("--map: {why}"))?
+            }
+            None => Fitted::default(),
+        };
+        if let Some(file) = &self.file {
+            file.apply(&mut config)?;
+        }
+        for word in &args.set {
+            let (key, value) = word.split_once('=').ok_or(format!("--set {word}: expected KEY=VALUE"))?;
+            leaves::set(&mut config, key, value).map_err(|why| format!("--set {word}: {why}"))?;
+        }
+        Ok((config.plan()?, told))
+    }
+}
+
+fn one(args: &Args, common: &Common, path: &Path) -> Result<Done, Failure> {
+    let name = path.display().to_string();
+    let framed = path.extension().is_some_and(|extension| extension == "frames");
+    if framed {
+        return replay_frames(args, common, path, name);
+    }
+    let options = ReadOptions { strict: args.strict, dbc: args.dbc.clone() };
+    let recording = read(path, &options)?;
+    let map = match &common.map {
+        Some(map) => map.clone(),
+        None => Map::by_columns(&recording)
+            .ok_or(format!("{name}: no map that ships knows these columns; give one with --map"))?,
+    };
+    let period_s = 1.0 / f64::from(common.config.rate_hz);
+    let samples = samples(&recording, &map, period_s).map_err(|remark| format!("{name}: {remark}"))?;
+    if let (true, Some(remark)) = (args.strict, samples.remarks.first()) {
+        return Err(format!("{name}: {remark}").into());
+    }
+    let (plan, told) = common.plan(args, Some((&samples, &map)))?;
+    let resample = args.resample.unwrap_or(map.resample);
+    let feed = FeedOptions {
+        period_s: 1.0 / f64::from(plan.config().rate_hz),
+        resample,
+        longest_gap_s: args.longest_gap,
+        faults: &common.faults,
+        seed: args.seed,
+    };
+    let mut feed = Feed::new(&samples, feed).map_err(|why| format!("{name}: {why}"))?;
+    let mut kept = Vec::new();
+    let options = RunOptions {
+        press: args.press,
+        every_s: args.every,
+        roll_rad: &samples.roll_rad,
+        torque_nm: &samples.torque_nm,
+    };
+    let replayed = run_through(&plan, &options, |pressed| {
+        let (t_s, told) = feed.next(pressed)?;
+        let frame = frame_of(&plan, &told);
+        if args.frames.is_some() {
+            kept.push(frame);
+        }
+        Some((t_s, frame))
+    });
+    let resample = match resample {
+        Resample::Hold => "hold",
+        Resample::Interpolate => "interpolate",
+    };
+    let config = resolved(args, common, &plan, Some(resample));
+    let remarks = samples.remarks.iter().map(ToString::to_string).collect();
+    let result = ReplayResult::new(name, remarks, told, &replayed);
+    Ok(Done { replayed, result, config, frames: kept })
+}
+
+/// Frames as they were written, bit for bit; the switch is the one in them.
+fn replay_frames(args: &Args, common: &Common, path: &Path, name: String) -> Result<Done, Failure> {
+    if !common.faults.is_empty() {
+        return Err(format!("{name}: --fault acts on recordings of samples, not on frames").into());
+    }
+    let bytes = std::fs::read(path).map_err(|why| format!("can't read {name}: {why}"))?;
+    let all = frames(&bytes).map_err(|why| format!("{name}: {why}"))?;
+    let (plan, told) = common.plan(args, None)?;
+    let options = RunOptions { press: args.press, every_s: args.every, roll_rad: &[], torque_nm: &[] };
+    let mut each = all.iter().copied();
+    let replayed = run_through(&plan, &options, |_| each.next());
+    let config = resolved(args, common, &plan, None);
+    let result = ReplayResult::new(name, Vec::new(), told, &replayed);
+    let frames = all.into_iter().map(|(_, frame)| frame).collect();
+    Ok(Done { replayed, result, config, frames })
+}
+
+fn resolved(
+    args: &Args,
+    common: &Common,
+    plan: &control::Plan,
+    resample: Option<&'static str>,
+) -> ReplayConfig {
+    let (preset, base) = match args.preset {
+        Preset::Thesis => ("thesis", Config::thesis(Law::H { cut: false })),
+        Preset::Product => ("product", Config::product()),
+    };
+    ReplayConfig {
+        preset,
+        law: common.law_name.clone(),
+        map: resample.map(|_| args.map.clone().unwrap_or_else(|| "by the columns".into())),
+        resample,
+        faults: args.fault.clone(),
+        parameters: leaves::departing(plan.config(), &base).into_iter().collect(),
+    }
+}
+
+fn write_one(args: &Args, outputs: &Outputs, done: &Done) -> Result<Ended, Failure> {
+    let Done { replayed, result, config, frames } = done;
+    let document =
+        ReplayDocument { schema: SCHEMA, tool: Tool::this(), config: config.clone(), result: result.clone() };
+    let figure = ReplayFigure {
+        title: &result.file,
+        rows: &replayed.rows,
+        modes: &replayed.modes,
+        causes: &replayed.causes,
+    };
+    let framed = match args.frames {
+        Some(_) => outputs.write_frames(|| frames.iter().flat_map(encode_frame).collect()),
+        None => Ok(()),
+    };
+    outputs.write(Results {
+        document: &document,
+        config: &config,
+        summary: || text(result),
+        table: || table::table(&config, &replayed.rows),
+        figure: || figure::replay(&figure),
+    })?;
+    framed.map(|()| Ended::Done)
+}
+
+fn write_many(
+    common: &Common,
+    outputs: &Outputs,
+    all: Vec<Done>,
+    unusable: Vec<String>,
+) -> Result<(), Failure> {
+    let Some(first) = all.first() else { return Err("none of the recordings can be used".into()) };
+    let config = first.config.clone();
+    let fault_s = common.faults.iter().map(|fault| fault.from_s).reduce(f64::min);
+    let summary = Summary::new(all.iter().map(|done| &done.replayed), fault_s);
+    let failed = unusable.len();
+    let rows: Vec<_> = all
+        .iter()
+        .flat_map(|done| done.result.causes.iter().map(|cause| (&done.result.file, cause)))
+        .collect();
+    let results: Vec<_> = all.iter().map(|done| done.result.clone()).collect();
+    let text = summary_text(&results, &summary);
+    let document = ReplaysDocument {
+        schema: SCHEMA,
+        tool: Tool::this(),
+        config: config.clone(),
+        recordings: results,
+        unusable,
+        summary,
+    };
+    let table = || {
+        let header = ["file", "number", "name", "first_s", "count", "total_s", "alarms"].map(str::to_owned);
+        let row = |(file, c): &(&String, &crate::replay::CauseRecord)| {
+            (file.to_string(), c.number, c.name, c.first_s, c.count, c.total_s, c.alarms)
+        };
+        table::rows(&config, &header, rows.iter().map(row))
+    };
+    outputs.write_data(&document, table, || text)?;
+    if failed > 0 { Err(format!("{failed} of the recordings could not be used").into()) } else { Ok(()) }
+}

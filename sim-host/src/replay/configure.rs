@@ -1,0 +1,104 @@
+//! The flashed code's configuration for a recording: only the sensors that it has are declared.
+
+use super::map::Map;
+use super::samples::Samples;
+use crate::leaves;
+use crate::plant::Sensor;
+use control::{Config, Wheel};
+
+/// What was changed for the recording.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
+pub struct Fitted {
+    /// Sensors that the configuration declares and the recording lacks: switched off.
+    pub switched_off: Vec<&'static str>,
+    /// Checks that lack a sensor or an axis: switched off, each with the reason.
+    pub unchecked: Vec<String>,
+}
+
+/// Declares the recording's sensors in a configuration, and sets the map's parameters.
+///
+/// # Errors
+/// A parameter of the map that does not exist, or a value that it may not have.
+pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitted, String> {
+    let mut told = Fitted::default();
+    let has = |sensor| samples.track(sensor).is_some();
+    for sensor in Sensor::ALL {
+        let wheel = config.input.front_wheel;
+        let declared = declared(config, sensor);
+        if declared.fitted && !has(sensor) {
+            declared.fitted = false;
+            told.switched_off.push(sensor.name());
+        } else if !declared.fitted && has(sensor) && sensor == Sensor::RearWheel {
+            // Under the published conditions the front wheel alone is declared; the rear one's has the same range.
+            *declared = control::Sensor { fitted: true, ..wheel };
+        }
+    }
+    config.input.wheel = match (has(Sensor::FrontWheel), config.input.wheel) {
+        (false, _) => Wheel::Rear,
+        (true, Wheel::Rear) if !has(Sensor::RearWheel) => Wheel::Front,
+        (_, wheel) => wheel,
+    };
+    unchecked(config, samples, &mut told);
+    // What was recorded was put together before.
+    config.calibration.polarity_checked = true;
+    for (key, value) in &map.parameters {
+        let words = match value {
+            toml::Value::String(word) => word.clone(),
+            toml::Value::Boolean(on) => if *on { "on" } else { "off" }.into(),
+            number => number.to_string(),
+        };
+        leaves::set(config, key, &words).map_err(|why| format!("parameters: {key} = {words}: {why}"))?;
+    }
+    Ok(told)
+}
+
+/// A sensor's declaration.
+fn declared(config: &mut Config, sensor: Sensor) -> &mut control::Sensor {
+    let input = &mut config.input;
+    match sensor {
+        Sensor::Gyro => &mut input.gyro,
+        Sensor::Accel => &mut input.accel,
+        Sensor::Steer => &mut input.steer,
+        Sensor::SteerRate => &mut input.steer_rate,
+        Sensor::FrontWheel => &mut input.front_wheel,
+        Sensor::RearWheel => &mut input.rear_wheel,
+        Sensor::RiderTorque => &mut input.rider_torque,
+        Sensor::MotorReport => &mut input.motor,
+        Sensor::Path => &mut input.path,
+    }
+}
+
+/// Switches off the checks for which something was made up or is not there, and tells those that have nothing to
+/// compare.
+fn unchecked(config: &mut Config, samples: &Samples, told: &mut Fitted) {
+    let made_up = |sensor: Sensor| samples.track(sensor).map_or([false; 3], |track| track.made_up);
+    let has = |sensor| samples.track(sensor).is_some();
+    if made_up(Sensor::Gyro) != [false; 3] {
+        (config.cross.yaw_rad_s, config.cross.yaw_slow_rad_s, config.cross.yaw_slope) = (None, None, false);
+        config.response.gyro = false;
+        told.unchecked.push("yaw and gyro response: not all axes of the gyro were recorded".into());
+    }
+    if made_up(Sensor::Accel) != [false; 3] {
+        (config.permit.lifted_m_s2, config.permit.crash_m_s2) = (None, None);
+        told.unchecked.push("lifted and crash: not all axes of the accelerometer were recorded".into());
+    }
+    // Our torque did not act: what the bicycle did answers to another.
+    if config.response.motor.take().is_some() {
+        told.unchecked.push("motor response: the torque that comes out did not act on this bicycle".into());
+    }
+    let lacks = [
+        (
+            config.cross.wheels_m_s.is_some() && !(has(Sensor::FrontWheel) && has(Sensor::RearWheel)),
+            "wheels: one wheel only",
+        ),
+        (config.cross.yaw_rad_s.is_some() && !has(Sensor::Steer), "yaw: no steer angle"),
+        (
+            config.cross.steer_rad.is_some() && !(has(Sensor::Steer) && has(Sensor::SteerRate)),
+            "steer: angle and rate are not both there",
+        ),
+        (config.cross.motor_nm.is_some() && !has(Sensor::MotorReport), "motor: no report of the drive"),
+        (config.response.gyro && !has(Sensor::Accel), "gyro response: no accelerometer"),
+        (config.permit.lifted_m_s2.is_some() && !has(Sensor::Accel), "lifted and crash: no accelerometer"),
+    ];
+    told.unchecked.extend(lacks.into_iter().filter(|(lacks, _)| *lacks).map(|(_, why)| why.to_owned()));
+}

@@ -1,0 +1,22 @@
+//! A recorded ride through the flashed code: what it would have done, and how near each check was to speaking.
+//!
+//! Open loop: the torque that comes out did not act on the bicycle that was recorded.
+
+mod checks;
+mod compare;
+mod configure;
+mod feed;
+mod map;
+mod run;
+mod samples;
+mod summary;
+mod unit;
+
+pub use checks::Check;
+pub use compare::Compared;
+pub use configure::{Fitted, fitted};
+pub use feed::{Feed, FeedOptions};
+pub use map::{Map, Mapped, References, Resample, SHIPPED, Signal, Source, Switch, Time};
+pub use run::{CauseRecord, ModeRecord, Press, Replayed, Row, RunOptions, frames, run};
+pub use samples::{Sample, Samples, Track, samples};
+pub use summary::{Alarms, Summary};

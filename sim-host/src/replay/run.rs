@@ -1,0 +1,401 @@
+//! Frames through the control step, and the account of what it did.
+
+use super::checks::{Check, Checks};
+use super::compare::{Compared, Comparison, held};
+use control::wire::{FRAME_BYTES, decode_frame};
+use control::{ActiveLimits, CAUSES, Cause, Causes, Command, Mode, Plan, SensorFrame, State};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// When the rider's switch is pressed in a recording without one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Press {
+    /// As often as a press would engage, also after a fault.
+    #[default]
+    Again,
+    /// The first time that a press would engage, and never again.
+    Once,
+}
+
+/// How a recording is run.
+#[derive(Clone, Debug)]
+pub struct RunOptions<'a> {
+    /// The switch.
+    pub press: Press,
+    /// Time between two rows of the table \[s\].
+    pub every_s: f64,
+    /// The log's own roll angle \[rad\] and torque \[N m\] over time \[s\].
+    pub roll_rad: &'a [(f64, f64)],
+    /// See `roll_rad`.
+    pub torque_nm: &'a [(f64, f64)],
+}
+
+/// From when on the controller stood where.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct ModeRecord {
+    /// Time in the recording \[s\].
+    pub from_s: f64,
+    /// Its name.
+    pub mode: &'static str,
+}
+
+/// One cause over the whole recording.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct CauseRecord {
+    /// Its number.
+    pub number: u8,
+    /// Its name.
+    pub name: &'static str,
+    /// When it was first there \[s\].
+    pub first_s: f64,
+    /// How often it began.
+    pub count: u32,
+    /// For how long it was there \[s\].
+    pub total_s: f64,
+    /// How often it began while the bicycle rode or the assist was engaged, after the controller was ready for the first
+    /// time. Causes that tell a state and no fault, as the switch being off, have none.
+    pub alarms: u32,
+    /// When these began \[s\].
+    #[serde(skip)]
+    pub alarms_s: Vec<f64>,
+}
+
+/// One control period, as a row of the table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Time in the recording \[s\].
+    pub t: f64,
+    /// Where the controller stood, as the number of [`control::Mode`].
+    pub mode: u8,
+    /// What stood in the way of the torque, as bits of [`control::Causes`].
+    pub causes: u64,
+    /// Limits that changed the torque, as bits of [`control::ActiveLimits`].
+    pub limits: u16,
+    /// The steer torque commanded \[N m\].
+    pub torque: f32,
+    /// The gain \[N m s/rad\].
+    pub gain: f32,
+    /// Roll angle as estimated \[rad\], and its bound.
+    pub roll: f32,
+    /// See `roll`.
+    pub roll_bound: f32,
+    /// The sensors as told; empty where there is no sample.
+    pub measured_roll_rate: Option<f32>,
+    /// The gyro about y \[rad/s\].
+    pub measured_pitch_rate: Option<f32>,
+    /// The gyro about z \[rad/s\].
+    pub measured_yaw_rate: Option<f32>,
+    /// Steer angle \[rad\].
+    pub measured_steer: Option<f32>,
+    /// Front wheel's speed \[m/s\].
+    pub measured_front_speed: Option<f32>,
+    /// Rear wheel's speed \[m/s\].
+    pub measured_rear_speed: Option<f32>,
+    /// Residuals of the checks between sensors; empty where there is nothing to compare.
+    pub wheels_residual: Option<f32>,
+    /// Of the yaw rate \[rad/s\].
+    pub yaw_residual: Option<f32>,
+    /// Of the steer angle \[rad\].
+    pub steer_residual: Option<f32>,
+    /// Of the drive's torque \[N m\].
+    pub motor_residual: Option<f32>,
+    /// The log's own roll angle \[rad\].
+    pub log_roll: Option<f64>,
+    /// The log's own torque \[N m\].
+    pub log_torque: Option<f64>,
+}
+
+/// The account of a replay.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Replayed {
+    /// First and last control instant \[s\].
+    pub span_s: (f64, f64),
+    /// Control periods.
+    pub periods: u64,
+    /// For how long it was engaged, in limp mode, in fault \[s\].
+    pub engaged_s: f64,
+    /// See `engaged_s`.
+    pub limp_s: f64,
+    /// See `engaged_s`.
+    pub fault_s: f64,
+    /// For how long the bicycle rode, faster than 1 m/s \[s\].
+    pub riding_s: f64,
+    /// The modes in their order.
+    pub modes: Vec<ModeRecord>,
+    /// The causes that were there, by number.
+    pub causes: Vec<CauseRecord>,
+    /// Largest torque commanded \[N m\].
+    pub peak_torque_nm: f64,
+    /// Root mean square of the torque while engaged \[N m\].
+    pub rms_torque_nm: f64,
+    /// Part of the engaged periods in which the limit of the rate of change acted.
+    pub rate_limited: f64,
+    /// How near each check came to speaking.
+    pub checks: Vec<Check>,
+    /// Roll angle as estimated beside the log's own \[rad\], while riding.
+    pub roll: Option<Compared>,
+    /// Part of these instants in which the log's roll lay inside the estimate's bound.
+    pub roll_inside_bound: Option<f64>,
+    /// Torque beside the log's own \[N m\], while engaged.
+    pub torque: Option<Compared>,
+    /// The table.
+    pub rows: Vec<Row>,
+}
+
+/// Causes that tell a state in which there is no torque, and no fault.
+const STATES: Causes = Causes::all(&[
+    Cause::PolarityUnchecked,
+    Cause::Filling,
+    Cause::Parked,
+    Cause::SwitchHeld,
+    Cause::SwitchOff,
+    Cause::SelfTest,
+    Cause::RollUnknown,
+]);
+
+/// Speed from which on a bicycle rides \[m/s\].
+const RIDING_M_S: f32 = 1.0;
+
+/// The frames in a file of `ride --frames` or `replay --frames`, each at its time \[s\], the first at 0.
+///
+/// # Errors
+/// The bytes are no whole number of frames, or there is none.
+pub fn frames(bytes: &[u8]) -> Result<Vec<(f64, SensorFrame)>, String> {
+    let (whole, rest) = bytes.as_chunks::<FRAME_BYTES>();
+    if whole.is_empty() || !rest.is_empty() {
+        return Err(format!("{} bytes are no whole number of frames of {FRAME_BYTES} bytes", bytes.len()));
+    }
+    let mut t_s = 0.0;
+    let mut before_us: Option<u32> = None;
+    let at = |bytes: &[u8; FRAME_BYTES]| {
+        let frame = decode_frame(bytes);
+        t_s += before_us.map_or(0.0, |before| f64::from(frame.now_us.wrapping_sub(before)) * 1e-6);
+        before_us = Some(frame.now_us);
+        (t_s, frame)
+    };
+    Ok(whole.iter().map(at).collect())
+}
+
+/// Runs the controller over all that `next` gives: the time \[s\] and the frame of each control instant, with the switch
+/// pressed as told where nobody recorded it.
+pub fn run(
+    plan: &Plan,
+    options: &RunOptions<'_>,
+    mut next: impl FnMut(bool) -> Option<(f64, SensorFrame)>,
+) -> Replayed {
+    let period_s = 1.0 / f64::from(plan.config().rate_hz);
+    let (mut state, mut account) = (State::default(), Account::new(plan));
+    let mut pressed = Pressed { press: options.press, engaged: false, ended: false };
+    let (mut next_roll, mut next_torque, mut next_row_s) = (0, 0, f64::NEG_INFINITY);
+    let mut command: Option<Command> = None;
+    while let Some((t_s, frame)) = next(command.is_some_and(|command| pressed.next(plan, &command))) {
+        let now = control::step(plan, &mut state, &frame);
+        let log =
+            [held(options.roll_rad, &mut next_roll, t_s), held(options.torque_nm, &mut next_torque, t_s)];
+        account.take(t_s, period_s, &frame, &state, &now, log);
+        if t_s >= next_row_s {
+            next_row_s = t_s + options.every_s - 0.5 * period_s;
+            account.done.rows.push(row(t_s, &frame, &state, &now, log));
+        }
+        command = Some(now);
+    }
+    account.finish()
+}
+
+/// The rider's hand at the switch.
+struct Pressed {
+    press: Press,
+    engaged: bool,
+    ended: bool,
+}
+
+impl Pressed {
+    /// Whether it is on in the period after this command.
+    fn next(&mut self, plan: &Plan, command: &Command) -> bool {
+        let drives = command.mode.drives();
+        self.ended |= self.engaged && !drives;
+        self.engaged |= drives;
+        drives || (plan.ready(command) && !(self.ended && self.press == Press::Once))
+    }
+}
+
+/// What a replay adds up to.
+struct Account {
+    done: Replayed,
+    checks: Checks,
+    mode: Mode,
+    causes: Causes,
+    /// Whether it was ready once.
+    started: bool,
+    speed_m_s: f32,
+    limited: u64,
+    engaged: u64,
+    squares: f64,
+    roll: Comparison,
+    inside: u64,
+    torque: Comparison,
+}
+
+impl Account {
+    fn new(plan: &Plan) -> Self {
+        Self {
+            done: Replayed { span_s: (f64::NAN, f64::NAN), ..Replayed::default() },
+            checks: Checks::new(plan.config()),
+            mode: Mode::Off,
+            causes: Causes::NONE,
+            started: false,
+            speed_m_s: 0.0,
+            limited: 0,
+            engaged: 0,
+            squares: 0.0,
+            roll: Comparison::default(),
+            inside: 0,
+            torque: Comparison::default(),
+        }
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "one control period, which has so many sides")]
+    fn take(
+        &mut self,
+        t_s: f64,
+        period_s: f64,
+        frame: &SensorFrame,
+        state: &State,
+        command: &Command,
+        [log_roll, log_torque]: [Option<f64>; 2],
+    ) {
+        let done = &mut self.done;
+        if done.periods == 0 {
+            done.span_s.0 = t_s;
+        }
+        done.span_s.1 = t_s;
+        done.periods += 1;
+        for sample in [&frame.front_wheel_m_s, &frame.rear_wheel_m_s] {
+            if sample.age_ticks == 0 {
+                self.speed_m_s = sample.value;
+            }
+        }
+        let rides = self.speed_m_s > RIDING_M_S;
+        done.riding_s += if rides { period_s } else { 0.0 };
+        // Where it was engaged, whatever the speed says: that may be what is wrong.
+        let counts = self.started && (rides || self.mode.drives());
+        self.started |= command.mode >= Mode::Standby;
+        causes(&mut done.causes, t_s, period_s, command.causes, self.causes, counts);
+        self.causes = command.causes;
+        if command.mode != self.mode || done.modes.is_empty() {
+            done.modes.push(ModeRecord { from_s: t_s, mode: command.mode.name() });
+            self.mode = command.mode;
+        }
+        let torque_nm = f64::from(command.torque_nm);
+        done.peak_torque_nm = done.peak_torque_nm.max(torque_nm.abs());
+        match command.mode {
+            Mode::Engaged => done.engaged_s += period_s,
+            Mode::Limp => done.limp_s += period_s,
+            Mode::Fault => done.fault_s += period_s,
+            _ => {}
+        }
+        if command.mode.drives() {
+            self.engaged += 1;
+            self.limited += u64::from(command.limits.0 & ActiveLimits::RATE.0 != 0);
+            self.squares += torque_nm * torque_nm;
+            if let Some(theirs) = log_torque {
+                self.torque.take(f64::from(state.torque_nm()), theirs);
+            }
+        }
+        if let Some(theirs) = log_roll.filter(|_| rides) {
+            let roll = state.roll();
+            self.roll.take(f64::from(roll.angle_rad), theirs);
+            self.inside +=
+                u64::from((f64::from(roll.angle_rad) - theirs).abs() <= f64::from(roll.error.bound_rad()));
+        }
+        self.checks.take(t_s, frame, state);
+    }
+
+    fn finish(self) -> Replayed {
+        let engaged = self.engaged.max(1) as f64;
+        let roll = self.roll.done();
+        Replayed {
+            checks: self.checks.done(),
+            rate_limited: self.limited as f64 / engaged,
+            rms_torque_nm: (self.squares / engaged).sqrt(),
+            roll_inside_bound: roll.map(|compared| self.inside as f64 / compared.count as f64),
+            roll,
+            torque: self.torque.done(),
+            ..self.done
+        }
+    }
+}
+
+/// Books the causes of a period, those of the one before being `before`.
+fn causes(
+    records: &mut Vec<CauseRecord>,
+    t_s: f64,
+    period_s: f64,
+    now: Causes,
+    before: Causes,
+    counts: bool,
+) {
+    for cause in CAUSES.into_iter().filter(|cause| now.has(*cause)) {
+        let number = cause.code();
+        let at = records.partition_point(|record| record.number < number);
+        if records.get(at).is_none_or(|record| record.number != number) {
+            let name = crate::board::causes::named(Causes::of(cause)).first().map_or("?", |named| named.name);
+            let record = CauseRecord {
+                number,
+                name,
+                first_s: t_s,
+                count: 0,
+                total_s: 0.0,
+                alarms: 0,
+                alarms_s: Vec::new(),
+            };
+            records.insert(at, record);
+        }
+        let record = &mut records[at];
+        record.total_s += period_s;
+        if !before.has(cause) {
+            record.count += 1;
+            if counts && !STATES.has(cause) {
+                record.alarms += 1;
+                record.alarms_s.push(t_s);
+            }
+        }
+    }
+}
+
+fn row(
+    t: f64,
+    frame: &SensorFrame,
+    state: &State,
+    command: &Command,
+    [log_roll, log_torque]: [Option<f64>; 2],
+) -> Row {
+    let there = |age: u16| age != control::frame::MISSING;
+    let sample = |sample: &control::Sample| there(sample.age_ticks).then_some(sample.value);
+    let [x, y, z] = frame.gyro_rad_s.value.map(|rate| there(frame.gyro_rad_s.age_ticks).then_some(rate));
+    let known = |value: f32| (!value.is_nan()).then_some(value);
+    let (residuals, roll) = (state.residuals(), state.roll());
+    Row {
+        t,
+        mode: command.mode as u8,
+        causes: command.causes.0,
+        limits: command.limits.0,
+        torque: command.torque_nm,
+        gain: command.gain_nm_s_rad,
+        roll: roll.angle_rad,
+        roll_bound: roll.error.bound_rad(),
+        measured_roll_rate: x,
+        measured_pitch_rate: y,
+        measured_yaw_rate: z,
+        measured_steer: sample(&frame.steer_rad),
+        measured_front_speed: sample(&frame.front_wheel_m_s),
+        measured_rear_speed: sample(&frame.rear_wheel_m_s),
+        wheels_residual: known(residuals.wheels_m_s),
+        yaw_residual: known(residuals.yaw_rad_s),
+        steer_residual: known(residuals.steer_rad),
+        motor_residual: known(residuals.motor_nm),
+        log_roll,
+        log_torque,
+    }
+}

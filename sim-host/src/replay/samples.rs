@@ -1,0 +1,333 @@
+//! The samples of each sensor in a recording: what the columns say by the map, in SI units and the bicycle's axes.
+
+use super::map::{Map, Mapped, Signal, Source, axes_of, quantity_of};
+use super::unit::Quantity;
+use crate::plant::Sensor;
+use crate::recording::{Column, Group, Recording, Remark};
+
+/// One sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// When it was there \[s\], in the recording's own time.
+    pub t_s: f64,
+    /// Its values by [`Sensor::axes`], SI; zero beyond.
+    pub value: [f64; 3],
+}
+
+/// A sensor's samples, in the order of time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Track {
+    /// Which sensor.
+    pub sensor: Sensor,
+    /// Its samples: at least one, each later than the one before.
+    pub samples: Vec<Sample>,
+    /// Axes without a column, whose value was made up.
+    pub made_up: [bool; 3],
+}
+
+impl Track {
+    /// Median time between two samples \[s\]; none where there is but one.
+    pub fn period_s(&self) -> Option<f64> {
+        let mut gaps: Vec<f64> = self.samples.windows(2).map(|two| two[1].t_s - two[0].t_s).collect();
+        gaps.sort_by(f64::total_cmp);
+        gaps.get(gaps.len() / 2).copied()
+    }
+}
+
+/// A recording by its map.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Samples {
+    /// The sensors that it has.
+    pub tracks: Vec<Track>,
+    /// The rider's switch, where it is recorded: when it is on, and from when on that holds \[s\].
+    pub engage: Vec<(f64, bool)>,
+    /// The log's own roll angle \[rad\] over time \[s\].
+    pub roll_rad: Vec<(f64, f64)>,
+    /// The log's own steer torque \[N m\] over time \[s\].
+    pub torque_nm: Vec<(f64, f64)>,
+    /// What could not be used as it stands, or looks wrong.
+    pub remarks: Vec<Remark>,
+}
+
+impl Samples {
+    /// The samples of a sensor.
+    pub fn track(&self, sensor: Sensor) -> Option<&Track> {
+        self.tracks.iter().find(|track| track.sensor == sensor)
+    }
+
+    /// From the first sample of any sensor to the last \[s\].
+    pub fn span_s(&self) -> Option<(f64, f64)> {
+        let ends = |track: &Track| Some((track.samples.first()?.t_s, track.samples.last()?.t_s));
+        self.tracks.iter().filter_map(ends).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    }
+}
+
+/// A remark without a line.
+fn remark(column: Option<&str>, what: String) -> Remark {
+    Remark { line: None, column: column.map(str::to_owned), what }
+}
+
+/// Applies a map to a recording whose ages are counted in periods of `period_s`.
+///
+/// # Errors
+/// There is no time, no gyro or no wheel in it; a column that the map names is there in part only.
+pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Samples, Remark> {
+    let mut all = Samples { remarks: recording.remarks.clone(), ..Samples::default() };
+    for Mapped { sensor, signal } in map.sensors() {
+        match find(recording, sensor, signal)? {
+            None => {}
+            Some(Found { group, axes, made_up }) => {
+                let track = take(group, map, sensor, signal, &axes, made_up, period_s, &mut all.remarks)?;
+                if let Some(track) = track {
+                    plausible(&track, &mut all.remarks);
+                    all.tracks.push(track);
+                }
+            }
+        }
+    }
+    let has = |sensor| all.track(sensor).is_some();
+    if !has(Sensor::Gyro) {
+        return Err(missing(recording, map, Sensor::Gyro));
+    }
+    if !has(Sensor::FrontWheel) && !has(Sensor::RearWheel) {
+        return Err(missing(recording, map, Sensor::RearWheel));
+    }
+    if let Some(switch) = &map.engage
+        && let Some((group, column)) = column(recording, &switch.column)
+    {
+        let times = times(group, map, None)?;
+        let on = |(t_s, value): (f64, &f64)| (t_s, *value != 0.0);
+        all.engage = times.into_iter().zip(&column.values).filter(|(_, v)| !v.is_nan()).map(on).collect();
+    }
+    for (signal, quantity, to) in [
+        (&map.reference.roll, Quantity::Angle, &mut all.roll_rad),
+        (&map.reference.torque, Quantity::Torque, &mut all.torque_nm),
+    ] {
+        if let Some(signal) = signal
+            && let [Source::Column(name)] = signal.columns.as_slice()
+            && let Some((group, column)) = column(recording, name)
+        {
+            let factor = quantity.factor(signal.unit.as_deref()).unwrap_or(1.0);
+            let value = |value: &f64| factor * (signal.scale * value + signal.offset);
+            let times = times(group, map, signal.time.as_deref())?;
+            *to =
+                times.into_iter().zip(column.values.iter().map(value)).filter(|(_, v)| !v.is_nan()).collect();
+        }
+    }
+    Ok(all)
+}
+
+/// Nothing to replay without this sensor.
+fn missing(recording: &Recording, map: &Map, sensor: Sensor) -> Remark {
+    let wanted = map.sensors().find(|mapped| mapped.sensor == sensor);
+    let wanted = wanted.map_or("none".into(), |mapped| {
+        let names: Vec<_> = mapped.signal.columns.iter().map(|source| format!("{source:?}")).collect();
+        names.join(", ")
+    });
+    let there: Vec<_> =
+        recording.groups.iter().flat_map(|group| &group.columns).map(|column| column.name.as_str()).collect();
+    let name = if sensor == Sensor::Gyro { "gyro" } else { "wheel speed" };
+    remark(
+        None,
+        format!("no {name}: the map names {wanted}; the recording has the columns {}", there.join(", ")),
+    )
+}
+
+/// A column by its name, alone or with its group's in front.
+fn column<'a>(recording: &'a Recording, name: &str) -> Option<(&'a Group, &'a Column)> {
+    let of = |group: &'a Group, name: &str| group.columns.iter().find(|column| column.name == name);
+    let plain = recording.groups.iter().find_map(|group| Some((group, of(group, name)?)));
+    plain.or_else(|| {
+        let (group, name) = name.split_once('.')?;
+        let group = recording.groups.iter().find(|one| one.name == group)?;
+        Some((group, of(group, name)?))
+    })
+}
+
+/// What a sensor's axes are read from.
+enum Axis<'a> {
+    Column(&'a Column),
+    Constant(f64),
+}
+
+struct Found<'a> {
+    group: &'a Group,
+    axes: Vec<Axis<'a>>,
+    made_up: [bool; 3],
+}
+
+/// What stands in for an axis that nobody recorded \[SI\].
+fn stand_in(sensor: Sensor, axis: usize) -> f64 {
+    const GRAVITY: f64 = -9.81;
+    if sensor == Sensor::Accel && axis == 2 { GRAVITY } else { 0.0 }
+}
+
+/// The columns of a sensor, `None` if the recording has none of them. Of gyro and accelerometer only the axis about or
+/// across which the bicycle rolls must be there.
+fn find<'a>(recording: &'a Recording, sensor: Sensor, signal: &Signal) -> Result<Option<Found<'a>>, Remark> {
+    let mut group: Option<&Group> = None;
+    let (mut axes, mut made_up, mut absent) = (Vec::new(), [false; 3], Vec::new());
+    for (place, source) in signal.columns.iter().enumerate() {
+        match source {
+            Source::Constant(value) => {
+                axes.push(Axis::Constant(*value));
+                made_up[place] = true;
+            }
+            Source::Column(name) => match column(recording, name) {
+                Some((at, found)) => {
+                    if group.is_some_and(|group| !std::ptr::eq(group, at)) {
+                        let what = "stands in another message than the sensor's other axes".to_owned();
+                        return Err(remark(Some(name), what));
+                    }
+                    group = Some(at);
+                    axes.push(Axis::Column(found));
+                }
+                None => {
+                    absent.push((place, name.as_str()));
+                    axes.push(Axis::Constant(f64::NAN));
+                }
+            },
+        }
+    }
+    let Some(group) = group else { return Ok(None) };
+    // The axis of the bicycle's x of a gyro, y of an accelerometer, in the log's own.
+    let needed = match sensor {
+        Sensor::Gyro => Some(signal.turns()[0].0),
+        Sensor::Accel => Some(signal.turns()[1].0),
+        _ => None,
+    };
+    for (place, name) in absent {
+        if needed.is_none() || needed == Some(place) {
+            let what = format!("the map names it for {}, the recording has no such column", sensor.name());
+            return Err(remark(Some(name), what));
+        }
+        let to = signal.turns().iter().position(|(from, _)| *from == place).unwrap_or(place);
+        let factor = quantity_of(sensor).factor(signal.unit.as_deref()).unwrap_or(1.0);
+        let (_, sign) = signal.turns()[to];
+        axes[place] = Axis::Constant((stand_in(sensor, to) * sign / factor - signal.offset) / signal.scale);
+        made_up[to] = true;
+    }
+    Ok(Some(Found { group, axes, made_up }))
+}
+
+/// When each row of a group was recorded \[s\]; NaN where it does not say.
+fn times(group: &Group, map: &Map, own: Option<&str>) -> Result<Vec<f64>, Remark> {
+    let time = map.time.as_ref();
+    let factor = Quantity::Time.factor(time.and_then(|time| time.unit.as_deref())).unwrap_or(1.0);
+    let named = |name: &str| {
+        let found = group.columns.iter().find(|column| column.name == name);
+        let values = |column: &Column| column.values.iter().map(|value| value * factor).collect();
+        found.map(values).ok_or_else(|| {
+            remark(Some(name), "the map names it for the time; there is no such column".into())
+        })
+    };
+    match (
+        own,
+        &group.times_s,
+        time.and_then(|time| time.column.as_deref()),
+        time.and_then(|time| time.rate_hz),
+    ) {
+        (Some(own), ..) => named(own),
+        (None, Some(times_s), ..) => Ok(times_s.clone()),
+        (None, None, Some(column), _) => named(column),
+        (None, None, None, Some(rate_hz)) => {
+            let rows = group.columns.first().map_or(0, |column| column.values.len());
+            Ok((0..rows).map(|row| row as f64 / rate_hz).collect())
+        }
+        (None, None, None, None) => {
+            Err(remark(None, "the map says nothing of the time, nor does the recording".into()))
+        }
+    }
+}
+
+/// A sensor's samples, those that can't be used told and left out; none if no row has one.
+#[allow(clippy::too_many_arguments, reason = "one call; each is a different thing")]
+fn take(
+    group: &Group,
+    map: &Map,
+    sensor: Sensor,
+    signal: &Signal,
+    axes: &[Axis<'_>],
+    made_up: [bool; 3],
+    period_s: f64,
+    remarks: &mut Vec<Remark>,
+) -> Result<Option<Track>, Remark> {
+    let factor = quantity_of(sensor).factor(signal.unit.as_deref()).unwrap_or(1.0);
+    let times = times(group, map, signal.time.as_deref())?;
+    let ages = signal.age.as_ref().and_then(|age| group.columns.iter().find(|column| column.name == *age));
+    let turns = signal.turns();
+    let mut samples: Vec<Sample> = Vec::new();
+    let (mut back, mut first_back) = (0_u64, None);
+    for (row, time_s) in times.iter().enumerate() {
+        let cell = |axis: &Axis<'_>| match axis {
+            Axis::Column(column) => column.values[row],
+            Axis::Constant(value) => *value,
+        };
+        let mut own = [0.0; 3];
+        for (own, axis) in own.iter_mut().zip(axes) {
+            *own = factor * (signal.scale * cell(axis) + signal.offset);
+        }
+        let value = if axes_of(sensor) == 3 { turns.map(|(from, sign)| sign * own[from]) } else { own };
+        let age_s = ages.map_or(0.0, |ages| ages.values[row] * period_s);
+        let t_s = time_s - age_s + signal.late_s;
+        if !t_s.is_finite() || value.iter().any(|x| x.is_nan()) {
+            continue;
+        }
+        match samples.last() {
+            // The same sample again, some periods older.
+            Some(last) if ages.is_some() && t_s < last.t_s + 0.5 * period_s => {}
+            Some(last) if t_s <= last.t_s => {
+                back += 1;
+                first_back.get_or_insert((group.lines.get(row).copied(), last.t_s, t_s));
+            }
+            _ => samples.push(Sample { t_s, value }),
+        }
+    }
+    if let Some((line, from, to)) = first_back {
+        let verb = if from == to { "stands at" } else { "goes back from" };
+        let to = if from == to { String::new() } else { format!(" to {to}") };
+        let what =
+            format!("{}: time {verb} {from} s{to}; {back} rows without a later time left out", sensor.name());
+        remarks.push(Remark { line, column: None, what });
+    }
+    if samples.len() < 2 {
+        let what = format!("{}: {} usable samples; at least 2 are needed", sensor.name(), samples.len());
+        remarks.push(remark(None, what));
+        return Ok(None);
+    }
+    Ok(Some(Track { sensor, samples, made_up }))
+}
+
+/// Tells values that look like another unit or another mounting.
+fn plausible(track: &Track, remarks: &mut Vec<Remark>) {
+    let name = track.sensor.name();
+    let mut sizes: Vec<f64> =
+        track.samples.iter().map(|sample| sample.value.iter().map(|x| x * x).sum::<f64>().sqrt()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let part = |share: f64| sizes[((sizes.len() - 1) as f64 * share) as usize];
+    if let Some((most, unit)) = quantity_of(track.sensor).implausible()
+        && part(0.95) > most
+        && track.sensor != Sensor::Path
+    {
+        remarks.push(remark(
+            None,
+            format!(
+                "{name}: one sample in twenty is beyond {:.3} in SI units; are these {unit}?",
+                part(0.95)
+            ),
+        ));
+    }
+    if track.sensor == Sensor::Accel {
+        let down: f64 = track.samples.iter().map(|sample| sample.value[2]).sum::<f64>() / sizes.len() as f64;
+        if part(0.5) < 2.0 {
+            let what =
+                format!("{name}: half of the samples are below {:.3} m/s^2; is the unit g?", part(0.5));
+            remarks.push(remark(None, what));
+        } else if down > -0.5 * part(0.5) {
+            let what = format!(
+                "{name}: along z it says {down:.2} m/s^2 in the mean; upright and at rest it must be -9.81: are the axes right?"
+            );
+            remarks.push(remark(None, what));
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! The units that a map may name, each a factor to SI.
+
+/// What a column measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    /// \[s\]
+    Time,
+    /// \[rad\]
+    Angle,
+    /// \[rad/s\]
+    Rate,
+    /// \[m/s^2\]
+    Force,
+    /// \[m/s\]
+    Speed,
+    /// \[N m\]
+    Torque,
+}
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+/// Standard gravity, by definition \[m/s^2\].
+const GRAVITY: f64 = 9.806_65;
+
+impl Quantity {
+    /// The units it may have; the first is the default.
+    const fn units(self) -> &'static [(&'static str, f64)] {
+        match self {
+            Self::Time => &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)],
+            Self::Angle => &[("rad", 1.0), ("deg", DEGREE)],
+            Self::Rate => &[("rad/s", 1.0), ("deg/s", DEGREE)],
+            Self::Force => &[("m/s^2", 1.0), ("g", GRAVITY)],
+            Self::Speed => &[("m/s", 1.0), ("km/h", 1.0 / 3.6)],
+            Self::Torque => &[("N m", 1.0)],
+        }
+    }
+
+    /// The factor from a unit to SI; without a unit it is SI.
+    ///
+    /// # Errors
+    /// Names the unit and those there are.
+    pub(super) fn factor(self, unit: Option<&str>) -> Result<f64, String> {
+        let Some(unit) = unit else { return Ok(1.0) };
+        let found = self.units().iter().find(|(name, _)| *name == unit);
+        found.map(|(_, factor)| *factor).ok_or_else(|| {
+            let names: Vec<_> = self.units().iter().map(|(name, _)| *name).collect();
+            format!("unit = \"{unit}\" is none of {}", names.join(", "))
+        })
+    }
+
+    /// A magnitude that recorded values in SI reach only if their unit is another, and which one that would be.
+    pub(super) const fn implausible(self) -> Option<(f64, &'static str)> {
+        match self {
+            Self::Angle => Some((6.5, "degrees")),
+            Self::Rate => Some((60.0, "degrees a second")),
+            Self::Speed => Some((25.0, "km/h")),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! A replay as document and as text.
+
+use super::document::SCHEMA;
+use super::resolved::Tool;
+use crate::replay::{CauseRecord, Check, Compared, Fitted, ModeRecord, Replayed, Summary};
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// How recordings were replayed.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ReplayConfig {
+    /// "product" or "thesis".
+    pub preset: &'static str,
+    /// The law's name.
+    pub law: String,
+    /// Name or file of the map; null for frames.
+    pub map: Option<String>,
+    /// "hold" or "interpolate"; null for frames.
+    pub resample: Option<&'static str>,
+    /// The faults that were put in.
+    pub faults: Vec<String>,
+    /// Parameters that differ from the preset's, with their values.
+    pub parameters: BTreeMap<String, String>,
+}
+
+/// One recording, replayed.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ReplayResult {
+    /// The recording.
+    pub file: String,
+    /// What could not be used as it stands, or looks wrong.
+    pub remarks: Vec<String>,
+    /// Sensors and checks that were switched off for want of a recording.
+    #[serde(flatten)]
+    pub fitted: Fitted,
+    /// First and last control instant \[s\].
+    pub span_s: (f64, f64),
+    /// Control periods.
+    pub periods: u64,
+    /// For how long it was engaged \[s\].
+    pub engaged_s: f64,
+    /// For how long it was in limp mode \[s\].
+    pub limp_s: f64,
+    /// For how long it was in fault \[s\].
+    pub fault_s: f64,
+    /// For how long the bicycle rode, faster than 1 m/s \[s\].
+    pub riding_s: f64,
+    /// The modes in their order.
+    pub modes: Vec<ModeRecord>,
+    /// The causes that were there, by number.
+    pub causes: Vec<CauseRecord>,
+    /// Largest torque commanded \[N m\].
+    pub peak_torque_nm: f64,
+    /// Root mean square of the torque while engaged \[N m\].
+    pub rms_torque_nm: f64,
+    /// Part of the engaged periods in which the limit of the rate of change acted.
+    pub rate_limited: f64,
+    /// How near each check came to speaking.
+    pub checks: Vec<Check>,
+    /// Roll angle as estimated beside the log's own while riding \[rad\]; null if the log has none.
+    pub roll: Option<Compared>,
+    /// Part of these instants in which the log's roll lay inside the estimate's bound.
+    pub roll_inside_bound: Option<f64>,
+    /// Torque beside the log's own while engaged \[N m\]; null if the log has none.
+    pub torque: Option<Compared>,
+}
+
+impl ReplayResult {
+    /// Of a file.
+    pub fn new(file: String, remarks: Vec<String>, fitted: Fitted, replayed: &Replayed) -> Self {
+        let r = replayed.clone();
+        Self {
+            file,
+            remarks,
+            fitted,
+            span_s: r.span_s,
+            periods: r.periods,
+            engaged_s: r.engaged_s,
+            limp_s: r.limp_s,
+            fault_s: r.fault_s,
+            riding_s: r.riding_s,
+            modes: r.modes,
+            causes: r.causes,
+            peak_torque_nm: r.peak_torque_nm,
+            rms_torque_nm: r.rms_torque_nm,
+            rate_limited: r.rate_limited,
+            checks: r.checks,
+            roll: r.roll,
+            roll_inside_bound: r.roll_inside_bound,
+            torque: r.torque,
+        }
+    }
+}
+
+/// `replay` of one recording.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ReplayDocument {
+    /// 1.
+    #[schemars(extend("const" = SCHEMA))]
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// How it was replayed.
+    pub config: ReplayConfig,
+    /// What came of it.
+    #[serde(flatten)]
+    pub result: ReplayResult,
+}
+
+/// `replay` of several recordings.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ReplaysDocument {
+    /// 1.
+    #[schemars(extend("const" = SCHEMA))]
+    pub schema: u32,
+    /// The program.
+    pub tool: Tool,
+    /// How they were replayed.
+    pub config: ReplayConfig,
+    /// Each recording.
+    pub recordings: Vec<ReplayResult>,
+    /// Files that could not be used, each with the reason.
+    pub unusable: Vec<String>,
+    /// All together.
+    pub summary: Summary,
+}
+
+/// One recording in words.
+pub fn text(result: &ReplayResult) -> String {
+    let mut text = String::new();
+    let (from, to) = result.span_s;
+    let _ = writeln!(
+        text,
+        "{}: {from:.3} to {to:.3} s, {} control periods, {:.1} s of it faster than 1 m/s",
+        result.file, result.periods, result.riding_s
+    );
+    for remark in &result.remarks {
+        let _ = writeln!(text, "  remark: {remark}");
+    }
+    if !result.fitted.switched_off.is_empty() {
+        let _ = writeln!(text, "  not recorded, switched off: {}", result.fitted.switched_off.join(", "));
+    }
+    for why in &result.fitted.unchecked {
+        let _ = writeln!(text, "  not checked: {why}");
+    }
+    let _ = writeln!(
+        text,
+        "engaged {:.3} s, limp {:.3} s, fault {:.3} s; torque peak {:.2} N m, rms {:.2} N m, at the rate limit {:.0} % of the time",
+        result.engaged_s,
+        result.limp_s,
+        result.fault_s,
+        result.peak_torque_nm,
+        result.rms_torque_nm,
+        100.0 * result.rate_limited
+    );
+    const MOST: usize = 12;
+    let modes: Vec<_> = result.modes.iter().map(|m| format!("{:.3} {}", m.from_s, m.mode)).collect();
+    let more = if modes.len() > MOST { format!(", and {} more", modes.len() - MOST) } else { String::new() };
+    let _ = writeln!(text, "modes: {}{more}", modes[..modes.len().min(MOST)].join(", "));
+    let _ = writeln!(
+        text,
+        "\n{:>3}  {:<24} {:>10} {:>6} {:>10} {:>7}",
+        "", "cause", "first [s]", "times", "total [s]", "alarms"
+    );
+    for c in &result.causes {
+        let _ = writeln!(
+            text,
+            "{:>3}  {:<24} {:>10.3} {:>6} {:>10.3} {:>7}",
+            c.number, c.name, c.first_s, c.count, c.total_s, c.alarms
+        );
+    }
+    let _ = writeln!(text, "\n{:<20} {:>12} {:>10} {:>8}  residual", "check", "largest", "limit", "part");
+    for c in result.checks.iter().filter(|c| c.largest_residual.is_some()) {
+        let number = |x: Option<f64>| x.map_or("-".into(), |x| format!("{x:.4}"));
+        let part = match (c.largest_residual, c.limit) {
+            (Some(largest), Some(limit)) if limit > 0.0 => format!("{:.0} %", 100.0 * largest / limit),
+            _ => "-".into(),
+        };
+        let _ = writeln!(
+            text,
+            "{:<20} {:>12} {:>10} {part:>8}  {}",
+            c.name,
+            number(c.largest_residual),
+            number(c.limit),
+            c.residual
+        );
+    }
+    let mut beside = |name: &str, unit: &str, compared: &Option<Compared>, more: String| {
+        if let Some(c) = compared {
+            let [ours, theirs] = c.rms;
+            let correlation = c.correlation.map_or(String::new(), |r| format!(", correlation {r:.3}"));
+            let _ = writeln!(
+                text,
+                "{name} beside the log's own: rms {ours:.3} and {theirs:.3} {unit}, difference {:.3} rms, {:.3} at most{correlation}{more}",
+                c.rms_difference, c.largest_difference
+            );
+        }
+    };
+    let inside = result
+        .roll_inside_bound
+        .map_or(String::new(), |part| format!("; inside the bound {:.1} %", 100.0 * part));
+    beside("roll", "rad", &result.roll, inside);
+    beside("torque", "N m", &result.torque, String::new());
+    text
+}
+
+/// Several recordings in words: a line each, and all together.
+pub fn summary_text(results: &[ReplayResult], summary: &Summary) -> String {
+    let mut text = String::new();
+    let widest = results.iter().map(|r| r.file.len()).max().unwrap_or(4).max(4);
+    let _ = writeln!(
+        text,
+        "{:<widest$} {:>9} {:>10} {:>7}  alarms (number: first, times)",
+        "file", "riding s", "engaged s", "peak Nm"
+    );
+    for r in results {
+        let alarms: Vec<_> = r
+            .causes
+            .iter()
+            .filter(|c| c.alarms > 0)
+            .map(|c| format!("{}: {:.3}, {}", c.number, c.alarms_s.first().unwrap_or(&f64::NAN), c.alarms))
+            .collect();
+        let alarms = if alarms.is_empty() { "none".into() } else { alarms.join("; ") };
+        let _ = writeln!(
+            text,
+            "{:<widest$} {:>9.1} {:>10.1} {:>7.2}  {alarms}",
+            r.file, r.riding_s, r.engaged_s, r.peak_torque_nm
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\n{} recordings, {:.1} min of riding, engaged {:.1} min",
+        summary.recordings,
+        summary.riding_s / 60.0,
+        summary.engaged_s / 60.0
+    );
+    for a in &summary.alarms {
+        let rate = a.per_hour.map_or("-".into(), |rate| format!("{rate:.1}"));
+        let _ = writeln!(
+            text,
+            "{:>3} {:<24} {} times in {} recordings, {rate} an hour of riding",
+            a.number, a.name, a.count, a.recordings
+        );
+    }
+    if summary.alarms.is_empty() {
+        let _ = writeln!(text, "no alarm");
+    }
+    if let Some(noticed) = summary.noticed {
+        let after =
+            summary.median_notice_s.map_or(String::new(), |s| format!(", in the median after {s:.3} s"));
+        let _ = writeln!(text, "fault put in: noticed in {noticed} of {}{after}", summary.recordings);
+    }
+    text
+}
