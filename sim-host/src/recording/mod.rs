@@ -1,5 +1,6 @@
 //! What a file with a recorded ride holds, column by column, before a map says what the columns mean.
 
+mod remarks;
 pub mod table;
 
 use std::fmt::{self, Display};
@@ -47,6 +48,13 @@ pub struct Remark {
     pub column: Option<String>,
     /// What is wrong, and what was done.
     pub what: String,
+}
+
+impl Remark {
+    /// One about the file as a whole.
+    fn of_file(what: String) -> Self {
+        Self { line: None, column: None, what }
+    }
 }
 
 impl Display for Remark {
