@@ -1,6 +1,6 @@
 //! What a file with a recorded ride holds, column by column, before a map says what the columns mean.
 //!
-//! Tables of text and logs of CAN (candump, ASC); which one it is, the first bytes and lines say.
+//! Tables of text, logs of CAN (candump, ASC) and MDF 4; which one it is, the first bytes and lines say.
 
 pub mod asc;
 pub mod bits;
@@ -8,6 +8,7 @@ pub mod candump;
 pub mod dbc;
 pub mod decode;
 pub mod frames;
+pub mod mdf;
 mod remarks;
 pub mod table;
 
@@ -132,7 +133,10 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Recording, RecordingEr
 
 /// What the bytes of a file hold; `names` are those of the databases.
 fn of_bytes(bytes: &[u8], databases: &[Database], names: &[PathBuf]) -> Result<Recording, Remark> {
-    let (decoded, frames) = if bytes.starts_with(b"LOGG") {
+    let (decoded, frames) = if mdf::is_one(bytes) {
+        let mdf::Content { groups, frames, remarks } = mdf::parse(bytes)?;
+        (Recording { groups, remarks }, frames)
+    } else if bytes.starts_with(b"LOGG") {
         let what = "is a log of Vector's in binary (BLF), which is not read; convert it to ASC";
         return Err(Remark::of_file(what.to_owned()));
     } else {
