@@ -81,7 +81,7 @@ fn texts_of_frames_are_read_or_refused() {
         .map(|name| std::fs::read_to_string(file(name)).unwrap().chars().take(3000).collect())
         .to_vec();
     let database = odd();
-    runner(1500)
+    runner(4000)
         .run(&(select(logs), changes(), any::<String>()), |(log, changes, noise)| {
             for text in [changed(&log, &changes), noise] {
                 let _ = (candump::is_one(&text), asc::is_one(&text));
@@ -120,7 +120,7 @@ fn texts_of_databases_are_read_or_refused() {
     ];
     let piece = prop_oneof![select(words.to_vec()).prop_map(str::to_owned), "[0-9]{1,20}"];
     let changes = vec((any::<prop::sample::Index>(), 0..20_usize, piece), 0..4);
-    runner(1500)
+    runner(4000)
         .run(&(changes, vec(any::<u8>(), 0..64)), |(changes, data)| {
             match Database::parse(changed(&text, &changes).as_bytes()) {
                 Ok(database) => {
@@ -152,7 +152,7 @@ fn measurement_files_are_read_or_refused() {
     let near = (0..64_u64).prop_map(|n| Some(n * 8 + 64));
     let link = (any::<prop::sample::Index>(), Just(0), near).boxed();
     let changes = vec(prop_oneof![byte, whole, link], 0..6);
-    runner(2500)
+    runner(15_000)
         .run(
             &(select(files), changes, any::<prop::sample::Index>(), any::<bool>()),
             |(mut bytes, changes, end, cut)| {
@@ -195,4 +195,25 @@ fn measurement_files_are_read_or_refused() {
             Ok(())
         })
         .unwrap();
+}
+
+/// Situation: measurement files in whose blocks one number after another is as large as it can be: places, sizes, counts,
+/// bits, links.
+/// Action: read.
+/// Must hold: a recording or a reason.
+#[test]
+fn the_largest_numbers_in_measurement_files() {
+    for name in ["logger.mf4", "sorted.mf4", "channels.mf4"] {
+        let bytes = std::fs::read(file(name)).unwrap();
+        let blocks = (0..bytes.len() - 32).step_by(8).filter(|at| bytes[*at..].starts_with(b"##"));
+        for at in blocks {
+            for place in (at + 8..(at + 160).min(bytes.len() - 8)).step_by(4) {
+                for number in [[0xff; 4], [0, 0, 0, 0x80], [0; 4]] {
+                    let mut changed = bytes.clone();
+                    changed[place..place + 4].copy_from_slice(&number);
+                    let _ = mdf::parse(&changed);
+                }
+            }
+        }
+    }
 }

@@ -105,16 +105,19 @@ impl Channel {
         self.parts
     }
 
-    /// Its bits in a record, as a number from 0.
+    /// Its bits in a record, as a number from 0; none of more than 64, nor of those that the record does not have.
     pub(super) fn bits_of(&self, record: &[u8]) -> Option<u64> {
+        if !(1..=64).contains(&self.bits) || self.bit_offset > 7 {
+            return None;
+        }
         let bytes = (self.bit_offset + self.bits).div_ceil(8) as usize;
-        let bytes = record.get(self.byte_offset..)?.get(..bytes).filter(|bytes| bytes.len() <= 9)?;
+        let bytes = record.get(self.byte_offset..)?.get(..bytes)?;
         let join = |all: u128, byte: &u8| all << 8 | u128::from(*byte);
         let all = match self.data_type {
             1 | 3 | 5 => bytes.iter().fold(0, join),
             _ => bytes.iter().rev().fold(0, join),
         };
-        let mask = u64::MAX >> (64 - self.bits.clamp(1, 64));
+        let mask = u64::MAX >> (64 - self.bits);
         Some((all >> self.bit_offset) as u64 & mask)
     }
 
