@@ -13,7 +13,8 @@ use super::Remark;
 use super::bits::{Order, Place, signed};
 use super::frames::{Id, MOST_BYTES};
 use can_dbc::{
-    ByteOrder, Dbc, MessageId, MultiplexIndicator, SignalExtendedValueType, ValueDescription, ValueType,
+    AttributeValue, ByteOrder, Dbc, MessageId, MultiplexIndicator, SignalExtendedValueType, ValueDescription,
+    ValueType,
 };
 use std::collections::HashMap;
 
@@ -242,7 +243,26 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
         unused.push(format!("signal {}: {why}", signal.name));
         kept.push(Signal { factor: f64::NAN, ..signal });
     }
-    Message { name: message.name.clone(), id: id_of(message.id), signals: kept, unused }
+    for signal in &mut kept {
+        let long = dbc.signal_attribute(message.id, &signal.name, "SystemSignalLongSymbol");
+        signal.name = long_name(long, &signal.name);
+    }
+    // Databases that were converted may have cut names so that two are the same.
+    for n in 1..kept.len() {
+        if kept[..n].iter().any(|before| before.name == kept[n].name) {
+            kept[n].name = format!("{} (bit {})", kept[n].name, kept[n].place.start);
+        }
+    }
+    let name = long_name(dbc.message_attribute(message.id, "SystemMessageLongSymbol"), &message.name);
+    Message { name, id: id_of(message.id), signals: kept, unused }
+}
+
+/// The whole name of what has more than 32 letters: Vector's tools keep it in an attribute, and cut the name.
+fn long_name(attribute: Option<&AttributeValue>, name: &str) -> String {
+    match attribute {
+        Some(AttributeValue::String(long)) if !long.is_empty() => long.clone(),
+        _ => name.to_owned(),
+    }
 }
 
 /// Whether the way from a signal to the one that chooses, and on, never ends.

@@ -128,6 +128,25 @@ fn what_can_not_be_used_is_named() {
     );
 }
 
+/// Situation: names of more than 32 letters, which Vector's tools cut and keep whole in an attribute; two signals of one name.
+/// Action: read.
+/// Must hold: the whole names; those without the attribute as they are; the second of the same name has its bit behind it.
+#[test]
+fn long_names_are_whole() {
+    let long = database(
+        "BO_ 1 Cut: 8 A\n SG_ Short : 0|8@1+ (1,0) [0|0] \"\" A\n SG_ Plain : 8|8@1+ (1,0) [0|0] \"\" A\n SG_ Plain : 16|8@1+ (1,0) [0|0] \"\" A\n\n\
+         BA_DEF_ SG_ \"SystemSignalLongSymbol\" STRING;\nBA_DEF_ BO_ \"SystemMessageLongSymbol\" STRING;\n\
+         BA_DEF_DEF_ \"SystemSignalLongSymbol\" \"\";\nBA_DEF_DEF_ \"SystemMessageLongSymbol\" \"\";\n\
+         BA_ \"SystemMessageLongSymbol\" BO_ 1 \"CutAtTheThirtySecondLetterOfItsName\";\n\
+         BA_ \"SystemSignalLongSymbol\" SG_ 1 Short \"ShortenedAtTheThirtySecondLetterOfItsName\";\n",
+    )
+    .unwrap();
+    let message = &long.messages[0];
+    assert_eq!(message.name, "CutAtTheThirtySecondLetterOfItsName");
+    let names: Vec<&str> = message.signals.iter().map(|signal| signal.name.as_str()).collect();
+    assert_eq!(names, ["ShortenedAtTheThirtySecondLetterOfItsName", "Plain", "Plain (bit 16)"]);
+}
+
 /// Situation: texts that are no database, one without a message, an identifier of more than 11 bits without its mark.
 /// Action: read.
 /// Must hold: refused, with the line where there is one, in one line of text.
