@@ -93,8 +93,9 @@ fn base_of(line: &str) -> Option<(u32, bool)> {
     Some((radix, matches!(words.as_slice(), [_, _, "timestamps", "relative"])))
 }
 
+/// Whether a line is the date at the beginning; a table's header may begin with the same word.
 fn is_date(line: &str) -> bool {
-    starts(line, "date ")
+    starts(line, "date ") && line.contains(':') && !line.contains([',', ';', '\t'])
 }
 
 fn starts(line: &str, with: &str) -> bool {

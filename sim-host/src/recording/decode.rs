@@ -92,8 +92,7 @@ pub fn groups(frames: &Frames, databases: &[Database]) -> Decoded {
     for (row, name) in rows.iter().zip(&names) {
         let message = &databases[row.database].messages[row.message];
         if row.short > 0 {
-            let what =
-                format!("{} frames are shorter than its signals; those beyond the end are blank", row.short);
+            let what = format!("frames that end before its signals do: {}; these are blank there", row.short);
             remarks.push(Remark::of_file(format!("message {name}: {what}")));
         }
         if twice(message.id) {
@@ -131,18 +130,18 @@ fn unread(frames: &Frames, unknown: &BTreeMap<Id, u64>) -> Vec<Remark> {
     let mut remarks: Vec<Remark> = unknown
         .iter()
         .take(LISTED)
-        .map(|(id, count)| Remark::of_file(format!("{count} frames of {id} are in no database; left out")))
+        .map(|(id, count)| Remark::of_file(format!("frames of {id} are in no database: {count}; left out")))
         .collect();
     if unknown.len() > LISTED {
         let (ids, count) = (unknown.len() - LISTED, unknown.values().skip(LISTED).sum::<u64>());
-        let what = format!("{count} frames of {ids} more identifiers are in no database; left out");
+        let what = format!("frames of {ids} more identifiers are in no database: {count}; left out");
         remarks.push(Remark::of_file(what));
     }
     for (count, what) in
         [(frames.remote, "remote frames, which have no data"), (frames.errors, "error frames")]
     {
         if count > 0 {
-            remarks.push(Remark::of_file(format!("{count} {what}; left out")));
+            remarks.push(Remark::of_file(format!("{what}: {count}; left out")));
         }
     }
     remarks

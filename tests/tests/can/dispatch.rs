@@ -13,6 +13,8 @@ fn the_content_decides_and_not_the_name() {
     }
     let table = written("ride.mf4", "t_s,roll_rad\n0,0.1\n1,0.2\n", &[]).unwrap();
     assert_eq!((table.groups.len(), table.groups[0].columns.len()), (1, 2));
+    let dated = written("a.csv", "date time,roll_rad\n2023-06-07 10:00:00,0.1\n", &[]).unwrap();
+    assert_eq!(dated.groups[0].columns[0].name, "date time");
 }
 
 /// Situation: frames without a database; with one that has none of their messages; with that one beside the right one; a

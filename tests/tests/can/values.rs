@@ -75,10 +75,10 @@ fn odd_messages_are_the_same_in_every_format() {
         assert_eq!(
             remarks(&recording),
             [
-                "2 frames of 0x555 are in no database; left out",
-                "1 remote frames, which have no data; left out",
-                "1 error frames; left out",
-                "message Mixed: 1 frames are shorter than its signals; those beyond the end are blank",
+                "frames of 0x555 are in no database: 2; left out",
+                "remote frames, which have no data: 1; left out",
+                "error frames: 1; left out",
+                "message Mixed: frames that end before its signals do: 1; these are blank there",
             ],
             "{name}"
         );
