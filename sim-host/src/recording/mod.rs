@@ -1,7 +1,19 @@
 //! What a file with a recorded ride holds, column by column, before a map says what the columns mean.
+//!
+//! Tables of text, logs of CAN (candump, ASC) and MDF 4; which one it is, the first bytes and lines say.
 
+pub mod asc;
+pub mod bits;
+pub mod candump;
+pub mod dbc;
+pub mod decode;
+pub mod frames;
+pub mod mdf;
+mod remarks;
 pub mod table;
 
+use dbc::Database;
+use frames::Frames;
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 
@@ -49,6 +61,13 @@ pub struct Remark {
     pub what: String,
 }
 
+impl Remark {
+    /// One about the file as a whole.
+    fn of_file(what: String) -> Self {
+        Self { line: None, column: None, what }
+    }
+}
+
 impl Display for Remark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(line) = self.line {
@@ -91,20 +110,93 @@ pub struct ReadOptions {
     pub dbc: Vec<PathBuf>,
 }
 
-/// Reads a recording; which kind it is, its name and its first bytes say.
+/// Reads a recording. Which kind it is, its content says, not its name.
+///
+/// Frames of CAN become groups by the databases of the options: one a message, its signals as columns in the units of the
+/// database, its times as the file has them. Frames that no database knows become remarks.
 ///
 /// # Errors
-/// The file, and where it names a line what is wrong there.
+/// The file, and where it names a line what is wrong there; frames of CAN without a database, or with databases that decode
+/// none of them; a database that can't be read.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Recording, RecordingError> {
     let bytes = std::fs::read(path)
         .and_then(|bytes| unpacked(path, bytes))
         .map_err(|why| RecordingError::Read { path: path.to_owned(), why })?;
     let content = |remark| RecordingError::Content { path: path.to_owned(), remark };
-    let recording = table::parse(&String::from_utf8_lossy(&bytes)).map_err(content)?;
+    let databases = options.dbc.iter().map(|path| database(path)).collect::<Result<Vec<_>, _>>()?;
+    let recording = of_bytes(&bytes, &databases, &options.dbc).map_err(content)?;
     match recording.remarks.first() {
         Some(first) if options.strict => Err(content(first.clone())),
         _ => Ok(recording),
     }
+}
+
+/// What the bytes of a file hold; `names` are those of the databases.
+fn of_bytes(bytes: &[u8], databases: &[Database], names: &[PathBuf]) -> Result<Recording, Remark> {
+    let (decoded, frames) = if mdf::is_one(bytes) {
+        let mdf::Content { groups, frames, remarks } = mdf::parse(bytes)?;
+        (Recording { groups, remarks }, frames)
+    } else if bytes.starts_with(b"LOGG") {
+        let what = "is a log of Vector's in binary (BLF), which is not read; convert it to ASC";
+        return Err(Remark::of_file(what.to_owned()));
+    } else {
+        let text = String::from_utf8_lossy(bytes);
+        if candump::is_one(&text) {
+            (Recording::default(), candump::parse(&text)?)
+        } else if asc::is_one(&text) {
+            (Recording::default(), asc::parse(&text)?)
+        } else {
+            (table::parse(&text)?, Frames::default())
+        }
+    };
+    with_frames(decoded, &frames, databases, names)
+}
+
+/// A recording with what its frames say.
+fn with_frames(
+    mut recording: Recording,
+    frames: &Frames,
+    databases: &[Database],
+    names: &[PathBuf],
+) -> Result<Recording, Remark> {
+    const GIVE: &str = "give the database that decodes them with --dbc FILE";
+    let shown = |paths: &mut dyn Iterator<Item = &PathBuf>| {
+        paths.map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+    };
+    recording.remarks.extend(frames.remarks.iter().cloned());
+    if databases.is_empty() {
+        if !frames.is_empty() {
+            let remark = Remark::of_file(format!("has {} frames of CAN; {GIVE}", frames.len()));
+            if recording.groups.is_empty() {
+                return Err(remark);
+            }
+            recording.remarks.push(remark);
+        }
+        return Ok(recording);
+    }
+    let decoded = decode::groups(frames, databases);
+    if decoded.groups.is_empty() {
+        let what = match frames.is_empty() {
+            true => "has no frame of CAN to decode by".to_owned(),
+            false => format!("has {} frames of CAN, and none is decoded by", frames.len()),
+        };
+        return Err(Remark::of_file(format!("{what} {}", shown(&mut names.iter()))));
+    }
+    let idle: Vec<&PathBuf> =
+        names.iter().zip(&decoded.used).filter(|(_, used)| **used == 0).map(|(name, _)| name).collect();
+    if !idle.is_empty() {
+        let what = format!("no frame of it is decoded by {}", shown(&mut idle.into_iter()));
+        recording.remarks.push(Remark::of_file(what));
+    }
+    recording.remarks.extend(decoded.remarks);
+    recording.groups.extend(decoded.groups);
+    Ok(recording)
+}
+
+/// Reads a database.
+fn database(path: &Path) -> Result<Database, RecordingError> {
+    let bytes = std::fs::read(path).map_err(|why| RecordingError::Read { path: path.to_owned(), why })?;
+    Database::parse(&bytes).map_err(|remark| RecordingError::Content { path: path.to_owned(), remark })
 }
 
 /// The bytes of a file, unpacked if they are packed.

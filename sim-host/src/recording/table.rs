@@ -3,65 +3,17 @@
 //! Fields are separated by commas, semicolons or tabs, whichever the header has most of. Lines that begin with `#` are
 //! remarks of the file's own. Each line is read by itself, so that a stray quote or a cut line costs that line alone.
 
+use super::remarks::Remarks;
 use super::{Column, Group, Recording, Remark};
 
-/// Most remarks of one kind that are told one by one; the rest is counted.
-const TOLD: u64 = 3;
-
-/// What is wrong with rows, so that each kind is told a few times and then counted.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Length,
-    Number,
-    Header,
-    Packed,
-}
-
-impl Kind {
-    /// What the rows beyond the first few have in common.
-    fn of_many(self) -> &'static str {
-        match self {
-            Kind::Length => "rows of another length than the header; left out",
-            Kind::Number => "cells that are no number; taken as blank",
-            Kind::Header => "lines that name other columns; from there on the new ones are used",
-            Kind::Packed => "lines with bytes that are no text; left out",
-        }
-    }
-}
-
-/// The remarks so far, and how many of each kind there were.
-#[derive(Default)]
-struct Remarks {
-    told: Vec<Remark>,
-    counts: Vec<(Kind, u64)>,
-}
-
-impl Remarks {
-    fn add(&mut self, kind: Kind, line: u64, column: Option<&str>, what: impl FnOnce() -> String) {
-        let count = match self.counts.iter_mut().find(|(k, _)| *k == kind) {
-            Some((_, count)) => count,
-            None => {
-                self.counts.push((kind, 0));
-                &mut self.counts.last_mut().expect("just pushed").1
-            }
-        };
-        *count += 1;
-        if *count <= TOLD {
-            let column = column.map(str::to_owned);
-            self.told.push(Remark { line: Some(line), column, what: what() });
-        }
-    }
-
-    fn done(mut self) -> Vec<Remark> {
-        for (kind, count) in self.counts {
-            if count > TOLD {
-                let what = format!("{} more {}", count - TOLD, kind.of_many());
-                self.told.push(Remark { line: None, column: None, what });
-            }
-        }
-        self.told
-    }
-}
+/// Rows of another length than the header.
+const LENGTH: &str = "rows of another length than the header; left out";
+/// Cells that are no number.
+const NUMBER: &str = "cells that are no number; taken as blank";
+/// Headers behind the first.
+const HEADER: &str = "lines that name other columns; from there on the new ones are used";
+/// Bytes that are no text.
+const PACKED: &str = "lines with bytes that are no text; left out";
 
 /// Reads a table. Rows and cells that can't be used become remarks; the rest is the recording.
 ///
@@ -95,11 +47,11 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
     let last = text.lines().count() as u64;
     for (line, number) in lines {
         if line.contains('\u{fffd}') || line.contains('\0') {
-            remarks.add(Kind::Packed, number, None, || "has bytes that are no text; left out".to_owned());
+            remarks.add(PACKED, Some(number), None, || "has bytes that are no text; left out".to_owned());
             continue;
         }
         if let Some(new) = names_of(line, separator) {
-            remarks.add(Kind::Header, number, None, || {
+            remarks.add(HEADER, Some(number), None, || {
                 format!("names {} columns anew; from here on these are used", new.len())
             });
             places = new.iter().map(|name| place_of(&mut columns, name, numbers.len())).collect();
@@ -108,7 +60,7 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
         let fields: Vec<&str> = line.split(separator).map(str::trim).collect();
         if fields.len() != places.len() {
             let cut = number == last && !ends_whole;
-            remarks.add(Kind::Length, number, None, || {
+            remarks.add(LENGTH, Some(number), None, || {
                 let half = if cut { ", the file ends within it" } else { "" };
                 format!("{} fields, the header has {}{half}; left out", fields.len(), places.len())
             });
@@ -122,7 +74,7 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
             match value {
                 None => {}
                 Some(Some(value)) => *column.values.last_mut().expect("a row") = value,
-                Some(None) => remarks.add(Kind::Number, number, Some(&column.name), || {
+                Some(None) => remarks.add(NUMBER, Some(number), Some(&column.name), || {
                     format!("`{}` is no number; taken as blank", shown(field))
                 }),
             }

@@ -1,0 +1,201 @@
+//! Logs of CAN as text by Vector's tools (ASC), and by those that write the same, such as python-can and can-utils.
+//!
+//! `base` says whether identifiers and bytes are hexadecimal or decimal, `timestamps` whether the seconds count from the
+//! start of the measurement (`absolute`) or from the event before (`relative`); then they are added up over all
+//! events, those of other kinds included. Events that are no frames of CAN are passed over.
+
+use super::Remark;
+use super::frames::{Frames, Id, MOST_BYTES};
+use super::remarks::Remarks;
+
+/// Lines at the beginning of a file in which its header is looked for.
+const LOOKED_AT: usize = 50;
+
+/// What an event with a time stamp is.
+enum Event {
+    Data { id: Id, data: ([u8; MOST_BYTES], usize) },
+    Remote,
+    Error,
+    Other,
+}
+
+/// Whether a text is such a log: one of its first lines is one of its header, or a frame.
+pub fn is_one(text: &str) -> bool {
+    let shaped = |line: &str| base_of(line).is_some() || is_date(line) || is_frame(line);
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).take(LOOKED_AT).any(shaped)
+}
+
+/// Reads a log.
+///
+/// # Errors
+/// No line is a data frame.
+pub fn parse(text: &str) -> Result<Frames, Remark> {
+    let (mut frames, mut remarks) = (Frames::default(), Remarks::default());
+    let (mut radix, mut relative, mut now_s) = (16, false, 0.0);
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let ends_whole = text.ends_with('\n');
+    let last = text.lines().count() as u64;
+    for (line, number) in text.lines().map(str::trim).zip(1_u64..) {
+        if line.is_empty() || line.starts_with("//") {
+            continue;
+        }
+        if let Some(base) = base_of(line) {
+            (radix, relative) = base;
+            continue;
+        }
+        let mut damaged = |why: &str| {
+            let cut = if number == last && !ends_whole { ", the file ends within it" } else { "" };
+            remarks.add("lines that are no event of such a log; left out", Some(number), None, || {
+                format!("{why}{cut}; left out")
+            });
+        };
+        let (first, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let Some(stamp_s) = stamp(first) else {
+            if !is_header(line) {
+                damaged("begins with no time stamp");
+            }
+            continue;
+        };
+        now_s = if relative { now_s + stamp_s } else { stamp_s };
+        let words: Vec<&str> = rest.split_whitespace().collect();
+        let event = match words.as_slice() {
+            ["CANFD", bus, rest @ ..] => flexible(rest, radix).map(|event| (*bus, event)),
+            [bus, rest @ ..] if is_number(bus) => classic(rest, radix).map(|event| (*bus, event)),
+            _ => Ok(("", Event::Other)),
+        };
+        match event {
+            Ok((bus, Event::Data { id, data: (bytes, length) })) => {
+                frames.push(now_s, number, bus, id, &bytes[..length]);
+            }
+            Ok((_, Event::Remote)) => frames.remote += 1,
+            Ok((_, Event::Error)) => frames.errors += 1,
+            Ok((_, Event::Other)) => {}
+            Err(why) => damaged(why),
+        }
+    }
+    frames.remarks = remarks.done();
+    match (frames.is_empty(), frames.remarks.first()) {
+        (true, Some(first)) => Err(first.clone()),
+        (true, None) => Err(Remark::of_file("no data frame in it".to_owned())),
+        _ => Ok(frames),
+    }
+}
+
+/// Radix of a header's `base` line, and whether its time stamps count from event to event.
+fn base_of(line: &str) -> Option<(u32, bool)> {
+    let words: Vec<String> = line.split_whitespace().take(4).map(str::to_ascii_lowercase).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let radix = match words.as_slice() {
+        ["base", "hex", ..] => 16,
+        ["base", "dec", ..] => 10,
+        _ => return None,
+    };
+    Some((radix, matches!(words.as_slice(), [_, _, "timestamps", "relative"])))
+}
+
+/// Whether a line is the date at the beginning; a table's header may begin with the same word.
+fn is_date(line: &str) -> bool {
+    starts(line, "date ") && line.contains(':') && !line.contains([',', ';', '\t'])
+}
+
+fn starts(line: &str, with: &str) -> bool {
+    line.get(..with.len()).is_some_and(|start| start.eq_ignore_ascii_case(with))
+}
+
+/// Whether a line is one of those that have no time stamp.
+fn is_header(line: &str) -> bool {
+    const WORDS: [&str; 5] = [
+        "begin triggerblock",
+        "end triggerblock",
+        "internal events",
+        "no internal events",
+        "previous log file",
+    ];
+    is_date(line) || WORDS.iter().any(|word| starts(line, word))
+}
+
+/// Whether a line is a data frame by itself, without any header.
+fn is_frame(line: &str) -> bool {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    match words.as_slice() {
+        [time, "CANFD", _, "Rx" | "Tx", ..] => stamp(time).is_some(),
+        [time, bus, _, "Rx" | "Tx", "d" | "r", ..] => stamp(time).is_some() && is_number(bus),
+        _ => false,
+    }
+}
+
+/// Seconds of a time stamp: digits, a point, digits.
+fn stamp(word: &str) -> Option<f64> {
+    let (whole, part) = word.split_once('.')?;
+    let digits = is_number(whole.strip_prefix('-').unwrap_or(whole)) && is_number(part);
+    digits.then(|| word.parse().ok()).flatten()
+}
+
+fn is_number(word: &str) -> bool {
+    !word.is_empty() && word.bytes().all(|digit| digit.is_ascii_digit())
+}
+
+/// A number of the file's base.
+fn number(word: &str, radix: u32) -> Option<u32> {
+    let digits = word.chars().all(|digit| digit.is_digit(radix));
+    digits.then(|| u32::from_str_radix(word, radix).ok()).flatten()
+}
+
+/// An identifier; `x` behind it says that it has 29 bits.
+fn id_of(word: &str, radix: u32) -> Result<Id, &'static str> {
+    let (digits, extended) = match word.strip_suffix(['x', 'X']) {
+        Some(digits) => (digits, true),
+        None => (word, false),
+    };
+    let number = number(digits, radix).ok_or("its identifier is no number of the file's base")?;
+    Id::new(number, extended).ok_or("its identifier has too many bits")
+}
+
+/// An event of a classic bus, from its identifier on: `123 Rx d 4 DE AD BE EF`.
+fn classic(words: &[&str], radix: u32) -> Result<Event, &'static str> {
+    match words {
+        [word, ..] if word.eq_ignore_ascii_case("ErrorFrame") => Ok(Event::Error),
+        [_, "Rx" | "Tx", "r", ..] => Ok(Event::Remote),
+        [id, "Rx" | "Tx", "d", rest @ ..] => {
+            let id = id_of(id, radix)?;
+            let [code, rest @ ..] = rest else { return Err("its length is missing") };
+            let code =
+                number(code, radix).filter(|code| *code < 16).ok_or("its length is none of a frame")?;
+            Ok(Event::Data { id, data: bytes_of(rest, code.min(8) as usize, radix)? })
+        }
+        [_, "Rx" | "Tx", ..] | [_] => Err("is no whole frame"),
+        _ => Ok(Event::Other),
+    }
+}
+
+/// An event of a bus with CAN FD, from its direction on: `Rx 123 [name] 1 0 d 32 DE ...`.
+fn flexible(words: &[&str], radix: u32) -> Result<Event, &'static str> {
+    let ([_, id, rest @ ..], true) = (words, matches!(words.first(), Some(&("Rx" | "Tx")))) else {
+        return Ok(Event::Other);
+    };
+    if id.eq_ignore_ascii_case("ErrorFrame") {
+        return Ok(Event::Error);
+    }
+    let id = id_of(id, radix)?;
+    let named = rest.first().is_some_and(|word| !matches!(*word, "0" | "1"));
+    let [_switched, _passive, code, length, rest @ ..] = &rest[usize::from(named)..] else {
+        return Err("is no whole frame");
+    };
+    let length = Some(length).filter(|word| is_number(word)).and_then(|word| word.parse::<usize>().ok());
+    let length = length.filter(|length| *length <= MOST_BYTES).ok_or("its length is none of a frame")?;
+    if length == 0 && *code != "0" {
+        return Ok(Event::Remote);
+    }
+    Ok(Event::Data { id, data: bytes_of(rest, length, radix)? })
+}
+
+/// The bytes of a frame; what follows them belongs to the event.
+fn bytes_of(words: &[&str], length: usize, radix: u32) -> Result<([u8; MOST_BYTES], usize), &'static str> {
+    let mut bytes = [0; MOST_BYTES];
+    let words = words.get(..length).ok_or("has fewer bytes than it says")?;
+    for (byte, word) in bytes.iter_mut().zip(words) {
+        let number = number(word, radix).filter(|number| *number < 256);
+        *byte = number.ok_or("its bytes are no numbers of the file's base")? as u8;
+    }
+    Ok((bytes, length))
+}

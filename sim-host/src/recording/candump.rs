@@ -1,0 +1,223 @@
+//! Logs of `candump` of Linux' can-utils: what `-l` and `-L` write, and its lines for the screen with time stamps.
+//!
+//! The first (`(1436509052.249713) can0 123#DEADBEEF`) is what can-utils' other programs read. The second
+//! (`(1436509052.249713)  can0  123   [4]  DE AD BE EF`) is made for people; of it are read the time stamps of `-t a`
+//! and `-t A` (a date, taken as universal time) and those of `-t z`. Stamps that count from frame to frame (`-t d`) look
+//! like those of `-t z` but fall again: a file of small stamps that fall anywhere is refused.
+
+use super::Remark;
+use super::frames::{Frames, Id, MOST_BYTES};
+use super::remarks::Remarks;
+
+/// Lines at the beginning of a file in which the first that is whole is looked for.
+const LOOKED_AT: usize = 50;
+/// Time stamps from here on are seconds from 1970 \[s\]: no record of a ride is three years long.
+const FROM_1970_S: f64 = 1e8;
+/// Bit of an identifier that marks an error frame in can-utils.
+const ERROR_FLAG: u32 = 0x2000_0000;
+
+/// What a line says.
+enum Line<'a> {
+    Data { stamp: Stamp, bus: &'a str, id: Id, data: ([u8; MOST_BYTES], usize) },
+    Remote,
+    Error,
+}
+
+/// A time stamp \[s\], and whether it is one of the lines for the screen.
+#[derive(Clone, Copy)]
+struct Stamp {
+    time_s: f64,
+    screen: bool,
+}
+
+/// Whether a text is a log of `candump`: one of its first lines is one of those.
+pub fn is_one(text: &str) -> bool {
+    let shaped = |line: &str| line_of(line).is_ok() || screen_without_stamp(line);
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).take(LOOKED_AT).any(shaped)
+}
+
+/// Reads a log.
+///
+/// # Errors
+/// No line is a frame; the lines have no time stamps, or some of which it can't be said what they count from.
+pub fn parse(text: &str) -> Result<Frames, Remark> {
+    let (mut frames, mut remarks) = (Frames::default(), Remarks::default());
+    let ends_whole = text.ends_with('\n');
+    let last = text.lines().count() as u64;
+    // The time stamp before, and the first line whose own fell below it, both of lines for the screen.
+    let (mut before_s, mut fell, mut small) = (f64::NEG_INFINITY, None, false);
+    for (line, number) in text.lines().map(str::trim).zip(1_u64..).filter(|(line, _)| !line.is_empty()) {
+        match line_of(line) {
+            Ok(Line::Data { stamp, bus, id, data: (bytes, length) }) => {
+                if stamp.screen {
+                    small |= stamp.time_s < FROM_1970_S;
+                    fell = fell.or((stamp.time_s < before_s).then_some(number));
+                    before_s = stamp.time_s;
+                }
+                frames.push(stamp.time_s, number, bus, id, &bytes[..length]);
+            }
+            Ok(Line::Remote) => frames.remote += 1,
+            Ok(Line::Error) => frames.errors += 1,
+            Err(_) if screen_without_stamp(line) => {
+                return Err(at(number, "has no time stamp; record with `candump -L`"));
+            }
+            Err(why) => {
+                let cut = number == last && !ends_whole;
+                remarks.add("lines that are no frame; left out", Some(number), None, || {
+                    format!("{why}{}; left out", if cut { ", the file ends within it" } else { "" })
+                });
+            }
+        }
+    }
+    if let (true, Some(line)) = (small, fell) {
+        return Err(at(
+            line,
+            "the time stamp falls, so they may count from frame to frame (`candump -t d`); record with `candump -L`",
+        ));
+    }
+    frames.remarks = remarks.done();
+    match (frames.is_empty(), frames.remarks.first()) {
+        (true, Some(first)) => Err(first.clone()),
+        (true, None) => Err(Remark::of_file("no data frame in it".to_owned())),
+        _ => Ok(frames),
+    }
+}
+
+fn at(line: u64, what: &str) -> Remark {
+    Remark { line: Some(line), column: None, what: what.to_owned() }
+}
+
+/// Reads a line, or says what is wrong with it.
+fn line_of(line: &str) -> Result<Line<'_>, &'static str> {
+    const SHAPE: &str = "is no line of candump";
+    let (stamp, rest) = line.strip_prefix('(').and_then(|line| line.split_once(')')).ok_or(SHAPE)?;
+    let time_s = seconds(stamp).ok_or("its time stamp is no number")?;
+    let mut words = rest.split_whitespace();
+    let (bus, second) = (words.next().ok_or(SHAPE)?, words.next().ok_or(SHAPE)?);
+    match second.split_once('#') {
+        Some((id, data)) => {
+            // Since 2020 a word follows that tells received frames from sent ones.
+            match words.next() {
+                None | Some("R" | "T") => compact(Stamp { time_s, screen: false }, bus, id, data),
+                Some(_) => Err(SHAPE),
+            }
+        }
+        None => screen(Stamp { time_s, screen: true }, bus, second, words),
+    }
+}
+
+/// Seconds of a time stamp, a number or a date.
+fn seconds(stamp: &str) -> Option<f64> {
+    let number = || stamp.parse::<f64>().ok().filter(|s| s.is_finite() && !stamp.contains(['e', 'E']));
+    let date = || {
+        let time: jiff::civil::DateTime = stamp.parse().ok().filter(|_| stamp.contains(':'))?;
+        let time = time.to_zoned(jiff::tz::TimeZone::UTC).ok()?;
+        Some(time.timestamp().as_nanosecond() as f64 * 1e-9)
+    };
+    number().or_else(date)
+}
+
+/// The number of an identifier and its flags; 3 digits are one of 11 bits, 8 one of 29 bits.
+fn id_of(digits: &str) -> Result<(u32, bool), &'static str> {
+    let number = hexadecimal(digits).ok_or("its identifier is no hexadecimal number")?;
+    match digits.len() {
+        3 => Ok((number, false)),
+        8 => Ok((number, true)),
+        _ => Err("its identifier has neither 3 nor 8 digits"),
+    }
+}
+
+fn hexadecimal(digits: &str) -> Option<u32> {
+    let all = !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    all.then(|| u32::from_str_radix(digits, 16).ok()).flatten()
+}
+
+/// A frame of what `-L` writes: data is `DEADBEEF`, `#` and a digit of flags before it for CAN FD, `R` or `R8`.
+fn compact<'a>(stamp: Stamp, bus: &'a str, id: &str, data: &str) -> Result<Line<'a>, &'static str> {
+    const BITS: &str = "its identifier has too many bits";
+    let (number, extended) = id_of(id)?;
+    if extended && number & ERROR_FLAG != 0 {
+        return Ok(Line::Error);
+    }
+    let id = Id::new(number, extended).ok_or(BITS)?;
+    if data.strip_prefix('R').is_some_and(|dlc| dlc.bytes().all(|digit| digit.is_ascii_hexdigit())) {
+        return Ok(Line::Remote);
+    }
+    let (most, digits) = match data.strip_prefix('#') {
+        Some(flagged) if flagged.starts_with('#') => return Err("frames of CAN XL are not read"),
+        Some(flagged) => match flagged.split_at_checked(1) {
+            Some((flags, digits)) if hexadecimal(flags).is_some() => (MOST_BYTES, digits),
+            _ => return Err("the flags of CAN FD are missing"),
+        },
+        // `_9` to `_F` after eight bytes: the code for the length as it was sent.
+        None => match data.split_once('_') {
+            Some((digits, code)) if digits.len() == 16 && hexadecimal(code).is_some() => (8, digits),
+            _ => (8, data),
+        },
+    };
+    if !digits.len().is_multiple_of(2) {
+        return Err("half a byte is missing");
+    }
+    let (mut bytes, length) = ([0; MOST_BYTES], digits.len() / 2);
+    if length > most {
+        return Err("has more bytes than a frame");
+    }
+    for (byte, pair) in bytes.iter_mut().zip(digits.as_bytes().chunks(2)) {
+        let pair = std::str::from_utf8(pair).ok().and_then(hexadecimal);
+        *byte = pair.ok_or("its bytes are no hexadecimal digits")? as u8;
+    }
+    Ok(Line::Data { stamp, bus, id, data: (bytes, length) })
+}
+
+/// A frame of the lines for the screen, from its identifier on; with `-x` words stand between bus and identifier.
+fn screen<'a>(
+    stamp: Stamp,
+    bus: &'a str,
+    second: &'a str,
+    mut words: std::str::SplitWhitespace<'a>,
+) -> Result<Line<'a>, &'static str> {
+    let mut id = second;
+    let mut length = words.next();
+    for _ in 0..3 {
+        if matches!(id, "RX" | "TX" | "-" | "B" | "E") {
+            (id, length) = (length.unwrap_or_default(), words.next());
+        }
+    }
+    let (number, extended) = id_of(id)?;
+    let length = length.and_then(|word| word.strip_prefix('[')).and_then(|word| word.strip_suffix(']'));
+    let length: usize = length.and_then(|word| word.parse().ok()).ok_or("its length is missing")?;
+    if extended && number & ERROR_FLAG != 0 {
+        return Ok(Line::Error);
+    }
+    let id = Id::new(number, extended).ok_or("its identifier has too many bits")?;
+    if length > MOST_BYTES {
+        return Err("has more bytes than a frame");
+    }
+    let mut bytes = [0; MOST_BYTES];
+    for byte in &mut bytes[..length] {
+        match words.next() {
+            Some("remote") => return Ok(Line::Remote),
+            Some(word) if word.len() == 2 => {
+                *byte = hexadecimal(word).ok_or("its bytes are no hexadecimal digits")? as u8;
+            }
+            _ => return Err("has fewer bytes than it says"),
+        }
+    }
+    if length == 0 && words.next() == Some("remote") {
+        return Ok(Line::Remote);
+    }
+    Ok(Line::Data { stamp, bus, id, data: (bytes, length) })
+}
+
+/// Whether a line is one for the screen that has no time stamp.
+fn screen_without_stamp(line: &str) -> bool {
+    let mut words = line.split_whitespace();
+    let bus = words.next().is_some_and(|bus| bus.starts_with(|c: char| c.is_ascii_alphabetic()));
+    let id = words.next().is_some_and(|id| id_of(id).is_ok());
+    let length = words.next().is_some_and(|word| {
+        word.strip_prefix('[')
+            .and_then(|word| word.strip_suffix(']'))
+            .is_some_and(|n| n.parse::<usize>().is_ok())
+    });
+    bus && id && length
+}

@@ -1,0 +1,108 @@
+//! Data frames of CAN buses, in the order of the file that has them.
+
+use super::Remark;
+use std::collections::HashMap;
+use std::fmt::{self, Display};
+
+/// Most bytes of a frame: those of CAN FD.
+pub const MOST_BYTES: usize = 64;
+
+/// Identifier of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Id {
+    /// The number: 11 bits, or 29 if it is extended.
+    pub number: u32,
+    /// Whether it has 29 bits. The same number with 11 is another identifier.
+    pub extended: bool,
+}
+
+impl Id {
+    /// An identifier, if the number has no more bits than it may have.
+    pub fn new(number: u32, extended: bool) -> Option<Self> {
+        (number >> if extended { 29 } else { 11 } == 0).then_some(Self { number, extended })
+    }
+}
+
+impl Display for Id {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:#x}{}", self.number, if self.extended { " (29 bits)" } else { "" })
+    }
+}
+
+/// One data frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame<'a> {
+    /// When it was recorded \[s\], as the file has it.
+    pub time_s: f64,
+    /// Its line, from 1; 0 where the format has no lines.
+    pub line: u64,
+    /// Its bus, by its place in [`Frames::buses`].
+    pub bus: u32,
+    /// Its identifier.
+    pub id: Id,
+    /// Its bytes, at most [`MOST_BYTES`].
+    pub data: &'a [u8],
+}
+
+/// The data frames of a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frames {
+    /// Names of the buses, as the file has them.
+    pub buses: Vec<String>,
+    /// Frames that ask for data and have none.
+    pub remote: u64,
+    /// Error frames.
+    pub errors: u64,
+    /// What could not be used as it stands.
+    pub remarks: Vec<Remark>,
+    places: HashMap<String, u32>,
+    heads: Vec<Head>,
+    bytes: Vec<u8>,
+}
+
+/// A frame without its bytes, which are `length` from `at` on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Head {
+    time_s: f64,
+    line: u64,
+    at: usize,
+    id: Id,
+    bus: u32,
+    length: u8,
+}
+
+impl Frames {
+    /// Adds a frame; of more than [`MOST_BYTES`] the rest is dropped.
+    pub fn push(&mut self, time_s: f64, line: u64, bus: &str, id: Id, data: &[u8]) {
+        let bus = self.places.get(bus).copied().unwrap_or_else(|| {
+            let place = self.buses.len() as u32;
+            self.buses.push(bus.to_owned());
+            self.places.insert(bus.to_owned(), place);
+            place
+        });
+        let data = &data[..data.len().min(MOST_BYTES)];
+        self.heads.push(Head { time_s, line, at: self.bytes.len(), id, bus, length: data.len() as u8 });
+        self.bytes.extend_from_slice(data);
+    }
+
+    /// How many data frames there are.
+    pub fn len(&self) -> usize {
+        self.heads.len()
+    }
+
+    /// Whether there is no data frame.
+    pub fn is_empty(&self) -> bool {
+        self.heads.is_empty()
+    }
+
+    /// The data frames, in the order of the file.
+    pub fn iter(&self) -> impl Iterator<Item = Frame<'_>> {
+        self.heads.iter().map(|head| Frame {
+            time_s: head.time_s,
+            line: head.line,
+            bus: head.bus,
+            id: head.id,
+            data: &self.bytes[head.at..head.at + usize::from(head.length)],
+        })
+    }
+}

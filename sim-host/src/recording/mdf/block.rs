@@ -1,0 +1,128 @@
+//! Blocks of a file: name, links to others, data. No link leads out of the file, and lists end.
+
+use std::collections::HashSet;
+
+/// Bytes of a block before its links.
+const HEAD_BYTES: usize = 24;
+
+/// The bytes of a file, and which blocks of its lists were read.
+pub(super) struct File<'a> {
+    pub(super) bytes: &'a [u8],
+    /// Whether the file says that it was not finished.
+    pub(super) unfinished: bool,
+    /// What was not brought up to date then, as bits.
+    pub(super) undone: u16,
+    read: HashSet<usize>,
+}
+
+/// One block.
+#[derive(Clone, Copy)]
+pub(super) struct Block<'a> {
+    pub(super) name: [u8; 4],
+    links: &'a [u8],
+    pub(super) data: &'a [u8],
+    /// Whether the file ends before the block does.
+    pub(super) cut: bool,
+}
+
+impl<'a> File<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        let unfinished = bytes.starts_with(b"UnFinMF ");
+        let undone = bytes.get(60..62).map_or(0, |flags| u16::from_le_bytes([flags[0], flags[1]]));
+        Self { bytes, unfinished, undone: if unfinished { undone } else { 0 }, read: HashSet::new() }
+    }
+
+    /// The block at a place, whatever it is.
+    pub(super) fn any(&self, at: usize) -> Option<Block<'a>> {
+        let rest = self.bytes.get(at..)?;
+        let (head, rest) = rest.split_at_checked(HEAD_BYTES)?;
+        let name = *head.first_chunk::<4>()?;
+        let number = |at: usize| Some(u64::from_le_bytes(*head.get(at..)?.first_chunk()?));
+        let links = usize::try_from(number(16)?).ok()?.checked_mul(8)?;
+        let mut size = usize::try_from(number(8)?).ok()?.checked_sub(HEAD_BYTES);
+        // A data block that was being written has the length of its head, or none yet; it reaches to the file's end.
+        let writing = self.unfinished && matches!(&name, b"##DT" | b"##SD") && size.unwrap_or(0) == 0;
+        if writing && !rest.starts_with(b"##") {
+            size = Some(rest.len());
+        }
+        let size = size?;
+        let all = &rest[..size.min(rest.len())];
+        let (links, data) = all.split_at_checked(links)?;
+        Some(Block { name, links, data, cut: size > rest.len() })
+    }
+
+    /// The block at a place, if it has that name.
+    pub(super) fn block(&self, at: usize, name: &[u8; 4]) -> Option<Block<'a>> {
+        self.any(at).filter(|block| block.name == *name)
+    }
+
+    /// As [`Self::block`], but each only once: for lists, and for data.
+    pub(super) fn once(&mut self, at: usize, name: &[u8; 4]) -> Option<Block<'a>> {
+        let block = self.block(at, name)?;
+        self.read.insert(at).then_some(block)
+    }
+
+    /// As [`Self::any`], but each only once.
+    pub(super) fn any_once(&mut self, at: usize) -> Option<Block<'a>> {
+        let block = self.any(at)?;
+        self.read.insert(at).then_some(block)
+    }
+
+    /// The text that a link leads to; empty without one. Of XML it is what stands in the first `<TX>`.
+    pub(super) fn text(&self, at: Option<usize>) -> String {
+        let Some(block) = at.and_then(|at| self.any(at)) else { return String::new() };
+        let all = block.data.split(|byte| *byte == 0).next().unwrap_or_default();
+        let text = String::from_utf8_lossy(all);
+        let text = match &block.name {
+            b"##TX" => &*text,
+            b"##MD" => {
+                let inside = text.split_once("<TX>").and_then(|(_, rest)| rest.split_once("</TX>"));
+                inside.map_or("", |(inside, _)| inside)
+            }
+            _ => "",
+        };
+        text.trim().to_owned()
+    }
+}
+
+impl Block<'_> {
+    /// Where a link leads; `None` if it leads nowhere or there is none.
+    pub(super) fn link(&self, n: usize) -> Option<usize> {
+        let bytes = self.links.get(n.checked_mul(8)?..)?.first_chunk()?;
+        usize::try_from(u64::from_le_bytes(*bytes)).ok().filter(|at| *at != 0)
+    }
+
+    /// How many links there are.
+    pub(super) fn links(&self) -> usize {
+        self.links.len() / 8
+    }
+
+    /// Numbers of its data; 0 beyond the end.
+    pub(super) fn u8(&self, at: usize) -> u8 {
+        self.data.get(at).copied().unwrap_or(0)
+    }
+
+    /// As [`Self::u8`].
+    pub(super) fn u16(&self, at: usize) -> u16 {
+        u16::from_le_bytes(self.chunk(at))
+    }
+
+    /// As [`Self::u8`].
+    pub(super) fn u32(&self, at: usize) -> u32 {
+        u32::from_le_bytes(self.chunk(at))
+    }
+
+    /// As [`Self::u8`].
+    pub(super) fn u64(&self, at: usize) -> u64 {
+        u64::from_le_bytes(self.chunk(at))
+    }
+
+    /// As [`Self::u8`].
+    pub(super) fn f64(&self, at: usize) -> f64 {
+        f64::from_le_bytes(self.chunk(at))
+    }
+
+    fn chunk<const N: usize>(&self, at: usize) -> [u8; N] {
+        self.data.get(at..).and_then(|rest| rest.first_chunk()).copied().unwrap_or([0; N])
+    }
+}

@@ -1,0 +1,142 @@
+//! A data group: its records, and what becomes of each of its channel groups.
+
+use super::super::remarks::Remarks;
+use super::super::{Column, Group, Remark};
+use super::block::{Block, File};
+use super::channel::{self, Channel, Kind};
+use super::record::{Shape, apart};
+use super::{Content, bus, data};
+use std::ops::Range;
+
+/// Most channels for each byte of a record; each bit could be one, and some may share theirs.
+const MOST_CHANNELS_A_BYTE: usize = 16;
+
+/// A channel group and its records.
+pub(super) struct ChannelGroup<'a> {
+    /// Where its block is.
+    pub(super) at: usize,
+    pub(super) name: String,
+    /// Name of what was recorded, such as a bus.
+    pub(super) source: String,
+    pub(super) shape: Shape,
+    pub(super) channels: Vec<Channel>,
+    pub(super) bytes: &'a [u8],
+    pub(super) records: Vec<Range<usize>>,
+}
+
+impl ChannelGroup<'_> {
+    /// Its records.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &[u8]> {
+        self.records.iter().map(|record| &self.bytes[record.clone()])
+    }
+
+    /// The channel that is the time of each record.
+    pub(super) fn master(&self) -> Option<&Channel> {
+        self.channels.iter().find(|c| matches!(c.kind, Kind::Time | Kind::CountedTime) && c.is_number())
+    }
+
+    /// The times of its records \[s\], as its master has them.
+    pub(super) fn times_s(&self) -> Option<Vec<f64>> {
+        self.master().map(|master| self.values(master))
+    }
+
+    /// A channel's values, one a record.
+    fn values(&self, channel: &Channel) -> Vec<f64> {
+        let value = |(n, record)| channel.value(n, record, self.shape.data_bytes);
+        self.iter().enumerate().map(value).collect()
+    }
+}
+
+/// Reads a data group.
+pub(super) fn read(file: &mut File, block: &Block, content: &mut Content) {
+    let (mut places, mut groups, mut shapes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut next = block.link(1);
+    while let Some(at) = next {
+        let Some(found) = file.once(at, b"##CG") else { break };
+        next = found.link(0);
+        let shape = Shape::of(&found);
+        let source = found.link(3).and_then(|at| file.block(at, b"##SI"));
+        let source = file.text(source.and_then(|source| source.link(0)));
+        let mut name = file.text(found.link(2));
+        for other in [source.clone(), file.text(found.link(5))] {
+            name = if name.is_empty() { other } else { name };
+        }
+        places.push(at);
+        groups.push((name, source, channel::list(file, found.link(1))));
+        shapes.push(shape);
+    }
+    let joined = data::joined(file, block.link(2));
+    let (records, rest) = apart(&joined.bytes, usize::from(block.u8(0)), &shapes);
+    let mut parts: Vec<ChannelGroup> = Vec::new();
+    for (((at, (name, source, channels)), shape), records) in
+        places.into_iter().zip(groups).zip(shapes).zip(records)
+    {
+        parts.push(ChannelGroup { at, name, source, shape, channels, bytes: &joined.bytes, records });
+    }
+    let titled =
+        parts.iter().map(|part| part.name.as_str()).find(|name| !name.is_empty()).unwrap_or("without a name");
+    let mut remarks: Vec<Remark> =
+        [joined.broken, rest.filter(|_| !file.unfinished || joined.broken.is_some())]
+            .into_iter()
+            .flatten()
+            .map(|why| Remark::of_file(format!("group {titled}: {why}")))
+            .collect();
+    if !file.unfinished && joined.broken.is_none() && rest.is_none() {
+        for part in &mut parts {
+            let (has, says) = (part.records.len(), part.shape.count);
+            if !part.shape.variable && (has as u64) < says {
+                let what = format!("group {}: says that it has {says} records, and has {has}", part.name);
+                remarks.push(Remark::of_file(what));
+            }
+            part.records.truncate(usize::try_from(says).unwrap_or(usize::MAX));
+        }
+    }
+    content.remarks.append(&mut remarks);
+    for part in parts.iter().filter(|part| !part.shape.variable && !part.records.is_empty()) {
+        match bus::Sort::of(&part.channels) {
+            Some(bus::Sort::Data) => bus::frames(file, part, &parts, content),
+            Some(bus::Sort::Remote) => content.frames.remote += part.records.len() as u64,
+            Some(bus::Sort::Error) => content.frames.errors += part.records.len() as u64,
+            None => numbers(part, content),
+        }
+    }
+}
+
+/// The channels of a group that are numbers, as columns.
+fn numbers(part: &ChannelGroup, content: &mut Content) {
+    let mut remarks = Remarks::default();
+    let mut left_out = |what: String| {
+        content.remarks.push(Remark::of_file(format!("group {}: {what}; left out", part.name)))
+    };
+    if part.channels.len() > MOST_CHANNELS_A_BYTE * part.shape.bytes() {
+        return left_out(format!("{} channels in {} bytes", part.channels.len(), part.shape.bytes()));
+    }
+    if part.shape.remote_master {
+        return left_out("its times are in another group (MDF 4.2), which is not read".to_owned());
+    }
+    let mut columns = Vec::new();
+    for channel in &part.channels {
+        if matches!(channel.kind, Kind::Time | Kind::CountedTime) || channel.is_structure() {
+            continue;
+        }
+        let mut add = |kind, what: &str| {
+            remarks.add(kind, None, Some(&channel.name), || format!("{what}; left out"));
+        };
+        match &channel.conversion {
+            _ if !channel.is_number() => {
+                add("channels that are no numbers; left out", "is no number, but text, bytes or an array");
+            }
+            Err(why) => add("channels whose conversion is not read; left out", why),
+            Ok(_) => columns.push(Column {
+                name: channel.name.clone(),
+                unit: channel.unit.clone(),
+                values: part.values(channel),
+            }),
+        }
+    }
+    content.remarks.append(&mut remarks.done());
+    if !columns.is_empty() {
+        let times_s = part.times_s();
+        content.groups.push(Group { name: part.name.clone(), times_s, lines: Vec::new(), columns });
+    }
+}

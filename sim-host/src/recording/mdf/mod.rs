@@ -1,0 +1,78 @@
+//! Measurement files (MDF 4, ASAM), as data loggers and measuring programs write them.
+//!
+//! Read are groups whose channels are numbers, as columns with their conversions applied, and the frames of CAN of bus
+//! logging (`CAN_DataFrame`), to be decoded by a database; sorted and unsorted, whole, in lists and compressed. A file that
+//! was not finished (`UnFinMF`, as a logger leaves it when its power goes) or that was cut is read up to the last whole
+//! record, with a remark. Passed over with a remark: conversions by formula, arrays, text, files that keep each channel
+//! by itself (4.2).
+//!
+//! Block layout: ASAM MDF 4.1.0, as described with asammdf (`asammdf/blocks/v4_blocks.py`). Every link is checked; none is
+//! followed twice.
+
+mod block;
+mod bus;
+mod channel;
+mod conversion;
+mod data;
+mod group;
+mod record;
+
+use super::frames::Frames;
+use super::{Group, Remark};
+use block::File;
+
+/// What a measurement file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Content {
+    /// Groups of channels that are numbers already.
+    pub groups: Vec<Group>,
+    /// Frames of CAN.
+    pub frames: Frames,
+    /// What could not be used.
+    pub remarks: Vec<Remark>,
+}
+
+/// Whether a file says that it is one, finished or not.
+pub fn is_one(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"MDF     ") || bytes.starts_with(b"UnFinMF ")
+}
+
+/// Reads a measurement file.
+///
+/// # Errors
+/// It is of another version than 4, or holds neither numbers nor frames of CAN.
+pub fn parse(bytes: &[u8]) -> Result<Content, Remark> {
+    let fails = |what: &str| Remark::of_file(what.to_owned());
+    let version = bytes.get(28..30).map_or(0, |v| u16::from_le_bytes([v[0], v[1]]));
+    if !(400..500).contains(&version) {
+        let text = String::from_utf8_lossy(bytes.get(8..16).unwrap_or_default());
+        let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
+        return Err(fails(&format!("is of MDF `{text}`; only MDF 4 is read, convert it")));
+    }
+    let mut file = File::new(bytes);
+    let mut content = Content::default();
+    let header = file.block(64, b"##HD").ok_or_else(|| fails("has no header where MDF 4 has it"))?;
+    let mut next = header.link(0);
+    while let Some(at) = next {
+        let Some(found) = file.once(at, b"##DG") else {
+            content
+                .remarks
+                .push(Remark::of_file("the list of its groups is broken; the rest is left out".to_owned()));
+            break;
+        };
+        next = found.link(0);
+        group::read(&mut file, &found, &mut content);
+    }
+    if file.unfinished {
+        let what = "was not finished, as when a logger's power goes; read up to its last whole record";
+        content.remarks.insert(0, Remark::of_file(what.to_owned()));
+    }
+    match content.groups.is_empty() && content.frames.is_empty() {
+        true => Err(content
+            .remarks
+            .into_iter()
+            .next()
+            .unwrap_or_else(|| fails("holds no record of numbers or frames"))),
+        false => Ok(content),
+    }
+}

@@ -1,0 +1,41 @@
+//! Remarks of a file: the first few of each kind one by one, the rest counted.
+
+use super::Remark;
+
+/// Most remarks of one kind that are listed one by one.
+const LISTED: u64 = 3;
+
+/// The remarks so far, and how many of each kind there were.
+#[derive(Debug, Default)]
+pub(super) struct Remarks {
+    listed: Vec<Remark>,
+    counts: Vec<(&'static str, u64)>,
+}
+
+impl Remarks {
+    /// Adds one. `kind` says what those beyond the first few have in common.
+    pub(super) fn add(
+        &mut self,
+        kind: &'static str,
+        line: Option<u64>,
+        column: Option<&str>,
+        what: impl FnOnce() -> String,
+    ) {
+        let place = self.counts.iter().position(|(other, _)| *other == kind).unwrap_or_else(|| {
+            self.counts.push((kind, 0));
+            self.counts.len() - 1
+        });
+        self.counts[place].1 += 1;
+        if self.counts[place].1 <= LISTED {
+            self.listed.push(Remark { line, column: column.map(str::to_owned), what: what() });
+        }
+    }
+
+    /// All of them, and the counts of what was not listed.
+    pub(super) fn done(mut self) -> Vec<Remark> {
+        for (kind, count) in self.counts.into_iter().filter(|(_, count)| *count > LISTED) {
+            self.listed.push(Remark::of_file(format!("{} more {kind}", count - LISTED)));
+        }
+        self.listed
+    }
+}

@@ -1,0 +1,84 @@
+//! Which reader a file is given to, and what is said of files that lack something.
+
+use super::{column, file, group, read_with, recorded, remarks, written};
+
+/// Situation: each kind of file under a name that says something else, one of them packed.
+/// Action: read.
+/// Must hold: the content decides.
+#[test]
+fn the_content_decides_and_not_the_name() {
+    for name in ["ride.log", "ride.asc", "ride.mf4", "ride.long.log"] {
+        let recording = written("ride.csv", std::fs::read(file(name)).unwrap(), &["ride.dbc"]).unwrap();
+        assert_eq!(column(group(&recording, "Gyro"), "RateX").len(), 20, "{name}");
+    }
+    let table = written("ride.mf4", "t_s,roll_rad\n0,0.1\n1,0.2\n", &[]).unwrap();
+    assert_eq!((table.groups.len(), table.groups[0].columns.len()), (1, 2));
+    let dated = written("a.csv", "date time,roll_rad\n2023-06-07 10:00:00,0.1\n", &[]).unwrap();
+    assert_eq!(dated.groups[0].columns[0].name, "date time");
+}
+
+/// Situation: frames without a database; with one that has none of their messages; with that one beside the right one; a
+/// database for a file that has no frames; a database that is not there or none.
+/// Action: read.
+/// Must hold: the first two are refused, and say what to give or name both; the third says which database was idle; the
+/// others are refused with the file at fault.
+#[test]
+fn databases_that_are_missing_or_idle() {
+    let dbc = |name: &str| file(name).display().to_string();
+    let why = recorded("ride.log", &[]).unwrap_err().to_string();
+    assert_eq!(
+        why,
+        format!(
+            "{}: has 100 frames of CAN; give the database that decodes them with --dbc FILE",
+            dbc("ride.log")
+        )
+    );
+    for name in ["ride.asc", "ride.mf4"] {
+        assert!(recorded(name, &[]).unwrap_err().to_string().ends_with("with --dbc FILE"), "{name}");
+    }
+    let why = recorded("ride.log", &["odd.dbc"]).unwrap_err().to_string();
+    assert_eq!(
+        why,
+        format!("{}: has 100 frames of CAN, and none is decoded by {}", dbc("ride.log"), dbc("odd.dbc"))
+    );
+    let both = recorded("ride.log", &["odd.dbc", "ride.dbc"]).unwrap();
+    assert_eq!(remarks(&both), [format!("no frame of it is decoded by {}", dbc("odd.dbc"))]);
+    let why = written("a.csv", "t_s,roll_rad\n0,0.1\n", &["ride.dbc"]).unwrap_err();
+    assert_eq!(why, format!("a.csv: has no frame of CAN to decode by {}", dbc("ride.dbc")));
+    let why = read_with(&file("ride.log"), &[file("none.dbc")]).unwrap_err().to_string();
+    assert!(why.starts_with(&format!("can't read {}: ", dbc("none.dbc"))), "{why}");
+    let why = read_with(&file("ride.log"), &[file("ride.asc")]).unwrap_err().to_string();
+    assert!(why.starts_with(&format!("{}: line 1: is no DBC", dbc("ride.asc"))), "{why}");
+}
+
+/// Situation: the same message on two buses; a message that two databases have.
+/// Action: read.
+/// Must hold: a group for each bus, named with it; the first database is used, and it is said.
+#[test]
+fn two_buses_and_two_databases() {
+    let text = "(1.0) can0 304#9001\n(1.1) can1 304#9101\n(1.2) can0 304#9201\n";
+    let recording = written("a.log", text, &["ride.dbc"]).unwrap();
+    let names: Vec<&str> = recording.groups.iter().map(|group| group.name.as_str()).collect();
+    assert_eq!(names, ["RearWheel (can0)", "RearWheel (can1)"]);
+    assert_eq!(recording.groups[0].times_s, Some(vec![1.0, 1.2]));
+    assert_eq!(column(&recording.groups[1], "Speed"), [4.01]);
+    let twice = written("a.log", "(1.0) can0 304#9001\n", &["ride.dbc", "ride.dbc"]).unwrap();
+    assert_eq!(remarks(&twice).len(), 2, "{:?}", remarks(&twice));
+    assert_eq!(remarks(&twice)[1], "message RearWheel: two databases have 0x304; the first is used");
+}
+
+/// Situation: a log of Vector in binary, a measurement file of the version before, one that is a header alone.
+/// Action: read.
+/// Must hold: refused, and what to do is said.
+#[test]
+fn kinds_that_are_not_read_say_so() {
+    let why = written("a.blf", b"LOGG\x90\0\0\0", &["ride.dbc"]).unwrap_err();
+    assert!(why.contains("BLF") && why.contains("ASC"), "{why}");
+    let mut old = b"MDF     3.30    program ".to_vec();
+    old.resize(64, 0);
+    old[28..30].copy_from_slice(&330_u16.to_le_bytes());
+    let why = written("a.mf4", &old, &[]).unwrap_err();
+    assert_eq!(why, "a.mf4: is of MDF `3.30`; only MDF 4 is read, convert it");
+    let why = written("a.mf4", &std::fs::read(file("ride.mf4")).unwrap()[..100], &["ride.dbc"]).unwrap_err();
+    assert_eq!(why, "a.mf4: has no header where MDF 4 has it");
+}
