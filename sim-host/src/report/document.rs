@@ -264,6 +264,7 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "basin-plane" => generator.into_root_schema_for::<super::plane::PlaneDocument>(),
         "ride" => generator.into_root_schema_for::<RideDocument>(),
         "eigen" => generator.into_root_schema_for::<EigenDocument>(),
+        "identify-weave" => generator.into_root_schema_for::<super::weave::WeaveDocument>(),
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
         "rider-show" => generator.into_root_schema_for::<super::rider::RiderDocument>(),
         "sweep" => generator.into_root_schema_for::<super::sweep::SweepDocument>(),
