@@ -210,7 +210,7 @@ pub fn fit(samples: &Samples, beside: Beside) -> Result<Fit, String> {
     let times = &samples.times_s;
     let bounds = Bounds::new(samples, beside);
     let root_mean = |rates: &Vec<f64>| (rates.iter().map(|x| x * x).sum::<f64>() / rates.len() as f64).sqrt();
-    let white = |rates| Noise { deviation_rad_s: root_mean(rates), memory_s: 0.0 };
+    let white = |rates| Noise::white(root_mean(rates));
     let mut noise: Vec<Noise> = samples.axes_rad_s.iter().map(white).collect();
     if noise.iter().any(|n| n.deviation_rad_s < 1e-9) {
         return Err("an axis is zero all along".into());

@@ -1,9 +1,10 @@
-//! Noise with a memory: an autoregression of first order over stamps at any distance.
+//! Noise with a memory: white noise and a first-order autoregression together, over stamps at any distance.
 //!
 //! What a fit leaves is not white: floor, frame and fork shake for longer than a sample. Taken for white it gives
-//! intervals that are too narrow by half and more. The correlation of two samples is taken as exp(-distance/memory), and the
-//! memory is chosen by the restricted likelihood, which counts what the fit itself took away (Patterson and Thompson 1971);
-//! the ordinary likelihood takes short records for whiter than they are.
+//! intervals that are too narrow by half and more. The correlation of two samples at a distance is taken as
+//! share * exp(-distance / memory); what is not shared is white. Both are chosen by the restricted likelihood, which counts
+//! what the fit itself took away (Patterson and Thompson 1971); the ordinary likelihood takes short records for whiter than
+//! they are. Without the white part the memory would come out too short, and the slow part too small.
 
 use nalgebra::DMatrix;
 
@@ -12,12 +13,16 @@ use nalgebra::DMatrix;
 pub struct Noise {
     /// Standard deviation \[rad/s\].
     pub deviation_rad_s: f64,
-    /// Memory: the time after which the correlation is 1/e \[s\]; 0 is white.
+    /// Time after which the slow part's correlation is 1/e \[s\].
     pub memory_s: f64,
+    /// The slow part of the variance.
+    pub share: f64,
 }
 
 /// Steps of the search over the memory, from a fifth of a sample to half the window.
-const MEMORIES: usize = 24;
+const MEMORIES: usize = 16;
+/// The shares tried.
+const SHARES: [f64; 9] = [0.0, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 1.0];
 
 /// The middle distance between neighbours \[s\].
 pub fn period(times: &[f64]) -> f64 {
@@ -27,28 +32,43 @@ pub fn period(times: &[f64]) -> f64 {
 }
 
 impl Noise {
-    /// Correlation of each sample with the one before.
-    fn correlations(&self, times: &[f64]) -> Vec<f64> {
-        let of = |w: &[f64]| if self.memory_s > 0.0 { (-(w[1] - w[0]) / self.memory_s).exp() } else { 0.0 };
-        times.windows(2).map(of).collect()
+    /// White noise.
+    pub fn white(deviation_rad_s: f64) -> Self {
+        Self { deviation_rad_s, memory_s: 0.0, share: 0.0 }
     }
 
-    /// Makes white noise of deviation 1 of this noise, in every column.
-    pub fn whiten(&self, times: &[f64], columns: &mut DMatrix<f64>) {
-        let correlations = self.correlations(times);
-        for mut column in columns.column_iter_mut() {
-            for i in (1..column.len()).rev() {
-                let r = correlations[i - 1];
-                column[i] = (column[i] - r * column[i - 1]) / (1.0 - r * r).sqrt();
+    fn correlation(&self, distance_s: f64) -> f64 {
+        if self.memory_s > 0.0 { (-distance_s / self.memory_s).exp() } else { 0.0 }
+    }
+
+    /// Makes white noise of deviation 1 of this noise, in every column: the innovations of the Kalman filter that follows the
+    /// slow part. Gives the sum of the logarithms of their variances before, in units of the noise's.
+    pub fn whiten(&self, times: &[f64], columns: &mut DMatrix<f64>) -> f64 {
+        let mut followed = vec![0.0; columns.ncols()];
+        let (mut variance, mut logarithms) = (self.share, 0.0);
+        for i in 0..times.len() {
+            if i > 0 {
+                let r = self.correlation(times[i] - times[i - 1]);
+                variance = r * r * variance + self.share * (1.0 - r * r);
+                followed.iter_mut().for_each(|slow| *slow *= r);
             }
-            column /= self.deviation_rad_s;
+            let whole = variance + 1.0 - self.share;
+            let (gain, scale) = (variance / whole, whole.sqrt() * self.deviation_rad_s);
+            for (j, slow) in followed.iter_mut().enumerate() {
+                let new = columns[(i, j)] - *slow;
+                *slow += gain * new;
+                columns[(i, j)] = new / scale;
+            }
+            variance *= 1.0 - gain;
+            logarithms += whole.ln();
         }
+        logarithms
     }
 
     /// How many independent samples the window is worth.
     pub fn independent(&self, times: &[f64]) -> f64 {
-        let r = if self.memory_s > 0.0 { (-period(times) / self.memory_s).exp() } else { 0.0 };
-        times.len() as f64 * (1.0 - r) / (1.0 + r)
+        let r = self.correlation(period(times));
+        times.len() as f64 / (1.0 - self.share + self.share * (1.0 + r) / (1.0 - r))
     }
 
     /// The noise of most restricted likelihood in `rates` \[rad/s\] that hold any mixture of `columns` besides.
@@ -58,42 +78,21 @@ impl Noise {
         // The scale of a column means nothing; one that is zero would make the matrix singular.
         all.column_iter_mut().take(p).for_each(|mut c| c /= c.norm().max(1e-9));
         all.column_mut(p).copy_from_slice(rates);
-        let judged = |memory_s: f64| {
-            let unit = Self { deviation_rad_s: 1.0, memory_s };
+        let freedom = n.saturating_sub(p).max(1) as f64;
+        let judged = |memory_s: f64, share: f64| {
+            let unit = Self { deviation_rad_s: 1.0, memory_s, share };
             let mut white = all.clone();
-            unit.whiten(times, &mut white);
+            let logarithms = unit.whiten(times, &mut white);
             let r = white.qr().r();
             let left = r[(p, p)].powi(2).max(f64::MIN_POSITIVE);
             let taken: f64 = (0..p).map(|i| 2.0 * r[(i, i)].abs().max(1e-12).ln()).sum();
-            let memory: f64 = unit.correlations(times).iter().map(|r| (1.0 - r * r).ln()).sum();
-            let freedom = n.saturating_sub(p).max(1) as f64;
-            (freedom * left.ln() + taken + memory, (left / freedom).sqrt())
+            let deviation_rad_s = (left / freedom).sqrt();
+            (freedom * left.ln() + taken + logarithms, Self { deviation_rad_s, ..unit })
         };
         let (from, to) = (0.2 * period(times), 0.5 * (times[n - 1] - times[0]));
-        let at = |i: f64| from * (to / from).powf(i / (MEMORIES - 1) as f64);
-        let cost = |i: f64| judged(at(i)).0;
-        let best =
-            (0..MEMORIES).map(|i| i as f64).min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(0.0);
-        let place = golden((best - 1.0).max(0.0), (best + 1.0).min((MEMORIES - 1) as f64), cost);
-        Self { memory_s: at(place), deviation_rad_s: judged(at(place)).1 }
+        let memories = (0..MEMORIES).map(|i| from * (to / from).powf(i as f64 / (MEMORIES - 1) as f64));
+        let pairs = memories.flat_map(|memory| SHARES.map(|share| judged(memory, share)));
+        let best = pairs.min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map_or(Self::white(f64::NAN), |(_, noise)| noise)
     }
-}
-
-/// Where between two places a function with one valley is least, to a hundredth.
-fn golden(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
-    const PART: f64 = 0.618_033_988_749_895;
-    let (mut x, mut y) = (b - PART * (b - a), a + PART * (b - a));
-    let (mut fx, mut fy) = (f(x), f(y));
-    while b - a > 0.01 {
-        if fx < fy {
-            (b, y, fy) = (y, x, fx);
-            x = b - PART * (b - a);
-            fx = f(x);
-        } else {
-            (a, x, fx) = (x, y, fy);
-            y = a + PART * (b - a);
-            fy = f(y);
-        }
-    }
-    0.5 * (a + b)
 }

@@ -12,6 +12,8 @@ pub const FEWEST_SAMPLES: usize = 20;
 /// The variance that the weave must explain, in units of the noise's, for each axis; by chance it is about two, the best of
 /// many frequencies some more.
 const LEAST_EXPLAINED: f64 = 15.0;
+/// The amplitude it must have in some axis, in standard deviations of the noise.
+const LEAST_AMPLITUDE: f64 = 3.0;
 
 /// How a recording is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,8 +35,10 @@ pub struct AxisFit {
     pub amplitude_rad_s: f64,
     /// Standard deviation of the noise \[rad/s\].
     pub noise_rad_s: f64,
-    /// Time after which the noise's correlation is 1/e \[s\].
+    /// Time after which the correlation of the noise's slow part is 1/e \[s\].
     pub noise_memory_s: f64,
+    /// The slow part of its variance.
+    pub noise_share: f64,
 }
 
 /// What a recording says.
@@ -89,6 +93,7 @@ pub fn identify(record: &Record, settings: Settings) -> Result<Segment, String> 
                 amplitude_rad_s: *a,
                 noise_rad_s: noise.deviation_rad_s,
                 noise_memory_s: noise.memory_s,
+                noise_share: noise.share,
             }
         });
     Ok(Segment {
@@ -132,7 +137,12 @@ fn without_noise(record: &Record, part: Window, fitted: &Fit) -> Option<Window> 
 fn believable(fitted: &Fit, span_s: f64) -> Result<(), String> {
     let least = LEAST_EXPLAINED * fitted.noise.len() as f64;
     let (frequency, error) = (fitted.shape.frequency_rad_s, fitted.standard_errors[1]);
-    if fitted.explained < least {
+    let above = fitted
+        .amplitude_rad_s
+        .iter()
+        .zip(&fitted.noise)
+        .any(|(a, n)| *a >= LEAST_AMPLITUDE * n.deviation_rad_s);
+    if fitted.explained < least || !above {
         return Err("no oscillation that stands out from the noise".into());
     }
     if fitted.periods(span_s) <= 0.501 {

@@ -4,6 +4,10 @@ use super::noise::period;
 
 /// The part of the largest rate at which the knock is seen.
 const SEEN: f64 = 0.5;
+/// A recording that was cut after the knock has that part within so long after its first sample \[s\],
+const CUT_S: f64 = 0.1;
+/// and at least this part at the first sample.
+const CUT: f64 = 0.15;
 /// Within this time after a maximum there is no larger one \[s\].
 const AHEAD_S: f64 = 0.1;
 /// A longer time without a sample ends the window \[s\].
@@ -51,7 +55,8 @@ pub struct Window {
 /// The window of a recording with stamps \[s\] and axes of rates \[rad/s\]; `told` are its ends, if someone did \[s\].
 ///
 /// The size of the motion is the root of the sum of the axes' squares. The knock is seen where it first reaches half of the
-/// largest, and the window begins at the maximum that follows. A recording that begins with that much was cut after the knock.
+/// largest, and the window begins at the maximum that follows. A recording that begins in motion and has that much within 0.1 s
+/// was cut after the knock: its window begins with it.
 pub fn window(times: &[f64], axes: &[&[f64]], told: (Option<f64>, Option<f64>)) -> Window {
     let size = |i: usize| axes.iter().map(|axis| axis[i] * axis[i]).sum::<f64>().sqrt();
     let sizes: Vec<f64> = (0..times.len()).map(size).collect();
@@ -70,9 +75,10 @@ pub fn window(times: &[f64], axes: &[&[f64]], told: (Option<f64>, Option<f64>)) 
 
 fn knock(times: &[f64], sizes: &[f64]) -> (usize, Begins) {
     let largest = sizes.iter().copied().fold(0.0, f64::max);
-    let Some(mut at) = sizes.iter().position(|size| *size >= SEEN * largest).filter(|at| *at > 0) else {
+    let mut at = sizes.iter().position(|size| *size >= SEEN * largest).unwrap_or(0);
+    if at == 0 || (times[at] - times[0] <= CUT_S && sizes[0] >= CUT * largest) {
         return (0, Begins::Record);
-    };
+    }
     loop {
         let ahead = at..times.partition_point(|t| *t <= times[at] + AHEAD_S);
         match ahead.max_by(|a, b| sizes[*a].total_cmp(&sizes[*b])).filter(|next| sizes[*next] > sizes[at]) {

@@ -12,7 +12,7 @@ pub fn text(document: &WeaveDocument) -> String {
     text += "\nRepeats together, [95 % interval], scatter between them; the linear model's beside it:\n";
     let _ = writeln!(
         text,
-        "{:>5} {:>6} {:>7}  {:<30} {:<30} {:<15} {:<15}",
+        "{:>5} {:>6} {:>7}  {:<30} {:<30} {:<15} {}",
         "gain", "m/s", "repeats", "decay [1/s]", "frequency [rad/s]", "perfect motor", "fitted motor"
     );
     for entry in &document.weave {
@@ -59,7 +59,7 @@ fn recordings(document: &WeaveDocument) -> String {
     let mut text = format!("Weave{beside} fitted to {columns}; windows in s after the first sample:\n");
     let _ = writeln!(
         text,
-        "{:<28} {:>5} {:>6}  {:<25} {:>7}  {:<22} {:<22}",
+        "{:<28} {:>5} {:>6}  {:<25} {:>7}  {:<22} {}",
         "file", "gain", "m/s", "window", "periods", "decay [1/s]", "frequency [rad/s]"
     );
     for entry in &document.recordings {
