@@ -25,14 +25,15 @@ Examples:
   sim-host identify weave ride.csv --speed 3.9 --gain 8 --json";
 
 const WEAVE_EXAMPLES: &str = "\
-A file is a CSV table with a column of time stamps (seconds, or dates with a time) and columns of the gyro's rates, recorded on
-the bicycle without a rider after a knock. Repeats at one gain and speed are put together.
+A file is a CSV table with a column of time stamps (seconds, or dates with a time) and columns of
+the gyro's rates, recorded after a knock on a bicycle that rolls without a rider. Repeats at one
+gain and speed are put together.
 
 Examples:
   sim-host identify weave gain*_speed*kmh_*.csv --svg weave.svg
   sim-host identify weave ride.csv --speed 3.9 --gain 8 --json
-  sim-host identify weave 'v4.2 k10.csv' --label 'v{speed_m_s} k{gain}' --column roll_rate --unit deg/s
-  sim-host identify weave push.csv --speed 5 --law none --bicycle benchmark --from 2.5s --to 6s --csv -";
+  sim-host identify weave 'v4 k9.csv' --label 'v{speed_m_s} k{gain}' --column roll --unit deg/s
+  sim-host identify weave push.csv --speed 5 --law none --bicycle benchmark --from 2.5s --csv -";
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {

@@ -119,27 +119,37 @@ fn key(gain: Option<f64>, speed: f64) -> (i64, i64) {
     (gain.map_or(-1, whole), whole(speed))
 }
 
+/// Repeats at one gain and speed.
+struct Group<'a> {
+    gain: Option<f64>,
+    speed_m_s: f64,
+    repeats: Vec<&'a RecordingEntry>,
+    refused: usize,
+}
+
 /// Repeats together, by gain and speed, beside the model's weave.
 pub(super) fn together(
     recordings: &[RecordingEntry],
     refused: &[RefusedEntry],
     models: &Models,
 ) -> Result<Vec<WeaveEntry>, String> {
-    let mut groups: BTreeMap<(i64, i64), (Option<f64>, f64, Vec<&RecordingEntry>)> = BTreeMap::new();
+    let mut groups: BTreeMap<(i64, i64), Group> = BTreeMap::new();
     for entry in recordings {
-        let group = groups.entry(key(entry.gain, entry.speed_m_s));
-        group.or_insert((entry.gain, entry.speed_m_s, Vec::new())).2.push(entry);
+        let (gain, speed_m_s) = (entry.gain, entry.speed_m_s);
+        let group = groups.entry(key(gain, speed_m_s));
+        group.or_insert(Group { gain, speed_m_s, repeats: Vec::new(), refused: 0 }).repeats.push(entry);
     }
+    // Of a file whose speed or gain makes no sense there is nothing to predict.
+    let known = |e: &RefusedEntry| {
+        e.speed_m_s.filter(|v| (0.0..=30.0).contains(v) && law_of(models.law, e.gain).is_ok())
+    };
     for entry in refused {
-        if let Some(speed) =
-            entry.speed_m_s.filter(|v| (0.0..=30.0).contains(v) && law_of(models.law, entry.gain).is_ok())
-        {
-            groups.entry(key(entry.gain, speed)).or_insert((entry.gain, speed, Vec::new()));
+        if let (gain, Some(speed_m_s)) = (entry.gain, known(entry)) {
+            let group = groups.entry(key(gain, speed_m_s));
+            group.or_insert(Group { gain, speed_m_s, repeats: Vec::new(), refused: 0 }).refused += 1;
         }
     }
-    let entries = groups.into_values().map(|(gain, speed_m_s, repeats)| {
-        let missing =
-            refused.iter().filter(|e| e.speed_m_s.is_some_and(|v| key(e.gain, v) == key(gain, speed_m_s)));
+    let entries = groups.into_values().map(|Group { gain, speed_m_s, repeats, refused }| {
         let decays: Vec<_> = repeats.iter().map(|e| e.weave.decay_1_s).collect();
         let frequencies: Vec<_> = repeats.iter().map(|e| e.weave.frequency_rad_s).collect();
         let [perfect, fitted] = models.weave(gain, &[speed_m_s])?.map(|roots| roots[0].map(|r| [r.re, r.im]));
@@ -147,7 +157,7 @@ pub(super) fn together(
             gain,
             speed_m_s,
             repeats: repeats.len(),
-            refused: missing.count(),
+            refused,
             decay_1_s: pool(&decays),
             frequency_rad_s: pool(&frequencies),
             predicted: Predicted { perfect, fitted },

@@ -12,8 +12,8 @@ pub fn text(document: &WeaveDocument) -> String {
     text += "\nRepeats together, [95 % interval], scatter between them; the linear model's beside it:\n";
     let _ = writeln!(
         text,
-        "{:>5} {:>6} {:>7}  {:<30} {:<30} {:<15} {}",
-        "gain", "m/s", "repeats", "decay [1/s]", "frequency [rad/s]", "perfect motor", "fitted motor"
+        "{:>5} {:>6} {:>7}  {:<30} {:<30} {:<15} fitted motor",
+        "gain", "m/s", "repeats", "decay [1/s]", "frequency [rad/s]", "perfect motor"
     );
     for entry in &document.weave {
         let number = |pooled: Option<Pooled>| {
@@ -59,8 +59,8 @@ fn recordings(document: &WeaveDocument) -> String {
     let mut text = format!("Weave{beside} fitted to {columns}; windows in s after the first sample:\n");
     let _ = writeln!(
         text,
-        "{:<28} {:>5} {:>6}  {:<25} {:>7}  {:<22} {}",
-        "file", "gain", "m/s", "window", "periods", "decay [1/s]", "frequency [rad/s]"
+        "{:<28} {:>5} {:>6}  {:<25} {:>7}  {:<22} frequency [rad/s]",
+        "file", "gain", "m/s", "window", "periods", "decay [1/s]"
     );
     for entry in &document.recordings {
         let name =
