@@ -57,7 +57,7 @@ pub(super) struct Args {
     /// Unit of the rates
     #[arg(long, default_value = "rad/s", value_parser = ["rad/s", "deg/s"])]
     unit: String,
-    /// What the files' names say, without their ending: {gain}, {speed_kmh} or {speed_m_s}, {n}
+    /// What the files' names say, without their ending: {gain}, {speed_kmh} or {speed_m_s}; a repeat's number as in the default
     #[arg(long, value_name = "PATTERN", default_value = "gain{gain}_speed{speed_kmh}kmh_{n}")]
     pub(super) label: String,
     /// Forward speed of all files in m/s, instead of what their names say

@@ -163,7 +163,7 @@ fn verdict(rows: &[Row]) -> String {
            speeds, hold about one period.\n\
          - Fitted with an offset alone the recordings give nearly the published values: {:.2} 1/s from them, root mean square,\n  \
            and {:.2} 1/s with the mode. The linear model has a decaying real mode (the caster, {slow:.1} to {fast:.1} 1/s) that a knock\n  \
-           excites; left out, it is taken for decay and frequency of the weave, most at low speed.\n{scatter}",
+           excites; left out, it goes into decay and frequency of the weave, most at low speed.\n{scatter}",
         narrow.len(),
         distance(rows, offset),
         distance(rows, mode),

@@ -53,8 +53,8 @@ pub struct Segment {
     /// Why it begins there: at the knock, with the recording, or told.
     #[schemars(with = "String", extend("enum" = ["knock", "record", "told"]))]
     pub begins: Begins,
-    /// Why it ends there: with the recording, in the noise, at a gap, or told.
-    #[schemars(with = "String", extend("enum" = ["record", "noise", "gap", "told"]))]
+    /// Why it ends there: with the recording, in the noise, at a gap, after 20 s, or told.
+    #[schemars(with = "String", extend("enum" = ["record", "noise", "gap", "limit", "told"]))]
     pub ends: Ends,
     /// Periods of the weave in it.
     pub periods: f64,

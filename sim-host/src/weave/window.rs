@@ -13,6 +13,9 @@ const AHEAD_S: f64 = 0.1;
 /// A longer time without a sample ends the window \[s\].
 const GAP_S: f64 = 0.1;
 
+/// No longer window is looked at unless that is told \[s\].
+const LONGEST_S: f64 = 20.0;
+
 /// Why a window begins where it does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -35,6 +38,8 @@ pub enum Ends {
     Noise,
     /// At a gap in the recording.
     Gap,
+    /// After the longest time that is looked at.
+    Limit,
     /// Where it was told to.
     Told,
 }
@@ -66,11 +71,16 @@ pub fn window(times: &[f64], axes: &[&[f64]], told: (Option<f64>, Option<f64>)) 
     };
     let gap = GAP_S.max(5.0 * period(times));
     let gap = (from + 1..times.len()).find(|i| times[*i] - times[i - 1] > gap);
-    let (to, ends) = gap.map_or((times.len(), Ends::Record), |at| (at, Ends::Gap));
-    match told.1.map(|to| times.partition_point(|t| *t <= to)) {
-        Some(at) if at < to => Window { from, to: at, begins, ends: Ends::Told },
-        _ => Window { from, to, begins, ends },
+    let longest = times.get(from).map_or(f64::INFINITY, |t| t + LONGEST_S);
+    let told_to = told.1.map_or(times.len(), |to| times.partition_point(|t| *t <= to));
+    let limit = if told.1.is_some() { times.len() } else { times.partition_point(|t| *t <= longest) };
+    let (mut to, mut ends) = (times.len(), Ends::Record);
+    for (at, why) in [(gap.unwrap_or(times.len()), Ends::Gap), (limit, Ends::Limit), (told_to, Ends::Told)] {
+        if at < to {
+            (to, ends) = (at, why);
+        }
     }
+    Window { from, to, begins, ends }
 }
 
 fn knock(times: &[f64], sizes: &[f64]) -> (usize, Begins) {

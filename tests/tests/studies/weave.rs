@@ -45,8 +45,7 @@ fn after_push(mut record: Record, how: &Recording) -> Record {
 
 /// Situation: recordings of the linear model without noise, of several gains, speeds and rates.
 /// Action: find the weave.
-/// Must hold: the model's eigenvalue, to 2 % of its size; the caster left out, it is off by more at low speed, and by more
-/// than 0.3 1/s in decay in a window of a period.
+/// Must hold: the model's eigenvalue, to 2 % of its size; the caster left out, it is off by more at low speed.
 #[test]
 fn without_noise_the_eigenvalue_comes_out() {
     for (kappa, speed, rate_hz) in
@@ -66,14 +65,6 @@ fn without_noise_the_eigenvalue_comes_out() {
         assert!(mode < 0.02, "{mode}");
         assert!(speed > 3.0 || offset > 2.0 * mode, "{offset}");
     }
-    let (knocked, how) = (prototype(10.0, 2.22), cut(0.6, 1e-4, 0.03));
-    let record = after_push(knocked.record(&how, &mut Dice(1)), &how);
-    let off = [Beside::Mode, Beside::Offset].map(|beside| {
-        let found = identify(&record, Settings { beside, ..Settings::default() }).expect("a weave");
-        (found.decay_1_s.value - knocked.weave().re).abs()
-    });
-    println!("a period: decay off by {:.3}, without the mode {:.3}", off[0], off[1]);
-    assert!(off[0] < 0.1 && (0.3..2.0).contains(&off[1]), "{off:?}");
 }
 
 /// Situation: 200 recordings of the linear model under noise with a memory of 5 to 50 ms, as long and as loud as those of the
@@ -159,6 +150,19 @@ fn the_window_is_found() {
     let told = identify(&record, told).expect("a weave");
     assert_eq!((told.begins, told.ends), (Begins::Told, Ends::Told));
     assert!((told.from_s - 2.0).abs() < 0.02 && (told.to_s - 4.0).abs() < 0.02);
+}
+
+/// Situation: a recording that goes on for a minute and a half after the push.
+/// Action: find the weave.
+/// Must hold: it is found as in a short one, and no more than 20 s are looked at.
+#[test]
+fn a_long_recording_is_no_harder() {
+    let knocked = prototype(8.0, 4.44);
+    let how = Recording { before_s: 2.0, ..cut(90.0, 0.02, 0.02) };
+    let found = identify(&knocked.record(&how, &mut Dice(11)), Settings::default()).expect("a weave");
+    println!("{found:?}");
+    assert!(found.ends == Ends::Noise && found.to_s - found.from_s < 20.0);
+    assert!((found.decay_1_s.value - knocked.weave().re).abs() < 0.1, "{found:?}");
 }
 
 /// Situation: noise alone, a drift, a decay without oscillation, a step, too few samples, an axis that is zero.
