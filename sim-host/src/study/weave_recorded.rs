@@ -149,7 +149,7 @@ fn verdict(rows: &[Row]) -> String {
     let scatter = narrow.iter().max_by(|a, b| between(a).total_cmp(&between(b))).map_or(String::new(), |row| {
         format!(
             "- Repeats scatter more than their own errors allow, in frequency most at {:.2} m/s with K = {} ({:.2} rad/s). Why is\n  \
-               not known: the knocks differ in size, and friction and tyres are not linear.\n",
+               not known; a linear bicycle has no such scatter.\n",
             row.measured.speed_m_s,
             row.measured.gain.unwrap_or_default(),
             between(&row),

@@ -182,20 +182,18 @@ fn row(
     Ok(Row { line, time_s, rates: axes.iter().map(rate).collect::<Result<_, _>>()?, stamp })
 }
 
-/// The rows whose stamps rise. Of one stamp that is ahead of those after it that one is left out.
+/// The rows whose stamps rise. Of one stamp that is ahead of the two after it that one is left out.
 fn rising(rows: Vec<Row>, column: &str, notes: &mut Notes) -> Vec<Row> {
     let mut kept: Vec<Row> = Vec::with_capacity(rows.len());
-    for row in rows {
+    let mut rows = rows.into_iter().peekable();
+    while let Some(row) = rows.next() {
         if let [.., before, last] = &kept[..]
-            && row.time_s <= last.time_s
+            && (before.time_s..last.time_s).contains(&row.time_s)
             && row.time_s > before.time_s
-            && row.time_s < last.time_s - 1e-9
+            && rows.peek().is_some_and(|next| next.time_s < last.time_s)
         {
-            notes.add(
-                Kind::Back,
-                last.line,
-                &format!("`{column}` = `{}` is later than the next line's", last.stamp),
-            );
+            let (line, stamp) = (last.line, &last.stamp);
+            notes.add(Kind::Back, line, &format!("`{column}` = `{stamp}` is later than the next lines'"));
             kept.pop();
         }
         match kept.last() {
@@ -243,19 +241,19 @@ mod tests {
     #[test]
     fn what_is_wrong_is_told_and_the_rest_is_used() {
         let text = "# a comment\nTime,gyro_x,gyro_y\n0,1,0\n0.1,2,0\n0.1,3,0\n0.05,4,0\n0.2,nan,0\n0.3,5,0\n9.0,6,0\n0.4,7,0\n\
-                    0.5,60,0\nnow,1,0\n0.6,8";
+                    0.45,9,0\n0.5,60,0\nnow,1,0\n0.6,8";
         let record = of(text).unwrap();
         assert_eq!(record.axes.len(), 1);
-        assert_eq!(record.axes[0].rates_rad_s, [1.0, 2.0, 5.0, 7.0]);
-        assert_eq!(record.times_s, [0.0, 0.1, 0.3, 0.4]);
+        assert_eq!(record.axes[0].rates_rad_s, [1.0, 2.0, 5.0, 7.0, 9.0]);
+        assert_eq!(record.times_s, [0.0, 0.1, 0.3, 0.4, 0.45]);
         let said = [
-            "line 13: 2 fields where the heading has 3; left out",
-            "line 12: `Time` = `now` is neither seconds nor a date with a time; left out",
+            "line 14: 2 fields where the heading has 3; left out",
+            "line 13: `Time` = `now` is neither seconds nor a date with a time; left out",
             "line 7: `gyro_x` = `nan` is not a number from -50 to 50 rad/s; left out",
-            "line 11: `gyro_x` = `60` is not a number from -50 to 50 rad/s; left out",
+            "line 12: `gyro_x` = `60` is not a number from -50 to 50 rad/s; left out",
             "line 5: `Time` stands: `0.1` after `0.1`; left out",
             "line 6: `Time` goes back: `0.05` after `0.1`; left out",
-            "line 9: `Time` = `9.0` is later than the next line's; left out",
+            "line 9: `Time` = `9.0` is later than the next lines'; left out",
         ];
         assert_eq!(record.notes, said);
     }
