@@ -180,8 +180,8 @@ fn what_does_not_oscillate_is_refused() {
     let drift = |t: f64, dice: &mut Dice| 0.3 * t + 0.02 * dice.normal();
     let decay = |t: f64, dice: &mut Dice| 0.7 * (-3.0 * t).exp() + 0.02 * dice.normal();
     let rest = |_: f64, _: &mut Dice| 0.0;
-    let all: [(&str, &dyn Fn(f64, &mut Dice) -> f64); 3] =
-        [("noise", &noise), ("drift", &drift), ("decay", &decay)];
+    type Rates<'a> = &'a dyn Fn(f64, &mut Dice) -> f64;
+    let all: [(&str, Rates); 3] = [("noise", &noise), ("drift", &drift), ("decay", &decay)];
     for (name, rates) in all {
         let found = (0..20).filter_map(|seed| identify(&record(rates, 150, seed), Settings::default()).ok());
         let found: Vec<_> = found.collect();
