@@ -21,3 +21,4 @@ pub mod study;
 pub mod sweep;
 pub mod thesis;
 pub mod tracking;
+pub mod weave;

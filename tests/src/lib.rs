@@ -11,6 +11,7 @@ pub mod felt;
 pub mod flow;
 pub mod inside;
 pub mod json_schema;
+pub mod knock;
 pub mod late;
 pub mod linearised;
 pub mod link_board;

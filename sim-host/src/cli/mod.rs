@@ -9,6 +9,8 @@ mod conditions;
 mod design;
 mod eigen;
 mod faults;
+mod identify;
+mod identify_files;
 mod interrupt;
 mod law;
 mod monitor;
@@ -87,6 +89,9 @@ enum Command {
     Sweep(Box<sweep::Args>),
     /// Eigenvalues of the linearised bicycle over speed, and its critical speeds.
     Eigen(eigen::Args),
+    /// Numbers of the linear model measured in recordings: weave.
+    #[command(subcommand, after_help = identify::EXAMPLES)]
+    Identify(identify::Command),
     /// The tables and figures of the thesis computed again, as a report.
     Thesis(thesis::Args),
     /// Bicycles: list, show, check, accelerations.
@@ -113,7 +118,7 @@ enum Command {
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
-        #[arg(value_parser = ["basin", "ride", "replay", "replay-many", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design", "param-list", "faults"])]
+        #[arg(value_parser = ["basin", "ride", "replay", "replay-many", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design", "param-list", "faults", "identify-weave"])]
         document: String,
     },
 }
@@ -129,6 +134,7 @@ pub fn run() -> ExitCode {
         Command::Replay(args) => replay::run(&args),
         Command::Pil(args) => pil::run(&args),
         Command::Eigen(args) => eigen::run(&args),
+        Command::Identify(command) => identify::run(&command),
         Command::Thesis(args) => thesis::run(&args),
         Command::Bicycle(command) => bicycle::run(&command),
         Command::Rider(command) => rider::run(&command),

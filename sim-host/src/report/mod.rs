@@ -14,3 +14,4 @@ pub mod rider;
 pub mod sweep;
 pub mod table;
 pub mod terminal;
+pub mod weave;

@@ -3,6 +3,7 @@
 
 use super::motor_fit::{Explained, Free, fits, published_residual};
 use super::page::{Page, table};
+use super::weave_recorded;
 use crate::bicycle::{Parameters, catalogue};
 use crate::eigen::{Feedback, LinearActuator, Model, SEARCH_TO_M_S, roots, stability};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
@@ -126,7 +127,8 @@ pub fn study() -> Result<Page, String> {
     text += "\nThe upper end is capsize, which feedback of the roll rate does not move. Computed from the parameters; no\n\
              number was fitted.\n\n## The measured weave\n\n";
     text += &measured(&riderless, &published.weave, &fits);
-    text += "\n![Weave eigenvalues](balance-assist.svg)\n";
+    text += "\n![Weave eigenvalues](balance-assist.svg)\n\n";
+    text += &weave_recorded::section(&riderless, &published.weave, best(&fits).actuator)?;
     Ok(Page { name: NAME, text, chart: figure(&riderless, &published.weave, &fits) })
 }
 

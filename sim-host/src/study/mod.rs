@@ -7,3 +7,4 @@ pub mod page;
 pub mod prototype;
 pub mod swept;
 pub mod trial;
+pub mod weave_recorded;

@@ -82,6 +82,7 @@ fn every_option_is_documented_with_its_default() {
         "thesis",
         "study",
         "design",
+        "identify weave",
     ] {
         let help = bench.run(&format!("{command} --help")).stdout;
         let mut option = "";

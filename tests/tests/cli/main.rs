@@ -4,6 +4,7 @@ mod bad_input;
 mod contract;
 mod design;
 mod document;
+mod identify;
 mod interrupt;
 mod options;
 mod outputs;

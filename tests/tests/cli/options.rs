@@ -103,6 +103,8 @@ fn every_help_has_examples_whose_options_exist() {
         "param export",
         "param import",
         "faults",
+        "identify",
+        "identify weave",
     ] {
         let help = bench.run(&format!("{command} --help"));
         assert_eq!(help.code, Some(0), "{command}");

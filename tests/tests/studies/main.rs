@@ -2,3 +2,4 @@
 
 mod balance_assist;
 mod delay;
+mod weave;

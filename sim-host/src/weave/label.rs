@@ -1,0 +1,100 @@
+//! What a recording's name says: `gain{gain}_speed{speed_kmh}kmh_{n}`.
+
+/// What may stand in braces.
+const NAMES: [&str; 4] = ["gain", "speed_kmh", "speed_m_s", "n"];
+
+/// A pattern of names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pattern {
+    text: String,
+    parts: Vec<Part>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Part {
+    Word(String),
+    Number(&'static str),
+}
+
+/// What a name says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Label {
+    /// The controller's gain.
+    pub gain: Option<f64>,
+    /// Forward speed \[m/s\].
+    pub speed_m_s: Option<f64>,
+}
+
+impl Pattern {
+    /// Reads a pattern.
+    ///
+    /// # Errors
+    /// Names the brace that is not closed or the word in it that is unknown.
+    pub fn new(text: &str) -> Result<Self, String> {
+        let (mut parts, mut rest) = (Vec::new(), text);
+        while let Some((word, after)) = rest.split_once('{') {
+            let known = NAMES.map(|name| format!("{{{name}}}")).join(", ");
+            let (name, after) =
+                after.split_once('}').ok_or_else(|| format!("`{text}`: a brace is not closed"))?;
+            let name = NAMES.into_iter().find(|known| *known == name);
+            let name = name.ok_or_else(|| format!("`{text}`: in braces may stand {known}"))?;
+            parts.extend((!word.is_empty()).then(|| Part::Word(word.into())));
+            if matches!((parts.last(), word), (Some(Part::Number(_)), "")) {
+                return Err(format!("`{text}`: two numbers have nothing between them"));
+            }
+            parts.push(Part::Number(name));
+            rest = after;
+        }
+        parts.extend((!rest.is_empty()).then(|| Part::Word(rest.into())));
+        Ok(Self { text: text.into(), parts })
+    }
+
+    /// The pattern as it was given.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// What `name` says, a file's name without its ending; `None` if it does not fit.
+    pub fn read(&self, name: &str) -> Option<Label> {
+        let (mut label, mut rest) = (Label::default(), name);
+        for part in &self.parts {
+            match part {
+                Part::Word(word) => rest = rest.strip_prefix(word.as_str())?,
+                Part::Number(what) => {
+                    let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
+                    let value: f64 = rest[..end].parse().ok()?;
+                    rest = &rest[end..];
+                    match *what {
+                        "gain" => label.gain = Some(value),
+                        "speed_kmh" => label.speed_m_s = Some(value / 3.6),
+                        "speed_m_s" => label.speed_m_s = Some(value),
+                        _ => {}
+                    }
+                }
+            }
+        }
+        rest.is_empty().then_some(label)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read() {
+        let pattern = Pattern::new("gain{gain}_speed{speed_kmh}kmh_{n}").unwrap();
+        let label = pattern.read("gain8_speed14.4kmh_1").unwrap();
+        assert_eq!(label, Label { gain: Some(8.0), speed_m_s: Some(4.0) });
+        for name in
+            ["", "gain8_speed14kmh", "gain8_speed14kmh_1b", "gainx_speed14kmh_1", "gain8_speed1.4.4kmh_1"]
+        {
+            assert_eq!(pattern.read(name), None, "{name}");
+        }
+        let plain = Pattern::new("v{speed_m_s}-").unwrap();
+        assert_eq!(plain.read("v3.9-"), Some(Label { gain: None, speed_m_s: Some(3.9) }));
+        for wrong in ["{", "{speed}", "a{gain}{n}"] {
+            assert!(Pattern::new(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! The linear model's weave.
+
+use crate::bicycle::Parameters;
+use crate::eigen::{Feedback, LinearActuator, Model, roots};
+use control::Law;
+use nalgebra::Complex;
+
+/// The upper eigenvalue of the weave \[1/s\] of a bicycle under a law that an actuator turns into torque, at each of the
+/// speeds \[m/s\]; `None` where there is no pair. At low speed caster and capsize can be a pair, too: the weave is the one of
+/// the least damping ratio.
+///
+/// # Errors
+/// A value of the actuator out of its range.
+pub fn weave(
+    bicycle: &Parameters,
+    law: &Law,
+    actuator: LinearActuator,
+    speeds: &[f64],
+) -> Result<Vec<Option<Complex<f64>>>, String> {
+    let model = Model::new(bicycle, Feedback::Law(law.clone()), None).with_actuator(actuator)?;
+    let damping = |root: &Complex<f64>| -root.re / root.norm();
+    let least = |v: &f64| {
+        let pairs = roots(&model.at(*v), 6).into_iter().filter(|root| root.im > 0.0);
+        pairs.min_by(|a, b| damping(a).total_cmp(&damping(b)))
+    };
+    Ok(speeds.iter().map(least).collect())
+}

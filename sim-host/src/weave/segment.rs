@@ -1,0 +1,164 @@
+//! One recording: its window, its fit, and whether that may be believed.
+
+use super::Estimate;
+use super::fit::{Fit, Samples, fit};
+use super::record::Record;
+use super::shape::Beside;
+use super::student::quantile;
+use super::window::{Begins, Ends, Window, window};
+
+/// Fewer samples than this in the window are too few.
+pub const FEWEST_SAMPLES: usize = 20;
+/// The variance that the weave must explain, in units of the noise's, for each axis; by chance it is about two, the best of
+/// many frequencies some more.
+const LEAST_EXPLAINED: f64 = 15.0;
+/// The amplitude it must have in some axis, in standard deviations of the noise.
+const LEAST_AMPLITUDE: f64 = 3.0;
+
+/// How a recording is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// What is fitted beside the weave.
+    pub beside: Beside,
+    /// Where the window begins, after the first sample \[s\]; found if not told.
+    pub from_s: Option<f64>,
+    /// Where it ends \[s\].
+    pub to_s: Option<f64>,
+}
+
+/// The weave of an axis.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+pub struct AxisFit {
+    /// Its column.
+    pub column: String,
+    /// Amplitude of the weave at the window's start \[rad/s\].
+    pub amplitude_rad_s: f64,
+    /// Standard deviation of the noise \[rad/s\].
+    pub noise_rad_s: f64,
+    /// Time after which the correlation of the noise's slow part is 1/e \[s\].
+    pub noise_memory_s: f64,
+    /// The slow part of its variance.
+    pub noise_share: f64,
+}
+
+/// What a recording says.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+pub struct Segment {
+    /// Start of the window after the first sample \[s\].
+    pub from_s: f64,
+    /// Its end \[s\].
+    pub to_s: f64,
+    /// Samples in it.
+    pub samples: usize,
+    /// Why it begins there: at the knock, with the recording, or told.
+    #[schemars(with = "String", extend("enum" = ["knock", "record", "told"]))]
+    pub begins: Begins,
+    /// Why it ends there: with the recording, in the noise, at a gap, after 20 s, or told.
+    #[schemars(with = "String", extend("enum" = ["record", "noise", "gap", "limit", "told"]))]
+    pub ends: Ends,
+    /// Periods of the weave in it.
+    pub periods: f64,
+    /// Real part of the weave's eigenvalue, negative where it decays \[1/s\].
+    pub decay_1_s: Estimate,
+    /// Its imaginary part \[rad/s\].
+    pub frequency_rad_s: Estimate,
+    /// The real mode fitted beside it \[1/s\]; null without.
+    pub mode_1_s: Option<f64>,
+    /// The axes.
+    pub axes: Vec<AxisFit>,
+}
+
+/// Finds the weave in a recording.
+///
+/// # Errors
+/// Says what is wrong with it: too few samples, no oscillation, less than half a period.
+pub fn identify(record: &Record, settings: Settings) -> Result<Segment, String> {
+    let axes: Vec<&[f64]> = record.axes.iter().map(|axis| &axis.rates_rad_s[..]).collect();
+    let mut part = window(&record.times_s, &axes, (settings.from_s, settings.to_s));
+    let mut fitted = fit_part(record, part, settings.beside)?;
+    // Where the weave sinks into the noise depends on the fit, which depends on the window.
+    for _ in 0..3 {
+        let Some(shorter) = without_noise(record, part, &fitted) else { break };
+        let Ok(again) = fit_part(record, shorter, settings.beside) else { break };
+        (part, fitted) = (shorter, again);
+    }
+    let span_s = record.times_s[part.to - 1] - record.times_s[part.from];
+    believable(&fitted, span_s)?;
+    let [decay_error, frequency_error] = fitted.standard_errors;
+    let wide = quantile(fitted.freedom);
+    let axes =
+        record.axes.iter().zip(&fitted.noise).zip(&fitted.amplitude_rad_s).map(|((axis, noise), a)| {
+            AxisFit {
+                column: axis.column.clone(),
+                amplitude_rad_s: *a,
+                noise_rad_s: noise.deviation_rad_s,
+                noise_memory_s: noise.memory_s,
+                noise_share: noise.share,
+            }
+        });
+    Ok(Segment {
+        from_s: record.times_s[part.from],
+        to_s: record.times_s[part.to - 1],
+        samples: part.to - part.from,
+        begins: part.begins,
+        ends: part.ends,
+        periods: fitted.periods(span_s),
+        decay_1_s: Estimate::new(fitted.shape.decay_1_s, decay_error, wide),
+        frequency_rad_s: Estimate::new(fitted.shape.frequency_rad_s, frequency_error, wide),
+        mode_1_s: fitted.shape.mode_1_s,
+        axes: axes.collect(),
+    })
+}
+
+fn fit_part(record: &Record, part: Window, beside: Beside) -> Result<Fit, String> {
+    let samples = part.to.saturating_sub(part.from);
+    if samples < FEWEST_SAMPLES {
+        return Err(format!("{samples} samples in the window; at least {FEWEST_SAMPLES} are needed"));
+    }
+    let times = &record.times_s[part.from..part.to];
+    let axes = record.axes.iter().map(|axis| axis.rates_rad_s[part.from..part.to].to_vec());
+    fit(
+        &Samples { times_s: times.iter().map(|t| t - times[0]).collect(), axes_rad_s: axes.collect() },
+        beside,
+    )
+}
+
+/// The part in which the weave is larger than the noise in some axis, if that is shorter by a twentieth and more.
+fn without_noise(record: &Record, part: Window, fitted: &Fit) -> Option<Window> {
+    let times = &record.times_s[part.from..part.to];
+    let above = fitted.amplitude_rad_s.iter().zip(&fitted.noise).map(|(a, n)| a / n.deviation_rad_s);
+    let lasts_s = above.fold(0.0, f64::max).ln() / -fitted.shape.decay_1_s;
+    let keeps = times.partition_point(|t| t - times[0] <= lasts_s);
+    let enough = keeps >= FEWEST_SAMPLES && fitted.periods(lasts_s) >= 1.0;
+    let shorter = fitted.shape.decay_1_s < 0.0 && 20 * keeps < 19 * times.len();
+    (enough && shorter).then_some(Window { to: part.from + keeps, ends: Ends::Noise, ..part })
+}
+
+fn believable(fitted: &Fit, span_s: f64) -> Result<(), String> {
+    let least = LEAST_EXPLAINED * fitted.noise.len() as f64;
+    let (frequency, error) = (fitted.shape.frequency_rad_s, fitted.standard_errors[1]);
+    let above = fitted
+        .amplitude_rad_s
+        .iter()
+        .zip(&fitted.noise)
+        .any(|(a, n)| *a >= LEAST_AMPLITUDE * n.deviation_rad_s);
+    if fitted.explained < least || !above {
+        return Err("no oscillation that stands out from the noise".into());
+    }
+    if fitted.periods(span_s) <= 0.501 {
+        return Err(format!("no oscillation: less than half a period in the window of {span_s:.2} s"));
+    }
+    if fitted.at_bound.iter().any(|at| *at) {
+        let decay = fitted.shape.decay_1_s;
+        return Err(format!(
+            "no oscillation: the best has {decay:.2} 1/s and {frequency:.2} rad/s, an end of what is searched"
+        ));
+    }
+    let half = quantile(fitted.freedom) * error;
+    if half >= frequency {
+        return Err(format!(
+            "no oscillation: {frequency:.2} rad/s, but with an interval of {half:.2} to either side"
+        ));
+    }
+    Ok(())
+}
