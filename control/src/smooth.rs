@@ -74,7 +74,7 @@ pub fn step(plan: &SmoothPlan, state: &mut SmoothState, rate_rad_s: f32, age_tic
 
 impl SmoothState {
     /// The line's value.
-    #[inline(never)]
+    #[inline(always)]
     fn between(&mut self, rate_rad_s: f32, age_ticks: u16) -> f32 {
         let apart_ticks = self.age_ticks.saturating_add(1);
         if apart_ticks == 1 && self.left_ticks == 0 {

@@ -237,7 +237,9 @@ impl<const N: usize> Watch<N> {
             self.age = older;
             self.take(sensor, reach, codes, value, age, moves);
         } else {
-            self.hold(if self.doubt.is_none() { reach.growth } else { 0.0 }, older, moves);
+            // The newest sample was refused.
+            let refused = self.trusted && self.doubt.is_some();
+            self.hold(if refused { 0.0 } else { reach.growth }, older, moves);
         }
         self.told_age = age;
         if self.age > sensor.timeout_ticks {

@@ -30,7 +30,7 @@ pub const CARDS: &[Card] = &[
     Card("steer:value=2@300ms", Cause::SteerRange, Mode::Limp, 22),
     Card("steer:jump=0.5@300ms", Cause::SteerJump, Mode::Limp, 22),
     Card("steer:stuck@50ms", Cause::SteerStuck, Mode::Limp, 300),
-    Card("steer:flip@50ms", Cause::SteerDisagrees, Mode::Limp, 600),
+    Card("steer:flip@50ms", Cause::YawDisagrees, Mode::Fault, 600),
     Card("steer-rate:missing@300ms", Cause::SteerRateLost, Mode::Limp, 22),
     Card("steer-rate:nan@300ms", Cause::SteerRateRange, Mode::Limp, 22),
     Card("steer-rate:value=-50@300ms", Cause::SteerRateRange, Mode::Limp, 22),

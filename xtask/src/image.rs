@@ -26,7 +26,7 @@ pub struct Image {
 
 /// Every image.
 pub const IMAGES: [Image; 7] = [
-    Image { name: "qemu-control", board: "board-qemu", flash: 96 << 10, ram: 48 << 10 },
+    Image { name: "qemu-control", board: "board-qemu", flash: 112 << 10, ram: 48 << 10 },
     Image { name: "qemu-pil", board: "board-qemu", flash: 256 << 10, ram: 72 << 10 },
     Image { name: "qemu-replay", board: "board-qemu", flash: 128 << 10, ram: 64 << 10 },
     Image { name: "qemu-instructions", board: "board-qemu", flash: 144 << 10, ram: 64 << 10 },

@@ -135,6 +135,25 @@ fn a_jump_that_stays_has_the_same_cause_at_every_sampling_period() {
     }
 }
 
+/// Situation: a wheel that begins to turn, a sample every 40 periods: 0, then 2, 3, 3.1 and so on by a tenth, where 0.1 a period may come and three good ones are
+/// needed. Action: wait. Must hold: believed with the fourth or fifth sample: while it is not believed, time between samples counts.
+#[test]
+fn a_slow_sensor_that_begins_to_speak_is_believed_soon() {
+    let sensor = Sensor { timeout_ticks: 250, ..SENSOR };
+    let mut watch = Watch::<1>::default();
+    let mut believed = None;
+    for k in 0..400_u16 {
+        let (age, number) = (k % 40, k / 40);
+        let value =
+            [0.0, 2.0, 3.0].get(usize::from(number)).copied().unwrap_or(3.0 + 0.1 * f32::from(number));
+        let told = watch.step(&sensor, &reach(&sensor), &CODES, ([value], age), || false);
+        if told.value.is_some() {
+            believed.get_or_insert(number);
+        }
+    }
+    assert!(believed.is_some_and(|number| (2..=4).contains(&number)), "{believed:?}");
+}
+
 /// Situation: believed. Action: samples that can't be, for as long as may be and longer. Must hold: the last good one is held,
 /// then it is lost with the reason; a single one is forgotten.
 #[test]
@@ -271,7 +290,7 @@ impl Plain {
         let still = self.still + u16::from(moves);
         let jumps = (value - self.last).abs() > self.allowed;
         if held || age == MISSING {
-            let more = if self.doubt.is_none() { slope } else { 0.0 };
+            let more = if self.trusted && self.doubt.is_some() { 0.0 } else { slope };
             (self.still, self.allowed) = (still, self.allowed + more);
         } else if value.is_nan() || value.abs() > SENSOR.max {
             (self.still, self.good, self.doubt) = (still, 0, Some(CODES.range));

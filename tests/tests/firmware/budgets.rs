@@ -6,7 +6,7 @@ use xtask::{image, instructions, size};
 
 /// Situation: all images, built.
 /// Action: measure their sizes and the instructions of every step of the border ride.
-/// Must hold: no budget exceeded, a tenth of those of instructions left free; `docs/images.md` says the same within 3 %.
+/// Must hold: no budget exceeded, of those of instructions as much left free as must be; `docs/images.md` says the same within 3 %.
 #[test]
 fn images_keep_their_budgets_and_the_document_is_true() {
     if !image::ready() {
@@ -20,16 +20,23 @@ fn images_keep_their_budgets_and_the_document_is_true() {
     assert_eq!(stale(&committed, &text(&sizes, &counts)), [""; 0], "run `cargo xtask size`");
 }
 
-/// Situation: rows at nine tenths of their budget, one instruction more, at it, and one beyond. Action: look for what is too close,
-/// and for what is over. Must hold: each of the last three is named once.
+/// Situation: rows at nine tenths of their budget, one instruction more, at it, and one beyond; with everything on at 95 %, and one
+/// instruction more. Action: look for what is too close, and for what is over. Must hold: each but the first of both is named once.
 #[test]
 fn a_row_that_leaves_less_than_a_tenth_is_noticed() {
     let row = |name, max| instructions::Count { name, mean: 100, max, budget: BUDGET, stack: 500 };
-    let rows = [row("most", 2700), row("more", 2701), row("all", BUDGET), row("over", BUDGET + 1)];
+    let rows = [
+        row("most", 2700),
+        row("more", 2701),
+        row("all", BUDGET),
+        row("over", BUDGET + 1),
+        row("everything on", 2850),
+        row("everything on, more", 2851),
+    ];
     let named = |lines: Vec<String>| -> Vec<String> {
         lines.iter().filter_map(|line| Some(line.split_once(':')?.0.to_owned())).collect()
     };
-    assert_eq!(named(margin_too_small(&rows)), ["more", "all"]);
+    assert_eq!(named(margin_too_small(&rows)), ["more", "all", "everything on, more"]);
     assert_eq!(named(over_budget(&[], &rows)), ["over"]);
 }
 

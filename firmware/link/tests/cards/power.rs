@@ -112,7 +112,9 @@ fn power_lost_at_any_word_leaves_the_old_or_the_new_alignment() {
     }
     println!("cuts: old {kept_old}, new {kept_new}; {} erases", flash.erases);
     assert!(flash.erases >= 2 && flash.overwritten == 0);
-    assert!(kept_old >= 50 && kept_new >= 400, "{kept_old} {kept_new}");
+    // Which of the two items of an alignment meets the end of a page, and has the parameters carried over before it, follows
+    // from the record's length; the other outcome is then the rarer one.
+    assert!(kept_old.min(kept_new) >= 30 && kept_old + kept_new >= 500, "{kept_old} {kept_new}");
 }
 
 /// Situation: a store that must erase a page.

@@ -55,6 +55,24 @@ pub struct Bmi160 {
     pub silent: bool,
 }
 
+/// Standard deviation of a sample before the filters: the data sheet's density (0.007 degrees/s and 180 ug per root of a Hz)
+/// over half the sampling rate \[rad/s, m/s^2\]. Without noise a sample of three axes would come again and again, which
+/// no chip's does.
+const GYRO_NOISE_RAD_S: f64 = 0.0035;
+const ACCEL_NOISE_M_S2: f64 = 0.05;
+
+/// A draw from a distribution of mean 0 and standard deviation 1, nearly normal (the sum of four uniform ones), which
+/// depends on its number alone.
+fn normal(number: u64) -> f64 {
+    // The mixing of Steele, Lea and Flood's SplitMix64.
+    let mut bits = number.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^= bits >> 31;
+    let parts = [0, 16, 32, 48].map(|shift| f64::from((bits >> shift) as u16) / 65_535.0);
+    (parts.iter().sum::<f64>() - 2.0) * 3.0_f64.sqrt()
+}
+
 /// How the chip moves, from an instant on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
@@ -118,6 +136,10 @@ impl Bmi160 {
         let newest = now_ns / SAMPLE_NS;
         for number in self.taken + 1..=newest {
             let [gyro, accel] = self.motion.at(number * SAMPLE_NS);
+            let noisy = |of: [f64; 3], deviation: f64, first: u64| {
+                [0, 1, 2].map(|axis: usize| of[axis] + deviation * normal(6 * number + first + axis as u64))
+            };
+            let (gyro, accel) = (noisy(gyro, GYRO_NOISE_RAD_S, 0), noisy(accel, ACCEL_NOISE_M_S2, 3));
             self.filtered = [self.filters[0].step(gyro), self.filters[1].step(accel)];
         }
         self.taken = self.taken.max(newest);

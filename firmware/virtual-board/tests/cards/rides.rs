@@ -30,8 +30,13 @@ fn rides(image: &Path, preset: Preset, rider: Option<&str>, speed_m_s: f64) -> R
     let (rode, trace) = traced_on(&conditions, start, &mut board).expect("the board rides to the end");
     let torque = torques_nm(&trace, (PERIOD_S / BOARD_STEP_S).round() as usize);
 
-    let engaged = trace.iter().filter(|point| point.mode == Mode::Engaged as u8).count();
-    assert_eq!(engaged, trace.len(), "{name}: engaged from the knock to the end, {:?}", board.display());
+    let stands: Vec<(u8, u64)> = trace.iter().map(|point| (point.mode, point.causes)).collect();
+    let mut changes: Vec<_> = trace.iter().map(|point| point.t).zip(&stands).collect();
+    changes.dedup_by_key(|(_, stands)| *stands);
+    assert!(
+        stands.iter().all(|(mode, _)| *mode == Mode::Engaged as u8),
+        "{name}: engaged from the knock to the end, {changes:?}"
+    );
     let state = board.display().state.expect("broadcast");
     assert!(state.driven && state.authority == Some(1.0), "{name}: {state:?}");
     let bench = board.bench().expect("still powered");
