@@ -45,6 +45,8 @@ pub struct Samples {
     pub roll_rad: Vec<(f64, f64)>,
     /// The log's own steer torque \[N m\] over time \[s\].
     pub torque_nm: Vec<(f64, f64)>,
+    /// Columns that the map names and the recording lacks, where that is no error: each with what it is for.
+    pub absent: Vec<String>,
     /// What could not be used as it stands, or looks wrong.
     pub remarks: Vec<Remark>,
 }
@@ -74,6 +76,7 @@ fn remark(column: Option<&str>, what: String) -> Remark {
 pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Samples, Remark> {
     let mut all = Samples { remarks: recording.remarks.clone(), ..Samples::default() };
     for Mapped { sensor, signal } in map.sensors() {
+        all.absent.extend(absent(recording, sensor, signal));
         match find(recording, sensor, signal)? {
             None => {}
             Some(Found { group, axes, made_up }) => {
@@ -92,9 +95,13 @@ pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Sample
     if !has(Sensor::FrontWheel) && !has(Sensor::RearWheel) {
         return Err(missing(recording, map, Sensor::RearWheel));
     }
-    if let Some(switch) = &map.engage
-        && let Some((group, column)) = column(recording, &switch.column)
-    {
+    if let Some(switch) = &map.engage {
+        let Some((group, column)) = column(recording, &switch.column) else {
+            return Err(remark(
+                Some(&switch.column),
+                "the map names it for the switch; there is no such column".into(),
+            ));
+        };
         let times = times(group, map, None)?;
         let on = |(t_s, value): (f64, &f64)| (t_s, *value != 0.0);
         all.engage = times.into_iter().zip(&column.values).filter(|(_, v)| !v.is_nan()).map(on).collect();
@@ -117,11 +124,19 @@ pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Sample
     Ok(all)
 }
 
+/// The columns of a sensor that the recording lacks.
+fn absent(recording: &Recording, sensor: Sensor, signal: &Signal) -> Option<String> {
+    let lacks =
+        |source: &&Source| matches!(source, Source::Column(name) if column(recording, name).is_none());
+    let names: Vec<_> = signal.columns.iter().filter(lacks).map(ToString::to_string).collect();
+    (!names.is_empty()).then(|| format!("{} ({})", sensor.name(), names.join(", ")))
+}
+
 /// Nothing to replay without this sensor.
 fn missing(recording: &Recording, map: &Map, sensor: Sensor) -> Remark {
     let wanted = map.sensors().find(|mapped| mapped.sensor == sensor);
     let wanted = wanted.map_or("none".into(), |mapped| {
-        let names: Vec<_> = mapped.signal.columns.iter().map(|source| format!("{source:?}")).collect();
+        let names: Vec<_> = mapped.signal.columns.iter().map(ToString::to_string).collect();
         names.join(", ")
     });
     let there: Vec<_> =
@@ -254,7 +269,11 @@ fn take(
 ) -> Result<Option<Track>, Remark> {
     let factor = quantity_of(sensor).factor(signal.unit.as_deref()).unwrap_or(1.0);
     let times = times(group, map, signal.time.as_deref())?;
-    let ages = signal.age.as_ref().and_then(|age| group.columns.iter().find(|column| column.name == *age));
+    let of_age = |name: &String| {
+        let found = group.columns.iter().find(|column| column.name == *name);
+        found.ok_or_else(|| remark(Some(name), "the map names it for an age; there is no such column".into()))
+    };
+    let ages = signal.age.as_ref().map(of_age).transpose()?;
     let turns = signal.turns();
     let mut samples: Vec<Sample> = Vec::new();
     let (mut back, mut first_back) = (0_u64, None);
@@ -286,9 +305,16 @@ fn take(
     if let Some((line, from, to)) = first_back {
         let verb = if from == to { "stands at" } else { "goes back from" };
         let to = if from == to { String::new() } else { format!(" to {to}") };
-        let what =
-            format!("{}: time {verb} {from} s{to}; {back} rows without a later time left out", sensor.name());
-        remarks.push(Remark { line, column: None, what });
+        let what = format!("time {verb} {from} s{to}; {back} rows without a later time left out");
+        // Sensors of one row have this in common.
+        let same = remarks.iter_mut().find(|said| said.line == line && said.what.ends_with(&what));
+        match same {
+            Some(said) => said.what.insert_str(0, &format!("{}, ", sensor.name())),
+            None => {
+                let what = format!("{}: {what}", sensor.name());
+                remarks.push(Remark { line, column: None, what });
+            }
+        }
     }
     if samples.len() < 2 {
         let what = format!("{}: {} usable samples; at least 2 are needed", sensor.name(), samples.len());

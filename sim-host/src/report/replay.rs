@@ -142,6 +142,10 @@ pub fn text(result: &ReplayResult) -> String {
     if !result.fitted.switched_off.is_empty() {
         let _ = writeln!(text, "  not recorded, switched off: {}", result.fitted.switched_off.join(", "));
     }
+    if !result.fitted.absent.is_empty() {
+        let _ =
+            writeln!(text, "  columns of the map that are not there: {}", result.fitted.absent.join(", "));
+    }
     for why in &result.fitted.unchecked {
         let _ = writeln!(text, "  not checked: {why}");
     }
