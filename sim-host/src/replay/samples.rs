@@ -89,11 +89,15 @@ pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Sample
         }
     }
     let has = |sensor| all.track(sensor).is_some();
-    if !has(Sensor::Gyro) {
-        return Err(missing(recording, map, Sensor::Gyro));
-    }
-    if !has(Sensor::FrontWheel) && !has(Sensor::RearWheel) {
-        return Err(missing(recording, map, Sensor::RearWheel));
+    let lacks = if !has(Sensor::Gyro) {
+        Some(Sensor::Gyro)
+    } else if !has(Sensor::FrontWheel) && !has(Sensor::RearWheel) {
+        Some(Sensor::RearWheel)
+    } else {
+        None
+    };
+    if let Some(sensor) = lacks {
+        return Err(unusable(&all.remarks, sensor).unwrap_or_else(|| missing(recording, map, sensor)));
     }
     if let Some(switch) = &map.engage {
         let Some((group, column)) = column(recording, &switch.column) else {
@@ -130,6 +134,15 @@ fn absent(recording: &Recording, sensor: Sensor, signal: &Signal) -> Option<Stri
         |source: &&Source| matches!(source, Source::Column(name) if column(recording, name).is_none());
     let names: Vec<_> = signal.columns.iter().filter(lacks).map(ToString::to_string).collect();
     (!names.is_empty()).then(|| format!("{} ({})", sensor.name(), names.join(", ")))
+}
+
+/// Why a sensor that is there has no samples, with what was found wrong in the file first.
+fn unusable(remarks: &[Remark], sensor: Sensor) -> Option<Remark> {
+    let begins = format!("{}: ", sensor.name());
+    let why = remarks.iter().find(|said| said.what.starts_with(&begins) && said.what.contains("usable"))?;
+    let first = remarks.iter().find(|said| said.line.is_some());
+    let first = first.map_or(String::new(), |said| format!("; {said}"));
+    Some(remark(None, format!("{}{first}", why.what)))
 }
 
 /// Nothing to replay without this sensor.
@@ -342,6 +355,13 @@ fn plausible(track: &Track, remarks: &mut Vec<Remark>) {
                 part(0.95)
             ),
         ));
+    }
+    if track.sensor == Sensor::Gyro
+        && let Some(period_s) = track.period_s()
+        && !(1e-4..0.25).contains(&period_s)
+    {
+        let what = format!("{name}: samples are {period_s} s apart; is the unit of the time right?");
+        remarks.push(remark(None, what));
     }
     if track.sensor == Sensor::Accel {
         let down: f64 = track.samples.iter().map(|sample| sample.value[2]).sum::<f64>() / sizes.len() as f64;

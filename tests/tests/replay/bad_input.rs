@@ -37,6 +37,8 @@ fn tables_that_can_not_be_used() {
     refused("\n# a remark\n", &["no line with data"]);
     refused(table_of(HEADER, &[]), &["line 1", "no row"]);
     refused(good.join("\n"), &["line 1", "header", "add one line with names"]);
+    refused("<html><body>404: Not Found</body></html>\n", &["line 1", "`<html><body>404"]);
+    refused([0xff, 0xfe, b't', 0, b',', 0, b'g', 0, b'\n', 0], &["line 1", "UTF-8"]);
     refused(table_of(&HEADER.replace("gy", "gx"), &good), &["line 1", "two columns are called `gx`"]);
     refused(table_of(HEADER, &good[..1]), &["no gyro"]);
 }
@@ -135,12 +137,51 @@ fn values_that_look_like_another_unit() {
     said(&only(&[1, 2, 3], degrees), &["gyro", "one sample in twenty", "degrees a second"]);
     said(&only(&[7], degrees), &["steer", "degrees?"]);
     said(&only(&[8], degrees), &["steer-rate", "degrees a second"]);
-    said(&only(&[9, 10], 3.6), &["rear-wheel", "km/h"]);
+    said(&only(&[9, 10], 3.6), &["front-wheel", "km/h"]);
     said(&only(&[4, 5, 6], 1.0 / 9.80665), &["accel", "is the unit g"]);
     said(&only(&[6], -1.0), &["accel", "along z", "are the axes right"]);
     let bench = Bench::new(PROGRAM);
     bench.write("ride.csv", only(&[], 1.0));
     assert_eq!(remarks(&bench.json("replay ride.csv --map extract")), [""; 0]);
+}
+
+/// Situation: times in milliseconds taken as seconds; times that are all the same; a time of day
+/// without a date.
+/// Action: replay.
+/// Must hold: said, or refused, with what the times are like; the first cell that is no number is named.
+#[test]
+fn times_that_are_wrong() {
+    let timed = |time: &dyn Fn(f64) -> String| {
+        let line = |row: &[f64; 11]| {
+            let cells: Vec<String> = row[1..].iter().map(ToString::to_string).collect();
+            format!("{},{}", time(row[0]), cells.join(","))
+        };
+        table_of(HEADER, &rows(100).iter().map(line).collect::<Vec<_>>())
+    };
+    said(&timed(&|t| (1e3 * t).to_string()), &["gyro", "5 s apart", "unit of the time"]);
+    refused(timed(&|t| (1e9 * (1e9 + t)).to_string()), &["18000 s", "unit of the time"]);
+    refused(timed(&|_| "5".into()), &["gyro: 1 usable samples", "line 3", "stands at 5 s"]);
+    refused(
+        timed(&|t| format!("12:00:{t:.3}")),
+        &["gyro: 0 usable samples", "line 2", "`12:00:0.000` is no number"],
+    );
+}
+
+/// Situation: a table as a spreadsheet with a decimal comma writes it; one with a separator at the end of every line.
+/// Action: replay.
+/// Must hold: the same as the plain table, without a remark.
+#[test]
+fn other_ways_of_writing_the_same_table() {
+    let bench = Bench::new(PROGRAM);
+    let plain = table_of(HEADER, &lines(&rows(400)));
+    let results =
+        [plain.clone(), plain.replace(',', ";").replace('.', ","), plain.replace('\n', ",\n")].map(|text| {
+            bench.write("ride.csv", text);
+            let document = bench.json("replay ride.csv --map extract");
+            assert_eq!(remarks(&document), [""; 0]);
+            (document["modes"].clone(), document["checks"].clone())
+        });
+    assert!(results[0] == results[1] && results[0] == results[2]);
 }
 
 /// Situation: cells that say NaN, and one that is a word.

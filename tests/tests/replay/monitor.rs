@@ -40,7 +40,7 @@ fn the_monitors_table_is_replayed_as_it_is() {
         bytes.extend(board.tell(&Message::Telemetry(telemetry)));
     }
     bench.write("ride.link", bytes);
-    let monitor = bench.run("monitor --file ride.link --csv ride.csv -q");
+    let monitor = bench.run("monitor --file ride.link --csv ride.csv");
     assert_eq!(monitor.code, Some(0), "{}", monitor.stderr);
 
     // The map is found by the columns.
