@@ -11,7 +11,7 @@ use control::{Config, Wheel};
 pub struct Fitted {
     /// Sensors that the configuration declares and the recording lacks: switched off.
     pub switched_off: Vec<&'static str>,
-    /// Columns that the map names and the recording lacks: each with its sensor.
+    /// Sensors of the map whose columns are not there or have no value, each with the columns.
     pub absent: Vec<String>,
     /// Checks that lack a sensor or an axis: switched off, each with the reason.
     pub unchecked: Vec<String>,

@@ -45,7 +45,8 @@ pub struct Samples {
     pub roll_rad: Vec<(f64, f64)>,
     /// The log's own steer torque \[N m\] over time \[s\].
     pub torque_nm: Vec<(f64, f64)>,
-    /// Columns that the map names and the recording lacks, where that is no error: each with what it is for.
+    /// Sensors of the map that the recording lacks, where that is no error: each with its columns that are not there or
+    /// have no value.
     pub absent: Vec<String>,
     /// What could not be used as it stands, or looks wrong.
     pub remarks: Vec<Remark>,
@@ -79,6 +80,10 @@ pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Sample
         all.absent.extend(absent(recording, sensor, signal));
         match find(recording, sensor, signal)? {
             None => {}
+            Some(Found { axes, .. }) if axes.iter().any(Axis::is_blank) => {
+                let names: Vec<_> = signal.columns.iter().map(ToString::to_string).collect();
+                all.absent.push(format!("{} (no value in {})", sensor.name(), names.join(", ")));
+            }
             Some(Found { group, axes, made_up }) => {
                 let track = take(group, map, sensor, signal, &axes, made_up, period_s, &mut all.remarks)?;
                 if let Some(track) = track {
@@ -97,7 +102,7 @@ pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Sample
         None
     };
     if let Some(sensor) = lacks {
-        return Err(unusable(&all.remarks, sensor).unwrap_or_else(|| missing(recording, map, sensor)));
+        return Err(unusable(&all, sensor).unwrap_or_else(|| missing(recording, map, sensor)));
     }
     if let Some(switch) = &map.engage {
         let Some((group, column)) = column(recording, &switch.column) else {
@@ -137,12 +142,17 @@ fn absent(recording: &Recording, sensor: Sensor, signal: &Signal) -> Option<Stri
 }
 
 /// Why a sensor that is there has no samples, with what was found wrong in the file first.
-fn unusable(remarks: &[Remark], sensor: Sensor) -> Option<Remark> {
-    let begins = format!("{}: ", sensor.name());
-    let why = remarks.iter().find(|said| said.what.starts_with(&begins) && said.what.contains("usable"))?;
-    let first = remarks.iter().find(|said| said.line.is_some());
+fn unusable(all: &Samples, sensor: Sensor) -> Option<Remark> {
+    let name = sensor.name();
+    let few = || {
+        let said = all.remarks.iter().map(|remark| &remark.what);
+        said.into_iter().find(|what| what.starts_with(&format!("{name}: ")) && what.contains("usable sample"))
+    };
+    let blank = all.absent.iter().find(|what| what.starts_with(&format!("{name} (no value")));
+    let why = blank.or_else(few)?;
+    let first = all.remarks.iter().find(|said| said.line.is_some());
     let first = first.map_or(String::new(), |said| format!("; {said}"));
-    Some(remark(None, format!("{}{first}", why.what)))
+    Some(remark(None, format!("{why}{first}")))
 }
 
 /// Nothing to replay without this sensor.
@@ -176,6 +186,13 @@ fn column<'a>(recording: &'a Recording, name: &str) -> Option<(&'a Group, &'a Co
 enum Axis<'a> {
     Column(&'a Column),
     Constant(f64),
+}
+
+impl Axis<'_> {
+    /// Whether it is a column without a value in any row.
+    fn is_blank(&self) -> bool {
+        matches!(self, Self::Column(column) if column.values.iter().all(|value| value.is_nan()))
+    }
 }
 
 struct Found<'a> {
@@ -330,7 +347,9 @@ fn take(
         }
     }
     if samples.len() < 2 {
-        let what = format!("{}: {} usable samples; at least 2 are needed", sensor.name(), samples.len());
+        let plural = if samples.len() == 1 { "" } else { "s" };
+        let what =
+            format!("{}: {} usable sample{plural}; at least 2 are needed", sensor.name(), samples.len());
         remarks.push(remark(None, what));
         return Ok(None);
     }

@@ -40,7 +40,7 @@ fn tables_that_can_not_be_used() {
     refused("<html><body>404: Not Found</body></html>\n", &["line 1", "`<html><body>404"]);
     refused([0xff, 0xfe, b't', 0, b',', 0, b'g', 0, b'\n', 0], &["line 1", "UTF-8"]);
     refused(table_of(&HEADER.replace("gy", "gx"), &good), &["line 1", "two columns are called `gx`"]);
-    refused(table_of(HEADER, &good[..1]), &["gyro: 1 usable samples", "at least 2"]);
+    refused(table_of(HEADER, &good[..1]), &["gyro: 1 usable sample", "at least 2"]);
 }
 
 /// Situation: columns that change half way: the accelerometer is no longer written.
@@ -160,7 +160,7 @@ fn times_that_are_wrong() {
     };
     said(&timed(&|t| (1e3 * t).to_string()), &["gyro", "5 s apart", "unit of the time"]);
     refused(timed(&|t| (1e9 * (1e9 + t)).to_string()), &["18000 s", "unit of the time"]);
-    refused(timed(&|_| "5".into()), &["gyro: 1 usable samples", "line 3", "stands at 5 s"]);
+    refused(timed(&|_| "5".into()), &["gyro: 1 usable sample", "line 3", "stands at 5 s"]);
     refused(
         timed(&|t| format!("12:00:{t:.3}")),
         &["gyro: 0 usable samples", "line 2", "`12:00:0.000` is no number"],

@@ -63,6 +63,21 @@ fn one_unusable_file_does_not_lose_the_others() {
     assert!(!bench.files().contains(&"none.json".to_owned()));
 }
 
+/// Situation: of two recordings one has two lines that can't be used.
+/// Action: replay both.
+/// Must hold: the text names that one with the first of its remarks, and says that there is another.
+#[test]
+fn remarks_are_told_with_their_file() {
+    let bench = bench(400);
+    let text = bench.read("ride.csv");
+    bench.write("cut.csv", text.replacen("\n0.5,", "\n0.5;", 1).replacen("\n0.6,", "\n0.6;", 1));
+    let run = bench.run("replay ride.csv cut.csv --map extract");
+    let said: Vec<&str> = run.stdout.lines().filter(|line| line.starts_with("remark: ")).collect();
+    assert!(said.len() == 1 && said[0].starts_with("remark: cut.csv: line 102: "), "{run:?}");
+    assert!(said[0].ends_with(", and 1 more"), "{run:?}");
+    bench.run("replay cut.csv cut.csv --map extract --strict").refused_naming(&["cut.csv", "line 102"]);
+}
+
 /// Situation: two recordings.
 /// Action: ask for a figure, for frames.
 /// Must hold: refused before anything is done, each with the option.

@@ -66,6 +66,12 @@ fn without_gyro_or_wheel_there_is_no_replay() {
         bench.write("ride.csv", table_of(&header, &lines(&rows(50))));
         bench.run("replay ride.csv --map extract").refused_naming(&named);
     }
+    let mut blank = lines(&rows(50));
+    for line in &mut blank {
+        *line = format!("{},,", line.rsplitn(3, ',').last().unwrap());
+    }
+    bench.write("ride.csv", table_of(HEADER, &blank));
+    bench.run("replay ride.csv --map extract").refused_naming(&["rear-wheel (no value in `rear`)"]);
     bench.write("ride.csv", "a,b\n1,2\n");
     bench.run("replay ride.csv").refused_naming(&["no map that ships", "--map"]);
 }

@@ -58,5 +58,9 @@ fn the_monitors_table_is_replayed_as_it_is() {
     assert_eq!(oldest, Some(9));
     let named = bench.json("replay ride.csv --map monitor");
     assert_eq!(named["remarks"], serde_json::json!([]));
+    // The board has no sensor of the rider's torque; that is no reason to refuse its table.
+    let absent = serde_json::json!(["rider-torque (no value in `measured_rider_torque`)"]);
+    assert_eq!(named["absent"], absent);
+    assert_eq!(bench.run("replay ride.csv --strict -q").code, Some(0));
     assert!(named["engaged_s"].as_f64().unwrap() > 1.5);
 }
