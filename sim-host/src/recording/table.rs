@@ -31,8 +31,23 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
         return Err(fails(None, "the file has no line with data"));
     };
     let separator = separator_of(header);
+    if header.contains('\0') {
+        return Err(fails(Some(at), "is no text in UTF-8"));
+    }
+    // A separator behind the last column, as some loggers write it.
+    let header = header.trim_end();
+    let closed = header.ends_with(separator);
+    let open = |line: &str| -> usize {
+        let line = line.trim_end_matches(' ');
+        line.len() - if closed && line.ends_with(separator) { separator.len_utf8() } else { 0 }
+    };
+    let header = &header[..open(header)];
     let names = names_of(header, separator).ok_or_else(|| {
-        fails(Some(at), "a header with the columns' names was expected, not numbers; add one line with names")
+        let what = format!(
+            "a header with the columns' names was expected, not `{}`; add one line with names",
+            shown(header)
+        );
+        fails(Some(at), &what)
     })?;
     if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
         return Err(fails(Some(at), &format!("two columns are called `{}`", twice.1)));
@@ -46,6 +61,7 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
     let ends_whole = text.ends_with('\n');
     let last = text.lines().count() as u64;
     for (line, number) in lines {
+        let line = &line[..open(line)];
         if line.contains('\u{fffd}') || line.contains('\0') {
             remarks.add(PACKED, Some(number), None, || "has bytes that are no text; left out".to_owned());
             continue;
@@ -70,7 +86,11 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
         numbers.push(number);
         for (place, field) in places.iter().zip(fields) {
             let column = &mut columns[*place];
-            let value = if is_blank(field) { None } else { Some(number_of(field)) };
+            let value = if is_blank(field) {
+                None
+            } else {
+                Some(number_of(field).or_else(|| with_comma(field, separator)))
+            };
             match value {
                 None => {}
                 Some(Some(value)) => *column.values.last_mut().expect("a row") = value,
@@ -128,6 +148,12 @@ fn number_of(field: &str) -> Option<f64> {
         _ => {}
     }
     field.parse::<f64>().ok().filter(|value| value.is_finite()).or_else(|| seconds(field))
+}
+
+/// A number with a decimal comma, where no comma separates the fields.
+fn with_comma(field: &str, separator: char) -> Option<f64> {
+    let one = separator != ',' && field.matches(',').count() == 1 && !field.contains('.');
+    one.then(|| number_of(&field.replace(',', "."))).flatten()
 }
 
 /// Seconds from 1970 of a date with a time of day; without a zone it is taken as universal time.

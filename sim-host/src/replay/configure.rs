@@ -11,6 +11,8 @@ use control::{Config, Wheel};
 pub struct Fitted {
     /// Sensors that the configuration declares and the recording lacks: switched off.
     pub switched_off: Vec<&'static str>,
+    /// Sensors of the map whose columns are not there or have no value, each with the columns.
+    pub absent: Vec<String>,
     /// Checks that lack a sensor or an axis: switched off, each with the reason.
     pub unchecked: Vec<String>,
 }
@@ -20,7 +22,7 @@ pub struct Fitted {
 /// # Errors
 /// A parameter of the map that does not exist, or a value that it may not have.
 pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitted, String> {
-    let mut told = Fitted::default();
+    let mut told = Fitted { absent: samples.absent.clone(), ..Fitted::default() };
     let has = |sensor| samples.track(sensor).is_some();
     for sensor in Sensor::ALL {
         let wheel = config.input.front_wheel;

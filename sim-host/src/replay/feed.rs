@@ -48,7 +48,7 @@ impl<'a> Feed<'a> {
         if ticks > MOST_TICKS {
             let most_s = MOST_TICKS * options.period_s;
             return Err(format!(
-                "it lasts from {start_s} to {end_s} s; at most {most_s} s can be replayed at once"
+                "it lasts from {start_s} to {end_s} s; at most {most_s} s can be replayed at once; is the unit of the time right?"
             ));
         }
         let first = |channel: Channel| match channel {

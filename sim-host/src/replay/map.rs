@@ -3,6 +3,7 @@
 use super::unit::Quantity;
 use crate::plant::Sensor;
 use crate::recording::Recording;
+use std::fmt::{self, Display};
 use std::path::Path;
 
 /// The maps that ship, by name.
@@ -117,6 +118,15 @@ pub struct Signal {
     /// How much later than their time the samples reached the controller \[s\].
     #[serde(default)]
     pub late_s: f64,
+}
+
+impl Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Column(name) => write!(f, "`{name}`"),
+            Self::Constant(value) => write!(f, "the constant {value}"),
+        }
+    }
 }
 
 const fn one() -> f64 {
@@ -243,6 +253,9 @@ impl Signal {
             good.then_some(()).ok_or(format!("{key} = {value} is outside -{most} to {most}"))
         };
         in_range("scale", self.scale, 1e6)?;
+        if self.scale == 0.0 {
+            return Err("scale = 0 leaves nothing of the column".into());
+        }
         in_range("offset", self.offset, 1e6)?;
         if !(0.0..=1.0).contains(&self.late_s) {
             return Err(format!("late_s = {} is outside 0 to 1", self.late_s));

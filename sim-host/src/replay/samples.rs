@@ -45,6 +45,9 @@ pub struct Samples {
     pub roll_rad: Vec<(f64, f64)>,
     /// The log's own steer torque \[N m\] over time \[s\].
     pub torque_nm: Vec<(f64, f64)>,
+    /// Sensors of the map that the recording lacks, where that is no error: each with its columns that are not there or
+    /// have no value.
+    pub absent: Vec<String>,
     /// What could not be used as it stands, or looks wrong.
     pub remarks: Vec<Remark>,
 }
@@ -74,8 +77,13 @@ fn remark(column: Option<&str>, what: String) -> Remark {
 pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Samples, Remark> {
     let mut all = Samples { remarks: recording.remarks.clone(), ..Samples::default() };
     for Mapped { sensor, signal } in map.sensors() {
+        all.absent.extend(absent(recording, sensor, signal));
         match find(recording, sensor, signal)? {
             None => {}
+            Some(Found { axes, .. }) if axes.iter().any(Axis::is_blank) => {
+                let names: Vec<_> = signal.columns.iter().map(ToString::to_string).collect();
+                all.absent.push(format!("{} (no value in {})", sensor.name(), names.join(", ")));
+            }
             Some(Found { group, axes, made_up }) => {
                 let track = take(group, map, sensor, signal, &axes, made_up, period_s, &mut all.remarks)?;
                 if let Some(track) = track {
@@ -86,15 +94,23 @@ pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Sample
         }
     }
     let has = |sensor| all.track(sensor).is_some();
-    if !has(Sensor::Gyro) {
-        return Err(missing(recording, map, Sensor::Gyro));
+    let lacks = if !has(Sensor::Gyro) {
+        Some(Sensor::Gyro)
+    } else if !has(Sensor::FrontWheel) && !has(Sensor::RearWheel) {
+        Some(Sensor::RearWheel)
+    } else {
+        None
+    };
+    if let Some(sensor) = lacks {
+        return Err(unusable(&all, sensor).unwrap_or_else(|| missing(recording, map, sensor)));
     }
-    if !has(Sensor::FrontWheel) && !has(Sensor::RearWheel) {
-        return Err(missing(recording, map, Sensor::RearWheel));
-    }
-    if let Some(switch) = &map.engage
-        && let Some((group, column)) = column(recording, &switch.column)
-    {
+    if let Some(switch) = &map.engage {
+        let Some((group, column)) = column(recording, &switch.column) else {
+            return Err(remark(
+                Some(&switch.column),
+                "the map names it for the switch; there is no such column".into(),
+            ));
+        };
         let times = times(group, map, None)?;
         let on = |(t_s, value): (f64, &f64)| (t_s, *value != 0.0);
         all.engage = times.into_iter().zip(&column.values).filter(|(_, v)| !v.is_nan()).map(on).collect();
@@ -117,11 +133,33 @@ pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Sample
     Ok(all)
 }
 
+/// The columns of a sensor that the recording lacks.
+fn absent(recording: &Recording, sensor: Sensor, signal: &Signal) -> Option<String> {
+    let lacks =
+        |source: &&Source| matches!(source, Source::Column(name) if column(recording, name).is_none());
+    let names: Vec<_> = signal.columns.iter().filter(lacks).map(ToString::to_string).collect();
+    (!names.is_empty()).then(|| format!("{} ({})", sensor.name(), names.join(", ")))
+}
+
+/// Why a sensor that is there has no samples, with what was found wrong in the file first.
+fn unusable(all: &Samples, sensor: Sensor) -> Option<Remark> {
+    let name = sensor.name();
+    let few = || {
+        let said = all.remarks.iter().map(|remark| &remark.what);
+        said.into_iter().find(|what| what.starts_with(&format!("{name}: ")) && what.contains("usable sample"))
+    };
+    let blank = all.absent.iter().find(|what| what.starts_with(&format!("{name} (no value")));
+    let why = blank.or_else(few)?;
+    let first = all.remarks.iter().find(|said| said.line.is_some());
+    let first = first.map_or(String::new(), |said| format!("; {said}"));
+    Some(remark(None, format!("{why}{first}")))
+}
+
 /// Nothing to replay without this sensor.
 fn missing(recording: &Recording, map: &Map, sensor: Sensor) -> Remark {
     let wanted = map.sensors().find(|mapped| mapped.sensor == sensor);
     let wanted = wanted.map_or("none".into(), |mapped| {
-        let names: Vec<_> = mapped.signal.columns.iter().map(|source| format!("{source:?}")).collect();
+        let names: Vec<_> = mapped.signal.columns.iter().map(ToString::to_string).collect();
         names.join(", ")
     });
     let there: Vec<_> =
@@ -148,6 +186,13 @@ fn column<'a>(recording: &'a Recording, name: &str) -> Option<(&'a Group, &'a Co
 enum Axis<'a> {
     Column(&'a Column),
     Constant(f64),
+}
+
+impl Axis<'_> {
+    /// Whether it is a column without a value in any row.
+    fn is_blank(&self) -> bool {
+        matches!(self, Self::Column(column) if column.values.iter().all(|value| value.is_nan()))
+    }
 }
 
 struct Found<'a> {
@@ -254,7 +299,11 @@ fn take(
 ) -> Result<Option<Track>, Remark> {
     let factor = quantity_of(sensor).factor(signal.unit.as_deref()).unwrap_or(1.0);
     let times = times(group, map, signal.time.as_deref())?;
-    let ages = signal.age.as_ref().and_then(|age| group.columns.iter().find(|column| column.name == *age));
+    let of_age = |name: &String| {
+        let found = group.columns.iter().find(|column| column.name == *name);
+        found.ok_or_else(|| remark(Some(name), "the map names it for an age; there is no such column".into()))
+    };
+    let ages = signal.age.as_ref().map(of_age).transpose()?;
     let turns = signal.turns();
     let mut samples: Vec<Sample> = Vec::new();
     let (mut back, mut first_back) = (0_u64, None);
@@ -286,12 +335,21 @@ fn take(
     if let Some((line, from, to)) = first_back {
         let verb = if from == to { "stands at" } else { "goes back from" };
         let to = if from == to { String::new() } else { format!(" to {to}") };
-        let what =
-            format!("{}: time {verb} {from} s{to}; {back} rows without a later time left out", sensor.name());
-        remarks.push(Remark { line, column: None, what });
+        let what = format!("time {verb} {from} s{to}; {back} rows without a later time left out");
+        // Sensors of one row have this in common.
+        let same = remarks.iter_mut().find(|said| said.line == line && said.what.ends_with(&what));
+        match same {
+            Some(said) => said.what.insert_str(0, &format!("{}, ", sensor.name())),
+            None => {
+                let what = format!("{}: {what}", sensor.name());
+                remarks.push(Remark { line, column: None, what });
+            }
+        }
     }
     if samples.len() < 2 {
-        let what = format!("{}: {} usable samples; at least 2 are needed", sensor.name(), samples.len());
+        let plural = if samples.len() == 1 { "" } else { "s" };
+        let what =
+            format!("{}: {} usable sample{plural}; at least 2 are needed", sensor.name(), samples.len());
         remarks.push(remark(None, what));
         return Ok(None);
     }
@@ -316,6 +374,13 @@ fn plausible(track: &Track, remarks: &mut Vec<Remark>) {
                 part(0.95)
             ),
         ));
+    }
+    if track.sensor == Sensor::Gyro
+        && let Some(period_s) = track.period_s()
+        && !(1e-4..0.25).contains(&period_s)
+    {
+        let what = format!("{name}: samples are {period_s} s apart; is the unit of the time right?");
+        remarks.push(remark(None, what));
     }
     if track.sensor == Sensor::Accel {
         let down: f64 = track.samples.iter().map(|sample| sample.value[2]).sum::<f64>() / sizes.len() as f64;

@@ -142,6 +142,9 @@ pub fn text(result: &ReplayResult) -> String {
     if !result.fitted.switched_off.is_empty() {
         let _ = writeln!(text, "  not recorded, switched off: {}", result.fitted.switched_off.join(", "));
     }
+    if !result.fitted.absent.is_empty() {
+        let _ = writeln!(text, "  in the map, but not in the recording: {}", result.fitted.absent.join(", "));
+    }
     for why in &result.fitted.unchecked {
         let _ = writeln!(text, "  not checked: {why}");
     }
@@ -206,7 +209,7 @@ pub fn text(result: &ReplayResult) -> String {
     text
 }
 
-/// Several recordings in words: a line each, and all together.
+/// Several recordings in words: a line each, the first remark of those that have one, and all together.
 pub fn summary_text(results: &[ReplayResult], summary: &Summary) -> String {
     let mut text = String::new();
     let widest = results.iter().map(|r| r.file.len()).max().unwrap_or(4).max(4);
@@ -228,6 +231,13 @@ pub fn summary_text(results: &[ReplayResult], summary: &Summary) -> String {
             "{:<widest$} {:>9.1} {:>10.1} {:>7.2}  {alarms}",
             r.file, r.riding_s, r.engaged_s, r.peak_torque_nm
         );
+    }
+    for r in results.iter().filter(|r| !r.remarks.is_empty()) {
+        let more = match r.remarks.len() - 1 {
+            0 => String::new(),
+            more => format!(", and {more} more"),
+        };
+        let _ = writeln!(text, "remark: {}: {}{more}", r.file, r.remarks[0]);
     }
     let _ = writeln!(
         text,

@@ -22,6 +22,7 @@ fn committed(name: &str) -> Value {
 fn documents_fit_their_committed_schemas() {
     let bench = Bench::new(PROGRAM);
     let law = repository("data/laws/example.toml");
+    let extract = word(&repository("data/recordings/g2_steer_encoder_spikes_2mps.csv"));
     for (name, line) in [
         ("basin", QUICK),
         ("basin", "basin --speeds 6 --law none --scan-step 5 --max-rate 5 --axis roll-rate --time-limit 1"),
@@ -35,6 +36,9 @@ fn documents_fit_their_committed_schemas() {
         ),
         ("basin-plane", "basin plane --speed 5 --rays 4 --points 4 --ray-tolerance 0.05"),
         ("sweep", "sweep --over law=h,none --speeds 5 --max-rate 6 --scan-step 2 --time-limit 1"),
+        ("replay", &format!("replay {extract} --map extract --fault gyro:missing@2s")),
+        ("replay", &format!("replay {}", word(&repository("data/border_ride.frames")))),
+        ("replay-many", &format!("replay {extract} {extract} --map extract --fault gyro:missing@2s")),
         ("eigen", "eigen --speeds 0:10:1"),
         ("eigen", "eigen --rider smart --law h --speeds 3:4:0.5 --roots 6"),
         ("eigen", &format!("eigen --speeds 4 --law {}", word(&law))),
@@ -48,6 +52,8 @@ fn documents_fit_their_committed_schemas() {
     for name in [
         "basin",
         "ride",
+        "replay",
+        "replay-many",
         "eigen",
         "bicycle-check",
         "rider-show",

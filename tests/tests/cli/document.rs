@@ -1,11 +1,15 @@
-//! `docs/cli.md` is true: its examples run and say what it says, every option is in it.
+//! `docs/cli.md` and `docs/replay.md` are true: their examples run and say what it says, every option is in it.
 
 use tests::cli::{Bench, repository};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
 fn document() -> String {
-    std::fs::read_to_string(repository("docs/cli.md")).unwrap()
+    page("cli.md")
+}
+
+fn page(name: &str) -> String {
+    std::fs::read_to_string(repository("docs").join(name)).unwrap()
 }
 
 /// The fenced blocks in `language`.
@@ -27,13 +31,13 @@ fn matches(expected: &str, mut said: &str) -> bool {
     said.is_empty() || rest.last().is_some_and(|last| last.is_empty())
 }
 
-/// Situation: the examples with their output in the document.
+/// Situation: the examples with their output in the documents.
 /// Action: run them in the repository's folder.
 /// Must hold: the output is the documented one, but for what is left out there.
 #[test]
 fn documented_examples_say_what_the_document_says() {
     let (bench, mut examples) = (Bench::new(PROGRAM), 0);
-    for block in blocks(&document(), "console") {
+    for block in [document(), page("replay.md")].iter().flat_map(|page| blocks(page, "console")) {
         for example in block.split("$ sim-host ").skip(1) {
             let (line, expected) = example.split_once('\n').unwrap();
             let run = bench.command(line).current_dir(repository("")).output().unwrap();
@@ -69,6 +73,7 @@ fn every_option_is_documented_with_its_default() {
     for command in [
         "basin",
         "ride",
+        "replay",
         "eigen",
         "bicycle show",
         "bicycle check",

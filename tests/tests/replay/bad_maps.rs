@@ -1,0 +1,80 @@
+//! Maps in which something is wrong.
+
+use super::{SMALLEST, bench};
+
+/// Situation: maps with one thing wrong each.
+/// Action: replay a good ride with them.
+/// Must hold: refused, naming map or parameter, key, value and what was expected.
+#[test]
+fn wrong_maps() {
+    let bench = bench(50);
+    let steer = |line: &str| format!("{SMALLEST}[steer]\ncolumns = ['steer']\n{line}\n");
+    let gyro = |line: &str| SMALLEST.replace("'gz']", &format!("'gz']\n{line}"));
+    for (map, named) in [
+        (steer("sclae = 2"), &["line 9", "`sclae`", "`scale`"][..]),
+        (format!("[speed]\ncolumns = ['rear']\n{SMALLEST}"), &["`speed`", "`rear_wheel`"]),
+        (steer("unit = 'degrees'"), &["steer", "unit = \"degrees\"", "rad, deg"]),
+        (steer("unit = 'deg/s'"), &["steer", "unit = \"deg/s\"", "rad, deg"]),
+        (steer("scale = 1e9"), &["steer", "scale = 1000000000", "1000000"]),
+        (steer("scale = 0"), &["steer", "scale = 0"]),
+        (steer("offset = nan"), &["steer", "offset = NaN"]),
+        (steer("late_s = -1"), &["steer", "late_s = -1", "0 to 1"]),
+        (steer("axes = ['x', 'y', 'z']"), &["steer", "axes", "three axes"]),
+        (gyro("axes = ['y', 'x', 'z']"), &["gyro", "axes", "mirror"]),
+        (gyro("axes = ['x', 'x', 'z']"), &["gyro", "axes", "twice"]),
+        (gyro("axes = ['x', 'up', 'z']"), &["gyro", "axes", "`up`", "-z"]),
+        (SMALLEST.replace(", 'gz'", ""), &["gyro", "columns", "2", "3"]),
+        (SMALLEST.replace("'t'", "'t'\nrate_hz = 200"), &["time", "column", "rate_hz"]),
+        (SMALLEST.replace("column = 't'", "rate_hz = 0"), &["time", "rate_hz = 0", "0.01 to 100000"]),
+        (SMALLEST.replace("'t'", "'t'\nunit = 'min'"), &["time", "unit = \"min\"", "s, ms, us, ns"]),
+        ("gyro = 3".into(), &["line 1", "gyro"]),
+    ] {
+        bench.write("my.toml", map);
+        let named: Vec<&str> = named.iter().copied().chain(["my.toml"]).collect();
+        bench.run("replay ride.csv --map my.toml").refused_naming(&named);
+    }
+    for (line, named) in [
+        ("'cross.wheelbase_m' = 99", &["cross.wheelbase_m = 99", "0.5 to 3"][..]),
+        ("'cross.wheelbase_m' = 'long'", &["cross.wheelbase_m = long"]),
+        ("'cross.yaw_slope' = 'maybe'", &["cross.yaw_slope = maybe"]),
+    ] {
+        bench.write("my.toml", format!("{SMALLEST}[parameters]\n{line}\n"));
+        bench.run("replay ride.csv --map my.toml").refused_naming(named);
+    }
+    // The message lists all parameters there are.
+    bench.write("my.toml", format!("{SMALLEST}[parameters]\n'cross.nope' = 1\n"));
+    let run = bench.run("replay ride.csv --map my.toml");
+    assert!(run.code == Some(1) && run.stderr.contains("no parameter cross.nope"), "{run:?}");
+    bench.run("replay ride.csv --map absent.toml").refused_naming(&["absent.toml", "extract", "monitor"]);
+}
+
+/// Situation: maps that name a column which is not there: for time, age, switch, a sensor's own time, the axis that must be
+/// there.
+/// Action: replay.
+/// Must hold: refused with the column's name and what it was for.
+#[test]
+fn columns_that_are_not_there() {
+    let bench = bench(50);
+    for (map, named) in [
+        (SMALLEST.replace("'t'", "'T'"), ["T", "for the time"]),
+        (format!("{SMALLEST}time = 'nope'\n"), ["nope", "for the time"]),
+        (format!("{SMALLEST}age = 'nope'\n"), ["nope", "for an age"]),
+        (format!("{SMALLEST}[engage]\ncolumn = 'nope'\n"), ["nope", "for the switch"]),
+        (SMALLEST.replace("'gx'", "'wx'"), ["wx", "for gyro"]),
+        (SMALLEST.replace("[time]\ncolumn = 't'\n", ""), ["the map says nothing", "time"]),
+    ] {
+        bench.write("my.toml", map);
+        bench.run("replay ride.csv --map my.toml").refused_naming(&named);
+    }
+}
+
+/// Situation: a map that names a column of a sensor that may be missing, with a letter wrong.
+/// Action: replay.
+/// Must hold: it runs without the sensor, and the column's name is told.
+#[test]
+fn a_sensor_whose_column_is_not_there() {
+    let bench = bench(400);
+    bench.write("my.toml", format!("{SMALLEST}[steer]\ncolumns = ['stear']\n"));
+    let document = bench.json("replay ride.csv --map my.toml");
+    assert_eq!(document["absent"], serde_json::json!(["steer (`stear`)"]));
+}
