@@ -27,12 +27,14 @@ fn numbers_are_for_ever() {
         (Cause::SwitchOff, 53),
         (Cause::PathLost, 56),
         (Cause::PolarityWrong, 57),
+        (Cause::RollUnknown, 58),
+        (Cause::Crash, 59),
     ];
     for (cause, code) in given {
         assert_eq!(cause.code(), code, "{cause:?}");
     }
     let codes: BTreeSet<u8> = CAUSES.iter().map(|c| c.code()).collect();
-    assert_eq!(codes, (1..=57).collect(), "each number once, none left out");
+    assert_eq!(codes, (1..=59).collect(), "each number once, none left out");
     assert!(CAUSES.iter().enumerate().all(|(i, c)| usize::from(c.code()) == i + 1));
 }
 

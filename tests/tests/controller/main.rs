@@ -4,6 +4,7 @@ mod estimate;
 mod fault_heights;
 mod fault_pages;
 mod fault_rides;
+mod gentle;
 mod laws;
 mod leaves;
 mod limp;
