@@ -189,12 +189,14 @@ impl Same {
         let others = [steer_rad, front_m_s, rear_m_s];
         let rides = front_m_s > STANDING_M_S || rear_m_s > STANDING_M_S;
         let [gyro, accel] = [gyro_rad_s == self.gyro_rad_s, accel_m_s2 == self.accel_m_s2];
+        // One that is not known does not change.
+        let [gyro_changes, accel_changes] = [!(gyro || wx.is_nan()), !(accel || fx.is_nan())];
         let changes = others != self.others;
-        let count = |same: bool, other: bool, before: u16| {
-            if rides && same && (changes || !other) { before.saturating_add(1) } else { 0 }
+        let count = |same: bool, other_changes: bool, before: u16| {
+            if rides && same && (changes || other_changes) { before.saturating_add(1) } else { 0 }
         };
-        self.gyro_checks = count(gyro, accel, self.gyro_checks);
-        self.accel_checks = count(accel, gyro, self.accel_checks);
+        self.gyro_checks = count(gyro, accel_changes, self.gyro_checks);
+        self.accel_checks = count(accel, gyro_changes, self.accel_checks);
         self.stuck = Causes::NONE;
         self.stuck.note(Cause::GyroStuck, self.gyro_checks >= checks);
         self.stuck.note(Cause::AccelStuck, self.accel_checks >= checks);
