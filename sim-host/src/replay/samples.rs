@@ -145,8 +145,8 @@ fn absent(recording: &Recording, sensor: Sensor, signal: &Signal) -> Option<Stri
 fn unusable(all: &Samples, sensor: Sensor) -> Option<Remark> {
     let name = sensor.name();
     let few = || {
-        let said = all.remarks.iter().map(|remark| &remark.what);
-        said.into_iter().find(|what| what.starts_with(&format!("{name}: ")) && what.contains("usable sample"))
+        let mut said = all.remarks.iter().map(|remark| &remark.what);
+        said.find(|what| what.starts_with(&format!("{name}: ")) && what.contains("usable sample"))
     };
     let blank = all.absent.iter().find(|what| what.starts_with(&format!("{name} (no value")));
     let why = blank.or_else(few)?;
