@@ -47,7 +47,8 @@ impl VirtualBoard {
         let to = child.stdin.take();
         let from = listen(child.stdout.take());
         let words = listen(child.stderr.take());
-        let mut board = Self { name: program.display().to_string(), child, to, from, first: Vec::new(), words };
+        let mut board =
+            Self { name: program.display().to_string(), child, to, from, first: Vec::new(), words };
         match board.from.recv_timeout(START) {
             Ok(bytes) => board.first = bytes,
             Err(_) => {

@@ -12,8 +12,8 @@ use crate::leaves;
 use crate::plant::{Fault, ImuMount};
 use crate::recording::{ReadOptions, read};
 use crate::replay::{
-    Feed, FeedOptions, Fitted, Map, Press, Replayed, Resample, RunOptions, Samples, Summary, fitted, frames,
-    run as run_through, samples,
+    CauseRecord, Feed, FeedOptions, Fitted, Map, Press, Resample, RunOptions, Samples, Summary, fitted,
+    frames, run as run_through, samples,
 };
 use crate::report::document::SCHEMA;
 use crate::report::figure::{self, ReplayFigure};
@@ -117,7 +117,6 @@ struct Common {
 
 /// One recording, done.
 struct Done {
-    replayed: Replayed,
     result: ReplayResult,
     config: ReplayConfig,
     frames: Vec<SensorFrame>,
@@ -254,8 +253,8 @@ fn one(args: &Args, common: &Common, path: &Path) -> Result<Done, Failure> {
     };
     let config = resolved(args, common, &plan, Some(resample));
     let remarks = samples.remarks.iter().map(ToString::to_string).collect();
-    let result = ReplayResult::new(name, remarks, told, &replayed);
-    Ok(Done { replayed, result, config, frames: kept })
+    let result = ReplayResult { file: name, remarks, fitted: told, replayed };
+    Ok(Done { result, config, frames: kept })
 }
 
 /// Frames as they were written, bit for bit; the switch is the one in them.
@@ -270,9 +269,9 @@ fn replay_frames(args: &Args, common: &Common, path: &Path, name: String) -> Res
     let mut each = all.iter().copied();
     let replayed = run_through(&plan, &options, |_| each.next());
     let config = resolved(args, common, &plan, None);
-    let result = ReplayResult::new(name, Vec::new(), told, &replayed);
+    let result = ReplayResult { file: name, remarks: Vec::new(), fitted: told, replayed };
     let frames = all.into_iter().map(|(_, frame)| frame).collect();
-    Ok(Done { replayed, result, config, frames })
+    Ok(Done { result, config, frames })
 }
 
 fn resolved(
@@ -296,7 +295,8 @@ fn resolved(
 }
 
 fn write_one(args: &Args, outputs: &Outputs, done: &Done) -> Result<Ended, Failure> {
-    let Done { replayed, result, config, frames } = done;
+    let Done { result, config, frames } = done;
+    let replayed = &result.replayed;
     let document =
         ReplayDocument { schema: SCHEMA, tool: Tool::this(), config: config.clone(), result: result.clone() };
     let figure = ReplayFigure {
@@ -328,13 +328,13 @@ fn write_many(
     let Some(first) = all.first() else { return Err("none of the recordings can be used".into()) };
     let config = first.config.clone();
     let fault_s = common.faults.iter().map(|fault| fault.from_s).reduce(f64::min);
-    let summary = Summary::new(all.iter().map(|done| &done.replayed), fault_s);
+    let summary = Summary::new(all.iter().map(|done| &done.result.replayed), fault_s);
     let failed = unusable.len();
-    let rows: Vec<_> = all
+    let results: Vec<_> = all.into_iter().map(|done| done.result).collect();
+    let rows: Vec<_> = results
         .iter()
-        .flat_map(|done| done.result.causes.iter().map(|cause| (&done.result.file, cause)))
+        .flat_map(|result| result.replayed.causes.iter().map(|cause| (result.file.clone(), cause.clone())))
         .collect();
-    let results: Vec<_> = all.iter().map(|done| done.result.clone()).collect();
     let text = summary_text(&results, &summary);
     let document = ReplaysDocument {
         schema: SCHEMA,
@@ -346,8 +346,8 @@ fn write_many(
     };
     let table = || {
         let header = ["file", "number", "name", "first_s", "count", "total_s", "alarms"].map(str::to_owned);
-        let row = |(file, c): &(&String, &crate::replay::CauseRecord)| {
-            (file.to_string(), c.number, c.name, c.first_s, c.count, c.total_s, c.alarms)
+        let row = |(file, c): &(String, CauseRecord)| {
+            (file.clone(), c.number, c.name, c.first_s, c.count, c.total_s, c.alarms)
         };
         table::rows(&config, &header, rows.iter().map(row))
     };

@@ -107,17 +107,17 @@ pub struct Row {
 }
 
 /// The account of a replay.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Replayed {
     /// First and last control instant \[s\].
     pub span_s: (f64, f64),
     /// Control periods.
     pub periods: u64,
-    /// For how long it was engaged, in limp mode, in fault \[s\].
+    /// For how long it was engaged \[s\].
     pub engaged_s: f64,
-    /// See `engaged_s`.
+    /// For how long it was in limp mode \[s\].
     pub limp_s: f64,
-    /// See `engaged_s`.
+    /// For how long it was in fault \[s\].
     pub fault_s: f64,
     /// For how long the bicycle rode, faster than 1 m/s \[s\].
     pub riding_s: f64,
@@ -133,13 +133,14 @@ pub struct Replayed {
     pub rate_limited: f64,
     /// How near each check came to speaking.
     pub checks: Vec<Check>,
-    /// Roll angle as estimated beside the log's own \[rad\], while riding.
+    /// Roll angle as estimated beside the log's own while riding \[rad\]; null if the log has none.
     pub roll: Option<Compared>,
     /// Part of these instants in which the log's roll lay inside the estimate's bound.
     pub roll_inside_bound: Option<f64>,
-    /// Torque beside the log's own \[N m\], while engaged.
+    /// Torque beside the log's own while engaged \[N m\]; null if the log has none.
     pub torque: Option<Compared>,
     /// The table.
+    #[serde(skip)]
     pub rows: Vec<Row>,
 }
 

@@ -2,7 +2,7 @@
 
 use super::document::SCHEMA;
 use super::resolved::Tool;
-use crate::replay::{CauseRecord, Check, Compared, Fitted, ModeRecord, Replayed, Summary};
+use crate::replay::{Compared, Fitted, Replayed, Summary};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -35,63 +35,9 @@ pub struct ReplayResult {
     /// Sensors and checks that were switched off for want of a recording.
     #[serde(flatten)]
     pub fitted: Fitted,
-    /// First and last control instant \[s\].
-    pub span_s: (f64, f64),
-    /// Control periods.
-    pub periods: u64,
-    /// For how long it was engaged \[s\].
-    pub engaged_s: f64,
-    /// For how long it was in limp mode \[s\].
-    pub limp_s: f64,
-    /// For how long it was in fault \[s\].
-    pub fault_s: f64,
-    /// For how long the bicycle rode, faster than 1 m/s \[s\].
-    pub riding_s: f64,
-    /// The modes in their order.
-    pub modes: Vec<ModeRecord>,
-    /// The causes that were there, by number.
-    pub causes: Vec<CauseRecord>,
-    /// Largest torque commanded \[N m\].
-    pub peak_torque_nm: f64,
-    /// Root mean square of the torque while engaged \[N m\].
-    pub rms_torque_nm: f64,
-    /// Part of the engaged periods in which the limit of the rate of change acted.
-    pub rate_limited: f64,
-    /// How near each check came to speaking.
-    pub checks: Vec<Check>,
-    /// Roll angle as estimated beside the log's own while riding \[rad\]; null if the log has none.
-    pub roll: Option<Compared>,
-    /// Part of these instants in which the log's roll lay inside the estimate's bound.
-    pub roll_inside_bound: Option<f64>,
-    /// Torque beside the log's own while engaged \[N m\]; null if the log has none.
-    pub torque: Option<Compared>,
-}
-
-impl ReplayResult {
-    /// Of a file.
-    pub fn new(file: String, remarks: Vec<String>, fitted: Fitted, replayed: &Replayed) -> Self {
-        let r = replayed.clone();
-        Self {
-            file,
-            remarks,
-            fitted,
-            span_s: r.span_s,
-            periods: r.periods,
-            engaged_s: r.engaged_s,
-            limp_s: r.limp_s,
-            fault_s: r.fault_s,
-            riding_s: r.riding_s,
-            modes: r.modes,
-            causes: r.causes,
-            peak_torque_nm: r.peak_torque_nm,
-            rms_torque_nm: r.rms_torque_nm,
-            rate_limited: r.rate_limited,
-            checks: r.checks,
-            roll: r.roll,
-            roll_inside_bound: r.roll_inside_bound,
-            torque: r.torque,
-        }
-    }
+    /// What came of it.
+    #[serde(flatten)]
+    pub replayed: Replayed,
 }
 
 /// `replay` of one recording.
@@ -130,11 +76,11 @@ pub struct ReplaysDocument {
 /// One recording in words.
 pub fn text(result: &ReplayResult) -> String {
     let mut text = String::new();
-    let (from, to) = result.span_s;
+    let (from, to) = result.replayed.span_s;
     let _ = writeln!(
         text,
         "{}: {from:.3} to {to:.3} s, {} control periods, {:.1} s of it faster than 1 m/s",
-        result.file, result.periods, result.riding_s
+        result.file, result.replayed.periods, result.replayed.riding_s
     );
     for remark in &result.remarks {
         let _ = writeln!(text, "  remark: {remark}");
@@ -151,15 +97,15 @@ pub fn text(result: &ReplayResult) -> String {
     let _ = writeln!(
         text,
         "engaged {:.3} s, limp {:.3} s, fault {:.3} s; torque peak {:.2} N m, rms {:.2} N m, at the rate limit {:.0} % of the time",
-        result.engaged_s,
-        result.limp_s,
-        result.fault_s,
-        result.peak_torque_nm,
-        result.rms_torque_nm,
-        100.0 * result.rate_limited
+        result.replayed.engaged_s,
+        result.replayed.limp_s,
+        result.replayed.fault_s,
+        result.replayed.peak_torque_nm,
+        result.replayed.rms_torque_nm,
+        100.0 * result.replayed.rate_limited
     );
     const MOST: usize = 12;
-    let modes: Vec<_> = result.modes.iter().map(|m| format!("{:.3} {}", m.from_s, m.mode)).collect();
+    let modes: Vec<_> = result.replayed.modes.iter().map(|m| format!("{:.3} {}", m.from_s, m.mode)).collect();
     let more = if modes.len() > MOST { format!(", and {} more", modes.len() - MOST) } else { String::new() };
     let _ = writeln!(text, "modes: {}{more}", modes[..modes.len().min(MOST)].join(", "));
     let _ = writeln!(
@@ -167,7 +113,7 @@ pub fn text(result: &ReplayResult) -> String {
         "\n{:>3}  {:<24} {:>10} {:>6} {:>10} {:>7}",
         "", "cause", "first [s]", "times", "total [s]", "alarms"
     );
-    for c in &result.causes {
+    for c in &result.replayed.causes {
         let _ = writeln!(
             text,
             "{:>3}  {:<24} {:>10.3} {:>6} {:>10.3} {:>7}",
@@ -175,7 +121,7 @@ pub fn text(result: &ReplayResult) -> String {
         );
     }
     let _ = writeln!(text, "\n{:<20} {:>12} {:>10} {:>8}  residual", "check", "largest", "limit", "part");
-    for c in result.checks.iter().filter(|c| c.largest_residual.is_some()) {
+    for c in result.replayed.checks.iter().filter(|c| c.largest_residual.is_some()) {
         let number = |x: Option<f64>| x.map_or("-".into(), |x| format!("{x:.4}"));
         let part = match (c.largest_residual, c.limit) {
             (Some(largest), Some(limit)) if limit > 0.0 => format!("{:.0} %", 100.0 * largest / limit),
@@ -202,10 +148,11 @@ pub fn text(result: &ReplayResult) -> String {
         }
     };
     let inside = result
+        .replayed
         .roll_inside_bound
         .map_or(String::new(), |part| format!("; inside the bound {:.1} %", 100.0 * part));
-    beside("roll", "rad", &result.roll, inside);
-    beside("torque", "N m", &result.torque, String::new());
+    beside("roll", "rad", &result.replayed.roll, inside);
+    beside("torque", "N m", &result.replayed.torque, String::new());
     text
 }
 
@@ -220,6 +167,7 @@ pub fn summary_text(results: &[ReplayResult], summary: &Summary) -> String {
     );
     for r in results {
         let alarms: Vec<_> = r
+            .replayed
             .causes
             .iter()
             .filter(|c| c.alarms > 0)
@@ -229,7 +177,7 @@ pub fn summary_text(results: &[ReplayResult], summary: &Summary) -> String {
         let _ = writeln!(
             text,
             "{:<widest$} {:>9.1} {:>10.1} {:>7.2}  {alarms}",
-            r.file, r.riding_s, r.engaged_s, r.peak_torque_nm
+            r.file, r.replayed.riding_s, r.replayed.engaged_s, r.replayed.peak_torque_nm
         );
     }
     for r in results.iter().filter(|r| !r.remarks.is_empty()) {

@@ -19,6 +19,6 @@ pub use assist::Assist;
 pub use batch::{rides, rides_on, traced, traced_on};
 pub use conditions::{Conditions, ConditionsError, Imu, ScheduleSpeed, Start};
 pub use outcome::{Effort, FinalState, Outcome, Ride};
-pub use processor::{Remote, RemoteError, Stepped};
 pub(crate) use outfit::frame as frame_of;
+pub use processor::{Remote, RemoteError, Stepped};
 pub use trace::{TracePoint, frames};

@@ -62,7 +62,8 @@ fn its_pseudo_terminal_is_a_serial_port() {
     let mut command = Command::new(env!("CARGO_BIN_EXE_virtual-board"));
     command.args(["--seconds", "3", "--image"]).arg(image).stderr(Stdio::piped());
     let mut child = command.spawn().expect("it starts");
-    let mut lines = BufReader::new(child.stderr.take().expect("its log")).lines().map(|line| line.expect("text"));
+    let mut lines =
+        BufReader::new(child.stderr.take().expect("its log")).lines().map(|line| line.expect("text"));
     let first = lines.next().expect("a line");
     let device = first.rsplit(' ').next().expect("a device");
     let open = || {
