@@ -76,7 +76,8 @@ impl Config {
     /// declared and watched, all limits and checks on ([`Limits::product`]).
     ///
     /// Slopes are at least twice, ranges and steps 1.4 times the largest of rides inside the basins of `h`, alone
-    /// and with riders (`data/motion.toml`); the steps are those of the disturbance, which comes at once. It
+    /// and with riders (`data/motion.toml`); the steps are those of the disturbance, which comes at once, and of a wheel that
+    /// begins to turn, whose first pulses tell up to 1 m/s at once. It
     /// refuses to engage until a polarity check was passed.
     pub fn product() -> Self {
         let sensor = |max, slope_per_s, timeout_ticks, loss| Sensor {
@@ -87,8 +88,12 @@ impl Config {
             loss,
             ..Sensor::exact(max)
         };
-        let wheel =
-            |slope| Sensor { stuck_ticks: 500, qualify_samples: 3, ..sensor(30.0, slope, 250, Loss::Limp) };
+        let wheel = |slope| Sensor {
+            step: 1.0,
+            stuck_ticks: 500,
+            qualify_samples: 3,
+            ..sensor(30.0, slope, 250, Loss::Limp)
+        };
         let input = InputConfig {
             recent_samples: 3,
             drift_m_s2: 10.0,

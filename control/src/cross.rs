@@ -10,6 +10,7 @@ use crate::maths::{at_least, at_most, per_root, sin_cos};
 use crate::param::{Leaf, Visit};
 use crate::response::STRETCH_S;
 use crate::slope::{Slope, SlopeConfig, SlopePlan, Stretch};
+use core::hint::cold_path;
 
 /// The yaw rate against the one of speed and steer angle \[rad/s\]. What is slower than a second is left out: a steer
 /// sensor's zero, a bias of the gyro.
@@ -187,19 +188,24 @@ impl Same {
     ) {
         let (gyro_rad_s, accel_m_s2) = ([wx, wy, wz], [fx, fy, fz]);
         let others = [steer_rad, front_m_s, rear_m_s];
-        let rides = front_m_s > STANDING_M_S || rear_m_s > STANDING_M_S;
         let [gyro, accel] = [gyro_rad_s == self.gyro_rad_s, accel_m_s2 == self.accel_m_s2];
-        // One that is not known does not change.
-        let [gyro_changes, accel_changes] = [!(gyro || wx.is_nan()), !(accel || fx.is_nan())];
-        let changes = others != self.others;
-        let count = |same: bool, other_changes: bool, before: u16| {
-            if rides && same && (changes || other_changes) { before.saturating_add(1) } else { 0 }
-        };
-        self.gyro_checks = count(gyro, accel_changes, self.gyro_checks);
-        self.accel_checks = count(accel, gyro_changes, self.accel_checks);
-        self.stuck = Causes::NONE;
-        self.stuck.note(Cause::GyroStuck, self.gyro_checks >= checks);
-        self.stuck.note(Cause::AccelStuck, self.accel_checks >= checks);
+        if gyro || accel {
+            cold_path();
+            let rides = front_m_s > STANDING_M_S || rear_m_s > STANDING_M_S;
+            // One that is not known does not change.
+            let [gyro_changes, accel_changes] = [!(gyro || wx.is_nan()), !(accel || fx.is_nan())];
+            let changes = others != self.others;
+            let count = |same: bool, other_changes: bool, before: u16| {
+                if rides && same && (changes || other_changes) { before.saturating_add(1) } else { 0 }
+            };
+            self.gyro_checks = count(gyro, accel_changes, self.gyro_checks);
+            self.accel_checks = count(accel, gyro_changes, self.accel_checks);
+            self.stuck = Causes::NONE;
+            self.stuck.note(Cause::GyroStuck, self.gyro_checks >= checks);
+            self.stuck.note(Cause::AccelStuck, self.accel_checks >= checks);
+        } else {
+            (self.gyro_checks, self.accel_checks, self.stuck) = (0, 0, Causes::NONE);
+        }
         (self.gyro_rad_s, self.accel_m_s2, self.others) = (gyro_rad_s, accel_m_s2, others);
     }
 }
@@ -218,7 +224,7 @@ impl CrossState {
 
 impl CrossState {
     /// The yaw rate against the one of speed and steer angle.
-    #[inline(always)]
+    #[inline]
     fn compare_yaw(
         &mut self,
         config: &CrossConfig,

@@ -31,7 +31,7 @@ pub const GYRO_WRONG: f32 = -0.4;
 
 /// The steer acceleration \[rad/s^2\].
 const MOTOR: SlopeConfig =
-    SlopeConfig { slow_s: 0.05, forget_s: 0.2, most: 60.0, enough: 5.0, lasting_s: 0.15 };
+    SlopeConfig { slow_s: 0.05, forget_s: 0.2, most: 60.0, enough: 5.0, lasting_s: 0.05 };
 /// Below this slope the motor is wrong.
 pub const MOTOR_WRONG: f32 = -0.2;
 

@@ -1,7 +1,7 @@
 //! A display on the CAN bus: what the board broadcast last.
 
 use crate::chip::can::Frame;
-use control::{Causes, Command, Mode};
+use control::{Cause, Causes, Command, Mode};
 use parts::broadcast::{self, Message, Motion, State};
 use sim_host::ride::Stepped;
 
@@ -32,6 +32,11 @@ impl Display {
     /// The controller's mode; off before the first broadcast.
     pub fn mode(&self) -> Mode {
         self.state.map_or(Mode::Off, |state| state.mode)
+    }
+
+    /// Whether the controller is in standby and nothing is missing but the switch.
+    pub fn waits_for_the_switch(&self) -> bool {
+        self.mode() == Mode::Standby && self.causes == Some(Causes::of(Cause::SwitchOff))
     }
 
     /// The controller as far as the bus tells, with the torque that the motor gives \[N m\].

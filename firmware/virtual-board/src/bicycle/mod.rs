@@ -18,7 +18,7 @@ pub use wheel::{Edge, Wheel};
 use crate::parts::bmi160::Motion;
 use crate::wiring::Wiring;
 use crate::{Bench, Error, Options, parameters, power};
-use control::{Mode, Plan, SensorFrame};
+use control::{Plan, SensorFrame};
 use sim_host::ride::{Conditions, Remote, RemoteError, Start, Stepped};
 use std::path::PathBuf;
 
@@ -100,7 +100,8 @@ impl OnBicycle {
 }
 
 impl Remote for OnBicycle {
-    /// Powers the board on a bicycle that rides steadily, until its controller is in standby.
+    /// Powers the board on a bicycle that rides steadily, until its controller is in standby and misses nothing but the
+    /// switch: the wheels, which turn at power-on, must have proved themselves.
     fn begin(&mut self, plan: &Plan, start: &Start) -> Result<(), RemoteError> {
         let failed = |why: String| RemoteError(why);
         let mut wiring = Wiring::new();
@@ -118,7 +119,7 @@ impl Remote for OnBicycle {
             before: None,
         };
         let steady = Sensed::steady(start.speed_m_s, self.gravity_m_s2);
-        while ride.display.mode() != Mode::Standby {
+        while !ride.display.waits_for_the_switch() {
             ride.step(&steady, self.step_s).map_err(|e| failed(e.to_string()))?;
             if ride.at_ns as f64 * 1e-9 > BOOT_S {
                 return Err(failed(format!("not in standby {BOOT_S} s after power-on: {:?}", ride.display)));
