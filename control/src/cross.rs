@@ -4,13 +4,14 @@
 //! wandering left out. Inside the basins of `h`, alone and with riders, that leaves up to 0.28 m/s
 //! between the wheels and 0.80 rad/s of yaw unexplained (`data/motion.toml`); the tolerances must lie above.
 
+mod same;
+
 use crate::fault::{Cause, Causes};
 use crate::input::Believed;
 use crate::maths::{at_least, at_most, per_root, sin_cos};
 use crate::param::{Leaf, Visit};
-use crate::response::STRETCH_S;
-use crate::slope::{Slope, SlopeConfig, SlopePlan, Stretch};
-use core::hint::cold_path;
+use crate::slope::{STRETCH_S, Slope, SlopeConfig, SlopePlan, Stretch};
+use same::Same;
 
 /// The yaw rate against the one of speed and steer angle \[rad/s\]. What is slower than a second is left out: a steer
 /// sensor's zero, a bias of the gyro.
@@ -157,59 +158,6 @@ pub struct CrossState {
     same: Same,
 }
 
-/// What gyro, accelerometer and the other sensors said at the last look, and how often each of the two has said the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Same {
-    gyro_rad_s: [f32; 3],
-    accel_m_s2: [f32; 3],
-    others: [f32; 3],
-    gyro_checks: u16,
-    accel_checks: u16,
-    stuck: Causes,
-}
-
-impl Same {
-    /// Another look: at gyro (w) and accelerometer (f), NaN where one is not believed, steer angle and speeds. Each is a
-    /// value of its own, which goes by register; an array would have to lie in memory in every control period.
-    #[inline(never)]
-    #[allow(clippy::too_many_arguments, reason = "in registers")]
-    fn look(
-        &mut self,
-        checks: u16,
-        wx: f32,
-        wy: f32,
-        wz: f32,
-        fx: f32,
-        fy: f32,
-        fz: f32,
-        steer_rad: f32,
-        front_m_s: f32,
-        rear_m_s: f32,
-    ) {
-        let (gyro_rad_s, accel_m_s2) = ([wx, wy, wz], [fx, fy, fz]);
-        let others = [steer_rad, front_m_s, rear_m_s];
-        let [gyro, accel] = [gyro_rad_s == self.gyro_rad_s, accel_m_s2 == self.accel_m_s2];
-        if gyro || accel {
-            cold_path();
-            let rides = front_m_s > STANDING_M_S || rear_m_s > STANDING_M_S;
-            // One that is not known does not change.
-            let [gyro_changes, accel_changes] = [!(gyro || wx.is_nan()), !(accel || fx.is_nan())];
-            let changes = others != self.others;
-            let count = |same: bool, other_changes: bool, before: u16| {
-                if rides && same && (changes || other_changes) { before.saturating_add(1) } else { 0 }
-            };
-            self.gyro_checks = count(gyro, accel_changes, self.gyro_checks);
-            self.accel_checks = count(accel, gyro_changes, self.accel_checks);
-            self.stuck = Causes::NONE;
-            self.stuck.note(Cause::GyroStuck, self.gyro_checks >= checks);
-            self.stuck.note(Cause::AccelStuck, self.accel_checks >= checks);
-        } else {
-            (self.gyro_checks, self.accel_checks, self.stuck) = (0, 0, Causes::NONE);
-        }
-        (self.gyro_rad_s, self.accel_m_s2, self.others) = (gyro_rad_s, accel_m_s2, others);
-    }
-}
-
 impl CrossState {
     /// The differences of the last period.
     pub fn residuals(&self) -> Residuals {
@@ -317,8 +265,6 @@ pub struct Crossed {
     pub ground: Option<(f32, f32)>,
 }
 
-/// Speed above which no sensor of the frame's motion stands still \[m/s\].
-const STANDING_M_S: f32 = 0.5;
 /// Speed above which a bicycle is ridden, and neither led nor turned by hand \[m/s\].
 const RIDING_M_S: f32 = 1.0;
 /// How quickly the sums forget: the part of the difference that one period takes away.

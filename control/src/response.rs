@@ -15,12 +15,10 @@ use crate::estimate::{EstimateConfig, Motion, Place};
 use crate::fault::{Cause, Causes};
 use crate::input::Believed;
 use crate::param::{Leaf, Visit, optional};
-use crate::slope::{Slope, SlopeConfig, SlopePlan, Stretch};
+use crate::slope::{STRETCH_S, Slope, SlopeConfig, SlopePlan, Stretch};
 use core::hint::cold_path;
 
-/// Length of the motor's stretches \[s\].
-pub(crate) const STRETCH_S: f32 = 0.008;
-/// How many of them the gyro's are long: what a noisy gyro, sampled at 100 Hz, shows as acceleration is then small.
+/// How many of the motor's stretches the gyro's are long: what a noisy gyro, sampled at 100 Hz, shows as acceleration is then small.
 const GYRO_STRETCHES: u16 = 6;
 
 /// The sideways force \[m/s^2\].

@@ -6,6 +6,10 @@
 
 use crate::maths::bounded;
 
+/// Length of the shortest stretches, those of the motor's response \[s\]; the others are whole numbers of them, so that
+/// their ends never meet.
+pub(crate) const STRETCH_S: f32 = 0.008;
+
 /// How fast must something be to count, how long does it count, and how much must there be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopeConfig {
