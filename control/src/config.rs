@@ -113,6 +113,7 @@ impl Config {
             yaw_rad_s: Some(2.0),
             yaw_slow_rad_s: Some(0.5),
             yaw_slope: true,
+            roll_correlation: true,
             steer_rad: Some(0.1),
             motor_nm: Some(2.0),
             persist_ticks: 50,
@@ -134,8 +135,11 @@ impl Config {
             lifted_m_s2: Some(3.0),
             persist_ticks: 100,
         };
-        let estimate = EstimateConfig { roll_rate: Source::Estimate, ..EstimateConfig::default() };
-        let smooth = SmoothConfig { interpolate: true, lag_s: 0.0 };
+        // Without vibration, and hardly later: `docs/delay.md`.
+        let estimate =
+            EstimateConfig { roll_rate: Source::Estimate, accel_lag_s: 0.12, ..EstimateConfig::default() };
+        let predict = PredictConfig { lead_s: 0.012, ..PredictConfig::default() };
+        let smooth = SmoothConfig { interpolate: true, lag_s: 0.02, most_rad_s: Some(0.08) };
         let limits = Limits::product();
         Self {
             input,
@@ -143,6 +147,7 @@ impl Config {
             cross,
             response,
             permit,
+            predict,
             smooth,
             limits,
             ..Self::thesis(Law::H { cut: true })

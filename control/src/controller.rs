@@ -53,14 +53,15 @@ impl Plan {
         let crosses = c.cross.wheels_m_s.is_some()
             || c.cross.yaw_rad_s.is_some()
             || c.cross.yaw_slow_rad_s.is_some()
-            || c.cross.yaw_slope;
+            || c.cross.yaw_slope
+            || c.cross.roll_correlation;
         Self {
             period_s: 1.0 / c.rate_hz,
             period_us: (1e6 / c.rate_hz) as u32,
             max_gap_us: c.input.max_gap_ms.map_or(f32::INFINITY, |ms| 1e3 * ms),
             calibration: c.calibration.plan(),
             input: InputPlan::new(&c.input, 1.0 / c.rate_hz),
-            cross: CrossPlan::new(&c.cross, c.rate_hz),
+            cross: CrossPlan::new(&c.cross, &c.estimate.balance, c.rate_hz),
             response: ResponsePlan::new(&c.response, &c.estimate, c.rate_hz),
             permit: PermitPlan::new(&c.permit, c.rate_hz),
             smooth: SmoothPlan::new(&c.smooth, 1.0 / c.rate_hz),
@@ -178,6 +179,12 @@ impl State {
         self.cross.yaw_slope()
     }
 
+    /// How well the roll follows from steering: 1 if exactly, -1 if in everything the other way; `None` while too little
+    /// happens.
+    pub fn roll_correlation(&self) -> Option<f32> {
+        self.cross.roll_correlation()
+    }
+
     /// The roll angle of the last period as estimated, and how sure that is.
     pub fn roll(&self) -> Roll {
         self.roll
@@ -217,6 +224,9 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let ahead = predict::step(&config.predict, &motion);
     let crossed =
         cross::step(&config.cross, &plan.cross, &mut state.cross, &believed, motion.roll_sin_cos, last_nm);
+    if !crossed.distrusted.is_empty() {
+        state.input.distrust(crossed.distrusted);
+    }
     let answered = response::step(&plan.response, &mut state.response, &believed, &motion, last_nm);
     let mut causes = believed.causes.with(crossed.causes).with(answered).with(state.found);
     causes.note(Cause::Timing, elapsed_us as f32 > plan.max_gap_us);

@@ -5,27 +5,20 @@
 //! between the wheels and 0.80 rad/s of yaw unexplained (`data/motion.toml`); the tolerances must lie above.
 
 mod same;
+mod steering;
 
+use crate::estimate::Place;
 use crate::fault::{Cause, Causes};
 use crate::input::Believed;
 use crate::maths::{at_least, at_most, per_root, sin_cos};
 use crate::param::{Leaf, Visit};
-use crate::slope::{STRETCH_S, Slope, SlopeConfig, SlopePlan, Stretch};
 use same::Same;
+pub use steering::{MOVES_M_S, ROLL_WRONG, YAW_WRONG};
+use steering::{Steering, SteeringPlan};
 
-/// The yaw rate against the one of speed and steer angle \[rad/s\]. What is slower than a second is left out: a steer
-/// sensor's zero, a bias of the gyro.
-const YAW: SlopeConfig = SlopeConfig { slow_s: 1.0, forget_s: 1.0, most: 5.0, enough: 0.003, lasting_s: 0.0 };
-/// Length of its stretches \[s\]: three of the motor's response.
-const YAW_STRETCH_S: f32 = 3.0 * STRETCH_S;
-/// At which control period of a stretch it ends: none of those in which a slope of `response` is told, so that no
-/// period has to do both.
-const YAW_END_TICK: u16 = 2;
-/// In which control period of a stretch it is looked whether sensors say the same, for the same reason another one.
+/// In which control period of a stretch of [`steering`], and of its second half, is a look of [`same`]: one in which neither
+/// that stretch nor one of `response` ends, so that no period has to do both.
 const SAME_TICK: u16 = 6;
-/// Below this slope the gyro or the steer sensor has the wrong sign. On recorded rides of two bicycles it stays above 0
-/// where both are right, also with a steer sensor whose scale is wrong by 1.6.
-pub const YAW_WRONG: f32 = -0.4;
 
 /// The tolerances. Each check is off by default.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,8 +34,10 @@ pub struct CrossConfig {
     pub yaw_rad_s: Option<f32>,
     /// A smaller one that must not last for [`CrossConfig::slow_ticks`]: gentle riding shows a wrong sensor by little.
     pub yaw_slow_rad_s: Option<f32>,
-    /// Whether the sign of the yaw rate is judged by how it changes with the steer angle.
+    /// Whether the sign of the yaw rate is judged by how it changes with the steer angle, and a wheel that stands by the yaw rate.
     pub yaw_slope: bool,
+    /// Whether the sign of the roll rate is judged by how the roll follows from steering.
+    pub roll_correlation: bool,
     /// Largest difference of the turned steer angle from the summed steer rate \[rad\].
     pub steer_rad: Option<f32>,
     /// Largest difference of the drive's torque from what it was asked for in the last periods \[N m\].
@@ -67,6 +62,7 @@ impl Default for CrossConfig {
             yaw_rad_s: None,
             yaw_slow_rad_s: None,
             yaw_slope: false,
+            roll_correlation: false,
             steer_rad: None,
             motor_nm: None,
             persist_ticks: 0,
@@ -86,6 +82,7 @@ impl CrossConfig {
         to.limit(&Leaf::new(g, "yaw_rad_s", 0.01, 20.0), &mut self.yaw_rad_s);
         to.limit(&Leaf::new(g, "yaw_slow_rad_s", 0.01, 20.0), &mut self.yaw_slow_rad_s);
         to.switch(&Leaf::switch(g, "yaw_slope"), &mut self.yaw_slope);
+        to.switch(&Leaf::switch(g, "roll_correlation"), &mut self.roll_correlation);
         to.limit(&Leaf::new(g, "steer_rad", 0.001, 3.0), &mut self.steer_rad);
         to.limit(&Leaf::new(g, "motor_nm", 0.01, 50.0), &mut self.motor_nm);
         to.count(&Leaf::new(g, "persist_ticks", 0.0, 1000.0), &mut self.persist_ticks);
@@ -106,17 +103,15 @@ pub struct CrossPlan {
     yaw_slow_rad_s: f32,
     steer_rad: f32,
     motor_nm: f32,
-    yaw_slope: bool,
-    /// Control periods of a stretch of the slope.
-    stretch_ticks: u16,
-    slope: SlopePlan,
+    steering: SteeringPlan,
+    /// The second of the two control periods of a stretch in which there is a look; [`SAME_TICK`] is the first.
+    look_tick: u16,
 }
 
 impl CrossPlan {
-    /// For `rate_hz` calls a second.
-    pub fn new(config: &CrossConfig, rate_hz: f32) -> Self {
-        // At most 240 at the fastest rate there is.
-        let stretch_ticks = ((YAW_STRETCH_S * rate_hz) as u16).max(8);
+    /// For a mass at this place and `rate_hz` calls a second.
+    pub fn new(config: &CrossConfig, mass: &Place, rate_hz: f32) -> Self {
+        let steering = SteeringPlan::new(config.yaw_slope, config.roll_correlation, mass, rate_hz);
         Self {
             period_s: 1.0 / rate_hz,
             per_wheelbase: 1.0 / config.wheelbase_m,
@@ -126,9 +121,8 @@ impl CrossPlan {
             yaw_slow_rad_s: config.yaw_slow_rad_s.unwrap_or(f32::INFINITY),
             steer_rad: config.steer_rad.unwrap_or(f32::INFINITY),
             motor_nm: config.motor_nm.unwrap_or(f32::INFINITY),
-            yaw_slope: config.yaw_slope,
-            stretch_ticks,
-            slope: SlopePlan::new(YAW, f32::from(stretch_ticks) / rate_hz),
+            steering,
+            look_tick: SAME_TICK + steering.stretch_ticks / 2,
         }
     }
 }
@@ -147,14 +141,11 @@ pub struct CrossState {
     asked_nm: (f32, f32),
     /// The differences of this period.
     residuals: Residuals,
-    /// Expected and seen yaw rate.
-    stretch: Stretch<2>,
-    stretch_tick: u16,
-    slope: Slope,
-    /// Whether the slope is that of a wrong sign.
-    reversed: bool,
+    steering: Steering,
     /// Whether a difference of the yaw rate has lasted.
     yaw_wrong: bool,
+    /// The control period of a stretch.
+    tick: u16,
     same: Same,
 }
 
@@ -166,11 +157,15 @@ impl CrossState {
 
     /// How much of what it should do the yaw rate does: 1 all, -1 the opposite; `None` while too little happens.
     pub fn yaw_slope(&self) -> Option<f32> {
-        self.slope.told(&YAW)
+        self.steering.yaw_slope()
     }
-}
 
-impl CrossState {
+    /// How well the roll follows from steering: 1 if exactly, -1 if in everything the other way; `None` while too little
+    /// happens.
+    pub fn roll_correlation(&self) -> Option<f32> {
+        self.steering.roll_correlation()
+    }
+
     /// The yaw rate against the one of speed and steer angle.
     #[inline]
     fn compare_yaw(
@@ -183,37 +178,27 @@ impl CrossState {
         (sin_roll, cos_roll): (f32, f32),
     ) {
         // The front wheel moves sideways by its speed times the sine; without it the rear one must do.
-        let sideways = match (front, rear, ground) {
-            (Some(front), _, Some((sin, _))) => Some(front * sin),
-            (None, Some(rear), Some((sin, cos))) if cos > 0.2 => Some(rear * sin / cos),
-            _ => None,
+        let (speed, per_speed) = match (front, rear, ground) {
+            (Some(front), _, Some((sin, _))) => (front, sin),
+            (None, Some(rear), Some((sin, cos))) if cos > 0.2 => (rear, sin / cos),
+            _ => (f32::NAN, f32::NAN),
         };
-        // A bicycle led or turned by hand need not roll where its front wheel points.
-        let rides = rear.or(front).is_some_and(|speed| speed > RIDING_M_S);
+        let per_speed = per_speed * plan.per_wheelbase;
         let (mut yaw, mut riding) = (f32::NAN, f32::NAN);
-        if let (Some(sideways), Some([_, y, z])) = (sideways, believed.gyro_rad_s()) {
-            let (seen, expected) = (y * sin_roll + z * cos_roll, sideways * plan.per_wheelbase);
-            yaw = seen - expected;
-            if rides {
+        if let (false, Some([x, y, z])) = (per_speed.is_nan(), believed.gyro_rad_s()) {
+            let seen = y * sin_roll + z * cos_roll;
+            yaw = seen - speed * per_speed;
+            // A bicycle led or turned by hand need not roll where its front wheel points.
+            let speed = rear.or(front).unwrap_or(0.0);
+            if self.steering.add(speed, per_speed, seen, x) {
                 riding = yaw;
-                self.stretch.add([expected, seen]);
             }
-        }
-        if plan.yaw_slope && riding.is_nan() {
-            (self.stretch, self.slope) = Default::default();
-            self.reversed = false;
+        } else {
+            self.steering = Steering::default();
         }
         self.residuals.yaw_rad_s = yaw;
-        self.yaw_wrong = self.yaw.beyond(plan.yaw_rad_s, yaw, config.persist_ticks, 2)
-            | self.yaw_slow.beyond(plan.yaw_slow_rad_s, riding, config.slow_ticks, 2);
-    }
-
-    /// The end of a stretch: the slope is judged anew.
-    fn end_stretch(&mut self, plan: &CrossPlan) {
-        if let Some(([expected, seen], [expected_before, seen_before])) = self.stretch.end() {
-            let slope = self.slope.step(&plan.slope, expected - expected_before, seen - seen_before);
-            self.reversed = slope.is_some_and(|slope| slope < YAW_WRONG);
-        }
+        self.yaw_wrong = self.yaw.beyond(plan.yaw_rad_s, yaw, config.persist_ticks, 4)
+            | self.yaw_slow.beyond(plan.yaw_slow_rad_s, riding, config.slow_ticks, 4);
     }
 }
 
@@ -261,12 +246,12 @@ impl Lasting {
 pub struct Crossed {
     /// The disagreements that have lasted.
     pub causes: Causes,
+    /// Sensors of these causes, found in this period, are not to be believed from now on.
+    pub distrusted: Causes,
     /// Of [`on_the_ground`], if the steer angle is known.
     pub ground: Option<(f32, f32)>,
 }
 
-/// Speed above which a bicycle is ridden, and neither led nor turned by hand \[m/s\].
-const RIDING_M_S: f32 = 1.0;
 /// How quickly the sums forget: the part of the difference that one period takes away.
 const FORGET: f32 = 1.0 / 256.0;
 
@@ -281,19 +266,21 @@ pub fn step(
     torque_nm: f32,
 ) -> Crossed {
     let persist = config.persist_ticks;
-    state.stretch_tick = if state.stretch_tick < plan.stretch_ticks { state.stretch_tick + 1 } else { 1 };
+    state.tick = if state.tick < plan.steering.stretch_ticks { state.tick + 1 } else { 1 };
     let front = believed.front_wheel_m_s().map(|v| v.newest);
     let rear = believed.rear_wheel_m_s().map(|v| v.newest);
-    if state.stretch_tick == SAME_TICK && config.same_checks > 0 {
+    let mut distrusted = Causes::NONE;
+    if (state.tick == SAME_TICK || state.tick == plan.look_tick) && config.same_checks > 0 {
         // Where nothing is known nothing is the same.
         let unknown = [f32::NAN; 3];
         let [wx, wy, wz] = believed.gyro_rad_s().unwrap_or(unknown);
         let [fx, fy, fz] = believed.accel_m_s2().unwrap_or(unknown);
         let steer_rad = believed.steer_rad().unwrap_or(0.0);
-        let [front_m_s, rear_m_s] = [front, rear].map(|speed| speed.unwrap_or(0.0));
-        state.same.look(config.same_checks, wx, wy, wz, fx, fy, fz, steer_rad, front_m_s, rear_m_s);
+        let (front_m_s, rear_m_s) = (front.unwrap_or(0.0), rear.unwrap_or(f32::NAN));
+        distrusted =
+            state.same.look(config.same_checks, wx, wy, wz, fx, fy, fz, steer_rad, front_m_s, rear_m_s);
     }
-    let mut causes = state.same.stuck;
+    let mut causes = distrusted;
     let ground = believed.steer_rad().map(|steer| on_the_ground(plan, roll_sin_cos, steer));
 
     let wheels = match (front, rear, ground) {
@@ -302,13 +289,14 @@ pub fn step(
     };
     causes.note(Cause::WheelsDisagree, state.wheels.beyond(plan.wheels_m_s, wheels, persist, 1));
 
-    // Every other period will do for the yaw rate; the ends of the stretches are in those between.
-    if state.stretch_tick % 2 == 1 {
+    // Every fourth period will do for the yaw rate, one between the ends of stretches.
+    if state.tick % 4 == 3 {
         state.compare_yaw(config, plan, believed, [front, rear], ground, roll_sin_cos);
-    } else if plan.yaw_slope && state.stretch_tick == YAW_END_TICK {
-        state.end_stretch(plan);
+    } else if state.tick == steering::END_TICK {
+        state.steering.end(&plan.steering, rear.or(front).unwrap_or(0.0), rear.is_some());
     }
-    causes.note(Cause::YawDisagrees, state.yaw_wrong | state.reversed);
+    causes.note(Cause::YawDisagrees, state.yaw_wrong);
+    causes = causes.with(state.steering.found());
 
     let steer = match (believed.steer_rad(), believed.steer_rate_rad_s()) {
         (Some(angle), Some(rate)) => {
@@ -336,7 +324,7 @@ pub fn step(
     (residuals.wheels_m_s, residuals.steer_rad, residuals.motor_nm) = (wheels, steer, motor);
     let closer = |bound: f32| bound + 4.0 * FORGET * (torque_nm - bound);
     state.asked_nm = (at_most(torque_nm, closer(low)), at_least(torque_nm, closer(high)));
-    Crossed { causes, ground }
+    Crossed { causes, distrusted, ground }
 }
 
 /// Sine and cosine of the angle between the front wheel's and the rear frame's tracks on the ground:

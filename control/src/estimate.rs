@@ -11,9 +11,9 @@ mod steer;
 
 pub use config::{EstimateConfig, Place, SOURCES, Source};
 
-use crate::maths::{at_least, at_most, bounded, per_root, sin_cos, sin_cos_within};
+use crate::maths::{G, at_least, at_most, bounded, per_root, sin_cos, sin_cos_within};
 use core::hint::cold_path;
-use roll::{G, Roll};
+use roll::Roll;
 use steer::Steer;
 
 /// Largest angular rate \[rad/s\], specific force \[m/s^2\] and speed \[m/s\] that are reckoned with.

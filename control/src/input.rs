@@ -5,7 +5,7 @@ use crate::fault::{Cause, Causes};
 use crate::frame::{MISSING, SensorFrame, Wheel};
 use crate::maths::{at_least, at_most};
 use crate::param::{Leaf, Visit};
-use crate::watch::{Codes, Loss, Reach, Sensor, Told, Watch};
+use crate::watch::{Codes, Loss, Sensor, SensorPlan, Told, Watch};
 use core::hint::cold_path;
 
 /// The declared sensors.
@@ -135,15 +135,15 @@ impl InputConfig {
 /// What follows from the declarations and the rate of calls alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputPlan {
-    gyro: Reach,
-    accel: Reach,
-    steer: Reach,
-    steer_rate: Reach,
-    front_wheel: Reach,
-    rear_wheel: Reach,
-    rider_torque: Reach,
-    motor: Reach,
-    path: Reach,
+    gyro: SensorPlan,
+    accel: SensorPlan,
+    steer: SensorPlan,
+    steer_rate: SensorPlan,
+    front_wheel: SensorPlan,
+    rear_wheel: SensorPlan,
+    rider_torque: SensorPlan,
+    motor: SensorPlan,
+    path: SensorPlan,
     /// How many samples before the newest the speed's bounds span.
     before: usize,
     /// How much the speed may change in a control period without a sample \[m/s\].
@@ -153,16 +153,17 @@ pub struct InputPlan {
 impl InputPlan {
     /// For one call every `period_s`.
     pub fn new(config: &InputConfig, period_s: f32) -> Self {
+        let plan = |sensor, codes| SensorPlan::new(sensor, codes, period_s);
         Self {
-            gyro: Reach::new(&config.gyro, period_s),
-            accel: Reach::new(&config.accel, period_s),
-            steer: Reach::new(&config.steer, period_s),
-            steer_rate: Reach::new(&config.steer_rate, period_s),
-            front_wheel: Reach::new(&config.front_wheel, period_s),
-            rear_wheel: Reach::new(&config.rear_wheel, period_s),
-            rider_torque: Reach::new(&config.rider_torque, period_s),
-            motor: Reach::new(&config.motor, period_s),
-            path: Reach::new(&config.path, period_s),
+            gyro: plan(&config.gyro, GYRO),
+            accel: plan(&config.accel, ACCEL),
+            steer: plan(&config.steer, STEER),
+            steer_rate: plan(&config.steer_rate, STEER_RATE),
+            front_wheel: plan(&config.front_wheel, FRONT_WHEEL),
+            rear_wheel: plan(&config.rear_wheel, REAR_WHEEL),
+            rider_torque: plan(&config.rider_torque, RIDER_TORQUE),
+            motor: plan(&config.motor, MOTOR),
+            path: plan(&config.path, PATH),
             before: usize::from(config.recent_samples).saturating_sub(1),
             drift_m_s: config.drift_m_s2 * period_s,
         }
@@ -328,6 +329,22 @@ pub struct InputState {
     before: Before,
 }
 
+impl InputState {
+    /// The sensors of these causes, found by comparison, are not believed any more until they qualify anew.
+    #[cold]
+    pub fn distrust(&mut self, causes: Causes) {
+        if causes.has(Cause::GyroStuck) {
+            self.gyro.distrust(Cause::GyroStuck, true);
+        }
+        if causes.has(Cause::AccelStuck) {
+            self.accel.distrust(Cause::AccelStuck, true);
+        }
+        if causes.has(Cause::RearWheelJump) {
+            self.rear_wheel.distrust(Cause::RearWheelJump, false);
+        }
+    }
+}
+
 /// What tells whether the bicycle moves; NaN is not known.
 #[derive(Clone, Copy, Debug)]
 struct Before {
@@ -371,46 +388,46 @@ pub fn step(
 
     let mut b = Believed::default();
     let sample = (gyro_rad_s, frame.gyro_rad_s.age_ticks);
-    let told = s.gyro.step(&config.gyro, &plan.gyro, &GYRO, sample, turning);
+    let told = s.gyro.step(&plan.gyro, sample, turning);
     if let Some((value, _)) = b.note(GYRO_KNOWN, told) {
         b.gyro_rad_s = value;
     }
     let sample = (calibration.accel(&frame.accel_m_s2), frame.accel_m_s2.age_ticks);
-    let told = s.accel.step(&config.accel, &plan.accel, &ACCEL, sample, swinging);
+    let told = s.accel.step(&plan.accel, sample, swinging);
     if let Some((value, _)) = b.note(ACCEL_KNOWN, told) {
         b.accel_m_s2 = value;
     }
     let sample = ([steer_rad], frame.steer_rad.age_ticks);
-    let told = s.steer.step(&config.steer, &plan.steer, &STEER, sample, turns);
+    let told = s.steer.step(&plan.steer, sample, turns);
     if let Some(([value], _)) = b.note(STEER_KNOWN, told) {
         b.steer_rad = value;
     }
     let sample = ([steer_rate_rad_s], frame.steer_rate_rad_s.age_ticks);
-    let told = s.steer_rate.step(&config.steer_rate, &plan.steer_rate, &STEER_RATE, sample, turned);
+    let told = s.steer_rate.step(&plan.steer_rate, sample, turned);
     if let Some(([value], _)) = b.note(STEER_RATE_KNOWN, told) {
         b.steer_rate_rad_s = value;
     }
     let sample = ([front_m_s], frame.front_wheel_m_s.age_ticks);
-    let told = s.front_wheel.step(&config.front_wheel, &plan.front_wheel, &FRONT_WHEEL, sample, rear_changes);
+    let told = s.front_wheel.step(&plan.front_wheel, sample, rear_changes);
     let front = b.note(FRONT_WHEEL_KNOWN, told);
     b.front_wheel_m_s = s.front_recent.bounds(config, plan, front).unwrap_or_default();
     let sample = ([rear_m_s], frame.rear_wheel_m_s.age_ticks);
-    let told = s.rear_wheel.step(&config.rear_wheel, &plan.rear_wheel, &REAR_WHEEL, sample, front_changes);
+    let told = s.rear_wheel.step(&plan.rear_wheel, sample, front_changes);
     let rear = b.note(REAR_WHEEL_KNOWN, told);
     b.rear_wheel_m_s = s.rear_recent.bounds(config, plan, rear).unwrap_or_default();
     let sample = ([calibration.rider_torque(&frame.rider_torque_nm)], frame.rider_torque_nm.age_ticks);
-    let told = s.rider_torque.step(&config.rider_torque, &plan.rider_torque, &RIDER_TORQUE, sample, turning);
+    let told = s.rider_torque.step(&plan.rider_torque, sample, turning);
     if let Some(([value], _)) = b.note(RIDER_TORQUE_KNOWN, told) {
         b.rider_torque_nm = value;
     }
     let sample = ([calibration.motor_report(&frame.motor_torque_nm)], frame.motor_torque_nm.age_ticks);
-    let told = s.motor.step(&config.motor, &plan.motor, &MOTOR, sample, torque_changes);
+    let told = s.motor.step(&plan.motor, sample, torque_changes);
     if let Some(([value], _)) = b.note(MOTOR_KNOWN, told) {
         b.motor_torque_nm = value;
     }
     let values = [frame.heading_error_rad.value, frame.lateral_error_m.value];
     let age = frame.heading_error_rad.age_ticks.max(frame.lateral_error_m.age_ticks);
-    let told = s.path.step(&config.path, &plan.path, &PATH, (values, age), || false);
+    let told = s.path.step(&plan.path, (values, age), || false);
     if let Some((value, _)) = b.note(PATH_KNOWN, told) {
         b.path = value;
     }

@@ -6,6 +6,9 @@
 use core::f32::consts::LOG2_E;
 use core::hint::cold_path;
 
+/// Gravity \[m/s^2\].
+pub const G: f32 = 9.81;
+
 /// A quarter turn \[rad\].
 pub const QUARTER: f32 = core::f32::consts::FRAC_PI_2;
 

@@ -33,16 +33,22 @@ impl PredictConfig {
     }
 }
 
-/// The motion with roll and roll rate as they will be; unchanged bits when off.
+/// The roll as it will be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ahead {
+    /// Angle \[rad\].
+    pub roll_rad: f32,
+    /// Rate \[rad/s\].
+    pub roll_rate_rad_s: f32,
+}
+
+/// One control period; unchanged bits when off.
 #[inline]
-pub fn step(config: &PredictConfig, now: &Motion) -> Motion {
+pub fn step(config: &PredictConfig, now: &Motion) -> Ahead {
+    let Motion { roll_rad, roll_rate_rad_s, roll_accel_rad_s2, .. } = *now;
     if config.lead_s <= 0.0 {
-        return *now;
+        return Ahead { roll_rad, roll_rate_rad_s };
     }
-    let more = bounded(config.lead_s * now.roll_accel_rad_s2, config.max_rad_s);
-    Motion {
-        roll_rad: now.roll_rad + config.lead_s * now.roll_rate_rad_s,
-        roll_rate_rad_s: now.roll_rate_rad_s + more,
-        ..*now
-    }
+    let more = bounded(config.lead_s * roll_accel_rad_s2, config.max_rad_s);
+    Ahead { roll_rad: roll_rad + config.lead_s * roll_rate_rad_s, roll_rate_rad_s: roll_rate_rad_s + more }
 }

@@ -3,7 +3,7 @@
 //! * **Gyro**: where the IMU sits, the sideways specific force changes with the rates (`docs/bicycle.md`):
 //!   `f_y = v wz - g roll + up wx' + forward wz' + wy (wx forward + wz (radius - up))`. What is seen of it
 //!   beyond the terms of `wz` is held against the terms of `wx`.
-//! * **Motor**: the steer acceleration is held against the one that the commanded torque makes, what the
+//! * **Motor**: the steer acceleration is held against the one that the drive's torque makes, as reported or else as asked for, what the
 //!   linearised bicycle (Meijaard et al. 2007, eq. 5.3) explains being taken off. A rider's torque is not
 //!   known, but muscles are slow.
 //!
@@ -14,6 +14,7 @@
 use crate::estimate::{EstimateConfig, Motion, Place};
 use crate::fault::{Cause, Causes};
 use crate::input::Believed;
+use crate::maths::G;
 use crate::param::{Leaf, Visit, optional};
 use crate::slope::{STRETCH_S, Slope, SlopeConfig, SlopePlan, Stretch};
 use core::hint::cold_path;
@@ -166,8 +167,8 @@ pub fn step(
     // Each at its own tick, so that no control period has to do both.
     let gyro_end = state.gyro_tick == plan.motor_ticks / 2;
     let motor_end = state.motor_tick == plan.motor_ticks;
-    // Every other period will do for the means, and none in which a stretch ends.
-    let adds = state.motor_tick % 2 == 1;
+    // Every fourth period will do for the means: none in which a stretch ends, or in which `cross` compares the yaw rate.
+    let adds = state.motor_tick % 4 == 1;
     let speed = believed.rear_wheel_m_s().or(believed.front_wheel_m_s());
     let mut causes = Causes::NONE;
 
@@ -197,6 +198,8 @@ pub fn step(
         (Some(model), Some(steer), Some(rate), Some(_), Some(speed)) => {
             let Motion { roll_rad, roll_rate_rad_s, .. } = *motion;
             if adds {
+                // What the drive says it gives, where it says so: it may have had to give less.
+                let torque_nm = believed.motor_torque_nm().unwrap_or(torque_nm);
                 state.motor.add([roll_rad, roll_rate_rad_s, steer, rate, speed.newest, torque_nm]);
             }
             if motor_end {
@@ -247,9 +250,6 @@ impl ResponseState {
         self.motor_slope.step(plan, expected - expected_before, seen - seen_before)
     }
 }
-
-/// Gravity \[m/s^2\].
-const G: f32 = 9.81;
 
 /// Halfway between two stretches.
 fn between<const N: usize>(now: [f32; N], before: [f32; N]) -> [f32; N] {

@@ -4,7 +4,7 @@
 //! past. A wrong sign shows in it within a fraction of a second, and noise that has nothing to do with
 //! what is expected averages out.
 
-use crate::maths::bounded;
+use crate::maths::{bounded, per_root};
 
 /// Length of the shortest stretches, those of the motor's response \[s\]; the others are whole numbers of them, so that
 /// their ends never meet.
@@ -52,6 +52,7 @@ pub struct Slope {
     seen: f32,
     square: f32,
     product: f32,
+    seen_square: f32,
     /// For how long enough has happened \[s\].
     lasted_s: f32,
 }
@@ -65,6 +66,7 @@ impl Slope {
         let y = bounded(self.seen, config.most);
         self.square = forget * (self.square + dt_s * self.expected * self.expected);
         self.product = forget * (self.product + dt_s * self.expected * y);
+        self.seen_square = forget * (self.seen_square + dt_s * y * y);
         self.lasted_s = if self.square > config.enough { self.lasted_s + dt_s } else { 0.0 };
         self.told(&config)
     }
@@ -72,6 +74,13 @@ impl Slope {
     /// The slope, if enough has happened.
     pub fn told(&self, config: &SlopeConfig) -> Option<f32> {
         (self.lasted_s > config.lasting_s).then(|| self.product / self.square)
+    }
+
+    /// The correlation of what is seen with what is expected, -1 to 1, if enough has happened. Other than the slope it does
+    /// not depend on the size of what is expected, and what has another reason makes it small.
+    pub fn correlation(&self, config: &SlopeConfig) -> Option<f32> {
+        (self.lasted_s > config.lasting_s)
+            .then(|| self.product * per_root(self.square) * per_root(self.seen_square))
     }
 }
 

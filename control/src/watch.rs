@@ -83,26 +83,7 @@ impl Sensor {
     }
 }
 
-/// How far a sample may be from the last good one to be believed, which follows from the sensor and the rate of calls.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reach {
-    /// In the control period after that one, in the sensor's unit.
-    fresh: f32,
-    /// Further by each period without any sample.
-    growth: f32,
-}
-
-impl Reach {
-    /// For one call every `period_s`.
-    pub fn new(sensor: &Sensor, period_s: f32) -> Self {
-        match sensor.slope_per_s {
-            Some(slope) => Self { fresh: sensor.step + slope * period_s, growth: slope * period_s },
-            None => Self { fresh: f32::INFINITY, growth: 0.0 },
-        }
-    }
-}
-
-/// What is wrong with a sensor, as its four codes.
+/// What is wrong with a sensor, as its four plan.codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Codes {
     /// No believable sample in time, and nothing else known.
@@ -122,6 +103,42 @@ impl Codes {
     }
 }
 
+/// What follows from a sensor's declaration and the rate of calls alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorPlan {
+    fitted: bool,
+    max: f32,
+    timeout_ticks: u16,
+    /// [`STUCK`] if its samples may stand still for ever.
+    stuck_ticks: u16,
+    qualify_samples: u16,
+    /// How far a sample may be from the last good one in the control period after that one, in the sensor's unit.
+    fresh: f32,
+    /// Further by each period without any sample.
+    growth: f32,
+    codes: Codes,
+}
+
+impl SensorPlan {
+    /// For one call every `period_s`, told by these plan.codes.
+    pub fn new(sensor: &Sensor, codes: Codes, period_s: f32) -> Self {
+        let (fresh, growth) = match sensor.slope_per_s {
+            Some(slope) => (sensor.step + slope * period_s, slope * period_s),
+            None => (f32::INFINITY, 0.0),
+        };
+        Self {
+            fitted: sensor.fitted,
+            max: sensor.max,
+            timeout_ticks: sensor.timeout_ticks,
+            stuck_ticks: if sensor.stuck_ticks == 0 { STUCK } else { sensor.stuck_ticks },
+            qualify_samples: sensor.qualify_samples,
+            fresh,
+            growth,
+            codes,
+        }
+    }
+}
+
 /// What is remembered of a sensor with `N` axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Watch<const N: usize> {
@@ -138,7 +155,7 @@ pub struct Watch<const N: usize> {
     told_age: u16,
     /// Good samples in a row.
     good: u16,
-    /// Control periods in which something moved since the samples changed.
+    /// Control periods in which something moved since the samples changed; [`STUCK`] if that was found in another way.
     still: u16,
     /// Whether it is believed.
     trusted: bool,
@@ -172,86 +189,99 @@ pub struct Told<const N: usize> {
 }
 
 impl<const N: usize> Watch<N> {
+    /// The sensor is not believed any more for this reason, found elsewhere, until it qualifies anew; where its samples stand
+    /// still, not before they change.
+    #[cold]
+    pub fn distrust(&mut self, cause: Cause, stuck: bool) {
+        (self.doubt, self.good, self.trusted, self.near) = (Some(cause), 0, false, -1.0);
+        if stuck {
+            self.still = STUCK;
+        }
+    }
+
     /// One control period: the frame's sample, and whether what it measures `moves` by what other
     /// sensors say, which only counts when no new value comes.
     #[inline(always)]
-    pub fn step(
-        &mut self,
-        sensor: &Sensor,
-        reach: &Reach,
-        codes: &Codes,
-        sample: ([f32; N], u16),
-        moves: impl Fn() -> bool,
-    ) -> Told<N> {
+    pub fn step(&mut self, plan: &SensorPlan, sample: ([f32; N], u16), moves: impl Fn() -> bool) -> Told<N> {
         let (value, age) = sample;
         // As nearly always: a good sample in this very period.
-        if age == 0 && inside(sensor, &value) && self.near(&value, self.near) {
+        if age == 0 && inside(plan, &value) && self.near(&value, self.near) {
             let mut passes = true;
             if !self.repeats(&value) {
                 self.still = 0;
             } else if moves() {
                 cold_path();
-                let still = self.still.saturating_add(1);
-                passes = !stuck(sensor, still);
+                let still = longer(self.still, true);
+                passes = !stuck(plan, still);
                 self.still = if passes { still } else { self.still };
             }
             if passes {
                 self.value = value;
                 if self.age > 0 {
-                    self.renew(reach, age);
+                    self.renew(plan, age);
                 }
                 return Told { value: Some((value, age)), lost: None };
             }
         }
-        if !sensor.fitted {
+        // The last good one still. One of which the newest sample is good is fitted.
+        if self.near >= 0.0 && age == self.age.saturating_add(1) && age <= plan.timeout_ticks {
+            (self.age, self.told_age) = (age, age);
+            self.most += plan.growth;
+            self.near = self.most;
+            if moves() {
+                self.still = longer(self.still, true);
+                if stuck(plan, self.still) {
+                    self.near = -1.0;
+                }
+            }
+            return Told { value: Some((self.value, age)), lost: None };
+        }
+        if !plan.fitted {
             return Told { value: None, lost: None };
         }
-        self.judge(sensor, reach, codes, &{ value }, age, moves());
+        self.judge(plan, &{ value }, age, moves());
         if self.trusted {
             Told { value: Some((self.value, self.age)), lost: None }
         } else {
-            Told { value: None, lost: Some(self.doubt.unwrap_or(codes.lost)) }
+            Told { value: None, lost: Some(self.doubt.unwrap_or(plan.codes.lost)) }
         }
     }
 
     /// The long way.
     #[inline(never)]
-    fn judge(
-        &mut self,
-        sensor: &Sensor,
-        reach: &Reach,
-        codes: &Codes,
-        value: &[f32; N],
-        age: u16,
-        moves: bool,
-    ) {
-        let older = self.age.saturating_add(1);
-        // The last good one still.
-        if age == older && age <= sensor.timeout_ticks && self.near >= 0.0 {
-            self.hold(reach.growth, age, moves);
-            self.told_age = age;
-            self.near = if moves && stuck(sensor, self.still) { -1.0 } else { self.most };
-            return;
+    fn judge(&mut self, plan: &SensorPlan, value: &[f32; N], age: u16, moves: bool) {
+        // One good sample more of a sensor that is to qualify, as of all of them at the start.
+        if !self.trusted && age == 0 && inside(plan, value) && self.near(value, self.most) {
+            let still = if self.repeats(value) { longer(self.still, moves) } else { 0 };
+            if !stuck(plan, still) {
+                (self.value, self.still, self.doubt) = (*value, still, None);
+                self.good = self.good.saturating_add(1);
+                self.renew(plan, age);
+                self.trusted = self.good >= plan.qualify_samples;
+                self.near = if self.trusted { self.most } else { -1.0 };
+                return;
+            }
         }
+        let older = self.age.saturating_add(1);
         if age != self.told_age.saturating_add(1) && age != MISSING {
             self.age = older;
-            self.take(sensor, reach, codes, value, age, moves);
+            self.take(plan, value, age, moves);
         } else {
             // The newest sample was refused.
             let refused = self.trusted && self.doubt.is_some();
-            self.hold(if refused { 0.0 } else { reach.growth }, older, moves);
+            self.hold(if refused { 0.0 } else { plan.growth }, older, moves);
         }
         self.told_age = age;
-        if self.age > sensor.timeout_ticks {
+        if self.age > plan.timeout_ticks {
             self.trusted = false;
             self.good = 0;
-        } else if self.good >= sensor.qualify_samples {
+        } else if self.good >= plan.qualify_samples {
             self.trusted = true;
         }
         self.near = -1.0;
         if self.trusted && self.doubt.is_none() && age != MISSING {
             // What is held may be stuck.
-            if self.age == 0 || !stuck(sensor, self.still) {
+            if self.age == 0 || !stuck(plan, self.still) {
                 self.near = self.most;
             }
         }
@@ -261,50 +291,42 @@ impl<const N: usize> Watch<N> {
     #[inline(always)]
     fn hold(&mut self, growth: f32, age: u16, moves: bool) {
         self.age = age;
-        self.still = self.still.saturating_add(u16::from(moves));
+        self.still = longer(self.still, moves);
         self.most += growth;
     }
 
     /// A good sample of this age.
     #[inline(always)]
-    fn renew(&mut self, reach: &Reach, age: u16) {
+    fn renew(&mut self, plan: &SensorPlan, age: u16) {
         (self.age, self.told_age) = (age, age);
-        self.most = reach.fresh;
+        self.most = plan.fresh;
         self.near = self.most;
     }
 
     /// A new sample.
-    fn take(
-        &mut self,
-        sensor: &Sensor,
-        reach: &Reach,
-        codes: &Codes,
-        value: &[f32; N],
-        age: u16,
-        moves: bool,
-    ) {
+    fn take(&mut self, plan: &SensorPlan, value: &[f32; N], age: u16, moves: bool) {
         let jumps = !self.near(value, self.most);
         // One that is not trusted is judged by what it says from now on.
-        let refused = if !inside(sensor, value) {
-            Some(codes.range)
+        let refused = if !inside(plan, value) {
+            Some(plan.codes.range)
         } else {
-            Some(codes.jump).filter(|_| jumps && self.trusted)
+            Some(plan.codes.jump).filter(|_| jumps && self.trusted)
         };
         if refused.is_some() {
-            self.still = self.still.saturating_add(u16::from(moves));
+            self.still = longer(self.still, moves);
             (self.doubt, self.good) = (refused, 0);
             return;
         }
         (self.doubt, self.good) = (None, self.good.saturating_add(1));
         if jumps {
-            (self.doubt, self.good) = (Some(codes.jump), 0);
+            (self.doubt, self.good) = (Some(plan.codes.jump), 0);
         }
         self.still = self.still(value, || moves);
-        if stuck(sensor, self.still) {
-            (self.doubt, self.good, self.trusted) = (Some(codes.stuck), 0, false);
+        if stuck(plan, self.still) {
+            (self.doubt, self.good, self.trusted) = (Some(plan.codes.stuck), 0, false);
         }
         self.value = *value;
-        self.renew(reach, age);
+        self.renew(plan, age);
     }
 
     /// Whether no axis is further than this from the last good sample.
@@ -316,13 +338,7 @@ impl<const N: usize> Watch<N> {
     /// For how long something has moved with a sample that may be the last good one again.
     #[inline(always)]
     fn still(&self, value: &[f32; N], moves: impl Fn() -> bool) -> u16 {
-        if !self.repeats(value) {
-            0
-        } else if moves() {
-            self.still.saturating_add(1)
-        } else {
-            self.still
-        }
+        if !self.repeats(value) { 0 } else { longer(self.still, moves()) }
     }
 
     /// Whether this is the last good sample again.
@@ -332,14 +348,23 @@ impl<const N: usize> Watch<N> {
     }
 }
 
+/// In place of the time for which samples have stood still: for too long.
+const STUCK: u16 = u16::MAX;
+
+/// The time for which samples have stood still, a period later.
+#[inline(always)]
+fn longer(still: u16, moves: bool) -> u16 {
+    if still < STUCK - 1 { still + u16::from(moves) } else { still }
+}
+
 /// Whether samples have stood still for too long.
 #[inline(always)]
-fn stuck(sensor: &Sensor, still: u16) -> bool {
-    sensor.stuck_ticks > 0 && still >= sensor.stuck_ticks
+fn stuck(plan: &SensorPlan, still: u16) -> bool {
+    still >= plan.stuck_ticks
 }
 
 /// Whether a sample is in range; written so that NaN, which compares false, is not.
 #[inline(always)]
-fn inside<const N: usize>(sensor: &Sensor, value: &[f32; N]) -> bool {
-    value.iter().all(|x| x.abs() <= sensor.max)
+fn inside<const N: usize>(plan: &SensorPlan, value: &[f32; N]) -> bool {
+    value.iter().all(|x| x.abs() <= plan.max)
 }

@@ -166,11 +166,11 @@ impl Controller {
         self.arriving.push_back((felt, now.front_speed as f32));
         let Some((felt, front_speed)) = self.arriving.pop_front() else { return 0.0 };
         let motion: Motion = estimate::step(&late.estimate, &mut self.estimator, &felt);
-        let ahead = match &self.model {
-            Some(model) => model.ahead(&self.torques, &motion),
-            None => predict::step(&self.lead, &motion),
+        let roll_rate_rad_s = match &self.model {
+            Some(model) => model.ahead(&self.torques, &motion).roll_rate_rad_s,
+            None => predict::step(&self.lead, &motion).roll_rate_rad_s,
         };
-        let torque = late.law.gain(front_speed) * ahead.roll_rate_rad_s;
+        let torque = late.law.gain(front_speed) * roll_rate_rad_s;
         if let Some(model) = &self.model {
             self.torques.commanded(model, torque);
         }

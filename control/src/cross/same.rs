@@ -1,4 +1,8 @@
-//! Does an IMU repeat itself while the bicycle rides? It takes another sensor that changes to know that this is wrong.
+//! What is looked at every 24 ms.
+//!
+//! * Does an IMU repeat itself while the bicycle rides? It takes another sensor that changes to know that this is wrong.
+//! * Does the rear wheel change its speed by more than a bicycle can? One that is lifted, dropped or blocked does, in steps
+//!   that are small enough from sample to sample.
 
 use crate::fault::{Cause, Causes};
 use core::hint::cold_path;
@@ -6,20 +10,38 @@ use core::hint::cold_path;
 /// Speed above which no sensor of the frame's motion stands still \[m/s\].
 const STANDING_M_S: f32 = 0.5;
 
+/// Largest change of a rolling wheel's speed within four looks, 96 ms \[m/s\]: of tyres that grip about 1; of a wheel pushed by
+/// hand, or inside the basins of `h`, no more than 2.
+const CHANGED_M_S: f32 = 2.5;
+
 /// What gyro, accelerometer and the other sensors said at the last look, and how often each of the two has said the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Same {
     gyro_rad_s: [f32; 3],
     accel_m_s2: [f32; 3],
     others: [f32; 3],
     gyro_checks: u16,
     accel_checks: u16,
-    /// Those that have said the same too often.
-    pub(super) stuck: Causes,
+    /// The rear wheel's speed at the last looks, the oldest first; NaN where it was not known \[m/s\].
+    rear_m_s: [f32; 4],
+}
+
+impl Default for Same {
+    fn default() -> Self {
+        Self {
+            gyro_rad_s: [0.0; 3],
+            accel_m_s2: [0.0; 3],
+            others: [0.0; 3],
+            gyro_checks: 0,
+            accel_checks: 0,
+            rear_m_s: [f32::NAN; 4],
+        }
+    }
 }
 
 impl Same {
-    /// Another look: at gyro (w) and accelerometer (f), NaN where one is not believed, steer angle and speeds. Each is a
+    /// Another look: at gyro (w), accelerometer (f) and rear wheel, NaN where one is not believed, steer angle and front
+    /// wheel. What it finds is the cause for which that sensor must not be believed any more. Each is a
     /// value of its own, which goes by register; an array would have to lie in memory in every control period.
     #[inline(never)]
     #[allow(clippy::too_many_arguments, reason = "in registers")]
@@ -35,9 +57,10 @@ impl Same {
         steer_rad: f32,
         front_m_s: f32,
         rear_m_s: f32,
-    ) {
+    ) -> Causes {
+        let mut found = Causes::NONE;
         let (gyro_rad_s, accel_m_s2) = ([wx, wy, wz], [fx, fy, fz]);
-        let others = [steer_rad, front_m_s, rear_m_s];
+        let others = [steer_rad, front_m_s, if rear_m_s.is_nan() { 0.0 } else { rear_m_s }];
         let [gyro, accel] = [gyro_rad_s == self.gyro_rad_s, accel_m_s2 == self.accel_m_s2];
         if gyro || accel {
             cold_path();
@@ -50,12 +73,16 @@ impl Same {
             };
             self.gyro_checks = count(gyro, accel_changes, self.gyro_checks);
             self.accel_checks = count(accel, gyro_changes, self.accel_checks);
-            self.stuck = Causes::NONE;
-            self.stuck.note(Cause::GyroStuck, self.gyro_checks >= checks);
-            self.stuck.note(Cause::AccelStuck, self.accel_checks >= checks);
+            found.note(Cause::GyroStuck, self.gyro_checks >= checks);
+            found.note(Cause::AccelStuck, self.accel_checks >= checks);
         } else {
-            (self.gyro_checks, self.accel_checks, self.stuck) = (0, 0, Causes::NONE);
+            (self.gyro_checks, self.accel_checks) = (0, 0);
         }
+        let [oldest, later @ ..] = self.rear_m_s;
+        found.note(Cause::RearWheelJump, (rear_m_s - oldest).abs() > CHANGED_M_S);
+        let [a, b, c] = later;
+        self.rear_m_s = [a, b, c, rear_m_s];
         (self.gyro_rad_s, self.accel_m_s2, self.others) = (gyro_rad_s, accel_m_s2, others);
+        found
     }
 }

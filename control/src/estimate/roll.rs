@@ -6,9 +6,6 @@
 
 use crate::maths::{QUARTER, at_least, bounded};
 
-/// Gravity \[m/s^2\].
-pub(super) const G: f32 = 9.81;
-
 /// How far one observation may be off and still count in full \[rad\].
 const SURPRISE_RAD: f32 = 0.3;
 

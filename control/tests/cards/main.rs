@@ -13,5 +13,6 @@ mod pulses;
 mod shape;
 mod slope;
 mod smooth;
+mod steering;
 mod watch;
 mod wire;

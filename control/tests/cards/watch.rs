@@ -1,7 +1,7 @@
 //! Flight cards: one sensor watched.
 
 use control::frame::MISSING;
-use control::watch::{Codes, Reach, Told, Watch};
+use control::watch::{Codes, SensorPlan, Told, Watch};
 use control::{Cause, Loss, Sensor};
 use proptest::prelude::*;
 
@@ -25,15 +25,15 @@ const SENSOR: Sensor = Sensor {
 };
 
 /// At 1 kHz.
-fn reach(sensor: &Sensor) -> Reach {
-    Reach::new(sensor, 1e-3)
+fn plan(sensor: &Sensor) -> SensorPlan {
+    SensorPlan::new(sensor, CODES, 1e-3)
 }
 
 struct Bench(Watch<1>);
 
 impl Bench {
     fn step(&mut self, value: f32, age: u16, moves: bool) -> Told<1> {
-        self.0.step(&SENSOR, &reach(&SENSOR), &CODES, ([value], age), || moves)
+        self.0.step(&plan(&SENSOR), ([value], age), || moves)
     }
 
     /// A fresh sample: what is believed of it, or why it is not.
@@ -58,7 +58,7 @@ fn what_is_not_there_is_not_missed() {
     let mut watch = Watch::<1>::default();
     for k in 0..100 {
         let sensor = Sensor::default();
-        let told = watch.step(&sensor, &reach(&sensor), &CODES, ([f32::NAN], k), || true);
+        let told = watch.step(&plan(&sensor), ([f32::NAN], k), || true);
         assert_eq!(told, Told { value: None, lost: None });
     }
 }
@@ -101,10 +101,10 @@ fn a_jump_does_not_become_true_by_waiting() {
     let stepping = Sensor { step: 0.2, ..SENSOR };
     let mut watch = bench.0;
     watch = (0..3).fold(watch, |mut watch, _| {
-        watch.step(&stepping, &reach(&stepping), &CODES, ([1.25], 0), || false);
+        watch.step(&plan(&stepping), ([1.25], 0), || false);
         watch
     });
-    let told = watch.step(&stepping, &reach(&stepping), &CODES, ([1.54], 0), || false);
+    let told = watch.step(&plan(&stepping), ([1.54], 0), || false);
     assert_eq!(told.value, Some(([1.54], 0)), "a step of 0.2 and a period's slope");
 }
 
@@ -119,7 +119,7 @@ fn a_jump_that_stays_has_the_same_cause_at_every_sampling_period() {
         for k in 0..1000_u16 {
             let (age, good) = (k % every, k / every < 5);
             let value = if good { 1.0 } else { 20.0 };
-            let told = watch.step(&sensor, &reach(&sensor), &CODES, ([value], age), || false);
+            let told = watch.step(&plan(&sensor), ([value], age), || false);
             let jumped = k - k.min(5 * every);
             if !good && told.value.is_none() && lost.is_none() {
                 lost = Some((jumped + every, told.lost));
@@ -146,7 +146,7 @@ fn a_slow_sensor_that_begins_to_speak_is_believed_soon() {
         let (age, number) = (k % 40, k / 40);
         let value =
             [0.0, 2.0, 3.0].get(usize::from(number)).copied().unwrap_or(3.0 + 0.1 * f32::from(number));
-        let told = watch.step(&sensor, &reach(&sensor), &CODES, ([value], age), || false);
+        let told = watch.step(&plan(&sensor), ([value], age), || false);
         if told.value.is_some() {
             believed.get_or_insert(number);
         }
@@ -185,9 +185,9 @@ fn what_cannot_be_is_not_used() {
 fn as_far_as_allowed_is_no_jump() {
     let sensor = Sensor { slope_per_s: Some(128.0), qualify_samples: 1, ..SENSOR };
     // So that the eighth is one to the bit.
-    let reach = Reach::new(&sensor, 1.0 / 1024.0);
+    let plan = SensorPlan::new(&sensor, CODES, 1.0 / 1024.0);
     let mut watch = Watch::<1>::default();
-    let mut fresh = |value| watch.step(&sensor, &reach, &CODES, ([value], 0), || false).value;
+    let mut fresh = |value| watch.step(&plan, ([value], 0), || false).value;
     for value in [1.0, 1.125, 1.25, 1.125, 1.0] {
         assert_eq!(fresh(value), Some(([value], 0)));
     }

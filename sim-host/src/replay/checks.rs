@@ -1,7 +1,7 @@
 //! How near each check came to speaking: the largest residual that lasted as long as the check asks for.
 
 use crate::plant::Sensor;
-use control::cross::YAW_WRONG;
+use control::cross::{ROLL_WRONG, YAW_WRONG};
 use control::response::{GYRO_WRONG, MOTOR_WRONG};
 use control::{Config, SensorFrame, State};
 use schemars::JsonSchema;
@@ -92,6 +92,7 @@ struct Before {
 
 const YAW_RESIDUAL: &str = "yaw rate less that of speed and steer angle [rad/s]";
 const SLOPE: &str = "slope with its sign changed";
+const CORRELATION: &str = "correlation with its sign changed";
 
 /// Range, jump and age of a sensor, in this order.
 const OF_SENSOR: usize = 3;
@@ -134,6 +135,7 @@ impl Checks {
             Lasting::new("yaw", YAW_RESIDUAL, c.yaw_rad_s, c.persist_ticks),
             Lasting::new("yaw, lasting", YAW_RESIDUAL, c.yaw_slow_rad_s, c.slow_ticks),
             Lasting::new("yaw slope", SLOPE, slope(c.yaw_slope, YAW_WRONG), 0),
+            Lasting::new("roll correlation", CORRELATION, slope(c.roll_correlation, ROLL_WRONG), 0),
             Lasting::new(
                 "steer",
                 "steer angle less the summed steer rate [rad]",
@@ -191,6 +193,7 @@ impl Checks {
             f64::from(residuals.yaw_rad_s).abs(),
             f64::from(residuals.yaw_rad_s).abs(),
             state.yaw_slope().map_or(f64::NAN, |slope| -f64::from(slope)),
+            state.roll_correlation().map_or(f64::NAN, |correlation| -f64::from(correlation)),
             f64::from(residuals.steer_rad).abs(),
             f64::from(residuals.motor_nm).abs(),
             gyro,

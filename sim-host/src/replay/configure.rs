@@ -76,16 +76,21 @@ fn unchecked(config: &mut Config, samples: &Samples, told: &mut Fitted) {
     let made_up = |sensor: Sensor| samples.track(sensor).map_or([false; 3], |track| track.made_up);
     let has = |sensor| samples.track(sensor).is_some();
     if made_up(Sensor::Gyro) != [false; 3] {
-        (config.cross.yaw_rad_s, config.cross.yaw_slow_rad_s, config.cross.yaw_slope) = (None, None, false);
+        let cross = &mut config.cross;
+        (cross.yaw_rad_s, cross.yaw_slow_rad_s, cross.yaw_slope) = (None, None, false);
         config.response.gyro = false;
         told.unchecked.push("yaw and gyro response: not all axes of the gyro were recorded".into());
+    }
+    if made_up(Sensor::Gyro)[0] {
+        config.cross.roll_correlation = false;
+        told.unchecked.push("roll correlation: the gyro's x axis was not recorded".into());
     }
     if made_up(Sensor::Accel) != [false; 3] {
         (config.permit.lifted_m_s2, config.permit.crash_m_s2) = (None, None);
         told.unchecked.push("lifted and crash: not all axes of the accelerometer were recorded".into());
     }
-    // Our torque did not act: what the bicycle did answers to another.
-    if config.response.motor.take().is_some() {
+    // The torque that comes out did not act: what the bicycle did answers to the one of the record, where that is there.
+    if !has(Sensor::MotorReport) && config.response.motor.take().is_some() {
         told.unchecked.push("motor response: the torque that comes out did not act on this bicycle".into());
     }
     let lacks = [
@@ -94,6 +99,7 @@ fn unchecked(config: &mut Config, samples: &Samples, told: &mut Fitted) {
             "wheels: one wheel only",
         ),
         (config.cross.yaw_rad_s.is_some() && !has(Sensor::Steer), "yaw: no steer angle"),
+        (config.cross.roll_correlation && !has(Sensor::Steer), "roll correlation: no steer angle"),
         (
             config.cross.steer_rad.is_some() && !(has(Sensor::Steer) && has(Sensor::SteerRate)),
             "steer: angle and rate are not both there",

@@ -1,6 +1,7 @@
 //! Flight card: the largest motion inside the basins, and the limits that must let it pass.
 
 use control::cross::{CrossConfig, CrossPlan, on_the_ground};
+use control::estimate::EstimateConfig;
 use control::{Config, Sensor};
 use rayon::prelude::*;
 use sim_host::bicycle::Geometry;
@@ -68,7 +69,11 @@ fn quantities(b: &Geometry, p: &TracePoint, summed: &mut f32) -> [f64; QUANTITIE
     // As control::cross compares them.
     let (sin_roll, cos_roll) = (p.roll as f32).sin_cos();
     let cross = CrossConfig { wheelbase_m: b.w as f32, tilt_rad: b.lam as f32, ..CrossConfig::default() };
-    let (sin, cos) = on_the_ground(&CrossPlan::new(&cross, 1000.0), (sin_roll, cos_roll), steer);
+    let (sin, cos) = on_the_ground(
+        &CrossPlan::new(&cross, &EstimateConfig::default().balance, 1000.0),
+        (sin_roll, cos_roll),
+        steer,
+    );
     let yaw = gy * sin_roll + gz * cos_roll - front * sin / b.w as f32;
     let turned = steer - (*summed + rate * 1e-3);
     *summed = steer - turned * (1.0 - 1.0 / 256.0);
