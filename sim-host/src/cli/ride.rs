@@ -177,3 +177,13 @@ pub(super) fn laid_flat(fall: &FallCriterion) -> String {
     let [flat, full] = [roll_rad, fall.roll_rad].map(f64::to_degrees);
     format!("roll beyond {flat:.0} deg and no fall by {full:.0} deg within {lasting_s} s")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::hundredths;
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!([-0.001, 0.0, -0.004, -0.006, 1.005].map(hundredths), ["0.00", "0.00", "0.00", "-0.01", "1.00"]);
+    }
+}
