@@ -25,7 +25,8 @@ pub fn estimator_parameters(b: &Geometry) -> EstimateConfig {
 
 /// Fits the flashed code's parameters to the bicycle and to where its IMU sits: `imu_m` from the rear wheel's centre,
 /// forward, right and down \[m\]. What it makes of that stays as chosen, except what needs a parameter that this bicycle
-/// puts outside its range: that is switched off, each with a line that says so.
+/// puts outside its range: that is switched off, each with a line that says so. A capsize term, a predictor or a path that
+/// needs such an estimate stays, and the configuration fails its check.
 pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) -> Vec<String> {
     let imu = Place { forward_m: imu_m[0] as f32, up_m: (b.rR - imu_m[2]) as f32 };
     config.estimate = EstimateConfig { roll_rate: config.estimate.roll_rate, imu, ..estimator_parameters(b) };
@@ -41,9 +42,11 @@ pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) -> Vec<String> {
             "{error}: the check of the motor's response is off, as by --set response.motor=off"
         ));
     }
-    if let Some(error) = of("estimate") {
+    let needed = config.capsize.is_on() || config.predict.lead_s > 0.0 || config.track.is_some();
+    if let (Some(error), false) = (of("estimate"), needed) {
+        config.estimate =
+            EstimateConfig { roll_rate: config.estimate.roll_rate, ..EstimateConfig::default() };
         let used = switch_estimate_off(config);
-        config.estimate = EstimateConfig::default();
         if used {
             off.push(format!(
                 "{error}: the motion estimate and all that needs it are off, as by --set estimate.roll_rate=gyro_x, \
@@ -55,7 +58,7 @@ pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) -> Vec<String> {
     off
 }
 
-/// Switches off all that needs the motion estimate but what a user adds; whether anything was on.
+/// Switches off all checks that need the motion estimate; whether anything was on.
 fn switch_estimate_off(config: &mut Config) -> bool {
     let before = config.clone();
     config.estimate.roll_rate = Source::GyroX;

@@ -205,6 +205,10 @@ impl ConditionArgs {
         let limited = config.limits != Limits::default();
         let plan = config.plan().map_err(|e| match option_of(&e.leaf) {
             Some(option) => format!("{option}: {e}"),
+            None if flashed && e.leaf.group.starts_with("estimate") => format!(
+                "{}: for the flashed code {e}, and capsize, predict and track need it; --assist ideal leaves the flashed code out",
+                self.bicycle
+            ),
             None => e.to_string(),
         })?;
         if self.assist == AssistKind::Ideal && (limited || self.sensor_delay > 0.0) {

@@ -165,7 +165,9 @@ fn reason(fall: &FallCriterion, ride: &Ride) -> String {
         Some(FallCause::Roll) => passed("roll", fall.roll_rad),
         Some(FallCause::Steer) => passed("steer", fall.steer_rad),
         Some(FallCause::LaidFlat) => format!(": laid flat, {}", laid_flat(fall)),
-        Some(FallCause::TooQuick) => ": bounced at 90 deg of roll, too quickly to be followed".into(),
+        Some(FallCause::TooQuick) => {
+            ": the motion became too quick to be followed, as it does beside 90 deg of roll".into()
+        }
         Some(FallCause::NoMotion) => ": the model has no motion there".into(),
         None => String::new(),
     }

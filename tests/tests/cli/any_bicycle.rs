@@ -61,6 +61,12 @@ fn model_cargo_and_optimised_bicycles_ride() {
     assert_eq!(bench.json("bicycle check")["flashed_off"], json!([]));
     let free = bench.run(&format!("{} --bicycle robot.toml", COMMANDS[0]));
     assert_eq!(free.stderr, "");
+    bench.run("ride --speed 4 --bicycle trail.toml --set predict.lead_s=0.02").refused_naming(&[
+        "trail.toml",
+        "estimate.pitch",
+        "-1 to 1",
+        "--assist ideal",
+    ]);
     let sweep = "sweep --over bicycle=benchmark,robot.toml --law h --speeds 4 --max-rate 1 --scan-step 1 --time-limit 0.3 --out s";
     assert_eq!(bench.run(sweep).code, Some(0));
 }
