@@ -76,8 +76,8 @@ impl CrossConfig {
     /// Shows every parameter.
     pub fn leaves<V: Visit>(&mut self, to: &mut V) {
         let g = "cross";
-        to.number(&Leaf::new(g, "wheelbase_m", 0.5, 3.0), &mut self.wheelbase_m);
-        to.number(&Leaf::new(g, "tilt_rad", -0.5, 1.0), &mut self.tilt_rad);
+        to.number(&Leaf::new(g, "wheelbase_m", 0.1, 5.0), &mut self.wheelbase_m);
+        to.number(&Leaf::new(g, "tilt_rad", -1.0, 1.4), &mut self.tilt_rad);
         to.limit(&Leaf::new(g, "wheels_m_s", 0.01, 10.0), &mut self.wheels_m_s);
         to.limit(&Leaf::new(g, "yaw_rad_s", 0.01, 20.0), &mut self.yaw_rad_s);
         to.limit(&Leaf::new(g, "yaw_slow_rad_s", 0.01, 20.0), &mut self.yaw_slow_rad_s);

@@ -8,7 +8,16 @@ pub(crate) fn within(name: &str, value: f64, min: f64, max: f64) -> Result<(), S
     if value >= min && value <= max {
         Ok(())
     } else {
-        Err(format!("{name} = {value} is outside {min} to {max}"))
+        Err(format!("{name} = {} is outside {min} to {max}", plain(value)))
+    }
+}
+
+/// A number as text: with an exponent where its digits alone would be a line of zeros.
+pub(crate) fn plain(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() || (1e-9..1e16).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
     }
 }
 

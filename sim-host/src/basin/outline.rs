@@ -1,6 +1,6 @@
 //! What a basin search finds.
 
-use crate::ride::{Outcome, Ride};
+use crate::ride::{FallCause, Outcome, Ride};
 
 /// The ride from one point of the scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +68,8 @@ pub struct Column {
     pub scan: Vec<ScanPoint>,
     /// The ride at `upper`, unless `upper` is 0.
     pub border: Option<Ride>,
+    /// What made the nearest ride beyond `upper` count as fallen; `None` if nothing fell.
+    pub beyond: Option<FallCause>,
     /// What it took.
     pub work: Work,
 }
@@ -95,6 +97,12 @@ impl Basin {
     pub fn mean_height(&self) -> Option<f64> {
         let n = self.columns.len();
         (n > 0).then(|| self.columns.iter().map(|c| c.upper).sum::<f64>() / n as f64)
+    }
+
+    /// How many rides of the scan counted as fallen for `cause`.
+    pub fn falls(&self, cause: FallCause) -> usize {
+        let scans = self.columns.iter().flat_map(|c| &c.scan);
+        scans.filter(|p| p.outcome.fall() == Some(cause)).count()
     }
 
     /// What it took.

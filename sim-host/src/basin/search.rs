@@ -2,7 +2,7 @@
 
 use super::{Basin, Column, Island, ScanPoint, Work};
 use crate::range::within;
-use crate::ride::{Conditions, ConditionsError, RemoteError, Ride, Start, rides};
+use crate::ride::{Conditions, ConditionsError, FallCause, RemoteError, Ride, Start, rides};
 use rayon::prelude::*;
 use std::convert::Infallible;
 
@@ -173,20 +173,21 @@ fn explored<E>(
     }
     // Without a disturbance nothing falls; a border lies wherever the scan changes its mind.
     let mut runs: Vec<Island> = Vec::new();
-    let mut border = None;
+    let (mut border, mut beyond) = (None, None);
     let mut open = Some((0.0, None));
     let (mut last_rate, mut last_fell, mut last_ride) = (0.0, false, None);
     for (&rate, now) in rates.iter().zip(&scan) {
         if now.fell() && !last_fell {
-            let (to, at) = narrow(&mut ride, last_rate, rate, search.tolerance, last_ride)?;
+            let (to, at, by) =
+                narrow(&mut ride, last_rate, (rate, now.outcome.fall()), search.tolerance, last_ride)?;
             if let Some((from, _)) = open.take() {
                 runs.push(Island { from, to });
                 if runs.len() == 1 {
-                    border = at;
+                    (border, beyond) = (at, by);
                 }
             }
         } else if !now.fell() && last_fell {
-            let (from, at) = narrow(&mut ride, rate, last_rate, search.tolerance, Some(*now))?;
+            let (from, at, _) = narrow(&mut ride, rate, (last_rate, None), search.tolerance, Some(*now))?;
             open = Some((from, at));
         }
         (last_rate, last_fell, last_ride) = (rate, now.fell(), Some(*now));
@@ -200,25 +201,25 @@ fn explored<E>(
     }
     let upper = runs.first().map_or(0.0, |run| run.to);
     let scan = rates.iter().zip(&scan).map(|(&rate, r)| ScanPoint { rate, outcome: r.outcome }).collect();
-    Ok(Column { speed, upper, capped, islands: runs.split_off(1), scan, border, work })
+    Ok(Column { speed, upper, capped, islands: runs.split_off(1), scan, border, beyond, work })
 }
 
-/// The rate closest to a border that was seen not to fall, within `tolerance` of one that fell, and
-/// its ride. `safe` did not fall, `fell` did; each may be the larger.
+/// The rate closest to a border that was seen not to fall, within `tolerance` of one that fell, its ride, and what made
+/// the other fall. `safe` did not fall, `fell` did, for `by`; each may be the larger.
 pub(super) fn narrow<E>(
     ride: &mut impl FnMut(&[f64]) -> Result<Vec<Ride>, E>,
     mut safe: f64,
-    mut fell: f64,
+    (mut fell, mut by): (f64, Option<FallCause>),
     tolerance: f64,
     mut at: Option<Ride>,
-) -> Result<(f64, Option<Ride>), E> {
+) -> Result<(f64, Option<Ride>, Option<FallCause>), E> {
     while (fell - safe).abs() > tolerance {
         let cell = (fell - safe) / (SECTIONS + 1) as f64;
         let rates: Vec<f64> = (1..=SECTIONS).map(|i| safe + i as f64 * cell).collect();
         let done = ride(&rates)?;
         match done.iter().position(Ride::fell) {
             Some(first) => {
-                fell = rates[first];
+                (fell, by) = (rates[first], done[first].outcome.fall());
                 if first > 0 {
                     (safe, at) = (rates[first - 1], Some(done[first - 1]));
                 }
@@ -226,5 +227,5 @@ pub(super) fn narrow<E>(
             None => (safe, at) = (rates[SECTIONS - 1], Some(done[SECTIONS - 1])),
         }
     }
-    Ok((safe, at))
+    Ok((safe, at, by))
 }

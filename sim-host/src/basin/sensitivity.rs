@@ -176,7 +176,8 @@ fn near(conditions: &Conditions, speed: f64, guess: f64, tolerance: f64) -> f64 
         let first = done.iter().position(Ride::fell);
         match first {
             Some(first) if first > 0 => {
-                let Ok((border, _)) = narrow(&mut ride, rates[first - 1], rates[first], tolerance, None);
+                let Ok((border, ..)) =
+                    narrow(&mut ride, rates[first - 1], (rates[first], None), tolerance, None);
                 return border;
             }
             _ if width > guess.max(1.0) => return if first.is_none() { rates[7] } else { 0.0 },

@@ -2,12 +2,15 @@
 
 use super::{KEYS, Parameters, check};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use toml::{Table, Value};
 
 /// The sets that ship, a collection.
 const SHIPPED: &str = include_str!("../../../data/bicycles.toml");
 /// Where the shipped sets come from, for messages.
 const SHIPPED_FILE: &str = "data/bicycles.toml";
+/// The form of a set's file that is read.
+const SCHEMA: i64 = 1;
 /// Keys of a set that are not parameters.
 const EXTRA_KEYS: [&str; 4] = ["source", "note", "rider_included", "schema"];
 
@@ -77,18 +80,22 @@ pub fn shipped_names() -> Vec<String> {
     sets.iter().filter(|(_, v)| v.is_table()).map(|(name, _)| name.clone()).collect()
 }
 
-/// A bicycle by `name`: a shipped set, a `FILE`, or a `FILE#NAME`.
+/// A bicycle by `name`: a shipped set, a `FILE` (`-` is standard input), or a `FILE#NAME`; the name of a file may have a
+/// `#` itself.
 ///
 /// # Errors
 /// Names file, key, value and allowed range.
 pub fn load(name: &str) -> Result<Bicycle, BicycleError> {
-    if let Some((file, set)) = name.rsplit_once('#') {
-        return from_text(name, &read(Path::new(file))?, Path::new(file), Some(set));
-    }
     if shipped_names().iter().any(|n| n == name) {
         return from_text(name, SHIPPED, Path::new(SHIPPED_FILE), Some(name));
     }
+    if name == "-" {
+        return from_text("standard input", &standard_input()?, Path::new("standard input"), None);
+    }
     let path = Path::new(name);
+    if let (false, Some((file, set))) = (path.exists(), name.rsplit_once('#')) {
+        return from_text(name, &read(Path::new(file))?, Path::new(file), Some(set));
+    }
     if !path.exists() {
         return Err(BicycleError::Unknown { name: name.into(), known: shipped_names().join(", ") });
     }
@@ -97,6 +104,31 @@ pub fn load(name: &str) -> Result<Bicycle, BicycleError> {
 
 fn read(path: &Path) -> Result<String, BicycleError> {
     std::fs::read_to_string(path).map_err(|source| BicycleError::Read { path: path.into(), source })
+}
+
+/// All of standard input, read once: a sweep's cells share it.
+fn standard_input() -> Result<String, BicycleError> {
+    static TEXT: Mutex<Option<String>> = Mutex::new(None);
+    let mut text = TEXT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(text) = &*text {
+        return Ok(text.clone());
+    }
+    let all = std::io::read_to_string(std::io::stdin())
+        .map_err(|source| BicycleError::Read { path: "standard input".into(), source })?;
+    Ok(text.insert(all).clone())
+}
+
+/// Checks what is not a parameter.
+fn check_remarks(values: &Table) -> Result<(), String> {
+    for (key, kind) in [("source", "string"), ("note", "string"), ("rider_included", "boolean")] {
+        if let Some(value) = values.get(key).filter(|value| value.type_str() != kind) {
+            return Err(format!("`{key}` must be a {kind}, not the {} {value}", value.type_str()));
+        }
+    }
+    match values.get("schema") {
+        None | Some(Value::Integer(SCHEMA)) => Ok(()),
+        Some(other) => Err(format!("`schema` = {other} is not known; this program reads {SCHEMA}")),
+    }
 }
 
 fn parse(text: &str, path: &Path) -> Result<Table, BicycleError> {
@@ -131,6 +163,7 @@ pub fn from_text(name: &str, text: &str, path: &Path, set: Option<&str>) -> Resu
     {
         return Err(wrong(format!("unknown key `{key}`; the parameters are {}", KEYS.join(", "))));
     }
+    check_remarks(values).map_err(wrong)?;
     let mut numbers = [0.0; KEYS.len()];
     for (key, number) in KEYS.iter().zip(&mut numbers) {
         *number = match values.get(*key) {

@@ -1,6 +1,11 @@
 //! Could such a bicycle exist: ranges of the parameters, inertias of real bodies.
 
 use super::{KEYS, Parameters};
+use crate::range::plain;
+use std::f64::consts::FRAC_PI_2;
+
+/// A steer axis tilted more than that \[rad\], 54 degrees, is more likely a head angle; recumbents have up to 40.
+const STEEPEST_RAD: f64 = 0.95;
 
 /// Unit and allowed range of each parameter, in the order of [`KEYS`].
 const RANGES: [(&str, f64, f64); 26] = [
@@ -48,10 +53,19 @@ pub(super) fn check(p: &Parameters) -> Result<Vec<String>, String> {
     for (key, value) in KEYS.iter().zip(p.to_values()) {
         let (_, min, max) = RANGES[KEYS.iter().position(|k| k == key).unwrap_or_default()];
         if !(value >= min && value <= max) {
-            return Err(format!("`{key}` = {value} is out of range; {}", describe(key)));
+            return Err(format!("`{key}` = {} is out of range; {}", plain(value), describe(key)));
         }
     }
     let mut warnings = Vec::new();
+    if p.lam > STEEPEST_RAD {
+        warnings.push(format!(
+            "`lam` = {} rad leans the steer axis by {:.0} degrees from the vertical; if that is the head angle, measured \
+             from the ground, the tilt is pi/2 minus it, {:.4} rad",
+            p.lam,
+            p.lam.to_degrees(),
+            FRAC_PI_2 - p.lam
+        ));
+    }
     for (body, [xx, yy, zz, xz]) in [
         ("IB", [p.IBxx, p.IByy, p.IBzz, p.IBxz]),
         ("IH", [p.IHxx, p.IHyy, p.IHzz, p.IHxz]),

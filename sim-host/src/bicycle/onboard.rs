@@ -3,7 +3,8 @@
 use super::{Geometry, Gyrostat, Motion, State, Torques, pitch_from_upright};
 use crate::num::Dual;
 use control::Config;
-use control::estimate::{EstimateConfig, Place};
+use control::estimate::{EstimateConfig, Place, Source};
+use control::param::{Leaf, ParamError, Visit};
 use control::response::SteerModel;
 use nalgebra::{SMatrix, SVector};
 
@@ -22,13 +23,64 @@ pub fn estimator_parameters(b: &Geometry) -> EstimateConfig {
     }
 }
 
-/// Tells the flashed code which bicycle it is on and where its IMU sits: `imu_m` from the rear wheel's centre,
-/// forward, right and down \[m\]. What it makes of that stays as chosen.
-pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) {
+/// Fits the flashed code's parameters to the bicycle and to where its IMU sits: `imu_m` from the rear wheel's centre,
+/// forward, right and down \[m\]. What it makes of that stays as chosen, except what needs a parameter that this bicycle
+/// puts outside its range: that is switched off, each with a line that says so. A capsize term, a predictor or a path that
+/// needs such an estimate stays, and the configuration fails its check.
+pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) -> Vec<String> {
     let imu = Place { forward_m: imu_m[0] as f32, up_m: (b.rR - imu_m[2]) as f32 };
     config.estimate = EstimateConfig { roll_rate: config.estimate.roll_rate, imu, ..estimator_parameters(b) };
     (config.cross.wheelbase_m, config.cross.tilt_rad) = (b.w as f32, b.lam as f32);
     config.response.motor = config.response.motor.map(|_| steer_model(b));
+    let mut outside = Outside::default();
+    config.leaves(&mut outside);
+    let of = |group: &str| outside.0.iter().find(|e| e.leaf.group.starts_with(group)).copied();
+    let mut off = Vec::new();
+    if let Some(error) = of("response.motor") {
+        config.response.motor = None;
+        off.push(format!(
+            "{error}: the check of the motor's response is off, as by --set response.motor=off"
+        ));
+    }
+    let needed = config.capsize.is_on() || config.predict.lead_s > 0.0 || config.track.is_some();
+    if let (Some(error), false) = (of("estimate"), needed) {
+        config.estimate =
+            EstimateConfig { roll_rate: config.estimate.roll_rate, ..EstimateConfig::default() };
+        let used = switch_estimate_off(config);
+        if used {
+            off.push(format!(
+                "{error}: the motion estimate and all that needs it are off, as by --set estimate.roll_rate=gyro_x, \
+                 response.gyro=off, response.motor=off, and none for permit.fallen_rad, permit.roll_unknown_rad, \
+                 cross.wheels_m_s, cross.yaw_rad_s and cross.yaw_slow_rad_s, cross.yaw_slope=off"
+            ));
+        }
+    }
+    off
+}
+
+/// Switches off all checks that need the motion estimate; whether anything was on.
+fn switch_estimate_off(config: &mut Config) -> bool {
+    let before = config.clone();
+    config.estimate.roll_rate = Source::GyroX;
+    (config.response.gyro, config.response.motor) = (false, None);
+    (config.permit.fallen_rad, config.permit.roll_unknown_rad) = (None, None);
+    let cross = &mut config.cross;
+    (cross.wheels_m_s, cross.yaw_rad_s, cross.yaw_slow_rad_s, cross.yaw_slope) = (None, None, None, false);
+    *config != before
+}
+
+/// Numbers outside their ranges.
+#[derive(Default)]
+struct Outside(Vec<ParamError>);
+
+impl Visit for Outside {
+    fn number(&mut self, leaf: &Leaf, value: &mut f32) {
+        self.0.extend(leaf.check(*value).err());
+    }
+    fn limit(&mut self, _: &Leaf, _: &mut Option<f32>) {}
+    fn count(&mut self, _: &Leaf, _: &mut u16) {}
+    fn switch(&mut self, _: &Leaf, _: &mut bool) {}
+    fn choice(&mut self, _: &Leaf, _: &'static [&'static str], _: &mut u8) {}
 }
 
 /// The steer acceleration near the upright ride: the nonlinear equations, differentiated exactly.

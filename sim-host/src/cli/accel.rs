@@ -8,7 +8,9 @@ use std::path::PathBuf;
 
 const HELP: &str = "\
 IN.csv has the columns roll, steer, roll_rate, steer_rate, rear_wheel_rate, roll_torque, steer_torque
-in any order; rad, rad/s, N m; right positive; rear_wheel_rate negative forward. The answer has the
+in any order; rad, rad/s, N m; right positive; rear_wheel_rate negative forward. The table of
+`ride --csv` does as well: without torque columns, roll_torque is 0 and steer_torque the sum of its
+motor_torque and rider_torque. Lines that begin with # are left out. The answer has the
 columns roll_acc, steer_acc, rear_wheel_acc in rad/s^2 with 17 significant digits, line by line.
 
 Example:
@@ -53,8 +55,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 
 /// The answer to a table of states.
 fn accelerations(b: &Geometry, text: &str) -> Result<String, String> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let places = places(reader.headers().map_err(|e| e.to_string())?)?;
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+    let places = Places::new(reader.headers().map_err(|e| e.to_string())?)?;
     let mut answer = String::from("roll_acc,steer_acc,rear_wheel_acc\n");
     for record in reader.records() {
         let record = record.map_err(|e| e.to_string())?;
@@ -65,32 +68,62 @@ fn accelerations(b: &Geometry, text: &str) -> Result<String, String> {
     Ok(answer)
 }
 
-/// Where in a line the columns stand.
-fn places(header: &csv::StringRecord) -> Result<[usize; 7], String> {
-    let mut places = [0; 7];
-    for (place, (column, _)) in places.iter_mut().zip(COLUMNS) {
-        let mut found = header.iter().enumerate().filter(|(_, h)| *h == column);
-        let Some((at, _)) = found.next() else {
-            let all = COLUMNS.map(|(name, _)| name).join(", ");
-            return Err(format!("column `{column}` is missing; expected {all}"));
-        };
-        if found.next().is_some() {
-            return Err(format!("column `{column}` is there twice"));
-        }
-        *place = at;
-    }
-    Ok(places)
+/// Where in a line the columns of a state stand, and those whose sum is each torque.
+struct Places {
+    state: [usize; 5],
+    roll_torque: Vec<usize>,
+    steer_torque: Vec<usize>,
 }
 
-fn row(b: &Geometry, places: &[usize; 7], record: &csv::StringRecord) -> Result<Accelerations<f64>, String> {
-    let mut v = [0.0; 7];
-    for ((value, &place), (column, most)) in v.iter_mut().zip(places).zip(COLUMNS) {
+impl Places {
+    fn new(header: &csv::StringRecord) -> Result<Self, String> {
+        let place = |column: &str| {
+            let mut found = header.iter().enumerate().filter(|(_, h)| *h == column).map(|(at, _)| at);
+            match (found.next(), found.next()) {
+                (_, Some(_)) => Err(format!("column `{column}` is there twice")),
+                (at, None) => Ok(at),
+            }
+        };
+        let needed = |column: &str| {
+            place(column)?.ok_or_else(|| {
+                let all = COLUMNS.map(|(name, _)| name).join(", ");
+                let separator = match header.iter().any(|h| h.contains(';')) {
+                    true => "; columns are separated by commas, not by `;`",
+                    false => "",
+                };
+                format!("column `{column}` is missing; expected {all}{separator}")
+            })
+        };
+        let mut state = [0; 5];
+        for (at, (column, _)) in state.iter_mut().zip(COLUMNS) {
+            *at = needed(column)?;
+        }
+        // The table of a ride has the torques by who gives them.
+        let of_ride = (place("motor_torque")?, place("rider_torque")?);
+        let (roll_torque, steer_torque) = match (place("steer_torque")?, of_ride) {
+            (None, (Some(motor), Some(rider))) => {
+                (place("roll_torque")?.into_iter().collect(), vec![motor, rider])
+            }
+            _ => (vec![needed("roll_torque")?], vec![needed("steer_torque")?]),
+        };
+        Ok(Self { state, roll_torque, steer_torque })
+    }
+}
+
+fn row(b: &Geometry, places: &Places, record: &csv::StringRecord) -> Result<Accelerations<f64>, String> {
+    let number = |place: usize, (column, most): (&str, f64)| {
         let cell = record.get(place).unwrap_or("");
-        *value = cell
-            .parse()
-            .ok()
-            .filter(|x: &f64| x.abs() <= most)
-            .ok_or_else(|| format!("`{column}` = `{cell}` is not a number from -{most} to {most}"))?;
+        let value = cell.parse().ok().filter(|x: &f64| x.abs() <= most);
+        value.ok_or_else(|| format!("`{column}` = `{cell}` is not a number from -{most} to {most}"))
+    };
+    let mut v = [0.0; 7];
+    for ((value, &place), column) in v.iter_mut().zip(&places.state).zip(COLUMNS) {
+        *value = number(place, column)?;
+    }
+    for (i, summed) in [(5, &places.roll_torque), (6, &places.steer_torque)] {
+        for &place in summed {
+            v[i] += number(place, COLUMNS[i])?;
+        }
     }
     let [roll, steer, roll_rate, steer_rate, rear_wheel_rate, roll_torque, steer_torque] = v;
     let pitch = pitch_from_upright(b, roll, steer).ok_or_else(|| {

@@ -2,6 +2,7 @@
 
 use super::conditions::{ConditionArgs, Setup};
 use super::outputs::{OutputArgs, Outputs, Results, complain};
+use super::ride::laid_flat;
 use super::{Ended, Failure, interrupt, speeds};
 use crate::basin::{Axis, Basin, Column, Search, Work, basin};
 use crate::bicycle::linear::Linear;
@@ -10,7 +11,7 @@ use crate::report::document::BasinDocument;
 use crate::report::figure::{self, BasinFigure};
 use crate::report::resolved::ResolvedSearch;
 use crate::report::{table, terminal};
-use crate::ride::Outcome;
+use crate::ride::{FallCause, FallCriterion, Outcome};
 use control::Law;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
@@ -164,7 +165,9 @@ pub(super) fn write(
     outputs.write(Results {
         document: &document,
         config: &config,
-        summary: || terminal::basin(&figure, 80) + &summary(result, search, seconds) + said,
+        summary: || {
+            terminal::basin(&figure, 80) + &summary(result, search, &setup.conditions.fall, seconds) + said
+        },
         table: || table::table(&config, &table::basin_rows(result)),
         figure: || figure::basin(&figure),
     })?;
@@ -188,7 +191,7 @@ pub(super) fn progress(shown: bool, command: &str, count: usize, what: &str) -> 
 }
 
 /// The answer in words.
-fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
+fn summary(basin: &Basin, search: &Search, fall: &FallCriterion, seconds: f64) -> String {
     let mut text = String::new();
     let Work { rides, steps: _, right_hand_sides } = basin.work();
     let _ = writeln!(text, "area {:.3} rad m/s^2", basin.area());
@@ -203,6 +206,7 @@ fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
     if !capped.is_empty() {
         let _ = writeln!(text, "nothing fell up to {} rad/s at {capped} m/s", search.max_rate);
     }
+    text += &lying(basin, fall);
     for column in &basin.columns {
         for island in &column.islands {
             let _ = writeln!(
@@ -218,6 +222,26 @@ fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
         seconds * 1e9 / right_hand_sides.max(1) as f64,
         rayon::current_num_threads()
     );
+    text
+}
+
+/// The rides that lay on the ground short of the angles of a fall, if there are any.
+fn lying(basin: &Basin, fall: &FallCriterion) -> String {
+    let mut text = String::new();
+    let [flat, quick] = [FallCause::LaidFlat, FallCause::TooQuick].map(|cause| basin.falls(cause));
+    if flat > 0 {
+        let _ = writeln!(text, "laid flat: {flat} rides of the scan, by {}", laid_flat(fall));
+    }
+    if quick > 0 {
+        let _ = writeln!(
+            text,
+            "too quick to be followed beside 90 deg of roll, a fall: {quick} rides of the scan"
+        );
+    }
+    let at = spans(basin, |c| matches!(c.beyond, Some(FallCause::LaidFlat | FallCause::TooQuick)));
+    if !at.is_empty() {
+        let _ = writeln!(text, "beyond the border rides lie flat at {at} m/s");
+    }
     text
 }
 

@@ -1,14 +1,17 @@
 //! `sim-host bicycle`: list, show, check, accel.
 
+use super::eigen::stable_line;
 use super::outputs::{print, write_json};
 use super::{Ended, Failure, accel, warn};
-use crate::bicycle::catalogue;
+use crate::bicycle::catalogue::{self, Bicycle};
 use crate::bicycle::linear::Linear;
-use crate::eigen::critical_speeds;
+use crate::bicycle::{Geometry, onboard};
+use crate::eigen::{Feedback, Model, Stability, stability};
+use crate::plant::ImuMount;
 use crate::report::document::{CheckDocument, SCHEMA};
 use crate::report::output::Output;
 use crate::report::resolved::{ResolvedBicycle, Tool};
-use control::Law;
+use control::{Capsize, Config, Law};
 use nalgebra::Matrix2;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -70,17 +73,25 @@ fn list() -> Result<(), Failure> {
     let mut text = String::new();
     for name in catalogue::shipped_names() {
         let bicycle = catalogue::load(&name)?;
-        let c = critical_speeds(&Linear::new(&bicycle.parameters), &Law::None);
+        let Stability { critical: c, ranges, .. } = uncontrolled(&bicycle);
+        let ranges: Vec<String> = ranges.iter().map(|(from, to)| format!("{from:.3} to {to:.3}")).collect();
+        let ranges = if ranges.is_empty() { "nowhere".into() } else { ranges.join(", ") };
         let speed = |v: Option<f64>| v.map_or("  none".into(), |v| format!("{v:6.3}"));
         let _ = writeln!(
             text,
-            "{name:24} v_w {}  v_c {} m/s  {}",
+            "{name:24} v_w {}  v_c {} m/s  stable {:16}  {}",
             speed(c.v_w),
             speed(c.v_c),
+            ranges,
             bicycle.source.as_deref().unwrap_or("")
         );
     }
     print(&text)
+}
+
+/// The stability of a bicycle alone.
+fn uncontrolled(bicycle: &Bicycle) -> Stability {
+    stability(&Model::new(&bicycle.parameters, Feedback::new(Law::None, Capsize::default()), None))
 }
 
 fn show(name: &str) -> Result<(), Failure> {
@@ -102,7 +113,12 @@ fn check(name: &str, json: Option<&PathBuf>) -> Result<(), Failure> {
     let bicycle = catalogue::load(name)?;
     warn(&bicycle);
     let linear = Linear::new(&bicycle.parameters);
-    let c = critical_speeds(&linear, &Law::None);
+    let Stability { critical: c, ranges, changes } = uncontrolled(&bicycle);
+    let flashed_off = onboard::fit(
+        &mut Config::product(),
+        &Geometry::new(&bicycle.parameters),
+        ImuMount::default().point_m,
+    );
     let rows = |m: &Matrix2<f64>| [[m[(0, 0)], m[(0, 1)]], [m[(1, 0)], m[(1, 1)]]];
     let document = CheckDocument {
         schema: SCHEMA,
@@ -115,6 +131,9 @@ fn check(name: &str, json: Option<&PathBuf>) -> Result<(), Failure> {
         v_d: c.v_d,
         v_w: c.v_w,
         v_c: c.v_c,
+        stable_ranges: ranges.iter().map(|&(from, to)| [from, to]).collect(),
+        stability_changes: changes,
+        flashed_off,
     };
     if let Some(path) = json {
         return write_json(&Output::create(path)?, &document);
@@ -127,6 +146,10 @@ fn check(name: &str, json: Option<&PathBuf>) -> Result<(), Failure> {
     }
     for (label, speed) in [("v_d", c.v_d), ("v_w", c.v_w), ("v_c", c.v_c)] {
         let _ = writeln!(text, "{label} = {}", speed.map_or("none".into(), |v| format!("{v:.6} m/s")));
+    }
+    text += &stable_line(&ranges);
+    for why in &document.flashed_off {
+        let _ = writeln!(text, "on the flashed code (--preset product) {why}");
     }
     print(&text)
 }

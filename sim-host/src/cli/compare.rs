@@ -162,7 +162,16 @@ fn read(path: &str) -> Result<(Case, String), Failure> {
         let Some(upper) = upper.as_f64() else { continue };
         let capped = capped.as_bool().unwrap_or(false);
         let (islands, scan) = (Vec::new(), Vec::new());
-        columns.push(Column { speed, upper, capped, islands, scan, border: None, work: Work::default() });
+        columns.push(Column {
+            speed,
+            upper,
+            capped,
+            islands,
+            scan,
+            border: None,
+            beyond: None,
+            work: Work::default(),
+        });
     }
     if columns.is_empty() {
         return Err(format!("{path}: no speed of it is computed").into());

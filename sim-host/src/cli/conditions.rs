@@ -1,16 +1,17 @@
 //! The options that say who rides what under which conditions; `ride` and `basin` share them.
 
+use super::outputs::complain_once;
 use super::parameter_file::ParameterFile;
 use super::plant_args::{LONGEST_S, PlantArgs, whole_ticks};
 use super::rider_args::{RiderArgs, step};
-use super::{Failure, law, warn};
+use super::{Failure, fall_arg, law, warn};
 use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
 use crate::board::parameter::law_name;
 use crate::leaves;
 use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
-use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
+use crate::ride::{Assist, Conditions, FallCriterion, Imu, ScheduleSpeed};
 use clap::ValueEnum;
 use control::param::Leaf;
 use control::{Config, Law, Limits, Taper, Wheel};
@@ -79,6 +80,9 @@ pub(super) struct ConditionArgs {
     /// Roll rate the gyro reports: of the roll angle, or the frame's about its own axis
     #[arg(long, default_value = "euler")]
     imu: Imu,
+    /// A fall: these angles of roll or steer passed, or laid flat, short of them a time after the flat angle of roll; published has no flat
+    #[arg(long, value_name = "KEY=VALUE,...|published", default_value = "roll=90deg,steer=90deg,flat=80deg,lasting=1s", value_parser = fall_arg::parse, allow_hyphen_values = true)]
+    fall: FallCriterion,
     /// How long a ride lasts if it does not fall, in seconds
     #[arg(long, default_value_t = 6.0, value_name = "S", allow_negative_numbers = true)]
     time_limit: f64,
@@ -129,6 +133,14 @@ impl ConditionArgs {
         self.rider.name().is_some()
     }
 
+    /// Takes in `--set`.
+    fn set_parameters(&self, config: &mut Config) -> Result<(), String> {
+        self.set.iter().try_for_each(|word| {
+            let (key, value) = word.split_once('=').ok_or(format!("--set {word}: expected KEY=VALUE"))?;
+            leaves::set(config, key, value).map_err(|why| format!("--set {word}: {why}"))
+        })
+    }
+
     /// Loads and checks everything; warnings go to standard error.
     pub(super) fn setup(&self) -> Result<Setup, Failure> {
         let bicycle = catalogue::load(&self.bicycle)?;
@@ -175,10 +187,7 @@ impl ConditionArgs {
         if let Some(Limit(taper)) = self.taper {
             config.limits.taper = taper.map(|(zero_m_s, full_m_s)| Taper { zero_m_s, full_m_s });
         }
-        for word in &self.set {
-            let (key, value) = word.split_once('=').ok_or(format!("--set {word}: expected KEY=VALUE"))?;
-            leaves::set(&mut config, key, value).map_err(|why| format!("--set {word}: {why}"))?;
-        }
+        self.set_parameters(&mut config)?;
         let period_s = 1.0 / f64::from(config.rate_hz);
         let flashed = law != Law::None && self.assist == AssistKind::Firmware;
         let step_s = match &rider {
@@ -186,10 +195,20 @@ impl ConditionArgs {
             None => period_s,
         };
         let plant = self.plant.plant(step_s)?;
-        fit(&mut config, &Geometry::new(&bicycle.parameters), plant.sensors.imu.point_m);
+        if flashed {
+            let off = fit(&mut config, &Geometry::new(&bicycle.parameters), plant.sensors.imu.point_m);
+            for why in off {
+                complain_once(&format!("note: {}: for the flashed code {why}", self.bicycle));
+            }
+            self.set_parameters(&mut config)?;
+        }
         let limited = config.limits != Limits::default();
         let plan = config.plan().map_err(|e| match option_of(&e.leaf) {
             Some(option) => format!("{option}: {e}"),
+            None if flashed && e.leaf.group.starts_with("estimate") => format!(
+                "{}: for the flashed code {e}, and capsize, predict and track need it; --assist ideal leaves the flashed code out",
+                self.bicycle
+            ),
             None => e.to_string(),
         })?;
         if self.assist == AssistKind::Ideal && (limited || self.sensor_delay > 0.0) {
@@ -209,6 +228,7 @@ impl ConditionArgs {
             imu: self.imu,
             sensor_delay_ticks,
             plant,
+            fall: self.fall,
             time_limit_s: self.time_limit,
             step_s,
             recovered_below: self.recovered_below,

@@ -1,6 +1,6 @@
 //! `sim-host eigen`.
 
-use super::outputs::{OutputArgs, Results};
+use super::outputs::{OutputArgs, Results, complain};
 use super::rider_args::RiderArgs;
 use super::{Ended, Failure, law, speeds, warn};
 use crate::bicycle::catalogue;
@@ -12,7 +12,7 @@ use crate::report::document::{EigenDocument, SCHEMA};
 use crate::report::figure::{self, EigenFigure};
 use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider, Tool};
 use crate::report::{table, terminal};
-use control::Capsize;
+use control::{Capsize, Law};
 use nalgebra::Complex;
 use rayon::prelude::*;
 use serde_json::json;
@@ -46,8 +46,8 @@ pub(super) struct Args {
     actuator: ActuatorArgs,
     #[command(flatten)]
     rider: RiderArgs,
-    /// Forward speeds in m/s: A:B:STEP, B included, or one
-    #[arg(long, default_value = "0:10:0.1", value_parser = speeds::parse, value_name = "A:B:STEP", allow_hyphen_values = true)]
+    /// Forward speeds in m/s: A:B:STEP, B included, or one; below 0 the bicycle alone: backwards, as with a steered rear wheel
+    #[arg(long, default_value = "0:10:0.1", value_parser = speeds::parse_signed, value_name = "A:B:STEP", allow_hyphen_values = true)]
     speeds: std::vec::Vec<f64>,
     /// With a rider or a delay: how many of the rightmost eigenvalues, 4 to 40; without there are four, or five
     #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u8).range(4..=40))]
@@ -100,6 +100,11 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         Some((rider, table, fit)) => (Some(ResolvedRider::new(&table, fit, &rider)), Some(rider)),
         None => (None, None),
     };
+    let alone = law == Law::None && rider.is_none() && args.capsize.is_none();
+    if let (false, Some(v)) = (alone, args.speeds.iter().find(|v| **v < 0.0)) {
+        let why = "laws and riders are those of riding forward; below 0 only --law none without --rider and --capsize";
+        return Err(format!("--speeds: {v} m/s: {why}").into());
+    }
     let outputs = args.outputs.open(None)?;
     let actuator = args.actuator.actuator();
     let count = match (&rider, actuator.delay_s > 0.0) {
@@ -111,6 +116,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let model = model.with_actuator(actuator)?;
     let Stability { critical, ranges, changes } = stability(&model);
     let values: Vec<_> = args.speeds.par_iter().map(|&v| roots(&model.at(v), count)).collect();
+    if let Some((n, v)) =
+        values.iter().map(Vec::len).zip(&args.speeds).filter(|(n, _)| *n < count).min_by_key(|x| x.0)
+    {
+        complain(&format!(
+            "note: --roots {count}: {n} of them at {v} m/s; those further left decay too quickly to be told apart"
+        ));
+    }
     let modes = modes(&model, &args.speeds, count);
     let CriticalSpeeds { v_d, v_w, v_c } = critical;
     let document = EigenDocument {
@@ -193,8 +205,12 @@ fn summary(critical: &CriticalSpeeds, stable: &[(f64, f64)]) -> String {
             None => writeln!(text, "{name}: none up to {} m/s ({what})", crate::eigen::SEARCH_TO_M_S),
         };
     }
+    text + &stable_line(stable)
+}
+
+/// The ranges of speed without growth, in a line.
+pub(super) fn stable_line(stable: &[(f64, f64)]) -> String {
     let ranges: Vec<String> = stable.iter().map(|(from, to)| format!("{from:.4} to {to:.4} m/s")).collect();
     let ranges = if ranges.is_empty() { "nowhere".into() } else { ranges.join(", ") };
-    let _ = writeln!(text, "stable: {ranges} (searched up to {} m/s)", crate::eigen::SEARCH_TO_M_S);
-    text
+    format!("stable: {ranges} (searched up to {} m/s)\n", crate::eigen::SEARCH_TO_M_S)
 }

@@ -8,6 +8,7 @@ mod compare;
 mod conditions;
 mod design;
 mod eigen;
+mod fall_arg;
 mod faults;
 mod identify;
 mod identify_files;

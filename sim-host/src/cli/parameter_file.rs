@@ -4,6 +4,7 @@ use super::law;
 use crate::board::parameter::{law_name, law_points};
 use crate::board::settings::Settings;
 use crate::leaves;
+use crate::range::plain;
 use control::{Config, Law};
 use std::fmt::Write;
 use std::path::Path;
@@ -76,7 +77,7 @@ fn words(value: &toml::Value) -> Option<String> {
     match value {
         toml::Value::String(word) => Some(word.clone()),
         toml::Value::Integer(number) => Some(number.to_string()),
-        toml::Value::Float(number) => Some(number.to_string()),
+        toml::Value::Float(number) => Some(plain(*number)),
         toml::Value::Boolean(on) => Some(if *on { "on" } else { "off" }.into()),
         _ => None,
     }

@@ -96,6 +96,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 fn on_board(args: &RideArgs) -> Result<Ended, Failure> {
     let start = args.ride.start()?;
     let setup = args.ride.conditions.setup()?;
+    ride::check_direction(start, &setup.conditions)?;
     let start_board = args.board.starter(&setup)?;
     let outputs = args.ride.open()?;
     let mut controller = start_board()?;

@@ -3,11 +3,13 @@
 use super::basin::{ThreadArgs, progress};
 use super::conditions::ConditionArgs;
 use super::outputs::{OutputArgs, Results, complain};
+use super::ride::laid_flat;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Plane, PlaneSearch, plane};
 use crate::report::figure::{self, PlaneFigure};
 use crate::report::plane::{PlaneDocument, plane_rows};
 use crate::report::table;
+use crate::ride::FallCause;
 use serde_json::json;
 use std::fmt::Write;
 use std::time::Instant;
@@ -110,6 +112,14 @@ fn summary(document: &PlaneDocument, plane: &Plane) -> String {
         most(|p| p.1)
     );
     let count = |is: fn(&crate::basin::Ray) -> bool| plane.rays.iter().filter(|ray| is(ray)).count();
+    let flat = count(|ray| matches!(ray.column.beyond, Some(FallCause::LaidFlat | FallCause::TooQuick)));
+    if flat > 0 {
+        let _ = writeln!(
+            text,
+            "beyond the border of {flat} rays rides lie flat: {}",
+            laid_flat(&document.config.fall)
+        );
+    }
     let _ = writeln!(
         text,
         "{} rays, {} with islands beyond, {} without a fall to their end; {} rides, {:.2} s",

@@ -64,7 +64,7 @@ pub(super) fn whole_ticks(name: &str, time_s: f64, period_s: f64, most_s: f64) -
 }
 
 /// The pairs of `KEY=VALUE,...`.
-fn pairs(text: &str) -> impl Iterator<Item = Result<(&str, &str), String>> {
+pub(super) fn pairs(text: &str) -> impl Iterator<Item = Result<(&str, &str), String>> {
     text.split(',').map(|pair| pair.split_once('=').ok_or_else(|| format!("`{pair}` is not KEY=VALUE")))
 }
 

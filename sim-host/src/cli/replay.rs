@@ -2,7 +2,7 @@
 
 use super::conditions::Preset;
 use super::interrupt;
-use super::outputs::{OutputArgs, Outputs, Results, complain};
+use super::outputs::{OutputArgs, Outputs, Results, complain, complain_once};
 use super::parameter_file::ParameterFile;
 use super::{Ended, Failure, law, warn};
 use crate::bicycle::onboard::fit;
@@ -173,7 +173,9 @@ fn common(args: &Args) -> Result<Common, Failure> {
     if let Some(name) = &args.bicycle {
         let bicycle = catalogue::load(name)?;
         warn(&bicycle);
-        fit(&mut config, &Geometry::new(&bicycle.parameters), ImuMount::default().point_m);
+        for why in fit(&mut config, &Geometry::new(&bicycle.parameters), ImuMount::default().point_m) {
+            complain_once(&format!("note: {name}: for the flashed code {why}"));
+        }
     }
     Ok(Common { config, law_name, file, faults, map })
 }

@@ -7,7 +7,9 @@ use crate::range::within;
 use crate::report::document::RideDocument;
 use crate::report::figure::{self, RideFigure};
 use crate::report::{table, terminal};
-use crate::ride::{Ride, Start, TracePoint, frames, traced};
+use crate::ride::{
+    Assist, Conditions, FallCause, FallCriterion, LaidFlat, Ride, Start, TracePoint, frames, traced,
+};
 use control::SensorFrame;
 use control::wire::encode_frame;
 use serde_json::json;
@@ -26,7 +28,7 @@ Examples:
 pub(super) struct Args {
     #[command(flatten)]
     pub(super) conditions: ConditionArgs,
-    /// Forward speed at the start, in m/s
+    /// Forward speed at the start, in m/s; below 0 only with --law none: backwards, as with a steered rear wheel
     #[arg(long, required = true, value_name = "M/S", allow_negative_numbers = true)]
     speed: Option<f64>,
     /// Steer rate at the start, in rad/s, right positive
@@ -47,7 +49,7 @@ impl Args {
     pub(super) fn start(&self) -> Result<Start, Failure> {
         // Without it no command but a subcommand gets here.
         let speed_m_s = self.speed.ok_or("--speed must be given")?;
-        within("--speed (m/s)", speed_m_s, 0.0, 30.0)?;
+        within("--speed (m/s)", speed_m_s, -30.0, 30.0)?;
         within("--steer-rate (rad/s)", self.steer_rate, -100.0, 100.0)?;
         within("--roll-rate (rad/s)", self.roll_rate, -100.0, 100.0)?;
         Ok(Start { speed_m_s, steer_rate_rad_s: self.steer_rate, roll_rate_rad_s: self.roll_rate })
@@ -59,9 +61,26 @@ impl Args {
     }
 }
 
+/// Refuses to ride backwards with what is made for riding forward.
+///
+/// # Errors
+/// Assist or rider at a negative speed.
+pub(super) fn check_direction(start: Start, conditions: &Conditions) -> Result<(), String> {
+    let alone = matches!(conditions.assist, Assist::None) && conditions.rider.is_none();
+    if start.speed_m_s < 0.0 && !alone {
+        let speed = start.speed_m_s;
+        return Err(format!(
+            "--speed (m/s) = {speed} is outside 0 to 30; laws and riders are those of riding forward, below 0 goes only \
+             --law none without --rider"
+        ));
+    }
+    Ok(())
+}
+
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let start = args.start()?;
     let setup = args.conditions.setup()?;
+    check_direction(start, &setup.conditions)?;
     let outputs = args.open()?;
     let (ride, trace) = traced(&setup.conditions, start);
     let sensed = || frames(&setup.conditions, start, &trace);
@@ -84,22 +103,26 @@ pub(super) fn write(
         setup.config.label(),
     );
     let figure = RideFigure { trace, outcome: ride.outcome, title: &title };
-    let config = json!({"config": document.config, "start": document.start});
+    let config = json!({"config": document.config, "start": document.start, "outcome": document.outcome,
+        "time_to_fall_s": document.time_to_fall_s, "fall": document.fall});
     let framed = outputs.write_frames(|| sensed().iter().flat_map(encode_frame).collect());
     outputs.write(Results {
         document: &document,
         config: &config,
-        summary: || terminal::ride(&figure, 80) + &summary(ride, setup.conditions.rider.is_some()) + said,
+        summary: || terminal::ride(&figure, 80) + &summary(ride, &setup.conditions) + said,
         table: || table::table(&config, trace),
         figure: || figure::ride(&figure),
     })?;
     framed
 }
 
-fn summary(ride: &Ride, ridden: bool) -> String {
+fn summary(ride: &Ride, conditions: &Conditions) -> String {
     let (e, mut text) = (&ride.effort, String::new());
     let _ = match ride.outcome.time_to_fall_s() {
-        Some(t) => writeln!(text, "fallen after {t:.6} s"),
+        Some(t) => writeln!(text, "fallen after {t:.6} s{}", reason(&conditions.fall, ride)),
+        None if ride.undisturbed() => {
+            writeln!(text, "not fallen: undisturbed, which says nothing of stability (see `sim-host eigen`)")
+        }
         None => writeln!(text, "not fallen, {}", ride.outcome.name()),
     };
     let _ = writeln!(
@@ -110,18 +133,62 @@ fn summary(ride: &Ride, ridden: bool) -> String {
     );
     let _ = writeln!(
         text,
-        "torque: peak {:.2} N m, rms {:.2} N m, peak slew {:.1} N m/s; motor energy {:.2} J (pushing {:.2} J)",
-        e.peak_torque_nm, e.rms_torque_nm, e.peak_slew_nm_s, e.motor_energy_j, e.motor_energy_out_j
+        "torque: peak {:.2} N m, rms {:.2} N m, peak slew {:.1} N m/s; motor energy {} J (pushing {} J)",
+        e.peak_torque_nm,
+        e.rms_torque_nm,
+        e.peak_slew_nm_s,
+        hundredths(e.motor_energy_j),
+        hundredths(e.motor_energy_out_j)
     );
-    if ridden {
+    if conditions.rider.is_some() {
         let _ = writeln!(
             text,
-            "rider: peak {:.2} N m, rms {:.2} N m, energy {:.2} J; against the assist {:.0} % of the time",
+            "rider: peak {:.2} N m, rms {:.2} N m, energy {} J; against the assist {:.0} % of the time",
             e.rider_peak_torque_nm,
             e.rider_rms_torque_nm,
-            e.rider_energy_j,
+            hundredths(e.rider_energy_j),
             100.0 * e.opposed
         );
     }
     text
+}
+
+/// Two digits after the point, zero without a sign.
+fn hundredths(x: f64) -> String {
+    format!("{:.2}", (x * 100.0).round() / 100.0 + 0.0)
+}
+
+/// Why a ride counts as fallen: ": roll passed 90 deg".
+fn reason(fall: &FallCriterion, ride: &Ride) -> String {
+    let passed = |what, rad: f64| format!(": {what} passed {:.0} deg", rad.to_degrees());
+    match ride.outcome.fall() {
+        Some(FallCause::Roll) => passed("roll", fall.roll_rad),
+        Some(FallCause::Steer) => passed("steer", fall.steer_rad),
+        Some(FallCause::LaidFlat) => format!(": laid flat, {}", laid_flat(fall)),
+        Some(FallCause::TooQuick) => {
+            ": the motion became too quick to be followed, as it does beside 90 deg of roll".into()
+        }
+        Some(FallCause::NoMotion) => ": the model has no motion there".into(),
+        None => String::new(),
+    }
+}
+
+/// What counts as laid flat: "roll beyond 80 deg and no fall by 90 deg within 1 s".
+pub(super) fn laid_flat(fall: &FallCriterion) -> String {
+    let Some(LaidFlat { roll_rad, lasting_s }) = fall.flat else { return String::new() };
+    let [flat, full] = [roll_rad, fall.roll_rad].map(f64::to_degrees);
+    format!("roll beyond {flat:.0} deg and no fall by {full:.0} deg within {lasting_s} s")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::hundredths;
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!(
+            [-0.001, 0.0, -0.004, -0.006, 1.005].map(hundredths),
+            ["0.00", "0.00", "0.00", "-0.01", "1.00"]
+        );
+    }
 }

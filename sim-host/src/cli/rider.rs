@@ -68,13 +68,18 @@ pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
+/// So many things: "1 set", "2 sets".
+fn counted(n: usize, thing: &str) -> String {
+    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
+}
+
 /// Sets, groups, speeds, delay and muscles in a line.
 fn summary(t: &RiderTable) -> String {
     let (first, last) = (&t.rows[0], &t.rows[t.rows.len() - 1]);
     format!(
-        "{} sets in {} groups, {} to {} m/s, delay {} ms, muscles {:.3} rad/s, {:.3}",
-        t.rows.len(),
-        t.groups().count(),
+        "{} in {}, {} to {} m/s, delay {} ms, muscles {:.3} rad/s, {:.3}",
+        counted(t.rows.len(), "set"),
+        counted(t.groups().count(), "group"),
         first.speed_m_s,
         last.speed_m_s,
         (t.delay_s * 1e9).round() / 1e6,

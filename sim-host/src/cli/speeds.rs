@@ -1,7 +1,16 @@
 //! Ranges of speeds: `A:B:STEP` with B included, or a single value.
 
-/// The speeds a text stands for \[m/s\].
+/// The speeds a text stands for \[m/s\], not below 0.
 pub(super) fn parse(text: &str) -> Result<Vec<f64>, String> {
+    within(text, 0.0)
+}
+
+/// The same, also backwards.
+pub(super) fn parse_signed(text: &str) -> Result<Vec<f64>, String> {
+    within(text, -30.0)
+}
+
+fn within(text: &str, least: f64) -> Result<Vec<f64>, String> {
     let number = |part: &str| {
         part.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| {
             format!("`{part}` is not a number; expected A:B:STEP in m/s, for example 0:10:0.1, or one speed")
@@ -21,25 +30,32 @@ pub(super) fn parse(text: &str) -> Result<Vec<f64>, String> {
                 return Err(format!("the range {text} has {n} speeds; at most 100000"));
             }
             // Rounded to a billionth, so that 0.1 steps read 0.3 and not 0.30000000000000004.
-            (0..=n as usize).map(|i| ((from + i as f64 * step) * 1e9).round() / 1e9).collect()
+            (0..=n as usize).map(|i| ((from + i as f64 * step) * 1e9).round() / 1e9 + 0.0).collect()
         }
         _ => return Err(format!("expected A:B:STEP or one speed, not {text}")),
     };
-    match speeds.iter().find(|v| !(0.0..=30.0).contains(*v)) {
-        Some(v) => Err(format!("speed {v} m/s is outside 0 to 30")),
+    match speeds.iter().find(|v| !(least..=30.0).contains(*v)) {
+        Some(v) => Err(format!("speed {v} m/s is outside {least} to 30")),
         None => Ok(speeds),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::parse;
+    use super::{parse, parse_signed};
 
     #[test]
     fn ranges_include_their_end() {
         assert_eq!(parse("0:0.3:0.1"), Ok(vec![0.0, 0.1, 0.2, 0.3]));
         assert_eq!(parse("2:7.5:0.1").map(|v| (v.len(), v[55])), Ok((56, 7.5)));
         assert_eq!(parse("4"), Ok(vec![4.0]));
+    }
+
+    #[test]
+    fn speeds_of_riding_backwards_are_signed() {
+        assert_eq!(parse_signed("-0.2:0.1:0.1").map(|v| v.len()), Ok(4));
+        assert_eq!(parse_signed("-5"), Ok(vec![-5.0]));
+        assert!(parse_signed("-31").is_err() && parse("-5").is_err());
     }
 
     #[test]

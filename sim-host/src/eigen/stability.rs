@@ -1,6 +1,6 @@
 //! The ranges of speed in which the straight ride is stable, for any model.
 
-use super::critical::{CriticalSpeeds, SEARCH_TO_M_S, bisect, critical_speeds, rightmost_pair};
+use super::critical::{CriticalSpeeds, SEARCH_TO_M_S, bisect, critical_speeds, grows, rightmost_pair};
 use super::roots::roots;
 use super::system::Model;
 use rayon::prelude::*;
@@ -53,14 +53,16 @@ pub fn stability(model: &Model) -> Stability {
     let steps = (SEARCH_TO_M_S / STEP_M_S).round() as usize;
     let looks: Vec<Look> =
         (0..=steps).into_par_iter().map(|i| Look::at(model, i as f64 * STEP_M_S)).collect();
+    let (grows, pair_grows) = (definite(&looks, |look| look.grows), definite(&looks, |look| look.pair_grows));
     let between = |w: &[Look], below: &dyn Fn(&Look) -> bool| {
         bisect((w[0].speed, w[1].speed), |v| below(&Look::at(model, v)))
     };
     let changes: Vec<StabilityChange> = looks
         .windows(2)
-        .filter(|w| (w[0].growth > 0.0) != (w[1].growth > 0.0))
-        .map(|w| {
-            let stable_above = w[0].growth > 0.0;
+        .zip(grows.windows(2))
+        .filter(|(_, grows)| grows[0] != grows[1])
+        .map(|(w, grows)| {
+            let stable_above = grows[0];
             let speed = between(w, &|look| (look.growth > 0.0) == stable_above);
             let unstable = if stable_above { &w[0] } else { &w[1] };
             let crossing = if unstable.pair == unstable.growth { Crossing::Pair } else { Crossing::Real };
@@ -73,15 +75,26 @@ pub fn stability(model: &Model) -> Stability {
             v_d: None,
             v_w: looks
                 .windows(2)
-                .find(|w| w[0].pair > 0.0 && w[1].pair <= 0.0)
-                .map(|w| between(w, &|look| look.pair > 0.0)),
+                .zip(pair_grows.windows(2))
+                .find(|(_, grows)| grows[0] && !grows[1])
+                .map(|(w, _)| between(w, &|look| look.pair > 0.0)),
             v_c: looks
                 .windows(2)
                 .find(|w| w[0].turn > 0.0 && w[1].turn <= 0.0)
                 .map(|w| between(w, &|look| look.turn > 0.0)),
         },
     };
-    Stability { critical, ranges: ranges(looks[0].growth <= 0.0, &changes), changes }
+    Stability { critical, ranges: ranges(!grows[0], &changes), changes }
+}
+
+/// Signs without those that are no more than rounding: such a speed counts with the one below it, at first the one above.
+fn definite(looks: &[Look], of: impl Fn(&Look) -> Option<bool>) -> Vec<bool> {
+    let mut last = looks.iter().find_map(&of).unwrap_or(false);
+    let mut with_last = |look| {
+        last = of(look).unwrap_or(last);
+        last
+    };
+    looks.iter().map(&mut with_last).collect()
 }
 
 fn ranges(stable_at_rest: bool, changes: &[StabilityChange]) -> Vec<(f64, f64)> {
@@ -95,8 +108,12 @@ struct Look {
     speed: f64,
     /// Largest real part \[1/s\].
     growth: f64,
+    /// Whether it is positive; `None` for no more than rounding.
+    grows: Option<bool>,
     /// Largest real part of a complex pair \[1/s\].
     pair: f64,
+    /// Whether that is.
+    pair_grows: Option<bool>,
     /// The characteristic determinant at zero: it changes sign where a real root does.
     turn: f64,
 }
@@ -106,7 +123,8 @@ impl Look {
         let system = model.at(speed);
         let roots = roots(&system, ROOTS);
         let turn = (-system.undelayed()).determinant();
-        Self { speed, growth: roots[0].re, pair: rightmost_pair(&roots), turn }
+        let (growth, pair) = (roots[0].re, rightmost_pair(&roots));
+        Self { speed, growth, grows: grows(growth, &roots), pair, pair_grows: grows(pair, &roots), turn }
     }
 }
 

@@ -3,7 +3,7 @@
 use super::resolved::{ResolvedConfig, ResolvedSearch, Tool};
 use crate::basin::{Basin, ScanPoint, Work};
 use crate::eigen::StabilityChange;
-use crate::ride::{Effort, FinalState, Ride, Start};
+use crate::ride::{Effort, FallCause, FinalState, Ride, Start};
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Serialize;
@@ -11,6 +11,10 @@ use std::collections::BTreeMap;
 
 /// The version of these documents.
 pub const SCHEMA: u32 = 1;
+
+/// What can make a ride count as fallen, by the names of [`FallCause`], or nothing.
+pub(super) const FALLS: [Option<&str>; 6] =
+    [Some("roll"), Some("steer"), Some("laid-flat"), Some("too-quick"), Some("no-motion"), None];
 
 /// `bicycle check`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -37,6 +41,12 @@ pub struct CheckDocument {
     pub v_w: Option<f64>,
     /// Capsize speed \[m/s\].
     pub v_c: Option<f64>,
+    /// Ranges of speed in which the straight ride is stable, from rest to 20 m/s \[m/s\].
+    pub stable_ranges: Vec<[f64; 2]>,
+    /// The ends of these ranges, but for those of the search.
+    pub stability_changes: Vec<StabilityChange>,
+    /// What of the flashed code, as `--preset product`, is off on this bicycle, and why.
+    pub flashed_off: Vec<String>,
 }
 
 /// `eigen`.
@@ -94,6 +104,11 @@ pub struct RideDocument {
     pub outcome: &'static str,
     /// When it fell \[s\]; null if it did not.
     pub time_to_fall_s: Option<f64>,
+    /// What made it count as fallen (`config.fall`); null if it did not.
+    #[schemars(extend("enum" = FALLS))]
+    pub fall: Option<&'static str>,
+    /// Whether nothing disturbed it: an upright ride stays upright, stable or not.
+    pub undisturbed: bool,
     /// The state at the end.
     #[serde(rename = "final")]
     pub end: FinalState,
@@ -111,6 +126,8 @@ impl RideDocument {
             start: ride.start,
             outcome: ride.outcome.name(),
             time_to_fall_s: ride.outcome.time_to_fall_s(),
+            fall: ride.outcome.fall().map(FallCause::name),
+            undisturbed: ride.undisturbed(),
             end: ride.end,
             effort: ride.effort,
         }
@@ -147,6 +164,9 @@ pub struct Border {
     pub outcome: &'static str,
     /// What it took.
     pub effort: Effort,
+    /// What made the nearest ride beyond it count as fallen; null if nothing fell.
+    #[schemars(extend("enum" = FALLS))]
+    pub fall: Option<&'static str>,
 }
 
 /// Every ride of the scan, per speed and rate.
@@ -158,6 +178,8 @@ pub struct Map {
     pub outcome: Vec<Vec<&'static str>>,
     /// Per speed and rate the time to fall \[s\]; null for a ride that did not.
     pub time_to_fall_s: Vec<Vec<Option<f64>>>,
+    /// Per speed and rate what made it count as fallen; null for a ride that did not.
+    pub fall: Vec<Vec<Option<&'static str>>>,
 }
 
 /// `basin`.
@@ -222,6 +244,7 @@ impl BasinDocument {
                     speed: c.speed,
                     outcome: ride.outcome.name(),
                     effort: ride.effort,
+                    fall: c.beyond.map(FallCause::name),
                 })
             })
             .collect();
@@ -246,6 +269,10 @@ impl BasinDocument {
                 time_to_fall_s: scans
                     .iter()
                     .map(|s| s.iter().map(|p| p.outcome.time_to_fall_s()).collect())
+                    .collect(),
+                fall: scans
+                    .iter()
+                    .map(|s| s.iter().map(|p| p.outcome.fall().map(FallCause::name)).collect())
                     .collect(),
             },
             work: basin.work(),

@@ -1,8 +1,9 @@
 //! The document and the table of `basin plane`.
 
-use super::document::SCHEMA;
+use super::document::{FALLS, SCHEMA};
 use super::resolved::{ResolvedConfig, Tool};
-use crate::basin::{Plane, PlaneSearch, Work};
+use crate::basin::{Plane, PlaneSearch, ScanPoint, Work};
+use crate::ride::FallCause;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -43,6 +44,9 @@ pub struct RayEntry {
     pub upper: f64,
     /// Whether nothing fell up to its end.
     pub capped: bool,
+    /// What made the nearest ride beyond count as fallen; null if nothing fell.
+    #[schemars(extend("enum" = FALLS))]
+    pub fall: Option<&'static str>,
     /// Parts of the ray beyond the first fall that do not fall either, `[from, to]`.
     pub islands: Vec<[f64; 2]>,
 }
@@ -56,6 +60,7 @@ impl PlaneDocument {
             roll_rate: ray.roll_rate,
             upper: ray.column.upper,
             capped: ray.column.capped,
+            fall: ray.column.beyond.map(FallCause::name),
             islands: ray.column.islands.iter().map(|i| [i.from, i.to]).collect(),
         };
         Self {
@@ -84,19 +89,24 @@ pub struct PlaneRow {
     pub outcome: &'static str,
     /// Time to fall, empty if it did not.
     pub time_to_fall_s: Option<f64>,
+    /// What made it count as fallen, at the border the nearest ride beyond; empty if it did not.
+    pub fall: Option<&'static str>,
 }
 
 /// The scans and borders as rows; the mirror images left out.
 pub fn plane_rows(plane: &Plane) -> Vec<PlaneRow> {
     let mut rows = Vec::new();
     for ray in &plane.rays {
-        let row = |s: f64, outcome, time_to_fall_s| {
+        let row = |s: f64, outcome, time_to_fall_s, fall: Option<FallCause>| {
             let (steer_rate_rad_s, roll_rate_rad_s) = ray.at(s);
-            PlaneRow { steer_rate_rad_s, roll_rate_rad_s, outcome, time_to_fall_s }
+            let fall = fall.map(FallCause::name);
+            PlaneRow { steer_rate_rad_s, roll_rate_rad_s, outcome, time_to_fall_s, fall }
         };
-        rows.push(row(ray.column.upper, "border", None));
+        rows.push(row(ray.column.upper, "border", None, ray.column.beyond));
         let scan = ray.column.scan.iter();
-        rows.extend(scan.map(|p| row(p.rate, p.outcome.name(), p.outcome.time_to_fall_s())));
+        rows.extend(scan.map(|ScanPoint { rate, outcome }| {
+            row(*rate, outcome.name(), outcome.time_to_fall_s(), outcome.fall())
+        }));
     }
     rows
 }

@@ -4,7 +4,7 @@ use crate::basin::{Axis, Search};
 use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
 use crate::leaves::departing;
 use crate::plant::{ActuatorConfig, ImuMount, Plant, Sensor, SensorModel};
-use crate::ride::{Assist, Conditions};
+use crate::ride::{Assist, Conditions, FallCriterion};
 use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};
 use control::estimate::{EstimateConfig, Source};
 use control::{Capsize, Config, Law};
@@ -233,6 +233,8 @@ pub struct ResolvedConfig {
     pub control_rate_hz: Option<f32>,
     /// Integration step \[s\].
     pub step_s: f64,
+    /// When a ride counts as fallen.
+    pub fall: FallCriterion,
     /// Time limit of a ride \[s\].
     pub time_limit_s: f64,
     /// Fraction of the largest roll and steer below which a ride's last second must stay to count as
@@ -273,6 +275,7 @@ impl ResolvedConfig {
             parameters: config.map_or(BTreeMap::new(), |c| departing(c, &published(c)).into_iter().collect()),
             control_rate_hz: config.map(|c| c.rate_hz),
             step_s: c.step_s,
+            fall: c.fall,
             time_limit_s: c.time_limit_s,
             recovered_below: c.recovered_below,
         }

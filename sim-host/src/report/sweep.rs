@@ -132,20 +132,21 @@ pub fn cells_table(document: &SweepDocument) -> Result<Vec<u8>, csv::Error> {
 /// # Errors
 /// When a row can't be written as a line of CSV.
 pub fn heights_table(document: &SweepDocument) -> Result<Vec<u8>, csv::Error> {
-    let measures = ["speed_m_s", "height_rad_s", "capped", "peak_torque_nm", "peak_slew_nm_s"];
+    let measures = ["speed_m_s", "height_rad_s", "capped", "peak_torque_nm", "peak_slew_nm_s", "fall"];
     let speeds = &document.search.speeds;
     let rows = document.cells.iter().flat_map(|cell| {
         cell.found.iter().zip(speeds).map(|(found, speed)| {
             let effort = |of: fn(&crate::ride::Effort) -> f64| {
                 found.effort.as_ref().map_or(String::new(), |e| of(e).to_string())
             };
-            let Found { height, capped, .. } = found;
+            let Found { height, capped, fall, .. } = found;
             let measures = [
                 speed.to_string(),
                 height.to_string(),
                 capped.to_string(),
                 effort(|e| e.peak_torque_nm),
                 effort(|e| e.peak_slew_nm_s),
+                fall.clone().unwrap_or_default(),
             ];
             cell.values.iter().cloned().chain(measures).collect::<Vec<_>>()
         })

@@ -1,6 +1,8 @@
 //! CSV tables, headed by `#` lines with the program and the full configuration.
 
 use super::resolved::Tool;
+use crate::basin::ScanPoint;
+use crate::ride::FallCause;
 use serde::Serialize;
 
 /// A header comment: the program, then `config` as one line of JSON.
@@ -63,20 +65,25 @@ pub struct BasinRow {
     pub outcome: &'static str,
     /// Time to fall, empty if it did not.
     pub time_to_fall_s: Option<f64>,
+    /// What made it count as fallen, at the border the nearest ride beyond; empty if it did not.
+    pub fall: Option<&'static str>,
 }
 
 /// The scan and, per speed, the border as rows.
 pub fn basin_rows(basin: &crate::basin::Basin) -> Vec<BasinRow> {
     let mut rows = Vec::new();
     for c in &basin.columns {
-        let row = |rate, outcome, time| BasinRow {
+        let row = |rate, outcome, time, fall: Option<FallCause>| BasinRow {
             speed_m_s: c.speed,
             rate_rad_s: rate,
             outcome,
             time_to_fall_s: time,
+            fall: fall.map(FallCause::name),
         };
-        rows.push(row(c.upper, "border", None));
-        rows.extend(c.scan.iter().map(|p| row(p.rate, p.outcome.name(), p.outcome.time_to_fall_s())));
+        rows.push(row(c.upper, "border", None, c.beyond));
+        rows.extend(c.scan.iter().map(|ScanPoint { rate, outcome }| {
+            row(*rate, outcome.name(), outcome.time_to_fall_s(), outcome.fall())
+        }));
     }
     rows
 }

@@ -69,7 +69,7 @@ mod tests {
     use super::*;
     use crate::basin::{Basin, Column, Island, ScanPoint, Work};
     use crate::eigen::{CriticalSpeeds, Mode};
-    use crate::ride::Outcome;
+    use crate::ride::{FallCause, Outcome};
     use nalgebra::Complex;
 
     fn fits(text: &str, width: usize) {
@@ -81,13 +81,13 @@ mod tests {
 
     fn column(speed: f64, upper: f64, capped: bool) -> Column {
         let outcome = |rate| match rate {
-            r if r > upper => Outcome::Fallen { time_s: 1.0 },
+            r if r > upper => Outcome::Fallen { time_s: 1.0, by: FallCause::Roll },
             r if r < 2.0 => Outcome::Recovered,
             _ => Outcome::Undecided,
         };
         let scan = (1..=8).map(f64::from).map(|rate| ScanPoint { rate, outcome: outcome(rate) }).collect();
         let islands = if capped { vec![] } else { vec![Island { from: 6.0, to: 7.0 }] };
-        Column { speed, upper, capped, islands, scan, border: None, work: Work::default() }
+        Column { speed, upper, capped, islands, scan, border: None, beyond: None, work: Work::default() }
     }
 
     fn basin_text(columns: Vec<Column>, width: usize) -> String {
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn rides_and_eigenvalues_fit() {
-        let outcome = Outcome::Fallen { time_s: 1.25 };
+        let outcome = Outcome::Fallen { time_s: 1.25, by: FallCause::Roll };
         let text = ride(&RideFigure { title: "", trace: &[], outcome }, 80);
         fits(&text, 80);
         assert!(text.contains("torque of assist and rider [N m]") && text.contains("time [s]"));

@@ -1,6 +1,6 @@
 //! Everything a ride depends on.
 
-use super::Assist;
+use super::{Assist, FallCriterion};
 use crate::bicycle::Geometry;
 use crate::plant::Plant;
 use crate::range::within;
@@ -46,6 +46,8 @@ pub struct Conditions {
     /// How sensors and motor depart from exact ones, the steer's friction and its end-stop. All of it but
     /// these two acts on [`Assist::Firmware`] only.
     pub plant: Plant,
+    /// When a ride counts as fallen.
+    pub fall: FallCriterion,
     /// How long a ride lasts if it does not fall \[s\].
     pub time_limit_s: f64,
     /// The control period, and the integration step \[s\].
@@ -74,6 +76,7 @@ impl Conditions {
             imu: Imu::Euler,
             sensor_delay_ticks: 0,
             plant: Plant::default(),
+            fall: FallCriterion::default(),
             time_limit_s: 6.0,
             step_s: 1e-3,
             recovered_below: 0.1,
@@ -85,6 +88,12 @@ impl Conditions {
         (self.time_limit_s / self.step_s).round() as u32
     }
 
+    /// Most shorter steps of a ride, before it counts as fallen: in right-hand sides, one of 6 s costs at most eleven
+    /// ordinary ones. Falls that go through 90 degrees at once take up to 1,000.
+    pub(super) fn most_pieces(&self) -> u32 {
+        10_000 + 7 * self.steps()
+    }
+
     /// Checks what the types do not.
     ///
     /// # Errors
@@ -94,6 +103,7 @@ impl Conditions {
         within("time limit (s)", self.time_limit_s, self.step_s, 3600.0)?;
         within("step (s)", self.step_s, 1e-5, 1e-2)?;
         within("recovered-below fraction", self.recovered_below, 1e-6, 1.0)?;
+        self.fall.check().map_err(ConditionsError)?;
         if let Some(rider) = &self.rider {
             rider.check(self.step_s).map_err(|e| ConditionsError(e.0))?;
         }

@@ -1,34 +1,37 @@
 //! The instant of a fall inside a step.
 
+use super::{FallCause, FallCriterion};
 use crate::bicycle::State;
-use std::f64::consts::FRAC_PI_2;
 
-/// Roll or steer beyond this is a fall \[rad\].
-pub(super) const FALL_RAD: f64 = FRAC_PI_2;
-
-/// Whether a state counts as fallen; one that is not finite does (the model has no motion there).
-pub(super) fn fallen(state: &State<f64>) -> bool {
-    !(state.roll.abs() < FALL_RAD && state.steer.abs() < FALL_RAD && state.rear_wheel_rate.is_finite())
+/// Whether a state counts as fallen by its angles; one that is not finite does (the model has no motion there).
+pub(super) fn fallen(fall: &FallCriterion, state: &State<f64>) -> bool {
+    let upright = state.roll.abs() < fall.roll_rad && state.steer.abs() < fall.steer_rad;
+    !(upright && state.rear_wheel_rate.is_finite())
 }
 
-/// When in a step of `h` seconds, 0 to `h`, the first of roll and steer passes 90 degrees.
+/// When in a step of `h` seconds, 0 to `h`, the first of roll and steer passes its angle, and which.
 ///
 /// On the cubic through both ends' values and rates, whose error at a step of 1 ms is below a
 /// nanosecond; to 1e-9 s by bisection. A step that ends in no finite state counts as a fall at its
 /// start.
-pub(super) fn time_of_fall(before: &State<f64>, after: &State<f64>, h: f64) -> f64 {
+pub(super) fn time_of_fall(
+    fall: &FallCriterion,
+    (before, after): (&State<f64>, &State<f64>),
+    h: f64,
+) -> (f64, FallCause) {
     let roll = [before.roll, after.roll, before.roll_rate * h, after.roll_rate * h];
     let steer = [before.steer, after.steer, before.steer_rate * h, after.steer_rate * h];
     if roll.iter().chain(&steer).chain([&after.rear_wheel_rate]).any(|x| !x.is_finite()) {
-        return 0.0;
+        return (0.0, FallCause::NoMotion);
     }
-    let beyond = |s: f64| hermite(&roll, s).abs().max(hermite(&steer, s).abs()) >= FALL_RAD;
+    let rolled = |s: f64| hermite(&roll, s).abs() >= fall.roll_rad;
+    let beyond = |s: f64| rolled(s) || hermite(&steer, s).abs() >= fall.steer_rad;
     let (mut low, mut high) = (0.0, 1.0);
     while (high - low) * h > 1e-9 {
         let middle = 0.5 * (low + high);
         if beyond(middle) { high = middle } else { low = middle }
     }
-    high * h
+    (high * h, if rolled(high) { FallCause::Roll } else { FallCause::Steer })
 }
 
 /// The state `tau` seconds into a step of `h`: angles on the cubic of [`time_of_fall`], rates on a

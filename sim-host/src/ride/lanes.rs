@@ -226,6 +226,7 @@ pub(super) fn run<const N: usize>(
                 let human = abreast.humans.as_mut().map(|humans| humans.one(lane));
                 let mut period = Period {
                     conditions,
+                    most_pieces: ride.pieces_left,
                     full: &mut ride.full,
                     assist_nm: pushes.assist_nm,
                     motor: ride.outfit.as_ref().map(|outfit| &outfit.motor),
@@ -241,7 +242,7 @@ pub(super) fn run<const N: usize>(
                 last
             } else {
                 ride.full = None;
-                Segment { was, is: get(&after, lane), offset: 0.0, h }
+                Segment { was, is: get(&after, lane), offset: 0.0, h, pieces: 0 }
             };
             if let Some(finished) = ride.book(conditions, pushes, &was, &last) {
                 done.push((ride.index, finished));

@@ -6,7 +6,7 @@ use super::preroll::Ready;
 use super::processor::Processor;
 use super::refine::Segment;
 use super::sensor::{Reading, Sensors, frame};
-use super::{Assist, Conditions, Effort, FinalState, Outcome, Ride, Start};
+use super::{Assist, Conditions, Effort, FallCause, FinalState, Outcome, Ride, Start};
 use crate::bicycle::{FullState, State};
 use control::{Causes, Mode, Plan, SensorFrame};
 
@@ -61,6 +61,10 @@ pub(super) struct Logbook {
     opposed: u32,
     /// Largest roll and steer of the last second.
     late: [f64; 2],
+    /// Control periods since the roll first passed [`super::LaidFlat::roll_rad`], from 1; 0 before.
+    flat_ticks: u32,
+    /// Shorter steps it may still take.
+    pub(super) pieces_left: u32,
 }
 
 impl Logbook {
@@ -84,6 +88,8 @@ impl Logbook {
             squares: [0.0; 2],
             opposed: 0,
             late: [0.0; 2],
+            flat_ticks: 0,
+            pieces_left: conditions.most_pieces(),
         }
     }
 
@@ -127,12 +133,12 @@ impl Logbook {
         last: &Segment,
     ) -> Option<Ride> {
         let (h, is) = (conditions.step_s, &last.is);
-        if fallen(is) {
-            let tau = time_of_fall(&last.was, is, last.h);
+        if fallen(&conditions.fall, is) {
+            let (tau, by) = time_of_fall(&conditions.fall, (&last.was, is), last.h);
             let time_s = f64::from(self.step) * h + last.offset + tau;
             let end = at_fall(&last.was, is, tau, last.h);
             self.step += 1;
-            return Some(self.finish(Outcome::Fallen { time_s }, time_s, &end));
+            return Some(self.finish(Outcome::Fallen { time_s, by }, time_s, &end));
         }
         let e = &mut self.effort;
         let Pushes { assist_nm, rider_nm } = pushes;
@@ -155,7 +161,25 @@ impl Logbook {
         if t > conditions.time_limit_s - 1.0 {
             self.late = [self.late[0].max(is.roll.abs()), self.late[1].max(is.steer.abs())];
         }
+        if let Some(by) = self.lies(conditions, last) {
+            let time_s = t - h + last.offset + last.h;
+            return Some(self.finish(Outcome::Fallen { time_s, by }, time_s, is));
+        }
         (self.step >= conditions.steps()).then(|| self.finish(self.outlasted(conditions), t, is))
+    }
+
+    /// What makes the ride count as fallen after a control period that ended in `last`, short of the angles of a fall.
+    fn lies(&mut self, conditions: &Conditions, last: &Segment) -> Option<FallCause> {
+        self.pieces_left = self.pieces_left.saturating_sub(last.pieces);
+        if self.pieces_left == 0 {
+            return Some(FallCause::TooQuick);
+        }
+        let flat = conditions.fall.flat?;
+        let beyond = last.is.roll.abs() > flat.roll_rad;
+        self.flat_ticks += u32::from(beyond || self.flat_ticks > 0);
+        let over = f64::from(self.flat_ticks) * conditions.step_s > flat.lasting_s;
+        let came_back = self.flat_ticks > 0 && !beyond && self.step >= conditions.steps();
+        (over || came_back).then_some(FallCause::LaidFlat)
     }
 
     fn finish(&self, outcome: Outcome, t: f64, state: &State<f64>) -> Ride {

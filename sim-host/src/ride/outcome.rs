@@ -1,14 +1,16 @@
 //! What became of a ride.
 
-use super::Start;
+use super::{FallCause, Start};
 
 /// How a ride ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// Roll or steer passed 90 degrees.
+    /// By the ride's [`super::FallCriterion`].
     Fallen {
         /// When \[s\].
         time_s: f64,
+        /// What made it count as fallen.
+        by: FallCause,
     },
     /// Not fallen within the time limit, and come back close to straight and upright.
     Recovered,
@@ -21,7 +23,15 @@ impl Outcome {
     /// When it fell \[s\], if it did.
     pub fn time_to_fall_s(&self) -> Option<f64> {
         match self {
-            Outcome::Fallen { time_s } => Some(*time_s),
+            Outcome::Fallen { time_s, .. } => Some(*time_s),
+            Outcome::Recovered | Outcome::Undecided => None,
+        }
+    }
+
+    /// What made it count as fallen, if it did.
+    pub fn fall(&self) -> Option<FallCause> {
+        match self {
+            Outcome::Fallen { by, .. } => Some(*by),
             Outcome::Recovered | Outcome::Undecided => None,
         }
     }
@@ -99,6 +109,11 @@ pub struct Ride {
 }
 
 impl Ride {
+    /// Whether nothing disturbed it: the model then stays exactly upright, stable or not.
+    pub fn undisturbed(&self) -> bool {
+        self.effort.peak_roll_rad == 0.0 && self.effort.peak_steer_rad == 0.0 && !self.fell()
+    }
+
     /// Whether it fell.
     pub fn fell(&self) -> bool {
         matches!(self.outcome, Outcome::Fallen { .. })

@@ -31,6 +31,8 @@ pub(super) struct Segment {
     pub(super) offset: f64,
     /// Its length \[s\].
     pub(super) h: f64,
+    /// Shorter steps taken in the period up to its end.
+    pub(super) pieces: u32,
 }
 
 /// What tells how quick the motion is: the sum of squares of its rates \[rad^2/s^2\], the cosine of
@@ -62,6 +64,8 @@ fn pieces([squares, cos_roll, ..]: [f64; 4], h: f64) -> f64 {
 /// A control period of one ride.
 pub(super) struct Period<'a> {
     pub(super) conditions: &'a Conditions,
+    /// Most shorter steps it may take, from 1.
+    pub(super) most_pieces: u32,
     /// All speeds from one such period to the next, while they are needed.
     pub(super) full: &'a mut Option<FullState>,
     /// The assist's torque at its start \[N m\].
@@ -107,11 +111,11 @@ impl Period<'_> {
     }
 }
 
-/// The last segment of a control period from `from`: the one that ends it, or the one in which the
-/// bicycle falls.
+/// The last segment of a control period from `from`: the one that ends it, the one in which the
+/// bicycle falls, or the last one allowed.
 pub(super) fn refined(period: &mut Period, from: &State<f64>) -> Segment {
     let (b, step_s) = (&period.conditions.bicycle, period.conditions.step_s);
-    let (mut was, mut offset) = (*from, 0.0);
+    let (mut was, mut offset, mut taken) = (*from, 0.0, 0);
     loop {
         let motion = Motion::new(b, &was);
         let quickness = quickness(b, &motion);
@@ -129,8 +133,9 @@ pub(super) fn refined(period: &mut Period, from: &State<f64>) -> Segment {
         if let Some(human) = &mut period.human {
             human.body = Stages::new(human.body.end);
         }
-        if pieces <= 1.0 || fallen(&is) {
-            return Segment { was, is, offset, h };
+        taken += 1;
+        if pieces <= 1.0 || taken >= period.most_pieces || fallen(&period.conditions.fall, &is) {
+            return Segment { was, is, offset, h, pieces: taken };
         }
         (was, offset) = (is, offset + h);
     }

@@ -17,7 +17,8 @@ pub struct Axis {
 
 impl Axis {
     /// Reads `KEY=VALUES`: words and ranges, separated by commas. `A:B:STEP` and `A:B/N` are evenly
-    /// spaced, `A:B/logN` evenly in the logarithm; numbers may have a unit, as `0ms:100ms/6`.
+    /// spaced, `A:B/logN` evenly in the logarithm; numbers may have a unit, as `0ms:100ms/6`. A comma that is part of a
+    /// value has a backslash before it.
     ///
     /// # Errors
     /// Names what is wrong with which range or word.
@@ -30,10 +31,13 @@ impl Axis {
             return Err(wrong());
         }
         let mut values: Vec<String> = Vec::new();
-        for item in list.split(',').map(str::trim) {
-            for value in expand(item).map_err(|e| format!("{key}: {e}"))? {
-                if values.contains(&value) {
-                    return Err(format!("{key}: `{value}` is there twice"));
+        for item in items(list) {
+            for value in expand(item.trim()).map_err(|e| format!("{key}: {e}"))? {
+                if let Some(same) = values.iter().find(|other| equal(other, &value)) {
+                    return Err(match *same == value {
+                        true => format!("{key}: `{value}` is there twice"),
+                        false => format!("{key}: `{same}` and `{value}` are the same, there twice"),
+                    });
                 }
                 values.push(value);
             }
@@ -48,8 +52,43 @@ impl Axis {
     pub fn numbers(&self) -> Option<(Vec<f64>, &str)> {
         let all: Vec<(f64, &str)> = self.values.iter().map(|v| number(v)).collect::<Option<_>>()?;
         let (_, unit) = *all.first()?;
-        all.iter().all(|(_, u)| *u == unit).then(|| (all.iter().map(|(x, _)| *x).collect(), unit))
+        if all.iter().all(|(_, u)| *u == unit) {
+            return Some((all.iter().map(|(x, _)| *x).collect(), unit));
+        }
+        let seconds = all.iter().map(|&(x, unit)| seconds(x, unit)).collect::<Option<_>>()?;
+        Some((seconds, "s"))
     }
+}
+
+/// A time in seconds, by its unit.
+fn seconds(x: f64, unit: &str) -> Option<f64> {
+    match unit {
+        "ms" => Some(x / 1e3),
+        "s" => Some(x),
+        _ => None,
+    }
+}
+
+/// Whether two values are the same word, number or time.
+fn equal(a: &str, b: &str) -> bool {
+    let (Some((x, u)), Some((y, w))) = (number(a), number(b)) else { return a == b };
+    if u == w { x == y } else { seconds(x, u).is_some_and(|x| Some(x) == seconds(y, w)) }
+}
+
+/// The items of a list separated by commas, but for those with a backslash before them.
+fn items(list: &str) -> Vec<String> {
+    let mut items = vec![String::new()];
+    let mut letters = list.chars().peekable();
+    while let Some(letter) = letters.next() {
+        let item = items.last_mut();
+        match (letter, item) {
+            ('\\', Some(item)) if letters.peek() == Some(&',') => item.extend(letters.next()),
+            (',', _) => items.push(String::new()),
+            (letter, Some(item)) => item.push(letter),
+            (_, None) => {}
+        }
+    }
+    items
 }
 
 /// A number and the unit behind it, if the whole text is that.
@@ -144,6 +183,7 @@ mod tests {
         assert_eq!(values("sensor-delay=0:0.3:0.1s"), ["0s", "0.1s", "0.2s", "0.3s"]);
         assert_eq!(values("taper=none,0.5:1.5"), ["none", "0.5:1.5"]);
         assert_eq!(values("law=h,cl2:4,data/laws/example.toml"), ["h", "cl2:4", "data/laws/example.toml"]);
+        assert_eq!(values(r"law=h,a\,b.toml"), ["h", "a,b.toml"]);
         assert_eq!(values("set=shape.rate=3"), ["shape.rate=3"]);
     }
 
@@ -152,7 +192,8 @@ mod tests {
         let numbers = |text: &str| Axis::parse(text).unwrap().numbers().map(|(n, u)| (n, u.to_owned()));
         assert_eq!(numbers("a=0ms,20ms"), Some((vec![0.0, 20.0], "ms".into())));
         assert_eq!(numbers("a=1e3,-2"), Some((vec![1e3, -2.0], String::new())));
-        for text in ["a=0ms,1s", "a=1,none", "a=inf", "a=nan", "a=0.5:1.5"] {
+        assert_eq!(numbers("a=500ms,1s"), Some((vec![0.5, 1.0], "s".into())));
+        for text in ["a=0ms,1", "a=1,none", "a=inf", "a=nan", "a=0.5:1.5"] {
             assert_eq!(numbers(text), None, "{text}");
         }
     }
@@ -166,6 +207,9 @@ mod tests {
             ("a=", "empty"),
             ("a=1,,2", "empty"),
             ("a=1,1", "twice"),
+            ("a=1,1.0", "`1` and `1.0` are the same"),
+            ("a=20ms,0.02s", "are the same"),
+            ("a=0:1:0.5,5e-1", "are the same"),
             ("a=1:0:0.1", "must rise"),
             ("a=0:1:0", "must rise"),
             ("a=1:1/3", "must rise"),

@@ -2,17 +2,18 @@
 
 use super::{Axis, Found, Grid, SweepError, Unit};
 use crate::report::sweep::SweepDocument;
-use crate::ride::Effort;
+use crate::ride::{Effort, FallCause};
 use netcdf3::{DataSet, FileWriter, Version, WriteError};
 
 /// The names of its variables besides the axes'.
-pub(crate) const NAMES: [&str; 9] = [
+pub(crate) const NAMES: [&str; 10] = [
     "speed",
     "height",
     "capped",
     "peak_torque",
     "rms_torque",
     "peak_slew",
+    "fall_cause",
     "area",
     "mean_height",
     "complete",
@@ -138,9 +139,19 @@ fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'
             all,
             per_speed(|f| effort(f, |e| e.peak_slew_nm_s)),
         ),
+        variable("fall_cause", "1", FALL_CODES, all, per_speed(fall_code)),
         variable("area", "rad m s-2", "area under height", cells, per_cell(&|u| grid.area(u))),
         variable("mean_height", "rad s-1", "mean of height", cells, per_cell(&Unit::mean_height)),
     ]
+}
+
+/// The codes of `fall_cause`, in the order of [`FallCause::ALL`].
+const FALL_CODES: &str = "what the ride beyond height fell by: 0 roll, 1 steer, 2 laid-flat, 3 too-quick, 4 no-motion; NaN nothing fell";
+
+fn fall_code(found: &Found) -> f64 {
+    let name = found.fall.as_deref();
+    let code = FallCause::ALL.iter().position(|cause| Some(cause.name()) == name);
+    code.map_or(f64::NAN, |code| code as f64)
 }
 
 fn effort(found: &Found, of: fn(&Effort) -> f64) -> f64 {

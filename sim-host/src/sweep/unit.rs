@@ -16,6 +16,9 @@ pub struct Found {
     pub capped: bool,
     /// What the ride at `height` took; null if that is 0.
     pub effort: Option<Effort>,
+    /// What made the nearest ride beyond `height` count as fallen: "roll", "steer", "laid-flat", "too-quick" or
+    /// "no-motion"; null if nothing fell.
+    pub fall: Option<String>,
 }
 
 /// The basin of one cell.
@@ -46,6 +49,7 @@ impl Unit {
             height: c.upper,
             capped: c.capped,
             effort: c.border.map(|ride| ride.effort),
+            fall: c.beyond.map(|cause| cause.name().into()),
         };
         Self {
             id: id.into(),

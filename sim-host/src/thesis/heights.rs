@@ -49,11 +49,13 @@ pub fn rmse(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
 mod tests {
     use super::*;
     use crate::basin::{ScanPoint, Work};
-    use crate::ride::Outcome;
+    use crate::ride::{FallCause, Outcome};
 
     #[test]
     fn the_coarse_grid_stops_at_its_first_fall() {
-        let fell = |rate: f64| if rate > 1.6 { Outcome::Fallen { time_s: 1.0 } } else { Outcome::Recovered };
+        let fell = |rate: f64| {
+            if rate > 1.6 { Outcome::Fallen { time_s: 1.0, by: FallCause::Roll } } else { Outcome::Recovered }
+        };
         let scan: Vec<_> = (1..=12)
             .map(|i| f64::from(i) * 0.25)
             .map(|rate| ScanPoint { rate, outcome: fell(rate) })
@@ -65,6 +67,7 @@ mod tests {
             islands: vec![],
             scan,
             border: None,
+            beyond: None,
             work: Work::default(),
         };
         let basin = Basin { columns: vec![column.clone(), Column { speed: 4.0, ..column }] };

@@ -1,9 +1,11 @@
 //! Flight cards: the command line.
 
+mod any_bicycle;
 mod bad_input;
 mod contract;
 mod design;
 mod document;
+mod falls;
 mod identify;
 mod interrupt;
 mod options;
@@ -11,5 +13,6 @@ mod outputs;
 mod parsers;
 mod plant;
 mod riders;
+mod small_words;
 mod study;
 mod sweep;

@@ -58,7 +58,8 @@ fn the_comparison_of_basins_notices_every_bit() {
     let bump = |x: f64| f64::from_bits(x.to_bits() ^ 1);
     refused(&["upper border", "4 m/s"], &|b| b.columns[1].upper = bump(b.columns[1].upper));
     refused(&["2 rad/s", "7 m/s"], &|b| {
-        b.columns[2].scan[0].outcome = sim_host::ride::Outcome::Fallen { time_s: 1.0 };
+        b.columns[2].scan[0].outcome =
+            sim_host::ride::Outcome::Fallen { time_s: 1.0, by: sim_host::ride::FallCause::Roll };
     });
     refused(&["work", "2 m/s"], &|b| b.columns[0].work.rides += 1);
     refused(&["3 m/s"], &|b| b.columns[0].speed = 3.0);

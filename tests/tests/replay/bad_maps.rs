@@ -34,7 +34,7 @@ fn wrong_maps() {
         bench.run("replay ride.csv --map my.toml").refused_naming(&named);
     }
     for (line, named) in [
-        ("'cross.wheelbase_m' = 99", &["cross.wheelbase_m = 99", "0.5 to 3"][..]),
+        ("'cross.wheelbase_m' = 99", &["cross.wheelbase_m = 99", "0.1 to 5"][..]),
         ("'cross.wheelbase_m' = 'long'", &["cross.wheelbase_m = long"]),
         ("'cross.yaw_slope' = 'maybe'", &["cross.yaw_slope = maybe"]),
     ] {

@@ -3,18 +3,18 @@
 use super::*;
 use crate::basin::{Axis, Basin, Column, Island, ScanPoint, Work};
 use crate::eigen::{CriticalSpeeds, Mode};
-use crate::ride::{Outcome, TracePoint};
+use crate::ride::{FallCause, Outcome, TracePoint};
 use nalgebra::Complex;
 
 fn column(speed: f64, upper: f64, islands: &[Island]) -> Column {
     let outcome = |rate| match rate {
-        r if r > upper => Outcome::Fallen { time_s: r / 4.0 },
+        r if r > upper => Outcome::Fallen { time_s: r / 4.0, by: FallCause::Roll },
         r if r < 2.0 => Outcome::Recovered,
         _ => Outcome::Undecided,
     };
     let scan = (1..=8).map(f64::from).map(|rate| ScanPoint { rate, outcome: outcome(rate) }).collect();
     let (islands, work) = (islands.to_vec(), Work::default());
-    Column { speed, upper, capped: upper >= 8.0, islands, scan, border: None, work }
+    Column { speed, upper, capped: upper >= 8.0, islands, scan, border: None, beyond: None, work }
 }
 
 fn basin_of(uppers: &[f64]) -> Basin {
@@ -101,7 +101,7 @@ fn rides_of_any_length_are_drawn() {
     for n in [0, 1, 2, 1500] {
         let trace: Vec<_> = (0..n).map(point).collect();
         let draw = |outcome| svg(&ride(&RideFigure { title: "", trace: &trace, outcome }));
-        let text = draw(Outcome::Fallen { time_s: 1.5 });
+        let text = draw(Outcome::Fallen { time_s: 1.5, by: FallCause::Steer });
         for words in
             ["Angle [deg]", "Rate [rad/s]", "Speed [m/s]", "Torque [N m]", "Time [s]", "falls at 1.500 s"]
         {

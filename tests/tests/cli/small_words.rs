@@ -1,0 +1,105 @@
+//! Small things that mislead: names of files, remarks in them, numbers that are zero or tiny.
+
+use serde_json::json;
+use std::io::Write;
+use std::process::Stdio;
+use tests::cli::{Bench, bicycle_with};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+
+/// Situation: a bicycle in a file whose name has a `#`, and one on standard input.
+/// Action: check both; ride the second over two cells of a sweep.
+/// Must hold: both are read; a name that is no file still names a set of a collection.
+#[test]
+fn names_with_a_hash_and_standard_input() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("my bike #2.toml", bicycle_with("w", "w = 1.1"));
+    assert_eq!(
+        bench.json("bicycle check --bicycle 'my bike #2.toml'")["bicycle"]["parameters"]["w"],
+        json!(1.1)
+    );
+    bench.run("bicycle check --bicycle 'my bike #3.toml'").refused_naming(&["my bike"]);
+    for line in [
+        "bicycle check --bicycle -",
+        "basin compare --speeds 4 --max-rate 1 --scan-step 1 a=--bicycle=- b=--bicycle=-",
+    ] {
+        let mut child = bench.command(line).stdin(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
+        child.stdin.take().unwrap().write_all(bicycle_with("w", "w = 1.1").as_bytes()).unwrap();
+        assert!(child.wait().unwrap().success(), "{line}");
+    }
+}
+
+/// Situation: remarks of a wrong kind in a bicycle's file, another form of file, a head angle for the tilt, a tiny number.
+/// Action: check the bicycles.
+/// Must hold: refused with file, key and value; the head angle is doubted with the tilt it would be; no line of zeros.
+#[test]
+fn remarks_are_looked_at() {
+    let bench = Bench::new(PROGRAM);
+    for (line, named) in [
+        ("w = 1.02\nschema = 99", &["`schema` = 99", "reads 1"][..]),
+        ("w = 1.02\nrider_included = 'yes'", &["`rider_included`", "boolean", "yes"]),
+        ("w = 1e-320", &["`w` = 1e-320", "0.1 to 5 m"]),
+    ] {
+        bench.write("my.toml", bicycle_with("w", line));
+        bench.run("bicycle check --bicycle my.toml").refused_naming(&[&["my.toml"], named].concat());
+    }
+    bench.write("my.toml", bicycle_with("source", "source = 5"));
+    bench.run("bicycle check --bicycle my.toml").refused_naming(&["my.toml", "`source`", "string"]);
+    bench.write("my.toml", bicycle_with("w", "w = 1.02\nschema = 1\nrider_included = true"));
+    assert_eq!(bench.run("bicycle check --bicycle my.toml").code, Some(0));
+    bench.write("my.toml", bicycle_with("lam", "lam = 1.2566"));
+    let run = bench.run("bicycle check --bicycle my.toml");
+    assert!(run.stderr.contains("head angle") && run.stderr.contains("0.3142 rad"), "{}", run.stderr);
+    assert!(run.stdout.contains("doubtful"), "{}", run.stdout);
+}
+
+/// Situation: a ride that nothing disturbs, unstable at its speed.
+/// Action: ride, read the text.
+/// Must hold: it is not called recovered in words, and its document says it was undisturbed.
+#[test]
+fn an_undisturbed_ride_tells_nothing_of_stability() {
+    let bench = Bench::new(PROGRAM);
+    let text = bench.run("ride --law none --speed 2").stdout;
+    assert!(text.contains("undisturbed") && !text.contains("recovered"), "{text}");
+    assert_eq!(bench.json("ride --law none --speed 2")["undisturbed"], json!(true));
+    assert_eq!(bench.json("ride --law none --speed 2 --steer-rate 1e-9")["undisturbed"], json!(false));
+}
+
+/// Situation: the table of a ride.
+/// Action: ask for the accelerations of its states.
+/// Must hold: a line for each, the first those of the same state written as states and torques; a table with `;` is told why.
+#[test]
+fn the_table_of_a_ride_is_one_of_states() {
+    let bench = Bench::new(PROGRAM);
+    assert_eq!(bench.run("ride --speed 4 --steer-rate 1 --time-limit 0.05 --csv ride.csv -q").code, Some(0));
+    let table = bench.read("ride.csv");
+    let answer = bench.run("bicycle accel --states ride.csv");
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    assert_eq!(answer.stdout.lines().count(), 1 + 50);
+    let row: Vec<&str> = table.lines().filter(|l| !l.starts_with('#')).nth(20).unwrap().split(',').collect();
+    let header: Vec<&str> = table.lines().find(|l| !l.starts_with('#')).unwrap().split(',').collect();
+    let of = |name: &str| row[header.iter().position(|h| *h == name).unwrap()];
+    let states = ["roll", "steer", "roll_rate", "steer_rate", "rear_wheel_rate"].map(of).join(",");
+    bench.write(
+        "states.csv",
+        format!(
+            "roll,steer,roll_rate,steer_rate,rear_wheel_rate,roll_torque,steer_torque\n{states},0,{}\n",
+            of("motor_torque")
+        ),
+    );
+    let same = bench.run("bicycle accel --states states.csv").stdout;
+    assert_eq!(same.lines().nth(1), answer.stdout.lines().nth(20));
+    bench.write("semicolons.csv", "roll;steer\n1;2\n");
+    bench.run("bicycle accel --states semicolons.csv").refused_naming(&["`roll` is missing", "commas"]);
+}
+
+/// Situation: more eigenvalues asked for than can be found.
+/// Action: ask.
+/// Must hold: what is found is written, and a note says how many, at which speed.
+#[test]
+fn missing_eigenvalues_are_told() {
+    let bench = Bench::new(PROGRAM);
+    let run = bench.run("eigen --rider smart --roots 40 --speeds 4");
+    assert!(run.code == Some(0) && run.stderr.contains("--roots 40: "), "{}", run.stderr);
+    assert_eq!(bench.run("eigen --rider smart --roots 8 --speeds 4").stderr, "");
+}
