@@ -13,6 +13,8 @@ pub struct Monitor {
     pub frames: u64,
     /// Frames that did not, by the gaps in their numbers; where these went round meanwhile, by the control steps as well.
     pub missing: u64,
+    /// Frames that came whole and say what this program does not know.
+    pub unknown: u64,
     /// Starts of the board while it was heard.
     pub restarts: u32,
     /// The newest control step.
@@ -81,7 +83,10 @@ impl Monitor {
             Ok(Message::Telemetry(step)) => return self.step(told.sequence, step),
             Ok(Message::Fault(record)) => News::Fault(Box::new(record.into())),
             Ok(Message::Log(words)) => News::Log(words.into()),
-            Ok(_) | Err(_) => News::Unknown,
+            Ok(_) | Err(_) => {
+                self.unknown += 1;
+                News::Unknown
+            }
         };
         match self.counted.sequence {
             Some(_) => self.counted.since = self.counted.since.wrapping_add(1),

@@ -1,5 +1,6 @@
 //! The options that say who rides what under which conditions; `ride` and `basin` share them.
 
+use super::outputs::complain_once;
 use super::parameter_file::ParameterFile;
 use super::plant_args::{LONGEST_S, PlantArgs, whole_ticks};
 use super::rider_args::{RiderArgs, step};
@@ -11,6 +12,7 @@ use crate::leaves;
 use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
 use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
+use crate::rider::doubts;
 use clap::ValueEnum;
 use control::param::Leaf;
 use control::{Config, Law, Limits, Taper, Wheel};
@@ -121,6 +123,7 @@ pub(super) struct Setup {
     pub(super) conditions: Conditions,
     pub(super) config: ResolvedConfig,
     pub(super) parameters: crate::bicycle::Parameters,
+    pub(super) measured: Option<crate::bicycle::uncertain::Measured>,
 }
 
 impl ConditionArgs {
@@ -189,6 +192,7 @@ impl ConditionArgs {
         fit(&mut config, &Geometry::new(&bicycle.parameters), plant.sensors.imu.point_m);
         let limited = config.limits != Limits::default();
         let plan = config.plan().map_err(|e| match option_of(&e.leaf) {
+            Some("--torque-limit") if self.torque_limit.is_none() => e.to_string(),
             Some(option) => format!("{option}: {e}"),
             None => e.to_string(),
         })?;
@@ -202,6 +206,8 @@ impl ConditionArgs {
             AssistKind::Ideal => Assist::Ideal(Box::new(law.clone())),
         };
         let sensor_delay_ticks = whole_ticks("--sensor-delay", self.sensor_delay, step_s, LONGEST_S)?;
+        let doubts = rider.as_ref().map_or(Vec::new(), |(_, table, _)| doubts(&bicycle, table));
+        doubts.iter().for_each(|doubt| complain_once(&format!("warning: {doubt}")));
         let resolved = rider.as_ref().map(|(rider, table, fit)| ResolvedRider::new(table, *fit, rider));
         let conditions = Conditions {
             rider: rider.map(|(rider, ..)| rider),
@@ -217,7 +223,8 @@ impl ConditionArgs {
         conditions.check()?;
         let preset = if product { "product" } else { "thesis" };
         let law = ResolvedLaw::new(&law_name, &law);
-        let config = ResolvedConfig::new(preset, &bicycle, resolved, law, &conditions);
-        Ok(Setup { conditions, config, parameters: bicycle.parameters })
+        let resolved = ResolvedConfig::new(preset, &bicycle, resolved, law, &conditions);
+        let config = ResolvedConfig { warnings: doubts, ..resolved };
+        Ok(Setup { conditions, config, parameters: bicycle.parameters, measured: bicycle.measured })
     }
 }

@@ -1,6 +1,6 @@
 //! `sim-host eigen`.
 
-use super::outputs::{OutputArgs, Results};
+use super::outputs::{OutputArgs, Results, complain_once};
 use super::rider_args::RiderArgs;
 use super::{Ended, Failure, law, speeds, warn};
 use crate::bicycle::catalogue;
@@ -12,6 +12,7 @@ use crate::report::document::{EigenDocument, SCHEMA};
 use crate::report::figure::{self, EigenFigure};
 use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider, Tool};
 use crate::report::{table, terminal};
+use crate::rider::doubts;
 use control::Capsize;
 use nalgebra::Complex;
 use rayon::prelude::*;
@@ -97,9 +98,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     warn(&bicycle);
     let law = law::parse(&args.law)?;
     let (resolved, rider) = match args.rider.load()? {
-        Some((rider, table, fit)) => (Some(ResolvedRider::new(&table, fit, &rider)), Some(rider)),
+        Some((rider, table, fit)) => {
+            (Some(ResolvedRider::new(&table, fit, &rider)), Some((rider, doubts(&bicycle, &table))))
+        }
         None => (None, None),
     };
+    let (rider, doubts) = rider.map_or((None, Vec::new()), |(rider, doubts)| (Some(rider), doubts));
+    doubts.iter().for_each(|doubt| complain_once(&format!("warning: {doubt}")));
     let outputs = args.outputs.open(None)?;
     let actuator = args.actuator.actuator();
     let count = match (&rider, actuator.delay_s > 0.0) {
@@ -118,6 +123,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         tool: Tool::this(),
         bicycle: ResolvedBicycle::new(&bicycle),
         rider: resolved,
+        warnings: doubts,
         law: ResolvedLaw::new(&args.law, &law),
         capsize: ResolvedCapsize::new(&capsize),
         actuator: Some(actuator).filter(|a| *a != LinearActuator::default()),
@@ -136,7 +142,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let title = format!("Eigenvalues: {}{rider}, law {}{beside}{turned}", bicycle.name, args.law);
     let figure =
         EigenFigure { speeds: &args.speeds, modes: &modes, stable: &ranges, critical, title: &title };
-    let config = json!({"bicycle": document.bicycle, "rider": document.rider, "law": document.law, "capsize": document.capsize,
+    let config = json!({"bicycle": document.bicycle, "rider": document.rider, "warnings": document.warnings, "law": document.law, "capsize": document.capsize,
         "actuator": document.actuator});
     let in_table = if args.modes { &modes[..] } else { &[] };
     outputs.write(Results {

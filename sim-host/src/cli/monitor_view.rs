@@ -90,8 +90,9 @@ fn roll_rate(step: &Telemetry) -> String {
 }
 
 fn counts(monitor: &Monitor, damaged: u32) -> String {
-    let Monitor { frames, missing, restarts, .. } = monitor;
-    format!("{frames} frames, {missing} missing, {damaged} damaged, {restarts} restarts")
+    let Monitor { frames, missing, unknown, restarts, .. } = monitor;
+    let unknown = if *unknown > 0 { format!("{unknown} not understood, ") } else { String::new() };
+    format!("{frames} frames, {missing} missing, {damaged} damaged, {unknown}{restarts} restarts")
 }
 
 /// What was heard, in a line at the end.

@@ -22,6 +22,8 @@ pub struct PlaneDocument {
     pub complete: bool,
     /// Area inside the outline \[rad^2/s^2\].
     pub area: Option<f64>,
+    /// Whether the area is a lower bound, as nothing fell up to the end of some ray.
+    pub area_capped: bool,
     /// The border around the undisturbed ride, all the way round: `[steer rate, roll rate]` \[rad/s\].
     pub outline: Vec<[f64; 2]>,
     /// The rays of one half; the other half is the mirror image.
@@ -65,6 +67,7 @@ impl PlaneDocument {
             search,
             complete,
             area: complete.then(|| plane.area()),
+            area_capped: plane.capped(),
             outline: plane.outline().into_iter().map(|(steer, roll)| [steer, roll]).collect(),
             rays: plane.rays.iter().map(entry).collect(),
             work: plane.work(),
@@ -84,6 +87,8 @@ pub struct PlaneRow {
     pub outcome: &'static str,
     /// Time to fall, empty if it did not.
     pub time_to_fall_s: Option<f64>,
+    /// Of a border: whether nothing fell up to the ray's end.
+    pub capped: Option<bool>,
 }
 
 /// The scans and borders as rows; the mirror images left out.
@@ -92,9 +97,10 @@ pub fn plane_rows(plane: &Plane) -> Vec<PlaneRow> {
     for ray in &plane.rays {
         let row = |s: f64, outcome, time_to_fall_s| {
             let (steer_rate_rad_s, roll_rate_rad_s) = ray.at(s);
-            PlaneRow { steer_rate_rad_s, roll_rate_rad_s, outcome, time_to_fall_s }
+            PlaneRow { steer_rate_rad_s, roll_rate_rad_s, outcome, time_to_fall_s, capped: None }
         };
-        rows.push(row(ray.column.upper, "border", None));
+        let border = row(ray.column.upper, "border", None);
+        rows.push(PlaneRow { capped: Some(ray.column.capped), ..border });
         let scan = ray.column.scan.iter();
         rows.extend(scan.map(|p| row(p.rate, p.outcome.name(), p.outcome.time_to_fall_s())));
     }

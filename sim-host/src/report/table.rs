@@ -63,6 +63,23 @@ pub struct BasinRow {
     pub outcome: &'static str,
     /// Time to fall, empty if it did not.
     pub time_to_fall_s: Option<f64>,
+    /// Of a border: whether it is a lower bound, as nothing fell up to the largest rate tried.
+    pub capped: Option<bool>,
+}
+
+/// The quantiles of drawn basins as rows, outcomes `border-5%`, `border-50%` and `border-95%`.
+pub fn drawn_rows(speeds: &[f64], drawn: &crate::basin::Drawn) -> Vec<BasinRow> {
+    const NAMES: [&str; 3] = ["border-5%", "border-50%", "border-95%"];
+    let row = |speed_m_s, (outcome, rate_rad_s)| BasinRow {
+        speed_m_s,
+        rate_rad_s,
+        outcome,
+        time_to_fall_s: None,
+        capped: None,
+    };
+    let of_speed =
+        |(&v, quantiles): (&f64, [f64; 3])| NAMES.into_iter().zip(quantiles).map(move |q| row(v, q));
+    speeds.iter().zip(drawn.heights()).flat_map(of_speed).collect()
 }
 
 /// The scan and, per speed, the border as rows.
@@ -74,8 +91,9 @@ pub fn basin_rows(basin: &crate::basin::Basin) -> Vec<BasinRow> {
             rate_rad_s: rate,
             outcome,
             time_to_fall_s: time,
+            capped: None,
         };
-        rows.push(row(c.upper, "border", None));
+        rows.push(BasinRow { capped: Some(c.capped), ..row(c.upper, "border", None) });
         rows.extend(c.scan.iter().map(|p| row(p.rate, p.outcome.name(), p.outcome.time_to_fall_s())));
     }
     rows

@@ -6,7 +6,7 @@ use crate::ride::Effort;
 use netcdf3::{DataSet, FileWriter, Version, WriteError};
 
 /// The names of its variables besides the axes'.
-pub(crate) const NAMES: [&str; 9] = [
+pub(crate) const NAMES: [&str; 10] = [
     "speed",
     "height",
     "capped",
@@ -15,6 +15,7 @@ pub(crate) const NAMES: [&str; 9] = [
     "peak_slew",
     "area",
     "mean_height",
+    "area_capped",
     "complete",
 ];
 
@@ -116,7 +117,13 @@ fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'
     vec![
         variable("speed", "m s-1", "forward speed", &all[all.len() - 1..], speeds.clone()),
         variable("height", "rad s-1", "largest disturbance not to fall", all, per_speed(|f| f.height)),
-        variable("capped", "1", "1 where nothing fell", all, per_speed(|f| f64::from(u8::from(f.capped)))),
+        variable(
+            "capped",
+            "1",
+            "1 where nothing fell: height is a lower bound",
+            all,
+            per_speed(|f| f64::from(u8::from(f.capped))),
+        ),
         variable(
             "peak_torque",
             "N m",
@@ -140,6 +147,13 @@ fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'
         ),
         variable("area", "rad m s-2", "area under height", cells, per_cell(&|u| grid.area(u))),
         variable("mean_height", "rad s-1", "mean of height", cells, per_cell(&Unit::mean_height)),
+        variable(
+            "area_capped",
+            "1",
+            "1 where area and mean_height are lower bounds",
+            cells,
+            per_cell(&|u| f64::from(u8::from(u.capped()))),
+        ),
     ]
 }
 

@@ -38,6 +38,7 @@ impl Figure {
         let cap = series.iter().flat_map(|(_, b)| &b.columns).flat_map(|c| &c.scan).map(|p| p.rate);
         let title = caption.split(". ").next().unwrap_or_default();
         let drawn = BasinFigure {
+            band: None,
             title,
             series,
             self_stable: study.self_stable(),

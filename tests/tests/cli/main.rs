@@ -1,6 +1,7 @@
 //! Flight cards: the command line.
 
 mod bad_input;
+mod capped;
 mod contract;
 mod design;
 mod document;

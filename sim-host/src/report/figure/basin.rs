@@ -22,6 +22,8 @@ pub struct BasinFigure<'a> {
     pub axis: Axis,
     /// Largest disturbance tried \[rad/s\].
     pub cap: f64,
+    /// A band of heights around one basin: its meaning, and per speed \[m/s\] its edges \[rad/s\].
+    pub band: Option<(&'a str, &'a [(f64, f64, f64)])>,
 }
 
 /// The figure of one basin, or of the outlines of several.

@@ -10,6 +10,9 @@ use super::time_scale::TimeScale;
 use crate::basin::{Basin, Column};
 use crate::ride::Outcome;
 
+/// How opaque a band is.
+const BAND: f64 = 0.3;
+
 /// From where to where every column stands for the basin \[m/s\]: half way to its neighbours.
 fn edges(basin: &Basin) -> Vec<(f64, f64)> {
     let v: Vec<f64> = basin.columns.iter().map(|c| c.speed).collect();
@@ -84,6 +87,11 @@ pub(super) fn inside_and_outside(figure: &BasinFigure, name: &str, basin: &Basin
             panel.shade_x(canvas, range);
         }
         falls(canvas, &panel, basin);
+        if let Some((_, band)) = figure.band {
+            let low = band.iter().map(|&(v, low, _)| (v, low));
+            let high = band.iter().rev().map(|&(v, _, high)| (v, high));
+            canvas.polygon(&pixels(&low.chain(high).collect::<Vec<_>>()), INK, BAND);
+        }
         canvas.line(&pixels(&outline), Stroke::solid(INK, 1.6));
     });
     caps(&mut canvas, &panel, basin);
@@ -134,6 +142,7 @@ fn entries(figure: &BasinFigure, name: &str, basin: &Basin) -> Vec<Entry> {
     if any(&|c| c.capped) {
         legend.push(entry(Sign::Triangle(INK), "no fall up to the largest rate tried"));
     }
+    legend.extend(figure.band.map(|(label, _)| entry(Sign::Fill(INK, BAND), label)));
     legend.extend(figure.stable_entry());
     legend
 }

@@ -22,7 +22,14 @@ fn basin_of(uppers: &[f64]) -> Basin {
 }
 
 fn figure<'a>(series: &'a [(&'a str, &'a Basin)]) -> BasinFigure<'a> {
-    BasinFigure { title: "a < b", series, self_stable: Some((1.0, 2.5)), axis: Axis::SteerRate, cap: 8.0 }
+    BasinFigure {
+        title: "a < b",
+        series,
+        self_stable: Some((1.0, 2.5)),
+        axis: Axis::SteerRate,
+        cap: 8.0,
+        band: None,
+    }
 }
 
 /// The SVG, whose elements were all closed, with finite numbers only.
