@@ -94,7 +94,7 @@ pub fn load(name: &str) -> Result<Bicycle, BicycleError> {
         return combine::load_with(name, bicycle, rider);
     }
     if let Some((file, set)) = name.rsplit_once('#') {
-        return from_text(name, &read(Path::new(file))?, Path::new(file), Some(set));
+        return from_file(name, Path::new(file), Some(set));
     }
     if shipped_names().iter().any(|n| n == name) {
         return from_text(name, SHIPPED, Path::new(SHIPPED_FILE), Some(name));
@@ -103,7 +103,17 @@ pub fn load(name: &str) -> Result<Bicycle, BicycleError> {
     if !path.exists() {
         return Err(BicycleError::Unknown { name: name.into(), known: shipped_names().join(", ") });
     }
-    from_text(name, &read(path)?, path, None)
+    from_file(name, path, None)
+}
+
+fn from_file(name: &str, path: &Path, set: Option<&str>) -> Result<Bicycle, BicycleError> {
+    let text = read(path)?;
+    let mut bicycle = from_text(name, &text, path, set)?;
+    // A file that was cut within its last number is a file all the same.
+    if text.ends_with(|c: char| c.is_ascii_digit() || c == '.') {
+        bicycle.warnings.push("the file's last line has no end; if it was cut, so was its last value".into());
+    }
+    Ok(bicycle)
 }
 
 fn read(path: &Path) -> Result<String, BicycleError> {

@@ -63,7 +63,7 @@ pub(super) fn left_out(table: &Table) -> Result<(Vec<String>, Option<String>), S
     }
     let masses = (get("mG")?, get("mS")?, get("mH")?);
     if let (Some(g), Some(s), Some(h)) = masses {
-        let parts = Uncertain { value: g.value + s.value, sd: g.sd.hypot(s.sd) };
+        let parts = Uncertain { value: g.value + s.value, sd: libm::hypot(g.sd, s.sd) };
         if apart(parts, h) {
             let why = "G and S are taken as the parts of H, and are not";
             return Err(format!("mG = {} and mS = {} kg, but mH = {} kg: {why}", g.value, s.value, h.value));
@@ -75,5 +75,5 @@ pub(super) fn left_out(table: &Table) -> Result<(Vec<String>, Option<String>), S
 
 /// Whether two numbers differ by more than 3 standard deviations, or 1e-6 of them.
 fn apart(a: Uncertain, b: Uncertain) -> bool {
-    (a.value - b.value).abs() > (3.0 * a.sd.hypot(b.sd)).max(1e-6 * a.value.abs())
+    (a.value - b.value).abs() > (3.0 * libm::hypot(a.sd, b.sd)).max(1e-6 * a.value.abs())
 }

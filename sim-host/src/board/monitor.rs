@@ -15,6 +15,8 @@ pub struct Monitor {
     pub missing: u64,
     /// Frames that came whole and say what this program does not know.
     pub unknown: u64,
+    /// How often the board's clock went back without a start.
+    pub clock_backs: u32,
     /// Starts of the board while it was heard.
     pub restarts: u32,
     /// The newest control step.
@@ -62,6 +64,9 @@ impl Counted {
 /// Frames after which their numbers begin anew.
 const ROUND: i64 = 1 << 16;
 
+/// Fewer control steps than are done in 2147 s, half of what the board's clock counts, at the lowest rate of 100 Hz.
+const HALF_ROUND_STEPS: u32 = 100_000;
+
 /// Something that was told.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
@@ -104,8 +109,16 @@ impl Monitor {
                 (self.counted, self.time_us) = (Counted::from(sequence), now_us.into());
             }
             Some(before) => {
-                self.missing += self.counted.lost(sequence, step.steps.wrapping_sub(before.steps));
-                self.time_us += u64::from(now_us.wrapping_sub(before.frame.now_us));
+                let steps = step.steps.wrapping_sub(before.steps);
+                self.missing += self.counted.lost(sequence, steps);
+                let ahead = now_us.wrapping_sub(before.frame.now_us);
+                // Half of the clock's round ahead takes more control steps than that at any rate.
+                if (ahead as i32) < 0 && steps < HALF_ROUND_STEPS {
+                    self.clock_backs += 1;
+                    self.time_us = self.time_us.saturating_sub(ahead.wrapping_neg().into());
+                } else {
+                    self.time_us += u64::from(ahead);
+                }
             }
             None => {
                 self.missing += self.counted.lost(sequence, 0);

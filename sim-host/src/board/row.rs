@@ -1,5 +1,6 @@
 //! A control step that a board told, as a line of a table. What `ride` has a column for has the same name here.
 
+use crate::ride::CauseNumbers;
 use control::{Sample, Triple, frame::MISSING};
 use link::telemetry::Telemetry;
 use serde::Serialize;
@@ -76,6 +77,8 @@ pub struct Row {
     pub polarity: u8,
     /// The torque that the law would ask for during the check \[N m\].
     pub shown_torque: f32,
+    /// The numbers of the causes: the bits are more than a double holds exactly.
+    pub cause_numbers: CauseNumbers,
 }
 
 impl Row {
@@ -126,6 +129,7 @@ impl Row {
             motor_slope,
             polarity: *polarity,
             shown_torque: *shown_nm,
+            cause_numbers: CauseNumbers(command.causes),
         }
     }
 }

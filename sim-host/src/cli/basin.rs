@@ -278,7 +278,10 @@ fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
     }
     let undecided = spans(basin, |c| c.border.is_some_and(|r| r.outcome == Outcome::Undecided));
     if !undecided.is_empty() {
-        let _ = writeln!(text, "border undecided at {undecided} m/s: not fallen in time, not come back");
+        let _ = writeln!(
+            text,
+            "border undecided at {undecided} m/s: still upright at the time limit, not settled yet"
+        );
     }
     let capped = spans(basin, |c| c.capped);
     if !capped.is_empty() {

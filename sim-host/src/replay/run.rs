@@ -2,6 +2,7 @@
 
 use super::checks::{Check, Checks};
 use super::compare::{Compared, Comparison, held};
+use crate::ride::CauseNumbers;
 use control::wire::{FRAME_BYTES, decode_frame};
 use control::{ActiveLimits, CAUSES, Cause, Causes, Command, Mode, Plan, SensorFrame, State};
 use schemars::JsonSchema;
@@ -104,6 +105,8 @@ pub struct Row {
     pub log_roll: Option<f64>,
     /// The log's own torque \[N m\].
     pub log_torque: Option<f64>,
+    /// The numbers of the causes: the bits are more than a double holds exactly.
+    pub cause_numbers: CauseNumbers,
 }
 
 /// The account of a replay.
@@ -398,5 +401,6 @@ fn row(
         motor_residual: known(residuals.motor_nm),
         log_roll,
         log_torque,
+        cause_numbers: CauseNumbers(command.causes),
     }
 }

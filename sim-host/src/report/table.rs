@@ -10,12 +10,17 @@ pub fn heading(config: &impl Serialize) -> String {
     format!("# {} {} commit {}\n# {config}\n", tool.name, tool.version, tool.commit)
 }
 
+/// A writer that quotes values with a `#`, which is where a reader of the heading's comments would stop.
+fn writer(begun: Vec<u8>) -> csv::Writer<Vec<u8>> {
+    csv::WriterBuilder::new().comment(Some(b'#')).from_writer(begun)
+}
+
 /// A table of serialisable rows, columns named by their fields.
 ///
 /// # Errors
 /// When a row can't be written as a line of CSV.
 pub fn table<R: Serialize>(config: &impl Serialize, rows: &[R]) -> Result<Vec<u8>, csv::Error> {
-    let mut writer = csv::Writer::from_writer(heading(config).into_bytes());
+    let mut writer = writer(heading(config).into_bytes());
     for row in rows {
         writer.serialize(row)?;
     }
@@ -31,7 +36,7 @@ pub fn rows<R: Serialize>(
     columns: &[String],
     rows: impl IntoIterator<Item = R>,
 ) -> Result<Vec<u8>, csv::Error> {
-    let mut writer = csv::Writer::from_writer(heading(config).into_bytes());
+    let mut writer = writer(heading(config).into_bytes());
     writer.write_record(columns)?;
     for row in rows {
         writer.serialize(row)?;

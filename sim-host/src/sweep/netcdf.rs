@@ -24,6 +24,17 @@ pub(crate) fn name(axis: &Axis) -> String {
     axis.key.replace('-', "_")
 }
 
+/// The unit of an axis of numbers: the one they were typed with, else that of the option; `1` where there is none.
+fn unit_of<'a>(axis: &Axis, typed: &'a str) -> &'a str {
+    match (axis.key.as_str(), typed) {
+        ("torque-limit", "") => "N m",
+        ("rate-limit", "") => "N m s-1",
+        ("time-limit", "") => "s",
+        (_, "") => "1",
+        (_, typed) => typed,
+    }
+}
+
 /// A variable of numbers.
 struct Numbers<'a> {
     name: &'a str,
@@ -64,7 +75,7 @@ pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> Result<Vec<u8>, S
         match axis.numbers() {
             Some((_, unit)) => {
                 set.add_var_f64(name, &[name])?;
-                set.add_var_attr_string(name, "units", unit)?;
+                set.add_var_attr_string(name, "units", unit_of(axis, unit))?;
             }
             None => {
                 let length = format!("{name}_length");

@@ -45,7 +45,7 @@ impl Figure {
             axis: Disturbed::SteerRate,
             cap: cap.fold(0.0, f64::max),
         };
-        let mut csv = String::from("basin,speed_m_s,rate_rad_s,outcome,time_to_fall_s\n");
+        let mut csv = String::from("basin,speed_m_s,rate_rad_s,outcome,time_to_fall_s,capped\n");
         for (label, basin) in series {
             for line in csv_text(&basin_rows(basin)).unwrap_or_default().lines().skip(1) {
                 let _ = writeln!(csv, "{},{line}", quoted(label));

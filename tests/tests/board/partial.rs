@@ -160,3 +160,30 @@ fn what_was_cut_is_no_success_with_less() {
         assert_eq!(code, expected, "byte {at} of {}", bytes.len());
     }
 }
+
+/// Situation: a recording in which the board's clock goes back by 20 ms three times, and one in which it goes round.
+/// Action: monitor each.
+/// Must hold: the steps back are counted and take 20 ms each; going round is none.
+#[test]
+fn a_clock_that_goes_back_is_not_71_minutes_ahead() {
+    let bench = Bench::new(PROGRAM);
+    let record = |clock: &dyn Fn(u32) -> u32| {
+        let mut board = LinkBoard::default();
+        let frames = (1..=40).flat_map(|i| {
+            let mut step = telemetry(20 * i);
+            step.frame.now_us = clock(i);
+            board.tell(&Message::Telemetry(step))
+        });
+        frames.collect::<Vec<u8>>()
+    };
+    bench.write("back.link", record(&|i| 1_000_000 + 20_000 * i - 40_000 * (i / 10).min(3)));
+    let back = bench.run("monitor --file back.link");
+    assert!(
+        done(&back).ends_with("0 restarts, clock back 3 times; the board's clock at 1.680 s\n"),
+        "{}",
+        back.stdout
+    );
+    bench.write("round.link", record(&|i| (20_000 * i).wrapping_sub(400_000)));
+    let round = bench.run("monitor --file round.link");
+    assert!(done(&round).ends_with("0 restarts; the board's clock at 4295.367 s\n"), "{}", round.stdout);
+}

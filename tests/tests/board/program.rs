@@ -321,7 +321,10 @@ fn a_damaged_recording_is_read_as_far_as_it_goes() {
     assert!(run.stderr.contains("3 frames damaged"), "{}", run.stderr);
     bench.write("noise.link", (0..5000_u32).map(|i| (i * i / 7) as u8).collect::<Vec<_>>());
     let noise = bench.run("monitor --file noise.link");
-    assert!(noise.code == Some(1) && noise.stderr.contains("noise.link: no whole frame of the link"), "{noise:?}");
+    assert!(
+        noise.code == Some(1) && noise.stderr.contains("noise.link: no whole frame of the link"),
+        "{noise:?}"
+    );
     assert!(noise.stdout.contains("\n0 frames, 0 missing, "), "{}", noise.stdout);
     bench.run("monitor --file missing.link").refused_naming(&["can't open missing.link"]);
 }

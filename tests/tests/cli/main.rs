@@ -1,6 +1,7 @@
 //! Flight cards: the command line.
 
 mod bad_input;
+mod bicycle_files;
 mod capped;
 mod contract;
 mod design;

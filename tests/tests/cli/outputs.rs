@@ -82,7 +82,7 @@ fn tables_have_their_documented_columns() {
     let columns = [
         "speed_m_s,rate_rad_s,outcome,time_to_fall_s,capped",
         "t,roll,steer,pitch,roll_rate,steer_rate,yaw_rate,rear_wheel_rate,rear_speed,front_speed,\
-         measured_roll_rate,measured_speed,torque,limits,rider_torque,motor_torque,mode,causes",
+         measured_roll_rate,measured_speed,torque,limits,rider_torque,motor_torque,mode,causes,cause_numbers",
         "speed_m_s,re1,im1,re2,im2,re3,im3,re4,im4",
     ];
     // Three speeds of two scan points and a border each; 6 s of 1 ms; eleven speeds.

@@ -134,10 +134,10 @@ fn entries(figure: &BasinFigure, name: &str, basin: &Basin) -> Vec<Entry> {
         if name.is_empty() { "basin of attraction".into() } else { format!("basin of attraction: {name}") };
     let mut legend = vec![entry(Sign::Fill(BASIN, 1.0), label)];
     if any(&|c| !undecided(c).is_empty()) {
-        legend.push(entry(Sign::Hatched(BASIN), "outlasts the time limit, not come back"));
+        legend.push(entry(Sign::Hatched(BASIN), "still upright at the time limit, not settled yet"));
     }
     if any(&|c| !c.islands.is_empty()) {
-        legend.push(entry(Sign::Fill(ISLAND, 1.0), "beyond a first fall, not fallen"));
+        legend.push(entry(Sign::Fill(ISLAND, 1.0), "above a rate that falls, but does not fall itself"));
     }
     if any(&|c| c.capped) {
         legend.push(entry(Sign::Triangle(INK), "no fall up to the largest rate tried"));

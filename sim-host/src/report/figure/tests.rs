@@ -62,8 +62,8 @@ fn a_basin_says_what_its_signs_mean() {
         "Initial steer rate [rad/s]",
         "Time to fall [s]",
         "basin of attraction: law",
-        "outlasts the time limit",
-        "beyond a first fall",
+        "still upright at the time limit",
+        "above a rate that falls",
         "no fall up to the largest rate tried",
         "self-stable, 1.00–2.50 m/s",
     ] {
@@ -102,6 +102,7 @@ fn rides_of_any_length_are_drawn() {
         motor_torque: 0.5,
         mode: 4,
         causes: 0,
+        cause_numbers: crate::ride::CauseNumbers(control::Causes::NONE),
         frame: control::SensorFrame::missing(),
         limits: control::ActiveLimits::RATE.0,
     };

@@ -42,8 +42,11 @@ pub(super) fn plot(basin: &Basin, title: &str, width: usize) -> String {
     }
     text += &x_axis(across, x, "forward speed [m/s]");
     let meanings = [
-        (UNDECIDED, "outlasts the time limit, not come back"),
-        (ISLAND, "beyond a first fall, not fallen"),
+        (
+            UNDECIDED,
+            "still upright at the time limit, not settled yet; a longer --time-limit shows what becomes of it",
+        ),
+        (ISLAND, "above a rate that falls, but does not fall itself"),
         (CAPPED, "no fall up to the largest rate tried"),
     ];
     let used = meanings.iter().filter(|(sign, _)| signs.contains(*sign) || capped.contains(*sign));
