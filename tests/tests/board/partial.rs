@@ -187,3 +187,18 @@ fn a_clock_that_goes_back_is_not_71_minutes_ahead() {
     let round = bench.run("monitor --file round.link");
     assert!(done(&round).ends_with("0 restarts; the board's clock at 4295.367 s\n"), "{}", round.stdout);
 }
+
+/// Situation: a board with the product's limits, of which the rider's override needs a largest torque.
+/// Action: set the largest torque to none; then with the override off.
+/// Must hold: refused with who needs it, not as infinity; then set.
+#[test]
+fn a_limit_that_another_needs_says_so() {
+    let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
+    let port = Port::quiet(&board);
+    let run = |line: &str| bench.run(&format!("param set {line} --port {}", port.name));
+    let refused = run("limits.max_torque_nm none");
+    refused.refused_naming(&["limits.max_torque_nm = none", "limits.rider_torque is on", "0.1 to 50"]);
+    assert!(!refused.stderr.contains("inf"), "{}", refused.stderr);
+    done(&run("limits.rider_torque off"));
+    assert!(done(&run("limits.max_torque_nm none")).contains("limits.max_torque_nm = none (was 7)"));
+}

@@ -329,12 +329,6 @@ fn a_damaged_recording_is_read_as_far_as_it_goes() {
     bench.run("monitor --file missing.link").refused_naming(&["can't open missing.link"]);
 }
 
-/// A run that could read a part of its input only, and said so.
-fn partly(run: &Run) -> &str {
-    assert_eq!(run.code, Some(3), "{run:?}");
-    &run.stdout
-}
-
 /// Situation: a monitor with table and recording, some of it written.
 /// Action: Ctrl-C.
 /// Must hold: exit code 130; the summary; whole lines in the table, as many as whole frames in the recording.

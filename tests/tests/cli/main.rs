@@ -8,6 +8,7 @@ mod design;
 mod document;
 mod identify;
 mod interrupt;
+mod none;
 mod options;
 mod outputs;
 mod parsers;
