@@ -22,6 +22,7 @@ mod pitch;
 mod pose;
 mod redundant;
 pub mod uncertain;
+mod vary;
 
 pub use dynamics::{Accelerations, Torques};
 pub use geometry::{Geometry, Gyrostat};

@@ -7,7 +7,7 @@ use crate::basin::{Axis, Basin, Column, Drawn, Search, Work, basin, drawn};
 use crate::bicycle::linear::Linear;
 use crate::eigen::critical_speeds;
 use crate::report::document::{BasinDocument, UncertainEntry};
-use crate::report::figure::{self, BasinFigure};
+use crate::report::figure::{self, Band, BasinFigure};
 use crate::report::resolved::ResolvedSearch;
 use crate::report::{table, terminal};
 use crate::ride::Outcome;
@@ -205,7 +205,7 @@ pub(super) fn write(
         axis: search.axis,
         cap: search.max_rate,
         title: &title,
-        band: drawn.map(|_| (band_label.as_str(), &band[..])),
+        band: drawn.map(|_| Band { label: &band_label, edges: &band }),
     };
     let config = json!({"config": document.config, "search": document.search, "complete": complete});
     outputs.write(Results {

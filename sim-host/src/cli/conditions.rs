@@ -44,6 +44,9 @@ pub(super) struct ConditionArgs {
     /// Shipped bicycle (see `bicycle list`), FILE, or FILE#NAME of a collection
     #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
     bicycle: String,
+    /// Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    bicycle_set: Vec<String>,
     #[command(flatten)]
     rider: RiderArgs,
     /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, balance-assist:K, or a table FILE [default: h; none with a rider; product: h-cut]
@@ -134,7 +137,7 @@ impl ConditionArgs {
 
     /// Loads and checks everything; warnings go to standard error.
     pub(super) fn setup(&self) -> Result<Setup, Failure> {
-        let bicycle = catalogue::load(&self.bicycle)?;
+        let bicycle = catalogue::load(&self.bicycle)?.varied(&self.bicycle_set)?;
         warn(&bicycle);
         let base = match self.preset {
             Preset::Thesis => Config::thesis(Law::H { cut: false }),

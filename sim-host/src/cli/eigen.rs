@@ -37,6 +37,9 @@ pub(super) struct Args {
     /// Shipped bicycle, FILE, or FILE#NAME of a collection
     #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
     bicycle: String,
+    /// Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    bicycle_set: Vec<String>,
     /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, balance-assist:K, or a table FILE
     #[arg(long, default_value = "none")]
     law: String,
@@ -94,7 +97,7 @@ impl ActuatorArgs {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let bicycle = catalogue::load(&args.bicycle)?;
+    let bicycle = catalogue::load(&args.bicycle)?.varied(&args.bicycle_set)?;
     warn(&bicycle);
     let law = law::parse(&args.law)?;
     let (resolved, rider) = match args.rider.load()? {

@@ -234,3 +234,42 @@ fn a_cut_file_is_no_bicycle_with_less() {
         }
     }
 }
+
+/// Situation: shipped and measured bicycles.
+/// Action: change a parameter of each, wrongly too; sweep one.
+/// Must hold: the changed value, and no other, in the results, whose name says so; wrong ones are named.
+#[test]
+fn one_parameter_is_changed_by_name() {
+    let bench = bench();
+    let eigen = |line: &str| bench.json(&format!("eigen --speeds 4:5:1 {line}"));
+    let (plain, changed) = (eigen(""), eigen("--bicycle-set lam=0.3 --bicycle-set c=0.05"));
+    let values =
+        |document: &Value| document["bicycle"]["parameters"].as_object().expect("parameters").clone();
+    let (before, after) = (values(&plain), values(&changed));
+    let differing: Vec<&String> = before.keys().filter(|key| before[*key] != after[*key]).collect();
+    assert_eq!(
+        (differing, &after["lam"], &after["c"]),
+        (
+            vec!["c", "lam"].iter().map(|k| before.get_key_value(*k).expect("a key").0).collect(),
+            &0.3.into(),
+            &0.05.into()
+        )
+    );
+    assert_eq!(changed["bicycle"]["name"], "rigid_jason with lam=0.3, c=0.05");
+    let rigid = "--bicycle data/bicycles/Rigid+Jason";
+    let measured = eigen(&format!("{rigid} --bicycle-set w=1.1"));
+    let sds = measured["bicycle"]["uncertainties"].as_object().expect("deviations");
+    assert!(!sds.contains_key("w") && sds.contains_key("c"), "{sds:?}");
+    for (words, named) in [
+        ("--bicycle-set lam", &["--bicycle-set lam", "KEY=VALUE"][..]),
+        ("--bicycle-set laM=1", &["`laM`", "w, c, lam"]),
+        ("--bicycle-set w=x", &["`x` is not a number"]),
+        ("--bicycle-set w=99", &["`w` = 99", "0.1 to 5"]),
+        (&format!("{rigid} --bicycle-set mB=90"), &["mB=90", "change their files"]),
+    ] {
+        bench.run(&format!("eigen {words}")).refused_naming(named);
+    }
+    let sweep = "sweep --law h --over bicycle-set=lam=0.3,lam=0.4 --speeds 4 --scan-step 4 --tolerance 1 --max-rate 8 --time-limit 0.5 --out s";
+    assert_eq!(bench.run(sweep).code, Some(0));
+    assert!(bench.read("s/sweep.csv").contains("\nlam=0.4,"));
+}

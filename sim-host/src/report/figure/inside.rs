@@ -1,6 +1,6 @@
 //! One basin: its inside, and how long falls take outside.
 
-use super::basin::{AREA, BasinFigure, LEGEND_GAP, SPEED, caps, height};
+use super::basin::{AREA, Band, BasinFigure, LEGEND_GAP, SPEED, caps, height};
 use super::canvas::{Canvas, Stroke};
 use super::colour::{BASIN, INK, ISLAND, SHADES, shade};
 use super::legend::{Entry, SOFTER, Sign, entry, rows};
@@ -87,7 +87,7 @@ pub(super) fn inside_and_outside(figure: &BasinFigure, name: &str, basin: &Basin
             panel.shade_x(canvas, range);
         }
         falls(canvas, &panel, basin);
-        if let Some((_, band)) = figure.band {
+        if let Some(Band { edges: band, .. }) = figure.band {
             let low = band.iter().map(|&(v, low, _)| (v, low));
             let high = band.iter().rev().map(|&(v, _, high)| (v, high));
             canvas.polygon(&pixels(&low.chain(high).collect::<Vec<_>>()), INK, BAND);
@@ -142,7 +142,7 @@ fn entries(figure: &BasinFigure, name: &str, basin: &Basin) -> Vec<Entry> {
     if any(&|c| c.capped) {
         legend.push(entry(Sign::Triangle(INK), "no fall up to the largest rate tried"));
     }
-    legend.extend(figure.band.map(|(label, _)| entry(Sign::Fill(INK, BAND), label)));
+    legend.extend(figure.band.map(|band| entry(Sign::Fill(INK, BAND), band.label)));
     legend.extend(figure.stable_entry());
     legend
 }

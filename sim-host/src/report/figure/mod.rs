@@ -22,7 +22,7 @@ mod shape;
 mod thin;
 mod time_scale;
 
-pub use basin::{BasinFigure, basin};
+pub use basin::{Band, BasinFigure, basin};
 pub use chart::{Axis, Chart, Line, Look, Plot, Series, chart};
 pub use eigen::{EigenFigure, eigen};
 pub use heatmap::{HeatMap, Map, heatmap};
