@@ -1,6 +1,5 @@
 //! A control step that a board told, as a line of a table. What `ride` has a column for has the same name here.
 
-use crate::ride::CauseNumbers;
 use control::{Sample, Triple, frame::MISSING};
 use link::telemetry::Telemetry;
 use serde::Serialize;
@@ -77,8 +76,10 @@ pub struct Row {
     pub polarity: u8,
     /// The torque that the law would ask for during the check \[N m\].
     pub shown_torque: f32,
-    /// The numbers of the causes: the bits are more than a double holds exactly.
-    pub cause_numbers: CauseNumbers,
+    /// The lower half of `causes`, whose bits are more than a double holds exactly.
+    pub causes_low: u32,
+    /// The upper half of `causes`.
+    pub causes_high: u32,
 }
 
 impl Row {
@@ -129,7 +130,8 @@ impl Row {
             motor_slope,
             polarity: *polarity,
             shown_torque: *shown_nm,
-            cause_numbers: CauseNumbers(command.causes),
+            causes_low: command.causes.0 as u32,
+            causes_high: (command.causes.0 >> 32) as u32,
         }
     }
 }

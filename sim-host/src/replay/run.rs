@@ -2,7 +2,6 @@
 
 use super::checks::{Check, Checks};
 use super::compare::{Compared, Comparison, held};
-use crate::ride::CauseNumbers;
 use control::wire::{FRAME_BYTES, decode_frame};
 use control::{ActiveLimits, CAUSES, Cause, Causes, Command, Mode, Plan, SensorFrame, State};
 use schemars::JsonSchema;
@@ -105,8 +104,10 @@ pub struct Row {
     pub log_roll: Option<f64>,
     /// The log's own torque \[N m\].
     pub log_torque: Option<f64>,
-    /// The numbers of the causes: the bits are more than a double holds exactly.
-    pub cause_numbers: CauseNumbers,
+    /// The lower half of `causes`, whose bits are more than a double holds exactly.
+    pub causes_low: u32,
+    /// The upper half of `causes`.
+    pub causes_high: u32,
 }
 
 /// The account of a replay.
@@ -401,6 +402,7 @@ fn row(
         motor_residual: known(residuals.motor_nm),
         log_roll,
         log_torque,
-        cause_numbers: CauseNumbers(command.causes),
+        causes_low: command.causes.0 as u32,
+        causes_high: (command.causes.0 >> 32) as u32,
     }
 }

@@ -21,4 +21,4 @@ pub use conditions::{Conditions, ConditionsError, Imu, ScheduleSpeed, Start};
 pub use outcome::{Effort, FinalState, Outcome, Ride};
 pub(crate) use outfit::frame as frame_of;
 pub use processor::{Remote, RemoteError, Stepped};
-pub use trace::{CauseNumbers, TracePoint, frames};
+pub use trace::{TracePoint, frames};

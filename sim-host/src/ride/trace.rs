@@ -9,8 +9,7 @@ use super::sensor::Reading;
 use super::{Assist, Conditions, Start};
 use crate::bicycle::{Geometry, Motion};
 use crate::num::Lanes;
-use control::{Causes, SensorFrame};
-use serde::Serialize;
+use control::SensorFrame;
 
 /// One instant of a traced ride, at the start of a control period.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -51,22 +50,13 @@ pub struct TracePoint {
     pub mode: u8,
     /// What stood in the way of the torque, as bits of [`control::Causes`].
     pub causes: u64,
-    /// The numbers of the causes: the bits are more than a double holds exactly.
-    pub cause_numbers: CauseNumbers,
+    /// The lower half of `causes`, whose bits are more than a double holds exactly.
+    pub causes_low: u32,
+    /// The upper half of `causes`.
+    pub causes_high: u32,
     /// All that the controller was told.
     #[serde(skip)]
     pub frame: SensorFrame,
-}
-
-/// A set of causes that is written as their numbers by rising order, with spaces between them: "1 52 55".
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct CauseNumbers(pub Causes);
-
-impl Serialize for CauseNumbers {
-    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let numbers: Vec<String> = self.0.iter().map(|cause| cause.code().to_string()).collect();
-        to.serialize_str(&numbers.join(" "))
-    }
 }
 
 impl TracePoint {
@@ -100,7 +90,8 @@ impl TracePoint {
             motor_torque: pushes.assist_nm,
             mode: answer.mode as u8,
             causes: answer.causes.0,
-            cause_numbers: CauseNumbers(answer.causes),
+            causes_low: answer.causes.0 as u32,
+            causes_high: (answer.causes.0 >> 32) as u32,
             frame: answer.frame,
         }
     }

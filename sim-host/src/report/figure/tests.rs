@@ -102,7 +102,8 @@ fn rides_of_any_length_are_drawn() {
         motor_torque: 0.5,
         mode: 4,
         causes: 0,
-        cause_numbers: crate::ride::CauseNumbers(control::Causes::NONE),
+        causes_low: 0,
+        causes_high: 0,
         frame: control::SensorFrame::missing(),
         limits: control::ActiveLimits::RATE.0,
     };

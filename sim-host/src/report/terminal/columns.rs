@@ -42,10 +42,7 @@ pub(super) fn plot(basin: &Basin, title: &str, width: usize) -> String {
     }
     text += &x_axis(across, x, "forward speed [m/s]");
     let meanings = [
-        (
-            UNDECIDED,
-            "still upright at the time limit, not settled yet; a longer --time-limit shows what becomes of it",
-        ),
+        (UNDECIDED, "still upright at the time limit, not settled yet: try a longer --time-limit"),
         (ISLAND, "above a rate that falls, but does not fall itself"),
         (CAPPED, "no fall up to the largest rate tried"),
     ];
