@@ -280,7 +280,7 @@ fn summary(basin: &Basin, search: &Search, seconds: f64) -> String {
     if !undecided.is_empty() {
         let _ = writeln!(
             text,
-            "border undecided at {undecided} m/s: still upright at the time limit, not settled yet"
+            "border undecided at {undecided} m/s: still upright at the time limit, not settled (see --time-limit)"
         );
     }
     let capped = spans(basin, |c| c.capped);

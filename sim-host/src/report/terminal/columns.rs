@@ -42,8 +42,8 @@ pub(super) fn plot(basin: &Basin, title: &str, width: usize) -> String {
     }
     text += &x_axis(across, x, "forward speed [m/s]");
     let meanings = [
-        (UNDECIDED, "still upright at the time limit, not settled yet: try a longer --time-limit"),
-        (ISLAND, "above a rate that falls, but does not fall itself"),
+        (UNDECIDED, "upright at the time limit, not settled"),
+        (ISLAND, "above a fall, but does not fall itself"),
         (CAPPED, "no fall up to the largest rate tried"),
     ];
     let used = meanings.iter().filter(|(sign, _)| signs.contains(*sign) || capped.contains(*sign));
