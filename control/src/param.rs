@@ -57,6 +57,12 @@ impl fmt::Display for ParamError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Leaf { group, name, min, max } = self.leaf;
         let dot = if group.is_empty() { "" } else { "." };
+        if self.value == f32::INFINITY && (group, name) == ("limits", "max_torque_nm") {
+            return write!(
+                f,
+                "{group}.{name} = none, but limits.rider_torque is on and needs it: {min} to {max}"
+            );
+        }
         write!(f, "{group}{dot}{name} = {} is outside {min} to {max}", self.value)
     }
 }

@@ -48,7 +48,8 @@ impl Setter<'_> {
         if name(leaf) != self.key {
             return None;
         }
-        let parsed = self.value.parse::<f32>().map_err(|_| format!("`{}` is not a number", self.value));
+        let parsed = self.value.parse::<f32>().ok().filter(|x| !x.is_infinite());
+        let parsed = parsed.ok_or_else(|| format!("`{}` is not a number", self.value));
         let checked = parsed.and_then(|x| leaf.check(x).map(|()| x).map_err(|e| e.to_string()));
         self.done = Some(checked.clone().map(drop));
         checked.ok()

@@ -105,6 +105,10 @@ impl fmt::Display for Refusal<'_> {
         match why {
             Why::Engaged => write!(f, "refused while engaged"),
             Why::UnknownKey => write!(f, "no parameter {key}"),
+            // A limit that is off, where another needs it (`Limits::cross`).
+            Why::OutOfRange if *value == f32::INFINITY => {
+                write!(f, "{key} = none, but limits.rider_torque is on and needs it: {min} to {max}")
+            }
             Why::OutOfRange => write!(f, "{key} = {value} is outside {min} to {max}"),
             Why::NotWhole => write!(f, "{key} = {value} is not a whole number of {min} to {max}"),
             Why::NeverOff => write!(f, "{key} can't be off, only {min} to {max}"),

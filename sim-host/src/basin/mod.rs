@@ -1,12 +1,16 @@
 //! The basin of attraction: from which disturbances, over forward speed, the bicycle recovers.
 
+mod bound;
 mod compare;
+mod drawn;
 mod outline;
 mod plane;
 mod search;
 mod sensitivity;
 
+pub use bound::Bound;
 pub use compare::{Rmse, rmse};
+pub use drawn::{Drawn, QUANTILES, drawn};
 pub use outline::{Basin, Column, Island, ScanPoint, Work, area};
 pub use plane::{Plane, PlaneSearch, Ray, plane};
 pub use search::{Axis, Search, SearchError, basin, basin_by, border, column};

@@ -66,6 +66,11 @@ impl Plane {
         0.5 * points.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>() + 0.0
     }
 
+    /// Whether the area is a lower bound: nothing fell up to the end of some ray.
+    pub fn capped(&self) -> bool {
+        self.rays.iter().any(|ray| ray.column.capped)
+    }
+
     /// What it took.
     pub fn work(&self) -> Work {
         self.rays.iter().fold(Work::default(), |sum, ray| sum.plus(&ray.column.work))

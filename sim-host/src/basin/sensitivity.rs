@@ -1,5 +1,6 @@
 //! How the height of the basin changes with everything the ride depends on: central differences.
 
+use super::Column;
 use super::search::{Axis, Search, SearchError, border, narrow};
 use crate::bicycle::{self, Geometry, Parameters};
 use crate::ride::{Conditions, Ride, rides};
@@ -123,7 +124,7 @@ impl Sensitivity {
 /// cores of the current rayon pool. `parameters` are those of the conditions' bicycle.
 ///
 /// # Errors
-/// When the conditions fail their checks, or with a quantity changed.
+/// When the conditions fail their checks, or with a quantity changed, or nothing falls up to 20 rad/s.
 pub fn sensitivities(
     conditions: &Conditions,
     parameters: &Parameters,
@@ -135,7 +136,13 @@ pub fn sensitivities(
     let search =
         Search { speeds: vec![speed], axis: Axis::SteerRate, max_rate: 20.0, scan_step: 0.25, tolerance };
     search.check()?;
-    let height = border(conditions, &search, speed).upper;
+    let Column { upper: height, capped, .. } = border(conditions, &search, speed);
+    if capped {
+        return Err(SearchError(format!(
+            "nothing falls up to {} rad/s at {speed} m/s: a lower bound has no sensitivity",
+            search.max_rate
+        )));
+    }
     let one = |&quantity: &Quantity| -> Result<Sensitivity, SearchError> {
         let step = quantity.step(conditions);
         let at = |factor: f64, guess: f64| -> Result<f64, SearchError> {

@@ -1,6 +1,9 @@
-//! Bicycles by name or from TOML files: one flat set a file, or `FILE#NAME` of a collection.
+//! Bicycles by name or from files: one flat set a file, or `FILE#NAME` of a collection.
 
-use super::{KEYS, Parameters, check};
+use super::combine::{self, number, packaged};
+use super::extras::{is_extra, left_out, unknown_body};
+use super::uncertain::Measured;
+use super::{KEYS, Parameters, check, formats};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use toml::{Table, Value};
@@ -23,8 +26,12 @@ pub struct Bicycle {
     pub source: Option<String>,
     /// A remark of the file's.
     pub note: Option<String>,
+    /// Whether a rider's body is part of the rear frame; `None` if the file does not say.
+    pub rider_included: Option<bool>,
     /// What is doubtful about the values, but not refused.
     pub warnings: Vec<String>,
+    /// The values with their uncertainties, if there are any.
+    pub measured: Option<Measured>,
     /// The values.
     pub parameters: Parameters,
 }
@@ -48,8 +55,8 @@ pub enum BicycleError {
         /// The system's reason.
         source: std::io::Error,
     },
-    /// The file is not TOML.
-    #[error("{path} is not valid TOML: {reason}")]
+    /// The file is not of its format.
+    #[error("{path} {reason}")]
     Syntax {
         /// The file.
         path: PathBuf,
@@ -80,26 +87,40 @@ pub fn shipped_names() -> Vec<String> {
     sets.iter().filter(|(_, v)| v.is_table()).map(|(name, _)| name.clone()).collect()
 }
 
-/// A bicycle by `name`: a shipped set, a `FILE` (`-` is standard input), or a `FILE#NAME`; the name of a file may have a
-/// `#` itself.
+/// A bicycle by `name`: a shipped set, a `FILE` (`-` is standard input), a `FILE#NAME` (the name of a file may have a `#`
+/// itself), a folder of BicycleParameters' `data/bicycles`, or one of these with a rider's body, `BICYCLE+RIDER`
+/// ([`combine`]).
 ///
 /// # Errors
 /// Names file, key, value and allowed range.
 pub fn load(name: &str) -> Result<Bicycle, BicycleError> {
+    if let Some((bicycle, rider)) = combine::split(name) {
+        return combine::load_with(name, bicycle, rider);
+    }
     if shipped_names().iter().any(|n| n == name) {
         return from_text(name, SHIPPED, Path::new(SHIPPED_FILE), Some(name));
     }
     if name == "-" {
         return from_text("standard input", &standard_input()?, Path::new("standard input"), None);
     }
-    let path = Path::new(name);
-    if let (false, Some((file, set))) = (path.exists(), name.rsplit_once('#')) {
-        return from_text(name, &read(Path::new(file))?, Path::new(file), Some(set));
+    if let (false, Some((file, set))) = (Path::new(name).exists(), name.rsplit_once('#')) {
+        return from_file(name, Path::new(file), Some(set));
     }
+    let path = &*packaged(Path::new(name));
     if !path.exists() {
         return Err(BicycleError::Unknown { name: name.into(), known: shipped_names().join(", ") });
     }
-    from_text(name, &read(path)?, path, None)
+    from_file(name, path, None)
+}
+
+fn from_file(name: &str, path: &Path, set: Option<&str>) -> Result<Bicycle, BicycleError> {
+    let text = read(path)?;
+    let mut bicycle = from_text(name, &text, path, set)?;
+    // A file that was cut within its last number is a file all the same.
+    if text.ends_with(|c: char| c.is_ascii_digit() || c == '.') {
+        bicycle.warnings.push("the file's last line has no end; if it was cut, so was its last value".into());
+    }
+    Ok(bicycle)
 }
 
 fn read(path: &Path) -> Result<String, BicycleError> {
@@ -132,8 +153,12 @@ fn check_remarks(values: &Table) -> Result<(), String> {
 }
 
 fn parse(text: &str, path: &Path) -> Result<Table, BicycleError> {
-    toml::from_str(text)
-        .map_err(|e| BicycleError::Syntax { path: path.into(), reason: e.to_string().trim().into() })
+    formats::table(text, path).map_err(|reason| BicycleError::Syntax { path: path.into(), reason })
+}
+
+/// A file as a table.
+pub(super) fn read_table(path: &Path) -> Result<Table, BicycleError> {
+    parse(&read(path)?, path)
 }
 
 /// A bicycle from a file's text; `set` names one of a collection.
@@ -158,25 +183,44 @@ pub fn from_text(name: &str, text: &str, path: &Path, set: Option<&str>) -> Resu
         None => (path.display().to_string(), &table),
     };
     let wrong = |reason: String| BicycleError::Set { set: label.clone(), reason };
-    if let Some(key) =
-        values.keys().find(|k| !KEYS.contains(&k.as_str()) && !EXTRA_KEYS.contains(&k.as_str()))
+    if let Some(key) = values
+        .keys()
+        .find(|k| !KEYS.contains(&k.as_str()) && !EXTRA_KEYS.contains(&k.as_str()) && !is_extra(k))
     {
-        return Err(wrong(format!("unknown key `{key}`; the parameters are {}", KEYS.join(", "))));
+        let why = unknown_body(key).unwrap_or(format!("unknown key `{key}`"));
+        return Err(wrong(format!("{why}; the parameters are {}", KEYS.join(", "))));
     }
     check_remarks(values).map_err(wrong)?;
-    let mut numbers = [0.0; KEYS.len()];
-    for (key, number) in KEYS.iter().zip(&mut numbers) {
-        *number = match values.get(*key) {
-            Some(Value::Float(x)) => *x,
-            Some(Value::Integer(i)) => *i as f64,
-            Some(other) => {
-                return Err(wrong(format!("`{key}` must be a number, not the {} {other}", other.type_str())));
-            }
-            None => return Err(wrong(format!("`{key}` is missing; {}", check::describe(key)))),
-        };
+    let mut bicycle = Vec::new();
+    for key in KEYS {
+        let value = values.get(key).ok_or_else(|| wrong(missing(values, key)))?;
+        bicycle.push(number(value).map_err(|why| wrong(format!("`{key}` {why}")))?);
     }
-    let parameters = Parameters::from_values(&numbers);
-    let warnings = check::check(&parameters).map_err(wrong)?;
+    let measured = Measured { bicycle, rider: None };
+    let parameters = measured.parameters();
+    let mut warnings = check::check(&parameters).map_err(wrong)?;
+    let (doubts, left_out) = left_out(values).map_err(wrong)?;
+    warnings.extend(doubts);
     let text = |key: &str| values.get(key).and_then(Value::as_str).map(str::to_owned);
-    Ok(Bicycle { name: name.into(), source: text("source"), note: text("note"), warnings, parameters })
+    let note: Vec<String> = text("note").into_iter().chain(left_out).collect();
+    Ok(Bicycle {
+        name: name.into(),
+        source: text("source"),
+        note: (!note.is_empty()).then(|| note.join("; ")),
+        rider_included: values.get("rider_included").and_then(Value::as_bool),
+        warnings,
+        measured: Some(measured).filter(Measured::is_uncertain),
+        parameters,
+    })
+}
+
+/// What to do about a key that is missing.
+fn missing(values: &Table, key: &str) -> String {
+    let riders = values.keys().all(|k| combine::RIDER_KEYS.contains(&k.as_str()));
+    let hint = if riders && !values.is_empty() {
+        "; this is a rider's body alone, which stands behind a bicycle: BICYCLE+FILE"
+    } else {
+        ""
+    };
+    format!("`{key}` is missing; {}{hint}", check::describe(key))
 }

@@ -72,7 +72,7 @@ pub(super) fn check(p: &Parameters) -> Result<Vec<String>, String> {
         ("IR", [p.IRxx, p.IRyy, p.IRxx, 0.0]),
         ("IF", [p.IFxx, p.IFyy, p.IFxx, 0.0]),
     ] {
-        let (mean, spread) = (0.5 * (xx + zz), (0.5 * (xx - zz)).hypot(xz));
+        let (mean, spread) = (0.5 * (xx + zz), libm::hypot(0.5 * (xx - zz), xz));
         let (small, large) = (mean - spread, mean + spread);
         if small <= 0.0 {
             return Err(format!(

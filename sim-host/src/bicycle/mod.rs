@@ -8,7 +8,10 @@
 mod bias;
 pub mod catalogue;
 mod check;
+pub mod combine;
 mod dynamics;
+mod extras;
+mod formats;
 mod geometry;
 mod inertia;
 pub mod linear;
@@ -18,6 +21,8 @@ mod parameters;
 mod pitch;
 mod pose;
 mod redundant;
+pub mod uncertain;
+mod vary;
 
 pub use dynamics::{Accelerations, Torques};
 pub use geometry::{Geometry, Gyrostat};

@@ -7,6 +7,7 @@ use control::estimate::{EstimateConfig, Place, Source};
 use control::param::{Leaf, ParamError, Visit};
 use control::response::SteerModel;
 use nalgebra::{SMatrix, SVector};
+use std::sync::{Mutex, PoisonError};
 
 /// The attitudes over which the pitch is fitted: roll and steer up to these, either way \[rad\].
 const FITTED: (f64, f64) = (0.8, 1.0);
@@ -16,7 +17,7 @@ const POINTS: usize = 41;
 /// The estimator's parameters that follow from the bicycle; the others as they are by default.
 pub fn estimator_parameters(b: &Geometry) -> EstimateConfig {
     EstimateConfig {
-        pitch: pitch_fit(b).map(|c| c as f32),
+        pitch: newest_pitch_fit(b).map(|c| c as f32),
         wheel_radius_m: b.rR as f32,
         balance: balance(b),
         ..EstimateConfig::default()
@@ -110,6 +111,16 @@ pub fn steer_model(b: &Geometry) -> SteerModel {
 fn terms(roll: f64, steer: f64) -> [f64; 6] {
     let (r, d) = (roll, steer);
     [d * d, d * r, d.powi(4), d.powi(3) * r, (d * r).powi(2), d * r.powi(3)]
+}
+
+/// [`pitch_fit`] of the bicycle that was asked for last is kept: the cells of a sweep share it, and it takes 20 ms.
+fn newest_pitch_fit(b: &Geometry) -> [f64; 6] {
+    static NEWEST: Mutex<Option<(Geometry, [f64; 6])>> = Mutex::new(None);
+    let mut newest = NEWEST.lock().unwrap_or_else(PoisonError::into_inner);
+    match &*newest {
+        Some((bicycle, fit)) if bicycle == b => *fit,
+        _ => newest.insert((*b, pitch_fit(b))).1,
+    }
 }
 
 /// Least squares over a grid of attitudes; those without a pitch are left out.

@@ -83,6 +83,7 @@ pub struct Client {
     decoder: Decoder,
     sequence: u16,
     told: VecDeque<Told>,
+    whole: u64,
 }
 
 impl Client {
@@ -91,7 +92,7 @@ impl Client {
         // Answers to a program that went away may still come; they have other numbers.
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         let sequence = now.subsec_micros() as u16;
-        Self { line, patience, decoder: Decoder::default(), sequence, told: VecDeque::new() }
+        Self { line, patience, decoder: Decoder::default(), sequence, told: VecDeque::new(), whole: 0 }
     }
 
     /// Asks until the answer comes, which `fits` reads; `asked` says in words what for.
@@ -149,6 +150,11 @@ impl Client {
         dropped.garbled.wrapping_add(dropped.too_long).wrapping_add(dropped.bad_crc)
     }
 
+    /// Frames that came whole, since the start.
+    pub fn whole(&self) -> u64 {
+        self.whole
+    }
+
     /// Waits for the answer to the newest request; `None` when none came in time.
     fn answer(&mut self, wait: Duration) -> Result<Option<Told>, ClientError> {
         let begin = Instant::now();
@@ -168,7 +174,9 @@ impl Client {
     fn take(&mut self, bytes: &[u8], sequence: Option<u16>) -> Result<Option<Told>, ClientError> {
         let mut answer = None;
         for byte in bytes {
-            match self.decoder.feed(*byte) {
+            let received = self.decoder.feed(*byte);
+            self.whole += u64::from(matches!(received, Some(Received::Frame(_))));
+            match received {
                 Some(Received::WrongVersion { theirs }) => return Err(ClientError::Version { theirs }),
                 Some(Received::Frame(frame)) if Told::is_unasked(&frame) => {
                     if self.told.len() == KEPT {

@@ -2,6 +2,7 @@
 
 use super::causes::{NamedCause, named};
 use super::exception::Exception;
+use super::printable::printable;
 use link::report::{FaultKind, FaultRecord};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -52,7 +53,7 @@ impl fmt::Display for Fault {
         let Self { kind, boot, reset, mode, steps, frame_s, causes, exception, text } = self;
         writeln!(f, "{kind} in start {boot} ({reset}), after {steps} steps at {frame_s:.3} s, mode {mode}")?;
         if !text.is_empty() {
-            writeln!(f, "  {}", text.replace('\n', "\n  "))?;
+            writeln!(f, "  {}", printable(text).replace('\n', "\n  "))?;
         }
         if let Some(Exception { number, name, status, cfsr, hfsr, bfar, sp, pc, lr }) = exception {
             writeln!(

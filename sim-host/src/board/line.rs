@@ -51,6 +51,8 @@ pub enum LineError {
     Ended {
         /// The file.
         line: String,
+        /// Bytes at its end of a frame that is not whole.
+        rest: usize,
     },
     /// A recording is no board: nothing can be asked of it.
     #[error("{line} is a recording; nothing can be sent to it")]

@@ -13,6 +13,10 @@ pub struct Monitor {
     pub frames: u64,
     /// Frames that did not, by the gaps in their numbers; where these went round meanwhile, by the control steps as well.
     pub missing: u64,
+    /// Frames that came whole and say what this program does not know.
+    pub unknown: u64,
+    /// How often the board's clock went back without a start.
+    pub clock_backs: u32,
     /// Starts of the board while it was heard.
     pub restarts: u32,
     /// The newest control step.
@@ -60,6 +64,9 @@ impl Counted {
 /// Frames after which their numbers begin anew.
 const ROUND: i64 = 1 << 16;
 
+/// Fewer control steps than are done in 2147 s, half of what the board's clock counts, at the lowest rate of 100 Hz.
+const HALF_ROUND_STEPS: u32 = 100_000;
+
 /// Something that was told.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
@@ -81,7 +88,10 @@ impl Monitor {
             Ok(Message::Telemetry(step)) => return self.step(told.sequence, step),
             Ok(Message::Fault(record)) => News::Fault(Box::new(record.into())),
             Ok(Message::Log(words)) => News::Log(words.into()),
-            Ok(_) | Err(_) => News::Unknown,
+            Ok(_) | Err(_) => {
+                self.unknown += 1;
+                News::Unknown
+            }
         };
         match self.counted.sequence {
             Some(_) => self.counted.since = self.counted.since.wrapping_add(1),
@@ -99,8 +109,16 @@ impl Monitor {
                 (self.counted, self.time_us) = (Counted::from(sequence), now_us.into());
             }
             Some(before) => {
-                self.missing += self.counted.lost(sequence, step.steps.wrapping_sub(before.steps));
-                self.time_us += u64::from(now_us.wrapping_sub(before.frame.now_us));
+                let steps = step.steps.wrapping_sub(before.steps);
+                self.missing += self.counted.lost(sequence, steps);
+                let ahead = now_us.wrapping_sub(before.frame.now_us);
+                // Half of the clock's round ahead takes more control steps than that at any rate.
+                if (ahead as i32) < 0 && steps < HALF_ROUND_STEPS {
+                    self.clock_backs += 1;
+                    self.time_us = self.time_us.saturating_sub(ahead.wrapping_neg().into());
+                } else {
+                    self.time_us += u64::from(ahead);
+                }
             }
             None => {
                 self.missing += self.counted.lost(sequence, 0);

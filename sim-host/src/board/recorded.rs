@@ -1,15 +1,20 @@
 //! What came over a line, kept as it came: written, and read again.
 
 use super::line::{Line, LineError};
+use link::frame::MAX_FRAME;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::time::Duration;
 
-/// The raw bytes of a file, in its order and without waiting; its end is the line's.
+/// The raw bytes of a file from its first whole frame on, in its order and without waiting; its end is the line's.
 pub struct Recording {
     name: String,
     file: File,
+    /// Whether the 0 before the first whole frame is passed.
+    begun: bool,
+    /// Bytes behind the last 0.
+    rest: usize,
 }
 
 impl Recording {
@@ -20,7 +25,7 @@ impl Recording {
     pub fn open(path: &Path) -> Result<Self, LineError> {
         let name = path.display().to_string();
         let file = File::open(path).map_err(|why| LineError::Open { line: name.clone(), why })?;
-        Ok(Self { name, file })
+        Ok(Self { name, file, begun: false, rest: 0 })
     }
 }
 
@@ -34,24 +39,39 @@ impl Line for Recording {
         let read = self.file.read(&mut bytes);
         let length = read.map_err(|why| LineError::Lost { line: self.name.clone(), why })?;
         if length == 0 {
-            return Err(LineError::Ended { line: self.name.clone() });
+            return Err(LineError::Ended { line: self.name.clone(), rest: self.rest });
         }
         bytes.truncate(length);
+        let first = bytes.iter().position(|byte| *byte == 0);
+        match first {
+            // A line is heard from the middle of a frame on.
+            Some(first) if !self.begun => drop(bytes.drain(..first)),
+            None if !self.begun => bytes.clear(),
+            _ => {}
+        }
+        self.begun |= first.is_some();
+        self.rest = match bytes.iter().rposition(|byte| *byte == 0) {
+            Some(last) => bytes.len() - 1 - last,
+            None => self.rest + bytes.len(),
+        };
         Ok(bytes)
     }
 }
 
-/// A line of which everything that comes in is written to a file as well, at once.
+/// A line of which everything that comes in is written to a file as well, as soon as a frame ends: a recording that ends
+/// within a frame was cut.
 pub struct Recorder {
     line: Box<dyn Line>,
     name: String,
     to: Box<dyn Write>,
+    /// Came in since the last end of a frame.
+    begun: Vec<u8>,
 }
 
 impl Recorder {
     /// Writes what comes over `line` to `to`, which errors call `name`.
     pub fn new(line: Box<dyn Line>, name: &str, to: Box<dyn Write>) -> Self {
-        Self { line, name: name.into(), to }
+        Self { line, name: name.into(), to, begun: Vec::new() }
     }
 }
 
@@ -62,8 +82,16 @@ impl Line for Recorder {
 
     fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError> {
         let bytes = self.line.receive(patience)?;
-        let written = self.to.write_all(&bytes).and_then(|()| self.to.flush());
+        self.begun.extend(&bytes);
+        // What is longer than a frame is noise, which is kept as it comes.
+        let whole = match self.begun.iter().rposition(|byte| *byte == 0) {
+            Some(last) => last + 1,
+            None if self.begun.len() > MAX_FRAME => self.begun.len(),
+            None => 0,
+        };
+        let written = self.to.write_all(&self.begun[..whole]).and_then(|()| self.to.flush());
         written.map_err(|why| LineError::Record { file: self.name.clone(), why })?;
+        self.begun.drain(..whole);
         Ok(bytes)
     }
 

@@ -3,6 +3,7 @@
 use super::client::{Client, ClientError};
 use super::fault::Fault;
 use super::parameter::{Parameter, law_bytes, law_of};
+use super::printable::printable;
 use control::Law;
 use link::Key;
 use link::message::Message;
@@ -24,7 +25,7 @@ impl BoardName {
     /// In a few words.
     pub fn label(&self) -> String {
         let Self { image, version, commit, configuration } = self;
-        format!("{image} {version} commit {commit}, configuration {configuration}")
+        printable(&format!("{image} {version} commit {commit}, configuration {configuration}"))
     }
 }
 

@@ -76,6 +76,10 @@ pub struct Row {
     pub polarity: u8,
     /// The torque that the law would ask for during the check \[N m\].
     pub shown_torque: f32,
+    /// The lower half of `causes`, whose bits are more than a double holds exactly.
+    pub causes_low: u32,
+    /// The upper half of `causes`.
+    pub causes_high: u32,
 }
 
 impl Row {
@@ -126,6 +130,8 @@ impl Row {
             motor_slope,
             polarity: *polarity,
             shown_torque: *shown_nm,
+            causes_low: command.causes.0 as u32,
+            causes_high: (command.causes.0 >> 32) as u32,
         }
     }
 }

@@ -4,11 +4,11 @@ use super::conditions::{ConditionArgs, Setup};
 use super::outputs::{OutputArgs, Outputs, Results, complain};
 use super::ride::laid_flat;
 use super::{Ended, Failure, interrupt, speeds};
-use crate::basin::{Axis, Basin, Column, Search, Work, basin};
+use crate::basin::{Axis, Basin, Column, Drawn, Search, Work, basin, drawn};
 use crate::bicycle::linear::Linear;
 use crate::eigen::critical_speeds;
-use crate::report::document::BasinDocument;
-use crate::report::figure::{self, BasinFigure};
+use crate::report::document::{BasinDocument, UncertainEntry};
+use crate::report::figure::{self, Band, BasinFigure};
 use crate::report::resolved::ResolvedSearch;
 use crate::report::{table, terminal};
 use crate::ride::{FallCause, FallCriterion, Outcome};
@@ -25,6 +25,7 @@ Examples:
   sim-host basin --rider young --delay 60ms --gains best
   sim-host basin --law cl2:4 --assist ideal --schedule-speed rear
   sim-host basin --preset product --sensor-delay 20ms --csv product.csv
+  sim-host basin --bicycle data/bicycles/Rigid+Jason --speeds 2:8:0.5 --uncertain 50 --svg band.svg
   sim-host basin --bicycle my.toml#city --axis roll-rate --max-rate 5
   sim-host basin compare 'young=--rider young' 'smart=--rider smart' --svg riders.svg
   sim-host basin plane --speed 4 --rider smart --law h --svg plane.svg";
@@ -37,6 +38,10 @@ pub(super) struct Args {
     command: Option<Command>,
     #[command(flatten)]
     basin: BasinArgs,
+    /// Besides, the basins of N bicycles drawn from the uncertainties of the bicycle's parameters, 2 to 10000, as a band
+    /// from the 5 % to the 95 % quantile of their heights; --seed draws others
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    uncertain: Option<u32>,
 }
 
 /// Options of `basin`, and of a basin ridden on boards.
@@ -120,18 +125,51 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         Some(Command::Plane(args)) => return super::plane::run(args),
         None => {}
     }
-    let args = &args.basin;
+    let (args, uncertain) = (&args.basin, args.uncertain);
     let setup = args.conditions.setup()?;
+    let measured = setup.measured.as_ref();
+    let draws = match (uncertain, measured) {
+        (Some(count), Some(measured)) => Some((count, measured)),
+        (None, _) => None,
+        (Some(_), None) => {
+            return Err(format!(
+                "--uncertain: bicycle {} has no uncertainties; a value with one is written \"1.12+/-0.02\"",
+                setup.config.bicycle.name
+            )
+            .into());
+        }
+    };
     let search = args.search.search(args.conditions.ridden())?;
     let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = args.search.pool()?;
-    let bar = progress(outputs.shows_progress(), "basin", search.speeds.len(), "speeds");
+    let basins = 1 + uncertain.unwrap_or(0) as usize;
+    let bar = progress(outputs.shows_progress(), "basin", basins * search.speeds.len(), "columns");
     let begin = Instant::now();
-    let result = pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
+    let result = pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped))?;
     let seconds = begin.elapsed().as_secs_f64();
+    let drawn = draws.map(|(count, measured)| {
+        pool.install(|| drawn(&setup.conditions, measured, &search, count, || bar.inc(1), interrupt::stopped))
+    });
+    let drawn = drawn.transpose()?;
     bar.finish_and_clear();
-    write(&setup, &search, &outputs, &result?, seconds, "")
+    let short = drawn.as_ref().zip(uncertain).filter(|(drawn, count)| drawn.basins.len() < *count as usize);
+    let ended =
+        write(&setup, &search, &outputs, &Computed { basin: &result, drawn: drawn.as_ref(), seconds }, "")?;
+    if let (Ended::Done, Some((drawn, count))) = (&ended, short) {
+        complain(&format!("interrupted: {} of {count} draws are done and kept", drawn.basins.len()));
+        return Ok(Ended::Interrupted);
+    }
+    Ok(ended)
+}
+
+/// What a search has computed.
+pub(super) struct Computed<'a> {
+    pub(super) basin: &'a Basin,
+    /// Of drawn bicycles, if they were asked for.
+    pub(super) drawn: Option<&'a Drawn>,
+    /// How long the basin took \[s\].
+    pub(super) seconds: f64,
 }
 
 /// Writes a basin, or what there is of it; `said` is added to the text.
@@ -139,10 +177,10 @@ pub(super) fn write(
     setup: &Setup,
     search: &Search,
     outputs: &Outputs,
-    result: &Basin,
-    seconds: f64,
+    computed: &Computed,
     said: &str,
 ) -> Result<Ended, Failure> {
+    let Computed { basin: result, drawn, seconds } = *computed;
     if result.columns.is_empty() {
         complain("interrupted: no speed is done, nothing is written");
         return Ok(Ended::Interrupted);
@@ -150,6 +188,14 @@ pub(super) fn write(
     let complete = result.columns.len() == search.speeds.len();
     let resolved = ResolvedSearch::new(search);
     let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, result, seconds);
+    // Of no draws nothing is known.
+    let drawn = drawn.filter(|drawn| !drawn.basins.is_empty());
+    let document = BasinDocument { uncertain: drawn.map(UncertainEntry::new), ..document };
+    let heights = drawn.map_or(Vec::new(), Drawn::heights);
+    let band: Vec<_> =
+        search.speeds.iter().zip(&heights).map(|(v, [low, _, high])| (*v, *low, *high)).collect();
+    let band_label =
+        drawn.map_or(String::new(), |d| format!("5 % to 95 % of {} drawn bicycles", d.basins.len()));
     let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
     let label = setup.config.label();
     let cut = if complete { "" } else { ", interrupted" };
@@ -160,15 +206,22 @@ pub(super) fn write(
         axis: search.axis,
         cap: search.max_rate,
         title: &title,
+        band: drawn.map(|_| Band { label: &band_label, edges: &band }),
     };
     let config = json!({"config": document.config, "search": document.search, "complete": complete});
     outputs.write(Results {
         document: &document,
         config: &config,
         summary: || {
-            terminal::basin(&figure, 80) + &summary(result, search, &setup.conditions.fall, seconds) + said
+            terminal::basin(&figure, 80)
+                + &summary(result, search, &setup.conditions.fall, seconds)
+                + &spread(&document)
+                + said
         },
-        table: || table::table(&config, &table::basin_rows(result)),
+        table: || {
+            let drawn = drawn.map_or(Vec::new(), |drawn| table::drawn_rows(&search.speeds, drawn));
+            table::table(&config, &[table::basin_rows(result), drawn].concat())
+        },
         figure: || figure::basin(&figure),
     })?;
     if complete {
@@ -178,6 +231,20 @@ pub(super) fn write(
         complain(&format!("interrupted: {done} of {all} speeds are done and kept"));
         Ok(Ended::Interrupted)
     }
+}
+
+/// What the uncertainties make of area and mean height, in words.
+fn spread(document: &BasinDocument) -> String {
+    let Some(drawn) = &document.uncertain else { return String::new() };
+    let at_least = if drawn.capped > 0 { ", at least" } else { "" };
+    let line = |name, [low, middle, high]: [f64; 3], unit| {
+        format!(
+            "{name} of {} drawn bicycles: 5 % {low:.3}, median {middle:.3}, 95 % {high:.3} {unit}{at_least}\n",
+            drawn.draws
+        )
+    };
+    let area = if document.speeds.len() > 1 { line("area", drawn.area, "rad m/s^2") } else { String::new() };
+    area + &line("mean height", drawn.mean_height, "rad/s")
 }
 
 /// A bar with the time left, on standard error, and only on a terminal.
@@ -194,13 +261,31 @@ pub(super) fn progress(shown: bool, command: &str, count: usize, what: &str) -> 
 fn summary(basin: &Basin, search: &Search, fall: &FallCriterion, seconds: f64) -> String {
     let mut text = String::new();
     let Work { rides, steps: _, right_hand_sides } = basin.work();
-    let _ = writeln!(text, "area {:.3} rad m/s^2", basin.area());
-    if let Some(mean) = basin.mean_height() {
-        let _ = writeln!(text, "mean height {mean:.3} rad/s (borders within {} rad/s)", search.tolerance);
+    let at_least = if basin.capped() { "at least " } else { "" };
+    match (&basin.columns[..], basin.mean_height()) {
+        ([only], _) => {
+            let _ = writeln!(
+                text,
+                "one speed: no area; height {at_least}{:.3} rad/s (within {})",
+                only.upper, search.tolerance
+            );
+        }
+        (_, mean) => {
+            let _ = writeln!(text, "area {at_least}{:.3} rad m/s^2", basin.area());
+            let mean = mean.unwrap_or(0.0);
+            let _ = writeln!(
+                text,
+                "mean height {at_least}{mean:.3} rad/s (borders within {} rad/s)",
+                search.tolerance
+            );
+        }
     }
     let undecided = spans(basin, |c| c.border.is_some_and(|r| r.outcome == Outcome::Undecided));
     if !undecided.is_empty() {
-        let _ = writeln!(text, "border undecided at {undecided} m/s: not fallen in time, not come back");
+        let _ = writeln!(
+            text,
+            "border undecided at {undecided} m/s: still upright at the time limit, not settled (see --time-limit)"
+        );
     }
     let capped = spans(basin, |c| c.capped);
     if !capped.is_empty() {

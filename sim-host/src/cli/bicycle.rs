@@ -5,7 +5,8 @@ use super::outputs::{print, write_json};
 use super::{Ended, Failure, accel, warn};
 use crate::bicycle::catalogue::{self, Bicycle};
 use crate::bicycle::linear::Linear;
-use crate::bicycle::{Geometry, onboard};
+use crate::bicycle::uncertain::Measured;
+use crate::bicycle::{Geometry, KEYS, onboard};
 use crate::eigen::{Feedback, Model, Stability, stability};
 use crate::plant::ImuMount;
 use crate::report::document::{CheckDocument, SCHEMA};
@@ -103,8 +104,16 @@ fn show(name: &str) -> Result<(), Failure> {
             let _ = writeln!(text, "{key} = {}", toml::Value::from(remark.as_str()));
         }
     }
-    for (key, value) in crate::bicycle::KEYS.iter().zip(bicycle.parameters.to_values()) {
-        let _ = writeln!(text, "{key} = {value:?}");
+    if let Some(included) = bicycle.rider_included {
+        let _ = writeln!(text, "rider_included = {included}");
+    }
+    bicycle.warnings.iter().for_each(|warning| text += &format!("# warning: {warning}\n"));
+    let deviations = bicycle.measured.as_ref().map_or([0.0; KEYS.len()], Measured::deviations);
+    for ((key, value), sd) in KEYS.iter().zip(bicycle.parameters.to_values()).zip(deviations) {
+        let _ = match sd > 0.0 {
+            true => writeln!(text, "{key} = \"{value:?}+/-{sd:?}\""),
+            false => writeln!(text, "{key} = {value:?}"),
+        };
     }
     print(&text)
 }
@@ -140,6 +149,19 @@ fn check(name: &str, json: Option<&PathBuf>) -> Result<(), Failure> {
     }
     let verdict = if bicycle.warnings.is_empty() { "sound" } else { "doubtful" };
     let mut text = format!("{name}: {verdict}\n");
+    match bicycle.rider_included {
+        Some(true) => text += "with a rider's body\n",
+        Some(false) => text += "without a rider's body\n",
+        None => {}
+    }
+    let uncertain = document.bicycle.uncertainties.len();
+    if uncertain > 0 {
+        let _ = writeln!(
+            text,
+            "{uncertain} of {} values have an uncertainty; `basin --uncertain N` rides N draws",
+            KEYS.len()
+        );
+    }
     for (label, m) in [("M", document.M), ("C1", document.C1), ("K0", document.K0), ("K2", document.K2)] {
         let [[a, b], [c, d]] = m;
         let _ = writeln!(text, "{label:2} = [[{a:.6}, {b:.6}], [{c:.6}, {d:.6}]]");

@@ -4,7 +4,7 @@ use super::basin::{SearchArgs, progress};
 use super::conditions::{ConditionArgs, Setup};
 use super::outputs::{OutputArgs, Results, complain};
 use super::{Ended, Failure, interrupt, words};
-use crate::basin::{Basin, Column, Work, basin};
+use crate::basin::{Basin, Bound, Column, Work, basin};
 use crate::bicycle::linear::Linear;
 use crate::eigen::critical_speeds;
 use crate::report::compare::{Case, CompareDocument};
@@ -76,10 +76,15 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         {
             return Err(format!("{}: its axis is {axis}, --axis is {}", case.label, resolved.axis).into());
         }
-        if asked[..i].iter().any(|other| other.label() == one.label()) {
-            return Err(
-                format!("two cases are called `{}`; each needs a label of its own", one.label()).into()
-            );
+        let (label, capped) = (one.label(), format!("{}{CAPPED}", one.label()));
+        if asked[..i].iter().any(|other| other.label() == label) {
+            return Err(format!("two cases are called `{label}`; each needs a label of its own").into());
+        }
+        if asked.iter().any(|other| other.label() == capped) {
+            return Err(format!(
+                "`{capped}` is the table's column beside the case `{label}`; name it otherwise"
+            )
+            .into());
         }
     }
     let outputs = args.outputs.open(None)?;
@@ -113,8 +118,14 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let document = CompareDocument::new(resolved, &cases, complete);
     let series: Vec<(&str, &Basin)> = cases.iter().map(|c| (c.label.as_str(), &c.basin)).collect();
     let title = if complete { "Basins of attraction" } else { "Basins of attraction, interrupted" };
-    let figure =
-        BasinFigure { series: &series, self_stable: stable, axis: search.axis, cap: search.max_rate, title };
+    let figure = BasinFigure {
+        series: &series,
+        self_stable: stable,
+        axis: search.axis,
+        cap: search.max_rate,
+        title,
+        band: None,
+    };
     let configs: Vec<_> =
         document.cases.iter().map(|c| json!({"label": c.label, "config": c.config})).collect();
     let config = json!({"cases": configs, "search": document.search, "complete": complete});
@@ -160,7 +171,8 @@ fn read(path: &str) -> Result<(Case, String), Failure> {
         let speed = speed.as_f64().ok_or_else(|| wrong("speeds of numbers"))?;
         // An interrupted basin has gaps.
         let Some(upper) = upper.as_f64() else { continue };
-        let capped = capped.as_bool().unwrap_or(false);
+        let capped =
+            capped.as_bool().ok_or_else(|| wrong("capped` of true and false beside the heights, `"))?;
         let (islands, scan) = (Vec::new(), Vec::new());
         columns.push(Column {
             speed,
@@ -182,36 +194,60 @@ fn read(path: &str) -> Result<(Case, String), Failure> {
     Ok((case, axis.into()))
 }
 
-/// The heights by speed, a column a case.
+/// Behind a case's label in the table: whether its height is a lower bound.
+const CAPPED: &str = "_capped";
+
+/// The heights by speed, a column a case; then whether they are lower bounds, a column a case.
 fn heights(config: &Value, cases: &[Case]) -> Result<Vec<u8>, csv::Error> {
     let mut speeds: Vec<f64> = cases.iter().flat_map(|c| &c.basin.columns).map(|c| c.speed).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup_by(|b, a| (*b - *a).abs() < 1e-9);
-    let names = std::iter::once("speed_m_s".into()).chain(cases.iter().map(|c| c.label.clone()));
-    let at =
-        |case: &Case, v: f64| case.basin.columns.iter().find(|c| (c.speed - v).abs() < 1e-9).map(|c| c.upper);
-    let rows = speeds
-        .into_iter()
-        .map(|v| std::iter::once(Some(v)).chain(cases.iter().map(|c| at(c, v))).collect::<Vec<_>>());
-    table::rows(config, &names.collect::<Vec<_>>(), rows)
+    let labels = || cases.iter().map(|c| c.label.clone());
+    let capped = labels().map(|label| label + CAPPED);
+    let names: Vec<String> = std::iter::once("speed_m_s".into()).chain(labels()).chain(capped).collect();
+    let rows = speeds.into_iter().map(|v| {
+        let columns: Vec<Option<&Column>> =
+            cases.iter().map(|c| c.basin.columns.iter().find(|c| (c.speed - v).abs() < 1e-9)).collect();
+        let heights = columns.iter().map(|c| c.map_or(String::new(), |c| c.upper.to_string()));
+        let capped = columns.iter().map(|c| c.map_or(String::new(), |c| c.capped.to_string()));
+        std::iter::once(v.to_string()).chain(heights).chain(capped).collect::<Vec<_>>()
+    });
+    table::rows(config, &names, rows)
 }
 
 fn summary(document: &CompareDocument) -> String {
     let cases = &document.cases;
     let width = cases.iter().map(|c| c.label.chars().count()).max().unwrap_or(0).max(4);
-    let mut text = format!("{:width$}  area rad m/s^2  mean rad/s  of the first  RMSE rad/s to", "case");
+    let mut text = format!("{:width$}  area rad m/s^2   mean rad/s  of the first  RMSE rad/s to", "case");
     for i in 1..=cases.len() {
-        let _ = write!(text, " {i:>6}");
+        let _ = write!(text, " {i:>8}");
     }
     text.push('\n');
-    for (case, distances) in cases.iter().zip(&document.rmse) {
-        let mean = case.mean_height.map_or("-".into(), |m| format!("{m:.3}"));
-        let part = case.relative_area.map_or("-".into(), |r| format!("{:.1} %", 100.0 * r));
-        let _ = write!(text, "{:width$}  {:>14.3}  {mean:>10}  {part:>12}  {:13}", case.label, case.area, "");
-        for d in distances {
-            let _ = write!(text, " {:>6}", d.map_or("-".into(), |d| format!("{d:.3}")));
+    let one_speed = document.one_speed();
+    for ((case, distances), bounds) in cases.iter().zip(&document.rmse).zip(&document.rmse_is) {
+        let sign = Bound::of(case.area_capped).sign();
+        let area = if one_speed { "-".into() } else { format!("{sign}{:.3}", case.area) };
+        let mean = case.mean_height.map_or("-".into(), |m| format!("{sign}{m:.3}"));
+        let part = if one_speed { case.relative_height } else { case.relative_area };
+        let part = part.map_or("-".into(), |r| format!("{}{:.1} %", case.relative_is.sign(), 100.0 * r));
+        let _ = write!(text, "{:width$}  {area:>14}  {mean:>11}  {part:>12}  {:13}", case.label, "");
+        for (d, bound) in distances.iter().zip(bounds) {
+            let sign = bound.map_or("", Bound::sign);
+            let _ = write!(text, " {:>8}", d.map_or("-".into(), |d| format!("{sign}{d:.3}")));
         }
         text.push('\n');
+    }
+    if one_speed {
+        text += "one speed: no area; compared by height\n";
+    }
+    if cases.iter().any(|c| c.area_capped) {
+        text += ">= and <=: at least and at most; nothing fell up to the largest rate tried at some speeds\n";
+    }
+    if cases.iter().any(|c| c.relative_is == Bound::Unknown) {
+        text += "~: which of two such areas is larger is not known; a larger --max-rate tells\n";
+    }
+    if !document.same_speeds {
+        text += "the cases cover different speeds: their areas and means can't be compared\n";
     }
     text
 }

@@ -12,6 +12,7 @@ use crate::leaves;
 use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
 use crate::ride::{Assist, Conditions, FallCriterion, Imu, ScheduleSpeed};
+use crate::rider::doubts;
 use clap::ValueEnum;
 use control::param::Leaf;
 use control::{Config, Law, Limits, Taper, Wheel};
@@ -43,6 +44,9 @@ pub(super) struct ConditionArgs {
     /// Shipped bicycle (see `bicycle list`), FILE, or FILE#NAME of a collection
     #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
     bicycle: String,
+    /// Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    bicycle_set: Vec<String>,
     #[command(flatten)]
     rider: RiderArgs,
     /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, balance-assist:K, or a table FILE [default: h; none with a rider; product: h-cut]
@@ -125,6 +129,7 @@ pub(super) struct Setup {
     pub(super) conditions: Conditions,
     pub(super) config: ResolvedConfig,
     pub(super) parameters: crate::bicycle::Parameters,
+    pub(super) measured: Option<crate::bicycle::uncertain::Measured>,
 }
 
 impl ConditionArgs {
@@ -143,7 +148,7 @@ impl ConditionArgs {
 
     /// Loads and checks everything; warnings go to standard error.
     pub(super) fn setup(&self) -> Result<Setup, Failure> {
-        let bicycle = catalogue::load(&self.bicycle)?;
+        let bicycle = catalogue::load(&self.bicycle)?.varied(&self.bicycle_set)?;
         warn(&bicycle);
         let base = match self.preset {
             Preset::Thesis => Config::thesis(Law::H { cut: false }),
@@ -204,6 +209,7 @@ impl ConditionArgs {
         }
         let limited = config.limits != Limits::default();
         let plan = config.plan().map_err(|e| match option_of(&e.leaf) {
+            Some("--torque-limit") if self.torque_limit.is_none() => e.to_string(),
             Some(option) => format!("{option}: {e}"),
             None if flashed && e.leaf.group.starts_with("estimate") => format!(
                 "{}: for the flashed code {e}, and capsize, predict and track need it; --assist ideal leaves the flashed code out",
@@ -221,6 +227,8 @@ impl ConditionArgs {
             AssistKind::Ideal => Assist::Ideal(Box::new(law.clone())),
         };
         let sensor_delay_ticks = whole_ticks("--sensor-delay", self.sensor_delay, step_s, LONGEST_S)?;
+        let doubts = rider.as_ref().map_or(Vec::new(), |(_, table, _)| doubts(&bicycle, table));
+        doubts.iter().for_each(|doubt| complain_once(&format!("warning: {doubt}")));
         let resolved = rider.as_ref().map(|(rider, table, fit)| ResolvedRider::new(table, *fit, rider));
         let conditions = Conditions {
             rider: rider.map(|(rider, ..)| rider),
@@ -237,7 +245,8 @@ impl ConditionArgs {
         conditions.check()?;
         let preset = if product { "product" } else { "thesis" };
         let law = ResolvedLaw::new(&law_name, &law);
-        let config = ResolvedConfig::new(preset, &bicycle, resolved, law, &conditions);
-        Ok(Setup { conditions, config, parameters: bicycle.parameters })
+        let resolved = ResolvedConfig::new(preset, &bicycle, resolved, law, &conditions);
+        let config = ResolvedConfig { warnings: doubts, ..resolved };
+        Ok(Setup { conditions, config, parameters: bicycle.parameters, measured: bicycle.measured })
     }
 }

@@ -1,6 +1,6 @@
 //! `sim-host eigen`.
 
-use super::outputs::{OutputArgs, Results, complain};
+use super::outputs::{OutputArgs, Results, complain, complain_once};
 use super::rider_args::RiderArgs;
 use super::{Ended, Failure, law, speeds, warn};
 use crate::bicycle::catalogue;
@@ -12,6 +12,7 @@ use crate::report::document::{EigenDocument, SCHEMA};
 use crate::report::figure::{self, EigenFigure};
 use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider, Tool};
 use crate::report::{table, terminal};
+use crate::rider::doubts;
 use control::{Capsize, Law};
 use nalgebra::Complex;
 use rayon::prelude::*;
@@ -36,6 +37,9 @@ pub(super) struct Args {
     /// Shipped bicycle, FILE, or FILE#NAME of a collection
     #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
     bicycle: String,
+    /// Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    bicycle_set: Vec<String>,
     /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, balance-assist:K, or a table FILE
     #[arg(long, default_value = "none")]
     law: String,
@@ -93,11 +97,13 @@ impl ActuatorArgs {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let bicycle = catalogue::load(&args.bicycle)?;
+    let bicycle = catalogue::load(&args.bicycle)?.varied(&args.bicycle_set)?;
     warn(&bicycle);
     let law = law::parse(&args.law)?;
     let (resolved, rider) = match args.rider.load()? {
-        Some((rider, table, fit)) => (Some(ResolvedRider::new(&table, fit, &rider)), Some(rider)),
+        Some((rider, table, fit)) => {
+            (Some(ResolvedRider::new(&table, fit, &rider)), Some((rider, doubts(&bicycle, &table))))
+        }
         None => (None, None),
     };
     let alone = law == Law::None && rider.is_none() && args.capsize.is_none();
@@ -105,6 +111,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         let why = "laws and riders are those of riding forward; below 0 only --law none without --rider and --capsize";
         return Err(format!("--speeds: {v} m/s: {why}").into());
     }
+    let (rider, doubts) = rider.map_or((None, Vec::new()), |(rider, doubts)| (Some(rider), doubts));
+    doubts.iter().for_each(|doubt| complain_once(&format!("warning: {doubt}")));
     let outputs = args.outputs.open(None)?;
     let actuator = args.actuator.actuator();
     let count = match (&rider, actuator.delay_s > 0.0) {
@@ -130,6 +138,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         tool: Tool::this(),
         bicycle: ResolvedBicycle::new(&bicycle),
         rider: resolved,
+        warnings: doubts,
         law: ResolvedLaw::new(&args.law, &law),
         capsize: ResolvedCapsize::new(&capsize),
         actuator: Some(actuator).filter(|a| *a != LinearActuator::default()),
@@ -148,7 +157,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let title = format!("Eigenvalues: {}{rider}, law {}{beside}{turned}", bicycle.name, args.law);
     let figure =
         EigenFigure { speeds: &args.speeds, modes: &modes, stable: &ranges, critical, title: &title };
-    let config = json!({"bicycle": document.bicycle, "rider": document.rider, "law": document.law, "capsize": document.capsize,
+    let config = json!({"bicycle": document.bicycle, "rider": document.rider, "warnings": document.warnings, "law": document.law, "capsize": document.capsize,
         "actuator": document.actuator});
     let in_table = if args.modes { &modes[..] } else { &[] };
     outputs.write(Results {

@@ -1,11 +1,12 @@
 //! `sim-host faults`.
 
-use super::outputs::{print, write_json};
+use super::outputs::{complain, print, write_json};
 use super::port_args::{PortArgs, board};
 use super::{Ended, Failure};
 use crate::board::fault::Fault;
+use crate::board::heard::Heard;
 use crate::board::recorded::Recording;
-use crate::board::{Client, LineError, Patience};
+use crate::board::{Client, ClientError, LineError, Patience};
 use crate::report::board::FaultsDocument;
 use crate::report::document::SCHEMA;
 use crate::report::output::Output;
@@ -38,41 +39,70 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let json = args.json.as_deref().map(Output::create).transpose()?;
-    let (client, board, faults) = match &args.file {
-        Some(file) => (None, None, recorded(file)?),
+    let (client, board, faults, recording) = match &args.file {
+        Some(file) => {
+            let (faults, heard) = recorded(file)?;
+            (None, None, faults, Some(heard))
+        }
         None => {
             let (mut client, board) = args.port.connect()?;
             let faults = client.faults()?;
-            (Some(client), Some(board), faults)
+            (Some(client), Some(board), faults, None)
         }
     };
     match json {
         Some(output) => {
-            write_json(&output, &FaultsDocument { schema: SCHEMA, tool: Tool::this(), board, faults })?
+            let tool = Tool::this();
+            write_json(&output, &FaultsDocument { schema: SCHEMA, tool, board, faults, recording })?
         }
-        None if faults.is_empty() => print("no faults\n")?,
+        None if faults.is_empty() => match recording {
+            Some(heard) => print(&format!("no faults in {} frames\n", heard.frames))?,
+            None => print("no faults\n")?,
+        },
         None => print(&faults.iter().map(Fault::to_string).collect::<Vec<_>>().join("\n"))?,
     }
     if let Some(mut client) = client.filter(|_| args.clear) {
         client.clear_faults()?;
     }
-    Ok(Ended::Done)
+    match (&args.file, recording.and_then(|heard| heard.unread())) {
+        (Some(file), Some(unread)) => {
+            complain(&format!("warning: {}: {unread}; faults in them are not shown", file.display()));
+            Ok(Ended::Partly)
+        }
+        _ => Ok(Ended::Done),
+    }
 }
 
-/// The faults that a recording tells, in its order.
-fn recorded(file: &Path) -> Result<Vec<Fault>, Failure> {
+/// The faults that a recording tells, in its order, and how much of it was understood.
+fn recorded(file: &Path) -> Result<(Vec<Fault>, Heard), Failure> {
     let mut client = Client::new(Box::new(Recording::open(file)?), Patience::default());
-    let mut faults = Vec::new();
-    loop {
+    let (mut faults, mut unknown) = (Vec::new(), 0);
+    let rest = loop {
         let told = match client.listen(Patience::default().answer) {
             Ok(told) => told,
-            Err(crate::board::ClientError::Line(LineError::Ended { .. })) => return Ok(faults),
+            Err(ClientError::Line(LineError::Ended { rest, .. })) => break rest,
             Err(error) => return Err(error.into()),
         };
         for one in told {
-            if let Ok(Message::Fault(record)) = one.message() {
-                faults.push(record.into());
+            match one.message() {
+                Ok(Message::Fault(record)) => faults.push(record.into()),
+                Ok(Message::Telemetry(_) | Message::Log(_)) => {}
+                Ok(_) | Err(_) => unknown += 1,
             }
         }
+    };
+    let heard = Heard { frames: client.whole(), damaged: client.damaged(), unknown, rest };
+    if heard.frames == 0 {
+        return Err(no_recording(file));
     }
+    Ok((faults, heard))
+}
+
+/// A file without a single whole frame.
+pub(super) fn no_recording(file: &Path) -> Failure {
+    format!(
+        "{}: no whole frame of the link in it; expected a recording of `monitor --record`",
+        file.display()
+    )
+    .into()
 }

@@ -48,10 +48,13 @@ enum Ended {
     Done,
     /// By Ctrl-C; what was finished is written.
     Interrupted,
+    /// With a part of the input that could not be read, as was said.
+    Partly,
 }
 
 const EXAMPLES: &str = "\
-Exit codes: 0 ran (a fall is a result), 1 bad input or I/O, 2 usage, 130 interrupted.
+Exit codes: 0 ran (a fall is a result), 1 bad input or I/O, 2 usage, 3 a part of what a board
+said could not be read, 130 interrupted.
 
 Examples:
   sim-host basin --svg basin.svg               the basin of the thesis bicycle under law h
@@ -150,6 +153,7 @@ pub fn run() -> ExitCode {
     match ended {
         Ok(Ended::Done) => ExitCode::SUCCESS,
         Ok(Ended::Interrupted) => ExitCode::from(130),
+        Ok(Ended::Partly) => ExitCode::from(3),
         // A reader that has seen enough, like `head`, is no error.
         Err(e) if is_broken_pipe(&*e) => ExitCode::SUCCESS,
         Err(e) => {

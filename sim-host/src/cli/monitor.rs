@@ -1,9 +1,13 @@
 //! `sim-host monitor`.
 
+use super::faults::no_recording;
 use super::monitor_view::{View, summary};
+use super::outputs::complain;
 use super::port_args::{PortArgs, board};
 use super::{Ended, Failure, interrupt};
+use crate::board::heard::Heard;
 use crate::board::monitor::{Monitor, News};
+use crate::board::printable::printable;
 use crate::board::recorded::{Recorder, Recording};
 use crate::board::row::Row;
 use crate::board::told::Told;
@@ -74,6 +78,8 @@ struct Session {
     length: Option<Duration>,
     /// How long a line that was lost is waited for.
     reopen: Duration,
+    /// Bytes of a recording's last frame if that is not whole.
+    rest: usize,
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
@@ -101,12 +107,21 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         begin: Instant::now(),
         length: args.length.map(Duration::from_secs_f64),
         reopen: Duration::from_secs_f64(args.reopen),
+        rest: 0,
     };
     let ended = session.hear();
     let told = session.end();
     let ended = ended?;
     told?;
-    Ok(ended)
+    let heard = session.heard();
+    match (&args.file, heard.unread()) {
+        (Some(file), _) if heard.frames == 0 => Err(no_recording(file)),
+        (_, Some(unread)) => {
+            complain(&format!("warning: a part of what was said is not shown: {unread}"));
+            Ok(if matches!(ended, Ended::Done) { Ended::Partly } else { ended })
+        }
+        _ => Ok(ended),
+    }
 }
 
 /// The line to hear, kept as a file if that was asked for.
@@ -132,7 +147,10 @@ impl Session {
             }
             let told = match self.client.listen(Duration::from_millis(50)) {
                 Ok(told) => told,
-                Err(ClientError::Line(LineError::Ended { .. })) => return Ok(Ended::Done),
+                Err(ClientError::Line(LineError::Ended { rest, .. })) => {
+                    self.rest = rest;
+                    return Ok(Ended::Done);
+                }
                 Err(ClientError::Line(lost @ LineError::Lost { .. })) => match self.wait(lost)? {
                     Some(ended) => return Ok(ended),
                     None => continue,
@@ -196,7 +214,7 @@ impl Session {
                 self.view.step(&self.monitor, self.damaged())
             }
             News::Fault(fault) => self.view.say(&format!("fault: {fault}")),
-            News::Log(words) => self.view.say(&format!("log: {words}")),
+            News::Log(words) => self.view.say(&format!("log: {}", printable(&words))),
             News::Unknown => Ok(()),
         }
     }
@@ -205,6 +223,11 @@ impl Session {
     fn end(&mut self) -> Result<(), Failure> {
         self.table.as_mut().map_or(Ok(()), Table::flush)?;
         self.view.say(&summary(&self.monitor, self.damaged()))
+    }
+
+    fn heard(&self) -> Heard {
+        let (frames, damaged) = (self.client.whole(), self.damaged());
+        Heard { frames, damaged, unknown: self.monitor.unknown, rest: self.rest }
     }
 
     fn damaged(&self) -> u32 {

@@ -90,8 +90,10 @@ fn roll_rate(step: &Telemetry) -> String {
 }
 
 fn counts(monitor: &Monitor, damaged: u32) -> String {
-    let Monitor { frames, missing, restarts, .. } = monitor;
-    format!("{frames} frames, {missing} missing, {damaged} damaged, {restarts} restarts")
+    let Monitor { frames, missing, unknown, restarts, clock_backs, .. } = monitor;
+    let back = if *clock_backs > 0 { format!(", clock back {clock_backs} times") } else { String::new() };
+    let unknown = if *unknown > 0 { format!("{unknown} not understood, ") } else { String::new() };
+    format!("{frames} frames, {missing} missing, {damaged} damaged, {unknown}{restarts} restarts{back}")
 }
 
 /// What was heard, in a line at the end.

@@ -191,7 +191,7 @@ fn export(file: &std::path::Path, port: &PortArgs) -> Result<(), Failure> {
     let settings = Settings::read(&mut client)?;
     let Tool { name, version, commit } = Tool::this();
     let remark = format!("{name} {version} commit {commit}: {}", board.label());
-    Ok(output.finish(parameter_file::text(&settings, &remark).as_bytes())?)
+    Ok(output.finish(parameter_file::text(&settings, &remark)?.as_bytes())?)
 }
 
 fn import(path: &std::path::Path, port: &PortArgs) -> Result<(), Failure> {
@@ -201,7 +201,16 @@ fn import(path: &std::path::Path, port: &PortArgs) -> Result<(), Failure> {
     let wanted = before
         .understand(file.law.as_ref(), &file.values)
         .map_err(|why| format!("{}: {why}; nothing is set", path.display()))?;
-    apply(&mut client, &before, &wanted, &[])
+    apply(&mut client, &before, &wanted, &[])?;
+    let (there, all) = (file.values.len(), before.but_law().count());
+    let law = if file.law.is_some() { "the law" } else { "no law" };
+    if there < all || file.law.is_none() {
+        print(&format!(
+            "{there} of the board's {all} parameters and {law} are in {}; the others stay\n",
+            path.display()
+        ))?;
+    }
+    Ok(())
 }
 
 /// Sets what is wanted and tells what came of it; those of `always` also where nothing changed.

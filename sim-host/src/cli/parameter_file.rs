@@ -1,18 +1,20 @@
 //! Parameters of the flashed code in a file: what a board exports, and what board and simulator take.
 
 use super::law;
-use crate::board::parameter::{law_name, law_points};
+use crate::board::parameter::{law_bytes, law_name, law_points};
 use crate::board::settings::Settings;
 use crate::leaves;
 use crate::range::plain;
 use control::{Config, Law};
+use link::frame::CRC;
 use std::fmt::Write;
 use std::path::Path;
 
 /// For help texts.
 pub(super) const HELP: &str = "\
 FILE is TOML: `law`, a name as of --law or a table of speed_m_s and gain_nm_s_rad, and a table
-`parameters` of names and values as of --set. Either may be missing, and any parameter.";
+`parameters` of names and values as of --set. Either may be missing, and any parameter, but not all. An
+export has `count` and `checksum` as well: changed by hand it is refused until both lines are taken out.";
 
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -23,6 +25,10 @@ struct File {
     /// Where they come from.
     #[serde(default, rename = "source")]
     _source: Option<String>,
+    /// Of an export: how many parameters it has.
+    count: Option<usize>,
+    /// Of an export: the check value of law and parameters.
+    checksum: Option<String>,
 }
 
 /// What a file says.
@@ -39,7 +45,12 @@ impl ParameterFile {
     pub(super) fn read(path: &Path) -> Result<Self, String> {
         let path = path.display().to_string();
         let text = std::fs::read_to_string(&path).map_err(|e| format!("can't read {path}: {e}"))?;
-        let file: File = toml::from_str(&text).map_err(|e| format!("{path}: {}", e.to_string().trim()))?;
+        Self::of_text(&path, &text)
+    }
+
+    fn of_text(path: &str, text: &str) -> Result<Self, String> {
+        let path = path.to_owned();
+        let file: File = toml::from_str(text).map_err(|e| format!("{path}: {}", e.to_string().trim()))?;
         let law = file.law.map(law::of_value).transpose().map_err(|why| format!("{path}: {why}"))?;
         let values = file.parameters.into_iter().map(|(key, value)| match words(&value) {
             _ if key == "law" || key.starts_with("law.") => Err(format!(
@@ -52,7 +63,40 @@ impl ParameterFile {
             )),
         });
         let values = values.collect::<Result<_, _>>()?;
-        Ok(Self { path, law, values })
+        let read = Self { path, law, values };
+        read.check(file.count, file.checksum.as_deref())?;
+        Ok(read)
+    }
+
+    /// Whether all is there that an export had.
+    fn check(&self, count: Option<usize>, checksum: Option<&str>) -> Result<(), String> {
+        let (path, found) = (&self.path, self.values.len());
+        if found == 0 && self.law.is_none() {
+            return Err(format!("{path}: nothing is in it: no `law`, no `parameters`"));
+        }
+        match (count, checksum) {
+            (None, None) => Ok(()),
+            (Some(count), _) if count != found => Err(format!(
+                "{path}: count = {count}, but {found} parameters are in it: it was cut or changed"
+            )),
+            (Some(_), Some(checksum)) if checksum == self.checksum() => Ok(()),
+            (Some(_), Some(checksum)) => Err(format!(
+                "{path}: checksum = \"{checksum}\", but law and parameters have \"{}\": it was damaged or changed; \
+                 what was changed on purpose is taken without the lines `count` and `checksum`",
+                self.checksum()
+            )),
+            _ => Err(format!("{path}: `count` and `checksum` belong together: one is missing")),
+        }
+    }
+
+    /// The check value of law and parameters: CRC-32 of the law's bytes and of a line `KEY=WORDS` each, by key.
+    fn checksum(&self) -> String {
+        let mut lines: Vec<String> =
+            self.values.iter().map(|(key, words)| format!("{key}={words}\n")).collect();
+        lines.sort();
+        let mut bytes = self.law.as_ref().map_or(Vec::new(), law_bytes);
+        bytes.extend(lines.concat().bytes());
+        format!("{:08x}", CRC.checksum(&bytes))
     }
 
     /// Puts its parameters into a simulated controller. The calibration is that of the board alone: it is checked, and
@@ -84,8 +128,18 @@ fn words(value: &toml::Value) -> Option<String> {
 }
 
 /// A file of all that a board has, with `remark` as its first line.
-pub(super) fn text(settings: &Settings, remark: &str) -> String {
-    let mut text = format!("# {remark}\n");
+///
+/// # Errors
+/// When what is written can't be read again.
+pub(super) fn text(settings: &Settings, remark: &str) -> Result<String, String> {
+    let body = body(settings);
+    let read = ParameterFile::of_text("export", &body)?;
+    let head = format!("count = {}\nchecksum = \"{}\"\n", read.values.len(), read.checksum());
+    Ok(format!("# {remark}\n{head}{body}"))
+}
+
+fn body(settings: &Settings) -> String {
+    let mut text = String::new();
     match law_points(&settings.law) {
         Some(points) => {
             let column = |of: fn(&(f32, f32)) -> f32| points.iter().map(of).collect::<Vec<_>>();

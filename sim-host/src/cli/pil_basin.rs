@@ -1,6 +1,6 @@
 //! `sim-host pil basin`: a basin whose every ride has its control step on a board in QEMU.
 
-use super::basin::{BasinArgs, progress, write};
+use super::basin::{BasinArgs, Computed, progress, write};
 use super::pil::BoardArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Search, basin, basin_by};
@@ -61,7 +61,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             said += &format!("the same bits as in this program: {} speeds\n", result.columns.len());
         }
     }
-    let ended = write(&setup, &searched, &outputs, &result, seconds, &said)?;
+    let ended =
+        write(&setup, &searched, &outputs, &Computed { basin: &result, drawn: None, seconds }, &said)?;
     same.map_err(|difference| format!("--compare: {difference}"))?;
     Ok(ended)
 }

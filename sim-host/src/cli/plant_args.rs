@@ -7,18 +7,20 @@ use crate::range::time;
 
 /// Longest delay of the motor, and of all sensors together \[s\].
 pub(super) const LONGEST_S: f64 = 1.0;
+/// No departure and no fault, as the value of a sweep's reference cell.
+const NONE: &str = "none";
 /// Longest delay of one sensor \[s\].
 const LONGEST_SENSOR_S: f64 = 5.0;
 
 #[derive(clap::Args)]
 pub(super) struct PlantArgs {
-    /// Departs a sensor from the truth, for example gyro:noise=0.01,bias=0.02,delay=5ms; may be repeated
+    /// Departs a sensor from the truth, for example gyro:noise=0.01,bias=0.02,delay=5ms, or none; may be repeated
     #[arg(long, value_name = "NAME:KEY=VALUE,...", allow_hyphen_values = true)]
     sensor: Vec<String>,
     /// Motor, steer friction and end-stop: none, davis, gazelle, a FILE, and KEY=VALUE to change it
     #[arg(long, value_name = "NAME|FILE|KEY=VALUE,...", default_value = "none", allow_hyphen_values = true)]
     actuator: String,
-    /// Something goes wrong, for example gyro.x:stuck@1.5s..2s or motor:dead@1s; may be repeated
+    /// Something goes wrong, for example gyro.x:stuck@1.5s..2s or motor:dead@1s, or none; may be repeated
     #[arg(long, value_name = "CHANNEL:KIND@FROM..TO", allow_hyphen_values = true)]
     fault: Vec<String>,
     /// Seed of noise and dropouts; every ride's differ, by its start
@@ -30,12 +32,12 @@ impl PlantArgs {
     /// The plant asked for, with a control period of `period_s`.
     pub(super) fn plant(&self, period_s: f64) -> Result<Plant, String> {
         let mut sensors = SensorConfig::default();
-        for text in &self.sensor {
+        for text in self.sensor.iter().filter(|text| *text != NONE) {
             depart(&mut sensors, text, period_s).map_err(|e| format!("--sensor {text}: {e}"))?;
         }
         let actuator =
             actuator(&self.actuator, period_s).map_err(|e| format!("--actuator {}: {e}", self.actuator))?;
-        let faults = self.fault.iter().map(|text| text.parse::<Fault>());
+        let faults = self.fault.iter().filter(|text| *text != NONE).map(|text| text.parse::<Fault>());
         let faults = faults.collect::<Result<_, _>>().map_err(|e| format!("--fault: {e}"))?;
         let plant = Plant { sensors, actuator, faults, seed: self.seed };
         plant.check().map_err(|e| e.to_string())?;

@@ -6,7 +6,7 @@ use super::conditions::ConditionArgs;
 use super::outputs::{complain, print, write_json};
 use super::words::Words;
 use super::{Ended, Failure, interrupt};
-use crate::basin::border;
+use crate::basin::{Bound, border};
 use crate::report::output::Output;
 use crate::report::sweep::SweepDocument;
 use crate::sweep::{self, Axis, Cell, Folder, Grid, Progress, Shard};
@@ -154,23 +154,27 @@ fn summary(grid: &Grid, document: &SweepDocument, folder: &Path) -> String {
         return format!("{} of {all} cells are in {folder}; the rest is missing\n", document.cells.len());
     }
     let mut text = format!("{all} cells, {} rides; results in {folder}\n", document.work.rides);
-    let by_area = |a: &&_, b: &&_| f64::total_cmp(&area(a), &area(b));
-    let ends = [
-        ("largest", document.cells.iter().max_by(by_area)),
-        ("smallest", document.cells.iter().min_by(by_area)),
-    ];
-    for (which, cell) in ends {
-        if let Some(cell) = cell {
-            let at: Vec<_> =
-                document.axes.iter().zip(&cell.values).map(|(a, v)| format!("{}={v}", a.key)).collect();
-            let _ = writeln!(text, "{which} area {:.3} rad m/s^2 at {}", cell.area, at.join(", "));
+    let (name, unit) = if grid.one_speed() { ("height", "rad/s") } else { ("area", "rad m/s^2") };
+    let measured = grid.measures().into_iter().enumerate().filter_map(|(i, m)| Some((i, m?)));
+    let measured: Vec<(usize, (f64, Bound))> = measured.collect();
+    let by_size = |a: &&(usize, (f64, Bound)), b: &&(usize, (f64, Bound))| a.1.0.total_cmp(&b.1.0);
+    let ends = [("largest", measured.iter().max_by(by_size)), ("smallest", measured.iter().min_by(by_size))];
+    for (which, end) in ends {
+        if let Some(&(i, (measure, bound))) = end {
+            let at = grid.plan.label(i);
+            let least = if bound.is_measured() { "" } else { "at least " };
+            let _ = writeln!(text, "{which} {name} {least}{measure:.3} {unit} at {at}");
         }
     }
+    let capped = measured.iter().filter(|(_, (_, bound))| !bound.is_measured()).count();
+    if capped > 0 {
+        let _ = writeln!(
+            text,
+            "{capped} of {all} cells are lower bounds, as nothing fell up to {} rad/s: which is the largest is not known",
+            document.search.max_rate
+        );
+    }
     text
-}
-
-fn area(cell: &crate::report::sweep::CellDocument) -> f64 {
-    cell.area
 }
 
 /// Most columns that are timed for an estimate.

@@ -1,8 +1,8 @@
 //! Judging laws beside each other: the basin of each in every trial.
 
 use super::Arena;
-use crate::basin::Search;
-use crate::study::trial::{Trial, areas};
+use crate::basin::{Basin, Search};
+use crate::study::trial::{Trial, basins};
 use control::Law;
 
 /// The areas of laws in an arena.
@@ -10,6 +10,8 @@ use control::Law;
 pub struct Judged {
     /// Per trial, those to design with first, the area under each law \[rad m/s^2\].
     pub areas: Vec<Vec<f64>>,
+    /// Whether they are lower bounds, as nothing fell up to the largest rate tried at some speed.
+    pub capped: Vec<Vec<bool>>,
 }
 
 /// The laws that a design has to beat, by their names on the command line.
@@ -42,6 +44,12 @@ pub fn judge(
     let trials = arena.training.iter().chain(&arena.held_out);
     let asked: Vec<(&Trial, &Law)> =
         trials.flat_map(|trial| laws.iter().map(move |(_, law)| (trial, law))).collect();
-    let areas = areas(&asked, search, advanced, stop)?;
-    Ok(areas.map(|areas| Judged { areas: areas.chunks(laws.len()).map(<[f64]>::to_vec).collect() }))
+    let basins = basins(&asked, search, advanced, stop)?;
+    Ok(basins.map(|all| {
+        let by_trial = || all.chunks(laws.len());
+        Judged {
+            areas: by_trial().map(|of_laws| of_laws.iter().map(Basin::area).collect()).collect(),
+            capped: by_trial().map(|of_laws| of_laws.iter().map(Basin::capped).collect()).collect(),
+        }
+    }))
 }

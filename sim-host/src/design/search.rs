@@ -3,7 +3,7 @@
 
 use super::knots::{GAINS, Knots, roughness};
 use crate::basin::Search;
-use crate::study::trial::{Trial, least_area};
+use crate::study::trial::{Least, Trial, least_area};
 use argmin::core::{CostFunction, Error, Executor};
 use argmin::solver::neldermead::NelderMead;
 use control::Law;
@@ -42,8 +42,12 @@ pub struct Found {
     pub gains: Vec<f64>,
     /// The least area over the trials \[rad m/s^2\], coarse.
     pub worst_area: f64,
+    /// Whether it is a lower bound, as nothing fell up to the largest rate tried at some speed.
+    pub worst_capped: bool,
     /// The same of the law it began with.
     pub start_area: f64,
+    /// Whether that is a lower bound.
+    pub start_capped: bool,
     /// Schedules tried.
     pub evaluations: u32,
     /// False if it was stopped before its evaluations were used up.
@@ -150,31 +154,32 @@ impl Hunt<'_> {
             }
         };
         let cost = |area: f64, gains: &[f64]| self.plan.smoothness * roughness(gains) - area;
+        let Least { area: worst, capped, .. } = worst;
         let now = cost(worst, &gains);
         let found = self.found.get_or_insert_with(|| Found {
             gains: gains.clone(),
             worst_area: worst,
+            worst_capped: capped,
             start_area: worst,
+            start_capped: capped,
             evaluations: 0,
             complete: true,
             history: vec![(1, worst)],
         });
         found.evaluations += 1;
         if now < cost(found.worst_area, &found.gains) {
-            (found.gains, found.worst_area) = (gains, worst);
+            (found.gains, found.worst_area, found.worst_capped) = (gains, worst, capped);
             found.history.push((found.evaluations, worst));
         }
         (self.advanced)(Progress { evaluations: found.evaluations, best: found.worst_area });
         Some(now + BEYOND * beyond)
     }
 
-    fn worst_area(&mut self, gains: &[f64]) -> Result<Option<f64>, String> {
+    fn worst_area(&mut self, gains: &[f64]) -> Result<Option<Least>, String> {
         let law = self.plan.knots.law(gains).map_err(|e| e.to_string())?;
         let found = least_area(self.trials, &law, &self.plan.search, self.worst, self.stop)?;
-        Ok(found.map(|(area, of)| {
-            self.worst = of;
-            area
-        }))
+        self.worst = found.map_or(self.worst, |least| least.of);
+        Ok(found)
     }
 
     fn end(&mut self, complete: bool) {

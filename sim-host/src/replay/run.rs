@@ -104,6 +104,10 @@ pub struct Row {
     pub log_roll: Option<f64>,
     /// The log's own torque \[N m\].
     pub log_torque: Option<f64>,
+    /// The lower half of `causes`, whose bits are more than a double holds exactly.
+    pub causes_low: u32,
+    /// The upper half of `causes`.
+    pub causes_high: u32,
 }
 
 /// The account of a replay.
@@ -398,5 +402,7 @@ fn row(
         motor_residual: known(residuals.motor_nm),
         log_roll,
         log_torque,
+        causes_low: command.causes.0 as u32,
+        causes_high: (command.causes.0 >> 32) as u32,
     }
 }

@@ -3,6 +3,7 @@
 use super::document::SCHEMA;
 use super::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use super::resolved::{ResolvedSearch, Tool};
+use crate::basin::Bound;
 use crate::design::{Found, Judged, Plan};
 use control::Law;
 use schemars::JsonSchema;
@@ -37,8 +38,12 @@ pub struct DesignDocument {
     pub schedule: Vec<(f32, f32)>,
     /// Its least area over the trials it was designed with, found coarsely \[rad m/s^2\].
     pub worst_area: f64,
+    /// Whether it is a lower bound, as nothing fell up to the largest rate tried at some speed.
+    pub worst_area_capped: bool,
     /// The same of the law it began with.
     pub start_worst_area: f64,
+    /// Whether that is a lower bound.
+    pub start_worst_area_capped: bool,
     /// Every improvement: schedules tried, least area.
     pub history: Vec<(u32, f64)>,
     /// How areas were found on the way.
@@ -72,6 +77,8 @@ pub struct TrialEntry {
     pub designed_with: bool,
     /// Area of the basin under each of `laws`, trapezoidal rule \[rad m/s^2\].
     pub area: Vec<f64>,
+    /// Whether these are lower bounds, as nothing fell up to the largest rate tried at some speed.
+    pub area_capped: Vec<bool>,
 }
 
 impl SearchEntry {
@@ -108,11 +115,14 @@ impl DesignDocument {
         let trials = d.arena.training.iter().map(|t| (t, true));
         let trials: Vec<_> = trials.chain(d.arena.held_out.iter().map(|t| (t, false))).collect();
         let entries = |judged: &Judged| {
-            let entries = trials.iter().zip(&judged.areas).map(|((trial, designed_with), area)| TrialEntry {
-                label: trial.label.clone(),
-                designed_with: *designed_with,
-                area: area.clone(),
-            });
+            let found = judged.areas.iter().zip(&judged.capped);
+            let entries =
+                trials.iter().zip(found).map(|((trial, designed_with), (area, capped))| TrialEntry {
+                    label: trial.label.clone(),
+                    designed_with: *designed_with,
+                    area: area.clone(),
+                    area_capped: capped.clone(),
+                });
             entries.collect()
         };
         let limits = d.arena.training.first().map(|t| t.limits).unwrap_or_default();
@@ -129,7 +139,9 @@ impl DesignDocument {
             rate_limit_nm_s: limits.rise_nm_s,
             schedule: points(d.law),
             worst_area: d.found.worst_area,
+            worst_area_capped: d.found.worst_capped,
             start_worst_area: d.found.start_area,
+            start_worst_area_capped: d.found.start_capped,
             history: d.found.history.clone(),
             coarse: SearchEntry::new(&d.plan.search),
             fine: SearchEntry::new(d.fine),
@@ -142,8 +154,13 @@ impl DesignDocument {
     /// The answer in words.
     pub fn summary(&self) -> String {
         let mut text = format!(
-            "{} schedules tried, least area {:.3} rad m/s^2 (coarse; {} has {:.3})\n",
-            self.evaluations, self.worst_area, self.start, self.start_worst_area
+            "{} schedules tried, least area {}{:.3} rad m/s^2 (coarse; {} has {}{:.3})\n",
+            self.evaluations,
+            Bound::of(self.worst_area_capped).sign(),
+            self.worst_area,
+            self.start,
+            Bound::of(self.start_worst_area_capped).sign(),
+            self.start_worst_area
         );
         for (speed, gain) in &self.schedule {
             let _ = writeln!(text, "  {speed:5.2} m/s  {gain:7.2} N m s/rad");
@@ -159,26 +176,36 @@ impl DesignDocument {
         for (designed_with, title) in [(true, "designed with"), (false, "held out")] {
             let trials: Vec<&TrialEntry> =
                 self.trials.iter().filter(|t| t.designed_with == designed_with).collect();
+            let cell = |trial: &TrialEntry, i: usize| {
+                format!("{}{:.2}", Bound::of(trial.area_capped[i]).sign().trim(), trial.area[i])
+            };
             for trial in &trials {
-                text += &row(&trial.label, trial.area.iter().map(|a| format!("{a:.2}")).collect());
+                text += &row(&trial.label, (0..self.laws.len()).map(|i| cell(trial, i)).collect());
             }
-            let least = |i: usize| trials.iter().map(|t| t.area[i]).fold(f64::INFINITY, f64::min);
-            let least = (0..self.laws.len()).map(|i| format!("{:.2}", least(i))).collect();
+            let least = |i: usize| trials.iter().min_by(|a, b| a.area[i].total_cmp(&b.area[i]));
+            let least = (0..self.laws.len()).map(|i| least(i).map_or("-".into(), |t| cell(t, i))).collect();
             text += &row(&format!("least, {title}"), least);
+        }
+        if self.trials.iter().flat_map(|t| &t.area_capped).any(|capped| *capped) {
+            text += ">=: at least; nothing fell up to the largest rate tried at some speeds\n";
         }
         text
     }
 
-    /// The heading of the table: the trial's number, whether it was designed with, each law.
+    /// The heading of the table: the trial's number, whether it was designed with, each law's area, whether that is a
+    /// lower bound.
     pub fn columns(&self) -> Vec<String> {
-        ["trial".to_owned(), "designed_with".to_owned()].into_iter().chain(self.laws.clone()).collect()
+        let capped = self.laws.iter().map(|law| format!("{law}_capped"));
+        let head = ["trial".to_owned(), "designed_with".to_owned()].into_iter();
+        head.chain(self.laws.clone()).chain(capped).collect()
     }
 
     /// The table's rows.
     pub fn rows(&self) -> impl Iterator<Item = Vec<Option<f64>>> {
         self.trials.iter().enumerate().map(|(i, t)| {
             let head = [i as f64 + 1.0, f64::from(u8::from(t.designed_with))];
-            head.into_iter().chain(t.area.iter().copied()).map(Some).collect()
+            let capped = t.area_capped.iter().map(|c| f64::from(u8::from(*c)));
+            head.into_iter().chain(t.area.iter().copied()).chain(capped).map(Some).collect()
         })
     }
 }

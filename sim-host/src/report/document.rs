@@ -1,7 +1,7 @@
 //! The JSON documents, schema 1: what scripts may rely on (`docs/cli.md`, `docs/schema/`).
 
 use super::resolved::{ResolvedConfig, ResolvedSearch, Tool};
-use crate::basin::{Basin, ScanPoint, Work};
+use crate::basin::{Basin, Drawn, QUANTILES, ScanPoint, Work};
 use crate::eigen::StabilityChange;
 use crate::ride::{Effort, FallCause, FinalState, Ride, Start};
 use schemars::JsonSchema;
@@ -61,6 +61,8 @@ pub struct EigenDocument {
     pub bicycle: super::resolved::ResolvedBicycle,
     /// Who rides; null for a rigid rider, hands off.
     pub rider: Option<super::resolved::ResolvedRider>,
+    /// What is doubtful about rider and bicycle together.
+    pub warnings: Vec<String>,
     /// The law.
     pub law: super::resolved::ResolvedLaw,
     /// The capsize term beside it; null if there is none.
@@ -182,6 +184,44 @@ pub struct Map {
     pub fall: Vec<Vec<Option<&'static str>>>,
 }
 
+/// The basins of drawn bicycles.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct UncertainEntry {
+    /// Bicycles whose basin is whole.
+    pub draws: usize,
+    /// Seed of the draws.
+    pub seed: u64,
+    /// The parts of the draws below the numbers here: 5 %, 50 % and 95 %.
+    pub quantiles: [f64; 3],
+    /// Per speed these quantiles of the height \[rad/s\].
+    pub upper: Vec<[f64; 3]>,
+    /// The same of the area \[rad m/s^2\].
+    pub area: [f64; 3],
+    /// The same of the mean height \[rad/s\].
+    pub mean_height: [f64; 3],
+    /// How many draws have a height that is a lower bound.
+    pub capped: usize,
+    /// Per draw and speed the height \[rad/s\].
+    pub heights: Vec<Vec<f64>>,
+}
+
+impl UncertainEntry {
+    /// Of drawn basins.
+    pub fn new(drawn: &Drawn) -> Self {
+        let heights = |basin: &Basin| basin.columns.iter().map(|c| c.upper).collect();
+        Self {
+            draws: drawn.basins.len(),
+            seed: drawn.seed,
+            quantiles: QUANTILES,
+            upper: drawn.heights(),
+            area: drawn.quantiles(Basin::area),
+            mean_height: drawn.quantiles(|basin| basin.mean_height().unwrap_or(0.0)),
+            capped: drawn.capped(),
+            heights: drawn.basins.iter().map(heights).collect(),
+        }
+    }
+}
+
 /// `basin`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct BasinDocument {
@@ -208,6 +248,10 @@ pub struct BasinDocument {
     pub area: Option<f64>,
     /// Mean of `upper` \[rad/s\].
     pub mean_height: Option<f64>,
+    /// Whether area and mean are lower bounds, as some height is one.
+    pub area_capped: bool,
+    /// The basins of bicycles drawn from the uncertainties of the parameters; null if none were asked for.
+    pub uncertain: Option<UncertainEntry>,
     /// The rides at the outline.
     pub border: Vec<Border>,
     /// The scan.
@@ -262,6 +306,8 @@ impl BasinDocument {
             islands,
             area: complete.then(|| basin.area()),
             mean_height: basin.mean_height().filter(|_| complete),
+            area_capped: basin.capped(),
+            uncertain: None,
             border,
             map: Map {
                 rates: basin.columns.first().map_or(Vec::new(), |c| c.scan.iter().map(|p| p.rate).collect()),

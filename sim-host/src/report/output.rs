@@ -5,6 +5,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::Builder;
 
+/// How the names of files begin that are written beside their place.
+pub(crate) const TEMPORARY: &str = ".sim-host-";
+
 /// A place for a result: tried before the work, so that one that can't be written to is known
 /// early, and filled at the end. Between the two nothing of it exists, so nothing can be left behind.
 #[derive(Debug)]
@@ -92,14 +95,14 @@ impl Place {
             return Err(io::Error::other(format!("there is no folder {}", folder.display())));
         }
         // The kind alone: the error's text names the temporary file, which means nothing to the user.
-        Builder::new().prefix(".sim-host-").tempfile_in(folder).map_err(|e| e.kind())?;
+        Builder::new().prefix(TEMPORARY).tempfile_in(folder).map_err(|e| e.kind())?;
         Ok(Place::File(folder.canonicalize()?, name.into()))
     }
 }
 
 fn replace(folder: &Path, name: &Path, content: &[u8]) -> io::Result<()> {
     let mut builder = Builder::new();
-    builder.prefix(".sim-host-").suffix(".tmp");
+    builder.prefix(TEMPORARY).suffix(".tmp");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut file = builder.tempfile_in(folder)?;

@@ -23,6 +23,8 @@ pub struct PlaneDocument {
     pub complete: bool,
     /// Area inside the outline \[rad^2/s^2\].
     pub area: Option<f64>,
+    /// Whether the area is a lower bound, as nothing fell up to the end of some ray.
+    pub area_capped: bool,
     /// The border around the undisturbed ride, all the way round: `[steer rate, roll rate]` \[rad/s\].
     pub outline: Vec<[f64; 2]>,
     /// The rays of one half; the other half is the mirror image.
@@ -70,6 +72,7 @@ impl PlaneDocument {
             search,
             complete,
             area: complete.then(|| plane.area()),
+            area_capped: plane.capped(),
             outline: plane.outline().into_iter().map(|(steer, roll)| [steer, roll]).collect(),
             rays: plane.rays.iter().map(entry).collect(),
             work: plane.work(),
@@ -91,6 +94,8 @@ pub struct PlaneRow {
     pub time_to_fall_s: Option<f64>,
     /// What made it count as fallen, at the border the nearest ride beyond; empty if it did not.
     pub fall: Option<&'static str>,
+    /// Of a border: whether nothing fell up to the ray's end.
+    pub capped: Option<bool>,
 }
 
 /// The scans and borders as rows; the mirror images left out.
@@ -100,9 +105,10 @@ pub fn plane_rows(plane: &Plane) -> Vec<PlaneRow> {
         let row = |s: f64, outcome, time_to_fall_s, fall: Option<FallCause>| {
             let (steer_rate_rad_s, roll_rate_rad_s) = ray.at(s);
             let fall = fall.map(FallCause::name);
-            PlaneRow { steer_rate_rad_s, roll_rate_rad_s, outcome, time_to_fall_s, fall }
+            PlaneRow { steer_rate_rad_s, roll_rate_rad_s, outcome, time_to_fall_s, fall, capped: None }
         };
-        rows.push(row(ray.column.upper, "border", None, ray.column.beyond));
+        let border = row(ray.column.upper, "border", None, ray.column.beyond);
+        rows.push(PlaneRow { capped: Some(ray.column.capped), ..border });
         let scan = ray.column.scan.iter();
         rows.extend(scan.map(|ScanPoint { rate, outcome }| {
             row(*rate, outcome.name(), outcome.time_to_fall_s(), outcome.fall())

@@ -42,8 +42,14 @@ pub struct ResolvedBicycle {
     pub name: String,
     /// Where the values come from.
     pub source: Option<String>,
+    /// A remark of the file's, and what of it is not used.
+    pub note: Option<String>,
+    /// Whether a rider's body is part of the rear frame; null if the file does not say.
+    pub rider_included: Option<bool>,
     /// Doubts about the values.
     pub warnings: Vec<String>,
+    /// Standard deviations of the values that have one, SI units.
+    pub uncertainties: BTreeMap<&'static str, f64>,
     /// The values, symbols of Meijaard et al. 2007, SI units.
     pub parameters: BTreeMap<&'static str, f64>,
 }
@@ -54,10 +60,18 @@ impl ResolvedBicycle {
         Self {
             name: bicycle.name.clone(),
             source: bicycle.source.clone(),
+            note: bicycle.note.clone(),
+            rider_included: bicycle.rider_included,
             warnings: bicycle.warnings.clone(),
+            uncertainties: uncertainties(bicycle),
             parameters: parameters(&bicycle.parameters),
         }
     }
+}
+
+fn uncertainties(bicycle: &Bicycle) -> BTreeMap<&'static str, f64> {
+    let all = bicycle.measured.iter().flat_map(|measured| KEYS.into_iter().zip(measured.deviations()));
+    all.filter(|(_, sd)| *sd > 0.0).collect()
 }
 
 fn parameters(p: &Parameters) -> BTreeMap<&'static str, f64> {
@@ -237,6 +251,8 @@ pub struct ResolvedConfig {
     pub fall: FallCriterion,
     /// Time limit of a ride \[s\].
     pub time_limit_s: f64,
+    /// What is doubtful about rider and bicycle together.
+    pub warnings: Vec<String>,
     /// Fraction of the largest roll and steer below which a ride's last second must stay to count as
     /// recovered.
     pub recovered_below: f64,
@@ -277,6 +293,7 @@ impl ResolvedConfig {
             step_s: c.step_s,
             fall: c.fall,
             time_limit_s: c.time_limit_s,
+            warnings: Vec::new(),
             recovered_below: c.recovered_below,
         }
     }

@@ -46,6 +46,8 @@ pub struct CellDocument {
     pub area: f64,
     /// Their mean \[rad/s\].
     pub mean_height: f64,
+    /// Whether area and mean are lower bounds, as some height is one.
+    pub area_capped: bool,
     /// Largest torque of the rides at the border \[N m\].
     pub peak_torque_nm: f64,
     /// Largest change of torque of the rides at the border \[N m/s\].
@@ -67,6 +69,7 @@ impl SweepDocument {
                 config: without(&unit.config, &shared),
                 area: grid.area(unit),
                 mean_height: unit.mean_height(),
+                area_capped: unit.capped(),
                 peak_torque_nm,
                 peak_slew_nm_s,
                 found: unit.found.clone(),
@@ -119,10 +122,11 @@ fn without(config: &Value, shared: &Map<String, Value>) -> Value {
 /// # Errors
 /// When a row can't be written as a line of CSV.
 pub fn cells_table(document: &SweepDocument) -> Result<Vec<u8>, csv::Error> {
-    let measures = ["area_rad_m_s2", "mean_height_rad_s", "peak_torque_nm", "peak_slew_nm_s"];
+    let measures = ["area_rad_m_s2", "mean_height_rad_s", "peak_torque_nm", "peak_slew_nm_s", "area_capped"];
     let rows = document.cells.iter().map(|cell| {
         let numbers = [cell.area, cell.mean_height, cell.peak_torque_nm, cell.peak_slew_nm_s];
-        cell.values.iter().cloned().chain(numbers.map(|x| x.to_string())).collect::<Vec<_>>()
+        let measures = numbers.map(|x| x.to_string()).into_iter().chain([cell.area_capped.to_string()]);
+        cell.values.iter().cloned().chain(measures).collect::<Vec<_>>()
     });
     table::rows(&document.heading(), &columns(document, &measures), rows)
 }

@@ -12,12 +12,17 @@ pub fn heading(config: &impl Serialize) -> String {
     format!("# {} {} commit {}\n# {config}\n", tool.name, tool.version, tool.commit)
 }
 
+/// A writer that quotes values with a `#`, which is where a reader of the heading's comments would stop.
+fn writer(begun: Vec<u8>) -> csv::Writer<Vec<u8>> {
+    csv::WriterBuilder::new().comment(Some(b'#')).from_writer(begun)
+}
+
 /// A table of serialisable rows, columns named by their fields.
 ///
 /// # Errors
 /// When a row can't be written as a line of CSV.
 pub fn table<R: Serialize>(config: &impl Serialize, rows: &[R]) -> Result<Vec<u8>, csv::Error> {
-    let mut writer = csv::Writer::from_writer(heading(config).into_bytes());
+    let mut writer = writer(heading(config).into_bytes());
     for row in rows {
         writer.serialize(row)?;
     }
@@ -33,7 +38,7 @@ pub fn rows<R: Serialize>(
     columns: &[String],
     rows: impl IntoIterator<Item = R>,
 ) -> Result<Vec<u8>, csv::Error> {
-    let mut writer = csv::Writer::from_writer(heading(config).into_bytes());
+    let mut writer = writer(heading(config).into_bytes());
     writer.write_record(columns)?;
     for row in rows {
         writer.serialize(row)?;
@@ -67,6 +72,24 @@ pub struct BasinRow {
     pub time_to_fall_s: Option<f64>,
     /// What made it count as fallen, at the border the nearest ride beyond; empty if it did not.
     pub fall: Option<&'static str>,
+    /// Of a border: whether it is a lower bound, as nothing fell up to the largest rate tried.
+    pub capped: Option<bool>,
+}
+
+/// The quantiles of drawn basins as rows, outcomes `border-5%`, `border-50%` and `border-95%`.
+pub fn drawn_rows(speeds: &[f64], drawn: &crate::basin::Drawn) -> Vec<BasinRow> {
+    const NAMES: [&str; 3] = ["border-5%", "border-50%", "border-95%"];
+    let row = |speed_m_s, (outcome, rate_rad_s)| BasinRow {
+        speed_m_s,
+        rate_rad_s,
+        outcome,
+        time_to_fall_s: None,
+        fall: None,
+        capped: None,
+    };
+    let of_speed =
+        |(&v, quantiles): (&f64, [f64; 3])| NAMES.into_iter().zip(quantiles).map(move |q| row(v, q));
+    speeds.iter().zip(drawn.heights()).flat_map(of_speed).collect()
 }
 
 /// The scan and, per speed, the border as rows.
@@ -79,8 +102,9 @@ pub fn basin_rows(basin: &crate::basin::Basin) -> Vec<BasinRow> {
             outcome,
             time_to_fall_s: time,
             fall: fall.map(FallCause::name),
+            capped: None,
         };
-        rows.push(row(c.upper, "border", None, c.beyond));
+        rows.push(BasinRow { capped: Some(c.capped), ..row(c.upper, "border", None, c.beyond) });
         rows.extend(c.scan.iter().map(|ScanPoint { rate, outcome }| {
             row(*rate, outcome.name(), outcome.time_to_fall_s(), outcome.fall())
         }));

@@ -93,8 +93,14 @@ mod tests {
     fn basin_text(columns: Vec<Column>, width: usize) -> String {
         let basin = Basin { columns };
         let series = [("law", &basin)];
-        let figure =
-            BasinFigure { title: "", series: &series, self_stable: None, axis: Axis::SteerRate, cap: 8.0 };
+        let figure = BasinFigure {
+            title: "",
+            series: &series,
+            self_stable: None,
+            axis: Axis::SteerRate,
+            cap: 8.0,
+            band: None,
+        };
         super::basin(&figure, width)
     }
 

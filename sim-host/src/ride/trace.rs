@@ -50,6 +50,10 @@ pub struct TracePoint {
     pub mode: u8,
     /// What stood in the way of the torque, as bits of [`control::Causes`].
     pub causes: u64,
+    /// The lower half of `causes`, whose bits are more than a double holds exactly.
+    pub causes_low: u32,
+    /// The upper half of `causes`.
+    pub causes_high: u32,
     /// All that the controller was told.
     #[serde(skip)]
     pub frame: SensorFrame,
@@ -86,6 +90,8 @@ impl TracePoint {
             motor_torque: pushes.assist_nm,
             mode: answer.mode as u8,
             causes: answer.causes.0,
+            causes_low: answer.causes.0 as u32,
+            causes_high: (answer.causes.0 >> 32) as u32,
             frame: answer.frame,
         }
     }

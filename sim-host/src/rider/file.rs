@@ -23,6 +23,7 @@ struct File {
     schema: u32,
     source: Option<String>,
     note: Option<String>,
+    bicycle: Option<String>,
     delay_ms: f64,
     neuromuscular: Option<MusclesFile>,
     #[serde(default)]
@@ -114,6 +115,7 @@ impl File {
             name: name.into(),
             source: self.source,
             note: self.note,
+            bicycle: self.bicycle,
             delay_s: self.delay_ms / 1e3,
             muscles,
             regression,

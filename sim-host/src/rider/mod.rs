@@ -3,6 +3,7 @@
 
 mod body;
 pub mod catalogue;
+mod doubts;
 mod file;
 mod fit;
 mod gains;
@@ -12,6 +13,7 @@ mod schedule;
 mod table;
 
 pub use body::{Body, Instant};
+pub use doubts::doubts;
 pub use fit::{Fit, Line, mean};
 pub use gains::{Gains, KEYS, Signals};
 pub use muscles::{Muscles, MusclesError};

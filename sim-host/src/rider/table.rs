@@ -27,6 +27,8 @@ pub struct RiderTable {
     pub source: Option<String>,
     /// A remark.
     pub note: Option<String>,
+    /// The bicycle that the gains are made for, as of `--bicycle`, if they are for one.
+    pub bicycle: Option<String>,
     /// The effective neural delay they hold for \[s\].
     pub delay_s: f64,
     /// The muscles they hold for.
@@ -72,10 +74,11 @@ impl RiderTable {
         });
         let lines: String = lines.collect();
         format!(
-            "schema = {SCHEMA}\n{}{}delay_ms = {:?}\nneuromuscular = {{ omega_rad_s = {:?}, zeta = {:?} }}\n{}\
+            "schema = {SCHEMA}\n{}{}{}delay_ms = {:?}\nneuromuscular = {{ omega_rad_s = {:?}, zeta = {:?} }}\n{}\
              columns = {columns:?}\nrows = [\n{}]\n{}{lines}",
             text("source", &self.source),
             text("note", &self.note),
+            text("bicycle", &self.bicycle),
             self.delay_s * 1e3,
             self.muscles.omega_rad_s,
             self.muscles.zeta,

@@ -1,8 +1,8 @@
 //! The balance assist's law beside h, both behind the prototype's 7 N m.
 
 use super::page::{Page, table};
-use super::trial::{Outline, Trial, outlines};
-use crate::basin::{Axis as Disturbance, Search, area};
+use super::trial::{Trial, basins};
+use crate::basin::{Axis as Disturbance, Basin, Bound, Column, Search};
 use crate::report::figure::{Axis, Chart, Line, Look, Plot, Series};
 use control::{Law, Limits};
 
@@ -96,15 +96,15 @@ pub fn study(
     let pairs = groups.iter().flat_map(|g| laws.iter().map(move |(_, law)| (g, law)));
     let asked: Vec<(&Trial, &Law)> =
         pairs.filter(|(g, law)| matters(g, law)).map(|(g, law)| (&g.trial, law)).collect();
-    let Some(found) = outlines(&asked, search, advanced, stop)? else { return Ok(None) };
+    let Some(found) = basins(&asked, search, advanced, stop)? else { return Ok(None) };
     let mut found = found.into_iter();
-    let mut by_group: Vec<Vec<Outline>> = Vec::new();
+    let mut by_group: Vec<Vec<Basin>> = Vec::new();
     for g in &groups {
-        let mut of_laws: Vec<Outline> = Vec::new();
+        let mut of_laws: Vec<Basin> = Vec::new();
         for (_, law) in &laws {
             let before = by_group.last().and_then(|group| group.first());
-            let outline = if matters(g, law) { found.next() } else { before.cloned() };
-            of_laws.extend(outline);
+            let basin = if matters(g, law) { found.next() } else { before.cloned() };
+            of_laws.extend(basin);
         }
         by_group.push(of_laws);
     }
@@ -112,29 +112,30 @@ pub fn study(
     Ok(Some(Page { name: NAME, text, chart: figure(&groups, &by_group) }))
 }
 
-fn text(groups: &[Group], outlines: &[Vec<Outline>], search: &Search) -> String {
+fn text(groups: &[Group], basins: &[Vec<Basin>], search: &Search) -> String {
     let laws = laws();
     let mut heading = vec!["bicycle", "rider", "largest change [N m/s]"];
     heading.extend(laws.iter().map(|(name, _)| *name));
     heading.push("5.2 over h-cut");
-    let rows = groups.iter().zip(outlines).map(|(g, outlines)| {
-        let areas: Vec<f64> = outlines.iter().map(|o| area(o)).collect();
+    let rows = groups.iter().zip(basins).map(|(g, basins)| {
+        let ratio = Bound::of_ratio(basins[3].capped(), basins[1].capped());
         let rate = if g.rate_limited { RATE_NM_S.to_string() } else { "none".into() };
         let mut row = vec![g.bicycle.to_owned(), g.rider.unwrap_or("none").to_owned(), rate];
-        row.extend(areas.iter().map(|a| format!("{a:.2}")));
-        row.push(format!("{:.2}", areas[3] / areas[1]));
+        row.extend(basins.iter().map(|b| format!("{}{:.2}", Bound::of(b.capped()).sign(), b.area())));
+        row.push(format!("{}{:.2}", ratio.sign(), basins[3].area() / basins[1].area()));
         row
     });
     let areas = table(&heading, rows);
     let speeds = [2.0, 3.0, 4.0, 4.5, 5.0, 6.0, 7.0];
-    let nearest = |outline: &[(f64, f64)], v: f64| {
-        let apart = |point: &&(f64, f64)| ((point.0 - v).abs() * 1e6) as u64;
-        outline.iter().min_by_key(apart).map_or(f64::NAN, |point| point.1)
+    let nearest = |basin: &Basin, v: f64| {
+        let apart = |column: &&Column| ((column.speed - v).abs() * 1e6) as u64;
+        let height = |c: &Column| format!("{}{:.2}", Bound::of(c.capped).sign(), c.upper);
+        basin.columns.iter().min_by_key(apart).map_or("-".into(), height)
     };
-    let heights = groups.iter().zip(outlines).filter(|(g, _)| g.rate_limited).flat_map(|(g, outlines)| {
-        laws.iter().zip(outlines).map(move |((name, _), outline)| {
+    let heights = groups.iter().zip(basins).filter(|(g, _)| g.rate_limited).flat_map(|(g, basins)| {
+        laws.iter().zip(basins).map(move |((name, _), basin)| {
             let who = format!("{}, {}", g.bicycle, g.rider.unwrap_or("no rider"));
-            let at = speeds.map(|v| format!("{:.2}", nearest(outline, v)));
+            let at = speeds.map(|v| nearest(basin, v));
             [vec![who, (*name).to_owned()], at.to_vec()].concat()
         })
     });
@@ -143,7 +144,7 @@ fn text(groups: &[Group], outlines: &[Vec<Outline>], search: &Search) -> String 
     names.extend(columns.iter().map(String::as_str));
     let heights = table(&names, heights);
     let step = search.speeds.get(1).map_or(0.0, |v| v - search.speeds[0]);
-    let verdict = verdict(groups, outlines);
+    let verdict = verdict(groups, basins);
     format!(
         "# {TITLE}\n\n\
          Made by `sim-host study prototype`. Both laws are given the prototype's {LIMIT_NM} N m, the flashed code at\n\
@@ -163,9 +164,14 @@ fn text(groups: &[Group], outlines: &[Vec<Outline>], search: &Search) -> String 
 }
 
 /// Which law has the larger basin, and what the rate limit does.
-fn verdict(groups: &[Group], outlines: &[Vec<Outline>]) -> String {
+fn verdict(groups: &[Group], basins: &[Vec<Basin>]) -> String {
+    if basins.iter().flatten().any(Basin::capped) {
+        return "Where nothing fell up to the largest rate tried, heights and areas are lower bounds (`>=`), ratios bounds\n\
+                or, of two bounds, unknown (`~`): no law is said to have the larger basin.\n"
+            .into();
+    }
     let areas: Vec<Vec<f64>> =
-        outlines.iter().map(|of_laws| of_laws.iter().map(|o| area(o)).collect()).collect();
+        basins.iter().map(|of_laws| of_laws.iter().map(Basin::area).collect()).collect();
     let larger = areas.iter().filter(|a| a[1] > a[2].max(a[3])).count();
     let pairs = areas.chunks_exact(2).flat_map(|pair| pair[0].iter().zip(&pair[1]));
     let change = pairs.map(|(without, with)| (with / without - 1.0).abs()).fold(0.0, f64::max);
@@ -177,17 +183,17 @@ fn verdict(groups: &[Group], outlines: &[Vec<Outline>]) -> String {
     )
 }
 
-fn figure(groups: &[Group], outlines: &[Vec<Outline>]) -> Chart {
-    let limited = groups.iter().zip(outlines).filter(|(g, _)| g.rate_limited);
-    let plots = limited.map(|(g, outlines)| Plot {
+fn figure(groups: &[Group], basins: &[Vec<Basin>]) -> Chart {
+    let limited = groups.iter().zip(basins).filter(|(g, _)| g.rate_limited);
+    let plots = limited.map(|(g, basins)| Plot {
         title: format!("{}, {}", g.bicycle, g.rider.unwrap_or("no rider")),
         x: Axis::new("Forward speed v [m/s]"),
         y: Axis::new("Steer rate survived [rad/s]"),
         series: laws()
             .iter()
-            .zip(outlines)
+            .zip(basins)
             .enumerate()
-            .map(|(i, ((name, _), outline))| Series::new(*name, Look::line(i, Line::Solid), outline.clone()))
+            .map(|(i, ((name, _), basin))| Series::new(*name, Look::line(i, Line::Solid), basin.outline()))
             .collect(),
         ..Plot::default()
     });

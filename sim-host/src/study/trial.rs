@@ -1,7 +1,7 @@
 //! A trial: who rides what, how late the sensors are and what the motor may give. Laws are judged by the basins
 //! they have in it.
 
-use crate::basin::{Search, area, border};
+use crate::basin::{Basin, Column, Search, border};
 use crate::bicycle::{Geometry, catalogue};
 use crate::ride::{Assist, Conditions};
 use crate::rider::{Fit, Outside, Rider, catalogue as riders};
@@ -67,24 +67,22 @@ impl Trial {
     }
 }
 
-/// An outline of a basin: speeds \[m/s\] and the heights there \[rad/s\].
-pub type Outline = Vec<(f64, f64)>;
-
-/// The outline of the basin of every trial and law asked for, all columns side by side; `advanced` is called for each. `None` if `stop` said so on the way.
+/// The basin of every trial and law asked for without what lies beyond, all columns side by side; `advanced` is called
+/// for each. `None` if `stop` said so on the way.
 ///
 /// # Errors
 /// As of [`Trial::conditions`], or when the search fails its check.
-pub fn outlines(
+pub fn basins(
     asked: &[(&Trial, &Law)],
     search: &Search,
     advanced: &(dyn Fn() + Sync),
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<Vec<Outline>>, String> {
+) -> Result<Option<Vec<Basin>>, String> {
     search.check().map_err(|e| e.to_string())?;
     let conditions: Vec<Conditions> =
         asked.iter().map(|(trial, law)| trial.conditions(law)).collect::<Result<_, _>>()?;
     let speeds = search.speeds.len();
-    let heights: Option<Vec<f64>> = (0..asked.len() * speeds)
+    let columns: Option<Vec<Column>> = (0..asked.len() * speeds)
         .into_par_iter()
         .map(|i| {
             if stop() {
@@ -92,67 +90,61 @@ pub fn outlines(
             }
             let column = border(&conditions[i / speeds], search, search.speeds[i % speeds]);
             advanced();
-            Some(column.upper)
+            Some(column)
         })
         .collect();
-    let outline = |heights: &[f64]| search.speeds.iter().copied().zip(heights.iter().copied()).collect();
-    Ok(heights.map(|heights| heights.chunks(speeds).map(outline).collect()))
+    Ok(columns.map(|all| all.chunks(speeds).map(|columns| Basin { columns: columns.to_vec() }).collect()))
 }
 
-/// The areas under the outlines of [`outlines`] \[rad m/s^2\].
-///
-/// # Errors
-/// As of [`outlines`].
-pub fn areas(
-    asked: &[(&Trial, &Law)],
-    search: &Search,
-    advanced: &(dyn Fn() + Sync),
-    stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<Vec<f64>>, String> {
-    let outlines = outlines(asked, search, advanced, stop)?;
-    Ok(outlines.map(|all| all.iter().map(|outline| area(outline)).collect()))
+/// The least area of a law over trials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Least {
+    /// The area \[rad m/s^2\].
+    pub area: f64,
+    /// Which trial's.
+    pub of: usize,
+    /// Whether it is a lower bound, as nothing fell up to the largest rate tried at some speed.
+    pub capped: bool,
 }
 
-/// The least area of a law over `trials` \[rad m/s^2\], and whose it is. The trial `first` is ridden whole, the others
-/// only as far as they could still be less: the answer is that of [`areas`]. `None` if `stop` said so on the way.
+/// The least area of a law over `trials`, and whose it is. The trial `first` is ridden whole, the others only as far
+/// as they could still be less: the answer is that of [`basins`]. `None` if `stop` said so on the way.
 ///
 /// # Errors
-/// As of [`outlines`].
+/// As of [`basins`].
 pub fn least_area(
     trials: &[Trial],
     law: &Law,
     search: &Search,
     first: usize,
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<(f64, usize)>, String> {
+) -> Result<Option<Least>, String> {
     let Some(trial) = trials.get(first) else { return Err("there is no such trial".into()) };
-    let Some(bound) = areas(&[(trial, law)], search, &|| {}, stop)? else { return Ok(None) };
-    let bound = bound[0];
+    let Some(bound) = basins(&[(trial, law)], search, &|| {}, stop)? else { return Ok(None) };
+    let bound = &bound[0];
     let conditions: Vec<Conditions> =
         trials.iter().map(|trial| trial.conditions(law)).collect::<Result<_, _>>()?;
-    let areas: Option<Vec<f64>> = (0..trials.len())
+    let found: Option<Vec<Least>> = (0..trials.len())
         .into_par_iter()
-        .map(|i| {
-            if i == first {
-                return Some(bound);
+        .map(|of| {
+            if of == first {
+                return Some(Least { area: bound.area(), of, capped: bound.capped() });
             }
-            let mut outline = Outline::new();
+            let mut basin = Basin { columns: Vec::new() };
             for &speed in &search.speeds {
                 if stop() {
                     return None;
                 }
-                outline.push((speed, border(&conditions[i], search, speed).upper));
+                basin.columns.push(border(&conditions[of], search, speed));
                 // No strip is negative.
-                if area(&outline) > bound {
+                if basin.area() > bound.area() {
                     break;
                 }
             }
-            Some(area(&outline))
+            Some(Least { area: basin.area(), of, capped: basin.capped() })
         })
         .collect();
-    let least = |areas: Vec<f64>| {
-        let start = (bound, first);
-        areas.into_iter().zip(0..).fold(start, |least, (a, i)| if a < least.0 { (a, i) } else { least })
-    };
-    Ok(areas.map(least))
+    let start = Least { area: bound.area(), of: first, capped: bound.capped() };
+    let least = |all: Vec<Least>| all.into_iter().fold(start, |a, b| if b.area < a.area { b } else { a });
+    Ok(found.map(least))
 }

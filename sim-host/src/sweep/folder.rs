@@ -2,7 +2,7 @@
 
 use super::unit::Unit;
 use super::{Plan, SweepError};
-use crate::report::output::Output;
+use crate::report::output::{Output, TEMPORARY};
 use std::path::{Path, PathBuf};
 
 /// The plan's file.
@@ -24,21 +24,23 @@ impl Folder {
         let folder = Self { path: path.into() };
         let failed = |e: std::io::Error| folder.failed(e);
         std::fs::create_dir_all(path).map_err(failed)?;
-        if path.join(PLAN).exists() {
-            let there = folder.plan()?;
-            if let Some(what) = plan.difference(&there) {
-                let folder = path.display();
-                return Err(SweepError(format!(
-                    "{folder} holds another sweep: {what} differs ({PLAN}); choose another --out, or empty it"
-                )));
-            }
-        } else {
-            if std::fs::read_dir(path).map_err(failed)?.next().is_some() {
-                let folder = path.display();
-                return Err(SweepError(format!("{folder} is neither empty nor the folder of a sweep")));
+        if !path.join(PLAN).exists() {
+            // Another shard may have begun meanwhile, or one that was killed may have left its beginning.
+            let of_sweep = |name: &str| name.starts_with(TEMPORARY) || [PLAN, UNITS].contains(&name);
+            for entry in std::fs::read_dir(path).map_err(failed)? {
+                if !of_sweep(&entry.map_err(failed)?.file_name().to_string_lossy()) {
+                    let folder = path.display();
+                    return Err(SweepError(format!("{folder} is neither empty nor the folder of a sweep")));
+                }
             }
             let json = serde_json::to_string_pretty(plan).unwrap_or_default() + "\n";
             folder.write(PLAN, json.as_bytes())?;
+        }
+        if let Some(what) = plan.difference(&folder.plan()?) {
+            let folder = path.display();
+            return Err(SweepError(format!(
+                "{folder} holds another sweep: {what} differs ({PLAN}); choose another --out, or empty it"
+            )));
         }
         std::fs::create_dir_all(path.join(UNITS)).map_err(failed)?;
         Ok(folder)

@@ -1,7 +1,7 @@
 //! A finished sweep: the plan and what was found in every cell.
 
 use super::{Folder, Plan, SweepError, Unit};
-use crate::basin::area;
+use crate::basin::{Bound, area};
 
 /// The cells of a sweep, those that are not done missing.
 #[derive(Clone, Debug)]
@@ -43,13 +43,30 @@ impl Grid {
         area(&self.plan.search.speeds.iter().copied().zip(heights).collect::<Vec<_>>())
     }
 
-    /// Its areas, cell by cell.
-    pub fn areas(&self) -> Vec<Option<f64>> {
-        self.units.iter().map(|u| u.as_ref().map(|u| self.area(u))).collect()
+    /// Whether there is a single speed, under whose heights is no area.
+    pub fn one_speed(&self) -> bool {
+        self.plan.search.speeds.len() < 2
+    }
+
+    /// What cells are compared by: the area \[rad m/s^2\], or the height \[rad/s\] at a single speed; and how it
+    /// lies to the true one.
+    pub fn measure(&self, unit: &Unit) -> (f64, Bound) {
+        let measure = if self.one_speed() { unit.mean_height() } else { self.area(unit) };
+        (measure, Bound::of(unit.capped()))
+    }
+
+    /// Its measures, cell by cell.
+    pub fn measures(&self) -> Vec<Option<(f64, Bound)>> {
+        self.units.iter().map(|u| u.as_ref().map(|u| self.measure(u))).collect()
     }
 }
 
 impl Unit {
+    /// Whether some height is a lower bound, and with it the area and the mean.
+    pub fn capped(&self) -> bool {
+        self.found.iter().any(|f| f.capped)
+    }
+
     /// Mean height over the speeds \[rad/s\].
     pub fn mean_height(&self) -> f64 {
         self.found.iter().map(|f| f.height).sum::<f64>() / self.found.len().max(1) as f64

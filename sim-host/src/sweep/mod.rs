@@ -16,6 +16,7 @@ mod write;
 pub use axis::Axis;
 pub use folder::{Folder, PLAN};
 pub use grid::Grid;
+pub(crate) use maps::AT_LEAST;
 pub use maps::pictures;
 pub use plan::{Plan, SweepSearch};
 pub(crate) use plan::{check, combination, count, label};

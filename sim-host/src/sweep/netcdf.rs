@@ -6,7 +6,7 @@ use crate::ride::{Effort, FallCause};
 use netcdf3::{DataSet, FileWriter, Version, WriteError};
 
 /// The names of its variables besides the axes'.
-pub(crate) const NAMES: [&str; 10] = [
+pub(crate) const NAMES: [&str; 11] = [
     "speed",
     "height",
     "capped",
@@ -16,12 +16,24 @@ pub(crate) const NAMES: [&str; 10] = [
     "fall_cause",
     "area",
     "mean_height",
+    "area_capped",
     "complete",
 ];
 
 /// An axis' name among the variables.
 pub(crate) fn name(axis: &Axis) -> String {
     axis.key.replace('-', "_")
+}
+
+/// The unit of an axis of numbers: the one they were typed with, else that of the option; `1` where there is none.
+fn unit_of<'a>(axis: &Axis, typed: &'a str) -> &'a str {
+    match (axis.key.as_str(), typed) {
+        ("torque-limit", "") => "N m",
+        ("rate-limit", "") => "N m s-1",
+        ("time-limit", "") => "s",
+        (_, "") => "1",
+        (_, typed) => typed,
+    }
 }
 
 /// A variable of numbers.
@@ -64,7 +76,7 @@ pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> Result<Vec<u8>, S
         match axis.numbers() {
             Some((_, unit)) => {
                 set.add_var_f64(name, &[name])?;
-                set.add_var_attr_string(name, "units", unit)?;
+                set.add_var_attr_string(name, "units", unit_of(axis, unit))?;
             }
             None => {
                 let length = format!("{name}_length");
@@ -117,7 +129,13 @@ fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'
     vec![
         variable("speed", "m s-1", "forward speed", &all[all.len() - 1..], speeds.clone()),
         variable("height", "rad s-1", "largest disturbance not to fall", all, per_speed(|f| f.height)),
-        variable("capped", "1", "1 where nothing fell", all, per_speed(|f| f64::from(u8::from(f.capped)))),
+        variable(
+            "capped",
+            "1",
+            "1 where nothing fell: height is a lower bound",
+            all,
+            per_speed(|f| f64::from(u8::from(f.capped))),
+        ),
         variable(
             "peak_torque",
             "N m",
@@ -142,6 +160,13 @@ fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'
         variable("fall_cause", "1", FALL_CODES, all, per_speed(fall_code)),
         variable("area", "rad m s-2", "area under height", cells, per_cell(&|u| grid.area(u))),
         variable("mean_height", "rad s-1", "mean of height", cells, per_cell(&Unit::mean_height)),
+        variable(
+            "area_capped",
+            "1",
+            "1 where area and mean_height are lower bounds",
+            cells,
+            per_cell(&|u| f64::from(u8::from(u.capped()))),
+        ),
     ]
 }
 

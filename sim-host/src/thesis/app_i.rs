@@ -114,7 +114,8 @@ fn heights(study: &Study, item: &str, sets: &[Set], young: Option<&[Set]>) -> Ve
         .par_iter()
         .map(|set| {
             let cell = height_cell(set.of, set.number);
-            let value = Value::new(cell, Some(set.exact())).on_grid_of(Some(set.on_grid()), ON_GRID);
+            let value = Value { capped: set.column.capped, ..Value::new(cell, Some(set.exact())) };
+            let value = value.on_grid_of(Some(set.on_grid()), ON_GRID);
             let far = |printed: f64| (set.on_grid() - printed).abs() > 1.5 * GRID;
             if value.cell.printed.is_some_and(|p| far(p.value)) {
                 tried(study, sets, set, value)
@@ -137,7 +138,9 @@ fn heights(study: &Study, item: &str, sets: &[Set], young: Option<&[Set]>) -> Ve
         let printed = |set: &Set| if set.row.height.is_nan() { set.on_grid() } else { set.row.height };
         let (exact, coarse) = (of(Set::exact), of(Set::on_grid));
         let all_rows = cell.row == "mean of all rows";
-        let mut value = Value::new(cell.clone(), Some(exact)).on_grid_of(Some(coarse), ON_GRID);
+        let capped = sets.iter().chain(young.unwrap_or_default()).any(|set| set.column.capped);
+        let value = Value { capped, ..Value::new(cell.clone(), Some(exact)) };
+        let mut value = value.on_grid_of(Some(coarse), ON_GRID);
         if all_rows && sets.iter().any(Set::is_left_out) {
             let kept = sets.iter().filter(|s| !s.is_left_out());
             let name = "the same without the two sets of Table F.3 that Table I.1 leaves out";

@@ -96,7 +96,8 @@ pub(super) fn figure_3_10(study: &Study) -> Item {
 fn height_at(study: &Study, case: Case, speed: f64, value: Value) -> Value {
     let at = |case: Case| Basin { columns: study.columns_at(&case, &[speed]) };
     let basin = at(case);
-    Value { exact: Some(mean(&exact(&basin))), coarse: Some(mean(&coarse(&basin))), ..value }
+    let (located, on_grid) = (mean(&exact(&basin)), mean(&coarse(&basin)));
+    Value { exact: Some(located), coarse: Some(on_grid), capped: basin.capped(), ..value }
         .tried(BY_REAR, mean(&exact(&at(case.scheduled(ScheduleSpeed::Rear)))))
         .tried(BY_INITIAL, mean(&exact(&at(case.scheduled(ScheduleSpeed::Initial)))))
 }

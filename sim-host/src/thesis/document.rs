@@ -70,6 +70,8 @@ pub struct ValueEntry {
     pub explanation: String,
     /// Numbers under other readings of the text.
     pub experiments: Vec<ExperimentEntry>,
+    /// Whether `exact` comes from a basin in which nothing fell up to the largest rate tried at some speed.
+    pub capped: bool,
 }
 
 /// A number under another reading of the text.
@@ -114,6 +116,7 @@ impl ValueEntry {
             experiments: experiments
                 .map(|e| ExperimentEntry { name: e.name.clone(), value: e.value })
                 .collect(),
+            capped: value.capped,
         }
     }
 }
@@ -174,6 +177,7 @@ struct CsvRow<'a> {
     difference_percent: Option<f64>,
     explanation: &'a str,
     experiments: String,
+    capped: bool,
 }
 
 impl<'a> CsvRow<'a> {
@@ -191,6 +195,7 @@ impl<'a> CsvRow<'a> {
             difference_percent: value.difference_percent,
             explanation: &value.explanation,
             experiments: experiments.collect::<Vec<_>>().join("; "),
+            capped: value.capped,
         }
     }
 }

@@ -38,13 +38,14 @@ impl Figure {
         let cap = series.iter().flat_map(|(_, b)| &b.columns).flat_map(|c| &c.scan).map(|p| p.rate);
         let title = caption.split(". ").next().unwrap_or_default();
         let drawn = BasinFigure {
+            band: None,
             title,
             series,
             self_stable: study.self_stable(),
             axis: Disturbed::SteerRate,
             cap: cap.fold(0.0, f64::max),
         };
-        let mut csv = String::from("basin,speed_m_s,rate_rad_s,outcome,time_to_fall_s,fall\n");
+        let mut csv = String::from("basin,speed_m_s,rate_rad_s,outcome,time_to_fall_s,fall,capped\n");
         for (label, basin) in series {
             for line in csv_text(&basin_rows(basin)).unwrap_or_default().lines().skip(1) {
                 let _ = writeln!(csv, "{},{line}", quoted(label));

@@ -153,7 +153,7 @@ fn comparison(values: &[&ValueEntry]) -> String {
             escaped(&value.column),
             escaped(&unit),
             number(value.published),
-            number(value.exact),
+            number(value.exact) + if value.capped { " (capped)" } else { "" },
             number(value.coarse),
             explanation(value)
         );

@@ -56,6 +56,8 @@ pub struct Value {
     pub grid: &'static str,
     /// What else could be meant, computed.
     pub experiments: Vec<Experiment>,
+    /// Whether it comes from a basin with a height that is a lower bound.
+    pub capped: bool,
 }
 
 /// A number under another reading of the text.
@@ -91,6 +93,7 @@ impl Value {
             coarse: None,
             grid: COARSE,
             experiments: Vec::new(),
+            capped: false,
         }
     }
 

@@ -55,7 +55,8 @@ pub(super) fn merit(study: &Study, cell: Cell, cases: &[Case], of: &dyn Fn(&[Out
     let under = |cases: &[Case], view: &dyn Fn(&Basin) -> Outline| {
         of(&cases.iter().map(|case| view(&study.basin(case))).collect::<Vec<_>>())
     };
-    let mut value = Value::new(cell, Some(under(cases, &exact)))
+    let capped = cases.iter().any(|case| study.basin(case).capped());
+    let mut value = Value { capped, ..Value::new(cell, Some(under(cases, &exact))) }
         .on_grid(Some(under(cases, &coarse)))
         .tried("disturbances in steps of 0.4 rad/s", under(cases, &|basin| floored(basin, 0.4)));
     if !study.quick {

@@ -4,6 +4,7 @@ mod client;
 mod damage;
 mod monitor;
 #[cfg(unix)]
+mod partial;
 mod program;
 mod tune;
 mod words;

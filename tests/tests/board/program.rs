@@ -313,13 +313,19 @@ fn a_damaged_recording_is_read_as_far_as_it_goes() {
     bench.write("ride.link", bytes);
     let run = bench.run("monitor --file ride.link");
     assert!(
-        done(&run).ends_with("97 frames, 3 missing, 3 damaged, 0 restarts; the board's clock at 2.000 s\n"),
+        run.stdout.ends_with("97 frames, 3 missing, 3 damaged, 0 restarts; the board's clock at 2.000 s\n"),
         "{}",
         run.stdout
     );
+    assert_eq!(run.code, Some(3));
+    assert!(run.stderr.contains("3 frames damaged"), "{}", run.stderr);
     bench.write("noise.link", (0..5000_u32).map(|i| (i * i / 7) as u8).collect::<Vec<_>>());
     let noise = bench.run("monitor --file noise.link");
-    assert!(done(&noise).contains("\n0 frames, 0 missing, "), "{}", noise.stdout);
+    assert!(
+        noise.code == Some(1) && noise.stderr.contains("noise.link: no whole frame of the link"),
+        "{noise:?}"
+    );
+    assert!(noise.stdout.contains("\n0 frames, 0 missing, "), "{}", noise.stdout);
     bench.run("monitor --file missing.link").refused_naming(&["can't open missing.link"]);
 }
 

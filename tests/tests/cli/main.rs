@@ -2,12 +2,15 @@
 
 mod any_bicycle;
 mod bad_input;
+mod bicycle_files;
+mod capped;
 mod contract;
 mod design;
 mod document;
 mod falls;
 mod identify;
 mod interrupt;
+mod none;
 mod options;
 mod outputs;
 mod parsers;

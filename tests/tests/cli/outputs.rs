@@ -80,9 +80,9 @@ fn every_file_carries_version_commit_and_configuration() {
 fn tables_have_their_documented_columns() {
     let bench = Bench::new(PROGRAM);
     let columns = [
-        "speed_m_s,rate_rad_s,outcome,time_to_fall_s,fall",
+        "speed_m_s,rate_rad_s,outcome,time_to_fall_s,fall,capped",
         "t,roll,steer,pitch,roll_rate,steer_rate,yaw_rate,rear_wheel_rate,rear_speed,front_speed,\
-         measured_roll_rate,measured_speed,torque,limits,rider_torque,motor_torque,mode,causes",
+         measured_roll_rate,measured_speed,torque,limits,rider_torque,motor_torque,mode,causes,causes_low,causes_high",
         "speed_m_s,re1,im1,re2,im2,re3,im3,re4,im4",
     ];
     // Three speeds of two scan points and a border each; 6 s of 1 ms; eleven speeds.
@@ -166,4 +166,29 @@ fn text_and_documents_do_not_mix() {
         assert_eq!((talk.stderr.as_str(), quiet.stderr.as_str(), quiet.stdout.as_str()), ("", "", ""));
         assert!(bench.json(line)["schema"] == 1);
     }
+}
+
+/// Situation: a product ride whose clock jumps and whose gyro is gone, causes of which the numbers lie far apart.
+/// Action: read its table as a program does that has doubles only.
+/// Must hold: the bits of `causes` are lost to it, those of the two halves are not.
+#[test]
+fn causes_survive_a_reader_of_doubles() {
+    let bench = Bench::new(PROGRAM);
+    let faults = "--fault clock:jump=0.02@300ms --fault gyro:missing@301ms";
+    let table = bench
+        .run(&format!("ride --speed 4 --steer-rate 1 --preset product --time-limit 0.4 {faults} --csv -"))
+        .stdout;
+    let mut rows = table.lines().skip(2);
+    let names: Vec<&str> = rows.next().expect("names").split(',').collect();
+    let place = |name| names.iter().position(|n| *n == name).expect("a column");
+    let (whole, low, high) = (place("causes"), place("causes_low"), place("causes_high"));
+    let mut lost = 0;
+    for row in rows {
+        let cells: Vec<&str> = row.split(',').collect();
+        let double = |i: usize| cells[i].parse::<f64>().expect("a number") as u64;
+        let causes: u64 = cells[whole].parse().expect("a whole number");
+        assert_eq!(double(high) << 32 | double(low), causes);
+        lost += u32::from(double(whole) != causes);
+    }
+    assert!((50..150).contains(&lost), "{lost}");
 }

@@ -22,6 +22,17 @@ pub struct BasinFigure<'a> {
     pub axis: Axis,
     /// Largest disturbance tried \[rad/s\].
     pub cap: f64,
+    /// Heights around one basin.
+    pub band: Option<Band<'a>>,
+}
+
+/// A band of heights over speed.
+#[derive(Clone, Copy, Debug)]
+pub struct Band<'a> {
+    /// In the legend.
+    pub label: &'a str,
+    /// Speed \[m/s\], lower and upper edge \[rad/s\].
+    pub edges: &'a [(f64, f64, f64)],
 }
 
 /// The figure of one basin, or of the outlines of several.

@@ -2,10 +2,12 @@
 
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{GREY, INK, SHADES, shade};
+use super::legend::triangle;
 use super::panel::Panel;
 use super::picture::Picture;
 use super::scale::{nice, ticks};
 use super::shape::text_width;
+use crate::basin::Bound;
 use kuva::render::render::TextAnchor;
 
 /// Heat maps side by side, in the same colours.
@@ -20,10 +22,13 @@ pub struct HeatMap<'a> {
     /// Name and values of the vertical axis.
     pub y: (&'a str, &'a [String]),
     /// The maps: a title, and the numbers row by row from below; none where it is not known.
-    pub maps: &'a [(String, Vec<Vec<Option<f64>>>)],
-    /// Where a line is drawn, as a part of a map's largest number.
+    pub maps: &'a [(String, Map)],
+    /// Where a line is drawn, as a part of a map's largest number; none in a map with a number that is only a bound.
     pub contour: f64,
 }
+
+/// Numbers row by row, with how they lie to the true ones.
+pub type Map = Vec<Vec<Option<(f64, Bound)>>>;
 
 const LEFT: f64 = 86.0;
 const TOP: f64 = 62.0;
@@ -39,8 +44,8 @@ pub fn heatmap(figure: &HeatMap) -> Picture {
     let below = TOP + (height + BELOW) * lines as f64 - 8.0;
     let mut canvas = Canvas::new(LEFT + whole + 96.0, below + 14.0);
     canvas.title((LEFT, 26.0), whole, figure.title);
-    let numbers = figure.maps.iter().flat_map(|(_, rows)| rows.iter().flatten().flatten().copied());
-    let range = nice(numbers.chain([0.0]), 6);
+    let numbers = || figure.maps.iter().flat_map(|(_, rows)| rows.iter().flatten().flatten());
+    let range = nice(numbers().map(|n| n.0).chain([0.0]), 6);
     for (i, (title, map)) in figure.maps.iter().enumerate() {
         let (column, line) = ((i % columns) as f64, (i / columns) as f64);
         let area =
@@ -48,7 +53,10 @@ pub fn heatmap(figure: &HeatMap) -> Picture {
         canvas.text((area.x + 0.5 * width, area.y - 8.0), 12, TextAnchor::Middle, title);
         draw(&mut canvas, figure, map, area, range);
     }
-    let line = format!("White line: {} % of the map's largest", 100.0 * figure.contour);
+    let mut line = format!("White line: {} % of the map's largest", 100.0 * figure.contour);
+    if !numbers().all(|n| n.1.is_measured()) {
+        line += "; triangle: at least this, and no line in its map";
+    }
     canvas.text((LEFT, below), 12, TextAnchor::Start, &line);
     let last = Area { x: LEFT, y: TOP, width: whole, height };
     bar(&mut canvas, last, range, figure.label);
@@ -63,24 +71,27 @@ fn shade_of(x: f64, (low, high): (f64, f64)) -> usize {
     (((x - low) / (high - low) * SHADES as f64) as usize).min(SHADES - 1)
 }
 
-fn draw(canvas: &mut Canvas, figure: &HeatMap, map: &[Vec<Option<f64>>], area: Area, range: (f64, f64)) {
+fn draw(canvas: &mut Canvas, figure: &HeatMap, map: &Map, area: Area, range: (f64, f64)) {
     let (across, up) = (figure.x.1.len(), figure.y.1.len());
     // Cell i is centred at i.
     let panel = Panel { area, x: (-0.5, across as f64 - 0.5), y: (-0.5, up as f64 - 0.5) };
     canvas.rect(area, GREY, 0.4);
     canvas.clipped(area, |canvas| {
         for (j, row) in map.iter().enumerate() {
-            for (i, x) in row.iter().enumerate().filter_map(|(i, x)| Some((i, (*x)?))) {
+            for (i, (x, bound)) in row.iter().enumerate().filter_map(|(i, x)| Some((i, (*x)?))) {
                 let (i, j) = (i as f64, j as f64);
                 let cell = panel.span((i - 0.5, i + 0.5), (j - 0.5, j + 0.5));
                 // Half a pixel of overlap hides the seams.
                 let cell = Area { width: cell.width + 0.5, height: cell.height + 0.5, ..cell };
                 canvas.rect(cell, &*shade(shade_of(x, range)), 1.0);
+                if !bound.is_measured() {
+                    let (x, y) = panel.at((i, j));
+                    triangle(canvas, (x, y - 3.5), LINE);
+                }
             }
         }
     });
-    let most = map.iter().flatten().flatten().copied().fold(0.0, f64::max);
-    let pieces = contour(map, figure.contour * most);
+    let pieces = contour_of(map, figure.contour);
     canvas.clipped(area, |canvas| {
         for (color, width) in [(INK, 3.4), (LINE, 2.2)] {
             for piece in &pieces {
@@ -116,6 +127,18 @@ fn bar(canvas: &mut Canvas, axes: Area, range: (f64, f64), label: &str) {
     canvas.text_upwards((x + BAR + 52.0, axes.y + 0.5 * axes.height), 13, label);
 }
 
+/// The line at a part of the map's largest number; none if that, or what to compare with it, is only a bound.
+fn contour_of(map: &Map, part: f64) -> Vec<[(f64, f64); 2]> {
+    let numbers = || map.iter().flatten().flatten();
+    if !numbers().all(|n| n.1.is_measured()) {
+        return Vec::new();
+    }
+    let most = numbers().map(|n| n.0).fold(0.0, f64::max);
+    let plain: Vec<Vec<Option<f64>>> =
+        map.iter().map(|row| row.iter().map(|n| n.map(|n| n.0)).collect()).collect();
+    contour(&plain, part * most)
+}
+
 /// The straight pieces of the line on which `map` is `level`, in cells: linear between the centres of
 /// each three neighbours, two triangles a square, so that no saddle is in doubt.
 fn contour(map: &[Vec<Option<f64>>], level: f64) -> Vec<[(f64, f64); 2]> {
@@ -148,6 +171,15 @@ fn crossing(((p, a), (q, b)): (At, At)) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_map_with_a_lower_bound_has_no_line() {
+        let number = |x, capped| Some((x, Bound::of(capped)));
+        let map = |capped| {
+            vec![vec![number(0.0, false), number(4.0, capped)], vec![number(0.0, false), number(4.0, false)]]
+        };
+        assert_eq!((contour_of(&map(false), 0.25).len(), contour_of(&map(true), 0.25).len()), (2, 0));
+    }
 
     #[test]
     fn a_contour_lies_between_the_numbers() {

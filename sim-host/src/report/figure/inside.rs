@@ -1,6 +1,6 @@
 //! One basin: its inside, and how long falls take outside.
 
-use super::basin::{AREA, BasinFigure, LEGEND_GAP, SPEED, caps, height};
+use super::basin::{AREA, Band, BasinFigure, LEGEND_GAP, SPEED, caps, height};
 use super::canvas::{Canvas, Stroke};
 use super::colour::{BASIN, INK, ISLAND, SHADES, shade};
 use super::legend::{Entry, SOFTER, Sign, entry, rows};
@@ -9,6 +9,9 @@ use super::picture::Picture;
 use super::time_scale::TimeScale;
 use crate::basin::{Basin, Column};
 use crate::ride::Outcome;
+
+/// How opaque a band is.
+const BAND: f64 = 0.3;
 
 /// From where to where every column stands for the basin \[m/s\]: half way to its neighbours.
 fn edges(basin: &Basin) -> Vec<(f64, f64)> {
@@ -84,6 +87,11 @@ pub(super) fn inside_and_outside(figure: &BasinFigure, name: &str, basin: &Basin
             panel.shade_x(canvas, range);
         }
         falls(canvas, &panel, basin);
+        if let Some(Band { edges: band, .. }) = figure.band {
+            let low = band.iter().map(|&(v, low, _)| (v, low));
+            let high = band.iter().rev().map(|&(v, _, high)| (v, high));
+            canvas.polygon(&pixels(&low.chain(high).collect::<Vec<_>>()), INK, BAND);
+        }
         canvas.line(&pixels(&outline), Stroke::solid(INK, 1.6));
     });
     caps(&mut canvas, &panel, basin);
@@ -126,14 +134,15 @@ fn entries(figure: &BasinFigure, name: &str, basin: &Basin) -> Vec<Entry> {
         if name.is_empty() { "basin of attraction".into() } else { format!("basin of attraction: {name}") };
     let mut legend = vec![entry(Sign::Fill(BASIN, 1.0), label)];
     if any(&|c| !undecided(c).is_empty()) {
-        legend.push(entry(Sign::Hatched(BASIN), "outlasts the time limit, not come back"));
+        legend.push(entry(Sign::Hatched(BASIN), "still upright at the time limit, not settled yet"));
     }
     if any(&|c| !c.islands.is_empty()) {
-        legend.push(entry(Sign::Fill(ISLAND, 1.0), "beyond a first fall, not fallen"));
+        legend.push(entry(Sign::Fill(ISLAND, 1.0), "above a rate that falls, but does not fall itself"));
     }
     if any(&|c| c.capped) {
         legend.push(entry(Sign::Triangle(INK), "no fall up to the largest rate tried"));
     }
+    legend.extend(figure.band.map(|band| entry(Sign::Fill(INK, BAND), band.label)));
     legend.extend(figure.stable_entry());
     legend
 }

@@ -22,10 +22,10 @@ mod shape;
 mod thin;
 mod time_scale;
 
-pub use basin::{BasinFigure, basin};
+pub use basin::{Band, BasinFigure, basin};
 pub use chart::{Axis, Chart, Line, Look, Plot, Series, chart};
 pub use eigen::{EigenFigure, eigen};
-pub use heatmap::{HeatMap, heatmap};
+pub use heatmap::{HeatMap, Map, heatmap};
 pub use marker::Marker;
 pub use picture::{Picture, PictureError};
 pub use plane::{PlaneFigure, plane};

@@ -40,7 +40,7 @@ pub fn plane(figure: &PlaneFigure) -> Picture {
     let (falls, stays) = dots(plane, &panel, &scale);
     let mut legend = vec![entry(Sign::Fill(BASIN, 1.0), "basin of attraction")];
     if !stays.is_empty() {
-        legend.push(entry(Sign::Fill(ISLAND, 1.0), "beyond a first fall, not fallen"));
+        legend.push(entry(Sign::Fill(ISLAND, 1.0), "beyond a ride that falls, but does not fall itself"));
     }
     let mut canvas = Canvas::new(AREA.right() + 92.0, height(&legend));
     canvas.title((AREA.x, 26.0), AREA.width, figure.title);

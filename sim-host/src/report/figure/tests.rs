@@ -22,7 +22,14 @@ fn basin_of(uppers: &[f64]) -> Basin {
 }
 
 fn figure<'a>(series: &'a [(&'a str, &'a Basin)]) -> BasinFigure<'a> {
-    BasinFigure { title: "a < b", series, self_stable: Some((1.0, 2.5)), axis: Axis::SteerRate, cap: 8.0 }
+    BasinFigure {
+        title: "a < b",
+        series,
+        self_stable: Some((1.0, 2.5)),
+        axis: Axis::SteerRate,
+        cap: 8.0,
+        band: None,
+    }
 }
 
 /// The SVG, whose elements were all closed, with finite numbers only.
@@ -55,8 +62,8 @@ fn a_basin_says_what_its_signs_mean() {
         "Initial steer rate [rad/s]",
         "Time to fall [s]",
         "basin of attraction: law",
-        "outlasts the time limit",
-        "beyond a first fall",
+        "still upright at the time limit",
+        "above a rate that falls",
         "no fall up to the largest rate tried",
         "self-stable, 1.00–2.50 m/s",
     ] {
@@ -95,6 +102,8 @@ fn rides_of_any_length_are_drawn() {
         motor_torque: 0.5,
         mode: 4,
         causes: 0,
+        causes_low: 0,
+        causes_high: 0,
         frame: control::SensorFrame::missing(),
         limits: control::ActiveLimits::RATE.0,
     };

@@ -42,8 +42,8 @@ pub(super) fn plot(basin: &Basin, title: &str, width: usize) -> String {
     }
     text += &x_axis(across, x, "forward speed [m/s]");
     let meanings = [
-        (UNDECIDED, "outlasts the time limit, not come back"),
-        (ISLAND, "beyond a first fall, not fallen"),
+        (UNDECIDED, "upright at the time limit, not settled"),
+        (ISLAND, "above a fall, but does not fall itself"),
         (CAPPED, "no fall up to the largest rate tried"),
     ];
     let used = meanings.iter().filter(|(sign, _)| signs.contains(*sign) || capped.contains(*sign));

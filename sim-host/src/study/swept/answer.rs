@@ -1,16 +1,34 @@
 //! A part's sweep as its answer needs it: groups, each with the area of its reference.
 
 use super::Part;
+use crate::basin::Bound;
 use crate::sweep::{Axis, Grid};
 
 /// The cells that share a reference.
 pub(super) struct Group {
     /// What tells it from the others: "rider=smart"; empty if there is only one.
     pub(super) label: String,
-    /// Area of the reference \[rad m/s^2\].
+    /// Area of the reference \[rad m/s^2\], or its height \[rad/s\] at a single speed.
     pub(super) reference: f64,
+    /// How that lies to the true one.
+    pub(super) reference_is: Bound,
     /// A line for every combination of the reference's other axes.
-    pub(super) lines: Vec<Vec<Option<f64>>>,
+    pub(super) lines: Vec<Vec<Option<(f64, Bound)>>>,
+}
+
+impl Group {
+    /// The part of the reference that a line has at a place of the axis, and how it lies to the true one.
+    pub(super) fn part(&self, line: usize, place: usize) -> Option<(f64, Bound)> {
+        let (area, bound) = self.lines[line][place]?;
+        let is = Bound::of_ratio(!bound.is_measured(), !self.reference_is.is_measured());
+        Some((area / self.reference, is))
+    }
+
+    /// Whether all parts along a line are measured.
+    pub(super) fn measured(&self, line: usize) -> bool {
+        let areas = self.lines[line].iter().flatten();
+        self.reference_is.is_measured() && areas.map(|a| a.1).all(Bound::is_measured)
+    }
 }
 
 /// A part's answer, before it is put in words.
@@ -21,6 +39,10 @@ pub(super) struct Answer {
     pub(super) others: Vec<Axis>,
     /// The groups.
     pub(super) groups: Vec<Group>,
+    /// What is compared: "area", or "height" at a single speed.
+    pub(super) what: &'static str,
+    /// Its unit.
+    pub(super) unit: &'static str,
 }
 
 /// Places of `axes` among the sweep's, the last running fastest.
@@ -42,7 +64,7 @@ impl Answer {
         let referred = |axis: &&Axis| part.reference.contains_key(&axis.key);
         let others: Vec<&Axis> = axes.iter().filter(referred).filter(|axis| axis.key != part.along).collect();
         let grouping: Vec<&Axis> = axes.iter().filter(|axis| !referred(axis)).collect();
-        let areas = grid.areas();
+        let areas = grid.measures();
         let area = |wanted: &[(String, String)]| {
             let value = |axis: &Axis| wanted.iter().find(|(key, _)| *key == axis.key).map(|(_, v)| v);
             let place = axes.iter().try_fold(0, |i, axis| {
@@ -59,14 +81,17 @@ impl Answer {
                 along.values.iter().map(at).collect()
             };
             let label: Vec<String> = of.iter().map(|(key, value)| format!("{key} {value}")).collect();
+            let (reference, reference_is) = area(&[&of[..], &reference[..]].concat())?;
             Some(Group {
                 label: label.join(", "),
-                reference: area(&[&of[..], &reference[..]].concat())?,
+                reference,
+                reference_is,
                 lines: combinations(&others).into_iter().map(line).collect(),
             })
         };
         let groups = combinations(&grouping).into_iter().map(group).collect::<Option<_>>()?;
-        Some(Self { along: along.clone(), others: others.into_iter().cloned().collect(), groups })
+        let (what, unit) = if grid.one_speed() { ("height", "rad/s") } else { ("area", "rad m/s^2") };
+        Some(Self { along: along.clone(), others: others.into_iter().cloned().collect(), groups, what, unit })
     }
 
     /// The numbers along the axis from the reference's side on, with their places and their unit; none

@@ -1,10 +1,10 @@
 //! The figures of a study.
 
 use super::Part;
-use super::answer::Answer;
+use super::answer::{Answer, Group};
 use super::page::LEAST;
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Picture, Plot, Series, chart};
-use crate::sweep::{Grid, pictures};
+use crate::sweep::{AT_LEAST, Grid, pictures};
 
 /// The figures of a part's sweep with their names: along one axis of numbers a line for every group, along
 /// several the heat maps, of words the heights over speed.
@@ -31,10 +31,24 @@ fn lines(part: &Part, answer: &Answer, numbers: &[(usize, f64)], unit: &str) -> 
         .iter()
         .enumerate()
         .map(|(i, group)| {
-            let at = |&(place, x): &(usize, f64)| Some((x, group.lines[0][place]? / group.reference));
+            let at = |&(place, x): &(usize, f64)| Some((x, group.part(0, place)?.0));
             Series::new(group.label.clone(), look(i), numbers.iter().filter_map(at).collect())
         })
         .collect();
+    let parts = |group: &Group| {
+        let at = |&(place, x): &(usize, f64)| group.part(0, place).map(|(part, bound)| (x, part, bound));
+        numbers.iter().filter_map(at).collect::<Vec<_>>()
+    };
+    let bounds: Vec<(f64, f64)> = answer
+        .groups
+        .iter()
+        .flat_map(parts)
+        .filter(|(_, _, bound)| !bound.is_measured())
+        .map(|(x, part, _)| (x, part))
+        .collect();
+    if !bounds.is_empty() {
+        series.push(Series::new("a bound only: see the table", Look::marks(7, Marker::Triangle), bounds));
+    }
     let ends = [numbers[0].1, numbers[numbers.len() - 1].1];
     let range = (ends[0].min(ends[1]), ends[0].max(ends[1]));
     let level = [(range.0, LEAST), (range.1, LEAST)].to_vec();
@@ -47,7 +61,7 @@ fn lines(part: &Part, answer: &Answer, numbers: &[(usize, f64)], unit: &str) -> 
     let x = Axis::new(&label).over(range.0, range.1);
     let plot = Plot {
         x: if range.0 > 0.0 { x.log() } else { x },
-        y: Axis::new("Part of the reference's area"),
+        y: Axis::new(&format!("Part of the reference's {}", answer.what)),
         series,
         ..Plot::default()
     };
@@ -69,15 +83,20 @@ fn heights(part: &Part, grid: &Grid) -> Picture {
         let line = if colour % 2 == 0 { Line::Solid } else { Line::Dashed };
         let points =
             grid.plan.search.speeds.iter().copied().zip(unit.found.iter().map(|f| f.height)).collect();
-        let series =
-            Series::new(format!("{} {}", axes[at].key, values[at]), Look::line(colour, line), points);
+        let mut series =
+            vec![Series::new(format!("{} {}", axes[at].key, values[at]), Look::line(colour, line), points)];
+        let found = grid.plan.search.speeds.iter().zip(&unit.found);
+        let capped: Vec<_> = found.filter(|(_, f)| f.capped).map(|(v, f)| (*v, f.height)).collect();
+        if !capped.is_empty() {
+            series.push(Series::new(AT_LEAST, Look::marks(colour, Marker::Triangle), capped));
+        }
         match plots.iter_mut().find(|plot| plot.title == title) {
-            Some(plot) => plot.series.push(series),
+            Some(plot) => plot.series.extend(series),
             None => plots.push(Plot {
                 title,
                 x: Axis::new("Forward speed [m/s]"),
                 y: Axis::new("Height [rad/s]"),
-                series: vec![series],
+                series,
                 ..Plot::default()
             }),
         }

@@ -2,7 +2,7 @@
 
 use super::answer::{Answer, Group};
 use super::{Kept, Part, Study, kept};
-use crate::basin::Work;
+use crate::basin::{Bound, Work};
 use crate::sweep::{Axis, Grid};
 use std::fmt::Write;
 
@@ -56,7 +56,9 @@ fn section(study: &Study, part: &Part, grid: &Grid, figures: &str) -> String {
         Some(answer) => match (answer.numbers(part), &answer.others[..]) {
             (None, _) => text += &compared(&answer, grid),
             (Some(numbers), []) => text += &alone(&answer, &numbers, grid),
-            (Some(numbers), _) => text += &(together(&answer, &numbers) + &accuracy(&answer, grid)),
+            (Some(numbers), _) => {
+                text += &(together(&answer, &numbers) + &accuracy(&answer, grid) + &bounds(&answer, grid));
+            }
         },
     }
     for (name, _) in super::figures(part, grid) {
@@ -65,15 +67,16 @@ fn section(study: &Study, part: &Part, grid: &Grid, figures: &str) -> String {
     text
 }
 
-/// Where a line of a group falls below what is enough.
-fn found(group: &Group, line: usize, numbers: &[(usize, f64)]) -> Kept {
-    let area = |i: usize| group.lines[line][i].unwrap_or(f64::NAN);
-    let points: Vec<(f64, f64)> = numbers.iter().map(|&(i, x)| (x, area(i) / group.reference)).collect();
-    kept(&points, LEAST)
+/// Where a line of a group falls below what is enough; `None` where a part of it is only a bound.
+fn found(group: &Group, line: usize, numbers: &[(usize, f64)]) -> Option<Kept> {
+    let part = |i: usize| group.part(line, i).map_or(f64::NAN, |p| p.0);
+    let points: Vec<(f64, f64)> = numbers.iter().map(|&(i, x)| (x, part(i))).collect();
+    group.measured(line).then(|| kept(&points, LEAST))
 }
 
-fn in_words(found: Kept, numbers: &[(usize, f64)], unit: &str) -> String {
+fn in_words(found: Option<Kept>, numbers: &[(usize, f64)], unit: &str) -> String {
     let last = numbers[numbers.len() - 1].1;
+    let Some(found) = found else { return REFUSED.into() };
     match found {
         Kept::Everywhere => format!("{last}{unit} keeps it"),
         Kept::Nowhere => "lost".into(),
@@ -85,6 +88,29 @@ fn in_words(found: Kept, numbers: &[(usize, f64)], unit: &str) -> String {
     }
 }
 
+/// Where areas are only lower bounds.
+const REFUSED: &str = "not known: capped";
+
+/// A number and how it lies to the true one.
+fn bounded(x: f64, bound: Bound, digits: usize) -> String {
+    format!("{}{x:.digits$}", bound.sign())
+}
+
+/// Below tables with a bound in them.
+fn bounds(answer: &Answer, grid: &Grid) -> String {
+    let measured = |group: &Group| (0..group.lines.len()).all(|line| group.measured(line));
+    if answer.groups.iter().all(measured) {
+        return String::new();
+    }
+    format!(
+        "Nothing fell up to {} rad/s at some speeds: `>=` is at least, `<=` at most, `~` neither; what keeps {:.0} % \
+         is not known where {}s are such bounds.\n\n",
+        grid.plan.search.max_rate,
+        100.0 * LEAST,
+        answer.what
+    )
+}
+
 /// How many numbers of an axis are told beside each other at most; of more, every fourth.
 const BESIDE: usize = 8;
 
@@ -94,37 +120,41 @@ fn alone(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String), grid: &
     let told: Vec<(usize, f64)> =
         numbers.iter().copied().step_by(if numbers.len() > BESIDE { 4 } else { 1 }).collect();
     let mut text = format!(
-        "| group | area of the reference, rad m/s^2 | {key} that keeps {:.0} % (grid) | part of the area at {} |\n| --- | --- | --- | --- |\n",
+        "| group | {} of the reference, {} | {key} that keeps {:.0} % (grid) | part of the {} at {} |\n| --- | --- | --- | --- |\n",
+        answer.what,
+        answer.unit,
         100.0 * LEAST,
+        answer.what,
         told.iter().map(|n| format!("{}{unit}", n.1)).collect::<Vec<_>>().join(", ")
     );
     for group in &answer.groups {
         let parts: Vec<String> = told.iter().map(|n| share(group, 0, n.0)).collect();
         let _ = writeln!(
             text,
-            "| {} | {:.2} | {} | {} |",
+            "| {} | {} | {} | {} |",
             group.label,
-            group.reference,
+            bounded(group.reference, group.reference_is, 2),
             in_words(found(group, 0, numbers), numbers, unit),
             parts.join(", ")
         );
     }
     text += "\nInterpolated between the two values of the grid in parentheses, which are the bounds of its error. ";
-    text + &accuracy(answer, grid)
+    text + &accuracy(answer, grid) + &bounds(answer, grid)
 }
 
 /// The part of the reference's area that a line of a group has at a place of the axis.
 fn share(group: &Group, line: usize, place: usize) -> String {
-    group.lines[line][place].map_or("-".into(), |a| format!("{:.1} %", 100.0 * a / group.reference))
+    group.part(line, place).map_or("-".into(), |(part, is)| bounded(100.0 * part, is, 1) + " %")
 }
 
 /// Two axes: the part of the area in every cell, a table a group.
 fn shares(answer: &Answer, group: &Group, rows: &Axis) -> String {
     let along = &answer.along;
     let mut text = format!(
-        "{}: part of {:.2} rad m/s^2.\n\n| {} \\ {} | {} |\n| --- {}|\n",
+        "{}: part of {} {}.\n\n| {} \\ {} | {} |\n| --- {}|\n",
         group.label,
-        group.reference,
+        bounded(group.reference, group.reference_is, 2),
+        answer.unit,
         rows.key,
         along.key,
         along.values.join(" | "),
@@ -137,9 +167,12 @@ fn shares(answer: &Answer, group: &Group, rows: &Axis) -> String {
     text + "\n"
 }
 
-/// How sure areas are.
+/// How sure areas are; of a single speed the heights.
 fn accuracy(answer: &Answer, grid: &Grid) -> String {
     let (speeds, tolerance) = (&grid.plan.search.speeds, grid.plan.search.tolerance);
+    if grid.one_speed() {
+        return format!("Heights are located within {tolerance} rad/s.\n\n");
+    }
     let span = speeds.last().unwrap_or(&0.0) - speeds.first().unwrap_or(&0.0);
     let least = answer.groups.iter().map(|g| g.reference).fold(f64::INFINITY, f64::min);
     format!(
@@ -148,6 +181,10 @@ fn accuracy(answer: &Answer, grid: &Grid) -> String {
         tolerance * span,
         100.0 * tolerance * span / least
     )
+}
+
+fn capital(word: &str) -> String {
+    word[..1].to_uppercase() + &word[1..]
 }
 
 /// Several axes: a table a group, rows and columns the reference's other axes.
@@ -159,10 +196,11 @@ fn together(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String)) -> S
     for group in &answer.groups {
         let _ = writeln!(
             text,
-            "{}: {key} that keeps {:.0} % of {:.2} rad m/s^2 (interpolated, between the grid's values in parentheses; \"lost\" at every value of the grid).\n",
+            "{}: {key} that keeps {:.0} % of {} {} (interpolated, between the grid's values in parentheses; \"lost\" at every value of the grid).\n",
             group.label,
             100.0 * LEAST,
-            group.reference
+            bounded(group.reference, group.reference_is, 2),
+            answer.unit
         );
         let names: Vec<&str> =
             columns.map_or(vec![key.as_str()], |axis| axis.values.iter().map(String::as_str).collect());
@@ -188,13 +226,21 @@ fn compared(answer: &Answer, grid: &Grid) -> String {
     let mut text = format!("| group | {} |\n| --- {}|\n", names.join(" | "), "| --- ".repeat(names.len()));
     for group in &answer.groups {
         for line in &group.lines {
-            let cell = |area: &Option<f64>| {
-                area.map_or("-".into(), |a| format!("{a:.3} ({:+.2} %)", 100.0 * (a / group.reference - 1.0)))
+            let cell = |area: &Option<(f64, Bound)>| {
+                let Some((a, bound)) = *area else { return "-".into() };
+                let is = Bound::of_ratio(!bound.is_measured(), !group.reference_is.is_measured());
+                let change = 100.0 * (a / group.reference - 1.0);
+                format!("{} ({}{change:+.2} %)", bounded(a, bound, 3), is.sign())
             };
             let cells: Vec<String> = line.iter().map(cell).collect();
             let _ = writeln!(text, "| {} | {} |", group.label, cells.join(" | "));
         }
     }
-    text += "\nAreas in rad m/s^2, and their difference to the reference. ";
-    text + &accuracy(answer, grid)
+    let _ = write!(
+        text,
+        "\n{}s in {}, and their difference to the reference. ",
+        capital(answer.what),
+        answer.unit
+    );
+    text + &accuracy(answer, grid) + &bounds(answer, grid)
 }

@@ -1,0 +1,82 @@
+//! Basins of bicycles drawn from the uncertainties of one.
+
+use super::{Basin, Column, Search, SearchError, border};
+use crate::bicycle::Geometry;
+use crate::bicycle::uncertain::Measured;
+use crate::ride::Conditions;
+use rayon::prelude::*;
+
+/// The parts of the draws below the three numbers that stand for them.
+pub const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
+
+/// The basins of drawn bicycles; those alone of which every speed is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawn {
+    /// Seed of the draws.
+    pub seed: u64,
+    /// The basins, without what lies beyond them.
+    pub basins: Vec<Basin>,
+}
+
+/// The basins of `count` bicycles drawn from `measured`. Controller and rider are those of `conditions`: they know the
+/// bicycle as it was measured. `finished` is called for each column, `stop` asked before each.
+///
+/// # Errors
+/// When hardly any draw can exist, or a drawn bicycle can't be ridden.
+pub fn drawn(
+    conditions: &Conditions,
+    measured: &Measured,
+    search: &Search,
+    count: u32,
+    finished: impl Fn() + Sync,
+    stop: impl Fn() -> bool + Sync,
+) -> Result<Drawn, SearchError> {
+    let seed = conditions.plant.seed;
+    let ridden = |i: u32| {
+        let parameters = measured.draw(seed, i.into()).map_err(SearchError)?;
+        let drawn = Conditions { bicycle: Geometry::new(&parameters), ..conditions.clone() };
+        drawn.check()?;
+        Ok(drawn)
+    };
+    let all: Vec<Conditions> = (0..count).map(ridden).collect::<Result<_, SearchError>>()?;
+    let speeds = &search.speeds;
+    let columns: Vec<Option<Column>> = (0..all.len() * speeds.len())
+        .into_par_iter()
+        .map(|i| {
+            let column =
+                (!stop()).then(|| border(&all[i / speeds.len()], search, speeds[i % speeds.len()]))?;
+            finished();
+            Some(column)
+        })
+        .collect();
+    let whole =
+        |columns: &[Option<Column>]| Some(Basin { columns: columns.iter().cloned().collect::<Option<_>>()? });
+    Ok(Drawn { seed, basins: columns.chunks(speeds.len().max(1)).filter_map(whole).collect() })
+}
+
+impl Drawn {
+    /// The [`QUANTILES`] of a number of each basin, on straight lines between the draws.
+    pub fn quantiles(&self, of: impl Fn(&Basin) -> f64) -> [f64; 3] {
+        let mut all: Vec<f64> = self.basins.iter().map(of).collect();
+        all.sort_by(f64::total_cmp);
+        QUANTILES.map(|part| {
+            let place = part * all.len().saturating_sub(1) as f64;
+            let (low, high) = (place.floor() as usize, place.ceil() as usize);
+            match (all.get(low), all.get(high)) {
+                (Some(a), Some(b)) => a + (place - low as f64) * (b - a),
+                _ => f64::NAN,
+            }
+        })
+    }
+
+    /// Per speed the quantiles of the height \[rad/s\].
+    pub fn heights(&self) -> Vec<[f64; 3]> {
+        let speeds = self.basins.first().map_or(0, |basin| basin.columns.len());
+        (0..speeds).map(|i| self.quantiles(|basin| basin.columns[i].upper)).collect()
+    }
+
+    /// How many of the draws have a height that is a lower bound.
+    pub fn capped(&self) -> usize {
+        self.basins.iter().filter(|basin| basin.capped()).count()
+    }
+}

@@ -1,0 +1,68 @@
+//! Files of bicycles by their ending: `.txt` and `.ini` as BicycleParameters writes them, YAML sets, TOML otherwise.
+
+use super::uncertain::Uncertain;
+use std::path::Path;
+use toml::{Table, Value};
+
+/// A file's text as a table of TOML.
+///
+/// # Errors
+/// What is wrong, with its line.
+pub(super) fn table(text: &str, path: &Path) -> Result<Table, String> {
+    let ending = path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase());
+    match ending.as_str() {
+        "txt" | "ini" => lines(text),
+        "yml" | "yaml" => yaml(text),
+        _ => toml::from_str(text).map_err(|e| format!("is not valid TOML: {}", e.to_string().trim())),
+    }
+}
+
+/// Lines `KEY = VALUE`, values as `1.12` or `1.12+/-0.02`, several with commas being averaged; `#` begins a remark.
+fn lines(text: &str) -> Result<Table, String> {
+    let mut table = Table::new();
+    for (n, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or_default().trim();
+        if line.is_empty() {
+            continue;
+        }
+        let wrong = |why: &str| format!("line {}: `{line}`: {why}", n + 1);
+        let (key, values) = line.split_once('=').ok_or_else(|| wrong("expected KEY = VALUE"))?;
+        let value = mean(values).map_err(|why| wrong(&why))?;
+        if table.insert(key.trim().into(), value).is_some() {
+            return Err(wrong("the key is there twice"));
+        }
+    }
+    Ok(table)
+}
+
+fn mean(list: &str) -> Result<Value, String> {
+    let one = |text: &str| match text.trim().parse() {
+        Ok(value) => Ok(Uncertain::exact(value)),
+        Err(_) => Uncertain::parse(text.trim()),
+    };
+    let all: Vec<Uncertain> = list.split(',').map(one).collect::<Result<_, _>>()?;
+    let n = all.len() as f64;
+    let value = all.iter().map(|u| u.value).sum::<f64>() / n;
+    let sd = all.iter().map(|u| u.sd * u.sd).sum::<f64>().sqrt() / n;
+    Ok(if sd > 0.0 { Value::String(format!("{value:?}+/-{sd:?}")) } else { Value::Float(value) })
+}
+
+/// A mapping of keys to numbers, flat or below `values` with `parameterization: benchmark` beside it.
+fn yaml(text: &str) -> Result<Table, String> {
+    let mut table: Table =
+        serde_saphyr::from_str(text).map_err(|e| format!("is not valid YAML: {}", e.to_string().trim()))?;
+    let Some(values) = table.remove("values") else { return Ok(table) };
+    let Value::Table(mut values) = values else { return Err("`values` must be a mapping".into()) };
+    match table.get("parameterization").and_then(Value::as_str) {
+        None | Some("benchmark") => {}
+        Some(other) => {
+            return Err(format!(
+                "parameterization `{other}` is not known; `benchmark` is (Meijaard et al. 2007)"
+            ));
+        }
+    }
+    let rider = table.get("rider").cloned().map(|rider| ("rider_included".to_owned(), rider));
+    let note = table.get("description").cloned().map(|note| ("note".to_owned(), note));
+    values.extend(rider.into_iter().chain(note));
+    Ok(values)
+}

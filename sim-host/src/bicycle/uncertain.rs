@@ -1,0 +1,126 @@
+//! Parameters with uncertainties, as they were measured.
+
+use super::combine::{RIDER_KEYS, combined};
+use super::{KEYS, Parameters, check};
+use crate::plant::Dice;
+use crate::ride::Start;
+
+/// A value and its standard deviation, in the value's unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Uncertain {
+    /// The value.
+    pub value: f64,
+    /// Its standard deviation; 0 if none is given.
+    pub sd: f64,
+}
+
+impl Uncertain {
+    /// A value without uncertainty.
+    pub fn exact(value: f64) -> Self {
+        Self { value, sd: 0.0 }
+    }
+
+    /// Reads `1.12+/-0.02`, the sign also as `±`.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let wrong = || format!("`{text}` is not VALUE+/-STANDARD_DEVIATION");
+        let (value, sd) = text.split_once("+/-").or_else(|| text.split_once('±')).ok_or_else(wrong)?;
+        let number = |part: &str| part.trim().parse::<f64>().map_err(|_| wrong());
+        let (value, sd) = (number(value)?, number(sd)?);
+        if !(sd >= 0.0 && sd.is_finite()) {
+            return Err(format!("`{text}`: a standard deviation is 0 or more"));
+        }
+        Ok(Self { value, sd })
+    }
+}
+
+/// The uncertain parameters of a bicycle, and of the rider's body that was combined with it.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Measured {
+    /// In the order of [`KEYS`].
+    pub bicycle: Vec<Uncertain>,
+    /// In the order of [`RIDER_KEYS`]; none if no rider was combined with it.
+    pub rider: Option<Vec<Uncertain>>,
+}
+
+/// How often a bicycle that can't exist is drawn again.
+const TRIES: usize = 1000;
+
+impl Measured {
+    /// Whether any value has an uncertainty.
+    pub fn is_uncertain(&self) -> bool {
+        self.bicycle.iter().chain(self.rider.iter().flatten()).any(|one| one.sd > 0.0)
+    }
+
+    /// The parameters of some values of bicycle and rider.
+    fn parameters_of(&self, of: &mut dyn FnMut(&Uncertain) -> f64) -> Parameters {
+        let mut values = [0.0; KEYS.len()];
+        values.iter_mut().zip(&self.bicycle).for_each(|(value, one)| *value = of(one));
+        let Some(rider) = &self.rider else { return Parameters::from_values(&values) };
+        let mut body = [0.0; RIDER_KEYS.len()];
+        body.iter_mut().zip(rider).for_each(|(value, one)| *value = of(one));
+        combined(&Parameters::from_values(&values), &body)
+    }
+
+    /// The parameters by the values.
+    pub fn parameters(&self) -> Parameters {
+        self.parameters_of(&mut |one| one.value)
+    }
+
+    /// The standard deviations of [`Measured::parameters`] in the order of [`KEYS`], to first order.
+    pub fn deviations(&self) -> [f64; KEYS.len()] {
+        let (count, middle) =
+            (self.bicycle.len() + self.rider.as_ref().map_or(0, Vec::len), self.parameters());
+        let mut squares = [0.0; KEYS.len()];
+        for varied in 0..count {
+            let mut at = 0;
+            let moved = self.parameters_of(&mut |one| {
+                let here = at == varied;
+                at += 1;
+                one.value + if here { one.sd } else { 0.0 }
+            });
+            let changes = moved.to_values().into_iter().zip(middle.to_values());
+            squares.iter_mut().zip(changes).for_each(|(sum, (a, b))| *sum += (a - b).powi(2));
+        }
+        squares.map(f64::sqrt)
+    }
+
+    /// Bicycle `i` of those drawn with `seed`: every value from its own normal distribution, independent of the others, as
+    /// files have no correlations. A bicycle that can't exist is drawn again.
+    ///
+    /// # Errors
+    /// When hardly any draw can exist: the reason of the last.
+    pub fn draw(&self, seed: u64, i: u64) -> Result<Parameters, String> {
+        let still = Start { speed_m_s: 0.0, steer_rate_rad_s: 0.0, roll_rate_rad_s: 0.0 };
+        let mut dice = Dice::new(seed, &still, PURPOSE + i);
+        let mut why = String::new();
+        for _ in 0..TRIES {
+            let drawn = self.parameters_of(&mut |one| one.value + one.sd * dice.normal());
+            match check::check(&drawn) {
+                Ok(_) => return Ok(drawn),
+                Err(reason) => why = reason,
+            }
+        }
+        Err(format!("none of {TRIES} draws can exist: {why}"))
+    }
+}
+
+/// The first stream of random numbers that is none of a ride's.
+const PURPOSE: u64 = 1 << 32;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_with_a_deviation_is_read_and_nothing_else() {
+        let read = |text| Uncertain::parse(text);
+        assert_eq!(read("1.12+/-0.02"), Ok(Uncertain { value: 1.12, sd: 0.02 }));
+        assert_eq!(read(" -0.5 ± 1e-3 "), Ok(Uncertain { value: -0.5, sd: 1e-3 }));
+        for wrong in ["1.12", "1.12+/-", "+/-1", "1+/--1", "1+/-nan", "1+/-inf", "a+/-1", "1+/-2+/-3"] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Whether a rider and a bicycle belong together.
+
+use super::RiderTable;
+use crate::bicycle::catalogue::{self, Bicycle};
+
+/// A rear frame lighter than this carries no rider \[kg\]: the heaviest shipped one without has 22.9 kg, the lightest
+/// with a part of one, legs, 33 kg.
+const EMPTY_KG: f64 = 30.0;
+
+/// What is doubtful about a rider's gains on a bicycle, in words.
+pub fn doubts(bicycle: &Bicycle, rider: &RiderTable) -> Vec<String> {
+    let Bicycle { name, parameters, rider_included, .. } = bicycle;
+    let empty = match rider_included {
+        Some(false) => Some(format!("bicycle {name} has no rider's body (rider_included = false)")),
+        None if parameters.mB < EMPTY_KG => Some(format!(
+            "bicycle {name} may have no rider's body: its rear frame weighs {} kg",
+            parameters.mB
+        )),
+        _ => None,
+    };
+    let empty = empty.map(|what| format!("{what}, and rider {} steers it all the same", rider.name));
+    let other = rider.bicycle.as_ref().filter(|made_for| !is_same(bicycle, made_for)).map(|made_for| {
+        format!("the gains of rider {} are made for bicycle {made_for}, not for {name}", rider.name)
+    });
+    empty.into_iter().chain(other).collect()
+}
+
+/// Whether a bicycle is the one of a name, or has its values.
+fn is_same(bicycle: &Bicycle, name: &str) -> bool {
+    bicycle.name == name || catalogue::load(name).is_ok_and(|named| named.parameters == bicycle.parameters)
+}
