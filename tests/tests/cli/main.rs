@@ -5,6 +5,7 @@ mod contract;
 mod design;
 mod document;
 mod identify;
+mod identify_sensor;
 mod interrupt;
 mod options;
 mod outputs;
