@@ -161,13 +161,13 @@ impl FittedState {
         mut sample: [f64; 3],
         speed_m_s: f64,
     ) -> [f64; 3] {
-        for axis in 0..3 {
+        for (axis, sample) in sample.iter_mut().enumerate() {
             if errors.walk[axis] > 0.0 {
                 self.bias[axis] += errors.walk[axis] * self.root_s * self.dice.normal();
             }
-            sample[axis] += self.bias[axis];
+            *sample += self.bias[axis];
             if errors.white[axis] > 0.0 {
-                sample[axis] += errors.white[axis] * self.dice.normal();
+                *sample += errors.white[axis] * self.dice.normal();
             }
         }
         for axes in &mut self.vibration {

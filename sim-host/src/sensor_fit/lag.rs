@@ -86,7 +86,7 @@ fn lag_s(later: &[f64], earlier: &[f64], period_s: f64) -> Option<f64> {
     let (before, top, after) = (all[best - 1], all[best], all[best + 1]);
     let bend = before - 2.0 * top + after;
     let inside = if bend < 0.0 { 0.5 * (before - after) / bend } else { 0.0 };
-    (top > ALIKE).then(|| (best as f64 - most as f64 + inside) * period_s)
+    (top > ALIKE).then_some((best as f64 - most as f64 + inside) * period_s)
 }
 
 /// The steer rate beside the change of the steer angle.
