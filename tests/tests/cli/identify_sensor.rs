@@ -13,7 +13,7 @@ fn plant(bench: &Bench, options: &str) -> Value {
 }
 
 /// Situation: a recording that ships. Action: fit two sensors, write document, table and model, ride with the model.
-/// Must hold: the document fits its schema; the period of 5 ms and the encoder's step come out; what can't be told is said; the ride has
+/// Must hold: the document fits its schema; the period of 5 ms and the step of the file's digits come out; what can't be told is said; the ride has
 /// the model's numbers.
 #[test]
 fn a_model_is_fitted_written_and_ridden_with() {
@@ -29,7 +29,7 @@ fn a_model_is_fitted_written_and_ridden_with() {
     let own = bench.run("schema identify-sensor").stdout;
     assert!(own == schema, "run: sim-host schema identify-sensor > docs/schema/identify-sensor.json");
     let steer = &document["sensors"]["steer"];
-    assert_eq!((&steer["period_s"], &steer["quantum"]), (&json!(0.005), &json!([0.0003142])));
+    assert_eq!((&steer["period_s"], &steer["quantum"]), (&json!(0.005), &json!([0.0001])));
     let left_out = steer["left_out"].to_string();
     assert!(
         ["lag: ", "noise, bias and walk: ", "vibration: "].iter().all(|what| left_out.contains(what)),
@@ -43,7 +43,7 @@ fn a_model_is_fitted_written_and_ridden_with() {
     );
     let ridden = plant(&bench, "--sensor o.toml");
     assert_eq!(ridden["steer"]["every_ticks"], json!(5));
-    assert_eq!(ridden["steer"]["fitted"]["quantum"][0], json!(0.0003142));
+    assert_eq!(ridden["steer"]["fitted"]["quantum"][0], json!(0.0001));
     assert!(bench.run(&line).stdout.contains("95 % interval"));
 }
 
