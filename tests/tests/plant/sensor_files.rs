@@ -78,7 +78,7 @@ fn what_is_wrong_is_named() {
 /// Situation: tables of any keys with any values. Must hold: a model that can be simulated, or a reason; never a panic.
 #[test]
 fn a_file_is_sound_or_refused() {
-    let keys = [
+    const KEYS: &[&str] = &[
         "period_s",
         "phase_s",
         "jitter_s",
@@ -95,7 +95,7 @@ fn a_file_is_sound_or_refused() {
         "left_out",
         "x",
     ];
-    let values = [
+    const VALUES: &[&str] = &[
         "0",
         "1",
         "-1",
@@ -115,10 +115,11 @@ fn a_file_is_sound_or_refused() {
         "true",
         "{}",
     ];
-    let tables = ["gyro", "accel", "steer", "steer-rate", "wheel", "rider-torque", "motor-report"];
-    let pairs = proptest::collection::hash_map(select(&keys[..]), select(&values[..]), 0..5);
+    const TABLES: &[&str] =
+        &["gyro", "accel", "steer", "steer-rate", "wheel", "rider-torque", "motor-report"];
+    let pairs = proptest::collection::hash_map(select(KEYS), select(VALUES), 0..5);
     runner(2000)
-        .run(&(select(&tables[..]), pairs), |(table, pairs)| {
+        .run(&(select(TABLES), pairs), |(table, pairs)| {
             let lines: String = pairs.iter().map(|(key, value)| format!("{key} = {value}\n")).collect();
             let text = format!("{HEAD}[{table}]\n{lines}");
             match SensorFile::parse(&text) {
