@@ -17,6 +17,7 @@ pub mod replay;
 pub mod report;
 pub mod ride;
 pub mod rider;
+pub mod sensor_fit;
 pub mod study;
 pub mod sweep;
 pub mod thesis;

@@ -1,7 +1,7 @@
-//! `sim-host identify`: numbers of the linear model, measured.
+//! `sim-host identify`: numbers measured in recordings.
 
 use super::outputs::{OutputArgs, Outputs, Results, complain};
-use super::{Ended, Failure, identify_files, warn};
+use super::{Ended, Failure, identify_files, identify_sensor, warn};
 use crate::bicycle::catalogue;
 use crate::range::time;
 use crate::report::document::SCHEMA;
@@ -22,7 +22,8 @@ use std::path::PathBuf;
 pub(super) const EXAMPLES: &str = "\
 Examples:
   sim-host identify weave gain*_speed*kmh_*.csv --svg weave.svg
-  sim-host identify weave ride.csv --speed 3.9 --gain 8 --json";
+  sim-host identify weave ride.csv --speed 3.9 --gain 8 --json
+  sim-host identify sensor ride.csv --map extract --sensor gyro --out gyro.toml";
 
 const WEAVE_EXAMPLES: &str = "\
 A file is a CSV table with a column of time stamps (seconds, or dates with a time) and columns of
@@ -39,6 +40,8 @@ Examples:
 pub(super) enum Command {
     /// Frequency and decay of the weave after a knock, beside the linear model's
     Weave(Box<Args>),
+    /// A model of a real sensor: noise, steps, times and vibration, for --sensor of `ride` and others
+    Sensor(Box<identify_sensor::Args>),
 }
 
 /// Options of `identify weave`.
@@ -110,6 +113,7 @@ impl Args {
 pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
     match command {
         Command::Weave(args) => weave(args),
+        Command::Sensor(args) => identify_sensor::run(args),
     }
 }
 

@@ -12,6 +12,7 @@ mod fall_arg;
 mod faults;
 mod identify;
 mod identify_files;
+mod identify_sensor;
 mod interrupt;
 mod law;
 mod monitor;
@@ -93,7 +94,7 @@ enum Command {
     Sweep(Box<sweep::Args>),
     /// Eigenvalues of the linearised bicycle over speed, and its critical speeds.
     Eigen(eigen::Args),
-    /// Numbers of the linear model measured in recordings: weave.
+    /// Numbers measured in recordings: weave, sensor.
     #[command(subcommand, after_help = identify::EXAMPLES)]
     Identify(identify::Command),
     /// The tables and figures of the thesis computed again, as a report.
@@ -122,7 +123,7 @@ enum Command {
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Which document.
-        #[arg(value_parser = ["basin", "ride", "replay", "replay-many", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design", "param-list", "faults", "identify-weave"])]
+        #[arg(value_parser = ["basin", "ride", "replay", "replay-many", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design", "param-list", "faults", "identify-weave", "identify-sensor"])]
         document: String,
     },
 }

@@ -1,9 +1,11 @@
 //! The options that say how sensors and motor depart from exact ones, and what goes wrong.
 
+use crate::plant::sensor_file::{EXACT, SHIPPED, SensorFile, table_of};
 use crate::plant::{
-    ActuatorConfig, Fault, ImuMount, Plant, Sensor, SensorConfig, SteerStop, Supply, catalogue,
+    ActuatorConfig, Fault, ImuMount, Plant, Sensor, SensorConfig, SensorModel, SteerStop, Supply, catalogue,
 };
 use crate::range::time;
+use std::path::Path;
 
 /// Longest delay of the motor, and of all sensors together \[s\].
 pub(super) const LONGEST_S: f64 = 1.0;
@@ -14,8 +16,9 @@ const LONGEST_SENSOR_S: f64 = 5.0;
 
 #[derive(clap::Args)]
 pub(super) struct PlantArgs {
-    /// Departs a sensor from the truth, for example gyro:noise=0.01,bias=0.02,delay=5ms, or none; may be repeated
-    #[arg(long, value_name = "NAME:KEY=VALUE,...", allow_hyphen_values = true)]
+    /// Departs sensors from the truth: models of real ones by name or FILE, several joined by +; or NAME:KEY=VALUE,... as
+    /// gyro:noise=0.01,bias=0.02,delay=5ms or front-wheel:model=hall-16; or none; may be repeated
+    #[arg(long, value_name = "MODEL|NAME:KEY=VALUE,...", allow_hyphen_values = true)]
     sensor: Vec<String>,
     /// Motor, steer friction and end-stop: none, davis, gazelle, a FILE, and KEY=VALUE to change it
     #[arg(long, value_name = "NAME|FILE|KEY=VALUE,...", default_value = "none", allow_hyphen_values = true)]
@@ -80,7 +83,9 @@ fn ticks(key: &str, value: &str, period_s: f64, most_s: f64) -> Result<u16, Stri
 
 /// Takes in one `NAME[.AXIS]:KEY=VALUE,...`.
 fn depart(sensors: &mut SensorConfig, text: &str, period_s: f64) -> Result<(), String> {
-    let (place, settings) = text.split_once(':').ok_or("expected NAME:KEY=VALUE,...")?;
+    let Some((place, settings)) = text.split_once(':') else {
+        return text.split('+').try_for_each(|name| models(sensors, name, period_s));
+    };
     if place == "imu" {
         return pairs(settings)
             .try_for_each(|pair| pair.and_then(|(key, value)| mount(&mut sensors.imu, key, value)));
@@ -102,6 +107,7 @@ fn depart(sensors: &mut SensorConfig, text: &str, period_s: f64) -> Result<(), S
     for pair in pairs(settings) {
         let (key, value) = pair?;
         match (key, axis) {
+            ("model", None) => *model = model_of(sensor, value, period_s)?,
             ("bias", Some(axis)) => model.bias[axis] = number(key, value)?,
             (_, Some(_)) => return Err(format!("{key} is of all axes; only bias has one each")),
             ("bias", None) => {
@@ -117,12 +123,40 @@ fn depart(sensors: &mut SensorConfig, text: &str, period_s: f64) -> Result<(), S
             ("dropout", None) => model.dropout = number(key, value)?,
             _ => {
                 return Err(format!(
-                    "no `{key}`; there are delay=TIME, every=TIME, noise, bias, scale, quantum, range, dropout"
+                    "no `{key}`; there are model=NAME|FILE, delay=TIME, every=TIME, noise, bias, scale, quantum, range, dropout"
                 ));
             }
         }
     }
     Ok(())
+}
+
+/// Takes in every model of a file.
+fn models(sensors: &mut SensorConfig, name: &str, period_s: f64) -> Result<(), String> {
+    if name == EXACT {
+        return Ok(());
+    }
+    if !SHIPPED.iter().any(|(shipped, _)| *shipped == name) && !Path::new(name).exists() {
+        let names: Vec<_> = SHIPPED.iter().map(|(shipped, _)| *shipped).collect();
+        let names = names.join(", ");
+        return Err(format!(
+            "`{name}` is neither NAME:KEY=VALUE,... nor a FILE nor a model that ships: {EXACT}, {names}"
+        ));
+    }
+    SensorFile::load(name).map_err(|e| e.0)?.apply(sensors, period_s)
+}
+
+/// The model that a file has for a sensor.
+fn model_of(sensor: Sensor, name: &str, period_s: f64) -> Result<SensorModel, String> {
+    if name == EXACT {
+        return Ok(SensorModel::default());
+    }
+    let file = SensorFile::load(name).map_err(|e| e.0)?;
+    let numbers = file.of(sensor).ok_or_else(|| {
+        let tables: Vec<_> = file.tables().map(|(sensor, _)| table_of(sensor)).collect();
+        format!("the model {name} has no table {}; it has {}", table_of(sensor), tables.join(", "))
+    })?;
+    numbers.model(period_s)
 }
 
 fn mount(imu: &mut ImuMount, key: &str, value: &str) -> Result<(), String> {

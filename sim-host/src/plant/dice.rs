@@ -24,7 +24,7 @@ impl Dice {
     }
 
     /// A draw from the uniform distribution over 0 (included) to 1 (excluded).
-    fn uniform(&mut self) -> f64 {
+    pub(super) fn uniform(&mut self) -> f64 {
         const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
         (self.0.next_u64() >> 11) as f64 * STEP
     }

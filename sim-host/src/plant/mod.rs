@@ -6,20 +6,23 @@ pub mod catalogue;
 mod dice;
 mod fault;
 mod fault_text;
+mod fitted;
 mod friction;
 mod reading;
 mod rig;
 mod sensor;
+pub mod sensor_file;
 mod stop;
 
 pub use actuator::{Actuator, ActuatorConfig, Supply};
 pub use dice::Dice;
 pub use fault::{Channel, Fault, FaultState, Kind};
+pub use fitted::{FittedErrors, OCTAVES_HZ};
 pub use friction::Friction;
 pub use reading::{Frame, Reading, Sensor, Traveller};
 pub(crate) use rig::faulty;
 pub use rig::{Held, Measured, Rig};
-pub use sensor::{ImuMount, SensorConfig, SensorModel, SensorState};
+pub use sensor::{Before, ImuMount, SensorConfig, SensorDice, SensorModel, SensorState};
 pub use stop::SteerStop;
 
 /// A value of the plant that can't be simulated.

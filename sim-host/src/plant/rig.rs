@@ -1,9 +1,12 @@
 //! All sensors, the switch and the clock of one ride, with their faults.
 
 use super::fault::{Channel, Fault, FaultState};
-use super::sensor::SensorState;
+use super::sensor::{Before, SensorDice, SensorState};
 use super::{Dice, Plant, Reading, Sensor};
 use crate::ride::Start;
+
+/// Where the purposes of random numbers for fitted errors begin: beyond those of sensors and faults.
+const FITTED: usize = 1 << 32;
 
 /// A sensor's newest sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +59,12 @@ impl Rig {
     pub fn new(plant: &Plant, period_s: f64, start: &Start, steady: &Reading) -> Self {
         let config = &plant.sensors;
         let dice = |purpose: usize| Dice::new(plant.seed, start, purpose as u64);
-        let state = |s: Sensor| SensorState::new(config.model(s), plant.truth(s, steady), dice(s as usize));
+        let state = |s: Sensor| {
+            let truth = plant.truth(s, steady);
+            let before = Before { truth, speed_m_s: steady.rear_wheel_m_s, period_s };
+            let dice = SensorDice { plain: dice(s as usize), fitted: dice(FITTED + s as usize) };
+            SensorState::new(config.model(s), &before, dice)
+        };
         let held = |sensor: Sensor| Held {
             value: plant.truth(sensor, steady),
             age_ticks: config.model(sensor).age_before_boot(),
@@ -95,7 +103,8 @@ impl Rig {
         self.tick += 1;
         let (tick, ride) = (self.tick, self.since_start());
         for (sensor, state) in Sensor::ALL.into_iter().zip(&mut self.sensors) {
-            let arrived = state.arriving(plant.sensors.model(sensor), tick, plant.truth(sensor, now));
+            let (model, truth) = (plant.sensors.model(sensor), plant.truth(sensor, now));
+            let arrived = state.arriving(model, tick, truth, now.rear_wheel_m_s);
             let held = &mut self.held[sensor as usize];
             *held = match faulty(&plant.faults, &mut self.faults, Channel::Sensor(sensor), ride, arrived) {
                 Some(value) => Held { value, age_ticks: 0 },

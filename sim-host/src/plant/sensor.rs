@@ -1,5 +1,6 @@
 //! Sensors that are not exact: late, slow, noisy, off, skewed, coarse, narrow, lossy.
 
+use super::fitted::{FittedErrors, FittedState};
 use super::{Dice, PlantError, Sensor};
 use crate::num::sin_cos;
 use crate::range::within;
@@ -27,6 +28,8 @@ pub struct SensorModel {
     pub dropout: f64,
     /// Control periods from the measurement to its arrival.
     pub delay_ticks: u16,
+    /// What was fitted to recordings of a real one.
+    pub fitted: FittedErrors,
 }
 
 impl Default for SensorModel {
@@ -40,6 +43,7 @@ impl Default for SensorModel {
             quantum: 0.0,
             dropout: 0.0,
             delay_ticks: 0,
+            fitted: FittedErrors::default(),
         }
     }
 }
@@ -62,17 +66,29 @@ impl SensorModel {
             within("dropout", self.dropout, 0.0, 1.0)?;
             within("delay (control periods)", f64::from(self.delay_ticks), 0.0, f64::from(MAX_TICKS))
         };
-        all().map_err(PlantError)
+        all().map_err(PlantError)?;
+        self.fitted.check(sensor, self.every_ticks)
+    }
+
+    /// Whether a sample is taken at `tick`.
+    fn samples_at(&self, tick: i64) -> bool {
+        (tick - i64::from(self.fitted.phase_ticks)).rem_euclid(i64::from(self.every_ticks)) == 0
     }
 
     /// Age of the newest sample at the control instant before the first, if none was lost.
     pub(super) fn age_before_boot(&self) -> u16 {
-        let latest = -1 - i64::from(self.delay_ticks);
+        let latest = -1 - i64::from(self.delay_ticks) - i64::from(self.fitted.phase_ticks);
         latest.rem_euclid(i64::from(self.every_ticks)) as u16
     }
 
-    /// What a sample of `truth` says, if it is not lost.
-    fn sample(&self, truth: [f64; 3], dice: Option<&mut Dice>) -> Option<[f64; 3]> {
+    /// What a sample of `truth` says, if it is not lost, at a forward speed \[m/s\].
+    fn sample(
+        &self,
+        truth: [f64; 3],
+        speed_m_s: f64,
+        dice: Option<&mut Dice>,
+        fitted: Option<&mut FittedState>,
+    ) -> Option<[f64; 3]> {
         let mut told = truth;
         if *self == (Self { delay_ticks: self.delay_ticks, every_ticks: self.every_ticks, ..Self::default() })
         {
@@ -89,12 +105,18 @@ impl SensorModel {
                 return None;
             }
         }
-        for x in &mut told {
+        if let Some(state) = fitted {
+            told = state.disturbed(&self.fitted, told, speed_m_s);
+            told = state.repeated(&self.fitted, told);
+        }
+        for (x, own) in told.iter_mut().zip(self.fitted.quantum) {
             if let Some(range) = self.range {
                 *x = x.clamp(-range, range);
             }
-            if self.quantum > 0.0 {
-                *x = (*x / self.quantum).round() * self.quantum;
+            for quantum in [self.quantum, own] {
+                if quantum > 0.0 {
+                    *x = (*x / quantum).round() * quantum;
+                }
             }
         }
         Some(told)
@@ -169,7 +191,8 @@ impl SensorConfig {
 
     /// Whether the sensors tell a mirrored truth mirrored.
     pub fn mirrors(&self) -> bool {
-        let odd = |m: &SensorModel| m.bias == [0.0; 3] && m.noise == 0.0 && m.dropout == 0.0;
+        let odd =
+            |m: &SensorModel| m.bias == [0.0; 3] && m.noise == 0.0 && m.dropout == 0.0 && !m.fitted.draws();
         self.imu.turned_rad == [0.0; 3] && self.imu.point_m[1] == 0.0 && self.models.iter().all(odd)
     }
 
@@ -190,28 +213,71 @@ pub struct SensorState {
     on_their_way: VecDeque<Option<[f64; 3]>>,
     /// Only for a model that needs it.
     dice: Option<Dice>,
+    /// Only for a model that has fitted errors.
+    fitted: Option<Box<FittedState>>,
+}
+
+/// The random numbers of a sensor: those of its data sheet's noise, and those of what was fitted.
+#[derive(Debug)]
+pub struct SensorDice {
+    /// Of noise and dropout.
+    pub plain: Dice,
+    /// Of [`FittedErrors`].
+    pub fitted: Dice,
+}
+
+/// What a sensor was shown until the control instant 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Before {
+    /// The truth.
+    pub truth: [f64; 3],
+    /// Forward speed \[m/s\].
+    pub speed_m_s: f64,
+    /// The control period \[s\].
+    pub period_s: f64,
 }
 
 impl SensorState {
-    /// Before the control instant 0; until then the truth was `steady`.
-    pub fn new(model: &SensorModel, steady: [f64; 3], dice: Dice) -> Self {
-        let mut dice = (model.noise > 0.0 || model.dropout > 0.0).then_some(dice);
-        let on_their_way =
-            (-i64::from(model.delay_ticks)..0).map(|at| taken(model, at, steady, dice.as_mut())).collect();
-        Self { on_their_way, dice }
+    /// Before the control instant 0.
+    pub fn new(model: &SensorModel, before: &Before, dice: SensorDice) -> Self {
+        let Before { truth, speed_m_s, period_s } = *before;
+        let sample_s = f64::from(model.every_ticks) * period_s;
+        let fitted = (model.fitted != FittedErrors::default())
+            .then(|| Box::new(FittedState::new(&model.fitted, truth, sample_s, period_s, dice.fitted)));
+        let dice = (model.noise > 0.0 || model.dropout > 0.0).then_some(dice.plain);
+        let mut state = Self { on_their_way: VecDeque::new(), dice, fitted };
+        let before = -i64::from(model.delay_ticks)..0;
+        state.on_their_way = before.map(|at| state.taken(model, at, truth, speed_m_s)).collect();
+        state
     }
 
-    /// Takes in the truth at `tick`, one after the last, and gives the sample that arrives now.
-    pub fn arriving(&mut self, model: &SensorModel, tick: i64, truth: [f64; 3]) -> Option<[f64; 3]> {
-        let new = taken(model, tick, truth, self.dice.as_mut());
-        // Without delay the queue stays empty.
-        let Some(arrived) = self.on_their_way.pop_front() else { return new };
-        self.on_their_way.push_back(new);
-        arrived
+    /// Takes in the truth and the forward speed \[m/s\] at `tick`, one after the last, and gives the sample that arrives now.
+    pub fn arriving(
+        &mut self,
+        model: &SensorModel,
+        tick: i64,
+        truth: [f64; 3],
+        speed_m_s: f64,
+    ) -> Option<[f64; 3]> {
+        let new = self.taken(model, tick, truth, speed_m_s);
+        let arrived = match self.on_their_way.pop_front() {
+            // Without delay the queue stays empty.
+            None => new,
+            Some(arrived) => {
+                self.on_their_way.push_back(new);
+                arrived
+            }
+        };
+        match &mut self.fitted {
+            Some(state) => state.due(&model.fitted, tick, arrived),
+            None => arrived,
+        }
     }
-}
 
-/// The sample taken at `tick`, if one is.
-fn taken(model: &SensorModel, tick: i64, truth: [f64; 3], dice: Option<&mut Dice>) -> Option<[f64; 3]> {
-    (tick.rem_euclid(i64::from(model.every_ticks)) == 0).then(|| model.sample(truth, dice)).flatten()
+    /// The sample taken at `tick`, if one is.
+    fn taken(&mut self, model: &SensorModel, tick: i64, truth: [f64; 3], speed_m_s: f64) -> Option<[f64; 3]> {
+        let truth = self.fitted.as_mut().map_or(truth, |state| state.seen(truth));
+        let (dice, fitted) = (self.dice.as_mut(), self.fitted.as_deref_mut());
+        model.samples_at(tick).then(|| model.sample(truth, speed_m_s, dice, fitted)).flatten()
+    }
 }

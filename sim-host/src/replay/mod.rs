@@ -3,6 +3,7 @@
 //! Open loop: the torque that comes out did not act on the bicycle that was recorded.
 
 mod checks;
+mod column;
 mod compare;
 mod configure;
 mod feed;
@@ -13,6 +14,7 @@ mod summary;
 mod unit;
 
 pub use checks::Check;
+pub use column::over_time;
 pub use compare::Compared;
 pub use configure::{Fitted, fitted};
 pub use feed::{Feed, FeedOptions};

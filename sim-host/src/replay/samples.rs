@@ -66,7 +66,7 @@ impl Samples {
 }
 
 /// A remark without a line.
-fn remark(column: Option<&str>, what: String) -> Remark {
+pub(super) fn remark(column: Option<&str>, what: String) -> Remark {
     Remark { line: None, column: column.map(str::to_owned), what }
 }
 
@@ -172,7 +172,7 @@ fn missing(recording: &Recording, map: &Map, sensor: Sensor) -> Remark {
 }
 
 /// A column by its name, alone or with its group's in front.
-fn column<'a>(recording: &'a Recording, name: &str) -> Option<(&'a Group, &'a Column)> {
+pub(super) fn column<'a>(recording: &'a Recording, name: &str) -> Option<(&'a Group, &'a Column)> {
     let of = |group: &'a Group, name: &str| group.columns.iter().find(|column| column.name == name);
     let plain = recording.groups.iter().find_map(|group| Some((group, of(group, name)?)));
     plain.or_else(|| {
@@ -256,7 +256,7 @@ fn find<'a>(recording: &'a Recording, sensor: Sensor, signal: &Signal) -> Result
 }
 
 /// When each row of a group was recorded \[s\]; NaN where it does not say.
-fn times(group: &Group, map: &Map, own: Option<&str>) -> Result<Vec<f64>, Remark> {
+pub(super) fn times(group: &Group, map: &Map, own: Option<&str>) -> Result<Vec<f64>, Remark> {
     let time = map.time.as_ref();
     let factor = Quantity::Time.factor(time.and_then(|time| time.unit.as_deref())).unwrap_or(1.0);
     let named = |name: &str| {

@@ -340,6 +340,7 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "replay-many" => generator.into_root_schema_for::<super::replay::ReplaysDocument>(),
         "eigen" => generator.into_root_schema_for::<EigenDocument>(),
         "identify-weave" => generator.into_root_schema_for::<super::weave::WeaveDocument>(),
+        "identify-sensor" => generator.into_root_schema_for::<super::sensor::SensorDocument>(),
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
         "rider-show" => generator.into_root_schema_for::<super::rider::RiderDocument>(),
         "sweep" => generator.into_root_schema_for::<super::sweep::SweepDocument>(),

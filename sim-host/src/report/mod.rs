@@ -11,6 +11,7 @@ pub mod plane;
 pub mod replay;
 pub mod resolved;
 pub mod rider;
+pub mod sensor;
 pub mod sweep;
 pub mod table;
 pub mod terminal;

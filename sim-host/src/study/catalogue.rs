@@ -5,12 +5,13 @@ use super::{balance_assist, prototype};
 use std::path::Path;
 
 /// The sweeps that ship: names, and files in `data/studies/`.
-const SWEPT: [(&str, &str); 6] = [
+const SWEPT: [(&str, &str); 7] = [
     ("limits", include_str!("../../../data/studies/limits.toml")),
     ("imu", include_str!("../../../data/studies/imu.toml")),
     ("compensate", include_str!("../../../data/studies/compensate.toml")),
     ("tracking", include_str!("../../../data/studies/tracking.toml")),
     ("speed", include_str!("../../../data/studies/speed.toml")),
+    ("sensors", include_str!("../../../data/studies/sensors.toml")),
     ("end-stop", include_str!("../../../data/studies/end-stop.toml")),
 ];
 

@@ -15,7 +15,7 @@ pub mod record;
 pub mod segment;
 pub mod shape;
 mod stamp;
-mod student;
+pub(crate) mod student;
 pub mod window;
 
 /// A number with its 95 % confidence interval.

@@ -88,6 +88,7 @@ fn every_option_is_documented_with_its_default() {
         "study",
         "design",
         "identify weave",
+        "identify sensor",
     ] {
         let help = bench.run(&format!("{command} --help")).stdout;
         let mut option = "";

@@ -9,6 +9,7 @@ mod design;
 mod document;
 mod falls;
 mod identify;
+mod identify_sensor;
 mod interrupt;
 mod none;
 mod options;

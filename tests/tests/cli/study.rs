@@ -72,7 +72,7 @@ fn studies_are_listed_with_their_questions() {
     let list = must(&bench, "studies");
     let heads: Vec<&str> = list.lines().filter(|l| !l.starts_with(' ')).collect();
     let names: Vec<&str> = heads.iter().map(|l| l.split(' ').next().unwrap()).collect();
-    let shipped = ["limits", "imu", "compensate", "tracking", "speed", "end-stop"];
+    let shipped = ["limits", "imu", "compensate", "tracking", "speed", "sensors", "end-stop"];
     assert_eq!(names, [&["balance-assist", "prototype"], &shipped[..]].concat());
     for head in heads {
         let (_, question) = list.split_once(&format!("{head}\n    ")).unwrap();

@@ -2,6 +2,8 @@
 
 mod actuator;
 mod faults;
+mod fitted;
 mod readings;
 mod rides;
+mod sensor_files;
 mod sensors;

@@ -1,0 +1,17 @@
+//! A column of a recording that is no sensor's.
+
+use super::map::Map;
+use super::samples::{column, remark, times};
+use crate::recording::{Recording, Remark};
+
+/// The values of a column over time \[s\], in the units of the file; blank cells are left out.
+///
+/// # Errors
+/// There is no such column, or no time.
+pub fn over_time(recording: &Recording, map: &Map, name: &str) -> Result<Vec<(f64, f64)>, Remark> {
+    let (group, found) =
+        column(recording, name).ok_or_else(|| remark(Some(name), "there is no such column".into()))?;
+    let times = times(group, map, None)?;
+    let there = |(t_s, value): &(f64, f64)| t_s.is_finite() && !value.is_nan();
+    Ok(times.into_iter().zip(found.values.iter().copied()).filter(there).collect())
+}

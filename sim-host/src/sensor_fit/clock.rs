@@ -1,0 +1,102 @@
+//! When samples come: their period, how late some are, and how they lie beside the gyro's.
+
+use super::windows::Recorded;
+use super::{Found, digits, part_of, seen};
+use crate::plant::Sensor;
+use crate::replay::Sample;
+use std::f64::consts::TAU;
+
+/// Length of a block in which the sensor's and the log's clock run alike \[s\].
+const BLOCK_S: f64 = 10.0;
+
+/// A sample that is later by so many periods tells of others that were lost.
+const LOST: f64 = 1.5;
+
+pub(super) fn fit(all: &[Recorded], found: &mut Found) {
+    let seconds: f64 = all.iter().map(span_s).sum();
+    let mut gaps: Vec<f64> =
+        all.iter().flat_map(|one| one.track.samples.windows(2).map(|two| two[1].t_s - two[0].t_s)).collect();
+    gaps.sort_by(f64::total_cmp);
+    let period = part_of(&gaps, 0.5);
+    found.number("period, median", None, "s", period, seconds);
+    found.number("period, 99 in 100 at most", None, "s", part_of(&gaps, 0.99), seconds);
+    found.number("period, longest seen", None, "s", seen(gaps[gaps.len() - 1]), seconds);
+    found.numbers.period_s = Some(digits(period.value));
+    let mut late: Vec<f64> = all.iter().flat_map(lateness).collect();
+    late.sort_by(f64::total_cmp);
+    if late.is_empty() {
+        found.left_out(format!("jitter: no {BLOCK_S} s without a gap"));
+    } else {
+        let (most, worst) = (part_of(&late, 0.99), late[late.len() - 1]);
+        found.number("lateness, 99 in 100 at most", None, "s", most, seconds);
+        found.number("lateness, worst seen", None, "s", seen(worst), seconds);
+        found.numbers.jitter_s = Some([digits(most.value), digits(worst)]);
+    }
+    phase(all, found, period.value);
+}
+
+fn span_s(one: &Recorded) -> f64 {
+    let samples = &one.track.samples;
+    samples[samples.len() - 1].t_s - samples[0].t_s
+}
+
+/// How much later than the earliest each sample of a block comes, beside evenly spaced ones \[s\].
+fn lateness(one: &Recorded) -> Vec<f64> {
+    let length = (BLOCK_S / one.period_s).round() as usize;
+    let late = |block: &[Sample]| {
+        let times: Vec<f64> = block.iter().map(|sample| sample.t_s - block[0].t_s).collect();
+        let mut places: Vec<f64> = Vec::with_capacity(times.len());
+        for time in &times {
+            let next = places.last().map_or(0.0, |place| place + 1.0);
+            let beyond = time / one.period_s - next;
+            places.push(next + if beyond >= LOST { beyond.round() } else { 0.0 });
+        }
+        let n = times.len() as f64;
+        let mean = |x: &[f64]| x.iter().sum::<f64>() / n;
+        let (t, p) = (mean(&times), mean(&places));
+        let along: f64 = times.iter().zip(&places).map(|(x, y)| (x - t) * (y - p)).sum();
+        let slope = along / places.iter().map(|y| (y - p).powi(2)).sum::<f64>();
+        let off: Vec<f64> = times.iter().zip(&places).map(|(x, y)| x - t - slope * (y - p)).collect();
+        let earliest = off.iter().copied().fold(f64::INFINITY, f64::min);
+        off.into_iter().map(move |x| x - earliest).collect::<Vec<_>>()
+    };
+    one.track.samples.chunks_exact(length.max(3)).flat_map(late).collect()
+}
+
+/// How much later than a sample of the gyro this sensor's comes, within a period.
+fn phase(all: &[Recorded], found: &mut Found, period_s: f64) {
+    if found.sensor == Sensor::Gyro {
+        return;
+    }
+    let mut angles = Vec::new();
+    for one in all {
+        let Some(gyro) = one.recording.samples.track(Sensor::Gyro) else { continue };
+        let alike = gyro.period_s().is_some_and(|other| (other / period_s - 1.0).abs() < 0.01);
+        if !alike {
+            return found.left_out("phase: the gyro has another period".into());
+        }
+        for sample in &one.track.samples {
+            let after = gyro.samples.partition_point(|other| other.t_s <= sample.t_s + 1e-9);
+            let before = after.checked_sub(1).map(|i| sample.t_s - gyro.samples[i].t_s);
+            angles.extend(before.filter(|s| *s < 1.5 * period_s).map(|s| TAU * s / period_s));
+        }
+    }
+    let (sin, cos) = angles.iter().fold((0.0, 0.0), |(s, c), a| (s + a.sin(), c + a.cos()));
+    let turns = (sin.atan2(cos) / TAU).rem_euclid(1.0);
+    let phase_s = if turns > 0.999 { 0.0 } else { turns * period_s };
+    let apart = |a: &f64| ((a / TAU - turns + 0.5).rem_euclid(1.0) - 0.5).abs() * period_s;
+    let mut off: Vec<f64> = angles.iter().map(apart).collect();
+    off.sort_by(f64::total_cmp);
+    let Some(most) = off.get(off.len() * 99 / 100) else { return };
+    let spread = crate::weave::Estimate::new(phase_s, *most, 1.0);
+    found.number(
+        "later than the gyro's sample, 99 in 100 between",
+        None,
+        "s",
+        spread,
+        angles.len() as f64 * period_s,
+    );
+    if phase_s > 0.0 {
+        found.numbers.phase_s = Some(digits(phase_s));
+    }
+}

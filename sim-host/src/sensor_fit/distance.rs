@@ -1,0 +1,106 @@
+//! A wheel's speed beside the way that the same wheel counted: over which time it is the mean, and how late it is.
+
+use super::windows::Recorded;
+use super::{Found, digits, pooled};
+
+/// Length of a stretch that is fitted by itself \[s\].
+const STRETCH_S: f64 = 10.0;
+/// A stretch whose speed changes by less says nothing \[m/s\].
+const CHANGE_M_S: f64 = 0.1;
+/// Longest mean looked for \[s\].
+const LONGEST_S: f64 = 8.0;
+/// A way that falls by more in one sample was set anew \[m\].
+const SET_ANEW_M: f64 = 0.05;
+/// Speeds that the best mean does not make within this part of their own change are of another wheel.
+const WORST_FIT: f64 = 0.3;
+
+/// What fits a stretch best: the mean's length, the delay \[s\], and the scale.
+struct Fit {
+    window_s: f64,
+    delay_s: f64,
+    scale: f64,
+}
+
+pub(super) fn fit(all: &[Recorded], found: &mut Found) {
+    if all.iter().all(|one| one.recording.distance_m.is_empty()) {
+        let what = "lag and mean: nothing was recorded that the speed follows; the way that the wheel counted would \
+                    do (--distance)";
+        return found.left_out(what.into());
+    }
+    let each: Vec<Vec<Fit>> = all.iter().map(stretches).collect();
+    let of = |value: fn(&Fit) -> f64| -> Vec<Vec<f64>> {
+        each.iter().map(|fits| fits.iter().map(value).collect()).collect()
+    };
+    let seconds = each.iter().flatten().count() as f64 * STRETCH_S;
+    let numbers =
+        (pooled(&of(|fit| fit.window_s)), pooled(&of(|fit| fit.delay_s)), pooled(&of(|fit| fit.scale)));
+    let (Some(window), Some(delay), Some(scale)) = numbers else {
+        return found.left_out("lag and mean: in too few stretches of 10 s does the speed change".into());
+    };
+    found.number("mean over", None, "s", window, seconds);
+    found.number("delay beside the way", None, "s", delay, seconds);
+    found.number("scale beside the way", None, "1", scale, seconds);
+    found.numbers.window_s = Some(digits(window.value));
+    if delay.low > 0.0 {
+        found.numbers.delay_s = Some(digits(delay.value));
+    }
+}
+
+fn stretches(one: &Recorded) -> Vec<Fit> {
+    let way = &one.recording.distance_m;
+    let length = (STRETCH_S / one.period_s).round() as usize;
+    let fit = |samples: &[crate::replay::Sample]| {
+        let (from, to) = (samples[0].t_s - LONGEST_S - 1.0, samples[samples.len() - 1].t_s);
+        let first = way.partition_point(|(t, _)| *t < from);
+        let last = way.partition_point(|(t, _)| *t <= to);
+        let way = &way[first..last];
+        let whole = way.first().is_some_and(|(t, _)| *t < from + 0.1);
+        let set_anew = way.windows(2).any(|two| two[1].1 < two[0].1 - SET_ANEW_M);
+        let points: Vec<(f64, f64)> = samples.iter().map(|sample| (sample.t_s, sample.value[0])).collect();
+        if !whole || set_anew { None } else { best(&points, way, one.period_s) }
+    };
+    one.track.samples.chunks_exact(length).filter_map(fit).collect()
+}
+
+/// The mean and delay of least squares, by ever finer grids.
+fn best(points: &[(f64, f64)], way: &[(f64, f64)], period_s: f64) -> Option<Fit> {
+    let n = points.len() as f64;
+    let mean = points.iter().map(|(_, v)| v).sum::<f64>() / n;
+    let change: f64 = points.iter().map(|(_, v)| (v - mean).powi(2)).sum();
+    if (change / n).sqrt() < CHANGE_M_S {
+        return None;
+    }
+    let judged = |window_s: f64, delay_s: f64| {
+        let mean = |t: f64| {
+            let later = at(way, t - delay_s);
+            (later - at(way, t - delay_s - window_s)) / window_s
+        };
+        let sums = points.iter().step_by(5).fold([0.0; 3], |[vm, mm, vv], (t, v)| {
+            let m = mean(*t);
+            [vm + v * m, mm + m * m, vv + v * v]
+        });
+        let scale = sums[0] / sums[1];
+        (sums[2] - scale * sums[0], scale)
+    };
+    let (mut centre, mut reach) = ((0.5 * LONGEST_S, 0.5), (0.5 * LONGEST_S, 0.5));
+    for _ in 0..5 {
+        let grid = (-8..=8).flat_map(|i| (-5..=5).map(move |j| (f64::from(i) / 8.0, f64::from(j) / 5.0)));
+        let tried = grid.map(|(i, j)| {
+            let window_s = (centre.0 + i * reach.0).clamp(period_s, LONGEST_S);
+            let delay_s = (centre.1 + j * reach.1).clamp(0.0, 1.0);
+            (judged(window_s, delay_s).0, (window_s, delay_s))
+        });
+        centre = tried.min_by(|a, b| a.0.total_cmp(&b.0))?.1;
+        reach = (reach.0 / 4.0, reach.1 / 3.0);
+    }
+    let (rest, scale) = judged(centre.0, centre.1);
+    let fits = 5.0 * rest < WORST_FIT * WORST_FIT * change;
+    fits.then_some(Fit { window_s: centre.0, delay_s: centre.1, scale })
+}
+
+/// The way at a time, between two counts \[m\].
+fn at(way: &[(f64, f64)], t_s: f64) -> f64 {
+    let after = way.partition_point(|(t, _)| *t < t_s).clamp(1, way.len() - 1);
+    let ((t0, a), (t1, b)) = (way[after - 1], way[after]);
+    a + ((t_s - t0) / (t1 - t0)).clamp(0.0, 1.0) * (b - a)
+}

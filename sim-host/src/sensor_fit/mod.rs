@@ -1,0 +1,159 @@
+//! A model of a sensor, fitted to recordings of a real one.
+//!
+//! `windows` cuts the recordings into seconds of standing and riding, `clock` looks at the times of the samples, `step` at
+//! their numbers, `noise` at what a standing sensor says, `vibration` at what riding adds, `lag` and `distance` at how late a
+//! sensor is beside another. Each gives numbers with intervals, and says what the recordings can't tell.
+
+mod clock;
+mod distance;
+mod lag;
+mod noise;
+mod spectrum;
+mod step;
+mod toml;
+mod vibration;
+mod windows;
+
+use crate::plant::Sensor;
+use crate::plant::sensor_file::{MeasuredNumber, SensorNumbers};
+use crate::replay::Samples;
+use crate::weave::Estimate;
+use crate::weave::pool::pool;
+use crate::weave::student::quantile;
+pub use toml::to_toml;
+use windows::Recorded;
+
+/// One recording.
+#[derive(Clone, Debug, Default)]
+pub struct Recording {
+    /// What the sensors said.
+    pub samples: Samples,
+    /// The way that the wheel sensor counted \[m\] over time \[s\], if it was recorded beside the speed.
+    pub distance_m: Vec<(f64, f64)>,
+}
+
+/// Fits a model of `sensor` to recordings.
+///
+/// # Errors
+/// None of the recordings has the sensor.
+pub fn fit(sensor: Sensor, recordings: &[Recording]) -> Result<SensorNumbers, String> {
+    let of_sensor = |recording| Recorded::new(recording, sensor);
+    let all: Vec<Recorded> = recordings.iter().filter_map(of_sensor).collect();
+    if all.is_empty() {
+        return Err(format!("none of the recordings has {}", sensor.name()));
+    }
+    let mut found = Found { sensor, numbers: SensorNumbers::default(), white_power: [0.0; 3] };
+    clock::fit(&all, &mut found);
+    step::fit(&all, &mut found);
+    noise::fit(&all, &mut found);
+    vibration::fit(&all, &mut found);
+    lag::fit(&all, &mut found);
+    Ok(found.numbers)
+}
+
+/// What was found so far.
+struct Found {
+    sensor: Sensor,
+    numbers: SensorNumbers,
+    /// Density of the white noise while standing, by axis \[unit^2/Hz\].
+    white_power: [f64; 3],
+}
+
+impl Found {
+    /// Notes a number in the sensor's unit with `per` behind it, of an axis if the sensor has several.
+    fn number(&mut self, number: &str, axis: Option<usize>, unit: &str, found: Estimate, seconds: f64) {
+        let axis = axis.and_then(|axis| self.sensor.axes().get(axis)).copied().unwrap_or_default();
+        let [value, low, high] = [found.value, found.low, found.high].map(digits);
+        self.numbers.measured.push(MeasuredNumber {
+            number: number.into(),
+            axis: axis.into(),
+            unit: unit.into(),
+            value,
+            low,
+            high,
+            seconds: (10.0 * seconds).round() / 10.0,
+        });
+    }
+
+    /// Notes what the recordings can't tell.
+    fn left_out(&mut self, what: String) {
+        self.numbers.left_out.push(what);
+    }
+
+    /// The sensor's unit.
+    fn unit(&self) -> &'static str {
+        match self.sensor {
+            Sensor::Gyro | Sensor::SteerRate => "rad/s",
+            Sensor::Accel => "m/s^2",
+            Sensor::Steer | Sensor::Path => "rad",
+            Sensor::FrontWheel | Sensor::RearWheel => "m/s",
+            Sensor::RiderTorque | Sensor::MotorReport => "N m",
+        }
+    }
+
+    fn axes(&self) -> usize {
+        self.sensor.axes().len().max(1)
+    }
+}
+
+/// A number in four digits: more than any of these is known to. What is left of a rounding is nothing.
+fn digits(x: f64) -> f64 {
+    if x.abs() < 1e-12 {
+        return 0.0;
+    }
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+/// The mean of independent values with its interval by Student's t; none of fewer than two.
+fn mean(values: &[f64]) -> Option<Estimate> {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let square = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    (values.len() > 1).then(|| Estimate::new(mean, (square / n).sqrt(), quantile(n - 1.0)))
+}
+
+/// The means of each recording put together; those that scatter make the interval wider.
+fn pooled(recordings: &[Vec<f64>]) -> Option<Estimate> {
+    let means: Vec<Estimate> = recordings.iter().filter_map(|values| mean(values)).collect();
+    // Values that are all alike have no error to weigh by.
+    if means.iter().any(|mean| mean.standard_error == 0.0) {
+        return mean(&recordings.concat());
+    }
+    pool(&means).map(|pooled| pooled.mean)
+}
+
+/// The root of a power that can't be negative.
+fn root(power: Estimate) -> Estimate {
+    let root = |x: f64| x.max(0.0).sqrt();
+    let value = root(power.value);
+    let standard_error = if value > 0.0 { 0.5 * power.standard_error / value } else { 0.0 };
+    Estimate { value, standard_error, low: root(power.low), high: root(power.high) }
+}
+
+/// A share of `n` events by Wilson's interval.
+fn share(events: usize, n: usize) -> Estimate {
+    let (n, z) = (n.max(1) as f64, quantile(1e9));
+    let p = events as f64 / n;
+    let middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
+    let half = z / (1.0 + z * z / n) * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
+    Estimate {
+        value: p,
+        standard_error: half / z,
+        low: (middle - half).max(0.0),
+        high: (middle + half).min(1.0),
+    }
+}
+
+/// The value below which a part of the sorted values lies, with its interval by order statistics.
+fn part_of(sorted: &[f64], part: f64) -> Estimate {
+    let n = sorted.len() as f64;
+    let at = |share: f64| sorted[((n - 1.0) * share.clamp(0.0, 1.0)).round() as usize];
+    let half = quantile(1e9) * (part * (1.0 - part) / n).sqrt();
+    let (value, low, high) = (at(part), at(part - half), at(part + half));
+    Estimate { value, standard_error: 0.25 * (high - low), low, high }
+}
+
+/// A number that is what was seen, and no estimate of anything more.
+const fn seen(value: f64) -> Estimate {
+    Estimate { value, standard_error: 0.0, low: value, high: value }
+}
