@@ -80,7 +80,7 @@ pub const EXAMPLE: Config = Config {
         flux_part: 0.4,
         dead_part: 0.67,
         mean_ticks: 200,
-        unproved_nm: 1.5,
+        unproved_nm: 2.5,
         proof_ticks: 4_000,
     },
 };

@@ -11,7 +11,7 @@ use motor::{Ask, Config, Fault};
 const CALL_MS: f64 = 0.05;
 /// Largest torque of an angle that is not proved, with the loop's overshoot and what the bridge gives as it closes
 /// while the handlebar turns at up to 0.5 rad/s \[N m\].
-const UNPROVED_NM: f64 = 1.9;
+const UNPROVED_NM: f64 = 2.9;
 
 /// What the encoder does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,8 +213,8 @@ fn a_handlebar_at_rest_and_free() {
     }
 }
 
-/// Situation: nothing is wrong; the handlebar is held, 4 N m asked for. Must hold: 1.5 N m, what an angle gives that is not
-/// proved. Then the handlebar turns at 1 rad/s: all 4 N m within 30 ms. It stands again: back to 1.5 N m after 0.2 s.
+/// Situation: nothing is wrong; the handlebar is held, 4 N m asked for. Must hold: 2.5 N m, what an angle gives that is not
+/// proved. Then the handlebar turns at 1 rad/s: all 4 N m within 30 ms. It stands again: back to 2.5 N m after 0.2 s.
 #[test]
 fn the_whole_torque_comes_with_the_proof() {
     let mut rig = turned(0.0, 0.0, |_| ());
@@ -225,9 +225,9 @@ fn the_whole_torque_comes_with_the_proof() {
     rig.machine.steer_rate_rad_s = 0.0;
     let stands = rig.run(8000, Ask::Torque(4.0));
     let little_ms =
-        stands.iter().position(|r| r.torque_nm < 1.7).expect("the proof grew old") as f64 * CALL_MS;
+        stands.iter().position(|r| r.torque_nm < 2.7).expect("the proof grew old") as f64 * CALL_MS;
     println!("{before:.2} N m; whole after {whole_ms:.1} ms; little after {little_ms:.1} ms");
-    assert!((1.4..1.6).contains(&before) && (2.0..30.0).contains(&whole_ms), "{before} {whole_ms}");
+    assert!((2.4..2.6).contains(&before) && (2.0..30.0).contains(&whole_ms), "{before} {whole_ms}");
     assert!((195.0..220.0).contains(&little_ms) && opened(&stands).is_none(), "{little_ms}");
     let limit_nm = last(&stands).out.limit_a * EXAMPLE.motor.torque_nm_a();
     assert!((limit_nm - EXAMPLE.angle.unproved_nm).abs() < 1e-3, "told: {limit_nm}");
