@@ -6,6 +6,7 @@ use crate::demand::Demand;
 use crate::encoder::{EncoderConfig, EncoderPlan};
 use crate::machine::Motor;
 use crate::modulate::Bridge;
+use crate::protect::angle::AngleConfig;
 use crate::protect::emf::EmfConfig;
 use crate::protect::follow::FollowConfig;
 use crate::protect::heat::HeatConfig;
@@ -50,6 +51,8 @@ pub struct Config {
     pub follow: FollowConfig,
     /// Back-EMF that does not fit.
     pub emf: EmfConfig,
+    /// Back-EMF that lies elsewhere.
+    pub angle: AngleConfig,
 }
 
 /// Calls from the sampling of a current to the middle of the duty cycles that answer it.
@@ -77,6 +80,7 @@ impl Config {
         self.stall.leaves(to);
         self.follow.leaves(to);
         self.emf.leaves(to);
+        self.angle.leaves(to);
     }
 
     /// A check value of the motor and encoder that an encoder's offset belongs to: 32 bits of FNV-1a over pole pairs,
@@ -130,6 +134,7 @@ impl Config {
             encoder: EncoderPlan::new(&self.encoder, self.rate_hz),
             period_s: 1.0 / self.rate_hz,
             torque_nm_a: self.motor.torque_nm_a(),
+            unproved_a: self.angle.unproved_nm / self.motor.torque_nm_a().abs(),
             dead_duty: self.bridge.dead_duty(self.rate_hz),
             reach: self.bridge.reach(),
             config: self,
@@ -145,6 +150,7 @@ pub struct Plan {
     pub(crate) encoder: EncoderPlan,
     pub(crate) period_s: f32,
     pub(crate) torque_nm_a: f32,
+    pub(crate) unproved_a: f32,
     pub(crate) dead_duty: f32,
     pub(crate) reach: f32,
 }

@@ -11,7 +11,7 @@ use crate::protect::overload::OverloadState;
 use crate::protect::sensors::Phases;
 use crate::protect::stall::StallState;
 use crate::protect::supply::SupplyState;
-use crate::protect::{emf, follow, heat, overload, sensors, stall, supply};
+use crate::protect::{angle, emf, follow, heat, overload, sensors, stall, supply};
 use crate::transform::{Vector, clarke, park, stator};
 use crate::turn::Turn;
 use crate::zero::{self, ZeroState};
@@ -94,6 +94,7 @@ struct Drive {
     supply: SupplyState,
     follow: follow::FollowState,
     emf_v: f32,
+    angle: angle::AngleState,
 }
 
 /// What comes out.
@@ -113,7 +114,7 @@ pub struct Output {
     pub iq_a: f32,
     /// q current that is wanted \[A\].
     pub iq_wanted_a: f32,
-    /// Largest current that heat, supply and stall leave now \[A\].
+    /// Largest current that heat, supply, stall and an angle without proof leave now \[A\].
     pub limit_a: f32,
     /// Whether only the holding current is left because the motor stands.
     pub stalled: bool,
@@ -224,7 +225,15 @@ fn close(
     if mode == Mode::Running {
         let unexplained = drive.voltage.minus(plan.gains.steady(measured, omega_rad_s));
         let resistive_v = c.motor.resistance_ohm * measured.length();
-        state.faults.take(emf::step(&c.emf, &mut drive.emf_v, unexplained, resistive_v));
+        let dead_v = plan.dead_duty * inputs.bus_v;
+        state.faults.take(emf::step(&c.emf, &mut drive.emf_v, unexplained, resistive_v, dead_v));
+        let voltages = angle::Voltages {
+            unexplained,
+            magnets: omega_rad_s * c.motor.flux_wb,
+            resistive: resistive_v,
+            dead: dead_v,
+        };
+        state.faults.take(angle::step(&c.angle, &mut drive.angle, &voltages));
     }
     drive.voltage = current::step(&plan.gains, &mut drive.current, wanted, measured, omega_rad_s, max_v);
 
@@ -276,6 +285,7 @@ fn running(
     let speed = seen.speed_turns_s;
     let asked_a = asked_nm / plan.torque_nm_a;
     let limit_a = stall::step(&c.stall, &mut state.stall, plan.period_s, asked_a, speed, limit_a);
+    let limit_a = if state.drive.angle.is_proved() { limit_a } else { limit_a.min(plan.unproved_a) };
     let torque = &mut state.drive.torque_nm;
     *torque = demand::step(&c.demand, plan.period_s, *torque, asked_nm, limit_a, plan.torque_nm_a);
     let field = Field {

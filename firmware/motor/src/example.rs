@@ -18,6 +18,7 @@ use crate::demand::Demand;
 use crate::encoder::EncoderConfig;
 use crate::machine::Motor;
 use crate::modulate::Bridge;
+use crate::protect::angle::AngleConfig;
 use crate::protect::emf::EmfConfig;
 use crate::protect::follow::FollowConfig;
 use crate::protect::heat::HeatConfig;
@@ -73,4 +74,13 @@ pub const EXAMPLE: Config = Config {
     stall: StallConfig { hold_a: 3.0, still_turns_s: 0.3, time_s: 2.0 },
     follow: FollowConfig { error_a: 1.5, mean_ticks: 20 },
     emf: EmfConfig { error_v: 1.0, resistance_part: 0.5, mean_ticks: 100 },
+    angle: AngleConfig {
+        error_v: 0.1,
+        resistance_part: 0.45,
+        flux_part: 0.4,
+        dead_part: 0.67,
+        mean_ticks: 200,
+        unproved_nm: 2.5,
+        proof_ticks: 4_000,
+    },
 };

@@ -52,16 +52,18 @@ pub enum Fault {
     AlignRestless = 22,
     /// The torque asked for is not a number.
     Command = 23,
+    /// The back-EMF does not lie where the encoder's angle puts it: an encoder that slipped, or an offset of another motor.
+    AngleAstray = 24,
 }
 
 /// Every fault, in the order of the codes.
 #[rustfmt::skip]
-pub const FAULTS: [Fault; 23] = {
+pub const FAULTS: [Fault; 24] = {
     use Fault::*;
     [
         OverCurrent, Overload, CurrentSensor, CurrentZero, CurrentSum, CurrentAstray, PhaseALost, PhaseBLost, PhaseCLost,
         BusLow, BusHigh, BusSensor, Hot, HeatSensor, EncoderLost, EncoderRange, EncoderJump, EncoderSpeed,
-        VoltageAstray, AlignLag, AlignReversed, AlignRestless, Command,
+        VoltageAstray, AlignLag, AlignReversed, AlignRestless, Command, AngleAstray,
     ]
 };
 

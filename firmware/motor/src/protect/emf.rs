@@ -26,9 +26,15 @@ impl EmfConfig {
 }
 
 /// One call: `unexplained` is the voltage applied less that which current and speed explain, `resistive_v` what the
-/// resistance should take of it. `mean_v` is remembered.
-pub fn step(config: &EmfConfig, mean_v: &mut f32, unexplained: Vector, resistive_v: f32) -> Option<Fault> {
-    let beyond = unexplained.length() - config.resistance_part * resistive_v;
+/// resistance should take of it, `dead_v` what the dead time takes of a phase. `mean_v` is remembered.
+pub fn step(
+    config: &EmfConfig,
+    mean_v: &mut f32,
+    unexplained: Vector,
+    resistive_v: f32,
+    dead_v: f32,
+) -> Option<Fault> {
+    let beyond = unexplained.length() - config.resistance_part * resistive_v - dead_v;
     follow_mean(mean_v, beyond, 1.0 / f32::from(config.mean_ticks));
     (*mean_v > config.error_v).then_some(Fault::VoltageAstray)
 }

@@ -1,6 +1,7 @@
 //! What may not go on: each file watches one thing, limits the current where that helps, and calls a fault where it
 //! does not.
 
+pub mod angle;
 pub mod emf;
 pub mod follow;
 pub mod heat;

@@ -43,6 +43,7 @@ fn the_offset_is_found() {
     for (start, zero, reversed, friction_nm) in cases {
         let mut config = EXAMPLE;
         config.encoder.reversed = reversed;
+        config.angle.unproved_nm = 7.0;
         let mut rig = zeroed(config);
         rig.machine.motor_turns = start / 8.0;
         rig.machine.params.coulomb_nm = friction_nm;

@@ -127,10 +127,13 @@ fn a_blow_to_the_handlebar() {
 }
 
 /// Situation: 4 N m; the encoder repeats one sample as if fresh while the hands turn the handlebar. Must hold: from
-/// 2 rad/s on voltage or current betray it within 20 ms. At 1 rad/s nothing does: a limit that docs/motor.md tells.
+/// 1 rad/s on voltage or current betray it, within 20 ms from 2 rad/s on, else within 50. At 0.3 rad/s nothing does: a limit that
+/// docs/motor.md tells.
 #[test]
 fn an_encoder_that_is_stuck() {
-    for (rate, seen) in [(1.0, false), (2.0, true), (4.0, true), (6.0, true), (10.0, true), (-6.0, true)] {
+    for (rate, seen) in
+        [(0.3, false), (1.0, true), (2.0, true), (4.0, true), (6.0, true), (10.0, true), (-6.0, true)]
+    {
         let mut rig = turning(rate);
         let counts = rig.inputs(Ask::Off).angle_counts;
         let records = rig.tampered(4000, Ask::Torque(4.0), |_, i| i.angle_counts = counts);
@@ -141,9 +144,11 @@ fn an_encoder_that_is_stuck() {
             last(&records).out.faults
         );
         if seen {
-            assert!(opened(&records).is_some_and(|n| (2..=400).contains(&n)));
+            let latest = if rate.abs() < 2.0 { 1000 } else { 400 };
+            assert!(opened(&records).is_some_and(|n| (2..=latest).contains(&n)));
             let faults = last(&records).out.faults;
-            assert!(faults == one(Fault::VoltageAstray) || faults == one(Fault::CurrentAstray), "{faults:?}");
+            let may = [Fault::VoltageAstray, Fault::CurrentAstray, Fault::AngleAstray];
+            assert!(faults.iter().all(|fault| may.contains(&fault)), "{faults:?}");
         } else {
             assert_eq!(opened(&records), None, "{rate}");
         }
@@ -169,7 +174,7 @@ fn a_phase_is_cut() {
             let records = rig.run(400, Ask::Torque(4.0));
             let out = last(&records).out;
             assert!(opened(&records).is_some_and(|n| (5..=200).contains(&n)), "{cut} {angle}: {out:?}");
-            let may = [fault, Fault::CurrentAstray, Fault::VoltageAstray];
+            let may = [fault, Fault::CurrentAstray, Fault::VoltageAstray, Fault::AngleAstray];
             assert!(out.faults.iter().all(|f| may.contains(&f)), "{out:?}");
         }
     }
@@ -241,7 +246,8 @@ fn the_battery_breaks_down() {
 fn more_heat_than_the_limits_allow() {
     let mut rig = Rig::ready(|c| {
         c.overload.time_s = 0.1;
-        (c.overload.continuous_a, c.follow.error_a, c.emf.error_v) = (2.0, 100.0, 50.0);
+        (c.overload.continuous_a, c.follow.error_a) = (2.0, 100.0);
+        (c.emf.error_v, c.angle.error_v) = (50.0, 50.0);
     });
     rig.machine.held = true;
     let records = rig.tampered(4000, Ask::Torque(1.0), |_, i| {
@@ -286,7 +292,7 @@ fn a_fault_latches() {
     assert_eq!(last(&rig.run(2100, Ask::Off)).out.mode, Mode::Ready);
 }
 
-/// Situation: the list of faults. Must hold: numbers 1 to 23 in order, as printed in docs/motor.md, each with its name.
+/// Situation: the list of faults. Must hold: numbers 1 to 24 in order, as printed in docs/motor.md, each with its name.
 #[test]
 fn the_numbers_stay() {
     let page = include_str!("../../../../docs/motor.md");

@@ -8,4 +8,5 @@ mod maths;
 mod model;
 mod properties;
 mod rig;
+mod slip;
 mod torque;

@@ -47,6 +47,7 @@ fn wide() -> Config {
     c.encoder.offset_turns = Some(0.1);
     c.zero.samples = 1;
     (c.sensors.trip_a, c.follow.error_a, c.emf.error_v) = (60.0, 100.0, 50.0);
+    c.angle.error_v = 50.0;
     (c.align.ramp_ticks, c.align.move_ticks, c.align.rest_ticks) = (3, 3, 4);
     c
 }

@@ -57,8 +57,16 @@ impl Rig {
         }
     }
 
-    /// The example, its zeros taken, its encoder aligned by the truth: ready.
+    /// The example, its zeros taken, its encoder aligned by the truth: ready, and the whole torque given without proof.
     pub(crate) fn ready(change: impl FnOnce(&mut Config)) -> Self {
+        Self::started(|config| {
+            config.angle.unproved_nm = 100.0;
+            change(config);
+        })
+    }
+
+    /// The same, but for the proof of the angle: the example as it is.
+    pub(crate) fn started(change: impl FnOnce(&mut Config)) -> Self {
         let mut config = EXAMPLE;
         config.encoder.offset_turns = Some(0.0);
         change(&mut config);

@@ -15,4 +15,5 @@ mod registers;
 mod rides;
 mod rig;
 mod serial;
+mod slip;
 mod store;

@@ -1,0 +1,276 @@
+//! Flight cards: an encoder that slips on its shaft, is off from the start or turns round, and what is no slip.
+//!
+//! Times and torques of the first card stand in docs/motor.md.
+
+use crate::machine::Params;
+use crate::rig::{Rig, last, mean, opened};
+use motor::example::EXAMPLE;
+use motor::{Ask, Config, Fault};
+
+/// A call of the example \[ms\].
+const CALL_MS: f64 = 0.05;
+/// Largest torque of an angle that is not proved, with the loop's overshoot and what the bridge gives as it closes
+/// while the handlebar turns at up to 0.5 rad/s \[N m\].
+const UNPROVED_NM: f64 = 2.9;
+
+/// What the encoder does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Slip {
+    /// It was off before the start, by electrical degrees.
+    Before(f64),
+    /// It slips by electrical degrees in so many calls while torque is given.
+    During(f64, u32),
+    /// Its counts go the other way from one call on.
+    Reversed,
+}
+
+/// The example with a handlebar that is turned evenly.
+fn turned(off_deg: f64, rate_rad_s: f64, change: impl FnOnce(&mut Config)) -> Rig {
+    let mut rig = Rig::started(|c| {
+        c.encoder.offset_turns = Some(((off_deg / 360.0 + 0.5).rem_euclid(1.0) - 0.5) as f32);
+        change(c);
+    });
+    rig.machine.params.inertia_kg_m2 = 1e6;
+    rig.machine.steer_rate_rad_s = rate_rad_s;
+    let _ = rig.run(600, Ask::Off);
+    rig
+}
+
+/// What came of it.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    /// From the beginning of the slip to the open bridge \[ms\].
+    opened_ms: Option<f64>,
+    /// Largest torque against the one asked for meanwhile \[N m\], and that at the end.
+    worst_nm: f64,
+    end_nm: f64,
+}
+
+/// Torque is asked for, the encoder slips, and `ms` are waited for the bridge to open.
+fn slips(slip: Slip, rate_rad_s: f64, nm: f32, ms: f64) -> Seen {
+    let off_deg = if let Slip::Before(deg) = slip { deg } else { 0.0 };
+    let mut rig = turned(off_deg, rate_rad_s, |_| ());
+    if off_deg == 0.0 {
+        // The angle is proved, then the slip begins.
+        rig.machine.steer_rate_rad_s = f64::from(nm.signum());
+        assert_eq!(opened(&rig.run(1000, Ask::Torque(nm))), None);
+        rig.machine.steer_rate_rad_s = rate_rad_s;
+        assert_eq!(opened(&rig.run(200, Ask::Torque(nm))), None);
+    }
+    if slip == Slip::Reversed {
+        rig.encoder_zero = -2.0 * rig.machine.motor_turns;
+        rig.encoder_reversed = true;
+    }
+    let (mut worst_nm, mut end_nm) = (0.0_f64, 0.0);
+    for call in 1..=(ms / CALL_MS) as u32 {
+        if let Slip::During(deg, calls) = slip {
+            rig.encoder_zero = deg / 360.0 / 8.0 * (f64::from(call) / f64::from(calls)).min(1.0);
+        }
+        let record = rig.call(Ask::Torque(nm), |_, _| ());
+        if record.out.duties.is_none() {
+            return Seen { opened_ms: Some(f64::from(call) * CALL_MS), worst_nm, end_nm };
+        }
+        end_nm = -record.torque_nm * f64::from(nm.signum());
+        worst_nm = worst_nm.max(end_nm);
+    }
+    Seen { opened_ms: None, worst_nm, end_nm }
+}
+
+/// The worst of both directions of torque and rate.
+fn worst(slip: Slip, rate_rad_s: f64, nm: f32, ms: f64) -> Seen {
+    let runs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)]
+        .map(|(rate, torque)| slips(slip, rate * rate_rad_s, torque * nm, ms));
+    let late = |seen: &Seen| seen.opened_ms.unwrap_or(f64::INFINITY);
+    let mut all = runs.into_iter().max_by(|a, b| late(a).total_cmp(&late(b))).expect("four runs");
+    all.worst_nm = runs.iter().map(|seen| seen.worst_nm).fold(0.0, f64::max);
+    all.end_nm = runs.iter().map(|seen| seen.end_nm).fold(f64::MIN, f64::max);
+    all
+}
+
+/// Cells of the table: rates of the handlebar \[rad/s\].
+const RATES: [f64; 6] = [0.0, 0.3, 0.5, 1.0, 2.0, 5.0];
+/// How long is watched \[ms\].
+const WATCHED_MS: f64 = 400.0;
+
+/// Situation: 4 N m asked for, either way, the handlebar turned at 0 to 5 rad/s, either way; the encoder off by 45 to 180
+/// electrical degrees from the start, slipping by 180 in 0.2 s, or turning round. Must hold: from 1 rad/s on the bridge
+/// opens within 0.1 s, or 0.1 s of the slip's end. Where it does not, the torque the wrong way is at most that of an
+/// angle that is not proved, from the start, or within 0.35 s of the slip's beginning. What docs/motor.md says.
+#[test]
+fn a_slip_is_seen_or_bounded() {
+    let page = include_str!("../../../../docs/motor.md");
+    let slips = [
+        ("off by 45 degrees", Slip::Before(45.0)),
+        ("off by 90 degrees", Slip::Before(90.0)),
+        ("off by 135 degrees", Slip::Before(135.0)),
+        ("off by 180 degrees", Slip::Before(180.0)),
+        ("slips by 180 degrees in 0.2 s", Slip::During(180.0, 4000)),
+        ("turns round", Slip::Reversed),
+    ];
+    let mut wrong = Vec::new();
+    for (name, slip) in slips {
+        let seen = RATES.map(|rate| worst(slip, rate, 4.0, WATCHED_MS));
+        let cell = |s: &Seen| match s.opened_ms {
+            Some(ms) => format!("{ms:.0}, {:.1}", s.worst_nm),
+            None => format!("-, {:.1}", s.end_nm.max(0.0)),
+        };
+        let fresh = format!("| {name} | {} |", seen.each_ref().map(cell).join(" | "));
+        println!("{fresh}");
+        let slipping_ms = if let Slip::During(..) = slip { 200.0 } else { 0.0 };
+        for (rate, seen) in RATES.iter().zip(&seen) {
+            let in_time = seen.opened_ms.is_some_and(|ms| ms <= 100.0 + slipping_ms);
+            assert!(in_time || *rate < 1.0 || name.contains(" 45 "), "{name}, {rate} rad/s: {seen:?}");
+            assert!(in_time || seen.end_nm < UNPROVED_NM, "{name}, {rate} rad/s: {seen:?}");
+        }
+        let line = page.lines().find(|line| line.starts_with(&format!("| {name} |"))).unwrap_or_default();
+        let same = |(a, b): (&str, &str)| match (a.trim().parse::<f64>(), b.trim().parse::<f64>()) {
+            (Ok(a), Ok(b)) => (a - b).abs() <= 0.2 + 0.1 * a.max(b),
+            _ => a.trim() == b.trim(),
+        };
+        let cells = |line: &str| line.replace(',', "|").split('|').map(str::to_owned).collect::<Vec<_>>();
+        let (fresh_cells, told) = (cells(&fresh), cells(line));
+        let alike = fresh_cells.len() == told.len()
+            && fresh_cells.iter().zip(&told).all(|(a, b)| same((a.as_str(), b.as_str())));
+        if !alike {
+            wrong.push(fresh);
+        }
+    }
+    assert!(wrong.is_empty(), "docs/motor.md should have\n{}", wrong.join("\n"));
+}
+
+/// Numbers from 0 to 1.
+struct Dice(u64);
+
+impl Dice {
+    fn between(&mut self, least: f64, most: f64) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        least + (most - least) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// Situation: 80 encoders off by any angle beyond 60 electrical degrees, or by less than 6; any torque to 7 N m, any rate
+/// of the handlebar from 1 to 8 rad/s. Must hold: the first open within 0.1 s, the others never.
+#[test]
+fn any_angle() {
+    let mut dice = Dice(7);
+    let mut latest: f64 = 0.0;
+    for _ in 0..80 {
+        let sense = if dice.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
+        let (rate, nm) = (sense * dice.between(1.0, 8.0), dice.between(-7.0, 7.0) as f32);
+        let deg = dice.between(60.0, 300.0);
+        let seen = slips(Slip::Before(deg), rate, nm, 150.0);
+        assert!(seen.opened_ms.is_some_and(|ms| ms <= 100.0), "{deg} deg, {rate} rad/s, {nm} N m: {seen:?}");
+        latest = latest.max(seen.opened_ms.unwrap_or(0.0));
+        let deg = dice.between(-6.0, 6.0);
+        let seen = slips(Slip::Before(deg), rate, nm, 150.0);
+        assert!(seen.opened_ms.is_none(), "{deg} deg, {rate} rad/s, {nm} N m: {seen:?}");
+    }
+    println!("latest {latest} ms");
+    assert!(latest > 2.0, "{latest}");
+}
+
+/// Situation: 3 N m, the handlebar turned at 1 or 3 rad/s; the encoder creeps on its shaft, an electrical turn in 4 s. Must
+/// hold: open before it is off by 75 electrical degrees, not before it is off by 20.
+#[test]
+fn a_creeping_encoder() {
+    for rate in [1.0, -1.0, 3.0, -3.0] {
+        let mut rig = turned(0.0, rate, |_| ());
+        let mut off_deg = 0.0;
+        let fault = loop {
+            off_deg += 360.0 / 80_000.0;
+            rig.encoder_zero = off_deg / 360.0 / 8.0;
+            let record = rig.call(Ask::Torque(3.0), |_, _| ());
+            if record.out.duties.is_none() {
+                break record.out.faults;
+            }
+            assert!(off_deg < 75.0, "{rate} rad/s");
+        };
+        println!("{rate} rad/s: open at {off_deg:.0} degrees");
+        assert!(off_deg > 20.0, "{rate}: {off_deg}");
+        let may = [Fault::AngleAstray, Fault::VoltageAstray];
+        assert!(fault.iter().all(|fault| may.contains(&fault)), "{rate}: {fault:?}");
+    }
+}
+
+/// Situation: a handlebar at rest that nobody holds, 4 N m asked for; the encoder is off by 135 or 180 electrical degrees. Must
+/// hold: it turns the wrong way by no more than the torque of an angle that is not proved, and the bridge opens before it
+/// turns at 0.5 rad/s: half a turn within 0.1 s; the eighth less, whose torque is less, within 0.2 s.
+#[test]
+fn a_handlebar_at_rest_and_free() {
+    for (deg, latest_ms) in [(180.0, 100.0), (135.0, 200.0)] {
+        let mut rig = turned(deg, 0.0, |_| ());
+        rig.machine.params.inertia_kg_m2 = Params::default().inertia_kg_m2;
+        let records = rig.run(5000, Ask::Torque(4.0));
+        let open_ms = opened(&records).map(|call| call as f64 * CALL_MS);
+        let worst_nm = records.iter().map(|r| -r.torque_nm).fold(0.0, f64::max);
+        println!(
+            "{deg} degrees: {open_ms:?} ms, {worst_nm:.2} N m, {:.2} rad/s",
+            rig.machine.steer_rate_rad_s
+        );
+        assert!(open_ms.is_some_and(|ms| (30.0..latest_ms).contains(&ms)), "{deg}: {open_ms:?}");
+        assert!((0.8..UNPROVED_NM).contains(&worst_nm), "{deg}: {worst_nm}");
+        assert!(last(&records).out.faults.has(Fault::AngleAstray));
+    }
+}
+
+/// Situation: nothing is wrong; the handlebar is held, 4 N m asked for. Must hold: 2.5 N m, what an angle gives that is not
+/// proved. Then the handlebar turns at 1 rad/s: all 4 N m within 30 ms. It stands again: back to 2.5 N m after 0.2 s.
+#[test]
+fn the_whole_torque_comes_with_the_proof() {
+    let mut rig = turned(0.0, 0.0, |_| ());
+    let before = mean(&rig.run(2000, Ask::Torque(4.0))[1000..], |r| r.torque_nm);
+    rig.machine.steer_rate_rad_s = 1.0;
+    let proved = rig.run(4000, Ask::Torque(4.0));
+    let whole_ms = proved.iter().position(|r| r.torque_nm > 3.8).expect("proved") as f64 * CALL_MS;
+    rig.machine.steer_rate_rad_s = 0.0;
+    let stands = rig.run(8000, Ask::Torque(4.0));
+    let little_ms =
+        stands.iter().position(|r| r.torque_nm < 2.7).expect("the proof grew old") as f64 * CALL_MS;
+    println!("{before:.2} N m; whole after {whole_ms:.1} ms; little after {little_ms:.1} ms");
+    assert!((2.4..2.6).contains(&before) && (2.0..30.0).contains(&whole_ms), "{before} {whole_ms}");
+    assert!((195.0..220.0).contains(&little_ms) && opened(&stands).is_none(), "{little_ms}");
+    let limit_nm = last(&stands).out.limit_a * EXAMPLE.motor.torque_nm_a();
+    assert!((limit_nm - EXAMPLE.angle.unproved_nm).abs() < 1e-3, "told: {limit_nm}");
+}
+
+/// Situation: nothing is wrong but what is known of motor and bridge: resistance 0.7 and 1.4, flux 0.9 and 1.1, inductance
+/// 0.7 and 1.3 of what is told, dead time half of it or half more, at 12, 24, 55 V; twice as long at 24 V; the alignment
+/// off by 4 electrical degrees. Hands shake the handlebar with 12 N m at 3 Hz and twice it hits a stop, while up to 7 N m are asked
+/// for, either way. Must hold: no fault in 0.4 s, and 7 N m are given in at
+/// least a fourth of the time in which they are asked for.
+#[test]
+fn what_is_no_slip() {
+    let bridges =
+        [(0.25, 12.0), (0.25, 24.0), (0.25, 55.0), (0.75, 12.0), (0.75, 24.0), (0.75, 55.0), (1.0, 24.0)];
+    for motor in 0..8 {
+        for (dead_time_us, bus_v) in bridges {
+            let mut rig = Rig::started(|c| {
+                c.encoder.offset_turns = Some(4.0 / 360.0);
+                (c.supply.low_v, c.supply.sag_v, c.supply.high_v) = (9.0, 10.0, 65.0);
+            });
+            let p = &mut rig.machine.params;
+            let of = |bit: i32, low: f64, high: f64| if motor & bit == 0 { low } else { high };
+            (p.resistance_ohm, p.flux_wb) = (p.resistance_ohm * of(1, 0.7, 1.4), p.flux_wb * of(2, 0.9, 1.1));
+            p.inductance_d_h *= of(4, 0.7, 1.3);
+            p.inductance_q_h = p.inductance_d_h;
+            (p.dead_time_s, p.source_v, rig.machine.bus_v) = (dead_time_us * 1e-6, bus_v, bus_v);
+            let (mut whole, mut before) = (0, 0.0);
+            for call in 0..8000_u32 {
+                let t = f64::from(call) * CALL_MS * 1e-3;
+                rig.machine.load_nm = 12.0 * (t * 3.0 * std::f64::consts::TAU).sin();
+                // The stop takes 2 ms and gives back 0.3 of the rate.
+                match call % 4000 {
+                    3000 => before = rig.machine.steer_rate_rad_s,
+                    3001..=3040 => rig.machine.steer_rate_rad_s -= 1.3 / 40.0 * before,
+                    _ => (),
+                }
+                let nm = [1.0, -7.0, 7.0, 4.0, -2.0, 0.2, 0.0, -0.5][(call / 1000 % 8) as usize];
+                let record = rig.call(Ask::Torque(nm), |_, _| ());
+                let faults = record.out.faults;
+                assert!(faults.is_empty(), "{motor:03b}, {dead_time_us} us, {bus_v} V, {t} s: {faults:?}");
+                whole += usize::from((5.8..8.2).contains(&record.torque_nm.abs()));
+            }
+            assert!((500..2100).contains(&whole), "{motor:03b}, {dead_time_us} us, {bus_v} V: {whole}");
+        }
+    }
+}
