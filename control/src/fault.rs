@@ -46,7 +46,7 @@ pub enum Cause {
     FrontWheelRange = 18,
     /// The front wheel's speed jumps.
     FrontWheelJump = 19,
-    /// The front wheel's speed stays the same while the rear one's changes.
+    /// The front wheel's speed stays the same while the bicycle moves.
     FrontWheelStuck = 20,
     /// The rear wheel's sensor brought no believable sample in time.
     RearWheelLost = 21,
@@ -54,7 +54,7 @@ pub enum Cause {
     RearWheelRange = 22,
     /// The rear wheel's speed jumps.
     RearWheelJump = 23,
-    /// The rear wheel's speed stays the same while the front one's changes.
+    /// The rear wheel's speed stays the same while the bicycle moves.
     RearWheelStuck = 24,
     /// The rider's torque sensor brought no believable sample in time.
     RiderTorqueLost = 25,
@@ -74,7 +74,7 @@ pub enum Cause {
     MotorStuck = 32,
     /// The two wheels' speeds do not fit the steer angle.
     WheelsDisagree = 33,
-    /// The gyro's rates and the sideways force have opposite signs.
+    /// The gyro's rates have the opposite sign of what another sensor makes of them.
     GyroDisagrees = 34,
     /// The steer rate and the steer angle do not fit each other.
     SteerDisagrees = 35,
