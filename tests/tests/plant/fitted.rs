@@ -114,6 +114,9 @@ fn vibration_grows_with_the_speed_and_keeps_its_octave() {
     assert!((two / 0.02 - 1.0).abs() < 0.03 && (four / two - 2.0).abs() < 1e-9, "{two} {four}");
 }
 
+/// The first and the last sample of a ride.
+type Ends = ([f64; 3], [f64; 3]);
+
 /// Situation: a bias of 0.02 rad/s from ride to ride, and a walk of 0.001 rad/s by the root of a second, in 400 rides of 4 s.
 /// Must hold: both spreads within five standard errors, by axis; the axes do not go together.
 #[test]
@@ -124,10 +127,8 @@ fn bias_differs_from_ride_to_ride_and_wanders() {
         let said = arrived(&[(Sensor::Gyro, model)], seed, 4001, |_| rides(3.0)).remove(0).samples;
         (said[0].value, said[said.len() - 1].value)
     };
-    let all: Vec<([f64; 3], [f64; 3])> = (0..400).map(ends).collect();
-    let spread = |of: &dyn Fn(&([f64; 3], [f64; 3])) -> f64| {
-        (all.iter().map(|x| of(x).powi(2)).sum::<f64>() / 400.0).sqrt()
-    };
+    let all: Vec<Ends> = (0..400).map(ends).collect();
+    let spread = |of: &dyn Fn(&Ends) -> f64| (all.iter().map(|x| of(x).powi(2)).sum::<f64>() / 400.0).sqrt();
     let near = |found: f64, truth: f64| (found / truth - 1.0).abs() < 5.0 / 800.0_f64.sqrt();
     for axis in 0..3 {
         let (first, wandered) = (spread(&|x| x.0[axis]), spread(&|x| x.1[axis] - x.0[axis]));
