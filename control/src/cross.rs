@@ -294,6 +294,8 @@ pub fn step(
         state.compare_yaw(config, plan, believed, [front, rear], ground, roll_sin_cos);
     } else if state.tick == steering::END_TICK {
         state.steering.end(&plan.steering, rear.or(front).unwrap_or(0.0), rear.is_some());
+    } else if state.tick == steering::ROLL_TICK {
+        state.steering.judge_roll(&plan.steering);
     }
     causes.note(Cause::YawDisagrees, state.yaw_wrong);
     causes = causes.with(state.steering.found());

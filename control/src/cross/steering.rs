@@ -17,9 +17,9 @@ use core::hint::cold_path;
 
 /// The yaw rate \[rad/s\]. What is slower than a second is left out: a steer sensor's zero, a bias of the gyro.
 const YAW: SlopeConfig = SlopeConfig { slow_s: 1.0, forget_s: 1.0, most: 5.0, enough: 0.003, lasting_s: 0.0 };
-/// The roll acceleration \[rad/s^2\].
+/// The roll acceleration \[rad/s^2\]. Of a single stretch the correlation is 1 or -1, of four it means something.
 const ROLL: SlopeConfig =
-    SlopeConfig { slow_s: 1.0, forget_s: 0.5, most: 20.0, enough: 0.005, lasting_s: 0.0 };
+    SlopeConfig { slow_s: 1.0, forget_s: 0.5, most: 20.0, enough: 0.005, lasting_s: 0.2 };
 /// Below this slope the gyro or the steer sensor has the wrong sign. On recorded rides of two bicycles it stays above 0
 /// where both are right, also with a steer sensor whose scale is wrong by 1.6.
 pub const YAW_WRONG: f32 = -0.4;
@@ -66,6 +66,8 @@ const LENGTH_S: f32 = 6.0 * STRETCH_S;
 /// At which control period of a stretch it ends: none of those in which a slope of `response` is told, so that no
 /// period has to do both.
 pub(super) const END_TICK: u16 = 2;
+/// And in which the roll is judged, for the same reason another one.
+pub(super) const ROLL_TICK: u16 = 10;
 
 /// What follows from the parameters and the rate of calls alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,6 +111,9 @@ pub(super) struct Steering {
     roll: Slope,
     /// Both sides of the roll's equation at the stretch before.
     roll_before: Option<[f32; 2]>,
+    /// By how much they have changed, until that is judged.
+    roll_change: Option<[f32; 2]>,
+    roll_wrong: bool,
     found: Causes,
 }
 
@@ -151,25 +156,31 @@ impl Steering {
             let middle = 0.5 * speed_m_s * (expected + expected_before);
             let pushed = -plan.per_height * (middle + plan.forward_m * turned * per_s);
             let accelerated = more * per_s;
-            if let Some([pushed_before, accelerated_before]) = self.roll_before.replace([pushed, accelerated])
-            {
-                let leaned = G * plan.per_height * plan.roll.dt_s * rate_before;
-                let (expected, seen) = (pushed - pushed_before, accelerated - accelerated_before - leaned);
-                if seen.abs() > BLOW_RAD_S2 + BLOW_TIMES * expected.abs() {
-                    cold_path();
-                    self.roll = Slope::default();
-                } else {
-                    let _ = self.roll.step(&plan.roll, expected, seen);
-                }
-                let wrong = self.roll_correlation().is_some_and(|correlation| correlation < ROLL_WRONG);
-                self.found.note(Cause::GyroDisagrees, wrong);
-            }
+            let leaned = G * plan.per_height * plan.roll.dt_s * rate_before;
+            let last = self.roll_before.replace([pushed, accelerated]);
+            self.roll_change = last.map(|[pushed_before, accelerated_before]| {
+                [pushed - pushed_before, accelerated - accelerated_before - leaned]
+            });
         }
     }
 
-    /// What was found at the end of the last stretch.
+    /// Some periods after the end of a stretch: the roll is judged anew.
+    pub(super) fn judge_roll(&mut self, plan: &SteeringPlan) {
+        let Some([expected, seen]) = self.roll_change.take() else { return };
+        if seen.abs() > BLOW_RAD_S2 + BLOW_TIMES * expected.abs() {
+            cold_path();
+            self.roll = Slope::default();
+        } else {
+            let _ = self.roll.step(&plan.roll, expected, seen);
+        }
+        self.roll_wrong = self.roll_correlation().is_some_and(|correlation| correlation < ROLL_WRONG);
+    }
+
+    /// What was found when each was judged last.
     pub(super) fn found(&self) -> Causes {
-        self.found
+        let mut found = self.found;
+        found.note(Cause::GyroDisagrees, self.roll_wrong);
+        found
     }
 
     /// The slope of the yaw rate while the bicycle is ridden.
