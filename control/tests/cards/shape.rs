@@ -254,7 +254,7 @@ fn tables_out_of_range_are_refused_by_name() {
                 l.max_torque_nm = None;
                 l.rider_torque = Some(RiderTorque::default());
             }),
-            "limits.max_torque_nm = inf is outside 0.1 to 50",
+            "limits.max_torque_nm = none, but limits.rider_torque is on and needs it: 0.1 to 50",
         ),
         (
             refused(|l| l.rider_motion = Some(RiderMotion { fade_ms: 0, ..RiderMotion::default() })),

@@ -30,7 +30,8 @@ pub fn estimator_parameters(b: &Geometry) -> EstimateConfig {
 /// needs such an estimate stays, and the configuration fails its check.
 pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) -> Vec<String> {
     let imu = Place { forward_m: imu_m[0] as f32, up_m: (b.rR - imu_m[2]) as f32 };
-    config.estimate = EstimateConfig { roll_rate: config.estimate.roll_rate, imu, ..estimator_parameters(b) };
+    let EstimateConfig { pitch, wheel_radius_m, balance, .. } = estimator_parameters(b);
+    config.estimate = EstimateConfig { pitch, wheel_radius_m, balance, imu, ..config.estimate };
     (config.cross.wheelbase_m, config.cross.tilt_rad) = (b.w as f32, b.lam as f32);
     config.response.motor = config.response.motor.map(|_| steer_model(b));
     let mut outside = Outside::default();
@@ -43,7 +44,9 @@ pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) -> Vec<String> {
             "{error}: the check of the motor's response is off, as by --set response.motor=off"
         ));
     }
-    let needed = config.capsize.is_on() || config.predict.lead_s > 0.0 || config.track.is_some();
+    // The lead as flashed may be left out; another one is meant.
+    let leads = config.predict.lead_s > 0.0 && config.predict != Config::product().predict;
+    let needed = config.capsize.is_on() || leads || config.track.is_some();
     if let (Some(error), false) = (of("estimate"), needed) {
         config.estimate =
             EstimateConfig { roll_rate: config.estimate.roll_rate, ..EstimateConfig::default() };
@@ -52,7 +55,8 @@ pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) -> Vec<String> {
             off.push(format!(
                 "{error}: the motion estimate and all that needs it are off, as by --set estimate.roll_rate=gyro_x, \
                  response.gyro=off, response.motor=off, and none for permit.fallen_rad, permit.roll_unknown_rad, \
-                 cross.wheels_m_s, cross.yaw_rad_s and cross.yaw_slow_rad_s, cross.yaw_slope=off"
+                 cross.wheels_m_s, cross.yaw_rad_s and cross.yaw_slow_rad_s, cross.yaw_slope=off, \
+                 cross.roll_correlation=off, predict.lead_s=0"
             ));
         }
     }
@@ -67,6 +71,8 @@ fn switch_estimate_off(config: &mut Config) -> bool {
     (config.permit.fallen_rad, config.permit.roll_unknown_rad) = (None, None);
     let cross = &mut config.cross;
     (cross.wheels_m_s, cross.yaw_rad_s, cross.yaw_slow_rad_s, cross.yaw_slope) = (None, None, None, false);
+    cross.roll_correlation = false;
+    config.predict.lead_s = 0.0;
     *config != before
 }
 

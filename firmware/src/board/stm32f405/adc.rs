@@ -68,6 +68,12 @@ pub(super) fn counts() -> Counts {
     Counts { phases: [a, b, c], steer, rider_torque, supply, switch, board_heat }
 }
 
+/// What was converted so far asks for no interrupt: the first one comes with the end of conversions still to come, at its place
+/// in the PWM period.
+pub(super) fn forget() {
+    ADC1.sr().modify(|w| w.set_jeoc(false));
+}
+
 /// Whether the next conversions are over already.
 pub(super) fn again() -> bool {
     ADC1.sr().read().jeoc()

@@ -62,6 +62,7 @@ pub(super) fn start(plan: Plan, driver: bool, encoder: SoftSpi, gate_fault: Inpu
     };
     // SAFETY: the interrupt is not let through yet, so nobody else has the cell.
     unsafe { *LOOP.0.get() = Some(motor) }
+    adc::forget();
     interrupt::ADC.unpend();
     // SAFETY: the interrupt enters no critical section, so it may interrupt those of others.
     unsafe { interrupt::ADC.enable() }
