@@ -28,7 +28,7 @@ fn changed(lines: &[(&str, f64)]) -> String {
     for (key, value) in lines {
         let start = format!("{key} = ");
         let line = |l: &str| if l.starts_with(&start) { format!("{start}{value}") } else { l.to_owned() };
-        text = text.lines().map(line).collect::<Vec<_>>().join("\n");
+        text = text.lines().map(line).collect::<Vec<_>>().join("\n") + "\n";
     }
     text
 }

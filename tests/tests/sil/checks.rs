@@ -1,5 +1,7 @@
 //! Flight cards: no check trips on a bicycle that nothing is wrong with.
 
+use control::predict::PredictConfig;
+use control::smooth::SmoothConfig;
 use control::{Causes, Config, Limits, Mode};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -18,7 +20,8 @@ const DRAWN: usize = 40;
 
 /// The product's checks and permission; the law and the torque as in the thesis.
 fn checked() -> Config {
-    Config { law: H, limits: Limits::default(), ..product() }
+    let (predict, smooth) = (PredictConfig::default(), SmoothConfig::default());
+    Config { law: H, limits: Limits::default(), predict, smooth, ..product() }
 }
 
 /// Sensors as noisy and as often as those of the TU Delft sensor bicycle, see [`Noise::SIZES`].
