@@ -135,11 +135,10 @@ impl Config {
             lifted_m_s2: Some(3.0),
             persist_ticks: 100,
         };
+        let estimate = EstimateConfig { roll_rate: Source::Estimate, ..EstimateConfig::default() };
         // Without vibration, and hardly later: `docs/delay.md`.
-        let estimate =
-            EstimateConfig { roll_rate: Source::Estimate, accel_lag_s: 0.12, ..EstimateConfig::default() };
         let predict = PredictConfig { lead_s: 0.012, ..PredictConfig::default() };
-        let smooth = SmoothConfig { interpolate: true, lag_s: 0.02, most_rad_s: Some(0.08) };
+        let smooth = SmoothConfig { interpolate: true, lag_s: 0.022, most_rad_s: Some(0.08) };
         let limits = Limits::product();
         Self {
             input,
