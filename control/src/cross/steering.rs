@@ -16,7 +16,7 @@ use crate::slope::{STRETCH_S, Slope, SlopeConfig, SlopePlan, Stretch};
 use core::hint::cold_path;
 
 /// The yaw rate \[rad/s\]. What is slower than a second is left out: a steer sensor's zero, a bias of the gyro.
-const YAW: SlopeConfig = SlopeConfig { slow_s: 1.0, forget_s: 1.0, most: 5.0, enough: 0.003, lasting_s: 0.0 };
+const YAW: SlopeConfig = SlopeConfig { slow_s: 1.0, forget_s: 1.0, most: 5.0, enough: 0.002, lasting_s: 0.0 };
 /// The roll acceleration \[rad/s^2\]. Of a single stretch the correlation is 1 or -1, of four it means something.
 const ROLL: SlopeConfig =
     SlopeConfig { slow_s: 1.0, forget_s: 0.5, most: 20.0, enough: 0.005, lasting_s: 0.2 };
