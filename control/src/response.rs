@@ -167,14 +167,14 @@ pub fn step(
     // Each at its own tick, so that no control period has to do both.
     let gyro_end = state.gyro_tick == plan.motor_ticks / 2;
     let motor_end = state.motor_tick == plan.motor_ticks;
-    // Every fourth period will do for the means: none in which a stretch ends, or in which `cross` compares the yaw rate.
-    let adds = state.motor_tick % 4 == 1;
+    // Every other period will do for the gyro's means, every fourth for the motor's: none in which a stretch ends.
+    let (adds_gyro, adds_motor) = (state.motor_tick % 2 == 1, state.motor_tick % 4 == 1);
     let speed = believed.rear_wheel_m_s().or(believed.front_wheel_m_s());
     let mut causes = Causes::NONE;
 
     match (believed.gyro_rad_s(), believed.accel_m_s2(), speed) {
         (Some([wx, wy, wz]), Some([_, force, _]), Some(speed)) if plan.config.gyro => {
-            if adds {
+            if adds_gyro {
                 state.gyro.add([wx, wy, wz, force, speed.newest]);
             }
             if gyro_end {
@@ -197,7 +197,7 @@ pub fn step(
     ) {
         (Some(model), Some(steer), Some(rate), Some(_), Some(speed)) => {
             let Motion { roll_rad, roll_rate_rad_s, .. } = *motion;
-            if adds {
+            if adds_motor {
                 // What the drive says it gives, where it says so: it may have had to give less.
                 let torque_nm = believed.motor_torque_nm().unwrap_or(torque_nm);
                 state.motor.add([roll_rad, roll_rate_rad_s, steer, rate, speed.newest, torque_nm]);
