@@ -23,7 +23,8 @@ use core::hint::cold_path;
 const GYRO_STRETCHES: u16 = 6;
 
 /// The sideways force \[m/s^2\].
-const GYRO: SlopeConfig = SlopeConfig { slow_s: 0.3, forget_s: 0.4, most: 20.0, enough: 0.2, lasting_s: 0.0 };
+const GYRO: SlopeConfig =
+    SlopeConfig { slow_s: 0.3, forget_s: 0.4, most: 20.0, enough: 0.2, lasting_s: 0.05 };
 /// Below this slope the gyro is wrong. A reversed x axis gives about -1, a reversed z axis less; a blow
 /// that turns the frame at once, which no force at rest shows, up to -0.2 for a moment.
 pub const GYRO_WRONG: f32 = -0.4;
