@@ -12,6 +12,7 @@ use crate::limits::Limits;
 use crate::param::{Checker, Leaf, ParamError, Visit, optional};
 use crate::permit::PermitConfig;
 use crate::predict::PredictConfig;
+use crate::press::PressConfig;
 use crate::response::{ResponseConfig, SteerModel};
 use crate::smooth::SmoothConfig;
 use crate::track::Track;
@@ -126,6 +127,7 @@ impl Config {
             self_test_ticks: 200,
             ramp_in_ticks: 500,
             ramp_out_ticks: 200,
+            press: PressConfig::product(),
             need_polarity: true,
             fallen_rad: Some(1.05),
             roll_unknown_rad: Some(0.5),

@@ -86,18 +86,20 @@ impl Plan {
         &self.config
     }
 
-    /// Whether a press of the switch in the period after this command would engage, if nothing changes: in standby, and
-    /// nothing is missing but the press.
+    /// Whether a press of the switch that begins in the period after this command, or goes on in it, would engage, if
+    /// nothing changes: in standby, and nothing is missing but the press.
     pub fn ready(&self, command: &Command) -> bool {
-        let refusing = command.causes.and(self.reactions.refusals());
-        command.mode == Mode::Standby && refusing == Causes::of(Cause::SwitchOff)
+        let missing = self.reactions.refusals().with(Causes::of(Cause::SwitchHeld));
+        let refusing = command.causes.and(missing);
+        command.mode == Mode::Standby && (refusing.is_empty() || refusing == Causes::of(Cause::SwitchOff))
     }
 
     /// Control periods from boot to full authority, if every sensor is good from the start and the
     /// switch is pressed at once when it may be.
     pub fn ticks_to_engage(&self) -> u32 {
         let Config { input, permit, latency, .. } = &self.config;
-        let waits = u32::from(permit.self_test_ticks) + u32::from(permit.persist_ticks);
+        let tests = u32::from(permit.self_test_ticks) + u32::from(permit.persist_ticks);
+        let waits = tests + u32::from(permit.press.release_ticks) + u32::from(permit.press.press_ticks);
         let ramp = u32::from(permit.ramp_in_ticks);
         let filling = u32::from(latency.roll_rate_ticks.max(latency.speed_ticks));
         8 + input.slowest_to_qualify() + waits + ramp + filling

@@ -110,7 +110,7 @@ pub enum Cause {
     Backwards = 50,
     /// The bicycle stands.
     Parked = 51,
-    /// The switch is on, but was not pressed afresh while nothing refused.
+    /// The switch was not released for long enough since it was last on: no press counts yet.
     SwitchHeld = 52,
     /// The rider has not asked for assist.
     SwitchOff = 53,

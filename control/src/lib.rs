@@ -43,6 +43,7 @@ pub mod param;
 pub mod permit;
 pub mod polarity;
 pub mod predict;
+pub mod press;
 pub mod pulses;
 pub mod real;
 pub mod response;

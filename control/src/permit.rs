@@ -1,12 +1,13 @@
 //! May torque flow, how much of it, and if not, why not.
 //!
-//! Permission is off at boot, given only on a fresh press of the rider's switch, and taken away by
-//! any listed cause. A press that is refused is used up. All causes present are told at once.
+//! Permission is off at boot, given only on a deliberate press of the rider's switch ([`crate::press`]), and taken away
+//! by any listed cause. A press that is refused is used up. All causes present are told at once.
 
 use crate::estimate::RollError;
 use crate::fault::{Cause, Causes};
 use crate::input::InputConfig;
 use crate::param::{Leaf, Visit};
+use crate::press::{Press, PressConfig, PressState};
 use crate::watch::Loss;
 use core::hint::cold_path;
 
@@ -60,6 +61,8 @@ pub struct PermitConfig {
     pub ramp_in_ticks: u16,
     /// From full to no authority when the switch is released, or in a pause \[control periods\].
     pub ramp_out_ticks: u16,
+    /// Which press of the rider's switch is deliberate.
+    pub press: PressConfig,
     /// Refuse to engage until a polarity check was passed.
     pub need_polarity: bool,
     /// Roll angle, either way, beyond which the bicycle has fallen, as far as the angle is sure \[rad\].
@@ -85,6 +88,7 @@ impl PermitConfig {
         to.count(&Leaf::new(g, "self_test_ticks", 0.0, 10_000.0), &mut self.self_test_ticks);
         to.count(&Leaf::new(g, "ramp_in_ticks", 0.0, 20_000.0), &mut self.ramp_in_ticks);
         to.count(&Leaf::new(g, "ramp_out_ticks", 0.0, 20_000.0), &mut self.ramp_out_ticks);
+        self.press.leaves(g, to);
         to.switch(&Leaf::switch(g, "need_polarity"), &mut self.need_polarity);
         to.limit(&Leaf::new(g, "fallen_rad", 0.3, 3.2), &mut self.fallen_rad);
         to.limit(&Leaf::new(g, "roll_unknown_rad", 0.05, 3.2), &mut self.roll_unknown_rad);
@@ -186,8 +190,7 @@ pub struct PermitState {
     mode: Mode,
     /// Control periods in this mode.
     ticks: u16,
-    /// Whether the switch was off in the period before: only then a press is a fresh one.
-    released: bool,
+    switch: PressState,
     authority: f32,
     /// Causes since the fault began.
     latched: Causes,
@@ -263,9 +266,13 @@ pub fn step(
     state: &mut PermitState,
     asked: &Asked,
 ) -> Permission {
-    let causes = state.causes(config, plan, asked).with(state.lasting);
+    let press = state.switch.step(&config.press, asked.engage);
+    let causes = state.causes(config, plan, asked, press).with(state.lasting);
     state.lasting = if state.mode.drives() { causes.and(reactions.lasting) } else { Causes::NONE };
-    let mode = state.next(config, reactions, asked, causes);
+    let mode = state.next(config, reactions, press, causes);
+    if press.is_closed() && (mode != Mode::Standby || causes.any(reactions.refusals())) {
+        state.switch.spend();
+    }
     if mode != state.mode {
         (state.mode, state.ticks) = (mode, 0);
     } else {
@@ -290,7 +297,7 @@ impl PermitState {
     }
 
     /// Everything that stands in the way now.
-    fn causes(&mut self, config: &PermitConfig, plan: &PermitPlan, asked: &Asked) -> Causes {
+    fn causes(&mut self, config: &PermitConfig, plan: &PermitPlan, asked: &Asked, press: Press) -> Causes {
         let mut now = Causes::NONE;
         let mut told = Causes::NONE;
         if let Some((roll, error)) = asked.roll_rad {
@@ -310,7 +317,7 @@ impl PermitState {
         let mut causes = asked.causes.with(told).with(self.position.step(now, config.persist_ticks));
         causes.note(Cause::PolarityUnchecked, config.need_polarity && !asked.polarity_checked);
         causes.note(Cause::SwitchOff, !asked.engage);
-        causes.note(Cause::SwitchHeld, asked.engage && !self.released && !self.mode.drives());
+        causes.note(Cause::SwitchHeld, matches!(press, Press::Held | Press::Opened) && !self.mode.drives());
         let testing = matches!(self.mode, Mode::Off | Mode::Initialise | Mode::SelfTest);
         causes.note(Cause::SelfTest, testing);
         causes
@@ -331,9 +338,7 @@ impl PermitState {
     }
 
     /// The mode that follows.
-    fn next(&mut self, config: &PermitConfig, reactions: &Reactions, asked: &Asked, causes: Causes) -> Mode {
-        let pressed = asked.engage && self.released;
-        self.released = !asked.engage;
+    fn next(&mut self, config: &PermitConfig, reactions: &Reactions, press: Press, causes: Causes) -> Mode {
         // At boot sensors are expected to be missing; that is no fault yet.
         let broken = causes.and(reactions.fault);
         let started = !matches!(self.mode, Mode::Off | Mode::Initialise);
@@ -345,10 +350,12 @@ impl PermitState {
             Mode::Off => Mode::Initialise,
             Mode::Initialise if broken.is_empty() => Mode::SelfTest,
             Mode::SelfTest if self.ticks >= config.self_test_ticks => Mode::Standby,
-            Mode::Standby if pressed && !causes.any(reactions.refusals()) => engaged(reactions, causes),
+            Mode::Standby if press == Press::Pressed && !causes.any(reactions.refusals()) => {
+                engaged(reactions, causes)
+            }
             Mode::Engaged | Mode::Limp if causes.any(reactions.disengage) => Mode::Standby,
             Mode::Engaged | Mode::Limp => engaged(reactions, causes),
-            Mode::Fault if self.released => Mode::Initialise,
+            Mode::Fault if press == Press::Released => Mode::Initialise,
             same => same,
         }
     }

@@ -13,7 +13,7 @@ pub const FRAME_BYTES: usize = 81;
 /// Bytes of a [`Command`]: torque and gain as f32, limits, mode, causes.
 pub const COMMAND_BYTES: usize = 19;
 /// Bytes of a [`Config`]: the law with room for a whole table, then every leaf in its order.
-pub const CONFIG_BYTES: usize = 998;
+pub const CONFIG_BYTES: usize = 1002;
 
 /// A sensor frame as bytes.
 pub fn encode_frame(frame: &SensorFrame) -> [u8; FRAME_BYTES] {

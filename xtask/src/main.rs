@@ -71,7 +71,7 @@ name is printed. `cargo xtask virtual-board -- --help` lists its own options.
   --build  only builds; `sim-host monitor --virtual-board` then finds it
   --test   runs its tests instead
 
-Try: cargo xtask virtual-board --seconds 3, or with --align --switch --seconds 5
+Try: cargo xtask virtual-board --seconds 3, or with --align --switch --seconds 7
 ";
 
 const FLASH_HELP: &str = "\

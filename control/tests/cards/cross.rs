@@ -28,7 +28,7 @@ fn plan() -> Plan {
 fn told(speed_m_s: f32, swing_rad: f32, wrong: Wrong, cause: Cause) -> Option<f32> {
     let (plan, mut state) = (plan(), State::default());
     let cross = plan.config().cross;
-    let mut mode = Mode::Off;
+    let (mut mode, mut press) = (Mode::Off, false);
     for k in 0..12_000_u16 {
         let t = 1e-3 * f32::from(k);
         let Wrong { gyro, steer } = if t < 3.0 { RIGHT } else { wrong };
@@ -43,9 +43,10 @@ fn told(speed_m_s: f32, swing_rad: f32, wrong: Wrong, cause: Cause) -> Option<f3
         frame.accel_m_s2 = Triple::fresh([noise, speed_m_s * yaw + noise, -9.81 - noise]);
         frame.steer_rad = Sample::fresh(steer * angle);
         frame.rear_wheel_m_s = Sample::fresh(speed_m_s);
-        frame.engage = mode.drives() || (mode == Mode::Standby && k % 2 == 1);
+        frame.engage = press;
         let command = step(&plan, &mut state, &frame);
         mode = command.mode;
+        press = mode.drives() || plan.ready(&command);
         if command.causes.has(cause) && t > 1.0 {
             return Some(t);
         }

@@ -8,6 +8,7 @@ mod limits;
 mod maths;
 mod permit;
 mod polarity;
+mod press;
 mod properties;
 mod pulses;
 mod shape;

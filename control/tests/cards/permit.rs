@@ -2,12 +2,14 @@
 
 use control::estimate::RollError;
 use control::permit::{Asked, Permission, PermitPlan, PermitState, Reactions, step};
+use control::press::PressConfig;
 use control::{Cause, Causes, Config, Mode, PermitConfig};
 
 const CONFIG: PermitConfig = PermitConfig {
     self_test_ticks: 10,
     ramp_in_ticks: 20,
     ramp_out_ticks: 5,
+    press: PressConfig { release_ticks: 0, press_ticks: 0 },
     need_polarity: true,
     fallen_rad: Some(1.0),
     roll_unknown_rad: Some(0.5),

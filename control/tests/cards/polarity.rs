@@ -1,6 +1,7 @@
 //! Flight cards: the polarity check, and what it lets through.
 
 use control::polarity::Move;
+use control::press::PressConfig;
 use control::{
     Cause, Causes, Command, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State, Triple, step,
 };
@@ -121,12 +122,14 @@ fn only_who_passed_engages() {
     }
 }
 
-/// Situation: from boot through the moves to a ride, the switch off. Action: press it in any period.
-/// Must hold: it engages where the controller said that it was ready, and nowhere else but where a cause comes or goes
+/// Situation: from boot through the moves to a ride, the switch off, each press counting in its first period. Action:
+/// press it in any period. Must hold: it engages where the controller said that it was ready, and nowhere else but where a cause comes or goes
 /// in that very period; not before the push, and throughout the ride once it counts as one.
 #[test]
 fn ready_says_when_a_press_engages() {
-    let plan = flashed();
+    let mut config = Config::product();
+    config.permit.press = PressConfig::default();
+    let plan = config.plan().expect("in range");
     let on = [Hands { speed_m_s: 2.0, ..Hands::default() }; 1000];
     let ride: Vec<SensorFrame> =
         frames(&moves(0.5), false, |_| ()).into_iter().chain(frames(&on, false, |_| ())).collect();

@@ -1,6 +1,6 @@
 //! Flight cards: yaw, roll and wheels against steering, on a bicycle that moves as its equations say.
 
-use control::{Cause, Config, Mode, Plan, Sample, SensorFrame, State, Triple, Wheel, step};
+use control::{Cause, Config, Plan, Sample, SensorFrame, State, Triple, Wheel, step};
 use core::f32::consts::TAU;
 
 /// The product with gyro, steer angle and rear wheel only.
@@ -41,7 +41,7 @@ fn told(ride: &Ride, cause: Cause) -> Option<(f32, f32)> {
     let config = plan.config();
     let (cross, mass) = (config.cross, config.estimate.balance);
     let omega = TAU / 1.2;
-    let (mut mode, mut when) = (Mode::Off, None);
+    let (mut press, mut when) = (false, None);
     for k in 0..RIDE_MS {
         let t = 1e-3 * f32::from(k);
         let (sin, cos) = (omega * t).sin_cos();
@@ -57,9 +57,9 @@ fn told(ride: &Ride, cause: Cause) -> Option<(f32, f32)> {
         frame.gyro_rad_s = Triple::fresh([x * roll_rate + noise, -noise, z * yaw_most * sin + noise]);
         frame.steer_rad = Sample::fresh(steer * ride.swing_rad * sin);
         frame.rear_wheel_m_s = Sample::fresh((ride.wheel)(t, ride.speed_m_s));
-        frame.engage = mode.drives() || (mode == Mode::Standby && k % 2 == 1);
+        frame.engage = press;
         let command = step(&plan, &mut state, &frame);
-        mode = command.mode;
+        press = command.mode.drives() || plan.ready(&command);
         if command.causes.has(cause) && t > 1.0 {
             let (from, _) = when.unwrap_or((t, t));
             when = Some((from, t));

@@ -1,12 +1,14 @@
 //! The image that finds the offset of the motor's encoder, once for each motor, encoder and wiring, and stores it in flash.
 //! It also sets the chip's brown-out reset, once for each board.
 //!
-//! While the rider's switch is held, the motor moves the handlebar by less than a degree there and back, for 3.5 s; then
-//! the bridge opens and the offset is stored. Held anew, the switch does it again. Released, it opens the bridge at once.
+//! While the rider's switch is held after a deliberate press ([`control::press`]: open for a second before), the motor
+//! moves the handlebar by less than a degree there and back, for 3.5 s; then the bridge opens and the offset is stored.
+//! Pressed anew, the switch does it again. Released, it opens the bridge at once.
 //! Nothing else makes torque in this image.
 #![no_std]
 #![no_main]
 
+use control::press::{Press, PressConfig, PressState};
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
@@ -49,21 +51,23 @@ fn main() -> ! {
     )
 }
 
-/// Asks for one alignment each time the switch is held, in place of control.
+/// Asks for one alignment after each deliberate press of the switch, while it stays held, in place of control.
 #[embassy_executor::task]
 async fn hold() {
     let mut release = Instant::from_millis(Instant::now().as_millis());
-    let mut found = false;
+    let mut switch = PressState::default();
+    let (mut aligning, mut found) = (false, false);
     loop {
         release += Duration::from_millis(1);
         Timer::at(release).await;
-        let held = board::sense().engage;
+        let press = switch.step(&PressConfig::product(), board::sense().engage);
+        aligning = press == Press::Pressed || (aligning && press.is_closed());
         let report = board::motor_report();
         if let (true, false, Some(offset_turns)) = (report.aligned, found, report.offset_turns) {
             FOUND.signal(offset_turns);
         }
-        found = held && (found || report.aligned);
-        board::order(if held && !found { Ask::Align } else { Ask::Off });
+        found = aligning && (found || report.aligned);
+        board::order(if aligning && !found { Ask::Align } else { Ask::Off });
         PERIODS.store(PERIODS.load(Relaxed).wrapping_add(1), Relaxed);
     }
 }

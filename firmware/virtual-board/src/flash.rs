@@ -41,7 +41,7 @@ impl Pace {
         const LARGE: [[u64; 2]; 3] = [[2000, 4000], [1300, 2600], [1000, 2000]];
         let times = match bytes >> 10 {
             ..=16 => SMALL,
-            ..=64 => MIDDLE,
+            17..=64 => MIDDLE,
             _ => LARGE,
         };
         let [typical, longest] = times[psize.min(2) as usize];

@@ -15,6 +15,9 @@ use virtual_board::{Bench, Error, Options};
 /// How much simulated time goes by between two looks at the serial line \[ms\].
 const LOOK_MS: f64 = 2.0;
 
+/// When the rider presses the switch \[ms after power-on\]: released for long enough by then.
+const SWITCH_MS: f64 = 2000.0;
+
 /// A VESC 6 with the flashed image, executed at register level: its log here, its serial line at a pseudo terminal.
 #[derive(Parser)]
 #[command(
@@ -22,7 +25,7 @@ const LOOK_MS: f64 = 2.0;
     after_help = "\
 Examples:
   virtual-board                                   # the product image, until Ctrl-C
-  virtual-board --align --switch --seconds 5      # align the encoder of the virtual motor
+  virtual-board --align --switch --seconds 7      # align the encoder of the virtual motor
   virtual-board --store board.flash --seconds 3   # parameters kept from one run to the next
   sim-host monitor --port /dev/pts/5              # in another terminal, with the device that was printed
 
@@ -39,7 +42,7 @@ struct Arguments {
     /// Simulated time to run [s]; without it until Ctrl-C
     #[arg(long, value_name = "TIME", value_parser = positive)]
     seconds: Option<f64>,
-    /// The rider's switch is held
+    /// The rider's switch is pressed 2 s after power-on, and held
     #[arg(long)]
     switch: bool,
     /// File with the flash of the parameters: read at the start where there is one, written at the end
@@ -131,7 +134,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed)).map_err(Failure::Interrupt)?;
     let store = arguments.store.as_deref().map(kept).transpose()?.flatten();
     let mut wiring = Wiring::new();
-    wiring.analog.switch_closed = arguments.switch;
     wiring.can.network.node = arguments.can;
     let options = Options { cycles_per_instruction: arguments.cycles_per_instruction, ..Options::default() };
     let image = arguments.image.clone().unwrap_or_else(|| built(arguments.align));
@@ -150,6 +152,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     while result.is_ok() && bench.now_ms() < end_ms && !stop.load(Ordering::Relaxed) {
         let Some(bytes) = line.read() else { break };
         bench.send(&bytes);
+        let pressed = arguments.switch && bench.now_ms() >= SWITCH_MS;
+        bench.with(move |board| board.chip.wiring.analog.switch_closed = pressed);
         result = bench.run_ms(LOOK_MS.min(end_ms - bench.now_ms()));
         line.write(&bench.received());
         for entry in &bench.log()[shown..] {

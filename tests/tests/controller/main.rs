@@ -8,6 +8,7 @@ mod gentle;
 mod laws;
 mod leaves;
 mod limp;
+mod loose_switch;
 mod predict;
 mod response;
 mod track;

@@ -1,6 +1,7 @@
 //! The product image lives: it starts, keeps its deadlines and leaves the core time to spare.
 
 use crate::bed::{built, newest, product};
+use crate::rig::press;
 use std::path::Path;
 use virtual_board::wiring::Wiring;
 use virtual_board::{Bench, Options};
@@ -44,10 +45,11 @@ fn the_product_image_starts_and_lives() {
 /// What the core's time goes to, as the page has it: the motor's interrupt, mean and longest \[us\], control's longest
 /// step from its release \[us\], idle \[%\].
 fn load(name: &str, cycles_per_instruction: f64) -> Option<[f64; 4]> {
-    let mut wiring = Wiring::new();
-    // The image that aligns closes the bridge for it.
-    wiring.analog.switch_closed = name.ends_with("align");
-    let mut bench = board(&built(name)?, cycles_per_instruction, wiring);
+    let mut bench = board(&built(name)?, cycles_per_instruction, Wiring::new());
+    if name.ends_with("align") {
+        // It closes the bridge for the press.
+        press(&mut bench);
+    }
     bench.run_ms(400.0).expect("no gap");
     bench.with(|board| board.chip.wiring.calls = Default::default());
     let (from_ms, busy_from_ms) = (bench.now_ms(), bench.busy_ms());

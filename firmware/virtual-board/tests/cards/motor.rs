@@ -1,7 +1,7 @@
 //! Faults around the motor, tried with the bridge closed by the alignment.
 
 use crate::measured::holds;
-use crate::rig::{ALIGN, closed, hear, is_closed, opens_us, powered, with_switch};
+use crate::rig::{ALIGN, closed, hear, is_closed, opens_us, powered, press};
 use virtual_board::Bench;
 use virtual_board::wiring::Wiring;
 
@@ -63,7 +63,7 @@ fn a_shunt_that_drifts_opens_the_bridge() {
 /// Situation: power-on with an amplifier that is off by 6.4 A. Must hold: the bridge never closes; fault 4.
 #[test]
 fn an_amplifier_that_is_far_off_keeps_the_bridge_open() {
-    let mut wiring = with_switch(Wiring::new());
+    let mut wiring = Wiring::new();
     wiring.analog.current_zero_counts[0] = 80.0;
     let mut bench = powered(ALIGN, wiring);
     hear(&mut bench, 600.0, "motor fault 4");
@@ -89,14 +89,14 @@ fn an_encoder_may_stumble_and_must_not_fall_silent() {
     opens_with(&mut bench, "the encoder's plug pulled", 15, 430.0, 600.0);
 }
 
-/// Situation: power-on with a wiring that is wrong, the switch held. Must hold: the alignment ends with a fault of this
+/// Situation: a wiring that is wrong, the switch pressed after the start. Must hold: the alignment ends with a fault of this
 /// number between these times after the bridge closed, and no phase carried more than this current \[A\].
 fn ends_alignment(wire: impl FnOnce(&mut Wiring), number: u32, ms: std::ops::Range<f64>, most_a: f64) {
-    let mut wiring = with_switch(Wiring::new());
+    let mut wiring = Wiring::new();
     wire(&mut wiring);
     let mut bench = powered(ALIGN, wiring);
-    // The start takes 0.3 s, and the first one sets the brown-out reset.
-    hear(&mut bench, 700.0 + ms.end, &format!("motor fault {number}"));
+    press(&mut bench);
+    hear(&mut bench, 300.0 + ms.end, &format!("motor fault {number}"));
     let (changes, largest_a) = bench.with(|board| {
         let wiring = &board.chip.wiring;
         (wiring.main_output.clone(), wiring.power.largest_phase_a)

@@ -1,6 +1,7 @@
 //! Boards to try things on, and what is asked of them over the serial line.
 
 use crate::bed::{Listener, request as bytes_of};
+use control::press::PressConfig;
 use link::message::Message;
 use std::path::PathBuf;
 use virtual_board::wiring::Wiring;
@@ -9,6 +10,9 @@ use virtual_board::{Bench, Options};
 /// The image that is flashed for the product, and the one that aligns the encoder.
 pub(crate) const PRODUCT: &str = "board-stm32f405";
 pub(crate) const ALIGN: &str = "board-stm32f405-align";
+
+/// From power-on to the first sample of the switch at the latest, with the first start's brown-out reset \[ms\].
+const START_MS: f64 = 400.0;
 
 /// Where `cargo xtask firmware` builds an image.
 pub(crate) fn image(name: &str) -> PathBuf {
@@ -23,15 +27,16 @@ pub(crate) fn powered(name: &str, wiring: Wiring) -> Bench {
 
 /// The board of [`ALIGN`] with the switch held and the bridge just closed.
 pub(crate) fn closed(wiring: Wiring) -> Bench {
-    let mut bench = powered(ALIGN, with_switch(wiring));
+    let mut bench = powered(ALIGN, wiring);
+    press(&mut bench);
     close(&mut bench);
     bench
 }
 
-/// The rider's switch is held.
-pub(crate) fn with_switch(mut wiring: Wiring) -> Wiring {
-    wiring.analog.switch_closed = true;
-    wiring
+/// The rider's switch is closed after the program has seen it open for long enough, and held.
+pub(crate) fn press(bench: &mut Bench) {
+    bench.run_ms(START_MS + f64::from(PressConfig::product().release_ticks)).unwrap();
+    bench.with(|board| board.chip.wiring.analog.switch_closed = true);
 }
 
 /// Waits until the bridge is closed, and 20 ms more.

@@ -1,10 +1,14 @@
 //! What each action of docs/hardware.md is on the virtual board.
 
 use super::table::{Flashed, G_M_S2, Table};
+use control::press::PressConfig;
 use link::Key;
 use link::message::Message;
 use virtual_board::power::Axis;
 use virtual_board::wiring::Wiring;
+
+/// From flashing to the first sample of the switch at the latest \[ms\].
+const START_MS: u32 = 400;
 
 /// What is done; nothing where the page only looks.
 type Hand = Option<fn(&mut Table)>;
@@ -30,7 +34,7 @@ pub(super) const HANDS: &[(&str, Hand)] = &[
     ("Pull the sensor's plug", Some(|table| table.wire(|wiring| wiring.analog.steer_connected = false))),
     ("Push at a walk of 1.5 m/s", Some(|table| table.wheels_m_s = [1.5; 2])),
     ("Stand", Some(|table| table.wheels_m_s = [0.0; 2])),
-    ("Hold the switch", Some(|table| switch(table, true))),
+    ("Hold the switch", Some(press)),
     ("Release it, or cut its wire", Some(|table| switch(table, false))),
     ("Nothing on the port", None),
     ("An adapter on the port", Some(|table| table.wire(|wiring| wiring.can.network.node = true))),
@@ -103,16 +107,21 @@ fn switch(table: &mut Table, closed: bool) {
 
 fn hold_again(table: &mut Table) {
     switch(table, false);
-    wait(table, 30);
+    press(table);
+}
+
+/// Waits until an open switch counts as released, and closes it.
+fn press(table: &mut Table) {
+    wait(table, START_MS + u32::from(PressConfig::product().release_ticks));
     switch(table, true);
 }
 
-/// The alignment with something wrong, the switch held from the start.
+/// The alignment with something wrong.
 fn misaligned(table: &mut Table, wrong: fn(&mut Wiring)) {
     let mut wiring = Wiring::new();
-    wiring.analog.switch_closed = true;
     wrong(&mut wiring);
     table.flash(Flashed::Align, wiring);
+    press(table);
 }
 
 fn set(table: &mut Table, key: &'static str, value: f32) {
@@ -153,7 +162,7 @@ fn engage(table: &mut Table) {
     table.steer(0.0, 0.0);
     wait(table, 300);
     table.wire(|wiring| wiring.power.set_axis(Axis::Free));
-    switch(table, true);
+    press(table);
 }
 
 /// Leans and goes on leaning.
