@@ -3,6 +3,7 @@
 use control::Law;
 use sim_host::basin::{Axis, Search};
 use sim_host::design::{Found, Knots, Plan, Progress, arena, judge, optimise};
+use sim_host::ride::FallCriterion;
 use sim_host::study::trial::Trial;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -28,7 +29,7 @@ fn plan(seed: u64, evaluations: u32) -> Plan {
 
 /// The thesis's bicycle without a rider, sensors in time and late.
 fn trials() -> Vec<Trial> {
-    let all = arena().expect("ships").training;
+    let all = arena(FallCriterion::default()).expect("ships").training;
     all.into_iter().filter(|t| t.rider.is_none()).take(2).collect()
 }
 
