@@ -124,6 +124,23 @@ fn the_law_file_is_a_law_and_a_start() {
     assert!(none.stderr.contains("nothing is written"));
 }
 
+/// Situation: a design whose rides fall at 10 degrees of roll, and one by default.
+/// Action: try one schedule.
+/// Must hold: the same start has less area by the stricter fall, and the document says which it was.
+#[test]
+fn the_fall_of_a_design_is_chosen() {
+    let bench = Bench::new(PROGRAM);
+    let small = "design --judge none --coarse 5.5 --knots 3 --evaluations 1 -q";
+    let (strict, published) = (
+        bench.json(&format!("{small} --fall roll=10deg,flat=none")),
+        bench.json(&format!("{small} --fall published")),
+    );
+    let area = |document: &serde_json::Value| document["start_worst_area"].as_f64().expect("an area");
+    assert!(area(&strict) > 0.0 && area(&strict) < 0.8 * area(&published), "{strict} {published}");
+    assert_eq!(published["fall"]["flat"], serde_json::Value::Null);
+    assert!((strict["fall"]["roll_rad"].as_f64().expect("an angle") - 10f64.to_radians()).abs() < 1e-12);
+}
+
 /// Situation: options that make no sense.
 /// Action: run.
 /// Must hold: refused before any ride, with option, value and range.
@@ -133,6 +150,7 @@ fn nonsense_is_refused() {
     for (options, named) in [
         ("--smoothness 11", ["--smoothness 11", "0 to 10"]),
         ("--coarse 6", ["--coarse 6", "0.01 to 5.5"]),
+        ("--fall roll=91deg", ["--fall", "91"]),
         ("--judge 0", ["--judge 0", "0.01 to 5.5"]),
         ("--start nothing", ["nothing", "no such file"]),
         ("--law-file no/where.toml", ["where.toml", "no folder"]),
