@@ -150,7 +150,6 @@ fn nonsense_is_refused() {
     for (options, named) in [
         ("--smoothness 11", ["--smoothness 11", "0 to 10"]),
         ("--coarse 6", ["--coarse 6", "0.01 to 5.5"]),
-        ("--fall roll=91deg", ["--fall", "91"]),
         ("--judge 0", ["--judge 0", "0.01 to 5.5"]),
         ("--start nothing", ["nothing", "no such file"]),
         ("--law-file no/where.toml", ["where.toml", "no folder"]),
