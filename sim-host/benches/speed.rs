@@ -33,12 +33,12 @@ fn states(b: &Geometry) -> Vec<State<f64>> {
     (0..1000)
         .map(|i| {
             let t = f64::from(i) * 1e-2;
-            let (roll, steer) = (0.5 * (1.7 * t).sin(), 0.7 * (2.3 * t).sin());
+            let (roll, steer) = (0.5 * libm::sin(1.7 * t), 0.7 * libm::sin(2.3 * t));
             State {
                 roll,
                 steer,
-                roll_rate: 2.0 * (3.1 * t).cos(),
-                steer_rate: 4.0 * (0.7 * t).cos(),
+                roll_rate: 2.0 * libm::cos(3.1 * t),
+                steer_rate: 4.0 * libm::cos(0.7 * t),
                 rear_wheel_rate: -10.0 - t,
                 pitch: pitch_from_upright(b, roll, steer).expect("both wheels reach the ground"),
             }

@@ -38,7 +38,7 @@ pub fn on_path(p: &Parameters, v: f64, law_gain: f64) -> (Square, SVector<f64, N
     let linear = Linear::new(p);
     let mut a = Square::zeros();
     a.fixed_view_mut::<4, 4>(0, 0).copy_from(&linear.state_matrix(v, law_gain));
-    let turn = p.lam.cos() / p.w;
+    let turn = libm::cos(p.lam) / p.w;
     a[(4, 1)] = v * turn;
     a[(4, 3)] = p.c * turn;
     a[(5, 4)] = v;

@@ -80,7 +80,7 @@ impl Plane {
 impl PlaneSearch {
     /// The direction of ray `i`: steer rate, roll rate at its end \[rad/s\].
     fn direction(&self, i: usize) -> (f64, f64) {
-        let (sin, cos) = (PI * i as f64 / self.rays as f64).sin_cos();
+        let (sin, cos) = libm::sincos(PI * i as f64 / self.rays as f64);
         (self.max_steer_rate * cos, self.max_roll_rate * sin)
     }
 

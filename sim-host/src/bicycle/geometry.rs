@@ -3,6 +3,7 @@
 #![allow(non_snake_case, reason = "the symbols of the paper")]
 
 use super::Parameters;
+use crate::num::sin_cos;
 
 /// A frame with its wheel: one rigid body, plus the wheel's spin about its axle.
 ///
@@ -59,7 +60,7 @@ pub struct Geometry {
 impl Geometry {
     /// The constants of a bicycle.
     pub fn new(p: &Parameters) -> Self {
-        let (s, c) = p.lam.sin_cos();
+        let (s, c) = sin_cos(p.lam);
         // Components along u1 and u3 of a vector (x, z) in the upright bicycle's plane.
         let along = |x: f64, z: f64| [x * c - z * s, x * s + z * c];
         let P = [0.0, -p.rR];

@@ -2,6 +2,7 @@
 #![allow(non_snake_case, reason = "the symbols of the paper")]
 
 use super::Parameters;
+use crate::num::sin_cos;
 use nalgebra::{Matrix2, Matrix4, Vector2};
 
 /// `M q'' + v C1 q' + (g K0 + v^2 K2) q = T` with `q = [roll, steer]`, `T = [roll, steer torque]`.
@@ -22,7 +23,7 @@ pub struct Linear {
 impl Linear {
     /// The canonical matrices of a bicycle.
     pub fn new(p: &Parameters) -> Self {
-        let (sin, cos) = p.lam.sin_cos();
+        let (sin, cos) = sin_cos(p.lam);
         let (IRzz, IFzz) = (p.IRxx, p.IFxx);
         // The whole bicycle (T).
         let mT = p.mR + p.mB + p.mH + p.mF;

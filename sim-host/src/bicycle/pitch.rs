@@ -6,7 +6,7 @@
 //! down). See `docs/bicycle.md`, section 3.
 
 use super::Geometry;
-use crate::num::Scalar;
+use crate::num::{Scalar, sin_cos};
 use std::f64::consts::PI;
 
 /// Newton iterations on the guess that a time step provides: its error is of the order of the step
@@ -69,18 +69,18 @@ pub fn pitch_from_upright(b: &Geometry, roll: f64, steer: f64) -> Option<f64> {
     let mut pitch = 0.0;
     for i in 1..=steps as usize {
         let part = i as f64 / steps;
-        let (r, d) = ((roll * part).sin_cos(), (steer * part).sin_cos());
+        let (r, d) = (sin_cos(roll * part), sin_cos(steer * part));
         for _ in 0..4 {
-            let (depth, slope) = front_contact(b, r, d, (pitch + b.lam).sin_cos());
+            let (depth, slope) = front_contact(b, r, d, sin_cos(pitch + b.lam));
             pitch -= depth / slope;
         }
     }
-    let residual = front_contact(b, roll.sin_cos(), steer.sin_cos(), (pitch + b.lam).sin_cos()).0;
+    let residual = front_contact(b, sin_cos(roll), sin_cos(steer), sin_cos(pitch + b.lam)).0;
     (residual.abs() < 1e-12).then_some(pitch)
 }
 
 /// How far the front wheel's lowest point is below the ground \[m\]; 0 but for rounding when `pitch`
 /// belongs to `roll` and `steer`.
 pub fn front_contact_residual(b: &Geometry, roll: f64, steer: f64, pitch: f64) -> f64 {
-    front_contact(b, roll.sin_cos(), steer.sin_cos(), (pitch + b.lam).sin_cos()).0
+    front_contact(b, sin_cos(roll), sin_cos(steer), sin_cos(pitch + b.lam)).0
 }

@@ -9,7 +9,7 @@ use super::inertia::Inertia;
 use super::pitch::Attitude;
 use super::{Geometry, Motion, Pose, State, Torques, Velocities};
 use crate::integrate::Moves;
-use crate::num::Vec3;
+use crate::num::{Vec3, sin_cos};
 use nalgebra::{SMatrix, SVector};
 
 /// A state with redundant speeds; they fulfil the constraints.
@@ -46,8 +46,8 @@ impl FullState {
     /// The pose, with the pitch as it is.
     pub fn pose(&self, b: &Geometry) -> Pose<f64> {
         let [roll, pitch, steer] = self.angles;
-        let tilt = (pitch + b.lam).sin_cos();
-        Pose::new(b, Attitude { roll: roll.sin_cos(), steer: steer.sin_cos(), tilt, pitch })
+        let tilt = sin_cos(pitch + b.lam);
+        Pose::new(b, Attitude { roll: sin_cos(roll), steer: sin_cos(steer), tilt, pitch })
     }
 
     /// The velocities, dependent ones as they are.

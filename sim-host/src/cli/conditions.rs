@@ -1,17 +1,18 @@
 //! The options that say who rides what under which conditions; `ride` and `basin` share them.
 
+use super::fall_arg::FallArg;
 use super::outputs::complain_once;
 use super::parameter_file::ParameterFile;
 use super::plant_args::{LONGEST_S, PlantArgs, whole_ticks};
 use super::rider_args::{RiderArgs, step};
-use super::{Failure, fall_arg, law, warn};
+use super::{Failure, law, warn};
 use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
 use crate::board::parameter::law_name;
 use crate::leaves;
 use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
-use crate::ride::{Assist, Conditions, FallCriterion, Imu, ScheduleSpeed};
+use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
 use crate::rider::doubts;
 use clap::ValueEnum;
 use control::param::Leaf;
@@ -84,9 +85,8 @@ pub(super) struct ConditionArgs {
     /// Roll rate the gyro reports: of the roll angle, or the frame's about its own axis
     #[arg(long, default_value = "euler")]
     imu: Imu,
-    /// A fall: these angles of roll or steer passed, or laid flat, short of them a time after the flat angle of roll; published has no flat
-    #[arg(long, value_name = "KEY=VALUE,...|published", default_value = "roll=90deg,steer=90deg,flat=80deg,lasting=1s", value_parser = fall_arg::parse, allow_hyphen_values = true)]
-    fall: FallCriterion,
+    #[command(flatten)]
+    fall: FallArg,
     /// How long a ride lasts if it does not fall, in seconds
     #[arg(long, default_value_t = 6.0, value_name = "S", allow_negative_numbers = true)]
     time_limit: f64,
@@ -236,7 +236,7 @@ impl ConditionArgs {
             imu: self.imu,
             sensor_delay_ticks,
             plant,
-            fall: self.fall,
+            fall: self.fall.fall,
             time_limit_s: self.time_limit,
             step_s,
             recovered_below: self.recovered_below,

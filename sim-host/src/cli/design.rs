@@ -1,6 +1,7 @@
 //! `sim-host design`.
 
 use super::basin::ThreadArgs;
+use super::fall_arg::FallArg;
 use super::outputs::{OutputArgs, Results, complain};
 use super::{Ended, Failure, interrupt, law};
 use crate::basin::{Axis, Search};
@@ -39,6 +40,8 @@ pub(super) struct Args {
     /// Area given up for an even schedule, in rad m/s^2 per (N m s/rad)^2
     #[arg(long, default_value_t = 0.0, value_name = "WEIGHT", allow_negative_numbers = true)]
     smoothness: f64,
+    #[command(flatten)]
+    fall: FallArg,
     /// The law to begin with, as of --law elsewhere
     #[arg(long, default_value = "h-cut", value_name = "LAW")]
     start: String,
@@ -111,7 +114,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         evaluations: args.evaluations,
     };
     let fine = search("--judge", args.judge.0.unwrap_or(0.25), 0.25, 0.02)?;
-    let arena = arena()?;
+    let arena = arena(args.fall.fall)?;
     let outputs = args.outputs.open(None)?;
     let law_output = args.law_file.as_deref().map(Output::create).transpose()?;
     if let Some(output) = &law_output {
@@ -161,7 +164,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     let document = DesignDocument::new(&design, begin.elapsed().as_secs_f64());
     let config = json!({"seed": document.seed, "evaluations": document.evaluations, "complete": document.complete,
-        "start": document.start, "schedule": document.schedule, "smoothness": document.smoothness,
+        "start": document.start, "schedule": document.schedule, "smoothness": document.smoothness, "fall": document.fall,
         "coarse": document.coarse, "fine": document.fine});
     outputs.write(Results {
         document: &document,

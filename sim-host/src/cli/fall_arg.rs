@@ -4,11 +4,19 @@ use super::plant_args::pairs;
 use crate::range::time;
 use crate::ride::FallCriterion;
 
+/// The option of every command that rides.
+#[derive(clap::Args)]
+pub(super) struct FallArg {
+    /// A fall: these angles of roll or steer passed, or laid flat, short of them a time after the flat angle of roll; published has no flat
+    #[arg(long, value_name = "KEY=VALUE,...|published", default_value = "roll=90deg,steer=90deg,flat=80deg,lasting=1s", value_parser = parse, allow_hyphen_values = true)]
+    pub(super) fall: FallCriterion,
+}
+
 /// The criterion of `published`, or `KEY=VALUE,...`: what is left out is as by default.
 ///
 /// # Errors
 /// Names key, value and range.
-pub(super) fn parse(text: &str) -> Result<FallCriterion, String> {
+fn parse(text: &str) -> Result<FallCriterion, String> {
     let mut fall = FallCriterion::default();
     if text == "published" {
         return Ok(FallCriterion::PUBLISHED);

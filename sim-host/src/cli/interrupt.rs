@@ -1,4 +1,4 @@
-//! Ctrl-C: the first asks the work to stop and keep what is done, the second ends the program.
+//! Ctrl-C or SIGTERM: the first asks the work to stop and keep what is done, the second ends the program.
 
 use super::outputs::complain;
 use std::sync::OnceLock;
@@ -7,25 +7,36 @@ use std::sync::atomic::{AtomicBool, Ordering};
 static STOP: AtomicBool = AtomicBool::new(false);
 static INSTALLED: OnceLock<()> = OnceLock::new();
 
-/// Installs the handler once, for work in columns.
+/// Installs the handlers once, for work in columns.
 pub(super) fn install() {
     install_saying("finishing the columns under way");
 }
 
-/// Installs the handler once; `what` is done after the first Ctrl-C.
+/// Installs the handlers once; `what` is done after the first Ctrl-C or SIGTERM.
 pub(super) fn install_saying(what: &'static str) {
     INSTALLED.get_or_init(|| {
-        // Without a handler Ctrl-C ends the program at once, which loses work but harms nothing.
-        let _ = ctrlc::set_handler(move || {
-            if STOP.swap(true, Ordering::SeqCst) {
-                std::process::exit(130);
-            }
-            complain(&format!("\ninterrupted: {what} (again to quit at once)"));
-        });
+        // Without a handler the signal ends the program at once, which loses work but harms nothing.
+        let _ = ctrlc::set_handler(move || interrupted(what));
+        #[cfg(unix)]
+        let _ = on_termination(what);
     });
 }
 
-/// Whether Ctrl-C was pressed.
+/// `ctrlc` would take SIGHUP with SIGTERM, and a run under `nohup` would end with its terminal.
+#[cfg(unix)]
+fn on_termination(what: &'static str) -> std::io::Result<()> {
+    let mut signals = signal_hook::iterator::Signals::new([signal_hook::consts::SIGTERM])?;
+    std::thread::Builder::new().spawn(move || signals.forever().for_each(|_| interrupted(what))).map(drop)
+}
+
+fn interrupted(what: &str) {
+    if STOP.swap(true, Ordering::SeqCst) {
+        std::process::exit(130);
+    }
+    complain(&format!("\ninterrupted: {what} (again to quit at once)"));
+}
+
+/// Whether Ctrl-C was pressed, or SIGTERM came.
 pub(super) fn stopped() -> bool {
     STOP.load(Ordering::SeqCst)
 }

@@ -30,13 +30,13 @@ pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
     let named = |part: &Part, e: Failure| format!("study {}, sweep {}: {e}", study.name, part.name);
     let sweeps: Vec<Resolved> =
         study.parts.iter().map(|p| resolved(p).map_err(|e| named(p, e))).collect::<Result<_, _>>()?;
+    interrupt::install();
     let folder = |(part, sweep): (&Part, &Resolved)| Folder::open(&args.out.join(&part.name), &sweep.plan);
     let folders: Vec<Folder> = study.parts.iter().zip(&sweeps).map(folder).collect::<Result<_, _>>()?;
     made(args.pages(), "studies")?;
     let figures = made(args.pages(), "img/studies")?;
     let page = page_path(args, &study.name);
     let place = Output::create(&page)?;
-    interrupt::install();
     let pool = args.threads.pool()?;
     let (mut grids, mut afresh, begin) = (Vec::new(), true, Instant::now());
     for (sweep, folder) in sweeps.iter().zip(&folders) {

@@ -93,8 +93,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         return dry_run(&resolved, &mine, &args.out, pool.current_num_threads());
     }
     let json = args.told.json.as_deref().map(Output::create).transpose()?;
-    let folder = Folder::open(&args.out, &resolved.plan)?;
     interrupt::install();
+    let folder = Folder::open(&args.out, &resolved.plan)?;
     let to_do = to_do(&resolved, &mine, &folder);
     let bar = progress(!args.told.quiet, "sweep", to_do.len() * resolved.search.speeds.len(), "columns");
     let steps = Progress { advanced: &|| bar.inc(1), stop: &interrupt::stopped };

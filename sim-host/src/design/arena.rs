@@ -1,5 +1,6 @@
 //! What laws are designed for, and what they are then tried on besides.
 
+use crate::ride::FallCriterion;
 use crate::study::trial::Trial;
 use control::Config;
 
@@ -28,9 +29,11 @@ const LATE_MS: u16 = 20;
 ///
 /// # Errors
 /// When a bicycle or a rider does not ship.
-pub fn arena() -> Result<Arena, String> {
+pub fn arena(fall: FallCriterion) -> Result<Arena, String> {
     let limits = Config::product().limits;
-    let on = |bicycle, rider, delay_s, late| Trial::new(bicycle, rider, delay_s, late, limits);
+    let on = |bicycle, rider, delay_s, late| {
+        Trial::new(bicycle, rider, delay_s, late, limits).map(|trial| Trial { fall, ..trial })
+    };
     let mut training = Vec::new();
     for rider in [None, Some("young"), Some("smart")] {
         for late in [0, 20, 50] {

@@ -3,7 +3,7 @@
 use super::eigenvalues;
 use crate::bicycle::linear::Linear;
 use control::Law;
-use nalgebra::Complex;
+use nalgebra::{Complex, ComplexField};
 
 /// Speeds above this are not searched for critical speeds \[m/s\].
 pub const SEARCH_TO_M_S: f64 = 20.0;
@@ -62,7 +62,7 @@ pub(super) fn grows(growth: f64, values: &[Complex<f64>]) -> Option<bool> {
 
 /// The largest magnitude.
 fn largest(values: &[Complex<f64>]) -> f64 {
-    values.iter().map(|e| e.norm()).fold(0.0, f64::max)
+    values.iter().map(|e| e.modulus()).fold(0.0, f64::max)
 }
 
 /// The largest real part of complex values; minus infinity if all are real.

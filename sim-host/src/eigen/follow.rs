@@ -1,6 +1,6 @@
 //! Following roots by continuity along a parameter.
 
-use nalgebra::Complex;
+use nalgebra::{Complex, ComplexField};
 
 type C = Complex<f64>;
 
@@ -54,7 +54,7 @@ impl Followed {
             let next = if rest.abs() <= self.step { to } else { self.at + self.step.copysign(rest) };
             let found = find(next);
             let edge = if found.all { None } else { found.roots.last() };
-            let edge = edge.map_or(f64::NEG_INFINITY, |last| last.re - BEYOND * last.norm());
+            let edge = edge.map_or(f64::NEG_INFINITY, |last| last.re - BEYOND * last.modulus());
             let ahead = |(root, slope): (&Option<C>, &C)| {
                 root.map(|r| r + slope * (next - self.at)).filter(|expected| expected.re >= edge)
             };
@@ -89,7 +89,7 @@ fn plain(expected: &[Option<C>], found: &[C]) -> Option<Vec<Option<C>>> {
         let mut nearest = (0, f64::INFINITY);
         let mut second = f64::INFINITY;
         for (i, root) in found.iter().enumerate() {
-            let distance = (root - expected).norm();
+            let distance = (root - expected).modulus();
             if distance < nearest.1 {
                 (nearest, second) = ((i, distance), nearest.1);
             } else {
@@ -112,7 +112,7 @@ fn closest(now: &[Option<C>], found: &[C]) -> Vec<Option<C>> {
     for (i, root) in now.iter().enumerate() {
         distances.extend(
             root.iter()
-                .flat_map(|r| found.iter().map(move |f| (f - r).norm()))
+                .flat_map(|r| found.iter().map(move |f| (f - r).modulus()))
                 .zip(0..)
                 .map(|(distance, j)| (distance, i, j)),
         );
@@ -130,7 +130,8 @@ fn closest(now: &[Option<C>], found: &[C]) -> Vec<Option<C>> {
             let (Some(a), Some(b), Some(x), Some(y)) = (now[i], now[j], matched[i], matched[j]) else {
                 continue;
             };
-            let (straight, crossed) = ((a - x).norm() + (b - y).norm(), (a - y).norm() + (b - x).norm());
+            let (straight, crossed) =
+                ((a - x).modulus() + (b - y).modulus(), (a - y).modulus() + (b - x).modulus());
             if crossed < 1.5 * straight && before(&a, &b) != before(&x, &y) {
                 matched.swap(i, j);
             }
@@ -149,7 +150,7 @@ mod tests {
 
     /// The roots of `s^2 - 2 m s + p`.
     fn quadratic(m: f64, p: f64) -> [C; 2] {
-        let d = C::new(m * m - p, 0.0).sqrt();
+        let d = ComplexField::sqrt(C::new(m * m - p, 0.0));
         [C::new(m, 0.0) + d, C::new(m, 0.0) - d]
     }
 

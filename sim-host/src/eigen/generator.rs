@@ -25,7 +25,7 @@ pub(super) fn generator(system: &DelaySystem, nodes: usize) -> DMatrix<f64> {
 /// Differentiation of values at `cos(j pi / n)`, j = 0 to `n` (Trefethen 2000, Spectral Methods in
 /// MATLAB, chapter 6).
 fn differentiation(n: usize) -> DMatrix<f64> {
-    let x: Vec<f64> = (0..=n).map(|j| (std::f64::consts::PI * j as f64 / n as f64).cos()).collect();
+    let x: Vec<f64> = (0..=n).map(|j| libm::cos(std::f64::consts::PI * j as f64 / n as f64)).collect();
     let weight = |j: usize| {
         let end = if j == 0 || j == n { 2.0 } else { 1.0 };
         if j.is_multiple_of(2) { end } else { -end }
@@ -59,7 +59,8 @@ mod tests {
     #[test]
     fn polynomials_are_differentiated_exactly() {
         let n = 9;
-        let x = nalgebra::DVector::from_fn(n + 1, |j, _| (std::f64::consts::PI * j as f64 / n as f64).cos());
+        let x =
+            nalgebra::DVector::from_fn(n + 1, |j, _| libm::cos(std::f64::consts::PI * j as f64 / n as f64));
         let derivative = differentiation(n) * x.map(|x| x.powi(7));
         let off = (derivative - x.map(|x| 7.0 * x.powi(6))).amax();
         assert!(off < 1e-12, "{off:e}");

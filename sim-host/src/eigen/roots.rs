@@ -4,7 +4,7 @@
 use super::generator::{eigenvalues, generator};
 use super::sort;
 use super::system::DelaySystem;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, ComplexField, DMatrix};
 
 type C = Complex<f64>;
 
@@ -35,7 +35,7 @@ pub fn roots(system: &DelaySystem, count: usize) -> Vec<C> {
     for nodes in NODES {
         let Some(mut candidates) = eigenvalues(generator(system, nodes)) else { continue };
         // Points resolve what turns by about a radian from one to the next; the rest is spurious.
-        candidates.retain(|s| s.norm() * system.delay_s <= nodes as f64);
+        candidates.retain(|s| s.modulus() * system.delay_s <= nodes as f64);
         let now = exact(system, candidates, count);
         let agree = now.iter().take_while(|s| before.iter().any(|b| same(*b, **s))).count();
         if agree >= settled.len() {
@@ -67,12 +67,12 @@ fn cut(mut sorted: Vec<C>, count: usize) -> Vec<C> {
 }
 
 fn scale(root: C) -> f64 {
-    root.norm().max(1.0)
+    root.modulus().max(1.0)
 }
 
 /// Whether two computed roots are one.
 pub(super) fn same(a: C, b: C) -> bool {
-    (a - b).norm() < SAME * scale(b)
+    (a - b).modulus() < SAME * scale(b)
 }
 
 /// The roots that the rightmost of `candidates` lead to, sorted; a few more than `count` are tried.
@@ -96,16 +96,16 @@ fn exact(system: &DelaySystem, mut candidates: Vec<C>, count: usize) -> Vec<C> {
             if s.im == 0.0 {
                 step.im = 0.0;
             }
-            if !step.norm().is_finite() {
+            if !step.modulus().is_finite() {
                 continue;
             }
             let next = s - step;
             upper[i] = if next.im < 0.0 { next.conj() } else { next };
-            corrections[i] = step.norm() / scale(s);
+            corrections[i] = step.modulus() / scale(s);
         }
     }
     let is_root =
-        |&i: &usize| corrections[i] < CONVERGED && (upper[i] - start[i]).norm() < REACH * scale(start[i]);
+        |&i: &usize| corrections[i] < CONVERGED && (upper[i] - start[i]).modulus() < REACH * scale(start[i]);
     let found = (0..upper.len()).filter(is_root).map(|i| upper[i]);
     let mut all: Vec<C> = found.flat_map(|s| [Some(s), (s.im > 0.0).then(|| s.conj())]).flatten().collect();
     sort(&mut all);
@@ -126,7 +126,7 @@ fn pull(s: C, other: C, itself: bool) -> C {
 /// The determinant of the characteristic matrix over its derivative.
 fn newton_correction(system: &DelaySystem, s: C) -> C {
     let n = system.a.nrows();
-    let late = (-s * system.delay_s).exp() * system.delay_s;
+    let late = ComplexField::exp(-s * system.delay_s) * system.delay_s;
     let derivative = DMatrix::from_fn(n, n, |i, j| {
         let diagonal = if i == j { C::ONE } else { C::ZERO };
         diagonal + late * (system.b[i] * system.k[j])

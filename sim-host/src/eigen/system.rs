@@ -5,7 +5,7 @@ use super::feedback::{Feedback, StaticFeedback};
 use crate::bicycle::{Parameters, linear::Linear};
 use crate::rider::{Gains, Rider};
 use control::Law;
-use nalgebra::{Complex, DMatrix, DVector, RowDVector};
+use nalgebra::{Complex, ComplexField, DMatrix, DVector, RowDVector};
 
 /// `x' = a x + b z(t - delay)`, `z = k x`: in the usual form `A0 = a`, `A1 = b k`. All that is
 /// delayed is one signal.
@@ -24,7 +24,7 @@ pub struct DelaySystem {
 impl DelaySystem {
     /// The characteristic matrix `s I - a - b k exp(-s delay)`, singular at a root `s` \[1/s\].
     pub fn characteristic(&self, s: Complex<f64>) -> DMatrix<Complex<f64>> {
-        let late = (-s * self.delay_s).exp();
+        let late = ComplexField::exp(-s * self.delay_s);
         DMatrix::from_fn(self.a.nrows(), self.a.ncols(), |i, j| {
             let diagonal = if i == j { s } else { Complex::ZERO };
             diagonal - self.a[(i, j)] - late * (self.b[i] * self.k[j])
@@ -71,7 +71,7 @@ impl Model {
         let mut integrals = INTEGRAL_KEYS.map(used);
         // The lateral offset follows from the heading.
         integrals[2] |= integrals[3];
-        let cos = p.lam.cos();
+        let cos = libm::cos(p.lam);
         let path = (p.w, p.c * cos, cos);
         Self { linear: Linear::new(p), path, feedback, actuator: LinearActuator::default(), rider, integrals }
     }

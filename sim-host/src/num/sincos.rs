@@ -82,6 +82,7 @@ mod tests {
     use super::sin_cos;
 
     #[test]
+    #[allow(clippy::disallowed_methods)]
     fn agrees_with_the_standard_library_and_is_exactly_odd() {
         for i in 0..2_000_001 {
             let x = (i - 1_000_000) as f64 * 1.234_567_89e-4;

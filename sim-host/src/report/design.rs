@@ -5,6 +5,7 @@ use super::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use super::resolved::{ResolvedSearch, Tool};
 use crate::basin::Bound;
 use crate::design::{Found, Judged, Plan};
+use crate::ride::FallCriterion;
 use control::Law;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -34,6 +35,8 @@ pub struct DesignDocument {
     pub torque_limit_nm: Option<f32>,
     /// Largest change of torque \[N m/s\].
     pub rate_limit_nm_s: Option<f32>,
+    /// When a ride counts as fallen.
+    pub fall: FallCriterion,
     /// The schedule: speed \[m/s\] and gain \[N m s/rad\].
     pub schedule: Vec<(f32, f32)>,
     /// Its least area over the trials it was designed with, found coarsely \[rad m/s^2\].
@@ -137,6 +140,7 @@ impl DesignDocument {
             smoothness: d.plan.smoothness,
             torque_limit_nm: limits.max_torque_nm,
             rate_limit_nm_s: limits.rise_nm_s,
+            fall: d.arena.training.first().map(|t| t.fall).unwrap_or_default(),
             schedule: points(d.law),
             worst_area: d.found.worst_area,
             worst_area_capped: d.found.worst_capped,

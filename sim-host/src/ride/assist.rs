@@ -31,5 +31,5 @@ pub(super) fn rear_speed<S: Scalar>(b: &Geometry, v: &Velocities<S>) -> S {
 /// Angular velocity of the rear frame about its x axis, horizontal when upright \[rad/s\].
 #[inline(always)]
 pub(super) fn body_roll_rate<S: Scalar>(b: &Geometry, v: &Velocities<S>) -> S {
-    v.omega.x * b.lam.cos() + v.omega.z * b.lam.sin()
+    v.omega.x * libm::cos(b.lam) + v.omega.z * libm::sin(b.lam)
 }

@@ -174,7 +174,7 @@ mod tests {
     use super::*;
     use crate::bicycle::{Motion, State, catalogue};
     use crate::rider::{Gains, Muscles, Schedule};
-    use nalgebra::Complex;
+    use nalgebra::{Complex, ComplexField};
     use std::f64::consts::TAU;
 
     const STEP_S: f64 = 1e-3;
@@ -192,7 +192,7 @@ mod tests {
             humans.turn();
             for (stage, part) in STAGES.into_iter().enumerate() {
                 let phase = omega * (n as f64 + part) * STEP_S;
-                let (sin, cos) = phase.sin_cos();
+                let (sin, cos) = libm::sincos(phase);
                 let same = |x: f64| Lanes([x; 8]);
                 let mut motion = Motion::new(&b, &state);
                 motion.actual.roll = same(ROLL * omega * cos);
@@ -235,14 +235,14 @@ mod tests {
                 let filter = muscles.omega_rad_s.powi(2)
                     / (s * s + s * 2.0 * muscles.zeta * muscles.omega_rad_s + muscles.omega_rad_s.powi(2));
                 let felt = k(0) * ROLL + k(4) * STEER + Complex::from(gains.0[8] * YAW);
-                let wanted = felt * (-s * tau).exp() * filter;
+                let wanted = felt * ComplexField::exp(-s * tau) * filter;
                 let mut got = Complex::new(0.0, 0.0);
                 for (n, torque) in torques.iter().enumerate().skip(3000) {
-                    let turn = Complex::new(0.0, -omega * n as f64 * STEP_S).exp();
+                    let turn = ComplexField::exp(Complex::new(0.0, -omega * n as f64 * STEP_S));
                     // A sine is the imaginary part of the exponential.
                     got += turn * *torque * Complex::new(0.0, 2.0) / 1000.0;
                 }
-                let error = (got - wanted).norm() / wanted.norm();
+                let error = (got - wanted).modulus() / wanted.modulus();
                 assert!((1e-13..5e-7).contains(&error), "{delay} ms, {periods} Hz: {got} {wanted} {error:e}");
             }
         }

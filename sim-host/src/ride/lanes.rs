@@ -77,7 +77,8 @@ impl<const N: usize> Abreast<'_, '_, N> {
                 }
             };
             if let (0, Some(trace)) = (lane, &mut self.trace) {
-                let t = f64::from(ride.step) * self.conditions.step_s;
+                // Whole nanoseconds: the nearest number to 5.999 s, not 5999 times the nearest to 1 ms.
+                let t = (f64::from(ride.step) * self.conditions.step_s * 1e9).round() / 1e9;
                 let pushes = Pushes { assist_nm: self.assist.0[0], rider_nm: self.human.0[0] };
                 trace.push(TracePoint::new(b, t, motion, &told, &answer, pushes));
             }

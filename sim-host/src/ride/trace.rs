@@ -70,7 +70,7 @@ impl TracePoint {
         pushes: Pushes,
     ) -> Self {
         let (pose, actual) = (&motion.pose, &motion.actual);
-        let angle = |(s, c): (Lanes<N>, Lanes<N>)| s.0[0].atan2(c.0[0]);
+        let angle = |(s, c): (Lanes<N>, Lanes<N>)| libm::atan2(s.0[0], c.0[0]);
         Self {
             t,
             roll: angle(pose.attitude.roll),

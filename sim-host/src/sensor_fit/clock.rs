@@ -81,8 +81,8 @@ fn phase(all: &[Recorded], found: &mut Found, period_s: f64) {
             angles.extend(before.filter(|s| *s < 1.5 * period_s).map(|s| TAU * s / period_s));
         }
     }
-    let (sin, cos) = angles.iter().fold((0.0, 0.0), |(s, c), a| (s + a.sin(), c + a.cos()));
-    let turns = (sin.atan2(cos) / TAU).rem_euclid(1.0);
+    let (sin, cos) = angles.iter().fold((0.0, 0.0), |(s, c), a| (s + libm::sin(*a), c + libm::cos(*a)));
+    let turns = (libm::atan2(sin, cos) / TAU).rem_euclid(1.0);
     let phase_s = if turns > 0.999 { 0.0 } else { turns * period_s };
     let apart = |a: &f64| ((a / TAU - turns + 0.5).rem_euclid(1.0) - 0.5).abs() * period_s;
     let mut off: Vec<f64> = angles.iter().map(apart).collect();

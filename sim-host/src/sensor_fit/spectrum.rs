@@ -24,7 +24,7 @@ impl Spectrum {
         let rest: Vec<f64> =
             values.iter().zip(0..).map(|(x, i)| x - mean - slope * (f64::from(i) - middle)).collect();
         let deviation = (rest.iter().map(|x| x * x).sum::<f64>() / n as f64).sqrt();
-        let hann = |i: usize| (PI * (i as f64 + 0.5) / n as f64).sin().powi(2);
+        let hann = |i: usize| libm::sin(PI * (i as f64 + 0.5) / n as f64).powi(2);
         let weight: f64 = (0..n).map(|i| hann(i).powi(2)).sum();
         let transform = RealFftPlanner::<f64>::new().plan_fft_forward(n);
         let mut shaded: Vec<f64> = rest.iter().enumerate().map(|(i, x)| x * hann(i)).collect();
@@ -64,7 +64,7 @@ mod tests {
     #[test]
     fn a_sinusoid_keeps_its_power() {
         let values: Vec<f64> =
-            (0..200).map(|i| 3.0 + 0.1 * f64::from(i) + 2.0 * (0.31 * f64::from(i)).sin()).collect();
+            (0..200).map(|i| 3.0 + 0.1 * f64::from(i) + 2.0 * libm::sin(0.31 * f64::from(i))).collect();
         let spectrum = Spectrum::new(&values, 0.005);
         let hz = 0.31 / (2.0 * PI * 0.005);
         assert!(

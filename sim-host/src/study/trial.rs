@@ -3,7 +3,7 @@
 
 use crate::basin::{Basin, Column, Search, border};
 use crate::bicycle::{Geometry, catalogue};
-use crate::ride::{Assist, Conditions};
+use crate::ride::{Assist, Conditions, FallCriterion};
 use crate::rider::{Fit, Outside, Rider, catalogue as riders};
 use control::{Config, Law, Limits};
 use rayon::prelude::*;
@@ -21,10 +21,12 @@ pub struct Trial {
     pub sensor_delay_ms: u16,
     /// What the motor may be asked for.
     pub limits: Limits,
+    /// When a ride counts as fallen.
+    pub fall: FallCriterion,
 }
 
 impl Trial {
-    /// A trial of a shipped bicycle and rider, by mean gains and the table's own delay, or another \[s\].
+    /// A trial of a shipped bicycle and rider, by mean gains and the table's own delay, or another \[s\]; falls are those by default.
     ///
     /// # Errors
     /// When there is no such bicycle or rider.
@@ -42,7 +44,8 @@ impl Trial {
         let late = delay_s.map_or(String::new(), |s| format!(" with {} ms", (s * 1e6).round() / 1e3));
         let label =
             format!("{bicycle}, {}{late}, sensors {sensor_delay_ms} ms late", rider.unwrap_or("no rider"));
-        Ok(Self { label, bicycle: Geometry::new(&parameters), rider: ridden, sensor_delay_ms, limits })
+        let (bicycle, fall) = (Geometry::new(&parameters), FallCriterion::default());
+        Ok(Self { label, bicycle, rider: ridden, sensor_delay_ms, limits, fall })
     }
 
     /// The conditions of its rides under a law, steered by the flashed code.
@@ -60,6 +63,7 @@ impl Trial {
         let conditions = Conditions {
             rider: self.rider.clone(),
             sensor_delay_ticks: self.sensor_delay_ms,
+            fall: self.fall,
             ..Conditions::thesis(self.bicycle, assist)
         };
         conditions.check().map_err(|e| e.to_string())?;

@@ -152,7 +152,7 @@ fn counted(item: &str, from: f64, to: f64, count: &str) -> Result<Vec<f64>, Stri
     let at = |i: usize| match (i as f64 / (n - 1) as f64, log) {
         _ if i == 0 => from,
         _ if i == n - 1 => to,
-        (part, true) => four_digits(from * (to / from).powf(part)),
+        (part, true) => four_digits(from * libm::pow(to / from, part)),
         (part, false) => billionths(from + part * (to - from)),
     };
     Ok((0..n).map(at).collect())

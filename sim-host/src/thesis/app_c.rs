@@ -10,7 +10,7 @@ use crate::eigen::eigenvalues;
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use crate::ride::{Assist, Conditions, Start, TracePoint, traced};
 use control::Law;
-use nalgebra::Complex;
+use nalgebra::{Complex, ComplexField};
 use rayon::prelude::*;
 
 /// The thesis's disturbance \[rad/s\].
@@ -189,7 +189,7 @@ pub fn pencil_at(study: &Study, speed: f64, disturbance: f64) -> Option<[Complex
 /// The largest distance of `found` from the eigenvalue of [`true_four`] it stands for \[1/s\].
 pub fn pencil_error(study: &Study, speed: f64, found: &[Complex<f64>; 4]) -> f64 {
     let wanted = true_four(study, speed);
-    let nearest = |e: &Complex<f64>| found.iter().map(|f| (f - e).norm()).fold(f64::INFINITY, f64::min);
+    let nearest = |e: &Complex<f64>| found.iter().map(|f| (f - e).modulus()).fold(f64::INFINITY, f64::min);
     wanted.iter().map(nearest).fold(0.0, f64::max)
 }
 

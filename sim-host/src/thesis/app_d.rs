@@ -118,7 +118,7 @@ pub fn figure_d_2(study: &Study) -> Item {
     let Some(benchmark) = benchmark() else { return Item::default() };
     let problems = problems(&benchmark);
     let shortest = if study.quick { 10 } else { 15 };
-    let steps: Vec<f64> = (4..=shortest).map(|k| 10f64.powf(-f64::from(k) / 3.0)).collect();
+    let steps: Vec<f64> = (4..=shortest).map(|k| libm::pow(10.0, -f64::from(k) / 3.0)).collect();
     let run = |problem: &Problem, method: &Tableau| -> Errors {
         let one = |&h: &f64| {
             let n = (problem.seconds / h).ceil() as usize;

@@ -63,7 +63,7 @@ pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
 fn amplitudes(samples: &Samples, omega: f64, beta: f64) -> [f64; 3] {
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for &(t, y) in samples {
-        let ((s, c), decay) = ((omega * t).sin_cos(), (-beta * t).exp());
+        let ((s, c), decay) = (libm::sincos(omega * t), libm::exp(-beta * t));
         let row = Vector3::new(s * decay, c * decay, 1.0);
         normal += row * row.transpose();
         right += row * y;
@@ -73,7 +73,7 @@ fn amplitudes(samples: &Samples, omega: f64, beta: f64) -> [f64; 3] {
 
 /// Eq. C.2, `D exp(-gamma t)`, for capsize.
 pub fn decay(samples: &Samples) -> Fitted {
-    let model = |[d, gamma]: &[f64; 2], t: f64| d * (-gamma * t).exp();
+    let model = |[d, gamma]: &[f64; 2], t: f64| d * libm::exp(-gamma * t);
     let peak = samples.iter().fold(0.0_f64, |m, s| m.max(s.1.abs()));
     let size = squares(samples, |_| 0.0).max(f64::MIN_POSITIVE);
     let found = minimum([peak, 1.0], |p| 1e3 * squares(samples, |t| model(p, t)) / size);
@@ -81,8 +81,8 @@ pub fn decay(samples: &Samples) -> Fitted {
 }
 
 fn damped([a, b, omega, beta, e]: &[f64; 5], t: f64) -> f64 {
-    let (s, c) = (omega * t).sin_cos();
-    (a * s + b * c) * (-beta * t).exp() + e
+    let (s, c) = libm::sincos(omega * t);
+    (a * s + b * c) * libm::exp(-beta * t) + e
 }
 
 fn squares(samples: &Samples, model: impl Fn(f64) -> f64) -> f64 {
@@ -102,7 +102,7 @@ mod tests {
     /// place; within bounds the right one is found.
     #[test]
     fn an_oscillation_is_missed_as_elsewhere_and_found_within_bounds() {
-        let signal = |t: f64| ((1.2 * t).sin() + 0.8 * (1.2 * t).cos()) * (-0.9 * t).exp() + 0.1;
+        let signal = |t: f64| (libm::sin(1.2 * t) + 0.8 * libm::cos(1.2 * t)) * libm::exp(-0.9 * t) + 0.1;
         let samples: Vec<_> = (0..300).map(|i| 0.02 * f64::from(i)).map(|t| (t, signal(t))).collect();
         let fit = oscillation(&samples);
         assert!((fit.imaginary - 0.95970007).abs() < 1e-6 && (fit.real + 1.75235535).abs() < 1e-6, "{fit:?}");

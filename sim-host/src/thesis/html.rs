@@ -127,7 +127,7 @@ fn kind(value: &ValueEntry) -> &'static str {
 
 fn number(x: Option<f64>) -> String {
     let Some(x) = x else { return "–".into() };
-    let size = if x == 0.0 { 0.0 } else { x.abs().log10().floor() };
+    let size = if x == 0.0 { 0.0 } else { libm::log10(x.abs()).floor() };
     let decimals = (3.0 - size).clamp(0.0, 6.0) as usize;
     format!("{x:.decimals$}").replace('-', "−")
 }

@@ -171,7 +171,7 @@ fn starts(samples: &Samples, noise: &[Noise], bounds: &Bounds, beside: Beside) -
     grid.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut chosen: Vec<Shape> = Vec::new();
     for (_, shape) in grid {
-        let apart = |other: &Shape| (other.frequency_rad_s / shape.frequency_rad_s).ln().abs() > 0.1;
+        let apart = |other: &Shape| libm::log(other.frequency_rad_s / shape.frequency_rad_s).abs() > 0.1;
         if chosen.iter().all(apart) {
             chosen.push(shape);
         }
@@ -244,10 +244,9 @@ pub fn fit(samples: &Samples, beside: Beside) -> Result<Fit, String> {
     let linear = 3 + usize::from(beside == Beside::Mode);
     let independent: f64 = noise.iter().map(|n| n.independent(times)).sum();
     let taken = linear * noise.len() + numbers.len();
-    let amplitudes =
-        samples.axes_rad_s.iter().zip(&noise).map(|(rates, noise)| {
-            solve(times, rates, &shape, noise).map(|s| s.weights[0].hypot(s.weights[1]))
-        });
+    let amplitudes = samples.axes_rad_s.iter().zip(&noise).map(|(rates, noise)| {
+        solve(times, rates, &shape, noise).map(|s| libm::hypot(s.weights[0], s.weights[1]))
+    });
     Ok(Fit {
         shape,
         standard_errors: [error(0), error(1)],

@@ -38,7 +38,7 @@ impl Noise {
     }
 
     fn correlation(&self, distance_s: f64) -> f64 {
-        if self.memory_s > 0.0 { (-distance_s / self.memory_s).exp() } else { 0.0 }
+        if self.memory_s > 0.0 { libm::exp(-distance_s / self.memory_s) } else { 0.0 }
     }
 
     /// Makes white noise of deviation 1 of this noise, in every column: the innovations of the Kalman filter that follows the
@@ -60,7 +60,7 @@ impl Noise {
                 columns[(i, j)] = new / scale;
             }
             variance *= 1.0 - gain;
-            logarithms += whole.ln();
+            logarithms += libm::log(whole);
         }
         logarithms
     }
@@ -85,12 +85,12 @@ impl Noise {
             let logarithms = unit.whiten(times, &mut white);
             let r = white.qr().r();
             let left = r[(p, p)].powi(2).max(f64::MIN_POSITIVE);
-            let taken: f64 = (0..p).map(|i| 2.0 * r[(i, i)].abs().max(1e-12).ln()).sum();
+            let taken: f64 = (0..p).map(|i| 2.0 * libm::log(r[(i, i)].abs().max(1e-12))).sum();
             let deviation_rad_s = (left / freedom).sqrt();
-            (freedom * left.ln() + taken + logarithms, Self { deviation_rad_s, ..unit })
+            (freedom * libm::log(left) + taken + logarithms, Self { deviation_rad_s, ..unit })
         };
         let (from, to) = (0.2 * period(times), 0.5 * (times[n - 1] - times[0]));
-        let memories = (0..MEMORIES).map(|i| from * (to / from).powf(i as f64 / (MEMORIES - 1) as f64));
+        let memories = (0..MEMORIES).map(|i| from * libm::pow(to / from, i as f64 / (MEMORIES - 1) as f64));
         let pairs = memories.flat_map(|memory| SHARES.map(|share| judged(memory, share)));
         let best = pairs.min_by(|a, b| a.0.total_cmp(&b.0));
         best.map_or(Self::white(f64::NAN), |(_, noise)| noise)

@@ -3,7 +3,7 @@
 use crate::bicycle::Parameters;
 use crate::eigen::{Feedback, LinearActuator, Model, roots};
 use control::Law;
-use nalgebra::Complex;
+use nalgebra::{Complex, ComplexField};
 
 /// The upper eigenvalue of the weave \[1/s\] of a bicycle under a law that an actuator turns into torque, at each of the
 /// speeds \[m/s\]; `None` where there is no pair. At low speed caster and capsize can be a pair, too: the weave is the one of
@@ -18,7 +18,7 @@ pub fn weave(
     speeds: &[f64],
 ) -> Result<Vec<Option<Complex<f64>>>, String> {
     let model = Model::new(bicycle, Feedback::Law(law.clone()), None).with_actuator(actuator)?;
-    let damping = |root: &Complex<f64>| -root.re / root.norm();
+    let damping = |root: &Complex<f64>| -root.re / root.modulus();
     let least = |v: &f64| {
         let pairs = roots(&model.at(*v), 6).into_iter().filter(|root| root.im > 0.0);
         pairs.min_by(|a, b| damping(a).total_cmp(&damping(b)))

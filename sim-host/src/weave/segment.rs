@@ -127,7 +127,7 @@ fn fit_part(record: &Record, part: Window, beside: Beside) -> Result<Fit, String
 fn without_noise(record: &Record, part: Window, fitted: &Fit) -> Option<Window> {
     let times = &record.times_s[part.from..part.to];
     let above = fitted.amplitude_rad_s.iter().zip(&fitted.noise).map(|(a, n)| a / n.deviation_rad_s);
-    let lasts_s = above.fold(0.0, f64::max).ln() / -fitted.shape.decay_1_s;
+    let lasts_s = libm::log(above.fold(0.0, f64::max)) / -fitted.shape.decay_1_s;
     let keeps = times.partition_point(|t| t - times[0] <= lasts_s);
     let enough = keeps >= FEWEST_SAMPLES && fitted.periods(lasts_s) >= 1.0;
     let shorter = fitted.shape.decay_1_s < 0.0 && 20 * keeps < 19 * times.len();

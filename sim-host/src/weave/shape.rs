@@ -42,12 +42,12 @@ impl Shape {
     pub fn columns(&self, times: &[f64]) -> DMatrix<f64> {
         let mut columns = DMatrix::from_element(times.len(), 3 + usize::from(self.mode_1_s.is_some()), 1.0);
         for (i, t) in times.iter().enumerate() {
-            let envelope = (self.decay_1_s * t).exp();
-            let (sin, cos) = (self.frequency_rad_s * t).sin_cos();
+            let envelope = libm::exp(self.decay_1_s * t);
+            let (sin, cos) = libm::sincos(self.frequency_rad_s * t);
             columns[(i, 0)] = envelope * cos;
             columns[(i, 1)] = envelope * sin;
             if let Some(mode) = self.mode_1_s {
-                columns[(i, 3)] = (mode * t).exp();
+                columns[(i, 3)] = libm::exp(mode * t);
             }
         }
         columns
@@ -57,12 +57,12 @@ impl Shape {
     pub fn tangents(&self, times: &[f64], weights: &DVector<f64>) -> DMatrix<f64> {
         let mut tangents = DMatrix::zeros(times.len(), 2 + usize::from(self.mode_1_s.is_some()));
         for (i, t) in times.iter().enumerate() {
-            let envelope = t * (self.decay_1_s * t).exp();
-            let (sin, cos) = (self.frequency_rad_s * t).sin_cos();
+            let envelope = t * libm::exp(self.decay_1_s * t);
+            let (sin, cos) = libm::sincos(self.frequency_rad_s * t);
             tangents[(i, 0)] = envelope * (weights[0] * cos + weights[1] * sin);
             tangents[(i, 1)] = envelope * (weights[1] * cos - weights[0] * sin);
             if let Some(mode) = self.mode_1_s {
-                tangents[(i, 2)] = t * (mode * t).exp() * weights[3];
+                tangents[(i, 2)] = t * libm::exp(mode * t) * weights[3];
             }
         }
         tangents

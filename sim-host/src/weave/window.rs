@@ -111,7 +111,7 @@ mod tests {
         let t = times(300);
         let rates: Vec<f64> = t
             .iter()
-            .map(|t| if *t < 1.0 { 0.01 } else { (7.0 * (t - 1.0)).sin() * (0.3 * (1.0 - t)).exp() })
+            .map(|t| if *t < 1.0 { 0.01 } else { libm::sin(7.0 * (t - 1.0)) * libm::exp(0.3 * (1.0 - t)) })
             .collect();
         let found = window(&t, &[&rates], (None, None));
         assert!((120..=126).contains(&found.from) && found.begins == Begins::Knock, "{found:?}");

@@ -250,7 +250,7 @@ fn one_parameter_is_changed_by_name() {
     assert_eq!(
         (differing, &after["lam"], &after["c"]),
         (
-            vec!["c", "lam"].iter().map(|k| before.get_key_value(*k).expect("a key").0).collect(),
+            ["c", "lam"].iter().map(|k| before.get_key_value(*k).expect("a key").0).collect(),
             &0.3.into(),
             &0.05.into()
         )

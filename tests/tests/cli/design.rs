@@ -3,6 +3,7 @@
 use control::Law;
 use sim_host::basin::{Axis, Search};
 use sim_host::design::{Found, Knots, Plan, Progress, arena, judge, optimise};
+use sim_host::ride::FallCriterion;
 use sim_host::study::trial::Trial;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -28,7 +29,7 @@ fn plan(seed: u64, evaluations: u32) -> Plan {
 
 /// The thesis's bicycle without a rider, sensors in time and late.
 fn trials() -> Vec<Trial> {
-    let all = arena().expect("ships").training;
+    let all = arena(FallCriterion::default()).expect("ships").training;
     all.into_iter().filter(|t| t.rider.is_none()).take(2).collect()
 }
 
@@ -121,6 +122,23 @@ fn the_law_file_is_a_law_and_a_start() {
     let none = bench.run(&format!("{small} --budget 1ms --law-file b.toml"));
     assert_eq!((none.code, bench.files().len()), (Some(0), 3), "{none:?}");
     assert!(none.stderr.contains("nothing is written"));
+}
+
+/// Situation: a design whose rides fall at 10 degrees of roll, and one by default.
+/// Action: try one schedule.
+/// Must hold: the same start has less area by the stricter fall, and the document says which it was.
+#[test]
+fn the_fall_of_a_design_is_chosen() {
+    let bench = Bench::new(PROGRAM);
+    let small = "design --judge none --coarse 5.5 --knots 3 --evaluations 1 -q";
+    let (strict, published) = (
+        bench.json(&format!("{small} --fall roll=10deg,flat=none")),
+        bench.json(&format!("{small} --fall published")),
+    );
+    let area = |document: &serde_json::Value| document["start_worst_area"].as_f64().expect("an area");
+    assert!(area(&strict) > 0.0 && area(&strict) < 0.8 * area(&published), "{strict} {published}");
+    assert_eq!(published["fall"]["flat"], serde_json::Value::Null);
+    assert!((strict["fall"]["roll_rad"].as_f64().expect("an angle") - 10f64.to_radians()).abs() < 1e-12);
 }
 
 /// Situation: options that make no sense.

@@ -1,4 +1,4 @@
-//! Ctrl-C and readers that go away.
+//! Ctrl-C, SIGTERM and readers that go away.
 #![cfg(target_os = "linux")]
 
 use serde_json::Value;
@@ -21,7 +21,11 @@ fn wait_for_work(child: &Child) {
 }
 
 fn press_ctrl_c(child: &Child) {
-    let kill = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status();
+    send("INT", child);
+}
+
+fn send(signal: &str, child: &Child) {
+    let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status();
     assert!(kill.expect("sh runs").success());
 }
 
@@ -66,6 +70,32 @@ fn an_interrupted_basin_keeps_what_is_done() {
         assert_eq!((capped.is_null(), outcome.as_array().unwrap().is_empty()), (missing, missing));
     }
     assert_eq!(bench.read("out.csv").matches(",border,").count(), done);
+}
+
+/// Situation: a long basin and a sweep of many short cells, some of each done.
+/// Action: SIGTERM, as a cluster sends it at a time limit.
+/// Must hold: exit code 130, not the signal's; what is done is kept: speeds of the basin, cells of the sweep.
+#[test]
+fn a_sigterm_keeps_what_is_done() {
+    let bench = Bench::new(PROGRAM);
+    let units = || std::fs::read_dir(bench.path("s/units")).map_or(0, Iterator::count);
+    let sweep = "sweep --over torque-limit=1:40/400 --law h --speeds 5 --threads 1 --out s";
+    let basin = format!("{MANY} --csv out.csv");
+    for (line, said) in [(&*basin, "speeds are done and kept"), (sweep, "cells are done and kept")] {
+        let child = spawn(&bench, line);
+        wait_for_work(&child);
+        let begin = Instant::now();
+        while line == sweep && units() == 0 {
+            assert!(begin.elapsed() < Duration::from_secs(60), "no cell is done");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        send("TERM", &child);
+        let run = Run::from(child.wait_with_output().unwrap());
+        assert_eq!(run.code, Some(130), "{line}: {run:?}");
+        assert!(run.stderr.contains(said), "{line}: {}", run.stderr);
+    }
+    assert!(bench.read("out.csv").contains(",border,"));
+    assert!((1..400).contains(&units()), "{}", units());
 }
 
 /// Situation: a column that takes minutes, results going to a new and to an older file.

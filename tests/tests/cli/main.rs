@@ -17,6 +17,7 @@ mod outputs;
 mod parsers;
 mod plant;
 mod riders;
+mod same_bytes;
 mod small_words;
 mod study;
 mod sweep;

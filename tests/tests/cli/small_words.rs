@@ -103,3 +103,22 @@ fn missing_eigenvalues_are_told() {
     assert!(run.code == Some(0) && run.stderr.contains("--roots 40: "), "{}", run.stderr);
     assert_eq!(bench.run("eigen --rider smart --roots 8 --speeds 4").stderr, "");
 }
+
+/// Situation: the table of a ride of 6 s.
+/// Action: read its times.
+/// Must hold: each is the number of its milliseconds as one would type it, no multiple of the nearest number to 1 ms.
+#[test]
+fn times_are_whole_milliseconds() {
+    let bench = Bench::new(PROGRAM);
+    let table = bench.run("ride --speed 6 --steer-rate 1 --csv -").stdout;
+    let times: Vec<&str> =
+        table.lines().skip(3).map(|line| line.split(',').next().expect("a cell")).collect();
+    assert_eq!(times.len(), 6000);
+    for (ms, time) in times.iter().enumerate() {
+        let typed = format!("{}.{:03}", ms / 1000, ms % 1000);
+        assert_eq!(
+            time.trim_end_matches('0').trim_end_matches('.'),
+            typed.trim_end_matches('0').trim_end_matches('.')
+        );
+    }
+}

@@ -1,5 +1,6 @@
 //! What the images take of the chip, whether the documented numbers are true, and what no image may contain.
 
+use std::process::Command;
 use xtask::document::{margin_too_small, over_budget, path, stale, text};
 use xtask::instructions::BUDGET;
 use xtask::{image, instructions, size};
@@ -92,4 +93,38 @@ fn no_image_names_a_folder_of_this_machine() {
         }
         assert!(contain(&bytes, "src/"), "{}: no source file's name", image.name);
     }
+}
+
+/// Situation: the board's image as a file with addresses and as a plain binary, as other programmers take them.
+/// Action: make both by objcopy.
+/// Must hold: the first leaves the store of parameters alone, from 0x08004000 to 0x08010000, with bytes below and above;
+/// the second fills it with zeros, which is why the document has the recipe of the first.
+#[test]
+fn a_hex_file_leaves_the_store_alone() {
+    if !image::ready() {
+        return;
+    }
+    image::build("board-stm32f405").expect("the board's image builds");
+    let path = image::path("board-stm32f405");
+    let plain = image::loaded(&path).unwrap();
+    assert!(
+        plain[0x4000..0x1_0000].iter().all(|byte| *byte == 0) && plain[..0x100].iter().any(|byte| *byte != 0)
+    );
+    let hex = path.with_extension("hex");
+    let done = Command::new("arm-none-eabi-objcopy").args(["-O", "ihex"]).arg(&path).arg(&hex).status();
+    assert!(done.expect("objcopy runs").success());
+    let (mut base, mut below, mut above) = (0, 0, 0);
+    for line in std::fs::read_to_string(hex).unwrap().lines() {
+        let number = |from: usize, to: usize| u32::from_str_radix(&line[from..to], 16).expect("hexadecimal");
+        match number(7, 9) {
+            // The upper half of the addresses that follow.
+            4 => base = number(9, 13) << 16,
+            0 if base + number(3, 7) + number(1, 3) <= 0x0800_4000 => below += number(1, 3),
+            0 if base + number(3, 7) >= 0x0801_0000 => above += number(1, 3),
+            0 => panic!("bytes in the store: {line}"),
+            _ => {}
+        }
+    }
+    assert_eq!(below, 0x188, "the vector table");
+    assert!((100_000..900_000).contains(&above), "{above}");
 }

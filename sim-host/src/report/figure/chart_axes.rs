@@ -13,11 +13,11 @@ pub(super) struct Fitted {
 impl Fitted {
     /// The range asked for, or one around `values`, with some `room` or without.
     pub(super) fn new(axis: &Axis, values: impl Iterator<Item = f64>, room: bool) -> Self {
-        let scaled = |v: f64| if axis.log { v.log10() } else { v };
+        let scaled = |v: f64| if axis.log { libm::log10(v) } else { v };
         let range = match axis.range {
             Some((low, high)) => (scaled(low), scaled(high)),
             None if axis.log => {
-                let of_values = values.filter(|v| *v > 0.0).map(f64::log10);
+                let of_values = values.filter(|v| *v > 0.0).map(libm::log10);
                 let ends =
                     of_values.fold((f64::INFINITY, f64::NEG_INFINITY), |r, v| (r.0.min(v), r.1.max(v)));
                 if ends.0 > ends.1 {
@@ -34,7 +34,7 @@ impl Fitted {
 
     /// Where a value lies in the range; none for one that has no place.
     pub(super) fn place(&self, v: f64) -> Option<f64> {
-        let v = if self.log { v.log10() } else { v };
+        let v = if self.log { libm::log10(v) } else { v };
         v.is_finite().then_some(v)
     }
 

@@ -37,7 +37,7 @@ pub(super) fn mark(canvas: &mut Canvas, centres: &[(f64, f64)], marker: Marker, 
         Marker::Ring => {
             for &(x, y) in centres {
                 let on = |i: i32| {
-                    let (s, c) = (TAU * f64::from(i) / 16.0).sin_cos();
+                    let (s, c) = libm::sincos(TAU * f64::from(i) / 16.0);
                     (x + 3.4 * c, y + 3.4 * s)
                 };
                 canvas.line(&(0..=16).map(on).collect::<Vec<_>>(), stroke);

@@ -27,7 +27,7 @@ pub(super) fn dashes(points: &[(f64, f64)], on: f64, off: f64) -> Vec<Vec<(f64, 
     for w in points.windows(2) {
         let ((mut x, mut y), (x1, y1)) = (w[0], w[1]);
         loop {
-            let rest = (x1 - x).hypot(y1 - y);
+            let rest = libm::hypot(x1 - x, y1 - y);
             if rest <= left {
                 left -= rest;
                 if drawing {

@@ -31,7 +31,7 @@ impl TimeScale {
 
     /// How far along the scale a time is, 0 to 1.
     fn along(&self, time: f64) -> f64 {
-        ((time / self.from).ln() / (self.to / self.from).ln()).clamp(0.0, 1.0)
+        (libm::log(time / self.from) / libm::log(self.to / self.from)).clamp(0.0, 1.0)
     }
 
     /// The number of a time's shade.

@@ -27,7 +27,7 @@ pub fn kept(points: &[(f64, f64)], least: f64) -> Kept {
     let ((x0, y0), (x1, y1)) = (points[before], points[lost]);
     let part = (y0 - least) / (y0 - y1);
     let log = points.iter().all(|p| p.0 > 0.0);
-    let at = if log { x0 * (x1 / x0).powf(part) } else { x0 + part * (x1 - x0) };
+    let at = if log { x0 * libm::pow(x1 / x0, part) } else { x0 + part * (x1 - x0) };
     Kept::Until { at, kept: x0, lost: x1 }
 }
 

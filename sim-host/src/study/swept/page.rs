@@ -81,7 +81,7 @@ fn in_words(found: Option<Kept>, numbers: &[(usize, f64)], unit: &str) -> String
         Kept::Everywhere => format!("{last}{unit} keeps it"),
         Kept::Nowhere => "lost".into(),
         Kept::Until { at, kept, lost } => {
-            let digits = (2 - at.abs().max(1e-9).log10().floor() as i32).max(0) as usize;
+            let digits = (2 - libm::log10(at.abs().max(1e-9)).floor() as i32).max(0) as usize;
             let (low, high) = (kept.min(lost), kept.max(lost));
             format!("{at:.digits$}{unit} ({low}{unit} to {high}{unit})")
         }
