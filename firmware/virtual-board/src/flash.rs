@@ -40,8 +40,8 @@ impl Pace {
         const MIDDLE: [[u64; 2]; 3] = [[1200, 2400], [700, 1400], [550, 1100]];
         const LARGE: [[u64; 2]; 3] = [[2000, 4000], [1300, 2600], [1000, 2000]];
         let times = match bytes >> 10 {
-            ..=16 => SMALL,
-            ..=64 => MIDDLE,
+            0..=16 => SMALL,
+            17..=64 => MIDDLE,
             _ => LARGE,
         };
         let [typical, longest] = times[psize.min(2) as usize];
