@@ -148,9 +148,9 @@ fn a_supply_that_breaks_down_opens_the_bridge() {
     opens_with(&mut bench, "the supply breaks down to 12 V", 10, 100.0, 1000.0);
 }
 
-/// Instants of the lines that the motor's loop writes every so often \[ms\].
+/// Instants of the lines that the image writes every half second \[ms\].
 fn beats_ms(bench: &Bench) -> Vec<f64> {
-    let lines = bench.log().iter().filter(|line| line.text.starts_with("calls="));
+    let lines = bench.log().iter().filter(|line| line.text.starts_with("mode="));
     lines.map(|line| line.at_us as f64 * 1e-3).collect()
 }
 
