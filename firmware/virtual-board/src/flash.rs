@@ -40,7 +40,7 @@ impl Pace {
         const MIDDLE: [[u64; 2]; 3] = [[1200, 2400], [700, 1400], [550, 1100]];
         const LARGE: [[u64; 2]; 3] = [[2000, 4000], [1300, 2600], [1000, 2000]];
         let times = match bytes >> 10 {
-            ..=16 => SMALL,
+            0..=16 => SMALL,
             17..=64 => MIDDLE,
             _ => LARGE,
         };

@@ -2,19 +2,20 @@
 
 use crate::bench::{Bench, Error};
 use crate::board::Vesc6;
-use crate::chip::memory::FLASH;
 use rigless::device::Level;
 use rigless::emulator::{Host, InterruptLine, Watch};
-use rigless::mcu::{Mcu, Operate};
+use rigless::mcu::Operate;
 use rigless::session::Session;
 use rigless::soc::Width;
-use rigless::soc::stm32f427::generated::dbg;
 use rigless::time::VirtualNanos;
 
 /// `b .`: a branch to itself.
 pub const BRANCH_TO_ITSELF: u16 = 0xe7fe;
 /// `udf #0`: a permanently undefined instruction.
 pub const UNDEFINED: u16 = 0xde00;
+/// Sets NMIPENDSET of ICSR at 0xe000ed04 (ARMv7-M, B3.2.4): the NMI comes before the next instruction, which would else be
+/// a branch to itself. `movw r0, #0xed04; movt r0, #0xe000; mov.w r1, #0x80000000; str r1, [r0]; b .`
+pub const RAISE_NMI: [u16; 8] = [0xf64e, 0x5004, 0xf2ce, 0x0000, 0xf04f, 0x4100, 0x6001, BRANCH_TO_ITSELF];
 
 /// Halfwords of the flash that stand in place of others until the next reset, which puts those back.
 #[derive(Clone, Debug)]
@@ -26,25 +27,21 @@ pub struct Damage {
 }
 
 impl Bench {
-    /// A debugger halts the core for this time \[ms\], no longer than the watchdog waits: its counter is not stopped
-    /// here. With DBG_TIM1_STOP set TIM1's outputs are off meanwhile (RM0090 rev 22, 17.3.21 and 38.16.5); without it
-    /// the timer goes on.
+    /// A debugger halts the core for this time \[ms\]. What DBGMCU stops of TIM1, TIM3 to TIM5 and the watchdog stands
+    /// meanwhile, TIM1's outputs off (RM0090 rev 22, 17.3.21, 38.16.4, 38.16.5); all else goes on.
     ///
     /// # Errors
     /// As of [`Self::run_ms`].
     pub fn halt_ms(&mut self, ms: f64) -> Result<(), Error> {
-        let now_ns = self.now_ns();
+        let at = VirtualNanos(self.now_ns());
         self.with_session(move |session, host| {
-            let chip = &mut session.board_mut().chip;
-            let frozen =
-                chip.library.bus().registers("DBG").map_or(0, |dbg| dbg.get(dbg::Register::DbgmcuApb2Fz));
-            chip.wiring.halt(dbg::dbgmcu_apb2_fz::DBG_TIM1_STOP.is_set(frozen), now_ns);
+            session.board_mut().chip.halt(at);
             host.hold(true);
         });
         self.run_ms(ms)?;
-        let now_ns = self.now_ns();
+        let at = VirtualNanos(self.now_ns());
         self.with_session(move |session, host| {
-            session.board_mut().chip.wiring.go_on(now_ns);
+            session.board_mut().chip.go_on(at);
             host.hold(false);
         });
         Ok(())
@@ -57,25 +54,14 @@ impl Bench {
     /// [`Error::Image`] where no function has this name, or several have.
     pub fn damage(&mut self, function: &str, halfwords: &[u16]) -> Result<(), Error> {
         let address = self.function(function)?;
-        self.with_session(move |session, _| session.watch(Watch::Instruction(address.into())));
-        self.damage_at(address, halfwords);
-        Ok(())
-    }
-
-    /// Makes an exception's vector lead to another exception's handler until the next reset. Both by their numbers.
-    pub fn lead_vector(&mut self, from: u32, to: u32) {
-        let vector = |number: u32| FLASH.start as u32 + 4 * number;
-        let handler = self.word(vector(to)).unwrap_or(0);
-        self.damage_at(vector(from), &[handler as u16, (handler >> 16) as u16]);
-    }
-
-    fn damage_at(&mut self, address: u32, halfwords: &[u16]) {
         let halfwords = halfwords.to_vec();
         self.with_session(move |session, host| {
+            session.watch(Watch::Instruction(address.into()));
             let before = exchange(host, address, &halfwords);
             let resets = session.resets().len();
             session.board_mut().damage.push(Damage { address, before, resets });
         });
+        Ok(())
     }
 
     /// Drives an interrupt line of the chip, as a peripheral would.
@@ -87,7 +73,7 @@ impl Bench {
         self.with_session(move |_, host| host.set_interrupt(line, Level::from(high)));
     }
 
-    /// The crystal stops. The emulated core has no NMI input, so that only the timer's break follows.
+    /// The crystal stops. The emulated core has the NMI but no input for it, so that only the timer's break follows.
     pub fn lose_crystal(&mut self) {
         let at = VirtualNanos(self.now_ns());
         self.with(move |board| {

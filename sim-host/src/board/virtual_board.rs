@@ -8,8 +8,9 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread::spawn;
 use std::time::Duration;
 
-/// Longest real time from the start to the first byte of the board, which starts within 0.3 s of its own.
-const START: Duration = Duration::from_secs(60);
+/// Longest real time from the start to the first byte of the board, which starts within 0.3 s of its own: some seconds, more
+/// on a busy machine. A program that ends, as one whose emulator hangs does, is noticed at once.
+const START: Duration = Duration::from_secs(600);
 
 /// Where `cargo xtask virtual-board` leaves the program.
 pub fn default_program() -> PathBuf {

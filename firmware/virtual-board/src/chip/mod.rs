@@ -12,6 +12,7 @@ pub mod adc;
 pub mod can;
 pub mod exti;
 pub mod gpio;
+mod halt;
 pub mod memory;
 pub mod tim1;
 

@@ -148,20 +148,50 @@ fn a_supply_that_breaks_down_opens_the_bridge() {
     opens_with(&mut bench, "the supply breaks down to 12 V", 10, 100.0, 1000.0);
 }
 
-/// Situation: the bridge is closed. Action: a debugger halts the core for 20 ms. Must hold: TIM1's outputs go off with
-/// the core and come back with it.
+/// Instants of the lines that the image writes every half second \[ms\].
+fn beats_ms(bench: &Bench) -> Vec<f64> {
+    let lines = bench.log().iter().filter(|line| line.text.starts_with("mode="));
+    lines.map(|line| line.at_us as f64 * 1e-3).collect()
+}
+
+/// Situation: the bridge is closed. Action: a debugger halts the core for 300 ms, three times as long as the watchdog waits.
+/// Must hold: TIM1's outputs go off with the core and come back with it; the chip is not reset, and the program's clock
+/// stood: its next line comes as much later.
 #[test]
-fn a_halted_core_opens_the_bridge() {
+fn a_halted_core_opens_the_bridge_and_stops_the_watchdog() {
+    const HALT_MS: f64 = 300.0;
     let mut bench = closed(Wiring::new());
+    let beats = |bench: &mut Bench, count: usize| {
+        bench.run_until(2500.0, "lines", |bench| beats_ms(bench).len() == count).unwrap();
+        beats_ms(bench)
+    };
+    beats(&mut bench, 2);
+    bench.run_ms(10.0).unwrap();
     let (from, before) = (bench.now_ms(), bench.with(|board| board.chip.wiring.main_output.len()));
-    bench.halt_ms(20.0).unwrap();
+    bench.halt_ms(HALT_MS).unwrap();
     let changes = bench.with(move |board| board.chip.wiring.main_output[before..].to_vec());
     let [(opened_ns, false), (closed_ns, true)] = changes[..] else { panic!("{changes:?}") };
     assert!((opened_ns as f64 * 1e-6 - from).abs() < 1e-3, "{opened_ns} ns");
-    assert_eq!(closed_ns - opened_ns, 20_000_000);
+    assert_eq!(closed_ns - opened_ns, 300_000_000);
+    let beats = beats(&mut bench, 3);
+    let later_ms = (beats[2] - beats[1]) - (beats[1] - beats[0]);
+    assert!((HALT_MS - 2.0..=HALT_MS + 2.0).contains(&later_ms), "{later_ms} ms later");
+    assert!(bench.resets().is_empty(), "{:?}", bench.resets());
     holds(
         "a debugger halts the core",
         opened_ns as f64 * 1e-3 - from * 1e3,
         "nothing: the bridge closes when the core goes on",
     );
+}
+
+/// Situation: the bridge is closed, and the watchdog's bit in DBGMCU is gone. Action: a debugger halts the core for 150 ms.
+/// Must hold: the watchdog resets the chip, once.
+#[test]
+fn a_watchdog_that_is_not_stopped_bites_in_a_halt() {
+    const DBGMCU_APB1_FZ: u32 = 0xe004_2008;
+    const DBG_IWDG_STOP: u32 = 1 << 12;
+    let mut bench = closed(Wiring::new());
+    bench.force_register(DBGMCU_APB1_FZ, |bits| bits & !DBG_IWDG_STOP);
+    bench.halt_ms(150.0).unwrap();
+    assert_eq!(bench.resets().len(), 1, "{:?}", bench.resets());
 }

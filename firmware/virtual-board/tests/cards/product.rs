@@ -130,7 +130,7 @@ fn an_imu_that_never_speaks_is_missing() {
     let mut wiring = Wiring::new();
     wiring.imu.silent = true;
     let mut bench = running(wiring);
-    assert!(says(&mut bench, 0.0, "imu: chip=0xff, wanted 0xd1"), "{:#?}", bench.log());
+    assert!(says(&bench, 0.0, "imu: chip=0xff, wanted 0xd1"), "{:#?}", bench.log());
     let (frame, steps) = told(&mut bench);
     assert!(frame.gyro_rad_s.age_ticks as u32 >= steps.min(20), "{} at {steps}", frame.gyro_rad_s.age_ticks);
 }

@@ -7,6 +7,10 @@ use sim_host::board::{Client, Patience};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+/// For a board that starts on a machine as busy as can be: what is asked before it listens is lost, and asked again.
+const PATIENCE: Patience = Patience { answer: Duration::from_millis(400), tries: 1500 };
 
 fn virtual_board(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_virtual-board")).args(arguments).output().expect("it can be started")
@@ -43,7 +47,7 @@ fn the_tools_of_a_board_reach_it() {
     let Some(image) = product() else { return };
     let program = Path::new(env!("CARGO_BIN_EXE_virtual-board"));
     let line = VirtualBoard::start(program, Some(&image)).expect("it starts");
-    let mut client = Client::new(Box::new(line), Patience { tries: 50, ..Patience::default() });
+    let mut client = Client::new(Box::new(line), PATIENCE);
     assert_eq!(client.hello().expect("an answer").image, "board-stm32f405");
     let rate_hz = client.get("rate_hz").expect("an answer");
     assert_eq!(rate_hz, Some(1000.0));
@@ -68,7 +72,7 @@ fn its_pseudo_terminal_is_a_serial_port() {
     let device = first.rsplit(' ').next().expect("a device");
     let open = || {
         let port = Serial::open(device, 115_200).expect("it can be opened");
-        Client::new(Box::new(port), Patience { tries: 50, ..Patience::default() })
+        Client::new(Box::new(port), PATIENCE)
     };
     assert_eq!(open().hello().expect("an answer").image, "board-stm32f405");
     assert_eq!(open().set("limits.max_torque_nm", Some(0.5)).expect("an answer"), Some(0.5));

@@ -67,13 +67,16 @@ pub(super) const HANDS: &[(&str, Hand)] = &[
         "`sim-host param set calibration.imu_roll_rad 3.14159`",
         Some(|table| {
             table.steer(0.0, 0.0);
-            set(table, "calibration.imu_roll_rad", 3.14159);
+            set(table, "calibration.imu_roll_rad", "3.14159");
         }),
     ),
     ("Lean to the right, 0.4 rad", Some(|table| lean(table, 0.8, 500))),
     ("Upright again; turn the handlebar to the right, 0.5 rad", Some(turn_the_handlebar)),
     ("Straight again; push at 1 m/s", Some(push)),
-    ("`sim-host param set limits.max_torque_nm 0.5`", Some(|table| set(table, "limits.max_torque_nm", 0.5))),
+    (
+        "`sim-host param set limits.max_torque_nm 0.5`",
+        Some(|table| set(table, "limits.max_torque_nm", "0.5")),
+    ),
     ("Turn both wheels at 2 m/s", Some(|table| table.wheels_m_s = [2.0; 2])),
     ("Hold the switch to engage", Some(engage)),
     ("Lean to the right by hand, the handlebar goes into the fall", Some(fall)),
@@ -124,7 +127,8 @@ fn misaligned(table: &mut Table, wrong: fn(&mut Wiring)) {
     press(table);
 }
 
-fn set(table: &mut Table, key: &'static str, value: f32) {
+fn set(table: &mut Table, key: &'static str, value: &str) {
+    let value = value.parse().expect("a number, as it is typed");
     table.ask(&Message::Set { key: Key::whole(key), value: Some(value) });
 }
 
