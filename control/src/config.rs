@@ -181,6 +181,7 @@ impl Config {
         self.leaves(&mut checker);
         checker.note(self.law.validate());
         checker.note(self.limits.cross());
+        checker.note(self.input.cross());
         checker.note(self.track.as_ref().map_or(Ok(()), Track::cross));
         checker.verdict()?;
         Ok(Plan::new(self))

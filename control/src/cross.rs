@@ -13,7 +13,7 @@ use crate::input::Believed;
 use crate::maths::{at_least, at_most, per_root, sin_cos};
 use crate::param::{Leaf, Visit};
 use same::Same;
-pub use steering::{MOVES_M_S, ROLL_WRONG, YAW_WRONG};
+pub use steering::{MOVES_M_S, RIDING_M_S, ROLL_WRONG, YAW_WRONG};
 use steering::{Steering, SteeringPlan};
 
 /// In which control period of a stretch of [`steering`], and of its second half, is a look of [`same`]: one in which neither

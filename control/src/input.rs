@@ -4,7 +4,7 @@ use crate::calibrate::CalibrationPlan;
 use crate::fault::{Cause, Causes};
 use crate::frame::{MISSING, SensorFrame, Wheel};
 use crate::maths::{at_least, at_most};
-use crate::param::{Leaf, Visit};
+use crate::param::{Leaf, ParamError, Visit};
 use crate::watch::{Codes, Loss, Sensor, SensorPlan, Told, Watch};
 use core::hint::cold_path;
 
@@ -41,6 +41,9 @@ pub struct InputConfig {
     pub path: Sensor,
 }
 
+/// What is left of `input.wheel` without front wheel and steer angle: the rear wheel.
+const REAR: Leaf = Leaf::new("input", "wheel", 1.0, 1.0);
+
 /// Most samples that the speed's bounds can span.
 pub const RECENT: usize = 6;
 
@@ -75,6 +78,16 @@ impl InputConfig {
             core::mem::swap(&mut self.front_wheel, &mut self.rear_wheel);
         }
         Self { wheel, ..self }
+    }
+
+    /// Checks that the speed of the wheel that schedules can be known: without a front wheel it takes the steer angle. The
+    /// rear wheel is never the faster one, so that the front wheel's speed bounds it.
+    ///
+    /// # Errors
+    /// `input.wheel`, and which value the fitted sensors leave it.
+    pub fn cross(&self) -> Result<(), ParamError> {
+        let carried = self.front_wheel.fitted || self.steer.fitted || !self.rear_wheel.fitted;
+        if self.wheel == Wheel::Front && !carried { Err(REAR.error(0.0)) } else { Ok(()) }
     }
 
     /// Shows every parameter.

@@ -63,6 +63,12 @@ impl fmt::Display for ParamError {
                 "{group}.{name} = none, but limits.rider_torque is on and needs it: {min} to {max}"
             );
         }
+        if self.value == 0.0 && (group, name) == ("input", "wheel") {
+            return write!(
+                f,
+                "{group}.{name} = front, but input.front_wheel.fitted is off, and without input.steer the rear wheel does not tell its speed: rear"
+            );
+        }
         write!(f, "{group}{dot}{name} = {} is outside {min} to {max}", self.value)
     }
 }

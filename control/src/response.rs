@@ -5,12 +5,14 @@
 //!   beyond the terms of `wz` is held against the terms of `wx`.
 //! * **Motor**: the steer acceleration is held against the one that the drive's torque makes, as reported or else as asked for, what the
 //!   linearised bicycle (Meijaard et al. 2007, eq. 5.3) explains being taken off. A rider's torque is not
-//!   known, but muscles are slow.
+//!   known, but muscles are slow. Below walking speed hands hold the handlebar and tyres scrub, which looks like a motor
+//!   that turns the wrong way: there nothing is judged.
 //!
 //! How much must happen before a slope counts is from rides inside the basins of `h`, alone and with riders: the
 //! gyro's slope stays above 0.75 in them, or 0.3 with the noise of a real bicycle, the motor's above 0. In
 //! small motions a rider may push the other way as quickly as the motor does.
 
+use crate::cross::RIDING_M_S;
 use crate::estimate::{EstimateConfig, Motion, Place};
 use crate::fault::{Cause, Causes};
 use crate::input::Believed;
@@ -196,7 +198,7 @@ pub fn step(
         believed.gyro_rad_s(),
         speed,
     ) {
-        (Some(model), Some(steer), Some(rate), Some(_), Some(speed)) => {
+        (Some(model), Some(steer), Some(rate), Some(_), Some(speed)) if speed.newest > RIDING_M_S => {
             let Motion { roll_rad, roll_rate_rad_s, .. } = *motion;
             if adds_motor {
                 // What the drive says it gives, where it says so: it may have had to give less.

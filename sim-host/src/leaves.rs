@@ -24,9 +24,19 @@ pub fn set(config: &mut Config, key: &str, value: &str) -> Result<(), String> {
     let mut setter = Setter { key, value, done: None };
     config.leaves(&mut setter);
     setter.done.unwrap_or_else(|| {
-        let names: Vec<String> = list(config).into_iter().map(|(name, _)| name).collect();
-        Err(format!("no parameter {key}; there are {}", names.join(", ")))
+        let near = nearest(list(config).into_iter().map(|(name, _)| name), key);
+        Err(format!(
+            "no parameter {key}; nearest are {}; `sim-host param list --virtual-board` shows all",
+            near.join(", ")
+        ))
     })
+}
+
+/// The three names most like a word.
+fn nearest(names: impl Iterator<Item = String>, word: &str) -> Vec<String> {
+    let mut near: Vec<_> = names.map(|name| (strsim::jaro_winkler(&name, word), name)).collect();
+    near.sort_by(|a, b| b.0.total_cmp(&a.0));
+    near.into_iter().take(3).map(|(_, name)| name).collect()
 }
 
 fn name(leaf: &Leaf) -> String {

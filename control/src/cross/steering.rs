@@ -33,7 +33,7 @@ const BLOW_TIMES: f32 = 3.0;
 /// Above this speed by yaw rate and steer angle a wheel that stands is wrong \[m/s\].
 pub const MOVES_M_S: f32 = 1.5;
 /// Speed above which a bicycle is ridden, and neither led nor turned by hand \[m/s\].
-const RIDING_M_S: f32 = 1.0;
+pub const RIDING_M_S: f32 = 1.0;
 /// Speed below which a wheel stands \[m/s\].
 const STANDING_M_S: f32 = 0.3;
 

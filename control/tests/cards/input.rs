@@ -400,3 +400,28 @@ fn declarations_are_summed_up() {
     }
     assert_eq!(Config::product().input.slowest_to_qualify(), 50);
 }
+
+/// Situation: the front wheel schedules; it, the steer angle, the rear wheel fitted or not. Action: make a plan.
+/// Must hold: refused, naming key and remedy, where only the rear wheel is there to tell the front wheel's speed by; else
+/// accepted, and with the rear wheel as schedule, too.
+#[test]
+fn the_speed_that_schedules_must_be_known() {
+    for (front, steer, rear) in [false, true]
+        .into_iter()
+        .flat_map(|a| [(a, false, false), (a, false, true), (a, true, false), (a, true, true)])
+    {
+        let mut config = Config::product();
+        let input = &mut config.input;
+        (input.front_wheel.fitted, input.steer.fitted, input.rear_wheel.fitted) = (front, steer, rear);
+        let by_rear = Config { input: InputConfig { wheel: Wheel::Rear, ..config.input }, ..config.clone() };
+        assert!(by_rear.plan().is_ok());
+        match config.plan() {
+            Ok(_) => assert!(front || steer || !rear),
+            Err(why) => {
+                assert!(!front && !steer && rear, "{why}");
+                let why = why.to_string();
+                assert!(why.contains("input.wheel = front") && why.ends_with(": rear"), "{why}");
+            }
+        }
+    }
+}

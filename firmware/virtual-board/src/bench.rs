@@ -4,8 +4,8 @@
 //! board in its hands.
 
 use crate::board::{CORE_HZ, Options, Vesc6};
-use crate::chip::memory::FLASH;
 use crate::flash::{Array, Pace};
+use crate::gap::gap;
 use crate::image::Functions;
 use crate::inject::put_back;
 use crate::log::{self, Log, Rtt};
@@ -381,21 +381,4 @@ impl Drop for Bench {
             let _ = thread.join();
         }
     }
-}
-
-/// The first thing the program did that no model answers for, and the instruction where it is known.
-fn gap(session: &Session<Vesc6>) -> Option<(String, Option<u32>)> {
-    let by = session.board().troubled_by;
-    // Stores into the flash array are the array's.
-    let unmapped = session.unmapped().into_iter().find(|at| !FLASH.contains(&at.address));
-    let unmapped =
-        unmapped.map(|at| (format!("no register at {:#010x}", at.address), Some(at.program_counter as u32)));
-    let refused = session.refused().iter().next().map(|(at, fault)| (format!("{at:#010x}: {fault}"), by));
-    let unimplemented = session.unimplemented().iter().next().map(|(at, seen)| {
-        let what = format!("{}.{} at {at:#010x} has no model", seen.instance, seen.register);
-        (what, Some(seen.program_counter as u32))
-    });
-    let told = session.told().next();
-    let told = told.map(|told| (format!("{}.{}: {}", told.instance, told.register, told.reason), by));
-    unmapped.or(refused).or(unimplemented).or(told)
 }

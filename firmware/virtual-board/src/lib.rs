@@ -14,6 +14,7 @@ pub mod bicycle;
 pub mod board;
 pub mod chip;
 pub mod flash;
+mod gap;
 mod image;
 pub mod inject;
 pub mod load;

@@ -207,6 +207,13 @@ impl ConditionArgs {
             }
             self.set_parameters(&mut config)?;
         }
+        // A lone wheel sensor tells its own wheel's speed.
+        let schedule_speed = match (config.input.front_wheel.fitted, config.input.rear_wheel.fitted) {
+            _ if !flashed || self.schedule_speed == ScheduleSpeed::Initial => self.schedule_speed,
+            (true, false) => ScheduleSpeed::Front,
+            (false, true) => ScheduleSpeed::Rear,
+            _ => self.schedule_speed,
+        };
         let limited = config.limits != Limits::default();
         let plan = config.plan().map_err(|e| match option_of(&e.leaf) {
             Some("--torque-limit") if self.torque_limit.is_none() => e.to_string(),
@@ -232,7 +239,7 @@ impl ConditionArgs {
         let resolved = rider.as_ref().map(|(rider, table, fit)| ResolvedRider::new(table, *fit, rider));
         let conditions = Conditions {
             rider: rider.map(|(rider, ..)| rider),
-            schedule_speed: self.schedule_speed,
+            schedule_speed,
             imu: self.imu,
             sensor_delay_ticks,
             plant,

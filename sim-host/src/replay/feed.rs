@@ -47,8 +47,10 @@ impl<'a> Feed<'a> {
         let ticks = (end_s - start_s) / options.period_s;
         if ticks > MOST_TICKS {
             let most_s = MOST_TICKS * options.period_s;
+            let leap = samples.remarks.iter().find(|said| said.what.contains("time leaps"));
+            let leap = leap.map_or("is the unit of the time right?".into(), ToString::to_string);
             return Err(format!(
-                "it lasts from {start_s} to {end_s} s; at most {most_s} s can be replayed at once; is the unit of the time right?"
+                "it lasts from {start_s} to {end_s} s; at most {most_s} s can be replayed at once; {leap}"
             ));
         }
         let first = |channel: Channel| match channel {

@@ -1,6 +1,7 @@
 //! The samples of each sensor in a recording: what the columns say by the map, in SI units and the bicycle's axes.
 
 use super::map::{Map, Mapped, Signal, Source, axes_of, quantity_of};
+use super::plausible::plausible;
 use super::unit::Quantity;
 use crate::plant::Sensor;
 use crate::recording::{Column, Group, Recording, Remark};
@@ -64,6 +65,11 @@ impl Samples {
         self.tracks.iter().filter_map(ends).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 }
+
+/// A row is left out whose time is this far ahead of those before and after it \[s\].
+const LEAP_S: f64 = 1.0;
+/// Time between two rows above which the stamp is doubted \[s\].
+const PAUSE_S: f64 = 3600.0;
 
 /// A remark without a line.
 pub(super) fn remark(column: Option<&str>, what: String) -> Remark {
@@ -306,6 +312,8 @@ fn take(
     let ages = signal.age.as_ref().map(of_age).transpose()?;
     let turns = signal.turns();
     let mut samples: Vec<Sample> = Vec::new();
+    let line_of = |row: usize| group.lines.get(row).copied();
+    let (mut rows, mut ahead): (Vec<usize>, Vec<(usize, f64)>) = Default::default();
     let (mut back, mut first_back) = (0_u64, None);
     for (row, time_s) in times.iter().enumerate() {
         let cell = |axis: &Axis<'_>| match axis {
@@ -325,17 +333,26 @@ fn take(
         match samples.last() {
             // The same sample again, some periods older.
             Some(last) if ages.is_some() && t_s < last.t_s + 0.5 * period_s => {}
+            // One row far ahead of those before and after it: its time is wrong, not theirs.
+            Some(last)
+                if t_s < last.t_s - LEAP_S && samples.iter().nth_back(1).is_none_or(|b| b.t_s < t_s) =>
+            {
+                ahead.push((rows.pop().unwrap_or(row), last.t_s));
+                samples.pop();
+                rows.push(row);
+                samples.push(Sample { t_s, value });
+            }
             Some(last) if t_s <= last.t_s => {
                 back += 1;
-                first_back.get_or_insert((group.lines.get(row).copied(), last.t_s, t_s));
+                first_back.get_or_insert((line_of(row), last.t_s, t_s));
             }
-            _ => samples.push(Sample { t_s, value }),
+            _ => {
+                rows.push(row);
+                samples.push(Sample { t_s, value });
+            }
         }
     }
-    if let Some((line, from, to)) = first_back {
-        let verb = if from == to { "stands at" } else { "goes back from" };
-        let to = if from == to { String::new() } else { format!(" to {to}") };
-        let what = format!("time {verb} {from} s{to}; {back} rows without a later time left out");
+    let mut say = |line, what: String| {
         // Sensors of one row have this in common.
         let same = remarks.iter_mut().find(|said| said.line == line && said.what.ends_with(&what));
         match same {
@@ -345,6 +362,21 @@ fn take(
                 remarks.push(Remark { line, column: None, what });
             }
         }
+    };
+    for (row, t_s) in ahead {
+        say(line_of(row), format!("time {t_s} s is ahead of the rows before and after it; row left out"));
+    }
+    for (two, row) in samples.windows(2).zip(rows.iter().skip(1)) {
+        if two[1].t_s - two[0].t_s > PAUSE_S {
+            let what = format!("time leaps from {} s to {} s; is that stamp right?", two[0].t_s, two[1].t_s);
+            say(line_of(*row), what);
+        }
+    }
+    if let Some((line, from, to)) = first_back {
+        let verb = if from == to { "stands at" } else { "goes back from" };
+        let to = if from == to { String::new() } else { format!(" to {to}") };
+        let what = format!("time {verb} {from} s{to}; {back} rows without a later time left out");
+        say(line, what);
     }
     if samples.len() < 2 {
         let plural = if samples.len() == 1 { "" } else { "s" };
@@ -354,45 +386,4 @@ fn take(
         return Ok(None);
     }
     Ok(Some(Track { sensor, samples, made_up }))
-}
-
-/// Tells values that look like another unit or another mounting.
-fn plausible(track: &Track, remarks: &mut Vec<Remark>) {
-    let name = track.sensor.name();
-    let mut sizes: Vec<f64> =
-        track.samples.iter().map(|sample| sample.value.iter().map(|x| x * x).sum::<f64>().sqrt()).collect();
-    sizes.sort_by(f64::total_cmp);
-    let part = |share: f64| sizes[((sizes.len() - 1) as f64 * share) as usize];
-    if let Some((most, unit)) = quantity_of(track.sensor).implausible()
-        && part(0.95) > most
-        && track.sensor != Sensor::Path
-    {
-        remarks.push(remark(
-            None,
-            format!(
-                "{name}: one sample in twenty is beyond {:.3} in SI units; are these {unit}?",
-                part(0.95)
-            ),
-        ));
-    }
-    if track.sensor == Sensor::Gyro
-        && let Some(period_s) = track.period_s()
-        && !(1e-4..0.25).contains(&period_s)
-    {
-        let what = format!("{name}: samples are {period_s} s apart; is the unit of the time right?");
-        remarks.push(remark(None, what));
-    }
-    if track.sensor == Sensor::Accel {
-        let down: f64 = track.samples.iter().map(|sample| sample.value[2]).sum::<f64>() / sizes.len() as f64;
-        if part(0.5) < 2.0 {
-            let what =
-                format!("{name}: half of the samples are below {:.3} m/s^2; is the unit g?", part(0.5));
-            remarks.push(remark(None, what));
-        } else if down > -0.5 * part(0.5) {
-            let what = format!(
-                "{name}: along z it says {down:.2} m/s^2 in the mean; upright and at rest it must be -9.81: are the axes right?"
-            );
-            remarks.push(remark(None, what));
-        }
-    }
 }

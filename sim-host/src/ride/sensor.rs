@@ -41,10 +41,12 @@ impl Sensors {
 pub(super) fn frame(plan: &Plan, reading: &Reading, ticks: u32, engage: bool) -> SensorFrame {
     let speed = Sample::fresh(reading.speed_m_s as f32);
     let missing = SensorFrame::missing();
-    let (front_wheel_m_s, rear_wheel_m_s) = match plan.config().input.wheel {
-        Wheel::Front => (speed, missing.rear_wheel_m_s),
-        Wheel::Rear => (missing.front_wheel_m_s, speed),
-    };
+    let input = &plan.config().input;
+    let (front_wheel_m_s, rear_wheel_m_s) =
+        match (input.front_wheel.fitted, input.rear_wheel.fitted, input.wheel) {
+            (true, false, _) | (true, true, Wheel::Front) => (speed, missing.rear_wheel_m_s),
+            _ => (missing.front_wheel_m_s, speed),
+        };
     let period_us = (1e6 / f64::from(plan.config().rate_hz)) as u64;
     SensorFrame {
         now_us: (u64::from(ticks) * period_us) as u32,

@@ -26,7 +26,12 @@ fn each_kind_is_set() {
     set(&mut config, "limits.max_torque_nm", "none").unwrap();
     assert_eq!(config.limits.max_torque_nm, None);
     for (key, value, why) in [
-        ("rate", "3", "no parameter rate; there are rate_hz, "),
+        ("rate", "3", "no parameter rate; nearest are rate_hz, "),
+        (
+            "cross.yaw_rad",
+            "3",
+            "nearest are cross.yaw_rad_s, cross.yaw_slow_rad_s, cross.yaw_slope; `sim-host param list",
+        ),
         ("rate_hz", "x", "not a number"),
         ("rate_hz", "1e9", "outside 100 to 10000"),
         ("input.gyro.timeout_ticks", "1.5", "whole"),

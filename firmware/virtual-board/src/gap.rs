@@ -1,0 +1,22 @@
+//! What of the chip a program used that no model answers for.
+
+use crate::board::Vesc6;
+use crate::chip::memory::FLASH;
+use rigless::session::Session;
+
+/// The first thing the program did that no model answers for, and the instruction where it is known.
+pub(crate) fn gap(session: &Session<Vesc6>) -> Option<(String, Option<u32>)> {
+    let by = session.board().troubled_by;
+    // Stores into the flash array are the array's.
+    let unmapped = session.unmapped().into_iter().find(|at| !FLASH.contains(&at.address));
+    let unmapped =
+        unmapped.map(|at| (format!("no register at {:#010x}", at.address), Some(at.program_counter as u32)));
+    let refused = session.refused().iter().next().map(|(at, fault)| (format!("{at:#010x}: {fault}"), by));
+    let unimplemented = session.unimplemented().iter().next().map(|(at, seen)| {
+        let what = format!("{}.{} at {at:#010x} has no model", seen.instance, seen.register);
+        (what, Some(seen.program_counter as u32))
+    });
+    let told = session.told().next();
+    let told = told.map(|told| (format!("{}.{}: {}", told.instance, told.register, told.reason), by));
+    unmapped.or(refused).or(unimplemented).or(told)
+}
