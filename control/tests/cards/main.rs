@@ -1,5 +1,6 @@
 //! Flight cards of the control crate alone: what holds whatever the bicycle.
 
+mod answer;
 mod cross;
 mod fuzz;
 mod guard;

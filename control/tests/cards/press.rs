@@ -3,11 +3,12 @@
 use control::press::{Press, PressConfig, PressState};
 use proptest::prelude::*;
 
-const PRODUCT: PressConfig = PressConfig::product();
+/// A second open and a tenth of a second closed.
+const HELD: PressConfig = PressConfig { release_ticks: 1000, press_ticks: 100 };
 
 /// The contact for so many periods; what it was in the last.
 fn hold(state: &mut PressState, closed: bool, ticks: u32) -> Press {
-    (0..ticks).map(|_| state.step(&PRODUCT, closed)).last().expect("at least one")
+    (0..ticks).map(|_| state.step(&HELD, closed)).last().expect("at least one")
 }
 
 /// Situation: the switch open from boot. Action: a second open, a tenth closed, one more; then open. Must hold: each phase
@@ -58,7 +59,7 @@ proptest! {
         for (open, closed) in moves {
             for (closed, ticks) in [(false, open), (true, closed)] {
                 for _ in 0..ticks {
-                    prop_assert_ne!(switch.step(&PRODUCT, closed), Press::Pressed);
+                    prop_assert_ne!(switch.step(&HELD, closed), Press::Pressed);
                 }
             }
         }

@@ -70,8 +70,8 @@ pub const RIDER_NM: Gauge = Gauge { least_counts: 410, most_counts: 3685, at_lea
 /// Counts below which the rider's switch is closed: a contact to ground under a pull-up, so a cut wire is open.
 pub const SWITCH_COUNTS: u16 = 1365;
 
-/// Control periods for which the switch must seem otherwise.
-pub const SWITCH_TICKS: u16 = 10;
+/// Control periods for which the switch must seem otherwise: the longest bouncing in data sheets of switches, 20 ms.
+pub const SWITCH_TICKS: u16 = 20;
 
 /// The CAN controller's clock: APB1, a quarter of the core's \[Hz\].
 pub const CAN_CLOCK_HZ: u32 = 42_000_000;

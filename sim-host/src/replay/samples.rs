@@ -366,8 +366,11 @@ fn take(
     for (row, t_s) in ahead {
         say(line_of(row), format!("time {t_s} s is ahead of the rows before and after it; row left out"));
     }
-    for (two, row) in samples.windows(2).zip(rows.iter().skip(1)) {
-        if two[1].t_s - two[0].t_s > PAUSE_S {
+    let leaps = |(two, _): &(&[Sample], &usize)| two[1].t_s - two[0].t_s > PAUSE_S;
+    let leaping: Vec<_> = samples.windows(2).zip(rows.iter().skip(1)).filter(leaps).collect();
+    // Where many do, the unit is wrong and no stamp.
+    if 10 * leaping.len() < samples.len() {
+        for (two, row) in leaping {
             let what = format!("time leaps from {} s to {} s; is that stamp right?", two[0].t_s, two[1].t_s);
             say(line_of(*row), what);
         }

@@ -200,3 +200,29 @@ fn cells_without_a_number() {
     let lost = cause(&document, 1).unwrap();
     assert_eq!((number(&lost["count"]), number(&lost["alarms"])), (2.0, 1.0));
 }
+
+/// Situation: a ride of 4 s; one row's time is far ahead, or the last one's.
+/// Action: replay it, and with `--strict`.
+/// Must hold: the row is left out, line and time are told, and all after it is used; of the last row the error names line and
+/// times. Strictly the first is refused, too.
+#[test]
+fn a_time_stamp_far_ahead_is_named() {
+    let ride = |wrong: usize| -> String {
+        let time = |i: usize| if i == wrong { 1e9 } else { 0.005 * i as f64 };
+        let noise = |i: usize| ((i * i) as f64).sin() * 1e-3;
+        let row = |i: usize| format!("{},{},{},{},4\n", time(i), noise(i), noise(i + 7), noise(i + 13));
+        std::iter::once("t,gx,gy,gz,rear\n".to_owned()).chain((0..800).map(row)).collect()
+    };
+    let bench = Bench::new(PROGRAM);
+    bench.write("one.csv", ride(300));
+    bench.write("last.csv", ride(799));
+    let run = bench.run("replay one.csv --map extract");
+    assert_eq!(run.code, Some(0), "{run:?}");
+    for word in ["line 302", "time 1000000000 s is ahead", "0.000 to 3.995 s"] {
+        assert!(run.stdout.contains(word), "{word}: {run:?}");
+    }
+    bench.run("replay one.csv --map extract --strict").refused_naming(&["line 302", "ahead"]);
+    bench
+        .run("replay last.csv --map extract")
+        .refused_naming(&["line 801", "leaps from 3.99 s to 1000000000 s"]);
+}

@@ -11,7 +11,7 @@ use critical_section::Mutex;
 use embassy_time::Instant;
 
 /// When the rider presses the switch \[ms\]: after the self-test, with nothing left that would refuse the press.
-const SWITCH_AFTER_MS: u64 = 1200;
+const SWITCH_AFTER_MS: u64 = 500;
 
 /// Roll rate and its quarter-period companion \[rad/s\].
 static SWING: Mutex<Cell<(f32, f32)>> = Mutex::new(Cell::new((0.1, 0.0)));
