@@ -142,7 +142,8 @@ pub struct CrossState {
     /// The differences of this period.
     residuals: Residuals,
     steering: Steering,
-    /// Whether a difference of the yaw rate has lasted.
+    /// Whether a difference of the wheels has lasted, and one of the yaw rate.
+    wheels_wrong: bool,
     yaw_wrong: bool,
     /// The control period of a stretch.
     tick: u16,
@@ -166,40 +167,37 @@ impl CrossState {
         self.steering.roll_correlation()
     }
 
-    /// The yaw rate against the one of speed and steer angle.
+    /// The yaw rate as speed and steer angle make it, and as the gyro measures it; `None` where one of them is not known.
     #[inline]
-    fn compare_yaw(
-        &mut self,
-        config: &CrossConfig,
+    fn yaw(
         plan: &CrossPlan,
         believed: &Believed,
         [front, rear]: [Option<f32>; 2],
         ground: Option<(f32, f32)>,
         (sin_roll, cos_roll): (f32, f32),
-    ) {
+    ) -> Option<Yaw> {
         // The front wheel moves sideways by its speed times the sine; without it the rear one must do.
-        let (speed, per_speed) = match (front, rear, ground) {
+        let (speed_m_s, per_speed) = match (front, rear, ground) {
             (Some(front), _, Some((sin, _))) => (front, sin),
             (None, Some(rear), Some((sin, cos))) if cos > 0.2 => (rear, sin / cos),
-            _ => (f32::NAN, f32::NAN),
+            _ => return None,
         };
+        let [x, y, z] = believed.gyro_rad_s()?;
         let per_speed = per_speed * plan.per_wheelbase;
-        let (mut yaw, mut riding) = (f32::NAN, f32::NAN);
-        if let (false, Some([x, y, z])) = (per_speed.is_nan(), believed.gyro_rad_s()) {
-            let seen = y * sin_roll + z * cos_roll;
-            yaw = seen - speed * per_speed;
-            // A bicycle led or turned by hand need not roll where its front wheel points.
-            let speed = rear.or(front).unwrap_or(0.0);
-            if self.steering.add(speed, per_speed, seen, x) {
-                riding = yaw;
-            }
-        } else {
-            self.steering = Steering::default();
-        }
-        self.residuals.yaw_rad_s = yaw;
-        self.yaw_wrong = self.yaw.beyond(plan.yaw_rad_s, yaw, config.persist_ticks, 4)
-            | self.yaw_slow.beyond(plan.yaw_slow_rad_s, riding, config.slow_ticks, 4);
+        Some(Yaw { speed_m_s, per_speed, measured_rad_s: y * sin_roll + z * cos_roll, roll_rad_s: x })
     }
+}
+
+/// The yaw rate as speed and steer angle make it, and as measured.
+struct Yaw {
+    /// Speed of the wheel whose path it is \[m/s\].
+    speed_m_s: f32,
+    /// The yaw rate of each m/s \[rad/m\].
+    per_speed: f32,
+    /// About the vertical \[rad/s\].
+    measured_rad_s: f32,
+    /// The roll rate beside it \[rad/s\].
+    roll_rad_s: f32,
 }
 
 /// By how much sensors differ from what the others say; NaN where there is nothing to compare.
@@ -283,20 +281,35 @@ pub fn step(
     let mut causes = distrusted;
     let ground = believed.steer_rad().map(|steer| on_the_ground(plan, roll_sin_cos, steer));
 
-    let wheels = match (front, rear, ground) {
-        (Some(front), Some(rear), Some((_, cos))) => front * cos - rear,
-        _ => f32::NAN,
-    };
-    causes.note(Cause::WheelsDisagree, state.wheels.beyond(plan.wheels_m_s, wheels, persist, 1));
-
-    // Every fourth period will do for the yaw rate, one between the ends of stretches.
+    // Every fourth period will do for the yaw rate and for the wheels, those between the ends of stretches, and each of
+    // them does a part.
     if state.tick % 4 == 3 {
-        state.compare_yaw(config, plan, believed, [front, rear], ground, roll_sin_cos);
+        // A bicycle led or turned by hand need not roll where its front wheel points.
+        match CrossState::yaw(plan, believed, [front, rear], ground, roll_sin_cos) {
+            Some(Yaw { speed_m_s, per_speed, measured_rad_s, roll_rad_s }) => {
+                state.steering.add(rear.unwrap_or(speed_m_s), per_speed, measured_rad_s, roll_rad_s);
+            }
+            None => state.steering = Steering::default(),
+        }
+        let wheels = match (front, rear, ground) {
+            (Some(front), Some(rear), Some((_, cos))) => front * cos - rear,
+            _ => f32::NAN,
+        };
+        state.residuals.wheels_m_s = wheels;
+        state.wheels_wrong = state.wheels.beyond(plan.wheels_m_s, wheels, persist, 4);
+    } else if state.tick % 4 == 1 {
+        let now = CrossState::yaw(plan, believed, [front, rear], ground, roll_sin_cos);
+        let yaw = now.map_or(f32::NAN, |now| now.measured_rad_s - now.speed_m_s * now.per_speed);
+        let riding = if state.steering.rides() { yaw } else { f32::NAN };
+        state.residuals.yaw_rad_s = yaw;
+        state.yaw_wrong = state.yaw.beyond(plan.yaw_rad_s, yaw, persist, 4)
+            | state.yaw_slow.beyond(plan.yaw_slow_rad_s, riding, config.slow_ticks, 4);
     } else if state.tick == steering::END_TICK {
         state.steering.end(&plan.steering, rear.or(front).unwrap_or(0.0), rear.is_some());
     } else if state.tick == steering::ROLL_TICK {
         state.steering.judge_roll(&plan.steering);
     }
+    causes.note(Cause::WheelsDisagree, state.wheels_wrong);
     causes.note(Cause::YawDisagrees, state.yaw_wrong);
     causes = causes.with(state.steering.found());
 
@@ -323,7 +336,7 @@ pub fn step(
     };
     causes.note(Cause::MotorDisagrees, state.motor.beyond(plan.motor_nm, motor, persist, 1));
     let residuals = &mut state.residuals;
-    (residuals.wheels_m_s, residuals.steer_rad, residuals.motor_nm) = (wheels, steer, motor);
+    (residuals.steer_rad, residuals.motor_nm) = (steer, motor);
     let closer = |bound: f32| bound + 4.0 * FORGET * (torque_nm - bound);
     state.asked_nm = (at_most(torque_nm, closer(low)), at_least(torque_nm, closer(high)));
     Crossed { causes, distrusted, ground }

@@ -119,9 +119,9 @@ pub(super) struct Steering {
 
 impl Steering {
     /// A control period: the speed \[m/s\], the yaw rate that each m/s of it makes \[rad/m\], and those measured
-    /// about the vertical and about the frame's x axis \[rad/s\]. Whether the bicycle is ridden.
+    /// about the vertical and about the frame's x axis \[rad/s\].
     #[inline]
-    pub(super) fn add(&mut self, speed_m_s: f32, per_speed: f32, yaw_rad_s: f32, x_rad_s: f32) -> bool {
+    pub(super) fn add(&mut self, speed_m_s: f32, per_speed: f32, yaw_rad_s: f32, x_rad_s: f32) {
         let wheel = Wheel::at(speed_m_s);
         if wheel != self.wheel {
             cold_path();
@@ -132,7 +132,12 @@ impl Steering {
             let speed_m_s = if rides { speed_m_s } else { MOVES_M_S };
             self.stretch.add([speed_m_s * per_speed, yaw_rad_s, x_rad_s]);
         }
-        rides
+    }
+
+    /// Whether the bicycle is ridden, neither led nor turned by hand.
+    #[inline]
+    pub(super) fn rides(&self) -> bool {
+        self.wheel == Wheel::Rides
     }
 
     /// The end of a stretch, at this speed \[m/s\]: all is judged anew. A wheel that stands is the rear one where that

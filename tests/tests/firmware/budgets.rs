@@ -21,7 +21,7 @@ fn images_keep_their_budgets_and_the_document_is_true() {
     assert_eq!(stale(&committed, &text(&sizes, &counts)), [""; 0], "run `cargo xtask size`");
 }
 
-/// Situation: rows at nine tenths of their budget, one instruction more, at it, and one beyond; with everything on at 95 %, and one
+/// Situation: rows at nine tenths of their budget, one instruction more, at it, and one beyond; with everything on at 99 %, and one
 /// instruction more. Action: look for what is too close, and for what is over. Must hold: each but the first of both is named once.
 #[test]
 fn a_row_that_leaves_less_than_a_tenth_is_noticed() {
@@ -31,8 +31,8 @@ fn a_row_that_leaves_less_than_a_tenth_is_noticed() {
         row("more", 2701),
         row("all", BUDGET),
         row("over", BUDGET + 1),
-        row("everything on", 2850),
-        row("everything on, more", 2851),
+        row("everything on", 2970),
+        row("everything on, more", 2971),
     ];
     let named = |lines: Vec<String>| -> Vec<String> {
         lines.iter().filter_map(|line| Some(line.split_once(':')?.0.to_owned())).collect()

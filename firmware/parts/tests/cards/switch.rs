@@ -5,7 +5,7 @@ use parts::age::Age;
 use parts::switch::Switch;
 use parts::vesc6::SWITCH_TICKS;
 
-/// Situation: a contact that bounces for 9 ms each time it moves. Must hold: it is believed once, 10 ms after it came to
+/// Situation: a contact that bounces for 9 ms each time it moves. Must hold: it counts once, 20 ms after it came to
 /// rest, either way.
 #[test]
 fn bounces_are_not_presses() {
@@ -13,10 +13,10 @@ fn bounces_are_not_presses() {
     let bounces = [true, false, true, true, false, true, false, true, false];
     assert!(bounces.iter().all(|closed| !switch.step(*closed, SWITCH_TICKS)));
     let pressed = (1..100).find(|_| switch.step(true, SWITCH_TICKS));
-    assert_eq!(pressed, Some(10));
+    assert_eq!(pressed, Some(20));
     assert!(bounces.iter().all(|open| switch.step(!open, SWITCH_TICKS)));
     let released = (1..100).find(|_| !switch.step(false, SWITCH_TICKS));
-    assert_eq!(released, Some(10));
+    assert_eq!(released, Some(20));
 }
 
 /// Situation: a sensor never spoke, then speaks, then is silent for 70 000 periods. Must hold: missing, fresh, older by
