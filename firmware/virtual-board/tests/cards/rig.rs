@@ -28,19 +28,20 @@ pub(crate) fn powered(name: &str, wiring: Wiring) -> Bench {
 /// The board of [`ALIGN`] with the switch held and the bridge just closed.
 pub(crate) fn closed(wiring: Wiring) -> Bench {
     let mut bench = powered(ALIGN, wiring);
-    press(&mut bench);
     close(&mut bench);
     bench
 }
 
-/// The rider's switch is closed after the program has seen it open for long enough, and held.
+/// The rider's switch is opened, closed after the program has seen it open for long enough, and held.
 pub(crate) fn press(bench: &mut Bench) {
+    bench.with(|board| board.chip.wiring.analog.switch_closed = false);
     bench.run_ms(START_MS + f64::from(PressConfig::product().release_ticks)).unwrap();
     bench.with(|board| board.chip.wiring.analog.switch_closed = true);
 }
 
-/// Waits until the bridge is closed, and 20 ms more.
+/// Presses the switch, waits until the bridge is closed, and 20 ms more.
 pub(crate) fn close(bench: &mut Bench) {
+    press(bench);
     bench.run_until(500.0, "closed bridge", is_closed).unwrap();
     bench.run_ms(20.0).unwrap();
 }
