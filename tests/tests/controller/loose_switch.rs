@@ -33,7 +33,7 @@ fn a_loose_contact_never_engages_after_a_fault() {
             std::iter::once("gyro:missing@300ms..340ms").chain(opening.iter().map(String::as_str)).collect();
         let trace = ridden(&faults);
         let (before, after): (Vec<_>, Vec<_>) = trace.iter().partition(|p| p.t < 0.3);
-        assert!(before.iter().all(|p| drives(p)), "{opening:?}");
+        assert!(before.iter().copied().all(drives), "{opening:?}");
         let again = after.iter().find(|p| p.t > 0.35 && (drives(p) || p.torque != 0.0));
         assert!(again.is_none(), "{opening:?}: at {} s", again.map_or(0.0, |p| p.t));
     }
