@@ -1,8 +1,8 @@
 //! Sensors against each other: what no single sensor can know to be wrong.
 //!
 //! The relations are the kinematics of a bicycle that rolls without slip, pitch and the contacts'
-//! wandering left out. Inside the basins of `h`, alone and with riders, that leaves up to 0.28 m/s
-//! between the wheels and 0.80 rad/s of yaw unexplained (`data/motion.toml`); the tolerances must lie above.
+//! wandering left out. Inside the basins of `h`, alone and with riders, that leaves up to 0.30 m/s
+//! between the wheels and 0.83 rad/s of yaw unexplained (`data/motion.toml`); the tolerances must lie above.
 
 mod same;
 mod steering;
