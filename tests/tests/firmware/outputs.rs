@@ -83,7 +83,7 @@ fn the_image_of_the_loop_says_what_it_said() {
     }
     let rides = [&[][..], &["mishap=panic", "at_ms=1500"]].map(|words: &[&str]| {
         let mut rig = Rig::start(words);
-        rig.ride(1200, false);
+        rig.ride(500, false);
         rig.ride(1700, true);
         let (status, words_said) = rig.board.close();
         let left: u32 = field(&words_said, "stack_left").expect("it says so");

@@ -16,7 +16,7 @@ fn least(name: &str) -> (f64, f64) {
     if name.starts_with("product") { (0.001, 0.5) } else { (0.9, 0.01) }
 }
 
-/// Every configuration, each press counting in its first period: random frames hold no second without a fault.
+/// Every configuration, each press counting in its first period: random frames never open the switch for long enough.
 fn pressed_at_once() -> impl Iterator<Item = (&'static str, Config)> {
     rides::configurations().into_iter().map(|(name, mut config)| {
         config.permit.press = PressConfig::default();

@@ -36,7 +36,7 @@ fn whatever_goes_wrong_ends_in_a_new_start_without_torque() {
     ] {
         let (at, word) = (format!("at_ms={AT_MS}"), format!("mishap={mishap}"));
         let mut rig = Rig::start(&[&word, &at]);
-        rig.ride(1200, false);
+        rig.ride(1000, false);
         let stored = rides::product();
         while rig.starts() == 1 && rig.time_ms() < AT_MS - 1 {
             rig.ride(1, true);
@@ -55,7 +55,7 @@ fn whatever_goes_wrong_ends_in_a_new_start_without_torque() {
         checked.calibration.polarity_checked = true;
         rig.ask(&Message::AskHello);
         rig.ask(&Message::ListFaults { from: 0 });
-        rig.ride(1200, false);
+        rig.ride(500, false);
         assert_eq!(
             rig.hash,
             Some(link::report::config_hash(&checked)),

@@ -12,7 +12,7 @@ pub(crate) const PRODUCT: &str = "board-stm32f405";
 pub(crate) const ALIGN: &str = "board-stm32f405-align";
 
 /// From power-on to the first sample of the switch at the latest, with the first start's brown-out reset \[ms\].
-const START_MS: f64 = 400.0;
+pub(crate) const START_MS: u32 = 400;
 
 /// Where `cargo xtask firmware` builds an image.
 pub(crate) fn image(name: &str) -> PathBuf {
@@ -35,7 +35,7 @@ pub(crate) fn closed(wiring: Wiring) -> Bench {
 /// The rider's switch is opened, closed after the program has seen it open for long enough, and held.
 pub(crate) fn press(bench: &mut Bench) {
     bench.with(|board| board.chip.wiring.analog.switch_closed = false);
-    bench.run_ms(START_MS + f64::from(PressConfig::product().release_ticks)).unwrap();
+    bench.run_ms(f64::from(START_MS + u32::from(PressConfig::product().release_ticks))).unwrap();
     bench.with(|board| board.chip.wiring.analog.switch_closed = true);
 }
 

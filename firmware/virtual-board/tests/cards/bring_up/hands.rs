@@ -1,14 +1,12 @@
 //! What each action of docs/hardware.md is on the virtual board.
 
 use super::table::{Flashed, G_M_S2, Table};
+use crate::rig::START_MS;
 use control::press::PressConfig;
 use link::Key;
 use link::message::Message;
 use virtual_board::power::Axis;
 use virtual_board::wiring::Wiring;
-
-/// From flashing to the first sample of the switch at the latest \[ms\].
-const START_MS: u32 = 400;
 
 /// What is done; nothing where the page only looks.
 type Hand = Option<fn(&mut Table)>;
