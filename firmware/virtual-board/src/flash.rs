@@ -5,6 +5,7 @@
 //! go on from the instruction cache until its first miss; here the core stands at once.
 
 use crate::board::Vesc6;
+use crate::cache::DataCache;
 use crate::chip::memory::{FLASH, sector};
 use rigless::emulator::{Access, AccessKind, Host, Settled};
 use rigless::session::Session;
@@ -12,7 +13,8 @@ use rigless::soc::Width;
 use rigless::soc::stm32f427::generated::flash::{Register, cr, sr};
 use rigless::time::VirtualNanos;
 
-/// Address of the control register.
+/// Addresses of the registers of access and of control.
+const ACR: u64 = 0x4002_3c00;
 const CR: u64 = 0x4002_3c10;
 
 /// How long the array takes, DS8626 rev 9, table 40.
@@ -83,6 +85,9 @@ pub struct Array {
     pub pace: Pace,
     /// What was done since power-on: the instant of its end \[ns\], and what.
     pub changes: Vec<(u64, Change)>,
+    /// When the data cache first answered, or may have, with what an erase had taken away \[ns\].
+    pub stale_ns: Option<u64>,
+    cache: DataCache,
     work: Option<Work>,
     resets: usize,
 }
@@ -90,14 +95,15 @@ pub struct Array {
 impl Array {
     /// An array of this pace.
     pub const fn new(pace: Pace) -> Self {
-        Self { pace, changes: Vec::new(), work: None, resets: 0 }
+        Self { pace, changes: Vec::new(), stale_ns: None, cache: DataCache::new(), work: None, resets: 0 }
     }
 
     /// Whether the run's next step concerns the array; cheap, as it is asked after every access.
     pub(crate) fn concerns(&self, settled: &Settled) -> bool {
         match settled {
             Settled::Access { access, .. } => {
-                access.kind == AccessKind::Write && (access.address == CR || FLASH.contains(&access.address))
+                access.kind == AccessKind::Write
+                    && (matches!(access.address, ACR | CR) || FLASH.contains(&access.address))
             }
             _ => self.work.is_some(),
         }
@@ -107,6 +113,11 @@ impl Array {
     pub(crate) fn settled(&mut self, session: &mut Session<Vesc6>, host: &mut dyn Host, settled: Settled) {
         match settled {
             Settled::Access { access, .. } if access.address == CR => self.control(session, host, &access),
+            Settled::Access { access, .. } if access.address == ACR => {
+                let (_, registers) = session.board_mut().chip.library.program();
+                self.cache.control(registers.get(Register::Acr));
+                self.look_at_cache(access.virtual_time.0);
+            }
             Settled::Access { access, .. } => self.store(session, host, &access),
             Settled::Stop(stop) => self.stop(session, host, stop.at.0),
             _ => (),
@@ -168,7 +179,19 @@ impl Array {
                 let _ = host.program(address, Width::W64, u64::MAX);
             }
         }
+        if cut {
+            self.cache.reset();
+        } else if work.sector.is_some() {
+            self.cache.erased();
+            self.look_at_cache(now_ns);
+        }
         self.work = None;
         host.hold(false);
+    }
+
+    fn look_at_cache(&mut self, now_ns: u64) {
+        if self.cache.answers_with_erased() {
+            self.stale_ns.get_or_insert(now_ns);
+        }
     }
 }

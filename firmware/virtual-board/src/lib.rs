@@ -12,6 +12,7 @@ pub mod analog;
 pub mod bench;
 pub mod bicycle;
 pub mod board;
+mod cache;
 pub mod chip;
 pub mod flash;
 mod gap;
