@@ -10,3 +10,4 @@ mod polarity;
 mod replay;
 mod resets;
 mod rig;
+mod runner;
