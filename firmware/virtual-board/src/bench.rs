@@ -4,6 +4,7 @@
 //! board in its hands.
 
 use crate::board::{CORE_HZ, Options, Vesc6};
+use crate::core_state::program_counter;
 use crate::flash::{Array, Pace};
 use crate::gap::gap;
 use crate::image::Functions;
@@ -25,6 +26,9 @@ const LOOK_NS: u64 = 1_000_000;
 
 /// The flash of the parameters, as `memory.x` keeps it free.
 const STORE: std::ops::Range<u64> = 0x0800_4000..0x0801_0000;
+
+/// Bytes in it.
+pub const STORE_BYTES: usize = (STORE.end - STORE.start) as usize;
 
 /// What can go wrong.
 #[derive(Debug, thiserror::Error)]
@@ -49,14 +53,14 @@ pub enum Error {
         what: String,
     },
     /// Something that was waited for did not happen.
-    #[error("at {at_ms:.3} ms: still no {what}; the last register was accessed {by}")]
+    #[error("at {at_ms:.3} ms: still no {what}; {whereabouts}")]
     Endless {
         /// When it was given up \[ms\].
         at_ms: f64,
         /// What was waited for.
         what: String,
-        /// The instruction that accessed a register last, and its function.
-        by: String,
+        /// Where the program is, and which instruction accessed a register last, each with its function.
+        whereabouts: String,
     },
     /// The emulator took longer for a step than [`Options::patience`].
     #[error("at {at_ms:.3} ms: the emulator did not come back within {patience:?}")]
@@ -239,9 +243,7 @@ impl Bench {
         let end_ms = self.now_ms() + limit_ms;
         while !so(self) {
             if self.now_ms() >= end_ms {
-                let counter = self.with(|board| board.last_access);
-                let (at_ms, by) = (self.now_ms(), self.place(counter));
-                return Err(Error::Endless { at_ms, what: what.into(), by });
+                return Err(self.endless(what));
             }
             self.run_ms(1.0)?;
         }
@@ -256,9 +258,21 @@ impl Bench {
         self.functions.start(name).map_err(|why| Error::Image { path: self.image.clone(), why })
     }
 
+    /// The error of something that was waited for in vain.
+    pub fn endless(&mut self, what: &str) -> Error {
+        let (last, saved) =
+            self.with_session(|session, host| (session.board().last_access, host.save_state().ok()));
+        let next = saved.and_then(|saved| program_counter(&saved)).unwrap_or(0);
+        let [next, last] = [next, last].map(|counter| self.place(counter));
+        let whereabouts = format!("the program is {next}, the last access to a register was {last}");
+        Error::Endless { at_ms: self.now_ms(), what: what.into(), whereabouts }
+    }
+
     fn place(&self, counter: u32) -> String {
-        let function = self.functions.at(counter).unwrap_or("no function");
-        format!("by the instruction at {counter:#010x} in {function}")
+        match (counter, self.functions.at(counter).unwrap_or("no function")) {
+            (0, _) => "nowhere".into(),
+            (_, function) => format!("at the instruction {counter:#010x} in {function}"),
+        }
     }
 
     /// Time since power-on \[ns\].

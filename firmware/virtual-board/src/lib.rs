@@ -14,6 +14,7 @@ pub mod bicycle;
 pub mod board;
 mod cache;
 pub mod chip;
+mod core_state;
 pub mod flash;
 mod gap;
 mod image;

@@ -8,12 +8,20 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
+use virtual_board::bench::STORE_BYTES;
 use virtual_board::pty::Pty;
 use virtual_board::wiring::Wiring;
 use virtual_board::{Bench, Error, Options};
 
 /// How much simulated time goes by between two looks at the serial line \[ms\].
 const LOOK_MS: f64 = 2.0;
+
+/// An image that has logged nothing by then never will \[ms after power-on\]: the board's say who they are within 5 ms.
+const SILENT_MS: f64 = 2000.0;
+
+/// When the board answers on its serial line at the latest \[ms after power-on\]. On this machine that is some seconds, longer
+/// than a tool waits for an answer.
+const LISTENS_MS: f64 = 400.0;
 
 /// When the rider presses the switch \[ms after power-on\]: released for long enough by then.
 const SWITCH_MS: f64 = 2000.0;
@@ -29,8 +37,8 @@ Examples:
   virtual-board --store board.flash --seconds 3   # parameters kept from one run to the next
   sim-host monitor --port /dev/pts/5              # in another terminal, with the device that was printed
 
-Exit status: 0 after the time asked for or Ctrl-C; 1 where the program did something that no model answers for;
-2 for wrong options and images that can't be used."
+Exit status: 0 after the time asked for or Ctrl-C; 1 where the program did something that no model answers for,
+or wrote no line of its log in the first 2 s; 2 for wrong options and images that can't be used."
 )]
 struct Arguments {
     /// The image [default: where `cargo xtask firmware` builds it]
@@ -111,7 +119,8 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => {
             eprintln!("virtual-board: {why}");
-            ExitCode::from(if matches!(why, Failure::Board(Error::Gap { .. })) { 1 } else { 2 })
+            let program = matches!(why, Failure::Board(Error::Gap { .. } | Error::Endless { .. }));
+            ExitCode::from(if program { 1 } else { 2 })
         }
     }
 }
@@ -122,6 +131,8 @@ enum Failure {
     Board(#[from] Error),
     #[error("{0}: {1}")]
     File(PathBuf, std::io::Error),
+    #[error("{0}: {1} bytes, a flash of the parameters has {2}; the file was left as it is")]
+    NoStore(PathBuf, usize, usize),
     #[error("no pseudo terminal: {0}")]
     Pty(std::io::Error),
     #[error("Ctrl-C can't be caught: {0}")]
@@ -143,10 +154,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         Line::Pty(Box::new(Pty::open().map_err(Failure::Pty)?))
     };
-    if let Line::Pty(pty) = &line {
-        eprintln!("serial line at {}: sim-host monitor --port {}", pty.name, pty.name);
-    }
-    let (begin, mut shown) = (Instant::now(), 0);
+    let (begin, mut shown, mut listens) = (Instant::now(), 0, false);
     let end_ms = arguments.seconds.map_or(f64::INFINITY, |seconds| seconds * 1e3);
     let mut result = Ok(());
     while result.is_ok() && bench.now_ms() < end_ms && !stop.load(Ordering::Relaxed) {
@@ -160,6 +168,15 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             eprintln!("{:10.3} ms {:5} {}", entry.at_us as f64 * 1e-3, entry.level, entry.text);
         }
         shown = bench.log().len();
+        if let Line::Pty(pty) = &line
+            && !std::mem::replace(&mut listens, bench.now_ms() >= LISTENS_MS)
+            && listens
+        {
+            eprintln!("serial line at {}: sim-host monitor --port {}", pty.name, pty.name);
+        }
+        if result.is_ok() && shown == 0 && bench.now_ms() >= SILENT_MS {
+            result = Err(bench.endless("line of the log"));
+        }
         if arguments.can {
             show_can(&mut bench);
         }
@@ -183,13 +200,22 @@ fn show_can(bench: &mut Bench) {
     }
 }
 
-/// What is in a file, if there is one.
+/// The flash of the parameters in a file, if there is one. A file that is none, or can't be written at the end, is refused
+/// before the run.
 fn kept(file: &Path) -> Result<Option<Vec<u8>>, Failure> {
-    match std::fs::read(file) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(why) if why.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(why) => Err(Failure::File(file.to_owned(), why)),
+    let failed = |why| Failure::File(file.to_owned(), why);
+    let store = match std::fs::read(file) {
+        Ok(bytes) if bytes.len() == STORE_BYTES => Some(bytes),
+        Ok(bytes) => return Err(Failure::NoStore(file.to_owned(), bytes.len(), STORE_BYTES)),
+        Err(why) if why.kind() == std::io::ErrorKind::NotFound => None,
+        Err(why) => return Err(failed(why)),
+    };
+    std::fs::OpenOptions::new().append(true).create(true).open(file).map_err(failed)?;
+    if store.is_none() {
+        // An erased flash, so that a run that fails leaves a file that the next one takes.
+        std::fs::write(file, vec![0xff; STORE_BYTES]).map_err(failed)?;
     }
+    Ok(store)
 }
 
 /// Where `cargo xtask firmware` leaves the board's images.

@@ -4,6 +4,7 @@ use crate::rig::{ALIGN, image};
 use std::path::Path;
 use std::time::Duration;
 use virtual_board::chip::gpio::Port;
+use virtual_board::inject::BRANCH_TO_ITSELF;
 use virtual_board::wiring::Wiring;
 use virtual_board::{Bench, Options};
 
@@ -81,7 +82,7 @@ fn a_register_without_a_model_ends_the_run() {
     let mut bench = Bench::power_on(&image(ALIGN), Options::default(), Wiring::new()).unwrap();
     bench.damage("_defmt_acquire", &READ_0X40015C00).unwrap();
     let error = bench.run_ms(5.0).unwrap_err().to_string();
-    let parts = ["at ", "no register at 0x40015c00", "by the instruction at 0x080", "in _defmt_acquire"];
+    let parts = ["at ", "no register at 0x40015c00", "at the instruction 0x080", "in _defmt_acquire"];
     assert!(parts.iter().all(|part| error.contains(part)), "{error}");
 
     // movw r0, #0x7c00; movt r0, #0x4000; ldr r0, [r0]: a peripheral whose clock is off.
@@ -90,7 +91,7 @@ fn a_register_without_a_model_ends_the_run() {
     bench.damage("_defmt_acquire", &READ_0X40007C00).unwrap();
     let error = bench.run_ms(5.0).unwrap_err().to_string();
     let parts =
-        ["at ", "0x40007c00: UART8.SR is gated by RCC", "by the instruction at 0x080", "in _defmt_acquire"];
+        ["at ", "0x40007c00: UART8.SR is gated by RCC", "at the instruction 0x080", "in _defmt_acquire"];
     assert!(parts.iter().all(|part| error.contains(part)), "{error}");
 }
 
@@ -107,14 +108,32 @@ fn a_conversion_of_a_pin_that_is_not_analog_ends_the_run() {
 }
 
 /// Situation: the aligning image with the switch open. Must hold: a wait that never ends is given up after its limit, with
-/// the instant, what was waited for and where the program is; a step that takes the emulator too long, too.
+/// the instant, what was waited for and where the program is, also where it went no further than its first instruction; a
+/// step that takes the emulator too long, too.
 #[test]
 fn a_wait_without_end_is_given_up() {
     let mut bench = Bench::power_on(&image(ALIGN), Options::default(), Wiring::new()).unwrap();
     let waited = bench
         .run_until(10.0, "closed bridge", |bench| bench.with(|board| board.chip.wiring.tim1.main_output()));
     let error = waited.unwrap_err().to_string();
-    let parts = ["at 10.0", "still no closed bridge", "by the instruction at 0x080", " in "];
+    let parts = [
+        "at 10.0",
+        "still no closed bridge",
+        "the program is at the instruction 0x080",
+        "at the instruction 0x080",
+        " in ",
+    ];
+    assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+
+    let mut bench = Bench::power_on(&image(ALIGN), Options::default(), Wiring::new()).unwrap();
+    bench.damage("Reset", &[BRANCH_TO_ITSELF]).unwrap();
+    let error = bench.run_until(10.0, "log", |bench| !bench.log().is_empty()).unwrap_err().to_string();
+    let parts = [
+        "at 10.0",
+        "still no log",
+        "the program is at the instruction 0x080",
+        " in Reset, the last access to a register was nowhere",
+    ];
     assert!(parts.iter().all(|part| error.contains(part)), "{error}");
 
     let hasty = Options { patience: Duration::from_nanos(1), ..Options::default() };

@@ -38,6 +38,26 @@ fn wrong_options_and_images_are_named() {
     }
 }
 
+/// Situation: a file of notes given as the flash of the parameters, a folder that is not there. Action: start the program. Must hold:
+/// exit status 2 before the board runs, one line that names the file; the notes are as they were.
+#[test]
+fn a_file_that_is_no_store_is_left_alone() {
+    let Some(image) = product() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let (notes, nowhere) = (folder.path().join("notes"), folder.path().join("none/store"));
+    std::fs::write(&notes, "notes").unwrap();
+    for (file, words) in
+        [(&notes, "notes: 5 bytes, a flash of the parameters has 49152"), (&nowhere, "store: No such file")]
+    {
+        let [image, file] = [&image, file].map(|path| path.to_str().expect("text"));
+        let output = virtual_board(&["--seconds", "0.01", "--image", image, "--store", file]);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains(words) && error.lines().count() == 1, "{error}");
+    }
+    assert_eq!(std::fs::read(&notes).unwrap(), b"notes");
+}
+
 /// Situation: the program with its serial line on standard input and output, as `sim-host --virtual-board` starts it.
 /// Action: ask who it is, for a parameter, set another, ask for its faults; then with an image that is none. Must hold:
 /// the product's image answers as a board would, with the parameter's new value and no faults; the image that is none is
@@ -58,8 +78,9 @@ fn the_tools_of_a_board_reach_it() {
 }
 
 /// Situation: the program as a user starts it, for 3 s, its serial line at a pseudo terminal. Action: open the device it
-/// names as a serial port, ask who is there, close it, open it again and set a parameter. Must hold: both are answered;
-/// the program ends by itself with status 0, and its log was written: the image's name, and that no motor is aligned.
+/// names as a serial port, ask who is there, close it, open it again and set a parameter. Must hold: it is named once the
+/// board has started; both are answered; the program ends by itself with status 0, and its log was written: the steps of
+/// control, and that no motor is aligned.
 #[test]
 fn its_pseudo_terminal_is_a_serial_port() {
     let Some(image) = product() else { return };
@@ -68,17 +89,28 @@ fn its_pseudo_terminal_is_a_serial_port() {
     let mut child = command.spawn().expect("it starts");
     let mut lines =
         BufReader::new(child.stderr.take().expect("its log")).lines().map(|line| line.expect("text"));
-    let first = lines.next().expect("a line");
-    let device = first.rsplit(' ').next().expect("a device");
+    let (mut start, mut device) = (Vec::new(), None);
+    while device.is_none() {
+        let line = lines.next().expect("a line");
+        device = line
+            .strip_prefix("serial line at ")
+            .and_then(|words| words.rsplit(' ').next())
+            .map(str::to_owned);
+        start.push(line);
+    }
+    let device = device.expect("a device");
+    for words in ["board-stm32f405", "imu: chip=0xd1"] {
+        assert!(start.iter().any(|line| line.contains(words)), "{words} before {start:#?}");
+    }
     let open = || {
-        let port = Serial::open(device, 115_200).expect("it can be opened");
+        let port = Serial::open(&device, 115_200).expect("it can be opened");
         Client::new(Box::new(port), PATIENCE)
     };
     assert_eq!(open().hello().expect("an answer").image, "board-stm32f405");
     assert_eq!(open().set("limits.max_torque_nm", Some(0.5)).expect("an answer"), Some(0.5));
     let log: Vec<_> = lines.collect();
     assert!(child.wait().expect("an end").success(), "{log:#?}");
-    for words in ["board-stm32f405", "motor"] {
+    for words in ["steps=", "motor"] {
         assert!(log.iter().any(|line| line.contains(words)), "{words}: {log:#?}");
     }
 }
