@@ -118,6 +118,36 @@ pub fn counts() -> Result<Vec<Count>> {
     }
 }
 
+/// A function of one number, and its instructions without the call: the mean of a thousand arguments.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Function {
+    /// What it computes, and by what.
+    pub name: String,
+    /// Its instructions.
+    pub mean: u32,
+}
+
+/// Counts for the functions of docs/motor.md. The images must be built.
+///
+/// # Errors
+/// QEMU or the image failed.
+pub fn functions() -> Result<Vec<Function>> {
+    let directory = qemu::directory("functions")?;
+    // No rides.
+    std::fs::write(directory.join("rides.bin"), []).map_err(|e| e.to_string())?;
+    let outcome = qemu::run("qemu-instructions", &[], &directory, qemu::COUNTED, qemu::LIMIT)?;
+    let function = |line: &str| {
+        let (name, _) = line.strip_prefix("function ")?.rsplit_once(", ")?;
+        Some(Function { name: name.into(), mean: field(line, "mean")? })
+    };
+    let functions: Vec<Function> = outcome.stdout.lines().filter_map(function).collect();
+    if outcome.status == Some(0) && !functions.is_empty() {
+        Ok(functions)
+    } else {
+        Err(format!("qemu-instructions: {outcome:?}"))
+    }
+}
+
 /// Rides of one name as one: the largest mean and the largest of all steps.
 fn joined(counts: Vec<Count>) -> Vec<Count> {
     let mut all: Vec<Count> = Vec::new();

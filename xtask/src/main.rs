@@ -6,7 +6,7 @@ use xtask::bench::bench;
 use xtask::document::{self, instruction_table, size_table};
 use xtask::reproducible::reproducible;
 use xtask::setup::{TargetSource, setup};
-use xtask::{Result, coverage, image, mutants, progress, qemu, virtual_board};
+use xtask::{Result, coverage, image, instructions, mutants, progress, qemu, virtual_board};
 
 const HELP: &str = "\
 cargo xtask <command> [--help]
@@ -103,7 +103,7 @@ cargo xtask instructions
 Counts the instructions and the stack of every control step: over the border ride for each law and
 configuration, over a ride with every sensor, and with each sensor broken in it. Prints them and
 writes docs/images.md anew. Fails when a step is over its budget, or less than a tenth under it; both
-stand in that page.
+stand in that page. Prints the instructions of single functions as well, for the table of docs/motor.md.
 ";
 
 const BENCH_HELP: &str = "\
@@ -271,6 +271,9 @@ fn measure(command: &str) -> Result<()> {
     let (sizes, counts) = document::regenerate()?;
     let sizes_only = command == "size";
     print!("{}", if sizes_only { size_table(&sizes) } else { instruction_table(&counts) });
+    if !sizes_only {
+        instructions::functions()?.iter().for_each(|f| println!("{}: {} instructions", f.name, f.mean));
+    }
     let over = if sizes_only {
         document::over_budget(&sizes, &[])
     } else {

@@ -1,5 +1,5 @@
 //! Counts the instructions of every control step over the rides of `rides.bin`, then of every call of the motor's loop,
-//! and the stack they take.
+//! and the stack they take; then the instructions of some functions.
 //!
 //! Under `-icount shift=10` an instruction lasts 1.024 us, 172 counts of SysTick, so that a
 //! difference of counts is a whole number of instructions. Instructions are not cycles: there are
@@ -17,6 +17,7 @@ use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_semihosting::hprintln;
 use firmware::board::Exit;
+use firmware::board::functions::{self, ARGUMENTS};
 use firmware::board::recording::{BLOCK, Recording};
 use firmware::board::rotor::Rotor;
 use firmware::board::semihosting::exit;
@@ -49,6 +50,11 @@ fn instructions(run: impl FnOnce()) -> u32 {
     compiler_fence(Ordering::SeqCst);
     let counts = before.wrapping_sub(SYST::get_current()) & RELOAD;
     (counts as f32 / COUNTS_PER_INSTRUCTION + 0.5) as u32
+}
+
+#[inline(never)]
+fn calling(call: &dyn Fn(usize, u32), which: usize, i: u32) -> u32 {
+    instructions(|| call(which, i))
 }
 
 #[cortex_m_rt::entry]
@@ -105,6 +111,11 @@ fn main() -> ! {
         assert!(motor.output.faults.has(fault), "{:?} but {:?}", fault, motor.output.faults);
     }
     hprintln!("motor {}", broken);
+    functions::each(|name, call| {
+        let count = |i| calling(call, 0, i).saturating_sub(calling(call, 1, i));
+        let sum: u32 = (0..ARGUMENTS).map(count).sum();
+        hprintln!("function {}, mean={}", name, (sum + ARGUMENTS / 2) / ARGUMENTS);
+    });
     exit(Exit::Success)
 }
 

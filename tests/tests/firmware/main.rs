@@ -3,6 +3,7 @@
 mod budgets;
 mod deadlines;
 mod faults;
+mod functions;
 mod line;
 mod no_panic;
 mod outputs;

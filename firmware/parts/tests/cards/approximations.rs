@@ -1,12 +1,26 @@
-//! Flight cards: what micromath is good enough for. The numbers are those of docs/motor.md.
+//! Flight cards: what micromath is good enough for. The errors in the table of docs/motor.md are computed here.
 
 use micromath::F32;
+use motor::turn::Turn;
 use parts::vesc6::BOARD_HEAT;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// The largest of some errors.
 fn most(errors: impl Iterator<Item = f64>) -> f64 {
     errors.fold(0.0, f64::max)
+}
+
+/// The page's row must tell these errors, today's and micromath's, within a twentieth.
+fn holds(row: &str, errors: [f64; 2]) {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/motor.md");
+    let page = std::fs::read_to_string(page).expect("the page");
+    let line = page.lines().find(|line| line.starts_with(&format!("| {row} |"))).expect(row);
+    let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+    let told =
+        [2, 4].map(|cell: usize| cells[cell].split(' ').next().and_then(|word| word.parse::<f64>().ok()));
+    let same =
+        |(told, error): (&Option<f64>, &f64)| told.is_some_and(|told| (told - error).abs() <= 0.05 * error);
+    assert!(told.iter().zip(&errors).all(same), "docs/motor.md says\n{line}, here {errors:?}");
 }
 
 /// Situation: numbers to be sent, from far below a unit to the ends of the range. Must hold: micromath rounds each as
@@ -20,6 +34,8 @@ fn rounding_is_that_of_libm() {
         .filter(|x| x.abs() < 40_000.0 && F32(*x).round().0 != libm::roundf(*x))
         .collect();
     assert_eq!(apart, [0.499_999_97, -0.499_999_97]);
+    let error = most(apart.iter().map(|x| f64::from((F32(*x).round().0 - libm::roundf(*x)).abs())));
+    holds("rounding of the values on CAN", [0.0, error]);
 }
 
 /// Situation: every count of the thermistor from -40 to 180 deg C, its logarithm by micromath. Must hold: up to 7 K
@@ -37,22 +53,41 @@ fn a_logarithm_below_one_is_no_temperature() {
         }
     }
     assert!((6.9..7.2).contains(&by_micromath) && as_done < 0.01, "{by_micromath} K, {as_done} K");
+    holds("logarithm of the thermistor", [as_done, by_micromath]);
 }
 
-/// Situation: a turn, and lengths of any size. Must hold: sine and cosine within 1.1e-3, a root within 6.1 %, 1.6e-6
-/// after two steps of Newton, whose root of infinity is no number.
+/// Situation: a turn in 200,000 steps. Must hold: today's sine and cosine within 1e-6, micromath's within 1.1e-3.
 #[test]
-fn angles_and_lengths_are_rough() {
+fn micromaths_angles_are_rough() {
     let turn = || (-100_000..100_000).map(|i| f64::from(i) * PI / 100_000.0);
-    let sine = most(turn().map(|x| (f64::from(F32(x as f32).sin().0) - x.sin()).abs()));
-    let cosine = most(turn().map(|x| (f64::from(F32(x as f32).cos().0) - x.cos()).abs()));
-    assert!((1.0e-3..1.1e-3).contains(&sine) && (1.0e-3..1.1e-3).contains(&cosine), "{sine} {cosine}");
+    let rough = most(turn().map(|x| {
+        let (sin, cos) = (F32(x as f32).sin().0, F32(x as f32).cos().0);
+        (f64::from(sin) - x.sin()).abs().max((f64::from(cos) - x.cos()).abs())
+    }));
+    let today = most((0..200_000).map(|i| {
+        let angle = Turn(i * (u32::MAX / 200_000));
+        let x = TAU * f64::from(angle.0) / 2.0_f64.powi(32);
+        let (sin, cos) = angle.sin_cos();
+        (f64::from(sin) - x.sin()).abs().max((f64::from(cos) - x.cos()).abs())
+    }));
+    assert!((1e-8..1e-6).contains(&today) && (1.0e-3..1.1e-3).contains(&rough), "{today} {rough}");
+    holds("sine and cosine of the rotor's angle", [today, rough]);
+}
+
+/// Situation: lengths of any size. Must hold: a root within a rounding today, by micromath within 6.1 %, 1.6e-6 after two
+/// steps of Newton, whose root of infinity is no number.
+#[test]
+fn micromaths_lengths_are_rough() {
     let newton = |x: f32, root: f32| 0.5 * (root + x / root);
     let off = |x: f32, root: f32| (f64::from(root) / f64::from(x).sqrt() - 1.0).abs();
     let sizes = || (0x0080_0000..0x7f00_0000).step_by(10_007).map(f32::from_bits);
+    let today = most(sizes().map(|x| off(x, libm::sqrtf(x))));
     let rough = most(sizes().map(|x| off(x, F32(x).sqrt().0)));
     let fine = most(sizes().map(|x| off(x, newton(x, newton(x, F32(x).sqrt().0)))));
+    assert!((1e-9..6e-8).contains(&today), "{today}");
     assert!((0.060..0.061).contains(&rough) && (1.4e-6..1.7e-6).contains(&fine), "{rough} {fine}");
     let infinite = newton(f32::INFINITY, newton(f32::INFINITY, F32(f32::INFINITY).sqrt().0));
-    assert!(infinite.is_nan());
+    assert!(infinite.is_nan() && libm::sqrtf(f32::INFINITY) == f32::INFINITY);
+    holds("length of a vector, circle limits", [today, rough]);
+    holds("the same with two steps of Newton", [today, fine]);
 }

@@ -4,6 +4,7 @@
 mod end;
 pub mod executor;
 mod flash;
+pub mod functions;
 pub mod line;
 pub mod mishap;
 pub mod pil;

@@ -1,0 +1,77 @@
+//! Functions of one number, today's beside micromath's, as the table of docs/motor.md has them.
+
+use core::f32::consts::TAU;
+use core::hint::black_box;
+use micromath::F32;
+use motor::turn::Turn;
+
+/// How many arguments each is called with.
+pub const ARGUMENTS: u32 = 1000;
+
+/// Calls `count` with the name of each function, and with what calls it (0) or one that does nothing (1) with an argument.
+pub fn each(mut count: impl FnMut(&'static str, &dyn Fn(usize, u32))) {
+    for (name, function, argument) in NUMBERS {
+        let functions = black_box::<[Function; 2]>([function, same]);
+        count(name, &|which, i| _ = black_box(functions[which](argument(i))));
+    }
+    let functions = black_box::<[fn(Turn) -> (f32, f32); 2]>([Turn::sin_cos, no_sin_cos]);
+    count("sine and cosine, today", &|which, i| _ = black_box(functions[which](angle(i))));
+    let functions = black_box::<[fn(f32) -> (f32, f32); 2]>([rough_sin_cos, twice]);
+    count("sine and cosine, micromath", &|which, i| _ = black_box(functions[which](angle(i).signed() * TAU)));
+}
+
+/// Of a number to a number.
+type Function = fn(f32) -> f32;
+/// The argument of a call.
+type Argument = fn(u32) -> f32;
+
+/// Functions, each with its arguments.
+const NUMBERS: [(&str, Function, Argument); 7] = [
+    ("rounding, today", libm::roundf, to_be_sent),
+    ("rounding, micromath", |x| F32(x).round().0, to_be_sent),
+    ("logarithm, today", libm::logf, resistance),
+    ("logarithm, micromath", |x| F32(x).ln().0, resistance),
+    ("root, today", libm::sqrtf, square),
+    ("root, micromath", |x| F32(x).sqrt().0, square),
+    ("root, micromath and two steps of Newton", |x| newton(x, newton(x, F32(x).sqrt().0)), square),
+];
+
+fn rough_sin_cos(x: f32) -> (f32, f32) {
+    (F32(x).sin().0, F32(x).cos().0)
+}
+
+fn same(x: f32) -> f32 {
+    x
+}
+
+fn twice(x: f32) -> (f32, f32) {
+    (x, x)
+}
+
+fn no_sin_cos(angle: Turn) -> (f32, f32) {
+    twice(f32::from_bits(angle.0))
+}
+
+fn newton(x: f32, root: f32) -> f32 {
+    0.5 * (root + x / root)
+}
+
+/// Once round.
+fn angle(i: u32) -> Turn {
+    Turn(i.wrapping_mul(u32::MAX / ARGUMENTS))
+}
+
+/// Over the range of 16 bits.
+fn to_be_sent(i: u32) -> f32 {
+    65.43 * (i as f32 - 500.0)
+}
+
+/// A thermistor's, of the one at 25 degrees, over the converter's counts.
+fn resistance(i: u32) -> f32 {
+    4095.0 / (20.0 + 4.0 * i as f32) - 1.0
+}
+
+/// Of a length up to 32 V.
+fn square(i: u32) -> f32 {
+    1.0 + i as f32
+}
