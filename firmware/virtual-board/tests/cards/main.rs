@@ -14,6 +14,7 @@ mod product;
 mod program;
 mod registers;
 mod rides;
+mod rides_page;
 mod rig;
 mod serial;
 mod slip;
