@@ -15,7 +15,10 @@ impl Functions {
     /// What is wrong with the image: not an ELF file, of another machine, a vector table that can't be this chip's, or
     /// no symbols.
     pub(crate) fn read(image: &[u8]) -> Result<Self, String> {
-        let file = object::File::parse(image).map_err(|_| "not an ELF file")?;
+        let file = object::File::parse(image).map_err(|why| match image {
+            [0x7f, b'E', b'L', b'F', ..] => format!("an ELF file that is damaged or cut short: {why}"),
+            _ => "not an ELF file".into(),
+        })?;
         if file.architecture() != Architecture::Arm || file.is_64() {
             return Err(format!("built for {:?}, not for a 32-bit Arm core", file.architecture()));
         }
