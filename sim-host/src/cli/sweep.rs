@@ -168,13 +168,27 @@ fn summary(grid: &Grid, document: &SweepDocument, folder: &Path) -> String {
     }
     let capped = measured.iter().filter(|(_, (_, bound))| !bound.is_measured()).count();
     if capped > 0 {
+        let [largest, smallest] =
+            ends.map(|(_, end)| end.is_some_and(|(_, (_, bound))| !bound.is_measured()));
+        let unknown = not_known(measured.len(), capped, largest, smallest);
+        let rate = document.search.max_rate;
         let _ = writeln!(
             text,
-            "{capped} of {all} cells are lower bounds, as nothing fell up to {} rad/s: which is the largest is not known",
-            document.search.max_rate
+            "{capped} of {all} cells are lower bounds, as nothing fell up to {rate} rad/s{unknown}"
         );
     }
     text
+}
+
+/// What is not known of the ranking of `all` cells of which `capped` are lower bounds; `largest` and `smallest` say whether
+/// those that are named so are.
+fn not_known(all: usize, capped: usize, largest: bool, smallest: bool) -> &'static str {
+    match (capped > usize::from(largest), smallest && all > 1) {
+        (false, false) => "",
+        (true, false) => ": which is the largest is not known",
+        (false, true) => ": which is the smallest is not known",
+        (true, true) => ": which is the largest and which the smallest is not known",
+    }
 }
 
 /// Most columns that are timed for an estimate.

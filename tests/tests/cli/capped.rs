@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use serde_json::Value;
-use tests::cli::Bench;
+use tests::cli::{Bench, repository};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 const SEARCH: &str = "--scan-step 1 --tolerance 0.5";
@@ -56,6 +56,7 @@ fn a_sweep_marks_its_lower_bounds_and_ranks_one_speed_by_height() {
         text.contains("largest area at least 4.000") && text.contains("2 of 3 cells are lower bounds"),
         "{text}"
     );
+    assert!(text.contains(": which is the largest is not known"), "{text}");
     let cells = bench.read("a/sweep.csv");
     let marks: Vec<&str> = cells.lines().skip(3).map(|l| l.rsplit(',').next().unwrap()).collect();
     assert_eq!(marks, ["false", "true", "true"], "{cells}");
@@ -71,6 +72,49 @@ fn a_sweep_marks_its_lower_bounds_and_ranks_one_speed_by_height() {
     let (largest, smallest) = (height("largest height"), height("smallest height"));
     assert!(largest > smallest && smallest > 0.5 && largest < 30.0, "{text}");
     assert!(!bench.read("b/figures/area-torque-limit.svg").contains("Area"));
+}
+
+/// Situation: sweeps of which no, one or all of two cells outlast the largest rate.
+/// Action: read the ranking in the text.
+/// Must hold: that it is not known is said where it is not, and nowhere else: one lower bound above a measured area is the largest.
+#[test]
+fn a_ranking_is_doubted_only_where_it_is_not_known() {
+    let bench = Bench::new(PROGRAM);
+    for (limits, rate, ending) in [
+        ("0.5,7", 30, ""),
+        ("0.5,7", 4, "1 of 2 cells are lower bounds, as nothing fell up to 4 rad/s"),
+        (
+            "7,none",
+            4,
+            "2 of 2 cells are lower bounds, as nothing fell up to 4 rad/s: which is the largest and which the smallest is not known",
+        ),
+    ] {
+        let line =
+            format!("sweep --law h --over torque-limit={limits} --speeds 4:5:1 {SEARCH} --max-rate {rate}");
+        let text = bench.run(&format!("{line} --out {limits}-{rate}")).stdout;
+        let last = text.lines().last().unwrap();
+        assert!(last == ending || ending.is_empty() && last.starts_with("smallest area "), "{text}");
+    }
+}
+
+/// Situation: the page on end-stops, whose rider outlasts the largest rate at two of its stops.
+/// Action: compute the basins of its first table's last column again.
+/// Must hold: each area is the page's, and what is a lower bound is marked as one, what is not is not.
+#[test]
+fn the_page_on_end_stops_marks_its_lower_bounds() {
+    let bench = Bench::new(PROGRAM);
+    let page = std::fs::read_to_string(repository("docs/studies/end-stop.md")).unwrap();
+    for (rider, expected) in [("none", false), ("smart", true)] {
+        let found = bench.json(&format!(
+            "basin --law h --torque-limit 7 --rider {rider} --actuator stop=0.524 --speeds 2:7:1 --max-rate 20 --scan-step 0.5"
+        ));
+        let row = page.lines().find(|line| line.starts_with(&format!("| rider {rider} |"))).expect("a row");
+        let cell = row.split('|').rev().nth(1).unwrap().trim();
+        assert_eq!(found["area_capped"], expected, "{rider}");
+        let sign = if expected { ">= " } else { "" };
+        let area = found["area"].as_f64().unwrap();
+        assert!(cell.starts_with(&format!("{sign}{area:.3} ({sign}+")), "{cell} {area}");
+    }
 }
 
 /// Situation: a study of one sweep, searched up to a rate that its reference outlasts.
