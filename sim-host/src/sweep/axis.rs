@@ -69,8 +69,16 @@ fn seconds(x: f64, unit: &str) -> Option<f64> {
     }
 }
 
-/// Whether two values are the same word, number or time.
+/// Whether two values are the same: each of their parts, as those of `0.5:1.5` or `gyro:stuck@0.3s`, is.
 fn equal(a: &str, b: &str) -> bool {
+    let [a, b] = [a, b].map(|text| text.replace("..", ":"));
+    let parts = |text: &'_ str| text.split([':', '=', ',', '@']).map(str::to_owned).collect::<Vec<_>>();
+    let (a, b) = (parts(&a), parts(&b));
+    a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| same(a, b))
+}
+
+/// Whether two parts are the same word, number or time.
+fn same(a: &str, b: &str) -> bool {
     let (Some((x, u)), Some((y, w))) = (number(a), number(b)) else { return a == b };
     if u == w { x == y } else { seconds(x, u).is_some_and(|x| Some(x) == seconds(y, w)) }
 }
@@ -184,6 +192,7 @@ mod tests {
         assert_eq!(values("taper=none,0.5:1.5"), ["none", "0.5:1.5"]);
         assert_eq!(values("law=h,cl2:4,data/laws/example.toml"), ["h", "cl2:4", "data/laws/example.toml"]);
         assert_eq!(values(r"law=h,a\,b.toml"), ["h", "a,b.toml"]);
+        assert_eq!(values("fault=gyro:stuck@0.3s,gyro:stuck@3s"), ["gyro:stuck@0.3s", "gyro:stuck@3s"]);
         assert_eq!(values("set=shape.rate=3"), ["shape.rate=3"]);
     }
 
@@ -209,6 +218,9 @@ mod tests {
             ("a=1,1", "twice"),
             ("a=1,1.0", "`1` and `1.0` are the same"),
             ("a=20ms,0.02s", "are the same"),
+            ("taper=0.5:1.5,0.50:1.5", "are the same"),
+            ("law=cl2:3,cl2:3.0", "are the same"),
+            ("fault=gyro:stuck@300ms..1s,gyro:stuck@0.3s..1s", "are the same"),
             ("a=0:1:0.5,5e-1", "are the same"),
             ("a=1:0:0.1", "must rise"),
             ("a=0:1:0", "must rise"),
