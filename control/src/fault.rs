@@ -116,7 +116,7 @@ pub enum Cause {
     SwitchOff = 53,
     /// The self-test is not over.
     SelfTest = 54,
-    /// A control period was much longer or shorter than planned.
+    /// A control period was much longer than planned, or its time lay before the last one's.
     Timing = 55,
     /// The path's errors are missing or too old.
     PathLost = 56,

@@ -34,6 +34,27 @@ fn without_a_fault_nothing_is_told() {
     assert!((1.0..=7.0).contains(&peak), "{peak} N m");
 }
 
+/// Situation: the clock stands, runs at half or three times its rate, or at six times it, or jumps back by 2 ms. Action: ride on
+/// from there. Must hold: periods above 5 ms and a time that goes back are `Timing` at once; shorter ones, as the cause's page says, are not.
+#[test]
+fn the_clock_is_judged_by_long_periods_only() {
+    for (fault, seen) in [
+        ("clock:stuck@1s", None),
+        ("clock:scale=0.5@1s", None),
+        ("clock:scale=3@1s", None),
+        ("clock:scale=6@1s", Some(1.0)),
+        ("clock:jump=-0.002@1s", Some(1.0)),
+    ] {
+        let trace = flown(fault.parse().unwrap());
+        let timing = trace.iter().find(|p| control::Causes(p.causes).has(Cause::Timing)).map(|p| p.t);
+        let near = match (timing, seen) {
+            (Some(at), Some(from)) => (from..from + 0.003).contains(&at),
+            (at, from) => at == from,
+        };
+        assert!(near, "{fault}: {timing:?}");
+    }
+}
+
 /// Situation: engaged, riding. Action: each fault of the cards. Must hold: nothing is told before it; the cause and the mode
 /// follow within the stated time; without permission the torque is zero 40 ms later (off the switch 200 ms), limping it
 /// stays within half of the largest.
