@@ -163,7 +163,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     outputs.write(Results {
         document: &document,
         config: &config,
-        summary: || terminal::eigen(&figure, 80) + &summary(&critical, &ranges),
+        summary: || {
+            terminal::eigen(&figure, 80) + &summary(&critical, &ranges, args.speeds.iter().any(|v| *v < 0.0))
+        },
         table: || {
             table::rows(&config, &columns(count, in_table), rows(&args.speeds, &values, count, in_table))
         },
@@ -202,8 +204,8 @@ fn rows(
     })
 }
 
-fn summary(critical: &CriticalSpeeds, stable: &[(f64, f64)]) -> String {
-    let mut text = String::new();
+fn summary(critical: &CriticalSpeeds, stable: &[(f64, f64)], backwards: bool) -> String {
+    let mut text = if backwards { "riding forward:\n".into() } else { String::new() };
     for (name, what, speed) in [
         ("v_d", "weave pair forms", critical.v_d),
         ("v_w", "weave becomes stable", critical.v_w),

@@ -176,6 +176,9 @@ fn backwards_is_riding_with_a_steered_rear_wheel() {
         let near = back.iter().map(|(r, i)| (re + r).hypot(im.abs() - i.abs())).fold(f64::INFINITY, f64::min);
         assert!(near < 1e-9, "{re} {im}: {back:?}");
     }
+    let text = bench.run("eigen --bicycle benchmark --speeds=-5:5:5").stdout;
+    assert!(text.contains("riding forward:\nv_d = 0.6843"), "{text}");
+    assert!(!bench.run("eigen --bicycle benchmark --speeds 5").stdout.contains("riding forward"));
     let ride = bench.json("ride --bicycle benchmark --law none --speed=-3 --steer-rate 0.1");
     assert_eq!((&ride["outcome"], &ride["start"]["speed_m_s"]), (&json!("fallen"), &json!(-3.0)));
     bench.run("ride --law h --speed=-3").refused_naming(&["--speed", "-3", "0 to 30", "--law none"]);
