@@ -1,6 +1,7 @@
-//! Files of bicycles by their ending: `.txt` and `.ini` as BicycleParameters writes them, YAML sets, TOML otherwise.
+//! Files of bicycles by their ending: `.txt` and `.ini` as BicycleParameters writes them, sets in YAML or JSON, TOML otherwise.
 
 use super::uncertain::Uncertain;
+use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -12,9 +13,14 @@ pub(super) fn table(text: &str, path: &Path) -> Result<Table, String> {
     let ending = path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase());
     match ending.as_str() {
         "txt" | "ini" => lines(text),
-        "yml" | "yaml" => yaml(text),
-        _ => toml::from_str(text).map_err(|e| format!("is not valid TOML: {}", e.to_string().trim())),
+        "yml" | "yaml" => set(serde_saphyr::from_str(text).map_err(|e| invalid("YAML", &e))?),
+        "json" => set(serde_json::from_str(text).map_err(|e| invalid("JSON", &e))?),
+        _ => toml::from_str(text).map_err(|e| invalid("TOML", &e)),
     }
+}
+
+fn invalid(format: &str, why: &dyn std::fmt::Display) -> String {
+    format!("is not valid {format}: {}", why.to_string().trim())
 }
 
 /// Lines `KEY = VALUE`, values as `1.12` or `1.12+/-0.02`, several with commas being averaged; `#` begins a remark.
@@ -47,22 +53,23 @@ fn mean(list: &str) -> Result<Value, String> {
     Ok(if sd > 0.0 { Value::String(format!("{value:?}+/-{sd:?}")) } else { Value::Float(value) })
 }
 
-/// A mapping of keys to numbers, flat or below `values` with `parameterization: benchmark` beside it.
-fn yaml(text: &str) -> Result<Table, String> {
-    let mut table: Table =
-        serde_saphyr::from_str(text).map_err(|e| format!("is not valid YAML: {}", e.to_string().trim()))?;
+/// The names of the model's 26 parameters as a set: in BicycleParameters' test sets, and in what it writes.
+const PARAMETERIZATIONS: [&str; 2] = ["benchmark", "Meijaard2007"];
+
+/// A mapping of keys to numbers, flat or below `values` with one of [`PARAMETERIZATIONS`] beside it. What is null is not there.
+fn set(all: BTreeMap<String, Option<Value>>) -> Result<Table, String> {
+    let mut table: Table = all.into_iter().filter_map(|(key, value)| Some((key, value?))).collect();
     let Some(values) = table.remove("values") else { return Ok(table) };
     let Value::Table(mut values) = values else { return Err("`values` must be a mapping".into()) };
-    match table.get("parameterization").and_then(Value::as_str) {
-        None | Some("benchmark") => {}
-        Some(other) => {
-            return Err(format!(
-                "parameterization `{other}` is not known; `benchmark` is (Meijaard et al. 2007)"
-            ));
-        }
+    let named = table.get("parameterization").and_then(Value::as_str);
+    if let Some(other) = named.filter(|name| !PARAMETERIZATIONS.contains(name)) {
+        let known = PARAMETERIZATIONS.map(|name| format!("`{name}`")).join(" and ");
+        return Err(format!(
+            "has parameterization `{other}`, which is not known; {known} are (Meijaard et al. 2007)"
+        ));
     }
-    let rider = table.get("rider").cloned().map(|rider| ("rider_included".to_owned(), rider));
-    let note = table.get("description").cloned().map(|note| ("note".to_owned(), note));
-    values.extend(rider.into_iter().chain(note));
+    let rider = table.remove("rider").map(|rider| ("rider_included".to_owned(), rider));
+    let note = table.remove("description").map(|note| ("note".to_owned(), note));
+    values.extend(rider.into_iter().chain(note.filter(|(_, note)| note.as_str() != Some(""))));
     Ok(values)
 }

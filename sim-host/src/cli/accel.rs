@@ -1,7 +1,8 @@
 //! `sim-host bicycle accel`.
 
+use super::bicycle::Which;
 use super::{Failure, warn};
-use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques, catalogue, pitch_from_upright};
+use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques, pitch_from_upright};
 use crate::report::output::Output;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -20,9 +21,8 @@ Example:
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub(super) struct Args {
-    /// Shipped bicycle, FILE, or FILE#NAME
-    #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
-    bicycle: String,
+    #[command(flatten)]
+    which: Which,
     /// CSV file of states and torques
     #[arg(long, value_name = "IN.csv")]
     states: PathBuf,
@@ -43,7 +43,7 @@ const COLUMNS: [(&str, f64); 7] = [
 ];
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let bicycle = catalogue::load(&args.bicycle)?;
+    let bicycle = args.which.load()?;
     warn(&bicycle);
     let output = Output::create(&args.csv)?;
     let file = args.states.display();

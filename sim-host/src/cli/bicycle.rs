@@ -24,10 +24,11 @@ Examples:
   sim-host bicycle check --bicycle my.toml";
 
 const SHOW_HELP: &str = "\
-The answer is a file that --bicycle takes.
+The answer is a file that --bicycle takes, with --ini by the ending .txt.
 
-Example:
-  sim-host bicycle show --bicycle benchmark > my.toml";
+Examples:
+  sim-host bicycle show --bicycle benchmark > my.toml
+  sim-host bicycle show --bicycle benchmark --ini > MyBenchmark.txt";
 
 const CHECK_HELP: &str = "\
 Examples:
@@ -42,16 +43,17 @@ pub(super) enum Command {
     /// One bicycle's parameters
     #[command(after_help = SHOW_HELP)]
     Show {
-        /// Shipped bicycle, FILE, or FILE#NAME
-        #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
-        bicycle: String,
+        #[command(flatten)]
+        which: Which,
+        /// As BicycleParameters reads it: remarks behind #, values and deviations without quotation marks
+        #[arg(long)]
+        ini: bool,
     },
     /// Checks a bicycle; prints its linear model M, C1, K0, K2 and critical speeds
     #[command(after_help = CHECK_HELP)]
     Check {
-        /// Shipped bicycle, FILE, or FILE#NAME
-        #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
-        bicycle: String,
+        #[command(flatten)]
+        which: Which,
         /// Write JSON to FILE, or to standard output (also -)
         #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
         json: Option<PathBuf>,
@@ -60,11 +62,32 @@ pub(super) enum Command {
     Accel(accel::Args),
 }
 
+/// Which bicycle.
+#[derive(clap::Args)]
+pub(super) struct Which {
+    /// Shipped bicycle, FILE, or FILE#NAME
+    #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
+    bicycle: String,
+    /// Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    bicycle_set: Vec<String>,
+}
+
+impl Which {
+    /// The bicycle, changed as asked for.
+    ///
+    /// # Errors
+    /// Names what is wrong with file, key or value.
+    pub(super) fn load(&self) -> Result<Bicycle, Failure> {
+        Ok(catalogue::load(&self.bicycle)?.varied(&self.bicycle_set)?)
+    }
+}
+
 pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
     match command {
         Command::List => list()?,
-        Command::Show { bicycle } => show(bicycle)?,
-        Command::Check { bicycle, json } => check(bicycle, json.as_ref())?,
+        Command::Show { which, ini } => show(&which.load()?, *ini)?,
+        Command::Check { which, json } => check(&which.load()?, json.as_ref())?,
         Command::Accel(args) => accel::run(args)?,
     }
     Ok(Ended::Done)
@@ -95,34 +118,33 @@ fn uncontrolled(bicycle: &Bicycle) -> Stability {
     stability(&Model::new(&bicycle.parameters, Feedback::new(Law::None, Capsize::default()), None))
 }
 
-fn show(name: &str) -> Result<(), Failure> {
-    let bicycle = catalogue::load(name)?;
+fn show(bicycle: &Bicycle, ini: bool) -> Result<(), Failure> {
     let Tool { name: tool, version, commit } = Tool::this();
-    let mut text = format!("# {tool} {version} commit {commit}, bicycle {name}\n");
-    for (key, remark) in [("source", &bicycle.source), ("note", &bicycle.note)] {
-        if let Some(remark) = remark {
-            let _ = writeln!(text, "{key} = {}", toml::Value::from(remark.as_str()));
+    let mut text = format!("# {tool} {version} commit {commit}, bicycle {}\n", bicycle.name);
+    let (remark, quote) = if ini { ("# ", "") } else { ("", "\"") };
+    for (key, words) in [("source", &bicycle.source), ("note", &bicycle.note)] {
+        if let Some(words) = words {
+            let _ = writeln!(text, "{remark}{key} = {}", toml::Value::from(words.as_str()));
         }
     }
     if let Some(included) = bicycle.rider_included {
-        let _ = writeln!(text, "rider_included = {included}");
+        let _ = writeln!(text, "{remark}rider_included = {included}");
     }
     bicycle.warnings.iter().for_each(|warning| text += &format!("# warning: {warning}\n"));
     let deviations = bicycle.measured.as_ref().map_or([0.0; KEYS.len()], Measured::deviations);
     for ((key, value), sd) in KEYS.iter().zip(bicycle.parameters.to_values()).zip(deviations) {
         let _ = match sd > 0.0 {
-            true => writeln!(text, "{key} = \"{value:?}+/-{sd:?}\""),
+            true => writeln!(text, "{key} = {quote}{value:?}+/-{sd:?}{quote}"),
             false => writeln!(text, "{key} = {value:?}"),
         };
     }
     print(&text)
 }
 
-fn check(name: &str, json: Option<&PathBuf>) -> Result<(), Failure> {
-    let bicycle = catalogue::load(name)?;
-    warn(&bicycle);
+fn check(bicycle: &Bicycle, json: Option<&PathBuf>) -> Result<(), Failure> {
+    warn(bicycle);
     let linear = Linear::new(&bicycle.parameters);
-    let Stability { critical: c, ranges, changes } = uncontrolled(&bicycle);
+    let Stability { critical: c, ranges, changes } = uncontrolled(bicycle);
     let flashed_off = onboard::fit(
         &mut Config::product(),
         &Geometry::new(&bicycle.parameters),
@@ -132,7 +154,7 @@ fn check(name: &str, json: Option<&PathBuf>) -> Result<(), Failure> {
     let document = CheckDocument {
         schema: SCHEMA,
         tool: Tool::this(),
-        bicycle: ResolvedBicycle::new(&bicycle),
+        bicycle: ResolvedBicycle::new(bicycle),
         M: rows(&linear.m),
         C1: rows(&linear.c1),
         K0: rows(&linear.k0),
@@ -148,7 +170,7 @@ fn check(name: &str, json: Option<&PathBuf>) -> Result<(), Failure> {
         return write_json(&Output::create(path)?, &document);
     }
     let verdict = if bicycle.warnings.is_empty() { "sound" } else { "doubtful" };
-    let mut text = format!("{name}: {verdict}\n");
+    let mut text = format!("{}: {verdict}\n", bicycle.name);
     match bicycle.rider_included {
         Some(true) => text += "with a rider's body\n",
         Some(false) => text += "without a rider's body\n",

@@ -112,9 +112,74 @@ fn what_is_wrong_in_a_file_of_another_program_is_named() {
         .run(&format!("bicycle check --bicycle rigid_jason+{rider}"))
         .refused_naming(&["has a rider already"]);
     bench.write("p.yml", "parameterization: principal\nvalues:\n  w: 1.0\n");
-    bench.run("bicycle check --bicycle p.yml").refused_naming(&["p.yml", "`principal`", "benchmark"]);
+    bench
+        .run("bicycle check --bicycle p.yml")
+        .refused_naming(&["p.yml has parameterization `principal`", "benchmark"]);
     bench.write("q.yml", "w: [1.0\n");
     bench.run("bicycle check --bicycle q.yml").refused_naming(&["q.yml", "YAML"]);
+}
+
+/// Situation: a set as BicycleParameters' `to_yaml` writes it, with empty remarks and its other name for the same 26 parameters; the
+/// same in JSON, flat and below `values`.
+/// Action: check them.
+/// Must hold: the shipped values; nothing said of a rider's body, for the file says nothing; no empty note.
+#[test]
+fn sets_as_bicycleparameters_writes_them() {
+    let bench = bench();
+    let values = catalogue::load("benchmark").expect("ships").parameters.to_values();
+    let lines = |line: &dyn Fn(&str, f64) -> String| -> Vec<String> {
+        KEYS.iter().zip(values).map(|(key, value)| line(key, value)).collect()
+    };
+    let yaml = lines(&|key, value| format!("  {key}: {value:?}\n")).concat();
+    let head = "description: ''\nparameterization: Meijaard2007\nparameters: ''\nrider: null\nvalues:\n";
+    bench.write("my.yml", format!("{head}{yaml}  v: 1.0\n"));
+    let json = lines(&|key, value| format!("\"{key}\": {value:?}")).join(", ");
+    bench.write("flat.json", format!("{{{json}}}\n"));
+    bench.write(
+        "set.json",
+        format!("{{\"rider\": null, \"parameterization\": \"benchmark\", \"values\": {{{json}}}}}\n"),
+    );
+    for (file, note) in
+        [("my.yml", "not used: v".into()), ("flat.json", Value::Null), ("set.json", Value::Null)]
+    {
+        let bicycle = &bench.json(&format!("bicycle check --bicycle {file}"))["bicycle"];
+        for (key, value) in KEYS.iter().zip(values) {
+            assert_eq!(bicycle["parameters"][key], value, "{file} {key}");
+        }
+        assert_eq!((&bicycle["note"], &bicycle["rider_included"]), (&note, &Value::Null), "{file}");
+    }
+    bench.write("cut.json", format!("{{{json}"));
+    bench.run("bicycle check --bicycle cut.json").refused_naming(&["cut.json", "JSON"]);
+}
+
+/// Situation: a measured bicycle with its rider, and a shipped one.
+/// Action: show them for BicycleParameters, one with a parameter changed; read that again.
+/// Must hold: every line is a remark or a key, `=`, a number and perhaps its deviation, as that package's reader wants them; the same
+/// values and deviations come back.
+#[test]
+fn a_bicycle_is_shown_for_bicycleparameters() {
+    let bench = bench();
+    for name in ["data/bicycles/Rigid+Jason", "browser --bicycle-set lam=0.4"] {
+        let shown = bench.run(&format!("bicycle show --ini --bicycle {name}")).stdout;
+        let lines: Vec<&str> = shown.lines().filter(|line| !line.starts_with('#')).collect();
+        assert_eq!(lines.len(), KEYS.len(), "{shown}");
+        for line in lines {
+            let value = line.split_once(" = ").expect("KEY = VALUE").1;
+            assert!(value.split("+/-").all(|number| number.parse::<f64>().is_ok()), "{line}");
+        }
+        bench.write("shown.txt", &shown);
+        let [before, after] =
+            [name, "shown.txt"].map(|name| bench.json(&format!("bicycle check --bicycle {name}")));
+        assert_eq!(
+            (&before["bicycle"]["parameters"], &before["v_w"]),
+            (&after["bicycle"]["parameters"], &after["v_w"])
+        );
+        let [before, after] = [&before, &after].map(|of| of["bicycle"]["uncertainties"].as_object().unwrap());
+        assert_eq!(before.len(), after.len(), "{name}");
+        for (key, sd) in before {
+            assert!(near(&after[key], sd.as_f64().unwrap(), 1e-9), "{name} {key}: {sd} {}", after[key]);
+        }
+    }
 }
 
 /// Situation: bicycles without a rider's body and with one; riders whose gains are made for a bicycle.
