@@ -188,6 +188,10 @@ fn read(path: &str) -> Result<(Case, String), Failure> {
     if columns.is_empty() {
         return Err(format!("{path}: no speed of it is computed").into());
     }
+    if columns.len() < speeds.len() {
+        let (done, all) = (columns.len(), speeds.len());
+        complain(&format!("warning: {path} is of an interrupted search: {done} of {all} speeds are in it"));
+    }
     let label =
         std::path::Path::new(path).file_stem().map_or(path.into(), |s| s.to_string_lossy().into_owned());
     let case = Case { label, config: document["config"].clone(), basin: Basin { columns } };

@@ -5,7 +5,7 @@ use super::outputs::complain_once;
 use super::parameter_file::ParameterFile;
 use super::plant_args::{LONGEST_S, PlantArgs, whole_ticks};
 use super::rider_args::{RiderArgs, step};
-use super::{Failure, law, warn};
+use super::{Failure, cut_files, law, warn};
 use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
 use crate::board::parameter::law_name;
@@ -146,6 +146,12 @@ impl ConditionArgs {
         })
     }
 
+    /// What may name a file, but for the bicycle.
+    fn files(&self) -> impl Iterator<Item = &str> {
+        let parameters = self.parameters.as_deref().and_then(std::path::Path::to_str);
+        [self.law.as_deref(), self.rider.name(), parameters].into_iter().flatten().chain(self.plant.files())
+    }
+
     /// Loads and checks everything; warnings go to standard error.
     pub(super) fn setup(&self) -> Result<Setup, Failure> {
         let bicycle = catalogue::load(&self.bicycle)?.varied(&self.bicycle_set)?;
@@ -234,7 +240,8 @@ impl ConditionArgs {
             AssistKind::Ideal => Assist::Ideal(Box::new(law.clone())),
         };
         let sensor_delay_ticks = whole_ticks("--sensor-delay", self.sensor_delay, step_s, LONGEST_S)?;
-        let doubts = rider.as_ref().map_or(Vec::new(), |(_, table, _)| doubts(&bicycle, table));
+        let mut doubts = rider.as_ref().map_or(Vec::new(), |(_, table, _)| doubts(&bicycle, table));
+        doubts.extend(cut_files::doubts(self.files()));
         doubts.iter().for_each(|doubt| complain_once(&format!("warning: {doubt}")));
         let resolved = rider.as_ref().map(|(rider, table, fit)| ResolvedRider::new(table, *fit, rider));
         let conditions = Conditions {

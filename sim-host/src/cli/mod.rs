@@ -6,6 +6,7 @@ mod bicycle;
 mod cells;
 mod compare;
 mod conditions;
+mod cut_files;
 mod design;
 mod eigen;
 mod fall_arg;

@@ -32,6 +32,11 @@ pub(super) struct PlantArgs {
 }
 
 impl PlantArgs {
+    /// What may name a file.
+    pub(super) fn files(&self) -> impl Iterator<Item = &str> {
+        self.sensor.iter().chain([&self.actuator]).map(String::as_str)
+    }
+
     /// The plant asked for, with a control period of `period_s`.
     pub(super) fn plant(&self, period_s: f64) -> Result<Plant, String> {
         let mut sensors = SensorConfig::default();

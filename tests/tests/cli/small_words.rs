@@ -3,7 +3,7 @@
 use serde_json::json;
 use std::io::Write;
 use std::process::Stdio;
-use tests::cli::{Bench, bicycle_with};
+use tests::cli::{Bench, bicycle_with, repository};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
@@ -121,4 +121,44 @@ fn times_are_whole_milliseconds() {
             typed.trim_end_matches('0').trim_end_matches('.')
         );
     }
+}
+
+/// Situation: files of an actuator, a sensor, a rider and a parameter, cut within their last line, and whole; an interrupted basin.
+/// Action: ride with each; compare the basin.
+/// Must hold: what was cut is doubted by name, in the output and in the document, what is whole is not; so is the interrupted basin.
+#[test]
+fn what_may_have_been_cut_is_doubted() {
+    let bench = Bench::new(PROGRAM);
+    let shown = bench.run("rider show young").stdout;
+    let sensor = std::fs::read_to_string(repository("data/sensors/hall-16.toml")).unwrap();
+    for (option, file, text) in [
+        ("--actuator", "a.toml", "time_constant_s = 0.01\nlimit_nm = 12\n"),
+        ("--sensor", "s.toml", &sensor),
+        ("--rider", "r.toml", &shown),
+        ("--parameters", "p.toml", "[parameters]\n'limits.max_torque_nm' = 12\n"),
+    ] {
+        let line = format!("ride --speed 4 --steer-rate 1 --time-limit 0.1 {option} {file}");
+        for (text, cut) in [(text, false), (text.trim_end(), true)] {
+            bench.write(file, text);
+            let run = bench.run(&format!("{line} --json"));
+            assert_eq!(run.code, Some(0), "{run:?}");
+            let warning = format!("{file}: its last line has no end");
+            let document: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+            let kept = document["config"]["warnings"].to_string().contains(&warning);
+            assert_eq!((run.stderr.contains(&warning), kept), (cut, cut), "{run:?}");
+        }
+    }
+    let basin = |upper: &str| {
+        format!(
+            "{{\"speeds\": [4, 5], \"height\": {{\"upper\": [3, {upper}]}}, \"capped\": [false, false], \"search\": {{\"axis\": \"steer-rate\"}}}}"
+        )
+    };
+    bench.write("part.json", basin("null"));
+    bench.write("whole.json", basin("4"));
+    let run = bench.run("basin compare part.json whole.json");
+    assert!(run.stderr.contains("part.json is of an interrupted search: 1 of 2 speeds"), "{run:?}");
+    assert_eq!(
+        bench.run("basin compare whole.json whole.json --json").stderr.matches("interrupted").count(),
+        0
+    );
 }
