@@ -117,6 +117,27 @@ fn the_page_on_end_stops_marks_its_lower_bounds() {
     }
 }
 
+/// Situation: a plane of steer rate and roll rate whose rays along the roll rate end before a fall, and one that reaches further.
+/// Action: read text, document and figure.
+/// Must hold: the first is marked in each, the second in none.
+#[test]
+fn a_plane_marks_its_lower_bounds() {
+    let bench = Bench::new(PROGRAM);
+    for (most, capped) in [("0.5", true), ("8", false)] {
+        let line = format!(
+            "basin plane --speed 4 --rays 8 --time-limit 2 --max-roll-rate {most} --svg p.svg --json p.json"
+        );
+        let run = bench.run(&line);
+        let document: Value = serde_json::from_str(&bench.read("p.json")).unwrap();
+        let marks = [
+            run.stdout.contains("area at least"),
+            document["area_capped"] == true,
+            bench.read("p.svg").contains("no fall up to the largest rates tried"),
+        ];
+        assert_eq!(marks, [capped; 3], "{most}: {}", run.stdout);
+    }
+}
+
 /// Situation: a study of one sweep, searched up to a rate that its reference outlasts.
 /// Action: make its page.
 /// Must hold: what keeps 95 % is refused, parts are marked as bounds; with a larger rate neither.

@@ -3,7 +3,7 @@
 use super::basin::{AREA, LEGEND_GAP, height};
 use super::canvas::{Canvas, Stroke};
 use super::colour::{BASIN, GREY, INK, ISLAND, SHADES, shade};
-use super::legend::{Sign, entry, rows};
+use super::legend::{Sign, entry, rows, triangle};
 use super::panel::Panel;
 use super::picture::Picture;
 use super::scale::nice;
@@ -42,6 +42,10 @@ pub fn plane(figure: &PlaneFigure) -> Picture {
     if !stays.is_empty() {
         legend.push(entry(Sign::Fill(ISLAND, 1.0), "beyond a ride that falls, but does not fall itself"));
     }
+    let capped = || plane.rays.iter().filter(|ray| ray.column.capped);
+    if capped().next().is_some() {
+        legend.push(entry(Sign::Triangle(INK), "no fall up to the largest rates tried"));
+    }
     let mut canvas = Canvas::new(AREA.right() + 92.0, height(&legend));
     canvas.title((AREA.x, 26.0), AREA.width, figure.title);
     let mut closed: Vec<_> = outline.iter().map(|&p| panel.at(p)).collect();
@@ -57,6 +61,11 @@ pub fn plane(figure: &PlaneFigure) -> Picture {
             canvas.line(&axis.map(|p| panel.at(p)), Stroke::solid(GREY, 0.7));
         }
     });
+    for (steer, roll) in capped().map(|ray| ray.at(ray.column.upper)) {
+        for end in [(steer, roll), (-steer, -roll)] {
+            triangle(&mut canvas, panel.at(end), INK);
+        }
+    }
     panel.frame(&mut canvas, Some("Initial steer rate [rad/s]"), "Initial roll rate [rad/s]");
     rows(&mut canvas, &legend, (AREA.x, AREA.bottom() + LEGEND_GAP), AREA.width);
     scale.bar(&mut canvas, AREA);
