@@ -2,7 +2,7 @@
 
 use control::predict::PredictConfig;
 use control::smooth::SmoothConfig;
-use control::{Causes, Config, Limits, Mode};
+use control::{Cause, Causes, Config, Limits, Mode};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use rayon::prelude::*;
@@ -30,8 +30,8 @@ fn without_checks() -> Config {
     Config { predict, smooth, ..unchecked() }
 }
 
-/// Sensors as noisy and as often as those of the TU Delft sensor bicycle, see [`Noise::SIZES`].
-fn noisy() -> Plant {
+/// Sensors as often as those of the TU Delft sensor bicycle, with `part` of their noise, see [`Noise::SIZES`].
+fn noisy(part: f64) -> Plant {
     let mut plant = Plant { seed: 1, ..Plant::default() };
     let [gyro, accel, steer, steer_rate, speed] = Noise::SIZES.map(f64::from);
     for (sensor, noise) in [
@@ -43,7 +43,7 @@ fn noisy() -> Plant {
         (Sensor::RearWheel, speed),
     ] {
         let model = plant.sensors.model_mut(sensor);
-        (model.noise, model.every_ticks) = (noise, 10);
+        (model.noise, model.every_ticks) = (part * noise, 10);
     }
     plant
 }
@@ -70,6 +70,8 @@ struct Told {
     rider: Option<&'static str>,
     start: Start,
     trip: Option<String>,
+    /// Whether what was told is a crash.
+    crash: bool,
     fell: bool,
     /// Whether it falls without the checks too; not ridden where nothing was told.
     falls_anyhow: bool,
@@ -85,23 +87,24 @@ impl fmt::Display for Told {
     }
 }
 
-fn ridden(plant: &Plant, rider: Option<&'static str>, start: Start) -> Told {
+fn ridden(config: &Config, plant: &Plant, rider: Option<&'static str>, start: Start) -> Told {
     let conditions = |config| with(rider, sensed(config, plant.clone()));
-    let (ride, trace) = traced(&conditions(checked()), start);
+    let (ride, trace) = traced(&conditions(config.clone()), start);
     let fell = ride.fell();
     // A bicycle that lies down may say so.
     let lies = trace.iter().position(|p| fell && p.roll.abs() > 1.0).unwrap_or(trace.len());
     let first = trace[..lies].iter().find(|p| p.causes != 0 || p.mode != Mode::Engaged as u8);
+    let crash = first.is_some_and(|p| Causes(p.causes).has(Cause::Crash));
     let trip = first.map(|p| {
         let causes: Vec<_> = Causes(p.causes).iter().collect();
         format!("{causes:?} in mode {} at {:.3} s, roll {:.2}, steer {:.2}", p.mode, p.t, p.roll, p.steer)
     });
     let falls_anyhow = trip.is_some() && rides(&conditions(without_checks()), &[start])[0].fell();
-    Told { rider, start, trip, fell, falls_anyhow }
+    Told { rider, start, trip, crash, fell, falls_anyhow }
 }
 
-fn told(plant: &Plant) -> Vec<Told> {
-    starts().into_par_iter().map(|(rider, start)| ridden(plant, rider, start)).collect()
+fn told(config: &Config, plant: &Plant) -> Vec<Told> {
+    starts().into_par_iter().map(|(rider, start)| ridden(config, plant, rider, start)).collect()
 }
 
 fn listed(told: &[Told], what: impl Fn(&&Told) -> bool) -> String {
@@ -114,7 +117,7 @@ fn listed(told: &[Told], what: impl Fn(&&Told) -> bool) -> String {
 /// at most 4 of the 72 rides at 99 % of a border, and no other.
 #[test]
 fn no_check_trips_inside_the_basins() {
-    let told = told(&Plant::default());
+    let told = told(&checked(), &Plant::default());
     assert_eq!(told.len(), 72 + DRAWN * RIDERS.len());
     let wrong = listed(&told, |t| (t.trip.is_some() || t.fell) && !(t.fell && t.falls_anyhow));
     assert!(wrong.is_empty(), "{wrong}");
@@ -123,16 +126,44 @@ fn no_check_trips_inside_the_basins() {
     assert!(fell(border) <= 4 && fell(drawn) == 0, "{}", listed(&told, |t| t.fell));
 }
 
+/// The noise at which every check of the product may be on, as a part of [`Noise::SIZES`], and every one but the roll's
+/// correlation.
+const BORNE: f64 = 0.5;
+const BORNE_WITHOUT: f64 = 0.75;
+
+/// Rides with `part` of the noise: none that stays up reports a cause, and what is reported in one that falls is not what makes it
+/// fall, but for at most 3 of the 72 at the border, which noise drives to the force of a crash; about a third fall, most of
+/// them at the border.
+fn no_trip_with_noise(config: &Config, part: f64) {
+    let told = told(config, &noisy(part));
+    let fell = told.iter().filter(|t| t.fell).count();
+    println!(
+        "{fell} of {} rides fall; reported before:\n{}",
+        told.len(),
+        listed(&told, |t| t.trip.is_some())
+    );
+    let wrong = |t: &&Told| t.trip.is_some() && !(t.fell && t.falls_anyhow);
+    let (border, drawn) = told.split_at(72);
+    let crashes = border.iter().filter(|t| t.crash && wrong(t)).count();
+    let others = listed(border, |t| wrong(t) && !t.crash) + &listed(drawn, wrong);
+    assert!(others.is_empty() && crashes <= 3, "{part} of the noise, {crashes} crashes: {others}");
+    assert!((30..90).contains(&fell), "{fell} of {}", told.len());
+}
+
 /// Situation: the same rides, sensors with the noise of a real bicycle, which makes the basins smaller. Must hold: engaged
-/// throughout, no cause told in any ride that stays up; what trips in one that falls is not what makes it fall, for it falls
-/// without checks too; a third of the rides fall, most of them at the border.
+/// throughout, no cause reported in any ride that stays up with half of the noise and every check on, nor with three quarters of
+/// it and without the roll's correlation, as docs/sensors.md says: noise alone looks like a reversed roll rate.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn no_check_trips_by_noise() {
-    let told = told(&noisy());
-    let fell = told.iter().filter(|t| t.fell).count();
-    println!("{fell} of {} rides fall; told before:\n{}", told.len(), listed(&told, |t| t.trip.is_some()));
-    let wrong = listed(&told, |t| t.trip.is_some() && !(t.fell && t.falls_anyhow));
-    assert!(wrong.is_empty(), "{wrong}");
-    assert!((30..90).contains(&fell), "{fell} of {}", told.len());
+    no_trip_with_noise(&checked(), BORNE);
+    let mut config = checked();
+    config.cross.roll_correlation = false;
+    no_trip_with_noise(&config, BORNE_WITHOUT);
+    let page = include_str!("../../../docs/sensors.md");
+    for (part, also) in [(BORNE, "every check"), (BORNE_WITHOUT, "every other check")] {
+        let [gyro, _, steer, _, speed] = Noise::SIZES.map(|size| f64::from(size) * part);
+        let row = format!("| {also} | {gyro:.3} rad/s | {steer:.3} rad | {speed:.3} m/s |");
+        assert!(page.contains(&row), "docs/sensors.md should say: {row}");
+    }
 }
