@@ -1,5 +1,6 @@
 //! Samples on their way to the controller: at each control instant the newest of every sensor and its age.
 
+use super::leap::Leap;
 use super::map::Resample;
 use super::samples::{Sample, Samples, Track};
 use crate::plant::{Channel, Dice, Fault, FaultState, Held, Measured, Sensor, faulty};
@@ -23,6 +24,32 @@ pub struct FeedOptions<'a> {
     pub seed: u64,
 }
 
+/// A recording that can't be replayed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum FeedError {
+    /// No sensor has a sample.
+    #[error("there is no sample")]
+    Empty,
+    /// It is longer than what is replayed at once.
+    #[error("it lasts from {start_s} to {end_s} s; at most {most_s} s can be replayed at once; {}", reason(.leap))]
+    TooLong {
+        /// Time of the first sample \[s\].
+        start_s: f64,
+        /// Time of the last sample \[s\].
+        end_s: f64,
+        /// Longest time that is replayed \[s\].
+        most_s: f64,
+        /// The first time that leaps far ahead, if one does.
+        leap: Option<Leap>,
+    },
+}
+
+/// What may be wrong with a recording that lasts too long.
+fn reason(leap: &Option<Leap>) -> String {
+    let line = |line: Option<u64>| line.map_or(String::new(), |line| format!("line {line}: "));
+    leap.map_or("is the unit of the time right?".into(), |leap| format!("{}{leap}", line(leap.line)))
+}
+
 /// The control instants of a recording, one after the other.
 #[derive(Debug)]
 pub struct Feed<'a> {
@@ -42,16 +69,12 @@ impl<'a> Feed<'a> {
     ///
     /// # Errors
     /// The recording is too long, or has no sample.
-    pub fn new(samples: &'a Samples, options: FeedOptions<'a>) -> Result<Self, String> {
-        let (start_s, end_s) = samples.span_s().ok_or("there is no sample")?;
+    pub fn new(samples: &'a Samples, options: FeedOptions<'a>) -> Result<Self, FeedError> {
+        let (start_s, end_s) = samples.span_s().ok_or(FeedError::Empty)?;
         let ticks = (end_s - start_s) / options.period_s;
         if ticks > MOST_TICKS {
             let most_s = MOST_TICKS * options.period_s;
-            let leap = samples.remarks.iter().find(|said| said.what.contains("time leaps"));
-            let leap = leap.map_or("is the unit of the time right?".into(), ToString::to_string);
-            return Err(format!(
-                "it lasts from {start_s} to {end_s} s; at most {most_s} s can be replayed at once; {leap}"
-            ));
+            return Err(FeedError::TooLong { start_s, end_s, most_s, leap: samples.leaps.first().copied() });
         }
         let first = |channel: Channel| match channel {
             Channel::Sensor(sensor) => samples.track(sensor).map_or([0.0; 3], |track| track.samples[0].value),

@@ -1,5 +1,6 @@
 //! The samples of each sensor in a recording: what the columns say by the map, in SI units and the bicycle's axes.
 
+use super::leap::{Leap, leaps};
 use super::map::{Map, Mapped, Signal, Source, axes_of, quantity_of};
 use super::plausible::plausible;
 use super::unit::Quantity;
@@ -51,6 +52,8 @@ pub struct Samples {
     pub absent: Vec<String>,
     /// What could not be used as it stands, or looks wrong.
     pub remarks: Vec<Remark>,
+    /// Times that leap far ahead, of each sensor; the remarks say so, too.
+    pub leaps: Vec<Leap>,
 }
 
 impl Samples {
@@ -68,8 +71,6 @@ impl Samples {
 
 /// A row is left out whose time is this far ahead of those before and after it \[s\].
 const LEAP_S: f64 = 1.0;
-/// Time between two rows above which the stamp is doubted \[s\].
-const PAUSE_S: f64 = 3600.0;
 
 /// A remark without a line.
 pub(super) fn remark(column: Option<&str>, what: String) -> Remark {
@@ -91,7 +92,7 @@ pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Sample
                 all.absent.push(format!("{} (no value in {})", sensor.name(), names.join(", ")));
             }
             Some(Found { group, axes, made_up }) => {
-                let track = take(group, map, sensor, signal, &axes, made_up, period_s, &mut all.remarks)?;
+                let track = take(group, map, sensor, signal, &axes, made_up, period_s, &mut all)?;
                 if let Some(track) = track {
                     plausible(&track, &mut all.remarks);
                     all.tracks.push(track);
@@ -301,7 +302,7 @@ fn take(
     axes: &[Axis<'_>],
     made_up: [bool; 3],
     period_s: f64,
-    remarks: &mut Vec<Remark>,
+    all: &mut Samples,
 ) -> Result<Option<Track>, Remark> {
     let factor = quantity_of(sensor).factor(signal.unit.as_deref()).unwrap_or(1.0);
     let times = times(group, map, signal.time.as_deref())?;
@@ -354,38 +355,32 @@ fn take(
     }
     let mut say = |line, what: String| {
         // Sensors of one row have this in common.
-        let same = remarks.iter_mut().find(|said| said.line == line && said.what.ends_with(&what));
+        let same = all.remarks.iter_mut().find(|said| said.line == line && said.what.ends_with(&what));
         match same {
             Some(said) => said.what.insert_str(0, &format!("{}, ", sensor.name())),
             None => {
                 let what = format!("{}: {what}", sensor.name());
-                remarks.push(Remark { line, column: None, what });
+                all.remarks.push(Remark { line, column: None, what });
             }
         }
     };
     for (row, t_s) in ahead {
         say(line_of(row), format!("time {t_s} s is ahead of the rows before and after it; row left out"));
     }
-    let leaps = |(two, _): &(&[Sample], &usize)| two[1].t_s - two[0].t_s > PAUSE_S;
-    let leaping: Vec<_> = samples.windows(2).zip(rows.iter().skip(1)).filter(leaps).collect();
-    // Where many do, the unit is wrong and no stamp.
-    if 10 * leaping.len() < samples.len() {
-        for (two, row) in leaping {
-            let what = format!("time leaps from {} s to {} s; is that stamp right?", two[0].t_s, two[1].t_s);
-            say(line_of(*row), what);
-        }
-    }
+    let leaps = leaps(&samples, |at| line_of(rows[at]));
+    leaps.iter().for_each(|leap| say(leap.line, leap.to_string()));
     if let Some((line, from, to)) = first_back {
         let verb = if from == to { "stands at" } else { "goes back from" };
         let to = if from == to { String::new() } else { format!(" to {to}") };
         let what = format!("time {verb} {from} s{to}; {back} rows without a later time left out");
         say(line, what);
     }
+    all.leaps.extend(leaps);
     if samples.len() < 2 {
         let plural = if samples.len() == 1 { "" } else { "s" };
         let what =
             format!("{}: {} usable sample{plural}; at least 2 are needed", sensor.name(), samples.len());
-        remarks.push(remark(None, what));
+        all.remarks.push(remark(None, what));
         return Ok(None);
     }
     Ok(Some(Track { sensor, samples, made_up }))

@@ -1,7 +1,9 @@
 //! Recordings in which something is wrong.
 
-use super::{Bench, HEADER, PROGRAM, cause, lines, number, remarks, rows, table_of};
+use super::{Bench, HEADER, PERIOD_S, PROGRAM, cause, lines, number, remarks, rows, table_of};
 use serde_json::Value;
+use sim_host::recording::table;
+use sim_host::replay::{Feed, FeedError, FeedOptions, Leap, Map, Resample, samples};
 
 /// Replays a table that must be usable but for what is said, all of `words` in one remark; under `--strict` the same must be
 /// the reason why it is refused.
@@ -225,4 +227,28 @@ fn a_time_stamp_far_ahead_is_named() {
     bench
         .run("replay last.csv --map extract")
         .refused_naming(&["line 801", "leaps from 3.99 s to 1000000000 s"]);
+}
+
+/// Situation: a ride of 4 s whose last row's time is far ahead; the same in milliseconds taken as seconds for 6 hours.
+/// Action: feed them to the controller.
+/// Must hold: too long, with its ends; the leap with line and both times in the first, no leap in the second.
+#[test]
+fn a_leap_is_known_without_its_words() {
+    let table = |times: &[f64]| {
+        let row = |t: &f64| format!("{t},{},{},0,4\n", t.sin(), t.cos());
+        "t,gx,gy,gz,rear\n".to_owned() + &times.iter().map(row).collect::<String>()
+    };
+    let refused = |times: &[f64]| {
+        let map = Map::load("extract").unwrap();
+        let samples = samples(&table::parse(&table(times)).unwrap(), &map, PERIOD_S).unwrap();
+        let resample = Resample::Hold;
+        let options = FeedOptions { period_s: PERIOD_S, resample, longest_gap_s: 0.5, faults: &[], seed: 0 };
+        Feed::new(&samples, options).map(|_| ()).unwrap_err()
+    };
+    let mut times: Vec<f64> = (0..800).map(|i| 0.005 * f64::from(i)).collect();
+    times[799] = 1e9;
+    let leap = Some(Leap { line: Some(801), from_s: 3.99, to_s: 1e9 });
+    assert_eq!(refused(&times), FeedError::TooLong { start_s: 0.0, end_s: 1e9, most_s: 18e3, leap });
+    let times: Vec<f64> = (0..4401).map(|i| 5.0 * f64::from(i)).collect();
+    assert_eq!(refused(&times), FeedError::TooLong { start_s: 0.0, end_s: 22e3, most_s: 18e3, leap: None });
 }

@@ -1,0 +1,35 @@
+//! Times that leap far ahead: a wrong stamp, or a pause in the recording.
+
+use super::samples::Sample;
+use std::fmt::{self, Display};
+
+/// Time between two rows above which the stamp is doubted \[s\].
+const PAUSE_S: f64 = 3600.0;
+/// Where at least one sample in so many leaps, the unit of the time is wrong and no stamp.
+const RARE: usize = 10;
+
+/// A time of a recording that is more than an hour later than the one before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leap {
+    /// The line of the later row, from 1, where the recording has lines.
+    pub line: Option<u64>,
+    /// Time of the sample before \[s\].
+    pub from_s: f64,
+    /// Time of the sample after \[s\].
+    pub to_s: f64,
+}
+
+impl Display for Leap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "time leaps from {} s to {} s; is that stamp right?", self.from_s, self.to_s)
+    }
+}
+
+/// The leaps between the samples of a sensor, whose lines `line_of` knows by their place; none where many leap.
+pub(super) fn leaps(samples: &[Sample], line_of: impl Fn(usize) -> Option<u64>) -> Vec<Leap> {
+    let leap =
+        |(at, two): (usize, &[Sample])| Leap { line: line_of(at + 1), from_s: two[0].t_s, to_s: two[1].t_s };
+    let far = |leap: &Leap| leap.to_s - leap.from_s > PAUSE_S;
+    let found: Vec<Leap> = samples.windows(2).enumerate().map(leap).filter(far).collect();
+    if RARE * found.len() < samples.len() { found } else { Vec::new() }
+}
