@@ -10,6 +10,7 @@ pub mod decode;
 pub mod frames;
 pub mod mdf;
 mod remarks;
+pub(crate) mod stamp;
 pub mod table;
 
 use dbc::Database;

@@ -4,6 +4,7 @@
 //! remarks of the file's own. Each line is read by itself, so that a stray quote or a cut line costs that line alone.
 
 use super::remarks::Remarks;
+use super::stamp::seconds;
 use super::{Column, Group, Recording, Remark};
 
 /// Rows of another length than the header.
@@ -147,24 +148,13 @@ fn number_of(field: &str) -> Option<f64> {
         "false" | "off" | "False" => return Some(0.0),
         _ => {}
     }
-    field.parse::<f64>().ok().filter(|value| value.is_finite()).or_else(|| seconds(field))
+    seconds(field)
 }
 
 /// A number with a decimal comma, where no comma separates the fields.
 fn with_comma(field: &str, separator: char) -> Option<f64> {
     let one = separator != ',' && field.matches(',').count() == 1 && !field.contains('.');
     one.then(|| number_of(&field.replace(',', "."))).flatten()
-}
-
-/// Seconds from 1970 of a date with a time of day; without a zone it is taken as universal time.
-fn seconds(field: &str) -> Option<f64> {
-    let instant = |nanoseconds: i128| nanoseconds as f64 * 1e-9;
-    let zoned = || field.parse::<jiff::Timestamp>().ok().map(|time| instant(time.as_nanosecond()));
-    let plain: Result<jiff::civil::DateTime, _> = field.parse();
-    let utc = |time: jiff::civil::DateTime| time.to_zoned(jiff::tz::TimeZone::UTC).ok();
-    // A bare date is no time stamp.
-    let plain = plain.ok().filter(|_| field.contains(':')).and_then(utc);
-    plain.map(|time| instant(time.timestamp().as_nanosecond())).or_else(zoned)
 }
 
 /// A field for a message: not longer than a line can show.

@@ -1,7 +1,7 @@
 //! Frequency and decay of the weave, measured: from a recording of the gyro after a knock to an eigenvalue with
 //! its confidence interval.
 //!
-//! `stamp` and `record` read a file, `label` what its name says, `window` finds the motion after the knock, `fit` fits
+//! `record` reads a file, `label` what its name says, `window` finds the motion after the knock, `fit` fits
 //! it (`shape`, `noise`), `segment` does all of that for one recording, `pool` puts repeats together, `predict` has the
 //! linear model's answer, and `measured` is the table that is kept.
 
@@ -14,7 +14,6 @@ pub mod predict;
 pub mod record;
 pub mod segment;
 pub mod shape;
-mod stamp;
 pub(crate) mod student;
 pub mod window;
 

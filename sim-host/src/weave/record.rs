@@ -1,7 +1,7 @@
 //! A recording: a CSV file with a column of time stamps and columns of rates. What is wrong in it is told by line, and the rest
 //! is used.
 
-use super::stamp::seconds;
+use crate::recording::stamp::seconds;
 use csv::StringRecord;
 
 /// Columns of time that are looked for if none is named.
