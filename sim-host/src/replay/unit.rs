@@ -48,10 +48,10 @@ impl Quantity {
     }
 
     /// A magnitude that one sample in twenty of a ride in SI units never passes, and the unit in which it would: a fork
-    /// turns by less than half a turn; 5 rad/s and 43 km/h are reached in a fall or down a mountain only.
+    /// turns by hardly more than a quarter of a turn; 5 rad/s and 43 km/h are reached in a fall or down a mountain only.
     pub(super) const fn implausible(self) -> Option<(f64, &'static str)> {
         match self {
-            Self::Angle => Some((3.3, "degrees")),
+            Self::Angle => Some((2.0, "degrees")),
             Self::Rate => Some((5.0, "degrees a second")),
             Self::Speed => Some((12.0, "km/h")),
             _ => None,
