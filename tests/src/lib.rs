@@ -17,6 +17,7 @@ pub mod linearised;
 pub mod link_board;
 pub mod model;
 pub mod newton_euler;
+pub mod noticed;
 pub mod pil;
 #[cfg(unix)]
 pub mod pty;
