@@ -11,6 +11,7 @@ mod maps;
 mod missing;
 mod monitor;
 mod noise;
+mod recorded;
 mod resample;
 
 use control::{Config, Plan};
