@@ -142,6 +142,10 @@ fn values_that_look_like_another_unit() {
     said(&only(&[9, 10], 3.6), &["front-wheel", "km/h"]);
     said(&only(&[4, 5, 6], 1.0 / 9.80665), &["accel", "is the unit g"]);
     said(&only(&[6], -1.0), &["accel", "along z", "are the axes right"]);
+    // Hardly steered: 2.9 degrees either way.
+    let mut straight = rows(400);
+    straight.iter_mut().for_each(|row| row[7] *= 2.5 * degrees);
+    said(&table_of(HEADER, &lines(&straight)), &["steer", "degrees?"]);
     let bench = Bench::new(PROGRAM);
     bench.write("ride.csv", only(&[], 1.0));
     assert_eq!(remarks(&bench.json("replay ride.csv --map extract")), [""; 0]);
