@@ -50,7 +50,9 @@ pub fn noticed(fault: &str, start: Start, conditions: impl FnOnce(Plant) -> Cond
     let fault: Fault = fault.parse().unwrap_or_else(|e| panic!("{fault}: {e}"));
     let from_s = fault.from_s;
     let (ride, trace) = traced(&conditions(Plant { faults: vec![fault], ..Plant::default() }), start);
-    let first = trace.iter().position(|p| !of_the_fault(p).is_empty()).map(|at| First {
+    // A bicycle that lies down may say anything.
+    let up = trace.iter().position(|p| p.roll.abs() > 1.0).unwrap_or(trace.len());
+    let first = trace[..up].iter().position(|p| !of_the_fault(p).is_empty()).map(|at| First {
         causes: of_the_fault(&trace[at]),
         after_s: trace[at].t - from_s,
         roll_rad: trace[..=at].iter().filter(|p| p.t > from_s).map(|p| p.roll.abs()).fold(0.0, f64::max),

@@ -2,7 +2,7 @@
 
 use control::{Cause, Config, Mode};
 use sim_host::leaves::set;
-use sim_host::ride::{Conditions, Start, TracePoint};
+use sim_host::ride::{Conditions, ScheduleSpeed, Start, TracePoint};
 use tests::fault_cards::{product, smart};
 use tests::noticed::{Noticed, noticed, of_the_fault};
 
@@ -24,7 +24,12 @@ fn lone(wheel: &str) -> Config {
 
 fn ridden(wheel: &str, fault: &str) -> Noticed {
     let fault = format!("{fault}@{FROM_S}s").replace("wheel", &format!("{wheel}-wheel"));
-    noticed(&fault, KNOCK, |plant| Conditions { time_limit_s: 6.0, ..smart(lone(wheel), plant) })
+    let schedule_speed = if wheel == "rear" { ScheduleSpeed::Rear } else { ScheduleSpeed::Front };
+    noticed(&fault, KNOCK, |plant| Conditions {
+        time_limit_s: 6.0,
+        schedule_speed,
+        ..smart(lone(wheel), plant)
+    })
 }
 
 /// The largest torque from so long after the fault on \[N m\].

@@ -4,7 +4,7 @@ use control::{Config, Mode};
 use rayon::prelude::*;
 use sim_host::basin::basin;
 use sim_host::leaves::set;
-use sim_host::ride::{Conditions, Start};
+use sim_host::ride::{Conditions, ScheduleSpeed, Start};
 use tests::basins::{configured, search};
 use tests::fault_cards::{product, smart};
 use tests::noticed::{Noticed, noticed, of_the_fault, rows_of};
@@ -46,9 +46,15 @@ fn rows() -> Vec<Row<'static>> {
     rows
 }
 
+/// The speed that schedules the rider's gains, and the law's where no other sensor is fitted: the only wheel's if one is missing.
+fn schedule(config: &Config) -> ScheduleSpeed {
+    if config.input.front_wheel.fitted { ScheduleSpeed::Front } else { ScheduleSpeed::Rear }
+}
+
 fn ridden(config: &Config, fault: &str, speed_m_s: f64, time_limit_s: f64) -> Noticed {
     let start = Start { speed_m_s, steer_rate_rad_s: 1.0, roll_rate_rad_s: 0.0 };
-    noticed(fault, start, |plant| Conditions { time_limit_s, ..smart(config.clone(), plant) })
+    let schedule_speed = schedule(config);
+    noticed(fault, start, |plant| Conditions { time_limit_s, schedule_speed, ..smart(config.clone(), plant) })
 }
 
 /// One cell: at both speeds the causes and the time from the fault, and whether the bicycle falls; once where they agree.
@@ -87,7 +93,8 @@ fn each_set_notices_what_the_table_says() {
 fn each_set_has_the_basin_of_the_table() {
     let speeds: Vec<f64> = (0..=12).map(|i| 1.0 + 0.5 * f64::from(i)).collect();
     let area = |config: &Config| {
-        let found = basin(&configured(config.clone()), &search(&speeds, 30.0), |_| (), || false);
+        let conditions = Conditions { schedule_speed: schedule(config), ..configured(config.clone()) };
+        let found = basin(&conditions, &search(&speeds, 30.0), |_| (), || false);
         found.unwrap_or_else(|e| panic!("{e}")).area()
     };
     let rows = rows();
