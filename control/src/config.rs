@@ -1,22 +1,22 @@
 //! Everything a user may choose, in one place.
 
-use crate::calibrate::Calibration;
-use crate::capsize::Capsize;
-use crate::controller::Plan;
-use crate::cross::CrossConfig;
+use crate::estimate::predict::PredictConfig;
+use crate::estimate::smooth::SmoothConfig;
 use crate::estimate::{EstimateConfig, Source};
-use crate::history::Latency;
-use crate::input::InputConfig;
 use crate::law::Law;
-use crate::limits::Limits;
-use crate::param::{Checker, Leaf, ParamError, Visit, optional};
-use crate::permit::PermitConfig;
-use crate::predict::PredictConfig;
-use crate::press::PressConfig;
-use crate::response::{ResponseConfig, SteerModel};
-use crate::smooth::SmoothConfig;
-use crate::track::Track;
-use crate::watch::{Loss, Sensor};
+use crate::law::capsize::Capsize;
+use crate::law::path_tracking::PathTracking;
+use crate::param::{Checker, ParamError, ParamSpec, ParamVisitor, optional};
+use crate::plan::Plan;
+use crate::safety::engagement::EngagementConfig;
+use crate::safety::limits::Limits;
+use crate::safety::press::PressConfig;
+use crate::sensors::calibration::Calibration;
+use crate::sensors::cross_check::CrossCheckConfig;
+use crate::sensors::latency::Latency;
+use crate::sensors::monitor::{Loss, Sensor};
+use crate::sensors::sign_check::{SignCheckConfig, SteerModel};
+use crate::sensors::validation::ValidationConfig;
 
 /// Everything a user may choose. Plain data; [`Config::plan`] checks it.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,15 +30,15 @@ pub struct Config {
     /// How sensors and motor sit on this bicycle.
     pub calibration: Calibration,
     /// The declared sensors.
-    pub input: InputConfig,
+    pub input: ValidationConfig,
     /// How the motion is estimated.
     pub estimate: EstimateConfig,
     /// How far sensors may disagree.
-    pub cross: CrossConfig,
+    pub cross: CrossCheckConfig,
     /// Whether the signs of gyro and motor are judged while riding.
-    pub response: ResponseConfig,
+    pub response: SignCheckConfig,
     /// When torque may flow.
-    pub permit: PermitConfig,
+    pub permit: EngagementConfig,
     /// How late each sensor is known to be.
     pub latency: Latency,
     /// How the delay of sensors and actuator is made up for.
@@ -46,7 +46,7 @@ pub struct Config {
     /// How the roll rate is smoothed before the law gets it.
     pub smooth: SmoothConfig,
     /// How a path is followed; `None` is not at all.
-    pub track: Option<Track>,
+    pub track: Option<PathTracking>,
     /// Limits on the torque.
     pub limits: Limits,
 }
@@ -60,11 +60,11 @@ impl Config {
             law,
             capsize: Capsize::default(),
             calibration: Calibration::default(),
-            input: InputConfig::default(),
+            input: ValidationConfig::default(),
             estimate: EstimateConfig::default(),
-            cross: CrossConfig::default(),
-            response: ResponseConfig::default(),
-            permit: PermitConfig::default(),
+            cross: CrossCheckConfig::default(),
+            response: SignCheckConfig::default(),
+            permit: EngagementConfig::default(),
             latency: Latency::default(),
             predict: PredictConfig::default(),
             smooth: SmoothConfig::default(),
@@ -95,7 +95,7 @@ impl Config {
             qualify_samples: 3,
             ..sensor(30.0, slope, 250, Loss::Limp)
         };
-        let input = InputConfig {
+        let input = ValidationConfig {
             recent_samples: 3,
             drift_m_s2: 10.0,
             drift_after_ticks: 30,
@@ -107,9 +107,9 @@ impl Config {
             front_wheel: wheel(300.0),
             rear_wheel: wheel(100.0),
             motor: Sensor { slope_per_s: None, ..sensor(20.0, 0.0, 20, Loss::Fault) },
-            ..InputConfig::default()
+            ..ValidationConfig::default()
         };
-        let cross = CrossConfig {
+        let cross = CrossCheckConfig {
             wheels_m_s: Some(0.8),
             yaw_rad_s: Some(2.0),
             yaw_slow_rad_s: Some(0.5),
@@ -120,10 +120,10 @@ impl Config {
             persist_ticks: 50,
             slow_ticks: 300,
             same_checks: 2,
-            ..CrossConfig::default()
+            ..CrossCheckConfig::default()
         };
-        let response = ResponseConfig { gyro: true, motor: Some(SteerModel::default()) };
-        let permit = PermitConfig {
+        let response = SignCheckConfig { gyro: true, motor: Some(SteerModel::default()) };
+        let permit = EngagementConfig {
             self_test_ticks: 200,
             ramp_in_ticks: 500,
             ramp_out_ticks: 200,
@@ -156,20 +156,20 @@ impl Config {
     }
 
     /// Shows every parameter but the law's.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("", "rate_hz", 100.0, 10_000.0), &mut self.rate_hz);
-        self.capsize.leaves(to);
-        self.calibration.leaves(to);
-        self.input.leaves(to);
-        self.estimate.leaves(to);
-        self.cross.leaves(to);
-        self.response.leaves(to);
-        self.permit.leaves(to);
-        self.latency.leaves(to);
-        self.predict.leaves(to);
-        self.smooth.leaves(to);
-        optional(to, &Leaf::switch("", "track"), &mut self.track, Track::leaves);
-        self.limits.leaves(to);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("", "rate_hz", 100.0, 10_000.0), &mut self.rate_hz);
+        self.capsize.visit_params(to);
+        self.calibration.visit_params(to);
+        self.input.visit_params(to);
+        self.estimate.visit_params(to);
+        self.cross.visit_params(to);
+        self.response.visit_params(to);
+        self.permit.visit_params(to);
+        self.latency.visit_params(to);
+        self.predict.visit_params(to);
+        self.smooth.visit_params(to);
+        optional(to, &ParamSpec::switch("", "track"), &mut self.track, PathTracking::visit_params);
+        self.limits.visit_params(to);
     }
 
     /// Checks every value and readies what [`crate::step`] needs.
@@ -178,11 +178,11 @@ impl Config {
     /// The first parameter outside its range, with its value and the range.
     pub fn plan(mut self) -> Result<Plan, ParamError> {
         let mut checker = Checker::default();
-        self.leaves(&mut checker);
+        self.visit_params(&mut checker);
         checker.note(self.law.validate());
         checker.note(self.limits.cross());
         checker.note(self.input.cross());
-        checker.note(self.track.as_ref().map_or(Ok(()), Track::cross));
+        checker.note(self.track.as_ref().map_or(Ok(()), PathTracking::cross));
         checker.verdict()?;
         Ok(Plan::new(self))
     }

@@ -1,110 +1,21 @@
 //! The composition: one sensor frame in, one torque command out.
 
-use crate::calibrate::CalibrationPlan;
-use crate::config::Config;
-use crate::cross::{self, CrossPlan, CrossState, Crossed, Residuals};
-use crate::estimate::{self, EstimateState, Felt, Motion, RollError};
+use crate::estimate::predict;
+use crate::estimate::smooth::{self, SmoothState};
+use crate::estimate::{self, EstimateState, EstimatorInput, Motion, RollError};
 use crate::fault::{Cause, Causes};
-use crate::frame::{SensorFrame, Wheel};
-use crate::guard::{self, GuardPlan, GuardState};
-use crate::history::{Aligned, History};
-use crate::input::{self, Believed, Bounds, InputPlan, InputState};
-use crate::limits::ActiveLimits;
-use crate::permit::{self, Mode, PermitPlan, PermitState, Reactions};
-use crate::polarity::{self, Move, PolarityState};
-use crate::predict;
-use crate::response::{self, ResponsePlan, ResponseState};
-use crate::shape::{self, ShapePlan, ShapeState};
-use crate::smooth::{self, SmoothPlan, SmoothState};
-use crate::track::{self, PathError, TrackState};
-
-/// A checked [`Config`] with what is derived from it. Read-only while the controller runs.
-///
-/// In this order in memory, for the reason given at [`State`]; the long configuration last.
-#[derive(Clone, Debug, PartialEq)]
-#[repr(C)]
-pub struct Plan {
-    period_s: f32,
-    period_us: u32,
-    /// Longest time between two steps \[us\]; infinite without a limit.
-    max_gap_us: f32,
-    calibration: CalibrationPlan,
-    input: InputPlan,
-    cross: CrossPlan,
-    response: ResponsePlan,
-    permit: PermitPlan,
-    smooth: SmoothPlan,
-    reactions: Reactions,
-    shape: ShapePlan,
-    guard: GuardPlan,
-    /// The polarity check is still to be passed.
-    check_polarity: bool,
-    /// The law's gain that the polarity check shows.
-    shown_gain_nm_s_rad: f32,
-    /// Whether anything needs more of the motion than the gyro's x axis.
-    estimates: bool,
-    config: Config,
-}
-
-impl Plan {
-    /// Of a configuration that was checked.
-    pub(crate) fn new(config: Config) -> Self {
-        let c = &config;
-        let crosses = c.cross.wheels_m_s.is_some()
-            || c.cross.yaw_rad_s.is_some()
-            || c.cross.yaw_slow_rad_s.is_some()
-            || c.cross.yaw_slope
-            || c.cross.roll_correlation;
-        Self {
-            period_s: 1.0 / c.rate_hz,
-            period_us: (1e6 / c.rate_hz) as u32,
-            max_gap_us: c.input.max_gap_ms.map_or(f32::INFINITY, |ms| 1e3 * ms),
-            calibration: c.calibration.plan(),
-            input: InputPlan::new(&c.input, 1.0 / c.rate_hz),
-            cross: CrossPlan::new(&c.cross, &c.estimate.balance, c.rate_hz),
-            response: ResponsePlan::new(&c.response, &c.estimate, c.rate_hz),
-            permit: PermitPlan::new(&c.permit, c.rate_hz),
-            smooth: SmoothPlan::new(&c.smooth, 1.0 / c.rate_hz),
-            reactions: Reactions::new(&c.input),
-            shape: ShapePlan::new(&c.limits, c.rate_hz),
-            guard: GuardPlan::new(&c.limits, c.rate_hz),
-            check_polarity: c.permit.need_polarity && !c.calibration.polarity_checked,
-            shown_gain_nm_s_rad: c.law.gain(polarity::SHOWN_AT_M_S),
-            estimates: c.estimate.roll_rate == estimate::Source::Estimate
-                || c.capsize.is_on()
-                || c.permit.fallen_rad.is_some()
-                || c.predict.lead_s > 0.0
-                || c.track.is_some()
-                || c.response.motor.is_some()
-                || crosses,
-            config,
-        }
-    }
-
-    /// The configuration it was made from.
-    pub fn config(&self) -> &Config {
-        &self.config
-    }
-
-    /// Whether a press of the switch that begins in the period after this command, or goes on in it, would engage, if
-    /// nothing changes: in standby, and nothing is missing but the press.
-    pub fn ready(&self, command: &Command) -> bool {
-        let missing = self.reactions.refusals().with(Causes::of(Cause::SwitchHeld));
-        let refusing = command.causes.and(missing);
-        command.mode == Mode::Standby && (refusing.is_empty() || refusing == Causes::of(Cause::SwitchOff))
-    }
-
-    /// Control periods from boot to full authority, if every sensor is good from the start and the
-    /// switch is pressed at once when it may be.
-    pub fn ticks_to_engage(&self) -> u32 {
-        let Config { input, permit, latency, .. } = &self.config;
-        let tests = u32::from(permit.self_test_ticks) + u32::from(permit.persist_ticks);
-        let waits = tests + u32::from(permit.press.release_ticks) + u32::from(permit.press.press_ticks);
-        let ramp = u32::from(permit.ramp_in_ticks);
-        let filling = u32::from(latency.roll_rate_ticks.max(latency.speed_ticks));
-        8 + input.slowest_to_qualify() + waits + ramp + filling
-    }
-}
+use crate::law::path_tracking::{self, PathError, PathTrackingState};
+use crate::plan::Plan;
+use crate::safety::engagement::{self, EngagementState, Mode};
+use crate::safety::guard::{self, GuardState};
+use crate::safety::limiter::{self, LimiterState};
+use crate::safety::limits::ActiveLimits;
+use crate::sensors::cross_check::{self, CrossCheckResult, CrossCheckState, Residuals};
+use crate::sensors::frame::{SensorFrame, Wheel};
+use crate::sensors::latency::{Aligned, History};
+use crate::sensors::polarity::{self, PolarityState, PolarityStep};
+use crate::sensors::sign_check::{self, SignCheckState};
+use crate::sensors::validation::{self, Measurements, SpeedInterval, ValidationState};
 
 /// What the controller remembers between steps. `State::default()` is a controller just started.
 ///
@@ -114,15 +25,15 @@ impl Plan {
 pub struct State {
     /// The time of the frame before \[us\].
     before_us: Option<u32>,
-    input: InputState,
+    input: ValidationState,
     estimate: EstimateState,
-    cross: CrossState,
-    response: ResponseState,
+    cross: CrossCheckState,
+    response: SignCheckState,
     polarity: PolarityState,
-    shown_nm: f32,
-    permit: PermitState,
-    track: TrackState,
-    shape: ShapeState,
+    hand_torque_nm: f32,
+    permit: EngagementState,
+    track: PathTrackingState,
+    shape: LimiterState,
     guard: GuardState,
     /// The limits that acted in the period before.
     acted: ActiveLimits,
@@ -151,13 +62,13 @@ impl State {
     }
 
     /// What is to be done next in the polarity check.
-    pub fn polarity(&self) -> Move {
+    pub fn polarity(&self) -> PolarityStep {
         self.polarity.next
     }
 
     /// The torque the law would ask for during the polarity check, in the bicycle's sign \[N m\].
-    pub fn shown_nm(&self) -> f32 {
-        self.shown_nm
+    pub fn hand_torque_nm(&self) -> f32 {
+        self.hand_torque_nm
     }
 
     /// How much of what they should do gyro and motor do: 1 all, -1 the opposite; `None` while too little happens.
@@ -218,23 +129,29 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     state.before_us = Some(frame.now_us);
     let last_nm = state.torque_nm();
 
-    let believed =
-        input::step(&config.input, &plan.input, &plan.calibration, &mut state.input, frame, last_nm);
-    let motion = motion(plan, &mut state.estimate, &believed, elapsed_us);
+    let measurements =
+        validation::step(&config.input, &plan.input, &plan.calibration, &mut state.input, frame, last_nm);
+    let motion = motion(plan, &mut state.estimate, &measurements, elapsed_us);
     let Motion { roll_rad, roll_error, force_m_s2, .. } = motion;
     state.roll = Roll { angle_rad: roll_rad, error: roll_error, force_m_s2 };
     let ahead = predict::step(&config.predict, &motion);
-    let crossed =
-        cross::step(&config.cross, &plan.cross, &mut state.cross, &believed, motion.roll_sin_cos, last_nm);
-    if !crossed.distrusted.is_empty() {
-        state.input.distrust(crossed.distrusted);
+    let cross_checked = cross_check::step(
+        &config.cross,
+        &plan.cross,
+        &mut state.cross,
+        &measurements,
+        motion.roll_sin_cos,
+        last_nm,
+    );
+    if !cross_checked.invalidated.is_empty() {
+        state.input.invalidate(cross_checked.invalidated);
     }
-    let answered = response::step(&plan.response, &mut state.response, &believed, &motion, last_nm);
-    let mut causes = believed.causes.with(crossed.causes).with(answered).with(state.found);
+    let sign_causes = sign_check::step(&plan.response, &mut state.response, &measurements, &motion, last_nm);
+    let mut causes = measurements.causes.with(cross_checked.causes).with(sign_causes).with(state.found);
     causes.note(Cause::Timing, elapsed_us as f32 > plan.max_gap_us);
 
-    let speed = speed(plan, &believed, &crossed);
-    let now = match (believed.gyro_rad_s(), speed) {
+    let speed = speed(plan, &measurements, &cross_checked);
+    let now = match (measurements.gyro_rad_s(), speed) {
         (Some(_), Some(speed)) => {
             let age_ticks = frame.gyro_rad_s.age_ticks;
             let roll_rate_rad_s =
@@ -253,20 +170,22 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
 
     if plan.check_polarity {
         let gain = plan.shown_gain_nm_s_rad;
-        state.shown_nm = polarity::step(&config.input, plan.period_s, &mut state.polarity, &believed, gain);
-        causes.note(Cause::PolarityWrong, state.polarity.next == Move::Wrong);
+        state.hand_torque_nm =
+            polarity::step(&config.input, plan.period_s, &mut state.polarity, &measurements, gain);
+        causes.note(Cause::PolarityWrong, state.polarity.next == PolarityStep::Wrong);
     }
-    let asked = permit::Asked {
+    let request = engagement::EngagementInput {
         causes,
         engage: frame.engage,
-        polarity_checked: !plan.check_polarity || state.polarity.next == Move::Passed,
-        roll_rad: (plan.estimates && believed.gyro_rad_s().is_some())
+        polarity_checked: !plan.check_polarity || state.polarity.next == PolarityStep::Passed,
+        roll_rad: (plan.estimates && measurements.gyro_rad_s().is_some())
             .then_some((motion.roll_rad, motion.roll_error)),
         rates_rad_s: [motion.roll_rate_rad_s, motion.steer_rate_rad_s],
         speed_m_s: speed.map(|v| v.newest),
         force_m_s2: motion.force_m_s2,
     };
-    let permission = permit::step(&config.permit, &plan.permit, &plan.reactions, &mut state.permit, &asked);
+    let permission =
+        engagement::step(&config.permit, &plan.permit, &plan.reactions, &mut state.permit, &request);
 
     let (gain, law_nm, bounds) = match now {
         Some(Aligned { roll_rate_rad_s, speed }) => {
@@ -277,49 +196,50 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
             }
             (gain, wanted, speed)
         }
-        None => (0.0, 0.0, Bounds::default()),
+        None => (0.0, 0.0, SpeedInterval::default()),
     };
     let track_nm = config.track.as_ref().map_or(0.0, |track| {
-        let seen = track::Seen {
+        let tracking = path_tracking::TrackingInput {
             roll_rad: motion.roll_rad,
             steer_rad: motion.steer_rad,
             roll_rate_rad_s: motion.roll_rate_rad_s,
             steer_rate_rad_s: motion.steer_rate_rad_s,
             speed_m_s: motion.speed_m_s,
-            path: believed.path().map(|[heading_rad, lateral_m]| PathError { heading_rad, lateral_m }),
-            rider_torque_nm: believed.rider_torque_nm(),
+            path: measurements.path().map(|[heading_rad, lateral_m]| PathError { heading_rad, lateral_m }),
+            rider_torque_nm: measurements.rider_torque_nm(),
             acted: state.acted,
             authority: permission.authority,
             elapsed_us,
         };
-        track::step(track, &mut state.track, &seen)
+        path_tracking::step(track, &mut state.track, &tracking)
     });
-    let asked = shape::Asked {
+    let request = limiter::TorqueRequest {
         // Zero added would turn -0 into 0.
         wanted_nm: if config.track.is_some() { law_nm + track_nm } else { law_nm },
         authority: permission.authority,
         limp: permission.mode == Mode::Limp,
         speed_low_m_s: bounds.low,
         speed_high_m_s: bounds.high,
-        steer_rad: believed.steer_rad(),
-        steer_rate_rad_s: believed.steer_rate_rad_s(),
-        rider_torque_nm: believed.rider_torque_nm(),
+        steer_rad: measurements.steer_rad(),
+        steer_rate_rad_s: measurements.steer_rate_rad_s(),
+        rider_torque_nm: measurements.rider_torque_nm(),
         elapsed_us,
     };
     let permitted = permission.mode >= Mode::Standby;
-    let (shaped_nm, limits) = if permitted {
-        shape::step(&config.limits, &plan.shape, &mut state.shape, &asked)
+    let (limited_nm, limits) = if permitted {
+        limiter::step(&config.limits, &plan.shape, &mut state.shape, &request)
     } else {
-        state.shape = ShapeState::default();
+        state.shape = LimiterState::default();
         (0.0, ActiveLimits::default())
     };
-    let judged = guard::judge(&config.limits, &plan.guard, &mut state.guard, shaped_nm, permitted, &asked);
-    let torque_nm = judged.unwrap_or_else(|_| {
-        state.shape = ShapeState::default();
+    let checked =
+        guard::check(&config.limits, &plan.guard, &mut state.guard, limited_nm, permitted, &request);
+    let torque_nm = checked.unwrap_or_else(|_| {
+        state.shape = LimiterState::default();
         0.0
     });
     state.acted = limits;
-    state.found = judged.err().map_or(Causes::NONE, |violation| Causes::of(violation.cause()));
+    state.found = checked.err().map_or(Causes::NONE, |violation| Causes::of(violation.cause()));
     Command {
         torque_nm: plan.calibration.motor(torque_nm),
         gain_nm_s_rad: if permission.authority > 0.0 { gain } else { 0.0 },
@@ -330,37 +250,41 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
 }
 
 /// The motion from what is believed; if nothing needs more, just what the sensors say.
-fn motion(plan: &Plan, state: &mut EstimateState, believed: &Believed, elapsed_us: u32) -> Motion {
-    let rear = believed.rear_wheel_m_s().or(believed.front_wheel_m_s());
-    let felt = Felt {
-        gyro_rad_s: believed.gyro_or_zero_rad_s(),
-        accel_m_s2: believed.accel_m_s2(),
-        steer_rad: believed.steer_rad(),
-        steer_rate_rad_s: believed.steer_rate_rad_s(),
+fn motion(plan: &Plan, state: &mut EstimateState, measurements: &Measurements, elapsed_us: u32) -> Motion {
+    let rear = measurements.rear_wheel_m_s().or(measurements.front_wheel_m_s());
+    let input = EstimatorInput {
+        gyro_rad_s: measurements.gyro_or_zero_rad_s(),
+        accel_m_s2: measurements.accel_m_s2(),
+        steer_rad: measurements.steer_rad(),
+        steer_rate_rad_s: measurements.steer_rate_rad_s(),
         speed_m_s: rear.map_or(0.0, |v| v.newest),
         elapsed_us,
     };
     if plan.estimates {
-        return estimate::step(&plan.config.estimate, state, &felt);
+        return estimate::step(&plan.config.estimate, state, &input);
     }
-    let [roll_rate_rad_s, ..] = felt.gyro_rad_s;
+    let [roll_rate_rad_s, ..] = input.gyro_rad_s;
     Motion {
         roll_rate_rad_s,
-        steer_rad: felt.steer_rad.unwrap_or(0.0),
-        steer_rate_rad_s: felt.steer_rate_rad_s.unwrap_or(0.0),
-        speed_m_s: felt.speed_m_s,
+        steer_rad: input.steer_rad.unwrap_or(0.0),
+        steer_rate_rad_s: input.steer_rate_rad_s.unwrap_or(0.0),
+        speed_m_s: input.speed_m_s,
         roll_sin_cos: (0.0, 1.0),
         roll_error: RollError::UNKNOWN,
-        force_m_s2: felt.accel_m_s2.map(estimate::size),
+        force_m_s2: input.accel_m_s2.map(estimate::size),
         ..Motion::default()
     }
 }
 
 /// Between which speeds of the scheduling wheel the truth lies: by that wheel's sensor; by the other's
 /// and the steer angle while it is lost; by both when they disagree.
-fn speed(plan: &Plan, believed: &Believed, crossed: &Crossed) -> Option<Bounds> {
-    let disagree = crossed.causes.has(Cause::WheelsDisagree);
-    let (front, rear) = (believed.front_wheel_m_s(), believed.rear_wheel_m_s());
+fn speed(
+    plan: &Plan,
+    measurements: &Measurements,
+    cross_checked: &CrossCheckResult,
+) -> Option<SpeedInterval> {
+    let disagree = cross_checked.causes.has(Cause::WheelsDisagree);
+    let (front, rear) = (measurements.front_wheel_m_s(), measurements.rear_wheel_m_s());
     let wheel = plan.config.input.wheel;
     let (own, other) = match wheel {
         Wheel::Front => (front, rear),
@@ -372,8 +296,9 @@ fn speed(plan: &Plan, believed: &Believed, crossed: &Crossed) -> Option<Bounds> 
         (_, None) => None,
         (_, Some(other)) => {
             // The front wheel goes the longer way, at most about twice as long.
-            let cos =
-                crossed.ground.map_or(LEAST_COS, |(_, cos)| if cos > LEAST_COS { cos } else { LEAST_COS });
+            let cos = cross_checked
+                .ground
+                .map_or(LEAST_COS, |(_, cos)| if cos > LEAST_COS { cos } else { LEAST_COS });
             let ratio = if wheel == Wheel::Front { 1.0 / cos } else { cos };
             let other = other.spanning(other.scaled(ratio));
             Some(own.map_or(other, |own| own.spanning(other)))

@@ -12,59 +12,44 @@
 //!   hardware. f32 arithmetic and [`libm`] only, so host and Cortex-M agree in every bit.
 //! * **Total**: every bit pattern of every input gives a finite torque inside the limits.
 //!
-//! The way of the data, one module each: [`frame`] (what the sensors say) -> [`calibrate`] (in the
-//! bicycle's axes) -> [`input`] (may it be believed; [`watch`] is one sensor) -> [`estimate`] (the motion)
-//! -> [`cross`] (do the sensors fit each other) -> [`response`] (do gyro and motor act with the right sign;
-//! by a [`slope`]) -> [`polarity`] (the check before the first ride) -> [`permit`] (may torque flow, and why not) ->
-//! [`predict`] (as it will be when the torque acts) -> [`smooth`] (without steps and vibration) -> [`history`] (sensors of different latency brought
-//! to one instant) -> [`law`] (the wanted torque; [`table`] for one of a user's own, [`capsize`] and
-//! [`track`] for what may be added to it) -> [`shape`] (inside the
-//! [`limits`]) -> [`guard`] (judges it by them). [`controller`] puts them together, [`config`] holds what
-//! may be chosen, [`fault`] numbers what can go wrong, [`param`] declares every parameter. A board makes
-//! wheel speeds of [`pulses`].
+//! One step runs through four folders:
+//!
+//! * [`sensors`]: a [`SensorFrame`] becomes measurements in the bicycle's axes ([`sensors::calibration`]) of which each was checked
+//!   on its own ([`sensors::validation`], one [`sensors::monitor`] a sensor) and against the others ([`sensors::cross_check`],
+//!   [`sensors::sign_check`], [`sensors::polarity`]).
+//! * [`estimate`]: the motion of the bicycle and how sure it is, smoothed and predicted to the instant at which the torque acts.
+//! * [`law`]: the torque of the chosen roll-rate law, and of [`law::capsize`] and [`law::path_tracking`] where they are on.
+//! * [`safety`]: whether torque may flow and why not ([`safety::engagement`]), the torque inside the [`safety::limits`]
+//!   ([`safety::limiter`]), and a check of the result by a second formulation ([`safety::guard`]).
+//!
+//! [`controller`] calls them in order, [`config`] holds every choice, [`plan`] what follows from it, [`fault`] numbers what can go
+//! wrong, [`param`] declares every parameter with its range, [`wire`] encodes frames and configurations.
 #![no_std]
 #![forbid(unsafe_code)]
 
-pub mod calibrate;
-pub mod capsize;
 pub mod config;
 pub mod controller;
-pub mod cross;
 pub mod estimate;
 pub mod fault;
-pub mod frame;
-pub mod guard;
-pub mod history;
-pub mod input;
 pub mod law;
-pub mod limits;
 pub mod maths;
 pub mod param;
-pub mod permit;
-pub mod polarity;
-pub mod predict;
-pub mod press;
-pub mod pulses;
-pub mod real;
-pub mod response;
-pub mod shape;
-pub mod slope;
-pub mod smooth;
-pub mod table;
-pub mod track;
-pub mod watch;
+pub mod plan;
+pub mod safety;
+pub mod sensors;
 pub mod wire;
 
-pub use calibrate::Calibration;
-pub use capsize::Capsize;
 pub use config::Config;
-pub use controller::{Command, Plan, State, step};
+pub use controller::{Command, State, step};
 pub use fault::{CAUSES, Cause, Causes};
-pub use frame::{Sample, SensorFrame, Triple, Wheel};
-pub use input::InputConfig;
 pub use law::Law;
-pub use limits::{ActiveLimits, Limits, Taper};
+pub use law::capsize::Capsize;
+pub use law::gain_schedule::GainSchedule;
 pub use param::ParamError;
-pub use permit::{Mode, PermitConfig};
-pub use table::LawTable;
-pub use watch::{Loss, Sensor};
+pub use plan::Plan;
+pub use safety::engagement::{EngagementConfig, Mode};
+pub use safety::limits::{ActiveLimits, Limits, Taper};
+pub use sensors::calibration::Calibration;
+pub use sensors::frame::{Sample, SensorFrame, Triple, Wheel};
+pub use sensors::monitor::{Loss, Sensor};
+pub use sensors::validation::ValidationConfig;

@@ -72,13 +72,13 @@ pub fn exp(x: f32) -> f32 {
     power * f32::from_bits(((127 + k) as u32) << 23)
 }
 
-/// Largest relative error of [`per_root`], for what is neither 0, denormal nor beyond `1e38`.
+/// Largest relative error of [`rsqrt`], for what is neither 0, denormal nor beyond `1e38`.
 pub const PER_ROOT_ERROR: f32 = 2e-7;
 
 /// One over the square root of a number that is known to be neither negative nor infinite nor NaN; finite for 0 too. A
 /// square root in software takes four times as long.
 #[inline]
-pub fn per_root(x: f32) -> f32 {
+pub fn rsqrt(x: f32) -> f32 {
     // Half the exponent, negated, with the constant of least error; each of Newton's steps squares it.
     let guess = f32::from_bits(0x5f37_5a86_u32.wrapping_sub(x.to_bits() >> 1));
     let better = guess * (1.5 - 0.5 * x * guess * guess);
@@ -88,12 +88,12 @@ pub fn per_root(x: f32) -> f32 {
 
 /// The lesser; `x` if they are equal or `bound` is NaN. `f32::min` is a call on the chip.
 #[inline]
-pub fn at_most(bound: f32, x: f32) -> f32 {
+pub fn min(bound: f32, x: f32) -> f32 {
     if x > bound { bound } else { x }
 }
 
 /// The greater; `x` if they are equal or `bound` is NaN.
 #[inline]
-pub fn at_least(bound: f32, x: f32) -> f32 {
+pub fn max(bound: f32, x: f32) -> f32 {
     if x < bound { bound } else { x }
 }

@@ -1,14 +1,14 @@
 //! The parameters, each declared once: its name, unit and range, beside the field that holds it.
 //!
-//! A group of parameters is a struct with a `leaves` function that shows every field of it to a
-//! [`Visit`]or. Checking, encoding, listing, getting and setting are visitors, so none of them can
+//! A group of parameters is a struct with a `visit_params` function that shows every field of it to a
+//! visitor. Checking, encoding, listing, getting and setting are visitors, so none of them can
 //! forget a parameter.
 
 use core::fmt;
 
 /// What is known of a parameter beside its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Leaf {
+pub struct ParamSpec {
     /// The group it belongs to, dotted: `limits.end_stop`.
     pub group: &'static str,
     /// Its own name, unit included: `soft_rad`.
@@ -19,7 +19,7 @@ pub struct Leaf {
     pub max: f32,
 }
 
-impl Leaf {
+impl ParamSpec {
     /// A number or a count, `min..=max`.
     pub const fn new(group: &'static str, name: &'static str, min: f32, max: f32) -> Self {
         Self { group, name, min, max }
@@ -48,14 +48,14 @@ impl Leaf {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParamError {
     /// Which parameter.
-    pub leaf: Leaf,
+    pub leaf: ParamSpec,
     /// The value given.
     pub value: f32,
 }
 
 impl fmt::Display for ParamError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Leaf { group, name, min, max } = self.leaf;
+        let ParamSpec { group, name, min, max } = self.leaf;
         let dot = if group.is_empty() { "" } else { "." };
         if self.value == f32::INFINITY && (group, name) == ("limits", "max_torque_nm") {
             return write!(
@@ -76,23 +76,23 @@ impl fmt::Display for ParamError {
 impl core::error::Error for ParamError {}
 
 /// Something that is done with every parameter, in the order of their declaration.
-pub trait Visit {
+pub trait ParamVisitor {
     /// A number.
-    fn number(&mut self, leaf: &Leaf, value: &mut f32);
+    fn number(&mut self, leaf: &ParamSpec, value: &mut f32);
     /// A number that may be off.
-    fn limit(&mut self, leaf: &Leaf, value: &mut Option<f32>);
+    fn optional_number(&mut self, leaf: &ParamSpec, value: &mut Option<f32>);
     /// A whole number.
-    fn count(&mut self, leaf: &Leaf, value: &mut u16);
+    fn count(&mut self, leaf: &ParamSpec, value: &mut u16);
     /// On or off.
-    fn switch(&mut self, leaf: &Leaf, value: &mut bool);
+    fn switch(&mut self, leaf: &ParamSpec, value: &mut bool);
     /// One of `names`, by its place among them.
-    fn choice(&mut self, leaf: &Leaf, names: &'static [&'static str], value: &mut u8);
+    fn choice(&mut self, leaf: &ParamSpec, names: &'static [&'static str], value: &mut u8);
 }
 
 /// Shows a group that may be off: first the switch, then what is `inside`.
-pub fn optional<T: Default, V: Visit>(
+pub fn optional<T: Default, V: ParamVisitor>(
     to: &mut V,
-    leaf: &Leaf,
+    leaf: &ParamSpec,
     value: &mut Option<T>,
     inside: impl FnOnce(&mut T, &mut V),
 ) {
@@ -124,20 +124,20 @@ impl Checker {
     }
 }
 
-impl Visit for Checker {
-    fn number(&mut self, leaf: &Leaf, value: &mut f32) {
+impl ParamVisitor for Checker {
+    fn number(&mut self, leaf: &ParamSpec, value: &mut f32) {
         self.note(leaf.check(*value));
     }
-    fn limit(&mut self, leaf: &Leaf, value: &mut Option<f32>) {
+    fn optional_number(&mut self, leaf: &ParamSpec, value: &mut Option<f32>) {
         if let Some(value) = value {
             self.note(leaf.check(*value));
         }
     }
-    fn count(&mut self, leaf: &Leaf, value: &mut u16) {
+    fn count(&mut self, leaf: &ParamSpec, value: &mut u16) {
         self.note(leaf.check(f32::from(*value)));
     }
-    fn switch(&mut self, _: &Leaf, _: &mut bool) {}
-    fn choice(&mut self, leaf: &Leaf, _: &'static [&'static str], value: &mut u8) {
+    fn switch(&mut self, _: &ParamSpec, _: &mut bool) {}
+    fn choice(&mut self, leaf: &ParamSpec, _: &'static [&'static str], value: &mut u8) {
         self.note(leaf.check(f32::from(*value)));
     }
 }

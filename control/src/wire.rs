@@ -2,10 +2,10 @@
 
 use crate::config::Config;
 use crate::controller::Command;
-use crate::frame::{Sample, SensorFrame, Triple};
+use crate::law::gain_schedule::{GainSchedule, TABLE_POINTS};
 use crate::law::{LAW_NAMES, Law};
-use crate::param::{Leaf, ParamError, Visit};
-use crate::table::{LawTable, TABLE_POINTS};
+use crate::param::{ParamError, ParamSpec, ParamVisitor};
+use crate::sensors::frame::{Sample, SensorFrame, Triple};
 use heapless::Vec;
 
 /// Bytes of a [`SensorFrame`]: its fields in their order, a sample as f32 values and u16 age.
@@ -88,14 +88,14 @@ pub fn encode_config(config: &Config) -> [u8; CONFIG_BYTES] {
         to.f32(speed);
         to.f32(gain);
     }
-    config.clone().leaves(&mut to);
+    config.clone().visit_params(&mut to);
     bytes
 }
 
 /// A configuration from bytes, not yet checked: [`Config::plan`] does that. Never panics.
 ///
 /// # Errors
-/// A law or switch that does not exist, or a table that [`LawTable::new`] refuses.
+/// A law or switch that does not exist, or a table that [`GainSchedule::new`] refuses.
 pub fn decode_config(bytes: &[u8; CONFIG_BYTES]) -> Result<Config, ParamError> {
     let mut from = Reader(bytes.iter());
     let (law, k, used) = (from.u8(), from.f32(), from.u8());
@@ -104,22 +104,22 @@ pub fn decode_config(bytes: &[u8; CONFIG_BYTES]) -> Result<Config, ParamError> {
         // There is room for all of them; those beyond `used` are dropped below.
         let _ = points.push((from.f32(), from.f32()));
     }
-    Leaf::new("wire", "table.points", 0.0, TABLE_POINTS as f32).check(f32::from(used))?;
+    ParamSpec::new("wire", "table.points", 0.0, TABLE_POINTS as f32).check(f32::from(used))?;
     points.truncate(usize::from(used));
-    let table = if used > 0 { LawTable::new(&points)? } else { LawTable::default() };
+    let table = if used > 0 { GainSchedule::new(&points)? } else { GainSchedule::default() };
     let last = (LAW_NAMES.len() - 1) as f32;
-    let unknown = Leaf::new("wire", "law", 0.0, last).error(f32::from(law));
+    let unknown = ParamSpec::new("wire", "law", 0.0, last).error(f32::from(law));
     let law = Law::numbered(law, k, table).ok_or(unknown)?;
     let mut config = Config::thesis(law);
     let mut decoder = Decoder { from, wrong: None };
-    config.leaves(&mut decoder);
+    config.visit_params(&mut decoder);
     decoder.wrong.map_or(Ok(config), Err)
 }
 
 /// How many of [`CONFIG_BYTES`] are used; a test holds that it is all of them.
 pub fn config_bytes_used() -> usize {
     let mut counter = Counter(1 + 4 + 1 + 8 * TABLE_POINTS);
-    Config::thesis(Law::None).leaves(&mut counter);
+    Config::thesis(Law::None).visit_params(&mut counter);
     counter.0
 }
 
@@ -149,21 +149,21 @@ impl Writer<'_> {
     }
 }
 
-impl Visit for Writer<'_> {
-    fn number(&mut self, _: &Leaf, value: &mut f32) {
+impl ParamVisitor for Writer<'_> {
+    fn number(&mut self, _: &ParamSpec, value: &mut f32) {
         self.f32(*value);
     }
-    fn limit(&mut self, _: &Leaf, value: &mut Option<f32>) {
+    fn optional_number(&mut self, _: &ParamSpec, value: &mut Option<f32>) {
         self.u8(u8::from(value.is_some()));
         self.f32(value.unwrap_or(0.0));
     }
-    fn count(&mut self, _: &Leaf, value: &mut u16) {
+    fn count(&mut self, _: &ParamSpec, value: &mut u16) {
         self.u16(*value);
     }
-    fn switch(&mut self, _: &Leaf, value: &mut bool) {
+    fn switch(&mut self, _: &ParamSpec, value: &mut bool) {
         self.u8(u8::from(*value));
     }
-    fn choice(&mut self, _: &Leaf, _: &'static [&'static str], value: &mut u8) {
+    fn choice(&mut self, _: &ParamSpec, _: &'static [&'static str], value: &mut u8) {
         self.u8(*value);
     }
 }
@@ -199,30 +199,30 @@ struct Decoder<'a> {
 }
 
 impl Decoder<'_> {
-    fn mark(&mut self, leaf: &Leaf) -> bool {
+    fn mark(&mut self, leaf: &ParamSpec) -> bool {
         let byte = self.from.u8();
         if byte > 1 && self.wrong.is_none() {
-            self.wrong = Some(Leaf::switch(leaf.group, leaf.name).error(f32::from(byte)));
+            self.wrong = Some(ParamSpec::switch(leaf.group, leaf.name).error(f32::from(byte)));
         }
         byte == 1
     }
 }
 
-impl Visit for Decoder<'_> {
-    fn number(&mut self, _: &Leaf, value: &mut f32) {
+impl ParamVisitor for Decoder<'_> {
+    fn number(&mut self, _: &ParamSpec, value: &mut f32) {
         *value = self.from.f32();
     }
-    fn limit(&mut self, leaf: &Leaf, value: &mut Option<f32>) {
+    fn optional_number(&mut self, leaf: &ParamSpec, value: &mut Option<f32>) {
         let (set, number) = (self.mark(leaf), self.from.f32());
         *value = set.then_some(number);
     }
-    fn count(&mut self, _: &Leaf, value: &mut u16) {
+    fn count(&mut self, _: &ParamSpec, value: &mut u16) {
         *value = self.from.u16();
     }
-    fn switch(&mut self, leaf: &Leaf, value: &mut bool) {
+    fn switch(&mut self, leaf: &ParamSpec, value: &mut bool) {
         *value = self.mark(leaf);
     }
-    fn choice(&mut self, leaf: &Leaf, names: &'static [&'static str], value: &mut u8) {
+    fn choice(&mut self, leaf: &ParamSpec, names: &'static [&'static str], value: &mut u8) {
         *value = self.from.u8();
         if usize::from(*value) >= names.len() && self.wrong.is_none() {
             self.wrong = Some(leaf.error(f32::from(*value)));
@@ -233,20 +233,20 @@ impl Visit for Decoder<'_> {
 /// Counts the bytes that [`Writer`] would write.
 struct Counter(usize);
 
-impl Visit for Counter {
-    fn number(&mut self, _: &Leaf, _: &mut f32) {
+impl ParamVisitor for Counter {
+    fn number(&mut self, _: &ParamSpec, _: &mut f32) {
         self.0 += 4;
     }
-    fn limit(&mut self, _: &Leaf, _: &mut Option<f32>) {
+    fn optional_number(&mut self, _: &ParamSpec, _: &mut Option<f32>) {
         self.0 += 5;
     }
-    fn count(&mut self, _: &Leaf, _: &mut u16) {
+    fn count(&mut self, _: &ParamSpec, _: &mut u16) {
         self.0 += 2;
     }
-    fn switch(&mut self, _: &Leaf, _: &mut bool) {
+    fn switch(&mut self, _: &ParamSpec, _: &mut bool) {
         self.0 += 1;
     }
-    fn choice(&mut self, _: &Leaf, _: &'static [&'static str], _: &mut u8) {
+    fn choice(&mut self, _: &ParamSpec, _: &'static [&'static str], _: &mut u8) {
         self.0 += 1;
     }
 }

@@ -1,12 +1,12 @@
 //! The flashed code's parameters by name: what each has for a value, and setting one.
 
 use control::Config;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// Every parameter but the law's, by name, its value as text that [`set`] takes.
 pub fn list(config: &Config) -> Vec<(String, String)> {
     let mut lister = Lister(Vec::new());
-    config.clone().leaves(&mut lister);
+    config.clone().visit_params(&mut lister);
     lister.0
 }
 
@@ -22,7 +22,7 @@ pub fn departing(config: &Config, from: &Config) -> Vec<(String, String)> {
 /// No such parameter; a value that is none or out of range.
 pub fn set(config: &mut Config, key: &str, value: &str) -> Result<(), String> {
     let mut setter = Setter { key, value, done: None };
-    config.leaves(&mut setter);
+    config.visit_params(&mut setter);
     setter.done.unwrap_or_else(|| {
         let near = nearest(list(config).into_iter().map(|(name, _)| name), key);
         Err(format!(
@@ -39,7 +39,7 @@ fn nearest(names: impl Iterator<Item = String>, word: &str) -> Vec<String> {
     near.into_iter().take(3).map(|(_, name)| name).collect()
 }
 
-fn name(leaf: &Leaf) -> String {
+fn name(leaf: &ParamSpec) -> String {
     if leaf.group.is_empty() { leaf.name.into() } else { format!("{}.{}", leaf.group, leaf.name) }
 }
 
@@ -54,7 +54,7 @@ struct Setter<'a> {
 
 impl Setter<'_> {
     /// The value as a number inside the range, if this is the parameter.
-    fn number(&mut self, leaf: &Leaf) -> Option<f32> {
+    fn number(&mut self, leaf: &ParamSpec) -> Option<f32> {
         if name(leaf) != self.key {
             return None;
         }
@@ -66,7 +66,7 @@ impl Setter<'_> {
     }
 
     /// The place of the value among `names`, if this is the parameter.
-    fn place(&mut self, leaf: &Leaf, names: &[&str]) -> Option<u8> {
+    fn place(&mut self, leaf: &ParamSpec, names: &[&str]) -> Option<u8> {
         if name(leaf) != self.key {
             return None;
         }
@@ -77,20 +77,20 @@ impl Setter<'_> {
     }
 }
 
-impl Visit for Setter<'_> {
-    fn number(&mut self, leaf: &Leaf, value: &mut f32) {
+impl ParamVisitor for Setter<'_> {
+    fn number(&mut self, leaf: &ParamSpec, value: &mut f32) {
         if let Some(number) = self.number(leaf) {
             *value = number;
         }
     }
-    fn limit(&mut self, leaf: &Leaf, value: &mut Option<f32>) {
+    fn optional_number(&mut self, leaf: &ParamSpec, value: &mut Option<f32>) {
         if name(leaf) == self.key && self.value == "none" {
             (*value, self.done) = (None, Some(Ok(())));
         } else if let Some(number) = self.number(leaf) {
             *value = Some(number);
         }
     }
-    fn count(&mut self, leaf: &Leaf, value: &mut u16) {
+    fn count(&mut self, leaf: &ParamSpec, value: &mut u16) {
         if let Some(number) = self.number(leaf) {
             if number.fract() == 0.0 {
                 *value = number as u16;
@@ -99,12 +99,12 @@ impl Visit for Setter<'_> {
             }
         }
     }
-    fn switch(&mut self, leaf: &Leaf, value: &mut bool) {
+    fn switch(&mut self, leaf: &ParamSpec, value: &mut bool) {
         if let Some(place) = self.place(leaf, SWITCH) {
             *value = place == 1;
         }
     }
-    fn choice(&mut self, leaf: &Leaf, names: &'static [&'static str], value: &mut u8) {
+    fn choice(&mut self, leaf: &ParamSpec, names: &'static [&'static str], value: &mut u8) {
         if let Some(place) = self.place(leaf, names) {
             *value = place;
         }
@@ -113,20 +113,20 @@ impl Visit for Setter<'_> {
 
 struct Lister(Vec<(String, String)>);
 
-impl Visit for Lister {
-    fn number(&mut self, leaf: &Leaf, value: &mut f32) {
+impl ParamVisitor for Lister {
+    fn number(&mut self, leaf: &ParamSpec, value: &mut f32) {
         self.0.push((name(leaf), value.to_string()));
     }
-    fn limit(&mut self, leaf: &Leaf, value: &mut Option<f32>) {
+    fn optional_number(&mut self, leaf: &ParamSpec, value: &mut Option<f32>) {
         self.0.push((name(leaf), value.map_or("none".into(), |x| x.to_string())));
     }
-    fn count(&mut self, leaf: &Leaf, value: &mut u16) {
+    fn count(&mut self, leaf: &ParamSpec, value: &mut u16) {
         self.0.push((name(leaf), value.to_string()));
     }
-    fn switch(&mut self, leaf: &Leaf, value: &mut bool) {
+    fn switch(&mut self, leaf: &ParamSpec, value: &mut bool) {
         self.0.push((name(leaf), SWITCH[usize::from(*value)].into()));
     }
-    fn choice(&mut self, leaf: &Leaf, names: &'static [&'static str], value: &mut u8) {
+    fn choice(&mut self, leaf: &ParamSpec, names: &'static [&'static str], value: &mut u8) {
         self.0.push((name(leaf), names.get(usize::from(*value)).unwrap_or(&"?").to_string()));
     }
 }

@@ -1,4 +1,4 @@
-//! The gains with which `control::track` follows a path: the linear-quadratic regulator of the linear
+//! The gains with which `control::law::path_tracking` follows a path: the linear-quadratic regulator of the linear
 //! bicycle that the law keeps upright.
 
 use crate::bicycle::Parameters;

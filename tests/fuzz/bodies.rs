@@ -3,7 +3,7 @@
 //!
 //! A broken promise is a panic.
 
-use control::limits::Limits;
+use control::safety::limits::Limits;
 use control::wire::{CONFIG_BYTES, FRAME_BYTES, decode_config, decode_frame, encode_config, encode_frame};
 use control::{Command, Config, Law, ParamError, Plan, Sample, SensorFrame, State, Triple, step};
 

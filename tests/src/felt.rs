@@ -1,7 +1,7 @@
 //! What sensors on the bicycle would feel, by exact differentiation; noise of a stated size.
 
 use crate::flow::{along, rear_axle_velocity};
-use control::estimate::{Felt, Place};
+use control::estimate::{EstimatorInput, Place};
 use sim_host::bicycle::{Geometry, State, Torques};
 use sim_host::num::Dual;
 use sim_host::ride::{Conditions, Start, TracePoint, traced};
@@ -89,8 +89,8 @@ pub fn truth(b: &Geometry, state: &State<f64>, torques: &Torques<f64>, place: &P
 
 impl Truth {
     /// As exact sensors tell it after `elapsed_us`.
-    pub fn felt(&self, elapsed_us: u32) -> Felt {
-        Felt {
+    pub fn felt(&self, elapsed_us: u32) -> EstimatorInput {
+        EstimatorInput {
             gyro_rad_s: self.gyro.map(|w| w as f32),
             accel_m_s2: Some(self.accel.map(|a| a as f32)),
             steer_rad: Some(self.steer as f32),
@@ -154,7 +154,7 @@ impl Noise {
     }
 
     /// Adds the noise of the next millisecond.
-    pub fn on(&mut self, felt: &mut Felt) {
+    pub fn on(&mut self, felt: &mut EstimatorInput) {
         if self.tick.is_multiple_of(10) {
             let [gyro, accel, steer, steer_rate, speed] = Self::SIZES;
             let sizes = [gyro, gyro, gyro, accel, accel, accel, steer, steer_rate, speed];

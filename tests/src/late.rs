@@ -3,8 +3,8 @@
 use crate::felt::{Noise, Truth, truth};
 use crate::model::{LinearBicycle, Model, OnTheWay};
 use control::Law;
-use control::estimate::{self, EstimateConfig, EstimateState, Felt, Motion};
-use control::predict::{self, PredictConfig};
+use control::estimate::predict::{self, PredictConfig};
+use control::estimate::{self, EstimateConfig, EstimateState, EstimatorInput, Motion};
 use sim_host::bicycle::{self, Accelerations, Geometry, State, Torques};
 use sim_host::integrate::{Actuation, STAGES, Stages, rk4};
 use sim_host::ride::Start;
@@ -21,7 +21,7 @@ const BEFORE: usize = 1000;
 
 /// How the controller makes up for the delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ahead {
+pub enum PredictedMotion {
     /// Not at all.
     Off,
     /// By the roll acceleration, as flashed, this far \[s\].
@@ -46,7 +46,7 @@ pub struct Late<'a> {
     /// What the controller knows of the bicycle's attitude.
     pub estimate: EstimateConfig,
     /// How it makes up for the delay.
-    pub ahead: Ahead,
+    pub ahead: PredictedMotion,
     /// The noise of the sensors, by its seed.
     pub noise: Option<u64>,
     /// How long a ride lasts \[s\].
@@ -124,7 +124,7 @@ struct Controller {
     model: Option<Model>,
     torques: OnTheWay,
     noise: Option<Noise>,
-    arriving: VecDeque<(Felt, f32)>,
+    arriving: VecDeque<(EstimatorInput, f32)>,
 }
 
 impl Controller {
@@ -139,12 +139,14 @@ impl Controller {
         let mut controller = Self {
             estimator: EstimateState::default(),
             lead: PredictConfig {
-                lead_s: if let Ahead::Lead(s) = late.ahead { s as f32 } else { 0.0 },
+                lead_s: if let PredictedMotion::Lead(s) = late.ahead { s as f32 } else { 0.0 },
                 ..PredictConfig::default()
             },
             model: match &late.ahead {
-                Ahead::Model(bicycle, delay) => Some(Model::new(bicycle, *delay as f32, STEP_S as f32)),
-                Ahead::Off | Ahead::Lead(_) => None,
+                PredictedMotion::Model(bicycle, delay) => {
+                    Some(Model::new(bicycle, *delay as f32, STEP_S as f32))
+                }
+                PredictedMotion::Off | PredictedMotion::Lead(_) => None,
             },
             torques: OnTheWay::default(),
             noise: late.noise.map(Noise::new),

@@ -1,12 +1,12 @@
 //! Sensor frames to feed to the images, and the configurations to run on them.
 
-use control::capsize::Capsize;
-use control::history::{Latency, MAX_LATENCY_TICKS};
-use control::limits::SpeedCap;
-use control::table::TABLE_POINTS;
-use control::track::Track;
+use control::law::capsize::Capsize;
+use control::law::gain_schedule::TABLE_POINTS;
+use control::law::path_tracking::PathTracking;
+use control::safety::limits::SpeedCap;
+use control::sensors::latency::{Latency, MAX_LATENCY_TICKS};
 use control::wire::{decode_frame, encode_config, encode_frame};
-use control::{Config, Law, LawTable, Sample, Sensor, SensorFrame, Triple, Wheel};
+use control::{Config, GainSchedule, Law, Sample, Sensor, SensorFrame, Triple, Wheel};
 use std::f32::consts::TAU;
 
 /// [`border_ride`], as recorded.
@@ -23,7 +23,7 @@ const ALL_SENSORS_RIDE: &[u8] = include_bytes!("../../data/all_sensors.frames");
 pub fn configurations() -> Vec<(&'static str, Config)> {
     let points: Vec<_> =
         (0_u8..TABLE_POINTS as u8).map(|i| (0.25 * f32::from(i), 31.5 - f32::from(i))).collect();
-    let table = LawTable::new(&points).expect("a valid table");
+    let table = GainSchedule::new(&points).expect("a valid table");
     let late = |roll_rate_ticks, speed_ticks, config| Config {
         latency: Latency { roll_rate_ticks, speed_ticks },
         ..config
@@ -59,7 +59,7 @@ pub fn everything() -> Config {
     let mut config = product();
     config.capsize = Capsize { k_c: 1.0, v_max_m_s: 2.0 };
     config.predict.lead_s = 0.02;
-    config.track = Some(Track::default());
+    config.track = Some(PathTracking::default());
     config.input.rider_torque = config.input.steer;
     config.input.rider_torque.max = 50.0;
     config.input.path = Sensor::exact(10.0);
@@ -310,7 +310,7 @@ impl Random {
             0 => self.below(20),
             1 => 240 + self.below(20),
             2 => self.below(1 << 16),
-            3 => u32::from(control::frame::MISSING),
+            3 => u32::from(control::sensors::frame::MISSING),
             _ => 0,
         };
         Sample { value, age_ticks: age as u16 }

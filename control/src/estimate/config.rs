@@ -1,6 +1,6 @@
 //! What the estimator must know of the bicycle and of its sensors.
 
-use crate::param::{Leaf, Visit};
+use crate::param::{ParamSpec, ParamVisitor};
 
 /// Which roll rate is handed on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,19 +94,19 @@ impl Default for EstimateConfig {
 
 impl EstimateConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        let own = |name, min, max| Leaf::new("estimate", name, min, max);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        let own = |name, min, max| ParamSpec::new("estimate", name, min, max);
         let mut source = self.roll_rate as u8;
         to.choice(&own("roll_rate", 0.0, 1.0), SOURCES, &mut source);
         self.roll_rate = if source == Source::Estimate as u8 { Source::Estimate } else { Source::GyroX };
         let terms = ["steer2", "steer_roll", "steer4", "steer3_roll", "steer2_roll2", "steer_roll3"];
         for (name, value) in terms.into_iter().zip(&mut self.pitch) {
-            to.number(&Leaf::new("estimate.pitch", name, -1.0, 1.0), value);
+            to.number(&ParamSpec::new("estimate.pitch", name, -1.0, 1.0), value);
         }
         to.number(&own("wheel_radius_m", 0.02, 1.5), &mut self.wheel_radius_m);
         for (group, place) in [("estimate.imu", &mut self.imu), ("estimate.balance", &mut self.balance)] {
-            to.number(&Leaf::new(group, "forward_m", -2.0, 3.0), &mut place.forward_m);
-            to.number(&Leaf::new(group, "up_m", 0.0, 3.0), &mut place.up_m);
+            to.number(&ParamSpec::new(group, "forward_m", -2.0, 3.0), &mut place.forward_m);
+            to.number(&ParamSpec::new(group, "up_m", 0.0, 3.0), &mut place.up_m);
         }
         to.number(&own("bias_max_rad_s", 1e-3, 1.0), &mut self.bias_max_rad_s);
         to.number(&own("bias_walk_rad_s", 1e-6, 0.1), &mut self.bias_walk_rad_s);

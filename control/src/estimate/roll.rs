@@ -4,7 +4,7 @@
 //! that of Sanjurjo et al. 2019 (roll of a bicycle from rates and speed), with an accelerometer in
 //! place of the steady-cornering assumption where there is one.
 
-use crate::maths::{QUARTER, at_least, bounded};
+use crate::maths::{QUARTER, bounded, max};
 
 /// How far one observation may be off and still count in full \[rad\].
 const SURPRISE_RAD: f32 = 0.3;
@@ -60,7 +60,7 @@ impl Roll {
         let per = 1.0 / (self.p11 + variance);
         let (k1, k2) = (self.p11 * per, self.p12 * per);
         self.correct(k1, k2, bounded(error, SURPRISE_RAD), bias_max);
-        self.p22 = at_least(0.0, self.p22 - k2 * self.p12);
+        self.p22 = max(0.0, self.p22 - k2 * self.p12);
         self.p12 -= k2 * self.p11;
         self.p11 -= k1 * self.p11;
     }
@@ -70,7 +70,7 @@ impl Roll {
         let per = 1.0 / (self.p22 + variance);
         let (k1, k2) = (self.p12 * per, self.p22 * per);
         self.correct(k1, k2, error, bias_max);
-        self.p11 = at_least(0.0, self.p11 - k1 * self.p12);
+        self.p11 = max(0.0, self.p11 - k1 * self.p12);
         self.p12 -= k1 * self.p22;
         self.p22 -= k2 * self.p22;
         k2

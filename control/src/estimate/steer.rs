@@ -22,10 +22,10 @@ pub(super) struct Steer {
 impl Steer {
     /// Angle \[rad\] and rate \[rad/s\] after `dt` seconds; without any sensor both are 0.
     pub(super) fn step(&mut self, lag_s: f32, dt: f32, angle: Option<f32>, rate: Option<f32>) -> (f32, f32) {
-        let told = bounded(rate.unwrap_or(0.0), MAX.1);
+        let measured = bounded(rate.unwrap_or(0.0), MAX.1);
         let Some(angle) = angle.map(|a| bounded(a, MAX.0)) else {
             *self = Self::default();
-            return (0.0, told);
+            return (0.0, measured);
         };
         if !self.tracking {
             *self = Self { angle_rad: angle, missing_rad_s: 0.0, tracking: true };
@@ -33,10 +33,10 @@ impl Steer {
         let lag_s = if rate.is_some() && lag_s < FUSED_S { FUSED_S } else { lag_s };
         let w = 2.0 * dt / lag_s;
         let per = 1.0 / ((1.0 + w) * (1.0 + w));
-        let ahead = self.angle_rad + dt * (told + self.missing_rad_s);
+        let ahead = self.angle_rad + dt * (measured + self.missing_rad_s);
         let error = angle - ahead;
         self.angle_rad = bounded(ahead + error * (w * (2.0 + w) * per), MAX.0);
         self.missing_rad_s = bounded(self.missing_rad_s + error * (w * per) * (2.0 / lag_s), MAX.1);
-        (self.angle_rad, told + self.missing_rad_s)
+        (self.angle_rad, measured + self.missing_rad_s)
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::limits::{Truth, at_speed, calls, mirrored, plain, tables};
 use control::Cause;
-use control::guard::{GuardPlan, GuardState, Violation, judge, slack};
-use control::limits::*;
-use control::shape::{Asked, ShapePlan, ShapeState, step};
+use control::safety::guard::{GuardPlan, GuardState, Violation, check, slack};
+use control::safety::limiter::{LimiterPlan, LimiterState, TorqueRequest, step};
+use control::safety::limits::*;
 use proptest::prelude::*;
 
 /// What can be wrong with a shaper, or between it and the guard.
@@ -91,16 +91,16 @@ proptest! {
     fn a_sound_shaper_is_never_stopped(
         (table, rate_hz) in tables(), sequence in calls(1..100), gaps in any::<u64>(),
     ) {
-        let (shape, guard) = (ShapePlan::new(&table, rate_hz), GuardPlan::new(&table, rate_hz));
-        let (mut shaper, mut guarding) = (ShapeState::default(), GuardState::default());
-        for (i, asked) in sequence.iter().enumerate() {
+        let (shape, guard) = (LimiterPlan::new(&table, rate_hz), GuardPlan::new(&table, rate_hz));
+        let (mut shaper, mut guarding) = (LimiterState::default(), GuardState::default());
+        for (i, request) in sequence.iter().enumerate() {
             let permitted = i < 200 || gaps >> (i / 16 % 64) & 1 == 0;
-            let mut torque = step(&table, &shape, &mut shaper, asked).0;
+            let mut torque = step(&table, &shape, &mut shaper, request).0;
             if !permitted {
-                (torque, shaper) = (0.0, ShapeState::default());
+                (torque, shaper) = (0.0, LimiterState::default());
             }
-            let verdict = judge(&table, &guard, &mut guarding, torque, permitted, asked);
-            prop_assert_eq!(verdict.map(f32::to_bits), Ok(torque.to_bits()), "call {} {:?}", i, asked);
+            let verdict = check(&table, &guard, &mut guarding, torque, permitted, request);
+            prop_assert_eq!(verdict.map(f32::to_bits), Ok(torque.to_bits()), "call {} {:?}", i, request);
         }
     }
 
@@ -113,30 +113,30 @@ proptest! {
         (table, rate_hz) in tables(), sequence in calls(1..100), broken in any_break(),
     ) {
         let known = broken.table(table);
-        let (shape, guard) = (ShapePlan::new(&known, rate_hz), GuardPlan::new(&table, rate_hz));
-        let (mut shaper, mut guarding) = (ShapeState::default(), GuardState::default());
+        let (shape, guard) = (LimiterPlan::new(&known, rate_hz), GuardPlan::new(&table, rate_hz));
+        let (mut shaper, mut guarding) = (LimiterState::default(), GuardState::default());
         let mut truth = Truth::new(&table, rate_hz);
         let mut sound = Vec::new();
-        for (i, asked) in sequence.iter().enumerate() {
-            sound.push(step(&known, &shape, &mut shaper, asked).0);
+        for (i, request) in sequence.iter().enumerate() {
+            sound.push(step(&known, &shape, &mut shaper, request).0);
             let torque = broken.torque(i, &sound);
-            truth.wait(asked);
-            let (least, rounding) = truth.excess(torque, asked, 0.875);
-            let (most, _) = truth.excess(torque, asked, 1.0);
-            let verdict = judge(&table, &guard, &mut guarding, torque, true, asked);
+            truth.wait(request);
+            let (least, rounding) = truth.excess(torque, request, 0.875);
+            let (most, _) = truth.excess(torque, request, 1.0);
+            let verdict = check(&table, &guard, &mut guarding, torque, true, request);
             match verdict {
                 Ok(passed) => {
                     prop_assert_eq!(passed.to_bits(), torque.to_bits());
-                    prop_assert!(least <= rounding, "call {i}: {torque} let through, {least} N m outside: {asked:?}");
+                    prop_assert!(least <= rounding, "call {i}: {torque} let through, {least} N m outside: {request:?}");
                     truth.output(torque);
                 }
                 Err(why) => {
                     prop_assert!(
                         most > 0.0 || why == Violation::NotFinite,
-                        "call {i}: {torque} stopped for {why:?}: {asked:?}"
+                        "call {i}: {torque} stopped for {why:?}: {request:?}"
                     );
                     truth.clear();
-                    shaper = ShapeState::default();
+                    shaper = LimiterState::default();
                 }
             }
         }
@@ -149,9 +149,9 @@ proptest! {
     ) {
         let plan = GuardPlan::new(&table, rate_hz);
         let (mut right, mut left) = (GuardState::default(), GuardState::default());
-        for (asked, torque) in sequence.iter().zip(torques) {
-            let a = judge(&table, &plan, &mut right, torque, true, asked);
-            let b = judge(&table, &plan, &mut left, -torque, true, &mirrored(asked));
+        for (request, torque) in sequence.iter().zip(torques) {
+            let a = check(&table, &plan, &mut right, torque, true, request);
+            let b = check(&table, &plan, &mut left, -torque, true, &mirrored(request));
             prop_assert_eq!(a, b.map(|t| -t));
         }
     }
@@ -160,12 +160,12 @@ proptest! {
 /// Runs a table's guard over torques, each with its situation; the first refusal and its call.
 fn first_refusal(
     table: &Limits,
-    torques: impl IntoIterator<Item = (f32, Asked)>,
+    torques: impl IntoIterator<Item = (f32, TorqueRequest)>,
 ) -> Option<(usize, Violation)> {
     let plan = GuardPlan::new(table, 1000.0);
     let mut state = GuardState::default();
     let verdicts =
-        torques.into_iter().map(|(torque, asked)| judge(table, &plan, &mut state, torque, true, &asked));
+        torques.into_iter().map(|(torque, request)| check(table, &plan, &mut state, torque, true, &request));
     verdicts.enumerate().find_map(|(i, verdict)| verdict.err().map(|why| (i, why)))
 }
 
@@ -180,11 +180,11 @@ fn each_violation_is_named() {
         set(&mut table, product);
         table
     };
-    let at = |asked: Asked, torque: f32| vec![(0.0, plain()), (torque, asked)];
-    let steered = |steer| Asked { steer_rad: Some(steer), ..plain() };
+    let at = |request: TorqueRequest, torque: f32| vec![(0.0, plain()), (torque, request)];
+    let steered = |steer| TorqueRequest { steer_rad: Some(steer), ..plain() };
     let cap = SpeedCap { speed_m_s: [0.0, 3.0, 6.0, 9.0], torque_nm: [7.0, 7.0, 4.0, 1.0] };
     let ramp = |slope: f32| (0..100).map(|i| (slope * i as f32, plain())).collect::<Vec<_>>();
-    let turned = vec![(1.0, Asked { steer_rate_rad_s: Some(-2.0), ..plain() }); 400];
+    let turned = vec![(1.0, TorqueRequest { steer_rate_rad_s: Some(-2.0), ..plain() }); 400];
     let taper = only(|l, p| l.taper = p.taper);
     let stop = only(|l, p| l.end_stop = p.end_stop);
     let rates = Limits { rise_nm_s: Some(100.0), fall_nm_s: Some(200.0), ..off };
@@ -199,8 +199,14 @@ fn each_violation_is_named() {
         ("not a number", off, at(plain(), f32::NAN), 1..=1, Violation::NotFinite),
         ("infinite", off, at(plain(), f32::NEG_INFINITY), 1..=1, Violation::NotFinite),
         ("too much", only(|_, _| ()), at(plain(), -7.001), 1..=1, Violation::Magnitude),
-        ("no authority", off, at(Asked { authority: 0.0, ..plain() }, 0.01), 1..=1, Violation::Authority),
-        ("limping", limp, at(Asked { limp: true, ..plain() }, 3.501), 1..=1, Violation::Limp),
+        (
+            "no authority",
+            off,
+            at(TorqueRequest { authority: 0.0, ..plain() }, 0.01),
+            1..=1,
+            Violation::Authority,
+        ),
+        ("limping", limp, at(TorqueRequest { limp: true, ..plain() }, 3.501), 1..=1, Violation::Limp),
         (
             "too fast",
             Limits { speed_cap: Some(cap), ..off },
@@ -212,7 +218,7 @@ fn each_violation_is_named() {
         (
             "felt",
             felt,
-            at(Asked { rider_torque_nm: Some(-4.0), ..plain() }, 3.01),
+            at(TorqueRequest { rider_torque_nm: Some(-4.0), ..plain() }, 3.01),
             1..=1,
             Violation::RiderTorque,
         ),
@@ -242,10 +248,10 @@ fn each_violation_is_named() {
     // Just inside each of them nothing is refused.
     for (name, table, torques) in [
         ("largest", only(|_, _| ()), at(plain(), -7.0)),
-        ("limping", limp, at(Asked { limp: true, ..plain() }, 3.5)),
+        ("limping", limp, at(TorqueRequest { limp: true, ..plain() }, 3.5)),
         ("too fast", Limits { speed_cap: Some(cap), ..off }, at(at_speed(0.0, 7.5), 2.5)),
         ("too slow", taper, at(at_speed(0.0, 1.0), 3.5)),
-        ("felt", felt, at(Asked { rider_torque_nm: Some(-4.0), ..plain() }, 3.0)),
+        ("felt", felt, at(TorqueRequest { rider_torque_nm: Some(-4.0), ..plain() }, 3.0)),
         ("back from the stop", stop, at(steered(1.3), -7.0)),
         ("rising", rates, ramp(0.1)),
         ("falling", rates, ramp(0.1).into_iter().chain([(9.7, plain())]).collect()),
@@ -263,10 +269,10 @@ fn what_is_outside_must_come_back() {
     let table = Limits::product();
     let fall = table.fall_nm_s.expect("set") / 1000.0;
     for outside in [
-        Asked { steer_rad: Some(1.5), ..plain() },
+        TorqueRequest { steer_rad: Some(1.5), ..plain() },
         at_speed(0.0, 0.2),
-        Asked { authority: 0.0, ..plain() },
-        Asked { rider_torque_nm: Some(-30.0), ..plain() },
+        TorqueRequest { authority: 0.0, ..plain() },
+        TorqueRequest { rider_torque_nm: Some(-30.0), ..plain() },
     ] {
         for (part, allowed) in [(1.0, true), (0.5, false), (0.0, false)] {
             let up = (0..=50).map(|i| (0.1 * i as f32, plain()));
@@ -284,7 +290,7 @@ fn without_permission_only_zero() {
     let table = Limits { rise_nm_s: Some(100.0), ..Limits::default() };
     let plan = GuardPlan::new(&table, 1000.0);
     let mut state = GuardState::default();
-    let mut verdict = |torque, permitted| judge(&table, &plan, &mut state, torque, permitted, &plain());
+    let mut verdict = |torque, permitted| check(&table, &plan, &mut state, torque, permitted, &plain());
     assert_eq!(verdict(0.1, true), Ok(0.1));
     assert_eq!(verdict(0.2, true), Ok(0.2));
     assert_eq!(verdict(0.2, false), Err(Violation::NotPermitted));
@@ -299,10 +305,10 @@ fn without_permission_only_zero() {
 #[test]
 fn each_fault_of_the_shaper_is_found() {
     let table = Limits { window: Some(Window { ms: 100, nm: 4.0 }), ..Limits::product() };
-    let sequence: Vec<Asked> = (0..4000)
+    let sequence: Vec<TorqueRequest> = (0..4000)
         .map(|i| {
             let t = i as f32 * 1e-3;
-            Asked {
+            TorqueRequest {
                 steer_rad: Some(1.4 * (2.0 * t).sin()),
                 steer_rate_rad_s: Some(2.8 * (2.0 * t).cos()),
                 rider_torque_nm: Some(20.0 * (3.3 * t).sin()),
@@ -313,14 +319,14 @@ fn each_fault_of_the_shaper_is_found() {
         .collect();
     let run = |broken: Option<Broken>| {
         let known = broken.map_or(table, |b| b.table(table));
-        let plan = ShapePlan::new(&known, 1000.0);
-        let mut shaper = ShapeState::default();
+        let plan = LimiterPlan::new(&known, 1000.0);
+        let mut shaper = LimiterState::default();
         let mut sound = Vec::new();
         first_refusal(
             &table,
-            sequence.iter().enumerate().map(|(i, asked)| {
-                sound.push(step(&known, &plan, &mut shaper, asked).0);
-                (broken.map_or(sound[i], |b| b.torque(i, &sound)), *asked)
+            sequence.iter().enumerate().map(|(i, request)| {
+                sound.push(step(&known, &plan, &mut shaper, request).0);
+                (broken.map_or(sound[i], |b| b.torque(i, &sound)), *request)
             }),
         )
     };
@@ -358,10 +364,10 @@ fn the_limit_and_its_slack_are_allowed() {
     let cap = Limits { speed_cap: Some(cap), ..off };
     let felt = Limits { rider_torque: Some(RiderTorque { allowance_nm: 1.0, multiplier: 1.0 }), ..seven };
     let window = Limits { window: Some(Window { ms: 100, nm: 4.0 }), ..off };
-    let against = |rider: f32| Asked { rider_torque_nm: Some(rider), ..plain() };
-    for (name, table, asked, limit, why) in [
+    let against = |rider: f32| TorqueRequest { rider_torque_nm: Some(rider), ..plain() };
+    for (name, table, request, limit, why) in [
         ("largest", seven, plain(), 7.0_f32, Violation::Magnitude),
-        ("authority", seven, Asked { authority: 0.5, ..plain() }, 3.5, Violation::Authority),
+        ("authority", seven, TorqueRequest { authority: 0.5, ..plain() }, 3.5, Violation::Authority),
         ("cap, slower", cap, at_speed(0.0, 0.5), 5.0, Violation::Speed),
         ("cap, faster", cap, at_speed(0.0, 7.0), 4.5, Violation::Speed),
         ("cap, between", cap, at_speed(0.0, 4.0), 5.0, Violation::Speed),
@@ -376,11 +382,11 @@ fn the_limit_and_its_slack_are_allowed() {
             let inside = torque - slack(torque, 0.0);
             at_the_limit += u32::from(inside == limit);
             let expected = if inside <= limit { Ok(torque) } else { Err(why) };
-            let judged = |torque: f32, asked: &Asked| {
-                judge(&table, &plan, &mut GuardState::default(), torque, true, asked)
+            let checked = |torque: f32, request: &TorqueRequest| {
+                check(&table, &plan, &mut GuardState::default(), torque, true, request)
             };
-            assert_eq!(judged(torque, &asked), expected, "{name}: {torque}");
-            assert_eq!(judged(-torque, &mirrored(&asked)), expected.map(|t| -t), "{name}: {torque}");
+            assert_eq!(checked(torque, &request), expected, "{name}: {torque}");
+            assert_eq!(checked(-torque, &mirrored(&request)), expected.map(|t| -t), "{name}: {torque}");
         }
         assert!(at_the_limit > 0, "{name}: no float is just inside");
     }
@@ -393,7 +399,7 @@ fn turning_as_fast_as_allowed_is_no_override() {
     let gives_way = RiderMotion { steer_rate_rad_s: 1.0, after_ms: 20, fade_ms: 10 };
     let table = Limits { rider_motion: Some(gives_way), max_torque_nm: Some(7.0), ..Limits::default() };
     for torque in [5.0_f32, -5.0] {
-        let turned = |rate: f32| Asked { steer_rate_rad_s: Some(rate * torque.signum()), ..plain() };
+        let turned = |rate: f32| TorqueRequest { steer_rate_rad_s: Some(rate * torque.signum()), ..plain() };
         assert_eq!(first_refusal(&table, vec![(torque, turned(-1.0)); 1000]), None);
         let refused = first_refusal(&table, vec![(torque, turned(-1.001)); 1000]);
         assert!(refused.is_some_and(|(i, why)| (20..=31).contains(&i) && why == Violation::RiderMotion));
@@ -405,8 +411,8 @@ fn turning_as_fast_as_allowed_is_no_override() {
 #[test]
 fn a_part_of_no_limit_is_none() {
     let table = Limits { limp_fraction: Some(0.5), ..Limits::default() };
-    let huge = Asked { limp: true, wanted_nm: 0.9 * f32::MAX, ..plain() };
-    let shaped = step(&table, &ShapePlan::new(&table, 1000.0), &mut ShapeState::default(), &huge).0;
+    let huge = TorqueRequest { limp: true, wanted_nm: 0.9 * f32::MAX, ..plain() };
+    let shaped = step(&table, &LimiterPlan::new(&table, 1000.0), &mut LimiterState::default(), &huge).0;
     assert_eq!(shaped, huge.wanted_nm);
     assert_eq!(first_refusal(&table, [(shaped, huge)]), None);
 }

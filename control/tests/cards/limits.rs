@@ -1,16 +1,16 @@
 //! Any table of limits, any sequence of calls, and what the limits say, straight from their
 //! definitions: in f64, with the whole past at hand.
 
-use control::guard::slack;
-use control::limits::*;
-use control::shape::Asked;
+use control::safety::guard::slack;
+use control::safety::limiter::TorqueRequest;
+use control::safety::limits::*;
 use proptest::collection::vec;
 use proptest::option::of;
 use proptest::prelude::*;
 
 /// Nothing wanted, nothing known, at 5 m/s, a millisecond after the last call.
-pub(crate) fn plain() -> Asked {
-    Asked {
+pub(crate) fn plain() -> TorqueRequest {
+    TorqueRequest {
         wanted_nm: 0.0,
         authority: 1.0,
         limp: false,
@@ -24,18 +24,18 @@ pub(crate) fn plain() -> Asked {
 }
 
 /// Only the torque wanted and the speed.
-pub(crate) fn at_speed(wanted_nm: f32, speed: f32) -> Asked {
-    Asked { wanted_nm, speed_low_m_s: speed, speed_high_m_s: speed, ..plain() }
+pub(crate) fn at_speed(wanted_nm: f32, speed: f32) -> TorqueRequest {
+    TorqueRequest { wanted_nm, speed_low_m_s: speed, speed_high_m_s: speed, ..plain() }
 }
 
 /// The mirror image.
-pub(crate) fn mirrored(asked: &Asked) -> Asked {
-    Asked {
-        wanted_nm: -asked.wanted_nm,
-        steer_rad: asked.steer_rad.map(|x| -x),
-        steer_rate_rad_s: asked.steer_rate_rad_s.map(|x| -x),
-        rider_torque_nm: asked.rider_torque_nm.map(|x| -x),
-        ..*asked
+pub(crate) fn mirrored(request: &TorqueRequest) -> TorqueRequest {
+    TorqueRequest {
+        wanted_nm: -request.wanted_nm,
+        steer_rad: request.steer_rad.map(|x| -x),
+        steer_rate_rad_s: request.steer_rate_rad_s.map(|x| -x),
+        rider_torque_nm: request.rider_torque_nm.map(|x| -x),
+        ..*request
     }
 }
 
@@ -98,14 +98,14 @@ fn sensor(bound: f32) -> impl Strategy<Value = Option<f32>> {
     ]
 }
 
-fn call() -> impl Strategy<Value = Asked> {
+fn call() -> impl Strategy<Value = TorqueRequest> {
     let wanted = prop_oneof![10 => -60.0_f32..60.0, 10 => -8.0_f32..8.0, 2 => Just(0.0), 1 => wild()];
     let authority = prop_oneof![6 => Just(1.0_f32), 2 => 0.0_f32..1.0, 1 => Just(0.0), 1 => wild()];
     let speed = || prop_oneof![12 => -1.0_f32..12.0, 1 => wild()];
     let elapsed = prop_oneof![6 => Just(1000_u32), 12 => 100_u32..10_000, 1 => Just(0), 1 => any::<u32>()];
     let sensors = (sensor(2.0), sensor(12.0), sensor(15.0));
     (wanted, authority, any::<bool>(), (speed(), speed()), sensors, elapsed).prop_map(
-        |(wanted_nm, authority, limp, speeds, (steer, rate, rider), elapsed_us)| Asked {
+        |(wanted_nm, authority, limp, speeds, (steer, rate, rider), elapsed_us)| TorqueRequest {
             wanted_nm,
             authority,
             limp,
@@ -120,13 +120,13 @@ fn call() -> impl Strategy<Value = Asked> {
 }
 
 /// A sequence of calls: spells in which all but the time stays as it is, of one call or many.
-pub(crate) fn calls(spells: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Asked>> {
+pub(crate) fn calls(spells: std::ops::Range<usize>) -> impl Strategy<Value = Vec<TorqueRequest>> {
     let spell = (call(), prop_oneof![Just(1_usize), 1_usize..60], any::<bool>());
     vec(spell, spells).prop_map(|spells| {
-        let mut all: Vec<Asked> = Vec::new();
-        for (asked, times, steady) in spells {
-            let steady = steady && asked.elapsed_us < 20_000;
-            all.extend(vec![asked; if steady { times } else { 1 }]);
+        let mut all: Vec<TorqueRequest> = Vec::new();
+        for (request, times, steady) in spells {
+            let steady = steady && request.elapsed_us < 20_000;
+            all.extend(vec![request; if steady { times } else { 1 }]);
         }
         all
     })
@@ -164,12 +164,12 @@ impl Truth {
     }
 
     /// Time passes.
-    pub(crate) fn wait(&mut self, asked: &Asked) {
-        let elapsed = f64::from(asked.elapsed_us);
+    pub(crate) fn wait(&mut self, request: &TorqueRequest) {
+        let elapsed = f64::from(request.elapsed_us);
         self.now_us += elapsed;
         self.past.push((self.now_us, self.last));
         if let Some(r) = self.table.rider_motion {
-            let back = asked.steer_rate_rad_s.map_or(0.0, |rate| -f64::from(rate) * self.last.signum());
+            let back = request.steer_rate_rad_s.map_or(0.0, |rate| -f64::from(rate) * self.last.signum());
             let against = self.last != 0.0 && back > f64::from(r.steer_rate_rad_s);
             let whole = 1e3 * (f64::from(r.after_ms) + f64::from(r.fade_ms));
             self.turned_us = (self.turned_us + if against { elapsed } else { -elapsed }).clamp(0.0, whole);
@@ -183,18 +183,18 @@ impl Truth {
 
     /// By how much the torque is outside its limits \[N m\], and how much of that rounding may be; over
     /// `part` of the window.
-    pub(crate) fn excess(&self, torque: f32, asked: &Asked, part: f64) -> (f64, f64) {
+    pub(crate) fn excess(&self, torque: f32, request: &TorqueRequest, part: f64) -> (f64, f64) {
         let rounding = f64::from(slack(torque, self.last as f32));
         let torque = f64::from(torque);
         let size = torque.abs();
         let side = if torque < 0.0 || (torque == 0.0 && self.last < 0.0) { -1.0 } else { 1.0 };
         let was = self.last * side;
-        let elapsed = f64::from(asked.elapsed_us) * 1e-6;
+        let elapsed = f64::from(request.elapsed_us) * 1e-6;
         let [rise, fall] =
             [self.table.rise_nm_s, self.table.fall_nm_s].map(|r| r.map_or(f64::INFINITY, f64::from));
         // The clock's microsecond, in favour of the torque.
         let (least, most) = (elapsed.min(self.period_s), (elapsed + 1e-6).min(self.period_s));
-        let cap = self.caps(side, asked);
+        let cap = self.caps(side, request);
         let back = if fall.is_finite() && was > 0.0 { was - fall * least } else { 0.0 };
         let beyond = (size - cap.max(back)).max(0.0) * f64::from(u8::from(size > 0.0));
         let absolute = self.table.max_torque_nm.map_or(0.0, |max| size - f64::from(max));
@@ -228,16 +228,16 @@ impl Truth {
     }
 
     /// The largest torque on a side by what bicycle, rider and permission say.
-    fn caps(&self, side: f64, asked: &Asked) -> f64 {
+    fn caps(&self, side: f64, request: &TorqueRequest) -> f64 {
         let table = &self.table;
         let max = table.max_torque_nm.map_or(f64::from(f32::MAX), f64::from);
         let share = |x: f64| if x > 0.0 { x.min(1.0) } else { 0.0 };
         let finite = |x: Option<f32>| x.filter(|x| x.is_finite()).map(f64::from);
-        let mut cap = max * share(f64::from(asked.authority));
-        if let (Some(part), true, Some(max)) = (table.limp_fraction, asked.limp, table.max_torque_nm) {
+        let mut cap = max * share(f64::from(request.authority));
+        if let (Some(part), true, Some(max)) = (table.limp_fraction, request.limp, table.max_torque_nm) {
             cap = cap.min(f64::from(part) * f64::from(max));
         }
-        let (a, b) = (f64::from(asked.speed_low_m_s), f64::from(asked.speed_high_m_s));
+        let (a, b) = (f64::from(request.speed_low_m_s), f64::from(request.speed_high_m_s));
         let (slow, fast) = if a.is_nan() || b.is_nan() { (-1e9, 1e9) } else { (a.min(b), a.max(b)) };
         if let Some(c) = table.speed_cap {
             let points: Vec<(f64, f64)> =
@@ -260,7 +260,7 @@ impl Truth {
             let (zero, full) = (f64::from(t.zero_m_s), f64::from(t.full_m_s));
             cap = cap.min(max * share((slow - zero) / (full - zero)));
         }
-        if let (Some(r), Some(rider)) = (table.rider_torque, finite(asked.rider_torque_nm)) {
+        if let (Some(r), Some(rider)) = (table.rider_torque, finite(request.rider_torque_nm)) {
             let band = max + (f64::from(r.allowance_nm) + rider * side) * f64::from(r.multiplier);
             cap = cap.min(band.max(0.0));
         }
@@ -268,7 +268,7 @@ impl Truth {
             let gone = self.turned_us - 1e3 * f64::from(r.after_ms);
             cap = cap.min(max * share(1.0 - gone / (1e3 * f64::from(r.fade_ms))));
         }
-        if let (Some(e), Some(steer)) = (table.end_stop, finite(asked.steer_rad)) {
+        if let (Some(e), Some(steer)) = (table.end_stop, finite(request.steer_rad)) {
             let (soft, hard) = (f64::from(e.soft_rad), f64::from(e.hard_rad));
             cap = cap.min(max * share((hard - steer * side) / (hard - soft)));
         }

@@ -1,20 +1,20 @@
 //! Flight cards of the control crate alone: what holds whatever the bicycle.
 
 mod answer;
-mod cross;
+mod cross_check;
+mod engagement;
 mod fuzz;
 mod guard;
-mod input;
+mod limiter;
 mod limits;
 mod maths;
-mod permit;
+mod monitor;
 mod polarity;
 mod press;
 mod properties;
-mod pulses;
-mod shape;
-mod slope;
+mod regression;
 mod smooth;
 mod steering;
-mod watch;
+mod validation;
+mod wheel_speed;
 mod wire;

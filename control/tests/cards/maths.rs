@@ -1,6 +1,6 @@
 //! Flight cards: the polynomials of the control crate.
 
-use control::maths::{PER_ROOT_ERROR, QUARTER, SIN_COS_ERROR, bounded, exp, is_finite, per_root, sin_cos};
+use control::maths::{PER_ROOT_ERROR, QUARTER, SIN_COS_ERROR, bounded, exp, is_finite, rsqrt, sin_cos};
 
 /// Situation: every 61st float of a quarter turn, both ways. Action: compare with double precision. The
 /// error must stay within the stated bound, which must be no looser than twice what is needed.
@@ -27,7 +27,7 @@ fn one_over_the_root_within_its_bound() {
     let mut worst = 0.0_f64;
     let octaves = (1.0_f32.to_bits()..4.0_f32.to_bits()).step_by(61).map(f32::from_bits);
     for x in octaves.chain([1e-37, 1e-6, 96.2, 3e6, 1e38]) {
-        worst = worst.max((f64::from(per_root(x)) * f64::from(x).sqrt() - 1.0).abs());
+        worst = worst.max((f64::from(rsqrt(x)) * f64::from(x).sqrt() - 1.0).abs());
     }
     println!("largest error {worst:e}");
     let bound = f64::from(PER_ROOT_ERROR);
@@ -39,9 +39,9 @@ fn one_over_the_root_within_its_bound() {
 #[test]
 fn one_over_the_root_is_finite() {
     for x in (0..=f32::MAX.to_bits()).step_by(61).map(f32::from_bits).chain([f32::MAX]) {
-        assert!(per_root(x).is_finite() && per_root(x) > 0.0, "{x}");
+        assert!(rsqrt(x).is_finite() && rsqrt(x) > 0.0, "{x}");
     }
-    assert_eq!(0.0 * per_root(0.0), 0.0);
+    assert_eq!(0.0 * rsqrt(0.0), 0.0);
 }
 
 /// Situation: angles beyond a quarter turn, infinite, not a number, negative zero. Action: take sine

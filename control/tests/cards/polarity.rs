@@ -1,9 +1,9 @@
 //! Flight cards: the polarity check, and what it lets through.
 
-use control::polarity::Move;
-use control::press::PressConfig;
+use control::safety::press::PressConfig;
+use control::sensors::polarity::PolarityStep;
 use control::{
-    Cause, Causes, Command, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State, Triple, step,
+    Cause, Causes, Command, Config, GainSchedule, Law, Mode, Plan, Sample, SensorFrame, State, Triple, step,
 };
 
 /// What somebody does with the bicycle in one control period.
@@ -62,7 +62,7 @@ fn frames(hands: &[Hands], engage: bool, wrong: Wrong) -> Vec<SensorFrame> {
 }
 
 /// The moves asked for one after the other, the causes told on the way, the torque shown while leaning to the right.
-fn checked(plan: &Plan, frames: &[SensorFrame]) -> (Vec<Move>, Vec<Cause>, f32) {
+fn checked(plan: &Plan, frames: &[SensorFrame]) -> (Vec<PolarityStep>, Vec<Cause>, f32) {
     let mut state = State::default();
     let (mut asked, mut causes, mut shown) = (vec![state.polarity()], control::Causes::NONE, 0.0_f32);
     for (i, frame) in frames.iter().enumerate() {
@@ -73,8 +73,8 @@ fn checked(plan: &Plan, frames: &[SensorFrame]) -> (Vec<Move>, Vec<Cause>, f32) 
         if state.polarity() != *asked.last().unwrap() {
             asked.push(state.polarity());
         }
-        if (1000..2000).contains(&i) && state.shown_nm().abs() > shown.abs() {
-            shown = state.shown_nm();
+        if (1000..2000).contains(&i) && state.hand_torque_nm().abs() > shown.abs() {
+            shown = state.hand_torque_nm();
         }
     }
     (asked, causes.iter().collect(), shown)
@@ -90,7 +90,7 @@ fn flashed() -> Plan {
 #[test]
 fn a_sound_bicycle_passes() {
     let (asked, causes, shown) = checked(&flashed(), &frames(&moves(0.5), false, |_| ()));
-    assert_eq!(asked, [Move::Lean, Move::Steer, Move::Push, Move::Passed]);
+    assert_eq!(asked, [PolarityStep::Lean, PolarityStep::Steer, PolarityStep::Push, PolarityStep::Passed]);
     assert!(
         causes.contains(&Cause::PolarityUnchecked) && !causes.contains(&Cause::PolarityWrong),
         "{causes:?}"
@@ -160,25 +160,25 @@ fn a_ride_is_no_check() {
     let mut riding = moves(0.5);
     riding.iter_mut().for_each(|h| h.speed_m_s = 4.0);
     let (asked, causes, _) = checked(&flashed(), &frames(&riding, false, |_| ()));
-    assert_eq!(asked, [Move::Lean]);
+    assert_eq!(asked, [PolarityStep::Lean]);
     assert!(!causes.contains(&Cause::PolarityWrong), "{causes:?}");
 }
 
 /// Situation: one sign is wrong. Action: the moves. Must hold: found at the move that shows it, told, and not forgotten.
 #[test]
 fn every_wrong_sign_is_found() {
-    let wrong: [(&str, Move, Wrong); 6] = [
-        ("gyro", Move::Lean, |f| f.gyro_rad_s.value[0] = -f.gyro_rad_s.value[0]),
-        ("accelerometer", Move::Lean, |f| f.accel_m_s2.value[1] = -f.accel_m_s2.value[1]),
-        ("steer angle", Move::Steer, |f| f.steer_rad.value = -f.steer_rad.value),
-        ("steer rate", Move::Steer, |f| f.steer_rate_rad_s.value = -f.steer_rate_rad_s.value),
-        ("front wheel", Move::Push, |f| f.front_wheel_m_s.value = -f.front_wheel_m_s.value),
-        ("rear wheel", Move::Push, |f| f.rear_wheel_m_s.value = -f.rear_wheel_m_s.value),
+    let wrong: [(&str, PolarityStep, Wrong); 6] = [
+        ("gyro", PolarityStep::Lean, |f| f.gyro_rad_s.value[0] = -f.gyro_rad_s.value[0]),
+        ("accelerometer", PolarityStep::Lean, |f| f.accel_m_s2.value[1] = -f.accel_m_s2.value[1]),
+        ("steer angle", PolarityStep::Steer, |f| f.steer_rad.value = -f.steer_rad.value),
+        ("steer rate", PolarityStep::Steer, |f| f.steer_rate_rad_s.value = -f.steer_rate_rad_s.value),
+        ("front wheel", PolarityStep::Push, |f| f.front_wheel_m_s.value = -f.front_wheel_m_s.value),
+        ("rear wheel", PolarityStep::Push, |f| f.rear_wheel_m_s.value = -f.rear_wheel_m_s.value),
     ];
     for (name, at, wrong) in wrong {
         let (asked, causes, _) = checked(&flashed(), &frames(&moves(0.5), false, wrong));
         let found = asked.split_last().map(|(last, before)| (*last, before.last().copied()));
-        assert_eq!(found, Some((Move::Wrong, Some(at))), "{name}: {asked:?}");
+        assert_eq!(found, Some((PolarityStep::Wrong, Some(at))), "{name}: {asked:?}");
         assert!(causes.contains(&Cause::PolarityWrong), "{name}");
     }
     // A calibration that says so makes it right.
@@ -186,16 +186,16 @@ fn every_wrong_sign_is_found() {
     config.calibration.steer_reversed = true;
     let reversed: Wrong = |f| f.steer_rad.value = -f.steer_rad.value;
     let (asked, ..) = checked(&config.plan().expect("in range"), &frames(&moves(0.5), false, reversed));
-    assert_eq!(asked.last(), Some(&Move::Passed));
+    assert_eq!(asked.last(), Some(&PolarityStep::Passed));
 }
 
 /// Situation: a table of gains typed with the wrong sign. Action: lean. Must hold: found: it would steer out of the lean.
 #[test]
 fn a_law_of_the_wrong_sign_is_found() {
-    let table = LawTable::new(&[(0.0, -8.0), (10.0, -8.0)]).expect("a table");
+    let table = GainSchedule::new(&[(0.0, -8.0), (10.0, -8.0)]).expect("a table");
     let config = Config { law: Law::Table(table), ..Config::product() };
     let (asked, _, shown) = checked(&config.plan().expect("in range"), &frames(&moves(0.5), false, |_| ()));
-    assert_eq!(asked, [Move::Lean, Move::Wrong]);
+    assert_eq!(asked, [PolarityStep::Lean, PolarityStep::Wrong]);
     assert!(shown < -1.0, "{shown}");
 }
 
@@ -203,10 +203,10 @@ fn a_law_of_the_wrong_sign_is_found() {
 /// Must hold: nothing is passed and nothing accused.
 #[test]
 fn what_does_not_show_decides_nothing() {
-    let cases: [(&str, f32, Wrong, Move); 3] = [
-        ("small", 0.1, |_| (), Move::Lean),
-        ("bias", 0.0, |f| f.gyro_rad_s.value[0] += 0.06, Move::Lean),
-        ("steer lost", 0.5, |f| f.steer_rad = Sample::missing(), Move::Steer),
+    let cases: [(&str, f32, Wrong, PolarityStep); 3] = [
+        ("small", 0.1, |_| (), PolarityStep::Lean),
+        ("bias", 0.0, |f| f.gyro_rad_s.value[0] += 0.06, PolarityStep::Lean),
+        ("steer lost", 0.5, |f| f.steer_rad = Sample::missing(), PolarityStep::Steer),
     ];
     for (name, size, wrong, stays) in cases {
         let (asked, causes, _) = checked(&flashed(), &frames(&moves(size), false, wrong));

@@ -1,6 +1,6 @@
 //! Flight cards: which movement of the switch's contact is a deliberate press.
 
-use control::press::{Press, PressConfig, PressState};
+use control::safety::press::{Press, PressConfig, PressState};
 use proptest::prelude::*;
 
 /// A second open and a tenth of a second closed.

@@ -1,8 +1,8 @@
 //! Flight cards: what the controller promises for every input.
 
-use control::history::{Latency, MAX_LATENCY_TICKS};
+use control::sensors::latency::{Latency, MAX_LATENCY_TICKS};
 use control::{
-    ActiveLimits, Cause, Config, Law, LawTable, Plan, Sample, SensorFrame, State, Taper, Triple, step,
+    ActiveLimits, Cause, Config, GainSchedule, Law, Plan, Sample, SensorFrame, State, Taper, Triple, step,
 };
 use proptest::prelude::*;
 
@@ -45,7 +45,7 @@ fn any_frame() -> impl Strategy<Value = SensorFrame> {
 }
 
 fn any_law() -> impl Strategy<Value = Law> {
-    let table = LawTable::new(&[(0.0, 30.0), (4.0, 12.0), (9.0, -1.0)]).expect("a valid table");
+    let table = GainSchedule::new(&[(0.0, 30.0), (4.0, 12.0), (9.0, -1.0)]).expect("a valid table");
     prop_oneof![
         Just(Law::H { cut: false }),
         Just(Law::H { cut: true }),
@@ -224,7 +224,7 @@ fn the_laws_are_as_written() {
 /// must be of one instant, and nothing may come out before there is one.
 #[test]
 fn late_sensors_are_paired_with_the_past() {
-    let table = LawTable::new(&[(0.0, 0.0), (30.0, 30.0)]).expect("a valid table");
+    let table = GainSchedule::new(&[(0.0, 0.0), (30.0, 30.0)]).expect("a valid table");
     let latency = Latency { roll_rate_ticks: 0, speed_ticks: 3 };
     let plan = Config { latency, ..Config::thesis(Law::Table(table)) }.plan().expect("in range");
     let mut state = engaged(&plan, 2.0);
@@ -289,7 +289,7 @@ fn parameters_out_of_range_are_named() {
     for (error, name) in [
         (refused(|c| c.rate_hz = 99.0), "rate_hz"),
         (refused(|c| c.law = Law::Cl2 { k: 0.0 }), "law.cl2.k"),
-        (refused(|c| c.law = Law::Table(LawTable::default())), "law.table.points"),
+        (refused(|c| c.law = Law::Table(GainSchedule::default())), "law.table.points"),
         (refused(|c| c.calibration.imu_rad = [0.0, f32::NAN, 0.0]), "calibration.imu_pitch_rad"),
         (refused(|c| c.input.gyro.max = f32::NAN), "input.gyro.max"),
         (refused(|c| c.input.front_wheel.timeout_ticks = 10_001), "input.front_wheel.timeout_ticks"),
@@ -302,6 +302,6 @@ fn parameters_out_of_range_are_named() {
     ] {
         assert!(error.to_string().contains(name) && error.to_string().contains(&error.leaf.max.to_string()));
     }
-    assert!(LawTable::new(&[(1.0, 2.0), (1.0, 3.0)]).is_err());
-    assert!(LawTable::new(&[(f32::NAN, 2.0)]).is_err());
+    assert!(GainSchedule::new(&[(1.0, 2.0), (1.0, 3.0)]).is_err());
+    assert!(GainSchedule::new(&[(f32::NAN, 2.0)]).is_err());
 }

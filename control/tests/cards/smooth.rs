@@ -1,6 +1,6 @@
 //! Flight cards: the roll rate without steps and vibration.
 
-use control::smooth::{SmoothConfig, SmoothPlan, SmoothState, step};
+use control::estimate::smooth::{SmoothConfig, SmoothPlan, SmoothState, step};
 use proptest::prelude::*;
 
 const PERIOD_S: f32 = 1e-3;

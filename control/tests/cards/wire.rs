@@ -1,8 +1,8 @@
 //! The configuration record that images are told their configuration with.
 
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 use control::wire::{CONFIG_BYTES, config_bytes_used, decode_config, encode_config};
-use control::{Config, Law, LawTable};
+use control::{Config, GainSchedule, Law};
 use proptest::prelude::*;
 use proptest::test_runner::TestRng;
 
@@ -12,7 +12,7 @@ fn laws() -> impl Strategy<Value = Law> {
         (-20.0_f32..20.0, prop::collection::vec(-200.0_f32..200.0, 1..=32)).prop_map(|(start, gains)| {
             let points: Vec<_> =
                 (0_u8..).zip(gains).map(|(i, gain)| (start + 0.2 * f32::from(i), gain)).collect();
-            Law::Table(LawTable::new(&points).expect("a valid table"))
+            Law::Table(GainSchedule::new(&points).expect("a valid table"))
         });
     prop_oneof![
         Just(Law::None),
@@ -37,20 +37,20 @@ impl Scramble {
     }
 }
 
-impl Visit for Scramble {
-    fn number(&mut self, _: &Leaf, value: &mut f32) {
+impl ParamVisitor for Scramble {
+    fn number(&mut self, _: &ParamSpec, value: &mut f32) {
         *value = self.number();
     }
-    fn limit(&mut self, _: &Leaf, value: &mut Option<f32>) {
+    fn optional_number(&mut self, _: &ParamSpec, value: &mut Option<f32>) {
         *value = self.0.random::<bool>().then(|| self.number());
     }
-    fn count(&mut self, _: &Leaf, value: &mut u16) {
+    fn count(&mut self, _: &ParamSpec, value: &mut u16) {
         *value = self.0.random();
     }
-    fn switch(&mut self, _: &Leaf, value: &mut bool) {
+    fn switch(&mut self, _: &ParamSpec, value: &mut bool) {
         *value = self.0.random();
     }
-    fn choice(&mut self, _: &Leaf, names: &'static [&'static str], value: &mut u8) {
+    fn choice(&mut self, _: &ParamSpec, names: &'static [&'static str], value: &mut u8) {
         *value = self.0.random_range(0..names.len()) as u8;
     }
 }
@@ -58,7 +58,7 @@ impl Visit for Scramble {
 fn configurations() -> impl Strategy<Value = Config> {
     laws().prop_perturb(|law, rng| {
         let mut config = Config::thesis(law);
-        config.leaves(&mut Scramble(rng));
+        config.visit_params(&mut Scramble(rng));
         config
     })
 }

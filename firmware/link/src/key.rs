@@ -1,7 +1,7 @@
 //! A parameter's name: its group and its own name, a dot between them.
 
 use crate::frame::CRC;
-use control::param::Leaf;
+use control::param::ParamSpec;
 use core::fmt;
 
 /// A parameter's name in two parts, so that no memory is needed to put them together. Keys are equal
@@ -16,7 +16,7 @@ pub struct Key<'a> {
 
 impl<'a> Key<'a> {
     /// The key of a parameter.
-    pub const fn of(leaf: &Leaf) -> Key<'static> {
+    pub const fn of(leaf: &ParamSpec) -> Key<'static> {
         Key { group: leaf.group, name: leaf.name }
     }
 

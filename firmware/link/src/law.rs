@@ -3,9 +3,9 @@
 
 use crate::bytes::{Reader, Writer};
 use crate::leaves::LAW;
+use control::law::gain_schedule::TABLE_POINTS;
 use control::param::ParamError;
-use control::table::TABLE_POINTS;
-use control::{Law, LawTable};
+use control::{GainSchedule, Law};
 use heapless::Vec;
 
 /// Most bytes of a law: number, slope, count, and speed and gain of each point.
@@ -42,8 +42,8 @@ pub fn encode(law: &Law, to: &mut Writer<'_>) {
 pub fn decode(from: &mut Reader<'_>) -> Result<Law, NoLaw> {
     let (number, slope, points) = read(from).ok_or(NoLaw::Malformed)?;
     let table = match points.is_empty() {
-        true => LawTable::default(),
-        false => LawTable::new(&points).map_err(NoLaw::Refused)?,
+        true => GainSchedule::default(),
+        false => GainSchedule::new(&points).map_err(NoLaw::Refused)?,
     };
     let law = Law::numbered(number, slope, table).ok_or(NoLaw::Refused(LAW.error(f32::from(number))))?;
     law.validate().map_err(NoLaw::Refused)?;

@@ -2,13 +2,13 @@
 
 use crate::key::Key;
 use control::law::LAW_NAMES;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 use control::{Config, Law};
 
 /// The law by its name. A law that needs more than its name is set as a whole; see [`crate::law`].
-pub const LAW: Leaf = Leaf::new("", "law", 0.0, (LAW_NAMES.len() - 1) as f32);
-const CL2: Leaf = Leaf::new("law", "cl2.k", 1e-3, 20.0);
-const BALANCE: Leaf = Leaf::new("law", "balance-assist.kappa", 1e-3, 20.0);
+pub const LAW: ParamSpec = ParamSpec::new("", "law", 0.0, (LAW_NAMES.len() - 1) as f32);
+const CL2: ParamSpec = ParamSpec::new("law", "cl2.k", 1e-3, 20.0);
+const BALANCE: ParamSpec = ParamSpec::new("law", "balance-assist.kappa", 1e-3, 20.0);
 
 /// What a parameter's number means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Kind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// Name and range.
-    pub leaf: Leaf,
+    pub leaf: ParamSpec,
     /// What its number means.
     pub kind: Kind,
     /// The names of a choice; empty for all others.
@@ -77,7 +77,7 @@ pub fn each_but_law(config: &mut Config, mut to: impl FnMut(&Seen) -> Option<f32
 /// One copy in the image for whatever is done with the parameters: there are many of them.
 #[inline(never)]
 fn walk(config: &mut Config, to: Each<'_>) {
-    config.leaves(&mut Walk(to));
+    config.visit_params(&mut Walk(to));
 }
 
 /// The parameter of a key; `None` if there is none.
@@ -112,31 +112,31 @@ type Each<'a> = &'a mut dyn FnMut(&Seen) -> Option<f32>;
 struct Walk<'a>(Each<'a>);
 
 impl Walk<'_> {
-    fn show(&mut self, leaf: &Leaf, kind: Kind, value: Option<f32>) -> Option<f32> {
+    fn show(&mut self, leaf: &ParamSpec, kind: Kind, value: Option<f32>) -> Option<f32> {
         (self.0)(&Seen { leaf: *leaf, kind, names: &[], value })
     }
 }
 
-impl Visit for Walk<'_> {
-    fn number(&mut self, leaf: &Leaf, value: &mut f32) {
+impl ParamVisitor for Walk<'_> {
+    fn number(&mut self, leaf: &ParamSpec, value: &mut f32) {
         if let Some(x) = self.show(leaf, Kind::Number, Some(*value)) {
             *value = x;
         }
     }
-    fn limit(&mut self, leaf: &Leaf, value: &mut Option<f32>) {
+    fn optional_number(&mut self, leaf: &ParamSpec, value: &mut Option<f32>) {
         *value = self.show(leaf, Kind::Limit, *value);
     }
-    fn count(&mut self, leaf: &Leaf, value: &mut u16) {
+    fn count(&mut self, leaf: &ParamSpec, value: &mut u16) {
         if let Some(x) = self.show(leaf, Kind::Count, Some(f32::from(*value))) {
             *value = x as u16;
         }
     }
-    fn switch(&mut self, leaf: &Leaf, value: &mut bool) {
+    fn switch(&mut self, leaf: &ParamSpec, value: &mut bool) {
         if let Some(x) = self.show(leaf, Kind::Switch, Some(f32::from(u8::from(*value)))) {
             *value = x == 1.0;
         }
     }
-    fn choice(&mut self, leaf: &Leaf, names: &'static [&'static str], value: &mut u8) {
+    fn choice(&mut self, leaf: &ParamSpec, names: &'static [&'static str], value: &mut u8) {
         let value_now = Some(f32::from(*value));
         let seen = Seen { leaf: *leaf, kind: Kind::Choice, names, value: value_now };
         if let Some(x) = (self.0)(&seen) {

@@ -19,7 +19,7 @@ pub struct Telemetry {
     pub command: Command,
     /// How much of what they should do gyro and motor do; [`control::State::slopes`].
     pub slopes: [Option<f32>; 2],
-    /// What is to be done next in the polarity check, as the number of [`control::polarity::Move`].
+    /// What is to be done next in the polarity check, as the number of [`control::sensors::polarity::PolarityStep`].
     pub polarity: u8,
     /// The torque that the law would ask for during the check \[N m\]; [`control::State::shown_nm`].
     pub shown_nm: f32,

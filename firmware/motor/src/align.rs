@@ -12,7 +12,7 @@
 
 use crate::fault::Fault;
 use crate::turn::Turn;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// How the alignment is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,12 +31,12 @@ pub struct AlignConfig {
 
 impl AlignConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("align", "current_a", 0.1, 100.0), &mut self.current_a);
-        to.count(&Leaf::new("align", "ramp_ticks", 1.0, 65535.0), &mut self.ramp_ticks);
-        to.count(&Leaf::new("align", "move_ticks", 1.0, 65535.0), &mut self.move_ticks);
-        to.count(&Leaf::new("align", "rest_ticks", 2.0, 65535.0), &mut self.rest_ticks);
-        to.number(&Leaf::new("align", "tolerance_turns", 0.001, 0.12), &mut self.tolerance_turns);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("align", "current_a", 0.1, 100.0), &mut self.current_a);
+        to.count(&ParamSpec::new("align", "ramp_ticks", 1.0, 65535.0), &mut self.ramp_ticks);
+        to.count(&ParamSpec::new("align", "move_ticks", 1.0, 65535.0), &mut self.move_ticks);
+        to.count(&ParamSpec::new("align", "rest_ticks", 2.0, 65535.0), &mut self.rest_ticks);
+        to.number(&ParamSpec::new("align", "tolerance_turns", 0.001, 0.12), &mut self.tolerance_turns);
     }
 }
 

@@ -16,7 +16,7 @@ use crate::protect::stall::StallConfig;
 use crate::protect::supply::SupplyConfig;
 use crate::zero::ZeroConfig;
 use control::ParamError;
-use control::param::{Checker, Leaf, Visit};
+use control::param::{Checker, ParamSpec, ParamVisitor};
 
 /// Everything that may be chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,23 +64,23 @@ pub const TICKS_PER_BANDWIDTH: f32 = 12.0;
 
 impl Config {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("", "rate_hz", 5_000.0, 60_000.0), &mut self.rate_hz);
-        self.motor.leaves(to);
-        self.encoder.leaves(to);
-        self.bridge.leaves(to);
-        self.current.leaves(to);
-        self.demand.leaves(to);
-        self.zero.leaves(to);
-        self.align.leaves(to);
-        self.sensors.leaves(to);
-        self.overload.leaves(to);
-        self.supply.leaves(to);
-        self.heat.leaves(to);
-        self.stall.leaves(to);
-        self.follow.leaves(to);
-        self.emf.leaves(to);
-        self.angle.leaves(to);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("", "rate_hz", 5_000.0, 60_000.0), &mut self.rate_hz);
+        self.motor.visit_params(to);
+        self.encoder.visit_params(to);
+        self.bridge.visit_params(to);
+        self.current.visit_params(to);
+        self.demand.visit_params(to);
+        self.zero.visit_params(to);
+        self.align.visit_params(to);
+        self.sensors.visit_params(to);
+        self.overload.visit_params(to);
+        self.supply.visit_params(to);
+        self.heat.visit_params(to);
+        self.stall.visit_params(to);
+        self.follow.visit_params(to);
+        self.emf.visit_params(to);
+        self.angle.visit_params(to);
     }
 
     /// A check value of the motor and encoder that an encoder's offset belongs to: 32 bits of FNV-1a over pole pairs,
@@ -109,9 +109,9 @@ impl Config {
     /// The first parameter outside its range, with its value and the range.
     pub fn plan(mut self) -> Result<Plan, ParamError> {
         let mut checker = Checker::default();
-        self.leaves(&mut checker);
+        self.visit_params(&mut checker);
         let c = &self;
-        let between = |group, name, min, max, value| Leaf::new(group, name, min, max).check(value);
+        let between = |group, name, min, max, value| ParamSpec::new(group, name, min, max).check(value);
         let most_hz = c.rate_hz / TICKS_PER_BANDWIDTH;
         checker.note(between("current", "bandwidth_hz", 10.0, most_hz, c.current.bandwidth_hz));
         checker.note(between("align", "current_a", 0.1, c.current.max_a, c.align.current_a));

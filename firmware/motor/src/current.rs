@@ -10,7 +10,7 @@
 use crate::machine::Motor;
 use crate::transform::Vector;
 use control::maths::bounded;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 use core::f32::consts::TAU;
 
 /// What may be chosen of the loop.
@@ -24,9 +24,9 @@ pub struct CurrentConfig {
 
 impl CurrentConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("current", "bandwidth_hz", 10.0, 5000.0), &mut self.bandwidth_hz);
-        to.number(&Leaf::new("current", "max_a", 0.1, 200.0), &mut self.max_a);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("current", "bandwidth_hz", 10.0, 5000.0), &mut self.bandwidth_hz);
+        to.number(&ParamSpec::new("current", "max_a", 0.1, 200.0), &mut self.max_a);
     }
 }
 

@@ -1,7 +1,7 @@
 //! From the torque asked for to the q current wanted.
 
 use control::maths::bounded;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// Limits of the torque on the steer axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,9 +14,9 @@ pub struct Demand {
 
 impl Demand {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("demand", "max_nm", 0.1, 100.0), &mut self.max_nm);
-        to.number(&Leaf::new("demand", "slew_nm_s", 1.0, 1e6), &mut self.slew_nm_s);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("demand", "max_nm", 0.1, 100.0), &mut self.max_nm);
+        to.number(&ParamSpec::new("demand", "slew_nm_s", 1.0, 1e6), &mut self.slew_nm_s);
     }
 }
 

@@ -39,7 +39,7 @@ pub struct Inputs {
     pub bus_v: f32,
     /// The encoder's newest counts.
     pub angle_counts: u16,
-    /// Their age \[calls\]; `control::frame::MISSING` for none.
+    /// Their age \[calls\]; `control::sensors::frame::MISSING` for none.
     pub angle_age_ticks: u16,
     /// The hottest of what is measured \[deg C\].
     pub temperature_c: f32,

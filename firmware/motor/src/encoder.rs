@@ -5,9 +5,9 @@
 
 use crate::fault::{Fault, Faults};
 use crate::turn::Turn;
-use control::frame::MISSING;
 use control::maths::bounded;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
+use control::sensors::frame::MISSING;
 use core::f32::consts::TAU;
 
 /// The encoder on the motor's shaft.
@@ -33,14 +33,14 @@ pub struct EncoderConfig {
 
 impl EncoderConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.count(&Leaf::new("encoder", "counts", 16.0, 65535.0), &mut self.counts);
-        to.switch(&Leaf::switch("encoder", "reversed"), &mut self.reversed);
-        to.limit(&Leaf::new("encoder", "offset_turns", -0.5, 0.5), &mut self.offset_turns);
-        to.count(&Leaf::new("encoder", "timeout_ticks", 1.0, 1000.0), &mut self.timeout_ticks);
-        to.number(&Leaf::new("encoder", "jump_turns", 1e-4, 0.125), &mut self.jump_turns);
-        to.number(&Leaf::new("encoder", "speed_max_turns_s", 1.0, 1000.0), &mut self.speed_max_turns_s);
-        to.number(&Leaf::new("encoder", "tracking_hz", 5.0, 1000.0), &mut self.tracking_hz);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.count(&ParamSpec::new("encoder", "counts", 16.0, 65535.0), &mut self.counts);
+        to.switch(&ParamSpec::switch("encoder", "reversed"), &mut self.reversed);
+        to.optional_number(&ParamSpec::new("encoder", "offset_turns", -0.5, 0.5), &mut self.offset_turns);
+        to.count(&ParamSpec::new("encoder", "timeout_ticks", 1.0, 1000.0), &mut self.timeout_ticks);
+        to.number(&ParamSpec::new("encoder", "jump_turns", 1e-4, 0.125), &mut self.jump_turns);
+        to.number(&ParamSpec::new("encoder", "speed_max_turns_s", 1.0, 1000.0), &mut self.speed_max_turns_s);
+        to.number(&ParamSpec::new("encoder", "tracking_hz", 5.0, 1000.0), &mut self.tracking_hz);
     }
 }
 

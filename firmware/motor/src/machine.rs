@@ -1,6 +1,6 @@
 //! The machine: a permanent-magnet motor, its gear, and what they make of a current.
 
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// A motor and its gear, as a data sheet or a measurement tells them. Everything electrical is of one phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,14 +23,14 @@ pub struct Motor {
 
 impl Motor {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.count(&Leaf::new("motor", "pole_pairs", 1.0, 50.0), &mut self.pole_pairs);
-        to.number(&Leaf::new("motor", "resistance_ohm", 1e-3, 10.0), &mut self.resistance_ohm);
-        to.number(&Leaf::new("motor", "inductance_d_h", 1e-6, 0.1), &mut self.inductance_d_h);
-        to.number(&Leaf::new("motor", "inductance_q_h", 1e-6, 0.1), &mut self.inductance_q_h);
-        to.number(&Leaf::new("motor", "flux_wb", 1e-5, 1.0), &mut self.flux_wb);
-        to.number(&Leaf::new("motor", "ratio", 1.0, 1000.0), &mut self.ratio);
-        to.switch(&Leaf::switch("motor", "reversed"), &mut self.reversed);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.count(&ParamSpec::new("motor", "pole_pairs", 1.0, 50.0), &mut self.pole_pairs);
+        to.number(&ParamSpec::new("motor", "resistance_ohm", 1e-3, 10.0), &mut self.resistance_ohm);
+        to.number(&ParamSpec::new("motor", "inductance_d_h", 1e-6, 0.1), &mut self.inductance_d_h);
+        to.number(&ParamSpec::new("motor", "inductance_q_h", 1e-6, 0.1), &mut self.inductance_q_h);
+        to.number(&ParamSpec::new("motor", "flux_wb", 1e-5, 1.0), &mut self.flux_wb);
+        to.number(&ParamSpec::new("motor", "ratio", 1.0, 1000.0), &mut self.ratio);
+        to.switch(&ParamSpec::switch("motor", "reversed"), &mut self.reversed);
     }
 
     /// Torque on the steer axis, to the right, of a q current of 1 A \[N m/A\]; losses of the gear are not in it,

@@ -2,7 +2,7 @@
 
 use crate::transform::{Vector, phases};
 use control::maths::bounded;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// The bridge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,11 +20,11 @@ pub struct Bridge {
 
 impl Bridge {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("bridge", "duty_min", 0.0, 0.4), &mut self.duty_min);
-        to.number(&Leaf::new("bridge", "duty_max", 0.6, 1.0), &mut self.duty_max);
-        to.number(&Leaf::new("bridge", "dead_time_s", 0.0, 2e-6), &mut self.dead_time_s);
-        to.number(&Leaf::new("bridge", "dead_time_a", 0.01, 50.0), &mut self.dead_time_a);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("bridge", "duty_min", 0.0, 0.4), &mut self.duty_min);
+        to.number(&ParamSpec::new("bridge", "duty_max", 0.6, 1.0), &mut self.duty_max);
+        to.number(&ParamSpec::new("bridge", "dead_time_s", 0.0, 2e-6), &mut self.dead_time_s);
+        to.number(&ParamSpec::new("bridge", "dead_time_a", 0.01, 50.0), &mut self.dead_time_a);
     }
 
     /// Largest voltage, as a vector of any direction, per volt of the bus.

@@ -1,7 +1,7 @@
 //! The current sensors' zeros, taken once while the bridge is off.
 
 use crate::fault::Fault;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// How the zeros are taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,10 +16,10 @@ pub struct ZeroConfig {
 
 impl ZeroConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.count(&Leaf::new("zero", "samples", 1.0, 20_000.0), &mut self.samples);
-        to.number(&Leaf::new("zero", "max_a", 0.0, 100.0), &mut self.max_a);
-        to.number(&Leaf::new("zero", "spread_a", 0.0, 100.0), &mut self.spread_a);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.count(&ParamSpec::new("zero", "samples", 1.0, 20_000.0), &mut self.samples);
+        to.number(&ParamSpec::new("zero", "max_a", 0.0, 100.0), &mut self.max_a);
+        to.number(&ParamSpec::new("zero", "spread_a", 0.0, 100.0), &mut self.spread_a);
     }
 }
 

@@ -8,13 +8,13 @@
 #![no_main]
 #![allow(unsafe_code)]
 
-use control::guard::{self, GuardPlan, GuardState};
-use control::history::{Aligned, History, Latency};
-use control::pulses::{self, Pulses, PulsesConfig, PulsesState};
-use control::shape::{self, Asked, ShapePlan, ShapeState};
-use control::track::{self, Seen, Track, TrackState};
+use control::law::path_tracking::{self, PathTracking, PathTrackingState, TrackingInput};
+use control::safety::guard::{self, GuardPlan, GuardState};
+use control::safety::limiter::{self, LimiterPlan, LimiterState, TorqueRequest};
+use control::sensors::latency::{Aligned, History, Latency};
+use control::sensors::wheel_speed::{self, WheelPulses, WheelPulsesConfig, WheelPulsesState};
 use control::{
-    ActiveLimits, CAUSES, Causes, Command, Config, Law, LawTable, Mode, Plan, Sample, SensorFrame, State,
+    ActiveLimits, CAUSES, Causes, Command, Config, GainSchedule, Law, Mode, Plan, Sample, SensorFrame, State,
     wire,
 };
 use core::hint::black_box;
@@ -73,8 +73,8 @@ pub extern "C" fn _start() -> ! {
 /// The shaper and the guard, each of anything.
 fn limits(config: &Config) {
     let (table, rate) = (black_box(config.limits), black_box(config.rate_hz));
-    let (mut shape, mut guard) = (black_box(ShapeState::default()), black_box(GuardState::default()));
-    let asked = black_box(Asked {
+    let (mut shape, mut guard) = (black_box(LimiterState::default()), black_box(GuardState::default()));
+    let asked = black_box(TorqueRequest {
         wanted_nm: 0.0,
         authority: 0.0,
         limp: false,
@@ -85,17 +85,18 @@ fn limits(config: &Config) {
         rider_torque_nm: None,
         elapsed_us: 0,
     });
-    let (torque, acted) = shape::step(&table, &ShapePlan::new(&table, rate), &mut shape, &asked);
+    let (torque, acted) = shape::step(&table, &LimiterPlan::new(&table, rate), &mut shape, &asked);
     used((acted.contains(black_box(ActiveLimits::RATE)), shape.torque_nm()));
     let plan = GuardPlan::new(&table, rate);
-    used(guard::judge(&table, &plan, &mut guard, torque, black_box(true), &asked));
-    let (follow, mut following) = (black_box(Track::default()), black_box(TrackState::default()));
-    used((follow.cross(), track::step(&follow, &mut following, &black_box(Seen::default()))));
+    used(guard::check(&table, &plan, &mut guard, torque, black_box(true), &asked));
+    let (follow, mut following) =
+        (black_box(PathTracking::default()), black_box(PathTrackingState::default()));
+    used((follow.cross(), track::step(&follow, &mut following, &black_box(TrackingInput::default()))));
 }
 
 /// The configurations a user can come by: made in code, from a table of any length, from bytes.
 fn configured() -> Config {
-    let table = LawTable::new(black_box::<&[(f32, f32)]>(&[(0.0, 1.0)]));
+    let table = GainSchedule::new(black_box::<&[(f32, f32)]>(&[(0.0, 1.0)]));
     match (wire::decode_config(&black_box([0; wire::CONFIG_BYTES])), table) {
         (Ok(config), _) => config,
         (Err(_), Ok(table)) => Config::thesis(Law::Table(table)),
@@ -119,11 +120,11 @@ fn run(plan: &Plan) {
 
 /// Pulses of a wheel, any number of them at any time.
 fn pulses_of_a_wheel() {
-    let config = black_box(PulsesConfig::default());
-    used(pulses::step(
+    let config = black_box(WheelPulsesConfig::default());
+    used(wheel_speed::step(
         &config,
-        &mut black_box(PulsesState::default()),
-        &black_box(Pulses::default()),
+        &mut black_box(WheelPulsesState::default()),
+        &black_box(WheelPulses::default()),
         black_box(1),
     ));
 }
@@ -161,7 +162,7 @@ fn board() {
     let (mut switch, mut wheel) =
         (black_box(parts::switch::Switch::default()), black_box(WheelState::default()));
     used((switch.step(black_box(true), counts), parts::ticks::ticks(black_box(1), black_box(2))));
-    used(wheel::step(&black_box(PulsesConfig::default()), &mut wheel, black_box(None), black_box(1)));
+    used(wheel::step(&black_box(WheelPulsesConfig::default()), &mut wheel, black_box(None), black_box(1)));
     can();
 }
 

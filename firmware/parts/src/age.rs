@@ -1,6 +1,6 @@
 //! How old a sample is, in control periods.
 
-use control::frame::MISSING;
+use control::sensors::frame::MISSING;
 
 /// The age of a sensor's newest sample; [`MISSING`] before the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -84,9 +84,9 @@ pub struct Gauge {
     /// Largest count of a whole sensor.
     pub most_counts: u16,
     /// What the least count stands for, in the sensor's unit.
-    pub at_least: f32,
+    pub max: f32,
     /// What the largest count stands for, in the sensor's unit.
-    pub at_most: f32,
+    pub min: f32,
 }
 
 impl Gauge {
@@ -96,6 +96,6 @@ impl Gauge {
         let part = (f32::from(counts) - f32::from(self.least_counts)) / span;
         (self.least_counts..=self.most_counts)
             .contains(&counts)
-            .then_some(self.at_least + part * (self.at_most - self.at_least))
+            .then_some(self.max + part * (self.min - self.max))
     }
 }

@@ -3,8 +3,8 @@
 //! Little-endian. A number is rounded to its unit and stops at the ends of its range; what is not known, or NaN, has a
 //! value of its own.
 
-use control::calibrate::CalibrationPlan;
-use control::polarity::Move;
+use control::sensors::calibration::CalibrationPlan;
+use control::sensors::polarity::PolarityStep;
 use control::{ActiveLimits, Causes, Command, Mode, SensorFrame};
 use micromath::F32;
 
@@ -56,7 +56,7 @@ pub struct State {
     /// Whether the rider's switch asks for assist.
     pub engage: bool,
     /// What is to be done next in the polarity check.
-    pub polarity: Move,
+    pub polarity: PolarityStep,
     /// The limits that changed the torque.
     pub limits: ActiveLimits,
     /// The part of the torque that is permitted, 0 to 1.
@@ -191,7 +191,7 @@ fn mode(number: u8) -> Option<Mode> {
 }
 
 /// The move of a number on the bus.
-fn polarity(number: u8) -> Option<Move> {
-    use Move::*;
+fn polarity(number: u8) -> Option<PolarityStep> {
+    use PolarityStep::*;
     [Lean, Steer, Push, Passed, Wrong].into_iter().find(|next| *next as u8 == number)
 }

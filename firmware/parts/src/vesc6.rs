@@ -7,7 +7,7 @@
 use crate::analog::{Divider, Gauge, Shunt, Thermistor};
 use crate::as5047;
 use crate::drv8301::{Gain, GateCurrent, OverCurrent, Settings};
-use control::pulses::PulsesConfig;
+use control::sensors::wheel_speed::WheelPulsesConfig;
 use core::f32::consts::FRAC_PI_2;
 use motor::example::EXAMPLE;
 
@@ -61,11 +61,10 @@ pub const MOTOR: motor::Config = motor::Config {
 pub const PATIENCE_CALLS: u16 = 100;
 
 /// The steer sensor: 10 to 90 % of the reference over 180 degrees, rising to the right.
-pub const STEER_RAD: Gauge =
-    Gauge { least_counts: 410, most_counts: 3685, at_least: -FRAC_PI_2, at_most: FRAC_PI_2 };
+pub const STEER_RAD: Gauge = Gauge { least_counts: 410, most_counts: 3685, max: -FRAC_PI_2, min: FRAC_PI_2 };
 
 /// The rider's torque sensor, where there is one: 10 to 90 % of the reference over 40 N m, rising to the right.
-pub const RIDER_NM: Gauge = Gauge { least_counts: 410, most_counts: 3685, at_least: -20.0, at_most: 20.0 };
+pub const RIDER_NM: Gauge = Gauge { least_counts: 410, most_counts: 3685, max: -20.0, min: 20.0 };
 
 /// Counts below which the rider's switch is closed: a contact to ground under a pull-up, so a cut wire is open.
 pub const SWITCH_COUNTS: u16 = 1365;
@@ -77,6 +76,6 @@ pub const SWITCH_TICKS: u16 = 20;
 pub const CAN_CLOCK_HZ: u32 = 42_000_000;
 
 /// Both wheels: 16 magnets on 0.35 m.
-pub fn wheel() -> PulsesConfig {
-    PulsesConfig::default()
+pub fn wheel() -> WheelPulsesConfig {
+    WheelPulsesConfig::default()
 }

@@ -1,8 +1,8 @@
 //! A wheel's pulses to its speed, with the age of what is known.
 
 use crate::age::Age;
-use control::frame::{MISSING, Sample};
-use control::pulses::{Pulses, PulsesConfig, PulsesState, step as speed};
+use control::sensors::frame::{MISSING, Sample};
+use control::sensors::wheel_speed::{WheelPulses, WheelPulsesConfig, WheelPulsesState, step as speed};
 
 /// Speed beyond which an edge is a disturbance of the line and no pulse \[m/s\].
 const FASTEST_M_S: f32 = 30.0;
@@ -17,8 +17,8 @@ const STANDS_US: u32 = 1_000_000;
 /// What is remembered of a wheel.
 #[derive(Clone, Debug)]
 pub struct WheelState {
-    pulses: Pulses,
-    state: PulsesState,
+    pulses: WheelPulses,
+    state: WheelPulsesState,
     age: Age,
     /// The sample is missing until the next two pulses, or until there is none for [`STANDS_US`].
     lost: bool,
@@ -28,8 +28,8 @@ pub struct WheelState {
 
 impl Default for WheelState {
     fn default() -> Self {
-        let pulses = Pulses { last_edge_age_us: u32::MAX, ..Pulses::default() };
-        Self { pulses, state: PulsesState::default(), age: Age::default(), lost: false, lost_us: 0 }
+        let pulses = WheelPulses { last_edge_age_us: u32::MAX, ..WheelPulses::default() };
+        Self { pulses, state: WheelPulsesState::default(), age: Age::default(), lost: false, lost_us: 0 }
     }
 }
 
@@ -50,7 +50,7 @@ impl WheelState {
 /// stands. A sensor that never says anything is a wheel that stands. The direction is not known: rolling back is
 /// positive too.
 pub fn step(
-    config: &PulsesConfig,
+    config: &WheelPulsesConfig,
     wheel: &mut WheelState,
     edge_age_us: Option<u32>,
     elapsed_us: u32,
@@ -83,7 +83,7 @@ pub fn step(
 }
 
 /// Least time between two pulses \[us\].
-fn shortest_us(config: &PulsesConfig) -> u32 {
+fn shortest_us(config: &WheelPulsesConfig) -> u32 {
     let way_m = core::f32::consts::TAU * config.radius_m / f32::from(config.pulses_per_turn.max(1));
     (1e6 * way_m * (1.0 - config.spacing_error) / FASTEST_M_S) as u32
 }

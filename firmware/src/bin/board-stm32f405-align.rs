@@ -1,14 +1,14 @@
 //! The image that finds the offset of the motor's encoder, once for each motor, encoder and wiring, and stores it in flash.
 //! It also sets the chip's brown-out reset, once for each board.
 //!
-//! While the rider's switch is held after a deliberate press ([`control::press`]: open for half a second before), the motor
+//! While the rider's switch is held after a deliberate press ([`control::safety::press`]: open for half a second before), the motor
 //! moves the handlebar by less than a degree there and back, for 3.5 s; then the bridge opens and the offset is stored.
 //! Pressed anew, the switch does it again. Released, it opens the bridge at once.
 //! Nothing else makes torque in this image.
 #![no_std]
 #![no_main]
 
-use control::press::{Press, PressConfig, PressState};
+use control::safety::press::{Press, PressConfig, PressState};
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;

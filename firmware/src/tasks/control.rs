@@ -4,7 +4,7 @@ use super::settings;
 use crate::alive::Task;
 use crate::deadline::{Deadlines, PERIOD};
 use crate::{board, crash, retained};
-use ::control::polarity::Move;
+use ::control::sensors::polarity::PolarityStep;
 use ::control::{Command, Mode, Plan, SensorFrame, State, step};
 use core::cell::RefCell;
 use embassy_sync::blocking_mutex::Mutex;
@@ -60,7 +60,7 @@ pub struct Telemetry {
     /// The number of the configuration it stepped with, as of [`settings::take`].
     pub configuration: u32,
     /// Where the polarity check stands.
-    pub polarity: Move,
+    pub polarity: PolarityStep,
     /// The torque that it shows \[N m\].
     pub shown_nm: f32,
     /// Whether the motor got it.
@@ -122,7 +122,7 @@ pub async fn control(plan: &'static mut Plan) {
             slopes: state.slopes(),
             configuration,
             polarity: state.polarity(),
-            shown_nm: state.shown_nm(),
+            shown_nm: state.hand_torque_nm(),
             drive,
         };
         LATEST.lock(|latest| *latest.borrow_mut() = Some(telemetry));

@@ -4,7 +4,8 @@ use super::settings::{self, Kept};
 use super::{Telemetry, latest};
 use crate::alive::Task;
 use crate::{Image, board, crash, retained};
-use ::control::{Config, polarity::Move};
+use ::control::Config;
+use ::control::sensors::polarity::PolarityStep;
 use core::fmt::Write;
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Ticker};
@@ -53,7 +54,7 @@ pub async fn line(image: Image, kept: &'static mut Kept) {
             }
             Either::Second(()) => {
                 if let Some(telemetry) = latest() {
-                    if telemetry.polarity == Move::Passed {
+                    if telemetry.polarity == PolarityStep::Passed {
                         settings::polarity_passed(telemetry.configuration);
                     }
                     waiting.step(&told(&telemetry));

@@ -73,7 +73,7 @@ impl Analog {
 }
 
 fn gauge(gauge: &parts::analog::Gauge, value: f64) -> u16 {
-    let part = (value - f64::from(gauge.at_least)) / f64::from(gauge.at_most - gauge.at_least);
+    let part = (value - f64::from(gauge.max)) / f64::from(gauge.min - gauge.max);
     let span = f64::from(gauge.most_counts - gauge.least_counts);
     clamped(f64::from(gauge.least_counts) + part * span)
 }

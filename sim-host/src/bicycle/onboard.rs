@@ -4,8 +4,8 @@ use super::{Geometry, Gyrostat, Motion, State, Torques, pitch_from_upright};
 use crate::num::{Dual, sin_cos};
 use control::Config;
 use control::estimate::{EstimateConfig, Place, Source};
-use control::param::{Leaf, ParamError, Visit};
-use control::response::SteerModel;
+use control::param::{ParamError, ParamSpec, ParamVisitor};
+use control::sensors::sign_check::SteerModel;
 use nalgebra::{SMatrix, SVector};
 use std::sync::{Mutex, PoisonError};
 
@@ -35,7 +35,7 @@ pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) -> Vec<String> {
     (config.cross.wheelbase_m, config.cross.tilt_rad) = (b.w as f32, b.lam as f32);
     config.response.motor = config.response.motor.map(|_| steer_model(b));
     let mut outside = Outside::default();
-    config.leaves(&mut outside);
+    config.visit_params(&mut outside);
     let of = |group: &str| outside.0.iter().find(|e| e.leaf.group.starts_with(group)).copied();
     let mut off = Vec::new();
     if let Some(error) = of("response.motor") {
@@ -80,14 +80,14 @@ fn switch_estimate_off(config: &mut Config) -> bool {
 #[derive(Default)]
 struct Outside(Vec<ParamError>);
 
-impl Visit for Outside {
-    fn number(&mut self, leaf: &Leaf, value: &mut f32) {
+impl ParamVisitor for Outside {
+    fn number(&mut self, leaf: &ParamSpec, value: &mut f32) {
         self.0.extend(leaf.check(*value).err());
     }
-    fn limit(&mut self, _: &Leaf, _: &mut Option<f32>) {}
-    fn count(&mut self, _: &Leaf, _: &mut u16) {}
-    fn switch(&mut self, _: &Leaf, _: &mut bool) {}
-    fn choice(&mut self, _: &Leaf, _: &'static [&'static str], _: &mut u8) {}
+    fn optional_number(&mut self, _: &ParamSpec, _: &mut Option<f32>) {}
+    fn count(&mut self, _: &ParamSpec, _: &mut u16) {}
+    fn switch(&mut self, _: &ParamSpec, _: &mut bool) {}
+    fn choice(&mut self, _: &ParamSpec, _: &'static [&'static str], _: &mut u8) {}
 }
 
 /// The steer acceleration near the upright ride: the nonlinear equations, differentiated exactly.

@@ -1,7 +1,7 @@
 //! A parameter as a board lists it, and its value in words: those of `--set`.
 
 use control::law::LAW_NAMES;
-use control::{Law, LawTable};
+use control::{GainSchedule, Law};
 use link::bytes::{Reader, Writer, to_bits};
 use link::law::{LAW_BYTES, decode, encode};
 use link::leaves::Kind;
@@ -128,7 +128,7 @@ pub fn law_name(law: &Law) -> String {
 /// The points of a table: speed \[m/s\] and gain \[N m s/rad\]; none for a formula.
 pub fn law_points(law: &Law) -> Option<&[(f32, f32)]> {
     match law {
-        Law::Table(table) => Some(LawTable::points(table)),
+        Law::Table(table) => Some(GainSchedule::points(table)),
         _ => None,
     }
 }

@@ -1,6 +1,6 @@
 //! A control step that a board told, as a line of a table. What `ride` has a column for has the same name here.
 
-use control::{Sample, Triple, frame::MISSING};
+use control::{Sample, Triple, sensors::frame::MISSING};
 use link::telemetry::Telemetry;
 use serde::Serialize;
 
@@ -72,7 +72,7 @@ pub struct Row {
     pub gyro_slope: Option<f32>,
     /// How much of what it should do the motor does.
     pub motor_slope: Option<f32>,
-    /// What is to be done next in the polarity check, as the number of [`control::polarity::Move`].
+    /// What is to be done next in the polarity check, as the number of [`control::sensors::polarity::PolarityStep`].
     pub polarity: u8,
     /// The torque that the law would ask for during the check \[N m\].
     pub shown_torque: f32,

@@ -15,7 +15,7 @@ use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
 use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
 use crate::rider::doubts;
 use clap::ValueEnum;
-use control::param::Leaf;
+use control::param::ParamSpec;
 use control::{Config, Law, Limits, Taper, Wheel};
 use std::path::PathBuf;
 
@@ -115,7 +115,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 /// The option that sets a parameter of the control crate.
-fn option_of(parameter: &Leaf) -> Option<&'static str> {
+fn option_of(parameter: &ParamSpec) -> Option<&'static str> {
     match (parameter.group, parameter.name) {
         ("limits", "max_torque_nm") => Some("--torque-limit"),
         ("limits", "rise_nm_s" | "fall_nm_s") => Some("--rate-limit"),

@@ -1,6 +1,6 @@
 //! Laws by name or from a table file.
 
-use control::{Capsize, Law, LawTable};
+use control::{Capsize, GainSchedule, Law};
 
 /// For help texts.
 pub(super) const HELP: &str = "none, h, h-cut (zero above 7.5 m/s), f, g, cl1, cl2:K, balance-assist:K (K > 0), or a TOML file with speed_m_s and gain_nm_s_rad";
@@ -83,7 +83,7 @@ fn of_table(file: TableFile, place: &str) -> Result<Law, String> {
         return Err(format!("{place}: speed_m_s has {n} values, gain_nm_s_rad has {m}; they must match"));
     }
     let points: Vec<(f32, f32)> = file.speed_m_s.into_iter().zip(file.gain_nm_s_rad).collect();
-    let table = LawTable::new(&points).map_err(|e| {
+    let table = GainSchedule::new(&points).map_err(|e| {
         let rising = if e.leaf.name.contains("speed") { " (speeds must rise)" } else { "" };
         format!("{place}: {e}{rising}")
     })?;

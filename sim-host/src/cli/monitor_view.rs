@@ -5,7 +5,7 @@ use super::outputs::print;
 use crate::board::causes::{limits, named};
 use crate::board::monitor::Monitor;
 use console::{Term, truncate_str};
-use control::polarity::Move;
+use control::sensors::polarity::PolarityStep;
 use control::{Cause, Causes, Sample};
 use link::telemetry::Telemetry;
 use std::time::{Duration, Instant};
@@ -81,7 +81,11 @@ impl View {
 }
 
 fn number(sample: &Sample) -> String {
-    if sample.age_ticks == control::frame::MISSING { "-".into() } else { format!("{:.2}", sample.value) }
+    if sample.age_ticks == control::sensors::frame::MISSING {
+        "-".into()
+    } else {
+        format!("{:.2}", sample.value)
+    }
 }
 
 fn roll_rate(step: &Telemetry) -> String {
@@ -125,10 +129,10 @@ fn line(monitor: &Monitor, step: &Telemetry, damaged: u32) -> String {
 /// What is to be done next in the polarity check (docs/safety.md), motor off.
 fn todo(polarity: u8) -> &'static str {
     match polarity {
-        n if n == Move::Lean as u8 => "polarity: lean the bicycle to the right",
-        n if n == Move::Steer as u8 => "polarity: turn the handlebar to the right",
-        n if n == Move::Push as u8 => "polarity: push the bicycle forward",
-        n if n == Move::Passed as u8 => "polarity: passed",
+        n if n == PolarityStep::Lean as u8 => "polarity: lean the bicycle to the right",
+        n if n == PolarityStep::Steer as u8 => "polarity: turn the handlebar to the right",
+        n if n == PolarityStep::Push as u8 => "polarity: push the bicycle forward",
+        n if n == PolarityStep::Passed as u8 => "polarity: passed",
         _ => "polarity: a sign is wrong",
     }
 }

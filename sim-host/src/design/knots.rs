@@ -1,6 +1,6 @@
 //! A gain schedule as numbers to choose: straight lines between knots over speed.
 
-use control::{Law, LawTable, ParamError};
+use control::{GainSchedule, Law, ParamError};
 
 /// Allowed gains \[N m s/rad\]: the upper is the thesis's limit for a motor (section 2.4.3).
 pub const GAINS: (f64, f64) = (-10.0, 40.0);
@@ -40,7 +40,7 @@ impl Knots {
         let mut points: Vec<(f32, f32)> =
             self.0.iter().zip(gains).map(|(v, gain)| (*v as f32, *gain as f32)).collect();
         points.extend(self.0.last().map(|v| ((v + FADE_M_S) as f32, 0.0)));
-        LawTable::new(&points).map(Law::Table)
+        GainSchedule::new(&points).map(Law::Table)
     }
 
     /// The gains of another law at the knots, inside [`GAINS`].

@@ -4,7 +4,7 @@
 use super::{Dice, PlantError, Sensor};
 use crate::num::sin_cos;
 use crate::range::within;
-use control::pulses::{self, Direction, Pulses, PulsesConfig, PulsesState};
+use control::sensors::wheel_speed::{self, Direction, WheelPulses, WheelPulsesConfig, WheelPulsesState};
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
@@ -26,7 +26,7 @@ pub struct FittedErrors {
     pub jitter_ticks: [u16; 2],
     /// A sample is the mean of so many control periods; 0 and 1 are none.
     pub window_ticks: u16,
-    /// Of a wheel: its speed follows from so many pulses a turn, by `control::pulses`; 0 is none.
+    /// Of a wheel: its speed follows from so many pulses a turn, by `control::sensors::wheel_speed`; 0 is none.
     pub pulses_per_turn: u16,
     /// Standard deviation of white normal noise on every sample, by axis, in the sensor's unit.
     pub white: [f64; 3],
@@ -254,9 +254,9 @@ impl Octave {
 /// Pulses of a turning wheel, and the speed that the flashed code makes of them.
 #[derive(Debug)]
 struct PulseCounter {
-    config: PulsesConfig,
-    state: PulsesState,
-    pulses: Pulses,
+    config: WheelPulsesConfig,
+    state: WheelPulsesState,
+    pulses: WheelPulses,
     period_s: f64,
     /// Speed at the control instant before \[m/s\].
     speed_m_s: f64,
@@ -269,9 +269,13 @@ struct PulseCounter {
 impl PulseCounter {
     fn new(pulses_per_turn: u16, speed_m_s: f64, period_s: f64) -> Self {
         Self {
-            config: PulsesConfig { pulses_per_turn, ..PulsesConfig::default() },
-            state: PulsesState::default(),
-            pulses: Pulses { last_edge_age_us: u32::MAX, direction: Direction::Unknown, ..Pulses::default() },
+            config: WheelPulsesConfig { pulses_per_turn, ..WheelPulsesConfig::default() },
+            state: WheelPulsesState::default(),
+            pulses: WheelPulses {
+                last_edge_age_us: u32::MAX,
+                direction: Direction::Unknown,
+                ..WheelPulses::default()
+            },
             period_s,
             speed_m_s,
             way_m: 0.0,
@@ -300,6 +304,6 @@ impl PulseCounter {
         }
         self.pulses.last_edge_age_us = self.age_s.map_or(u32::MAX, |s| (1e6 * s) as u32);
         let elapsed_us = (1e6 * self.period_s).round() as u32;
-        f64::from(pulses::step(&self.config, &mut self.state, &self.pulses, elapsed_us).speed_m_s)
+        f64::from(wheel_speed::step(&self.config, &mut self.state, &self.pulses, elapsed_us).speed_m_s)
     }
 }

@@ -1,8 +1,8 @@
 //! How near each check came to speaking: the largest residual that lasted as long as the check asks for.
 
 use crate::plant::Sensor;
-use control::cross::{ROLL_WRONG, YAW_WRONG};
-use control::response::{GYRO_WRONG, MOTOR_WRONG};
+use control::sensors::cross_check::{ROLL_WRONG, YAW_WRONG};
+use control::sensors::sign_check::{GYRO_WRONG, MOTOR_WRONG};
 use control::{Config, SensorFrame, State};
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -60,7 +60,7 @@ pub(super) fn row(
     command: &Command,
     [log_roll, log_torque]: [Option<f64>; 2],
 ) -> Row {
-    let there = |age: u16| age != control::frame::MISSING;
+    let there = |age: u16| age != control::sensors::frame::MISSING;
     let sample = |sample: &control::Sample| there(sample.age_ticks).then_some(sample.value);
     let [x, y, z] = frame.gyro_rad_s.value.map(|rate| there(frame.gyro_rad_s.age_ticks).then_some(rate));
     let known = |value: f32| (!value.is_nan()).then_some(value);

@@ -8,7 +8,7 @@ use super::{Assist, Conditions, ScheduleSpeed, Start};
 use crate::bicycle::{Motion, Velocities};
 use crate::num::{Lanes, Vec3};
 use crate::plant::{Actuator, Frame, Held, Measured, Plant, Reading, Rig, Sensor, Traveller};
-use control::{InputConfig, Plan, Sample, SensorFrame, Triple, Wheel};
+use control::{Plan, Sample, SensorFrame, Triple, ValidationConfig, Wheel};
 
 /// Sensors and motor of one ride.
 #[derive(Debug)]
@@ -21,8 +21,9 @@ pub(super) struct Outfit {
 /// Whether rides under these conditions need one.
 pub(super) fn needed(conditions: &Conditions) -> bool {
     let Assist::Firmware(plan) = &conditions.assist else { return false };
-    let InputConfig { accel, steer, steer_rate, front_wheel, rear_wheel, rider_torque, motor, path, .. } =
-        &plan.config().input;
+    let ValidationConfig {
+        accel, steer, steer_rate, front_wheel, rear_wheel, rider_torque, motor, path, ..
+    } = &plan.config().input;
     let beyond = [accel, steer, steer_rate, rider_torque, motor, path].iter().any(|sensor| sensor.fitted);
     beyond || (front_wheel.fitted && rear_wheel.fitted) || !conditions.plant.exact()
 }

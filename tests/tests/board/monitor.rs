@@ -1,7 +1,7 @@
 //! What is made of what a board tells.
 
 use crate::client::SHORT;
-use control::{Sample, frame::MISSING};
+use control::{Sample, sensors::frame::MISSING};
 use link::message::Message;
 use link::telemetry::Telemetry;
 use sim_host::board::Client;

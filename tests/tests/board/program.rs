@@ -1,6 +1,6 @@
 //! The program, on a board at a serial port.
 
-use control::{Config, Law, LawTable};
+use control::{Config, GainSchedule, Law};
 use link::message::Message;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
@@ -108,7 +108,7 @@ fn bad_input_is_told() {
 fn an_export_is_imported_and_ridden() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let mut config = Config::product();
-    config.law = Law::Table(LawTable::new(&[(0.0, 12.0), (2.7, 8.1), (6.0, 0.0)]).expect("a table"));
+    config.law = Law::Table(GainSchedule::new(&[(0.0, 12.0), (2.7, 8.1), (6.0, 0.0)]).expect("a table"));
     (config.limits.max_torque_nm, config.limits.end_stop) = (Some(0.3 + 4.0), None);
     config.calibration.gyro_bias_rad_s[0] = 0.012;
     config.calibration.motor_reversed = true;

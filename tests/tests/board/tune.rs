@@ -1,8 +1,8 @@
 //! Many parameters set at once.
 
 use crate::client::SHORT;
-use control::limits::{EndStop, SpeedCap};
-use control::{Config, Law, LawTable, Taper};
+use control::safety::limits::{EndStop, SpeedCap};
+use control::{Config, GainSchedule, Law, Taper};
 use sim_host::board::Client;
 use sim_host::board::settings::{Setting, Settings};
 use sim_host::board::tune::{Tuned, tune};
@@ -24,7 +24,7 @@ fn settings_of(config: &Config) -> Vec<Setting> {
 /// A configuration with other values of every kind: a law with points, numbers, limits on and off, groups switched on.
 fn other() -> Config {
     let mut config = Config::product();
-    config.law = Law::Table(LawTable::new(&[(0.0, 12.0), (6.0, 0.5)]).expect("a table"));
+    config.law = Law::Table(GainSchedule::new(&[(0.0, 12.0), (6.0, 0.5)]).expect("a table"));
     config.limits.taper = Some(Taper { zero_m_s: 2.0, full_m_s: 3.0 });
     config.limits.fall_nm_s = None;
     config.limits.end_stop = Some(EndStop { soft_rad: 0.7, hard_rad: 1.1 });

@@ -2,7 +2,7 @@
 
 use super::{column, group, read_with, remarks};
 use control::fault::CAUSES;
-use control::polarity::Move;
+use control::sensors::polarity::PolarityStep;
 use control::{ActiveLimits, Causes, Mode};
 use parts::broadcast::{self, Message, Motion, State};
 use proptest::prelude::*;
@@ -56,7 +56,13 @@ fn the_database_reads_what_the_firmware_writes() {
     use Mode::*;
     let database = parsed();
     let modes = prop::sample::select(vec![Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault]);
-    let moves = prop::sample::select(vec![Move::Lean, Move::Steer, Move::Push, Move::Passed, Move::Wrong]);
+    let moves = prop::sample::select(vec![
+        PolarityStep::Lean,
+        PolarityStep::Steer,
+        PolarityStep::Push,
+        PolarityStep::Passed,
+        PolarityStep::Wrong,
+    ]);
     let rest = any::<(bool, bool, u16, u8, u64)>();
     runner(2000)
         .run(&(prop::array::uniform6(any_value()), modes, moves, rest), |(values, mode, polarity, rest)| {

@@ -1,6 +1,6 @@
 //! Flight cards: what the estimator makes of a nonlinear bicycle's sensors.
 
-use control::estimate::{EstimateConfig, EstimateState, Felt, Motion, Place, Source, step};
+use control::estimate::{EstimateConfig, EstimateState, EstimatorInput, Motion, Place, Source, step};
 use proptest::prelude::*;
 use sim_host::bicycle::onboard::estimator_parameters;
 use sim_host::bicycle::{Geometry, State, Torques, pitch_from_upright};
@@ -136,7 +136,7 @@ fn the_pitch_fits_every_bicycle() {
             for steer in [-0.9, -0.4, 0.0, 0.1, 0.7] {
                 let Some(exact) = pitch_from_upright(&b, roll, steer) else { continue };
                 let mut state = EstimateState::default();
-                let felt = Felt { steer_rad: Some(steer as f32), ..leaning(roll) };
+                let felt = EstimatorInput { steer_rad: Some(steer as f32), ..leaning(roll) };
                 let mut m = Motion::default();
                 for _ in 0..2000 {
                     m = step(&config, &mut state, &felt);
@@ -159,10 +159,10 @@ fn the_pitch_fits_every_bicycle() {
 }
 
 /// Held at a roll angle, standing.
-fn leaning(roll: f64) -> Felt {
+fn leaning(roll: f64) -> EstimatorInput {
     let (s, c) = roll.sin_cos();
     let accel = [0.0, -9.81 * s as f32, -9.81 * c as f32];
-    Felt { accel_m_s2: Some(accel), elapsed_us: 1000, ..Felt::default() }
+    EstimatorInput { accel_m_s2: Some(accel), elapsed_us: 1000, ..EstimatorInput::default() }
 }
 
 /// Situation: rides inside the basin of h and at its border, exact sensors. Action: estimate from the
@@ -231,7 +231,7 @@ fn without_anything_to_see_the_bound_grows() {
         bound = step(&config, &mut state, &riding).roll_error.bound_rad();
     }
     assert!(bound < 0.15, "{bound}");
-    let blind = Felt { accel_m_s2: None, speed_m_s: 0.5, ..riding };
+    let blind = EstimatorInput { accel_m_s2: None, speed_m_s: 0.5, ..riding };
     let mut last = 0.0;
     for i in 0..120_000 {
         let now = step(&config, &mut state, &blind).roll_error.bound_rad();
@@ -248,7 +248,7 @@ fn standing_still_shows_every_bias() {
     let config = jason();
     let found = |gyro: [f32; 3]| {
         let mut state = EstimateState::default();
-        let felt = Felt { gyro_rad_s: gyro, ..leaning(0.1) };
+        let felt = EstimatorInput { gyro_rad_s: gyro, ..leaning(0.1) };
         (0..4000).map(|_| step(&config, &mut state, &felt)).last().expect("steps")
     };
     let wanted = [0.04, -0.02, 0.03];
@@ -274,12 +274,12 @@ fn steer_rate_of_an_encoder() {
             let t = f64::from(i) * 1e-3;
             let (at, turns) = (0.4 * (6.0 * t).sin(), |t: f64| 2.4 * (6.0 * t).cos());
             let steer_rad = angle.then_some(((at / count).round() * count) as f32);
-            let felt = Felt {
+            let felt = EstimatorInput {
                 steer_rad,
                 steer_rate_rad_s: rate.then_some(turns(t) as f32 + 0.1),
                 speed_m_s: 4.0,
                 elapsed_us: 1000,
-                ..Felt::default()
+                ..EstimatorInput::default()
             };
             let m = step(&config, &mut state, &felt);
             if i > 500 {
@@ -309,8 +309,12 @@ fn the_gyro_passes_with_unchanged_bits() {
         bits = bits.wrapping_add(0x0004_9e4d);
         let x = f32::from_bits(bits);
         if x.is_finite() {
-            let felt =
-                Felt { gyro_rad_s: [x, 0.1, -0.2], speed_m_s: 4.0, elapsed_us: 1000, ..Felt::default() };
+            let felt = EstimatorInput {
+                gyro_rad_s: [x, 0.1, -0.2],
+                speed_m_s: 4.0,
+                elapsed_us: 1000,
+                ..EstimatorInput::default()
+            };
             assert_eq!(step(&config, &mut state, &felt).roll_rate_rad_s.to_bits(), bits);
             passed += 1;
         }
@@ -321,7 +325,7 @@ fn any_float() -> impl Strategy<Value = f32> {
     prop_oneof![any::<u32>().prop_map(f32::from_bits), -3.0_f32..3.0]
 }
 
-fn any_felt() -> impl Strategy<Value = Felt> {
+fn any_felt() -> impl Strategy<Value = EstimatorInput> {
     let three = || [any_float(), any_float(), any_float()];
     let sometimes = |s| proptest::option::of(s);
     let elapsed = prop_oneof![Just(1000_u32), any::<u32>(), 0_u32..20_000];
@@ -333,13 +337,8 @@ fn any_felt() -> impl Strategy<Value = Felt> {
         any_float(),
         elapsed,
     )
-        .prop_map(|(gyro_rad_s, accel_m_s2, steer_rad, steer_rate_rad_s, speed_m_s, elapsed_us)| Felt {
-            gyro_rad_s,
-            accel_m_s2,
-            steer_rad,
-            steer_rate_rad_s,
-            speed_m_s,
-            elapsed_us,
+        .prop_map(|(gyro_rad_s, accel_m_s2, steer_rad, steer_rate_rad_s, speed_m_s, elapsed_us)| {
+            EstimatorInput { gyro_rad_s, accel_m_s2, steer_rad, steer_rate_rad_s, speed_m_s, elapsed_us }
         })
 }
 
@@ -384,7 +383,7 @@ proptest! {
         let (mut right, mut left) = (EstimateState::default(), EstimateState::default());
         for felt in sequence {
             let [x, y, z] = felt.gyro_rad_s;
-            let mirrored = Felt {
+            let mirrored = EstimatorInput {
                 gyro_rad_s: [-x, y, -z],
                 accel_m_s2: felt.accel_m_s2.map(|[x, y, z]| [x, -y, z]),
                 steer_rad: felt.steer_rad.map(|s| -s),
@@ -409,8 +408,11 @@ fn a_gap_makes_the_roll_angle_unknown() {
     let riding = truth(&b, &State::upright(&b, 4.0), &FREE, &config.imu).felt(1000);
     let mut state = EstimateState::default();
     let before = (0..2000).map(|_| step(&config, &mut state, &riding)).last().expect("steps");
-    let after =
-        step(&config, &mut state, &Felt { elapsed_us: 200_000, accel_m_s2: None, speed_m_s: 0.0, ..riding });
+    let after = step(
+        &config,
+        &mut state,
+        &EstimatorInput { elapsed_us: 200_000, accel_m_s2: None, speed_m_s: 0.0, ..riding },
+    );
     assert!(
         before.roll_error.bound_rad() < 0.2 && after.roll_error.bound_rad() > 2.0,
         "{before:?} {after:?}"

@@ -1,8 +1,8 @@
 //! Flight cards: the laws beyond those of the thesis, and what may be asked of a law when the speed is not
 //! certain.
 
-use control::param::{Checker, Visit};
-use control::{Capsize, Law, LawTable};
+use control::param::{Checker, ParamVisitor};
+use control::{Capsize, GainSchedule, Law};
 use proptest::prelude::*;
 use sim_host::bicycle::catalogue;
 use sim_host::eigen::{Feedback, Model, critical_speeds, rightmost, stability};
@@ -16,7 +16,7 @@ fn any_law() -> impl Strategy<Value = Law> {
         });
         let mut points: Vec<(f32, f32)> = risen.collect();
         points.dedup_by_key(|(v, _)| *v);
-        Law::Table(LawTable::new(&points).expect("a valid table"))
+        Law::Table(GainSchedule::new(&points).expect("a valid table"))
     });
     prop_oneof![
         Just(Law::None),
@@ -71,9 +71,9 @@ proptest! {
 fn what_lies_between_counts() {
     assert!((Law::F.gain_towards_zero(6.0, 7.5) - 0.0909).abs() < 1e-4);
     assert!(Law::F.gain(6.0_f32) > 0.6 && Law::F.gain(7.5_f32) > 0.4);
-    let dip = Law::Table(LawTable::new(&[(0.0, 9.0), (3.0, 2.0), (5.0, 8.0)]).expect("valid"));
+    let dip = Law::Table(GainSchedule::new(&[(0.0, 9.0), (3.0, 2.0), (5.0, 8.0)]).expect("valid"));
     assert_eq!(dip.gain_towards_zero(1.0, 5.0), 2.0);
-    let through = Law::Table(LawTable::new(&[(0.0, 9.0), (3.0, -2.0), (5.0, 8.0)]).expect("valid"));
+    let through = Law::Table(GainSchedule::new(&[(0.0, 9.0), (3.0, -2.0), (5.0, 8.0)]).expect("valid"));
     assert_eq!(through.gain_towards_zero(0.0, 5.0), 0.0);
     assert_eq!(Law::H { cut: false }.gain_towards_zero(7.0, 8.0), 0.0);
     assert_eq!(Law::BalanceAssist { kappa: 3.9 }.gain_towards_zero(0.0, 4.0), 0.0);
@@ -170,20 +170,20 @@ impl Tape {
     }
 }
 
-impl Visit for Tape {
-    fn number(&mut self, _: &control::param::Leaf, value: &mut f32) {
+impl ParamVisitor for Tape {
+    fn number(&mut self, _: &control::param::ParamSpec, value: &mut f32) {
         *value = self.pass(*value);
     }
-    fn limit(&mut self, _: &control::param::Leaf, _: &mut Option<f32>) {
+    fn optional_number(&mut self, _: &control::param::ParamSpec, _: &mut Option<f32>) {
         unreachable!("a law has no limits");
     }
-    fn count(&mut self, _: &control::param::Leaf, value: &mut u16) {
+    fn count(&mut self, _: &control::param::ParamSpec, value: &mut u16) {
         *value = self.pass(f32::from(*value)) as u16;
     }
-    fn switch(&mut self, _: &control::param::Leaf, _: &mut bool) {
+    fn switch(&mut self, _: &control::param::ParamSpec, _: &mut bool) {
         unreachable!("a law has no switches");
     }
-    fn choice(&mut self, _: &control::param::Leaf, names: &'static [&'static str], value: &mut u8) {
+    fn choice(&mut self, _: &control::param::ParamSpec, names: &'static [&'static str], value: &mut u8) {
         *value = self.pass(f32::from(*value)) as u8;
         assert!(usize::from(*value) < names.len());
     }
@@ -196,14 +196,14 @@ proptest! {
     #[test]
     fn the_leaves_are_all_there_is_of_a_law(law in any_law(), other in any_law()) {
         let (mut from, mut to, mut tape) = (law.clone(), other, Tape::default());
-        from.leaves(&mut tape);
+        from.visit_params(&mut tape);
         prop_assert_eq!(&from, &law);
         tape.plays = true;
-        to.leaves(&mut tape);
+        to.visit_params(&mut tape);
         prop_assert_eq!(&to, &law);
         prop_assert!(tape.values.is_empty());
         let mut checker = Checker::default();
-        to.leaves(&mut checker);
+        to.visit_params(&mut checker);
         prop_assert_eq!(checker.verdict(), Ok(()));
         prop_assert_eq!(to.validate(), Ok(()));
     }

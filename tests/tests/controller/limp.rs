@@ -1,6 +1,6 @@
 //! Flight card: what the part of the torque that is left in limp mode is worth, and what it is not good for.
 
-use control::{Config, Law, LawTable};
+use control::{Config, GainSchedule, Law};
 use rayon::prelude::*;
 use sim_host::basin::{Axis, Search, border};
 use sim_host::plant::Plant;
@@ -15,7 +15,7 @@ const SPEEDS: [f64; 5] = [2.0, 3.0, 4.3, 6.0, 7.3];
 fn h_times(factor: f32) -> Law {
     let speeds = (0..=15).map(|i| 0.5 * i as f32);
     let points: Vec<(f32, f32)> = speeds.map(|v| (v, factor * Law::H { cut: true }.gain(v))).collect();
-    Law::Table(LawTable::new(&points).unwrap())
+    Law::Table(GainSchedule::new(&points).unwrap())
 }
 
 /// Mean height over [`SPEEDS`] \[rad/s\] of the smart old rider with this law, this sensor lost with the blow, and this part of

@@ -1,13 +1,13 @@
 //! Flight cards: making up for late sensors and a slow actuator.
 
 use control::Law;
+use control::estimate::predict::{PredictConfig, step};
 use control::estimate::{EstimateConfig, Motion, Source};
-use control::predict::{PredictConfig, step};
 use proptest::prelude::*;
 use sim_host::bicycle::Geometry;
 use sim_host::bicycle::onboard::estimator_parameters;
 use sim_host::ride::Start;
-use tests::late::{Ahead, Late};
+use tests::late::{Late, PredictedMotion};
 use tests::model::{LinearBicycle, Model, OnTheWay};
 use tests::rides::shipped;
 
@@ -77,8 +77,8 @@ fn a_lead_wins_the_basin_back() {
         };
         late.height(4.5, 12.0)
     };
-    let (prompt, late) = (height(0, Ahead::Off), height(30, Ahead::Off));
-    let won = |lead| (height(30, Ahead::Lead(lead)) - late) / (prompt - late);
+    let (prompt, late) = (height(0, PredictedMotion::Off), height(30, PredictedMotion::Off));
+    let won = |lead| (height(30, PredictedMotion::Lead(lead)) - late) / (prompt - late);
     let (half, whole, more) = (won(0.015), won(0.03), won(0.045));
     println!("prompt {prompt:.2}, late {late:.2} rad/s; won back {half:.2}, {whole:.2}, {more:.2}");
     assert!(prompt - late > 1.5, "{prompt} {late}");
@@ -106,7 +106,7 @@ fn a_lead_costs_noise() {
         };
         late.ride(Start { speed_m_s: 5.0, ..Start::default() })
     };
-    let (without, with) = (calm(Ahead::Off), calm(Ahead::Lead(0.03)));
+    let (without, with) = (calm(PredictedMotion::Off), calm(PredictedMotion::Lead(0.03)));
     println!("{without:?} {with:?}");
     assert!(with.rms_nm > 1.2 * without.rms_nm && with.rms_nm < 0.6, "{with:?}");
     assert!(with.rms_nm_s > 1.5 * without.rms_nm_s && with.rms_nm_s < 3.0 * without.rms_nm_s, "{with:?}");

@@ -1,8 +1,10 @@
 //! Flight cards: a balanced bicycle comes back to its path, and tracking is the weakest voice.
 
 use control::Law;
-use control::limits::ActiveLimits;
-use control::track::{PathError, Seen, TRACK_POINTS, Track, TrackState, step};
+use control::law::path_tracking::{
+    PathError, PathTracking, PathTrackingState, TRACK_POINTS, TrackingInput, step,
+};
+use control::safety::limits::ActiveLimits;
 use proptest::prelude::*;
 use sim_host::bicycle::{Geometry, Motion, Parameters, State, Torques, catalogue};
 use sim_host::integrate::rk4;
@@ -25,18 +27,18 @@ struct Point {
 }
 
 /// 12 s of the nonlinear bicycle, hands off, under the law within 7 N m and, if there is one, the track.
-fn ride(speed: f64, from: PathError, track: Option<&Track>) -> Vec<Point> {
+fn ride(speed: f64, from: PathError, track: Option<&PathTracking>) -> Vec<Point> {
     let b = Geometry::new(&bicycle());
     let mut state = State::upright(&b, speed);
     let (mut heading, mut lateral) = (f64::from(from.heading_rad), f64::from(from.lateral_m));
-    let mut tracked = TrackState::default();
+    let mut tracked = PathTrackingState::default();
     let mut points = Vec::new();
     for i in 0..12_000 {
         let motion = Motion::new(&b, &state);
         let now = &motion.actual;
         let (front, rear) = (-now.front_spin * b.rF, -now.rear_spin * b.rR);
         let mut torque = LAW.gain(front as f32) * now.roll as f32;
-        let seen = Seen {
+        let input = TrackingInput {
             roll_rad: state.roll as f32,
             steer_rad: state.steer as f32,
             roll_rate_rad_s: now.roll as f32,
@@ -45,9 +47,9 @@ fn ride(speed: f64, from: PathError, track: Option<&Track>) -> Vec<Point> {
             path: Some(PathError { heading_rad: heading as f32, lateral_m: lateral as f32 }),
             authority: 1.0,
             elapsed_us: 1000,
-            ..Seen::default()
+            ..TrackingInput::default()
         };
-        let tracking = track.map_or(0.0, |track| step(track, &mut tracked, &seen));
+        let tracking = track.map_or(0.0, |track| step(track, &mut tracked, &input));
         torque = (torque + tracking).clamp(-7.0, 7.0);
         points.push(Point { t: f64::from(i) * H, lateral, roll: state.roll, tracking: f64::from(tracking) });
         let mut torques = Torques { roll: 0.0, steer: f64::from(torque) };
@@ -73,7 +75,8 @@ fn extremes(points: &[Point], of: fn(&Point) -> f64) -> (f64, f64) {
 #[test]
 fn an_offset_is_ridden_away() {
     for (speed, within_s) in [(3.0, 3.0..7.5), (4.0, 2.5..6.5), (5.0, 2.5..6.0), (6.0, 2.0..5.5)] {
-        let points = ride(speed, PathError { heading_rad: 0.0, lateral_m: 0.5 }, Some(&Track::default()));
+        let points =
+            ride(speed, PathError { heading_rad: 0.0, lateral_m: 0.5 }, Some(&PathTracking::default()));
         let ((left, right), torque) =
             (extremes(&points, |p| p.lateral), extremes(&points, |p| p.tracking.abs()).1);
         println!("{speed} m/s: {:.2} s, {left:.3} to {right:.3} m, {torque:.2} N m", settled(&points));
@@ -88,7 +91,8 @@ fn an_offset_is_ridden_away() {
 #[test]
 fn a_heading_error_is_ridden_away() {
     for (speed, within_s) in [(3.0, 3.0..8.0), (4.0, 3.0..7.0), (5.0, 2.5..6.5), (6.0, 2.0..6.0)] {
-        let points = ride(speed, PathError { heading_rad: 0.1, lateral_m: 0.0 }, Some(&Track::default()));
+        let points =
+            ride(speed, PathError { heading_rad: 0.1, lateral_m: 0.0 }, Some(&PathTracking::default()));
         let ((left, right), torque) =
             (extremes(&points, |p| p.lateral), extremes(&points, |p| p.tracking.abs()).1);
         println!("{speed} m/s: {:.2} s, {left:.3} to {right:.3} m, {torque:.2} N m", settled(&points));
@@ -107,7 +111,7 @@ fn a_heading_error_is_ridden_away() {
 fn large_errors_are_approached_with_care() {
     let off = ride(4.0, PathError { heading_rad: 0.0, lateral_m: 0.5 }, None);
     assert!(settled(&off) > 11.9 && off.iter().all(|p| p.tracking == 0.0));
-    let far = ride(5.0, PathError { heading_rad: 0.0, lateral_m: 5.0 }, Some(&Track::default()));
+    let far = ride(5.0, PathError { heading_rad: 0.0, lateral_m: 5.0 }, Some(&PathTracking::default()));
     let roll = extremes(&far, |p| p.roll.abs()).1.to_degrees();
     let torque = extremes(&far, |p| p.tracking.abs()).1;
     assert!((2.0..15.0).contains(&roll) && (0.8..2.0001).contains(&torque), "{roll} {torque}");
@@ -118,7 +122,7 @@ fn large_errors_are_approached_with_care() {
 /// speed from 2 to 8 m/s, between the points too, the linear bicycle with it comes back with a time constant below 10 s.
 #[test]
 fn the_gains_are_the_computed_ones() {
-    let (parameters, track) = (bicycle(), Track::default());
+    let (parameters, track) = (bicycle(), PathTracking::default());
     let computed = |v: f64| gains(&parameters, v, LAW.gain(v), &Weights::default());
     track.speed_m_s.iter().for_each(|v| println!("{v} m/s: {:.3}", computed(f64::from(*v))));
     for (speed, row) in track.speed_m_s.iter().zip(&track.gains) {
@@ -144,16 +148,16 @@ fn the_gains_are_the_computed_ones() {
 }
 
 /// At 5 m/s, 0.5 m off.
-fn seen() -> Seen {
+fn input() -> TrackingInput {
     let path = Some(PathError { heading_rad: 0.0, lateral_m: 0.5 });
-    Seen { speed_m_s: 5.0, path, authority: 1.0, elapsed_us: 1000, ..Seen::default() }
+    TrackingInput { speed_m_s: 5.0, path, authority: 1.0, elapsed_us: 1000, ..TrackingInput::default() }
 }
 
 /// The torques of a sequence of situations, each for so many steps.
-fn torques(sequence: &[(usize, Seen)]) -> Vec<f32> {
-    let (track, mut state) = (Track::default(), TrackState::default());
-    let all = sequence.iter().flat_map(|(steps, seen)| std::iter::repeat_n(*seen, *steps));
-    all.map(|seen| step(&track, &mut state, &seen)).collect()
+fn torques(sequence: &[(usize, TrackingInput)]) -> Vec<f32> {
+    let (track, mut state) = (PathTracking::default(), PathTrackingState::default());
+    let all = sequence.iter().flat_map(|(steps, input)| std::iter::repeat_n(*input, *steps));
+    all.map(|input| step(&track, &mut state, &input)).collect()
 }
 
 /// Situation: tracking in full; then the path is lost, the rider pushes, a limit of the rider acts, permission ends, or the
@@ -162,20 +166,20 @@ fn torques(sequence: &[(usize, Seen)]) -> Vec<f32> {
 #[test]
 fn tracking_gives_way() {
     for cause in [
-        Seen { path: None, ..seen() },
-        Seen { path: Some(PathError { heading_rad: f32::NAN, lateral_m: 0.0 }), ..seen() },
-        Seen { rider_torque_nm: Some(-3.1), ..seen() },
-        Seen { acted: ActiveLimits::RIDER_MOTION, ..seen() },
-        Seen { acted: ActiveLimits::RIDER_TORQUE, ..seen() },
-        Seen { authority: 0.0, ..seen() },
-        Seen { speed_m_s: 1.9, ..seen() },
+        TrackingInput { path: None, ..input() },
+        TrackingInput { path: Some(PathError { heading_rad: f32::NAN, lateral_m: 0.0 }), ..input() },
+        TrackingInput { rider_torque_nm: Some(-3.1), ..input() },
+        TrackingInput { acted: ActiveLimits::RIDER_MOTION, ..input() },
+        TrackingInput { acted: ActiveLimits::RIDER_TORQUE, ..input() },
+        TrackingInput { authority: 0.0, ..input() },
+        TrackingInput { speed_m_s: 1.9, ..input() },
     ] {
-        let all = torques(&[(500, seen()), (400, cause), (500, seen())]);
+        let all = torques(&[(500, input()), (400, cause), (500, input())]);
         assert!(all[499] > 0.5 && all[650] > 0.1 && all[850] == 0.0 && all[1399] > 0.5, "{cause:?}");
         assert!(all.windows(2).all(|w| (w[1] - w[0]).abs() < 0.0201));
     }
-    let quiet = Seen { rider_torque_nm: Some(2.9), ..seen() };
-    assert_eq!(torques(&[(500, quiet)]), torques(&[(500, seen())]));
+    let quiet = TrackingInput { rider_torque_nm: Some(2.9), ..input() };
+    assert_eq!(torques(&[(500, quiet)]), torques(&[(500, input())]));
 }
 
 /// Situation: 0.5 m off for a minute, the bicycle not moving as if held; the same with a limit acting, and with half the
@@ -183,15 +187,18 @@ fn tracking_gives_way() {
 /// all where the torque is not wholly tracking's own.
 #[test]
 fn nothing_winds_up() {
-    let free = torques(&[(60_000, seen())]);
+    let free = torques(&[(60_000, input())]);
     assert!((0.6..0.9).contains(&(free[59_999] - free[400])), "{}", free[59_999] - free[400]);
-    for held in [Seen { acted: ActiveLimits::MAGNITUDE, ..seen() }, Seen { authority: 0.5, ..seen() }] {
+    for held in [
+        TrackingInput { acted: ActiveLimits::MAGNITUDE, ..input() },
+        TrackingInput { authority: 0.5, ..input() },
+    ] {
         let all = torques(&[(60_000, held)]);
         assert_eq!(all[59_999].to_bits(), all[400].to_bits());
     }
     // Beyond its own torque, too: back from 2 N m without delay.
-    let far = Seen { roll_rad: 0.3, ..seen() };
-    let all = torques(&[(60_000, far), (200, seen())]);
+    let far = TrackingInput { roll_rad: 0.3, ..input() };
+    let all = torques(&[(60_000, far), (200, input())]);
     assert_eq!(all[59_999], 2.0);
     assert!((all[60_199] - free[400]).abs() < 0.01, "{} {}", all[60_199], free[400]);
 }
@@ -200,7 +207,7 @@ fn any_float() -> impl Strategy<Value = f32> {
     prop_oneof![4 => -2.0_f32..2.0, 1 => any::<u32>().prop_map(f32::from_bits)]
 }
 
-fn any_seen() -> impl Strategy<Value = Seen> {
+fn any_seen() -> impl Strategy<Value = TrackingInput> {
     let path = proptest::option::weighted(0.9, (any_float(), any_float()))
         .prop_map(|path| path.map(|(heading_rad, lateral_m)| PathError { heading_rad, lateral_m }));
     let rider = proptest::option::weighted(0.2, any_float());
@@ -214,7 +221,7 @@ fn any_seen() -> impl Strategy<Value = Seen> {
             rider,
             authority,
             elapsed_us,
-        )| Seen {
+        )| TrackingInput {
             roll_rad,
             steer_rad,
             roll_rate_rad_s,
@@ -233,19 +240,19 @@ proptest! {
     /// Situation: anything. Action: step. Must hold: finite and within its own torque; mirrored, to the bit.
     #[test]
     fn any_input_gives_a_bounded_torque(sequence in proptest::collection::vec(any_seen(), 1..300)) {
-        let track = Track::default();
-        let (mut right, mut left) = (TrackState::default(), TrackState::default());
-        for seen in &sequence {
-            let mirrored = Seen {
-                roll_rad: -seen.roll_rad,
-                steer_rad: -seen.steer_rad,
-                roll_rate_rad_s: -seen.roll_rate_rad_s,
-                steer_rate_rad_s: -seen.steer_rate_rad_s,
-                path: seen.path.map(|p| PathError { heading_rad: -p.heading_rad, lateral_m: -p.lateral_m }),
-                rider_torque_nm: seen.rider_torque_nm.map(|t| -t),
-                ..*seen
+        let track = PathTracking::default();
+        let (mut right, mut left) = (PathTrackingState::default(), PathTrackingState::default());
+        for input in &sequence {
+            let mirrored = TrackingInput {
+                roll_rad: -input.roll_rad,
+                steer_rad: -input.steer_rad,
+                roll_rate_rad_s: -input.roll_rate_rad_s,
+                steer_rate_rad_s: -input.steer_rate_rad_s,
+                path: input.path.map(|p| PathError { heading_rad: -p.heading_rad, lateral_m: -p.lateral_m }),
+                rider_torque_nm: input.rider_torque_nm.map(|t| -t),
+                ..*input
             };
-            let (a, b) = (step(&track, &mut right, seen), step(&track, &mut left, &mirrored));
+            let (a, b) = (step(&track, &mut right, input), step(&track, &mut left, &mirrored));
             prop_assert!(a.is_finite() && a.abs() <= track.max_torque_nm && a == -b, "{a} {b}");
         }
     }

@@ -1,6 +1,6 @@
 //! The control step on the chip and on the host: the same bits, whatever the sensors say.
 
-use control::press::PressConfig;
+use control::safety::press::PressConfig;
 use control::wire::{COMMAND_BYTES, encode_command, encode_frame};
 use control::{Cause, Command, Config, Plan, SensorFrame, State, step};
 use sim_host::bicycle::onboard::fit;

@@ -1,7 +1,7 @@
 //! Flight cards: no check trips on a bicycle that nothing is wrong with.
 
-use control::predict::PredictConfig;
-use control::smooth::SmoothConfig;
+use control::estimate::predict::PredictConfig;
+use control::estimate::smooth::SmoothConfig;
 use control::{Cause, Causes, Config, Limits, Mode};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;

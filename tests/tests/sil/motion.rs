@@ -1,7 +1,7 @@
 //! Flight card: the largest motion inside the basins, and the limits that must let it pass.
 
-use control::cross::{CrossConfig, CrossPlan, on_the_ground};
 use control::estimate::EstimateConfig;
+use control::sensors::cross_check::{CrossCheckConfig, CrossCheckPlan, on_the_ground};
 use control::{Config, Sensor};
 use rayon::prelude::*;
 use sim_host::bicycle::Geometry;
@@ -68,9 +68,10 @@ fn quantities(b: &Geometry, p: &TracePoint, summed: &mut f32) -> [f64; QUANTITIE
     let (front, rear) = (frame.front_wheel_m_s.value, frame.rear_wheel_m_s.value);
     // As control::cross compares them.
     let (sin_roll, cos_roll) = (p.roll as f32).sin_cos();
-    let cross = CrossConfig { wheelbase_m: b.w as f32, tilt_rad: b.lam as f32, ..CrossConfig::default() };
+    let cross =
+        CrossCheckConfig { wheelbase_m: b.w as f32, tilt_rad: b.lam as f32, ..CrossCheckConfig::default() };
     let (sin, cos) = on_the_ground(
-        &CrossPlan::new(&cross, &EstimateConfig::default().balance, 1000.0),
+        &CrossCheckPlan::new(&cross, &EstimateConfig::default().balance, 1000.0),
         (sin_roll, cos_roll),
         steer,
     );

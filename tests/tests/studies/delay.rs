@@ -7,7 +7,7 @@ use sim_host::bicycle::Geometry;
 use sim_host::bicycle::onboard::estimator_parameters;
 use sim_host::ride::Start;
 use sim_host::rider::{Fit, Outside, Rider, catalogue};
-use tests::late::{Ahead, Late};
+use tests::late::{Late, PredictedMotion};
 use tests::model::LinearBicycle;
 use tests::rides::shipped;
 
@@ -22,12 +22,12 @@ struct Line {
     rider: bool,
     sensors_ms: usize,
     actuator_s: f64,
-    ahead: Ahead,
+    ahead: PredictedMotion,
     noise: Option<u64>,
 }
 
 impl Line {
-    fn new(sensors_ms: usize, ahead: Ahead) -> Self {
+    fn new(sensors_ms: usize, ahead: PredictedMotion) -> Self {
         let label = format!("{sensors_ms} ms");
         Self { label, bicycle: "rigid_jason", rider: false, sensors_ms, actuator_s: 0.0, ahead, noise: None }
     }
@@ -74,9 +74,9 @@ fn heights(lines: &[Line], speeds: &[f64]) -> (String, Vec<Vec<f64>>) {
     speeds.iter().for_each(|_| table += " --- |");
     for (line, row) in lines.iter().zip(&rows) {
         let how = match line.ahead {
-            Ahead::Off => "not".to_owned(),
-            Ahead::Lead(s) => format!("lead {:.0} ms", s * 1e3),
-            Ahead::Model(_, s) => format!("model {:.0} ms", s * 1e3),
+            PredictedMotion::Off => "not".to_owned(),
+            PredictedMotion::Lead(s) => format!("lead {:.0} ms", s * 1e3),
+            PredictedMotion::Model(_, s) => format!("model {:.0} ms", s * 1e3),
         };
         table += &format!("\n| {} | {how} |", line.label);
         row.iter().for_each(|h| table += &format!(" {h:.1} |"));
@@ -99,8 +99,8 @@ fn model() -> LinearBicycle {
 }
 
 /// Not made up for, by a lead, by the model.
-fn ways(delay_s: f64) -> [Ahead; 3] {
-    [Ahead::Off, Ahead::Lead(delay_s), Ahead::Model(model(), delay_s)]
+fn ways(delay_s: f64) -> [PredictedMotion; 3] {
+    [PredictedMotion::Off, PredictedMotion::Lead(delay_s), PredictedMotion::Model(model(), delay_s)]
 }
 
 /// Situation: the law h on the thesis bicycle, sensors 5 to 50 ms late, a slow actuator. Action: search
@@ -109,7 +109,7 @@ fn ways(delay_s: f64) -> [Ahead; 3] {
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn what_each_way_wins_back() {
-    let mut lines = vec![Line::new(0, Ahead::Off)];
+    let mut lines = vec![Line::new(0, PredictedMotion::Off)];
     for ms in [5, 10, 20, 30, 50] {
         lines.extend(ways(ms as f64 * 1e-3).map(|ahead| Line::new(ms, ahead)));
     }
@@ -135,15 +135,15 @@ fn what_each_way_wins_back() {
 #[test]
 fn a_wrong_delay_and_another_bicycle() {
     let told = |ahead| Line { label: "30 ms".to_owned(), ..Line::new(30, ahead) };
-    let mut lines = vec![told(Ahead::Off)];
+    let mut lines = vec![told(PredictedMotion::Off)];
     for s in [0.015, 0.045] {
-        lines.extend([told(Ahead::Lead(s)), told(Ahead::Model(model(), s))]);
+        lines.extend([told(PredictedMotion::Lead(s)), told(PredictedMotion::Model(model(), s))]);
     }
     let wrong = lines.len();
     for bicycle in ["benchmark", "balanceassistv1_jason", "pista_rider", "browser_jason"] {
         let other =
             |ms, ahead| Line { label: format!("{bicycle}, {ms} ms"), bicycle, ..Line::new(ms, ahead) };
-        lines.push(other(0, Ahead::Off));
+        lines.push(other(0, PredictedMotion::Off));
         lines.extend(ways(0.03).map(|ahead| other(30, ahead)));
     }
     let (table, rows) = heights(&lines, &[2.5, 4.5, 6.5]);
@@ -162,7 +162,7 @@ fn a_wrong_delay_and_another_bicycle() {
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn with_the_smart_rider() {
-    let mut lines = vec![Line { rider: true, ..Line::new(0, Ahead::Off) }];
+    let mut lines = vec![Line { rider: true, ..Line::new(0, PredictedMotion::Off) }];
     for ms in [10, 30, 50] {
         lines.extend(ways(ms as f64 * 1e-3).map(|ahead| Line { rider: true, ..Line::new(ms, ahead) }));
     }

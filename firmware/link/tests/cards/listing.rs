@@ -1,8 +1,8 @@
 //! The list of parameters, and the law among them.
 
 use crate::parameters::ask;
-use control::param::{Leaf, Visit};
-use control::{Config, Law, LawTable};
+use control::param::{ParamSpec, ParamVisitor};
+use control::{Config, GainSchedule, Law};
 use link::Key;
 use link::bytes::Writer;
 use link::law;
@@ -49,26 +49,26 @@ fn list(config: &Config) -> (Vec<Listed>, usize) {
 struct Names(Vec<(String, Kind)>);
 
 impl Names {
-    fn note(&mut self, leaf: &Leaf, kind: Kind) {
+    fn note(&mut self, leaf: &ParamSpec, kind: Kind) {
         let dot = if leaf.group.is_empty() { "" } else { "." };
         self.0.push((format!("{}{dot}{}", leaf.group, leaf.name), kind));
     }
 }
 
-impl Visit for Names {
-    fn number(&mut self, leaf: &Leaf, _: &mut f32) {
+impl ParamVisitor for Names {
+    fn number(&mut self, leaf: &ParamSpec, _: &mut f32) {
         self.note(leaf, Kind::Number);
     }
-    fn limit(&mut self, leaf: &Leaf, _: &mut Option<f32>) {
+    fn optional_number(&mut self, leaf: &ParamSpec, _: &mut Option<f32>) {
         self.note(leaf, Kind::Limit);
     }
-    fn count(&mut self, leaf: &Leaf, _: &mut u16) {
+    fn count(&mut self, leaf: &ParamSpec, _: &mut u16) {
         self.note(leaf, Kind::Count);
     }
-    fn switch(&mut self, leaf: &Leaf, _: &mut bool) {
+    fn switch(&mut self, leaf: &ParamSpec, _: &mut bool) {
         self.note(leaf, Kind::Switch);
     }
-    fn choice(&mut self, leaf: &Leaf, _: &'static [&'static str], _: &mut u8) {
+    fn choice(&mut self, leaf: &ParamSpec, _: &'static [&'static str], _: &mut u8) {
         self.note(leaf, Kind::Choice);
     }
 }
@@ -83,7 +83,7 @@ fn every_parameter_is_listed() {
     config.limits.max_torque_nm = Some(3.5);
     let (listed, pages) = list(&config);
     let mut names = Names(vec![("law".into(), Kind::Choice)]);
-    config.leaves(&mut names);
+    config.visit_params(&mut names);
     let found: Vec<_> = listed.iter().map(|one| (one.key.clone(), one.kind)).collect();
     assert_eq!(found, names.0);
     assert!((30..=80).contains(&pages), "{pages}");
@@ -137,7 +137,7 @@ fn beyond_the_list_is_an_empty_page() {
 /// Must hold: the same law; its own slope is among the parameters, and can be set there.
 #[test]
 fn a_law_is_set_as_a_whole() {
-    let table = LawTable::new(&[(-1.0, 0.0), (2.0, 12.0), (8.0, 0.0)]).expect("a table");
+    let table = GainSchedule::new(&[(-1.0, 0.0), (2.0, 12.0), (8.0, 0.0)]).expect("a table");
     let full: Vec<_> = (0..32_u8).map(|i| (0.2 * f32::from(i), 1.0)).collect();
     for (law, slope) in [
         (Law::None, None),
@@ -145,7 +145,7 @@ fn a_law_is_set_as_a_whole() {
         (Law::Cl2 { k: 2.0 }, Some("law.cl2.k")),
         (Law::BalanceAssist { kappa: 3.9 }, Some("law.balance-assist.kappa")),
         (Law::Table(table), None),
-        (Law::Table(LawTable::new(&full).expect("a table")), None),
+        (Law::Table(GainSchedule::new(&full).expect("a table")), None),
     ] {
         let mut bytes = [0; law::LAW_BYTES];
         let mut writer = Writer::new(&mut bytes);

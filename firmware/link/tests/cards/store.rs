@@ -1,7 +1,7 @@
 //! What is stored comes back; what another version stored is taken with care.
 
 use crate::flash::{Flash, PAGE, PAGES, load, save};
-use control::{Config, Law, LawTable};
+use control::{Config, GainSchedule, Law};
 use embassy_futures::block_on;
 use link::Key;
 use link::bytes::Reader;
@@ -13,7 +13,7 @@ use sequential_storage::map::{MapConfig, MapStorage};
 
 /// A checked product with a law of the user's own.
 fn own() -> Config {
-    let table = LawTable::new(&[(-1.0, 0.0), (2.0, 12.0), (8.0, 0.0)]).expect("a table");
+    let table = GainSchedule::new(&[(-1.0, 0.0), (2.0, 12.0), (8.0, 0.0)]).expect("a table");
     let mut config = Config { law: Law::Table(table), ..Config::product() };
     config.calibration.polarity_checked = true;
     config.calibration.gyro_bias_rad_s = [0.01, -0.02, 0.003];

@@ -8,7 +8,7 @@
 use super::follow_mean;
 use crate::fault::Fault;
 use crate::transform::Vector;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// What the back-EMF may be off by, and the torque without its proof.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,14 +31,14 @@ pub struct AngleConfig {
 
 impl AngleConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("angle", "error_v", 0.01, 50.0), &mut self.error_v);
-        to.number(&Leaf::new("angle", "resistance_part", 0.0, 2.0), &mut self.resistance_part);
-        to.number(&Leaf::new("angle", "flux_part", 0.0, 0.65), &mut self.flux_part);
-        to.number(&Leaf::new("angle", "dead_part", 0.0, 5.0), &mut self.dead_part);
-        to.count(&Leaf::new("angle", "mean_ticks", 1.0, 10_000.0), &mut self.mean_ticks);
-        to.number(&Leaf::new("angle", "unproved_nm", 0.1, 100.0), &mut self.unproved_nm);
-        to.count(&Leaf::new("angle", "proof_ticks", 1.0, 65535.0), &mut self.proof_ticks);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("angle", "error_v", 0.01, 50.0), &mut self.error_v);
+        to.number(&ParamSpec::new("angle", "resistance_part", 0.0, 2.0), &mut self.resistance_part);
+        to.number(&ParamSpec::new("angle", "flux_part", 0.0, 0.65), &mut self.flux_part);
+        to.number(&ParamSpec::new("angle", "dead_part", 0.0, 5.0), &mut self.dead_part);
+        to.count(&ParamSpec::new("angle", "mean_ticks", 1.0, 10_000.0), &mut self.mean_ticks);
+        to.number(&ParamSpec::new("angle", "unproved_nm", 0.1, 100.0), &mut self.unproved_nm);
+        to.count(&ParamSpec::new("angle", "proof_ticks", 1.0, 65535.0), &mut self.proof_ticks);
     }
 }
 

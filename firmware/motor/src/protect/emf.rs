@@ -3,7 +3,7 @@
 use super::follow_mean;
 use crate::fault::Fault;
 use crate::transform::Vector;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// How far the voltage may be off.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,10 +18,10 @@ pub struct EmfConfig {
 
 impl EmfConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("emf", "error_v", 0.1, 50.0), &mut self.error_v);
-        to.number(&Leaf::new("emf", "resistance_part", 0.0, 2.0), &mut self.resistance_part);
-        to.count(&Leaf::new("emf", "mean_ticks", 1.0, 10_000.0), &mut self.mean_ticks);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("emf", "error_v", 0.1, 50.0), &mut self.error_v);
+        to.number(&ParamSpec::new("emf", "resistance_part", 0.0, 2.0), &mut self.resistance_part);
+        to.count(&ParamSpec::new("emf", "mean_ticks", 1.0, 10_000.0), &mut self.mean_ticks);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::follow_mean;
 use crate::fault::Fault;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// How far the current may be off.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,9 +15,9 @@ pub struct FollowConfig {
 
 impl FollowConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("follow", "error_a", 0.01, 100.0), &mut self.error_a);
-        to.count(&Leaf::new("follow", "mean_ticks", 1.0, 10_000.0), &mut self.mean_ticks);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("follow", "error_a", 0.01, 100.0), &mut self.error_a);
+        to.count(&ParamSpec::new("follow", "mean_ticks", 1.0, 10_000.0), &mut self.mean_ticks);
     }
 }
 

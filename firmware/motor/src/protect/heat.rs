@@ -2,7 +2,7 @@
 
 use super::share;
 use crate::fault::Fault;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// Temperatures of the hottest place that is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,9 +15,9 @@ pub struct HeatConfig {
 
 impl HeatConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("heat", "warm_c", 20.0, 150.0), &mut self.warm_c);
-        to.number(&Leaf::new("heat", "hot_c", 21.0, 160.0), &mut self.hot_c);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("heat", "warm_c", 20.0, 150.0), &mut self.warm_c);
+        to.number(&ParamSpec::new("heat", "hot_c", 21.0, 160.0), &mut self.hot_c);
     }
 }
 

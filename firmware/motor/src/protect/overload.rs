@@ -2,7 +2,7 @@
 
 use super::{follow_mean, share};
 use crate::fault::Fault;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// How long how much current may flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,9 +15,9 @@ pub struct OverloadConfig {
 
 impl OverloadConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("overload", "continuous_a", 0.1, 200.0), &mut self.continuous_a);
-        to.number(&Leaf::new("overload", "time_s", 0.01, 1000.0), &mut self.time_s);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("overload", "continuous_a", 0.1, 200.0), &mut self.continuous_a);
+        to.number(&ParamSpec::new("overload", "time_s", 0.01, 1000.0), &mut self.time_s);
     }
 }
 

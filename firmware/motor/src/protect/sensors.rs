@@ -1,7 +1,7 @@
 //! The phase currents: read, freed of their zeros, and held against each other and against the trip.
 
 use crate::fault::{Fault, Faults};
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// Phase currents as measured, into the motor positive \[A\].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,11 +37,11 @@ pub struct SensorsConfig {
 
 impl SensorsConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("sensors", "range_a", 0.1, 1000.0), &mut self.range_a);
-        to.number(&Leaf::new("sensors", "trip_a", 0.1, 1000.0), &mut self.trip_a);
-        to.number(&Leaf::new("sensors", "sum_a", 0.01, 100.0), &mut self.sum_a);
-        to.count(&Leaf::new("sensors", "sum_ticks", 0.0, 1000.0), &mut self.sum_ticks);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("sensors", "range_a", 0.1, 1000.0), &mut self.range_a);
+        to.number(&ParamSpec::new("sensors", "trip_a", 0.1, 1000.0), &mut self.trip_a);
+        to.number(&ParamSpec::new("sensors", "sum_a", 0.01, 100.0), &mut self.sum_a);
+        to.count(&ParamSpec::new("sensors", "sum_ticks", 0.0, 1000.0), &mut self.sum_ticks);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Torque without motion: one phase then carries the whole heat, so after a while only a holding current is left.
 
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// What a stall is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,10 +15,10 @@ pub struct StallConfig {
 
 impl StallConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("stall", "hold_a", 0.1, 200.0), &mut self.hold_a);
-        to.number(&Leaf::new("stall", "still_turns_s", 0.0, 100.0), &mut self.still_turns_s);
-        to.number(&Leaf::new("stall", "time_s", 0.01, 100.0), &mut self.time_s);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("stall", "hold_a", 0.1, 200.0), &mut self.hold_a);
+        to.number(&ParamSpec::new("stall", "still_turns_s", 0.0, 100.0), &mut self.still_turns_s);
+        to.number(&ParamSpec::new("stall", "time_s", 0.01, 100.0), &mut self.time_s);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::share;
 use crate::fault::Fault;
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 
 /// Voltages of the bus.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,11 +19,11 @@ pub struct SupplyConfig {
 
 impl SupplyConfig {
     /// Shows every parameter.
-    pub fn leaves<V: Visit>(&mut self, to: &mut V) {
-        to.number(&Leaf::new("supply", "low_v", 1.0, 100.0), &mut self.low_v);
-        to.number(&Leaf::new("supply", "sag_v", 1.0, 100.0), &mut self.sag_v);
-        to.number(&Leaf::new("supply", "high_v", 1.0, 100.0), &mut self.high_v);
-        to.count(&Leaf::new("supply", "persist_ticks", 0.0, 1000.0), &mut self.persist_ticks);
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        to.number(&ParamSpec::new("supply", "low_v", 1.0, 100.0), &mut self.low_v);
+        to.number(&ParamSpec::new("supply", "sag_v", 1.0, 100.0), &mut self.sag_v);
+        to.number(&ParamSpec::new("supply", "high_v", 1.0, 100.0), &mut self.high_v);
+        to.count(&ParamSpec::new("supply", "persist_ticks", 0.0, 1000.0), &mut self.persist_ticks);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Flight cards: what holds for every input.
 
-use control::param::{Leaf, Visit};
+use control::param::{ParamSpec, ParamVisitor};
 use motor::example::EXAMPLE;
 use motor::{Ask, Config, Inputs, Mode, Output, Phases, Plan, State, step};
 use proptest::prelude::*;
@@ -60,7 +60,7 @@ impl Draw {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 40) as f32 / (1 << 24) as f32
     }
-    fn between(&mut self, leaf: &Leaf) -> f32 {
+    fn between(&mut self, leaf: &ParamSpec) -> f32 {
         let part = self.part();
         let x = if leaf.min > 0.0 && self.part() < 0.7 {
             leaf.min * (leaf.max / leaf.min).powf(part)
@@ -71,26 +71,26 @@ impl Draw {
     }
 }
 
-impl Visit for Draw {
-    fn number(&mut self, leaf: &Leaf, value: &mut f32) {
+impl ParamVisitor for Draw {
+    fn number(&mut self, leaf: &ParamSpec, value: &mut f32) {
         *value = self.between(leaf);
     }
-    fn limit(&mut self, leaf: &Leaf, value: &mut Option<f32>) {
+    fn optional_number(&mut self, leaf: &ParamSpec, value: &mut Option<f32>) {
         *value = Some(self.between(leaf));
     }
-    fn count(&mut self, leaf: &Leaf, value: &mut u16) {
+    fn count(&mut self, leaf: &ParamSpec, value: &mut u16) {
         *value = (self.between(leaf).round() as u16).max(leaf.min as u16);
     }
-    fn switch(&mut self, _: &Leaf, value: &mut bool) {
+    fn switch(&mut self, _: &ParamSpec, value: &mut bool) {
         *value = self.part() < 0.5;
     }
-    fn choice(&mut self, _: &Leaf, _: &'static [&'static str], _: &mut u8) {}
+    fn choice(&mut self, _: &ParamSpec, _: &'static [&'static str], _: &mut u8) {}
 }
 
 /// Any configuration that is valid, its zeros taken at once.
 fn drawn(seed: u64) -> Config {
     let mut c = EXAMPLE;
-    c.leaves(&mut Draw(seed));
+    c.visit_params(&mut Draw(seed));
     c.zero = EXAMPLE.zero;
     c.zero.samples = 1;
     c.current.bandwidth_hz = c.current.bandwidth_hz.min(c.rate_hz / 13.0);

@@ -1,7 +1,7 @@
 //! Flight cards: frames on CAN.
 
-use control::frame::{MISSING, Sample, Triple};
-use control::polarity::Move;
+use control::sensors::frame::{MISSING, Sample, Triple};
+use control::sensors::polarity::PolarityStep;
 use control::{ActiveLimits, Calibration, Causes, Command, Mode, SensorFrame};
 use parts::broadcast::*;
 use proptest::prelude::*;
@@ -35,8 +35,8 @@ fn any_mode() -> impl Strategy<Value = Mode> {
     prop::sample::select(vec![Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault])
 }
 
-fn any_move() -> impl Strategy<Value = Move> {
-    use Move::*;
+fn any_move() -> impl Strategy<Value = PolarityStep> {
+    use PolarityStep::*;
     prop::sample::select(vec![Lean, Steer, Push, Passed, Wrong])
 }
 
@@ -45,7 +45,7 @@ fn state(speed_m_s: Option<f32>, authority: Option<f32>) -> State {
         mode: Mode::Engaged,
         driven: true,
         engage: false,
-        polarity: Move::Passed,
+        polarity: PolarityStep::Passed,
         limits: ActiveLimits(0x0204),
         authority,
         speed_m_s,

@@ -1,6 +1,6 @@
 //! Flight cards: the rider's switch, and how old samples are.
 
-use control::frame::MISSING;
+use control::sensors::frame::MISSING;
 use parts::age::Age;
 use parts::switch::Switch;
 use parts::vesc6::SWITCH_TICKS;

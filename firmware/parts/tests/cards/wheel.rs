@@ -1,13 +1,13 @@
 //! Flight cards: a wheel's pulses to samples with ages.
 
-use control::frame::Sample;
-use control::pulses::PulsesConfig;
+use control::sensors::frame::Sample;
+use control::sensors::wheel_speed::WheelPulsesConfig;
 use parts::wheel::{WheelState, step};
 use std::f64::consts::TAU;
 
 /// A wheel that is turned, and the board's side of it.
 struct Rig {
-    config: PulsesConfig,
+    config: WheelPulsesConfig,
     state: WheelState,
     way_m: f64,
     pulses: f64,
@@ -15,7 +15,7 @@ struct Rig {
 
 impl Rig {
     fn new() -> Self {
-        Self { config: PulsesConfig::default(), state: WheelState::default(), way_m: 0.01, pulses: 0.0 }
+        Self { config: WheelPulsesConfig::default(), state: WheelState::default(), way_m: 0.01, pulses: 0.0 }
     }
 
     /// A millisecond at `speed`.
@@ -66,7 +66,7 @@ fn silence_is_news() {
 fn a_wheel_that_never_turned_stands() {
     let mut state = WheelState::default();
     for _ in 0..100 {
-        assert_eq!(step(&PulsesConfig::default(), &mut state, None, 1000), Sample::fresh(0.0));
+        assert_eq!(step(&WheelPulsesConfig::default(), &mut state, None, 1000), Sample::fresh(0.0));
     }
     assert_eq!(state.count(), 0);
 }
@@ -75,7 +75,7 @@ fn a_wheel_that_never_turned_stands() {
 /// and the speed is told as without them.
 #[test]
 fn edges_too_close_are_no_pulses() {
-    let config = PulsesConfig::default();
+    let config = WheelPulsesConfig::default();
     let (mut clean, mut disturbed) = (WheelState::default(), WheelState::default());
     for ms in 0..3400_u32 {
         let pulse = (ms % 34 == 0).then_some(300);
@@ -106,9 +106,9 @@ fn an_edge_in_a_standstill_has_no_age() {
     for edge_age_us in [0, 900, 33_000, 65_000] {
         let mut rig = Rig::new();
         (0..2000).for_each(|_| _ = rig.roll(4.0));
-        assert_eq!(stand_still(&mut rig, 2.0, Some(edge_age_us)).age_ticks, control::frame::MISSING);
+        assert_eq!(stand_still(&mut rig, 2.0, Some(edge_age_us)).age_ticks, control::sensors::frame::MISSING);
         let after: Vec<_> = (0..300).map(|_| rig.roll(4.0)).collect();
-        let known = after.iter().position(|sample| sample.age_ticks != control::frame::MISSING);
+        let known = after.iter().position(|sample| sample.age_ticks != control::sensors::frame::MISSING);
         assert!(known.is_some_and(|ms| (30..=75).contains(&ms)), "{known:?}");
         let settled = &after[known.unwrap_or_default()..];
         assert!(settled.iter().all(|sample| (sample.value - 4.0).abs() < 0.2), "{settled:?}");
@@ -123,7 +123,7 @@ fn a_wheel_that_stands_after_a_standstill_is_known_to() {
     (0..2000).for_each(|_| _ = rig.roll(4.0));
     stand_still(&mut rig, 0.5, Some(100));
     let after: Vec<_> = (0..2000).map(|_| rig.roll(0.0)).collect();
-    let known = after.iter().position(|sample| sample.age_ticks != control::frame::MISSING);
+    let known = after.iter().position(|sample| sample.age_ticks != control::sensors::frame::MISSING);
     assert!(known.is_some_and(|ms| (990..=1000).contains(&ms)), "{known:?}");
     assert!(after[1000..].iter().all(|sample| *sample == Sample::fresh(0.0)));
     let mut standing = Rig::new();

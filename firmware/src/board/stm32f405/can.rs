@@ -7,7 +7,7 @@
 use super::pins::{Pin, alternate};
 use crate::tasks::{Telemetry, latest, settings};
 use control::Calibration;
-use control::calibrate::CalibrationPlan;
+use control::sensors::calibration::CalibrationPlan;
 use embassy_stm32::gpio::{AfType, OutputType, Pull, Speed};
 use embassy_stm32::pac::CAN1;
 use embassy_stm32::{peripherals, rcc};

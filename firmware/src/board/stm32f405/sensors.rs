@@ -6,8 +6,8 @@ use super::soft_spi::SoftSpi;
 use super::wheels::Edges;
 use ::motor::Mode;
 use control::SensorFrame;
-use control::frame::{Sample, Triple};
-use control::pulses::PulsesConfig;
+use control::sensors::frame::{Sample, Triple};
+use control::sensors::wheel_speed::WheelPulsesConfig;
 use core::cell::Cell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
@@ -27,7 +27,7 @@ pub(super) struct Sensors {
     accel: ([f32; 3], Age),
     edges: [Edges; 2],
     wheels: [WheelState; 2],
-    wheel: PulsesConfig,
+    wheel: WheelPulsesConfig,
     switch: Switch,
     steer: (f32, Age),
     rider: (f32, Age),

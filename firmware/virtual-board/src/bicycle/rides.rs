@@ -1,7 +1,7 @@
 //! The rides that board and simulator are compared on.
 
 use crate::power;
-use control::permit::PermitConfig;
+use control::safety::engagement::EngagementConfig;
 use control::{Config, Law};
 use sim_host::bicycle::{Geometry, catalogue, onboard};
 use sim_host::plant::{self, Plant};
@@ -37,8 +37,10 @@ impl Preset {
         let mut config = Config::product();
         if self == Self::H {
             // Without a self-test it would begin before the wheels' first pulses.
-            let permit =
-                PermitConfig { self_test_ticks: config.permit.self_test_ticks, ..PermitConfig::default() };
+            let permit = EngagementConfig {
+                self_test_ticks: config.permit.self_test_ticks,
+                ..EngagementConfig::default()
+            };
             config = Config { input: config.input, permit, ..Config::thesis(Law::H { cut: false }) };
         }
         config.calibration.polarity_checked = true;

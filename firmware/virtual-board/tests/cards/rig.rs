@@ -1,7 +1,7 @@
 //! Boards to try things on, and what is asked of them over the serial line.
 
 use crate::bed::{Listener, request as bytes_of};
-use control::press::PressConfig;
+use control::safety::press::PressConfig;
 use link::message::Message;
 use std::path::PathBuf;
 use virtual_board::wiring::Wiring;

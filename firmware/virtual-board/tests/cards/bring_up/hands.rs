@@ -2,7 +2,7 @@
 
 use super::table::{Flashed, G_M_S2, Table};
 use crate::rig::START_MS;
-use control::press::PressConfig;
+use control::safety::press::PressConfig;
 use link::Key;
 use link::message::Message;
 use virtual_board::power::Axis;

@@ -1,7 +1,7 @@
 //! `sim-host monitor` and `sim-host param` at the other end of the serial line, in one line.
 
 use crate::bed::Listener;
-use control::polarity::Move;
+use control::sensors::polarity::PolarityStep;
 use link::message::Message;
 use link::telemetry::Telemetry;
 
@@ -44,10 +44,10 @@ impl Monitor {
 /// The words of `sim-host monitor` for what is to be done next.
 fn polarity_words(next: u8) -> &'static str {
     match next {
-        n if n == Move::Lean as u8 => "polarity: lean the bicycle to the right",
-        n if n == Move::Steer as u8 => "polarity: turn the handlebar to the right",
-        n if n == Move::Push as u8 => "polarity: push the bicycle forward",
-        n if n == Move::Passed as u8 => "polarity: passed",
+        n if n == PolarityStep::Lean as u8 => "polarity: lean the bicycle to the right",
+        n if n == PolarityStep::Steer as u8 => "polarity: turn the handlebar to the right",
+        n if n == PolarityStep::Push as u8 => "polarity: push the bicycle forward",
+        n if n == PolarityStep::Passed as u8 => "polarity: passed",
         _ => "polarity: a sign is wrong",
     }
 }

@@ -1,0 +1,216 @@
+//! Roll-rate laws: the gain in `T = +gain(v) * roll_rate`, steering into the fall.
+//!
+//! The thesis prints the feedback gain `K_phi_d(v)` of the Basu-Mandal axes, where steering into
+//! the fall is a negative gain; `gain = -K_phi_d` here, converted once, in this file.
+
+pub mod capsize;
+pub mod gain_schedule;
+pub mod path_tracking;
+pub mod real;
+
+use crate::law::gain_schedule::GainSchedule;
+use crate::law::real::Real;
+use crate::param::{ParamError, ParamSpec, ParamVisitor};
+
+/// The laws by name, in the order of their numbers on the wire.
+pub const LAW_NAMES: &[&str] = &["none", "h", "h-cut", "f", "g", "cl1", "cl2", "table", "balance-assist"];
+
+/// Speed at and above which the balance assist is off \[m/s\].
+const BALANCE_OFF_M_S: f64 = 4.7;
+/// Speed up to which the balance assist grows with speed \[m/s\].
+const BALANCE_FULL_M_S: f64 = 1.5;
+/// Where `f` is least \[m/s\]: its vertex, at which it is still positive.
+const F_LEAST_M_S: f32 = 12.0 / 1.76;
+
+/// A roll-rate law. Gains in N m s/rad, speeds in m/s. Formulas are the sources' `K_phi_d`; the gain is
+/// minus that, except where a gain is said.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "no allocator to box the table with")]
+pub enum Law {
+    /// No assist.
+    #[default]
+    None,
+    /// `h(v) = (4 v - 30) exp(-0.03 v^2)` (Kuipers 2020, eq. 3.13): the thesis's choice. Its gain
+    /// changes sign at 7.5 m/s and steers out of the fall above; `cut` makes it zero there.
+    H {
+        /// Zero above 7.5 m/s, as the thesis suggests.
+        cut: bool,
+    },
+    /// `f(v) = -0.88 v^2 + 12 v - 41` (eq. 3.11).
+    F,
+    /// `g(v) = (v - 40) exp(-0.35 v)` (eq. 3.12).
+    G,
+    /// Gain `5.97 (6.7 - v)` below 6.7 m/s, zero above (eqs 3.6-3.7).
+    Cl1,
+    /// Gain `k (10 - v)` below 10 m/s, zero above (section 3.4.2), k > 0 in N s^2/rad.
+    Cl2 {
+        /// Slope of the gain over speed \[N s^2/rad\], 0.001..=20.
+        k: f32,
+    },
+    /// A user's table.
+    Table(GainSchedule),
+    /// Gain `kappa (4.7 - v)` from 1.5 to 4.7 m/s, zero above; below 1.5 m/s the straight line from zero
+    /// at rest. The balance assist of the Gazelle and TU Delft prototype (mechmotum/fall-probability-paper).
+    BalanceAssist {
+        /// Slope of the gain over speed \[N s^2/rad\], 0.001..=20; published 3.9 and 5.2.
+        kappa: f32,
+    },
+}
+
+impl Law {
+    /// The gain at a forward speed \[m/s\], positive where the law steers into the fall.
+    ///
+    /// Finite for every speed within +-30 m/s, the range [`crate::sensors::validation`] lets through.
+    #[inline]
+    pub fn gain<R: Real>(&self, speed_m_s: R) -> R {
+        let v = speed_m_s;
+        let zero = R::lit(0.0);
+        match self {
+            Law::None => zero,
+            Law::H { cut } => {
+                if *cut && v >= R::lit(7.5) {
+                    zero
+                } else {
+                    h(v)
+                }
+            }
+            Law::F => R::lit(0.88) * v * v - R::lit(12.0) * v + R::lit(41.0),
+            Law::G => g(v),
+            Law::Cl1 if v < R::lit(6.7) => R::lit(5.97) * (R::lit(6.7) - v),
+            Law::Cl2 { k } if v < R::lit(10.0) => R::lit(f64::from(*k)) * (R::lit(10.0) - v),
+            Law::BalanceAssist { kappa } if v > zero && v < R::lit(BALANCE_OFF_M_S) => {
+                let kappa = R::lit(f64::from(*kappa));
+                if v < R::lit(BALANCE_FULL_M_S) {
+                    kappa * R::lit((BALANCE_OFF_M_S - BALANCE_FULL_M_S) / BALANCE_FULL_M_S) * v
+                } else {
+                    kappa * (R::lit(BALANCE_OFF_M_S) - v)
+                }
+            }
+            Law::Cl1 | Law::Cl2 { .. } | Law::BalanceAssist { .. } => zero,
+            Law::Table(table) => table.gain(v),
+        }
+    }
+
+    /// The gain of least magnitude between two speeds \[m/s\], in either order: 0 if the gain changes its sign
+    /// there. For a speed that is only known to lie between them: no other gain is safe whichever it is.
+    ///
+    /// One speed given twice gives the bits of [`Law::gain`]. Exact but for the rounding of `gain`.
+    pub fn gain_towards_zero(&self, one_m_s: f32, other_m_s: f32) -> f32 {
+        let (low, high) = if one_m_s < other_m_s { (one_m_s, other_m_s) } else { (other_m_s, one_m_s) };
+        // Where the gain only falls with speed and stays positive; of these laws one evaluation costs as much as all else here.
+        match self {
+            // The derivative is zero at -1.79 and 9.29 m/s, the gain at 7.5 m/s.
+            Law::H { .. } if low >= -1.7 && high <= 7.5 => return h(high),
+            // The derivative is zero at 42.9 m/s, the gain at 40 m/s.
+            Law::G if high <= 40.0 => return g(high),
+            _ if low == high => return self.gain(high),
+            _ => {}
+        }
+        let least = nearer_zero(self.gain(one_m_s), self.gain(other_m_s));
+        let inside = |v: f32| low < v && v < high;
+        // Every other law has no least magnitude but at the ends of the range and where it changes its sign.
+        match self {
+            Law::F if inside(F_LEAST_M_S) => nearer_zero(least, self.gain(F_LEAST_M_S)),
+            Law::Table(table) => {
+                let kinks = table.points().iter().filter(|(v, _)| inside(*v));
+                kinks.fold(least, |least, (_, gain)| nearer_zero(least, *gain))
+            }
+            _ => least,
+        }
+    }
+
+    /// Its number on the wire: its place in [`LAW_NAMES`].
+    pub fn number(&self) -> u8 {
+        match self {
+            Law::None => 0,
+            Law::H { cut: false } => 1,
+            Law::H { cut: true } => 2,
+            Law::F => 3,
+            Law::G => 4,
+            Law::Cl1 => 5,
+            Law::Cl2 { .. } => 6,
+            Law::Table(_) => 7,
+            Law::BalanceAssist { .. } => 8,
+        }
+    }
+
+    /// Its slope \[N s^2/rad\]; 0 for a law without one.
+    pub fn slope(&self) -> f32 {
+        match self {
+            Law::Cl2 { k } => *k,
+            Law::BalanceAssist { kappa } => *kappa,
+            _ => 0.0,
+        }
+    }
+
+    /// The law of a number, not yet checked; `None` for a number that no law has.
+    pub fn numbered(number: u8, slope: f32, table: GainSchedule) -> Option<Self> {
+        Some(match number {
+            0 => Law::None,
+            1 => Law::H { cut: false },
+            2 => Law::H { cut: true },
+            3 => Law::F,
+            4 => Law::G,
+            5 => Law::Cl1,
+            6 => Law::Cl2 { k: slope },
+            7 => Law::Table(table),
+            8 => Law::BalanceAssist { kappa: slope },
+            _ => return None,
+        })
+    }
+
+    /// Shows the law: which, then what it needs, the slope or the points of the table.
+    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
+        let (mut number, mut slope) = (self.number(), self.slope());
+        let mut table = match self {
+            Law::Table(table) => core::mem::take(table),
+            _ => GainSchedule::default(),
+        };
+        let kind = ParamSpec::new("law", "kind", 0.0, (LAW_NAMES.len() - 1) as f32);
+        to.choice(&kind, LAW_NAMES, &mut number);
+        match number {
+            6 => to.number(&ParamSpec::new("law", "cl2.k", 1e-3, 20.0), &mut slope),
+            7 => table.visit_params(to),
+            8 => to.number(&ParamSpec::new("law", "balance-assist.kappa", 1e-3, 20.0), &mut slope),
+            _ => {}
+        }
+        *self = Law::numbered(number, slope, table).unwrap_or_default();
+    }
+
+    /// Checks the law's own parameters.
+    ///
+    /// # Errors
+    /// The parameter, its value and the allowed range.
+    pub fn validate(&self) -> Result<(), ParamError> {
+        let range = |name| ParamSpec::new("", name, 1e-3, 20.0);
+        match self {
+            Law::Cl2 { k } => range("law.cl2.k").check(*k),
+            Law::BalanceAssist { kappa } => range("law.balance-assist.kappa").check(*kappa),
+            Law::Table(table) => table.validate(),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The gain of [`Law::H`], not cut.
+#[inline]
+fn h<R: Real>(v: R) -> R {
+    (R::lit(30.0) - R::lit(4.0) * v) * (R::lit(-0.03) * v * v).exp()
+}
+
+/// The gain of [`Law::G`].
+#[inline]
+fn g<R: Real>(v: R) -> R {
+    (R::lit(40.0) - v) * (R::lit(-0.35) * v).exp()
+}
+
+/// The one of less magnitude, or 0 between gains of different sign.
+fn nearer_zero(a: f32, b: f32) -> f32 {
+    if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
+        0.0
+    } else if b.abs() < a.abs() {
+        b
+    } else {
+        a
+    }
+}

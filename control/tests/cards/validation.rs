@@ -1,0 +1,447 @@
+//! Flight cards: the declared sensors, each believed, doubted and told by its own codes; the speed's bounds.
+
+use control::sensors::validation::{
+    self, Measurements, RECENT, SpeedInterval, ValidationPlan, ValidationState,
+};
+use control::{
+    Calibration, Cause, Causes, Config, Loss, Sample, Sensor, SensorFrame, Triple, ValidationConfig, Wheel,
+};
+
+const PERIOD_S: f32 = 1e-3;
+
+/// A step at 1 kHz on a bicycle on which all is as drawn.
+fn step(
+    config: &ValidationConfig,
+    state: &mut ValidationState,
+    frame: &SensorFrame,
+    torque_nm: f32,
+) -> Measurements {
+    let plan = ValidationPlan::new(config, PERIOD_S);
+    validation::step(config, &plan, &Calibration::default().plan(), state, frame, torque_nm)
+}
+
+/// A sensor: where it is declared, where its sample stands, what is believed of it, and its four codes.
+struct Case {
+    name: &'static str,
+    declared: fn(&mut ValidationConfig) -> &mut Sensor,
+    set: fn(&mut SensorFrame, f32, u16),
+    believed: fn(&Measurements) -> Option<f32>,
+    codes: [Cause; 4],
+}
+
+fn triple(value: f32, age_ticks: u16) -> Triple {
+    Triple { value: [0.0, 0.0, value], age_ticks }
+}
+
+fn cases() -> [Case; 9] {
+    use Cause::*;
+    [
+        Case {
+            name: "gyro",
+            declared: |c| &mut c.gyro,
+            set: |f, value, age| f.gyro_rad_s = triple(value, age),
+            believed: |b| b.gyro_rad_s().map(|v| v[2]),
+            codes: [GyroLost, GyroRange, GyroJump, GyroStuck],
+        },
+        Case {
+            name: "accel",
+            declared: |c| &mut c.accel,
+            set: |f, value, age| f.accel_m_s2 = triple(value, age),
+            believed: |b| b.accel_m_s2().map(|v| v[2]),
+            codes: [AccelLost, AccelRange, AccelJump, AccelStuck],
+        },
+        Case {
+            name: "steer",
+            declared: |c| &mut c.steer,
+            set: |f, value, age_ticks| f.steer_rad = Sample { value, age_ticks },
+            believed: |b| b.steer_rad(),
+            codes: [SteerLost, SteerRange, SteerJump, SteerStuck],
+        },
+        Case {
+            name: "steer rate",
+            declared: |c| &mut c.steer_rate,
+            set: |f, value, age_ticks| f.steer_rate_rad_s = Sample { value, age_ticks },
+            believed: |b| b.steer_rate_rad_s(),
+            codes: [SteerRateLost, SteerRateRange, SteerRateJump, SteerRateStuck],
+        },
+        Case {
+            name: "front wheel",
+            declared: |c| &mut c.front_wheel,
+            set: |f, value, age_ticks| f.front_wheel_m_s = Sample { value, age_ticks },
+            believed: |b| b.front_wheel_m_s().map(|v| v.newest),
+            codes: [FrontWheelLost, FrontWheelRange, FrontWheelJump, FrontWheelStuck],
+        },
+        Case {
+            name: "rear wheel",
+            declared: |c| &mut c.rear_wheel,
+            set: |f, value, age_ticks| f.rear_wheel_m_s = Sample { value, age_ticks },
+            believed: |b| b.rear_wheel_m_s().map(|v| v.newest),
+            codes: [RearWheelLost, RearWheelRange, RearWheelJump, RearWheelStuck],
+        },
+        Case {
+            name: "rider's torque",
+            declared: |c| &mut c.rider_torque,
+            set: |f, value, age_ticks| f.rider_torque_nm = Sample { value, age_ticks },
+            believed: |b| b.rider_torque_nm(),
+            codes: [RiderTorqueLost, RiderTorqueRange, RiderTorqueJump, RiderTorqueStuck],
+        },
+        Case {
+            name: "motor",
+            declared: |c| &mut c.motor,
+            set: |f, value, age_ticks| f.motor_torque_nm = Sample { value, age_ticks },
+            believed: |b| b.motor_torque_nm(),
+            codes: [MotorLost, MotorRange, MotorJump, MotorStuck],
+        },
+        Case {
+            name: "path",
+            declared: |c| &mut c.path,
+            set: |f, value, age_ticks| {
+                (f.heading_error_rad, f.lateral_error_m) = (Sample::fresh(0.0), Sample { value, age_ticks });
+            },
+            believed: |b| b.path().map(|[_, lateral]| lateral),
+            codes: [PathLost; 4],
+        },
+    ]
+}
+
+/// Nothing is fitted.
+fn bare() -> ValidationConfig {
+    ValidationConfig {
+        gyro: Sensor::default(),
+        front_wheel: Sensor::default(),
+        ..ValidationConfig::default()
+    }
+}
+
+/// Only this sensor: up to 100, a change of 1 at once, lost after 2 periods, stuck after 5 of motion.
+fn alone(case: &Case) -> ValidationConfig {
+    let mut config = bare();
+    *(case.declared)(&mut config) = Sensor {
+        step: 1.0,
+        slope_per_s: Some(1.0),
+        timeout_ticks: 2,
+        stuck_ticks: 5,
+        ..Sensor::exact(100.0)
+    };
+    config
+}
+
+/// Situation: one sensor fitted and believed. Action: good samples, then one that is late, out of range or a jump.
+/// Must hold: the value of that sensor and of no other; its own cause and no other.
+#[test]
+fn each_sensor_has_its_place_and_its_codes() {
+    for case in cases() {
+        let config = alone(&case);
+        let [lost, range, jump, _] = case.codes;
+        for (value, age, cause) in [(2.5, 1, lost), (f32::NAN, 0, range), (100.5, 0, range), (50.0, 0, jump)]
+        {
+            let mut state = ValidationState::default();
+            let mut at = |value, age| {
+                let mut frame = SensorFrame::missing();
+                (case.set)(&mut frame, value, age);
+                step(&config, &mut state, &frame, 0.0)
+            };
+            for value in [2.0, 2.5] {
+                let b = at(value, 0);
+                assert_eq!((case.believed)(&b), Some(value), "{}", case.name);
+                let others = cases().iter().filter(|other| (other.believed)(&b).is_some()).count();
+                assert_eq!((others, b.causes), (1, Causes::NONE), "{}", case.name);
+            }
+            let checked: Vec<Measurements> = (0..3).map(|k| at(value, age + k)).collect();
+            assert_eq!((case.believed)(&checked[1]), Some(2.5), "{}: held", case.name);
+            assert_eq!((case.believed)(&checked[2]), None, "{}: {cause:?}", case.name);
+            assert_eq!(checked[2].causes, Causes::of(cause), "{}", case.name);
+        }
+    }
+}
+
+/// What others must say for a sensor to count as stuck, and what is just not enough.
+type Hint = (&'static str, fn(&mut SensorFrame, f32) -> f32);
+
+/// Situation: a sensor repeats one sample. Action: each other sensor moves, by a little less and a little more than
+/// what counts. Must hold: stuck after its time where the motion is one that it must show, else never.
+#[test]
+fn stuck_is_told_by_what_moves() {
+    // Each changes the frame of period k and gives the torque commanded before it. What trembles does so by
+    // exactly what must be exceeded.
+    let hints: [Hint; 14] = [
+        ("nothing", |_, _| 0.0),
+        ("steer turns", |f, k| {
+            f.steer_rad.value = -1.01e-3 * k;
+            0.0
+        }),
+        ("steer creeps", |f, k| {
+            f.steer_rad.value = 0.99e-3 * k;
+            0.0
+        }),
+        ("steer trembles", |f, k| {
+            f.steer_rad.value = 1e-3 * (k % 2.0);
+            0.0
+        }),
+        ("steer rate", |f, _| {
+            f.steer_rate_rad_s.value = -1.01;
+            0.0
+        }),
+        ("small steer rate", |f, _| {
+            f.steer_rate_rad_s.value = 1.0;
+            0.0
+        }),
+        ("frame rolls", |f, _| {
+            f.gyro_rad_s.value[0] = -0.51;
+            0.0
+        }),
+        ("frame rolls slowly", |f, _| {
+            f.gyro_rad_s.value[0] = 0.5;
+            0.0
+        }),
+        ("front wheel", |f, k| {
+            f.front_wheel_m_s.value = 4.0 + 1e-6 * k;
+            0.0
+        }),
+        ("rear wheel", |f, k| {
+            f.rear_wheel_m_s.value = 4.0 - 1e-6 * k;
+            0.0
+        }),
+        ("torque", |_, k| -0.0101 * k),
+        ("small torque", |_, k| 0.0099 * k),
+        ("trembling torque", |_, k| 0.01 * (k % 2.0)),
+        ("not a number", |f, _| {
+            (f.steer_rad.value, f.steer_rate_rad_s.value) = (f32::NAN, f32::NAN);
+            f32::NAN
+        }),
+    ];
+    for case in cases() {
+        let config = alone(&case);
+        let shown_by: &[&str] = match case.name {
+            "gyro" | "rider's torque" => &["steer turns", "steer rate"],
+            "accel" => &["frame rolls"],
+            "steer" => &["steer rate"],
+            "steer rate" => &["steer turns"],
+            "front wheel" => &["rear wheel"],
+            "rear wheel" => &["front wheel"],
+            "motor" => &["torque"],
+            _ => &[],
+        };
+        for (name, hint) in hints {
+            let mut state = ValidationState::default();
+            let checked: Vec<Causes> = (0_u8..60)
+                .map(|k| {
+                    let mut frame = SensorFrame::missing();
+                    (frame.front_wheel_m_s.value, frame.rear_wheel_m_s.value) = (4.0, 4.0);
+                    // From 1 on, for a small difference of large numbers is not what it should be.
+                    let torque = hint(&mut frame, 1.0 + f32::from(k));
+                    (case.set)(&mut frame, 0.25, 0);
+                    step(&config, &mut state, &frame, torque).causes
+                })
+                .collect();
+            let stuck = checked.iter().any(|causes| causes.has(case.codes[3]));
+            assert_eq!(stuck, shown_by.contains(&name), "{} while {name}: {checked:?}", case.name);
+            assert!(checked[..4].iter().all(|causes| causes.is_empty()), "{} while {name}", case.name);
+        }
+    }
+}
+
+/// Situation: the path's two errors, one of them old. Action: step. Must hold: as old as the older one, both ways round.
+#[test]
+fn the_path_is_as_old_as_its_older_error() {
+    let config = ValidationConfig { path: Sensor { timeout_ticks: 2, ..Sensor::exact(10.0) }, ..bare() };
+    for late in [0, 1] {
+        let mut state = ValidationState::default();
+        let mut at = |age| {
+            let mut ages = [0; 2];
+            ages[late] = age;
+            let [heading_error_rad, lateral_error_m] = ages.map(|age_ticks| Sample { value: 0.5, age_ticks });
+            let frame = SensorFrame { heading_error_rad, lateral_error_m, ..SensorFrame::missing() };
+            step(&config, &mut state, &frame, 0.0)
+        };
+        for age in 0..=2 {
+            assert_eq!(at(age).path(), Some([0.5; 2]), "{late} {age}");
+        }
+        let checked = at(3);
+        assert_eq!((checked.path(), checked.causes), (None, Causes::of(Cause::PathLost)), "{late}");
+    }
+}
+
+/// Both wheels fitted: bounds over three samples, widening by 10 m/s^2 from an age of 4 on, lost after 20.
+fn wheels() -> ValidationConfig {
+    let wheel = Sensor { timeout_ticks: 20, ..Sensor::exact(30.0) };
+    ValidationConfig {
+        recent_samples: 3,
+        drift_m_s2: 10.0,
+        drift_after_ticks: 4,
+        front_wheel: wheel,
+        rear_wheel: wheel,
+        ..bare()
+    }
+}
+
+/// Situation: a wheel's samples rise, fall, stop, come back. Action: step.
+/// Must hold: bounds that span the newest three; that widen each way from the declared age on, and not before; none while the
+/// sensor is lost, and none of the samples before that afterwards. The other wheel's are its own.
+#[test]
+fn the_speed_lies_between_the_recent_samples() {
+    let config = wheels();
+    let mut state = ValidationState::default();
+    let mut at = |front, rear| {
+        let frame = SensorFrame { front_wheel_m_s: front, rear_wheel_m_s: rear, ..SensorFrame::missing() };
+        let checked = step(&config, &mut state, &frame, 0.0);
+        (checked.front_wheel_m_s(), checked.rear_wheel_m_s())
+    };
+    let steady = Some(SpeedInterval { low: 7.0, newest: 7.0, high: 7.0 });
+    for (speed, low, high) in [
+        (4.0, 4.0, 4.0),
+        (5.0, 4.0, 5.0),
+        (6.0, 4.0, 6.0),
+        (5.5, 5.0, 6.0),
+        (5.0, 5.0, 6.0),
+        (4.5, 4.5, 5.5),
+        (5.0, 4.5, 5.0),
+    ] {
+        let bounds = Some(SpeedInterval { low, newest: speed, high });
+        assert_eq!(at(Sample::fresh(speed), Sample::fresh(7.0)), (bounds, steady));
+    }
+    for age_ticks in 1..=20 {
+        let (front, rear) = at(Sample { value: 5.0, age_ticks }, Sample::fresh(7.0));
+        let drift = 0.01 * f32::from(age_ticks.saturating_sub(4));
+        let front = front.expect("held");
+        let near = |a: f32, b: f32| (a - b).abs() < 1e-6;
+        assert!(near(front.low, 4.5 - drift) && near(front.high, 5.0 + drift), "{age_ticks}: {front:?}");
+        assert_eq!((front.newest, rear), (5.0, steady));
+        // Up to the declared age not a bit of difference.
+        assert!(age_ticks > 4 || (front.low, front.high) == (4.5, 5.0));
+    }
+    assert_eq!(at(Sample { value: 5.0, age_ticks: 21 }, Sample::fresh(7.0)), (None, steady));
+    let anew = SpeedInterval { low: 9.0, newest: 9.0, high: 9.0 };
+    assert_eq!(at(Sample::fresh(9.0), Sample::fresh(7.0)), (Some(anew), steady));
+}
+
+/// Situation: a wheel whose samples are never fresh, as behind a slow link. Action: step.
+/// Must hold: the bounds are about the first of them, not about zero.
+#[test]
+fn a_late_first_sample_has_bounds() {
+    let config = ValidationConfig { drift_m_s2: 0.0, ..wheels() };
+    let mut state = ValidationState::default();
+    let frame =
+        SensorFrame { front_wheel_m_s: Sample { value: 5.0, age_ticks: 1 }, ..SensorFrame::missing() };
+    let checked = step(&config, &mut state, &frame, 0.0);
+    assert_eq!(checked.front_wheel_m_s(), Some(SpeedInterval { low: 5.0, newest: 5.0, high: 5.0 }));
+}
+
+/// Situation: a wheel of which each sample comes two periods late, and one whose samples, held twice, are never fresh.
+/// Action: step over rising speeds. Must hold: bounds over the newest three all the same.
+#[test]
+fn samples_that_are_never_fresh_are_all_taken() {
+    let config = ValidationConfig { drift_m_s2: 0.0, ..wheels() };
+    let mut state = ValidationState::default();
+    for k in 0_u16..30 {
+        let (late, slow) = (f32::from(k), f32::from(k / 3));
+        let frame = SensorFrame {
+            front_wheel_m_s: Sample { value: late, age_ticks: 2 },
+            rear_wheel_m_s: Sample { value: slow, age_ticks: 1 + k % 3 },
+            ..SensorFrame::missing()
+        };
+        let checked = step(&config, &mut state, &frame, 0.0);
+        let bounds = |newest: f32| Some(SpeedInterval { low: (newest - 2.0).max(0.0), newest, high: newest });
+        assert_eq!(
+            (checked.front_wheel_m_s(), checked.rear_wheel_m_s()),
+            (bounds(late), bounds(slow)),
+            "{k}"
+        );
+    }
+}
+
+/// Situation: each count of samples that may be declared. Action: step over rising speeds. Must hold: bounds over exactly so
+/// many.
+#[test]
+fn the_bounds_span_as_many_samples_as_declared() {
+    for count in 1..=RECENT as u16 {
+        let config = ValidationConfig { recent_samples: count, ..wheels() };
+        let mut state = ValidationState::default();
+        for k in 0_u16..20 {
+            let speed = f32::from(k);
+            let frame = SensorFrame { front_wheel_m_s: Sample::fresh(speed), ..SensorFrame::missing() };
+            let checked = step(&config, &mut state, &frame, 0.0).front_wheel_m_s().expect("fresh");
+            assert_eq!(
+                (checked.low, checked.high),
+                (f32::from(k.saturating_sub(count - 1)), speed),
+                "{count}"
+            );
+        }
+    }
+}
+
+/// Situation: two intervals. Action: scale, span. Must hold: ends scaled and joined, the newest sample that of the first.
+#[test]
+fn bounds_are_scaled_and_joined() {
+    let a = SpeedInterval { low: 2.0, newest: 3.0, high: 5.0 };
+    assert_eq!(a.scaled(4.0), SpeedInterval { low: 8.0, newest: 12.0, high: 20.0 });
+    for (low, high) in [(2.5, 4.0), (1.0, 4.0), (2.5, 6.0), (1.0, 6.0)] {
+        let b = SpeedInterval { low, newest: 3.5, high };
+        let both = SpeedInterval { low: f32::min(low, 2.0), newest: 3.0, high: f32::max(high, 5.0) };
+        assert_eq!(a.spanning(b), both);
+        assert_eq!(b.spanning(a), SpeedInterval { newest: 3.5, ..both });
+    }
+}
+
+/// Situation: sensors fitted on one wheel, on the other, on both. Action: schedule by either wheel.
+/// Must hold: scheduled by it, and a lone sensor stands there.
+#[test]
+fn a_lone_wheel_sensor_moves_to_the_wheel_that_schedules() {
+    let fitted = |front: bool, rear: bool| {
+        let sensor = |fitted, max| Sensor { fitted, ..Sensor::exact(max) };
+        ValidationConfig { front_wheel: sensor(front, 11.0), rear_wheel: sensor(rear, 22.0), ..bare() }
+    };
+    for (front, rear, moves) in
+        [(true, false, true), (false, true, true), (true, true, false), (false, false, false)]
+    {
+        let before = fitted(front, rear);
+        assert_eq!(before.scheduled_by(Wheel::Front), before, "as it was");
+        let after = before.scheduled_by(Wheel::Rear);
+        assert_eq!(after.wheel, Wheel::Rear);
+        let expected = if moves { (22.0, 11.0) } else { (11.0, 22.0) };
+        assert_eq!((after.front_wheel.max, after.rear_wheel.max), expected);
+        assert_eq!(after.scheduled_by(Wheel::Front), before, "and back");
+    }
+}
+
+/// Situation: declarations. Action: ask what a loss means, and which sensor takes longest to be believed.
+/// Must hold: the codes of those declared so, of the others none; only fitted sensors are waited for.
+#[test]
+fn declarations_are_summed_up() {
+    for case in cases() {
+        let mut config = bare();
+        *(case.declared)(&mut config) = Sensor { loss: Loss::Limp, qualify_samples: 7, ..Sensor::exact(1.0) };
+        assert_eq!(config.causes_of(Loss::Limp), Causes::all(&case.codes), "{}", case.name);
+        assert_eq!(config.causes_of(Loss::Fault), Causes::NONE, "{}", case.name);
+        assert_eq!(config.slowest_to_qualify(), 7, "{}", case.name);
+        (case.declared)(&mut config).fitted = false;
+        assert_eq!(config.slowest_to_qualify(), 0, "{}", case.name);
+    }
+    assert_eq!(Config::product().input.slowest_to_qualify(), 50);
+}
+
+/// Situation: the front wheel schedules; it, the steer angle, the rear wheel fitted or not. Action: make a plan.
+/// Must hold: refused, naming key and remedy, where only the rear wheel is there to tell the front wheel's speed by; else
+/// accepted, and with the rear wheel as schedule, too.
+#[test]
+fn the_speed_that_schedules_must_be_known() {
+    for (front, steer, rear) in [false, true]
+        .into_iter()
+        .flat_map(|a| [(a, false, false), (a, false, true), (a, true, false), (a, true, true)])
+    {
+        let mut config = Config::product();
+        let input = &mut config.input;
+        (input.front_wheel.fitted, input.steer.fitted, input.rear_wheel.fitted) = (front, steer, rear);
+        let by_rear =
+            Config { input: ValidationConfig { wheel: Wheel::Rear, ..config.input }, ..config.clone() };
+        assert!(by_rear.plan().is_ok());
+        match config.plan() {
+            Ok(_) => assert!(front || steer || !rear),
+            Err(why) => {
+                assert!(!front && !steer && rear, "{why}");
+                let why = why.to_string();
+                assert!(why.contains("input.wheel = front") && why.ends_with(": rear"), "{why}");
+            }
+        }
+    }
+}
