@@ -70,11 +70,12 @@ pub extern "C" fn _start() -> ! {
     }
 }
 
-/// The shaper and the guard, each of anything.
+/// The limiter and the guard, each of anything.
 fn limits(config: &Config) {
     let (table, rate) = (black_box(config.limits), black_box(config.rate_hz));
-    let (mut shape, mut guard) = (black_box(LimiterState::default()), black_box(GuardState::default()));
-    let asked = black_box(TorqueRequest {
+    let (mut limiter_state, mut guard) =
+        (black_box(LimiterState::default()), black_box(GuardState::default()));
+    let request = black_box(TorqueRequest {
         wanted_nm: 0.0,
         authority: 0.0,
         limp: false,
@@ -85,13 +86,17 @@ fn limits(config: &Config) {
         rider_torque_nm: None,
         elapsed_us: 0,
     });
-    let (torque, acted) = shape::step(&table, &LimiterPlan::new(&table, rate), &mut shape, &asked);
-    used((acted.contains(black_box(ActiveLimits::RATE)), shape.torque_nm()));
+    let (torque, acted) =
+        limiter::step(&table, &LimiterPlan::new(&table, rate), &mut limiter_state, &request);
+    used((acted.contains(black_box(ActiveLimits::RATE)), limiter_state.torque_nm()));
     let plan = GuardPlan::new(&table, rate);
-    used(guard::check(&table, &plan, &mut guard, torque, black_box(true), &asked));
+    used(guard::check(&table, &plan, &mut guard, torque, black_box(true), &request));
     let (follow, mut following) =
         (black_box(PathTracking::default()), black_box(PathTrackingState::default()));
-    used((follow.cross(), track::step(&follow, &mut following, &black_box(TrackingInput::default()))));
+    used((
+        follow.cross(),
+        path_tracking::step(&follow, &mut following, &black_box(TrackingInput::default())),
+    ));
 }
 
 /// The configurations a user can come by: made in code, from a table of any length, from bytes.

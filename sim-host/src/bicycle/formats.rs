@@ -14,8 +14,31 @@ pub(super) fn table(text: &str, path: &Path) -> Result<Table, String> {
     match ending.as_str() {
         "txt" | "ini" => lines(text),
         "yml" | "yaml" => set(serde_saphyr::from_str(text).map_err(|e| invalid("YAML", &e))?),
-        "json" => set(serde_json::from_str(text).map_err(|e| invalid("JSON", &e))?),
+        "json" => {
+            let all: BTreeMap<String, serde_json::Value> =
+                serde_json::from_str(text).map_err(|e| invalid("JSON", &e))?;
+            set(all.into_iter().map(|(key, value)| (key, of_json(value))).collect())
+        }
         _ => toml::from_str(text).map_err(|e| invalid("TOML", &e)),
+    }
+}
+
+/// A JSON value as a TOML value; `None` for null.
+///
+/// Written out because serde_json 1.0's feature `arbitrary_precision`, which another crate of a build may turn on, makes every
+/// number a map to any type but its own.
+fn of_json(value: serde_json::Value) -> Option<Value> {
+    use serde_json::Value as Json;
+    match value {
+        Json::Null => None,
+        Json::Bool(on) => Some(Value::Boolean(on)),
+        Json::Number(n) => n.as_i64().map(Value::Integer).or(n.as_f64().map(Value::Float)),
+        Json::String(text) => Some(Value::String(text)),
+        Json::Array(items) => Some(Value::Array(items.into_iter().filter_map(of_json).collect())),
+        Json::Object(entries) => {
+            let entries = entries.into_iter().filter_map(|(key, value)| Some((key, of_json(value)?)));
+            Some(Value::Table(entries.collect()))
+        }
     }
 }
 
