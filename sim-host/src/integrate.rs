@@ -14,7 +14,7 @@ pub trait Actuation<S> {
     /// Tells the accelerations that these torques led to, for what acts with a state of its own and
     /// takes part in the step by [`Stages`].
     #[inline(always)]
-    fn felt(&mut self, _: &Geometry, _: usize, _: &State<S>, _: &Motion<S>, _: &Accelerations<S>) {}
+    fn end_stage(&mut self, _: &Geometry, _: usize, _: &State<S>, _: &Motion<S>, _: &Accelerations<S>) {}
 }
 
 /// Torques that stay what they are during the step (zero-order hold).
@@ -108,7 +108,7 @@ pub fn rk4<S: Scalar>(b: &Geometry, state: &State<S>, h: f64, actuation: &mut im
         }
         let torques = actuation.torques(b, stage, &motion);
         let acc = motion.accelerations(b, &torques);
-        actuation.felt(b, stage, &stages.at, &motion, &acc);
+        actuation.end_stage(b, stage, &stages.at, &motion, &acc);
         let k = rate(&stages.at, &motion, &acc);
         stages.next(stage, h, &k);
     }

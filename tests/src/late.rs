@@ -1,6 +1,6 @@
 //! Rides with late sensors and a slow actuator, and a controller that may make up for both.
 
-use crate::felt::{Noise, Truth, truth};
+use crate::estimator_inputs::{Noise, Truth, truth};
 use crate::model::{LinearBicycle, Model, OnTheWay};
 use control::Law;
 use control::estimate::predict::{self, PredictConfig};
@@ -8,7 +8,7 @@ use control::estimate::{self, EstimateConfig, EstimateState, EstimatorInput, Mot
 use sim_host::bicycle::{self, Accelerations, Geometry, State, Torques};
 use sim_host::integrate::{Actuation, STAGES, Stages, rk4};
 use sim_host::ride::Start;
-use sim_host::rider::{Body, Instant, Nerves, Rider};
+use sim_host::rider::{DelayLine, Instant, Rider, RiderState};
 use std::collections::VecDeque;
 use std::f64::consts::FRAC_PI_2;
 
@@ -135,7 +135,7 @@ impl Controller {
             &Torques { roll: 0.0, steer: 0.0 },
             &late.estimate.imu,
         );
-        let told = (steady.felt(STEP_US), steady.front_speed as f32);
+        let told = (steady.estimator_input(STEP_US), steady.front_speed as f32);
         let mut controller = Self {
             estimator: EstimateState::default(),
             lead: PredictConfig {
@@ -161,13 +161,13 @@ impl Controller {
 
     /// The torque wanted \[N m\].
     fn step(&mut self, late: &Late<'_>, now: &Truth) -> f64 {
-        let mut felt = now.felt(STEP_US);
+        let mut input = now.estimator_input(STEP_US);
         if let Some(noise) = &mut self.noise {
-            noise.on(&mut felt);
+            noise.on(&mut input);
         }
-        self.arriving.push_back((felt, now.front_speed as f32));
-        let Some((felt, front_speed)) = self.arriving.pop_front() else { return 0.0 };
-        let motion: Motion = estimate::step(&late.estimate, &mut self.estimator, &felt);
+        self.arriving.push_back((input, now.front_speed as f32));
+        let Some((input, front_speed)) = self.arriving.pop_front() else { return 0.0 };
+        let motion: Motion = estimate::step(&late.estimate, &mut self.estimator, &input);
         let roll_rate_rad_s = match &self.model {
             Some(model) => model.ahead(&self.torques, &motion).roll_rate_rad_s,
             None => predict::step(&self.lead, &motion).roll_rate_rad_s,
@@ -183,20 +183,20 @@ impl Controller {
 /// What acts on the handlebar.
 struct Push<'a> {
     rider: Option<&'a Rider>,
-    nerves: Option<Nerves>,
+    delay_line: Option<DelayLine>,
     arriving: [f64; 3],
-    body: Stages<Body<f64>>,
+    body: Stages<RiderState<f64>>,
     assist_nm: f64,
 }
 
 impl<'a> Push<'a> {
     fn new(late: &Late<'a>) -> Self {
-        let nerves = late.rider.map(|rider| Nerves::new(rider.delay_steps(STEP_S)));
+        let delay_line = late.rider.map(|rider| DelayLine::new(rider.delay_steps(STEP_S)));
         Self {
             rider: late.rider,
-            nerves,
+            delay_line,
             arriving: [0.0; 3],
-            body: Stages::new(Body::fresh()),
+            body: Stages::new(RiderState::fresh()),
             assist_nm: 0.0,
         }
     }
@@ -207,7 +207,7 @@ impl Actuation<f64> for Push<'_> {
         Torques { roll: 0.0, steer: self.assist_nm + self.body.at.torque }
     }
 
-    fn felt(
+    fn end_stage(
         &mut self,
         b: &Geometry,
         stage: usize,
@@ -215,12 +215,12 @@ impl Actuation<f64> for Push<'_> {
         motion: &bicycle::Motion<f64>,
         acc: &Accelerations<f64>,
     ) {
-        let (Some(rider), Some(nerves)) = (self.rider, &mut self.nerves) else { return };
+        let (Some(rider), Some(delay_line)) = (self.rider, &mut self.delay_line) else { return };
         let (now, body) = (Instant::new(state, motion, acc), self.body.at);
         if stage == 0 {
             let speed = motion.actual.front_spin * -b.rF;
-            nerves.feel(rider.schedule.at(speed).signal(&body.signals(&now)));
-            self.arriving = nerves.arriving();
+            delay_line.push(rider.schedule.at(speed).signal(&body.signals(&now)));
+            self.arriving = delay_line.arriving();
         }
         let k = body.rate(b, &now, &rider.muscles, self.arriving[(2.0 * STAGES[stage]) as usize]);
         self.body.next(stage, STEP_S, &k);

@@ -9,7 +9,7 @@ use link::refusal::{Refusal, Why};
 use link::report::{FaultKind, FaultRecord, Hello, KeptFault, ResetCause, config_hash};
 use link::telemetry::Telemetry;
 use link::{Decoder, Received};
-use sim_host::board::{Line, LineError};
+use sim_host::board::{Transport, TransportError};
 use std::io;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -200,10 +200,10 @@ pub fn lock(board: &Shared) -> MutexGuard<'_, LinkBoard> {
 }
 
 /// What happens to some bytes on their way.
-pub type Fate = Box<dyn FnMut(Vec<u8>) -> Passage + Send>;
+pub type Fate = Box<dyn FnMut(Vec<u8>) -> LinkChannel + Send>;
 
 /// What becomes of bytes.
-pub enum Passage {
+pub enum LinkChannel {
     /// They arrive, perhaps changed.
     Arrives(Vec<u8>),
     /// They arrive after the next ones were sent.
@@ -237,41 +237,41 @@ impl Wire {
 
     /// On which everything arrives.
     pub fn good(board: &Shared) -> Self {
-        Self::new(board, Box::new(Passage::Arrives), Box::new(Passage::Arrives))
+        Self::new(board, Box::new(LinkChannel::Arrives), Box::new(LinkChannel::Arrives))
     }
 
-    fn check(&self) -> Result<(), LineError> {
+    fn check(&self) -> Result<(), TransportError> {
         let why = || io::ErrorKind::BrokenPipe.into();
-        if self.lost { Err(LineError::Lost { line: "wire".into(), why: why() }) } else { Ok(()) }
+        if self.lost { Err(TransportError::Lost { line: "wire".into(), why: why() }) } else { Ok(()) }
     }
 }
 
-impl Line for Wire {
-    fn send(&mut self, bytes: &[u8]) -> Result<(), LineError> {
+impl Transport for Wire {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
         self.check()?;
         self.waiting.append(&mut self.late);
         let there = match (self.to_board)(bytes.to_vec()) {
-            Passage::Arrives(bytes) | Passage::Late(bytes) => bytes,
-            Passage::Lost => {
+            LinkChannel::Arrives(bytes) | LinkChannel::Late(bytes) => bytes,
+            LinkChannel::Lost => {
                 self.lost = true;
                 return self.check();
             }
         };
         let answer = lock(&self.board).take(&there);
         match (self.from_board)(answer) {
-            Passage::Arrives(mut bytes) => self.waiting.append(&mut bytes),
-            Passage::Late(mut bytes) => self.late.append(&mut bytes),
-            Passage::Lost => self.lost = true,
+            LinkChannel::Arrives(mut bytes) => self.waiting.append(&mut bytes),
+            LinkChannel::Late(mut bytes) => self.late.append(&mut bytes),
+            LinkChannel::Lost => self.lost = true,
         }
         Ok(())
     }
 
-    fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError> {
+    fn receive(&mut self, timeout: Duration) -> Result<Vec<u8>, TransportError> {
         let bytes = std::mem::take(&mut self.waiting);
         if bytes.is_empty() {
             self.check()?;
             // Nothing comes before something is sent.
-            std::thread::sleep(patience);
+            std::thread::sleep(timeout);
         }
         Ok(bytes)
     }

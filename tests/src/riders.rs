@@ -1,6 +1,6 @@
 //! Riders the flight cards start from.
 
-use sim_host::rider::{Gains, Muscles, Outside, Rider, Schedule};
+use sim_host::rider::{Gains, Neuromuscular, Outside, Rider, Schedule};
 
 /// A rider with every gain in use, scheduled over speed, who keeps the thesis bicycle up between 3
 /// and 6 m/s: near the published 60 ms riders, but made for these tests.
@@ -11,5 +11,5 @@ pub fn thorough(delay_s: f64) -> Rider {
         (6.0, Gains([-12.0, -0.2, 5.0, 3.4, 62.0, 2.5, 3.6, -0.05, -0.7, -0.05])),
     ];
     let schedule = Schedule::new(points, Outside::Extrapolate).unwrap_or_else(|e| panic!("{e}"));
-    Rider { schedule, delay_s, muscles: Muscles::SHOULDERS }
+    Rider { schedule, delay_s, muscles: Neuromuscular::SHOULDERS }
 }

@@ -2,7 +2,7 @@
 
 use super::combine::{RIDER_KEYS, combined};
 use super::{KEYS, Parameters, check};
-use crate::plant::Dice;
+use crate::plant::RandomStream;
 use crate::ride::Start;
 
 /// A value and its standard deviation, in the value's unit.
@@ -94,10 +94,10 @@ impl Measured {
     /// When hardly any draw can exist: the reason of the last.
     pub fn draw(&self, seed: u64, i: u64) -> Result<Parameters, String> {
         let still = Start { speed_m_s: 0.0, steer_rate_rad_s: 0.0, roll_rate_rad_s: 0.0 };
-        let mut dice = Dice::new(seed, &still, PURPOSE + i);
+        let mut random = RandomStream::new(seed, &still, PURPOSE + i);
         let mut why = String::new();
         for _ in 0..TRIES {
-            let drawn = self.parameters_of(&mut |one| one.value + one.sd * dice.normal());
+            let drawn = self.parameters_of(&mut |one| one.value + one.sd * random.normal());
             match check::check(&drawn) {
                 Ok(_) => return Ok(drawn),
                 Err(reason) => why = reason,

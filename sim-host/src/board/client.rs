@@ -1,7 +1,7 @@
 //! A board that is asked and answers, over a line that may lose or damage anything.
 
-use super::line::{Line, LineError};
-use super::told::Told;
+use super::received::ReceivedMessage;
+use super::transport::{Transport, TransportError};
 use link::frame::{MAX_FRAME, VERSION};
 use link::message::{Message, NoMessage};
 use link::refusal::Why;
@@ -34,7 +34,7 @@ impl Default for Patience {
 pub enum ClientError {
     /// The line.
     #[error(transparent)]
-    Line(#[from] LineError),
+    Transport(#[from] TransportError),
     /// It speaks another version of the link.
     #[error("the board speaks version {theirs} of the link, this program version {VERSION}")]
     Version {
@@ -42,60 +42,60 @@ pub enum ClientError {
         theirs: u8,
     },
     /// It does not answer.
-    #[error("no answer to `{asked}`, asked {tries} times, {} s each", wait.as_secs_f64())]
+    #[error("no answer to `{requested}`, asked {tries} times, {} s each", wait.as_secs_f64())]
     Silent {
         /// What was asked.
-        asked: String,
+        requested: String,
         /// How often.
         tries: u32,
         /// How long was waited each time.
         wait: Duration,
     },
     /// It refuses.
-    #[error("the board refuses `{asked}`: {text}")]
+    #[error("the board refuses `{requested}`: {text}")]
     Refused {
         /// What was asked.
-        asked: String,
+        requested: String,
         /// Why.
         why: Why,
         /// Why, in words, with parameter and range.
         text: String,
     },
     /// Its answer is to something else.
-    #[error("the board's answer to `{asked}` does not fit")]
+    #[error("the board's answer to `{requested}` does not fit")]
     Unfit {
         /// What was asked.
-        asked: String,
+        requested: String,
     },
 }
 
 impl ClientError {
     /// Whether the board may have carried out what it was asked for nevertheless.
     pub fn leaves_doubt(&self) -> bool {
-        matches!(self, ClientError::Line(_) | ClientError::Silent { .. })
+        matches!(self, ClientError::Transport(_) | ClientError::Silent { .. })
     }
 }
 
 /// A board at the other end of a line.
 pub struct Client {
-    line: Box<dyn Line>,
-    patience: Patience,
+    line: Box<dyn Transport>,
+    timeout: Patience,
     decoder: Decoder,
     sequence: u16,
-    told: VecDeque<Told>,
+    received: VecDeque<ReceivedMessage>,
     whole: u64,
 }
 
 impl Client {
     /// Over `line`. Nothing is asked yet.
-    pub fn new(line: Box<dyn Line>, patience: Patience) -> Self {
+    pub fn new(line: Box<dyn Transport>, timeout: Patience) -> Self {
         // Answers to a program that went away may still come; they have other numbers.
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         let sequence = now.subsec_micros() as u16;
-        Self { line, patience, decoder: Decoder::default(), sequence, told: VecDeque::new(), whole: 0 }
+        Self { line, timeout, decoder: Decoder::default(), sequence, received: VecDeque::new(), whole: 0 }
     }
 
-    /// Asks until the answer comes, which `fits` reads; `asked` says in words what for.
+    /// Asks until the answer comes, which `fits` reads; `requested` says in words what for.
     ///
     /// The same may be carried out more than once: an answer can get lost on its way back.
     ///
@@ -104,43 +104,43 @@ impl Client {
     pub fn ask<T>(
         &mut self,
         request: &Message<'_>,
-        asked: &str,
+        requested: &str,
         fits: impl Fn(&Message<'_>) -> Option<T>,
     ) -> Result<T, ClientError> {
         let mut bytes = [0; MAX_FRAME];
         self.sequence = self.sequence.wrapping_add(1);
-        let unfit = || ClientError::Unfit { asked: asked.into() };
+        let unfit = || ClientError::Unfit { requested: requested.into() };
         let used = request.encode(self.sequence, &mut bytes).ok_or_else(unfit)?;
-        let wait = if *request == Message::Store { STORING } else { self.patience.answer };
-        for _ in 0..self.patience.tries {
+        let wait = if *request == Message::Store { STORING } else { self.timeout.answer };
+        for _ in 0..self.timeout.tries {
             self.line.send(&bytes[..used])?;
             let Some(answer) = self.answer(wait)? else { continue };
             return match answer.message() {
                 Ok(Message::Refused(refusal)) => {
-                    let (asked, text) = (asked.into(), refusal.to_string());
-                    Err(ClientError::Refused { asked, why: refusal.why, text })
+                    let (requested, text) = (requested.into(), refusal.to_string());
+                    Err(ClientError::Refused { requested, why: refusal.why, text })
                 }
                 Ok(message) => fits(&message).ok_or_else(unfit),
                 Err(NoMessage::UnknownKind(_) | NoMessage::Malformed(_)) => Err(unfit()),
             };
         }
-        Err(ClientError::Silent { asked: asked.into(), tries: self.patience.tries, wait })
+        Err(ClientError::Silent { requested: requested.into(), tries: self.timeout.tries, wait })
     }
 
-    /// What the board said unasked since the last call, after waiting for it up to `patience`.
+    /// What the board said unasked since the last call, after waiting for it up to `timeout`.
     ///
     /// # Errors
     /// The line, or another version.
-    pub fn listen(&mut self, patience: Duration) -> Result<Vec<Told>, ClientError> {
-        if self.told.is_empty() {
-            let bytes = self.line.receive(patience)?;
+    pub fn listen(&mut self, timeout: Duration) -> Result<Vec<ReceivedMessage>, ClientError> {
+        if self.received.is_empty() {
+            let bytes = self.line.receive(timeout)?;
             self.take(&bytes, None)?;
         }
-        Ok(self.told.drain(..).collect())
+        Ok(self.received.drain(..).collect())
     }
 
     /// Opens the line anew after it was lost; `None` for one that never comes back. Who is there now is to be asked.
-    pub fn reopen(&mut self) -> Option<Result<(), LineError>> {
+    pub fn reopen(&mut self) -> Option<Result<(), TransportError>> {
         self.line.reopen()
     }
 
@@ -156,7 +156,7 @@ impl Client {
     }
 
     /// Waits for the answer to the newest request; `None` when none came in time.
-    fn answer(&mut self, wait: Duration) -> Result<Option<Told>, ClientError> {
+    fn answer(&mut self, wait: Duration) -> Result<Option<ReceivedMessage>, ClientError> {
         let begin = Instant::now();
         loop {
             let rest = wait.saturating_sub(begin.elapsed());
@@ -171,21 +171,21 @@ impl Client {
     }
 
     /// Takes what came in: the answer of this number, if it is among it; what is unasked is kept, all else is old.
-    fn take(&mut self, bytes: &[u8], sequence: Option<u16>) -> Result<Option<Told>, ClientError> {
+    fn take(&mut self, bytes: &[u8], sequence: Option<u16>) -> Result<Option<ReceivedMessage>, ClientError> {
         let mut answer = None;
         for byte in bytes {
             let received = self.decoder.feed(*byte);
             self.whole += u64::from(matches!(received, Some(Received::Frame(_))));
             match received {
                 Some(Received::WrongVersion { theirs }) => return Err(ClientError::Version { theirs }),
-                Some(Received::Frame(frame)) if Told::is_unasked(&frame) => {
-                    if self.told.len() == KEPT {
-                        self.told.pop_front();
+                Some(Received::Frame(frame)) if ReceivedMessage::is_unasked(&frame) => {
+                    if self.received.len() == KEPT {
+                        self.received.pop_front();
                     }
-                    self.told.push_back(Told::new(&frame));
+                    self.received.push_back(ReceivedMessage::new(&frame));
                 }
                 Some(Received::Frame(frame)) if Some(frame.sequence) == sequence => {
-                    answer = Some(Told::new(&frame));
+                    answer = Some(ReceivedMessage::new(&frame));
                 }
                 Some(Received::Frame(_)) | None => {}
             }

@@ -1,8 +1,8 @@
 //! The controller of a ride on a board in lockstep.
 
-use super::link_fault::Passage;
-use super::{BoardError, LinkFault, Lockstep, Way};
-use crate::plant::Dice;
+use super::link_fault::LinkChannel;
+use super::{BoardError, Direction, LinkFault, Lockstep};
+use crate::plant::RandomStream;
 use crate::ride::{Remote, RemoteError, Start, Stepped};
 use control::wire::encode_config;
 use control::{Plan, SensorFrame};
@@ -55,8 +55,8 @@ struct RideState {
     step_zero: u32,
     /// Control steps from t = 0; `None` before.
     tick: Option<u32>,
-    sensors: Passage,
-    motor: Passage,
+    sensors: LinkChannel,
+    motor: LinkChannel,
     decoder: Decoder,
     /// The newest command, and the control steps that it was held for.
     held: (Stepped, u32),
@@ -68,15 +68,17 @@ struct RideState {
 
 impl RideState {
     fn new(number: u16, faults: &[LinkFault], seed: u64, start: &Start) -> Self {
-        let passage = |way: Way| Passage::new(faults, way, Dice::new(seed, start, DICE + way as u64));
+        let passage = |direction: Direction| {
+            LinkChannel::new(faults, direction, RandomStream::new(seed, start, DICE + direction as u64))
+        };
         Self {
             number,
             opening: Vec::new(),
             step: 0,
             step_zero: 0,
             tick: None,
-            sensors: passage(Way::Sensors),
-            motor: passage(Way::Motor),
+            sensors: passage(Direction::Sensors),
+            motor: passage(Direction::Motor),
             decoder: Decoder::default(),
             held: (Stepped::OFF, 0),
             ahead: None,

@@ -1,6 +1,6 @@
 //! Faults of the loop's link, as text: `WAY:HARM[=TIME][@FROM[..TO]]`, for example `sensors:late=3ms@1.5s..2s`.
 
-use crate::plant::Dice;
+use crate::plant::RandomStream;
 use crate::range::{span, time};
 use std::collections::VecDeque;
 use std::fmt;
@@ -13,14 +13,14 @@ const PERIOD_S: f64 = 1e-3;
 
 /// Which way bytes go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum Direction {
     /// To the board.
     Sensors,
     /// From the board.
     Motor,
 }
 
-impl Way {
+impl Direction {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Sensors, Self::Motor];
 
@@ -35,7 +35,7 @@ impl Way {
 
 /// What happens to them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Harm {
+pub enum LinkFaultKind {
     /// They are lost.
     Drop,
     /// They come later by so many control periods. What a newer period's overtake is lost.
@@ -48,9 +48,9 @@ pub enum Harm {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkFault {
     /// Which way.
-    pub way: Way,
+    pub direction: Direction,
     /// What happens.
-    pub harm: Harm,
+    pub kind: LinkFaultKind,
     /// From this time of the ride \[s\], ...
     pub from_s: f64,
     /// ... up to this time, which may be infinite \[s\].
@@ -66,11 +66,11 @@ impl LinkFault {
 
 impl fmt::Display for LinkFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:", self.way.name())?;
-        match self.harm {
-            Harm::Drop => write!(f, "drop")?,
-            Harm::Late(ticks) => write!(f, "late={ticks}ms")?,
-            Harm::Corrupt => write!(f, "corrupt")?,
+        write!(f, "{}:", self.direction.name())?;
+        match self.kind {
+            LinkFaultKind::Drop => write!(f, "drop")?,
+            LinkFaultKind::Late(ticks) => write!(f, "late={ticks}ms")?,
+            LinkFaultKind::Corrupt => write!(f, "corrupt")?,
         }
         if self.from_s != 0.0 || self.to_s.is_finite() {
             write!(f, "@{}s", self.from_s)?;
@@ -92,22 +92,21 @@ impl FromStr for LinkFault {
 
 fn parsed(text: &str) -> Result<LinkFault, String> {
     let form = "expected WAY:HARM[=TIME][@FROM[..TO]], for example sensors:late=3ms@1.5s..2s";
-    let (way, what) = text.split_once(':').ok_or(form)?;
-    let way = Way::ALL
-        .into_iter()
-        .find(|known| known.name() == way)
-        .ok_or_else(|| format!("no way `{way}`; there are {}", Way::ALL.map(Way::name).join(", ")))?;
+    let (direction, what) = text.split_once(':').ok_or(form)?;
+    let direction = Direction::ALL.into_iter().find(|known| known.name() == direction).ok_or_else(|| {
+        format!("no way `{direction}`; there are {}", Direction::ALL.map(Direction::name).join(", "))
+    })?;
     let (what, when) = what.split_once('@').map_or((what, None), |(what, when)| (what, Some(when)));
-    let harm = match what.split_once('=').map_or((what, None), |(name, value)| (name, Some(value))) {
-        ("drop", None) => Harm::Drop,
-        ("corrupt", None) => Harm::Corrupt,
-        ("late", Some(by)) => Harm::Late(periods(by)?),
+    let kind = match what.split_once('=').map_or((what, None), |(name, value)| (name, Some(value))) {
+        ("drop", None) => LinkFaultKind::Drop,
+        ("corrupt", None) => LinkFaultKind::Corrupt,
+        ("late", Some(by)) => LinkFaultKind::Late(periods(by)?),
         ("late", None) => return Err("late needs a value: late=TIME".into()),
         ("drop" | "corrupt", Some(_)) => return Err(format!("{what}: it takes no value")),
         _ => return Err(format!("no harm `{what}`; there are drop, late=TIME, corrupt")),
     };
     let (from_s, to_s) = when.map_or(Ok((0.0, f64::INFINITY)), span)?;
-    Ok(LinkFault { way, harm, from_s, to_s })
+    Ok(LinkFault { direction, kind, from_s, to_s })
 }
 
 fn periods(text: &str) -> Result<u32, String> {
@@ -120,20 +119,20 @@ fn periods(text: &str) -> Result<u32, String> {
 
 /// One way of the link in one ride.
 #[derive(Debug)]
-pub(super) struct Passage {
+pub(super) struct LinkChannel {
     faults: Vec<LinkFault>,
-    dice: Dice,
+    random: RandomStream,
     /// What is late, and the period when it comes.
     late: VecDeque<(u32, Vec<u8>)>,
     /// Periods whose bytes a fault acted on.
     pub(super) harmed: u32,
 }
 
-impl Passage {
+impl LinkChannel {
     /// The faults of one way among all of them.
-    pub(super) fn new(faults: &[LinkFault], way: Way, dice: Dice) -> Self {
-        let faults = faults.iter().filter(|fault| fault.way == way).copied().collect();
-        Self { faults, dice, late: VecDeque::new(), harmed: 0 }
+    pub(super) fn new(faults: &[LinkFault], direction: Direction, random: RandomStream) -> Self {
+        let faults = faults.iter().filter(|fault| fault.direction == direction).copied().collect();
+        Self { faults, random, late: VecDeque::new(), harmed: 0 }
     }
 
     /// Whether nothing ever happens on it.
@@ -146,13 +145,13 @@ impl Passage {
         let (mut lost, mut late) = (false, 0);
         let acting = self.faults.iter().filter(|fault| fault.acts(tick));
         for fault in acting.clone() {
-            match fault.harm {
-                Harm::Drop => lost = true,
-                Harm::Late(ticks) => late += ticks,
-                Harm::Corrupt if bytes.is_empty() => {}
-                Harm::Corrupt => {
-                    let place = self.dice.below(bytes.len());
-                    bytes[place] ^= 1 << self.dice.below(8);
+            match fault.kind {
+                LinkFaultKind::Drop => lost = true,
+                LinkFaultKind::Late(ticks) => late += ticks,
+                LinkFaultKind::Corrupt if bytes.is_empty() => {}
+                LinkFaultKind::Corrupt => {
+                    let place = self.random.below(bytes.len());
+                    bytes[place] ^= 1 << self.random.below(8);
                 }
             }
         }

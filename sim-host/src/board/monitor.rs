@@ -1,8 +1,8 @@
 //! What is made of all that a board tells: its state, and what was lost on the way.
 
 use super::fault::Fault;
-use super::row::Row;
-use super::told::Told;
+use super::received::ReceivedMessage;
+use super::telemetry_row::TelemetryRow;
 use link::message::Message;
 use link::telemetry::Telemetry;
 
@@ -50,14 +50,14 @@ impl Counted {
     /// The numbers tell it but for whole rounds; how many of these, the steps tell, at the rate of frames until then. Numbers
     /// that go back are no gap.
     fn lost(&mut self, sequence: u16, steps: u32) -> u64 {
-        let heard = u64::from(std::mem::take(&mut self.since)) + 1;
+        let reception = u64::from(std::mem::take(&mut self.since)) + 1;
         let Some(last) = self.sequence.replace(sequence) else { return 0 };
         let sent = i64::from(sequence.wrapping_sub(last));
         let expected = f64::from(steps) * self.frames as f64 / self.steps.max(1) as f64;
         let rounds = ((expected - sent as f64) / ROUND as f64).round() as i64;
-        let sent = u64::try_from(sent + rounds * ROUND).unwrap_or(0).max(heard);
+        let sent = u64::try_from(sent + rounds * ROUND).unwrap_or(0).max(reception);
         (self.steps, self.frames) = (self.steps + u64::from(steps), self.frames + sent);
-        sent - heard
+        sent - reception
     }
 }
 
@@ -71,7 +71,7 @@ const HALF_ROUND_STEPS: u32 = 100_000;
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
     /// A control step.
-    Step(Box<Row>),
+    Step(Box<TelemetryRow>),
     /// A fault.
     Fault(Box<Fault>),
     /// Words.
@@ -82,10 +82,10 @@ pub enum News {
 
 impl Monitor {
     /// Takes what came in next.
-    pub fn take(&mut self, told: &Told) -> News {
+    pub fn take(&mut self, received: &ReceivedMessage) -> News {
         self.frames += 1;
-        let news = match told.message() {
-            Ok(Message::Telemetry(step)) => return self.step(told.sequence, step),
+        let news = match received.message() {
+            Ok(Message::Telemetry(step)) => return self.step(received.sequence, step),
             Ok(Message::Fault(record)) => News::Fault(Box::new(record.into())),
             Ok(Message::Log(words)) => News::Log(words.into()),
             Ok(_) | Err(_) => {
@@ -95,7 +95,7 @@ impl Monitor {
         };
         match self.counted.sequence {
             Some(_) => self.counted.since = self.counted.since.wrapping_add(1),
-            None => self.counted = Counted::from(told.sequence),
+            None => self.counted = Counted::from(received.sequence),
         }
         news
     }
@@ -127,6 +127,6 @@ impl Monitor {
         }
         self.t = self.time_us as f64 / 1e6;
         self.newest = Some(step);
-        News::Step(Box::new(Row::new(self.t, &step)))
+        News::Step(Box::new(TelemetryRow::new(self.t, &step)))
     }
 }

@@ -1,6 +1,6 @@
 //! A board in QEMU, which hands over on its standard output and takes from its standard input.
 
-use super::watch::{Watch, locked};
+use super::watchdog::{Watchdog, locked};
 use super::{BoardError, Lockstep};
 use link::lockstep::{BOARD_HEAD, FromBoard, MAX_CHUNK, ToBoard};
 use std::cell::Cell;
@@ -34,7 +34,7 @@ pub struct Qemu {
     /// `None` once it was ended.
     to: Option<ChildStdin>,
     from: ChildStdout,
-    watch: Watch,
+    watchdog: Watchdog,
     words: Arc<Mutex<Vec<u8>>>,
     listener: Option<JoinHandle<()>>,
     exchanges: u64,
@@ -64,7 +64,7 @@ impl Qemu {
         let listener = listen(err, Arc::clone(&said));
         let mut qemu = Self {
             image: image.into(),
-            watch: Watch::new(Arc::clone(&child), limit),
+            watchdog: Watchdog::new(Arc::clone(&child), limit),
             child,
             to: Some(to),
             from,
@@ -74,9 +74,9 @@ impl Qemu {
             room: [0; MAX_CHUNK],
             used: 0,
         };
-        qemu.watch.begin(1);
+        qemu.watchdog.begin(1);
         qemu.take()?;
-        qemu.watch.end();
+        qemu.watchdog.end();
         Ok(qemu)
     }
 
@@ -138,8 +138,8 @@ impl Qemu {
             said => format!("; it said:\n{said}"),
         };
         let (image, exchanges) = (self.image.clone(), self.exchanges);
-        match self.watch.bitten() {
-            true => BoardError::Silent { image, limit: self.watch.limit, exchanges, said },
+        match self.watchdog.ended() {
+            true => BoardError::Silent { image, limit: self.watchdog.limit, exchanges, said },
             false => BoardError::Ended { image, status, exchanges, said },
         }
     }
@@ -156,13 +156,13 @@ impl Lockstep for Qemu {
         let mut room = [0; MAX_CHUNK];
         let too_much = || BoardError::TooMuch(chunk.sensors.len(), chunk.line.len());
         let used = chunk.encode(&mut room).ok_or_else(too_much)?;
-        self.watch.begin(self.exchanges + 2);
+        self.watchdog.begin(self.exchanges + 2);
         let sent = self.to.as_mut().is_some_and(|to| to.write_all(&room[..used]).is_ok());
         if !sent {
             return Err(self.ended());
         }
         self.take()?;
-        self.watch.end();
+        self.watchdog.end();
         self.exchanges += 1;
         Ok(())
     }
@@ -214,10 +214,10 @@ fn listen(mut from: ChildStderr, to: Arc<Mutex<Vec<u8>>>) -> JoinHandle<()> {
     spawn(move || {
         let mut room = [0; 1024];
         while let Ok(got @ 1..) = from.read(&mut room) {
-            let mut kept = locked(&to);
-            kept.extend_from_slice(&room[..got]);
-            let much = kept.len().saturating_sub(KEPT);
-            kept.drain(..much);
+            let mut output = locked(&to);
+            output.extend_from_slice(&room[..got]);
+            let much = output.len().saturating_sub(KEPT);
+            output.drain(..much);
         }
     })
 }

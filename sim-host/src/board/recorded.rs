@@ -1,6 +1,6 @@
 //! What came over a line, kept as it came: written, and read again.
 
-use super::line::{Line, LineError};
+use super::transport::{Transport, TransportError};
 use link::frame::MAX_FRAME;
 use std::fs::File;
 use std::io::{Read, Write};
@@ -21,25 +21,25 @@ impl Recording {
     /// Opens a file that [`Recorder`] wrote, or any other bytes from a board.
     ///
     /// # Errors
-    /// [`LineError::Open`].
-    pub fn open(path: &Path) -> Result<Self, LineError> {
+    /// [`TransportError::Open`].
+    pub fn open(path: &Path) -> Result<Self, TransportError> {
         let name = path.display().to_string();
-        let file = File::open(path).map_err(|why| LineError::Open { line: name.clone(), why })?;
+        let file = File::open(path).map_err(|why| TransportError::Open { line: name.clone(), why })?;
         Ok(Self { name, file, begun: false, rest: 0 })
     }
 }
 
-impl Line for Recording {
-    fn send(&mut self, _: &[u8]) -> Result<(), LineError> {
-        Err(LineError::OneWay { line: self.name.clone() })
+impl Transport for Recording {
+    fn send(&mut self, _: &[u8]) -> Result<(), TransportError> {
+        Err(TransportError::OneWay { line: self.name.clone() })
     }
 
-    fn receive(&mut self, _: Duration) -> Result<Vec<u8>, LineError> {
+    fn receive(&mut self, _: Duration) -> Result<Vec<u8>, TransportError> {
         let mut bytes = vec![0; 4096];
         let read = self.file.read(&mut bytes);
-        let length = read.map_err(|why| LineError::Lost { line: self.name.clone(), why })?;
+        let length = read.map_err(|why| TransportError::Lost { line: self.name.clone(), why })?;
         if length == 0 {
-            return Err(LineError::Ended { line: self.name.clone(), rest: self.rest });
+            return Err(TransportError::Ended { line: self.name.clone(), rest: self.rest });
         }
         bytes.truncate(length);
         let first = bytes.iter().position(|byte| *byte == 0);
@@ -61,7 +61,7 @@ impl Line for Recording {
 /// A line of which everything that comes in is written to a file as well, as soon as a frame ends: a recording that ends
 /// within a frame was cut.
 pub struct Recorder {
-    line: Box<dyn Line>,
+    line: Box<dyn Transport>,
     name: String,
     to: Box<dyn Write>,
     /// Came in since the last end of a frame.
@@ -70,18 +70,18 @@ pub struct Recorder {
 
 impl Recorder {
     /// Writes what comes over `line` to `to`, which errors call `name`.
-    pub fn new(line: Box<dyn Line>, name: &str, to: Box<dyn Write>) -> Self {
+    pub fn new(line: Box<dyn Transport>, name: &str, to: Box<dyn Write>) -> Self {
         Self { line, name: name.into(), to, begun: Vec::new() }
     }
 }
 
-impl Line for Recorder {
-    fn send(&mut self, bytes: &[u8]) -> Result<(), LineError> {
+impl Transport for Recorder {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
         self.line.send(bytes)
     }
 
-    fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError> {
-        let bytes = self.line.receive(patience)?;
+    fn receive(&mut self, timeout: Duration) -> Result<Vec<u8>, TransportError> {
+        let bytes = self.line.receive(timeout)?;
         self.begun.extend(&bytes);
         // What is longer than a frame is noise, which is kept as it comes.
         let whole = match self.begun.iter().rposition(|byte| *byte == 0) {
@@ -90,12 +90,12 @@ impl Line for Recorder {
             None => 0,
         };
         let written = self.to.write_all(&self.begun[..whole]).and_then(|()| self.to.flush());
-        written.map_err(|why| LineError::Record { file: self.name.clone(), why })?;
+        written.map_err(|why| TransportError::Record { file: self.name.clone(), why })?;
         self.begun.drain(..whole);
         Ok(bytes)
     }
 
-    fn reopen(&mut self) -> Option<Result<(), LineError>> {
+    fn reopen(&mut self) -> Option<Result<(), TransportError>> {
         self.line.reopen()
     }
 }

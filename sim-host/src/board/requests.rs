@@ -54,8 +54,8 @@ impl Client {
         let mut listed = Vec::new();
         loop {
             let from = listed.len() as u16;
-            let asked = format!("list from {from}");
-            let (page, total) = self.ask(&Message::List { from }, &asked, |answer| match answer {
+            let requested = format!("list from {from}");
+            let (page, total) = self.ask(&Message::List { from }, &requested, |answer| match answer {
                 Message::Page(page) if page.from == from => {
                     let entries: Vec<_> = page.entries().map(Parameter::from).collect();
                     let whole = entries.len() == usize::from(page.count);
@@ -86,8 +86,8 @@ impl Client {
     /// As of [`ClientError`].
     pub fn set(&mut self, key: &str, value: Option<f32>) -> Result<Option<f32>, ClientError> {
         let request = Message::Set { key: Key::whole(key), value };
-        let asked = format!("set {key} to {}", value.map_or("none".into(), |value| value.to_string()));
-        self.ask(&request, &asked, |answer| value_of(key, answer))
+        let requested = format!("set {key} to {}", value.map_or("none".into(), |value| value.to_string()));
+        self.ask(&request, &requested, |answer| value_of(key, answer))
     }
 
     /// The law.
@@ -130,8 +130,8 @@ impl Client {
         let mut kept = Vec::new();
         loop {
             let from = kept.len() as u16;
-            let asked = format!("list faults from {from}");
-            let fault = self.ask(&Message::ListFaults { from }, &asked, |answer| match answer {
+            let requested = format!("list faults from {from}");
+            let fault = self.ask(&Message::ListFaults { from }, &requested, |answer| match answer {
                 Message::KeptFault(fault) if fault.place == from => Some(fault.record.map(Fault::from)),
                 _ => None,
             })?;

@@ -1,6 +1,6 @@
 //! A serial port.
 
-use super::line::{Line, LineError};
+use super::transport::{Transport, TransportError};
 use serialport::{ClearBuffer, SerialPort};
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
@@ -19,29 +19,29 @@ impl Serial {
     /// Opens `name` and forgets what waits there from before. Where the baud rate means nothing, as for USB, any does.
     ///
     /// # Errors
-    /// [`LineError::Open`].
-    pub fn open(name: &str, baud: u32) -> Result<Self, LineError> {
+    /// [`TransportError::Open`].
+    pub fn open(name: &str, baud: u32) -> Result<Self, TransportError> {
         let opened = serialport::new(name, baud).timeout(SENDING).open();
         let port = opened.and_then(|port| port.clear(ClearBuffer::Input).map(|()| port));
         let failed =
-            |why: serialport::Error| LineError::Open { line: name.into(), why: io::Error::other(why) };
+            |why: serialport::Error| TransportError::Open { line: name.into(), why: io::Error::other(why) };
         Ok(Self { name: name.into(), baud, port: port.map_err(failed)? })
     }
 
-    fn lost(&self, why: io::Error) -> LineError {
-        LineError::Lost { line: self.name.clone(), why }
+    fn lost(&self, why: io::Error) -> TransportError {
+        TransportError::Lost { line: self.name.clone(), why }
     }
 }
 
-impl Line for Serial {
-    fn send(&mut self, bytes: &[u8]) -> Result<(), LineError> {
+impl Transport for Serial {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
         let sent = self.port.set_timeout(SENDING).map_err(io::Error::from);
         sent.and_then(|()| self.port.write_all(bytes)).map_err(|why| self.lost(why))
     }
 
-    fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError> {
+    fn receive(&mut self, timeout: Duration) -> Result<Vec<u8>, TransportError> {
         let mut bytes = vec![0; 4096];
-        let ready = self.port.set_timeout(patience).map_err(io::Error::from);
+        let ready = self.port.set_timeout(timeout).map_err(io::Error::from);
         match ready.and_then(|()| self.port.read(&mut bytes)) {
             Ok(0) => Err(self.lost(ErrorKind::UnexpectedEof.into())),
             Ok(length) => {
@@ -53,7 +53,7 @@ impl Line for Serial {
         }
     }
 
-    fn reopen(&mut self) -> Option<Result<(), LineError>> {
+    fn reopen(&mut self) -> Option<Result<(), TransportError>> {
         Some(Self::open(&self.name, self.baud).map(|anew| *self = anew))
     }
 }

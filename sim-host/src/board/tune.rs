@@ -19,12 +19,12 @@ pub struct Tuned {
 
 /// Why not all was set.
 #[derive(Debug, thiserror::Error)]
-#[error("{error}; {told}")]
+#[error("{error}; {outcome}")]
 pub struct TuneError {
     /// What went wrong.
     error: ClientError,
     /// What is set now and what is not.
-    told: String,
+    outcome: String,
 }
 
 /// Where setting stopped.
@@ -48,7 +48,7 @@ pub fn tune(client: &mut Client, before: &Settings, wanted: &[Setting]) -> Resul
         false => put_back(client, before, stop.error, &set),
     })?;
     let now = Settings::read(client)
-        .map_err(|error| TuneError { error, told: format!("set: {}; not read back", list(&set)) })?;
+        .map_err(|error| TuneError { error, outcome: format!("set: {}; not read back", list(&set)) })?;
     let differing = wanted.iter().filter(|one| !now.has(one)).map(|one| one.key().to_owned()).collect();
     Ok(Tuned { now, set: set.iter().map(|one| one.key().to_owned()).collect(), differing })
 }
@@ -90,7 +90,7 @@ fn converge(client: &mut Client, mut waiting: Vec<Setting>, set: &mut Vec<Settin
 
 /// After a line that failed: what is set and what is not, by reading back where that can be done.
 fn interrupted(client: &mut Client, Stop { error, waiting }: Stop, set: &[Setting]) -> TuneError {
-    let told = match Settings::read(client) {
+    let outcome = match Settings::read(client) {
         Ok(now) => {
             let (set, unset): (Vec<_>, _) = set.iter().chain(&waiting).cloned().partition(|one| now.has(one));
             format!("read back: set: {}; not set: {}", list(&set), list(&unset))
@@ -102,27 +102,27 @@ fn interrupted(client: &mut Client, Stop { error, waiting }: Stop, set: &[Settin
             list(&waiting[1..])
         ),
     };
-    TuneError { error, told }
+    TuneError { error, outcome }
 }
 
 /// After a refusal: everything as it was.
 fn put_back(client: &mut Client, before: &Settings, error: ClientError, set: &[Setting]) -> TuneError {
     if set.is_empty() {
-        return TuneError { error, told: "nothing is set".into() };
+        return TuneError { error, outcome: "nothing is set".into() };
     }
     let mut back = || {
         let now = Settings::read(client)?;
         converge(client, missing(&now, &before.all()), &mut Vec::new()).map_err(|stop| stop.error)?;
         Settings::read(client)
     };
-    let told = match back() {
+    let outcome = match back() {
         Ok(now) => match before.all().into_iter().filter(|one| !now.has(one)).collect::<Vec<_>>() {
             left if left.is_empty() => "nothing is set, what was is put back".to_owned(),
             left => format!("what was set is put back, but for {}", list(&left)),
         },
         Err(second) => format!("set: {}; it can't be put back: {second}", list(set)),
     };
-    TuneError { error, told }
+    TuneError { error, outcome }
 }
 
 fn list(settings: &[Setting]) -> String {

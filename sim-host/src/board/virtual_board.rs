@@ -1,6 +1,6 @@
 //! The board's own image on the virtual board, a program of its own whose standard input and output are the serial line.
 
-use super::line::{Line, LineError};
+use super::transport::{Transport, TransportError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -35,9 +35,9 @@ impl VirtualBoard {
     ///
     /// # Errors
     /// There is no such program, or it ends before the board has started; then with its own reason.
-    pub fn start(program: &Path, image: Option<&Path>) -> Result<Self, LineError> {
+    pub fn start(program: &Path, image: Option<&Path>) -> Result<Self, TransportError> {
         let name = format!("{} (cargo xtask virtual-board --build makes it)", program.display());
-        let failed = |why: io::Error| LineError::Open { line: name.clone(), why };
+        let failed = |why: io::Error| TransportError::Open { line: name.clone(), why };
         let mut command = Command::new(program);
         command.arg("--stdio").args(image.iter().flat_map(|image| [Path::new("--image"), image]));
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -61,8 +61,8 @@ impl VirtualBoard {
     }
 
     /// The program is gone, or does not listen: with its own reason.
-    fn lost(&self, why: io::ErrorKind) -> LineError {
-        LineError::Lost { line: self.name.clone(), why: io::Error::new(why, self.last_words()) }
+    fn lost(&self, why: io::ErrorKind) -> TransportError {
+        TransportError::Lost { line: self.name.clone(), why: io::Error::new(why, self.last_words()) }
     }
 
     /// The last line that it wrote to standard error; it is waited for a moment, for the two streams of a program that
@@ -76,8 +76,8 @@ impl VirtualBoard {
     }
 }
 
-impl Line for VirtualBoard {
-    fn send(&mut self, bytes: &[u8]) -> Result<(), LineError> {
+impl Transport for VirtualBoard {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
         let sent = self.to.as_mut().map(|to| to.write_all(bytes).and_then(|()| to.flush()));
         match sent {
             Some(Ok(())) => Ok(()),
@@ -85,11 +85,11 @@ impl Line for VirtualBoard {
         }
     }
 
-    fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError> {
+    fn receive(&mut self, timeout: Duration) -> Result<Vec<u8>, TransportError> {
         if !self.first.is_empty() {
             return Ok(std::mem::take(&mut self.first));
         }
-        match self.from.recv_timeout(patience) {
+        match self.from.recv_timeout(timeout) {
             Ok(bytes) => Ok(bytes),
             Err(RecvTimeoutError::Timeout) => Ok(Vec::new()),
             Err(RecvTimeoutError::Disconnected) => Err(self.lost(io::ErrorKind::UnexpectedEof)),

@@ -36,13 +36,13 @@ pub(super) struct Args {
 }
 
 /// A case before it is computed.
-enum Asked {
+enum RequestedCase {
     Compute(String, Box<Setup>),
     /// And the axis its file says.
     Done(Case, String),
 }
 
-impl Asked {
+impl RequestedCase {
     fn label(&self) -> &str {
         match self {
             Self::Compute(label, _) => label,
@@ -52,35 +52,37 @@ impl Asked {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let mut asked = Vec::new();
+    let mut requested = Vec::new();
     let mut ridden = false;
     for text in &args.cases {
         match text.split_once('=').filter(|_| !std::path::Path::new(text).is_file()) {
             Some((label, options)) => {
                 let case = parse(label, options)?;
                 ridden |= case.ridden();
-                asked
-                    .push(Asked::Compute(label.into(), Box::new(case.setup().map_err(|e| named(label, e))?)));
+                requested.push(RequestedCase::Compute(
+                    label.into(),
+                    Box::new(case.setup().map_err(|e| named(label, e))?),
+                ));
             }
             None => {
                 let (case, axis) = read(text)?;
-                asked.push(Asked::Done(case, axis));
+                requested.push(RequestedCase::Done(case, axis));
             }
         }
     }
     let search = args.search.search(ridden)?;
     let resolved = ResolvedSearch::new(&search);
-    for (i, one) in asked.iter().enumerate() {
-        if let Asked::Done(case, axis) = one
+    for (i, one) in requested.iter().enumerate() {
+        if let RequestedCase::Done(case, axis) = one
             && *axis != resolved.axis
         {
             return Err(format!("{}: its axis is {axis}, --axis is {}", case.label, resolved.axis).into());
         }
         let (label, capped) = (one.label(), format!("{}{CAPPED}", one.label()));
-        if asked[..i].iter().any(|other| other.label() == label) {
+        if requested[..i].iter().any(|other| other.label() == label) {
             return Err(format!("two cases are called `{label}`; each needs a label of its own").into());
         }
-        if asked.iter().any(|other| other.label() == capped) {
+        if requested.iter().any(|other| other.label() == capped) {
             return Err(format!(
                 "`{capped}` is the table's column beside the case `{label}`; name it otherwise"
             )
@@ -90,13 +92,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = args.search.pool()?;
-    let to_compute = asked.iter().filter(|a| matches!(a, Asked::Compute(..))).count();
+    let to_compute = requested.iter().filter(|a| matches!(a, RequestedCase::Compute(..))).count();
     let bar = progress(outputs.shows_progress(), "basin", to_compute * search.speeds.len(), "columns");
     let (mut cases, mut stable, mut complete) = (Vec::new(), None, true);
-    for one in asked {
+    for one in requested {
         let case = match one {
-            Asked::Done(case, _) => case,
-            Asked::Compute(label, setup) => {
+            RequestedCase::Done(case, _) => case,
+            RequestedCase::Compute(label, setup) => {
                 let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
                 stable = stable.or(uncontrolled.v_w.zip(uncontrolled.v_c));
                 let found =

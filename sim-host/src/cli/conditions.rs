@@ -9,7 +9,7 @@ use super::{Failure, cut_files, law, warn};
 use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
 use crate::board::parameter::law_name;
-use crate::leaves;
+use crate::parameters;
 use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
 use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
@@ -142,7 +142,7 @@ impl ConditionArgs {
     fn set_parameters(&self, config: &mut Config) -> Result<(), String> {
         self.set.iter().try_for_each(|word| {
             let (key, value) = word.split_once('=').ok_or(format!("--set {word}: expected KEY=VALUE"))?;
-            leaves::set(config, key, value).map_err(|why| format!("--set {word}: {why}"))
+            parameters::set(config, key, value).map_err(|why| format!("--set {word}: {why}"))
         })
     }
 

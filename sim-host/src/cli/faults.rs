@@ -4,9 +4,9 @@ use super::outputs::{complain, print, write_json};
 use super::port_args::{PortArgs, board};
 use super::{Ended, Failure};
 use crate::board::fault::Fault;
-use crate::board::heard::Heard;
+use crate::board::reception::Reception;
 use crate::board::recorded::Recording;
-use crate::board::{Client, ClientError, LineError, Patience};
+use crate::board::{Client, ClientError, Patience, TransportError};
 use crate::report::board::FaultsDocument;
 use crate::report::document::SCHEMA;
 use crate::report::output::Output;
@@ -41,8 +41,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let json = args.json.as_deref().map(Output::create).transpose()?;
     let (client, board, faults, recording) = match &args.file {
         Some(file) => {
-            let (faults, heard) = recorded(file)?;
-            (None, None, faults, Some(heard))
+            let (faults, reception) = recorded(file)?;
+            (None, None, faults, Some(reception))
         }
         None => {
             let (mut client, board) = args.port.connect()?;
@@ -56,7 +56,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             write_json(&output, &FaultsDocument { schema: SCHEMA, tool, board, faults, recording })?
         }
         None if faults.is_empty() => match recording {
-            Some(heard) => print(&format!("no faults in {} frames\n", heard.frames))?,
+            Some(reception) => print(&format!("no faults in {} frames\n", reception.frames))?,
             None => print("no faults\n")?,
         },
         None => print(&faults.iter().map(Fault::to_string).collect::<Vec<_>>().join("\n"))?,
@@ -64,7 +64,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     if let Some(mut client) = client.filter(|_| args.clear) {
         client.clear_faults()?;
     }
-    match (&args.file, recording.and_then(|heard| heard.unread())) {
+    match (&args.file, recording.and_then(|reception| reception.unread())) {
         (Some(file), Some(unread)) => {
             complain(&format!("warning: {}: {unread}; faults in them are not shown", file.display()));
             Ok(Ended::Partly)
@@ -74,16 +74,16 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 }
 
 /// The faults that a recording tells, in its order, and how much of it was understood.
-fn recorded(file: &Path) -> Result<(Vec<Fault>, Heard), Failure> {
+fn recorded(file: &Path) -> Result<(Vec<Fault>, Reception), Failure> {
     let mut client = Client::new(Box::new(Recording::open(file)?), Patience::default());
     let (mut faults, mut unknown) = (Vec::new(), 0);
     let rest = loop {
-        let told = match client.listen(Patience::default().answer) {
-            Ok(told) => told,
-            Err(ClientError::Line(LineError::Ended { rest, .. })) => break rest,
+        let received = match client.listen(Patience::default().answer) {
+            Ok(received) => received,
+            Err(ClientError::Transport(TransportError::Ended { rest, .. })) => break rest,
             Err(error) => return Err(error.into()),
         };
-        for one in told {
+        for one in received {
             match one.message() {
                 Ok(Message::Fault(record)) => faults.push(record.into()),
                 Ok(Message::Telemetry(_) | Message::Log(_)) => {}
@@ -91,11 +91,11 @@ fn recorded(file: &Path) -> Result<(Vec<Fault>, Heard), Failure> {
             }
         }
     };
-    let heard = Heard { frames: client.whole(), damaged: client.damaged(), unknown, rest };
-    if heard.frames == 0 {
+    let reception = Reception { frames: client.whole(), damaged: client.damaged(), unknown, rest };
+    if reception.frames == 0 {
         return Err(no_recording(file));
     }
-    Ok((faults, heard))
+    Ok((faults, reception))
 }
 
 /// A file without a single whole frame.

@@ -5,13 +5,13 @@ use super::monitor_view::{View, summary};
 use super::outputs::complain;
 use super::port_args::{PortArgs, board};
 use super::{Ended, Failure, interrupt};
-use crate::board::heard::Heard;
 use crate::board::monitor::{Monitor, News};
 use crate::board::printable::printable;
+use crate::board::received::ReceivedMessage;
+use crate::board::reception::Reception;
 use crate::board::recorded::{Recorder, Recording};
-use crate::board::row::Row;
-use crate::board::told::Told;
-use crate::board::{BoardName, Client, ClientError, Line, LineError, Patience};
+use crate::board::telemetry_row::TelemetryRow;
+use crate::board::{BoardName, Client, ClientError, Patience, Transport, TransportError};
 use crate::range::time;
 use crate::report::output::Output;
 use crate::report::table::heading;
@@ -110,12 +110,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         rest: 0,
     };
     let ended = session.hear();
-    let told = session.end();
+    let received = session.end();
     let ended = ended?;
-    told?;
-    let heard = session.heard();
-    match (&args.file, heard.unread()) {
-        (Some(file), _) if heard.frames == 0 => Err(no_recording(file)),
+    received?;
+    let reception = session.reception();
+    match (&args.file, reception.unread()) {
+        (Some(file), _) if reception.frames == 0 => Err(no_recording(file)),
         (_, Some(unread)) => {
             complain(&format!("warning: a part of what was said is not shown: {unread}"));
             Ok(if matches!(ended, Ended::Done) { Ended::Partly } else { ended })
@@ -125,8 +125,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 }
 
 /// The line to hear, kept as a file if that was asked for.
-fn line(args: &Args) -> Result<Box<dyn Line>, Failure> {
-    let line: Box<dyn Line> = match (&args.file, args.port.open()?) {
+fn line(args: &Args) -> Result<Box<dyn Transport>, Failure> {
+    let line: Box<dyn Transport> = match (&args.file, args.port.open()?) {
         (Some(file), _) => Box::new(Recording::open(file)?),
         (None, Some(line)) => line,
         (None, None) => return Err("no board is named; see --port, --qemu and --file".into()),
@@ -140,29 +140,29 @@ fn line(args: &Args) -> Result<Box<dyn Line>, Failure> {
 impl Session {
     /// Hears and shows until there is an end.
     fn hear(&mut self) -> Result<Ended, Failure> {
-        let (mut heard, mut silence_told) = (Instant::now(), false);
+        let (mut reception, mut silence_told) = (Instant::now(), false);
         loop {
             if let Some(ended) = self.ended() {
                 return Ok(ended);
             }
-            let told = match self.client.listen(Duration::from_millis(50)) {
-                Ok(told) => told,
-                Err(ClientError::Line(LineError::Ended { rest, .. })) => {
+            let received = match self.client.listen(Duration::from_millis(50)) {
+                Ok(received) => received,
+                Err(ClientError::Transport(TransportError::Ended { rest, .. })) => {
                     self.rest = rest;
                     return Ok(Ended::Done);
                 }
-                Err(ClientError::Line(lost @ LineError::Lost { .. })) => match self.wait(lost)? {
+                Err(ClientError::Transport(lost @ TransportError::Lost { .. })) => match self.wait(lost)? {
                     Some(ended) => return Ok(ended),
                     None => continue,
                 },
                 Err(error) => return Err(error.into()),
             };
-            if !told.is_empty() {
-                (heard, silence_told) = (Instant::now(), false);
-            } else if heard.elapsed() > SILENCE && !std::mem::replace(&mut silence_told, true) {
+            if !received.is_empty() {
+                (reception, silence_told) = (Instant::now(), false);
+            } else if reception.elapsed() > SILENCE && !std::mem::replace(&mut silence_told, true) {
                 self.view.say(&format!("nothing heard for {} s", SILENCE.as_secs()))?;
             }
-            told.iter().try_for_each(|told| self.take(told))?;
+            received.iter().try_for_each(|received| self.take(received))?;
             self.table.as_mut().map_or(Ok(()), Table::flush)?;
             self.view.draw(&self.monitor, self.damaged())?;
         }
@@ -175,12 +175,12 @@ impl Session {
     }
 
     /// Waits for a line that was lost; `None` when a board answers there again.
-    fn wait(&mut self, lost: LineError) -> Result<Option<Ended>, Failure> {
+    fn wait(&mut self, lost: TransportError) -> Result<Option<Ended>, Failure> {
         let (since, seconds) = (Instant::now(), self.reopen.as_secs_f64());
-        let mut told = false;
+        let mut received = false;
         while since.elapsed() < self.reopen {
             let Some(opened) = self.client.reopen() else { return Err(lost.into()) };
-            if !std::mem::replace(&mut told, true) {
+            if !std::mem::replace(&mut received, true) {
                 self.view.say(&format!("{lost}; waiting up to {seconds} s for it"))?;
             }
             if opened.is_ok() {
@@ -203,12 +203,12 @@ impl Session {
             }
             sleep(LOOK);
         }
-        let waited = if told { format!("; not back within {seconds} s") } else { String::new() };
+        let waited = if received { format!("; not back within {seconds} s") } else { String::new() };
         Err(format!("{lost}{waited}").into())
     }
 
-    fn take(&mut self, told: &Told) -> Result<(), Failure> {
-        match self.monitor.take(told) {
+    fn take(&mut self, received: &ReceivedMessage) -> Result<(), Failure> {
+        match self.monitor.take(received) {
             News::Step(row) => {
                 self.table.as_mut().map_or(Ok(()), |table| table.write(&row))?;
                 self.view.step(&self.monitor, self.damaged())
@@ -225,9 +225,9 @@ impl Session {
         self.view.say(&summary(&self.monitor, self.damaged()))
     }
 
-    fn heard(&self) -> Heard {
+    fn reception(&self) -> Reception {
         let (frames, damaged) = (self.client.whole(), self.damaged());
-        Heard { frames, damaged, unknown: self.monitor.unknown, rest: self.rest }
+        Reception { frames, damaged, unknown: self.monitor.unknown, rest: self.rest }
     }
 
     fn damaged(&self) -> u32 {
@@ -248,7 +248,7 @@ impl Table {
         Ok(Self { path: path.display().to_string(), rows: csv::Writer::from_writer(file) })
     }
 
-    fn write(&mut self, row: &Row) -> Result<(), Failure> {
+    fn write(&mut self, row: &TelemetryRow) -> Result<(), Failure> {
         self.rows.serialize(row).map_err(|error| failed(&self.path, error.into()))
     }
 

@@ -3,7 +3,7 @@
 use super::law;
 use crate::board::parameter::{law_bytes, law_name, law_points};
 use crate::board::settings::Settings;
-use crate::leaves;
+use crate::parameters;
 use crate::range::plain;
 use control::{Config, Law};
 use link::frame::CRC;
@@ -103,12 +103,12 @@ impl ParameterFile {
     /// left out.
     pub(super) fn apply(&self, config: &mut Config) -> Result<(), String> {
         let calibration = config.calibration;
-        let known = leaves::list(config);
+        let known = parameters::list(config);
         for (key, words) in &self.values {
             if !known.iter().any(|(name, _)| name == key) {
                 return Err(format!("{}: {key} = {words}: no parameter {key}", self.path));
             }
-            leaves::set(config, key, words)
+            parameters::set(config, key, words)
                 .map_err(|why| format!("{}: {key} = {words}: {why}", self.path))?;
         }
         config.calibration = calibration;

@@ -1,11 +1,11 @@
 //! The options that say where a board is.
 
 use super::Failure;
+use crate::board::demo_board::DemoBoard;
 use crate::board::qemu::default_image;
-use crate::board::rolling::Rolling;
 use crate::board::serial::Serial;
 use crate::board::virtual_board::{VirtualBoard, default_program};
-use crate::board::{BoardName, Client, Line, Patience};
+use crate::board::{BoardName, Client, Patience, Transport};
 use clap::ArgGroup;
 use std::path::PathBuf;
 
@@ -33,11 +33,11 @@ pub(super) struct PortArgs {
 
 impl PortArgs {
     /// Opens the line; none if no board is named.
-    pub(super) fn open(&self) -> Result<Option<Box<dyn Line>>, Failure> {
+    pub(super) fn open(&self) -> Result<Option<Box<dyn Transport>>, Failure> {
         match (&self.port, &self.qemu, &self.virtual_board) {
             (Some(port), ..) => Ok(Some(Box::new(Serial::open(port, self.baud)?))),
             (_, Some(image), _) => {
-                Ok(Some(Box::new(Rolling::start(image.as_ref().unwrap_or(&default_image()))?)))
+                Ok(Some(Box::new(DemoBoard::start(image.as_ref().unwrap_or(&default_image()))?)))
             }
             (.., Some(image)) => {
                 Ok(Some(Box::new(VirtualBoard::start(&default_program(), image.as_deref())?)))

@@ -8,7 +8,7 @@ use super::{Ended, Failure, law, warn};
 use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
 use crate::board::parameter::law_name;
-use crate::leaves;
+use crate::parameters;
 use crate::plant::{Fault, ImuMount};
 use crate::recording::{ReadOptions, read};
 use crate::replay::{
@@ -189,7 +189,7 @@ impl Common {
     ) -> Result<(control::Plan, Fitted), Failure> {
         let mut config = self.config.clone();
         config.calibration.polarity_checked = true;
-        let told = match recorded {
+        let fitted = match recorded {
             Some((samples, map)) => {
                 fitted(&mut config, samples, map).map_err(|why| format!("--map: {why}"))?
             }
@@ -200,9 +200,9 @@ impl Common {
         }
         for word in &args.set {
             let (key, value) = word.split_once('=').ok_or(format!("--set {word}: expected KEY=VALUE"))?;
-            leaves::set(&mut config, key, value).map_err(|why| format!("--set {word}: {why}"))?;
+            parameters::set(&mut config, key, value).map_err(|why| format!("--set {word}: {why}"))?;
         }
-        Ok((config.plan()?, told))
+        Ok((config.plan()?, fitted))
     }
 }
 
@@ -224,7 +224,7 @@ fn one(args: &Args, common: &Common, path: &Path) -> Result<Done, Failure> {
     if let (true, Some(remark)) = (args.strict, samples.remarks.first()) {
         return Err(format!("{name}: {remark}").into());
     }
-    let (plan, told) = common.plan(args, Some((&samples, &map)))?;
+    let (plan, fitted) = common.plan(args, Some((&samples, &map)))?;
     let resample = args.resample.unwrap_or(map.resample);
     let feed = FeedOptions {
         period_s: 1.0 / f64::from(plan.config().rate_hz),
@@ -242,8 +242,8 @@ fn one(args: &Args, common: &Common, path: &Path) -> Result<Done, Failure> {
         torque_nm: &samples.torque_nm,
     };
     let replayed = run_through(&plan, &options, |pressed| {
-        let (t_s, told) = feed.next(pressed)?;
-        let frame = frame_of(&plan, &told);
+        let (t_s, fitted) = feed.next(pressed)?;
+        let frame = frame_of(&plan, &fitted);
         if args.frames.is_some() {
             kept.push(frame);
         }
@@ -255,7 +255,7 @@ fn one(args: &Args, common: &Common, path: &Path) -> Result<Done, Failure> {
     };
     let config = resolved(args, common, &plan, Some(resample));
     let remarks = samples.remarks.iter().map(ToString::to_string).collect();
-    let result = ReplayResult { file: name, remarks, fitted: told, replayed };
+    let result = ReplayResult { file: name, remarks, fitted: fitted, replayed };
     Ok(Done { result, config, frames: kept })
 }
 
@@ -266,12 +266,12 @@ fn replay_frames(args: &Args, common: &Common, path: &Path, name: String) -> Res
     }
     let bytes = std::fs::read(path).map_err(|why| format!("can't read {name}: {why}"))?;
     let all = frames(&bytes).map_err(|why| format!("{name}: {why}"))?;
-    let (plan, told) = common.plan(args, None)?;
+    let (plan, fitted) = common.plan(args, None)?;
     let options = RunOptions { press: args.press, every_s: args.every, roll_rad: &[], torque_nm: &[] };
     let mut each = all.iter().copied();
     let replayed = run_through(&plan, &options, |_| each.next());
     let config = resolved(args, common, &plan, None);
-    let result = ReplayResult { file: name, remarks: Vec::new(), fitted: told, replayed };
+    let result = ReplayResult { file: name, remarks: Vec::new(), fitted: fitted, replayed };
     let frames = all.into_iter().map(|(_, frame)| frame).collect();
     Ok(Done { result, config, frames })
 }
@@ -292,7 +292,7 @@ fn resolved(
         map: resample.map(|_| args.map.clone().unwrap_or_else(|| "by the columns".into())),
         resample,
         faults: args.fault.clone(),
-        parameters: leaves::departing(plan.config(), &base).into_iter().collect(),
+        parameters: parameters::departing(plan.config(), &base).into_iter().collect(),
     }
 }
 

@@ -45,7 +45,7 @@ pub(super) struct Args {
     #[arg(long, conflicts_with = "json")]
     dry_run: bool,
     #[command(flatten)]
-    told: Told,
+    output: OutputArgs,
     #[command(flatten)]
     search: SearchArgs,
     #[command(flatten, next_help_heading = "Options of `basin`, for all cells")]
@@ -54,7 +54,7 @@ pub(super) struct Args {
 
 /// What is told besides the folder.
 #[derive(clap::Args)]
-struct Told {
+struct OutputArgs {
     /// Write the document to FILE, or to standard output (also -), besides the folder
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
     json: Option<PathBuf>,
@@ -79,7 +79,7 @@ struct Merge {
     #[arg(long, default_value = "sweep", value_name = "DIR")]
     out: PathBuf,
     #[command(flatten)]
-    told: Told,
+    output: OutputArgs,
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
@@ -92,17 +92,17 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     if args.dry_run {
         return dry_run(&resolved, &mine, &args.out, pool.current_num_threads());
     }
-    let json = args.told.json.as_deref().map(Output::create).transpose()?;
+    let json = args.output.json.as_deref().map(Output::create).transpose()?;
     interrupt::install();
     let folder = Folder::open(&args.out, &resolved.plan)?;
     let to_do = to_do(&resolved, &mine, &folder);
-    let bar = progress(!args.told.quiet, "sweep", to_do.len() * resolved.search.speeds.len(), "columns");
+    let bar = progress(!args.output.quiet, "sweep", to_do.len() * resolved.search.speeds.len(), "columns");
     let steps = Progress { advanced: &|| bar.inc(1), stop: &interrupt::stopped };
     let done = pool.install(|| sweep::run(&to_do, &resolved.search, &folder, &steps));
     bar.finish_and_clear();
     let done = done?;
     let grid = Grid::gather(&resolved.plan, std::slice::from_ref(&folder))?;
-    finish(&grid, &folder, json.as_ref(), args.told.quiet)?;
+    finish(&grid, &folder, json.as_ref(), args.output.quiet)?;
     if done == to_do.len() {
         return Ok(Ended::Done);
     }
@@ -238,7 +238,7 @@ fn duration(seconds: f64) -> String {
 }
 
 fn merge(args: &Merge) -> Result<Ended, Failure> {
-    let json = args.told.json.as_deref().map(Output::create).transpose()?;
+    let json = args.output.json.as_deref().map(Output::create).transpose()?;
     let parts: Vec<(Folder, _)> = args.parts.iter().map(|p| Folder::there(p)).collect::<Result<_, _>>()?;
     let plan = &parts[0].1;
     for (folder, other) in &parts[1..] {
@@ -264,6 +264,6 @@ fn merge(args: &Merge) -> Result<Ended, Failure> {
             whole.keep(unit)?;
         }
     }
-    finish(&grid, &whole, json.as_ref(), args.told.quiet)?;
+    finish(&grid, &whole, json.as_ref(), args.output.quiet)?;
     Ok(Ended::Done)
 }

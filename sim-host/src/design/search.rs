@@ -76,7 +76,7 @@ pub fn optimise(
     advanced: &dyn Fn(Progress),
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<Found>, String> {
-    let hunt = RefCell::new(Hunt {
+    let search_state = RefCell::new(SearchState {
         trials,
         plan,
         advanced,
@@ -86,23 +86,23 @@ pub fn optimise(
         failed: None,
         ended: false,
     });
-    let mut dice = Dice(plan.seed);
+    let mut random = SplitMix(plan.seed);
     let mut corner = plan.knots.gains_of(&plan.start);
     let mut steps = vec![FIRST_STEP; corner.len()];
-    while !hunt.borrow().ended {
+    while !search_state.borrow().ended {
         let simplex = simplex(&corner, &steps);
         let solver = NelderMead::new(simplex).with_sd_tolerance(ALIKE).map_err(|e| e.to_string())?;
         // An error here is the hunt's end, and what it found is kept there.
-        let run = Executor::new(Quarry(&hunt), solver).ctrlc(false).timer(false).run();
-        if run.is_err() && !hunt.borrow().ended {
+        let run = Executor::new(Objective(&search_state), solver).ctrlc(false).timer(false).run();
+        if run.is_err() && !search_state.borrow().ended {
             return Err("the search failed".into());
         }
-        if let Some(found) = &hunt.borrow().found {
+        if let Some(found) = &search_state.borrow().found {
             corner.clone_from(&found.gains);
         }
-        steps.iter_mut().for_each(|step| *step = dice.step());
+        steps.iter_mut().for_each(|step| *step = random.step());
     }
-    let Hunt { found, failed, .. } = hunt.into_inner();
+    let SearchState { found, failed, .. } = search_state.into_inner();
     failed.map_or(Ok(found), Err)
 }
 
@@ -119,7 +119,7 @@ fn simplex(corner: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// A search under way.
-struct Hunt<'a> {
+struct SearchState<'a> {
     trials: &'a [Trial],
     plan: &'a Plan,
     advanced: &'a dyn Fn(Progress),
@@ -131,16 +131,16 @@ struct Hunt<'a> {
     ended: bool,
 }
 
-impl Hunt<'_> {
+impl SearchState<'_> {
     /// The cost of a schedule, to be made small; `None` when the hunt is over.
-    fn cost(&mut self, asked: &[f64]) -> Option<f64> {
+    fn cost(&mut self, requested: &[f64]) -> Option<f64> {
         let tried = self.found.as_ref().map_or(0, |found| found.evaluations);
         if tried >= self.plan.evaluations {
             self.end(true);
             return None;
         }
-        let gains: Vec<f64> = asked.iter().map(|gain| gain.clamp(GAINS.0, GAINS.1)).collect();
-        let beyond: f64 = asked.iter().zip(&gains).map(|(a, b)| (a - b).abs()).sum();
+        let gains: Vec<f64> = requested.iter().map(|gain| gain.clamp(GAINS.0, GAINS.1)).collect();
+        let beyond: f64 = requested.iter().zip(&gains).map(|(a, b)| (a - b).abs()).sum();
         let worst = match self.worst_area(&gains) {
             Ok(Some(worst)) => worst,
             Ok(None) => {
@@ -191,9 +191,9 @@ impl Hunt<'_> {
 }
 
 /// The hunt as the library sees it.
-struct Quarry<'a, 'b>(&'a RefCell<Hunt<'b>>);
+struct Objective<'a, 'b>(&'a RefCell<SearchState<'b>>);
 
-impl CostFunction for Quarry<'_, '_> {
+impl CostFunction for Objective<'_, '_> {
     type Param = Vec<f64>;
     type Output = f64;
 
@@ -204,9 +204,9 @@ impl CostFunction for Quarry<'_, '_> {
 }
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
-struct Dice(u64);
+struct SplitMix(u64);
 
-impl Dice {
+impl SplitMix {
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -174,8 +174,8 @@ impl Model {
     ) {
         let of_torque = self.linear.steer_torque_response();
         let LinearActuator { delay_s, time_constant_s, .. } = self.actuator;
-        let (mut enters, mut asked) = (b.clone(), k.clone());
-        (asked[0], asked[2]) = gains;
+        let (mut enters, mut requested) = (b.clone(), k.clone());
+        (requested[0], requested[2]) = gains;
         if time_constant_s > 0.0 {
             let torque = a.nrows() - 1;
             a[(2, torque)] = of_torque[0];
@@ -186,9 +186,9 @@ impl Model {
             (enters[2], enters[3]) = (of_torque[0], of_torque[1]);
         }
         if delay_s > 0.0 {
-            (*b, *k) = (enters, asked);
+            (*b, *k) = (enters, requested);
         } else {
-            *a += enters * asked;
+            *a += enters * requested;
         }
     }
 

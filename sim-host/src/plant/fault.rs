@@ -1,6 +1,6 @@
 //! Faults: what goes wrong, from when to when. Written as `gyro.x:bias=0.1@1.5s..3s`.
 
-use super::{Dice, Sensor};
+use super::{RandomStream, Sensor};
 use std::collections::VecDeque;
 
 /// What a fault is on.
@@ -83,7 +83,7 @@ pub struct FaultState {
     spent: bool,
     /// What a lag keeps of the difference in a period.
     keeps: f64,
-    dice: Dice,
+    random: RandomStream,
 }
 
 /// The first tick not before a time, times that are a whole number of periods being exact.
@@ -94,7 +94,7 @@ fn tick_of(time_s: f64, period_s: f64) -> i64 {
 
 impl FaultState {
     /// Before the ride; until it begins, `steady` is said.
-    pub fn new(fault: &Fault, period_s: f64, steady: [f64; 3], dice: Dice) -> Self {
+    pub fn new(fault: &Fault, period_s: f64, steady: [f64; 3], random: RandomStream) -> Self {
         let (late_ticks, keeps) = match fault.kind {
             Kind::Late(late_s) => ((late_s / period_s).round() as usize, 0.0),
             Kind::Slow(constant_s) => (0, libm::exp(-period_s / constant_s)),
@@ -109,7 +109,7 @@ impl FaultState {
             late_ticks,
             spent: false,
             keeps,
-            dice,
+            random,
         }
     }
 
@@ -125,7 +125,7 @@ impl FaultState {
                 self.late.push_back(said);
                 return if self.late.len() > self.late_ticks { self.late.pop_front()? } else { None };
             }
-            Kind::Dropout(p) => return said.filter(|_| !self.dice.chance(p)),
+            Kind::Dropout(p) => return said.filter(|_| !self.random.chance(p)),
             _ => {}
         }
         let mut said = said?;
@@ -137,7 +137,7 @@ impl FaultState {
             }
             *x = match fault.kind {
                 Kind::Stuck => self.last[axis],
-                Kind::Noise(deviation) => *x + deviation * self.dice.normal(),
+                Kind::Noise(deviation) => *x + deviation * self.random.normal(),
                 Kind::Bias(by) | Kind::Jump(by) => *x + by,
                 Kind::Drift(by_s) => *x + by_s * since_s,
                 // A clock goes on from where it is.

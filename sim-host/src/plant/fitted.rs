@@ -1,7 +1,7 @@
 //! What recordings of real sensors show beside a sensor's data sheet: bias that differs and wanders, white noise of each
 //! axis, vibration that grows with the speed, samples off their time. `docs/plant.md`, `docs/sensors.md`.
 
-use super::{Dice, PlantError, Sensor};
+use super::{PlantError, RandomStream, Sensor};
 use crate::num::sin_cos;
 use crate::range::within;
 use control::sensors::wheel_speed::{self, Direction, WheelPulses, WheelPulsesConfig, WheelPulsesState};
@@ -93,7 +93,7 @@ impl FittedErrors {
 /// The fitted errors of one sensor in one ride.
 #[derive(Debug)]
 pub(super) struct FittedState {
-    dice: Dice,
+    random: RandomStream,
     /// Bias of this ride and what it wandered since, by axis.
     bias: [f64; 3],
     /// Root of the time between samples \[s^0.5\].
@@ -114,15 +114,15 @@ impl FittedState {
         steady: [f64; 3],
         sample_s: f64,
         period_s: f64,
-        mut dice: Dice,
+        mut random: RandomStream,
     ) -> Self {
-        let bias = errors.bias_spread.map(|spread| if spread > 0.0 { spread * dice.normal() } else { 0.0 });
+        let bias = errors.bias_spread.map(|spread| if spread > 0.0 { spread * random.normal() } else { 0.0 });
         let shakes = errors.vibration != [[0.0; 4]; 3];
         let mut octaves = |axis: [f64; 4]| {
             OCTAVES_HZ
                 .iter()
                 .zip(axis)
-                .filter_map(|(low, rms)| Octave::new(*low, rms, sample_s, &mut dice))
+                .filter_map(|(low, rms)| Octave::new(*low, rms, sample_s, &mut random))
                 .collect()
         };
         Self {
@@ -134,7 +134,7 @@ impl FittedState {
                 .then(|| PulseCounter::new(errors.pulses_per_turn, steady[0], period_s)),
             last: None,
             late: VecDeque::new(),
-            dice,
+            random,
         }
     }
 
@@ -163,11 +163,11 @@ impl FittedState {
     ) -> [f64; 3] {
         for (axis, sample) in sample.iter_mut().enumerate() {
             if errors.walk[axis] > 0.0 {
-                self.bias[axis] += errors.walk[axis] * self.root_s * self.dice.normal();
+                self.bias[axis] += errors.walk[axis] * self.root_s * self.random.normal();
             }
             *sample += self.bias[axis];
             if errors.white[axis] > 0.0 {
-                *sample += errors.white[axis] * self.dice.normal();
+                *sample += errors.white[axis] * self.random.normal();
             }
         }
         for axes in &mut self.vibration {
@@ -180,7 +180,7 @@ impl FittedState {
 
     /// The sample, or the one before it again.
     pub(super) fn repeated(&mut self, errors: &FittedErrors, sample: [f64; 3]) -> [f64; 3] {
-        let again = errors.repeat > 0.0 && self.dice.chance(errors.repeat);
+        let again = errors.repeat > 0.0 && self.random.chance(errors.repeat);
         *self.last.insert(self.last.filter(|_| again).unwrap_or(sample))
     }
 
@@ -196,10 +196,10 @@ impl FittedState {
             return arrived;
         }
         if let Some(sample) = arrived {
-            let later = if self.dice.chance(0.99) {
-                self.dice.below(usize::from(most) + 1)
+            let later = if self.random.chance(0.99) {
+                self.random.below(usize::from(most) + 1)
             } else {
-                usize::from(most) + self.dice.below(usize::from(worst - most) + 1)
+                usize::from(most) + self.random.below(usize::from(worst - most) + 1)
             };
             let before = self.late.back().map_or(tick, |(due, _)| *due);
             self.late.push_back((before.max(tick + later as i64), sample));
@@ -224,18 +224,18 @@ struct Octave {
 
 impl Octave {
     /// From `low_hz` to its double or half the sample rate; none without power, or beyond that rate.
-    fn new(low_hz: f64, rms: f64, sample_s: f64, dice: &mut Dice) -> Option<Self> {
+    fn new(low_hz: f64, rms: f64, sample_s: f64, random: &mut RandomStream) -> Option<Self> {
         let high_hz = (2.0 * low_hz).min(0.5 / sample_s);
         if rms == 0.0 || high_hz <= low_hz {
             return None;
         }
         let mut sinusoid = |i: usize| {
-            let frequency_hz = low_hz + (high_hz - low_hz) * (i as f64 + dice.uniform()) / SINUSOIDS as f64;
+            let frequency_hz = low_hz + (high_hz - low_hz) * (i as f64 + random.uniform()) / SINUSOIDS as f64;
             let angle = |turns: f64| {
                 let (sin, cos) = sin_cos(TAU * turns);
                 (cos, sin)
             };
-            [angle(dice.uniform()), angle(frequency_hz * sample_s)]
+            [angle(random.uniform()), angle(frequency_hz * sample_s)]
         };
         let turning = (0..SINUSOIDS).map(&mut sinusoid).collect();
         Some(Self { amplitude: rms * (2.0 / SINUSOIDS as f64).sqrt(), turning })

@@ -3,26 +3,26 @@
 
 mod actuator;
 pub mod catalogue;
-mod dice;
 mod fault;
 mod fault_text;
 mod fitted;
 mod friction;
+mod random_stream;
 mod reading;
-mod rig;
 mod sensor;
 pub mod sensor_file;
+mod sensor_suite;
 mod stop;
 
 pub use actuator::{Actuator, ActuatorConfig, Supply};
-pub use dice::Dice;
 pub use fault::{Channel, Fault, FaultState, Kind};
 pub use fitted::{FittedErrors, OCTAVES_HZ};
 pub use friction::Friction;
-pub use reading::{Frame, Reading, Sensor, Traveller};
-pub(crate) use rig::faulty;
-pub use rig::{Held, Measured, Rig};
+pub use random_stream::RandomStream;
+pub use reading::{Frame, Odometry, Reading, Sensor};
 pub use sensor::{Before, ImuMount, SensorConfig, SensorDice, SensorModel, SensorState};
+pub(crate) use sensor_suite::faulty;
+pub use sensor_suite::{Held, Measured, SensorSuite};
 pub use stop::SteerStop;
 
 /// A value of the plant that can't be simulated.

@@ -128,7 +128,7 @@ impl Reading {
 /// Where a ride is and how it got there: what heading, lateral offset and specific force need beside
 /// the present velocities.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Traveller {
+pub struct Odometry {
     heading_rad: f64,
     lateral_m: f64,
     last: Option<Last>,
@@ -167,7 +167,7 @@ impl Frame {
     }
 }
 
-impl Traveller {
+impl Odometry {
     /// The exact values `period_s` after those before; at the first instant the velocity has not
     /// changed. `imu_point_m` is the IMU's place from the rear wheel's centre: forward, right, down.
     ///

@@ -1,7 +1,7 @@
 //! Sensors that are not exact: late, slow, noisy, off, skewed, coarse, narrow, lossy.
 
 use super::fitted::{FittedErrors, FittedState};
-use super::{Dice, PlantError, Sensor};
+use super::{PlantError, RandomStream, Sensor};
 use crate::num::sin_cos;
 use crate::range::within;
 use std::collections::VecDeque;
@@ -86,30 +86,30 @@ impl SensorModel {
         &self,
         truth: [f64; 3],
         speed_m_s: f64,
-        dice: Option<&mut Dice>,
+        random: Option<&mut RandomStream>,
         fitted: Option<&mut FittedState>,
     ) -> Option<[f64; 3]> {
-        let mut told = truth;
+        let mut output = truth;
         if *self == (Self { delay_ticks: self.delay_ticks, every_ticks: self.every_ticks, ..Self::default() })
         {
-            return Some(told);
+            return Some(output);
         }
-        for (told, bias) in told.iter_mut().zip(self.bias) {
-            *told = *told * self.scale + bias;
+        for (output, bias) in output.iter_mut().zip(self.bias) {
+            *output = *output * self.scale + bias;
         }
-        if let Some(dice) = dice {
+        if let Some(random) = random {
             if self.noise > 0.0 {
-                told.iter_mut().for_each(|x| *x += self.noise * dice.normal());
+                output.iter_mut().for_each(|x| *x += self.noise * random.normal());
             }
-            if dice.chance(self.dropout) {
+            if random.chance(self.dropout) {
                 return None;
             }
         }
         if let Some(state) = fitted {
-            told = state.disturbed(&self.fitted, told, speed_m_s);
-            told = state.repeated(&self.fitted, told);
+            output = state.disturbed(&self.fitted, output, speed_m_s);
+            output = state.repeated(&self.fitted, output);
         }
-        for (x, own) in told.iter_mut().zip(self.fitted.quantum) {
+        for (x, own) in output.iter_mut().zip(self.fitted.quantum) {
             if let Some(range) = self.range {
                 *x = x.clamp(-range, range);
             }
@@ -119,7 +119,7 @@ impl SensorModel {
                 }
             }
         }
-        Some(told)
+        Some(output)
     }
 }
 
@@ -212,7 +212,7 @@ pub struct SensorState {
     /// Oldest first; `None` where no sample was taken, or was lost.
     on_their_way: VecDeque<Option<[f64; 3]>>,
     /// Only for a model that needs it.
-    dice: Option<Dice>,
+    random: Option<RandomStream>,
     /// Only for a model that has fitted errors.
     fitted: Option<Box<FittedState>>,
 }
@@ -221,9 +221,9 @@ pub struct SensorState {
 #[derive(Debug)]
 pub struct SensorDice {
     /// Of noise and dropout.
-    pub plain: Dice,
+    pub plain: RandomStream,
     /// Of [`FittedErrors`].
-    pub fitted: Dice,
+    pub fitted: RandomStream,
 }
 
 /// What a sensor was shown until the control instant 0.
@@ -239,13 +239,13 @@ pub struct Before {
 
 impl SensorState {
     /// Before the control instant 0.
-    pub fn new(model: &SensorModel, before: &Before, dice: SensorDice) -> Self {
+    pub fn new(model: &SensorModel, before: &Before, random: SensorDice) -> Self {
         let Before { truth, speed_m_s, period_s } = *before;
         let sample_s = f64::from(model.every_ticks) * period_s;
         let fitted = (model.fitted != FittedErrors::default())
-            .then(|| Box::new(FittedState::new(&model.fitted, truth, sample_s, period_s, dice.fitted)));
-        let dice = (model.noise > 0.0 || model.dropout > 0.0).then_some(dice.plain);
-        let mut state = Self { on_their_way: VecDeque::new(), dice, fitted };
+            .then(|| Box::new(FittedState::new(&model.fitted, truth, sample_s, period_s, random.fitted)));
+        let random = (model.noise > 0.0 || model.dropout > 0.0).then_some(random.plain);
+        let mut state = Self { on_their_way: VecDeque::new(), random, fitted };
         let before = -i64::from(model.delay_ticks)..0;
         state.on_their_way = before.map(|at| state.taken(model, at, truth, speed_m_s)).collect();
         state
@@ -277,7 +277,7 @@ impl SensorState {
     /// The sample taken at `tick`, if one is.
     fn taken(&mut self, model: &SensorModel, tick: i64, truth: [f64; 3], speed_m_s: f64) -> Option<[f64; 3]> {
         let truth = self.fitted.as_mut().map_or(truth, |state| state.seen(truth));
-        let (dice, fitted) = (self.dice.as_mut(), self.fitted.as_deref_mut());
-        model.samples_at(tick).then(|| model.sample(truth, speed_m_s, dice, fitted)).flatten()
+        let (random, fitted) = (self.random.as_mut(), self.fitted.as_deref_mut());
+        model.samples_at(tick).then(|| model.sample(truth, speed_m_s, random, fitted)).flatten()
     }
 }

@@ -27,7 +27,7 @@ pub struct Check {
 
 /// The smallest value of the last few, largest so far.
 #[derive(Clone, Debug)]
-struct Lasting {
+struct Sustained {
     check: Check,
     /// Rising values with their places; the first is the smallest of the window.
     window: VecDeque<(u64, f64)>,
@@ -36,7 +36,7 @@ struct Lasting {
     count: u64,
 }
 
-impl Lasting {
+impl Sustained {
     fn new(name: &'static str, residual: &'static str, limit: Option<f32>, lasts_ticks: u16) -> Self {
         let limit = limit.map(f64::from).filter(|limit| limit.is_finite());
         let check = Check { name, residual, largest_residual: None, at_s: None, limit, lasts_ticks };
@@ -69,7 +69,7 @@ impl Lasting {
 /// All checks of a replay while it lasts.
 #[derive(Clone, Debug)]
 pub(super) struct Checks {
-    lasting: Vec<Lasting>,
+    lasting: Vec<Sustained>,
     limits: Vec<SensorLimits>,
     before: Vec<Option<Before>>,
 }
@@ -107,16 +107,16 @@ impl Checks {
                 continue;
             }
             let [range, jump, age] = names;
-            lasting.push(Lasting::new(range, "largest magnitude of an axis, SI", Some(declared.max), 0));
+            lasting.push(Sustained::new(range, "largest magnitude of an axis, SI", Some(declared.max), 0));
             let jumps = declared.slope_per_s.map(|_| 1.0);
-            lasting.push(Lasting::new(
+            lasting.push(Sustained::new(
                 jump,
                 "change between two samples, as a part of the largest believed",
                 jumps,
                 0,
             ));
             let timeout = Some(f32::from(declared.timeout_ticks));
-            lasting.push(Lasting::new(age, "age of the newest sample [control periods]", timeout, 0));
+            lasting.push(Sustained::new(age, "age of the newest sample [control periods]", timeout, 0));
             limits.push(SensorLimits {
                 sensor,
                 step: f64::from(declared.step),
@@ -131,29 +131,29 @@ impl Checks {
         let (gyro_response, motor_response) = (config.response.gyro, config.response.motor.is_some());
         let lifted = p.lifted_m_s2.map(|least| 9.81 - least);
         lasting.extend([
-            Lasting::new("wheels", "difference of the wheels' speeds [m/s]", c.wheels_m_s, c.persist_ticks),
-            Lasting::new("yaw", YAW_RESIDUAL, c.yaw_rad_s, c.persist_ticks),
-            Lasting::new("yaw, lasting", YAW_RESIDUAL, c.yaw_slow_rad_s, c.slow_ticks),
-            Lasting::new("yaw slope", SLOPE, slope(c.yaw_slope, YAW_WRONG), 0),
-            Lasting::new("roll correlation", CORRELATION, slope(c.roll_correlation, ROLL_WRONG), 0),
-            Lasting::new(
+            Sustained::new("wheels", "difference of the wheels' speeds [m/s]", c.wheels_m_s, c.persist_ticks),
+            Sustained::new("yaw", YAW_RESIDUAL, c.yaw_rad_s, c.persist_ticks),
+            Sustained::new("yaw, lasting", YAW_RESIDUAL, c.yaw_slow_rad_s, c.slow_ticks),
+            Sustained::new("yaw slope", SLOPE, slope(c.yaw_slope, YAW_WRONG), 0),
+            Sustained::new("roll correlation", CORRELATION, slope(c.roll_correlation, ROLL_WRONG), 0),
+            Sustained::new(
                 "steer",
                 "steer angle less the summed steer rate [rad]",
                 c.steer_rad,
                 c.persist_ticks,
             ),
-            Lasting::new(
+            Sustained::new(
                 "motor",
                 "drive's torque beyond what it was asked for [N m]",
                 motor,
                 c.persist_ticks,
             ),
-            Lasting::new("gyro response", SLOPE, slope(gyro_response, GYRO_WRONG), 0),
-            Lasting::new("motor response", SLOPE, slope(motor_response, MOTOR_WRONG), 0),
-            Lasting::new("fallen", "roll angle less its bound [rad]", p.fallen_rad, p.persist_ticks),
-            Lasting::new("roll bound", "bound of the roll angle [rad]", p.roll_unknown_rad, 0),
-            Lasting::new("crash", "specific force [m/s^2]; a fast rate must come with it", p.crash_m_s2, 0),
-            Lasting::new("lifted", "9.81 less the specific force [m/s^2]", lifted, p.persist_ticks),
+            Sustained::new("gyro response", SLOPE, slope(gyro_response, GYRO_WRONG), 0),
+            Sustained::new("motor response", SLOPE, slope(motor_response, MOTOR_WRONG), 0),
+            Sustained::new("fallen", "roll angle less its bound [rad]", p.fallen_rad, p.persist_ticks),
+            Sustained::new("roll bound", "bound of the roll angle [rad]", p.roll_unknown_rad, 0),
+            Sustained::new("crash", "specific force [m/s^2]; a fast rate must come with it", p.crash_m_s2, 0),
+            Sustained::new("lifted", "9.81 less the specific force [m/s^2]", lifted, p.persist_ticks),
         ]);
         let before = vec![None; limits.len()];
         Self { lasting, limits, before }

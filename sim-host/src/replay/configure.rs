@@ -2,7 +2,7 @@
 
 use super::map::Map;
 use super::samples::Samples;
-use crate::leaves;
+use crate::parameters;
 use crate::plant::Sensor;
 use control::{Config, Wheel};
 
@@ -22,14 +22,14 @@ pub struct Fitted {
 /// # Errors
 /// A parameter of the map that does not exist, or a value that it may not have.
 pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitted, String> {
-    let mut told = Fitted { absent: samples.absent.clone(), ..Fitted::default() };
+    let mut fitted = Fitted { absent: samples.absent.clone(), ..Fitted::default() };
     let has = |sensor| samples.track(sensor).is_some();
     for sensor in Sensor::ALL {
         let wheel = config.input.front_wheel;
         let declared = declared(config, sensor);
         if declared.fitted && !has(sensor) {
             declared.fitted = false;
-            told.switched_off.push(sensor.name());
+            fitted.switched_off.push(sensor.name());
         } else if !declared.fitted && has(sensor) && sensor == Sensor::RearWheel {
             // Under the published conditions the front wheel alone is declared; the rear one's has the same range.
             *declared = control::Sensor { fitted: true, ..wheel };
@@ -40,7 +40,7 @@ pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitte
         (true, Wheel::Rear) if !has(Sensor::RearWheel) => Wheel::Front,
         (_, wheel) => wheel,
     };
-    unchecked(config, samples, &mut told);
+    unchecked(config, samples, &mut fitted);
     // What was recorded was put together before.
     config.calibration.polarity_checked = true;
     for (key, value) in &map.parameters {
@@ -49,9 +49,9 @@ pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitte
             toml::Value::Boolean(on) => if *on { "on" } else { "off" }.into(),
             number => number.to_string(),
         };
-        leaves::set(config, key, &words).map_err(|why| format!("parameters: {key} = {words}: {why}"))?;
+        parameters::set(config, key, &words).map_err(|why| format!("parameters: {key} = {words}: {why}"))?;
     }
-    Ok(told)
+    Ok(fitted)
 }
 
 /// A sensor's declaration.
@@ -72,26 +72,26 @@ fn declared(config: &mut Config, sensor: Sensor) -> &mut control::Sensor {
 
 /// Switches off the checks for which something was made up or is not there, and tells those that have nothing to
 /// compare.
-fn unchecked(config: &mut Config, samples: &Samples, told: &mut Fitted) {
+fn unchecked(config: &mut Config, samples: &Samples, fitted: &mut Fitted) {
     let made_up = |sensor: Sensor| samples.track(sensor).map_or([false; 3], |track| track.made_up);
     let has = |sensor| samples.track(sensor).is_some();
     if made_up(Sensor::Gyro) != [false; 3] {
         let cross = &mut config.cross;
         (cross.yaw_rad_s, cross.yaw_slow_rad_s, cross.yaw_slope) = (None, None, false);
         config.response.gyro = false;
-        told.unchecked.push("yaw and gyro response: not all axes of the gyro were recorded".into());
+        fitted.unchecked.push("yaw and gyro response: not all axes of the gyro were recorded".into());
     }
     if made_up(Sensor::Gyro)[0] {
         config.cross.roll_correlation = false;
-        told.unchecked.push("roll correlation: the gyro's x axis was not recorded".into());
+        fitted.unchecked.push("roll correlation: the gyro's x axis was not recorded".into());
     }
     if made_up(Sensor::Accel) != [false; 3] {
         (config.permit.lifted_m_s2, config.permit.crash_m_s2) = (None, None);
-        told.unchecked.push("lifted and crash: not all axes of the accelerometer were recorded".into());
+        fitted.unchecked.push("lifted and crash: not all axes of the accelerometer were recorded".into());
     }
     // The torque that comes out did not act: what the bicycle did answers to the one of the record, where that is there.
     if !has(Sensor::MotorReport) && config.response.motor.take().is_some() {
-        told.unchecked.push("motor response: the torque that comes out did not act on this bicycle".into());
+        fitted.unchecked.push("motor response: the torque that comes out did not act on this bicycle".into());
     }
     let lacks = [
         (
@@ -108,5 +108,5 @@ fn unchecked(config: &mut Config, samples: &Samples, told: &mut Fitted) {
         (config.response.gyro && !has(Sensor::Accel), "gyro response: no accelerometer"),
         (config.permit.lifted_m_s2.is_some() && !has(Sensor::Accel), "lifted and crash: no accelerometer"),
     ];
-    told.unchecked.extend(lacks.into_iter().filter(|(lacks, _)| *lacks).map(|(_, why)| why.to_owned()));
+    fitted.unchecked.extend(lacks.into_iter().filter(|(lacks, _)| *lacks).map(|(_, why)| why.to_owned()));
 }

@@ -4,8 +4,8 @@ use super::document::SCHEMA;
 use super::resolved::{ResolvedLaw, Tool};
 use crate::board::BoardName;
 use crate::board::fault::Fault;
-use crate::board::heard::Heard;
 use crate::board::parameter::{Parameter, law_name};
+use crate::board::reception::Reception;
 use crate::board::settings::Settings;
 use link::leaves::Kind;
 use schemars::JsonSchema;
@@ -87,5 +87,5 @@ pub struct FaultsDocument {
     /// The faults it kept, the newest first; of a recording those told in it, in its order.
     pub faults: Vec<Fault>,
     /// How much of a recording was understood; null for a board.
-    pub recording: Option<Heard>,
+    pub recording: Option<Reception>,
 }

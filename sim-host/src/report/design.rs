@@ -103,7 +103,7 @@ pub struct Design<'a> {
     /// What it is, as a law.
     pub law: &'a Law,
     /// With what and on what it was tried.
-    pub arena: &'a crate::design::Arena,
+    pub arena: &'a crate::design::Scenarios,
     /// How areas were found for the judgement.
     pub fine: &'a crate::basin::Search,
     /// The laws compared, itself the last.

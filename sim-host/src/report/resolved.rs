@@ -2,7 +2,7 @@
 
 use crate::basin::{Axis, Search};
 use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
-use crate::leaves::departing;
+use crate::parameters::departing;
 use crate::plant::{ActuatorConfig, ImuMount, Plant, Sensor, SensorModel};
 use crate::ride::{Assist, Conditions, FallCriterion};
 use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};

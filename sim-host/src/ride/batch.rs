@@ -1,8 +1,8 @@
 //! Many rides on one core: the widest vector instructions this machine has.
 #![allow(unsafe_code)]
 
+use super::backend::Backend;
 use super::lanes::{WIDTH, run};
-use super::processor::Processor;
 use super::{Conditions, Remote, RemoteError, Ride, Start, TracePoint};
 
 /// Every ride to its end, in the order of `starts`.
@@ -15,19 +15,19 @@ pub fn rides(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
         // SAFETY: the machine was just seen to have AVX2.
         return unsafe { rides_avx2(conditions, starts) };
     }
-    run::<1>(conditions, starts, None, &mut Processor::Here)
+    run::<1>(conditions, starts, None, &mut Backend::Local)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn rides_avx2(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
-    run::<WIDTH>(conditions, starts, None, &mut Processor::Here)
+    run::<WIDTH>(conditions, starts, None, &mut Backend::Local)
 }
 
 /// One ride with every control period written down; the same bits as in a batch.
 pub fn traced(conditions: &Conditions, start: Start) -> (Ride, Vec<TracePoint>) {
     let mut trace = Vec::with_capacity(conditions.steps() as usize);
-    let mut done = run::<1>(conditions, &[start], Some(&mut trace), &mut Processor::Here);
+    let mut done = run::<1>(conditions, &[start], Some(&mut trace), &mut Backend::Local);
     (done.remove(0), trace)
 }
 
@@ -40,9 +40,9 @@ pub fn rides_on(
     starts: &[Start],
     remote: &mut dyn Remote,
 ) -> Result<Vec<Ride>, RemoteError> {
-    let mut processor = Processor::away(remote);
-    let done = run::<1>(conditions, starts, None, &mut processor);
-    processor.end().map(|()| done)
+    let mut backend = Backend::away(remote);
+    let done = run::<1>(conditions, starts, None, &mut backend);
+    backend.end().map(|()| done)
 }
 
 /// As [`traced`], the control step on a processor of its own.
@@ -55,7 +55,7 @@ pub fn traced_on(
     remote: &mut dyn Remote,
 ) -> Result<(Ride, Vec<TracePoint>), RemoteError> {
     let mut trace = Vec::with_capacity(conditions.steps() as usize);
-    let mut processor = Processor::away(remote);
-    let mut done = run::<1>(conditions, &[start], Some(&mut trace), &mut processor);
-    processor.end().map(|()| (done.remove(0), trace))
+    let mut backend = Backend::away(remote);
+    let mut done = run::<1>(conditions, &[start], Some(&mut trace), &mut backend);
+    backend.end().map(|()| (done.remove(0), trace))
 }

@@ -1,12 +1,12 @@
 //! Rides side by side, one in each lane; a lane whose ride ends takes the next.
 
-use super::human::{Human, Humans};
-use super::logbook::{Logbook, Pushes};
-use super::outfit::{self, Outfit, lane_frame, told_signals};
-use super::preroll::Readied;
-use super::processor::Processor;
-use super::refine::{Period, Segment, quickness, refined, too_quick};
+use super::backend::Backend;
+use super::hardware::{self, RideHardware, lane_frame, measured_signals};
+use super::recorder::{RideRecorder, SteerTorques};
+use super::rider_lanes::{RiderLane, RiderLanes};
 use super::sensor::{Reading, readings};
+use super::substeps::{Period, Segment, refined, stiffness, too_stiff};
+use super::warm_start::WarmStart;
 use super::{Assist, Conditions, Ride, Start, TracePoint};
 use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques};
 use crate::integrate::{Actuation, STAGES, rk4};
@@ -18,69 +18,69 @@ use crate::rider::Instant;
 pub(super) const WIDTH: usize = 8;
 
 /// The rides in the lanes, as what acts on their bicycles.
-struct Abreast<'a, 'p, const N: usize> {
+struct LaneBatch<'a, 'p, const N: usize> {
     conditions: &'a Conditions,
-    processor: &'a mut Processor<'p>,
+    backend: &'a mut Backend<'p>,
     /// The conditions' plant, every delay in it.
     plant: Plant,
-    lanes: [Option<Logbook>; N],
+    lanes: [Option<RideRecorder>; N],
     /// Speeds at the start \[m/s\].
     initial: Lanes<N>,
     /// The assist's torques, in the step's middle where they change in it \[N m\].
     assist: Lanes<N>,
     /// The riders.
-    humans: Option<Humans<'a, N>>,
+    riders: Option<RiderLanes<'a, N>>,
     /// The riders' torques at the step's start \[N m\].
     human: Lanes<N>,
-    /// How quick each lane's motion is, by [`quickness`].
-    quickness: [Lanes<N>; 4],
+    /// How quick each lane's motion is, by [`stiffness`].
+    stiffness: [Lanes<N>; 4],
     /// Where lane 0 is written down.
     trace: Option<&'a mut Vec<TracePoint>>,
 }
 
-impl<const N: usize> Abreast<'_, '_, N> {
+impl<const N: usize> LaneBatch<'_, '_, N> {
     /// The control instant at a step's start: sensors, controllers, new torques.
     fn control(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
-        self.quickness = quickness(b, motion);
-        if let Some(humans) = &self.humans {
-            self.human = humans.body.at.torque;
+        self.stiffness = stiffness(b, motion);
+        if let Some(riders) = &self.riders {
+            self.human = riders.rider_state.at.torque;
         }
         let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
         for (lane, ride) in self.lanes.iter_mut().enumerate() {
             let Some(ride) = ride else { continue };
             // Near singular places only all six speeds tell the truth.
-            let (told, answer) = match (ride.outfit.take(), &self.conditions.assist) {
-                (Some(mut outfit), Assist::Firmware(plan)) => {
+            let (measured, output) = match (ride.hardware.take(), &self.conditions.assist) {
+                (Some(mut hardware), Assist::Firmware(plan)) => {
                     let at = match &ride.full {
                         Some(full) => Frame::new(&full.pose(b), &full.velocities(b), full.angles[2]),
                         None => lane_frame(motion, lane),
                     };
                     let (rider_nm, initial) = (self.human.0[lane], self.initial.0[lane]);
-                    let told = outfit.told(self.conditions, &self.plant, &at, rider_nm, initial);
-                    let answer = ride.answer(plan, self.processor, outfit::frame(plan, &told));
-                    outfit.commanded(self.conditions, &self.plant, answer.torque_nm);
+                    let measured = hardware.measured(self.conditions, &self.plant, &at, rider_nm, initial);
+                    let output = ride.output(plan, self.backend, hardware::frame(plan, &measured));
+                    hardware.commanded(self.conditions, &self.plant, output.torque_nm);
                     let middle_s = 0.5 * self.conditions.step_s;
                     self.assist.0[lane] =
-                        outfit.motor.torque(&self.plant.actuator, middle_s, at.velocities.steer);
-                    ride.outfit = Some(outfit);
-                    (told_signals(plan, &told), answer)
+                        hardware.motor.torque(&self.plant.actuator, middle_s, at.velocities.steer);
+                    ride.hardware = Some(hardware);
+                    (measured_signals(plan, &measured), output)
                 }
                 _ => {
                     let (rate, speed) = match &ride.full {
                         Some(full) => readings(self.conditions, &full.velocities(b), self.initial.0[lane]),
                         None => (rate.0[lane], speed.0[lane]),
                     };
-                    let told = ride.sensors.delayed(Reading { roll_rate_rad_s: rate, speed_m_s: speed });
-                    let answer = ride.command(&self.conditions.assist, self.processor, &told);
-                    self.assist.0[lane] = answer.torque_nm;
-                    (told, answer)
+                    let measured = ride.sensors.delayed(Reading { roll_rate_rad_s: rate, speed_m_s: speed });
+                    let output = ride.command(&self.conditions.assist, self.backend, &measured);
+                    self.assist.0[lane] = output.torque_nm;
+                    (measured, output)
                 }
             };
             if let (0, Some(trace)) = (lane, &mut self.trace) {
                 // Whole nanoseconds: the nearest number to 5.999 s, not 5999 times the nearest to 1 ms.
                 let t = (f64::from(ride.step) * self.conditions.step_s * 1e9).round() / 1e9;
-                let pushes = Pushes { assist_nm: self.assist.0[0], rider_nm: self.human.0[0] };
-                trace.push(TracePoint::new(b, t, motion, &told, &answer, pushes));
+                let steer_torques = SteerTorques { assist_nm: self.assist.0[0], rider_nm: self.human.0[0] };
+                trace.push(TracePoint::new(b, t, motion, &measured, &output, steer_torques));
             }
         }
     }
@@ -97,9 +97,9 @@ impl<const N: usize> Abreast<'_, '_, N> {
         } else if !self.plant.actuator.exact() {
             let elapsed_s = STAGES[stage] * self.conditions.step_s;
             for (lane, ride) in self.lanes.iter().enumerate() {
-                if let Some(outfit) = ride.as_ref().and_then(|ride| ride.outfit.as_ref()) {
+                if let Some(hardware) = ride.as_ref().and_then(|ride| ride.hardware.as_ref()) {
                     let rate = motion.actual.steer.0[lane];
-                    given.0[lane] = outfit.motor.torque(&self.plant.actuator, elapsed_s, rate);
+                    given.0[lane] = hardware.motor.torque(&self.plant.actuator, elapsed_s, rate);
                 }
             }
         }
@@ -107,15 +107,15 @@ impl<const N: usize> Abreast<'_, '_, N> {
     }
 }
 
-impl<const N: usize> Actuation<Lanes<N>> for Abreast<'_, '_, N> {
+impl<const N: usize> Actuation<Lanes<N>> for LaneBatch<'_, '_, N> {
     #[inline(always)]
     fn torques(&mut self, b: &Geometry, stage: usize, motion: &Motion<Lanes<N>>) -> Torques<Lanes<N>> {
         if stage == 0 {
             self.control(b, motion);
         }
         let mut steer = self.given(stage, motion);
-        if let Some(humans) = &self.humans {
-            steer = steer + humans.body.at.torque;
+        if let Some(riders) = &self.riders {
+            steer = steer + riders.rider_state.at.torque;
         }
         let friction = &self.plant.actuator.friction;
         if friction.acts() {
@@ -131,7 +131,7 @@ impl<const N: usize> Actuation<Lanes<N>> for Abreast<'_, '_, N> {
     }
 
     #[inline(always)]
-    fn felt(
+    fn end_stage(
         &mut self,
         b: &Geometry,
         stage: usize,
@@ -139,14 +139,14 @@ impl<const N: usize> Actuation<Lanes<N>> for Abreast<'_, '_, N> {
         motion: &Motion<Lanes<N>>,
         acc: &Accelerations<Lanes<N>>,
     ) {
-        if let Some(humans) = &mut self.humans {
+        if let Some(riders) = &mut self.riders {
             let mut taken = [false; N];
             for (taken, lane) in taken.iter_mut().zip(&self.lanes) {
                 *taken = lane.is_some();
             }
             let (_, speed) = readings(self.conditions, &motion.actual, self.initial);
             let now = Instant::new(state, motion, acc);
-            humans.felt(b, stage, self.conditions.step_s, &now, &speed, taken);
+            riders.end_stage(b, stage, self.conditions.step_s, &now, &speed, taken);
         }
     }
 }
@@ -160,94 +160,96 @@ pub(super) fn run<const N: usize>(
     conditions: &Conditions,
     starts: &[Start],
     trace: Option<&mut Vec<TracePoint>>,
-    processor: &mut Processor<'_>,
+    backend: &mut Backend<'_>,
 ) -> Vec<Ride> {
     let (b, h) = (&conditions.bicycle, conditions.step_s);
     let mut waiting = starts.iter().copied().enumerate();
     let still = Lanes([0.0; N]);
     let mut state = State::upright(b, still);
-    let mut abreast = Abreast {
+    let mut batch = LaneBatch {
         conditions,
-        processor,
+        backend,
         plant: conditions.plant.delayed(conditions.sensor_delay_ticks),
         lanes: std::array::from_fn(|_| None),
         initial: still,
         assist: still,
-        humans: conditions.rider.as_ref().map(|rider| Humans::new(rider, rider.delay_steps(h))),
+        riders: conditions.rider.as_ref().map(|rider| RiderLanes::new(rider, rider.delay_steps(h))),
         human: still,
-        quickness: [still; 4],
+        stiffness: [still; 4],
         trace,
     };
     let mut done = Vec::with_capacity(starts.len());
-    let mut readied = Readied::default();
-    let fitted_out = outfit::needed(conditions);
+    let mut warm_start = WarmStart::default();
+    let fitted_out = hardware::needed(conditions);
     loop {
         for lane in 0..N {
-            if abreast.lanes[lane].is_some() {
+            if batch.lanes[lane].is_some() {
                 continue;
             }
             // An empty lane stands upright and still, which costs what any other state costs.
             let next = waiting.next();
             let start = next.map_or_else(Start::default, |(_, start)| start);
             set(&mut state, lane, &start.state(b));
-            abreast.initial.0[lane] = start.speed_m_s;
-            abreast.assist.0[lane] = 0.0;
-            if let Some(humans) = &mut abreast.humans {
-                humans.restart(lane);
+            batch.initial.0[lane] = start.speed_m_s;
+            batch.assist.0[lane] = 0.0;
+            if let Some(riders) = &mut batch.riders {
+                riders.restart(lane);
             }
-            abreast.lanes[lane] = next.map(|(index, start)| {
-                let processor = &mut *abreast.processor;
+            batch.lanes[lane] = next.map(|(index, start)| {
+                let backend = &mut *batch.backend;
                 if let Assist::Firmware(plan) = &conditions.assist {
-                    processor.begin(plan, &start);
+                    backend.begin(plan, &start);
                 }
-                let (outfit, ready) = match &conditions.assist {
+                let (hardware, ready) = match &conditions.assist {
                     Assist::Firmware(plan) if fitted_out => {
-                        let plant = &abreast.plant;
-                        let (outfit, ready) = Outfit::new(conditions, plan, plant, &start, processor, |_| ());
-                        (Some(Box::new(outfit)), Some(ready))
+                        let plant = &batch.plant;
+                        let (hardware, ready) =
+                            RideHardware::new(conditions, plan, plant, &start, backend, |_| ());
+                        (Some(Box::new(hardware)), Some(ready))
                     }
-                    _ => (None, readied.at(conditions, processor, start.speed_m_s)),
+                    _ => (None, warm_start.at(conditions, backend, start.speed_m_s)),
                 };
-                processor.disturb();
-                Logbook::new(conditions, index, start, ready, outfit)
+                backend.disturb();
+                RideRecorder::new(conditions, index, start, ready, hardware)
             });
         }
-        if abreast.lanes.iter().all(Option::is_none) || abreast.processor.failed() {
+        if batch.lanes.iter().all(Option::is_none) || batch.backend.failed() {
             break;
         }
-        if let Some(humans) = &mut abreast.humans {
-            humans.turn();
+        if let Some(riders) = &mut batch.riders {
+            riders.turn();
         }
-        let mut after = rk4(b, &state, h, &mut abreast);
+        let mut after = rk4(b, &state, h, &mut batch);
         for lane in 0..N {
-            let pushes = Pushes { assist_nm: abreast.assist.0[lane], rider_nm: abreast.human.0[lane] };
-            let Some(ride) = &mut abreast.lanes[lane] else { continue };
+            let steer_torques =
+                SteerTorques { assist_nm: batch.assist.0[lane], rider_nm: batch.human.0[lane] };
+            let Some(ride) = &mut batch.lanes[lane] else { continue };
             let was = get(&state, lane);
-            let last = if too_quick(abreast.quickness.map(|q| q.0[lane]), h) {
-                let human = abreast.humans.as_mut().map(|humans| humans.one(lane));
+            let last = if too_stiff(batch.stiffness.map(|q| q.0[lane]), h) {
+                let human = batch.riders.as_mut().map(|riders| riders.one(lane));
                 let mut period = Period {
                     conditions,
                     most_pieces: ride.pieces_left,
                     full: &mut ride.full,
-                    assist_nm: pushes.assist_nm,
-                    motor: ride.outfit.as_ref().map(|outfit| &outfit.motor),
-                    initial_m_s: abreast.initial.0[lane],
+                    assist_nm: steer_torques.assist_nm,
+                    motor: ride.hardware.as_ref().map(|hardware| &hardware.motor),
+                    initial_m_s: batch.initial.0[lane],
                     human,
                 };
                 let last = refined(&mut period, &was);
-                let body = period.human.map(|human: Human| human.body.end);
+                let rider_state = period.human.map(|human: RiderLane| human.rider_state.end);
                 set(&mut after, lane, &last.is);
-                if let (Some(humans), Some(body)) = (&mut abreast.humans, body) {
-                    humans.set(lane, &body);
+                if let (Some(riders), Some(rider_state)) = (&mut batch.riders, rider_state) {
+                    riders.set(lane, &rider_state);
                 }
                 last
             } else {
                 ride.full = None;
                 Segment { was, is: get(&after, lane), offset: 0.0, h, pieces: 0 }
             };
-            if let Some(finished) = ride.book(conditions, pushes, &was, &last) {
+            if let Some(finished) = ride.book(conditions, steer_torques, &was, &last) {
                 done.push((ride.index, finished));
-                abreast.lanes[lane] = None;
+                batch.lanes[lane] = None;
             }
         }
         state = after;

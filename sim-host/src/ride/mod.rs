@@ -1,26 +1,26 @@
 //! One ride: the bicycle, the assist, the rider and a disturbance at t = 0, until it falls or time is up.
 
 mod assist;
+mod backend;
 mod batch;
 mod conditions;
 mod event;
 mod fall;
-mod human;
+mod hardware;
 mod lanes;
-mod logbook;
 mod outcome;
-mod outfit;
-mod preroll;
-mod processor;
-mod refine;
+mod recorder;
+mod rider_lanes;
 mod sensor;
+mod substeps;
 mod trace;
+mod warm_start;
 
 pub use assist::Assist;
+pub use backend::{Remote, RemoteError, Stepped};
 pub use batch::{rides, rides_on, traced, traced_on};
 pub use conditions::{Conditions, ConditionsError, Imu, ScheduleSpeed, Start};
 pub use fall::{FallCause, FallCriterion, LaidFlat};
+pub(crate) use hardware::frame as frame_of;
 pub use outcome::{Effort, FinalState, Outcome, Ride};
-pub(crate) use outfit::frame as frame_of;
-pub use processor::{Remote, RemoteError, Stepped};
 pub use trace::{TracePoint, frames};

@@ -1,11 +1,11 @@
 //! A ride written down, one line a control period.
 
 use super::assist::{front_speed, rear_speed};
-use super::logbook::{Answer, Pushes};
-use super::outfit::{self, Outfit};
-use super::preroll::{preroll, steady};
-use super::processor::Processor;
+use super::backend::Backend;
+use super::hardware::{self, RideHardware};
+use super::recorder::{ControllerOutput, SteerTorques};
 use super::sensor::Reading;
+use super::warm_start::{engage_run, steady};
 use super::{Assist, Conditions, Start};
 use crate::bicycle::{Geometry, Motion};
 use crate::num::Lanes;
@@ -65,9 +65,9 @@ impl TracePoint {
         b: &Geometry,
         t: f64,
         motion: &Motion<Lanes<N>>,
-        told: &Reading,
-        answer: &Answer,
-        pushes: Pushes,
+        measured: &Reading,
+        output: &ControllerOutput,
+        steer_torques: SteerTorques,
     ) -> Self {
         let (pose, actual) = (&motion.pose, &motion.actual);
         let angle = |(s, c): (Lanes<N>, Lanes<N>)| libm::atan2(s.0[0], c.0[0]);
@@ -82,17 +82,17 @@ impl TracePoint {
             rear_wheel_rate: actual.rear_spin.0[0],
             rear_speed: rear_speed(b, actual).0[0],
             front_speed: front_speed(b, actual).0[0],
-            measured_roll_rate: told.roll_rate_rad_s,
-            measured_speed: told.speed_m_s,
-            torque: answer.torque_nm,
-            limits: answer.limits,
-            rider_torque: pushes.rider_nm,
-            motor_torque: pushes.assist_nm,
-            mode: answer.mode as u8,
-            causes: answer.causes.0,
-            causes_low: answer.causes.0 as u32,
-            causes_high: (answer.causes.0 >> 32) as u32,
-            frame: answer.frame,
+            measured_roll_rate: measured.roll_rate_rad_s,
+            measured_speed: measured.speed_m_s,
+            torque: output.torque_nm,
+            limits: output.limits,
+            rider_torque: steer_torques.rider_nm,
+            motor_torque: steer_torques.assist_nm,
+            mode: output.mode as u8,
+            causes: output.causes.0,
+            causes_low: output.causes.0 as u32,
+            causes_high: (output.causes.0 >> 32) as u32,
+            frame: output.frame,
         }
     }
 }
@@ -102,11 +102,11 @@ impl TracePoint {
 pub fn frames(conditions: &Conditions, start: Start, trace: &[TracePoint]) -> Vec<SensorFrame> {
     let Assist::Firmware(plan) = &conditions.assist else { return Vec::new() };
     let mut frames = Vec::with_capacity(trace.len());
-    if outfit::needed(conditions) {
+    if hardware::needed(conditions) {
         let plant = conditions.plant.delayed(conditions.sensor_delay_ticks);
-        Outfit::new(conditions, plan, &plant, &start, &mut Processor::Here, |frame| frames.push(*frame));
+        RideHardware::new(conditions, plan, &plant, &start, &mut Backend::Local, |frame| frames.push(*frame));
     } else {
-        preroll(plan, &mut Processor::Here, steady(plan, start.speed_m_s), |frame, _| frames.push(*frame));
+        engage_run(plan, &mut Backend::Local, steady(plan, start.speed_m_s), |frame, _| frames.push(*frame));
     }
     frames.extend(trace.iter().map(|p| p.frame));
     frames

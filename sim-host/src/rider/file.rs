@@ -2,7 +2,7 @@
 
 use super::catalogue::RiderError;
 use super::table::{RiderTable, Row};
-use super::{Fit, Gains, KEYS, Line, MAX_DELAY_S, Muscles, Outside};
+use super::{Fit, Gains, KEYS, Line, MAX_DELAY_S, Neuromuscular, Outside};
 use crate::range::within;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -101,7 +101,7 @@ impl File {
         let muscles = self
             .neuromuscular
             .as_ref()
-            .map_or(Muscles::SHOULDERS, |m| Muscles { omega_rad_s: m.omega_rad_s, zeta: m.zeta });
+            .map_or(Neuromuscular::SHOULDERS, |m| Neuromuscular { omega_rad_s: m.omega_rad_s, zeta: m.zeta });
         muscles.check().map_err(|e| format!("`neuromuscular`: {e}"))?;
         let columns = self.gain_columns()?;
         within("number of `rows`", self.rows.len() as f64, 1.0, 1000.0)?;

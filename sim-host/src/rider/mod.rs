@@ -1,24 +1,24 @@
 //! Human riders: delayed linear feedback of the bicycle's motion through the muscles of the
 //! shoulders, in parallel with the assist (Kuipers 2020, sections 2.1.3 and 2.3; Schwab et al. 2013).
 
-mod body;
 pub mod catalogue;
+mod delay_line;
 mod doubts;
 mod file;
 mod fit;
 mod gains;
-mod muscles;
-mod nerves;
+mod neuromuscular;
 mod schedule;
+mod state;
 mod table;
 
-pub use body::{Body, Instant};
+pub use delay_line::DelayLine;
 pub use doubts::doubts;
 pub use fit::{Fit, Line, mean};
 pub use gains::{Gains, KEYS, Signals};
-pub use muscles::{Muscles, MusclesError};
-pub use nerves::Nerves;
+pub use neuromuscular::{MusclesError, Neuromuscular};
 pub use schedule::{Outside, Schedule, ScheduleError};
+pub use state::{Instant, RiderState};
 pub use table::{RiderTable, Row};
 
 use crate::range::within;
@@ -31,7 +31,7 @@ pub struct Rider {
     /// The one effective neural delay \[s\].
     pub delay_s: f64,
     /// The muscles.
-    pub muscles: Muscles,
+    pub muscles: Neuromuscular,
 }
 
 /// Longest neural delay \[s\].

@@ -1,7 +1,7 @@
 //! Measured gains: one set a row, sets of like speed in a group.
 
 use super::file::SCHEMA;
-use super::{Gains, KEYS, Line, Muscles};
+use super::{Gains, KEYS, Line, Neuromuscular};
 
 /// One measured set of gains.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub struct RiderTable {
     /// The effective neural delay they hold for \[s\].
     pub delay_s: f64,
     /// The muscles they hold for.
-    pub muscles: Muscles,
+    pub muscles: Neuromuscular,
     /// The run of each group that counts as its best; otherwise the highest VAF does.
     pub best_runs: Option<Vec<u32>>,
     /// The regression as it was published, if the rows do not give it to all digits.

@@ -3,7 +3,7 @@
 use super::balance_assist::{Weave, weave};
 use crate::bicycle::Parameters;
 use crate::eigen::LinearActuator;
-use crate::thesis::simplex::minimum;
+use crate::thesis::nelder_mead::minimum;
 use nalgebra::Complex;
 
 /// Something a fit may choose.

@@ -4,7 +4,7 @@ use super::case::Assisted;
 use super::damped::{Bounds, Fitted, bounded, decay, oscillation};
 use super::draw::{SPEED, eigen_lines, same_name, speeds};
 use super::item::{Figure, Item, Table};
-use super::pencil;
+use super::matrix_pencil;
 use super::study::Study;
 use crate::eigen::eigenvalues;
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
@@ -183,7 +183,7 @@ pub fn pencil_at(study: &Study, speed: f64, disturbance: f64) -> Option<[Complex
     let signal = |of: fn(&TracePoint) -> f64| trace.iter().step_by(DT).take(SAMPLES).map(of).collect();
     let signals: [Vec<f64>; 4] =
         [signal(|p| p.roll_rate), signal(|p| p.steer_rate), signal(|p| p.roll), signal(|p| p.steer)];
-    pencil::eigenvalues(&signals, 1e-3 * DT as f64, 4)?.try_into().ok()
+    matrix_pencil::eigenvalues(&signals, 1e-3 * DT as f64, 4)?.try_into().ok()
 }
 
 /// The largest distance of `found` from the eigenvalue of [`true_four`] it stands for \[1/s\].

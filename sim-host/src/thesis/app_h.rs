@@ -3,9 +3,9 @@
 use super::case::Case;
 use super::ch3_riders::{all_fits, basin_cell, of_rider, outlines, ridden};
 use super::cyclist::{Cyclist, fit_named, named};
+use super::figures_of_merit::{merit, with_readings};
 use super::heights::{Outline, area, rmse};
 use super::item::{Figure, Item, Value};
-use super::merit::{merit, with_readings};
 use super::study::Study;
 use crate::rider::Fit;
 

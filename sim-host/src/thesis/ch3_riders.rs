@@ -3,10 +3,10 @@
 use super::case::{Assisted, Case, GRID};
 use super::cyclist::{Cyclist, fit_name, fit_named, named};
 use super::draw::{SELF_STABLE, SPEED, STEER_RATE, outline};
+use super::figures_of_merit::{merit, with_readings};
 use super::fits::LINES;
 use super::heights::{Outline, area, mean, rmse};
 use super::item::{Figure, Item, Value};
-use super::merit::{merit, with_readings};
 use super::published::Cell;
 use super::study::Study;
 use crate::basin::Basin;

@@ -2,11 +2,11 @@
 
 use super::study::Study;
 use crate::ride::{Assist, Conditions, Start};
-use crate::rider::{Gains, Muscles, Rider, Schedule};
+use crate::rider::{Gains, Neuromuscular, Rider, Schedule};
 
 /// A rider with the same gains at every speed and the muscles of the thesis.
 pub(super) fn constant(gains: Gains, delay_s: f64) -> Rider {
-    Rider { schedule: Schedule::constant(gains), delay_s, muscles: Muscles::SHOULDERS }
+    Rider { schedule: Schedule::constant(gains), delay_s, muscles: Neuromuscular::SHOULDERS }
 }
 
 /// The published conditions for a rider without an assist.

@@ -2,8 +2,8 @@
 
 use super::case::Case;
 use super::catalogue::{Entry, Made};
+use super::figures_of_merit::is_reading;
 use super::item::Item;
-use super::merit::is_reading;
 use super::study::Study;
 use rayon::prelude::*;
 

@@ -25,7 +25,7 @@ pub enum Begins {
     /// With the recording, which begins inside the motion.
     Record,
     /// Where it was told to.
-    Told,
+    Stated,
 }
 
 /// Why a window ends where it does.
@@ -41,7 +41,7 @@ pub enum Ends {
     /// After the longest time that is looked at.
     Limit,
     /// Where it was told to.
-    Told,
+    Stated,
 }
 
 /// A part of a recording, by the places of its samples.
@@ -57,25 +57,26 @@ pub struct Window {
     pub ends: Ends,
 }
 
-/// The window of a recording with stamps \[s\] and axes of rates \[rad/s\]; `told` are its ends, if someone did \[s\].
+/// The window of a recording with stamps \[s\] and axes of rates \[rad/s\]; `stated` are its ends, if someone did \[s\].
 ///
 /// The size of the motion is the root of the sum of the axes' squares. The knock is seen where it first reaches half of the
 /// largest, and the window begins at the maximum that follows. A recording that begins in motion and has that much within 0.1 s
 /// was cut after the knock: its window begins with it.
-pub fn window(times: &[f64], axes: &[&[f64]], told: (Option<f64>, Option<f64>)) -> Window {
+pub fn window(times: &[f64], axes: &[&[f64]], stated: (Option<f64>, Option<f64>)) -> Window {
     let size = |i: usize| axes.iter().map(|axis| axis[i] * axis[i]).sum::<f64>().sqrt();
     let sizes: Vec<f64> = (0..times.len()).map(size).collect();
-    let (from, begins) = match told.0 {
-        Some(from) => (times.partition_point(|t| *t < from), Begins::Told),
+    let (from, begins) = match stated.0 {
+        Some(from) => (times.partition_point(|t| *t < from), Begins::Stated),
         None => knock(times, &sizes),
     };
     let gap = GAP_S.max(5.0 * period(times));
     let gap = (from + 1..times.len()).find(|i| times[*i] - times[i - 1] > gap);
     let longest = times.get(from).map_or(f64::INFINITY, |t| t + LONGEST_S);
-    let told_to = told.1.map_or(times.len(), |to| times.partition_point(|t| *t <= to));
-    let limit = if told.1.is_some() { times.len() } else { times.partition_point(|t| *t <= longest) };
+    let told_to = stated.1.map_or(times.len(), |to| times.partition_point(|t| *t <= to));
+    let limit = if stated.1.is_some() { times.len() } else { times.partition_point(|t| *t <= longest) };
     let (mut to, mut ends) = (times.len(), Ends::Record);
-    for (at, why) in [(gap.unwrap_or(times.len()), Ends::Gap), (limit, Ends::Limit), (told_to, Ends::Told)] {
+    for (at, why) in [(gap.unwrap_or(times.len()), Ends::Gap), (limit, Ends::Limit), (told_to, Ends::Stated)]
+    {
         if at < to {
             (to, ends) = (at, why);
         }
@@ -118,8 +119,11 @@ mod tests {
         assert_eq!((found.to, found.ends), (300, Ends::Record));
         let cut = window(&t[122..], &[&rates[122..]], (None, None));
         assert_eq!((cut.from, cut.begins), (0, Begins::Record));
-        let told = window(&t, &[&rates], (Some(0.5), Some(2.0)));
-        assert_eq!((told.from, told.to, told.begins, told.ends), (50, 201, Begins::Told, Ends::Told));
+        let stated = window(&t, &[&rates], (Some(0.5), Some(2.0)));
+        assert_eq!(
+            (stated.from, stated.to, stated.begins, stated.ends),
+            (50, 201, Begins::Stated, Ends::Stated)
+        );
     }
 
     #[test]

@@ -5,7 +5,7 @@ use link::leaves::each;
 use link::message::Message;
 use sim_host::board::client::{Client, ClientError, Patience};
 use std::time::Duration;
-use tests::link_board::{LinkBoard, Passage, Wire, encoded, faults, lock, shared, telemetry};
+use tests::link_board::{LinkBoard, LinkChannel, Wire, encoded, faults, lock, shared, telemetry};
 
 /// Hardly any: these lines answer at once or not at all.
 pub(crate) const SHORT: Patience = Patience { answer: Duration::from_millis(2), tries: 5 };
@@ -94,13 +94,14 @@ fn who_does_not_answer_is_told_why() {
     let error = client(Wire::good(&board)).hello().expect_err("another version").to_string();
     assert!(error.contains("speaks version 7") && error.contains("this program version 1"), "{error}");
     let board = shared(LinkBoard::default());
-    let mute = Wire::new(&board, Box::new(Passage::Arrives), Box::new(|_| Passage::Arrives(Vec::new())));
+    let mute =
+        Wire::new(&board, Box::new(LinkChannel::Arrives), Box::new(|_| LinkChannel::Arrives(Vec::new())));
     let error = client(mute).hello().expect_err("mute");
     assert!(error.leaves_doubt());
     assert_eq!(lock(&board).requests, SHORT.tries);
     let text = error.to_string();
     assert!(text.contains("who are you") && text.contains("5 times, 0.002 s"), "{text}");
-    let lost = Wire::new(&board, Box::new(|_| Passage::Lost), Box::new(Passage::Arrives));
+    let lost = Wire::new(&board, Box::new(|_| LinkChannel::Lost), Box::new(LinkChannel::Arrives));
     let error = client(lost).hello().expect_err("lost").to_string();
     assert!(error.contains("lost wire"), "{error}");
 }
@@ -118,15 +119,15 @@ fn what_comes_unasked_meanwhile_is_kept() {
         let mut bytes = teller.tell(&Message::Telemetry(telemetry(steps)));
         bytes.extend(teller.tell(&Message::Log("words")));
         bytes.extend(teller.tell(&Message::Fault(faults()[0])));
-        Passage::Arrives([bytes, answer].concat())
+        LinkChannel::Arrives([bytes, answer].concat())
     };
-    let mut client = client(Wire::new(&board, Box::new(Passage::Arrives), Box::new(also)));
+    let mut client = client(Wire::new(&board, Box::new(LinkChannel::Arrives), Box::new(also)));
     for _ in 0..3 {
         assert_eq!(client.get("rate_hz").expect("a value"), Some(1000.0));
     }
-    let told = client.listen(Duration::ZERO).expect("kept");
-    assert_eq!(told.iter().map(|one| one.sequence).collect::<Vec<_>>(), (0..9).collect::<Vec<_>>());
-    let steps = told.iter().filter_map(|one| match one.message() {
+    let received = client.listen(Duration::ZERO).expect("kept");
+    assert_eq!(received.iter().map(|one| one.sequence).collect::<Vec<_>>(), (0..9).collect::<Vec<_>>());
+    let steps = received.iter().filter_map(|one| match one.message() {
         Ok(Message::Telemetry(step)) => Some(step.steps),
         _ => None,
     });
@@ -151,8 +152,8 @@ fn answers_to_others_are_passed_over() {
             let value = Message::Value { key: link::Key::whole("rate_hz"), value: Some(f32::from(by)) };
             encoded(&value, right.wrapping_add(by))
         };
-        Passage::Arrives([of(1), of(u16::MAX), of(7), answer].concat())
+        LinkChannel::Arrives([of(1), of(u16::MAX), of(7), answer].concat())
     };
-    let mut client = client(Wire::new(&board, Box::new(Passage::Arrives), Box::new(others)));
+    let mut client = client(Wire::new(&board, Box::new(LinkChannel::Arrives), Box::new(others)));
     assert_eq!(client.get("rate_hz").expect("a value"), Some(1000.0));
 }

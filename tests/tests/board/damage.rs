@@ -4,11 +4,11 @@ use crate::client::SHORT;
 use control::Config;
 use proptest::prelude::*;
 use sim_host::board::client::{Client, ClientError};
-use tests::link_board::{Fate, LinkBoard, Passage, Wire, lock, shared};
+use tests::link_board::{Fate, LinkBoard, LinkChannel, Wire, lock, shared};
 
 /// What a line does to what goes over it, one after the other, then from the start.
 #[derive(Clone, Debug)]
-enum Harm {
+enum LinkFaultKind {
     None,
     /// A byte is another.
     Turned {
@@ -28,36 +28,36 @@ enum Harm {
     Late,
 }
 
-fn harms() -> impl Strategy<Value = Vec<Harm>> {
+fn harms() -> impl Strategy<Value = Vec<LinkFaultKind>> {
     let at = 0..40_usize;
-    let harm = prop_oneof![
-        4 => Just(Harm::None),
-        1 => (at.clone(), 1..=255_u8).prop_map(|(at, by)| Harm::Turned { at, by }),
-        1 => at.clone().prop_map(|at| Harm::Cut { at }),
-        1 => (at, any::<u8>()).prop_map(|(at, byte)| Harm::Grown { at, byte }),
-        1 => Just(Harm::Dropped),
-        1 => Just(Harm::Late),
+    let kind = prop_oneof![
+        4 => Just(LinkFaultKind::None),
+        1 => (at.clone(), 1..=255_u8).prop_map(|(at, by)| LinkFaultKind::Turned { at, by }),
+        1 => at.clone().prop_map(|at| LinkFaultKind::Cut { at }),
+        1 => (at, any::<u8>()).prop_map(|(at, byte)| LinkFaultKind::Grown { at, byte }),
+        1 => Just(LinkFaultKind::Dropped),
+        1 => Just(LinkFaultKind::Late),
     ];
-    prop::collection::vec(harm, 7..=11)
+    prop::collection::vec(kind, 7..=11)
 }
 
-fn fate(harms: Vec<Harm>) -> Fate {
+fn fate(harms: Vec<LinkFaultKind>) -> Fate {
     let mut next = harms.into_iter().cycle();
     Box::new(move |mut bytes: Vec<u8>| {
         let inside = |at: usize, length: usize| at.min(length.saturating_sub(1));
-        match next.next().unwrap_or(Harm::None) {
+        match next.next().unwrap_or(LinkFaultKind::None) {
             _ if bytes.is_empty() => {}
-            Harm::None => {}
-            Harm::Turned { at, by } => {
+            LinkFaultKind::None => {}
+            LinkFaultKind::Turned { at, by } => {
                 let at = inside(at, bytes.len());
                 bytes[at] ^= by;
             }
-            Harm::Cut { at } => bytes.truncate(at),
-            Harm::Grown { at, byte } => bytes.insert(inside(at, bytes.len()), byte),
-            Harm::Dropped => bytes.clear(),
-            Harm::Late => return Passage::Late(bytes),
+            LinkFaultKind::Cut { at } => bytes.truncate(at),
+            LinkFaultKind::Grown { at, byte } => bytes.insert(inside(at, bytes.len()), byte),
+            LinkFaultKind::Dropped => bytes.clear(),
+            LinkFaultKind::Late => return LinkChannel::Late(bytes),
         }
-        Passage::Arrives(bytes)
+        LinkChannel::Arrives(bytes)
     })
 }
 
@@ -107,8 +107,8 @@ fn what_is_lost_is_asked_for_again() {
     };
     let good = shared(LinkBoard::default());
     let (listed, few) = count(&good, Wire::good(&good));
-    let turned = vec![Harm::Turned { at: 5, by: 9 }, Harm::None, Harm::None];
-    let dropped = vec![Harm::None, Harm::Dropped, Harm::None, Harm::None];
+    let turned = vec![LinkFaultKind::Turned { at: 5, by: 9 }, LinkFaultKind::None, LinkFaultKind::None];
+    let dropped = vec![LinkFaultKind::None, LinkFaultKind::Dropped, LinkFaultKind::None, LinkFaultKind::None];
     let bad = shared(LinkBoard::default());
     let (heard, many) = count(&bad, Wire::new(&bad, fate(turned), fate(dropped)));
     assert_eq!(heard, listed);

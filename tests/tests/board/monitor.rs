@@ -5,10 +5,10 @@ use control::{Sample, sensors::frame::MISSING};
 use link::message::Message;
 use link::telemetry::Telemetry;
 use sim_host::board::Client;
-use sim_host::board::line::{Line, LineError};
 use sim_host::board::monitor::{Monitor, News};
 use sim_host::board::recorded::{Recorder, Recording};
-use sim_host::board::row::Row;
+use sim_host::board::telemetry_row::TelemetryRow;
+use sim_host::board::transport::{Transport, TransportError};
 use std::time::Duration;
 use tempfile::TempDir;
 use tests::link_board::{LinkBoard, telemetry};
@@ -16,13 +16,13 @@ use tests::link_board::{LinkBoard, telemetry};
 /// Bytes that come in so many at a time, then the end.
 struct Pieces(Vec<u8>, usize);
 
-impl Line for Pieces {
-    fn send(&mut self, _: &[u8]) -> Result<(), LineError> {
-        Err(LineError::OneWay { line: "pieces".into() })
+impl Transport for Pieces {
+    fn send(&mut self, _: &[u8]) -> Result<(), TransportError> {
+        Err(TransportError::OneWay { line: "pieces".into() })
     }
-    fn receive(&mut self, _: Duration) -> Result<Vec<u8>, LineError> {
+    fn receive(&mut self, _: Duration) -> Result<Vec<u8>, TransportError> {
         if self.0.is_empty() {
-            return Err(LineError::Ended { line: "pieces".into(), rest: 0 });
+            return Err(TransportError::Ended { line: "pieces".into(), rest: 0 });
         }
         let length = self.1.min(self.0.len());
         Ok(self.0.drain(..length).collect())
@@ -30,10 +30,10 @@ impl Line for Pieces {
 }
 
 /// All that comes over a line until its end, and how many frames were damaged.
-fn hear(line: Box<dyn Line>) -> (Monitor, Vec<News>, u32) {
+fn hear(line: Box<dyn Transport>) -> (Monitor, Vec<News>, u32) {
     let (mut client, mut monitor, mut news) = (Client::new(line, SHORT), Monitor::default(), Vec::new());
-    while let Ok(told) = client.listen(Duration::ZERO) {
-        news.extend(told.iter().map(|one| monitor.take(one)));
+    while let Ok(received) = client.listen(Duration::ZERO) {
+        news.extend(received.iter().map(|one| monitor.take(one)));
     }
     (monitor, news, client.damaged())
 }
@@ -162,16 +162,17 @@ fn a_recording_is_what_was_heard() {
 /// means the same.
 #[test]
 fn a_row_has_every_sensor_under_its_name() {
-    let mut told = telemetry(7);
+    let mut received = telemetry(7);
     let sample = |value, age_ticks| Sample { value, age_ticks };
-    told.frame.accel_m_s2 = control::Triple { value: [1.0, 2.0, 3.0], age_ticks: 4 };
-    told.frame.steer_rad = sample(0.1, 1);
-    told.frame.steer_rate_rad_s = sample(0.2, 2);
-    told.frame.rear_wheel_m_s = sample(3.9, 3);
-    told.frame.rider_torque_nm = sample(0.5, 5);
-    told.frame.motor_torque_nm = sample(0.6, MISSING);
-    let columns = |told: &Telemetry| serde_json::to_value(Row::new(0.007, told)).expect("a row");
-    let row = columns(&told);
+    received.frame.accel_m_s2 = control::Triple { value: [1.0, 2.0, 3.0], age_ticks: 4 };
+    received.frame.steer_rad = sample(0.1, 1);
+    received.frame.steer_rate_rad_s = sample(0.2, 2);
+    received.frame.rear_wheel_m_s = sample(3.9, 3);
+    received.frame.rider_torque_nm = sample(0.5, 5);
+    received.frame.motor_torque_nm = sample(0.6, MISSING);
+    let columns =
+        |received: &Telemetry| serde_json::to_value(TelemetryRow::new(0.007, received)).expect("a row");
+    let row = columns(&received);
     for (column, value) in [
         ("t", 0.007),
         ("steps", 7.0),
@@ -203,11 +204,11 @@ fn a_row_has_every_sensor_under_its_name() {
         let got = row[column].as_f64().unwrap_or_else(|| panic!("{column}: {row}"));
         assert!((got - value).abs() < 1e-6, "{column} {got}");
     }
-    assert_eq!(row["causes"], told.command.causes.0);
+    assert_eq!(row["causes"], received.command.causes.0);
     assert!(
         ["measured_motor_torque", "motor_torque_age", "gyro_slope"].iter().all(|name| row[*name].is_null())
     );
-    let none = columns(&Telemetry { frame: control::SensorFrame::missing(), ..told });
+    let none = columns(&Telemetry { frame: control::SensorFrame::missing(), ..received });
     let empty = none.as_object().expect("columns").values().filter(|value| value.is_null()).count();
     assert_eq!(empty, 20 + 1, "the sensors, their ages and a slope: {none}");
 }

@@ -339,9 +339,9 @@ fn ctrl_c_ends_a_monitor_and_keeps_what_was_written() {
     let mut command =
         bench.command(&format!("monitor --port {} --csv ride.csv --record ride.link", port.name));
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
-    let mut told = [0; 300];
+    let mut received = [0; 300];
     let out = child.stdout.as_mut().expect("piped");
-    out.read_exact(&mut told).expect("it tells something");
+    out.read_exact(&mut received).expect("it tells something");
     let kill = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status();
     assert!(kill.expect("sh runs").success());
     let run = Run::from(child.wait_with_output().expect("it ends"));
@@ -373,14 +373,14 @@ fn pulled_out(board: &Shared, mut steps: u32) -> Port {
 /// Must hold: exit code 1, the line named, and the time if it was waited for; the summary told, the table whole.
 #[test]
 fn a_board_pulled_out_while_watched_is_told() {
-    for (reopen, told) in [("0s", ""), ("1s", "; not back within 1 s")] {
+    for (reopen, received) in [("0s", ""), ("1s", "; not back within 1 s")] {
         let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
         let port = pulled_out(&board, 0);
         let run = bench.run(&format!("monitor --port {} --csv ride.csv --reopen {reopen}", port.name));
         assert_eq!(run.code, Some(1), "{run:?}");
         assert!(run.stderr.starts_with("error: lost /dev/"), "{}", run.stderr);
-        assert!(run.stderr.trim_end().ends_with(told), "{}", run.stderr);
-        assert_eq!(run.stdout.contains("waiting up to 1 s for it"), !told.is_empty(), "{}", run.stdout);
+        assert!(run.stderr.trim_end().ends_with(received), "{}", run.stderr);
+        assert_eq!(run.stdout.contains("waiting up to 1 s for it"), !received.is_empty(), "{}", run.stdout);
         assert!(run.stdout.contains(" 0 missing, 0 damaged"), "{}", run.stdout);
         assert!((5..=60).contains(&bench.read("ride.csv").lines().count()));
     }

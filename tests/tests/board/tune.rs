@@ -6,7 +6,7 @@ use control::{Config, GainSchedule, Law, Taper};
 use sim_host::board::Client;
 use sim_host::board::settings::{Setting, Settings};
 use sim_host::board::tune::{Tuned, tune};
-use tests::link_board::{LinkBoard, Passage, Shared, Wire, lock, shared};
+use tests::link_board::{LinkBoard, LinkChannel, Shared, Wire, lock, shared};
 
 fn board(config: &Config) -> Shared {
     shared(LinkBoard { config: config.clone(), ..LinkBoard::default() })
@@ -112,9 +112,9 @@ fn what_cannot_be_put_back_is_told() {
         // The 0 before a frame, the first of the stuffing, the version, and then the kind: 4 is to set.
         sets += u32::from(bytes[3] == 4);
         lock(&rider).engaged = sets > 3;
-        Passage::Arrives(bytes)
+        LinkChannel::Arrives(bytes)
     };
-    let mut client = client(Wire::new(&board, Box::new(engages), Box::new(Passage::Arrives)));
+    let mut client = client(Wire::new(&board, Box::new(engages), Box::new(LinkChannel::Arrives)));
     let before = Settings::read(&mut client).expect("settings");
     let keys = ["limits.rise_nm_s", "limits.fall_nm_s", "limits.max_torque_nm", "permit.ramp_in_ticks"];
     let wanted: Vec<_> =
@@ -171,16 +171,16 @@ fn a_line_that_fails_half_way_is_told_honestly() {
             let wire = Wire::new(
                 &board,
                 Box::new(move |bytes| match lock(&there).requests == at && broken == Break::Before {
-                    true => Passage::Lost,
-                    false => Passage::Arrives(bytes),
+                    true => LinkChannel::Lost,
+                    false => LinkChannel::Arrives(bytes),
                 }),
                 Box::new(move |bytes| match broken {
-                    Break::After if lock(&back).requests > at => Passage::Lost,
+                    Break::After if lock(&back).requests > at => LinkChannel::Lost,
                     Break::Mute if lock(&back).requests > at && mute > 0 => {
                         mute -= 1;
-                        Passage::Arrives(Vec::new())
+                        LinkChannel::Arrives(Vec::new())
                     }
-                    _ => Passage::Arrives(bytes),
+                    _ => LinkChannel::Arrives(bytes),
                 }),
             );
             let mut client = client(wire);
@@ -191,12 +191,12 @@ fn a_line_that_fails_half_way_is_told_honestly() {
                 .collect();
             let error = tune(&mut client, &before, &wanted).map(drop).expect_err("it failed").to_string();
             let now = Settings::read(&mut reader).expect("settings");
-            let told = |begin: &str| {
+            let received = |begin: &str| {
                 let rest = error.split_once(begin).map_or("", |(_, rest)| rest);
                 rest.split(';').next().unwrap_or("").split(", ").map(String::from).collect::<Vec<_>>()
             };
-            let (set, unset, unknown) = (told("; set: "), told("not set: "), told("not known: "));
-            let set = if error.contains("read back: set: ") { told("read back: set: ") } else { set };
+            let (set, unset, unknown) = (received("; set: "), received("not set: "), received("not known: "));
+            let set = if error.contains("read back: set: ") { received("read back: set: ") } else { set };
             let mut counts = [0; 3];
             for one in &wanted {
                 let key = one.key().to_owned();

@@ -55,7 +55,7 @@ fn a_design_is_the_same_for_a_seed_and_a_number_of_schedules() {
     assert_eq!(first.history[..shorter.history.len()], shorter.history);
     assert!(first.gains.iter().all(|gain| (-10.0..=40.0).contains(gain)));
     let judged = judge(
-        &sim_host::design::Arena { training: trials(), held_out: Vec::new() },
+        &sim_host::design::Scenarios { training: trials(), held_out: Vec::new() },
         &[("it".into(), plan(1, 1).knots.law(&first.gains).expect("in range"))],
         &coarse(),
         &|| {},

@@ -7,7 +7,7 @@ use sim_host::bicycle::{Geometry, State, Torques, pitch_from_upright};
 use sim_host::ride::{Conditions, Start};
 use tests::basins::{H, alone, assisted};
 use tests::draws::{runner, situations};
-use tests::felt::{Noise, Truth, ridden, truth};
+use tests::estimator_inputs::{Noise, Truth, ridden, truth};
 use tests::rides::{all_shipped, shipped};
 
 const FREE: Torques<f64> = Torques { roll: 0.0, steer: 0.0 };
@@ -64,16 +64,16 @@ fn estimated_in(conditions: &Conditions, config: &EstimateConfig, sensors: Senso
     let mut errors = Errors { margin: f64::MAX, ..Errors::default() };
     let pairs = std::iter::repeat_n((calm, calm), before).chain(ride.windows(2).map(|w| (w[0], w[1])));
     for (i, (was, is)) in pairs.enumerate() {
-        let mut felt = Truth::between(&was, &is).felt(1000);
+        let mut input = Truth::between(&was, &is).estimator_input(1000);
         if let Some(noise) = &mut noise {
-            noise.on(&mut felt);
+            noise.on(&mut input);
         }
-        felt.gyro_rad_s[0] += sensors.bias;
-        felt.accel_m_s2 = felt.accel_m_s2.filter(|_| sensors.accel);
+        input.gyro_rad_s[0] += sensors.bias;
+        input.accel_m_s2 = input.accel_m_s2.filter(|_| sensors.accel);
         if !sensors.steer {
-            (felt.steer_rad, felt.steer_rate_rad_s) = (None, None);
+            (input.steer_rad, input.steer_rate_rad_s) = (None, None);
         }
-        let m = step(config, &mut state, &felt);
+        let m = step(config, &mut state, &input);
         let e = |estimate: f32, truth: f64| (f64::from(estimate) - truth).abs();
         let roll = e(m.roll_rad, is.roll);
         errors.margin = errors.margin.min(f64::from(m.roll_error.bound_rad()) - roll);
@@ -110,13 +110,13 @@ fn the_kinematics_are_exact() {
             let turn: [f64; 3] = std::array::from_fn(|i| (after[i] - before[i]) / (2.0 * h));
             let ([wx, wy, wz], (sp, cp)) = (t.gyro, t.pitch.sin_cos());
             let (forward, up) = (f64::from(place.forward_m), f64::from(place.up_m));
-            let felt = (t.speed - wy * b.rR) * t.yaw_rate * t.roll.cos() - b.g * t.roll.sin()
+            let input = (t.speed - wy * b.rR) * t.yaw_rate * t.roll.cos() - b.g * t.roll.sin()
                 + b.rR * t.roll_accel
                 + (up - b.rR) * turn[0]
                 + forward * turn[2]
                 + wy * (wx * forward + wz * (b.rR - up));
             let scale = 1.0 + t.roll_accel.abs() + turn[2].abs();
-            prop_assert!((felt - t.accel[1]).abs() < 1e-5 * scale, "{} {felt} {}", draw.name, t.accel[1]);
+            prop_assert!((input - t.accel[1]).abs() < 1e-5 * scale, "{} {input} {}", draw.name, t.accel[1]);
             prop_assert!((wx * cp + wz * sp - t.roll_rate).abs() < 1e-9 * scale);
             prop_assert!((wz * cp - wx * sp - t.yaw_rate * t.roll.cos()).abs() < 1e-9 * scale);
             Ok(())
@@ -136,10 +136,10 @@ fn the_pitch_fits_every_bicycle() {
             for steer in [-0.9, -0.4, 0.0, 0.1, 0.7] {
                 let Some(exact) = pitch_from_upright(&b, roll, steer) else { continue };
                 let mut state = EstimateState::default();
-                let felt = EstimatorInput { steer_rad: Some(steer as f32), ..leaning(roll) };
+                let input = EstimatorInput { steer_rad: Some(steer as f32), ..leaning(roll) };
                 let mut m = Motion::default();
                 for _ in 0..2000 {
-                    m = step(&config, &mut state, &felt);
+                    m = step(&config, &mut state, &input);
                 }
                 assert!(
                     (f64::from(m.roll_rad) - roll).abs() < 0.02,
@@ -225,7 +225,7 @@ fn without_anything_to_see_the_bound_grows() {
     let conditions = assisted(H);
     let b = &conditions.bicycle;
     let mut state = EstimateState::default();
-    let riding = truth(b, &State::upright(b, 4.0), &FREE, &config.imu).felt(1000);
+    let riding = truth(b, &State::upright(b, 4.0), &FREE, &config.imu).estimator_input(1000);
     let mut bound = f32::MAX;
     for _ in 0..3000 {
         bound = step(&config, &mut state, &riding).roll_error.bound_rad();
@@ -248,8 +248,8 @@ fn standing_still_shows_every_bias() {
     let config = jason();
     let found = |gyro: [f32; 3]| {
         let mut state = EstimateState::default();
-        let felt = EstimatorInput { gyro_rad_s: gyro, ..leaning(0.1) };
-        (0..4000).map(|_| step(&config, &mut state, &felt)).last().expect("steps")
+        let input = EstimatorInput { gyro_rad_s: gyro, ..leaning(0.1) };
+        (0..4000).map(|_| step(&config, &mut state, &input)).last().expect("steps")
     };
     let wanted = [0.04, -0.02, 0.03];
     let m = found(wanted);
@@ -274,14 +274,14 @@ fn steer_rate_of_an_encoder() {
             let t = f64::from(i) * 1e-3;
             let (at, turns) = (0.4 * (6.0 * t).sin(), |t: f64| 2.4 * (6.0 * t).cos());
             let steer_rad = angle.then_some(((at / count).round() * count) as f32);
-            let felt = EstimatorInput {
+            let input = EstimatorInput {
                 steer_rad,
                 steer_rate_rad_s: rate.then_some(turns(t) as f32 + 0.1),
                 speed_m_s: 4.0,
                 elapsed_us: 1000,
                 ..EstimatorInput::default()
             };
-            let m = step(&config, &mut state, &felt);
+            let m = step(&config, &mut state, &input);
             if i > 500 {
                 let error = |at: f64| (f64::from(m.steer_rate_rad_s) - at).abs();
                 worst = (worst.0.max(error(turns(t))), worst.1.max(error(turns(t - 0.01))));
@@ -309,13 +309,13 @@ fn the_gyro_passes_with_unchanged_bits() {
         bits = bits.wrapping_add(0x0004_9e4d);
         let x = f32::from_bits(bits);
         if x.is_finite() {
-            let felt = EstimatorInput {
+            let input = EstimatorInput {
                 gyro_rad_s: [x, 0.1, -0.2],
                 speed_m_s: 4.0,
                 elapsed_us: 1000,
                 ..EstimatorInput::default()
             };
-            assert_eq!(step(&config, &mut state, &felt).roll_rate_rad_s.to_bits(), bits);
+            assert_eq!(step(&config, &mut state, &input).roll_rate_rad_s.to_bits(), bits);
             passed += 1;
         }
     }
@@ -325,7 +325,7 @@ fn any_float() -> impl Strategy<Value = f32> {
     prop_oneof![any::<u32>().prop_map(f32::from_bits), -3.0_f32..3.0]
 }
 
-fn any_felt() -> impl Strategy<Value = EstimatorInput> {
+fn any_input() -> impl Strategy<Value = EstimatorInput> {
     let three = || [any_float(), any_float(), any_float()];
     let sometimes = |s| proptest::option::of(s);
     let elapsed = prop_oneof![Just(1000_u32), any::<u32>(), 0_u32..20_000];
@@ -364,12 +364,12 @@ proptest! {
     /// Situation: anything at all, for a while. Action: step. Every number must be finite, the roll
     /// angle within a quarter turn, the bound between nothing and everything.
     #[test]
-    fn every_motion_is_finite(sequence in proptest::collection::vec(any_felt(), 1..60), own in any::<bool>()) {
+    fn every_motion_is_finite(sequence in proptest::collection::vec(any_input(), 1..60), own in any::<bool>()) {
         let config = if own { jason() } else { EstimateConfig::default() };
         let mut state = EstimateState::default();
-        for felt in sequence {
-            let m = step(&config, &mut state, &felt);
-            prop_assert!(numbers(&m).iter().all(|x| x.is_finite()), "{felt:?} {m:?}");
+        for input in sequence {
+            let m = step(&config, &mut state, &input);
+            prop_assert!(numbers(&m).iter().all(|x| x.is_finite()), "{input:?} {m:?}");
             prop_assert!(m.roll_rad.abs() <= std::f32::consts::FRAC_PI_2);
             prop_assert!((0.0..=std::f32::consts::PI).contains(&m.roll_error.bound_rad()));
         }
@@ -378,19 +378,19 @@ proptest! {
     /// Situation: any motion and its mirror image. Action: step both. Everything sideways must change
     /// its sign, everything else stay, to the bit.
     #[test]
-    fn left_mirrors_right(sequence in proptest::collection::vec(any_felt(), 1..60)) {
+    fn left_mirrors_right(sequence in proptest::collection::vec(any_input(), 1..60)) {
         let config = jason();
         let (mut right, mut left) = (EstimateState::default(), EstimateState::default());
-        for felt in sequence {
-            let [x, y, z] = felt.gyro_rad_s;
+        for input in sequence {
+            let [x, y, z] = input.gyro_rad_s;
             let mirrored = EstimatorInput {
                 gyro_rad_s: [-x, y, -z],
-                accel_m_s2: felt.accel_m_s2.map(|[x, y, z]| [x, -y, z]),
-                steer_rad: felt.steer_rad.map(|s| -s),
-                steer_rate_rad_s: felt.steer_rate_rad_s.map(|s| -s),
-                ..felt
+                accel_m_s2: input.accel_m_s2.map(|[x, y, z]| [x, -y, z]),
+                steer_rad: input.steer_rad.map(|s| -s),
+                steer_rate_rad_s: input.steer_rate_rad_s.map(|s| -s),
+                ..input
             };
-            let (r, l) = (step(&config, &mut right, &felt), step(&config, &mut left, &mirrored));
+            let (r, l) = (step(&config, &mut right, &input), step(&config, &mut left, &mirrored));
             for (i, (a, b)) in numbers(&r).into_iter().zip(numbers(&l)).enumerate() {
                 let b = if i < 8 { -b } else { b };
                 prop_assert!(a == b, "{i}: {a} {b}");
@@ -405,7 +405,7 @@ proptest! {
 fn a_gap_makes_the_roll_angle_unknown() {
     let config = jason();
     let b = Geometry::new(&shipped("rigid_jason").parameters);
-    let riding = truth(&b, &State::upright(&b, 4.0), &FREE, &config.imu).felt(1000);
+    let riding = truth(&b, &State::upright(&b, 4.0), &FREE, &config.imu).estimator_input(1000);
     let mut state = EstimateState::default();
     let before = (0..2000).map(|_| step(&config, &mut state, &riding)).last().expect("steps");
     let after = step(

@@ -2,7 +2,7 @@
 
 use control::{Config, Law};
 use proptest::prelude::*;
-use sim_host::leaves::{departing, list, set};
+use sim_host::parameters::{departing, list, set};
 
 /// Situation: a parameter of each kind. Action: set it. Must hold: it has the value; a wrong name, value or
 /// range is refused with what is allowed.

@@ -1,7 +1,7 @@
 //! Flight cards: a bicycle with a gyro and one wheel's speed, the least that the law needs.
 
 use control::{Cause, Config, Mode};
-use sim_host::leaves::set;
+use sim_host::parameters::set;
 use sim_host::ride::{Conditions, ScheduleSpeed, Start, TracePoint};
 use tests::fault_cards::{product, smart};
 use tests::noticed::{Noticed, noticed, of_the_fault};

@@ -3,7 +3,7 @@
 use control::{Config, Mode};
 use rayon::prelude::*;
 use sim_host::basin::basin;
-use sim_host::leaves::set;
+use sim_host::parameters::set;
 use sim_host::ride::{Conditions, ScheduleSpeed, Start};
 use tests::basins::{configured, search};
 use tests::fault_cards::{product, smart};

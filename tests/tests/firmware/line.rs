@@ -5,7 +5,7 @@ use control::{Config, Law};
 use link::Key;
 use link::leaves::each;
 use link::message::Message;
-use sim_host::board::rolling::Rolling;
+use sim_host::board::demo_board::DemoBoard;
 use sim_host::board::settings::{Setting, Settings};
 use sim_host::board::tune::tune;
 use sim_host::board::{Client, Patience};
@@ -22,7 +22,7 @@ fn an_image_answers_as_a_board() {
     if !image::ready() {
         return;
     }
-    let board = Rolling::start(&image::path("qemu-pil")).expect("the image starts");
+    let board = DemoBoard::start(&image::path("qemu-pil")).expect("the image starts");
     let mut client = Client::new(Box::new(board), Patience::default());
     let hello = client.hello().expect("an answer");
     assert_eq!(hello.image, "qemu-pil");

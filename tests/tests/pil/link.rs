@@ -3,7 +3,7 @@
 use control::{Mode, SensorFrame, State, step};
 use proptest::prelude::*;
 use proptest::sample::select;
-use sim_host::board::{Controller, Harm, LinkFault, Lockstep, Way};
+use sim_host::board::{Controller, Direction, LinkFault, LinkFaultKind, Lockstep};
 use sim_host::ride::{Assist, Conditions, Stepped};
 use tests::draws::runner;
 use tests::fake_board::{FakeBoard, aged};
@@ -12,13 +12,14 @@ use tests::pil::{KNOCK, Ridden, link_faults, product, ridden};
 /// Situation: any fault of the link. Action: write it, read it back. Must hold: the same.
 #[test]
 fn a_written_link_fault_reads_back() {
-    let harms = prop_oneof![Just(Harm::Drop), Just(Harm::Corrupt), (1..=1000u32).prop_map(Harm::Late)];
+    let harms = prop_oneof![
+        Just(LinkFaultKind::Drop),
+        Just(LinkFaultKind::Corrupt),
+        (1..=1000u32).prop_map(LinkFaultKind::Late)
+    ];
     let when = (0.0..3000.0, prop_oneof![Just(f64::INFINITY), 0.001..600.0]);
-    let faults = (select(&Way::ALL), harms, when).prop_map(|(way, harm, (from_s, long))| LinkFault {
-        way,
-        harm,
-        from_s,
-        to_s: from_s + long,
+    let faults = (select(&Direction::ALL), harms, when).prop_map(|(direction, kind, (from_s, long))| {
+        LinkFault { direction, kind, from_s, to_s: from_s + long }
     });
     runner(1000)
         .run(&faults, |fault| {
@@ -79,8 +80,8 @@ pub(crate) fn sensors_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) {
         assert_eq!(controller.tally().harmed, 50, "{fault}");
         ridden
     };
-    let fault = |harm: &str| format!("sensors:{harm}@0.2s..0.25s");
-    let [dropped, damaged, late] = ["drop", "corrupt", "late=3ms"].map(|harm| ride(&fault(harm)));
+    let fault = |kind: &str| format!("sensors:{kind}@0.2s..0.25s");
+    let [dropped, damaged, late] = ["drop", "corrupt", "late=3ms"].map(|kind| ride(&fault(kind)));
     let boot = dropped.steps.len() - dropped.trace.len();
     let (from, to) = (boot + 200, boot + 250);
     let answers = |ridden: &Ridden| ridden.steps.iter().map(|(_, stepped)| *stepped).collect::<Vec<_>>();
@@ -108,8 +109,8 @@ pub(crate) fn commands_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) 
         let mut controller = Controller::new(board(), &link_faults(&[fault]), 7);
         ridden(&conditions, KNOCK, &mut controller).unwrap()
     };
-    let fault = |harm: &str| format!("motor:{harm}@0.2s..0.25s");
-    let [dropped, damaged, late] = ["drop", "corrupt", "late=2ms"].map(|harm| ride(&fault(harm)));
+    let fault = |kind: &str| format!("motor:{kind}@0.2s..0.25s");
+    let [dropped, damaged, late] = ["drop", "corrupt", "late=2ms"].map(|kind| ride(&fault(kind)));
     let boot = dropped.steps.len() - dropped.trace.len();
     let (from, to) = (boot + 200, boot + 250);
     assert!(damaged.bits() == dropped.bits());

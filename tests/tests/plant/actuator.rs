@@ -135,7 +135,7 @@ impl Actuation<f64> for Rubbing {
         Torques { roll: 0.0, steer: self.friction.torque(motion.actual.steer) }
     }
 
-    fn felt(
+    fn end_stage(
         &mut self,
         _: &Geometry,
         stage: usize,

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use proptest::sample::select;
-use sim_host::plant::{Channel, Fault, Kind, Measured, Plant, Reading, Rig, Sensor};
+use sim_host::plant::{Channel, Fault, Kind, Measured, Plant, Reading, Sensor, SensorSuite};
 use sim_host::ride::Start;
 use tests::draws::runner;
 
@@ -108,12 +108,12 @@ fn a_wrong_fault_is_told_what_is_allowed() {
 }
 
 /// What the controller is told from t = 0 of a ride whose every reading at tick t is `truth(t)`.
-fn told(faults: &[&str], ticks: i64, truth: impl Fn(f64) -> Reading) -> Vec<Measured> {
+fn measured(faults: &[&str], ticks: i64, truth: impl Fn(f64) -> Reading) -> Vec<Measured> {
     let faults = faults.iter().map(|text| text.parse().unwrap()).collect();
     let plant = Plant { faults, ..Plant::default() };
-    let mut rig = Rig::new(&plant, PERIOD_S, &START, &Reading::steady(4.0, 9.81));
-    rig.begin();
-    (0..ticks).map(|tick| rig.measure(&plant, &truth(tick as f64), true)).collect()
+    let mut sensors = SensorSuite::new(&plant, PERIOD_S, &START, &Reading::steady(4.0, 9.81));
+    sensors.begin();
+    (0..ticks).map(|tick| sensors.measure(&plant, &truth(tick as f64), true)).collect()
 }
 
 /// Steer rate counts the ticks; the gyro counts them on every axis, by 1, 10 and 100.
@@ -124,7 +124,7 @@ fn counting(t: f64) -> Reading {
 /// Situation: no fault. Must hold: exactly the truth, fresh, and the clock counts microseconds.
 #[test]
 fn without_fault_the_truth_is_told() {
-    for (tick, m) in told(&[], 50, counting).iter().enumerate() {
+    for (tick, m) in measured(&[], 50, counting).iter().enumerate() {
         let t = tick as f64;
         assert_eq!((m.of(Sensor::Gyro).value, m.of(Sensor::Gyro).age_ticks), ([t, 10.0 * t, 100.0 * t], 0));
         assert_eq!(m.of(Sensor::SteerRate).value[0], t);
@@ -149,7 +149,7 @@ fn a_fault_acts_at_exactly_its_instants() {
         ("value=-2", |_| Some(-2.0)),
     ];
     for (kind, says) in kinds {
-        let seen = told(&[&format!("steer-rate:{kind}@10ms..20ms")], 30, counting);
+        let seen = measured(&[&format!("steer-rate:{kind}@10ms..20ms")], 30, counting);
         let (mut last, mut age) = (0.0, 0);
         for (tick, m) in seen.iter().enumerate() {
             let t = tick as f64;
@@ -161,10 +161,10 @@ fn a_fault_acts_at_exactly_its_instants() {
             assert_eq!(m.of(Sensor::Gyro).value[0], t, "{kind}: another sensor");
         }
     }
-    let jumped = told(&["steer-rate:jump=5@10ms"], 30, counting);
+    let jumped = measured(&["steer-rate:jump=5@10ms"], 30, counting);
     assert_eq!(jumped[9].of(Sensor::SteerRate).value[0], 9.0);
     assert!((10..30).all(|t| jumped[t].of(Sensor::SteerRate).value[0] == t as f64 + 5.0));
-    let nan = told(&["steer-rate:nan@10ms"], 30, counting);
+    let nan = measured(&["steer-rate:nan@10ms"], 30, counting);
     assert!((0..30).all(|t| nan[t].of(Sensor::SteerRate).value[0].is_nan() == (t >= 10)));
 }
 
@@ -173,17 +173,17 @@ fn a_fault_acts_at_exactly_its_instants() {
 /// runs fast from there on, or jumps.
 #[test]
 fn faults_keep_to_their_axis_and_their_order() {
-    let axis = told(&["gyro.y:value=3@5ms"], 10, counting);
+    let axis = measured(&["gyro.y:value=3@5ms"], 10, counting);
     assert_eq!(axis[7].of(Sensor::Gyro).value, [7.0, 3.0, 700.0]);
     let [a, b] = [["scale=2", "bias=1"], ["bias=1", "scale=2"]].map(|kinds| {
-        told(&kinds.map(|k| format!("steer-rate:{k}")).each_ref().map(|s| s.as_str()), 5, counting)
+        measured(&kinds.map(|k| format!("steer-rate:{k}")).each_ref().map(|s| s.as_str()), 5, counting)
     });
     assert_eq!((a[4].of(Sensor::SteerRate).value[0], b[4].of(Sensor::SteerRate).value[0]), (9.0, 10.0));
     for fault in ["engage:missing@5ms..8ms", "engage:flip@5ms..8ms", "engage:value=0@5ms..8ms"] {
-        let switch = told(&[fault], 10, counting);
+        let switch = measured(&[fault], 10, counting);
         assert!((0..10).all(|t| switch[t].engage != (5..8).contains(&t)), "{fault}");
     }
-    let clock = |fault| told(&[fault], 10, counting).iter().map(|m| m.now_us).collect::<Vec<_>>();
+    let clock = |fault| measured(&[fault], 10, counting).iter().map(|m| m.now_us).collect::<Vec<_>>();
     assert_eq!(clock("clock:stuck@5ms")[3..8], [3000, 4000, 4000, 4000, 4000]);
     assert_eq!(clock("clock:scale=1.5@5ms")[3..8], [3000, 4000, 5000, 6500, 8000]);
     assert_eq!(clock("clock:jump=-0.01@5ms")[4..6], [4000, (-5000_i32) as u32]);
@@ -197,7 +197,7 @@ fn faults_keep_to_their_axis_and_their_order() {
 fn random_faults_have_their_statistics_and_their_seed() {
     let still = |_: f64| Reading::steady(4.0, 9.81);
     let n = 20_000.0_f64;
-    let noisy = told(&["gyro:noise=0.2@1s"], 21_000, still);
+    let noisy = measured(&["gyro:noise=0.2@1s"], 21_000, still);
     assert!(noisy[..1000].iter().all(|m| m.of(Sensor::Gyro).value == [0.0; 3]));
     let after = &noisy[1000..];
     let mean =
@@ -209,15 +209,15 @@ fn random_faults_have_their_statistics_and_their_seed() {
         assert!((deviation - 0.2).abs() < 5.0 * 0.2 / (2.0 * n).sqrt(), "{deviation}");
         assert!(mean(&|v| v[axis] * v[other]).abs() < 5.0 * 0.04 / n.sqrt());
     }
-    let lossy = told(&["gyro:dropout=0.3@1s"], 21_000, still);
+    let lossy = measured(&["gyro:dropout=0.3@1s"], 21_000, still);
     let lost = lossy[1000..].iter().filter(|m| m.of(Sensor::Gyro).age_ticks > 0).count() as f64 / n;
     assert!((lost - 0.3).abs() < 5.0 * (0.21 / n).sqrt(), "{lost}");
-    assert_eq!(told(&["gyro:noise=0.2@1s"], 21_000, still), noisy);
+    assert_eq!(measured(&["gyro:noise=0.2@1s"], 21_000, still), noisy);
     let first = |seed, start: Start| {
         let plant = Plant { faults: vec!["gyro:noise=1".parse().unwrap()], seed, ..Plant::default() };
-        let mut rig = Rig::new(&plant, PERIOD_S, &start, &Reading::steady(4.0, 9.81));
-        rig.begin();
-        rig.measure(&plant, &still(0.0), true).of(Sensor::Gyro).value[0]
+        let mut sensors = SensorSuite::new(&plant, PERIOD_S, &start, &Reading::steady(4.0, 9.81));
+        sensors.begin();
+        sensors.measure(&plant, &still(0.0), true).of(Sensor::Gyro).value[0]
     };
     let other = Start { speed_m_s: 4.1, ..START };
     assert!(first(0, START) != first(1, START) && first(0, START) != first(0, other));
@@ -230,11 +230,11 @@ fn random_faults_have_their_statistics_and_their_seed() {
 fn motor_faults_act_on_the_command() {
     let given = |fault: &str, ticks: i64| {
         let plant = Plant { faults: vec![fault.parse().unwrap()], ..Plant::default() };
-        let mut rig = Rig::new(&plant, PERIOD_S, &START, &Reading::steady(4.0, 9.81));
-        rig.begin();
+        let mut sensors = SensorSuite::new(&plant, PERIOD_S, &START, &Reading::steady(4.0, 9.81));
+        sensors.begin();
         let mut one = |tick| {
-            rig.measure(&plant, &Reading::steady(4.0, 9.81), true);
-            rig.command(&plant, if tick < 3 { 1.0 } else { 2.0 })
+            sensors.measure(&plant, &Reading::steady(4.0, 9.81), true);
+            sensors.command(&plant, if tick < 3 { 1.0 } else { 2.0 })
         };
         (0..ticks).map(&mut one).collect::<Vec<_>>()
     };

@@ -1,7 +1,7 @@
 //! Flight cards: errors as fitted to recordings, in the simulated sensor and found again in what it says.
 
 use sim_host::plant::sensor_file::{MeasuredNumber, SensorNumbers};
-use sim_host::plant::{FittedErrors, Plant, Reading, Rig, Sensor, SensorModel};
+use sim_host::plant::{FittedErrors, Plant, Reading, Sensor, SensorModel, SensorSuite};
 use sim_host::replay::{Sample, Samples, Track};
 use sim_host::ride::Start;
 use sim_host::sensor_fit::{Recording, fit};
@@ -21,7 +21,7 @@ fn arrived(
         *plant.sensors.model_mut(*sensor) = *model;
     }
     plant.check().expect("in range");
-    let mut rig = Rig::new(&plant, 1e-3, &START, &truth(0.0));
+    let mut sensors = SensorSuite::new(&plant, 1e-3, &START, &truth(0.0));
     let track = |(sensor, _): &(Sensor, SensorModel)| Track {
         sensor: *sensor,
         samples: Vec::new(),
@@ -30,7 +30,7 @@ fn arrived(
     let mut tracks: Vec<Track> = models.iter().map(track).collect();
     for tick in 0..ticks {
         let t_s = tick as f64 * 1e-3;
-        let measured = rig.measure(&plant, &truth(t_s), true);
+        let measured = sensors.measure(&plant, &truth(t_s), true);
         for track in &mut tracks {
             let held = measured.of(track.sensor);
             if held.age_ticks == 0 {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Rotation3, Vector3};
 use sim_host::bicycle::{Geometry, Motion, State};
-use sim_host::plant::{Frame, Reading, Traveller};
+use sim_host::plant::{Frame, Odometry, Reading};
 use sim_host::ride::Imu;
 use tests::rides::{FREE, knocked, ride, shipped};
 
@@ -59,12 +59,12 @@ fn exact_sensors_are_those_of_the_path() {
     let start = knocked(&b, 5.0, 2.0);
     let places = places(&b, start, FINE, PERIODS);
     let h = PERIOD_S / FINE as f64;
-    let mut traveller = Traveller::default();
+    let mut odometry = Odometry::default();
     let (mut worst, mut largest, mut index) = ([0.0_f64; 4], [0.0_f64; 4], 0);
     ride(&b, start, &FREE, PERIOD_S, PERIODS, |s| {
         let motion = Motion::new(&b, s);
         let frame = Frame::new(&motion.pose, &motion.actual, s.steer);
-        let r = traveller.read(&b, Imu::Body, IMU_M, PERIOD_S, &frame);
+        let r = odometry.read(&b, Imu::Body, IMU_M, PERIOD_S, &frame);
         let at = index * FINE;
         index += 1;
         if at == 0 || at + FINE >= places.len() {
@@ -107,14 +107,14 @@ fn exact_sensors_are_those_of_the_path() {
 #[test]
 fn steady_riding_shows_gravity_only() {
     let b = Geometry::new(&shipped("rigid_jason").parameters);
-    let read = |traveller: &mut Traveller, state: &State<f64>| {
+    let read = |odometry: &mut Odometry, state: &State<f64>| {
         let motion = Motion::new(&b, state);
-        traveller.read(&b, Imu::Euler, IMU_M, PERIOD_S, &Frame::new(&motion.pose, &motion.actual, 0.0))
+        odometry.read(&b, Imu::Euler, IMU_M, PERIOD_S, &Frame::new(&motion.pose, &motion.actual, 0.0))
     };
-    let mut traveller = Traveller::default();
+    let mut odometry = Odometry::default();
     let steady = Reading::steady(4.0, b.g);
     for _ in 0..3 {
-        let r = read(&mut traveller, &State::upright(&b, 4.0));
+        let r = read(&mut odometry, &State::upright(&b, 4.0));
         let error = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max);
         assert!(
             error(r.accel_m_s2, steady.accel_m_s2) < 1e-12 && error(r.gyro_rad_s, steady.gyro_rad_s) == 0.0
@@ -124,7 +124,7 @@ fn steady_riding_shows_gravity_only() {
     }
     let leant = State { roll: 0.3, ..State::upright(&b, 0.0) };
     let pitch = sim_host::bicycle::pitch_from_upright(&b, 0.3, 0.0).expect("stands");
-    let [x, y, z] = read(&mut Traveller::default(), &State { pitch, ..leant }).accel_m_s2;
+    let [x, y, z] = read(&mut Odometry::default(), &State { pitch, ..leant }).accel_m_s2;
     assert!((y + b.g * 0.3_f64.sin()).abs() < 1e-9 && (z + b.g * 0.3_f64.cos()).abs() < 1e-3, "{x} {y} {z}");
 }
 
@@ -139,7 +139,7 @@ fn the_published_roll_rate_is_the_euler_angles() {
     let motion = Motion::new(&b, &state);
     let frame = Frame::new(&motion.pose, &motion.actual, state.steer);
     let [euler, body] =
-        [Imu::Euler, Imu::Body].map(|imu| Traveller::default().read(&b, imu, IMU_M, PERIOD_S, &frame));
+        [Imu::Euler, Imu::Body].map(|imu| Odometry::default().read(&b, imu, IMU_M, PERIOD_S, &frame));
     assert_eq!(euler.gyro_rad_s[0], 0.7);
     let v = &motion.actual;
     let expected = v.roll * pitch.cos() - v.yaw * state.roll.cos() * pitch.sin();

@@ -113,12 +113,13 @@ fn a_fault_changes_the_ride_from_its_instant_on() {
         "engage:missing",
     ] {
         let (_, seen) = traced(&faulty(&format!("{fault}@200ms")), KNOCK);
-        let told = |p: &TracePoint| {
+        let measured = |p: &TracePoint| {
             (p.frame.gyro_rad_s.value.map(f32::to_bits), p.frame.front_wheel_m_s, p.frame.engage)
         };
         let aged = |p: &TracePoint| (p.frame.gyro_rad_s.age_ticks, p.motor_torque);
-        let differs =
-            |(a, b): (&TracePoint, &TracePoint)| told(a) != told(b) || aged(a) != aged(b) || !same(a, b);
+        let differs = |(a, b): (&TracePoint, &TracePoint)| {
+            measured(a) != measured(b) || aged(a) != aged(b) || !same(a, b)
+        };
         let first = plain.iter().zip(&seen).position(differs);
         assert_eq!(first, Some(200), "{fault}");
     }

@@ -1,22 +1,22 @@
 //! Flight cards: each part of a sensor model beside its closed form.
 
 use nalgebra::{Rotation3, Vector3};
-use sim_host::plant::{ImuMount, Plant, Reading, Rig, Sensor, SensorModel};
+use sim_host::plant::{ImuMount, Plant, Reading, Sensor, SensorModel, SensorSuite};
 use sim_host::ride::Start;
 
 const START: Start = Start { speed_m_s: 4.0, steer_rate_rad_s: 5.0, roll_rate_rad_s: 0.0 };
 
 /// Value and age the controller is told of the steer angle, whose truth at tick t is `truth(t)`.
-fn told(model: SensorModel, ticks: i64, truth: impl Fn(f64) -> f64) -> Vec<(f64, u16)> {
+fn measured(model: SensorModel, ticks: i64, truth: impl Fn(f64) -> f64) -> Vec<(f64, u16)> {
     let mut plant = Plant::default();
     *plant.sensors.model_mut(Sensor::Steer) = model;
     plant.check().expect("in range");
     let steady = Reading::steady(4.0, 9.81);
-    let mut rig = Rig::new(&plant, 1e-3, &START, &steady);
+    let mut sensors = SensorSuite::new(&plant, 1e-3, &START, &steady);
     (0..ticks)
         .map(|tick| {
             let now = Reading { steer_rad: truth(tick as f64), ..steady };
-            let held = *rig.measure(&plant, &now, true).of(Sensor::Steer);
+            let held = *sensors.measure(&plant, &now, true).of(Sensor::Steer);
             (held.value[0], held.age_ticks)
         })
         .collect()
@@ -30,7 +30,7 @@ fn delay_and_sampling_are_exact() {
     for delay in [0, 1, 5, 20] {
         for every in [1, 2, 7] {
             let model = SensorModel { delay_ticks: delay, every_ticks: every, ..SensorModel::default() };
-            for (tick, (value, age)) in told(model, 60, |t| t + 1.0).into_iter().enumerate() {
+            for (tick, (value, age)) in measured(model, 60, |t| t + 1.0).into_iter().enumerate() {
                 let arrived = tick as i64 - i64::from(delay);
                 let sampled = arrived - arrived.rem_euclid(i64::from(every));
                 let expected = if sampled >= 0 { sampled as f64 + 1.0 } else { 0.0 };
@@ -53,7 +53,7 @@ fn scale_bias_range_and_quantum() {
     let skewed = SensorModel { scale: 1.1, bias: [0.02, 0.0, 0.0], ..SensorModel::default() };
     let coarse = SensorModel { quantum: 0.01, ..SensorModel::default() };
     let narrow = SensorModel { range: Some(0.5), ..skewed };
-    let [skewed, coarse, narrow] = [skewed, coarse, narrow].map(|model| told(model, 201, sweep));
+    let [skewed, coarse, narrow] = [skewed, coarse, narrow].map(|model| measured(model, 201, sweep));
     let mut furthest = 0.0_f64;
     for t in 0..201 {
         let x = sweep(t as f64);
@@ -72,7 +72,7 @@ fn scale_bias_range_and_quantum() {
 #[test]
 fn noise_and_dropout_have_their_statistics() {
     let n = 20_000;
-    let noisy = told(SensorModel { noise: 0.05, ..SensorModel::default() }, n, |_| 1.0);
+    let noisy = measured(SensorModel { noise: 0.05, ..SensorModel::default() }, n, |_| 1.0);
     let errors: Vec<f64> = noisy.iter().map(|(value, _)| value - 1.0).collect();
     let samples = n as f64;
     let mean = errors.iter().sum::<f64>() / samples;
@@ -81,7 +81,7 @@ fn noise_and_dropout_have_their_statistics() {
     assert!(mean.abs() < 5.0 * 0.05 / samples.sqrt(), "{mean}");
     assert!((deviation - 0.05).abs() < 5.0 * 0.05 / (2.0 * samples).sqrt(), "{deviation}");
     assert!(neighbours.abs() < 5.0 * 0.0025 / samples.sqrt(), "{neighbours}");
-    let lossy = told(SensorModel { dropout: 0.1, ..SensorModel::default() }, n, |t| t);
+    let lossy = measured(SensorModel { dropout: 0.1, ..SensorModel::default() }, n, |t| t);
     let lost = lossy.iter().filter(|(_, age)| *age > 0).count() as f64 / samples;
     assert!((lost - 0.1).abs() < 5.0 * (0.09 / samples).sqrt(), "{lost}");
     for (tick, (value, age)) in lossy.into_iter().enumerate().skip(50) {
@@ -97,8 +97,8 @@ fn a_turned_imu_sees_the_turned_vector() {
     let mut plant = Plant::default();
     plant.sensors.imu = ImuMount { turned_rad, ..ImuMount::default() };
     let truth = Reading { gyro_rad_s: [0.7, -1.1, 2.3], ..Reading::steady(4.0, 9.81) };
-    let mut rig = Rig::new(&plant, 1e-3, &START, &truth);
-    let measured = rig.measure(&plant, &truth, true);
+    let mut sensors = SensorSuite::new(&plant, 1e-3, &START, &truth);
+    let measured = sensors.measure(&plant, &truth, true);
     let [x, y, z] = turned_rad;
     let sensor_in_frame = Rotation3::from_euler_angles(x, y, z);
     for sensor in [Sensor::Gyro, Sensor::Accel] {
@@ -111,7 +111,7 @@ fn a_turned_imu_sees_the_turned_vector() {
 #[test]
 fn the_default_sensor_is_exact() {
     let odd = [0.0, -0.0, 1.0, f64::MIN_POSITIVE, -3.7e300, f64::INFINITY];
-    for (seen, x) in told(SensorModel::default(), 6, |t| odd[t as usize]).into_iter().zip(odd) {
+    for (seen, x) in measured(SensorModel::default(), 6, |t| odd[t as usize]).into_iter().zip(odd) {
         assert_eq!((seen.0.to_bits(), seen.1), (x.to_bits(), 0));
     }
 }

@@ -20,10 +20,10 @@ fn the_monitors_table_is_replayed_as_it_is() {
          --sensor gyro:every=10ms --sensor front-wheel:every=20ms --sensor rear-wheel:every=20ms",
     );
     assert_eq!(ride.code, Some(0), "{}", ride.stderr);
-    let told = frames(&std::fs::read(bench.path("ride.frames")).unwrap()).unwrap();
+    let received = frames(&std::fs::read(bench.path("ride.frames")).unwrap()).unwrap();
     let (plan, mut state, mut board) = (product(), State::default(), LinkBoard::default());
     let (mut bytes, mut steps) = (Vec::new(), 0);
-    for (_, frame) in &told {
+    for (_, frame) in &received {
         let command = step(&plan, &mut state, frame);
         steps += 1;
         let telemetry = Telemetry {
@@ -46,9 +46,9 @@ fn the_monitors_table_is_replayed_as_it_is() {
     let replay = bench.run("replay ride.csv --frames again.frames -q");
     assert_eq!(replay.code, Some(0), "{}", replay.stderr);
     let again = frames(&std::fs::read(bench.path("again.frames")).unwrap()).unwrap();
-    assert!(again.len() > 2000 && told.len() - again.len() < 3, "{} of {}", again.len(), told.len());
-    let skipped = told.len() - again.len();
-    for (place, ((_, ours), (_, theirs))) in again.iter().zip(&told[skipped..]).enumerate() {
+    assert!(again.len() > 2000 && received.len() - again.len() < 3, "{} of {}", again.len(), received.len());
+    let skipped = received.len() - again.len();
+    for (place, ((_, ours), (_, theirs))) in again.iter().zip(&received[skipped..]).enumerate() {
         let mut ours = *ours;
         ours.now_us = theirs.now_us;
         // A zero may lose its sign.

@@ -5,7 +5,7 @@ use control::Law;
 use differential_equations::prelude::*;
 use sim_host::bicycle::{Parameters, State, Torques};
 use sim_host::ride::{Assist, Conditions, Start, TracePoint, traced};
-use sim_host::rider::{Gains, Muscles, Outside, Rider, Schedule};
+use sim_host::rider::{Gains, Neuromuscular, Outside, Rider, Schedule};
 use tests::basins::{H, alone, ideal};
 use tests::newton_euler::{self, Solution};
 use tests::riders::thorough;
@@ -54,7 +54,7 @@ impl Reference {
     }
 
     /// The neural signal felt in a state.
-    fn felt(&self, y: &Entries) -> f64 {
+    fn neural_signal(&self, y: &Entries) -> f64 {
         if y[0].is_nan() {
             return 0.0;
         }
@@ -72,7 +72,7 @@ impl Reference {
         let (s, _) = self.instant(y);
         let (sin, cos) = y[7].sin_cos();
         let sideways = sin * s.rear_axle_velocity.x + cos * s.rear_axle_velocity.y;
-        let Muscles { omega_rad_s: w, zeta } = self.rider.muscles;
+        let Neuromuscular { omega_rad_s: w, zeta } = self.rider.muscles;
         let (roll_acc, steer_acc, wheel_acc) =
             (s.roll_acceleration, s.steer_acceleration, s.rear_wheel_acceleration);
         let muscle = w * w * (alpha - y[9]) - 2.0 * zeta * w * y[10];
@@ -82,7 +82,7 @@ impl Reference {
 
 impl DDE<1, f64, Entries> for Reference {
     fn diff(&self, _: f64, y: &Entries, delayed: &[Entries; 1], rate: &mut Entries) {
-        *rate = self.rate(y, self.felt(&delayed[0]));
+        *rate = self.rate(y, self.neural_signal(&delayed[0]));
     }
     fn lags(&self, _: f64, _: &Entries, lags: &mut [f64; 1]) {
         lags[0] = self.rider.delay_s;
@@ -192,8 +192,11 @@ fn nothing_is_done_before_the_delay_has_passed() {
 /// Situation: a rider whose gains are all zero. Action: ride. The bits must be those of no rider.
 #[test]
 fn a_rider_who_feels_nothing_is_no_rider() {
-    let numb =
-        Rider { schedule: Schedule::constant(Gains::default()), delay_s: 0.03, muscles: Muscles::SHOULDERS };
+    let numb = Rider {
+        schedule: Schedule::constant(Gains::default()),
+        delay_s: 0.03,
+        muscles: Neuromuscular::SHOULDERS,
+    };
     let with = ridden(&ideal(H), numb, 1e-3, 1.0);
     let (_, without) = traced(&Conditions { time_limit_s: 1.0, ..ideal(H) }, START);
     assert_eq!(with, without);
@@ -212,9 +215,9 @@ fn a_ride_has_the_same_bits_in_any_lane() {
                 roll_rate_rad_s: 0.0,
             };
             let starts: Vec<_> = (1..=20).map(start).collect();
-            let abreast = sim_host::ride::rides(&conditions, &starts);
-            assert!(abreast.iter().any(sim_host::ride::Ride::fell) && !abreast[0].fell());
-            for (together, start) in abreast.iter().zip(&starts) {
+            let batch = sim_host::ride::rides(&conditions, &starts);
+            assert!(batch.iter().any(sim_host::ride::Ride::fell) && !batch[0].fell());
+            for (together, start) in batch.iter().zip(&starts) {
                 assert_eq!(*together, traced(&conditions, *start).0);
             }
         }

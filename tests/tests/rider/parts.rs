@@ -2,7 +2,7 @@
 
 use sim_host::bicycle::{Geometry, Motion, State};
 use sim_host::integrate::{STAGES, Stages};
-use sim_host::rider::{Body, Instant, Muscles, Nerves};
+use sim_host::rider::{DelayLine, Instant, Neuromuscular, RiderState};
 use tests::rides::shipped;
 
 /// Situation: muscles at rest, the neural signal jumps to 1 N m. Action: integrate for a second in
@@ -14,11 +14,11 @@ fn step_response_of_the_muscles() {
     let motion = Motion::new(&b, &state);
     let now =
         Instant { angles: [0.0; 2], accelerations: [0.0; 2], pose: &motion.pose, velocities: &motion.actual };
-    for muscles in [Muscles::SHOULDERS, Muscles { omega_rad_s: 30.0, zeta: 0.707 }] {
-        let Muscles { omega_rad_s: w, zeta } = muscles;
+    for muscles in [Neuromuscular::SHOULDERS, Neuromuscular { omega_rad_s: 30.0, zeta: 0.707 }] {
+        let Neuromuscular { omega_rad_s: w, zeta } = muscles;
         let damped = w * (1.0 - zeta * zeta).sqrt();
         let h = 1e-4;
-        let mut body = Body::<f64>::fresh();
+        let mut body = RiderState::<f64>::fresh();
         let (mut largest, mut overshoot) = (0.0_f64, 0.0_f64);
         for n in 0..10_000 {
             let t = f64::from(n) * h;
@@ -46,19 +46,19 @@ fn step_response_of_the_muscles() {
 /// steps it must be the sine to the bit, between them to 1e-12, and nothing before.
 #[test]
 fn pure_delay() {
-    let felt = |n: f64| (2e-3 * n).sin();
+    let sine = |n: f64| (2e-3 * n).sin();
     for delay in [7_usize, 30, 60] {
-        let mut nerves = Nerves::new(delay);
+        let mut delay_line = DelayLine::new(delay);
         let mut largest = 0.0_f64;
         for n in 0..3000 {
-            nerves.feel(felt(n as f64));
-            let [start, middle, end] = nerves.arriving();
+            delay_line.push(sine(n as f64));
+            let [start, middle, end] = delay_line.arriving();
             let then = n as f64 - delay as f64;
             if then < 0.0 {
                 assert_eq!([start, middle, end], [0.0; 3]);
             } else {
-                assert_eq!([start, end], [felt(then), felt(then + 1.0)]);
-                largest = largest.max((middle - felt(then + 0.5)).abs());
+                assert_eq!([start, end], [sine(then), sine(then + 1.0)]);
+                largest = largest.max((middle - sine(then + 0.5)).abs());
             }
         }
         // The cubic's remainder, 3/128 of the fourth difference inside, 5/128 at the ends: 6e-13.
@@ -73,13 +73,13 @@ fn pure_delay() {
 fn the_delay_line_is_of_fourth_order() {
     let error = |per_second: usize| {
         let h = 1.0 / per_second as f64;
-        let mut nerves = Nerves::new(per_second * 6 / 100);
+        let mut delay_line = DelayLine::new(per_second * 6 / 100);
         let mut largest = 0.0_f64;
         for n in 0..per_second {
-            nerves.feel((20.0 * n as f64 * h).cos());
+            delay_line.push((20.0 * n as f64 * h).cos());
             let t = (n as f64 + 0.5) * h - 0.06;
             if t > 0.0 {
-                largest = largest.max((nerves.arriving()[1] - (20.0 * t).cos()).abs());
+                largest = largest.max((delay_line.arriving()[1] - (20.0 * t).cos()).abs());
             }
         }
         largest

@@ -7,7 +7,7 @@ use sim_host::eigen::{
     Crossing, DelaySystem, Feedback, Intuitive, Mode, Model, critical_speeds, modes, rightmost, roots,
     stability,
 };
-use sim_host::rider::{Fit, Gains, KEYS, Muscles, Outside, Rider, Schedule, catalogue};
+use sim_host::rider::{Fit, Gains, KEYS, Neuromuscular, Outside, Rider, Schedule, catalogue};
 use std::f64::consts::{PI, TAU};
 use tests::published::{Published, entry};
 use tests::rides::{all_shipped, shipped};
@@ -46,7 +46,7 @@ fn lambert_w(z: f64) -> Vec<C> {
 
 fn rider(of: impl Fn(&str) -> f64, delay_s: f64) -> Rider {
     let gains = Gains(KEYS.map(of));
-    Rider { schedule: Schedule::constant(gains), delay_s, muscles: Muscles::SHOULDERS }
+    Rider { schedule: Schedule::constant(gains), delay_s, muscles: Neuromuscular::SHOULDERS }
 }
 
 fn with_rider(bicycle: &str, law: Law, rider: Rider) -> Model {

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, SMatrix};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use sim_host::bicycle::linear::Linear;
-use sim_host::rider::{Fit, Gains, KEYS, Muscles, Outside, RiderTable, catalogue};
+use sim_host::rider::{Fit, Gains, KEYS, Neuromuscular, Outside, RiderTable, catalogue};
 use std::path::Path;
 use tests::cli::repository;
 use tests::draws::runner;
@@ -178,7 +178,7 @@ fn every_shipped_table_loads_whole() {
             assert!(table.rider(fit, Outside::Hold, None).is_ok(), "{name} {}", fit.name());
         }
         let shoulders = !name.starts_with("hess");
-        assert_eq!(table.muscles == Muscles::SHOULDERS, shoulders, "{name}");
+        assert_eq!(table.muscles == Neuromuscular::SHOULDERS, shoulders, "{name}");
     }
     assert_eq!(catalogue::shipped_names().count(), 10);
     let example = repository("data/riders/example.toml");
@@ -188,7 +188,7 @@ fn every_shipped_table_loads_whole() {
 
 /// The state matrix of roll, steer, their rates, heading, lateral offset of the front contact, torque
 /// and its rate: the linear bicycle at `v` under gains of these, without delay.
-fn closed_loop(bicycle: &str, v: f64, gains: &Gains, muscles: &Muscles) -> SMatrix<f64, 8, 8> {
+fn closed_loop(bicycle: &str, v: f64, gains: &Gains, muscles: &Neuromuscular) -> SMatrix<f64, 8, 8> {
     let p = shipped(bicycle).parameters;
     let linear = Linear::new(&p);
     let free = linear.state_matrix(v, 0.0);

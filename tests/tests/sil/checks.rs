@@ -11,8 +11,8 @@ use sim_host::ride::{Start, rides, traced};
 use std::fmt;
 use tests::basins::H;
 use tests::draws::runner;
+use tests::estimator_inputs::Noise;
 use tests::fault_cards::product;
-use tests::felt::Noise;
 use tests::inside::{AXES, RIDERS, SPEEDS, borders, sensed, unchecked, with};
 
 /// Rides drawn inside each basin.

@@ -148,7 +148,7 @@ fn the_window_is_found() {
     }
     let told = Settings { from_s: Some(2.0), to_s: Some(4.0), ..Settings::default() };
     let told = identify(&record, told).expect("a weave");
-    assert_eq!((told.begins, told.ends), (Begins::Told, Ends::Told));
+    assert_eq!((told.begins, told.ends), (Begins::Stated, Ends::Stated));
     assert!((told.from_s - 2.0).abs() < 0.02 && (told.to_s - 4.0).abs() < 0.02);
 }
 

@@ -4,13 +4,13 @@ use control::Law;
 use sim_host::basin::border;
 use sim_host::eigen::{Feedback, Model, rightmost};
 use sim_host::ride::Conditions;
-use sim_host::rider::{Fit, Gains, KEYS, Muscles, Outside, Rider, Schedule, catalogue};
+use sim_host::rider::{Fit, Gains, KEYS, Neuromuscular, Outside, Rider, Schedule, catalogue};
 use sim_host::thesis::published::published;
 use tests::basins::{alone, search};
 use tests::rides::shipped;
 
 fn constant(gains: Gains, delay_ms: f64) -> Rider {
-    Rider { schedule: Schedule::constant(gains), delay_s: delay_ms * 1e-3, muscles: Muscles::SHOULDERS }
+    Rider { schedule: Schedule::constant(gains), delay_s: delay_ms * 1e-3, muscles: Neuromuscular::SHOULDERS }
 }
 
 /// The height as Tables I.1 and I.2 print it: the first multiple of 0.1 rad/s that falls; and the one

@@ -1,17 +1,17 @@
 //! The figures of a study.
 
 use super::Part;
-use super::answer::{Answer, Group};
 use super::page::LEAST;
+use super::part_result::{Group, PartResult};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Picture, Plot, Series, chart};
 use crate::sweep::{AT_LEAST, Grid, pictures};
 
 /// The figures of a part's sweep with their names: along one axis of numbers a line for every group, along
 /// several the heat maps, of words the heights over speed.
 pub fn figures(part: &Part, grid: &Grid) -> Vec<(String, Picture)> {
-    let Some(answer) = Answer::new(part, grid) else { return Vec::new() };
-    match (answer.numbers(part), &answer.others[..]) {
-        (Some((numbers, unit)), []) => vec![(part.name.clone(), lines(part, &answer, &numbers, &unit))],
+    let Some(result) = PartResult::new(part, grid) else { return Vec::new() };
+    match (result.numbers(part), &result.others[..]) {
+        (Some((numbers, unit)), []) => vec![(part.name.clone(), lines(part, &result, &numbers, &unit))],
         (Some(_), _) => {
             let named = |(name, picture)| (format!("{}-{name}", part.name), picture);
             let wanted = |(name, _): &(String, Picture)| {
@@ -24,9 +24,9 @@ pub fn figures(part: &Part, grid: &Grid) -> Vec<(String, Picture)> {
 }
 
 /// The part of the area over the axis.
-fn lines(part: &Part, answer: &Answer, numbers: &[(usize, f64)], unit: &str) -> Picture {
+fn lines(part: &Part, result: &PartResult, numbers: &[(usize, f64)], unit: &str) -> Picture {
     let look = |i| Look { marker: Some(Marker::Point), ..Look::line(i, Line::Solid) };
-    let mut series: Vec<Series> = answer
+    let mut series: Vec<Series> = result
         .groups
         .iter()
         .enumerate()
@@ -39,7 +39,7 @@ fn lines(part: &Part, answer: &Answer, numbers: &[(usize, f64)], unit: &str) -> 
         let at = |&(place, x): &(usize, f64)| group.part(0, place).map(|(part, bound)| (x, part, bound));
         numbers.iter().filter_map(at).collect::<Vec<_>>()
     };
-    let bounds: Vec<(f64, f64)> = answer
+    let bounds: Vec<(f64, f64)> = result
         .groups
         .iter()
         .flat_map(parts)
@@ -54,14 +54,14 @@ fn lines(part: &Part, answer: &Answer, numbers: &[(usize, f64)], unit: &str) -> 
     let level = [(range.0, LEAST), (range.1, LEAST)].to_vec();
     series.insert(0, Series::new(format!("{:.0} %", 100.0 * LEAST), Look::line(0, Line::Faint), level));
     let label = if unit.is_empty() {
-        answer.along.key.clone()
+        result.along.key.clone()
     } else {
-        format!("{} [{}]", answer.along.key, unit.trim())
+        format!("{} [{}]", result.along.key, unit.trim())
     };
     let x = Axis::new(&label).over(range.0, range.1);
     let plot = Plot {
         x: if range.0 > 0.0 { x.log() } else { x },
-        y: Axis::new(&format!("Part of the reference's {}", answer.what)),
+        y: Axis::new(&format!("Part of the reference's {}", result.what)),
         series,
         ..Plot::default()
     };

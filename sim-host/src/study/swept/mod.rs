@@ -1,12 +1,12 @@
 //! Questions answered by sweeps that are written down, with the answer as a page.
 
-mod answer;
 mod figure;
 mod file;
-mod keep;
 mod page;
+mod part_result;
+mod threshold;
 
 pub use figure::figures;
 pub use file::{Part, Study, StudyError, parse};
-pub use keep::{Kept, kept};
 pub use page::{Spent, page};
+pub use threshold::{Threshold, threshold};

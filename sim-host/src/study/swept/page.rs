@@ -1,7 +1,7 @@
 //! A study's answer as a page of Markdown.
 
-use super::answer::{Answer, Group};
-use super::{Kept, Part, Study, kept};
+use super::part_result::{Group, PartResult};
+use super::{Part, Study, Threshold, threshold};
 use crate::basin::{Bound, Work};
 use crate::sweep::{Axis, Grid};
 use std::fmt::Write;
@@ -51,13 +51,13 @@ fn section(study: &Study, part: &Part, grid: &Grid, figures: &str) -> String {
     let over: Vec<String> = part.over.iter().map(|axis| format!("--over {axis}")).collect();
     let _ =
         writeln!(text, "```sh\nsim-host sweep {} \\\n    {}\n```\n", part.options, over.join(" \\\n    "));
-    match Answer::new(part, grid) {
+    match PartResult::new(part, grid) {
         None => text += "Not every cell is computed.\n\n",
-        Some(answer) => match (answer.numbers(part), &answer.others[..]) {
-            (None, _) => text += &compared(&answer, grid),
-            (Some(numbers), []) => text += &alone(&answer, &numbers, grid),
+        Some(result) => match (result.numbers(part), &result.others[..]) {
+            (None, _) => text += &compared(&result, grid),
+            (Some(numbers), []) => text += &alone(&result, &numbers, grid),
             (Some(numbers), _) => {
-                text += &(together(&answer, &numbers) + &accuracy(&answer, grid) + &bounds(&answer, grid));
+                text += &(together(&result, &numbers) + &accuracy(&result, grid) + &bounds(&result, grid));
             }
         },
     }
@@ -68,21 +68,21 @@ fn section(study: &Study, part: &Part, grid: &Grid, figures: &str) -> String {
 }
 
 /// Where a line of a group falls below what is enough; `None` where a part of it is only a bound.
-fn found(group: &Group, line: usize, numbers: &[(usize, f64)]) -> Option<Kept> {
+fn found(group: &Group, line: usize, numbers: &[(usize, f64)]) -> Option<Threshold> {
     let part = |i: usize| group.part(line, i).map_or(f64::NAN, |p| p.0);
     let points: Vec<(f64, f64)> = numbers.iter().map(|&(i, x)| (x, part(i))).collect();
-    group.measured(line).then(|| kept(&points, LEAST))
+    group.measured(line).then(|| threshold(&points, LEAST))
 }
 
-fn in_words(found: Option<Kept>, numbers: &[(usize, f64)], unit: &str) -> String {
+fn in_words(found: Option<Threshold>, numbers: &[(usize, f64)], unit: &str) -> String {
     let last = numbers[numbers.len() - 1].1;
     let Some(found) = found else { return REFUSED.into() };
     match found {
-        Kept::Everywhere => format!("{last}{unit} keeps it"),
-        Kept::Nowhere => "lost".into(),
-        Kept::Until { at, kept, lost } => {
+        Threshold::Everywhere => format!("{last}{unit} keeps it"),
+        Threshold::Nowhere => "lost".into(),
+        Threshold::Until { at, threshold, lost } => {
             let digits = (2 - libm::log10(at.abs().max(1e-9)).floor() as i32).max(0) as usize;
-            let (low, high) = (kept.min(lost), kept.max(lost));
+            let (low, high) = (threshold.min(lost), threshold.max(lost));
             format!("{at:.digits$}{unit} ({low}{unit} to {high}{unit})")
         }
     }
@@ -97,9 +97,9 @@ fn bounded(x: f64, bound: Bound, digits: usize) -> String {
 }
 
 /// Below tables with a bound in them.
-fn bounds(answer: &Answer, grid: &Grid) -> String {
+fn bounds(result: &PartResult, grid: &Grid) -> String {
     let measured = |group: &Group| (0..group.lines.len()).all(|line| group.measured(line));
-    if answer.groups.iter().all(measured) {
+    if result.groups.iter().all(measured) {
         return String::new();
     }
     format!(
@@ -107,7 +107,7 @@ fn bounds(answer: &Answer, grid: &Grid) -> String {
          is not known where {}s are such bounds.\n\n",
         grid.plan.search.max_rate,
         100.0 * LEAST,
-        answer.what
+        result.what
     )
 }
 
@@ -115,19 +115,19 @@ fn bounds(answer: &Answer, grid: &Grid) -> String {
 const BESIDE: usize = 8;
 
 /// One axis alone: a row a group.
-fn alone(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String), grid: &Grid) -> String {
-    let key = &answer.along.key;
+fn alone(result: &PartResult, (numbers, unit): &(Vec<(usize, f64)>, String), grid: &Grid) -> String {
+    let key = &result.along.key;
     let told: Vec<(usize, f64)> =
         numbers.iter().copied().step_by(if numbers.len() > BESIDE { 4 } else { 1 }).collect();
     let mut text = format!(
         "| group | {} of the reference, {} | {key} that keeps {:.0} % (grid) | part of the {} at {} |\n| --- | --- | --- | --- |\n",
-        answer.what,
-        answer.unit,
+        result.what,
+        result.unit,
         100.0 * LEAST,
-        answer.what,
+        result.what,
         told.iter().map(|n| format!("{}{unit}", n.1)).collect::<Vec<_>>().join(", ")
     );
-    for group in &answer.groups {
+    for group in &result.groups {
         let parts: Vec<String> = told.iter().map(|n| share(group, 0, n.0)).collect();
         let _ = writeln!(
             text,
@@ -139,7 +139,7 @@ fn alone(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String), grid: &
         );
     }
     text += "\nInterpolated between the two values of the grid in parentheses, which are the bounds of its error. ";
-    text + &accuracy(answer, grid) + &bounds(answer, grid)
+    text + &accuracy(result, grid) + &bounds(result, grid)
 }
 
 /// The part of the reference's area that a line of a group has at a place of the axis.
@@ -148,13 +148,13 @@ fn share(group: &Group, line: usize, place: usize) -> String {
 }
 
 /// Two axes: the part of the area in every cell, a table a group.
-fn shares(answer: &Answer, group: &Group, rows: &Axis) -> String {
-    let along = &answer.along;
+fn shares(result: &PartResult, group: &Group, rows: &Axis) -> String {
+    let along = &result.along;
     let mut text = format!(
         "{}: part of {} {}.\n\n| {} \\ {} | {} |\n| --- {}|\n",
         group.label,
         bounded(group.reference, group.reference_is, 2),
-        answer.unit,
+        result.unit,
         rows.key,
         along.key,
         along.values.join(" | "),
@@ -168,13 +168,13 @@ fn shares(answer: &Answer, group: &Group, rows: &Axis) -> String {
 }
 
 /// How sure areas are; of a single speed the heights.
-fn accuracy(answer: &Answer, grid: &Grid) -> String {
+fn accuracy(result: &PartResult, grid: &Grid) -> String {
     let (speeds, tolerance) = (&grid.plan.search.speeds, grid.plan.search.tolerance);
     if grid.one_speed() {
         return format!("Heights are located within {tolerance} rad/s.\n\n");
     }
     let span = speeds.last().unwrap_or(&0.0) - speeds.first().unwrap_or(&0.0);
-    let least = answer.groups.iter().map(|g| g.reference).fold(f64::INFINITY, f64::min);
+    let least = result.groups.iter().map(|g| g.reference).fold(f64::INFINITY, f64::min);
     format!(
         "Heights are located within {tolerance} rad/s, areas thus within {:.2} rad m/s^2, {:.1} % of the smallest \
          reference.\n\n",
@@ -188,19 +188,19 @@ fn capital(word: &str) -> String {
 }
 
 /// Several axes: a table a group, rows and columns the reference's other axes.
-fn together(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String)) -> String {
-    let key = &answer.along.key;
-    let (rows, columns) = (&answer.others[0], answer.others.get(1));
+fn together(result: &PartResult, (numbers, unit): &(Vec<(usize, f64)>, String)) -> String {
+    let key = &result.along.key;
+    let (rows, columns) = (&result.others[0], result.others.get(1));
     let across = columns.map_or(1, |axis| axis.values.len());
     let mut text = String::new();
-    for group in &answer.groups {
+    for group in &result.groups {
         let _ = writeln!(
             text,
             "{}: {key} that keeps {:.0} % of {} {} (interpolated, between the grid's values in parentheses; \"lost\" at every value of the grid).\n",
             group.label,
             100.0 * LEAST,
             bounded(group.reference, group.reference_is, 2),
-            answer.unit
+            result.unit
         );
         let names: Vec<&str> =
             columns.map_or(vec![key.as_str()], |axis| axis.values.iter().map(String::as_str).collect());
@@ -213,18 +213,18 @@ fn together(answer: &Answer, (numbers, unit): &(Vec<(usize, f64)>, String)) -> S
         }
         text.push('\n');
         if columns.is_none() {
-            text += &shares(answer, group, rows);
+            text += &shares(result, group, rows);
         }
     }
     text
 }
 
 /// An axis of words: the area at each, beside the reference's.
-fn compared(answer: &Answer, grid: &Grid) -> String {
+fn compared(result: &PartResult, grid: &Grid) -> String {
     let names: Vec<String> =
-        answer.along.values.iter().map(|v| format!("{} {v}", answer.along.key)).collect();
+        result.along.values.iter().map(|v| format!("{} {v}", result.along.key)).collect();
     let mut text = format!("| group | {} |\n| --- {}|\n", names.join(" | "), "| --- ".repeat(names.len()));
-    for group in &answer.groups {
+    for group in &result.groups {
         for line in &group.lines {
             let cell = |area: &Option<(f64, Bound)>| {
                 let Some((a, bound)) = *area else { return "-".into() };
@@ -239,8 +239,8 @@ fn compared(answer: &Answer, grid: &Grid) -> String {
     let _ = write!(
         text,
         "\n{}s in {}, and their difference to the reference. ",
-        capital(answer.what),
-        answer.unit
+        capital(result.what),
+        result.unit
     );
-    text + &accuracy(answer, grid) + &bounds(answer, grid)
+    text + &accuracy(result, grid) + &bounds(result, grid)
 }

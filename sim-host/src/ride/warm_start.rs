@@ -1,7 +1,7 @@
 //! Before the disturbance: the bicycle rides upright and straight, the controller boots, tests
 //! itself, and is engaged by a fresh press of the switch, all by the step that is flashed.
 
-use super::processor::{Processor, Stepped};
+use super::backend::{Backend, Stepped};
 use super::sensor::{Reading, frame};
 use super::{Assist, Conditions};
 use control::{Command, Plan, SensorFrame, State};
@@ -15,25 +15,25 @@ pub(super) struct Ready {
 }
 
 /// Rides steadily by what the sensors tell, given the control periods since boot, the switch and the torque commanded
-/// last \[N m\], until the assist has its whole authority; `seen` gets every frame and command. The switch is
+/// last \[N m\], until the assist has its whole authority; `observe` gets every frame and command. The switch is
 /// pressed once nothing else is missing, and let go if the press is refused. A controller that does not
 /// engage is given up after ten times the time it should take, and rides on without.
-pub(super) fn preroll(
+pub(super) fn engage_run(
     plan: &Plan,
-    processor: &mut Processor,
-    mut told: impl FnMut(u32, bool, f64) -> SensorFrame,
-    mut seen: impl FnMut(&SensorFrame, &Command),
+    backend: &mut Backend,
+    mut measured: impl FnMut(u32, bool, f64) -> SensorFrame,
+    mut observe: impl FnMut(&SensorFrame, &Command),
 ) -> Ready {
     let mut controller = State::default();
     let (mut pressed, mut ticks, mut torque_nm) = (false, 0, 0.0);
     while ticks < 10 * plan.ticks_to_engage() {
-        let told = told(ticks, pressed, torque_nm);
-        let Stepped { command, authority } = processor.step(plan, &mut controller, &told);
+        let measured = measured(ticks, pressed, torque_nm);
+        let Stepped { command, authority } = backend.step(plan, &mut controller, &measured);
         ticks += 1;
         torque_nm = f64::from(command.torque_nm);
-        seen(&told, &command);
+        observe(&measured, &command);
         pressed = plan.ready(&command) || command.mode.drives();
-        if authority == 1.0 || processor.failed() {
+        if authority == 1.0 || backend.failed() {
             break;
         }
     }
@@ -48,21 +48,21 @@ pub(super) fn steady(plan: &Plan, speed_m_s: f64) -> impl FnMut(u32, bool, f64) 
 
 /// The last controller readied: rides from the same speed share it, where it runs here.
 #[derive(Default)]
-pub(super) struct Readied(Option<(f64, Ready)>);
+pub(super) struct WarmStart(Option<(f64, Ready)>);
 
-impl Readied {
+impl WarmStart {
     /// A controller ready at this speed \[m/s\], if there is one to be.
     pub(super) fn at(
         &mut self,
         conditions: &Conditions,
-        processor: &mut Processor,
+        backend: &mut Backend,
         speed_m_s: f64,
     ) -> Option<Ready> {
         let Assist::Firmware(plan) = &conditions.assist else { return None };
         match &self.0 {
-            Some((speed, ready)) if *speed == speed_m_s && processor.shares() => Some(ready.clone()),
+            Some((speed, ready)) if *speed == speed_m_s && backend.shares() => Some(ready.clone()),
             _ => {
-                let ready = preroll(plan, processor, steady(plan, speed_m_s), |_, _| ());
+                let ready = engage_run(plan, backend, steady(plan, speed_m_s), |_, _| ());
                 self.0 = Some((speed_m_s, ready.clone()));
                 Some(ready)
             }

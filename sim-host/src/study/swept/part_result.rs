@@ -32,7 +32,7 @@ impl Group {
 }
 
 /// A part's answer, before it is put in words.
-pub(super) struct Answer {
+pub(super) struct PartResult {
     /// The axis along which is looked.
     pub(super) along: Axis,
     /// The reference's other axes.
@@ -56,7 +56,7 @@ fn combinations(axes: &[&Axis]) -> Vec<Vec<(String, String)>> {
     })
 }
 
-impl Answer {
+impl PartResult {
     /// The answer in a finished sweep.
     pub(super) fn new(part: &Part, grid: &Grid) -> Option<Self> {
         let axes = &grid.plan.axes;

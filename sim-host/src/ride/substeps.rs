@@ -6,7 +6,7 @@
 //! as a coin's does, and may throw the roll back.
 
 use super::event::fallen;
-use super::human::Human;
+use super::rider_lanes::RiderLane;
 use super::sensor::readings;
 use super::{Assist, Conditions};
 use crate::bicycle::{Accelerations, FullState, Geometry, Motion, State, Torques, Velocities};
@@ -38,7 +38,7 @@ pub(super) struct Segment {
 /// What tells how quick the motion is: the sum of squares of its rates \[rad^2/s^2\], the cosine of
 /// roll, and the distances from the two singular places.
 #[inline(always)]
-pub(super) fn quickness<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> [S; 4] {
+pub(super) fn stiffness<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> [S; 4] {
     let v = &motion.actual;
     let squares = v.roll * v.roll + v.steer * v.steer + v.pitch * v.pitch + v.yaw * v.yaw;
     let (_, cos_roll) = motion.pose.attitude.roll;
@@ -46,8 +46,8 @@ pub(super) fn quickness<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> [S; 4] {
 }
 
 /// Whether a step of `h` seconds with the independent speeds will not do.
-pub(super) fn too_quick(quickness: [f64; 4], h: f64) -> bool {
-    singular(quickness) || pieces(quickness, h) > 1.0
+pub(super) fn too_stiff(stiffness: [f64; 4], h: f64) -> bool {
+    singular(stiffness) || pieces(stiffness, h) > 1.0
 }
 
 /// Whether the independent speeds do not safely fix the others. NaN counts as singular.
@@ -75,7 +75,7 @@ pub(super) struct Period<'a> {
     /// The ride's speed at t = 0 \[m/s\].
     pub(super) initial_m_s: f64,
     /// The rider.
-    pub(super) human: Option<Human<'a>>,
+    pub(super) human: Option<RiderLane<'a>>,
 }
 
 impl Period<'_> {
@@ -90,7 +90,7 @@ impl Period<'_> {
                 law.gain(speed) * rate
             }
         };
-        let rider = self.human.as_ref().map_or(0.0, |human| human.body.at.torque);
+        let rider = self.human.as_ref().map_or(0.0, |human| human.rider_state.at.torque);
         let mut steer = assist + rider;
         if actuator.friction.acts() {
             steer += actuator.friction.torque(v.steer);
@@ -102,11 +102,11 @@ impl Period<'_> {
     }
 
     /// Lets the rider feel a stage of the step of `h` seconds that begins at `offset`.
-    fn felt(&mut self, stage: usize, (offset, h): (f64, f64), now: &Instant<f64>) {
+    fn end_stage(&mut self, stage: usize, (offset, h): (f64, f64), now: &Instant<f64>) {
         if let Some(human) = &mut self.human {
             let (_, speed) = readings(self.conditions, now.velocities, self.initial_m_s);
             let s = (offset + STAGES[stage] * h) / self.conditions.step_s;
-            human.felt(&self.conditions.bicycle, (stage, h, s), now, speed);
+            human.end_stage(&self.conditions.bicycle, (stage, h, s), now, speed);
         }
     }
 }
@@ -118,11 +118,11 @@ pub(super) fn refined(period: &mut Period, from: &State<f64>) -> Segment {
     let (mut was, mut offset, mut taken) = (*from, 0.0, 0);
     loop {
         let motion = Motion::new(b, &was);
-        let quickness = quickness(b, &motion);
+        let stiffness = stiffness(b, &motion);
         let left = step_s - offset;
-        let pieces = pieces(quickness, left);
+        let pieces = pieces(stiffness, left);
         let h = left / pieces;
-        let is = if singular(quickness) {
+        let is = if singular(stiffness) {
             let at = period.full.unwrap_or_else(|| FullState::new(&motion, &was));
             *period.full = step(b, &at, (offset, h), period);
             period.full.map_or(State { rear_wheel_rate: f64::NAN, ..was }, |next| next.state())
@@ -131,7 +131,7 @@ pub(super) fn refined(period: &mut Period, from: &State<f64>) -> Segment {
             rk4(b, &was, h, &mut Shorter { period, offset, h })
         };
         if let Some(human) = &mut period.human {
-            human.body = Stages::new(human.body.end);
+            human.rider_state = Stages::new(human.rider_state.end);
         }
         taken += 1;
         if pieces <= 1.0 || taken >= period.most_pieces || fallen(&period.conditions.fall, &is) {
@@ -154,7 +154,7 @@ impl Actuation<f64> for Shorter<'_, '_> {
         self.period.torques(self.offset + STAGES[stage] * self.h, libm::atan2(sin, cos), &motion.actual)
     }
 
-    fn felt(
+    fn end_stage(
         &mut self,
         _: &Geometry,
         stage: usize,
@@ -162,7 +162,7 @@ impl Actuation<f64> for Shorter<'_, '_> {
         motion: &Motion<f64>,
         acc: &Accelerations<f64>,
     ) {
-        self.period.felt(stage, (self.offset, self.h), &Instant::new(state, motion, acc));
+        self.period.end_stage(stage, (self.offset, self.h), &Instant::new(state, motion, acc));
     }
 }
 
@@ -181,7 +181,7 @@ fn step(b: &Geometry, from: &FullState, (offset, h): (f64, f64), period: &mut Pe
             pose: &pose,
             velocities: &velocities,
         };
-        period.felt(stage, (offset, h), &now);
+        period.end_stage(stage, (offset, h), &now);
         stages.next(stage, h, &k);
     }
     Some(stages.end)

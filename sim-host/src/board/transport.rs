@@ -4,22 +4,22 @@ use std::io;
 use std::time::Duration;
 
 /// A two-way line of bytes to a board.
-pub trait Line {
+pub trait Transport {
     /// Sends all of `bytes`.
     ///
     /// # Errors
     /// The line is lost, or only goes the other way.
-    fn send(&mut self, bytes: &[u8]) -> Result<(), LineError>;
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError>;
 
-    /// What came in since the last call, waiting up to `patience` of real time for the first byte; empty when
+    /// What came in since the last call, waiting up to `timeout` of real time for the first byte; empty when
     /// nothing came.
     ///
     /// # Errors
     /// The line is lost, or has come to its end.
-    fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError>;
+    fn receive(&mut self, timeout: Duration) -> Result<Vec<u8>, TransportError>;
 
     /// Opens a lost line anew; `None` for one that never comes back.
-    fn reopen(&mut self) -> Option<Result<(), LineError>> {
+    fn reopen(&mut self) -> Option<Result<(), TransportError>> {
         None
     }
 }
@@ -29,7 +29,7 @@ pub trait Line {
 /// None tells its cause as a source: a device that hangs up is a broken pipe to the system, and must not be taken for a
 /// reader of standard output that goes away.
 #[derive(Debug, thiserror::Error)]
-pub enum LineError {
+pub enum TransportError {
     /// It can't be opened.
     #[error("can't open {line}: {why}")]
     Open {

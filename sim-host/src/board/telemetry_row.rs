@@ -7,7 +7,7 @@ use serde::Serialize;
 /// A control step that a board told. Sensors are in their own axes, zeros and signs, as they were read; one without a
 /// sample is empty.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct TelemetryRow {
     /// The board's clock \[s\].
     pub t: f64,
     /// Control steps done, this one included.
@@ -82,10 +82,10 @@ pub struct Row {
     pub causes_high: u32,
 }
 
-impl Row {
+impl TelemetryRow {
     /// Of a step at `t` by the board's clock \[s\].
-    pub fn new(t: f64, told: &Telemetry) -> Self {
-        let Telemetry { steps, late, driven, frame, command, slopes, polarity, shown_nm } = told;
+    pub fn new(t: f64, received: &Telemetry) -> Self {
+        let Telemetry { steps, late, driven, frame, command, slopes, polarity, shown_nm } = received;
         let ([roll_rate, pitch_rate, yaw_rate], gyro_age) = triple(&frame.gyro_rad_s);
         let ([x, y, z], accel_age) = triple(&frame.accel_m_s2);
         let (steer, steer_age) = sample(&frame.steer_rad);

@@ -1,25 +1,25 @@
 //! The bookkeeping of one ride while it lasts.
 
+use super::backend::Backend;
 use super::event::{at_fall, fallen, time_of_fall};
-use super::outfit::Outfit;
-use super::preroll::Ready;
-use super::processor::Processor;
-use super::refine::Segment;
+use super::hardware::RideHardware;
 use super::sensor::{Reading, Sensors, frame};
+use super::substeps::Segment;
+use super::warm_start::Ready;
 use super::{Assist, Conditions, Effort, FallCause, FinalState, Outcome, Ride, Start};
 use crate::bicycle::{FullState, State};
 use control::{Causes, Mode, Plan, SensorFrame};
 
 /// Torques on the steer axis at the start of a control period.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pushes {
+pub(super) struct SteerTorques {
     pub(super) assist_nm: f64,
     pub(super) rider_nm: f64,
 }
 
 /// The controller's answer at a control instant.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Answer {
+pub(super) struct ControllerOutput {
     /// What it was told.
     pub(super) frame: SensorFrame,
     /// Commanded steer torque \[N m\].
@@ -29,7 +29,7 @@ pub(super) struct Answer {
     pub(super) causes: Causes,
 }
 
-impl Answer {
+impl ControllerOutput {
     /// Of no controller.
     const NONE: Self = Self {
         frame: SensorFrame::missing(),
@@ -41,7 +41,7 @@ impl Answer {
 }
 
 /// The ride in a lane.
-pub(super) struct Logbook {
+pub(super) struct RideRecorder {
     /// Which of the starts.
     pub(super) index: usize,
     pub(super) start: Start,
@@ -51,10 +51,10 @@ pub(super) struct Logbook {
     /// The controller, and the control periods since its boot; `None` if there is none.
     controller: Option<Ready>,
     /// Sensors and motor, where they are not exact.
-    pub(super) outfit: Option<Box<Outfit>>,
+    pub(super) hardware: Option<Box<RideHardware>>,
     /// All speeds, while the motion is near a place where three do not fix the others.
     pub(super) full: Option<FullState>,
-    before: Pushes,
+    before: SteerTorques,
     effort: Effort,
     /// Sums over the control periods: squares of both torques, and how many they opposed each other.
     squares: [f64; 2],
@@ -67,13 +67,13 @@ pub(super) struct Logbook {
     pub(super) pieces_left: u32,
 }
 
-impl Logbook {
+impl RideRecorder {
     pub(super) fn new(
         conditions: &Conditions,
         index: usize,
         start: Start,
         controller: Option<Ready>,
-        outfit: Option<Box<Outfit>>,
+        hardware: Option<Box<RideHardware>>,
     ) -> Self {
         Self {
             index,
@@ -81,9 +81,9 @@ impl Logbook {
             step: 0,
             sensors: Sensors::new(conditions, &start),
             controller,
-            outfit,
+            hardware,
             full: None,
-            before: Pushes::default(),
+            before: SteerTorques::default(),
             effort: Effort::default(),
             squares: [0.0; 2],
             opposed: 0,
@@ -94,25 +94,36 @@ impl Logbook {
     }
 
     /// The controller's answer to this instant's reading, by exact sensors.
-    pub(super) fn command(&mut self, assist: &Assist, processor: &mut Processor, told: &Reading) -> Answer {
+    pub(super) fn command(
+        &mut self,
+        assist: &Assist,
+        backend: &mut Backend,
+        measured: &Reading,
+    ) -> ControllerOutput {
         match assist {
-            Assist::None => Answer::NONE,
+            Assist::None => ControllerOutput::NONE,
             Assist::Firmware(plan) => {
                 let ticks = self.controller.as_ref().map_or(0, |ready| ready.ticks);
-                self.answer(plan, processor, frame(plan, told, ticks, true))
+                self.output(plan, backend, frame(plan, measured, ticks, true))
             }
-            Assist::Ideal(law) => {
-                Answer { torque_nm: law.gain(told.speed_m_s) * told.roll_rate_rad_s, ..Answer::NONE }
-            }
+            Assist::Ideal(law) => ControllerOutput {
+                torque_nm: law.gain(measured.speed_m_s) * measured.roll_rate_rad_s,
+                ..ControllerOutput::NONE
+            },
         }
     }
 
     /// The controller's answer to a frame.
-    pub(super) fn answer(&mut self, plan: &Plan, processor: &mut Processor, frame: SensorFrame) -> Answer {
-        let Some(Ready { controller, ticks }) = &mut self.controller else { return Answer::NONE };
-        let command = processor.step(plan, controller, &frame).command;
+    pub(super) fn output(
+        &mut self,
+        plan: &Plan,
+        backend: &mut Backend,
+        frame: SensorFrame,
+    ) -> ControllerOutput {
+        let Some(Ready { controller, ticks }) = &mut self.controller else { return ControllerOutput::NONE };
+        let command = backend.step(plan, controller, &frame).command;
         *ticks = ticks.wrapping_add(1);
-        Answer {
+        ControllerOutput {
             frame,
             torque_nm: f64::from(command.torque_nm),
             limits: command.limits.0,
@@ -121,14 +132,14 @@ impl Logbook {
         }
     }
 
-    /// Books one control period that began with `pushes`, from `was` to the end of its `last`
+    /// Books one control period that began with `steer_torques`, from `was` to the end of its `last`
     /// segment; the finished ride, when it was the last.
     ///
     /// The effort of a period in which the bicycle falls is left out.
     pub(super) fn book(
         &mut self,
         conditions: &Conditions,
-        pushes: Pushes,
+        steer_torques: SteerTorques,
         was: &State<f64>,
         last: &Segment,
     ) -> Option<Ride> {
@@ -141,7 +152,7 @@ impl Logbook {
             return Some(self.finish(Outcome::Fallen { time_s, by }, time_s, &end));
         }
         let e = &mut self.effort;
-        let Pushes { assist_nm, rider_nm } = pushes;
+        let SteerTorques { assist_nm, rider_nm } = steer_torques;
         e.peak_torque_nm = e.peak_torque_nm.max(assist_nm.abs());
         if self.step > 0 {
             e.peak_slew_nm_s = e.peak_slew_nm_s.max((assist_nm - self.before.assist_nm).abs() / h);
@@ -155,7 +166,7 @@ impl Logbook {
         e.rider_energy_j += rider_nm * turned;
         self.squares = [self.squares[0] + assist_nm * assist_nm, self.squares[1] + rider_nm * rider_nm];
         self.opposed += u32::from(assist_nm * rider_nm < 0.0);
-        self.before = pushes;
+        self.before = steer_torques;
         self.step += 1;
         let t = f64::from(self.step) * h;
         if t > conditions.time_limit_s - 1.0 {

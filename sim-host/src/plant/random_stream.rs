@@ -7,9 +7,9 @@ use chacha20::rand_core::{Rng, SeedableRng};
 /// A source of random numbers for one purpose in one ride: seed and start are the generator's key,
 /// the purpose is its stream, so neither lane nor thread nor another purpose's draws change them.
 #[derive(Debug)]
-pub struct Dice(ChaCha8Rng);
+pub struct RandomStream(ChaCha8Rng);
 
-impl Dice {
+impl RandomStream {
     /// The numbers of `purpose` in the ride from `start`.
     pub fn new(seed: u64, start: &Start, purpose: u64) -> Self {
         let Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s } = *start;

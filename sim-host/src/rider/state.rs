@@ -1,13 +1,13 @@
 //! A rider's own state, and what a rider feels.
 
-use super::{Muscles, Signals};
+use super::{Neuromuscular, Signals};
 use crate::bicycle::{Accelerations, Geometry, Motion, Pose, State, Velocities};
 use crate::integrate::Moves;
 use crate::num::Scalar;
 
 /// What a rider remembers from instant to instant, the nerves' delay left out. All zero at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body<S> {
+pub struct RiderState<S> {
     /// Integral of roll from t = 0 \[rad s\].
     pub roll_integral: S,
     /// Integral of steer \[rad s\].
@@ -48,7 +48,7 @@ impl<'a, S: Scalar> Instant<'a, S> {
     }
 }
 
-impl<S: Scalar> Body<S> {
+impl<S: Scalar> RiderState<S> {
     /// At the start.
     #[inline(always)]
     pub fn fresh() -> Self {
@@ -89,10 +89,10 @@ impl<S: Scalar> Body<S> {
     /// The rate of change of every entry, in the same places, under the neural signal `alpha` \[N m\]
     /// that arrives now.
     #[inline(always)]
-    pub fn rate(&self, b: &Geometry, now: &Instant<S>, muscles: &Muscles, alpha: S) -> Body<S> {
+    pub fn rate(&self, b: &Geometry, now: &Instant<S>, muscles: &Neuromuscular, alpha: S) -> RiderState<S> {
         let v = now.velocities;
         let (sin, _) = self.heading.sin_cos();
-        Body {
+        RiderState {
             roll_integral: now.angles[0],
             steer_integral: now.angles[1],
             heading: v.yaw,
@@ -103,7 +103,7 @@ impl<S: Scalar> Body<S> {
     }
 }
 
-impl<S: Scalar> Moves for Body<S> {
+impl<S: Scalar> Moves for RiderState<S> {
     #[inline(always)]
     fn moved(&self, h: f64, rate: &Self) -> Self {
         Self {

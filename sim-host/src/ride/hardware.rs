@@ -1,20 +1,20 @@
 //! The plant of one ride: exact readings, the sensors that tell them, the motor. Rides whose sensors
 //! and motor are exact, and whose controller needs roll rate and one speed only, go without.
 
-use super::preroll::{Ready, preroll};
-use super::processor::Processor;
+use super::backend::Backend;
 use super::sensor::Reading as Signals;
+use super::warm_start::{Ready, engage_run};
 use super::{Assist, Conditions, ScheduleSpeed, Start};
 use crate::bicycle::{Motion, Velocities};
 use crate::num::{Lanes, Vec3};
-use crate::plant::{Actuator, Frame, Held, Measured, Plant, Reading, Rig, Sensor, Traveller};
+use crate::plant::{Actuator, Frame, Held, Measured, Odometry, Plant, Reading, Sensor, SensorSuite};
 use control::{Plan, Sample, SensorFrame, Triple, ValidationConfig, Wheel};
 
 /// Sensors and motor of one ride.
 #[derive(Debug)]
-pub(super) struct Outfit {
-    rig: Rig,
-    traveller: Traveller,
+pub(super) struct RideHardware {
+    sensors: SensorSuite,
+    odometry: Odometry,
     pub(super) motor: Actuator,
 }
 
@@ -28,32 +28,32 @@ pub(super) fn needed(conditions: &Conditions) -> bool {
     beyond || (front_wheel.fitted && rear_wheel.fitted) || !conditions.plant.exact()
 }
 
-impl Outfit {
+impl RideHardware {
     /// At t = 0, with the controller that these sensors readied. `frames` gets what it was told.
     pub(super) fn new(
         conditions: &Conditions,
         plan: &Plan,
         plant: &Plant,
         start: &Start,
-        processor: &mut Processor,
+        backend: &mut Backend,
         mut frames: impl FnMut(&SensorFrame),
     ) -> (Self, Ready) {
         let steady = Reading::steady(start.speed_m_s, conditions.bicycle.g);
-        let mut rig = Rig::new(plant, conditions.step_s, start, &steady);
+        let mut sensors = SensorSuite::new(plant, conditions.step_s, start, &steady);
         let mut motor = Actuator::new(&plant.actuator);
-        let told = |_, pressed, torque_nm| {
-            let reached = rig.command(plant, torque_nm);
+        let measured = |_, pressed, torque_nm| {
+            let reached = sensors.command(plant, torque_nm);
             motor.command(&plant.actuator, conditions.step_s, reached);
             let motor_torque_nm = motor.torque(&plant.actuator, conditions.step_s, 0.0);
-            frame(plan, &rig.measure(plant, &Reading { motor_torque_nm, ..steady }, pressed))
+            frame(plan, &sensors.measure(plant, &Reading { motor_torque_nm, ..steady }, pressed))
         };
-        let ready = preroll(plan, processor, told, |frame, _| frames(frame));
-        rig.begin();
-        (Self { rig, traveller: Traveller::default(), motor }, ready)
+        let ready = engage_run(plan, backend, measured, |frame, _| frames(frame));
+        sensors.begin();
+        (Self { sensors, odometry: Odometry::default(), motor }, ready)
     }
 
     /// What the sensors tell at a control instant.
-    pub(super) fn told(
+    pub(super) fn measured(
         &mut self,
         conditions: &Conditions,
         plant: &Plant,
@@ -62,7 +62,7 @@ impl Outfit {
         initial_m_s: f64,
     ) -> Measured {
         let (b, h) = (&conditions.bicycle, conditions.step_s);
-        let exact = self.traveller.read(b, conditions.imu, plant.sensors.imu.point_m, h, at);
+        let exact = self.odometry.read(b, conditions.imu, plant.sensors.imu.point_m, h, at);
         let mut now = Reading {
             rider_torque_nm,
             motor_torque_nm: self.motor.torque(&plant.actuator, h, at.velocities.steer),
@@ -71,20 +71,20 @@ impl Outfit {
         if conditions.schedule_speed == ScheduleSpeed::Initial {
             (now.front_wheel_m_s, now.rear_wheel_m_s) = (initial_m_s, initial_m_s);
         }
-        self.rig.measure(plant, &now, true)
+        self.sensors.measure(plant, &now, true)
     }
 
     /// Gives the motor its command of this control instant \[N m\].
     pub(super) fn commanded(&mut self, conditions: &Conditions, plant: &Plant, torque_nm: f64) {
-        let reached = self.rig.command(plant, torque_nm);
+        let reached = self.sensors.command(plant, torque_nm);
         self.motor.command(&plant.actuator, conditions.step_s, reached);
     }
 }
 
 /// What the firmware gets of it: the declared sensors.
-pub(crate) fn frame(plan: &Plan, told: &Measured) -> SensorFrame {
+pub(crate) fn frame(plan: &Plan, measured: &Measured) -> SensorFrame {
     let input = &plan.config().input;
-    let of = |sensor| -> &Held { told.of(sensor) };
+    let of = |sensor| -> &Held { measured.of(sensor) };
     let one = |fitted: bool, sensor: Sensor, axis: usize| match fitted {
         true => Sample { value: of(sensor).value[axis] as f32, age_ticks: of(sensor).age_ticks },
         false => Sample::missing(),
@@ -94,7 +94,7 @@ pub(crate) fn frame(plan: &Plan, told: &Measured) -> SensorFrame {
         false => Triple::missing(),
     };
     SensorFrame {
-        now_us: told.now_us,
+        now_us: measured.now_us,
         gyro_rad_s: three(input.gyro.fitted, Sensor::Gyro),
         accel_m_s2: three(input.accel.fitted, Sensor::Accel),
         steer_rad: one(input.steer.fitted, Sensor::Steer, 0),
@@ -105,17 +105,17 @@ pub(crate) fn frame(plan: &Plan, told: &Measured) -> SensorFrame {
         motor_torque_nm: one(input.motor.fitted, Sensor::MotorReport, 0),
         heading_error_rad: one(input.path.fitted, Sensor::Path, 0),
         lateral_error_m: one(input.path.fitted, Sensor::Path, 1),
-        engage: told.engage,
+        engage: measured.engage,
     }
 }
 
 /// Roll rate and speed as told.
-pub(super) fn told_signals(plan: &Plan, told: &Measured) -> Signals {
+pub(super) fn measured_signals(plan: &Plan, measured: &Measured) -> Signals {
     let wheel = match plan.config().input.wheel {
         Wheel::Front => Sensor::FrontWheel,
         Wheel::Rear => Sensor::RearWheel,
     };
-    Signals { roll_rate_rad_s: told.of(Sensor::Gyro).value[0], speed_m_s: told.of(wheel).value[0] }
+    Signals { roll_rate_rad_s: measured.of(Sensor::Gyro).value[0], speed_m_s: measured.of(wheel).value[0] }
 }
 
 /// The rear frame in a lane.

@@ -1,8 +1,8 @@
 //! A board in QEMU, on a bicycle that rolls straight and upright, the rider's switch off: for whoever wants to ask or
 //! watch a board and has none.
 
-use super::line::{Line, LineError};
 use super::qemu::{LIMIT, Qemu};
+use super::transport::{Transport, TransportError};
 use super::{BoardError, Lockstep};
 use control::{Sample, SensorFrame, Triple};
 use link::frame::MAX_FRAME;
@@ -21,7 +21,7 @@ const G_M_S2: f32 = 9.81;
 const LINE_BYTES: usize = 115;
 
 /// The line of such a board. Its time goes on only while somebody waits for it, and never faster than the clock's.
-pub struct Rolling {
+pub struct DemoBoard {
     name: String,
     board: Qemu,
     /// Bytes that wait to go to the board.
@@ -33,7 +33,7 @@ pub struct Rolling {
     last: Instant,
 }
 
-impl Rolling {
+impl DemoBoard {
     /// Starts the image.
     ///
     /// # Errors
@@ -46,13 +46,13 @@ impl Rolling {
     }
 
     /// One millisecond; what the board said in it.
-    fn millisecond(&mut self) -> Result<Vec<u8>, LineError> {
+    fn millisecond(&mut self) -> Result<Vec<u8>, TransportError> {
         let mut room = [0; MAX_FRAME];
         let used = Message::PilFrame(self.sensors()).encode(self.number, &mut room).unwrap_or(0);
         let line: Vec<u8> = self.waiting.drain(..self.waiting.len().min(LINE_BYTES)).collect();
         let starts = self.board.last().starts;
         let exchanged = self.board.exchange(&ToBoard { sensors: &room[..used], line: &line });
-        exchanged.map_err(|why| LineError::Lost {
+        exchanged.map_err(|why| TransportError::Lost {
             line: self.name.clone(),
             why: io::Error::other(why.to_string()),
         })?;
@@ -77,19 +77,19 @@ impl Rolling {
     }
 }
 
-impl Line for Rolling {
-    fn send(&mut self, bytes: &[u8]) -> Result<(), LineError> {
+impl Transport for DemoBoard {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
         self.waiting.extend(bytes);
         Ok(())
     }
 
-    fn receive(&mut self, patience: Duration) -> Result<Vec<u8>, LineError> {
+    fn receive(&mut self, timeout: Duration) -> Result<Vec<u8>, TransportError> {
         let begin = Instant::now();
         loop {
             sleep(Duration::from_millis(1).saturating_sub(self.last.elapsed()));
             self.last = Instant::now();
             let said = self.millisecond()?;
-            if !said.is_empty() || begin.elapsed() >= patience {
+            if !said.is_empty() || begin.elapsed() >= timeout {
                 return Ok(said);
             }
         }

@@ -3,42 +3,42 @@
 use crate::bicycle::Geometry;
 use crate::integrate::{STAGES, Stages};
 use crate::num::Lanes;
-use crate::rider::{Body, Instant, Nerves, Rider, Signals};
+use crate::rider::{DelayLine, Instant, Rider, RiderState, Signals};
 
 /// The riders in the lanes.
-pub(super) struct Humans<'a, const N: usize> {
+pub(super) struct RiderLanes<'a, const N: usize> {
     rider: &'a Rider,
     /// Their bodies at the step's start, and in the step under way.
-    pub(super) body: Stages<Body<Lanes<N>>>,
+    pub(super) rider_state: Stages<RiderState<Lanes<N>>>,
     /// Their nerves; `None` for a rider without delay.
-    nerves: Option<[Nerves; N]>,
+    delay_line: Option<[DelayLine; N]>,
     /// The signals that arrive at the start, middle and end of the step.
     arriving: [Lanes<N>; 3],
 }
 
-impl<'a, const N: usize> Humans<'a, N> {
+impl<'a, const N: usize> RiderLanes<'a, N> {
     /// Riders whose nerves take `delay` steps.
     pub(super) fn new(rider: &'a Rider, delay: usize) -> Self {
         Self {
             rider,
-            body: Stages::new(Body::fresh()),
-            nerves: (delay > 0).then(|| std::array::from_fn(|_| Nerves::new(delay))),
+            rider_state: Stages::new(RiderState::fresh()),
+            delay_line: (delay > 0).then(|| std::array::from_fn(|_| DelayLine::new(delay))),
             arriving: [Lanes([0.0; N]); 3],
         }
     }
 
     /// A new ride in a lane.
     pub(super) fn restart(&mut self, lane: usize) {
-        self.set(lane, &Body::fresh());
-        if let Some(nerves) = &mut self.nerves {
-            nerves[lane].forget();
+        self.set(lane, &RiderState::fresh());
+        if let Some(delay_line) = &mut self.delay_line {
+            delay_line[lane].forget();
         }
     }
 
     /// A stage of the step of `h` seconds: what is felt at `now` and the `speeds` \[m/s\] that
     /// schedule the gains, and the bodies moved on. Nothing is felt in lanes that are not `taken`.
     #[inline(always)]
-    pub(super) fn felt(
+    pub(super) fn end_stage(
         &mut self,
         b: &Geometry,
         stage: usize,
@@ -47,27 +47,27 @@ impl<'a, const N: usize> Humans<'a, N> {
         speeds: &Lanes<N>,
         taken: [bool; N],
     ) {
-        let body = self.body.at;
-        let alpha = match &mut self.nerves {
-            Some(nerves) => {
+        let rider_state = self.rider_state.at;
+        let alpha = match &mut self.delay_line {
+            Some(delay_line) => {
                 if stage == 0 {
-                    let signals = body.signals(now);
-                    feel(self.rider, nerves, &signals, speeds, taken);
-                    arrive(nerves, &mut self.arriving, taken);
+                    let signals = rider_state.signals(now);
+                    push(self.rider, delay_line, &signals, speeds, taken);
+                    arrive(delay_line, &mut self.arriving, taken);
                 }
                 self.arriving[(2.0 * STAGES[stage]) as usize]
             }
-            None => neural(self.rider, &body.signals(now), speeds),
+            None => neural(self.rider, &rider_state.signals(now), speeds),
         };
-        let k = body.rate(b, now, &self.rider.muscles, alpha);
-        self.body.next(stage, h, &k);
+        let k = rider_state.rate(b, now, &self.rider.muscles, alpha);
+        self.rider_state.next(stage, h, &k);
     }
 
     /// The rider in a lane, at the step's start.
-    pub(super) fn one(&mut self, lane: usize) -> Human<'_> {
-        let Body { roll_integral, steer_integral, heading, rear_lateral, torque, torque_rate } =
-            self.body.start();
-        let body = Body {
+    pub(super) fn one(&mut self, lane: usize) -> RiderLane<'_> {
+        let RiderState { roll_integral, steer_integral, heading, rear_lateral, torque, torque_rate } =
+            self.rider_state.start();
+        let rider_state = RiderState {
             roll_integral: roll_integral.0[lane],
             steer_integral: steer_integral.0[lane],
             heading: heading.0[lane],
@@ -75,13 +75,13 @@ impl<'a, const N: usize> Humans<'a, N> {
             torque: torque.0[lane],
             torque_rate: torque_rate.0[lane],
         };
-        let nerves = self.nerves.as_mut().map(|nerves| &mut nerves[lane]);
-        Human { rider: self.rider, body: Stages::new(body), nerves }
+        let delay_line = self.delay_line.as_mut().map(|delay_line| &mut delay_line[lane]);
+        RiderLane { rider: self.rider, rider_state: Stages::new(rider_state), delay_line }
     }
 
     /// Puts a body into a lane at the end of the step.
-    pub(super) fn set(&mut self, lane: usize, to: &Body<f64>) {
-        let end = &mut self.body.end;
+    pub(super) fn set(&mut self, lane: usize, to: &RiderState<f64>) {
+        let end = &mut self.rider_state.end;
         end.roll_integral.0[lane] = to.roll_integral;
         end.steer_integral.0[lane] = to.steer_integral;
         end.heading.0[lane] = to.heading;
@@ -93,7 +93,7 @@ impl<'a, const N: usize> Humans<'a, N> {
     /// The end of a step is the start of the next.
     #[inline(always)]
     pub(super) fn turn(&mut self) {
-        self.body = Stages::new(self.body.end);
+        self.rider_state = Stages::new(self.rider_state.end);
     }
 }
 
@@ -115,57 +115,57 @@ fn lane_of<const N: usize>(signals: &Signals<Lanes<N>>, lane: usize) -> Signals<
     Signals(one)
 }
 
-fn feel<const N: usize>(
+fn push<const N: usize>(
     rider: &Rider,
-    nerves: &mut [Nerves; N],
+    delay_line: &mut [DelayLine; N],
     signals: &Signals<Lanes<N>>,
     speeds: &Lanes<N>,
     taken: [bool; N],
 ) {
     for lane in (0..N).filter(|&lane| taken[lane]) {
-        nerves[lane].feel(rider.schedule.at(speeds.0[lane]).signal(&lane_of(signals, lane)));
+        delay_line[lane].push(rider.schedule.at(speeds.0[lane]).signal(&lane_of(signals, lane)));
     }
 }
 
-fn arrive<const N: usize>(nerves: &[Nerves; N], to: &mut [Lanes<N>; 3], taken: [bool; N]) {
+fn arrive<const N: usize>(delay_line: &[DelayLine; N], to: &mut [Lanes<N>; 3], taken: [bool; N]) {
     for lane in (0..N).filter(|&lane| taken[lane]) {
-        for (to, signal) in to.iter_mut().zip(nerves[lane].arriving()) {
+        for (to, signal) in to.iter_mut().zip(delay_line[lane].arriving()) {
             to.0[lane] = signal;
         }
     }
 }
 
 /// One rider through the shorter steps of a control period.
-pub(super) struct Human<'a> {
+pub(super) struct RiderLane<'a> {
     rider: &'a Rider,
-    pub(super) body: Stages<Body<f64>>,
+    pub(super) rider_state: Stages<RiderState<f64>>,
     /// `None` without delay.
-    nerves: Option<&'a mut Nerves>,
+    delay_line: Option<&'a mut DelayLine>,
 }
 
-impl Human<'_> {
+impl RiderLane<'_> {
     /// A stage at the part `s` of the control period, in a step of `h` seconds.
-    pub(super) fn felt(
+    pub(super) fn end_stage(
         &mut self,
         b: &Geometry,
         (stage, h, s): (usize, f64, f64),
         now: &Instant<f64>,
         speed: f64,
     ) {
-        let body = self.body.at;
-        let neural = || self.rider.schedule.at(speed).signal(&body.signals(now));
-        let alpha = match &mut self.nerves {
-            Some(nerves) => {
+        let rider_state = self.rider_state.at;
+        let neural = || self.rider.schedule.at(speed).signal(&rider_state.signals(now));
+        let alpha = match &mut self.delay_line {
+            Some(delay_line) => {
                 if stage == 0 && s == 0.0 {
                     // In its lane this instant was felt with the independent speeds.
-                    nerves.correct(neural());
+                    delay_line.correct(neural());
                 }
-                nerves.arriving_at(s)
+                delay_line.arriving_at(s)
             }
             None => neural(),
         };
-        let k = body.rate(b, now, &self.rider.muscles, alpha);
-        self.body.next(stage, h, &k);
+        let k = rider_state.rate(b, now, &self.rider.muscles, alpha);
+        self.rider_state.next(stage, h, &k);
     }
 }
 
@@ -173,7 +173,7 @@ impl Human<'_> {
 mod tests {
     use super::*;
     use crate::bicycle::{Motion, State, catalogue};
-    use crate::rider::{Gains, Muscles, Schedule};
+    use crate::rider::{Gains, Neuromuscular, Schedule};
     use nalgebra::{Complex, ComplexField};
     use std::f64::consts::TAU;
 
@@ -185,11 +185,11 @@ mod tests {
     fn swung(rider: &Rider, delay: usize, omega: f64, seconds: f64) -> Vec<f64> {
         let b = Geometry::new(&catalogue::load("rigid_jason").unwrap().parameters);
         let state = State::upright(&b, Lanes([5.0; 8]));
-        let mut humans = Humans::<8>::new(rider, delay);
+        let mut riders = RiderLanes::<8>::new(rider, delay);
         let mut torques = Vec::new();
         for n in 0..(seconds / STEP_S) as usize {
-            torques.push(humans.body.end.torque.0[3]);
-            humans.turn();
+            torques.push(riders.rider_state.end.torque.0[3]);
+            riders.turn();
             for (stage, part) in STAGES.into_iter().enumerate() {
                 let phase = omega * (n as f64 + part) * STEP_S;
                 let (sin, cos) = libm::sincos(phase);
@@ -205,7 +205,7 @@ mod tests {
                     pose: &motion.pose,
                     velocities: &motion.actual,
                 };
-                humans.felt(&b, stage, STEP_S, &now, &same(5.0), [true; 8]);
+                riders.end_stage(&b, stage, STEP_S, &now, &same(5.0), [true; 8]);
             }
         }
         torques
@@ -222,7 +222,7 @@ mod tests {
         let gains = Gains([-8.0, -0.5, 7.0, 4.2, 12.0, 3.0, 1.3, -0.09, -0.6, 0.0]);
         for delay in [0, 30, DELAY_STEPS] {
             for periods in [1_usize, 3, 10] {
-                let (muscles, tau) = (Muscles::SHOULDERS, delay as f64 * STEP_S);
+                let (muscles, tau) = (Neuromuscular::SHOULDERS, delay as f64 * STEP_S);
                 let rider = Rider { schedule: Schedule::constant(gains), delay_s: tau, muscles };
                 // Whole periods in the last second.
                 let omega = TAU * periods as f64;
@@ -234,8 +234,8 @@ mod tests {
                 };
                 let filter = muscles.omega_rad_s.powi(2)
                     / (s * s + s * 2.0 * muscles.zeta * muscles.omega_rad_s + muscles.omega_rad_s.powi(2));
-                let felt = k(0) * ROLL + k(4) * STEER + Complex::from(gains.0[8] * YAW);
-                let wanted = felt * ComplexField::exp(-s * tau) * filter;
+                let end_stage = k(0) * ROLL + k(4) * STEER + Complex::from(gains.0[8] * YAW);
+                let wanted = end_stage * ComplexField::exp(-s * tau) * filter;
                 let mut got = Complex::new(0.0, 0.0);
                 for (n, torque) in torques.iter().enumerate().skip(3000) {
                     let turn = ComplexField::exp(Complex::new(0.0, -omega * n as f64 * STEP_S));

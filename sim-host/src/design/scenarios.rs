@@ -6,7 +6,7 @@ use control::Config;
 
 /// Trials to design with, and others to judge by.
 #[derive(Clone, Debug)]
-pub struct Arena {
+pub struct Scenarios {
     /// The design maximises the least area over these.
     pub training: Vec<Trial>,
     /// Riders and bicycles the design does not see.
@@ -29,7 +29,7 @@ const LATE_MS: u16 = 20;
 ///
 /// # Errors
 /// When a bicycle or a rider does not ship.
-pub fn arena(fall: FallCriterion) -> Result<Arena, String> {
+pub fn arena(fall: FallCriterion) -> Result<Scenarios, String> {
     let limits = Config::product().limits;
     let on = |bicycle, rider, delay_s, late| {
         Trial::new(bicycle, rider, delay_s, late, limits).map(|trial| Trial { fall, ..trial })
@@ -42,5 +42,5 @@ pub fn arena(fall: FallCriterion) -> Result<Arena, String> {
     }
     let riders = RIDERS.iter().map(|(rider, delay_s)| on(BICYCLE, Some(rider), *delay_s, LATE_MS));
     let bicycles = OTHERS.iter().map(|bicycle| on(bicycle, None, None, LATE_MS));
-    Ok(Arena { training, held_out: riders.chain(bicycles).collect::<Result<_, _>>()? })
+    Ok(Scenarios { training, held_out: riders.chain(bicycles).collect::<Result<_, _>>()? })
 }

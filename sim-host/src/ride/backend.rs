@@ -50,11 +50,11 @@ pub trait Remote {
 }
 
 /// Where the control step runs.
-pub(super) enum Processor<'a> {
+pub(super) enum Backend<'a> {
     /// In this program.
-    Here,
+    Local,
     /// On a processor of its own; after its first failure nothing is asked of it any more.
-    Away {
+    Remote {
         /// The controller there.
         remote: &'a mut dyn Remote,
         /// Its failure.
@@ -62,40 +62,40 @@ pub(super) enum Processor<'a> {
     },
 }
 
-impl<'a> Processor<'a> {
+impl<'a> Backend<'a> {
     /// On a processor of its own.
     pub(super) fn away(remote: &'a mut dyn Remote) -> Self {
-        Self::Away { remote, failure: None }
+        Self::Remote { remote, failure: None }
     }
 
     /// Whether rides from the same speed may share a controller made ready once.
     pub(super) fn shares(&self) -> bool {
-        matches!(self, Self::Here)
+        matches!(self, Self::Local)
     }
 
     /// Whether it failed, so that a ride is of no use.
     pub(super) fn failed(&self) -> bool {
-        matches!(self, Self::Away { failure: Some(_), .. })
+        matches!(self, Self::Remote { failure: Some(_), .. })
     }
 
     /// Its failure, if it failed.
     pub(super) fn end(self) -> Result<(), RemoteError> {
         match self {
-            Self::Here | Self::Away { failure: None, .. } => Ok(()),
-            Self::Away { failure: Some(why), .. } => Err(why),
+            Self::Local | Self::Remote { failure: None, .. } => Ok(()),
+            Self::Remote { failure: Some(why), .. } => Err(why),
         }
     }
 
     /// A ride from `start` begins.
     pub(super) fn begin(&mut self, plan: &Plan, start: &Start) {
-        if let Self::Away { remote, failure: failure @ None } = self {
+        if let Self::Remote { remote, failure: failure @ None } = self {
             *failure = remote.begin(plan, start).err();
         }
     }
 
     /// The next step is that of t = 0.
     pub(super) fn disturb(&mut self) {
-        if let Self::Away { remote, .. } = self {
+        if let Self::Remote { remote, .. } = self {
             remote.disturb();
         }
     }
@@ -104,12 +104,12 @@ impl<'a> Processor<'a> {
     #[inline]
     pub(super) fn step(&mut self, plan: &Plan, state: &mut State, frame: &SensorFrame) -> Stepped {
         match self {
-            Self::Here => {
+            Self::Local => {
                 let command = control::step(plan, state, frame);
                 Stepped { command, authority: state.authority() }
             }
-            Self::Away { failure: Some(_), .. } => Stepped::OFF,
-            Self::Away { remote, failure } => remote.step(frame).unwrap_or_else(|why| {
+            Self::Remote { failure: Some(_), .. } => Stepped::OFF,
+            Self::Remote { remote, failure } => remote.step(frame).unwrap_or_else(|why| {
                 *failure = Some(why);
                 Stepped::OFF
             }),

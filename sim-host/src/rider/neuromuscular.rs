@@ -6,7 +6,7 @@ use crate::range::within;
 
 /// `T'' = omega^2 (alpha - T) - 2 zeta omega T'`.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct Muscles {
+pub struct Neuromuscular {
     /// Undamped natural frequency \[rad/s\].
     pub omega_rad_s: f64,
     /// Damping ratio.
@@ -18,7 +18,7 @@ pub struct Muscles {
 #[error("{0}")]
 pub struct MusclesError(pub String);
 
-impl Muscles {
+impl Neuromuscular {
     /// Shoulder dynamics: 2.17 Hz, damping ratio `sqrt(1/2)` (Schouten et al. 2007, as used by the
     /// thesis).
     pub const SHOULDERS: Self =

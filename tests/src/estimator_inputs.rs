@@ -89,7 +89,7 @@ pub fn truth(b: &Geometry, state: &State<f64>, torques: &Torques<f64>, place: &P
 
 impl Truth {
     /// As exact sensors tell it after `elapsed_us`.
-    pub fn felt(&self, elapsed_us: u32) -> EstimatorInput {
+    pub fn estimator_input(&self, elapsed_us: u32) -> EstimatorInput {
         EstimatorInput {
             gyro_rad_s: self.gyro.map(|w| w as f32),
             accel_m_s2: Some(self.accel.map(|a| a as f32)),
@@ -154,7 +154,7 @@ impl Noise {
     }
 
     /// Adds the noise of the next millisecond.
-    pub fn on(&mut self, felt: &mut EstimatorInput) {
+    pub fn on(&mut self, input: &mut EstimatorInput) {
         if self.tick.is_multiple_of(10) {
             let [gyro, accel, steer, steer_rate, speed] = Self::SIZES;
             let sizes = [gyro, gyro, gyro, accel, accel, accel, steer, steer_rate, speed];
@@ -162,12 +162,12 @@ impl Noise {
         }
         self.tick += 1;
         let [gx, gy, gz, ax, ay, az, steer, steer_rate, speed] = self.held;
-        for (w, n) in felt.gyro_rad_s.iter_mut().zip([gx, gy, gz]) {
+        for (w, n) in input.gyro_rad_s.iter_mut().zip([gx, gy, gz]) {
             *w += n;
         }
-        felt.accel_m_s2 = felt.accel_m_s2.map(|[x, y, z]| [x + ax, y + ay, z + az]);
-        felt.steer_rad = felt.steer_rad.map(|s| s + steer);
-        felt.steer_rate_rad_s = felt.steer_rate_rad_s.map(|s| s + steer_rate);
-        felt.speed_m_s += speed;
+        input.accel_m_s2 = input.accel_m_s2.map(|[x, y, z]| [x + ax, y + ay, z + az]);
+        input.steer_rad = input.steer_rad.map(|s| s + steer);
+        input.steer_rate_rad_s = input.steer_rate_rad_s.map(|s| s + steer_rate);
+        input.speed_m_s += speed;
     }
 }

@@ -2,7 +2,7 @@
 
 use super::fault::{Channel, Fault, FaultState};
 use super::sensor::{Before, SensorDice, SensorState};
-use super::{Dice, Plant, Reading, Sensor};
+use super::{Plant, RandomStream, Reading, Sensor};
 use crate::ride::Start;
 
 /// Where the purposes of random numbers for fitted errors begin: beyond those of sensors and faults.
@@ -41,7 +41,7 @@ impl Measured {
 
 /// The sensors of one ride, from the controller's boot on.
 #[derive(Debug)]
-pub struct Rig {
+pub struct SensorSuite {
     period_s: f64,
     sensors: Vec<SensorState>,
     faults: Vec<FaultState>,
@@ -54,16 +54,16 @@ pub struct Rig {
     command_nm: f64,
 }
 
-impl Rig {
+impl SensorSuite {
     /// At boot; until then the truth was `steady`. The ride will be that from `start`.
     pub fn new(plant: &Plant, period_s: f64, start: &Start, steady: &Reading) -> Self {
         let config = &plant.sensors;
-        let dice = |purpose: usize| Dice::new(plant.seed, start, purpose as u64);
+        let random = |purpose: usize| RandomStream::new(plant.seed, start, purpose as u64);
         let state = |s: Sensor| {
             let truth = plant.truth(s, steady);
             let before = Before { truth, speed_m_s: steady.rear_wheel_m_s, period_s };
-            let dice = SensorDice { plain: dice(s as usize), fitted: dice(FITTED + s as usize) };
-            SensorState::new(config.model(s), &before, dice)
+            let random = SensorDice { plain: random(s as usize), fitted: random(FITTED + s as usize) };
+            SensorState::new(config.model(s), &before, random)
         };
         let held = |sensor: Sensor| Held {
             value: plant.truth(sensor, steady),
@@ -74,7 +74,7 @@ impl Rig {
                 Channel::Sensor(sensor) => plant.truth(sensor, steady),
                 Channel::Motor | Channel::Engage | Channel::Clock => [0.0; 3],
             };
-            FaultState::new(fault, period_s, before, dice(Sensor::ALL.len() + index))
+            FaultState::new(fault, period_s, before, random(Sensor::ALL.len() + index))
         };
         Self {
             period_s,

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 /// What was heard, whole or not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct Heard {
+pub struct Reception {
     /// Frames that came whole.
     pub frames: u64,
     /// Frames that came damaged.
@@ -16,7 +16,7 @@ pub struct Heard {
     pub rest: usize,
 }
 
-impl Heard {
+impl Reception {
     /// What of it could not be read, in words; `None` if all could.
     pub fn unread(&self) -> Option<String> {
         let Self { damaged, unknown, rest, .. } = *self;

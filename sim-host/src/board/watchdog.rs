@@ -10,33 +10,33 @@ use std::time::Duration;
 /// Looks now and then, in a thread of its own, whether an exchange takes too long, so that the exchange itself
 /// costs no further call of the system.
 #[derive(Debug)]
-pub(super) struct Watch {
+pub(super) struct Watchdog {
     pub(super) limit: Duration,
-    seen: Arc<Seen>,
+    state: Arc<WatchdogState>,
     /// Closed, it ends the thread.
-    _alive: Sender<()>,
+    _running: Sender<()>,
 }
 
 #[derive(Debug, Default)]
-struct Seen {
+struct WatchdogState {
     /// The number of the exchange under way; 0 when there is none.
     under_way: AtomicU64,
     /// The emulator was ended.
-    bitten: AtomicBool,
+    ended: AtomicBool,
 }
 
-impl Watch {
+impl Watchdog {
     /// Ends the emulator when an exchange lasts longer than `limit`, at the latest after twice that.
     pub(super) fn new(child: Arc<Mutex<Child>>, limit: Duration) -> Self {
-        let (alive, ended) = channel();
-        let seen = Arc::new(Seen::default());
-        let looking = Arc::clone(&seen);
+        let (running, ended) = channel();
+        let state = Arc::new(WatchdogState::default());
+        let looking = Arc::clone(&state);
         spawn(move || {
             let mut before = 0;
             while ended.recv_timeout(limit) == Err(RecvTimeoutError::Timeout) {
                 let now = looking.under_way.load(Ordering::Relaxed);
                 if now != 0 && now == before {
-                    looking.bitten.store(true, Ordering::Relaxed);
+                    looking.ended.store(true, Ordering::Relaxed);
                     // It may have ended by itself.
                     let _ = locked(&child).kill();
                     return;
@@ -44,22 +44,22 @@ impl Watch {
                 before = now;
             }
         });
-        Self { limit, seen, _alive: alive }
+        Self { limit, state, _running: running }
     }
 
     /// An exchange begins; `number` is above 0 and another one each time.
     pub(super) fn begin(&self, number: u64) {
-        self.seen.under_way.store(number, Ordering::Relaxed);
+        self.state.under_way.store(number, Ordering::Relaxed);
     }
 
     /// It is done.
     pub(super) fn end(&self) {
-        self.seen.under_way.store(0, Ordering::Relaxed);
+        self.state.under_way.store(0, Ordering::Relaxed);
     }
 
     /// Whether the emulator was ended.
-    pub(super) fn bitten(&self) -> bool {
-        self.seen.bitten.load(Ordering::Relaxed)
+    pub(super) fn ended(&self) -> bool {
+        self.state.ended.load(Ordering::Relaxed)
     }
 }
 

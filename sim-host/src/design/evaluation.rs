@@ -1,6 +1,6 @@
 //! Judging laws beside each other: the basin of each in every trial.
 
-use super::Arena;
+use super::Scenarios;
 use crate::basin::{Basin, Search};
 use crate::study::trial::{Trial, basins};
 use control::Law;
@@ -35,7 +35,7 @@ pub fn competitors() -> Vec<(String, Law)> {
 /// # Errors
 /// When a trial can't be ridden.
 pub fn judge(
-    arena: &Arena,
+    arena: &Scenarios,
     laws: &[(String, Law)],
     search: &Search,
     advanced: &(dyn Fn() + Sync),

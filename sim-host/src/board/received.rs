@@ -8,14 +8,14 @@ const UNASKED: u8 = 0xa0;
 
 /// A frame from a board, kept.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Told {
+pub struct ReceivedMessage {
     /// Its number.
     pub sequence: u16,
     kind: u8,
     payload: Vec<u8>,
 }
 
-impl Told {
+impl ReceivedMessage {
     /// Keeps a frame.
     pub fn new(frame: &Frame<'_>) -> Self {
         Self { sequence: frame.sequence, kind: frame.kind, payload: frame.payload.into() }

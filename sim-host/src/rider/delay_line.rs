@@ -8,48 +8,48 @@
 
 /// The signals of one ride on their way.
 #[derive(Clone, Debug)]
-pub struct Nerves {
+pub struct DelayLine {
     /// The latest signals, by step modulo its length, a power of two \[N m\].
     ring: Vec<f64>,
     /// Steps the delay takes; at least 1.
     delay: usize,
     /// Signals felt so far.
-    felt: usize,
+    pushed: usize,
 }
 
-impl Nerves {
+impl DelayLine {
     /// Nerves with a delay of `delay` steps, at least 1, in which no signal travels yet.
     pub fn new(delay: usize) -> Self {
         // The oldest signal needed is two steps older than the one that arrives.
-        Self { ring: vec![0.0; (delay + 4).next_power_of_two()], delay: delay.max(1), felt: 0 }
+        Self { ring: vec![0.0; (delay + 4).next_power_of_two()], delay: delay.max(1), pushed: 0 }
     }
 
     /// Forgets every signal, for a new ride.
     pub fn forget(&mut self) {
-        self.felt = 0;
+        self.pushed = 0;
     }
 
     /// Takes in the signal at the start of the next step.
     #[inline(always)]
-    pub fn feel(&mut self, signal: f64) {
+    pub fn push(&mut self, signal: f64) {
         let mask = self.ring.len() - 1;
-        self.ring[self.felt & mask] = signal;
-        self.felt += 1;
+        self.ring[self.pushed & mask] = signal;
+        self.pushed += 1;
     }
 
     /// Puts another signal in the place of the latest one.
     pub fn correct(&mut self, signal: f64) {
-        self.felt -= 1;
-        self.feel(signal);
+        self.pushed -= 1;
+        self.push(signal);
     }
 
     /// The first of up to four signals that what arrives during this step is taken from, how many, and
     /// the place among them of the one that arrives at its start; `None` before the delay has passed.
     #[inline(always)]
     fn nearest(&self) -> Option<(usize, usize, usize)> {
-        let i = (self.felt - 1).checked_sub(self.delay)?;
+        let i = (self.pushed - 1).checked_sub(self.delay)?;
         let (first, last) = if self.delay < 3 {
-            (0, self.felt - 1)
+            (0, self.pushed - 1)
         } else {
             let first = i - i % self.delay;
             (first, first + self.delay)
@@ -92,12 +92,12 @@ mod tests {
 
     /// What arrives of `f` felt at 0, 1, ... at every half step, up to `steps`.
     fn delayed(delay: usize, steps: usize, f: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-        let mut nerves = Nerves::new(delay);
+        let mut delay_line = DelayLine::new(delay);
         let mut out = Vec::new();
         for n in 0..steps {
-            nerves.feel(f(n as f64));
-            for (s, got) in [0.0, 0.5, 1.0].into_iter().zip(nerves.arriving()) {
-                assert!((nerves.arriving_at(s) - got).abs() <= 1e-12 * got.abs().max(1.0));
+            delay_line.push(f(n as f64));
+            for (s, got) in [0.0, 0.5, 1.0].into_iter().zip(delay_line.arriving()) {
+                assert!((delay_line.arriving_at(s) - got).abs() <= 1e-12 * got.abs().max(1.0));
                 out.push((n as f64 + s - delay as f64, got));
             }
         }
@@ -139,14 +139,14 @@ mod tests {
 
     #[test]
     fn a_new_ride_starts_from_nothing() {
-        let mut nerves = Nerves::new(4);
-        (0..20).for_each(|_| nerves.feel(1.0));
-        assert_eq!(nerves.arriving()[1], 1.0);
-        nerves.forget();
-        nerves.feel(2.0);
-        assert_eq!(nerves.arriving()[2], 0.0);
-        nerves.correct(3.0);
-        (0..4).for_each(|_| nerves.feel(0.0));
-        assert_eq!(nerves.arriving()[0], 3.0);
+        let mut delay_line = DelayLine::new(4);
+        (0..20).for_each(|_| delay_line.push(1.0));
+        assert_eq!(delay_line.arriving()[1], 1.0);
+        delay_line.forget();
+        delay_line.push(2.0);
+        assert_eq!(delay_line.arriving()[2], 0.0);
+        delay_line.correct(3.0);
+        (0..4).for_each(|_| delay_line.push(0.0));
+        assert_eq!(delay_line.arriving()[0], 3.0);
     }
 }
