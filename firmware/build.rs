@@ -15,7 +15,7 @@ fn main() {
     println!("cargo:rustc-link-search={}", root.display());
     println!("cargo:rustc-link-arg-bins=-Tlink.x");
     println!("cargo:rustc-link-arg-bins=--nmagic");
-    if std::env::var_os("CARGO_FEATURE_BOARD_STM32F405").is_some() {
+    if std::env::var_os("CARGO_FEATURE_BOARD_VESC6").is_some() {
         println!("cargo:rustc-link-arg-bins=-Tdefmt.x");
     }
 

@@ -2,8 +2,8 @@
 
 use crate::{board, retained, tasks};
 use core::sync::atomic::{AtomicU32, Ordering};
+use link::fault_log::{self, LastStep};
 use link::report::{FaultKind, FaultRecord, ResetCause};
-use link::ring::{self, LastStep};
 
 /// How often the program started, and why this time.
 static START: AtomicU32 = AtomicU32::new(0);
@@ -25,11 +25,11 @@ pub fn start(cause: ResetCause) {
     START.store(starts, Ordering::Relaxed);
     CAUSE.store(cause as u32, Ordering::Relaxed);
     let told = retained::with(|ring| {
-        let newest = ring::faults(ring).next();
+        let newest = fault_log::faults(ring).next();
         newest.is_some_and(|f| f.kind == FaultKind::Watchdog && f.boot.wrapping_add(1) == starts)
     });
     if cause == ResetCause::Watchdog && told == Some(false) {
-        let last = retained::with(|ring| ring::last_step(ring)).flatten().unwrap_or_default();
+        let last = retained::with(|ring| fault_log::last_step(ring)).flatten().unwrap_or_default();
         keep(FaultKind::Watchdog, &last, Registers::default(), "the lowest priority stood still");
     }
 }

@@ -5,22 +5,22 @@
 #![no_std]
 #![cfg(target_os = "none")]
 
-#[cfg(not(any(feature = "board-qemu", feature = "board-stm32f405")))]
-compile_error!("choose the board: --features board-qemu or --features board-stm32f405");
-#[cfg(all(feature = "board-qemu", feature = "board-stm32f405"))]
+#[cfg(not(any(feature = "board-qemu", feature = "board-vesc6")))]
+compile_error!("choose the board: --features board-qemu or --features board-vesc6");
+#[cfg(all(feature = "board-qemu", feature = "board-vesc6"))]
 compile_error!("choose one board only");
 
 #[cfg(feature = "board-qemu")]
 #[path = "board/qemu/mod.rs"]
 pub mod board;
-#[cfg(feature = "board-stm32f405")]
-#[path = "board/stm32f405/mod.rs"]
+#[cfg(feature = "board-vesc6")]
+#[path = "board/vesc6/mod.rs"]
 pub mod board;
 
-pub mod alive;
 pub mod crash;
 pub mod deadline;
 pub mod failure;
+pub mod heartbeat;
 pub mod retained;
 pub mod tasks;
 

@@ -5,8 +5,8 @@
 
 use core::cell::RefCell;
 use critical_section::Mutex;
+use link::fault_log::{self, RING_BYTES};
 use link::report::FaultRecord;
-use link::ring::{self, RING_BYTES};
 
 unsafe extern "C" {
     #[link_name = "_retained_start"]
@@ -25,7 +25,7 @@ pub fn start() -> u32 {
     // hold any bytes, which u8 allows; that nobody wrote them the compiler can't know.
     let memory = unsafe { &mut *at };
     critical_section::with(|cs| {
-        let starts = ring::start(memory);
+        let starts = fault_log::start(memory);
         RING.borrow(cs).replace(Some(memory));
         starts
     })
@@ -33,7 +33,7 @@ pub fn start() -> u32 {
 
 /// Keeps a fault. From any context, a fault's handler included.
 pub fn note(fault: &FaultRecord<'_>) {
-    with(|ring| ring::note(ring, fault));
+    with(|ring| fault_log::note(ring, fault));
 }
 
 /// Gives a look at what is kept; `None` before [`start`].

@@ -10,7 +10,7 @@ use control::{Command, Config, Law, ParamError, Plan, Sample, SensorFrame, State
 /// Control periods that a configuration is tried for, the roll rate swinging, once its controller drives.
 const TRIED: u32 = 200;
 /// Longest way to full authority that is waited for \[control periods\].
-const PATIENCE: u32 = 2_000;
+const TIMEOUT: u32 = 2_000;
 
 /// Frames one after the other, the rest dropped.
 /// Must hold: each comes back from its value in every bit, but for the switch, which is on for 1 alone.
@@ -39,7 +39,7 @@ pub(crate) fn configuration(bytes: &[u8]) {
     assert_eq!(encode_config(plan.config()), again);
     let period_us = (1e6 / plan.config().rate_hz) as u32;
     let (mut state, mut pressed) = (State::default(), false);
-    for tick in 0..plan.ticks_to_engage().min(PATIENCE) + TRIED {
+    for tick in 0..plan.ticks_to_engage().min(TIMEOUT) + TRIED {
         let mut frame = straight(tick, period_us, state.torque_nm(), pressed);
         frame.gyro_rad_s.value[0] = 0.5 * (0.02 * tick as f32).sin();
         pressed |= plan.ready(&checked(&plan, &mut state, &frame));

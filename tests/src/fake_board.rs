@@ -5,7 +5,7 @@ use control::wire::{CONFIG_BYTES, decode_config};
 use control::{Config, Plan, Sample, SensorFrame, State, Triple};
 use link::frame::MAX_FRAME;
 use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
-use link::refusal::{Refusal, Why};
+use link::rejection::{RejectReason, Rejection};
 use link::{Decoder, Message, Received};
 use sim_host::board::{BoardError, Lockstep};
 
@@ -48,8 +48,8 @@ impl Default for FakeBoard {
     }
 }
 
-fn plan(config: &Config) -> Result<Plan, Refusal<'static>> {
-    config.clone().plan().map_err(Refusal::from)
+fn plan(config: &Config) -> Result<Plan, Rejection<'static>> {
+    config.clone().plan().map_err(Rejection::from)
 }
 
 /// The frame so many control periods after its own.
@@ -114,10 +114,10 @@ impl FakeBoard {
         }
     }
 
-    fn begin(&mut self) -> Result<(), Refusal<'static>> {
+    fn begin(&mut self) -> Result<(), Rejection<'static>> {
         let whole: Result<[u8; CONFIG_BYTES], _> = std::mem::take(&mut self.config).try_into();
         if let Ok(bytes) = whole {
-            self.plan = plan(&decode_config(&bytes).map_err(|_| Refusal::of(Why::Malformed))?)?;
+            self.plan = plan(&decode_config(&bytes).map_err(|_| Rejection::of(RejectReason::Malformed))?)?;
         }
         (self.controller, self.step, self.newest) = (State::default(), 0, None);
         Ok(())

@@ -4,9 +4,9 @@ use control::{ActiveLimits, CAUSES, Causes, Command, Config, Mode, SensorFrame, 
 use link::frame::{CRC, Frame, MAX_FRAME, MAX_PAYLOAD};
 use link::message::Message;
 use link::page::PAGE_BYTES;
-use link::parameters::{answer, request};
-use link::refusal::{Refusal, Why};
-use link::report::{FaultKind, FaultRecord, Hello, KeptFault, ResetCause, config_hash};
+use link::rejection::{RejectReason, Rejection};
+use link::report::{FaultKind, FaultRecord, Hello, ResetCause, StoredFault, config_hash};
+use link::requests::{answer, request};
 use link::telemetry::Telemetry;
 use link::{Decoder, Received};
 use sim_host::board::{Transport, TransportError};
@@ -91,7 +91,7 @@ impl LinkBoard {
                 self.stored = Some(self.config.clone());
                 Message::Done
             }
-            Message::ListFaults { from } => Message::KeptFault(KeptFault {
+            Message::ListFaults { from } => Message::StoredFault(StoredFault {
                 place: from,
                 total: self.faults.len() as u16,
                 record: self.faults.get(usize::from(from)).copied(),
@@ -100,7 +100,7 @@ impl LinkBoard {
                 self.faults.clear();
                 Message::Done
             }
-            _ => Message::Refused(Refusal::of(Why::NotHere)),
+            _ => Message::Refused(Rejection::of(RejectReason::NotHere)),
         };
         encoded(&answer, sequence)
     }

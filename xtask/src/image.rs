@@ -31,8 +31,8 @@ pub const IMAGES: [Image; 7] = [
     Image { name: "qemu-replay", board: "board-qemu", flash: 128 << 10, ram: 64 << 10 },
     Image { name: "qemu-instructions", board: "board-qemu", flash: 144 << 10, ram: 64 << 10 },
     Image { name: "qemu-fault", board: "board-qemu", flash: 64 << 10, ram: 48 << 10 },
-    Image { name: "board-stm32f405", board: "board-stm32f405", flash: 288 << 10, ram: 64 << 10 },
-    Image { name: "board-stm32f405-align", board: "board-stm32f405", flash: 96 << 10, ram: 48 << 10 },
+    Image { name: "board-vesc6", board: "board-vesc6", flash: 288 << 10, ram: 64 << 10 },
+    Image { name: "board-vesc6-align", board: "board-vesc6", flash: 96 << 10, ram: 48 << 10 },
 ];
 
 /// Longer than a build takes, however busy the machine.

@@ -79,7 +79,7 @@ cargo xtask flash IMAGE
 
 Builds a board's image, as `cargo xtask firmware` does, and hands it to the runner of
 .cargo/config.toml: probe-rs, which flashes it and shows its log until Ctrl-C. The images:
-board-stm32f405 and board-stm32f405-align.
+board-vesc6 and board-vesc6-align.
 ";
 
 const REPRODUCIBLE_HELP: &str = "\
@@ -238,7 +238,7 @@ fn mutants(words: &[&str]) -> Result<()> {
 
 fn build_all() -> Result<()> {
     image::build("board-qemu")?;
-    image::build("board-stm32f405")
+    image::build("board-vesc6")
 }
 
 fn on_virtual_board(words: &[&str]) -> Result<()> {

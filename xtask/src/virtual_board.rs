@@ -17,7 +17,7 @@ pub fn program() -> PathBuf {
 /// # Errors
 /// Cargo's failure.
 pub fn build() -> Result<()> {
-    image::build("board-stm32f405")?;
+    image::build("board-vesc6")?;
     let mut cargo = cargo("build");
     progress::must_whenever(cargo.args(["--bin", "virtual-board", "--profile", "virtual-board"]))
 }

@@ -2,7 +2,7 @@
 //! into a configuration, but only as many points as there are.
 
 use crate::bytes::{Reader, Writer};
-use crate::leaves::LAW;
+use crate::parameter_list::LAW;
 use control::law::gain_schedule::TABLE_POINTS;
 use control::param::ParamError;
 use control::{GainSchedule, Law};

@@ -6,7 +6,7 @@
 //! * [`frame`]: bytes on the line to checked frames and back;
 //! * [`message`]: what a frame can say, with [`telemetry`] and [`report`] as the larger ones;
 //! * [`leaves`]: every parameter by its [`key`], the [`law`] too; [`page`] lists them, [`parameters`]
-//!   answers what is asked of them, or with a [`refusal`];
+//!   answers what is asked of them, or with a [`rejection`];
 //! * [`store`]: the parameters in flash, as a [`record`], and the encoder's offset, as an [`alignment`];
 //! * [`ring`]: the last faults, in memory that keeps them through a reset;
 //! * [`sender`]: what waits to go out, and what is dropped when too much does;
@@ -15,15 +15,15 @@
 //! A board takes each byte that comes in, and sends each that goes out:
 //!
 //! ```
-//! use link::{Decoder, Message, Received, Sender, page::PAGE_BYTES, parameters};
+//! use link::{Decoder, Message, Received, Sender, page::PAGE_BYTES, requests};
 //!
 //! fn take(byte: u8, decoder: &mut Decoder, config: &mut control::Config, engaged: bool, sender: &mut Sender<1024, 1024>) {
 //!     let Some(received) = decoder.feed(byte) else { return };
 //!     let mut room = [0; PAGE_BYTES];
-//!     match parameters::request(&received) {
+//!     match requests::request(&received) {
 //!         Ok((sequence, request)) => {
 //!             let defaults = control::Config::product();
-//!             if let Some(answer) = parameters::answer(&defaults, config, engaged, &request, &mut room) {
+//!             if let Some(answer) = requests::answer(&defaults, config, engaged, &request, &mut room) {
 //!                 sender.answer(&answer, sequence);
 //!             }
 //!         }
@@ -56,25 +56,28 @@
 
 pub mod alignment;
 pub mod bytes;
+pub mod can;
+pub mod can_bit_timing;
+pub mod can_mailbox;
+pub mod fault_log;
 pub mod frame;
 pub mod key;
 pub mod law;
-pub mod leaves;
 pub mod lockstep;
 pub mod message;
 pub mod page;
-pub mod parameters;
+pub mod parameter_list;
 pub mod record;
-pub mod refusal;
+pub mod rejection;
 pub mod report;
-pub mod ring;
-pub mod sender;
+pub mod requests;
 pub mod store;
 pub mod telemetry;
-mod words;
+pub mod tx_queue;
+mod word_flash;
 
 pub use frame::{Decoder, Received};
 pub use key::Key;
 pub use message::Message;
-pub use sender::Sender;
 pub use store::Store;
+pub use tx_queue::TxQueue;

@@ -9,8 +9,8 @@ use crate::bytes::{Reader, Writer};
 use crate::frame::{Frame, MAX_PAYLOAD, encode_with};
 use crate::key::Key;
 use crate::page::Page;
-use crate::refusal::Refusal;
-use crate::report::{FaultRecord, Hello, KeptFault, cut};
+use crate::rejection::Rejection;
+use crate::report::{FaultRecord, Hello, StoredFault, cut};
 use crate::telemetry::{self, Telemetry};
 use control::wire::{encode_command, encode_frame};
 use control::{Command, SensorFrame};
@@ -45,7 +45,7 @@ pub enum Message<'a> {
     Store,
     /// To the board: all parameters to their defaults, not yet in flash. Answer: [`Message::Done`].
     Reset,
-    /// To the board: a fault that was kept. Answer: [`Message::KeptFault`].
+    /// To the board: a fault that was kept. Answer: [`Message::StoredFault`].
     ListFaults {
         /// Its place, the newest at 0.
         from: u16,
@@ -80,14 +80,14 @@ pub enum Message<'a> {
     /// From the board: it is done.
     Done,
     /// From the board: it is not done, and why.
-    Refused(Refusal<'a>),
+    Refused(Rejection<'a>),
     /// From the board: a frame of another version came in. Its frame tells the version spoken here.
     WrongVersion {
         /// The version that came in.
         theirs: u8,
     },
     /// From the board: a fault that was kept, and how many there are.
-    KeptFault(KeptFault<'a>),
+    StoredFault(StoredFault<'a>),
     /// From the board, processor in the loop: the command of a step. Its number is that of the newest sensor frame.
     PilCommand {
         /// The command.
@@ -136,7 +136,7 @@ impl<'a> Message<'a> {
             Message::Done => 0x85,
             Message::Refused(_) => 0x86,
             Message::WrongVersion { .. } => 0x87,
-            Message::KeptFault(_) => 0x88,
+            Message::StoredFault(_) => 0x88,
             Message::PilCommand { .. } => 0x91,
             Message::Telemetry(_) => 0xa0,
             Message::Fault(_) => 0xa1,
@@ -167,9 +167,9 @@ impl<'a> Message<'a> {
                 to.u8(page.count);
                 to.put(page.bytes);
             }
-            Message::Refused(refusal) => refusal.encode(to),
+            Message::Refused(rejection) => rejection.encode(to),
             Message::WrongVersion { theirs } => to.u8(*theirs),
-            Message::KeptFault(kept) => kept.encode(to),
+            Message::StoredFault(kept) => kept.encode(to),
             Message::PilConfig { at, bytes } => {
                 to.u16(*at);
                 to.put(bytes);
@@ -216,9 +216,9 @@ impl<'a> Message<'a> {
             0x83 => valued(&mut from).map(|(key, value)| Message::Value { key, value }),
             0x84 => Some(Message::Law(frame.payload)),
             0x85 => Some(Message::Done),
-            0x86 => Refusal::decode(&mut from).map(Message::Refused),
+            0x86 => Rejection::decode(&mut from).map(Message::Refused),
             0x87 => from.u8().map(|theirs| Message::WrongVersion { theirs }),
-            0x88 => KeptFault::decode(&mut from).map(Message::KeptFault),
+            0x88 => StoredFault::decode(&mut from).map(Message::StoredFault),
             0x91 => pil_command(&mut from),
             0xa0 => Telemetry::decode(&mut from).map(Message::Telemetry),
             0xa1 => FaultRecord::decode(&mut from).map(Message::Fault),

@@ -3,7 +3,7 @@
 use crate::bytes::{Reader, Writer};
 use crate::frame::MAX_PAYLOAD;
 use crate::key::Key;
-use crate::leaves::{Kind, Seen, each, get};
+use crate::parameter_list::{Kind, ParameterView, each, get};
 use control::Config;
 
 /// Most bytes of a page's entries: what a frame holds beside the three numbers before them.
@@ -51,29 +51,29 @@ impl Entry<'_> {
 /// Writes the page that begins with the parameter `from`.
 pub fn fill<'a>(defaults: &Config, config: &Config, from: u16, room: &'a mut [u8; PAGE_BYTES]) -> Page<'a> {
     let (mut total, mut count, mut used, mut full) = (0, 0, 0, false);
-    each(&mut config.clone(), |seen| {
+    each(&mut config.clone(), |view| {
         if total >= from && !full {
             let mut writer = Writer::new(room.get_mut(used..).unwrap_or_default());
-            encode(seen, get(defaults, seen.key()).map_or(seen.value, |known| known.value), &mut writer);
+            encode(view, get(defaults, view.key()).map_or(view.value, |known| known.value), &mut writer);
             match writer.used() {
                 Some(bytes) => (used, count) = (used + bytes, count + 1),
                 None => full = true,
             }
         }
         total += 1;
-        seen.value
+        view.value
     });
     Page { from, total, count, bytes: room.get(..used).unwrap_or_default() }
 }
 
-fn encode(seen: &Seen, default: Option<f32>, to: &mut Writer<'_>) {
-    to.u8(seen.kind as u8);
-    to.scalar(seen.value);
+fn encode(view: &ParameterView, default: Option<f32>, to: &mut Writer<'_>) {
+    to.u8(view.kind as u8);
+    to.scalar(view.value);
     to.scalar(default);
-    to.f32(seen.leaf.min);
-    to.f32(seen.leaf.max);
-    to.text(seen.key().parts());
-    let parts = seen.names.iter().enumerate().flat_map(|(i, name)| [if i == 0 { "" } else { " " }, *name]);
+    to.f32(view.leaf.min);
+    to.f32(view.leaf.max);
+    to.text(view.key().parts());
+    let parts = view.names.iter().enumerate().flat_map(|(i, name)| [if i == 0 { "" } else { " " }, *name]);
     to.text(parts);
 }
 

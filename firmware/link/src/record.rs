@@ -3,8 +3,8 @@
 
 use crate::bytes::{Reader, Writer, from_bits, to_bits};
 use crate::law::{self, LAW_BYTES, NoLaw};
-use crate::leaves::{LAW, each_but_law};
-use crate::parameters::{CALIBRATION, check};
+use crate::parameter_list::{LAW, each_but_law};
+use crate::requests::{CALIBRATION, check};
 use control::Config;
 use control::param::ParamError;
 
@@ -70,10 +70,10 @@ pub fn encode(
     writer.u16(law.len() as u16);
     writer.put(law);
     let head = writer.used()?;
-    each_but_law(&mut config.clone(), |seen| {
-        writer.u32(seen.key().hash());
-        writer.u32(to_bits(seen.value));
-        seen.value
+    each_but_law(&mut config.clone(), |view| {
+        writer.u32(view.key().hash());
+        writer.u32(to_bits(view.value));
+        view.value
     });
     let mut used = writer.used()?;
     let known = used;
@@ -131,19 +131,19 @@ impl Record<'_> {
             Err(NoLaw::Malformed) => refuse(&mut applied, LAW.error(f32::NAN)),
         }
         let mut used = 0;
-        each_but_law(config, |seen| {
-            let Some(bits) = find(self.entries, seen.key().hash()) else {
+        each_but_law(config, |view| {
+            let Some(bits) = find(self.entries, view.key().hash()) else {
                 applied.missing += 1;
-                applied.calibration_missing |= seen.leaf.group == CALIBRATION;
-                return seen.value;
+                applied.calibration_missing |= view.leaf.group == CALIBRATION;
+                return view.value;
             };
             used += 1;
             let value = from_bits(bits);
-            match check(seen, value) {
+            match check(view, value) {
                 Ok(()) => value,
                 Err(_) => {
-                    refuse(&mut applied, seen.leaf.error(value.unwrap_or(f32::NAN)));
-                    seen.value
+                    refuse(&mut applied, view.leaf.error(value.unwrap_or(f32::NAN)));
+                    view.value
                 }
             }
         });

@@ -184,7 +184,7 @@ impl<'a> FaultRecord<'a> {
 
 /// One place of the faults that were kept, the newest at 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct KeptFault<'a> {
+pub struct StoredFault<'a> {
     /// Its place.
     pub place: u16,
     /// How many are kept.
@@ -193,7 +193,7 @@ pub struct KeptFault<'a> {
     pub record: Option<FaultRecord<'a>>,
 }
 
-impl<'a> KeptFault<'a> {
+impl<'a> StoredFault<'a> {
     pub(crate) fn encode(&self, to: &mut Writer<'_>) {
         to.u16(self.place);
         to.u16(self.total);

@@ -7,7 +7,7 @@
 
 use crate::alignment::Alignment;
 use crate::record::{self, Applied, NoRecord, RECORD_BYTES, Record};
-use crate::words::Words;
+use crate::word_flash::WordFlash;
 use control::Config;
 use control::param::ParamError;
 use core::fmt;
@@ -126,7 +126,7 @@ pub enum NotStored {
 
 /// Parameters and the encoder's offset in a range of flash.
 pub struct Store<F: NorFlash> {
-    map: MapStorage<u8, Words<F>, Cache<Uncached, Uncached, Uncached, u8>>,
+    map: MapStorage<u8, WordFlash<F>, Cache<Uncached, Uncached, Uncached, u8>>,
 }
 
 impl<F: NorFlash> Store<F> {
@@ -136,7 +136,7 @@ impl<F: NorFlash> Store<F> {
         let large = F::ERASE_SIZE >= MIN_PAGE && length / F::ERASE_SIZE >= MIN_PAGES;
         let fits = large && range.end as usize <= flash.capacity();
         let config = fits.then(|| MapConfig::try_new(range).ok()).flatten()?;
-        Some(Self { map: MapStorage::new(Words(flash), config, Cache::new_uncached()) })
+        Some(Self { map: MapStorage::new(WordFlash(flash), config, Cache::new_uncached()) })
     }
 
     /// The flash back.

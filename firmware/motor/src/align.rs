@@ -10,8 +10,8 @@
 //! From A to B the encoder must go a quarter forward, from B to C back. The offset is the mean of B's and C's,
 //! reached from either side, so that friction drops out.
 
+use crate::angle::Angle;
 use crate::fault::Fault;
-use crate::turn::Turn;
 use control::param::{ParamSpec, ParamVisitor};
 
 /// How the alignment is done.
@@ -61,29 +61,29 @@ pub struct AlignState {
     ticks: u16,
     /// Electrical angle, without offset, in the rest: the first one, and sum, number and extremes of the distances
     /// from it \[turns\].
-    first: Turn,
+    first: Angle,
     sum_turns: f32,
     count: u16,
     least_turns: f32,
     most_turns: f32,
     /// Mean angles of the rests that are over.
-    a: Turn,
-    b: Turn,
+    a: Angle,
+    b: Angle,
 }
 
 /// What alignment wants of this call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Align {
     /// A field at this electrical angle, of this d current \[A\].
-    Field(Turn, f32),
+    Field(Angle, f32),
     /// Nothing more: the offset is found \[electrical turns\].
-    Found(Turn),
+    Found(Angle),
     /// Nothing more: it failed.
     Failed(Fault),
 }
 
 /// One call; `electrical` is the encoder's angle times the pole pairs, without offset.
-pub fn step(config: &AlignConfig, state: &mut AlignState, electrical: Turn) -> Align {
+pub fn step(config: &AlignConfig, state: &mut AlignState, electrical: Angle) -> Align {
     state.ticks = state.ticks.saturating_add(1);
     let (length, from, to) = match state.stage {
         Stage::Ramp => (config.ramp_ticks, -0.25, -0.25),
@@ -98,13 +98,13 @@ pub fn step(config: &AlignConfig, state: &mut AlignState, electrical: Turn) -> A
     if rests && part > 0.5 {
         watch(state, electrical);
     }
-    let field = Turn::of(from + (to - from) * part);
+    let field = Angle::of(from + (to - from) * part);
     let current = if state.stage == Stage::Ramp { config.current_a * part } else { config.current_a };
     if state.ticks < length { Align::Field(field, current) } else { next(config, state, field) }
 }
 
 /// Takes the angle into the rest's mean.
-fn watch(state: &mut AlignState, electrical: Turn) {
+fn watch(state: &mut AlignState, electrical: Angle) {
     if state.count == 0 {
         (state.first, state.sum_turns, state.least_turns, state.most_turns) = (electrical, 0.0, 0.0, 0.0);
     }
@@ -115,9 +115,9 @@ fn watch(state: &mut AlignState, electrical: Turn) {
 }
 
 /// The end of a stage.
-fn next(config: &AlignConfig, state: &mut AlignState, field: Turn) -> Align {
+fn next(config: &AlignConfig, state: &mut AlignState, field: Angle) -> Align {
     let tolerance = config.tolerance_turns;
-    let mean = state.first.plus(Turn::of(state.sum_turns / f32::from(state.count.max(1))));
+    let mean = state.first.plus(Angle::of(state.sum_turns / f32::from(state.count.max(1))));
     let restless = state.most_turns - state.least_turns > tolerance;
     state.stage = match state.stage {
         Stage::Ramp => Stage::Move0,
@@ -150,8 +150,8 @@ fn next(config: &AlignConfig, state: &mut AlignState, field: Turn) -> Align {
             if restless {
                 return Align::Failed(Fault::AlignRestless);
             }
-            let apart = state.b.minus(Turn::QUARTER).minus(mean).signed();
-            return Align::Found(mean.plus(Turn::of(0.5 * apart)));
+            let apart = state.b.minus(Angle::QUARTER).minus(mean).signed();
+            return Align::Found(mean.plus(Angle::of(0.5 * apart)));
         }
     };
     (state.ticks, state.count) = (0, 0);

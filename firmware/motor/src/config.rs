@@ -2,19 +2,19 @@
 
 use crate::align::AlignConfig;
 use crate::current::{CurrentConfig, Gains};
-use crate::demand::Demand;
+use crate::current_offset::CurrentOffsetConfig;
 use crate::encoder::{EncoderConfig, EncoderPlan};
 use crate::machine::Motor;
 use crate::modulate::Bridge;
 use crate::protect::angle::AngleConfig;
-use crate::protect::emf::EmfConfig;
-use crate::protect::follow::FollowConfig;
-use crate::protect::heat::HeatConfig;
+use crate::protect::back_emf::BackEmfConfig;
+use crate::protect::current_tracking::CurrentTrackingConfig;
 use crate::protect::overload::OverloadConfig;
 use crate::protect::sensors::SensorsConfig;
 use crate::protect::stall::StallConfig;
 use crate::protect::supply::SupplyConfig;
-use crate::zero::ZeroConfig;
+use crate::protect::temperature::TemperatureConfig;
+use crate::torque_limit::TorqueLimit;
 use control::ParamError;
 use control::param::{Checker, ParamSpec, ParamVisitor};
 
@@ -32,9 +32,9 @@ pub struct Config {
     /// The current loop.
     pub current: CurrentConfig,
     /// Limits of the torque.
-    pub demand: Demand,
+    pub demand: TorqueLimit,
     /// The current sensors' zeros.
-    pub zero: ZeroConfig,
+    pub zero: CurrentOffsetConfig,
     /// The alignment.
     pub align: AlignConfig,
     /// The current sensors.
@@ -44,13 +44,13 @@ pub struct Config {
     /// The bus.
     pub supply: SupplyConfig,
     /// The temperature.
-    pub heat: HeatConfig,
+    pub heat: TemperatureConfig,
     /// Torque without motion.
     pub stall: StallConfig,
     /// Currents that do not follow.
-    pub follow: FollowConfig,
+    pub follow: CurrentTrackingConfig,
     /// Back-EMF that does not fit.
-    pub emf: EmfConfig,
+    pub emf: BackEmfConfig,
     /// Back-EMF that lies elsewhere.
     pub angle: AngleConfig,
 }

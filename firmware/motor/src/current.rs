@@ -84,11 +84,11 @@ pub fn step(
 ) -> Vector {
     let error = wanted.minus(measured);
     let [kp_d, kp_q] = gains.kp;
-    let asked = Vector::new(kp_d * error.d, kp_q * error.q)
+    let requested = Vector::new(kp_d * error.d, kp_q * error.q)
         .plus(state.integral)
         .plus(gains.turning(wanted, omega_rad_s));
-    let given = asked.inside(max_v);
-    let left = given.minus(asked);
+    let given = requested.inside(max_v);
+    let left = given.minus(requested);
     state.integral = Vector::new(
         bounded(state.integral.d + gains.ki * (error.d + left.d / kp_d), max_v),
         bounded(state.integral.q + gains.ki * (error.q + left.q / kp_q), max_v),

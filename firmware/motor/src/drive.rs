@@ -1,25 +1,25 @@
 //! One call of the motor's interrupt: what is measured goes in, duty cycles come out.
 
 use crate::align::{self, Align, AlignState};
+use crate::angle::Angle;
 use crate::config::{DELAY_TICKS, Plan};
 use crate::current::{self, CurrentState};
-use crate::demand;
-use crate::encoder::{self, EncoderState, Seen};
+use crate::current_offset::{self, CurrentOffsetState};
+use crate::encoder::{self, EncoderReading, EncoderState};
 use crate::fault::{Fault, Faults};
 use crate::modulate;
 use crate::protect::overload::OverloadState;
 use crate::protect::sensors::Phases;
 use crate::protect::stall::StallState;
 use crate::protect::supply::SupplyState;
-use crate::protect::{angle, emf, follow, heat, overload, sensors, stall, supply};
+use crate::protect::{angle, back_emf, current_tracking, overload, sensors, stall, supply, temperature};
+use crate::torque_limit;
 use crate::transform::{Vector, clarke, park, stator};
-use crate::turn::Turn;
-use crate::zero::{self, ZeroState};
 use core::f32::consts::TAU;
 
 /// What is wanted of the motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Ask {
+pub enum MotorCommand {
     /// Nothing: the bridge is open.
     #[default]
     Off,
@@ -44,7 +44,7 @@ pub struct Inputs {
     /// The hottest of what is measured \[deg C\].
     pub temperature_c: f32,
     /// What is wanted.
-    pub ask: Ask,
+    pub command: MotorCommand,
 }
 
 /// What the motor does.
@@ -72,12 +72,12 @@ pub struct State {
     faults: Faults,
     /// Mode of the last call.
     mode: Mode,
-    zero: ZeroState,
+    zero: CurrentOffsetState,
     encoder: EncoderState,
     overload: OverloadState,
     stall: StallState,
     /// The offset that alignment found.
-    offset: Option<Turn>,
+    offset: Option<Angle>,
     /// Whether the alignment that is still asked for is over.
     aligned: bool,
     drive: Drive,
@@ -92,7 +92,7 @@ struct Drive {
     voltage: Vector,
     sum_beyond: u16,
     supply: SupplyState,
-    follow: follow::FollowState,
+    follow: current_tracking::CurrentTrackingState,
     emf_v: f32,
     angle: angle::AngleState,
 }
@@ -132,21 +132,22 @@ pub struct Output {
 /// Whatever the inputs, duty cycles are inside the bridge's limits, and a fault opens the bridge in the call in
 /// which it is seen.
 pub fn step(plan: &Plan, state: &mut State, inputs: &Inputs) -> Output {
-    let seen = encoder::step(&plan.encoder, &mut state.encoder, inputs.angle_counts, inputs.angle_age_ticks);
+    let reading =
+        encoder::step(&plan.encoder, &mut state.encoder, inputs.angle_counts, inputs.angle_age_ticks);
     let raw = inputs.phases.all();
-    let offset = state.offset.or(plan.config.encoder.offset_turns.map(Turn::of));
-    let mode = match (state.zero.zeros_a(), inputs.ask, offset) {
+    let offset = state.offset.or(plan.config.encoder.offset_turns.map(Angle::of));
+    let mode = match (state.zero.zeros_a(), inputs.command, offset) {
         _ if !state.faults.is_empty() => Mode::Off,
         (None, ..) => {
-            state.faults.take(zero::step(&plan.config.zero, &mut state.zero, raw));
+            state.faults.take(current_offset::step(&plan.config.zero, &mut state.zero, raw));
             if state.faults.is_empty() { Mode::Zeroing } else { Mode::Off }
         }
-        (_, Ask::Align, _) if !state.aligned => Mode::Aligning,
-        (_, Ask::Torque(_), Some(_)) => Mode::Running,
+        (_, MotorCommand::Align, _) if !state.aligned => Mode::Aligning,
+        (_, MotorCommand::Torque(_), Some(_)) => Mode::Running,
         (_, _, Some(_)) => Mode::Ready,
         (_, _, None) => Mode::Unaligned,
     };
-    state.aligned &= inputs.ask == Ask::Align;
+    state.aligned &= inputs.command == MotorCommand::Align;
     if mode != state.mode {
         (state.mode, state.drive) = (mode, Drive::default());
     }
@@ -154,26 +155,26 @@ pub fn step(plan: &Plan, state: &mut State, inputs: &Inputs) -> Output {
     let zeros = state.zero.zeros_a().unwrap_or_default();
     let offset = offset.unwrap_or_default();
     let mut out = if closed {
-        close(plan, state, inputs, mode, &seen, core::array::from_fn(|i| raw[i] - zeros[i]), offset)
+        close(plan, state, inputs, mode, &reading, core::array::from_fn(|i| raw[i] - zeros[i]), offset)
     } else {
         overload::step(&plan.config.overload, &mut state.overload, plan.period_s, 0.0, 0.0);
-        stall::step(&plan.config.stall, &mut state.stall, plan.period_s, 0.0, seen.speed_turns_s, 0.0);
+        stall::step(&plan.config.stall, &mut state.stall, plan.period_s, 0.0, reading.speed_turns_s, 0.0);
         Output { mode, ..Output::default() }
     };
     if !state.faults.is_empty() {
         out = Output { mode: Mode::Off, ..Output::default() };
     }
     out.faults = state.faults;
-    out.offset_turns = state.offset.map(Turn::signed).or(plan.config.encoder.offset_turns);
+    out.offset_turns = state.offset.map(Angle::signed).or(plan.config.encoder.offset_turns);
     out.aligned = state.aligned;
     let sign = if plan.config.motor.reversed { -TAU } else { TAU };
-    out.steer_rate_rad_s = sign * seen.speed_turns_s / plan.config.motor.ratio;
+    out.steer_rate_rad_s = sign * reading.speed_turns_s / plan.config.motor.ratio;
     out
 }
 
 /// Where the field stands in this call, and what is wanted of it.
 struct Field {
-    angle: Turn,
+    angle: Angle,
     omega_rad_s: f32,
     wanted: Vector,
 }
@@ -184,18 +185,18 @@ fn close(
     state: &mut State,
     inputs: &Inputs,
     mode: Mode,
-    seen: &Seen,
+    reading: &EncoderReading,
     phases_a: [f32; 3],
-    offset: Turn,
+    offset: Angle,
 ) -> Output {
     let c = &plan.config;
     let mut faults = sensors::step(&c.sensors, &mut state.drive.sum_beyond, phases_a);
     let (supply_share, low) = supply::step(&c.supply, &mut state.drive.supply, inputs.bus_v);
-    let (heat_share, hot) = heat::judge(&c.heat, inputs.temperature_c);
+    let (heat_share, hot) = temperature::check(&c.heat, inputs.temperature_c);
     faults.take(low);
     faults.take(hot);
-    faults = faults.with(seen.faults);
-    faults.note(Fault::Command, matches!(inputs.ask, Ask::Torque(nm) if !nm.is_finite()));
+    faults = faults.with(reading.faults);
+    faults.note(Fault::Command, matches!(inputs.command, MotorCommand::Torque(nm) if !nm.is_finite()));
     if !faults.is_empty() {
         state.faults = faults;
         return Output::default();
@@ -206,8 +207,8 @@ fn close(
         overload::step(&c.overload, &mut state.overload, plan.period_s, measured.square(), most);
     state.faults.take(overload);
     let (field, limit_a) = match mode {
-        Mode::Aligning => (aligning(plan, state, seen, limit), limit),
-        _ => running(plan, state, inputs.ask, seen, offset, limit),
+        Mode::Aligning => (aligning(plan, state, reading, limit), limit),
+        _ => running(plan, state, inputs.command, reading, offset, limit),
     };
     let Some(Field { angle, omega_rad_s, wanted }) = field else {
         return Output { mode: Mode::Ready, ..Output::default() };
@@ -221,12 +222,12 @@ fn close(
     let reachable = plan.gains.steady(wanted, omega_rad_s).square() < (0.9 * max_v) * (0.9 * max_v);
     let error_a = wanted.minus(measured).length();
     let drive = &mut state.drive;
-    state.faults.take(follow::step(&c.follow, &mut drive.follow, error_a, phases_a, reachable));
+    state.faults.take(current_tracking::step(&c.follow, &mut drive.follow, error_a, phases_a, reachable));
     if mode == Mode::Running {
         let unexplained = drive.voltage.minus(plan.gains.steady(measured, omega_rad_s));
         let resistive_v = c.motor.resistance_ohm * measured.length();
         let dead_v = plan.dead_duty * inputs.bus_v;
-        state.faults.take(emf::step(&c.emf, &mut drive.emf_v, unexplained, resistive_v, dead_v));
+        state.faults.take(back_emf::step(&c.emf, &mut drive.emf_v, unexplained, resistive_v, dead_v));
         let voltages = angle::Voltages {
             unexplained,
             magnets: omega_rad_s * c.motor.flux_wb,
@@ -237,7 +238,7 @@ fn close(
     }
     drive.voltage = current::step(&plan.gains, &mut drive.current, wanted, measured, omega_rad_s, max_v);
 
-    let ahead = Turn::of(omega_rad_s / TAU * DELAY_TICKS * plan.period_s);
+    let ahead = Angle::of(omega_rad_s / TAU * DELAY_TICKS * plan.period_s);
     let then = angle.plus(ahead).sin_cos();
     let (voltage, current) = (stator(drive.voltage, then), stator(wanted, then));
     Output {
@@ -254,8 +255,8 @@ fn close(
 }
 
 /// The field of the alignment; `None` when it is over.
-fn aligning(plan: &Plan, state: &mut State, seen: &Seen, limit_a: f32) -> Option<Field> {
-    let electrical = seen.angle.times(plan.config.motor.pole_pairs);
+fn aligning(plan: &Plan, state: &mut State, reading: &EncoderReading, limit_a: f32) -> Option<Field> {
+    let electrical = reading.angle.times(plan.config.motor.pole_pairs);
     match align::step(&plan.config.align, &mut state.drive.align, electrical) {
         Align::Field(angle, d) => {
             Some(Field { angle, omega_rad_s: 0.0, wanted: Vector::new(d.min(limit_a), 0.0) })
@@ -275,21 +276,21 @@ fn aligning(plan: &Plan, state: &mut State, seen: &Seen, limit_a: f32) -> Option
 fn running(
     plan: &Plan,
     state: &mut State,
-    ask: Ask,
-    seen: &Seen,
-    offset: Turn,
+    command: MotorCommand,
+    reading: &EncoderReading,
+    offset: Angle,
     limit_a: f32,
 ) -> (Option<Field>, f32) {
     let c = &plan.config;
-    let asked_nm = if let Ask::Torque(nm) = ask { nm } else { 0.0 };
-    let speed = seen.speed_turns_s;
+    let asked_nm = if let MotorCommand::Torque(nm) = command { nm } else { 0.0 };
+    let speed = reading.speed_turns_s;
     let asked_a = asked_nm / plan.torque_nm_a;
     let limit_a = stall::step(&c.stall, &mut state.stall, plan.period_s, asked_a, speed, limit_a);
     let limit_a = if state.drive.angle.is_proved() { limit_a } else { limit_a.min(plan.unproved_a) };
     let torque = &mut state.drive.torque_nm;
-    *torque = demand::step(&c.demand, plan.period_s, *torque, asked_nm, limit_a, plan.torque_nm_a);
+    *torque = torque_limit::step(&c.demand, plan.period_s, *torque, asked_nm, limit_a, plan.torque_nm_a);
     let field = Field {
-        angle: seen.angle.times(c.motor.pole_pairs).minus(offset),
+        angle: reading.angle.times(c.motor.pole_pairs).minus(offset),
         omega_rad_s: TAU * f32::from(c.motor.pole_pairs) * speed,
         wanted: Vector::new(0.0, *torque / plan.torque_nm_a),
     };

@@ -3,8 +3,8 @@
 //! The angle is the newest good sample, carried on with the speed for its age; only the speed is filtered, so that
 //! a blow does not turn the field away from the rotor.
 
+use crate::angle::Angle;
 use crate::fault::{Fault, Faults};
-use crate::turn::Turn;
 use control::maths::bounded;
 use control::param::{ParamSpec, ParamVisitor};
 use control::sensors::frame::MISSING;
@@ -48,7 +48,7 @@ impl EncoderConfig {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderPlan {
     config: EncoderConfig,
-    /// Parts of [`Turn`] of one count.
+    /// Parts of [`Angle`] of one count.
     count: u32,
     period_s: f32,
     /// Correction of angle and speed by a turn's error that is one period old; both poles at the bandwidth.
@@ -74,13 +74,13 @@ impl EncoderPlan {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderState {
     /// The last good sample, in the sense of the motor.
-    sample: Turn,
+    sample: Angle,
     /// Its age \[calls\].
     age: u16,
     /// The age told with the last sample.
     told_age: u16,
     /// Where the loop believes the motor, and how fast.
-    followed: Turn,
+    followed: Angle,
     speed_turns_s: f32,
     /// Whether a second sample has told a speed.
     moving: bool,
@@ -91,10 +91,10 @@ pub struct EncoderState {
 impl Default for EncoderState {
     fn default() -> Self {
         Self {
-            sample: Turn(0),
+            sample: Angle(0),
             age: MISSING,
             told_age: MISSING,
-            followed: Turn(0),
+            followed: Angle(0),
             speed_turns_s: 0.0,
             moving: false,
             doubt: Fault::EncoderLost,
@@ -104,9 +104,9 @@ impl Default for EncoderState {
 
 /// The motor as the encoder sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct EncoderReading {
     /// Angle of the motor now, forward positive.
-    pub angle: Turn,
+    pub angle: Angle,
     /// Speed of the motor \[turns/s\].
     pub speed_turns_s: f32,
     /// What is wrong with it.
@@ -114,10 +114,10 @@ pub struct Seen {
 }
 
 /// One call, with the newest sample's counts and its age in calls ([`MISSING`]: none yet).
-pub fn step(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age_ticks: u16) -> Seen {
+pub fn step(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age_ticks: u16) -> EncoderReading {
     let config = &plan.config;
     state.age = state.age.saturating_add(1);
-    state.followed = state.followed.plus(Turn::of(state.speed_turns_s * plan.period_s));
+    state.followed = state.followed.plus(Angle::of(state.speed_turns_s * plan.period_s));
     let new = age_ticks != state.told_age.saturating_add(1) && age_ticks <= config.timeout_ticks;
     state.told_age = age_ticks;
     // A loss is told even if it ends in this call.
@@ -129,7 +129,7 @@ pub fn step(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age_ticks
     let speed = state.speed_turns_s;
     faults.note(Fault::EncoderSpeed, speed.abs() > config.speed_max_turns_s);
     let since = f32::from(state.age.min(config.timeout_ticks)) * plan.period_s;
-    Seen { angle: state.sample.plus(Turn::of(speed * since)), speed_turns_s: speed, faults }
+    EncoderReading { angle: state.sample.plus(Angle::of(speed * since)), speed_turns_s: speed, faults }
 }
 
 /// A new sample.
@@ -139,7 +139,7 @@ fn take(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age: u16) {
         state.doubt = Fault::EncoderRange;
         return;
     }
-    let forward = Turn(u32::from(counts).wrapping_mul(plan.count));
+    let forward = Angle(u32::from(counts).wrapping_mul(plan.count));
     let sample = if config.reversed { forward.mirrored() } else { forward };
     let calls = f32::from(state.age.saturating_sub(age).clamp(1, 20));
     let most = 1.25 * config.speed_max_turns_s;
@@ -149,16 +149,16 @@ fn take(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age: u16) {
     } else if !state.moving {
         let speed = sample.minus(state.sample).signed() / (calls * plan.period_s);
         (state.speed_turns_s, state.moving) = (bounded(speed, most), true);
-        state.followed = sample.plus(Turn::of(state.speed_turns_s * f32::from(age) * plan.period_s));
+        state.followed = sample.plus(Angle::of(state.speed_turns_s * f32::from(age) * plan.period_s));
     }
-    let now = sample.plus(Turn::of(state.speed_turns_s * f32::from(age) * plan.period_s));
+    let now = sample.plus(Angle::of(state.speed_turns_s * f32::from(age) * plan.period_s));
     let error = now.minus(state.followed).signed();
     if error.abs() > config.jump_turns {
         state.doubt = Fault::EncoderJump;
         return;
     }
     // A sample that comes every n calls is worth n calls.
-    state.followed = state.followed.plus(Turn::of(bounded(plan.angle_gain * calls, 1.0) * error));
+    state.followed = state.followed.plus(Angle::of(bounded(plan.angle_gain * calls, 1.0) * error));
     state.speed_turns_s = bounded(state.speed_turns_s + plan.speed_gain_s * calls * error, most);
     (state.sample, state.age, state.doubt) = (sample, age, Fault::EncoderLost);
 }

@@ -14,19 +14,19 @@
 use crate::align::AlignConfig;
 use crate::config::Config;
 use crate::current::CurrentConfig;
-use crate::demand::Demand;
+use crate::current_offset::CurrentOffsetConfig;
 use crate::encoder::EncoderConfig;
 use crate::machine::Motor;
 use crate::modulate::Bridge;
 use crate::protect::angle::AngleConfig;
-use crate::protect::emf::EmfConfig;
-use crate::protect::follow::FollowConfig;
-use crate::protect::heat::HeatConfig;
+use crate::protect::back_emf::BackEmfConfig;
+use crate::protect::current_tracking::CurrentTrackingConfig;
 use crate::protect::overload::OverloadConfig;
 use crate::protect::sensors::SensorsConfig;
 use crate::protect::stall::StallConfig;
 use crate::protect::supply::SupplyConfig;
-use crate::zero::ZeroConfig;
+use crate::protect::temperature::TemperatureConfig;
+use crate::torque_limit::TorqueLimit;
 
 /// Torque constant of the data sheet, for a current that is switched every sixth of a turn \[N m/A\].
 const SHEET_NM_A: f32 = 40.4e-3;
@@ -58,8 +58,8 @@ pub const EXAMPLE: Config = Config {
     },
     bridge: Bridge { duty_min: 0.02, duty_max: 0.95, dead_time_s: 0.5e-6, dead_time_a: 0.5 },
     current: CurrentConfig { bandwidth_hz: 1000.0, max_a: 10.0 },
-    demand: Demand { max_nm: 7.0, slew_nm_s: 2000.0 },
-    zero: ZeroConfig { samples: 2000, max_a: 5.0, spread_a: 2.0 },
+    demand: TorqueLimit { max_nm: 7.0, slew_nm_s: 2000.0 },
+    zero: CurrentOffsetConfig { samples: 2000, max_a: 5.0, spread_a: 2.0 },
     align: AlignConfig {
         current_a: 6.0,
         ramp_ticks: 10_000,
@@ -70,10 +70,10 @@ pub const EXAMPLE: Config = Config {
     sensors: SensorsConfig { range_a: 160.0, trip_a: 15.0, sum_a: 2.0, sum_ticks: 4 },
     overload: OverloadConfig { continuous_a: 3.29, time_s: 43.1 },
     supply: SupplyConfig { low_v: 16.0, sag_v: 18.0, high_v: 32.0, persist_ticks: 2 },
-    heat: HeatConfig { warm_c: 80.0, hot_c: 100.0 },
+    heat: TemperatureConfig { warm_c: 80.0, hot_c: 100.0 },
     stall: StallConfig { hold_a: 3.0, still_turns_s: 0.3, time_s: 2.0 },
-    follow: FollowConfig { error_a: 1.5, mean_ticks: 20 },
-    emf: EmfConfig { error_v: 1.0, resistance_part: 0.5, mean_ticks: 100 },
+    follow: CurrentTrackingConfig { error_a: 1.5, mean_ticks: 20 },
+    emf: BackEmfConfig { error_v: 1.0, resistance_part: 0.5, mean_ticks: 100 },
     angle: AngleConfig {
         error_v: 0.1,
         resistance_part: 0.45,

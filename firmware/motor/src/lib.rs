@@ -19,9 +19,11 @@
 #![forbid(unsafe_code)]
 
 pub mod align;
+pub mod angle;
+pub mod command_word;
 pub mod config;
 pub mod current;
-pub mod demand;
+pub mod current_offset;
 pub mod drive;
 pub mod encoder;
 pub mod example;
@@ -29,11 +31,10 @@ pub mod fault;
 pub mod machine;
 pub mod modulate;
 pub mod protect;
+pub mod torque_limit;
 pub mod transform;
-pub mod turn;
-pub mod zero;
 
 pub use config::{Config, Plan};
-pub use drive::{Ask, Inputs, Mode, Output, State, step};
+pub use drive::{Inputs, Mode, MotorCommand, Output, State, step};
 pub use fault::{FAULTS, Fault, Faults};
 pub use protect::sensors::Phases;

@@ -2,7 +2,7 @@
 //! the panic handler calls a symbol that does not exist, and the linker drops the handler only if nothing can
 //! reach it. Never run.
 //!
-//! Left out are printing a `ParamError` and a `Refusal`, as core's own printing of f32 has assertions, and the store,
+//! Left out are printing a `ParamError` and a `Rejection`, as core's own printing of f32 has assertions, and the store,
 //! which has those of `sequential-storage`.
 #![no_std]
 #![no_main]
@@ -18,20 +18,20 @@ use control::{
     wire,
 };
 use core::hint::black_box;
+use devices::vesc6::{BOARD_HEAT, GATE_DRIVER, MOTOR, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
+use devices::wheel::{self, WheelState};
+use devices::{as5047, bmi160, drv8301};
 use link::alignment::{ALIGNMENT_BYTES, Alignment, Offset};
+use link::can::{Frame, Message as CanMessage, Motion};
+use link::can_bit_timing::bit_timing;
+use link::can_mailbox::{Counts, Mailbox};
+use link::fault_log::{self, RING_BYTES};
 use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
 use link::message::Message;
 use link::page::PAGE_BYTES;
 use link::report::config_hash;
-use link::ring::{self, RING_BYTES};
-use link::{Decoder, Sender, parameters};
-use parts::bit_timing::bit_timing;
-use parts::broadcast::{Frame, Message as CanMessage, Motion};
-use parts::mailbox::{Counts, Mailbox};
-use parts::order::{self, Deadline};
-use parts::vesc6::{BOARD_HEAT, GATE_DRIVER, MOTOR, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
-use parts::wheel::{self, WheelState};
-use parts::{as5047, bmi160, drv8301};
+use link::{Decoder, TxQueue, requests};
+use motor::command_word::{self, Deadline};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
@@ -140,10 +140,12 @@ fn motor() {
     let Ok(plan) = black_box(motor::example::EXAMPLE).plan() else { return };
     let mut state = black_box(motor::State::default());
     let phases = black_box(motor::Phases::Three([0.0; 3]));
-    for ask in black_box([motor::Ask::Off, motor::Ask::Align, motor::Ask::Torque(1.0)]) {
+    for command in
+        black_box([motor::MotorCommand::Off, motor::MotorCommand::Align, motor::MotorCommand::Torque(1.0)])
+    {
         let (angle_counts, angle_age_ticks) = (black_box(0), black_box(0));
         let (bus_v, temperature_c) = (black_box(24.0), black_box(20.0));
-        let inputs = motor::Inputs { phases, bus_v, angle_counts, angle_age_ticks, temperature_c, ask };
+        let inputs = motor::Inputs { phases, bus_v, angle_counts, angle_age_ticks, temperature_c, command };
         used(motor::step(&plan, &mut state, &inputs));
     }
 }
@@ -156,17 +158,18 @@ fn board() {
     used(bmi160::sample(black_box(0), &black_box([0; bmi160::BURST])));
     let settings = black_box(GATE_DRIVER);
     used((settings.control1(), settings.control2(), drv8301::Status(counts, counts).names().count()));
-    used(black_box(parts::fault_pin::FaultPin::default()).step(black_box(true)));
+    used(black_box(devices::fault_pin::FaultPin::default()).step(black_box(true)));
     used(
-        black_box(parts::slow::Slow::default()).step(black_box(None), MOTOR.motor.turns_s_at(black_box(8.5))),
+        black_box(devices::slow::Slow::default())
+            .step(black_box(None), MOTOR.motor.turns_s_at(black_box(8.5))),
     );
-    used(parts::silicon::has_prefetch(counts, counts));
+    used(devices::silicon::has_prefetch(counts, counts));
     used(drv8301::data(black_box(drv8301::Register::Status1), counts).map(drv8301::is_present));
-    let ask = order::ask(order::word(order::ask(black_box(0))));
-    used(black_box(Deadline::default()).step(black_box(1), ask, counts));
+    let command = command_word::command(command_word::word(command_word::command(black_box(0))));
+    used(black_box(Deadline::default()).step(black_box(1), command, counts));
     let (mut switch, mut wheel) =
-        (black_box(parts::switch::Switch::default()), black_box(WheelState::default()));
-    used((switch.step(black_box(true), counts), parts::ticks::ticks(black_box(1), black_box(2))));
+        (black_box(devices::switch::Switch::default()), black_box(WheelState::default()));
+    used((switch.step(black_box(true), counts), devices::ticks::ticks(black_box(1), black_box(2))));
     used(wheel::step(&black_box(WheelPulsesConfig::default()), &mut wheel, black_box(None), black_box(1)));
     can();
 }
@@ -197,22 +200,21 @@ fn offset() {
 
 /// The engineer's line: any bytes in, whatever they ask for, and all that goes out; the kept faults; the loop's chunks.
 fn engineer(mut config: Config) {
-    let (mut decoder, mut sender) = (Decoder::default(), Sender::<1024, 1024>::new(1));
+    let (mut decoder, mut sender) = (Decoder::default(), TxQueue::<1024, 1024>::new(1));
     let (mut ring, mut chunk) = (black_box([0; RING_BYTES]), black_box([0; MAX_CHUNK]));
-    used((ring::start(&mut ring), ring::noted(&ring)));
+    used((fault_log::start(&mut ring), fault_log::noted(&ring)));
     let bytes = black_box([0_u8; 64]);
     let mut bytes = &bytes[..];
     while !bytes.is_empty() {
         let Some(received) = decoder.take(&mut bytes) else { continue };
-        match parameters::request(&received) {
+        match requests::request(&received) {
             Ok((sequence, request)) => {
                 let mut room = [0; PAGE_BYTES];
                 let engaged = black_box(false);
-                let answer =
-                    parameters::answer(&Config::product(), &mut config, engaged, &request, &mut room);
+                let answer = requests::answer(&Config::product(), &mut config, engaged, &request, &mut room);
                 used(sender.answer(&answer.unwrap_or(request), sequence));
                 if let Message::Fault(fault) = request {
-                    ring::note(&mut ring, &fault);
+                    fault_log::note(&mut ring, &fault);
                 }
                 if let Message::Telemetry(telemetry) = request {
                     sender.step(&telemetry);
@@ -224,8 +226,8 @@ fn engineer(mut config: Config) {
             }
         }
     }
-    ring::faults(&ring).for_each(|fault| sender.tell(&Message::Fault(fault)));
-    ring::clear(&mut ring);
+    fault_log::faults(&ring).for_each(|fault| sender.tell(&Message::Fault(fault)));
+    fault_log::clear(&mut ring);
     while let Some(byte) = sender.next_byte() {
         used(byte);
     }

@@ -10,9 +10,9 @@
 use control::{Config, Plan};
 use cortex_m_semihosting::hprintln;
 use embassy_time::{Duration, Instant, Timer};
-use firmware::alive::Task;
 use firmware::board::semihosting::{argument, exit};
 use firmware::board::{self, Exit, executor};
+use firmware::heartbeat::Task;
 use firmware::tasks;
 use link::report::config_hash;
 use static_cell::StaticCell;

@@ -19,12 +19,12 @@ use cortex_m_semihosting::hprintln;
 use firmware::board::Exit;
 use firmware::board::functions::{self, ARGUMENTS};
 use firmware::board::recording::{BLOCK, Recording};
-use firmware::board::rotor::Rotor;
 use firmware::board::semihosting::exit;
+use firmware::board::simulated_motor::SimulatedMotor;
 use firmware::board::stack;
 use firmware::failure;
 use motor::example::EXAMPLE;
-use motor::{Ask, Fault, Inputs, Mode, Output};
+use motor::{Fault, Inputs, Mode, MotorCommand, Output};
 use static_cell::ConstStaticCell;
 
 static FRAMES: ConstStaticCell<[[u8; FRAME_BYTES]; BLOCK]> = ConstStaticCell::new([[0; FRAME_BYTES]; BLOCK]);
@@ -169,24 +169,24 @@ const FAULTS: [(Fault, Change); 9] = [
     (Fault::Hot, |i| i.temperature_c = 110.0),
     (Fault::EncoderLost, |i| i.angle_age_ticks = u16::MAX),
     (Fault::EncoderRange, |i| i.angle_counts = u16::MAX),
-    (Fault::Command, |i| i.ask = Ask::Torque(f32::NAN)),
+    (Fault::Command, |i| i.command = MotorCommand::Torque(f32::NAN)),
 ];
 
 /// The loop and its motor.
 struct Motor<'a> {
     plan: &'a motor::Plan,
     state: motor::State,
-    rotor: Rotor,
+    rotor: SimulatedMotor,
     output: Output,
 }
 
 impl<'a> Motor<'a> {
     /// Ready, the zeros of its current sensors taken.
     fn new(plan: &'a motor::Plan, turns_s: f32) -> Self {
-        let rotor = Rotor::new(plan, turns_s);
+        let rotor = SimulatedMotor::new(plan, turns_s);
         let mut motor = Self { plan, state: motor::State::default(), rotor, output: Output::default() };
         for _ in 0..=EXAMPLE.zero.samples {
-            motor.output = motor::step(plan, &mut motor.state, &motor.rotor.inputs(plan, Ask::Off));
+            motor.output = motor::step(plan, &mut motor.state, &motor.rotor.inputs(plan, MotorCommand::Off));
             motor.rotor.advance(plan, &motor.output);
         }
         motor
@@ -196,7 +196,7 @@ impl<'a> Motor<'a> {
     fn run(&mut self, tally: &mut Tally, calls: u32, torque_nm: f32, change: Change) {
         let top = stack::paint();
         for _ in 0..calls {
-            let mut inputs = self.rotor.inputs(self.plan, Ask::Torque(torque_nm));
+            let mut inputs = self.rotor.inputs(self.plan, MotorCommand::Torque(torque_nm));
             change(&mut inputs);
             let (plan, inputs) = (black_box(self.plan), black_box(&inputs));
             let around = instructions(|| no_call(plan, &mut self.state, inputs, &mut self.output));

@@ -1,44 +1,44 @@
 //! All tasks, with the host's bicycle instead of sensors and motor: `sim-host pil`.
 //!
-//! Arguments: those of `board::mishap`, for failures on purpose.
+//! Arguments: those of `board::fault_injection`, for failures on purpose.
 #![no_std]
 #![no_main]
 
 use control::Config;
-use firmware::alive::Task;
 use firmware::board::semihosting::exit;
-use firmware::board::{self, Exit, executor, mishap, pil, text};
-use firmware::tasks::settings::{self, Kept};
+use firmware::board::{self, Exit, executor, fault_injection, pil, text};
+use firmware::heartbeat::Task;
+use firmware::tasks::settings::{self, StoredConfig};
 use firmware::{crash, tasks};
 use link::report::config_hash;
 use static_cell::StaticCell;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static KEPT: StaticCell<Kept> = StaticCell::new();
+    static KEPT: StaticCell<StoredConfig> = StaticCell::new();
     pil::begin();
     board::restarts();
     crash::start(board::reset_cause());
     text::line(format_args!("{}", firmware::identity!()));
-    if !mishap::prepare() {
+    if !fault_injection::prepare() {
         text::line(format_args!("no such mishap, or no time for it"));
         exit(Exit::Input)
     }
-    let kept = KEPT.init(Kept::open());
-    let plan = settings::start(kept, &Config::product());
+    let stored = KEPT.init(StoredConfig::open());
+    let plan = settings::start(stored, &Config::product());
     text::line(format_args!(
         "configuration {:08x}, parameters: {}",
         config_hash(plan.config()),
-        kept.found()
+        stored.found()
     ));
     board::run(
         |control| {
             control.spawn(tasks::control(plan).unwrap());
             executor::below_control().spawn(pil::exchange().unwrap());
-            executor::above_control().spawn(mishap::strike().unwrap());
+            executor::above_control().spawn(fault_injection::strike().unwrap());
         },
         |thread| {
-            thread.spawn(tasks::line(firmware::image!(), kept).unwrap());
+            thread.spawn(tasks::line(firmware::image!(), stored).unwrap());
             thread.spawn(tasks::report().unwrap());
             thread.spawn(tasks::supervise(&[Task::Control, Task::Line, Task::Report]).unwrap());
         },

@@ -1,8 +1,8 @@
 //! The 1 kHz task: sensors in, one step, torque out. It waits for nothing but its next release.
 
 use super::settings;
-use crate::alive::Task;
 use crate::deadline::{Deadlines, PERIOD};
+use crate::heartbeat::Task;
 use crate::{board, crash, retained};
 use ::control::sensors::polarity::PolarityStep;
 use ::control::{Command, Mode, Plan, SensorFrame, State, step};
@@ -10,8 +10,8 @@ use core::cell::RefCell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_time::{Instant, Timer};
+use link::fault_log::{self, LastStep};
 use link::report::FaultKind;
-use link::ring::{self, LastStep};
 
 /// Why a board gives no torque, whatever is commanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,7 +126,7 @@ pub async fn control(plan: &'static mut Plan) {
             drive,
         };
         LATEST.lock(|latest| *latest.borrow_mut() = Some(telemetry));
-        retained::with(|ring| ring::stepped(ring, &telemetry.last_step()));
+        retained::with(|ring| fault_log::stepped(ring, &telemetry.last_step()));
         if command.mode == Mode::Fault && mode != Mode::Fault {
             crash::note(FaultKind::Controller, crash::Registers::default(), "");
         }

@@ -10,17 +10,17 @@
 //! A board is a module with these functions: `run` (starts the clock and the executors; what must run before, the board of
 //! the chip starts with `start`), `sense`
 //! and `drive` (the sensors and the motor, at every step), `report` (one line to the engineer),
-//! `line::read` and `line::write` (bytes from and to the engineer's computer), `flash` (where parameters
+//! `host_link::read` and `host_link::write` (bytes from and to the engineer's computer), `flash` (where parameters
 //! are kept; it gives the watchdog more patience while it erases), `feed_watchdog`, `reset_cause`, `outputs_off` and `end`
 //! (the last words, then a new start). Its warning of a failing supply ends in [`crate::crash`].
 
 mod control;
-mod line;
-mod report;
+mod host_link;
+mod log;
 pub mod settings;
 mod supervise;
 
 pub use control::{Refusal, Telemetry, commanded, control, latest};
-pub use line::line;
-pub use report::report;
+pub use host_link::line;
+pub use log::report;
 pub use supervise::{WATCHDOG, supervise};

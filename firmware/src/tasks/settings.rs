@@ -2,7 +2,7 @@
 //! flash, the offset of the motor's encoder.
 
 use super::latest;
-use crate::{alive, board};
+use crate::{board, heartbeat};
 use ::control::{Config, Mode, Plan};
 use core::cell::RefCell;
 use embassy_futures::block_on;
@@ -76,7 +76,7 @@ pub(super) fn take(mode: Mode) -> Option<(Plan, u32)> {
 }
 
 /// The stored parameters and encoder's offset, and what they are worked on in.
-pub struct Kept {
+pub struct StoredConfig {
     /// The flash's pages; `None` if the board has none.
     store: Option<Store<board::Flash>>,
     room: &'static mut Room,
@@ -84,7 +84,7 @@ pub struct Kept {
     offset: Option<Offset>,
 }
 
-impl Kept {
+impl StoredConfig {
     /// In the board's flash.
     ///
     /// # Panics
@@ -126,7 +126,7 @@ impl Kept {
         self.offset.as_ref()
     }
 
-    /// Stores an alignment of the encoder. The chip may stand still as of [`Kept::save`].
+    /// Stores an alignment of the encoder. The chip may stand still as of [`StoredConfig::save`].
     ///
     /// # Errors
     /// As of [`NotStored`].
@@ -141,9 +141,9 @@ impl Kept {
     /// As of [`NotStored`].
     pub async fn save(&mut self, config: &Config) -> Result<(), NotStored> {
         let Some(store) = &mut self.store else { return Err(NotStored::Flash) };
-        alive::excuse(true);
+        heartbeat::suspend(true);
         let stored = store.save(config, self.room).await;
-        alive::excuse(false);
+        heartbeat::suspend(false);
         stored
     }
 }
@@ -153,9 +153,9 @@ impl Kept {
 /// # Panics
 /// When called a second time.
 #[inline(never)]
-pub fn start(kept: &mut Kept, defaults: &Config) -> &'static mut Plan {
+pub fn start(stored: &mut StoredConfig, defaults: &Config) -> &'static mut Plan {
     static PLAN: StaticCell<Plan> = StaticCell::new();
-    let config = block_on(kept.load(defaults));
+    let config = block_on(stored.load(defaults));
     SETTINGS.lock(|settings| settings.borrow_mut().config = Some(config.clone()));
     // What a store gives passes: else it gave the defaults, which are the program's own.
     PLAN.init(config.plan().expect("a plan of the defaults"))

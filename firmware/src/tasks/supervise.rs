@@ -1,7 +1,7 @@
 //! Lets the watchdog bite when a task stands still. It runs at the lowest priority, so that an interrupt or a task that
 //! never ends is caught as well.
 
-use crate::alive::{self, Task};
+use crate::heartbeat::{self, Task};
 use crate::{board, crash};
 use core::future::pending;
 use embassy_time::{Duration, Ticker};
@@ -14,11 +14,11 @@ pub const WATCHDOG: Duration = Duration::from_millis(100);
 /// task. After the first that does not it is never fed again.
 #[embassy_executor::task]
 pub async fn supervise(tasks: &'static [Task]) {
-    alive::begin();
+    heartbeat::begin();
     let mut check = Ticker::every(WATCHDOG / 10);
     loop {
         check.next().await;
-        if let Some(task) = alive::silent(tasks) {
+        if let Some(task) = heartbeat::silent(tasks) {
             crash::note(FaultKind::Watchdog, crash::Registers::default(), task.name());
             pending::<()>().await;
         }

@@ -1,6 +1,6 @@
 //! What the converters measure: physical values to counts of 12 bits at 3.3 V.
 
-use parts::vesc6::{BOARD_HEAT, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
+use devices::vesc6::{BOARD_HEAT, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
 
 const FULL_SCALE: f64 = 4095.0;
 
@@ -72,7 +72,7 @@ impl Analog {
     }
 }
 
-fn gauge(gauge: &parts::analog::Gauge, value: f64) -> u16 {
+fn gauge(gauge: &devices::analog::Gauge, value: f64) -> u16 {
     let part = (value - f64::from(gauge.max)) / f64::from(gauge.min - gauge.max);
     let span = f64::from(gauge.most_counts - gauge.least_counts);
     clamped(f64::from(gauge.least_counts) + part * span)

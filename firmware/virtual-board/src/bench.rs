@@ -62,13 +62,13 @@ pub enum Error {
         /// Where the program is, and which instruction accessed a register last, each with its function.
         whereabouts: String,
     },
-    /// The emulator took longer for a step than [`Options::patience`].
-    #[error("at {at_ms:.3} ms: the emulator did not come back within {patience:?}")]
+    /// The emulator took longer for a step than [`Options::timeout`].
+    #[error("at {at_ms:.3} ms: the emulator did not come back within {timeout:?}")]
     Stuck {
         /// Simulated time at the step's begin \[ms\].
         at_ms: f64,
         /// The limit.
-        patience: Duration,
+        timeout: Duration,
     },
 }
 
@@ -149,7 +149,7 @@ pub struct Bench {
     rtt: Rtt,
     functions: Functions,
     image: PathBuf,
-    patience: Duration,
+    timeout: Duration,
 }
 
 impl Bench {
@@ -200,7 +200,7 @@ impl Bench {
             rtt,
             functions,
             image: image.to_owned(),
-            patience: options.patience,
+            timeout: options.timeout,
         };
         bench.wait()?;
         Ok(bench)
@@ -337,7 +337,7 @@ impl Bench {
     }
 
     fn wait(&mut self) -> Result<(), Error> {
-        match self.reached.recv_timeout(self.patience) {
+        match self.reached.recv_timeout(self.timeout) {
             Ok(Reached { at_ns, instructions }) => {
                 (self.now_ns, self.instructions) = (at_ns, instructions);
                 Ok(())
@@ -345,7 +345,7 @@ impl Bench {
             Err(RecvTimeoutError::Timeout) => {
                 // It is left to itself: nothing can stop it.
                 self.thread = None;
-                Err(Error::Stuck { at_ms: self.now_ms(), patience: self.patience })
+                Err(Error::Stuck { at_ms: self.now_ms(), timeout: self.timeout })
             }
             Err(RecvTimeoutError::Disconnected) => Err(Error::Emulator(self.end())),
         }

@@ -33,7 +33,7 @@ pub struct Options {
     /// How long the flash takes.
     pub flash: Pace,
     /// How long the emulator may take for a millisecond of simulated time, on this machine's clock.
-    pub patience: Duration,
+    pub timeout: Duration,
 }
 
 impl Default for Options {
@@ -43,7 +43,7 @@ impl Default for Options {
             lsi_hz: 32_000,
             chip_mv: 3300,
             flash: Pace::Typical,
-            patience: Duration::from_secs(120),
+            timeout: Duration::from_secs(120),
         }
     }
 }

@@ -220,7 +220,7 @@ fn kept(file: &Path) -> Result<Option<Vec<u8>>, Failure> {
 
 /// Where `cargo xtask firmware` leaves the board's images.
 fn built(align: bool) -> PathBuf {
-    let name = if align { "board-stm32f405-align" } else { "board-stm32f405" };
+    let name = if align { "board-vesc6-align" } else { "board-vesc6" };
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../target/firmware/thumbv7em-none-eabihf/firmware")
         .join(name)

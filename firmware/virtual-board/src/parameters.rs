@@ -22,7 +22,7 @@ pub fn stored(config: &Config, offset_turns: f32) -> Result<Vec<u8>, NotStored> 
     let mut store = Store::new(erased, STORE).ok_or(NotStored::Flash)?;
     let room = &mut Room::new();
     block_on(store.save(config, room))?;
-    let alignment = Alignment { offset_turns, motor_id: parts::vesc6::MOTOR.motor_id() };
+    let alignment = Alignment { offset_turns, motor_id: devices::vesc6::MOTOR.motor_id() };
     block_on(store.save_alignment(&alignment, room))?;
     Ok(store.into_flash().0.split_off(STORE.start as usize))
 }

@@ -4,7 +4,7 @@ use crate::machine::{Machine, Params};
 use std::f64::consts::TAU;
 
 /// Counts of the encoder's turn.
-const ENCODER_COUNTS: f64 = parts::as5047::COUNTS as f64;
+const ENCODER_COUNTS: f64 = devices::as5047::COUNTS as f64;
 
 /// The rotor of the example's motor seen at the steer axis: 181 g cm^2 behind 36:1 \[kg m^2\]. A bicycle that drives the
 /// steer has to have it in its own inertia.

@@ -4,7 +4,7 @@ use super::received::ReceivedMessage;
 use super::transport::{Transport, TransportError};
 use link::frame::{MAX_FRAME, VERSION};
 use link::message::{Message, NoMessage};
-use link::refusal::Why;
+use link::rejection::RejectReason;
 use link::{Decoder, Received};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant, SystemTime};
@@ -57,7 +57,7 @@ pub enum ClientError {
         /// What was asked.
         requested: String,
         /// Why.
-        why: Why,
+        why: RejectReason,
         /// Why, in words, with parameter and range.
         text: String,
     },

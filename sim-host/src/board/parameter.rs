@@ -4,8 +4,8 @@ use control::law::LAW_NAMES;
 use control::{GainSchedule, Law};
 use link::bytes::{Reader, Writer, to_bits};
 use link::law::{LAW_BYTES, decode, encode};
-use link::leaves::Kind;
 use link::page::Entry;
+use link::parameter_list::Kind;
 
 /// A parameter as a board lists it.
 #[derive(Clone, Debug, PartialEq)]

@@ -132,7 +132,7 @@ impl Client {
             let from = kept.len() as u16;
             let requested = format!("list faults from {from}");
             let fault = self.ask(&Message::ListFaults { from }, &requested, |answer| match answer {
-                Message::KeptFault(fault) if fault.place == from => Some(fault.record.map(Fault::from)),
+                Message::StoredFault(fault) if fault.place == from => Some(fault.record.map(Fault::from)),
                 _ => None,
             })?;
             match fault {

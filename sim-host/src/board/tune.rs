@@ -2,7 +2,7 @@
 
 use super::client::{Client, ClientError};
 use super::settings::{Setting, Settings};
-use link::refusal::Why;
+use link::rejection::RejectReason;
 
 /// Only the check itself sets it.
 const CHECKED: &str = "calibration.polarity_checked";
@@ -71,7 +71,12 @@ fn converge(client: &mut Client, mut waiting: Vec<Setting>, set: &mut Vec<Settin
         while let Some(setting) = rest.next() {
             match setting.apply(client) {
                 Ok(()) => set.push(setting),
-                Err(error @ ClientError::Refused { why: Why::OutOfRange | Why::GroupOff, .. }) => {
+                Err(
+                    error @ ClientError::Refused {
+                        why: RejectReason::OutOfRange | RejectReason::GroupOff,
+                        ..
+                    },
+                ) => {
                     refusal.get_or_insert(error);
                     waiting.push(setting);
                 }

@@ -7,7 +7,7 @@ use crate::board::fault::Fault;
 use crate::board::parameter::{Parameter, law_name};
 use crate::board::reception::Reception;
 use crate::board::settings::Settings;
-use link::leaves::Kind;
+use link::parameter_list::Kind;
 use schemars::JsonSchema;
 use serde::Serialize;
 

@@ -1,8 +1,8 @@
 //! Requests and their answers.
 
 use control::{Config, Law};
-use link::leaves::each;
 use link::message::Message;
+use link::parameter_list::each;
 use sim_host::board::client::{Client, ClientError, Patience};
 use std::time::Duration;
 use tests::link_board::{LinkBoard, LinkChannel, Wire, encoded, faults, lock, shared, telemetry};

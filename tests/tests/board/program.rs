@@ -37,7 +37,7 @@ fn a_parameter_is_seen_set_and_stored() {
     let run = |line: &str| bench.run(&format!("param {line} --port {}", port.name));
     let all = run("list");
     let mut listed = 0;
-    link::leaves::each(&mut Config::product(), |seen| {
+    link::parameter_list::each(&mut Config::product(), |seen| {
         listed += 1;
         seen.value
     });

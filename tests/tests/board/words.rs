@@ -2,7 +2,7 @@
 
 use crate::client::SHORT;
 use control::{ActiveLimits, CAUSES, Causes};
-use link::leaves::Kind;
+use link::parameter_list::Kind;
 use proptest::prelude::*;
 use sim_host::board::causes::{limits, named};
 use sim_host::board::exception::Exception;

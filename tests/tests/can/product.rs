@@ -4,7 +4,7 @@ use super::{column, group, read_with, remarks};
 use control::fault::CAUSES;
 use control::sensors::polarity::PolarityStep;
 use control::{ActiveLimits, Causes, Mode};
-use parts::broadcast::{self, Message, Motion, State};
+use link::can::{self, Message, Motion, State};
 use proptest::prelude::*;
 use sim_host::recording::dbc::Database;
 use sim_host::recording::frames::Id;
@@ -134,14 +134,14 @@ const LIMITS: [(&str, ActiveLimits); 10] = [
 fn the_database_has_the_boards_signals_and_no_others() {
     let database = parsed();
     let ids: Vec<u32> = database.messages.iter().map(|message| message.id.number).collect();
-    assert_eq!(ids, [broadcast::STATE, broadcast::MOTION, broadcast::CAUSES].map(u32::from));
+    assert_eq!(ids, [can::STATE, can::MOTION, can::CAUSES].map(u32::from));
     let counts: Vec<usize> = database.messages.iter().map(|message| message.signals.len()).collect();
     assert_eq!(counts, [7 + LIMITS.len(), 4, CAUSES.len()]);
     assert!(database.messages.iter().all(|message| message.unused.is_empty() && message.bytes() == 8));
     let units: Vec<&str> = database.messages[1].signals.iter().map(|signal| signal.unit.as_str()).collect();
     assert_eq!(units, ["rad/s", "rad", "N m", "N m"]);
     let steps: Vec<f32> = database.messages[1].signals.iter().map(|signal| signal.factor as f32).collect();
-    let unit = [broadcast::ROLL_RATE_RAD_S, broadcast::STEER_RAD, broadcast::TORQUE_NM, broadcast::TORQUE_NM];
+    let unit = [can::ROLL_RATE_RAD_S, can::STEER_RAD, can::TORQUE_NM, can::TORQUE_NM];
     assert_eq!(steps, unit);
 }
 

@@ -3,7 +3,7 @@
 use crate::machine::{Machine, Params};
 use control::{Mode, Plan, Sample, SensorFrame};
 use motor::example::EXAMPLE;
-use motor::{Ask, Faults, Inputs, Output, Phases};
+use motor::{Faults, Inputs, MotorCommand, Output, Phases};
 use sim_host::ride::{Remote, RemoteError, Start, Stepped};
 use std::f64::consts::TAU;
 
@@ -63,7 +63,7 @@ impl Axle {
     }
 
     /// One call of the motor's loop.
-    fn call(&mut self, drive: &mut Drive, ask: Ask) {
+    fn call(&mut self, drive: &mut Drive, command: MotorCommand) {
         let counts = f64::from(self.motor.config().encoder.counts);
         let turns = drive.machine.motor_turns + self.slipped_turns(drive);
         let inputs = Inputs {
@@ -72,7 +72,7 @@ impl Axle {
             angle_counts: (turns * counts).floor().rem_euclid(counts) as u16,
             angle_age_ticks: 0,
             temperature_c: 25.0,
-            ask,
+            command,
         };
         drive.out = motor::step(&self.motor, &mut drive.state, &inputs);
         let acting = if drive.out.duties.is_none() { None } else { drive.acting };
@@ -109,7 +109,7 @@ impl Remote for Axle {
         };
         (self.opened, self.against_nm_s) = (None, 0.0);
         for _ in 0..=self.motor.config().zero.samples {
-            self.call(&mut drive, Ask::Off);
+            self.call(&mut drive, MotorCommand::Off);
         }
         self.drive = Some(drive);
         Ok(())
@@ -138,11 +138,11 @@ impl Remote for Axle {
         drive.machine.motor_turns = f64::from(frame.steer_rad.value) * drive.machine.params.ratio / TAU;
 
         let wanted = command.torque_nm != 0.0 || matches!(command.mode, Mode::Engaged | Mode::Limp);
-        let ask = if wanted { Ask::Torque(command.torque_nm) } else { Ask::Off };
+        let motor_command = if wanted { MotorCommand::Torque(command.torque_nm) } else { MotorCommand::Off };
         let calls = (self.step_s * f64::from(self.motor.config().rate_hz)).round() as usize;
         let mut sum_nm = 0.0;
         for _ in 0..calls {
-            self.call(&mut drive, ask);
+            self.call(&mut drive, motor_command);
             sum_nm += drive.machine.torque_nm();
         }
         let mean_nm = sum_nm / calls as f64;

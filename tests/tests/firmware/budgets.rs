@@ -13,7 +13,7 @@ fn images_keep_their_budgets_and_the_document_is_true() {
     if !image::ready() {
         return;
     }
-    image::build("board-stm32f405").expect("the board's image builds");
+    image::build("board-vesc6").expect("the board's image builds");
     let (sizes, counts) = (size::sizes().unwrap(), instructions::counts().unwrap());
     assert_eq!(over_budget(&sizes, &counts), [""; 0]);
     assert_eq!(margin_too_small(&counts), [""; 0]);
@@ -61,7 +61,7 @@ fn every_image_carries_its_identity() {
     if !image::ready() {
         return;
     }
-    image::build("board-stm32f405").expect("the board's image builds");
+    image::build("board-vesc6").expect("the board's image builds");
     for image in image::IMAGES {
         let bytes = std::fs::read(image::path(image.name)).unwrap();
         let identity = format!("{} {} ", image.name, env!("CARGO_PKG_VERSION"));
@@ -81,7 +81,7 @@ fn no_image_names_a_folder_of_this_machine() {
     if !image::ready() {
         return;
     }
-    image::build("board-stm32f405").expect("the board's image builds");
+    image::build("board-vesc6").expect("the board's image builds");
     let folders = [Some(image::root().to_owned()), image::cargo_home(), std::env::home_dir()];
     let folders: Vec<String> =
         folders.into_iter().flatten().map(|folder| folder.display().to_string()).collect();
@@ -104,8 +104,8 @@ fn a_hex_file_leaves_the_store_alone() {
     if !image::ready() {
         return;
     }
-    image::build("board-stm32f405").expect("the board's image builds");
-    let path = image::path("board-stm32f405");
+    image::build("board-vesc6").expect("the board's image builds");
+    let path = image::path("board-vesc6");
     let plain = image::loaded(&path).unwrap();
     assert!(
         plain[0x4000..0x1_0000].iter().all(|byte| *byte == 0) && plain[..0x100].iter().any(|byte| *byte != 0)

@@ -3,8 +3,8 @@
 use crate::rig::Rig;
 use control::{Config, Law};
 use link::Key;
-use link::leaves::each;
 use link::message::Message;
+use link::parameter_list::each;
 use sim_host::board::demo_board::DemoBoard;
 use sim_host::board::settings::{Setting, Settings};
 use sim_host::board::tune::tune;

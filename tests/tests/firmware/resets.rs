@@ -74,7 +74,7 @@ fn whatever_goes_wrong_ends_in_a_new_start_without_torque() {
 }
 
 /// Longest that silence does not count while parameters are stored \[ms\].
-const EXCUSE_MS: u32 = 5000;
+const SUSPEND_MS: u32 = 5000;
 
 /// Situation: the product at rest, its configuration in flash, all tasks run.
 /// Action: a parameter is changed and stored; the flash never takes it.
@@ -93,11 +93,11 @@ fn a_store_that_never_ends_is_not_excused_for_ever() {
     assert_eq!(rig.values, [Some(5.0)]);
     rig.ask(&Message::Store);
     let from = rig.time_ms();
-    while rig.starts() == 1 && rig.time_ms() < from + 2 * EXCUSE_MS {
+    while rig.starts() == 1 && rig.time_ms() < from + 2 * SUSPEND_MS {
         rig.ride(1, false);
     }
     let took = rig.time_ms() - from;
-    assert!((EXCUSE_MS + 60..EXCUSE_MS + 170).contains(&took), "{took} ms");
+    assert!((SUSPEND_MS + 60..SUSPEND_MS + 170).contains(&took), "{took} ms");
     rig.ask(&Message::Get { key });
     rig.ask(&Message::ListFaults { from: 0 });
     rig.ride(2000, false);

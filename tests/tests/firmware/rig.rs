@@ -123,7 +123,7 @@ impl Rig {
         for byte in said.line {
             if let Some(Received::Frame(frame)) = self.line.feed(*byte) {
                 match Message::decode(&frame) {
-                    Ok(Message::KeptFault(kept)) => self.kept.extend(kept.record.map(|record| Kept {
+                    Ok(Message::StoredFault(kept)) => self.kept.extend(kept.record.map(|record| Kept {
                         kind: record.kind,
                         boot: record.boot,
                         mode: record.mode,

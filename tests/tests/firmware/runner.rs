@@ -5,7 +5,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::process::Command;
 use xtask::image;
 
-/// Situation: a `probe-rs` at the front of `PATH` that prints its arguments. Action: `cargo flash-stm32f405` and `cargo align-stm32f405`.
+/// Situation: a `probe-rs` at the front of `PATH` that prints its arguments. Action: `cargo flash-vesc6` and `cargo align-vesc6`.
 /// Must hold: each calls it once, to run its own image on this chip, and with both options without which probe-rs halts
 /// the core at a reset or a hard fault, where docs/hardware.md promises a new start.
 #[test]
@@ -13,7 +13,7 @@ fn a_chip_that_is_flashed_starts_anew_after_a_reset() {
     if !image::ready() {
         return;
     }
-    image::build("board-stm32f405").expect("the board's images build");
+    image::build("board-vesc6").expect("the board's images build");
     let folder = tempfile::tempdir().unwrap();
     let probe = folder.path().join("probe-rs");
     std::fs::write(&probe, "#!/bin/sh\necho \"probe-rs $*\"\n").unwrap();
@@ -22,9 +22,7 @@ fn a_chip_that_is_flashed_starts_anew_after_a_reset() {
     let path =
         std::env::join_paths([folder.path().to_owned()].into_iter().chain(std::env::split_paths(&before)));
     let path = path.unwrap();
-    for (command, name) in
-        [("flash-stm32f405", "board-stm32f405"), ("align-stm32f405", "board-stm32f405-align")]
-    {
+    for (command, name) in [("flash-vesc6", "board-vesc6"), ("align-vesc6", "board-vesc6-align")] {
         let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
         let output = cargo.current_dir(image::root()).arg(command).env("PATH", &path).output().unwrap();
         let told = String::from_utf8_lossy(&output.stdout);

@@ -3,7 +3,7 @@
 use crate::messages::all;
 use control::{Config, Plan};
 use link::frame::{MAX_FRAME, MAX_PAYLOAD, VERSION};
-use link::leaves::each_but_law;
+use link::parameter_list::each_but_law;
 use link::record::{LAYOUT, MAX_ENTRIES, RECORD_BYTES, encode};
 use link::report::{FAULT_BYTES, FAULT_TEXT_BYTES};
 use link::store::MIN_PAGE;

@@ -1,15 +1,15 @@
 //! The list of parameters, and the law among them.
 
-use crate::parameters::ask;
+use crate::requests::ask;
 use control::param::{ParamSpec, ParamVisitor};
 use control::{Config, GainSchedule, Law};
 use link::Key;
 use link::bytes::Writer;
 use link::law;
-use link::leaves::Kind;
 use link::message::Message;
 use link::page::Entry;
-use link::parameters::set;
+use link::parameter_list::Kind;
+use link::requests::set;
 
 /// An entry of the list, on its own.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,11 +6,11 @@ use link::Key;
 use link::frame::{Decoder, Frame, MAX_FRAME, MAX_PAYLOAD, Received, VERSION};
 use link::message::{Message, NoMessage};
 use link::page::Page;
-use link::parameters::request;
-use link::refusal::{Refusal, Why};
+use link::rejection::{RejectReason, Rejection};
 use link::report::{
-    FAULT_BYTES, FAULT_TEXT_BYTES, FaultKind, FaultRecord, Hello, KeptFault, ResetCause, config_hash,
+    FAULT_BYTES, FAULT_TEXT_BYTES, FaultKind, FaultRecord, Hello, ResetCause, StoredFault, config_hash,
 };
+use link::requests::request;
 use link::telemetry::{Telemetry, mode};
 use proptest::prelude::*;
 
@@ -98,13 +98,9 @@ proptest! {
 /// Every message with something in each field.
 pub(crate) fn all() -> Vec<Message<'static>> {
     let parted = Key { group: "limits.end_stop", name: "soft_rad" };
-    let refusal = Refusal { why: Why::OutOfRange, key: parted, value: 9.0, min: 0.5, max: 1.5 };
-    let hello = Hello {
-        image: "board-stm32f405",
-        version: "0.1.0",
-        commit: "0123456789ab",
-        config_hash: 0xdead_beef,
-    };
+    let refusal = Rejection { why: RejectReason::OutOfRange, key: parted, value: 9.0, min: 0.5, max: 1.5 };
+    let hello =
+        Hello { image: "board-vesc6", version: "0.1.0", commit: "0123456789ab", config_hash: 0xdead_beef };
     let fault = FaultRecord {
         kind: FaultKind::Exception,
         boot: 12,
@@ -140,8 +136,8 @@ pub(crate) fn all() -> Vec<Message<'static>> {
         Message::Done,
         Message::Refused(refusal),
         Message::WrongVersion { theirs: 9 },
-        Message::KeptFault(KeptFault { place: 1, total: 2, record: Some(fault) }),
-        Message::KeptFault(KeptFault { place: 2, total: 2, record: None }),
+        Message::StoredFault(StoredFault { place: 1, total: 2, record: Some(fault) }),
+        Message::StoredFault(StoredFault { place: 2, total: 2, record: None }),
         Message::PilFrame(SensorFrame::missing()),
         Message::PilCommand { command, authority: 0.5 },
         Message::PilConfig { at: 512, bytes: &[9, 8, 7] },
@@ -195,7 +191,10 @@ fn every_message_comes_through() {
 #[test]
 fn every_number_means_one_thing() {
     for number in 0..=255 {
-        assert_eq!(Why::numbered(number).map(|why| why as u8), (1..=11).contains(&number).then_some(number));
+        assert_eq!(
+            RejectReason::numbered(number).map(|why| why as u8),
+            (1..=11).contains(&number).then_some(number)
+        );
         assert_eq!(mode(number).map(|mode| mode as u8), (0..=6).contains(&number).then_some(number));
         assert_eq!(
             FaultKind::numbered(number).map(|kind| kind as u8),
@@ -213,13 +212,13 @@ fn every_number_means_one_thing() {
 /// Must hold: each but the good one is answered with what is wrong, under its number where that is known.
 #[test]
 fn what_is_no_request_is_answered() {
-    let refused = |why| Message::Refused(Refusal::of(why));
+    let refused = |why| Message::Refused(Rejection::of(why));
     let of = |kind, payload| Received::Frame(Frame { kind, sequence: 44, payload });
     for (received, answer) in [
         (Received::WrongVersion { theirs: VERSION + 1 }, (0, Message::WrongVersion { theirs: VERSION + 1 })),
-        (of(0x7f, &[][..]), (44, refused(Why::UnknownRequest))),
-        (of(0x02, &[1]), (44, refused(Why::Malformed))),
-        (of(0x03, &[2, 0xff, 0xff]), (44, refused(Why::Malformed))),
+        (of(0x7f, &[][..]), (44, refused(RejectReason::UnknownRequest))),
+        (of(0x02, &[1]), (44, refused(RejectReason::Malformed))),
+        (of(0x03, &[2, 0xff, 0xff]), (44, refused(RejectReason::Malformed))),
     ] {
         assert_eq!(request(&received).expect_err("no request").answer(), answer);
     }
@@ -259,13 +258,13 @@ fn panic_of(text: &str) -> FaultRecord<'_> {
 #[test]
 fn the_largest_fault_record_has_its_size() {
     let text = "x".repeat(FAULT_TEXT_BYTES);
-    let kept = KeptFault { place: 0, total: 1, record: Some(panic_of(&text)) };
+    let kept = StoredFault { place: 0, total: 1, record: Some(panic_of(&text)) };
     let mut bytes = [0; MAX_FRAME];
-    let used = Message::KeptFault(kept).encode(1, &mut bytes).expect("room");
+    let used = Message::StoredFault(kept).encode(1, &mut bytes).expect("room");
     let plain = cobs::decode(&bytes[1..used], &mut [0; MAX_FRAME]).expect("stuffed").frame_size();
     assert_eq!(plain - 8, 4 + FAULT_BYTES);
     assert!((200..=300).contains(&(4 + FAULT_BYTES)));
-    through(&Message::KeptFault(kept), |got| assert_eq!(*got, Message::KeptFault(kept)));
+    through(&Message::StoredFault(kept), |got| assert_eq!(*got, Message::StoredFault(kept)));
 }
 
 /// Situation: two configurations that differ in one parameter.

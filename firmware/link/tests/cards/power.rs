@@ -3,7 +3,7 @@
 use crate::flash::{Flash, Tear, load, load_alignment, random, save, save_alignment};
 use control::Config;
 use link::alignment::Alignment;
-use link::leaves::each;
+use link::parameter_list::each;
 use link::store::Found;
 use proptest::prelude::*;
 

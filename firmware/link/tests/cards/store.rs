@@ -5,7 +5,7 @@ use control::{Config, GainSchedule, Law};
 use embassy_futures::block_on;
 use link::Key;
 use link::bytes::Reader;
-use link::leaves::{each, each_but_law};
+use link::parameter_list::{each, each_but_law};
 use link::record::{Applied, LAYOUT, NoRecord, RECORD_BYTES, decode, encode};
 use link::store::{Doubt, Found, MIN_PAGE, MIN_PAGES, NotStored, Store};
 use sequential_storage::cache::Cache;
@@ -186,7 +186,9 @@ fn a_value_outside_todays_range_is_refused_and_told() {
         let mut expected = own();
         expected.calibration.polarity_checked = false;
         each_but_law(&mut expected, |seen| match seen.key() == Key::whole(key) {
-            true => link::leaves::get(&Config::product(), seen.key()).and_then(|default| default.value),
+            true => {
+                link::parameter_list::get(&Config::product(), seen.key()).and_then(|default| default.value)
+            }
             false => seen.value,
         });
         assert_eq!(found, expected, "{key}");

@@ -2,13 +2,13 @@
 //! does not.
 
 pub mod angle;
-pub mod emf;
-pub mod follow;
-pub mod heat;
+pub mod back_emf;
+pub mod current_tracking;
 pub mod overload;
 pub mod sensors;
 pub mod stall;
 pub mod supply;
+pub mod temperature;
 
 /// A share from 0 at `none` to 1 at `all`, straight between; NaN gives 0.
 pub(crate) fn share(x: f32, none: f32, all: f32) -> f32 {

@@ -3,14 +3,14 @@
 use crate::machine::Params;
 use crate::rig::{Record, Rig, last, mean};
 use motor::example::EXAMPLE;
-use motor::{Ask, Config, Fault, Mode};
+use motor::{Config, Fault, Mode, MotorCommand};
 
 /// Calls of a whole alignment: a ramp, three moves, three rests of half a second each.
 const CALLS: usize = 70_000;
 
 fn zeroed(config: Config) -> Rig {
     let mut rig = Rig::new(config, Params::default());
-    let records = rig.run(usize::from(config.zero.samples) + 1, Ask::Off);
+    let records = rig.run(usize::from(config.zero.samples) + 1, MotorCommand::Off);
     assert_eq!(last(&records).out.mode, Mode::Unaligned);
     rig
 }
@@ -48,9 +48,9 @@ fn the_offset_is_found() {
         rig.machine.motor_turns = start / 8.0;
         rig.machine.params.coulomb_nm = friction_nm;
         rig.encoder_zero = zero;
-        let _ = rig.run(20, Ask::Off);
-        assert_eq!(last(&rig.run(10, Ask::Torque(1.0))).out.mode, Mode::Unaligned);
-        let records = rig.run(CALLS + 10, Ask::Align);
+        let _ = rig.run(20, MotorCommand::Off);
+        assert_eq!(last(&rig.run(10, MotorCommand::Torque(1.0))).out.mode, Mode::Unaligned);
+        let records = rig.run(CALLS + 10, MotorCommand::Align);
         let out = last(&records).out;
         assert_eq!((out.mode, out.duties), (Mode::Ready, None), "{start} {zero}: {out:?}");
         let first = records.iter().position(|r| r.out.aligned).expect("it is told");
@@ -65,8 +65,8 @@ fn the_offset_is_found() {
         worst = worst.max(error);
         rig.machine.held = true;
         rig.machine.steer_rate_rad_s = 0.0;
-        assert!(rig.run(20, Ask::Off).iter().all(|r| !r.out.aligned));
-        let records = rig.run(1000, Ask::Torque(3.0));
+        assert!(rig.run(20, MotorCommand::Off).iter().all(|r| !r.out.aligned));
+        let records = rig.run(1000, MotorCommand::Torque(3.0));
         let torque = mean(&records[500..], |r| r.torque_nm) / 3.0;
         assert!((0.98..=1.02).contains(&torque), "{torque}");
     }
@@ -81,10 +81,10 @@ fn a_broken_off_alignment_begins_anew() {
     config.encoder.offset_turns = Some(-0.3);
     let mut rig = Rig::new(config, Params::default());
     rig.encoder_zero = 0.2;
-    let _ = rig.run(usize::from(config.zero.samples) + 1, Ask::Off);
-    let _ = rig.run(CALLS / 2, Ask::Align);
-    assert_eq!(last(&rig.run(100, Ask::Torque(0.0))).out.mode, Mode::Running);
-    let records = rig.run(CALLS + 10, Ask::Align);
+    let _ = rig.run(usize::from(config.zero.samples) + 1, MotorCommand::Off);
+    let _ = rig.run(CALLS / 2, MotorCommand::Align);
+    assert_eq!(last(&rig.run(100, MotorCommand::Torque(0.0))).out.mode, Mode::Running);
+    let records = rig.run(CALLS + 10, MotorCommand::Align);
     let took = records.iter().position(|r| r.out.mode == Mode::Ready).expect("an end") + 1;
     assert_eq!(took, CALLS);
     let offset = f64::from(last(&records).out.offset_turns.expect("an offset"));
@@ -96,7 +96,7 @@ fn a_broken_off_alignment_begins_anew() {
 fn a_reversed_encoder_is_refused() {
     let mut rig = zeroed(EXAMPLE);
     rig.encoder_reversed = true;
-    refused(&rig.run(CALLS, Ask::Align), Fault::AlignReversed);
+    refused(&rig.run(CALLS, MotorCommand::Align), Fault::AlignReversed);
 }
 
 /// Situation: the encoder slips, or is geared: 0, 0.5, 0.7 or 1.5 of the motion reach it. Must hold: refused, not followed.
@@ -106,7 +106,7 @@ fn a_slipping_encoder_is_refused() {
     for grip in [0.0, 0.5, 0.7, 1.5] {
         let mut rig = zeroed(EXAMPLE);
         rig.encoder_grip = grip;
-        refused(&rig.run(CALLS, Ask::Align), Fault::AlignLag);
+        refused(&rig.run(CALLS, MotorCommand::Align), Fault::AlignLag);
     }
 }
 
@@ -115,7 +115,7 @@ fn a_slipping_encoder_is_refused() {
 fn a_held_handlebar_is_refused() {
     let mut rig = zeroed(EXAMPLE);
     rig.machine.held = true;
-    refused(&rig.run(CALLS, Ask::Align), Fault::AlignLag);
+    refused(&rig.run(CALLS, MotorCommand::Align), Fault::AlignLag);
 }
 
 /// Situation: somebody shakes the handlebar, 4 N m at 5 Hz. Must hold: refused, restless.
@@ -125,7 +125,7 @@ fn a_shaken_handlebar_is_refused() {
     let mut records = Vec::new();
     for i in 0..CALLS {
         rig.machine.load_nm = 4.0 * (i as f64 / 20_000.0 * 5.0 * std::f64::consts::TAU).sin();
-        records.push(rig.call(Ask::Align, |_, _| ()));
+        records.push(rig.call(MotorCommand::Align, |_, _| ()));
     }
     refused(&records, Fault::AlignRestless);
 }
@@ -136,7 +136,7 @@ fn a_cut_phase_gives_no_offset() {
     for cut in 0..3 {
         let mut rig = zeroed(EXAMPLE);
         rig.machine.cut[cut] = true;
-        let records = rig.run(CALLS, Ask::Align);
+        let records = rig.run(CALLS, MotorCommand::Align);
         let out = last(&records).out;
         assert!(!out.faults.is_empty() && out.offset_turns.is_none(), "{out:?}");
     }

@@ -1,7 +1,7 @@
 //! Flight cards: what goes wrong opens the bridge, in time, with its number, for good.
 
 use crate::rig::{Record, Rig, last, opened};
-use motor::{Ask, FAULTS, Fault, Faults, Inputs, Mode, Phases, State};
+use motor::{FAULTS, Fault, Faults, Inputs, Mode, MotorCommand, Phases, State};
 
 fn one(fault: Fault) -> Faults {
     let mut set = Faults::NONE;
@@ -14,8 +14,8 @@ fn turning(rate: f64) -> Rig {
     let mut rig = Rig::ready(|_| ());
     rig.machine.params.inertia_kg_m2 = 1e6;
     rig.machine.steer_rate_rad_s = rate;
-    let _ = rig.run(600, Ask::Off);
-    let records = rig.run(400, Ask::Torque(4.0));
+    let _ = rig.run(600, MotorCommand::Off);
+    let records = rig.run(400, MotorCommand::Torque(4.0));
     assert_eq!(opened(&records), None, "{:?}", last(&records).out);
     rig
 }
@@ -48,8 +48,8 @@ fn an_input_that_is_wrong() {
         ("a temperature of NaN", |_, i| i.temperature_c = f32::NAN, Fault::HeatSensor, 1),
         ("a temperature sensor cut", |_, i| i.temperature_c = -100.0, Fault::HeatSensor, 1),
         ("101 deg C", |_, i| i.temperature_c = 101.0, Fault::Hot, 1),
-        ("a command of NaN", |_, i| i.ask = Ask::Torque(f32::NAN), Fault::Command, 1),
-        ("a command of infinity", |_, i| i.ask = Ask::Torque(f32::INFINITY), Fault::Command, 1),
+        ("a command of NaN", |_, i| i.command = MotorCommand::Torque(f32::NAN), Fault::Command, 1),
+        ("a command of infinity", |_, i| i.command = MotorCommand::Torque(f32::INFINITY), Fault::Command, 1),
         ("an encoder that is silent", |n, i| i.angle_age_ticks = n as u16 + 1, Fault::EncoderLost, 11),
         ("an encoder that has nothing", |_, i| i.angle_age_ticks = u16::MAX, Fault::EncoderLost, 11),
         ("an encoder that is always late", |_, i| i.angle_age_ticks = 50, Fault::EncoderLost, 11),
@@ -74,7 +74,7 @@ fn an_input_that_is_wrong() {
         ),
     ];
     for (name, tamper, fault, call) in cases {
-        let records = turning(2.0).tampered(100, Ask::Torque(4.0), tamper);
+        let records = turning(2.0).tampered(100, MotorCommand::Torque(4.0), tamper);
         opens(name, &records, fault, call, call + 1);
     }
 }
@@ -84,7 +84,7 @@ fn an_input_that_is_wrong() {
 fn an_encoder_that_is_too_fast() {
     let mut rig = Rig::ready(|c| c.encoder.speed_max_turns_s = 20.0);
     rig.machine.load_nm = 30.0;
-    let records = rig.run(4000, Ask::Torque(4.0));
+    let records = rig.run(4000, MotorCommand::Torque(4.0));
     opens("too fast", &records, Fault::EncoderSpeed, 10, 4000);
     let rate = records[opened(&records).unwrap_or(1) - 1].out.steer_rate_rad_s * 36.0 / std::f32::consts::TAU;
     assert!((20.0..=20.5).contains(&rate), "{rate}");
@@ -94,7 +94,7 @@ fn an_encoder_that_is_too_fast() {
 #[test]
 fn one_bad_sample_is_left_out() {
     let mut rig = turning(2.0);
-    let records = rig.tampered(100, Ask::Torque(4.0), |n, i| {
+    let records = rig.tampered(100, MotorCommand::Torque(4.0), |n, i| {
         if n == 10 {
             i.angle_counts = (i.angle_counts + 4000) % 16_384;
         }
@@ -113,9 +113,9 @@ fn a_blow_to_the_handlebar() {
         let mut during = Vec::new();
         for call in 1..=calls {
             rig.machine.steer_rate_rad_s = blow * f64::from(call) / f64::from(calls);
-            during.push(rig.call(Ask::Torque(4.0), |_, _| ()));
+            during.push(rig.call(MotorCommand::Torque(4.0), |_, _| ()));
         }
-        let after = rig.run(200, Ask::Torque(4.0));
+        let after = rig.run(200, MotorCommand::Torque(4.0));
         assert_eq!(opened(&after), None, "{blow}: {:?}", last(&after).out);
         println!(
             "{blow} rad/s in {calls} calls: {:.2} N m, then {:.2} N m",
@@ -135,8 +135,8 @@ fn an_encoder_that_is_stuck() {
         [(0.3, false), (1.0, true), (2.0, true), (4.0, true), (6.0, true), (10.0, true), (-6.0, true)]
     {
         let mut rig = turning(rate);
-        let counts = rig.inputs(Ask::Off).angle_counts;
-        let records = rig.tampered(4000, Ask::Torque(4.0), |_, i| i.angle_counts = counts);
+        let counts = rig.inputs(MotorCommand::Off).angle_counts;
+        let records = rig.tampered(4000, MotorCommand::Torque(4.0), |_, i| i.angle_counts = counts);
         let most = records.iter().map(|r| r.torque_nm.abs()).fold(0.0, f64::max);
         println!(
             "stuck at {rate} rad/s: call {:?}, {:?}, {most:.1} N m",
@@ -163,15 +163,15 @@ fn a_phase_is_cut() {
     for (cut, fault) in [Fault::PhaseALost, Fault::PhaseBLost, Fault::PhaseCLost].into_iter().enumerate() {
         let mut rig = turning(3.0);
         rig.machine.cut[cut] = true;
-        let records = rig.run(400, Ask::Torque(4.0));
+        let records = rig.run(400, MotorCommand::Torque(4.0));
         opens("cut, turning", &records, fault, 5, 200);
         for angle in 0..6 {
             let mut rig = Rig::ready(|_| ());
             rig.machine.motor_turns = f64::from(angle) / 6.0 / 8.0 + 0.003;
             rig.machine.held = true;
             rig.machine.cut[cut] = true;
-            let _ = rig.run(12, Ask::Off);
-            let records = rig.run(400, Ask::Torque(4.0));
+            let _ = rig.run(12, MotorCommand::Off);
+            let records = rig.run(400, MotorCommand::Torque(4.0));
             let out = last(&records).out;
             assert!(opened(&records).is_some_and(|n| (5..=200).contains(&n)), "{cut} {angle}: {out:?}");
             let may = [fault, Fault::CurrentAstray, Fault::VoltageAstray, Fault::AngleAstray];
@@ -180,7 +180,7 @@ fn a_phase_is_cut() {
     }
     let mut rig = turning(3.0);
     rig.machine.cut = [true; 3];
-    let records = rig.run(400, Ask::Torque(4.0));
+    let records = rig.run(400, MotorCommand::Torque(4.0));
     opens("all three cut", &records, Fault::CurrentAstray, 5, 200);
 }
 
@@ -191,7 +191,7 @@ fn a_current_sensor_is_dead() {
     for x in 0..3 {
         let mut rig = turning(2.0);
         let zero = rig.zeros_a[x] as f32;
-        let records = rig.tampered(500, Ask::Torque(4.0), |_, i| {
+        let records = rig.tampered(500, MotorCommand::Torque(4.0), |_, i| {
             let mut all = i.phases.all();
             all[x] = zero;
             i.phases = Phases::Three(all);
@@ -207,10 +207,10 @@ fn a_current_sensor_is_dead() {
 fn a_winding_that_shorts() {
     let mut rig = Rig::ready(|_| ());
     rig.machine.held = true;
-    let _ = rig.run(400, Ask::Torque(7.0));
+    let _ = rig.run(400, MotorCommand::Torque(7.0));
     rig.machine.params.inductance_d_h /= 20.0;
     rig.machine.params.inductance_q_h /= 20.0;
-    let records = rig.run(400, Ask::Torque(7.0));
+    let records = rig.run(400, MotorCommand::Torque(7.0));
     let beyond = records.iter().position(|r| r.largest_phase_a > 15.0).expect("it swings") + 1;
     let most = records.iter().map(|r| r.largest_phase_a).fold(0.0, f64::max);
     opens("shorted", &records, Fault::OverCurrent, beyond, beyond + 1);
@@ -224,7 +224,7 @@ fn a_winding_that_shorts() {
 fn braking_without_a_battery() {
     let mut rig = turning(10.0);
     rig.machine.params.source_ohm = 1e9;
-    let records = rig.run(2000, Ask::Torque(-7.0));
+    let records = rig.run(2000, MotorCommand::Torque(-7.0));
     opens("no battery", &records, Fault::BusHigh, 20, 2000);
     assert!((32.0..=34.0).contains(&rig.machine.bus_v), "{}", rig.machine.bus_v);
     println!("bus {:.2} V", rig.machine.bus_v);
@@ -235,7 +235,7 @@ fn braking_without_a_battery() {
 fn the_battery_breaks_down() {
     let mut rig = turning(3.0);
     (rig.machine.params.source_v, rig.machine.params.source_ohm) = (12.0, 1.0);
-    let records = rig.run(2000, Ask::Torque(4.0));
+    let records = rig.run(2000, MotorCommand::Torque(4.0));
     opens("breakdown", &records, Fault::BusLow, 5, 400);
     assert!(rig.machine.bus_v < 16.0);
 }
@@ -250,7 +250,7 @@ fn more_heat_than_the_limits_allow() {
         (c.emf.error_v, c.angle.error_v) = (50.0, 50.0);
     });
     rig.machine.held = true;
-    let records = rig.tampered(4000, Ask::Torque(1.0), |_, i| {
+    let records = rig.tampered(4000, MotorCommand::Torque(1.0), |_, i| {
         // With the zeros of the rig.
         i.phases = Phases::Three([5.0 + 0.9, -2.5 - 1.3, -2.5 + 0.4]);
     });
@@ -269,9 +269,9 @@ fn zeros_that_are_no_zeros() {
     for tamper in cases {
         let mut rig = Rig::ready(|_| ());
         rig.state = State::default();
-        let records = rig.tampered(2100, Ask::Off, tamper);
+        let records = rig.tampered(2100, MotorCommand::Off, tamper);
         assert_eq!(last(&records).out.faults, one(Fault::CurrentZero));
-        let records = rig.run(100, Ask::Torque(1.0));
+        let records = rig.run(100, MotorCommand::Torque(1.0));
         assert!(records.iter().all(|r| r.out.duties.is_none() && r.out.mode == Mode::Off));
     }
 }
@@ -281,15 +281,17 @@ fn zeros_that_are_no_zeros() {
 #[test]
 fn a_fault_latches() {
     let mut rig = turning(2.0);
-    let _ = rig.call(Ask::Torque(4.0), |_, i| i.temperature_c = 101.0);
-    for ask in [Ask::Torque(4.0), Ask::Off, Ask::Align, Ask::Torque(0.0)] {
-        for r in rig.run(500, ask) {
+    let _ = rig.call(MotorCommand::Torque(4.0), |_, i| i.temperature_c = 101.0);
+    for command in
+        [MotorCommand::Torque(4.0), MotorCommand::Off, MotorCommand::Align, MotorCommand::Torque(0.0)]
+    {
+        for r in rig.run(500, command) {
             assert!(r.out.duties.is_none() && r.out.mode == Mode::Off && r.out.faults == one(Fault::Hot));
         }
     }
     rig.state = State::default();
-    assert_eq!(last(&rig.run(1, Ask::Torque(1.0))).out.mode, Mode::Zeroing);
-    assert_eq!(last(&rig.run(2100, Ask::Off)).out.mode, Mode::Ready);
+    assert_eq!(last(&rig.run(1, MotorCommand::Torque(1.0))).out.mode, Mode::Zeroing);
+    assert_eq!(last(&rig.run(2100, MotorCommand::Off)).out.mode, Mode::Ready);
 }
 
 /// Situation: the list of faults. Must hold: numbers 1 to 24 in order, as printed in docs/motor.md, each with its name.

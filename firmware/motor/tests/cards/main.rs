@@ -1,6 +1,7 @@
 //! Flight cards of the motor's loop, on a motor that is simulated.
 
 mod alignment;
+mod command_word;
 mod config;
 mod faults;
 mod machine;

@@ -1,22 +1,22 @@
 //! Flight cards: angles, transforms, modulation.
 
+use motor::angle::Angle;
 use motor::current::{self, CurrentState, Gains};
 use motor::example::EXAMPLE;
 use motor::modulate::duties;
 use motor::transform::{Vector, clarke, park, phases, stator};
-use motor::turn::Turn;
 use proptest::prelude::*;
 
 proptest! {
     /// Situation: any angle. Must hold: sine and cosine within 4e-7; that of the mirrored angle mirrored to the bit.
     #[test]
     fn sine_and_cosine_of_any_turn(parts in any::<u32>()) {
-        let (sin, cos) = Turn(parts).sin_cos();
+        let (sin, cos) = Angle(parts).sin_cos();
         let rad = f64::from(parts) / 4_294_967_296.0 * std::f64::consts::TAU;
         prop_assert!((f64::from(sin) - rad.sin()).abs() < 4e-7 && (f64::from(cos) - rad.cos()).abs() < 4e-7);
         // Half a turn is its own mirror.
         if parts != 1 << 31 {
-            let (mirrored_sin, mirrored_cos) = Turn(parts).mirrored().sin_cos();
+            let (mirrored_sin, mirrored_cos) = Angle(parts).mirrored().sin_cos();
             prop_assert_eq!((mirrored_sin, mirrored_cos), (-sin, cos));
         }
     }
@@ -25,7 +25,7 @@ proptest! {
     /// and no length is lost.
     #[test]
     fn there_and_back(abc in prop::array::uniform3(-20.0_f32..20.0), parts in any::<u32>()) {
-        let at = Turn(parts).sin_cos();
+        let at = Angle(parts).sin_cos();
         let rotor = park(clarke(abc), at);
         let back = phases(stator(rotor, at));
         let mean = (abc[0] + abc[1] + abc[2]) / 3.0;
@@ -40,7 +40,7 @@ proptest! {
     #[test]
     fn the_duty_cycles_give_the_voltage(part in 0.0_f32..1.0, parts in any::<u32>(), bus_v in 16.0_f32..32.0) {
         let b = EXAMPLE.bridge;
-        let (sin, cos) = Turn(parts).sin_cos();
+        let (sin, cos) = Angle(parts).sin_cos();
         let wanted = Vector::new(cos, sin).times(part * b.reach() * bus_v);
         let d = duties(&b, 0.0, wanted, Vector::default(), bus_v);
         let given = clarke(d.map(|d| d * bus_v));

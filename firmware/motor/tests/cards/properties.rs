@@ -2,19 +2,19 @@
 
 use control::param::{ParamSpec, ParamVisitor};
 use motor::example::EXAMPLE;
-use motor::{Ask, Config, Inputs, Mode, Output, Phases, Plan, State, step};
+use motor::{Config, Inputs, Mode, MotorCommand, Output, Phases, Plan, State, step};
 use proptest::prelude::*;
 
 fn any_bits() -> impl Strategy<Value = f32> {
     any::<u32>().prop_map(f32::from_bits)
 }
 
-fn any_ask() -> impl Strategy<Value = Ask> {
+fn any_ask() -> impl Strategy<Value = MotorCommand> {
     prop_oneof![
-        1 => Just(Ask::Off),
-        1 => Just(Ask::Align),
-        6 => (-20.0_f32..20.0).prop_map(Ask::Torque),
-        1 => any_bits().prop_map(Ask::Torque),
+        1 => Just(MotorCommand::Off),
+        1 => Just(MotorCommand::Align),
+        6 => (-20.0_f32..20.0).prop_map(MotorCommand::Torque),
+        1 => any_bits().prop_map(MotorCommand::Torque),
     ]
 }
 
@@ -30,13 +30,13 @@ fn any_inputs() -> impl Strategy<Value = Inputs> {
     let age = prop_oneof![20 => 0_u16..5, 1 => any::<u16>()];
     let counts = prop_oneof![10 => 0_u16..100, 1 => any::<u16>()];
     (phases, bus, heat, counts, age, any_ask()).prop_map(
-        |(phases, bus_v, temperature_c, angle_counts, angle_age_ticks, ask)| Inputs {
+        |(phases, bus_v, temperature_c, angle_counts, angle_age_ticks, command)| Inputs {
             phases,
             bus_v,
             angle_counts,
             angle_age_ticks,
             temperature_c,
-            ask,
+            command,
         },
     )
 }
@@ -103,21 +103,21 @@ fn drawn(seed: u64) -> Config {
     c
 }
 
-fn rest(ask: Ask) -> Inputs {
+fn rest(command: MotorCommand) -> Inputs {
     Inputs {
         phases: Phases::Three([0.0; 3]),
         bus_v: 24.0,
         angle_counts: 0,
         angle_age_ticks: 0,
         temperature_c: 25.0,
-        ask,
+        command,
     }
 }
 
 fn started(plan: &Plan) -> State {
     let mut state = State::default();
-    let _ = step(plan, &mut state, &rest(Ask::Off));
-    assert_eq!(step(plan, &mut state, &rest(Ask::Off)).mode, Mode::Ready);
+    let _ = step(plan, &mut state, &rest(MotorCommand::Off));
+    assert_eq!(step(plan, &mut state, &rest(MotorCommand::Off)).mode, Mode::Ready);
     state
 }
 
@@ -178,9 +178,9 @@ proptest! {
             let counts = (i32::from(from) + speed * call).rem_euclid(16_384) as u16;
             let zero = call < 20;
             let [a, b, c] = if zero { [0.0; 3] } else { [a, b, c] };
-            let ask = if zero { Ask::Off } else { Ask::Torque(nm) };
-            let turned = if zero { Ask::Off } else { Ask::Torque(-nm) };
-            let one = Inputs { phases: Phases::Three([a, b, c]), angle_counts: counts, ..rest(ask) };
+            let command = if zero { MotorCommand::Off } else { MotorCommand::Torque(nm) };
+            let turned = if zero { MotorCommand::Off } else { MotorCommand::Torque(-nm) };
+            let one = Inputs { phases: Phases::Three([a, b, c]), angle_counts: counts, ..rest(command) };
             let two = Inputs { phases: Phases::Three([a, c, b]), angle_counts: (16_384 - counts) % 16_384, ..rest(turned) };
             let (one, two) = (step(&plan, &mut state, &one), step(&plan, &mut other, &two));
             prop_assert_eq!(one.iq_a, -two.iq_a);

@@ -2,7 +2,7 @@
 
 use crate::machine::{Machine, Params};
 use motor::example::EXAMPLE;
-use motor::{Ask, Config, Inputs, Mode, Output, Phases, Plan, State, step};
+use motor::{Config, Inputs, Mode, MotorCommand, Output, Phases, Plan, State, step};
 
 /// A current of one step of the converter \[A\].
 pub(crate) const ADC_A: f64 = 3.3 / 4096.0 / (0.5e-3 * 20.0);
@@ -76,7 +76,7 @@ impl Rig {
             ..Params::default()
         };
         let mut rig = Self::new(config, params);
-        let last = rig.run(usize::from(config.zero.samples) + 1, Ask::Off).pop().expect("a call");
+        let last = rig.run(usize::from(config.zero.samples) + 1, MotorCommand::Off).pop().expect("a call");
         assert_eq!(last.out.mode, Mode::Ready, "{:?}", last.out);
         rig
     }
@@ -93,7 +93,7 @@ impl Rig {
     }
 
     /// What the sensors say now.
-    pub(crate) fn inputs(&mut self, ask: Ask) -> Inputs {
+    pub(crate) fn inputs(&mut self, command: MotorCommand) -> Inputs {
         let phases = self.machine.phases_a();
         let measured = std::array::from_fn(|x| {
             let raw = phases[x] + self.zeros_a[x] + self.noise_a * self.gauss();
@@ -108,13 +108,13 @@ impl Rig {
             angle_counts: (turns * counts).floor().rem_euclid(counts) as u16,
             angle_age_ticks: 0,
             temperature_c: self.temperature_c,
-            ask,
+            command,
         }
     }
 
     /// One call, its inputs changed by `tamper`.
-    pub(crate) fn call(&mut self, ask: Ask, tamper: impl FnOnce(u64, &mut Inputs)) -> Record {
-        let mut inputs = self.inputs(ask);
+    pub(crate) fn call(&mut self, command: MotorCommand, tamper: impl FnOnce(u64, &mut Inputs)) -> Record {
+        let mut inputs = self.inputs(command);
         tamper(self.tick, &mut inputs);
         self.tick += 1;
         let (torque_nm, [id_a, iq_a]) = (self.machine.torque_nm(), self.machine.dq_a());
@@ -128,19 +128,19 @@ impl Rig {
     }
 
     /// So many calls.
-    pub(crate) fn run(&mut self, calls: usize, ask: Ask) -> Vec<Record> {
-        self.tampered(calls, ask, |_, _| ())
+    pub(crate) fn run(&mut self, calls: usize, command: MotorCommand) -> Vec<Record> {
+        self.tampered(calls, command, |_, _| ())
     }
 
     /// So many calls, each with its inputs changed; the number of the call counts from 0.
     pub(crate) fn tampered(
         &mut self,
         calls: usize,
-        ask: Ask,
+        command: MotorCommand,
         tamper: impl Fn(u64, &mut Inputs),
     ) -> Vec<Record> {
         let from = self.tick;
-        (0..calls).map(|_| self.call(ask, |tick, inputs| tamper(tick - from, inputs))).collect()
+        (0..calls).map(|_| self.call(command, |tick, inputs| tamper(tick - from, inputs))).collect()
     }
 }
 

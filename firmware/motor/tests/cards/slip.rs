@@ -5,7 +5,7 @@
 use crate::machine::Params;
 use crate::rig::{Rig, last, mean, opened};
 use motor::example::EXAMPLE;
-use motor::{Ask, Config, Fault};
+use motor::{Config, Fault, MotorCommand};
 
 /// A call of the example \[ms\].
 const CALL_MS: f64 = 0.05;
@@ -32,7 +32,7 @@ fn turned(off_deg: f64, rate_rad_s: f64, change: impl FnOnce(&mut Config)) -> Ri
     });
     rig.machine.params.inertia_kg_m2 = 1e6;
     rig.machine.steer_rate_rad_s = rate_rad_s;
-    let _ = rig.run(600, Ask::Off);
+    let _ = rig.run(600, MotorCommand::Off);
     rig
 }
 
@@ -53,9 +53,9 @@ fn slips(slip: Slip, rate_rad_s: f64, nm: f32, ms: f64) -> Seen {
     if off_deg == 0.0 {
         // The angle is proved, then the slip begins.
         rig.machine.steer_rate_rad_s = f64::from(nm.signum());
-        assert_eq!(opened(&rig.run(1000, Ask::Torque(nm))), None);
+        assert_eq!(opened(&rig.run(1000, MotorCommand::Torque(nm))), None);
         rig.machine.steer_rate_rad_s = rate_rad_s;
-        assert_eq!(opened(&rig.run(200, Ask::Torque(nm))), None);
+        assert_eq!(opened(&rig.run(200, MotorCommand::Torque(nm))), None);
     }
     if slip == Slip::Reversed {
         rig.encoder_zero = -2.0 * rig.machine.motor_turns;
@@ -66,7 +66,7 @@ fn slips(slip: Slip, rate_rad_s: f64, nm: f32, ms: f64) -> Seen {
         if let Slip::During(deg, calls) = slip {
             rig.encoder_zero = deg / 360.0 / 8.0 * (f64::from(call) / f64::from(calls)).min(1.0);
         }
-        let record = rig.call(Ask::Torque(nm), |_, _| ());
+        let record = rig.call(MotorCommand::Torque(nm), |_, _| ());
         if record.out.duties.is_none() {
             return Seen { opened_ms: Some(f64::from(call) * CALL_MS), worst_nm, end_nm };
         }
@@ -179,7 +179,7 @@ fn a_creeping_encoder() {
         let fault = loop {
             off_deg += 360.0 / 80_000.0;
             rig.encoder_zero = off_deg / 360.0 / 8.0;
-            let record = rig.call(Ask::Torque(3.0), |_, _| ());
+            let record = rig.call(MotorCommand::Torque(3.0), |_, _| ());
             if record.out.duties.is_none() {
                 break record.out.faults;
             }
@@ -200,7 +200,7 @@ fn a_handlebar_at_rest_and_free() {
     for (deg, latest_ms) in [(180.0, 100.0), (135.0, 200.0)] {
         let mut rig = turned(deg, 0.0, |_| ());
         rig.machine.params.inertia_kg_m2 = Params::default().inertia_kg_m2;
-        let records = rig.run(5000, Ask::Torque(4.0));
+        let records = rig.run(5000, MotorCommand::Torque(4.0));
         let open_ms = opened(&records).map(|call| call as f64 * CALL_MS);
         let worst_nm = records.iter().map(|r| -r.torque_nm).fold(0.0, f64::max);
         println!(
@@ -218,12 +218,12 @@ fn a_handlebar_at_rest_and_free() {
 #[test]
 fn the_whole_torque_comes_with_the_proof() {
     let mut rig = turned(0.0, 0.0, |_| ());
-    let before = mean(&rig.run(2000, Ask::Torque(4.0))[1000..], |r| r.torque_nm);
+    let before = mean(&rig.run(2000, MotorCommand::Torque(4.0))[1000..], |r| r.torque_nm);
     rig.machine.steer_rate_rad_s = 1.0;
-    let proved = rig.run(4000, Ask::Torque(4.0));
+    let proved = rig.run(4000, MotorCommand::Torque(4.0));
     let whole_ms = proved.iter().position(|r| r.torque_nm > 3.8).expect("proved") as f64 * CALL_MS;
     rig.machine.steer_rate_rad_s = 0.0;
-    let stands = rig.run(8000, Ask::Torque(4.0));
+    let stands = rig.run(8000, MotorCommand::Torque(4.0));
     let little_ms =
         stands.iter().position(|r| r.torque_nm < 2.7).expect("the proof grew old") as f64 * CALL_MS;
     println!("{before:.2} N m; whole after {whole_ms:.1} ms; little after {little_ms:.1} ms");
@@ -265,7 +265,7 @@ fn what_is_no_slip() {
                     _ => (),
                 }
                 let nm = [1.0, -7.0, 7.0, 4.0, -2.0, 0.2, 0.0, -0.5][(call / 1000 % 8) as usize];
-                let record = rig.call(Ask::Torque(nm), |_, _| ());
+                let record = rig.call(MotorCommand::Torque(nm), |_, _| ());
                 let faults = record.out.faults;
                 assert!(faults.is_empty(), "{motor:03b}, {dead_time_us} us, {bus_v} V, {t} s: {faults:?}");
                 whole += usize::from((5.8..8.2).contains(&record.torque_nm.abs()));

@@ -1,7 +1,7 @@
 //! Flight cards: the torque that is asked for, and the limits of it.
 
 use crate::rig::{Record, Rig, last, mean, opened};
-use motor::{Ask, Config, Fault, Mode, Phases};
+use motor::{Config, Fault, Mode, MotorCommand, Phases};
 
 /// Quick enough that the loop, not the slew limit, decides.
 fn at_once(c: &mut Config) {
@@ -26,8 +26,8 @@ fn a_step_of_torque() {
             let mut rig = Rig::ready(at_once);
             rig.machine.held = true;
             rig.machine.motor_turns = f64::from(angle) / 12.0 / 8.0;
-            let _ = rig.run(40, Ask::Off);
-            let records = rig.run(2000, Ask::Torque(nm as f32));
+            let _ = rig.run(40, MotorCommand::Off);
+            let records = rig.run(2000, MotorCommand::Torque(nm as f32));
             assert_eq!(opened(&records), None, "{:?}", last(&records).out);
             let (rise_ms, over) = rise(&records[..40], nm);
             assert!((0.1..=0.3).contains(&rise_ms), "{angle}: {rise_ms} ms");
@@ -54,7 +54,7 @@ fn a_motor_that_is_not_as_told() {
         p.inductance_d_h *= l;
         p.inductance_q_h *= l;
         rig.machine.held = true;
-        let records = rig.run(400, Ask::Torque(5.0));
+        let records = rig.run(400, MotorCommand::Torque(5.0));
         let (_, over) = rise(&records[..40], 5.0);
         let steady = mean(&records[200..], |r| r.torque_nm) / 5.0;
         assert!(over < 0.25 && (0.95..=1.05).contains(&steady), "{r} {l}: {over} {steady}");
@@ -73,7 +73,7 @@ fn other_rates_of_the_pwm() {
             (c.rate_hz, c.current.bandwidth_hz) = (rate_hz, rate_hz / 20.0);
         });
         rig.machine.held = true;
-        let records = rig.tampered(400, Ask::Torque(5.0), |_, i| {
+        let records = rig.tampered(400, MotorCommand::Torque(5.0), |_, i| {
             let [a, b, _] = i.phases.all();
             i.phases = Phases::Two([a, b]);
         });
@@ -95,8 +95,8 @@ fn a_torque_while_turning() {
         let mut rig = Rig::ready(|_| ());
         rig.machine.params.inertia_kg_m2 = 1e6;
         rig.machine.steer_rate_rad_s = rate;
-        let _ = rig.run(600, Ask::Off);
-        let records = rig.run(2000, Ask::Torque(4.0));
+        let _ = rig.run(600, MotorCommand::Off);
+        let records = rig.run(2000, MotorCommand::Torque(4.0));
         assert_eq!(opened(&records), None, "{rate}: {:?}", last(&records).out);
         let torque = mean(&records[400..], |r| r.torque_nm) / 4.0;
         let d = mean(&records[400..], |r| r.id_a);
@@ -122,8 +122,8 @@ fn an_encoder_slower_than_the_pwm() {
         (inputs.angle_counts, inputs.angle_age_ticks) = held.get();
         held.set((inputs.angle_counts, inputs.angle_age_ticks + 1));
     };
-    let _ = rig.tampered(1000, Ask::Off, slow);
-    let records = rig.tampered(2000, Ask::Torque(4.0), slow);
+    let _ = rig.tampered(1000, MotorCommand::Off, slow);
+    let records = rig.tampered(2000, MotorCommand::Torque(4.0), slow);
     assert_eq!(opened(&records), None, "{:?}", last(&records).out);
     let torque = mean(&records[400..], |r| r.torque_nm) / 4.0;
     let d = mean(&records[400..], |r| r.id_a);
@@ -136,7 +136,7 @@ fn an_encoder_slower_than_the_pwm() {
 fn a_torque_to_the_right_steers_to_the_right() {
     for reversed in [false, true] {
         let mut rig = Rig::ready(|c| c.motor.reversed = reversed);
-        let records = rig.run(1000, Ask::Torque(3.0));
+        let records = rig.run(1000, MotorCommand::Torque(3.0));
         let p = rig.machine.params;
         let should = (3.0 - p.coulomb_nm) / p.inertia_kg_m2 * 0.05;
         let rate = rig.machine.steer_rate_rad_s;
@@ -155,7 +155,7 @@ fn a_torque_to_the_right_steers_to_the_right() {
 fn torque_current_and_slew_are_limited() {
     let mut rig = Rig::ready(|_| ());
     rig.machine.held = true;
-    let records = rig.run(600, Ask::Torque(100.0));
+    let records = rig.run(600, MotorCommand::Torque(100.0));
     let torque = mean(&records[300..], |r| r.torque_nm);
     assert!((6.8..=7.2).contains(&torque), "{torque}");
     let wanted = |r: &Record| f64::from(r.out.iq_wanted_a) * f64::from(motor::example::MOTOR.torque_nm_a());
@@ -164,7 +164,7 @@ fn torque_current_and_slew_are_limited() {
 
     let mut rig = Rig::ready(|c| c.demand.max_nm = 100.0);
     rig.machine.held = true;
-    let records = rig.run(600, Ask::Torque(100.0));
+    let records = rig.run(600, MotorCommand::Torque(100.0));
     let iq = mean(&records[300..], |r| r.iq_a);
     let most = records.iter().map(|r| r.largest_phase_a).fold(0.0, f64::max);
     assert!((9.8..=10.2).contains(&iq) && most < 11.0, "{iq} {most}");
@@ -177,12 +177,12 @@ fn too_little_voltage_winds_nothing_up() {
     let mut rig = Rig::ready(at_once);
     rig.machine.params.inertia_kg_m2 = 1e6;
     rig.machine.steer_rate_rad_s = 14.5;
-    let _ = rig.run(600, Ask::Off);
-    let records = rig.run(1000, Ask::Torque(7.0));
+    let _ = rig.run(600, MotorCommand::Off);
+    let records = rig.run(1000, MotorCommand::Torque(7.0));
     assert_eq!(opened(&records), None, "{:?}", last(&records).out);
     let torque = mean(&records[500..], |r| r.torque_nm);
     assert!((0.5..=6.0).contains(&torque), "{torque}");
-    let records = rig.run(400, Ask::Torque(0.0));
+    let records = rig.run(400, MotorCommand::Torque(0.0));
     let slow = records.iter().rposition(|r| r.iq_a.abs() > 0.5).expect("it began with more") + 1;
     assert!((2..=20).contains(&slow), "{slow} calls");
     println!("{torque:.2} N m, current gone after {slow} calls");
@@ -195,8 +195,8 @@ fn closing_the_bridge_in_motion() {
     let mut rig = Rig::ready(|_| ());
     rig.machine.params.inertia_kg_m2 = 1e6;
     rig.machine.steer_rate_rad_s = 10.0;
-    let _ = rig.run(600, Ask::Off);
-    let records = rig.run(400, Ask::Torque(0.0));
+    let _ = rig.run(600, MotorCommand::Off);
+    let records = rig.run(400, MotorCommand::Torque(0.0));
     let most = records.iter().map(|r| r.largest_phase_a).fold(0.0, f64::max);
     assert_eq!(opened(&records), None);
     assert!((0.01..=2.0).contains(&most), "{most}");
@@ -213,7 +213,7 @@ fn the_dead_time_is_made_up_for() {
         rig.machine.params.inertia_kg_m2 = 1e6;
         rig.machine.steer_rate_rad_s = 2.0;
         rig.machine.params.dead_time_s = 2e-6;
-        let records = rig.run(4000, Ask::Torque(4.0));
+        let records = rig.run(4000, MotorCommand::Torque(4.0));
         assert_eq!(opened(&records), None);
         mean(&records[2000..], |r| (r.torque_nm - 4.0).powi(2)).sqrt()
     };
@@ -228,7 +228,7 @@ fn the_dead_time_is_made_up_for() {
 fn a_stall_leaves_a_holding_torque() {
     let mut rig = Rig::ready(|_| ());
     rig.machine.held = true;
-    let records = rig.run(60_000, Ask::Torque(6.0));
+    let records = rig.run(60_000, MotorCommand::Torque(6.0));
     let derated = records.iter().position(|r| r.out.stalled).expect("stalled") as f64 / 20_000.0;
     assert!((1.99..=2.01).contains(&derated), "{derated} s");
     let iq = mean(&records[50_000..], |r| r.iq_a);
@@ -237,7 +237,7 @@ fn a_stall_leaves_a_holding_torque() {
     rig.machine.held = false;
     rig.machine.params.inertia_kg_m2 = 1e6;
     rig.machine.steer_rate_rad_s = 0.5;
-    let records = rig.run(30_000, Ask::Torque(6.0));
+    let records = rig.run(30_000, MotorCommand::Torque(6.0));
     let derated = records.iter().rposition(|r| r.out.stalled).expect("stalled") as f64 / 20_000.0;
     assert!((0.98..=1.02).contains(&derated), "{derated} s");
     let back = mean(&records[29_000..], |r| r.torque_nm);
@@ -253,7 +253,7 @@ fn the_windings_heat_limits_the_current() {
         c.stall.hold_a = 9.0;
     });
     rig.machine.held = true;
-    let records = rig.run(100_000, Ask::Torque(7.0));
+    let records = rig.run(100_000, MotorCommand::Torque(7.0));
     assert_eq!(opened(&records), None);
     let first = mean(&records[1000..4000], |r| r.iq_a);
     let end = mean(&records[90_000..], |r| r.iq_a);
@@ -267,13 +267,13 @@ fn the_windings_heat_limits_the_current() {
 fn heat_takes_torque_away() {
     let mut rig = Rig::ready(|_| ());
     rig.machine.held = true;
-    let _ = rig.run(400, Ask::Torque(7.0));
+    let _ = rig.run(400, MotorCommand::Torque(7.0));
     rig.temperature_c = 95.0;
-    let records = rig.run(400, Ask::Torque(7.0));
+    let records = rig.run(400, MotorCommand::Torque(7.0));
     let iq = mean(&records[200..], |r| r.iq_a);
     assert!((2.4..=2.6).contains(&iq), "{iq}");
     rig.temperature_c = 100.5;
-    let records = rig.run(1, Ask::Torque(7.0));
+    let records = rig.run(1, MotorCommand::Torque(7.0));
     assert!(last(&records).out.faults.has(Fault::Hot) && opened(&records) == Some(1));
 }
 
@@ -282,7 +282,7 @@ fn heat_takes_torque_away() {
 fn a_sagging_bus_takes_torque_away() {
     let mut rig = Rig::ready(|_| ());
     rig.machine.held = true;
-    let records = rig.tampered(600, Ask::Torque(7.0), |_, i| i.bus_v = 17.0);
+    let records = rig.tampered(600, MotorCommand::Torque(7.0), |_, i| i.bus_v = 17.0);
     assert_eq!(opened(&records), None);
     assert!((last(&records).out.limit_a - 5.0).abs() < 1e-3);
     let iq = mean(&records[300..], |r| r.iq_a);
@@ -293,8 +293,8 @@ fn a_sagging_bus_takes_torque_away() {
 #[test]
 fn off_is_off_at_once() {
     let mut rig = Rig::ready(|_| ());
-    let records = rig.run(100, Ask::Torque(2.0));
+    let records = rig.run(100, MotorCommand::Torque(2.0));
     assert_eq!(last(&records).out.mode, Mode::Running);
-    let out = last(&rig.run(1, Ask::Off)).out;
+    let out = last(&rig.run(1, MotorCommand::Off)).out;
     assert!(out.duties.is_none() && out.mode == Mode::Ready && out.faults.is_empty());
 }

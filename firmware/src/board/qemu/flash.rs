@@ -2,7 +2,7 @@
 //! erased as the chip's, but takes no time.
 #![allow(unsafe_code)]
 
-use super::mishap;
+use super::fault_injection;
 use crate::retained::USED;
 use core::future::pending;
 use core::ops::Range;
@@ -86,7 +86,7 @@ impl NorFlash for Flash {
     }
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Wrong> {
-        if mishap::flash_is_stuck() {
+        if fault_injection::flash_is_stuck() {
             pending::<()>().await;
         }
         let from = offset as usize;

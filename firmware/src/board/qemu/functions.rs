@@ -3,7 +3,7 @@
 use core::f32::consts::TAU;
 use core::hint::black_box;
 use micromath::F32;
-use motor::turn::Turn;
+use motor::angle::Angle;
 
 /// How many arguments each is called with.
 pub const ARGUMENTS: u32 = 1000;
@@ -14,7 +14,7 @@ pub fn each(mut count: impl FnMut(&'static str, &dyn Fn(usize, u32))) {
         let functions = black_box::<[Function; 2]>([function, same]);
         count(name, &|which, i| _ = black_box(functions[which](argument(i))));
     }
-    let functions = black_box::<[fn(Turn) -> (f32, f32); 2]>([Turn::sin_cos, no_sin_cos]);
+    let functions = black_box::<[fn(Angle) -> (f32, f32); 2]>([Angle::sin_cos, no_sin_cos]);
     count("sine and cosine, today", &|which, i| _ = black_box(functions[which](angle(i))));
     let functions = black_box::<[fn(f32) -> (f32, f32); 2]>([rough_sin_cos, twice]);
     count("sine and cosine, micromath", &|which, i| _ = black_box(functions[which](angle(i).signed() * TAU)));
@@ -48,7 +48,7 @@ fn twice(x: f32) -> (f32, f32) {
     (x, x)
 }
 
-fn no_sin_cos(angle: Turn) -> (f32, f32) {
+fn no_sin_cos(angle: Angle) -> (f32, f32) {
     twice(f32::from_bits(angle.0))
 }
 
@@ -57,8 +57,8 @@ fn newton(x: f32, root: f32) -> f32 {
 }
 
 /// Once round.
-fn angle(i: u32) -> Turn {
-    Turn(i.wrapping_mul(u32::MAX / ARGUMENTS))
+fn angle(i: u32) -> Angle {
+    Angle(i.wrapping_mul(u32::MAX / ARGUMENTS))
 }
 
 /// Over the range of 16 bits.

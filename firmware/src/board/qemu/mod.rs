@@ -1,25 +1,25 @@
 //! The STM32F405 as QEMU's machine `netduinoplus2` has it: core, SysTick, NVIC, memories. Its RCC
 //! and PWR are not modelled, so the chip's HAL does not start there; this thin layer does.
 
-mod end;
 pub mod executor;
+mod exit;
+pub mod fault_injection;
 mod flash;
 pub mod functions;
-pub mod line;
-pub mod mishap;
 pub mod pil;
 pub mod recording;
 mod reset;
-pub mod rotor;
 pub mod semihosting;
 mod sensors;
+pub mod serial;
+pub mod simulated_motor;
 pub mod stack;
 pub mod text;
 pub mod time;
 mod watchdog;
 
-pub use end::end;
 pub use executor::run;
+pub use exit::end;
 pub use flash::{Flash, flash};
 pub use reset::{outputs_off, reset_cause, restarts};
 pub use sensors::{drive, sense};

@@ -4,7 +4,7 @@
 //! sensors of the next step. QEMU's clock stands still meanwhile. What goes over: [`link::lockstep`].
 
 use super::semihosting::{Stream, exit};
-use super::{Exit, line, reset, stack, text, time};
+use super::{Exit, reset, serial, stack, text, time};
 use crate::{crash, tasks};
 use control::wire::{CONFIG_BYTES, decode_config};
 use control::{Config, Plan, SensorFrame};
@@ -14,7 +14,7 @@ use embassy_time::{Instant, Timer};
 use link::frame::{Decoder, MAX_FRAME, Received};
 use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
 use link::message::Message;
-use link::refusal::{Refusal, Why};
+use link::rejection::{RejectReason, Rejection};
 use static_cell::ConstStaticCell;
 
 /// One control period \[us\].
@@ -120,7 +120,7 @@ impl Incoming {
     }
 
     /// The plan of what came, or of the configuration in force if less than all of it did.
-    fn plan(&mut self) -> Result<Plan, Refusal<'static>> {
+    fn plan(&mut self) -> Result<Plan, Rejection<'static>> {
         let whole = core::mem::take(&mut self.have) == CONFIG_BYTES;
         let config = if whole { decode_config(&self.bytes)? } else { tasks::settings::config() };
         let right = config.rate_hz * PERIOD_US as f32 == 1e6;
@@ -129,10 +129,10 @@ impl Incoming {
 }
 
 /// The board steps once a period, whatever the configuration says.
-fn wrong_rate(config: &Config) -> Refusal<'static> {
+fn wrong_rate(config: &Config) -> Rejection<'static> {
     let rate_hz = 1e6 / PERIOD_US as f32;
-    let about = Refusal::about(Why::OutOfRange, link::Key::whole("rate_hz"));
-    Refusal { value: config.rate_hz, min: rate_hz, max: rate_hz, ..about }
+    let about = Rejection::about(RejectReason::OutOfRange, link::Key::whole("rate_hz"));
+    Rejection { value: config.rate_hz, min: rate_hz, max: rate_hz, ..about }
 }
 
 /// The host takes part from now on, until it closes its end: text goes aside.
@@ -166,7 +166,7 @@ pub async fn exchange() {
             text::line(format_args!("the host handed over {length} bytes that are no chunk"));
             exit(Exit::Input)
         };
-        line::came(bytes);
+        serial::came(bytes);
         let mut sensors_left = sensors;
         let mut all = || {
             while !sensors_left.is_empty() {
@@ -197,7 +197,7 @@ fn hand_over(host: &mut Stream, chunk: &mut [u8; MAX_CHUNK], out: &mut Out) -> b
         out.put(&Message::PilCommand { command, authority }, number);
     }
     let mut said = [0; LINE_BYTES];
-    let length = line::OUT.try_read(&mut said).unwrap_or(0);
+    let length = serial::OUT.try_read(&mut said).unwrap_or(0);
     let from = FromBoard {
         time_ms: reset::total_ms(),
         starts: crash::starts() as u16,
@@ -228,6 +228,6 @@ fn take(message: &Message<'_>, sequence: u16, incoming: &mut Incoming, out: &mut
             };
             out.put(&answer, sequence);
         }
-        _ => out.put(&Message::Refused(Refusal::of(Why::NotHere)), sequence),
+        _ => out.put(&Message::Refused(Rejection::of(RejectReason::NotHere)), sequence),
     }
 }

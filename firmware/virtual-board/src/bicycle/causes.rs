@@ -4,7 +4,7 @@
 
 use super::rides::{PERIOD_S, Reason};
 use crate::power;
-use parts::vesc6::{MOTOR, SHUNT, STEER_RAD};
+use devices::vesc6::{MOTOR, SHUNT, STEER_RAD};
 use sim_host::plant::{self, Sensor, Supply};
 use sim_host::ride::Conditions;
 use std::f64::consts::TAU;
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
     /// The rotor's inertia behind the gear.
-    Rotor,
+    SimulatedMotor,
     /// Friction of steer bearing and gear.
     Friction,
     /// The current loop: its bandwidth, and the calls from a sample to the duty cycles that answer it.
@@ -39,7 +39,7 @@ pub enum Cause {
 impl Cause {
     /// All of them.
     pub const ALL: [Self; 11] = [
-        Self::Rotor,
+        Self::SimulatedMotor,
         Self::Friction,
         Self::CurrentLoop,
         Self::Computing,
@@ -55,7 +55,7 @@ impl Cause {
     /// What it is, and how the simulator has it.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Rotor => "rotor behind the gear (inertia on the steer)",
+            Self::SimulatedMotor => "rotor behind the gear (inertia on the steer)",
             Self::Friction => "friction of the Davis bicycle (`--actuator davis`)",
             Self::CurrentLoop => "current loop (first order, 1/bandwidth and 1.5 calls)",
             Self::Computing => "buses and control step (first order, 0.5 ms)",
@@ -77,7 +77,7 @@ impl Cause {
         let Conditions { bicycle, plant, .. } = conditions;
         let (sensors, actuator) = (&mut plant.sensors, &mut plant.actuator);
         match self {
-            Self::Rotor => bicycle.rotor_kg_m2 = power::ROTOR_KG_M2,
+            Self::SimulatedMotor => bicycle.rotor_kg_m2 = power::ROTOR_KG_M2,
             Self::Friction => actuator.friction = plant::catalogue::load("davis")?.friction,
             Self::CurrentLoop => {
                 let answered_s = f64::from(motor::config::DELAY_TICKS / MOTOR.rate_hz);
@@ -92,8 +92,8 @@ impl Cause {
             }
             Self::Imu => {
                 let counts = [
-                    (Sensor::Gyro, parts::bmi160::RAD_S_PER_COUNT),
-                    (Sensor::Accel, parts::bmi160::M_S2_PER_COUNT),
+                    (Sensor::Gyro, devices::bmi160::RAD_S_PER_COUNT),
+                    (Sensor::Accel, devices::bmi160::M_S2_PER_COUNT),
                 ];
                 for (sensor, count) in counts {
                     let model = sensors.model_mut(sensor);
@@ -109,7 +109,7 @@ impl Cause {
                 sensors.model_mut(Sensor::SteerRate).delay_ticks = (late_s / PERIOD_S).round() as u16;
             }
             Self::Wheels => {
-                let wheel = parts::vesc6::wheel();
+                let wheel = devices::vesc6::wheel();
                 let way_m = TAU * f64::from(wheel.radius_m) / f64::from(wheel.pulses_per_turn);
                 let ticks = (way_m / speed_m_s / PERIOD_S).round() as u16;
                 for sensor in [Sensor::FrontWheel, Sensor::RearWheel] {

@@ -2,7 +2,7 @@
 
 use crate::chip::can::Frame;
 use control::{Cause, Causes, Command, Mode};
-use parts::broadcast::{self, Message, Motion, State};
+use link::can::{self, Message, Motion, State};
 use sim_host::ride::Stepped;
 
 /// The newest broadcasts.
@@ -20,7 +20,7 @@ impl Display {
     /// Takes what came over the bus.
     pub fn take(&mut self, frames: &[Frame]) {
         for &Frame { identifier, bytes, .. } in frames {
-            match Message::of(&broadcast::Frame { identifier, bytes }) {
+            match Message::of(&can::Frame { identifier, bytes }) {
                 Some(Message::State(state)) => self.state = Some(state),
                 Some(Message::Motion(motion)) => self.motion = Some(motion),
                 Some(Message::Causes(causes)) => self.causes = Some(causes),

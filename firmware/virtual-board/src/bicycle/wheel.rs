@@ -18,7 +18,7 @@ pub struct Edge {
     pub high: bool,
 }
 
-/// A wheel; its magnets and its radius are those the board is made for ([`parts::vesc6::wheel`]).
+/// A wheel; its magnets and its radius are those the board is made for ([`devices::vesc6::wheel`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wheel {
     /// How far it rolled, in halves of the way from magnet to magnet. The line is high in even ones.
@@ -28,7 +28,7 @@ pub struct Wheel {
 impl Wheel {
     /// Rolls on for `step_s` at a speed, forward positive \[m/s\]; the edges meanwhile, in order.
     pub fn roll(&mut self, speed_m_s: f64, step_s: f64) -> Vec<Edge> {
-        let config = parts::vesc6::wheel();
+        let config = devices::vesc6::wheel();
         let half_m = 0.5 * TAU * f64::from(config.radius_m) / f64::from(config.pulses_per_turn);
         let (from, way) = (self.halves, speed_m_s * step_s / half_m);
         self.halves = from + way;

@@ -4,7 +4,7 @@
 
 use super::low_pass::LowPass;
 use super::shift::{Event, Lines, Take};
-use parts::bmi160::{CHIP_ID, M_S2_PER_COUNT, RAD_S_PER_COUNT};
+use devices::bmi160::{CHIP_ID, M_S2_PER_COUNT, RAD_S_PER_COUNT};
 
 /// One count of the sensor's time \[ns\].
 const TIME_COUNT_NS: u64 = 39_062;

@@ -30,7 +30,7 @@ fn the_product_image_starts_and_lives() {
     bench.run_ms(1000.0).expect("no gap");
     assert_eq!(bench.resets().len(), 0, "{:#?}", bench.log());
     let first = &bench.log()[0].text;
-    assert!(first.starts_with("board-stm32f405 ") && first.contains("start 1 after power-on"), "{first}");
+    assert!(first.starts_with("board-vesc6 ") && first.contains("start 1 after power-on"), "{first}");
     let (steps_now, calls_now): (u32, u32) =
         (newest(&bench, "steps").unwrap(), newest(&bench, "calls").unwrap());
     assert!((999..=1001).contains(&(steps_now - steps)), "{steps} to {steps_now}");
@@ -68,7 +68,7 @@ fn the_load_is_that_of_the_page() {
     let page = std::fs::read_to_string(xtask::image::root().join("docs/virtual-board.md"))
         .expect("the page is there");
     let mut missing = Vec::new();
-    for (what, name) in [("open", "board-stm32f405"), ("closed", "board-stm32f405-align")] {
+    for (what, name) in [("open", "board-vesc6"), ("closed", "board-vesc6-align")] {
         for cycles in [1.3, WORST] {
             let Some(seen) = load(name, cycles) else { return };
             let row = page.lines().find_map(|line| line.strip_prefix(&format!("| {what} | {cycles} |")));

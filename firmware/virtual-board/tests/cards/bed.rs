@@ -9,7 +9,7 @@ use virtual_board::{Bench, Options};
 
 /// The product's image; `None` where the target or the tools are missing, which was said.
 pub(crate) fn product() -> Option<PathBuf> {
-    built("board-stm32f405")
+    built("board-vesc6")
 }
 
 /// One of the board's images.
@@ -17,7 +17,7 @@ pub(crate) fn built(name: &str) -> Option<PathBuf> {
     if !xtask::image::ready() {
         return None;
     }
-    xtask::image::build("board-stm32f405").expect("the board's images build");
+    xtask::image::build("board-vesc6").expect("the board's images build");
     Some(xtask::image::path(name))
 }
 

@@ -1,7 +1,7 @@
 //! The gate driver is enabled only once the rotor is slow.
 
 use crate::rig::{PRODUCT, powered, says};
-use parts::vesc6::MOTOR;
+use devices::vesc6::MOTOR;
 use std::f64::consts::TAU;
 use virtual_board::Bench;
 use virtual_board::power::Axis;

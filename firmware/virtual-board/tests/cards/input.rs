@@ -138,7 +138,7 @@ fn a_wait_without_end_is_given_up() {
     ];
     assert!(parts.iter().all(|part| error.contains(part)), "{error}");
 
-    let hasty = Options { patience: Duration::from_nanos(1), ..Options::default() };
+    let hasty = Options { timeout: Duration::from_nanos(1), ..Options::default() };
     let stuck = Bench::power_on(&image(ALIGN), hasty, Wiring::new()).and_then(|mut bench| bench.run_ms(5.0));
     let error = stuck.unwrap_err().to_string();
     assert!(error.contains("the emulator did not come back within 1ns"), "{error}");

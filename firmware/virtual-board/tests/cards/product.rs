@@ -153,7 +153,7 @@ fn a_task_that_waits_for_ever_is_named_over_the_serial_line() {
     bench.run_ms(280.0).unwrap();
     let kept = [0, 1].map(|from| {
         let kept = |message: &Message<'_>| match message {
-            Message::KeptFault(kept) if kept.place == from => {
+            Message::StoredFault(kept) if kept.place == from => {
                 kept.record.map(|record| (kept.total, record.kind, record.boot, record.text.to_owned()))
             }
             _ => None,

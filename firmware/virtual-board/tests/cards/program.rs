@@ -10,7 +10,7 @@ use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
 /// For a board that starts on a machine as busy as can be: what is asked before it listens is lost, and asked again.
-const PATIENCE: Patience = Patience { answer: Duration::from_millis(400), tries: 1500 };
+const TIMEOUT: Patience = Patience { answer: Duration::from_millis(400), tries: 1500 };
 
 fn virtual_board(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_virtual-board")).args(arguments).output().expect("it can be started")
@@ -67,8 +67,8 @@ fn the_tools_of_a_board_reach_it() {
     let Some(image) = product() else { return };
     let program = Path::new(env!("CARGO_BIN_EXE_virtual-board"));
     let line = VirtualBoard::start(program, Some(&image)).expect("it starts");
-    let mut client = Client::new(Box::new(line), PATIENCE);
-    assert_eq!(client.hello().expect("an answer").image, "board-stm32f405");
+    let mut client = Client::new(Box::new(line), TIMEOUT);
+    assert_eq!(client.hello().expect("an answer").image, "board-vesc6");
     let rate_hz = client.get("rate_hz").expect("an answer");
     assert_eq!(rate_hz, Some(1000.0));
     assert_eq!(client.set("limits.max_torque_nm", Some(0.5)).expect("an answer"), Some(0.5));
@@ -99,14 +99,14 @@ fn its_pseudo_terminal_is_a_serial_port() {
         start.push(line);
     }
     let device = device.expect("a device");
-    for words in ["board-stm32f405", "imu: chip=0xd1"] {
+    for words in ["board-vesc6", "imu: chip=0xd1"] {
         assert!(start.iter().any(|line| line.contains(words)), "{words} before {start:#?}");
     }
     let open = || {
         let port = Serial::open(&device, 115_200).expect("it can be opened");
-        Client::new(Box::new(port), PATIENCE)
+        Client::new(Box::new(port), TIMEOUT)
     };
-    assert_eq!(open().hello().expect("an answer").image, "board-stm32f405");
+    assert_eq!(open().hello().expect("an answer").image, "board-vesc6");
     assert_eq!(open().set("limits.max_torque_nm", Some(0.5)).expect("an answer"), Some(0.5));
     let log: Vec<_> = lines.collect();
     assert!(child.wait().expect("an end").success(), "{log:#?}");

@@ -8,8 +8,8 @@ use virtual_board::wiring::Wiring;
 use virtual_board::{Bench, Options};
 
 /// The image that is flashed for the product, and the one that aligns the encoder.
-pub(crate) const PRODUCT: &str = "board-stm32f405";
-pub(crate) const ALIGN: &str = "board-stm32f405-align";
+pub(crate) const PRODUCT: &str = "board-vesc6";
+pub(crate) const ALIGN: &str = "board-vesc6-align";
 
 /// From power-on to the first sample of the switch at the latest, with the first start's brown-out reset \[ms\].
 pub(crate) const START_MS: u32 = 400;

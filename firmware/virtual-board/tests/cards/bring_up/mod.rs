@@ -14,13 +14,13 @@ use std::ops::RangeInclusive;
 use table::Table;
 
 /// How long it may take until what must be shown is shown \[ms\]: an alignment, and the second of a report.
-const PATIENCE_MS: u32 = 4700;
+const HEARTBEAT_TIMEOUT_MS: u32 = 4700;
 /// How often that is looked for \[ms\].
 const LOOK_MS: u32 = 5;
 
 /// Does the checks of these steps, in the order of the page.
 fn bring_up(steps: RangeInclusive<u32>) {
-    let (Some(product), Some(align)) = (built("board-stm32f405"), built("board-stm32f405-align")) else {
+    let (Some(product), Some(align)) = (built("board-vesc6"), built("board-vesc6-align")) else {
         return;
     };
     let mut table = Table::new([product, align]);
@@ -30,7 +30,7 @@ fn bring_up(steps: RangeInclusive<u32>) {
             hand(&mut table);
         }
         let mut missing = Vec::new();
-        for _ in 0..PATIENCE_MS / LOOK_MS {
+        for _ in 0..HEARTBEAT_TIMEOUT_MS / LOOK_MS {
             (0..LOOK_MS).for_each(|_| table.step());
             let shown = table.shown();
             missing = shows.iter().filter(|text| !is_shown(text, &shown)).collect();

@@ -1,0 +1,56 @@
+//! Flight cards: the encoder's words.
+
+use devices::as5047::{ASK_ANGLE, COUNTS, FLAGGED, Line};
+use devices::vesc6::MOTOR;
+
+/// A word with bit 15 such that the number of ones is even, counted bit by bit.
+fn with_parity(word: u16) -> u16 {
+    let ones = (0..15).filter(|bit| word >> bit & 1 == 1).count();
+    word & 0x7fff | if ones % 2 == 1 { 0x8000 } else { 0 }
+}
+
+/// The angle in one answer on a line that never had any trouble.
+fn alone(answer: u16) -> Option<u16> {
+    Line::default().step(answer)
+}
+
+/// Situation: the encoder tells every angle of a turn. Must hold: each is read; with any single bit wrong, none is.
+#[test]
+fn every_angle_is_read_and_no_damaged_one() {
+    assert_eq!(with_parity(0x7fff), ASK_ANGLE, "a read of register 3fff");
+    for angle in 0..COUNTS {
+        let word = with_parity(angle);
+        assert_eq!(alone(word), Some(angle));
+        for bit in 0..16 {
+            assert_eq!(alone(word ^ 1 << bit), None, "{angle} with bit {bit} wrong");
+        }
+    }
+}
+
+/// Situation: a frame is cut, and the next answers have the error flag: one, then for good. Must hold: the first few
+/// are no angles, fewer than make the encoder lost to the motor's loop; from then on all are, and each is counted; once
+/// the flag is gone, it refuses anew.
+#[test]
+fn the_error_flag_refuses_a_few_answers_only() {
+    let mut line = Line::default();
+    let flagged = with_parity(0x4000 | 77);
+    let answers: Vec<_> = (0..1000).map(|_| line.step(flagged)).collect();
+    let refused = usize::from(FLAGGED);
+    assert!(
+        answers[..refused].iter().all(Option::is_none) && answers[refused..].iter().all(|a| *a == Some(77))
+    );
+    assert!(u16::from(FLAGGED) + 1 < MOTOR.encoder.timeout_ticks);
+    assert_eq!((line.flagged, line.damaged), (1000, 0));
+    assert_eq!([with_parity(78), flagged].map(|answer| line.step(answer)), [Some(78), None]);
+}
+
+/// Situation: the encoder's wire is cut and pulled up; one bit of a flagged answer is wrong. Must hold: never an angle,
+/// however long it lasts.
+#[test]
+fn a_cut_line_is_no_angle_ever() {
+    let mut line = Line::default();
+    assert!((0..1000).all(|_| line.step(0xffff).is_none()));
+    assert_eq!((line.flagged, line.damaged), (0, 1000));
+    (0..=FLAGGED).for_each(|_| _ = line.step(with_parity(0x4000 | 77)));
+    assert!((0..1000).all(|_| line.step(with_parity(0x4000 | 77) ^ 1).is_none()));
+}

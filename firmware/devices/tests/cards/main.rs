@@ -1,0 +1,14 @@
+//! Flight cards of the parts around the chip.
+
+mod analog;
+mod approximations;
+mod drv8301;
+mod encoder;
+mod fault_pin;
+mod imu;
+mod silicon;
+mod slow;
+mod switch;
+mod ticks;
+mod vesc6;
+mod wheel;

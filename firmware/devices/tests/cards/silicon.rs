@@ -1,0 +1,12 @@
+//! Flight cards: the chip's revision.
+
+use devices::silicon::has_prefetch;
+
+/// Situation: revision A, by its own number and by the wrong one that it gives; the later ones. Must hold: prefetch on
+/// all but revision A.
+#[test]
+fn only_revision_a_has_no_prefetch() {
+    assert!(!has_prefetch(0x413, 0x1000) && !has_prefetch(0x411, 0x2000));
+    // Z, 1, 2 and Y, 5 and 6.
+    assert!([0x1001, 0x1003, 0x1007, 0x100f, 0x101f].iter().all(|revision| has_prefetch(0x413, *revision)));
+}

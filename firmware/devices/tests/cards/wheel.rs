@@ -1,0 +1,132 @@
+//! Flight cards: a wheel's pulses to samples with ages.
+
+use control::sensors::frame::Sample;
+use control::sensors::wheel_speed::WheelPulsesConfig;
+use devices::wheel::{WheelState, step};
+use std::f64::consts::TAU;
+
+/// A wheel that is turned, and the board's side of it.
+struct Rig {
+    config: WheelPulsesConfig,
+    state: WheelState,
+    way_m: f64,
+    pulses: f64,
+}
+
+impl Rig {
+    fn new() -> Self {
+        Self { config: WheelPulsesConfig::default(), state: WheelState::default(), way_m: 0.01, pulses: 0.0 }
+    }
+
+    /// A millisecond at `speed`.
+    fn roll(&mut self, speed_m_s: f64) -> Sample {
+        let pulse_m = TAU * f64::from(self.config.radius_m) / f64::from(self.config.pulses_per_turn);
+        self.way_m += 1e-3 * speed_m_s;
+        let pulses = (self.way_m / pulse_m).floor();
+        let edge = (pulses > self.pulses).then(|| {
+            let since_s = (self.way_m - pulses * pulse_m) / speed_m_s;
+            (1e6 * since_s) as u32
+        });
+        self.pulses = pulses;
+        step(&self.config, &mut self.state, edge, 1000)
+    }
+}
+
+/// Situation: from standing to 4 m/s at 1 m/s^2, then held. Must hold: the speed is told to 2 %, and the sample is new
+/// with each pulse and gets older between two, never by more than their distance.
+#[test]
+fn a_ride_is_told() {
+    let mut rig = Rig::new();
+    (0..4000).for_each(|ms| _ = rig.roll(1e-3 * f64::from(ms)));
+    let samples: Vec<_> = (0..1000).map(|_| rig.roll(4.0)).collect();
+    let settled = &samples[100..];
+    assert!(settled.iter().all(|sample| (sample.value - 4.0).abs() < 0.08), "{settled:?}");
+    let fresh = settled.iter().filter(|sample| sample.age_ticks == 0).count();
+    let oldest = settled.iter().map(|sample| sample.age_ticks).max();
+    assert!((26..40).contains(&fresh), "{fresh} new samples in 0.9 s, of 26 pulses");
+    assert!(oldest.is_some_and(|age| (30..=35).contains(&age)), "{oldest:?}");
+}
+
+/// Situation: braked from 4 m/s to standing in an instant, then left. Must hold: the silence lowers the speed, those
+/// samples are new, and the wheel stands within 1 s; a standing wheel is always fresh.
+#[test]
+fn silence_is_news() {
+    let mut rig = Rig::new();
+    (0..2000).for_each(|_| _ = rig.roll(4.0));
+    let stopped: Vec<_> = (0..2000).map(|_| rig.roll(0.0)).collect();
+    let old = stopped.iter().rposition(|sample| sample.age_ticks > 0);
+    assert!(old.is_some_and(|ms| ms < 60), "old at {old:?}: {:?}", &stopped[..100]);
+    let stands = stopped.iter().position(|sample| sample.value == 0.0);
+    assert!(stands.is_some_and(|ms| (100..1000).contains(&ms)), "{stands:?}");
+    assert!(stopped[1000..].iter().all(|sample| *sample == Sample::fresh(0.0)));
+}
+
+/// Situation: a wheel that never turned. Must hold: it stands, and that is fresh from the first period on.
+#[test]
+fn a_wheel_that_never_turned_stands() {
+    let mut state = WheelState::default();
+    for _ in 0..100 {
+        assert_eq!(step(&WheelPulsesConfig::default(), &mut state, None, 1000), Sample::fresh(0.0));
+    }
+    assert_eq!(state.count(), 0);
+}
+
+/// Situation: at 4 m/s each pulse is followed by an edge of a disturbance, 1 ms later. Must hold: those are not counted,
+/// and the speed is told as without them.
+#[test]
+fn edges_too_close_are_no_pulses() {
+    let config = WheelPulsesConfig::default();
+    let (mut clean, mut disturbed) = (WheelState::default(), WheelState::default());
+    for ms in 0..3400_u32 {
+        let pulse = (ms % 34 == 0).then_some(300);
+        let echo = (ms % 34 == 1).then_some(300);
+        let (a, b) =
+            (step(&config, &mut clean, pulse, 1000), step(&config, &mut disturbed, pulse.or(echo), 1000));
+        assert_eq!(a, b, "at {ms} ms");
+    }
+    assert_eq!((clean.count(), disturbed.count()), (100, 100));
+    let speed = step(&config, &mut disturbed, None, 1000).value;
+    assert!((4.0..4.1).contains(&speed), "{speed}");
+}
+
+/// A standstill of the chip of 500 ms, in which the wheel goes a way, and an edge comes, by a timer of 16 bits
+/// `edge_age_us` ago.
+fn stand_still(rig: &mut Rig, way_m: f64, edge_age_us: Option<u32>) -> Sample {
+    let pulse_m = TAU * f64::from(rig.config.radius_m) / f64::from(rig.config.pulses_per_turn);
+    rig.way_m += way_m;
+    rig.pulses = (rig.way_m / pulse_m).floor();
+    step(&rig.config, &mut rig.state, edge_age_us, 500_000)
+}
+
+/// Situation: rolling at 4 m/s, the chip stands still for 0.5 s, 14 pulses long, and then sees that an edge came. Must
+/// hold: there is no speed until two more pulses came; from then on it is that of the wheel, and never a wrong one in
+/// between.
+#[test]
+fn an_edge_in_a_standstill_has_no_age() {
+    for edge_age_us in [0, 900, 33_000, 65_000] {
+        let mut rig = Rig::new();
+        (0..2000).for_each(|_| _ = rig.roll(4.0));
+        assert_eq!(stand_still(&mut rig, 2.0, Some(edge_age_us)).age_ticks, control::sensors::frame::MISSING);
+        let after: Vec<_> = (0..300).map(|_| rig.roll(4.0)).collect();
+        let known = after.iter().position(|sample| sample.age_ticks != control::sensors::frame::MISSING);
+        assert!(known.is_some_and(|ms| (30..=75).contains(&ms)), "{known:?}");
+        let settled = &after[known.unwrap_or_default()..];
+        assert!(settled.iter().all(|sample| (sample.value - 4.0).abs() < 0.2), "{settled:?}");
+    }
+}
+
+/// Situation: the same, but the wheel was braked meanwhile and stands from then on; and a wheel that stood all the
+/// time. Must hold: the first is missing for 1 s, then stands; the other stands at once.
+#[test]
+fn a_wheel_that_stands_after_a_standstill_is_known_to() {
+    let mut rig = Rig::new();
+    (0..2000).for_each(|_| _ = rig.roll(4.0));
+    stand_still(&mut rig, 0.5, Some(100));
+    let after: Vec<_> = (0..2000).map(|_| rig.roll(0.0)).collect();
+    let known = after.iter().position(|sample| sample.age_ticks != control::sensors::frame::MISSING);
+    assert!(known.is_some_and(|ms| (990..=1000).contains(&ms)), "{known:?}");
+    assert!(after[1000..].iter().all(|sample| *sample == Sample::fresh(0.0)));
+    let mut standing = Rig::new();
+    assert_eq!(stand_still(&mut standing, 0.0, None), Sample::fresh(0.0));
+    assert_eq!(standing.roll(0.0), Sample::fresh(0.0));
+}

@@ -1,0 +1,123 @@
+//! Why a request is not carried out, as it is told.
+
+use crate::bytes::{Reader, Writer};
+use crate::key::Key;
+use control::param::ParamError;
+use core::fmt;
+
+/// Why something is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum RejectReason {
+    /// Torque may flow: nothing may be changed, stored or reset.
+    Engaged = 1,
+    /// There is no such parameter.
+    UnknownKey = 2,
+    /// A value outside its range, perhaps of another parameter that this one must fit.
+    OutOfRange = 3,
+    /// A number with a fraction where only whole ones are.
+    NotWhole = 4,
+    /// Off, for a parameter that can't be.
+    NeverOff = 5,
+    /// The parameter's group is off; switch that on first.
+    GroupOff = 6,
+    /// Only a passed polarity check says that it was passed.
+    OnlyByCheck = 7,
+    /// There is no such request.
+    UnknownRequest = 8,
+    /// The request can't be read.
+    Malformed = 9,
+    /// The flash did not keep it; what it kept before is still there.
+    NotStored = 10,
+    /// This image can't do that.
+    NotHere = 11,
+}
+
+impl RejectReason {
+    /// The reason of a number on the wire.
+    pub fn numbered(number: u8) -> Option<Self> {
+        use RejectReason::*;
+        let all = [
+            Engaged,
+            UnknownKey,
+            OutOfRange,
+            NotWhole,
+            NeverOff,
+            GroupOff,
+            OnlyByCheck,
+            UnknownRequest,
+            Malformed,
+            NotStored,
+            NotHere,
+        ];
+        all.into_iter().find(|why| *why as u8 == number)
+    }
+}
+
+/// A refusal. What it is not about is empty or 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rejection<'a> {
+    /// Why.
+    pub why: RejectReason,
+    /// The parameter.
+    pub key: Key<'a>,
+    /// The value that is refused.
+    pub value: f32,
+    /// Least allowed value.
+    pub min: f32,
+    /// Largest allowed value.
+    pub max: f32,
+}
+
+impl<'a> Rejection<'a> {
+    /// For a reason that needs no parameter.
+    pub const fn of(why: RejectReason) -> Self {
+        Self::about(why, Key::whole(""))
+    }
+
+    /// About a parameter.
+    pub const fn about(why: RejectReason, key: Key<'a>) -> Self {
+        Self { why, key, value: 0.0, min: 0.0, max: 0.0 }
+    }
+
+    pub(crate) fn encode(&self, to: &mut Writer<'_>) {
+        to.u8(self.why as u8);
+        [self.value, self.min, self.max].into_iter().for_each(|number| to.f32(number));
+        to.text(self.key.parts());
+    }
+
+    pub(crate) fn decode(from: &mut Reader<'a>) -> Option<Self> {
+        let why = RejectReason::numbered(from.u8()?)?;
+        let (value, min, max) = (from.f32()?, from.f32()?, from.f32()?);
+        Some(Self { why, key: Key::whole(from.text()?), value, min, max })
+    }
+}
+
+impl From<ParamError> for Rejection<'static> {
+    fn from(ParamError { leaf, value }: ParamError) -> Self {
+        Self { why: RejectReason::OutOfRange, key: Key::of(&leaf), value, min: leaf.min, max: leaf.max }
+    }
+}
+
+impl fmt::Display for Rejection<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { why, key, value, min, max } = self;
+        match why {
+            RejectReason::Engaged => write!(f, "refused while engaged"),
+            RejectReason::UnknownKey => write!(f, "no parameter {key}"),
+            // A limit that is off, where another needs it (`Limits::cross`).
+            RejectReason::OutOfRange if *value == f32::INFINITY => {
+                write!(f, "{key} = none, but limits.rider_torque is on and needs it: {min} to {max}")
+            }
+            RejectReason::OutOfRange => write!(f, "{key} = {value} is outside {min} to {max}"),
+            RejectReason::NotWhole => write!(f, "{key} = {value} is not a whole number of {min} to {max}"),
+            RejectReason::NeverOff => write!(f, "{key} can't be off, only {min} to {max}"),
+            RejectReason::GroupOff => write!(f, "{key} is in a group that is off; switch that on first"),
+            RejectReason::OnlyByCheck => write!(f, "{key} is set by the polarity check alone"),
+            RejectReason::UnknownRequest => write!(f, "no such request"),
+            RejectReason::Malformed => write!(f, "the request can't be read"),
+            RejectReason::NotStored => write!(f, "the flash did not keep it"),
+            RejectReason::NotHere => write!(f, "this image can't do that"),
+        }
+    }
+}

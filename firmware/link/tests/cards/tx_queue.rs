@@ -1,0 +1,137 @@
+//! What goes out when more wants to than the line takes.
+
+use control::{ActiveLimits, Causes, Command, Mode, SensorFrame};
+use link::frame::{Decoder, MAX_FRAME, Received};
+use link::message::Message;
+use link::telemetry::Telemetry;
+use link::{Key, TxQueue};
+use proptest::prelude::*;
+
+fn telemetry(steps: u32) -> Telemetry {
+    let command = Command {
+        torque_nm: 0.0,
+        gain_nm_s_rad: 0.0,
+        limits: ActiveLimits::default(),
+        mode: Mode::Standby,
+        causes: Causes::NONE,
+    };
+    Telemetry {
+        steps,
+        late: 0,
+        driven: false,
+        frame: SensorFrame::missing(),
+        command,
+        slopes: [None, Some(0.9)],
+        polarity: 0,
+        shown_nm: 0.0,
+    }
+}
+
+/// Takes up to so many bytes; the numbers and kinds of the frames they complete.
+fn drain<const A: usize, const U: usize>(
+    sender: &mut TxQueue<A, U>,
+    decoder: &mut Decoder,
+    bytes: usize,
+) -> Vec<(u16, u8)> {
+    let mut got = Vec::new();
+    for _ in 0..bytes {
+        let Some(byte) = sender.next_byte() else { break };
+        if let Some(Received::Frame(frame)) = decoder.feed(byte) {
+            got.push((frame.sequence, frame.kind));
+        }
+    }
+    got
+}
+
+/// Situation: a line that takes everything; one step of 20 is to be told, every one, none.
+/// Action: 1000 steps.
+/// Must hold: 50 frames, the first step's among them; 1000; none.
+#[test]
+fn one_step_of_as_many_as_the_divisor_is_told() {
+    for (divisor, expected) in [(20, 50), (1, 1000), (0, 0), (u16::MAX, 1)] {
+        let (mut sender, mut decoder) = (TxQueue::<256, 512>::new(divisor), Decoder::default());
+        let mut told = 0;
+        for steps in 1..=1000 {
+            sender.step(&telemetry(steps));
+            told += drain(&mut sender, &mut decoder, usize::MAX).len();
+        }
+        assert_eq!((told, sender.dropped()), (expected, 0), "{divisor}");
+    }
+}
+
+/// Situation: a line that takes 40 bytes in a step, with every step told: three times too few.
+/// Action: 3000 steps, then the rest of what waits.
+/// Must hold: nothing waits for the line; every frame told arrived whole or was counted as dropped, and their numbers
+/// show which; a third arrived.
+#[test]
+fn telemetry_is_dropped_whole_and_counted() {
+    let (mut sender, mut decoder) = (TxQueue::<256, 512>::new(1), Decoder::default());
+    let mut got = Vec::new();
+    for steps in 1..=3000 {
+        sender.step(&telemetry(steps));
+        got.extend(drain(&mut sender, &mut decoder, 40));
+    }
+    got.extend(drain(&mut sender, &mut decoder, usize::MAX));
+    assert_eq!(decoder.dropped(), Default::default());
+    assert_eq!(got.len() + sender.dropped() as usize, 3000);
+    assert!(got.windows(2).all(|two| two[0].0 < two[1].0));
+    assert!((900..=1100).contains(&got.len()), "{}", got.len());
+}
+
+/// Situation: the ring for what nobody asked for is full, a frame of it is half out.
+/// Action: answer a request.
+/// Must hold: there is room for the answer; it goes out next after that frame, under the request's number.
+#[test]
+fn an_answer_overtakes_telemetry() {
+    let (mut sender, mut decoder) = (TxQueue::<256, 512>::new(1), Decoder::default());
+    for steps in 1..=10 {
+        sender.step(&telemetry(steps));
+    }
+    assert!(sender.dropped() > 0);
+    assert_eq!(drain(&mut sender, &mut decoder, 30), vec![]);
+    assert!(sender.answer(&Message::Value { key: Key::whole("rate_hz"), value: Some(1000.0) }, 4711));
+    let got = drain(&mut sender, &mut decoder, usize::MAX);
+    assert_eq!(got[..2], [(0, 0xa0), (4711, 0x83)]);
+    assert!(got.len() > 3 && got[2..].iter().all(|(_, kind)| *kind == 0xa0), "{got:?}");
+}
+
+/// Situation: more answers than there is room for.
+/// Action: answer until refused; send; answer again.
+/// Must hold: refused, not cut, and nothing counted as dropped; then there is room again; all that were taken arrive.
+#[test]
+fn an_answer_without_room_is_refused() {
+    let (mut sender, mut decoder) = (TxQueue::<64, 512>::new(1), Decoder::default());
+    let taken = (0..20).filter(|sequence| sender.answer(&Message::Done, *sequence)).count();
+    assert_eq!(taken, 64 / 11);
+    let got = drain(&mut sender, &mut decoder, usize::MAX);
+    assert_eq!(got, (0..taken as u16).map(|sequence| (sequence, 0x85)).collect::<Vec<_>>());
+    assert!(sender.answer(&Message::Done, 99));
+    assert_eq!(sender.dropped(), 0);
+    assert!(!sender.answer(&Message::Log(&"x".repeat(60)), 1));
+}
+
+proptest! {
+    /// Situation: any order of answers, steps, words and bytes taken by the line.
+    /// Action: all of it; then drain.
+    /// Must hold: no panic; every frame that was taken arrives whole, answers in their order.
+    #[test]
+    fn whatever_was_taken_arrives(acts in prop::collection::vec((0..4_u8, 0..200_usize), 1..200)) {
+        let (mut sender, mut decoder) = (TxQueue::<{ MAX_FRAME }, 400>::new(1), Decoder::default());
+        let (mut answers, mut told, mut got) = (Vec::new(), 0, Vec::new());
+        for (i, (act, size)) in acts.into_iter().enumerate() {
+            match act {
+                0 if sender.answer(&Message::Law(&vec![0; size]), i as u16) => answers.push(i as u16),
+                0 => {}
+                1 => sender.step(&telemetry(i as u32)),
+                2 => sender.tell(&Message::Log(&"0".repeat(size))),
+                _ => got.extend(drain(&mut sender, &mut decoder, size)),
+            }
+            told += u32::from(act == 1 || act == 2);
+        }
+        got.extend(drain(&mut sender, &mut decoder, usize::MAX));
+        prop_assert_eq!(decoder.dropped(), Default::default());
+        let arrived: Vec<_> = got.iter().filter(|(_, kind)| *kind == 0x84).map(|(sequence, _)| *sequence).collect();
+        prop_assert_eq!(arrived.len() as u32 + told - sender.dropped(), got.len() as u32);
+        prop_assert_eq!(arrived, answers);
+    }
+}

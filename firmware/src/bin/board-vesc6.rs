@@ -1,0 +1,46 @@
+//! The image for a VESC 6 (STM32F405): all tasks. It gives no torque until the motor's encoder is aligned and the
+//! polarity check was passed; the reasons are in its log and telemetry.
+#![no_std]
+#![no_main]
+
+use control::Config;
+use devices::vesc6::MOTOR;
+use firmware::heartbeat::Task;
+use firmware::tasks::settings::{self, StoredConfig};
+use firmware::{board, crash, tasks};
+use link::report::config_hash;
+use static_cell::StaticCell;
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    static KEPT: StaticCell<StoredConfig> = StaticCell::new();
+    crash::start(board::reset_cause());
+    defmt::info!(
+        "{=str} start {=u32} after {=str}",
+        firmware::identity!(),
+        crash::starts(),
+        crash::cause().name()
+    );
+    board::log_kept_fault();
+    let motor = board::start();
+    let stored = KEPT.init(StoredConfig::open());
+    let plan = settings::start(stored, &Config::product());
+    defmt::info!(
+        "configuration {=u32:08x}, parameters: {}",
+        config_hash(plan.config()),
+        defmt::Display2Format(stored.found())
+    );
+    let offset = stored.choose_offset(MOTOR.encoder.offset_turns, MOTOR.motor_id());
+    defmt::info!("encoder offset: {}", defmt::Display2Format(&offset));
+    motor.start(offset.turns());
+    board::run(
+        |control| control.spawn(defmt::unwrap!(tasks::control(plan).ok())),
+        |thread| {
+            thread.spawn(defmt::unwrap!(tasks::line(firmware::image!(), stored).ok()));
+            thread.spawn(defmt::unwrap!(tasks::report().ok()));
+            thread.spawn(defmt::unwrap!(board::broadcast().ok()));
+            thread.spawn(defmt::unwrap!(board::watch_drive().ok()));
+            thread.spawn(defmt::unwrap!(tasks::supervise(&[Task::Control, Task::Line, Task::Report]).ok()));
+        },
+    )
+}

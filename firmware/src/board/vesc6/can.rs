@@ -1,0 +1,138 @@
+//! CAN: the board's state, told to displays and loggers. Nothing is taken from there: no filter lets a frame in, and nobody
+//! looks for one.
+//!
+//! Each of the three frames has one of the controller's three mailboxes for itself. A frame is tried once; one that still
+//! waits when the next is due is taken out. So a bus that is missing, shorted or full costs nothing but the count.
+
+use super::pins::{Pin, alternate};
+use crate::tasks::{Telemetry, latest, settings};
+use control::Calibration;
+use control::sensors::calibration::CalibrationPlan;
+use devices::vesc6::CAN_CLOCK_HZ;
+use embassy_stm32::gpio::{AfType, OutputType, Pull, Speed};
+use embassy_stm32::pac::CAN1;
+use embassy_stm32::{peripherals, rcc};
+use embassy_time::{Duration, Instant, Timer};
+use link::can::{BIT_HZ, Frame, Message, Motion, PERIOD_MS, State, fresh};
+use link::can_bit_timing::bit_timing;
+use link::can_mailbox::{Action, Counts, Mailbox};
+
+/// Pins' function that is CAN1.
+const FUNCTION: u8 = 9;
+/// The controller answers within a bit or two, and takes part once the bus was quiet for 11 bits of 2 us.
+const TIMEOUT: Duration = Duration::from_millis(1);
+
+/// Sets the controller up. Where it does not answer it stays out of the bus; where the bus is not quiet it takes part as
+/// soon as that is.
+pub(super) fn start(receive: Pin, transmit: Pin) {
+    rcc::enable_and_reset::<peripherals::CAN1>();
+    // Pulled up, so that a bus without a transceiver is quiet.
+    alternate(receive, FUNCTION, AfType::input(Pull::Up));
+    alternate(transmit, FUNCTION, AfType::output(OutputType::PushPull, Speed::Medium));
+    CAN1.mcr().modify(|w| {
+        w.set_sleep(false);
+        w.set_inrq(true);
+        // Each frame is tried once; back on the bus by itself after the bus was off; the mailboxes' order is that of the
+        // identifiers.
+        w.set_nart(true);
+        w.set_abom(true);
+        w.set_txfp(false);
+    });
+    let Some(timing) =
+        bit_timing(CAN_CLOCK_HZ, BIT_HZ).filter(|_| within_timeout(|| CAN1.msr().read().inak()))
+    else {
+        defmt::error!("can: no answer of the controller, nothing is told there");
+        return;
+    };
+    // The registers hold one less than each number.
+    CAN1.btr().write(|w| {
+        w.set_brp(timing.prescaler - 1);
+        w.set_ts(0, timing.segment_1 - 1);
+        w.set_ts(1, timing.segment_2 - 1);
+        w.set_sjw(timing.jump - 1);
+    });
+    // Without a filter that is active, what others send is acknowledged and dropped.
+    CAN1.fmr().modify(|w| w.set_finit(false));
+    CAN1.mcr().modify(|w| w.set_inrq(false));
+    defmt::info!("can: bus quiet={=bool}", within_timeout(|| !CAN1.msr().read().inak()));
+}
+
+/// Waits for something, not for long; whether it came.
+fn within_timeout(came: impl Fn() -> bool) -> bool {
+    let end = Instant::now() + TIMEOUT;
+    while !came() {
+        if Instant::now() > end {
+            return false;
+        }
+    }
+    true
+}
+
+/// Tells what control did last, every [`PERIOD_MS`], and once a second over RTT what became of it.
+#[embassy_executor::task]
+pub async fn broadcast() {
+    let mut counts = Counts::default();
+    let mut configuration = None;
+    let mut calibration = Calibration::default().plan();
+    for time in (0..1000 / PERIOD_MS).cycle() {
+        Timer::after_millis(PERIOD_MS).await;
+        let Some(telemetry) = latest() else { continue };
+        if configuration != Some(telemetry.configuration) {
+            configuration = Some(telemetry.configuration);
+            calibration = settings::config().calibration.plan();
+        }
+        for (place, message) in messages(&telemetry, &calibration).iter().enumerate() {
+            put(place, &message.frame(), &mut counts);
+        }
+        if time == 0 {
+            let errors = CAN1.esr().read();
+            let Counts { sent, lost } = counts;
+            defmt::info!(
+                "can: sent={=u32} lost={=u32} errors={=u8} off={=bool}",
+                sent,
+                lost,
+                errors.tec(),
+                errors.boff()
+            );
+        }
+    }
+}
+
+/// What is told of a control step, the most urgent first.
+fn messages(t: &Telemetry, calibration: &CalibrationPlan) -> [Message; 3] {
+    let rear = &t.frame.rear_wheel_m_s;
+    let state = State {
+        mode: t.command.mode,
+        driven: t.drive.is_ok(),
+        engage: t.frame.engage,
+        polarity: t.polarity,
+        limits: t.command.limits,
+        authority: Some(t.authority),
+        speed_m_s: fresh(rear.value, rear.age_ticks),
+        steps: t.deadlines.steps as u8,
+    };
+    let motion = Motion::of(calibration, &t.frame, &t.command);
+    [Message::State(state), Message::Motion(motion), Message::Causes(t.command.causes)]
+}
+
+/// Puts a frame into its mailbox, or takes out the one that still waits there.
+fn put(place: usize, frame: &Frame, counts: &mut Counts) {
+    let status = CAN1.tsr().read();
+    let mailbox =
+        Mailbox { empty: status.tme(place), completed: status.rqcp(place), acknowledged: status.txok(place) };
+    match counts.step(mailbox) {
+        Action::Put => {
+            let [b0, b1, b2, b3, b4, b5, b6, b7] = frame.bytes;
+            let to = CAN1.tx(place);
+            to.tdtr().write(|w| w.set_dlc(8));
+            to.tdlr().write(|w| w.0 = u32::from_le_bytes([b0, b1, b2, b3]));
+            to.tdhr().write(|w| w.0 = u32::from_le_bytes([b4, b5, b6, b7]));
+            to.tir().write(|w| {
+                w.set_stid(frame.identifier);
+                w.set_txrq(true);
+            });
+        }
+        // What else is in this register changes only where a one is written.
+        Action::Abort => CAN1.tsr().write(|w| w.set_abrq(place, true)),
+    }
+}

@@ -1,0 +1,159 @@
+//! The motor's interrupt: samples in, one call of the motor's loop, duty cycles out, 20 000 times a second.
+
+use super::shared::{Report, heat_c, is_held, is_off, ordered, set_off, tell};
+use super::soft_spi::SoftSpi;
+use super::{adc, outputs_off, pwm};
+use core::cell::UnsafeCell;
+use devices::as5047::{ASK_ANGLE, Line};
+use devices::fault_pin::FaultPin;
+use devices::vesc6::{COMMAND_TIMEOUT_CALLS, SHUNT, SUPPLY};
+use embassy_stm32::gpio::Input;
+use embassy_stm32::interrupt;
+use embassy_stm32::interrupt::InterruptExt;
+use motor::command_word::Deadline;
+use motor::{Inputs, MotorCommand, Output, Phases, Plan, State};
+
+/// What the interrupt alone knows.
+struct Loop {
+    plan: Plan,
+    state: State,
+    deadline: Deadline,
+    encoder: SoftSpi,
+    line: Line,
+    gate_fault: Input<'static>,
+    gate_pin: FaultPin,
+    /// What the last call said; this one's begins with it.
+    report: Report,
+    bridge: Bridge,
+}
+
+/// The bridge as the last call left it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Bridge {
+    /// All six switches open.
+    Open,
+    /// Still open; the timer takes the first duty cycles meanwhile.
+    Loaded,
+    /// By the duty cycles.
+    Closed,
+}
+
+struct Cell(UnsafeCell<Option<Loop>>);
+
+// SAFETY: written once by `start`, before the interrupt is let through; from then on only the interrupt touches it, and
+// it does not interrupt itself.
+unsafe impl Sync for Cell {}
+
+static LOOP: Cell = Cell(UnsafeCell::new(None));
+
+/// Starts the loop; the converters and the timer must run. `driver` tells whether the gate driver is there and well. To
+/// be called once.
+pub(super) fn start(plan: Plan, driver: bool, encoder: SoftSpi, gate_fault: Input<'static>) {
+    let motor = Loop {
+        plan,
+        state: State::default(),
+        deadline: Deadline::default(),
+        encoder,
+        line: Line::default(),
+        gate_fault,
+        gate_pin: FaultPin::default(),
+        report: Report { gate_fault: !driver, ..Report::NONE },
+        bridge: Bridge::Open,
+    };
+    // SAFETY: the interrupt is not let through yet, so nobody else has the cell.
+    unsafe { *LOOP.0.get() = Some(motor) }
+    adc::forget();
+    interrupt::ADC.unpend();
+    // SAFETY: the interrupt enters no critical section, so it may interrupt those of others.
+    unsafe { interrupt::ADC.enable() }
+}
+
+#[interrupt]
+fn ADC() {
+    // SAFETY: only this interrupt has the cell once it runs.
+    if let Some(motor) = unsafe { &mut *LOOP.0.get() } {
+        motor.call();
+    }
+}
+
+impl Loop {
+    fn call(&mut self) {
+        pwm::begin();
+        let counts = adc::counts();
+        self.ask_encoder();
+        if self.gate_pin.step(self.gate_fault.is_low()) {
+            self.report.gate_fault = true;
+            // The driver has opened the switches by itself; it stays enabled until its status was read.
+            set_off();
+        }
+        let (beat, asked) = ordered();
+        let command = self.deadline.step(beat, asked, COMMAND_TIMEOUT_CALLS);
+        let supply_v = SUPPLY.volt(counts.supply);
+        let inputs = Inputs {
+            phases: Phases::Three(counts.phases.map(|phase| SHUNT.ampere(phase))),
+            bus_v: supply_v,
+            angle_counts: self.report.encoder_counts,
+            angle_age_ticks: self.report.encoder_age,
+            temperature_c: heat_c(),
+            command: if is_off() || is_held() { MotorCommand::Off } else { command },
+        };
+        let out = motor::step(&self.plan, &mut self.state, &inputs);
+        self.switch(&out);
+        let late = pwm::is_over() || adc::again();
+        self.report = Report {
+            calls: self.report.calls.wrapping_add(1),
+            late: self.report.late.wrapping_add(u32::from(late)),
+            mode: out.mode,
+            faults: out.faults,
+            gate_pulses: self.gate_pin.pulses,
+            encoder_flagged: self.line.flagged,
+            encoder_damaged: self.line.damaged,
+            silent: self.deadline.is_over(COMMAND_TIMEOUT_CALLS),
+            off: is_off(),
+            torque_nm: out.torque_nm,
+            iq_a: out.iq_a,
+            steer_rate_rad_s: out.steer_rate_rad_s,
+            offset_turns: out.offset_turns,
+            aligned: out.aligned,
+            supply_v,
+            steer: counts.steer,
+            rider_torque: counts.rider_torque,
+            switch: counts.switch,
+            board_heat: counts.board_heat,
+            ..self.report
+        };
+        tell(self.report);
+    }
+
+    /// The answer to the last transfer is the angle at its time, one call ago.
+    fn ask_encoder(&mut self) {
+        let report = &mut self.report;
+        match self.line.step(self.encoder.word(ASK_ANGLE)) {
+            Some(counts) => (report.encoder_counts, report.encoder_age) = (counts, 1),
+            None => report.encoder_age = report.encoder_age.saturating_add(1),
+        }
+    }
+
+    /// Moves the bridge. It is closed once: a break that opened it since is never undone.
+    fn switch(&mut self, out: &Output) {
+        let Some(duties) = out.duties else {
+            pwm::open();
+            self.bridge = Bridge::Open;
+            return;
+        };
+        pwm::duties(duties);
+        self.bridge = match self.bridge {
+            Bridge::Open => Bridge::Loaded,
+            Bridge::Loaded => {
+                pwm::close();
+                Bridge::Closed
+            }
+            Bridge::Closed => {
+                if !pwm::is_closed() {
+                    outputs_off();
+                }
+                Bridge::Closed
+            }
+        };
+    }
+}

@@ -1,0 +1,136 @@
+//! What control sees: the newest samples of everything, with their ages.
+
+use super::imu;
+use super::shared::{Report, report, set_heat};
+use super::soft_spi::SoftSpi;
+use super::wheels::Edges;
+use ::motor::Mode;
+use control::SensorFrame;
+use control::sensors::frame::{Sample, Triple};
+use control::sensors::wheel_speed::WheelPulsesConfig;
+use core::cell::Cell;
+use devices::age::Age;
+use devices::switch::Switch;
+use devices::vesc6::{BOARD_HEAT, RIDER_NM, STEER_RAD, SWITCH_COUNTS, SWITCH_TICKS};
+use devices::wheel::{self, WheelState};
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_time::Instant;
+
+/// What is remembered from one control period to the next.
+pub(super) struct Sensors {
+    /// The IMU's bus, where it answered at the start.
+    imu: Option<SoftSpi>,
+    /// The IMU's clock at the last sample.
+    imu_time: u32,
+    gyro: ([f32; 3], Age),
+    accel: ([f32; 3], Age),
+    edges: [Edges; 2],
+    wheels: [WheelState; 2],
+    wheel: WheelPulsesConfig,
+    switch: Switch,
+    steer: (f32, Age),
+    rider: (f32, Age),
+    steer_rate: Age,
+    torque: Age,
+    calls: u32,
+    before: Instant,
+}
+
+/// Taken out while control looks at it, so that no critical section lasts as long as the IMU's bus.
+static SENSORS: Mutex<CriticalSectionRawMutex, Cell<Option<&'static mut Sensors>>> =
+    Mutex::new(Cell::new(None));
+
+impl Sensors {
+    /// Without any sample yet.
+    pub(super) fn new(imu: Option<SoftSpi>, edges: [Edges; 2]) -> Self {
+        Self {
+            imu,
+            imu_time: 0,
+            gyro: ([0.0; 3], Age::default()),
+            accel: ([0.0; 3], Age::default()),
+            edges,
+            wheels: Default::default(),
+            wheel: devices::vesc6::wheel(),
+            switch: Switch::default(),
+            steer: (0.0, Age::default()),
+            rider: (0.0, Age::default()),
+            steer_rate: Age::default(),
+            torque: Age::default(),
+            calls: 0,
+            before: Instant::now(),
+        }
+    }
+}
+
+/// Puts them where [`sense`] finds them.
+pub(super) fn start(sensors: &'static mut Sensors) {
+    SENSORS.lock(|cell| cell.set(Some(sensors)));
+}
+
+/// The newest samples with their ages \[control periods\]. Waits for nothing; moving the IMU's bits takes some 0.1 ms.
+/// To be called once in each control period.
+pub fn sense() -> SensorFrame {
+    let Some(sensors) = SENSORS.lock(Cell::take) else { return SensorFrame::missing() };
+    let frame = sensors.frame();
+    SENSORS.lock(|cell| cell.set(Some(sensors)));
+    frame
+}
+
+impl Sensors {
+    fn frame(&mut self) -> SensorFrame {
+        let now = Instant::now();
+        let elapsed_us = now.saturating_duration_since(self.before).as_micros() as u32;
+        self.before = now;
+        self.look_at_imu();
+        let report = report();
+        let alive = report.calls != self.calls;
+        self.calls = report.calls;
+        set_heat(BOARD_HEAT.celsius(report.board_heat));
+        let [front, rear] =
+            [0, 1].map(|i| wheel::step(&self.wheel, &mut self.wheels[i], self.edges[i].age_us(), elapsed_us));
+        let closed = report.switch < SWITCH_COUNTS;
+        // A drive that is not able to give torque says nothing, so control does not engage.
+        let able = matches!(report.mode, Mode::Ready | Mode::Running) && !report.gate_fault && !report.off;
+        SensorFrame {
+            now_us: now.as_micros() as u32,
+            gyro_rad_s: Triple { value: self.gyro.0, age_ticks: self.gyro.1.now() },
+            accel_m_s2: Triple { value: self.accel.0, age_ticks: self.accel.1.now() },
+            steer_rad: newest(&mut self.steer, STEER_RAD.value(report.steer).filter(|_| alive)),
+            steer_rate_rad_s: Sample {
+                value: report.steer_rate_rad_s,
+                age_ticks: self.steer_rate.step(alive && fresh(&report)),
+            },
+            front_wheel_m_s: front,
+            rear_wheel_m_s: rear,
+            rider_torque_nm: newest(&mut self.rider, RIDER_NM.value(report.rider_torque).filter(|_| alive)),
+            motor_torque_nm: Sample { value: report.torque_nm, age_ticks: self.torque.step(alive && able) },
+            engage: self.switch.step(closed && alive, SWITCH_TICKS),
+            ..SensorFrame::missing()
+        }
+    }
+
+    fn look_at_imu(&mut self) {
+        let newest = self.imu.as_mut().map(imu::newest);
+        // A chip whose clock stands still, or a line that reads the same for ever, says nothing new.
+        let newest = newest.filter(|sample| sample.time != self.imu_time);
+        self.gyro.1.step(newest.is_some_and(|sample| sample.gyro_new));
+        self.accel.1.step(newest.is_some_and(|sample| sample.accel_new));
+        if let Some(sample) = newest {
+            self.imu_time = sample.time;
+            (self.gyro.0, self.accel.0) = (sample.gyro_rad_s, sample.accel_m_s2);
+        }
+    }
+}
+
+/// Whether the encoder's angle is of the last calls, as many as the motor's loop puts up with.
+fn fresh(report: &Report) -> bool {
+    report.encoder_age <= devices::vesc6::MOTOR.encoder.timeout_ticks
+}
+
+/// The newest value and its age; what is remembered stays where there is no new one.
+fn newest(remembered: &mut (f32, Age), new: Option<f32>) -> Sample {
+    let age_ticks = remembered.1.step(new.is_some());
+    remembered.0 = new.unwrap_or(remembered.0);
+    Sample { value: remembered.0, age_ticks }
+}
