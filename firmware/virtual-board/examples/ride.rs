@@ -62,7 +62,7 @@ fn knocked(speed_m_s: f64) -> Start {
 
 fn rides(image: &Path) -> Result<(), Reason> {
     println!(
-        "| set to | rider | m/s | board | simulator | peak N m: board, simulator | rms N m: board, simulator | largest roll rad: board, simulator | difference N m: largest, rms |"
+        "| preset | rider | m/s | board | simulator | peak N m: board, simulator | rms N m: board, simulator | largest roll rad: board, simulator | difference N m: largest, rms |"
     );
     println!("| --- | --- | ---: | --- | --- | ---: | ---: | ---: | ---: |");
     for preset in [Preset::H, Preset::Product] {
@@ -95,7 +95,7 @@ fn rides(image: &Path) -> Result<(), Reason> {
 
 fn causes(image: &Path) -> Result<(), Reason> {
     println!(
-        "| set to | cause | peak N m | rms N m | from the exact simulator N m: largest, rms | from the board N m: largest, rms |"
+        "| preset | cause | peak N m | rms N m | from the exact simulator N m: largest, rms | from the board N m: largest, rms |"
     );
     println!("| --- | --- | ---: | ---: | ---: | ---: |");
     let speed_m_s = 3.0;
