@@ -68,13 +68,13 @@ fn heights(lines: &[Line], speeds: &[f64]) -> (String, Vec<Vec<f64>>) {
         })
         .collect();
     let rows: Vec<Vec<f64>> = found.chunks(speeds.len()).map(<[f64]>::to_vec).collect();
-    let mut table = String::from("| delay | made up for |");
+    let mut table = String::from("| delay | compensation |");
     speeds.iter().for_each(|v| table += &format!(" {v} m/s |"));
     table += "\n| --- | --- |";
     speeds.iter().for_each(|_| table += " --- |");
     for (line, row) in lines.iter().zip(&rows) {
         let how = match line.ahead {
-            PredictedMotion::Off => "not".to_owned(),
+            PredictedMotion::Off => "none".to_owned(),
             PredictedMotion::Lead(s) => format!("lead {:.0} ms", s * 1e3),
             PredictedMotion::Model(_, s) => format!("model {:.0} ms", s * 1e3),
         };
@@ -98,7 +98,7 @@ fn model() -> LinearBicycle {
     LinearBicycle::new(&shipped("rigid_jason").parameters)
 }
 
-/// Not made up for, by a lead, by the model.
+/// Without compensation, with a lead, with the model.
 fn ways(delay_s: f64) -> [PredictedMotion; 3] {
     [PredictedMotion::Off, PredictedMotion::Lead(delay_s), PredictedMotion::Model(model(), delay_s)]
 }

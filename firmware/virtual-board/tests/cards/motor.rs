@@ -180,7 +180,7 @@ fn a_halted_core_opens_the_bridge_and_stops_the_watchdog() {
     holds(
         "a debugger halts the core",
         opened_ns as f64 * 1e-3 - from * 1e3,
-        "nothing: the bridge closes when the core goes on",
+        "nothing: the bridge closes when the core continues",
     );
 }
 
