@@ -255,7 +255,7 @@ fn one(args: &Args, common: &Common, path: &Path) -> Result<Done, Failure> {
     };
     let config = resolved(args, common, &plan, Some(resample));
     let remarks = samples.remarks.iter().map(ToString::to_string).collect();
-    let result = ReplayResult { file: name, remarks, fitted: fitted, replayed };
+    let result = ReplayResult { file: name, remarks, fitted, replayed };
     Ok(Done { result, config, frames: kept })
 }
 
@@ -271,7 +271,7 @@ fn replay_frames(args: &Args, common: &Common, path: &Path, name: String) -> Res
     let mut each = all.iter().copied();
     let replayed = run_through(&plan, &options, |_| each.next());
     let config = resolved(args, common, &plan, None);
-    let result = ReplayResult { file: name, remarks: Vec::new(), fitted: fitted, replayed };
+    let result = ReplayResult { file: name, remarks: Vec::new(), fitted, replayed };
     let frames = all.into_iter().map(|(_, frame)| frame).collect();
     Ok(Done { result, config, frames })
 }
