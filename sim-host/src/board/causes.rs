@@ -1,15 +1,15 @@
-//! Causes and limits in words.
+//! Names and meanings of causes and limits.
 
 use control::{ActiveLimits, Cause, Causes};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// The list of all causes, with names, pages and what each means.
+/// The list of all causes with names, pages and meanings.
 const LIST: &str = include_str!("../../../docs/faults/README.md");
-/// Where the pages are.
+/// Directory of the pages.
 const PAGES: &str = "docs/faults";
 
-/// A cause in words.
+/// A cause with its name and meaning.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct NamedCause {
     /// Its number.
@@ -18,11 +18,11 @@ pub struct NamedCause {
     pub name: &'static str,
     /// What it means, in a sentence.
     pub meaning: &'static str,
-    /// The page that tells more.
+    /// The page with details.
     pub page: String,
 }
 
-/// A set of causes in words, by rising number. Bits that stand for none that this program knows are left out.
+/// The causes of a set, by rising number; bits unknown to this program are left out.
 pub fn named(causes: Causes) -> Vec<NamedCause> {
     causes.iter().filter_map(find).collect()
 }
@@ -36,7 +36,7 @@ fn find(cause: Cause) -> Option<NamedCause> {
     Some(NamedCause { code: cause.code(), name, meaning, page: format!("{PAGES}/{page}") })
 }
 
-/// The limits in the order of their bits, as `docs/cli.md` calls them.
+/// The limits in the order of their bits, named as in `docs/cli.md`.
 const LIMITS: [(ActiveLimits, &str); 10] = [
     (ActiveLimits::TAPER, "taper"),
     (ActiveLimits::MAGNITUDE, "torque"),
@@ -50,7 +50,7 @@ const LIMITS: [(ActiveLimits, &str); 10] = [
     (ActiveLimits::AUTHORITY, "authority"),
 ];
 
-/// The limits of a set in words.
+/// Names of the limits in a set.
 pub fn limits(set: ActiveLimits) -> Vec<&'static str> {
     LIMITS.iter().filter(|(limit, _)| set.0 & limit.0 != 0).map(|(_, name)| *name).collect()
 }

@@ -1,4 +1,4 @@
-//! A board that is asked and answers, over a line that may lose or damage anything.
+//! Requests to a board and their answers, over a line that can lose or damage anything.
 
 use super::received::ReceivedMessage;
 use super::transport::{Transport, TransportError};
@@ -9,17 +9,17 @@ use link::{Decoder, Received};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant, SystemTime};
 
-/// Most of what came unasked that is kept for whoever looks at it; of more the newest.
+/// Number of unsolicited messages stored for [`Client::listen`]; the newest are kept.
 const KEPT: usize = 4096;
-/// Longest time a board takes to erase and write its flash, with much to spare.
+/// Longest time a board takes to erase and write its flash, with a large margin.
 const STORING: Duration = Duration::from_secs(5);
 
-/// How long to wait for an answer, and how often to ask.
+/// Timeout and number of attempts of a request.
 #[derive(Clone, Copy, Debug)]
 pub struct Patience {
     /// Real time for one answer. The largest answer behind the largest telemetry takes 40 ms at 115200 baud.
     pub answer: Duration,
-    /// How often the same is asked before giving up.
+    /// Attempts before giving up.
     pub tries: u32,
 }
 
@@ -29,54 +29,54 @@ impl Default for Patience {
     }
 }
 
-/// Why a board does not do what it is asked for.
+/// Why a request to a board failed.
 #[derive(Debug, thiserror::Error)]
 pub enum ClientError {
-    /// The line.
+    /// The line failed.
     #[error(transparent)]
     Transport(#[from] TransportError),
-    /// It speaks another version of the link.
+    /// The board uses another version of the link.
     #[error("the board speaks version {theirs} of the link, this program version {VERSION}")]
     Version {
-        /// The board's.
+        /// The board's version.
         theirs: u8,
     },
-    /// It does not answer.
+    /// The board does not answer.
     #[error("no answer to `{requested}`, asked {tries} times, {} s each", wait.as_secs_f64())]
     Silent {
-        /// What was asked.
+        /// The request.
         requested: String,
-        /// How often.
+        /// Number of attempts.
         tries: u32,
-        /// How long was waited each time.
+        /// Timeout of each attempt.
         wait: Duration,
     },
-    /// It refuses.
+    /// The board rejects the request.
     #[error("the board refuses `{requested}`: {text}")]
     Refused {
-        /// What was asked.
+        /// The request.
         requested: String,
-        /// Why.
+        /// The reason.
         why: RejectReason,
-        /// Why, in words, with parameter and range.
+        /// The reason as text, with parameter and range.
         text: String,
     },
-    /// Its answer is to something else.
+    /// The answer belongs to another request.
     #[error("the board's answer to `{requested}` does not fit")]
     Unfit {
-        /// What was asked.
+        /// The request.
         requested: String,
     },
 }
 
 impl ClientError {
-    /// Whether the board may have carried out what it was asked for nevertheless.
+    /// Whether the board may have carried out the request nevertheless.
     pub fn leaves_doubt(&self) -> bool {
         matches!(self, ClientError::Transport(_) | ClientError::Silent { .. })
     }
 }
 
-/// A board at the other end of a line.
+/// The connection to a board.
 pub struct Client {
     line: Box<dyn Transport>,
     timeout: Patience,
@@ -87,20 +87,20 @@ pub struct Client {
 }
 
 impl Client {
-    /// Over `line`. Nothing is asked yet.
+    /// A connection over `line`; sends nothing yet.
     pub fn new(line: Box<dyn Transport>, timeout: Patience) -> Self {
-        // Answers to a program that went away may still come; they have other numbers.
+        // Answers to an earlier program can still arrive; their sequence numbers differ.
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         let sequence = now.subsec_micros() as u16;
         Self { line, timeout, decoder: Decoder::default(), sequence, received: VecDeque::new(), whole: 0 }
     }
 
-    /// Asks until the answer comes, which `fits` reads; `requested` says in words what for.
+    /// Sends a request until its answer arrives, which `fits` decodes; `requested` names the request in errors.
     ///
-    /// The same may be carried out more than once: an answer can get lost on its way back.
+    /// The board may carry out the request more than once, since an answer can be lost.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn ask<T>(
         &mut self,
         request: &Message<'_>,
@@ -127,10 +127,10 @@ impl Client {
         Err(ClientError::Silent { requested: requested.into(), tries: self.timeout.tries, wait })
     }
 
-    /// What the board said unasked since the last call, after waiting for it up to `timeout`.
+    /// The unsolicited messages since the last call, after waiting up to `timeout` for the first one.
     ///
     /// # Errors
-    /// The line, or another version.
+    /// The line failed, or the board uses another version.
     pub fn listen(&mut self, timeout: Duration) -> Result<Vec<ReceivedMessage>, ClientError> {
         if self.received.is_empty() {
             let bytes = self.line.receive(timeout)?;
@@ -139,23 +139,24 @@ impl Client {
         Ok(self.received.drain(..).collect())
     }
 
-    /// Opens the line anew after it was lost; `None` for one that never comes back. Who is there now is to be asked.
+    /// Reopens a lost line; `None` for a line that cannot be reopened. The board may then be another one: request its
+    /// identity.
     pub fn reopen(&mut self) -> Option<Result<(), TransportError>> {
         self.line.reopen()
     }
 
-    /// Frames that came damaged, since the start, wrapping.
+    /// Frames received damaged since the start, wrapping.
     pub fn damaged(&self) -> u32 {
         let dropped = self.decoder.dropped();
         dropped.garbled.wrapping_add(dropped.too_long).wrapping_add(dropped.bad_crc)
     }
 
-    /// Frames that came whole, since the start.
+    /// Frames received whole since the start.
     pub fn whole(&self) -> u64 {
         self.whole
     }
 
-    /// Waits for the answer to the newest request; `None` when none came in time.
+    /// Waits for the answer to the newest request; `None` on timeout.
     fn answer(&mut self, wait: Duration) -> Result<Option<ReceivedMessage>, ClientError> {
         let begin = Instant::now();
         loop {
@@ -170,7 +171,8 @@ impl Client {
         }
     }
 
-    /// Takes what came in: the answer of this number, if it is among it; what is unasked is kept, all else is old.
+    /// Decodes received bytes: returns the answer with this sequence number, stores unsolicited messages, drops late
+    /// answers.
     fn take(&mut self, bytes: &[u8], sequence: Option<u16>) -> Result<Option<ReceivedMessage>, ClientError> {
         let mut answer = None;
         for byte in bytes {

@@ -1,4 +1,4 @@
-//! Is what was ridden on a board what is ridden here, bit for bit?
+//! Compares rides and basins on a board with the same computed on the host, bit for bit.
 
 use crate::basin::{Basin, Column};
 use crate::ride::{
@@ -8,12 +8,12 @@ use control::wire::{encode_command, encode_frame};
 use control::{Plan, SensorFrame, State};
 use std::fmt::Debug;
 
-/// The first difference, in words.
+/// The first difference, as text.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct Difference(pub String);
 
-/// Writes down every control step of a controller.
+/// Records every control step of a controller.
 pub struct Recorder<'a> {
     remote: &'a mut dyn Remote,
     /// The frames and their answers, from the controller's boot.
@@ -21,7 +21,7 @@ pub struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    /// Of this controller.
+    /// A recorder around this controller.
     pub fn new(remote: &'a mut dyn Remote) -> Self {
         Self { remote, steps: Vec::new() }
     }
@@ -44,8 +44,8 @@ impl Remote for Recorder<'_> {
     }
 }
 
-/// Holds a ride on a board against the same one ridden here: every frame, command and authority from the
-/// controller's boot, every instant of the trace, and the outcome.
+/// Compares a ride on a board with the same ride on the host: every frame, command and authority from the controller's
+/// boot, every instant of the trace, and the outcome.
 ///
 /// # Errors
 /// The first difference.
@@ -73,7 +73,7 @@ pub fn same_ride(
     same("the ride's end", &ride_here, ride)
 }
 
-/// The controller's answers to frames, here.
+/// The host controller's answers to the frames.
 fn stepped_here(conditions: &Conditions, frames: &[SensorFrame]) -> Vec<(SensorFrame, Stepped)> {
     let Assist::Firmware(plan) = &conditions.assist else { return Vec::new() };
     let mut state = State::default();
@@ -84,7 +84,7 @@ fn stepped_here(conditions: &Conditions, frames: &[SensorFrame]) -> Vec<(SensorF
     frames.iter().map(&mut step).collect()
 }
 
-/// Holds a basin ridden on boards against the same one ridden here; `there` may have fewer speeds.
+/// Compares a basin ridden on boards with the same on the host; `there` may have fewer speeds.
 ///
 /// # Errors
 /// The first difference.
@@ -112,12 +112,12 @@ fn same_column(here: &Column, there: &Column) -> Result<(), Difference> {
     same(&at("the work"), work, &there.work)
 }
 
-/// By their text, which tells any two numbers apart, 0 and -0 as well.
+/// Compares by debug text, which differs for any two numbers, including 0 and -0.
 fn same<T: Debug>(what: &str, here: &T, there: &T) -> Result<(), Difference> {
     same_by(what, here, there, &format!("{here:?}"), &format!("{there:?}"))
 }
 
-/// By their bits.
+/// Compares by bits.
 fn same_by<T: Debug, B: PartialEq>(
     what: &str,
     here: &T,

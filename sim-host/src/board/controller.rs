@@ -1,4 +1,4 @@
-//! The controller of a ride on a board in lockstep.
+//! The controller of a ride: a board in lockstep, reached over a link that can have faults.
 
 use super::link_fault::LinkChannel;
 use super::{BoardError, Direction, LinkFault, Lockstep};
@@ -11,27 +11,27 @@ use link::lockstep::{COMMAND_TIMEOUT_MS, ToBoard};
 use link::message::NoMessage;
 use link::{Decoder, Message, Received};
 
-/// Bytes of a configuration in one message.
+/// Bytes of the configuration in one message.
 const PIECE: usize = 300;
 /// The only control rate of an emulated board \[Hz\].
 const RATE_HZ: f32 = 1000.0;
-/// The link's faults draw from streams of their own, apart from those of sensors and their faults.
+/// The link's faults use their own random streams, separate from those of the sensors and their faults.
 const DICE: u64 = 1 << 32;
 
-/// What a controller did since it was made.
+/// Counts over all rides of a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Control steps.
     pub steps: u64,
-    /// Control steps that a fault of the link acted on.
+    /// Control steps affected by a link fault.
     pub harmed: u64,
-    /// Control steps for which the board was not there in time, or not at all.
+    /// Control steps for which the board's command was late or missing.
     pub missed: u64,
-    /// How often the chip started anew during a ride.
+    /// Restarts of the chip during a ride.
     pub restarts: u64,
 }
 
-/// The controller on a board: rides hand it sensor frames and get its commands.
+/// A controller on a board: takes sensor frames, returns motor commands.
 #[derive(Debug)]
 pub struct Controller<B> {
     /// The board.
@@ -42,27 +42,27 @@ pub struct Controller<B> {
     tally: Tally,
 }
 
-/// What is remembered of the ride under way.
+/// State of the current ride.
 #[derive(Debug)]
 struct RideState {
-    /// The number of its reset.
+    /// Sequence number of its reset.
     number: u16,
-    /// Configuration and reset, until they went out.
+    /// Messages with configuration and reset, until they are sent.
     opening: Vec<u8>,
     /// Control steps since the reset.
     step: u32,
-    /// The control step that the board counts as number 0.
+    /// The control step at which the board's step count was 0.
     step_zero: u32,
     /// Control steps from t = 0; `None` before.
     tick: Option<u32>,
     sensors: LinkChannel,
     motor: LinkChannel,
     decoder: Decoder,
-    /// The newest command, and the control steps that it was held for.
+    /// The newest command, and for how many control steps it was held.
     held: (Stepped, u32),
-    /// Control steps that the board has gone on alone, and the command that came at their end.
+    /// Control steps that the board has done ahead, and the command at their end.
     ahead: Option<(u32, Option<Stepped>)>,
-    /// Whether the chip started anew, and no longer counts the ride's steps.
+    /// Whether the chip restarted and no longer counts the ride's steps.
     restarted: bool,
 }
 
@@ -86,12 +86,12 @@ impl RideState {
         }
     }
 
-    /// The number of this control step's sensor frame.
+    /// Sequence number of this control step's sensor frame.
     fn sequence(&self) -> u16 {
         self.step.wrapping_sub(self.step_zero) as u16
     }
 
-    /// What the motor does in a control step: by a new command, or by the one before as long as it may be held.
+    /// What the motor does in a control step: the new command, or the previous one while it may be held.
     fn motor(&mut self, newest: Option<Stepped>) -> Stepped {
         self.held = match (newest, self.held) {
             (Some(newest), _) => (newest, 0),
@@ -107,18 +107,18 @@ impl RideState {
 }
 
 impl<B: Lockstep> Controller<B> {
-    /// On this board, over a link with these faults; `seed` is of their random numbers.
+    /// A controller on this board over a link with these faults; `seed` is for their random numbers.
     pub fn new(board: B, faults: &[LinkFault], seed: u64) -> Self {
         let ride = RideState::new(0, faults, seed, &Start::default());
         Self { board, faults: faults.into(), seed, ride, tally: Tally::default() }
     }
 
-    /// What it did so far.
+    /// The counts so far.
     pub fn tally(&self) -> Tally {
         self.tally
     }
 
-    /// One exchange; the command that came, if one did, and the number of its frame.
+    /// One exchange; returns the received command, if any, and the sequence number of its frame.
     fn exchange(&mut self, frame: &SensorFrame) -> Result<Option<(Stepped, u16)>, BoardError> {
         let ride = &mut self.ride;
         let mut sensors = Vec::with_capacity(MAX_FRAME);
@@ -159,7 +159,7 @@ impl<B: Lockstep> Controller<B> {
         Ok(command)
     }
 
-    /// A control step that the board takes part in.
+    /// A control step in which the board takes part.
     fn stepped(&mut self, frame: &SensorFrame) -> Result<Stepped, BoardError> {
         let (before_ms, starts) = (self.board.last().time_ms, self.board.last().starts);
         let sequence = self.ride.sequence();
@@ -171,7 +171,7 @@ impl<B: Lockstep> Controller<B> {
             return Err(ride.astray(format!("the board's time went from {before_ms} ms to {now_ms} ms")));
         }
         if started > 0 {
-            // It counts the steps from its start on, of which there was one.
+            // The board counts steps from its restart, after which it has done one.
             (ride.restarted, ride.step_zero) = (true, ride.step + gone_ms - 1);
             self.tally.restarts += u64::from(started);
         }
@@ -232,10 +232,10 @@ impl<B: Lockstep> Remote for Controller<B> {
     }
 }
 
-/// Puts a message on the link.
+/// Appends a message to the bytes of the link.
 fn put(message: &Message<'_>, sequence: u16, to: &mut Vec<u8>) {
     let mut room = [0; MAX_FRAME];
-    // Any of the loop's messages fits.
+    // All messages of the loop fit.
     let used = message.encode(sequence, &mut room).unwrap_or(0);
     to.extend_from_slice(&room[..used]);
 }

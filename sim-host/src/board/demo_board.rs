@@ -1,5 +1,5 @@
-//! A board in QEMU, on a bicycle that rolls straight and upright, the rider's switch off: for whoever wants to ask or
-//! watch a board and has none.
+//! A board in QEMU on a bicycle that rolls straight and upright, the rider's switch off: for trying the board commands
+//! without hardware.
 
 use super::qemu::{LIMIT, Qemu};
 use super::transport::{Transport, TransportError};
@@ -17,19 +17,19 @@ use std::time::{Duration, Instant};
 const SPEED_M_S: f32 = 4.0;
 /// Gravity \[m/s^2\].
 const G_M_S2: f32 = 9.81;
-/// Most bytes that go to the board in a millisecond: ten times what a line of 115200 baud carries.
+/// Most bytes sent to the board in a millisecond: ten times the capacity of a line of 115200 baud.
 const LINE_BYTES: usize = 115;
 
-/// The line of such a board. Its time goes on only while somebody waits for it, and never faster than the clock's.
+/// The line of the demonstration board. Its time advances only while the host waits for it, at most in real time.
 pub struct DemoBoard {
     name: String,
     board: Qemu,
-    /// Bytes that wait to go to the board.
+    /// Bytes not yet sent to the board.
     waiting: Vec<u8>,
     /// Number of the next sensor frame, from the chip's start.
     number: u16,
     now_us: u32,
-    /// When the last millisecond went over.
+    /// Real time of the last exchange.
     last: Instant,
 }
 
@@ -37,15 +37,15 @@ impl DemoBoard {
     /// Starts the image.
     ///
     /// # Errors
-    /// There is no image or no QEMU, or it does not start.
+    /// No image, no QEMU, or the image does not start.
     pub fn start(image: &Path) -> Result<Self, BoardError> {
         let board = Qemu::start(image, &[], LIMIT)?;
         let name = format!("{} in QEMU", image.display());
-        // The chip has done its first step, without sensors.
+        // The chip has done its first control step, without sensors.
         Ok(Self { name, board, waiting: Vec::new(), number: 1, now_us: 0, last: Instant::now() })
     }
 
-    /// One millisecond; what the board said in it.
+    /// Advances by one millisecond; returns the bytes that the board sent.
     fn millisecond(&mut self) -> Result<Vec<u8>, TransportError> {
         let mut room = [0; MAX_FRAME];
         let used = Message::PilFrame(self.sensors()).encode(self.number, &mut room).unwrap_or(0);

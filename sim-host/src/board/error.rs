@@ -1,10 +1,10 @@
-//! What can go wrong with a board in the loop.
+//! Errors of a board in the loop.
 
 use crate::ride::RemoteError;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Why a board can't be gone on with.
+/// Why a board cannot continue.
 #[derive(Debug, thiserror::Error)]
 pub enum BoardError {
     /// The emulator can't be started.
@@ -12,7 +12,7 @@ pub enum BoardError {
         "can't start qemu-system-arm: {0}; `cargo xtask setup` installs it, or apt-get install qemu-system-arm"
     )]
     NoQemu(std::io::Error),
-    /// There is no such image.
+    /// The image does not exist.
     #[error("there is no image {}; `cargo xtask firmware` builds it", .0.display())]
     NoImage(PathBuf),
     /// The emulator ended.
@@ -24,31 +24,31 @@ pub enum BoardError {
         status: String,
         /// Exchanges until then.
         exchanges: u64,
-        /// What it wrote for people, behind a line of its own.
+        /// The end of its text output, on a new line.
         said: String,
     },
-    /// It did not answer in time.
+    /// The board did not answer in time.
     #[error("the board {} did not answer within {limit:?} after {exchanges} exchanges{said}", .image.display())]
     Silent {
         /// The image.
         image: PathBuf,
-        /// How long it was waited for.
+        /// The timeout.
         limit: Duration,
         /// Exchanges until then.
         exchanges: u64,
-        /// What it wrote for people, behind a line of its own.
+        /// The end of its text output, on a new line.
         said: String,
     },
-    /// What it handed over is none of the link's chunks.
+    /// What the board sent is no chunk of the link.
     #[error("the board hands over what is no chunk of docs/link.md: {0}; is the image of this version?")]
     NoChunk(String),
-    /// More for the board than a chunk holds.
+    /// More bytes for the board than a chunk holds.
     #[error("{0} bytes for the loop and {1} for the line are more than a chunk holds")]
     TooMuch(usize, usize),
-    /// It does not take the configuration.
+    /// The board rejects the configuration.
     #[error("the board refuses the configuration: {0}")]
     Refused(String),
-    /// It did not do what the lockstep promises.
+    /// The board broke the lockstep protocol.
     #[error("control step {step} since the reset: {what}")]
     Astray {
         /// The control step since the reset.
@@ -56,7 +56,7 @@ pub enum BoardError {
         /// What happened.
         what: String,
     },
-    /// It steps at one rate only.
+    /// The board supports one control rate only.
     #[error("rate_hz = {0}: an emulated board steps at 1000 Hz only")]
     Rate(f32),
 }

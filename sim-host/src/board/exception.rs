@@ -1,19 +1,19 @@
-//! What a Cortex-M4 core says of an exception, in words: ARMv7-M Architecture Reference Manual (DDI 0403), B1.5.2 and
-//! B3.2.15 to B3.2.18.
+//! Cortex-M4 exception registers as text: ARMv7-M Architecture Reference Manual (DDI 0403), B1.5.2 and B3.2.15 to
+//! B3.2.18.
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// An exception in words.
+/// An exception with the meaning of its registers.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Exception {
     /// Its number.
     pub number: u32,
     /// Its name.
     pub name: String,
-    /// What the bits of CFSR and HFSR say.
+    /// Meaning of the set bits of CFSR and HFSR.
     pub status: Vec<String>,
-    /// Configurable fault status register, hexadecimal, as the ones below.
+    /// Configurable fault status register, hexadecimal like the registers below.
     pub cfsr: String,
     /// Hard fault status register.
     pub hfsr: String,
@@ -65,7 +65,7 @@ const NAMES: [(u32, &str); 8] = [
 ];
 
 impl Exception {
-    /// Of its number and the registers CFSR, HFSR, BFAR, SP, PC, LR.
+    /// From the exception number and the registers CFSR, HFSR, BFAR, SP, PC, LR.
     pub fn new(number: u32, registers: [u32; 6]) -> Self {
         let [cfsr, hfsr, bfar, sp, pc, lr] = registers.map(|register| format!("{register:08x}"));
         let status = bits(&CFSR, registers[0]).chain(bits(&HFSR, registers[1])).collect();

@@ -1,4 +1,4 @@
-//! A fault record in words.
+//! A fault record as text.
 
 use super::causes::{NamedCause, named};
 use super::exception::Exception;
@@ -8,26 +8,26 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
-/// A fault record in words.
+/// A fault record with names in place of numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Fault {
     /// "panic", "exception", "watchdog", "controller", "brown-out" or "drive".
     pub kind: &'static str,
-    /// Number of the program's start that recorded it; a watchdog's is recorded by the start after it.
+    /// Number of the program start that recorded it; a watchdog reset is recorded by the following start.
     pub boot: u32,
-    /// Why the program was started that time.
+    /// Reset reason of that start.
     pub reset: &'static str,
-    /// The controller's mode at the last control step before it.
+    /// The controller's mode at the last control step before the fault.
     pub mode: &'static str,
-    /// Control steps done before it.
+    /// Control steps done before the fault.
     pub steps: u32,
-    /// The board's clock at the last of them \[s\], from 0 again every 4295 s.
+    /// The board's clock at the last control step \[s\]; wraps every 4295 s.
     pub frame_s: f64,
-    /// The controller's causes at the last of them.
+    /// The controller's causes at the last control step.
     pub causes: Vec<NamedCause>,
-    /// What the core said; null if the fault is none of the core's.
+    /// The core's exception registers; null if the fault is no exception.
     pub exception: Option<Exception>,
-    /// In words: a panic's place and message.
+    /// Text of the record: a panic's location and message.
     pub text: String,
 }
 

@@ -1,4 +1,4 @@
-//! Faults of the loop's link, as text: `WAY:HARM[=TIME][@FROM[..TO]]`, for example `sensors:late=3ms@1.5s..2s`.
+//! Faults of the loop's link, as text: `DIRECTION:FAULT[=TIME][@FROM[..TO]]`, for example `sensors:late=3ms@1.5s..2s`.
 
 use crate::plant::RandomStream;
 use crate::range::{span, time};
@@ -6,12 +6,12 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::str::FromStr;
 
-/// Latest that bytes can be \[s\].
+/// Largest delay of bytes \[s\].
 const LATEST_S: f64 = 1.0;
 /// A control period \[s\].
 const PERIOD_S: f64 = 1e-3;
 
-/// Which way bytes go.
+/// Direction of the bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// To the board.
@@ -33,27 +33,27 @@ impl Direction {
     }
 }
 
-/// What happens to them.
+/// What happens to the bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinkFaultKind {
     /// They are lost.
     Drop,
-    /// They come later by so many control periods. What a newer period's overtake is lost.
+    /// They arrive this many control periods later. Bytes overtaken by those of a newer period are lost.
     Late(u32),
-    /// One byte of each period's is another.
+    /// One byte of each period is changed.
     Corrupt,
 }
 
-/// A fault of the link. Its text form parses back to it.
+/// A fault of the link. Its text form parses back to the same fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkFault {
-    /// Which way.
+    /// The direction.
     pub direction: Direction,
     /// What happens.
     pub kind: LinkFaultKind,
-    /// From this time of the ride \[s\], ...
+    /// Start of the fault in the ride \[s\].
     pub from_s: f64,
-    /// ... up to this time, which may be infinite \[s\].
+    /// End of the fault in the ride \[s\]; can be infinite.
     pub to_s: f64,
 }
 
@@ -117,30 +117,31 @@ fn periods(text: &str) -> Result<u32, String> {
     Err(format!("late={text} is not a whole number of control periods of 1 ms, 1 ms to {LATEST_S} s"))
 }
 
-/// One way of the link in one ride.
+/// One direction of the link in one ride.
 #[derive(Debug)]
 pub(super) struct LinkChannel {
     faults: Vec<LinkFault>,
     random: RandomStream,
-    /// What is late, and the period when it comes.
+    /// Delayed bytes, with the period in which they arrive.
     late: VecDeque<(u32, Vec<u8>)>,
-    /// Periods whose bytes a fault acted on.
+    /// Periods whose bytes a fault changed.
     pub(super) harmed: u32,
 }
 
 impl LinkChannel {
-    /// The faults of one way among all of them.
+    /// A channel with the faults of its direction.
     pub(super) fn new(faults: &[LinkFault], direction: Direction, random: RandomStream) -> Self {
         let faults = faults.iter().filter(|fault| fault.direction == direction).copied().collect();
         Self { faults, random, late: VecDeque::new(), harmed: 0 }
     }
 
-    /// Whether nothing ever happens on it.
+    /// Whether no fault ever acts on it.
     pub(super) fn safe(&self) -> bool {
         self.faults.is_empty()
     }
 
-    /// What of a period's `bytes`, and of those before, arrives in the period `tick` from t = 0.
+    /// Replaces `bytes` of the period `tick` (from t = 0) by what arrives in that period, including earlier, delayed
+    /// bytes.
     pub(super) fn pass(&mut self, tick: u32, bytes: &mut Vec<u8>) {
         let (mut lost, mut late) = (false, 0);
         let acting = self.faults.iter().filter(|fault| fault.acts(tick));

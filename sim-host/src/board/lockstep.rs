@@ -1,16 +1,16 @@
-//! A board whose time stands still while it waits for the host.
+//! A board whose time advances only during an exchange with the host.
 
 use super::BoardError;
 use link::lockstep::{FromBoard, ToBoard};
 
-/// A board in lockstep (`docs/pil.md`). It has stepped once when it is there, and waits for the host.
+/// A board in lockstep (`docs/pil.md`). Once created, it has done its first control step and waits for the host.
 pub trait Lockstep {
-    /// What it handed over last.
+    /// What the board sent last.
     fn last(&self) -> FromBoard<'_>;
 
-    /// Hands over to it, and takes what it hands over after its next control step, as [`Lockstep::last`].
+    /// Sends `to` and returns what the board sends after its next control step; [`Lockstep::last`] returns the same.
     ///
     /// # Errors
-    /// It is gone, or says what means nothing.
+    /// The board has ended, or sends something that is no valid chunk.
     fn exchange(&mut self, to: &ToBoard<'_>) -> Result<(), BoardError>;
 }

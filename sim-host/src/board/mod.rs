@@ -1,4 +1,4 @@
-//! A board at the other end of a line: asked, tuned and watched with the same `link` crate that it is built with.
+//! Boards at the other end of a line: requests, tuning and monitoring, with the same `link` crate as the firmware.
 
 pub mod causes;
 pub mod client;

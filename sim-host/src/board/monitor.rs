@@ -1,4 +1,4 @@
-//! What is made of all that a board tells: its state, and what was lost on the way.
+//! State of a board from its unsolicited messages, with the count of lost frames.
 
 use super::fault::Fault;
 use super::received::ReceivedMessage;
@@ -6,18 +6,19 @@ use super::telemetry_row::TelemetryRow;
 use link::message::Message;
 use link::telemetry::Telemetry;
 
-/// What was heard so far.
+/// State from the messages so far.
 #[derive(Debug, Default)]
 pub struct Monitor {
-    /// Frames that came in.
+    /// Frames received.
     pub frames: u64,
-    /// Frames that did not, by the gaps in their numbers; where these went round meanwhile, by the control steps as well.
+    /// Frames lost, from the gaps in their sequence numbers; where these wrapped meanwhile, from the control steps as
+    /// well.
     pub missing: u64,
-    /// Frames that came whole and say what this program does not know.
+    /// Frames received whole whose content this program does not know.
     pub unknown: u64,
-    /// How often the board's clock went back without a start.
+    /// Times the board's clock went back without a restart.
     pub clock_backs: u32,
-    /// Starts of the board while it was heard.
+    /// Restarts of the board while it was monitored.
     pub restarts: u32,
     /// The newest control step.
     pub newest: Option<Telemetry>,
@@ -27,28 +28,28 @@ pub struct Monitor {
     counted: Counted,
 }
 
-/// How far frames are counted.
+/// Position up to which frames are counted.
 #[derive(Debug, Default)]
 struct Counted {
-    /// The number of the frame up to which they are.
+    /// Sequence number of the last counted frame.
     sequence: Option<u16>,
-    /// Frames that came in since.
+    /// Frames received since.
     since: u16,
-    /// Control steps that went by, and frames that were sent in them, as far as is known.
+    /// Control steps passed, and frames sent in them, as far as known.
     steps: u64,
     frames: u64,
 }
 
 impl Counted {
-    /// From a frame of this number on.
+    /// Starts counting at this sequence number.
     fn from(sequence: u16) -> Self {
         Self { sequence: Some(sequence), ..Self::default() }
     }
 
-    /// Frames lost before that of number `sequence`, so many control steps after the last one that was counted.
+    /// Frames lost before the frame `sequence`, which is `steps` control steps after the last counted one.
     ///
-    /// The numbers tell it but for whole rounds; how many of these, the steps tell, at the rate of frames until then. Numbers
-    /// that go back are no gap.
+    /// The sequence numbers give the count modulo their range; the steps and the frame rate so far give the number of
+    /// wraps. Numbers that go back are no gap.
     fn lost(&mut self, sequence: u16, steps: u32) -> u64 {
         let reception = u64::from(std::mem::take(&mut self.since)) + 1;
         let Some(last) = self.sequence.replace(sequence) else { return 0 };
@@ -61,27 +62,27 @@ impl Counted {
     }
 }
 
-/// Frames after which their numbers begin anew.
+/// Number of frames after which the sequence numbers wrap.
 const ROUND: i64 = 1 << 16;
 
-/// Fewer control steps than are done in 2147 s, half of what the board's clock counts, at the lowest rate of 100 Hz.
+/// Fewer control steps than 2147 s take at the lowest rate of 100 Hz; 2147 s is half the range of the board's clock.
 const HALF_ROUND_STEPS: u32 = 100_000;
 
-/// Something that was told.
+/// Content of an unsolicited message.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
     /// A control step.
     Step(Box<TelemetryRow>),
     /// A fault.
     Fault(Box<Fault>),
-    /// Words.
+    /// Log text.
     Log(String),
-    /// Something that this program does not know.
+    /// Content that this program does not know.
     Unknown,
 }
 
 impl Monitor {
-    /// Takes what came in next.
+    /// Processes the next message.
     pub fn take(&mut self, received: &ReceivedMessage) -> News {
         self.frames += 1;
         let news = match received.message() {
@@ -103,7 +104,7 @@ impl Monitor {
     fn step(&mut self, sequence: u16, step: Telemetry) -> News {
         let now_us = step.frame.now_us;
         match self.newest {
-            // A board that starts anew numbers its frames anew.
+            // A restarted board restarts its sequence numbers.
             Some(before) if (step.steps.wrapping_sub(before.steps) as i32) < 0 => {
                 self.restarts += 1;
                 (self.counted, self.time_us) = (Counted::from(sequence), now_us.into());
@@ -112,7 +113,7 @@ impl Monitor {
                 let steps = step.steps.wrapping_sub(before.steps);
                 self.missing += self.counted.lost(sequence, steps);
                 let ahead = now_us.wrapping_sub(before.frame.now_us);
-                // Half of the clock's round ahead takes more control steps than that at any rate.
+                // A jump ahead by half the clock's range takes more control steps than this at any rate.
                 if (ahead as i32) < 0 && steps < HALF_ROUND_STEPS {
                     self.clock_backs += 1;
                     self.time_us = self.time_us.saturating_sub(ahead.wrapping_neg().into());

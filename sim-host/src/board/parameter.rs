@@ -1,4 +1,4 @@
-//! A parameter as a board lists it, and its value in words: those of `--set`.
+//! A parameter as a board lists it, and its value as text in the form of `--set`.
 
 use control::law::LAW_NAMES;
 use control::{GainSchedule, Law};
@@ -12,11 +12,11 @@ use link::parameter_list::Kind;
 pub struct Parameter {
     /// Its name.
     pub key: String,
-    /// What its numbers mean.
+    /// The kind of its value.
     pub kind: Kind,
-    /// Its value; `None` is a limit that is off.
+    /// Its value; `None` is a disabled limit.
     pub value: Option<f32>,
-    /// What a reset makes it.
+    /// Its value after a reset.
     pub default: Option<f32>,
     /// Least allowed value.
     pub min: f32,
@@ -44,7 +44,7 @@ impl From<Entry<'_>> for Parameter {
 }
 
 impl Parameter {
-    /// The words a value may be.
+    /// The names that the value can have.
     pub fn words(&self) -> Vec<&str> {
         match self.kind {
             Kind::Switch => vec!["off", "on"],
@@ -54,7 +54,7 @@ impl Parameter {
         }
     }
 
-    /// What it may be, in words: a range, names, or both.
+    /// The allowed values as text: a range, names, or both.
     pub fn allowed(&self) -> String {
         let words = self.words().join(", ");
         match self.kind {
@@ -64,7 +64,7 @@ impl Parameter {
         }
     }
 
-    /// A value in words; [`Parameter::parse`] reads it again, bit for bit.
+    /// A value as text; [`Parameter::parse`] returns it bit for bit.
     pub fn text(&self, value: Option<f32>) -> String {
         let Some(number) = value else { return "none".into() };
         let named = matches!(self.kind, Kind::Switch | Kind::Choice);
@@ -72,20 +72,20 @@ impl Parameter {
         name.unwrap_or_else(|| number.to_string())
     }
 
-    /// Its value in TOML; in words again it is that of [`Parameter::text`].
+    /// Its value in TOML; converted to text, it equals that of [`Parameter::text`].
     pub fn toml(&self) -> String {
         match (self.kind, self.value) {
-            // With a point or an exponent: the largest are beyond TOML's whole numbers.
+            // With a point or an exponent, since the largest values exceed TOML's integers.
             (Kind::Number | Kind::Limit, Some(number)) => format!("{number:?}"),
             (Kind::Count, Some(number)) => number.to_string(),
             _ => format!("\"{}\"", self.text(self.value)),
         }
     }
 
-    /// The value that words stand for, if it may be that.
+    /// The value of a text, if it is allowed.
     ///
     /// # Errors
-    /// What is wrong, with key, value and what is allowed.
+    /// The error with key, value and the allowed values.
     pub fn parse(&self, text: &str) -> Result<Option<f32>, String> {
         let Self { key, min, max, .. } = self;
         let words = self.words();
@@ -110,13 +110,13 @@ impl Parameter {
         Ok(Some(number))
     }
 
-    /// Whether it has this value, to the bit.
+    /// Whether it has this value, bit for bit.
     pub fn has(&self, value: Option<f32>) -> bool {
         to_bits(self.value) == to_bits(value)
     }
 }
 
-/// A law in words, as of `--law`; a table's is `table`.
+/// Name of a law as in `--law`; `table` for a gain table.
 pub fn law_name(law: &Law) -> String {
     let name = LAW_NAMES.get(usize::from(law.number())).unwrap_or(&"?");
     match law {
@@ -133,7 +133,7 @@ pub fn law_points(law: &Law) -> Option<&[(f32, f32)]> {
     }
 }
 
-/// A law as the link's bytes.
+/// A law, encoded in the link's bytes.
 pub fn law_bytes(law: &Law) -> Vec<u8> {
     let mut room = [0; LAW_BYTES];
     let mut writer = Writer::new(&mut room);
@@ -141,7 +141,7 @@ pub fn law_bytes(law: &Law) -> Vec<u8> {
     writer.finish().unwrap_or_default().to_vec()
 }
 
-/// A law of the link's bytes; `None` where they are none that this program knows.
+/// A law, decoded from the link's bytes; `None` if this program does not know it.
 pub fn law_of(bytes: &[u8]) -> Option<Law> {
     decode(&mut Reader(bytes)).ok()
 }

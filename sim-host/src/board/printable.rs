@@ -1,6 +1,7 @@
-//! Words that came over a line, for a terminal.
+//! Text received from a board, made safe for a terminal.
 
-/// The text with its control characters but line ends as escapes (`\\u{1b}`): a terminal must not obey what a board says.
+/// The text with its control characters, except line ends, as escapes (`\\u{1b}`), so that a board cannot send terminal
+/// commands.
 pub fn printable(text: &str) -> String {
     let shown = |c: char| {
         let plain = c == '\n' || !c.is_control();

@@ -1,4 +1,4 @@
-//! A board in QEMU, which hands over on its standard output and takes from its standard input.
+//! A board in QEMU, in lockstep over its standard input and output.
 
 use super::watchdog::{Watchdog, locked};
 use super::{BoardError, Lockstep};
@@ -12,26 +12,26 @@ use std::sync::{Arc, Mutex};
 use std::thread::{JoinHandle, sleep, spawn};
 use std::time::Duration;
 
-/// Longest that an exchange may take, a thousand times what it does.
+/// Timeout of an exchange, a thousand times its usual duration.
 pub const LIMIT: Duration = Duration::from_secs(10);
-/// Longest from the end of its output to its own end \[ms\].
+/// Longest time from the end of the emulator's output to its exit \[ms\].
 const GRACE_MS: u32 = 10_000;
-/// Most bytes kept of what the board writes for people: its last words.
+/// Number of bytes kept of the end of the board's text output.
 const KEPT: usize = 1 << 14;
 
-/// Where `cargo xtask firmware` leaves the image of the loop.
+/// Default path of the loop's image, as built by `cargo xtask firmware`.
 pub fn default_image() -> PathBuf {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
     let root = manifest.parent().unwrap_or(manifest);
     root.join("target/firmware/thumbv7em-none-eabihf/firmware/qemu-pil")
 }
 
-/// An image that runs in QEMU, ended with this value.
+/// A running image in QEMU; dropping the value ends it.
 #[derive(Debug)]
 pub struct Qemu {
     image: PathBuf,
     child: Arc<Mutex<Child>>,
-    /// `None` once it was ended.
+    /// `None` once closed.
     to: Option<ChildStdin>,
     from: ChildStdout,
     watchdog: Watchdog,
@@ -44,11 +44,11 @@ pub struct Qemu {
 }
 
 impl Qemu {
-    /// Starts an image with words as its arguments, and waits until it handed over for the first time; `limit` is
-    /// the longest that any exchange may take.
+    /// Starts an image with `words` as arguments and waits for its first chunk; `limit` is the timeout of every
+    /// exchange.
     ///
     /// # Errors
-    /// There is no image or no QEMU, or it does not get that far.
+    /// No image, no QEMU, or no first chunk.
     pub fn start(image: &Path, words: &[&str], limit: Duration) -> Result<Self, BoardError> {
         if !image.is_file() {
             return Err(BoardError::NoImage(image.into()));
@@ -80,12 +80,12 @@ impl Qemu {
         Ok(qemu)
     }
 
-    /// What the board wrote for people so far, its last words.
+    /// The end of the board's text output so far.
     pub fn said(&self) -> String {
         String::from_utf8_lossy(&locked(&self.words)).trim_end().into()
     }
 
-    /// Takes the next chunk.
+    /// Receives the next chunk.
     fn take(&mut self) -> Result<(), BoardError> {
         self.used = 0;
         let mut whole = BOARD_HEAD;
@@ -106,7 +106,7 @@ impl Qemu {
         Ok(())
     }
 
-    /// How it ended; it is ended if it does not end by itself.
+    /// Exit status of the emulator, which is killed if it does not exit by itself.
     fn last_status(&mut self) -> String {
         let mut child = locked(&self.child);
         for _ in 0..GRACE_MS {
@@ -121,16 +121,16 @@ impl Qemu {
         child.wait().map_or_else(|why| why.to_string(), |_| "its output ended before it did".into())
     }
 
-    /// Closes this end, at which the image ends by itself; how it did, and all it wrote for people, its last words.
+    /// Closes the input, on which the image exits; returns the exit status and the end of its text output.
     pub fn close(&mut self) -> (String, String) {
         self.to = None;
         let status = self.last_status();
-        // The last words are there when the listener is done.
+        // The text is complete when the listener has ended.
         let _ = self.listener.take().map(JoinHandle::join);
         (status, self.said())
     }
 
-    /// Why it is gone.
+    /// The error of an ended emulator.
     fn ended(&mut self) -> BoardError {
         let (status, said) = self.close();
         let said = match said {
@@ -147,7 +147,7 @@ impl Qemu {
 
 impl Lockstep for Qemu {
     fn last(&self) -> FromBoard<'_> {
-        // A whole chunk by its lengths is one.
+        // A chunk with consistent lengths always decodes.
         let none = FromBoard { time_ms: 0, starts: 0, motor: &[], line: &[] };
         FromBoard::decode(&self.room[..self.used]).unwrap_or(none)
     }
@@ -171,16 +171,16 @@ impl Lockstep for Qemu {
 impl Drop for Qemu {
     fn drop(&mut self) {
         let mut child = locked(&self.child);
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = child.kill();
         let _ = child.wait();
     }
 }
 
-/// Keeps this thread, and the QEMU that it starts next, on one core, each thread on another as far as there are any.
+/// Pins this thread, and the QEMU that it starts next, to one core; different threads to different cores if possible.
 ///
-/// Host and board take turns, so that one core is enough for both; with two, each would wait for the other's core to
-/// wake up, which takes longer than a control step. Where the system does not let it, nothing changes.
+/// Host and board take turns, so one core is enough. On two, each would wait for the other core to wake up, which takes
+/// longer than a control step. If the system does not allow pinning, nothing changes.
 fn stay_on_one_core() {
     static NEXT: AtomicUsize = AtomicUsize::new(0);
     thread_local!(static PINNED: Cell<bool> = const { Cell::new(false) });
@@ -198,18 +198,18 @@ fn command(image: &Path, words: &[&str]) -> Command {
     let words = words.iter().fold(format!(",arg={name}"), |line, word| format!("{line},arg={word}"));
     let mut qemu = Command::new("qemu-system-arm");
     qemu.args(["-machine", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "none"]);
-    // An instruction lasts 16 ns of simulated time, 2.7 clocks of the chip, and waiting none of the host's.
+    // An instruction takes 16 ns of simulated time, 2.7 clocks of the chip; sleeping takes no host time.
     qemu.args(["-icount", "shift=4,sleep=off"]);
     qemu.arg("-semihosting-config").arg(format!("enable=on,target=native{words}"));
     qemu.arg("-kernel").arg(image);
     qemu.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    // Ctrl-C is for this program, which may want to finish a ride.
+    // Ctrl-C must reach this program only, which may finish a ride first.
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut qemu, 0);
     qemu
 }
 
-/// Keeps the last of what the board writes for people.
+/// Stores the end of the board's text output.
 fn listen(mut from: ChildStderr, to: Arc<Mutex<Vec<u8>>>) -> JoinHandle<()> {
     spawn(move || {
         let mut room = [0; 1024];

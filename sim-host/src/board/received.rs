@@ -1,35 +1,35 @@
-//! What a board said.
+//! A message received from a board.
 
 use link::frame::Frame;
 use link::message::{Message, NoMessage};
 
-/// Kinds from here on are said unasked.
+/// Kinds from this number on are unsolicited.
 const UNASKED: u8 = 0xa0;
 
-/// A frame from a board, kept.
+/// A frame from a board, copied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReceivedMessage {
-    /// Its number.
+    /// Its sequence number.
     pub sequence: u16,
     kind: u8,
     payload: Vec<u8>,
 }
 
 impl ReceivedMessage {
-    /// Keeps a frame.
+    /// Copies a frame.
     pub fn new(frame: &Frame<'_>) -> Self {
         Self { sequence: frame.sequence, kind: frame.kind, payload: frame.payload.into() }
     }
 
-    /// Whether the board says that unasked.
+    /// Whether the board sends this frame unsolicited.
     pub fn is_unasked(frame: &Frame<'_>) -> bool {
         frame.kind >= UNASKED
     }
 
-    /// What it says.
+    /// The decoded message.
     ///
     /// # Errors
-    /// As of [`Message::decode`].
+    /// See [`Message::decode`].
     pub fn message(&self) -> Result<Message<'_>, NoMessage> {
         let Self { sequence, kind, payload } = self;
         Message::decode(&Frame { kind: *kind, sequence: *sequence, payload })

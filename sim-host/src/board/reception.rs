@@ -1,23 +1,23 @@
-//! How much of what a board said was understood.
+//! Counts of what was received from a board, whole, damaged or unknown.
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// What was heard, whole or not.
+/// Counts of received frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Reception {
-    /// Frames that came whole.
+    /// Frames received whole.
     pub frames: u64,
-    /// Frames that came damaged.
+    /// Frames received damaged.
     pub damaged: u32,
-    /// Whole frames that say what this program does not know.
+    /// Whole frames whose content this program does not know.
     pub unknown: u64,
-    /// Bytes at the end of a recording that are the beginning of a frame.
+    /// Bytes at the end of a recording that belong to an incomplete frame.
     pub rest: usize,
 }
 
 impl Reception {
-    /// What of it could not be read, in words; `None` if all could.
+    /// What could not be decoded, as text; `None` if all was.
     pub fn unread(&self) -> Option<String> {
         let Self { damaged, unknown, rest, .. } = *self;
         let parts = [

@@ -1,4 +1,4 @@
-//! What came over a line, kept as it came: written, and read again.
+//! Recordings of the raw bytes received over a line: writing and reading.
 
 use super::transport::{Transport, TransportError};
 use link::frame::MAX_FRAME;
@@ -7,13 +7,13 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::time::Duration;
 
-/// The raw bytes of a file from its first whole frame on, in its order and without waiting; its end is the line's.
+/// The raw bytes of a file from its first whole frame on, in order and without waiting; its end is the end of the line.
 pub struct Recording {
     name: String,
     file: File,
-    /// Whether the 0 before the first whole frame is passed.
+    /// Whether the 0 before the first whole frame has been read.
     begun: bool,
-    /// Bytes behind the last 0.
+    /// Bytes after the last 0.
     rest: usize,
 }
 
@@ -44,7 +44,7 @@ impl Transport for Recording {
         bytes.truncate(length);
         let first = bytes.iter().position(|byte| *byte == 0);
         match first {
-            // A line is heard from the middle of a frame on.
+            // Reception begins in the middle of a frame.
             Some(first) if !self.begun => drop(bytes.drain(..first)),
             None if !self.begun => bytes.clear(),
             _ => {}
@@ -58,18 +58,18 @@ impl Transport for Recording {
     }
 }
 
-/// A line of which everything that comes in is written to a file as well, as soon as a frame ends: a recording that ends
-/// within a frame was cut.
+/// A line whose received bytes are also written to a file as soon as a frame ends: a recording that ends within a frame
+/// was cut.
 pub struct Recorder {
     line: Box<dyn Transport>,
     name: String,
     to: Box<dyn Write>,
-    /// Came in since the last end of a frame.
+    /// Bytes received since the last end of a frame.
     begun: Vec<u8>,
 }
 
 impl Recorder {
-    /// Writes what comes over `line` to `to`, which errors call `name`.
+    /// Writes the bytes received over `line` to `to`; `name` is its name in errors.
     pub fn new(line: Box<dyn Transport>, name: &str, to: Box<dyn Write>) -> Self {
         Self { line, name: name.into(), to, begun: Vec::new() }
     }
@@ -83,7 +83,7 @@ impl Transport for Recorder {
     fn receive(&mut self, timeout: Duration) -> Result<Vec<u8>, TransportError> {
         let bytes = self.line.receive(timeout)?;
         self.begun.extend(&bytes);
-        // What is longer than a frame is noise, which is kept as it comes.
+        // Bytes longer than a frame are noise and are written as received.
         let whole = match self.begun.iter().rposition(|byte| *byte == 0) {
             Some(last) => last + 1,
             None if self.begun.len() > MAX_FRAME => self.begun.len(),

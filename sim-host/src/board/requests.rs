@@ -1,4 +1,4 @@
-//! What a board can be asked for.
+//! The requests that a board answers.
 
 use super::client::{Client, ClientError};
 use super::fault::Fault;
@@ -8,21 +8,21 @@ use control::Law;
 use link::Key;
 use link::message::Message;
 
-/// Who the board is.
+/// Identity of the board's firmware.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 pub struct BoardName {
     /// The image's name.
     pub image: String,
     /// The program's version.
     pub version: String,
-    /// The commit it is made from.
+    /// The commit it was built from.
     pub commit: String,
-    /// What stands for the configuration in force: CRC-32 of its bytes, hexadecimal.
+    /// Identity of the active configuration: CRC-32 of its bytes, hexadecimal.
     pub configuration: String,
 }
 
 impl BoardName {
-    /// In a few words.
+    /// A short label.
     pub fn label(&self) -> String {
         let Self { image, version, commit, configuration } = self;
         printable(&format!("{image} {version} commit {commit}, configuration {configuration}"))
@@ -30,10 +30,11 @@ impl BoardName {
 }
 
 impl Client {
-    /// Who is there? To be asked first: it tells whether both speak the same version.
+    /// The board's identity. The first request on a line: the answer shows whether both sides use the same link
+    /// version.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn hello(&mut self) -> Result<BoardName, ClientError> {
         self.ask(&Message::AskHello, "who are you", |answer| match answer {
             Message::Hello(hello) => Some(BoardName {
@@ -49,7 +50,7 @@ impl Client {
     /// All parameters, in the board's order.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn list(&mut self) -> Result<Vec<Parameter>, ClientError> {
         let mut listed = Vec::new();
         loop {
@@ -74,16 +75,16 @@ impl Client {
     /// A parameter's value.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn get(&mut self, key: &str) -> Result<Option<f32>, ClientError> {
         let request = Message::Get { key: Key::whole(key) };
         self.ask(&request, &format!("get {key}"), |answer| value_of(key, answer))
     }
 
-    /// Sets a parameter; its value now.
+    /// Sets a parameter and returns its value as read back.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn set(&mut self, key: &str, value: Option<f32>) -> Result<Option<f32>, ClientError> {
         let request = Message::Set { key: Key::whole(key), value };
         let requested = format!("set {key} to {}", value.map_or("none".into(), |value| value.to_string()));
@@ -93,39 +94,39 @@ impl Client {
     /// The law.
     ///
     /// # Errors
-    /// As of [`ClientError`]; unfit for a law that this program does not know.
+    /// See [`ClientError`]; `Unfit` for a law that this program does not know.
     pub fn law(&mut self) -> Result<Law, ClientError> {
         self.ask(&Message::GetLaw, "get law", law_answered)
     }
 
-    /// Sets the whole law; the law now.
+    /// Sets the whole law and returns the law as read back.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn set_law(&mut self, law: &Law) -> Result<Law, ClientError> {
         self.ask(&Message::SetLaw(&law_bytes(law)), "set law", law_answered)
     }
 
-    /// Keeps the parameters in the board's flash.
+    /// Stores the parameters in the board's flash.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn store(&mut self) -> Result<(), ClientError> {
         self.ask(&Message::Store, "store", done)
     }
 
-    /// All parameters to their defaults, not yet in flash.
+    /// Sets all parameters to their defaults, without storing them in flash.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn reset(&mut self) -> Result<(), ClientError> {
         self.ask(&Message::Reset, "reset", done)
     }
 
-    /// The faults that the board kept, the newest first.
+    /// The stored fault records, newest first.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn faults(&mut self) -> Result<Vec<Fault>, ClientError> {
         let mut kept = Vec::new();
         loop {
@@ -142,10 +143,10 @@ impl Client {
         }
     }
 
-    /// Forgets the faults that the board kept.
+    /// Erases the stored fault records.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn clear_faults(&mut self) -> Result<(), ClientError> {
         self.ask(&Message::ClearFaults, "clear faults", done)
     }

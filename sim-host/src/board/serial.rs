@@ -1,4 +1,4 @@
-//! A serial port.
+//! A serial port as the line to a board.
 
 use super::transport::{Transport, TransportError};
 use serialport::{ClearBuffer, SerialPort};
@@ -16,7 +16,7 @@ pub struct Serial {
 }
 
 impl Serial {
-    /// Opens `name` and forgets what waits there from before. Where the baud rate means nothing, as for USB, any does.
+    /// Opens `name` and discards the bytes already waiting. Where the baud rate has no meaning (USB), any value works.
     ///
     /// # Errors
     /// [`TransportError::Open`].

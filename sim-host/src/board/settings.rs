@@ -1,4 +1,4 @@
-//! What a board has, and what it is wanted to have.
+//! The settings of a board, and the requested ones.
 
 use super::client::{Client, ClientError};
 use super::parameter::{Parameter, law_name, law_points};
@@ -13,13 +13,13 @@ pub enum Setting {
     Value {
         /// Its name.
         key: String,
-        /// Its value; `None` is a limit that is off.
+        /// Its value; `None` is a disabled limit.
         value: Option<f32>,
     },
 }
 
 impl Setting {
-    /// What it sets.
+    /// The key that it sets.
     pub fn key(&self) -> &str {
         match self {
             Setting::Law(_) => "law",
@@ -27,10 +27,10 @@ impl Setting {
         }
     }
 
-    /// Sets it.
+    /// Writes it to the board.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn apply(&self, client: &mut Client) -> Result<(), ClientError> {
         match self {
             Setting::Law(law) => client.set_law(law).map(drop),
@@ -39,7 +39,7 @@ impl Setting {
     }
 }
 
-/// What a board has.
+/// The settings of a board.
 pub struct Settings {
     /// The law.
     pub law: Law,
@@ -48,29 +48,29 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// All that the board has.
+    /// Reads all settings of the board.
     ///
     /// # Errors
-    /// As of [`ClientError`].
+    /// See [`ClientError`].
     pub fn read(client: &mut Client) -> Result<Self, ClientError> {
         Ok(Self { law: client.law()?, parameters: client.list()? })
     }
 
-    /// The parameters but for those that the law has.
+    /// The parameters without those of the law.
     pub fn but_law(&self) -> impl Iterator<Item = &Parameter> {
         self.parameters.iter().filter(|one| one.key != "law" && !one.key.starts_with("law."))
     }
 
-    /// All of it as settings.
+    /// All of them as settings.
     pub fn all(&self) -> Vec<Setting> {
         let value = |one: &Parameter| Setting::Value { key: one.key.clone(), value: one.value };
         std::iter::once(Setting::Law(self.law.clone().into())).chain(self.but_law().map(value)).collect()
     }
 
-    /// The settings that words stand for: a law, and values by key.
+    /// The settings given as text: a law, and values by key.
     ///
     /// # Errors
-    /// Everything that is wrong: keys that the board does not have, values that they may not be.
+    /// All errors: keys that the board does not have, values that are not allowed.
     pub fn understand(&self, law: Option<&Law>, values: &[(String, String)]) -> Result<Vec<Setting>, String> {
         let mut wanted: Vec<_> = law.map(|law| Setting::Law(law.clone().into())).into_iter().collect();
         let mut wrong = Vec::new();
@@ -87,7 +87,7 @@ impl Settings {
         if wrong.is_empty() { Ok(wanted) } else { Err(wrong.join("; ")) }
     }
 
-    /// Whether it has this, to the bit.
+    /// Whether the board has this setting, bit for bit.
     pub fn has(&self, setting: &Setting) -> bool {
         match setting {
             Setting::Law(law) => self.law == **law,
@@ -100,7 +100,7 @@ impl Settings {
         self.parameters.iter().find(|one| one.key == key)
     }
 
-    /// What a key has, in words.
+    /// The value of a key as text.
     pub fn words(&self, key: &str) -> String {
         match law_points(&self.law) {
             Some(points) if key == "law" => format!("table of {} points", points.len()),

@@ -1,24 +1,24 @@
-//! A control step that a board told, as a line of a table. What `ride` has a column for has the same name here.
+//! A control step of the telemetry as a row of a table. Columns that `ride` has too have the same names.
 
 use control::{Sample, Triple, sensors::frame::MISSING};
 use link::telemetry::Telemetry;
 use serde::Serialize;
 
-/// A control step that a board told. Sensors are in their own axes, zeros and signs, as they were read; one without a
-/// sample is empty.
+/// One control step as reported by the board. Sensor values are raw: in the sensor's own axes, zeros and signs; empty
+/// without a sample.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TelemetryRow {
     /// The board's clock \[s\].
     pub t: f64,
     /// Control steps done, this one included.
     pub steps: u32,
-    /// Steps that ended too late.
+    /// Steps that missed their deadline.
     pub late: u32,
-    /// Whether the motor got the command.
+    /// Whether the command reached the motor.
     pub driven: bool,
-    /// Where the controller stood, as the number of [`control::Mode`].
+    /// Mode of the controller, as the number of [`control::Mode`].
     pub mode: u8,
-    /// What stood in the way of the torque, as bits of [`control::Causes`].
+    /// Causes that prevented or reduced torque, as bits of [`control::Causes`].
     pub causes: u64,
     /// Limits that changed the torque, as bits of [`control::ActiveLimits`].
     pub limits: u16,
@@ -26,7 +26,7 @@ pub struct TelemetryRow {
     pub torque: f32,
     /// The gain \[N m s/rad\].
     pub gain: f32,
-    /// Whether the rider's switch asks for assist.
+    /// Whether the rider's switch requests assist.
     pub engage: bool,
     /// The gyro about x \[rad/s\].
     pub measured_roll_rate: Option<f32>,
@@ -46,44 +46,44 @@ pub struct TelemetryRow {
     pub accel_age: Option<u16>,
     /// Steer angle \[rad\].
     pub measured_steer: Option<f32>,
-    /// Control periods since its sample.
+    /// Control periods since the steer angle's sample.
     pub steer_age: Option<u16>,
     /// Steer rate \[rad/s\].
     pub measured_steer_rate: Option<f32>,
-    /// Control periods since its sample.
+    /// Control periods since the steer rate's sample.
     pub steer_rate_age: Option<u16>,
     /// Front wheel's forward speed \[m/s\].
     pub measured_front_speed: Option<f32>,
-    /// Control periods since its sample.
+    /// Control periods since the front wheel's sample.
     pub front_speed_age: Option<u16>,
     /// Rear wheel's forward speed \[m/s\].
     pub measured_rear_speed: Option<f32>,
-    /// Control periods since its sample.
+    /// Control periods since the rear wheel's sample.
     pub rear_speed_age: Option<u16>,
     /// The rider's steer torque \[N m\].
     pub measured_rider_torque: Option<f32>,
-    /// Control periods since its sample.
+    /// Control periods since the rider torque's sample.
     pub rider_torque_age: Option<u16>,
-    /// The torque that the drive says it gives \[N m\].
+    /// The torque that the drive reports \[N m\].
     pub measured_motor_torque: Option<f32>,
-    /// Control periods since its sample.
+    /// Control periods since the drive's report.
     pub motor_torque_age: Option<u16>,
-    /// How much of what it should do the gyro does.
+    /// Regression gain of the gyro's sign check: 1 as expected, -1 reversed.
     pub gyro_slope: Option<f32>,
-    /// How much of what it should do the motor does.
+    /// Regression gain of the motor's sign check: 1 as expected, -1 reversed.
     pub motor_slope: Option<f32>,
-    /// What is to be done next in the polarity check, as the number of [`control::sensors::polarity::PolarityStep`].
+    /// Next action of the polarity check, as the number of [`control::sensors::polarity::PolarityStep`].
     pub polarity: u8,
-    /// The torque that the law would ask for during the check \[N m\].
+    /// The torque that the law would request during the polarity check \[N m\].
     pub shown_torque: f32,
-    /// The lower half of `causes`, whose bits are more than a double holds exactly.
+    /// The lower half of `causes`, which has more bits than a double holds exactly.
     pub causes_low: u32,
     /// The upper half of `causes`.
     pub causes_high: u32,
 }
 
 impl TelemetryRow {
-    /// Of a step at `t` by the board's clock \[s\].
+    /// The row of a control step at `t` on the board's clock \[s\].
     pub fn new(t: f64, received: &Telemetry) -> Self {
         let Telemetry { steps, late, driven, frame, command, slopes, polarity, shown_nm } = received;
         let ([roll_rate, pitch_rate, yaw_rate], gyro_age) = triple(&frame.gyro_rad_s);

@@ -8,26 +8,25 @@ pub trait Transport {
     /// Sends all of `bytes`.
     ///
     /// # Errors
-    /// The line is lost, or only goes the other way.
+    /// The line is lost, or only receives.
     fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError>;
 
-    /// What came in since the last call, waiting up to `timeout` of real time for the first byte; empty when
-    /// nothing came.
+    /// Bytes received since the last call; waits up to `timeout` of real time for the first one; empty on timeout.
     ///
     /// # Errors
-    /// The line is lost, or has come to its end.
+    /// The line is lost, or has ended.
     fn receive(&mut self, timeout: Duration) -> Result<Vec<u8>, TransportError>;
 
-    /// Opens a lost line anew; `None` for one that never comes back.
+    /// Reopens a lost line; `None` for a line that cannot be reopened.
     fn reopen(&mut self) -> Option<Result<(), TransportError>> {
         None
     }
 }
 
-/// Why nothing goes over a line. Each names the device or file.
+/// Why a line failed. Each error names the device or file.
 ///
-/// None tells its cause as a source: a device that hangs up is a broken pipe to the system, and must not be taken for a
-/// reader of standard output that goes away.
+/// None has an error source: a device that hangs up is a broken pipe to the system, and must not be mistaken for a
+/// closed standard output.
 #[derive(Debug, thiserror::Error)]
 pub enum TransportError {
     /// It can't be opened.
@@ -35,15 +34,15 @@ pub enum TransportError {
     Open {
         /// The device or file.
         line: String,
-        /// Why not.
+        /// The system's error.
         why: io::Error,
     },
-    /// It was there, and is no more.
+    /// The line was open and is lost.
     #[error("lost {line}: {why}")]
     Lost {
         /// The device or file.
         line: String,
-        /// Why.
+        /// The system's error.
         why: io::Error,
     },
     /// A recording is at its end.
@@ -51,21 +50,21 @@ pub enum TransportError {
     Ended {
         /// The file.
         line: String,
-        /// Bytes at its end of a frame that is not whole.
+        /// Bytes of an incomplete frame at its end.
         rest: usize,
     },
-    /// A recording is no board: nothing can be asked of it.
+    /// A recording cannot receive requests.
     #[error("{line} is a recording; nothing can be sent to it")]
     OneWay {
         /// The file.
         line: String,
     },
-    /// What came in can't be kept.
+    /// The received bytes cannot be recorded.
     #[error("can't write {file}: {why}")]
     Record {
         /// The file.
         file: String,
-        /// Why not.
+        /// The system's error.
         why: io::Error,
     },
 }

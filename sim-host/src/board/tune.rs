@@ -1,46 +1,46 @@
-//! Many parameters set at once: all of them or none, and honestly told where that could not be kept.
+//! Sets many parameters at once: all or none. If that fails, the error lists what is set.
 
 use super::client::{Client, ClientError};
 use super::settings::{Setting, Settings};
 use link::rejection::RejectReason;
 
-/// Only the check itself sets it.
+/// Only the polarity check itself sets this parameter.
 const CHECKED: &str = "calibration.polarity_checked";
 
-/// What was set, as read back.
+/// What was set, from reading back.
 pub struct Tuned {
-    /// What the board has now.
+    /// The board's settings now.
     pub now: Settings,
     /// The keys that were set.
     pub set: Vec<String>,
-    /// The keys that are not as they were wanted.
+    /// The keys whose value differs from the requested one.
     pub differing: Vec<String>,
 }
 
-/// Why not all was set.
+/// Why not everything was set.
 #[derive(Debug, thiserror::Error)]
 #[error("{error}; {outcome}")]
 pub struct TuneError {
-    /// What went wrong.
+    /// The error.
     error: ClientError,
     /// What is set now and what is not.
     outcome: String,
 }
 
-/// Where setting stopped.
+/// State when setting stopped.
 struct Stop {
     error: ClientError,
-    /// What is not set; of the first it may not be known.
+    /// Settings that are not set; the state of the first may be unknown.
     waiting: Vec<Setting>,
 }
 
-/// Sets what of `wanted` the board does not have yet, and reads all back. What a board refuses for its value makes it
-/// put back all that was set before.
+/// Sets the `wanted` settings that differ on the board, and reads all back. If the board rejects a value, all that was
+/// set before is restored.
 ///
-/// That a polarity check was passed is never set; where it is wanted and not so, it is told as differing.
+/// A passed polarity check is never set; if it is wanted and not passed, its key is listed as differing.
 ///
 /// # Errors
-/// A refusal, or a line that failed, and what is set now.
+/// A rejected value or a failed line, with what is set now.
 pub fn tune(client: &mut Client, before: &Settings, wanted: &[Setting]) -> Result<Tuned, TuneError> {
     let mut set = Vec::new();
     converge(client, missing(before, wanted), &mut set).map_err(|stop| match stop.error.leaves_doubt() {
@@ -53,8 +53,8 @@ pub fn tune(client: &mut Client, before: &Settings, wanted: &[Setting]) -> Resul
     Ok(Tuned { now, set: set.iter().map(|one| one.key().to_owned()).collect(), differing })
 }
 
-/// What of `wanted` is otherwise. The calibration comes last: to change it takes back a passed polarity check, which
-/// can't be put back.
+/// The `wanted` settings that differ. The calibration comes last: a change of it clears a passed polarity check, which
+/// cannot be restored.
 fn missing(now: &Settings, wanted: &[Setting]) -> Vec<Setting> {
     let by_check = Setting::Value { key: CHECKED.into(), value: Some(1.0) };
     let mut missing: Vec<_> =
@@ -63,7 +63,7 @@ fn missing(now: &Settings, wanted: &[Setting]) -> Vec<Setting> {
     missing
 }
 
-/// Sets all that waits, in as many rounds as get it further: a value may have to wait for another that it must fit.
+/// Sets all waiting settings, in rounds as long as one succeeds: a value may depend on another that is set later.
 fn converge(client: &mut Client, mut waiting: Vec<Setting>, set: &mut Vec<Setting>) -> Result<(), Stop> {
     while !waiting.is_empty() {
         let (before, mut refusal) = (waiting.len(), None);
@@ -93,7 +93,7 @@ fn converge(client: &mut Client, mut waiting: Vec<Setting>, set: &mut Vec<Settin
     Ok(())
 }
 
-/// After a line that failed: what is set and what is not, by reading back where that can be done.
+/// After a failed line: reads back, if possible, what is set and what is not.
 fn interrupted(client: &mut Client, Stop { error, waiting }: Stop, set: &[Setting]) -> TuneError {
     let outcome = match Settings::read(client) {
         Ok(now) => {
@@ -110,7 +110,7 @@ fn interrupted(client: &mut Client, Stop { error, waiting }: Stop, set: &[Settin
     TuneError { error, outcome }
 }
 
-/// After a refusal: everything as it was.
+/// After a rejected value: restores everything.
 fn put_back(client: &mut Client, before: &Settings, error: ClientError, set: &[Setting]) -> TuneError {
     if set.is_empty() {
         return TuneError { error, outcome: "nothing is set".into() };

@@ -1,4 +1,4 @@
-//! The board's own image on the virtual board, a program of its own whose standard input and output are the serial line.
+//! The firmware image on the virtual board: a separate program whose standard input and output are the serial line.
 
 use super::transport::{Transport, TransportError};
 use std::io::{self, Read, Write};
@@ -8,40 +8,40 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread::spawn;
 use std::time::Duration;
 
-/// Longest real time from the start to the first byte of the board, which starts within 0.3 s of its own: some seconds, more
-/// on a busy machine. A program that ends, as one whose emulator hangs does, is noticed at once.
+/// Longest real time from the start to the first byte of the board, which starts within 0.3 s of its own time: some
+/// seconds, more on a busy machine. A program that ends (or whose emulator hangs, which ends it) is detected at once.
 const START: Duration = Duration::from_secs(600);
 
-/// Where `cargo xtask virtual-board` leaves the program.
+/// Default path of the program that `cargo xtask virtual-board` builds.
 pub fn default_program() -> PathBuf {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
     manifest.parent().unwrap_or(manifest).join("target/virtual-board/virtual-board")
 }
 
-/// The serial line of a virtual board, which ends with this value.
+/// The serial line of a virtual board; dropping the value ends the program.
 pub struct VirtualBoard {
     name: String,
     child: Child,
     to: Option<ChildStdin>,
     from: Receiver<Vec<u8>>,
-    /// The first bytes, which came while it started.
+    /// The first bytes, received during the start.
     first: Vec<u8>,
-    /// What it writes to standard error: its log, at the end why it ended.
+    /// The program's standard error: its log, at the end the reason why it ended.
     words: Receiver<Vec<u8>>,
 }
 
 impl VirtualBoard {
-    /// Starts the program with the image that was built, or another, and waits for the first byte of the board.
+    /// Starts the program with the default or the given image, and waits for the first byte of the board.
     ///
     /// # Errors
-    /// There is no such program, or it ends before the board has started; then with its own reason.
+    /// The program does not exist, or ends before the board has started; then with the reason it printed.
     pub fn start(program: &Path, image: Option<&Path>) -> Result<Self, TransportError> {
         let name = format!("{} (cargo xtask virtual-board --build makes it)", program.display());
         let failed = |why: io::Error| TransportError::Open { line: name.clone(), why };
         let mut command = Command::new(program);
         command.arg("--stdio").args(image.iter().flat_map(|image| [Path::new("--image"), image]));
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        // Ctrl-C is for this program.
+        // Ctrl-C must reach this program only.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn().map_err(failed)?;
@@ -60,13 +60,13 @@ impl VirtualBoard {
         Ok(board)
     }
 
-    /// The program is gone, or does not listen: with its own reason.
+    /// The program has ended or does not read: the error with the reason that it printed.
     fn lost(&self, why: io::ErrorKind) -> TransportError {
         TransportError::Lost { line: self.name.clone(), why: io::Error::new(why, self.last_words()) }
     }
 
-    /// The last line that it wrote to standard error; it is waited for a moment, for the two streams of a program that
-    /// ends close in any order.
+    /// The last line that the program wrote to standard error. Waits a moment for it, since the two streams of a
+    /// program that ends close in any order.
     fn last_words(&self) -> String {
         let mut said = Vec::new();
         while let Ok(bytes) = self.words.recv_timeout(Duration::from_millis(200)) {
@@ -99,13 +99,13 @@ impl Transport for VirtualBoard {
 
 impl Drop for VirtualBoard {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// What the program writes, taken by a thread so that it never waits; the channel ends with the program.
+/// The program's output, read by a thread so that the program never blocks; the channel closes with the program.
 fn listen(from: Option<impl Read + Send + 'static>) -> Receiver<Vec<u8>> {
     let (send, bytes) = channel();
     spawn(move || {

@@ -1,4 +1,4 @@
-//! Ends an emulator that does not answer.
+//! Ends an emulator that does not answer in time.
 
 use std::process::Child;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -7,13 +7,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::spawn;
 use std::time::Duration;
 
-/// Looks now and then, in a thread of its own, whether an exchange takes too long, so that the exchange itself
-/// costs no further call of the system.
+/// Checks periodically, in its own thread, whether an exchange takes too long, so that the exchange itself needs no
+/// further system call.
 #[derive(Debug)]
 pub(super) struct Watchdog {
     pub(super) limit: Duration,
     state: Arc<WatchdogState>,
-    /// Closed, it ends the thread.
+    /// Dropping it ends the thread.
     _running: Sender<()>,
 }
 
@@ -21,12 +21,12 @@ pub(super) struct Watchdog {
 struct WatchdogState {
     /// The number of the exchange under way; 0 when there is none.
     under_way: AtomicU64,
-    /// The emulator was ended.
+    /// Whether the emulator was ended by the watchdog.
     ended: AtomicBool,
 }
 
 impl Watchdog {
-    /// Ends the emulator when an exchange lasts longer than `limit`, at the latest after twice that.
+    /// Ends the emulator when an exchange takes longer than `limit`, at the latest after twice that time.
     pub(super) fn new(child: Arc<Mutex<Child>>, limit: Duration) -> Self {
         let (running, ended) = channel();
         let state = Arc::new(WatchdogState::default());
@@ -37,7 +37,7 @@ impl Watchdog {
                 let now = looking.under_way.load(Ordering::Relaxed);
                 if now != 0 && now == before {
                     looking.ended.store(true, Ordering::Relaxed);
-                    // It may have ended by itself.
+                    // It may have ended already.
                     let _ = locked(&child).kill();
                     return;
                 }
@@ -47,23 +47,23 @@ impl Watchdog {
         Self { limit, state, _running: running }
     }
 
-    /// An exchange begins; `number` is above 0 and another one each time.
+    /// Marks the start of an exchange; `number` is above 0 and differs each time.
     pub(super) fn begin(&self, number: u64) {
         self.state.under_way.store(number, Ordering::Relaxed);
     }
 
-    /// It is done.
+    /// Marks the end of the exchange.
     pub(super) fn end(&self) {
         self.state.under_way.store(0, Ordering::Relaxed);
     }
 
-    /// Whether the emulator was ended.
+    /// Whether the watchdog ended the emulator.
     pub(super) fn ended(&self) -> bool {
         self.state.ended.load(Ordering::Relaxed)
     }
 }
 
-/// What it holds, whatever happened to a thread that held it.
+/// Locks the mutex, even if a thread panicked while holding it.
 pub(super) fn locked<T>(what: &Mutex<T>) -> MutexGuard<'_, T> {
     what.lock().unwrap_or_else(PoisonError::into_inner)
 }

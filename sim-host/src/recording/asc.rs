@@ -1,17 +1,17 @@
-//! Logs of CAN as text by Vector's tools (ASC), and by those that write the same, such as python-can and can-utils.
+//! Reads CAN logs as text (ASC) of Vector's tools and of others that write it, such as python-can and can-utils.
 //!
-//! `base` says whether identifiers and bytes are hexadecimal or decimal, `timestamps` whether the seconds count from the
-//! start of the measurement (`absolute`) or from the event before (`relative`); then they are added up over all
-//! events, those of other kinds included. Events that are no frames of CAN are passed over.
+//! `base` defines whether identifiers and bytes are hexadecimal or decimal; `timestamps` whether seconds count from the start of the measurement (`absolute`)
+//! or from the previous event (`relative`). Relative times are summed over all events, including those of other kinds. Events other than CAN frames are
+//! skipped.
 
 use super::Remark;
 use super::frames::{Frames, Id, MOST_BYTES};
 use super::remarks::Remarks;
 
-/// Lines at the beginning of a file in which its header is looked for.
+/// Lines at the beginning of a file among which its header is searched.
 const LOOKED_AT: usize = 50;
 
-/// What an event with a time stamp is.
+/// Content of an event.
 enum Event {
     Data { id: Id, data: ([u8; MOST_BYTES], usize) },
     Remote,
@@ -19,7 +19,7 @@ enum Event {
     Other,
 }
 
-/// Whether a text is such a log: one of its first lines is one of its header, or a frame.
+/// Whether a text is an ASC log: one of its first lines is a header line or a frame.
 pub fn is_one(text: &str) -> bool {
     let shaped = |line: &str| base_of(line).is_some() || is_date(line) || is_frame(line);
     text.lines().map(str::trim).filter(|line| !line.is_empty()).take(LOOKED_AT).any(shaped)
@@ -81,7 +81,7 @@ pub fn parse(text: &str) -> Result<Frames, Remark> {
     }
 }
 
-/// Radix of a header's `base` line, and whether its time stamps count from event to event.
+/// Radix of a header's `base` line, and whether its time stamps are relative.
 fn base_of(line: &str) -> Option<(u32, bool)> {
     let words: Vec<String> = line.split_whitespace().take(4).map(str::to_ascii_lowercase).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
@@ -93,7 +93,7 @@ fn base_of(line: &str) -> Option<(u32, bool)> {
     Some((radix, matches!(words.as_slice(), [_, _, "timestamps", "relative"])))
 }
 
-/// Whether a line is the date at the beginning; a table's header may begin with the same word.
+/// Whether a line is the date at the beginning; a table's header can begin with the same word.
 fn is_date(line: &str) -> bool {
     starts(line, "date ") && line.contains(':') && !line.contains([',', ';', '\t'])
 }
@@ -102,7 +102,7 @@ fn starts(line: &str, with: &str) -> bool {
     line.get(..with.len()).is_some_and(|start| start.eq_ignore_ascii_case(with))
 }
 
-/// Whether a line is one of those that have no time stamp.
+/// Whether a line is one without a time stamp.
 fn is_header(line: &str) -> bool {
     const WORDS: [&str; 5] = [
         "begin triggerblock",
@@ -114,7 +114,7 @@ fn is_header(line: &str) -> bool {
     is_date(line) || WORDS.iter().any(|word| starts(line, word))
 }
 
-/// Whether a line is a data frame by itself, without any header.
+/// Whether a line is a data frame, without any header.
 fn is_frame(line: &str) -> bool {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words.as_slice() {
@@ -124,7 +124,7 @@ fn is_frame(line: &str) -> bool {
     }
 }
 
-/// Seconds of a time stamp: digits, a point, digits.
+/// A time stamp in seconds: digits, a point, digits.
 fn stamp(word: &str) -> Option<f64> {
     let (whole, part) = word.split_once('.')?;
     let digits = is_number(whole.strip_prefix('-').unwrap_or(whole)) && is_number(part);
@@ -135,13 +135,13 @@ fn is_number(word: &str) -> bool {
     !word.is_empty() && word.bytes().all(|digit| digit.is_ascii_digit())
 }
 
-/// A number of the file's base.
+/// A number in the file's base.
 fn number(word: &str, radix: u32) -> Option<u32> {
     let digits = word.chars().all(|digit| digit.is_digit(radix));
     digits.then(|| u32::from_str_radix(word, radix).ok()).flatten()
 }
 
-/// An identifier; `x` behind it says that it has 29 bits.
+/// An identifier; a trailing `x` marks 29 bits.
 fn id_of(word: &str, radix: u32) -> Result<Id, &'static str> {
     let (digits, extended) = match word.strip_suffix(['x', 'X']) {
         Some(digits) => (digits, true),
@@ -168,7 +168,7 @@ fn classic(words: &[&str], radix: u32) -> Result<Event, &'static str> {
     }
 }
 
-/// An event of a bus with CAN FD, from its direction on: `Rx 123 [name] 1 0 d 32 DE ...`.
+/// An event of a CAN FD bus, from its direction on: `Rx 123 [name] 1 0 d 32 DE ...`.
 fn flexible(words: &[&str], radix: u32) -> Result<Event, &'static str> {
     let ([_, id, rest @ ..], true) = (words, matches!(words.first(), Some(&("Rx" | "Tx")))) else {
         return Ok(Event::Other);
@@ -189,7 +189,7 @@ fn flexible(words: &[&str], radix: u32) -> Result<Event, &'static str> {
     Ok(Event::Data { id, data: bytes_of(rest, length, radix)? })
 }
 
-/// The bytes of a frame; what follows them belongs to the event.
+/// The bytes of a frame; the words after them belong to the event.
 fn bytes_of(words: &[&str], length: usize, radix: u32) -> Result<([u8; MOST_BYTES], usize), &'static str> {
     let mut bytes = [0; MOST_BYTES];
     let words = words.get(..length).ok_or("has fewer bytes than it says")?;

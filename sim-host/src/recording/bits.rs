@@ -1,27 +1,27 @@
-//! Bits of a frame as a number.
+//! Extracts a number from bits of a CAN frame.
 
-/// How the bits of a signal follow each other, numbered as in a DBC: bit 0 of byte 0 is 0, of byte 1 is 8.
+/// Bit order of a signal, numbered as in a DBC: bit 0 of byte 0 is 0, of byte 1 is 8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// Intel: the start is the lowest bit, and the next higher one has the next number.
+    /// Intel: the start is the lowest bit; the next higher bit has the next number.
     Little,
     /// Motorola: the start is the highest bit; the next lower one is below it in the byte, then at the top of the next byte.
     Big,
 }
 
-/// The place of a signal.
+/// Position of a signal in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The bit that it starts with.
+    /// Its start bit.
     pub start: u16,
-    /// How many bits it has, 1 to 64.
+    /// Number of bits, 1 to 64.
     pub bits: u8,
-    /// How they follow.
+    /// Its bit order.
     pub order: Order,
 }
 
 impl Place {
-    /// Bytes that a frame must have for it.
+    /// Bytes that a frame must have to contain it.
     pub fn bytes(&self) -> usize {
         let first = usize::from(self.start);
         let bits = usize::from(self.bits);
@@ -32,7 +32,7 @@ impl Place {
         }
     }
 
-    /// The number in its bits; `None` if the frame ends before them.
+    /// The number in its bits; `None` if the frame is too short.
     pub fn of(&self, data: &[u8]) -> Option<u64> {
         if data.len() < self.bytes() {
             return None;
@@ -52,7 +52,7 @@ impl Place {
     }
 }
 
-/// The number that `bits` bits are in two's complement.
+/// `number`, whose low `bits` bits are in two's complement, as a signed integer.
 pub fn signed(number: u64, bits: u8) -> i64 {
     let unused = 64 - u32::from(bits.clamp(1, 64));
     (number << unused) as i64 >> unused

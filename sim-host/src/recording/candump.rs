@@ -1,36 +1,35 @@
-//! Logs of `candump` of Linux' can-utils: what `-l` and `-L` write, and its lines for the screen with time stamps.
+//! Reads logs of `candump` (Linux can-utils): the format of `-l` and `-L`, and screen output with time stamps.
 //!
-//! The first (`(1436509052.249713) can0 123#DEADBEEF`) is what can-utils' other programs read. The second
-//! (`(1436509052.249713)  can0  123   [4]  DE AD BE EF`) is made for people; of it are read the time stamps of `-t a`
-//! and `-t A` (a date, taken as universal time) and those of `-t z`. Stamps that count from frame to frame (`-t d`) look
-//! like those of `-t z` but fall again: a file of small stamps that fall anywhere is refused.
+//! The log format (`(1436509052.249713) can0 123#DEADBEEF`) is the one that other can-utils read. Screen output (`(1436509052.249713)  can0  123   [4]  DE AD
+//! BE EF`) is supported with the time stamps of `-t a`, `-t A` (a date, read as UTC) and `-t z`. Time stamps from frame to frame (`-t d`) look like those of
+//! `-t z` but decrease: a file of small time stamps that decrease anywhere is rejected.
 
 use super::Remark;
 use super::frames::{Frames, Id, MOST_BYTES};
 use super::remarks::Remarks;
 
-/// Lines at the beginning of a file in which the first that is whole is looked for.
+/// Lines at the beginning of a file among which the first whole one is searched.
 const LOOKED_AT: usize = 50;
-/// Time stamps from here on are seconds from 1970 \[s\]: no record of a ride is three years long.
+/// Time stamps from here on are seconds since 1970 \[s\]: no ride is three years long.
 const FROM_1970_S: f64 = 1e8;
 /// Bit of an identifier that marks an error frame in can-utils.
 const ERROR_FLAG: u32 = 0x2000_0000;
 
-/// What a line says.
+/// Content of a line.
 enum Line<'a> {
     Data { stamp: Stamp, bus: &'a str, id: Id, data: ([u8; MOST_BYTES], usize) },
     Remote,
     Error,
 }
 
-/// A time stamp \[s\], and whether it is one of the lines for the screen.
+/// A time stamp \[s\], and whether the line is screen output.
 #[derive(Clone, Copy)]
 struct Stamp {
     time_s: f64,
     screen: bool,
 }
 
-/// Whether a text is a log of `candump`: one of its first lines is one of those.
+/// Whether a text is a candump log, by its first lines.
 pub fn is_one(text: &str) -> bool {
     let shaped = |line: &str| line_of(line).is_ok() || screen_without_stamp(line);
     text.lines().map(str::trim).filter(|line| !line.is_empty()).take(LOOKED_AT).any(shaped)
@@ -39,12 +38,12 @@ pub fn is_one(text: &str) -> bool {
 /// Reads a log.
 ///
 /// # Errors
-/// No line is a frame; the lines have no time stamps, or some of which it can't be said what they count from.
+/// No line is a frame; the lines have no time stamps, or time stamps of an unknown origin.
 pub fn parse(text: &str) -> Result<Frames, Remark> {
     let (mut frames, mut remarks) = (Frames::default(), Remarks::default());
     let ends_whole = text.ends_with('\n');
     let last = text.lines().count() as u64;
-    // The time stamp before, and the first line whose own fell below it, both of lines for the screen.
+    // The previous time stamp, and the first line with a smaller one, of screen output.
     let (mut before_s, mut fell, mut small) = (f64::NEG_INFINITY, None, false);
     for (line, number) in text.lines().map(str::trim).zip(1_u64..).filter(|(line, _)| !line.is_empty()) {
         match line_of(line) {
@@ -87,7 +86,7 @@ fn at(line: u64, what: &str) -> Remark {
     Remark { line: Some(line), column: None, what: what.to_owned() }
 }
 
-/// Reads a line, or says what is wrong with it.
+/// Parses a line.
 fn line_of(line: &str) -> Result<Line<'_>, &'static str> {
     const SHAPE: &str = "is no line of candump";
     let (stamp, rest) = line.strip_prefix('(').and_then(|line| line.split_once(')')).ok_or(SHAPE)?;
@@ -96,7 +95,7 @@ fn line_of(line: &str) -> Result<Line<'_>, &'static str> {
     let (bus, second) = (words.next().ok_or(SHAPE)?, words.next().ok_or(SHAPE)?);
     match second.split_once('#') {
         Some((id, data)) => {
-            // Since 2020 a word follows that tells received frames from sent ones.
+            // Since 2020 a word follows that distinguishes received from sent frames.
             match words.next() {
                 None | Some("R" | "T") => compact(Stamp { time_s, screen: false }, bus, id, data),
                 Some(_) => Err(SHAPE),
@@ -106,7 +105,7 @@ fn line_of(line: &str) -> Result<Line<'_>, &'static str> {
     }
 }
 
-/// Seconds of a time stamp, a number or a date.
+/// A time stamp in seconds, from a number or a date.
 fn seconds(stamp: &str) -> Option<f64> {
     let number = || stamp.parse::<f64>().ok().filter(|s| s.is_finite() && !stamp.contains(['e', 'E']));
     let date = || {
@@ -117,7 +116,7 @@ fn seconds(stamp: &str) -> Option<f64> {
     number().or_else(date)
 }
 
-/// The number of an identifier and its flags; 3 digits are one of 11 bits, 8 one of 29 bits.
+/// The identifier's number and flags; 3 digits mean 11 bits, 8 digits 29 bits.
 fn id_of(digits: &str) -> Result<(u32, bool), &'static str> {
     let number = hexadecimal(digits).ok_or("its identifier is no hexadecimal number")?;
     match digits.len() {
@@ -132,7 +131,7 @@ fn hexadecimal(digits: &str) -> Option<u32> {
     all.then(|| u32::from_str_radix(digits, 16).ok()).flatten()
 }
 
-/// A frame of what `-L` writes: data is `DEADBEEF`, `#` and a digit of flags before it for CAN FD, `R` or `R8`.
+/// A frame in the format of `-L`: data is `DEADBEEF`, `#` and a digit of flags before it for CAN FD, `R` or `R8`.
 fn compact<'a>(stamp: Stamp, bus: &'a str, id: &str, data: &str) -> Result<Line<'a>, &'static str> {
     const BITS: &str = "its identifier has too many bits";
     let (number, extended) = id_of(id)?;
@@ -149,7 +148,7 @@ fn compact<'a>(stamp: Stamp, bus: &'a str, id: &str, data: &str) -> Result<Line<
             Some((flags, digits)) if hexadecimal(flags).is_some() => (MOST_BYTES, digits),
             _ => return Err("the flags of CAN FD are missing"),
         },
-        // `_9` to `_F` after eight bytes: the code for the length as it was sent.
+        // `_9` to `_F` after eight bytes: the length code as sent.
         None => match data.split_once('_') {
             Some((digits, code)) if digits.len() == 16 && hexadecimal(code).is_some() => (8, digits),
             _ => (8, data),
@@ -169,7 +168,7 @@ fn compact<'a>(stamp: Stamp, bus: &'a str, id: &str, data: &str) -> Result<Line<
     Ok(Line::Data { stamp, bus, id, data: (bytes, length) })
 }
 
-/// A frame of the lines for the screen, from its identifier on; with `-x` words stand between bus and identifier.
+/// A frame of screen output, from its identifier on; with `-x`, words come between bus and identifier.
 fn screen<'a>(
     stamp: Stamp,
     bus: &'a str,
@@ -209,7 +208,7 @@ fn screen<'a>(
     Ok(Line::Data { stamp, bus, id, data: (bytes, length) })
 }
 
-/// Whether a line is one for the screen that has no time stamp.
+/// Whether a line is screen output without a time stamp.
 fn screen_without_stamp(line: &str) -> bool {
     let mut words = line.split_whitespace();
     let bus = words.next().is_some_and(|bus| bus.starts_with(|c: char| c.is_ascii_alphabetic()));

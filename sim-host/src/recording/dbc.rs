@@ -1,13 +1,11 @@
 //! Databases of CAN messages (DBC): which signals are in which bits of which frame.
 //!
-//! `can-dbc` reads the text; what it holds becomes plain numbers here. Files that are no UTF-8 are taken as Windows-1252,
-//! in which most tools write them.
+//! `can-dbc` parses the text; this module converts the result to plain numbers. Files that are not UTF-8 are read as Windows-1252, the encoding of most tools.
 //!
-//! **A raw value that means that there is none becomes NaN**: one that the database's value table calls `SNA`, `NA`,
-//! `not known`, `unknown`, `not available`, `not valid`, `invalid` or `no data`, with `signal`, `value` or `data` before
-//! or behind it or not, whatever the case and whatever is between the words. As a number it would be a plausible value at
-//! the end of the signal's range. Signals of one bit keep both values: a flag that says `invalid` is a statement. All
-//! other words of value tables stay unused, the raw value stays a number.
+//! **A raw value that means "no value" becomes NaN**: one that the database's value table names `SNA`, `NA`, `not known`, `unknown`, `not available`, `not
+//! valid`, `invalid` or `no data`, with or without `signal`, `value` or `data` before or after it, in any case and with any separator between the words. As a
+//! number it would be a plausible value at the end of the signal's range. Signals of one bit keep both values: a flag named `invalid` is information. All other
+//! names in value tables are ignored; the raw value remains a number.
 
 use super::Remark;
 use super::bits::{Order, Place, signed};
@@ -35,7 +33,7 @@ pub struct Message {
     pub id: Id,
     /// Its signals.
     pub signals: Vec<Signal>,
-    /// What of it can't be used, and why.
+    /// Parts of the message that cannot be used, with the reason.
     pub unused: Vec<String>,
 }
 
@@ -44,28 +42,28 @@ pub struct Message {
 pub struct Signal {
     /// Its name.
     pub name: String,
-    /// Its unit, as the database has it.
+    /// Its unit, as in the database.
     pub unit: String,
     /// Its bits.
     pub place: Place,
-    /// What the bits are.
+    /// Number format of the bits.
     pub kind: Kind,
-    /// What the number of the bits is multiplied with.
+    /// Factor applied to the number.
     pub factor: f64,
-    /// What is added then.
+    /// Offset added after the factor.
     pub offset: f64,
-    /// Bits that say that there is no value.
+    /// Raw values that mean "no value".
     pub gaps: Vec<u64>,
-    /// When it is in a frame; always, if there is none.
+    /// When it is in a frame; `None` means always.
     pub page: Option<Page>,
 }
 
-/// What the bits of a signal are.
+/// Number format of a signal's bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A number from 0.
+    /// Unsigned integer.
     Unsigned,
-    /// A number in two's complement.
+    /// Integer in two's complement.
     Signed,
     /// An IEEE 754 number of 32 bits.
     F32,
@@ -76,14 +74,14 @@ pub enum Kind {
 /// The condition of a multiplexed signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Page {
-    /// The signal that chooses, by its place in the message.
+    /// The multiplexor signal, by its index in the message.
     pub switch: usize,
-    /// The signal is there if the one that chooses is, and its bits are in one of these, both ends included.
+    /// The signal is present if the multiplexor is and its raw value is in one of these ranges, both ends included.
     pub ranges: Vec<(u64, u64)>,
 }
 
 impl Signal {
-    /// The value of its bits in its unit; NaN where they say that there is none.
+    /// The value of raw bits in the signal's unit; NaN if they mean "no value".
     pub fn value(&self, raw: u64) -> f64 {
         if self.gaps.contains(&raw) {
             return f64::NAN;
@@ -99,7 +97,7 @@ impl Signal {
 }
 
 impl Message {
-    /// The value of each signal in a frame; NaN for what the frame does not have.
+    /// The value of each signal in a frame; NaN for signals that the frame does not contain.
     pub fn values(&self, data: &[u8]) -> impl Iterator<Item = f64> {
         self.signals.iter().map(move |signal| {
             let raw = signal.place.of(data).filter(|_| self.is_there(signal, data));
@@ -107,12 +105,12 @@ impl Message {
         })
     }
 
-    /// Bytes that a frame with all signals has.
+    /// Bytes of a frame with all signals.
     pub fn bytes(&self) -> usize {
         self.signals.iter().map(|signal| signal.place.bytes()).max().unwrap_or(0)
     }
 
-    /// Whether a signal is in this frame, by the signals that choose. They form no circle: [`Database::parse`] sees to it.
+    /// Whether a signal is in this frame, by its multiplexors. Their chain is not circular: [`Database::parse`] checks it.
     fn is_there(&self, signal: &Signal, data: &[u8]) -> bool {
         let Some(page) = &signal.page else { return true };
         let switch = &self.signals[page.switch];
@@ -128,10 +126,10 @@ impl Database {
         Some((place, self.messages.get(place)?))
     }
 
-    /// Reads the text of a DBC. What of a message can't be used is noted in it.
+    /// Parses a DBC file. Unusable parts of a message are recorded in the message.
     ///
     /// # Errors
-    /// It is no DBC, with the line; it has no message; an identifier has too many bits.
+    /// The text is no DBC (with the line), has no message, or an identifier has too many bits.
     pub fn parse(bytes: &[u8]) -> Result<Self, Remark> {
         let text = match std::str::from_utf8(bytes) {
             Ok(text) => text.trim_start_matches('\u{feff}').to_owned(),
@@ -140,7 +138,7 @@ impl Database {
         wide_identifier(&text)?;
         let dbc = Dbc::try_from(text.as_str()).map_err(|why| not_read(&why.to_string()))?;
         let mut database = Self::default();
-        // Where tools keep signals of no message.
+        // Tools store signals without a message here.
         for message in dbc.messages.iter().filter(|message| message.name != "VECTOR__INDEPENDENT_SIG_MSG") {
             let message = of(message, &dbc);
             if let Some(place) = database.places.get(&message.id) {
@@ -158,7 +156,7 @@ impl Database {
     }
 }
 
-/// Refuses identifiers that are too large for 11 bits and lack the mark of 29: `can-dbc` 10.0.0 takes their lower 16 bits.
+/// Rejects identifiers above 11 bits without the mark of 29 bits: `can-dbc` 10.0.0 uses their lower 16 bits.
 fn wide_identifier(text: &str) -> Result<(), Remark> {
     const EXTENDED: u64 = 1 << 31;
     for (line, number) in text.lines().zip(1..) {
@@ -172,8 +170,7 @@ fn wide_identifier(text: &str) -> Result<(), Remark> {
     Ok(())
 }
 
-/// The reason of a text that is no DBC, in a line. The parser's own is a picture of the place:
-/// ` --> 3:5`, the line, and ` = expected ...`.
+/// The parser's reason in one line. Its own text is a picture of the position: ` --> 3:5`, the line, and ` = expected ...`.
 fn not_read(why: &str) -> Remark {
     let place = why.trim_start().strip_prefix("--> ").and_then(|rest| rest.split(':').next());
     let line = place.and_then(|line| line.parse().ok());
@@ -189,7 +186,7 @@ fn id_of(id: MessageId) -> Id {
     }
 }
 
-/// A message, from the parts of a DBC that speak of it.
+/// A message, from all parts of a DBC that refer to it.
 fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
     let mut unused = Vec::new();
     let mut signals = Vec::new();
@@ -212,7 +209,7 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
                 continue;
             }
         };
-        // `SG_MUL_VAL_` says more than the mark behind the signal's name, where there is one.
+        // `SG_MUL_VAL_` has precedence over the mark after the signal's name.
         let extended = dbc
             .extended_multiplex
             .iter()
@@ -239,7 +236,7 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
             Ok(_) => "it chooses whether it is there itself",
             Err(why) => why,
         };
-        // It stays, so that the places of the others hold, and is NaN.
+        // The signal stays, as NaN, so that the indices of the others remain valid.
         unused.push(format!("signal {}: {why}", signal.name));
         kept.push(Signal { factor: f64::NAN, ..signal });
     }
@@ -247,7 +244,7 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
         let long = dbc.signal_attribute(message.id, &signal.name, "SystemSignalLongSymbol");
         signal.name = long_name(long, &signal.name);
     }
-    // Databases that were converted may have cut names so that two are the same.
+    // Converted databases can have truncated names, two of which are then equal.
     for n in 1..kept.len() {
         if kept[..n].iter().any(|before| before.name == kept[n].name) {
             kept[n].name = format!("{} (bit {})", kept[n].name, kept[n].place.start);
@@ -257,7 +254,7 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
     Message { name, id: id_of(message.id), signals: kept, unused }
 }
 
-/// The whole name of what has more than 32 letters: Vector's tools keep it in an attribute, and cut the name.
+/// The full name of an object with more than 32 letters: Vector's tools truncate the name and store the full one in an attribute.
 fn long_name(attribute: Option<&AttributeValue>, name: &str) -> String {
     match attribute {
         Some(AttributeValue::String(long)) if !long.is_empty() => long.clone(),
@@ -265,7 +262,7 @@ fn long_name(attribute: Option<&AttributeValue>, name: &str) -> String {
     }
 }
 
-/// Whether the way from a signal to the one that chooses, and on, never ends.
+/// Whether the chain of multiplexors from a signal is circular.
 fn circular(from: usize, chain: &[Option<usize>]) -> bool {
     let mut at = from;
     for _ in 0..=chain.len() {
@@ -277,7 +274,7 @@ fn circular(from: usize, chain: &[Option<usize>]) -> bool {
     true
 }
 
-/// A signal without the condition when it is there.
+/// A signal without its multiplexing condition.
 fn signal_of(signal: &can_dbc::Signal, message: MessageId, dbc: &Dbc) -> Result<Signal, String> {
     let float = dbc
         .signal_extended_value_type_list
@@ -317,7 +314,7 @@ fn signal_of(signal: &can_dbc::Signal, message: MessageId, dbc: &Dbc) -> Result<
     })
 }
 
-/// Bits of a signal that the value table calls no value.
+/// Raw values of a signal whose name in the value table means "no value".
 fn gaps(signal: &can_dbc::Signal, message: MessageId, dbc: &Dbc, kind: Kind, bits: u8) -> Vec<u64> {
     if bits == 1 || !matches!(kind, Kind::Unsigned | Kind::Signed) {
         return Vec::new();
@@ -329,7 +326,7 @@ fn gaps(signal: &can_dbc::Signal, message: MessageId, dbc: &Dbc, kind: Kind, bit
         }
         ValueDescription::EnvironmentVariable { .. } => None,
     });
-    // Tables of signed signals are written with the number or with its bits: -1 or 65535.
+    // Tables of signed signals contain the number or its bits: -1 or 65535.
     let fits = |id: i64| id >= 0 && id as u64 <= mask || signed(id as u64 & mask, bits) == id;
     own.flatten()
         .filter(|entry| is_gap(&entry.description) && fits(entry.id))
@@ -337,7 +334,7 @@ fn gaps(signal: &can_dbc::Signal, message: MessageId, dbc: &Dbc, kind: Kind, bit
         .collect()
 }
 
-/// Whether the words of a value table say that there is no value.
+/// Whether a name in a value table means "no value".
 pub fn is_gap(words: &str) -> bool {
     const NONE: [&str; 10] = [
         "sna",

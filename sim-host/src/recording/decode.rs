@@ -1,25 +1,25 @@
-//! Frames of CAN buses as columns: one group for each message, one column for each signal.
+//! Decodes CAN frames to columns: one group per message, one column per signal.
 
 use super::dbc::Database;
 use super::frames::{Frames, Id};
 use super::{Column, Group, Remark};
 use std::collections::{BTreeMap, HashMap};
 
-/// Most identifiers without a message that are listed one by one.
+/// Most unknown identifiers that are listed.
 const LISTED: usize = 20;
 
-/// What frames say by databases.
+/// Result of decoding frames with databases.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decoded {
-    /// A group for each message that came, in the order of the first frame of each.
+    /// A group for each message, in the order of its first frame.
     pub groups: Vec<Group>,
-    /// What could not be used.
+    /// Data that could not be used.
     pub remarks: Vec<Remark>,
-    /// How many frames each database decoded.
+    /// Number of frames that each database decoded.
     pub used: Vec<u64>,
 }
 
-/// A message's rows while they come.
+/// Rows of a message during decoding.
 struct Rows {
     bus: u32,
     database: usize,
@@ -29,10 +29,9 @@ struct Rows {
     short: u64,
 }
 
-/// Decodes frames. A message that two databases have is decoded by the first of them.
+/// Decodes frames. A message in two databases is decoded by the first of them.
 ///
-/// The group's name is that of the message; where it came on several buses, the bus follows in brackets, and where
-/// messages of several identifiers have that name, the identifier does.
+/// A group has its message's name; a message on several buses has the bus appended in brackets, and messages of the same name have their identifier.
 pub fn groups(frames: &Frames, databases: &[Database]) -> Decoded {
     let mut rows: Vec<Rows> = Vec::new();
     let mut places: HashMap<(u32, Id), usize> = HashMap::new();

@@ -1,10 +1,10 @@
-//! Data frames of CAN buses, in the order of the file that has them.
+//! Data frames of CAN buses, in the order of the file.
 
 use super::Remark;
 use std::collections::HashMap;
 use std::fmt::{self, Display};
 
-/// Most bytes of a frame: those of CAN FD.
+/// Most bytes of a frame (CAN FD).
 pub const MOST_BYTES: usize = 64;
 
 /// Identifier of a frame.
@@ -12,12 +12,12 @@ pub const MOST_BYTES: usize = 64;
 pub struct Id {
     /// The number: 11 bits, or 29 if it is extended.
     pub number: u32,
-    /// Whether it has 29 bits. The same number with 11 is another identifier.
+    /// Whether it has 29 bits. The same number with 11 bits is another identifier.
     pub extended: bool,
 }
 
 impl Id {
-    /// An identifier, if the number has no more bits than it may have.
+    /// An identifier; `None` if the number has too many bits.
     pub fn new(number: u32, extended: bool) -> Option<Self> {
         (number >> if extended { 29 } else { 11 } == 0).then_some(Self { number, extended })
     }
@@ -32,11 +32,11 @@ impl Display for Id {
 /// One data frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<'a> {
-    /// When it was recorded \[s\], as the file has it.
+    /// Time in the file \[s\].
     pub time_s: f64,
     /// Its line, from 1; 0 where the format has no lines.
     pub line: u64,
-    /// Its bus, by its place in [`Frames::buses`].
+    /// Its bus, as an index into [`Frames::buses`].
     pub bus: u32,
     /// Its identifier.
     pub id: Id,
@@ -47,20 +47,20 @@ pub struct Frame<'a> {
 /// The data frames of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frames {
-    /// Names of the buses, as the file has them.
+    /// Names of the buses, as in the file.
     pub buses: Vec<String>,
-    /// Frames that ask for data and have none.
+    /// Remote frames, which request data and have none.
     pub remote: u64,
     /// Error frames.
     pub errors: u64,
-    /// What could not be used as it stands.
+    /// Data that is unusable as it is.
     pub remarks: Vec<Remark>,
     places: HashMap<String, u32>,
     heads: Vec<Head>,
     bytes: Vec<u8>,
 }
 
-/// A frame without its bytes, which are `length` from `at` on.
+/// A frame without its bytes, which are the `length` bytes from `at` on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Head {
     time_s: f64,
@@ -72,7 +72,7 @@ struct Head {
 }
 
 impl Frames {
-    /// Adds a frame; of more than [`MOST_BYTES`] the rest is dropped.
+    /// Adds a frame; bytes beyond [`MOST_BYTES`] are dropped.
     pub fn push(&mut self, time_s: f64, line: u64, bus: &str, id: Id, data: &[u8]) {
         let bus = self.places.get(bus).copied().unwrap_or_else(|| {
             let place = self.buses.len() as u32;
@@ -85,7 +85,7 @@ impl Frames {
         self.bytes.extend_from_slice(data);
     }
 
-    /// How many data frames there are.
+    /// Number of data frames.
     pub fn len(&self) -> usize {
         self.heads.len()
     }

@@ -1,6 +1,6 @@
-//! What a file with a recorded ride holds, column by column, before a map says what the columns mean.
+//! Reads a recorded ride from a file into columns; a map assigns them to sensors later.
 //!
-//! Tables of text, logs of CAN (candump, ASC) and MDF 4; which one it is, the first bytes and lines say.
+//! Formats: text tables, CAN logs (candump, ASC) and MDF 4; recognised by the first bytes and lines.
 
 pub mod asc;
 pub mod bits;
@@ -18,21 +18,21 @@ use frames::Frames;
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 
-/// A recorded ride as the file has it: names, units and numbers of the file.
+/// A recorded ride with the names, units and numbers of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
-    /// Columns that were sampled together: one group for a table, one for each message of a bus.
+    /// Columns sampled together: one group for a table, one per message of a bus.
     pub groups: Vec<Group>,
-    /// What could not be used as it stands, in the order of the file.
+    /// Data that is unusable as it is, in the order of the file.
     pub remarks: Vec<Remark>,
 }
 
-/// Columns of the same length, whose values of one row were recorded together.
+/// Columns of the same length; the values of one row were recorded together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Group {
     /// The message's or channel group's name; empty for a table.
     pub name: String,
-    /// When each row was recorded \[s\], where the format itself says so; in a table a column does.
+    /// Time of each row \[s\], if the format has one; in a table a column has it.
     pub times_s: Option<Vec<f64>>,
     /// Line of each row, from 1; empty where the format has no lines.
     pub lines: Vec<u64>,
@@ -45,25 +45,25 @@ pub struct Group {
 pub struct Column {
     /// Its name in the file.
     pub name: String,
-    /// The unit that the file states; empty where it states none.
+    /// The unit in the file; empty without one.
     pub unit: String,
-    /// Its values in that unit, one a row; NaN where the row has none.
+    /// Its values in that unit, one per row; NaN where the row has none.
     pub values: Vec<f64>,
 }
 
-/// Something in the file that can't be used as it stands.
+/// Data in the file that is unusable as it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
-    /// The line, from 1, where there are lines.
+    /// The line, from 1, if the format has lines.
     pub line: Option<u64>,
-    /// The column's name, if it is about one.
+    /// The column's name, if the remark concerns one.
     pub column: Option<String>,
-    /// What is wrong, and what was done.
+    /// The problem, and how it was handled.
     pub what: String,
 }
 
 impl Remark {
-    /// One about the file as a whole.
+    /// A remark about the whole file.
     fn of_file(what: String) -> Self {
         Self { line: None, column: None, what }
     }
@@ -81,44 +81,43 @@ impl Display for Remark {
     }
 }
 
-/// A file that can't be used.
+/// Why a file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    /// It can't be read.
+    /// The file cannot be read.
     #[error("can't read {}: {why}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The system's error.
         why: std::io::Error,
     },
-    /// It was read, and holds nothing that can be used, or something that must not be passed over.
+    /// The file has no usable data, or an error that must not be skipped.
     #[error("{}: {remark}", path.display())]
     Content {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and where.
+        /// The problem and its position.
         remark: Remark,
     },
 }
 
-/// How a file is read.
+/// Options of reading.
 #[derive(Clone, Debug, Default)]
 pub struct ReadOptions {
-    /// Refuse a file for the first [`Remark`] instead of using the rest of it.
+    /// Reject a file at the first [`Remark`] instead of using the rest.
     pub strict: bool,
-    /// The databases that decode the frames of a bus.
+    /// The databases that decode CAN frames.
     pub dbc: Vec<PathBuf>,
 }
 
-/// Reads a recording. Which kind it is, its content says, not its name.
+/// Reads a recording. Its content determines the format, not its name.
 ///
-/// Frames of CAN become groups by the databases of the options: one a message, its signals as columns in the units of the
-/// database, its times as the file has them. Frames that no database knows become remarks.
+/// The databases of the options decode CAN frames to groups: one per message, its signals as columns in the database's units, with the file's times. Frames
+/// that are in no database become remarks.
 ///
 /// # Errors
-/// The file, and where it names a line what is wrong there; frames of CAN without a database, or with databases that decode
-/// none of them; a database that can't be read.
+/// The file, with the line if there is one; CAN frames without a database, or with databases that decode none of them; an unreadable database.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Recording, RecordingError> {
     let bytes = std::fs::read(path)
         .and_then(|bytes| unpacked(path, bytes))
@@ -132,7 +131,7 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Recording, RecordingEr
     }
 }
 
-/// What the bytes of a file hold; `names` are those of the databases.
+/// Parses the bytes of a file; `names` are the paths of the databases.
 fn of_bytes(bytes: &[u8], databases: &[Database], names: &[PathBuf]) -> Result<Recording, Remark> {
     let (decoded, frames) = if mdf::is_one(bytes) {
         let mdf::Content { groups, frames, remarks } = mdf::parse(bytes)?;
@@ -153,7 +152,7 @@ fn of_bytes(bytes: &[u8], databases: &[Database], names: &[PathBuf]) -> Result<R
     with_frames(decoded, &frames, databases, names)
 }
 
-/// A recording with what its frames say.
+/// Adds the decoded frames to a recording.
 fn with_frames(
     mut recording: Recording,
     frames: &Frames,
@@ -200,7 +199,7 @@ fn database(path: &Path) -> Result<Database, RecordingError> {
     Database::parse(&bytes).map_err(|remark| RecordingError::Content { path: path.to_owned(), remark })
 }
 
-/// The bytes of a file, unpacked if they are packed.
+/// The bytes of a file, decompressed if necessary.
 fn unpacked(path: &Path, bytes: Vec<u8>) -> std::io::Result<Vec<u8>> {
     const GZIP: [u8; 2] = [0x1f, 0x8b];
     if !bytes.starts_with(&GZIP) {

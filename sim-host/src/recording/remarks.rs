@@ -1,11 +1,11 @@
-//! Remarks of a file: the first few of each kind one by one, the rest counted.
+//! Remarks about a file: the first few of each kind are listed, the rest counted.
 
 use super::Remark;
 
-/// Most remarks of one kind that are listed one by one.
+/// Most remarks of one kind that are listed.
 const LISTED: u64 = 3;
 
-/// The remarks so far, and how many of each kind there were.
+/// The remarks so far, and the number of each kind.
 #[derive(Debug, Default)]
 pub(super) struct Remarks {
     listed: Vec<Remark>,
@@ -13,7 +13,7 @@ pub(super) struct Remarks {
 }
 
 impl Remarks {
-    /// Adds one. `kind` says what those beyond the first few have in common.
+    /// Adds a remark. `kind` describes the unlisted ones of the same kind.
     pub(super) fn add(
         &mut self,
         kind: &'static str,
@@ -31,7 +31,7 @@ impl Remarks {
         }
     }
 
-    /// All of them, and the counts of what was not listed.
+    /// All remarks, with the number of unlisted ones.
     pub(super) fn done(mut self) -> Vec<Remark> {
         for (kind, count) in self.counts.into_iter().filter(|(_, count)| *count > LISTED) {
             self.listed.push(Remark::of_file(format!("{} more {kind}", count - LISTED)));

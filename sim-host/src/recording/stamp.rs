@@ -1,6 +1,6 @@
 //! Time stamps: seconds, or a date with a time of day.
 
-/// The seconds that a stamp stands for; of a date those since 1970-01-01, as universal time where it names no zone.
+/// A time stamp in seconds; a date in seconds since 1970-01-01, in UTC unless it names a time zone.
 pub(crate) fn seconds(text: &str) -> Option<f64> {
     match text.parse::<f64>() {
         Ok(number) => number.is_finite().then_some(number),
@@ -13,7 +13,7 @@ fn date_time(text: &str) -> Option<f64> {
     let zoned = || text.parse::<jiff::Timestamp>().ok().map(|time| instant(time.as_nanosecond()));
     let plain: Result<jiff::civil::DateTime, _> = text.parse();
     let utc = |time: jiff::civil::DateTime| time.to_zoned(jiff::tz::TimeZone::UTC).ok();
-    // A bare date is no time stamp.
+    // A date without a time is no time stamp.
     let plain = plain.ok().filter(|_| text.contains(':')).and_then(utc);
     plain.map(|time| instant(time.timestamp().as_nanosecond())).or_else(zoned)
 }

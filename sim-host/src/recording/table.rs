@@ -1,25 +1,25 @@
-//! A table of samples as text: named columns, one row a line, blank cells where a sensor had nothing new.
+//! Reads a table of samples as text: named columns, one row per line, blank cells where a sensor had no new sample.
 //!
-//! Fields are separated by commas, semicolons or tabs, whichever the header has most of. Lines that begin with `#` are
-//! remarks of the file's own. Each line is read by itself, so that a stray quote or a cut line costs that line alone.
+//! The separator is the most frequent of comma, semicolon and tab in the header. Lines that begin with `#` are comments. Each line is parsed on its own, so
+//! that a stray quote or a cut line affects that line only.
 
 use super::remarks::Remarks;
 use super::stamp::seconds;
 use super::{Column, Group, Recording, Remark};
 
-/// Rows of another length than the header.
+/// Remark for rows whose length differs from the header's.
 const LENGTH: &str = "rows of another length than the header; left out";
-/// Cells that are no number.
+/// Remark for cells that are no number.
 const NUMBER: &str = "cells that are no number; taken as blank";
-/// Headers behind the first.
+/// Remark for further headers.
 const HEADER: &str = "lines that name other columns; from there on the new ones are used";
-/// Bytes that are no text.
+/// Remark for bytes that are no text.
 const PACKED: &str = "lines with bytes that are no text; left out";
 
-/// Reads a table. Rows and cells that can't be used become remarks; the rest is the recording.
+/// Parses a table. Unusable rows and cells become remarks; the rest is the recording.
 ///
 /// # Errors
-/// No header with names, or no row below it.
+/// No header with names, or no row after it.
 pub fn parse(text: &str) -> Result<Recording, Remark> {
     let fails = |line: Option<u64>, what: &str| Remark { line, column: None, what: what.to_owned() };
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -35,7 +35,7 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
     if header.contains('\0') {
         return Err(fails(Some(at), "is no text in UTF-8"));
     }
-    // A separator behind the last column, as some loggers write it.
+    // Some loggers write a separator after the last column.
     let header = header.trim_end();
     let closed = header.ends_with(separator);
     let open = |line: &str| -> usize {
@@ -56,7 +56,7 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
 
     let mut columns: Vec<Column> =
         names.iter().map(|name| Column { name: name.clone(), ..Column::default() }).collect();
-    // Which column each field of the present lines belongs to.
+    // Column of each field of the current lines.
     let mut places: Vec<usize> = (0..names.len()).collect();
     let (mut numbers, mut remarks) = (Vec::new(), Remarks::default());
     let ends_whole = text.ends_with('\n');
@@ -112,7 +112,7 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
     Ok(Recording { groups: vec![group], remarks: remarks.done() })
 }
 
-/// The character that separates the fields of a line: of comma, semicolon and tab the most frequent.
+/// The separator of a line: the most frequent of comma, semicolon and tab.
 fn separator_of(line: &str) -> char {
     let count = |separator: &char| line.matches(*separator).count();
     [',', ';', '\t'].into_iter().rev().max_by_key(count).unwrap_or(',')
@@ -127,7 +127,7 @@ fn names_of(line: &str, separator: char) -> Option<Vec<String>> {
     (names.iter().all(named) && names.iter().all(says)).then_some(names)
 }
 
-/// The place of a column; one that is new has no value in the rows before.
+/// The index of a column; a new one has no value in earlier rows.
 fn place_of(columns: &mut Vec<Column>, name: &str, rows: usize) -> usize {
     columns.iter().position(|column| column.name == name).unwrap_or_else(|| {
         columns.push(Column { name: name.to_owned(), values: vec![f64::NAN; rows], ..Column::default() });
@@ -135,12 +135,12 @@ fn place_of(columns: &mut Vec<Column>, name: &str, rows: usize) -> usize {
     })
 }
 
-/// Whether a field says that there is no value.
+/// Whether a field means "no value".
 fn is_blank(field: &str) -> bool {
     field.is_empty() || ["nan", "null", "none", "na", "-"].iter().any(|word| field.eq_ignore_ascii_case(word))
 }
 
-/// A number, or a date with a time of day, which becomes seconds from 1970; on and off are 1 and 0.
+/// A number, or a date with a time of day in seconds since 1970; on and off are 1 and 0.
 fn number_of(field: &str) -> Option<f64> {
     let field = field.trim_matches('"');
     match field {
@@ -151,13 +151,13 @@ fn number_of(field: &str) -> Option<f64> {
     seconds(field)
 }
 
-/// A number with a decimal comma, where no comma separates the fields.
+/// A number with a decimal comma, if the comma is not the separator.
 fn with_comma(field: &str, separator: char) -> Option<f64> {
     let one = separator != ',' && field.matches(',').count() == 1 && !field.contains('.');
     one.then(|| number_of(&field.replace(',', "."))).flatten()
 }
 
-/// A field for a message: not longer than a line can show.
+/// A field for a message, shortened to fit a line.
 fn shown(field: &str) -> String {
     let short: String = field.chars().take(24).collect();
     if short.len() < field.len() { short + "..." } else { short }

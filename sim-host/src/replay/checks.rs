@@ -1,4 +1,4 @@
-//! How near each check came to speaking: the largest residual that lasted as long as the check asks for.
+//! Margin of each check in a replay: the largest residual that lasted for the check's debounce time, against the threshold.
 
 use crate::plant::Sensor;
 use control::sensors::cross_check::{ROLL_WRONG, YAW_WRONG};
@@ -15,23 +15,23 @@ pub struct Check {
     pub name: &'static str,
     /// What is compared, with its unit.
     pub residual: &'static str,
-    /// The largest residual that lasted; null if there was nothing to compare.
+    /// The largest residual that lasted; null without values to compare.
     pub largest_residual: Option<f64>,
-    /// When it had lasted \[s\].
+    /// Time at which it had lasted \[s\].
     pub at_s: Option<f64>,
-    /// Beyond this the check speaks; null where it is switched off.
+    /// Threshold of the check; null if it is switched off.
     pub limit: Option<f64>,
-    /// How long a residual must last to count \[control periods\].
+    /// Time that a residual must last to count \[control periods\].
     pub lasts_ticks: u16,
 }
 
-/// The smallest value of the last few, largest so far.
+/// The largest so far of the minimum over the last few values.
 #[derive(Clone, Debug)]
 struct Sustained {
     check: Check,
-    /// Rising values with their places; the first is the smallest of the window.
+    /// Rising values with their positions; the first is the minimum of the window.
     window: VecDeque<(u64, f64)>,
-    /// How many values have come without a break, and in all.
+    /// Number of consecutive values, and of all values.
     run: u64,
     count: u64,
 }
@@ -43,7 +43,7 @@ impl Sustained {
         Self { check, window: VecDeque::new(), run: 0, count: 0 }
     }
 
-    /// Takes in a residual; NaN is nothing to compare, which breaks off what lasted.
+    /// Adds a residual; NaN (no value to compare) ends a run of consecutive values.
     fn take(&mut self, t_s: f64, residual: f64) {
         self.count += 1;
         if residual.is_nan() {
@@ -66,7 +66,7 @@ impl Sustained {
     }
 }
 
-/// All checks of a replay while it lasts.
+/// The margins of all checks during a replay.
 #[derive(Clone, Debug)]
 pub(super) struct Checks {
     lasting: Vec<Sustained>,
@@ -74,7 +74,7 @@ pub(super) struct Checks {
     before: Vec<Option<Before>>,
 }
 
-/// What a sensor's own checks compare with.
+/// Limits of the checks of one sensor.
 #[derive(Clone, Copy, Debug)]
 struct SensorLimits {
     sensor: Sensor,
@@ -83,7 +83,7 @@ struct SensorLimits {
     period_s: f64,
 }
 
-/// A sensor's sample before, and how many control periods ago.
+/// A sensor's previous sample, and how many control periods ago it came.
 #[derive(Clone, Copy, Debug)]
 struct Before {
     value: [f64; 3],
@@ -94,7 +94,7 @@ const YAW_RESIDUAL: &str = "yaw rate less that of speed and steer angle [rad/s]"
 const SLOPE: &str = "slope with its sign changed";
 const CORRELATION: &str = "correlation with its sign changed";
 
-/// Range, jump and age of a sensor, in this order.
+/// Number of checks of one sensor: range, jump and age, in this order.
 const OF_SENSOR: usize = 3;
 
 impl Checks {
@@ -159,7 +159,7 @@ impl Checks {
         Self { lasting, limits, before }
     }
 
-    /// Takes in a control period: what the controller was told and what it made of it.
+    /// Adds a control period: the controller's input, and its state after the step.
     pub(super) fn take(&mut self, t_s: f64, frame: &SensorFrame, state: &State) {
         let (own, common) = self.lasting.split_at_mut(OF_SENSOR * self.limits.len());
         for ((limits, before), checks) in
@@ -214,7 +214,7 @@ impl Checks {
     }
 }
 
-/// Names of a sensor's own checks, and its declaration; none for the path.
+/// Names of the checks of one sensor, and its declaration; `None` for the path.
 fn named(config: &Config, sensor: Sensor) -> Option<([&'static str; OF_SENSOR], &control::Sensor)> {
     let input = &config.input;
     Some(match sensor {

@@ -1,13 +1,13 @@
-//! A column of a recording that is no sensor's.
+//! A column of a recording that belongs to no sensor.
 
 use super::map::Map;
 use super::samples::{column, remark, times};
 use crate::recording::{Recording, Remark};
 
-/// The values of a column over time \[s\], in the units of the file; blank cells are left out.
+/// The values of a column over time \[s\], in the units of the file; blank cells are omitted.
 ///
 /// # Errors
-/// There is no such column, or no time.
+/// The column or the time does not exist.
 pub fn over_time(recording: &Recording, map: &Map, name: &str) -> Result<Vec<(f64, f64)>, Remark> {
     let (group, found) =
         column(recording, name).ok_or_else(|| remark(Some(name), "there is no such column".into()))?;

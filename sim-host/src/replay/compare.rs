@@ -1,4 +1,4 @@
-//! What comes out beside what the log itself says.
+//! Comparison of a computed signal with the one in the recording.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -6,19 +6,19 @@ use serde::Serialize;
 /// Two signals over the same instants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Compared {
-    /// How many instants were compared.
+    /// Number of instants compared.
     pub count: u64,
     /// Root mean square of the difference.
     pub rms_difference: f64,
     /// Largest magnitude of the difference.
     pub largest_difference: f64,
-    /// Root mean square of ours, and of the log's.
+    /// Root mean square of the computed signal, and of the recorded one.
     pub rms: [f64; 2],
-    /// Correlation; null where one of them does not change.
+    /// Correlation; null if one signal is constant.
     pub correlation: Option<f64>,
 }
 
-/// The sums that it is made of.
+/// Sums from which the comparison is computed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Comparison {
     count: f64,
@@ -30,7 +30,7 @@ pub(super) struct Comparison {
 }
 
 impl Comparison {
-    /// Takes in one instant: ours and the log's.
+    /// Adds one instant: computed and recorded value.
     pub(super) fn take(&mut self, ours: f64, theirs: f64) {
         let difference = ours - theirs;
         self.count += 1.0;
@@ -41,7 +41,7 @@ impl Comparison {
         self.product += ours * theirs;
     }
 
-    /// The comparison, if there was anything to compare.
+    /// The comparison; `None` without instants.
     pub(super) fn done(&self) -> Option<Compared> {
         let n = self.count;
         if n == 0.0 {
@@ -60,7 +60,7 @@ impl Comparison {
     }
 }
 
-/// The value of a recorded signal that holds at `t_s`: the newest one, not older than a quarter of a second.
+/// The newest value of a recorded signal at `t_s`, at most a quarter of a second old.
 pub(super) fn held(signal: &[(f64, f64)], next: &mut usize, t_s: f64) -> Option<f64> {
     const OLD_S: f64 = 0.25;
     while signal.get(*next).is_some_and(|(at_s, _)| *at_s <= t_s + 1e-9) {

@@ -1,4 +1,4 @@
-//! The flashed code's configuration for a recording: only the sensors that it has are declared.
+//! The firmware's configuration, adapted to a recording: only the recorded sensors are declared.
 
 use super::map::Map;
 use super::samples::Samples;
@@ -6,21 +6,21 @@ use crate::parameters;
 use crate::plant::Sensor;
 use control::{Config, Wheel};
 
-/// What was changed for the recording.
+/// Changes of the configuration for the recording.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Fitted {
-    /// Sensors that the configuration declares and the recording lacks: switched off.
+    /// Sensors that the configuration declares and the recording lacks; switched off.
     pub switched_off: Vec<&'static str>,
-    /// Sensors of the map whose columns are not there or have no value, each with the columns.
+    /// Sensors of the map whose columns are missing or empty, each with the columns.
     pub absent: Vec<String>,
-    /// Checks that lack a sensor or an axis: switched off, each with the reason.
+    /// Checks switched off because a sensor or an axis is missing, each with the reason.
     pub unchecked: Vec<String>,
 }
 
-/// Declares the recording's sensors in a configuration, and sets the map's parameters.
+/// Declares the recorded sensors in a configuration, and sets the map's parameters.
 ///
 /// # Errors
-/// A parameter of the map that does not exist, or a value that it may not have.
+/// A parameter of the map that does not exist, or a value that is not allowed.
 pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitted, String> {
     let mut fitted = Fitted { absent: samples.absent.clone(), ..Fitted::default() };
     let has = |sensor| samples.track(sensor).is_some();
@@ -31,7 +31,7 @@ pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitte
             declared.fitted = false;
             fitted.switched_off.push(sensor.name());
         } else if !declared.fitted && has(sensor) && sensor == Sensor::RearWheel {
-            // Under the published conditions the front wheel alone is declared; the rear one's has the same range.
+            // The published conditions declare the front wheel only; the rear wheel has the same range.
             *declared = control::Sensor { fitted: true, ..wheel };
         }
     }
@@ -41,7 +41,7 @@ pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitte
         (_, wheel) => wheel,
     };
     unchecked(config, samples, &mut fitted);
-    // What was recorded was put together before.
+    // The recorded bicycle was assembled and checked before the ride.
     config.calibration.polarity_checked = true;
     for (key, value) in &map.parameters {
         let words = match value {
@@ -70,8 +70,7 @@ fn declared(config: &mut Config, sensor: Sensor) -> &mut control::Sensor {
     }
 }
 
-/// Switches off the checks for which something was made up or is not there, and tells those that have nothing to
-/// compare.
+/// Switches off checks whose input is a substitute or missing, and lists the checks without values to compare.
 fn unchecked(config: &mut Config, samples: &Samples, fitted: &mut Fitted) {
     let made_up = |sensor: Sensor| samples.track(sensor).map_or([false; 3], |track| track.made_up);
     let has = |sensor| samples.track(sensor).is_some();
@@ -89,7 +88,7 @@ fn unchecked(config: &mut Config, samples: &Samples, fitted: &mut Fitted) {
         (config.permit.lifted_m_s2, config.permit.crash_m_s2) = (None, None);
         fitted.unchecked.push("lifted and crash: not all axes of the accelerometer were recorded".into());
     }
-    // The torque that comes out did not act: what the bicycle did answers to the one of the record, where that is there.
+    // The computed torque did not act: the bicycle responded to the recorded torque, where there is one.
     if !has(Sensor::MotorReport) && config.response.motor.take().is_some() {
         fitted.unchecked.push("motor response: the torque that comes out did not act on this bicycle".into());
     }

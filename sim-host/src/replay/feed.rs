@@ -1,4 +1,4 @@
-//! Samples on their way to the controller: at each control instant the newest of every sensor and its age.
+//! Input of the controller from samples: at each control instant the newest sample of every sensor and its age.
 
 use super::leap::Leap;
 use super::map::Resample;
@@ -9,48 +9,48 @@ use crate::ride::Start;
 /// Longest recording, in control periods: five hours at 1 kHz.
 const MOST_TICKS: f64 = 18e6;
 
-/// How samples become control instants.
+/// Options of the conversion from samples to control instants.
 #[derive(Clone, Debug)]
 pub struct FeedOptions<'a> {
     /// Length of a control period \[s\].
     pub period_s: f64,
-    /// Between two samples.
+    /// Value between two samples.
     pub resample: Resample,
-    /// Longest time between two samples that is bridged by interpolation \[s\].
+    /// Longest time between two samples that is interpolated \[s\].
     pub longest_gap_s: f64,
-    /// What goes wrong beside what was recorded; times count from the first sample.
+    /// Faults injected into the recorded data; times count from the first sample.
     pub faults: &'a [Fault],
     /// Seed of the faults' random numbers.
     pub seed: u64,
 }
 
-/// A recording that can't be replayed.
+/// Why a recording cannot be replayed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FeedError {
     /// No sensor has a sample.
     #[error("there is no sample")]
     Empty,
-    /// It is longer than what is replayed at once.
+    /// The recording is too long to be replayed at once.
     #[error("it lasts from {start_s} to {end_s} s; at most {most_s} s can be replayed at once; {}", reason(.leap))]
     TooLong {
         /// Time of the first sample \[s\].
         start_s: f64,
         /// Time of the last sample \[s\].
         end_s: f64,
-        /// Longest time that is replayed \[s\].
+        /// Longest time that can be replayed \[s\].
         most_s: f64,
-        /// The first time that leaps far ahead, if one does.
+        /// The first jump far ahead in time, if any.
         leap: Option<Leap>,
     },
 }
 
-/// What may be wrong with a recording that lasts too long.
+/// Probable reason of a recording that is too long.
 fn reason(leap: &Option<Leap>) -> String {
     let line = |line: Option<u64>| line.map_or(String::new(), |line| format!("line {line}: "));
     leap.map_or("is the unit of the time right?".into(), |leap| format!("{}{leap}", line(leap.line)))
 }
 
-/// The control instants of a recording, one after the other.
+/// The control instants of a recording, in order.
 #[derive(Debug)]
 pub struct Feed<'a> {
     samples: &'a Samples,
@@ -58,14 +58,14 @@ pub struct Feed<'a> {
     start_s: f64,
     ticks: i64,
     tick: i64,
-    /// Of each track the first sample that is still to come.
+    /// Index of each track's next sample.
     next: Vec<usize>,
     held: [Held; Sensor::ALL.len()],
     faults: Vec<FaultState>,
 }
 
 impl<'a> Feed<'a> {
-    /// Before the first control instant.
+    /// Starts before the first control instant.
     ///
     /// # Errors
     /// The recording is too long, or has no sample.
@@ -98,18 +98,18 @@ impl<'a> Feed<'a> {
         })
     }
 
-    /// How many control instants there are.
+    /// Number of control instants.
     pub fn len(&self) -> u64 {
         self.ticks as u64
     }
 
-    /// Whether there is none.
+    /// Whether there is no control instant.
     pub fn is_empty(&self) -> bool {
         self.ticks == 0
     }
 
-    /// The next control instant: its time in the recording \[s\] and what the controller is told, with the switch as
-    /// it was recorded or else at `pressed`; `None` after the last.
+    /// The next control instant: its time in the recording \[s\] and the controller's input, with the recorded switch or, without one, `pressed`; `None` after
+    /// the last.
     pub fn next(&mut self, pressed: bool) -> Option<(f64, Measured)> {
         if self.tick >= self.ticks {
             return None;
@@ -142,10 +142,10 @@ impl<'a> Feed<'a> {
     }
 }
 
-/// The sample that is new at `t_s`, if one is.
+/// The sample that is new at `t_s`, if any.
 fn arrived(track: &Track, next: &mut usize, t_s: f64, options: &FeedOptions<'_>) -> Option<[f64; 3]> {
     let before = *next;
-    // A billionth of a period late is in time: it is a rounding error.
+    // A millionth of a period late is in time: it is a rounding error.
     let limit_s = t_s + 1e-6 * options.period_s;
     while track.samples.get(*next).is_some_and(|sample| sample.t_s <= limit_s) {
         *next += 1;
@@ -159,7 +159,7 @@ fn arrived(track: &Track, next: &mut usize, t_s: f64, options: &FeedOptions<'_>)
     }
 }
 
-/// On the straight line between two samples.
+/// Linear interpolation between two samples.
 fn between(a: &Sample, b: &Sample, t_s: f64) -> [f64; 3] {
     let share = ((t_s - a.t_s) / (b.t_s - a.t_s)).clamp(0.0, 1.0);
     std::array::from_fn(|i| a.value[i] + share * (b.value[i] - a.value[i]))

@@ -1,21 +1,21 @@
-//! Times that leap far ahead: a wrong stamp, or a pause in the recording.
+//! Jumps far ahead in time: a wrong time stamp, or a pause in the recording.
 
 use super::samples::Sample;
 use std::fmt::{self, Display};
 
-/// Time between two rows above which the stamp is doubted \[s\].
+/// Time between two rows above which the time stamp is doubtful \[s\].
 const PAUSE_S: f64 = 3600.0;
-/// Where at least one sample in so many leaps, the unit of the time is wrong and no stamp.
+/// If at least one in this many samples jumps, the unit of the time is wrong, not a time stamp.
 const RARE: usize = 10;
 
-/// A time of a recording that is more than an hour later than the one before.
+/// A time in a recording that is more than an hour later than the previous one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leap {
-    /// The line of the later row, from 1, where the recording has lines.
+    /// Line of the later row, from 1; `None` if the recording has no lines.
     pub line: Option<u64>,
-    /// Time of the sample before \[s\].
+    /// Time of the sample before the jump \[s\].
     pub from_s: f64,
-    /// Time of the sample after \[s\].
+    /// Time of the sample after the jump \[s\].
     pub to_s: f64,
 }
 
@@ -25,7 +25,7 @@ impl Display for Leap {
     }
 }
 
-/// The leaps between the samples of a sensor, whose lines `line_of` knows by their place; none where many leap.
+/// The jumps between the samples of a sensor; `line_of` gives the line of a sample by its index. Empty if there are many.
 pub(super) fn leaps(samples: &[Sample], line_of: impl Fn(usize) -> Option<u64>) -> Vec<Leap> {
     let leap =
         |(at, two): (usize, &[Sample])| Leap { line: line_of(at + 1), from_s: two[0].t_s, to_s: two[1].t_s };

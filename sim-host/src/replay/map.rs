@@ -1,4 +1,4 @@
-//! A map says what the columns of a recording mean: which sensor, unit, sign and axes. `docs/replay.md`.
+//! A map assigns the columns of a recording to sensors, with unit, sign and axes. `docs/replay.md`.
 
 use super::unit::Quantity;
 use crate::plant::Sensor;
@@ -6,7 +6,7 @@ use crate::recording::Recording;
 use std::fmt::{self, Display};
 use std::path::Path;
 
-/// The maps that ship, by name.
+/// The built-in maps, by name.
 pub const SHIPPED: [(&str, &str); 4] = [
     ("can-bicycle", include_str!("../../../data/maps/can-bicycle.toml")),
     ("extract", include_str!("../../../data/maps/extract.toml")),
@@ -14,14 +14,14 @@ pub const SHIPPED: [(&str, &str); 4] = [
     ("robot-bicycle", include_str!("../../../data/maps/robot-bicycle.toml")),
 ];
 
-/// What the columns mean.
+/// Assignment of a recording's columns.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Map {
-    /// How samples reach the control periods between them.
+    /// How samples are converted to the control periods between them.
     #[serde(default)]
     pub resample: Resample,
-    /// Where a row's time stands; a recording that brings its own times needs none.
+    /// Source of a row's time; not needed for a recording with its own times.
     pub time: Option<Time>,
     gyro: Option<Signal>,
     accel: Option<Signal>,
@@ -32,38 +32,38 @@ pub struct Map {
     rider_torque: Option<Signal>,
     motor: Option<Signal>,
     path: Option<Signal>,
-    /// The rider's switch: on where the column is not 0. Without it the switch is pressed whenever that would engage.
+    /// The rider's switch: on where the column is not 0. Without this key the switch is pressed whenever a press would engage.
     pub engage: Option<Switch>,
-    /// What the log itself says of the motion, to compare with.
+    /// The recording's own motion signals, for comparison.
     #[serde(default)]
     pub reference: References,
-    /// Parameters of the flashed code that this bicycle needs, in the words of `--set`.
+    /// Parameters of the firmware for this bicycle, with values as in `--set`.
     #[serde(default)]
     pub parameters: toml::Table,
 }
 
-/// How samples reach the control periods between them.
+/// How samples are converted to the control periods between them.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize, clap::ValueEnum,
 )]
 #[serde(rename_all = "lowercase")]
 pub enum Resample {
-    /// Each is held, growing older, until the next one comes: what a board would have got.
+    /// Each sample is held, with growing age, until the next one: what a board would have received.
     #[default]
     Hold,
-    /// On a straight line between two samples: what a faster sensor would have said, but for its noise.
+    /// Linear interpolation between two samples: what a faster sensor would have measured, except for its noise.
     Interpolate,
 }
 
-/// Where the time of a row stands: in a column, or it follows from the number of rows.
+/// Source of a row's time: a column, or the row's number.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Time {
     /// Column with the time.
     pub column: Option<String>,
-    /// Its unit: s, ms, us or ns. A date with a time of day is understood as it is.
+    /// Its unit: s, ms, us or ns. A date with a time of day needs no unit.
     pub unit: Option<String>,
-    /// Rows a second, where there is no column.
+    /// Rows per second, if there is no column.
     pub rate_hz: Option<f64>,
 }
 
@@ -75,21 +75,21 @@ pub struct Switch {
     pub column: String,
 }
 
-/// What the log itself says.
+/// The recording's own signals.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct References {
     /// Roll angle.
     pub roll: Option<Signal>,
-    /// Steer torque of the log's own assist.
+    /// Steer torque of the recorded bicycle's own assist.
     pub torque: Option<Signal>,
 }
 
-/// A column, or a number that stands for one that is not there.
+/// A column, or a constant in place of a missing one.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(untagged)]
 pub enum Source {
-    /// A column by its name; of a bus also `Message.Signal`.
+    /// A column by its name; on a bus also `Message.Signal`.
     Column(String),
     /// Always this value, in the signal's unit.
     Constant(f64),
@@ -101,21 +101,21 @@ pub enum Source {
 pub struct Signal {
     /// Its columns: one for each axis.
     pub columns: Vec<Source>,
-    /// Their unit; SI without it.
+    /// Their unit; SI if absent.
     pub unit: Option<String>,
     /// Factor of every axis, before the offset.
     #[serde(default = "one")]
     pub scale: f64,
-    /// Added to every axis, in the unit.
+    /// Added to every axis, in `unit`.
     #[serde(default)]
     pub offset: f64,
-    /// Of three axes: which of the log's, with its sign, points along the bicycle's x (forward), y (right) and z (down).
+    /// For three axes: which of the sensor's axes, with its sign, points along the bicycle's x (forward), y (right) and z (down).
     pub axes: Option<[String; 3]>,
-    /// Column with the time of these samples, in the unit of `time`, where it is not the row's.
+    /// Column with the time of these samples, in the unit of `time`, if it differs from the row's.
     pub time: Option<String>,
     /// Column with the age of the sample at the row's time \[control periods\].
     pub age: Option<String>,
-    /// How much later than their time the samples reached the controller \[s\].
+    /// Delay from the time of a sample to its reception by the controller \[s\].
     #[serde(default)]
     pub late_s: f64,
 }
@@ -133,20 +133,20 @@ const fn one() -> f64 {
     1.0
 }
 
-/// A map with what it was checked for.
+/// A sensor with its checked columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mapped<'a> {
     /// Which sensor.
     pub sensor: Sensor,
-    /// Where its samples stand.
+    /// Source of its samples.
     pub signal: &'a Signal,
 }
 
 impl Map {
-    /// The map of a name, or in a file.
+    /// The built-in map of this name, or the map in a file.
     ///
     /// # Errors
-    /// The file with the key, value and what was expected.
+    /// The file with key, value and expected values.
     pub fn load(name: &str) -> Result<Self, String> {
         if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
             return Self::parse(text).map_err(|why| format!("{name}: {why}"));
@@ -159,17 +159,17 @@ impl Map {
         Self::parse(&text).map_err(|why| format!("{name}: {why}"))
     }
 
-    /// The map in a text.
+    /// Parses a map.
     ///
     /// # Errors
-    /// The key, its value and what was expected.
+    /// The key with its value and the expected values.
     pub fn parse(text: &str) -> Result<Self, String> {
         let map: Self = toml::from_str(text).map_err(|why| why.to_string().trim().to_owned())?;
         map.check()?;
         Ok(map)
     }
 
-    /// The map that ships whose columns a recording has, if one's gyro and time are there.
+    /// The built-in map whose gyro and time columns the recording has.
     pub fn by_columns(recording: &Recording) -> Option<Self> {
         let has = |name: &str| {
             recording.groups.iter().flat_map(|group| &group.columns).any(|column| column.name == name)
@@ -183,7 +183,7 @@ impl Map {
         SHIPPED.iter().filter_map(|(_, text)| Self::parse(text).ok()).find(fits)
     }
 
-    /// The sensors that it names, in the order of [`Sensor::ALL`].
+    /// The sensors that the map assigns, in the order of [`Sensor::ALL`].
     pub fn sensors(&self) -> impl Iterator<Item = Mapped<'_>> {
         let of = |sensor| match sensor {
             Sensor::Gyro => &self.gyro,
@@ -226,12 +226,12 @@ impl Map {
     }
 }
 
-/// How many columns a sensor has.
+/// Number of columns of a sensor.
 pub(super) fn axes_of(sensor: Sensor) -> usize {
     sensor.axes().len().max(1)
 }
 
-/// What a sensor measures; the path's lateral error is a length beside the heading's angle.
+/// Quantity that a sensor measures; the path has an angle (heading) and a length (lateral deviation).
 pub(super) const fn quantity_of(sensor: Sensor) -> Quantity {
     match sensor {
         Sensor::Gyro | Sensor::SteerRate => Quantity::Rate,
@@ -267,14 +267,14 @@ impl Signal {
         }
     }
 
-    /// Which of its own axes, and with what sign, points along each of the bicycle's.
+    /// For each of the bicycle's axes, the sensor's own axis and sign.
     pub(super) fn turns(&self) -> [(usize, f64); 3] {
         let straight = [(0, 1.0), (1, 1.0), (2, 1.0)];
         self.axes.as_ref().and_then(|axes| turned(axes).ok()).unwrap_or(straight)
     }
 }
 
-/// The places and signs of `["-y", "x", "z"]`.
+/// Indices and signs of `["-y", "x", "z"]`.
 fn turned(axes: &[String; 3]) -> Result<[(usize, f64); 3], String> {
     let one = |word: &String| {
         let (sign, letter) = word.strip_prefix('-').map_or((1.0, word.as_str()), |letter| (-1.0, letter));
@@ -283,7 +283,7 @@ fn turned(axes: &[String; 3]) -> Result<[(usize, f64); 3], String> {
     };
     let [x, y, z] = axes;
     let turns = [one(x)?, one(y)?, one(z)?];
-    // Each once, and right-handed: a mirrored sensor is a wrong map.
+    // Each axis once, and right-handed: a mirrored sensor is an error in the map.
     let [a, b, c] = turns;
     let even = [(0, 1, 2), (1, 2, 0), (2, 0, 1)].contains(&(a.0, b.0, c.0));
     let odd = [(0, 2, 1), (2, 1, 0), (1, 0, 2)].contains(&(a.0, b.0, c.0));

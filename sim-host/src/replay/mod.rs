@@ -1,6 +1,6 @@
-//! A recorded ride through the flashed code: what it would have done, and how near each check was to speaking.
+//! Replay of a recorded ride through the firmware's control code: its torque, causes, and the margin of each check.
 //!
-//! Open loop: the torque that comes out did not act on the bicycle that was recorded.
+//! Open loop: the computed torque did not act on the recorded bicycle.
 
 mod checks;
 mod column;

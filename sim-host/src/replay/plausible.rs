@@ -1,11 +1,11 @@
-//! Samples that look like another unit or another mounting.
+//! Plausibility of samples: remarks on values that suggest another unit or orientation.
 
 use super::map::quantity_of;
 use super::samples::{Track, remark};
 use crate::plant::Sensor;
 use crate::recording::Remark;
 
-/// Tells values that look like another unit or another mounting.
+/// Adds a remark for values that suggest another unit or orientation.
 pub(super) fn plausible(track: &Track, remarks: &mut Vec<Remark>) {
     let name = track.sensor.name();
     let mut sizes: Vec<f64> =

@@ -8,9 +8,9 @@ use serde::Serialize;
 pub struct Row {
     /// Time in the recording \[s\].
     pub t: f64,
-    /// Where the controller stood, as the number of [`control::Mode`].
+    /// Mode of the controller, as the number of [`control::Mode`].
     pub mode: u8,
-    /// What stood in the way of the torque, as bits of [`control::Causes`].
+    /// Causes that prevented or reduced torque, as bits of [`control::Causes`].
     pub causes: u64,
     /// Limits that changed the torque, as bits of [`control::ActiveLimits`].
     pub limits: u16,
@@ -18,11 +18,11 @@ pub struct Row {
     pub torque: f32,
     /// The gain \[N m s/rad\].
     pub gain: f32,
-    /// Roll angle as estimated \[rad\], and its bound.
+    /// Estimated roll angle \[rad\], and its bound.
     pub roll: f32,
     /// See `roll`.
     pub roll_bound: f32,
-    /// The sensors as told; empty where there is no sample.
+    /// Sensor values from the controller's input; empty without a sample.
     pub measured_roll_rate: Option<f32>,
     /// The gyro about y \[rad/s\].
     pub measured_pitch_rate: Option<f32>,
@@ -42,17 +42,17 @@ pub struct Row {
     pub steer_residual: Option<f32>,
     /// Of the drive's torque \[N m\].
     pub motor_residual: Option<f32>,
-    /// The log's own roll angle \[rad\].
+    /// The recording's own roll angle \[rad\].
     pub log_roll: Option<f64>,
-    /// The log's own torque \[N m\].
+    /// The recording's own torque \[N m\].
     pub log_torque: Option<f64>,
-    /// The lower half of `causes`, whose bits are more than a double holds exactly.
+    /// The lower half of `causes`, which has more bits than a double holds exactly.
     pub causes_low: u32,
     /// The upper half of `causes`.
     pub causes_high: u32,
 }
 
-/// The row of this period; `log` is the log's own roll angle \[rad\] and torque \[N m\].
+/// The row of this period; `log` holds the recording's own roll angle \[rad\] and torque \[N m\].
 pub(super) fn row(
     t: f64,
     frame: &SensorFrame,

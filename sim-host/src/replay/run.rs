@@ -1,4 +1,4 @@
-//! Frames through the control step, and the account of what it did.
+//! Runs frames through the control step and summarises modes, causes, torque and checks.
 
 use super::checks::{Check, Checks};
 use super::compare::{Compared, Comparison, held};
@@ -8,31 +8,31 @@ use control::{ActiveLimits, CAUSES, Cause, Causes, Command, Mode, Plan, SensorFr
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// When the rider's switch is pressed in a recording without one.
+/// When the rider's switch is pressed, for a recording without a switch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Press {
-    /// As often as a press would engage, also after a fault.
+    /// Whenever a press would engage, also after a fault.
     #[default]
     Again,
-    /// The first time that a press would engage, and never again.
+    /// Only the first time that a press would engage.
     Once,
 }
 
-/// How a recording is run.
+/// Options of a run.
 #[derive(Clone, Debug)]
 pub struct RunOptions<'a> {
-    /// The switch.
+    /// When the switch is pressed.
     pub press: Press,
     /// Time between two rows of the table \[s\].
     pub every_s: f64,
-    /// The log's own roll angle \[rad\] and torque \[N m\] over time \[s\].
+    /// The recording's own roll angle \[rad\] and torque \[N m\] over time \[s\].
     pub roll_rad: &'a [(f64, f64)],
     /// See `roll_rad`.
     pub torque_nm: &'a [(f64, f64)],
 }
 
-/// From when on the controller stood where.
+/// Start of a mode.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ModeRecord {
     /// Time in the recording \[s\].
@@ -48,59 +48,59 @@ pub struct CauseRecord {
     pub number: u8,
     /// Its name.
     pub name: &'static str,
-    /// When it was first there \[s\].
+    /// Time of its first occurrence \[s\].
     pub first_s: f64,
-    /// How often it began.
+    /// Times that it began.
     pub count: u32,
-    /// For how long it was there \[s\].
+    /// Total time that it was present \[s\].
     pub total_s: f64,
-    /// How often it began while the bicycle rode or the assist was engaged, after the controller was ready for the first
-    /// time. Causes that tell a state and no fault, as the switch being off, have none.
+    /// Times that it began while the bicycle rode or the assist was engaged, after the controller was first ready. Zero for causes that describe a state, such
+    /// as the switch being off.
     pub alarms: u32,
-    /// When these began \[s\].
+    /// Times at which these began \[s\].
     #[serde(skip)]
     pub alarms_s: Vec<f64>,
 }
 
-/// The account of a replay.
+/// Result of a replay.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Replayed {
     /// First and last control instant \[s\].
     pub span_s: (f64, f64),
     /// Control periods.
     pub periods: u64,
-    /// For how long it was engaged \[s\].
+    /// Time engaged \[s\].
     pub engaged_s: f64,
-    /// For how long it was in limp mode \[s\].
+    /// Time in limp mode \[s\].
     pub limp_s: f64,
-    /// For how long it was in fault \[s\].
+    /// Time in fault \[s\].
     pub fault_s: f64,
-    /// For how long the bicycle rode, faster than 1 m/s \[s\].
+    /// Time ridden faster than 1 m/s \[s\].
     pub riding_s: f64,
-    /// The modes in their order.
+    /// The modes in order of time.
     pub modes: Vec<ModeRecord>,
-    /// The causes that were there, by number.
+    /// The causes that occurred, by number.
     pub causes: Vec<CauseRecord>,
     /// Largest torque commanded \[N m\].
     pub peak_torque_nm: f64,
     /// Root mean square of the torque while engaged \[N m\].
     pub rms_torque_nm: f64,
-    /// Part of the engaged periods in which the limit of the rate of change acted.
+    /// Part of the engaged periods in which the rate limit acted.
     pub rate_limited: f64,
-    /// How near each check came to speaking.
+    /// Margin of each check.
     pub checks: Vec<Check>,
-    /// Roll angle as estimated beside the log's own while riding \[rad\]; null if the log has none.
+    /// Estimated roll angle against the recorded one while riding \[rad\]; null if none was recorded.
     pub roll: Option<Compared>,
-    /// Part of these instants in which the log's roll lay inside the estimate's bound.
+    /// Part of these instants in which the recorded roll angle lay inside the estimate's bound.
     pub roll_inside_bound: Option<f64>,
-    /// Torque beside the log's own while engaged \[N m\]; null if the log has none.
+    /// Torque against the recorded one while engaged \[N m\]; null if none was recorded.
     pub torque: Option<Compared>,
     /// The table.
     #[serde(skip)]
     pub rows: Vec<Row>,
 }
 
-/// Causes that tell a state in which there is no torque, and no fault.
+/// Causes that describe a state without torque rather than a fault.
 const STATES: Causes = Causes::all(&[
     Cause::PolarityUnchecked,
     Cause::Filling,
@@ -111,13 +111,13 @@ const STATES: Causes = Causes::all(&[
     Cause::RollUnknown,
 ]);
 
-/// Speed from which on a bicycle rides \[m/s\].
+/// Speed above which a bicycle counts as riding \[m/s\].
 const RIDING_M_S: f32 = 1.0;
 
-/// The frames in a file of `ride --frames` or `replay --frames`, each at its time \[s\], the first at 0.
+/// The frames in a file of `ride --frames` or `replay --frames`, each with its time \[s\], the first at 0.
 ///
 /// # Errors
-/// The bytes are no whole number of frames, or there is none.
+/// The bytes are not a whole number of frames, or there is no frame.
 pub fn frames(bytes: &[u8]) -> Result<Vec<(f64, SensorFrame)>, String> {
     let (whole, rest) = bytes.as_chunks::<FRAME_BYTES>();
     if whole.is_empty() || !rest.is_empty() {
@@ -134,8 +134,8 @@ pub fn frames(bytes: &[u8]) -> Result<Vec<(f64, SensorFrame)>, String> {
     Ok(whole.iter().map(at).collect())
 }
 
-/// Runs the controller over all that `next` gives: the time \[s\] and the frame of each control instant, with the switch
-/// pressed as told where nobody recorded it.
+/// Runs the controller over the sequence from `next`: time \[s\] and frame of each control instant. The argument of `next` is the switch, used where none was
+/// recorded.
 pub fn run(
     plan: &Plan,
     options: &RunOptions<'_>,
@@ -160,7 +160,7 @@ pub fn run(
     account.finish()
 }
 
-/// The rider's hand at the switch.
+/// Simulated operation of the rider's switch.
 struct Pressed {
     press: Press,
     engaged: bool,
@@ -168,7 +168,7 @@ struct Pressed {
 }
 
 impl Pressed {
-    /// Whether it is on in the period after this command.
+    /// Whether the switch is on in the period after this command.
     fn next(&mut self, plan: &Plan, command: &Command) -> bool {
         let drives = command.mode.drives();
         self.ended |= self.engaged && !drives;
@@ -177,13 +177,13 @@ impl Pressed {
     }
 }
 
-/// What a replay adds up to.
+/// Sums of a replay.
 struct Account {
     done: Replayed,
     checks: Checks,
     mode: Mode,
     causes: Causes,
-    /// Whether it was ready once.
+    /// Whether the controller was ready before.
     started: bool,
     speed_m_s: f32,
     limited: u64,
@@ -235,7 +235,7 @@ impl Account {
         }
         let rides = self.speed_m_s > RIDING_M_S;
         done.riding_s += if rides { period_s } else { 0.0 };
-        // Where it was engaged, whatever the speed says: that may be what is wrong.
+        // Engaged periods count at any reported speed: the speed itself may be wrong.
         let counts = self.started && (rides || self.mode.drives());
         self.started |= command.mode >= Mode::Standby;
         causes(&mut done.causes, t_s, period_s, command.causes, self.causes, counts);
@@ -284,7 +284,7 @@ impl Account {
     }
 }
 
-/// Books the causes of a period, those of the one before being `before`.
+/// Counts the causes of a period; `before` are those of the previous one.
 fn causes(
     records: &mut Vec<CauseRecord>,
     t_s: f64,

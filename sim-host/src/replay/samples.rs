@@ -1,4 +1,4 @@
-//! The samples of each sensor in a recording: what the columns say by the map, in SI units and the bicycle's axes.
+//! The samples of each sensor, from a recording and its map, in SI units and the bicycle's axes.
 
 use super::leap::{Leap, leaps};
 use super::map::{Map, Mapped, Signal, Source, axes_of, quantity_of};
@@ -10,9 +10,9 @@ use crate::recording::{Column, Group, Recording, Remark};
 /// One sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// When it was there \[s\], in the recording's own time.
+    /// Time of the sample \[s\], on the recording's clock.
     pub t_s: f64,
-    /// Its values by [`Sensor::axes`], SI; zero beyond.
+    /// Its values in the order of [`Sensor::axes`], SI; unused axes are zero.
     pub value: [f64; 3],
 }
 
@@ -21,14 +21,14 @@ pub struct Sample {
 pub struct Track {
     /// Which sensor.
     pub sensor: Sensor,
-    /// Its samples: at least one, each later than the one before.
+    /// Its samples: at least one, with rising times.
     pub samples: Vec<Sample>,
-    /// Axes without a column, whose value was made up.
+    /// Axes without a column, filled with a substitute value.
     pub made_up: [bool; 3],
 }
 
 impl Track {
-    /// Median time between two samples \[s\]; none where there is but one.
+    /// Median time between two samples \[s\]; `None` for a single sample.
     pub fn period_s(&self) -> Option<f64> {
         let mut gaps: Vec<f64> = self.samples.windows(2).map(|two| two[1].t_s - two[0].t_s).collect();
         gaps.sort_by(f64::total_cmp);
@@ -36,40 +36,39 @@ impl Track {
     }
 }
 
-/// A recording by its map.
+/// The samples of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
-    /// The sensors that it has.
+    /// The recorded sensors.
     pub tracks: Vec<Track>,
-    /// The rider's switch, where it is recorded: when it is on, and from when on that holds \[s\].
+    /// The rider's switch, if recorded: time of each sample \[s\], and whether it is on.
     pub engage: Vec<(f64, bool)>,
-    /// The log's own roll angle \[rad\] over time \[s\].
+    /// The recording's own roll angle \[rad\] over time \[s\].
     pub roll_rad: Vec<(f64, f64)>,
-    /// The log's own steer torque \[N m\] over time \[s\].
+    /// The recording's own steer torque \[N m\] over time \[s\].
     pub torque_nm: Vec<(f64, f64)>,
-    /// Sensors of the map that the recording lacks, where that is no error: each with its columns that are not there or
-    /// have no value.
+    /// Optional sensors of the map that the recording lacks, each with its columns that are missing or have no value.
     pub absent: Vec<String>,
-    /// What could not be used as it stands, or looks wrong.
+    /// Data that is unusable or looks wrong.
     pub remarks: Vec<Remark>,
-    /// Times that leap far ahead, of each sensor; the remarks say so, too.
+    /// Jumps far ahead in time, of each sensor; also in the remarks.
     pub leaps: Vec<Leap>,
 }
 
 impl Samples {
-    /// The samples of a sensor.
+    /// The samples of one sensor.
     pub fn track(&self, sensor: Sensor) -> Option<&Track> {
         self.tracks.iter().find(|track| track.sensor == sensor)
     }
 
-    /// From the first sample of any sensor to the last \[s\].
+    /// Time of the first and the last sample of any sensor \[s\].
     pub fn span_s(&self) -> Option<(f64, f64)> {
         let ends = |track: &Track| Some((track.samples.first()?.t_s, track.samples.last()?.t_s));
         self.tracks.iter().filter_map(ends).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 }
 
-/// A row is left out whose time is this far ahead of those before and after it \[s\].
+/// A row is left out if its time is this far ahead of its neighbours' \[s\].
 const LEAP_S: f64 = 1.0;
 
 /// A remark without a line.
@@ -80,7 +79,7 @@ pub(super) fn remark(column: Option<&str>, what: String) -> Remark {
 /// Applies a map to a recording whose ages are counted in periods of `period_s`.
 ///
 /// # Errors
-/// There is no time, no gyro or no wheel in it; a column that the map names is there in part only.
+/// Time, gyro or wheel speed missing; a sensor of the map recorded in part only.
 pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Samples, Remark> {
     let mut all = Samples { remarks: recording.remarks.clone(), ..Samples::default() };
     for Mapped { sensor, signal } in map.sensors() {
@@ -148,7 +147,7 @@ fn absent(recording: &Recording, sensor: Sensor, signal: &Signal) -> Option<Stri
     (!names.is_empty()).then(|| format!("{} ({})", sensor.name(), names.join(", ")))
 }
 
-/// Why a sensor that is there has no samples, with what was found wrong in the file first.
+/// Why a recorded sensor has no samples: the first remark about it.
 fn unusable(all: &Samples, sensor: Sensor) -> Option<Remark> {
     let name = sensor.name();
     let few = || {
@@ -162,7 +161,7 @@ fn unusable(all: &Samples, sensor: Sensor) -> Option<Remark> {
     Some(remark(None, format!("{why}{first}")))
 }
 
-/// Nothing to replay without this sensor.
+/// The error for a missing sensor without which there is no replay.
 fn missing(recording: &Recording, map: &Map, sensor: Sensor) -> Remark {
     let wanted = map.sensors().find(|mapped| mapped.sensor == sensor);
     let wanted = wanted.map_or("none".into(), |mapped| {
@@ -178,7 +177,7 @@ fn missing(recording: &Recording, map: &Map, sensor: Sensor) -> Remark {
     )
 }
 
-/// A column by its name, alone or with its group's in front.
+/// A column by its name, alone or preceded by its group's.
 pub(super) fn column<'a>(recording: &'a Recording, name: &str) -> Option<(&'a Group, &'a Column)> {
     let of = |group: &'a Group, name: &str| group.columns.iter().find(|column| column.name == name);
     let plain = recording.groups.iter().find_map(|group| Some((group, of(group, name)?)));
@@ -189,14 +188,14 @@ pub(super) fn column<'a>(recording: &'a Recording, name: &str) -> Option<(&'a Gr
     })
 }
 
-/// What a sensor's axes are read from.
+/// Source of a sensor's axis.
 enum Axis<'a> {
     Column(&'a Column),
     Constant(f64),
 }
 
 impl Axis<'_> {
-    /// Whether it is a column without a value in any row.
+    /// Whether it is a column without any value.
     fn is_blank(&self) -> bool {
         matches!(self, Self::Column(column) if column.values.iter().all(|value| value.is_nan()))
     }
@@ -208,14 +207,13 @@ struct Found<'a> {
     made_up: [bool; 3],
 }
 
-/// What stands in for an axis that nobody recorded \[SI\].
+/// Substitute value of an axis that was not recorded \[SI\].
 fn stand_in(sensor: Sensor, axis: usize) -> f64 {
     const GRAVITY: f64 = -9.81;
     if sensor == Sensor::Accel && axis == 2 { GRAVITY } else { 0.0 }
 }
 
-/// The columns of a sensor, `None` if the recording has none of them. Of gyro and accelerometer only the axis about or
-/// across which the bicycle rolls must be there.
+/// The columns of a sensor; `None` if none is recorded. Of gyro and accelerometer only the axis needed for roll is required.
 fn find<'a>(recording: &'a Recording, sensor: Sensor, signal: &Signal) -> Result<Option<Found<'a>>, Remark> {
     let mut group: Option<&Group> = None;
     let (mut axes, mut made_up, mut absent) = (Vec::new(), [false; 3], Vec::new());
@@ -242,7 +240,7 @@ fn find<'a>(recording: &'a Recording, sensor: Sensor, signal: &Signal) -> Result
         }
     }
     let Some(group) = group else { return Ok(None) };
-    // The axis of the bicycle's x of a gyro, y of an accelerometer, in the log's own.
+    // The bicycle's x axis of a gyro and y axis of an accelerometer, as the recording's own axis.
     let needed = match sensor {
         Sensor::Gyro => Some(signal.turns()[0].0),
         Sensor::Accel => Some(signal.turns()[1].0),
@@ -262,7 +260,7 @@ fn find<'a>(recording: &'a Recording, sensor: Sensor, signal: &Signal) -> Result
     Ok(Some(Found { group, axes, made_up }))
 }
 
-/// When each row of a group was recorded \[s\]; NaN where it does not say.
+/// Time of each row of a group \[s\]; NaN where the row has none.
 pub(super) fn times(group: &Group, map: &Map, own: Option<&str>) -> Result<Vec<f64>, Remark> {
     let time = map.time.as_ref();
     let factor = Quantity::Time.factor(time.and_then(|time| time.unit.as_deref())).unwrap_or(1.0);
@@ -292,7 +290,7 @@ pub(super) fn times(group: &Group, map: &Map, own: Option<&str>) -> Result<Vec<f
     }
 }
 
-/// A sensor's samples, those that can't be used told and left out; none if no row has one.
+/// Reads a sensor's samples; unusable ones are left out with a remark. `None` if no row has a sample.
 #[allow(clippy::too_many_arguments, reason = "one call; each is a different thing")]
 fn take(
     group: &Group,
@@ -334,7 +332,7 @@ fn take(
         match samples.last() {
             // The same sample again, some periods older.
             Some(last) if ages.is_some() && t_s < last.t_s + 0.5 * period_s => {}
-            // One row far ahead of those before and after it: its time is wrong, not theirs.
+            // One row far ahead of its neighbours: its time is wrong, not theirs.
             Some(last)
                 if t_s < last.t_s - LEAP_S && samples.iter().nth_back(1).is_none_or(|b| b.t_s < t_s) =>
             {
@@ -354,7 +352,7 @@ fn take(
         }
     }
     let mut say = |line, what: String| {
-        // Sensors of one row have this in common.
+        // Sensors of one row share this remark.
         let same = all.remarks.iter_mut().find(|said| said.line == line && said.what.ends_with(&what));
         match same {
             Some(said) => said.what.insert_str(0, &format!("{}, ", sensor.name())),

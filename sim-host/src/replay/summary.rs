@@ -1,4 +1,4 @@
-//! Many recordings together: how often each check spoke in an hour of riding.
+//! Summary of many recordings: false alarms of each check per hour of riding, and detection of an injected fault.
 
 use super::run::Replayed;
 use schemars::JsonSchema;
@@ -11,33 +11,33 @@ pub struct Alarms {
     pub number: u8,
     /// Its name.
     pub name: &'static str,
-    /// How often it began while a bicycle rode.
+    /// Times that it began while a bicycle rode.
     pub count: u32,
-    /// In how many recordings.
+    /// Number of recordings in which it began.
     pub recordings: u32,
-    /// How often in an hour of riding; null without riding.
+    /// Rate per hour of riding; null without riding.
     pub per_hour: Option<f64>,
 }
 
-/// Many recordings together.
+/// Summary of many recordings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Summary {
-    /// How many.
+    /// Number of recordings.
     pub recordings: u32,
-    /// For how long they rode, faster than 1 m/s \[s\].
+    /// Time ridden faster than 1 m/s \[s\].
     pub riding_s: f64,
-    /// For how long the assist was engaged \[s\].
+    /// Time with the assist engaged \[s\].
     pub engaged_s: f64,
     /// Causes that began while a bicycle rode, by number.
     pub alarms: Vec<Alarms>,
-    /// Where a fault was put in: in how many recordings any of these causes came after it.
+    /// With an injected fault: number of recordings in which any of these causes began after it.
     pub noticed: Option<u32>,
-    /// Where a fault was put in: median time from it to the first of these causes, where one came \[s\].
+    /// With an injected fault: median time from the fault to the first of these causes, over recordings with one \[s\].
     pub median_notice_s: Option<f64>,
 }
 
 impl Summary {
-    /// Of these; `fault_s` is when a fault begins, from the first sample on, where one was put in.
+    /// From these replays; `fault_s` is the start of the injected fault, counted from the first sample.
     pub fn new<'a>(all: impl IntoIterator<Item = &'a Replayed>, fault_s: Option<f64>) -> Self {
         let mut summary = Self::default();
         let mut notices = Vec::new();

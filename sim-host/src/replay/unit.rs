@@ -1,6 +1,6 @@
-//! The units that a map may name, each a factor to SI.
+//! The units allowed in a map, each with its factor to SI.
 
-/// What a column measures.
+/// Physical quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     /// \[s\]
@@ -22,7 +22,7 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 const GRAVITY: f64 = 9.806_65;
 
 impl Quantity {
-    /// The units it may have; the first is the default.
+    /// The units allowed for the quantity; the first is the default.
     const fn units(self) -> &'static [(&'static str, f64)] {
         match self {
             Self::Time => &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)],
@@ -34,10 +34,10 @@ impl Quantity {
         }
     }
 
-    /// The factor from a unit to SI; without a unit it is SI.
+    /// The factor from a unit to SI; 1 without a unit.
     ///
     /// # Errors
-    /// Names the unit and those there are.
+    /// An unknown unit, with the allowed ones.
     pub(super) fn factor(self, unit: Option<&str>) -> Result<f64, String> {
         let Some(unit) = unit else { return Ok(1.0) };
         let found = self.units().iter().find(|(name, _)| *name == unit);
@@ -47,8 +47,8 @@ impl Quantity {
         })
     }
 
-    /// A magnitude that one sample in twenty of a ride in SI units never passes, and the unit in which it would: a fork
-    /// turns by hardly more than a quarter of a turn; 5 rad/s and 43 km/h are reached in a fall or down a mountain only.
+    /// A magnitude that fewer than one sample in twenty of a ride in SI units exceeds, and the unit suspected otherwise: a fork turns by hardly more than a
+    /// quarter of a turn; 5 rad/s and 43 km/h are reached only in a fall or on a long descent.
     pub(super) const fn implausible(self) -> Option<(f64, &'static str)> {
         match self {
             Self::Angle => Some((2.0, "degrees")),

@@ -1,4 +1,4 @@
-//! Blocks of a file: name, links to others, data. No link leads out of the file, and lists end.
+//! Blocks of an MDF file: name, links to other blocks, data. Links out of the file are rejected; lists end.
 
 use std::collections::HashSet;
 
@@ -8,9 +8,9 @@ const HEAD_BYTES: usize = 24;
 /// The bytes of a file, and which blocks of its lists were read.
 pub(super) struct File<'a> {
     pub(super) bytes: &'a [u8],
-    /// Whether the file says that it was not finished.
+    /// Whether the file is marked as unfinished.
     pub(super) unfinished: bool,
-    /// What was not brought up to date then, as bits.
+    /// Bits of what was not updated in an unfinished file.
     pub(super) undone: u16,
     read: HashSet<usize>,
 }
@@ -21,7 +21,7 @@ pub(super) struct Block<'a> {
     pub(super) name: [u8; 4],
     links: &'a [u8],
     pub(super) data: &'a [u8],
-    /// Whether the file ends before the block does.
+    /// Whether the file ends within the block.
     pub(super) cut: bool,
 }
 
@@ -32,7 +32,7 @@ impl<'a> File<'a> {
         Self { bytes, unfinished, undone: if unfinished { undone } else { 0 }, read: HashSet::new() }
     }
 
-    /// The block at a place, whatever it is.
+    /// The block at a position, of any kind.
     pub(super) fn any(&self, at: usize) -> Option<Block<'a>> {
         let rest = self.bytes.get(at..)?;
         let (head, rest) = rest.split_at_checked(HEAD_BYTES)?;
@@ -40,7 +40,7 @@ impl<'a> File<'a> {
         let number = |at: usize| Some(u64::from_le_bytes(*head.get(at..)?.first_chunk()?));
         let links = usize::try_from(number(16)?).ok()?.checked_mul(8)?;
         let mut size = usize::try_from(number(8)?).ok()?.checked_sub(HEAD_BYTES);
-        // A data block that was being written has the length of its head, or none yet; it reaches to the file's end.
+        // A data block that was being written has the length of its head, or none yet; it reaches to the end of the file.
         let writing = self.unfinished && matches!(&name, b"##DT" | b"##SD") && size.unwrap_or(0) == 0;
         if writing && !rest.starts_with(b"##") {
             size = Some(rest.len());
@@ -51,24 +51,24 @@ impl<'a> File<'a> {
         Some(Block { name, links, data, cut: size > rest.len() })
     }
 
-    /// The block at a place, if it has that name.
+    /// The block at a position, if it has this name.
     pub(super) fn block(&self, at: usize, name: &[u8; 4]) -> Option<Block<'a>> {
         self.any(at).filter(|block| block.name == *name)
     }
 
-    /// As [`Self::block`], but each only once: for lists, and for data.
+    /// As [`Self::block`], but each block only once: for lists and data.
     pub(super) fn once(&mut self, at: usize, name: &[u8; 4]) -> Option<Block<'a>> {
         let block = self.block(at, name)?;
         self.read.insert(at).then_some(block)
     }
 
-    /// As [`Self::any`], but each only once.
+    /// As [`Self::any`], but each block only once.
     pub(super) fn any_once(&mut self, at: usize) -> Option<Block<'a>> {
         let block = self.any(at)?;
         self.read.insert(at).then_some(block)
     }
 
-    /// The text that a link leads to; empty without one. Of XML it is what stands in the first `<TX>`.
+    /// The text at a link; empty without a link. Of XML, the content of the first `<TX>`.
     pub(super) fn text(&self, at: Option<usize>) -> String {
         let Some(block) = at.and_then(|at| self.any(at)) else { return String::new() };
         let all = block.data.split(|byte| *byte == 0).next().unwrap_or_default();
@@ -86,18 +86,18 @@ impl<'a> File<'a> {
 }
 
 impl Block<'_> {
-    /// Where a link leads; `None` if it leads nowhere or there is none.
+    /// Target of a link; `None` for a null or missing link.
     pub(super) fn link(&self, n: usize) -> Option<usize> {
         let bytes = self.links.get(n.checked_mul(8)?..)?.first_chunk()?;
         usize::try_from(u64::from_le_bytes(*bytes)).ok().filter(|at| *at != 0)
     }
 
-    /// How many links there are.
+    /// Number of links.
     pub(super) fn links(&self) -> usize {
         self.links.len() / 8
     }
 
-    /// Numbers of its data; 0 beyond the end.
+    /// A number in the block's data; 0 beyond its end.
     pub(super) fn u8(&self, at: usize) -> u8 {
         self.data.get(at).copied().unwrap_or(0)
     }

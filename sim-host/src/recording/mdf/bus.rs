@@ -1,4 +1,4 @@
-//! Frames of CAN in channel groups of bus logging (ASAM MDF bus logging): `CAN_DataFrame` with its parts.
+//! CAN frames in channel groups of bus logging (ASAM MDF bus logging): `CAN_DataFrame` with its parts.
 
 use super::super::Remark;
 use super::super::frames::{Id, MOST_BYTES};
@@ -9,12 +9,12 @@ use super::{Content, data};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Bytes of a frame by its code for the length.
+/// Bytes of a frame by its length code (DLC).
 const LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
-/// Bit of an identifier that says that it has 29 bits, in files without a channel for it.
+/// Bit that marks an identifier of 29 bits, in files without a channel for it.
 const EXTENDED: u64 = 1 << 31;
 
-/// What a group of bus logging records.
+/// Kind of a bus logging group.
 pub(super) enum Sort {
     Data,
     Remote,
@@ -22,7 +22,7 @@ pub(super) enum Sort {
 }
 
 impl Sort {
-    /// By the names of its channels.
+    /// The kind, from the names of the channels.
     pub(super) fn of(channels: &[Channel]) -> Option<Self> {
         let has = |name: &str| channels.iter().any(|channel| channel.name.split('.').next() == Some(name));
         match () {
@@ -34,11 +34,11 @@ impl Sort {
     }
 }
 
-/// Where the bytes of frames are that are not in the record itself.
+/// Where the bytes of frames are if not in the record itself.
 enum Elsewhere<'a> {
-    /// In a block of its own: the record has the place of a length and the bytes behind it.
+    /// In a block: the record has the position of a length that precedes the bytes.
     Block(std::borrow::Cow<'a, [u8]>),
-    /// In records of another group, by their places as if they were joined; and in the order of the records.
+    /// In records of another group, by their position in the joined records, and in the order of the records.
     Records(&'a [u8], HashMap<u64, Range<usize>>, Vec<Range<usize>>),
 }
 
@@ -82,7 +82,7 @@ pub(super) fn frames<'a>(
         },
         _ => None,
     };
-    // Loggers note the places only when they finish a file.
+    // Loggers write the positions only when they finish a file.
     let in_order = file.undone & 1 << 6 != 0;
     let (ide, length, code, bus) = (find("IDE"), find("DataLength"), find("DLC"), find("BusChannel"));
     let (mut missing, mut wrong) = (0, 0);
@@ -124,7 +124,7 @@ pub(super) fn frames<'a>(
     }
 }
 
-/// The bytes of records of variable length: each has its length before it, and the places count both.
+/// The bytes of records of variable length: a length precedes each, and positions count both.
 fn of_records<'a>(other: &'a ChannelGroup) -> Elsewhere<'a> {
     let (mut places, mut order, mut place) = (HashMap::new(), Vec::new(), 0);
     for record in &other.records {

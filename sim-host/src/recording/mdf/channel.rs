@@ -1,9 +1,9 @@
-//! Channels of a group: where a record has their bits, and what these mean.
+//! Channels of a group: position and meaning of their bits in a record.
 
 use super::block::File;
 use super::conversion::Conversion;
 
-/// Structures in structures that are followed.
+/// Largest depth of nested structures.
 const DEEPEST: u8 = 4;
 
 /// A channel.
@@ -12,39 +12,39 @@ pub(super) struct Channel {
     pub(super) name: String,
     pub(super) unit: String,
     pub(super) kind: Kind,
-    /// What its bits are: 0 to 5 are numbers.
+    /// Data type: 0 to 5 are numbers.
     data_type: u8,
     bit_offset: u32,
     pub(super) byte_offset: usize,
     pub(super) bits: u32,
     flags: u32,
     invalidation_bit: usize,
-    /// What its data link leads to.
+    /// Target of its data link.
     pub(super) data: Option<usize>,
     pub(super) conversion: Result<Conversion, &'static str>,
-    /// Whether it has parts: of a structure, which are channels of their own, or of an array.
+    /// Whether it has parts: those of a structure, which are channels themselves, or of an array.
     parts: bool,
     array: bool,
 }
 
-/// What a channel is for.
+/// Purpose of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A value in each record.
     Value,
-    /// Bytes elsewhere, whose place is in the record.
+    /// Bytes elsewhere; the record has their position.
     Variable,
     /// The time \[s\] of each record.
     Time,
-    /// The time, from the record's number alone.
+    /// The time, computed from the record's number.
     CountedTime,
-    /// A value from the record's number alone.
+    /// A value computed from the record's number.
     Counted,
-    /// Something else, such as a master that is an angle.
+    /// Anything else, such as an angle as master.
     Other,
 }
 
-/// All channels of a list, those of structures behind the structure itself.
+/// All channels of a list, those of structures after the structure itself.
 pub(super) fn list(file: &mut File, first: Option<usize>) -> Vec<Channel> {
     let mut channels = Vec::new();
     nested(file, first, DEEPEST, &mut channels);
@@ -100,12 +100,12 @@ impl Channel {
         !self.array && (counted || !matches!(self.kind, Kind::Variable | Kind::Other) && (whole || float))
     }
 
-    /// Whether it stands for its parts, which are channels of their own.
+    /// Whether it is a structure; its parts are channels themselves.
     pub(super) fn is_structure(&self) -> bool {
         self.parts
     }
 
-    /// Its bits in a record, as a number from 0; none of more than 64, nor of those that the record does not have.
+    /// Its bits in a record, as an unsigned number; `None` for more than 64 bits or bits beyond the record.
     pub(super) fn bits_of(&self, record: &[u8]) -> Option<u64> {
         if !(1..=64).contains(&self.bits) || self.bit_offset > 7 {
             return None;
@@ -121,8 +121,7 @@ impl Channel {
         Some((all >> self.bit_offset) as u64 & mask)
     }
 
-    /// Its value in the record of a number, in its unit; NaN if the record says that it is not valid. Invalidation bits are
-    /// behind the `data_bytes` of the record.
+    /// Its value in record `number`, in its unit; NaN if the record marks it as invalid. The invalidation bits follow the `data_bytes` of the record.
     pub(super) fn value(&self, number: usize, record: &[u8], data_bytes: usize) -> f64 {
         let invalid = match self.flags & 3 {
             0 => false,

@@ -1,12 +1,12 @@
-//! From a raw number to the value in the channel's unit.
+//! Conversion of a raw number to the value in the channel's unit.
 
 use super::super::dbc::is_gap;
 use super::block::File;
 
-/// How many conversions may stand behind each other.
+/// Largest number of chained conversions.
 const DEEPEST: u8 = 4;
 
-/// What is done with a raw number.
+/// A conversion.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Conversion {
     None,
@@ -14,15 +14,14 @@ pub(super) enum Conversion {
     Linear(f64, f64),
     /// `(a x^2 + b x + c) / (d x^2 + e x + f)`.
     Rational([f64; 6]),
-    /// Between two points a straight line; or the nearer point's value.
+    /// Linear interpolation between points, or the nearer point's value.
     Table {
         points: Vec<(f64, f64)>,
         lines: bool,
     },
-    /// Values of ranges, both ends included, and of what is in none.
+    /// Values of ranges, both ends included, and the value outside all ranges.
     Ranges(Vec<(f64, f64, f64)>, f64),
-    /// Texts stand for some numbers: those that say that there is no value are NaN, all others stay numbers and are
-    /// converted.
+    /// Texts for some numbers: those that mean "no value" become NaN, all others remain numbers and are converted.
     Texts {
         gaps: Vec<(f64, f64)>,
         others: Box<Conversion>,
@@ -30,10 +29,10 @@ pub(super) enum Conversion {
 }
 
 impl Conversion {
-    /// The conversion that a link leads to.
+    /// The conversion at a link.
     ///
     /// # Errors
-    /// Its kind, if it is one that is not read.
+    /// The unsupported kind.
     pub(super) fn of(file: &File, at: Option<usize>) -> Result<Self, &'static str> {
         Self::nested(file, at, DEEPEST)
     }
@@ -105,7 +104,7 @@ impl Conversion {
     }
 }
 
-/// The value of a table whose first numbers rise; beyond its ends that of the end.
+/// The value of a table with rising first numbers; constant beyond its ends.
 fn at(points: &[(f64, f64)], raw: f64, lines: bool) -> f64 {
     let next = points.partition_point(|(x, _)| *x <= raw);
     let (Some(before), Some(after)) = (next.checked_sub(1).map(|n| points[n]), points.get(next)) else {

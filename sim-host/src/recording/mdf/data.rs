@@ -1,20 +1,19 @@
-//! The bytes of a group's records or of a channel's values, joined from the blocks that hold them.
+//! The bytes of a group's records or of a channel's values, joined from their blocks.
 
 use super::block::{Block, File};
 use std::borrow::Cow;
 use std::io::Read;
 
-/// Most bytes that the blocks of one group may unpack to: a compressed file may say anything.
+/// Limit of the unpacked bytes of one group, since a compressed file can claim any size.
 const MOST_BYTES: u64 = 1 << 31;
 
-/// Joined bytes, and why they are not all, if so.
+/// Joined bytes, and why they are incomplete, if so.
 pub(super) struct Joined<'a> {
     pub(super) bytes: Cow<'a, [u8]>,
     pub(super) broken: Option<&'static str>,
 }
 
-/// Joins what a link leads to: one block, a list of blocks, compressed or not. A record may begin in one block and end in
-/// the next.
+/// Joins the data at a link: one block or a list of blocks, compressed or not. A record can begin in one block and end in the next.
 pub(super) fn joined<'a>(file: &mut File<'a>, at: Option<usize>) -> Joined<'a> {
     let Some(at) = at else { return Joined { bytes: Cow::Borrowed(&[]), broken: None } };
     let Some(first) = file.any_once(at) else {
@@ -33,12 +32,12 @@ pub(super) fn joined<'a>(file: &mut File<'a>, at: Option<usize>) -> Joined<'a> {
     Joined { bytes, broken }
 }
 
-/// Adds the blocks of a list, and of those that it goes on in.
+/// Appends the blocks of a list and of its continuations.
 fn list<'a>(file: &mut File<'a>, first: Block<'a>, bytes: &mut Cow<'a, [u8]>) -> Result<(), &'static str> {
     let mut at = Some(first);
     while let Some(block) = at {
         for n in 1..block.links() {
-            // A list that was being written has links that lead nowhere yet.
+            // A list that was being written has null links.
             let Some(place) = block.link(n) else { continue };
             let part = file.any_once(place).ok_or("a data block is not where the file says")?;
             add(&part, bytes)?;
@@ -51,7 +50,7 @@ fn list<'a>(file: &mut File<'a>, first: Block<'a>, bytes: &mut Cow<'a, [u8]>) ->
     Ok(())
 }
 
-/// Adds the bytes of one block.
+/// Appends the bytes of one block.
 fn add<'a>(block: &Block<'a>, bytes: &mut Cow<'a, [u8]>) -> Result<(), &'static str> {
     match &block.name {
         b"##DT" | b"##SD" | b"##RD" | b"##DV" => extend(bytes, Cow::Borrowed(block.data)),
@@ -65,7 +64,7 @@ fn extend<'a>(bytes: &mut Cow<'a, [u8]>, more: Cow<'a, [u8]>) {
     if bytes.is_empty() { *bytes = more } else { bytes.to_mut().extend_from_slice(&more) }
 }
 
-/// Unpacks a compressed block. Of one whose bytes were transposed first, whole rows were; the rest follows as it was.
+/// Unpacks a compressed block. Transposition covers whole rows only; the remaining bytes follow unchanged.
 fn unpacked(block: &Block) -> Result<Vec<u8>, &'static str> {
     let (kind, columns) = (block.u8(2), block.u32(4) as usize);
     let (size, packed) = (block.u64(8), block.u64(16));

@@ -1,4 +1,4 @@
-//! A data group: its records, and what becomes of each of its channel groups.
+//! Reads a data group: separates its records and converts each channel group to columns or CAN frames.
 
 use super::super::remarks::Remarks;
 use super::super::{Column, Group, Remark};
@@ -8,15 +8,15 @@ use super::record::{Shape, apart};
 use super::{Content, bus, data};
 use std::ops::Range;
 
-/// Most channels for each byte of a record; each bit could be one, and some may share theirs.
+/// Most channels per byte of a record; each bit can be a channel, and channels can share bits.
 const MOST_CHANNELS_A_BYTE: usize = 16;
 
 /// A channel group and its records.
 pub(super) struct ChannelGroup<'a> {
-    /// Where its block is.
+    /// Position of its block.
     pub(super) at: usize,
     pub(super) name: String,
-    /// Name of what was recorded, such as a bus.
+    /// Name of the source, such as a bus.
     pub(super) source: String,
     pub(super) shape: Shape,
     pub(super) channels: Vec<Channel>,
@@ -30,17 +30,17 @@ impl ChannelGroup<'_> {
         self.records.iter().map(|record| &self.bytes[record.clone()])
     }
 
-    /// The channel that is the time of each record.
+    /// The channel with the time of each record.
     pub(super) fn master(&self) -> Option<&Channel> {
         self.channels.iter().find(|c| matches!(c.kind, Kind::Time | Kind::CountedTime) && c.is_number())
     }
 
-    /// The times of its records \[s\], as its master has them.
+    /// The times of its records \[s\], from the master channel.
     pub(super) fn times_s(&self) -> Option<Vec<f64>> {
         self.master().map(|master| self.values(master))
     }
 
-    /// A channel's values, one a record.
+    /// A channel's values, one per record.
     fn values(&self, channel: &Channel) -> Vec<f64> {
         let value = |(n, record)| channel.value(n, record, self.shape.data_bytes);
         self.iter().enumerate().map(value).collect()
@@ -102,7 +102,7 @@ pub(super) fn read(file: &mut File, block: &Block, content: &mut Content) {
     }
 }
 
-/// The channels of a group that are numbers, as columns.
+/// The numeric channels of a group, as columns.
 fn numbers(part: &ChannelGroup, content: &mut Content) {
     let mut remarks = Remarks::default();
     let mut left_out = |what: String| {

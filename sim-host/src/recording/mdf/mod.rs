@@ -1,13 +1,10 @@
-//! Measurement files (MDF 4, ASAM), as data loggers and measuring programs write them.
+//! Reads measurement files (MDF 4, ASAM) of data loggers and measuring programs.
 //!
-//! Read are groups whose channels are numbers, as columns with their conversions applied, and the frames of CAN of bus
-//! logging (`CAN_DataFrame`), to be decoded by a database; sorted and unsorted, whole, in lists and compressed. A file that
-//! was not finished (`UnFinMF`, as a logger leaves it when its power goes) or that was cut is read up to the last whole
-//! record, with a remark. Passed over with a remark: conversions by formula, arrays, text, files that keep each channel
-//! by itself (4.2).
+//! Supported: groups of numeric channels, as columns with their conversions applied, and CAN frames of bus logging (`CAN_DataFrame`), which a database decodes;
+//! sorted and unsorted, whole, in lists and compressed. An unfinished file (`UnFinMF`, as a logger leaves it on loss of power) or a cut one is read up to the
+//! last whole record, with a remark. Skipped with a remark: conversions by formula, arrays, text, files that store each channel separately (4.2).
 //!
-//! Block layout: ASAM MDF 4.1.0, as described with asammdf (`asammdf/blocks/v4_blocks.py`). Every link is checked; none is
-//! followed twice.
+//! Block layout: ASAM MDF 4.1.0, as described with asammdf (`asammdf/blocks/v4_blocks.py`). Every link is checked; none is followed twice.
 
 mod block;
 mod bus;
@@ -21,18 +18,18 @@ use super::frames::Frames;
 use super::{Group, Remark};
 use block::File;
 
-/// What a measurement file holds.
+/// Content of a measurement file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Content {
-    /// Groups of channels that are numbers already.
+    /// Groups of numeric channels.
     pub groups: Vec<Group>,
     /// Frames of CAN.
     pub frames: Frames,
-    /// What could not be used.
+    /// Data that could not be used.
     pub remarks: Vec<Remark>,
 }
 
-/// Whether a file says that it is one, finished or not.
+/// Whether the bytes are an MDF file, finished or not.
 pub fn is_one(bytes: &[u8]) -> bool {
     bytes.starts_with(b"MDF     ") || bytes.starts_with(b"UnFinMF ")
 }
@@ -40,7 +37,7 @@ pub fn is_one(bytes: &[u8]) -> bool {
 /// Reads a measurement file.
 ///
 /// # Errors
-/// It is of another version than 4, or holds neither numbers nor frames of CAN.
+/// The version is not 4, or the file has neither numbers nor CAN frames.
 pub fn parse(bytes: &[u8]) -> Result<Content, Remark> {
     let fails = |what: &str| Remark::of_file(what.to_owned());
     let version = bytes.get(28..30).map_or(0, |v| u16::from_le_bytes([v[0], v[1]]));

@@ -1,19 +1,19 @@
-//! Records of groups, apart again that were written as they came.
+//! Separates the records of channel groups that were written in one stream.
 
 use super::block::Block;
 use std::ops::Range;
 
-/// How long the records of a channel group are.
+/// Record length of a channel group.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
-    /// The number before its records in an unsorted data group.
+    /// The number that precedes its records in an unsorted data group.
     pub(super) id: u64,
-    /// Bytes of channels, and of invalidation bits behind them.
+    /// Bytes of channels, and of the invalidation bits after them.
     pub(super) data_bytes: usize,
     pub(super) invalidation_bytes: usize,
-    /// Whether its records are bytes of variable length of a channel of another group.
+    /// Whether its records are bytes of variable length for a channel of another group.
     pub(super) variable: bool,
-    /// How many there are; not to be relied upon in a file that was not finished.
+    /// Number of records; unreliable in an unfinished file.
     pub(super) count: u64,
     /// Whether its master is in another group.
     pub(super) remote_master: bool,
@@ -37,7 +37,7 @@ impl Shape {
     }
 }
 
-/// Where the records of each shape are in the bytes, and why the rest could not be read, if so.
+/// Positions of the records of each shape, and why the rest could not be read, if so.
 pub(super) fn apart(
     bytes: &[u8],
     id_bytes: usize,
