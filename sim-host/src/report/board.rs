@@ -28,7 +28,7 @@ pub struct ParametersDocument {
 }
 
 impl ParametersDocument {
-    /// Of what `board` has, those of `parameters` only.
+    /// The document of `board` with the given `parameters` only.
     pub fn new(board: BoardName, settings: &Settings, parameters: &[&Parameter]) -> Self {
         Self {
             schema: SCHEMA,
@@ -40,22 +40,22 @@ impl ParametersDocument {
     }
 }
 
-/// A parameter of a board. Values are in the words of `--set`.
+/// A parameter of a board. Values are text in the form of `--set`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ListedParameter {
     /// Its name.
     pub key: String,
     /// Its value.
     pub value: String,
-    /// What a reset makes it.
+    /// Its value after a reset.
     pub default: String,
     /// Its unit; empty for a plain number.
     pub unit: &'static str,
-    /// Least allowed value; null where only words are.
+    /// Smallest allowed value; null for a choice of names.
     pub min: Option<f32>,
-    /// Largest allowed value; null where only words are.
+    /// Largest allowed value; null for a choice of names.
     pub max: Option<f32>,
-    /// The words that it may be; none for a plain number.
+    /// The allowed names; empty for a plain number.
     pub words: Vec<String>,
 }
 
@@ -84,8 +84,8 @@ pub struct FaultsDocument {
     pub tool: Tool,
     /// The board; null for a recording.
     pub board: Option<BoardName>,
-    /// The faults it kept, the newest first; of a recording those told in it, in its order.
+    /// The stored fault records, newest first; for a recording, those in it, in its order.
     pub faults: Vec<Fault>,
-    /// How much of a recording was understood; null for a board.
+    /// Counts of the recording's frames; null for a board.
     pub recording: Option<Reception>,
 }

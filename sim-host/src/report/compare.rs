@@ -1,4 +1,4 @@
-//! The document of `basin compare`.
+//! Document of `basin compare`.
 
 use super::document::SCHEMA;
 use super::resolved::{ResolvedSearch, Tool};
@@ -14,20 +14,19 @@ pub struct CompareDocument {
     pub schema: u32,
     /// The program.
     pub tool: Tool,
-    /// What was searched for the cases that were computed.
+    /// The search of the computed cases.
     pub search: ResolvedSearch,
-    /// False after an interruption: then cases are missing or cover fewer speeds.
+    /// False after an interruption: cases are then missing or cover fewer speeds.
     pub complete: bool,
-    /// The cases, in the order asked for.
+    /// The cases, in the requested order.
     pub cases: Vec<CaseEntry>,
-    /// Root-mean-square distance of each two outlines over the speeds they share \[rad/s\]; null if
-    /// they share none.
+    /// Root-mean-square distance of each two outlines over their common speeds \[rad/s\]; null without any.
     pub rmse: Vec<Vec<Option<f64>>>,
-    /// The same as the thesis prints its eq. 2.22, without 1/n \[rad/s\].
+    /// The same by eq. 2.22 as the thesis prints it, without 1/n \[rad/s\].
     pub rmse_as_printed: Vec<Vec<Option<f64>>>,
-    /// How both distances lie to the true ones; null if the outlines share no speed.
+    /// Whether both distances are exact or bounds; null if the outlines have no common speed.
     pub rmse_is: Vec<Vec<Option<Bound>>>,
-    /// Whether all cases cover the same speeds. If not, areas and means are not of the same range.
+    /// Whether all cases cover the same speeds. If not, areas and means refer to different ranges.
     pub same_speeds: bool,
 }
 
@@ -44,15 +43,15 @@ pub struct CaseEntry {
     pub upper: Vec<f64>,
     /// Area under it, trapezoidal rule \[rad m/s^2\].
     pub area: f64,
-    /// Its mean \[rad/s\].
+    /// Mean height \[rad/s\].
     pub mean_height: Option<f64>,
-    /// Area as a part of the first case's; null if that is 0.
+    /// Area relative to the first case's; null if that is 0.
     pub relative_area: Option<f64>,
-    /// Mean as a part of the first case's; null if that is 0. At one speed, where no area is, this is the comparison.
+    /// Mean relative to the first case's; null if that is 0. At a single speed, which has no area, this is the comparison.
     pub relative_height: Option<f64>,
-    /// How both parts lie to the true ones.
+    /// Whether both ratios are exact or bounds.
     pub relative_is: Bound,
-    /// Per speed whether the height is a lower bound, as nothing fell up to the largest rate tried.
+    /// Whether the height is a lower bound because nothing fell up to the largest rate tried, per speed.
     pub capped: Vec<bool>,
     /// Whether area and mean are lower bounds.
     pub area_capped: bool,
@@ -65,7 +64,7 @@ pub struct Case {
     pub label: String,
     /// Its full configuration.
     pub config: serde_json::Value,
-    /// Its outline; of a case from a file without scan and border rides.
+    /// Its outline; a case from a file has no scan and no border rides.
     pub basin: Basin,
 }
 
@@ -75,7 +74,7 @@ impl CompareDocument {
         let first = cases.first().map_or(0.0, |c| c.basin.area());
         let first_mean = cases.first().and_then(|c| c.basin.mean_height()).unwrap_or(0.0);
         let first_capped = cases.first().is_some_and(|c| c.basin.capped());
-        // The first compared with itself is 1, however high it is.
+        // The first case relative to itself is exactly 1, even if its height is a bound.
         let relative_is = |case: &Case| match cases.first() {
             Some(first) if first.label == case.label => Bound::Measured,
             _ => Bound::of_ratio(case.basin.capped(), first_capped),
@@ -108,13 +107,13 @@ impl CompareDocument {
         }
     }
 
-    /// Whether there is a single speed, under whose heights is no area.
+    /// Whether there is a single speed, at which areas are zero.
     pub fn one_speed(&self) -> bool {
         self.cases.iter().all(|case| case.speeds.len() < 2)
     }
 }
 
-/// A measure of the distance of each two cases; of a case from itself it is measured, however high it is.
+/// A measure of the distance between each two cases; the distance of a case to itself is exact, even if its height is a bound.
 fn between<T>(cases: &[Case], of: impl Fn(Rmse) -> T) -> Vec<Vec<Option<T>>> {
     let distance = |i: usize, j: usize| {
         let found = rmse(&cases[i].basin, &cases[j].basin)?;

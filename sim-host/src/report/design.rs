@@ -1,4 +1,4 @@
-//! The document, table, figure and law file of `design`.
+//! Document, table, figure and law file of `design`.
 
 use super::document::SCHEMA;
 use super::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
@@ -19,54 +19,54 @@ pub struct DesignDocument {
     pub schema: u32,
     /// The program.
     pub tool: Tool,
-    /// The law that the search began with, as given.
+    /// The initial law of the search, as given.
     pub start: String,
-    /// Seed of the simplices begun anew.
+    /// Seed of the restarted simplices.
     pub seed: u64,
-    /// Schedules that were to be tried.
+    /// Requested number of evaluated schedules.
     pub evaluations_asked: u32,
-    /// Schedules that were tried: with the same seed, as many give the same answer.
+    /// Number of evaluated schedules; the result is a function of it and the seed.
     pub evaluations: u32,
-    /// False if time ran out or after an interruption: then it is the best so far.
+    /// False if time ran out or after an interruption: the result is then the best so far.
     pub complete: bool,
-    /// Area given up for evenness \[rad m/s^2 per (N m s/rad)^2\].
+    /// Weight of the smoothness penalty \[rad m/s^2 per (N m s/rad)^2\].
     pub smoothness: f64,
-    /// Largest torque \[N m\].
+    /// Torque limit \[N m\].
     pub torque_limit_nm: Option<f32>,
-    /// Largest change of torque \[N m/s\].
+    /// Torque rate limit \[N m/s\].
     pub rate_limit_nm_s: Option<f32>,
     /// When a ride counts as fallen.
     pub fall: FallCriterion,
     /// The schedule: speed \[m/s\] and gain \[N m s/rad\].
     pub schedule: Vec<(f32, f32)>,
-    /// Its least area over the trials it was designed with, found coarsely \[rad m/s^2\].
+    /// Smallest area over the design scenarios, from the coarse search \[rad m/s^2\].
     pub worst_area: f64,
-    /// Whether it is a lower bound, as nothing fell up to the largest rate tried at some speed.
+    /// Whether it is a lower bound because nothing fell up to the largest rate tried at some speed.
     pub worst_area_capped: bool,
-    /// The same of the law it began with.
+    /// Smallest area of the initial law \[rad m/s^2\].
     pub start_worst_area: f64,
     /// Whether that is a lower bound.
     pub start_worst_area_capped: bool,
-    /// Every improvement: schedules tried, least area.
+    /// Every improvement: number of evaluated schedules, smallest area.
     pub history: Vec<(u32, f64)>,
-    /// How areas were found on the way.
+    /// Search of areas during the optimisation.
     pub coarse: SearchEntry,
-    /// How those of the trials below were found.
+    /// Search of areas in the trials below.
     pub fine: SearchEntry,
-    /// The laws that are compared, by their names on the command line; the last is "design".
+    /// The compared laws, by their names on the command line; the last is "design".
     pub laws: Vec<String>,
-    /// Every trial; empty if they were left out or interrupted.
+    /// All trials; empty if they were switched off or interrupted.
     pub trials: Vec<TrialEntry>,
-    /// How long it took \[s\].
+    /// Computing time \[s\].
     pub seconds: f64,
 }
 
-/// How areas are found.
+/// Search of areas.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SearchEntry {
     /// Forward speeds \[m/s\].
     pub speeds: Vec<f64>,
-    /// The search at each.
+    /// The search at each speed.
     #[serde(flatten)]
     pub search: ResolvedSearch,
 }
@@ -74,13 +74,13 @@ pub struct SearchEntry {
 /// The laws in one trial.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct TrialEntry {
-    /// Who rides what.
+    /// Rider and bicycle.
     pub label: String,
-    /// Whether the schedule was designed with it.
+    /// Whether it is a design scenario (true) or a hold-out scenario.
     pub designed_with: bool,
     /// Area of the basin under each of `laws`, trapezoidal rule \[rad m/s^2\].
     pub area: Vec<f64>,
-    /// Whether these are lower bounds, as nothing fell up to the largest rate tried at some speed.
+    /// Whether these are lower bounds because nothing fell up to the largest rate tried at some speed.
     pub area_capped: Vec<bool>,
 }
 
@@ -91,29 +91,29 @@ impl SearchEntry {
     }
 }
 
-/// A design, and what it was judged to be.
+/// A design and its evaluation.
 #[derive(Clone, Copy, Debug)]
 pub struct Design<'a> {
-    /// What was searched.
+    /// Configuration of the optimisation.
     pub plan: &'a Plan,
-    /// The law it began with, as given.
+    /// The initial law, as given.
     pub start: &'a str,
-    /// What was found.
+    /// Result of the optimisation.
     pub found: &'a Found,
-    /// What it is, as a law.
+    /// The resulting law.
     pub law: &'a Law,
-    /// With what and on what it was tried.
+    /// The design and hold-out scenarios.
     pub arena: &'a crate::design::Scenarios,
-    /// How areas were found for the judgement.
+    /// Search of areas for the evaluation.
     pub fine: &'a crate::basin::Search,
-    /// The laws compared, itself the last.
+    /// The compared laws; the designed one is the last.
     pub laws: &'a [(String, Law)],
-    /// Their areas, if they were found.
+    /// Their areas, if evaluated.
     pub judged: Option<&'a Judged>,
 }
 
 impl DesignDocument {
-    /// The document of a design that took `seconds`.
+    /// The document of a design with its computing time `seconds`.
     pub fn new(d: &Design, seconds: f64) -> Self {
         let trials = d.arena.training.iter().map(|t| (t, true));
         let trials: Vec<_> = trials.chain(d.arena.held_out.iter().map(|t| (t, false))).collect();
@@ -155,7 +155,7 @@ impl DesignDocument {
         }
     }
 
-    /// The answer in words.
+    /// The result as text.
     pub fn summary(&self) -> String {
         let mut text = format!(
             "{} schedules tried, least area {}{:.3} rad m/s^2 (coarse; {} has {}{:.3})\n",
@@ -196,8 +196,7 @@ impl DesignDocument {
         text
     }
 
-    /// The heading of the table: the trial's number, whether it was designed with, each law's area, whether that is a
-    /// lower bound.
+    /// Columns of the table: the trial's number, whether it is a design scenario, each law's area, and whether that is a lower bound.
     pub fn columns(&self) -> Vec<String> {
         let capped = self.laws.iter().map(|law| format!("{law}_capped"));
         let head = ["trial".to_owned(), "designed_with".to_owned()].into_iter();
@@ -219,7 +218,7 @@ fn points(law: &Law) -> Vec<(f32, f32)> {
     table.points().to_vec()
 }
 
-/// The law as a file that `--law` takes.
+/// The law in the file format of `--law`.
 pub fn law_file(d: &Design) -> String {
     let Tool { name, version, commit } = Tool::this();
     let source = format!(
@@ -231,7 +230,7 @@ pub fn law_file(d: &Design) -> String {
     format!("source = {source}\nspeed_m_s = {speeds:?}\ngain_nm_s_rad = {gains:?}\n")
 }
 
-/// The gains of the laws over speed, and their areas trial by trial.
+/// Figure of the gains of the laws over speed, and of their areas in each trial.
 pub fn figure(document: &DesignDocument, laws: &[(String, Law)]) -> Chart {
     let speeds: Vec<f64> = (0..=180).map(|i| 0.05 * f64::from(i)).collect();
     let assisting = || laws.iter().enumerate().filter(|(_, (_, law))| *law != Law::None);

@@ -1,4 +1,4 @@
-//! The JSON documents, schema 1: what scripts may rely on (`docs/cli.md`, `docs/schema/`).
+//! The JSON documents, schema 1: the contract for scripts (`docs/cli.md`, `docs/schema/`).
 
 use super::resolved::{ResolvedConfig, ResolvedSearch, Tool};
 use crate::basin::{Basin, Drawn, QUANTILES, ScanPoint, Work};
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// The version of these documents.
 pub const SCHEMA: u32 = 1;
 
-/// What can make a ride count as fallen, by the names of [`FallCause`], or nothing.
+/// Reasons for which a ride can count as fallen, by the names of [`FallCause`], or none.
 pub(super) const FALLS: [Option<&str>; 6] =
     [Some("roll"), Some("steer"), Some("laid-flat"), Some("too-quick"), Some("no-motion"), None];
 
@@ -43,9 +43,9 @@ pub struct CheckDocument {
     pub v_c: Option<f64>,
     /// Ranges of speed in which the straight ride is stable, from rest to 20 m/s \[m/s\].
     pub stable_ranges: Vec<[f64; 2]>,
-    /// The ends of these ranges, but for those of the search.
+    /// The ends of these ranges, without the ends of the search.
     pub stability_changes: Vec<StabilityChange>,
-    /// What of the flashed code, as `--preset product`, is off on this bicycle, and why.
+    /// Parts of the firmware configuration (`--preset product`) that are off on this bicycle, with the reason.
     pub flashed_off: Vec<String>,
 }
 
@@ -59,17 +59,17 @@ pub struct EigenDocument {
     pub tool: Tool,
     /// The bicycle.
     pub bicycle: super::resolved::ResolvedBicycle,
-    /// Who rides; null for a rigid rider, hands off.
+    /// The rider; null for a rigid rider, hands off.
     pub rider: Option<super::resolved::ResolvedRider>,
-    /// What is doubtful about rider and bicycle together.
+    /// Doubts about the combination of rider and bicycle.
     pub warnings: Vec<String>,
     /// The law.
     pub law: super::resolved::ResolvedLaw,
-    /// The capsize term beside it; null if there is none.
+    /// The added capsize term; null without one.
     pub capsize: Option<super::resolved::ResolvedCapsize>,
-    /// What stands between law and steer axis; null if it gives what it is asked for.
+    /// The actuator between law and steer axis; null for an ideal one.
     pub actuator: Option<crate::eigen::LinearActuator>,
-    /// Speed at which the first complex pair forms \[m/s\]; not looked for with a rider.
+    /// Speed at which the first complex pair forms \[m/s\]; not computed with a rider.
     pub v_d: Option<f64>,
     /// Weave speed \[m/s\].
     pub v_w: Option<f64>,
@@ -77,15 +77,14 @@ pub struct EigenDocument {
     pub v_c: Option<f64>,
     /// Ranges of speed in which the straight ride is stable, from rest to 20 m/s \[m/s\].
     pub stable_ranges: Vec<[f64; 2]>,
-    /// The ends of these ranges, but for those of the search.
+    /// The ends of these ranges, without the ends of the search.
     pub stability_changes: Vec<StabilityChange>,
     /// Speeds \[m/s\].
     pub speeds: Vec<f64>,
-    /// Per speed the eigenvalues `[re, im]` \[1/s\], largest real part first: four without a rider,
-    /// else as many of the rightmost as were asked for, and one more rather than half a pair.
+    /// Per speed the eigenvalues `[re, im]` \[1/s\], largest real part first: four without a rider, else the requested number of rightmost ones, plus one to
+    /// complete a pair.
     pub eigenvalues: Vec<Vec<[f64; 2]>>,
-    /// Modes by name: per speed their one or two eigenvalues `[re, im]` \[1/s\], followed by
-    /// continuity; those left of all that were computed are missing.
+    /// Modes by name: per speed their one or two eigenvalues `[re, im]` \[1/s\], followed by continuity; omitted where left of all computed ones.
     pub modes: BTreeMap<String, Vec<Vec<[f64; 2]>>>,
 }
 
@@ -104,17 +103,17 @@ pub struct RideDocument {
     /// "fallen", "recovered" or "undecided".
     #[schemars(extend("enum" = ["fallen", "recovered", "undecided"]))]
     pub outcome: &'static str,
-    /// When it fell \[s\]; null if it did not.
+    /// Time of the fall \[s\]; null if the ride did not fall.
     pub time_to_fall_s: Option<f64>,
-    /// What made it count as fallen (`config.fall`); null if it did not.
+    /// Reason for which it counts as fallen (`config.fall`); null if it did not fall.
     #[schemars(extend("enum" = FALLS))]
     pub fall: Option<&'static str>,
-    /// Whether nothing disturbed it: an upright ride stays upright, stable or not.
+    /// Whether there was no disturbance: an upright ride then stays upright, stable or not.
     pub undisturbed: bool,
     /// The state at the end.
     #[serde(rename = "final")]
     pub end: FinalState,
-    /// What it took.
+    /// Peaks of torque and motion, and the motor's work.
     pub effort: Effort,
 }
 
@@ -136,27 +135,27 @@ impl RideDocument {
     }
 }
 
-/// The two borders of the interval that contains zero, per speed \[rad/s\]; null if not computed.
+/// Upper and lower border of the interval around zero, per speed \[rad/s\]; null if not computed.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Height {
-    /// To the right.
+    /// Border to the right.
     pub upper: Vec<Option<f64>>,
-    /// To the left: the mirror image.
+    /// Border to the left: the mirror image.
     pub lower: Vec<Option<f64>>,
 }
 
-/// A range of disturbances outside the basin that does not fall either; it has a mirror image.
+/// A range of disturbances outside the basin from which a ride does not fall either; it has a mirror image.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct IslandEntry {
     /// Speed \[m/s\].
     pub speed: f64,
-    /// Least disturbance \[rad/s\].
+    /// Smallest disturbance \[rad/s\].
     pub from: f64,
     /// Largest disturbance \[rad/s\].
     pub to: f64,
 }
 
-/// The ride at the border of one speed.
+/// The ride at the border at one speed.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Border {
     /// Speed \[m/s\].
@@ -164,49 +163,49 @@ pub struct Border {
     /// "recovered" or "undecided".
     #[schemars(extend("enum" = ["recovered", "undecided"]))]
     pub outcome: &'static str,
-    /// What it took.
+    /// Peaks of torque and motion, and the motor's work.
     pub effort: Effort,
-    /// What made the nearest ride beyond it count as fallen; null if nothing fell.
+    /// Reason for which the nearest ride beyond the border counts as fallen; null if nothing fell.
     #[schemars(extend("enum" = FALLS))]
     pub fall: Option<&'static str>,
 }
 
-/// Every ride of the scan, per speed and rate.
+/// All rides of the scan, per speed and rate.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Map {
     /// Disturbances \[rad/s\].
     pub rates: Vec<f64>,
-    /// Per speed and rate "fallen", "recovered" or "undecided"; an empty list if not computed.
+    /// "fallen", "recovered" or "undecided" per speed and rate; an empty list if not computed.
     pub outcome: Vec<Vec<&'static str>>,
-    /// Per speed and rate the time to fall \[s\]; null for a ride that did not.
+    /// Time to fall per speed and rate \[s\]; null for a ride that did not fall.
     pub time_to_fall_s: Vec<Vec<Option<f64>>>,
-    /// Per speed and rate what made it count as fallen; null for a ride that did not.
+    /// Reason of the fall per speed and rate; null for a ride that did not fall.
     pub fall: Vec<Vec<Option<&'static str>>>,
 }
 
 /// The basins of drawn bicycles.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct UncertainEntry {
-    /// Bicycles whose basin is whole.
+    /// Bicycles whose basin is complete.
     pub draws: usize,
     /// Seed of the draws.
     pub seed: u64,
-    /// The parts of the draws below the numbers here: 5 %, 50 % and 95 %.
+    /// The quantiles reported here: 5 %, 50 % and 95 %.
     pub quantiles: [f64; 3],
-    /// Per speed these quantiles of the height \[rad/s\].
+    /// These quantiles of the height per speed \[rad/s\].
     pub upper: Vec<[f64; 3]>,
-    /// The same of the area \[rad m/s^2\].
+    /// These quantiles of the area \[rad m/s^2\].
     pub area: [f64; 3],
-    /// The same of the mean height \[rad/s\].
+    /// These quantiles of the mean height \[rad/s\].
     pub mean_height: [f64; 3],
-    /// How many draws have a height that is a lower bound.
+    /// Number of draws with a height that is a lower bound.
     pub capped: usize,
-    /// Per draw and speed the height \[rad/s\].
+    /// The height per draw and speed \[rad/s\].
     pub heights: Vec<Vec<f64>>,
 }
 
 impl UncertainEntry {
-    /// Of drawn basins.
+    /// The entry of drawn basins.
     pub fn new(drawn: &Drawn) -> Self {
         let heights = |basin: &Basin| basin.columns.iter().map(|c| c.upper).collect();
         Self {
@@ -232,38 +231,38 @@ pub struct BasinDocument {
     pub tool: Tool,
     /// The conditions.
     pub config: ResolvedConfig,
-    /// What was searched.
+    /// The search.
     pub search: ResolvedSearch,
-    /// False after an interruption: then some heights are null, and so are the measures.
+    /// False after an interruption; some heights and all measures are then null.
     pub complete: bool,
     /// Forward speeds \[m/s\].
     pub speeds: Vec<f64>,
-    /// The outline.
+    /// Upper and lower border.
     pub height: Height,
-    /// Per speed whether nothing fell up to `search.max_rate`; null if not computed.
+    /// Whether nothing fell up to `search.max_rate`, per speed; null if not computed.
     pub capped: Vec<Option<bool>>,
-    /// What lies beyond the outline.
+    /// Islands beyond the border.
     pub islands: Vec<IslandEntry>,
     /// Area between zero and `upper`, trapezoidal rule \[rad m/s^2\].
     pub area: Option<f64>,
     /// Mean of `upper` \[rad/s\].
     pub mean_height: Option<f64>,
-    /// Whether area and mean are lower bounds, as some height is one.
+    /// Whether area and mean are lower bounds because a height is one.
     pub area_capped: bool,
-    /// The basins of bicycles drawn from the uncertainties of the parameters; null if none were asked for.
+    /// The basins of bicycles drawn from the uncertainties of the parameters; null if not requested.
     pub uncertain: Option<UncertainEntry>,
-    /// The rides at the outline.
+    /// The rides at the border.
     pub border: Vec<Border>,
-    /// The scan.
+    /// All rides of the scan.
     pub map: Map,
-    /// How much was computed.
+    /// Amount of computation.
     pub work: Work,
-    /// How long it took \[s\].
+    /// Computing time \[s\].
     pub seconds: f64,
 }
 
 impl BasinDocument {
-    /// The document of a basin over `speeds`, of which some may be missing.
+    /// The document of a basin over `speeds`, some of which can be missing.
     pub fn new(
         config: ResolvedConfig,
         search: ResolvedSearch,
@@ -300,7 +299,7 @@ impl BasinDocument {
             search,
             complete,
             speeds: speeds.to_vec(),
-            // An exact zero has no sign, so its mirror image is zero and not minus zero.
+            // A zero has no sign, so its mirror image is 0 and not -0.
             height: Height { lower: upper.iter().map(|u| u.map(|u| 0.0 - u)).collect(), upper },
             capped: columns.iter().map(|c| c.map(|c| c.capped)).collect(),
             islands,
@@ -329,7 +328,7 @@ impl BasinDocument {
 
 /// The JSON schema of a document by its command's name; `None` for another name.
 pub fn schema(command: &str) -> Option<serde_json::Value> {
-    // Of what is written: a value that can be null is there all the same.
+    // Schema of serialised output: a nullable value is still required.
     let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
     let schema = match command {
         "basin" => generator.into_root_schema_for::<BasinDocument>(),
@@ -350,7 +349,7 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "thesis" => generator.into_root_schema_for::<crate::thesis::document::ThesisDocument>(),
         _ => return None,
     };
-    // The descriptions are the doc comments, whose brackets are escaped.
+    // The descriptions are doc comments, whose brackets are escaped.
     let text = serde_json::to_string(&schema).ok()?.replace(r"\\[", "[").replace(r"\\]", "]");
     serde_json::from_str(&text).ok()
 }

@@ -1,4 +1,4 @@
-//! What leaves the program: documents, tables, figures, files.
+//! Outputs of the program: documents, tables, figures, files.
 
 pub mod board;
 pub mod compare;

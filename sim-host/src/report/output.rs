@@ -1,15 +1,15 @@
-//! Files that are whole or not there: written beside their place and moved into it.
+//! Writes result files atomically: to a temporary file in the same folder, then renamed.
 
 use std::fs::{OpenOptions, metadata};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::Builder;
 
-/// How the names of files begin that are written beside their place.
+/// Prefix of the temporary files' names.
 pub(crate) const TEMPORARY: &str = ".sim-host-";
 
-/// A place for a result: tried before the work, so that one that can't be written to is known
-/// early, and filled at the end. Between the two nothing of it exists, so nothing can be left behind.
+/// The destination of a result: checked before the computation, so that an error appears early, and written at the end. Nothing is created in between, so
+/// nothing is left behind.
 #[derive(Debug)]
 pub struct Output {
     path: PathBuf,
@@ -22,11 +22,11 @@ enum Place {
     Standard,
     /// A device or a pipe: written to, never replaced.
     Stream(PathBuf),
-    /// A file: the folder, free of links, and its name in it.
+    /// A file: its folder with links resolved, and its name in it.
     File(PathBuf, PathBuf),
 }
 
-/// Why a result can't be written.
+/// Why a result cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[error("can't write {path}: {source}")]
 pub struct OutputError {
@@ -35,11 +35,10 @@ pub struct OutputError {
 }
 
 impl Output {
-    /// Makes ready to write `path`; `-` is standard output.
+    /// Prepares to write `path`; `-` is standard output.
     ///
     /// # Errors
-    /// When its folder is missing or can't be written to, or `path` is a folder, a file that must
-    /// not be written to, or a link to nothing.
+    /// The folder is missing or not writable, or `path` is a folder, a file without write permission, or a dangling symlink.
     pub fn create(path: &Path) -> Result<Self, OutputError> {
         let place = Place::find(path).map_err(|source| OutputError { path: path.into(), source })?;
         Ok(Self { path: path.into(), place })
@@ -50,15 +49,15 @@ impl Output {
         self.place == Place::Standard
     }
 
-    /// Whether both end in the same place.
+    /// Whether both have the same destination.
     pub fn collides(&self, other: &Output) -> bool {
         self.place == other.place
     }
 
-    /// Writes the content: a file is written beside its place and moved into it.
+    /// Writes the content; a file is written to a temporary file and renamed.
     ///
     /// # Errors
-    /// The system's; nothing is left behind then, and an older file stays.
+    /// The system's error; the destination is then unchanged and no temporary file remains.
     pub fn finish(&self, content: &[u8]) -> Result<(), OutputError> {
         let written = match &self.place {
             Place::Standard => io::stdout().lock().write_all(content).and_then(|()| io::stdout().flush()),
@@ -94,7 +93,7 @@ impl Place {
         if !folder.is_dir() {
             return Err(io::Error::other(format!("there is no folder {}", folder.display())));
         }
-        // The kind alone: the error's text names the temporary file, which means nothing to the user.
+        // Only the kind: the error's text names the temporary file, which the user does not know.
         Builder::new().prefix(TEMPORARY).tempfile_in(folder).map_err(|e| e.kind())?;
         Ok(Place::File(folder.canonicalize()?, name.into()))
     }

@@ -1,9 +1,9 @@
-//! Figures as files: SVG and PNG with the configuration inside.
+//! Writes figures to SVG and PNG with the configuration inside.
 
 use super::resolved::Tool;
 use serde::Serialize;
 
-/// The text a figure carries: the program and the full configuration.
+/// Caption of a figure: the program and the full configuration.
 pub fn caption(config: &impl Serialize) -> String {
     let tool = Tool::this();
     let config = serde_json::to_string(config).unwrap_or_default();
@@ -24,7 +24,7 @@ pub fn png_with_caption(png: &[u8], caption: &str) -> Vec<u8> {
     // Signature 8 bytes, IHDR 25 bytes: length, type, 13 bytes of data, checksum.
     const HEADER: usize = 33;
     let mut chunk = b"tEXtDescription\0".to_vec();
-    // Latin-1 is what the chunk may hold; the configuration is ASCII but for names of files.
+    // The chunk holds Latin-1; the configuration is ASCII except for names of files.
     chunk.extend(caption.chars().map(|c| u8::try_from(u32::from(c)).unwrap_or(b'?')));
     let (head, rest) = png.split_at(HEADER.min(png.len()));
     let mut out = head.to_vec();

@@ -1,4 +1,4 @@
-//! The document and the table of `basin plane`.
+//! Document and table of `basin plane`.
 
 use super::document::{FALLS, SCHEMA};
 use super::resolved::{ResolvedConfig, Tool};
@@ -17,21 +17,21 @@ pub struct PlaneDocument {
     pub tool: Tool,
     /// The conditions.
     pub config: ResolvedConfig,
-    /// What was searched.
+    /// The search.
     pub search: PlaneSearch,
-    /// False after an interruption: then rays are missing, and so is the area.
+    /// False after an interruption: rays and the area are then missing.
     pub complete: bool,
     /// Area inside the outline \[rad^2/s^2\].
     pub area: Option<f64>,
-    /// Whether the area is a lower bound, as nothing fell up to the end of some ray.
+    /// Whether the area is a lower bound because nothing fell up to the end of some ray.
     pub area_capped: bool,
-    /// The border around the undisturbed ride, all the way round: `[steer rate, roll rate]` \[rad/s\].
+    /// The closed border around the undisturbed ride: `[steer rate, roll rate]` \[rad/s\].
     pub outline: Vec<[f64; 2]>,
     /// The rays of one half; the other half is the mirror image.
     pub rays: Vec<RayEntry>,
-    /// How much was computed.
+    /// Amount of computation.
     pub work: Work,
-    /// How long it took \[s\].
+    /// Computing time \[s\].
     pub seconds: f64,
 }
 
@@ -42,14 +42,14 @@ pub struct RayEntry {
     pub steer_rate: f64,
     /// Roll rate at its end \[rad/s\].
     pub roll_rate: f64,
-    /// How far nothing falls, as a part of the ray.
+    /// Border, as a fraction of the ray.
     pub upper: f64,
     /// Whether nothing fell up to its end.
     pub capped: bool,
-    /// What made the nearest ride beyond count as fallen; null if nothing fell.
+    /// Reason for which the nearest ride beyond counts as fallen; null if nothing fell.
     #[schemars(extend("enum" = FALLS))]
     pub fall: Option<&'static str>,
-    /// Parts of the ray beyond the first fall that do not fall either, `[from, to]`.
+    /// Islands: parts of the ray beyond the first fall from which a ride does not fall, `[from, to]`.
     pub islands: Vec<[f64; 2]>,
 }
 
@@ -88,17 +88,17 @@ pub struct PlaneRow {
     pub steer_rate_rad_s: f64,
     /// Disturbance of the roll rate.
     pub roll_rate_rad_s: f64,
-    /// "fallen", "recovered", "undecided", or for the outline itself "border".
+    /// "fallen", "recovered", "undecided", or "border" for the outline.
     pub outcome: &'static str,
-    /// Time to fall, empty if it did not.
+    /// Time to fall; empty if the ride did not fall.
     pub time_to_fall_s: Option<f64>,
-    /// What made it count as fallen, at the border the nearest ride beyond; empty if it did not.
+    /// Reason of the fall, at the border that of the nearest ride beyond; empty without a fall.
     pub fall: Option<&'static str>,
-    /// Of a border: whether nothing fell up to the ray's end.
+    /// For a border: whether nothing fell up to the ray's end.
     pub capped: Option<bool>,
 }
 
-/// The scans and borders as rows; the mirror images left out.
+/// The scans and borders as rows, without mirror images.
 pub fn plane_rows(plane: &Plane) -> Vec<PlaneRow> {
     let mut rows = Vec::new();
     for ray in &plane.rays {

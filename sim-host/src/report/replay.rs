@@ -1,4 +1,4 @@
-//! A replay as document and as text.
+//! Document and text of `replay`.
 
 use super::document::SCHEMA;
 use super::resolved::Tool;
@@ -19,7 +19,7 @@ pub struct ReplayConfig {
     pub map: Option<String>,
     /// "hold" or "interpolate"; null for frames.
     pub resample: Option<&'static str>,
-    /// The faults that were put in.
+    /// The injected faults.
     pub faults: Vec<String>,
     /// Parameters that differ from the preset's, with their values.
     pub parameters: BTreeMap<String, String>,
@@ -30,12 +30,12 @@ pub struct ReplayConfig {
 pub struct ReplayResult {
     /// The recording.
     pub file: String,
-    /// What could not be used as it stands, or looks wrong.
+    /// Data that is unusable or looks wrong.
     pub remarks: Vec<String>,
-    /// Sensors and checks that were switched off for want of a recording.
+    /// Sensors and checks switched off because the recording lacks their data.
     #[serde(flatten)]
     pub fitted: Fitted,
-    /// What came of it.
+    /// The result of the replay.
     #[serde(flatten)]
     pub replayed: Replayed,
 }
@@ -48,9 +48,9 @@ pub struct ReplayDocument {
     pub schema: u32,
     /// The program.
     pub tool: Tool,
-    /// How it was replayed.
+    /// Configuration of the replay.
     pub config: ReplayConfig,
-    /// What came of it.
+    /// The result.
     #[serde(flatten)]
     pub result: ReplayResult,
 }
@@ -63,17 +63,17 @@ pub struct ReplaysDocument {
     pub schema: u32,
     /// The program.
     pub tool: Tool,
-    /// How they were replayed.
+    /// Configuration of the replays.
     pub config: ReplayConfig,
     /// Each recording.
     pub recordings: Vec<ReplayResult>,
     /// Files that could not be used, each with the reason.
     pub unusable: Vec<String>,
-    /// All together.
+    /// Summary of all recordings.
     pub summary: Summary,
 }
 
-/// One recording in words.
+/// Text output for one recording.
 pub fn text(result: &ReplayResult) -> String {
     let mut text = String::new();
     let (from, to) = result.replayed.span_s;
@@ -156,7 +156,7 @@ pub fn text(result: &ReplayResult) -> String {
     text
 }
 
-/// Several recordings in words: a line each, the first remark of those that have one, and all together.
+/// Text output for several recordings: a line each, their first remark if any, and the summary.
 pub fn summary_text(results: &[ReplayResult], summary: &Summary) -> String {
     let mut text = String::new();
     let widest = results.iter().map(|r| r.file.len()).max().unwrap_or(4).max(4);

@@ -1,4 +1,4 @@
-//! The full configuration a result was computed with, as every output carries it.
+//! The full configuration of a result, contained in every output.
 
 use crate::basin::{Axis, Search};
 use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
@@ -13,12 +13,12 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// The program a result came from.
+/// The program that computed a result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Tool {
     /// Always "sim-host".
     pub name: Cow<'static, str>,
-    /// Release.
+    /// Version.
     pub version: Cow<'static, str>,
     /// Commit it was built from, "unknown" outside a repository.
     pub commit: Cow<'static, str>,
@@ -40,9 +40,9 @@ impl Tool {
 pub struct ResolvedBicycle {
     /// Name, FILE or FILE#NAME as given.
     pub name: String,
-    /// Where the values come from.
+    /// Source of the values.
     pub source: Option<String>,
-    /// A remark of the file's, and what of it is not used.
+    /// The file's remark, and its unused entries.
     pub note: Option<String>,
     /// Whether a rider's body is part of the rear frame; null if the file does not say.
     pub rider_included: Option<bool>,
@@ -83,12 +83,12 @@ fn parameters(p: &Parameters) -> BTreeMap<&'static str, f64> {
 pub struct ResolvedLaw {
     /// Name, or file as given.
     pub name: String,
-    /// Points of a table: speed \[m/s\], gain \[N m s/rad\]; none for a formula.
+    /// Points of a table: speed \[m/s\], gain \[N m s/rad\]; null for a formula.
     pub points: Option<Vec<(f32, f32)>>,
 }
 
 impl ResolvedLaw {
-    /// The law for an output, under the name it was asked for by.
+    /// The law for an output, under its name on the command line.
     pub fn new(name: &str, law: &Law) -> Self {
         let points = match law {
             Law::Table(table) => Some(table.points().to_vec()),
@@ -115,7 +115,7 @@ impl ResolvedCapsize {
     }
 }
 
-/// The muscles of a result's rider.
+/// The neuromuscular dynamics of a result's rider.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ResolvedMuscles {
     /// Undamped natural frequency \[rad/s\].
@@ -146,18 +146,18 @@ impl ResolvedGains {
 pub struct ResolvedRider {
     /// Name, or FILE as given.
     pub name: String,
-    /// Where the gains come from.
+    /// Source of the gains.
     pub source: Option<String>,
-    /// How they became continuous over speed.
+    /// Method that makes them functions of speed.
     #[schemars(extend("enum" = ["regression", "mean", "best"]))]
     pub gains: &'static str,
     /// Neural delay \[s\].
     pub delay_s: f64,
     /// "extrapolate" or "hold": the gains beyond the outermost points.
     pub outside: &'static str,
-    /// The muscles.
+    /// The neuromuscular dynamics.
     pub muscles: ResolvedMuscles,
-    /// The points that the gains go through on straight lines.
+    /// Points of the piecewise linear gains.
     pub points: Vec<ResolvedGains>,
 }
 
@@ -178,7 +178,7 @@ impl ResolvedRider {
         }
     }
 
-    /// In a few words, for titles.
+    /// A short label, for titles.
     pub fn label(&self) -> String {
         let ms = (self.delay_s * 1e9).round() / 1e6;
         format!("rider {} ({} gains, {ms} ms)", self.name, self.gains)
@@ -188,13 +188,13 @@ impl ResolvedRider {
 /// Sensors, motor and faults of a result.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ResolvedPlant {
-    /// The sensors that depart from the truth, by name; all others are exact.
+    /// The sensors with errors, by name; all others are exact.
     pub sensors: BTreeMap<&'static str, SensorModel>,
-    /// Where the IMU sits.
+    /// Position and orientation of the IMU.
     pub imu: ImuMount,
     /// The motor and the friction of the steer.
     pub actuator: ActuatorConfig,
-    /// What goes wrong, as `--fault` reads it, in the order in which it acts.
+    /// The injected faults in the form of `--fault`, in the order in which they act.
     pub faults: Vec<String>,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -214,14 +214,14 @@ impl ResolvedPlant {
     }
 }
 
-/// The conditions of a result, defaults filled in.
+/// The conditions of a result, with defaults filled in.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ResolvedConfig {
     /// "thesis" or "product".
     pub preset: String,
     /// The bicycle.
     pub bicycle: ResolvedBicycle,
-    /// Who rides; null for a rigid rider, hands off.
+    /// The rider; null for a rigid rider, hands off.
     pub rider: Option<ResolvedRider>,
     /// The law.
     pub law: ResolvedLaw,
@@ -231,17 +231,17 @@ pub struct ResolvedConfig {
     pub schedule_speed: String,
     /// "euler" or "body".
     pub imu: String,
-    /// Largest torque \[N m\]; null is none.
+    /// Torque limit \[N m\]; null if off.
     pub torque_limit_nm: Option<f32>,
-    /// Largest change of torque \[N m/s\]; null is none.
+    /// Torque rate limit \[N m/s\]; null if off.
     pub rate_limit_nm_s: Option<f32>,
-    /// Taper below walking speed: torque zero at the first, whole at the second speed \[m/s\].
+    /// Taper below walking speed: torque zero at the first speed, full at the second \[m/s\].
     pub taper_m_s: Option<(f32, f32)>,
     /// Delay of the simulated sensors \[s\].
     pub sensor_delay_s: f64,
-    /// How sensors and motor depart from exact ones.
+    /// Errors of sensors and motor.
     pub plant: ResolvedPlant,
-    /// Parameters of the flashed code that differ from those of the published conditions, by name.
+    /// Firmware parameters that differ from those of the published conditions, by name.
     pub parameters: BTreeMap<String, String>,
     /// Control rate \[Hz\]; null for the continuous ideal law.
     pub control_rate_hz: Option<f32>,
@@ -251,10 +251,9 @@ pub struct ResolvedConfig {
     pub fall: FallCriterion,
     /// Time limit of a ride \[s\].
     pub time_limit_s: f64,
-    /// What is doubtful about rider and bicycle together.
+    /// Doubts about the combination of rider and bicycle.
     pub warnings: Vec<String>,
-    /// Fraction of the largest roll and steer below which a ride's last second must stay to count as
-    /// recovered.
+    /// A ride has recovered if, in its last second, roll and steer stay below this fraction of their maxima.
     pub recovered_below: f64,
 }
 
@@ -298,14 +297,14 @@ impl ResolvedConfig {
         }
     }
 
-    /// Who rides what, in a few words: "rigid_jason, rider young (mean gains, 30 ms), law none".
+    /// A short label: "rigid_jason, rider young (mean gains, 30 ms), law none".
     pub fn label(&self) -> String {
         let rider = self.rider.as_ref().map_or(String::new(), |r| format!(", {}", r.label()));
         format!("{}{rider}, law {}", self.bicycle.name, self.law.name)
     }
 }
 
-/// The published conditions on the same bicycle.
+/// The published conditions for the same bicycle.
 fn published(config: &Config) -> Config {
     let mut published = Config::thesis(config.law.clone());
     published.estimate = EstimateConfig { roll_rate: Source::GyroX, ..config.estimate };
@@ -315,7 +314,7 @@ fn published(config: &Config) -> Config {
     published
 }
 
-/// What a basin was searched with.
+/// The search of a basin.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ResolvedSearch {
     /// "steer-rate" or "roll-rate".
@@ -324,7 +323,7 @@ pub struct ResolvedSearch {
     pub max_rate: f64,
     /// Step of the scan \[rad/s\].
     pub scan_step: f64,
-    /// How closely borders are located \[rad/s\].
+    /// Accuracy of borders \[rad/s\].
     pub tolerance: f64,
 }
 
@@ -340,7 +339,7 @@ impl ResolvedSearch {
     }
 }
 
-/// The axis' name in files and on the command line.
+/// The axis's name in files and on the command line.
 pub fn axis_name(axis: Axis) -> &'static str {
     match axis {
         Axis::SteerRate => "steer-rate",

@@ -1,4 +1,4 @@
-//! `rider show`: document and table.
+//! Document and table of `rider show`.
 #![allow(non_snake_case, reason = "the symbols of the thesis")]
 
 use super::document::SCHEMA;
@@ -20,17 +20,17 @@ pub struct RiderDocument {
     pub tool: Tool,
     /// Name, or FILE as given.
     pub name: String,
-    /// Where the values come from.
+    /// Source of the values.
     pub source: Option<String>,
     /// A remark.
     pub note: Option<String>,
     /// Neural delay \[s\].
     pub delay_s: f64,
-    /// The muscles.
+    /// The neuromuscular dynamics.
     pub muscles: ResolvedMuscles,
-    /// The measured sets.
+    /// The measured sets of gains.
     pub rows: Vec<RowEntry>,
-    /// What is made of them over speed.
+    /// The gains as functions of speed.
     pub fits: Vec<FitEntry>,
 }
 
@@ -39,7 +39,7 @@ pub struct RiderDocument {
 pub struct RowEntry {
     /// The experiment.
     pub run: Option<u32>,
-    /// Sets of like speed share a number.
+    /// Sets of similar speed have the same number.
     pub group: u32,
     /// Variance accounted for \[%\].
     pub vaf: Option<f64>,
@@ -48,25 +48,25 @@ pub struct RowEntry {
     pub at: ResolvedGains,
 }
 
-/// The gains over speed.
+/// The gains as functions of speed.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct FitEntry {
-    /// How.
+    /// Method of the fit.
     #[schemars(extend("enum" = ["regression", "mean", "best"]))]
     pub gains: &'static str,
-    /// Straight lines through these, going on beyond the outermost.
+    /// Points of the piecewise linear functions, extrapolated beyond the outermost.
     pub points: Vec<ResolvedGains>,
     /// Slope \[per m/s\] and gain at rest of a regression; null for others.
     pub line: Option<ByKey<(f64, f64)>>,
-    /// Coefficient of determination; null for a gain that is the same in all rows.
+    /// Coefficient of determination; null for a gain that is equal in all rows.
     pub r_squared: ByKey<Option<f64>>,
 }
 
 impl FitEntry {
-    /// What `fit` makes of a table.
+    /// The result of `fit` on a table.
     ///
     /// # Errors
-    /// As [`RiderTable::schedule`].
+    /// See [`RiderTable::schedule`].
     pub fn new(table: &RiderTable, fit: Fit) -> Result<Self, ScheduleError> {
         let schedule = table.schedule(fit, Outside::default())?;
         let line = table.line();
@@ -81,7 +81,7 @@ impl FitEntry {
 }
 
 impl RiderDocument {
-    /// The document of a table and the fits asked for.
+    /// The document of a table and the requested fits.
     pub fn new(table: &RiderTable, fits: Vec<FitEntry>) -> Self {
         let row = |r: &crate::rider::Row| RowEntry {
             run: r.run,
@@ -165,7 +165,7 @@ impl GainRow {
 /// The measured sets, then the points of `fits`.
 ///
 /// # Errors
-/// As [`RiderTable::schedule`].
+/// See [`RiderTable::schedule`].
 pub fn gain_rows(table: &RiderTable, fits: &[Fit]) -> Result<Vec<GainRow>, ScheduleError> {
     let measured = |r: &crate::rider::Row| GainRow {
         run: r.run,

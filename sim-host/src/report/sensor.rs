@@ -1,4 +1,4 @@
-//! The document, the table and the text of `sim-host identify sensor`.
+//! Document, table and text of `sim-host identify sensor`.
 
 use super::document::SCHEMA;
 use super::resolved::Tool;
@@ -9,14 +9,14 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// What the numbers were measured in.
+/// The source of the measured values.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ResolvedSensors {
     /// The recordings.
     pub files: Vec<String>,
     /// The map, by name or file.
     pub map: String,
-    /// Column of the way that the wheel counted.
+    /// Column of the distance measured by the wheel.
     pub distance: Option<String>,
 }
 
@@ -28,7 +28,7 @@ pub struct SensorDocument {
     pub schema: u32,
     /// The program.
     pub tool: Tool,
-    /// What the numbers were measured in.
+    /// The source of the measured values.
     pub config: ResolvedSensors,
     /// The models, by the name of their table in a file for `--sensor`.
     pub sensors: BTreeMap<&'static str, SensorNumbers>,
@@ -55,14 +55,14 @@ pub struct SensorRow {
     seconds: f64,
 }
 
-/// Every measured number; wheels once.
+/// All measured models; both wheels share one.
 fn tables(file: &SensorFile) -> impl Iterator<Item = (&'static str, &SensorNumbers)> {
     file.tables()
         .filter(|(sensor, _)| *sensor != Sensor::FrontWheel)
         .map(|(s, numbers)| (table_of(s), numbers))
 }
 
-/// Every measured number as a row.
+/// All measured values as rows.
 pub fn rows(file: &SensorFile) -> Vec<SensorRow> {
     let row = |sensor, m: &MeasuredNumber| SensorRow {
         sensor,
@@ -77,7 +77,7 @@ pub fn rows(file: &SensorFile) -> Vec<SensorRow> {
     tables(file).flat_map(|(sensor, numbers)| numbers.measured.iter().map(move |m| row(sensor, m))).collect()
 }
 
-/// The numbers for people, with what is left out.
+/// The measured values as text, with what was left out.
 pub fn text(file: &SensorFile) -> String {
     let mut text = String::new();
     for (sensor, numbers) in tables(file) {

@@ -1,4 +1,4 @@
-//! The document and the tables of `sweep`.
+//! JSON document and CSV tables of `sweep`.
 
 use super::document::SCHEMA;
 use super::resolved::Tool;
@@ -17,47 +17,47 @@ pub struct SweepDocument {
     pub schema: u32,
     /// The program.
     pub tool: Tool,
-    /// The options all cells share, as on the command line.
+    /// The options that all cells share, as on the command line.
     pub options: Vec<String>,
-    /// What is searched in every cell.
+    /// The search of each cell's basin.
     pub search: SweepSearch,
-    /// What the cells differ in.
+    /// The conditions that differ between cells.
     pub axes: Vec<Axis>,
-    /// False as long as cells are missing.
+    /// False while cells are missing.
     pub complete: bool,
-    /// What is the same in every cell's configuration, as in the document of `basin`.
+    /// The configuration entries that all cells share, as in the document of `basin`.
     pub config: Value,
-    /// The cells that are done, the last axis' values following each other.
+    /// The finished cells; the values of the last axis vary fastest.
     pub cells: Vec<CellDocument>,
-    /// How much was computed.
+    /// Amount of computation.
     pub work: Work,
 }
 
 /// One cell.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct CellDocument {
-    /// Its identity, which is the name of its file.
+    /// Its identifier, which is the name of its file.
     pub id: String,
     /// The axes' values.
     pub values: Vec<String>,
-    /// What is not the same in every cell's configuration.
+    /// The configuration entries that differ between cells.
     pub config: Value,
     /// Area under the heights, trapezoidal rule \[rad m/s^2\].
     pub area: f64,
-    /// Their mean \[rad/s\].
+    /// Mean height \[rad/s\].
     pub mean_height: f64,
-    /// Whether area and mean are lower bounds, as some height is one.
+    /// Whether area and mean are lower bounds because a height is one.
     pub area_capped: bool,
     /// Largest torque of the rides at the border \[N m\].
     pub peak_torque_nm: f64,
     /// Largest change of torque of the rides at the border \[N m/s\].
     pub peak_slew_nm_s: f64,
-    /// What was found, per speed of the search.
+    /// Result for each speed of the search.
     pub found: Vec<Found>,
 }
 
 impl SweepDocument {
-    /// The document of a sweep, whole or in part.
+    /// The document of a complete or partial sweep.
     pub fn new(grid: &Grid) -> Self {
         let plan = &grid.plan;
         let shared = shared(grid);
@@ -88,8 +88,7 @@ impl SweepDocument {
         }
     }
 
-    /// What tables and figures carry: everything but the cells. The program is the one that computed,
-    /// which need not be the one that writes.
+    /// Heading of tables and figures: everything except the cells. The program is the one that computed the cells, which can differ from the one that writes.
     pub fn heading(&self) -> Value {
         let Self { tool, options, search, axes, complete, config, .. } = self;
         serde_json::json!({"tool": tool, "options": options, "search": search, "axes": axes, "config": config, "complete": complete})
@@ -100,7 +99,7 @@ fn done(grid: &Grid) -> impl Iterator<Item = (usize, &Unit)> {
     grid.units.iter().enumerate().filter_map(|(i, unit)| Some((i, unit.as_ref()?)))
 }
 
-/// The entries that all configurations have alike.
+/// The entries that are equal in all configurations.
 fn shared(grid: &Grid) -> Map<String, Value> {
     let mut units = done(grid).map(|(_, unit)| &unit.config);
     let Some(Value::Object(first)) = units.next() else { return Map::new() };
@@ -117,10 +116,10 @@ fn without(config: &Value, shared: &Map<String, Value>) -> Value {
     own.map(|(key, value)| (key.clone(), value.clone())).collect::<Map<_, _>>().into()
 }
 
-/// One line a cell: the axes' values, then measures of the basin.
+/// CSV table with one line per cell: the axes' values, then measures of the basin.
 ///
 /// # Errors
-/// When a row can't be written as a line of CSV.
+/// A row cannot be written as CSV.
 pub fn cells_table(document: &SweepDocument) -> Result<Vec<u8>, csv::Error> {
     let measures = ["area_rad_m_s2", "mean_height_rad_s", "peak_torque_nm", "peak_slew_nm_s", "area_capped"];
     let rows = document.cells.iter().map(|cell| {
@@ -131,10 +130,10 @@ pub fn cells_table(document: &SweepDocument) -> Result<Vec<u8>, csv::Error> {
     table::rows(&document.heading(), &columns(document, &measures), rows)
 }
 
-/// One line a cell and speed: the axes' values, the speed, what was found.
+/// CSV table with one line per cell and speed: the axes' values, the speed, the result.
 ///
 /// # Errors
-/// When a row can't be written as a line of CSV.
+/// A row cannot be written as CSV.
 pub fn heights_table(document: &SweepDocument) -> Result<Vec<u8>, csv::Error> {
     let measures = ["speed_m_s", "height_rad_s", "capped", "peak_torque_nm", "peak_slew_nm_s", "fall"];
     let speeds = &document.search.speeds;

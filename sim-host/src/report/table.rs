@@ -5,22 +5,22 @@ use crate::basin::ScanPoint;
 use crate::ride::FallCause;
 use serde::Serialize;
 
-/// A header comment: the program, then `config` as one line of JSON.
+/// The heading as comment lines: the program, then `config` as one line of JSON.
 pub fn heading(config: &impl Serialize) -> String {
     let tool = Tool::this();
     let config = serde_json::to_string(config).unwrap_or_default();
     format!("# {} {} commit {}\n# {config}\n", tool.name, tool.version, tool.commit)
 }
 
-/// A writer that quotes values with a `#`, which is where a reader of the heading's comments would stop.
+/// A writer that quotes values with a `#`, at which comment-aware readers would stop.
 fn writer(begun: Vec<u8>) -> csv::Writer<Vec<u8>> {
     csv::WriterBuilder::new().comment(Some(b'#')).from_writer(begun)
 }
 
-/// A table of serialisable rows, columns named by their fields.
+/// A table of serialisable rows; columns are named by their fields.
 ///
 /// # Errors
-/// When a row can't be written as a line of CSV.
+/// A row cannot be written as CSV.
 pub fn table<R: Serialize>(config: &impl Serialize, rows: &[R]) -> Result<Vec<u8>, csv::Error> {
     let mut writer = writer(heading(config).into_bytes());
     for row in rows {
@@ -32,7 +32,7 @@ pub fn table<R: Serialize>(config: &impl Serialize, rows: &[R]) -> Result<Vec<u8
 /// A table of rows under `columns`; `None` is an empty cell.
 ///
 /// # Errors
-/// When the rows are not as long as the heading.
+/// The rows differ in length from the heading.
 pub fn rows<R: Serialize>(
     config: &impl Serialize,
     columns: &[String],
@@ -46,10 +46,10 @@ pub fn rows<R: Serialize>(
     writer.into_inner().map_err(|e| csv::Error::from(std::io::Error::other(e.to_string())))
 }
 
-/// The same without the heading, as text.
+/// A table without the heading, as text.
 ///
 /// # Errors
-/// When a row can't be written as a line of CSV.
+/// A row cannot be written as CSV.
 pub fn csv_text<R: Serialize>(rows: &[R]) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
@@ -66,13 +66,13 @@ pub struct BasinRow {
     pub speed_m_s: f64,
     /// Disturbance.
     pub rate_rad_s: f64,
-    /// "fallen", "recovered", "undecided", or for the outline itself "border".
+    /// "fallen", "recovered", "undecided", or "border" for the outline.
     pub outcome: &'static str,
-    /// Time to fall, empty if it did not.
+    /// Time to fall; empty if the ride did not fall.
     pub time_to_fall_s: Option<f64>,
-    /// What made it count as fallen, at the border the nearest ride beyond; empty if it did not.
+    /// Reason of the fall, at the border that of the nearest ride beyond; empty without a fall.
     pub fall: Option<&'static str>,
-    /// Of a border: whether it is a lower bound, as nothing fell up to the largest rate tried.
+    /// For a border: whether it is a lower bound because nothing fell up to the largest rate tried.
     pub capped: Option<bool>,
 }
 

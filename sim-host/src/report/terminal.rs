@@ -8,10 +8,10 @@ use super::figure::{BasinFigure, Curve, EigenFigure, RideFigure};
 use crate::basin::Axis;
 use braille::Chart;
 
-/// Fewer columns than this are not enough for a plot with its numbers.
+/// Smallest width of a plot with its numbers.
 const MIN_WIDTH: usize = 40;
 
-/// A basin, or several one below the other, as columns of blocks; every line ends with a newline.
+/// Plots basins, one below the other, as columns of blocks; every line ends with a newline.
 pub fn basin(figure: &BasinFigure, width: usize) -> String {
     let width = width.max(MIN_WIDTH);
     let rate = match figure.axis {
@@ -26,7 +26,7 @@ pub fn basin(figure: &BasinFigure, width: usize) -> String {
     text
 }
 
-/// Roll, steer and torque over time.
+/// Plots roll, steer and torque over time.
 pub fn ride(figure: &RideFigure, width: usize) -> String {
     let curves: [Curve; 3] = [
         ("roll [deg]", |p| p.roll.to_degrees()),
@@ -44,7 +44,7 @@ pub fn ride(figure: &RideFigure, width: usize) -> String {
     text
 }
 
-/// Real parts of the roots over speed, imaginary parts below.
+/// Plots real parts of the roots over speed, imaginary parts below.
 pub fn eigen(figure: &EigenFigure, width: usize) -> String {
     let width = width.max(MIN_WIDTH);
     let x = match figure.speeds {

@@ -1,4 +1,4 @@
-//! Basins of attraction over speed.
+//! Figure of basins of attraction over speed.
 
 use super::canvas::{Area, Canvas};
 use super::colour::{INK, STABLE};
@@ -9,27 +9,27 @@ use super::panel::Panel;
 use super::picture::Picture;
 use crate::basin::{Axis, Basin};
 
-/// What a figure of basins shows.
+/// Data of the figure.
 #[derive(Clone, Copy, Debug)]
 pub struct BasinFigure<'a> {
-    /// Above the figure.
+    /// Title above the figure.
     pub title: &'a str,
-    /// Names and basins. One is drawn with its inside and outside, of several the outlines.
+    /// Names and basins. A single basin is drawn with inside and outside, several as outlines.
     pub series: &'a [(&'a str, &'a Basin)],
-    /// Weave and capsize speed of the uncontrolled bicycle, between which it balances itself \[m/s\].
+    /// Weave and capsize speed of the uncontrolled bicycle, the ends of its self-stable range \[m/s\].
     pub self_stable: Option<(f64, f64)>,
     /// The disturbed rate.
     pub axis: Axis,
     /// Largest disturbance tried \[rad/s\].
     pub cap: f64,
-    /// Heights around one basin.
+    /// A band of heights around one basin.
     pub band: Option<Band<'a>>,
 }
 
 /// A band of heights over speed.
 #[derive(Clone, Copy, Debug)]
 pub struct Band<'a> {
-    /// In the legend.
+    /// Name in the legend.
     pub label: &'a str,
     /// Speed \[m/s\], lower and upper edge \[rad/s\].
     pub edges: &'a [(f64, f64, f64)],
@@ -37,8 +37,8 @@ pub struct Band<'a> {
 
 /// The figure of one basin, or of the outlines of several.
 ///
-/// One basin: its inside filled, hatched where a ride outlasted the time limit without coming back;
-/// outside a dot for every point of the scan in the colour of its time to fall.
+/// One basin: its inside filled, hatched where a ride lasts the time limit without recovering; outside, a dot for each ride of the scan in the colour of its
+/// time to fall.
 pub fn basin(figure: &BasinFigure) -> Picture {
     match figure.series {
         [(name, basin)] => inside_and_outside(figure, name, basin),
@@ -46,9 +46,9 @@ pub fn basin(figure: &BasinFigure) -> Picture {
     }
 }
 
-/// Where the axes are.
+/// Area of the axes.
 pub(super) const AREA: Area = Area { x: 66.0, y: 44.0, width: 600.0, height: 380.0 };
-/// From the axes down to the legend.
+/// Distance from the axes to the legend.
 pub(super) const LEGEND_GAP: f64 = 50.0;
 /// The height of a figure with this legend.
 pub(super) fn height(legend: &[Entry]) -> f64 {
@@ -66,7 +66,7 @@ impl BasinFigure<'_> {
         }
     }
 
-    /// Axes from the least to the greatest of `speeds`, and to a little over `top`.
+    /// Axes over the range of `speeds`, and up to slightly more than `top`.
     pub(super) fn panel(&self, speeds: impl Iterator<Item = f64>, top: f64) -> Panel {
         let (low, high) = speeds.fold((f64::INFINITY, f64::NEG_INFINITY), |r, v| (r.0.min(v), r.1.max(v)));
         let x = match (low, high) {
@@ -85,7 +85,7 @@ impl BasinFigure<'_> {
     }
 }
 
-/// Triangles along the upper edge where nothing fell, some pixels apart.
+/// Triangles along the upper edge where nothing fell, at a minimum distance.
 pub(super) fn caps(canvas: &mut Canvas, panel: &Panel, basin: &Basin) {
     let mut last = f64::NEG_INFINITY;
     for column in basin.columns.iter().filter(|c| c.capped) {

@@ -1,4 +1,4 @@
-//! Drawing in pixels, y downwards: a scene of kuva's that becomes SVG or PNG.
+//! Draws in pixels, y downwards, into a scene of the crate kuva, which becomes SVG or PNG.
 
 use super::colour::INK;
 use super::picture::Picture;
@@ -27,7 +27,7 @@ impl Area {
     }
 }
 
-/// Whether a line is broken.
+/// Line pattern.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Dash {
     Solid,
@@ -35,7 +35,7 @@ pub(super) enum Dash {
     Dotted,
 }
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stroke {
     pub(super) color: &'static str,
@@ -52,7 +52,7 @@ impl Stroke {
     }
 }
 
-/// Where figures are drawn.
+/// The drawing of a figure.
 pub(super) struct Canvas {
     scene: Scene,
     clips: usize,
@@ -88,13 +88,13 @@ impl Canvas {
         content: &str,
         rotate: Option<f64>,
     ) {
-        // A dollar would begin a formula.
+        // kuva reads a dollar sign as the start of a formula.
         let content = content.replace('$', "\\$");
         let (x, y) = at;
         self.scene.add(Primitive::Text { x, y, content, size, anchor, rotate, bold: false, color: None });
     }
 
-    /// A symbol with an index and what follows, from the left.
+    /// A symbol with an index and the text after it, left-aligned.
     pub(super) fn indexed(
         &mut self,
         (x, y): (f64, f64),
@@ -109,7 +109,7 @@ impl Canvas {
         self.text((after + text_width(index, small), y), size, TextAnchor::Start, rest);
     }
 
-    /// A title at the left, as large as fits into `width`.
+    /// A left-aligned title, as large as fits into `width`.
     pub(super) fn title(&mut self, (x, y): (f64, f64), width: f64, content: &str) {
         // Bold letters are a sixth wider.
         let size = (width / (1.17 * text_width(content, 1))).min(15.0) as u32;
@@ -124,7 +124,7 @@ impl Canvas {
         });
     }
 
-    /// A line through `points`. Dashes are cut here: kuva's PNG begins them anew at every point.
+    /// A line through `points`. Dashes are cut here, since kuva's PNG restarts them at every point.
     pub(super) fn line(&mut self, points: &[(f64, f64)], stroke: Stroke) {
         let pieces = match stroke.dash {
             Dash::Solid => vec![points.to_vec()],
@@ -156,7 +156,7 @@ impl Canvas {
         });
     }
 
-    /// Thin diagonals over a polygon; kuva knows only black ones.
+    /// Thin diagonals over a polygon; kuva offers black ones only.
     pub(super) fn hatch(&mut self, corners: &[(f64, f64)]) {
         let pattern = format!("url(#{})", FillPattern::DiagonalForward.id());
         self.fill(corners, Color::Css(pattern.into()), None);
@@ -192,12 +192,12 @@ impl Canvas {
         });
     }
 
-    /// Draws with everything outside `area` cut off.
+    /// Draws with clipping to `area`.
     pub(super) fn clipped(&mut self, area: Area, draw: impl FnOnce(&mut Canvas)) {
         let Area { x, y, width, height } = area;
         self.clips += 1;
         let id = format!("clip{}", self.clips);
-        // kuva's SVG expects the definition to be there; its PNG looks at the numbers.
+        // kuva's SVG requires the definition; its PNG uses the numbers.
         self.scene.defs.push(format!(
             "<clipPath id=\"{id}\"><rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"/></clipPath>"
         ));

@@ -1,4 +1,4 @@
-//! Charts: panels in a grid, each with curves and marks, and one legend below.
+//! Charts: panels in a grid, each with curves and markers, and a common legend below.
 
 use super::canvas::{Area, Canvas, Dash, Stroke};
 use super::chart_axes::Fitted;
@@ -12,26 +12,26 @@ use kuva::render::render::TextAnchor;
 /// A figure of panels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
-    /// Above the figure.
+    /// Title above the figure.
     pub title: String,
-    /// Panels side by side.
+    /// Number of panels side by side.
     pub columns: usize,
     /// The panels, row by row.
     pub plots: Vec<Plot>,
-    /// What the shaded ranges mean; empty if there are none.
+    /// Meaning of the shaded ranges; empty without any.
     pub shaded: String,
 }
 
 /// A panel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
-    /// Above the panel.
+    /// Title above the panel.
     pub title: String,
     /// The horizontal axis.
     pub x: Axis,
     /// The vertical axis.
     pub y: Axis,
-    /// What is drawn, later over earlier.
+    /// The series; later ones are drawn over earlier ones.
     pub series: Vec<Series>,
     /// Shaded ranges of x.
     pub shaded: Vec<(f64, f64)>,
@@ -44,29 +44,29 @@ pub struct Plot {
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
-    /// From where to where; fitted to the data if not told.
+    /// Ends of the range; fitted to the data if `None`.
     pub range: Option<(f64, f64)>,
-    /// Logarithmic.
+    /// Whether it is logarithmic.
     pub log: bool,
-    /// What stands at 1, 2...; numbers if there are none.
+    /// Names at 1, 2...; numbers if empty.
     pub names: Vec<String>,
 }
 
-/// Points that belong together. A point with NaN interrupts the line.
+/// Points of one series. A point with NaN interrupts the line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// In the legend; the same name in several panels stands there once, an empty one not at all.
+    /// Name in the legend; listed once if several panels have it, omitted if empty.
     pub name: String,
     /// The data.
     pub points: Vec<(f64, f64)>,
-    /// How it is drawn.
+    /// Its style.
     pub look: Look,
 }
 
-/// How a line is drawn.
+/// Line style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Line {
-    /// None, marks alone.
+    /// No line, markers only.
     None,
     /// Unbroken.
     Solid,
@@ -74,30 +74,30 @@ pub enum Line {
     Dashed,
     /// In dots.
     Dotted,
-    /// Thin and grey, for what only stands behind, whatever the colour.
+    /// Thin and grey, whatever the colour, for the background.
     Faint,
-    /// None, and the area from the line to zero filled.
+    /// No line; the area between the points and zero is filled.
     Filled,
 }
 
-/// How a series is drawn.
+/// Style of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
-    /// Number of the colour; beyond the palette it starts again.
+    /// Index of the colour, modulo the palette.
     pub colour: usize,
     /// The line.
     pub line: Line,
-    /// The mark at every point.
+    /// The marker at every point.
     pub marker: Option<Marker>,
 }
 
 impl Look {
-    /// A line.
+    /// A line without markers.
     pub fn line(colour: usize, line: Line) -> Self {
         Self { colour, line, marker: None }
     }
 
-    /// Marks without a line.
+    /// Markers without a line.
     pub fn marks(colour: usize, marker: Marker) -> Self {
         Self { colour, line: Line::None, marker: Some(marker) }
     }
@@ -127,7 +127,7 @@ impl Axis {
         Self { label: label.into(), ..Self::default() }
     }
 
-    /// The same from `low` to `high`.
+    /// The axis with the range `low` to `high`.
     pub fn over(self, low: f64, high: f64) -> Self {
         Self { range: Some((low, high)), ..self }
     }
@@ -138,7 +138,7 @@ impl Axis {
         Self { label: label.into(), range, log: false, names }
     }
 
-    /// The same, logarithmic.
+    /// The axis, logarithmic.
     pub fn log(self) -> Self {
         Self { log: true, ..self }
     }
@@ -151,14 +151,14 @@ impl Series {
     }
 }
 
-/// How opaque a filled area is.
+/// Opacity of a filled area.
 const FILLED: f64 = 0.25;
 const LEFT: f64 = 76.0;
 const TITLE: f64 = 40.0;
 const PLOT_TITLE: f64 = 22.0;
 const BELOW: f64 = 48.0;
 
-/// Width and height of a panel, by how many stand side by side.
+/// Width and height of a panel, by the number of columns.
 fn size(columns: usize) -> (f64, f64) {
     match columns {
         0 | 1 => (600.0, 290.0),
@@ -190,7 +190,7 @@ pub fn chart(chart: &Chart) -> Picture {
     canvas.finish()
 }
 
-/// Every name once.
+/// Legend entries, each name once.
 fn legend(chart: &Chart) -> Vec<Entry> {
     let mut names: Vec<&str> = vec![""];
     let mut entries = Vec::new();
@@ -235,7 +235,7 @@ fn draw(canvas: &mut Canvas, plot: &Plot, area: Area) {
     }
 }
 
-/// Draws the unbroken `pieces` of a series, in pixels; `zero` is the height of y = 0.
+/// Draws the continuous `pieces` of a series, in pixels; `zero` is the pixel height of y = 0.
 fn draw_series(canvas: &mut Canvas, look: Look, pieces: &[Vec<(f64, f64)>], zero: f64) {
     for piece in pieces {
         match (look.line, &piece[..]) {

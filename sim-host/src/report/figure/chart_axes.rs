@@ -1,4 +1,4 @@
-//! The axes of a chart: from data to a linear or logarithmic range with ticks.
+//! Axes of a chart: from data to a linear or logarithmic range with ticks.
 
 use super::chart::Axis;
 use super::scale::{nice, ticks};
@@ -11,7 +11,7 @@ pub(super) struct Fitted {
 }
 
 impl Fitted {
-    /// The range asked for, or one around `values`, with some `room` or without.
+    /// The given range, or one around `values`, with a margin if `room` is true.
     pub(super) fn new(axis: &Axis, values: impl Iterator<Item = f64>, room: bool) -> Self {
         let scaled = |v: f64| if axis.log { libm::log10(v) } else { v };
         let range = match axis.range {
@@ -32,13 +32,13 @@ impl Fitted {
         Self { log: axis.log, range, names: axis.names.clone() }
     }
 
-    /// Where a value lies in the range; none for one that has no place.
+    /// Position of a value in the range; `None` if it has none.
     pub(super) fn place(&self, v: f64) -> Option<f64> {
         let v = if self.log { libm::log10(v) } else { v };
         v.is_finite().then_some(v)
     }
 
-    /// Ticks for an axis of `length` pixels that wants one every `apart`.
+    /// Ticks for an axis of `length` pixels, about `apart` pixels apart.
     pub(super) fn ticks(&self, length: f64, apart: f64) -> Vec<(f64, String)> {
         if !self.names.is_empty() {
             return (1..).map(f64::from).zip(self.names.iter().cloned()).collect();
@@ -53,8 +53,7 @@ impl Fitted {
     }
 }
 
-/// A range with round ends and some room, so that lines do not lie on the frame; one that begins at
-/// zero stays there.
+/// A range with round ends and a margin, so that lines do not lie on the frame; a range from zero keeps that end.
 fn roomy(values: Vec<f64>) -> (f64, f64) {
     let (low, high) = nice(values.iter().copied(), 6);
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! Colours that stay apart for colour-blind readers and in print.
+//! Colours that are distinguishable for colour-blind readers and in print.
 
 use kuva::plot::ColorMap;
 
@@ -6,11 +6,11 @@ use kuva::plot::ColorMap;
 pub(super) const INK: &str = "#222222";
 /// Secondary lines.
 pub(super) const GREY: &str = "#888888";
-/// The range in which the uncontrolled bicycle balances itself.
+/// The self-stable range of the uncontrolled bicycle.
 pub(super) const STABLE: &str = "#9aa5b1";
 /// The basin of attraction.
 pub(super) const BASIN: &str = "#fff0b3";
-/// Ranges that don't fall beyond the first fall.
+/// Islands: ranges without a fall beyond the first fall.
 pub(super) const ISLAND: &str = "#9fd8c4";
 /// A fall.
 pub(super) const FALL: &str = "#b2182b";
@@ -19,11 +19,11 @@ pub(super) const FALL: &str = "#b2182b";
 pub(super) const SERIES: [&str; 7] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#222222", "#e69f00", "#56b4e9"];
 
-/// Shades a colour scale is drawn in.
+/// Number of shades of a colour scale.
 pub(super) const SHADES: usize = 48;
 
-/// Shade `i` of [`SHADES`] for times to fall: cold for short, warm for long. The palest end of the
-/// scale is left out; it would vanish beside the basin.
+/// Shade `i` of [`SHADES`] for times to fall: cold for short, warm for long. The palest end of the scale is omitted, since it would be invisible beside the
+/// basin.
 pub(super) fn shade(i: usize) -> String {
     ColorMap::Plasma.map(0.82 * i as f64 / (SHADES - 1) as f64)
 }

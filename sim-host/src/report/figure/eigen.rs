@@ -1,4 +1,4 @@
-//! Eigenvalues over speed.
+//! Figure of eigenvalues over speed.
 
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{GREY, INK, SERIES, STABLE};
@@ -11,31 +11,31 @@ use super::shape::text_width;
 use crate::eigen::{CriticalSpeeds, Mode};
 use nalgebra::Complex;
 
-/// What a figure of eigenvalues shows.
+/// Data of the figure.
 #[derive(Clone, Copy, Debug)]
 pub struct EigenFigure<'a> {
-    /// Above the figure.
+    /// Title above the figure.
     pub title: &'a str,
     /// Forward speeds \[m/s\], rising.
     pub speeds: &'a [f64],
-    /// The modes there.
+    /// The modes at these speeds.
     pub modes: &'a [Mode],
     /// The ranges of speed in which the straight ride is stable \[m/s\].
     pub stable: &'a [(f64, f64)],
-    /// Where the straight ride changes its nature.
+    /// The critical speeds.
     pub critical: CriticalSpeeds,
 }
 
 const LEFT: f64 = 66.0;
 const WIDTH: f64 = 600.0;
-/// Parts beyond this are cut off \[1/s\]: the fast castering mode would flatten the rest.
+/// Real parts beyond this are cut off \[1/s\]: the fast caster mode would flatten the rest.
 const REAL_LIMIT: f64 = 10.0;
 const IMAGINARY_LIMIT: f64 = 20.0;
 const LABEL_TEXT: u32 = 13;
 const LABEL_LINE: f64 = 16.0;
 
-/// Real parts above in solid lines, imaginary parts below in dashed ones, each mode in its colour,
-/// with the critical speeds and the stable ranges. Modes that stay left of the panel are left out.
+/// Draws real parts above in solid lines and imaginary parts below in dashed ones, each mode in its colour, with the critical speeds and the stable ranges.
+/// Modes entirely left of the panel are omitted.
 pub fn eigen(figure: &EigenFigure) -> Picture {
     let x = match figure.speeds {
         [first, .., last] if first < last => (*first, *last),
@@ -93,19 +93,19 @@ pub fn eigen(figure: &EigenFigure) -> Picture {
     canvas.finish()
 }
 
-/// A colour for each mode; they come round again after the last.
+/// A colour for each mode, repeating after the last.
 fn colours() -> impl Iterator<Item = &'static str> {
     SERIES.into_iter().cycle()
 }
 
-/// A critical speed's name above the figure.
+/// Name of a critical speed above the figure.
 struct Label {
     speed: f64,
     index: &'static str,
     value: String,
-    /// From where to where it stands.
+    /// Its horizontal extent.
     span: (f64, f64),
-    /// Rows further up, away from labels nearby.
+    /// Number of rows that it is raised to avoid its neighbours.
     row: usize,
 }
 
@@ -116,7 +116,7 @@ impl Label {
     }
 }
 
-/// The labels of the speeds in sight, none over another.
+/// The labels of the speeds in range, without overlap.
 fn labels(critical: &CriticalSpeeds, x: (f64, f64)) -> Vec<Label> {
     let speeds = [("d", critical.v_d), ("w", critical.v_w), ("c", critical.v_c)];
     let mut labels: Vec<Label> = Vec::new();

@@ -1,4 +1,4 @@
-//! Heat maps: a number over two axes of words, evenly spaced.
+//! Heat maps: a number over two axes of named values, evenly spaced.
 
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{GREY, INK, SHADES, shade};
@@ -10,10 +10,10 @@ use super::shape::text_width;
 use crate::basin::Bound;
 use kuva::render::render::TextAnchor;
 
-/// Heat maps side by side, in the same colours.
+/// Heat maps side by side, with a common colour scale.
 #[derive(Clone, Debug)]
 pub struct HeatMap<'a> {
-    /// Above the figure.
+    /// Title above the figure.
     pub title: &'a str,
     /// The number's name and unit.
     pub label: &'a str,
@@ -21,13 +21,13 @@ pub struct HeatMap<'a> {
     pub x: (&'a str, &'a [String]),
     /// Name and values of the vertical axis.
     pub y: (&'a str, &'a [String]),
-    /// The maps: a title, and the numbers row by row from below; none where it is not known.
+    /// The maps: a title, and the numbers row by row from below; `None` if unknown.
     pub maps: &'a [(String, Map)],
-    /// Where a line is drawn, as a part of a map's largest number; none in a map with a number that is only a bound.
+    /// Level of the contour line, as a fraction of a map's largest number; not drawn if a number involved is only a bound.
     pub contour: f64,
 }
 
-/// Numbers row by row, with how they lie to the true ones.
+/// Numbers row by row, each with the kind of bound it is.
 pub type Map = Vec<Vec<Option<(f64, Bound)>>>;
 
 const LEFT: f64 = 86.0;
@@ -35,7 +35,7 @@ const TOP: f64 = 62.0;
 const BELOW: f64 = 78.0;
 const BAR: f64 = 14.0;
 
-/// A rectangle for every number; unknown ones stay grey.
+/// Draws a rectangle for every number; unknown ones stay grey.
 pub fn heatmap(figure: &HeatMap) -> Picture {
     let columns = figure.maps.len().clamp(1, 3);
     let (width, height) = [(460.0, 340.0), (320.0, 260.0), (250.0, 210.0)][columns - 1];
@@ -63,10 +63,10 @@ pub fn heatmap(figure: &HeatMap) -> Picture {
     canvas.finish()
 }
 
-/// Seen on dark shades, and by its dark edges on light ones.
+/// Visible on dark shades, and by its dark edges on light ones.
 const LINE: &str = "#ffffff";
 
-/// Of a number in a range, how far along it is as a shade's number.
+/// Shade of a number in a range.
 fn shade_of(x: f64, (low, high): (f64, f64)) -> usize {
     (((x - low) / (high - low) * SHADES as f64) as usize).min(SHADES - 1)
 }
@@ -110,7 +110,7 @@ fn draw(canvas: &mut Canvas, figure: &HeatMap, map: &Map, area: Area, range: (f6
     panel.frame_with(canvas, &along, Some(figure.x.0), figure.y.0);
 }
 
-/// The colours as a bar, right of `axes`.
+/// The colour scale as a bar, right of `axes`.
 fn bar(canvas: &mut Canvas, axes: Area, range: (f64, f64), label: &str) {
     let x = axes.right() + 18.0;
     let step = axes.height / SHADES as f64;
@@ -127,7 +127,7 @@ fn bar(canvas: &mut Canvas, axes: Area, range: (f64, f64), label: &str) {
     canvas.text_upwards((x + BAR + 52.0, axes.y + 0.5 * axes.height), 13, label);
 }
 
-/// The line at a part of the map's largest number; none if that, or what to compare with it, is only a bound.
+/// The contour line at a fraction of the map's largest number; none if that number, or one to compare with it, is only a bound.
 fn contour_of(map: &Map, part: f64) -> Vec<[(f64, f64); 2]> {
     let numbers = || map.iter().flatten().flatten();
     if !numbers().all(|n| n.1.is_measured()) {
@@ -139,8 +139,8 @@ fn contour_of(map: &Map, part: f64) -> Vec<[(f64, f64); 2]> {
     contour(&plain, part * most)
 }
 
-/// The straight pieces of the line on which `map` is `level`, in cells: linear between the centres of
-/// each three neighbours, two triangles a square, so that no saddle is in doubt.
+/// The straight pieces of the line on which `map` equals `level`, in cells: linear between the centres of three neighbours, two triangles per square, so that
+/// no saddle is ambiguous.
 fn contour(map: &[Vec<Option<f64>>], level: f64) -> Vec<[(f64, f64); 2]> {
     let mut pieces = Vec::new();
     let at = |i: usize, j: usize| Some(((i as f64, j as f64), (*map.get(j)?.get(i)?)? - level));
@@ -159,10 +159,10 @@ fn contour(map: &[Vec<Option<f64>>], level: f64) -> Vec<[(f64, f64); 2]> {
     pieces
 }
 
-/// A place and the number there.
+/// A position and the number there.
 type At = ((f64, f64), f64);
 
-/// Where a number changes its sign between two places.
+/// Position between two points at which a number changes its sign.
 fn crossing(((p, a), (q, b)): (At, At)) -> Option<(f64, f64)> {
     let part = a / (a - b);
     ((a < 0.0) != (b < 0.0)).then_some((p.0 + part * (q.0 - p.0), p.1 + part * (q.1 - p.1)))

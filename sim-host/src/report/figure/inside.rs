@@ -1,4 +1,4 @@
-//! One basin: its inside, and how long falls take outside.
+//! Figure of one basin: its inside, and the times to fall outside.
 
 use super::basin::{AREA, Band, BasinFigure, LEGEND_GAP, SPEED, caps, height};
 use super::canvas::{Canvas, Stroke};
@@ -10,10 +10,10 @@ use super::time_scale::TimeScale;
 use crate::basin::{Basin, Column};
 use crate::ride::Outcome;
 
-/// How opaque a band is.
+/// Opacity of a band.
 const BAND: f64 = 0.3;
 
-/// From where to where every column stands for the basin \[m/s\]: half way to its neighbours.
+/// Speed interval of each column \[m/s\]: half-way to its neighbours.
 fn edges(basin: &Basin) -> Vec<(f64, f64)> {
     let v: Vec<f64> = basin.columns.iter().map(|c| c.speed).collect();
     let between = |i: usize| 0.5 * (v[i - 1] + v[i]);
@@ -28,7 +28,7 @@ fn edges(basin: &Basin) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Ranges of the disturbance that outlasted the time limit but did not come back \[rad/s\].
+/// Ranges of the disturbance from which the ride lasts the time limit without recovering \[rad/s\].
 fn undecided(column: &Column) -> Vec<(f64, f64)> {
     let safe = std::iter::once((0.0, column.upper)).chain(column.islands.iter().map(|i| (i.from, i.to)));
     let mut ranges = Vec::new();
@@ -40,7 +40,7 @@ fn undecided(column: &Column) -> Vec<(f64, f64)> {
             ranges.push((low, high));
         }
     }
-    // Neighbours become one, so that a picture needs few rectangles.
+    // Adjacent ranges are merged, so that a figure needs few rectangles.
     ranges.dedup_by(|next, last| {
         let joined = next.0 <= last.1;
         if joined {
@@ -51,10 +51,10 @@ fn undecided(column: &Column) -> Vec<(f64, f64)> {
     ranges
 }
 
-/// The inside filled and outlined, the outside in dots.
+/// Draws the inside filled and outlined, the outside as dots.
 pub(super) fn inside_and_outside(figure: &BasinFigure, name: &str, basin: &Basin) -> Picture {
     let edges = edges(basin);
-    // Half a column further than the speeds and a little over the cap, so that the dots are whole.
+    // Half a column beyond the speeds and slightly beyond the cap, so that the dots are not cut.
     let ends = edges.iter().flat_map(|&(a, b)| [a, b]);
     let panel = figure.panel(ends, figure.cap);
     let legend = entries(figure, name, basin);
@@ -101,7 +101,7 @@ pub(super) fn inside_and_outside(figure: &BasinFigure, name: &str, basin: &Basin
     canvas.finish()
 }
 
-/// The border of the basin, level from the outer columns to their edges.
+/// The border of the basin, constant from the outer columns to their edges.
 fn outline(basin: &Basin, edges: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let columns = &basin.columns;
     let first = columns.first().zip(edges.first()).map(|(c, e)| (e.0, c.upper));
@@ -109,7 +109,7 @@ fn outline(basin: &Basin, edges: &[(f64, f64)]) -> Vec<(f64, f64)> {
     first.into_iter().chain(columns.iter().map(|c| (c.speed, c.upper))).chain(last).collect()
 }
 
-/// The corners of a range of column `i` from edge to edge; in the basin none is beyond its border.
+/// The corners of a range of column `i` from edge to edge; inside the basin, limited by its border.
 fn cell(basin: &Basin, i: usize, edge: (f64, f64), (low, high): (f64, f64)) -> [(f64, f64); 5] {
     let column = &basin.columns[i];
     let border = |neighbour: Option<&Column>| match neighbour {
@@ -127,7 +127,7 @@ fn cell(basin: &Basin, i: usize, edge: (f64, f64), (low, high): (f64, f64)) -> [
     ]
 }
 
-/// What of the legend this basin needs.
+/// The legend entries that this basin needs.
 fn entries(figure: &BasinFigure, name: &str, basin: &Basin) -> Vec<Entry> {
     let any = |f: &dyn Fn(&Column) -> bool| basin.columns.iter().any(f);
     let label =
@@ -147,7 +147,7 @@ fn entries(figure: &BasinFigure, name: &str, basin: &Basin) -> Vec<Entry> {
     legend
 }
 
-/// A dot for every fall, in the colour of its time.
+/// Draws a dot for each fall, in the colour of its time.
 fn falls(canvas: &mut Canvas, panel: &Panel, basin: &Basin) {
     let scale = TimeScale::new(basin);
     let mut shades = vec![Vec::new(); SHADES];

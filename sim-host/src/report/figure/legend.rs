@@ -1,4 +1,4 @@
-//! What the signs mean, in rows below a figure or a column beside a panel.
+//! Draws legends, in rows below a figure or in a column beside a panel.
 
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::GREY;
@@ -39,13 +39,13 @@ pub(super) fn entry(sign: Sign, label: impl Into<String>) -> Entry {
     Entry { sign, label: label.into() }
 }
 
-/// Below a figure: as many columns as fit into `width`.
+/// Number of columns of a legend below a figure of this width.
 fn columns(entries: &[Entry], width: f64) -> usize {
     let widest = entries.iter().map(entry_width).fold(1.0, f64::max);
     ((width / widest) as usize).clamp(1, entries.len().max(1))
 }
 
-/// How high the rows below a figure are.
+/// Height of the rows below a figure.
 pub(super) fn rows_height(entries: &[Entry], width: f64) -> f64 {
     LINE * entries.len().div_ceil(columns(entries, width)) as f64
 }

@@ -1,14 +1,14 @@
-//! Marks at single points.
+//! Markers at single points.
 
 use super::canvas::{Canvas, Stroke};
 use std::f64::consts::TAU;
 
-/// The shape of a mark.
+/// Shape of a marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Marker {
     /// A filled circle.
     Dot,
-    /// A small filled circle, for many.
+    /// A small filled circle, for many points.
     Point,
     /// A circle.
     Ring,
@@ -16,7 +16,7 @@ pub enum Marker {
     Square,
     /// A filled triangle.
     Triangle,
-    /// An upright cross turned by an eighth.
+    /// A diagonal cross.
     Cross,
 }
 

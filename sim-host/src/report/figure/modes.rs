@@ -1,18 +1,17 @@
-//! Modes as lines over speed.
+//! Eigenmodes as lines over speed.
 
 use crate::eigen::Mode;
 use nalgebra::Complex;
 
 type Root = Option<Complex<f64>>;
 
-/// Stretches of a root's real part over speed.
+/// Continuous stretches of a root's real part over speed.
 pub(super) fn real(speeds: &[f64], root: &[Root]) -> Vec<Vec<(f64, f64)>> {
-    // The lower half of a pair lies under the upper one.
+    // The lower half of a pair coincides with the upper one.
     lines(speeds, root, |e| e.re, |a, b| a.im >= 0.0 || b.im >= 0.0)
 }
 
-/// Stretches of a root's positive imaginary part over speed, from and to zero where a pair begins
-/// and ends.
+/// Continuous stretches of a root's positive imaginary part over speed, extended to zero where a pair begins and ends.
 pub(super) fn imaginary(speeds: &[f64], root: &[Root]) -> Vec<Vec<(f64, f64)>> {
     lines(speeds, root, |e| e.im, |a, b| a.im > 0.0 || b.im > 0.0)
 }
@@ -41,7 +40,7 @@ fn lines(
     lines
 }
 
-/// Whether any of a mode's real parts lies within `range`.
+/// Whether a real part of the mode lies within `range`.
 pub(super) fn in_sight(mode: &Mode, range: (f64, f64)) -> bool {
     mode.roots.iter().flatten().flatten().any(|e| range.0 <= e.re && e.re <= range.1)
 }

@@ -1,4 +1,4 @@
-//! The outlines of several basins.
+//! Figure of the outlines of several basins.
 
 use super::basin::{AREA, BasinFigure, LEGEND_GAP, SPEED, caps, height};
 use super::canvas::{Canvas, Dash, Stroke};
@@ -7,8 +7,7 @@ use super::legend::{Sign, entry, rows};
 use super::picture::Picture;
 use super::scale::nice;
 
-/// A line for every basin. Every second one is dashed, and these are drawn last: where two lines
-/// coincide, both are seen.
+/// Draws a line for each basin. Every second line is dashed and drawn last, so that both are visible where two coincide.
 pub(super) fn outlines(figure: &BasinFigure) -> Picture {
     let columns = || figure.series.iter().flat_map(|(_, b)| &b.columns);
     let top = nice(columns().map(|c| c.upper).chain([0.0]), 8).1.min(figure.cap);

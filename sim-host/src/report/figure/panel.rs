@@ -1,4 +1,4 @@
-//! A pair of axes.
+//! A pair of axes that maps data to an area of the canvas.
 
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{INK, STABLE};
@@ -8,16 +8,16 @@ use kuva::render::render::TextAnchor;
 
 const TICK_TEXT: u32 = 12;
 const LABEL_TEXT: u32 = 13;
-/// From the labels at the left to the axis, the same in all panels.
+/// Distance from the labels at the left to the axis, equal in all panels.
 const LABEL_GAP: f64 = 46.0;
 
 /// A range of data over an area of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Panel {
     pub(super) area: Area,
-    /// Data at the left and the right.
+    /// Data values at the left and right edge.
     pub(super) x: (f64, f64),
-    /// Data at the bottom and the top.
+    /// Data values at the bottom and top edge.
     pub(super) y: (f64, f64),
 }
 
@@ -34,14 +34,14 @@ impl Panel {
         (self.x(x), self.y(y))
     }
 
-    /// The pixels of a rectangle of data.
+    /// The area of a rectangle of data, in pixels.
     pub(super) fn span(&self, x: (f64, f64), y: (f64, f64)) -> Area {
         let (left, top) = self.at((x.0, y.1));
         let (right, bottom) = self.at((x.1, y.0));
         Area { x: left, y: top, width: right - left, height: bottom - top }
     }
 
-    /// A line through data, cut off at the frame.
+    /// A line through data, clipped to the frame.
     pub(super) fn line(
         &self,
         canvas: &mut Canvas,
@@ -60,21 +60,21 @@ impl Panel {
         }
     }
 
-    /// A line over the whole height, if `x` is in sight.
+    /// A line over the whole height, if `x` is in range.
     pub(super) fn vertical(&self, canvas: &mut Canvas, x: f64, stroke: Stroke) {
         if self.x.0 <= x && x <= self.x.1 {
             canvas.line(&[(self.x(x), self.area.bottom()), (self.x(x), self.area.y)], stroke);
         }
     }
 
-    /// The frame with ticks, numbers and labels; without an `x_label` also without numbers below.
+    /// The frame with ticks, numbers and labels; without an `x_label`, the numbers below are omitted.
     pub(super) fn frame(&self, canvas: &mut Canvas, x_label: Option<&str>, y_label: &str) {
         let Area { width, height, .. } = self.area;
         let along = [ticks(self.x, (width / 70.0) as usize), ticks(self.y, (height / 50.0) as usize)];
         self.frame_with(canvas, &along, x_label, y_label);
     }
 
-    /// The frame with these ticks, where and how named, along x and y.
+    /// The frame with the given ticks (position and text) along x and y.
     pub(super) fn frame_with(
         &self,
         canvas: &mut Canvas,

@@ -1,4 +1,4 @@
-//! A basin over steer rate and roll rate at one speed.
+//! Figure of a basin over steer rate and roll rate at one speed.
 
 use super::basin::{AREA, LEGEND_GAP, height};
 use super::canvas::{Canvas, Stroke};
@@ -10,19 +10,19 @@ use super::scale::nice;
 use super::time_scale::TimeScale;
 use crate::basin::{Basin, Plane};
 
-/// What a figure of a plane shows.
+/// Data of the figure.
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneFigure<'a> {
-    /// Above the figure.
+    /// Title above the figure.
     pub title: &'a str,
     /// The plane.
     pub plane: &'a Plane,
 }
 
-/// How far beyond the outline the figure reaches, as a part of the outline's own reach.
+/// Reach of the figure as a multiple of the outline's reach.
 const MARGIN: f64 = 1.35;
 
-/// The inside filled, falls in the colour of their time, islands as dots of their own.
+/// Draws the inside filled, falls in the colour of their time, islands as separate dots.
 pub fn plane(figure: &PlaneFigure) -> Picture {
     let plane = figure.plane;
     let outline = plane.outline();
@@ -72,10 +72,10 @@ pub fn plane(figure: &PlaneFigure) -> Picture {
     canvas.finish()
 }
 
-/// Dots in pixels.
+/// Positions of dots, in pixels.
 type Dots = Vec<(f64, f64)>;
 
-/// The falls by shade, and the rides beyond the outline that do not fall; mirror images too.
+/// The falls by shade, and the rides beyond the outline that do not fall; with mirror images.
 fn dots(plane: &Plane, panel: &Panel, scale: &TimeScale) -> (Vec<Dots>, Dots) {
     let (mut falls, mut stays) = (vec![Vec::new(); SHADES], Vec::new());
     for ray in &plane.rays {

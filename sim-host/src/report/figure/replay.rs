@@ -1,4 +1,4 @@
-//! A replay over time.
+//! Figure of a replay over time.
 
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{FALL, GREY, SERIES};
@@ -10,16 +10,16 @@ use super::scale::nice;
 use super::thin::thinned;
 use crate::replay::{CauseRecord, ModeRecord, Row};
 
-/// What a figure of a replay shows.
+/// Data of the figure.
 #[derive(Clone, Copy, Debug)]
 pub struct ReplayFigure<'a> {
-    /// Above the figure.
+    /// Title above the figure.
     pub title: &'a str,
     /// The rows of the table.
     pub rows: &'a [Row],
-    /// From when on the controller stood where.
+    /// The modes with their start times.
     pub modes: &'a [ModeRecord],
-    /// The causes, of which the alarms are marked.
+    /// The causes, whose alarms are marked.
     pub causes: &'a [CauseRecord],
 }
 
@@ -30,7 +30,7 @@ const HEIGHT: f64 = 118.0;
 const GAP: f64 = 16.0;
 const LEGEND: f64 = 186.0;
 
-/// A curve's name and its values; NaN where there is none.
+/// A curve's name and its values; NaN without a value.
 type Curve = (&'static str, fn(&Row) -> f64);
 
 fn or_none(value: Option<f32>) -> f64 {
@@ -63,7 +63,7 @@ const PANELS: [(&str, &[Curve]); 5] = [
     ),
 ];
 
-/// Roll, rates, steer, speeds and torque over time; modes with torque are shaded, alarms marked.
+/// Draws roll, rates, steer, speeds and torque over time; modes with torque are shaded, alarms marked.
 pub fn replay(figure: &ReplayFigure) -> Picture {
     let x = match figure.rows {
         [first, .., last] => (first.t, last.t),

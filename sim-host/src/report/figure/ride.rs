@@ -1,4 +1,4 @@
-//! A ride over time.
+//! Figure of a ride over time.
 
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{FALL, GREY, SERIES};
@@ -11,26 +11,26 @@ use crate::ride::{Outcome, TracePoint};
 use control::ActiveLimits;
 use kuva::render::render::TextAnchor;
 
-/// What a figure of a ride shows.
+/// Data of the figure.
 #[derive(Clone, Copy, Debug)]
 pub struct RideFigure<'a> {
-    /// Above the figure.
+    /// Title above the figure.
     pub title: &'a str,
     /// The ride.
     pub trace: &'a [TracePoint],
-    /// How it ended.
+    /// Its outcome.
     pub outcome: Outcome,
 }
 
 impl RideFigure<'_> {
-    /// When it ends \[s\]: the last control period included.
+    /// End of the ride \[s\], including the last control period.
     pub(in crate::report) fn end(&self) -> f64 {
         let end = match (self.outcome.time_to_fall_s(), self.trace) {
             (Some(t), _) => t,
             (None, [.., before, last]) => last.t + (last.t - before.t),
             _ => 1.0,
         };
-        // To a microsecond, or the last round number would be missed by a rounding error.
+        // Rounded to a microsecond; otherwise a rounding error could hide the last tick.
         (end * 1e6).round().max(1.0) / 1e6
     }
 }
@@ -59,10 +59,10 @@ const LIMITS: [(ActiveLimits, &str, &str); 3] = [
     (ActiveLimits::RATE, "rate of change", SERIES[2]),
 ];
 
-/// Angles, rates, wheel speeds and torque over time, and when limits changed the torque.
+/// Draws angles, rates, wheel speeds and torque over time, and the times at which limits changed the torque.
 pub fn ride(figure: &RideFigure) -> Picture {
     let fall = figure.outcome.time_to_fall_s();
-    // A fall is not drawn on the frame.
+    // Space to the right, so that a fall is not drawn on the frame.
     let x = (0.0, figure.end() * if fall.is_some() { 1.03 } else { 1.0 });
     let rows = ROWS.len() as f64;
     let bottom = TOP + rows * HEIGHT + (rows - 1.0) * GAP;
@@ -81,7 +81,7 @@ pub fn ride(figure: &RideFigure) -> Picture {
             panel.line(&mut canvas, [(x.0, 0.0), (x.1, 0.0)], Stroke::solid(GREY, 0.7));
         }
         for (k, (name, of)) in curves.iter().enumerate() {
-            // Nobody rides.
+            // There is no rider.
             if *name == "rider" && figure.trace.iter().all(|p| p.rider_torque == 0.0) {
                 continue;
             }
@@ -104,13 +104,13 @@ pub fn ride(figure: &RideFigure) -> Picture {
     canvas.finish()
 }
 
-/// A range with some room above and below, for lines that lie on its ends.
+/// A range with a margin above and below, for lines at its ends.
 pub(super) fn padded((low, high): (f64, f64)) -> (f64, f64) {
     let room = 0.06 * (high - low);
     (low - room, high + room)
 }
 
-/// Marks when limits were active along the lower edge; gives the legend of those that were.
+/// Marks along the lower edge when limits were active; returns the legend of those limits.
 fn limits(canvas: &mut Canvas, panel: &Panel, trace: &[TracePoint]) -> Vec<super::legend::Entry> {
     let mut legend = Vec::new();
     let mut y = panel.area.bottom();
@@ -130,13 +130,13 @@ fn limits(canvas: &mut Canvas, panel: &Panel, trace: &[TracePoint]) -> Vec<super
     legend
 }
 
-/// When a limit was active \[s\].
+/// Time intervals in which a limit was active \[s\].
 fn active(trace: &[TracePoint], limit: ActiveLimits) -> Vec<(f64, f64)> {
     let mut spans: Vec<(f64, f64)> = Vec::new();
     let mut open = false;
     for (i, point) in trace.iter().enumerate() {
         let on = ActiveLimits(point.limits).contains(limit);
-        // The torque of a control period is held until the next.
+        // The torque of a control period is held until the next one.
         let until = trace.get(i + 1).map_or(point.t, |next| next.t);
         match spans.last_mut() {
             Some(span) if on && open => span.1 = until,

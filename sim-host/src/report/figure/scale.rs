@@ -2,7 +2,7 @@
 
 use kuva::render::render_utils::{auto_nice_range, compute_tick_step, generate_ticks};
 
-/// Round numbers within a range, with their texts.
+/// Round numbers in a range, with their texts.
 pub(in crate::report) fn ticks(range: (f64, f64), wanted: usize) -> Vec<(f64, String)> {
     let wanted = wanted.clamp(3, 10);
     let step = compute_tick_step(range.0, range.1, wanted);
@@ -15,7 +15,7 @@ pub(in crate::report) fn ticks(range: (f64, f64), wanted: usize) -> Vec<(f64, St
         .collect()
 }
 
-/// A range with round ends around finite values; 0 to 1 around none.
+/// A range with round ends around the finite values; 0 to 1 without any.
 pub(in crate::report) fn nice(values: impl IntoIterator<Item = f64>, wanted: usize) -> (f64, f64) {
     let finite = values.into_iter().filter(|v| v.is_finite());
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));

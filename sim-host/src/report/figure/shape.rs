@@ -1,6 +1,6 @@
-//! Sizes and shapes in pixels.
+//! Text widths, paths and dashes, in pixels.
 
-/// About how wide a text is in the fonts used.
+/// Approximate width of a text in the fonts used.
 pub(super) fn text_width(text: &str, size: u32) -> f64 {
     let width = |c: char| match c {
         ' ' | '.' | ',' | ':' | 'i' | 'j' | 'l' => 0.31,

@@ -1,4 +1,4 @@
-//! Figures of data of any shape: whole SVG with the words that are needed, and a PNG.
+//! Tests of figures with data of any shape: complete SVG with the expected words, and a PNG.
 
 use super::*;
 use crate::basin::{Axis, Basin, Column, Island, ScanPoint, Work};
@@ -32,7 +32,7 @@ fn figure<'a>(series: &'a [(&'a str, &'a Basin)]) -> BasinFigure<'a> {
     }
 }
 
-/// The SVG, whose elements were all closed, with finite numbers only.
+/// The SVG; checks that all elements are closed and all numbers finite.
 fn svg(picture: &Picture) -> String {
     let svg = picture.svg();
     let mut open: Vec<&str> = Vec::new();

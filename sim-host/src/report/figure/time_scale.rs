@@ -1,4 +1,4 @@
-//! The colours of times to fall.
+//! Colour scale of times to fall.
 
 use super::canvas::{Area, Canvas, Stroke};
 use super::colour::{INK, SHADES, shade};
@@ -8,7 +8,7 @@ use kuva::render::render::TextAnchor;
 /// Round times \[s\] at which a scale can end.
 const ROUND: [f64; 16] =
     [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0];
-/// The area beside the axes.
+/// Width of the bar beside the axes \[pixels\].
 const WIDTH: f64 = 14.0;
 
 /// A logarithmic scale between two round times.
@@ -29,12 +29,12 @@ impl TimeScale {
         }
     }
 
-    /// How far along the scale a time is, 0 to 1.
+    /// Position of a time on the scale, 0 to 1.
     fn along(&self, time: f64) -> f64 {
         (libm::log(time / self.from) / libm::log(self.to / self.from)).clamp(0.0, 1.0)
     }
 
-    /// The number of a time's shade.
+    /// Index of a time's shade.
     pub(super) fn shade_of(&self, time: f64) -> usize {
         ((self.along(time) * SHADES as f64) as usize).min(SHADES - 1)
     }

@@ -1,4 +1,4 @@
-//! Curves in braille: two dots by four in every character.
+//! Plots curves in braille characters: two by four dots in each.
 
 use crate::report::figure::scale::ticks;
 
@@ -17,13 +17,13 @@ pub(super) struct Chart {
 }
 
 impl Chart {
-    /// An empty plot, `width` characters wide with its numbers.
+    /// An empty plot, `width` characters wide including its numbers.
     pub(super) fn new(width: usize, rows: usize, x: (f64, f64), y: (f64, f64)) -> Self {
         let columns = width - MARGIN;
         Self { columns, rows, x, y, cells: vec![0; columns * rows] }
     }
 
-    /// Where data is, in dots; `None` if it is not finite.
+    /// Position of a data point, in dots; `None` if it is not finite.
     fn at(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
         let across = (x - self.x.0) / (self.x.1 - self.x.0) * (2 * self.columns - 1) as f64;
         let down = (self.y.1 - y) / (self.y.1 - self.y.0) * (4 * self.rows - 1) as f64;
@@ -38,7 +38,7 @@ impl Chart {
         }
     }
 
-    /// A dot for every datum in sight.
+    /// Draws a dot for each data point in range.
     pub(super) fn dots(&mut self, data: impl IntoIterator<Item = (f64, f64)>) {
         for datum in data {
             if let Some(at) = self.at(datum) {
@@ -47,7 +47,7 @@ impl Chart {
         }
     }
 
-    /// A line through data.
+    /// Draws a line through data points.
     pub(super) fn line(&mut self, data: impl IntoIterator<Item = (f64, f64)>) {
         let mut last = None;
         for datum in data {
@@ -62,7 +62,7 @@ impl Chart {
         }
     }
 
-    /// The plot with `label` above, and with `x_label` and numbers below if there is one.
+    /// The plot with `label` above, and with `x_label` and numbers below if given.
     pub(super) fn text(&self, label: &str, x_label: Option<&str>) -> String {
         let row_of = |y: f64| self.at((self.x.0, y)).map(|at| (at.1 / 4.0) as usize);
         let numbers: Vec<_> = ticks(self.y, self.rows / 2).into_iter().map(|(y, n)| (row_of(y), n)).collect();
@@ -87,7 +87,7 @@ fn sign(bits: u8, blank: char) -> char {
     if bits == 0 { blank } else { char::from_u32(0x2800 + u32::from(bits)).unwrap_or(blank) }
 }
 
-/// What stands left of a row.
+/// Text left of a row.
 pub(super) fn margin(number: Option<&str>) -> String {
     match number {
         Some(number) => format!("{number:>6} ┤"),

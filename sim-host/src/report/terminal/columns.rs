@@ -1,4 +1,4 @@
-//! A basin as columns of blocks.
+//! Plots a basin as columns of block characters.
 
 use super::braille::{MARGIN, margin, x_axis};
 use crate::basin::{Basin, Column};
@@ -59,7 +59,7 @@ fn nearest(basin: &Basin, x: (f64, f64), i: usize, across: usize) -> Option<&Col
     basin.columns.iter().min_by(|a, b| (a.speed - v).abs().total_cmp(&(b.speed - v).abs()))
 }
 
-/// What becomes of disturbances from `low` to `high`.
+/// Character for disturbances from `low` to `high`.
 fn sign(column: &Column, low: f64, high: f64) -> char {
     let middle = 0.5 * (low + high);
     let eighths = ((column.upper - low) / (high - low) * 8.0).round().clamp(0.0, 8.0) as usize;

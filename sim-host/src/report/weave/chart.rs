@@ -1,4 +1,4 @@
-//! The figure of `identify weave`: decay and frequency over speed, a row for each gain.
+//! Figure of `identify weave`: decay and frequency over speed, a row for each gain.
 
 use super::document::{RecordingEntry, WeaveDocument, WeaveEntry};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
@@ -6,16 +6,16 @@ use crate::weave::Estimate;
 use crate::weave::pool::Pooled;
 use nalgebra::Complex;
 
-/// The linear model's weave of a gain over speed: speeds \[m/s\], and the eigenvalues with a perfect and with the fitted motor.
+/// The linear model's weave at one gain over speed, with an ideal and with the fitted motor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
     /// The gain.
     pub gain: Option<f64>,
     /// Forward speeds \[m/s\].
     pub speeds: Vec<f64>,
-    /// With a perfect motor \[1/s\].
+    /// Eigenvalues with an ideal motor \[1/s\].
     pub perfect: Vec<Option<Complex<f64>>>,
-    /// With the fitted one \[1/s\].
+    /// Eigenvalues with the fitted motor \[1/s\].
     pub fitted: Vec<Option<Complex<f64>>>,
 }
 
@@ -66,7 +66,7 @@ fn plot(document: &WeaveDocument, curves: &Curves, part: &Part) -> Plot {
     let repeats = document.weave.iter().filter(|e| e.gain == curves.gain);
     let repeats: Vec<(f64, Estimate)> =
         repeats.filter_map(|e| Some((e.speed_m_s, (part.of_repeats)(e)?.mean))).collect();
-    // Wide intervals would leave nothing to be seen of the rest.
+    // Wide intervals would compress the rest of the figure.
     let known = perfect.points.iter().chain(&fitted.points).chain(&recordings).map(|p| p.1);
     let (low, high) =
         known.filter(|y| y.is_finite()).fold((0.0_f64, 0.0_f64), |(a, b), y| (a.min(y), b.max(y)));

@@ -1,4 +1,4 @@
-//! The document of `identify weave`.
+//! Document of `identify weave`.
 
 use crate::eigen::LinearActuator;
 use crate::report::document::SCHEMA;
@@ -19,24 +19,24 @@ pub struct WeaveDocument {
     pub tool: Tool,
     /// The bicycle of the predictions.
     pub bicycle: ResolvedBicycle,
-    /// How the recordings were read, and the rest of the model.
+    /// How the recordings were read, and the other parameters of the model.
     pub config: ResolvedWeave,
-    /// The recordings that could be used, in the order given.
+    /// The usable recordings, in the given order.
     pub recordings: Vec<RecordingEntry>,
-    /// Those that could not.
+    /// The unusable recordings.
     pub refused: Vec<RefusedEntry>,
-    /// Per gain and speed the repeats together, and the linear model's weave.
+    /// Per gain and speed the pooled repeats, and the linear model's weave.
     pub weave: Vec<WeaveEntry>,
 }
 
-/// How recordings were read, and what they are compared with.
+/// How recordings were read, and the model they are compared with.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ResolvedWeave {
-    /// The law, `{gain}` standing for a recording's.
+    /// The law; `{gain}` is replaced by a recording's gain.
     pub law: String,
-    /// The columns that were fitted, all with the same decay and frequency.
+    /// The fitted columns; all have the same decay and frequency.
     pub columns: Vec<String>,
-    /// What was fitted beside the weave and an offset: "mode", a decaying real mode, or "offset", nothing.
+    /// Fitted in addition to the weave and an offset: "mode", a decaying real mode, or "offset", nothing.
     #[schemars(extend("enum" = ["mode", "offset"]))]
     pub beside: &'static str,
     /// The motor of the second prediction, fitted to the published weave.
@@ -52,22 +52,22 @@ pub struct RecordingEntry {
     pub gain: Option<f64>,
     /// Forward speed \[m/s\].
     pub speed_m_s: f64,
-    /// What of the file was left out, and why, by line.
+    /// Parts of the file that were left out, with the reason, by line.
     pub left_out: Vec<String>,
-    /// What it says.
+    /// The fitted weave.
     pub weave: Segment,
 }
 
-/// A recording that could not be used.
+/// An unusable recording.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct RefusedEntry {
     /// The file as it was given.
     pub file: String,
-    /// The controller's gain, if it is known.
+    /// The controller's gain, if known.
     pub gain: Option<f64>,
-    /// Forward speed, if it is known \[m/s\].
+    /// Forward speed, if known \[m/s\].
     pub speed_m_s: Option<f64>,
-    /// Why.
+    /// The reason.
     pub why: String,
 }
 
@@ -78,29 +78,29 @@ pub struct WeaveEntry {
     pub gain: Option<f64>,
     /// Forward speed \[m/s\].
     pub speed_m_s: f64,
-    /// How many recordings could be used.
+    /// Number of usable recordings.
     pub repeats: usize,
-    /// How many could not.
+    /// Number of unusable recordings.
     pub refused: usize,
     /// Real part of the eigenvalue \[1/s\]; null if no recording could be used.
     pub decay_1_s: Option<Pooled>,
     /// Imaginary part \[rad/s\].
     pub frequency_rad_s: Option<Pooled>,
-    /// The linear model's.
+    /// The linear model's eigenvalue.
     pub predicted: Predicted,
 }
 
-/// The eigenvalue `[re, im]` \[1/s\] that the linear model has; null where it has no pair.
+/// The eigenvalue `[re, im]` \[1/s\] of the linear model; null where it has no pair.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Predicted {
-    /// With a motor that gives what it is asked for.
+    /// With an ideal motor.
     pub perfect: Option<[f64; 2]>,
     /// With the motor fitted to the published weave.
     pub fitted: Option<[f64; 2]>,
 }
 
 impl WeaveDocument {
-    /// What is kept of it as a table.
+    /// The pooled weave as measured values; `source` names their origin.
     pub fn measured(&self, source: &str) -> Measured {
         let kept = |entry: &WeaveEntry| {
             let (decay, frequency) = (entry.decay_1_s?, entry.frequency_rad_s?);

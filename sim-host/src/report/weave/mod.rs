@@ -1,4 +1,4 @@
-//! What `identify weave` answers: document, table, text, figure.
+//! Outputs of `identify weave`: document, table, text, figure.
 
 mod chart;
 mod document;

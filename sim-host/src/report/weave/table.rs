@@ -1,9 +1,9 @@
-//! The table of `identify weave`.
+//! Table of `identify weave`.
 
 use super::document::{RecordingEntry, WeaveDocument, WeaveEntry};
 use serde::Serialize;
 
-/// A line: a recording, or the repeats at one gain and speed together.
+/// A line: a recording, or the pooled repeats at one gain and speed.
 #[derive(Clone, Debug, Serialize)]
 pub struct WeaveRow {
     kind: &'static str,

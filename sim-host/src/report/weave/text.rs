@@ -1,4 +1,4 @@
-//! `identify weave` in words.
+//! Text output of `identify weave`.
 
 use super::document::{Predicted, WeaveDocument, WeaveEntry};
 use crate::weave::Estimate;
@@ -6,7 +6,7 @@ use crate::weave::pool::Pooled;
 use std::fmt::Write;
 use std::path::Path;
 
-/// The recordings, the repeats together beside the linear model, and how many predictions lie in the intervals.
+/// The recordings, the pooled repeats beside the linear model, and the number of predictions within the intervals.
 pub fn text(document: &WeaveDocument) -> String {
     let mut text = recordings(document);
     text += "\nRepeats together, [95 % interval], scatter between them; the linear model's beside it:\n";
@@ -82,7 +82,7 @@ fn recordings(document: &WeaveDocument) -> String {
     text
 }
 
-/// How many predictions lie in the intervals.
+/// The number of predictions within the intervals.
 fn verdict(weave: &[WeaveEntry]) -> String {
     type Root = fn(&Predicted) -> Option<[f64; 2]>;
     let motors: [(&str, Root); 2] = [("perfect", |p| p.perfect), ("fitted", |p| p.fitted)];
