@@ -1,5 +1,5 @@
-//! The balance assist of the Gazelle and TU Delft prototype: where the published bicycle is stable under it, and
-//! its measured weave beside the model's. Published numbers: `data/balance_assist.toml`.
+//! Study of the balance assist of the Gazelle and TU Delft prototype: stable speed ranges of the published bicycle with it, and its measured weave beside the
+//! model's. Published numbers: `data/balance_assist.toml`.
 
 use super::motor_fit::{Explained, Free, fits, published_residual};
 use super::page::{Page, table};
@@ -14,38 +14,38 @@ use std::fmt::Write;
 
 /// The name of the page.
 pub const NAME: &str = "balance-assist";
-/// Above the page.
+/// Title of the page.
 pub const TITLE: &str = "The balance assist of the Gazelle and TU Delft prototype";
-/// What is asked.
+/// The question that the study answers.
 pub const QUESTION: &str =
     "From which speed is the published bicycle stable under the prototype's balance assist, and is the weave
 that was measured on it the model's?";
-/// The bicycle with the steer motor, as it was pushed off to ride alone.
+/// The bicycle with the steer motor, as pushed off to ride without a rider.
 pub const RIDERLESS: &str = "balanceassistv1";
-/// The same with a rigid rider.
+/// The same bicycle with a rigid rider.
 pub const RIDDEN: &str = "balanceassistv1_jason";
 
-/// What was published.
+/// The published numbers.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Published {
-    /// The speeds from which the straight ride is stable.
+    /// The lowest speeds at which the straight ride is stable.
     pub stable_from: StableFrom,
     /// Measured weave eigenvalues.
     pub weave: Vec<Weave>,
 }
 
-/// The speeds from which the straight ride is stable, as printed.
+/// The lowest speeds at which the straight ride is stable, as printed.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StableFrom {
-    /// Where they are printed.
+    /// Where they are printed (reference).
     pub source: String,
     /// Slopes of the gain \[N s^2/rad\].
     pub kappa: [f32; 2],
     /// Without a rider \[km/h\].
     pub riderless_kmh: [f64; 2],
-    /// With a rigid one \[km/h\].
+    /// With a rigid rider \[km/h\].
     pub ridden_kmh: [f64; 2],
 }
 
@@ -53,11 +53,11 @@ pub struct StableFrom {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Weave {
-    /// Where they are.
+    /// Where they are published (reference).
     pub source: String,
     /// The slope set in the controller \[N s^2/rad\].
     pub kappa_set: f32,
-    /// The slope of the model that comes near \[N s^2/rad\].
+    /// The slope of the best-fitting published model \[N s^2/rad\].
     pub kappa_model: f32,
     /// Forward speeds \[m/s\].
     pub speed_m_s: Vec<f64>,
@@ -77,22 +77,21 @@ impl Weave {
 /// The published numbers.
 ///
 /// # Panics
-/// If the file that is built in is wrong.
+/// The built-in file is invalid.
 pub fn published() -> Published {
     toml::from_str(include_str!("../../../data/balance_assist.toml"))
         .expect("data/balance_assist.toml is sound")
 }
 
-/// The lowest speed from which the straight ride is stable \[m/s\], `None` if there is none up to 20 m/s, and
-/// the speed from which it no longer is.
+/// The lowest speed at which the straight ride is stable \[m/s\] (`None` if it is nowhere stable up to 20 m/s), and the speed from which it is unstable again.
 pub fn stable_range(bicycle: &Parameters, law: Law) -> (Option<f64>, f64) {
     let found = stability(&Model::new(bicycle, Feedback::Law(law), None));
     let (from, to) = found.ranges.first().copied().unzip();
     (from, to.unwrap_or(SEARCH_TO_M_S))
 }
 
-/// The weave eigenvalue at each speed \[1/s\], the upper of the rightmost pair, under the balance assist of a slope
-/// turned by an actuator; `None` where there is no pair.
+/// The weave eigenvalue at each speed \[1/s\], the upper of the rightmost pair, under the balance assist of a given slope through an actuator; `None` where
+/// there is no pair.
 pub fn weave(
     bicycle: &Parameters,
     kappa: f32,
@@ -105,10 +104,10 @@ pub fn weave(
     speeds.iter().map(pair).collect()
 }
 
-/// The study.
+/// Computes the study.
 ///
 /// # Errors
-/// When a bicycle of the catalogue can't be loaded.
+/// A bicycle of the catalogue cannot be loaded.
 pub fn study() -> Result<Page, String> {
     let load = |name| catalogue::load(name).map(|b| b.parameters).map_err(|e| e.to_string());
     let (riderless, ridden) = (load(RIDERLESS)?, load(RIDDEN)?);
@@ -205,15 +204,15 @@ fn measured(bicycle: &Parameters, series: &[Weave], fits: &[Explained]) -> Strin
     text + &table(&["K set", "speed [m/s]", "measured", "published slopes", &fitted], rows)
 }
 
-/// The fit with the least distance.
+/// The fit with the smallest residual.
 pub fn best(fits: &[Explained]) -> &Explained {
     fits.iter().min_by(|a, b| a.residual.total_cmp(&b.residual)).expect("there are fits")
 }
 
-/// Speeds from which the law is weak: at most a tenth of its slope per m/s is left \[m/s\].
+/// Speeds from which the law is weak: at most a tenth of its slope per m/s remains \[m/s\].
 const WEAK_FROM_M_S: f64 = 4.4;
 
-/// Least and largest frequency at the speeds where the law is weak: measured, and of a model \[rad/s\].
+/// Smallest and largest frequency at the speeds where the law is weak: measured, and of a model \[rad/s\].
 fn where_weak(bicycle: &Parameters, series: &[Weave], actuator: LinearActuator) -> [(f64, f64); 2] {
     let mut frequencies = [Vec::new(), Vec::new()];
     for s in series {

@@ -1,10 +1,10 @@
-//! Studies by name or from TOML files.
+//! Loads studies by name or from TOML files.
 
 use super::swept::{self, StudyError, parse};
 use super::{balance_assist, prototype};
 use std::path::Path;
 
-/// The sweeps that ship: names, and files in `data/studies/`.
+/// The built-in sweep studies: names, and files in `data/studies/`.
 const SWEPT: [(&str, &str); 7] = [
     ("limits", include_str!("../../../data/studies/limits.toml")),
     ("imu", include_str!("../../../data/studies/imu.toml")),
@@ -15,19 +15,19 @@ const SWEPT: [(&str, &str); 7] = [
     ("end-stop", include_str!("../../../data/studies/end-stop.toml")),
 ];
 
-/// A study, by how it is computed.
+/// A study, by its kind.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Study {
     /// [`balance_assist`].
     BalanceAssist,
     /// [`prototype`].
     Prototype,
-    /// By sweeps that are written down.
+    /// Sweeps defined in a TOML file.
     Swept(swept::Study),
 }
 
 impl Study {
-    /// Its name, which is that of its page.
+    /// Its name, equal to its page's name.
     pub fn name(&self) -> &str {
         match self {
             Study::BalanceAssist => balance_assist::NAME,
@@ -36,7 +36,7 @@ impl Study {
         }
     }
 
-    /// Above its page.
+    /// Title of its page.
     pub fn title(&self) -> &str {
         match self {
             Study::BalanceAssist => balance_assist::TITLE,
@@ -45,7 +45,7 @@ impl Study {
         }
     }
 
-    /// What is asked.
+    /// The question that it answers.
     pub fn question(&self) -> &str {
         match self {
             Study::BalanceAssist => balance_assist::QUESTION,
@@ -55,16 +55,16 @@ impl Study {
     }
 }
 
-/// The shipped studies.
+/// The built-in studies.
 ///
 /// # Errors
-/// When the file of one is wrong.
+/// A built-in file is invalid.
 pub fn shipped() -> Result<Vec<Study>, StudyError> {
     let swept = SWEPT.iter().map(|(name, text)| parse(name, text).map(Study::Swept));
     [Study::BalanceAssist, Study::Prototype].into_iter().map(Ok).chain(swept).collect()
 }
 
-/// A study by `name`: a shipped one, or a `FILE`. Names win over files.
+/// A study by `name`: a built-in one, or a `FILE`. Names have precedence over files.
 ///
 /// # Errors
 /// Names file and key.

@@ -1,4 +1,4 @@
-//! Studies: a question, computed, and its answer as a page of Markdown with figures.
+//! Studies: each computes the answer to a question and writes it as a Markdown page with figures.
 
 pub mod balance_assist;
 pub mod catalogue;

@@ -1,4 +1,4 @@
-//! Which motor would explain the weave that was measured on the balance-assist prototype.
+//! Fits motor models to the weave measured on the balance-assist prototype.
 
 use super::balance_assist::{Weave, weave};
 use crate::bicycle::Parameters;
@@ -6,16 +6,16 @@ use crate::eigen::LinearActuator;
 use crate::thesis::nelder_mead::minimum;
 use nalgebra::Complex;
 
-/// Something a fit may choose.
+/// A free parameter of the fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Free {
-    /// Torque given over torque asked for.
+    /// Ratio of given to requested torque.
     Scale,
     /// Viscous friction.
     Friction,
     /// The motor's time constant.
     Lag,
-    /// The delay before it.
+    /// The delay of the request.
     Delay,
     /// The rotor's inertia about the steer axis.
     Inertia,
@@ -43,24 +43,24 @@ impl Free {
     }
 }
 
-/// What a choice of motor leaves unexplained.
+/// Result of a motor fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explained {
-    /// What it is.
+    /// Its name.
     pub name: &'static str,
-    /// What the fit chose.
+    /// The free parameters.
     pub free: &'static [Free],
-    /// The motor, behind the slope that was set in the controller.
+    /// The fitted motor, driven by the slope set in the controller.
     pub actuator: LinearActuator,
     /// Root of the mean squared distance between model and measurement, over all eigenvalues \[1/s\].
     pub residual: f64,
-    /// The same of the real parts alone, the decay.
+    /// The residual of the real parts alone (decay).
     pub residual_re: f64,
-    /// The same of the imaginary parts alone, the frequency.
+    /// The residual of the imaginary parts alone (frequency).
     pub residual_im: f64,
 }
 
-/// What may be free, from nothing to everything.
+/// The sets of free parameters, from none to all.
 pub const FITS: [(&str, &[Free]); 9] = {
     use Free::{Delay, Friction, Inertia, Lag, Scale};
     [
@@ -85,9 +85,8 @@ pub fn fits(bicycle: &Parameters, measured: &[Weave]) -> Vec<Explained> {
     done
 }
 
-/// Fits what `free` names to both measured series at once, by the least squares of the distances in the complex
-/// plane, with the slope that was set in the controller. There are local minima, so the search begins thrice:
-/// afresh, and twice from the best of those `done` with less freedom.
+/// Fits the parameters in `free` to both measured series at once, by least squares of the distances in the complex plane, with the slope set in the controller.
+/// There are local minima, so the search starts three times: once from the default and twice from the best of the fits in `done` with fewer free parameters.
 fn fit(
     bicycle: &Parameters,
     measured: &[Weave],
@@ -118,7 +117,7 @@ fn fit(
     ends.min_by(|a, b| a.residual.total_cmp(&b.residual)).expect("there are starts")
 }
 
-/// The distances of a perfect motor behind the slope of the published model, both parts and each alone.
+/// The residuals of an ideal motor with the slope of the published model: both parts, real, imaginary.
 pub fn published_residual(bicycle: &Parameters, measured: &[Weave]) -> [f64; 3] {
     residuals(bicycle, measured, LinearActuator::default(), |w| w.kappa_model)
 }

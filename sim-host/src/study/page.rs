@@ -1,14 +1,14 @@
-//! A study's page: Markdown text and a figure beside it.
+//! A study's page: Markdown text and a figure.
 
 use crate::report::figure::{Chart, chart};
 use crate::report::output::{Output, OutputError};
 use crate::report::picture::svg_with_caption;
 use std::path::Path;
 
-/// A page of its own and its figure, `NAME.md` and `NAME.svg`.
+/// A page and its figure, written to `NAME.md` and `NAME.svg`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Page {
-    /// The name of both files, without their ending.
+    /// The name of both files, without extension.
     pub name: &'static str,
     /// Markdown.
     pub text: String,
@@ -16,7 +16,7 @@ pub struct Page {
     pub chart: Chart,
 }
 
-/// The places of a page's files, both tried.
+/// The destinations of a page's files, checked before the computation.
 #[derive(Debug)]
 pub struct Places {
     text: Output,
@@ -24,10 +24,10 @@ pub struct Places {
 }
 
 impl Places {
-    /// Makes ready to write the page `name` into `folder`.
+    /// Prepares to write the page `name` into `folder`.
     ///
     /// # Errors
-    /// When the folder is not there or can't be written to.
+    /// The folder does not exist or is not writable.
     pub fn create(folder: &Path, name: &str) -> Result<Self, OutputError> {
         let place = |ending: &str| Output::create(&folder.join(format!("{name}.{ending}")));
         Ok(Self { text: place("md")?, figure: place("svg")? })
@@ -36,7 +36,7 @@ impl Places {
     /// Writes the page's files.
     ///
     /// # Errors
-    /// The system's.
+    /// The system's error.
     pub fn write(&self, page: &Page) -> Result<(), OutputError> {
         let svg = svg_with_caption(&chart(&page.chart).svg(), &page.chart.title);
         self.figure.finish(svg.as_bytes())?;

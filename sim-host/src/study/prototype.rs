@@ -8,16 +8,16 @@ use control::{Law, Limits};
 
 /// The name of the page.
 pub const NAME: &str = "prototype";
-/// Above the page.
+/// Title of the page.
 pub const TITLE: &str = "The prototype's law beside h";
-/// What is asked.
+/// The question that the study answers.
 pub const QUESTION: &str =
     "Which law has the larger basin of attraction behind the prototype's 7 N m: its own, or h?";
 /// The largest torque of the published prototype \[N m\].
 pub const LIMIT_NM: f32 = 7.0;
-/// The product's largest change of torque \[N m/s\].
+/// The product's torque rate limit \[N m/s\].
 const RATE_NM_S: f32 = 100.0;
-/// Who rides what.
+/// Bicycles and riders.
 const RIDES: [(&str, Option<&str>); 3] =
     [("rigid_jason", None), ("rigid_jason", Some("smart")), ("balanceassistv1_jason", None)];
 
@@ -43,22 +43,22 @@ pub fn search(step: f64) -> Search {
     }
 }
 
-/// One of the study's trials: a bicycle and a rider, with or without the product's rate limit.
+/// One condition of the study: a bicycle and a rider, with or without the product's rate limit.
 #[derive(Clone, Debug)]
 pub struct Group {
     /// The bicycle's name.
     pub bicycle: &'static str,
-    /// The rider's.
+    /// The rider's name.
     pub rider: Option<&'static str>,
     /// Whether the torque's rate is limited.
     pub rate_limited: bool,
     trial: Trial,
 }
 
-/// All of them.
+/// All conditions.
 ///
 /// # Errors
-/// When a bicycle or rider does not ship.
+/// A bicycle or rider is not built in.
 pub fn groups() -> Result<Vec<Group>, String> {
     let pairs = RIDES.iter().flat_map(|ride| [false, true].map(|limited| (*ride, limited)));
     pairs
@@ -76,22 +76,22 @@ pub fn groups() -> Result<Vec<Group>, String> {
         .collect()
 }
 
-/// How many columns the study computes.
+/// Number of columns that the study computes.
 pub fn work(search: &Search) -> usize {
     RIDES.len() * (2 * laws().len() - 1) * search.speeds.len()
 }
 
-/// The study; `None` if `stop` said so on the way.
+/// Computes the study; `None` if `stop` interrupted it.
 ///
 /// # Errors
-/// When a ride can't be set up.
+/// Invalid conditions.
 pub fn study(
     search: &Search,
     advanced: &(dyn Fn() + Sync),
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<Page>, String> {
     let (groups, laws) = (groups()?, laws());
-    // Without a law no limit matters: that is ridden once.
+    // Without a law no limit has an effect, so that case is computed once.
     let matters = |g: &Group, law: &Law| *law != Law::None || !g.rate_limited;
     let pairs = groups.iter().flat_map(|g| laws.iter().map(move |(_, law)| (g, law)));
     let asked: Vec<(&Trial, &Law)> =
@@ -163,7 +163,7 @@ fn text(groups: &[Group], basins: &[Vec<Basin>], search: &Search) -> String {
     )
 }
 
-/// Which law has the larger basin, and what the rate limit does.
+/// Text: which law has the larger basin, and the effect of the rate limit.
 fn verdict(groups: &[Group], basins: &[Vec<Basin>]) -> String {
     if basins.iter().flatten().any(Basin::capped) {
         return "Where nothing fell up to the largest rate tried, heights and areas are lower bounds (`>=`), ratios bounds\n\

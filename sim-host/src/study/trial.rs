@@ -1,5 +1,4 @@
-//! A trial: who rides what, how late the sensors are and what the motor may give. Laws are judged by the basins
-//! they have in it.
+//! A trial: bicycle, rider, sensor delay and motor limits. Laws are compared by their basins in a trial.
 
 use crate::basin::{Basin, Column, Search, border};
 use crate::bicycle::{Geometry, catalogue};
@@ -8,28 +7,28 @@ use crate::rider::{Fit, Outside, Rider, catalogue as riders};
 use control::{Config, Law, Limits};
 use rayon::prelude::*;
 
-/// Who rides what under which limits.
+/// Conditions under which laws are compared.
 #[derive(Clone, Debug)]
 pub struct Trial {
-    /// In a few words.
+    /// A short label.
     pub label: String,
     /// The bicycle.
     pub bicycle: Geometry,
-    /// Who rides; `None` for a rigid rider, hands off.
+    /// The rider; `None` for a rigid rider, hands off.
     pub rider: Option<Rider>,
-    /// How late the sensors are \[control periods of 1 ms\].
+    /// Sensor delay \[control periods of 1 ms\].
     pub sensor_delay_ms: u16,
-    /// What the motor may be asked for.
+    /// Limits of the motor torque.
     pub limits: Limits,
     /// When a ride counts as fallen.
     pub fall: FallCriterion,
 }
 
 impl Trial {
-    /// A trial of a shipped bicycle and rider, by mean gains and the table's own delay, or another \[s\]; falls are those by default.
+    /// A trial of a built-in bicycle and rider, with mean gains and the table's own delay or the given one \[s\]; default falls.
     ///
     /// # Errors
-    /// When there is no such bicycle or rider.
+    /// The bicycle or rider does not exist.
     pub fn new(
         bicycle: &str,
         rider: Option<&str>,
@@ -48,10 +47,10 @@ impl Trial {
         Ok(Self { label, bicycle, rider: ridden, sensor_delay_ms, limits, fall })
     }
 
-    /// The conditions of its rides under a law, steered by the flashed code.
+    /// The conditions of a ride under a law, executed by the firmware's control code.
     ///
     /// # Errors
-    /// When the law or the limits are out of range, or the conditions can't be ridden.
+    /// Law or limits out of range, or invalid conditions.
     pub fn conditions(&self, law: &Law) -> Result<Conditions, String> {
         let assist = match law {
             Law::None => Assist::None,
@@ -71,11 +70,11 @@ impl Trial {
     }
 }
 
-/// The basin of every trial and law asked for without what lies beyond, all columns side by side; `advanced` is called
-/// for each. `None` if `stop` said so on the way.
+/// The basins of the given trials and laws, without islands, all columns in parallel; `advanced` is called for each column. `None` if `stop` interrupted the
+/// computation.
 ///
 /// # Errors
-/// As of [`Trial::conditions`], or when the search fails its check.
+/// As for [`Trial::conditions`], or an invalid search.
 pub fn basins(
     asked: &[(&Trial, &Law)],
     search: &Search,
@@ -100,22 +99,22 @@ pub fn basins(
     Ok(columns.map(|all| all.chunks(speeds).map(|columns| Basin { columns: columns.to_vec() }).collect()))
 }
 
-/// The least area of a law over trials.
+/// The smallest area of a law over several trials.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Least {
     /// The area \[rad m/s^2\].
     pub area: f64,
-    /// Which trial's.
+    /// Index of its trial.
     pub of: usize,
-    /// Whether it is a lower bound, as nothing fell up to the largest rate tried at some speed.
+    /// Whether it is a lower bound because nothing fell up to the largest rate tried at some speed.
     pub capped: bool,
 }
 
-/// The least area of a law over `trials`, and whose it is. The trial `first` is ridden whole, the others only as far
-/// as they could still be less: the answer is that of [`basins`]. `None` if `stop` said so on the way.
+/// The smallest area of a law over `trials`, and its trial. The trial `first` is computed completely, the others only while their area can still be smaller;
+/// the result equals that of [`basins`]. `None` if `stop` interrupted the computation.
 ///
 /// # Errors
-/// As of [`basins`].
+/// See [`basins`].
 pub fn least_area(
     trials: &[Trial],
     law: &Law,
@@ -140,7 +139,7 @@ pub fn least_area(
                     return None;
                 }
                 basin.columns.push(border(&conditions[of], search, speed));
-                // No strip is negative.
+                // Every strip of the area is at least zero.
                 if basin.area() > bound.area() {
                     break;
                 }

@@ -1,5 +1,5 @@
-//! The weave of the balance-assist prototype from the recordings themselves, beside the published values and the model.
-//! Measured numbers: `data/weave_measured.toml` and `data/weave_measured_offset.toml`.
+//! The weave of the balance-assist prototype from its recordings, beside the published values and the model. Measured numbers: `data/weave_measured.toml` and
+//! `data/weave_measured_offset.toml`.
 
 use super::balance_assist::Weave;
 use super::page::table;
@@ -11,25 +11,25 @@ use crate::weave::predict::weave;
 use control::Law;
 use nalgebra::Complex;
 
-/// The weave fitted with a decaying real mode beside it.
+/// The weave fitted together with a decaying real mode.
 ///
 /// # Panics
-/// If the file that is built in is wrong.
+/// The built-in file is invalid.
 pub fn recorded() -> Measured {
     let text = include_str!("../../../data/weave_measured.toml");
     toml::from_str(text).expect("data/weave_measured.toml is sound")
 }
 
-/// The same recordings fitted with an offset alone.
+/// The weave of the same recordings, fitted together with an offset only.
 ///
 /// # Panics
-/// If the file that is built in is wrong.
+/// The built-in file is invalid.
 pub fn recorded_offset() -> Measured {
     let text = include_str!("../../../data/weave_measured_offset.toml");
     toml::from_str(text).expect("data/weave_measured_offset.toml is sound")
 }
 
-/// A measured weave beside what else is known of that gain and speed.
+/// A measured weave with the published and modelled values at the same gain and speed.
 struct Row {
     measured: MeasuredWeave,
     offset: Option<MeasuredWeave>,
@@ -40,7 +40,7 @@ struct Row {
     modes: Vec<f64>,
 }
 
-/// Two speeds of the same setting: the published ones are rounded \[m/s\].
+/// Speeds of the same setting differ by at most this, since the published ones are rounded \[m/s\].
 const SAME_M_S: f64 = 0.02;
 
 fn rows(bicycle: &Parameters, published: &[Weave], motor: LinearActuator) -> Result<Vec<Row>, String> {
@@ -63,7 +63,7 @@ fn rows(bicycle: &Parameters, published: &[Weave], motor: LinearActuator) -> Res
     recorded().weave.into_iter().map(row).collect()
 }
 
-/// The real modes that a fit could take for the weave's \[1/s\].
+/// The model's real modes that a fit can confuse with the weave's \[1/s\].
 fn modes(bicycle: &Parameters, law: Law, motor: LinearActuator, speed: f64) -> Result<Vec<f64>, String> {
     let model = Model::new(bicycle, Feedback::Law(law), None).with_actuator(motor)?;
     let slow_or_fast = |re: &f64| (MODE_1_S.0..=MODE_1_S.1).contains(re);
@@ -75,10 +75,10 @@ fn modes(bicycle: &Parameters, law: Law, motor: LinearActuator, speed: f64) -> R
         .collect())
 }
 
-/// The section of the page.
+/// Text of the page's section.
 ///
 /// # Errors
-/// When the motor is out of range.
+/// The motor is out of range.
 pub fn section(bicycle: &Parameters, published: &[Weave], motor: LinearActuator) -> Result<String, String> {
     let rows = rows(bicycle, published, motor)?;
     let interval = |[value, low, high]: [f64; 3]| format!("{value:.2} [{low:.2}, {high:.2}]");
@@ -121,7 +121,7 @@ pub fn section(bicycle: &Parameters, published: &[Weave], motor: LinearActuator)
     ))
 }
 
-/// In how many of the intervals a model lies: decays, frequencies.
+/// Number of intervals that contain the model's value: decays, frequencies.
 fn inside(rows: &[Row], model: impl Fn(&Row) -> Option<Complex<f64>>) -> [usize; 2] {
     let holds = |[_, low, high]: [f64; 3], x: f64| usize::from((low..=high).contains(&x));
     rows.iter().filter_map(|row| Some((&row.measured, model(row)?))).fold([0, 0], |[re, im], (m, root)| {
@@ -129,13 +129,13 @@ fn inside(rows: &[Row], model: impl Fn(&Row) -> Option<Complex<f64>>) -> [usize;
     })
 }
 
-/// Root mean square distance of the published values from measured ones \[1/s\].
+/// Root mean square distance between published and measured values \[1/s\].
 fn distance(rows: &[Row], of: impl Fn(&Row) -> Option<Complex<f64>>) -> f64 {
     let off: Vec<f64> = rows.iter().filter_map(|row| Some((of(row)? - row.published?).norm_sqr())).collect();
     (off.iter().sum::<f64>() / off.len() as f64).sqrt()
 }
 
-/// Intervals of the decay wider than this say little \[1/s\].
+/// Intervals of the decay wider than this are hardly informative \[1/s\].
 const WIDE_1_S: f64 = 2.0;
 
 fn verdict(rows: &[Row]) -> String {

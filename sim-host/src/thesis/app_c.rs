@@ -1,4 +1,4 @@
-//! Appendix C: eigenvalues read off nonlinear responses, as the thesis tried, and as it can be done.
+//! Appendix C: eigenvalues estimated from nonlinear responses, by the thesis's methods and by the matrix pencil.
 
 use super::case::Assisted;
 use super::damped::{Bounds, Fitted, bounded, decay, oscillation};
@@ -15,23 +15,23 @@ use rayon::prelude::*;
 
 /// The thesis's disturbance \[rad/s\].
 const DISTURBANCE: f64 = 0.1;
-/// One that leaves the bicycle all but linear \[rad/s\].
+/// A disturbance at which the bicycle is practically linear \[rad/s\].
 pub const TINY: f64 = 1e-6;
-/// Control periods from sample to sample of the fits.
+/// Control periods between samples of the fits.
 const EVERY: usize = 10;
-/// The part of the steer rate that attempt 2 leaves out \[s\]; the thesis says "the first part".
+/// The initial part of the steer rate that attempt 2 omits \[s\]; the thesis says "the first part".
 const LEFT_OUT_S: f64 = 0.5;
-/// From here on attempt 3 fits a capsize \[m/s\].
+/// Speed from which attempt 3 fits a capsize mode \[m/s\].
 const CAPSIZE_FROM: f64 = 7.0;
-/// Residuals above this part of the signal are outliers for attempt 3; the thesis chose by eye.
+/// Residuals above this fraction of the signal are outliers in attempt 3; the thesis selected them by eye.
 const OUTLIER: f64 = 0.2;
 
-/// The speeds that are fitted \[m/s\].
+/// The speeds of the fits \[m/s\].
 fn fitted_speeds(study: &Study) -> Vec<f64> {
     speeds(10.0, if study.quick { 20 } else { 100 })
 }
 
-/// The response of the uncontrolled bicycle; of one that falls the last eighth is cut off.
+/// The response of the uncontrolled bicycle; if it falls, without its last eighth.
 fn response(study: &Study, speed: f64, disturbance: f64) -> Vec<TracePoint> {
     let conditions = Conditions::thesis(study.bicycle, Assist::None);
     let start = Start { speed_m_s: speed, steer_rate_rad_s: disturbance, roll_rate_rad_s: 0.0 };
@@ -89,7 +89,7 @@ fn attempt(study: &Study, name: &str, title: &str, caption: &str, fits: &[(f64, 
     }
 }
 
-/// A chart with the true eigenvalues behind.
+/// A chart with the true eigenvalues in the background.
 fn over_true(study: &Study, title: &str, fitted: Vec<Series>) -> Chart {
     let lines = eigen_lines(study, Assisted::Alone, &speeds(10.0, 500));
     let behind =
@@ -107,13 +107,13 @@ fn true_four(study: &Study, v: f64) -> [Complex<f64>; 4] {
     eigenvalues(&study.linear, &Law::None, v)
 }
 
-/// The eigenvalue of the weave pair; of the rightmost real one where there is no pair.
+/// The eigenvalue of the weave pair, or the rightmost real one if there is no pair.
 fn weave(study: &Study, v: f64) -> Complex<f64> {
     let four = true_four(study, v);
     four.into_iter().find(|e| e.im > 0.0).unwrap_or(four[0])
 }
 
-/// How far fits are from the weave eigenvalue.
+/// Errors of the fits with respect to the weave eigenvalue.
 fn accuracy(study: &Study, fits: &[(f64, Fitted)]) -> Table {
     let errors = |of: &dyn Fn(&Fitted, Complex<f64>) -> f64| {
         let mut all: Vec<f64> = fits.iter().map(|(v, f)| of(f, weave(study, *v)).abs()).collect();
@@ -135,7 +135,7 @@ fn accuracy(study: &Study, fits: &[(f64, Fitted)]) -> Table {
     }
 }
 
-/// Attempt 3: bounded, with a capsize from 7 m/s, outliers removed; and the matrix pencil.
+/// Attempt 3: bounded, with a capsize mode from 7 m/s, outliers removed; and the matrix pencil.
 pub fn figure_c_3(study: &Study) -> Item {
     let weaves: Vec<_> = speeds(10.0, 100).into_iter().map(|v| weave(study, v)).collect();
     let range = |of: fn(&Complex<f64>) -> f64| {
@@ -146,7 +146,7 @@ pub fn figure_c_3(study: &Study) -> Item {
     let bounds = Bounds { omega: 0.0..=omega, beta: least..=most };
     let fits = each(study, |trace, v| {
         let samples = samples(trace, 0.0, |p| p.roll_rate);
-        // Late, what is left of the motion is the capsize.
+        // Late in the motion, only the capsize mode remains.
         if v < CAPSIZE_FROM { bounded(&samples, &bounds) } else { decay(&samples[samples.len() / 2..]) }
     });
     let (kept, outliers): (Vec<_>, Vec<_>) = fits.into_iter().partition(|(_, f)| f.residual <= OUTLIER);
@@ -175,7 +175,7 @@ pub fn figure_c_3(study: &Study) -> Item {
     Item { figures: vec![thesis, pencil], tables, notes: vec![note], ..Item::default() }
 }
 
-/// The four eigenvalues that the matrix pencil finds in roll rate and steer rate.
+/// The four eigenvalues that the matrix pencil estimates from roll rate and steer rate.
 pub fn pencil_at(study: &Study, speed: f64, disturbance: f64) -> Option<[Complex<f64>; 4]> {
     const DT: usize = 20;
     const SAMPLES: usize = 61;
@@ -186,14 +186,14 @@ pub fn pencil_at(study: &Study, speed: f64, disturbance: f64) -> Option<[Complex
     matrix_pencil::eigenvalues(&signals, 1e-3 * DT as f64, 4)?.try_into().ok()
 }
 
-/// The largest distance of `found` from the eigenvalue of [`true_four`] it stands for \[1/s\].
+/// The largest distance of `found` from the corresponding eigenvalues of [`true_four`] \[1/s\].
 pub fn pencil_error(study: &Study, speed: f64, found: &[Complex<f64>; 4]) -> f64 {
     let wanted = true_four(study, speed);
     let nearest = |e: &Complex<f64>| found.iter().map(|f| (f - e).modulus()).fold(f64::INFINITY, f64::min);
     wanted.iter().map(nearest).fold(0.0, f64::max)
 }
 
-/// What a single oscillation can't tell: all four eigenvalues from the same rides.
+/// All four eigenvalues from the same rides, which a single oscillation cannot give.
 fn matrix_pencil(study: &Study) -> (Vec<Table>, Figure) {
     let at = |disturbance: f64| -> Vec<(f64, Option<[Complex<f64>; 4]>)> {
         let found = |v: f64| (v, pencil_at(study, v, disturbance));

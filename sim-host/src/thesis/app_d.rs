@@ -1,4 +1,4 @@
-//! Appendix D: how exact integrators are on the uncontrolled benchmark bicycle.
+//! Appendix D: accuracy of integrators on the uncontrolled benchmark bicycle.
 
 use super::draw::over_time;
 use super::item::{Figure, Item, Table};
@@ -9,25 +9,25 @@ use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use crate::ride::{Assist, Conditions, Ride, Start, TracePoint, traced};
 use rayon::prelude::*;
 
-/// Speed \[m/s\] and steer rate \[rad/s\] of the four rides, and what the thesis calls them.
+/// Speed \[m/s\], steer rate \[rad/s\] and name in the thesis of the four rides.
 pub const RIDES: [(f64, f64, &str); 4] =
     [(4.0, 0.5, "weave"), (5.0, 0.5, "stable"), (7.0, 0.5, "capsize"), (3.0, 3.0, "chaos")];
-/// How long they last \[s\].
+/// Duration of the rides \[s\].
 const SECONDS: f64 = 15.0;
 
-/// Steps of the solution the reference is compared with.
+/// Number of steps of the solution that the reference is compared with.
 const STEPS: usize = 40_000;
 
-/// A ride of the study and its best known end.
+/// A ride of the study and its reference solution.
 #[derive(Debug)]
 pub struct Problem {
     /// Its number and name.
     pub name: String,
     start: Entries,
-    /// When solutions are compared \[s\]: after 15 s, or at the last millisecond before the fall.
+    /// Time at which solutions are compared \[s\]: 15 s, or the last millisecond before the fall.
     pub seconds: f64,
     reference: Entries,
-    /// How far two references of different families are apart.
+    /// Distance between two reference solutions of different families.
     pub floor: f64,
 }
 
@@ -39,8 +39,8 @@ pub fn problems(benchmark: &Geometry) -> Vec<Problem> {
         let seconds = fall.map_or(SECONDS, |t| (t * 1e3).floor() / 1e3);
         let start = entries(&ride.start.state(benchmark));
         let free = Free(benchmark);
-        // Steps in which eighth order leaves rounding only, and not so many that the library's clock,
-        // which adds them up, misses the end; beside it another method.
+        // Steps small enough that eighth order leaves rounding errors only, and large enough that the library's summed time reaches the end; a second method
+        // for comparison.
         let reference = adaptive(&free, Adaptive::Dop853, &start, seconds, 1e-14, 0.01);
         let other = fixed(&free, &RKF45, &start, seconds, STEPS);
         let reference = reference.or(other).unwrap_or([f64::NAN; 6]);
@@ -57,7 +57,7 @@ pub fn problems(benchmark: &Geometry) -> Vec<Problem> {
 }
 
 impl Problem {
-    /// The error of a solution; `None` of one that broke off.
+    /// The error of a solution; `None` if it was broken off.
     fn error(&self, solution: Option<Entries>) -> Option<f64> {
         solution.map(|y| distance(&y, &self.reference)).filter(|e| e.is_finite())
     }
@@ -110,7 +110,7 @@ pub fn figure_d_1(_: &Study) -> Item {
     Item { figures: vec![Figure::of_chart("figure-D.1", caption, &chart)], ..Item::default() }
 }
 
-/// Errors over steps or tolerances: the setting and the error, none where the solution broke off.
+/// Errors over steps or tolerances: the setting and the error; `None` where the solution was broken off.
 type Errors = Vec<(f64, Option<f64>)>;
 
 /// Figure D.2: errors of two methods with fixed steps.
@@ -205,7 +205,7 @@ fn errors_chart(
     Chart { title: title.into(), columns: 2, plots, shaded: String::new() }
 }
 
-/// The least error of every method and where, and the coarsest setting below 1e-5.
+/// The smallest error of every method with its setting, and the coarsest setting below 1e-5.
 fn best(problems: &[Problem], results: &[(&'static str, Vec<Errors>)], setting: &str) -> Table {
     let mut rows = Vec::new();
     for (name, errors) in results {

@@ -19,7 +19,7 @@ const ON_GRID: &str = "the first multiple of 0.1 rad/s that falls";
 struct Set {
     of: &'static Heights,
     row: &'static GainRow,
-    /// Place within its run, from 1.
+    /// Number within its run, from 1.
     number: usize,
     column: Column,
 }
@@ -29,13 +29,12 @@ impl Set {
         self.column.upper
     }
 
-    /// The first disturbance on [`GRID`] that falls \[rad/s\]: the first fall of the scan, or the first
-    /// multiple after the border of a scan with larger steps.
+    /// The first disturbance on [`GRID`] that falls \[rad/s\]: the first fall of the scan, or the first multiple beyond the border of a scan with larger steps.
     fn on_grid(&self) -> f64 {
         first_multiple_after(self.exact())
     }
 
-    /// Whether Table I.1 leaves the set out although its run can be read.
+    /// Whether Table I.1 omits the set although its run is legible.
     fn is_left_out(&self) -> bool {
         self.of.recovered.is_none() && self.row.height.is_nan()
     }
@@ -49,7 +48,7 @@ fn first_multiple_after(rate: f64) -> f64 {
     multiple((rate / GRID + 1e-9).floor() + 1.0)
 }
 
-/// The `n`th disturbance on [`GRID`], to its digits \[rad/s\].
+/// The `n`th disturbance on [`GRID`], rounded to its digits \[rad/s\].
 fn multiple(n: f64) -> f64 {
     (n * GRID * 1e9).round() / 1e9
 }
@@ -58,10 +57,10 @@ fn search(scan_step: f64) -> Search {
     Search { speeds: Vec::new(), axis: Disturbed::SteerRate, max_rate: 15.0, scan_step, tolerance: 0.005 }
 }
 
-/// A scan that finds gaps in the basin only if they are wide.
+/// Step of a scan that finds only wide gaps in the basin.
 const WIDE: f64 = 0.5;
 
-/// The scan of the tables: riding the whole grid, unless in haste.
+/// Step of the tables' scan: the whole grid, except in a quick study.
 fn fine(study: &Study) -> f64 {
     if study.quick { WIDE } else { GRID }
 }
@@ -108,7 +107,7 @@ fn reading() -> String {
     )
 }
 
-/// Every printed height beside the computed one, then the means of the text.
+/// Every printed height beside the computed one, then the means in the text.
 fn heights(study: &Study, item: &str, sets: &[Set], young: Option<&[Set]>) -> Vec<Value> {
     let rows: Vec<Value> = sets
         .par_iter()
@@ -155,13 +154,13 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// One height per run: what `pick` leaves.
+/// One height per run, selected by `pick`.
 fn of_runs(sets: &[Set], height: fn(&Set) -> f64, pick: fn(f64, f64) -> f64) -> Vec<f64> {
     let runs = sets.chunk_by(|a, b| a.of.run == b.of.run);
     runs.filter_map(|run| run.iter().map(height).reduce(pick)).collect()
 }
 
-/// A height that is not met, under other readings.
+/// A height that differs from the print, under other readings.
 fn tried(study: &Study, sets: &[Set], set: &Set, value: Value) -> Value {
     let conditions = set.conditions(study);
     let height = |c: &Conditions| first_multiple_after(border(c, &search(WIDE), set.of.speed).upper);
@@ -189,7 +188,7 @@ fn tried(study: &Study, sets: &[Set], set: &Set, value: Value) -> Value {
     value.tried("a fall is 45 degrees of roll or steer", first_beyond(&conditions, set.of.speed, 45.0))
 }
 
-/// The first multiple of [`GRID`] whose ride exceeds `degrees` of roll or steer, or falls \[rad/s\].
+/// The first multiple of [`GRID`] at which a ride exceeds `degrees` of roll or steer, or falls \[rad/s\].
 fn first_beyond(conditions: &Conditions, speed: f64, degrees: f64) -> f64 {
     let beyond = |rate: f64| {
         let fell = rides(conditions, &[disturbed(speed, rate)])[0].fell();
@@ -207,7 +206,7 @@ pub(super) fn figure_i_1(study: &Study) -> Item {
     let both = [("I.1", "30 ms", 0, Marker::Dot, -0.04), ("I.2", "60 ms", 1, Marker::Square, 0.04)];
     let series = both.map(|(table, delay, colour, marker, aside)| {
         let sets = sets(study, table, WIDE);
-        // Beside one another: the two cyclists rode at the same speeds.
+        // Side by side, since the two cyclists rode at the same speeds.
         let points = |of: &dyn Fn(&Set) -> f64| -> Vec<(f64, f64)> {
             sets.iter().map(|s| (s.of.speed + aside, of(s))).filter(|p| p.1.is_finite()).collect()
         };

@@ -1,4 +1,4 @@
-//! Appendix J: the cyclist without delay.
+//! Appendix J: the cyclist without neural delay.
 
 use super::case::Case;
 use super::ch3_riders::{all_fits, of_rider, outlines};
@@ -22,12 +22,12 @@ fn model(study: &Study, fit: Fit) -> Model {
     Model::new(&study.parameters, Feedback::Law(Law::None), Some(undelayed(fit).rider()))
 }
 
-/// The longest range of speeds without a growing root \[m/s\].
+/// The longest stable range of speeds \[m/s\].
 fn longest(stability: &Stability) -> Option<(f64, f64)> {
     stability.ranges.iter().copied().max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))
 }
 
-/// Figure J.1: the variance accounted for by both choices of four gains.
+/// Figure J.1: the variance accounted for, by two choices of four gains.
 pub(super) fn figure_j_1(_: &Study) -> Item {
     let tables = [("Table J.2", "undelayed"), ("Table J.3", "undelayed-alt")];
     let mut series = Vec::new();
@@ -73,14 +73,14 @@ pub(super) fn figure_j_1(_: &Study) -> Item {
     Item { figures: vec![Figure::of_chart("figure-J.1", caption, &chart)], ..Item::default() }
 }
 
-/// A quantile by straight lines between order statistics; NaN of none.
+/// A quantile, interpolated linearly between order statistics; NaN for an empty list.
 fn quantile(sorted: &[f64], part: f64) -> f64 {
     let at = part * sorted.len().saturating_sub(1) as f64;
     let (low, high) = (sorted.get(at.floor() as usize), sorted.get(at.ceil() as usize));
     low.zip(high).map_or(f64::NAN, |(low, high)| low + at.fract() * (high - low))
 }
 
-/// Table J.4: where the undelayed rider's straight ride is stable.
+/// Table J.4: speeds at which the undelayed rider's straight ride is stable.
 pub(super) fn table_j_4(study: &Study) -> Item {
     let all = Fit::ALL.map(|fit| stability(&model(study, fit)));
     let values = Item::compare("table-J.4", |cell| {
@@ -96,7 +96,7 @@ pub(super) fn table_j_4(study: &Study) -> Item {
     Item { values, notes: vec![note.into()], ..Item::default() }
 }
 
-/// States of the model: four of the bicycle, the steer integral, the muscles' torque and its rate.
+/// States of the model: four of the bicycle, the steer integral, the neuromuscular torque and its rate.
 const STATES: usize = 7;
 
 /// Figure J.3: eigenvalues of the undelayed rider.
@@ -154,7 +154,7 @@ pub(super) fn cases_j_5() -> Vec<Case> {
     [0, 30, 60].map(late).to_vec()
 }
 
-/// Figure J.5: the same gains with a delay they do not know of.
+/// Figure J.5: the same gains with a delay that they were not identified with.
 pub(super) fn figure_j_5(study: &Study) -> Item {
     let values = Item::compare("figure-J.5", |cell| merit(study, cell, &[late(60)], &|o| area(&o[0])));
     let one = |(i, delay): (usize, u16)| {

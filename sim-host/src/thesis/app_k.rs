@@ -1,5 +1,4 @@
-//! Appendix K: why the regression of the old cyclist's gains fails at 4.3 m/s, and how the torque
-//! changes with every gain.
+//! Appendix K: why the regression of the old cyclist's gains fails at 4.3 m/s, and the effect of every gain on the torque.
 
 use super::constant::{constant, disturbed, ridden};
 use super::draw::over_time;
@@ -44,7 +43,7 @@ fn ride(study: &Study, gains: Gains, speed: f64, seconds: f64) -> (Ride, Vec<Tra
     traced(&conditions, disturbed(speed, DISTURBANCE))
 }
 
-/// What became of a ride, in words.
+/// Outcome of a ride, as text.
 fn ended(ride: &Ride, trace: &[TracePoint]) -> String {
     match ride.outcome.time_to_fall_s() {
         Some(time) => format!("falls after {time:.2} s"),
@@ -56,7 +55,7 @@ fn ended(ride: &Ride, trace: &[TracePoint]) -> String {
     }
 }
 
-/// Table K.1: the mean's and the regression's gains.
+/// Table K.1: gains of the mean and of the regression.
 pub(super) fn table_k_1(_: &Study) -> Item {
     let table = smart();
     let mean = mean(group(&table, SPEED)).1;
@@ -96,7 +95,7 @@ fn printed(key: &str) -> [f64; 2] {
     })
 }
 
-/// Rides and roots of several sets of gains: a panel and a table.
+/// Rides and characteristic roots of several sets of gains: a panel and a table.
 fn compared(study: &Study, sets: &[(String, Gains)], seconds: f64) -> (Plot, Table) {
     let mut plot = Plot { x: Axis::new(TIME), y: Axis::new(TORQUE), ..Plot::default() };
     let mut rows = Vec::new();
@@ -113,7 +112,7 @@ fn compared(study: &Study, sets: &[(String, Gains)], seconds: f64) -> (Plot, Tab
     (plot, Table { title, columns: columns.to_vec(), rows })
 }
 
-/// A gain's signal: "δp/10" of `K_delta_p`.
+/// Symbol of a gain's signal: "δp/10" for `K_delta_p`.
 fn short(key: &usize) -> String {
     let name = KEYS[*key].replace("K_", "").replace("phi_", "φ").replace("delta_", "δ");
     if name == "δp" { name + "/10" } else { name }
@@ -167,7 +166,7 @@ pub(super) fn figure_k_1(study: &Study) -> Item {
     Item { figures, tables: vec![roots], notes: vec![note], ..Item::default() }
 }
 
-/// Figure K.2: the regression with one gain after the other replaced by the mean's.
+/// Figure K.2: the regression with each gain in turn replaced by the mean's.
 pub(super) fn figure_k_2(study: &Study) -> Item {
     let table = smart();
     let (regression, mean) = (table.least_squares().at(SPEED), mean(group(&table, SPEED)).1);

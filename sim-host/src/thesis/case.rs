@@ -1,4 +1,4 @@
-//! Whose basin: a small key that fixes every condition of a search.
+//! The conditions of a basin search, as a small hashable key.
 
 use super::cyclist::Cyclist;
 use crate::basin::{Axis, Column, Search, border, column};
@@ -6,16 +6,16 @@ use crate::bicycle::Geometry;
 use crate::ride::{Assist, Conditions, ScheduleSpeed};
 use control::Law;
 
-/// Whose basin, under which conditions.
+/// Conditions of a basin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
     /// The steer assist's law.
     pub law: Assisted,
-    /// Who rides.
+    /// The rider; `None` for a rigid rider.
     pub rider: Option<Cyclist>,
-    /// Which speed sets the gains.
+    /// The speed that schedules the gains.
     pub schedule: ScheduleSpeed,
-    /// Which speeds.
+    /// The range of speeds.
     pub span: Span,
     /// Whether the scan goes on beyond the first fall, for a map of the falls.
     pub map: bool,
@@ -28,7 +28,7 @@ pub enum Assisted {
     Alone,
     /// CL1.
     Cl1,
-    /// CL2 with a whole K.
+    /// CL2 with an integer K.
     Cl2(u8),
     /// Eq. 3.11.
     F,
@@ -41,7 +41,7 @@ pub enum Assisted {
 /// A range of forward speeds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Span {
-    /// 0 to 10 m/s: what the steer assist is judged over.
+    /// 0 to 10 m/s: the range over which the steer assist is evaluated.
     All,
     /// 2 to 7.5 m/s: where the riders were measured.
     Ridden,
@@ -81,7 +81,7 @@ impl Assisted {
 }
 
 impl Case {
-    /// The basin of a law over all speeds, scheduled by the front wheel.
+    /// The basin of a law over all speeds, scheduled by the front wheel's speed.
     pub fn of(law: Assisted) -> Self {
         Self { law, rider: None, schedule: ScheduleSpeed::Front, span: Span::All, map: false }
     }
@@ -91,17 +91,17 @@ impl Case {
         Self { rider: Some(rider), span: Span::Ridden, ..Self::of(Assisted::Alone) }
     }
 
-    /// The same with an assist.
+    /// The case with an assist.
     pub fn aided(self, law: Assisted) -> Self {
         Self { law, ..self }
     }
 
-    /// The same with a map of the falls beyond the border.
+    /// The case with a map of the falls beyond the border.
     pub fn mapped(self) -> Self {
         Self { map: true, ..self }
     }
 
-    /// The same scheduled by another speed.
+    /// The case scheduled by another speed.
     pub fn scheduled(self, schedule: ScheduleSpeed) -> Self {
         Self { schedule, ..self }
     }
@@ -118,7 +118,7 @@ impl Case {
         find(conditions, search, speed)
     }
 
-    /// What is searched.
+    /// The search of the basin.
     pub fn search(&self, resolution: &Resolution) -> Search {
         let (from, to, step) = match self.span {
             Span::All => (0.0, 10.0, resolution.assist_speed_step),
@@ -136,7 +136,7 @@ impl Case {
     }
 }
 
-/// How finely basins are searched.
+/// Resolution of basin searches.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Resolution {
     /// Step of the speeds from 0 to 10 m/s \[m/s\].
@@ -145,7 +145,7 @@ pub struct Resolution {
     pub rider_speed_step: f64,
     /// Step of the scan \[rad/s\]; a whole part of [`GRID`].
     pub scan_step: f64,
-    /// How closely borders are located \[rad/s\].
+    /// Accuracy of borders \[rad/s\].
     pub tolerance: f64,
 }
 
@@ -153,10 +153,10 @@ pub struct Resolution {
 pub const GRID: f64 = 0.5;
 
 impl Resolution {
-    /// For the report.
+    /// Resolution of the report.
     pub const FULL: Self =
         Self { assist_speed_step: 0.1, rider_speed_step: 0.1, scan_step: 0.25, tolerance: 0.01 };
-    /// For a look.
+    /// Resolution of `--quick`.
     pub const QUICK: Self =
         Self { assist_speed_step: 1.0, rider_speed_step: 0.5, scan_step: 0.5, tolerance: 0.05 };
 }

@@ -1,4 +1,4 @@
-//! What of the thesis is computed again, in its order.
+//! The items of the thesis that are reproduced, in its order.
 
 use super::case::Case;
 use super::item::Item;
@@ -12,27 +12,27 @@ use super::{
 pub struct Entry {
     /// Kind and number: "table-3.1", "figure-J.4".
     pub name: &'static str,
-    /// What it is.
+    /// Its title.
     pub title: &'static str,
-    /// How it comes about.
+    /// How it is reproduced.
     pub made: Made,
 }
 
-/// How an item comes about.
+/// How an item is reproduced.
 #[derive(Debug)]
 pub enum Made {
     /// Computed.
     Computed {
-        /// In words, what it needs.
+        /// What it needs, as text.
         needs: &'static str,
         /// The basins it needs.
         cases: fn() -> Vec<Case>,
         /// The computation.
         compute: fn(&Study) -> Item,
-        /// Its own work, in columns of a basin, about.
+        /// Its work beyond the basins, approximately, in columns of a basin.
         work: u64,
     },
-    /// Can't be, and why.
+    /// It cannot be computed; the reason.
     Unavailable(&'static str),
 }
 
@@ -49,7 +49,7 @@ impl Entry {
         format!("{}{} {number}", first.unwrap_or_default(), kind.get(1..).unwrap_or_default())
     }
 
-    /// Whether `wanted` means this item: its name, its number, or its chapter or appendix.
+    /// Whether `wanted` selects this item: by its name, its number, or its chapter or appendix.
     pub fn is(&self, wanted: &str) -> bool {
         let (wanted, number) = (wanted.to_lowercase(), self.number().to_lowercase());
         let chapter = number.split('.').next().unwrap_or_default();
@@ -158,11 +158,11 @@ pub const CATALOGUE: &[Entry] = &[
     rides("sensitivity-K", "Sensitivity of the height to everything", sensitivity::sensitivity_k, 200),
 ];
 
-/// No such item.
+/// An unknown item.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("no item `{wanted}`; items are {}, or their numbers, or a chapter or appendix alone", known())]
 pub struct UnknownItem {
-    /// As given.
+    /// The name as given.
     wanted: String,
 }
 
@@ -170,10 +170,10 @@ fn known() -> String {
     CATALOGUE.iter().map(|e| e.name).collect::<Vec<_>>().join(", ")
 }
 
-/// The items that any of `wanted` means; all if it is empty.
+/// The items that `wanted` selects; all if it is empty.
 ///
 /// # Errors
-/// Names what no item is.
+/// Lists the names that select no item.
 pub fn selected(wanted: &[String]) -> Result<Vec<&'static Entry>, UnknownItem> {
     if let Some(wanted) = wanted.iter().find(|w| !CATALOGUE.iter().any(|e| e.is(w))) {
         return Err(UnknownItem { wanted: wanted.clone() });

@@ -1,4 +1,4 @@
-//! Chapter 2: the uncontrolled bicycle's eigenvalues and modes, and the controller it starts from.
+//! Chapter 2: the uncontrolled bicycle's eigenvalues and modes, and the initial controller.
 
 use super::case::Assisted;
 use super::draw::{EigenLines, SELF_STABLE, SPEED, eigen_plot, over_time, same_name, sorted_lines, speeds};
@@ -37,7 +37,7 @@ pub(super) fn figure_2_2(study: &Study) -> Item {
 /// perturbation".
 const SMALL: f64 = 0.1;
 
-/// How long the ride at v_c lasts \[s\]: the thesis has a full circle after 400 s.
+/// Duration of the ride at v_c \[s\]: the thesis has a full circle after 400 s.
 const CIRCLE_S: f64 = 1000.0;
 
 /// Figure 2.3: the modes of the nonlinear bicycle.
@@ -94,7 +94,7 @@ fn free_ride(study: &Study, speed: f64, steer_rate: f64, seconds: f64) -> Vec<Tr
     traced(&conditions, Start { speed_m_s: speed, steer_rate_rad_s: steer_rate, roll_rate_rad_s: 0.0 }).1
 }
 
-/// When the bicycle has turned once about the vertical \[s\].
+/// Time at which the bicycle has turned once about the vertical \[s\].
 fn time_of_full_turn(trace: &[TracePoint]) -> Option<f64> {
     let mut heading = 0.0;
     trace.windows(2).find_map(|w| {
@@ -103,7 +103,7 @@ fn time_of_full_turn(trace: &[TracePoint]) -> Option<f64> {
     })
 }
 
-/// Largest gain of the controller Figure 2.7 shows \[N m s/rad\] (sections 2.1.4 and 2.4.3).
+/// Largest gain of the controller in Figure 2.7 \[N m s/rad\] (sections 2.1.4 and 2.4.3).
 const LARGEST_GAIN: f64 = 40.0;
 
 /// Figure 2.7: the controller of Schwab et al. 2008 on the benchmark bicycle.
@@ -168,14 +168,14 @@ fn growth(values: &[(f64, f64)]) -> f64 {
     values.iter().map(|e| e.0).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The speed at which the uncontrolled bicycle's rightmost eigenvalue lies furthest left \[m/s\].
+/// The speed at which the uncontrolled bicycle's rightmost eigenvalue is furthest left \[m/s\].
 fn most_stable(uncontrolled: &Model, speeds: &[f64]) -> f64 {
     let growth_at = |v: f64| growth(&controlled(uncontrolled, v));
     let by_growth = |a: &f64, b: &f64| growth_at(*a).total_cmp(&growth_at(*b));
     speeds.iter().copied().min_by(by_growth).unwrap_or(0.0)
 }
 
-/// The least gain on roll per speed above `v_max` that leaves no growth at `speeds` \[N s/rad\].
+/// The smallest roll gain per speed above `v_max` with which no mode grows at `speeds` \[N s/rad\].
 fn least_capsize_gain(with: impl Fn(f64) -> Model, v_max: f64, speeds: &[f64]) -> f64 {
     let stable = |k_c: f64| {
         let model = with(k_c);

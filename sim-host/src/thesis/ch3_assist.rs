@@ -1,4 +1,4 @@
-//! Section 3.4: rides and basins of the steer assist alone.
+//! Section 3.4: rides and basins of the steer assist without a rider model.
 
 use super::case::{Assisted, Case};
 use super::ch3_laws::{CL2, CL3, CROSSES, cross_name};
@@ -92,7 +92,7 @@ pub(super) fn figure_3_10(study: &Study) -> Item {
     Item { values, figures: vec![Figure::of_chart("figure-3.10", caption, &chart)], ..Item::default() }
 }
 
-/// Fills `value` with a basin's height at one speed.
+/// `value` with a basin's height at one speed.
 fn height_at(study: &Study, case: Case, speed: f64, value: Value) -> Value {
     let at = |case: Case| Basin { columns: study.columns_at(&case, &[speed]) };
     let basin = at(case);
@@ -102,12 +102,12 @@ fn height_at(study: &Study, case: Case, speed: f64, value: Value) -> Value {
         .tried(BY_INITIAL, mean(&exact(&at(case.scheduled(ScheduleSpeed::Initial)))))
 }
 
-/// Names of the experiments with the speed that sets the gain.
+/// Name of the experiments with another scheduling speed.
 pub(super) const BY_REAR: &str = "gain set by the rear wheel's speed";
 /// The same for the initial speed.
 pub(super) const BY_INITIAL: &str = "gain set by the initial speed";
 
-/// Outlines of several laws beside the uncontrolled bicycle's.
+/// Outlines of several laws and of the uncontrolled bicycle.
 fn basins(study: &Study, title: &str, laws: &[Assisted]) -> Chart {
     let of = |law: Assisted| study.basin(&Case::of(law));
     let alone = outline("uncontrolled", Look::line(4, Line::Filled), &of(Assisted::Alone));
@@ -162,7 +162,7 @@ pub(super) fn figure_3_13(study: &Study) -> Item {
     Item { values, figures, notes: vec![note.into()], ..Item::default() }
 }
 
-/// Figure 3.14: two rides whose laws have the same gain at the start.
+/// Figure 3.14: two rides whose laws have equal initial gain.
 pub(super) fn figure_3_14(study: &Study) -> Item {
     let laws = [(Assisted::F, Line::Solid), (Assisted::H, Line::Dashed)];
     let start = Start { speed_m_s: 7.221, steer_rate_rad_s: 6.0, roll_rate_rad_s: 0.0 };

@@ -79,7 +79,7 @@ pub(super) fn figure_3_6(study: &Study) -> Item {
     Item { values, figures: vec![Figure::of_chart("figure-3.6", caption, &chart)], ..Item::default() }
 }
 
-/// The first range of speeds with two complex pairs \[m/s\], each end by bisection.
+/// The first range of speeds with two complex pairs \[m/s\]; each end by bisection.
 fn two_pairs(study: &Study, law: Assisted) -> Option<(f64, f64)> {
     let law = law.law();
     let both = |v: f64| eigenvalues(&study.linear, &law, v).iter().all(|e| e.im != 0.0);

@@ -1,4 +1,4 @@
-//! Sections 3.1 to 3.3 and the end of 3.4: basins of the riders, alone and aided.
+//! Sections 3.1 to 3.3 and the end of 3.4: basins of the riders, without and with assist.
 
 use super::case::{Assisted, Case, GRID};
 use super::cyclist::{Cyclist, fit_name, fit_named, named};
@@ -14,7 +14,7 @@ use crate::report::figure::{Axis, Chart, Line, Look, Plot, Series};
 use crate::rider::Fit;
 
 type Who = fn(Fit) -> Cyclist;
-/// The fits by straight lines from group to group.
+/// The piecewise linear fits.
 const INTERPOLATED: [Fit; 2] = [Fit::Mean, Fit::Best];
 
 /// The basins of a rider by some fits.
@@ -47,7 +47,7 @@ pub(super) fn cases_figure_3_4() -> Vec<Case> {
     all_fits(&[Cyclist::smart, Cyclist::naive])
 }
 
-/// A cell of a table of basins: area, mean height, and distances from the others of its rider.
+/// A cell of a table of basins: area, mean height, and distances from the same rider's other fits.
 pub(super) fn basin_cell(study: &Study, cell: Cell, rider: Cyclist) -> Value {
     let case = Case::ridden(rider);
     let other = cell.column.strip_prefix("RMSE to ").and_then(fit_named);
@@ -70,7 +70,7 @@ fn mean_height(outlines: &[Outline]) -> f64 {
     outlines.iter().map(|o| mean(o)).sum::<f64>() / outlines.len() as f64
 }
 
-/// How much smaller the areas of the second half are than those of the first \[%\].
+/// Decrease of the areas from the first half to the second half \[%\].
 fn decline(outlines: &[Outline]) -> f64 {
     let (before, after) = outlines.split_at(outlines.len() / 2);
     100.0 * (1.0 - mean_area(after) / mean_area(before))
@@ -120,7 +120,7 @@ pub(super) fn table_3_3(study: &Study) -> Item {
     Item { values, ..Item::default() }
 }
 
-/// A panel of outlines over the speeds the riders were measured at, marked by vertical lines.
+/// A panel of outlines over the speeds at which the riders were measured, marked by vertical lines.
 pub(super) fn outlines(study: &Study, title: &str, series: Vec<Series>) -> Chart {
     let speeds = Cyclist::young(Fit::Mean).schedule().points().iter().map(|p| p.0).collect();
     let stable = study.self_stable().map(|(from, to)| (from, to.min(7.5)));
@@ -175,7 +175,7 @@ pub(super) fn cases_3_5() -> Vec<Case> {
     THREE.into_iter().map(|(_, who)| Case::ridden(who(Fit::Mean)).mapped()).collect()
 }
 
-/// The longest time to a fall \[s\] at disturbances that are multiples of `step` \[rad/s\].
+/// The longest time to fall \[s\] at disturbances that are multiples of `step` \[rad/s\].
 fn longest_fall(basin: &Basin, step: f64) -> Option<f64> {
     let on_grid = |rate: f64| ((rate / step).round() * step - rate).abs() < 1e-9;
     let scan = basin.columns.iter().flat_map(|c| &c.scan).filter(|p| on_grid(p.rate));
@@ -254,7 +254,7 @@ pub(super) fn figure_3_15(study: &Study) -> Item {
     Item { values, figures, notes: vec![note.into()], ..Item::default() }
 }
 
-/// The part over the speeds riders were measured at.
+/// The part of a series at the speeds at which riders were measured.
 fn inside(series: Series) -> Series {
     let points = super::heights::between(&series.points, 2.0, 7.5);
     Series { points, ..series }

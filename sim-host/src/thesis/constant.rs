@@ -1,15 +1,15 @@
-//! Riders whose gains do not change with speed: appendices I and K.
+//! Riders with gains independent of speed: appendices I and K.
 
 use super::study::Study;
 use crate::ride::{Assist, Conditions, Start};
 use crate::rider::{Gains, Neuromuscular, Rider, Schedule};
 
-/// A rider with the same gains at every speed and the muscles of the thesis.
+/// A rider with the same gains at every speed and the neuromuscular dynamics of the thesis.
 pub(super) fn constant(gains: Gains, delay_s: f64) -> Rider {
     Rider { schedule: Schedule::constant(gains), delay_s, muscles: Neuromuscular::SHOULDERS }
 }
 
-/// The published conditions for a rider without an assist.
+/// The published conditions for a rider without assist.
 pub(super) fn ridden(study: &Study, rider: Rider) -> Conditions {
     Conditions { rider: Some(rider), ..Conditions::thesis(study.bicycle, Assist::None) }
 }

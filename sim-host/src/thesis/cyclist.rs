@@ -1,26 +1,26 @@
-//! Who rides: a small key for a rider of the thesis.
+//! A rider of the thesis, as a small hashable key.
 
 use super::published::{cells, published};
 use crate::rider::catalogue::load;
 use crate::rider::{Fit, Gains, KEYS, Outside, Rider, RiderTable, Row, Schedule};
 
-/// A shipped rider, how its gains become continuous over speed, and how late it responds.
+/// A built-in rider, the fit of its gains over speed, and its neural delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cyclist {
-    /// Name of the shipped table.
+    /// Name of the built-in table.
     pub table: &'static str,
-    /// How gains become continuous.
+    /// The fit of the gains over speed.
     pub fit: Fit,
     /// The neural delay \[ms\].
     pub delay_ms: u16,
-    /// Which print of the gains.
+    /// Which print of the gains is used.
     pub print: Print,
 }
 
-/// Which of the thesis's contradicting prints the gains follow.
+/// Contradicting prints of the gains in the thesis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Print {
-    /// As `docs/riders.md` settles it.
+    /// As settled in `docs/riders.md`.
     Settled,
     /// The regression by least squares over the printed sets instead of the printed lines.
     LeastSquares,
@@ -46,7 +46,7 @@ impl Cyclist {
         Self::new("young", fit, 30)
     }
 
-    /// The naive, old cyclist: the young one's control with old nerves.
+    /// The naive, old cyclist: the young one's gains with the old one's delay.
     pub const fn naive(fit: Fit) -> Self {
         Self::new("young", fit, 60)
     }
@@ -61,12 +61,12 @@ impl Cyclist {
         Self::new("smart6", fit, 60)
     }
 
-    /// The cyclist of appendix J, whose gains know of no delay.
+    /// The cyclist of appendix J, whose gains were identified without delay.
     pub const fn undelayed(fit: Fit, delay_ms: u16) -> Self {
         Self::new("undelayed", fit, delay_ms)
     }
 
-    /// The same by another print.
+    /// The same rider with another print of its gains.
     pub const fn by(self, print: Print) -> Self {
         Self { print, ..self }
     }
@@ -120,7 +120,7 @@ fn with_run_249(shipped: RiderTable, printed: &[f64; 8]) -> RiderTable {
     RiderTable { rows, regression: None, ..shipped }
 }
 
-/// The name of a fit in the thesis.
+/// The thesis's name of a fit.
 pub fn fit_name(fit: Fit) -> &'static str {
     match fit {
         Fit::Regression => "LR",

@@ -7,18 +7,18 @@ use std::ops::RangeInclusive;
 /// Samples of a signal: time \[s\] and value.
 pub type Samples = [(f64, f64)];
 
-/// What a fit says of the motion.
+/// Result of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fitted {
     /// Real part of the eigenvalue \[1/s\]: `-beta` or `-gamma`.
     pub real: f64,
-    /// Imaginary part \[rad/s\]: `omega`; 0 of a capsize fit.
+    /// Imaginary part \[rad/s\]: `omega`; 0 for a capsize fit.
     pub imaginary: f64,
-    /// Root-mean-square residual as a part of the signal's root mean square.
+    /// Root-mean-square residual relative to the signal's root mean square.
     pub residual: f64,
 }
 
-/// What bounds the parameters of a fit.
+/// Bounds of a fit's parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
     /// `omega` \[rad/s\].
@@ -27,14 +27,14 @@ pub struct Bounds {
     pub beta: RangeInclusive<f64>,
 }
 
-/// Eq. C.1, `(A sin(omega t) + B cos(omega t)) exp(-beta t) + E`, from plain ones, E from zero.
+/// Fits eq. C.1, `(A sin(omega t) + B cos(omega t)) exp(-beta t) + E`, from initial values of 1, and 0 for E.
 pub fn oscillation(samples: &Samples) -> Fitted {
     let found = minimum([1.0, 1.0, 1.0, 1.0, 0.0], |p| squares(samples, |t| damped(p, t)));
     fitted(samples, -found[3], found[2].abs(), |t| damped(&found, t))
 }
 
-/// The same with `omega` and `beta` within bounds: the best there is of a grid, then the simplex
-/// method. `A`, `B` and `E`, in which the problem is linear, are solved for at every step.
+/// Fits eq. C.1 with `omega` and `beta` within bounds: the best point of a grid, then the simplex method. `A`, `B` and `E`, which enter linearly, are computed
+/// by least squares at every step.
 pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
     const CELLS: u32 = 12;
     let within = |x: f64, r: &RangeInclusive<f64>| x.clamp(*r.start(), *r.end());
@@ -45,7 +45,7 @@ pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
         [a, b, omega, beta, e]
     };
     let size = squares(samples, |_| 0.0).max(f64::MIN_POSITIVE);
-    // As a part of the signal, so that the search's tolerances do not depend on how small it is.
+    // Relative to the signal, so that the search's tolerances do not depend on its amplitude.
     let part = |p: &[f64; 2]| {
         let model = whole(p);
         1e3 * squares(samples, |t| damped(&model, t)) / size
@@ -59,7 +59,7 @@ pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
     fitted(samples, -found[3], found[2], |t| damped(&found, t))
 }
 
-/// The amplitudes `A`, `B`, `E` with the least squares for an oscillation; zeros if none is best.
+/// The amplitudes `A`, `B`, `E` by least squares for an oscillation; zeros if the system is singular.
 fn amplitudes(samples: &Samples, omega: f64, beta: f64) -> [f64; 3] {
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for &(t, y) in samples {
@@ -71,7 +71,7 @@ fn amplitudes(samples: &Samples, omega: f64, beta: f64) -> [f64; 3] {
     normal.svd(true, true).solve(&right, 1e-12).map_or([0.0; 3], Into::into)
 }
 
-/// Eq. C.2, `D exp(-gamma t)`, for capsize.
+/// Fits eq. C.2, `D exp(-gamma t)`, a capsize mode.
 pub fn decay(samples: &Samples) -> Fitted {
     let model = |[d, gamma]: &[f64; 2], t: f64| d * libm::exp(-gamma * t);
     let peak = samples.iter().fold(0.0_f64, |m, s| m.max(s.1.abs()));
@@ -98,8 +98,7 @@ fn fitted(samples: &Samples, real: f64, imaginary: f64, model: impl Fn(f64) -> f
 mod tests {
     use super::*;
 
-    /// SciPy's Nelder-Mead, with the same start, tolerances and evaluations, ends at the same wrong
-    /// place; within bounds the right one is found.
+    /// SciPy's Nelder-Mead, with the same start, tolerances and evaluations, ends at the same wrong point; with bounds the correct one is found.
     #[test]
     fn an_oscillation_is_missed_as_elsewhere_and_found_within_bounds() {
         let signal = |t: f64| (libm::sin(1.2 * t) + 0.8 * libm::cos(1.2 * t)) * libm::exp(-0.9 * t) + 0.1;

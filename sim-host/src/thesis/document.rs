@@ -1,4 +1,4 @@
-//! The values as a document and as a table.
+//! The reproduced values as a JSON document and as a CSV table.
 
 use super::case::Resolution;
 use super::catalogue::Made;
@@ -11,17 +11,17 @@ use serde::Serialize;
 /// The document `values.json`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ThesisDocument {
-    /// Version of this layout.
+    /// Version of the document's layout.
     pub schema: u32,
     /// The program.
     pub tool: Tool,
     /// Whether `--quick` was given.
     pub quick: bool,
-    /// How finely basins were searched.
+    /// Resolution of the basin searches.
     pub resolution: Resolution,
-    /// False after Ctrl-C.
+    /// False after an interruption with Ctrl-C.
     pub complete: bool,
-    /// The items asked for.
+    /// The requested items.
     pub items: Vec<ItemEntry>,
     /// Every number, in the items' order.
     pub values: Vec<ValueEntry>,
@@ -34,11 +34,11 @@ pub struct ThesisDocument {
 pub struct ItemEntry {
     /// Kind and number.
     pub name: &'static str,
-    /// What it is.
+    /// Its title.
     pub title: &'static str,
     /// "computed", "interrupted" or "unavailable".
     pub status: &'static str,
-    /// Why it is unavailable.
+    /// The reason if it is unavailable.
     pub reason: Option<&'static str>,
     /// Names of its figures.
     pub figures: Vec<String>,
@@ -53,38 +53,38 @@ pub struct ValueEntry {
     pub row: String,
     /// Column.
     pub column: String,
-    /// Unit, empty for a pure number.
+    /// Unit; empty for a pure number.
     pub unit: String,
-    /// The printed number; null where nothing is printed.
+    /// The printed number; null if none is printed.
     pub published: Option<f64>,
-    /// Where it is printed.
+    /// Where it is printed (table, equation or section).
     pub from: String,
     /// The computed number; null if there is none.
     pub exact: Option<f64>,
-    /// The same on the thesis's probable grid of disturbances; null where no basin is involved.
+    /// The number on the thesis's probable grid of disturbances; null where no basin is involved.
     pub coarse: Option<f64>,
-    /// `exact` from `published`, in % of it.
+    /// Difference of `exact` from `published` \[% of the latter\].
     pub difference_percent: Option<f64>,
-    /// "" for a difference up to 2 % or the rounding of the print, and where a printed bound holds;
-    /// "explained: WHAT", or "unexplained", with what comes closest.
+    /// "" for a difference up to 2 % or the rounding of the print, and where a printed bound holds; "explained: WHAT", or "unexplained" with the closest
+    /// experiment.
     pub explanation: String,
-    /// Numbers under other readings of the text.
+    /// Numbers under other readings of the thesis.
     pub experiments: Vec<ExperimentEntry>,
     /// Whether `exact` comes from a basin in which nothing fell up to the largest rate tried at some speed.
     pub capped: bool,
 }
 
-/// A number under another reading of the text.
+/// A number under another reading of the thesis.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ExperimentEntry {
-    /// What is different.
+    /// The difference in the reading.
     pub name: String,
-    /// The number then.
+    /// The resulting number.
     pub value: f64,
 }
 
 impl Explanation {
-    /// In words.
+    /// The explanation as text.
     pub fn words(&self) -> String {
         match self {
             Explanation::NotNeeded => String::new(),
@@ -143,7 +143,7 @@ impl ThesisDocument {
     /// The values as a CSV table.
     ///
     /// # Errors
-    /// When a row can't be written.
+    /// A row cannot be written as CSV.
     pub fn csv(&self) -> Result<String, csv::Error> {
         let rows: Vec<CsvRow> = self.values.iter().map(CsvRow::new).collect();
         crate::report::table::csv_text(&rows)

@@ -1,4 +1,4 @@
-//! Parts that the figures of several chapters share.
+//! Elements common to the figures of several chapters.
 
 use super::case::Assisted;
 use super::item::Figure;
@@ -14,7 +14,7 @@ use std::fmt::Write;
 pub(super) const SPEED: &str = "Forward speed v [m/s]";
 /// The label of the disturbance.
 pub(super) const STEER_RATE: &str = "Initial steer rate [rad/s]";
-/// What the shaded range means.
+/// Meaning of the shaded range.
 pub(super) const SELF_STABLE: &str = "uncontrolled bicycle self-stable";
 
 impl Figure {
@@ -67,8 +67,7 @@ pub(super) fn speeds(to: f64, n: u32) -> Vec<f64> {
 
 /// Real and imaginary parts over speed as lines.
 ///
-/// The k-th largest real part is continuous over speed, and so is the k-th largest imaginary part:
-/// nothing needs to be followed from speed to speed.
+/// The k-th largest real part is continuous over speed, and so is the k-th largest imaginary part, so modes need not be followed from speed to speed.
 pub(super) struct EigenLines {
     /// The largest, second largest... real part \[1/s\].
     pub(super) real: Vec<Vec<(f64, f64)>>,
@@ -82,7 +81,7 @@ pub(super) fn eigen_lines(study: &Study, law: Assisted, speeds: &[f64]) -> Eigen
     sorted_lines(speeds, |v| eigenvalues(&study.linear, &law, v).map(|e| (e.re, e.im)).to_vec())
 }
 
-/// Lines of any eigenvalues, `(real, imaginary)` part each, the same number at every speed.
+/// Lines of any eigenvalues, given as `(real, imaginary)` pairs, equally many at every speed.
 pub(super) fn sorted_lines(speeds: &[f64], at: impl Fn(f64) -> Vec<(f64, f64)>) -> EigenLines {
     let all: Vec<Vec<(f64, f64)>> = speeds.iter().map(|&v| at(v)).collect();
     let n = all.first().map_or(0, Vec::len);
@@ -99,13 +98,13 @@ pub(super) fn sorted_lines(speeds: &[f64], at: impl Fn(f64) -> Vec<(f64, f64)>) 
     EigenLines { real: by_size(speeds, growth, n), imaginary }
 }
 
-/// Lines through the largest, second largest... of `values` at every speed, `count` of them.
+/// Lines through the largest, second largest... of `values` at every speed; `count` lines.
 fn by_size(speeds: &[f64], mut values: Vec<Vec<f64>>, count: usize) -> Vec<Vec<(f64, f64)>> {
     values.iter_mut().for_each(|v| v.sort_by(|a, b| b.total_cmp(a)));
     (0..count).map(|k| speeds.iter().zip(&values).map(|(&v, sorted)| (v, sorted[k])).collect()).collect()
 }
 
-/// The lines as series of one name.
+/// The lines as series with the same name.
 pub(super) fn same_name(name: &str, look: Look, lines: Vec<Vec<(f64, f64)>>) -> Vec<Series> {
     lines.into_iter().map(|points| Series::new(name, look, points)).collect()
 }
@@ -130,7 +129,7 @@ pub(super) fn gain_line(law: Assisted, speeds: &[f64]) -> Vec<(f64, f64)> {
     speeds.iter().map(|&v| (v, law.gain(v))).collect()
 }
 
-/// A signal of a ride over time, one point in `every`, the last too.
+/// A signal of a ride over time, every `every`th point and the last.
 pub(super) fn over_time(
     trace: &[TracePoint],
     every: usize,

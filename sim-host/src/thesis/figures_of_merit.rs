@@ -1,4 +1,4 @@
-//! Numbers that come from basins, beside what they are under other readings of the text.
+//! Numbers derived from basins, with their values under other readings of the thesis.
 
 use super::case::{Case, GRID};
 use super::ch3_assist::{BY_INITIAL, BY_REAR};
@@ -11,7 +11,7 @@ use crate::basin::Basin;
 use crate::ride::ScheduleSpeed;
 use crate::rider::Fit;
 
-/// Another reading: the case it makes of one, if it is any different.
+/// Another reading: the case under it, or `None` if it does not differ.
 type Reading = fn(Case) -> Option<Case>;
 
 const READINGS: [(&str, Reading); 7] = [
@@ -35,7 +35,7 @@ fn by(case: Case, print: Print, concerned: impl Fn(&Cyclist) -> bool) -> Option<
     Some(Case { rider: Some(rider.by(print)), ..case })
 }
 
-/// Some cases and all their other readings.
+/// The cases together with all their other readings.
 pub(super) fn with_readings(cases: &[Case]) -> Vec<Case> {
     let mut all = cases.to_vec();
     for (_, reading) in READINGS {
@@ -44,13 +44,12 @@ pub(super) fn with_readings(cases: &[Case]) -> Vec<Case> {
     all
 }
 
-/// Whether a case is another reading of a rider's.
+/// Whether a case is another reading of a rider.
 pub(super) fn is_reading(case: &Case) -> bool {
     case.rider.is_some_and(|r| r.print != Print::Settled || case.schedule != ScheduleSpeed::Front)
 }
 
-/// What `of` makes of the outlines of `cases`: as located, on the coarse grid, and under every other
-/// reading whose basins are there.
+/// A value computed by `of` from the outlines of `cases`: as located, on the coarse grid, and under each other reading whose basins exist.
 pub(super) fn merit(study: &Study, cell: Cell, cases: &[Case], of: &dyn Fn(&[Outline]) -> f64) -> Value {
     let under = |cases: &[Case], view: &dyn Fn(&Basin) -> Outline| {
         of(&cases.iter().map(|case| view(&study.basin(case))).collect::<Vec<_>>())
@@ -74,7 +73,7 @@ pub(super) fn merit(study: &Study, cell: Cell, cases: &[Case], of: &dyn Fn(&[Out
     value
 }
 
-/// The points at whole multiples of 0.5 m/s.
+/// The points at integer multiples of 0.5 m/s.
 fn sparse(outline: &[(f64, f64)]) -> Outline {
     outline.iter().copied().filter(|(v, _)| (2.0 * v - (2.0 * v).round()).abs() < 1e-6).collect()
 }

@@ -1,4 +1,4 @@
-//! Measured gains made continuous over speed: appendices F, G, H and J.2 to J.4, Figures 3.1 and 3.3.
+//! Measured gains as functions of speed: appendices F, G, H and J.2 to J.4, Figures 3.1 and 3.3.
 
 use super::cyclist::{Cyclist, Print, fit_name, fit_named};
 use super::draw::SPEED;
@@ -7,9 +7,9 @@ use super::study::Study;
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use crate::rider::{Fit, KEYS, RiderTable, Schedule};
 
-/// The fits' lines.
+/// Line styles of the fits.
 pub(super) const LINES: [Line; 3] = [Line::Solid, Line::Dashed, Line::Dotted];
-/// The speeds the riders' basins are searched at \[m/s\].
+/// Range of speeds of the riders' basins \[m/s\].
 const RIDDEN: [f64; 2] = [2.0, 7.5];
 /// The units of [`KEYS`].
 const UNITS: [&str; 10] = [
@@ -30,7 +30,7 @@ fn symbol(key: &str) -> String {
     key.replace("phi_", "φ").replace("delta_", "δ")
 }
 
-/// What else the coefficients could be those of.
+/// Other prints of the gains that the coefficients can belong to.
 const OTHER_PRINTS: [(&str, Print, &str); 4] = [
     ("best sets by the printed VAFs", Print::HighestVaf, "young"),
     ("run 191 at 6.0 m/s, as in Table G.4", Print::Run191, "smart"),
@@ -38,7 +38,7 @@ const OTHER_PRINTS: [(&str, Print, &str); 4] = [
     ("with run 249 as in Table G.4, K_phi_d = 2.98", Print::Run249ByG4, "smart"),
 ];
 
-/// The other prints of a rider.
+/// The other prints of a rider's gains.
 fn other_prints(table: &str) -> impl Iterator<Item = (&'static str, Print)> {
     OTHER_PRINTS.into_iter().filter(move |(.., of)| *of == table).map(|(name, print, _)| (name, print))
 }
@@ -158,7 +158,7 @@ fn gains(name: &str, title: &str, rider: fn(Fit) -> Cyclist) -> Item {
     let table = rider(Fit::Mean).table();
     let schedules = Fit::ALL.map(|fit| rider(fit).schedule());
     let line = |i: usize, key: usize| {
-        // The bends of an interpolation lie on its points.
+        // An interpolation bends only at its points.
         let points = schedules[i].points().iter().map(|p| p.0);
         let mut speeds: Vec<f64> = RIDDEN.into_iter().chain(points).collect();
         speeds.sort_by(f64::total_cmp);

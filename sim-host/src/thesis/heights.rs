@@ -1,4 +1,4 @@
-//! Figures of merit of a basin, exact and on a coarse grid of disturbances.
+//! Heights of a basin, exact and on a coarse grid of disturbances, and the figures of merit computed from them.
 
 use super::case::GRID;
 pub use crate::basin::area;
@@ -7,7 +7,7 @@ use crate::basin::{Basin, Column};
 /// Heights over speed: `(speed, height)` in m/s and rad/s.
 pub type Outline = Vec<(f64, f64)>;
 
-/// The outline as located.
+/// The outline at the located borders.
 pub fn exact(basin: &Basin) -> Outline {
     basin.outline()
 }
@@ -28,7 +28,7 @@ pub fn floored(basin: &Basin, step: f64) -> Outline {
     basin.columns.iter().map(|c| (c.speed, (c.upper / step + 1e-9).floor() * step)).collect()
 }
 
-/// Mean of the heights \[rad/s\]; NaN of none.
+/// Mean of the heights \[rad/s\]; NaN for an empty outline.
 pub fn mean(outline: &[(f64, f64)]) -> f64 {
     outline.iter().map(|p| p.1).sum::<f64>() / outline.len() as f64
 }
@@ -38,8 +38,7 @@ pub fn between(outline: &[(f64, f64)], from: f64, to: f64) -> Outline {
     outline.iter().copied().filter(|p| p.0 >= from - 1e-9 && p.0 <= to + 1e-9).collect()
 }
 
-/// Root-mean-square distance of two outlines over the same speeds \[rad/s\] (eq. 2.22 with the 1/n it
-/// is printed without).
+/// Root-mean-square distance of two outlines over the same speeds \[rad/s\] (eq. 2.22 with the factor 1/n that the print lacks).
 pub fn rmse(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
     let squares: f64 = a.iter().zip(b).map(|(p, q)| (p.1 - q.1).powi(2)).sum();
     (squares / a.len().min(b.len()) as f64).sqrt()

@@ -1,4 +1,4 @@
-//! The report as one page of HTML: everything inline, nothing from elsewhere.
+//! The report as a single, self-contained HTML page.
 
 use super::catalogue::Made;
 use super::document::{ThesisDocument, ValueEntry};
@@ -108,14 +108,14 @@ fn section(document: &ThesisDocument, outcome: &Outcome) -> String {
 }
 
 fn figure(figure: &Figure) -> String {
-    // Names inside a picture must not meet those of another on the same page.
+    // Identifiers inside an SVG must be unique on the page.
     let svg = figure.picture.svg();
     let own = |mark: &str| format!("{mark}{}-", figure.name);
     let svg = ["id=\"", "url(#", "href=\"#"].iter().fold(svg, |svg, mark| svg.replace(mark, &own(mark)));
     format!("<figure>\n{svg}\n<figcaption>{}</figcaption>\n</figure>\n", escaped(&figure.caption))
 }
 
-/// The class of a value's row.
+/// The CSS class of a value's row.
 fn kind(value: &ValueEntry) -> &'static str {
     match value.difference_percent {
         _ if value.explanation.starts_with("unexplained") => "unexplained",

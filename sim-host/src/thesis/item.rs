@@ -1,4 +1,4 @@
-//! What an item of the thesis consists of when it has been computed again.
+//! The content of a reproduced item of the thesis.
 
 use super::published::{self, Bound, Cell};
 use crate::report::figure::Picture;
@@ -6,12 +6,12 @@ use crate::report::figure::Picture;
 /// Differences up to this need no explanation \[%\].
 pub const ACCEPTED_PERCENT: f64 = 2.0;
 
-/// One table, figure or equation, computed again.
+/// One reproduced table, figure or equation.
 #[derive(Debug, Default)]
 pub struct Item {
-    /// Numbers beside the printed ones.
+    /// Computed numbers beside the printed ones.
     pub values: Vec<Value>,
-    /// Tables of what the thesis does not print.
+    /// Tables of numbers that the thesis does not print.
     pub tables: Vec<Table>,
     /// Figures.
     pub figures: Vec<Figure>,
@@ -24,7 +24,7 @@ pub struct Item {
 pub struct Figure {
     /// Name of its files.
     pub name: String,
-    /// Below it.
+    /// The caption.
     pub caption: String,
     /// The figure.
     pub picture: Picture,
@@ -35,15 +35,15 @@ pub struct Figure {
 /// A table of text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Above it.
+    /// The title.
     pub title: String,
-    /// Heads of the columns.
+    /// Headings of the columns.
     pub columns: Vec<String>,
     /// The rows.
     pub rows: Vec<Vec<String>>,
 }
 
-/// A number beside the printed one.
+/// A computed number beside the printed one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Value {
     /// Row, column, unit and the printed number.
@@ -52,40 +52,39 @@ pub struct Value {
     pub exact: Option<f64>,
     /// Computed on the grid of disturbances the thesis probably used.
     pub coarse: Option<f64>,
-    /// What grid that is.
+    /// The name of that grid.
     pub grid: &'static str,
-    /// What else could be meant, computed.
+    /// Results under other readings of the thesis.
     pub experiments: Vec<Experiment>,
-    /// Whether it comes from a basin with a height that is a lower bound.
+    /// Whether it derives from a basin with a height that is a lower bound.
     pub capped: bool,
 }
 
-/// A number under another reading of the text.
+/// A number under another reading of the thesis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Experiment {
-    /// What is different.
+    /// The difference in the reading.
     pub name: String,
-    /// The number then.
+    /// The resulting number.
     pub value: f64,
 }
 
-/// What a difference from the print comes from.
+/// Explanation of a difference from the print.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Explanation {
-    /// Nothing is printed, or nothing computed, or the difference is small: within [`ACCEPTED_PERCENT`],
-    /// the rounding of the print, or the bound that is printed.
+    /// No number is printed or none computed, or the difference is within [`ACCEPTED_PERCENT`], the rounding of the print or the printed bound.
     NotNeeded,
-    /// The printed grid or an experiment comes within [`ACCEPTED_PERCENT`]; its name.
+    /// The coarse grid or an experiment is within [`ACCEPTED_PERCENT`]; its name.
     Explained(String),
-    /// None does; the one that comes closest and which part of the difference it explains \[%\].
+    /// No experiment is; the closest one and the fraction of the difference that it explains \[%\].
     Unexplained(Option<(String, f64)>),
 }
 
-/// The name of the usual coarse grid among the explanations.
+/// The name of the usual coarse grid in explanations.
 pub const COARSE: &str = "disturbances in steps of 0.5 rad/s, last before the first fall";
 
 impl Value {
-    /// A number without coarse grid or experiments.
+    /// A number without coarse grid and experiments.
     pub fn new(cell: Cell, exact: Option<f64>) -> Self {
         Self {
             cell,
@@ -97,29 +96,28 @@ impl Value {
         }
     }
 
-    /// The same with the number on the coarse grid.
+    /// The value with the number on the coarse grid.
     pub fn on_grid(self, coarse: Option<f64>) -> Self {
         Self { coarse, ..self }
     }
 
-    /// The same with the number on another grid, which is named.
+    /// The value with the number on another, named grid.
     pub fn on_grid_of(self, coarse: Option<f64>, grid: &'static str) -> Self {
         Self { coarse, grid, ..self }
     }
 
-    /// The same with an experiment.
+    /// The value with an experiment.
     pub fn tried(mut self, name: &str, value: f64) -> Self {
         self.experiments.push(Experiment { name: name.into(), value });
         self
     }
 
-    /// How far the exact number is from the printed one \[%\] of it; `None` without both, and where
-    /// the printed one is zero but the exact one is not.
+    /// Difference of the exact number from the printed one \[% of the latter\]; `None` if one is missing, or the printed one is zero and the exact one is not.
     pub fn difference(&self) -> Option<f64> {
         percent(self.exact?, self.cell.printed?.value)
     }
 
-    /// Where the difference comes from.
+    /// The explanation of the difference.
     pub fn explanation(&self) -> Explanation {
         let (Some(exact), Some(printed)) = (self.exact, self.cell.printed) else {
             return Explanation::NotNeeded;
@@ -159,7 +157,7 @@ fn percent(x: f64, printed: f64) -> Option<f64> {
 }
 
 impl Item {
-    /// What `value` makes of every printed cell of `item`.
+    /// Applies `value` to every printed cell of `item`.
     pub fn compare(item: &str, value: impl FnMut(Cell) -> Value) -> Vec<Value> {
         published::cells(item).into_iter().map(value).collect()
     }

@@ -1,10 +1,9 @@
-//! Eigenvalues from a response: the matrix pencil (Hua and Sarkar 1990) of several signals that
-//! share their modes.
+//! Eigenvalues from a response: the matrix pencil (Hua and Sarkar 1990) of several signals with the same modes.
 
 use nalgebra::{Complex, ComplexField, DMatrix};
 
-/// The `order` eigenvalues \[1/s\] behind equally long `signals`, sampled every `dt` seconds; largest
-/// real part first. `None` when there are too few samples or a mode can't be told from the others.
+/// The `order` eigenvalues \[1/s\] of equally long `signals`, sampled every `dt` seconds; largest real part first. `None` if there are too few samples or a
+/// mode cannot be separated from the others.
 pub fn eigenvalues(signals: &[Vec<f64>], dt: f64, order: usize) -> Option<Vec<Complex<f64>>> {
     let n = signals.first()?.len();
     let rows = n / 2;
@@ -12,7 +11,7 @@ pub fn eigenvalues(signals: &[Vec<f64>], dt: f64, order: usize) -> Option<Vec<Co
     if rows * signals.len() < order || columns < order {
         return None;
     }
-    // Each signal to size one, so that none counts more than another.
+    // Each signal is scaled to norm one, for equal weight.
     let scaled: Vec<Vec<f64>> = signals
         .iter()
         .map(|s| {

@@ -1,5 +1,4 @@
-//! The thesis computed again: every table and figure of Kuipers 2020 that needs no unpublished
-//! measurement, each published number beside the computed one.
+//! Reproduces the thesis: every table and figure of Kuipers 2020 that needs no unpublished measurement, with each published number beside the computed one.
 
 pub mod app_c;
 pub mod app_d;

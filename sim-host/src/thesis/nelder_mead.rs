@@ -1,14 +1,14 @@
-//! The simplex method of Nelder and Mead as MATLAB's `fminsearch` has it (Lagarias et al. 1998), for
-//! fits as the thesis made them: no better start, no tighter tolerance.
+//! The simplex method of Nelder and Mead in the form of MATLAB's `fminsearch` (Lagarias et al. 1998), with the initial values and tolerances of the thesis's
+//! fits.
 
-/// Changes of the function and of the parameters that end the search.
+/// Changes of the function and of the parameters below which the search ends.
 const TOLERANCE: f64 = 1e-4;
 /// Function evaluations per parameter.
 const EVALUATIONS: usize = 200;
 
-/// The best point found from `start`.
+/// The best point of a search from `start`.
 pub fn minimum<const N: usize>(start: [f64; N], f: impl Fn(&[f64; N]) -> f64) -> [f64; N] {
-    // What is not finite is worse than all else.
+    // Values that are not finite count as worst.
     let f = |x: &[f64; N]| Some(f(x)).filter(|y| y.is_finite()).unwrap_or(f64::MAX);
     let mut corners: Vec<([f64; N], f64)> = vec![(start, f(&start))];
     for i in 0..N {
@@ -28,7 +28,7 @@ pub fn minimum<const N: usize>(start: [f64; N], f: impl Fn(&[f64; N]) -> f64) ->
         for (x, _) in &corners[..N] {
             centre.iter_mut().zip(x).for_each(|(c, x)| *c += x / N as f64);
         }
-        // From the worst corner through the centre, `s` times as far beyond.
+        // The point on the line from the worst corner through the centre, `s` times as far beyond it.
         let along = |s: f64| {
             let x = std::array::from_fn(|i| centre[i] + s * (centre[i] - worst.0[i]));
             (x, f(&x))

@@ -1,4 +1,4 @@
-//! What the thesis prints: `data/thesis.toml`.
+//! The numbers printed in the thesis: `data/thesis.toml`.
 
 use serde::Deserialize;
 use std::sync::LazyLock;
@@ -13,7 +13,7 @@ pub struct Published {
     pub quoted: Vec<Quoted>,
     /// Tables I.1 and I.2.
     pub height: Vec<Heights>,
-    /// The set that the smart cyclist's gains are without.
+    /// Run 249, which the smart cyclist's gains omit.
     pub run_249: Run249,
 }
 
@@ -27,7 +27,7 @@ pub struct Run249 {
     pub vaf: f64,
     /// Gains on roll (p, i, d, dd), then on steer, by Table G.4.
     pub table_g_4: [f64; 8],
-    /// The same by Table H.4.
+    /// The same gains by Table H.4.
     pub table_h_4: [f64; 8],
 }
 
@@ -36,15 +36,15 @@ pub struct Run249 {
 pub struct Printed {
     /// The number.
     pub value: f64,
-    /// Half a unit of its last digit: how far rounding can have moved it.
+    /// Half a unit of its last digit: the largest rounding error.
     pub rounding: f64,
 }
 
 impl Printed {
-    /// A number with its digits.
+    /// Parses a number and counts its digits.
     ///
     /// # Errors
-    /// When the text is no number.
+    /// The text is no number.
     pub fn parse(text: &str) -> Result<Self, std::num::ParseFloatError> {
         let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
         Ok(Self { value: text.parse()?, rounding: 0.5 * 10f64.powi(-(decimals as i32)) })
@@ -63,13 +63,13 @@ fn cell_text<'de, D: serde::Deserializer<'de>>(from: D) -> Result<Option<Printed
 #[serde(transparent)]
 pub struct CellText(#[serde(deserialize_with = "cell_text")] pub Option<Printed>);
 
-/// What a sentence says of a number.
+/// A one-sided statement about a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Bound {
-    /// The true one is higher.
+    /// The true value is higher.
     Above,
-    /// The true one is lower.
+    /// The true value is lower.
     Below,
 }
 
@@ -77,7 +77,7 @@ pub enum Bound {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
-    /// The item that computes it again.
+    /// The item that reproduces it.
     pub item: String,
     /// Table, figure, equation or section.
     pub from: String,
@@ -86,7 +86,7 @@ pub struct Table {
     pub note: Option<String>,
     /// Names of the columns.
     pub columns: Vec<String>,
-    /// Their units, empty for a pure number.
+    /// Their units; empty for a pure number.
     pub units: Vec<String>,
     /// The rows.
     pub rows: Vec<Row>,
@@ -106,15 +106,15 @@ pub struct Row {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Quoted {
-    /// The item that computes it again.
+    /// The item that reproduces it.
     pub item: String,
-    /// Where it stands.
+    /// Where it is printed.
     pub from: String,
-    /// Of whom.
+    /// Row: the subject of the number.
     pub row: String,
-    /// Of what.
+    /// Column: the quantity.
     pub column: String,
-    /// Unit, empty for a pure number.
+    /// Unit; empty for a pure number.
     pub unit: String,
     /// The number.
     pub value: CellText,
@@ -137,7 +137,7 @@ pub struct Heights {
     pub speed: f64,
     /// Neural delay \[ms\].
     pub delay_ms: f64,
-    /// How garbled rows were recovered.
+    /// How illegible rows were recovered.
     #[serde(default)]
     pub recovered: Option<String>,
     /// The gain sets.
@@ -152,11 +152,11 @@ pub struct GainRow {
     pub gains: [f64; 8],
     /// Variance accounted for \[%\].
     pub vaf: f64,
-    /// Largest disturbance \[rad/s\], to 0.1; NaN where it can't be read.
+    /// Largest disturbance \[rad/s\], to 0.1; NaN where it is illegible.
     pub height: f64,
 }
 
-/// One printed number with its place.
+/// One printed number with its position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
     /// Row.
@@ -165,7 +165,7 @@ pub struct Cell {
     pub column: String,
     /// Unit.
     pub unit: String,
-    /// The number; `None` where nothing is printed.
+    /// The number; `None` if none is printed.
     pub printed: Option<Printed>,
     /// Whether only a bound is printed.
     pub bound: Option<Bound>,
@@ -183,7 +183,7 @@ pub fn published() -> &'static Published {
     &PUBLISHED
 }
 
-/// The height of gain set `number`, from 1, of a run in Table I.1 or I.2, which print them "± 0.1".
+/// The height of gain set `number`, from 1, of a run in Table I.1 or I.2, which print it "± 0.1".
 pub fn height_cell(of: &Heights, number: usize) -> Cell {
     let height = of.rows.get(number - 1).map_or(f64::NAN, |row| row.height);
     Cell {
@@ -196,7 +196,7 @@ pub fn height_cell(of: &Heights, number: usize) -> Cell {
     }
 }
 
-/// Every number printed for `item`, tables first, in the file's order; cells without a number too.
+/// Every number printed for `item`, tables first, in the file's order; cells without a number included.
 pub fn cells(item: &str) -> Vec<Cell> {
     let heights = published().height.iter().filter(|h| item.strip_prefix("table-") == Some(&h.table));
     let heights = heights.flat_map(|h| (1..=h.rows.len()).map(move |number| height_cell(h, number)));
@@ -223,7 +223,7 @@ pub fn cells(item: &str) -> Vec<Cell> {
     heights.chain(tables).chain(quoted).collect()
 }
 
-/// Remarks on the print of `item`, and the sentences its numbers come from.
+/// Remarks on the print of `item`, and the sentences that contain its numbers.
 pub fn remarks(item: &str) -> Vec<String> {
     let tables = published().table.iter().filter(|t| t.item == item);
     let notes = tables.filter_map(|t| t.note.as_ref().map(|note| format!("{}: {note}.", t.from)));

@@ -1,4 +1,4 @@
-//! Computes the items asked for.
+//! Computes the requested items.
 
 use super::case::Case;
 use super::catalogue::{Entry, Made};
@@ -7,31 +7,31 @@ use super::item::Item;
 use super::study::Study;
 use rayon::prelude::*;
 
-/// How far the work has come, and whether to go on.
+/// Progress callback and interruption of a run.
 pub struct Progress<'a> {
-    /// Called with every piece of work done, in columns of a basin.
+    /// Called after each piece of work with its size in columns of a basin.
     pub advanced: &'a (dyn Fn(u64) + Sync),
-    /// Asked before every column and every item.
+    /// Called before every column and every item; true stops the run.
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// An item asked for and what became of it.
+/// A requested item and its result.
 #[derive(Debug)]
 pub struct Outcome {
     /// The item.
     pub entry: &'static Entry,
-    /// Its content; `None` if it is unavailable or was interrupted.
+    /// Its content; `None` if it is unavailable or interrupted.
     pub item: Option<Item>,
 }
 
-/// The basins an item needs; a quick study does without the riders' other readings.
+/// The basins that an item needs; without the riders' other readings in a quick study.
 fn cases(study: &Study, entry: &Entry) -> Vec<Case> {
     let Made::Computed { cases, .. } = entry.made else { return Vec::new() };
     let wanted = |case: &Case| !(study.quick && is_reading(case));
     cases().into_iter().filter(wanted).collect()
 }
 
-/// How much work `entries` are, in columns of a basin.
+/// Work of `entries`, in columns of a basin.
 pub fn work(study: &Study, entries: &[&Entry]) -> u64 {
     let mut all: Vec<Case> = Vec::new();
     for case in entries.iter().flat_map(|e| cases(study, e)) {
@@ -46,8 +46,8 @@ pub fn work(study: &Study, entries: &[&Entry]) -> u64 {
     study.columns(&all) as u64 + entries.iter().map(own).sum::<u64>()
 }
 
-/// Computes `entries`, those without basins first and side by side, the others one after the other,
-/// each with its basins on all cores: an interruption leaves whole items.
+/// Computes `entries`: those without basins first and in parallel, the others in sequence, each with its basins on all cores. After an interruption, each item
+/// is complete or missing.
 pub fn run(study: &Study, entries: &[&'static Entry], progress: &Progress) -> Vec<Outcome> {
     let compute = |entry: &'static Entry| {
         let Made::Computed { compute, work, .. } = entry.made else { return Outcome { entry, item: None } };

@@ -1,4 +1,4 @@
-//! Beyond appendix K: how the height of the old cyclist's basin depends on everything.
+//! Beyond appendix K: sensitivity of the height of the old cyclist's basin to all parameters.
 
 use super::constant::ridden;
 use super::item::{Figure, Item, Table};
@@ -10,7 +10,7 @@ use std::fmt::Write;
 
 /// The speeds of the measured groups \[m/s\].
 const SPEEDS: [f64; 5] = [2.2, 3.2, 4.3, 6.0, 7.3];
-/// How many quantities the figure shows at each speed.
+/// Number of quantities in the figure at each speed.
 const SHOWN: usize = 10;
 
 fn smart() -> Rider {
@@ -18,7 +18,7 @@ fn smart() -> Rider {
     table.rider(Fit::Mean, Outside::Extrapolate, None).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The sensitivities at the measured speeds: a figure, a table, and where the height is not smooth.
+/// The sensitivities at the measured speeds: a figure, a table, and the positions where the height is not smooth.
 pub(super) fn sensitivity_k(study: &Study) -> Item {
     let rider = smart();
     let quantities = Quantity::all(&rider);
@@ -51,7 +51,7 @@ fn panel(at: &[Sensitivity]) -> Plot {
     let mut sorted: Vec<&Sensitivity> = at.iter().collect();
     sorted.sort_by(|a, b| b.elasticity().abs().total_cmp(&a.elasticity().abs()));
     sorted.truncate(SHOWN);
-    // The largest on top.
+    // The largest is drawn on top.
     sorted.reverse();
     let names = sorted.iter().map(|s| s.quantity.name().to_owned()).collect();
     let mut plot = Plot {
@@ -90,7 +90,7 @@ fn csv(all: &[Vec<Sensitivity>]) -> String {
     text
 }
 
-/// Change per percent and elasticity, one row per quantity; the largest at any speed first.
+/// Change per percent and elasticity, one row per quantity, sorted by the largest value at any speed.
 fn table(all: &[Vec<Sensitivity>]) -> Table {
     let mut order: Vec<usize> = (0..all.first().map_or(0, Vec::len)).collect();
     let largest = |i: &usize| all.iter().map(|at| at[*i].elasticity().abs()).fold(0.0, f64::max);

@@ -1,13 +1,11 @@
-//! Other ways to integrate the uncontrolled bicycle: fixed steps of two Runge-Kutta methods and
-//! adaptive solvers of a library (appendix D).
+//! Other integrators for the uncontrolled bicycle: two Runge-Kutta methods with fixed steps, and adaptive solvers of a library (appendix D).
 
 use crate::bicycle::{Geometry, Motion, State, Torques};
 use crate::integrate::rate;
 use differential_equations::prelude::{BackwardDifferentiationFormula, ExplicitRungeKutta, IVP, ODE};
 use std::f64::consts::FRAC_PI_2;
 
-/// Roll, steer, their rates, rear wheel rate; and the pitch, which the first two fix, as the start of
-/// its own solution.
+/// Roll, steer, their rates and the rear wheel's rate; and the pitch, which depends on the first two, as the initial value of its own iteration.
 pub type Entries = [f64; 6];
 
 /// The uncontrolled bicycle as a first-order system.
@@ -15,7 +13,7 @@ pub type Entries = [f64; 6];
 pub struct Free<'a>(pub &'a Geometry);
 
 impl Free<'_> {
-    /// The rate of change of every entry.
+    /// The time derivative of every entry.
     pub fn rate(&self, y: &Entries) -> Entries {
         let state = state(y);
         let none = Torques { roll: 0.0, steer: 0.0 };
@@ -40,17 +38,17 @@ pub fn entries(s: &State<f64>) -> Entries {
     [s.roll, s.steer, s.roll_rate, s.steer_rate, s.rear_wheel_rate, s.pitch]
 }
 
-/// Euclidean distance of two states, the dependent pitch left out.
+/// Euclidean distance of two states, without the dependent pitch.
 pub fn distance(a: &Entries, b: &Entries) -> f64 {
     a[..5].iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Whether a state is none a bicycle rides in.
+/// Whether a state is impossible for a riding bicycle.
 fn broken(y: &Entries) -> bool {
     !y.iter().all(|x| x.is_finite()) || y[0].abs() >= FRAC_PI_2 || y[1].abs() >= FRAC_PI_2
 }
 
-/// An explicit method: the stages' weights of earlier slopes, and those of the step.
+/// An explicit Runge-Kutta method: the stages' weights of earlier slopes, and those of the step.
 #[derive(Debug)]
 pub struct Tableau {
     /// Its name.
@@ -66,7 +64,7 @@ pub const RK4: Tableau = Tableau {
     weights: &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
 };
 
-/// The fifth-order solution of Fehlberg's method (eqs D.6 to D.12; D.11 is printed with 28 for 2).
+/// The fifth-order solution of Fehlberg's method (eqs D.6 to D.12; D.11 is printed with 28 in place of 2).
 pub const RKF45: Tableau = Tableau {
     name: "RKF45, fifth order",
     stages: &[
@@ -80,7 +78,7 @@ pub const RKF45: Tableau = Tableau {
     weights: &[16.0 / 135.0, 0.0, 6656.0 / 12825.0, 28561.0 / 56430.0, -9.0 / 50.0, 2.0 / 55.0],
 };
 
-/// The state after `steps` equal steps over `seconds`; `None` when the bicycle fell on the way.
+/// The state after `steps` equal steps over `seconds`; `None` if the bicycle fell before.
 pub fn fixed(
     problem: &Free,
     method: &Tableau,
@@ -136,11 +134,11 @@ impl Adaptive {
     }
 }
 
-/// Most steps of an adaptive solution.
+/// Step limit of an adaptive solution.
 const MOST_STEPS: usize = 2_000_000;
 
-/// The state after `seconds` with absolute and relative tolerance `tolerance` and steps up to
-/// `h_max`; `None` when the solver gives up or the bicycle fell on the way.
+/// The state after `seconds` with absolute and relative tolerance `tolerance` and steps up to `h_max`; `None` if the solver gives up or the bicycle fell
+/// before.
 pub fn adaptive(
     problem: &Free,
     solver: Adaptive,
@@ -165,7 +163,7 @@ pub fn adaptive(
         }
     };
     let solution = solution.ok()?;
-    // The library ends without an error where a step can't be taken.
+    // The library ends without an error if a step fails.
     let whole = solution.t.last().is_some_and(|t| (t - seconds).abs() < 1e-9);
     let fell = solution.y.iter().any(broken);
     solution.y.last().copied().filter(|_| whole && !fell)

@@ -1,4 +1,4 @@
-//! What all items share: the bicycle, the resolution, and basins computed once.
+//! Data common to all items: the bicycle, the resolution, and basins computed once.
 
 use super::case::{Assisted, Case, Resolution};
 use crate::basin::{Basin, Column, Search};
@@ -12,29 +12,29 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// The bicycle of the thesis.
 const BICYCLE: &str = "rigid_jason";
 
-/// The shared ground of all items.
+/// Data common to all items.
 #[derive(Debug)]
 pub struct Study {
     /// The bicycle's parameters.
     pub parameters: Parameters,
-    /// For the nonlinear equations.
+    /// The nonlinear model.
     pub bicycle: Geometry,
-    /// Linearised.
+    /// The linearised model.
     pub linear: Linear,
     /// Critical speeds of the uncontrolled bicycle.
     pub critical: CriticalSpeeds,
-    /// How finely basins are searched.
+    /// Resolution of basin searches.
     pub resolution: Resolution,
-    /// Whether to be quick rather than exact.
+    /// Whether the resolution is reduced for speed.
     pub quick: bool,
     basins: Mutex<Vec<(Case, Arc<Basin>)>>,
 }
 
 impl Study {
-    /// The study of the shipped thesis bicycle.
+    /// The study of the built-in thesis bicycle.
     ///
     /// # Errors
-    /// When the shipped bicycles can't be read.
+    /// The built-in bicycles cannot be read.
     pub fn new(quick: bool) -> Result<Self, catalogue::BicycleError> {
         let parameters = catalogue::load(BICYCLE)?.parameters;
         let linear = Linear::new(&parameters);
@@ -49,12 +49,12 @@ impl Study {
         })
     }
 
-    /// The range in which the uncontrolled bicycle balances itself \[m/s\].
+    /// The self-stable range of the uncontrolled bicycle \[m/s\].
     pub fn self_stable(&self) -> Option<(f64, f64)> {
         self.critical.v_w.zip(self.critical.v_c)
     }
 
-    /// The basin of a case: from the store, or computed now.
+    /// The basin of a case, stored or computed now.
     pub fn basin(&self, case: &Case) -> Arc<Basin> {
         if let Some(found) = self.stored(case) {
             return found;
@@ -64,26 +64,25 @@ impl Study {
         self.store(*case, Basin { columns })
     }
 
-    /// The basin of a case at some speeds \[m/s\], computed now.
+    /// The columns of a case's basin at some speeds \[m/s\], computed now.
     pub fn columns_at(&self, case: &Case, speeds: &[f64]) -> Vec<Column> {
         let (conditions, search) = (case.conditions(&self.bicycle), case.search(&self.resolution));
         speeds.par_iter().map(|&v| case.column(&conditions, &search, v)).collect()
     }
 
-    /// Whether the basin of a case is there already.
+    /// Whether the basin of a case is stored.
     pub fn has(&self, case: &Case) -> bool {
         self.stored(case).is_some()
     }
 
-    /// Computes the basins of `cases`, column by column so that all cores are busy to the end;
-    /// `finished` is called for each column, `stop` asked before each. Basins that were stopped are
-    /// not kept.
+    /// Computes and stores the basins of `cases`, with all their columns in parallel; calls `finished` after and `stop` before each column. Interrupted basins
+    /// are not stored.
     pub fn prepare(&self, cases: &[Case], finished: impl Fn() + Sync, stop: impl Fn() -> bool + Sync) {
         let missing: Vec<&Case> = cases.iter().filter(|c| !self.has(c)).collect();
         let searches: Vec<Search> = missing.iter().map(|c| c.search(&self.resolution)).collect();
         let conditions: Vec<Conditions> = missing.iter().map(|c| c.conditions(&self.bicycle)).collect();
         let jobs = searches.iter().enumerate().flat_map(|(i, s)| (0..s.speeds.len()).map(move |k| (i, k)));
-        // A bridge hands the jobs out in order and one by one.
+        // A bridge distributes the jobs in order, one at a time.
         let mut done: Vec<(usize, usize, Column)> = jobs
             .par_bridge()
             .filter_map(|(i, k)| {
@@ -106,7 +105,7 @@ impl Study {
         }
     }
 
-    /// How many columns [`Self::prepare`] has to compute.
+    /// Number of columns that [`Self::prepare`] has to compute.
     pub fn columns(&self, cases: &[Case]) -> usize {
         cases.iter().filter(|c| !self.has(c)).map(|c| c.search(&self.resolution).speeds.len()).sum()
     }

@@ -1,4 +1,4 @@
-//! The report as files.
+//! Writes the report's files.
 
 use super::document::ThesisDocument;
 use super::html::page;
@@ -7,11 +7,11 @@ use crate::report::output::Output;
 use crate::report::picture::{caption, svg_with_caption};
 use std::path::{Path, PathBuf};
 
-/// The report's page, within its folder.
+/// Name of the report's page in its folder.
 pub const PAGE: &str = "report.html";
 const FIGURES: &str = "figures";
 
-/// A report that can't be written.
+/// Why a report cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[error("can't write the report to {folder}: {reason}")]
 pub struct WriteError {
@@ -19,21 +19,20 @@ pub struct WriteError {
     reason: String,
 }
 
-/// Makes ready to write a report into `folder`, so that one that can't be is known before the work.
+/// Prepares to write a report into `folder`, so that an error appears before the computation.
 ///
 /// # Errors
-/// When the folder can't be made or written to.
+/// The folder cannot be created or is not writable.
 pub fn prepare(folder: &Path) -> Result<(), WriteError> {
     let failed = |reason: String| WriteError { folder: folder.into(), reason };
     std::fs::create_dir_all(folder.join(FIGURES)).map_err(|e| failed(e.to_string()))?;
     Output::create(&folder.join(PAGE)).map(drop).map_err(|e| failed(e.to_string()))
 }
 
-/// Writes `report.html`, `values.csv`, `values.json` and for each figure `figures/NAME.svg` and
-/// `.csv`; older files of these names are replaced.
+/// Writes `report.html`, `values.csv`, `values.json` and, for each figure, `figures/NAME.svg` and `.csv`; existing files of these names are replaced.
 ///
 /// # Errors
-/// When a file can't be written.
+/// A file cannot be written.
 pub fn write(folder: &Path, document: &ThesisDocument, outcomes: &[Outcome]) -> Result<(), WriteError> {
     let failed = |reason: String| WriteError { folder: folder.into(), reason };
     let put = |name: &str, content: &str| {

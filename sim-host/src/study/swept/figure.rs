@@ -1,4 +1,4 @@
-//! The figures of a study.
+//! Figures of a sweep study.
 
 use super::Part;
 use super::page::LEAST;
@@ -6,8 +6,8 @@ use super::part_result::{Group, PartResult};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Picture, Plot, Series, chart};
 use crate::sweep::{AT_LEAST, Grid, pictures};
 
-/// The figures of a part's sweep with their names: along one axis of numbers a line for every group, along
-/// several the heat maps, of words the heights over speed.
+/// The figures of a part's sweep with their names: along a numeric axis a line for every group; over several axes heat maps; along an axis of names the heights
+/// over speed.
 pub fn figures(part: &Part, grid: &Grid) -> Vec<(String, Picture)> {
     let Some(result) = PartResult::new(part, grid) else { return Vec::new() };
     match (result.numbers(part), &result.others[..]) {
@@ -23,7 +23,7 @@ pub fn figures(part: &Part, grid: &Grid) -> Vec<(String, Picture)> {
     }
 }
 
-/// The part of the area over the axis.
+/// The fraction of the area over the axis.
 fn lines(part: &Part, result: &PartResult, numbers: &[(usize, f64)], unit: &str) -> Picture {
     let look = |i| Look { marker: Some(Marker::Point), ..Look::line(i, Line::Solid) };
     let mut series: Vec<Series> = result
@@ -68,7 +68,7 @@ fn lines(part: &Part, result: &PartResult, numbers: &[(usize, f64)], unit: &str)
     chart(&Chart { title: part.title.clone(), columns: 1, plots: vec![plot], ..Chart::default() })
 }
 
-/// The heights over speed, a panel for every combination of the other axes.
+/// The heights over speed, a panel for each combination of the other axes.
 fn heights(part: &Part, grid: &Grid) -> Picture {
     let axes = &grid.plan.axes;
     let at = axes.iter().position(|axis| axis.key == part.along).unwrap_or(0);

@@ -1,4 +1,4 @@
-//! A study as a TOML file says it.
+//! A sweep study as defined in a TOML file.
 
 use crate::sweep::Axis;
 use serde::Deserialize;
@@ -8,14 +8,14 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Study {
-    /// Its name, which is that of its files.
+    /// Its name, equal to that of its files.
     #[serde(skip)]
     pub name: String,
-    /// Above the page.
+    /// Title of the page.
     pub title: String,
-    /// What is asked, and how it is answered.
+    /// The question, and the method.
     pub question: String,
-    /// What is to be said of the answers; below them.
+    /// Remarks below the answers.
     #[serde(default)]
     pub remarks: String,
     /// The sweeps.
@@ -23,37 +23,36 @@ pub struct Study {
     pub parts: Vec<Part>,
 }
 
-/// One sweep of a study, and what its answer is.
+/// One sweep of a study and the evaluation of its result.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
-    /// Its name, which is that of its folder and figures.
+    /// Its name, equal to that of its folder and figures.
     pub name: String,
-    /// Above its answer.
+    /// Title above its answer.
     pub title: String,
-    /// Said before its answer.
+    /// Text before its answer.
     #[serde(default)]
     pub text: String,
-    /// The options of `sweep` that all cells share, and those of the search.
+    /// Options of `sweep` for all cells, and those of the search.
     pub options: String,
-    /// The axes, as of `--over`.
+    /// The axes, in the form of `--over`.
     pub over: Vec<String>,
-    /// The cell others are compared with: values by key. Axes that are not here tell groups apart, each
-    /// with a reference of its own.
+    /// The reference cell: values by key. Axes without an entry define groups, each with its own reference.
     pub reference: BTreeMap<String, String>,
-    /// Unit of the numbers along the axis below, if they come without.
+    /// Unit of the numbers along the axis below, if they have none.
     #[serde(default)]
     pub unit: String,
-    /// The axis along which is looked for what keeps the area; of words, every value is compared.
+    /// The axis along which the area is compared; along an axis of names, every value is compared.
     pub along: String,
 }
 
-/// A study that can't be done.
+/// Why a study cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct StudyError(pub String);
 
-/// The study `name` in the text of a TOML file.
+/// Parses the study `name` from a TOML text.
 ///
 /// # Errors
 /// Names study, sweep and key.
@@ -71,7 +70,7 @@ impl Part {
     /// Its axes.
     ///
     /// # Errors
-    /// The axis' own.
+    /// An invalid axis.
     pub fn axes(&self) -> Result<Vec<Axis>, String> {
         self.over.iter().map(|text| Axis::parse(text)).collect()
     }

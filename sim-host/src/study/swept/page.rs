@@ -1,4 +1,4 @@
-//! A study's answer as a page of Markdown.
+//! Writes a sweep study's answer as a page of Markdown.
 
 use super::part_result::{Group, PartResult};
 use super::{Part, Study, Threshold, threshold};
@@ -6,19 +6,19 @@ use crate::basin::{Bound, Work};
 use crate::sweep::{Axis, Grid};
 use std::fmt::Write;
 
-/// What counts as enough.
+/// Smallest fraction of the reference's area that counts as sufficient.
 pub(super) const LEAST: f64 = 0.95;
 
-/// What an answer took.
+/// Cost of an answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spent {
-    /// Time \[s\]; none if some cells were there before.
+    /// Time \[s\]; `None` if some cells existed before.
     pub seconds: Option<f64>,
     /// Threads.
     pub threads: usize,
 }
 
-/// The page of a study whose sweeps are done. Figures are at `figures`, seen from the page.
+/// The page of a study with complete sweeps. `figures` is the folder of the figures, relative to the page.
 pub fn page(study: &Study, grids: &[Grid], spent: Spent, figures: &str) -> String {
     let tool = grids.first().map(|g| g.plan.tool.clone());
     let commit = tool.map_or(String::new(), |t| format!("{} {} commit {}", t.name, t.version, t.commit));
@@ -67,7 +67,7 @@ fn section(study: &Study, part: &Part, grid: &Grid, figures: &str) -> String {
     text
 }
 
-/// Where a line of a group falls below what is enough; `None` where a part of it is only a bound.
+/// Position at which a line of a group falls below [`LEAST`]; `None` if a value on it is only a bound.
 fn found(group: &Group, line: usize, numbers: &[(usize, f64)]) -> Option<Threshold> {
     let part = |i: usize| group.part(line, i).map_or(f64::NAN, |p| p.0);
     let points: Vec<(f64, f64)> = numbers.iter().map(|&(i, x)| (x, part(i))).collect();
@@ -88,15 +88,15 @@ fn in_words(found: Option<Threshold>, numbers: &[(usize, f64)], unit: &str) -> S
     }
 }
 
-/// Where areas are only lower bounds.
+/// Text where areas are only lower bounds.
 const REFUSED: &str = "not known: capped";
 
-/// A number and how it lies to the true one.
+/// A number with its kind of bound.
 fn bounded(x: f64, bound: Bound, digits: usize) -> String {
     format!("{}{x:.digits$}", bound.sign())
 }
 
-/// Below tables with a bound in them.
+/// Note below tables that contain a bound.
 fn bounds(result: &PartResult, grid: &Grid) -> String {
     let measured = |group: &Group| (0..group.lines.len()).all(|line| group.measured(line));
     if result.groups.iter().all(measured) {
@@ -111,10 +111,10 @@ fn bounds(result: &PartResult, grid: &Grid) -> String {
     )
 }
 
-/// How many numbers of an axis are told beside each other at most; of more, every fourth.
+/// Most values of an axis in one table; with more, every fourth is shown.
 const BESIDE: usize = 8;
 
-/// One axis alone: a row a group.
+/// Table for a single axis: a row per group.
 fn alone(result: &PartResult, (numbers, unit): &(Vec<(usize, f64)>, String), grid: &Grid) -> String {
     let key = &result.along.key;
     let told: Vec<(usize, f64)> =
@@ -142,12 +142,12 @@ fn alone(result: &PartResult, (numbers, unit): &(Vec<(usize, f64)>, String), gri
     text + &accuracy(result, grid) + &bounds(result, grid)
 }
 
-/// The part of the reference's area that a line of a group has at a place of the axis.
+/// Fraction of the reference's area for a line of a group at a position of the axis.
 fn share(group: &Group, line: usize, place: usize) -> String {
     group.part(line, place).map_or("-".into(), |(part, is)| bounded(100.0 * part, is, 1) + " %")
 }
 
-/// Two axes: the part of the area in every cell, a table a group.
+/// Table for two axes: the fraction of the area in each cell, a table per group.
 fn shares(result: &PartResult, group: &Group, rows: &Axis) -> String {
     let along = &result.along;
     let mut text = format!(
@@ -167,7 +167,7 @@ fn shares(result: &PartResult, group: &Group, rows: &Axis) -> String {
     text + "\n"
 }
 
-/// How sure areas are; of a single speed the heights.
+/// Accuracy of areas; of heights at a single speed.
 fn accuracy(result: &PartResult, grid: &Grid) -> String {
     let (speeds, tolerance) = (&grid.plan.search.speeds, grid.plan.search.tolerance);
     if grid.one_speed() {
@@ -187,7 +187,7 @@ fn capital(word: &str) -> String {
     word[..1].to_uppercase() + &word[1..]
 }
 
-/// Several axes: a table a group, rows and columns the reference's other axes.
+/// Tables for several axes: one per group, with the reference's other axes as rows and columns.
 fn together(result: &PartResult, (numbers, unit): &(Vec<(usize, f64)>, String)) -> String {
     let key = &result.along.key;
     let (rows, columns) = (&result.others[0], result.others.get(1));
@@ -219,7 +219,7 @@ fn together(result: &PartResult, (numbers, unit): &(Vec<(usize, f64)>, String)) 
     text
 }
 
-/// An axis of words: the area at each, beside the reference's.
+/// Table for an axis of names: the area at each, beside the reference's.
 fn compared(result: &PartResult, grid: &Grid) -> String {
     let names: Vec<String> =
         result.along.values.iter().map(|v| format!("{} {v}", result.along.key)).collect();

@@ -1,51 +1,51 @@
-//! A part's sweep as its answer needs it: groups, each with the area of its reference.
+//! Evaluates a part's sweep: groups of cells, each with the area of its reference.
 
 use super::Part;
 use crate::basin::Bound;
 use crate::sweep::{Axis, Grid};
 
-/// The cells that share a reference.
+/// Cells with the same reference.
 pub(super) struct Group {
-    /// What tells it from the others: "rider=smart"; empty if there is only one.
+    /// Label of the group: "rider=smart"; empty for a single group.
     pub(super) label: String,
     /// Area of the reference \[rad m/s^2\], or its height \[rad/s\] at a single speed.
     pub(super) reference: f64,
-    /// How that lies to the true one.
+    /// Whether the reference is exact or a bound.
     pub(super) reference_is: Bound,
-    /// A line for every combination of the reference's other axes.
+    /// A line for each combination of the reference's other axes.
     pub(super) lines: Vec<Vec<Option<(f64, Bound)>>>,
 }
 
 impl Group {
-    /// The part of the reference that a line has at a place of the axis, and how it lies to the true one.
+    /// Value on a line relative to the reference, and whether it is exact or a bound.
     pub(super) fn part(&self, line: usize, place: usize) -> Option<(f64, Bound)> {
         let (area, bound) = self.lines[line][place]?;
         let is = Bound::of_ratio(!bound.is_measured(), !self.reference_is.is_measured());
         Some((area / self.reference, is))
     }
 
-    /// Whether all parts along a line are measured.
+    /// Whether all values on a line are exact.
     pub(super) fn measured(&self, line: usize) -> bool {
         let areas = self.lines[line].iter().flatten();
         self.reference_is.is_measured() && areas.map(|a| a.1).all(Bound::is_measured)
     }
 }
 
-/// A part's answer, before it is put in words.
+/// Numerical result of a part.
 pub(super) struct PartResult {
-    /// The axis along which is looked.
+    /// The axis along which the area is compared.
     pub(super) along: Axis,
     /// The reference's other axes.
     pub(super) others: Vec<Axis>,
     /// The groups.
     pub(super) groups: Vec<Group>,
-    /// What is compared: "area", or "height" at a single speed.
+    /// The compared quantity: "area", or "height" at a single speed.
     pub(super) what: &'static str,
     /// Its unit.
     pub(super) unit: &'static str,
 }
 
-/// Places of `axes` among the sweep's, the last running fastest.
+/// Combinations of the values of `axes`, as key and value; the last axis varies fastest.
 fn combinations(axes: &[&Axis]) -> Vec<Vec<(String, String)>> {
     axes.iter().fold(vec![Vec::new()], |all, axis| {
         let longer = |one: &Vec<(String, String)>| {
@@ -57,7 +57,7 @@ fn combinations(axes: &[&Axis]) -> Vec<Vec<(String, String)>> {
 }
 
 impl PartResult {
-    /// The answer in a finished sweep.
+    /// The result of a finished sweep.
     pub(super) fn new(part: &Part, grid: &Grid) -> Option<Self> {
         let axes = &grid.plan.axes;
         let along = axes.iter().find(|axis| axis.key == part.along)?;
@@ -94,8 +94,8 @@ impl PartResult {
         Some(Self { along: along.clone(), others: others.into_iter().cloned().collect(), groups, what, unit })
     }
 
-    /// The numbers along the axis from the reference's side on, with their places and their unit; none
-    /// for an axis of words. A word among numbers, as `none`, is left out.
+    /// The numbers along the axis, beginning at the reference's side, with their positions and unit; `None` for an axis of names. A name among numbers, such as
+    /// `none`, is left out.
     pub(super) fn numbers(&self, part: &Part) -> Option<(Vec<(usize, f64)>, String)> {
         let numeric = |(i, value): (usize, &String)| {
             let one = Axis { key: String::new(), values: vec![value.clone()] };

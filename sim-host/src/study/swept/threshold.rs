@@ -1,14 +1,13 @@
-//! Where along an axis a part of the area is kept.
+//! Finds the value of an axis up to which a fraction of the area remains.
 
-/// Up to where an area is kept.
+/// Range of an axis over which the area remains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Threshold {
-    /// At every value.
+    /// At all values.
     Everywhere,
     /// Not even at the value nearest to the reference.
     Nowhere,
-    /// As far as `at`, which is interpolated between two values of the grid: the last that keeps it
-    /// and the first that does not.
+    /// Up to `at`, interpolated between the last value of the grid at which it remains and the first at which it does not.
     Until {
         /// Interpolated.
         at: f64,
