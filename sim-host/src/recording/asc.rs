@@ -1,8 +1,8 @@
 //! Reads CAN logs as text (ASC) of Vector's tools and of others that write it, such as python-can and can-utils.
 //!
-//! `base` defines whether identifiers and bytes are hexadecimal or decimal; `timestamps` whether seconds count from the start of the measurement (`absolute`)
-//! or from the previous event (`relative`). Relative times are summed over all events, including those of other kinds. Events other than CAN frames are
-//! skipped.
+//! `base` defines whether identifiers and bytes are hexadecimal or decimal; `timestamps` whether seconds count from the
+//! start of the measurement (`absolute`) or from the previous event (`relative`). Relative times are summed over all
+//! events, including those of other kinds. Events other than CAN frames are skipped.
 
 use super::Remark;
 use super::frames::{Frames, Id, MOST_BYTES};

@@ -5,7 +5,8 @@
 pub enum Order {
     /// Intel: the start is the lowest bit; the next higher bit has the next number.
     Little,
-    /// Motorola: the start is the highest bit; the next lower one is below it in the byte, then at the top of the next byte.
+    /// Motorola: the start is the highest bit; the next lower one is below it in the byte, then at the top of the next
+    /// byte.
     Big,
 }
 

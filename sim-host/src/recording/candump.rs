@@ -1,8 +1,9 @@
 //! Reads logs of `candump` (Linux can-utils): the format of `-l` and `-L`, and screen output with time stamps.
 //!
-//! The log format (`(1436509052.249713) can0 123#DEADBEEF`) is the one that other can-utils read. Screen output (`(1436509052.249713)  can0  123   [4]  DE AD
-//! BE EF`) is supported with the time stamps of `-t a`, `-t A` (a date, read as UTC) and `-t z`. Time stamps from frame to frame (`-t d`) look like those of
-//! `-t z` but decrease: a file of small time stamps that decrease anywhere is rejected.
+//! The log format (`(1436509052.249713) can0 123#DEADBEEF`) is the one that other can-utils read. Screen output
+//! (`(1436509052.249713)  can0  123   [4]  DE AD BE EF`) is supported with the time stamps of `-t a`, `-t A` (a date,
+//! read as UTC) and `-t z`. Time stamps from frame to frame (`-t d`) look like those of `-t z` but decrease: a file of
+//! small time stamps that decrease anywhere is rejected.
 
 use super::Remark;
 use super::frames::{Frames, Id, MOST_BYTES};

@@ -1,11 +1,13 @@
 //! Databases of CAN messages (DBC): which signals are in which bits of which frame.
 //!
-//! `can-dbc` parses the text; this module converts the result to plain numbers. Files that are not UTF-8 are read as Windows-1252, the encoding of most tools.
+//! `can-dbc` parses the text; this module converts the result to plain numbers. Files that are not UTF-8 are read as
+//! Windows-1252, the encoding of most tools.
 //!
-//! **A raw value that means "no value" becomes NaN**: one that the database's value table names `SNA`, `NA`, `not known`, `unknown`, `not available`, `not
-//! valid`, `invalid` or `no data`, with or without `signal`, `value` or `data` before or after it, in any case and with any separator between the words. As a
-//! number it would be a plausible value at the end of the signal's range. Signals of one bit keep both values: a flag named `invalid` is information. All other
-//! names in value tables are ignored; the raw value remains a number.
+//! **A raw value that means "no value" becomes NaN**: one that the database's value table names `SNA`, `NA`, `not
+//! known`, `unknown`, `not available`, `not valid`, `invalid` or `no data`, with or without `signal`, `value` or `data`
+//! before or after it, in any case and with any separator between the words. As a number it would be a plausible value
+//! at the end of the signal's range. Signals of one bit keep both values: a flag named `invalid` is information. All
+//! other names in value tables are ignored; the raw value remains a number.
 
 use super::Remark;
 use super::bits::{Order, Place, signed};
@@ -110,7 +112,8 @@ impl Message {
         self.signals.iter().map(|signal| signal.place.bytes()).max().unwrap_or(0)
     }
 
-    /// Whether a signal is in this frame, by its multiplexors. Their chain is not circular: [`Database::parse`] checks it.
+    /// Whether a signal is in this frame, by its multiplexors. Their chain is not circular: [`Database::parse`] checks
+    /// it.
     fn is_there(&self, signal: &Signal, data: &[u8]) -> bool {
         let Some(page) = &signal.page else { return true };
         let switch = &self.signals[page.switch];
@@ -170,7 +173,8 @@ fn wide_identifier(text: &str) -> Result<(), Remark> {
     Ok(())
 }
 
-/// The parser's reason in one line. Its own text is a picture of the position: ` --> 3:5`, the line, and ` = expected ...`.
+/// The parser's reason in one line. Its own text is a picture of the position: ` --> 3:5`, the line, and ` = expected
+/// ...`.
 fn not_read(why: &str) -> Remark {
     let place = why.trim_start().strip_prefix("--> ").and_then(|rest| rest.split(':').next());
     let line = place.and_then(|line| line.parse().ok());
@@ -254,7 +258,8 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
     Message { name, id: id_of(message.id), signals: kept, unused }
 }
 
-/// The full name of an object with more than 32 letters: Vector's tools truncate the name and store the full one in an attribute.
+/// The full name of an object with more than 32 letters: Vector's tools truncate the name and store the full one in an
+/// attribute.
 fn long_name(attribute: Option<&AttributeValue>, name: &str) -> String {
     match attribute {
         Some(AttributeValue::String(long)) if !long.is_empty() => long.clone(),

@@ -31,7 +31,8 @@ struct Rows {
 
 /// Decodes frames. A message in two databases is decoded by the first of them.
 ///
-/// A group has its message's name; a message on several buses has the bus appended in brackets, and messages of the same name have their identifier.
+/// A group has its message's name; a message on several buses has the bus appended in brackets, and messages of the
+/// same name have their identifier.
 pub fn groups(frames: &Frames, databases: &[Database]) -> Decoded {
     let mut rows: Vec<Rows> = Vec::new();
     let mut places: HashMap<(u32, Id), usize> = HashMap::new();

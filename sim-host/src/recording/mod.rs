@@ -113,11 +113,12 @@ pub struct ReadOptions {
 
 /// Reads a recording. Its content determines the format, not its name.
 ///
-/// The databases of the options decode CAN frames to groups: one per message, its signals as columns in the database's units, with the file's times. Frames
-/// that are in no database become remarks.
+/// The databases of the options decode CAN frames to groups: one per message, its signals as columns in the database's
+/// units, with the file's times. Frames that are in no database become remarks.
 ///
 /// # Errors
-/// The file, with the line if there is one; CAN frames without a database, or with databases that decode none of them; an unreadable database.
+/// The file, with the line if there is one; CAN frames without a database, or with databases that decode none of them;
+/// an unreadable database.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Recording, RecordingError> {
     let bytes = std::fs::read(path)
         .and_then(|bytes| unpacked(path, bytes))

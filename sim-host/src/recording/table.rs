@@ -1,7 +1,7 @@
 //! Reads a table of samples as text: named columns, one row per line, blank cells where a sensor had no new sample.
 //!
-//! The separator is the most frequent of comma, semicolon and tab in the header. Lines that begin with `#` are comments. Each line is parsed on its own, so
-//! that a stray quote or a cut line affects that line only.
+//! The separator is the most frequent of comma, semicolon and tab in the header. Lines that begin with `#` are
+//! comments. Each line is parsed on its own, so that a stray quote or a cut line affects that line only.
 
 use super::remarks::Remarks;
 use super::stamp::seconds;

@@ -1,4 +1,5 @@
-//! Margin of each check in a replay: the largest residual that lasted for the check's debounce time, against the threshold.
+//! Margin of each check in a replay: the largest residual that lasted for the check's debounce time, against the
+//! threshold.
 
 use crate::plant::Sensor;
 use control::sensors::cross_check::{ROLL_WRONG, YAW_WRONG};

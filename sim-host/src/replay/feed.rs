@@ -108,8 +108,8 @@ impl<'a> Feed<'a> {
         self.ticks == 0
     }
 
-    /// The next control instant: its time in the recording \[s\] and the controller's input, with the recorded switch or, without one, `pressed`; `None` after
-    /// the last.
+    /// The next control instant: its time in the recording \[s\] and the controller's input, with the recorded switch
+    /// or, without one, `pressed`; `None` after the last.
     pub fn next(&mut self, pressed: bool) -> Option<(f64, Measured)> {
         if self.tick >= self.ticks {
             return None;

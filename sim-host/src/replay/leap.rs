@@ -25,7 +25,8 @@ impl Display for Leap {
     }
 }
 
-/// The jumps between the samples of a sensor; `line_of` gives the line of a sample by its index. Empty if there are many.
+/// The jumps between the samples of a sensor; `line_of` gives the line of a sample by its index. Empty if there are
+/// many.
 pub(super) fn leaps(samples: &[Sample], line_of: impl Fn(usize) -> Option<u64>) -> Vec<Leap> {
     let leap =
         |(at, two): (usize, &[Sample])| Leap { line: line_of(at + 1), from_s: two[0].t_s, to_s: two[1].t_s };

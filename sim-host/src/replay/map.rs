@@ -32,7 +32,8 @@ pub struct Map {
     rider_torque: Option<Signal>,
     motor: Option<Signal>,
     path: Option<Signal>,
-    /// The rider's switch: on where the column is not 0. Without this key the switch is pressed whenever a press would engage.
+    /// The rider's switch: on where the column is not 0. Without this key the switch is pressed whenever a press would
+    /// engage.
     pub engage: Option<Switch>,
     /// The recording's own motion signals, for comparison.
     #[serde(default)]
@@ -109,7 +110,8 @@ pub struct Signal {
     /// Added to every axis, in `unit`.
     #[serde(default)]
     pub offset: f64,
-    /// For three axes: which of the sensor's axes, with its sign, points along the bicycle's x (forward), y (right) and z (down).
+    /// For three axes: which of the sensor's axes, with its sign, points along the bicycle's x (forward), y (right) and
+    /// z (down).
     pub axes: Option<[String; 3]>,
     /// Column with the time of these samples, in the unit of `time`, if it differs from the row's.
     pub time: Option<String>,

@@ -54,8 +54,8 @@ pub struct CauseRecord {
     pub count: u32,
     /// Total time that it was present \[s\].
     pub total_s: f64,
-    /// Times that it began while the bicycle rode or the assist was engaged, after the controller was first ready. Zero for causes that describe a state, such
-    /// as the switch being off.
+    /// Times that it began while the bicycle rode or the assist was engaged, after the controller was first ready. Zero
+    /// for causes that describe a state, such as the switch being off.
     pub alarms: u32,
     /// Times at which these began \[s\].
     #[serde(skip)]
@@ -134,8 +134,8 @@ pub fn frames(bytes: &[u8]) -> Result<Vec<(f64, SensorFrame)>, String> {
     Ok(whole.iter().map(at).collect())
 }
 
-/// Runs the controller over the sequence from `next`: time \[s\] and frame of each control instant. The argument of `next` is the switch, used where none was
-/// recorded.
+/// Runs the controller over the sequence from `next`: time \[s\] and frame of each control instant. The argument of
+/// `next` is the switch, used where none was recorded.
 pub fn run(
     plan: &Plan,
     options: &RunOptions<'_>,

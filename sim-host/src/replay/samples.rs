@@ -213,7 +213,8 @@ fn stand_in(sensor: Sensor, axis: usize) -> f64 {
     if sensor == Sensor::Accel && axis == 2 { GRAVITY } else { 0.0 }
 }
 
-/// The columns of a sensor; `None` if none is recorded. Of gyro and accelerometer only the axis needed for roll is required.
+/// The columns of a sensor; `None` if none is recorded. Of gyro and accelerometer only the axis needed for roll is
+/// required.
 fn find<'a>(recording: &'a Recording, sensor: Sensor, signal: &Signal) -> Result<Option<Found<'a>>, Remark> {
     let mut group: Option<&Group> = None;
     let (mut axes, mut made_up, mut absent) = (Vec::new(), [false; 3], Vec::new());

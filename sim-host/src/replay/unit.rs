@@ -47,8 +47,9 @@ impl Quantity {
         })
     }
 
-    /// A magnitude that fewer than one sample in twenty of a ride in SI units exceeds, and the unit suspected otherwise: a fork turns by hardly more than a
-    /// quarter of a turn; 5 rad/s and 43 km/h are reached only in a fall or on a long descent.
+    /// A magnitude that fewer than one sample in twenty of a ride in SI units exceeds, and the unit suspected
+    /// otherwise: a fork turns by hardly more than a quarter of a turn; 5 rad/s and 43 km/h are reached only in a fall
+    /// or on a long descent.
     pub(super) const fn implausible(self) -> Option<(f64, &'static str)> {
         match self {
             Self::Angle => Some((2.0, "degrees")),

@@ -47,7 +47,8 @@ pub struct CaseEntry {
     pub mean_height: Option<f64>,
     /// Area relative to the first case's; null if that is 0.
     pub relative_area: Option<f64>,
-    /// Mean relative to the first case's; null if that is 0. At a single speed, which has no area, this is the comparison.
+    /// Mean relative to the first case's; null if that is 0. At a single speed, which has no area, this is the
+    /// comparison.
     pub relative_height: Option<f64>,
     /// Whether both ratios are exact or bounds.
     pub relative_is: Bound,
@@ -113,7 +114,8 @@ impl CompareDocument {
     }
 }
 
-/// A measure of the distance between each two cases; the distance of a case to itself is exact, even if its height is a bound.
+/// A measure of the distance between each two cases; the distance of a case to itself is exact, even if its height is a
+/// bound.
 fn between<T>(cases: &[Case], of: impl Fn(Rmse) -> T) -> Vec<Vec<Option<T>>> {
     let distance = |i: usize, j: usize| {
         let found = rmse(&cases[i].basin, &cases[j].basin)?;

@@ -196,7 +196,8 @@ impl DesignDocument {
         text
     }
 
-    /// Columns of the table: the trial's number, whether it is a design scenario, each law's area, and whether that is a lower bound.
+    /// Columns of the table: the trial's number, whether it is a design scenario, each law's area, and whether that is
+    /// a lower bound.
     pub fn columns(&self) -> Vec<String> {
         let capped = self.laws.iter().map(|law| format!("{law}_capped"));
         let head = ["trial".to_owned(), "designed_with".to_owned()].into_iter();

@@ -81,10 +81,11 @@ pub struct EigenDocument {
     pub stability_changes: Vec<StabilityChange>,
     /// Speeds \[m/s\].
     pub speeds: Vec<f64>,
-    /// Per speed the eigenvalues `[re, im]` \[1/s\], largest real part first: four without a rider, else the requested number of rightmost ones, plus one to
-    /// complete a pair.
+    /// Per speed the eigenvalues `[re, im]` \[1/s\], largest real part first: four without a rider, else the requested
+    /// number of rightmost ones, plus one to complete a pair.
     pub eigenvalues: Vec<Vec<[f64; 2]>>,
-    /// Modes by name: per speed their one or two eigenvalues `[re, im]` \[1/s\], followed by continuity; omitted where left of all computed ones.
+    /// Modes by name: per speed their one or two eigenvalues `[re, im]` \[1/s\], followed by continuity; omitted where
+    /// left of all computed ones.
     pub modes: BTreeMap<String, Vec<Vec<[f64; 2]>>>,
 }
 

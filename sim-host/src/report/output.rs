@@ -8,8 +8,8 @@ use tempfile::Builder;
 /// Prefix of the temporary files' names.
 pub(crate) const TEMPORARY: &str = ".sim-host-";
 
-/// The destination of a result: checked before the computation, so that an error appears early, and written at the end. Nothing is created in between, so
-/// nothing is left behind.
+/// The destination of a result: checked before the computation, so that an error appears early, and written at the end.
+/// Nothing is created in between, so nothing is left behind.
 #[derive(Debug)]
 pub struct Output {
     path: PathBuf,
@@ -38,7 +38,8 @@ impl Output {
     /// Prepares to write `path`; `-` is standard output.
     ///
     /// # Errors
-    /// The folder is missing or not writable, or `path` is a folder, a file without write permission, or a dangling symlink.
+    /// The folder is missing or not writable, or `path` is a folder, a file without write permission, or a dangling
+    /// symlink.
     pub fn create(path: &Path) -> Result<Self, OutputError> {
         let place = Place::find(path).map_err(|source| OutputError { path: path.into(), source })?;
         Ok(Self { path: path.into(), place })

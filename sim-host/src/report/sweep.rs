@@ -88,7 +88,8 @@ impl SweepDocument {
         }
     }
 
-    /// Heading of tables and figures: everything except the cells. The program is the one that computed the cells, which can differ from the one that writes.
+    /// Heading of tables and figures: everything except the cells. The program is the one that computed the cells,
+    /// which can differ from the one that writes.
     pub fn heading(&self) -> Value {
         let Self { tool, options, search, axes, complete, config, .. } = self;
         serde_json::json!({"tool": tool, "options": options, "search": search, "axes": axes, "config": config, "complete": complete})

@@ -1,5 +1,5 @@
-//! Study of the balance assist of the Gazelle and TU Delft prototype: stable speed ranges of the published bicycle with it, and its measured weave beside the
-//! model's. Published numbers: `data/balance_assist.toml`.
+//! Study of the balance assist of the Gazelle and TU Delft prototype: stable speed ranges of the published bicycle with
+//! it, and its measured weave beside the model's. Published numbers: `data/balance_assist.toml`.
 
 use super::motor_fit::{Explained, Free, fits, published_residual};
 use super::page::{Page, table};
@@ -83,15 +83,16 @@ pub fn published() -> Published {
         .expect("data/balance_assist.toml is sound")
 }
 
-/// The lowest speed at which the straight ride is stable \[m/s\] (`None` if it is nowhere stable up to 20 m/s), and the speed from which it is unstable again.
+/// The lowest speed at which the straight ride is stable \[m/s\] (`None` if it is nowhere stable up to 20 m/s), and the
+/// speed from which it is unstable again.
 pub fn stable_range(bicycle: &Parameters, law: Law) -> (Option<f64>, f64) {
     let found = stability(&Model::new(bicycle, Feedback::Law(law), None));
     let (from, to) = found.ranges.first().copied().unzip();
     (from, to.unwrap_or(SEARCH_TO_M_S))
 }
 
-/// The weave eigenvalue at each speed \[1/s\], the upper of the rightmost pair, under the balance assist of a given slope through an actuator; `None` where
-/// there is no pair.
+/// The weave eigenvalue at each speed \[1/s\], the upper of the rightmost pair, under the balance assist of a given
+/// slope through an actuator; `None` where there is no pair.
 pub fn weave(
     bicycle: &Parameters,
     kappa: f32,

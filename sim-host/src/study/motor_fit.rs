@@ -85,8 +85,9 @@ pub fn fits(bicycle: &Parameters, measured: &[Weave]) -> Vec<Explained> {
     done
 }
 
-/// Fits the parameters in `free` to both measured series at once, by least squares of the distances in the complex plane, with the slope set in the controller.
-/// There are local minima, so the search starts three times: once from the default and twice from the best of the fits in `done` with fewer free parameters.
+/// Fits the parameters in `free` to both measured series at once, by least squares of the distances in the complex
+/// plane, with the slope set in the controller. There are local minima, so the search starts three times: once from the
+/// default and twice from the best of the fits in `done` with fewer free parameters.
 fn fit(
     bicycle: &Parameters,
     measured: &[Weave],

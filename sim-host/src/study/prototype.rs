@@ -1,4 +1,4 @@
-//! The balance assist's law beside h, both behind the prototype's 7 N m.
+//! Study of the prototype's balance-assist law beside law h, both with the prototype's torque limit of 7 N m.
 
 use super::page::{Page, table};
 use super::trial::{Trial, basins};

@@ -25,7 +25,8 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// A trial of a built-in bicycle and rider, with mean gains and the table's own delay or the given one \[s\]; default falls.
+    /// A trial of a built-in bicycle and rider, with mean gains and the table's own delay or the given one \[s\];
+    /// default falls.
     ///
     /// # Errors
     /// The bicycle or rider does not exist.
@@ -70,8 +71,8 @@ impl Trial {
     }
 }
 
-/// The basins of the given trials and laws, without islands, all columns in parallel; `advanced` is called for each column. `None` if `stop` interrupted the
-/// computation.
+/// The basins of the given trials and laws, without islands, all columns in parallel; `advanced` is called for each
+/// column. `None` if `stop` interrupted the computation.
 ///
 /// # Errors
 /// As for [`Trial::conditions`], or an invalid search.
@@ -110,8 +111,9 @@ pub struct Least {
     pub capped: bool,
 }
 
-/// The smallest area of a law over `trials`, and its trial. The trial `first` is computed completely, the others only while their area can still be smaller;
-/// the result equals that of [`basins`]. `None` if `stop` interrupted the computation.
+/// The smallest area of a law over `trials`, and its trial. The trial `first` is computed completely, the others only
+/// while their area can still be smaller; the result equals that of [`basins`]. `None` if `stop` interrupted the
+/// computation.
 ///
 /// # Errors
 /// See [`basins`].

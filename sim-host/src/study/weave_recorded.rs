@@ -1,5 +1,5 @@
-//! The weave of the balance-assist prototype from its recordings, beside the published values and the model. Measured numbers: `data/weave_measured.toml` and
-//! `data/weave_measured_offset.toml`.
+//! The weave of the balance-assist prototype from its recordings, beside the published values and the model. Measured
+//! numbers: `data/weave_measured.toml` and `data/weave_measured_offset.toml`.
 
 use super::balance_assist::Weave;
 use super::page::table;

@@ -39,8 +39,8 @@ pub fn problems(benchmark: &Geometry) -> Vec<Problem> {
         let seconds = fall.map_or(SECONDS, |t| (t * 1e3).floor() / 1e3);
         let start = entries(&ride.start.state(benchmark));
         let free = Free(benchmark);
-        // Steps small enough that eighth order leaves rounding errors only, and large enough that the library's summed time reaches the end; a second method
-        // for comparison.
+        // Steps small enough that eighth order leaves rounding errors only, and large enough that the library's summed
+        // time reaches the end; a second method for comparison.
         let reference = adaptive(&free, Adaptive::Dop853, &start, seconds, 1e-14, 0.01);
         let other = fixed(&free, &RKF45, &start, seconds, STEPS);
         let reference = reference.or(other).unwrap_or([f64::NAN; 6]);

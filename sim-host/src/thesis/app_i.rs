@@ -29,7 +29,8 @@ impl Set {
         self.column.upper
     }
 
-    /// The first disturbance on [`GRID`] that falls \[rad/s\]: the first fall of the scan, or the first multiple beyond the border of a scan with larger steps.
+    /// The first disturbance on [`GRID`] that falls \[rad/s\]: the first fall of the scan, or the first multiple beyond
+    /// the border of a scan with larger steps.
     fn on_grid(&self) -> f64 {
         first_multiple_after(self.exact())
     }

@@ -1,4 +1,5 @@
-//! Appendix K: why the regression of the old cyclist's gains fails at 4.3 m/s, and the effect of every gain on the torque.
+//! Appendix K: why the regression of the old cyclist's gains fails at 4.3 m/s, and the effect of every gain on the
+//! torque.
 
 use super::constant::{constant, disturbed, ridden};
 use super::draw::over_time;

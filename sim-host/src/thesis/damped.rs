@@ -33,8 +33,8 @@ pub fn oscillation(samples: &Samples) -> Fitted {
     fitted(samples, -found[3], found[2].abs(), |t| damped(&found, t))
 }
 
-/// Fits eq. C.1 with `omega` and `beta` within bounds: the best point of a grid, then the simplex method. `A`, `B` and `E`, which enter linearly, are computed
-/// by least squares at every step.
+/// Fits eq. C.1 with `omega` and `beta` within bounds: the best point of a grid, then the simplex method. `A`, `B` and
+/// `E`, which enter linearly, are computed by least squares at every step.
 pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
     const CELLS: u32 = 12;
     let within = |x: f64, r: &RangeInclusive<f64>| x.clamp(*r.start(), *r.end());
@@ -98,7 +98,8 @@ fn fitted(samples: &Samples, real: f64, imaginary: f64, model: impl Fn(f64) -> f
 mod tests {
     use super::*;
 
-    /// SciPy's Nelder-Mead, with the same start, tolerances and evaluations, ends at the same wrong point; with bounds the correct one is found.
+    /// SciPy's Nelder-Mead, with the same start, tolerances and evaluations, ends at the same wrong point; with bounds
+    /// the correct one is found.
     #[test]
     fn an_oscillation_is_missed_as_elsewhere_and_found_within_bounds() {
         let signal = |t: f64| (libm::sin(1.2 * t) + 0.8 * libm::cos(1.2 * t)) * libm::exp(-0.9 * t) + 0.1;

@@ -65,8 +65,8 @@ pub struct ValueEntry {
     pub coarse: Option<f64>,
     /// Difference of `exact` from `published` \[% of the latter\].
     pub difference_percent: Option<f64>,
-    /// "" for a difference up to 2 % or the rounding of the print, and where a printed bound holds; "explained: WHAT", or "unexplained" with the closest
-    /// experiment.
+    /// "" for a difference up to 2 % or the rounding of the print, and where a printed bound holds; "explained: WHAT",
+    /// or "unexplained" with the closest experiment.
     pub explanation: String,
     /// Numbers under other readings of the thesis.
     pub experiments: Vec<ExperimentEntry>,

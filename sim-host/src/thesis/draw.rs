@@ -67,7 +67,8 @@ pub(super) fn speeds(to: f64, n: u32) -> Vec<f64> {
 
 /// Real and imaginary parts over speed as lines.
 ///
-/// The k-th largest real part is continuous over speed, and so is the k-th largest imaginary part, so modes need not be followed from speed to speed.
+/// The k-th largest real part is continuous over speed, and so is the k-th largest imaginary part, so modes need not be
+/// followed from speed to speed.
 pub(super) struct EigenLines {
     /// The largest, second largest... real part \[1/s\].
     pub(super) real: Vec<Vec<(f64, f64)>>,

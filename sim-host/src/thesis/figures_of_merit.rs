@@ -49,7 +49,8 @@ pub(super) fn is_reading(case: &Case) -> bool {
     case.rider.is_some_and(|r| r.print != Print::Settled || case.schedule != ScheduleSpeed::Front)
 }
 
-/// A value computed by `of` from the outlines of `cases`: as located, on the coarse grid, and under each other reading whose basins exist.
+/// A value computed by `of` from the outlines of `cases`: as located, on the coarse grid, and under each other reading
+/// whose basins exist.
 pub(super) fn merit(study: &Study, cell: Cell, cases: &[Case], of: &dyn Fn(&[Outline]) -> f64) -> Value {
     let under = |cases: &[Case], view: &dyn Fn(&Basin) -> Outline| {
         of(&cases.iter().map(|case| view(&study.basin(case))).collect::<Vec<_>>())

@@ -38,7 +38,8 @@ pub fn between(outline: &[(f64, f64)], from: f64, to: f64) -> Outline {
     outline.iter().copied().filter(|p| p.0 >= from - 1e-9 && p.0 <= to + 1e-9).collect()
 }
 
-/// Root-mean-square distance of two outlines over the same speeds \[rad/s\] (eq. 2.22 with the factor 1/n that the print lacks).
+/// Root-mean-square distance of two outlines over the same speeds \[rad/s\] (eq. 2.22 with the factor 1/n that the
+/// print lacks).
 pub fn rmse(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
     let squares: f64 = a.iter().zip(b).map(|(p, q)| (p.1 - q.1).powi(2)).sum();
     (squares / a.len().min(b.len()) as f64).sqrt()

@@ -72,7 +72,8 @@ pub struct Experiment {
 /// Explanation of a difference from the print.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Explanation {
-    /// No number is printed or none computed, or the difference is within [`ACCEPTED_PERCENT`], the rounding of the print or the printed bound.
+    /// No number is printed or none computed, or the difference is within [`ACCEPTED_PERCENT`], the rounding of the
+    /// print or the printed bound.
     NotNeeded,
     /// The coarse grid or an experiment is within [`ACCEPTED_PERCENT`]; its name.
     Explained(String),
@@ -112,7 +113,8 @@ impl Value {
         self
     }
 
-    /// Difference of the exact number from the printed one \[% of the latter\]; `None` if one is missing, or the printed one is zero and the exact one is not.
+    /// Difference of the exact number from the printed one \[% of the latter\]; `None` if one is missing, or the
+    /// printed one is zero and the exact one is not.
     pub fn difference(&self) -> Option<f64> {
         percent(self.exact?, self.cell.printed?.value)
     }

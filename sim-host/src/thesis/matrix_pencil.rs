@@ -2,8 +2,8 @@
 
 use nalgebra::{Complex, ComplexField, DMatrix};
 
-/// The `order` eigenvalues \[1/s\] of equally long `signals`, sampled every `dt` seconds; largest real part first. `None` if there are too few samples or a
-/// mode cannot be separated from the others.
+/// The `order` eigenvalues \[1/s\] of equally long `signals`, sampled every `dt` seconds; largest real part first.
+/// `None` if there are too few samples or a mode cannot be separated from the others.
 pub fn eigenvalues(signals: &[Vec<f64>], dt: f64, order: usize) -> Option<Vec<Complex<f64>>> {
     let n = signals.first()?.len();
     let rows = n / 2;

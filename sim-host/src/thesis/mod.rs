@@ -1,4 +1,5 @@
-//! Reproduces the thesis: every table and figure of Kuipers 2020 that needs no unpublished measurement, with each published number beside the computed one.
+//! Reproduces the thesis: every table and figure of Kuipers 2020 that needs no unpublished measurement, with each
+//! published number beside the computed one.
 
 pub mod app_c;
 pub mod app_d;

@@ -1,5 +1,5 @@
-//! The simplex method of Nelder and Mead in the form of MATLAB's `fminsearch` (Lagarias et al. 1998), with the initial values and tolerances of the thesis's
-//! fits.
+//! The simplex method of Nelder and Mead in the form of MATLAB's `fminsearch` (Lagarias et al. 1998), with the initial
+//! values and tolerances of the thesis's fits.
 
 /// Changes of the function and of the parameters below which the search ends.
 const TOLERANCE: f64 = 1e-4;

@@ -46,8 +46,8 @@ pub fn work(study: &Study, entries: &[&Entry]) -> u64 {
     study.columns(&all) as u64 + entries.iter().map(own).sum::<u64>()
 }
 
-/// Computes `entries`: those without basins first and in parallel, the others in sequence, each with its basins on all cores. After an interruption, each item
-/// is complete or missing.
+/// Computes `entries`: those without basins first and in parallel, the others in sequence, each with its basins on all
+/// cores. After an interruption, each item is complete or missing.
 pub fn run(study: &Study, entries: &[&'static Entry], progress: &Progress) -> Vec<Outcome> {
     let compute = |entry: &'static Entry| {
         let Made::Computed { compute, work, .. } = entry.made else { return Outcome { entry, item: None } };

@@ -1,11 +1,13 @@
-//! Other integrators for the uncontrolled bicycle: two Runge-Kutta methods with fixed steps, and adaptive solvers of a library (appendix D).
+//! Other integrators for the uncontrolled bicycle: two Runge-Kutta methods with fixed steps, and adaptive solvers of a
+//! library (appendix D).
 
 use crate::bicycle::{Geometry, Motion, State, Torques};
 use crate::integrate::rate;
 use differential_equations::prelude::{BackwardDifferentiationFormula, ExplicitRungeKutta, IVP, ODE};
 use std::f64::consts::FRAC_PI_2;
 
-/// Roll, steer, their rates and the rear wheel's rate; and the pitch, which depends on the first two, as the initial value of its own iteration.
+/// Roll, steer, their rates and the rear wheel's rate; and the pitch, which depends on the first two, as the initial
+/// value of its own iteration.
 pub type Entries = [f64; 6];
 
 /// The uncontrolled bicycle as a first-order system.
@@ -137,8 +139,8 @@ impl Adaptive {
 /// Step limit of an adaptive solution.
 const MOST_STEPS: usize = 2_000_000;
 
-/// The state after `seconds` with absolute and relative tolerance `tolerance` and steps up to `h_max`; `None` if the solver gives up or the bicycle fell
-/// before.
+/// The state after `seconds` with absolute and relative tolerance `tolerance` and steps up to `h_max`; `None` if the
+/// solver gives up or the bicycle fell before.
 pub fn adaptive(
     problem: &Free,
     solver: Adaptive,

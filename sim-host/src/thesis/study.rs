@@ -75,8 +75,8 @@ impl Study {
         self.stored(case).is_some()
     }
 
-    /// Computes and stores the basins of `cases`, with all their columns in parallel; calls `finished` after and `stop` before each column. Interrupted basins
-    /// are not stored.
+    /// Computes and stores the basins of `cases`, with all their columns in parallel; calls `finished` after and `stop`
+    /// before each column. Interrupted basins are not stored.
     pub fn prepare(&self, cases: &[Case], finished: impl Fn() + Sync, stop: impl Fn() -> bool + Sync) {
         let missing: Vec<&Case> = cases.iter().filter(|c| !self.has(c)).collect();
         let searches: Vec<Search> = missing.iter().map(|c| c.search(&self.resolution)).collect();

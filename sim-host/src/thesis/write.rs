@@ -29,7 +29,8 @@ pub fn prepare(folder: &Path) -> Result<(), WriteError> {
     Output::create(&folder.join(PAGE)).map(drop).map_err(|e| failed(e.to_string()))
 }
 
-/// Writes `report.html`, `values.csv`, `values.json` and, for each figure, `figures/NAME.svg` and `.csv`; existing files of these names are replaced.
+/// Writes `report.html`, `values.csv`, `values.json` and, for each figure, `figures/NAME.svg` and `.csv`; existing
+/// files of these names are replaced.
 ///
 /// # Errors
 /// A file cannot be written.

@@ -40,7 +40,8 @@ impl<'a> File<'a> {
         let number = |at: usize| Some(u64::from_le_bytes(*head.get(at..)?.first_chunk()?));
         let links = usize::try_from(number(16)?).ok()?.checked_mul(8)?;
         let mut size = usize::try_from(number(8)?).ok()?.checked_sub(HEAD_BYTES);
-        // A data block that was being written has the length of its head, or none yet; it reaches to the end of the file.
+        // A data block that was being written has the length of its head, or none yet; it reaches to the end of the
+        // file.
         let writing = self.unfinished && matches!(&name, b"##DT" | b"##SD") && size.unwrap_or(0) == 0;
         if writing && !rest.starts_with(b"##") {
             size = Some(rest.len());

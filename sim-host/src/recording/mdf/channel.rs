@@ -121,7 +121,8 @@ impl Channel {
         Some((all >> self.bit_offset) as u64 & mask)
     }
 
-    /// Its value in record `number`, in its unit; NaN if the record marks it as invalid. The invalidation bits follow the `data_bytes` of the record.
+    /// Its value in record `number`, in its unit; NaN if the record marks it as invalid. The invalidation bits follow
+    /// the `data_bytes` of the record.
     pub(super) fn value(&self, number: usize, record: &[u8], data_bytes: usize) -> f64 {
         let invalid = match self.flags & 3 {
             0 => false,

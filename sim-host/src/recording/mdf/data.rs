@@ -13,7 +13,8 @@ pub(super) struct Joined<'a> {
     pub(super) broken: Option<&'static str>,
 }
 
-/// Joins the data at a link: one block or a list of blocks, compressed or not. A record can begin in one block and end in the next.
+/// Joins the data at a link: one block or a list of blocks, compressed or not. A record can begin in one block and end
+/// in the next.
 pub(super) fn joined<'a>(file: &mut File<'a>, at: Option<usize>) -> Joined<'a> {
     let Some(at) = at else { return Joined { bytes: Cow::Borrowed(&[]), broken: None } };
     let Some(first) = file.any_once(at) else {

@@ -1,10 +1,12 @@
 //! Reads measurement files (MDF 4, ASAM) of data loggers and measuring programs.
 //!
-//! Supported: groups of numeric channels, as columns with their conversions applied, and CAN frames of bus logging (`CAN_DataFrame`), which a database decodes;
-//! sorted and unsorted, whole, in lists and compressed. An unfinished file (`UnFinMF`, as a logger leaves it on loss of power) or a cut one is read up to the
-//! last whole record, with a remark. Skipped with a remark: conversions by formula, arrays, text, files that store each channel separately (4.2).
+//! Supported: groups of numeric channels, as columns with their conversions applied, and CAN frames of bus logging
+//! (`CAN_DataFrame`), which a database decodes; sorted and unsorted, whole, in lists and compressed. An unfinished file
+//! (`UnFinMF`, as a logger leaves it on loss of power) or a cut one is read up to the last whole record, with a remark.
+//! Skipped with a remark: conversions by formula, arrays, text, files that store each channel separately (4.2).
 //!
-//! Block layout: ASAM MDF 4.1.0, as described with asammdf (`asammdf/blocks/v4_blocks.py`). Every link is checked; none is followed twice.
+//! Block layout: ASAM MDF 4.1.0, as described with asammdf (`asammdf/blocks/v4_blocks.py`). Every link is checked; none
+//! is followed twice.
 
 mod block;
 mod bus;

@@ -22,8 +22,8 @@ pub(super) const SERIES: [&str; 7] =
 /// Number of shades of a colour scale.
 pub(super) const SHADES: usize = 48;
 
-/// Shade `i` of [`SHADES`] for times to fall: cold for short, warm for long. The palest end of the scale is omitted, since it would be invisible beside the
-/// basin.
+/// Shade `i` of [`SHADES`] for times to fall: cold for short, warm for long. The palest end of the scale is omitted,
+/// since it would be invisible beside the basin.
 pub(super) fn shade(i: usize) -> String {
     ColorMap::Plasma.map(0.82 * i as f64 / (SHADES - 1) as f64)
 }

@@ -34,8 +34,8 @@ const IMAGINARY_LIMIT: f64 = 20.0;
 const LABEL_TEXT: u32 = 13;
 const LABEL_LINE: f64 = 16.0;
 
-/// Draws real parts above in solid lines and imaginary parts below in dashed ones, each mode in its colour, with the critical speeds and the stable ranges.
-/// Modes entirely left of the panel are omitted.
+/// Draws real parts above in solid lines and imaginary parts below in dashed ones, each mode in its colour, with the
+/// critical speeds and the stable ranges. Modes entirely left of the panel are omitted.
 pub fn eigen(figure: &EigenFigure) -> Picture {
     let x = match figure.speeds {
         [first, .., last] if first < last => (*first, *last),

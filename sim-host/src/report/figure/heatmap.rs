@@ -23,7 +23,8 @@ pub struct HeatMap<'a> {
     pub y: (&'a str, &'a [String]),
     /// The maps: a title, and the numbers row by row from below; `None` if unknown.
     pub maps: &'a [(String, Map)],
-    /// Level of the contour line, as a fraction of a map's largest number; not drawn if a number involved is only a bound.
+    /// Level of the contour line, as a fraction of a map's largest number; not drawn if a number involved is only a
+    /// bound.
     pub contour: f64,
 }
 
@@ -127,7 +128,8 @@ fn bar(canvas: &mut Canvas, axes: Area, range: (f64, f64), label: &str) {
     canvas.text_upwards((x + BAR + 52.0, axes.y + 0.5 * axes.height), 13, label);
 }
 
-/// The contour line at a fraction of the map's largest number; none if that number, or one to compare with it, is only a bound.
+/// The contour line at a fraction of the map's largest number; none if that number, or one to compare with it, is only
+/// a bound.
 fn contour_of(map: &Map, part: f64) -> Vec<[(f64, f64); 2]> {
     let numbers = || map.iter().flatten().flatten();
     if !numbers().all(|n| n.1.is_measured()) {
@@ -139,8 +141,8 @@ fn contour_of(map: &Map, part: f64) -> Vec<[(f64, f64); 2]> {
     contour(&plain, part * most)
 }
 
-/// The straight pieces of the line on which `map` equals `level`, in cells: linear between the centres of three neighbours, two triangles per square, so that
-/// no saddle is ambiguous.
+/// The straight pieces of the line on which `map` equals `level`, in cells: linear between the centres of three
+/// neighbours, two triangles per square, so that no saddle is ambiguous.
 fn contour(map: &[Vec<Option<f64>>], level: f64) -> Vec<[(f64, f64); 2]> {
     let mut pieces = Vec::new();
     let at = |i: usize, j: usize| Some(((i as f64, j as f64), (*map.get(j)?.get(i)?)? - level));

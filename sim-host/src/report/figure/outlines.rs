@@ -7,7 +7,8 @@ use super::legend::{Sign, entry, rows};
 use super::picture::Picture;
 use super::scale::nice;
 
-/// Draws a line for each basin. Every second line is dashed and drawn last, so that both are visible where two coincide.
+/// Draws a line for each basin. Every second line is dashed and drawn last, so that both are visible where two
+/// coincide.
 pub(super) fn outlines(figure: &BasinFigure) -> Picture {
     let columns = || figure.series.iter().flat_map(|(_, b)| &b.columns);
     let top = nice(columns().map(|c| c.upper).chain([0.0]), 8).1.min(figure.cap);

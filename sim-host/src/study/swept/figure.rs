@@ -6,8 +6,8 @@ use super::part_result::{Group, PartResult};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Picture, Plot, Series, chart};
 use crate::sweep::{AT_LEAST, Grid, pictures};
 
-/// The figures of a part's sweep with their names: along a numeric axis a line for every group; over several axes heat maps; along an axis of names the heights
-/// over speed.
+/// The figures of a part's sweep with their names: along a numeric axis a line for every group; over several axes heat
+/// maps; along an axis of names the heights over speed.
 pub fn figures(part: &Part, grid: &Grid) -> Vec<(String, Picture)> {
     let Some(result) = PartResult::new(part, grid) else { return Vec::new() };
     match (result.numbers(part), &result.others[..]) {

@@ -94,8 +94,8 @@ impl PartResult {
         Some(Self { along: along.clone(), others: others.into_iter().cloned().collect(), groups, what, unit })
     }
 
-    /// The numbers along the axis, beginning at the reference's side, with their positions and unit; `None` for an axis of names. A name among numbers, such as
-    /// `none`, is left out.
+    /// The numbers along the axis, beginning at the reference's side, with their positions and unit; `None` for an axis
+    /// of names. A name among numbers, such as `none`, is left out.
     pub(super) fn numbers(&self, part: &Part) -> Option<(Vec<(usize, f64)>, String)> {
         let numeric = |(i, value): (usize, &String)| {
             let one = Axis { key: String::new(), values: vec![value.clone()] };

@@ -7,7 +7,8 @@ pub enum Threshold {
     Everywhere,
     /// Not even at the value nearest to the reference.
     Nowhere,
-    /// Up to `at`, interpolated between the last value of the grid at which it remains and the first at which it does not.
+    /// Up to `at`, interpolated between the last value of the grid at which it remains and the first at which it does
+    /// not.
     Until {
         /// Interpolated.
         at: f64,
