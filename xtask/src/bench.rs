@@ -1,4 +1,4 @@
-//! A delayed rider's ride and basin in sim-host, beside Python programs of the same ride.
+//! Compares the time of a delayed rider's ride and basin in sim-host with that of Python programs for the same ride.
 
 use crate::image::root;
 use crate::instructions::field;
@@ -9,32 +9,32 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
-/// The rides' ends may differ by this in each entry: roll, steer \[rad\], their rates, rear wheel rate
+/// Largest difference between the rides' final states in each entry: roll, steer \[rad\], their rates, rear wheel rate
 /// \[rad/s\].
 const AGREED: f64 = 1e-6;
 
 const LIMIT: Duration = Duration::from_secs(1200);
 
-/// What a program measured.
+/// Measurements of a program.
 #[derive(Clone, Debug)]
 struct Timing {
     name: String,
-    /// Median and least of several runs \[s\].
+    /// Median and minimum of several runs \[s\].
     median_s: f64,
     least_s: f64,
     rides: f64,
     right_hand_sides: f64,
-    /// Final state of the ride; of the basin nothing.
+    /// Final state of the ride; empty for the basin.
     end: Vec<f64>,
 }
 
 /// Measures and prints the table.
 ///
 /// # Errors
-/// The Python programs or their packages can't be had (then the rest is printed nevertheless), or
-/// the rides end apart.
+/// The Python programs or their packages are unavailable (the rest is then printed nevertheless), or the final states
+/// differ.
 pub fn bench() -> Result<()> {
-    // Nothing is built or fetched while a clock runs.
+    // Builds and downloads come before the measurements.
     let python = environment();
     must(cargo().arg("--no-run"), LIMIT)?;
     let reference = python.and_then(|python| {
@@ -63,7 +63,7 @@ fn reference(file: &str) -> PathBuf {
     root().join("sim-host/benches/reference").join(file)
 }
 
-/// A Python with the packages of `requirements.txt`; made at the first call.
+/// A Python environment with the packages of `requirements.txt`; created at the first call.
 fn environment() -> Result<PathBuf> {
     let place = root().join("target/bench-python");
     let python = place.join("bin/python");
@@ -121,10 +121,10 @@ fn table(all: &[Timing]) -> String {
     text
 }
 
-/// The largest difference between the ends of two rides.
+/// The largest difference between the final states of two rides.
 fn apart(all: &[Timing]) -> f64 {
     let ends: Vec<&Vec<f64>> = all.iter().map(|t| &t.end).filter(|end| !end.is_empty()).collect();
-    // What is not a number agrees with nothing.
+    // NaN differs from everything.
     let apart = |x: f64, y: f64| if (x - y).is_nan() { f64::INFINITY } else { (x - y).abs() };
     let difference = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| apart(*x, *y)).fold(0.0, f64::max);
     ends.iter().flat_map(|a| ends.iter().map(|b| difference(a, b))).fold(0.0, f64::max)

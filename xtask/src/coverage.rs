@@ -1,4 +1,4 @@
-//! Lines of the control crate's torque path that no card of that crate runs.
+//! Measures line coverage of the control crate's torque path by that crate's tests.
 
 use crate::Result;
 use crate::image::root;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-/// The files of `control/src` whose every line must run.
+/// The files of `control/src` that must be covered completely.
 const FILES: [&str; 5] = [
     "safety/engagement.rs",
     "safety/guard.rs",
@@ -19,16 +19,15 @@ const FILES: [&str; 5] = [
 const BUILD: Duration = Duration::from_secs(4 * 3600);
 const TOOL: Duration = Duration::from_secs(600);
 
-/// Runs the cards of the control crate and prints, file by file, how many lines they run and each they
-/// do not.
+/// Runs the tests of the control crate and prints, per file, the number of covered lines and each uncovered one.
 ///
 /// # Errors
-/// LLVM's tools are missing, a card fails, or there is a line that none runs.
+/// LLVM's tools are missing, a test fails, or a line is uncovered.
 pub fn coverage() -> Result<()> {
     let [profdata, cov] = tools()?;
     let folder = root().join("target/coverage");
     let profiles = folder.join("profiles");
-    // Those of an earlier run; there may be none.
+    // Removes the profiles of an earlier run, if any.
     let _ = std::fs::remove_dir_all(&profiles);
     let cards = |arguments: &[&str]| {
         let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
@@ -51,7 +50,7 @@ pub fn coverage() -> Result<()> {
     report(&succeeded(capture(&mut export, TOOL)?)?)
 }
 
-/// Prints the lines that were not run, from lcov's `SF:file` and `DA:line,count`.
+/// Prints the uncovered lines, from lcov's `SF:file` and `DA:line,count`.
 fn report(lcov: &str) -> Result<()> {
     let source = root().join("control/src");
     let mut missed = 0;
@@ -82,7 +81,7 @@ fn succeeded(outcome: Outcome) -> Result<String> {
     if outcome.status == Some(0) { Ok(outcome.stdout) } else { Err(outcome.stderr) }
 }
 
-/// `llvm-profdata` and `llvm-cov` of the compiler's LLVM: rustup's, or the system's by their number.
+/// `llvm-profdata` and `llvm-cov` matching the compiler's LLVM: rustup's, or the system's by version.
 fn tools() -> Result<[PathBuf; 2]> {
     let rustc = |arguments: &[&str]| {
         let mut rustc = Command::new(std::env::var_os("RUSTC").unwrap_or("rustc".into()));

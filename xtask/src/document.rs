@@ -1,5 +1,5 @@
-//! `docs/images.md`: the sizes and instruction counts, written by `cargo xtask size` and
-//! `cargo xtask instructions`, compared with fresh ones by a test.
+//! Writes `docs/images.md` with sizes and instruction counts (`cargo xtask size`, `cargo xtask instructions`); a test
+//! compares the committed numbers with fresh ones.
 
 use crate::image::root;
 use crate::instructions::{
@@ -10,15 +10,16 @@ use crate::{Result, instructions, size};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// How far a committed number may be from a fresh one: another patch release of the compiler is no news.
+/// Largest relative difference between a committed and a fresh number, so that a patch release of the compiler needs no
+/// update.
 const TOLERANCE: f64 = 0.03;
 
-/// Where it lies.
+/// Path of the document.
 pub fn path() -> PathBuf {
     root().join("docs/images.md")
 }
 
-/// Its text for these measurements.
+/// Text of the document for these measurements.
 pub fn text(sizes: &[Size], counts: &[Count]) -> String {
     format!(
         "# Images in numbers
@@ -71,17 +72,17 @@ pub fn instruction_table(counts: &[Count]) -> String {
     counts.iter().map(row).fold(head.into(), |table: String, row| table + &row)
 }
 
-/// Measures everything anew and writes the document.
+/// Measures everything and writes the document.
 ///
 /// # Errors
-/// A measurement failed, the file can't be written, or an image or a step is over its budget.
+/// A measurement failed, the file cannot be written, or an image or a step is over its budget.
 pub fn regenerate() -> Result<(Vec<Size>, Vec<Count>)> {
     let (sizes, counts) = (size::sizes()?, instructions::counts()?);
     std::fs::write(path(), text(&sizes, &counts)).map_err(|e| format!("{}: {e}", path().display()))?;
     Ok((sizes, counts))
 }
 
-/// What is over its budget.
+/// Lists images and steps over their budget.
 pub fn over_budget(sizes: &[Size], counts: &[Count]) -> Vec<String> {
     let images = sizes.iter().filter(|s| s.is_over()).map(|s| {
         let (flash, ram) = (s.flash(), s.ram());
@@ -94,7 +95,7 @@ pub fn over_budget(sizes: &[Size], counts: &[Count]) -> Vec<String> {
     images.chain(steps).chain(deep).collect()
 }
 
-/// The rows of instructions that are inside their budget but leave less free than must stay so.
+/// The rows of instruction counts within their budget but with less than the required margin.
 pub fn margin_too_small(counts: &[Count]) -> Vec<String> {
     let close = counts.iter().filter(|c| c.max > c.most() && c.max <= c.budget);
     close

@@ -1,4 +1,4 @@
-//! The firmware images: what there is, how it is built, where it lies.
+//! The firmware images: list, build and paths.
 
 use crate::process::{Outcome, capture, must};
 use crate::{Result, setup};
@@ -12,7 +12,7 @@ use std::time::Duration;
 /// The target of every image: Cortex-M4 with hardware f32.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
-/// An image and the most it may take.
+/// An image with its budgets.
 pub struct Image {
     /// The binary's name.
     pub name: &'static str,
@@ -35,7 +35,7 @@ pub const IMAGES: [Image; 7] = [
     Image { name: "board-vesc6-align", board: "board-vesc6", flash: 96 << 10, ram: 48 << 10 },
 ];
 
-/// Longer than a build takes, however busy the machine.
+/// Longer than any build takes, even on a busy machine.
 const BUILD_LIMIT: Duration = Duration::from_secs(4 * 3600);
 
 /// The workspace's root.
@@ -44,22 +44,22 @@ pub fn root() -> &'static Path {
     manifest.parent().unwrap_or(manifest)
 }
 
-/// Where cargo builds the images, apart from the host's programs.
+/// Cargo's target directory of the images, separate from the host's.
 pub fn target_dir() -> PathBuf {
     root().join("target/firmware")
 }
 
-/// Where a built image lies.
+/// Path of a built image.
 pub fn path(name: &str) -> PathBuf {
     path_in(root(), name)
 }
 
-/// Where an image built in this clone lies.
+/// Path of an image built in the clone at `root`.
 pub(crate) fn path_in(root: &Path, name: &str) -> PathBuf {
     root.join("target/firmware").join(TARGET).join("firmware").join(name)
 }
 
-/// The bytes of an image that go to the chip's flash, without what is for the debugger.
+/// The bytes of an image that are flashed, without debug information.
 ///
 /// # Errors
 /// `objcopy` or the image is missing.
@@ -70,7 +70,7 @@ pub fn loaded(image: &Path) -> Result<Vec<u8>> {
     std::fs::read(&bytes).map_err(|why| format!("{}: {why}", bytes.display()))
 }
 
-/// Where cargo keeps what it downloads.
+/// Cargo's home directory, with its downloads.
 pub fn cargo_home() -> Option<PathBuf> {
     let set = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     set.or_else(|| Some(std::env::home_dir()?.join(".cargo")))
@@ -79,26 +79,26 @@ pub fn cargo_home() -> Option<PathBuf> {
 /// Builds the images of one board.
 ///
 /// # Errors
-/// Cargo's failure.
+/// Cargo failed.
 pub fn build(board: &str) -> Result<()> {
     must(cargo_build("firmware", board).arg("--bins"), BUILD_LIMIT)
 }
 
-/// Builds the image that links only without a panic path, `unwrap` with one on purpose.
+/// Builds the image that links only without a panic path; with `unwrap` it contains one on purpose.
 ///
 /// # Errors
-/// Cargo could not be run, or took too long. A failure to link is an [`Outcome`].
+/// Cargo cannot be run, or exceeded the limit. A link failure is returned as an [`Outcome`].
 pub fn link_no_panic(unwrap: bool) -> Result<Outcome> {
     capture(&mut cargo_build("no-panic", if unwrap { "unwrap" } else { "proof" }), BUILD_LIMIT)
 }
 
 /// For tests: whether the images of `board-qemu` can be run; builds them at the first call.
 ///
-/// Without the target or QEMU it says so, loudly, and is `false`; with `STEER_ASSIST_REQUIRE_QEMU`
-/// set, as `cargo xtask test` does, that is a failure.
+/// Without the target or QEMU it prints a notice and returns `false`; if `STEER_ASSIST_REQUIRE_QEMU` is set, as by
+/// `cargo xtask test`, it panics.
 ///
 /// # Panics
-/// When the images don't build, or are required and can't.
+/// The images do not build, or are required and cannot be run.
 pub fn ready() -> bool {
     static READY: OnceLock<bool> = OnceLock::new();
     *READY.get_or_init(|| {
@@ -109,16 +109,17 @@ pub fn ready() -> bool {
         }
         let list = missing.join("\n  ");
         assert!(std::env::var_os("STEER_ASSIST_REQUIRE_QEMU").is_none(), "the firmware tests need\n  {list}");
-        // Not `eprintln`, which the test harness swallows.
+        // Not `eprintln`, which the test harness captures.
         let _ = writeln!(std::io::stderr(), "\nSKIPPED, NOT PASSED: the firmware tests need\n  {list}\n");
         false
     })
 }
 
-/// Builds an image as [`build`] does and gives it to the runner of `.cargo/config.toml`, which flashes it and shows its log.
+/// Builds an image like [`build`] and runs it with the runner of `.cargo/config.toml`, which flashes it and shows its
+/// log.
 ///
 /// # Errors
-/// There is no such image, or cargo or the runner failed.
+/// The image does not exist, or cargo or the runner failed.
 pub fn flash(name: &str) -> Result<()> {
     let known = IMAGES.iter().find(|image| image.name == name && image.board != "board-qemu");
     let image = known.ok_or_else(|| format!("no image for a board is called {name:?}"))?;
@@ -131,35 +132,35 @@ fn cargo_build(package: &str, feature: &str) -> Command {
     build
 }
 
-/// Cargo with what every image is built by, so that its bytes depend on the source and the compiler only.
+/// A cargo command with the settings common to all images, so that their bytes depend on source and compiler only.
 fn cargo(command: &str, package: &str, feature: &str) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     cargo.current_dir(root()).args([command, "--profile", "firmware", "--target", TARGET]);
     cargo.args(["--package", package, "--features", feature, "--target-dir"]).arg(target_dir());
-    // Settings meant for the host, such as coverage, are not for the chip.
+    // Host settings, such as coverage, do not apply to the chip.
     for setting in ["RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER", "CARGO_INCREMENTAL"] {
         cargo.env_remove(setting);
     }
     let profile =
         std::env::vars_os().filter(|(name, _)| name.to_string_lossy().starts_with("CARGO_PROFILE_"));
     profile.for_each(|(name, _)| _ = cargo.env_remove(name));
-    // These replace the flags of every configuration file, too.
+    // These flags also replace those of every configuration file.
     cargo.env("CARGO_ENCODED_RUSTFLAGS", encoded(&remaps()));
     cargo
 }
 
-/// The folders of this machine whose names a panic message could carry into an image, and the name that each gets there.
-/// Of two that match the later one counts.
+/// The folders of this machine that a panic message could contain, each with its replacement in the image. If two
+/// match, the later one applies.
 fn remaps() -> Vec<(PathBuf, &'static str)> {
     let home = cargo_home();
-    // Named for the registry's address, which differs where a mirror is used.
+    // The folder is named after the registry's address, which differs for a mirror.
     let registries = home.iter().flat_map(|home| home.join("registry/src").read_dir()).flatten().flatten();
     let registries = registries.map(|folder| (folder.path(), "/crates"));
     let fixed = [(home.clone(), "/cargo"), (Some(root().into()), "/steer-assist")];
     fixed.into_iter().filter_map(|(folder, name)| Some((folder?, name))).chain(registries).collect()
 }
 
-/// The compiler's flags for these names, as `CARGO_ENCODED_RUSTFLAGS` has them.
+/// The compiler's flags for these replacements, in the format of `CARGO_ENCODED_RUSTFLAGS`.
 fn encoded(remaps: &[(PathBuf, &str)]) -> OsString {
     let flags = remaps.iter().map(|(folder, name)| {
         let mut flag = OsString::from("--remap-path-prefix=");

@@ -1,43 +1,44 @@
-//! Instructions and stack of one control step, counted in QEMU.
+//! Counts instructions and stack of one control step in QEMU.
 
 use crate::{Result, qemu, rides};
 use control::{Config, SensorFrame};
 use std::str::FromStr;
 
-/// The most instructions a step may take, of the 168,000 clock cycles of a period.
+/// Budget of a step's instructions, of the 168,000 clock cycles of a period.
 pub const BUDGET: u32 = 3000;
-/// The most that a call of the motor's loop may take: half of the clock cycles of a PWM period at 40 kHz, the fastest.
+/// Budget of a call of the motor's loop: half of the clock cycles of a PWM period at 40 kHz, the fastest.
 pub const MOTOR_BUDGET: u32 = 2100;
-/// The part of a budget that must stay free, in percent: the same source and compiler give code that differs by about one
-/// percent from machine to machine, and a budget that is kept here must be kept there.
+/// Part of a budget that must stay free, in percent: code from the same source and compiler differs by about one
+/// percent between machines, and the budget must hold on all of them.
 pub const MARGIN_PERCENT: u32 = 10;
-/// The same for a configuration with everything on, which nobody flashes as it is: what was seen to differ.
+/// The same for the configuration with everything on, which is not flashed as it is: the observed difference.
 pub const EVERYTHING_MARGIN_PERCENT: u32 = 1;
-/// How the names of these configurations begin.
+/// Prefix of these configurations' names.
 const EVERYTHING: &str = "everything on";
-/// The most stack a step or call may take \[bytes\].
+/// Stack budget of a step or call \[bytes\].
 pub const STACK_BUDGET: u32 = 1024;
 
-/// How many periods sensors hold their samples in the rides with slow ones; the gyro is lost after ten.
+/// Hold times of the samples in the rides with slow sensors, in periods; the gyro is lost after ten.
 const HELD: [u16; 3] = [2, 5, 8];
 
-/// The steps of one configuration over the border ride, or over the rides with every sensor; or the calls of the motor's loop.
+/// Counts of the steps of one configuration over the border ride, or over the rides with every sensor; or of the calls
+/// of the motor's loop.
 #[derive(Clone, Copy, Debug)]
 pub struct Count {
-    /// The configuration's name, and what is ridden.
+    /// Name of the configuration and the ride.
     pub name: &'static str,
     /// Mean instructions of a step, rounded down; the largest of several rides.
     pub mean: u32,
-    /// Largest number of instructions of a step.
+    /// Largest instruction count of a step.
     pub max: u32,
-    /// The most there may be.
+    /// The budget.
     pub budget: u32,
-    /// The deepest the stack went \[bytes\].
+    /// Largest stack depth \[bytes\].
     pub stack: u32,
 }
 
 impl Count {
-    /// The most instructions that leave the margin.
+    /// The largest count that leaves the margin free.
     pub fn most(&self) -> u32 {
         with_margin(self.budget, self.margin_percent())
     }
@@ -48,12 +49,12 @@ impl Count {
     }
 }
 
-/// A budget less its margin.
+/// A budget without its margin.
 pub const fn with_margin(budget: u32, percent: u32) -> u32 {
     budget - budget * percent / 100
 }
 
-/// What the image counts after the rides: a motor that turns, and one that breaks in one way after the other.
+/// Names of the image's counts after the rides: a turning motor, and one with each fault in turn.
 const MOTOR: [&str; 2] = ["motor's loop, turning", "motor's loop, broken in turn"];
 
 /// Counts for every configuration. The images must be built.
@@ -118,12 +119,12 @@ pub fn counts() -> Result<Vec<Count>> {
     }
 }
 
-/// A function of one number, and its instructions without the call: the mean of a thousand arguments.
+/// A function of one number with its mean instruction count over a thousand arguments, without the call.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Function {
-    /// What it computes, and by what.
+    /// The function and its implementation.
     pub name: String,
-    /// Its instructions.
+    /// Mean instruction count.
     pub mean: u32,
 }
 
@@ -148,7 +149,7 @@ pub fn functions() -> Result<Vec<Function>> {
     }
 }
 
-/// Rides of one name as one: the largest mean and the largest of all steps.
+/// Combines the rides of one name: the largest mean and the largest maximum.
 fn joined(counts: Vec<Count>) -> Vec<Count> {
     let mut all: Vec<Count> = Vec::new();
     for count in counts {
@@ -163,7 +164,7 @@ fn joined(counts: Vec<Count>) -> Vec<Count> {
     all
 }
 
-/// The number in `name=number` of a program's line.
+/// The number in `name=number` of a line of output.
 pub fn field<T: FromStr>(line: &str, name: &str) -> Option<T> {
     line.split_whitespace().find_map(|word| word.strip_prefix(name)?.strip_prefix('=')?.parse().ok())
 }

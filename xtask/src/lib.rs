@@ -1,5 +1,5 @@
-//! Builds the firmware images, runs them in QEMU, measures them. The `xtask` binary and the tests
-//! that drive QEMU both stand on this.
+//! Builds the firmware images, runs them in QEMU and measures them; used by the `xtask` binary and by tests that run
+//! QEMU.
 
 pub mod bench;
 pub mod coverage;
@@ -16,5 +16,5 @@ pub mod setup;
 pub mod size;
 pub mod virtual_board;
 
-/// A failure in words for whoever called `cargo xtask`.
+/// A result with an error text for the user of `cargo xtask`.
 pub type Result<T> = std::result::Result<T, String>;

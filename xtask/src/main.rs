@@ -1,4 +1,4 @@
-//! `cargo xtask`: the chores of the workspace.
+//! `cargo xtask`: development commands of the workspace.
 
 use std::process::{Command, ExitCode};
 use std::time::Duration;
@@ -194,8 +194,8 @@ fn target_source(words: &[&str], help: &str) -> Result<TargetSource> {
     }
 }
 
-/// What is tested: also the virtual board, whose emulated core asks for a newer Rust than it needs; not what runs on the
-/// chip only.
+/// The tested packages: with the virtual board, whose emulated core declares a newer Rust version than it needs;
+/// without those that run on the chip only.
 const EVERYTHING: [&str; 6] =
     ["--workspace", "--exclude", "firmware", "--exclude", "no-panic", "--ignore-rust-version"];
 

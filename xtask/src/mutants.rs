@@ -1,4 +1,4 @@
-//! Mutation tests of the control crate by cargo-mutants, as `.cargo/mutants.toml` says.
+//! Runs mutation tests of the control crate with cargo-mutants, configured in `.cargo/mutants.toml`.
 
 use crate::Result;
 use crate::image::root;
@@ -8,20 +8,20 @@ use std::time::Duration;
 
 const MISSING: &str = "cargo-mutants is missing: cargo install cargo-mutants --locked";
 
-/// A number of mutants as typed.
+/// Parses a number of mutants.
 ///
 /// # Errors
-/// It is no count from 1 on.
+/// The text is no integer from 1 on.
 pub fn sample(count: &str) -> Result<usize> {
     let typed = count.parse().ok().filter(|count| *count > 0);
     typed.ok_or_else(|| format!("{count:?} mutants: a count from 1 on is wanted"))
 }
 
-/// Tests every mutant, or at most `sample` of them, evenly picked; `arguments` go to cargo-mutants.
-/// What it found is kept in target/mutants.out.
+/// Tests every mutant, or at most `sample` of them, evenly spaced; `arguments` go to cargo-mutants, whose results are
+/// in target/mutants.out.
 ///
 /// # Errors
-/// cargo-mutants is missing, or a mutant survived, did not end in time, or the cards fail without one.
+/// cargo-mutants is missing, a mutant survived or timed out, or the tests fail without a mutant.
 pub fn mutants(sample: Option<usize>, arguments: &[&str]) -> Result<()> {
     let mut all = cargo_mutants(arguments);
     let outcome = capture(all.arg("--list"), Duration::from_secs(600))?;
@@ -35,7 +35,7 @@ pub fn mutants(sample: Option<usize>, arguments: &[&str]) -> Result<()> {
         let shards = found.div_ceil(sample.max(1)).max(1);
         run.args(["--sharding", "round-robin", "--shard", &format!("0/{shards}")]);
     }
-    // A mutant that is caught is not looked at any closer.
+    // Shrinking is unnecessary for a mutant that is caught.
     run.args(["--output", "target"]).env("PROPTEST_MAX_SHRINK_ITERS", "0");
     must(&mut run, Duration::from_secs(6 * 3600))
 }

@@ -1,4 +1,4 @@
-//! Other programs, with a time limit.
+//! Runs other programs with a time limit.
 
 use crate::Result;
 use std::fmt::Display;
@@ -18,10 +18,10 @@ pub struct Outcome {
     pub stderr: String,
 }
 
-/// Runs a program and keeps what it writes.
+/// Runs a program and captures its output.
 ///
 /// # Errors
-/// It can't be started, or it did not end within the limit and was killed.
+/// It cannot be started, or exceeded the limit and was killed.
 pub fn capture(command: &mut Command, limit: Duration) -> Result<Outcome> {
     let mut child = start(command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()))?;
     let (out, err) = (child.stdout.take().map(drain), child.stderr.take().map(drain));
@@ -33,17 +33,17 @@ pub fn capture(command: &mut Command, limit: Duration) -> Result<Outcome> {
     }
 }
 
-/// Runs a program that writes to the terminal itself; anything but success is an error.
+/// Runs a program that writes to the terminal itself; any failure is an error.
 ///
 /// # Errors
-/// It can't be started, did not end within the limit and was killed, or failed.
+/// It cannot be started, exceeded the limit and was killed, or failed.
 pub fn must(command: &mut Command, limit: Duration) -> Result<()> {
     let mut child = start(command.stdin(Stdio::null()))?;
     let outcome = wait(&mut child, limit);
     ended(command, outcome)
 }
 
-/// Success, or what the program ended with.
+/// Success, or an error with the exit status.
 pub(crate) fn ended(
     command: &Command,
     outcome: std::result::Result<Option<i32>, impl Display>,
@@ -68,7 +68,7 @@ fn wait(child: &mut Child, limit: Duration) -> Result<Option<i32>> {
             Ok(Some(status)) => return Ok(status.code()),
             Ok(None) if start.elapsed() < limit => sleep(Duration::from_millis(10)),
             unfinished => {
-                // It may have ended meanwhile; then there is nothing to kill.
+                // It may have ended meanwhile.
                 let _ = child.kill();
                 let _ = child.wait();
                 return Err(unfinished.err().map_or(format!("killed after {limit:?}"), |e| e.to_string()));
@@ -80,7 +80,7 @@ fn wait(child: &mut Child, limit: Duration) -> Result<Option<i32>> {
 fn drain(mut pipe: impl Read + Send + 'static) -> JoinHandle<Vec<u8>> {
     spawn(move || {
         let mut bytes = Vec::new();
-        // What was read before an error is all there is to show.
+        // After an error, the bytes read so far are the output.
         let _ = pipe.read_to_end(&mut bytes);
         bytes
     })

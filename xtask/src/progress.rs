@@ -1,4 +1,4 @@
-//! A program that may take as long as it needs: what it is doing is said from time to time.
+//! Runs a program without a time limit and reports periodically what it is doing.
 
 use crate::Result;
 use crate::process::{ended, start};
@@ -6,16 +6,16 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Between two lines about a program that goes on.
+/// Interval of the reports.
 const SAID_EVERY: Duration = Duration::from_secs(300);
-/// Between two looks at the programs that it started.
+/// Interval at which the program's children are listed.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// Runs a program that writes to the terminal itself, without a time limit; anything but success is an error. Every five
-/// minutes a line on standard error names the programs that it started and for how long they have been running.
+/// Runs a program that writes to the terminal itself, without a time limit; any failure is an error. Every five
+/// minutes, a line on standard error lists its child programs and how long each has been running.
 ///
 /// # Errors
-/// It can't be started, or failed.
+/// It cannot be started, or failed.
 pub fn must_whenever(command: &mut Command) -> Result<()> {
     let mut child = start(command.stdin(Stdio::null()))?;
     let (begin, mut said) = (Instant::now(), Instant::now());
@@ -33,7 +33,7 @@ pub fn must_whenever(command: &mut Command) -> Result<()> {
     }
 }
 
-/// Keeps since when each is running.
+/// Updates the list of running programs with their start times.
 fn follow(running: &mut Vec<(String, Instant)>, now: Vec<String>) {
     running.retain(|(name, _)| now.contains(name));
     for name in now {
@@ -54,19 +54,19 @@ fn minutes(time: Duration) -> String {
     format!("{} min {:02} s", seconds / 60, seconds % 60)
 }
 
-/// The commands of the programs that a process started, as Linux lists them; elsewhere none.
+/// The command lines of a process's children, from Linux's `/proc`; empty on other systems.
 fn started_by(process: u32) -> Vec<String> {
-    // A child is listed with the thread that started it.
+    // A child is listed under the thread that started it.
     let threads = std::fs::read_dir(format!("/proc/{process}/task")).into_iter().flatten().flatten();
     let children = threads.filter_map(|thread| std::fs::read_to_string(thread.path().join("children")).ok());
     let children: String = children.collect();
     let command = |child| std::fs::read(format!("/proc/{child}/cmdline")).unwrap_or_default();
-    // One that is just being started has no name yet.
+    // A child that is just starting has no name yet.
     let names = children.split_whitespace().map(|child| named(&command(child)));
     names.filter(|name| !name.is_empty()).collect()
 }
 
-/// A program and the first of its arguments that says what it works on: a crate of the compiler's.
+/// A program's name, with the crate if it is the compiler.
 fn named(command: &[u8]) -> String {
     let words: Vec<_> = command.split(|byte| *byte == 0).map(String::from_utf8_lossy).collect();
     let program = words.first().map_or("", |word| word.rsplit('/').next().unwrap_or_default());
@@ -78,8 +78,8 @@ fn named(command: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    /// Situation: this program, which starts another. Action: look at what it started. Must hold: the other is named, with no
-    /// path; it is gone from the list when it has ended, and what goes on keeps its time.
+    /// Situation: this program starts another. Action: list its children. Must hold: the other is named without its
+    /// path; it is removed from the list when it ends, and running ones keep their start times.
     #[test]
     fn programs_are_named_while_they_run() {
         let mut child = Command::new("sleep").arg("60").spawn().unwrap();

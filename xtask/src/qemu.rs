@@ -1,4 +1,4 @@
-//! Images in QEMU's machine with the same chip as the board.
+//! Runs images in QEMU, on a machine with the same chip as the board.
 
 use crate::process::{Outcome, capture};
 use crate::{Result, image};
@@ -7,21 +7,21 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-/// Longer than any image here takes, however busy the machine.
+/// Longer than any image takes, even on a busy machine.
 pub const LIMIT: Duration = Duration::from_secs(1800);
 
-/// Simulated time: an instruction lasts 2^5 ns, 31,250 of them a millisecond.
+/// Simulated time: an instruction takes 2^5 ns, so a millisecond has 31,250.
 pub const TIMED: Option<u8> = Some(5);
-/// Simulated time: an instruction lasts 2^10 ns, so that timers count single ones.
+/// Simulated time: an instruction takes 2^10 ns, so that timers count single instructions.
 pub const COUNTED: Option<u8> = Some(10);
-/// No simulated time: fastest, for what does not depend on time.
+/// No simulated time: fastest, for images independent of time.
 pub const UNTIMED: Option<u8> = None;
 
-/// Runs an image with words as its arguments, in a directory that holds its files, with simulated
-/// time going 2^`shift` ns an instruction.
+/// Runs an image with `words` as arguments in a directory with its files; an instruction takes 2^`shift` ns of
+/// simulated time.
 ///
 /// # Errors
-/// QEMU could not be run, or did not end within the limit.
+/// QEMU cannot be run, or exceeded the limit.
 pub fn run(
     image: &str,
     arguments: &[&str],
@@ -40,8 +40,8 @@ pub fn run(
     capture(qemu.arg("-kernel").arg(image::path(image)), limit)
 }
 
-/// A directory for one run's files, under `target`. It goes with this value, but not while a test fails: what is left
-/// then can be looked at.
+/// A directory for one run's files, under `target`. Removed with this value, except in a failing test, where it remains
+/// for inspection.
 pub struct Directory(PathBuf);
 
 impl Deref for Directory {
@@ -55,19 +55,19 @@ impl Deref for Directory {
 impl Drop for Directory {
     fn drop(&mut self) {
         if !std::thread::panicking() {
-            // What can't be removed is in nobody's way.
+            // A leftover directory is harmless.
             let _ = std::fs::remove_dir_all(&self.0);
         }
     }
 }
 
-/// An empty directory, which no other program uses.
+/// An empty directory that no other program uses.
 ///
 /// # Errors
-/// It can't be made.
+/// It cannot be created.
 pub fn directory(name: &str) -> Result<Directory> {
     let directory = image::root().join("target/qemu").join(format!("{name}-{}", std::process::id()));
-    // There may be none yet.
+    // It may not exist.
     let _ = std::fs::remove_dir_all(&directory);
     std::fs::create_dir_all(&directory).map_err(|e| format!("{}: {e}", directory.display()))?;
     Ok(Directory(directory))

@@ -1,4 +1,4 @@
-//! Whether an image's bytes depend on the source and the compiler only: clones in three folders, compared.
+//! Checks that an image's bytes depend on source and compiler only, by comparing builds in three folders.
 
 use crate::image::{IMAGES, loaded, root};
 use crate::process::{capture, must};
@@ -7,21 +7,21 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-/// Names of different length. Each clone has its own `CARGO_HOME`, so that the crates lie elsewhere, too.
+/// Names of different length. Each clone has its own `CARGO_HOME`, so that the crates' paths differ, too.
 const FOLDERS: [&str; 3] =
     ["a", "another-folder", "a-folder-whose-name-is-much-longer-than-those-of-the-others"];
 
 const GIT: Duration = Duration::from_secs(120);
 
-/// Clones the commit of the work tree three times, gives two of the clones a commit of their own, builds all images in
-/// each, and compares the bytes that would be flashed, the commit's name left out.
+/// Clones the commit of the work tree three times, adds a commit to two of the clones, builds all images in each, and
+/// compares the flashed bytes without the commit's hash.
 ///
 /// # Errors
-/// A build failed, or two clones disagree: the images and the number of bytes that differ.
+/// A build failed, or two clones differ: the images and the number of differing bytes.
 pub fn reproducible() -> Result<()> {
     let place = std::env::temp_dir().join(format!("steer-assist-{}", std::process::id()));
     let outcome = compare(&place);
-    // What is left there is of no more use, whatever the outcome.
+    // Removed whatever the outcome.
     let _ = std::fs::remove_dir_all(&place);
     outcome
 }
@@ -43,7 +43,7 @@ fn compare(place: &Path) -> Result<()> {
     if apart.is_empty() { Ok(()) } else { Err(format!("not the same in every folder: {}", apart.join(", "))) }
 }
 
-/// The images' bytes in a new clone, without the commit's name.
+/// The images' bytes in a new clone, without the commit's hash.
 fn clone(folder: &Path, name: &str) -> Result<Vec<Vec<u8>>> {
     let git = |arguments: &[&str]| {
         let mut git = Command::new("git");
@@ -74,7 +74,7 @@ fn cargo_home(folder: &Path) -> Result<PathBuf> {
     Ok(home)
 }
 
-/// The bytes with zeros in place of the word.
+/// The bytes with zeros in place of `word`.
 fn without(bytes: &[u8], word: &str) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     let places = bytes.windows(word.len()).enumerate().filter(|(_, w)| *w == word.as_bytes());

@@ -1,4 +1,4 @@
-//! Sensor frames to feed to the images, and the configurations to run on them.
+//! Sensor frames and configurations as input of the images.
 
 use control::law::capsize::Capsize;
 use control::law::gain_schedule::TABLE_POINTS;
@@ -9,17 +9,16 @@ use control::wire::{decode_frame, encode_config, encode_frame};
 use control::{Config, GainSchedule, Law, Sample, Sensor, SensorFrame, Triple, Wheel};
 use std::f32::consts::TAU;
 
-/// [`border_ride`], as recorded.
+/// [`border_ride`], recorded.
 const BORDER_RIDE: &[u8] = include_bytes!("../../data/border_ride.frames");
 
-/// [`all_sensors_ride`], as recorded.
+/// [`all_sensors_ride`], recorded.
 const ALL_SENSORS_RIDE: &[u8] = include_bytes!("../../data/all_sensors.frames");
 
-/// A name and a configuration: every law without limits, the product, and sensors of different
-/// latency.
+/// Configurations with names: every law without limits, the product, and sensors of different latency.
 ///
 /// # Panics
-/// Never: the table is a valid one.
+/// Never: the table is valid.
 pub fn configurations() -> Vec<(&'static str, Config)> {
     let points: Vec<_> =
         (0_u8..TABLE_POINTS as u8).map(|i| (0.25 * f32::from(i), 31.5 - f32::from(i))).collect();
@@ -46,15 +45,15 @@ pub fn configurations() -> Vec<(&'static str, Config)> {
     ]
 }
 
-/// What is flashed, on a bicycle whose polarity was checked.
+/// The flashed configuration, on a bicycle with a passed polarity check.
 pub fn product() -> Config {
     let mut product = Config::product();
     product.calibration.polarity_checked = true;
     product
 }
 
-/// The same with all that is off in it: the capsize term, the lead, a path to follow, a rider's torque sensor, a
-/// largest torque by speed, sensors of different latency.
+/// The product with everything on that is off in it: the capsize term, the lead, path tracking, a rider torque sensor,
+/// a torque limit over speed, sensors of different latency.
 pub fn everything() -> Config {
     let mut config = product();
     config.capsize = Capsize { k_c: 1.0, v_max_m_s: 2.0 };
@@ -68,9 +67,8 @@ pub fn everything() -> Config {
     config
 }
 
-/// A ride at the border of what the assist can hold: law h, 4 m/s, handlebar knocked with 8.42 rad/s,
-/// 6 s at 1 kHz, every sample fresh. Recorded with `sim-host ride --speed 4 --steer-rate 8.42 --frames
-/// data/border_ride.frames`; a test records it again.
+/// A ride at the border of the basin: law h, 4 m/s, initial steer rate 8.42 rad/s, 6 s at 1 kHz, every sample fresh.
+/// Recorded with `sim-host ride --speed 4 --steer-rate 8.42 --frames data/border_ride.frames`; a test reproduces it.
 ///
 /// # Panics
 /// Never: the file is a whole number of frames.
@@ -80,16 +78,16 @@ pub fn border_ride() -> Vec<SensorFrame> {
     frames.iter().map(decode_frame).collect()
 }
 
-/// A ride with the flashed configuration and every sensor it declares, boot to engagement included: 4 m/s, handlebar
-/// knocked with 5 rad/s, 1.25 s at 1 kHz. Recorded with `sim-host ride --preset product --speed 4 --steer-rate 5
-/// --time-limit 1.25 --frames data/all_sensors.frames`; a test records it again. A hand and a path are made up.
+/// A ride with the flashed configuration and every sensor that it declares, including boot and engagement: 4 m/s,
+/// initial steer rate 5 rad/s, 1.25 s at 1 kHz. Recorded with `sim-host ride --preset product --speed 4 --steer-rate 5
+/// --time-limit 1.25 --frames data/all_sensors.frames`; a test reproduces it. Rider torque and path are synthetic.
 ///
 /// # Panics
 /// Never: the file is a whole number of frames.
 pub fn all_sensors_ride() -> Vec<SensorFrame> {
     let (frames, rest) = ALL_SENSORS_RIDE.as_chunks();
     assert!(rest.is_empty(), "data/all_sensors.frames ends in half a frame");
-    // A hand and a path, which the flashed configuration does without.
+    // Rider torque and path, which the flashed configuration does not use.
     let complete = |frame: SensorFrame| SensorFrame {
         rider_torque_nm: Sample::fresh(10.0 * frame.steer_rad.value),
         heading_error_rad: Sample::fresh(frame.steer_rad.value),
@@ -99,8 +97,8 @@ pub fn all_sensors_ride() -> Vec<SensorFrame> {
     frames.iter().map(decode_frame).map(complete).collect()
 }
 
-/// That ride, with each sensor in turn lost, not a number, or out of range from its middle on, the clock jumping,
-/// the switch released, the bicycle upside down.
+/// [`all_sensors_ride`] with, from its middle on, each sensor in turn lost, not a number, or out of range, the clock
+/// jumping, the switch released, or the bicycle upside down.
 pub fn broken_rides() -> Vec<Vec<SensorFrame>> {
     let breaks: [fn(&mut SensorFrame); 19] = [
         |f| f.gyro_rad_s = Triple::missing(),
@@ -132,7 +130,7 @@ pub fn broken_rides() -> Vec<Vec<SensorFrame>> {
     breaks.into_iter().map(broken).collect()
 }
 
-/// A ride of which every sensor brings a sample only once in so many periods, all in the same one.
+/// A ride in which every sensor has a sample only once in `periods` periods, all in the same one.
 pub fn held(ride: &[SensorFrame], periods: u16) -> Vec<SensorFrame> {
     let aged = |age: u16, by: usize| age.saturating_add(by as u16);
     ride.chunks(usize::from(periods))
@@ -158,8 +156,8 @@ pub fn held(ride: &[SensorFrame], periods: u16) -> Vec<SensorFrame> {
         .collect()
 }
 
-/// A ride made up for its reach: 20 s at 1 kHz, the roll rate swings ever wider while the speed falls
-/// from 8 to 1 m/s, then dies away as the speed comes back. The wheel's pulses come every 20 ms.
+/// A synthetic ride over a wide range: 20 s at 1 kHz, roll rate of growing amplitude while the speed falls from 8 to 1
+/// m/s, then decaying as the speed rises again. The wheel's pulses come every 20 ms.
 pub fn swinging_ride() -> Vec<SensorFrame> {
     let mut speed = 8.0;
     (0_u16..20_000)
@@ -183,7 +181,7 @@ pub fn swinging_ride() -> Vec<SensorFrame> {
         .collect()
 }
 
-/// The same ride with every sample fresh, as the published laws want it.
+/// The ride with every sample fresh, as the published laws require.
 pub fn fresh(ride: &[SensorFrame]) -> Vec<SensorFrame> {
     let fresh = |sample: Sample| Sample { age_ticks: 0, ..sample };
     ride.iter()
@@ -195,9 +193,9 @@ pub fn fresh(ride: &[SensorFrame]) -> Vec<SensorFrame> {
         .collect()
 }
 
-/// Pseudo-random frames: stretches of plausible, fresh ones, so that the law runs, and between
-/// them anything: every bit pattern, the edges of the ranges, late and missing samples.
-/// The switch is pressed anew five times a second, for a press that was refused is used up.
+/// Pseudo-random frames: intervals of plausible, fresh frames, in which the law runs, alternate with arbitrary ones:
+/// every bit pattern, the edges of the ranges, late and missing samples. The switch is pressed five times a second,
+/// since a rejected press has no later effect.
 pub fn random_frames(seed: u64, frames: usize) -> Vec<SensorFrame> {
     let mut random = Random(seed);
     let (mut calm, mut switch, mut now_us) = (0, 0, 0_u32);
@@ -235,10 +233,10 @@ pub fn random_frames(seed: u64, frames: usize) -> Vec<SensorFrame> {
         .collect()
 }
 
-/// How far the plausible values wander, in the order of the frame.
+/// Range of the plausible values, in the order of the frame.
 const REACH: [f32; 14] = [6.0, 2.0, 4.0, 3.0, 6.0, 12.0, 1.0, 10.0, 12.0, 12.0, 8.0, 1.5, 0.5, 2.0];
 
-/// The bytes of `rides.bin` for these rides.
+/// The content of `rides.bin` for these rides.
 pub fn encode(rides: &[(&Config, &[SensorFrame])]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for (config, frames) in rides {
@@ -249,7 +247,7 @@ pub fn encode(rides: &[(&Config, &[SensorFrame])]) -> Vec<u8> {
     bytes
 }
 
-/// Where f32 arithmetic and the input checks change their behaviour.
+/// Values at which f32 arithmetic or the input checks change their behaviour.
 const EDGES: [u32; 20] = [
     0x0000_0000, // 0
     0x8000_0000, // -0
@@ -273,7 +271,7 @@ const EDGES: [u32; 20] = [
     0x40f0_0000, // 7.5, where h is cut
 ];
 
-/// SplitMix64 (Steele, Lea and Flood 2014): small, and the same everywhere.
+/// SplitMix64 (Steele, Lea and Flood 2014): small, and identical on all machines.
 struct Random(u64);
 
 impl Random {
@@ -288,13 +286,13 @@ impl Random {
         (self.next() >> 32) as u32 % end
     }
 
-    /// A step of a random walk within `reach` either way.
+    /// A step of a random walk within `reach` in both directions.
     fn walked(&mut self, from: f32, reach: f32) -> f32 {
         let step = (self.below(1 << 24) as f32 / (1 << 23) as f32 - 1.0) * 0.004 * reach;
         (from + step).clamp(-reach, reach)
     }
 
-    /// The `plausible` value, fresh, or a `wild` one.
+    /// The `plausible` value, fresh, or an arbitrary one if `wild`.
     fn sample(&mut self, wild: bool, plausible: f32) -> Sample {
         let within = plausible;
         if !wild {

@@ -1,4 +1,4 @@
-//! What the images need beyond a stable Rust: the chip's target, QEMU and the size tool.
+//! Installs what the images need beyond stable Rust: the chip's target, QEMU and the size tool.
 
 use crate::Result;
 use crate::image::{self, TARGET, root};
@@ -7,22 +7,22 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// Where the target's `core` comes from.
+/// Source of the target's `core`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TargetSource {
-    /// rustup, and if that fails Debian.
+    /// rustup, or Debian if that fails.
     Auto,
     /// `rustup target add`.
     Rustup,
-    /// Compiled from Debian's package of the standard library's source.
+    /// Compiled from Debian's source package of the standard library.
     Debian,
 }
 
-/// A program and the package that brings it.
+/// Programs, each with its package.
 const TOOLS: [(&str, &str); 2] =
     [("qemu-system-arm", "qemu-system-arm"), ("arm-none-eabi-size", "binutils-arm-none-eabi")];
 
-/// What is missing, each with the way to get it.
+/// Lists what is missing, each with the way to install it.
 pub fn missing() -> Vec<String> {
     let target = (!has_target())
         .then(|| format!("the Rust target {TARGET}: cargo xtask setup, or rustup target add {TARGET}"));
@@ -32,10 +32,10 @@ pub fn missing() -> Vec<String> {
     target.into_iter().chain(tools).collect()
 }
 
-/// Gets whatever is missing. Does nothing on a machine that has all of it.
+/// Installs whatever is missing; does nothing if nothing is.
 ///
 /// # Errors
-/// What could not be had, and how to get it.
+/// What could not be installed, and how to install it.
 pub fn setup(source: TargetSource) -> Result<()> {
     let target = if has_target() { Ok(()) } else { add_target(source) };
     let tools = add_tools();
@@ -51,15 +51,15 @@ pub fn setup(source: TargetSource) -> Result<()> {
 fn add_target(source: TargetSource) -> Result<()> {
     let rustup = || {
         let mut rustup = Command::new("rustup");
-        // One try: the other source is there for when it fails.
+        // Without retries, since there is another source.
         must(rustup.args(["target", "add", TARGET]).env("RUSTUP_MAX_RETRIES", "0"), Duration::from_secs(120))
     };
     let debian = || {
         let script = root().join("xtask/setup-targets.sh");
         must(Command::new("bash").arg(script).arg(TARGET), Duration::from_secs(2 * 3600))
     };
-    // Cargo does not notice another `core` of the same release: nothing built with an earlier one may
-    // stay. There may be nothing.
+    // Cargo does not detect another `core` of the same release, so everything built with an earlier one is removed, if
+    // there is any.
     let _ = std::fs::remove_dir_all(image::target_dir());
     match source {
         TargetSource::Rustup => rustup(),

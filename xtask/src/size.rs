@@ -1,4 +1,4 @@
-//! What the images take of the chip's memories.
+//! Measures the use of flash and RAM by the images.
 
 use crate::image::{self, IMAGES};
 use crate::process::capture;
@@ -6,7 +6,7 @@ use crate::{Result, setup};
 use std::process::Command;
 use std::time::Duration;
 
-/// The stack's room in memory.x \[bytes\].
+/// Size of the stack in memory.x \[bytes\].
 const STACK: u32 = 32 * 1024;
 
 /// An image's sections \[bytes\].
@@ -16,26 +16,26 @@ pub struct Size {
     pub name: &'static str,
     /// Code and constants.
     pub text: u32,
-    /// Variables with a start value, kept in flash and copied to RAM.
+    /// Initialised variables, stored in flash and copied to RAM.
     pub data: u32,
-    /// Variables without one.
+    /// Zero-initialised variables.
     pub bss: u32,
     /// Flash budget.
     pub flash_budget: u32,
-    /// RAM budget, the stack counted.
+    /// RAM budget, stack included.
     pub ram_budget: u32,
 }
 
 impl Size {
-    /// Flash taken \[bytes\].
+    /// Used flash \[bytes\].
     pub fn flash(&self) -> u32 {
         self.text + self.data
     }
-    /// RAM taken \[bytes\], the whole stack included.
+    /// Used RAM \[bytes\], including the whole stack.
     pub fn ram(&self) -> u32 {
         STACK + self.data + self.bss
     }
-    /// Whether it takes more than it may.
+    /// Whether it exceeds a budget.
     pub fn is_over(&self) -> bool {
         self.flash() > self.flash_budget || self.ram() > self.ram_budget
     }

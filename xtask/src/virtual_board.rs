@@ -1,4 +1,4 @@
-//! The virtual board: the package `virtual-board`, which is no default member because of the emulated core's own
+//! Builds, runs and tests the package `virtual-board`, which is no default member because of the emulated core's
 //! dependencies.
 
 use crate::process::must;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
-/// Where the built program lies.
+/// Path of the built program.
 pub fn program() -> PathBuf {
     image::root().join("target/virtual-board/virtual-board")
 }
@@ -15,17 +15,17 @@ pub fn program() -> PathBuf {
 /// Builds the program and the images it runs.
 ///
 /// # Errors
-/// Cargo's failure.
+/// Cargo failed.
 pub fn build() -> Result<()> {
     image::build("board-vesc6")?;
     let mut cargo = cargo("build");
     progress::must_whenever(cargo.args(["--bin", "virtual-board", "--profile", "virtual-board"]))
 }
 
-/// Runs the built program, with these arguments, until it ends.
+/// Runs the built program with these arguments until it ends.
 ///
 /// # Errors
-/// It can't be started, or failed.
+/// It cannot be started, or failed.
 pub fn run(arguments: &[&str]) -> Result<()> {
     must(Command::new(program()).args(arguments), Duration::MAX)
 }
@@ -33,7 +33,7 @@ pub fn run(arguments: &[&str]) -> Result<()> {
 /// Runs its tests; the images must be built.
 ///
 /// # Errors
-/// Cargo's failure, or a test's.
+/// Cargo or a test failed.
 pub fn test(arguments: &[&str]) -> Result<()> {
     let mut cargo = cargo("test");
     progress::must_whenever(cargo.args(arguments).env("STEER_ASSIST_REQUIRE_QEMU", "1"))
@@ -42,7 +42,7 @@ pub fn test(arguments: &[&str]) -> Result<()> {
 fn cargo(command: &str) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     cargo.current_dir(image::root()).arg(command);
-    // The emulated core asks for a newer Rust than it needs.
+    // The emulated core declares a newer Rust version than it needs.
     cargo.args(["--package", "virtual-board", "--ignore-rust-version"]);
     cargo
 }

@@ -1,4 +1,4 @@
-//! `sim-host bicycle accel`.
+//! `sim-host bicycle accel`: accelerations of the nonlinear bicycle from a table of states.
 
 use super::bicycle::Which;
 use super::{Failure, warn};
@@ -31,7 +31,7 @@ pub(super) struct Args {
     csv: PathBuf,
 }
 
-/// The columns, and how large their values may be either way.
+/// The columns, and the largest allowed magnitude of their values.
 const COLUMNS: [(&str, f64); 7] = [
     ("roll", 10.0),
     ("steer", 10.0),
@@ -53,7 +53,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     Ok(output.finish(answer.as_bytes())?)
 }
 
-/// The answer to a table of states.
+/// The table of accelerations for a table of states.
 fn accelerations(b: &Geometry, text: &str) -> Result<String, String> {
     let mut reader =
         csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
@@ -68,7 +68,7 @@ fn accelerations(b: &Geometry, text: &str) -> Result<String, String> {
     Ok(answer)
 }
 
-/// Where in a line the columns of a state stand, and those whose sum is each torque.
+/// Indices of the columns of a state, and of those whose sum is each torque.
 struct Places {
     state: [usize; 5],
     roll_torque: Vec<usize>,
@@ -98,7 +98,7 @@ impl Places {
         for (at, (column, _)) in state.iter_mut().zip(COLUMNS) {
             *at = needed(column)?;
         }
-        // The table of a ride has the torques by who gives them.
+        // The table of a ride has motor torque and rider torque separately.
         let of_ride = (place("motor_torque")?, place("rider_torque")?);
         let (roll_torque, steer_torque) = match (place("steer_torque")?, of_ride) {
             (None, (Some(motor), Some(rider))) => {

@@ -1,4 +1,4 @@
-//! `sim-host basin`.
+//! `sim-host basin`: searches the basin of attraction over forward speed.
 
 use super::conditions::{ConditionArgs, Setup};
 use super::outputs::{OutputArgs, Outputs, Results, complain};
@@ -30,7 +30,7 @@ Examples:
   sim-host basin compare 'young=--rider young' 'smart=--rider smart' --svg riders.svg
   sim-host basin plane --speed 4 --rider smart --law h --svg plane.svg";
 
-/// Options of `basin`, and what may be said instead.
+/// Options of `basin`, and its subcommands.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub(super) struct Args {
@@ -38,13 +38,13 @@ pub(super) struct Args {
     command: Option<Command>,
     #[command(flatten)]
     basin: BasinArgs,
-    /// Besides, the basins of N bicycles drawn from the uncertainties of the bicycle's parameters, 2 to 10000, as a band
-    /// from the 5 % to the 95 % quantile of their heights; --seed draws others
+    /// Also compute the basins of N bicycles drawn from the uncertainties of the bicycle's parameters, 2 to 10000, as a
+    /// band from the 5 % to the 95 % quantile of their heights; --seed changes the draws
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
     uncertain: Option<u32>,
 }
 
-/// Options of `basin`, and of a basin ridden on boards.
+/// Options of `basin`, and of a basin with rides on boards.
 #[derive(clap::Args)]
 pub(super) struct BasinArgs {
     #[command(flatten)]
@@ -63,7 +63,7 @@ enum Command {
     Plane(Box<super::plane::Args>),
 }
 
-/// What is searched and how finely.
+/// Range and resolution of the search.
 #[derive(clap::Args)]
 pub(super) struct SearchArgs {
     /// Forward speeds in m/s: A:B:STEP, B included, or one [default: 0:10:0.1; 2:7.5:0.1 with a rider]
@@ -75,10 +75,10 @@ pub(super) struct SearchArgs {
     /// Largest disturbance tried, in rad/s
     #[arg(long, default_value_t = 30.0, value_name = "RAD/S", allow_negative_numbers = true)]
     max_rate: f64,
-    /// Step of the scan, in rad/s; what is narrower can be missed
+    /// Step of the scan, in rad/s; narrower islands or gaps can be missed
     #[arg(long, default_value_t = 0.25, value_name = "RAD/S", allow_negative_numbers = true)]
     scan_step: f64,
-    /// How closely the borders are located, in rad/s
+    /// Accuracy of the borders, in rad/s
     #[arg(long, default_value_t = 0.01, value_name = "RAD/S", allow_negative_numbers = true)]
     tolerance: f64,
     #[command(flatten)]
@@ -93,14 +93,14 @@ pub(super) struct ThreadArgs {
 }
 
 impl ThreadArgs {
-    /// The threads asked for.
+    /// A pool of the requested threads.
     pub(super) fn pool(&self) -> Result<rayon::ThreadPool, rayon::ThreadPoolBuildError> {
         rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0).into()).build()
     }
 }
 
 impl SearchArgs {
-    /// The search, checked; with a rider (`ridden`) over the speeds where gains are known.
+    /// The checked search; with a rider (`ridden`) over the speeds at which gains are known.
     pub(super) fn search(&self, ridden: bool) -> Result<Search, Failure> {
         let speeds = if ridden { "2:7.5:0.1" } else { "0:10:0.1" };
         let search = Search {
@@ -163,16 +163,16 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(ended)
 }
 
-/// What a search has computed.
+/// Results of a search.
 pub(super) struct Computed<'a> {
     pub(super) basin: &'a Basin,
-    /// Of drawn bicycles, if they were asked for.
+    /// Results for drawn bicycles, if requested.
     pub(super) drawn: Option<&'a Drawn>,
-    /// How long the basin took \[s\].
+    /// Computing time of the basin \[s\].
     pub(super) seconds: f64,
 }
 
-/// Writes a basin, or what there is of it; `said` is added to the text.
+/// Writes a complete or partial basin; `said` is added to the text.
 pub(super) fn write(
     setup: &Setup,
     search: &Search,
@@ -188,7 +188,7 @@ pub(super) fn write(
     let complete = result.columns.len() == search.speeds.len();
     let resolved = ResolvedSearch::new(search);
     let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, result, seconds);
-    // Of no draws nothing is known.
+    // Without finished draws there is no band.
     let drawn = drawn.filter(|drawn| !drawn.basins.is_empty());
     let document = BasinDocument { uncertain: drawn.map(UncertainEntry::new), ..document };
     let heights = drawn.map_or(Vec::new(), Drawn::heights);
@@ -233,7 +233,7 @@ pub(super) fn write(
     }
 }
 
-/// What the uncertainties make of area and mean height, in words.
+/// Text: quantiles of area and mean height over the draws.
 fn spread(document: &BasinDocument) -> String {
     let Some(drawn) = &document.uncertain else { return String::new() };
     let max = if drawn.capped > 0 { ", at least" } else { "" };
@@ -247,7 +247,7 @@ fn spread(document: &BasinDocument) -> String {
     area + &line("mean height", drawn.mean_height, "rad/s")
 }
 
-/// A bar with the time left, on standard error, and only on a terminal.
+/// A progress bar with the remaining time, on standard error if it is a terminal.
 pub(super) fn progress(shown: bool, command: &str, count: usize, what: &str) -> ProgressBar {
     if !shown {
         return ProgressBar::hidden();
@@ -257,7 +257,7 @@ pub(super) fn progress(shown: bool, command: &str, count: usize, what: &str) -> 
     ProgressBar::new(count as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// The answer in words.
+/// The result as text.
 fn summary(basin: &Basin, search: &Search, fall: &FallCriterion, seconds: f64) -> String {
     let mut text = String::new();
     let Work { rides, steps: _, right_hand_sides } = basin.work();
@@ -310,7 +310,7 @@ fn summary(basin: &Basin, search: &Search, fall: &FallCriterion, seconds: f64) -
     text
 }
 
-/// The rides that lay on the ground short of the angles of a fall, if there are any.
+/// Text: the rides laid flat without reaching the angles of a fall, if any.
 fn lying(basin: &Basin, fall: &FallCriterion) -> String {
     let mut text = String::new();
     let [flat, quick] = [FallCause::LaidFlat, FallCause::TooQuick].map(|cause| basin.falls(cause));
@@ -330,7 +330,7 @@ fn lying(basin: &Basin, fall: &FallCriterion) -> String {
     text
 }
 
-/// The speeds of the columns that are so, as ranges: "0.9 to 4.1, 7.3 to 10".
+/// The speeds of the columns that satisfy `is`, as ranges: "0.9 to 4.1, 7.3 to 10".
 fn spans(basin: &Basin, is: impl Fn(&Column) -> bool) -> String {
     let runs = basin.columns.chunk_by(|a, b| is(a) == is(b)).filter(|run| is(&run[0]));
     let text = |run: &[Column]| match run {

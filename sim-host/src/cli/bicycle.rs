@@ -37,7 +37,7 @@ Examples:
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
-    /// The bicycles that ship, with their weave and capsize speeds
+    /// The built-in bicycles with their weave and capsize speeds
     #[command(after_help = "Example:\n  sim-host bicycle list")]
     List,
     /// One bicycle's parameters
@@ -45,7 +45,7 @@ pub(super) enum Command {
     Show {
         #[command(flatten)]
         which: Which,
-        /// As BicycleParameters reads it: remarks behind #, values and deviations without quotation marks
+        /// In the format of BicycleParameters: remarks after #, values and deviations without quotation marks
         #[arg(long)]
         ini: bool,
     },
@@ -62,10 +62,10 @@ pub(super) enum Command {
     Accel(accel::Args),
 }
 
-/// Which bicycle.
+/// Selection of a bicycle.
 #[derive(clap::Args)]
 pub(super) struct Which {
-    /// Shipped bicycle, FILE, or FILE#NAME
+    /// Built-in bicycle, FILE, or FILE#NAME
     #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
     bicycle: String,
     /// Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated
@@ -74,10 +74,10 @@ pub(super) struct Which {
 }
 
 impl Which {
-    /// The bicycle, changed as asked for.
+    /// The bicycle with the requested changes.
     ///
     /// # Errors
-    /// Names what is wrong with file, key or value.
+    /// The error with file, key or value.
     pub(super) fn load(&self) -> Result<Bicycle, Failure> {
         Ok(catalogue::load(&self.bicycle)?.varied(&self.bicycle_set)?)
     }
@@ -113,7 +113,7 @@ fn list() -> Result<(), Failure> {
     print(&text)
 }
 
-/// The stability of a bicycle alone.
+/// Stability of the uncontrolled bicycle.
 fn uncontrolled(bicycle: &Bicycle) -> Stability {
     stability(&Model::new(&bicycle.parameters, Feedback::new(Law::None, Capsize::default()), None))
 }

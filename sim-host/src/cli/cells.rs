@@ -1,4 +1,4 @@
-//! The cells of a sweep: the shared options and one value of every axis, read as `basin` reads them.
+//! The cells of a sweep: the common options with one value of every axis, parsed like those of `basin`.
 
 use super::conditions::ConditionArgs;
 use super::words::{Choice, choice, conditions};
@@ -10,20 +10,20 @@ const MOST: usize = 100_000;
 
 /// How the values of an axis become options.
 enum Role {
-    /// They are an option's values.
+    /// Values of an option.
     Option(Box<Choice>),
-    /// They stand where the shared options have the axis' key in braces.
+    /// Replacements for the axis's key in braces in the common options.
     Place(String),
 }
 
-/// A sweep that can be run: its plan and its cells.
+/// A valid sweep: its plan and its cells.
 pub(super) struct Resolved {
     pub(super) plan: Plan,
     pub(super) cells: Vec<Cell>,
     pub(super) search: Search,
 }
 
-/// Finds out what every axis varies.
+/// Finds the role of every axis.
 fn roles(axes: &[Axis], words: &[String]) -> Result<Vec<Role>, SweepError> {
     let role = |axis: &Axis| {
         let key = &axis.key;
@@ -45,7 +45,7 @@ fn roles(axes: &[Axis], words: &[String]) -> Result<Vec<Role>, SweepError> {
     axes.iter().map(|axis| role(axis).map_err(SweepError)).collect()
 }
 
-/// The words of one cell.
+/// The command-line words of one cell.
 fn words_of(shared: &[String], roles: &[Role], values: &[String]) -> Result<Vec<String>, String> {
     let mut words = shared.to_vec();
     for (role, value) in roles.iter().zip(values) {
@@ -57,10 +57,10 @@ fn words_of(shared: &[String], roles: &[Role], values: &[String]) -> Result<Vec<
     Ok(words)
 }
 
-/// Loads and checks every cell; `search` is told whether any has a rider.
+/// Loads and checks every cell; `search` receives whether any cell has a rider.
 ///
 /// # Errors
-/// Names the axis, or the cell and what is wrong with it.
+/// The axis, or the cell with its error.
 pub(super) fn resolve(
     axes: &[Axis],
     shared: &[String],

@@ -1,4 +1,4 @@
-//! `sim-host basin compare`.
+//! `sim-host basin compare`: compares basins of several cases.
 
 use super::basin::{SearchArgs, progress};
 use super::conditions::{ConditionArgs, Setup};
@@ -25,8 +25,8 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// What to compare: LABEL=OPTIONS with the options of `basin` that say who rides what under which
-    /// conditions, or the FILE of a `basin --json`
+    /// Case: LABEL=OPTIONS with the options of `basin` for bicycle, rider, law and conditions, or the FILE of a `basin
+    /// --json`
     #[arg(required = true, num_args = 1..=24, value_name = "LABEL=OPTIONS|FILE")]
     cases: Vec<String>,
     #[command(flatten)]
@@ -35,10 +35,10 @@ pub(super) struct Args {
     outputs: OutputArgs,
 }
 
-/// A case before it is computed.
+/// A case before its computation.
 enum RequestedCase {
     Compute(String, Box<Setup>),
-    /// And the axis its file says.
+    /// A case from a file, with the file's axis.
     Done(Case, String),
 }
 
@@ -154,7 +154,7 @@ fn parse(label: &str, options: &str) -> Result<ConditionArgs, Failure> {
     words::conditions(&words).map_err(|e| named(label, e))
 }
 
-/// The outline in a file of `basin --json`.
+/// Reads the outline from a file of `basin --json`.
 fn read(path: &str) -> Result<(Case, String), Failure> {
     let text = std::fs::read_to_string(path)
         .map_err(|e| format!("`{path}` is neither LABEL=OPTIONS nor a file that can be read: {e}"))?;
@@ -171,7 +171,7 @@ fn read(path: &str) -> Result<(Case, String), Failure> {
     let mut columns = Vec::new();
     for ((speed, upper), capped) in speeds.iter().zip(&upper).zip(&capped) {
         let speed = speed.as_f64().ok_or_else(|| wrong("speeds of numbers"))?;
-        // An interrupted basin has gaps.
+        // An interrupted basin has missing speeds.
         let Some(upper) = upper.as_f64() else { continue };
         let capped =
             capped.as_bool().ok_or_else(|| wrong("capped` of true and false beside the heights, `"))?;
@@ -200,10 +200,10 @@ fn read(path: &str) -> Result<(Case, String), Failure> {
     Ok((case, axis.into()))
 }
 
-/// Behind a case's label in the table: whether its height is a lower bound.
+/// Suffix of a case's label in the table, for the column that marks lower bounds.
 const CAPPED: &str = "_capped";
 
-/// The heights by speed, a column a case; then whether they are lower bounds, a column a case.
+/// The heights by speed, a column per case; then whether they are lower bounds, a column per case.
 fn heights(config: &Value, cases: &[Case]) -> Result<Vec<u8>, csv::Error> {
     let mut speeds: Vec<f64> = cases.iter().flat_map(|c| &c.basin.columns).map(|c| c.speed).collect();
     speeds.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! The options that say who rides what under which conditions; `ride` and `basin` share them.
+//! The options for bicycle, rider, law and conditions, common to `ride` and `basin`.
 
 use super::fall_arg::FallArg;
 use super::outputs::complain_once;
@@ -19,30 +19,30 @@ use control::param::ParamSpec;
 use control::{Config, Law, Limits, Taper, Wheel};
 use std::path::PathBuf;
 
-/// Where defaults come from.
+/// Source of the defaults.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 pub(super) enum Preset {
     /// The published conditions: law h, every limit off.
     Thesis,
-    /// What is flashed: law h-cut, torque and rate limit, taper.
+    /// The flashed configuration: law h-cut, torque and rate limit, taper.
     Product,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum AssistKind {
-    /// The control crate that is flashed: f32, sampled, limits and all.
+    /// The firmware's control crate: f32, sampled, with all limits.
     Firmware,
-    /// The bare law in f64, continuous, without limits.
+    /// The law alone in f64, continuous, without limits.
     Ideal,
 }
 
-/// A value, or none.
+/// An optional value; `none` on the command line is `None`.
 #[derive(Clone, Copy)]
 struct Limit<T>(Option<T>);
 
 #[derive(clap::Args)]
 pub(super) struct ConditionArgs {
-    /// Shipped bicycle (see `bicycle list`), FILE, or FILE#NAME of a collection
+    /// Built-in bicycle (see `bicycle list`), FILE, or FILE#NAME of a collection
     #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
     bicycle: String,
     /// Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated
@@ -56,7 +56,7 @@ pub(super) struct ConditionArgs {
     /// Defaults of the options below
     #[arg(long, default_value = "thesis")]
     preset: Preset,
-    /// Who computes the torque
+    /// What computes the torque
     #[arg(long, default_value = "firmware")]
     assist: AssistKind,
     /// Speed that schedules the gain
@@ -68,7 +68,7 @@ pub(super) struct ConditionArgs {
     /// Largest change of torque in N m/s, or none [default: none; product: 100]
     #[arg(long, value_name = "NM/S|none", value_parser = limit_nm, allow_hyphen_values = true)]
     rate_limit: Option<Limit<f32>>,
-    /// Torque zero at the first, whole at the second speed in m/s, or none [default: none; product: 0.5:1.5]
+    /// Taper: torque zero at the first, full at the second speed in m/s, or none [default: none; product: 0.5:1.5]
     #[arg(long, value_name = "ZERO:FULL|none", value_parser = taper, allow_hyphen_values = true)]
     taper: Option<Limit<(f32, f32)>>,
     /// Delay of the simulated sensors, for example 20ms; a whole number of control periods
@@ -76,21 +76,21 @@ pub(super) struct ConditionArgs {
     sensor_delay: f64,
     #[command(flatten)]
     plant: PlantArgs,
-    /// Law and parameters of the flashed code from a file, as `param export` writes it; other options win
+    /// Law and parameters of the firmware from a file, as written by `param export`; other options have precedence
     #[arg(long, value_name = "FILE")]
     parameters: Option<PathBuf>,
-    /// Any parameter of the flashed code, as limits.rise_nm_s=50 or limits.end_stop=on; may be repeated
+    /// Any parameter of the firmware, for example limits.rise_nm_s=50 or limits.end_stop=on; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Roll rate the gyro reports: of the roll angle, or the frame's about its own axis
+    /// Roll rate that the gyro measures: derivative of the roll angle, or angular rate about the frame's axis
     #[arg(long, default_value = "euler")]
     imu: Imu,
     #[command(flatten)]
     fall: FallArg,
-    /// How long a ride lasts if it does not fall, in seconds
+    /// Duration of a ride that does not fall, in seconds
     #[arg(long, default_value_t = 6.0, value_name = "S", allow_negative_numbers = true)]
     time_limit: f64,
-    /// A ride has recovered when roll and steer end below this fraction of their largest
+    /// A ride has recovered if roll and steer end below this fraction of their maxima
     #[arg(long, default_value_t = 0.1, value_name = "FRACTION", allow_negative_numbers = true)]
     recovered_below: f64,
 }
@@ -124,7 +124,7 @@ fn option_of(parameter: &ParamSpec) -> Option<&'static str> {
     }
 }
 
-/// What the options stand for.
+/// The conditions from the options.
 pub(super) struct Setup {
     pub(super) conditions: Conditions,
     pub(super) config: ResolvedConfig,
@@ -133,12 +133,12 @@ pub(super) struct Setup {
 }
 
 impl ConditionArgs {
-    /// Whether a rider is asked for.
+    /// Whether a rider is requested.
     pub(super) fn ridden(&self) -> bool {
         self.rider.name().is_some()
     }
 
-    /// Takes in `--set`.
+    /// Applies `--set`.
     fn set_parameters(&self, config: &mut Config) -> Result<(), String> {
         self.set.iter().try_for_each(|word| {
             let (key, value) = word.split_once('=').ok_or(format!("--set {word}: expected KEY=VALUE"))?;
@@ -146,13 +146,13 @@ impl ConditionArgs {
         })
     }
 
-    /// What may name a file, but for the bicycle.
+    /// Option values that can name a file, except the bicycle.
     fn files(&self) -> impl Iterator<Item = &str> {
         let parameters = self.parameters.as_deref().and_then(std::path::Path::to_str);
         [self.law.as_deref(), self.rider.name(), parameters].into_iter().flatten().chain(self.plant.files())
     }
 
-    /// Loads and checks everything; warnings go to standard error.
+    /// Loads and checks all conditions; warnings go to standard error.
     pub(super) fn setup(&self) -> Result<Setup, Failure> {
         let bicycle = catalogue::load(&self.bicycle)?.varied(&self.bicycle_set)?;
         warn(&bicycle);
@@ -182,12 +182,12 @@ impl ConditionArgs {
         if let Some(file) = &file {
             file.apply(&mut config)?;
         }
-        // The simulated bicycle is put together as drawn.
+        // The simulated bicycle is assembled correctly.
         config.calibration.polarity_checked = true;
         if let Some(Limit(limit)) = self.torque_limit {
             config.limits.max_torque_nm = limit;
             if limit.is_none() {
-                // Both are relative to it.
+                // Both limits are relative to the torque limit.
                 (config.limits.rider_torque, config.limits.limp_fraction) = (None, None);
             }
         }
@@ -213,7 +213,7 @@ impl ConditionArgs {
             }
             self.set_parameters(&mut config)?;
         }
-        // A lone wheel sensor tells its own wheel's speed.
+        // A single wheel sensor measures its own wheel's speed.
         let schedule_speed = match (config.input.front_wheel.fitted, config.input.rear_wheel.fitted) {
             _ if !flashed || self.schedule_speed == ScheduleSpeed::Initial => self.schedule_speed,
             (true, false) => ScheduleSpeed::Front,

@@ -1,9 +1,9 @@
-//! Files that may have been cut: what they lost at their end is a default, and nothing in them says so.
+//! Warns of files that may have been truncated: entries lost at the end get their defaults without an error.
 
 use std::path::Path;
 
-/// A doubt for each file among `names` whose last line has no end. A file's name may stand in a name's parts: `NAME+FILE`,
-/// `FILE,KEY=VALUE`, `SENSOR:model=FILE`.
+/// A warning for each file among `names` whose last line has no line end. The file's name can be part of a name:
+/// `NAME+FILE`, `FILE,KEY=VALUE`, `SENSOR:model=FILE`.
 pub(super) fn doubts<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
     names
         .into_iter()

@@ -1,4 +1,4 @@
-//! `sim-host design`.
+//! `sim-host design`: optimises a gain schedule and evaluates it.
 
 use super::basin::ThreadArgs;
 use super::fall_arg::FallArg;
@@ -25,30 +25,30 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Longest time for the search, for example 90s, 10min or 2h; the judgement comes after
+    /// Longest time of the search, for example 90s, 10min or 2h; the evaluation follows
     #[arg(long, default_value = "10min", value_name = "TIME", value_parser = budget, allow_hyphen_values = true)]
     budget: Duration,
-    /// Schedules tried at most
+    /// Largest number of evaluated schedules
     #[arg(long, default_value_t = 400, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     evaluations: u32,
-    /// Of the simplices begun anew
+    /// Seed of the restarted simplices
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
     /// Points of the schedule between 2 and 7.5 m/s, 2 to 8
     #[arg(long, default_value_t = 6, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=8))]
     knots: u8,
-    /// Area given up for an even schedule, in rad m/s^2 per (N m s/rad)^2
+    /// Weight of the smoothness penalty, in rad m/s^2 per (N m s/rad)^2
     #[arg(long, default_value_t = 0.0, value_name = "WEIGHT", allow_negative_numbers = true)]
     smoothness: f64,
     #[command(flatten)]
     fall: FallArg,
-    /// The law to begin with, as of --law elsewhere
+    /// Initial law, as in --law
     #[arg(long, default_value = "h-cut", value_name = "LAW")]
     start: String,
-    /// Step of the speeds on the way, in m/s
+    /// Step of the speeds during the search, in m/s
     #[arg(long, default_value_t = 1.1, value_name = "M/S", allow_negative_numbers = true)]
     coarse: f64,
-    /// Step of the speeds of the judgement beside the known laws, in m/s, or none
+    /// Step of the speeds in the evaluation beside the known laws, in m/s, or none
     #[arg(long, default_value = "0.25", value_name = "M/S|none", value_parser = judgement, allow_hyphen_values = true)]
     judge: Judgement,
     /// Write the law as a file for --law
@@ -60,7 +60,7 @@ pub(super) struct Args {
     outputs: OutputArgs,
 }
 
-/// The step of the speeds of the judgement; `None` for no judgement.
+/// Step of the speeds in the evaluation; `None` for no evaluation.
 #[derive(Clone, Copy)]
 struct Judgement(Option<f64>);
 
@@ -92,7 +92,7 @@ fn search(option: &str, step: f64, scan_step: f64, tolerance: f64) -> Result<Sea
     if !(0.01..=5.5).contains(&step) {
         return Err(format!("{option} {step} is outside 0.01 to 5.5 m/s").into());
     }
-    // The last speed is 7.5 m/s also when the step does not divide the range.
+    // The last speed is 7.5 m/s even if the step does not divide the range.
     let steps = (5.5 / step - 1e-9).ceil() as usize;
     let speeds = (0..=steps).map(|i| ((2.0 + i as f64 * step).min(7.5) * 1e9).round() / 1e9).collect();
     let search = Search { speeds, axis: Axis::SteerRate, max_rate: 20.0, scan_step, tolerance };
@@ -129,7 +129,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let advanced = |now: Progress| {
         let by_time = begin.elapsed().as_secs_f64() / args.budget.as_secs_f64();
         let part = f64::from(now.evaluations) / f64::from(plan.evaluations);
-        // Whichever runs out first; the bar knows the time left from it.
+        // The limit that is reached first determines the bar, which computes the remaining time.
         bar.set_position((part.max(by_time).min(1.0) * f64::from(plan.evaluations)) as u64);
         bar.set_message(format!("{} tried, least area {:.3}", now.evaluations, now.best));
     };
@@ -180,7 +180,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
-/// A bar with the time left, on standard error, and only on a terminal.
+/// A progress bar with the remaining time, on standard error if it is a terminal.
 fn progress(shown: bool, what: &str, count: u64) -> ProgressBar {
     if !shown {
         return ProgressBar::hidden();

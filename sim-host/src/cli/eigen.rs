@@ -1,4 +1,4 @@
-//! `sim-host eigen`.
+//! `sim-host eigen`: eigenvalues over speed and critical speeds.
 
 use super::outputs::{OutputArgs, Results, complain, complain_once};
 use super::rider_args::RiderArgs;
@@ -34,7 +34,7 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Shipped bicycle, FILE, or FILE#NAME of a collection
+    /// Built-in bicycle, FILE, or FILE#NAME of a collection
     #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
     bicycle: String,
     /// Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated
@@ -43,17 +43,18 @@ pub(super) struct Args {
     /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, balance-assist:K, or a table FILE
     #[arg(long, default_value = "none")]
     law: String,
-    /// Torque into the lean of K (v - V) times the roll angle above the speed V in m/s, beside the law
+    /// Added capsize term: torque into the lean of K (v - V) times the roll angle above the speed V in m/s
     #[arg(long, value_name = "K:V", value_parser = law::capsize, allow_hyphen_values = true)]
     capsize: Option<Capsize>,
     #[command(flatten)]
     actuator: ActuatorArgs,
     #[command(flatten)]
     rider: RiderArgs,
-    /// Forward speeds in m/s: A:B:STEP, B included, or one; below 0 the bicycle alone: backwards, as with a steered rear wheel
+    /// Forward speeds in m/s: A:B:STEP, B included, or one; below 0 (backwards, as with a steered rear wheel) without
+    /// law and rider
     #[arg(long, default_value = "0:10:0.1", value_parser = speeds::parse_signed, value_name = "A:B:STEP", allow_hyphen_values = true)]
     speeds: std::vec::Vec<f64>,
-    /// With a rider or a delay: how many of the rightmost eigenvalues, 4 to 40; without there are four, or five
+    /// With a rider or a delay: number of rightmost eigenvalues, 4 to 40; otherwise there are four, or five
     #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u8).range(4..=40))]
     roots: u8,
     /// Adds the modes to the table
@@ -63,10 +64,10 @@ pub(super) struct Args {
     outputs: OutputArgs,
 }
 
-/// How the torque on the steer axis departs from the law's.
+/// Actuator between the law and the steer axis.
 #[derive(clap::Args)]
 struct ActuatorArgs {
-    /// From the command to the drive, for example 5ms; not with --rider
+    /// Delay from the command to the drive, for example 5ms; not with --rider
     #[arg(long, value_name = "TIME", default_value = "0ms", value_parser = second, allow_hyphen_values = true)]
     actuator_delay: f64,
     /// Time constant of the torque's first-order response, for example 20ms
@@ -174,13 +175,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
-/// The roots of a mode at each speed, as in the document.
+/// The roots of a mode at each speed, in the document's form.
 fn per_speed(mode: &Mode, speeds: usize) -> Vec<Vec<[f64; 2]>> {
     let at = |i: usize| mode.roots.iter().filter_map(|root| root[i]).map(|e| [e.re, e.im]).collect();
     (0..speeds).map(at).collect()
 }
 
-/// The table's heading: the speed, the rightmost eigenvalues, the modes.
+/// Columns of the table: the speed, the rightmost eigenvalues, the modes.
 fn columns(count: usize, modes: &[Mode]) -> Vec<String> {
     let numbered = |name: &str, n: usize| {
         let name = name.replace(' ', "_");
@@ -219,7 +220,7 @@ fn summary(critical: &CriticalSpeeds, stable: &[(f64, f64)], backwards: bool) ->
     text + &stable_line(stable)
 }
 
-/// The ranges of speed without growth, in a line.
+/// The stable ranges of speed, in a line.
 pub(super) fn stable_line(stable: &[(f64, f64)]) -> String {
     let ranges: Vec<String> = stable.iter().map(|(from, to)| format!("{from:.4} to {to:.4} m/s")).collect();
     let ranges = if ranges.is_empty() { "nowhere".into() } else { ranges.join(", ") };

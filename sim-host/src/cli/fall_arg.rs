@@ -1,21 +1,22 @@
-//! The option that says when a ride counts as fallen.
+//! The option that defines a fall.
 
 use super::plant_args::pairs;
 use crate::range::time;
 use crate::ride::FallCriterion;
 
-/// The option of every command that rides.
+/// The fall option of every command that rides.
 #[derive(clap::Args)]
 pub(super) struct FallArg {
-    /// A fall: these angles of roll or steer passed, or laid flat, short of them a time after the flat angle of roll; published has no flat
+    /// Fall: roll or steer passes these angles, or the bicycle lies flat short of them for a time after the flat angle
+    /// of roll; published has no flat
     #[arg(long, value_name = "KEY=VALUE,...|published", default_value = "roll=90deg,steer=90deg,flat=80deg,lasting=1s", value_parser = parse, allow_hyphen_values = true)]
     pub(super) fall: FallCriterion,
 }
 
-/// The criterion of `published`, or `KEY=VALUE,...`: what is left out is as by default.
+/// The criterion `published`, or `KEY=VALUE,...`; omitted keys have their defaults.
 ///
 /// # Errors
-/// Names key, value and range.
+/// The error with key, value and range.
 fn parse(text: &str) -> Result<FallCriterion, String> {
     let mut fall = FallCriterion::default();
     if text == "published" {
@@ -48,7 +49,7 @@ fn parse(text: &str) -> Result<FallCriterion, String> {
     fall.check().map(|()| fall)
 }
 
-/// An angle with its unit \[rad\].
+/// An angle with its unit, as \[rad\].
 fn angle(text: &str) -> Result<f64, String> {
     let wrong = || format!("`{text}` is not an angle; expected a number with its unit, as 80deg or 1.4rad");
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong);

@@ -1,4 +1,4 @@
-//! `sim-host faults`.
+//! `sim-host faults`: fault records of a board or a recording.
 
 use super::outputs::{complain, print, write_json};
 use super::port_args::{PortArgs, board};
@@ -26,10 +26,10 @@ Examples:
 pub(super) struct Args {
     #[command(flatten)]
     port: PortArgs,
-    /// Those told in a recording of `monitor --record`
+    /// Show the fault records in a recording of `monitor --record`
     #[arg(long, value_name = "FILE")]
     file: Option<PathBuf>,
-    /// Make the board forget them, after they were shown
+    /// Erase the fault records on the board after showing them
     #[arg(long, conflicts_with = "file")]
     clear: bool,
     /// Write JSON to FILE, or to standard output (also -)
@@ -73,7 +73,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
 }
 
-/// The faults that a recording tells, in its order, and how much of it was understood.
+/// The fault records of a recording, in its order, and counts of its frames.
 fn recorded(file: &Path) -> Result<(Vec<Fault>, Reception), Failure> {
     let mut client = Client::new(Box::new(Recording::open(file)?), Patience::default());
     let (mut faults, mut unknown) = (Vec::new(), 0);
@@ -98,7 +98,7 @@ fn recorded(file: &Path) -> Result<(Vec<Fault>, Reception), Failure> {
     Ok((faults, reception))
 }
 
-/// A file without a single whole frame.
+/// The error for a file without any whole frame.
 pub(super) fn no_recording(file: &Path) -> Failure {
     format!(
         "{}: no whole frame of the link in it; expected a recording of `monitor --record`",

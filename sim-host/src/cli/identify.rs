@@ -1,4 +1,4 @@
-//! `sim-host identify`: numbers measured in recordings.
+//! `sim-host identify`: identification of the weave and of sensors from recordings.
 
 use super::outputs::{OutputArgs, Outputs, Results, complain};
 use super::{Ended, Failure, identify_files, identify_sensor, warn};
@@ -38,9 +38,9 @@ Examples:
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
-    /// Frequency and decay of the weave after a knock, beside the linear model's
+    /// Frequency and decay of the weave after a disturbance, beside the linear model's
     Weave(Box<Args>),
-    /// A model of a real sensor: noise, steps, times and vibration, for --sensor of `ride` and others
+    /// A model of a real sensor: noise, quantisation, timing and vibration, for --sensor of `ride` and others
     Sensor(Box<identify_sensor::Args>),
 }
 
@@ -48,46 +48,47 @@ pub(super) enum Command {
 #[derive(clap::Args)]
 #[command(after_help = WEAVE_EXAMPLES)]
 pub(super) struct Args {
-    /// CSV files, one knock each
+    /// CSV files, one disturbance each
     #[arg(value_name = "FILE", required = true)]
     pub(super) files: Vec<PathBuf>,
-    /// Column of the time stamps: seconds, or dates with a time [default: the first there of Time, time, t, time_s]
+    /// Column of the time stamps: seconds, or dates with a time [default: the first one found of Time, time, t, time_s]
     #[arg(long, value_name = "NAME")]
     time_column: Option<String>,
-    /// Column of a rate to fit; may be repeated, all have decay and frequency in common [default: gyro_x and gyro_z]
+    /// Column of a rate to fit; may be repeated, with common decay and frequency [default: gyro_x and gyro_z]
     #[arg(long = "column", value_name = "NAME")]
     columns: Vec<String>,
     /// Unit of the rates
     #[arg(long, default_value = "rad/s", value_parser = ["rad/s", "deg/s"])]
     unit: String,
-    /// What the files' names say, without their ending: {gain}, {speed_kmh} or {speed_m_s}; a repeat's number as in the default
+    /// Pattern of the files' names without extension: {gain}, {speed_kmh} or {speed_m_s}; a repeat's number as in the
+    /// default
     #[arg(long, value_name = "PATTERN", default_value = "gain{gain}_speed{speed_kmh}kmh_{n}")]
     pub(super) label: String,
-    /// Forward speed of all files in m/s, instead of what their names say
+    /// Forward speed of all files in m/s, in place of the one in their names
     #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
     pub(super) speed: Option<f64>,
-    /// The controller's gain in all files, instead of what their names say
+    /// The controller's gain in all files, in place of the one in their names
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub(super) gain: Option<f64>,
-    /// Start of the window after the first sample, for example 0.5s [default: the knock's largest rate]
+    /// Start of the window after the first sample, for example 0.5s [default: the largest rate after the disturbance]
     #[arg(long, value_name = "TIME", value_parser = moment)]
     from: Option<f64>,
-    /// End of the window [default: where the weave is lost in the noise]
+    /// End of the window [default: where the weave falls below the noise]
     #[arg(long, value_name = "TIME", value_parser = moment)]
     to: Option<f64>,
-    /// Fitted beside the weave: an offset with a decaying real mode (the caster), or an offset alone
+    /// Fitted in addition to the weave: an offset with a decaying real mode (the caster mode), or an offset only
     #[arg(long, default_value = "mode", value_parser = ["mode", "offset"])]
     beside: String,
-    /// Bicycle of the prediction: shipped, FILE, or FILE#NAME of a collection
+    /// Bicycle of the prediction: built-in, FILE, or FILE#NAME of a collection
     #[arg(long, default_value = RIDERLESS, value_name = "NAME|FILE")]
     bicycle: String,
-    /// Law of the prediction, {gain} standing for the file's
+    /// Law of the prediction; {gain} is replaced by the file's gain
     #[arg(long, default_value = "balance-assist:{gain}")]
     pub(super) law: String,
-    /// Write the repeats put together as TOML
+    /// Write the pooled repeats as TOML
     #[arg(long, value_name = "FILE")]
     toml: Option<PathBuf>,
-    /// Where the recordings are from, for --toml
+    /// Origin of the recordings, for --toml
     #[arg(long, value_name = "TEXT", default_value = "not told", hide_default_value = true)]
     source: String,
     #[command(flatten)]
@@ -164,7 +165,7 @@ fn weave(args: &Args) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
-/// All outputs, tried; that of `--toml` apart.
+/// All outputs, checked; the one of `--toml` separately.
 fn open(args: &Args) -> Result<(Outputs, Option<Output>), Failure> {
     let outputs = args.outputs.open(None)?;
     let kept = args.toml.as_deref().map(Output::create).transpose()?;

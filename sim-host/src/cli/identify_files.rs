@@ -1,4 +1,4 @@
-//! The files of `identify weave`: what their names say, what is in them, and the model's answer to each.
+//! The files of `identify weave`: gain and speed from their names, fits of their content, and the model's prediction.
 
 use super::identify::Args;
 use super::{Failure, law};
@@ -17,16 +17,16 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What of a law stands for the gain.
+/// Placeholder of the gain in a law.
 const GAIN: &str = "{gain}";
 
-/// Those that can be used, and those that can't.
+/// Usable and unusable recordings.
 type Sorted = (Vec<RecordingEntry>, Vec<RefusedEntry>);
 
-/// Every file by itself.
+/// Identifies each file.
 ///
 /// # Errors
-/// When options are wrong or a file is given twice.
+/// Wrong options, or a file given twice.
 pub(super) fn identify(args: &Args) -> Result<Sorted, Failure> {
     let pattern = Pattern::new(&args.label).map_err(|e| format!("--label: {e}"))?;
     args.speed.map_or(Ok(()), |v| within("--speed", v, 0.0, 30.0))?;
@@ -51,7 +51,7 @@ pub(super) fn identify(args: &Args) -> Result<Sorted, Failure> {
     Ok((used, refused))
 }
 
-/// A file counted twice would be a repeat that agrees with itself.
+/// Rejects a file given twice, which would count as a repeat in perfect agreement.
 fn once(files: &[PathBuf]) -> Result<(), String> {
     let mut seen = std::collections::BTreeSet::new();
     match files.iter().find(|file| !seen.insert(file.canonicalize().unwrap_or_else(|_| (*file).clone()))) {
@@ -93,16 +93,16 @@ fn law_of(template: &str, gain: Option<f64>) -> Result<Law, String> {
     law::parse(&gain.map_or(template.into(), |gain| template.replace(GAIN, &gain.to_string())))
 }
 
-/// What recordings are compared with.
+/// The models that recordings are compared with.
 pub(super) struct Models<'a> {
     pub(super) bicycle: &'a Parameters,
-    /// The law, `{gain}` standing for the gain.
+    /// The law, with `{gain}` in place of the gain.
     pub(super) law: &'a str,
     /// The motor of the second prediction.
     pub(super) motor: LinearActuator,
 }
 
-/// The upper eigenvalue of the weave \[1/s\] at each speed, with both motors.
+/// The upper weave eigenvalue \[1/s\] at each speed, with the ideal and the fitted motor.
 type Both = [Vec<Option<Complex<f64>>>; 2];
 
 impl Models<'_> {
@@ -113,7 +113,7 @@ impl Models<'_> {
     }
 }
 
-/// A gain and a speed that sort: no gain first.
+/// Sort key of gain and speed: no gain first.
 fn key(gain: Option<f64>, speed: f64) -> (i64, i64) {
     let whole = |x: f64| (x * 1e6).round() as i64;
     (gain.map_or(-1, whole), whole(speed))
@@ -127,7 +127,7 @@ struct Group<'a> {
     refused: usize,
 }
 
-/// Repeats together, by gain and speed, beside the model's weave.
+/// Pools repeats by gain and speed, beside the model's weave.
 pub(super) fn together(
     recordings: &[RecordingEntry],
     refused: &[RefusedEntry],
@@ -139,7 +139,7 @@ pub(super) fn together(
         let group = groups.entry(key(gain, speed_m_s));
         group.or_insert(Group { gain, speed_m_s, repeats: Vec::new(), refused: 0 }).repeats.push(entry);
     }
-    // Of a file whose speed or gain makes no sense there is nothing to predict.
+    // A file with an invalid speed or gain has no prediction.
     let known = |e: &RefusedEntry| {
         e.speed_m_s.filter(|v| (0.0..=30.0).contains(v) && law_of(models.law, e.gain).is_ok())
     };

@@ -1,4 +1,4 @@
-//! `sim-host identify sensor`: a model of a real sensor.
+//! `sim-host identify sensor`: identifies a sensor model from recordings.
 
 use super::outputs::{OutputArgs, complain};
 use super::{Ended, Failure};
@@ -22,7 +22,7 @@ Examples:
   sim-host identify sensor ride.csv --map extract --sensor rear-wheel --distance rear_dist
   sim-host ride --preset product --speed 4 --steer-rate 1 --sensor imu.toml";
 
-/// The control period in which ages in a recording are counted \[s\].
+/// The control period, unit of the ages in a recording \[s\].
 const PERIOD_S: f64 = 1e-3;
 
 /// Options of `identify sensor`.
@@ -32,22 +32,22 @@ pub(super) struct Args {
     /// Recordings of the same sensors
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Which sensor: gyro, accel, steer, steer-rate, front-wheel, rear-wheel, rider-torque, motor-report; may be repeated
+    /// Sensor: gyro, accel, steer, steer-rate, front-wheel, rear-wheel, rider-torque, motor-report; may be repeated
     #[arg(long = "sensor", value_name = "NAME", required = true, value_parser = sensor)]
     sensors: Vec<Sensor>,
-    /// What the columns mean: the name of a map that ships, or a FILE [default: by the columns]
+    /// Assignment of the columns: the name of a built-in map, or a FILE [default: by the columns]
     #[arg(long, value_name = "NAME|FILE")]
     map: Option<String>,
     /// Database that decodes CAN frames; may be repeated
     #[arg(long, value_name = "FILE")]
     dbc: Vec<PathBuf>,
-    /// Column of the way in m that the wheel sensor counted, to find over which time its speed is a mean
+    /// Column of the distance in m from the wheel sensor, to find the averaging time of its speed
     #[arg(long, value_name = "COLUMN")]
     distance: Option<String>,
     /// Write the model as TOML, for --sensor of `ride` and others
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Which sensors these are and where the recordings are from, for --out
+    /// Identity of the sensors and origin of the recordings, for --out
     #[arg(long, value_name = "TEXT", default_value = "not told", hide_default_value = true)]
     source: String,
     /// Licence of the recordings, for --out
@@ -119,7 +119,7 @@ fn recording(args: &Args, map: Option<&Map>, path: &Path) -> Result<Recording, F
     Ok(Recording { samples, distance_m })
 }
 
-/// The command that makes the file again, wherever the recordings lie.
+/// The command that reproduces the file, independent of the recordings' folder.
 fn command(args: &Args) -> String {
     let mut text = String::from("sim-host identify sensor");
     let mut word = |word: &str| {

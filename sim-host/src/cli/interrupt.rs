@@ -1,4 +1,4 @@
-//! Ctrl-C or SIGTERM: the first asks the work to stop and keep what is done, the second ends the program.
+//! Handles Ctrl-C and SIGTERM: the first requests a stop that keeps finished results, the second ends the program.
 
 use super::outputs::complain;
 use std::sync::OnceLock;
@@ -7,22 +7,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 static STOP: AtomicBool = AtomicBool::new(false);
 static INSTALLED: OnceLock<()> = OnceLock::new();
 
-/// Installs the handlers once, for work in columns.
+/// Installs the handlers once, for computations in columns.
 pub(super) fn install() {
     install_saying("finishing the columns under way");
 }
 
-/// Installs the handlers once; `what` is done after the first Ctrl-C or SIGTERM.
+/// Installs the handlers once; `what` describes what is still done after the first signal.
 pub(super) fn install_saying(what: &'static str) {
     INSTALLED.get_or_init(|| {
-        // Without a handler the signal ends the program at once, which loses work but harms nothing.
+        // Without a handler the signal ends the program at once, which only loses results.
         let _ = ctrlc::set_handler(move || interrupted(what));
         #[cfg(unix)]
         let _ = on_termination(what);
     });
 }
 
-/// `ctrlc` would take SIGHUP with SIGTERM, and a run under `nohup` would end with its terminal.
+/// `ctrlc` would handle SIGHUP like SIGTERM, and a run under `nohup` would end with its terminal.
 #[cfg(unix)]
 fn on_termination(what: &'static str) -> std::io::Result<()> {
     let mut signals = signal_hook::iterator::Signals::new([signal_hook::consts::SIGTERM])?;
@@ -36,7 +36,7 @@ fn interrupted(what: &str) {
     complain(&format!("\ninterrupted: {what} (again to quit at once)"));
 }
 
-/// Whether Ctrl-C was pressed, or SIGTERM came.
+/// Whether Ctrl-C was pressed or SIGTERM received.
 pub(super) fn stopped() -> bool {
     STOP.load(Ordering::SeqCst)
 }

@@ -1,8 +1,8 @@
-//! Laws by name or from a table file.
+//! Parses laws: a name or a table file.
 
 use control::{Capsize, GainSchedule, Law};
 
-/// For help texts.
+/// Allowed laws, for help texts.
 pub(super) const HELP: &str = "none, h, h-cut (zero above 7.5 m/s), f, g, cl1, cl2:K, balance-assist:K (K > 0), or a TOML file with speed_m_s and gain_nm_s_rad";
 
 /// A user's gain table as a file.
@@ -13,12 +13,12 @@ struct TableFile {
     speed_m_s: Vec<f32>,
     /// Gains \[N m s/rad\], positive steering into the fall.
     gain_nm_s_rad: Vec<f32>,
-    /// Where they come from.
+    /// Source of the values.
     #[serde(default, rename = "source")]
     _source: Option<String>,
 }
 
-/// The law a name or a file stands for.
+/// The law with this name or from this file.
 pub(super) fn parse(text: &str) -> Result<Law, String> {
     let law = match text {
         "none" => Law::None,
@@ -44,7 +44,7 @@ fn slope(law: &str, text: &str) -> Result<f32, String> {
     })
 }
 
-/// The capsize term that `K:V` stands for.
+/// The capsize term of `K:V`.
 pub(super) fn capsize(text: &str) -> Result<Capsize, String> {
     let numbers = text.split_once(':').and_then(|(k, v)| Some((k.parse().ok()?, v.parse().ok()?)));
     let (k_c, v_max_m_s) =
@@ -54,7 +54,7 @@ pub(super) fn capsize(text: &str) -> Result<Capsize, String> {
     Ok(capsize)
 }
 
-/// The law that a parameter file holds: a name, or a table.
+/// The law in a parameter file: a name, or a table.
 pub(super) fn of_value(value: toml::Value) -> Result<Law, String> {
     match value {
         toml::Value::String(name) => match parse(&name) {

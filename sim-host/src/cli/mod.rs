@@ -41,16 +41,16 @@ use crate::bicycle::catalogue::Bicycle;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
-/// What a command comes back with when it can't do what it was asked.
+/// Error of a command.
 type Failure = Box<dyn std::error::Error>;
 
-/// How a command that could, ended.
+/// How a command without an error ended.
 enum Ended {
-    /// All done.
+    /// Complete.
     Done,
-    /// By Ctrl-C; what was finished is written.
+    /// Interrupted with Ctrl-C; finished results are written.
     Interrupted,
-    /// With a part of the input that could not be read, as was said.
+    /// Part of the input was unreadable, as reported.
     Partly,
 }
 
@@ -69,7 +69,7 @@ Examples:
   sim-host rider list                          the riders that ship
   sim-host thesis --quick                      the published tables and figures, computed again";
 
-/// From which disturbances does a bicycle with a steer assist recover?
+/// Computes from which disturbances a bicycle with a steer assist recovers
 #[derive(Parser)]
 #[command(name = "sim-host", version = VERSION, after_help = EXAMPLES, max_term_width = 100)]
 struct Cli {
@@ -86,19 +86,19 @@ enum Command {
     /// One ride after a disturbance.
     #[command(after_help = ride::EXAMPLES)]
     Ride(Box<ride::Args>),
-    /// Recorded rides through the flashed code: modes, causes, margins of every check.
+    /// Replay of recorded rides through the firmware: modes, causes, margins of every check.
     #[command(after_help = replay::EXAMPLES)]
     Replay(Box<replay::Args>),
     /// Rides and basins with the control step on a board in QEMU: processor in the loop.
     Pil(Box<pil::Args>),
-    /// Basins over a grid of conditions: resumed where it stopped, split over machines.
+    /// Basins over a grid of conditions: resumable, divisible among machines.
     Sweep(Box<sweep::Args>),
     /// Eigenvalues of the linearised bicycle over speed, and its critical speeds.
     Eigen(eigen::Args),
-    /// Numbers measured in recordings: weave, sensor.
+    /// Identification from recordings: weave, sensor.
     #[command(subcommand, after_help = identify::EXAMPLES)]
     Identify(identify::Command),
-    /// The tables and figures of the thesis computed again, as a report.
+    /// The reproduced tables and figures of the thesis, as a report.
     Thesis(thesis::Args),
     /// Bicycles: list, show, check, accelerations.
     #[command(subcommand, after_help = bicycle::EXAMPLES)]
@@ -106,31 +106,30 @@ enum Command {
     /// Riders: list, show, check.
     #[command(subcommand, after_help = rider::EXAMPLES)]
     Rider(rider::Command),
-    /// A gain schedule with the largest worst basin, judged beside the known laws.
+    /// A gain schedule with the largest worst-case basin, evaluated beside the known laws.
     Design(design::Args),
-    /// A study: a question computed, its answer as a page with figures.
+    /// A study: a computed answer to a question, as a page with figures.
     Study(study::Args),
-    /// The studies that ship, each with its question.
+    /// The built-in studies with their questions.
     #[command(after_help = "Example:\n  sim-host studies")]
     Studies,
-    /// What a board does now: live values, causes and limits in words; a table, a recording.
+    /// Live values of a board with names of causes and limits; also as table or recording.
     Monitor(monitor::Args),
     /// A board's parameters: list, get, set, store, reset, export, import.
     #[command(subcommand, after_help = param::EXAMPLES)]
     Param(param::Command),
-    /// The faults that a board kept, in words.
+    /// The fault records stored on a board.
     Faults(faults::Args),
     /// The JSON schema of a command's `--json` document.
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
-        /// Which document.
+        /// Name of the document
         #[arg(value_parser = ["basin", "ride", "replay", "replay-many", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design", "param-list", "faults", "identify-weave", "identify-sensor"])]
         document: String,
     },
 }
 
-/// Runs the program: arguments from the process, answers to standard output, errors to standard
-/// error.
+/// Runs the program: arguments from the process, results to standard output, errors to standard error.
 pub fn run() -> ExitCode {
     let cli = Cli::parse();
     let ended = match cli.command {
@@ -156,7 +155,7 @@ pub fn run() -> ExitCode {
         Ok(Ended::Done) => ExitCode::SUCCESS,
         Ok(Ended::Interrupted) => ExitCode::from(130),
         Ok(Ended::Partly) => ExitCode::from(3),
-        // A reader that has seen enough, like `head`, is no error.
+        // A reader that closes the pipe, like `head`, is no error.
         Err(e) if is_broken_pipe(&*e) => ExitCode::SUCCESS,
         Err(e) => {
             outputs::complain(&format!("error: {e}"));
@@ -165,7 +164,7 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// Doubts about a bicycle, to standard error.
+/// Prints doubts about a bicycle to standard error.
 fn warn(bicycle: &Bicycle) {
     for warning in &bicycle.warnings {
         outputs::complain_once(&format!("warning: {}: {warning}", bicycle.name));

@@ -1,4 +1,4 @@
-//! `sim-host monitor`.
+//! `sim-host monitor`: live values of a board as a panel, lines, a table or a recording.
 
 use super::faults::no_recording;
 use super::monitor_view::{View, summary};
@@ -32,10 +32,10 @@ Examples:
   sim-host monitor --port /dev/ttyACM0 --record ride.link --csv ride.csv
   sim-host monitor --file ride.link --csv ride.csv";
 
-/// Longest silence that is not told.
+/// Silence after which a message is shown.
 const SILENCE: Duration = Duration::from_secs(2);
 
-/// Between two looks whether a lost line is back.
+/// Time between two attempts to reopen a lost line.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// Options of `monitor`.
@@ -44,19 +44,19 @@ const LOOK: Duration = Duration::from_millis(200);
 pub(super) struct Args {
     #[command(flatten)]
     port: PortArgs,
-    /// A recording of --record, as fast as it can be read
+    /// A recording of --record, read as fast as possible
     #[arg(long, value_name = "FILE")]
     file: Option<PathBuf>,
-    /// Write every control step that is told as a CSV table, at once; - is standard output
+    /// Write every control step of the telemetry as a CSV table, at once; - is standard output
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write the raw bytes as they come, for --file; - is standard output
+    /// Write the received raw bytes for --file, at once; - is standard output
     #[arg(long, value_name = "FILE", conflicts_with = "file")]
     record: Option<PathBuf>,
-    /// End after this time, as 10s [default: never]
+    /// End after this time, for example 10s [default: never]
     #[arg(long = "for", value_name = "TIME", value_parser = duration, conflicts_with = "file")]
     length: Option<f64>,
-    /// How long a serial port that went away is waited for; with 0s not at all
+    /// Longest wait for a lost serial port; 0s ends at once
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "60s", conflicts_with = "file")]
     reopen: f64,
 }
@@ -65,20 +65,20 @@ fn duration(text: &str) -> Result<f64, String> {
     time(text, 1e6)
 }
 
-/// All that a monitor works with.
+/// State of a monitor session.
 struct Session {
     client: Client,
     monitor: Monitor,
     view: View,
     table: Option<Table>,
-    /// Damaged frames before it began: the first one is heard from its middle.
+    /// Damaged frames before the first whole one: reception begins in the middle of a frame.
     damaged_before: u32,
     begin: Instant,
-    /// When to end.
+    /// Time after which to end.
     length: Option<Duration>,
-    /// How long a line that was lost is waited for.
+    /// Longest wait for a lost line.
     reopen: Duration,
-    /// Bytes of a recording's last frame if that is not whole.
+    /// Bytes of an incomplete last frame of a recording.
     rest: usize,
 }
 
@@ -124,7 +124,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
 }
 
-/// The line to hear, kept as a file if that was asked for.
+/// The line to monitor, recorded to a file if requested.
 fn line(args: &Args) -> Result<Box<dyn Transport>, Failure> {
     let line: Box<dyn Transport> = match (&args.file, args.port.open()?) {
         (Some(file), _) => Box::new(Recording::open(file)?),
@@ -138,7 +138,7 @@ fn line(args: &Args) -> Result<Box<dyn Transport>, Failure> {
 }
 
 impl Session {
-    /// Hears and shows until there is an end.
+    /// Receives and shows messages until the end.
     fn hear(&mut self) -> Result<Ended, Failure> {
         let (mut reception, mut silence_told) = (Instant::now(), false);
         loop {
@@ -168,13 +168,13 @@ impl Session {
         }
     }
 
-    /// Whether it is to end, and how.
+    /// Whether to end, and how.
     fn ended(&self) -> Option<Ended> {
         let over = self.length.is_some_and(|length| self.begin.elapsed() >= length);
         if interrupt::stopped() { Some(Ended::Interrupted) } else { over.then_some(Ended::Done) }
     }
 
-    /// Waits for a line that was lost; `None` when a board answers there again.
+    /// Waits for a lost line; `None` when a board answers on it again.
     fn wait(&mut self, lost: TransportError) -> Result<Option<Ended>, Failure> {
         let (since, seconds) = (Instant::now(), self.reopen.as_secs_f64());
         let mut received = false;
@@ -194,7 +194,7 @@ impl Session {
                         return Ok(None);
                     }
                     Err(error @ ClientError::Version { .. }) => return Err(error.into()),
-                    // It may be on its way up.
+                    // The board may still be starting.
                     Err(_) => {}
                 }
             }
@@ -219,7 +219,7 @@ impl Session {
         }
     }
 
-    /// What was heard in all; the table whole.
+    /// Shows the summary and completes the table.
     fn end(&mut self) -> Result<(), Failure> {
         self.table.as_mut().map_or(Ok(()), Table::flush)?;
         self.view.say(&summary(&self.monitor, self.damaged()))
@@ -235,7 +235,7 @@ impl Session {
     }
 }
 
-/// A table that is written as it comes.
+/// A table whose rows are written at once.
 struct Table {
     path: String,
     rows: csv::Writer<Box<dyn Write>>,
@@ -257,7 +257,7 @@ impl Table {
     }
 }
 
-/// Opens a file that is written as things come: an older one is lost at once.
+/// Opens a file for writing at once; an older one is truncated.
 fn open(path: &Path) -> Result<Box<dyn Write>, Failure> {
     if path == Path::new("-") {
         return Ok(Box::new(io::stdout()));
@@ -266,7 +266,7 @@ fn open(path: &Path) -> Result<Box<dyn Write>, Failure> {
     Ok(Box::new(file))
 }
 
-/// A reader of standard output that goes away stays one; a file is named.
+/// Keeps a closed standard output recognisable; other errors name the file.
 fn failed(path: &str, error: io::Error) -> Failure {
     if path == "-" { error.into() } else { format!("can't write {path}: {error}").into() }
 }

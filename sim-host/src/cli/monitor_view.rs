@@ -1,4 +1,4 @@
-//! What `sim-host monitor` shows: a panel on a terminal, lines elsewhere.
+//! Display of `sim-host monitor`: a panel on a terminal, lines elsewhere.
 
 use super::Failure;
 use super::outputs::print;
@@ -10,16 +10,16 @@ use control::{Cause, Causes, Sample};
 use link::telemetry::Telemetry;
 use std::time::{Duration, Instant};
 
-/// Between two drawings of the panel.
+/// Shortest time between two updates of the panel.
 const DRAWN_EVERY: Duration = Duration::from_millis(100);
 
-/// Where the values go.
+/// Destination of the values.
 pub(super) enum View {
-    /// Nowhere: standard output has something else.
+    /// None: standard output is used for something else.
     None,
-    /// A panel that is drawn again and again.
+    /// A panel that is redrawn.
     Panel { term: Term, rows: usize, drawn: Option<Instant>, title: String },
-    /// A line a second, and one for every change of mode, causes, drive or lateness.
+    /// A line per second, and one for every change of mode, causes, drive or missed deadlines.
     Lines { last: Option<Telemetry>, second: f64 },
 }
 
@@ -34,7 +34,7 @@ impl View {
         Ok(View::Lines { last: None, second: f64::NEG_INFINITY })
     }
 
-    /// Something that stays on the screen.
+    /// Prints a text that stays on the screen.
     pub(super) fn say(&mut self, text: &str) -> Result<(), Failure> {
         match self {
             View::None => Ok(()),
@@ -47,7 +47,7 @@ impl View {
         }
     }
 
-    /// After each control step.
+    /// Processes a control step.
     pub(super) fn step(&mut self, monitor: &Monitor, damaged: u32) -> Result<(), Failure> {
         let (View::Lines { last, second }, Some(now)) = (self, monitor.newest) else { return Ok(()) };
         let what = |step: &Telemetry| (step.command.mode, step.command.causes, step.driven, step.late);
@@ -64,7 +64,7 @@ impl View {
         print(&format!("{}\n{}", line(monitor, &now, damaged), received.collect::<String>()))
     }
 
-    /// From time to time.
+    /// Redraws the panel; to be called periodically.
     pub(super) fn draw(&mut self, monitor: &Monitor, damaged: u32) -> Result<(), Failure> {
         let View::Panel { term, rows, drawn, title } = self else { return Ok(()) };
         if drawn.is_some_and(|drawn| drawn.elapsed() < DRAWN_EVERY) {
@@ -100,7 +100,7 @@ fn counts(monitor: &Monitor, damaged: u32) -> String {
     format!("{frames} frames, {missing} missing, {damaged} damaged, {unknown}{restarts} restarts{back}")
 }
 
-/// What was heard, in a line at the end.
+/// Counts of received frames, in a line at the end.
 pub(super) fn summary(monitor: &Monitor, damaged: u32) -> String {
     format!("{}; the board's clock at {:.3} s\n", counts(monitor, damaged), monitor.t)
 }
@@ -126,7 +126,7 @@ fn line(monitor: &Monitor, step: &Telemetry, damaged: u32) -> String {
     )
 }
 
-/// What is to be done next in the polarity check (docs/safety.md), motor off.
+/// Next action of the polarity check (docs/safety.md), motor off.
 fn todo(polarity: u8) -> &'static str {
     match polarity {
         n if n == PolarityStep::Lean as u8 => "polarity: lean the bicycle to the right",

@@ -1,4 +1,4 @@
-//! Where results go: standard output and files, all tried before the work begins.
+//! Destinations of results: standard output and files, all checked before the computation.
 
 use super::{Failure, is_broken_pipe};
 use crate::report::figure::Picture;
@@ -29,7 +29,7 @@ pub(super) struct OutputArgs {
     quiet: bool,
 }
 
-/// The tried outputs of one command.
+/// The checked outputs of one command.
 pub(super) struct Outputs {
     json: Option<Output>,
     csv: Option<Output>,
@@ -39,13 +39,13 @@ pub(super) struct Outputs {
     quiet: bool,
 }
 
-/// What there is to write; what nobody asked for is not made.
+/// The results to write; those that were not requested are not computed.
 pub(super) struct Results<D, C, S, T, F> {
     /// The JSON document.
     pub(super) document: D,
     /// The full configuration, for tables and figures.
     pub(super) config: C,
-    /// The answer in words and as a plot.
+    /// The text output and plot.
     pub(super) summary: S,
     /// The CSV table.
     pub(super) table: T,
@@ -54,13 +54,13 @@ pub(super) struct Results<D, C, S, T, F> {
 }
 
 impl OutputArgs {
-    /// Refuses figures of results that have none.
+    /// Rejects figure options of a command without figures.
     pub(super) fn refuse_figures(&self, why: &str) -> Result<(), Failure> {
         let asked = [("--svg", &self.svg), ("--png", &self.png)].into_iter().find(|(_, path)| path.is_some());
         asked.map_or(Ok(()), |(option, _)| Err(format!("{option}: {why}").into()))
     }
 
-    /// Tries every output asked for; `frames` is one of `ride`.
+    /// Checks every requested output; `frames` is an option of `ride`.
     pub(super) fn open(&self, frames: Option<&Path>) -> Result<Outputs, Failure> {
         let open = |path: &Option<PathBuf>| path.as_deref().map(Output::create).transpose();
         let outputs = Outputs {
@@ -93,7 +93,7 @@ impl Outputs {
         named.into_iter().filter_map(|(name, output)| output.as_ref().map(|o| (name, o))).collect()
     }
 
-    /// Refuses a further output that has the place of one of these.
+    /// Rejects a further output with the same destination.
     pub(super) fn refuse_place_of(&self, option: &str, further: &Output) -> Result<(), Failure> {
         match self.all().into_iter().find(|(_, output)| output.collides(further)) {
             Some((other, _)) => Err(format!("{other} and {option} have the same place to write to").into()),
@@ -101,18 +101,18 @@ impl Outputs {
         }
     }
 
-    /// Whether a progress bar may be shown.
+    /// Whether to show a progress bar.
     pub(super) fn shows_progress(&self) -> bool {
         !self.quiet
     }
 
-    /// Writes the frames, if they were asked for.
+    /// Writes the frames, if requested.
     pub(super) fn write_frames(&self, frames: impl FnOnce() -> Vec<u8>) -> Result<(), Failure> {
         self.frames.as_ref().map_or(Ok(()), |output| Ok(output.finish(&frames())?))
     }
 
-    /// Writes everything else that was asked for, the text for people last. What can't be written costs
-    /// nothing else, and a reader of standard output that goes away, like `head`, no file.
+    /// Writes all other requested results, the text output last. A failed output does not prevent the others; neither
+    /// does a reader such as `head` that closes standard output.
     pub(super) fn write<D, C, S, T, F>(&self, results: Results<D, C, S, T, F>) -> Result<(), Failure>
     where
         D: Serialize,
@@ -137,7 +137,7 @@ impl Outputs {
         self.ended(done, summary)
     }
 
-    /// The same for results that have no figure, which [`OutputArgs::refuse_figures`] has refused before.
+    /// Writes results without a figure; [`OutputArgs::refuse_figures`] has rejected figures before.
     pub(super) fn write_data(
         &self,
         document: &impl Serialize,
@@ -147,7 +147,7 @@ impl Outputs {
         self.ended(self.data(document, table), summary)
     }
 
-    /// The document and the table, where they were asked for.
+    /// Writes the document and the table, if requested.
     fn data(
         &self,
         document: &impl Serialize,
@@ -161,7 +161,7 @@ impl Outputs {
         json.into_iter().chain(csv).collect()
     }
 
-    /// The text for people, and what could not be written.
+    /// Writes the text output, and reports failed outputs.
     fn ended(
         &self,
         mut done: Vec<Result<(), Failure>>,
@@ -170,28 +170,28 @@ impl Outputs {
         if !self.quiet && !self.all().iter().any(|(_, output)| output.is_standard()) {
             done.push(print(&summary()));
         }
-        // A closed pipe is forgiven, so it comes last.
+        // A closed pipe is no failure, so it comes last.
         let failures = done.into_iter().filter_map(Result::err);
         failures.min_by_key(|e| is_broken_pipe(&**e)).map_or(Ok(()), Err)
     }
 }
 
-/// A document as JSON.
+/// Writes a document as JSON.
 pub(super) fn write_json(output: &Output, document: &impl Serialize) -> Result<(), Failure> {
     Ok(output.finish((serde_json::to_string_pretty(document)? + "\n").as_bytes())?)
 }
 
-/// Text to standard output; a closed pipe is an error of its own kind, not a panic.
+/// Prints text to standard output; a closed pipe is a distinct error, not a panic.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     Ok(Output::create(Path::new("-"))?.finish(text.as_bytes())?)
 }
 
-/// A line to standard error; nobody may be there to read it, which is no reason to panic.
+/// Prints a line to standard error; ignores a closed standard error.
 pub(super) fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 
-/// The same, but not again: the cells of a sweep have a lot in common.
+/// Prints a line to standard error once: the cells of a sweep repeat their warnings.
 pub(super) fn complain_once(text: &str) {
     static SAID: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
     if SAID.lock().unwrap_or_else(PoisonError::into_inner).insert(text.into()) {

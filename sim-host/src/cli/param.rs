@@ -50,10 +50,10 @@ Example:
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
-    /// The board's parameters: value, unit, what is allowed, default where it is another
+    /// The board's parameters: value, unit, allowed values, and the default if it differs
     #[command(group = board(), after_help = LIST_HELP)]
     List {
-        /// Only those with this in their name
+        /// Only parameters with this text in their name
         #[arg(default_value = "")]
         filter: String,
         /// Write JSON to FILE, or to standard output (also -)
@@ -81,22 +81,22 @@ pub(super) enum Command {
         #[command(flatten)]
         port: PortArgs,
     },
-    /// Keeps all parameters in the board's flash
+    /// Stores all parameters in the board's flash
     #[command(group = board(), after_help = "Example:\n  sim-host param store --port /dev/ttyACM0")]
     Store {
         #[command(flatten)]
         port: PortArgs,
     },
-    /// All parameters to their defaults, not yet stored
+    /// Sets all parameters to their defaults, without storing them
     #[command(group = board(), after_help = "Example:\n  sim-host param reset --port /dev/ttyACM0")]
     Reset {
         #[command(flatten)]
         port: PortArgs,
     },
-    /// All parameters as a file for `param import` and --parameters
+    /// Exports all parameters to a file for `param import` and --parameters
     #[command(group = board(), after_help = "Example:\n  sim-host param export board.toml --port /dev/ttyACM0")]
     Export {
-        /// Written to; - is standard output
+        /// Output file; - is standard output
         #[arg(default_value = "-")]
         file: PathBuf,
         #[command(flatten)]
@@ -105,7 +105,7 @@ pub(super) enum Command {
     /// Sets all parameters of a file, or none, and reads them back
     #[command(group = board(), before_help = parameter_file::HELP, after_help = IMPORT_HELP)]
     Import {
-        /// As `param export` writes it
+        /// A file written by `param export`
         file: PathBuf,
         #[command(flatten)]
         port: PortArgs,
@@ -149,7 +149,7 @@ fn list(filter: &str, json: Option<&PathBuf>, port: &PortArgs) -> Result<(), Fai
     print(&text)
 }
 
-/// A parameter as a line, and the points of a law that is a table below it.
+/// A parameter as a line, followed by the points of a law that is a table.
 fn line(settings: &Settings, one: &Parameter) -> String {
     let default =
         if one.has(one.default) { String::new() } else { format!("; default {}", one.text(one.default)) };
@@ -213,7 +213,7 @@ fn import(path: &std::path::Path, port: &PortArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Sets what is wanted and tells what came of it; those of `always` also where nothing changed.
+/// Sets the wanted settings and prints the result; the settings in `always` are printed even if unchanged.
 fn apply(client: &mut Client, before: &Settings, wanted: &[Setting], always: &[&str]) -> Result<(), Failure> {
     let Tuned { now, set, differing } = tune(client, before, wanted)?;
     let mut text = String::new();

@@ -1,4 +1,4 @@
-//! Parameters of the flashed code in a file: what a board exports, and what board and simulator take.
+//! Files of firmware parameters: exported from a board, read by board commands and simulator.
 
 use super::law;
 use crate::board::parameter::{law_bytes, law_name, law_points};
@@ -10,7 +10,7 @@ use link::frame::CRC;
 use std::fmt::Write;
 use std::path::Path;
 
-/// For help texts.
+/// Description of the files, for help texts.
 pub(super) const HELP: &str = "\
 FILE is TOML: `law`, a name as of --law or a table of speed_m_s and gain_nm_s_rad, and a table
 `parameters` of names and values as of --set. Either may be missing, and any parameter, but not all. An
@@ -22,26 +22,26 @@ struct File {
     law: Option<toml::Value>,
     #[serde(default)]
     parameters: toml::Table,
-    /// Where they come from.
+    /// Source of the values.
     #[serde(default, rename = "source")]
     _source: Option<String>,
-    /// Of an export: how many parameters it has.
+    /// In an export: number of its parameters.
     count: Option<usize>,
-    /// Of an export: the check value of law and parameters.
+    /// In an export: checksum of law and parameters.
     checksum: Option<String>,
 }
 
-/// What a file says.
+/// Content of a file.
 pub(super) struct ParameterFile {
     path: String,
     /// The law.
     pub(super) law: Option<Law>,
-    /// Values by key, in the words of `--set`.
+    /// Values by key, in the form of `--set`.
     pub(super) values: Vec<(String, String)>,
 }
 
 impl ParameterFile {
-    /// Reads a file; that its parameters exist and may have these values is not checked yet.
+    /// Reads a file, without checking that its parameters exist and allow these values.
     pub(super) fn read(path: &Path) -> Result<Self, String> {
         let path = path.display().to_string();
         let text = std::fs::read_to_string(&path).map_err(|e| format!("can't read {path}: {e}"))?;
@@ -68,7 +68,7 @@ impl ParameterFile {
         Ok(read)
     }
 
-    /// Whether all is there that an export had.
+    /// Checks that an export is complete.
     fn check(&self, count: Option<usize>, checksum: Option<&str>) -> Result<(), String> {
         let (path, found) = (&self.path, self.values.len());
         if found == 0 && self.law.is_none() {
@@ -89,7 +89,8 @@ impl ParameterFile {
         }
     }
 
-    /// The check value of law and parameters: CRC-32 of the law's bytes and of a line `KEY=WORDS` each, by key.
+    /// Checksum of law and parameters: CRC-32 of the law's bytes and of a line `KEY=WORDS` per parameter, sorted by
+    /// key.
     fn checksum(&self) -> String {
         let mut lines: Vec<String> =
             self.values.iter().map(|(key, words)| format!("{key}={words}\n")).collect();
@@ -99,8 +100,8 @@ impl ParameterFile {
         format!("{:08x}", CRC.checksum(&bytes))
     }
 
-    /// Puts its parameters into a simulated controller. The calibration is that of the board alone: it is checked, and
-    /// left out.
+    /// Sets the parameters in a simulated controller. The calibration belongs to the board: it is checked and not
+    /// applied.
     pub(super) fn apply(&self, config: &mut Config) -> Result<(), String> {
         let calibration = config.calibration;
         let known = parameters::list(config);
@@ -116,7 +117,7 @@ impl ParameterFile {
     }
 }
 
-/// A value in the words of `--set`.
+/// A value in the form of `--set`.
 fn words(value: &toml::Value) -> Option<String> {
     match value {
         toml::Value::String(word) => Some(word.clone()),
@@ -127,10 +128,10 @@ fn words(value: &toml::Value) -> Option<String> {
     }
 }
 
-/// A file of all that a board has, with `remark` as its first line.
+/// The text of a file with all settings of a board; `remark` is its first line.
 ///
 /// # Errors
-/// When what is written can't be read again.
+/// The written text cannot be read back.
 pub(super) fn text(settings: &Settings, remark: &str) -> Result<String, String> {
     let body = body(settings);
     let read = ParameterFile::of_text("export", &body)?;

@@ -1,4 +1,4 @@
-//! `sim-host pil`: a ride with its control step on a board in QEMU.
+//! `sim-host pil`: a ride whose control step runs on a board in QEMU.
 
 use super::conditions::Setup;
 use super::outputs::{complain, print};
@@ -32,7 +32,7 @@ pub(super) struct Args {
 
 #[derive(clap::Subcommand)]
 enum Command {
-    /// The basin of attraction, every ride on a board
+    /// The basin of attraction, with every ride on a board
     Basin(Box<pil_basin::Args>),
 }
 
@@ -43,27 +43,27 @@ struct RideArgs {
     ride: ride::Args,
     #[command(flatten)]
     board: BoardArgs,
-    /// Ride it five times, and tell how fast, as the median
+    /// Ride five times and print the median speed
     #[arg(long, conflicts_with = "compare")]
     bench: bool,
 }
 
-/// Which board, over which link.
+/// The board and its link.
 #[derive(clap::Args)]
 pub(super) struct BoardArgs {
     /// The board's image [default: where `cargo xtask firmware` builds it]
     #[arg(long, value_name = "FILE")]
     image: Option<PathBuf>,
-    /// The link goes wrong, for example sensors:late=3ms@1s..2s or motor:drop@1s; may be repeated
+    /// Inject a fault into the link, for example sensors:late=3ms@1s..2s or motor:drop@1s; may be repeated
     #[arg(long, value_name = "WAY:HARM@FROM..TO", conflicts_with = "compare")]
     inject: Vec<String>,
-    /// Do the same in this program, and fail at the first bit that differs
+    /// Compute the same on the host, and fail at the first differing bit
     #[arg(long)]
     pub(super) compare: bool,
 }
 
 impl BoardArgs {
-    /// What starts a board and its controller for rides under these conditions, checked.
+    /// A function that starts a board with its controller for rides under these conditions, which are checked.
     pub(super) fn starter(
         &self,
         setup: &Setup,
@@ -135,12 +135,12 @@ fn on_board(args: &RideArgs) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
-/// How many times as fast as in real time.
+/// Speed relative to real time.
 fn speed(steps: u64, seconds: f64) -> f64 {
     steps as f64 * 1e-3 / seconds
 }
 
-/// What a controller did in so many seconds, in words.
+/// Summary of a controller's counts and speed over `seconds`.
 fn received(controller: &Controller<Qemu>, seconds: f64) -> String {
     let tally = controller.tally();
     let steps = tally.steps;

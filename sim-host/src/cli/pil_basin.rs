@@ -1,4 +1,4 @@
-//! `sim-host pil basin`: a basin whose every ride has its control step on a board in QEMU.
+//! `sim-host pil basin`: a basin with the control step of every ride on a board in QEMU.
 
 use super::basin::{BasinArgs, Computed, progress, write};
 use super::pil::BoardArgs;
@@ -32,7 +32,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let searched = search.search(conditions.ridden())?;
     let start_board = args.board.starter(&setup)?;
     let outputs = outputs.open(None)?;
-    // One is tried before the work begins; each thread has one of its own.
+    // One board is started first, to detect errors early; each thread has its own.
     let boards = Mutex::new(vec![start_board()?]);
     let ride = |starts: &[_]| -> Result<_, RemoteError> {
         let idle = locked(&boards).pop();
@@ -67,7 +67,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(ended)
 }
 
-/// What the boards did in so many seconds, in words.
+/// Summary of the boards' counts and speed over `seconds`.
 fn received(boards: &[Controller<Qemu>], seconds: f64) -> String {
     let sum = |of: fn(Tally) -> u64| boards.iter().map(|board| of(board.tally())).sum::<u64>();
     let (steps, harmed) = (sum(|t| t.steps), sum(|t| t.harmed));
@@ -87,7 +87,7 @@ fn received(boards: &[Controller<Qemu>], seconds: f64) -> String {
     said
 }
 
-/// The boards, whatever happened to a thread that held them.
+/// Locks the boards, even if a thread panicked while holding them.
 fn locked(boards: &Mutex<Vec<Controller<Qemu>>>) -> std::sync::MutexGuard<'_, Vec<Controller<Qemu>>> {
     boards.lock().unwrap_or_else(PoisonError::into_inner)
 }

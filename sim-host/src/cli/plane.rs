@@ -1,4 +1,4 @@
-//! `sim-host basin plane`.
+//! `sim-host basin plane`: a basin over steer rate and roll rate at one speed.
 
 use super::basin::{ThreadArgs, progress};
 use super::conditions::ConditionArgs;
@@ -29,7 +29,7 @@ pub(super) struct Args {
     /// Forward speed, in m/s
     #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
     speed: f64,
-    /// Directions over half a turn, 2 to 10000; the other half mirrors
+    /// Number of directions over half a turn, 2 to 10000; the other half is the mirror image
     #[arg(long, default_value_t = 60, value_name = "N")]
     rays: usize,
     /// Largest steer rate tried, in rad/s
@@ -38,10 +38,10 @@ pub(super) struct Args {
     /// Largest roll rate tried, in rad/s
     #[arg(long, default_value_t = 4.0, value_name = "RAD/S", allow_negative_numbers = true)]
     max_roll_rate: f64,
-    /// Rides of the scan along each ray; what is narrower than their distance can be missed
+    /// Rides of the scan along each ray; an island or gap narrower than their distance can be missed
     #[arg(long, default_value_t = 80, value_name = "N")]
     points: usize,
-    /// How closely borders are located, as a part of a ray
+    /// Accuracy of borders, as a fraction of a ray
     #[arg(long, default_value_t = 0.0005, value_name = "PART", allow_negative_numbers = true)]
     ray_tolerance: f64,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! The options that say how sensors and motor depart from exact ones, and what goes wrong.
+//! The options for sensor and motor errors and for faults.
 
 use crate::plant::sensor_file::{EXACT, SHIPPED, SensorFile, table_of};
 use crate::plant::{
@@ -7,37 +7,37 @@ use crate::plant::{
 use crate::range::time;
 use std::path::Path;
 
-/// Longest delay of the motor, and of all sensors together \[s\].
+/// Longest delay of the motor, and of all sensors in common \[s\].
 pub(super) const LONGEST_S: f64 = 1.0;
-/// No departure and no fault, as the value of a sweep's reference cell.
+/// No error and no fault: the value for a sweep's reference cell.
 const NONE: &str = "none";
 /// Longest delay of one sensor \[s\].
 const LONGEST_SENSOR_S: f64 = 5.0;
 
 #[derive(clap::Args)]
 pub(super) struct PlantArgs {
-    /// Departs sensors from the truth: models of real ones by name or FILE, several joined by +; or NAME:KEY=VALUE,... as
+    /// Sensor errors: models of real sensors by name or FILE, several joined by +; or NAME:KEY=VALUE,... for example
     /// gyro:noise=0.01,bias=0.02,delay=5ms or front-wheel:model=hall-16; or none; may be repeated
     #[arg(long, value_name = "MODEL|NAME:KEY=VALUE,...", allow_hyphen_values = true)]
     sensor: Vec<String>,
-    /// Motor, steer friction and end-stop: none, davis, gazelle, a FILE, and KEY=VALUE to change it
+    /// Motor, steer friction and end stop: none, davis, gazelle, a FILE, and KEY=VALUE to change values
     #[arg(long, value_name = "NAME|FILE|KEY=VALUE,...", default_value = "none", allow_hyphen_values = true)]
     actuator: String,
-    /// Something goes wrong, for example gyro.x:stuck@1.5s..2s or motor:dead@1s, or none; may be repeated
+    /// Inject a fault, for example gyro.x:stuck@1.5s..2s or motor:dead@1s, or none; may be repeated
     #[arg(long, value_name = "CHANNEL:KIND@FROM..TO", allow_hyphen_values = true)]
     fault: Vec<String>,
-    /// Seed of noise and dropouts; every ride's differ, by its start
+    /// Seed of noise and dropouts; each ride derives its own from its initial state
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
 }
 
 impl PlantArgs {
-    /// What may name a file.
+    /// Values that can name a file.
     pub(super) fn files(&self) -> impl Iterator<Item = &str> {
         self.sensor.iter().chain([&self.actuator]).map(String::as_str)
     }
 
-    /// The plant asked for, with a control period of `period_s`.
+    /// The requested plant with a control period of `period_s`.
     pub(super) fn plant(&self, period_s: f64) -> Result<Plant, String> {
         let mut sensors = SensorConfig::default();
         for text in self.sensor.iter().filter(|text| *text != NONE) {
@@ -53,10 +53,10 @@ impl PlantArgs {
     }
 }
 
-/// Whole control periods in a time.
+/// Number of control periods in a time, which must be an integer.
 pub(super) fn whole_ticks(name: &str, time_s: f64, period_s: f64, most_s: f64) -> Result<u16, String> {
     let ticks = time_s / period_s;
-    // The ranges are those of a control period of 1 ms.
+    // The ranges refer to a control period of 1 ms.
     if ticks > most_s * 1e3 {
         return Err(format!("{name} {} ms is outside 0 to {} ms", time_s * 1e3, most_s * period_s * 1e6));
     }
@@ -86,7 +86,7 @@ fn ticks(key: &str, value: &str, period_s: f64, most_s: f64) -> Result<u16, Stri
     whole_ticks(key, time(value, most_s)?, period_s, most_s)
 }
 
-/// Takes in one `NAME[.AXIS]:KEY=VALUE,...`.
+/// Applies one `NAME[.AXIS]:KEY=VALUE,...`.
 fn depart(sensors: &mut SensorConfig, text: &str, period_s: f64) -> Result<(), String> {
     let Some((place, settings)) = text.split_once(':') else {
         return text.split('+').try_for_each(|name| models(sensors, name, period_s));
@@ -136,7 +136,7 @@ fn depart(sensors: &mut SensorConfig, text: &str, period_s: f64) -> Result<(), S
     Ok(())
 }
 
-/// Takes in every model of a file.
+/// Applies all models of a file.
 fn models(sensors: &mut SensorConfig, name: &str, period_s: f64) -> Result<(), String> {
     if name == EXACT {
         return Ok(());
@@ -151,7 +151,7 @@ fn models(sensors: &mut SensorConfig, name: &str, period_s: f64) -> Result<(), S
     SensorFile::load(name).map_err(|e| e.0)?.apply(sensors, period_s)
 }
 
-/// The model that a file has for a sensor.
+/// A file's model of a sensor.
 fn model_of(sensor: Sensor, name: &str, period_s: f64) -> Result<SensorModel, String> {
     if name == EXACT {
         return Ok(SensorModel::default());
@@ -180,7 +180,7 @@ fn mount(imu: &mut ImuMount, key: &str, value: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// The actuator of `NAME|FILE|KEY=VALUE,...`.
+/// Parses the actuator from `NAME|FILE|KEY=VALUE,...`.
 fn actuator(text: &str, period_s: f64) -> Result<ActuatorConfig, String> {
     let (name, settings) = match text.split_once(',') {
         _ if text.split(',').next().is_some_and(|first| first.contains('=')) => ("none", Some(text)),

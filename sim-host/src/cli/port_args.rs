@@ -1,4 +1,4 @@
-//! The options that say where a board is.
+//! The options that select the board and its line.
 
 use super::Failure;
 use crate::board::demo_board::DemoBoard;
@@ -9,30 +9,30 @@ use crate::board::{BoardName, Client, Patience, Transport};
 use clap::ArgGroup;
 use std::path::PathBuf;
 
-/// One board must be named.
+/// Group of the options of which one must name a board.
 pub(super) fn board() -> ArgGroup {
     ArgGroup::new("board").required(true).args(["port", "qemu", "virtual_board"])
 }
 
-/// Options of all commands that speak with a board.
+/// Options of all commands that connect to a board.
 #[derive(clap::Args)]
 pub(super) struct PortArgs {
-    /// Serial port of the board, as /dev/ttyACM0
+    /// Serial port of the board, for example /dev/ttyACM0
     #[arg(long, value_name = "DEVICE")]
     port: Option<String>,
     /// The board's image in QEMU, on a bicycle that rolls upright at 4 m/s [default IMAGE: where `cargo xtask firmware` builds it]
     #[arg(long, value_name = "IMAGE", require_equals = true)]
     qemu: Option<Option<PathBuf>>,
-    /// The image that is flashed, on the virtual board [default IMAGE: where `cargo xtask firmware` builds it]
+    /// The flashed image on the virtual board [default IMAGE: where `cargo xtask firmware` builds it]
     #[arg(long, value_name = "IMAGE", require_equals = true)]
     virtual_board: Option<Option<PathBuf>>,
-    /// Baud rate of the serial port; means nothing over USB
+    /// Baud rate of the serial port; no effect over USB
     #[arg(long, default_value_t = 115_200, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(300..=4_000_000))]
     baud: u32,
 }
 
 impl PortArgs {
-    /// Opens the line; none if no board is named.
+    /// Opens the line; `None` if no board is named.
     pub(super) fn open(&self) -> Result<Option<Box<dyn Transport>>, Failure> {
         match (&self.port, &self.qemu, &self.virtual_board) {
             (Some(port), ..) => Ok(Some(Box::new(Serial::open(port, self.baud)?))),
@@ -46,7 +46,7 @@ impl PortArgs {
         }
     }
 
-    /// The board and who it is, asked first: it tells whether both speak the same version.
+    /// Connects to the board and requests its identity, which also checks the version of the link.
     pub(super) fn connect(&self) -> Result<(Client, BoardName), Failure> {
         let line = self.open()?.ok_or("no board is named; see --port, --qemu and --virtual-board")?;
         let mut client = Client::new(line, Patience::default());

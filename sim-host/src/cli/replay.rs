@@ -1,4 +1,4 @@
-//! `sim-host replay`.
+//! `sim-host replay`: replays recorded rides through the firmware's control code.
 
 use super::conditions::Preset;
 use super::interrupt;
@@ -48,13 +48,13 @@ pub(super) struct Args {
     /// Recordings
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// What the columns mean: the name of a map that ships, or a FILE [default: by the columns]
+    /// Assignment of the columns: the name of a built-in map, or a FILE [default: by the columns]
     #[arg(long, value_name = "NAME|FILE")]
     map: Option<String>,
     /// Database that decodes CAN frames; may be repeated
     #[arg(long, value_name = "FILE")]
     dbc: Vec<PathBuf>,
-    /// Refuse a recording for the first line that can't be used, instead of using the rest
+    /// Reject a recording at the first unusable line, instead of using the rest
     #[arg(long)]
     strict: bool,
     /// Between two samples: hold the older, or interpolate [default: the map's]
@@ -63,7 +63,7 @@ pub(super) struct Args {
     /// Longest time between two samples that is interpolated, in seconds
     #[arg(long, value_name = "S", default_value_t = 0.5, value_parser = positive)]
     longest_gap: f64,
-    /// When the switch is pressed in a recording without one
+    /// When to press the switch in a recording without one
     #[arg(long, default_value = "again")]
     press: Press,
     /// Defaults of the parameters
@@ -72,16 +72,16 @@ pub(super) struct Args {
     /// Roll-rate law, as in `ride` [default: product: h-cut; thesis: h]
     #[arg(long)]
     law: Option<String>,
-    /// Bicycle whose geometry the flashed code is told: shipped, FILE, or FILE#NAME
+    /// Bicycle whose geometry the firmware is configured with: built-in, FILE, or FILE#NAME
     #[arg(long, value_name = "NAME|FILE")]
     bicycle: Option<String>,
-    /// Law and parameters from a file, as `param export` writes it; --law and --set win
+    /// Law and parameters from a file, as written by `param export`; --law and --set have precedence
     #[arg(long, value_name = "FILE")]
     parameters: Option<PathBuf>,
-    /// Any parameter of the flashed code, as cross.yaw_rad_s=1; may be repeated
+    /// Any parameter of the firmware, for example cross.yaw_rad_s=1; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Something goes wrong beside what was recorded, for example gyro:flip@2s; may be repeated
+    /// Inject a fault into the recorded data, for example gyro:flip@2s; may be repeated
     #[arg(long, value_name = "CHANNEL:KIND@FROM..TO", allow_hyphen_values = true)]
     fault: Vec<String>,
     /// Seed of the faults' noise and dropouts
@@ -90,7 +90,7 @@ pub(super) struct Args {
     /// Time between two rows of the table, in seconds
     #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = positive)]
     every: f64,
-    /// Write the frames that the flashed code got, 81 bytes each, for the chip; one recording only
+    /// Write the frames that the firmware received, 81 bytes each, for the chip; one recording only
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
     #[command(flatten)]
@@ -106,7 +106,7 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What all recordings have in common.
+/// Data common to all recordings.
 struct Common {
     config: Config,
     law_name: String,
@@ -115,7 +115,7 @@ struct Common {
     map: Option<Map>,
 }
 
-/// One recording, done.
+/// Result of one recording.
 struct Done {
     result: ReplayResult,
     config: ReplayConfig,
@@ -259,7 +259,7 @@ fn one(args: &Args, common: &Common, path: &Path) -> Result<Done, Failure> {
     Ok(Done { result, config, frames: kept })
 }
 
-/// Frames as they were written, bit for bit; the switch is the one in them.
+/// Replays recorded frames bit for bit, with the switch that they contain.
 fn replay_frames(args: &Args, common: &Common, path: &Path, name: String) -> Result<Done, Failure> {
     if !common.faults.is_empty() {
         return Err(format!("{name}: --fault acts on recordings of samples, not on frames").into());

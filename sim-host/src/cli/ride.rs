@@ -1,4 +1,4 @@
-//! `sim-host ride`.
+//! `sim-host ride`: one ride after a disturbance.
 
 use super::conditions::{ConditionArgs, Setup};
 use super::outputs::{OutputArgs, Outputs, Results};
@@ -23,7 +23,7 @@ Examples:
   sim-host ride --rider smart --law h --speed 4 --steer-rate 5
   sim-host ride --preset product --speed 3 --roll-rate 0.5 --json";
 
-/// Options of `ride`, and of a ride on a board.
+/// Options of `ride` and of a ride on a board.
 #[derive(clap::Args)]
 pub(super) struct Args {
     #[command(flatten)]
@@ -37,7 +37,7 @@ pub(super) struct Args {
     /// Roll rate at the start, in rad/s, right positive
     #[arg(long, default_value_t = 0.0, value_name = "RAD/S", allow_negative_numbers = true)]
     roll_rate: f64,
-    /// Write the sensor frames as the firmware got them, 81 bytes each, for replay on the chip
+    /// Write the sensor frames that the firmware received, 81 bytes each, for replay on the chip
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
     #[command(flatten)]
@@ -45,9 +45,9 @@ pub(super) struct Args {
 }
 
 impl Args {
-    /// How the ride begins, checked.
+    /// The checked initial state.
     pub(super) fn start(&self) -> Result<Start, Failure> {
-        // Without it no command but a subcommand gets here.
+        // Only a subcommand can omit it.
         let speed_m_s = self.speed.ok_or("--speed must be given")?;
         within("--speed (m/s)", speed_m_s, -30.0, 30.0)?;
         within("--steer-rate (rad/s)", self.steer_rate, -100.0, 100.0)?;
@@ -55,13 +55,13 @@ impl Args {
         Ok(Start { speed_m_s, steer_rate_rad_s: self.steer_rate, roll_rate_rad_s: self.roll_rate })
     }
 
-    /// Tries every output asked for.
+    /// Checks every requested output.
     pub(super) fn open(&self) -> Result<Outputs, Failure> {
         self.outputs.open(self.frames.as_deref())
     }
 }
 
-/// Refuses to ride backwards with what is made for riding forward.
+/// Rejects a backward ride with assist or rider, which are defined for forward riding only.
 ///
 /// # Errors
 /// Assist or rider at a negative speed.
@@ -88,7 +88,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
-/// Writes a ride with its trace and the frames its controller got; `said` is added to the text.
+/// Writes a ride with its trace and the frames of its controller; `said` is added to the text.
 pub(super) fn write(
     setup: &Setup,
     outputs: &Outputs,
@@ -153,12 +153,12 @@ fn summary(ride: &Ride, conditions: &Conditions) -> String {
     text
 }
 
-/// Two digits after the point, zero without a sign.
+/// Two digits after the decimal point; zero without a sign.
 fn hundredths(x: f64) -> String {
     format!("{:.2}", (x * 100.0).round() / 100.0 + 0.0)
 }
 
-/// Why a ride counts as fallen: ": roll passed 90 deg".
+/// Reason of a fall: ": roll passed 90 deg".
 fn reason(fall: &FallCriterion, ride: &Ride) -> String {
     let passed = |what, rad: f64| format!(": {what} passed {:.0} deg", rad.to_degrees());
     match ride.outcome.fall() {
@@ -173,7 +173,7 @@ fn reason(fall: &FallCriterion, ride: &Ride) -> String {
     }
 }
 
-/// What counts as laid flat: "roll beyond 80 deg and no fall by 90 deg within 1 s".
+/// Definition of laid flat: "roll beyond 80 deg and no fall by 90 deg within 1 s".
 pub(super) fn laid_flat(fall: &FallCriterion) -> String {
     let Some(LaidFlat { roll_rad, lasting_s }) = fall.flat else { return String::new() };
     let [flat, full] = [roll_rad, fall.roll_rad].map(f64::to_degrees);

@@ -28,16 +28,16 @@ Examples:
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
-    /// The riders that ship
+    /// The built-in riders
     #[command(after_help = "Example:\n  sim-host rider list")]
     List,
-    /// One rider's gains, their course over speed and how well it fits (R^2)
+    /// One rider's gains, their fits over speed and the coefficients of determination (R^2)
     #[command(after_help = SHOW_HELP)]
     Show(ShowArgs),
     /// Checks a rider's table
     #[command(after_help = "Example:\n  sim-host rider check my-rider.toml")]
     Check {
-        /// Shipped rider or FILE
+        /// Built-in rider or FILE
         #[arg(value_name = "NAME|FILE")]
         rider: String,
     },
@@ -45,10 +45,10 @@ pub(super) enum Command {
 
 #[derive(clap::Args)]
 pub(super) struct ShowArgs {
-    /// Shipped rider or FILE
+    /// Built-in rider or FILE
     #[arg(value_name = "NAME|FILE")]
     rider: String,
-    /// Only this course of the gains over speed [default: all that the table allows]
+    /// Only this fit of the gains over speed [default: all that the table allows]
     #[arg(long)]
     gains: Option<Fit>,
     /// Write JSON to FILE, or to standard output (also -)
@@ -68,12 +68,12 @@ pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
-/// So many things: "1 set", "2 sets".
+/// A number with its noun: "1 set", "2 sets".
 fn counted(n: usize, thing: &str) -> String {
     format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
 }
 
-/// Sets, groups, speeds, delay and muscles in a line.
+/// Sets, groups, speeds, delay and neuromuscular dynamics in a line.
 fn summary(t: &RiderTable) -> String {
     let (first, last) = (&t.rows[0], &t.rows[t.rows.len() - 1]);
     format!(
@@ -98,7 +98,7 @@ fn list() -> Result<(), Failure> {
     print(&text)
 }
 
-/// The fits a table allows: those asked for must be, of all the others those that can.
+/// The fits of a table: the requested one, which must be possible, or all possible ones.
 fn fits(table: &RiderTable, asked: Option<Fit>) -> Result<Vec<Fit>, Failure> {
     let possible = |fit: &Fit| table.schedule(*fit, Outside::default());
     if let Some(fit) = asked {

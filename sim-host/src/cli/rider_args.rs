@@ -1,4 +1,4 @@
-//! The options that say who rides.
+//! The options that select the rider.
 
 use super::Failure;
 use super::outputs::complain_once;
@@ -7,10 +7,10 @@ use crate::rider::{Fit, MAX_DELAY_S, Outside, Rider, RiderTable, catalogue};
 
 #[derive(clap::Args)]
 pub(super) struct RiderArgs {
-    /// Who rides: a shipped rider (see `rider list`), a table FILE, or none [default: none, a rigid rider, hands off]
+    /// Rider: a built-in one (see `rider list`), a table FILE, or none [default: none, a rigid rider, hands off]
     #[arg(long, value_name = "NAME|FILE")]
     rider: Option<String>,
-    /// How the rider's gains become continuous over speed [default: mean]
+    /// Fit of the rider's gains over speed [default: mean]
     #[arg(long, requires = "rider")]
     gains: Option<Fit>,
     /// The rider's neural delay, 0 to 1 s, for example 60ms [default: the table's own]
@@ -26,12 +26,12 @@ fn delay(text: &str) -> Result<f64, String> {
 }
 
 impl RiderArgs {
-    /// The rider's name, or file, if there is to be one.
+    /// The rider's name or file; `None` without a rider.
     pub(super) fn name(&self) -> Option<&str> {
         self.rider.as_deref().filter(|name| *name != "none")
     }
 
-    /// The rider asked for, with the table and the fit behind it.
+    /// The requested rider, with its table and fit.
     pub(super) fn load(&self) -> Result<Option<(Rider, RiderTable, Fit)>, Failure> {
         let Some(name) = self.name() else { return Ok(None) };
         let (fit, outside) = (self.gains.unwrap_or_default(), self.gains_outside.unwrap_or_default());
@@ -43,8 +43,8 @@ impl RiderArgs {
     }
 }
 
-/// The integration step of which `delay_s` is a whole number, `period_s` if it can be. The firmware
-/// fixes it to its control period; otherwise a shorter one is found and told on standard error.
+/// An integration step that divides `delay_s`, `period_s` if possible. With the firmware it must be the control period;
+/// otherwise a shorter step is chosen, with a note on standard error.
 pub(super) fn step(delay_s: f64, period_s: f64, firmware: bool) -> Result<f64, String> {
     let ms = |s: f64| format!("{} ms", (s * 1e9).round() / 1e6);
     let periods = delay_s / period_s;

@@ -1,11 +1,11 @@
-//! Ranges of speeds: `A:B:STEP` with B included, or a single value.
+//! Parses ranges of speeds: `A:B:STEP` with B included, or a single value.
 
-/// The speeds a text stands for \[m/s\], not below 0.
+/// The speeds in a text \[m/s\], at least 0.
 pub(super) fn parse(text: &str) -> Result<Vec<f64>, String> {
     within(text, 0.0)
 }
 
-/// The same, also backwards.
+/// The speeds in a text \[m/s\], including negative ones.
 pub(super) fn parse_signed(text: &str) -> Result<Vec<f64>, String> {
     within(text, -30.0)
 }
@@ -18,7 +18,7 @@ fn within(text: &str, least: f64) -> Result<Vec<f64>, String> {
     };
     let parts: Vec<&str> = text.split(':').collect();
     let speeds = match parts[..] {
-        // Plus zero, so that -0 is no speed of its own.
+        // Adding zero turns -0 into 0.
         [one] => vec![number(one)? + 0.0],
         [from, to, step] => {
             let (from, to, step) = (number(from)?, number(to)?, number(step)?);
@@ -29,7 +29,7 @@ fn within(text: &str, least: f64) -> Result<Vec<f64>, String> {
             if n > 1e5 {
                 return Err(format!("the range {text} has {n} speeds; at most 100000"));
             }
-            // Rounded to a billionth, so that 0.1 steps read 0.3 and not 0.30000000000000004.
+            // Rounded to a billionth, so that steps of 0.1 give 0.3 and not 0.30000000000000004.
             (0..=n as usize).map(|i| ((from + i as f64 * step) * 1e9).round() / 1e9 + 0.0).collect()
         }
         _ => return Err(format!("expected A:B:STEP or one speed, not {text}")),

@@ -19,16 +19,16 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// A shipped study (see `studies`), or FILE
+    /// A built-in study (see `studies`), or FILE
     #[arg(value_name = "NAME|FILE")]
     study: String,
-    /// Folder of what is computed; the sweeps of the same study are gone on with
+    /// Folder of the results; interrupted sweeps of the same study in it are continued
     #[arg(long, default_value = "study", value_name = "DIR")]
     pub(super) out: PathBuf,
     /// Folder of the page, studies/NAME.md, and its figures [default: that of --out]
     #[arg(long, value_name = "DIR")]
     pages: Option<PathBuf>,
-    /// Coarser speeds; `prototype` only
+    /// Coarser speeds; for `prototype` only
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -73,7 +73,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
 }
 
-/// The prototype's page; `None` if it was interrupted.
+/// The prototype's page; `None` if interrupted.
 fn prototype(args: &Args) -> Result<Option<Page>, String> {
     interrupt::install();
     let search = prototype::search(if args.quick { 1.1 } else { 0.25 });
@@ -83,7 +83,7 @@ fn prototype(args: &Args) -> Result<Option<Page>, String> {
     page
 }
 
-/// A study that is one page and a figure beside it.
+/// A study with a single page and figure.
 fn one_page(
     args: &Args,
     name: &str,
@@ -99,12 +99,12 @@ fn one_page(
     told(args, &page_path(args, name))
 }
 
-/// Where a study's page lies.
+/// Path of a study's page.
 pub(super) fn page_path(args: &Args, name: &str) -> PathBuf {
     args.pages().join("studies").join(format!("{name}.md"))
 }
 
-/// Tells where the page is.
+/// Prints the page's path.
 pub(super) fn told(args: &Args, page: &Path) -> Result<Ended, Failure> {
     if !args.quiet {
         print(&format!("{}\n", page.display()))?;
@@ -112,7 +112,7 @@ pub(super) fn told(args: &Args, page: &Path) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
-/// A folder below `pages`, made if it is not there.
+/// A folder below `pages`, created if missing.
 pub(super) fn made(pages: &Path, folder: &str) -> Result<PathBuf, Failure> {
     let folder = pages.join(folder);
     std::fs::create_dir_all(&folder).map_err(|e| format!("can't make {}: {e}", folder.display()))?;

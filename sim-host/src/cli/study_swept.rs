@@ -1,4 +1,4 @@
-//! `sim-host study` of sweeps that are written down.
+//! `sim-host study` for studies that are defined as sweeps in a TOML file.
 
 use super::basin::{SearchArgs, progress};
 use super::cells::{Resolved, resolve};
@@ -70,7 +70,7 @@ fn resolved(part: &Part) -> Result<Resolved, Failure> {
 
 fn write_figures(study: &Study, grids: &[Grid], folder: &Path) -> Result<(), Failure> {
     for (part, grid) in study.parts.iter().zip(grids) {
-        // The page has the command; the full configuration is with the sweep.
+        // The page has the command; the full configuration is in the sweep's folder.
         let about = caption(&serde_json::json!({"options": part.options, "over": part.over}));
         for (name, picture) in swept::figures(part, grid) {
             let path = folder.join(format!("{}-{name}.svg", study.name));

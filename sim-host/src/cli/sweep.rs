@@ -1,4 +1,4 @@
-//! `sim-host sweep`.
+//! `sim-host sweep`: basins over a grid of conditions, from options to a folder of results.
 
 use super::basin::{SearchArgs, progress};
 use super::cells::{Resolved, resolve};
@@ -32,16 +32,16 @@ Examples:
 pub(super) struct Args {
     #[command(subcommand)]
     command: Option<Command>,
-    /// What to vary, and its values; once for every axis
+    /// Axis and its values; may be repeated, once per axis
     #[arg(long, required = true, value_name = "KEY=VALUES", value_parser = Axis::parse)]
     over: Vec<Axis>,
-    /// Folder of the results; one of the same sweep is gone on with
+    /// Folder of the results; an interrupted sweep in it is continued
     #[arg(long, default_value = "sweep", value_name = "DIR")]
     out: PathBuf,
-    /// Compute part I of N only, to be merged with the others
+    /// Compute only part I of N, to be merged with the others
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     shard: Option<Shard>,
-    /// List the cells, tell how long they take, and end
+    /// List the cells, estimate the computing time, and end
     #[arg(long, conflicts_with = "json")]
     dry_run: bool,
     #[command(flatten)]
@@ -52,10 +52,10 @@ pub(super) struct Args {
     conditions: Words<ConditionArgs>,
 }
 
-/// What is told besides the folder.
+/// Outputs besides the folder.
 #[derive(clap::Args)]
 struct OutputArgs {
-    /// Write the document to FILE, or to standard output (also -), besides the folder
+    /// Also write the document to FILE, or to standard output (-)
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
     json: Option<PathBuf>,
     /// No text or progress bar
@@ -65,17 +65,17 @@ struct OutputArgs {
 
 #[derive(clap::Subcommand)]
 enum Command {
-    /// Puts the parts of a sweep together
+    /// Merge the parts of a sweep
     Merge(Merge),
 }
 
 /// Options of `sweep merge`.
 #[derive(clap::Args)]
 struct Merge {
-    /// Folders that `sweep --shard` made
+    /// Folders written by `sweep --shard`
     #[arg(required = true, value_name = "DIR")]
     parts: Vec<PathBuf>,
-    /// Folder of the whole
+    /// Folder of the complete sweep
     #[arg(long, default_value = "sweep", value_name = "DIR")]
     out: PathBuf,
     #[command(flatten)]
@@ -115,7 +115,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(Ended::Interrupted)
 }
 
-/// The cells of `mine` that are not there, or damaged, which is told.
+/// The cells of `mine` that are missing or damaged; damage causes a warning.
 pub(super) fn to_do<'a>(resolved: &'a Resolved, mine: &[usize], folder: &Folder) -> Vec<&'a Cell> {
     let cells = mine.iter().map(|&i| &resolved.cells[i]);
     let missing = |cell: &&Cell| match folder.unit(&cell.id) {
@@ -128,7 +128,7 @@ pub(super) fn to_do<'a>(resolved: &'a Resolved, mine: &[usize], folder: &Folder)
     cells.filter(missing).collect()
 }
 
-/// Writes what there is: the results if the sweep is whole, and what was asked for.
+/// Writes the results of a complete sweep, and the requested document.
 pub(super) fn finish(
     grid: &Grid,
     folder: &Folder,
@@ -180,8 +180,8 @@ fn summary(grid: &Grid, document: &SweepDocument, folder: &Path) -> String {
     text
 }
 
-/// What is not known of the ranking of `all` cells of which `capped` are lower bounds; `largest` and `smallest` say whether
-/// those that are named so are.
+/// Note on the ranking of `all` cells of which `capped` are lower bounds; `largest` and `smallest` say whether those
+/// cells are certain.
 fn not_known(all: usize, capped: usize, largest: bool, smallest: bool) -> &'static str {
     match (capped > usize::from(largest), smallest && all > 1) {
         (false, false) => "",
@@ -191,10 +191,10 @@ fn not_known(all: usize, capped: usize, largest: bool, smallest: bool) -> &'stat
     }
 }
 
-/// Most columns that are timed for an estimate.
+/// Most columns timed for an estimate.
 const TIMED: usize = 4;
 
-/// Lists the cells and estimates the time from a few columns.
+/// Lists the cells and estimates the computing time from a few columns.
 fn dry_run(resolved: &Resolved, mine: &[usize], out: &Path, threads: usize) -> Result<Ended, Failure> {
     let (plan, speeds) = (&resolved.plan, &resolved.search.speeds);
     let folder = out.join(sweep::PLAN).exists().then(|| Folder::open(out, plan)).transpose()?;
@@ -228,7 +228,7 @@ fn dry_run(resolved: &Resolved, mine: &[usize], out: &Path, threads: usize) -> R
     Ok(Ended::Done)
 }
 
-/// A duration in words.
+/// A duration as text.
 fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 120.0 => format!("{s:.0} s"),

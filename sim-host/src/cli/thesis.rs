@@ -1,4 +1,4 @@
-//! `sim-host thesis`.
+//! `sim-host thesis`: reproduces the thesis and writes the report.
 
 use super::outputs::{complain, print};
 use super::{Ended, Failure, interrupt};
@@ -23,16 +23,16 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Folder the report is written to
+    /// Folder of the report
     #[arg(long, default_value = "thesis-report", value_name = "DIR")]
     out: PathBuf,
-    /// Items, by name, by number, or a chapter or appendix; separated by commas [default: all]
+    /// Items by name or number, chapters or appendices; separated by commas [default: all]
     #[arg(long, value_name = "ITEMS", value_delimiter = ',')]
     only: Vec<String>,
-    /// Coarser speeds, borders and series of experiments
+    /// Coarser speeds and borders, fewer experiments
     #[arg(long)]
     quick: bool,
-    /// List the items and what they need
+    /// List the items and their requirements
     #[arg(long)]
     list: bool,
     /// Threads; the result does not depend on them [default: all cores]
@@ -76,7 +76,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(Ended::Interrupted)
 }
 
-/// A bar with the time left, on standard error, and only on a terminal.
+/// A progress bar with the remaining time, on standard error if it is a terminal.
 fn progress(shown: bool, work: u64) -> ProgressBar {
     if !shown {
         return ProgressBar::hidden();
@@ -100,7 +100,7 @@ fn list(entries: &[&Entry]) -> String {
     text
 }
 
-/// The answer in words.
+/// The result as text.
 fn summary(document: &ThesisDocument) -> String {
     let items = |status: &str| document.items.iter().filter(|i| i.status == status).count();
     let printed = || document.values.iter().filter(|v| v.published.is_some());

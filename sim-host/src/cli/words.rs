@@ -1,17 +1,17 @@
-//! Options of `ride` and `basin` as words: given in one place, taken together in another.
+//! Options of `ride` and `basin` as command-line words: stored as given, parsed later.
 
 use super::conditions::ConditionArgs;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, Parser};
 use std::marker::PhantomData;
 
-/// The options of `T` as they were typed. Their values are not looked at: they may hold names in
-/// braces, and whether they fit each other is not known before these are replaced.
+/// The options of `T` as typed. Their values are not checked: they can contain names in braces, and combinations can be
+/// checked only after these are replaced.
 pub(super) struct Words<T> {
     words: Vec<String>,
     of: PhantomData<T>,
 }
 
-/// Conditions alone.
+/// A command of conditions only, for parsing.
 #[derive(Parser)]
 #[command(no_binary_name = true, disable_help_flag = true)]
 struct Alone {
@@ -19,27 +19,27 @@ struct Alone {
     conditions: ConditionArgs,
 }
 
-/// The conditions some words stand for.
+/// The conditions given by some words.
 ///
 /// # Errors
-/// In one line, what is wrong with which option.
+/// The wrong option and its error, in one line.
 pub(super) fn conditions(words: &[String]) -> Result<ConditionArgs, String> {
     Alone::try_parse_from(words).map(|alone| alone.conditions).map_err(|e| why(&e))
 }
 
-/// An error of wrong usage in one line: its first paragraph.
+/// A usage error in one line: its first paragraph.
 pub(super) fn why(error: &clap::Error) -> String {
     let text = error.to_string();
     let first: Vec<&str> = text.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
     format!("{} (see `sim-host basin --help`)", first.join(" ").trim_start_matches("error: "))
 }
 
-/// An option that some words can set.
+/// An option that words can set.
 pub(super) struct Choice {
     arg: Arg,
 }
 
-/// The option of a name, or the names of all.
+/// The option with this name, or the names of all options.
 pub(super) fn choice<T: Args>(name: &str) -> Result<Choice, Vec<String>> {
     let options = options::<T>();
     match options.iter().find(|arg| arg.get_long() == Some(name)) {
@@ -70,7 +70,7 @@ fn options<T: Args>() -> Vec<Arg> {
     T::augment_args(Command::new("options")).get_arguments().cloned().collect()
 }
 
-/// The same option, any text allowed and nothing required.
+/// The option, with any text allowed and nothing required.
 fn loose(arg: &Arg) -> Arg {
     let name = arg.get_long().unwrap_or_default().to_owned();
     let mut loose = Arg::new(arg.get_id().clone()).long(name).action(arg.get_action().clone());
@@ -94,7 +94,7 @@ fn loose(arg: &Arg) -> Arg {
 }
 
 impl<T: Args> Words<T> {
-    /// The words, each `--option`, `--option=value` or the values of one that takes several.
+    /// The words, each `--option`, `--option=value` or a value of an option with several.
     pub(super) fn words(&self) -> &[String] {
         &self.words
     }

@@ -9,7 +9,7 @@ use kuva::render::render::TextAnchor;
 const TEXT: u32 = 12;
 const LINE: f64 = 19.0;
 const SWATCH: f64 = 24.0;
-/// How opaque a colour is laid over its black hatching.
+/// Opacity of a colour over its black hatching.
 pub(super) const SOFTER: f64 = 0.5;
 
 /// A sign.
@@ -17,7 +17,7 @@ pub(super) const SOFTER: f64 = 0.5;
 pub(super) enum Sign {
     /// A line.
     Line(Stroke),
-    /// An area, opaque as told.
+    /// A filled area with an opacity.
     Fill(&'static str, f64),
     /// A hatched area.
     Hatched(&'static str),
