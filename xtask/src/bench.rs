@@ -45,11 +45,11 @@ pub fn bench() -> Result<()> {
     let all: Vec<Timing> = reference.iter().flatten().cloned().chain(ours).collect();
     print!("{}", table(&all));
     let apart = apart(&all);
-    println!("\nthe rides end within {apart:.1e} of each other (rad, rad/s)");
+    println!("\nthe final states differ by at most {apart:.1e} (rad, rad/s)");
     match reference {
         Err(why) => Err(format!("without the Python programs: {why}")),
         Ok(_) if apart < AGREED => Ok(()),
-        Ok(_) => Err(format!("that is more than {AGREED:e}")),
+        Ok(_) => Err(format!("the final states differ by more than {AGREED:e}")),
     }
 }
 

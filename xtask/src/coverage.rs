@@ -63,7 +63,7 @@ fn report(lcov: &str) -> Result<()> {
             .filter_map(|(line, count)| Some((line.parse().ok()?, count)))
             .collect();
         if counts.is_empty() {
-            return Err(format!("{}: LLVM says nothing of it", path.display()));
+            return Err(format!("{}: missing in LLVM's coverage", path.display()));
         }
         let text = std::fs::read_to_string(&path).map_err(|why| format!("{}: {why}", path.display()))?;
         let never: Vec<usize> =
@@ -74,7 +74,7 @@ fn report(lcov: &str) -> Result<()> {
         }
         missed += never.len();
     }
-    if missed == 0 { Ok(()) } else { Err(format!("no card runs {missed} lines")) }
+    if missed == 0 { Ok(()) } else { Err(format!("no test runs {missed} lines")) }
 }
 
 fn succeeded(outcome: Outcome) -> Result<String> {

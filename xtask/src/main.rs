@@ -17,19 +17,19 @@ cargo xtask <command> [--help]
   qemu IMAGE    run an image in QEMU
   virtual-board the board's image on a virtual VESC 6, with its log and its serial line
   flash IMAGE   build a board's image, flash it and show its log
-  reproducible  whether the images have the same bytes in clones in other folders
-  size          what the images take of flash and RAM, against their budgets
+  reproducible  check that clones in different folders build identical images
+  size          flash and RAM used by the images, against their budgets
   instructions  instructions of a control step, against the budget
-  mutants       whether the control crate's cards notice when its code is changed
-  coverage      lines of the control crate's torque path that none of its cards runs
-  bench         a delayed rider's ride and basin, timed beside Python programs of the same ride
+  mutants       mutation tests of the control crate
+  coverage      lines of the control crate's torque path that its tests do not cover
+  bench         computing time of a delayed rider's ride and basin, beside Python programs for the same ride
 ";
 
 const SETUP_HELP: &str = "\
 cargo xtask setup [--target-source auto|rustup|debian]
 
-Installs the Rust target thumbv7em-none-eabihf and, as root, QEMU and binutils from apt. What is
-there already stays as it is. Fails with a list of what could not be had and how to get it.
+Installs the Rust target thumbv7em-none-eabihf and, as root, QEMU and binutils from apt. Installed
+parts are left unchanged. If something cannot be installed, it says what and how to get it.
 
   auto    rustup; if its servers can't be reached, Debian (default)
   rustup  rustup target add
@@ -41,11 +41,11 @@ cargo xtask test [--target-source auto|rustup|debian] [--all] [--mutants N] [-- 
 
 Runs the set-up, builds the firmware images, then `cargo test` with the tests in QEMU required: a
 missing QEMU or target is a failure, not a skip. There is no time limit; every five minutes a line
-says what is running.
+lists the running programs.
 
-  --all        the slow tests, too, and the whole sets of those that run a part of one by default
-               (STEER_ASSIST_SLOW=1); which they are: docs/testing.md
-  --mutants N  then `cargo xtask mutants --sample N`
+  --all        also run the slow tests, and the full sets of tests that run a part by default
+               (STEER_ASSIST_SLOW=1); see docs/testing.md
+  --mutants N  then run `cargo xtask mutants --sample N`
 ";
 
 const FIRMWARE_HELP: &str = "\
@@ -65,11 +65,11 @@ const VIRTUAL_BOARD_HELP: &str = "\
 cargo xtask virtual-board [--build | --test [ARGUMENTS OF cargo test] | ARGUMENTS OF virtual-board]
 
 Builds the board's images and the virtual board (three minutes of processor time the first time), then
-runs it: the log of the image that is flashed comes here, its serial line is a pseudo terminal whose
-name is printed. `cargo xtask virtual-board -- --help` lists its own options.
+runs it: it prints the flashed image's log, and the name of the pseudo terminal that is the serial
+line. `cargo xtask virtual-board -- --help` lists its own options.
 
-  --build  only builds; `sim-host monitor --virtual-board` then finds it
-  --test   runs its tests instead
+  --build  only build, for `sim-host monitor --virtual-board`
+  --test   run its tests instead
 
 Try: cargo xtask virtual-board --seconds 3, or with --align --switch --seconds 7
 ";
@@ -85,15 +85,15 @@ board-vesc6 and board-vesc6-align.
 const REPRODUCIBLE_HELP: &str = "\
 cargo xtask reproducible
 
-Clones the commit of the work tree into three folders of different length, each with a commit and a
-CARGO_HOME of its own, builds all images in each and compares the bytes that would be flashed, the
-commit's name left out. Fails when they differ. About four minutes of processor time.
+Clones the commit of the work tree into three folders of different length, each with its own commit
+and CARGO_HOME, builds all images in each and compares the flashed bytes without the commit's hash.
+Fails if they differ. About four minutes of processor time.
 ";
 
 const SIZE_HELP: &str = "\
 cargo xtask size
 
-Prints text, data, bss, flash and RAM of each image and writes docs/images.md anew. Fails when an
+Prints text, data, bss, flash and RAM of each image and updates docs/images.md. Fails if an
 image is over its budget.
 ";
 
@@ -102,35 +102,35 @@ cargo xtask instructions
 
 Counts the instructions and the stack of every control step: over the border ride for each law and
 configuration, over a ride with every sensor, and with each sensor broken in it. Prints them and
-writes docs/images.md anew. Fails when a step is over its budget, or less than a tenth under it; both
-stand in that page. Prints the instructions of single functions as well, for the table of docs/motor.md.
+updates docs/images.md. Fails if a step is over its budget, or less than a tenth under it; both are in
+that page. Also prints the instructions of single functions, for the table of docs/motor.md.
 ";
 
 const BENCH_HELP: &str = "\
 cargo xtask bench
 
 Times a ride of 6 s with a rider 30 ms late, in sim-host and in Python with numba and with scipy, and
-the rider's basin in sim-host, one after the other; prints one table. Fails when the rides end apart
-by more than 1e-6, or when the Python programs can't be had; the rest is printed nevertheless. Python
-3.11 or later makes a virtual environment in target/bench-python; the packages come from PyPI.
+the rider's basin in sim-host, one after the other; prints one table. Fails if the final states
+differ by more than 1e-6, or if the Python programs are unavailable; the rest is printed nevertheless.
+Needs Python 3.11 or later for a virtual environment in target/bench-python, with packages from PyPI.
 ";
 
 const MUTANTS_HELP: &str = "\
 cargo xtask mutants [--sample N] [-- ARGUMENTS OF cargo mutants]
 
-Changes the control crate's torque path, one small thing at a time, and runs its cards: each change
-must make one fail. What is changed, and what is left out for which reason, stands in
-.cargo/mutants.toml; what was found is kept in target/mutants.out. Fails when a mutant survives. Needs
+Makes small changes to the control crate's torque path, one at a time, and runs its tests: each change
+must make one fail. Changes and exclusions, with reasons, are in .cargo/mutants.toml; results are in
+target/mutants.out. Fails if a mutant survives. Needs
 cargo-mutants (cargo install cargo-mutants --locked).
 
-  --sample N    only N of them at most, evenly picked
+  --sample N    test at most N mutants, evenly spaced
 ";
 
 const COVERAGE_HELP: &str = "\
 cargo xtask coverage
 
-Runs the control crate's cards and prints the lines of its torque path that none of them runs. Fails
-when there is one. Needs llvm-profdata and llvm-cov of the compiler's LLVM: rustup's component
+Runs the control crate's tests and prints the uncovered lines of its torque path. Fails if there are
+any. Needs llvm-profdata and llvm-cov of the compiler's LLVM: rustup's component
 llvm-tools, or Debian's package llvm-NN.
 ";
 

@@ -14,7 +14,7 @@ const MISSING: &str = "cargo-mutants is missing: cargo install cargo-mutants --l
 /// The text is no integer from 1 on.
 pub fn sample(count: &str) -> Result<usize> {
     let typed = count.parse().ok().filter(|count| *count > 0);
-    typed.ok_or_else(|| format!("{count:?} mutants: a count from 1 on is wanted"))
+    typed.ok_or_else(|| format!("{count:?} mutants: expected an integer of at least 1"))
 }
 
 /// Tests every mutant, or at most `sample` of them, evenly spaced; `arguments` go to cargo-mutants, whose results are

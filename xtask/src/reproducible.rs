@@ -40,7 +40,11 @@ fn compare(place: &Path) -> Result<()> {
             }
         }
     }
-    if apart.is_empty() { Ok(()) } else { Err(format!("not the same in every folder: {}", apart.join(", "))) }
+    if apart.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("images differ between folders: {}", apart.join(", ")))
+    }
 }
 
 /// The images' bytes in a new clone, without the commit's hash.

@@ -42,7 +42,7 @@ pub enum ClientError {
         theirs: u8,
     },
     /// The board does not answer.
-    #[error("no answer to `{requested}`, asked {tries} times, {} s each", wait.as_secs_f64())]
+    #[error("no answer to `{requested}`, sent {tries} times, {} s each", wait.as_secs_f64())]
     Silent {
         /// The request.
         requested: String,
@@ -52,7 +52,7 @@ pub enum ClientError {
         wait: Duration,
     },
     /// The board rejects the request.
-    #[error("the board refuses `{requested}`: {text}")]
+    #[error("the board rejects `{requested}`: {text}")]
     Refused {
         /// The request.
         requested: String,
@@ -62,7 +62,7 @@ pub enum ClientError {
         text: String,
     },
     /// The answer belongs to another request.
-    #[error("the board's answer to `{requested}` does not fit")]
+    #[error("the board's answer does not match `{requested}`")]
     Unfit {
         /// The request.
         requested: String,

@@ -40,13 +40,15 @@ pub enum BoardError {
         said: String,
     },
     /// What the board sent is no chunk of the link.
-    #[error("the board hands over what is no chunk of docs/link.md: {0}; is the image of this version?")]
+    #[error(
+        "the board's output is not in the format of docs/link.md: {0}; was the image built from this version?"
+    )]
     NoChunk(String),
     /// More bytes for the board than a chunk holds.
     #[error("{0} bytes for the loop and {1} for the line are more than a chunk holds")]
     TooMuch(usize, usize),
     /// The board rejects the configuration.
-    #[error("the board refuses the configuration: {0}")]
+    #[error("the board rejects the configuration: {0}")]
     Refused(String),
     /// The board broke the lockstep protocol.
     #[error("control step {step} since the reset: {what}")]

@@ -91,10 +91,13 @@ impl FromStr for LinkFault {
 }
 
 fn parsed(text: &str) -> Result<LinkFault, String> {
-    let form = "expected WAY:HARM[=TIME][@FROM[..TO]], for example sensors:late=3ms@1.5s..2s";
+    let form = "expected DIRECTION:FAULT[=TIME][@FROM[..TO]], for example sensors:late=3ms@1.5s..2s";
     let (direction, what) = text.split_once(':').ok_or(form)?;
     let direction = Direction::ALL.into_iter().find(|known| known.name() == direction).ok_or_else(|| {
-        format!("no way `{direction}`; there are {}", Direction::ALL.map(Direction::name).join(", "))
+        format!(
+            "unknown direction `{direction}`; expected {}",
+            Direction::ALL.map(Direction::name).join(" or ")
+        )
     })?;
     let (what, when) = what.split_once('@').map_or((what, None), |(what, when)| (what, Some(when)));
     let kind = match what.split_once('=').map_or((what, None), |(name, value)| (name, Some(value))) {
@@ -103,7 +106,7 @@ fn parsed(text: &str) -> Result<LinkFault, String> {
         ("late", Some(by)) => LinkFaultKind::Late(periods(by)?),
         ("late", None) => return Err("late needs a value: late=TIME".into()),
         ("drop" | "corrupt", Some(_)) => return Err(format!("{what}: it takes no value")),
-        _ => return Err(format!("no harm `{what}`; there are drop, late=TIME, corrupt")),
+        _ => return Err(format!("unknown link fault `{what}`; expected drop, late=TIME or corrupt")),
     };
     let (from_s, to_s) = when.map_or(Ok((0.0, f64::INFINITY)), span)?;
     Ok(LinkFault { direction, kind, from_s, to_s })

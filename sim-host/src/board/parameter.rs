@@ -94,7 +94,7 @@ impl Parameter {
             (Kind::Limit, Some(_)) => return Ok(None),
             (Kind::Switch | Kind::Choice, Some(place)) => return Ok(Some(place as f32)),
             (Kind::Switch | Kind::Choice, None) => {
-                return Err(format!("{key} = `{text}` is none of {}", words.join(", ")));
+                return Err(format!("{key} = `{text}`: expected one of {}", words.join(", ")));
             }
             (Kind::Number | Kind::Limit | Kind::Count, _) => {}
         }

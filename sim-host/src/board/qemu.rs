@@ -135,7 +135,7 @@ impl Qemu {
         let (status, said) = self.close();
         let said = match said {
             said if said.is_empty() => said,
-            said => format!("; it said:\n{said}"),
+            said => format!("; its output:\n{said}"),
         };
         let (image, exchanges) = (self.image.clone(), self.exchanges);
         match self.watchdog.ended() {

@@ -36,7 +36,7 @@ impl Client {
     /// # Errors
     /// See [`ClientError`].
     pub fn hello(&mut self) -> Result<BoardName, ClientError> {
-        self.ask(&Message::AskHello, "who are you", |answer| match answer {
+        self.ask(&Message::AskHello, "hello", |answer| match answer {
             Message::Hello(hello) => Some(BoardName {
                 image: hello.image.into(),
                 version: hello.version.into(),

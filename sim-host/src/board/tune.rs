@@ -122,10 +122,10 @@ fn put_back(client: &mut Client, before: &Settings, error: ClientError, set: &[S
     };
     let outcome = match back() {
         Ok(now) => match before.all().into_iter().filter(|one| !now.has(one)).collect::<Vec<_>>() {
-            left if left.is_empty() => "nothing is set, what was is put back".to_owned(),
-            left => format!("what was set is put back, but for {}", list(&left)),
+            left if left.is_empty() => "nothing is set: the previous values are restored".to_owned(),
+            left => format!("the previous values are restored, except {}", list(&left)),
         },
-        Err(second) => format!("set: {}; it can't be put back: {second}", list(set)),
+        Err(second) => format!("set: {}; the previous values can't be restored: {second}", list(set)),
     };
     TuneError { error, outcome }
 }

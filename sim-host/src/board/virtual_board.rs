@@ -72,7 +72,7 @@ impl VirtualBoard {
         while let Ok(bytes) = self.words.recv_timeout(Duration::from_millis(200)) {
             said.extend(bytes);
         }
-        String::from_utf8_lossy(&said).lines().last().unwrap_or("no word").to_owned()
+        String::from_utf8_lossy(&said).lines().last().unwrap_or("no output").to_owned()
     }
 }
 

@@ -10,8 +10,8 @@ use std::path::PathBuf;
 const HELP: &str = "\
 IN.csv has the columns roll, steer, roll_rate, steer_rate, rear_wheel_rate, roll_torque, steer_torque
 in any order; rad, rad/s, N m; right positive; rear_wheel_rate negative forward. The table of
-`ride --csv` does as well: without torque columns, roll_torque is 0 and steer_torque the sum of its
-motor_torque and rider_torque. Lines that begin with # are left out. The answer has the
+`ride --csv` is accepted as well: without torque columns, roll_torque is 0 and steer_torque the sum of its
+motor_torque and rider_torque. Lines that begin with # are skipped. The output has the
 columns roll_acc, steer_acc, rear_wheel_acc in rad/s^2 with 17 significant digits, line by line.
 
 Example:
@@ -80,7 +80,7 @@ impl Places {
         let place = |column: &str| {
             let mut found = header.iter().enumerate().filter(|(_, h)| *h == column).map(|(at, _)| at);
             match (found.next(), found.next()) {
-                (_, Some(_)) => Err(format!("column `{column}` is there twice")),
+                (_, Some(_)) => Err(format!("column `{column}` is listed twice")),
                 (at, None) => Ok(at),
             }
         };

@@ -24,7 +24,7 @@ Examples:
   sim-host bicycle check --bicycle my.toml";
 
 const SHOW_HELP: &str = "\
-The answer is a file that --bicycle takes, with --ini by the ending .txt.
+The output is a file for --bicycle; with --ini its name must end in .txt.
 
 Examples:
   sim-host bicycle show --bicycle benchmark > my.toml

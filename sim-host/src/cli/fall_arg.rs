@@ -36,14 +36,16 @@ fn parse(text: &str) -> Result<FallCriterion, String> {
             "lasting" => lasting_s = Some(time(value, 10.0)?),
             _ => {
                 return Err(format!(
-                    "no `{key}`; there are roll, steer, flat=ANGLE, lasting=TIME, or published"
+                    "unknown key `{key}`; expected roll, steer, flat=ANGLE, lasting=TIME, or published"
                 ));
             }
         }
     }
     match (lasting_s, &mut fall.flat) {
         (Some(lasting_s), Some(flat)) => flat.lasting_s = lasting_s,
-        (Some(_), None) => return Err("lasting goes with flat=ANGLE, not with flat=none".into()),
+        (Some(_), None) => {
+            return Err("lasting needs flat=ANGLE; it cannot be combined with flat=none".into());
+        }
         (None, _) => {}
     }
     fall.check().map(|()| fall)

@@ -27,8 +27,8 @@ Examples:
 
 const WEAVE_EXAMPLES: &str = "\
 A file is a CSV table with a column of time stamps (seconds, or dates with a time) and columns of
-the gyro's rates, recorded after a knock on a bicycle that rolls without a rider. Repeats at one
-gain and speed are put together.
+the gyro's rates, recorded after a disturbance of a bicycle rolling without a rider. Repeats at one
+gain and speed are pooled.
 
 Examples:
   sim-host identify weave gain*_speed*kmh_*.csv --svg weave.svg
@@ -89,7 +89,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "FILE")]
     toml: Option<PathBuf>,
     /// Origin of the recordings, for --toml
-    #[arg(long, value_name = "TEXT", default_value = "not told", hide_default_value = true)]
+    #[arg(long, value_name = "TEXT", default_value = "not given", hide_default_value = true)]
     source: String,
     #[command(flatten)]
     outputs: OutputArgs,

@@ -14,8 +14,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
-FILE is any recording that `replay` reads, with a gyro and the speed of a wheel; --map says what its columns mean. Standing
-and riding are told apart by the speed. What the recordings can't tell is left out, with the reason.
+FILE is any recording that `replay` reads, with a gyro and a wheel speed; --map assigns its columns. Standing
+and riding are distinguished by the speed. Values that the recordings do not determine are left out, with the reason.
 
 Examples:
   sim-host identify sensor robot/*.csv.gz --map robot-bicycle --sensor gyro --sensor accel --out imu.toml
@@ -48,10 +48,10 @@ pub(super) struct Args {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Identity of the sensors and origin of the recordings, for --out
-    #[arg(long, value_name = "TEXT", default_value = "not told", hide_default_value = true)]
+    #[arg(long, value_name = "TEXT", default_value = "not given", hide_default_value = true)]
     source: String,
     /// Licence of the recordings, for --out
-    #[arg(long, value_name = "TEXT", default_value = "not told", hide_default_value = true)]
+    #[arg(long, value_name = "TEXT", default_value = "not given", hide_default_value = true)]
     licence: String,
     #[command(flatten)]
     outputs: OutputArgs,
@@ -63,7 +63,7 @@ fn sensor(name: &str) -> Result<Sensor, String> {
     let known = Sensor::ALL.into_iter().filter(modelled).find(|sensor| sensor.name() == name);
     known.ok_or_else(|| {
         let names: Vec<_> = Sensor::ALL.into_iter().filter(modelled).map(Sensor::name).collect();
-        format!("there are {}", names.join(", "))
+        format!("expected one of {}", names.join(", "))
     })
 }
 
@@ -110,7 +110,7 @@ fn recording(args: &Args, map: Option<&Map>, path: &Path) -> Result<Recording, F
     let map = match map {
         Some(map) => map.clone(),
         None => Map::by_columns(&recording)
-            .ok_or(format!("{name}: no map that ships knows these columns; give one with --map"))?,
+            .ok_or(format!("{name}: no built-in map has these columns; give one with --map"))?,
     };
     let samples = samples(&recording, &map, PERIOD_S).map_err(|remark| format!("{name}: {remark}"))?;
     samples.remarks.iter().for_each(|remark| complain(&format!("{name}: {remark}")));

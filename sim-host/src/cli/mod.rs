@@ -55,19 +55,19 @@ enum Ended {
 }
 
 const EXAMPLES: &str = "\
-Exit codes: 0 ran (a fall is a result), 1 bad input or I/O, 2 usage, 3 a part of what a board
-said could not be read, 130 interrupted.
+Exit codes: 0 ran (a fall is a result), 1 bad input or I/O, 2 usage, 3 part of a board's
+data could not be decoded, 130 interrupted.
 
 Examples:
   sim-host basin --svg basin.svg               the basin of the thesis bicycle under law h
   sim-host ride --speed 4 --steer-rate 5       one ride
   sim-host sweep --over law=h,f,g --out laws   basins over a grid of conditions
-  sim-host replay ride.csv --map extract       a recorded ride through the flashed code
+  sim-host replay ride.csv --map extract       replay of a recorded ride through the firmware
   sim-host pil --speed 4 --steer-rate 5        the same on an emulated board
   sim-host eigen --law cl2:4                   eigenvalues over speed
-  sim-host bicycle list                        the bicycles that ship
-  sim-host rider list                          the riders that ship
-  sim-host thesis --quick                      the published tables and figures, computed again";
+  sim-host bicycle list                        the built-in bicycles
+  sim-host rider list                          the built-in riders
+  sim-host thesis --quick                      the published tables and figures, reproduced";
 
 /// Computes from which disturbances a bicycle with a steer assist recovers
 #[derive(Parser)]

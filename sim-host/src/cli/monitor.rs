@@ -23,9 +23,10 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 const EXAMPLES: &str = "\
-Ends by Ctrl-C, after --for, at the end of --file, or when the line is lost; what was written stays.
-A serial port that goes away is opened again as soon as it is back, for as long as --reopen says.
-Not on a terminal it prints a line a second and one for every change of mode, causes, drive or lateness.
+Ends with Ctrl-C, after --for, at the end of --file, or when the line is lost; written files remain.
+A lost serial port is reopened when it is back within the time of --reopen.
+If standard output is no terminal, it prints a line per second and one for every change of mode, causes, drive
+or missed deadlines.
 
 Examples:
   sim-host monitor --port /dev/ttyACM0
@@ -117,7 +118,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     match (&args.file, reception.unread()) {
         (Some(file), _) if reception.frames == 0 => Err(no_recording(file)),
         (_, Some(unread)) => {
-            complain(&format!("warning: a part of what was said is not shown: {unread}"));
+            complain(&format!("warning: part of the data was not decoded: {unread}"));
             Ok(if matches!(ended, Ended::Done) { Ended::Partly } else { ended })
         }
         _ => Ok(ended),
@@ -160,7 +161,7 @@ impl Session {
             if !received.is_empty() {
                 (reception, silence_told) = (Instant::now(), false);
             } else if reception.elapsed() > SILENCE && !std::mem::replace(&mut silence_told, true) {
-                self.view.say(&format!("nothing heard for {} s", SILENCE.as_secs()))?;
+                self.view.say(&format!("no data for {} s", SILENCE.as_secs()))?;
             }
             received.iter().try_for_each(|received| self.take(received))?;
             self.table.as_mut().map_or(Ok(()), Table::flush)?;

@@ -34,7 +34,7 @@ Examples:
 
 const SET_HELP: &str = "\
 VALUE is a number, none, on, off or a name, as `param list` shows; for the law one of --law: a name,
-or a TOML file with speed_m_s and gain_nm_s_rad. It is lost with the power until `param store`.
+or a TOML file with speed_m_s and gain_nm_s_rad. It is lost at power-off unless stored by `param store`.
 
 Examples:
   sim-host param set limits.max_torque_nm 5 --port /dev/ttyACM0
@@ -42,8 +42,8 @@ Examples:
   sim-host param set law cl2:3 --port /dev/ttyACM0";
 
 const IMPORT_HELP: &str = "\
-All keys and values are checked before anything is set. If the board then refuses one, what was set
-before is put back. That a polarity check was passed is never imported.
+All keys and values are checked before anything is set. If the board then rejects one, what was set
+before is restored. A passed polarity check is never imported.
 
 Example:
   sim-host param import board.toml --port /dev/ttyACM0";
@@ -123,7 +123,7 @@ pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
         }
         Command::Reset { port } => {
             port.connect()?.0.reset()?;
-            print("all parameters have their defaults; not stored: `sim-host param store` keeps them\n")?;
+            print("all parameters have their defaults; not stored: `sim-host param store` stores them\n")?;
         }
         Command::Export { file, port } => export(file, port)?,
         Command::Import { file, port } => import(file, port)?,
@@ -226,11 +226,14 @@ fn apply(client: &mut Client, before: &Settings, wanted: &[Setting], always: &[&
     }
     let _ = match set.len() {
         0 => writeln!(text, "nothing to set: the board has it already"),
-        n => writeln!(text, "{n} set; not stored: `sim-host param store` keeps them"),
+        n => writeln!(text, "{n} set; not stored: `sim-host param store` stores them"),
     };
     print(&text)?;
     for key in &differing {
-        complain(&format!("note: {key} is {}, not as wanted: only the check itself sets it", now.words(key)));
+        complain(&format!(
+            "note: {key} is {}, not as in the file: only the polarity check itself sets it",
+            now.words(key)
+        ));
     }
     Ok(())
 }

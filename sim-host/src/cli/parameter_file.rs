@@ -12,9 +12,9 @@ use std::path::Path;
 
 /// Description of the files, for help texts.
 pub(super) const HELP: &str = "\
-FILE is TOML: `law`, a name as of --law or a table of speed_m_s and gain_nm_s_rad, and a table
-`parameters` of names and values as of --set. Either may be missing, and any parameter, but not all. An
-export has `count` and `checksum` as well: changed by hand it is refused until both lines are taken out.";
+FILE is TOML: `law`, a name as in --law or a table of speed_m_s and gain_nm_s_rad, and a table
+`parameters` of names and values as in --set. Either can be missing, and any parameter, but not all. An
+export also has `count` and `checksum`; to edit it by hand, delete both lines, or it is rejected.";
 
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]

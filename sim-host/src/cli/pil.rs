@@ -55,7 +55,7 @@ pub(super) struct BoardArgs {
     #[arg(long, value_name = "FILE")]
     image: Option<PathBuf>,
     /// Inject a fault into the link, for example sensors:late=3ms@1s..2s or motor:drop@1s; may be repeated
-    #[arg(long, value_name = "WAY:HARM@FROM..TO", conflicts_with = "compare")]
+    #[arg(long, value_name = "DIRECTION:FAULT@FROM..TO", conflicts_with = "compare")]
     inject: Vec<String>,
     /// Compute the same on the host, and fail at the first differing bit
     #[arg(long)]
@@ -149,15 +149,15 @@ fn received(controller: &Controller<Qemu>, seconds: f64) -> String {
         speed(steps, seconds)
     );
     if tally.harmed > 0 {
-        let _ = writeln!(said, "a fault of the link acted on {} control steps", tally.harmed);
+        let _ = writeln!(said, "a link fault acted on {} control steps", tally.harmed);
     }
     if tally.missed > 0 || tally.restarts > 0 {
         let _ = writeln!(
             said,
-            "the board missed {} control steps, its chip started anew {} times",
+            "the board missed {} control steps, its chip restarted {} times",
             tally.missed, tally.restarts
         );
-        complain(&format!("note: the board said:\n{}", controller.board.said()));
+        complain(&format!("note: output of the board:\n{}", controller.board.said()));
     }
     said
 }

@@ -77,12 +77,12 @@ fn received(boards: &[Controller<Qemu>], seconds: f64) -> String {
         steps as f64 * 1e-3 / seconds
     );
     if harmed > 0 {
-        said += &format!("a fault of the link acted on {harmed} control steps\n");
+        said += &format!("a link fault acted on {harmed} control steps\n");
     }
     let (missed, restarts) = (sum(|t| t.missed), sum(|t| t.restarts));
     if missed > 0 || restarts > 0 {
         said +=
-            &format!("the boards missed {missed} control steps, their chips started anew {restarts} times\n");
+            &format!("the boards missed {missed} control steps, their chips restarted {restarts} times\n");
     }
     said
 }

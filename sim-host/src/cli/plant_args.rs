@@ -97,7 +97,7 @@ fn depart(sensors: &mut SensorConfig, text: &str, period_s: f64) -> Result<(), S
     }
     let (name, axis) = place.split_once('.').map_or((place, None), |(name, axis)| (name, Some(axis)));
     let sensor = Sensor::ALL.into_iter().find(|sensor| sensor.name() == name).ok_or_else(|| {
-        format!("no sensor `{name}`; there are imu, {}", Sensor::ALL.map(Sensor::name).join(", "))
+        format!("unknown sensor `{name}`; expected imu, {}", Sensor::ALL.map(Sensor::name).join(", "))
     })?;
     let axes = sensor.axes();
     let axis = axis.map(|axis| {
@@ -128,7 +128,7 @@ fn depart(sensors: &mut SensorConfig, text: &str, period_s: f64) -> Result<(), S
             ("dropout", None) => model.dropout = number(key, value)?,
             _ => {
                 return Err(format!(
-                    "no `{key}`; there are model=NAME|FILE, delay=TIME, every=TIME, noise, bias, scale, quantum, range, dropout"
+                    "unknown key `{key}`; expected model=NAME|FILE, delay=TIME, every=TIME, noise, bias, scale, quantum, range, dropout"
                 ));
             }
         }
@@ -145,7 +145,7 @@ fn models(sensors: &mut SensorConfig, name: &str, period_s: f64) -> Result<(), S
         let names: Vec<_> = SHIPPED.iter().map(|(shipped, _)| *shipped).collect();
         let names = names.join(", ");
         return Err(format!(
-            "`{name}` is neither NAME:KEY=VALUE,... nor a FILE nor a model that ships: {EXACT}, {names}"
+            "`{name}` is neither NAME:KEY=VALUE,... nor a FILE nor a built-in model: {EXACT}, {names}"
         ));
     }
     SensorFile::load(name).map_err(|e| e.0)?.apply(sensors, period_s)
@@ -174,7 +174,11 @@ fn mount(imu: &mut ImuMount, key: &str, value: &str) -> Result<(), String> {
         "roll" => roll,
         "pitch" => pitch,
         "yaw" => yaw,
-        _ => return Err(format!("no `{key}` of the imu; there are x, y, z in m, roll, pitch, yaw in rad")),
+        _ => {
+            return Err(format!(
+                "unknown key `{key}` of the imu; expected x, y, z in m, roll, pitch, yaw in rad"
+            ));
+        }
     };
     *place = number(key, value)?;
     Ok(())
@@ -205,7 +209,7 @@ fn actuator(text: &str, period_s: f64) -> Result<ActuatorConfig, String> {
             "constant" => supply[2] = Some(number(key, value)?),
             _ => {
                 return Err(format!(
-                    "no `{key}`; there are delay=TIME, time-constant=TIME, scale, limit, viscous, coulomb, creep, \
+                    "unknown key `{key}`; expected delay=TIME, time-constant=TIME, scale, limit, viscous, coulomb, creep, \
                      stop, voltage, resistance, constant"
                 ));
             }
@@ -216,7 +220,7 @@ fn actuator(text: &str, period_s: f64) -> Result<ActuatorConfig, String> {
         [Some(voltage_v), Some(resistance_ohm), Some(constant_nm_a)] => {
             config.supply = Some(Supply { voltage_v, resistance_ohm, constant_nm_a });
         }
-        _ => return Err("voltage, resistance and constant go together".into()),
+        _ => return Err("voltage, resistance and constant must be given together".into()),
     }
     Ok(config)
 }

@@ -28,10 +28,10 @@ use control::{Config, Law, SensorFrame};
 use std::path::{Path, PathBuf};
 
 pub(super) const EXAMPLES: &str = "\
-FILE is a table of samples with named columns (also gzipped), what `monitor --csv` writes, a recording of
+FILE is a table of samples with named columns (also gzipped), such as the output of `monitor --csv`, a recording of
 CAN frames (candump, ASC, MDF4) with its DBC, or frames of `ride --frames` (81 bytes each).
-A map says what the columns mean; docs/replay.md. Those that ship: extract, monitor, robot-bicycle, can-bicycle.
-Replay is open loop: the torque that comes out did not act on the bicycle that was recorded.
+A map assigns the columns to sensors; see docs/replay.md. Built-in maps: extract, monitor, robot-bicycle, can-bicycle.
+Replay is open loop: the computed torque did not act on the recorded bicycle.
 
 Exit codes: 0 ran, 1 bad input or nothing usable, 2 usage, 130 interrupted; alarms are a result.
 
@@ -135,7 +135,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         let done = one(args, &common, file)?;
         return write_one(args, &outputs, &done);
     }
-    interrupt::install_saying("the recordings that are done are told");
+    interrupt::install_saying("the finished recordings are reported");
     let (mut all, mut unusable) = (Vec::new(), Vec::new());
     for file in &args.files {
         if interrupt::stopped() {
@@ -217,7 +217,7 @@ fn one(args: &Args, common: &Common, path: &Path) -> Result<Done, Failure> {
     let map = match &common.map {
         Some(map) => map.clone(),
         None => Map::by_columns(&recording)
-            .ok_or(format!("{name}: no map that ships knows these columns; give one with --map"))?,
+            .ok_or(format!("{name}: no built-in map has these columns; give one with --map"))?,
     };
     let period_s = 1.0 / f64::from(common.config.rate_hz);
     let samples = samples(&recording, &map, period_s).map_err(|remark| format!("{name}: {remark}"))?;

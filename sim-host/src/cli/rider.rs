@@ -19,7 +19,7 @@ Examples:
   sim-host rider check my-rider.toml";
 
 const SHOW_HELP: &str = "\
-The answer is a file that --rider takes; what is made of it over speed is in its comments.
+The output is a file for --rider; its comments contain the fits over speed.
 
 Examples:
   sim-host rider show young > my-rider.toml

@@ -60,11 +60,7 @@ pub(super) fn list() -> Result<Ended, Failure> {
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let study = load(&args.study)?;
     if args.quick && study != Study::Prototype {
-        return Err(format!(
-            "--quick: study {} has one fineness; only prototype has a coarser one",
-            study.name()
-        )
-        .into());
+        return Err(format!("--quick works with `prototype` only, not with study {}", study.name()).into());
     }
     match study {
         Study::BalanceAssist => one_page(args, balance_assist::NAME, || balance_assist::study().map(Some)),

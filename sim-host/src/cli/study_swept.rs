@@ -48,7 +48,7 @@ pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
         let done = pool.install(|| sweep::run(&cells, &sweep.search, folder, &steps));
         bar.finish_and_clear();
         if done? < cells.len() {
-            complain("interrupted: the cells that are done are kept; the same command goes on");
+            complain("interrupted: the cells that are done are kept; the same command continues");
             return Ok(Ended::Interrupted);
         }
         let grid = Grid::gather(&sweep.plan, std::slice::from_ref(folder))?;

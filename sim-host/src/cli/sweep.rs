@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 const EXAMPLES: &str = "\
-KEY is the name of an option below, or a word that an option's value has in braces. VALUES are words
+KEY is the name of an option below, or a word in braces in an option's value. VALUES are words
 and ranges: A:B:STEP, A:B/N (N evenly spaced values), A:B/logN (evenly in the logarithm).
 
 Examples:
@@ -108,7 +108,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     let before = mine.len() - to_do.len();
     complain(&format!(
-        "interrupted: {} of {} cells are done and kept; the same command goes on",
+        "interrupted: {} of {} cells are done and kept; the same command continues",
         before + done,
         mine.len()
     ));

@@ -160,7 +160,7 @@ fn classic(words: &[&str], radix: u32) -> Result<Event, &'static str> {
             let id = id_of(id, radix)?;
             let [code, rest @ ..] = rest else { return Err("its length is missing") };
             let code =
-                number(code, radix).filter(|code| *code < 16).ok_or("its length is none of a frame")?;
+                number(code, radix).filter(|code| *code < 16).ok_or("its length is invalid for a frame")?;
             Ok(Event::Data { id, data: bytes_of(rest, code.min(8) as usize, radix)? })
         }
         [_, "Rx" | "Tx", ..] | [_] => Err("is no whole frame"),
@@ -182,7 +182,7 @@ fn flexible(words: &[&str], radix: u32) -> Result<Event, &'static str> {
         return Err("is no whole frame");
     };
     let length = Some(length).filter(|word| is_number(word)).and_then(|word| word.parse::<usize>().ok());
-    let length = length.filter(|length| *length <= MOST_BYTES).ok_or("its length is none of a frame")?;
+    let length = length.filter(|length| *length <= MOST_BYTES).ok_or("its length is invalid for a frame")?;
     if length == 0 && *code != "0" {
         return Ok(Event::Remote);
     }

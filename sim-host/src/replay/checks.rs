@@ -112,7 +112,7 @@ impl Checks {
             let jumps = declared.slope_per_s.map(|_| 1.0);
             lasting.push(Sustained::new(
                 jump,
-                "change between two samples, as a part of the largest believed",
+                "change between two samples, as a part of the largest accepted",
                 jumps,
                 0,
             ));
@@ -143,12 +143,7 @@ impl Checks {
                 c.steer_rad,
                 c.persist_ticks,
             ),
-            Sustained::new(
-                "motor",
-                "drive's torque beyond what it was asked for [N m]",
-                motor,
-                c.persist_ticks,
-            ),
+            Sustained::new("motor", "drive's torque beyond the requested one [N m]", motor, c.persist_ticks),
             Sustained::new("gyro response", SLOPE, slope(gyro_response, GYRO_WRONG), 0),
             Sustained::new("motor response", SLOPE, slope(motor_response, MOTOR_WRONG), 0),
             Sustained::new("fallen", "roll angle less its bound [rad]", p.fallen_rad, p.persist_ticks),

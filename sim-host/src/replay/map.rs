@@ -156,7 +156,7 @@ impl Map {
         let path = Path::new(name);
         let text = std::fs::read_to_string(path).map_err(|why| {
             let names: Vec<_> = SHIPPED.iter().map(|(shipped, _)| *shipped).collect();
-            format!("can't read the map {name}: {why}; those that ship are {}", names.join(", "))
+            format!("can't read the map {name}: {why}; built-in maps are {}", names.join(", "))
         })?;
         Self::parse(&text).map_err(|why| format!("{name}: {why}"))
     }
@@ -281,7 +281,7 @@ fn turned(axes: &[String; 3]) -> Result<[(usize, f64); 3], String> {
     let one = |word: &String| {
         let (sign, letter) = word.strip_prefix('-').map_or((1.0, word.as_str()), |letter| (-1.0, letter));
         let place = ["x", "y", "z"].iter().position(|axis| *axis == letter);
-        place.map(|place| (place, sign)).ok_or(format!("axes: `{word}` is none of x, y, z, -x, -y, -z"))
+        place.map(|place| (place, sign)).ok_or(format!("axes: `{word}`: expected one of x, y, z, -x, -y, -z"))
     };
     let [x, y, z] = axes;
     let turns = [one(x)?, one(y)?, one(z)?];
@@ -294,6 +294,8 @@ fn turned(axes: &[String; 3]) -> Result<[(usize, f64); 3], String> {
         (false, false) => Err(format!("axes: {axes:?} names an axis twice")),
         (true, _) if signs > 0.0 => Ok(turns),
         (_, true) if signs < 0.0 => Ok(turns),
-        _ => Err(format!("axes: {axes:?} is a mirror image, which no way of mounting is; change a sign")),
+        _ => Err(format!(
+            "axes: {axes:?} is left-handed (a mirror image), which no orientation is; change a sign"
+        )),
     }
 }

@@ -227,7 +227,7 @@ fn find<'a>(recording: &'a Recording, sensor: Sensor, signal: &Signal) -> Result
             Source::Column(name) => match column(recording, name) {
                 Some((at, found)) => {
                     if group.is_some_and(|group| !std::ptr::eq(group, at)) {
-                        let what = "stands in another message than the sensor's other axes".to_owned();
+                        let what = "is in another message than the sensor's other axes".to_owned();
                         return Err(remark(Some(name), what));
                     }
                     group = Some(at);

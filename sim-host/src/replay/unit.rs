@@ -43,7 +43,7 @@ impl Quantity {
         let found = self.units().iter().find(|(name, _)| *name == unit);
         found.map(|(_, factor)| *factor).ok_or_else(|| {
             let names: Vec<_> = self.units().iter().map(|(name, _)| *name).collect();
-            format!("unit = \"{unit}\" is none of {}", names.join(", "))
+            format!("unit = \"{unit}\": expected one of {}", names.join(", "))
         })
     }
 

@@ -86,7 +86,7 @@ impl Place {
                 OpenOptions::new().append(true).open(path)?;
                 path.canonicalize()?
             }
-            Err(_) if path.is_symlink() => return Err(io::Error::other("it is a link to nothing")),
+            Err(_) if path.is_symlink() => return Err(io::Error::other("it is a dangling symlink")),
             Err(_) => path.into(),
         };
         let name = path.file_name().ok_or_else(|| io::Error::other("it names no file"))?;

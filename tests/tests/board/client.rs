@@ -100,7 +100,7 @@ fn who_does_not_answer_is_told_why() {
     assert!(error.leaves_doubt());
     assert_eq!(lock(&board).requests, SHORT.tries);
     let text = error.to_string();
-    assert!(text.contains("who are you") && text.contains("5 times, 0.002 s"), "{text}");
+    assert!(text.contains("`hello`") && text.contains("5 times, 0.002 s"), "{text}");
     let lost = Wire::new(&board, Box::new(|_| LinkChannel::Lost), Box::new(LinkChannel::Arrives));
     let error = client(lost).hello().expect_err("lost").to_string();
     assert!(error.contains("lost wire"), "{error}");

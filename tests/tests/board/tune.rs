@@ -90,7 +90,7 @@ fn what_is_refused_leaves_all_as_it_was() {
         of("calibration.gyro_bias_x_rad_s", Some(0.0)),
     ];
     let error = tune(&mut client, &before, &wanted).map(drop).expect_err("refused").to_string();
-    for word in ["limits.end_stop", "is outside", "nothing is set, what was is put back"] {
+    for word in ["limits.end_stop", "is outside", "nothing is set: the previous values are restored"] {
         assert!(error.contains(word), "{error}");
     }
     assert_eq!(lock(&board).config, start);
@@ -123,7 +123,7 @@ fn what_cannot_be_put_back_is_told() {
     for word in [
         "refused while engaged",
         "set: limits.rise_nm_s, limits.fall_nm_s, limits.max_torque_nm;",
-        "can't be put back",
+        "can't be restored",
     ] {
         assert!(error.contains(word), "{error}");
     }

@@ -185,7 +185,7 @@ fn wrong_tables_of_states() {
     for (text, named) in [
         (String::new(), &["`roll` is missing", "steer_torque"][..]),
         ("roll;steer\n".into(), &["`roll` is missing"]),
-        (header.replace("steer_rate", "roll"), &["`roll` is there twice"]),
+        (header.replace("steer_rate", "roll"), &["`roll` is listed twice"]),
         (format!("{header}\n0,0,0\n"), &["line: 2", "3 fields"]),
         (format!("{header}\n0,0,0,0,0,0,0\n0,x,0,0,0,0,0\n"), &["line 3", "`steer` = `x`", "-10 to 10"]),
         (format!("{header}\n1e300,0,0,0,0,0,0\n"), &["line 2", "`roll` = `1e300`", "-10 to 10"]),
@@ -216,7 +216,7 @@ fn outputs_that_can_not_be() {
             ("missing/out", "no folder missing"),
             ("folder", "folder"),
             ("file/out", "no folder file"),
-            ("link", "link to nothing"),
+            ("link", "dangling symlink"),
         ] {
             // Longer than any test may take, if the place were tried only at the end.
             let line = format!("basin --time-limit 3600 --speeds 6:7:0.01 {option} {place}");

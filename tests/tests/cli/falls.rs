@@ -113,7 +113,7 @@ fn wrong_criteria_are_refused() {
         ("roll=120deg", "fall: roll (deg) = 120 is outside 1 to 90"),
         ("roll=60", "80deg or 1.4rad"),
         ("lasting=20s", "0 s to 10 s"),
-        ("yaw=1rad", "no `yaw`"),
+        ("yaw=1rad", "unknown key `yaw`"),
         ("flat=none,lasting=1s", "flat=ANGLE"),
     ] {
         let run = bench.run(&format!("ride --speed 4 --fall {fall}"));

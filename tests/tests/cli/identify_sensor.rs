@@ -96,7 +96,7 @@ fn wrong_models_are_named() {
         (format!("{ride} gyro:model=nothing"), 1, &["unknown sensor model `nothing`", "hall-16"]),
         (format!("{ride} gyro.x:model=mpu6050-robot"), 1, &["only bias"]),
         (format!("{identify} steer"), 1, &["none of the recordings has steer"]),
-        (format!("{identify} path"), 2, &["there are gyro"]),
+        (format!("{identify} path"), 2, &["expected one of gyro"]),
         (format!("{identify} gyro --distance way"), 1, &["ride.csv", "way", "no such column"]),
         (format!("{identify} gyro --sensor gyro"), 1, &["--sensor gyro", "already"]),
         (format!("{identify} gyro --svg o.svg"), 1, &["--svg", "no figure"]),

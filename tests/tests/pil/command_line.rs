@@ -22,7 +22,7 @@ fn what_can_not_be_ridden_is_refused_by_name() {
         ("pil --speed 4 --set rate_hz=500", vec!["rate_hz = 500", "1000 Hz"]),
         ("pil --speed 40", vec!["--speed", "0 to 30"]),
         ("pil --speed 4 --image no/such/image", vec!["no/such/image", "cargo xtask firmware"]),
-        ("pil --speed 4 --inject gyro:drop", vec!["--inject", "gyro:drop", "sensors, motor"]),
+        ("pil --speed 4 --inject gyro:drop", vec!["--inject", "gyro:drop", "sensors or motor"]),
         ("pil --speed 4 --json no/such/folder.json", vec!["no/such"]),
         ("pil basin --law none", vec!["--law"]),
         ("pil basin --image no/such/image", vec!["no/such/image"]),
@@ -73,7 +73,7 @@ fn a_fault_of_the_link_is_told() {
     let fault = "--inject sensors:drop@0.2s..0.25s";
     let run = bench.run(&format!("pil {RIDE} {} {fault} --csv lost.csv", on_image()));
     assert_eq!(run.code, Some(0), "{run:?}");
-    assert!(run.stdout.contains("a fault of the link acted on 50 control steps"), "{}", run.stdout);
+    assert!(run.stdout.contains("a link fault acted on 50 control steps"), "{}", run.stdout);
     assert_eq!(bench.run(&format!("ride {RIDE} --csv plain.csv")).code, Some(0));
     assert!(bench.read("lost.csv") != bench.read("plain.csv"));
 }

@@ -117,7 +117,7 @@ fn what_is_no_board_in_the_loop_is_told() {
         return;
     }
     let prints = failure("qemu-control", &["seconds=1"], LONG);
-    assert!(prints.contains("no chunk") && prints.contains("version"), "{prints}");
+    assert!(prints.contains("docs/link.md") && prints.contains("version"), "{prints}");
     let slow = failure("qemu-pil", &[], Duration::from_millis(2));
     assert!(["qemu-pil", "did not answer within 2ms"].iter().all(|word| slow.contains(word)), "{slow}");
     let ends = failure("qemu-pil", &["mishap=none-of-them", "at_ms=5"], LONG);

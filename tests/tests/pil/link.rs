@@ -35,9 +35,9 @@ fn a_written_link_fault_reads_back() {
 #[test]
 fn what_is_no_link_fault_is_refused_by_name() {
     for (text, named) in [
-        ("drop@1s", "WAY:HARM"),
-        ("gyro:drop", "sensors, motor"),
-        ("sensors:lost", "drop, late=TIME, corrupt"),
+        ("drop@1s", "DIRECTION:FAULT"),
+        ("gyro:drop", "sensors or motor"),
+        ("sensors:lost", "drop, late=TIME or corrupt"),
         ("sensors:late", "late=TIME"),
         ("sensors:drop=3ms", "no value"),
         ("sensors:late=3", "unit"),

@@ -73,5 +73,5 @@ fn without_gyro_or_wheel_there_is_no_replay() {
     bench.write("ride.csv", table_of(HEADER, &blank));
     bench.run("replay ride.csv --map extract").refused_naming(&["rear-wheel (no value in `rear`)"]);
     bench.write("ride.csv", "a,b\n1,2\n");
-    bench.run("replay ride.csv").refused_naming(&["no map that ships", "--map"]);
+    bench.run("replay ride.csv").refused_naming(&["no built-in map", "--map"]);
 }
