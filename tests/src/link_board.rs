@@ -242,7 +242,7 @@ impl Wire {
 
     fn check(&self) -> Result<(), TransportError> {
         let why = || io::ErrorKind::BrokenPipe.into();
-        if self.lost { Err(TransportError::Lost { line: "wire".into(), why: why() }) } else { Ok(()) }
+        if self.lost { Err(TransportError::Lost { line: "wire".into(), error: why() }) } else { Ok(()) }
     }
 }
 

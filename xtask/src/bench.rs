@@ -47,7 +47,7 @@ pub fn bench() -> Result<()> {
     let apart = apart(&all);
     println!("\nthe final states differ by at most {apart:.1e} (rad, rad/s)");
     match reference {
-        Err(why) => Err(format!("without the Python programs: {why}")),
+        Err(error) => Err(format!("without the Python programs: {error}")),
         Ok(_) if apart < AGREED => Ok(()),
         Ok(_) => Err(format!("the final states differ by more than {AGREED:e}")),
     }

@@ -65,7 +65,7 @@ fn report(lcov: &str) -> Result<()> {
         if counts.is_empty() {
             return Err(format!("{}: missing in LLVM's coverage", path.display()));
         }
-        let text = std::fs::read_to_string(&path).map_err(|why| format!("{}: {why}", path.display()))?;
+        let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         let never: Vec<usize> =
             counts.iter().filter(|(_, count)| *count == "0").map(|(line, _)| *line).collect();
         println!("control/src/{name}: {} of {} lines run", counts.len() - never.len(), counts.len());

@@ -67,7 +67,7 @@ pub fn loaded(image: &Path) -> Result<Vec<u8>> {
     let bytes = image.with_extension("bin");
     let mut objcopy = Command::new("arm-none-eabi-objcopy");
     must(objcopy.args(["-O", "binary"]).arg(image).arg(&bytes), Duration::from_secs(600))?;
-    std::fs::read(&bytes).map_err(|why| format!("{}: {why}", bytes.display()))
+    std::fs::read(&bytes).map_err(|error| format!("{}: {error}", bytes.display()))
 }
 
 /// Cargo's home directory, with its downloads.

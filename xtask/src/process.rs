@@ -29,7 +29,7 @@ pub fn capture(command: &mut Command, limit: Duration) -> Result<Outcome> {
     let [stdout, stderr] = [out, err].map(|reader| reader.map_or_else(String::new, text));
     match ended {
         Ok(status) => Ok(Outcome { status, stdout, stderr }),
-        Err(why) => Err(format!("{command:?}: {why}\n{stdout}{stderr}")),
+        Err(error) => Err(format!("{command:?}: {error}\n{stdout}{stderr}")),
     }
 }
 
@@ -53,7 +53,7 @@ pub(crate) fn ended(
         Ok(status) => {
             Err(format!("{command:?} failed ({})", status.map_or("signal".into(), |s| s.to_string())))
         }
-        Err(why) => Err(format!("{command:?}: {why}")),
+        Err(error) => Err(format!("{command:?}: {error}")),
     }
 }
 

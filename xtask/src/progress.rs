@@ -7,9 +7,9 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// Interval of the reports.
-const SAID_EVERY: Duration = Duration::from_secs(300);
+const REPORT_INTERVAL: Duration = Duration::from_secs(300);
 /// Interval at which the program's children are listed.
-const LOOK: Duration = Duration::from_millis(500);
+const POLL_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Runs a program that writes to the terminal itself, without a time limit; any failure is an error. Every five
 /// minutes, a line on standard error lists its child programs and how long each has been running.
@@ -18,16 +18,16 @@ const LOOK: Duration = Duration::from_millis(500);
 /// It cannot be started, or failed.
 pub fn must_whenever(command: &mut Command) -> Result<()> {
     let mut child = start(command.stdin(Stdio::null()))?;
-    let (begin, mut said) = (Instant::now(), Instant::now());
+    let (begin, mut reported) = (Instant::now(), Instant::now());
     let mut running: Vec<(String, Instant)> = Vec::new();
     loop {
         match child.try_wait() {
-            Ok(None) => sleep(LOOK),
+            Ok(None) => sleep(POLL_INTERVAL),
             outcome => return ended(command, outcome.map(|status| status.and_then(|status| status.code()))),
         }
         follow(&mut running, started_by(child.id()));
-        if said.elapsed() >= SAID_EVERY {
-            said = Instant::now();
+        if reported.elapsed() >= REPORT_INTERVAL {
+            reported = Instant::now();
             eprintln!("xtask: after {}: {}", minutes(begin.elapsed()), described(&running));
         }
     }

@@ -74,7 +74,7 @@ fn cargo_home(folder: &Path) -> Result<PathBuf> {
         let real = image::cargo_home().unwrap_or_default();
         std::os::unix::fs::symlink(real.join("registry"), home.join("registry"))
     };
-    make().map_err(|why| format!("{}: {why}", home.display()))?;
+    make().map_err(|error| format!("{}: {error}", home.display()))?;
     Ok(home)
 }
 

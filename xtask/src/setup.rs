@@ -64,8 +64,8 @@ fn add_target(source: TargetSource) -> Result<()> {
     match source {
         TargetSource::Rustup => rustup(),
         TargetSource::Debian => debian(),
-        TargetSource::Auto => rustup().or_else(|why| {
-            eprintln!("{why}; building the target from Debian's source instead");
+        TargetSource::Auto => rustup().or_else(|error| {
+            eprintln!("{error}; building the target from Debian's source instead");
             debian()
         }),
     }

@@ -51,7 +51,7 @@ pub fn sizes() -> Result<Vec<Size>> {
         .map(|image| {
             let mut tool = Command::new("arm-none-eabi-size");
             let outcome = capture(tool.arg(image::path(image.name)), Duration::from_secs(600))
-                .map_err(|why| format!("{why}\n{}", setup::missing().join("\n")))?;
+                .map_err(|error| format!("{error}\n{}", setup::missing().join("\n")))?;
             let row = outcome.stdout.lines().nth(1).unwrap_or_default();
             let mut numbers = row.split_whitespace().map_while(|word| word.parse().ok());
             match [numbers.next(), numbers.next(), numbers.next()] {

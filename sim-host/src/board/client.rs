@@ -10,20 +10,20 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant, SystemTime};
 
 /// Number of unsolicited messages stored for [`Client::listen`]; the newest are kept.
-const KEPT: usize = 4096;
+const UNSOLICITED_MAX: usize = 4096;
 /// Longest time a board takes to erase and write its flash, with a large margin.
 const STORING: Duration = Duration::from_secs(5);
 
 /// Timeout and number of attempts of a request.
 #[derive(Clone, Copy, Debug)]
-pub struct Patience {
+pub struct RetryPolicy {
     /// Real time for one answer. The largest answer behind the largest telemetry takes 40 ms at 115200 baud.
     pub answer: Duration,
     /// Attempts before giving up.
     pub tries: u32,
 }
 
-impl Default for Patience {
+impl Default for RetryPolicy {
     fn default() -> Self {
         Self { answer: Duration::from_millis(400), tries: 5 }
     }
@@ -57,13 +57,13 @@ pub enum ClientError {
         /// The request.
         requested: String,
         /// The reason.
-        why: RejectReason,
+        reason: RejectReason,
         /// The reason as text, with parameter and range.
         text: String,
     },
     /// The answer belongs to another request.
     #[error("the board's answer does not match `{requested}`")]
-    Unfit {
+    Mismatch {
         /// The request.
         requested: String,
     },
@@ -79,7 +79,7 @@ impl ClientError {
 /// The connection to a board.
 pub struct Client {
     line: Box<dyn Transport>,
-    timeout: Patience,
+    timeout: RetryPolicy,
     decoder: Decoder,
     sequence: u16,
     received: VecDeque<ReceivedMessage>,
@@ -88,7 +88,7 @@ pub struct Client {
 
 impl Client {
     /// A connection over `line`; sends nothing yet.
-    pub fn new(line: Box<dyn Transport>, timeout: Patience) -> Self {
+    pub fn new(line: Box<dyn Transport>, timeout: RetryPolicy) -> Self {
         // Answers to an earlier program can still arrive; their sequence numbers differ.
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         let sequence = now.subsec_micros() as u16;
@@ -109,8 +109,8 @@ impl Client {
     ) -> Result<T, ClientError> {
         let mut bytes = [0; MAX_FRAME];
         self.sequence = self.sequence.wrapping_add(1);
-        let unfit = || ClientError::Unfit { requested: requested.into() };
-        let used = request.encode(self.sequence, &mut bytes).ok_or_else(unfit)?;
+        let mismatch = || ClientError::Mismatch { requested: requested.into() };
+        let used = request.encode(self.sequence, &mut bytes).ok_or_else(mismatch)?;
         let wait = if *request == Message::Store { STORING } else { self.timeout.answer };
         for _ in 0..self.timeout.tries {
             self.line.send(&bytes[..used])?;
@@ -118,10 +118,10 @@ impl Client {
             return match answer.message() {
                 Ok(Message::Refused(refusal)) => {
                     let (requested, text) = (requested.into(), refusal.to_string());
-                    Err(ClientError::Refused { requested, why: refusal.why, text })
+                    Err(ClientError::Refused { requested, reason: refusal.why, text })
                 }
-                Ok(message) => fits(&message).ok_or_else(unfit),
-                Err(NoMessage::UnknownKind(_) | NoMessage::Malformed(_)) => Err(unfit()),
+                Ok(message) => fits(&message).ok_or_else(mismatch),
+                Err(NoMessage::UnknownKind(_) | NoMessage::Malformed(_)) => Err(mismatch()),
             };
         }
         Err(ClientError::Silent { requested: requested.into(), tries: self.timeout.tries, wait })
@@ -180,8 +180,8 @@ impl Client {
             self.whole += u64::from(matches!(received, Some(Received::Frame(_))));
             match received {
                 Some(Received::WrongVersion { theirs }) => return Err(ClientError::Version { theirs }),
-                Some(Received::Frame(frame)) if ReceivedMessage::is_unasked(&frame) => {
-                    if self.received.len() == KEPT {
+                Some(Received::Frame(frame)) if ReceivedMessage::is_unsolicited(&frame) => {
+                    if self.received.len() == UNSOLICITED_MAX {
                         self.received.pop_front();
                     }
                     self.received.push_back(ReceivedMessage::new(&frame));

@@ -16,7 +16,7 @@ const PIECE: usize = 300;
 /// The only control rate of an emulated board \[Hz\].
 const RATE_HZ: f32 = 1000.0;
 /// The link's faults use their own random streams, separate from those of the sensors and their faults.
-const DICE: u64 = 1 << 32;
+const RANDOM_STREAM: u64 = 1 << 32;
 
 /// Counts over all rides of a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub struct Tally {
     /// Control steps.
     pub steps: u64,
     /// Control steps affected by a link fault.
-    pub harmed: u64,
+    pub affected: u64,
     /// Control steps for which the board's command was late or missing.
     pub missed: u64,
     /// Restarts of the chip during a ride.
@@ -69,7 +69,11 @@ struct RideState {
 impl RideState {
     fn new(number: u16, faults: &[LinkFault], seed: u64, start: &Start) -> Self {
         let passage = |direction: Direction| {
-            LinkChannel::new(faults, direction, RandomStream::new(seed, start, DICE + direction as u64))
+            LinkChannel::new(
+                faults,
+                direction,
+                RandomStream::new(seed, start, RANDOM_STREAM + direction as u64),
+            )
         };
         Self {
             number,
@@ -101,8 +105,8 @@ impl RideState {
         self.held.0
     }
 
-    fn astray(&self, what: impl Into<String>) -> BoardError {
-        BoardError::Astray { step: self.step, what: what.into() }
+    fn violation(&self, what: impl Into<String>) -> BoardError {
+        BoardError::Lockstep { step: self.step, what: what.into() }
     }
 }
 
@@ -149,12 +153,12 @@ impl<B: Lockstep> Controller<B> {
                 Ok(Message::Refused(refusal)) => return Err(BoardError::Refused(refusal.to_string())),
                 Ok(_) => {}
                 Err(NoMessage::UnknownKind(kind) | NoMessage::Malformed(kind)) => {
-                    return Err(ride.astray(format!("a message of kind {kind:#04x} that can't be read")));
+                    return Err(ride.violation(format!("a message of kind {kind:#04x} that can't be read")));
                 }
             }
         }
         if !reset {
-            return Err(ride.astray("the reset was not answered"));
+            return Err(ride.violation("the reset was not answered"));
         }
         Ok(command)
     }
@@ -168,7 +172,7 @@ impl<B: Lockstep> Controller<B> {
         let ride = &mut self.ride;
         let gone_ms = now_ms.wrapping_sub(before_ms);
         if gone_ms == 0 || gone_ms > i32::MAX as u32 {
-            return Err(ride.astray(format!("the board's time went from {before_ms} ms to {now_ms} ms")));
+            return Err(ride.violation(format!("the board's time went from {before_ms} ms to {now_ms} ms")));
         }
         if started > 0 {
             // The board counts steps from its restart, after which it has done one.
@@ -177,9 +181,9 @@ impl<B: Lockstep> Controller<B> {
         }
         let sure = ride.sensors.safe() && ride.motor.safe() && !ride.restarted;
         match newest {
-            None if sure => return Err(ride.astray("the board gave no command")),
+            None if sure => return Err(ride.violation("the board gave no command")),
             Some((_, of)) if sure && of != sequence => {
-                return Err(ride.astray(format!("a command of frame {of} in answer to frame {sequence}")));
+                return Err(ride.violation(format!("a command of frame {of} in answer to frame {sequence}")));
             }
             _ => {}
         }
@@ -213,7 +217,7 @@ impl<B: Lockstep> Remote for Controller<B> {
     }
 
     fn step(&mut self, frame: &SensorFrame) -> Result<Stepped, RemoteError> {
-        let harmed = self.ride.sensors.harmed + self.ride.motor.harmed;
+        let affected = self.ride.sensors.affected + self.ride.motor.affected;
         let stepped = match self.ride.ahead.take() {
             Some((1, newest)) => self.ride.motor(newest),
             Some((periods, newest)) => {
@@ -224,7 +228,7 @@ impl<B: Lockstep> Remote for Controller<B> {
             None => self.stepped(frame)?,
         };
         let ride = &mut self.ride;
-        self.tally.harmed += u64::from(ride.sensors.harmed + ride.motor.harmed - harmed);
+        self.tally.affected += u64::from(ride.sensors.affected + ride.motor.affected - affected);
         self.tally.steps += 1;
         ride.step += 1;
         ride.tick = ride.tick.map(|tick| tick + 1);

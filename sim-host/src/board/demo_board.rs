@@ -52,14 +52,14 @@ impl DemoBoard {
         let line: Vec<u8> = self.waiting.drain(..self.waiting.len().min(LINE_BYTES)).collect();
         let starts = self.board.last().starts;
         let exchanged = self.board.exchange(&ToBoard { sensors: &room[..used], line: &line });
-        exchanged.map_err(|why| TransportError::Lost {
+        exchanged.map_err(|error| TransportError::Lost {
             line: self.name.clone(),
-            why: io::Error::other(why.to_string()),
+            error: io::Error::other(error.to_string()),
         })?;
-        let said = self.board.last();
-        self.number = if said.starts == starts { self.number.wrapping_add(1) } else { 1 };
+        let received = self.board.last();
+        self.number = if received.starts == starts { self.number.wrapping_add(1) } else { 1 };
         self.now_us = self.now_us.wrapping_add(1000);
-        Ok(said.line.to_vec())
+        Ok(received.line.to_vec())
     }
 
     fn sensors(&self) -> SensorFrame {
@@ -88,9 +88,9 @@ impl Transport for DemoBoard {
         loop {
             sleep(Duration::from_millis(1).saturating_sub(self.last.elapsed()));
             self.last = Instant::now();
-            let said = self.millisecond()?;
-            if !said.is_empty() || begin.elapsed() >= timeout {
-                return Ok(said);
+            let received = self.millisecond()?;
+            if !received.is_empty() || begin.elapsed() >= timeout {
+                return Ok(received);
             }
         }
     }

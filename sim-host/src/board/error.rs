@@ -16,7 +16,7 @@ pub enum BoardError {
     #[error("there is no image {}; `cargo xtask firmware` builds it", .0.display())]
     NoImage(PathBuf),
     /// The emulator ended.
-    #[error("the board {} ended ({status}) after {exchanges} exchanges{said}", .image.display())]
+    #[error("the board {} ended ({status}) after {exchanges} exchanges{output}", .image.display())]
     Ended {
         /// The image.
         image: PathBuf,
@@ -25,10 +25,10 @@ pub enum BoardError {
         /// Exchanges until then.
         exchanges: u64,
         /// The end of its text output, on a new line.
-        said: String,
+        output: String,
     },
     /// The board did not answer in time.
-    #[error("the board {} did not answer within {limit:?} after {exchanges} exchanges{said}", .image.display())]
+    #[error("the board {} did not answer within {limit:?} after {exchanges} exchanges{output}", .image.display())]
     Silent {
         /// The image.
         image: PathBuf,
@@ -37,7 +37,7 @@ pub enum BoardError {
         /// Exchanges until then.
         exchanges: u64,
         /// The end of its text output, on a new line.
-        said: String,
+        output: String,
     },
     /// What the board sent is no chunk of the link.
     #[error(
@@ -52,7 +52,7 @@ pub enum BoardError {
     Refused(String),
     /// The board broke the lockstep protocol.
     #[error("control step {step} since the reset: {what}")]
-    Astray {
+    Lockstep {
         /// The control step since the reset.
         step: u32,
         /// What happened.

@@ -59,8 +59,8 @@ pub struct LinkFault {
 
 impl LinkFault {
     fn acts(&self, tick: u32) -> bool {
-        let begun = |at_s: f64| f64::from(tick) >= (at_s / PERIOD_S).round();
-        begun(self.from_s) && !begun(self.to_s)
+        let passed = |at_s: f64| f64::from(tick) >= (at_s / PERIOD_S).round();
+        passed(self.from_s) && !passed(self.to_s)
     }
 }
 
@@ -86,7 +86,7 @@ impl FromStr for LinkFault {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        parsed(text).map_err(|why| format!("`{text}`: {why}"))
+        parsed(text).map_err(|error| format!("`{text}`: {error}"))
     }
 }
 
@@ -128,14 +128,14 @@ pub(super) struct LinkChannel {
     /// Delayed bytes, with the period in which they arrive.
     late: VecDeque<(u32, Vec<u8>)>,
     /// Periods whose bytes a fault changed.
-    pub(super) harmed: u32,
+    pub(super) affected: u32,
 }
 
 impl LinkChannel {
     /// A channel with the faults of its direction.
     pub(super) fn new(faults: &[LinkFault], direction: Direction, random: RandomStream) -> Self {
         let faults = faults.iter().filter(|fault| fault.direction == direction).copied().collect();
-        Self { faults, random, late: VecDeque::new(), harmed: 0 }
+        Self { faults, random, late: VecDeque::new(), affected: 0 }
     }
 
     /// Whether no fault ever acts on it.
@@ -159,7 +159,7 @@ impl LinkChannel {
                 }
             }
         }
-        self.harmed += u32::from(acting.count() > 0);
+        self.affected += u32::from(acting.count() > 0);
         if !lost && late == 0 {
             self.late.clear();
             return;

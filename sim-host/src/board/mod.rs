@@ -26,7 +26,7 @@ pub mod tune;
 pub mod virtual_board;
 mod watchdog;
 
-pub use client::{Client, ClientError, Patience};
+pub use client::{Client, ClientError, RetryPolicy};
 pub use controller::{Controller, Tally};
 pub use error::BoardError;
 pub use link_fault::{Direction, LinkFault, LinkFaultKind};

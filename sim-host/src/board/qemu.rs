@@ -17,7 +17,7 @@ pub const LIMIT: Duration = Duration::from_secs(10);
 /// Longest time from the end of the emulator's output to its exit \[ms\].
 const GRACE_MS: u32 = 10_000;
 /// Number of bytes kept of the end of the board's text output.
-const KEPT: usize = 1 << 14;
+const OUTPUT_BYTES_MAX: usize = 1 << 14;
 
 /// Default path of the loop's image, as built by `cargo xtask firmware`.
 pub fn default_image() -> PathBuf {
@@ -60,15 +60,15 @@ impl Qemu {
         let (Some(to), Some(from), Some(err)) = (to, from, err) else {
             return Err(BoardError::NoQemu(std::io::ErrorKind::BrokenPipe.into()));
         };
-        let said = Arc::new(Mutex::new(Vec::new()));
-        let listener = listen(err, Arc::clone(&said));
+        let output = Arc::new(Mutex::new(Vec::new()));
+        let listener = listen(err, Arc::clone(&output));
         let mut qemu = Self {
             image: image.into(),
             watchdog: Watchdog::new(Arc::clone(&child), limit),
             child,
             to: Some(to),
             from,
-            words: said,
+            words: output,
             listener: Some(listener),
             exchanges: 0,
             room: [0; MAX_CHUNK],
@@ -81,7 +81,7 @@ impl Qemu {
     }
 
     /// The end of the board's text output so far.
-    pub fn said(&self) -> String {
+    pub fn output(&self) -> String {
         String::from_utf8_lossy(&locked(&self.words)).trim_end().into()
     }
 
@@ -113,12 +113,12 @@ impl Qemu {
             match child.try_wait() {
                 Ok(Some(status)) => return status.to_string(),
                 Ok(None) => sleep(Duration::from_millis(1)),
-                Err(why) => return why.to_string(),
+                Err(error) => return error.to_string(),
             }
         }
         // It may have ended just now.
         let _ = child.kill();
-        child.wait().map_or_else(|why| why.to_string(), |_| "its output ended before it did".into())
+        child.wait().map_or_else(|error| error.to_string(), |_| "its output ended before it did".into())
     }
 
     /// Closes the input, on which the image exits; returns the exit status and the end of its text output.
@@ -127,20 +127,20 @@ impl Qemu {
         let status = self.last_status();
         // The text is complete when the listener has ended.
         let _ = self.listener.take().map(JoinHandle::join);
-        (status, self.said())
+        (status, self.output())
     }
 
     /// The error of an ended emulator.
     fn ended(&mut self) -> BoardError {
-        let (status, said) = self.close();
-        let said = match said {
-            said if said.is_empty() => said,
-            said => format!("; its output:\n{said}"),
+        let (status, output) = self.close();
+        let output = match output {
+            output if output.is_empty() => output,
+            output => format!("; its output:\n{output}"),
         };
         let (image, exchanges) = (self.image.clone(), self.exchanges);
         match self.watchdog.ended() {
-            true => BoardError::Silent { image, limit: self.watchdog.limit, exchanges, said },
-            false => BoardError::Ended { image, status, exchanges, said },
+            true => BoardError::Silent { image, limit: self.watchdog.limit, exchanges, output },
+            false => BoardError::Ended { image, status, exchanges, output },
         }
     }
 }
@@ -216,7 +216,7 @@ fn listen(mut from: ChildStderr, to: Arc<Mutex<Vec<u8>>>) -> JoinHandle<()> {
         while let Ok(got @ 1..) = from.read(&mut room) {
             let mut output = locked(&to);
             output.extend_from_slice(&room[..got]);
-            let much = output.len().saturating_sub(KEPT);
+            let much = output.len().saturating_sub(OUTPUT_BYTES_MAX);
             output.drain(..much);
         }
     })

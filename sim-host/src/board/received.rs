@@ -4,7 +4,7 @@ use link::frame::Frame;
 use link::message::{Message, NoMessage};
 
 /// Kinds from this number on are unsolicited.
-const UNASKED: u8 = 0xa0;
+const UNSOLICITED: u8 = 0xa0;
 
 /// A frame from a board, copied.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,8 +22,8 @@ impl ReceivedMessage {
     }
 
     /// Whether the board sends this frame unsolicited.
-    pub fn is_unasked(frame: &Frame<'_>) -> bool {
-        frame.kind >= UNASKED
+    pub fn is_unsolicited(frame: &Frame<'_>) -> bool {
+        frame.kind >= UNSOLICITED
     }
 
     /// The decoded message.

@@ -12,7 +12,7 @@ pub struct Recording {
     name: String,
     file: File,
     /// Whether the 0 before the first whole frame has been read.
-    begun: bool,
+    started: bool,
     /// Bytes after the last 0.
     rest: usize,
 }
@@ -24,8 +24,8 @@ impl Recording {
     /// [`TransportError::Open`].
     pub fn open(path: &Path) -> Result<Self, TransportError> {
         let name = path.display().to_string();
-        let file = File::open(path).map_err(|why| TransportError::Open { line: name.clone(), why })?;
-        Ok(Self { name, file, begun: false, rest: 0 })
+        let file = File::open(path).map_err(|error| TransportError::Open { line: name.clone(), error })?;
+        Ok(Self { name, file, started: false, rest: 0 })
     }
 }
 
@@ -37,7 +37,7 @@ impl Transport for Recording {
     fn receive(&mut self, _: Duration) -> Result<Vec<u8>, TransportError> {
         let mut bytes = vec![0; 4096];
         let read = self.file.read(&mut bytes);
-        let length = read.map_err(|why| TransportError::Lost { line: self.name.clone(), why })?;
+        let length = read.map_err(|error| TransportError::Lost { line: self.name.clone(), error })?;
         if length == 0 {
             return Err(TransportError::Ended { line: self.name.clone(), rest: self.rest });
         }
@@ -45,11 +45,11 @@ impl Transport for Recording {
         let first = bytes.iter().position(|byte| *byte == 0);
         match first {
             // Reception begins in the middle of a frame.
-            Some(first) if !self.begun => drop(bytes.drain(..first)),
-            None if !self.begun => bytes.clear(),
+            Some(first) if !self.started => drop(bytes.drain(..first)),
+            None if !self.started => bytes.clear(),
             _ => {}
         }
-        self.begun |= first.is_some();
+        self.started |= first.is_some();
         self.rest = match bytes.iter().rposition(|byte| *byte == 0) {
             Some(last) => bytes.len() - 1 - last,
             None => self.rest + bytes.len(),
@@ -65,13 +65,13 @@ pub struct Recorder {
     name: String,
     to: Box<dyn Write>,
     /// Bytes received since the last end of a frame.
-    begun: Vec<u8>,
+    pending: Vec<u8>,
 }
 
 impl Recorder {
     /// Writes the bytes received over `line` to `to`; `name` is its name in errors.
     pub fn new(line: Box<dyn Transport>, name: &str, to: Box<dyn Write>) -> Self {
-        Self { line, name: name.into(), to, begun: Vec::new() }
+        Self { line, name: name.into(), to, pending: Vec::new() }
     }
 }
 
@@ -82,16 +82,16 @@ impl Transport for Recorder {
 
     fn receive(&mut self, timeout: Duration) -> Result<Vec<u8>, TransportError> {
         let bytes = self.line.receive(timeout)?;
-        self.begun.extend(&bytes);
+        self.pending.extend(&bytes);
         // Bytes longer than a frame are noise and are written as received.
-        let whole = match self.begun.iter().rposition(|byte| *byte == 0) {
+        let whole = match self.pending.iter().rposition(|byte| *byte == 0) {
             Some(last) => last + 1,
-            None if self.begun.len() > MAX_FRAME => self.begun.len(),
+            None if self.pending.len() > MAX_FRAME => self.pending.len(),
             None => 0,
         };
-        let written = self.to.write_all(&self.begun[..whole]).and_then(|()| self.to.flush());
-        written.map_err(|why| TransportError::Record { file: self.name.clone(), why })?;
-        self.begun.drain(..whole);
+        let written = self.to.write_all(&self.pending[..whole]).and_then(|()| self.to.flush());
+        written.map_err(|error| TransportError::Record { file: self.name.clone(), error })?;
+        self.pending.drain(..whole);
         Ok(bytes)
     }
 

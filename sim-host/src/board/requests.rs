@@ -94,7 +94,7 @@ impl Client {
     /// The law.
     ///
     /// # Errors
-    /// See [`ClientError`]; `Unfit` for a law that this program does not know.
+    /// See [`ClientError`]; `Mismatch` for a law that this program does not know.
     pub fn law(&mut self) -> Result<Law, ClientError> {
         self.ask(&Message::GetLaw, "get law", law_answered)
     }
@@ -128,17 +128,17 @@ impl Client {
     /// # Errors
     /// See [`ClientError`].
     pub fn faults(&mut self) -> Result<Vec<Fault>, ClientError> {
-        let mut kept = Vec::new();
+        let mut stored = Vec::new();
         loop {
-            let from = kept.len() as u16;
+            let from = stored.len() as u16;
             let requested = format!("list faults from {from}");
             let fault = self.ask(&Message::ListFaults { from }, &requested, |answer| match answer {
                 Message::StoredFault(fault) if fault.place == from => Some(fault.record.map(Fault::from)),
                 _ => None,
             })?;
             match fault {
-                Some(fault) => kept.push(fault),
-                None => return Ok(kept),
+                Some(fault) => stored.push(fault),
+                None => return Ok(stored),
             }
         }
     }

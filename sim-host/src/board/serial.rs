@@ -23,20 +23,22 @@ impl Serial {
     pub fn open(name: &str, baud: u32) -> Result<Self, TransportError> {
         let opened = serialport::new(name, baud).timeout(SENDING).open();
         let port = opened.and_then(|port| port.clear(ClearBuffer::Input).map(|()| port));
-        let failed =
-            |why: serialport::Error| TransportError::Open { line: name.into(), why: io::Error::other(why) };
+        let failed = |error: serialport::Error| TransportError::Open {
+            line: name.into(),
+            error: io::Error::other(error),
+        };
         Ok(Self { name: name.into(), baud, port: port.map_err(failed)? })
     }
 
-    fn lost(&self, why: io::Error) -> TransportError {
-        TransportError::Lost { line: self.name.clone(), why }
+    fn lost(&self, error: io::Error) -> TransportError {
+        TransportError::Lost { line: self.name.clone(), error }
     }
 }
 
 impl Transport for Serial {
     fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
         let sent = self.port.set_timeout(SENDING).map_err(io::Error::from);
-        sent.and_then(|()| self.port.write_all(bytes)).map_err(|why| self.lost(why))
+        sent.and_then(|()| self.port.write_all(bytes)).map_err(|error| self.lost(error))
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Vec<u8>, TransportError> {
@@ -48,8 +50,10 @@ impl Transport for Serial {
                 bytes.truncate(length);
                 Ok(bytes)
             }
-            Err(why) if matches!(why.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => Ok(Vec::new()),
-            Err(why) => Err(self.lost(why)),
+            Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {
+                Ok(Vec::new())
+            }
+            Err(error) => Err(self.lost(error)),
         }
     }
 

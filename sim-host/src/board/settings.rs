@@ -81,7 +81,7 @@ impl Settings {
                 .and_then(|one| one.parse(text))
             {
                 Ok(value) => wanted.push(Setting::Value { key: key.clone(), value }),
-                Err(why) => wrong.push(why),
+                Err(error) => wrong.push(error),
             }
         }
         if wrong.is_empty() { Ok(wanted) } else { Err(wrong.join("; ")) }

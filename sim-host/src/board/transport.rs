@@ -30,20 +30,20 @@ pub trait Transport {
 #[derive(Debug, thiserror::Error)]
 pub enum TransportError {
     /// It can't be opened.
-    #[error("can't open {line}: {why}")]
+    #[error("can't open {line}: {error}")]
     Open {
         /// The device or file.
         line: String,
         /// The system's error.
-        why: io::Error,
+        error: io::Error,
     },
     /// The line was open and is lost.
-    #[error("lost {line}: {why}")]
+    #[error("lost {line}: {error}")]
     Lost {
         /// The device or file.
         line: String,
         /// The system's error.
-        why: io::Error,
+        error: io::Error,
     },
     /// A recording is at its end.
     #[error("{line} is at its end")]
@@ -60,11 +60,11 @@ pub enum TransportError {
         line: String,
     },
     /// The received bytes cannot be recorded.
-    #[error("can't write {file}: {why}")]
+    #[error("can't write {file}: {error}")]
     Record {
         /// The file.
         file: String,
         /// The system's error.
-        why: io::Error,
+        error: io::Error,
     },
 }

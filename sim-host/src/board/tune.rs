@@ -73,7 +73,7 @@ fn converge(client: &mut Client, mut waiting: Vec<Setting>, set: &mut Vec<Settin
                 Ok(()) => set.push(setting),
                 Err(
                     error @ ClientError::Refused {
-                        why: RejectReason::OutOfRange | RejectReason::GroupOff,
+                        reason: RejectReason::OutOfRange | RejectReason::GroupOff,
                         ..
                     },
                 ) => {

@@ -37,7 +37,7 @@ impl VirtualBoard {
     /// The program does not exist, or ends before the board has started; then with the reason it printed.
     pub fn start(program: &Path, image: Option<&Path>) -> Result<Self, TransportError> {
         let name = format!("{} (cargo xtask virtual-board --build makes it)", program.display());
-        let failed = |why: io::Error| TransportError::Open { line: name.clone(), why };
+        let failed = |error: io::Error| TransportError::Open { line: name.clone(), error };
         let mut command = Command::new(program);
         command.arg("--stdio").args(image.iter().flat_map(|image| [Path::new("--image"), image]));
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -61,18 +61,18 @@ impl VirtualBoard {
     }
 
     /// The program has ended or does not read: the error with the reason that it printed.
-    fn lost(&self, why: io::ErrorKind) -> TransportError {
-        TransportError::Lost { line: self.name.clone(), why: io::Error::new(why, self.last_words()) }
+    fn lost(&self, error: io::ErrorKind) -> TransportError {
+        TransportError::Lost { line: self.name.clone(), error: io::Error::new(error, self.last_words()) }
     }
 
     /// The last line that the program wrote to standard error. Waits a moment for it, since the two streams of a
     /// program that ends close in any order.
     fn last_words(&self) -> String {
-        let mut said = Vec::new();
+        let mut output = Vec::new();
         while let Ok(bytes) = self.words.recv_timeout(Duration::from_millis(200)) {
-            said.extend(bytes);
+            output.extend(bytes);
         }
-        String::from_utf8_lossy(&said).lines().last().unwrap_or("no output").to_owned()
+        String::from_utf8_lossy(&output).lines().last().unwrap_or("no output").to_owned()
     }
 }
 

@@ -172,13 +172,13 @@ pub(super) struct Computed<'a> {
     pub(super) seconds: f64,
 }
 
-/// Writes a complete or partial basin; `said` is added to the text.
+/// Writes a complete or partial basin; `extra` is added to the text.
 pub(super) fn write(
     setup: &Setup,
     search: &Search,
     outputs: &Outputs,
     computed: &Computed,
-    said: &str,
+    extra: &str,
 ) -> Result<Ended, Failure> {
     let Computed { basin: result, drawn, seconds } = *computed;
     if result.columns.is_empty() {
@@ -216,7 +216,7 @@ pub(super) fn write(
             terminal::basin(&figure, 80)
                 + &summary(result, search, &setup.conditions.fall, seconds)
                 + &spread(&document)
-                + said
+                + extra
         },
         table: || {
             let drawn = drawn.map_or(Vec::new(), |drawn| table::drawn_rows(&search.speeds, drawn));

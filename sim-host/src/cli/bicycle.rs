@@ -192,8 +192,8 @@ fn check(bicycle: &Bicycle, json: Option<&PathBuf>) -> Result<(), Failure> {
         let _ = writeln!(text, "{label} = {}", speed.map_or("none".into(), |v| format!("{v:.6} m/s")));
     }
     text += &stable_line(&ranges);
-    for why in &document.flashed_off {
-        let _ = writeln!(text, "on the flashed code (--preset product) {why}");
+    for reason in &document.flashed_off {
+        let _ = writeln!(text, "on the flashed code (--preset product) {reason}");
     }
     print(&text)
 }

@@ -77,9 +77,9 @@ pub(super) fn resolve(
         let values = combination(axes, i);
         let named = |e: &dyn std::fmt::Display| format!("cell {}: {e}", label(axes, &values));
         let words = words_of(shared, &roles, &values).map_err(|e| named(&e))?;
-        let asked = conditions(&words).map_err(|e| named(&e))?;
-        ridden |= asked.ridden();
-        let setup = asked.setup().map_err(|e| named(&e))?;
+        let requested = conditions(&words).map_err(|e| named(&e))?;
+        ridden |= requested.ridden();
+        let setup = requested.setup().map_err(|e| named(&e))?;
         setups.push((serde_json::to_value(&setup.config)?, setup.conditions));
     }
     let search = search(ridden)?;

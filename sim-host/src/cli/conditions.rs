@@ -142,7 +142,7 @@ impl ConditionArgs {
     fn set_parameters(&self, config: &mut Config) -> Result<(), String> {
         self.set.iter().try_for_each(|word| {
             let (key, value) = word.split_once('=').ok_or(format!("--set {word}: expected KEY=VALUE"))?;
-            parameters::set(config, key, value).map_err(|why| format!("--set {word}: {why}"))
+            parameters::set(config, key, value).map_err(|error| format!("--set {word}: {error}"))
         })
     }
 
@@ -208,8 +208,8 @@ impl ConditionArgs {
         let plant = self.plant.plant(step_s)?;
         if flashed {
             let off = fit(&mut config, &Geometry::new(&bicycle.parameters), plant.sensors.imu.point_m);
-            for why in off {
-                complain_once(&format!("note: {}: for the flashed code {why}", self.bicycle));
+            for reason in off {
+                complain_once(&format!("note: {}: for the flashed code {reason}", self.bicycle));
             }
             self.set_parameters(&mut config)?;
         }
@@ -231,8 +231,8 @@ impl ConditionArgs {
             None => e.to_string(),
         })?;
         if self.assist == AssistKind::Ideal && (limited || self.sensor_delay > 0.0) {
-            let why = "limits and sensor delay act on --assist firmware only; the ideal law has none";
-            return Err(why.into());
+            let reason = "limits and sensor delay act on --assist firmware only; the ideal law has none";
+            return Err(reason.into());
         }
         let assist = match self.assist {
             _ if law == Law::None => Assist::None,

@@ -5,7 +5,7 @@ use super::fall_arg::FallArg;
 use super::outputs::{OutputArgs, Results, complain};
 use super::{Ended, Failure, interrupt, law};
 use crate::basin::{Axis, Search};
-use crate::design::{Knots, Plan, Progress, arena, competitors, judge, optimise};
+use crate::design::{Knots, Plan, Progress, competitors, judge, optimise, scenarios};
 use crate::report::design::{Design, DesignDocument, figure, law_file};
 use crate::report::figure;
 use crate::report::output::Output;
@@ -50,7 +50,7 @@ pub(super) struct Args {
     coarse: f64,
     /// Step of the speeds in the evaluation beside the known laws, in m/s, or none
     #[arg(long, default_value = "0.25", value_name = "M/S|none", value_parser = judgement, allow_hyphen_values = true)]
-    judge: Judgement,
+    judge: EvaluationStep,
     /// Write the law as a file for --law
     #[arg(long, value_name = "FILE")]
     law_file: Option<PathBuf>,
@@ -62,14 +62,14 @@ pub(super) struct Args {
 
 /// Step of the speeds in the evaluation; `None` for no evaluation.
 #[derive(Clone, Copy)]
-struct Judgement(Option<f64>);
+struct EvaluationStep(Option<f64>);
 
-fn judgement(text: &str) -> Result<Judgement, String> {
+fn judgement(text: &str) -> Result<EvaluationStep, String> {
     if text == "none" {
-        return Ok(Judgement(None));
+        return Ok(EvaluationStep(None));
     }
     text.parse()
-        .map(|step| Judgement(Some(step)))
+        .map(|step| EvaluationStep(Some(step)))
         .map_err(|_| format!("`{text}` is neither a number nor none"))
 }
 
@@ -114,7 +114,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         evaluations: args.evaluations,
     };
     let fine = search("--judge", args.judge.0.unwrap_or(0.25), 0.25, 0.02)?;
-    let arena = arena(args.fall.fall)?;
+    let scenarios = scenarios(args.fall.fall)?;
     let outputs = args.outputs.open(None)?;
     let law_output = args.law_file.as_deref().map(Output::create).transpose()?;
     if let Some(output) = &law_output {
@@ -133,7 +133,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         bar.set_position((part.max(by_time).min(1.0) * f64::from(plan.evaluations)) as u64);
         bar.set_message(format!("{} tried, least area {:.3}", now.evaluations, now.best));
     };
-    let found = pool.install(|| optimise(&arena.training, &plan, &advanced, &stop));
+    let found = pool.install(|| optimise(&scenarios.training, &plan, &advanced, &stop));
     bar.finish_and_clear();
     let Some(found) = found? else {
         complain("stopped before the first schedule was tried, nothing is written");
@@ -144,9 +144,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     laws.push(("design".into(), law.clone()));
     let mut judged = None;
     if args.judge.0.is_some() && !interrupt::stopped() {
-        let columns = (arena.training.len() + arena.held_out.len()) * laws.len() * fine.speeds.len();
+        let columns = (scenarios.training.len() + scenarios.held_out.len()) * laws.len() * fine.speeds.len();
         let bar = progress(outputs.shows_progress(), "judge", columns as u64);
-        judged = pool.install(|| judge(&arena, &laws, &fine, &|| bar.inc(1), &interrupt::stopped))?;
+        judged = pool.install(|| judge(&scenarios, &laws, &fine, &|| bar.inc(1), &interrupt::stopped))?;
         bar.finish_and_clear();
     }
     let design = Design {
@@ -154,7 +154,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         start: &args.start,
         found: &found,
         law: &law,
-        arena: &arena,
+        scenarios: &scenarios,
         fine: &fine,
         laws: &laws,
         judged: judged.as_ref(),

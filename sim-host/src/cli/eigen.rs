@@ -109,8 +109,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     };
     let alone = law == Law::None && rider.is_none() && args.capsize.is_none();
     if let (false, Some(v)) = (alone, args.speeds.iter().find(|v| **v < 0.0)) {
-        let why = "laws and riders are those of riding forward; below 0 only --law none without --rider and --capsize";
-        return Err(format!("--speeds: {v} m/s: {why}").into());
+        let reason = "laws and riders are those of riding forward; below 0 only --law none without --rider and --capsize";
+        return Err(format!("--speeds: {v} m/s: {reason}").into());
     }
     let (rider, doubts) = rider.map_or((None, Vec::new()), |(rider, doubts)| (Some(rider), doubts));
     doubts.iter().for_each(|doubt| complain_once(&format!("warning: {doubt}")));

@@ -88,7 +88,7 @@ mod tests {
             "lasting=1",
             "flat=none,lasting=1s",
         ] {
-            assert!(parse(text).is_err_and(|why| !why.is_empty()), "{text}");
+            assert!(parse(text).is_err_and(|error| !error.is_empty()), "{text}");
         }
     }
 }

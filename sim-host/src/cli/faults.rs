@@ -6,7 +6,7 @@ use super::{Ended, Failure};
 use crate::board::fault::Fault;
 use crate::board::reception::Reception;
 use crate::board::recorded::Recording;
-use crate::board::{Client, ClientError, Patience, TransportError};
+use crate::board::{Client, ClientError, RetryPolicy, TransportError};
 use crate::report::board::FaultsDocument;
 use crate::report::document::SCHEMA;
 use crate::report::output::Output;
@@ -75,10 +75,10 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 
 /// The fault records of a recording, in its order, and counts of its frames.
 fn recorded(file: &Path) -> Result<(Vec<Fault>, Reception), Failure> {
-    let mut client = Client::new(Box::new(Recording::open(file)?), Patience::default());
+    let mut client = Client::new(Box::new(Recording::open(file)?), RetryPolicy::default());
     let (mut faults, mut unknown) = (Vec::new(), 0);
     let rest = loop {
-        let received = match client.listen(Patience::default().answer) {
+        let received = match client.listen(RetryPolicy::default().answer) {
             Ok(received) => received,
             Err(ClientError::Transport(TransportError::Ended { rest, .. })) => break rest,
             Err(error) => return Err(error.into()),

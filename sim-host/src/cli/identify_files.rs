@@ -63,8 +63,8 @@ fn once(files: &[PathBuf]) -> Result<(), String> {
 fn of_file(args: &Args, pattern: &Pattern, path: &Path) -> Result<RecordingEntry, RefusedEntry> {
     let file = path.display().to_string();
     let stem = path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
-    let said = pattern.read(&stem);
-    let Label { gain, speed_m_s } = said.unwrap_or_default();
+    let label = pattern.read(&stem);
+    let Label { gain, speed_m_s } = label.unwrap_or_default();
     let gain = args.gain.or(gain).filter(|_| args.law.contains(GAIN) || args.gain.is_some());
     let speed_m_s = args.speed.or(speed_m_s);
     let refused = |why: String| RefusedEntry { file: file.clone(), gain, speed_m_s, why };

@@ -69,7 +69,7 @@ fn sensor(name: &str) -> Result<Sensor, String> {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     args.outputs.refuse_figures("a sensor's model has no figure")?;
-    let map = args.map.as_deref().map(Map::load).transpose().map_err(|why| format!("--map {why}"))?;
+    let map = args.map.as_deref().map(Map::load).transpose().map_err(|error| format!("--map {error}"))?;
     let outputs = args.outputs.open(None)?;
     let out = args.out.as_deref().map(Output::create).transpose()?;
     if let Some(out) = &out {

@@ -11,7 +11,7 @@ use crate::board::received::ReceivedMessage;
 use crate::board::reception::Reception;
 use crate::board::recorded::{Recorder, Recording};
 use crate::board::telemetry_row::TelemetryRow;
-use crate::board::{BoardName, Client, ClientError, Patience, Transport, TransportError};
+use crate::board::{BoardName, Client, ClientError, RetryPolicy, Transport, TransportError};
 use crate::range::time;
 use crate::report::output::Output;
 use crate::report::table::heading;
@@ -37,7 +37,7 @@ Examples:
 const SILENCE: Duration = Duration::from_secs(2);
 
 /// Time between two attempts to reopen a lost line.
-const LOOK: Duration = Duration::from_millis(200);
+const RETRY_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Options of `monitor`.
 #[derive(clap::Args)]
@@ -93,7 +93,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     let quiet = [&csv, &record].into_iter().flatten().any(Output::is_standard);
     interrupt::install_saying("ending");
-    let mut client = Client::new(line(args)?, Patience::default());
+    let mut client = Client::new(line(args)?, RetryPolicy::default());
     let board = if args.file.is_some() { None } else { Some(client.hello()?) };
     let title = board.as_ref().map_or("a recording".to_owned(), BoardName::label);
     let table = args.csv.as_deref().map(|path| Table::create(path, &json!({"board": board}))).transpose()?;
@@ -110,7 +110,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         reopen: Duration::from_secs_f64(args.reopen),
         rest: 0,
     };
-    let ended = session.hear();
+    let ended = session.receive();
     let received = session.end();
     let ended = ended?;
     received?;
@@ -140,7 +140,7 @@ fn line(args: &Args) -> Result<Box<dyn Transport>, Failure> {
 
 impl Session {
     /// Receives and shows messages until the end.
-    fn hear(&mut self) -> Result<Ended, Failure> {
+    fn receive(&mut self) -> Result<Ended, Failure> {
         let (mut reception, mut silence_told) = (Instant::now(), false);
         loop {
             if let Some(ended) = self.ended() {
@@ -202,7 +202,7 @@ impl Session {
             if let Some(ended) = self.ended() {
                 return Ok(Some(ended));
             }
-            sleep(LOOK);
+            sleep(RETRY_INTERVAL);
         }
         let waited = if received { format!("; not back within {seconds} s") } else { String::new() };
         Err(format!("{lost}{waited}").into())

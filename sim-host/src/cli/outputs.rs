@@ -55,9 +55,10 @@ pub(super) struct Results<D, C, S, T, F> {
 
 impl OutputArgs {
     /// Rejects figure options of a command without figures.
-    pub(super) fn refuse_figures(&self, why: &str) -> Result<(), Failure> {
-        let asked = [("--svg", &self.svg), ("--png", &self.png)].into_iter().find(|(_, path)| path.is_some());
-        asked.map_or(Ok(()), |(option, _)| Err(format!("{option}: {why}").into()))
+    pub(super) fn refuse_figures(&self, reason: &str) -> Result<(), Failure> {
+        let requested =
+            [("--svg", &self.svg), ("--png", &self.png)].into_iter().find(|(_, path)| path.is_some());
+        requested.map_or(Ok(()), |(option, _)| Err(format!("{option}: {reason}").into()))
     }
 
     /// Checks every requested output; `frames` is an option of `ride`.

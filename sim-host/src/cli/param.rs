@@ -200,7 +200,7 @@ fn import(path: &std::path::Path, port: &PortArgs) -> Result<(), Failure> {
     let before = Settings::read(&mut client)?;
     let wanted = before
         .understand(file.law.as_ref(), &file.values)
-        .map_err(|why| format!("{}: {why}; nothing is set", path.display()))?;
+        .map_err(|error| format!("{}: {error}; nothing is set", path.display()))?;
     apply(&mut client, &before, &wanted, &[])?;
     let (there, all) = (file.values.len(), before.but_law().count());
     let law = if file.law.is_some() { "the law" } else { "no law" };

@@ -51,7 +51,7 @@ impl ParameterFile {
     fn of_text(path: &str, text: &str) -> Result<Self, String> {
         let path = path.to_owned();
         let file: File = toml::from_str(text).map_err(|e| format!("{path}: {}", e.to_string().trim()))?;
-        let law = file.law.map(law::of_value).transpose().map_err(|why| format!("{path}: {why}"))?;
+        let law = file.law.map(law::of_value).transpose().map_err(|error| format!("{path}: {error}"))?;
         let values = file.parameters.into_iter().map(|(key, value)| match words(&value) {
             _ if key == "law" || key.starts_with("law.") => Err(format!(
                 "{path}: parameters: {key}: the law stands above the parameters, as in law = \"cl2:3\""
@@ -110,7 +110,7 @@ impl ParameterFile {
                 return Err(format!("{}: {key} = {words}: no parameter {key}", self.path));
             }
             parameters::set(config, key, words)
-                .map_err(|why| format!("{}: {key} = {words}: {why}", self.path))?;
+                .map_err(|error| format!("{}: {key} = {words}: {error}", self.path))?;
         }
         config.calibration = calibration;
         Ok(())

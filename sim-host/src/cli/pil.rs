@@ -79,7 +79,7 @@ impl BoardArgs {
             return Err(BoardError::Rate(rate_hz).into());
         }
         let faults: Result<Vec<LinkFault>, _> = self.inject.iter().map(|text| text.parse()).collect();
-        let faults = faults.map_err(|why| format!("--inject {why}"))?;
+        let faults = faults.map_err(|error| format!("--inject {error}"))?;
         let image = self.image.clone().unwrap_or_else(default_image);
         let seed = conditions.plant.seed;
         Ok(move || Ok(Controller::new(Qemu::start(&image, &[], LIMIT)?, &faults, seed)))
@@ -119,18 +119,18 @@ fn on_board(args: &RideArgs) -> Result<Ended, Failure> {
     let (ride, trace) = traced_on(&setup.conditions, start, &mut recorder)?;
     let seconds = begin.elapsed().as_secs_f64();
     let steps = recorder.steps;
-    let mut said = received(&controller, seconds);
+    let mut text = received(&controller, seconds);
     let same = args.board.compare.then(|| same_ride(&setup.conditions, &steps, &ride, &trace));
     if let Some(Ok(())) = same {
         let _ = writeln!(
-            said,
+            text,
             "the same bits as in this program: {} control steps, {} instants, the ride's end",
             steps.len(),
             trace.len()
         );
     }
     let sensed = || steps.iter().map(|(frame, _)| *frame).collect();
-    ride::write(&setup, &outputs, (&ride, &trace), sensed, &said)?;
+    ride::write(&setup, &outputs, (&ride, &trace), sensed, &text)?;
     same.unwrap_or(Ok(())).map_err(|difference| format!("--compare: {difference}"))?;
     Ok(Ended::Done)
 }
@@ -144,20 +144,20 @@ fn speed(steps: u64, seconds: f64) -> f64 {
 fn received(controller: &Controller<Qemu>, seconds: f64) -> String {
     let tally = controller.tally();
     let steps = tally.steps;
-    let mut said = format!(
+    let mut text = format!(
         "board: {steps} control steps in {seconds:.2} s, {:.1} times as fast as in real time\n",
         speed(steps, seconds)
     );
-    if tally.harmed > 0 {
-        let _ = writeln!(said, "a link fault acted on {} control steps", tally.harmed);
+    if tally.affected > 0 {
+        let _ = writeln!(text, "a link fault acted on {} control steps", tally.affected);
     }
     if tally.missed > 0 || tally.restarts > 0 {
         let _ = writeln!(
-            said,
+            text,
             "the board missed {} control steps, its chip restarted {} times",
             tally.missed, tally.restarts
         );
-        complain(&format!("note: output of the board:\n{}", controller.board.said()));
+        complain(&format!("note: output of the board:\n{}", controller.board.output()));
     }
-    said
+    text
 }

@@ -50,7 +50,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let seconds = begin.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let result = result?;
-    let mut said = received(&locked(&boards), seconds);
+    let mut text = received(&locked(&boards), seconds);
     let mut same = Ok(());
     if args.board.compare && !result.columns.is_empty() {
         let speeds = result.columns.iter().map(|column| column.speed).collect();
@@ -58,11 +58,11 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         let here = pool.install(|| basin(&setup.conditions, &done, |_| (), || false))?;
         same = same_basin(&here, &result);
         if same.is_ok() {
-            said += &format!("the same bits as in this program: {} speeds\n", result.columns.len());
+            text += &format!("the same bits as in this program: {} speeds\n", result.columns.len());
         }
     }
     let ended =
-        write(&setup, &searched, &outputs, &Computed { basin: &result, drawn: None, seconds }, &said)?;
+        write(&setup, &searched, &outputs, &Computed { basin: &result, drawn: None, seconds }, &text)?;
     same.map_err(|difference| format!("--compare: {difference}"))?;
     Ok(ended)
 }
@@ -70,21 +70,21 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 /// Summary of the boards' counts and speed over `seconds`.
 fn received(boards: &[Controller<Qemu>], seconds: f64) -> String {
     let sum = |of: fn(Tally) -> u64| boards.iter().map(|board| of(board.tally())).sum::<u64>();
-    let (steps, harmed) = (sum(|t| t.steps), sum(|t| t.harmed));
-    let mut said = format!(
+    let (steps, affected) = (sum(|t| t.steps), sum(|t| t.affected));
+    let mut text = format!(
         "{} boards: {steps} control steps, {:.1} times as fast as in real time\n",
         boards.len(),
         steps as f64 * 1e-3 / seconds
     );
-    if harmed > 0 {
-        said += &format!("a link fault acted on {harmed} control steps\n");
+    if affected > 0 {
+        text += &format!("a link fault acted on {affected} control steps\n");
     }
     let (missed, restarts) = (sum(|t| t.missed), sum(|t| t.restarts));
     if missed > 0 || restarts > 0 {
-        said +=
+        text +=
             &format!("the boards missed {missed} control steps, their chips restarted {restarts} times\n");
     }
-    said
+    text
 }
 
 /// Locks the boards, even if a thread panicked while holding them.

@@ -5,7 +5,7 @@ use crate::board::demo_board::DemoBoard;
 use crate::board::qemu::default_image;
 use crate::board::serial::Serial;
 use crate::board::virtual_board::{VirtualBoard, default_program};
-use crate::board::{BoardName, Client, Patience, Transport};
+use crate::board::{BoardName, Client, RetryPolicy, Transport};
 use clap::ArgGroup;
 use std::path::PathBuf;
 
@@ -49,7 +49,7 @@ impl PortArgs {
     /// Connects to the board and requests its identity, which also checks the version of the link.
     pub(super) fn connect(&self) -> Result<(Client, BoardName), Failure> {
         let line = self.open()?.ok_or("no board is named; see --port, --qemu and --virtual-board")?;
-        let mut client = Client::new(line, Patience::default());
+        let mut client = Client::new(line, RetryPolicy::default());
         let board = client.hello()?;
         Ok((client, board))
     }

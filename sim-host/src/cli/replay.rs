@@ -143,9 +143,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         }
         match one(args, &common, file) {
             Ok(done) => all.push(done),
-            Err(why) => {
-                complain(&format!("error: {why}"));
-                unusable.push(why.to_string());
+            Err(error) => {
+                complain(&format!("error: {error}"));
+                unusable.push(error.to_string());
             }
         }
     }
@@ -167,14 +167,14 @@ fn common(args: &Args) -> Result<Common, Failure> {
     };
     let faults = args.fault.iter().map(|text| text.parse::<Fault>());
     let faults = faults.collect::<Result<_, _>>().map_err(|e| format!("--fault: {e}"))?;
-    let map = args.map.as_deref().map(Map::load).transpose().map_err(|why| format!("--map {why}"))?;
+    let map = args.map.as_deref().map(Map::load).transpose().map_err(|error| format!("--map {error}"))?;
     let law_name = law_name(&law);
     let mut config = Config { law, ..base };
     if let Some(name) = &args.bicycle {
         let bicycle = catalogue::load(name)?;
         warn(&bicycle);
-        for why in fit(&mut config, &Geometry::new(&bicycle.parameters), ImuMount::default().point_m) {
-            complain_once(&format!("note: {name}: for the flashed code {why}"));
+        for reason in fit(&mut config, &Geometry::new(&bicycle.parameters), ImuMount::default().point_m) {
+            complain_once(&format!("note: {name}: for the flashed code {reason}"));
         }
     }
     Ok(Common { config, law_name, file, faults, map })
@@ -191,7 +191,7 @@ impl Common {
         config.calibration.polarity_checked = true;
         let fitted = match recorded {
             Some((samples, map)) => {
-                fitted(&mut config, samples, map).map_err(|why| format!("--map: {why}"))?
+                fitted(&mut config, samples, map).map_err(|error| format!("--map: {error}"))?
             }
             None => Fitted::default(),
         };
@@ -200,7 +200,7 @@ impl Common {
         }
         for word in &args.set {
             let (key, value) = word.split_once('=').ok_or(format!("--set {word}: expected KEY=VALUE"))?;
-            parameters::set(&mut config, key, value).map_err(|why| format!("--set {word}: {why}"))?;
+            parameters::set(&mut config, key, value).map_err(|error| format!("--set {word}: {error}"))?;
         }
         Ok((config.plan()?, fitted))
     }
@@ -233,7 +233,7 @@ fn one(args: &Args, common: &Common, path: &Path) -> Result<Done, Failure> {
         faults: &common.faults,
         seed: args.seed,
     };
-    let mut feed = Feed::new(&samples, feed).map_err(|why| format!("{name}: {why}"))?;
+    let mut feed = Feed::new(&samples, feed).map_err(|error| format!("{name}: {error}"))?;
     let mut kept = Vec::new();
     let options = RunOptions {
         press: args.press,
@@ -264,8 +264,8 @@ fn replay_frames(args: &Args, common: &Common, path: &Path, name: String) -> Res
     if !common.faults.is_empty() {
         return Err(format!("{name}: --fault acts on recordings of samples, not on frames").into());
     }
-    let bytes = std::fs::read(path).map_err(|why| format!("can't read {name}: {why}"))?;
-    let all = frames(&bytes).map_err(|why| format!("{name}: {why}"))?;
+    let bytes = std::fs::read(path).map_err(|error| format!("can't read {name}: {error}"))?;
+    let all = frames(&bytes).map_err(|error| format!("{name}: {error}"))?;
     let (plan, fitted) = common.plan(args, None)?;
     let options = RunOptions { press: args.press, every_s: args.every, roll_rad: &[], torque_nm: &[] };
     let mut each = all.iter().copied();

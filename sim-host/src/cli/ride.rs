@@ -88,13 +88,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
-/// Writes a ride with its trace and the frames of its controller; `said` is added to the text.
+/// Writes a ride with its trace and the frames of its controller; `extra` is added to the text.
 pub(super) fn write(
     setup: &Setup,
     outputs: &Outputs,
     (ride, trace): (&Ride, &[TracePoint]),
     sensed: impl FnOnce() -> Vec<SensorFrame>,
-    said: &str,
+    extra: &str,
 ) -> Result<(), Failure> {
     let document = RideDocument::new(setup.config.clone(), ride);
     let Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s } = ride.start;
@@ -109,7 +109,7 @@ pub(super) fn write(
     outputs.write(Results {
         document: &document,
         config: &config,
-        summary: || terminal::ride(&figure, 80) + &summary(ride, &setup.conditions) + said,
+        summary: || terminal::ride(&figure, 80) + &summary(ride, &setup.conditions) + extra,
         table: || table::table(&config, trace),
         figure: || figure::ride(&figure),
     })?;

@@ -99,9 +99,9 @@ fn list() -> Result<(), Failure> {
 }
 
 /// The fits of a table: the requested one, which must be possible, or all possible ones.
-fn fits(table: &RiderTable, asked: Option<Fit>) -> Result<Vec<Fit>, Failure> {
+fn fits(table: &RiderTable, requested: Option<Fit>) -> Result<Vec<Fit>, Failure> {
     let possible = |fit: &Fit| table.schedule(*fit, Outside::default());
-    if let Some(fit) = asked {
+    if let Some(fit) = requested {
         possible(&fit).map_err(|e| format!("rider `{}`, gains {}: {e}", table.name, fit.name()))?;
         return Ok(vec![fit]);
     }

@@ -92,7 +92,7 @@ fn one_page(
         return Ok(Ended::Interrupted);
     };
     places.write(&page)?;
-    told(args, &page_path(args, name))
+    print_path(args, &page_path(args, name))
 }
 
 /// Path of a study's page.
@@ -101,7 +101,7 @@ pub(super) fn page_path(args: &Args, name: &str) -> PathBuf {
 }
 
 /// Prints the page's path.
-pub(super) fn told(args: &Args, page: &Path) -> Result<Ended, Failure> {
+pub(super) fn print_path(args: &Args, page: &Path) -> Result<Ended, Failure> {
     if !args.quiet {
         print(&format!("{}\n", page.display()))?;
     }

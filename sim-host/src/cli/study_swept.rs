@@ -4,9 +4,9 @@ use super::basin::{SearchArgs, progress};
 use super::cells::{Resolved, resolve};
 use super::conditions::ConditionArgs;
 use super::outputs::complain;
-use super::study::{Args, made, page_path, told};
+use super::study::{Args, made, page_path, print_path};
 use super::sweep::{finish, to_do};
-use super::words::{Words, why};
+use super::words::{Words, usage_error};
 use super::{Ended, Failure, interrupt};
 use crate::report::output::Output;
 use crate::report::picture::{caption, svg_with_caption};
@@ -59,12 +59,12 @@ pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
     let spent = Spent { seconds, threads: pool.current_num_threads() };
     write_figures(study, &grids, &figures)?;
     place.finish(swept::page(study, &grids, spent, "../img/studies").as_bytes())?;
-    told(args, &page)
+    print_path(args, &page)
 }
 
 fn resolved(part: &Part) -> Result<Resolved, Failure> {
     let words = shlex::split(&part.options).ok_or("a quotation mark is not closed")?;
-    let args = PartArgs::try_parse_from(words).map_err(|e| why(&e))?;
+    let args = PartArgs::try_parse_from(words).map_err(|e| usage_error(&e))?;
     resolve(&part.axes()?, args.conditions.words(), |ridden| args.search.search(ridden))
 }
 

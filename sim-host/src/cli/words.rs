@@ -24,11 +24,11 @@ struct Alone {
 /// # Errors
 /// The wrong option and its error, in one line.
 pub(super) fn conditions(words: &[String]) -> Result<ConditionArgs, String> {
-    Alone::try_parse_from(words).map(|alone| alone.conditions).map_err(|e| why(&e))
+    Alone::try_parse_from(words).map(|alone| alone.conditions).map_err(|e| usage_error(&e))
 }
 
 /// A usage error in one line: its first paragraph.
-pub(super) fn why(error: &clap::Error) -> String {
+pub(super) fn usage_error(error: &clap::Error) -> String {
     let text = error.to_string();
     let first: Vec<&str> = text.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
     format!("{} (see `sim-host basin --help`)", first.join(" ").trim_start_matches("error: "))

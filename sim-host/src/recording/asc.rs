@@ -9,7 +9,7 @@ use super::frames::{Frames, Id, MOST_BYTES};
 use super::remarks::Remarks;
 
 /// Lines at the beginning of a file among which its header is searched.
-const LOOKED_AT: usize = 50;
+const HEAD_LINES: usize = 50;
 
 /// Content of an event.
 enum Event {
@@ -22,7 +22,7 @@ enum Event {
 /// Whether a text is an ASC log: one of its first lines is a header line or a frame.
 pub fn is_one(text: &str) -> bool {
     let shaped = |line: &str| base_of(line).is_some() || is_date(line) || is_frame(line);
-    text.lines().map(str::trim).filter(|line| !line.is_empty()).take(LOOKED_AT).any(shaped)
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).take(HEAD_LINES).any(shaped)
 }
 
 /// Reads a log.
@@ -43,10 +43,10 @@ pub fn parse(text: &str) -> Result<Frames, Remark> {
             (radix, relative) = base;
             continue;
         }
-        let mut damaged = |why: &str| {
+        let mut damaged = |error: &str| {
             let cut = if number == last && !ends_whole { ", the file ends within it" } else { "" };
             remarks.add("lines that are no event of such a log; left out", Some(number), None, || {
-                format!("{why}{cut}; left out")
+                format!("{error}{cut}; left out")
             });
         };
         let (first, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
@@ -70,7 +70,7 @@ pub fn parse(text: &str) -> Result<Frames, Remark> {
             Ok((_, Event::Remote)) => frames.remote += 1,
             Ok((_, Event::Error)) => frames.errors += 1,
             Ok((_, Event::Other)) => {}
-            Err(why) => damaged(why),
+            Err(error) => damaged(error),
         }
     }
     frames.remarks = remarks.done();

@@ -10,7 +10,7 @@ use super::frames::{Frames, Id, MOST_BYTES};
 use super::remarks::Remarks;
 
 /// Lines at the beginning of a file among which the first whole one is searched.
-const LOOKED_AT: usize = 50;
+const HEAD_LINES: usize = 50;
 /// Time stamps from here on are seconds since 1970 \[s\]: no ride is three years long.
 const FROM_1970_S: f64 = 1e8;
 /// Bit of an identifier that marks an error frame in can-utils.
@@ -33,7 +33,7 @@ struct Stamp {
 /// Whether a text is a candump log, by its first lines.
 pub fn is_one(text: &str) -> bool {
     let shaped = |line: &str| line_of(line).is_ok() || screen_without_stamp(line);
-    text.lines().map(str::trim).filter(|line| !line.is_empty()).take(LOOKED_AT).any(shaped)
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).take(HEAD_LINES).any(shaped)
 }
 
 /// Reads a log.
@@ -61,10 +61,10 @@ pub fn parse(text: &str) -> Result<Frames, Remark> {
             Err(_) if screen_without_stamp(line) => {
                 return Err(at(number, "has no time stamp; record with `candump -L`"));
             }
-            Err(why) => {
+            Err(error) => {
                 let cut = number == last && !ends_whole;
                 remarks.add("lines that are no frame; left out", Some(number), None, || {
-                    format!("{why}{}; left out", if cut { ", the file ends within it" } else { "" })
+                    format!("{error}{}; left out", if cut { ", the file ends within it" } else { "" })
                 });
             }
         }

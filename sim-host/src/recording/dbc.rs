@@ -139,14 +139,14 @@ impl Database {
             Err(_) => can_dbc::decode_cp1252(bytes).unwrap_or_default().into_owned(),
         };
         wide_identifier(&text)?;
-        let dbc = Dbc::try_from(text.as_str()).map_err(|why| not_read(&why.to_string()))?;
+        let dbc = Dbc::try_from(text.as_str()).map_err(|error| not_read(&error.to_string()))?;
         let mut database = Self::default();
         // Tools store signals without a message here.
         for message in dbc.messages.iter().filter(|message| message.name != "VECTOR__INDEPENDENT_SIG_MSG") {
             let message = of(message, &dbc);
             if let Some(place) = database.places.get(&message.id) {
-                let why = format!("message {} has the same identifier", message.name);
-                database.messages[*place].unused.push(why);
+                let error = format!("message {} has the same identifier", message.name);
+                database.messages[*place].unused.push(error);
                 continue;
             }
             database.places.insert(message.id, database.messages.len());
@@ -175,11 +175,11 @@ fn wide_identifier(text: &str) -> Result<(), Remark> {
 
 /// The parser's reason in one line. Its own text is a picture of the position: ` --> 3:5`, the line, and ` = expected
 /// ...`.
-fn not_read(why: &str) -> Remark {
-    let place = why.trim_start().strip_prefix("--> ").and_then(|rest| rest.split(':').next());
+fn not_read(error: &str) -> Remark {
+    let place = error.trim_start().strip_prefix("--> ").and_then(|rest| rest.split(':').next());
     let line = place.and_then(|line| line.parse().ok());
-    let expected = why.lines().find_map(|line| line.trim_start().strip_prefix("= "));
-    let reason = expected.or(why.lines().next()).unwrap_or_default();
+    let expected = error.lines().find_map(|line| line.trim_start().strip_prefix("= "));
+    let reason = expected.or(error.lines().next()).unwrap_or_default();
     Remark { line, column: None, what: format!("is no DBC that can be read: {reason}") }
 }
 
@@ -197,7 +197,7 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
     for signal in &message.signals {
         match signal_of(signal, message.id, dbc) {
             Ok(usable) => signals.push((usable, &signal.multiplexer_indicator)),
-            Err(why) => unused.push(format!("signal {}: {why}", signal.name)),
+            Err(error) => unused.push(format!("signal {}: {error}", signal.name)),
         }
     }
     let names: Vec<String> = signals.iter().map(|(signal, _)| signal.name.clone()).collect();
@@ -229,33 +229,33 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
     }
     let chain: Vec<Option<usize>> =
         pages.iter().map(|page| page.as_ref().ok()?.as_ref().map(|page| page.switch)).collect();
-    let mut kept = Vec::new();
+    let mut usable = Vec::new();
     for (place, ((mut signal, _), page)) in signals.into_iter().zip(pages).enumerate() {
-        let why = match page {
+        let error = match page {
             Ok(page) if !circular(place, &chain) => {
                 signal.page = page;
-                kept.push(signal);
+                usable.push(signal);
                 continue;
             }
             Ok(_) => "it chooses whether it is there itself",
-            Err(why) => why,
+            Err(error) => error,
         };
         // The signal stays, as NaN, so that the indices of the others remain valid.
-        unused.push(format!("signal {}: {why}", signal.name));
-        kept.push(Signal { factor: f64::NAN, ..signal });
+        unused.push(format!("signal {}: {error}", signal.name));
+        usable.push(Signal { factor: f64::NAN, ..signal });
     }
-    for signal in &mut kept {
+    for signal in &mut usable {
         let long = dbc.signal_attribute(message.id, &signal.name, "SystemSignalLongSymbol");
         signal.name = long_name(long, &signal.name);
     }
     // Converted databases can have truncated names, two of which are then equal.
-    for n in 1..kept.len() {
-        if kept[..n].iter().any(|before| before.name == kept[n].name) {
-            kept[n].name = format!("{} (bit {})", kept[n].name, kept[n].place.start);
+    for n in 1..usable.len() {
+        if usable[..n].iter().any(|before| before.name == usable[n].name) {
+            usable[n].name = format!("{} (bit {})", usable[n].name, usable[n].place.start);
         }
     }
     let name = long_name(dbc.message_attribute(message.id, "SystemMessageLongSymbol"), &message.name);
-    Message { name, id: id_of(message.id), signals: kept, unused }
+    Message { name, id: id_of(message.id), signals: usable, unused }
 }
 
 /// The full name of an object with more than 32 letters: Vector's tools truncate the name and store the full one in an

@@ -100,7 +100,10 @@ pub fn groups(frames: &Frames, databases: &[Database]) -> Decoded {
             remarks.push(Remark::of_file(what));
         }
         remarks.extend(
-            message.unused.iter().map(|why| Remark::of_file(format!("message {name}: {why}; left blank"))),
+            message
+                .unused
+                .iter()
+                .map(|error| Remark::of_file(format!("message {name}: {error}; left blank"))),
         );
     }
     let groups = rows

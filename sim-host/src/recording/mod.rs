@@ -85,12 +85,12 @@ impl Display for Remark {
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file cannot be read.
-    #[error("can't read {}: {why}", path.display())]
+    #[error("can't read {}: {error}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// The system's error.
-        why: std::io::Error,
+        error: std::io::Error,
     },
     /// The file has no usable data, or an error that must not be skipped.
     #[error("{}: {remark}", path.display())]
@@ -122,7 +122,7 @@ pub struct ReadOptions {
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Recording, RecordingError> {
     let bytes = std::fs::read(path)
         .and_then(|bytes| unpacked(path, bytes))
-        .map_err(|why| RecordingError::Read { path: path.to_owned(), why })?;
+        .map_err(|error| RecordingError::Read { path: path.to_owned(), error })?;
     let content = |remark| RecordingError::Content { path: path.to_owned(), remark };
     let databases = options.dbc.iter().map(|path| database(path)).collect::<Result<Vec<_>, _>>()?;
     let recording = of_bytes(&bytes, &databases, &options.dbc).map_err(content)?;
@@ -196,7 +196,7 @@ fn with_frames(
 
 /// Reads a database.
 fn database(path: &Path) -> Result<Database, RecordingError> {
-    let bytes = std::fs::read(path).map_err(|why| RecordingError::Read { path: path.to_owned(), why })?;
+    let bytes = std::fs::read(path).map_err(|error| RecordingError::Read { path: path.to_owned(), error })?;
     Database::parse(&bytes).map_err(|remark| RecordingError::Content { path: path.to_owned(), remark })
 }
 
@@ -208,6 +208,6 @@ fn unpacked(path: &Path, bytes: Vec<u8>) -> std::io::Result<Vec<u8>> {
     }
     let mut plain = Vec::new();
     std::io::Read::read_to_end(&mut flate2::read::MultiGzDecoder::new(bytes.as_slice()), &mut plain)
-        .map_err(|why| std::io::Error::new(why.kind(), format!("{}: gzip: {why}", path.display())))?;
+        .map_err(|error| std::io::Error::new(error.kind(), format!("{}: gzip: {error}", path.display())))?;
     Ok(plain)
 }

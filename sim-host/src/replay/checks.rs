@@ -161,7 +161,7 @@ impl Checks {
         for ((limits, before), checks) in
             self.limits.iter().zip(&mut self.before).zip(own.chunks_mut(OF_SENSOR))
         {
-            let (value, age) = told(frame, limits.sensor);
+            let (value, age) = sample_of(frame, limits.sensor);
             if let Some(before) = before {
                 before.ticks += 1;
             }
@@ -231,7 +231,7 @@ fn named(config: &Config, sensor: Sensor) -> Option<([&'static str; OF_SENSOR], 
 }
 
 /// A sensor's sample in a frame, and its age.
-fn told(frame: &SensorFrame, sensor: Sensor) -> ([f64; 3], u16) {
+fn sample_of(frame: &SensorFrame, sensor: Sensor) -> ([f64; 3], u16) {
     let one = |sample: &control::Sample| ([f64::from(sample.value), 0.0, 0.0], sample.age_ticks);
     let three = |triple: &control::Triple| (triple.value.map(f64::from), triple.age_ticks);
     match sensor {

@@ -49,7 +49,8 @@ pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitte
             toml::Value::Boolean(on) => if *on { "on" } else { "off" }.into(),
             number => number.to_string(),
         };
-        parameters::set(config, key, &words).map_err(|why| format!("parameters: {key} = {words}: {why}"))?;
+        parameters::set(config, key, &words)
+            .map_err(|error| format!("parameters: {key} = {words}: {error}"))?;
     }
     Ok(fitted)
 }
@@ -107,5 +108,7 @@ fn unchecked(config: &mut Config, samples: &Samples, fitted: &mut Fitted) {
         (config.response.gyro && !has(Sensor::Accel), "gyro response: no accelerometer"),
         (config.permit.lifted_m_s2.is_some() && !has(Sensor::Accel), "lifted and crash: no accelerometer"),
     ];
-    fitted.unchecked.extend(lacks.into_iter().filter(|(lacks, _)| *lacks).map(|(_, why)| why.to_owned()));
+    fitted
+        .unchecked
+        .extend(lacks.into_iter().filter(|(lacks, _)| *lacks).map(|(_, reason)| reason.to_owned()));
 }

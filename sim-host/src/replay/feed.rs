@@ -131,8 +131,8 @@ impl<'a> Feed<'a> {
             None => self.samples.engage.is_empty() && pressed,
         };
         let mut through = |channel, value: f64| {
-            let said = Some([value, 0.0, 0.0]);
-            faulty(self.options.faults, &mut self.faults, channel, self.tick, said)
+            let sample = Some([value, 0.0, 0.0]);
+            faulty(self.options.faults, &mut self.faults, channel, self.tick, sample)
                 .map_or(0.0, |[value, ..]| value)
         };
         let engage = through(Channel::Engage, f64::from(u8::from(engage))) >= 0.5;

@@ -151,14 +151,14 @@ impl Map {
     /// The file with key, value and expected values.
     pub fn load(name: &str) -> Result<Self, String> {
         if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
-            return Self::parse(text).map_err(|why| format!("{name}: {why}"));
+            return Self::parse(text).map_err(|error| format!("{name}: {error}"));
         }
         let path = Path::new(name);
-        let text = std::fs::read_to_string(path).map_err(|why| {
+        let text = std::fs::read_to_string(path).map_err(|error| {
             let names: Vec<_> = SHIPPED.iter().map(|(shipped, _)| *shipped).collect();
-            format!("can't read the map {name}: {why}; built-in maps are {}", names.join(", "))
+            format!("can't read the map {name}: {error}; built-in maps are {}", names.join(", "))
         })?;
-        Self::parse(&text).map_err(|why| format!("{name}: {why}"))
+        Self::parse(&text).map_err(|error| format!("{name}: {error}"))
     }
 
     /// Parses a map.
@@ -166,7 +166,7 @@ impl Map {
     /// # Errors
     /// The key with its value and the expected values.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let map: Self = toml::from_str(text).map_err(|why| why.to_string().trim().to_owned())?;
+        let map: Self = toml::from_str(text).map_err(|error| error.to_string().trim().to_owned())?;
         map.check()?;
         Ok(map)
     }
@@ -204,7 +204,7 @@ impl Map {
 
     fn check(&self) -> Result<(), String> {
         if let Some(time) = &self.time {
-            Quantity::Time.factor(time.unit.as_deref()).map_err(|why| format!("time: {why}"))?;
+            Quantity::Time.factor(time.unit.as_deref()).map_err(|error| format!("time: {error}"))?;
             match (&time.column, time.rate_hz) {
                 (Some(_), None) => {}
                 (None, Some(rate_hz)) if (0.01..=1e5).contains(&rate_hz) => {}
@@ -216,13 +216,13 @@ impl Map {
         }
         for Mapped { sensor, signal } in self.sensors() {
             let key = sensor.name().replace('-', "_");
-            signal.check(axes_of(sensor), quantity_of(sensor)).map_err(|why| format!("{key}: {why}"))?;
+            signal.check(axes_of(sensor), quantity_of(sensor)).map_err(|error| format!("{key}: {error}"))?;
         }
         let References { roll, torque } = &self.reference;
         for (key, signal, quantity) in [("roll", roll, Quantity::Angle), ("torque", torque, Quantity::Torque)]
         {
             let checked = signal.as_ref().map_or(Ok(()), |signal| signal.check(1, quantity));
-            checked.map_err(|why| format!("reference.{key}: {why}"))?;
+            checked.map_err(|error| format!("reference.{key}: {error}"))?;
         }
         Ok(())
     }

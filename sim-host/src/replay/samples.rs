@@ -151,14 +151,14 @@ fn absent(recording: &Recording, sensor: Sensor, signal: &Signal) -> Option<Stri
 fn unusable(all: &Samples, sensor: Sensor) -> Option<Remark> {
     let name = sensor.name();
     let few = || {
-        let mut said = all.remarks.iter().map(|remark| &remark.what);
-        said.find(|what| what.starts_with(&format!("{name}: ")) && what.contains("usable sample"))
+        let mut noted = all.remarks.iter().map(|remark| &remark.what);
+        noted.find(|what| what.starts_with(&format!("{name}: ")) && what.contains("usable sample"))
     };
     let blank = all.absent.iter().find(|what| what.starts_with(&format!("{name} (no value")));
-    let why = blank.or_else(few)?;
-    let first = all.remarks.iter().find(|said| said.line.is_some());
-    let first = first.map_or(String::new(), |said| format!("; {said}"));
-    Some(remark(None, format!("{why}{first}")))
+    let reason = blank.or_else(few)?;
+    let first = all.remarks.iter().find(|noted| noted.line.is_some());
+    let first = first.map_or(String::new(), |noted| format!("; {noted}"));
+    Some(remark(None, format!("{reason}{first}")))
 }
 
 /// The error for a missing sensor without which there is no replay.
@@ -354,9 +354,9 @@ fn take(
     }
     let mut say = |line, what: String| {
         // Sensors of one row share this remark.
-        let same = all.remarks.iter_mut().find(|said| said.line == line && said.what.ends_with(&what));
+        let same = all.remarks.iter_mut().find(|noted| noted.line == line && noted.what.ends_with(&what));
         match same {
-            Some(said) => said.what.insert_str(0, &format!("{}, ", sensor.name())),
+            Some(noted) => noted.what.insert_str(0, &format!("{}, ", sensor.name())),
             None => {
                 let what = format!("{}: {what}", sensor.name());
                 all.remarks.push(Remark { line, column: None, what });

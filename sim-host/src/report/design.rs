@@ -103,7 +103,7 @@ pub struct Design<'a> {
     /// The resulting law.
     pub law: &'a Law,
     /// The design and hold-out scenarios.
-    pub arena: &'a crate::design::Scenarios,
+    pub scenarios: &'a crate::design::Scenarios,
     /// Search of areas for the evaluation.
     pub fine: &'a crate::basin::Search,
     /// The compared laws; the designed one is the last.
@@ -115,8 +115,8 @@ pub struct Design<'a> {
 impl DesignDocument {
     /// The document of a design with its computing time `seconds`.
     pub fn new(d: &Design, seconds: f64) -> Self {
-        let trials = d.arena.training.iter().map(|t| (t, true));
-        let trials: Vec<_> = trials.chain(d.arena.held_out.iter().map(|t| (t, false))).collect();
+        let trials = d.scenarios.training.iter().map(|t| (t, true));
+        let trials: Vec<_> = trials.chain(d.scenarios.held_out.iter().map(|t| (t, false))).collect();
         let entries = |judged: &Judged| {
             let found = judged.areas.iter().zip(&judged.capped);
             let entries =
@@ -128,7 +128,7 @@ impl DesignDocument {
                 });
             entries.collect()
         };
-        let limits = d.arena.training.first().map(|t| t.limits).unwrap_or_default();
+        let limits = d.scenarios.training.first().map(|t| t.limits).unwrap_or_default();
         Self {
             schema: SCHEMA,
             tool: Tool::this(),
@@ -140,7 +140,7 @@ impl DesignDocument {
             smoothness: d.plan.smoothness,
             torque_limit_nm: limits.max_torque_nm,
             rate_limit_nm_s: limits.rise_nm_s,
-            fall: d.arena.training.first().map(|t| t.fall).unwrap_or_default(),
+            fall: d.scenarios.training.first().map(|t| t.fall).unwrap_or_default(),
             schedule: points(d.law),
             worst_area: d.found.worst_area,
             worst_area_capped: d.found.worst_capped,

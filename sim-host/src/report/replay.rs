@@ -91,8 +91,8 @@ pub fn text(result: &ReplayResult) -> String {
     if !result.fitted.absent.is_empty() {
         let _ = writeln!(text, "  in the map, but not in the recording: {}", result.fitted.absent.join(", "));
     }
-    for why in &result.fitted.unchecked {
-        let _ = writeln!(text, "  not checked: {why}");
+    for reason in &result.fitted.unchecked {
+        let _ = writeln!(text, "  not checked: {reason}");
     }
     let _ = writeln!(
         text,

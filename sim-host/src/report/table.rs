@@ -13,8 +13,8 @@ pub fn heading(config: &impl Serialize) -> String {
 }
 
 /// A writer that quotes values with a `#`, at which comment-aware readers would stop.
-fn writer(begun: Vec<u8>) -> csv::Writer<Vec<u8>> {
-    csv::WriterBuilder::new().comment(Some(b'#')).from_writer(begun)
+fn writer(heading: Vec<u8>) -> csv::Writer<Vec<u8>> {
+    csv::WriterBuilder::new().comment(Some(b'#')).from_writer(heading)
 }
 
 /// A table of serialisable rows; columns are named by their fields.

@@ -94,9 +94,9 @@ pub fn study(
     // Without a law no limit has an effect, so that case is computed once.
     let matters = |g: &Group, law: &Law| *law != Law::None || !g.rate_limited;
     let pairs = groups.iter().flat_map(|g| laws.iter().map(move |(_, law)| (g, law)));
-    let asked: Vec<(&Trial, &Law)> =
+    let requested: Vec<(&Trial, &Law)> =
         pairs.filter(|(g, law)| matters(g, law)).map(|(g, law)| (&g.trial, law)).collect();
-    let Some(found) = basins(&asked, search, advanced, stop)? else { return Ok(None) };
+    let Some(found) = basins(&requested, search, advanced, stop)? else { return Ok(None) };
     let mut found = found.into_iter();
     let mut by_group: Vec<Vec<Basin>> = Vec::new();
     for g in &groups {

@@ -77,16 +77,16 @@ impl Trial {
 /// # Errors
 /// As for [`Trial::conditions`], or an invalid search.
 pub fn basins(
-    asked: &[(&Trial, &Law)],
+    requested: &[(&Trial, &Law)],
     search: &Search,
     advanced: &(dyn Fn() + Sync),
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<Vec<Basin>>, String> {
     search.check().map_err(|e| e.to_string())?;
     let conditions: Vec<Conditions> =
-        asked.iter().map(|(trial, law)| trial.conditions(law)).collect::<Result<_, _>>()?;
+        requested.iter().map(|(trial, law)| trial.conditions(law)).collect::<Result<_, _>>()?;
     let speeds = search.speeds.len();
-    let columns: Option<Vec<Column>> = (0..asked.len() * speeds)
+    let columns: Option<Vec<Column>> = (0..requested.len() * speeds)
         .into_par_iter()
         .map(|i| {
             if stop() {

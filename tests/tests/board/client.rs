@@ -3,12 +3,12 @@
 use control::{Config, Law};
 use link::message::Message;
 use link::parameter_list::each;
-use sim_host::board::client::{Client, ClientError, Patience};
+use sim_host::board::client::{Client, ClientError, RetryPolicy};
 use std::time::Duration;
 use tests::link_board::{LinkBoard, LinkChannel, Wire, encoded, faults, lock, shared, telemetry};
 
 /// Hardly any: these lines answer at once or not at all.
-pub(crate) const SHORT: Patience = Patience { answer: Duration::from_millis(2), tries: 5 };
+pub(crate) const SHORT: RetryPolicy = RetryPolicy { answer: Duration::from_millis(2), tries: 5 };
 
 fn client(wire: Wire) -> Client {
     Client::new(Box::new(wire), SHORT)

@@ -8,7 +8,7 @@ use link::parameter_list::each;
 use sim_host::board::demo_board::DemoBoard;
 use sim_host::board::settings::{Setting, Settings};
 use sim_host::board::tune::tune;
-use sim_host::board::{Client, Patience};
+use sim_host::board::{Client, RetryPolicy};
 use std::time::Duration;
 use tests::cli::{Bench, word};
 use xtask::image;
@@ -23,7 +23,7 @@ fn an_image_answers_as_a_board() {
         return;
     }
     let board = DemoBoard::start(&image::path("qemu-pil")).expect("the image starts");
-    let mut client = Client::new(Box::new(board), Patience::default());
+    let mut client = Client::new(Box::new(board), RetryPolicy::default());
     let hello = client.hello().expect("an answer");
     assert_eq!(hello.image, "qemu-pil");
     let before = Settings::read(&mut client).expect("settings");

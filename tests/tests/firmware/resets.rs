@@ -41,7 +41,13 @@ fn whatever_goes_wrong_ends_in_a_new_start_without_torque() {
         while rig.starts() == 1 && rig.time_ms() < AT_MS - 1 {
             rig.ride(1, true);
         }
-        assert_eq!(rig.mode(), Mode::Engaged, "{mishap}: until then, {:?}, {}", rig.latest, rig.board.said());
+        assert_eq!(
+            rig.mode(),
+            Mode::Engaged,
+            "{mishap}: until then, {:?}, {}",
+            rig.latest,
+            rig.board.output()
+        );
         while rig.starts() == 1 && rig.time_ms() < AT_MS + 1000 {
             rig.ride(1, true);
         }

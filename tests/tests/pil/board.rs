@@ -28,7 +28,7 @@ fn a_ride_on_the_fake_board_has_the_same_bits() {
         assert!(!name.starts_with("law") || ride.fell() == name.contains("fall"), "{name}");
         assert!(steps.iter().any(|(_, s)| s.command.mode == Mode::Engaged), "{name} never engages");
     }
-    assert_eq!(controller.tally().missed + controller.tally().restarts + controller.tally().harmed, 0);
+    assert_eq!(controller.tally().missed + controller.tally().restarts + controller.tally().affected, 0);
 }
 
 /// Situation: a ride as it was ridden. Action: change one thing of it: the last bit of a torque, a limit, an authority, a
@@ -188,5 +188,5 @@ fn the_numbers_of_frames_wrap() {
     let faults = link_faults(&["sensors:drop@65.4s..65.6s"]);
     let mut controller = Controller::new(FakeBoard::default(), &faults, 0);
     let lost = ridden(&conditions, still, &mut controller).unwrap();
-    assert_eq!((lost.trace.len(), controller.tally().harmed), (70_000, 200));
+    assert_eq!((lost.trace.len(), controller.tally().affected), (70_000, 200));
 }

@@ -36,7 +36,7 @@ fn a_ride_on_the_chip_has_the_same_bits() {
         assert!(steps.iter().any(|(_, s)| s.command.mode == Mode::Engaged), "{name} never engages");
     }
     let tally = controller.tally();
-    assert!(tally.steps > 10_000 && tally.missed + tally.restarts + tally.harmed == 0, "{tally:?}");
+    assert!(tally.steps > 10_000 && tally.missed + tally.restarts + tally.affected == 0, "{tally:?}");
 }
 
 /// Situation: the same ride on a chip that rode before, and on two fresh ones. Action: keep all chunks.

@@ -70,14 +70,14 @@ fn expected(
 
 /// Situation: a product ride with a noisy gyro. Action: sensor frames are dropped, damaged, or late by 3 ms, from 0.2 s to 0.25 s.
 /// Must hold: each command is that of the last frame that came, older by as many ticks as it is late; dropped and damaged ones
-/// are the same; the ride differs from the undisturbed one; as many steps are told to be harmed.
+/// are the same; the ride differs from the undisturbed one; as many steps are reported as affected.
 pub(crate) fn sensors_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) {
     let mut conditions = Conditions { time_limit_s: 0.8, ..product() };
     conditions.plant.sensors.model_mut(sim_host::plant::Sensor::Gyro).noise = 0.02;
     let mut ride = |fault: &str| {
         let mut controller = Controller::new(board(), &link_faults(&[fault]), 7);
         let ridden = ridden(&conditions, KNOCK, &mut controller).unwrap();
-        assert_eq!(controller.tally().harmed, 50, "{fault}");
+        assert_eq!(controller.tally().affected, 50, "{fault}");
         ridden
     };
     let fault = |kind: &str| format!("sensors:{kind}@0.2s..0.25s");

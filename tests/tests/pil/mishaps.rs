@@ -23,7 +23,7 @@ fn a_chip_that_fails_takes_the_torque_away() {
         let begin_ms = chip.last().time_ms;
         let mut controller = Controller::new(chip, &[], 0);
         let Ridden { ride, steps, .. } = ridden(&conditions, KNOCK, &mut controller).unwrap();
-        let (tally, said) = (controller.tally(), controller.board.said());
+        let (tally, said) = (controller.tally(), controller.board.output());
         println!("{mishap}: {tally:?}, {said}");
         let at = (1000 - begin_ms) as usize;
         let torque = |k: usize| steps[k].1.command.torque_nm;

@@ -3,14 +3,14 @@
 use crate::bed::product;
 use sim_host::board::serial::Serial;
 use sim_host::board::virtual_board::VirtualBoard;
-use sim_host::board::{Client, Patience};
+use sim_host::board::{Client, RetryPolicy};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
 /// For a board that starts on a machine as busy as can be: what is asked before it listens is lost, and asked again.
-const TIMEOUT: Patience = Patience { answer: Duration::from_millis(400), tries: 1500 };
+const TIMEOUT: RetryPolicy = RetryPolicy { answer: Duration::from_millis(400), tries: 1500 };
 
 fn virtual_board(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_virtual-board")).args(arguments).output().expect("it can be started")

@@ -79,7 +79,7 @@ pub(super) fn read(file: &mut File, block: &Block, content: &mut Content) {
         [joined.broken, rest.filter(|_| !file.unfinished || joined.broken.is_some())]
             .into_iter()
             .flatten()
-            .map(|why| Remark::of_file(format!("group {titled}: {why}")))
+            .map(|error| Remark::of_file(format!("group {titled}: {error}")))
             .collect();
     if !file.unfinished && joined.broken.is_none() && rest.is_none() {
         for part in &mut parts {
@@ -126,7 +126,7 @@ fn numbers(part: &ChannelGroup, content: &mut Content) {
             _ if !channel.is_number() => {
                 add("channels that are no numbers; left out", "is no number, but text, bytes or an array");
             }
-            Err(why) => add("channels whose conversion is not read; left out", why),
+            Err(error) => add("channels whose conversion is not read; left out", error),
             Ok(_) => columns.push(Column {
                 name: channel.name.clone(),
                 unit: channel.unit.clone(),

@@ -117,7 +117,7 @@ const BESIDE: usize = 8;
 /// Table for a single axis: a row per group.
 fn alone(result: &PartResult, (numbers, unit): &(Vec<(usize, f64)>, String), grid: &Grid) -> String {
     let key = &result.along.key;
-    let told: Vec<(usize, f64)> =
+    let shown: Vec<(usize, f64)> =
         numbers.iter().copied().step_by(if numbers.len() > BESIDE { 4 } else { 1 }).collect();
     let mut text = format!(
         "| group | {} of the reference, {} | {key} that keeps {:.0} % (grid) | part of the {} at {} |\n| --- | --- | --- | --- |\n",
@@ -125,10 +125,10 @@ fn alone(result: &PartResult, (numbers, unit): &(Vec<(usize, f64)>, String), gri
         result.unit,
         100.0 * LEAST,
         result.what,
-        told.iter().map(|n| format!("{}{unit}", n.1)).collect::<Vec<_>>().join(", ")
+        shown.iter().map(|n| format!("{}{unit}", n.1)).collect::<Vec<_>>().join(", ")
     );
     for group in &result.groups {
-        let parts: Vec<String> = told.iter().map(|n| share(group, 0, n.0)).collect();
+        let parts: Vec<String> = shown.iter().map(|n| share(group, 0, n.0)).collect();
         let _ = writeln!(
             text,
             "| {} | {} | {} | {} |",
