@@ -58,7 +58,7 @@ fn lines(text: &str) -> Result<Table, String> {
         let (key, values) = line.split_once('=').ok_or_else(|| wrong("expected KEY = VALUE"))?;
         let value = mean(values).map_err(|why| wrong(&why))?;
         if table.insert(key.trim().into(), value).is_some() {
-            return Err(wrong("the key is there twice"));
+            return Err(wrong("the key is listed twice"));
         }
     }
     Ok(table)

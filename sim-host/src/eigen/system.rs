@@ -83,7 +83,7 @@ impl Model {
     pub fn with_actuator(mut self, actuator: LinearActuator) -> Result<Self, String> {
         actuator.check()?;
         if actuator.delay_s > 0.0 && self.rider.is_some() {
-            return Err("an actuator's delay can't be analysed beside a rider".into());
+            return Err("--actuator-delay cannot be combined with --rider".into());
         }
         self.linear.m[(1, 1)] += actuator.inertia_kg_m2;
         self.actuator = actuator;

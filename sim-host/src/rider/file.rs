@@ -138,7 +138,7 @@ impl File {
                 return Err(format!("`columns`: unknown column `{column}`; known are {known}"));
             }
             if self.columns[..i].iter().any(|c| c == column) {
-                return Err(format!("`columns`: `{column}` is there twice"));
+                return Err(format!("`columns`: `{column}` is listed twice"));
             }
         }
         let has = |key: &str| self.columns.iter().any(|c| c == key);

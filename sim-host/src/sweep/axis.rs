@@ -35,8 +35,8 @@ impl Axis {
             for value in expand(item.trim()).map_err(|e| format!("{key}: {e}"))? {
                 if let Some(same) = values.iter().find(|other| equal(other, &value)) {
                     return Err(match *same == value {
-                        true => format!("{key}: `{value}` is there twice"),
-                        false => format!("{key}: `{same}` and `{value}` are the same, there twice"),
+                        true => format!("{key}: `{value}` is listed twice"),
+                        false => format!("{key}: `{same}` and `{value}` are equal: listed twice"),
                     });
                 }
                 values.push(value);

@@ -98,7 +98,7 @@ pub(crate) fn check(axes: &[Axis]) -> Result<(), SweepError> {
     for (i, axis) in axes.iter().enumerate() {
         let name = netcdf::name(axis);
         let wrong = if axes[..i].iter().any(|other| netcdf::name(other) == name) {
-            "is there twice"
+            "is listed twice"
         } else if netcdf::NAMES.contains(&&*name) {
             "is the name of a result; choose another"
         } else {

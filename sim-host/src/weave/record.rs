@@ -117,7 +117,7 @@ fn place(header: &StringRecord, name: &str) -> Result<Option<usize>, String> {
     let mut found = header.iter().enumerate().filter(|(_, h)| *h == name).map(|(i, _)| i);
     match (found.next(), found.next()) {
         (at, None) => Ok(at),
-        _ => Err(format!("line 1: column `{name}` is there twice")),
+        _ => Err(format!("line 1: column `{name}` is listed twice")),
     }
 }
 
@@ -270,7 +270,7 @@ mod tests {
                 .contains("`Time` (or --time-column) is missing; there are x, gyro_x")
         );
         assert!(of("t,x\n1,2\n").unwrap_err().contains("`gyro_x` (or --column) is missing"));
-        assert!(of("t,gyro_x,gyro_x\n1,2,3\n").unwrap_err().contains("`gyro_x` is there twice"));
+        assert!(of("t,gyro_x,gyro_x\n1,2,3\n").unwrap_err().contains("`gyro_x` is listed twice"));
         assert!(of("t,gyro_x\n").unwrap_err().contains("no line can be used"));
     }
 }

@@ -52,7 +52,7 @@ fn wrong_tables_are_refused_with_the_reason() {
         ("delay_ms = 30", "delay_ms = 30\nbest_runs = [1, 2, 3]", &["`best_runs`", "2 rows", "2 m/s"]),
         ("'K_phi_p'", "'K_phi'", &["`columns`", "unknown column `K_phi`", "K_phi_p, K_phi_i"]),
         ("'K_phi_p'", "'k_delta'", &["unknown column `k_delta`"]),
-        ("'K_phi_p'", "'K_delta_d'", &["`columns`", "`K_delta_d` is there twice"]),
+        ("'K_phi_p'", "'K_delta_d'", &["`columns`", "`K_delta_d` is listed twice"]),
         ("'speed_m_s'", "'K_y'", &["`columns`", "`speed_m_s` is missing"]),
         ("[2.2, 2, 1, 95, 20, -2]", "[2.2, 2, 1, 95, 20]", &["row 2", "5 values", "6 columns"]),
         ("[2.2, 2, 1, 95, 20, -2]", "[2.2, 2, 1, 95, 20, -2, 0]", &["row 2", "7 values"]),

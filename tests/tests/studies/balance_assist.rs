@@ -153,7 +153,7 @@ fn actuators_that_cannot_be_analysed_are_refused() {
     let smart = smart.rider(Default::default(), Default::default(), None).expect("valid");
     let ridden = Model::new(&bicycle(RIDDEN), Feedback::Law(Law::None), Some(smart));
     let error = ridden.with_actuator(LinearActuator { delay_s: 0.01, ..perfect }).expect_err("two delays");
-    assert!(error.contains("beside a rider"), "{error}");
+    assert!(error.contains("combined with --rider"), "{error}");
 }
 
 /// Situation: the page in the documentation.
