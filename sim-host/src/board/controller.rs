@@ -25,7 +25,7 @@ pub struct Tally {
     pub steps: u64,
     /// Control steps affected by a link fault.
     pub affected: u64,
-    /// Control steps for which the board's command was late or missing.
+    /// Control steps without the board: its time advanced by more than one period.
     pub missed: u64,
     /// Restarts of the chip during a ride.
     pub restarts: u64,
@@ -60,7 +60,7 @@ struct RideState {
     decoder: Decoder,
     /// The newest command, and for how many control steps it was held.
     held: (Stepped, u32),
-    /// Control steps that the board has done ahead, and the command at their end.
+    /// Control steps by which the board's time is ahead, and the command received at their end.
     ahead: Option<(u32, Option<Stepped>)>,
     /// Whether the chip restarted and no longer counts the ride's steps.
     restarted: bool,

@@ -127,7 +127,7 @@ pub(super) struct LinkChannel {
     random: RandomStream,
     /// Delayed bytes, with the period in which they arrive.
     late: VecDeque<(u32, Vec<u8>)>,
-    /// Periods whose bytes a fault changed.
+    /// Periods in which a fault acted.
     pub(super) affected: u32,
 }
 
@@ -138,7 +138,7 @@ impl LinkChannel {
         Self { faults, random, late: VecDeque::new(), affected: 0 }
     }
 
-    /// Whether no fault ever acts on it.
+    /// Whether it has no fault.
     pub(super) fn safe(&self) -> bool {
         self.faults.is_empty()
     }

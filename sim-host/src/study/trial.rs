@@ -26,7 +26,7 @@ pub struct Trial {
 
 impl Trial {
     /// A trial of a built-in bicycle and rider, with mean gains and the table's own delay or the given one \[s\];
-    /// default falls.
+    /// the default fall criterion.
     ///
     /// # Errors
     /// The bicycle or rider does not exist.

@@ -59,7 +59,7 @@ pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
     fitted(samples, -found[3], found[2], |t| damped(&found, t))
 }
 
-/// The amplitudes `A`, `B`, `E` by least squares for an oscillation; zeros if the system is singular.
+/// The amplitudes `A`, `B`, `E` by least squares for an oscillation; zeros if there is no solution.
 fn amplitudes(samples: &Samples, omega: f64, beta: f64) -> [f64; 3] {
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for &(t, y) in samples {
