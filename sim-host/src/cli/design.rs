@@ -5,7 +5,7 @@ use super::fall_arg::FallArg;
 use super::outputs::{OutputArgs, Results, complain};
 use super::{Ended, Failure, interrupt, law};
 use crate::basin::{Axis, Search};
-use crate::design::{Knots, Plan, Progress, competitors, judge, optimise, scenarios};
+use crate::design::{Knots, Plan, Progress, arena, competitors, judge, optimise};
 use crate::report::design::{Design, DesignDocument, figure, law_file};
 use crate::report::figure;
 use crate::report::output::Output;
@@ -114,7 +114,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         evaluations: args.evaluations,
     };
     let fine = search("--judge", args.judge.0.unwrap_or(0.25), 0.25, 0.02)?;
-    let scenarios = scenarios(args.fall.fall)?;
+    let scenarios = arena(args.fall.fall)?;
     let outputs = args.outputs.open(None)?;
     let law_output = args.law_file.as_deref().map(Output::create).transpose()?;
     if let Some(output) = &law_output {

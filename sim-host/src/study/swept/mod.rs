@@ -1,4 +1,4 @@
-//! Questions answered by sweeps that are written down, with the answer as a page.
+//! Studies defined as sweeps in a TOML file, each with its answer as a page.
 
 mod figure;
 mod file;
