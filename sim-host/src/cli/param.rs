@@ -231,7 +231,7 @@ fn apply(client: &mut Client, before: &Settings, wanted: &[Setting], always: &[&
     print(&text)?;
     for key in &differing {
         complain(&format!(
-            "note: {key} is {}, not as in the file: only the polarity check itself sets it",
+            "note: {key} is {}, not as requested: only the polarity check itself sets it",
             now.words(key)
         ));
     }
