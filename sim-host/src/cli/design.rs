@@ -49,7 +49,7 @@ pub(super) struct Args {
     #[arg(long, default_value_t = 1.1, value_name = "M/S", allow_negative_numbers = true)]
     coarse: f64,
     /// Step of the speeds in the evaluation beside the known laws, in m/s, or none
-    #[arg(long, default_value = "0.25", value_name = "M/S|none", value_parser = judgement, allow_hyphen_values = true)]
+    #[arg(long, default_value = "0.25", value_name = "M/S|none", value_parser = evaluation_step, allow_hyphen_values = true)]
     judge: EvaluationStep,
     /// Write the law as a file for --law
     #[arg(long, value_name = "FILE")]
@@ -64,7 +64,7 @@ pub(super) struct Args {
 #[derive(Clone, Copy)]
 struct EvaluationStep(Option<f64>);
 
-fn judgement(text: &str) -> Result<EvaluationStep, String> {
+fn evaluation_step(text: &str) -> Result<EvaluationStep, String> {
     if text == "none" {
         return Ok(EvaluationStep(None));
     }
