@@ -33,7 +33,7 @@ fn roles(axes: &[Axis], words: &[String]) -> Result<Vec<Role>, SweepError> {
         match choice::<ConditionArgs>(key) {
             _ if used => Ok(Role::Place(place)),
             Ok(choice) if given && !choice.repeats() => {
-                Err(format!("--over {key}: --{key} is given as well; it can't be both"))
+                Err(format!("--over {key}: --{key} cannot be given in addition"))
             }
             Ok(choice) => Ok(Role::Option(Box::new(choice))),
             Err(names) => Err(format!(

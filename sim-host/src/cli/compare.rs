@@ -84,7 +84,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         }
         if requested.iter().any(|other| other.label() == capped) {
             return Err(format!(
-                "`{capped}` is the table's column beside the case `{label}`; name it otherwise"
+                "`{capped}` is a column of the case `{label}` in the table; choose another label"
             )
             .into());
         }
@@ -141,7 +141,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     if complete {
         return Ok(Ended::Done);
     }
-    complain("interrupted: what is done is kept");
+    complain("interrupted: finished results are kept");
     Ok(Ended::Interrupted)
 }
 

@@ -129,7 +129,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         values.iter().map(Vec::len).zip(&args.speeds).filter(|(n, _)| *n < count).min_by_key(|x| x.0)
     {
         complain(&format!(
-            "note: --roots {count}: {n} of them at {v} m/s; those further left decay too quickly to be told apart"
+            "note: --roots {count}: {n} of them at {v} m/s; those further left decay too quickly to be distinguished"
         ));
     }
     let modes = modes(&model, &args.speeds, count);

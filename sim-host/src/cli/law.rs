@@ -58,7 +58,7 @@ pub(super) fn capsize(text: &str) -> Result<Capsize, String> {
 pub(super) fn of_value(value: toml::Value) -> Result<Law, String> {
     match value {
         toml::Value::String(name) => match parse(&name) {
-            Ok(Law::Table(_)) => Err(format!("law `{name}` is a file; put its table here")),
+            Ok(Law::Table(_)) => Err(format!("law `{name}` is a file; insert its table here")),
             law => law,
         },
         table => {

@@ -54,7 +54,7 @@ impl ParameterFile {
         let law = file.law.map(law::of_value).transpose().map_err(|error| format!("{path}: {error}"))?;
         let values = file.parameters.into_iter().map(|(key, value)| match words(&value) {
             _ if key == "law" || key.starts_with("law.") => Err(format!(
-                "{path}: parameters: {key}: the law stands above the parameters, as in law = \"cl2:3\""
+                "{path}: parameters: {key}: the law belongs above the parameters, as in law = \"cl2:3\""
             )),
             Some(words) => Ok((key, words)),
             None => Err(format!(
@@ -72,20 +72,20 @@ impl ParameterFile {
     fn check(&self, count: Option<usize>, checksum: Option<&str>) -> Result<(), String> {
         let (path, found) = (&self.path, self.values.len());
         if found == 0 && self.law.is_none() {
-            return Err(format!("{path}: nothing is in it: no `law`, no `parameters`"));
+            return Err(format!("{path}: empty: neither `law` nor `parameters`"));
         }
         match (count, checksum) {
             (None, None) => Ok(()),
-            (Some(count), _) if count != found => Err(format!(
-                "{path}: count = {count}, but {found} parameters are in it: it was cut or changed"
-            )),
+            (Some(count), _) if count != found => {
+                Err(format!("{path}: count = {count}, but it has {found} parameters: it was cut or changed"))
+            }
             (Some(_), Some(checksum)) if checksum == self.checksum() => Ok(()),
             (Some(_), Some(checksum)) => Err(format!(
                 "{path}: checksum = \"{checksum}\", but law and parameters have \"{}\": it was damaged or changed; \
                  what was changed on purpose is taken without the lines `count` and `checksum`",
                 self.checksum()
             )),
-            _ => Err(format!("{path}: `count` and `checksum` belong together: one is missing")),
+            _ => Err(format!("{path}: `count` and `checksum` must be given together: one is missing")),
         }
     }
 

@@ -114,7 +114,9 @@ fn depart(sensors: &mut SensorConfig, text: &str, period_s: f64) -> Result<(), S
         match (key, axis) {
             ("model", None) => *model = model_of(sensor, value, period_s)?,
             ("bias", Some(axis)) => model.bias[axis] = number(key, value)?,
-            (_, Some(_)) => return Err(format!("{key} is of all axes; only bias has one each")),
+            (_, Some(_)) => {
+                return Err(format!("{key} applies to all axes; only bias can differ between them"));
+            }
             ("bias", None) => {
                 let bias = number(key, value)?;
                 model.bias.iter_mut().take(axes.len().max(1)).for_each(|axis| *axis = bias);

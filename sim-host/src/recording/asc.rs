@@ -192,7 +192,7 @@ fn flexible(words: &[&str], radix: u32) -> Result<Event, &'static str> {
 /// The bytes of a frame; the words after them belong to the event.
 fn bytes_of(words: &[&str], length: usize, radix: u32) -> Result<([u8; MOST_BYTES], usize), &'static str> {
     let mut bytes = [0; MOST_BYTES];
-    let words = words.get(..length).ok_or("has fewer bytes than it says")?;
+    let words = words.get(..length).ok_or("has fewer bytes than its stated length")?;
     for (byte, word) in bytes.iter_mut().zip(words) {
         let number = number(word, radix).filter(|number| *number < 256);
         *byte = number.ok_or("its bytes are no numbers of the file's base")? as u8;

@@ -200,7 +200,7 @@ fn screen<'a>(
             Some(word) if word.len() == 2 => {
                 *byte = hexadecimal(word).ok_or("its bytes are no hexadecimal digits")? as u8;
             }
-            _ => return Err("has fewer bytes than it says"),
+            _ => return Err("has fewer bytes than its stated length"),
         }
     }
     if length == 0 && words.next() == Some("remote") {

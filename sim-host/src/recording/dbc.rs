@@ -180,7 +180,7 @@ fn not_read(error: &str) -> Remark {
     let line = place.and_then(|line| line.parse().ok());
     let expected = error.lines().find_map(|line| line.trim_start().strip_prefix("= "));
     let reason = expected.or(error.lines().next()).unwrap_or_default();
-    Remark { line, column: None, what: format!("is no DBC that can be read: {reason}") }
+    Remark { line, column: None, what: format!("is no valid DBC: {reason}") }
 }
 
 fn id_of(id: MessageId) -> Id {
@@ -225,7 +225,7 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
             }),
             None => switch.map(|switch| Page { switch, ranges: vec![(value, value)] }),
         };
-        pages.push(page.map(Some).ok_or("no signal chooses when it is there"));
+        pages.push(page.map(Some).ok_or("it has no multiplexor"));
     }
     let chain: Vec<Option<usize>> =
         pages.iter().map(|page| page.as_ref().ok()?.as_ref().map(|page| page.switch)).collect();
@@ -237,7 +237,7 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
                 usable.push(signal);
                 continue;
             }
-            Ok(_) => "it chooses whether it is there itself",
+            Ok(_) => "it is its own multiplexor",
             Err(error) => error,
         };
         // The signal stays, as NaN, so that the indices of the others remain valid.

@@ -69,7 +69,7 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
         }
         if let Some(new) = names_of(line, separator) {
             remarks.add(HEADER, Some(number), None, || {
-                format!("names {} columns anew; from here on these are used", new.len())
+                format!("names {} other columns; from here on these are used", new.len())
             });
             places = new.iter().map(|name| place_of(&mut columns, name, numbers.len())).collect();
             continue;

@@ -247,7 +247,7 @@ pub(super) const fn quantity_of(sensor: Sensor) -> Quantity {
 impl Signal {
     fn check(&self, axes: usize, quantity: Quantity) -> Result<(), String> {
         if self.columns.len() != axes {
-            return Err(format!("columns: {} are named, it has {axes}", self.columns.len()));
+            return Err(format!("columns: {} given, expected {axes}", self.columns.len()));
         }
         quantity.factor(self.unit.as_deref())?;
         let in_range = |key: &str, value: f64, most: f64| {
@@ -256,7 +256,7 @@ impl Signal {
         };
         in_range("scale", self.scale, 1e6)?;
         if self.scale == 0.0 {
-            return Err("scale = 0 leaves nothing of the column".into());
+            return Err("scale = 0 is not allowed".into());
         }
         in_range("offset", self.offset, 1e6)?;
         if !(0.0..=1.0).contains(&self.late_s) {
@@ -264,7 +264,7 @@ impl Signal {
         }
         match (&self.axes, axes) {
             (Some(axes), 3) => turned(axes).map(drop),
-            (Some(_), _) => Err("axes: only a sensor of three axes can be turned".into()),
+            (Some(_), _) => Err("axes: only allowed for a sensor with three axes".into()),
             (None, _) => Ok(()),
         }
     }

@@ -39,7 +39,7 @@ pub(super) fn plausible(track: &Track, remarks: &mut Vec<Remark>) {
             remarks.push(remark(None, what));
         } else if down > -0.5 * part(0.5) {
             let what = format!(
-                "{name}: along z it says {down:.2} m/s^2 in the mean; upright and at rest it must be -9.81: are the axes right?"
+                "{name}: the mean along z is {down:.2} m/s^2; upright and at rest it must be -9.81: are the axes right?"
             );
             remarks.push(remark(None, what));
         }

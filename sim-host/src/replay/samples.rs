@@ -114,7 +114,7 @@ pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Sample
         let Some((group, column)) = column(recording, &switch.column) else {
             return Err(remark(
                 Some(&switch.column),
-                "the map names it for the switch; there is no such column".into(),
+                "no such column; the map assigns it to the switch".into(),
             ));
         };
         let times = times(group, map, None)?;
@@ -249,7 +249,7 @@ fn find<'a>(recording: &'a Recording, sensor: Sensor, signal: &Signal) -> Result
     };
     for (place, name) in absent {
         if needed.is_none() || needed == Some(place) {
-            let what = format!("the map names it for {}, the recording has no such column", sensor.name());
+            let what = format!("no such column; the map assigns it to {}", sensor.name());
             return Err(remark(Some(name), what));
         }
         let to = signal.turns().iter().position(|(from, _)| *from == place).unwrap_or(place);
@@ -268,9 +268,9 @@ pub(super) fn times(group: &Group, map: &Map, own: Option<&str>) -> Result<Vec<f
     let named = |name: &str| {
         let found = group.columns.iter().find(|column| column.name == name);
         let values = |column: &Column| column.values.iter().map(|value| value * factor).collect();
-        found.map(values).ok_or_else(|| {
-            remark(Some(name), "the map names it for the time; there is no such column".into())
-        })
+        found
+            .map(values)
+            .ok_or_else(|| remark(Some(name), "no such column; the map assigns it to the time".into()))
     };
     match (
         own,
@@ -286,7 +286,7 @@ pub(super) fn times(group: &Group, map: &Map, own: Option<&str>) -> Result<Vec<f
             Ok((0..rows).map(|row| row as f64 / rate_hz).collect())
         }
         (None, None, None, None) => {
-            Err(remark(None, "the map says nothing of the time, nor does the recording".into()))
+            Err(remark(None, "neither the map nor the recording defines the time".into()))
         }
     }
 }
@@ -307,7 +307,7 @@ fn take(
     let times = times(group, map, signal.time.as_deref())?;
     let of_age = |name: &String| {
         let found = group.columns.iter().find(|column| column.name == *name);
-        found.ok_or_else(|| remark(Some(name), "the map names it for an age; there is no such column".into()))
+        found.ok_or_else(|| remark(Some(name), "no such column; the map assigns it to an age".into()))
     };
     let ages = signal.age.as_ref().map(of_age).transpose()?;
     let turns = signal.turns();

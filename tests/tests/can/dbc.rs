@@ -114,7 +114,7 @@ fn what_can_not_be_used_is_named() {
     .unwrap();
     let got = values(&paged, 1, &[7]);
     assert!(got[0].is_nan() && got[1] == 7.0, "{got:?}");
-    assert_eq!(paged.messages[0].unused, ["signal Paged: no signal chooses when it is there"]);
+    assert_eq!(paged.messages[0].unused, ["signal Paged: it has no multiplexor"]);
     let circle = database(
         "BO_ 1 M: 8 A\n SG_ A1 m0M : 0|8@1+ (1,0) [0|0] \"\" A\n SG_ B1 m0M : 8|8@1+ (1,0) [0|0] \"\" A\n\nSG_MUL_VAL_ 1 A1 B1 0-9;\nSG_MUL_VAL_ 1 B1 A1 0-9;\n",
     )
@@ -156,7 +156,7 @@ fn what_is_no_database_is_refused() {
     assert!(wide.starts_with("line 9: its identifier is larger than 2047"), "{wide}");
     assert_eq!(database("").unwrap_err(), "no message (`BO_`) in it");
     let damaged = database("BO_ 1 M: 8 A\n SG_ S : 0|8@1+ (1,0 [0|0] \"\" A\n").unwrap_err();
-    assert!(damaged.starts_with("line ") && damaged.contains("is no DBC that can be read"), "{damaged}");
+    assert!(damaged.starts_with("line ") && damaged.contains("is no valid DBC"), "{damaged}");
     for text in ["", "<xml/>", "time,roll\n0,1\n", "\u{0}\u{1}"] {
         let why = Database::parse(text.as_bytes()).unwrap_err().to_string();
         assert!(!why.is_empty() && !why.contains('\n'), "{why}");

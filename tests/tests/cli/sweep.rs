@@ -203,7 +203,7 @@ fn wrong_axes_and_values_are_named() {
         ("--over sensor-delay=0ms:1ms/3", &["cell sensor-delay=0.5ms", "control periods"]),
         ("--over imu=euler,gyro", &["cell imu=gyro", "gyro", "--imu"]),
         ("--over law=h --over law=f", &["--over law", "twice"]),
-        ("--law f --over law=h,g", &["--over law", "given as well"]),
+        ("--law f --over law=h,g", &["--over law", "in addition"]),
         ("--law cl2:{speed} --over speed=1,2", &["--over speed", "result"]),
         ("--over delay=30ms,60ms", &["cell delay=30ms", "--rider"]),
         ("--over torque-limit=1:20/1000 --over rate-limit=10:1000/1000", &["1000000 cells", "100000"]),

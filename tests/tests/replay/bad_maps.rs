@@ -58,10 +58,10 @@ fn columns_that_are_not_there() {
     for (map, named) in [
         (SMALLEST.replace("'t'", "'T'"), ["T", "for the time"]),
         (format!("{SMALLEST}time = 'nope'\n"), ["nope", "for the time"]),
-        (format!("{SMALLEST}age = 'nope'\n"), ["nope", "for an age"]),
+        (format!("{SMALLEST}age = 'nope'\n"), ["nope", "to an age"]),
         (format!("{SMALLEST}[engage]\ncolumn = 'nope'\n"), ["nope", "for the switch"]),
         (SMALLEST.replace("'gx'", "'wx'"), ["wx", "for gyro"]),
-        (SMALLEST.replace("[time]\ncolumn = 't'\n", ""), ["the map says nothing", "time"]),
+        (SMALLEST.replace("[time]\ncolumn = 't'\n", ""), ["neither the map nor the recording", "time"]),
     ] {
         bench.write("my.toml", map);
         bench.run("replay ride.csv --map my.toml").refused_naming(&named);

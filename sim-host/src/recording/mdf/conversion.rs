@@ -39,7 +39,7 @@ impl Conversion {
 
     fn nested(file: &File, at: Option<usize>, depth: u8) -> Result<Self, &'static str> {
         let Some(at) = at else { return Ok(Conversion::None) };
-        let block = file.block(at, b"##CC").ok_or("its conversion is not where the file says")?;
+        let block = file.block(at, b"##CC").ok_or("its conversion is not at its stated position")?;
         let value = |n: usize| block.f64(24 + 8 * n);
         let values = (block.data.len().saturating_sub(24) / 8).min(usize::from(block.u16(6)));
         let needs = |n: usize| if values < n { Err("its conversion is cut") } else { Ok(()) };
@@ -72,7 +72,7 @@ impl Conversion {
                 let gaps = (0..texts).filter(gap).map(range).collect();
                 let default = block.link(4 + texts).filter(|at| file.block(*at, b"##CC").is_some());
                 let others = match depth {
-                    0 => return Err("its conversions stand too many behind each other"),
+                    0 => return Err("too many of its conversions are chained"),
                     _ => Self::nested(file, default, depth - 1)?,
                 };
                 Ok(Conversion::Texts { gaps, others: Box::new(others) })

@@ -18,7 +18,7 @@ pub(super) struct Joined<'a> {
 pub(super) fn joined<'a>(file: &mut File<'a>, at: Option<usize>) -> Joined<'a> {
     let Some(at) = at else { return Joined { bytes: Cow::Borrowed(&[]), broken: None } };
     let Some(first) = file.any_once(at) else {
-        return Joined { bytes: Cow::Borrowed(&[]), broken: Some("its data is not where the file says") };
+        return Joined { bytes: Cow::Borrowed(&[]), broken: Some("its data is not at its stated position") };
     };
     let mut bytes = Cow::Borrowed(&[][..]);
     let broken = match &first.name {
@@ -27,7 +27,7 @@ pub(super) fn joined<'a>(file: &mut File<'a>, at: Option<usize>) -> Joined<'a> {
             Some(list_block) => list(file, list_block, &mut bytes).err(),
             None => Some("its list of data blocks is missing"),
         },
-        b"##LD" => Some("each channel is kept by itself (MDF 4.2), which is not read"),
+        b"##LD" => Some("each channel is stored separately (MDF 4.2), which is not supported"),
         _ => add(&first, &mut bytes).err(),
     };
     Joined { bytes, broken }
@@ -40,7 +40,7 @@ fn list<'a>(file: &mut File<'a>, first: Block<'a>, bytes: &mut Cow<'a, [u8]>) ->
         for n in 1..block.links() {
             // A list that was being written has null links.
             let Some(place) = block.link(n) else { continue };
-            let part = file.any_once(place).ok_or("a data block is not where the file says")?;
+            let part = file.any_once(place).ok_or("a data block is not at its stated position")?;
             add(&part, bytes)?;
         }
         at = match block.link(0) {
@@ -56,7 +56,7 @@ fn add<'a>(block: &Block<'a>, bytes: &mut Cow<'a, [u8]>) -> Result<(), &'static 
     match &block.name {
         b"##DT" | b"##SD" | b"##RD" | b"##DV" => extend(bytes, Cow::Borrowed(block.data)),
         b"##DZ" => extend(bytes, Cow::Owned(unpacked(block)?)),
-        _ => return Err("a block that is no data block stands in its place"),
+        _ => return Err("a block at its position is no data block"),
     }
     if block.cut { Err("the file ends within its data") } else { Ok(()) }
 }
@@ -80,7 +80,7 @@ fn unpacked(block: &Block) -> Result<Vec<u8>, &'static str> {
         .read_to_end(&mut plain)
         .map_err(|_| "a compressed block is damaged")?;
     if plain.len() as u64 != size {
-        return Err("a compressed block is shorter than it says");
+        return Err("a compressed block is shorter than its stated length");
     }
     match kind {
         0 => Ok(plain),
@@ -93,6 +93,6 @@ fn unpacked(block: &Block) -> Result<Vec<u8>, &'static str> {
             straight.extend_from_slice(&plain[whole..]);
             Ok(straight)
         }
-        _ => Err("a block is compressed in a way that is not known"),
+        _ => Err("a block has an unknown compression"),
     }
 }

@@ -85,7 +85,7 @@ pub(super) fn read(file: &mut File, block: &Block, content: &mut Content) {
         for part in &mut parts {
             let (has, says) = (part.records.len(), part.shape.count);
             if !part.shape.variable && (has as u64) < says {
-                let what = format!("group {}: says that it has {says} records, and has {has}", part.name);
+                let what = format!("group {}: its header states {says} records, it has {has}", part.name);
                 remarks.push(Remark::of_file(what));
             }
             part.records.truncate(usize::try_from(says).unwrap_or(usize::MAX));

@@ -54,7 +54,7 @@ pub(super) fn apart(
         return (records, (whole * size < bytes.len()).then_some("its last record is not whole"));
     }
     if !matches!(id_bytes, 1 | 2 | 4 | 8) {
-        return (records, Some("the numbers of its records have a size that is none"));
+        return (records, Some("the size of its record numbers is invalid"));
     }
     let number = |at: usize, n: usize| {
         let bytes = bytes.get(at..)?.get(..n)?;
