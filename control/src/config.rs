@@ -1,4 +1,4 @@
-//! Everything a user may choose, in one place.
+//! All parameters of the controller.
 
 use crate::estimate::predict::PredictConfig;
 use crate::estimate::smooth::SmoothConfig;
@@ -18,42 +18,41 @@ use crate::sensors::monitor::{Loss, Sensor};
 use crate::sensors::sign_check::{SignCheckConfig, SteerModel};
 use crate::sensors::validation::ValidationConfig;
 
-/// Everything a user may choose. Plain data; [`Config::plan`] checks it.
+/// All parameters of the controller. Plain data; [`Config::plan`] validates them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// How often [`crate::step`] is called \[Hz\], 100..=10000.
+    /// Call rate of [`crate::step`] \[Hz\], 100..=10000.
     pub rate_hz: f32,
-    /// The roll-rate law.
+    /// Roll-rate law.
     pub law: Law,
-    /// The capsize term added to it.
+    /// Capsize term, added to the roll-rate law.
     pub capsize: Capsize,
-    /// How sensors and motor sit on this bicycle.
+    /// Mounting, zeros and signs of sensors and motor.
     pub calibration: Calibration,
-    /// The declared sensors.
+    /// Declared sensors.
     pub input: ValidationConfig,
-    /// How the motion is estimated.
+    /// Motion estimator.
     pub estimate: EstimateConfig,
-    /// How far sensors may disagree.
+    /// Cross-check tolerances between sensors.
     pub cross: CrossCheckConfig,
-    /// Whether the signs of gyro and motor are judged while riding.
+    /// Online sign checks of gyro and motor.
     pub response: SignCheckConfig,
-    /// When torque may flow.
+    /// Conditions of engagement.
     pub permit: EngagementConfig,
-    /// How late each sensor is known to be.
+    /// Known latency of each sensor.
     pub latency: Latency,
-    /// How the delay of sensors and actuator is made up for.
+    /// Prediction over the delay of sensors and actuator.
     pub predict: PredictConfig,
-    /// How the roll rate is smoothed before the law gets it.
+    /// Smoothing of the roll rate before the law.
     pub smooth: SmoothConfig,
-    /// How a path is followed; `None` is not at all.
+    /// Path tracking; `None` is off.
     pub track: Option<PathTracking>,
-    /// Limits on the torque.
+    /// Limits of the torque.
     pub limits: Limits,
 }
 
 impl Config {
-    /// The conditions of the published basins: the law alone, every limit and check off, permission
-    /// for the asking.
+    /// Conditions of the published basins: the law alone, every limit and check off, engagement without conditions.
     pub fn thesis(law: Law) -> Self {
         Self {
             rate_hz: 1000.0,
@@ -73,13 +72,13 @@ impl Config {
         }
     }
 
-    /// What is flashed: `h` cut to zero above 7.5 m/s, every sensor but the rider's torque and the path
-    /// declared and watched, all limits and checks on ([`Limits::product`]).
+    /// Configuration as flashed: `h` cut to zero above 7.5 m/s; every sensor declared and monitored except the rider's
+    /// torque and the path; all limits and checks on ([`Limits::product`]). Engagement requires a passed polarity
+    /// check.
     ///
-    /// Slopes are at least twice, ranges and steps 1.4 times the largest of rides inside the basins of `h`, alone
-    /// and with riders (`data/motion.toml`); the steps are those of the disturbance, which comes at once, and of a wheel that
-    /// begins to turn, whose first pulses tell up to 1 m/s at once. It
-    /// refuses to engage until a polarity check was passed.
+    /// Largest slopes are at least twice, ranges and steps 1.4 times the maxima of rides inside the basins of `h`,
+    /// without and with riders (`data/motion.toml`). The steps are those of the disturbance, which acts at once, and of
+    /// a wheel that starts to turn, whose first pulses change the speed by up to 1 m/s at once.
     pub fn product() -> Self {
         let sensor = |max, slope_per_s, timeout_ticks, loss| Sensor {
             slope_per_s: Some(slope_per_s),
@@ -138,7 +137,7 @@ impl Config {
             persist_ticks: 100,
         };
         let estimate = EstimateConfig { roll_rate: Source::Estimate, ..EstimateConfig::default() };
-        // Without vibration, and hardly later: `docs/delay.md`.
+        // Removes vibration at hardly any extra delay: `docs/delay.md`.
         let predict = PredictConfig { lead_s: 0.012, ..PredictConfig::default() };
         let smooth = SmoothConfig { interpolate: true, lag_s: 0.022, most_rad_s: Some(0.08) };
         let limits = Limits::product();
@@ -155,7 +154,7 @@ impl Config {
         }
     }
 
-    /// Shows every parameter but the law's.
+    /// Visits every parameter except the law's.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("", "rate_hz", 100.0, 10_000.0), &mut self.rate_hz);
         self.capsize.visit_params(to);
@@ -172,7 +171,7 @@ impl Config {
         self.limits.visit_params(to);
     }
 
-    /// Checks every value and readies what [`crate::step`] needs.
+    /// Validates every value and computes the plan for [`crate::step`].
     ///
     /// # Errors
     /// The first parameter outside its range, with its value and the range.

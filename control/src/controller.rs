@@ -1,4 +1,4 @@
-//! The composition: one sensor frame in, one torque command out.
+//! One control period: computes one torque command from one sensor frame.
 
 use crate::estimate::predict;
 use crate::estimate::smooth::{self, SmoothState};
@@ -17,149 +17,158 @@ use crate::sensors::polarity::{self, PolarityState, PolarityStep};
 use crate::sensors::sign_check::{self, SignCheckState};
 use crate::sensors::validation::{self, Measurements, SpeedInterval, ValidationState};
 
-/// What the controller remembers between steps. `State::default()` is a controller just started.
+/// Controller state kept between steps. `State::default()` is the state at start-up.
 ///
-/// In this order in memory, the long history last: the chip reaches the first 1 KiB in fewer instructions.
+/// The field order in memory matters, the long history last: the chip reaches the first 1 KiB in fewer instructions.
 #[derive(Clone, Debug, Default)]
 #[repr(C)]
 pub struct State {
-    /// The time of the frame before \[us\].
-    before_us: Option<u32>,
-    input: ValidationState,
+    /// Time of the previous frame \[us\].
+    previous_us: Option<u32>,
+    validation: ValidationState,
     estimate: EstimateState,
-    cross: CrossCheckState,
-    response: SignCheckState,
+    cross_check: CrossCheckState,
+    sign_check: SignCheckState,
     polarity: PolarityState,
     hand_torque_nm: f32,
-    permit: EngagementState,
+    engagement: EngagementState,
     track: PathTrackingState,
-    shape: LimiterState,
+    limiter: LimiterState,
     guard: GuardState,
-    /// The limits that acted in the period before.
-    acted: ActiveLimits,
-    /// What the guard found in the period before.
-    found: Causes,
+    /// Limits that were active in the previous period.
+    active_limits: ActiveLimits,
+    /// Causes of the guard in the previous period.
+    guard_causes: Causes,
     roll: Roll,
     smooth: SmoothState,
     history: History,
 }
 
-/// What the estimator says of the roll angle.
+/// Estimated roll angle and its error bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Roll {
-    /// The angle, right positive \[rad\].
+    /// Roll angle, right positive \[rad\].
     pub angle_rad: f32,
-    /// By how much it may be wrong.
+    /// Error of the roll angle.
     pub error: RollError,
-    /// Size of the specific force, if it is known \[m/s^2\].
+    /// Magnitude of the specific force, if measured \[m/s^2\].
     pub force_m_s2: Option<f32>,
 }
 
 impl State {
-    /// The torque commanded last, in the bicycle's sign \[N m\].
+    /// Last commanded torque, in the bicycle's sign \[N m\].
     pub fn torque_nm(&self) -> f32 {
-        self.shape.torque_nm()
+        self.limiter.torque_nm()
     }
 
-    /// What is to be done next in the polarity check.
+    /// Next step of the polarity check.
     pub fn polarity(&self) -> PolarityStep {
         self.polarity.next
     }
 
-    /// The torque the law would ask for during the polarity check, in the bicycle's sign \[N m\].
+    /// Torque that the law would request during the polarity check, in the bicycle's sign \[N m\].
     pub fn hand_torque_nm(&self) -> f32 {
         self.hand_torque_nm
     }
 
-    /// How much of what they should do gyro and motor do: 1 all, -1 the opposite; `None` while too little happens.
+    /// Gains of gyro and motor from the sign check: 1 as expected, -1 reversed; `None` while the excitation is too
+    /// small.
     pub fn slopes(&self) -> [Option<f32>; 2] {
-        self.response.slopes()
+        self.sign_check.slopes()
     }
 
-    /// The part of the torque that is permitted, 0 to 1.
+    /// Permitted fraction of the torque, 0 to 1.
     pub fn authority(&self) -> f32 {
-        self.permit.authority()
+        self.engagement.authority()
     }
 
-    /// By how much the sensors of the last period differ from what the others say.
+    /// Cross-check residuals of the last period.
     pub fn residuals(&self) -> Residuals {
-        self.cross.residuals()
+        self.cross_check.residuals()
     }
 
-    /// How much of what it should do by speed and steer angle the yaw rate does: 1 all, -1 the opposite; `None` while too
-    /// little happens.
+    /// Gain of the measured yaw rate over the one expected from speed and steer angle: 1 as expected, -1 reversed;
+    /// `None` while the excitation is too small.
     pub fn yaw_slope(&self) -> Option<f32> {
-        self.cross.yaw_slope()
+        self.cross_check.yaw_slope()
     }
 
-    /// How well the roll follows from steering: 1 if exactly, -1 if in everything the other way; `None` while too little
-    /// happens.
+    /// Correlation of the measured with the steering-induced roll acceleration, -1 to 1; `None` while the excitation is
+    /// too small.
     pub fn roll_correlation(&self) -> Option<f32> {
-        self.cross.roll_correlation()
+        self.cross_check.roll_correlation()
     }
 
-    /// The roll angle of the last period as estimated, and how sure that is.
+    /// Estimated roll angle of the last period, with its error.
     pub fn roll(&self) -> Roll {
         self.roll
     }
 }
 
-/// What the motor is asked for, and how that came about.
+/// Requested motor torque and the reasons for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command {
-    /// Steer torque, positive to the right as the motor counts \[N m\]. Always finite.
+    /// Steer torque in the motor's sign ([`crate::Calibration::motor_reversed`]) \[N m\]. Always finite.
     pub torque_nm: f32,
-    /// The gain used \[N m s/rad\]; 0 while there is nothing to use it on.
+    /// Gain of the law \[N m s/rad\]; 0 while the authority is 0, or speed or roll rate is unknown.
     pub gain_nm_s_rad: f32,
-    /// The limits that changed the torque.
+    /// Limits that changed the torque.
     pub limits: ActiveLimits,
-    /// Where the controller stands.
+    /// Mode of the controller.
     pub mode: Mode,
-    /// Everything that stands in the way of the torque, or is worth knowing.
+    /// All causes present: those that forbid or reduce torque, and those that are only reported.
     pub causes: Causes,
 }
 
-/// One control period: the torque for the motor from the sensors of this instant.
+/// One control period: computes the motor torque from the sensors' samples of this instant.
 ///
-/// Without a believable roll rate or speed zero torque is wanted, reached as fast as the limits let
-/// it. In the modes before standby, and on any finding of the guard, it is zero at once.
+/// Without a valid roll rate or speed the requested torque is zero, reached at the rate limit. In the modes before
+/// standby, and on any violation found by the guard, the torque is zero at once.
 pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let config = &plan.config;
-    let elapsed_us = state.before_us.map_or(plan.period_us, |before| frame.now_us.wrapping_sub(before));
-    state.before_us = Some(frame.now_us);
-    let last_nm = state.torque_nm();
+    let elapsed_us = state.previous_us.map_or(plan.period_us, |previous| frame.now_us.wrapping_sub(previous));
+    state.previous_us = Some(frame.now_us);
+    let last_torque_nm = state.torque_nm();
 
-    let measurements =
-        validation::step(&config.input, &plan.input, &plan.calibration, &mut state.input, frame, last_nm);
+    let measurements = validation::step(
+        &config.input,
+        &plan.validation,
+        &plan.calibration,
+        &mut state.validation,
+        frame,
+        last_torque_nm,
+    );
     let motion = motion(plan, &mut state.estimate, &measurements, elapsed_us);
     let Motion { roll_rad, roll_error, force_m_s2, .. } = motion;
     state.roll = Roll { angle_rad: roll_rad, error: roll_error, force_m_s2 };
-    let ahead = predict::step(&config.predict, &motion);
+    let predicted = predict::step(&config.predict, &motion);
     let cross_checked = cross_check::step(
         &config.cross,
-        &plan.cross,
-        &mut state.cross,
+        &plan.cross_check,
+        &mut state.cross_check,
         &measurements,
         motion.roll_sin_cos,
-        last_nm,
+        last_torque_nm,
     );
     if !cross_checked.invalidated.is_empty() {
-        state.input.invalidate(cross_checked.invalidated);
+        state.validation.invalidate(cross_checked.invalidated);
     }
-    let sign_causes = sign_check::step(&plan.response, &mut state.response, &measurements, &motion, last_nm);
-    let mut causes = measurements.causes.with(cross_checked.causes).with(sign_causes).with(state.found);
+    let sign_causes =
+        sign_check::step(&plan.sign_check, &mut state.sign_check, &measurements, &motion, last_torque_nm);
+    let mut causes =
+        measurements.causes.with(cross_checked.causes).with(sign_causes).with(state.guard_causes);
     causes.note(Cause::Timing, elapsed_us as f32 > plan.max_gap_us);
 
     let speed = speed(plan, &measurements, &cross_checked);
-    let now = match (measurements.gyro_rad_s(), speed) {
+    let aligned = match (measurements.gyro_rad_s(), speed) {
         (Some(_), Some(speed)) => {
             let age_ticks = frame.gyro_rad_s.age_ticks;
             let roll_rate_rad_s =
-                smooth::step(&plan.smooth, &mut state.smooth, ahead.roll_rate_rad_s, age_ticks);
+                smooth::step(&plan.smooth, &mut state.smooth, predicted.roll_rate_rad_s, age_ticks);
             let newest = Aligned { roll_rate_rad_s, speed };
-            let now = state.history.align(&config.latency, newest);
-            causes.note(Cause::Filling, now.is_none());
-            now
+            let aligned = state.history.align(&config.latency, newest);
+            causes.note(Cause::Filling, aligned.is_none());
+            aligned
         }
         _ => {
             state.history.clear();
@@ -168,33 +177,38 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
         }
     };
 
-    if plan.check_polarity {
-        let gain = plan.shown_gain_nm_s_rad;
+    if plan.polarity_check_due {
+        let gain = plan.polarity_gain_nm_s_rad;
         state.hand_torque_nm =
             polarity::step(&config.input, plan.period_s, &mut state.polarity, &measurements, gain);
         causes.note(Cause::PolarityWrong, state.polarity.next == PolarityStep::Wrong);
     }
-    let request = engagement::EngagementInput {
+    let engagement_input = engagement::EngagementInput {
         causes,
         engage: frame.engage,
-        polarity_checked: !plan.check_polarity || state.polarity.next == PolarityStep::Passed,
-        roll_rad: (plan.estimates && measurements.gyro_rad_s().is_some())
+        polarity_checked: !plan.polarity_check_due || state.polarity.next == PolarityStep::Passed,
+        roll_rad: (plan.needs_estimate && measurements.gyro_rad_s().is_some())
             .then_some((motion.roll_rad, motion.roll_error)),
         rates_rad_s: [motion.roll_rate_rad_s, motion.steer_rate_rad_s],
         speed_m_s: speed.map(|v| v.newest),
         force_m_s2: motion.force_m_s2,
     };
-    let permission =
-        engagement::step(&config.permit, &plan.permit, &plan.reactions, &mut state.permit, &request);
+    let permission = engagement::step(
+        &config.permit,
+        &plan.engagement,
+        &plan.reactions,
+        &mut state.engagement,
+        &engagement_input,
+    );
 
-    let (gain, law_nm, bounds) = match now {
+    let (gain, law_nm, speed) = match aligned {
         Some(Aligned { roll_rate_rad_s, speed }) => {
             let gain = config.law.gain_towards_zero(speed.low, speed.high);
-            let mut wanted = gain * roll_rate_rad_s;
+            let mut law_nm = gain * roll_rate_rad_s;
             if config.capsize.is_on() {
-                wanted += config.capsize.torque(speed.low, ahead.roll_rad);
+                law_nm += config.capsize.torque(speed.low, predicted.roll_rad);
             }
-            (gain, wanted, speed)
+            (gain, law_nm, speed)
         }
         None => (0.0, 0.0, SpeedInterval::default()),
     };
@@ -207,19 +221,19 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
             speed_m_s: motion.speed_m_s,
             path: measurements.path().map(|[heading_rad, lateral_m]| PathError { heading_rad, lateral_m }),
             rider_torque_nm: measurements.rider_torque_nm(),
-            acted: state.acted,
+            acted: state.active_limits,
             authority: permission.authority,
             elapsed_us,
         };
         path_tracking::step(track, &mut state.track, &tracking)
     });
     let request = limiter::TorqueRequest {
-        // Zero added would turn -0 into 0.
+        // Adding zero would turn -0 into 0.
         wanted_nm: if config.track.is_some() { law_nm + track_nm } else { law_nm },
         authority: permission.authority,
         limp: permission.mode == Mode::Limp,
-        speed_low_m_s: bounds.low,
-        speed_high_m_s: bounds.high,
+        speed_low_m_s: speed.low,
+        speed_high_m_s: speed.high,
         steer_rad: measurements.steer_rad(),
         steer_rate_rad_s: measurements.steer_rate_rad_s(),
         rider_torque_nm: measurements.rider_torque_nm(),
@@ -227,29 +241,29 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     };
     let permitted = permission.mode >= Mode::Standby;
     let (limited_nm, limits) = if permitted {
-        limiter::step(&config.limits, &plan.shape, &mut state.shape, &request)
+        limiter::step(&config.limits, &plan.limiter, &mut state.limiter, &request)
     } else {
-        state.shape = LimiterState::default();
+        state.limiter = LimiterState::default();
         (0.0, ActiveLimits::default())
     };
-    let checked =
+    let guard_result =
         guard::check(&config.limits, &plan.guard, &mut state.guard, limited_nm, permitted, &request);
-    let torque_nm = checked.unwrap_or_else(|_| {
-        state.shape = LimiterState::default();
+    let torque_nm = guard_result.unwrap_or_else(|_| {
+        state.limiter = LimiterState::default();
         0.0
     });
-    state.acted = limits;
-    state.found = checked.err().map_or(Causes::NONE, |violation| Causes::of(violation.cause()));
+    state.active_limits = limits;
+    state.guard_causes = guard_result.err().map_or(Causes::NONE, |violation| Causes::of(violation.cause()));
     Command {
         torque_nm: plan.calibration.motor(torque_nm),
         gain_nm_s_rad: if permission.authority > 0.0 { gain } else { 0.0 },
         limits,
         mode: permission.mode,
-        causes: permission.causes.with(state.found),
+        causes: permission.causes.with(state.guard_causes),
     }
 }
 
-/// The motion from what is believed; if nothing needs more, just what the sensors say.
+/// Estimates the motion from the valid measurements; copies the sensors' values if no function needs an estimate.
 fn motion(plan: &Plan, state: &mut EstimateState, measurements: &Measurements, elapsed_us: u32) -> Motion {
     let rear = measurements.rear_wheel_m_s().or(measurements.front_wheel_m_s());
     let input = EstimatorInput {
@@ -260,7 +274,7 @@ fn motion(plan: &Plan, state: &mut EstimateState, measurements: &Measurements, e
         speed_m_s: rear.map_or(0.0, |v| v.newest),
         elapsed_us,
     };
-    if plan.estimates {
+    if plan.needs_estimate {
         return estimate::step(&plan.config.estimate, state, &input);
     }
     let [roll_rate_rad_s, ..] = input.gyro_rad_s;
@@ -276,8 +290,8 @@ fn motion(plan: &Plan, state: &mut EstimateState, measurements: &Measurements, e
     }
 }
 
-/// Between which speeds of the scheduling wheel the truth lies: by that wheel's sensor; by the other's
-/// and the steer angle while it is lost; by both when they disagree.
+/// Bounds of the scheduling wheel's speed: from its own sensor; from the other wheel's sensor and the steer angle while
+/// its own sensor is lost; spanning both while the wheels disagree.
 fn speed(
     plan: &Plan,
     measurements: &Measurements,
@@ -295,10 +309,9 @@ fn speed(
         (Some(_), Some(_)) if !disagree => own,
         (_, None) => None,
         (_, Some(other)) => {
-            // The front wheel goes the longer way, at most about twice as long.
-            let cos = cross_checked
-                .ground
-                .map_or(LEAST_COS, |(_, cos)| if cos > LEAST_COS { cos } else { LEAST_COS });
+            // The front wheel's path is the longer one, at most about twice as long.
+            let cos =
+                cross_checked.ground.map_or(MIN_COS, |(_, cos)| if cos > MIN_COS { cos } else { MIN_COS });
             let ratio = if wheel == Wheel::Front { 1.0 / cos } else { cos };
             let other = other.spanning(other.scaled(ratio));
             Some(own.map_or(other, |own| own.spanning(other)))
@@ -306,5 +319,5 @@ fn speed(
     }
 }
 
-/// Cosine of the largest steer angle on the ground that is reckoned with while it is not known.
-const LEAST_COS: f32 = 0.4;
+/// Least assumed cosine of the ground steer angle; also used while that angle is unknown.
+const MIN_COS: f32 = 0.4;

@@ -1,130 +1,130 @@
-//! Everything that can stand in the way of a torque, numbered once and for ever.
+//! Causes that forbid, reduce or accompany torque, each with a permanent number.
 //!
-//! A number is never given to anything else, even when its cause is gone from the program. A page
-//! of `docs/faults` explains each.
+//! A number is never reused, even after its cause is removed. `docs/faults` has one page per cause.
 
-/// Why torque is refused, reduced or watched. The number is the code that users see.
+/// Reason why torque is refused or reduced, or a condition that is only reported. The number is the code shown to
+/// users.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 #[rustfmt::skip]
 pub enum Cause {
-    /// The gyro brought no believable sample in time.
+    /// The gyro delivered no valid sample within its timeout.
     GyroLost = 1,
     /// The gyro's samples are NaN or beyond its range.
     GyroRange = 2,
-    /// The gyro's samples jump faster than a bicycle can move.
+    /// The gyro's samples change faster than a bicycle can move.
     GyroJump = 3,
-    /// The gyro repeats one sample while the bicycle moves.
+    /// The gyro repeats the same sample while the bicycle moves.
     GyroStuck = 4,
-    /// The accelerometer brought no believable sample in time.
+    /// The accelerometer delivered no valid sample within its timeout.
     AccelLost = 5,
     /// The accelerometer's samples are NaN or beyond its range.
     AccelRange = 6,
     /// The accelerometer's samples jump.
     AccelJump = 7,
-    /// The accelerometer repeats one sample while the bicycle moves.
+    /// The accelerometer repeats the same sample while the bicycle moves.
     AccelStuck = 8,
-    /// The steer angle sensor brought no believable sample in time.
+    /// The steer angle sensor delivered no valid sample within its timeout.
     SteerLost = 9,
     /// The steer angle is NaN or beyond its range.
     SteerRange = 10,
     /// The steer angle jumps.
     SteerJump = 11,
-    /// The steer angle stays the same while the handlebar turns.
+    /// The steer angle does not change while the handlebar turns.
     SteerStuck = 12,
-    /// The steer rate sensor brought no believable sample in time.
+    /// The steer rate sensor delivered no valid sample within its timeout.
     SteerRateLost = 13,
     /// The steer rate is NaN or beyond its range.
     SteerRateRange = 14,
     /// The steer rate jumps.
     SteerRateJump = 15,
-    /// The steer rate stays the same while the handlebar turns.
+    /// The steer rate does not change while the handlebar turns.
     SteerRateStuck = 16,
-    /// The front wheel's sensor brought no believable sample in time.
+    /// The front wheel's sensor delivered no valid sample within its timeout.
     FrontWheelLost = 17,
     /// The front wheel's speed is NaN or beyond its range.
     FrontWheelRange = 18,
     /// The front wheel's speed jumps.
     FrontWheelJump = 19,
-    /// The front wheel's speed stays the same while the bicycle moves.
+    /// The front wheel's speed does not change while the bicycle moves.
     FrontWheelStuck = 20,
-    /// The rear wheel's sensor brought no believable sample in time.
+    /// The rear wheel's sensor delivered no valid sample within its timeout.
     RearWheelLost = 21,
     /// The rear wheel's speed is NaN or beyond its range.
     RearWheelRange = 22,
     /// The rear wheel's speed jumps.
     RearWheelJump = 23,
-    /// The rear wheel's speed stays the same while the bicycle moves.
+    /// The rear wheel's speed does not change while the bicycle moves.
     RearWheelStuck = 24,
-    /// The rider's torque sensor brought no believable sample in time.
+    /// The rider's torque sensor delivered no valid sample within its timeout.
     RiderTorqueLost = 25,
     /// The rider's torque is NaN or beyond its range.
     RiderTorqueRange = 26,
     /// The rider's torque jumps.
     RiderTorqueJump = 27,
-    /// The rider's torque stays the same while the handlebar turns.
+    /// The rider's torque does not change while the handlebar turns.
     RiderTorqueStuck = 28,
-    /// The drive does not say what torque it gives.
+    /// The drive did not report its torque within the timeout.
     MotorLost = 29,
-    /// The drive's torque is NaN or beyond its range.
+    /// The drive's reported torque is NaN or beyond its range.
     MotorRange = 30,
-    /// The drive's torque jumps.
+    /// The drive's reported torque jumps.
     MotorJump = 31,
-    /// The drive's torque stays the same while the command changes.
+    /// The drive's reported torque does not change while the command changes.
     MotorStuck = 32,
-    /// The two wheels' speeds do not fit the steer angle.
+    /// The two wheels' speeds are inconsistent with the steer angle.
     WheelsDisagree = 33,
-    /// The gyro's rates have the opposite sign of what another sensor makes of them.
+    /// The gyro's rates have the opposite sign of those expected from another sensor.
     GyroDisagrees = 34,
-    /// The steer rate and the steer angle do not fit each other.
+    /// The steer rate and the steer angle are inconsistent.
     SteerDisagrees = 35,
-    /// The drive gives another torque than it is asked for.
+    /// The drive reports a torque other than the requested one.
     MotorDisagrees = 36,
-    /// The bicycle answers to the torque the wrong way round.
+    /// The steer acceleration is opposite to the motor's torque.
     WrongResponse = 37,
     /// The yaw rate and the steer angle have opposite signs.
     YawDisagrees = 38,
-    /// The guard saw a torque that is not a number.
+    /// The guard found a torque that is NaN or infinite.
     GuardNotFinite = 39,
-    /// The guard saw a torque without permission.
+    /// The guard found a torque without permission.
     GuardPermission = 40,
-    /// The guard saw a torque beyond the largest allowed.
+    /// The guard found a torque above the largest allowed.
     GuardTorque = 41,
-    /// The guard saw a torque change faster than allowed.
+    /// The guard found a torque that changed faster than allowed.
     GuardRate = 42,
-    /// The guard saw a torque change further within its window than allowed.
+    /// The guard found a torque that changed further within its window than allowed.
     GuardWindow = 43,
-    /// The guard saw a torque against the rider beyond what is allowed.
+    /// The guard found more torque against the rider than allowed.
     GuardOverride = 44,
-    /// The guard saw a torque towards the steer's end-stop.
+    /// The guard found a torque towards the steer's end-stop.
     GuardEndStop = 45,
     /// No polarity check has been passed since the last calibration.
     PolarityUnchecked = 46,
-    /// The sensors' histories do not overlap yet.
+    /// The sensors' histories, aligned by latency, do not overlap yet.
     Filling = 47,
     /// The bicycle lies on its side.
     Fallen = 48,
-    /// The bicycle is lifted: both wheels' speeds and the forces do not belong to riding.
+    /// The bicycle is lifted: the specific force is below that of riding.
     Lifted = 49,
     /// The bicycle rolls backwards.
     Backwards = 50,
-    /// The bicycle stands.
+    /// The bicycle is parked.
     Parked = 51,
-    /// The switch was not released for long enough since it was last on: no press counts yet.
+    /// The switch was not released for long enough since it was last closed: no press is accepted yet.
     SwitchHeld = 52,
-    /// The rider has not asked for assist.
+    /// The rider's switch is off.
     SwitchOff = 53,
-    /// The self-test is not over.
+    /// The self-test is not complete.
     SelfTest = 54,
-    /// A control period was much longer than planned, or its time lay before the last one's.
+    /// A control period was much longer than planned, or its time was before that of the previous one.
     Timing = 55,
     /// The path's errors are missing or too old.
     PathLost = 56,
     /// The polarity check found a wrong sign.
     PolarityWrong = 57,
-    /// The roll angle is not known well enough to tell whether the bicycle has fallen.
+    /// The error bound of the roll angle is too large to detect a fall.
     RollUnknown = 58,
-    /// The bicycle tumbles: forces and rates together are those of no ride.
+    /// The bicycle tumbles: forces and rates together exceed those of any ride.
     Crash = 59,
 }
 
@@ -145,7 +145,7 @@ pub const CAUSES: [Cause; 59] = {
 };
 
 impl Cause {
-    /// The number that users see and look up.
+    /// The code shown to users.
     pub const fn code(self) -> u8 {
         self as u8
     }
@@ -159,12 +159,12 @@ impl Causes {
     /// No cause.
     pub const NONE: Causes = Causes(0);
 
-    /// The set of one.
+    /// The set of one cause.
     pub const fn of(cause: Cause) -> Self {
         Causes(1 << cause.code())
     }
 
-    /// The set of several.
+    /// The set of several causes.
     pub const fn all(causes: &[Cause]) -> Self {
         let mut set = Self::NONE;
         let mut rest = causes;
@@ -175,12 +175,12 @@ impl Causes {
         set
     }
 
-    /// Both sets together.
+    /// Union of both sets.
     pub const fn with(self, other: Causes) -> Self {
         Causes(self.0 | other.0)
     }
 
-    /// What is in both sets.
+    /// Intersection of both sets.
     pub const fn and(self, other: Causes) -> Self {
         Causes(self.0 & other.0)
     }
@@ -195,13 +195,13 @@ impl Causes {
         self.0 & other.0 != 0
     }
 
-    /// Whether there is none.
+    /// Whether the set is empty.
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// With `cause` added if it is not in it, else taken away.
-    pub const fn turned(self, cause: Cause) -> Self {
+    /// The set with `cause` added if absent, removed if present.
+    pub const fn toggled(self, cause: Cause) -> Self {
         Causes(self.0 ^ Self::of(cause).0)
     }
 
@@ -212,7 +212,7 @@ impl Causes {
         }
     }
 
-    /// The causes in it, by rising code.
+    /// The causes of the set, by rising code.
     pub fn iter(self) -> impl Iterator<Item = Cause> {
         CAUSES.into_iter().filter(move |cause| self.has(*cause))
     }

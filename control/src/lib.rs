@@ -1,29 +1,31 @@
-//! The steer-assist controller: everything that decides a torque.
+//! The steer-assist controller: computes the motor's steer torque from the sensors' samples.
 //!
-//! # Contract
-//! * **Call** [`step`] once per control period (1 kHz by default, [`Config::rate_hz`]), with the
-//!   sensors of that instant. There is no clock inside: time is counted in calls, and what really
-//!   passed stands in the frame.
-//! * **Axes** are the benchmark's (Meijaard et al. 2007, SAE): x forward, y right, z down. Roll
-//!   rate is positive rolling right, steer torque is positive to the right. The assist steers into
-//!   the fall: `T = +gain(v) * roll_rate` with `gain > 0` where it stabilises.
-//! * **Units** are SI and stand in the names.
-//! * **Purity**: plain data in, plain data out; no allocation, no `unsafe`, no panic path, no
-//!   hardware. f32 arithmetic and [`libm`] only, so host and Cortex-M agree in every bit.
+//! * **Call** [`step`] once per control period (1 kHz by default, [`Config::rate_hz`]) with the sensors' samples of
+//!   that instant. The crate reads no clock: durations are counted in control periods, and the measured time is in the
+//!   frame.
+//! * **Axes** are the benchmark's (Meijaard et al. 2007, SAE): x forward, y right, z down. Roll rate is positive when
+//!   rolling to the right, steer torque is positive to the right. The assist steers into the fall:
+//!   `T = +gain(v) * roll_rate` with `gain > 0` where it stabilises.
+//! * **Units** are SI and part of the names.
+//! * **Purity**: plain data in, plain data out; no allocation, no `unsafe`, no panic path, no hardware. f32 arithmetic
+//!   and [`libm`] only, so host and Cortex-M results are bit-identical.
 //! * **Total**: every bit pattern of every input gives a finite torque inside the limits.
 //!
-//! One step runs through four folders:
+//! One step runs through four modules:
 //!
-//! * [`sensors`]: a [`SensorFrame`] becomes measurements in the bicycle's axes ([`sensors::calibration`]) of which each was checked
-//!   on its own ([`sensors::validation`], one [`sensors::monitor`] a sensor) and against the others ([`sensors::cross_check`],
-//!   [`sensors::sign_check`], [`sensors::polarity`]).
-//! * [`estimate`]: the motion of the bicycle and how sure it is, smoothed and predicted to the instant at which the torque acts.
-//! * [`law`]: the torque of the chosen roll-rate law, and of [`law::capsize`] and [`law::path_tracking`] where they are on.
-//! * [`safety`]: whether torque may flow and why not ([`safety::engagement`]), the torque inside the [`safety::limits`]
-//!   ([`safety::limiter`]), and a check of the result by a second formulation ([`safety::guard`]).
+//! * [`sensors`]: converts a [`SensorFrame`] to measurements in the bicycle's axes ([`sensors::calibration`]). Each
+//!   sensor is checked on its own ([`sensors::validation`], one [`sensors::monitor`] per sensor) and against the other
+//!   sensors ([`sensors::cross_check`], [`sensors::sign_check`], [`sensors::polarity`]).
+//! * [`estimate`]: estimates the motion of the bicycle with an error bound, smooths the roll rate and predicts it to
+//!   the instant at which the torque acts.
+//! * [`law`]: computes the torque of the chosen roll-rate law, and of [`law::capsize`] and [`law::path_tracking`] where
+//!   they are on.
+//! * [`safety`]: decides whether torque is permitted ([`safety::engagement`]), keeps the torque inside the
+//!   [`safety::limits`] ([`safety::limiter`]) and checks the result by a second formulation ([`safety::guard`]).
 //!
-//! [`controller`] calls them in order, [`config`] holds every choice, [`plan`] what follows from it, [`fault`] numbers what can go
-//! wrong, [`param`] declares every parameter with its range, [`wire`] encodes frames and configurations.
+//! [`controller`] calls them in order. [`config`] holds all parameters, [`plan`] the constants derived from them,
+//! [`fault`] the numbered causes; [`param`] declares every parameter with its range, [`wire`] encodes frames and
+//! configurations.
 #![no_std]
 #![forbid(unsafe_code)]
 

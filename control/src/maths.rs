@@ -1,7 +1,8 @@
-//! Sine and cosine for leans, where the standard ones would cost more than the law.
+//! Fast sine, cosine, exponential and reciprocal square root, where the standard functions would take longer than the
+//! control law.
 //!
-//! Polynomials through the Chebyshev nodes of the quarter turn. `+`, `-` and `*` only: host and chip
-//! agree in every bit, and `sin(-x)` is `-sin(x)` to the bit.
+//! Sine and cosine are polynomials through the Chebyshev nodes of the quarter turn. They use `+`, `-` and `*` only:
+//! host and chip results are bit-identical, and `sin(-x)` is exactly `-sin(x)`.
 
 use core::f32::consts::LOG2_E;
 use core::hint::cold_path;
@@ -12,22 +13,22 @@ pub const G: f32 = 9.81;
 /// A quarter turn \[rad\].
 pub const QUARTER: f32 = core::f32::consts::FRAC_PI_2;
 
-/// Whether `x` is finite, without a detour through the integer registers: infinite or NaN times 0 is NaN.
+/// Whether `x` is finite, without using the integer registers: infinity or NaN times 0 is NaN.
 #[inline]
 pub fn is_finite(x: f32) -> bool {
     x * 0.0 == 0.0
 }
 
-/// Largest error of [`sin_cos`] within a quarter turn either way, rounding included.
+/// Largest error of [`sin_cos`] within +-90 degrees, rounding included.
 pub const SIN_COS_ERROR: f32 = 2e-7;
 
-/// Sine and cosine of an angle \[rad\]; one beyond a quarter turn counts as a quarter turn, NaN as 0.
+/// Sine and cosine of an angle \[rad\]. Angles beyond a quarter turn are limited to it, NaN gives those of 0.
 #[inline]
 pub fn sin_cos(angle_rad: f32) -> (f32, f32) {
     sin_cos_within(bounded(angle_rad, QUARTER))
 }
 
-/// The same of an angle \[rad\] that is known to be within a quarter turn; of others it is not.
+/// Sine and cosine of an angle \[rad\] known to be within a quarter turn; not accurate for other angles.
 #[inline]
 pub fn sin_cos_within(x: f32) -> (f32, f32) {
     let q = x * x;
@@ -36,10 +37,10 @@ pub fn sin_cos_within(x: f32) -> (f32, f32) {
     (x * (1.0 + q * odd), 1.0 + q * (-0.5 + q * even))
 }
 
-/// `x` limited to `max` either way, NaN made 0; a value inside keeps its bits.
+/// `x` limited to `-max..=max`, NaN replaced by 0; a value inside is unchanged to the bit.
 #[inline]
 pub fn bounded(x: f32, max: f32) -> f32 {
-    // What is inside, as nearly always, takes one comparison.
+    // The common case, inside, takes one comparison.
     if x.abs() <= max {
         return x;
     }
@@ -53,8 +54,8 @@ pub fn bounded(x: f32, max: f32) -> f32 {
     }
 }
 
-/// `e` to the power of `x`: the bits of [`libm::expf`], whose arithmetic this is (musl, after FreeBSD's `e_expf.c`), without
-/// its branches where none is needed.
+/// `e` to the power of `x`, bit-identical to [`libm::expf`]: the same arithmetic (musl, after FreeBSD's `e_expf.c`)
+/// without the branches that are not needed.
 #[inline]
 pub fn exp(x: f32) -> f32 {
     let size = x.abs();
@@ -62,7 +63,7 @@ pub fn exp(x: f32) -> f32 {
         cold_path();
         return libm::expf(x);
     }
-    // x = k ln 2 + r, ln 2 in two parts, of which the upper one times k is exact.
+    // x = k ln 2 + r, with ln 2 split into two parts; the upper part times k is exact.
     let k = (LOG2_E * x + if x < 0.0 { -0.5 } else { 0.5 }) as i32;
     let (upper, lower) = (x - k as f32 * 0.693_145_75, k as f32 * 1.428_606_8e-6);
     let r = upper - lower;
@@ -72,27 +73,27 @@ pub fn exp(x: f32) -> f32 {
     power * f32::from_bits(((127 + k) as u32) << 23)
 }
 
-/// Largest relative error of [`rsqrt`], for what is neither 0, denormal nor beyond `1e38`.
-pub const PER_ROOT_ERROR: f32 = 2e-7;
+/// Largest relative error of [`rsqrt`], except for 0, denormals and numbers beyond `1e38`.
+pub const RSQRT_ERROR: f32 = 2e-7;
 
-/// One over the square root of a number that is known to be neither negative nor infinite nor NaN; finite for 0 too. A
-/// square root in software takes four times as long.
+/// Reciprocal square root of a number known to be neither negative, infinite nor NaN; finite for 0 too. A square root
+/// in software takes four times as long.
 #[inline]
 pub fn rsqrt(x: f32) -> f32 {
-    // Half the exponent, negated, with the constant of least error; each of Newton's steps squares it.
+    // Initial guess: half the exponent, negated, with the constant of least error. Each Newton step squares the error.
     let guess = f32::from_bits(0x5f37_5a86_u32.wrapping_sub(x.to_bits() >> 1));
-    let better = guess * (1.5 - 0.5 * x * guess * guess);
-    let better = better * (1.5 - 0.5 * x * better * better);
-    better * (1.5 - 0.5 * x * better * better)
+    let refined = guess * (1.5 - 0.5 * x * guess * guess);
+    let refined = refined * (1.5 - 0.5 * x * refined * refined);
+    refined * (1.5 - 0.5 * x * refined * refined)
 }
 
-/// The lesser; `x` if they are equal or `bound` is NaN. `f32::min` is a call on the chip.
+/// The smaller of both; `x` if they are equal or `bound` is NaN. `f32::min` is a function call on the chip.
 #[inline]
 pub fn min(bound: f32, x: f32) -> f32 {
     if x > bound { bound } else { x }
 }
 
-/// The greater; `x` if they are equal or `bound` is NaN.
+/// The larger of both; `x` if they are equal or `bound` is NaN.
 #[inline]
 pub fn max(bound: f32, x: f32) -> f32 {
     if x < bound { bound } else { x }

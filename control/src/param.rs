@@ -1,17 +1,16 @@
-//! The parameters, each declared once: its name, unit and range, beside the field that holds it.
+//! Declaration of parameters: name, unit and range of each, once, beside the field that holds it.
 //!
-//! A group of parameters is a struct with a `visit_params` function that shows every field of it to a
-//! visitor. Checking, encoding, listing, getting and setting are visitors, so none of them can
-//! forget a parameter.
+//! A group of parameters is a struct with a `visit_params` function that passes each of its fields to a visitor.
+//! Checking, encoding, listing, getting and setting are visitors, so none of them can omit a parameter.
 
 use core::fmt;
 
-/// What is known of a parameter beside its value.
+/// Name and range of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParamSpec {
-    /// The group it belongs to, dotted: `limits.end_stop`.
+    /// Group, dotted: `limits.end_stop`.
     pub group: &'static str,
-    /// Its own name, unit included: `soft_rad`.
+    /// Name within the group, unit included: `soft_rad`.
     pub name: &'static str,
     /// Least allowed value.
     pub min: f32,
@@ -25,7 +24,7 @@ impl ParamSpec {
         Self { group, name, min, max }
     }
 
-    /// Something that is on (1) or off (0).
+    /// A switch: on (1) or off (0).
     pub const fn switch(group: &'static str, name: &'static str) -> Self {
         Self::new(group, name, 0.0, 1.0)
     }
@@ -35,7 +34,7 @@ impl ParamSpec {
         ParamError { leaf: *self, value }
     }
 
-    /// Accepts `value` when it is inside the range; NaN never is.
+    /// Accepts a `value` inside the range; NaN is outside.
     ///
     /// # Errors
     /// The parameter, its value and the range.
@@ -44,10 +43,10 @@ impl ParamSpec {
     }
 }
 
-/// A parameter outside its range. `value` may be NaN or infinite, as given.
+/// Error: a parameter outside its range. `value` can be NaN or infinite, as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParamError {
-    /// Which parameter.
+    /// The parameter.
     pub leaf: ParamSpec,
     /// The value given.
     pub value: f32,
@@ -66,7 +65,7 @@ impl fmt::Display for ParamError {
         if self.value == 0.0 && (group, name) == ("input", "wheel") {
             return write!(
                 f,
-                "{group}.{name} = front, but input.front_wheel.fitted is off, and without input.steer the rear wheel does not tell its speed: rear"
+                "{group}.{name} = front, but input.front_wheel.fitted is off, and without input.steer its speed cannot be computed from the rear wheel's: rear"
             );
         }
         write!(f, "{group}{dot}{name} = {} is outside {min} to {max}", self.value)
@@ -75,21 +74,21 @@ impl fmt::Display for ParamError {
 
 impl core::error::Error for ParamError {}
 
-/// Something that is done with every parameter, in the order of their declaration.
+/// A function over all parameters, in the order of their declaration.
 pub trait ParamVisitor {
     /// A number.
     fn number(&mut self, leaf: &ParamSpec, value: &mut f32);
-    /// A number that may be off.
+    /// A number that can be off.
     fn optional_number(&mut self, leaf: &ParamSpec, value: &mut Option<f32>);
     /// A whole number.
     fn count(&mut self, leaf: &ParamSpec, value: &mut u16);
-    /// On or off.
+    /// A switch.
     fn switch(&mut self, leaf: &ParamSpec, value: &mut bool);
-    /// One of `names`, by its place among them.
+    /// One of `names`, given by its index.
     fn choice(&mut self, leaf: &ParamSpec, names: &'static [&'static str], value: &mut u8);
 }
 
-/// Shows a group that may be off: first the switch, then what is `inside`.
+/// Visits a group that can be off: first the switch, then the group's parameters by `inside`.
 pub fn optional<T: Default, V: ParamVisitor>(
     to: &mut V,
     leaf: &ParamSpec,
@@ -103,12 +102,12 @@ pub fn optional<T: Default, V: ParamVisitor>(
     *value = on.then_some(group);
 }
 
-/// Finds the first parameter that is outside its range.
+/// A visitor that finds the first parameter outside its range.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Checker(Option<ParamError>);
 
 impl Checker {
-    /// What was found.
+    /// The result of the check.
     ///
     /// # Errors
     /// The first parameter outside its range.
@@ -116,10 +115,10 @@ impl Checker {
         self.0.map_or(Ok(()), Err)
     }
 
-    /// Takes in another finding; the first one counts.
-    pub fn note(&mut self, found: Result<(), ParamError>) {
+    /// Adds a result; the first error is kept.
+    pub fn note(&mut self, result: Result<(), ParamError>) {
         if self.0.is_none() {
-            self.0 = found.err();
+            self.0 = result.err();
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What follows from a configuration alone, computed once before the first step.
+//! Constants derived from a configuration, computed once before the first step.
 
 use crate::config::Config;
 use crate::controller::Command;
@@ -14,9 +14,9 @@ use crate::sensors::polarity;
 use crate::sensors::sign_check::SignCheckPlan;
 use crate::sensors::validation::ValidationPlan;
 
-/// A checked [`Config`] with what is derived from it. Read-only while the controller runs.
+/// A validated [`Config`] and the constants derived from it. Read-only while the controller runs.
 ///
-/// In this order in memory, for the reason given at [`crate::State`]; the long configuration last.
+/// The field order in memory matters, for the reason given at [`crate::State`]; the long configuration last.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C)]
 pub struct Plan {
@@ -25,28 +25,28 @@ pub struct Plan {
     /// Longest time between two steps \[us\]; infinite without a limit.
     pub(crate) max_gap_us: f32,
     pub(crate) calibration: CalibrationPlan,
-    pub(crate) input: ValidationPlan,
-    pub(crate) cross: CrossCheckPlan,
-    pub(crate) response: SignCheckPlan,
-    pub(crate) permit: EngagementPlan,
+    pub(crate) validation: ValidationPlan,
+    pub(crate) cross_check: CrossCheckPlan,
+    pub(crate) sign_check: SignCheckPlan,
+    pub(crate) engagement: EngagementPlan,
     pub(crate) smooth: SmoothPlan,
     pub(crate) reactions: Reactions,
-    pub(crate) shape: LimiterPlan,
+    pub(crate) limiter: LimiterPlan,
     pub(crate) guard: GuardPlan,
-    /// The polarity check is still to be passed.
-    pub(crate) check_polarity: bool,
-    /// The law's gain that the polarity check shows.
-    pub(crate) shown_gain_nm_s_rad: f32,
-    /// Whether anything needs more of the motion than the gyro's x axis.
-    pub(crate) estimates: bool,
+    /// Whether the polarity check must still be passed.
+    pub(crate) polarity_check_due: bool,
+    /// Gain of the law at [`polarity::GAIN_SPEED_M_S`], for the polarity check \[N m s/rad\].
+    pub(crate) polarity_gain_nm_s_rad: f32,
+    /// Whether any function needs more of the motion than the gyro's x axis.
+    pub(crate) needs_estimate: bool,
     pub(crate) config: Config,
 }
 
 impl Plan {
-    /// Of a configuration that was checked.
+    /// Builds the plan of a validated configuration.
     pub(crate) fn new(config: Config) -> Self {
         let c = &config;
-        let crosses = c.cross.wheels_m_s.is_some()
+        let cross_checks = c.cross.wheels_m_s.is_some()
             || c.cross.yaw_rad_s.is_some()
             || c.cross.yaw_slow_rad_s.is_some()
             || c.cross.yaw_slope
@@ -56,48 +56,48 @@ impl Plan {
             period_us: (1e6 / c.rate_hz) as u32,
             max_gap_us: c.input.max_gap_ms.map_or(f32::INFINITY, |ms| 1e3 * ms),
             calibration: c.calibration.plan(),
-            input: ValidationPlan::new(&c.input, 1.0 / c.rate_hz),
-            cross: CrossCheckPlan::new(&c.cross, &c.estimate.balance, c.rate_hz),
-            response: SignCheckPlan::new(&c.response, &c.estimate, c.rate_hz),
-            permit: EngagementPlan::new(&c.permit, c.rate_hz),
+            validation: ValidationPlan::new(&c.input, 1.0 / c.rate_hz),
+            cross_check: CrossCheckPlan::new(&c.cross, &c.estimate.balance, c.rate_hz),
+            sign_check: SignCheckPlan::new(&c.response, &c.estimate, c.rate_hz),
+            engagement: EngagementPlan::new(&c.permit, c.rate_hz),
             smooth: SmoothPlan::new(&c.smooth, 1.0 / c.rate_hz),
             reactions: Reactions::new(&c.input),
-            shape: LimiterPlan::new(&c.limits, c.rate_hz),
+            limiter: LimiterPlan::new(&c.limits, c.rate_hz),
             guard: GuardPlan::new(&c.limits, c.rate_hz),
-            check_polarity: c.permit.need_polarity && !c.calibration.polarity_checked,
-            shown_gain_nm_s_rad: c.law.gain(polarity::SHOWN_AT_M_S),
-            estimates: c.estimate.roll_rate == estimate::Source::Estimate
+            polarity_check_due: c.permit.need_polarity && !c.calibration.polarity_checked,
+            polarity_gain_nm_s_rad: c.law.gain(polarity::GAIN_SPEED_M_S),
+            needs_estimate: c.estimate.roll_rate == estimate::Source::Estimate
                 || c.capsize.is_on()
                 || c.permit.fallen_rad.is_some()
                 || c.predict.lead_s > 0.0
                 || c.track.is_some()
                 || c.response.motor.is_some()
-                || crosses,
+                || cross_checks,
             config,
         }
     }
 
-    /// The configuration it was made from.
+    /// The configuration that this plan was built from.
     pub fn config(&self) -> &Config {
         &self.config
     }
 
-    /// Whether a press of the switch that begins in the period after this command, or goes on in it, would engage, if
-    /// nothing changes: in standby, and nothing is missing but the press.
+    /// Whether pressing the switch in, or through, the period after `command` would engage if nothing else changes: the
+    /// mode is standby and no other cause prevents engagement.
     pub fn ready(&self, command: &Command) -> bool {
-        let missing = self.reactions.refusals().with(Causes::of(Cause::SwitchHeld));
-        let refusing = command.causes.and(missing);
-        command.mode == Mode::Standby && (refusing.is_empty() || refusing == Causes::of(Cause::SwitchOff))
+        let refusals = self.reactions.refusals().with(Causes::of(Cause::SwitchHeld));
+        let blocking = command.causes.and(refusals);
+        command.mode == Mode::Standby && (blocking.is_empty() || blocking == Causes::of(Cause::SwitchOff))
     }
 
-    /// Control periods from boot to full authority, if every sensor is good from the start and the
-    /// switch is pressed at once when it may be.
+    /// Control periods from boot to full authority, if every sensor is valid from the start and the switch is pressed
+    /// as soon as a press is accepted.
     pub fn ticks_to_engage(&self) -> u32 {
         let Config { input, permit, latency, .. } = &self.config;
         let tests = u32::from(permit.self_test_ticks) + u32::from(permit.persist_ticks);
         let waits = tests + u32::from(permit.press.release_ticks) + u32::from(permit.press.press_ticks);
         let ramp = u32::from(permit.ramp_in_ticks);
-        let filling = u32::from(latency.roll_rate_ticks.max(latency.speed_ticks));
-        8 + input.slowest_to_qualify() + waits + ramp + filling
+        let history = u32::from(latency.roll_rate_ticks.max(latency.speed_ticks));
+        8 + input.slowest_to_qualify() + waits + ramp + history
     }
 }

@@ -1,4 +1,5 @@
-//! The same bytes on every link: little-endian, fixed length, any bit pattern allowed.
+//! Binary encoding of frames, commands and configurations, the same on every link: little-endian, fixed length, any bit
+//! pattern accepted.
 
 use crate::config::Config;
 use crate::controller::Command;
@@ -8,14 +9,14 @@ use crate::param::{ParamError, ParamSpec, ParamVisitor};
 use crate::sensors::frame::{Sample, SensorFrame, Triple};
 use heapless::Vec;
 
-/// Bytes of a [`SensorFrame`]: its fields in their order, a sample as f32 values and u16 age.
+/// Bytes of a [`SensorFrame`]: its fields in their order, a sample as f32 values and a u16 age.
 pub const FRAME_BYTES: usize = 81;
 /// Bytes of a [`Command`]: torque and gain as f32, limits, mode, causes.
 pub const COMMAND_BYTES: usize = 19;
-/// Bytes of a [`Config`]: the law with room for a whole table, then every leaf in its order.
+/// Bytes of a [`Config`]: the law with room for a full table, then every parameter in order.
 pub const CONFIG_BYTES: usize = 1002;
 
-/// A sensor frame as bytes.
+/// Encodes a sensor frame.
 pub fn encode_frame(frame: &SensorFrame) -> [u8; FRAME_BYTES] {
     let mut bytes = [0; FRAME_BYTES];
     let mut to = Writer(bytes.iter_mut());
@@ -41,7 +42,7 @@ pub fn encode_frame(frame: &SensorFrame) -> [u8; FRAME_BYTES] {
     bytes
 }
 
-/// A sensor frame from bytes. Every bit pattern is a frame; the switch is on for 1 alone.
+/// Decodes a sensor frame. Every bit pattern is a frame; the switch is on only for 1.
 pub fn decode_frame(bytes: &[u8; FRAME_BYTES]) -> SensorFrame {
     let mut from = Reader(bytes.iter());
     SensorFrame {
@@ -60,7 +61,7 @@ pub fn decode_frame(bytes: &[u8; FRAME_BYTES]) -> SensorFrame {
     }
 }
 
-/// A command as bytes.
+/// Encodes a command.
 pub fn encode_command(command: &Command) -> [u8; COMMAND_BYTES] {
     let mut bytes = [0; COMMAND_BYTES];
     let mut to = Writer(bytes.iter_mut());
@@ -72,7 +73,7 @@ pub fn encode_command(command: &Command) -> [u8; COMMAND_BYTES] {
     bytes
 }
 
-/// A configuration as bytes. What a law or an unset limit does not use is zero.
+/// Encodes a configuration. Bytes that the law or an unset limit does not use are zero.
 pub fn encode_config(config: &Config) -> [u8; CONFIG_BYTES] {
     let mut bytes = [0; CONFIG_BYTES];
     let mut to = Writer(bytes.iter_mut());
@@ -92,16 +93,16 @@ pub fn encode_config(config: &Config) -> [u8; CONFIG_BYTES] {
     bytes
 }
 
-/// A configuration from bytes, not yet checked: [`Config::plan`] does that. Never panics.
+/// Decodes a configuration without validating it; [`Config::plan`] does that. Never panics.
 ///
 /// # Errors
-/// A law or switch that does not exist, or a table that [`GainSchedule::new`] refuses.
+/// An unknown law, a switch other than 0 or 1, or a table that [`GainSchedule::new`] rejects.
 pub fn decode_config(bytes: &[u8; CONFIG_BYTES]) -> Result<Config, ParamError> {
     let mut from = Reader(bytes.iter());
     let (law, k, used) = (from.u8(), from.f32(), from.u8());
     let mut points: Vec<(f32, f32), TABLE_POINTS> = Vec::new();
     for _ in 0..TABLE_POINTS {
-        // There is room for all of them; those beyond `used` are dropped below.
+        // The vector has room for all points; those beyond `used` are dropped below.
         let _ = points.push((from.f32(), from.f32()));
     }
     ParamSpec::new("wire", "table.points", 0.0, TABLE_POINTS as f32).check(f32::from(used))?;
@@ -111,19 +112,19 @@ pub fn decode_config(bytes: &[u8; CONFIG_BYTES]) -> Result<Config, ParamError> {
     let unknown = ParamSpec::new("wire", "law", 0.0, last).error(f32::from(law));
     let law = Law::numbered(law, k, table).ok_or(unknown)?;
     let mut config = Config::thesis(law);
-    let mut decoder = Decoder { from, wrong: None };
+    let mut decoder = Decoder { from, error: None };
     config.visit_params(&mut decoder);
-    decoder.wrong.map_or(Ok(config), Err)
+    decoder.error.map_or(Ok(config), Err)
 }
 
-/// How many of [`CONFIG_BYTES`] are used; a test holds that it is all of them.
+/// Number of [`CONFIG_BYTES`] that are used; a test checks that all are.
 pub fn config_bytes_used() -> usize {
     let mut counter = Counter(1 + 4 + 1 + 8 * TABLE_POINTS);
     Config::thesis(Law::None).visit_params(&mut counter);
     counter.0
 }
 
-/// Fills bytes in order; what does not fit is dropped, which the lengths rule out.
+/// Writes bytes in order; bytes beyond the end would be dropped, which the fixed lengths exclude.
 struct Writer<'a>(core::slice::IterMut<'a, u8>);
 
 impl Writer<'_> {
@@ -168,7 +169,7 @@ impl ParamVisitor for Writer<'_> {
     }
 }
 
-/// Takes bytes in order; past the end there are zeros, which the lengths rule out.
+/// Reads bytes in order; beyond the end it would read zeros, which the fixed lengths exclude.
 struct Reader<'a>(core::slice::Iter<'a, u8>);
 
 impl Reader<'_> {
@@ -192,17 +193,17 @@ impl Reader<'_> {
     }
 }
 
-/// Sets every leaf from bytes.
+/// Sets every parameter from bytes.
 struct Decoder<'a> {
     from: Reader<'a>,
-    wrong: Option<ParamError>,
+    error: Option<ParamError>,
 }
 
 impl Decoder<'_> {
-    fn mark(&mut self, leaf: &ParamSpec) -> bool {
+    fn flag(&mut self, leaf: &ParamSpec) -> bool {
         let byte = self.from.u8();
-        if byte > 1 && self.wrong.is_none() {
-            self.wrong = Some(ParamSpec::switch(leaf.group, leaf.name).error(f32::from(byte)));
+        if byte > 1 && self.error.is_none() {
+            self.error = Some(ParamSpec::switch(leaf.group, leaf.name).error(f32::from(byte)));
         }
         byte == 1
     }
@@ -213,19 +214,19 @@ impl ParamVisitor for Decoder<'_> {
         *value = self.from.f32();
     }
     fn optional_number(&mut self, leaf: &ParamSpec, value: &mut Option<f32>) {
-        let (set, number) = (self.mark(leaf), self.from.f32());
+        let (set, number) = (self.flag(leaf), self.from.f32());
         *value = set.then_some(number);
     }
     fn count(&mut self, _: &ParamSpec, value: &mut u16) {
         *value = self.from.u16();
     }
     fn switch(&mut self, leaf: &ParamSpec, value: &mut bool) {
-        *value = self.mark(leaf);
+        *value = self.flag(leaf);
     }
     fn choice(&mut self, leaf: &ParamSpec, names: &'static [&'static str], value: &mut u8) {
         *value = self.from.u8();
-        if usize::from(*value) >= names.len() && self.wrong.is_none() {
-            self.wrong = Some(leaf.error(f32::from(*value)));
+        if usize::from(*value) >= names.len() && self.error.is_none() {
+            self.error = Some(leaf.error(f32::from(*value)));
         }
     }
 }

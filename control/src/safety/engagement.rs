@@ -251,7 +251,7 @@ impl Debounced {
         for (cause, ticks) in causes.into_iter().zip(&mut self.ticks) {
             *ticks = if now.has(cause) == self.holds.has(cause) { 0 } else { ticks.saturating_add(1) };
             if *ticks > persist_ticks {
-                (self.holds, *ticks) = (self.holds.turned(cause), 0);
+                (self.holds, *ticks) = (self.holds.toggled(cause), 0);
             }
         }
         self.holds

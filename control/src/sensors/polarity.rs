@@ -36,7 +36,7 @@ const HAND_NM: f32 = 0.2;
 /// Time constant by which summed rates forget \[s\]: no bias sums up to a move.
 const FORGET_S: f32 = 2.0;
 /// Speed whose gain is asked for; the published laws balance there \[m/s\].
-pub const SHOWN_AT_M_S: f32 = 4.0;
+pub const GAIN_SPEED_M_S: f32 = 4.0;
 
 /// What the check remembers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -80,7 +80,7 @@ impl SignAgreement {
 }
 
 /// One control period without torque, from calibrated sensors. `gain_nm_s_rad` is the law's at
-/// [`SHOWN_AT_M_S`]. Returns the torque shown: what the law would ask for, in the bicycle's sign \[N m\].
+/// [`GAIN_SPEED_M_S`]. Returns the torque shown: what the law would ask for, in the bicycle's sign \[N m\].
 pub fn step(
     input: &ValidationConfig,
     period_s: f32,

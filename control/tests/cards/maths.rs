@@ -1,6 +1,6 @@
 //! Flight cards: the polynomials of the control crate.
 
-use control::maths::{PER_ROOT_ERROR, QUARTER, SIN_COS_ERROR, bounded, exp, is_finite, rsqrt, sin_cos};
+use control::maths::{QUARTER, RSQRT_ERROR, SIN_COS_ERROR, bounded, exp, is_finite, rsqrt, sin_cos};
 
 /// Situation: every 61st float of a quarter turn, both ways. Action: compare with double precision. The
 /// error must stay within the stated bound, which must be no looser than twice what is needed.
@@ -30,7 +30,7 @@ fn one_over_the_root_within_its_bound() {
         worst = worst.max((f64::from(rsqrt(x)) * f64::from(x).sqrt() - 1.0).abs());
     }
     println!("largest error {worst:e}");
-    let bound = f64::from(PER_ROOT_ERROR);
+    let bound = f64::from(RSQRT_ERROR);
     assert!(worst < bound && worst > 0.5 * bound, "{worst:e}");
 }
 
