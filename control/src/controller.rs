@@ -13,9 +13,10 @@ use crate::safety::limits::ActiveLimits;
 use crate::sensors::cross_check::{self, CrossCheckResult, CrossCheckState, Residuals};
 use crate::sensors::frame::{SensorFrame, Wheel};
 use crate::sensors::latency::{Aligned, History};
+use crate::sensors::measurements::{Measurements, SpeedInterval};
 use crate::sensors::polarity::{self, PolarityState, PolarityStep};
 use crate::sensors::sign_check::{self, SignCheckState};
-use crate::sensors::validation::{self, Measurements, SpeedInterval, ValidationState};
+use crate::sensors::validation::{self, ValidationState};
 
 /// Controller state kept between steps. `State::default()` is the state at start-up.
 ///
@@ -71,7 +72,7 @@ impl State {
         self.hand_torque_nm
     }
 
-    /// Gains of gyro and motor from the sign check: 1 as expected, -1 reversed; `None` while the excitation is too
+    /// Slopes of gyro and motor from the sign check: 1 as expected, -1 reversed; `None` while the excitation is too
     /// small.
     pub fn slopes(&self) -> [Option<f32>; 2] {
         self.sign_check.slopes()
@@ -87,7 +88,7 @@ impl State {
         self.cross_check.residuals()
     }
 
-    /// Gain of the measured yaw rate over the one expected from speed and steer angle: 1 as expected, -1 reversed;
+    /// Slope of the measured yaw rate over the one expected from speed and steer angle: 1 as expected, -1 reversed;
     /// `None` while the excitation is too small.
     pub fn yaw_slope(&self) -> Option<f32> {
         self.cross_check.yaw_slope()

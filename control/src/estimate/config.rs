@@ -93,7 +93,7 @@ impl Default for EstimateConfig {
 }
 
 impl EstimateConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let own = |name, min, max| ParamSpec::new("estimate", name, min, max);
         let mut source = self.roll_rate as u8;

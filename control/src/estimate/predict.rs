@@ -26,7 +26,7 @@ impl Default for PredictConfig {
 }
 
 impl PredictConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("predict", "lead_s", 0.0, 0.1), &mut self.lead_s);
         to.number(&ParamSpec::new("predict", "max_rad_s", 0.0, 10.0), &mut self.max_rad_s);

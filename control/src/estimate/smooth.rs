@@ -26,7 +26,7 @@ pub struct SmoothConfig {
 }
 
 impl SmoothConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.switch(&ParamSpec::switch("smooth", "interpolate"), &mut self.interpolate);
         to.number(&ParamSpec::new("smooth", "lag_s", 0.0, 0.1), &mut self.lag_s);

@@ -28,7 +28,7 @@ impl Default for Capsize {
 }
 
 impl Capsize {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&K_C, &mut self.k_c);
         to.number(&V_MAX, &mut self.v_max_m_s);

@@ -82,7 +82,7 @@ const NAMES: [&str; TRACK_GAINS] = [
 ];
 
 impl PathTracking {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let points = self.speed_m_s.iter_mut().zip(&mut self.gains);
         for (group, (speed, gains)) in GROUPS.into_iter().zip(points) {

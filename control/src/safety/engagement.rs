@@ -82,7 +82,7 @@ pub struct EngagementConfig {
 }
 
 impl EngagementConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let g = "permit";
         to.count(&ParamSpec::new(g, "self_test_ticks", 0.0, 10_000.0), &mut self.self_test_ticks);

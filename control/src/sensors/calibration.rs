@@ -1,28 +1,28 @@
-//! From the sensors' own axes, zeros and signs to the bicycle's, and from its torque to the motor's.
+//! Converts samples from the sensors' axes, zeros and signs to the bicycle's, and the torque to the motor's sign.
 
 use crate::param::{ParamSpec, ParamVisitor};
 use crate::sensors::frame::{Sample, Triple};
 use core::f32::consts::PI;
 
-/// How sensors and motor sit on this bicycle. The default is a bicycle on which all is as drawn.
+/// Mounting, zeros and signs of sensors and motor. The default is the identity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Calibration {
-    /// Rotation from the IMU's axes to the rear frame's: about z, then y, then x \[rad\], as yaw,
-    /// pitch and roll of the IMU on the frame, in the order x, y, z.
+    /// Rotation from the IMU's axes to the rear frame's: about z, then y, then x \[rad\]. Stored in the order x, y, z
+    /// as the roll, pitch and yaw of the IMU on the frame.
     pub imu_rad: [f32; 3],
-    /// What the gyro shows at rest, in the IMU's axes \[rad/s\].
+    /// Gyro bias (its reading at rest), in the IMU's axes \[rad/s\].
     pub gyro_bias_rad_s: [f32; 3],
-    /// What the accelerometer shows too much, in the IMU's axes \[m/s^2\].
+    /// Accelerometer bias (reading less true value), in the IMU's axes \[m/s^2\].
     pub accel_bias_m_s2: [f32; 3],
-    /// What the steer sensor shows when the front wheel points ahead \[rad\], in its own sign.
+    /// Steer sensor reading with the front wheel straight ahead, in the sensor's own sign \[rad\].
     pub steer_zero_rad: f32,
-    /// The steer sensor counts to the left.
+    /// The steer sensor is positive to the left.
     pub steer_reversed: bool,
-    /// The motor's encoder counts to the left.
+    /// The motor's encoder is positive to the left.
     pub steer_rate_reversed: bool,
-    /// The rider's torque sensor counts to the left.
+    /// The rider's torque sensor is positive to the left.
     pub rider_torque_reversed: bool,
-    /// The motor turns to the left on a positive command, and reports its torque so.
+    /// A positive command turns the motor to the left; its torque report has the same sign.
     pub motor_reversed: bool,
     /// A polarity check was passed with this calibration.
     pub polarity_checked: bool,
@@ -31,7 +31,7 @@ pub struct Calibration {
 const G: &str = "calibration";
 
 impl Calibration {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let [roll, pitch, yaw] = &mut self.imu_rad;
         to.number(&ParamSpec::new(G, "imu_roll_rad", -PI, PI), roll);
@@ -53,12 +53,12 @@ impl Calibration {
         to.switch(&ParamSpec::switch(G, "polarity_checked"), &mut self.polarity_checked);
     }
 
-    /// What [`CalibrationPlan`]'s functions need.
+    /// Computes the constants of [`CalibrationPlan`].
     pub fn plan(&self) -> CalibrationPlan {
-        let turned = self.imu_rad.iter().any(|angle| *angle != 0.0);
+        let rotated = self.imu_rad.iter().any(|angle| *angle != 0.0);
         let sign = |reversed: bool| if reversed { -1.0 } else { 1.0 };
         CalibrationPlan {
-            imu: turned.then(|| rotation(self.imu_rad)),
+            imu: rotated.then(|| rotation(self.imu_rad)),
             gyro_bias_rad_s: self.gyro_bias_rad_s,
             accel_bias_m_s2: self.accel_bias_m_s2,
             steer_zero_rad: self.steer_zero_rad,
@@ -70,16 +70,16 @@ impl Calibration {
     }
 }
 
-/// What follows from a calibration: brings each sensor to the bicycle's axes, zero and sign. What needs no change keeps
-/// its bits.
+/// Constants derived from a calibration; converts each sample to the bicycle's axes, zero and sign. A value that needs
+/// no conversion is unchanged to the bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationPlan {
-    /// Rows of the rotation from the IMU's to the frame's axes; `None` where they are the same.
+    /// Rows of the rotation from the IMU's to the frame's axes; `None` for the identity.
     imu: Option<[[f32; 3]; 3]>,
     gyro_bias_rad_s: [f32; 3],
     accel_bias_m_s2: [f32; 3],
     steer_zero_rad: f32,
-    /// +1, or -1 where it is reversed.
+    /// +1, or -1 if reversed.
     steer_sign: f32,
     steer_rate_sign: f32,
     rider_torque_sign: f32,
@@ -89,12 +89,12 @@ pub struct CalibrationPlan {
 impl CalibrationPlan {
     /// Angular velocity \[rad/s\].
     pub fn gyro(&self, sample: &Triple) -> [f32; 3] {
-        self.turned(sample.value, &self.gyro_bias_rad_s)
+        self.rotated(sample.value, &self.gyro_bias_rad_s)
     }
 
     /// Specific force \[m/s^2\].
     pub fn accel(&self, sample: &Triple) -> [f32; 3] {
-        self.turned(sample.value, &self.accel_bias_m_s2)
+        self.rotated(sample.value, &self.accel_bias_m_s2)
     }
 
     /// Steer angle \[rad\].
@@ -112,17 +112,17 @@ impl CalibrationPlan {
         self.rider_torque_sign * sample.value
     }
 
-    /// The torque that the drive says it gives \[N m\].
+    /// Torque reported by the drive \[N m\].
     pub fn motor_report(&self, sample: &Sample) -> f32 {
         self.motor_sign * sample.value
     }
 
-    /// The torque as the motor must be told it \[N m\].
+    /// Torque command in the motor's sign \[N m\].
     pub fn motor(&self, torque_nm: f32) -> f32 {
         self.motor_sign * torque_nm
     }
 
-    fn turned(&self, [x, y, z]: [f32; 3], [bx, by, bz]: &[f32; 3]) -> [f32; 3] {
+    fn rotated(&self, [x, y, z]: [f32; 3], [bx, by, bz]: &[f32; 3]) -> [f32; 3] {
         let (x, y, z) = (x - bx, y - by, z - bz);
         match &self.imu {
             None => [x, y, z],
@@ -131,8 +131,7 @@ impl CalibrationPlan {
     }
 }
 
-/// Rows of the rotation that takes vectors from axes turned by roll, pitch and yaw to the axes they
-/// were turned from.
+/// Rows of the rotation matrix from axes turned by roll, pitch and yaw back to the original axes.
 fn rotation([roll, pitch, yaw]: [f32; 3]) -> [[f32; 3]; 3] {
     let ((sr, cr), (sp, cp), (sy, cy)) = (libm::sincosf(roll), libm::sincosf(pitch), libm::sincosf(yaw));
     [

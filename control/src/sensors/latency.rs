@@ -1,18 +1,17 @@
-//! Brings sensors of different latency to one instant by remembering the faster ones.
+//! Aligns sensors of different latency to one instant by delaying the faster ones.
 //!
-//! It never makes anything later than the slowest sensor already is; with equal latencies the
-//! values pass through untouched. After a reset, or a gap, nothing comes out until enough has gone
-//! in: no motion is invented.
+//! No value becomes older than the slowest sensor's. With equal latencies the values pass unchanged. After a reset or a
+//! gap there is no output until the history is long enough; no value is extrapolated.
 
 use crate::param::{ParamSpec, ParamVisitor};
-use crate::sensors::validation::SpeedInterval;
+use crate::sensors::measurements::SpeedInterval;
 
-/// Most control periods by which two sensors' latencies may differ.
+/// Largest latency of a sensor \[control periods\].
 pub const MAX_LATENCY_TICKS: u16 = 31;
 
 const CAPACITY: usize = MAX_LATENCY_TICKS as usize + 1;
 
-/// How late each sensor's newest sample is, in whole control periods.
+/// Latency of each sensor's newest sample, in whole control periods.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Latency {
     /// Of the roll rate, 0..=[`MAX_LATENCY_TICKS`].
@@ -22,7 +21,7 @@ pub struct Latency {
 }
 
 impl Latency {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let max = f32::from(MAX_LATENCY_TICKS);
         to.count(&ParamSpec::new("latency", "roll_rate_ticks", 0.0, max), &mut self.roll_rate_ticks);
@@ -30,7 +29,7 @@ impl Latency {
     }
 }
 
-/// What the law needs of one instant.
+/// Inputs of the law at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Aligned {
     /// Roll rate \[rad/s\].
@@ -39,43 +38,43 @@ pub struct Aligned {
     pub speed: SpeedInterval,
 }
 
-/// The believed values of the last periods, without gaps.
+/// Valid values of the last periods, without gaps.
 #[derive(Clone, Debug, Default)]
 pub struct History {
     recent: [Aligned; CAPACITY],
-    /// Where the newest stands; the one before it stands before it, round the end.
+    /// Index of the newest value in the ring; the previous one is at the index before it.
     newest: usize,
-    /// How many periods there are since the last gap, as far as they matter.
-    known: usize,
+    /// Number of periods since the last gap, saturating.
+    length: usize,
 }
 
 impl History {
-    /// Forgets everything; call it when a period brought no believable frame.
+    /// Clears the history; called in a period without a valid roll rate or speed.
     pub fn clear(&mut self) {
-        self.known = 0;
+        self.length = 0;
     }
 
-    /// Takes in the newest values and gives back one instant's, or `None` while the faster
-    /// sensor's past does not yet reach back to the slower one's present.
+    /// Stores the newest values and returns those of one common instant, or `None` while the history of the faster
+    /// sensor does not yet reach back to the slower sensor's sample.
     pub fn align(&mut self, latency: &Latency, newest: Aligned) -> Option<Aligned> {
         let Latency { roll_rate_ticks, speed_ticks } = *latency;
         if roll_rate_ticks == speed_ticks {
             return Some(newest);
         }
         self.newest = (self.newest + 1) % CAPACITY;
-        if let Some(place) = self.recent.get_mut(self.newest) {
-            *place = newest;
+        if let Some(slot) = self.recent.get_mut(self.newest) {
+            *slot = newest;
         }
-        self.known = self.known.saturating_add(1);
-        let apart = usize::from(roll_rate_ticks.abs_diff(speed_ticks));
-        if self.known <= apart {
+        self.length = self.length.saturating_add(1);
+        let lag_ticks = usize::from(roll_rate_ticks.abs_diff(speed_ticks));
+        if self.length <= lag_ticks {
             return None;
         }
-        let then = self.recent.get((self.newest + CAPACITY - apart) % CAPACITY)?;
+        let delayed = self.recent.get((self.newest + CAPACITY - lag_ticks) % CAPACITY)?;
         Some(if roll_rate_ticks > speed_ticks {
-            Aligned { speed: then.speed, ..newest }
+            Aligned { speed: delayed.speed, ..newest }
         } else {
-            Aligned { speed: newest.speed, ..*then }
+            Aligned { speed: newest.speed, ..*delayed }
         })
     }
 }

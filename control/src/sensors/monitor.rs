@@ -1,46 +1,46 @@
-//! One declared sensor, watched: late, out of range, jumping or stuck samples are not believed, the
-//! last good one is held until the sensor counts as lost, and a lost sensor must prove itself anew.
+//! Monitor of one declared sensor: rejects late, out-of-range, jumping and stuck samples. The last good sample is held
+//! until the sensor is lost; a lost sensor must requalify.
 
 use crate::fault::{Cause, Causes};
 use crate::param::{ParamSpec, ParamVisitor};
 use crate::sensors::frame::MISSING;
 use core::hint::cold_path;
 
-/// What the loss of a sensor means.
+/// Consequence of losing a sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loss {
-    /// It is reported; who needs the value goes without.
+    /// The loss is reported; functions that need the value are off.
     #[default]
     Note,
     /// Reduced assist.
     Limp,
-    /// No assist until the sensor is back and the rider asks anew.
+    /// No assist until the sensor is back and the rider engages again.
     Fault,
 }
 
-/// A sensor as declared.
+/// Declaration of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
-    /// Whether the bicycle has it. What is not fitted is never believed and never lost.
+    /// Whether the bicycle has the sensor. A sensor that is not fitted is never valid and never lost.
     pub fitted: bool,
-    /// Largest believable value, either way, in the sensor's unit.
+    /// Largest valid magnitude, in the sensor's unit.
     pub max: f32,
-    /// Largest believable change at once, as by a blow, in the sensor's unit.
+    /// Largest valid change at once, as by an impact, in the sensor's unit.
     pub step: f32,
-    /// Largest believable change per second beyond it, in the sensor's unit; `None` is any.
+    /// Largest additional change per second, in the sensor's unit; `None` is unlimited.
     pub slope_per_s: Option<f32>,
-    /// Age at which a held sample is too old \[control periods\].
+    /// Timeout: oldest valid age of a held sample \[control periods\].
     pub timeout_ticks: u16,
-    /// Time for which new samples may be equal while what they measure moves \[control periods\]; 0 is for ever.
+    /// Longest time of equal samples while the measured quantity changes \[control periods\]; 0 is unlimited.
     pub stuck_ticks: u16,
-    /// Good samples in a row after which a lost sensor, or one just started, is believed.
+    /// Consecutive good samples that qualify a sensor, at start-up and after its loss.
     pub qualify_samples: u16,
-    /// What its loss means.
+    /// Consequence of the sensor's loss.
     pub loss: Loss,
 }
 
 impl Default for Sensor {
-    /// Not fitted; if it were: any finite value up to 1e6, only fresh samples.
+    /// Not fitted. Otherwise: any finite value up to 1e6, only fresh samples.
     fn default() -> Self {
         Self {
             fitted: false,
@@ -59,12 +59,12 @@ impl Default for Sensor {
 pub const LOSSES: &[&str] = &["note", "limp", "fault"];
 
 impl Sensor {
-    /// A fitted sensor of which only fresh samples up to `max` are believed.
+    /// A fitted sensor with range `max`, valid only while its samples are fresh.
     pub fn exact(max: f32) -> Self {
         Self { fitted: true, max, ..Self::default() }
     }
 
-    /// Shows every parameter, in the group of the sensor's name.
+    /// Visits every parameter, in the sensor's `group`.
     pub fn visit_params<V: ParamVisitor>(&mut self, group: &'static str, to: &mut V) {
         to.switch(&ParamSpec::switch(group, "fitted"), &mut self.fitted);
         to.number(&ParamSpec::new(group, "max", 1e-3, 1e6), &mut self.max);
@@ -83,46 +83,46 @@ impl Sensor {
     }
 }
 
-/// What is wrong with a sensor, as its four plan.codes.
+/// Causes of a sensor's rejection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Codes {
-    /// No believable sample in time, and nothing else known.
+pub struct SensorCauses {
+    /// No valid sample within the timeout, and no other cause.
     pub lost: Cause,
     /// The newest sample is NaN or out of range.
     pub range: Cause,
     /// The newest sample is too far from the last good one.
     pub jump: Cause,
-    /// The samples stand still while what they measure moves.
+    /// The samples do not change while the measured quantity does.
     pub stuck: Cause,
 }
 
-impl Codes {
-    /// All four.
+impl SensorCauses {
+    /// The set of all four.
     pub const fn set(&self) -> Causes {
         Causes::all(&[self.lost, self.range, self.jump, self.stuck])
     }
 }
 
-/// What follows from a sensor's declaration and the rate of calls alone.
+/// Constants derived from a sensor's declaration and the call rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorPlan {
     fitted: bool,
     max: f32,
     timeout_ticks: u16,
-    /// [`STUCK`] if its samples may stand still for ever.
+    /// [`STUCK`] if equal samples are allowed without limit.
     stuck_ticks: u16,
     qualify_samples: u16,
-    /// How far a sample may be from the last good one in the control period after that one, in the sensor's unit.
-    fresh: f32,
-    /// Further by each period without any sample.
-    growth: f32,
-    codes: Codes,
+    /// Largest change from the last good sample, one control period after it, in the sensor's unit.
+    first_change: f32,
+    /// Increase of that change per period without a sample.
+    change_per_period: f32,
+    causes: SensorCauses,
 }
 
 impl SensorPlan {
-    /// For one call every `period_s`, told by these plan.codes.
-    pub fn new(sensor: &Sensor, codes: Codes, period_s: f32) -> Self {
-        let (fresh, growth) = match sensor.slope_per_s {
+    /// For one call every `period_s` seconds; rejections are reported as `causes`.
+    pub fn new(sensor: &Sensor, causes: SensorCauses, period_s: f32) -> Self {
+        let (first_change, change_per_period) = match sensor.slope_per_s {
             Some(slope) => (sensor.step + slope * period_s, slope * period_s),
             None => (f32::INFINITY, 0.0),
         };
@@ -132,34 +132,35 @@ impl SensorPlan {
             timeout_ticks: sensor.timeout_ticks,
             stuck_ticks: if sensor.stuck_ticks == 0 { STUCK } else { sensor.stuck_ticks },
             qualify_samples: sensor.qualify_samples,
-            fresh,
-            growth,
-            codes,
+            first_change,
+            change_per_period,
+            causes,
         }
     }
 }
 
-/// What is remembered of a sensor with `N` axes.
+/// State of the monitor of a sensor with `N` axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorMonitor<const N: usize> {
     /// The last good sample.
     value: [f32; N],
-    /// Change up to which the next one is believed, any at first. It grows with each control period without a new sample; from
-    /// a refused one on it does not, until a sample is good again: a jump that stays gets no more time by being repeated.
-    most: f32,
-    /// The same while the short way will do, the sensor being believed and its newest sample there and good; -1 otherwise.
-    near: f32,
+    /// Largest accepted change of the next sample (infinite at first). Grows in each control period without a new
+    /// sample; after a rejected sample it stays until a sample is good, so repeating a jump does not make it valid.
+    max_change: f32,
+    /// `max_change` while the short path applies: the sensor is valid and its newest sample is present and good; -1
+    /// otherwise.
+    short_path_change: f32,
     /// Age of the last good sample \[control periods\].
     age: u16,
-    /// The age that the frame gave for its sample.
+    /// Age of the sample in the previous frame \[control periods\].
     reported_age: u16,
-    /// Good samples in a row.
-    good: u16,
-    /// Control periods in which something moved since the samples changed; [`STUCK`] if that was found in another way.
-    still: u16,
-    /// Whether it is believed.
-    trusted: bool,
-    /// Why the newest sample was not good.
+    /// Number of consecutive good samples.
+    good_samples: u16,
+    /// Control periods with motion since the samples last changed; [`STUCK`] if another check found the sensor stuck.
+    unchanged_ticks: u16,
+    /// Whether the sensor is valid.
+    valid: bool,
+    /// Cause for which the newest sample was rejected.
     reject_cause: Option<Cause>,
 }
 
@@ -167,76 +168,77 @@ impl<const N: usize> Default for SensorMonitor<N> {
     fn default() -> Self {
         Self {
             value: [0.0; N],
-            most: f32::INFINITY,
-            near: -1.0,
+            max_change: f32::INFINITY,
+            short_path_change: -1.0,
             age: 0,
             reported_age: MISSING,
-            good: 0,
-            still: 0,
-            trusted: false,
+            good_samples: 0,
+            unchanged_ticks: 0,
+            valid: false,
             reject_cause: None,
         }
     }
 }
 
-/// What a sensor's watch says.
+/// Result of a sensor's monitor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CheckedSample<const N: usize> {
-    /// The value and its age, while the sensor is believed.
+    /// Value and age \[control periods\], while the sensor is valid.
     pub value: Option<([f32; N], u16)>,
-    /// Why it is not.
+    /// Cause for which the sensor is not valid.
     pub lost: Option<Cause>,
 }
 
 impl<const N: usize> SensorMonitor<N> {
-    /// The sensor is not believed any more for this reason, found elsewhere, until it qualifies anew; where its samples stand
-    /// still, not before they change.
+    /// Invalidates the sensor for a cause found by another check, until it requalifies. A `stuck` sensor requalifies
+    /// only after its samples change.
     #[cold]
     pub fn invalidate(&mut self, cause: Cause, stuck: bool) {
-        (self.reject_cause, self.good, self.trusted, self.near) = (Some(cause), 0, false, -1.0);
+        (self.reject_cause, self.good_samples, self.valid, self.short_path_change) =
+            (Some(cause), 0, false, -1.0);
         if stuck {
-            self.still = STUCK;
+            self.unchanged_ticks = STUCK;
         }
     }
 
-    /// One control period: the frame's sample, and whether what it measures `moves` by what other
-    /// sensors say, which only counts when no new value comes.
+    /// One control period. `moving` says whether other sensors show the measured quantity to change; it is evaluated
+    /// only when the value repeats or no new sample arrives.
     #[inline(always)]
     pub fn step(
         &mut self,
         plan: &SensorPlan,
         sample: ([f32; N], u16),
-        moves: impl Fn() -> bool,
+        moving: impl Fn() -> bool,
     ) -> CheckedSample<N> {
         let (value, age) = sample;
-        // As nearly always: a good sample in this very period.
-        if age == 0 && inside(plan, &value) && self.near(&value, self.near) {
+        // The common case: a good sample in this period.
+        if age == 0 && in_range(plan, &value) && self.is_within(&value, self.short_path_change) {
             let mut passes = true;
             if !self.repeats(&value) {
-                self.still = 0;
-            } else if moves() {
+                self.unchanged_ticks = 0;
+            } else if moving() {
                 cold_path();
-                let still = longer(self.still, true);
-                passes = !stuck(plan, still);
-                self.still = if passes { still } else { self.still };
+                let unchanged_ticks = count_unchanged(self.unchanged_ticks, true);
+                passes = !is_stuck(plan, unchanged_ticks);
+                self.unchanged_ticks = if passes { unchanged_ticks } else { self.unchanged_ticks };
             }
             if passes {
                 self.value = value;
                 if self.age > 0 {
-                    self.renew(plan, age);
+                    self.accept(plan, age);
                 }
                 return CheckedSample { value: Some((value, age)), lost: None };
             }
         }
-        // The last good one still. One of which the newest sample is good is fitted.
-        if self.near >= 0.0 && age == self.age.saturating_add(1) && age <= plan.timeout_ticks {
+        // The last good sample is held. A sensor whose newest sample is good is fitted.
+        if self.short_path_change >= 0.0 && age == self.age.saturating_add(1) && age <= plan.timeout_ticks {
             (self.age, self.reported_age) = (age, age);
-            self.most += plan.growth;
-            self.near = self.most;
-            if moves() {
-                self.still = longer(self.still, true);
-                if stuck(plan, self.still) {
-                    self.near = -1.0;
+            self.max_change += plan.change_per_period;
+            self.short_path_change = self.max_change;
+            if moving() {
+                self.unchanged_ticks = count_unchanged(self.unchanged_ticks, true);
+                if is_stuck(plan, self.unchanged_ticks) {
+                    self.short_path_change = -1.0;
                 }
             }
             return CheckedSample { value: Some((self.value, age)), lost: None };
@@ -244,132 +246,133 @@ impl<const N: usize> SensorMonitor<N> {
         if !plan.fitted {
             return CheckedSample { value: None, lost: None };
         }
-        self.check(plan, &{ value }, age, moves());
-        if self.trusted {
+        self.check(plan, &{ value }, age, moving());
+        if self.valid {
             CheckedSample { value: Some((self.value, self.age)), lost: None }
         } else {
-            CheckedSample { value: None, lost: Some(self.reject_cause.unwrap_or(plan.codes.lost)) }
+            CheckedSample { value: None, lost: Some(self.reject_cause.unwrap_or(plan.causes.lost)) }
         }
     }
 
-    /// The long way.
+    /// The complete check.
     #[inline(never)]
-    fn check(&mut self, plan: &SensorPlan, value: &[f32; N], age: u16, moves: bool) {
-        // One good sample more of a sensor that is to qualify, as of all of them at the start.
-        if !self.trusted && age == 0 && inside(plan, value) && self.near(value, self.most) {
-            let still = if self.repeats(value) { longer(self.still, moves) } else { 0 };
-            if !stuck(plan, still) {
-                (self.value, self.still, self.reject_cause) = (*value, still, None);
-                self.good = self.good.saturating_add(1);
-                self.renew(plan, age);
-                self.trusted = self.good >= plan.qualify_samples;
-                self.near = if self.trusted { self.most } else { -1.0 };
+    fn check(&mut self, plan: &SensorPlan, value: &[f32; N], age: u16, moving: bool) {
+        // Another good sample of a sensor that is qualifying, as all are at start-up.
+        if !self.valid && age == 0 && in_range(plan, value) && self.is_within(value, self.max_change) {
+            let unchanged_ticks =
+                if self.repeats(value) { count_unchanged(self.unchanged_ticks, moving) } else { 0 };
+            if !is_stuck(plan, unchanged_ticks) {
+                (self.value, self.unchanged_ticks, self.reject_cause) = (*value, unchanged_ticks, None);
+                self.good_samples = self.good_samples.saturating_add(1);
+                self.accept(plan, age);
+                self.valid = self.good_samples >= plan.qualify_samples;
+                self.short_path_change = if self.valid { self.max_change } else { -1.0 };
                 return;
             }
         }
-        let older = self.age.saturating_add(1);
+        let next_age = self.age.saturating_add(1);
         if age != self.reported_age.saturating_add(1) && age != MISSING {
-            self.age = older;
-            self.take(plan, value, age, moves);
+            self.age = next_age;
+            self.classify(plan, value, age, moving);
         } else {
-            // The newest sample was refused.
-            let refused = self.trusted && self.reject_cause.is_some();
-            self.hold(if refused { 0.0 } else { plan.growth }, older, moves);
+            // After a rejected sample the accepted change does not grow.
+            let rejected = self.valid && self.reject_cause.is_some();
+            self.hold(if rejected { 0.0 } else { plan.change_per_period }, next_age, moving);
         }
         self.reported_age = age;
         if self.age > plan.timeout_ticks {
-            self.trusted = false;
-            self.good = 0;
-        } else if self.good >= plan.qualify_samples {
-            self.trusted = true;
+            self.valid = false;
+            self.good_samples = 0;
+        } else if self.good_samples >= plan.qualify_samples {
+            self.valid = true;
         }
-        self.near = -1.0;
-        if self.trusted && self.reject_cause.is_none() && age != MISSING {
-            // What is held may be stuck.
-            if self.age == 0 || !stuck(plan, self.still) {
-                self.near = self.most;
+        self.short_path_change = -1.0;
+        if self.valid && self.reject_cause.is_none() && age != MISSING {
+            // A held sample can be stuck.
+            if self.age == 0 || !is_stuck(plan, self.unchanged_ticks) {
+                self.short_path_change = self.max_change;
             }
         }
     }
 
-    /// No new sample: the last one is of this age now, and the next may be further from it by `growth`.
+    /// Holds the last sample, now of this `age`; the accepted change grows by `change_per_period`.
     #[inline(always)]
-    fn hold(&mut self, growth: f32, age: u16, moves: bool) {
+    fn hold(&mut self, change_per_period: f32, age: u16, moving: bool) {
         self.age = age;
-        self.still = longer(self.still, moves);
-        self.most += growth;
+        self.unchanged_ticks = count_unchanged(self.unchanged_ticks, moving);
+        self.max_change += change_per_period;
     }
 
-    /// A good sample of this age.
+    /// Accepts a good sample of this `age`.
     #[inline(always)]
-    fn renew(&mut self, plan: &SensorPlan, age: u16) {
+    fn accept(&mut self, plan: &SensorPlan, age: u16) {
         (self.age, self.reported_age) = (age, age);
-        self.most = plan.fresh;
-        self.near = self.most;
+        self.max_change = plan.first_change;
+        self.short_path_change = self.max_change;
     }
 
-    /// A new sample.
-    fn take(&mut self, plan: &SensorPlan, value: &[f32; N], age: u16, moves: bool) {
-        let jumps = !self.near(value, self.most);
-        // One that is not trusted is judged by what it says from now on.
-        let refused = if !inside(plan, value) {
-            Some(plan.codes.range)
+    /// Classifies a new sample.
+    fn classify(&mut self, plan: &SensorPlan, value: &[f32; N], age: u16, moving: bool) {
+        let jumps = !self.is_within(value, self.max_change);
+        // An invalid sensor is not rejected for a jump from its old value.
+        let rejection = if !in_range(plan, value) {
+            Some(plan.causes.range)
         } else {
-            Some(plan.codes.jump).filter(|_| jumps && self.trusted)
+            Some(plan.causes.jump).filter(|_| jumps && self.valid)
         };
-        if refused.is_some() {
-            self.still = longer(self.still, moves);
-            (self.reject_cause, self.good) = (refused, 0);
+        if rejection.is_some() {
+            self.unchanged_ticks = count_unchanged(self.unchanged_ticks, moving);
+            (self.reject_cause, self.good_samples) = (rejection, 0);
             return;
         }
-        (self.reject_cause, self.good) = (None, self.good.saturating_add(1));
+        (self.reject_cause, self.good_samples) = (None, self.good_samples.saturating_add(1));
         if jumps {
-            (self.reject_cause, self.good) = (Some(plan.codes.jump), 0);
+            (self.reject_cause, self.good_samples) = (Some(plan.causes.jump), 0);
         }
-        self.still = self.still(value, || moves);
-        if stuck(plan, self.still) {
-            (self.reject_cause, self.good, self.trusted) = (Some(plan.codes.stuck), 0, false);
+        self.unchanged_ticks = self.unchanged_with(value, || moving);
+        if is_stuck(plan, self.unchanged_ticks) {
+            (self.reject_cause, self.good_samples, self.valid) = (Some(plan.causes.stuck), 0, false);
         }
         self.value = *value;
-        self.renew(plan, age);
+        self.accept(plan, age);
     }
 
-    /// Whether no axis is further than this from the last good sample.
+    /// Whether every axis is within `max_change` of the last good sample.
     #[inline(always)]
-    fn near(&self, value: &[f32; N], most: f32) -> bool {
-        value.iter().zip(&self.value).all(|(a, b)| (a - b).abs() <= most)
+    fn is_within(&self, value: &[f32; N], max_change: f32) -> bool {
+        value.iter().zip(&self.value).all(|(a, b)| (a - b).abs() <= max_change)
     }
 
-    /// For how long something has moved with a sample that may be the last good one again.
+    /// Count of unchanged periods after this sample \[control periods\].
     #[inline(always)]
-    fn still(&self, value: &[f32; N], moves: impl Fn() -> bool) -> u16 {
-        if !self.repeats(value) { 0 } else { longer(self.still, moves()) }
+    fn unchanged_with(&self, value: &[f32; N], moving: impl Fn() -> bool) -> u16 {
+        if !self.repeats(value) { 0 } else { count_unchanged(self.unchanged_ticks, moving()) }
     }
 
-    /// Whether this is the last good sample again.
+    /// Whether this sample equals the last good one.
     #[inline(always)]
     fn repeats(&self, value: &[f32; N]) -> bool {
         value.iter().zip(&self.value).all(|(a, b)| a == b)
     }
 }
 
-/// In place of the time for which samples have stood still: for too long.
+/// Count of a sensor that another check found stuck; counting never reaches it.
 const STUCK: u16 = u16::MAX;
 
-/// The time for which samples have stood still, a period later.
+/// The count of unchanged periods, one period later.
 #[inline(always)]
-fn longer(still: u16, moves: bool) -> u16 {
-    if still < STUCK - 1 { still + u16::from(moves) } else { still }
+fn count_unchanged(unchanged_ticks: u16, moving: bool) -> u16 {
+    if unchanged_ticks < STUCK - 1 { unchanged_ticks + u16::from(moving) } else { unchanged_ticks }
 }
 
-/// Whether samples have stood still for too long.
+/// Whether the count of unchanged periods has reached the declared limit.
 #[inline(always)]
-fn stuck(plan: &SensorPlan, still: u16) -> bool {
-    still >= plan.stuck_ticks
+fn is_stuck(plan: &SensorPlan, unchanged_ticks: u16) -> bool {
+    unchanged_ticks >= plan.stuck_ticks
 }
 
-/// Whether a sample is in range; written so that NaN, which compares false, is not.
+/// Whether a sample is in range. NaN compares false and is out of range.
 #[inline(always)]
-fn inside<const N: usize>(plan: &SensorPlan, value: &[f32; N]) -> bool {
+fn in_range<const N: usize>(plan: &SensorPlan, value: &[f32; N]) -> bool {
     value.iter().all(|x| x.abs() <= plan.max)
 }

@@ -1,12 +1,14 @@
-//! The polarity check: a sign error steers out of the fall, so nobody engages before this was passed.
+//! Polarity check before riding. A sign error makes the assist steer out of the fall, so engagement requires a passed
+//! check.
 //!
-//! With the motor off, somebody beside the bicycle leans it to the right, turns the handlebar to the right and
-//! pushes the bicycle forward, in this order; the first two count only while it stands. What each sensor says of it must have the right sign, and the
-//! torque the law would ask for while it leans must be to the right.
+//! With the motor off, a person beside the bicycle leans it to the right, turns the handlebar to the right and pushes
+//! the bicycle forward, in this order. Leaning and turning count only while the bicycle stands. Every sensor must
+//! respond with the right sign, and the torque that the law would request during the lean must be to the right.
 
-use crate::sensors::validation::{Measurements, ValidationConfig};
+use crate::sensors::measurements::{Measurements, SpeedInterval};
+use crate::sensors::validation::ValidationConfig;
 
-/// What is to be done next.
+/// Next step of the polarity check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum PolarityStep {
@@ -17,70 +19,70 @@ pub enum PolarityStep {
     Steer = 1,
     /// Push the bicycle forward, at a slow walk.
     Push = 2,
-    /// Nothing: the check was passed.
+    /// None: the check was passed.
     Passed = 3,
-    /// Nothing: a sign is wrong. The calibration must be mended; the check begins anew at the next start.
+    /// None: a sign is wrong. The calibration must be corrected; the check restarts at the next start-up.
     Wrong = 4,
 }
 
-/// Lean to the right that counts \[rad\].
+/// Least roll angle of a lean to the right \[rad\].
 const LEAN_RAD: f32 = 0.25;
-/// Specific force to the left that so much lean makes at least \[m/s^2\]: less than a half of gravity's part.
+/// Least specific force to the left in such a lean \[m/s^2\]: less than half of gravity's component.
 const FORCE_M_S2: f32 = 1.0;
-/// Turn of the handlebar that counts \[rad\].
+/// Least turn of the handlebar \[rad\].
 const STEER_RAD: f32 = 0.3;
-/// Speed that counts as pushed; below it the bicycle stands \[m/s\].
+/// Least speed of a push; below it the bicycle stands \[m/s\].
 const PUSH_M_S: f32 = 0.3;
-/// Torque of the hand on the handlebar that counts \[N m\].
+/// Least torque of the hand on the handlebar \[N m\].
 const HAND_NM: f32 = 0.2;
-/// Time constant by which summed rates forget \[s\]: no bias sums up to a move.
+/// Leak time constant of the integrated rates \[s\]: a bias does not add up to a movement.
 const FORGET_S: f32 = 2.0;
-/// Speed whose gain is asked for; the published laws balance there \[m/s\].
+/// Speed at which the law's gain is taken; the published laws balance there \[m/s\].
 pub const GAIN_SPEED_M_S: f32 = 4.0;
 
-/// What the check remembers.
+/// State of the polarity check.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PolarityState {
-    /// What is to be done next.
+    /// Next step of the polarity check.
     pub next: PolarityStep,
-    /// Sum of the rate of the move \[rad\].
-    summed_rad: f32,
-    /// Steer angle at the start of the move \[rad\].
-    from_rad: Option<f32>,
+    /// Integrated rate of the movement \[rad\].
+    integrated_rad: f32,
+    /// Steer angle at the start of the movement \[rad\].
+    start_rad: Option<f32>,
 }
 
-/// What one sensor says of a move.
+/// Sign of one sensor's response to a movement.
 #[derive(Clone, Copy, PartialEq)]
 enum SignAgreement {
-    Nothing,
+    Undecided,
     Right,
     Wrong,
 }
 
 impl SignAgreement {
-    /// By a value that must become `enough` or more, and nowhere as much the other way.
-    fn of(value: f32, enough: f32) -> Self {
-        if value >= enough {
+    /// Compares a value with `threshold`: right from it upwards, wrong from its negative downwards.
+    fn of(value: f32, threshold: f32) -> Self {
+        if value >= threshold {
             SignAgreement::Right
-        } else if value <= -enough {
+        } else if value <= -threshold {
             SignAgreement::Wrong
         } else {
-            SignAgreement::Nothing
+            SignAgreement::Undecided
         }
     }
 
-    /// By a sensor: one that is not fitted agrees to all, one that is not believed says nothing.
-    fn fitted(fitted: bool, value: Option<f32>, enough: f32) -> Self {
+    /// Compares a sensor's value; a sensor that is not fitted counts as right, an invalid one as undecided.
+    fn fitted(fitted: bool, value: Option<f32>, threshold: f32) -> Self {
         match value {
-            Some(value) => SignAgreement::of(value, enough),
-            None if fitted => SignAgreement::Nothing,
+            Some(value) => SignAgreement::of(value, threshold),
+            None if fitted => SignAgreement::Undecided,
             None => SignAgreement::Right,
         }
     }
 }
 
-/// One control period without torque, from calibrated sensors. `gain_nm_s_rad` is the law's at
-/// [`GAIN_SPEED_M_S`]. Returns the torque shown: what the law would ask for, in the bicycle's sign \[N m\].
+/// One control period without torque, from calibrated sensors. `gain_nm_s_rad` is the law's gain at [`GAIN_SPEED_M_S`].
+/// Returns the torque that the law would request, in the bicycle's sign \[N m\].
 pub fn step(
     input: &ValidationConfig,
     period_s: f32,
@@ -94,7 +96,7 @@ pub fn step(
     let stands = wheels.iter().any(Option::is_some)
         && wheels.iter().flatten().all(|speed| speed.newest.abs() < PUSH_M_S);
     if !stands && matches!(state.next, PolarityStep::Lean | PolarityStep::Steer) {
-        // A ride is no check, and a fall to the right none at all.
+        // The check does not advance while riding, and a fall to the right must not pass it.
         *state = PolarityState { next: state.next, ..PolarityState::default() };
         return hand_torque_nm;
     }
@@ -103,30 +105,30 @@ pub fn step(
         PolarityStep::Steer => measurements.steer_rate_rad_s(),
         _ => None,
     };
-    state.summed_rad += period_s * (rate.unwrap_or(0.0) - state.summed_rad / FORGET_S);
-    let summed = state.summed_rad;
-    let said = match state.next {
+    state.integrated_rad += period_s * (rate.unwrap_or(0.0) - state.integrated_rad / FORGET_S);
+    let integrated = state.integrated_rad;
+    let agreement = match state.next {
         PolarityStep::Lean => {
             let force = measurements.accel_m_s2().map(|[_, y, _]| -y);
-            let leans = SignAgreement::of(summed, LEAN_RAD);
+            let leans = SignAgreement::of(integrated, LEAN_RAD);
             let law = if gain_nm_s_rad < 0.0 { SignAgreement::Wrong } else { SignAgreement::Right };
-            // The force tells the lean only as far as there is one.
+            // The accelerometer is compared only once there is a lean.
             match leans {
-                SignAgreement::Nothing => [leans, leans, leans],
+                SignAgreement::Undecided => [leans, leans, leans],
                 _ => [leans, SignAgreement::fitted(input.accel.fitted, force, FORCE_M_S2), law],
             }
         }
         PolarityStep::Steer => {
-            let turned = measurements.steer_rad().map(|now| now - *state.from_rad.get_or_insert(now));
-            let rate = measurements.steer_rate_rad_s().map(|_| summed);
+            let steered = measurements.steer_rad().map(|now| now - *state.start_rad.get_or_insert(now));
+            let rate = measurements.steer_rate_rad_s().map(|_| integrated);
             [
-                SignAgreement::fitted(input.steer.fitted, turned, STEER_RAD),
+                SignAgreement::fitted(input.steer.fitted, steered, STEER_RAD),
                 SignAgreement::fitted(input.steer_rate.fitted, rate, STEER_RAD),
                 SignAgreement::fitted(input.rider_torque.fitted, measurements.rider_torque_nm(), HAND_NM),
             ]
         }
         PolarityStep::Push => {
-            let speed = |bounds: Option<crate::sensors::validation::SpeedInterval>| bounds.map(|b| b.newest);
+            let speed = |bounds: Option<SpeedInterval>| bounds.map(|b| b.newest);
             [
                 SignAgreement::fitted(
                     input.front_wheel.fitted,
@@ -143,9 +145,9 @@ pub fn step(
         }
         PolarityStep::Passed | PolarityStep::Wrong => return hand_torque_nm,
     };
-    let next = if said.contains(&SignAgreement::Wrong) {
+    let next = if agreement.contains(&SignAgreement::Wrong) {
         PolarityStep::Wrong
-    } else if said.iter().all(|s| *s == SignAgreement::Right) {
+    } else if agreement.iter().all(|s| *s == SignAgreement::Right) {
         match state.next {
             PolarityStep::Lean => PolarityStep::Steer,
             PolarityStep::Steer => PolarityStep::Push,

@@ -1,51 +1,51 @@
-//! How much of what is expected to happen does happen: 1 all of it, 0 nothing, -1 the opposite.
+//! Least-squares slope of measured over expected change: 1 as expected, 0 no response, -1 reversed.
 //!
-//! The least-squares slope of what is seen over what is expected, both freed of what is slow, over the recent
-//! past. A wrong sign shows in it within a fraction of a second, and noise that has nothing to do with
-//! what is expected averages out.
+//! Both signals are high-pass filtered, and older samples are weighted down exponentially. A wrong sign shows within a
+//! fraction of a second; noise that is independent of the expected change averages out.
 
 use crate::maths::{bounded, rsqrt};
 
-/// Length of the shortest stretches, those of the motor's response \[s\]; the others are whole numbers of them, so that
-/// their ends never meet.
-pub(crate) const STRETCH_S: f32 = 0.008;
+/// Length of the shortest blocks, those of the motor check of `sign_check` \[s\]. Other blocks are integer multiples,
+/// so block ends never coincide.
+pub(crate) const BLOCK_S: f32 = 0.008;
 
-/// How fast must something be to count, how long does it count, and how much must there be.
+/// High-pass and forgetting time constants, and the minimum excitation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopeConfig {
-    /// Time constant above which things are too slow \[s\].
+    /// Time constant of the high-pass \[s\].
     pub highpass_s: f32,
-    /// Time constant of forgetting \[s\].
+    /// Time constant of the exponential forgetting \[s\].
     pub forget_s: f32,
-    /// Largest value that is believed of what is seen, in its unit.
+    /// Limit of the measured signal's magnitude, in its unit.
     pub max_measured: f32,
-    /// What the square of what is expected, summed over time, must reach before a slope is told, in its unit
+    /// Minimum excitation: integral over time of the squared expected signal before a slope is given, in its unit
     /// squared, times s.
     pub min_excitation: f32,
-    /// For how long it must have been enough \[s\]: the first moments of an excitation are told by few steps.
+    /// Time for which the excitation must have been sufficient \[s\]: the first moments of an excitation contain few
+    /// steps.
     pub settle_s: f32,
 }
 
-/// What follows from it for steps of one length.
+/// Constants derived from the configuration for steps of one length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlopePlan {
     config: SlopeConfig,
     /// Length of a step \[s\].
     pub dt_s: f32,
-    /// What a step leaves of what is slow, and of the past.
+    /// Factors that a step applies to the high-pass state and to the sums.
     keep: f32,
     forget: f32,
 }
 
 impl SlopePlan {
-    /// For steps of `dt_s`.
+    /// For steps of `dt_s` seconds.
     pub fn new(config: SlopeConfig, dt_s: f32) -> Self {
         let (keep, forget) = (1.0 / (1.0 + dt_s / config.highpass_s), 1.0 / (1.0 + dt_s / config.forget_s));
         Self { config, dt_s, keep, forget }
     }
 }
 
-/// What is remembered.
+/// State of the regression.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slope {
     expected: f32,
@@ -53,12 +53,12 @@ pub struct Slope {
     square: f32,
     product: f32,
     measured_square: f32,
-    /// For how long enough has happened \[s\].
+    /// Time for which the excitation has been sufficient \[s\].
     excited_s: f32,
 }
 
 impl Slope {
-    /// Takes in by how much both have changed in a step; the slope, if enough has happened.
+    /// Adds the changes of both signals in a step; returns the slope, if the excitation suffices.
     pub fn step(&mut self, plan: &SlopePlan, expected: f32, measured: f32) -> Option<f32> {
         let SlopePlan { config, dt_s, keep, forget } = *plan;
         self.expected = keep * (self.expected + expected);
@@ -71,35 +71,35 @@ impl Slope {
         self.value(&config)
     }
 
-    /// The slope, if enough has happened.
+    /// The slope, if the excitation suffices.
     pub fn value(&self, config: &SlopeConfig) -> Option<f32> {
         (self.excited_s > config.settle_s).then(|| self.product / self.square)
     }
 
-    /// The correlation of what is seen with what is expected, -1 to 1, if enough has happened. Other than the slope it does
-    /// not depend on the size of what is expected, and what has another reason makes it small.
+    /// Correlation of measured and expected signal, -1 to 1, if the excitation suffices. Unlike the slope it does not
+    /// depend on the size of the expected signal, and other causes of the measured signal reduce it.
     pub fn correlation(&self, config: &SlopeConfig) -> Option<f32> {
         (self.excited_s > config.settle_s)
             .then(|| self.product * rsqrt(self.square) * rsqrt(self.measured_square))
     }
 }
 
-/// Means over short stretches of control periods, and the stretch before.
+/// Means over short blocks of control periods, and of the previous block.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch<const N: usize> {
+pub struct BlockMean<const N: usize> {
     sums: [f32; N],
     periods: u16,
     before: Option<[f32; N]>,
 }
 
-impl<const N: usize> Default for Stretch<N> {
+impl<const N: usize> Default for BlockMean<N> {
     fn default() -> Self {
         Self { sums: [0.0; N], periods: 0, before: None }
     }
 }
 
-impl<const N: usize> Stretch<N> {
-    /// Takes in a control period's values.
+impl<const N: usize> BlockMean<N> {
+    /// Adds the values of a control period.
     #[inline]
     pub fn add(&mut self, values: [f32; N]) {
         for (sum, value) in self.sums.iter_mut().zip(values) {
@@ -108,15 +108,15 @@ impl<const N: usize> Stretch<N> {
         self.periods = self.periods.saturating_add(1);
     }
 
-    /// Ends the stretch: its means, and those of the one before. One without any values has none, and none is before
-    /// the next.
+    /// Ends the block; returns its means and those of the previous block. A block without values has no means, and the
+    /// next block has no previous one.
     pub fn end(&mut self) -> Option<([f32; N], [f32; N])> {
         if self.periods == 0 {
             *self = Self::default();
             return None;
         }
-        let share = 1.0 / f32::from(self.periods);
-        let means = self.sums.map(|sum| share * sum);
+        let per_period = 1.0 / f32::from(self.periods);
+        let means = self.sums.map(|sum| per_period * sum);
         let before = self.before.replace(means);
         (self.sums, self.periods) = ([0.0; N], 0);
         before.map(|before| (means, before))

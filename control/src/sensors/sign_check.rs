@@ -1,69 +1,70 @@
-//! Do gyro and motor act with the sign they should? Judged while riding, from what follows from them.
+//! Online sign check: compares the measured effect of gyro and motor with the predicted one.
 //!
-//! * **Gyro**: where the IMU sits, the sideways specific force changes with the rates (`docs/bicycle.md`):
-//!   `f_y = v wz - g roll + up wx' + forward wz' + wy (wx forward + wz (radius - up))`. What is seen of it
-//!   beyond the terms of `wz` is held against the terms of `wx`.
-//! * **Motor**: the steer acceleration is held against the one that the drive's torque makes, as reported or else as asked for, what the
-//!   linearised bicycle (Meijaard et al. 2007, eq. 5.3) explains being taken off. A rider's torque is not
-//!   known, but muscles are slow. Below walking speed hands hold the handlebar and tyres scrub, which looks like a motor
-//!   that turns the wrong way: there nothing is judged.
+//! * **Gyro**: at the IMU's position the lateral specific force changes with the rates (`docs/bicycle.md`):
+//!   `f_y = v wz - g roll + up wx' + forward wz' + wy (wx forward + wz (radius - up))`. The measured force less the
+//!   terms of `wz` is compared with the terms of `wx`.
+//! * **Motor**: the steer acceleration less the part explained by the linearised bicycle (Meijaard et al. 2007, eq.
+//!   5.3) is compared with the acceleration caused by the drive's torque, as reported or else as requested. A rider's
+//!   torque is not known, but muscles are slow. Below walking speed hands hold the handlebar and tyres scrub, which
+//!   resembles a reversed motor: there is no check at that speed.
 //!
-//! How much must happen before a slope counts is from rides inside the basins of `h`, alone and with riders: the
-//! gyro's slope stays above 0.75 in them, or 0.3 with the noise of a real bicycle, the motor's above 0. In
-//! small motions a rider may push the other way as quickly as the motor does.
+//! The minimum excitations are from rides inside the basins of `h`, without and with riders. There the gyro's slope
+//! stays above 0.75, or 0.3 with the noise of a real bicycle, and the motor's above 0. In small motions a rider can
+//! push the other way as quickly as the motor does.
 
 use crate::estimate::{EstimateConfig, Motion, Place};
 use crate::fault::{Cause, Causes};
 use crate::maths::G;
 use crate::param::{ParamSpec, ParamVisitor, optional};
 use crate::sensors::cross_check::RIDING_M_S;
-use crate::sensors::regression::{STRETCH_S, Slope, SlopeConfig, SlopePlan, Stretch};
-use crate::sensors::validation::Measurements;
+use crate::sensors::measurements::Measurements;
+use crate::sensors::regression::{BLOCK_S, BlockMean, Slope, SlopeConfig, SlopePlan};
 use core::hint::cold_path;
 
-/// How many of the motor's stretches the gyro's are long: what a noisy gyro, sampled at 100 Hz, shows as acceleration is then small.
-const GYRO_STRETCHES: u16 = 6;
+/// Length of a gyro block in motor blocks: long enough that the apparent acceleration of a noisy gyro sampled at 100 Hz
+/// is small.
+const GYRO_BLOCKS: u16 = 6;
 
-/// The sideways force \[m/s^2\].
+/// Lateral specific force \[m/s^2\].
 const GYRO: SlopeConfig =
     SlopeConfig { highpass_s: 0.3, forget_s: 0.4, max_measured: 20.0, min_excitation: 0.2, settle_s: 0.05 };
-/// Below this slope the gyro is wrong. A reversed x axis gives about -1, a reversed z axis less; a blow
-/// that turns the frame at once, which no force at rest shows, up to -0.2 for a moment.
+/// Slope below which the gyro is wrong. A reversed x axis gives about -1, a reversed z axis less; an impact that turns
+/// the frame at once, which the lateral force does not show, up to -0.2 for a moment.
 pub const GYRO_WRONG: f32 = -0.4;
 
-/// The steer acceleration \[rad/s^2\].
+/// Steer acceleration \[rad/s^2\].
 const MOTOR: SlopeConfig =
     SlopeConfig { highpass_s: 0.05, forget_s: 0.2, max_measured: 60.0, min_excitation: 5.0, settle_s: 0.05 };
-/// Below this slope the motor is wrong.
+/// Slope below which the motor is wrong.
 pub const MOTOR_WRONG: f32 = -0.2;
 
-/// What is judged.
+/// Selection of the sign checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SignCheckConfig {
-    /// Whether the gyro's signs are judged; needs accelerometer and a wheel.
+    /// Whether to check the gyro's signs; needs accelerometer and a wheel.
     pub gyro: bool,
-    /// What the steer does without the motor, and with it; needs steer angle, steer rate and a wheel. `None`
-    /// is not judged.
+    /// Model of the steer acceleration for the motor check; needs steer angle, steer rate and a wheel. `None` is no
+    /// check.
     pub motor: Option<SteerModel>,
 }
 
-/// The steer acceleration of the linearised bicycle: `per_nm T + v (roll_rate roll' + steer_rate steer') +
-/// (roll + v^2 roll_v2) roll + (steer + v^2 steer_v2) steer`.
+/// Steer acceleration of the linearised bicycle:
+/// `per_nm T + v (roll_rate roll' + steer_rate steer') + (roll + v^2 roll_v2) roll + (steer + v^2 steer_v2) steer`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SteerModel {
-    /// By each N m of torque \[rad/s^2 / (N m)\].
+    /// Per N m of torque \[rad/s^2 / (N m)\].
     pub per_nm: f32,
-    /// By roll rate and speed \[1/m\].
+    /// Per roll rate and speed \[1/m\].
     pub roll_rate: f32,
-    /// By steer rate and speed \[1/m\].
+    /// Per steer rate and speed \[1/m\].
     pub steer_rate: f32,
-    /// By roll \[1/s^2\].
+    /// Per roll angle \[1/s^2\].
     pub roll: f32,
-    /// By steer \[1/s^2\].
+    /// Per steer angle \[1/s^2\].
     pub steer: f32,
-    /// By roll and the square of speed \[1/m^2\].
+    /// Per roll angle and squared speed \[1/m^2\].
     pub roll_v2: f32,
-    /// By steer and the square of speed \[1/m^2\].
+    /// Per steer angle and squared speed \[1/m^2\].
     pub steer_v2: f32,
 }
 
@@ -83,7 +84,7 @@ impl Default for SteerModel {
 }
 
 impl SignCheckConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.switch(&ParamSpec::switch("response", "gyro"), &mut self.gyro);
         optional(to, &ParamSpec::switch("response", "motor"), &mut self.motor, |m, to| {
@@ -99,14 +100,14 @@ impl SignCheckConfig {
     }
 }
 
-/// What follows from the parameters and the rate of calls alone.
+/// Constants derived from the parameters and the call rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignCheckPlan {
     config: SignCheckConfig,
-    /// Where the IMU sits.
+    /// Position of the IMU.
     imu: Place,
     wheel_radius_m: f32,
-    /// Control periods of a stretch of the motor's, and of the gyro's.
+    /// Control periods of a motor block, and of a gyro block.
     motor_ticks: u16,
     gyro_ticks: u16,
     motor: SlopePlan,
@@ -114,35 +115,35 @@ pub struct SignCheckPlan {
 }
 
 impl SignCheckPlan {
-    /// For `rate_hz` calls a second.
+    /// For `rate_hz` calls per second.
     pub fn new(config: &SignCheckConfig, place: &EstimateConfig, rate_hz: f32) -> Self {
-        // At most 80 at the fastest rate there is.
-        let motor_ticks = ((STRETCH_S * rate_hz) as u16).max(2);
+        // At most 80 at the highest rate.
+        let motor_ticks = ((BLOCK_S * rate_hz) as u16).max(2);
         let dt_s = 1.0 / rate_hz * f32::from(motor_ticks);
         Self {
             config: *config,
             imu: place.imu,
             wheel_radius_m: place.wheel_radius_m,
             motor_ticks,
-            gyro_ticks: GYRO_STRETCHES * motor_ticks,
+            gyro_ticks: GYRO_BLOCKS * motor_ticks,
             motor: SlopePlan::new(MOTOR, dt_s),
-            gyro: SlopePlan::new(GYRO, f32::from(GYRO_STRETCHES) * dt_s),
+            gyro: SlopePlan::new(GYRO, f32::from(GYRO_BLOCKS) * dt_s),
         }
     }
 }
 
-/// What the judgement remembers.
+/// State of the sign check.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SignCheckState {
     gyro_tick: u16,
     motor_tick: u16,
-    gyro: Stretch<5>,
+    gyro: BlockMean<5>,
     gyro_slope: Slope,
-    /// What was expected and seen at the stretch before.
+    /// Expected and measured lateral force of the previous block \[m/s^2\].
     gyro_before: Option<[f32; 2]>,
-    /// Whether the slope at the end of the last stretch was that of a wrong sign.
+    /// Whether the slope at the end of the last block was below its threshold.
     gyro_reversed: bool,
-    motor: Stretch<6>,
+    motor: BlockMean<6>,
     motor_slope: Slope,
     motor_before: Option<[f32; 2]>,
     /// See `gyro_reversed`.
@@ -150,14 +151,14 @@ pub struct SignCheckState {
 }
 
 impl SignCheckState {
-    /// The slopes of gyro and motor, 1 where all is right; `None` while too little happens.
+    /// Slopes of gyro and motor, 1 as expected; `None` while the excitation is too small.
     pub fn slopes(&self) -> [Option<f32>; 2] {
         [self.gyro_slope.value(&GYRO), self.motor_slope.value(&MOTOR)]
     }
 }
 
-/// One control period: the sensors, the motion estimated from them, and the torque asked for in the period
-/// before, in the bicycle's sign \[N m\].
+/// One control period. `motion` is estimated from `measurements`; `torque_nm` is the torque requested in the previous
+/// period, in the bicycle's sign \[N m\].
 pub fn step(
     plan: &SignCheckPlan,
     state: &mut SignCheckState,
@@ -167,10 +168,10 @@ pub fn step(
 ) -> Causes {
     state.gyro_tick = if state.gyro_tick < plan.gyro_ticks { state.gyro_tick + 1 } else { 1 };
     state.motor_tick = if state.motor_tick < plan.motor_ticks { state.motor_tick + 1 } else { 1 };
-    // Each at its own tick, so that no control period has to do both.
+    // Gyro and motor blocks end in different periods, which spreads the work.
     let gyro_end = state.gyro_tick == plan.motor_ticks / 2;
     let motor_end = state.motor_tick == plan.motor_ticks;
-    // Every other period will do for the gyro's means, every fourth for the motor's: none in which a stretch ends.
+    // The gyro's means take every second period, the motor's every fourth; no block ends in these.
     let (adds_gyro, adds_motor) = (state.motor_tick % 2 == 1, state.motor_tick % 4 == 1);
     let speed = measurements.rear_wheel_m_s().or(measurements.front_wheel_m_s());
     let mut causes = Causes::NONE;
@@ -181,7 +182,7 @@ pub fn step(
                 state.gyro.add([wx, wy, wz, force, speed.newest]);
             }
             if gyro_end {
-                state.gyro_reversed = state.sideways(plan).is_some_and(|s| s < GYRO_WRONG);
+                state.gyro_reversed = state.end_gyro_block(plan).is_some_and(|s| s < GYRO_WRONG);
             }
         }
         _ if plan.config.gyro => {
@@ -201,12 +202,13 @@ pub fn step(
         (Some(model), Some(steer), Some(rate), Some(_), Some(speed)) if speed.newest > RIDING_M_S => {
             let Motion { roll_rad, roll_rate_rad_s, .. } = *motion;
             if adds_motor {
-                // What the drive says it gives, where it says so: it may have had to give less.
+                // The reported torque is preferred: the drive may have reduced the request.
                 let torque_nm = measurements.motor_torque_nm().unwrap_or(torque_nm);
                 state.motor.add([roll_rad, roll_rate_rad_s, steer, rate, speed.newest, torque_nm]);
             }
             if motor_end {
-                state.motor_reversed = state.turning(model, &plan.motor).is_some_and(|s| s < MOTOR_WRONG);
+                state.motor_reversed =
+                    state.end_motor_block(model, &plan.motor).is_some_and(|s| s < MOTOR_WRONG);
             }
         }
         (Some(_), ..) => {
@@ -222,27 +224,27 @@ pub fn step(
 }
 
 impl SignCheckState {
-    /// Ends the gyro's stretch: the slope at the instant between it and the one before.
-    fn sideways(&mut self, plan: &SignCheckPlan) -> Option<f32> {
+    /// Ends a gyro block; returns the slope at the instant between it and the previous one.
+    fn end_gyro_block(&mut self, plan: &SignCheckPlan) -> Option<f32> {
         let (now, before) = self.gyro.end()?;
         let SignCheckPlan { imu, wheel_radius_m, gyro, .. } = plan;
-        let [wx, wy, wz, force, speed] = between(now, before);
+        let [wx, wy, wz, force, speed] = midpoint(now, before);
         let rate = |i: usize| (now.get(i).unwrap_or(&0.0) - before.get(i).unwrap_or(&0.0)) / gyro.dt_s;
         let rolling = speed - wy * wheel_radius_m;
         let swing = wy * (wx * imu.forward_m + wz * (wheel_radius_m - imu.up_m));
         let measured = force - rolling * wz - imu.forward_m * rate(2) - swing;
         let expected = imu.up_m * rate(0);
         let [expected_before, measured_before] = self.gyro_before.replace([expected, measured])?;
-        // Gravity's part is the sum of the rate: what it changes by is the rate.
+        // Gravity's term is the integral of the roll rate; its change is the rate.
         let [wx_before, ..] = before;
-        let more = expected - expected_before - G * gyro.dt_s * wx_before;
-        self.gyro_slope.step(gyro, more, measured - measured_before)
+        let expected_change = expected - expected_before - G * gyro.dt_s * wx_before;
+        self.gyro_slope.step(gyro, expected_change, measured - measured_before)
     }
 
-    /// Ends the motor's stretch: the slope at the instant between it and the one before.
-    fn turning(&mut self, m: &SteerModel, plan: &SlopePlan) -> Option<f32> {
+    /// Ends a motor block; returns the slope at the instant between it and the previous one.
+    fn end_motor_block(&mut self, m: &SteerModel, plan: &SlopePlan) -> Option<f32> {
         let (now, before) = self.motor.end()?;
-        let [roll, roll_rate, steer, steer_rate, v, torque] = between(now, before);
+        let [roll, roll_rate, steer, steer_rate, v, torque] = midpoint(now, before);
         let ([.., rate_now, _, _], [.., rate_before, _, _]) = (now, before);
         let explained = v * (m.roll_rate * roll_rate + m.steer_rate * steer_rate)
             + (m.roll + v * v * m.roll_v2) * roll
@@ -254,8 +256,8 @@ impl SignCheckState {
     }
 }
 
-/// Halfway between two stretches.
-fn between<const N: usize>(now: [f32; N], before: [f32; N]) -> [f32; N] {
+/// Means of two blocks, which are the values halfway between them.
+fn midpoint<const N: usize>(now: [f32; N], before: [f32; N]) -> [f32; N] {
     let mut mean = now;
     for (m, b) in mean.iter_mut().zip(before) {
         *m = 0.5 * (*m + b);

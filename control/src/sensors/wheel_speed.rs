@@ -1,32 +1,32 @@
-//! Forward speed from the pulses of a wheel, and between what bounds it lies.
+//! Forward speed and its bounds from the pulses of a wheel sensor.
 //!
-//! Between two pulses only one thing is known: less than a pulse's way was made. So the speed falls
-//! as time passes without one, and the bounds say how little is known.
+//! Between two pulses the wheel travels less than one pulse distance. The speed therefore falls while no pulse arrives,
+//! and the bounds widen.
 
 use crate::maths::bounded;
 use crate::param::{ParamSpec, ParamVisitor};
 
-/// The wheel and its sensor.
+/// Parameters of the wheel and its sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelPulsesConfig {
-    /// Pulses in a turn of the wheel, 1..=4096.
+    /// Pulses per turn of the wheel, 1..=4096.
     pub pulses_per_turn: u16,
     /// Wheel radius \[m\].
     pub radius_m: f32,
-    /// Largest error of the way between two pulses, as a part of it: magnets not evenly spaced.
+    /// Largest relative error of the distance between two pulses: unevenly spaced magnets.
     pub spacing_error: f32,
-    /// Largest gain of speed \[m/s^2\].
+    /// Largest acceleration \[m/s^2\].
     pub max_accel_m_s2: f32,
-    /// Largest loss of speed \[m/s^2\].
+    /// Largest deceleration \[m/s^2\].
     pub max_brake_m_s2: f32,
-    /// Pulses are counted for at least this long \[s\].
+    /// Shortest window over which pulses are counted \[s\].
     pub window_s: f32,
-    /// Speed below which the wheel is said to stand \[m/s\].
+    /// Speed below which the speed is reported as zero \[m/s\].
     pub standing_m_s: f32,
 }
 
 impl Default for WheelPulsesConfig {
-    /// 16 pulses a turn of a 28-inch wheel, 5 % uneven; 2 m/s^2 pedalled, 6 m/s^2 braked.
+    /// 16 pulses per turn of a 28-inch wheel, spacing error 5 %; 2 m/s^2 pedalling, 6 m/s^2 braking.
     fn default() -> Self {
         Self {
             pulses_per_turn: 16,
@@ -41,7 +41,7 @@ impl Default for WheelPulsesConfig {
 }
 
 impl WheelPulsesConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let own = |name, min, max| ParamSpec::new("pulses", name, min, max);
         to.count(&own("pulses_per_turn", 1.0, 4096.0), &mut self.pulses_per_turn);
@@ -54,10 +54,10 @@ impl WheelPulsesConfig {
     }
 }
 
-/// Which way the wheel turns.
+/// Direction in which the wheel turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Direction {
-    /// The sensor can't tell; the speed is its magnitude.
+    /// The sensor does not measure the direction; the speed is its magnitude.
     #[default]
     Unknown,
     /// Forward.
@@ -66,48 +66,48 @@ pub enum Direction {
     Backward,
 }
 
-/// What the pulse counter says.
+/// Reading of the pulse counter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WheelPulses {
-    /// Pulses so far, wrapping.
+    /// Number of pulses, wrapping.
     pub count: u16,
-    /// Time since the last one \[us\]; `u32::MAX` before the first.
+    /// Time since the last pulse \[us\]; `u32::MAX` before the first.
     pub last_edge_age_us: u32,
-    /// Time between the last two \[us\]; 0 before the second.
+    /// Time between the last two pulses \[us\]; 0 before the second.
     pub last_period_us: u32,
-    /// Which way.
+    /// Direction.
     pub direction: Direction,
 }
 
-/// The speed, and what it lies between if the bicycle obeys [`WheelPulsesConfig`].
+/// Speed, and its bounds for a wheel within the accelerations of [`WheelPulsesConfig`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WheelSpeed {
-    /// Best guess \[m/s\]; negative only if the direction is known to be backward.
+    /// Estimate \[m/s\]; negative only if the direction is known to be backward.
     pub speed_m_s: f32,
-    /// Not below this \[m/s\].
+    /// Lower bound \[m/s\].
     pub low_m_s: f32,
-    /// Not above this \[m/s\].
+    /// Upper bound \[m/s\].
     pub high_m_s: f32,
 }
 
-/// What is remembered of the pulses.
+/// State of the pulse evaluation.
 #[derive(Clone, Debug, Default)]
 pub struct WheelPulsesState {
-    /// The pulses of the last whole window, and how long they took \[s\]; 0 before the first.
+    /// Pulses of the last complete window, and its duration \[s\]; 0 before the first.
     pulses: f32,
     span_s: f32,
-    /// Count at the window's end, and the time since \[us\]; `None` before the first edge.
+    /// Count at the window's end, and the time since then \[us\]; `None` before the first pulse.
     end: Option<(u16, u32)>,
-    /// Time since the start \[us\].
+    /// Time since start-up \[us\].
     running_us: u32,
 }
 
-/// Longest time over which pulses are counted \[us\].
+/// Longest window \[us\].
 const LONGEST_US: u32 = 10_000_000;
-/// Fastest that anything is said to go \[m/s\].
-const FASTEST_M_S: f32 = 50.0;
+/// Largest reported speed \[m/s\].
+const MAX_SPEED_M_S: f32 = 50.0;
 
-/// One control period of `elapsed_us`.
+/// One control period of duration `elapsed_us` \[us\].
 pub fn step(
     config: &WheelPulsesConfig,
     state: &mut WheelPulsesState,
@@ -145,28 +145,28 @@ pub fn step(
     }
 }
 
-/// The speed's magnitude, `age_s` after the last pulse and `since_s` after the window.
+/// Magnitude of the speed and its bounds, `age_s` after the last pulse and `since_s` after the end of the window \[s\].
 ///
-/// Over the window the mean speed was `u`; at its end the speed was `u` but for half the window's change.
-/// Since the last pulse less than a pulse's way was made, so at the quickest the wheel stood and then
-/// gathered speed over that way.
+/// Over the window the mean speed was `u`; at its end the speed differed from `u` by at most half the window's possible
+/// change. Since the last pulse the wheel has travelled less than one pulse distance: the upper bound is that of a
+/// wheel that started from rest and accelerated over that distance.
 fn speed(c: &WheelPulsesConfig, state: &WheelPulsesState, age_s: f32, since_s: f32) -> WheelSpeed {
-    let way = core::f32::consts::TAU * c.radius_m / f32::from(c.pulses_per_turn.max(1));
-    let most_way = way * (1.0 + c.spacing_error);
-    let up = libm::sqrtf(2.0 * most_way / c.max_accel_m_s2);
-    let age = if age_s < up { age_s } else { up }.max(1e-6);
-    let mut high = bounded(most_way / age + 0.5 * c.max_accel_m_s2 * age, FASTEST_M_S);
-    let (mut guess, mut low) = (0.0, 0.0);
+    let distance_m = core::f32::consts::TAU * c.radius_m / f32::from(c.pulses_per_turn.max(1));
+    let max_distance_m = distance_m * (1.0 + c.spacing_error);
+    let rise_s = libm::sqrtf(2.0 * max_distance_m / c.max_accel_m_s2);
+    let age = if age_s < rise_s { age_s } else { rise_s }.max(1e-6);
+    let mut high = bounded(max_distance_m / age + 0.5 * c.max_accel_m_s2 * age, MAX_SPEED_M_S);
+    let (mut estimate, mut low) = (0.0, 0.0);
     if state.span_s > 0.0 {
-        let u = bounded(state.pulses * way / state.span_s, FASTEST_M_S);
-        let uneven = c.spacing_error * way / state.span_s;
-        let later = 0.5 * state.span_s + since_s;
-        high = high.min(u + uneven + c.max_accel_m_s2 * later);
-        low = (u - uneven - c.max_brake_m_s2 * later).max(0.0).min(high);
-        guess = u.min(way / age_s.max(1e-6));
-        if guess < c.standing_m_s {
-            guess = 0.0;
+        let u = bounded(state.pulses * distance_m / state.span_s, MAX_SPEED_M_S);
+        let spacing = c.spacing_error * distance_m / state.span_s;
+        let uncertain_s = 0.5 * state.span_s + since_s;
+        high = high.min(u + spacing + c.max_accel_m_s2 * uncertain_s);
+        low = (u - spacing - c.max_brake_m_s2 * uncertain_s).max(0.0).min(high);
+        estimate = u.min(distance_m / age_s.max(1e-6));
+        if estimate < c.standing_m_s {
+            estimate = 0.0;
         }
     }
-    WheelSpeed { speed_m_s: guess.max(low).min(high), low_m_s: low, high_m_s: high }
+    WheelSpeed { speed_m_s: estimate.max(low).min(high), low_m_s: low, high_m_s: high }
 }

@@ -1,11 +1,11 @@
 //! Flight cards: one sensor watched.
 
 use control::sensors::frame::MISSING;
-use control::sensors::monitor::{CheckedSample, Codes, SensorMonitor, SensorPlan};
+use control::sensors::monitor::{CheckedSample, SensorCauses, SensorMonitor, SensorPlan};
 use control::{Cause, Loss, Sensor};
 use proptest::prelude::*;
 
-const CODES: Codes = Codes {
+const CODES: SensorCauses = SensorCauses {
     lost: Cause::SteerLost,
     range: Cause::SteerRange,
     jump: Cause::SteerJump,

@@ -1,6 +1,6 @@
 //! Flight cards: the slope of what is seen over what is expected.
 
-use control::sensors::regression::{Slope, SlopeConfig, SlopePlan, Stretch};
+use control::sensors::regression::{BlockMean, Slope, SlopeConfig, SlopePlan};
 
 const CONFIG: SlopeConfig =
     SlopeConfig { highpass_s: 0.3, forget_s: 0.5, max_measured: 20.0, min_excitation: 0.01, settle_s: 0.0 };
@@ -91,7 +91,7 @@ fn a_reversal_shows_soon() {
 /// Situation: stretches of four periods. Action: feed a ramp. Must hold: means of a stretch and of the one before, at its end only.
 #[test]
 fn stretches_have_their_means() {
-    let mut stretch = Stretch::<2>::default();
+    let mut stretch = BlockMean::<2>::default();
     let mut slopes = Vec::new();
     for i in 0..12_i16 {
         let value = f32::from(i);
@@ -109,7 +109,7 @@ fn stretches_have_their_means() {
 /// afterwards; the next full one has none before it.
 #[test]
 fn an_empty_stretch_has_no_means() {
-    let mut stretch = Stretch::<1>::default();
+    let mut stretch = BlockMean::<1>::default();
     assert_eq!(stretch.end(), None);
     let mut full = |value: f32, empty: bool| {
         if !empty {

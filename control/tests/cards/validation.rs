@@ -1,8 +1,7 @@
 //! Flight cards: the declared sensors, each believed, doubted and told by its own codes; the speed's bounds.
 
-use control::sensors::validation::{
-    self, Measurements, RECENT, SpeedInterval, ValidationPlan, ValidationState,
-};
+use control::sensors::measurements::{Measurements, SpeedInterval};
+use control::sensors::validation::{self, MAX_RECENT_SAMPLES, ValidationPlan, ValidationState};
 use control::{
     Calibration, Cause, Causes, Config, Loss, Sample, Sensor, SensorFrame, Triple, ValidationConfig, Wheel,
 };
@@ -354,7 +353,7 @@ fn samples_that_are_never_fresh_are_all_taken() {
 /// many.
 #[test]
 fn the_bounds_span_as_many_samples_as_declared() {
-    for count in 1..=RECENT as u16 {
+    for count in 1..=MAX_RECENT_SAMPLES as u16 {
         let config = ValidationConfig { recent_samples: count, ..wheels() };
         let mut state = ValidationState::default();
         for k in 0_u16..20 {

@@ -1,20 +1,22 @@
-//! What is looked at every 24 ms.
+//! Checks that run every 24 ms.
 //!
-//! * Does an IMU repeat itself while the bicycle rides? It takes another sensor that changes to know that this is wrong.
-//! * Does the rear wheel change its speed by more than a bicycle can? One that is lifted, dropped or blocked does, in steps
-//!   that are small enough from sample to sample.
+//! * **Repeated samples**: whether an IMU repeats its sample while the bicycle rides. Another sensor must change to
+//!   prove the fault.
+//! * **Rear wheel jump**: whether the rear wheel's speed changes more than a bicycle can. A lifted, dropped or blocked
+//!   wheel changes its speed in steps that pass the sample-to-sample check.
 
 use crate::fault::{Cause, Causes};
 use core::hint::cold_path;
 
-/// Speed above which no sensor of the frame's motion stands still \[m/s\].
-const STANDING_M_S: f32 = 0.5;
+/// Speed above which every sensor of the frame's motion changes \[m/s\].
+const RIDING_M_S: f32 = 0.5;
 
-/// Largest change of a rolling wheel's speed within four looks, 96 ms \[m/s\]: of tyres that grip about 1; of a wheel pushed by
-/// hand, or inside the basins of `h`, no more than 2.
-const CHANGED_M_S: f32 = 2.5;
+/// Largest change of a rolling wheel's speed within four checks, 96 ms \[m/s\]. With tyres that grip it is about 1; of
+/// a wheel pushed by hand, or inside the basins of `h`, no more than 2.
+const MAX_CHANGE_M_S: f32 = 2.5;
 
-/// What gyro, accelerometer and the other sensors said at the last look, and how often each of the two has said the same.
+/// Samples of gyro, accelerometer and the other sensors at the last check, and the number of consecutive checks with
+/// equal samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Repeats {
     gyro_rad_s: [f32; 3],
@@ -22,7 +24,7 @@ pub(super) struct Repeats {
     others: [f32; 3],
     gyro_checks: u16,
     accel_checks: u16,
-    /// The rear wheel's speed at the last looks, the oldest first; NaN where it was not known \[m/s\].
+    /// Rear wheel speed at the last checks, oldest first; NaN where unknown \[m/s\].
     rear_m_s: [f32; 4],
 }
 
@@ -40,9 +42,9 @@ impl Default for Repeats {
 }
 
 impl Repeats {
-    /// Another look: at gyro (w), accelerometer (f) and rear wheel, NaN where one is not believed, steer angle and front
-    /// wheel. What it finds is the cause for which that sensor must not be believed any more. Each is a
-    /// value of its own, which goes by register; an array would have to lie in memory in every control period.
+    /// One check of gyro (w), accelerometer (f) and rear wheel, NaN where not valid, and of steer angle and front
+    /// wheel. Returns the causes of the sensors to invalidate. Scalar arguments are passed in registers; an array would
+    /// have to be in memory in every control period.
     #[inline(never)]
     #[allow(clippy::too_many_arguments, reason = "in registers")]
     pub(super) fn check(
@@ -58,31 +60,31 @@ impl Repeats {
         front_m_s: f32,
         rear_m_s: f32,
     ) -> Causes {
-        let mut found = Causes::NONE;
+        let mut causes = Causes::NONE;
         let (gyro_rad_s, accel_m_s2) = ([wx, wy, wz], [fx, fy, fz]);
         let others = [steer_rad, front_m_s, if rear_m_s.is_nan() { 0.0 } else { rear_m_s }];
         let [gyro, accel] = [gyro_rad_s == self.gyro_rad_s, accel_m_s2 == self.accel_m_s2];
         if gyro || accel {
             cold_path();
-            let rides = front_m_s > STANDING_M_S || rear_m_s > STANDING_M_S;
-            // One that is not known does not change.
+            let riding = front_m_s > RIDING_M_S || rear_m_s > RIDING_M_S;
+            // A missing sensor does not count as changing.
             let [gyro_changes, accel_changes] = [!(gyro || wx.is_nan()), !(accel || fx.is_nan())];
             let changes = others != self.others;
             let count = |equal: bool, other_changes: bool, before: u16| {
-                if rides && equal && (changes || other_changes) { before.saturating_add(1) } else { 0 }
+                if riding && equal && (changes || other_changes) { before.saturating_add(1) } else { 0 }
             };
             self.gyro_checks = count(gyro, accel_changes, self.gyro_checks);
             self.accel_checks = count(accel, gyro_changes, self.accel_checks);
-            found.note(Cause::GyroStuck, self.gyro_checks >= checks);
-            found.note(Cause::AccelStuck, self.accel_checks >= checks);
+            causes.note(Cause::GyroStuck, self.gyro_checks >= checks);
+            causes.note(Cause::AccelStuck, self.accel_checks >= checks);
         } else {
             (self.gyro_checks, self.accel_checks) = (0, 0);
         }
         let [oldest, later @ ..] = self.rear_m_s;
-        found.note(Cause::RearWheelJump, (rear_m_s - oldest).abs() > CHANGED_M_S);
+        causes.note(Cause::RearWheelJump, (rear_m_s - oldest).abs() > MAX_CHANGE_M_S);
         let [a, b, c] = later;
         self.rear_m_s = [a, b, c, rear_m_s];
         (self.gyro_rad_s, self.accel_m_s2, self.others) = (gyro_rad_s, accel_m_s2, others);
-        found
+        causes
     }
 }
