@@ -1,75 +1,75 @@
-//! What the estimator must know of the bicycle and of its sensors.
+//! Parameters of the estimator: the bicycle and its sensors.
 
 use crate::param::{ParamSpec, ParamVisitor};
 
-/// Which roll rate is handed on.
+/// Source of the roll rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Source {
-    /// The gyro's x axis, unchanged bits: the published conditions, where that is the roll rate.
+    /// The gyro's x axis, unchanged to the bit: the published conditions, where it is the roll rate.
     #[default]
     GyroX = 0,
-    /// The Euler roll rate: pitch taken into account, bias taken off.
+    /// The Euler roll rate: corrected for pitch and gyro bias.
     Estimate = 1,
 }
 
-/// The names of [`Source`]'s values.
+/// Names of the values of [`Source`].
 pub const SOURCES: &[&str] = &["gyro_x", "estimate"];
 
-/// A place in the rear frame's plane, upright, seen from the rear wheel's contact.
+/// A point in the rear frame's plane, upright, relative to the rear wheel's contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// Forward \[m\].
+    /// Forward of it \[m\].
     pub forward_m: f32,
     /// Above the ground \[m\].
     pub up_m: f32,
 }
 
-/// Everything the estimator is told.
+/// Parameters of the estimator.
 ///
-/// Pitch is `steer * (pitch[0] steer + pitch[1] roll + pitch[2] steer^3 + pitch[3] steer^2 roll +
-/// pitch[4] steer roll^2 + pitch[5] roll^3)`: zero with a straight wheel, equal for mirrored
-/// attitudes. The host fits it to the bicycle's geometry.
+/// Pitch is
+/// `steer * (pitch[0] steer + pitch[1] roll + pitch[2] steer^3 + pitch[3] steer^2 roll + pitch[4] steer roll^2 + pitch[5] roll^3)`:
+/// zero with a straight wheel, equal for mirrored attitudes. The host fits the coefficients to the bicycle's geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EstimateConfig {
-    /// Which roll rate is handed on.
+    /// Source of the roll rate.
     pub roll_rate: Source,
-    /// Coefficients of the pitch \[rad\].
+    /// Coefficients of the pitch polynomial \[rad\].
     pub pitch: [f32; 6],
     /// Rear wheel radius \[m\].
     pub wheel_radius_m: f32,
-    /// Where the accelerometer sits.
+    /// Position of the accelerometer.
     pub imu: Place,
-    /// Where the bicycle with its rigid rider feels no lateral force: as far up as its centre of
-    /// percussion for a blow along the ground. An accelerometer there would read 0, which stands in
-    /// for a missing one.
+    /// Position on the bicycle with its rigid rider at which the lateral specific force is zero: at the height of the
+    /// centre of percussion for an impact at ground level. Zero, the reading of an accelerometer there, replaces a
+    /// missing accelerometer.
     pub balance: Place,
     /// Largest gyro bias of any axis \[rad/s\].
     pub bias_max_rad_s: f32,
-    /// How quickly a bias wanders: standard deviation after one second \[rad/s\].
+    /// Random walk of a gyro bias: standard deviation after one second \[rad/s\].
     pub bias_walk_rad_s: f32,
-    /// How quickly the gyro's noise sums up: standard deviation of the angle after one second \[rad\].
+    /// Angle random walk of the gyro: standard deviation of the angle after one second \[rad\].
     pub gyro_walk_rad: f32,
-    /// How well one second of accelerometer shows the roll angle: standard deviation \[rad\].
+    /// Noise of the roll angle from one second of accelerometer samples: standard deviation \[rad\].
     pub accel_noise_rad: f32,
-    /// Error that does not average out: mounting, offset, tyres \[rad of roll\].
+    /// Systematic error of the accelerometer's roll angle: mounting, offset, tyres \[rad of roll\].
     pub accel_error_rad: f32,
-    /// As `accel_noise_rad`, without accelerometer.
+    /// As `accel_noise_rad`, without an accelerometer.
     pub balance_noise_rad: f32,
-    /// As `accel_error_rad`, without accelerometer: a rider who leans out of the frame's plane.
+    /// As `accel_error_rad`, without an accelerometer: a rider who leans out of the frame's plane.
     pub balance_error_rad: f32,
     /// Relative error of the speed.
     pub speed_error: f32,
-    /// Acceleration beyond steady riding at which the observation counts half \[m/s^2\].
+    /// Acceleration, relative to steady riding, at which an observation has half its weight \[m/s^2\].
     pub violent_m_s2: f32,
-    /// Lag of the rate that is made of the steer angle \[s\].
+    /// Lag of the steer rate derived from the steer angle \[s\].
     pub steer_lag_s: f32,
     /// Lag of the roll acceleration \[s\].
     pub accel_lag_s: f32,
 }
 
 impl Default for EstimateConfig {
-    /// Gyro x handed on; a town bicycle with its IMU at the saddle; consumer sensors.
+    /// Roll rate from the gyro's x axis; a city bicycle with its IMU at the saddle; consumer sensors.
     fn default() -> Self {
         Self {
             roll_rate: Source::GyroX,

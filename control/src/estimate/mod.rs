@@ -1,8 +1,8 @@
-//! The motion as far as the sensors show it: attitude, rates, accelerations, and how sure that is.
+//! Estimates the bicycle's motion from the sensors: attitude, rates, accelerations, and the error of the roll angle.
 //!
-//! Exact kinematics of a bicycle whose rear wheel rolls without slip (`docs/bicycle.md`): the order of
-//! turns is yaw, roll, pitch, so roll rate is `wx cos(pitch) + wz sin(pitch)`, and the lateral
-//! specific force at a place `up` above and `forward` of the rear contact is
+//! Exact kinematics of a bicycle whose rear wheel rolls without slip (`docs/bicycle.md`). The order of rotations is
+//! yaw, roll, pitch, so roll rate is `wx cos(pitch) + wz sin(pitch)`. The lateral specific force at a point `up` above
+//! and `forward` of the rear contact is
 //! `v yaw_rate cos(roll) - g sin(roll) + up wx' + forward wz' + wy (wx forward + wz (radius - up))`.
 
 mod config;
@@ -18,23 +18,23 @@ use core::hint::cold_path;
 use roll::Roll;
 use steer::Steer;
 
-/// Largest angular rate \[rad/s\], specific force \[m/s^2\] and speed \[m/s\] that are reckoned with.
-const MOST: (f32, f32, f32) = (100.0, 1000.0, 100.0);
-/// Lag of what the roll angle is observed by \[s\]: long against the gyro's noise, short against a turn.
-const OBSERVED_S: f32 = 0.1;
-/// Speed below which the bicycle stands \[m/s\], and above which it balances by riding.
+/// Limits of the input: angular rate \[rad/s\], specific force \[m/s^2\] and speed \[m/s\].
+const INPUT_LIMITS: (f32, f32, f32) = (100.0, 1000.0, 100.0);
+/// Lag of the observation of the roll angle \[s\]: long enough to average the gyro's noise, short compared with a turn.
+const OBSERVATION_LAG_S: f32 = 0.1;
+/// Speed below which the bicycle stands, and above which it balances by riding \[m/s\].
 const STANDING_M_S: f32 = 0.05;
 const BALANCING_M_S: f32 = 1.5;
-/// How long it must stand and be still before the gyros show their bias \[s\], and how far their smoothed rates may
-/// wander in that time \[rad/s\]: on a bicycle held by hand they sway by more, one that leans on something by less.
-const STILL_S: f32 = 1.0;
-const STILL_RAD_S: f32 = 0.003;
-/// A gap after which the past is worth nothing \[us\].
-const GAP_US: u32 = 100_000;
-/// Angle beyond which the fit of the pitch is not trusted \[rad\].
-const FITTED_RAD: f32 = 1.2;
+/// Time at rest after which the gyros' reading is their bias \[s\], and largest change of the smoothed rates in that
+/// time \[rad/s\]. A bicycle held by hand sways more, one leaning on an object less.
+const REST_S: f32 = 1.0;
+const REST_DRIFT_RAD_S: f32 = 0.003;
+/// Gap between two steps after which the state is discarded \[us\].
+const MAX_GAP_US: u32 = 100_000;
+/// Largest angle for which the pitch polynomial is fitted \[rad\].
+const PITCH_FIT_RAD: f32 = 1.2;
 
-/// What is felt in one control period: rear-frame axes, x forward (horizontal when upright), y right, z down.
+/// Measurements of one control period, in rear-frame axes: x forward (horizontal when upright), y right, z down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EstimatorInput {
     /// Angular rates about x, y and z \[rad/s\].
@@ -45,20 +45,20 @@ pub struct EstimatorInput {
     pub steer_rad: Option<f32>,
     /// Steer rate \[rad/s\].
     pub steer_rate_rad_s: Option<f32>,
-    /// Rear wheel's rate times its radius, positive forward \[m/s\].
+    /// Rotation rate of the rear wheel times its radius, positive forward \[m/s\].
     pub speed_m_s: f32,
-    /// Time since the step before \[us\].
+    /// Time since the previous step \[us\].
     pub elapsed_us: u32,
 }
 
-/// The motion that follows from it. Always finite.
+/// Estimated motion. Always finite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Roll angle, right positive; a quarter turn at most \[rad\].
+    /// Roll angle, right positive, within a quarter turn \[rad\].
     pub roll_rad: f32,
-    /// Its sine and cosine.
+    /// Sine and cosine of the roll angle.
     pub roll_sin_cos: (f32, f32),
-    /// Roll rate by [`Source`] \[rad/s\].
+    /// Roll rate from the chosen [`Source`] \[rad/s\].
     pub roll_rate_rad_s: f32,
     /// Yaw rate \[rad/s\].
     pub yaw_rate_rad_s: f32,
@@ -70,47 +70,47 @@ pub struct Motion {
     pub steer_rate_rad_s: f32,
     /// Rear wheel's forward speed \[m/s\].
     pub speed_m_s: f32,
-    /// Roll acceleration, [`EstimateConfig::accel_lag_s`] late \[rad/s^2\].
+    /// Roll acceleration, delayed by [`EstimateConfig::accel_lag_s`] \[rad/s^2\].
     pub roll_accel_rad_s2: f32,
-    /// By how much the roll angle may be wrong.
+    /// Error of the roll angle.
     pub roll_error: RollError,
-    /// Biases of the gyros, as far as known \[rad/s\].
+    /// Estimated biases of the gyros \[rad/s\].
     pub gyro_bias_rad_s: [f32; 3],
-    /// Size of the specific force \[m/s^2\], if it is felt.
+    /// Magnitude of the specific force, if measured \[m/s^2\].
     pub force_m_s2: Option<f32>,
 }
 
-/// By how much the roll angle may be wrong, in parts from which [`RollError::bound_rad`] is worked out where it is needed.
+/// Error of the roll angle, in parts from which [`RollError::bound_rad`] is computed only where needed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RollError {
-    /// Three standard deviations of what averages out, squared \[rad^2\].
+    /// Random part: three standard deviations, squared \[rad^2\].
     pub square_rad2: f32,
-    /// What does not average out \[rad\].
+    /// Systematic part \[rad\].
     pub systematic_rad: f32,
 }
 
 impl RollError {
-    /// Nothing is known.
+    /// The roll angle is unknown.
     pub const UNKNOWN: Self = Self { square_rad2: 0.0, systematic_rad: core::f32::consts::PI };
 
-    /// The roll angle is wrong by no more than this; pi when nothing is known \[rad\].
+    /// Bound of the error; pi if the roll angle is unknown \[rad\].
     pub fn bound_rad(&self) -> f32 {
         bounded(root(self.square_rad2) + self.systematic_rad, core::f32::consts::PI)
     }
 
-    /// Whether the bound is larger than this \[rad\].
+    /// Whether the bound exceeds `limit_rad` \[rad\].
     pub fn is_beyond(&self, limit_rad: f32) -> bool {
         let left = limit_rad - self.systematic_rad;
         left < 0.0 || self.square_rad2 > left * left
     }
 }
 
-/// What the estimator remembers.
+/// State of the estimator.
 #[derive(Clone, Debug, Default)]
 pub struct EstimateState {
     /// `None` before the first step and after a gap.
     running: Option<Running>,
-    /// Biases about y and z \[rad/s\], and their standard deviation. They show only while standing still.
+    /// Biases about y and z \[rad/s\], and their standard deviation. They are observable only at rest.
     bias: [f32; 2],
     bias_deviation: Option<f32>,
     steer: Steer,
@@ -119,31 +119,31 @@ pub struct EstimateState {
 #[derive(Clone, Debug)]
 struct Running {
     roll: Roll,
-    /// The sideways force that is not explained, before lever arms, smoothed \[m/s^2\].
+    /// Unexplained lateral force before lever arm terms, smoothed \[m/s^2\].
     unexplained_m_s2: f32,
     /// Rates about x and z, smoothed \[rad/s\].
     smooth: [f32; 2],
     /// Roll rate, smoothed for the roll acceleration \[rad/s\].
     roll_rate: f32,
-    still_s: f32,
-    /// At rest the rates as told, smoothed, now and when it became still \[rad/s\].
-    resting: [f32; 3],
-    still_at: [f32; 3],
+    rest_s: f32,
+    /// At rest: the measured rates, smoothed, now and at the start of the rest \[rad/s\].
+    rest_rates: [f32; 3],
+    rest_start_rates: [f32; 3],
 }
 
 impl Running {
-    /// Time goes on at rest: it counts while the rates neither are larger than a bias nor wander.
-    fn stand(&mut self, (x, y, z): (f32, f32, f32), dt: f32, bias_max: f32) {
-        let keep = dt / (OBSERVED_S + dt);
-        let mut still = true;
-        for ((rate, smooth), at) in [x, y, z].iter().zip(&mut self.resting).zip(&self.still_at) {
-            *smooth += keep * (rate - *smooth);
-            still &= rate.abs() <= bias_max && (*smooth - at).abs() <= STILL_RAD_S;
+    /// One step at rest: the rest time grows while no rate exceeds the largest bias or drifts.
+    fn step_at_rest(&mut self, (x, y, z): (f32, f32, f32), dt: f32, bias_max: f32) {
+        let weight = dt / (OBSERVATION_LAG_S + dt);
+        let mut at_rest = true;
+        for ((rate, smooth), at) in [x, y, z].iter().zip(&mut self.rest_rates).zip(&self.rest_start_rates) {
+            *smooth += weight * (rate - *smooth);
+            at_rest &= rate.abs() <= bias_max && (*smooth - at).abs() <= REST_DRIFT_RAD_S;
         }
-        if still {
-            self.still_s += dt;
+        if at_rest {
+            self.rest_s += dt;
         } else {
-            (self.still_s, self.still_at) = (0.0, self.resting);
+            (self.rest_s, self.rest_start_rates) = (0.0, self.rest_rates);
         }
     }
 }
@@ -151,19 +151,19 @@ impl Running {
 /// One control period.
 pub fn step(config: &EstimateConfig, state: &mut EstimateState, input: &EstimatorInput) -> Motion {
     let mut dt = 1e-6 * input.elapsed_us as f32;
-    if input.elapsed_us > GAP_US {
+    if input.elapsed_us > MAX_GAP_US {
         cold_path();
-        dt = 1e-6 * GAP_US as f32;
+        dt = 1e-6 * MAX_GAP_US as f32;
         state.running = None;
         state.steer = Steer::default();
     }
     let c = config;
     let (steer_rad, steer_rate_rad_s) =
         state.steer.step(c.steer_lag_s, dt, input.steer_rad, input.steer_rate_rad_s);
-    let speed = bounded(input.speed_m_s, MOST.2);
-    let gyro = input.gyro_rad_s.map(|w| bounded(w, MOST.0));
-    let at_first = c.bias_max_rad_s / 3.0;
-    let mut bias_deviation = state.bias_deviation.unwrap_or(at_first);
+    let speed = bounded(input.speed_m_s, INPUT_LIMITS.2);
+    let gyro = input.gyro_rad_s.map(|w| bounded(w, INPUT_LIMITS.0));
+    let initial_deviation = c.bias_max_rad_s / 3.0;
+    let mut bias_deviation = state.bias_deviation.unwrap_or(initial_deviation);
 
     let [by, bz] = state.bias;
     let [wy, wz] = [gyro[1] - by, gyro[2] - bz];
@@ -172,29 +172,29 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, input: &Estimato
         unexplained_m_s2: 0.0,
         smooth: [gyro[0], wz],
         roll_rate: gyro[0],
-        still_s: 0.0,
-        resting: [0.0; 3],
-        still_at: [0.0; 3],
+        rest_s: 0.0,
+        rest_rates: [0.0; 3],
+        rest_start_rates: [0.0; 3],
     });
     let wx = gyro[0] - run.roll.bias_rad_s;
     let pitch_rad = pitch(&c.pitch, run.roll.angle_rad, steer_rad);
     let (sin_pitch, cos_pitch) = sin_cos(pitch_rad);
     let roll_rate = wx * cos_pitch + wz * sin_pitch;
-    run.roll.turn(roll_rate, dt, (c.gyro_walk_rad, c.bias_walk_rad_s), c.bias_max_rad_s);
-    // The square grows by that of the walk; to first order, which is more.
+    run.roll.integrate(roll_rate, dt, (c.gyro_walk_rad, c.bias_walk_rad_s), c.bias_max_rad_s);
+    // The variance grows by that of the random walk; the first-order expression is an upper bound.
     let walk = c.bias_walk_rad_s * c.bias_walk_rad_s;
-    bias_deviation = min(at_first, bias_deviation + 0.5 * dt * walk / max(1e-5, bias_deviation));
+    bias_deviation = min(initial_deviation, bias_deviation + 0.5 * dt * walk / max(1e-5, bias_deviation));
 
-    // At rest the gyros show nothing but their bias.
+    // At rest the gyros' reading is their bias.
     if speed.abs() > STANDING_M_S {
-        run.still_s = 0.0;
+        run.rest_s = 0.0;
     } else {
         cold_path();
         let [x, y, z] = gyro;
-        run.stand((x, y, z), dt, c.bias_max_rad_s);
+        run.step_at_rest((x, y, z), dt, c.bias_max_rad_s);
     }
-    if run.still_s > STILL_S {
-        run.still_s = 2.0 * STILL_S;
+    if run.rest_s > REST_S {
+        run.rest_s = 2.0 * REST_S;
         let observed = c.gyro_walk_rad * c.gyro_walk_rad / max(1e-6, dt);
         let _ = run.roll.observe_bias(wx, observed, c.bias_max_rad_s);
         let variance = bias_deviation * bias_deviation;
@@ -204,21 +204,22 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, input: &Estimato
     }
 
     let (sin_roll, cos_roll) = sin_cos_within(run.roll.angle_rad);
-    // As if roll were nearer to upright than 72 degrees: the division must not blow up.
+    // The roll angle is limited to 72 degrees here, so that the division stays bounded.
     let yaw_rate = (wz * cos_pitch - wx * sin_pitch) / max(0.3, cos_roll);
-    // What the rear wheel's contact moves with: its rate seen from the ground.
+    // Speed of the rear contact point: wheel rotation relative to the ground.
     let rolling = speed - wy * c.wheel_radius_m;
     let (place, noise, error, force) = match input.accel_m_s2 {
-        Some(f) => (&c.imu, c.accel_noise_rad, c.accel_error_rad, f.map(|f| bounded(f, MOST.1))),
+        Some(f) => (&c.imu, c.accel_noise_rad, c.accel_error_rad, f.map(|f| bounded(f, INPUT_LIMITS.1))),
         None => (&c.balance, c.balance_noise_rad, c.balance_error_rad, [0.0, 0.0, -G]),
     };
     let swing = wy * (wx * place.forward_m + wz * (c.wheel_radius_m - place.up_m));
     let unexplained = force[1] - rolling * yaw_rate * cos_roll + G * sin_roll - swing;
-    let keep = dt / (OBSERVED_S + dt);
-    run.unexplained_m_s2 += keep * (unexplained - run.unexplained_m_s2);
-    run.smooth = [run.smooth[0] + keep * (wx - run.smooth[0]), run.smooth[1] + keep * (wz - run.smooth[1])];
-    let lever = place.up_m * ((wx - run.smooth[0]) / OBSERVED_S)
-        + place.forward_m * ((wz - run.smooth[1]) / OBSERVED_S);
+    let weight = dt / (OBSERVATION_LAG_S + dt);
+    run.unexplained_m_s2 += weight * (unexplained - run.unexplained_m_s2);
+    run.smooth =
+        [run.smooth[0] + weight * (wx - run.smooth[0]), run.smooth[1] + weight * (wz - run.smooth[1])];
+    let lever = place.up_m * ((wx - run.smooth[0]) / OBSERVATION_LAG_S)
+        + place.forward_m * ((wz - run.smooth[1]) / OBSERVATION_LAG_S);
     let observed = input.accel_m_s2.is_some() || speed >= BALANCING_M_S;
     let force_m_s2 = input.accel_m_s2.map(|_| size(force));
     if observed && dt > 0.0 {
@@ -266,7 +267,7 @@ fn root(square: f32) -> f32 {
 
 /// Pitch by the fitted polynomial \[rad\].
 fn pitch(fit: &[f32; 6], roll_rad: f32, steer_rad: f32) -> f32 {
-    let (r, d) = (bounded(roll_rad, FITTED_RAD), bounded(steer_rad, FITTED_RAD));
+    let (r, d) = (bounded(roll_rad, PITCH_FIT_RAD), bounded(steer_rad, PITCH_FIT_RAD));
     let [dd, dr, d4, d3r, d2r2, dr3] = *fit;
     d * (d * dd + r * dr + d * d * (d * d4 + r * d3r) + r * r * (d * d2r2 + r * dr3))
 }

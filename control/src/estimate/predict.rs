@@ -1,25 +1,26 @@
-//! What the roll will be when the torque acts: sensors and actuator are late, the bicycle is not.
+//! Predicts roll angle and rate at the instant at which the torque acts, to compensate the delay of sensors and
+//! actuator.
 //!
-//! A straight line ahead, `rate + lead * acceleration`. It needs a gyro and nothing else. The linear
-//! bicycle with the torques still on their way, which needs a steer sensor and the bicycle's
-//! parameters, wins back hardly more of the basin (`docs/delay.md`).
+//! Linear extrapolation, `rate + lead * acceleration`, which needs only a gyro. A prediction with the linear bicycle
+//! and the torques not yet in effect needs a steer sensor and the bicycle's parameters, and recovers hardly more of the
+//! basin (`docs/delay.md`).
 
 use crate::estimate::Motion;
 use crate::maths::bounded;
 use crate::param::{ParamSpec, ParamVisitor};
 
-/// How the delay is made up for.
+/// Parameters of the prediction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictConfig {
-    /// How far ahead: the delay of sensors and actuator together \[s\]; 0 is off.
+    /// Prediction horizon: the delay of sensors and actuator together \[s\]; 0 is off.
     pub lead_s: f32,
-    /// Most that is added to the roll rate, either way \[rad/s\]: a blow that the gyro feels is no
-    /// motion of the bicycle.
+    /// Largest change of the roll rate, either way \[rad/s\]: the response of the gyro to an impact is not motion of
+    /// the bicycle.
     pub max_rad_s: f32,
 }
 
 impl Default for PredictConfig {
-    /// Off; 1 rad/s, which 50 ms ahead is beyond any ride that can be saved.
+    /// Off; 1 rad/s, which at a horizon of 50 ms exceeds that of any ride that can be saved.
     fn default() -> Self {
         Self { lead_s: 0.0, max_rad_s: 1.0 }
     }
@@ -33,7 +34,7 @@ impl PredictConfig {
     }
 }
 
-/// The roll as it will be.
+/// Predicted roll.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictedMotion {
     /// Angle \[rad\].
@@ -42,16 +43,16 @@ pub struct PredictedMotion {
     pub roll_rate_rad_s: f32,
 }
 
-/// One control period; unchanged bits when off.
+/// One control period; returns the input unchanged to the bit when off.
 #[inline]
 pub fn step(config: &PredictConfig, now: &Motion) -> PredictedMotion {
     let Motion { roll_rad, roll_rate_rad_s, roll_accel_rad_s2, .. } = *now;
     if config.lead_s <= 0.0 {
         return PredictedMotion { roll_rad, roll_rate_rad_s };
     }
-    let more = bounded(config.lead_s * roll_accel_rad_s2, config.max_rad_s);
+    let change_rad_s = bounded(config.lead_s * roll_accel_rad_s2, config.max_rad_s);
     PredictedMotion {
         roll_rad: roll_rad + config.lead_s * roll_rate_rad_s,
-        roll_rate_rad_s: roll_rate_rad_s + more,
+        roll_rate_rad_s: roll_rate_rad_s + change_rad_s,
     }
 }

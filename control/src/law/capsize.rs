@@ -1,9 +1,9 @@
-//! Steering into the lean at high speed, where the slow fall without oscillation, capsize, is what is
-//! unstable.
+//! Capsize term: steers into the lean at high speed, where the unstable mode is capsize, a slow fall without
+//! oscillation.
 //!
-//! The thesis prints the torque as `-K_c (v - v_max) phi` above `v_max` (Kuipers 2020, eq. 2.16, after
-//! Schwab, Kooijman and Meijaard 2008), in axes whose steer torque is opposite to the benchmark's; the minus
-//! sign is taken out once, here. A lean to the right asks for a torque to the right.
+//! The thesis gives the torque as `-K_c (v - v_max) phi` above `v_max` (Kuipers 2020, eq. 2.16, after Schwab, Kooijman
+//! and Meijaard 2008), in axes whose steer torque is opposite to the benchmark's. The minus sign is removed here. A
+//! lean to the right gives a torque to the right.
 
 use crate::law::real::Real;
 use crate::param::{ParamError, ParamSpec, ParamVisitor};
@@ -11,8 +11,8 @@ use crate::param::{ParamError, ParamSpec, ParamVisitor};
 const K_C: ParamSpec = ParamSpec::new("capsize", "k_c", 0.0, 20.0);
 const V_MAX: ParamSpec = ParamSpec::new("capsize", "v_max_m_s", 0.0, 30.0);
 
-/// The capsize term, beside any roll-rate law. Off by default. The steer-by-wire bicycle of TU Delft has 0.7
-/// and 6.5 (mechmotum/sbw_bicycle_with_model_matching).
+/// The capsize term, added to any roll-rate law. Off by default. The steer-by-wire bicycle of TU Delft uses 0.7 and 6.5
+/// (mechmotum/sbw_bicycle_with_model_matching).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsize {
     /// Roll-angle gain per speed above `v_max_m_s` \[N s/rad\], 0..=20; 0 is off.
@@ -43,20 +43,20 @@ impl Capsize {
         V_MAX.check(self.v_max_m_s)
     }
 
-    /// Whether it does anything at any speed.
+    /// Whether the term is on.
     pub fn is_on(&self) -> bool {
         self.k_c > 0.0
     }
 
-    /// The gain of the roll angle \[N m/rad\], never negative. It never falls with speed: of speeds that may be
-    /// wrong the lowest gives the least.
+    /// The gain of the roll angle \[N m/rad\], never negative. It never falls with speed, so of uncertain speeds the
+    /// lowest gives the least gain.
     pub fn gain<R: Real>(&self, speed_m_s: R) -> R {
         let above = speed_m_s - R::lit(f64::from(self.v_max_m_s));
         if above > R::lit(0.0) { R::lit(f64::from(self.k_c)) * above } else { R::lit(0.0) }
     }
 
-    /// The steer torque \[N m\], positive to the right, at a forward speed \[m/s\] and a lean \[rad\], positive to
-    /// the right.
+    /// Steer torque, positive to the right \[N m\], at a forward speed \[m/s\] and roll angle, positive to the right
+    /// \[rad\].
     pub fn torque(&self, speed_m_s: f32, roll_rad: f32) -> f32 {
         self.gain(speed_m_s) * roll_rad
     }

@@ -1,7 +1,7 @@
-//! Roll-rate laws: the gain in `T = +gain(v) * roll_rate`, steering into the fall.
+//! Roll-rate laws: the gain in `T = +gain(v) * roll_rate`, which steers into the fall.
 //!
-//! The thesis prints the feedback gain `K_phi_d(v)` of the Basu-Mandal axes, where steering into
-//! the fall is a negative gain; `gain = -K_phi_d` here, converted once, in this file.
+//! The thesis gives the feedback gain `K_phi_d(v)` in the Basu-Mandal axes, where steering into the fall is a negative
+//! gain. Here `gain = -K_phi_d`, converted once, in this file.
 
 pub mod capsize;
 pub mod gain_schedule;
@@ -12,26 +12,26 @@ use crate::law::gain_schedule::GainSchedule;
 use crate::law::real::Real;
 use crate::param::{ParamError, ParamSpec, ParamVisitor};
 
-/// The laws by name, in the order of their numbers on the wire.
+/// Names of the laws, in the order of their numbers on the wire.
 pub const LAW_NAMES: &[&str] = &["none", "h", "h-cut", "f", "g", "cl1", "cl2", "table", "balance-assist"];
 
 /// Speed at and above which the balance assist is off \[m/s\].
 const BALANCE_OFF_M_S: f64 = 4.7;
 /// Speed up to which the balance assist grows with speed \[m/s\].
 const BALANCE_FULL_M_S: f64 = 1.5;
-/// Where `f` is least \[m/s\]: its vertex, at which it is still positive.
+/// Speed at which `f` is least \[m/s\]: its vertex, where it is still positive.
 const F_LEAST_M_S: f32 = 12.0 / 1.76;
 
-/// A roll-rate law. Gains in N m s/rad, speeds in m/s. Formulas are the sources' `K_phi_d`; the gain is
-/// minus that, except where a gain is said.
+/// A roll-rate law. Gains in N m s/rad, speeds in m/s. Formulas are the sources' `K_phi_d`, the negative of the gain,
+/// except where a gain is stated.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "no allocator to box the table with")]
 pub enum Law {
     /// No assist.
     #[default]
     None,
-    /// `h(v) = (4 v - 30) exp(-0.03 v^2)` (Kuipers 2020, eq. 3.13): the thesis's choice. Its gain
-    /// changes sign at 7.5 m/s and steers out of the fall above; `cut` makes it zero there.
+    /// `h(v) = (4 v - 30) exp(-0.03 v^2)` (Kuipers 2020, eq. 3.13), the choice of the thesis. Its gain changes sign at
+    /// 7.5 m/s and steers out of the fall above; `cut` makes it zero there.
     H {
         /// Zero above 7.5 m/s, as the thesis suggests.
         cut: bool,
@@ -49,8 +49,8 @@ pub enum Law {
     },
     /// A user's table.
     Table(GainSchedule),
-    /// Gain `kappa (4.7 - v)` from 1.5 to 4.7 m/s, zero above; below 1.5 m/s the straight line from zero
-    /// at rest. The balance assist of the Gazelle and TU Delft prototype (mechmotum/fall-probability-paper).
+    /// Gain `kappa (4.7 - v)` from 1.5 to 4.7 m/s, zero above; below 1.5 m/s linear from zero at rest. The balance
+    /// assist of the Gazelle and TU Delft prototype (mechmotum/fall-probability-paper).
     BalanceAssist {
         /// Slope of the gain over speed \[N s^2/rad\], 0.001..=20; published 3.9 and 5.2.
         kappa: f32,
@@ -60,7 +60,8 @@ pub enum Law {
 impl Law {
     /// The gain at a forward speed \[m/s\], positive where the law steers into the fall.
     ///
-    /// Finite for every speed within +-30 m/s, the range [`crate::sensors::validation`] lets through.
+    /// Finite for every speed within +-30 m/s, the range of the wheel speeds that [`crate::sensors::validation`]
+    /// accepts.
     #[inline]
     pub fn gain<R: Real>(&self, speed_m_s: R) -> R {
         let v = speed_m_s;
@@ -91,13 +92,14 @@ impl Law {
         }
     }
 
-    /// The gain of least magnitude between two speeds \[m/s\], in either order: 0 if the gain changes its sign
-    /// there. For a speed that is only known to lie between them: no other gain is safe whichever it is.
+    /// The gain of least magnitude between two speeds \[m/s\], in either order: 0 if the gain changes sign there. For a
+    /// speed known only to be within bounds, no larger gain is safe at every speed.
     ///
-    /// One speed given twice gives the bits of [`Law::gain`]. Exact but for the rounding of `gain`.
+    /// Two equal speeds give the bits of [`Law::gain`]. Exact except for the rounding of `gain`.
     pub fn gain_towards_zero(&self, one_m_s: f32, other_m_s: f32) -> f32 {
         let (low, high) = if one_m_s < other_m_s { (one_m_s, other_m_s) } else { (other_m_s, one_m_s) };
-        // Where the gain only falls with speed and stays positive; of these laws one evaluation costs as much as all else here.
+        // Here the gain falls with speed and stays positive. One evaluation of these laws takes as long as the rest of
+        // this function.
         match self {
             // The derivative is zero at -1.79 and 9.29 m/s, the gain at 7.5 m/s.
             Law::H { .. } if low >= -1.7 && high <= 7.5 => return h(high),
@@ -108,7 +110,7 @@ impl Law {
         }
         let least = nearer_zero(self.gain(one_m_s), self.gain(other_m_s));
         let inside = |v: f32| low < v && v < high;
-        // Every other law has no least magnitude but at the ends of the range and where it changes its sign.
+        // Every other law has its least magnitude at the ends of the range, at a zero crossing, or at the points below.
         match self {
             Law::F if inside(F_LEAST_M_S) => nearer_zero(least, self.gain(F_LEAST_M_S)),
             Law::Table(table) => {
@@ -119,7 +121,7 @@ impl Law {
         }
     }
 
-    /// Its number on the wire: its place in [`LAW_NAMES`].
+    /// The law's number on the wire: its index in [`LAW_NAMES`].
     pub fn number(&self) -> u8 {
         match self {
             Law::None => 0,
@@ -134,7 +136,7 @@ impl Law {
         }
     }
 
-    /// Its slope \[N s^2/rad\]; 0 for a law without one.
+    /// Slope of the gain \[N s^2/rad\]; 0 for a law without a slope.
     pub fn slope(&self) -> f32 {
         match self {
             Law::Cl2 { k } => *k,
@@ -143,7 +145,7 @@ impl Law {
         }
     }
 
-    /// The law of a number, not yet checked; `None` for a number that no law has.
+    /// The law with this number, not validated; `None` for an unknown number.
     pub fn numbered(number: u8, slope: f32, table: GainSchedule) -> Option<Self> {
         Some(match number {
             0 => Law::None,
@@ -159,7 +161,7 @@ impl Law {
         })
     }
 
-    /// Shows the law: which, then what it needs, the slope or the points of the table.
+    /// Visits the law: its kind, then its parameters, the slope or the points of the table.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let (mut number, mut slope) = (self.number(), self.slope());
         let mut table = match self {
@@ -192,19 +194,19 @@ impl Law {
     }
 }
 
-/// The gain of [`Law::H`], not cut.
+/// Gain of [`Law::H`] without the cut.
 #[inline]
 fn h<R: Real>(v: R) -> R {
     (R::lit(30.0) - R::lit(4.0) * v) * (R::lit(-0.03) * v * v).exp()
 }
 
-/// The gain of [`Law::G`].
+/// Gain of [`Law::G`].
 #[inline]
 fn g<R: Real>(v: R) -> R {
     (R::lit(40.0) - v) * (R::lit(-0.35) * v).exp()
 }
 
-/// The one of less magnitude, or 0 between gains of different sign.
+/// The gain of smaller magnitude, or 0 if the signs differ.
 fn nearer_zero(a: f32, b: f32) -> f32 {
     if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
         0.0

@@ -1,53 +1,52 @@
-//! Follows a path: a small torque that is added to the law's, so that a balancing bicycle comes back to a path.
+//! Path tracking: a small torque, added to the law's, that returns a balancing bicycle to a path.
 //!
-//! Full feedback of roll, steer, their rates, heading error, lateral error and its integral, with gains
-//! from a table over speed. A bicycle must first steer away from where it is to go; feedback of the
-//! errors alone can't do that and stay upright, feedback of the whole state does it by itself. The
-//! gains of [`PathTracking::default`] are computed by `sim_host::tracking`: the linear-quadratic regulator
-//! of the linear bicycle with the law `h` in the loop.
+//! Full state feedback of roll, steer, their rates, heading error, lateral error and its integral, with gains from a
+//! table over speed. A bicycle must first steer away from its target; feedback of the errors alone cannot do that and
+//! stay upright, state feedback can. The gains of [`PathTracking::default`] are computed by `sim_host::tracking`: the
+//! linear-quadratic regulator of the linear bicycle with the law `h` in the loop.
 //!
-//! It is the weakest voice: bounded in size and slope, it fades out while the rider pushes or turns
-//! against the assist, below its slowest speed, and when the path is lost. Its integral stands still whenever
-//! the torque is not wholly its own.
+//! Tracking has the lowest priority. It is bounded in size and slope, and fades out while the rider pushes or turns
+//! against the assist, below its lowest speed, and when the path is lost. Its integral is frozen whenever a limit, the
+//! fade or the authority changes the tracking torque.
 
 use crate::maths::{bounded, max, min};
 use crate::param::{ParamError, ParamSpec, ParamVisitor};
 use crate::safety::limits::ActiveLimits;
 
-/// Points of the gain table.
+/// Number of points of the gain table.
 pub const TRACK_POINTS: usize = 4;
-/// Gains of a point: of roll, steer, roll rate, steer rate, heading, lateral error and its integral.
+/// Number of gains of a point: of roll, steer, roll rate, steer rate, heading, lateral error and its integral.
 pub const TRACK_GAINS: usize = 7;
 
-/// How a path is followed.
+/// Parameters of path tracking.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathTracking {
-    /// Speeds of the table \[m/s\], each at least 0.1 above the one before; below the first there is no tracking.
+    /// Speeds of the table \[m/s\], each at least 0.1 above the previous one; no tracking below the first.
     pub speed_m_s: [f32; TRACK_POINTS],
-    /// Torque against each quantity: N m per rad, rad, rad/s, rad/s, rad, m and m s, in the order of [`TRACK_GAINS`].
-    /// Linear between the points, constant above the last.
+    /// Gain of each quantity, in the order of [`TRACK_GAINS`]: N m per rad, rad, rad/s, rad/s, rad, m and m s. The
+    /// torque is the negative sum of gain times quantity. Linear between the points, constant above the last.
     pub gains: [[f32; TRACK_GAINS]; TRACK_POINTS],
     /// Largest torque, either way \[N m\].
     pub max_torque_nm: f32,
-    /// Largest change of the torque \[N m/s\].
+    /// Largest rate of change of the torque \[N m/s\].
     pub slew_nm_s: f32,
-    /// Heading error beyond which it counts no more \[rad\].
+    /// Limit of the heading error \[rad\].
     pub heading_max_rad: f32,
-    /// Lateral error beyond which it counts no more \[m\]: so the path is approached at a bounded angle.
+    /// Limit of the lateral error \[m\]; it bounds the angle at which the path is approached.
     pub lateral_max_m: f32,
-    /// Lateral error beyond which the integral grows no faster \[m\].
+    /// Limit of the lateral error for the integral \[m\].
     pub integrate_max_m: f32,
     /// Largest integral \[m s\].
     pub integral_max_m_s: f32,
-    /// Torque of the rider, either way, above which tracking gives way \[N m\].
+    /// Rider's torque, either way, above which tracking fades out \[N m\].
     pub rider_nm: f32,
-    /// From all to none when it gives way, and back \[ms\].
+    /// Time of the fade from full torque to none, and back \[ms\].
     pub fade_ms: u16,
 }
 
 impl Default for PathTracking {
-    /// The computed gains. Errors count up to 0.3 rad and 1 m, so that a path far away is approached at 0.1 to
-    /// 0.2 rad; 2 N m leave the rest of 7 N m to balance.
+    /// The computed gains. Errors are limited to 0.3 rad and 1 m, so that a distant path is approached at 0.1 to 0.2
+    /// rad; 2 N m leave the rest of 7 N m for balance.
     fn default() -> Self {
         Self {
             speed_m_s: [2.0, 4.0, 6.0, 8.0],
@@ -91,36 +90,36 @@ impl PathTracking {
                 to.number(&ParamSpec::new(group, name, -200.0, 200.0), gain);
             }
         }
-        let leaf = |name, min, max| ParamSpec::new("track", name, min, max);
-        to.number(&leaf("max_torque_nm", 0.0, 10.0), &mut self.max_torque_nm);
-        to.number(&leaf("slew_nm_s", 0.1, 1000.0), &mut self.slew_nm_s);
-        to.number(&leaf("heading_max_rad", 0.01, 1.0), &mut self.heading_max_rad);
-        to.number(&leaf("lateral_max_m", 0.01, 10.0), &mut self.lateral_max_m);
-        to.number(&leaf("integrate_max_m", 0.0, 10.0), &mut self.integrate_max_m);
-        to.number(&leaf("integral_max_m_s", 0.0, 100.0), &mut self.integral_max_m_s);
-        to.number(&leaf("rider_nm", 0.0, 50.0), &mut self.rider_nm);
-        to.count(&leaf("fade_ms", 10.0, 5000.0), &mut self.fade_ms);
+        let spec = |name, min, max| ParamSpec::new("track", name, min, max);
+        to.number(&spec("max_torque_nm", 0.0, 10.0), &mut self.max_torque_nm);
+        to.number(&spec("slew_nm_s", 0.1, 1000.0), &mut self.slew_nm_s);
+        to.number(&spec("heading_max_rad", 0.01, 1.0), &mut self.heading_max_rad);
+        to.number(&spec("lateral_max_m", 0.01, 10.0), &mut self.lateral_max_m);
+        to.number(&spec("integrate_max_m", 0.0, 10.0), &mut self.integrate_max_m);
+        to.number(&spec("integral_max_m_s", 0.0, 100.0), &mut self.integral_max_m_s);
+        to.number(&spec("rider_nm", 0.0, 50.0), &mut self.rider_nm);
+        to.count(&spec("fade_ms", 10.0, 5000.0), &mut self.fade_ms);
     }
 
     /// Checks that the speeds rise.
     ///
     /// # Errors
-    /// The speed, and the range that the one before leaves it.
+    /// The speed, and the range allowed by the previous one.
     pub fn cross(&self) -> Result<(), ParamError> {
         for (group, pair) in GROUPS.into_iter().skip(1).zip(self.speed_m_s.windows(2)) {
-            if let [before, after] = *pair {
-                ParamSpec::new(group, "speed_m_s", before + 0.1, 30.0).check(after)?;
+            if let [previous, next] = *pair {
+                ParamSpec::new(group, "speed_m_s", previous + 0.1, 30.0).check(next)?;
             }
         }
         Ok(())
     }
 
-    /// The torque against errors at a speed \[N m\].
-    fn against(&self, speed: f32, errors: &[f32; TRACK_GAINS]) -> f32 {
-        let mut before: Option<(f32, &[f32; TRACK_GAINS])> = None;
+    /// Sum of gain times error at a speed \[N m\].
+    fn weighted_sum(&self, speed: f32, errors: &[f32; TRACK_GAINS]) -> f32 {
+        let mut previous: Option<(f32, &[f32; TRACK_GAINS])> = None;
         for (&v, gains) in self.speed_m_s.iter().zip(&self.gains) {
             if speed <= v {
-                return before.map_or_else(
+                return previous.map_or_else(
                     || dot(gains, errors),
                     |(v0, g0)| {
                         let low = dot(g0, errors);
@@ -128,13 +127,13 @@ impl PathTracking {
                     },
                 );
             }
-            before = Some((v, gains));
+            previous = Some((v, gains));
         }
-        before.map_or(0.0, |(_, gains)| dot(gains, errors))
+        previous.map_or(0.0, |(_, gains)| dot(gains, errors))
     }
 }
 
-/// Where the bicycle is, seen from the path. Positive: to the right of it, pointing to the right of it.
+/// Deviation from the path. Positive: to the right of the path, heading to the right of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathError {
     /// Heading less the path's direction \[rad\].
@@ -143,7 +142,7 @@ pub struct PathError {
     pub lateral_m: f32,
 }
 
-/// What tracking goes by in one control period.
+/// Inputs of path tracking in one control period.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrackingInput {
     /// Roll, right positive \[rad\].
@@ -156,45 +155,44 @@ pub struct TrackingInput {
     pub steer_rate_rad_s: f32,
     /// Forward speed \[m/s\].
     pub speed_m_s: f32,
-    /// The path's errors, if they are known and fresh.
+    /// Path errors, if valid.
     pub path: Option<PathError>,
-    /// The rider's torque \[N m\], if it is known.
+    /// The rider's torque \[N m\], if valid.
     pub rider_torque_nm: Option<f32>,
-    /// The limits that acted in the last period.
+    /// Limits that were active in the last period.
     pub acted: ActiveLimits,
-    /// The part of the torque that is permitted, 0 to 1.
+    /// Permitted fraction of the torque, 0 to 1.
     pub authority: f32,
     /// Time since the last step \[us\].
     pub elapsed_us: u32,
 }
 
-/// What tracking remembers. The default has not followed anything yet.
+/// State of path tracking. The default is one that has not followed a path yet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathTrackingState {
     path: PathError,
     integral_m_s: f32,
-    strength: f32,
+    fade: f32,
     torque_nm: f32,
 }
 
-/// Longest time that a step reckons with \[us\].
-const LONGEST_US: u32 = 20_000;
+/// Limit of the time of a step \[us\].
+const MAX_STEP_US: u32 = 20_000;
 
-/// The torque that leads back to the path, to be added to the law's \[N m\]. Finite, and odd.
+/// Tracking torque, to be added to the law's \[N m\]. Finite, and odd in its inputs.
 pub fn step(track: &PathTracking, state: &mut PathTrackingState, input: &TrackingInput) -> f32 {
-    let elapsed_s = input.elapsed_us.min(LONGEST_US) as f32 * 1e-6;
+    let elapsed_s = input.elapsed_us.min(MAX_STEP_US) as f32 * 1e-6;
     let path = input.path.filter(|p| p.heading_rad.is_finite() && p.lateral_m.is_finite());
-    let pushed = input.rider_torque_nm.is_some_and(|t| t.abs() > track.rider_nm);
+    let rider_pushes = input.rider_torque_nm.is_some_and(|t| t.abs() > track.rider_nm);
     let overridden = input.acted.0 & (ActiveLimits::RIDER_TORQUE.0 | ActiveLimits::RIDER_MOTION.0) != 0;
     let permitted = input.authority > 0.0 && input.speed_m_s >= track.speed_m_s[0];
-    let follows = path.is_some() && permitted && !pushed && !overridden;
+    let tracking = path.is_some() && permitted && !rider_pushes && !overridden;
 
     let change = elapsed_s / (f32::from(track.fade_ms) * 1e-3);
-    state.strength =
-        if follows { min(1.0, state.strength + change) } else { max(0.0, state.strength - change) };
-    // A lost path is held while it fades.
+    state.fade = if tracking { min(1.0, state.fade + change) } else { max(0.0, state.fade - change) };
+    // The last errors of a lost path are held while the torque fades out.
     state.path = path.unwrap_or(state.path);
-    if state.strength == 0.0 {
+    if state.fade == 0.0 {
         state.integral_m_s = 0.0;
     }
 
@@ -208,13 +206,13 @@ pub fn step(track: &PathTracking, state: &mut PathTrackingState, input: &Trackin
         bounded(lateral_m, track.lateral_max_m),
         state.integral_m_s,
     ];
-    let wanted = -track.against(input.speed_m_s, &errors);
-    let faded = bounded(wanted, track.max_torque_nm) * state.strength;
+    let unlimited_nm = -track.weighted_sum(input.speed_m_s, &errors);
+    let faded = bounded(unlimited_nm, track.max_torque_nm) * state.fade;
     let slew = track.slew_nm_s * elapsed_s;
-    let torque = within(faded, state.torque_nm - slew, state.torque_nm + slew);
+    let torque = clamp(faded, state.torque_nm - slew, state.torque_nm + slew);
 
-    let whole = state.strength == 1.0 && input.authority >= 1.0 && input.acted.is_empty();
-    if whole && torque == wanted {
+    let unrestricted = state.fade == 1.0 && input.authority >= 1.0 && input.acted.is_empty();
+    if unrestricted && torque == unlimited_nm {
         let rate = bounded(lateral_m, track.integrate_max_m);
         state.integral_m_s = bounded(state.integral_m_s + rate * elapsed_s, track.integral_max_m_s);
     }
@@ -226,8 +224,8 @@ fn dot(gains: &[f32; TRACK_GAINS], errors: &[f32; TRACK_GAINS]) -> f32 {
     gains.iter().zip(errors).map(|(gain, error)| gain * error).sum()
 }
 
-/// `f32::clamp` without its panic on disordered bounds; NaN stays what it is.
-fn within(x: f32, low: f32, high: f32) -> f32 {
+/// `f32::clamp` without its panic on unordered bounds; NaN stays NaN.
+fn clamp(x: f32, low: f32, high: f32) -> f32 {
     if x < low {
         low
     } else if x > high {

@@ -1,9 +1,9 @@
-//! The two number types a law can be evaluated in: f32 on the chip and in the firmware's copy on
-//! the host, f64 in the simulator's ideal continuous controller.
+//! Number types for evaluating a law: f32 on the chip and in the host's build of the firmware, f64 in the simulator's
+//! ideal continuous controller.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A floating-point number with the few operations the laws need.
+/// A floating-point number with the operations that the laws need.
 pub trait Real:
     Copy
     + PartialOrd
@@ -13,9 +13,9 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// A literal of a formula, rounded once to the type.
+    /// Converts a constant of a formula, rounded once to the type.
     fn lit(value: f64) -> Self;
-    /// e to the power of `self`, as [`libm`] has it (error below 1 ulp; the same bits on every machine).
+    /// e to the power of `self`, with the bits of [`libm`] (error below 1 ulp, identical on every machine).
     fn exp(self) -> Self;
 }
 
