@@ -1,7 +1,7 @@
-//! May torque flow, how much of it, and if not, why not.
+//! Decides whether torque is permitted, which fraction of it, and for which causes it is not.
 //!
-//! Permission is off at boot, given only on a deliberate press of the rider's switch ([`crate::safety::press`]), and taken away
-//! by any listed cause. A press that is refused is used up. All causes present are told at once.
+//! Permission is off at boot, requires a deliberate press of the rider's switch ([`crate::safety::press`]), and is
+//! withdrawn by any listed cause. A rejected press is consumed. All present causes are reported at once.
 
 use crate::estimate::RollError;
 use crate::fault::{Cause, Causes};
@@ -11,29 +11,29 @@ use crate::sensors::monitor::Loss;
 use crate::sensors::validation::ValidationConfig;
 use core::hint::cold_path;
 
-/// Where the controller stands. The number is the one on the wire.
+/// Mode of the controller. The discriminant is its number on the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Mode {
-    /// Not stepped yet.
+    /// Before the first step.
     #[default]
     Off = 0,
-    /// Waits for the sensors' first good samples.
+    /// Waiting for the sensors' first good samples.
     Initialise = 1,
-    /// All sensors must stay good for a while.
+    /// All sensors must stay valid for the self-test time.
     SelfTest = 2,
-    /// Ready; waits for the rider's switch.
+    /// Ready; waiting for the rider's switch.
     Standby = 3,
-    /// Torque flows.
+    /// Engaged: torque is permitted.
     Engaged = 4,
-    /// Reduced torque flows, because something is missing that can be done without.
+    /// Reduced torque is permitted, because a dispensable sensor is lost or sensors disagree.
     Limp = 5,
-    /// No torque until the causes are gone, the switch was released, and all begins anew.
+    /// No torque until the causes are gone and the switch has been released; initialisation and self-test then repeat.
     Fault = 6,
 }
 
 impl Mode {
-    /// Its name.
+    /// Name of the mode.
     pub const fn name(self) -> &'static str {
         match self {
             Mode::Off => "off",
@@ -46,38 +46,38 @@ impl Mode {
         }
     }
 
-    /// Whether torque may flow.
+    /// Whether the mode permits torque.
     pub const fn drives(self) -> bool {
         matches!(self, Mode::Engaged | Mode::Limp)
     }
 }
 
-/// Conditions of the permission. The default lets everything pass: no self-test, no ramps, no polarity check.
+/// Conditions of engagement. The default has none: no self-test, no ramps, no polarity check.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EngagementConfig {
-    /// How long all sensors must be good before standby \[control periods\].
+    /// Time for which all sensors must be valid before standby \[control periods\].
     pub self_test_ticks: u16,
-    /// From no to full authority after the switch, or after a pause \[control periods\].
+    /// Ramp of the authority from 0 to 1, after engagement or a pause \[control periods\].
     pub ramp_in_ticks: u16,
-    /// From full to no authority when the switch is released, or in a pause \[control periods\].
+    /// Ramp of the authority from 1 to 0, at disengagement or in a pause \[control periods\].
     pub ramp_out_ticks: u16,
-    /// Which press of the rider's switch is deliberate.
+    /// Durations of a deliberate press of the rider's switch.
     pub press: PressConfig,
-    /// Refuse to engage until a polarity check was passed.
+    /// Whether engagement requires a passed polarity check.
     pub need_polarity: bool,
-    /// Roll angle, either way, beyond which the bicycle has fallen, as far as the angle is sure \[rad\].
+    /// Roll angle, either way and less its error bound, beyond which the bicycle has fallen \[rad\].
     pub fallen_rad: Option<f32>,
-    /// Bound of the roll angle beyond which nobody can say whether the bicycle has fallen \[rad\]; only told.
+    /// Error bound of the roll angle beyond which a fall cannot be detected \[rad\]; it is only reported.
     pub roll_unknown_rad: Option<f32>,
-    /// Specific force beyond which, together with a fast roll or steer rate, the bicycle tumbles \[m/s^2\].
+    /// Specific force that, together with a fast roll or steer rate, means that the bicycle tumbles \[m/s^2\].
     pub crash_m_s2: Option<f32>,
     /// Speed below which the bicycle is parked \[m/s\]; torque pauses.
     pub parked_m_s: Option<f32>,
-    /// Speed backwards beyond which torque pauses \[m/s\].
+    /// Backward speed above which torque pauses \[m/s\].
     pub backwards_m_s: Option<f32>,
     /// Specific force below which the bicycle is in the air \[m/s^2\].
     pub lifted_m_s2: Option<f32>,
-    /// How long any of the four must last \[control periods\].
+    /// Persistence of fallen, lifted, backwards and parked, before they are set or cleared \[control periods\].
     pub persist_ticks: u16,
 }
 
@@ -100,33 +100,34 @@ impl EngagementConfig {
     }
 }
 
-/// For how long after the force of a crash its rate may come \[s\].
+/// Time after the force of a crash in which its rate can follow \[s\].
 const CRASH_S: f32 = 0.1;
-/// Roll rate and steer rate of a tumble \[rad/s\]: beyond those of calm riding; hard riding has them without the force.
+/// Roll rate and steer rate of a tumble \[rad/s\]: above those of calm riding; hard riding reaches them without the
+/// force.
 const CRASH_RAD_S: [f32; 2] = [2.0, 8.0];
 
-/// What each cause does, from the sensors' declarations and for the rest once and for all.
+/// Reaction to each cause: by the sensors' declarations, fixed for the other causes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reactions {
-    /// Fault: no torque, and all begins anew.
+    /// Fault: no torque; initialisation and self-test repeat.
     pub fault: Causes,
-    /// Back to standby: a fresh press is needed.
+    /// Standby: a new press is needed.
     pub disengage: Causes,
-    /// No torque while it lasts.
+    /// Pause: no torque while the cause is present.
     pub pause: Causes,
-    /// Reduced torque while it lasts.
+    /// Limp mode: reduced torque while the cause is present.
     pub limp: Causes,
-    /// Of these, what counts until the rider asks anew: who is wrong is not known.
-    pub lasting: Causes,
+    /// Limp causes that stay set until the rider engages again, because the faulty sensor is unknown.
+    pub until_reengaged: Causes,
 }
 
-/// What follows from the conditions alone: a condition that is off can't be met.
+/// Constants derived from the conditions; a condition that is off has an unreachable threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EngagementPlan {
     fallen_rad: f32,
     roll_unknown_rad: f32,
     crash_m_s2: f32,
-    /// How long after it a force counts \[control periods\].
+    /// Time for which a crash force counts \[control periods\].
     crash_ticks: u16,
     parked_m_s: f32,
     backwards_m_s: f32,
@@ -134,7 +135,7 @@ pub struct EngagementPlan {
 }
 
 impl EngagementPlan {
-    /// Of checked conditions.
+    /// For validated conditions.
     pub fn new(config: &EngagementConfig, rate_hz: f32) -> Self {
         Self {
             fallen_rad: config.fallen_rad.unwrap_or(f32::INFINITY),
@@ -149,12 +150,12 @@ impl EngagementPlan {
 }
 
 impl Reactions {
-    /// The reactions under these declarations.
+    /// The reactions for these declarations.
     pub fn new(input: &ValidationConfig) -> Self {
         use Cause::*;
         let fault = Causes::all(&[
             GyroDisagrees,
-            // One of the suspects is the gyro, without which nothing is sure.
+            // The gyro is possibly at fault, and without it no other check is reliable.
             YawDisagrees,
             MotorDisagrees,
             WrongResponse,
@@ -174,17 +175,17 @@ impl Reactions {
             disengage: Causes::all(&[Fallen, Lifted, PolarityUnchecked, PolarityWrong, SwitchOff]),
             pause: Causes::all(&[Backwards, Parked]),
             limp: limp.with(input.causes_of(Loss::Limp)),
-            lasting: limp,
+            until_reengaged: limp,
         }
     }
 
-    /// What refuses a press of the switch in standby.
+    /// Causes that reject a press of the switch in standby.
     pub fn refusals(&self) -> Causes {
         self.disengage.with(self.pause)
     }
 }
 
-/// What the permission remembers.
+/// State of the engagement logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EngagementState {
     mode: Mode,
@@ -194,67 +195,67 @@ pub struct EngagementState {
     authority: f32,
     /// Causes since the fault began.
     latched: Causes,
-    /// Disagreements since the rider asked.
-    lasting: Causes,
+    /// Disagreements since the rider engaged.
+    disagreements: Causes,
     position: Debounced,
-    /// For how long the last force of a crash still counts \[control periods\].
-    struck_ticks: u16,
+    /// Remaining time for which the last crash force counts \[control periods\].
+    crash_force_ticks: u16,
 }
 
-/// The permission of one control period.
+/// Permission in one control period.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EngagementOutput {
-    /// Where the controller stands.
+    /// Mode of the controller.
     pub mode: Mode,
-    /// The part of the torque that may flow, 0 to 1.
+    /// Permitted fraction of the torque, 0 to 1.
     pub authority: f32,
-    /// Every cause that is present, and in a fault every one since it began.
+    /// Every present cause; in a fault, every cause since the fault began.
     pub causes: Causes,
 }
 
-/// What the permission looks at.
+/// Inputs of the engagement logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EngagementInput {
-    /// What is wrong with the inputs, and what the guard found in the last period.
+    /// Causes of the sensors, and of the guard in the previous period.
     pub causes: Causes,
     /// The rider's switch.
     pub engage: bool,
-    /// A polarity check was passed.
+    /// Whether a polarity check was passed.
     pub polarity_checked: bool,
-    /// Roll angle \[rad\] and by how much it may be wrong, if it is estimated.
+    /// Roll angle \[rad\] and its error, if estimated.
     pub roll_rad: Option<(f32, RollError)>,
-    /// Roll rate, and steer rate as far as known \[rad/s\].
+    /// Roll rate and steer rate, 0 where unknown \[rad/s\].
     pub rates_rad_s: [f32; 2],
     /// Forward speed \[m/s\], if known.
     pub speed_m_s: Option<f32>,
-    /// Size of the specific force \[m/s^2\], if known.
+    /// Magnitude of the specific force \[m/s^2\], if known.
     pub force_m_s2: Option<f32>,
 }
 
-/// The causes of the bicycle's position and motion: each counts once it has lasted, and no longer when it has been
-/// gone as long.
+/// Debounced causes of the bicycle's position and motion: set after more than `persist_ticks` periods of presence,
+/// cleared after as many of absence.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Debounced {
-    holds: Causes,
-    /// For how long each has been other than it counts \[control periods\].
+    active: Causes,
+    /// Time for which each cause has differed from its debounced state \[control periods\].
     ticks: [u16; 4],
 }
 
 impl Debounced {
-    fn step(&mut self, now: Causes, persist_ticks: u16) -> Causes {
-        // As nearly always.
-        if now == self.holds && self.ticks == [0; 4] {
-            return now;
+    fn step(&mut self, present: Causes, persist_ticks: u16) -> Causes {
+        // The common case.
+        if present == self.active && self.ticks == [0; 4] {
+            return present;
         }
         cold_path();
         let causes = [Cause::Fallen, Cause::Lifted, Cause::Backwards, Cause::Parked];
         for (cause, ticks) in causes.into_iter().zip(&mut self.ticks) {
-            *ticks = if now.has(cause) == self.holds.has(cause) { 0 } else { ticks.saturating_add(1) };
+            *ticks = if present.has(cause) == self.active.has(cause) { 0 } else { ticks.saturating_add(1) };
             if *ticks > persist_ticks {
-                (self.holds, *ticks) = (self.holds.toggled(cause), 0);
+                (self.active, *ticks) = (self.active.toggled(cause), 0);
             }
         }
-        self.holds
+        self.active
     }
 }
 
@@ -267,11 +268,12 @@ pub fn step(
     input: &EngagementInput,
 ) -> EngagementOutput {
     let press = state.switch.step(&config.press, input.engage);
-    let causes = state.causes(config, plan, input, press).with(state.lasting);
-    state.lasting = if state.mode.drives() { causes.and(reactions.lasting) } else { Causes::NONE };
+    let causes = state.causes(config, plan, input, press).with(state.disagreements);
+    state.disagreements =
+        if state.mode.drives() { causes.and(reactions.until_reengaged) } else { Causes::NONE };
     let mode = state.next(config, reactions, press, causes);
     if press.is_closed() && (mode != Mode::Standby || causes.any(reactions.refusals())) {
-        state.switch.spend();
+        state.switch.consume();
     }
     if mode != state.mode {
         (state.mode, state.ticks) = (mode, 0);
@@ -282,21 +284,21 @@ pub fn step(
     state.authority = if mode == Mode::Fault {
         0.0
     } else if mode.drives() && !paused {
-        towards(state.authority, 1.0, config.ramp_in_ticks)
+        ramp_step(state.authority, 1.0, config.ramp_in_ticks)
     } else {
-        towards(state.authority, 0.0, config.ramp_out_ticks)
+        ramp_step(state.authority, 0.0, config.ramp_out_ticks)
     };
     let causes = if mode == Mode::Fault { causes.with(state.latched) } else { causes };
     EngagementOutput { mode, authority: state.authority, causes }
 }
 
 impl EngagementState {
-    /// The part of the torque that is permitted, 0 to 1.
+    /// Permitted fraction of the torque, 0 to 1.
     pub fn authority(&self) -> f32 {
         self.authority
     }
 
-    /// Everything that stands in the way now.
+    /// All causes present in this period.
     fn causes(
         &mut self,
         config: &EngagementConfig,
@@ -304,23 +306,24 @@ impl EngagementState {
         input: &EngagementInput,
         press: Press,
     ) -> Causes {
-        let mut now = Causes::NONE;
+        let mut present = Causes::NONE;
         let mut motion_causes = Causes::NONE;
         if let Some((roll, error)) = input.roll_rad {
-            // The bound only where it matters.
-            let lies = roll.abs() > plan.fallen_rad && roll.abs() - error.bound_rad() > plan.fallen_rad;
-            now.note(Cause::Fallen, lies);
+            // The error bound is computed only where it is needed.
+            let fallen = roll.abs() > plan.fallen_rad && roll.abs() - error.bound_rad() > plan.fallen_rad;
+            present.note(Cause::Fallen, fallen);
             motion_causes.note(Cause::RollUnknown, error.is_beyond(plan.roll_unknown_rad));
         }
         if let Some(force) = input.force_m_s2 {
-            now.note(Cause::Lifted, force < plan.lifted_m_s2);
-            motion_causes.note(Cause::Crash, self.crashes(plan, force, input.rates_rad_s));
+            present.note(Cause::Lifted, force < plan.lifted_m_s2);
+            motion_causes.note(Cause::Crash, self.detect_crash(plan, force, input.rates_rad_s));
         }
         if let Some(speed) = input.speed_m_s {
-            now.note(Cause::Backwards, -speed > plan.backwards_m_s);
-            now.note(Cause::Parked, speed.abs() < plan.parked_m_s);
+            present.note(Cause::Backwards, -speed > plan.backwards_m_s);
+            present.note(Cause::Parked, speed.abs() < plan.parked_m_s);
         }
-        let mut causes = input.causes.with(motion_causes).with(self.position.step(now, config.persist_ticks));
+        let mut causes =
+            input.causes.with(motion_causes).with(self.position.step(present, config.persist_ticks));
         causes.note(Cause::PolarityUnchecked, config.need_polarity && !input.polarity_checked);
         causes.note(Cause::SwitchOff, !input.engage);
         causes.note(Cause::SwitchHeld, matches!(press, Press::Held | Press::Opened) && !self.mode.drives());
@@ -329,21 +332,21 @@ impl EngagementState {
         causes
     }
 
-    /// Whether a force of no ride came, and with it or within a tenth of a second after it a rate of no calm one.
-    fn crashes(&mut self, plan: &EngagementPlan, force_m_s2: f32, [roll, steer]: [f32; 2]) -> bool {
+    /// Whether the bicycle tumbles: a crash force, and with it or within [`CRASH_S`] after it a crash rate.
+    fn detect_crash(&mut self, plan: &EngagementPlan, force_m_s2: f32, [roll, steer]: [f32; 2]) -> bool {
         if force_m_s2 > plan.crash_m_s2 {
-            self.struck_ticks = plan.crash_ticks;
+            self.crash_force_ticks = plan.crash_ticks;
         }
-        // As nearly always.
-        if self.struck_ticks == 0 {
+        // The common case.
+        if self.crash_force_ticks == 0 {
             return false;
         }
         cold_path();
-        self.struck_ticks -= 1;
+        self.crash_force_ticks -= 1;
         roll.abs() > CRASH_RAD_S[0] || steer.abs() > CRASH_RAD_S[1]
     }
 
-    /// The mode that follows.
+    /// The next mode.
     fn next(
         &mut self,
         config: &EngagementConfig,
@@ -351,40 +354,40 @@ impl EngagementState {
         press: Press,
         causes: Causes,
     ) -> Mode {
-        // At boot sensors are expected to be missing; that is no fault yet.
-        let broken = causes.and(reactions.fault);
+        // At boot the sensors have no samples yet, which is not a fault.
+        let faults = causes.and(reactions.fault);
         let started = !matches!(self.mode, Mode::Off | Mode::Initialise);
-        if started && !broken.is_empty() {
-            self.latched = if self.mode == Mode::Fault { self.latched.with(broken) } else { broken };
+        if started && !faults.is_empty() {
+            self.latched = if self.mode == Mode::Fault { self.latched.with(faults) } else { faults };
             return Mode::Fault;
         }
         match self.mode {
             Mode::Off => Mode::Initialise,
-            Mode::Initialise if broken.is_empty() => Mode::SelfTest,
+            Mode::Initialise if faults.is_empty() => Mode::SelfTest,
             Mode::SelfTest if self.ticks >= config.self_test_ticks => Mode::Standby,
             Mode::Standby if press == Press::Pressed && !causes.any(reactions.refusals()) => {
-                engaged(reactions, causes)
+                engaged_mode(reactions, causes)
             }
             Mode::Engaged | Mode::Limp if causes.any(reactions.disengage) => Mode::Standby,
-            Mode::Engaged | Mode::Limp => engaged(reactions, causes),
+            Mode::Engaged | Mode::Limp => engaged_mode(reactions, causes),
             Mode::Fault if press == Press::Released => Mode::Initialise,
-            same => same,
+            mode => mode,
         }
     }
 }
 
-/// The mode in which torque flows under these causes.
-fn engaged(reactions: &Reactions, causes: Causes) -> Mode {
+/// The engaged mode under these causes: limp or full.
+fn engaged_mode(reactions: &Reactions, causes: Causes) -> Mode {
     if causes.any(reactions.limp) { Mode::Limp } else { Mode::Engaged }
 }
 
-/// A step of a ramp that takes `ticks` from 0 to 1; none is at once.
-fn towards(from: f32, to: f32, ticks: u16) -> f32 {
+/// One step of a ramp that takes `ticks` periods from 0 to 1; 0 ticks is a jump.
+fn ramp_step(from: f32, to: f32, ticks: u16) -> f32 {
     if from == to {
         return to;
     }
     let step = 1.0 / f32::from(ticks.max(1));
-    // So that rounding does not leave it a hair from where it goes.
+    // Snaps to the target, so that rounding leaves no residue.
     if (to - from).abs() < 1.5 * step {
         to
     } else if from < to {

@@ -1,12 +1,11 @@
-//! Judges the torque just before the motor, by the same table as the shaper but with code of its own.
+//! Checks the limiter's torque immediately before the motor, against the same limits but with independent code.
 //!
-//! Where the shaper computes the nearest torque it may ask for, the guard asks what the torque
-//! would have to have been: how long such a change takes, how far such a torque lies beyond a line.
-//! It never corrects. What it finds wrong becomes zero, and it forgets all, so that whoever asked
-//! must begin anew from zero.
+//! The limiter computes the nearest allowed torque. The guard checks the torque it is given: was there time for the
+//! change, is the value inside each limit? It never corrects. On a violation the torque becomes zero and the guard
+//! clears its state; the limiter restarts from zero.
 //!
-//! It is more lenient than the shaper by rounding alone ([`slack`]), by the microsecond to which time is
-//! known, and by an eighth of the window's length.
+//! The guard is more tolerant than the limiter only by rounding ([`slack`]), by one microsecond, the resolution of
+//! time, and by an eighth of the window's length.
 
 use crate::fault::Cause;
 use crate::maths::{is_finite, min};
@@ -14,23 +13,23 @@ use crate::safety::limiter::TorqueRequest;
 use crate::safety::limits::{CAP_POINTS, Limits};
 use core::hint::cold_path;
 
-/// What is wrong with a torque. The numbers stay.
+/// Limit that a torque violates. The numbers are permanent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Violation {
-    /// Not a number, or infinite.
+    /// NaN or infinite.
     NotFinite = 1,
-    /// Not zero without permission.
+    /// Not zero while torque is not permitted.
     NotPermitted = 2,
-    /// Beyond the largest torque.
+    /// Above the largest torque.
     Magnitude = 3,
-    /// Beyond what the authority leaves.
+    /// Above the fraction given by the authority.
     Authority = 4,
-    /// Beyond what limp mode leaves.
+    /// Above the largest torque of limp mode.
     Limp = 5,
-    /// Beyond the largest torque at this speed.
+    /// Above the largest torque at this speed.
     Speed = 6,
-    /// Beyond what the taper leaves.
+    /// Above the taper's limit.
     Taper = 7,
     /// Against the torque of the rider.
     RiderTorque = 8,
@@ -42,12 +41,12 @@ pub enum Violation {
     Rise = 11,
     /// Towards zero too fast.
     Fall = 12,
-    /// Too far within the window.
+    /// Changed too far within the window.
     Window = 13,
 }
 
 impl Violation {
-    /// Its code.
+    /// The cause that reports this violation.
     pub const fn cause(self) -> Cause {
         match self {
             Violation::NotFinite => Cause::GuardNotFinite,
@@ -63,51 +62,54 @@ impl Violation {
     }
 }
 
-/// What follows from the table and the rate of calls alone.
+/// Constants derived from the limits and the call rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuardPlan {
     period_s: f32,
-    /// Time one N m takes, up and down \[s/(N m)\]; 0 without a limit.
+    /// Time per N m of change, rising and falling \[s/(N m)\]; 0 without a limit.
     rise_s_nm: f32,
     fall_s_nm: f32,
-    /// Largest torque; `f32::MAX` without a limit.
+    /// Largest torque \[N m\]; `f32::MAX` without a limit.
     max_nm: f32,
-    stagger_us: u32,
+    /// Time between the starts of two intervals \[us\].
+    spacing_us: u32,
 }
 
 impl GuardPlan {
-    /// Of a checked table, for `rate_hz` calls a second.
+    /// For validated limits and `rate_hz` calls per second.
     pub fn new(limits: &Limits, rate_hz: f32) -> Self {
         Self {
             period_s: 1.0 / rate_hz,
             rise_s_nm: limits.rise_nm_s.map_or(0.0, |r| 1.0 / r),
             fall_s_nm: limits.fall_nm_s.map_or(0.0, |r| 1.0 / r),
             max_nm: limits.max_torque_nm.unwrap_or(f32::MAX),
-            stagger_us: limits.window.map_or(u32::MAX, |w| u32::from(w.ms) * 1000 / STOPWATCHES as u32),
+            spacing_us: limits.window.map_or(u32::MAX, |w| u32::from(w.ms) * 1000 / INTERVALS as u32),
         }
     }
 }
 
-/// What the guard remembers of what was really output. `GuardState::default()`: zero for long.
+/// State of the guard: the torque that was output. `GuardState::default()` is that of a torque that has long been zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GuardState {
     torque_nm: f32,
-    turned_us: u32,
-    /// The least size of the torque since each watch was started, the newest first \[N m\]. The older ones learn what the
-    /// newest has seen when the next one is started.
-    watches: [f32; STOPWATCHES],
-    /// [`side`] of the torque; when it changes, every watch has seen zero.
+    /// Timer of the handlebar turning against the torque \[us\].
+    against_us: u32,
+    /// Smallest magnitude of the torque since the start of each interval, newest first \[N m\]. Only the newest is
+    /// updated in each period; the older ones take its value when the next interval starts.
+    minima: [f32; INTERVALS],
+    /// [`side`] of the torque; when it changes, every minimum becomes zero.
     side: f32,
-    since_us: u32,
+    /// Time since the newest interval started \[us\].
+    interval_us: u32,
 }
 
-/// The torque, if it is inside every limit; else why not, and the motor must be asked for zero.
+/// Checks a torque; returns it if it is inside every limit, else the violation, and the motor must receive zero.
 ///
-/// `permitted` is false where there must be no torque at this very instant; a permission that
-/// runs out over time is `request.authority`. Without permission the memory is cleared, so the shaper's must be too.
+/// `permitted` is false where torque is forbidden at this instant; a permission that fades over time is
+/// `request.authority`. Without permission the state is cleared, so the limiter's must be too.
 ///
 /// # Errors
-/// The first [`Violation`] in the order of their numbers.
+/// The first [`Violation`] in numerical order.
 pub fn check(
     limits: &Limits,
     plan: &GuardPlan,
@@ -116,8 +118,8 @@ pub fn check(
     permitted: bool,
     request: &TorqueRequest,
 ) -> Result<f32, Violation> {
-    state.pass_time(limits, plan, request);
-    let verdict = if !is_finite(torque_nm) {
+    state.advance(limits, plan, request);
+    let result = if !is_finite(torque_nm) {
         Err(Violation::NotFinite)
     } else if permitted {
         Torque::new(limits, plan, state, torque_nm, request.elapsed_us).check(state, request)
@@ -126,32 +128,32 @@ pub fn check(
     } else {
         Err(Violation::NotPermitted)
     };
-    if verdict.is_ok() && permitted {
+    if result.is_ok() && permitted {
         state.torque_nm = torque_nm;
     } else {
         *state = GuardState::default();
     }
-    verdict.map(|()| torque_nm)
+    result.map(|()| torque_nm)
 }
 
-/// What rounding may add \[N m\] to a torque that was `last_nm` before: 50 uN m, and two parts in a million.
+/// Tolerance for rounding of a torque that was `last_nm` before \[N m\]: 50 uN m plus two parts in a million.
 pub fn slack(torque_nm: f32, last_nm: f32) -> f32 {
     5e-5 + 2e-6 * (torque_nm.abs() + last_nm.abs())
 }
 
-/// A torque seen as a size and a side, less what rounding may have added.
+/// A torque as magnitude and side, with the rounding tolerance subtracted.
 struct Torque<'a> {
     limits: &'a Limits,
     plan: &'a GuardPlan,
-    /// Size beyond the slack \[N m\]; negative when too small to matter.
+    /// Magnitude less the slack \[N m\]; negative if negligible.
     size: f32,
-    /// [`side`] of it.
+    /// [`side`] of the torque.
     side: f32,
-    /// How far it shrank, on the side where it was, and how far it grew, each less the slack \[N m\].
-    shrunk: f32,
-    grown: f32,
-    /// How far it may have gone back towards zero, slack included; `None` if it changed sides \[N m\].
-    back: Option<f32>,
+    /// Decrease of the magnitude on the previous side, and increase of the magnitude, each less the slack \[N m\].
+    decrease: f32,
+    increase: f32,
+    /// Decrease towards zero plus the slack \[N m\]; `None` if the torque changed sides.
+    returned: Option<f32>,
     /// Time since the last call \[us\].
     elapsed_us: f32,
 }
@@ -166,60 +168,62 @@ impl<'a> Torque<'a> {
     ) -> Self {
         let last = state.torque_nm;
         let slack = slack(torque, last);
-        let (size, before) = (torque.abs(), last.abs());
-        let cross_checked = if last < 0.0 { torque > 0.0 } else { torque < 0.0 && last > 0.0 };
-        let (shrunk, grown, back) = if cross_checked {
-            // The time to zero is a matter of the torque that was: a huge one the other way gives it nothing.
-            (before - self::slack(0.0, last), size, None)
+        let (size, previous) = (torque.abs(), last.abs());
+        let crossed_zero = if last < 0.0 { torque > 0.0 } else { torque < 0.0 && last > 0.0 };
+        let (decrease, increase, returned) = if crossed_zero {
+            // The slack of the fall depends on the previous torque only: a large torque on the other side must not
+            // enlarge it.
+            (previous - self::slack(0.0, last), size, None)
         } else {
-            (before - size - slack, size - before, Some(before - size + slack))
+            (previous - size - slack, size - previous, Some(previous - size + slack))
         };
         Self {
             limits,
             plan,
             size: size - slack,
             side: side(torque),
-            shrunk,
-            grown: grown - slack,
-            back,
+            decrease,
+            increase: increase - slack,
+            returned,
             elapsed_us: elapsed_us as f32,
         }
     }
 
-    /// So long, or a control period if that is shorter \[s\].
-    fn within(&self, us: f32) -> f32 {
+    /// Time `us`, limited to one control period \[s\].
+    fn limited_time_s(&self, us: f32) -> f32 {
         min(self.plan.period_s, us * 1e-6)
     }
 
-    /// Whether it goes back to zero as fast as it may in the least time there was.
-    fn retreats(&self) -> bool {
-        let takes = |way: f32| way * self.plan.fall_s_nm >= self.within(self.elapsed_us);
-        self.limits.fall_nm_s.is_some() && self.back.is_some_and(takes)
+    /// Whether the torque returns to zero at the full fall rate over the elapsed time, at most one control period.
+    fn returns_to_zero(&self) -> bool {
+        let is_fastest =
+            |change_nm: f32| change_nm * self.plan.fall_s_nm >= self.limited_time_s(self.elapsed_us);
+        self.limits.fall_nm_s.is_some() && self.returned.is_some_and(is_fastest)
     }
 
     fn check(&self, state: &GuardState, request: &TorqueRequest) -> Result<(), Violation> {
-        refuse(Violation::Magnitude, self.size > self.plan.max_nm)?;
+        reject(Violation::Magnitude, self.size > self.plan.max_nm)?;
         if self.size > 0.0
-            && let Err(violation) = self.in_bounds(state, request)
-            && !self.retreats()
+            && let Err(violation) = self.check_bounds(state, request)
+            && !self.returns_to_zero()
         {
             return Err(violation);
         }
-        self.in_time()?;
+        self.check_rate()?;
         match self.limits.window {
-            Some(w) => refuse(Violation::Window, self.size > state.start(self.side) + w.nm),
+            Some(w) => reject(Violation::Window, self.size > state.minimum(self.side) + w.nm),
             None => Ok(()),
         }
     }
 
-    /// Whether it is inside all that depends on bicycle, rider and permission. One that goes back to zero need not be.
-    fn in_bounds(&self, state: &GuardState, request: &TorqueRequest) -> Result<(), Violation> {
+    /// Checks the limits that depend on bicycle, rider and permission. A torque that returns to zero is exempt.
+    fn check_bounds(&self, state: &GuardState, request: &TorqueRequest) -> Result<(), Violation> {
         let Limits { limp_fraction, speed_cap, taper, rider_torque, rider_motion, end_stop, .. } =
             self.limits;
         let max = self.plan.max_nm;
-        refuse(Violation::Authority, self.beyond(max, request.authority, 1.0))?;
+        reject(Violation::Authority, self.exceeds_fraction(max, request.authority, 1.0))?;
         if let (Some(part), true) = (*limp_fraction, request.limp) {
-            refuse(Violation::Limp, max < f32::MAX && self.beyond(max, part, 1.0))?;
+            reject(Violation::Limp, max < f32::MAX && self.exceeds_fraction(max, part, 1.0))?;
         }
         let (slow, fast) = (request.speed_low_m_s, request.speed_high_m_s);
         let (slow, fast) = if slow <= fast {
@@ -232,37 +236,40 @@ impl<'a> Torque<'a> {
             (-1e9, 1e9)
         };
         if let Some(cap) = speed_cap {
-            refuse(Violation::Speed, self.above_line(&cap.speed_m_s, &cap.torque_nm, slow, fast))?;
+            reject(Violation::Speed, self.above_line(&cap.speed_m_s, &cap.torque_nm, slow, fast))?;
         }
         if let Some(t) = taper {
-            refuse(Violation::Taper, self.beyond(max, slow - t.zero_m_s, t.full_m_s - t.zero_m_s))?;
+            reject(Violation::Taper, self.exceeds_fraction(max, slow - t.zero_m_s, t.full_m_s - t.zero_m_s))?;
         }
         if let (Some(r), Some(rider)) = (rider_torque, known_value(request.rider_torque_nm)) {
             let along = rider * self.side;
-            refuse(Violation::RiderTorque, self.size - max > (r.allowance_nm + along) * r.multiplier)?;
+            reject(Violation::RiderTorque, self.size - max > (r.allowance_nm + along) * r.multiplier)?;
         }
         if let Some(r) = rider_motion {
-            let over = state.turned_us.saturating_sub(u32::from(r.after_ms) * 1000);
-            if over > 0 {
+            let excess_us = state.against_us.saturating_sub(u32::from(r.after_ms) * 1000);
+            if excess_us > 0 {
                 let fade = f32::from(r.fade_ms);
-                refuse(Violation::RiderMotion, self.beyond(max, fade - over as f32 * 1e-3, fade))?;
+                reject(
+                    Violation::RiderMotion,
+                    self.exceeds_fraction(max, fade - excess_us as f32 * 1e-3, fade),
+                )?;
             }
         }
         if let (Some(e), Some(steer)) = (end_stop, known_value(request.steer_rad)) {
-            let way_left = e.hard_rad - steer * self.side;
-            refuse(Violation::EndStop, self.beyond(max, way_left, e.hard_rad - e.soft_rad))?;
+            let margin_rad = e.hard_rad - steer * self.side;
+            reject(Violation::EndStop, self.exceeds_fraction(max, margin_rad, e.hard_rad - e.soft_rad))?;
         }
         Ok(())
     }
 
-    /// Whether more than `part` of `whole` of the largest torque. NaN, as nothing and less, is no part; more than the whole
-    /// does no harm: the largest torque has been judged.
-    fn beyond(&self, max: f32, part: f32, whole: f32) -> bool {
+    /// Whether the magnitude exceeds `part / whole` of the largest torque. NaN, zero and negative parts allow none. A
+    /// part above `whole` is harmless: the largest torque is checked separately.
+    fn exceeds_fraction(&self, max: f32, part: f32, whole: f32) -> bool {
         let inside = self.size * whole <= max * part;
         !inside
     }
 
-    /// Whether anywhere between `slow` and `fast` it lies above the line through the points.
+    /// Whether the torque is above the line through the points at any speed between `slow` and `fast`.
     fn above_line(
         &self,
         speeds: &[f32; CAP_POINTS],
@@ -272,11 +279,11 @@ impl<'a> Torque<'a> {
     ) -> bool {
         let ([first, .., last], [start, .., end]) = (speeds, torques);
         let outside = (slow <= *first && self.size > *start) || (fast >= *last && self.size > *end);
-        let mut pieces = speeds.windows(2).zip(torques.windows(2));
+        let mut segments = speeds.windows(2).zip(torques.windows(2));
         outside
-            || pieces.any(|piece| match piece {
+            || segments.any(|segment| match segment {
                 (&[v0, v1], &[t0, t1]) if slow <= v1 && v0 <= fast => {
-                    // By the lever rule. Where a piece begins, the one before it ends.
+                    // Lever rule. Each segment begins where the previous one ends.
                     let above = |v: f32| self.size * (v1 - v0) > t0 * (v1 - v) + t1 * (v - v0);
                     (slow >= v0 && above(slow)) || above(min(fast, v1))
                 }
@@ -284,11 +291,12 @@ impl<'a> Torque<'a> {
             })
     }
 
-    /// Whether there was time for the change.
-    fn in_time(&self) -> Result<(), Violation> {
-        let takes = |way: f32, s_nm: f32| if way > 0.0 { way * s_nm } else { 0.0 };
-        let (down, up) = (takes(self.shrunk, self.plan.fall_s_nm), takes(self.grown, self.plan.rise_s_nm));
-        if down + up <= self.within(self.elapsed_us + 1.0) * (1.0 + 1e-5) {
+    /// Checks that the elapsed time suffices for the change.
+    fn check_rate(&self) -> Result<(), Violation> {
+        let required_s = |change_nm: f32, s_nm: f32| if change_nm > 0.0 { change_nm * s_nm } else { 0.0 };
+        let (down, up) =
+            (required_s(self.decrease, self.plan.fall_s_nm), required_s(self.increase, self.plan.rise_s_nm));
+        if down + up <= self.limited_time_s(self.elapsed_us + 1.0) * (1.0 + 1e-5) {
             Ok(())
         } else if up > 0.0 {
             Err(Violation::Rise)
@@ -298,23 +306,24 @@ impl<'a> Torque<'a> {
     }
 }
 
-/// How many watches cover a window, each started an eighth of it after the one before.
-const STOPWATCHES: usize = 8;
+/// Number of intervals that cover the window, each from its start until now; the starts are an eighth of the window
+/// apart.
+const INTERVALS: usize = 8;
 
 impl GuardState {
-    /// The last output was in force for the time that passed.
-    fn pass_time(&mut self, limits: &Limits, plan: &GuardPlan, request: &TorqueRequest) {
+    /// Advances the state by the elapsed time, in which the last torque was output.
+    fn advance(&mut self, limits: &Limits, plan: &GuardPlan, request: &TorqueRequest) {
         let last = self.torque_nm;
         if let Some(r) = &limits.rider_motion {
-            let whole = (u32::from(r.after_ms) + u32::from(r.fade_ms)) * 1000;
-            let turned_back = match request.steer_rate_rad_s {
+            let limit_us = (u32::from(r.after_ms) + u32::from(r.fade_ms)) * 1000;
+            let turns_against = match request.steer_rate_rad_s {
                 Some(rate) if last > 0.0 => -rate > r.steer_rate_rad_s,
                 Some(rate) if last < 0.0 => rate > r.steer_rate_rad_s,
                 _ => false,
             };
-            let time = self.turned_us;
-            self.turned_us = if turned_back {
-                whole.min(time.saturating_add(request.elapsed_us))
+            let time = self.against_us;
+            self.against_us = if turns_against {
+                limit_us.min(time.saturating_add(request.elapsed_us))
             } else {
                 time - time.min(request.elapsed_us)
             };
@@ -322,51 +331,51 @@ impl GuardState {
         if limits.window.is_some() {
             let (size, side) = (last.abs(), side(last));
             if side != self.side {
-                // At the start. The shaper closes a part of the window every eighth of it too; the two are half of that apart,
-                // so that hardly any control period has to do both.
+                // At start-up. The limiter also closes a part of its window every eighth of it; an offset of half a
+                // part keeps both out of the same control period.
                 if self.side == 0.0 {
-                    self.since_us = plan.stagger_us / 2;
+                    self.interval_us = plan.spacing_us / 2;
                 }
-                (self.watches, self.side) = ([0.0; STOPWATCHES], side);
+                (self.minima, self.side) = ([0.0; INTERVALS], side);
             }
-            let [newest, ..] = &mut self.watches;
+            let [newest, ..] = &mut self.minima;
             *newest = min(size, *newest);
-            self.since_us = self.since_us.saturating_add(request.elapsed_us);
-            if self.since_us >= plan.stagger_us {
-                self.restart(plan.stagger_us, size);
+            self.interval_us = self.interval_us.saturating_add(request.elapsed_us);
+            if self.interval_us >= plan.spacing_us {
+                self.start_intervals(plan.spacing_us, size);
             }
         }
     }
 
-    /// Starts the watches that are due, the oldest ones anew.
-    fn restart(&mut self, stagger_us: u32, size: f32) {
-        let [newest, older @ ..] = &mut self.watches;
-        // An older watch has seen all that a newer one has.
-        for stopwatch in older.iter_mut().take_while(|stopwatch| **stopwatch > *newest) {
-            *stopwatch = *newest;
+    /// Starts the intervals that are due; the oldest ones are dropped.
+    fn start_intervals(&mut self, spacing_us: u32, size: f32) {
+        let [newest, older @ ..] = &mut self.minima;
+        // Every older interval contains the newer ones.
+        for minimum in older.iter_mut().take_while(|minimum| **minimum > *newest) {
+            *minimum = *newest;
         }
-        let mut restarts = 0;
-        while self.since_us >= stagger_us && restarts < STOPWATCHES {
-            self.since_us -= stagger_us;
-            restarts += 1;
-            let [a, b, c, d, e, f, g, _] = self.watches;
-            self.watches = [size, a, b, c, d, e, f, g];
+        let mut started = 0;
+        while self.interval_us >= spacing_us && started < INTERVALS {
+            self.interval_us -= spacing_us;
+            started += 1;
+            let [a, b, c, d, e, f, g, _] = self.minima;
+            self.minima = [size, a, b, c, d, e, f, g];
         }
-        self.since_us = self.since_us.min(stagger_us);
+        self.interval_us = self.interval_us.min(spacing_us);
     }
 
-    /// The least torque on this side of zero since the oldest watch was started.
-    fn start(&self, side: f32) -> f32 {
-        let [newest, .., oldest] = self.watches;
+    /// Smallest magnitude on this side of zero since the start of the oldest interval \[N m\].
+    fn minimum(&self, side: f32) -> f32 {
+        let [newest, .., oldest] = self.minima;
         if side == self.side { min(newest, oldest) } else { 0.0 }
     }
 }
 
-fn refuse(violation: Violation, found: bool) -> Result<(), Violation> {
-    if found { Err(violation) } else { Ok(()) }
+fn reject(violation: Violation, condition: bool) -> Result<(), Violation> {
+    if condition { Err(violation) } else { Ok(()) }
 }
 
-/// +1 to the right, -1 to the left; zero is neither, and counts as right.
+/// +1 to the right and for zero, -1 to the left.
 fn side(torque: f32) -> f32 {
     if torque < 0.0 { -1.0 } else { 1.0 }
 }

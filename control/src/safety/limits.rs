@@ -1,16 +1,16 @@
-//! The one table of limits. [`crate::safety::limiter`] keeps the torque inside it, [`crate::safety::guard`] judges by it,
-//! each with code of its own; what a limit means is written here.
+//! Configuration and meaning of the torque limits. [`crate::safety::limiter`] keeps the torque inside them,
+//! [`crate::safety::guard`] checks the result by independent code.
 //!
-//! Every limit is off (`None`) or set. Zero torque is inside every limit. Those that depend on what
-//! the bicycle or the rider does may shrink in an instant: a torque that is then outside is inside
-//! the limits as long as it goes back to them as fast as `fall_nm_s` lets it.
+//! Every limit is off (`None`) or set. Zero torque is inside every limit. Limits that depend on the motion of the
+//! bicycle or the rider can shrink at once; a torque that is then outside is accepted as long as it returns to zero at
+//! `fall_nm_s`.
 
 use crate::param::{Checker, ParamError, ParamSpec, ParamVisitor, optional};
 
-/// Points of a [`SpeedCap`].
+/// Number of points of a [`SpeedCap`].
 pub const CAP_POINTS: usize = 4;
 
-/// The limits on the torque.
+/// Limits of the torque.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
     /// Largest torque, either way \[N m\].
@@ -19,30 +19,30 @@ pub struct Limits {
     pub speed_cap: Option<SpeedCap>,
     /// Taper below walking speed.
     pub taper: Option<Taper>,
-    /// Fastest change away from zero torque \[N m/s\].
+    /// Largest rate of change away from zero torque \[N m/s\].
     pub rise_nm_s: Option<f32>,
-    /// Fastest change towards zero torque \[N m/s\]. A torque that changes sign first falls to zero, then rises.
-    /// Neither is given more than one control period's time in a step, nor more time than has passed.
+    /// Largest rate of change towards zero torque \[N m/s\]. A torque that changes sign first falls to zero, then
+    /// rises. The time of a step counts up to one control period.
     pub fall_nm_s: Option<f32>,
-    /// The rider overrides, felt by a torque sensor.
+    /// Override by the rider, measured by a torque sensor.
     pub rider_torque: Option<RiderTorque>,
-    /// The rider overrides, seen by the handlebar turning against the torque.
+    /// Override by the rider, detected from the handlebar turning against the torque.
     pub rider_motion: Option<RiderMotion>,
-    /// Limit in real time, however often the controller is called.
+    /// Limit over measured time, independent of the call rate.
     pub window: Option<Window>,
     /// The steer's soft end-stop.
     pub end_stop: Option<EndStop>,
-    /// Part of `max_torque_nm` that is left in limp mode.
+    /// Fraction of `max_torque_nm` in limp mode.
     pub limp_fraction: Option<f32>,
 }
 
-/// Largest torque by speed: linear between the points, constant outside them. Where the speed is
-/// known as an interval the smallest torque anywhere in it counts; where it is NaN, the smallest of all.
+/// Largest torque by speed: linear between the points, constant outside them. For a speed interval it is the smallest
+/// torque in the interval; for a NaN speed the smallest of all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedCap {
-    /// Speeds \[m/s\], each at least 0.1 above the one before.
+    /// Speeds \[m/s\], each at least 0.1 above the previous one.
     pub speed_m_s: [f32; CAP_POINTS],
-    /// Largest torque there \[N m\].
+    /// Largest torque at each speed \[N m\].
     pub torque_nm: [f32; CAP_POINTS],
 }
 
@@ -53,13 +53,13 @@ impl Default for SpeedCap {
     }
 }
 
-/// All torque at and above `full_m_s`, none at and below `zero_m_s`, linear between: it scales the
-/// wanted torque and the largest one. The lowest speed of the interval counts.
+/// Scales the requested and the largest torque: factor 1 at and above `full_m_s`, 0 at and below `zero_m_s`, linear
+/// between. The lowest speed of the interval is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taper {
     /// Speed at and below which there is no torque \[m/s\].
     pub zero_m_s: f32,
-    /// Speed from which the torque is whole \[m/s\], at least 0.1 above `zero_m_s`.
+    /// Speed from which the torque is not reduced \[m/s\], at least 0.1 above `zero_m_s`.
     pub full_m_s: f32,
 }
 
@@ -70,15 +70,15 @@ impl Default for Taper {
     }
 }
 
-/// To the right no more than `max_torque_nm + (allowance_nm + rider) multiplier`, the rider's torque
-/// positive to the right; to the left the mirror's. So a rider who pushes against the assist by more
-/// than the allowance shrinks it, down to zero. After comma.ai opendbc, `driver_limit_check`.
-/// Without a sample it does not act: a lost sensor is a matter of the permission.
+/// Limits the torque to the right to `max_torque_nm + (allowance_nm + rider) multiplier`, with the rider's torque
+/// positive to the right, and to the left symmetrically. A rider who pushes against the assist by more than the
+/// allowance reduces it, down to zero. After comma.ai opendbc, `driver_limit_check`. Without a valid sample the limit
+/// is off: a lost sensor is handled by the permission.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RiderTorque {
-    /// Torque of the rider that takes nothing from the assist \[N m\].
+    /// Rider's torque that does not reduce the assist \[N m\].
     pub allowance_nm: f32,
-    /// Torque taken from the assist by each N m beyond it.
+    /// Reduction of the assist per N m beyond the allowance.
     pub multiplier: f32,
 }
 
@@ -88,16 +88,16 @@ impl Default for RiderTorque {
     }
 }
 
-/// While the handlebar turns against the last torque faster than `steer_rate_rad_s`, time counts up, else
-/// down, between zero and `after_ms + fade_ms`. Beyond `after_ms` wanted and largest torque are
-/// scaled down, to zero at `after_ms + fade_ms`.
+/// A timer counts up while the handlebar turns against the last torque faster than `steer_rate_rad_s`, down otherwise,
+/// between zero and `after_ms + fade_ms`. Beyond `after_ms` the requested and the largest torque are scaled down, to
+/// zero at `after_ms + fade_ms`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RiderMotion {
-    /// Steer rate against the torque above which time counts \[rad/s\].
+    /// Steer rate against the torque above which the timer counts up \[rad/s\].
     pub steer_rate_rad_s: f32,
-    /// Time that takes nothing from the assist \[ms\].
+    /// Time before the torque is reduced \[ms\].
     pub after_ms: u16,
-    /// Time from the whole torque to none \[ms\].
+    /// Time from full torque to none \[ms\].
     pub fade_ms: u16,
 }
 
@@ -107,13 +107,13 @@ impl Default for RiderMotion {
     }
 }
 
-/// At no time may the torque be further on either side than `nm` beyond where it was, on that side of
-/// zero, at any instant of the last `ms`. After comma.ai opendbc, `rt_torque_rate_limit_check`.
+/// Limits the torque on either side of zero to `nm` beyond its smallest value on that side within the last `ms`. After
+/// comma.ai opendbc, `rt_torque_rate_limit_check`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// How long it reaches back \[ms\].
+    /// Length of the window \[ms\].
     pub ms: u16,
-    /// How far the torque may move away from zero in it \[N m\].
+    /// Largest change of the torque away from zero within the window \[N m\].
     pub nm: f32,
 }
 
@@ -123,13 +123,13 @@ impl Default for Window {
     }
 }
 
-/// Torque towards the stop is whole up to `soft_rad` of steer and none from `hard_rad`, linear between: it scales
-/// the wanted torque and the largest one. Torque back is free. Without a sample it does not act.
+/// Scales the requested and the largest torque towards the stop: factor 1 up to `soft_rad` of steer angle, 0 from
+/// `hard_rad`, linear between. Torque away from the stop is not limited. Without a valid sample the limit is off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndStop {
-    /// Steer angle, either way, up to which there is all torque \[rad\].
+    /// Steer angle, either way, up to which the torque is not reduced \[rad\].
     pub soft_rad: f32,
-    /// Steer angle from which there is none, at least 0.01 above `soft_rad` \[rad\].
+    /// Steer angle from which there is no torque, at least 0.01 above `soft_rad` \[rad\].
     pub hard_rad: f32,
 }
 
@@ -141,24 +141,26 @@ impl Default for EndStop {
 }
 
 impl Limits {
-    /// What is flashed. The evidence is rides on the border of the basin (`rigid_jason`, 2 to 7 m/s, either
-    /// rate disturbed, `h` cut at 7.5 m/s; hands off, and with the riders `smart`, `young` and `hess`).
+    /// Limits as flashed. Their source is rides on the border of the basin (`rigid_jason`, 2 to 7 m/s, either rate
+    /// disturbed, `h` cut at 7.5 m/s; hands off, and with the riders `smart`, `young` and `hess`).
     ///
     /// * 7 N m: the largest torque of the published balance-assist prototype.
-    /// * Rise 100 N m/s: hands off such rides rise by up to 94 N m/s under 7 N m (105 without it), fall by up to 100 (113).
-    ///   Falling is the safe side: twice as fast, 35 ms from the largest torque to none.
+    /// * Rise 100 N m/s: hands off, these rides rise by up to 94 N m/s with the 7 N m limit (105 without it) and fall
+    ///   by up to 100 (113). Falling is the safe direction: twice as fast, 35 ms from the largest torque to none.
     /// * Taper 0.5 to 1.5 m/s: walking.
-    /// * End-stop 50 to 60 degrees: torque towards the side steered to is wanted up to 47 degrees; steer itself
-    ///   goes to 59 degrees at 2 m/s, but there the torque already leads back.
-    /// * Rider's motion 1 rad/s for 200 ms, gone 100 ms later: without anyone overriding, the steer turns against the
-    ///   torque as fast for up to 132 ms hands off, 166 ms with a rider. 200 ms at 1 rad/s are 11 degrees.
-    /// * Rider's torque: who pushes with more than the assist's 7 N m has won anyhow, at twice that the assist is gone.
-    ///   Less would act in many border rides, where these riders push against it with 2 to 27 N m.
-    /// * Window 6 N m in 50 ms: above the 5.7 N m to which 100 N m/s lead in the longest it can be, so it acts
-    ///   only where the rate was not kept.
-    /// * Half of it in limp mode: without the steer angle, where the end-stop can't act, half keeps two thirds of the
-    ///   height that the whole would add, without a front wheel's speed nine tenths. Rides alone would allow all of
-    ///   it; half is what a rider must at most hold while something is known to be wrong.
+    /// * End-stop 50 to 60 degrees: torque towards the steered side is requested up to 47 degrees. The steer angle
+    ///   reaches 59 degrees at 2 m/s, where the torque already points back.
+    /// * Rider's motion 1 rad/s for 200 ms, none 100 ms later: without an override the handlebar turns against the
+    ///   torque at this rate for up to 132 ms hands off, 166 ms with a rider. 200 ms at 1 rad/s are 11 degrees.
+    /// * Rider's torque: a rider who pushes with more than the assist's 7 N m prevails in any case; at twice that the
+    ///   assist is zero. A smaller allowance would act in many border rides, where these riders push against the assist
+    ///   with 2 to 27 N m.
+    /// * Window 6 N m in 50 ms: above the 5.7 N m that 100 N m/s reach within the longest effective window, so it acts
+    ///   only if the rate limit has failed.
+    /// * Limp mode, half the torque: without the steer angle, where the end-stop cannot act, half the torque retains
+    ///   two thirds of the basin height that full torque would add; without a front wheel's speed, nine tenths. The
+    ///   rides alone would allow full torque; half is the most that a rider should have to counteract during a known
+    ///   fault.
     pub fn product() -> Self {
         Self {
             max_torque_nm: Some(7.0),
@@ -174,9 +176,9 @@ impl Limits {
         }
     }
 
-    /// Shows every limit.
+    /// Visits every limit.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
-        let leaf = |name, min, max| ParamSpec::new("limits", name, min, max);
+        let spec = |name, min, max| ParamSpec::new("limits", name, min, max);
         let switch = |name| ParamSpec::switch("limits", name);
         to.optional_number(&MAX_TORQUE, &mut self.max_torque_nm);
         optional(to, &switch("speed_cap"), &mut self.speed_cap, SpeedCap::visit_params);
@@ -184,18 +186,18 @@ impl Limits {
             to.number(&ParamSpec::new("limits.taper", "zero_m_s", 0.0, 9.9), &mut taper.zero_m_s);
             to.number(&ParamSpec::new("limits.taper", "full_m_s", 0.1, 10.0), &mut taper.full_m_s);
         });
-        to.optional_number(&leaf("rise_nm_s", 1.0, 1e5), &mut self.rise_nm_s);
-        to.optional_number(&leaf("fall_nm_s", 1.0, 1e5), &mut self.fall_nm_s);
+        to.optional_number(&spec("rise_nm_s", 1.0, 1e5), &mut self.rise_nm_s);
+        to.optional_number(&spec("fall_nm_s", 1.0, 1e5), &mut self.fall_nm_s);
         optional(to, &switch("rider_torque"), &mut self.rider_torque, |rider, to| {
-            let leaf = |name, min, max| ParamSpec::new("limits.rider_torque", name, min, max);
-            to.number(&leaf("allowance_nm", 0.0, 50.0), &mut rider.allowance_nm);
-            to.number(&leaf("multiplier", 0.1, 100.0), &mut rider.multiplier);
+            let spec = |name, min, max| ParamSpec::new("limits.rider_torque", name, min, max);
+            to.number(&spec("allowance_nm", 0.0, 50.0), &mut rider.allowance_nm);
+            to.number(&spec("multiplier", 0.1, 100.0), &mut rider.multiplier);
         });
         optional(to, &switch("rider_motion"), &mut self.rider_motion, |rider, to| {
-            let leaf = |name, min, max| ParamSpec::new("limits.rider_motion", name, min, max);
-            to.number(&leaf("steer_rate_rad_s", 0.01, 50.0), &mut rider.steer_rate_rad_s);
-            to.count(&leaf("after_ms", 0.0, 5000.0), &mut rider.after_ms);
-            to.count(&leaf("fade_ms", 1.0, 5000.0), &mut rider.fade_ms);
+            let spec = |name, min, max| ParamSpec::new("limits.rider_motion", name, min, max);
+            to.number(&spec("steer_rate_rad_s", 0.01, 50.0), &mut rider.steer_rate_rad_s);
+            to.count(&spec("after_ms", 0.0, 5000.0), &mut rider.after_ms);
+            to.count(&spec("fade_ms", 1.0, 5000.0), &mut rider.fade_ms);
         });
         optional(to, &switch("window"), &mut self.window, |window, to| {
             to.count(&ParamSpec::new("limits.window", "ms", 10.0, 5000.0), &mut window.ms);
@@ -205,18 +207,18 @@ impl Limits {
             to.number(&ParamSpec::new("limits.end_stop", "soft_rad", 0.0, 3.1), &mut stop.soft_rad);
             to.number(&ParamSpec::new("limits.end_stop", "hard_rad", 0.01, 3.2), &mut stop.hard_rad);
         });
-        to.optional_number(&leaf("limp_fraction", 0.0, 1.0), &mut self.limp_fraction);
+        to.optional_number(&spec("limp_fraction", 0.0, 1.0), &mut self.limp_fraction);
     }
 
-    /// Checks what spans several fields: points in order, and a largest torque for what is relative to it.
+    /// Checks relations between fields: points in order, and a largest torque where another limit needs it.
     ///
     /// # Errors
-    /// The parameter, its value and the range that the others leave it.
+    /// The parameter, its value and the range allowed by the others.
     pub fn cross(&self) -> Result<(), ParamError> {
         if let Some(cap) = self.speed_cap {
-            for (leaf, pair) in CAP_SPEEDS.iter().skip(1).zip(cap.speed_m_s.windows(2)) {
+            for (spec, pair) in CAP_SPEEDS.iter().skip(1).zip(cap.speed_m_s.windows(2)) {
                 if let [before, after] = *pair {
-                    ParamSpec { min: before + 0.1, ..*leaf }.check(after)?;
+                    ParamSpec { min: before + 0.1, ..*spec }.check(after)?;
                 }
             }
         }
@@ -272,45 +274,45 @@ impl SpeedCap {
     }
 }
 
-/// Which limits changed the torque in a step.
+/// Set of the limits that changed the torque in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ActiveLimits(pub u16);
 
 impl ActiveLimits {
-    /// Scaled down because the bicycle is slower than walking speed.
+    /// Scaled down below walking speed.
     pub const TAPER: Self = Self(1);
-    /// Cut to the largest torque.
+    /// Limited to the largest torque.
     pub const MAGNITUDE: Self = Self(1 << 1);
-    /// Held back because it may not change faster.
+    /// Limited by the rate of change.
     pub const RATE: Self = Self(1 << 2);
-    /// Cut to the largest torque at this speed.
+    /// Limited to the largest torque at this speed.
     pub const SPEED: Self = Self(1 << 3);
-    /// Cut because the rider pushes against it.
+    /// Limited because the rider pushes against the assist.
     pub const RIDER_TORQUE: Self = Self(1 << 4);
-    /// Scaled down because the handlebar is turned against it.
+    /// Scaled down because the handlebar turns against the torque.
     pub const RIDER_MOTION: Self = Self(1 << 5);
-    /// Held back because it has moved far enough in its window.
+    /// Limited by the change within the window.
     pub const WINDOW: Self = Self(1 << 6);
     /// Scaled down towards the end-stop.
     pub const END_STOP: Self = Self(1 << 7);
-    /// Cut to what is left in limp mode.
+    /// Limited to the largest torque of limp mode.
     pub const LIMP: Self = Self(1 << 8);
-    /// Scaled down because the permission is not whole.
+    /// Scaled down by an authority below 1.
     pub const AUTHORITY: Self = Self(1 << 9);
 
-    /// Whether every limit of `other` is in `self`.
+    /// Whether `self` contains every limit of `other`.
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// Whether none acted.
+    /// Whether no limit was active.
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Adds `other` when `acted`.
-    pub const fn note(&mut self, other: Self, acted: bool) {
-        if acted {
+    /// Adds `other` when `active`.
+    pub const fn note(&mut self, other: Self, active: bool) {
+        if active {
             self.0 |= other.0;
         }
     }

@@ -1,4 +1,4 @@
-//! Whether torque may flow, how much, and an independent check of the result.
+//! Permission, limits and an independent check of the torque.
 
 pub mod engagement;
 pub mod guard;

@@ -308,7 +308,7 @@ fn what_can_be_done_without_is_limped_with() {
         let p = bench.hold(&EngagementInput { causes: Causes::of(cause), ..PRESSED }, 50);
         assert_eq!((p.mode, p.authority), (Mode::Limp, 1.0), "{cause:?}");
         let p = bench.hold(&PRESSED, 1000);
-        if reactions.lasting.has(cause) {
+        if reactions.until_reengaged.has(cause) {
             assert!(p.mode == Mode::Limp && p.causes.has(cause), "{cause:?}");
             bench.hold(&WELL, 2);
         }

@@ -25,7 +25,7 @@ fn a_second_open_and_a_tenth_closed_are_a_press() {
     assert_eq!(hold(&mut switch, true, 1), Press::Held);
     hold(&mut switch, false, 100_000);
     assert_eq!(hold(&mut switch, true, 101), Press::Pressed);
-    switch.spend();
+    switch.consume();
     assert_eq!(hold(&mut switch, true, 5000), Press::Held, "spent");
 }
 
