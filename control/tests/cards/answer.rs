@@ -1,11 +1,11 @@
-//! Flight cards: the motor's response, on a handlebar that answers the torque the wrong way round.
+//! Sign check of the motor, on a handlebar that turns against the motor's torque.
 
 use control::{Cause, Config, Sample, SensorFrame, State, Triple, step};
 use core::f32::consts::TAU;
 
-/// From when on cause 37 is told \[s\], on a bicycle that rolls upright at a speed while the handlebar swings four times a second
-/// against the torque that the drive reports.
-fn told(speed_m_s: f32) -> Option<f32> {
+/// Time at which cause 37 is first reported \[s\], on a bicycle that rolls upright at `speed_m_s` while the handlebar
+/// swings at 4 Hz against the torque reported by the drive.
+fn reported_at(speed_m_s: f32) -> Option<f32> {
     let mut config = Config::product();
     config.calibration.polarity_checked = true;
     (config.cross.motor_nm, config.cross.steer_rad) = (None, None);
@@ -30,16 +30,17 @@ fn told(speed_m_s: f32) -> Option<f32> {
     })
 }
 
-/// Situation: the handlebar swings against the torque, by a reversed motor or held by a hand.
-/// Action: roll at speeds from standing to 4 m/s.
-/// Must hold: up to 1 m/s, where a hand is likelier, nothing is told; above it within 0.6 s, and not before the sensors are ready.
+/// Situation: the handlebar swings against the torque, because the motor is reversed or a hand holds it.
+/// Action: roll at speeds from 0 to 4 m/s.
+/// Must hold: up to 1 m/s, where a hand is more likely, the cause is not reported; above, it is reported within 0.6 s,
+/// and not before the sensors are valid.
 #[test]
-fn a_held_handlebar_is_no_reversed_motor() {
+fn a_held_handlebar_is_not_a_reversed_motor() {
     for speed_m_s in [0.0, 0.5, 0.95] {
-        assert_eq!(told(speed_m_s), None, "{speed_m_s} m/s");
+        assert_eq!(reported_at(speed_m_s), None, "{speed_m_s} m/s");
     }
     for speed_m_s in [1.05, 2.0, 4.0] {
-        let t = told(speed_m_s).expect("a reversed motor");
+        let t = reported_at(speed_m_s).expect("a reversed motor");
         assert!((0.02..0.6).contains(&t), "{speed_m_s} m/s: {t} s");
     }
 }

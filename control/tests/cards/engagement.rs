@@ -1,4 +1,4 @@
-//! Flight cards: when torque may flow, and what takes the permission away.
+//! Engagement: when torque is permitted, and what withdraws the permission.
 
 use control::estimate::RollError;
 use control::safety::engagement::{
@@ -22,21 +22,21 @@ const CONFIG: EngagementConfig = EngagementConfig {
     persist_ticks: 3,
 };
 
-/// A roll angle that is known.
-const SURE: RollError = RollError { square_rad2: 0.0, systematic_rad: 0.0 };
+/// An exact roll angle.
+const EXACT: RollError = RollError { square_rad2: 0.0, systematic_rad: 0.0 };
 
-/// Riding upright at 4 m/s, all well, the switch off.
-const WELL: EngagementInput = EngagementInput {
+/// Riding upright at 4 m/s, no causes, the switch off.
+const NORMAL: EngagementInput = EngagementInput {
     causes: Causes::NONE,
     engage: false,
     polarity_checked: true,
-    roll_rad: Some((0.1, SURE)),
+    roll_rad: Some((0.1, EXACT)),
     rates_rad_s: [0.0; 2],
     speed_m_s: Some(4.0),
     force_m_s2: Some(9.8),
 };
 
-const PRESSED: EngagementInput = EngagementInput { engage: true, ..WELL };
+const PRESSED: EngagementInput = EngagementInput { engage: true, ..NORMAL };
 
 struct Bench {
     config: EngagementConfig,
@@ -60,15 +60,15 @@ impl Bench {
         )
     }
 
-    /// The permission after so many periods of the same.
+    /// The output after `ticks` periods of the same input.
     fn hold(&mut self, input: &EngagementInput, ticks: usize) -> EngagementOutput {
         (0..ticks).map(|_| self.step(input)).last().expect("at least one")
     }
 
-    /// Engaged with its whole authority.
+    /// Engaged with full authority.
     fn engaged() -> Self {
         let mut bench = Self::new();
-        assert_eq!(bench.hold(&WELL, 20).mode, Mode::Standby);
+        assert_eq!(bench.hold(&NORMAL, 20).mode, Mode::Standby);
         let whole = bench.hold(&PRESSED, 25);
         assert_eq!((whole.mode, whole.authority), (Mode::Engaged, 1.0));
         assert!(whole.causes.is_empty());
@@ -76,14 +76,16 @@ impl Bench {
     }
 }
 
-/// Situation: power comes on, the switch released. Action: wait, press, wait, release. Must hold: off, initialise,
-/// self-test for its time, standby; authority only after the press, in twenty equal steps, and down in five.
+/// Situation: power-up with the switch released.
+/// Action: wait, press, wait, release.
+/// Must hold: off, initialise, self-test for its time, standby; authority only after the press, in twenty equal steps,
+/// and down in five.
 #[test]
 fn from_boot_to_torque_and_back() {
     let mut bench = Bench::new();
     let mut modes = Vec::new();
     for _ in 0..20 {
-        let p = bench.step(&WELL);
+        let p = bench.step(&NORMAL);
         assert_eq!(p.authority, 0.0);
         assert_eq!(p.causes.has(Cause::SelfTest), modes.len() < 13, "{}", modes.len());
         assert!(p.causes.has(Cause::SwitchOff));
@@ -100,37 +102,40 @@ fn from_boot_to_torque_and_back() {
     }
     assert_eq!(bench.step(&PRESSED).authority, 1.0, "to the bit");
     for k in 1..=5 {
-        let p = bench.step(&WELL);
+        let p = bench.step(&NORMAL);
         assert_eq!(p.mode, Mode::Standby);
         assert!((p.authority - (1.0 - k as f32 / 5.0)).abs() < 1e-6);
     }
-    assert_eq!(bench.step(&WELL).authority, 0.0);
+    assert_eq!(bench.step(&NORMAL).authority, 0.0);
 }
 
-/// Situation: the switch is stuck on at boot. Action: wait long. Must hold: never engaged, and the list says that the
-/// switch is held; released and pressed again it engages.
+/// Situation: the switch is stuck on at boot.
+/// Action: wait long, then release and press.
+/// Must hold: never engaged while held, and the causes say that the switch is held; after release and press it engages.
 #[test]
 fn a_switch_held_at_boot_does_not_engage() {
     let mut bench = Bench::new();
     let p = bench.hold(&PRESSED, 1000);
     assert_eq!((p.mode, p.authority), (Mode::Standby, 0.0));
     assert!(p.causes.has(Cause::SwitchHeld) && !p.causes.has(Cause::SwitchOff));
-    bench.step(&WELL);
+    bench.step(&NORMAL);
     assert_eq!(bench.step(&PRESSED).mode, Mode::Engaged);
 }
 
-/// Situation: something refuses in standby, or the self-test is not over. Action: press, hold; then what refused is gone.
-/// Must hold: the press is used up and told as a held switch, however long it is held; released and pressed again it engages.
+/// Situation: a cause rejects the press in standby, or the self-test is not complete.
+/// Action: press and hold; then the cause disappears.
+/// Must hold: the press is consumed and reported as a held switch, however long it is held; after release and press it
+/// engages.
 #[test]
-fn a_refused_press_is_used_up() {
+fn a_rejected_press_is_consumed() {
     let refusals = [
-        (EngagementInput { polarity_checked: false, ..WELL }, Cause::PolarityUnchecked),
-        (EngagementInput { causes: Causes::of(Cause::PolarityWrong), ..WELL }, Cause::PolarityWrong),
-        (EngagementInput { roll_rad: Some((1.2, SURE)), ..WELL }, Cause::Fallen),
-        (EngagementInput { force_m_s2: Some(1.0), ..WELL }, Cause::Lifted),
-        (EngagementInput { speed_m_s: Some(0.1), ..WELL }, Cause::Parked),
-        (EngagementInput { speed_m_s: Some(-1.0), ..WELL }, Cause::Backwards),
-        (WELL, Cause::SelfTest),
+        (EngagementInput { polarity_checked: false, ..NORMAL }, Cause::PolarityUnchecked),
+        (EngagementInput { causes: Causes::of(Cause::PolarityWrong), ..NORMAL }, Cause::PolarityWrong),
+        (EngagementInput { roll_rad: Some((1.2, EXACT)), ..NORMAL }, Cause::Fallen),
+        (EngagementInput { force_m_s2: Some(1.0), ..NORMAL }, Cause::Lifted),
+        (EngagementInput { speed_m_s: Some(0.1), ..NORMAL }, Cause::Parked),
+        (EngagementInput { speed_m_s: Some(-1.0), ..NORMAL }, Cause::Backwards),
+        (NORMAL, Cause::SelfTest),
     ];
     for (input, cause) in refusals {
         let mut bench = Bench::new();
@@ -149,58 +154,61 @@ fn a_refused_press_is_used_up() {
             Causes::of(Cause::SwitchHeld),
             "{cause:?}: nothing else is left"
         );
-        assert_eq!(bench.step(&WELL).mode, Mode::Standby, "{cause:?}");
+        assert_eq!(bench.step(&NORMAL).mode, Mode::Standby, "{cause:?}");
         assert_eq!(bench.step(&PRESSED).mode, Mode::Engaged, "{cause:?}");
     }
 }
 
-/// Situation: several things stand in the way at once. Action: press. Must hold: refused, and all are told at once.
+/// Situation: several causes are present at once.
+/// Action: press.
+/// Must hold: rejected, and all causes are reported at once.
 #[test]
-fn every_refusal_is_listed() {
+fn every_rejection_is_listed() {
     let mut bench = Bench::new();
     let input = EngagementInput {
         polarity_checked: false,
-        roll_rad: Some((-1.2, SURE)),
+        roll_rad: Some((-1.2, EXACT)),
         speed_m_s: Some(-0.4),
         force_m_s2: Some(1.0),
         causes: Causes::of(Cause::WheelsDisagree),
-        ..WELL
+        ..NORMAL
     };
     bench.hold(&input, 30);
     let p = bench.step(&EngagementInput { engage: true, ..input });
     assert_eq!(p.mode, Mode::Standby);
-    let told: Vec<Cause> = p.causes.iter().collect();
+    let reported: Vec<Cause> = p.causes.iter().collect();
     let wanted =
         [Cause::WheelsDisagree, Cause::PolarityUnchecked, Cause::Fallen, Cause::Lifted, Cause::Backwards];
-    assert_eq!(told, wanted);
+    assert_eq!(reported, wanted);
 }
 
-/// Situation: engaged. Action: each way to fall, lie, hang in the air, lose the polarity check; for as long as allowed and one
-/// period longer. Must hold: nothing at first, then standby, and a held switch does not engage again.
+/// Situation: engaged.
+/// Action: fall to either side, lift off, lose the polarity check; each for the allowed time and one period longer.
+/// Must hold: still engaged for the allowed time, then standby; a held switch does not engage again.
 #[test]
-fn fallen_or_lifted_needs_a_fresh_press() {
+fn fallen_or_lifted_needs_a_new_press() {
     let ways = [
-        (EngagementInput { roll_rad: Some((1.01, SURE)), ..PRESSED }, Cause::Fallen, 3),
-        (EngagementInput { roll_rad: Some((-1.01, SURE)), ..PRESSED }, Cause::Fallen, 3),
+        (EngagementInput { roll_rad: Some((1.01, EXACT)), ..PRESSED }, Cause::Fallen, 3),
+        (EngagementInput { roll_rad: Some((-1.01, EXACT)), ..PRESSED }, Cause::Fallen, 3),
         (EngagementInput { force_m_s2: Some(2.9), ..PRESSED }, Cause::Lifted, 3),
         (EngagementInput { polarity_checked: false, ..PRESSED }, Cause::PolarityUnchecked, 0),
     ];
-    for (input, cause, patience) in ways {
+    for (input, cause, allowed_ticks) in ways {
         let mut bench = Bench::engaged();
-        for _ in 0..patience {
+        for _ in 0..allowed_ticks {
             assert_eq!(bench.step(&input).mode, Mode::Engaged, "{cause:?}");
         }
         let p = bench.step(&input);
         assert!(p.mode == Mode::Standby && p.causes.has(cause), "{cause:?}: {p:?}");
         let p = bench.hold(&PRESSED, 100);
         assert_eq!((p.mode, p.authority), (Mode::Standby, 0.0), "{cause:?}: the switch was held");
-        bench.step(&WELL);
+        bench.step(&NORMAL);
         assert_eq!(bench.step(&PRESSED).mode, Mode::Engaged, "{cause:?}");
     }
-    // Just inside is nothing.
+    // Just inside the limits nothing happens.
     let mut bench = Bench::engaged();
     let inside = EngagementInput {
-        roll_rad: Some((0.99, SURE)),
+        roll_rad: Some((0.99, EXACT)),
         force_m_s2: Some(3.01),
         speed_m_s: Some(0.31),
         ..PRESSED
@@ -208,10 +216,12 @@ fn fallen_or_lifted_needs_a_fresh_press() {
     assert_eq!(bench.hold(&inside, 100).authority, 1.0);
 }
 
-/// Situation: engaged, leaning by 1.3 as estimated, right and left. Action: bounds from 0 to pi. Must hold: fallen only where even the nearest
-/// angle within the bound lies beyond 1; a bound beyond 0.5 is told by a cause of its own, which takes no torque.
+/// Situation: engaged, with an estimated roll angle of 1.3 rad to either side.
+/// Action: error bounds from 0 to pi.
+/// Must hold: fallen only if even the nearest angle within the bound is beyond 1 rad; a bound beyond 0.5 rad is
+/// reported by its own cause, which does not affect the torque.
 #[test]
-fn an_angle_that_is_not_sure_is_no_fall() {
+fn an_uncertain_angle_is_not_a_fall() {
     for (bound, falls, unknown) in [
         (0.0, true, false),
         (0.29, true, false),
@@ -237,35 +247,38 @@ fn an_angle_that_is_not_sure_is_no_fall() {
     }
 }
 
-/// Situation: engaged. Action: a force of a crash for one period; a fast roll or steer rate with it, up to 0.1 s and more than 0.1 s after
-/// it; each of them alone and for long. Must hold: a fault in the very period in which the rate comes, up to 0.1 s after the force; nothing
-/// by force or rates alone, which hard riding has.
+/// Situation: engaged.
+/// Action: a crash force for one period; a fast roll or steer rate with it, up to 0.1 s and more than 0.1 s after it;
+/// force and rates each alone and for long.
+/// Must hold: a fault in the period in which the rate occurs, up to 0.1 s after the force; no fault by force or rates
+/// alone, which occur in hard riding.
 #[test]
-fn a_crash_is_a_force_and_a_rate() {
-    let hit = EngagementInput { force_m_s2: Some(61.0), ..PRESSED };
+fn a_crash_needs_force_and_rate() {
+    let force = EngagementInput { force_m_s2: Some(61.0), ..PRESSED };
     let calm = EngagementInput { force_m_s2: Some(59.0), rates_rad_s: [1.9, -7.9], ..PRESSED };
     for rates_rad_s in [[-2.1, 0.0], [0.0, 8.1]] {
-        let whirl = EngagementInput { rates_rad_s, ..PRESSED };
-        let both = Bench::engaged().step(&EngagementInput { force_m_s2: Some(61.0), ..whirl });
+        let rates = EngagementInput { rates_rad_s, ..PRESSED };
+        let both = Bench::engaged().step(&EngagementInput { force_m_s2: Some(61.0), ..rates });
         assert!(both.mode == Mode::Fault && both.causes.has(Cause::Crash), "{both:?}");
         for (apart, crashes) in [(0, true), (98, true), (99, false), (300, false)] {
             let mut bench = Bench::engaged();
-            assert_eq!(bench.step(&hit).mode, Mode::Engaged);
+            assert_eq!(bench.step(&force).mode, Mode::Engaged);
             assert_eq!((0..apart).map(|_| bench.step(&calm).mode).find(|m| *m != Mode::Engaged), None);
-            let p = bench.step(&whirl);
+            let p = bench.step(&rates);
             assert_eq!(p.causes.has(Cause::Crash), crashes, "{apart} periods apart");
             assert_eq!(p.mode == Mode::Fault && p.authority == 0.0, crashes, "{apart} periods apart");
         }
-        assert_eq!(Bench::engaged().hold(&whirl, 1000).mode, Mode::Engaged);
+        assert_eq!(Bench::engaged().hold(&rates, 1000).mode, Mode::Engaged);
     }
-    assert_eq!(Bench::engaged().hold(&hit, 1000).mode, Mode::Engaged);
+    assert_eq!(Bench::engaged().hold(&force, 1000).mode, Mode::Engaged);
     assert_eq!(Bench::engaged().hold(&calm, 1000).mode, Mode::Engaged);
 }
 
-/// Situation: engaged; the bicycle stops at a light, or rolls back. Action: wait, ride on. Must hold: torque ramps out, stays
-/// engaged, and ramps in again without a press.
+/// Situation: engaged; the bicycle stops, or rolls back.
+/// Action: wait, ride on.
+/// Must hold: torque ramps out while engaged, and ramps in again without a press.
 #[test]
-fn standing_pauses() {
+fn standing_still_pauses() {
     for (speed, cause) in [(0.2, Cause::Parked), (-0.5, Cause::Backwards)] {
         let mut bench = Bench::engaged();
         let p = bench.hold(&EngagementInput { speed_m_s: Some(speed), ..PRESSED }, 30);
@@ -276,10 +289,12 @@ fn standing_pauses() {
     }
 }
 
-/// Situation: engaged. Action: every cause that means a fault, for one period. Must hold: no authority in that very period,
-/// the cause stays told, and only good sensors, a released switch, the self-test and a fresh press bring it back.
+/// Situation: engaged.
+/// Action: every fault cause, for one period each.
+/// Must hold: no authority in that period; the cause stays reported; only valid sensors, a released switch, the
+/// self-test and a new press engage again.
 #[test]
-fn a_fault_begins_anew() {
+fn a_fault_needs_a_restart() {
     let reactions = Reactions::new(&Config::product().input);
     let faults: Vec<Cause> = reactions.fault.iter().collect();
     assert!(faults.contains(&Cause::GyroLost) && faults.contains(&Cause::GuardRate) && faults.len() > 12);
@@ -289,17 +304,19 @@ fn a_fault_begins_anew() {
         assert_eq!((p.mode, p.authority), (Mode::Fault, 0.0), "{cause:?}");
         let p = bench.hold(&PRESSED, 200);
         assert!(p.mode == Mode::Fault && p.causes.has(cause), "{cause:?}: {p:?}");
-        let p = bench.hold(&WELL, 1);
+        let p = bench.hold(&NORMAL, 1);
         assert_eq!(p.mode, Mode::Initialise, "{cause:?}");
-        assert_eq!(bench.hold(&WELL, 20).mode, Mode::Standby, "{cause:?}");
+        assert_eq!(bench.hold(&NORMAL, 20).mode, Mode::Standby, "{cause:?}");
         assert_eq!(bench.step(&PRESSED).mode, Mode::Engaged, "{cause:?}");
     }
 }
 
-/// Situation: engaged. Action: every cause that means limping comes and goes. Must hold: limp while it lasts, authority whole,
-/// then engaged again by itself; but sensors that disagreed count, and are told, until the rider asks anew.
+/// Situation: engaged.
+/// Action: every limp cause appears and disappears.
+/// Must hold: limp mode with full authority while the cause is present, then engaged again; disagreements between
+/// sensors stay set and reported until the rider engages again.
 #[test]
-fn what_can_be_done_without_is_limped_with() {
+fn limp_causes_reduce_torque_while_present() {
     let reactions = Reactions::new(&Config::product().input);
     let limps: Vec<Cause> = reactions.limp.iter().collect();
     assert!(limps.contains(&Cause::WheelsDisagree) && limps.contains(&Cause::SteerStuck) && limps.len() > 15);
@@ -310,20 +327,21 @@ fn what_can_be_done_without_is_limped_with() {
         let p = bench.hold(&PRESSED, 1000);
         if reactions.until_reengaged.has(cause) {
             assert!(p.mode == Mode::Limp && p.causes.has(cause), "{cause:?}");
-            bench.hold(&WELL, 2);
+            bench.hold(&NORMAL, 2);
         }
         assert_eq!(bench.step(&PRESSED).mode, Mode::Engaged, "{cause:?}");
     }
 }
 
-/// Situation: engaged. Action: exactly at the limits of lying, hanging, standing and rolling back. Must hold: nothing; the limits
-/// themselves are allowed.
+/// Situation: engaged.
+/// Action: exactly the limits of roll angle, specific force, speed and backward speed.
+/// Must hold: no cause: the limits themselves are allowed.
 #[test]
-fn at_the_limits_all_is_well() {
+fn the_limits_themselves_are_allowed() {
     let mut bench = Bench::engaged();
     for (roll, speed) in [(1.0, 0.3), (-1.0, -0.3)] {
         let at = EngagementInput {
-            roll_rad: Some((roll, SURE)),
+            roll_rad: Some((roll, EXACT)),
             speed_m_s: Some(speed),
             force_m_s2: Some(3.0),
             ..PRESSED
@@ -333,23 +351,26 @@ fn at_the_limits_all_is_well() {
     }
 }
 
-/// Situation: engaged; the bicycle stands, then rides on, each for less and for more than what counts.
-/// Action: step. Must hold: a pause begins, and ends, only after it has lasted one period longer than allowed without a break.
+/// Situation: engaged; the bicycle stands, then rides on, each for less and for more than the persistence time.
+/// Action: step.
+/// Must hold: a pause begins, and ends, only after its condition has lasted one period longer than the persistence time
+/// without interruption.
 #[test]
-fn a_pause_begins_and_ends_late() {
+fn a_pause_is_debounced() {
     let mut bench = Bench::engaged();
-    let stands = EngagementInput { speed_m_s: Some(0.0), ..PRESSED };
+    let standing = EngagementInput { speed_m_s: Some(0.0), ..PRESSED };
     let mut parked = |input: &EngagementInput, ticks| bench.hold(input, ticks).causes.has(Cause::Parked);
-    assert!(!parked(&stands, 3) && !parked(&PRESSED, 1) && !parked(&stands, 3));
-    assert!(parked(&stands, 1) && parked(&stands, 50));
-    assert!(parked(&PRESSED, 3) && parked(&stands, 1) && parked(&PRESSED, 3));
+    assert!(!parked(&standing, 3) && !parked(&PRESSED, 1) && !parked(&standing, 3));
+    assert!(parked(&standing, 1) && parked(&standing, 50));
+    assert!(parked(&PRESSED, 3) && parked(&standing, 1) && parked(&PRESSED, 3));
     assert!(!parked(&PRESSED, 1) && !parked(&PRESSED, 50));
 }
 
-/// Situation: a fault, others while it lasts, and another after all began anew. Action: step.
-/// Must hold: every cause since that fault began is told, none of the fault before.
+/// Situation: a fault, further fault causes while it lasts, and another fault after a restart.
+/// Action: step.
+/// Must hold: every cause since the present fault began is reported, none of the previous fault.
 #[test]
-fn a_fault_tells_all_since_it_began() {
+fn a_fault_lists_its_causes_since_it_began() {
     let mut bench = Bench::engaged();
     let one = |cause| EngagementInput { causes: Causes::of(cause), ..PRESSED };
     for cause in [Cause::GyroLost, Cause::MotorLost] {
@@ -357,7 +378,7 @@ fn a_fault_tells_all_since_it_began() {
     }
     let both = Causes::all(&[Cause::GyroLost, Cause::MotorLost]);
     assert_eq!(bench.step(&PRESSED).causes.and(both), both);
-    assert_eq!(bench.hold(&WELL, 30).mode, Mode::Standby);
+    assert_eq!(bench.hold(&NORMAL, 30).mode, Mode::Standby);
     bench.hold(&PRESSED, 30);
     let p = bench.step(&one(Cause::GuardRate));
     assert_eq!(
@@ -366,25 +387,26 @@ fn a_fault_tells_all_since_it_began() {
     );
 }
 
-/// Situation: ramps of many lengths, none at all too. Action: press, hold, release.
-/// Must hold: in equal steps, whole and none to the bit after exactly as many periods as declared; the longest, where
-/// rounding adds up, within 1 %.
+/// Situation: ramps of many lengths, including zero.
+/// Action: press, hold, release.
+/// Must hold: equal steps; exactly 1 and 0 after the declared number of periods; for the longest, where rounding adds
+/// up, within 1 %.
 #[test]
-fn ramps_take_the_time_declared() {
+fn ramps_take_the_declared_time() {
     for ticks in [0, 1, 2, 3, 5, 7, 10, 30, 100, 200, 500, 1000, 20_000_u16] {
         let mut bench = Bench::new();
         (bench.config.ramp_in_ticks, bench.config.ramp_out_ticks) = (ticks, ticks);
-        bench.hold(&WELL, 20);
-        for (input, start) in [(PRESSED, 0.0_f32), (WELL, 1.0)] {
+        bench.hold(&NORMAL, 20);
+        for (input, start) in [(PRESSED, 0.0_f32), (NORMAL, 1.0)] {
             let most = 2 * usize::from(ticks) + 2;
             let ramp: Vec<f32> = (0..most).map(|_| (bench.step(&input).authority - start).abs()).collect();
             let step = 1.0 / f32::from(ticks.max(1));
-            let takes = 1 + ramp.iter().position(|part| *part == 1.0).expect("arrives");
+            let taken = 1 + ramp.iter().position(|part| *part == 1.0).expect("arrives");
             let declared = usize::from(ticks.max(1));
-            let late = takes.abs_diff(declared);
-            assert!(if ticks <= 1000 { late == 0 } else { late * 100 < declared }, "{ticks}: {takes}");
-            assert!(ramp[takes..].iter().all(|part| *part == 1.0), "{ticks}");
-            let even = std::iter::once(&0.0).chain(&ramp[..takes - 1]).zip(&ramp[..takes]);
+            let late = taken.abs_diff(declared);
+            assert!(if ticks <= 1000 { late == 0 } else { late * 100 < declared }, "{ticks}: {taken}");
+            assert!(ramp[taken..].iter().all(|part| *part == 1.0), "{ticks}");
+            let even = std::iter::once(&0.0).chain(&ramp[..taken - 1]).zip(&ramp[..taken]);
             for (before, after) in even {
                 assert!((0.4..1.6).contains(&((after - before) / step)), "{ticks}: {before} to {after}");
             }
@@ -392,10 +414,12 @@ fn ramps_take_the_time_declared() {
     }
 }
 
-/// Situation: on the way up or down. Action: release or press half-way, with another ramp.
-/// Must hold: it goes on from where it is, in its own steps, the last one no longer than the others.
+/// Situation: a ramp up or down, with different durations.
+/// Action: release or press half-way.
+/// Must hold: the ramp continues from its present value in the steps of the new direction, the last step no longer than
+/// the others.
 #[test]
-fn an_interrupted_ramp_goes_on_from_where_it_is() {
+fn an_interrupted_ramp_continues_from_its_value() {
     for (ramp_in_ticks, ramp_out_ticks, expected) in [
         (
             2,
@@ -414,15 +438,17 @@ fn an_interrupted_ramp_goes_on_from_where_it_is() {
     ] {
         let mut bench = Bench::new();
         bench.config = EngagementConfig { ramp_in_ticks, ramp_out_ticks, ..CONFIG };
-        bench.hold(&WELL, 20);
+        bench.hold(&NORMAL, 20);
         for (engage, authority) in expected {
-            let p = bench.step(&EngagementInput { engage: *engage, ..WELL });
+            let p = bench.step(&EngagementInput { engage: *engage, ..NORMAL });
             assert_eq!((p.authority, bench.state.authority()), (*authority, *authority), "{expected:?}");
         }
     }
 }
 
-/// Situation: all modes. Action: ask. Must hold: torque flows in two of them; names and numbers are those of the log and the wire.
+/// Situation: all modes.
+/// Action: read their names, numbers and permission.
+/// Must hold: torque is permitted in two of them; names and numbers are those of the log and the wire.
 #[test]
 fn modes_have_names_and_numbers() {
     use Mode::*;
@@ -433,11 +459,13 @@ fn modes_have_names_and_numbers() {
     assert_eq!(all.map(Mode::drives), [false, false, false, false, true, true, false]);
 }
 
-/// Situation: sensors missing since boot. Action: wait. Must hold: no fault, just waiting, and they are listed.
+/// Situation: a sensor is missing since boot.
+/// Action: wait.
+/// Must hold: no fault, initialise mode, and the cause is listed.
 #[test]
-fn missing_at_boot_is_no_fault() {
+fn missing_at_boot_is_not_a_fault() {
     let mut bench = Bench::new();
-    let p = bench.hold(&EngagementInput { causes: Causes::of(Cause::GyroLost), ..WELL }, 100);
+    let p = bench.hold(&EngagementInput { causes: Causes::of(Cause::GyroLost), ..NORMAL }, 100);
     assert_eq!(p.mode, Mode::Initialise);
     assert!(p.causes.has(Cause::GyroLost) && p.causes.has(Cause::SelfTest));
 }

@@ -1,4 +1,4 @@
-//! Flight cards: any bytes on a link, with the bodies that cargo-fuzz runs too; docs/testing.md.
+//! Arbitrary bytes on a link, through the fuzz bodies that cargo-fuzz runs too; docs/testing.md.
 
 #[path = "../../../tests/fuzz/bodies.rs"]
 mod bodies;
@@ -7,7 +7,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use std::path::Path;
 
-/// The committed bytes of a body, by file name.
+/// Committed corpus of a body, by file name.
 fn corpus(body: &str) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fuzz/corpus").join(body);
     let files = std::fs::read_dir(&folder).unwrap_or_else(|why| panic!("{}: {why}", folder.display()));
@@ -19,8 +19,10 @@ fn corpus(body: &str) -> Vec<(String, Vec<u8>)> {
         .collect()
 }
 
-/// Situation: the corpus: edge bit patterns, frames of the border ride, records that are whole, damaged, cut
-/// short and too long. Action: each file through its body. Must hold: what the body says.
+/// Situation: the corpus: edge bit patterns, frames of the border ride, records that are complete, damaged, too short
+/// and too long.
+/// Action: run each file through its body.
+/// Must hold: the assertions of the body.
 #[test]
 fn the_corpus_breaks_nothing() {
     for (name, body) in [
@@ -37,7 +39,7 @@ fn the_corpus_breaks_nothing() {
     }
 }
 
-/// Four bytes that are often a number at the edge of something, as f32 or as integers.
+/// Four bytes, often an edge case as f32 or as integer.
 fn edge() -> impl Strategy<Value = [u8; 4]> {
     let numbers = [
         0.0,
@@ -64,7 +66,7 @@ fn edge() -> impl Strategy<Value = [u8; 4]> {
     ]
 }
 
-/// A record of a configuration in the form of its body: most with few patches, so that many are accepted.
+/// A configuration record in the form of its body, mostly with few patches, so that many are accepted.
 fn damaged() -> impl Strategy<Value = Vec<u8>> {
     (any::<u8>(), vec((any::<u16>(), edge()), 0..4)).prop_map(|(choice, patches)| {
         let patches = patches.into_iter().flat_map(|(place, four)| {
@@ -75,27 +77,31 @@ fn damaged() -> impl Strategy<Value = Vec<u8>> {
     })
 }
 
-/// Frames of any numbers, mostly edges.
+/// Frames of arbitrary numbers, mostly edge cases.
 fn edges(bytes: usize) -> impl Strategy<Value = Vec<u8>> {
     vec(edge(), 0..bytes / 4).prop_map(|fours| fours.into_iter().flatten().collect())
 }
 
 proptest! {
-    /// Situation: any bytes for frames. Action: read and written. Must hold: what the body says.
+    /// Situation: arbitrary bytes as frames.
+    /// Action: decode and encode.
+    /// Must hold: the assertions of the body.
     #[test]
     fn frames_survive_their_bytes(bytes in vec(any::<u8>(), 0..400)) {
         bodies::frames(&bytes);
     }
 
-    /// Situation: records damaged in a few numbers. Action: read, planned, ridden with.
-    /// Must hold: what the body says.
+    /// Situation: records damaged in a few numbers.
+    /// Action: decode, plan, ride.
+    /// Must hold: the assertions of the body.
     #[test]
-    fn a_configuration_is_refused_or_rides(bytes in damaged()) {
+    fn a_configuration_is_rejected_or_rides(bytes in damaged()) {
         bodies::configuration(&bytes);
     }
 
-    /// Situation: an engaged controller, then frames of any numbers. Action: step.
-    /// Must hold: what the body says.
+    /// Situation: an engaged controller, then frames of arbitrary numbers.
+    /// Action: step.
+    /// Must hold: the assertions of the body.
     #[test]
     fn no_frame_leaves_the_limits(bytes in edges(2_000)) {
         bodies::ride(&bytes);

@@ -1,58 +1,58 @@
-//! Flight cards: the guard never stops a sound shaper, always stops a broken one.
+//! The guard never stops a correct limiter and always stops a faulty one.
 
-use crate::limits::{Truth, at_speed, calls, mirrored, plain, tables};
+use crate::limits::{Reference, at_speed, calls, mirrored, plain, tables};
 use control::Cause;
 use control::safety::guard::{GuardPlan, GuardState, Violation, check, slack};
 use control::safety::limiter::{LimiterPlan, LimiterState, TorqueRequest, step};
 use control::safety::limits::*;
 use proptest::prelude::*;
 
-/// What can be wrong with a shaper, or between it and the guard.
+/// Faults of a limiter, or between it and the guard.
 #[derive(Clone, Copy, Debug)]
-enum Broken {
-    /// By a factor.
+enum LimiterFault {
+    /// Multiplied by a factor.
     Scaled(f32),
-    /// By a constant \[N m\].
+    /// Offset by a constant \[N m\].
     Offset(f32),
-    /// By so many calls.
+    /// Delayed by a number of calls.
     Delayed(usize),
     SignFlipped,
-    /// From this call on.
+    /// Stuck from this call on.
     Stuck(usize),
-    /// In this call, by so much \[N m\].
+    /// Offset in this call \[N m\].
     Glitch(usize, f32),
-    /// It works by a table without some limits, or with both rates doubled.
+    /// A limiter whose configuration lacks some limits, or has both rates doubled.
     Table(fn(&mut Limits)),
-    /// A not-a-number in this call.
+    /// NaN in this call.
     NotANumber(usize),
 }
 
-impl Broken {
-    /// The table that the shaper works by.
+impl LimiterFault {
+    /// The limits that the faulty limiter uses.
     fn table(self, mut table: Limits) -> Limits {
-        if let Broken::Table(change) = self {
+        if let LimiterFault::Table(change) = self {
             change(&mut table);
         }
         table
     }
 
-    /// What comes out in call `i` of a shaper whose torques so far are `sound`.
-    fn torque(self, i: usize, sound: &[f32]) -> f32 {
-        let now = sound[i];
+    /// Torque in call `i` of a faulty limiter, if a correct one's torques so far are `correct`.
+    fn torque(self, i: usize, correct: &[f32]) -> f32 {
+        let now = correct[i];
         match self {
-            Broken::Scaled(factor) => now * factor,
-            Broken::Offset(nm) => now + nm,
-            Broken::Delayed(calls) => i.checked_sub(calls).map_or(0.0, |j| sound[j]),
-            Broken::SignFlipped => -now,
-            Broken::Stuck(from) => sound[i.min(from)],
-            Broken::Glitch(at, nm) if i == at => now + nm,
-            Broken::NotANumber(at) if i == at => f32::NAN,
-            Broken::Glitch(..) | Broken::NotANumber(_) | Broken::Table(_) => now,
+            LimiterFault::Scaled(factor) => now * factor,
+            LimiterFault::Offset(nm) => now + nm,
+            LimiterFault::Delayed(calls) => i.checked_sub(calls).map_or(0.0, |j| correct[j]),
+            LimiterFault::SignFlipped => -now,
+            LimiterFault::Stuck(from) => correct[i.min(from)],
+            LimiterFault::Glitch(at, nm) if i == at => now + nm,
+            LimiterFault::NotANumber(at) if i == at => f32::NAN,
+            LimiterFault::Glitch(..) | LimiterFault::NotANumber(_) | LimiterFault::Table(_) => now,
         }
     }
 }
 
-fn any_break() -> impl Strategy<Value = Broken> {
+fn any_fault() -> impl Strategy<Value = LimiterFault> {
     let tables: [fn(&mut Limits); 8] = [
         |l| l.window = None,
         |l| l.end_stop = None,
@@ -64,18 +64,18 @@ fn any_break() -> impl Strategy<Value = Broken> {
         |l| *l = Limits::default(),
     ];
     prop_oneof![
-        prop_oneof![Just(1.05_f32), Just(2.0), Just(0.5), 0.0_f32..3.0].prop_map(Broken::Scaled),
-        prop_oneof![Just(0.1_f32), -20.0_f32..20.0].prop_map(Broken::Offset),
-        (1_usize..50).prop_map(Broken::Delayed),
-        Just(Broken::SignFlipped),
-        (0_usize..200).prop_map(Broken::Stuck),
-        (0_usize..200, -20.0_f32..20.0).prop_map(|(at, nm)| Broken::Glitch(at, nm)),
-        proptest::sample::select(tables.to_vec()).prop_map(Broken::Table),
-        (0_usize..200).prop_map(Broken::NotANumber),
+        prop_oneof![Just(1.05_f32), Just(2.0), Just(0.5), 0.0_f32..3.0].prop_map(LimiterFault::Scaled),
+        prop_oneof![Just(0.1_f32), -20.0_f32..20.0].prop_map(LimiterFault::Offset),
+        (1_usize..50).prop_map(LimiterFault::Delayed),
+        Just(LimiterFault::SignFlipped),
+        (0_usize..200).prop_map(LimiterFault::Stuck),
+        (0_usize..200, -20.0_f32..20.0).prop_map(|(at, nm)| LimiterFault::Glitch(at, nm)),
+        proptest::sample::select(tables.to_vec()).prop_map(LimiterFault::Table),
+        (0_usize..200).prop_map(LimiterFault::NotANumber),
     ]
 }
 
-/// Twice the usual cases, for nothing stands between the guard and the motor.
+/// Twice the usual number of cases, because the guard is the last check before the motor.
 fn twice() -> ProptestConfig {
     let usual = ProptestConfig::default();
     ProptestConfig { cases: 2 * usual.cases, ..usual }
@@ -84,67 +84,71 @@ fn twice() -> ProptestConfig {
 proptest! {
     #![proptest_config(twice())]
 
-    /// Situation: any table, rate of calls and sequence of calls; permission comes and goes, the shaper cleared
-    /// without it. Action: shape, judge.
-    /// Must hold: never a violation, every torque let through in every bit.
+    /// Situation: arbitrary limits, call rate and sequence of calls; permission comes and goes, the limiter is cleared
+    /// without it.
+    /// Action: limit, then check.
+    /// Must hold: no violation; every torque passes unchanged to the bit.
     #[test]
-    fn a_sound_shaper_is_never_stopped(
+    fn a_correct_limiter_is_never_stopped(
         (table, rate_hz) in tables(), sequence in calls(1..100), gaps in any::<u64>(),
     ) {
-        let (shape, guard) = (LimiterPlan::new(&table, rate_hz), GuardPlan::new(&table, rate_hz));
-        let (mut shaper, mut guarding) = (LimiterState::default(), GuardState::default());
+        let (limiter_plan, guard) = (LimiterPlan::new(&table, rate_hz), GuardPlan::new(&table, rate_hz));
+        let (mut limiter, mut guard_state) = (LimiterState::default(), GuardState::default());
         for (i, request) in sequence.iter().enumerate() {
             let permitted = i < 200 || gaps >> (i / 16 % 64) & 1 == 0;
-            let mut torque = step(&table, &shape, &mut shaper, request).0;
+            let mut torque = step(&table, &limiter_plan, &mut limiter, request).0;
             if !permitted {
-                (torque, shaper) = (0.0, LimiterState::default());
+                (torque, limiter) = (0.0, LimiterState::default());
             }
-            let verdict = check(&table, &guard, &mut guarding, torque, permitted, request);
-            prop_assert_eq!(verdict.map(f32::to_bits), Ok(torque.to_bits()), "call {} {:?}", i, request);
+            let result = check(&table, &guard, &mut guard_state, torque, permitted, request);
+            prop_assert_eq!(result.map(f32::to_bits), Ok(torque.to_bits()), "call {} {:?}", i, request);
         }
     }
 
-    /// Situation: any table and sequence, a shaper broken in any way.
-    /// Action: judge each torque; whenever it is refused all begin anew.
-    /// Must hold: refused whenever it is outside a limit, by the definitions in f64, by more than
-    /// rounding; and only then (over the seven eighths of the window that the guard is sure of, and over the whole).
+    /// Situation: arbitrary limits and sequence of calls, a limiter with an arbitrary fault.
+    /// Action: check each torque; after each rejection limiter and reference restart.
+    /// Must hold: rejected if the torque is outside a limit, by the definitions in f64, by more than rounding (over the
+    /// seven eighths of the window that the guard covers for certain); not rejected unless it is outside (over the
+    /// whole window).
     #[test]
-    fn a_broken_shaper_is_stopped_whenever_it_matters(
-        (table, rate_hz) in tables(), sequence in calls(1..100), broken in any_break(),
+    fn a_faulty_limiter_is_stopped_outside_the_limits(
+        (table, rate_hz) in tables(), sequence in calls(1..100), fault in any_fault(),
     ) {
-        let known = broken.table(table);
-        let (shape, guard) = (LimiterPlan::new(&known, rate_hz), GuardPlan::new(&table, rate_hz));
-        let (mut shaper, mut guarding) = (LimiterState::default(), GuardState::default());
-        let mut truth = Truth::new(&table, rate_hz);
-        let mut sound = Vec::new();
+        let known = fault.table(table);
+        let (limiter_plan, guard) = (LimiterPlan::new(&known, rate_hz), GuardPlan::new(&table, rate_hz));
+        let (mut limiter, mut guard_state) = (LimiterState::default(), GuardState::default());
+        let mut reference = Reference::new(&table, rate_hz);
+        let mut correct = Vec::new();
         for (i, request) in sequence.iter().enumerate() {
-            sound.push(step(&known, &shape, &mut shaper, request).0);
-            let torque = broken.torque(i, &sound);
-            truth.wait(request);
-            let (least, rounding) = truth.excess(torque, request, 0.875);
-            let (most, _) = truth.excess(torque, request, 1.0);
-            let verdict = check(&table, &guard, &mut guarding, torque, true, request);
-            match verdict {
+            correct.push(step(&known, &limiter_plan, &mut limiter, request).0);
+            let torque = fault.torque(i, &correct);
+            reference.wait(request);
+            let (least, rounding) = reference.excess(torque, request, 0.875);
+            let (most, _) = reference.excess(torque, request, 1.0);
+            let result = check(&table, &guard, &mut guard_state, torque, true, request);
+            match result {
                 Ok(passed) => {
                     prop_assert_eq!(passed.to_bits(), torque.to_bits());
                     prop_assert!(least <= rounding, "call {i}: {torque} let through, {least} N m outside: {request:?}");
-                    truth.output(torque);
+                    reference.output(torque);
                 }
                 Err(why) => {
                     prop_assert!(
                         most > 0.0 || why == Violation::NotFinite,
                         "call {i}: {torque} stopped for {why:?}: {request:?}"
                     );
-                    truth.clear();
-                    shaper = LimiterState::default();
+                    reference.clear();
+                    limiter = LimiterState::default();
                 }
             }
         }
     }
 
-    /// Situation: as above, and its mirror image. Action: judge both. Must hold: the same verdicts.
+    /// Situation: arbitrary limits and calls, and their mirror image.
+    /// Action: check both.
+    /// Must hold: the same results.
     #[test]
-    fn the_guard_has_no_favourite_side(
+    fn the_guard_is_symmetric(
         (table, rate_hz) in tables(), sequence in calls(1..60), torques in proptest::collection::vec(-20.0_f32..20.0, 60),
     ) {
         let plan = GuardPlan::new(&table, rate_hz);
@@ -157,20 +161,21 @@ proptest! {
     }
 }
 
-/// Runs a table's guard over torques, each with its situation; the first refusal and its call.
-fn first_refusal(
+/// Runs the guard over torques, each with its request; returns the first violation and its call.
+fn first_violation(
     table: &Limits,
     torques: impl IntoIterator<Item = (f32, TorqueRequest)>,
 ) -> Option<(usize, Violation)> {
     let plan = GuardPlan::new(table, 1000.0);
     let mut state = GuardState::default();
-    let verdicts =
+    let results =
         torques.into_iter().map(|(torque, request)| check(table, &plan, &mut state, torque, true, &request));
-    verdicts.enumerate().find_map(|(i, verdict)| verdict.err().map(|why| (i, why)))
+    results.enumerate().find_map(|(i, result)| result.err().map(|why| (i, why)))
 }
 
-/// Situation: each limit of the product in turn, exceeded alone. Action: judge.
-/// Must hold: the refusal that names it, in the call in which it happens.
+/// Situation: each limit of the flashed configuration in turn, exceeded alone.
+/// Action: check.
+/// Must hold: the violation of that limit, in the call in which it occurs; none just inside each limit.
 #[test]
 fn each_violation_is_named() {
     let off = Limits::default();
@@ -189,12 +194,12 @@ fn each_violation_is_named() {
     let stop = only(|l, p| l.end_stop = p.end_stop);
     let rates = Limits { rise_nm_s: Some(100.0), fall_nm_s: Some(200.0), ..off };
     let window = only(|l, _| l.window = Some(Window { ms: 100, nm: 2.0 }));
-    let felt = only(|l, _| l.rider_torque = Some(RiderTorque { allowance_nm: 2.0, multiplier: 2.0 }));
+    let rider_torque = only(|l, _| l.rider_torque = Some(RiderTorque { allowance_nm: 2.0, multiplier: 2.0 }));
     let limp = only(|l, _| l.limp_fraction = Some(0.5));
-    let seen = only(|l, p| l.rider_motion = p.rider_motion);
-    let gives_way = product.rider_motion.expect("set");
-    let after = usize::from(gives_way.after_ms);
-    let full = after + usize::from(gives_way.fade_ms);
+    let rider_motion = only(|l, p| l.rider_motion = p.rider_motion);
+    let rider_motion = product.rider_motion.expect("set");
+    let after = usize::from(rider_motion.after_ms);
+    let full = after + usize::from(rider_motion.fade_ms);
     for (name, table, torques, at, why) in [
         ("not a number", off, at(plain(), f32::NAN), 1..=1, Violation::NotFinite),
         ("infinite", off, at(plain(), f32::NEG_INFINITY), 1..=1, Violation::NotFinite),
@@ -216,13 +221,13 @@ fn each_violation_is_named() {
         ),
         ("too slow", taper, at(at_speed(0.0, 1.0), 3.51), 1..=1, Violation::Taper),
         (
-            "felt",
-            felt,
+            "rider_torque",
+            rider_torque,
             at(TorqueRequest { rider_torque_nm: Some(-4.0), ..plain() }, 3.01),
             1..=1,
             Violation::RiderTorque,
         ),
-        ("seen", seen, turned, after..=full, Violation::RiderMotion),
+        ("rider_motion", rider_motion, turned, after..=full, Violation::RiderMotion),
         ("stop", stop, at(steered(1.3), 0.01), 1..=1, Violation::EndStop),
         ("stop, left", stop, at(steered(-1.3), -0.01), 1..=1, Violation::EndStop),
         ("rising", rates, ramp(0.101), 1..=1, Violation::Rise),
@@ -242,30 +247,30 @@ fn each_violation_is_named() {
         ),
         ("window", window, ramp(0.05), 41..=41, Violation::Window),
     ] {
-        let refusal = first_refusal(&table, torques);
-        assert!(refusal.is_some_and(|(i, w)| at.contains(&i) && w == why), "{name}: {refusal:?}");
+        let violation = first_violation(&table, torques);
+        assert!(violation.is_some_and(|(i, w)| at.contains(&i) && w == why), "{name}: {violation:?}");
     }
-    // Just inside each of them nothing is refused.
+    // Just inside each limit nothing is rejected.
     for (name, table, torques) in [
         ("largest", only(|_, _| ()), at(plain(), -7.0)),
         ("limping", limp, at(TorqueRequest { limp: true, ..plain() }, 3.5)),
         ("too fast", Limits { speed_cap: Some(cap), ..off }, at(at_speed(0.0, 7.5), 2.5)),
         ("too slow", taper, at(at_speed(0.0, 1.0), 3.5)),
-        ("felt", felt, at(TorqueRequest { rider_torque_nm: Some(-4.0), ..plain() }, 3.0)),
+        ("rider_torque", rider_torque, at(TorqueRequest { rider_torque_nm: Some(-4.0), ..plain() }, 3.0)),
         ("back from the stop", stop, at(steered(1.3), -7.0)),
         ("rising", rates, ramp(0.1)),
         ("falling", rates, ramp(0.1).into_iter().chain([(9.7, plain())]).collect()),
         ("window", window, at(plain(), 2.0)),
     ] {
-        assert_eq!(first_refusal(&table, torques), None, "{name}");
+        assert_eq!(first_violation(&table, torques), None, "{name}");
     }
 }
 
-/// Situation: 5 N m in force when the end-stop, the taper or the authority leaves none.
-/// Action: fall as fast as the rate lets it, half as fast, stay.
-/// Must hold: the first passes down to zero, the others are refused at once.
+/// Situation: 5 N m output when the end-stop, the taper, the authority or the rider's torque no longer allows any.
+/// Action: fall at the full rate, at half of it, not at all.
+/// Must hold: the first passes down to zero; the others are rejected at once.
 #[test]
-fn what_is_outside_must_come_back() {
+fn a_torque_outside_must_return_to_zero() {
     let table = Limits::product();
     let fall = table.fall_nm_s.expect("set") / 1000.0;
     for outside in [
@@ -277,33 +282,40 @@ fn what_is_outside_must_come_back() {
         for (part, allowed) in [(1.0, true), (0.5, false), (0.0, false)] {
             let up = (0..=50).map(|i| (0.1 * i as f32, plain()));
             let down = (1..=100).map(|i| ((5.0 - part * fall * i as f32).max(0.0), outside));
-            let refusal = first_refusal(&table, up.chain(down));
-            assert_eq!(refusal.map(|(i, _)| i), (!allowed).then_some(51), "{part} {outside:?} {refusal:?}");
+            let violation = first_violation(&table, up.chain(down));
+            assert_eq!(
+                violation.map(|(i, _)| i),
+                (!allowed).then_some(51),
+                "{part} {outside:?} {violation:?}"
+            );
         }
     }
 }
 
-/// Situation: no permission, then permission again. Action: judge. Must hold: only zero without, from zero on with,
-/// and after a refusal too.
+/// Situation: permission withdrawn and given again.
+/// Action: check torques.
+/// Must hold: without permission only zero passes; afterwards, and after a violation, the torque must restart from
+/// zero.
 #[test]
 fn without_permission_only_zero() {
     let table = Limits { rise_nm_s: Some(100.0), ..Limits::default() };
     let plan = GuardPlan::new(&table, 1000.0);
     let mut state = GuardState::default();
-    let mut verdict = |torque, permitted| check(&table, &plan, &mut state, torque, permitted, &plain());
-    assert_eq!(verdict(0.1, true), Ok(0.1));
-    assert_eq!(verdict(0.2, true), Ok(0.2));
-    assert_eq!(verdict(0.2, false), Err(Violation::NotPermitted));
-    assert_eq!(verdict(0.2, true), Err(Violation::Rise));
-    assert_eq!(verdict(0.1, true), Ok(0.1));
-    assert_eq!(verdict(0.0, false), Ok(0.0));
-    assert_eq!(verdict(0.11, true), Err(Violation::Rise));
+    let mut result = |torque, permitted| check(&table, &plan, &mut state, torque, permitted, &plain());
+    assert_eq!(result(0.1, true), Ok(0.1));
+    assert_eq!(result(0.2, true), Ok(0.2));
+    assert_eq!(result(0.2, false), Err(Violation::NotPermitted));
+    assert_eq!(result(0.2, true), Err(Violation::Rise));
+    assert_eq!(result(0.1, true), Ok(0.1));
+    assert_eq!(result(0.0, false), Ok(0.0));
+    assert_eq!(result(0.11, true), Err(Violation::Rise));
 }
 
-/// Situation: the product's shaper and guard, torque swinging by 20 N m, sensors moving. Action: break the shaper
-/// in each way. Must hold: stopped, and not before it breaks.
+/// Situation: limiter and guard as flashed, torque swinging by 20 N m, sensors moving.
+/// Action: introduce each fault of the limiter.
+/// Must hold: stopped; never stopped without a fault.
 #[test]
-fn each_fault_of_the_shaper_is_found() {
+fn each_fault_of_the_limiter_is_found() {
     let table = Limits { window: Some(Window { ms: 100, nm: 4.0 }), ..Limits::product() };
     let sequence: Vec<TorqueRequest> = (0..4000)
         .map(|i| {
@@ -317,52 +329,54 @@ fn each_fault_of_the_shaper_is_found() {
             }
         })
         .collect();
-    let run = |broken: Option<Broken>| {
-        let known = broken.map_or(table, |b| b.table(table));
+    let run = |fault: Option<LimiterFault>| {
+        let known = fault.map_or(table, |b| b.table(table));
         let plan = LimiterPlan::new(&known, 1000.0);
-        let mut shaper = LimiterState::default();
-        let mut sound = Vec::new();
-        first_refusal(
+        let mut limiter = LimiterState::default();
+        let mut correct = Vec::new();
+        first_violation(
             &table,
             sequence.iter().enumerate().map(|(i, request)| {
-                sound.push(step(&known, &plan, &mut shaper, request).0);
-                (broken.map_or(sound[i], |b| b.torque(i, &sound)), *request)
+                correct.push(step(&known, &plan, &mut limiter, request).0);
+                (fault.map_or(correct[i], |b| b.torque(i, &correct)), *request)
             }),
         )
     };
     assert_eq!(run(None), None);
-    for (name, broken) in [
-        ("scaled by 1.01", Broken::Scaled(1.01)),
-        ("offset by 0.1", Broken::Offset(0.1)),
-        ("ten late", Broken::Delayed(10)),
-        ("flipped", Broken::SignFlipped),
-        ("stuck", Broken::Stuck(300)),
-        ("glitch", Broken::Glitch(500, 0.3)),
-        ("not a number", Broken::NotANumber(7)),
-        ("rates doubled", Broken::Table(|l| (l.rise_nm_s, l.fall_nm_s) = (Some(200.0), Some(400.0)))),
-        ("window ignored", Broken::Table(|l| l.window = None)),
-        ("end-stop ignored", Broken::Table(|l| l.end_stop = None)),
-        ("rider's torque ignored", Broken::Table(|l| l.rider_torque = None)),
-        ("rider's motion ignored", Broken::Table(|l| l.rider_motion = None)),
-        ("limp ignored", Broken::Table(|l| l.limp_fraction = None)),
-        ("taper ignored", Broken::Table(|l| l.taper = None)),
+    for (name, fault) in [
+        ("scaled by 1.01", LimiterFault::Scaled(1.01)),
+        ("offset by 0.1", LimiterFault::Offset(0.1)),
+        ("ten late", LimiterFault::Delayed(10)),
+        ("flipped", LimiterFault::SignFlipped),
+        ("stuck", LimiterFault::Stuck(300)),
+        ("glitch", LimiterFault::Glitch(500, 0.3)),
+        ("not a number", LimiterFault::NotANumber(7)),
+        ("rates doubled", LimiterFault::Table(|l| (l.rise_nm_s, l.fall_nm_s) = (Some(200.0), Some(400.0)))),
+        ("window ignored", LimiterFault::Table(|l| l.window = None)),
+        ("end-stop ignored", LimiterFault::Table(|l| l.end_stop = None)),
+        ("rider's torque ignored", LimiterFault::Table(|l| l.rider_torque = None)),
+        ("rider's motion ignored", LimiterFault::Table(|l| l.rider_motion = None)),
+        ("limp ignored", LimiterFault::Table(|l| l.limp_fraction = None)),
+        ("taper ignored", LimiterFault::Table(|l| l.taper = None)),
     ] {
-        let refusal = run(Some(broken));
-        assert!(refusal.is_some(), "{name}");
-        println!("{name}: {refusal:?}");
+        let violation = run(Some(fault));
+        assert!(violation.is_some(), "{name}");
+        println!("{name}: {violation:?}");
     }
-    assert_eq!(run(Some(Broken::Glitch(500, 0.3))).map(|(i, _)| i), Some(500));
+    assert_eq!(run(Some(LimiterFault::Glitch(500, 0.3))).map(|(i, _)| i), Some(500));
 }
 
-/// Situation: each limit alone, on both sides. Action: torques float by float about the limit and its slack.
-/// Must hold: what the slack takes back to the limit itself is let through, the next float refused.
+/// Situation: each limit alone, on both sides.
+/// Action: torques float by float about the limit and its slack.
+/// Must hold: a torque that less its slack is within the limit passes; the next float is rejected.
 #[test]
 fn the_limit_and_its_slack_are_allowed() {
     let off = Limits::default();
     let seven = Limits { max_torque_nm: Some(7.0), ..off };
     let cap = SpeedCap { speed_m_s: [1.0, 3.0, 5.0, 6.0], torque_nm: [5.0, 6.0, 4.0, 4.5] };
     let cap = Limits { speed_cap: Some(cap), ..off };
-    let felt = Limits { rider_torque: Some(RiderTorque { allowance_nm: 1.0, multiplier: 1.0 }), ..seven };
+    let rider_torque =
+        Limits { rider_torque: Some(RiderTorque { allowance_nm: 1.0, multiplier: 1.0 }), ..seven };
     let window = Limits { window: Some(Window { ms: 100, nm: 4.0 }), ..off };
     let against = |rider: f32| TorqueRequest { rider_torque_nm: Some(rider), ..plain() };
     for (name, table, request, limit, why) in [
@@ -371,8 +385,8 @@ fn the_limit_and_its_slack_are_allowed() {
         ("cap, slower", cap, at_speed(0.0, 0.5), 5.0, Violation::Speed),
         ("cap, faster", cap, at_speed(0.0, 7.0), 4.5, Violation::Speed),
         ("cap, between", cap, at_speed(0.0, 4.0), 5.0, Violation::Speed),
-        ("rider against", felt, against(-4.0), 4.0, Violation::RiderTorque),
-        ("rider takes it all", felt, against(-30.0), 0.0, Violation::RiderTorque),
+        ("rider against", rider_torque, against(-4.0), 4.0, Violation::RiderTorque),
+        ("rider takes it all", rider_torque, against(-30.0), 0.0, Violation::RiderTorque),
         ("window", window, plain(), 4.0, Violation::Window),
     ] {
         let plan = GuardPlan::new(&table, 1000.0);
@@ -392,32 +406,36 @@ fn the_limit_and_its_slack_are_allowed() {
     }
 }
 
-/// Situation: the handlebar turns against the torque exactly as fast as is allowed, either way, then faster. Action: hold the torque.
-/// Must hold: let through for ever, then refused.
+/// Situation: the handlebar turns against the torque at exactly the allowed rate, either way, then faster.
+/// Action: hold the torque.
+/// Must hold: passes without end at the allowed rate; rejected above it.
 #[test]
-fn turning_as_fast_as_allowed_is_no_override() {
-    let gives_way = RiderMotion { steer_rate_rad_s: 1.0, after_ms: 20, fade_ms: 10 };
-    let table = Limits { rider_motion: Some(gives_way), max_torque_nm: Some(7.0), ..Limits::default() };
+fn turning_at_the_allowed_rate_is_not_an_override() {
+    let rider_motion = RiderMotion { steer_rate_rad_s: 1.0, after_ms: 20, fade_ms: 10 };
+    let table = Limits { rider_motion: Some(rider_motion), max_torque_nm: Some(7.0), ..Limits::default() };
     for torque in [5.0_f32, -5.0] {
         let turned = |rate: f32| TorqueRequest { steer_rate_rad_s: Some(rate * torque.signum()), ..plain() };
-        assert_eq!(first_refusal(&table, vec![(torque, turned(-1.0)); 1000]), None);
-        let refused = first_refusal(&table, vec![(torque, turned(-1.001)); 1000]);
-        assert!(refused.is_some_and(|(i, why)| (20..=31).contains(&i) && why == Violation::RiderMotion));
+        assert_eq!(first_violation(&table, vec![(torque, turned(-1.0)); 1000]), None);
+        let rejected = first_violation(&table, vec![(torque, turned(-1.001)); 1000]);
+        assert!(rejected.is_some_and(|(i, why)| (20..=31).contains(&i) && why == Violation::RiderMotion));
     }
 }
 
-/// Situation: limping by a table without a largest torque, of which the limp fraction would be a part. Action: a huge torque.
-/// Must hold: let through, as the shaper does; a part of no limit is none.
+/// Situation: limp mode without a largest torque to which the limp fraction would apply.
+/// Action: a very large torque.
+/// Must hold: passes, as it passes the limiter: a fraction of no limit is no limit.
 #[test]
-fn a_part_of_no_limit_is_none() {
+fn a_fraction_of_no_limit_is_no_limit() {
     let table = Limits { limp_fraction: Some(0.5), ..Limits::default() };
     let huge = TorqueRequest { limp: true, wanted_nm: 0.9 * f32::MAX, ..plain() };
-    let shaped = step(&table, &LimiterPlan::new(&table, 1000.0), &mut LimiterState::default(), &huge).0;
-    assert_eq!(shaped, huge.wanted_nm);
-    assert_eq!(first_refusal(&table, [(shaped, huge)]), None);
+    let limited = step(&table, &LimiterPlan::new(&table, 1000.0), &mut LimiterState::default(), &huge).0;
+    assert_eq!(limited, huge.wanted_nm);
+    assert_eq!(first_violation(&table, [(limited, huge)]), None);
 }
 
-/// Situation: every violation. Action: ask for its cause. Must hold: the code whose page explains it.
+/// Situation: every violation.
+/// Action: read its cause.
+/// Must hold: the cause whose page explains it.
 #[test]
 fn each_violation_has_its_cause() {
     use Violation::*;
@@ -436,7 +454,9 @@ fn each_violation_has_its_cause() {
     }
 }
 
-/// Situation: the tolerance. Must hold: it is what the documentation says, and no more than 0.1 mN m at product torques.
+/// Situation: the slack at product torques and at zero.
+/// Action: compute it.
+/// Must hold: as documented, and at most 0.1 mN m.
 #[test]
 fn the_slack_is_small() {
     assert!((slack(7.0, 7.0) - 7.8e-5).abs() < 1e-9 && slack(7.0, 7.0) < 1e-4);

@@ -1,5 +1,5 @@
-//! Any table of limits, any sequence of calls, and what the limits say, straight from their
-//! definitions: in f64, with the whole past at hand.
+//! Generators of limits and sequences of calls, and a reference of the limits: directly from their definitions, in f64,
+//! with the complete history.
 
 use control::safety::guard::slack;
 use control::safety::limiter::TorqueRequest;
@@ -8,7 +8,7 @@ use proptest::collection::vec;
 use proptest::option::of;
 use proptest::prelude::*;
 
-/// Nothing wanted, nothing known, at 5 m/s, a millisecond after the last call.
+/// No torque requested, no sensor valid, at 5 m/s, one millisecond after the last call.
 pub(crate) fn plain() -> TorqueRequest {
     TorqueRequest {
         wanted_nm: 0.0,
@@ -23,12 +23,12 @@ pub(crate) fn plain() -> TorqueRequest {
     }
 }
 
-/// Only the torque wanted and the speed.
+/// A request of only a torque and a speed.
 pub(crate) fn at_speed(wanted_nm: f32, speed: f32) -> TorqueRequest {
     TorqueRequest { wanted_nm, speed_low_m_s: speed, speed_high_m_s: speed, ..plain() }
 }
 
-/// The mirror image.
+/// The mirror image of a request.
 pub(crate) fn mirrored(request: &TorqueRequest) -> TorqueRequest {
     TorqueRequest {
         wanted_nm: -request.wanted_nm,
@@ -39,7 +39,7 @@ pub(crate) fn mirrored(request: &TorqueRequest) -> TorqueRequest {
     }
 }
 
-/// Any table that is accepted, and a rate of calls \[Hz\].
+/// Arbitrary valid limits, and a call rate \[Hz\].
 pub(crate) fn tables() -> impl Strategy<Value = (Limits, f32)> {
     let cap = (vec(0.1_f32..5.0, CAP_POINTS), vec(0.0_f32..50.0, CAP_POINTS)).prop_map(|(gaps, torques)| {
         let mut cap = SpeedCap::default();
@@ -52,17 +52,18 @@ pub(crate) fn tables() -> impl Strategy<Value = (Limits, f32)> {
     });
     let taper = (0.0_f32..4.0, 0.101_f32..5.0)
         .prop_map(|(zero_m_s, width)| Taper { zero_m_s, full_m_s: zero_m_s + width });
-    let felt = (0.0_f32..10.0, 0.1_f32..20.0)
+    let rider_torque_limit = (0.0_f32..10.0, 0.1_f32..20.0)
         .prop_map(|(allowance_nm, multiplier)| RiderTorque { allowance_nm, multiplier });
-    let seen = (0.05_f32..10.0, 0_u16..300, 1_u16..300).prop_map(|(steer_rate_rad_s, after_ms, fade_ms)| {
-        RiderMotion { steer_rate_rad_s, after_ms, fade_ms }
-    });
+    let rider_motion_limit =
+        (0.05_f32..10.0, 0_u16..300, 1_u16..300).prop_map(|(steer_rate_rad_s, after_ms, fade_ms)| {
+            RiderMotion { steer_rate_rad_s, after_ms, fade_ms }
+        });
     let window = (10_u16..600, 0.1_f32..20.0).prop_map(|(ms, nm)| Window { ms, nm });
     let stop = (0.0_f32..1.5, 0.011_f32..1.5)
         .prop_map(|(soft_rad, width)| EndStop { soft_rad, hard_rad: soft_rad + width });
     let rate = || of((0.0_f32..5.0).prop_map(|exponent| 10_f32.powf(exponent)));
     let numbers = (of(0.1_f32..50.0), rate(), rate(), any::<bool>(), of(0.0_f32..1.0));
-    let groups = (of(cap), of(taper), of(felt), of(seen), of(window), of(stop));
+    let groups = (of(cap), of(taper), of(rider_torque_limit), of(rider_motion_limit), of(window), of(stop));
     (numbers, groups, 100.0_f32..10_000.0).prop_map(|(numbers, groups, rate_hz)| {
         let (max_torque_nm, rise_nm_s, fall_nm_s, same, limp_fraction) = numbers;
         let (speed_cap, taper, rider_torque, rider_motion, window, end_stop) = groups;
@@ -89,7 +90,7 @@ fn wild() -> impl Strategy<Value = f32> {
     prop_oneof![any::<u32>().prop_map(f32::from_bits), Just(f32::NAN), Just(f32::INFINITY)]
 }
 
-/// A value that comes and goes and is mostly within `bound`.
+/// A value that is sometimes missing and mostly within `bound`.
 fn sensor(bound: f32) -> impl Strategy<Value = Option<f32>> {
     prop_oneof![
         8 => (-bound..bound).prop_map(Some),
@@ -119,12 +120,12 @@ fn call() -> impl Strategy<Value = TorqueRequest> {
     )
 }
 
-/// A sequence of calls: spells in which all but the time stays as it is, of one call or many.
-pub(crate) fn calls(spells: std::ops::Range<usize>) -> impl Strategy<Value = Vec<TorqueRequest>> {
-    let spell = (call(), prop_oneof![Just(1_usize), 1_usize..60], any::<bool>());
-    vec(spell, spells).prop_map(|spells| {
+/// A sequence of calls: periods of one call or many in which all but the time is constant.
+pub(crate) fn calls(stretches: std::ops::Range<usize>) -> impl Strategy<Value = Vec<TorqueRequest>> {
+    let stretch = (call(), prop_oneof![Just(1_usize), 1_usize..60], any::<bool>());
+    vec(stretch, stretches).prop_map(|stretches| {
         let mut all: Vec<TorqueRequest> = Vec::new();
-        for (request, times, steady) in spells {
+        for (request, times, steady) in stretches {
             let steady = steady && request.elapsed_us < 20_000;
             all.extend(vec![request; if steady { times } else { 1 }]);
         }
@@ -132,92 +133,92 @@ pub(crate) fn calls(spells: std::ops::Range<usize>) -> impl Strategy<Value = Vec
     })
 }
 
-/// The past as it really was.
+/// Reference model of the limits with the complete history.
 #[derive(Clone, Debug)]
-pub(crate) struct Truth {
+pub(crate) struct Reference {
     table: Limits,
     period_s: f64,
     last: f64,
-    turned_us: f64,
+    against_us: f64,
     /// Torques with the time at which each ended \[us\], the newest last.
-    past: Vec<(f64, f64)>,
+    history: Vec<(f64, f64)>,
     now_us: f64,
 }
 
-impl Truth {
-    /// Zero torque for ever.
+impl Reference {
+    /// A torque that has always been zero.
     pub(crate) fn new(table: &Limits, rate_hz: f32) -> Self {
         let period_s = 1.0 / f64::from(rate_hz);
         Self {
             table: *table,
             period_s,
             last: 0.0,
-            turned_us: 0.0,
-            past: vec![(f64::INFINITY, 0.0)],
+            against_us: 0.0,
+            history: vec![(f64::INFINITY, 0.0)],
             now_us: 0.0,
         }
     }
 
-    /// Forgets everything.
+    /// Clears the history.
     pub(crate) fn clear(&mut self) {
-        (self.last, self.turned_us, self.past) = (0.0, 0.0, vec![(self.now_us, 0.0)]);
+        (self.last, self.against_us, self.history) = (0.0, 0.0, vec![(self.now_us, 0.0)]);
     }
 
-    /// Time passes.
+    /// Advances the time.
     pub(crate) fn wait(&mut self, request: &TorqueRequest) {
         let elapsed = f64::from(request.elapsed_us);
         self.now_us += elapsed;
-        self.past.push((self.now_us, self.last));
+        self.history.push((self.now_us, self.last));
         if let Some(r) = self.table.rider_motion {
             let back = request.steer_rate_rad_s.map_or(0.0, |rate| -f64::from(rate) * self.last.signum());
             let against = self.last != 0.0 && back > f64::from(r.steer_rate_rad_s);
             let whole = 1e3 * (f64::from(r.after_ms) + f64::from(r.fade_ms));
-            self.turned_us = (self.turned_us + if against { elapsed } else { -elapsed }).clamp(0.0, whole);
+            self.against_us = (self.against_us + if against { elapsed } else { -elapsed }).clamp(0.0, whole);
         }
     }
 
-    /// The torque is output.
+    /// Records the output torque.
     pub(crate) fn output(&mut self, torque: f32) {
         self.last = f64::from(torque);
     }
 
-    /// By how much the torque is outside its limits \[N m\], and how much of that rounding may be; over
+    /// Excess of the torque over its limits \[N m\], and the part of it that rounding can explain; over the fraction
     /// `part` of the window.
     pub(crate) fn excess(&self, torque: f32, request: &TorqueRequest, part: f64) -> (f64, f64) {
         let rounding = f64::from(slack(torque, self.last as f32));
         let torque = f64::from(torque);
         let size = torque.abs();
         let side = if torque < 0.0 || (torque == 0.0 && self.last < 0.0) { -1.0 } else { 1.0 };
-        let was = self.last * side;
+        let previous = self.last * side;
         let elapsed = f64::from(request.elapsed_us) * 1e-6;
         let [rise, fall] =
             [self.table.rise_nm_s, self.table.fall_nm_s].map(|r| r.map_or(f64::INFINITY, f64::from));
-        // The clock's microsecond, in favour of the torque.
+        // The time resolution of one microsecond counts in favour of the torque.
         let (least, most) = (elapsed.min(self.period_s), (elapsed + 1e-6).min(self.period_s));
         let cap = self.caps(side, request);
-        let back = if fall.is_finite() && was > 0.0 { was - fall * least } else { 0.0 };
+        let back = if fall.is_finite() && previous > 0.0 { previous - fall * least } else { 0.0 };
         let beyond = (size - cap.max(back)).max(0.0) * f64::from(u8::from(size > 0.0));
         let absolute = self.table.max_torque_nm.map_or(0.0, |max| size - f64::from(max));
-        let (up, down) = if was >= 0.0 {
-            let down = if fall.is_finite() { was - fall * most } else { 0.0 };
-            (was + rise * most, down)
+        let (up, down) = if previous >= 0.0 {
+            let down = if fall.is_finite() { previous - fall * most } else { 0.0 };
+            (previous + rise * most, down)
         } else {
-            let to_zero = if fall.is_finite() { -was / fall } else { 0.0 };
+            let to_zero = if fall.is_finite() { -previous / fall } else { 0.0 };
             let left = most - to_zero;
             (if left > 0.0 { rise * left } else { 0.0 }, 0.0)
         };
         let window = self.table.window.map_or(0.0, |w| {
             let since = self.now_us - part * 1e3 * f64::from(w.ms);
-            let recent = self.past.iter().rev().take_while(|(end, _)| *end >= since);
+            let recent = self.history.iter().rev().take_while(|(end, _)| *end >= since);
             let start = recent.map(|(_, t)| t * side).fold(f64::INFINITY, f64::min);
             size - start.max(0.0) - f64::from(w.nm)
         });
         let steep = match (rise.is_finite(), fall.is_finite()) {
-            (true, true) if was < 0.0 => 1.0 + rise / fall,
-            // Any torque the other way, or none, by rounding of the time to zero alone.
-            (false, true) if was < 0.0 => {
-                let unsure = f64::from(slack(0.0, self.last as f32)) / fall + 2e-5 * most;
-                if (-was / fall - most).abs() <= unsure { f64::INFINITY } else { 1.0 }
+            (true, true) if previous < 0.0 => 1.0 + rise / fall,
+            // Rounding of the time to zero alone decides between any torque on the other side and none.
+            (false, true) if previous < 0.0 => {
+                let tolerance = f64::from(slack(0.0, self.last as f32)) / fall + 2e-5 * most;
+                if (-previous / fall - most).abs() <= tolerance { f64::INFINITY } else { 1.0 }
             }
             _ => 1.0,
         };
@@ -227,13 +228,13 @@ impl Truth {
         (worst, (rounding + 1e-5 * scale) * steep * 3.0)
     }
 
-    /// The largest torque on a side by what bicycle, rider and permission say.
+    /// The largest torque on a side that bicycle, rider and permission allow.
     fn caps(&self, side: f64, request: &TorqueRequest) -> f64 {
         let table = &self.table;
         let max = table.max_torque_nm.map_or(f64::from(f32::MAX), f64::from);
-        let share = |x: f64| if x > 0.0 { x.min(1.0) } else { 0.0 };
+        let fraction = |x: f64| if x > 0.0 { x.min(1.0) } else { 0.0 };
         let finite = |x: Option<f32>| x.filter(|x| x.is_finite()).map(f64::from);
-        let mut cap = max * share(f64::from(request.authority));
+        let mut cap = max * fraction(f64::from(request.authority));
         if let (Some(part), true, Some(max)) = (table.limp_fraction, request.limp, table.max_torque_nm) {
             cap = cap.min(f64::from(part) * f64::from(max));
         }
@@ -258,19 +259,19 @@ impl Truth {
         }
         if let Some(t) = table.taper {
             let (zero, full) = (f64::from(t.zero_m_s), f64::from(t.full_m_s));
-            cap = cap.min(max * share((slow - zero) / (full - zero)));
+            cap = cap.min(max * fraction((slow - zero) / (full - zero)));
         }
         if let (Some(r), Some(rider)) = (table.rider_torque, finite(request.rider_torque_nm)) {
             let band = max + (f64::from(r.allowance_nm) + rider * side) * f64::from(r.multiplier);
             cap = cap.min(band.max(0.0));
         }
         if let Some(r) = table.rider_motion {
-            let gone = self.turned_us - 1e3 * f64::from(r.after_ms);
-            cap = cap.min(max * share(1.0 - gone / (1e3 * f64::from(r.fade_ms))));
+            let gone = self.against_us - 1e3 * f64::from(r.after_ms);
+            cap = cap.min(max * fraction(1.0 - gone / (1e3 * f64::from(r.fade_ms))));
         }
         if let (Some(e), Some(steer)) = (table.end_stop, finite(request.steer_rad)) {
             let (soft, hard) = (f64::from(e.soft_rad), f64::from(e.hard_rad));
-            cap = cap.min(max * share((hard - steer * side) / (hard - soft)));
+            cap = cap.min(max * fraction((hard - steer * side) / (hard - soft)));
         }
         cap
     }

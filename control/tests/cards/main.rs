@@ -1,4 +1,5 @@
-//! Flight cards of the control crate alone: what holds whatever the bicycle.
+//! Tests of the control crate alone, independent of the bicycle, written as flight cards: situation, action, what must
+//! hold.
 
 mod answer;
 mod cross_check;
