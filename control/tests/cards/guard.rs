@@ -197,9 +197,9 @@ fn each_violation_is_named() {
     let rider_torque = only(|l, _| l.rider_torque = Some(RiderTorque { allowance_nm: 2.0, multiplier: 2.0 }));
     let limp = only(|l, _| l.limp_fraction = Some(0.5));
     let rider_motion = only(|l, p| l.rider_motion = p.rider_motion);
-    let rider_motion = product.rider_motion.expect("set");
-    let after = usize::from(rider_motion.after_ms);
-    let full = after + usize::from(rider_motion.fade_ms);
+    let override_limit = product.rider_motion.expect("set");
+    let after = usize::from(override_limit.after_ms);
+    let full = after + usize::from(override_limit.fade_ms);
     for (name, table, torques, at, why) in [
         ("not a number", off, at(plain(), f32::NAN), 1..=1, Violation::NotFinite),
         ("infinite", off, at(plain(), f32::NEG_INFINITY), 1..=1, Violation::NotFinite),

@@ -1,9 +1,10 @@
-//! Flight cards: the polynomials of the control crate.
+//! Sine, cosine, exponential and reciprocal square root of the control crate.
 
 use control::maths::{QUARTER, RSQRT_ERROR, SIN_COS_ERROR, bounded, exp, is_finite, rsqrt, sin_cos};
 
-/// Situation: every 61st float of a quarter turn, both ways. Action: compare with double precision. The
-/// error must stay within the stated bound, which must be no looser than twice what is needed.
+/// Situation: every 61st float within a quarter turn, both signs.
+/// Action: compare with double precision.
+/// Must hold: the error is within the stated bound, and the bound is at most twice the error.
 #[test]
 fn sine_and_cosine_within_their_bound() {
     let mut worst = 0.0_f64;
@@ -20,10 +21,11 @@ fn sine_and_cosine_within_their_bound() {
     assert!(worst < bound && worst > 0.5 * bound, "{worst:e}");
 }
 
-/// Situation: every 61st float of two octaves, where all others repeat, and a few far ones. Action: compare one over the
-/// root with double precision. Must hold: within the stated bound, which is no looser than twice what is needed.
+/// Situation: every 61st float of two octaves, after which the function repeats, and a few distant ones.
+/// Action: compare the reciprocal square root with double precision.
+/// Must hold: the error is within the stated bound, and the bound is at most twice the error.
 #[test]
-fn one_over_the_root_within_its_bound() {
+fn the_reciprocal_root_within_its_bound() {
     let mut worst = 0.0_f64;
     let octaves = (1.0_f32.to_bits()..4.0_f32.to_bits()).step_by(61).map(f32::from_bits);
     for x in octaves.chain([1e-37, 1e-6, 96.2, 3e6, 1e38]) {
@@ -34,18 +36,20 @@ fn one_over_the_root_within_its_bound() {
     assert!(worst < bound && worst > 0.5 * bound, "{worst:e}");
 }
 
-/// Situation: every 61st finite float from zero on, denormal ones and the largest. Action: one over the root. Must hold:
-/// finite and positive.
+/// Situation: every 61st finite float from zero, including denormals and the largest.
+/// Action: compute the reciprocal square root.
+/// Must hold: finite and positive.
 #[test]
-fn one_over_the_root_is_finite() {
+fn the_reciprocal_root_is_finite() {
     for x in (0..=f32::MAX.to_bits()).step_by(61).map(f32::from_bits).chain([f32::MAX]) {
         assert!(rsqrt(x).is_finite() && rsqrt(x) > 0.0, "{x}");
     }
     assert_eq!(0.0 * rsqrt(0.0), 0.0);
 }
 
-/// Situation: angles beyond a quarter turn, infinite, not a number, negative zero. Action: take sine
-/// and cosine. They must be those of the nearest angle within, of 0, and keep the sign of zero.
+/// Situation: angles beyond a quarter turn, infinite, NaN, negative zero.
+/// Action: compute sine and cosine.
+/// Must hold: those of the nearest angle within, of 0 for NaN, with the sign of zero kept.
 #[test]
 fn beyond_a_quarter_turn() {
     assert_eq!(sin_cos(7.0), sin_cos(QUARTER));
@@ -56,8 +60,9 @@ fn beyond_a_quarter_turn() {
     assert_eq!(bounded(f32::NAN, 1.0), 0.0);
 }
 
-/// Situation: every 61st float, both signs, and the neighbours of where the short way begins and ends. Action: take `e` to its
-/// power, by the short way and by libm. Must hold: the same bits.
+/// Situation: every 61st float, both signs, and the neighbours of the limits of the short path.
+/// Action: compute the exponential by the short path and by libm.
+/// Must hold: the same bits.
 #[test]
 fn the_exponential_has_the_bits_of_libm() {
     let edges = [1.220_703_1e-4_f32, 0.5 * std::f32::consts::LN_2, 1.5 * std::f32::consts::LN_2, 87.0, 88.8];
@@ -72,9 +77,11 @@ fn the_exponential_has_the_bits_of_libm() {
     assert!(exp(f32::NAN).is_nan());
 }
 
-/// Situation: zero, the least and the largest, infinite, not a number, both signs. Must hold: finite as `f32::is_finite` has it.
+/// Situation: zero, the smallest and the largest float, infinity, NaN, both signs.
+/// Action: test for finiteness.
+/// Must hold: the result of `f32::is_finite`.
 #[test]
-fn finite_is_finite() {
+fn is_finite_agrees_with_the_standard_library() {
     for x in [0.0, 1.0, 1e-45, f32::MIN_POSITIVE, f32::MAX, f32::INFINITY, f32::NAN] {
         assert_eq!([is_finite(x), is_finite(-x)], [x.is_finite(); 2], "{x:e}");
     }

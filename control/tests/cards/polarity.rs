@@ -1,4 +1,4 @@
-//! Flight cards: the polarity check, and what it lets through.
+//! The polarity check, and the engagement that it allows.
 
 use control::safety::press::PressConfig;
 use control::sensors::polarity::PolarityStep;
@@ -6,7 +6,7 @@ use control::{
     Cause, Causes, Command, Config, GainSchedule, Law, Mode, Plan, Sample, SensorFrame, State, Triple, step,
 };
 
-/// What somebody does with the bicycle in one control period.
+/// Motion of the bicycle by hand in one control period.
 #[derive(Clone, Copy, Default)]
 struct Hands {
     roll_rad: f32,
@@ -16,8 +16,8 @@ struct Hands {
     speed_m_s: f32,
 }
 
-/// Three moves of 2 s each, there and back, and a rest of 1 s before each: lean, steer, push.
-fn moves(size: f32) -> Vec<Hands> {
+/// Three movements of 2 s each, there and back, with a rest of 1 s before each: lean, steer, push.
+fn movements(size: f32) -> Vec<Hands> {
     let swing = |i: usize| {
         let t = i as f32 * 1e-3;
         let phase = core::f32::consts::PI * t;
@@ -32,65 +32,69 @@ fn moves(size: f32) -> Vec<Hands> {
     rest().chain(lean).chain(rest()).chain(steer).chain(rest()).chain(push).collect()
 }
 
-/// What is wrong with a frame.
-type Wrong = fn(&mut SensorFrame);
+/// A fault applied to a frame.
+type Fault = fn(&mut SensorFrame);
 
-/// The sensors' frames, with a little noise so that none counts as stuck; each then changed by `wrong`.
-fn frames(hands: &[Hands], engage: bool, wrong: Wrong) -> Vec<SensorFrame> {
+/// The sensors' frames, with a little noise so that no sensor counts as stuck; each modified by `fault`.
+fn frames(hands: &[Hands], engage: bool, fault: Fault) -> Vec<SensorFrame> {
     hands
         .iter()
         .enumerate()
         .map(|(i, h)| {
-            let hum = 1e-4 * (i % 7) as f32;
+            let noise = 1e-4 * (i % 7) as f32;
             let (sin, cos) = h.roll_rad.sin_cos();
             let mut frame = SensorFrame {
                 now_us: 1000 * i as u32,
-                gyro_rad_s: Triple::fresh([h.roll_rate_rad_s + hum, hum, hum]),
-                accel_m_s2: Triple::fresh([hum, -9.81 * sin, -9.81 * cos]),
-                steer_rad: Sample::fresh(h.steer_rad + hum),
-                steer_rate_rad_s: Sample::fresh(h.steer_rate_rad_s + hum),
+                gyro_rad_s: Triple::fresh([h.roll_rate_rad_s + noise, noise, noise]),
+                accel_m_s2: Triple::fresh([noise, -9.81 * sin, -9.81 * cos]),
+                steer_rad: Sample::fresh(h.steer_rad + noise),
+                steer_rate_rad_s: Sample::fresh(h.steer_rate_rad_s + noise),
                 front_wheel_m_s: Sample::fresh(h.speed_m_s),
                 rear_wheel_m_s: Sample::fresh(h.speed_m_s),
-                motor_torque_nm: Sample::fresh(hum),
+                motor_torque_nm: Sample::fresh(noise),
                 engage,
                 ..SensorFrame::missing()
             };
-            wrong(&mut frame);
+            fault(&mut frame);
             frame
         })
         .collect()
 }
 
-/// The moves asked for one after the other, the causes told on the way, the torque shown while leaning to the right.
-fn checked(plan: &Plan, frames: &[SensorFrame]) -> (Vec<PolarityStep>, Vec<Cause>, f32) {
+/// The requested movements in order, the reported causes, and the largest torque shown in the first second of the lean.
+fn run_check(plan: &Plan, frames: &[SensorFrame]) -> (Vec<PolarityStep>, Vec<Cause>, f32) {
     let mut state = State::default();
-    let (mut asked, mut causes, mut shown) = (vec![state.polarity()], control::Causes::NONE, 0.0_f32);
+    let (mut requested, mut causes, mut shown) = (vec![state.polarity()], control::Causes::NONE, 0.0_f32);
     for (i, frame) in frames.iter().enumerate() {
         let command = step(plan, &mut state, frame);
         assert_eq!(command.torque_nm, 0.0, "the motor is off");
         assert!(!command.mode.drives());
         causes = causes.with(command.causes);
-        if state.polarity() != *asked.last().unwrap() {
-            asked.push(state.polarity());
+        if state.polarity() != *requested.last().unwrap() {
+            requested.push(state.polarity());
         }
         if (1000..2000).contains(&i) && state.hand_torque_nm().abs() > shown.abs() {
             shown = state.hand_torque_nm();
         }
     }
-    (asked, causes.iter().collect(), shown)
+    (requested, causes.iter().collect(), shown)
 }
 
 fn flashed() -> Plan {
     Config::product().plan().expect("in range")
 }
 
-/// Situation: the flashed controller on a bicycle put together as drawn. Action: lean, steer, push.
-/// Must hold: each move is asked for in its turn and passed; while it leans to the right the torque shown is to the right
-/// and what the law asks for; no torque flows.
+/// Situation: the flashed controller on a correctly wired bicycle.
+/// Action: lean, steer, push.
+/// Must hold: each movement is requested in order and passed; during the lean to the right the torque shown is to the
+/// right and equals the law's; the motor's torque is zero.
 #[test]
-fn a_sound_bicycle_passes() {
-    let (asked, causes, shown) = checked(&flashed(), &frames(&moves(0.5), false, |_| ()));
-    assert_eq!(asked, [PolarityStep::Lean, PolarityStep::Steer, PolarityStep::Push, PolarityStep::Passed]);
+fn a_correctly_wired_bicycle_passes() {
+    let (requested, causes, shown) = run_check(&flashed(), &frames(&movements(0.5), false, |_| ()));
+    assert_eq!(
+        requested,
+        [PolarityStep::Lean, PolarityStep::Steer, PolarityStep::Push, PolarityStep::Passed]
+    );
     assert!(
         causes.contains(&Cause::PolarityUnchecked) && !causes.contains(&Cause::PolarityWrong),
         "{causes:?}"
@@ -100,14 +104,15 @@ fn a_sound_bicycle_passes() {
     assert!((0.95..1.05).contains(&(shown / expected)), "{shown} against {expected}");
 }
 
-/// Situation: the moves, large enough to pass and too small; then somebody rides. Action: press the switch.
-/// Must hold: without the check refused with the cause; with it the press engages.
+/// Situation: movements large enough to pass, and too small ones; then riding.
+/// Action: press the switch.
+/// Must hold: without a passed check rejected with the cause; with it the press engages.
 #[test]
-fn only_who_passed_engages() {
+fn only_a_passed_check_engages() {
     let plan = flashed();
     for (size, drives) in [(0.5, true), (0.05, false)] {
         let mut state = State::default();
-        let passing = frames(&moves(size), false, |_| ());
+        let passing = frames(&movements(size), false, |_| ());
         let on = [Hands { speed_m_s: 2.0, ..Hands::default() }; 1500];
         let (riding, pressed) = (frames(&on, false, |_| ()), frames(&on, true, |_| ()));
         let mut last = None;
@@ -122,17 +127,18 @@ fn only_who_passed_engages() {
     }
 }
 
-/// Situation: from boot through the moves to a ride, the switch off, each press counting in its first period. Action:
-/// press it in any period. Must hold: it engages where the controller said that it was ready, and nowhere else but where a cause comes or goes
-/// in that very period; not before the push, and throughout the ride once it counts as one.
+/// Situation: from boot through the movements to a ride, the switch off; each press counts in its first period.
+/// Action: press in any period.
+/// Must hold: it engages exactly where the controller reported ready in the period before, unless a cause appears or
+/// disappears in that period; not before the push, and always during the ride after its start.
 #[test]
-fn ready_says_when_a_press_engages() {
+fn ready_predicts_engagement() {
     let mut config = Config::product();
     config.permit.press = PressConfig::default();
     let plan = config.plan().expect("in range");
     let on = [Hands { speed_m_s: 2.0, ..Hands::default() }; 1000];
     let ride: Vec<SensorFrame> =
-        frames(&moves(0.5), false, |_| ()).into_iter().chain(frames(&on, false, |_| ())).collect();
+        frames(&movements(0.5), false, |_| ()).into_iter().chain(frames(&on, false, |_| ())).collect();
     let switch = Causes::all(&[Cause::SwitchOff, Cause::SwitchHeld]);
     let others = |causes: Causes| Causes(causes.0 & !switch.0);
     let (mut state, mut ready) = (State::default(), Vec::new());
@@ -148,26 +154,30 @@ fn ready_says_when_a_press_engages() {
         before = Some(command);
     }
     let (moving, riding) = ready.split_at(ride.len() - 1000);
-    // The push, which ends the check, takes the last 2000 periods of the moves.
+    // The push, which ends the check, takes the last 2000 periods of the movements.
     assert!(!moving[..moving.len() - 2000].contains(&true));
     assert!(riding[500..].iter().all(|ready| *ready));
 }
 
-/// Situation: somebody rides, leaning and steering as in the check. Action: ride on. Must hold: nothing is passed, nothing
-/// accused.
+/// Situation: a ride with the lean and steer movements of the check.
+/// Action: ride on.
+/// Must hold: no step is passed and no sign is reported as wrong.
 #[test]
-fn a_ride_is_no_check() {
-    let mut riding = moves(0.5);
+fn a_ride_is_not_a_check() {
+    let mut riding = movements(0.5);
     riding.iter_mut().for_each(|h| h.speed_m_s = 4.0);
-    let (asked, causes, _) = checked(&flashed(), &frames(&riding, false, |_| ()));
-    assert_eq!(asked, [PolarityStep::Lean]);
+    let (requested, causes, _) = run_check(&flashed(), &frames(&riding, false, |_| ()));
+    assert_eq!(requested, [PolarityStep::Lean]);
     assert!(!causes.contains(&Cause::PolarityWrong), "{causes:?}");
 }
 
-/// Situation: one sign is wrong. Action: the moves. Must hold: found at the move that shows it, told, and not forgotten.
+/// Situation: one sign is wrong.
+/// Action: the movements.
+/// Must hold: found at the movement that shows it, reported, and kept. With a calibration that corrects the sign the
+/// check is passed.
 #[test]
 fn every_wrong_sign_is_found() {
-    let wrong: [(&str, PolarityStep, Wrong); 6] = [
+    let fault: [(&str, PolarityStep, Fault); 6] = [
         ("gyro", PolarityStep::Lean, |f| f.gyro_rad_s.value[0] = -f.gyro_rad_s.value[0]),
         ("accelerometer", PolarityStep::Lean, |f| f.accel_m_s2.value[1] = -f.accel_m_s2.value[1]),
         ("steer angle", PolarityStep::Steer, |f| f.steer_rad.value = -f.steer_rad.value),
@@ -175,42 +185,47 @@ fn every_wrong_sign_is_found() {
         ("front wheel", PolarityStep::Push, |f| f.front_wheel_m_s.value = -f.front_wheel_m_s.value),
         ("rear wheel", PolarityStep::Push, |f| f.rear_wheel_m_s.value = -f.rear_wheel_m_s.value),
     ];
-    for (name, at, wrong) in wrong {
-        let (asked, causes, _) = checked(&flashed(), &frames(&moves(0.5), false, wrong));
-        let found = asked.split_last().map(|(last, before)| (*last, before.last().copied()));
-        assert_eq!(found, Some((PolarityStep::Wrong, Some(at))), "{name}: {asked:?}");
+    for (name, at, fault) in fault {
+        let (requested, causes, _) = run_check(&flashed(), &frames(&movements(0.5), false, fault));
+        let found = requested.split_last().map(|(last, before)| (*last, before.last().copied()));
+        assert_eq!(found, Some((PolarityStep::Wrong, Some(at))), "{name}: {requested:?}");
         assert!(causes.contains(&Cause::PolarityWrong), "{name}");
     }
-    // A calibration that says so makes it right.
+    // A calibration that corrects the sign passes the check.
     let mut config = Config::product();
     config.calibration.steer_reversed = true;
-    let reversed: Wrong = |f| f.steer_rad.value = -f.steer_rad.value;
-    let (asked, ..) = checked(&config.plan().expect("in range"), &frames(&moves(0.5), false, reversed));
-    assert_eq!(asked.last(), Some(&PolarityStep::Passed));
+    let reversed: Fault = |f| f.steer_rad.value = -f.steer_rad.value;
+    let (requested, ..) =
+        run_check(&config.plan().expect("in range"), &frames(&movements(0.5), false, reversed));
+    assert_eq!(requested.last(), Some(&PolarityStep::Passed));
 }
 
-/// Situation: a table of gains typed with the wrong sign. Action: lean. Must hold: found: it would steer out of the lean.
+/// Situation: a gain table with the wrong sign.
+/// Action: lean.
+/// Must hold: found, because it would steer out of the lean.
 #[test]
 fn a_law_of_the_wrong_sign_is_found() {
     let table = GainSchedule::new(&[(0.0, -8.0), (10.0, -8.0)]).expect("a table");
     let config = Config { law: Law::Table(table), ..Config::product() };
-    let (asked, _, shown) = checked(&config.plan().expect("in range"), &frames(&moves(0.5), false, |_| ()));
-    assert_eq!(asked, [PolarityStep::Lean, PolarityStep::Wrong]);
+    let (requested, _, shown) =
+        run_check(&config.plan().expect("in range"), &frames(&movements(0.5), false, |_| ()));
+    assert_eq!(requested, [PolarityStep::Lean, PolarityStep::Wrong]);
     assert!(shown < -1.0, "{shown}");
 }
 
-/// Situation: moves too small to tell, a gyro with a bias, a sensor that is lost. Action: the moves.
-/// Must hold: nothing is passed and nothing accused.
+/// Situation: movements below the thresholds, a gyro with a bias, a lost sensor.
+/// Action: the movements.
+/// Must hold: neither passed nor reported as wrong.
 #[test]
-fn what_does_not_show_decides_nothing() {
-    let cases: [(&str, f32, Wrong, PolarityStep); 3] = [
+fn inconclusive_movements_decide_nothing() {
+    let cases: [(&str, f32, Fault, PolarityStep); 3] = [
         ("small", 0.1, |_| (), PolarityStep::Lean),
         ("bias", 0.0, |f| f.gyro_rad_s.value[0] += 0.06, PolarityStep::Lean),
         ("steer lost", 0.5, |f| f.steer_rad = Sample::missing(), PolarityStep::Steer),
     ];
-    for (name, size, wrong, stays) in cases {
-        let (asked, causes, _) = checked(&flashed(), &frames(&moves(size), false, wrong));
-        assert_eq!(asked.last(), Some(&stays), "{name}: {asked:?}");
+    for (name, size, fault, stays) in cases {
+        let (requested, causes, _) = run_check(&flashed(), &frames(&movements(size), false, fault));
+        assert_eq!(requested.last(), Some(&stays), "{name}: {requested:?}");
         assert!(!causes.contains(&Cause::PolarityWrong), "{name}");
     }
 }

@@ -1,4 +1,4 @@
-//! Flight cards: what the controller promises for every input.
+//! Properties of the controller for every input.
 
 use control::sensors::latency::{Latency, MAX_LATENCY_TICKS};
 use control::{
@@ -40,7 +40,7 @@ fn any_frame() -> impl Strategy<Value = SensorFrame> {
             engage,
         },
     );
-    // Plausible ones often enough that the switch, the self-test and the law get their turn.
+    // Plausible frames often enough that switch, self-test and law are reached.
     prop_oneof![4 => plausible_frame(), 1 => wild]
 }
 
@@ -58,7 +58,7 @@ fn any_law() -> impl Strategy<Value = Law> {
     ]
 }
 
-/// Calls a second: the usual ones, the ends of what is accepted, and between.
+/// Call rates: the usual ones, the ends of the range, and between \[Hz\].
 fn any_rate() -> impl Strategy<Value = f32> {
     prop_oneof![Just(1000.0_f32), Just(100.0), Just(10_000.0), 100.0_f32..10_000.0]
 }
@@ -90,42 +90,42 @@ fn fresh(roll_rate: f32, speed: f32) -> SensorFrame {
     }
 }
 
-/// A control period \[us\], never too short.
+/// A control period, rounded up \[us\].
 fn period_us(plan: &Plan) -> u32 {
     (1e6 / plan.config().rate_hz).ceil() as u32
 }
 
-/// The frames a control period apart.
+/// The frames, one control period apart.
 fn timed(plan: &Plan, frames: &[SensorFrame]) -> Vec<SensorFrame> {
     let period_us = period_us(plan);
     (1..).zip(frames).map(|(tick, frame)| SensorFrame { now_us: period_us * tick, ..*frame }).collect()
 }
 
-/// The same situation in a mirror that stands along the path.
+/// The frame mirrored left to right.
 fn mirrored(frame: &SensorFrame) -> SensorFrame {
-    let turned = |s: Sample| Sample { value: -s.value, ..s };
+    let negated = |s: Sample| Sample { value: -s.value, ..s };
     let ([p, q, r], [x, y, z]) = (frame.gyro_rad_s.value, frame.accel_m_s2.value);
     SensorFrame {
         gyro_rad_s: Triple { value: [-p, q, -r], ..frame.gyro_rad_s },
         accel_m_s2: Triple { value: [x, -y, z], ..frame.accel_m_s2 },
-        steer_rad: turned(frame.steer_rad),
-        steer_rate_rad_s: turned(frame.steer_rate_rad_s),
-        rider_torque_nm: turned(frame.rider_torque_nm),
-        motor_torque_nm: turned(frame.motor_torque_nm),
-        heading_error_rad: turned(frame.heading_error_rad),
-        lateral_error_m: turned(frame.lateral_error_m),
+        steer_rad: negated(frame.steer_rad),
+        steer_rate_rad_s: negated(frame.steer_rate_rad_s),
+        rider_torque_nm: negated(frame.rider_torque_nm),
+        motor_torque_nm: negated(frame.motor_torque_nm),
+        heading_error_rad: negated(frame.heading_error_rad),
+        lateral_error_m: negated(frame.lateral_error_m),
         ..*frame
     }
 }
 
-/// A controller that has just reached its full authority, its sensors at rest at `speed`.
+/// A controller that has just reached full authority, its sensors at rest at `speed`.
 fn engaged(plan: &Plan, speed: f32) -> State {
     let mut state = State::default();
     let rest = fresh(0.0, speed);
     let mut pressed = false;
     let ticks = plan.ticks_to_engage();
     for tick in 0..ticks {
-        // So that the last one is at time zero.
+        // The last frame is at time zero.
         let now_us = (tick + 1).wrapping_sub(ticks).wrapping_mul(period_us(plan));
         let command = step(plan, &mut state, &SensorFrame { now_us, engage: pressed, ..rest });
         pressed |= plan.ready(&command);
@@ -135,27 +135,29 @@ fn engaged(plan: &Plan, speed: f32) -> State {
 }
 
 proptest! {
-    /// Whatever the bits, the torque is finite and inside its limits, and so is its change.
+    /// Situation: arbitrary configuration and frames of any bits.
+    /// Action: step.
+    /// Must hold: torque and gain are finite; the torque and its change are inside their limits.
     #[test]
     fn the_torque_is_always_inside_its_limits(
         plan in any_plan(),
         frames in proptest::collection::vec(any_frame(), 1..200),
     ) {
         let mut state = engaged(&plan, 4.0);
-        let shape = plan.config().limits;
+        let limits = plan.config().limits;
         for frame in &timed(&plan, &frames) {
             let before = state.torque_nm();
             let command = step(&plan, &mut state, frame);
             prop_assert!(command.torque_nm.is_finite() && command.gain_nm_s_rad.is_finite());
             prop_assert_eq!(command.torque_nm.to_bits(), state.torque_nm().to_bits());
-            if let Some(max) = shape.max_torque_nm {
+            if let Some(max) = limits.max_torque_nm {
                 prop_assert!(command.torque_nm.abs() <= max);
             }
-            if let Some(rate) = shape.rise_nm_s {
-                // In f64, with room for the rounding of one f32 addition.
+            if let Some(rate) = limits.rise_nm_s {
+                // In f64, with tolerance for the rounding of one f32 addition.
                 let change = (f64::from(command.torque_nm) - f64::from(before)).abs();
-                let room = f64::from(f32::EPSILON) * f64::from(before.abs().max(command.torque_nm.abs()));
-                prop_assert!(change <= f64::from(rate / plan.config().rate_hz) * (1.0 + 1e-7) + room, "{change}");
+                let tolerance = f64::from(f32::EPSILON) * f64::from(before.abs().max(command.torque_nm.abs()));
+                prop_assert!(change <= f64::from(rate / plan.config().rate_hz) * (1.0 + 1e-7) + tolerance, "{change}");
             }
             if state.authority() == 0.0 {
                 prop_assert_eq!(command.gain_nm_s_rad, 0.0);
@@ -163,7 +165,9 @@ proptest! {
         }
     }
 
-    /// Mirrored roll rates give the mirrored torque, to the bit, with the same limits active.
+    /// Situation: arbitrary configuration and frames, and their mirror image.
+    /// Action: step both.
+    /// Must hold: the mirrored torque, to the bit, with the same active limits, mode and causes.
     #[test]
     fn the_torque_is_odd_in_the_roll_rate(
         plan in any_plan(),
@@ -177,9 +181,11 @@ proptest! {
         }
     }
 
-    /// With equal latencies the history changes no bit of the bare law.
+    /// Situation: equal latencies of both sensors.
+    /// Action: step.
+    /// Must hold: the torque of the law alone, to the bit.
     #[test]
-    fn equal_latencies_add_nothing(
+    fn equal_latencies_change_nothing(
         ticks in 0..=MAX_LATENCY_TICKS,
         rate_hz in any_rate(),
         frames in proptest::collection::vec(plausible_frame(), 1..100),
@@ -194,7 +200,9 @@ proptest! {
         }
     }
 
-    /// Every formula in f32 is its f64 self within a few units in the last place of its largest term.
+    /// Situation: any law and speed.
+    /// Action: evaluate in f32 and f64.
+    /// Must hold: equal within a few units in the last place of the largest term.
     #[test]
     fn laws_in_f32_are_the_laws_in_f64(law in any_law(), speed in -3.0_f32..12.0) {
         let (single, double) = (f64::from(law.gain(speed)), law.gain(f64::from(speed)));
@@ -203,10 +211,11 @@ proptest! {
     }
 }
 
-/// Situation: the published formulas at a few speeds. Action: evaluate. They must be as printed,
-/// with the sign turned to our axes.
+/// Situation: the published formulas at several speeds.
+/// Action: evaluate.
+/// Must hold: the gains are those of the formulas as published, with the sign converted to the benchmark's axes.
 #[test]
-fn the_laws_are_as_written() {
+fn the_laws_are_as_published() {
     for v in [0.0_f64, 1.4, 2.8, 4.4, 6.7, 7.4, 7.5, 9.0] {
         assert_eq!(Law::H { cut: false }.gain(v), -(4.0 * v - 30.0) * libm::exp(-0.03 * v * v));
         assert!((Law::F.gain(v) + (-0.88 * v * v + 12.0 * v - 41.0)).abs() < 1e-13);
@@ -215,22 +224,23 @@ fn the_laws_are_as_written() {
         assert_eq!(Law::Cl2 { k: 3.0 }.gain(v), 3.0 * (10.0 - v));
         assert_eq!(Law::H { cut: true }.gain(v), if v < 7.5 { Law::H { cut: false }.gain(v) } else { 0.0 });
     }
-    // Where the thesis wants its crosses (eqs 3.8 to 3.10) the slopes of CL2 give them.
+    // At the crosses of the thesis (eqs 3.8 to 3.10) the slopes of CL2 reproduce the gains.
     assert!((Law::Cl2 { k: 3.0 }.gain(1.4_f64) - 25.8).abs() < 1e-12);
     assert!(Law::H { cut: false }.gain(8.0_f64) < 0.0);
 }
 
-/// Situation: a slow speed sensor beside a fast gyro. Action: feed numbered samples. The pair used
-/// must be of one instant, and nothing may come out before there is one.
+/// Situation: a speed sensor with more latency than the gyro.
+/// Action: step with numbered samples.
+/// Must hold: the law uses samples of one instant, and there is no torque before both exist.
 #[test]
-fn late_sensors_are_paired_with_the_past() {
+fn sensors_are_aligned_by_latency() {
     let table = GainSchedule::new(&[(0.0, 0.0), (30.0, 30.0)]).expect("a valid table");
     let latency = Latency { roll_rate_ticks: 0, speed_ticks: 3 };
     let plan = Config { latency, ..Config::thesis(Law::Table(table)) }.plan().expect("in range");
     let mut state = engaged(&plan, 2.0);
     let gap = SensorFrame { gyro_rad_s: Triple::missing(), ..fresh(0.0, 2.0) };
     for round in 0..2 {
-        // A gap empties it: no torque from samples of before.
+        // A gap clears the history: no torque from samples before it.
         let at = |k: u32, frame| SensorFrame { now_us: 1000 * (1 + 21 * round + k), ..frame };
         let command = step(&plan, &mut state, &at(0, gap));
         assert!(command.causes.has(Cause::GyroLost) && command.torque_nm == 0.0);
@@ -246,10 +256,11 @@ fn late_sensors_are_paired_with_the_past() {
     }
 }
 
-/// Situation: each way a frame can be unbelievable. Action: step. The reason must be named and the
-/// torque must go to zero, no faster than its rate limit.
+/// Situation: each kind of invalid frame.
+/// Action: step.
+/// Must hold: the cause is reported, and the torque goes to zero, no faster than its rate limit.
 #[test]
-fn unbelievable_frames_are_refused_with_the_reason() {
+fn invalid_frames_are_rejected_with_the_cause() {
     let mut config = Config::thesis(Law::H { cut: false });
     config.limits.fall_nm_s = Some(1000.0);
     let plan = config.plan().expect("in range");
@@ -277,28 +288,29 @@ fn unbelievable_frames_are_refused_with_the_reason() {
     }
 }
 
-/// Situation: each parameter out of its range. Action: make a plan. It must be refused by name,
-/// value and range.
+/// Situation: each parameter out of its range.
+/// Action: make a plan.
+/// Must hold: rejected with name, value and range.
 #[test]
 fn parameters_out_of_range_are_named() {
-    let refused = |change: fn(&mut Config)| {
+    let rejected = |change: fn(&mut Config)| {
         let mut config = Config::product();
         change(&mut config);
         config.plan().expect_err("out of range")
     };
     for (error, name) in [
-        (refused(|c| c.rate_hz = 99.0), "rate_hz"),
-        (refused(|c| c.law = Law::Cl2 { k: 0.0 }), "law.cl2.k"),
-        (refused(|c| c.law = Law::Table(GainSchedule::default())), "law.table.points"),
-        (refused(|c| c.calibration.imu_rad = [0.0, f32::NAN, 0.0]), "calibration.imu_pitch_rad"),
-        (refused(|c| c.input.gyro.max = f32::NAN), "input.gyro.max"),
-        (refused(|c| c.input.front_wheel.timeout_ticks = 10_001), "input.front_wheel.timeout_ticks"),
-        (refused(|c| c.input.recent_samples = 7), "input.recent_samples"),
-        (refused(|c| c.permit.parked_m_s = Some(0.0)), "permit.parked_m_s"),
-        (refused(|c| c.latency.speed_ticks = 32), "latency.speed_ticks"),
-        (refused(|c| c.limits.max_torque_nm = Some(-1.0)), "max_torque_nm"),
-        (refused(|c| c.limits.rise_nm_s = Some(f32::INFINITY)), "rise_nm_s"),
-        (refused(|c| c.limits.taper = Some(Taper { zero_m_s: 2.0, full_m_s: 1.0 })), "full_m_s"),
+        (rejected(|c| c.rate_hz = 99.0), "rate_hz"),
+        (rejected(|c| c.law = Law::Cl2 { k: 0.0 }), "law.cl2.k"),
+        (rejected(|c| c.law = Law::Table(GainSchedule::default())), "law.table.points"),
+        (rejected(|c| c.calibration.imu_rad = [0.0, f32::NAN, 0.0]), "calibration.imu_pitch_rad"),
+        (rejected(|c| c.input.gyro.max = f32::NAN), "input.gyro.max"),
+        (rejected(|c| c.input.front_wheel.timeout_ticks = 10_001), "input.front_wheel.timeout_ticks"),
+        (rejected(|c| c.input.recent_samples = 7), "input.recent_samples"),
+        (rejected(|c| c.permit.parked_m_s = Some(0.0)), "permit.parked_m_s"),
+        (rejected(|c| c.latency.speed_ticks = 32), "latency.speed_ticks"),
+        (rejected(|c| c.limits.max_torque_nm = Some(-1.0)), "max_torque_nm"),
+        (rejected(|c| c.limits.rise_nm_s = Some(f32::INFINITY)), "rise_nm_s"),
+        (rejected(|c| c.limits.taper = Some(Taper { zero_m_s: 2.0, full_m_s: 1.0 })), "full_m_s"),
     ] {
         assert!(error.to_string().contains(name) && error.to_string().contains(&error.leaf.max.to_string()));
     }

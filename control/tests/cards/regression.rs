@@ -1,4 +1,4 @@
-//! Flight cards: the slope of what is seen over what is expected.
+//! Slope of measured over expected change, and block means.
 
 use control::sensors::regression::{BlockMean, Slope, SlopeConfig, SlopePlan};
 
@@ -10,14 +10,14 @@ fn plan() -> SlopePlan {
     SlopePlan::new(CONFIG, DT_S)
 }
 
-/// Changes of a swing of 1 Hz, and of what is seen of it with noise.
+/// Slopes for a swing of 1 Hz whose measured signal is `part` of the expected one plus noise.
 fn value(part: f32, noise: f32, steps: usize) -> Vec<Option<f32>> {
     let mut slope = Slope::default();
     let (mut x, mut n) = (0.0, 0.0);
     (1..=steps)
         .map(|i| {
             let next = (core::f32::consts::TAU * DT_S * i as f32).sin();
-            // Noise on its own: +, +, -, -.
+            // Independent noise: +, +, -, -.
             let noisy = if i / 2 % 2 == 0 { noise } else { -noise };
             let (dx, dn) = (next - x, noisy - n);
             (x, n) = (next, noisy);
@@ -26,10 +26,11 @@ fn value(part: f32, noise: f32, steps: usize) -> Vec<Option<f32>> {
         .collect()
 }
 
-/// Situation: what is seen is a part of what is expected. Action: swing for 2 s. Must hold: the slope is that part, to rounding;
-/// with noise as large as the signal it keeps its sign.
+/// Situation: the measured change is a fraction of the expected one.
+/// Action: swing for 2 s.
+/// Must hold: the slope is that fraction, to rounding; with noise as large as the signal within 0.3 of it.
 #[test]
-fn the_slope_is_the_part_that_happens() {
+fn the_slope_is_the_measured_fraction() {
     for part in [1.0, 0.3, 0.0, -1.0, -2.0] {
         let clean = value(part, 0.0, 250).pop().flatten().expect("enough");
         assert!((clean - part).abs() < 1e-4, "{part}: {clean}");
@@ -38,26 +39,29 @@ fn the_slope_is_the_part_that_happens() {
     }
 }
 
-/// Situation: nothing moves, then it does. Action: step. Must hold: no slope before there is enough to judge by.
+/// Situation: no excitation, then a swing.
+/// Action: step.
+/// Must hold: no slope before the excitation suffices.
 #[test]
-fn too_little_is_not_judged() {
+fn there_is_no_slope_without_excitation() {
     let mut slope = Slope::default();
     assert!((0..1000).all(|_| slope.step(&plan(), 0.0, 1.0).is_none()));
     let first = value(1.0, 0.0, 250).iter().position(Option::is_some).expect("in the end");
     assert!((5..60).contains(&first), "{first}");
 }
 
-/// Situation: enough must have lasted for 0.15 s. Action: swing. Must hold: the first slope comes 0.15 s after the one without
-/// that condition, within two steps, and is the same.
+/// Situation: a settling time of 0.15 s.
+/// Action: swing.
+/// Must hold: the first slope comes 0.15 s after the one without settling time, within two steps, and is the same.
 #[test]
-fn enough_must_last() {
-    let patient = SlopePlan::new(SlopeConfig { settle_s: 0.15, ..CONFIG }, DT_S);
+fn the_excitation_must_settle() {
+    let settling = SlopePlan::new(SlopeConfig { settle_s: 0.15, ..CONFIG }, DT_S);
     let (mut slope, mut first) = (Slope::default(), None);
     let all = value(1.0, 0.0, 250);
     for i in 1..=250_u16 {
         let swing = |i: u16| (core::f32::consts::TAU * DT_S * f32::from(i)).sin();
         let dx = swing(i) - swing(i - 1);
-        if let Some(value) = slope.step(&patient, dx, dx) {
+        if let Some(value) = slope.step(&settling, dx, dx) {
             first.get_or_insert((i, value));
         }
     }
@@ -68,9 +72,11 @@ fn enough_must_last() {
     assert!((value - 1.0).abs() < 1e-4, "{value}");
 }
 
-/// Situation: the sign is reversed after 2 s. Action: step on. Must hold: below 0 within one and a half times of forgetting, and -1 in the end.
+/// Situation: the sign reverses after 2 s.
+/// Action: step on.
+/// Must hold: below 0 within one and a half forgetting time constants, and -1 in the end.
 #[test]
-fn a_reversal_shows_soon() {
+fn a_reversal_is_found_soon() {
     let mut slope = Slope::default();
     let mut below = None;
     let mut last = 0.0;
@@ -88,15 +94,17 @@ fn a_reversal_shows_soon() {
     assert!((last + 1.0).abs() < 0.1, "{last}");
 }
 
-/// Situation: stretches of four periods. Action: feed a ramp. Must hold: means of a stretch and of the one before, at its end only.
+/// Situation: blocks of four periods.
+/// Action: add a ramp.
+/// Must hold: means of a block and of the previous one, only at its end.
 #[test]
-fn stretches_have_their_means() {
-    let mut stretch = BlockMean::<2>::default();
+fn blocks_have_their_means() {
+    let mut block = BlockMean::<2>::default();
     let mut slopes = Vec::new();
     for i in 0..12_i16 {
         let value = f32::from(i);
-        stretch.add([value, -value]);
-        slopes.push(if i % 4 == 3 { stretch.end() } else { None });
+        block.add([value, -value]);
+        slopes.push(if i % 4 == 3 { block.end() } else { None });
     }
     let expected = [(7, [5.5, -5.5], [1.5, -1.5]), (11, [9.5, -9.5], [5.5, -5.5])];
     for (at, now, before) in expected {
@@ -105,17 +113,18 @@ fn stretches_have_their_means() {
     assert_eq!(slopes.iter().flatten().count(), expected.len());
 }
 
-/// Situation: a stretch without any values, the first or between others. Action: end it. Must hold: no means, no numbers that are none
-/// afterwards; the next full one has none before it.
+/// Situation: a block without values, first or between others.
+/// Action: end it.
+/// Must hold: no means, and no NaN afterwards; the next full block has no previous one.
 #[test]
-fn an_empty_stretch_has_no_means() {
-    let mut stretch = BlockMean::<1>::default();
-    assert_eq!(stretch.end(), None);
+fn an_empty_block_has_no_means() {
+    let mut block = BlockMean::<1>::default();
+    assert_eq!(block.end(), None);
     let mut full = |value: f32, empty: bool| {
         if !empty {
-            stretch.add([value]);
+            block.add([value]);
         }
-        stretch.end()
+        block.end()
     };
     assert_eq!(full(1.0, false), None);
     assert_eq!(full(2.0, false), Some(([2.0], [1.0])));

@@ -1,9 +1,9 @@
-//! Flight cards: yaw, roll and wheels against steering, on a bicycle that moves as its equations say.
+//! Yaw, roll and wheel checks against steering, on a simulated bicycle that follows the equations of motion.
 
 use control::{Cause, Config, Plan, Sample, SensorFrame, State, Triple, Wheel, step};
 use core::f32::consts::TAU;
 
-/// The product with gyro, steer angle and rear wheel only.
+/// The flashed configuration with gyro, steer angle and rear wheel only.
 fn plan() -> Plan {
     let mut config = Config::product();
     config.calibration.polarity_checked = true;
@@ -16,27 +16,27 @@ fn plan() -> Plan {
     config.plan().expect("a sound configuration")
 }
 
-/// A bicycle that swings its steer by `swing_rad` once in 1.2 s, and what each sensor says of that.
+/// A bicycle whose steer angle swings by `swing_rad` with a period of 1.2 s, and its sensors.
 #[derive(Clone, Copy)]
 struct Ride {
     speed_m_s: f32,
     swing_rad: f32,
     /// Factors of the gyro's x and z axes and of the steer angle, from 3 s on.
-    wrong: [f32; 3],
-    /// What the wheel says at a time, from the true speed.
+    factors: [f32; 3],
+    /// Reported wheel speed at a time, from the true speed.
     wheel: fn(f32, f32) -> f32,
     /// Noise of the gyro \[rad/s\].
     noise_rad_s: f32,
 }
 
-const RIGHT: Ride =
-    Ride { speed_m_s: 3.0, swing_rad: 0.04, wrong: [1.0; 3], wheel: |_, v| v, noise_rad_s: 1e-3 };
+const CORRECT: Ride =
+    Ride { speed_m_s: 3.0, swing_rad: 0.04, factors: [1.0; 3], wheel: |_, v| v, noise_rad_s: 1e-3 };
 
-/// For how long the bicycle is ridden \[ms\].
+/// Duration of a ride \[ms\].
 const RIDE_MS: u16 = 9000;
 
-/// Rides; what `cause` says: from when to when it was told \[s\].
-fn told(ride: &Ride, cause: Cause) -> Option<(f32, f32)> {
+/// Rides; returns the first and the last time at which `cause` is reported \[s\].
+fn reported(ride: &Ride, cause: Cause) -> Option<(f32, f32)> {
     let (plan, mut state) = (plan(), State::default());
     let config = plan.config();
     let (cross, mass) = (config.cross, config.estimate.balance);
@@ -45,16 +45,17 @@ fn told(ride: &Ride, cause: Cause) -> Option<(f32, f32)> {
     for k in 0..RIDE_MS {
         let t = 1e-3 * f32::from(k);
         let (sin, cos) = (omega * t).sin_cos();
-        let yaw_most = ride.speed_m_s * ride.swing_rad * cross.tilt_rad.cos() / cross.wheelbase_m;
+        let yaw_amplitude = ride.speed_m_s * ride.swing_rad * cross.tilt_rad.cos() / cross.wheelbase_m;
         // The steady swing of roll'' - g roll / h = -(v Y + b Y') / h.
         let stiff = mass.up_m * omega * omega + 9.81;
-        let (in_step, ahead) = (ride.speed_m_s * yaw_most / stiff, mass.forward_m * omega * yaw_most / stiff);
+        let (in_step, ahead) =
+            (ride.speed_m_s * yaw_amplitude / stiff, mass.forward_m * omega * yaw_amplitude / stiff);
         let roll_rate = omega * (in_step * cos - ahead * sin);
-        let [x, z, steer] = if t < 3.0 { [1.0; 3] } else { ride.wrong };
+        let [x, z, steer] = if t < 3.0 { [1.0; 3] } else { ride.factors };
         let noise = ride.noise_rad_s * [1.0, -2.0, 2.0, -1.0, 0.5, -0.5, 0.0][usize::from(k % 7)];
         let mut frame = SensorFrame::missing();
         frame.now_us = 1000 * u32::from(k);
-        frame.gyro_rad_s = Triple::fresh([x * roll_rate + noise, -noise, z * yaw_most * sin + noise]);
+        frame.gyro_rad_s = Triple::fresh([x * roll_rate + noise, -noise, z * yaw_amplitude * sin + noise]);
         frame.steer_rad = Sample::fresh(steer * ride.swing_rad * sin);
         frame.rear_wheel_m_s = Sample::fresh((ride.wheel)(t, ride.speed_m_s));
         frame.engage = press;
@@ -68,67 +69,79 @@ fn told(ride: &Ride, cause: Cause) -> Option<(f32, f32)> {
     when
 }
 
-/// Situation: swings of 0.02 to 0.08 rad at 1.5 to 6 m/s, all sensors right, the gyro's noise from none to 0.02 rad/s. Action: ride for 9 s.
-/// Must hold: no word of gyro, yaw rate or wheel.
+/// Situation: swings of 0.02 to 0.08 rad at 1.5 to 6 m/s, all sensors correct, gyro noise from 0 to 0.02 rad/s.
+/// Action: ride for 9 s.
+/// Must hold: no cause of gyro, yaw rate or wheel.
 #[test]
-fn who_rolls_as_the_steering_says_is_right() {
+fn correct_sensors_cause_no_disagreement() {
     for speed_m_s in [1.5, 3.0, 6.0] {
         for swing_rad in [0.02, 0.08] {
             for noise_rad_s in [0.0, 1e-3, 0.02] {
-                let ride = Ride { speed_m_s, swing_rad, noise_rad_s, ..RIGHT };
+                let ride = Ride { speed_m_s, swing_rad, noise_rad_s, ..CORRECT };
                 for cause in [Cause::GyroDisagrees, Cause::YawDisagrees, Cause::RearWheelStuck] {
-                    assert_eq!(told(&ride, cause), None, "{speed_m_s} {swing_rad} {noise_rad_s} {cause:?}");
+                    assert_eq!(
+                        reported(&ride, cause),
+                        None,
+                        "{speed_m_s} {swing_rad} {noise_rad_s} {cause:?}"
+                    );
                 }
             }
         }
     }
 }
 
-/// Situation: the same swings without an accelerometer; at 3 s one of roll axis, yaw axis and steer sensor has the other sign. Action: ride on.
-/// Must hold: the roll axis is the gyro's fault alone, the yaw axis the yaw rate's alone, the steer sensor both, within about a swing, 0.2 to 1.4 s.
+/// Situation: the same swings without an accelerometer; at 3 s the sign of roll axis, yaw axis or steer sensor
+/// reverses.
+/// Action: ride on.
+/// Must hold: the roll axis is reported by the gyro's cause only, the yaw axis by the yaw rate's only, the steer sensor
+/// by both, within 0.2 to 1.4 s, about one swing.
 #[test]
 fn each_reversed_sign_has_its_own_signature() {
     for speed_m_s in [2.0, 3.0, 5.0] {
-        for (wrong, gyro, yaw) in
+        for (factors, gyro, yaw) in
             [([-1.0, 1.0, 1.0], true, false), ([1.0, -1.0, 1.0], false, true), ([1.0, 1.0, -1.0], true, true)]
         {
-            let ride = Ride { speed_m_s, wrong, swing_rad: 0.06, ..RIGHT };
+            let ride = Ride { speed_m_s, factors, swing_rad: 0.06, ..CORRECT };
             for (cause, expected) in [(Cause::GyroDisagrees, gyro), (Cause::YawDisagrees, yaw)] {
-                let after_s = told(&ride, cause).map(|(from, _)| from - 3.0);
-                let holds = after_s.map_or(!expected, |after| expected && (0.2..1.4).contains(&after));
-                assert!(holds, "{speed_m_s} {wrong:?} {cause:?}: {after_s:?}");
+                let after_s = reported(&ride, cause).map(|(from, _)| from - 3.0);
+                let as_expected = after_s.map_or(!expected, |after| expected && (0.2..1.4).contains(&after));
+                assert!(as_expected, "{speed_m_s} {factors:?} {cause:?}: {after_s:?}");
             }
         }
     }
 }
 
-/// Situation: the wheel's sensor says 0 from 3 s on, at 1, 2, 3 and 5 m/s. Action: ride on. Must hold: from 2 m/s on the wheel is named,
-/// 0.2 to 2 s later and still at the end; at 1 m/s, as one leads a bicycle, never. Parked is told in each.
+/// Situation: the wheel sensor reads 0 from 3 s on, at 1, 2, 3 and 5 m/s.
+/// Action: ride on.
+/// Must hold: from 2 m/s on the wheel is reported 0.2 to 2 s later and until the end; never at 1 m/s, the speed of a
+/// bicycle led by hand. Parked is reported at every speed.
 #[test]
-fn a_wheel_that_stands_while_the_bicycle_turns_is_named() {
+fn a_standing_wheel_sensor_is_reported_in_turns() {
     for (speed_m_s, named) in [(1.0, false), (2.0, true), (3.0, true), (5.0, true)] {
         let wheel = |t: f32, v: f32| if t < 3.0 { v } else { 0.0 };
-        let ride = Ride { speed_m_s, swing_rad: 0.08, wheel, ..RIGHT };
-        match told(&ride, Cause::RearWheelStuck) {
+        let ride = Ride { speed_m_s, swing_rad: 0.08, wheel, ..CORRECT };
+        match reported(&ride, Cause::RearWheelStuck) {
             Some((from, until)) => {
                 assert!(named && (3.2..5.0).contains(&from) && until > 8.5, "{speed_m_s}: {from} {until}");
             }
             None => assert!(!named, "{speed_m_s}"),
         }
-        assert!(told(&ride, Cause::Parked).is_some(), "{speed_m_s}");
+        assert!(reported(&ride, Cause::Parked).is_some(), "{speed_m_s}");
     }
 }
 
-/// Situation: a wheel from 4.9 m/s to rest at 3 s: lifted, in 70 ms; braked as hard as tyres grip, in 0.6 s; back on the ground 5 s
-/// later. Action: ride on. Must hold: the lifted one jumps, told within 30 to 100 ms and no longer than 0.4 s, and again when it is dropped; the
-/// braked one never does.
+/// Situation: a wheel that stops from 4.9 m/s at 3 s: lifted, in 70 ms, and dropped 5 s later; or braked at the grip
+/// limit of tyres, in 0.6 s.
+/// Action: ride on.
+/// Must hold: the lifted wheel's jump is reported within 30 to 100 ms, and again within 0.4 s of its drop; no jump of
+/// the braked wheel.
 #[test]
-fn a_wheel_that_is_lifted_jumps_and_a_braked_one_does_not() {
+fn a_lifted_wheel_jumps_and_a_braked_one_does_not() {
     let lifted =
         |t: f32, v: f32| v * (1.0 - ((t - 3.0) / 0.07).clamp(0.0, 1.0) + ((t - 8.0) / 0.07).clamp(0.0, 1.0));
     let braked = |t: f32, v: f32| v * (1.0 - ((t - 3.0) / 0.6).clamp(0.0, 1.0));
-    let ride = Ride { speed_m_s: 4.9, swing_rad: 0.0, wheel: lifted, ..RIGHT };
-    let (from, until) = told(&ride, Cause::RearWheelJump).expect("told");
+    let ride = Ride { speed_m_s: 4.9, swing_rad: 0.0, wheel: lifted, ..CORRECT };
+    let (from, until) = reported(&ride, Cause::RearWheelJump).expect("reported");
     assert!((3.03..3.1).contains(&from) && (8.03..8.4).contains(&until), "{from} {until}");
-    assert_eq!(told(&Ride { wheel: braked, ..ride }, Cause::RearWheelJump), None);
+    assert_eq!(reported(&Ride { wheel: braked, ..ride }, Cause::RearWheelJump), None);
 }

@@ -1,4 +1,4 @@
-//! Flight cards: the declared sensors, each believed, doubted and told by its own codes; the speed's bounds.
+//! Validation of the declared sensors, each with its own causes, and bounds of the wheel speeds.
 
 use control::sensors::measurements::{Measurements, SpeedInterval};
 use control::sensors::validation::{self, MAX_RECENT_SAMPLES, ValidationPlan, ValidationState};
@@ -8,7 +8,7 @@ use control::{
 
 const PERIOD_S: f32 = 1e-3;
 
-/// A step at 1 kHz on a bicycle on which all is as drawn.
+/// A step at 1 kHz with the default calibration.
 fn step(
     config: &ValidationConfig,
     state: &mut ValidationState,
@@ -19,12 +19,12 @@ fn step(
     validation::step(config, &plan, &Calibration::default().plan(), state, frame, torque_nm)
 }
 
-/// A sensor: where it is declared, where its sample stands, what is believed of it, and its four codes.
+/// A sensor: its declaration, its sample in a frame, its measurement, and its four causes.
 struct Case {
     name: &'static str,
     declared: fn(&mut ValidationConfig) -> &mut Sensor,
     set: fn(&mut SensorFrame, f32, u16),
-    believed: fn(&Measurements) -> Option<f32>,
+    measured: fn(&Measurements) -> Option<f32>,
     codes: [Cause; 4],
 }
 
@@ -39,56 +39,56 @@ fn cases() -> [Case; 9] {
             name: "gyro",
             declared: |c| &mut c.gyro,
             set: |f, value, age| f.gyro_rad_s = triple(value, age),
-            believed: |b| b.gyro_rad_s().map(|v| v[2]),
+            measured: |b| b.gyro_rad_s().map(|v| v[2]),
             codes: [GyroLost, GyroRange, GyroJump, GyroStuck],
         },
         Case {
             name: "accel",
             declared: |c| &mut c.accel,
             set: |f, value, age| f.accel_m_s2 = triple(value, age),
-            believed: |b| b.accel_m_s2().map(|v| v[2]),
+            measured: |b| b.accel_m_s2().map(|v| v[2]),
             codes: [AccelLost, AccelRange, AccelJump, AccelStuck],
         },
         Case {
             name: "steer",
             declared: |c| &mut c.steer,
             set: |f, value, age_ticks| f.steer_rad = Sample { value, age_ticks },
-            believed: |b| b.steer_rad(),
+            measured: |b| b.steer_rad(),
             codes: [SteerLost, SteerRange, SteerJump, SteerStuck],
         },
         Case {
             name: "steer rate",
             declared: |c| &mut c.steer_rate,
             set: |f, value, age_ticks| f.steer_rate_rad_s = Sample { value, age_ticks },
-            believed: |b| b.steer_rate_rad_s(),
+            measured: |b| b.steer_rate_rad_s(),
             codes: [SteerRateLost, SteerRateRange, SteerRateJump, SteerRateStuck],
         },
         Case {
             name: "front wheel",
             declared: |c| &mut c.front_wheel,
             set: |f, value, age_ticks| f.front_wheel_m_s = Sample { value, age_ticks },
-            believed: |b| b.front_wheel_m_s().map(|v| v.newest),
+            measured: |b| b.front_wheel_m_s().map(|v| v.newest),
             codes: [FrontWheelLost, FrontWheelRange, FrontWheelJump, FrontWheelStuck],
         },
         Case {
             name: "rear wheel",
             declared: |c| &mut c.rear_wheel,
             set: |f, value, age_ticks| f.rear_wheel_m_s = Sample { value, age_ticks },
-            believed: |b| b.rear_wheel_m_s().map(|v| v.newest),
+            measured: |b| b.rear_wheel_m_s().map(|v| v.newest),
             codes: [RearWheelLost, RearWheelRange, RearWheelJump, RearWheelStuck],
         },
         Case {
             name: "rider's torque",
             declared: |c| &mut c.rider_torque,
             set: |f, value, age_ticks| f.rider_torque_nm = Sample { value, age_ticks },
-            believed: |b| b.rider_torque_nm(),
+            measured: |b| b.rider_torque_nm(),
             codes: [RiderTorqueLost, RiderTorqueRange, RiderTorqueJump, RiderTorqueStuck],
         },
         Case {
             name: "motor",
             declared: |c| &mut c.motor,
             set: |f, value, age_ticks| f.motor_torque_nm = Sample { value, age_ticks },
-            believed: |b| b.motor_torque_nm(),
+            measured: |b| b.motor_torque_nm(),
             codes: [MotorLost, MotorRange, MotorJump, MotorStuck],
         },
         Case {
@@ -97,13 +97,13 @@ fn cases() -> [Case; 9] {
             set: |f, value, age_ticks| {
                 (f.heading_error_rad, f.lateral_error_m) = (Sample::fresh(0.0), Sample { value, age_ticks });
             },
-            believed: |b| b.path().map(|[_, lateral]| lateral),
+            measured: |b| b.path().map(|[_, lateral]| lateral),
             codes: [PathLost; 4],
         },
     ]
 }
 
-/// Nothing is fitted.
+/// No sensor is fitted.
 fn bare() -> ValidationConfig {
     ValidationConfig {
         gyro: Sensor::default(),
@@ -112,7 +112,7 @@ fn bare() -> ValidationConfig {
     }
 }
 
-/// Only this sensor: up to 100, a change of 1 at once, lost after 2 periods, stuck after 5 of motion.
+/// Only this sensor: range 100, step 1, lost after 2 periods, stuck after 5 of motion.
 fn alone(case: &Case) -> ValidationConfig {
     let mut config = bare();
     *(case.declared)(&mut config) = Sensor {
@@ -125,10 +125,11 @@ fn alone(case: &Case) -> ValidationConfig {
     config
 }
 
-/// Situation: one sensor fitted and believed. Action: good samples, then one that is late, out of range or a jump.
-/// Must hold: the value of that sensor and of no other; its own cause and no other.
+/// Situation: one sensor fitted and valid.
+/// Action: good samples, then one that is late, out of range or a jump.
+/// Must hold: only that sensor has a measurement; only its own cause is reported.
 #[test]
-fn each_sensor_has_its_place_and_its_codes() {
+fn each_sensor_has_its_measurement_and_causes() {
     for case in cases() {
         let config = alone(&case);
         let [lost, range, jump, _] = case.codes;
@@ -142,28 +143,29 @@ fn each_sensor_has_its_place_and_its_codes() {
             };
             for value in [2.0, 2.5] {
                 let b = at(value, 0);
-                assert_eq!((case.believed)(&b), Some(value), "{}", case.name);
-                let others = cases().iter().filter(|other| (other.believed)(&b).is_some()).count();
+                assert_eq!((case.measured)(&b), Some(value), "{}", case.name);
+                let others = cases().iter().filter(|other| (other.measured)(&b).is_some()).count();
                 assert_eq!((others, b.causes), (1, Causes::NONE), "{}", case.name);
             }
             let checked: Vec<Measurements> = (0..3).map(|k| at(value, age + k)).collect();
-            assert_eq!((case.believed)(&checked[1]), Some(2.5), "{}: held", case.name);
-            assert_eq!((case.believed)(&checked[2]), None, "{}: {cause:?}", case.name);
+            assert_eq!((case.measured)(&checked[1]), Some(2.5), "{}: held", case.name);
+            assert_eq!((case.measured)(&checked[2]), None, "{}: {cause:?}", case.name);
             assert_eq!(checked[2].causes, Causes::of(cause), "{}", case.name);
         }
     }
 }
 
-/// What others must say for a sensor to count as stuck, and what is just not enough.
-type Hint = (&'static str, fn(&mut SensorFrame, f32) -> f32);
+/// Motion shown by the other sensors, above and below the threshold.
+type Motion = (&'static str, fn(&mut SensorFrame, f32) -> f32);
 
-/// Situation: a sensor repeats one sample. Action: each other sensor moves, by a little less and a little more than
-/// what counts. Must hold: stuck after its time where the motion is one that it must show, else never.
+/// Situation: a sensor repeats one sample.
+/// Action: each other sensor moves, by slightly less and slightly more than the threshold.
+/// Must hold: stuck after its time if the sensor must follow that motion, else never.
 #[test]
-fn stuck_is_told_by_what_moves() {
-    // Each changes the frame of period k and gives the torque commanded before it. What trembles does so by
-    // exactly what must be exceeded.
-    let hints: [Hint; 14] = [
+fn stuck_is_found_by_motion_of_other_sensors() {
+    // Each changes the frame of period k and returns the torque commanded before it. A trembling signal changes by
+    // exactly the threshold.
+    let motions: [Motion; 14] = [
         ("nothing", |_, _| 0.0),
         ("steer turns", |f, k| {
             f.steer_rad.value = -1.01e-3 * k;
@@ -211,7 +213,7 @@ fn stuck_is_told_by_what_moves() {
     ];
     for case in cases() {
         let config = alone(&case);
-        let shown_by: &[&str] = match case.name {
+        let followed: &[&str] = match case.name {
             "gyro" | "rider's torque" => &["steer turns", "steer rate"],
             "accel" => &["frame rolls"],
             "steer" => &["steer rate"],
@@ -221,26 +223,28 @@ fn stuck_is_told_by_what_moves() {
             "motor" => &["torque"],
             _ => &[],
         };
-        for (name, hint) in hints {
+        for (name, motion) in motions {
             let mut state = ValidationState::default();
             let checked: Vec<Causes> = (0_u8..60)
                 .map(|k| {
                     let mut frame = SensorFrame::missing();
                     (frame.front_wheel_m_s.value, frame.rear_wheel_m_s.value) = (4.0, 4.0);
-                    // From 1 on, for a small difference of large numbers is not what it should be.
-                    let torque = hint(&mut frame, 1.0 + f32::from(k));
+                    // From 1 on: a small difference of large numbers would be inexact.
+                    let torque = motion(&mut frame, 1.0 + f32::from(k));
                     (case.set)(&mut frame, 0.25, 0);
                     step(&config, &mut state, &frame, torque).causes
                 })
                 .collect();
             let stuck = checked.iter().any(|causes| causes.has(case.codes[3]));
-            assert_eq!(stuck, shown_by.contains(&name), "{} while {name}: {checked:?}", case.name);
+            assert_eq!(stuck, followed.contains(&name), "{} while {name}: {checked:?}", case.name);
             assert!(checked[..4].iter().all(|causes| causes.is_empty()), "{} while {name}", case.name);
         }
     }
 }
 
-/// Situation: the path's two errors, one of them old. Action: step. Must hold: as old as the older one, both ways round.
+/// Situation: the path's two errors, one of them old.
+/// Action: step.
+/// Must hold: the path's age is that of the older error, in both cases.
 #[test]
 fn the_path_is_as_old_as_its_older_error() {
     let config = ValidationConfig { path: Sensor { timeout_ticks: 2, ..Sensor::exact(10.0) }, ..bare() };
@@ -261,7 +265,7 @@ fn the_path_is_as_old_as_its_older_error() {
     }
 }
 
-/// Both wheels fitted: bounds over three samples, widening by 10 m/s^2 from an age of 4 on, lost after 20.
+/// Both wheels fitted: bounds over three samples, widening at 10 m/s^2 from an age of 4 periods on, lost after 20.
 fn wheels() -> ValidationConfig {
     let wheel = Sensor { timeout_ticks: 20, ..Sensor::exact(30.0) };
     ValidationConfig {
@@ -274,9 +278,11 @@ fn wheels() -> ValidationConfig {
     }
 }
 
-/// Situation: a wheel's samples rise, fall, stop, come back. Action: step.
-/// Must hold: bounds that span the newest three; that widen each way from the declared age on, and not before; none while the
-/// sensor is lost, and none of the samples before that afterwards. The other wheel's are its own.
+/// Situation: a wheel's samples rise, fall, stop, return.
+/// Action: step.
+/// Must hold: the bounds span the newest three; they widen in both directions from the declared age on, not before;
+/// there are none while the sensor is lost, and older samples do not count afterwards. The other wheel's bounds are
+/// independent.
 #[test]
 fn the_speed_lies_between_the_recent_samples() {
     let config = wheels();
@@ -306,7 +312,7 @@ fn the_speed_lies_between_the_recent_samples() {
         let near = |a: f32, b: f32| (a - b).abs() < 1e-6;
         assert!(near(front.low, 4.5 - drift) && near(front.high, 5.0 + drift), "{age_ticks}: {front:?}");
         assert_eq!((front.newest, rear), (5.0, steady));
-        // Up to the declared age not a bit of difference.
+        // Up to the declared age the bounds are unchanged to the bit.
         assert!(age_ticks > 4 || (front.low, front.high) == (4.5, 5.0));
     }
     assert_eq!(at(Sample { value: 5.0, age_ticks: 21 }, Sample::fresh(7.0)), (None, steady));
@@ -314,8 +320,9 @@ fn the_speed_lies_between_the_recent_samples() {
     assert_eq!(at(Sample::fresh(9.0), Sample::fresh(7.0)), (Some(anew), steady));
 }
 
-/// Situation: a wheel whose samples are never fresh, as behind a slow link. Action: step.
-/// Must hold: the bounds are about the first of them, not about zero.
+/// Situation: a wheel whose samples are never fresh, as behind a slow link.
+/// Action: step.
+/// Must hold: the bounds start at the first sample, not at zero.
 #[test]
 fn a_late_first_sample_has_bounds() {
     let config = ValidationConfig { drift_m_s2: 0.0, ..wheels() };
@@ -326,10 +333,12 @@ fn a_late_first_sample_has_bounds() {
     assert_eq!(checked.front_wheel_m_s(), Some(SpeedInterval { low: 5.0, newest: 5.0, high: 5.0 }));
 }
 
-/// Situation: a wheel of which each sample comes two periods late, and one whose samples, held twice, are never fresh.
-/// Action: step over rising speeds. Must hold: bounds over the newest three all the same.
+/// Situation: a wheel whose samples come two periods late, and one whose samples, each held for three periods, are
+/// never fresh.
+/// Action: step over rising speeds.
+/// Must hold: bounds over the newest three samples in both cases.
 #[test]
-fn samples_that_are_never_fresh_are_all_taken() {
+fn samples_that_are_never_fresh_all_count() {
     let config = ValidationConfig { drift_m_s2: 0.0, ..wheels() };
     let mut state = ValidationState::default();
     for k in 0_u16..30 {
@@ -349,8 +358,9 @@ fn samples_that_are_never_fresh_are_all_taken() {
     }
 }
 
-/// Situation: each count of samples that may be declared. Action: step over rising speeds. Must hold: bounds over exactly so
-/// many.
+/// Situation: each number of samples that can be declared.
+/// Action: step over rising speeds.
+/// Must hold: bounds over exactly that number.
 #[test]
 fn the_bounds_span_as_many_samples_as_declared() {
     for count in 1..=MAX_RECENT_SAMPLES as u16 {
@@ -369,7 +379,9 @@ fn the_bounds_span_as_many_samples_as_declared() {
     }
 }
 
-/// Situation: two intervals. Action: scale, span. Must hold: ends scaled and joined, the newest sample that of the first.
+/// Situation: two intervals.
+/// Action: scale and span.
+/// Must hold: ends scaled and joined; the newest sample is that of the first.
 #[test]
 fn bounds_are_scaled_and_joined() {
     let a = SpeedInterval { low: 2.0, newest: 3.0, high: 5.0 };
@@ -382,10 +394,11 @@ fn bounds_are_scaled_and_joined() {
     }
 }
 
-/// Situation: sensors fitted on one wheel, on the other, on both. Action: schedule by either wheel.
-/// Must hold: scheduled by it, and a lone sensor stands there.
+/// Situation: sensors fitted on one wheel, on the other, on both.
+/// Action: schedule by either wheel.
+/// Must hold: scheduled by that wheel; a single sensor is moved to it.
 #[test]
-fn a_lone_wheel_sensor_moves_to_the_wheel_that_schedules() {
+fn a_single_wheel_sensor_moves_to_the_scheduling_wheel() {
     let fitted = |front: bool, rear: bool| {
         let sensor = |fitted, max| Sensor { fitted, ..Sensor::exact(max) };
         ValidationConfig { front_wheel: sensor(front, 11.0), rear_wheel: sensor(rear, 22.0), ..bare() }
@@ -403,10 +416,11 @@ fn a_lone_wheel_sensor_moves_to_the_wheel_that_schedules() {
     }
 }
 
-/// Situation: declarations. Action: ask what a loss means, and which sensor takes longest to be believed.
-/// Must hold: the codes of those declared so, of the others none; only fitted sensors are waited for.
+/// Situation: declared sensors.
+/// Action: read the causes of each loss, and the slowest qualification.
+/// Must hold: the causes of the sensors declared so, no others; only fitted sensors count.
 #[test]
-fn declarations_are_summed_up() {
+fn declarations_are_summarised() {
     for case in cases() {
         let mut config = bare();
         *(case.declared)(&mut config) = Sensor { loss: Loss::Limp, qualify_samples: 7, ..Sensor::exact(1.0) };
@@ -419,11 +433,12 @@ fn declarations_are_summed_up() {
     assert_eq!(Config::product().input.slowest_to_qualify(), 50);
 }
 
-/// Situation: the front wheel schedules; it, the steer angle, the rear wheel fitted or not. Action: make a plan.
-/// Must hold: refused, naming key and remedy, where only the rear wheel is there to tell the front wheel's speed by; else
-/// accepted, and with the rear wheel as schedule, too.
+/// Situation: the front wheel schedules; front wheel, steer angle and rear wheel are fitted or not.
+/// Action: make a plan.
+/// Must hold: rejected, naming key and remedy, if the front wheel's speed would have to come from the rear wheel alone;
+/// else accepted, as is every case scheduled by the rear wheel.
 #[test]
-fn the_speed_that_schedules_must_be_known() {
+fn the_scheduling_speed_must_be_measurable() {
     for (front, steer, rear) in [false, true]
         .into_iter()
         .flat_map(|a| [(a, false, false), (a, false, true), (a, true, false), (a, true, true)])

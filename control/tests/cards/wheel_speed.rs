@@ -1,4 +1,4 @@
-//! Flight cards: speed from wheel pulses.
+//! Speed and its bounds from wheel pulses.
 
 use control::sensors::wheel_speed::{
     Direction, WheelPulses, WheelPulsesConfig, WheelPulsesState, WheelSpeed, step,
@@ -6,39 +6,39 @@ use control::sensors::wheel_speed::{
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
-/// A wheel that is turned at a given speed, its magnets unevenly spaced.
+/// A wheel turned at a given speed, with unevenly spaced magnets.
 struct Wheel {
     config: WheelPulsesConfig,
-    way: f64,
+    distance: f64,
     edges: Vec<f64>,
     now: f64,
 }
 
 impl Wheel {
     fn new(config: WheelPulsesConfig) -> Self {
-        Self { config, way: 0.0, edges: Vec::new(), now: 0.0 }
+        Self { config, distance: 0.0, edges: Vec::new(), now: 0.0 }
     }
 
-    /// Where the `n`th pulse comes \[m\].
+    /// Distance at which the `n`th pulse occurs \[m\].
     fn place(&self, n: usize) -> f64 {
         let pulse = TAU * f64::from(self.config.radius_m) / f64::from(self.config.pulses_per_turn);
-        let uneven =
+        let spacing_error =
             0.49 * f64::from(self.config.spacing_error) * if n.is_multiple_of(2) { 1.0 } else { -1.0 };
-        (n as f64 + 0.3 + uneven) * pulse
+        (n as f64 + 0.3 + spacing_error) * pulse
     }
 
-    /// A millisecond at `speed`.
+    /// Rolls for one millisecond at `speed`.
     fn roll(&mut self, speed: f64) {
-        let to = self.way + speed * 1e-3;
+        let to = self.distance + speed * 1e-3;
         while speed > 0.0 && self.place(self.edges.len()) <= to {
-            let part = (self.place(self.edges.len()) - self.way) / (to - self.way);
+            let part = (self.place(self.edges.len()) - self.distance) / (to - self.distance);
             self.edges.push(self.now + part.max(0.0) * 1e-3);
         }
-        self.way = to;
+        self.distance = to;
         self.now += 1e-3;
     }
 
-    fn told(&self) -> WheelPulses {
+    fn reading(&self) -> WheelPulses {
         let us = |s: f64| (s * 1e6) as u32;
         let (last, before) = (self.edges.last(), self.edges.iter().rev().nth(1));
         WheelPulses {
@@ -50,7 +50,7 @@ impl Wheel {
     }
 }
 
-/// Speeds over a ride, \[m/s\] every millisecond, and what was told of them.
+/// True speeds \[m/s\] every millisecond of a ride, and the estimated ones.
 fn ridden(
     config: WheelPulsesConfig,
     seconds: f64,
@@ -61,12 +61,12 @@ fn ridden(
         .map(|i| {
             let t = (i + 1) as f64 * 1e-3;
             wheel.roll(speed(t - 5e-4));
-            (t, speed(t), step(&config, &mut state, &wheel.told(), 1000))
+            (t, speed(t), step(&config, &mut state, &wheel.reading(), 1000))
         })
         .collect()
 }
 
-/// Starts, rides at 5 m/s, brakes hard to a stop.
+/// Starts, rides at 5.4 m/s, brakes hard to a stop.
 fn start_and_stop(t: f64) -> f64 {
     match t {
         t if t < 1.0 => 0.0,
@@ -76,29 +76,33 @@ fn start_and_stop(t: f64) -> f64 {
     }
 }
 
-/// Situation: sensors of 1, 16 and 192 pulses a turn, a start, a ride, a hard stop. Action: follow the
-/// speed. It must always lie between the bounds, the guess near it while riding steadily, and be 0 soon
-/// after the stop.
+/// Situation: sensors of 1, 16 and 192 pulses per turn; a start, a ride, a hard stop.
+/// Action: follow the speed.
+/// Must hold: the true speed is always between the bounds; in steady riding the estimate is near it; after the stop the
+/// estimate soon becomes 0.
 #[test]
 fn the_speed_lies_between_its_bounds() {
     for (pulses_per_turn, settled, seconds_to_zero) in [(1, 0.3, 12.0), (16, 0.3, 1.0), (192, 0.25, 0.2)] {
         let config = WheelPulsesConfig { pulses_per_turn, ..WheelPulsesConfig::default() };
         let ride = ridden(config, 20.0, start_and_stop);
         let (mut widest, mut tightest) = (0.0_f32, f32::MAX);
-        for (t, truth, told) in &ride {
+        for (t, truth, reading) in &ride {
             let slack = 0.01 + 0.002 * truth;
-            let (low, high) = (f64::from(told.low_m_s), f64::from(told.high_m_s));
+            let (low, high) = (f64::from(reading.low_m_s), f64::from(reading.high_m_s));
             assert!(
                 low - slack <= *truth && *truth <= high + slack,
-                "{pulses_per_turn} {t}: {truth} {told:?}"
+                "{pulses_per_turn} {t}: {truth} {reading:?}"
             );
-            assert!(told.low_m_s <= told.speed_m_s && told.speed_m_s <= told.high_m_s, "{t}: {told:?}");
+            assert!(
+                reading.low_m_s <= reading.speed_m_s && reading.speed_m_s <= reading.high_m_s,
+                "{t}: {reading:?}"
+            );
             if (5.0..6.0).contains(t) {
                 assert!(
-                    (f64::from(told.speed_m_s) - truth).abs() < settled,
-                    "{pulses_per_turn} {t}: {told:?}"
+                    (f64::from(reading.speed_m_s) - truth).abs() < settled,
+                    "{pulses_per_turn} {t}: {reading:?}"
                 );
-                let width = told.high_m_s - told.low_m_s;
+                let width = reading.high_m_s - reading.low_m_s;
                 (widest, tightest) = (widest.max(width), tightest.min(width));
             }
         }
@@ -107,13 +111,16 @@ fn the_speed_lies_between_its_bounds() {
         );
         assert!(tightest > 0.01, "{tightest}");
         let stopped = 6.0 + 5.4 / 5.5;
-        let zero = ride.iter().find(|(t, _, told)| *t > stopped && told.speed_m_s == 0.0).expect("stands");
+        let zero =
+            ride.iter().find(|(t, _, reading)| *t > stopped && reading.speed_m_s == 0.0).expect("stands");
         assert!(zero.0 - stopped < seconds_to_zero, "{pulses_per_turn}: {}", zero.0 - stopped);
     }
 }
 
-/// Situation: a wheel that stops between two pulses. Action: wait. Guess and upper bound must never
-/// rise, the bound end at what the wheel could have gathered from standing.
+/// Situation: a wheel that stops between two pulses.
+/// Action: wait.
+/// Must hold: estimate and upper bound never rise; the upper bound ends at the speed that the wheel could have reached
+/// from rest.
 #[test]
 fn without_a_pulse_the_speed_only_falls() {
     let config = WheelPulsesConfig::default();
@@ -130,12 +137,13 @@ fn without_a_pulse_the_speed_only_falls() {
     assert!((0.3..1.2).contains(&last.high_m_s), "{last:?}");
 }
 
-/// Situation: a wheel turned backwards. Action: tell the direction or not. Only a known direction may
-/// give a negative speed.
+/// Situation: pulses of a wheel, with the direction unknown, forward and backward.
+/// Action: step.
+/// Must hold: the speed is negative only for a known backward direction.
 #[test]
-fn backwards_only_when_it_is_known() {
+fn negative_only_when_known_to_be_backward() {
     let config = WheelPulsesConfig::default();
-    let told = WheelPulses {
+    let reading = WheelPulses {
         count: 9,
         last_edge_age_us: 5_000,
         last_period_us: 50_000,
@@ -143,8 +151,8 @@ fn backwards_only_when_it_is_known() {
     };
     let with = |direction| {
         let mut state = WheelPulsesState::default();
-        let _ = step(&config, &mut state, &WheelPulses { direction, ..told }, 1000);
-        step(&config, &mut state, &WheelPulses { direction, ..told }, 1000)
+        let _ = step(&config, &mut state, &WheelPulses { direction, ..reading }, 1000);
+        step(&config, &mut state, &WheelPulses { direction, ..reading }, 1000)
     };
     let (unknown, forward, backward) =
         (with(Direction::Unknown), with(Direction::Forward), with(Direction::Backward));
@@ -163,13 +171,14 @@ fn any_pulses() -> impl Strategy<Value = (WheelPulses, u32)> {
 }
 
 proptest! {
-    /// Situation: any pulses in any order. Action: step. Every number must be finite, within 50 m/s,
-    /// the guess between the bounds.
+    /// Situation: arbitrary pulses in any order.
+    /// Action: step.
+    /// Must hold: every speed is finite and within 50 m/s, the estimate between the bounds.
     #[test]
     fn every_speed_is_finite(sequence in proptest::collection::vec(any_pulses(), 1..60)) {
         let (config, mut state) = (WheelPulsesConfig::default(), WheelPulsesState::default());
-        for (told, elapsed) in sequence {
-            let speed = step(&config, &mut state, &told, elapsed);
+        for (reading, elapsed) in sequence {
+            let speed = step(&config, &mut state, &reading, elapsed);
             prop_assert!(speed.low_m_s.abs() <= 50.0 && speed.high_m_s.abs() <= 50.0, "{speed:?}");
             prop_assert!(speed.low_m_s <= speed.speed_m_s && speed.speed_m_s <= speed.high_m_s, "{speed:?}");
         }

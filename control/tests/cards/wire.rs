@@ -1,4 +1,4 @@
-//! The configuration record that images are told their configuration with.
+//! The binary record that carries a configuration to an image.
 
 use control::param::{ParamSpec, ParamVisitor};
 use control::wire::{CONFIG_BYTES, config_bytes_used, decode_config, encode_config};
@@ -26,7 +26,7 @@ fn laws() -> impl Strategy<Value = Law> {
     ]
 }
 
-/// Sets every leaf to anything: what the bytes can hold, valid or not.
+/// Sets every parameter to an arbitrary value that the bytes can hold, valid or not.
 struct Scramble(TestRng);
 
 impl Scramble {
@@ -64,8 +64,8 @@ fn configurations() -> impl Strategy<Value = Config> {
 }
 
 proptest! {
-    /// Situation: any configuration, valid or not.
-    /// Action: to bytes and back.
+    /// Situation: an arbitrary configuration, valid or not.
+    /// Action: encode and decode.
     /// Must hold: the same configuration.
     #[test]
     fn a_configuration_survives_its_bytes(config in configurations()) {
@@ -73,10 +73,10 @@ proptest! {
     }
 
     /// Situation: a valid record with any byte changed to any other.
-    /// Action: decode it.
-    /// Must hold: an error, or a configuration that survives its bytes in every bit.
+    /// Action: decode.
+    /// Must hold: an error, or a configuration that is unchanged to the bit by encoding and decoding.
     #[test]
-    fn a_damaged_record_is_refused_or_read(
+    fn a_damaged_record_is_rejected_or_read(
         config in configurations(), at in 0..CONFIG_BYTES, byte in any::<u8>()
     ) {
         let mut record = encode_config(&config);
@@ -89,8 +89,8 @@ proptest! {
 }
 
 /// Situation: the published and the flashed configuration.
-/// Action: bytes, back, plan.
-/// Must hold: accepted, unchanged; another length of the record would not have been.
+/// Action: encode, decode, plan.
+/// Must hold: accepted and unchanged; every byte of the record is used.
 #[test]
 fn the_product_survives_its_bytes() {
     for config in [Config::product(), Config::thesis(Law::H { cut: false })] {
