@@ -85,8 +85,8 @@ impl Plan {
     /// Whether pressing the switch in, or through, the period after `command` would engage if nothing else changes: the
     /// mode is standby and no other cause prevents engagement.
     pub fn ready(&self, command: &Command) -> bool {
-        let refusals = self.reactions.refusals().with(Causes::of(Cause::SwitchHeld));
-        let blocking = command.causes.and(refusals);
+        let rejections = self.reactions.rejections().with(Causes::of(Cause::SwitchHeld));
+        let blocking = command.causes.and(rejections);
         command.mode == Mode::Standby && (blocking.is_empty() || blocking == Causes::of(Cause::SwitchOff))
     }
 

@@ -180,7 +180,7 @@ impl Reactions {
     }
 
     /// Causes that reject a press of the switch in standby.
-    pub fn refusals(&self) -> Causes {
+    pub fn rejections(&self) -> Causes {
         self.disengage.with(self.pause)
     }
 }
@@ -272,7 +272,7 @@ pub fn step(
     state.disagreements =
         if state.mode.drives() { causes.and(reactions.until_reengaged) } else { Causes::NONE };
     let mode = state.next(config, reactions, press, causes);
-    if press.is_closed() && (mode != Mode::Standby || causes.any(reactions.refusals())) {
+    if press.is_closed() && (mode != Mode::Standby || causes.any(reactions.rejections())) {
         state.switch.consume();
     }
     if mode != state.mode {
@@ -365,7 +365,7 @@ impl EngagementState {
             Mode::Off => Mode::Initialise,
             Mode::Initialise if faults.is_empty() => Mode::SelfTest,
             Mode::SelfTest if self.ticks >= config.self_test_ticks => Mode::Standby,
-            Mode::Standby if press == Press::Pressed && !causes.any(reactions.refusals()) => {
+            Mode::Standby if press == Press::Pressed && !causes.any(reactions.rejections()) => {
                 engaged_mode(reactions, causes)
             }
             Mode::Engaged | Mode::Limp if causes.any(reactions.disengage) => Mode::Standby,

@@ -201,8 +201,8 @@ impl<const N: usize> SensorMonitor<N> {
         }
     }
 
-    /// One control period. `moving` says whether other sensors show the measured quantity to change; it is evaluated
-    /// only when the value repeats or no new sample arrives.
+    /// One control period. `moving` is true if other sensors show the measured quantity to change; it is evaluated only
+    /// when the value repeats or no new sample arrives.
     #[inline(always)]
     pub fn step(
         &mut self,

@@ -9,7 +9,7 @@ fn reported_at(speed_m_s: f32) -> Option<f32> {
     let mut config = Config::product();
     config.calibration.polarity_checked = true;
     (config.cross.motor_nm, config.cross.steer_rad) = (None, None);
-    let plan = config.plan().expect("a sound configuration");
+    let plan = config.plan().expect("a valid configuration");
     let mut state = State::default();
     (0..4000_u16).find_map(|ms| {
         let t = 1e-3 * f32::from(ms);

@@ -20,7 +20,7 @@ fn plan() -> Plan {
         sensor.fitted = false;
     }
     config.response.motor = None;
-    config.plan().expect("a sound configuration")
+    config.plan().expect("a valid configuration")
 }
 
 /// Time at which `cause` is first reported within 12 s \[s\], in a gentle slalom at `speed_m_s`. The steer angle swings
@@ -108,7 +108,7 @@ fn a_repeating_imu_is_stuck_within_three_checks() {
     let alone = || {
         let mut config = plan().config().clone();
         config.input.accel.fitted = false;
-        config.plan().expect("a sound configuration")
+        config.plan().expect("a valid configuration")
     };
     let after_ms = |plan: Plan, cause: Cause, speed_m_s: f32, exact: bool| {
         let mut state = State::default();

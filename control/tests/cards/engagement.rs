@@ -128,7 +128,7 @@ fn a_switch_held_at_boot_does_not_engage() {
 /// engages.
 #[test]
 fn a_rejected_press_is_consumed() {
-    let refusals = [
+    let rejections = [
         (EngagementInput { polarity_checked: false, ..NORMAL }, Cause::PolarityUnchecked),
         (EngagementInput { causes: Causes::of(Cause::PolarityWrong), ..NORMAL }, Cause::PolarityWrong),
         (EngagementInput { roll_rad: Some((1.2, EXACT)), ..NORMAL }, Cause::Fallen),
@@ -137,7 +137,7 @@ fn a_rejected_press_is_consumed() {
         (EngagementInput { speed_m_s: Some(-1.0), ..NORMAL }, Cause::Backwards),
         (NORMAL, Cause::SelfTest),
     ];
-    for (input, cause) in refusals {
+    for (input, cause) in rejections {
         let mut bench = Bench::new();
         bench.hold(&input, if cause == Cause::SelfTest { 5 } else { 30 });
         let p = bench.step(&EngagementInput { engage: true, ..input });
@@ -177,9 +177,9 @@ fn every_rejection_is_listed() {
     let p = bench.step(&EngagementInput { engage: true, ..input });
     assert_eq!(p.mode, Mode::Standby);
     let reported: Vec<Cause> = p.causes.iter().collect();
-    let wanted =
+    let expected =
         [Cause::WheelsDisagree, Cause::PolarityUnchecked, Cause::Fallen, Cause::Lifted, Cause::Backwards];
-    assert_eq!(reported, wanted);
+    assert_eq!(reported, expected);
 }
 
 /// Situation: engaged.

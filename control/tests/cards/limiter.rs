@@ -13,8 +13,8 @@ fn limited(table: &Limits, rate_hz: f32, sequence: &[TorqueRequest]) -> Vec<(f32
 }
 
 /// The torque after 3 s of the same request, once per millisecond.
-fn held(table: &Limits, wanted: &TorqueRequest) -> (f32, ActiveLimits) {
-    *limited(table, 1000.0, &vec![*wanted; 3000]).last().expect("not empty")
+fn held(table: &Limits, request: &TorqueRequest) -> (f32, ActiveLimits) {
+    *limited(table, 1000.0, &vec![*request; 3000]).last().expect("not empty")
 }
 
 proptest! {
@@ -61,16 +61,16 @@ proptest! {
         let table = Limits { max_torque_nm: max, rise_nm_s: rate, fall_nm_s: rate, taper, ..Limits::default() };
         let plan = LimiterPlan::new(&table, 1000.0);
         let (mut state, mut last) = (LimiterState::default(), 0.0_f32);
-        for (wanted, speed) in sequence {
+        for (requested_nm, speed) in sequence {
             let scale = taper.map_or(1.0, |t| {
                 if speed >= t.full_m_s { 1.0 }
                 else if speed <= t.zero_m_s { 0.0 }
                 else { (speed - t.zero_m_s) / (t.full_m_s - t.zero_m_s) }
             });
             // Below full speed the largest torque is tapered too, so only smaller requests agree.
-            let wanted = if scale < 1.0 { max.map_or(wanted, |m| wanted.clamp(-m, m)) } else { wanted };
-            let (torque, _) = step(&table, &plan, &mut state, &at_speed(wanted, speed));
-            let mut expected = wanted * scale;
+            let requested_nm = if scale < 1.0 { max.map_or(requested_nm, |m| requested_nm.clamp(-m, m)) } else { requested_nm };
+            let (torque, _) = step(&table, &plan, &mut state, &at_speed(requested_nm, speed));
+            let mut expected = requested_nm * scale;
             if let Some(max) = max {
                 expected = expected.clamp(-max, max);
             }

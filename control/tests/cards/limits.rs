@@ -100,12 +100,12 @@ fn sensor(bound: f32) -> impl Strategy<Value = Option<f32>> {
 }
 
 fn call() -> impl Strategy<Value = TorqueRequest> {
-    let wanted = prop_oneof![10 => -60.0_f32..60.0, 10 => -8.0_f32..8.0, 2 => Just(0.0), 1 => wild()];
+    let requested = prop_oneof![10 => -60.0_f32..60.0, 10 => -8.0_f32..8.0, 2 => Just(0.0), 1 => wild()];
     let authority = prop_oneof![6 => Just(1.0_f32), 2 => 0.0_f32..1.0, 1 => Just(0.0), 1 => wild()];
     let speed = || prop_oneof![12 => -1.0_f32..12.0, 1 => wild()];
     let elapsed = prop_oneof![6 => Just(1000_u32), 12 => 100_u32..10_000, 1 => Just(0), 1 => any::<u32>()];
     let sensors = (sensor(2.0), sensor(12.0), sensor(15.0));
-    (wanted, authority, any::<bool>(), (speed(), speed()), sensors, elapsed).prop_map(
+    (requested, authority, any::<bool>(), (speed(), speed()), sensors, elapsed).prop_map(
         |(wanted_nm, authority, limp, speeds, (steer, rate, rider), elapsed_us)| TorqueRequest {
             wanted_nm,
             authority,
@@ -121,11 +121,11 @@ fn call() -> impl Strategy<Value = TorqueRequest> {
 }
 
 /// A sequence of calls: periods of one call or many in which all but the time is constant.
-pub(crate) fn calls(stretches: std::ops::Range<usize>) -> impl Strategy<Value = Vec<TorqueRequest>> {
-    let stretch = (call(), prop_oneof![Just(1_usize), 1_usize..60], any::<bool>());
-    vec(stretch, stretches).prop_map(|stretches| {
+pub(crate) fn calls(runs: std::ops::Range<usize>) -> impl Strategy<Value = Vec<TorqueRequest>> {
+    let run = (call(), prop_oneof![Just(1_usize), 1_usize..60], any::<bool>());
+    vec(run, runs).prop_map(|runs| {
         let mut all: Vec<TorqueRequest> = Vec::new();
-        for (request, times, steady) in stretches {
+        for (request, times, steady) in runs {
             let steady = steady && request.elapsed_us < 20_000;
             all.extend(vec![request; if steady { times } else { 1 }]);
         }

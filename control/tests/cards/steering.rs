@@ -13,7 +13,7 @@ fn plan() -> Plan {
         sensor.fitted = false;
     }
     config.response.motor = None;
-    config.plan().expect("a sound configuration")
+    config.plan().expect("a valid configuration")
 }
 
 /// A bicycle whose steer angle swings by `swing_rad` with a period of 1.2 s, and its sensors.

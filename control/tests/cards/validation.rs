@@ -316,8 +316,8 @@ fn the_speed_lies_between_the_recent_samples() {
         assert!(age_ticks > 4 || (front.low, front.high) == (4.5, 5.0));
     }
     assert_eq!(at(Sample { value: 5.0, age_ticks: 21 }, Sample::fresh(7.0)), (None, steady));
-    let anew = SpeedInterval { low: 9.0, newest: 9.0, high: 9.0 };
-    assert_eq!(at(Sample::fresh(9.0), Sample::fresh(7.0)), (Some(anew), steady));
+    let restarted = SpeedInterval { low: 9.0, newest: 9.0, high: 9.0 };
+    assert_eq!(at(Sample::fresh(9.0), Sample::fresh(7.0)), (Some(restarted), steady));
 }
 
 /// Situation: a wheel whose samples are never fresh, as behind a slow link.

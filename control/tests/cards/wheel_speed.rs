@@ -86,12 +86,12 @@ fn the_speed_lies_between_its_bounds() {
         let config = WheelPulsesConfig { pulses_per_turn, ..WheelPulsesConfig::default() };
         let ride = ridden(config, 20.0, start_and_stop);
         let (mut widest, mut tightest) = (0.0_f32, f32::MAX);
-        for (t, truth, reading) in &ride {
-            let slack = 0.01 + 0.002 * truth;
+        for (t, true_speed, reading) in &ride {
+            let slack = 0.01 + 0.002 * true_speed;
             let (low, high) = (f64::from(reading.low_m_s), f64::from(reading.high_m_s));
             assert!(
-                low - slack <= *truth && *truth <= high + slack,
-                "{pulses_per_turn} {t}: {truth} {reading:?}"
+                low - slack <= *true_speed && *true_speed <= high + slack,
+                "{pulses_per_turn} {t}: {true_speed} {reading:?}"
             );
             assert!(
                 reading.low_m_s <= reading.speed_m_s && reading.speed_m_s <= reading.high_m_s,
@@ -99,7 +99,7 @@ fn the_speed_lies_between_its_bounds() {
             );
             if (5.0..6.0).contains(t) {
                 assert!(
-                    (f64::from(reading.speed_m_s) - truth).abs() < settled,
+                    (f64::from(reading.speed_m_s) - true_speed).abs() < settled,
                     "{pulses_per_turn} {t}: {reading:?}"
                 );
                 let width = reading.high_m_s - reading.low_m_s;
@@ -125,14 +125,14 @@ fn the_speed_lies_between_its_bounds() {
 fn without_a_pulse_the_speed_only_falls() {
     let config = WheelPulsesConfig::default();
     let ride = ridden(config, 8.0, |t| if t < 3.0 { 4.0 } else { 0.0 });
-    let quiet: Vec<_> = ride.iter().filter(|(t, ..)| *t > 3.05).collect();
-    for pair in quiet.windows(2) {
+    let after_stop: Vec<_> = ride.iter().filter(|(t, ..)| *t > 3.05).collect();
+    for pair in after_stop.windows(2) {
         assert!(pair[1].2.speed_m_s <= pair[0].2.speed_m_s);
         if pair[0].0 > 3.4 {
             assert!(pair[1].2.high_m_s <= pair[0].2.high_m_s + 1e-6, "{pair:?}");
         }
     }
-    let last = quiet.last().expect("waits").2;
+    let last = after_stop.last().expect("waits").2;
     assert_eq!((last.speed_m_s, last.low_m_s), (0.0, 0.0));
     assert!((0.3..1.2).contains(&last.high_m_s), "{last:?}");
 }

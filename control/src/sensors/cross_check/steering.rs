@@ -143,7 +143,7 @@ impl Steering {
         self.wheel == WheelState::Riding
     }
 
-    /// Ends a block at this speed \[m/s\] and repeats the yaw check. `rear` says that the speed is the rear wheel's; it
+    /// Ends a block at this speed \[m/s\] and repeats the yaw check. `rear` is true for the rear wheel's speed; it
     /// selects the wheel that is reported as stuck.
     pub(super) fn end(&mut self, plan: &SteeringPlan, speed_m_s: f32, rear: bool) {
         let Some((now, before)) = self.block.end() else { return };
