@@ -320,5 +320,5 @@ fn speed(
     }
 }
 
-/// Least assumed cosine of the ground steer angle; also used while that angle is unknown.
+/// Minimum assumed cosine of the ground steer angle; also used while that angle is unknown.
 const MIN_COS: f32 = 0.4;

@@ -80,7 +80,8 @@ pub const RSQRT_ERROR: f32 = 2e-7;
 /// in software takes four times as long.
 #[inline]
 pub fn rsqrt(x: f32) -> f32 {
-    // Initial guess: half the exponent, negated, with the constant of least error. Each Newton step squares the error.
+    // Initial guess: half the exponent, negated, with the constant of smallest error. Each Newton step squares the
+    // error.
     let guess = f32::from_bits(0x5f37_5a86_u32.wrapping_sub(x.to_bits() >> 1));
     let refined = guess * (1.5 - 0.5 * x * guess * guess);
     let refined = refined * (1.5 - 0.5 * x * refined * refined);

@@ -12,7 +12,7 @@ pub struct ParamSpec {
     pub group: &'static str,
     /// Name within the group, unit included: `soft_rad`.
     pub name: &'static str,
-    /// Least allowed value.
+    /// Smallest allowed value.
     pub min: f32,
     /// Largest allowed value.
     pub max: f32,

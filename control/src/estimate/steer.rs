@@ -5,7 +5,7 @@ use crate::maths::bounded;
 /// Limits of the steer angle \[rad\] and rate \[rad/s\].
 const MAX: (f32, f32) = (core::f32::consts::PI, 100.0);
 
-/// Least lag with a rate sensor \[s\]: the angle then corrects slow errors only.
+/// Minimum lag with a rate sensor \[s\]: the angle then corrects slow errors only.
 const FUSED_S: f32 = 0.2;
 
 /// A second-order tracking filter with a double root. The angle follows the encoder. The rate is the rate sensor's plus

@@ -19,7 +19,7 @@ pub const LAW_NAMES: &[&str] = &["none", "h", "h-cut", "f", "g", "cl1", "cl2", "
 const BALANCE_OFF_M_S: f64 = 4.7;
 /// Speed up to which the balance assist grows with speed \[m/s\].
 const BALANCE_FULL_M_S: f64 = 1.5;
-/// Speed at which `f` is least \[m/s\]: its vertex, where it is still positive.
+/// Speed of the minimum of `f` \[m/s\], its vertex, where it is still positive.
 const F_LEAST_M_S: f32 = 12.0 / 1.76;
 
 /// A roll-rate law. Gains in N m s/rad, speeds in m/s. Formulas are the sources' `K_phi_d`, the negative of the gain,
@@ -92,7 +92,7 @@ impl Law {
         }
     }
 
-    /// The gain of least magnitude between two speeds \[m/s\], in either order: 0 if the gain changes sign there. For a
+    /// The gain of smallest magnitude between two speeds \[m/s\], in either order: 0 if the gain changes sign there. For a
     /// speed known only to be within bounds, no larger gain is safe at every speed.
     ///
     /// Two equal speeds give the bits of [`Law::gain`]. Exact except for the rounding of `gain`.
@@ -110,7 +110,7 @@ impl Law {
         }
         let least = nearer_zero(self.gain(one_m_s), self.gain(other_m_s));
         let inside = |v: f32| low < v && v < high;
-        // Every other law has its least magnitude at the ends of the range, at a zero crossing, or at the points below.
+        // Every other law has its smallest magnitude at the ends of the range, at a zero crossing, or at the points below.
         match self {
             Law::F if inside(F_LEAST_M_S) => nearer_zero(least, self.gain(F_LEAST_M_S)),
             Law::Table(table) => {

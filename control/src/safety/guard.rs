@@ -31,7 +31,7 @@ pub enum Violation {
     Speed = 6,
     /// Above the taper's limit.
     Taper = 7,
-    /// Against the torque of the rider.
+    /// Against the rider's torque.
     RiderTorque = 8,
     /// Against the motion of the handlebar.
     RiderMotion = 9,

@@ -2,8 +2,8 @@
 //! [`crate::safety::guard`] checks the result by independent code.
 //!
 //! Every limit is off (`None`) or set. Zero torque is inside every limit. Limits that depend on the motion of the
-//! bicycle or the rider can shrink at once; a torque that is then outside is accepted as long as it returns to zero at
-//! `fall_nm_s`.
+//! bicycle or the rider can shrink at once; a torque that is then outside is accepted as long as it returns to the
+//! limits at `fall_nm_s`.
 
 use crate::param::{Checker, ParamError, ParamSpec, ParamVisitor, optional};
 
@@ -22,7 +22,7 @@ pub struct Limits {
     /// Largest rate of change away from zero torque \[N m/s\].
     pub rise_nm_s: Option<f32>,
     /// Largest rate of change towards zero torque \[N m/s\]. A torque that changes sign first falls to zero, then
-    /// rises. The time of a step counts up to one control period.
+    /// rises. The allowed change of a step is that of the elapsed time, at most one control period.
     pub fall_nm_s: Option<f32>,
     /// Override by the rider, measured by a torque sensor.
     pub rider_torque: Option<RiderTorque>,

@@ -1,4 +1,4 @@
-//! Cross-checks between sensors: faults that no single sensor's monitor can detect.
+//! Cross-checks between sensors: detect faults that no single sensor's monitor can detect.
 //!
 //! The relations are the kinematics of a bicycle that rolls without slip; pitch and the motion of the contact points
 //! are neglected. Inside the basins of `h`, without and with riders, that leaves residuals up to 0.30 m/s between the
@@ -212,19 +212,19 @@ pub struct Residuals {
     pub yaw_rad_s: f32,
     /// Steer angle, see [`CrossCheckConfig::steer_rad`].
     pub steer_rad: f32,
-    /// Of the drive's torque, [`CrossCheckConfig::motor_nm`].
+    /// Drive torque, see [`CrossCheckConfig::motor_nm`].
     pub motor_nm: f32,
 }
 
 impl Default for Residuals {
-    /// Nothing was compared yet.
+    /// No comparison yet.
     fn default() -> Self {
         let none = f32::NAN;
         Self { wheels_m_s: none, yaw_rad_s: none, steer_rad: none, motor_nm: none }
     }
 }
 
-/// Counts how long something lasts.
+/// Counts how long a residual persists \[control periods\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Debounce(u16);
 

@@ -25,15 +25,15 @@ pub enum PolarityStep {
     Wrong = 4,
 }
 
-/// Least roll angle of a lean to the right \[rad\].
+/// Minimum roll angle of a lean to the right \[rad\].
 const LEAN_RAD: f32 = 0.25;
-/// Least specific force to the left in such a lean \[m/s^2\]: less than half of gravity's component.
+/// Minimum specific force to the left in such a lean \[m/s^2\]: less than half of gravity's component.
 const FORCE_M_S2: f32 = 1.0;
-/// Least turn of the handlebar \[rad\].
+/// Minimum turn of the handlebar \[rad\].
 const STEER_RAD: f32 = 0.3;
-/// Least speed of a push; below it the bicycle stands \[m/s\].
+/// Minimum speed of a push; below it the bicycle stands \[m/s\].
 const PUSH_M_S: f32 = 0.3;
-/// Least torque of the hand on the handlebar \[N m\].
+/// Minimum torque of the hand on the handlebar \[N m\].
 const HAND_NM: f32 = 0.2;
 /// Leak time constant of the integrated rates \[s\]: a bias does not add up to a movement.
 const FORGET_S: f32 = 2.0;

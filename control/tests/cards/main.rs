@@ -13,6 +13,7 @@ mod monitor;
 mod polarity;
 mod press;
 mod properties;
+mod recent;
 mod regression;
 mod smooth;
 mod steering;
