@@ -2,7 +2,6 @@
 
 use crate::config::Config;
 use crate::controller::Command;
-use crate::estimate;
 use crate::estimate::smooth::SmoothPlan;
 use crate::fault::{Cause, Causes};
 use crate::safety::engagement::{EngagementPlan, Mode, Reactions};
@@ -46,11 +45,6 @@ impl Plan {
     /// Builds the plan of a validated configuration.
     pub(crate) fn new(config: Config) -> Self {
         let c = &config;
-        let cross_checks = c.cross.wheels_m_s.is_some()
-            || c.cross.yaw_rad_s.is_some()
-            || c.cross.yaw_slow_rad_s.is_some()
-            || c.cross.yaw_slope
-            || c.cross.roll_correlation;
         Self {
             period_s: 1.0 / c.rate_hz,
             period_us: (1e6 / c.rate_hz) as u32,
@@ -66,13 +60,7 @@ impl Plan {
             guard: GuardPlan::new(&c.limits, c.rate_hz),
             polarity_check_due: c.permit.need_polarity && !c.calibration.polarity_checked,
             polarity_gain_nm_s_rad: c.law.gain(polarity::GAIN_SPEED_M_S),
-            needs_estimate: c.estimate.roll_rate == estimate::Source::Estimate
-                || c.capsize.is_on()
-                || c.permit.fallen_rad.is_some()
-                || c.predict.lead_s > 0.0
-                || c.track.is_some()
-                || c.response.motor.is_some()
-                || cross_checks,
+            needs_estimate: needs_motion(c),
             config,
         }
     }
@@ -100,4 +88,31 @@ impl Plan {
         let history = u32::from(latency.roll_rate_ticks.max(latency.speed_ticks));
         8 + input.slowest_to_qualify() + waits + ramp + history
     }
+}
+
+/// Whether any function needs more of the motion than the measured rates. Every field is named, so that a new one must be decided.
+fn needs_motion(config: &Config) -> bool {
+    let Config {
+        rate_hz: _,
+        law: _,
+        capsize,
+        calibration: _,
+        input: _,
+        estimate,
+        cross,
+        response,
+        permit,
+        latency: _,
+        predict,
+        smooth: _,
+        track,
+        limits: _,
+    } = config;
+    estimate.needs_motion()
+        || capsize.is_on()
+        || cross.needs_motion()
+        || response.needs_motion()
+        || permit.needs_motion()
+        || predict.needs_motion()
+        || track.is_some()
 }

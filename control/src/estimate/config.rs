@@ -93,6 +93,11 @@ impl Default for EstimateConfig {
 }
 
 impl EstimateConfig {
+    /// Whether the law takes its roll rate from the estimated motion.
+    pub fn needs_motion(&self) -> bool {
+        self.roll_rate == Source::Estimate
+    }
+
     /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let own = |name, min, max| ParamSpec::new("estimate", name, min, max);

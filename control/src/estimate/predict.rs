@@ -27,6 +27,11 @@ impl Default for PredictConfig {
 }
 
 impl PredictConfig {
+    /// Whether the prediction needs the estimated motion.
+    pub fn needs_motion(&self) -> bool {
+        self.lead_s > 0.0
+    }
+
     /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("predict", "lead_s", 0.0, 0.1), &mut self.lead_s);

@@ -82,6 +82,11 @@ pub struct EngagementConfig {
 }
 
 impl EngagementConfig {
+    /// Whether a condition needs the estimated roll angle.
+    pub fn needs_motion(&self) -> bool {
+        self.fallen_rad.is_some() || self.roll_unknown_rad.is_some()
+    }
+
     /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let g = "permit";

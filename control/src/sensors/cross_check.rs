@@ -74,6 +74,15 @@ impl Default for CrossCheckConfig {
 }
 
 impl CrossCheckConfig {
+    /// Whether a check needs the estimated roll angle: those of the wheels, the yaw rate and the roll.
+    pub fn needs_motion(&self) -> bool {
+        self.wheels_m_s.is_some()
+            || self.yaw_rad_s.is_some()
+            || self.yaw_slow_rad_s.is_some()
+            || self.yaw_slope
+            || self.roll_correlation
+    }
+
     /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let g = "cross";

@@ -84,6 +84,11 @@ impl Default for SteerModel {
 }
 
 impl SignCheckConfig {
+    /// Whether a check needs the estimated motion: that of the motor.
+    pub fn needs_motion(&self) -> bool {
+        self.motor.is_some()
+    }
+
     /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.switch(&ParamSpec::switch("response", "gyro"), &mut self.gyro);
