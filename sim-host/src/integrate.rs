@@ -1,23 +1,24 @@
-//! The classical Runge-Kutta method of fourth order with a fixed step.
+//! Fixed-step classical Runge-Kutta method of fourth order: one time step of the equations of motion, from
+//! state and torques to the next state.
 //!
-//! A sampled controller forces a step boundary each control period anyway; at 1 ms the method's
-//! error is near rounding (`docs/performance.md`), so nothing adaptive is needed.
+//! A sampled controller needs a step boundary in each control period. At 1 ms the method's error is near
+//! rounding (`docs/performance.md`), so the step size is not adaptive.
 
 use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques};
 use crate::num::Scalar;
 
-/// What acts on the bicycle during a step.
+/// Source of the torques that act on the bicycle during a time step.
 pub trait Actuation<S> {
-    /// The torques at a motion met inside the step; `stage` 0 is the step's start, 3 its end.
+    /// Torques for the motion at a Runge-Kutta stage; `stage` 0 is the start of the step, 3 its end.
     fn torques(&mut self, b: &Geometry, stage: usize, motion: &Motion<S>) -> Torques<S>;
 
-    /// Tells the accelerations that these torques led to, for what acts with a state of its own and
-    /// takes part in the step by [`Stages`].
+    /// Receives the accelerations that these torques caused. For actuations with their own state, integrated
+    /// alongside by [`Stages`].
     #[inline(always)]
     fn end_stage(&mut self, _: &Geometry, _: usize, _: &State<S>, _: &Motion<S>, _: &Accelerations<S>) {}
 }
 
-/// Torques that stay what they are during the step (zero-order hold).
+/// Torques constant over the time step (zero-order hold).
 impl<S: Scalar> Actuation<S> for Torques<S> {
     #[inline(always)]
     fn torques(&mut self, _: &Geometry, _: usize, _: &Motion<S>) -> Torques<S> {
@@ -25,7 +26,7 @@ impl<S: Scalar> Actuation<S> for Torques<S> {
     }
 }
 
-/// The rate of change of every entry of [`State`], in the same places.
+/// Time derivative of every entry of [`State`], stored in the same fields.
 #[inline(always)]
 pub fn rate<S: Scalar>(state: &State<S>, motion: &Motion<S>, acc: &Accelerations<S>) -> State<S> {
     State {
@@ -38,7 +39,7 @@ pub fn rate<S: Scalar>(state: &State<S>, motion: &Motion<S>, acc: &Accelerations
     }
 }
 
-/// Something with a rate of change.
+/// A state that can be advanced by its time derivative.
 pub trait Moves: Copy {
     /// `self + h * rate`, entry by entry.
     fn moved(&self, h: f64, rate: &Self) -> Self;
@@ -58,32 +59,33 @@ impl<S: Scalar> Moves for State<S> {
     }
 }
 
-/// When the stages of a step are, as parts of it.
+/// Times of the stages, as fractions of the time step.
 pub const STAGES: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
 
-/// The four stages of a step, of the bicycle or of anything that moves with it.
+/// The four stages of a time step, of the bicycle or of any state integrated with it.
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<X> {
     start: X,
-    /// The argument of the present stage; after the last stage of no use.
+    /// State at the current stage; undefined in meaning after the last stage.
     pub at: X,
-    /// After the last stage, the step's end.
+    /// State at the end of the step, complete after the last stage.
     pub end: X,
 }
 
 impl<X: Moves> Stages<X> {
-    /// Before the first stage.
+    /// Before the first stage, from the state at the start of the step.
     #[inline(always)]
     pub fn new(start: X) -> Self {
         Self { start, at: start, end: start }
     }
 
-    /// What the step starts from.
+    /// State at the start of the step.
     pub fn start(&self) -> X {
         self.start
     }
 
-    /// From `stage` to the next one by the rate of change `k` at this one; `h` is the step's length \[s\].
+    /// Advances from `stage` to the next with the time derivative `k` at this stage; `h` is the time step
+    /// \[s\].
     #[inline(always)]
     pub fn next(&mut self, stage: usize, h: f64, k: &X) {
         const AHEAD: [f64; 4] = [0.5, 0.5, 1.0, 0.0];
@@ -93,16 +95,16 @@ impl<X: Moves> Stages<X> {
     }
 }
 
-/// One step of `h` seconds.
+/// One time step of `h` seconds.
 ///
-/// One loop over the four stages, so that the equations of motion stand in the binary once.
+/// Loops over the four stages, so that the binary contains the equations of motion once.
 #[inline(always)]
 pub fn rk4<S: Scalar>(b: &Geometry, state: &State<S>, h: f64, actuation: &mut impl Actuation<S>) -> State<S> {
     let mut stages = Stages::new(*state);
     for stage in 0..STAGES.len() {
         let motion = Motion::new(b, &stages.at);
         if stage == 0 {
-            // The pitch just solved, not the one predicted to get here.
+            // The pitch solved from roll and steer, not the predicted one.
             let pitch = motion.pose.attitude.pitch;
             stages = Stages::new(State { pitch, ..*state });
         }

@@ -1,5 +1,5 @@
-//! The simulator: a nonlinear Whipple bicycle steered by the control crate that is flashed, and
-//! the question it answers: from which disturbances does it recover?
+//! The simulator: a nonlinear Whipple bicycle, steered by the flashed control crate. Computes basins of
+//! attraction: the disturbances from which a ride does not fall.
 
 pub mod basin;
 pub mod bicycle;

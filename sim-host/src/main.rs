@@ -1,4 +1,4 @@
-//! The command line of the simulator.
+//! Entry point of the command line `sim-host`.
 
 fn main() -> std::process::ExitCode {
     sim_host::cli::run()

@@ -1,16 +1,16 @@
-//! The flashed code's parameters by name: what each has for a value, and setting one.
+//! Lists and sets the controller's parameters by name, with values as text.
 
 use control::Config;
 use control::param::{ParamSpec, ParamVisitor};
 
-/// Every parameter but the law's, by name, its value as text that [`set`] takes.
+/// Name and value of every parameter except the law's, in the text form that [`set`] reads.
 pub fn list(config: &Config) -> Vec<(String, String)> {
     let mut lister = Lister(Vec::new());
     config.clone().visit_params(&mut lister);
     lister.0
 }
 
-/// The parameters that differ between two configurations, with `config`'s values.
+/// The parameters in which `config` differs from `from`, with `config`'s values.
 pub fn departing(config: &Config, from: &Config) -> Vec<(String, String)> {
     let both = list(config).into_iter().zip(list(from));
     both.filter(|(a, b)| a != b).map(|(a, _)| a).collect()
@@ -19,7 +19,7 @@ pub fn departing(config: &Config, from: &Config) -> Vec<(String, String)> {
 /// Sets the parameter `key`.
 ///
 /// # Errors
-/// No such parameter; a value that is none or out of range.
+/// An unknown parameter; a value that does not parse or is out of range.
 pub fn set(config: &mut Config, key: &str, value: &str) -> Result<(), String> {
     let mut setter = Setter { key, value, done: None };
     config.visit_params(&mut setter);
@@ -32,7 +32,7 @@ pub fn set(config: &mut Config, key: &str, value: &str) -> Result<(), String> {
     })
 }
 
-/// The three names most like a word.
+/// The three names most similar to `word` (Jaro-Winkler).
 fn nearest(names: impl Iterator<Item = String>, word: &str) -> Vec<String> {
     let mut near: Vec<_> = names.map(|name| (strsim::jaro_winkler(&name, word), name)).collect();
     near.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -43,7 +43,7 @@ fn name(leaf: &ParamSpec) -> String {
     if leaf.group.is_empty() { leaf.name.into() } else { format!("{}.{}", leaf.group, leaf.name) }
 }
 
-/// The names of a switch's values.
+/// Names of a switch's values.
 const SWITCH: &[&str] = &["off", "on"];
 
 struct Setter<'a> {
@@ -53,7 +53,7 @@ struct Setter<'a> {
 }
 
 impl Setter<'_> {
-    /// The value as a number inside the range, if this is the parameter.
+    /// The value as a number inside the range, if `leaf` is the parameter to set.
     fn number(&mut self, leaf: &ParamSpec) -> Option<f32> {
         if name(leaf) != self.key {
             return None;
@@ -65,7 +65,7 @@ impl Setter<'_> {
         checked.ok()
     }
 
-    /// The place of the value among `names`, if this is the parameter.
+    /// Index of the value in `names`, if `leaf` is the parameter to set.
     fn place(&mut self, leaf: &ParamSpec, names: &[&str]) -> Option<u8> {
         if name(leaf) != self.key {
             return None;

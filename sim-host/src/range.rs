@@ -1,9 +1,9 @@
-//! Is a number what it may be.
+//! Range checks of numbers, and parsers of times and time intervals.
 
-/// Accepts `value` from `min` to `max`; NaN never is.
+/// Accepts `value` from `min` to `max`; rejects NaN.
 ///
 /// # Errors
-/// Names the value and the range.
+/// States the name, the value and the range.
 pub(crate) fn within(name: &str, value: f64, min: f64, max: f64) -> Result<(), String> {
     if value >= min && value <= max {
         Ok(())
@@ -12,7 +12,7 @@ pub(crate) fn within(name: &str, value: f64, min: f64, max: f64) -> Result<(), S
     }
 }
 
-/// A number as text: with an exponent where its digits alone would be a line of zeros.
+/// A number as text, with an exponent if very small or very large.
 pub(crate) fn plain(value: f64) -> String {
     if value == 0.0 || !value.is_finite() || (1e-9..1e16).contains(&value.abs()) {
         value.to_string()
@@ -21,10 +21,10 @@ pub(crate) fn plain(value: f64) -> String {
     }
 }
 
-/// A time with its unit, from 0 to `max` \[s\].
+/// Parses a time with its unit, from 0 to `max` \[s\].
 ///
 /// # Errors
-/// Names the text and what was expected.
+/// States the text and the expected form.
 pub(crate) fn time(text: &str, max: f64) -> Result<f64, String> {
     let wrong =
         || format!("`{text}` is not a time; expected a number with its unit, for example 20ms or 0.02s");
@@ -36,13 +36,13 @@ pub(crate) fn time(text: &str, max: f64) -> Result<f64, String> {
     if (0.0..=max).contains(&value) { Ok(value) } else { Err(format!("{text} is outside 0 s to {max} s")) }
 }
 
-/// Latest time of a ride that something can begin or end at \[s\].
+/// Latest time in a ride at which an event can begin or end \[s\].
 const LATEST_S: f64 = 3600.0;
 
-/// From when to when, `FROM[..TO]`; without an end it is infinite \[s\].
+/// Parses a time interval `FROM[..TO]`; without TO its end is infinite \[s\].
 ///
 /// # Errors
-/// Names the text and what was expected.
+/// States the text and the expected form.
 pub(crate) fn span(text: &str) -> Result<(f64, f64), String> {
     let (from, to) = text.split_once("..").map_or((text, None), |(from, to)| (from, Some(to)));
     let from_s = time(from, LATEST_S)?;

@@ -1,5 +1,5 @@
-//! The gains with which `control::law::path_tracking` follows a path: the linear-quadratic regulator of the linear
-//! bicycle that the law keeps upright.
+//! Gains of `control::law::path_tracking`, from bicycle, speed, law gain and weights: the linear-quadratic
+//! regulator of the linearised bicycle stabilised by the law.
 
 use crate::bicycle::Parameters;
 use crate::bicycle::linear::Linear;
@@ -8,20 +8,21 @@ use nalgebra::{Matrix1, RowSVector, SMatrix, SVector};
 const N: usize = 7;
 type Square = SMatrix<f64, N, N>;
 
-/// What is weighed against each other: the integral of the weights' sum of squares is made smallest.
+/// Weights of the quadratic cost: the integral of the weighted squares is minimised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
-    /// Of a lateral error of 1 m.
+    /// Weight of a lateral deviation of 1 m.
     pub lateral: f64,
-    /// Of its integral of 1 m s.
+    /// Weight of its integral of 1 m s.
     pub integral: f64,
-    /// Of a torque of 1 N m.
+    /// Weight of a torque of 1 N m.
     pub torque: f64,
 }
 
 impl Default for Weights {
-    /// 1 m is worth 1 N m, so half a metre is ridden away with a small part of the torque that balance
-    /// may need. The integral's weight is a fiftieth: it is slow against the way back to the path.
+    /// 1 m weighs as much as 1 N m: a deviation of half a metre is corrected with a small part of the torque
+    /// that balance may need. The integral has a fiftieth of the weight: it acts slowly compared with the
+    /// return to the path.
     fn default() -> Self {
         Self { lateral: 1.0, integral: 0.02, torque: 1.0 }
     }
@@ -30,10 +31,10 @@ impl Default for Weights {
 /// Control period of the design \[s\].
 const PERIOD_S: f64 = 1e-3;
 
-/// The bicycle on a straight path: state matrix and the effect of a steer torque \[N m\].
+/// The linearised bicycle on a straight path: state matrix, and input vector of the steer torque \[N m\].
 ///
-/// The state is roll, steer, their rates, heading error, lateral error of the rear contact, and its
-/// integral; yaw rate is `(v steer + c steer rate) cos(lam) / w` (Meijaard et al. 2007, eq. B7).
+/// The state is roll, steer, their rates, heading error, lateral deviation of the rear contact, and its
+/// integral. Yaw rate is `(v steer + c steer rate) cos(lam) / w` (Meijaard et al. 2007, eq. B7).
 pub fn on_path(p: &Parameters, v: f64, law_gain: f64) -> (Square, SVector<f64, N>) {
     let linear = Linear::new(p);
     let mut a = Square::zeros();
@@ -48,13 +49,13 @@ pub fn on_path(p: &Parameters, v: f64, law_gain: f64) -> (Square, SVector<f64, N
     (a, b)
 }
 
-/// The gains at a speed \[m/s\]: the torque is minus their product with the state of [`on_path`].
+/// Feedback gains at a speed \[m/s\]: the torque is minus their product with the state of [`on_path`].
 ///
-/// Sampled at 1 kHz with the torque held; the Riccati equation by structure-preserving doubling (Chu, Fan, Lin
-/// and Wang 2004), which squares its error in each turn.
+/// Discretised at 1 kHz with zero-order hold. The Riccati equation is solved by structure-preserving doubling
+/// (Chu, Fan, Lin and Wang 2004), which converges quadratically.
 pub fn gains(p: &Parameters, v: f64, law_gain: f64, weights: &Weights) -> RowSVector<f64, N> {
     let (a, b) = on_path(p, v, law_gain);
-    // Both at once: the exponential of [[a, b], [0, 0]].
+    // Discretises a and b together: the exponential of [[a, b], [0, 0]].
     let mut both = SMatrix::<f64, 8, 8>::zeros();
     both.fixed_view_mut::<N, N>(0, 0).copy_from(&(a * PERIOD_S));
     both.fixed_view_mut::<N, 1>(0, N).copy_from(&(b * PERIOD_S));

@@ -1,16 +1,15 @@
-//! The forces that inertia and gravity exert while the independent speeds are constant:
-//! centripetal, gyroscopic, and what the constraints add. `docs/bicycle.md`, section 6.
+//! Bias forces: inertial and gravity forces at constant independent speeds (centripetal, gyroscopic, from the
+//! constraints). `docs/bicycle.md`, section 6.
 
 use super::inertia::{Inertia, Momenta};
 use super::motion::Contact;
 use super::{Geometry, Gyrostat, Pose, Velocities};
 use crate::num::{Scalar, Vec3};
 
-/// Force and moments that must act on the bicycle to move it with zero independent accelerations
-/// against gravity, and the acceleration that the front contact has without pitch, yaw and front
-/// wheel acceleration.
+/// Two results: the forces and moments needed to move the bicycle against gravity with zero independent
+/// accelerations; and the acceleration of the front contact without pitch, yaw and front wheel acceleration.
 ///
-/// With `contact`, these three accelerations are what cancels it; without, they are zero too.
+/// With `contact`, these three accelerations cancel that of the front contact; without, they are zero.
 #[inline(always)]
 pub(super) fn bias<S: Scalar>(
     b: &Geometry,
@@ -24,7 +23,7 @@ pub(super) fn bias<S: Scalar>(
     let w = v.omega;
     let wf = Vec3::new(w.x, w.y, w.z + v.steer);
 
-    // Rates of directions, seen from the ground. e1 and e3 turn with roll and yaw only.
+    // Time derivatives of the directions in the inertial frame. e1 and e3 turn with roll and yaw only.
     let w2 = w.y - v.pitch;
     let e1_dot = Vec3::new(sr * st * v.yaw, cr * v.yaw, -(sr * ct * v.yaw));
     let u2_dot = Vec3::new(-w.z, zero, w.x);
@@ -57,7 +56,7 @@ pub(super) fn bias<S: Scalar>(
     let mut alpha = alpha_free + p.k.times(yaw);
     alpha.y = alpha.y + pitch;
     let alpha_f = Vec3::new(alpha.x + w.y * v.steer, alpha.y - w.x * v.steer, alpha.z);
-    // P's acceleration; gravity is the same as accelerating upwards.
+    // Acceleration of P; gravity acts like an upward acceleration.
     let mut axle = e1_dot.times(v.rolling * -b.rR) + u2_dot.times(v.roll * b.rR) - p.k.scaled(b.g);
     let along = alpha.y * -b.rR;
     axle.x = axle.x + p.e1.x * along;
@@ -98,7 +97,7 @@ fn swing<S: Scalar>(alpha: Vec3<S>, w: Vec3<S>, [x, z]: [f64; 2]) -> Vec3<S> {
     Vec3::new(alpha.y * z, alpha.z * x - alpha.x * z, -(alpha.y * x)) + w.cross(velocity)
 }
 
-/// The inertia about its origin, times a vector.
+/// Product of the inertia about the origin and a vector.
 #[inline(always)]
 fn turned<S: Scalar>(body: &Gyrostat, a: Vec3<S>) -> Vec3<S> {
     let [i11, i22, i33, i13] = body.about_origin;

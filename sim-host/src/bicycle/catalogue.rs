@@ -1,4 +1,4 @@
-//! Bicycles by name or from files: one flat set a file, or `FILE#NAME` of a collection.
+//! Loads bicycles by name or from files: one flat set per file, or `FILE#NAME` of a collection.
 
 use super::combine::{self, number, packaged};
 use super::extras::{is_extra, left_out, unknown_body};
@@ -8,35 +8,35 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use toml::{Table, Value};
 
-/// The sets that ship, a collection.
+/// The shipped sets, a collection.
 const SHIPPED: &str = include_str!("../../../data/bicycles.toml");
-/// Where the shipped sets come from, for messages.
+/// File of the shipped sets, for messages.
 const SHIPPED_FILE: &str = "data/bicycles.toml";
-/// The form of a set's file that is read.
+/// Supported schema version of a set's file.
 const SCHEMA: i64 = 1;
 /// Keys of a set that are not parameters.
 const EXTRA_KEYS: [&str; 4] = ["source", "note", "rider_included", "schema"];
 
-/// A parameter set with its origin.
+/// A parameter set and its origin.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Bicycle {
-    /// Its name, or `FILE` or `FILE#NAME` as given.
+    /// Name, or `FILE` or `FILE#NAME` as given.
     pub name: String,
-    /// Where the values come from, as the file says.
+    /// Origin of the values, from the file.
     pub source: Option<String>,
-    /// A remark of the file's.
+    /// Remark from the file.
     pub note: Option<String>,
-    /// Whether a rider's body is part of the rear frame; `None` if the file does not say.
+    /// Whether the rear frame includes a rider's body; `None` if the file does not state it.
     pub rider_included: Option<bool>,
-    /// What is doubtful about the values, but not refused.
+    /// Doubtful but accepted values.
     pub warnings: Vec<String>,
-    /// The values with their uncertainties, if there are any.
+    /// The values with their uncertainties, if the file has any.
     pub measured: Option<Measured>,
     /// The values.
     pub parameters: Parameters,
 }
 
-/// Why there is no such bicycle.
+/// Reason why a bicycle cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum BicycleError {
     /// Neither a shipped name nor a file.
@@ -52,10 +52,10 @@ pub enum BicycleError {
     Read {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The operating system's error.
         source: std::io::Error,
     },
-    /// The file is not of its format.
+    /// The file's syntax is wrong.
     #[error("{path} {reason}")]
     Syntax {
         /// The file.
@@ -63,15 +63,15 @@ pub enum BicycleError {
         /// The parser's message, with line and column.
         reason: String,
     },
-    /// The file has several sets, or not the one asked for.
+    /// The file has several sets, and no or an unknown name was given.
     #[error("{path} holds several sets; choose one with {path}#NAME, NAME one of {known}")]
     Collection {
         /// The file.
         path: PathBuf,
-        /// Its sets.
+        /// Names of its sets.
         known: String,
     },
-    /// A set is wrong.
+    /// A set has a wrong value or key.
     #[error("{set}: {reason}")]
     Set {
         /// The file, and the set's name in a collection.
@@ -81,18 +81,18 @@ pub enum BicycleError {
     },
 }
 
-/// The shipped sets' names, in the file's order.
+/// Names of the shipped sets, in the file's order.
 pub fn shipped_names() -> Vec<String> {
     let sets = parse(SHIPPED, Path::new(SHIPPED_FILE)).unwrap_or_default();
     sets.iter().filter(|(_, v)| v.is_table()).map(|(name, _)| name.clone()).collect()
 }
 
-/// A bicycle by `name`: a shipped set, a `FILE` (`-` is standard input), a `FILE#NAME` (the name of a file may have a `#`
-/// itself), a folder of BicycleParameters' `data/bicycles`, or one of these with a rider's body, `BICYCLE+RIDER`
-/// ([`combine`]).
+/// Loads a bicycle by `name`: a shipped set, a `FILE` (`-` is standard input), a `FILE#NAME` (the file's name
+/// may contain a `#`), a folder of BicycleParameters' `data/bicycles`, or one of these with a rider's body,
+/// `BICYCLE+RIDER` ([`combine`]).
 ///
 /// # Errors
-/// Names file, key, value and allowed range.
+/// States file, key, value and allowed range.
 pub fn load(name: &str) -> Result<Bicycle, BicycleError> {
     if let Some((bicycle, rider)) = combine::split(name) {
         return combine::load_with(name, bicycle, rider);
@@ -116,7 +116,7 @@ pub fn load(name: &str) -> Result<Bicycle, BicycleError> {
 fn from_file(name: &str, path: &Path, set: Option<&str>) -> Result<Bicycle, BicycleError> {
     let text = read(path)?;
     let mut bicycle = from_text(name, &text, path, set)?;
-    // A file that was cut within its last number is a file all the same.
+    // A file truncated within its last number still parses.
     if text.ends_with(|c: char| c.is_ascii_digit() || c == '.') {
         bicycle.warnings.push("the file's last line has no end; if it was cut, so was its last value".into());
     }
@@ -127,7 +127,7 @@ fn read(path: &Path) -> Result<String, BicycleError> {
     std::fs::read_to_string(path).map_err(|source| BicycleError::Read { path: path.into(), source })
 }
 
-/// All of standard input, read once: a sweep's cells share it.
+/// All of standard input, read once and shared by a sweep's cells.
 fn standard_input() -> Result<String, BicycleError> {
     static TEXT: Mutex<Option<String>> = Mutex::new(None);
     let mut text = TEXT.lock().unwrap_or_else(PoisonError::into_inner);
@@ -139,7 +139,7 @@ fn standard_input() -> Result<String, BicycleError> {
     Ok(text.insert(all).clone())
 }
 
-/// Checks what is not a parameter.
+/// Checks the keys that are not parameters.
 fn check_remarks(values: &Table) -> Result<(), String> {
     for (key, kind) in [("source", "string"), ("note", "string"), ("rider_included", "boolean")] {
         if let Some(value) = values.get(key).filter(|value| value.type_str() != kind) {
@@ -156,12 +156,12 @@ fn parse(text: &str, path: &Path) -> Result<Table, BicycleError> {
     formats::table(text, path).map_err(|reason| BicycleError::Syntax { path: path.into(), reason })
 }
 
-/// A file as a table.
+/// Reads a file as a table.
 pub(super) fn read_table(path: &Path) -> Result<Table, BicycleError> {
     parse(&read(path)?, path)
 }
 
-/// A bicycle from a file's text; `set` names one of a collection.
+/// A bicycle from a file's text; `set` is the name of a set in a collection.
 ///
 /// # Errors
 /// As [`load`].
@@ -187,20 +187,20 @@ pub fn from_text(name: &str, text: &str, path: &Path, set: Option<&str>) -> Resu
         .keys()
         .find(|k| !KEYS.contains(&k.as_str()) && !EXTRA_KEYS.contains(&k.as_str()) && !is_extra(k))
     {
-        let why = unknown_body(key).unwrap_or(format!("unknown key `{key}`"));
-        return Err(wrong(format!("{why}; the parameters are {}", KEYS.join(", "))));
+        let error = unknown_body(key).unwrap_or(format!("unknown key `{key}`"));
+        return Err(wrong(format!("{error}; the parameters are {}", KEYS.join(", "))));
     }
     check_remarks(values).map_err(wrong)?;
     let mut bicycle = Vec::new();
     for key in KEYS {
         let value = values.get(key).ok_or_else(|| wrong(missing(values, key)))?;
-        bicycle.push(number(value).map_err(|why| wrong(format!("`{key}` {why}")))?);
+        bicycle.push(number(value).map_err(|error| wrong(format!("`{key}` {error}")))?);
     }
     let measured = Measured { bicycle, rider: None };
     let parameters = measured.parameters();
     let mut warnings = check::check(&parameters).map_err(wrong)?;
-    let (doubts, left_out) = left_out(values).map_err(wrong)?;
-    warnings.extend(doubts);
+    let (extra_warnings, left_out) = left_out(values).map_err(wrong)?;
+    warnings.extend(extra_warnings);
     let text = |key: &str| values.get(key).and_then(Value::as_str).map(str::to_owned);
     let note: Vec<String> = text("note").into_iter().chain(left_out).collect();
     Ok(Bicycle {
@@ -214,7 +214,7 @@ pub fn from_text(name: &str, text: &str, path: &Path, set: Option<&str>) -> Resu
     })
 }
 
-/// What to do about a key that is missing.
+/// Error text for a missing key.
 fn missing(values: &Table, key: &str) -> String {
     let riders = values.keys().all(|k| combine::RIDER_KEYS.contains(&k.as_str()));
     let hint = if riders && !values.is_empty() {

@@ -1,10 +1,10 @@
-//! Could such a bicycle exist: ranges of the parameters, inertias of real bodies.
+//! Checks that a bicycle is physically possible: ranges of the parameters, inertias of rigid bodies.
 
 use super::{KEYS, Parameters};
 use crate::range::plain;
 use std::f64::consts::FRAC_PI_2;
 
-/// A steer axis tilted more than that \[rad\], 54 degrees, is more likely a head angle; recumbents have up to 40.
+/// A steer axis tilt above this \[rad\] (54 degrees) is probably a head angle; recumbents reach 40.
 const STEEPEST_RAD: f64 = 0.95;
 
 /// Unit and allowed range of each parameter, in the order of [`KEYS`].
@@ -37,18 +37,18 @@ const RANGES: [(&str, f64, f64); 26] = [
     ("kg m^2", 1e-9, 100.0),
 ];
 
-/// What a parameter must be: unit and range.
+/// Unit and range of a parameter, as text.
 pub(super) fn describe(key: &str) -> String {
     let Some(i) = KEYS.iter().position(|k| *k == key) else { return String::new() };
     let (unit, min, max) = RANGES[i];
     format!("it must be a number from {min} to {max} {unit}")
 }
 
-/// Doubts about the parameters.
+/// Checks the parameters; returns warnings about doubtful values.
 ///
 /// # Errors
-/// The reason why no such bicycle exists: a value outside its range (NaN is), or an inertia matrix
-/// that is not positive definite.
+/// The reason why no such bicycle exists: a value outside its range or NaN, or an inertia matrix that is not
+/// positive definite.
 pub(super) fn check(p: &Parameters) -> Result<Vec<String>, String> {
     for (key, value) in KEYS.iter().zip(p.to_values()) {
         let (_, min, max) = RANGES[KEYS.iter().position(|k| k == key).unwrap_or_default()];

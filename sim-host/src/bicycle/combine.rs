@@ -1,4 +1,4 @@
-//! A bicycle and a rider's body from files of their own, found by name and put together as the Python package
+//! Combines a bicycle with a rider's body from a separate file, found by name, as the Python package
 //! BicycleParameters does (`combine_bike_rider`).
 
 use super::Parameters;
@@ -7,16 +7,18 @@ use super::uncertain::{Measured, Uncertain};
 use std::path::{Path, PathBuf};
 use toml::Value;
 
-/// The keys of a rider's body in the bicycle's axes: mass \[kg\], centre of mass \[m\], inertia about it \[kg m^2\].
+/// Keys of a rider's body, in the bicycle's axes: mass \[kg\], centre of mass \[m\], inertia about the centre
+/// of mass \[kg m^2\].
 pub const RIDER_KEYS: [&str; 8] = ["mB", "xB", "yB", "zB", "IBxx", "IBxz", "IByy", "IBzz"];
 
-/// `BICYCLE+RIDER`, if `name` is that and no file of its own.
+/// Splits `BICYCLE+RIDER`; `None` if `name` has another form or is an existing file.
 pub(super) fn split(name: &str) -> Option<(&str, &str)> {
     let parts = name.rsplit_once('+').filter(|(bicycle, rider)| !bicycle.is_empty() && !rider.is_empty());
     parts.filter(|_| !Path::new(name).exists())
 }
 
-/// The file of a bicycle's folder in the package's `data/bicycles`: `Rigid` is `Rigid/Parameters/RigidBenchmark.txt`.
+/// File of a bicycle's folder in the package's `data/bicycles`: for `Rigid`,
+/// `Rigid/Parameters/RigidBenchmark.txt`.
 pub(super) fn packaged(path: &Path) -> PathBuf {
     match path.file_name().filter(|_| path.is_dir()) {
         Some(name) => path.join("Parameters").join(format!("{}Benchmark.txt", name.to_string_lossy())),
@@ -24,8 +26,8 @@ pub(super) fn packaged(path: &Path) -> PathBuf {
     }
 }
 
-/// The rider's file: `rider` itself, or by name beside the bicycle's file as the package has it,
-/// `riders/Jason/Parameters/JasonRigidBenchmark.txt` beside `bicycles/Rigid/Parameters/RigidBenchmark.txt`.
+/// The rider's file: `rider` itself, or found by name next to the bicycle's file, as in the package:
+/// `riders/Jason/Parameters/JasonRigidBenchmark.txt` next to `bicycles/Rigid/Parameters/RigidBenchmark.txt`.
 fn rider_file(bicycle: &str, rider: &str) -> PathBuf {
     if Path::new(rider).is_file() {
         return rider.into();
@@ -37,10 +39,10 @@ fn rider_file(bicycle: &str, rider: &str) -> PathBuf {
     data.join("riders").join(rider).join("Parameters").join(format!("{rider}{name}Benchmark.txt"))
 }
 
-/// The bicycle of a file with a rider's body of another.
+/// Loads a bicycle and adds a rider's body from a second file.
 ///
 /// # Errors
-/// As of [`load`], for either file.
+/// As [`load`], for either file.
 pub(super) fn load_with(name: &str, bicycle: &str, rider: &str) -> Result<Bicycle, BicycleError> {
     let base = load(bicycle)?;
     let path = rider_file(bicycle, rider);
@@ -52,10 +54,10 @@ pub(super) fn load_with(name: &str, bicycle: &str, rider: &str) -> Result<Bicycl
     let mut body = Vec::new();
     for key in RIDER_KEYS {
         let value = table.get(key);
-        // The plane of symmetry.
+        // yB is optional: zero in the plane of symmetry.
         let value = value.cloned().or((key == "yB").then_some(Value::Float(0.0)));
         let value = value.ok_or_else(|| wrong(format!("`{key}` is missing")))?;
-        body.push(number(&value).map_err(|why| wrong(format!("`{key}`: {why}")))?);
+        body.push(number(&value).map_err(|error| wrong(format!("`{key}`: {error}")))?);
     }
     check_body(&body).map_err(wrong)?;
     if base.rider_included == Some(true) {
@@ -82,10 +84,10 @@ pub(super) fn load_with(name: &str, bicycle: &str, rider: &str) -> Result<Bicycl
     })
 }
 
-/// A number of a file, with or without uncertainty.
+/// A number from a file, with or without uncertainty.
 ///
 /// # Errors
-/// What else it is.
+/// The value is not a number; states its type.
 pub(super) fn number(value: &Value) -> Result<Uncertain, String> {
     match value {
         Value::Float(x) => Ok(Uncertain::exact(*x)),
@@ -114,14 +116,14 @@ fn check_body(body: &[Uncertain]) -> Result<(), String> {
     Ok(())
 }
 
-/// The bicycle with a rider's body (in the order of [`RIDER_KEYS`]) rigidly on its rear frame.
+/// The bicycle with a rider's body (in the order of [`RIDER_KEYS`]) fixed to its rear frame.
 pub fn combined(bicycle: &Parameters, rider: &[f64; RIDER_KEYS.len()]) -> Parameters {
     let p = *bicycle;
     let [m, x, y, z, xx, xz, yy, zz] = *rider;
     let mass = m + p.mB;
     let middle = |rider: f64, frame: f64| (m * rider + p.mB * frame) / mass;
     let (cx, cy, cz) = (middle(x, p.xB), middle(y, 0.0), middle(z, p.zB));
-    // Parallel axes; the frame's centre is taken in the plane y = 0 of the whole, as the package does.
+    // Parallel-axis theorem; the frame's centre is taken in the plane y = 0 of the whole, as in the package.
     let (r, f) = ((x - cx, y - cy, z - cz), (p.xB - cx, 0.0, p.zB - cz));
     let sum = |of: fn((f64, f64, f64)) -> f64| m * of(r) + p.mB * of(f);
     Parameters {

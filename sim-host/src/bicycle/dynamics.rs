@@ -1,5 +1,5 @@
-//! Accelerations and energy: d'Alembert's principle projected on the partial velocities (Kane's
-//! equations). The derivation is `docs/bicycle.md`.
+//! Accelerations and energy from motion and torques: d'Alembert's principle projected on the partial
+//! velocities (Kane's equations). Derivation: `docs/bicycle.md`.
 
 use super::bias::bias;
 use super::inertia::Inertia;
@@ -9,10 +9,10 @@ use crate::num::Scalar;
 /// Applied torques \[N m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torques<S> {
-    /// On the rear frame about the horizontal heading line through the rear contact, right positive:
-    /// its virtual power is `roll * roll_rate`.
+    /// On the rear frame about the horizontal heading line through the rear contact, right positive. Its
+    /// virtual power is `roll * roll_rate`.
     pub roll: S,
-    /// From the rear on the front frame about the steer axis, to the right positive.
+    /// Between rear and front frame about the steer axis, on the front frame to the right positive.
     pub steer: S,
 }
 
@@ -44,8 +44,8 @@ impl<S: Scalar> Motion<S> {
         Accelerations { roll, steer, rear_wheel }
     }
 
-    /// Kinetic plus potential energy \[J\]; the potential is zero with the centres of mass at ground
-    /// height.
+    /// Kinetic plus potential energy \[J\]; the potential energy is zero when the centres of mass are at
+    /// ground height.
     pub fn energy(&self, b: &Geometry, state: &State<S>) -> S {
         let inertia = Inertia::new(b, &self.pose);
         let [m11, m12, m13, m22, m23, m33] = inertia.mass(b, &self.pose, &self.partial);
@@ -57,7 +57,7 @@ impl<S: Scalar> Motion<S> {
     }
 }
 
-/// Solves the symmetric positive-definite system by elimination without pivoting, the wheel first.
+/// Solves the symmetric positive-definite system by elimination without pivoting, rear wheel first.
 #[inline(always)]
 fn solve<S: Scalar>(&[a11, a12, a13, a22, a23, a33]: &[S; 6], [r1, r2, r3]: [S; 3]) -> [S; 3] {
     let one = S::constant(1.0);

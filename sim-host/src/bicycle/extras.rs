@@ -1,17 +1,18 @@
-//! Keys that files of BicycleParameters have and the model has not: held against the model's own, then left out.
+//! Keys of BicycleParameters' files that the model does not use: checked against the model's values, then
+//! left out.
 
 use super::combine::number;
 use super::uncertain::Uncertain;
 use toml::Table;
 
-/// The letters of the model's bodies: rear wheel, rear frame, handlebar and fork, front wheel.
+/// Letters of the model's bodies: rear wheel, rear frame, handlebar and fork, front wheel.
 const BODIES: &str = "RBHF";
-/// Bodies that are parts of H: handlebar and fork by themselves.
+/// Bodies that are parts of H: handlebar and fork separately.
 const PARTS_OF_H: [char; 2] = ['G', 'S'];
-/// How far a body's centre may be from the plane of symmetry \[m\].
+/// Largest distance of a body's centre from the plane of symmetry \[m\].
 const PLANE_M: f64 = 1e-3;
 
-/// The letter of the body that `key` is about: `IGxx`, `mG`, `xG`.
+/// Letter of the body in `key`: G in `IGxx`, `mG`, `xG`.
 fn body(key: &str) -> Option<char> {
     let letters: Vec<char> = key.chars().collect();
     match letters[..] {
@@ -22,12 +23,12 @@ fn body(key: &str) -> Option<char> {
     .filter(char::is_ascii_uppercase)
 }
 
-/// Whether a key is of this kind.
+/// Whether a key is one of these.
 pub(super) fn is_extra(key: &str) -> bool {
     matches!(key, "IRzz" | "IFzz" | "yB" | "yH" | "v") || body(key).is_some_and(|b| PARTS_OF_H.contains(&b))
 }
 
-/// What a key that is neither the model's nor of this kind is about, if it is another body's.
+/// Error text for a key of a body that the model does not have.
 pub(super) fn unknown_body(key: &str) -> Option<String> {
     let body = body(key).filter(|b| !BODIES.contains(*b))?;
     Some(format!(
@@ -35,13 +36,13 @@ pub(super) fn unknown_body(key: &str) -> Option<String> {
     ))
 }
 
-/// Doubts from the keys that are left out, and what of them is to be said.
+/// Warnings from the unused keys, and a remark that lists them.
 ///
 /// # Errors
-/// When they contradict the model's own values.
+/// A value contradicts the model's own.
 pub(super) fn left_out(table: &Table) -> Result<(Vec<String>, Option<String>), String> {
     let get = |key: &str| match table.get(key) {
-        Some(value) => number(value).map(Some).map_err(|why| format!("`{key}`: {why}")),
+        Some(value) => number(value).map(Some).map_err(|error| format!("`{key}`: {error}")),
         None => Ok(None),
     };
     let mut warnings = Vec::new();
@@ -65,15 +66,18 @@ pub(super) fn left_out(table: &Table) -> Result<(Vec<String>, Option<String>), S
     if let (Some(g), Some(s), Some(h)) = masses {
         let parts = Uncertain { value: g.value + s.value, sd: libm::hypot(g.sd, s.sd) };
         if apart(parts, h) {
-            let why = "G and S are taken as the parts of H, and are not";
-            return Err(format!("mG = {} and mS = {} kg, but mH = {} kg: {why}", g.value, s.value, h.value));
+            let error = "G and S are taken as the parts of H, and are not";
+            return Err(format!(
+                "mG = {} and mS = {} kg, but mH = {} kg: {error}",
+                g.value, s.value, h.value
+            ));
         }
     }
     let keys: Vec<&str> = table.keys().map(String::as_str).filter(|key| is_extra(key)).collect();
     Ok((warnings, (!keys.is_empty()).then(|| format!("not used: {}", keys.join(", ")))))
 }
 
-/// Whether two numbers differ by more than 3 standard deviations, or 1e-6 of them.
+/// Whether two numbers differ by more than 3 standard deviations, or by a relative 1e-6.
 fn apart(a: Uncertain, b: Uncertain) -> bool {
     (a.value - b.value).abs() > (3.0 * libm::hypot(a.sd, b.sd)).max(1e-6 * a.value.abs())
 }

@@ -1,14 +1,15 @@
-//! Files of bicycles by their ending: `.txt` and `.ini` as BicycleParameters writes them, sets in YAML or JSON, TOML otherwise.
+//! Parses bicycle files by their extension: `.txt` and `.ini` as written by BicycleParameters, sets in YAML
+//! or JSON, otherwise TOML.
 
 use super::uncertain::Uncertain;
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// A file's text as a table of TOML.
+/// A file's text as a TOML table.
 ///
 /// # Errors
-/// What is wrong, with its line.
+/// States the fault and its line.
 pub(super) fn table(text: &str, path: &Path) -> Result<Table, String> {
     let ending = path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase());
     match ending.as_str() {
@@ -25,8 +26,8 @@ pub(super) fn table(text: &str, path: &Path) -> Result<Table, String> {
 
 /// A JSON value as a TOML value; `None` for null.
 ///
-/// Written out because serde_json 1.0's feature `arbitrary_precision`, which another crate of a build may turn on, makes every
-/// number a map to any type but its own.
+/// Written out because another crate in a build may enable serde_json 1.0's feature `arbitrary_precision`. It
+/// turns every number into a map for any type except serde_json's own.
 fn of_json(value: serde_json::Value) -> Option<Value> {
     use serde_json::Value as Json;
     match value {
@@ -42,11 +43,12 @@ fn of_json(value: serde_json::Value) -> Option<Value> {
     }
 }
 
-fn invalid(format: &str, why: &dyn std::fmt::Display) -> String {
-    format!("is not valid {format}: {}", why.to_string().trim())
+fn invalid(format: &str, error: &dyn std::fmt::Display) -> String {
+    format!("is not valid {format}: {}", error.to_string().trim())
 }
 
-/// Lines `KEY = VALUE`, values as `1.12` or `1.12+/-0.02`, several with commas being averaged; `#` begins a remark.
+/// Lines `KEY = VALUE`, values as `1.12` or `1.12+/-0.02`; comma-separated values are averaged; `#` begins a
+/// comment.
 fn lines(text: &str) -> Result<Table, String> {
     let mut table = Table::new();
     for (n, line) in text.lines().enumerate() {
@@ -54,9 +56,9 @@ fn lines(text: &str) -> Result<Table, String> {
         if line.is_empty() {
             continue;
         }
-        let wrong = |why: &str| format!("line {}: `{line}`: {why}", n + 1);
+        let wrong = |error: &str| format!("line {}: `{line}`: {error}", n + 1);
         let (key, values) = line.split_once('=').ok_or_else(|| wrong("expected KEY = VALUE"))?;
-        let value = mean(values).map_err(|why| wrong(&why))?;
+        let value = mean(values).map_err(|error| wrong(&error))?;
         if table.insert(key.trim().into(), value).is_some() {
             return Err(wrong("the key is listed twice"));
         }
@@ -76,10 +78,11 @@ fn mean(list: &str) -> Result<Value, String> {
     Ok(if sd > 0.0 { Value::String(format!("{value:?}+/-{sd:?}")) } else { Value::Float(value) })
 }
 
-/// The names of the model's 26 parameters as a set: in BicycleParameters' test sets, and in what it writes.
+/// Names for the model's 26 parameters as a set: in BicycleParameters' test sets, and in its output.
 const PARAMETERIZATIONS: [&str; 2] = ["benchmark", "Meijaard2007"];
 
-/// A mapping of keys to numbers, flat or below `values` with one of [`PARAMETERIZATIONS`] beside it. What is null is not there.
+/// A mapping of keys to numbers, either flat or under `values` next to one of [`PARAMETERIZATIONS`]. Null
+/// values are ignored.
 fn set(all: BTreeMap<String, Option<Value>>) -> Result<Table, String> {
     let mut table: Table = all.into_iter().filter_map(|(key, value)| Some((key, value?))).collect();
     let Some(values) = table.remove("values") else { return Ok(table) };

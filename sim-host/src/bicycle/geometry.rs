@@ -1,5 +1,5 @@
-//! What the equations of motion need of the parameters: lengths along and across the steer axis,
-//! and each wheel lumped with the frame it turns in.
+//! Constants of the equations of motion, from the parameters: lengths along and across the steer axis, and
+//! each wheel combined with its frame.
 #![allow(non_snake_case, reason = "the symbols of the paper")]
 
 use super::Parameters;
@@ -7,13 +7,13 @@ use crate::num::sin_cos;
 
 /// A frame with its wheel: one rigid body, plus the wheel's spin about its axle.
 ///
-/// A wheel is symmetric about its axle, so turning it changes neither the centre of mass nor the
-/// inertia; only the angular momentum `spin_inertia * spin` is added.
+/// A wheel is symmetric about its axle, so its rotation changes neither centre of mass nor inertia. It only
+/// adds the angular momentum `spin_inertia * spin`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gyrostat {
     /// Mass of frame and wheel \[kg\].
     pub mass: f64,
-    /// Centre of mass along the steer axis' perpendicular (forward) and along the axis (down) \[m\].
+    /// Centre of mass \[m\]: across the steer axis (forward) and along it (down).
     pub com: [f64; 2],
     /// Inertia about the centre of mass: 11, 22, 33, 13 in the steer-axis frame \[kg m^2\].
     pub inertia: [f64; 4],
@@ -21,7 +21,7 @@ pub struct Gyrostat {
     pub spin_inertia: f64,
     /// Mass times `com` \[kg m\].
     pub moment: [f64; 2],
-    /// Inertia about the point `com` is measured from \[kg m^2\]: 11, 22, 33, 13.
+    /// Inertia about the reference point of `com` \[kg m^2\]: 11, 22, 33, 13.
     pub about_origin: [f64; 4],
 }
 
@@ -51,9 +51,9 @@ pub struct Geometry {
     pub rear: Gyrostat,
     /// Front frame with front wheel; `com` is measured from the steer axis, at P's height along it.
     pub front: Gyrostat,
-    /// Inertia of a motor's rotor seen at the steer axis, the gear's ratio squared times its own \[kg m^2\]. It adds to
-    /// the steer's in the mass matrix; what couples the rotor to the frame's own turning is the ratio times smaller, and
-    /// left out. [`Self::new`] has none.
+    /// Inertia of a motor's rotor reflected to the steer axis: gear ratio squared times its own \[kg m^2\].
+    /// Added to the steer entry of the mass matrix. Its coupling to the rotation of the frame is smaller by
+    /// the gear ratio and neglected. [`Self::new`] sets 0.
     pub rotor_kg_m2: f64,
 }
 
@@ -92,7 +92,7 @@ impl Geometry {
     }
 }
 
-/// Inertia (xx, yy, zz, xz) in axes turned by the steer axis tilt about y.
+/// Inertia (xx, yy, zz, xz) in axes rotated by the steer axis tilt about y.
 fn tilt([xx, yy, zz, xz]: [f64; 4], s: f64, c: f64) -> [f64; 4] {
     [
         xx * c * c - 2.0 * xz * s * c + zz * s * s,
@@ -102,13 +102,13 @@ fn tilt([xx, yy, zz, xz]: [f64; 4], s: f64, c: f64) -> [f64; 4] {
     ]
 }
 
-/// A wheel (mass, centre, inertia across and about the axle) and a frame (mass, centre, inertia)
-/// as one body.
+/// Combines a wheel (mass, centre, inertia across and about the axle) and a frame (mass, centre, inertia)
+/// into one body.
 fn lump(wheel: (f64, [f64; 2], f64, f64), frame: (f64, [f64; 2], [f64; 4])) -> Gyrostat {
     let ((m1, r1, across, about), (m2, r2, inertia)) = (wheel, frame);
     let mass = m1 + m2;
     let com = [(m1 * r1[0] + m2 * r2[0]) / mass, (m1 * r1[1] + m2 * r2[1]) / mass];
-    // Parallel axes: the reduced mass at the distance of the two centres.
+    // Parallel-axis theorem: the reduced mass at the distance of the two centres.
     let reduced = m1 * m2 / mass;
     let (x, z) = (r2[0] - r1[0], r2[1] - r1[1]);
     let inertia = [

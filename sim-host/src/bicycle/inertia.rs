@@ -1,7 +1,7 @@
-//! The generalised mass matrix: momenta of the whole bicycle for each unit speed.
+//! Generalised mass matrix, from the pose: momenta of the whole bicycle for each unit speed.
 //!
-//! The bicycle is taken as one body that moves with the rear frame, plus the front frame's turning
-//! about the steer axis and the wheels' spins. `docs/bicycle.md`, section 5.
+//! The bicycle is one body that moves with the rear frame, plus the front frame's rotation about the steer
+//! axis and the wheels' spins. `docs/bicycle.md`, section 5.
 
 use super::{Geometry, Pose, Velocities};
 use crate::num::{Scalar, Vec3};
@@ -42,7 +42,7 @@ impl<S: Scalar> Inertia<S> {
         let (sd, cd) = pose.attitude.steer;
         let [a, bb, c, d] = b.front.inertia;
         let s2 = sd * sd;
-        // The front tensor turned by the steer angle about u3.
+        // The front inertia tensor rotated by the steer angle about u3.
         let front = Tensor([
             s2 * (bb - a) + a,
             s2 * (a - bb) + bb,
@@ -90,7 +90,7 @@ impl<S: Scalar> Inertia<S> {
         ]
     }
 
-    /// The momenta of one velocity state.
+    /// Momenta of one set of velocities.
     #[inline(always)]
     pub(super) fn momenta(&self, b: &Geometry, pose: &Pose<S>, v: &Velocities<S>) -> Momenta<S> {
         let axle = v.axle(b, pose.e1);
@@ -131,7 +131,7 @@ pub(super) struct Momenta<S> {
 }
 
 impl<S: Scalar> Velocities<S> {
-    /// The power of forces on these velocities (or the scalar product with momenta).
+    /// Power of forces at these velocities (or the scalar product with momenta).
     #[inline(always)]
     pub(super) fn power(&self, b: &Geometry, pose: &Pose<S>, f: &Momenta<S>) -> S {
         let along = pose.e1.x * f.momentum.x + pose.e1.z * f.momentum.z;

@@ -1,4 +1,4 @@
-//! The linearised bicycle, straight from the parameters: Meijaard et al. 2007, appendix A.
+//! The linearised bicycle, computed from the parameters: Meijaard et al. 2007, appendix A.
 #![allow(non_snake_case, reason = "the symbols of the paper")]
 
 use super::Parameters;
@@ -21,7 +21,7 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// The canonical matrices of a bicycle.
+    /// Canonical matrices of a bicycle.
     pub fn new(p: &Parameters) -> Self {
         let (sin, cos) = sin_cos(p.lam);
         let (IRzz, IFzz) = (p.IRxx, p.IFxx);
@@ -70,8 +70,8 @@ impl Linear {
         }
     }
 
-    /// The state matrix of `[roll, steer, roll rate, steer rate]` at speed `v` \[m/s\] with a steer
-    /// torque of `gain * roll rate` \[N m s/rad\].
+    /// State matrix of `[roll, steer, roll rate, steer rate]` at speed `v` \[m/s\] with a steer torque of
+    /// `gain * roll rate`, `gain` in \[N m s/rad\].
     pub fn state_matrix(&self, v: f64, gain: f64) -> Matrix4<f64> {
         let inverse = inverse(&self.m);
         let mut damping = self.c1 * v;

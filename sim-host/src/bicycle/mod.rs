@@ -1,9 +1,9 @@
 //! The nonlinear Whipple bicycle.
 //!
-//! Four rigid bodies (rear frame with rigid rider, rear wheel, front frame, front wheel), knife-edge
-//! wheels that roll without slip on level ground, three speeds free: roll rate, steer rate, rear
-//! wheel rate. Derivation: `docs/bicycle.md`. Axes and signs of Meijaard et al. 2007: roll right +,
-//! steer right +, wheel rates negative when rolling forward.
+//! Four rigid bodies: rear frame with rigid rider, rear wheel, front frame, front wheel. Knife-edge wheels
+//! roll without slip on level ground. Three independent speeds: roll rate, steer rate, rear wheel rate.
+//! Derivation: `docs/bicycle.md`. Axes and signs of Meijaard et al. 2007: roll right +, steer right +, wheel
+//! rates negative when rolling forward.
 
 mod bias;
 pub mod catalogue;
@@ -34,20 +34,20 @@ pub use redundant::FullState;
 
 use crate::num::Scalar;
 
-/// The bicycle's state as far as its accelerations depend on it.
+/// The part of the bicycle's state on which its accelerations depend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<S> {
     /// Roll angle \[rad\], right positive.
     pub roll: S,
     /// Steer angle \[rad\], right positive.
     pub steer: S,
-    /// Roll rate (the Euler angle's) \[rad/s\].
+    /// Roll rate, time derivative of the roll angle \[rad/s\].
     pub roll_rate: S,
     /// Steer rate \[rad/s\].
     pub steer_rate: S,
-    /// Rear wheel's rate relative to the rear frame \[rad/s\], negative forward.
+    /// Rear wheel's rate relative to the rear frame \[rad/s\], negative when rolling forward.
     pub rear_wheel_rate: S,
-    /// Pitch \[rad\]: follows from roll and steer; kept as the start of its own next solution.
+    /// Pitch \[rad\]: follows from roll and steer; stored as the initial guess of the next solution.
     pub pitch: S,
 }
 

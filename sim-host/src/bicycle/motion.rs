@@ -1,13 +1,13 @@
-//! Every velocity from the three independent speeds: the rolling constraints solved.
+//! All velocities from the three independent speeds, by solving the rolling constraints.
 //!
-//! Vectors in the steer-axis frame of [`Pose`]. The derivation is `docs/bicycle.md`, section 4.
+//! Vectors are in the steer-axis frame of [`Pose`]. Derivation: `docs/bicycle.md`, section 4.
 
 use super::pitch::attitude;
 use super::{Geometry, Pose, State};
 use crate::num::{Scalar, Vec3};
 
-/// One velocity state: that of a unit independent speed (a column of partial velocities), or the
-/// actual one.
+/// One set of velocities: for one unit independent speed (a column of partial velocities), or the actual
+/// ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Velocities<S> {
     /// Roll rate \[rad/s\].
@@ -24,12 +24,12 @@ pub struct Velocities<S> {
     pub front_spin: S,
     /// Angular velocity of the rear frame.
     pub omega: Vec3<S>,
-    /// Rear wheel's whole rate about its axle \[rad/s\]: what it rolls with.
+    /// Rear wheel's total rate about its axle \[rad/s\], which is its rolling rate.
     pub rolling: S,
 }
 
 impl<S: Scalar> Velocities<S> {
-    /// Velocity of P, the rear wheel's centre, with the rear wheel's heading `e1` of [`Pose`].
+    /// Velocity of P, the rear wheel's centre; `e1` is the rear wheel's heading in [`Pose`].
     #[inline(always)]
     pub fn axle(&self, b: &Geometry, e1: Vec3<S>) -> Vec3<S> {
         let v = self.rolling * -b.rR;
@@ -37,7 +37,7 @@ impl<S: Scalar> Velocities<S> {
     }
 }
 
-/// What the three constraints at the front contact divide by and couple with.
+/// Divisors and coupling terms of the three constraints at the front contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact<S> {
     /// `-1 / k . (u2 x base)`.
@@ -64,10 +64,10 @@ impl<S: Scalar> Contact<S> {
         }
     }
 
-    /// Pitch, yaw and front wheel rates (or accelerations) that cancel `free`, the velocity (or
-    /// acceleration) that the material point at the front contact has without them.
+    /// Pitch, yaw and front wheel rates (or accelerations) that cancel `free`: the velocity (or acceleration)
+    /// of the material point at the front contact without them.
     ///
-    /// One after the other: only pitch moves it vertically, only pitch and yaw laterally.
+    /// Solved in sequence: only pitch moves the point vertically, only pitch and yaw laterally.
     #[inline(always)]
     pub(super) fn close(&self, b: &Geometry, pose: &Pose<S>, free: Vec3<S>) -> [S; 3] {
         let pitch = pose.k.dot(free) * self.per_pitch;
@@ -83,7 +83,7 @@ fn u2_cross<S: Scalar>(l: Vec3<S>, a: Vec3<S>) -> S {
     a.x * l.z - a.z * l.x
 }
 
-/// A state's pose and velocities.
+/// Pose and velocities of a state.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<S> {
     /// The pose.
@@ -96,24 +96,24 @@ pub struct Motion<S> {
 }
 
 impl<S: Scalar> Motion<S> {
-    /// How far the front contact is ahead of the rear one along the rear wheel's heading, as a part
-    /// of the wheelbase: 1 riding upright. At 0 the bicycle has folded up sideways: roll and steer
-    /// stand still there and only pitch moves.
+    /// Distance of the front contact ahead of the rear contact along the rear wheel's heading, as a fraction
+    /// of the wheelbase: 1 when upright. At 0 the bicycle has folded sideways: roll and steer are at rest and
+    /// only pitch moves.
     #[inline(always)]
     pub fn unfolded(&self, b: &Geometry) -> S {
         (self.pose.e1.x * self.pose.base.x + self.pose.e1.z * self.pose.base.z) * (1.0 / b.w)
     }
 
-    /// The wheelbase's projection on the front wheel's heading, as a part of the wheelbase: 1 riding
-    /// straight, 0 with the front wheel across the path, where it can't roll.
+    /// Projection of the wheelbase on the front wheel's heading, as a fraction of the wheelbase: 1 when
+    /// straight. At 0 the front wheel is across the path, where it can't roll.
     #[inline(always)]
     pub fn along_front(&self, b: &Geometry) -> S {
         self.pose.base.dot(self.pose.heading) * (1.0 / b.w)
     }
 
-    /// Solves the constraints at a state: pitch from the front contact's height; pitch rate, yaw
-    /// rate and front wheel rate from rolling without slip, that is
-    /// `omega x base - rR rear_spin e1 + steer_rate (u3 x trail) + rF front_spin heading = 0`.
+    /// Solves the constraints for a state. Pitch follows from the front contact's height; pitch rate, yaw
+    /// rate and front wheel rate follow from rolling without slip: `omega x base - rR rear_spin e1 +
+    /// steer_rate (u3 x trail) + rF front_spin heading = 0`.
     #[inline(always)]
     pub fn new(b: &Geometry, state: &State<S>) -> Self {
         let pose = Pose::new(b, attitude(b, state.roll, state.steer, state.pitch));

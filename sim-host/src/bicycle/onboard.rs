@@ -1,4 +1,4 @@
-//! What the flashed code must know of a bicycle, computed from its geometry.
+//! The controller's parameters that follow from a bicycle's geometry.
 
 use super::{Geometry, Gyrostat, Motion, State, Torques, pitch_from_upright};
 use crate::num::{Dual, sin_cos};
@@ -9,12 +9,12 @@ use control::sensors::sign_check::SteerModel;
 use nalgebra::{SMatrix, SVector};
 use std::sync::{Mutex, PoisonError};
 
-/// The attitudes over which the pitch is fitted: roll and steer up to these, either way \[rad\].
+/// Range of the pitch fit: largest magnitudes of roll and steer \[rad\].
 const FITTED: (f64, f64) = (0.8, 1.0);
-/// Points of the fit along each.
+/// Grid points of the fit along each angle.
 const POINTS: usize = 41;
 
-/// The estimator's parameters that follow from the bicycle; the others as they are by default.
+/// The estimator's parameters that follow from the bicycle; defaults for the others.
 pub fn estimator_parameters(b: &Geometry) -> EstimateConfig {
     EstimateConfig {
         pitch: newest_pitch_fit(b).map(|c| c as f32),
@@ -24,10 +24,10 @@ pub fn estimator_parameters(b: &Geometry) -> EstimateConfig {
     }
 }
 
-/// Fits the flashed code's parameters to the bicycle and to where its IMU sits: `imu_m` from the rear wheel's centre,
-/// forward, right and down \[m\]. What it makes of that stays as chosen, except what needs a parameter that this bicycle
-/// puts outside its range: that is switched off, each with a line that says so. A capsize term, a predictor or a path that
-/// needs such an estimate stays, and the configuration fails its check.
+/// Fits the controller's parameters to the bicycle and to the IMU's position `imu_m` from the rear wheel's
+/// centre: forward, right, down \[m\]. Other settings stay unchanged. A check that needs a parameter outside
+/// its range is switched off, with one line of explanation each in the result. A capsize term, a predictor or
+/// a path that needs such an estimate stays on, and the configuration fails its check.
 pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) -> Vec<String> {
     let imu = Place { forward_m: imu_m[0] as f32, up_m: (b.rR - imu_m[2]) as f32 };
     let EstimateConfig { pitch, wheel_radius_m, balance, .. } = estimator_parameters(b);
@@ -44,7 +44,7 @@ pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) -> Vec<String> {
             "{error}: the check of the motor's response is off, as by --set response.motor=off"
         ));
     }
-    // The lead as flashed may be left out; another one is meant.
+    // The default lead of the product may be dropped; a changed one was set on purpose.
     let leads = config.predict.lead_s > 0.0 && config.predict != Config::product().predict;
     let needed = config.capsize.is_on() || leads || config.track.is_some();
     if let (Some(error), false) = (of("estimate"), needed) {
@@ -63,7 +63,7 @@ pub fn fit(config: &mut Config, b: &Geometry, imu_m: [f64; 3]) -> Vec<String> {
     off
 }
 
-/// Switches off all checks that need the motion estimate; whether anything was on.
+/// Switches off all checks that need the motion estimate; returns whether any was on.
 fn switch_estimate_off(config: &mut Config) -> bool {
     let before = config.clone();
     config.estimate.roll_rate = Source::GyroX;
@@ -76,7 +76,7 @@ fn switch_estimate_off(config: &mut Config) -> bool {
     *config != before
 }
 
-/// Numbers outside their ranges.
+/// Collects the numbers outside their ranges.
 #[derive(Default)]
 struct Outside(Vec<ParamError>);
 
@@ -90,10 +90,11 @@ impl ParamVisitor for Outside {
     fn choice(&mut self, _: &ParamSpec, _: &'static [&'static str], _: &mut u8) {}
 }
 
-/// The steer acceleration near the upright ride: the nonlinear equations, differentiated exactly.
+/// Linear model of the steer acceleration near straight upright riding: exact derivatives of the nonlinear
+/// equations.
 pub fn steer_model(b: &Geometry) -> SteerModel {
     let constant = |re| Dual { re, eps: 0.0 };
-    // By roll, steer, their rates and the steer torque.
+    // Derivative with respect to roll, steer, their rates or the steer torque.
     let by = |input: usize, v: f64| {
         let at = |i: usize| if i == input { Dual::variable(0.0) } else { constant(0.0) };
         let upright = State::upright(b, constant(v));
@@ -113,13 +114,13 @@ pub fn steer_model(b: &Geometry) -> SteerModel {
     }
 }
 
-/// The terms of [`EstimateConfig::pitch`] at an attitude.
+/// Terms of [`EstimateConfig::pitch`] at an attitude.
 fn terms(roll: f64, steer: f64) -> [f64; 6] {
     let (r, d) = (roll, steer);
     [d * d, d * r, d.powi(4), d.powi(3) * r, (d * r).powi(2), d * r.powi(3)]
 }
 
-/// [`pitch_fit`] of the bicycle that was asked for last is kept: the cells of a sweep share it, and it takes 20 ms.
+/// [`pitch_fit`], with the latest bicycle's result cached: the cells of a sweep share it, and it takes 20 ms.
 fn newest_pitch_fit(b: &Geometry) -> [f64; 6] {
     static NEWEST: Mutex<Option<(Geometry, [f64; 6])>> = Mutex::new(None);
     let mut newest = NEWEST.lock().unwrap_or_else(PoisonError::into_inner);
@@ -129,7 +130,7 @@ fn newest_pitch_fit(b: &Geometry) -> [f64; 6] {
     }
 }
 
-/// Least squares over a grid of attitudes; those without a pitch are left out.
+/// Least-squares fit over a grid of attitudes, without those that have no pitch.
 fn pitch_fit(b: &Geometry) -> [f64; 6] {
     let mut normal = SMatrix::<f64, 6, 6>::zeros();
     let mut right = SVector::<f64, 6>::zeros();
@@ -155,7 +156,7 @@ fn balance(b: &Geometry) -> Place {
     let mut sums = [0.0; 3];
     let mut add = |body: &Gyrostat, forward: f64| {
         let [along, down] = [body.com[0] + forward, body.com[1]];
-        // From the steer axis' directions to the frame's, from the axle to the contact.
+        // From steer-axis directions to the frame's, and from the axle to the contact.
         let (x, z) = (along * c + down * s, down * c - along * s - b.rR);
         let [i11, _, i33, i13] = body.inertia;
         let xx = i11 * c * c + 2.0 * i13 * s * c + i33 * s * s;

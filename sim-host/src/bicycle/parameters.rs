@@ -3,9 +3,9 @@
 
 /// A Whipple bicycle, Meijaard et al. 2007, Table 1.
 ///
-/// Axes with the upright bicycle: origin at the rear contact, x forward, y right, z down. SI
-/// units, angles in radians. Wheels are symmetric about their axles (`IRzz = IRxx`, `IFzz = IFxx`),
-/// frames about the plane y = 0.
+/// Axes of the upright bicycle: origin at the rear contact, x forward, y right, z down. SI units, angles in
+/// radians. Wheels are symmetric about their axles (`IRzz = IRxx`, `IFzz = IFxx`), frames about the plane y =
+/// 0.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Parameters {
     /// Wheel base \[m\].
@@ -62,7 +62,7 @@ pub struct Parameters {
     pub IFyy: f64,
 }
 
-/// The parameters' names in files, in [`Parameters`]' order.
+/// Names of the parameters in files, in the order of [`Parameters`].
 pub const KEYS: [&str; 26] = [
     "w", "c", "lam", "g", "rR", "mR", "IRxx", "IRyy", "xB", "zB", "mB", "IBxx", "IByy", "IBzz", "IBxz", "xH",
     "zH", "mH", "IHxx", "IHyy", "IHzz", "IHxz", "rF", "mF", "IFxx", "IFyy",

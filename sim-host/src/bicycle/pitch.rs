@@ -1,16 +1,15 @@
-//! The rear frame's pitch: the one that puts the front wheel on the ground.
+//! The rear frame's pitch from roll and steer, with both wheels on the ground.
 //!
-//! With the rear wheel on the ground, the height of the front wheel's lowest point is a function of
-//! roll, steer and pitch; its root is found by Newton's method from a guess close by, so that the
-//! root stays the one continuous from the upright bicycle (there is another: the bicycle upside
-//! down). See `docs/bicycle.md`, section 3.
+//! With the rear wheel on the ground, the height of the front wheel's lowest point is a function of roll,
+//! steer and pitch. Newton's method finds its root from a close guess, so that the root is the one continuous
+//! with the upright bicycle (another root is the bicycle upside down). See `docs/bicycle.md`, section 3.
 
 use super::Geometry;
 use crate::num::{Scalar, sin_cos};
 use std::f64::consts::PI;
 
-/// Newton iterations on the guess that a time step provides: its error is of the order of the step
-/// squared, below 1e-4 rad, so that two leave nothing but rounding.
+/// Newton iterations from the guess that a time step provides. The guess has an error of the order of the
+/// step squared, below 1e-4 rad, so that two iterations leave only rounding errors.
 const ITERATIONS: usize = 2;
 
 /// Sines and cosines of the configuration, with the front wheel on the ground.
@@ -20,13 +19,14 @@ pub struct Attitude<S> {
     pub roll: (S, S),
     /// Sine and cosine of steer.
     pub steer: (S, S),
-    /// Sine and cosine of the steer axis' tilt, pitch included.
+    /// Sine and cosine of the steer axis tilt plus pitch.
     pub tilt: (S, S),
-    /// Pitch from the upright bicycle's \[rad\], nose up positive.
+    /// Pitch relative to the upright bicycle \[rad\], nose up positive.
     pub pitch: S,
 }
 
-/// Height of the front wheel's lowest point below the ground and its derivative by pitch \[m\].
+/// Depth of the front wheel's lowest point below the ground \[m\], and its derivative with respect to pitch
+/// \[m\].
 #[inline(always)]
 fn front_contact<S: Scalar>(b: &Geometry, (sr, cr): (S, S), (sd, cd): (S, S), (st, ct): (S, S)) -> (S, S) {
     // Cosine of the angle between the front axle and the vertical, and the sine.
@@ -37,8 +37,8 @@ fn front_contact<S: Scalar>(b: &Geometry, (sr, cr): (S, S), (sd, cd): (S, S), (s
     (depth, slope)
 }
 
-/// The attitude with the front wheel on the ground, by Newton's method from `guess` \[rad\], which
-/// must be within about 1e-3 rad.
+/// The attitude with the front wheel on the ground, by Newton's method from `guess` \[rad\], which must be
+/// within about 1e-3 rad of the root.
 #[inline(always)]
 pub(super) fn attitude<S: Scalar>(b: &Geometry, roll: S, steer: S, guess: S) -> Attitude<S> {
     let (roll, steer) = (roll.sin_cos(), steer.sin_cos());
@@ -48,7 +48,7 @@ pub(super) fn attitude<S: Scalar>(b: &Geometry, roll: S, steer: S, guess: S) -> 
         let (depth, slope) = front_contact(b, roll, steer, (s, c));
         let e = -(depth / slope);
         pitch = pitch + e;
-        // The angle's own addition theorem; the correction is small enough for its series.
+        // Angle addition; the correction is small enough for its Taylor series.
         let q = e * e;
         let (se, ce) =
             (e * (q * (q * (1.0 / 120.0) + -1.0 / 6.0) + 1.0), q * (q * (1.0 / 24.0) + -0.5) + 1.0);
@@ -57,10 +57,10 @@ pub(super) fn attitude<S: Scalar>(b: &Geometry, roll: S, steer: S, guess: S) -> 
     Attitude { roll, steer, tilt: (s, c), pitch }
 }
 
-/// The pitch \[rad\] of any attitude, followed from the upright bicycle in small steps.
+/// The pitch \[rad\] of any attitude, continued from the upright bicycle in small steps.
 ///
-/// `None` when the path breaks off: the front wheel can't be put on the ground there; and beyond half
-/// a turn of roll or steer.
+/// `None` if the continuation fails because the front wheel can't reach the ground, and beyond half a turn of
+/// roll or steer.
 pub fn pitch_from_upright(b: &Geometry, roll: f64, steer: f64) -> Option<f64> {
     if !(roll.abs() <= PI && steer.abs() <= PI) {
         return None;
@@ -79,8 +79,8 @@ pub fn pitch_from_upright(b: &Geometry, roll: f64, steer: f64) -> Option<f64> {
     (residual.abs() < 1e-12).then_some(pitch)
 }
 
-/// How far the front wheel's lowest point is below the ground \[m\]; 0 but for rounding when `pitch`
-/// belongs to `roll` and `steer`.
+/// Depth of the front wheel's lowest point below the ground \[m\]; 0 except for rounding if `pitch` belongs
+/// to `roll` and `steer`.
 pub fn front_contact_residual(b: &Geometry, roll: f64, steer: f64, pitch: f64) -> f64 {
     front_contact(b, sin_cos(roll), sin_cos(steer), sin_cos(pitch + b.lam)).0
 }

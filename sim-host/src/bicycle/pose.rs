@@ -1,4 +1,4 @@
-//! The configuration as directions and lever arms.
+//! Directions and lever arms of a configuration, from its angles.
 //!
 //! All vectors of the equations of motion are in the steer-axis frame, which is fixed to the rear
 //! frame: `u1` forward and perpendicular to the steer axis, `u2` along the rear axle to the right,
@@ -33,7 +33,7 @@ pub struct Pose<S> {
     pub n: S,
     /// One over the cosine of the front wheel's lean.
     pub per_m: S,
-    /// From the steer axis to the front contact, the part along the axis left out.
+    /// From the steer axis to the front contact, without the component along the axis.
     pub trail: Vec3<S>,
     /// From the rear to the front contact; horizontal.
     pub base: Vec3<S>,
@@ -42,7 +42,7 @@ pub struct Pose<S> {
 }
 
 impl<S: Scalar> Pose<S> {
-    /// The pose of an attitude.
+    /// Pose of an attitude.
     #[inline(always)]
     pub(super) fn new(b: &Geometry, attitude: Attitude<S>) -> Self {
         let ((sr, cr), (sd, cd), (st, ct)) = (attitude.roll, attitude.steer, attitude.tilt);

@@ -1,9 +1,9 @@
-//! The same bicycle with all six speeds kept, and the contact forces at the front wheel unknown.
+//! The bicycle with all six speeds as state, and the constraint forces at the front contact as unknowns.
 //!
-//! Roll rate, steer rate and rear wheel rate fix the other speeds except where the front wheel comes
-//! to stand across the path (the rear wheel can't roll there) or beside the rear wheel (pitch alone
-//! moves there). The motion passes such places smoothly; this formulation follows it, at ten times
-//! the cost. `docs/bicycle.md`, section 9.
+//! Roll rate, steer rate and rear wheel rate determine the other speeds except at two singular
+//! configurations: the front wheel across the path (the rear wheel can't roll), and the front wheel beside
+//! the rear wheel (only pitch moves). The motion passes these smoothly. This formulation follows it, at ten
+//! times the cost. `docs/bicycle.md`, section 9.
 
 use super::inertia::Inertia;
 use super::pitch::Attitude;
@@ -12,7 +12,7 @@ use crate::integrate::Moves;
 use crate::num::{Vec3, sin_cos};
 use nalgebra::{SMatrix, SVector};
 
-/// A state with redundant speeds; they fulfil the constraints.
+/// A state with redundant speeds, which satisfy the constraints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FullState {
     /// Roll, pitch and steer \[rad\].
@@ -22,7 +22,7 @@ pub struct FullState {
 }
 
 impl FullState {
-    /// The state with its dependent speeds, from a motion away from the singular places.
+    /// The state with its dependent speeds, from a motion away from the singular configurations.
     pub fn new(motion: &Motion<f64>, state: &State<f64>) -> Self {
         let v = &motion.actual;
         Self {
@@ -31,7 +31,7 @@ impl FullState {
         }
     }
 
-    /// The independent part.
+    /// The independent state.
     pub fn state(&self) -> State<f64> {
         State {
             roll: self.angles[0],
@@ -43,20 +43,20 @@ impl FullState {
         }
     }
 
-    /// The pose, with the pitch as it is.
+    /// The pose at the stored pitch.
     pub fn pose(&self, b: &Geometry) -> Pose<f64> {
         let [roll, pitch, steer] = self.angles;
         let tilt = sin_cos(pitch + b.lam);
         Pose::new(b, Attitude { roll: sin_cos(roll), steer: sin_cos(steer), tilt, pitch })
     }
 
-    /// The velocities, dependent ones as they are.
+    /// The velocities, with the stored dependent ones.
     pub fn velocities(&self, b: &Geometry) -> Velocities<f64> {
         velocities(&self.pose(b), &self.speeds)
     }
 
-    /// The rate of change of every entry, in the same places, under `torques`. `None` if the equations
-    /// have no solution, which no state near a ride has.
+    /// Time derivative of every entry under `torques`, in the same fields. `None` if the equations are
+    /// singular, which does not occur near a ride.
     pub fn rate(&self, b: &Geometry, torques: &Torques<f64>) -> Option<FullState> {
         let pose = self.pose(b);
         let unit: [Velocities<f64>; 6] = std::array::from_fn(|i| {

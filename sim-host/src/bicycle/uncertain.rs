@@ -1,4 +1,4 @@
-//! Parameters with uncertainties, as they were measured.
+//! Measured parameters with uncertainties: parsing, propagation and random draws.
 
 use super::combine::{RIDER_KEYS, combined};
 use super::{KEYS, Parameters, check};
@@ -20,10 +20,10 @@ impl Uncertain {
         Self { value, sd: 0.0 }
     }
 
-    /// Reads `1.12+/-0.02`, the sign also as `±`.
+    /// Parses `1.12+/-0.02`; `±` is accepted too.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// States the text and the fault.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong = || format!("`{text}` is not VALUE+/-STANDARD_DEVIATION");
         let (value, sd) = text.split_once("+/-").or_else(|| text.split_once('±')).ok_or_else(wrong)?;
@@ -36,16 +36,16 @@ impl Uncertain {
     }
 }
 
-/// The uncertain parameters of a bicycle, and of the rider's body that was combined with it.
+/// Uncertain parameters of a bicycle, and of the rider's body combined with it.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Measured {
     /// In the order of [`KEYS`].
     pub bicycle: Vec<Uncertain>,
-    /// In the order of [`RIDER_KEYS`]; none if no rider was combined with it.
+    /// In the order of [`RIDER_KEYS`]; none without a combined rider.
     pub rider: Option<Vec<Uncertain>>,
 }
 
-/// How often a bicycle that can't exist is drawn again.
+/// Largest number of draws for one bicycle; impossible ones are drawn again.
 const TRIES: usize = 1000;
 
 impl Measured {
@@ -54,7 +54,7 @@ impl Measured {
         self.bicycle.iter().chain(self.rider.iter().flatten()).any(|one| one.sd > 0.0)
     }
 
-    /// The parameters of some values of bicycle and rider.
+    /// The parameters, each value mapped by `of`.
     fn parameters_of(&self, of: &mut dyn FnMut(&Uncertain) -> f64) -> Parameters {
         let mut values = [0.0; KEYS.len()];
         values.iter_mut().zip(&self.bicycle).for_each(|(value, one)| *value = of(one));
@@ -64,12 +64,12 @@ impl Measured {
         combined(&Parameters::from_values(&values), &body)
     }
 
-    /// The parameters by the values.
+    /// The parameters at the mean values.
     pub fn parameters(&self) -> Parameters {
         self.parameters_of(&mut |one| one.value)
     }
 
-    /// The standard deviations of [`Measured::parameters`] in the order of [`KEYS`], to first order.
+    /// Standard deviations of [`Measured::parameters`] in the order of [`KEYS`], to first order.
     pub fn deviations(&self) -> [f64; KEYS.len()] {
         let (count, middle) =
             (self.bicycle.len() + self.rider.as_ref().map_or(0, Vec::len), self.parameters());
@@ -87,27 +87,27 @@ impl Measured {
         squares.map(f64::sqrt)
     }
 
-    /// Bicycle `i` of those drawn with `seed`: every value from its own normal distribution, independent of the others, as
-    /// files have no correlations. A bicycle that can't exist is drawn again.
+    /// Bicycle `i` of those drawn with `seed`. Every value has an independent normal distribution, as the
+    /// files have no correlations. An impossible bicycle is drawn again.
     ///
     /// # Errors
-    /// When hardly any draw can exist: the reason of the last.
+    /// None of the draws is possible; states the reason of the last.
     pub fn draw(&self, seed: u64, i: u64) -> Result<Parameters, String> {
         let still = Start { speed_m_s: 0.0, steer_rate_rad_s: 0.0, roll_rate_rad_s: 0.0 };
         let mut random = RandomStream::new(seed, &still, PURPOSE + i);
-        let mut why = String::new();
+        let mut error = String::new();
         for _ in 0..TRIES {
             let drawn = self.parameters_of(&mut |one| one.value + one.sd * random.normal());
             match check::check(&drawn) {
                 Ok(_) => return Ok(drawn),
-                Err(reason) => why = reason,
+                Err(reason) => error = reason,
             }
         }
-        Err(format!("none of {TRIES} draws can exist: {why}"))
+        Err(format!("none of {TRIES} draws can exist: {error}"))
     }
 }
 
-/// The first stream of random numbers that is none of a ride's.
+/// First random-number stream not used by rides.
 const PURPOSE: u64 = 1 << 32;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! A bicycle with some parameters changed.
+//! Changes some parameters of a bicycle.
 
 use super::catalogue::Bicycle;
 use super::combine::RIDER_KEYS;
@@ -6,15 +6,15 @@ use super::uncertain::{Measured, Uncertain};
 use super::{KEYS, Parameters, check};
 
 impl Bicycle {
-    /// The same with parameters as `KEY=VALUE` says, SI units; what is set has no uncertainty.
+    /// Sets the parameters given as `KEY=VALUE` in SI units; set values have no uncertainty.
     ///
     /// # Errors
-    /// Names what is wrong: the word, the key, the value and its range.
-    pub fn varied(mut self, words: &[String]) -> Result<Self, String> {
+    /// States the option, the key, the value and its range.
+    pub fn varied(mut self, settings: &[String]) -> Result<Self, String> {
         let mut values = self.parameters.to_values();
-        for word in words {
-            let wrong = |why: String| format!("--bicycle-set {word}: {why}");
-            let (key, value) = word.split_once('=').ok_or_else(|| wrong("expected KEY=VALUE".into()))?;
+        for setting in settings {
+            let wrong = |error: String| format!("--bicycle-set {setting}: {error}");
+            let (key, value) = setting.split_once('=').ok_or_else(|| wrong("expected KEY=VALUE".into()))?;
             let place = KEYS.iter().position(|k| *k == key);
             let place =
                 place.ok_or_else(|| wrong(format!("no parameter `{key}`; there are {}", KEYS.join(", "))))?;
@@ -28,10 +28,10 @@ impl Bicycle {
                 bicycle[place] = Uncertain::exact(values[place]);
             }
         }
-        if !words.is_empty() {
+        if !settings.is_empty() {
             self.parameters = Parameters::from_values(&values);
-            let name = format!("{} with {}", self.name, words.join(", "));
-            self.warnings.extend(check::check(&self.parameters).map_err(|why| format!("{name}: {why}"))?);
+            let name = format!("{} with {}", self.name, settings.join(", "));
+            self.warnings.extend(check::check(&self.parameters).map_err(|error| format!("{name}: {error}"))?);
             self.warnings.dedup();
             self.name = name;
         }

@@ -147,8 +147,8 @@ impl SearchState<'_> {
                 self.end(false);
                 return None;
             }
-            Err(why) => {
-                self.failed = Some(why);
+            Err(error) => {
+                self.failed = Some(error);
                 self.end(false);
                 return None;
             }

@@ -1,4 +1,4 @@
-//! A number with one exact derivative (forward-mode differentiation).
+//! Dual numbers: a value and one exact derivative (forward-mode differentiation).
 
 use super::{Scalar, sin_cos};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -8,12 +8,12 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub struct Dual {
     /// The value.
     pub re: f64,
-    /// Its derivative.
+    /// The derivative of the value.
     pub eps: f64,
 }
 
 impl Dual {
-    /// The variable that the derivative is taken with respect to.
+    /// The independent variable of the differentiation.
     pub fn variable(re: f64) -> Self {
         Self { re, eps: 1.0 }
     }

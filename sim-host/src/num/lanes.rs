@@ -1,16 +1,16 @@
-//! Several numbers side by side: the compiler turns the loops into vector instructions.
+//! Several numbers side by side; the compiler vectorises the loops.
 
 use super::{Scalar, sincos};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// `N` independent numbers; every operation acts on each alone, so a lane has the same bits as an
-/// `f64` that went through the same operations.
+/// `N` independent numbers. Operations act on each lane alone, so each lane has the same bits as an `f64`
+/// after the same operations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
 pub struct Lanes<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> Lanes<N> {
-    /// Every lane through a function.
+    /// Applies a function to every lane.
     #[inline(always)]
     pub fn map(self, op: impl Fn(f64) -> f64) -> Self {
         let mut out = self;

@@ -1,8 +1,8 @@
-//! The numbers the bicycle's equations are written in: one source for f64, for several rides side
-//! by side ([`Lanes`]) and for exact derivatives ([`Dual`]).
+//! Number types of the equations of motion: one source for `f64`, for several rides side by side ([`Lanes`])
+//! and for exact derivatives ([`Dual`]).
 //!
-//! Only `+ - * /`, square root and [`sin_cos`] are used, none of which depends on the C library or
-//! on fused multiply-add: a ride has the same bits alone, in a batch, and on every x86-64.
+//! Only `+ - * /`, square root and [`sin_cos`] are used. None depends on the C library or on fused
+//! multiply-add, so a ride has the same bits alone, in a batch, and on every x86-64.
 
 mod dual;
 mod lanes;
@@ -16,7 +16,7 @@ pub use vector::Vec3;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A real number, a pack of them, or one with its derivative.
+/// A real number, several in lanes, or a dual number.
 pub trait Scalar:
     Copy
     + Add<Output = Self>

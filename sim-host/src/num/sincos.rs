@@ -1,4 +1,4 @@
-//! Sine and cosine together, without branches, so that a pack of angles compiles to vector code.
+//! Sine and cosine of an angle together, without branches, so that lanes of angles compile to vector code.
 
 use super::{Lanes, Scalar};
 
@@ -12,7 +12,7 @@ const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Sine and cosine of `x` in radians, |x| < 1e5; error below 1.5 units in the last place.
 ///
-/// Exactly odd and even: `sin_cos(-x)` is `(-s, c)` to the bit.
+/// Exactly odd and even: `sin_cos(-x)` is `(-s, c)` bit for bit.
 #[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     let (s, c, quadrant) = reduced(x);
@@ -29,7 +29,8 @@ pub(super) fn sin_cos_lanes<const N: usize>(x: Lanes<N>) -> (Lanes<N>, Lanes<N>)
     (s, c)
 }
 
-/// Sine and cosine of `x` less the nearest multiple of pi/2, and that multiple in the low bits.
+/// Sine and cosine of `x` reduced by the nearest multiple of pi/2; the low bits of the third value hold the
+/// quadrant.
 #[inline(always)]
 fn reduced<S: Scalar>(x: S) -> (S, S, S) {
     let quadrant = x * std::f64::consts::FRAC_2_PI + ROUND;
@@ -50,7 +51,7 @@ fn by_quadrant(s: f64, c: f64, quadrant: u64) -> (f64, f64) {
     (f64::from_bits(sin ^ sin_sign), f64::from_bits(cos ^ cos_sign))
 }
 
-/// The fdlibm polynomials on [-pi/4, pi/4].
+/// The fdlibm polynomials for [-pi/4, pi/4].
 #[inline(always)]
 #[allow(clippy::excessive_precision)]
 fn kernel<S: Scalar>(r: S) -> (S, S) {

@@ -1,4 +1,4 @@
-//! Three components in one frame.
+//! Vectors of three components.
 
 use super::Scalar;
 use std::ops::{Add, Sub};

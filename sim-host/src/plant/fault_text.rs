@@ -134,7 +134,7 @@ impl FromStr for Fault {
     type Err = PlantError;
 
     fn from_str(text: &str) -> Result<Self, PlantError> {
-        parsed(text).map_err(|why| PlantError(format!("fault `{text}`: {why}")))
+        parsed(text).map_err(|error| PlantError(format!("fault `{text}`: {error}")))
     }
 }
 

@@ -116,17 +116,18 @@ impl SensorFile {
     /// No such name or file, a key that is missing, unknown or of a wrong type, or a value out of range: each named.
     pub fn load(name: &str) -> Result<Self, PlantError> {
         if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
-            return Self::parse(text).map_err(|why| PlantError(format!("sensor model {name}: {why}")));
+            return Self::parse(text).map_err(|error| PlantError(format!("sensor model {name}: {error}")));
         }
         if !Path::new(name).exists() {
             let names: Vec<_> = SHIPPED.iter().map(|(shipped, _)| *shipped).collect();
             let names = names.join(", ");
-            let why = format!("unknown sensor model `{name}`: no such file, and not one of {EXACT}, {names}");
-            return Err(PlantError(why));
+            let error =
+                format!("unknown sensor model `{name}`: no such file, and not one of {EXACT}, {names}");
+            return Err(PlantError(error));
         }
         let text = std::fs::read_to_string(name)
             .map_err(|e| PlantError(format!("can't read the sensor model {name}: {e}")))?;
-        Self::parse(&text).map_err(|why| PlantError(format!("sensor model {name}: {why}")))
+        Self::parse(&text).map_err(|error| PlantError(format!("sensor model {name}: {error}")))
     }
 
     /// The models in a text.
@@ -136,7 +137,7 @@ impl SensorFile {
     pub fn parse(text: &str) -> Result<Self, String> {
         let file: Self = toml::from_str(text).map_err(|e| e.to_string().trim().to_owned())?;
         for (sensor, numbers) in file.tables() {
-            numbers.check(sensor).map_err(|why| format!("{}: {why}", table_of(sensor)))?;
+            numbers.check(sensor).map_err(|error| format!("{}: {error}", table_of(sensor)))?;
         }
         Ok(file)
     }

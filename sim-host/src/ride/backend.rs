@@ -82,7 +82,7 @@ impl<'a> Backend<'a> {
     pub(super) fn end(self) -> Result<(), RemoteError> {
         match self {
             Self::Local | Self::Remote { failure: None, .. } => Ok(()),
-            Self::Remote { failure: Some(why), .. } => Err(why),
+            Self::Remote { failure: Some(error), .. } => Err(error),
         }
     }
 
@@ -109,8 +109,8 @@ impl<'a> Backend<'a> {
                 Stepped { command, authority: state.authority() }
             }
             Self::Remote { failure: Some(_), .. } => Stepped::OFF,
-            Self::Remote { remote, failure } => remote.step(frame).unwrap_or_else(|why| {
-                *failure = Some(why);
+            Self::Remote { remote, failure } => remote.step(frame).unwrap_or_else(|error| {
+                *failure = Some(error);
                 Stepped::OFF
             }),
         }

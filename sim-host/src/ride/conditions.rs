@@ -109,8 +109,8 @@ impl Conditions {
         }
         self.plant.check().map_err(|e| ConditionsError(e.0))?;
         if matches!(self.assist, Assist::Ideal(_)) && !self.plant.exact() {
-            let why = "the ideal law has exact sensors and an exact motor: of the plant only friction and end-stop act on it";
-            return Err(ConditionsError(why.into()));
+            let error = "the ideal law has exact sensors and an exact motor: of the plant only friction and end-stop act on it";
+            return Err(ConditionsError(error.into()));
         }
         within(
             "sensor delay in control periods",

@@ -1,9 +1,9 @@
-//! Riders by name or from TOML files.
+//! Loads riders by name or from TOML files.
 
 use super::table::RiderTable;
 use std::path::{Path, PathBuf};
 
-/// Those that ship: names, and files in `data/riders/`.
+/// Names and texts of the shipped riders in `data/riders/`.
 const SHIPPED: [(&str, &str); 10] = [
     ("young", include_str!("../../../data/riders/young.toml")),
     ("smart", include_str!("../../../data/riders/smart.toml")),
@@ -17,7 +17,7 @@ const SHIPPED: [(&str, &str); 10] = [
     ("undelayed-reduction", include_str!("../../../data/riders/undelayed-reduction.toml")),
 ];
 
-/// Why there is no such rider.
+/// Reason why a rider cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum RiderError {
     /// Neither a shipped name nor a file.
@@ -33,7 +33,7 @@ pub enum RiderError {
     Read {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The operating system's error.
         source: std::io::Error,
     },
     /// The file is not TOML, or a key is missing, unknown or of a wrong type.
@@ -54,15 +54,15 @@ pub enum RiderError {
     },
 }
 
-/// The shipped riders' names.
+/// Names of the shipped riders.
 pub fn shipped_names() -> impl Iterator<Item = &'static str> {
     SHIPPED.iter().map(|(name, _)| *name)
 }
 
-/// A rider by `name`: a shipped one, or a `FILE`. Names win over files.
+/// Loads a rider by `name`: a shipped one, or a `FILE`. Shipped names take precedence.
 ///
 /// # Errors
-/// Names file, key, row, value and allowed range.
+/// States file, key, row, value and allowed range.
 pub fn load(name: &str) -> Result<RiderTable, RiderError> {
     if let Some((_, text)) = SHIPPED.iter().find(|(n, _)| *n == name) {
         return RiderTable::from_text(name, text, Path::new(&format!("data/riders/{name}.toml")));

@@ -1,35 +1,36 @@
-//! The neural delay: signals on their way from what is felt to the muscles.
+//! The neural delay: from the rider's feedback signals to the delayed signals that drive the neuromuscular
+//! dynamics.
 //!
-//! Method of steps: the delay is a whole number of integration steps, so that every step of the
-//! delayed equation is one of an ordinary equation whose input is known. The signals at whole steps
-//! are kept; between them the cubic through the four nearest is taken, never across t = 0, where the
-//! disturbance makes the signal jump, nor across a multiple of the delay, where the jump comes back
-//! as a kink. So the method's order stays that of the Runge-Kutta step.
+//! Method of steps: the delay is a whole number of integration steps, so that each step of the delay equation
+//! is one of an ordinary equation with a known input. Signals are stored at whole steps and interpolated
+//! between by the cubic through the four nearest. The cubic never spans t = 0, where the disturbance makes
+//! the signal jump, or a multiple of the delay, where that jump returns as a kink. The order therefore stays
+//! that of the Runge-Kutta step.
 
-/// The signals of one ride on their way.
+/// Delayed signals of one ride.
 #[derive(Clone, Debug)]
 pub struct DelayLine {
-    /// The latest signals, by step modulo its length, a power of two \[N m\].
+    /// The latest signals \[N m\], indexed by step modulo the ring's length, a power of two.
     ring: Vec<f64>,
-    /// Steps the delay takes; at least 1.
+    /// Delay in steps; at least 1.
     delay: usize,
-    /// Signals felt so far.
+    /// Number of signals stored so far.
     pushed: usize,
 }
 
 impl DelayLine {
-    /// Nerves with a delay of `delay` steps, at least 1, in which no signal travels yet.
+    /// An empty delay line of `delay` steps, at least 1.
     pub fn new(delay: usize) -> Self {
-        // The oldest signal needed is two steps older than the one that arrives.
+        // The oldest signal needed is two steps older than the arriving one.
         Self { ring: vec![0.0; (delay + 4).next_power_of_two()], delay: delay.max(1), pushed: 0 }
     }
 
-    /// Forgets every signal, for a new ride.
+    /// Clears all signals, for a new ride.
     pub fn forget(&mut self) {
         self.pushed = 0;
     }
 
-    /// Takes in the signal at the start of the next step.
+    /// Stores the signal at the start of the next step.
     #[inline(always)]
     pub fn push(&mut self, signal: f64) {
         let mask = self.ring.len() - 1;
@@ -37,14 +38,14 @@ impl DelayLine {
         self.pushed += 1;
     }
 
-    /// Puts another signal in the place of the latest one.
+    /// Replaces the latest signal.
     pub fn correct(&mut self, signal: f64) {
         self.pushed -= 1;
         self.push(signal);
     }
 
-    /// The first of up to four signals that what arrives during this step is taken from, how many, and
-    /// the place among them of the one that arrives at its start; `None` before the delay has passed.
+    /// The up to four signals from which this step's arrivals are interpolated: step of the first, their
+    /// number, and the index of the one that arrives at the start; `None` before the delay has passed.
     #[inline(always)]
     fn nearest(&self) -> Option<(usize, usize, usize)> {
         let i = (self.pushed - 1).checked_sub(self.delay)?;
@@ -58,8 +59,8 @@ impl DelayLine {
         Some((from, (last - from + 1).min(4), i - from))
     }
 
-    /// What arrives at the start, the middle and the end of the step that began with the latest
-    /// signal; zero before the delay has passed.
+    /// Signals that arrive at start, middle and end of the step that began with the latest stored signal;
+    /// zero before the delay has passed.
     #[inline(always)]
     pub fn arriving(&self) -> [f64; 3] {
         let Some((from, count, place)) = self.nearest() else { return [0.0; 3] };
@@ -74,11 +75,11 @@ impl DelayLine {
         [at(place), middle, at(place + 1)]
     }
 
-    /// What arrives at the part `s`, 0 to 1, of that step.
+    /// Signal that arrives at the fraction `s`, 0 to 1, of that step.
     pub fn arriving_at(&self, s: f64) -> f64 {
         let Some((from, count, place)) = self.nearest() else { return 0.0 };
         let (mask, at) = (self.ring.len() - 1, s + place as f64);
-        // Lagrange's polynomial.
+        // Lagrange interpolation.
         let weight = |j: usize| -> f64 {
             (0..count).filter(|&k| k != j).map(|k| (at - k as f64) / (j as f64 - k as f64)).product()
         };
@@ -90,7 +91,7 @@ impl DelayLine {
 mod tests {
     use super::*;
 
-    /// What arrives of `f` felt at 0, 1, ... at every half step, up to `steps`.
+    /// Arrivals at every half step, up to `steps`, of the signal `f` stored at 0, 1, ...
     fn delayed(delay: usize, steps: usize, f: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         let mut delay_line = DelayLine::new(delay);
         let mut out = Vec::new();
@@ -105,11 +106,11 @@ mod tests {
     }
 
     #[test]
-    fn a_cubic_arrives_as_it_was_felt() {
+    fn a_cubic_arrives_unchanged() {
         let f = |t: f64| 1.0 + 2.0 * t - 0.3 * t * t + 0.01 * t * t * t;
         for delay in [3, 4, 5, 30, 60, 61] {
             for (t, got) in delayed(delay, 4 * delay, f) {
-                // A step that ends when the first signal arrives still sees nothing.
+                // A step that ends when the first signal arrives still receives zero.
                 if t > 0.0 {
                     assert!((got - f(t)).abs() < 1e-11 * (1.0 + f(t).abs()), "{delay} {t}: {got} {}", f(t));
                 } else if t < 0.0 {

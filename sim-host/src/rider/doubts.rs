@@ -1,13 +1,13 @@
-//! Whether a rider and a bicycle belong together.
+//! Warnings about a rider on a bicycle for which its gains are not made.
 
 use super::RiderTable;
 use crate::bicycle::catalogue::{self, Bicycle};
 
-/// A rear frame lighter than this carries no rider \[kg\]: the heaviest shipped one without has 22.9 kg, the lightest
-/// with a part of one, legs, 33 kg.
+/// A rear frame lighter than this includes no rider \[kg\]: the heaviest shipped frame without a rider has
+/// 22.9 kg; the lightest with part of one, legs, has 33 kg.
 const EMPTY_KG: f64 = 30.0;
 
-/// What is doubtful about a rider's gains on a bicycle, in words.
+/// Warnings about a rider's gains on a bicycle, as text.
 pub fn doubts(bicycle: &Bicycle, rider: &RiderTable) -> Vec<String> {
     let Bicycle { name, parameters, rider_included, .. } = bicycle;
     let empty = match rider_included {
@@ -25,7 +25,7 @@ pub fn doubts(bicycle: &Bicycle, rider: &RiderTable) -> Vec<String> {
     empty.into_iter().chain(other).collect()
 }
 
-/// Whether a bicycle is the one of a name, or has its values.
+/// Whether a bicycle has the given name, or the values of the bicycle with that name.
 fn is_same(bicycle: &Bicycle, name: &str) -> bool {
     bicycle.name == name || catalogue::load(name).is_ok_and(|named| named.parameters == bicycle.parameters)
 }

@@ -1,4 +1,4 @@
-//! Riders' files: TOML with `columns` and `rows` (`docs/riders.md`).
+//! Parses riders' files: TOML with `columns` and `rows` (`docs/riders.md`).
 
 use super::catalogue::RiderError;
 use super::table::{RiderTable, Row};
@@ -8,13 +8,13 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The version of the files.
+/// Supported schema version.
 pub(super) const SCHEMA: u32 = 1;
 /// Columns that are not gains.
 const ROW_KEYS: [&str; 4] = ["speed_m_s", "run", "group", "vaf"];
 /// Gains of nested loops, innermost first.
 const NESTED_KEYS: [&str; 5] = ["k_delta", "k_phidot", "k_phi", "k_psi", "k_y"];
-/// The gains that nested loops multiply out to, as places in [`KEYS`].
+/// Gains that result from nested loops, as indices of [`KEYS`].
 const NESTED_GAINS: [usize; 5] = [4, 2, 0, 8, 9];
 
 #[derive(Deserialize)]
@@ -31,7 +31,7 @@ struct File {
     best_runs: Option<Vec<u32>>,
     columns: Vec<String>,
     rows: Vec<Vec<f64>>,
-    /// By gain its change per m/s and its value at rest.
+    /// For each gain, its slope per m/s and its value at zero speed.
     regression: Option<BTreeMap<String, [f64; 2]>>,
 }
 
@@ -42,18 +42,18 @@ struct MusclesFile {
     zeta: f64,
 }
 
-/// What the columns of gains multiply.
+/// Signals that the columns of gains multiply.
 #[derive(Clone, Copy, Default, PartialEq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Feedback {
-    /// Each its own signal.
+    /// Each gain multiplies its own signal.
     #[default]
     States,
-    /// Each the error of the loop inside it.
+    /// Each gain multiplies the error of the loop inside it.
     Nested,
 }
 
-/// The gains of `U = k_delta (k_phidot (k_phi (k_psi (-k_y y - psi) - phi) - phi') - delta)`, all
+/// State gains of `U = k_delta (k_phidot (k_phi (k_psi (-k_y y - psi) - phi) - phi') - delta)`, with all
 /// commands zero.
 fn multiplied_out([k_delta, k_phidot, k_phi, k_psi, k_y]: [f64; 5]) -> [f64; 5] {
     let roll_rate = -k_delta * k_phidot;
@@ -63,10 +63,10 @@ fn multiplied_out([k_delta, k_phidot, k_phi, k_psi, k_y]: [f64; 5]) -> [f64; 5] 
 }
 
 impl RiderTable {
-    /// A table from a file's text.
+    /// Parses a table from a file's text.
     ///
     /// # Errors
-    /// Names file, key, row, value and allowed range.
+    /// States file, key, row, value and allowed range.
     pub fn from_text(name: &str, text: &str, path: &Path) -> Result<Self, RiderError> {
         let file: File = toml::from_str(text)
             .map_err(|e| RiderError::Syntax { path: path.into(), reason: e.to_string().trim().into() })?;
@@ -128,7 +128,7 @@ impl File {
         Ok(table)
     }
 
-    /// The gains that have a column, once the columns are known to be right.
+    /// Indices of the gains that have a column; checks the columns.
     fn gain_columns(&self) -> Result<Vec<usize>, String> {
         let keys = self.gain_keys();
         for (i, column) in self.columns.iter().enumerate() {
@@ -157,7 +157,7 @@ impl File {
         Ok(gains)
     }
 
-    /// The regression that came with the table: of each gain that has a column, of no other.
+    /// The published regression from the file: one line for each gain that has a column, and no others.
     fn line(&self, columns: &[usize]) -> Result<Option<Line>, String> {
         let Some(lines) = &self.regression else { return Ok(None) };
         let gains: Vec<&str> = columns.iter().map(|&i| KEYS[i]).collect();
@@ -232,7 +232,7 @@ impl File {
                 let nested = multiplied_out([read[0], read[1], read[2], read[3], read[4]]);
                 for (i, gain) in NESTED_GAINS.into_iter().zip(nested) {
                     within(&format!("{} of the nested gains", KEYS[i]), gain, -1e5, 1e5)?;
-                    // Plus zero, so that a loop left out gives no -0.
+                    // Plus zero, so that an omitted loop gives no -0.
                     gains[i] = gain + 0.0;
                 }
             }

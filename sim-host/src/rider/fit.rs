@@ -1,14 +1,14 @@
-//! From measured sets of gains to gains at every speed (Kuipers 2020, section 2.3.3).
+//! From measured sets of gains to gains as functions of speed (Kuipers 2020, section 2.3.3).
 
 use super::table::{RiderTable, Row};
 use super::{Gains, KEYS, Outside, Rider, Schedule, ScheduleError};
 
-/// How gains are made continuous over speed.
+/// Method that makes gains continuous over speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Fit {
-    /// One straight line per gain (the thesis's LR): the table's own `regression`, otherwise least
-    /// squares over all sets.
+    /// One straight line per gain (LR in the thesis): the table's own `regression`, otherwise least squares
+    /// over all sets.
     Regression,
     /// Straight lines through the groups' means, at the mean of their speeds (LI, mean).
     #[default]
@@ -18,10 +18,10 @@ pub enum Fit {
 }
 
 impl Fit {
-    /// All of them.
+    /// All methods.
     pub const ALL: [Self; 3] = [Self::Regression, Self::Mean, Self::Best];
 
-    /// Its name on the command line and in files.
+    /// Name on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Regression => "regression",
@@ -34,9 +34,9 @@ impl Fit {
 /// A straight line per gain, `slope * speed + intercept`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// Change of the gains per m/s.
+    /// Slope of the gains per m/s.
     pub slope: Gains,
-    /// The gains at rest.
+    /// Gains at zero speed.
     pub intercept: Gains,
 }
 
@@ -55,7 +55,7 @@ pub fn mean(rows: &[Row]) -> (f64, Gains) {
 }
 
 impl RiderTable {
-    /// The least-squares line of each gain over all rows; level if there is but one speed.
+    /// Least-squares line of each gain over all rows; constant if all rows have the same speed.
     pub fn least_squares(&self) -> Line {
         let (speed, gains) = mean(&self.rows);
         let square: f64 = self.rows.iter().map(|r| (r.speed_m_s - speed).powi(2)).sum();
@@ -67,16 +67,16 @@ impl RiderTable {
         Line { slope: Gains(slope), intercept: Gains(intercept) }
     }
 
-    /// The line of [`Fit::Regression`]: the one that came with the table, or else of least squares.
+    /// The line of [`Fit::Regression`]: the table's own, otherwise least squares.
     pub fn line(&self) -> Line {
         self.regression.unwrap_or_else(|| self.least_squares())
     }
 
-    /// The gains over speed.
+    /// Gains as functions of speed.
     ///
     /// # Errors
-    /// Names the value and its range; [`Fit::Best`] needs a VAF for every set of a group, or
-    /// `best_runs`, or groups of one.
+    /// States the value and its range. [`Fit::Best`] needs a VAF for every set of a group, or `best_runs`, or
+    /// groups of one set.
     pub fn schedule(&self, fit: Fit, outside: Outside) -> Result<Schedule, ScheduleError> {
         let points = match fit {
             Fit::Regression => {
@@ -112,11 +112,11 @@ impl RiderTable {
         })
     }
 
-    /// Coefficient of determination of each gain: `1 - sum (K - f)^2 / sum (K - mean K)^2` over the
-    /// rows, `f` the schedule at the row's own speed; `None` where a gain is the same in all rows.
+    /// Coefficient of determination of each gain: `1 - sum (K - f)^2 / sum (K - mean K)^2` over the rows,
+    /// with `f` the schedule at the row's speed; `None` if all rows have the same gain.
     ///
-    /// Eq. 2.21 is printed as `1 - sum (K - mean K)^2 / sum (f - mean K)^2`. That is -195 to -0.2 for
-    /// the regression of Table F.1, where 0.005 to 0.855 is printed; this form gives those.
+    /// Eq. 2.21 is printed as `1 - sum (K - mean K)^2 / sum (f - mean K)^2`. For the regression of Table F.1
+    /// that gives -195 to -0.2, but 0.005 to 0.855 is printed; the form used here gives the printed values.
     pub fn r_squared(&self, schedule: &Schedule) -> [Option<f64>; KEYS.len()] {
         let (_, mean) = mean(&self.rows);
         std::array::from_fn(|i| {
@@ -131,7 +131,7 @@ impl RiderTable {
         })
     }
 
-    /// The rider with these gains; `delay_s` instead of the table's own \[s\].
+    /// The rider with these gains; `delay_s` \[s\] replaces the table's own.
     ///
     /// # Errors
     /// As [`RiderTable::schedule`].

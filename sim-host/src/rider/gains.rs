@@ -1,4 +1,4 @@
-//! What a rider responds to, and how strongly.
+//! Feedback signals of a rider and their gains.
 
 use crate::num::Scalar;
 
@@ -22,8 +22,8 @@ pub const KEYS: [&str; 10] = [
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Gains(pub [f64; 10]);
 
-/// The motion as a rider feels it, by [`KEYS`]: roll, its integral, rate and acceleration; the same
-/// of steer; heading; lateral offset of the front contact \[m\]. Right positive.
+/// Feedback signals, in the order of [`KEYS`]: roll, its integral, rate and acceleration; the same of steer;
+/// heading; lateral deviation of the front contact \[m\]. Right positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signals<S>(pub [S; 10]);
 
@@ -35,12 +35,12 @@ impl Gains {
         all
     }
 
-    /// The gain at [`KEYS`]' place of `key`; `None` for another name.
+    /// Gain by its symbol; `None` for an unknown symbol.
     pub fn get(&self, key: &str) -> Option<f64> {
         KEYS.iter().position(|k| *k == key).map(|i| self.0[i])
     }
 
-    /// The neural signal before its delay \[N m\]: the sum of gains times signals.
+    /// Neural signal before the delay \[N m\]: the sum of gains times signals.
     #[inline(always)]
     pub fn signal<S: Scalar>(&self, signals: &Signals<S>) -> S {
         let mut sum = signals.0[0] * self.0[0];
@@ -50,7 +50,7 @@ impl Gains {
         sum
     }
 
-    /// On the straight line from `self` to `other`: `self` at `s` = 0, `other` at 1.
+    /// Linear interpolation from `self` (`s` = 0) to `other` (`s` = 1).
     #[inline(always)]
     pub fn toward(&self, other: &Gains, s: f64) -> Gains {
         let mut out = *self;

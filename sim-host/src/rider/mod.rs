@@ -1,4 +1,4 @@
-//! Human riders: delayed linear feedback of the bicycle's motion through the muscles of the
+//! Rider models: delayed linear feedback of the bicycle's motion through neuromuscular dynamics of the
 //! shoulders, in parallel with the assist (Kuipers 2020, sections 2.1.3 and 2.3; Schwab et al. 2013).
 
 pub mod catalogue;
@@ -23,27 +23,27 @@ pub use table::{RiderTable, Row};
 
 use crate::range::within;
 
-/// A rider: what is fed back at which speed, how late, through which muscles.
+/// A rider model: gain schedule, neural delay and neuromuscular dynamics.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rider {
-    /// The gains over speed.
+    /// Gains as functions of speed.
     pub schedule: Schedule,
-    /// The one effective neural delay \[s\].
+    /// Effective neural delay \[s\].
     pub delay_s: f64,
-    /// The muscles.
+    /// Neuromuscular dynamics.
     pub muscles: Neuromuscular,
 }
 
 /// Longest neural delay \[s\].
 pub const MAX_DELAY_S: f64 = 1.0;
 
-/// A rider that can't be simulated.
+/// A rider that can't be simulated, with the reason.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct UnfitError(pub String);
 
 impl Rider {
-    /// The delay in steps of `step_s` seconds, the nearest whole number.
+    /// The delay in steps of `step_s` seconds, rounded to the nearest whole number.
     pub fn delay_steps(&self, step_s: f64) -> usize {
         (self.delay_s / step_s).round() as usize
     }
@@ -51,7 +51,7 @@ impl Rider {
     /// Checks ranges, and that the delay is a whole number of steps of `step_s` seconds.
     ///
     /// # Errors
-    /// Names the value and its range, or the nearest delays.
+    /// States the value and its range, or the nearest possible delays.
     pub fn check(&self, step_s: f64) -> Result<(), UnfitError> {
         within("neural delay (s)", self.delay_s, 0.0, MAX_DELAY_S).map_err(UnfitError)?;
         self.muscles.check().map_err(|e| UnfitError(e.0))?;

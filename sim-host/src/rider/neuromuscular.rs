@@ -13,18 +13,17 @@ pub struct Neuromuscular {
     pub zeta: f64,
 }
 
-/// Muscles that can't be.
+/// Rejected neuromuscular parameters, with the reason.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct MusclesError(pub String);
 
 impl Neuromuscular {
-    /// Shoulder dynamics: 2.17 Hz, damping ratio `sqrt(1/2)` (Schouten et al. 2007, as used by the
-    /// thesis).
+    /// Shoulder dynamics: 2.17 Hz, damping ratio `sqrt(1/2)` (Schouten et al. 2007, as used by the thesis).
     pub const SHOULDERS: Self =
         Self { omega_rad_s: 2.17 * std::f64::consts::TAU, zeta: std::f64::consts::FRAC_1_SQRT_2 };
 
-    /// `T''` \[N m/s^2\] under the neural signal `alpha` \[N m\], from `T` \[N m\] and `T'`.
+    /// `T''` \[N m/s^2\] for the neural signal `alpha` \[N m\], from `T` \[N m\] and `T'`.
     #[inline(always)]
     pub fn acceleration<S: Scalar>(&self, alpha: S, torque: S, torque_rate: S) -> S {
         let (w, zeta) = (self.omega_rad_s, self.zeta);
@@ -34,7 +33,7 @@ impl Neuromuscular {
     /// Checks ranges.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self) -> Result<(), MusclesError> {
         within("neuromuscular natural frequency (rad/s)", self.omega_rad_s, 0.1, 200.0)
             .map_err(MusclesError)?;

@@ -1,36 +1,37 @@
-//! Gains over forward speed.
+//! Gain schedule: gains as functions of forward speed.
 
 use super::{Gains, KEYS};
 use crate::range::within;
 
-/// What happens outside the speeds the gains were measured at.
+/// Behaviour outside the speeds at which the gains were measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Outside {
-    /// The outermost straight lines go on, as published.
+    /// The outermost straight lines are extrapolated, as published.
     #[default]
     Extrapolate,
-    /// The outermost gains stay.
+    /// The outermost gains are held.
     Hold,
 }
 
-/// Gains over speed: straight lines between points. A linear regression is one of two points.
+/// Gains over speed: linear interpolation between points. A linear regression is a schedule of two points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     points: Vec<(f64, Gains)>,
     outside: Outside,
 }
 
-/// Points that make no schedule.
+/// Rejected points of a schedule, with the reason.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct ScheduleError(pub String);
 
 impl Schedule {
-    /// A schedule through `points`: speeds \[m/s\] rising, at least one; one point is constant gains.
+    /// A schedule through `points`: increasing speeds \[m/s\], at least one; a single point gives constant
+    /// gains.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn new(points: Vec<(f64, Gains)>, outside: Outside) -> Result<Self, ScheduleError> {
         let within = |name: &str, value, min, max| within(name, value, min, max).map_err(ScheduleError);
         within("number of gain sets", points.len() as f64, 1.0, 1000.0)?;
@@ -59,7 +60,7 @@ impl Schedule {
         &self.points
     }
 
-    /// What happens outside them.
+    /// Behaviour outside the points.
     pub fn outside(&self) -> Outside {
         self.outside
     }

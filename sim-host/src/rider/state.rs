@@ -1,11 +1,11 @@
-//! A rider's own state, and what a rider feels.
+//! State of a rider model, and its feedback signals from the bicycle's motion.
 
 use super::{Neuromuscular, Signals};
 use crate::bicycle::{Accelerations, Geometry, Motion, Pose, State, Velocities};
 use crate::integrate::Moves;
 use crate::num::Scalar;
 
-/// What a rider remembers from instant to instant, the nerves' delay left out. All zero at the start.
+/// State of a rider model without the delay line. All zero at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RiderState<S> {
     /// Integral of roll from t = 0 \[rad s\].
@@ -14,20 +14,20 @@ pub struct RiderState<S> {
     pub steer_integral: S,
     /// Heading of the rear frame: integral of the yaw rate \[rad\].
     pub heading: S,
-    /// Sideways path of the rear contact, right positive \[m\].
+    /// Lateral path of the rear contact, right positive \[m\].
     pub rear_lateral: S,
-    /// Torque of the muscles on the handlebar, right positive \[N m\].
+    /// Neuromuscular torque on the handlebar, right positive \[N m\].
     pub torque: S,
-    /// Its rate \[N m/s\].
+    /// Time derivative of the torque \[N m/s\].
     pub torque_rate: S,
 }
 
-/// An instant of the bicycle's motion.
+/// The bicycle's motion at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Instant<'a, S> {
-    /// Roll and steer \[rad\].
+    /// Roll and steer angles \[rad\].
     pub angles: [S; 2],
-    /// Their accelerations \[rad/s^2\].
+    /// Accelerations of roll and steer \[rad/s^2\].
     pub accelerations: [S; 2],
     /// The pose.
     pub pose: &'a Pose<S>,
@@ -36,7 +36,7 @@ pub struct Instant<'a, S> {
 }
 
 impl<'a, S: Scalar> Instant<'a, S> {
-    /// The instant of a state, its motion and its accelerations.
+    /// From a state, its motion and its accelerations.
     #[inline(always)]
     pub fn new(state: &State<S>, motion: &'a Motion<S>, acc: &Accelerations<S>) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl<'a, S: Scalar> Instant<'a, S> {
 }
 
 impl<S: Scalar> RiderState<S> {
-    /// At the start.
+    /// State at the start of a ride.
     #[inline(always)]
     pub fn fresh() -> Self {
         let zero = S::constant(0.0);
@@ -63,11 +63,12 @@ impl<S: Scalar> RiderState<S> {
         }
     }
 
-    /// What the rider feels.
+    /// Feedback signals of the rider.
     #[inline(always)]
     pub fn signals(&self, now: &Instant<S>) -> Signals<S> {
         let ([roll, steer], [roll_acc, steer_acc], v) = (now.angles, now.accelerations, now.velocities);
-        // The front contact from the rear one: ahead and to the right of the rear wheel's heading.
+        // Position of the front contact relative to the rear: ahead and to the right of the rear wheel's
+        // heading.
         let (e1, k, base) = (now.pose.e1, now.pose.k, now.pose.base);
         let (ahead, right) = (base.dot(e1), base.dot(k.cross(e1)));
         let (sin, cos) = self.heading.sin_cos();
@@ -86,8 +87,7 @@ impl<S: Scalar> RiderState<S> {
         ])
     }
 
-    /// The rate of change of every entry, in the same places, under the neural signal `alpha` \[N m\]
-    /// that arrives now.
+    /// Time derivative of every entry, in the same fields, for the arriving neural signal `alpha` \[N m\].
     #[inline(always)]
     pub fn rate(&self, b: &Geometry, now: &Instant<S>, muscles: &Neuromuscular, alpha: S) -> RiderState<S> {
         let v = now.velocities;

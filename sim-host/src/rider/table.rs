@@ -1,4 +1,4 @@
-//! Measured gains: one set a row, sets of like speed in a group.
+//! Tables of measured gains: one set per row, sets of similar speed in a group.
 
 use super::file::SCHEMA;
 use super::{Gains, KEYS, Line, Neuromuscular};
@@ -8,48 +8,48 @@ use super::{Gains, KEYS, Line, Neuromuscular};
 pub struct Row {
     /// Forward speed \[m/s\].
     pub speed_m_s: f64,
-    /// The experiment.
+    /// Number of the experiment.
     pub run: Option<u32>,
-    /// Sets of like speed share a number; numbers rise with speed.
+    /// Group number: equal for sets of similar speed, increasing with speed.
     pub group: u32,
     /// Variance accounted for \[%\].
     pub vaf: Option<f64>,
-    /// The gains; those without a column are zero.
+    /// The gains; zero for those without a column.
     pub gains: Gains,
 }
 
-/// A rider's measured gains and what they were measured with.
+/// A rider's measured gains and the conditions of their identification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RiderTable {
-    /// Its name, or FILE as given.
+    /// Name, or FILE as given.
     pub name: String,
-    /// Where the values come from.
+    /// Origin of the values.
     pub source: Option<String>,
     /// A remark.
     pub note: Option<String>,
-    /// The bicycle that the gains are made for, as of `--bicycle`, if they are for one.
+    /// Name of the bicycle for which the gains are made, as for `--bicycle`, if any.
     pub bicycle: Option<String>,
-    /// The effective neural delay they hold for \[s\].
+    /// Effective neural delay of the identification \[s\].
     pub delay_s: f64,
-    /// The muscles they hold for.
+    /// Neuromuscular dynamics of the identification.
     pub muscles: Neuromuscular,
-    /// The run of each group that counts as its best; otherwise the highest VAF does.
+    /// Run of each group that counts as its best; if absent, the one with the highest VAF.
     pub best_runs: Option<Vec<u32>>,
-    /// The regression as it was published, if the rows do not give it to all digits.
+    /// The published regression, if the rows do not reproduce it to all digits.
     pub regression: Option<Line>,
-    /// The gains that have a column, as places in [`KEYS`].
+    /// Indices in [`KEYS`] of the gains that have a column.
     pub columns: Vec<usize>,
-    /// The sets, speeds not falling.
+    /// The sets, in order of non-decreasing speed.
     pub rows: Vec<Row>,
 }
 
 impl RiderTable {
-    /// The groups, by rising speed.
+    /// The groups, in order of increasing speed.
     pub fn groups(&self) -> impl Iterator<Item = &[Row]> {
         self.rows.chunk_by(|a, b| a.group == b.group)
     }
 
-    /// The table as a file, nested loops multiplied out. What is read back is the same but for its
+    /// The table as a file, with nested loops multiplied out. Parsing it gives the same table except for its
     /// name.
     pub fn to_toml(&self) -> String {
         let text = |key, value: &Option<String>| {

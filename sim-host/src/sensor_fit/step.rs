@@ -119,8 +119,8 @@ fn repeats(all: &[Recorded], found: &mut Found, name: &str, riding: bool) {
         return;
     }
     if axes < 3 {
-        let why = "repeat: of one axis alone a value that repeats is a sensor in between two steps";
-        return found.left_out(why.into());
+        let error = "repeat: of one axis alone a value that repeats is a sensor in between two steps";
+        return found.left_out(error.into());
     }
     // By chance they repeat together, too.
     let chance: f64 = each[..axes].iter().map(|count| *count as f64 / pairs as f64).product();

@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused_with_the_reason() {
-        for (text, why) in [
+        for (text, expected) in [
             ("torque-limit", "KEY=VALUES"),
             ("=1", "KEY=VALUES"),
             ("a b=1", "KEY=VALUES"),
@@ -233,7 +233,7 @@ mod tests {
             ("a=0:1:1e-5", "more than 1000"),
         ] {
             let error = Axis::parse(text).unwrap_err();
-            assert!(error.contains(why), "{text}: {error}");
+            assert!(error.contains(expected), "{text}: {error}");
         }
     }
 }

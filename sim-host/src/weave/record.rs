@@ -93,7 +93,7 @@ pub fn read(text: &str, columns: &Columns) -> Result<Record, String> {
         let line = record.position().map_or(0, csv::Position::line);
         match row(&header, &record, line, time, &axes, columns.unit) {
             Ok(row) => rows.push(row),
-            Err((kind, why)) => notes.add(kind, line, &why),
+            Err((kind, error)) => notes.add(kind, line, &error),
         }
     }
     let rows = rising(rows, &header[time], &mut notes);
@@ -213,8 +213,8 @@ fn rising(rows: Vec<Row>, column: &str, notes: &mut Notes) -> Vec<Row> {
 struct Notes(Vec<(Kind, u64, String)>);
 
 impl Notes {
-    fn add(&mut self, kind: Kind, line: u64, why: &str) {
-        self.0.push((kind, line, format!("line {line}: {why}; left out")));
+    fn add(&mut self, kind: Kind, line: u64, error: &str) {
+        self.0.push((kind, line, format!("line {line}: {error}; left out")));
     }
 
     /// The first of each kind, by line, and how many more there are.
@@ -224,7 +224,7 @@ impl Notes {
         let told = groups.flat_map(|group| {
             let more = group.len().saturating_sub(TOLD);
             let more = (more > 0).then(|| format!("{more} more lines like line {}; left out", group[0].1));
-            group.iter().take(TOLD).map(|(_, _, why)| why.clone()).chain(more)
+            group.iter().take(TOLD).map(|(_, _, error)| error.clone()).chain(more)
         });
         told.collect()
     }

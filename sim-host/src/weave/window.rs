@@ -75,10 +75,10 @@ pub fn window(times: &[f64], axes: &[&[f64]], stated: (Option<f64>, Option<f64>)
     let told_to = stated.1.map_or(times.len(), |to| times.partition_point(|t| *t <= to));
     let limit = if stated.1.is_some() { times.len() } else { times.partition_point(|t| *t <= longest) };
     let (mut to, mut ends) = (times.len(), Ends::Record);
-    for (at, why) in [(gap.unwrap_or(times.len()), Ends::Gap), (limit, Ends::Limit), (told_to, Ends::Stated)]
+    for (at, end) in [(gap.unwrap_or(times.len()), Ends::Gap), (limit, Ends::Limit), (told_to, Ends::Stated)]
     {
         if at < to {
-            (to, ends) = (at, why);
+            (to, ends) = (at, end);
         }
     }
     Window { from, to, begins, ends }
