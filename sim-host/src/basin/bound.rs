@@ -1,9 +1,9 @@
-//! What a number that was computed from heights says of the true one, where heights are lower bounds.
+//! Relation of a computed number to the true one, where heights are lower bounds.
 
 use super::{Basin, Column};
 
-/// How a computed number lies to the true one. A height is a lower bound where nothing fell up to the largest
-/// disturbance tried, and so is an area or a mean with such a height in it.
+/// Relation of a computed number to the true one. A height is a lower bound if no ride fell up to the largest
+/// disturbance tried; an area or mean that contains it is then one too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
@@ -18,12 +18,12 @@ pub enum Bound {
 }
 
 impl Bound {
-    /// Of a height, an area or a mean; `capped` where it is a lower bound.
+    /// For a height, an area or a mean; `capped` if it is a lower bound.
     pub fn of(capped: bool) -> Self {
         if capped { Self::AtLeast } else { Self::Measured }
     }
 
-    /// Of a ratio of two such numbers.
+    /// For a ratio of two such numbers.
     pub fn of_ratio(numerator_capped: bool, denominator_capped: bool) -> Self {
         match (numerator_capped, denominator_capped) {
             (false, false) => Self::Measured,
@@ -33,7 +33,7 @@ impl Bound {
         }
     }
 
-    /// Of the distance of two heights.
+    /// For the distance of two heights.
     pub(super) fn of_distance(a: &Column, b: &Column) -> Self {
         let bounded = match (a.capped, b.capped) {
             (false, false) => return Self::Measured,
@@ -44,7 +44,7 @@ impl Bound {
         if bounded { Self::AtLeast } else { Self::Unknown }
     }
 
-    /// Of a sum of numbers that are measured, lower bounds or unknown.
+    /// For a sum of numbers that are measured, lower bounds or unknown.
     pub(super) fn and(self, other: Self) -> Self {
         match (self, other) {
             (a, b) if a == b => a,
@@ -53,7 +53,7 @@ impl Bound {
         }
     }
 
-    /// Before the number: nothing, `>= `, `<= `, or `~ ` where nothing is known.
+    /// Prefix of the number: none, `>= `, `<= `, or `~ ` if unknown.
     pub fn sign(self) -> &'static str {
         match self {
             Self::Measured => "",
@@ -63,7 +63,7 @@ impl Bound {
         }
     }
 
-    /// Whether it is as good as measured.
+    /// Whether the number is measured.
     pub fn is_measured(self) -> bool {
         self == Self::Measured
     }
@@ -84,7 +84,7 @@ impl schemars::JsonSchema for Bound {
 }
 
 impl Basin {
-    /// Whether some height is a lower bound, and with it the area and the mean.
+    /// Whether any height is a lower bound, and so the area and the mean.
     pub fn capped(&self) -> bool {
         self.columns.iter().any(|c| c.capped)
     }

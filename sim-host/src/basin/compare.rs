@@ -1,19 +1,19 @@
-//! How far two outlines are apart.
+//! Root-mean-square distance of two outlines.
 
 use super::{Basin, Bound};
 
-/// Root-mean-square distance of two outlines \[rad/s\], both readings of the thesis's eq. 2.22.
+/// Root-mean-square distance of two outlines \[rad/s\], in both interpretations of the thesis's eq. 2.22.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Rmse {
-    /// The root of the mean of the squared differences.
+    /// Square root of the mean of the squared differences.
     pub mean: f64,
-    /// As the equation is printed, without 1/n: the root of their sum.
+    /// As the equation is printed, without 1/n: square root of their sum.
     pub as_printed: f64,
-    /// How both lie to the true distances.
+    /// Relation of both to the true distances.
     pub bound: Bound,
 }
 
-/// The distance over the speeds both outlines have; `None` when they share none.
+/// The distance over the speeds common to both outlines; `None` if there are none.
 pub fn rmse(a: &Basin, b: &Basin) -> Option<Rmse> {
     let mut squares = 0.0;
     let mut n = 0u32;

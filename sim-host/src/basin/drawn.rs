@@ -1,4 +1,4 @@
-//! Basins of bicycles drawn from the uncertainties of one.
+//! Basins of bicycles drawn from the measured uncertainties of a bicycle.
 
 use super::{Basin, Column, Search, SearchError, border};
 use crate::bicycle::Geometry;
@@ -6,23 +6,24 @@ use crate::bicycle::uncertain::Measured;
 use crate::ride::Conditions;
 use rayon::prelude::*;
 
-/// The parts of the draws below the three numbers that stand for them.
+/// Probabilities of the reported quantiles.
 pub const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// The basins of drawn bicycles; those alone of which every speed is computed.
+/// Basins of drawn bicycles; only those computed at every speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
     /// Seed of the draws.
     pub seed: u64,
-    /// The basins, without what lies beyond them.
+    /// The basins, without islands.
     pub basins: Vec<Basin>,
 }
 
-/// The basins of `count` bicycles drawn from `measured`. Controller and rider are those of `conditions`: they know the
-/// bicycle as it was measured. `finished` is called for each column, `stop` asked before each.
+/// Computes the basins of `count` bicycles drawn from `measured`. Controller and rider are those of
+/// `conditions`: they are tuned to the bicycle as measured. `finished` is called after each column, `stop` is
+/// checked before each.
 ///
 /// # Errors
-/// When hardly any draw can exist, or a drawn bicycle can't be ridden.
+/// Too few draws are possible bicycles, or a drawn bicycle can't be simulated.
 pub fn drawn(
     conditions: &Conditions,
     measured: &Measured,
@@ -55,7 +56,7 @@ pub fn drawn(
 }
 
 impl Drawn {
-    /// The [`QUANTILES`] of a number of each basin, on straight lines between the draws.
+    /// The [`QUANTILES`] of a number of each basin, with linear interpolation between the draws.
     pub fn quantiles(&self, of: impl Fn(&Basin) -> f64) -> [f64; 3] {
         let mut all: Vec<f64> = self.basins.iter().map(of).collect();
         all.sort_by(f64::total_cmp);
@@ -69,13 +70,13 @@ impl Drawn {
         })
     }
 
-    /// Per speed the quantiles of the height \[rad/s\].
+    /// Quantiles of the height at each speed \[rad/s\].
     pub fn heights(&self) -> Vec<[f64; 3]> {
         let speeds = self.basins.first().map_or(0, |basin| basin.columns.len());
         (0..speeds).map(|i| self.quantiles(|basin| basin.columns[i].upper)).collect()
     }
 
-    /// How many of the draws have a height that is a lower bound.
+    /// Number of draws with a height that is a lower bound.
     pub fn capped(&self) -> usize {
         self.basins.iter().filter(|basin| basin.capped()).count()
     }

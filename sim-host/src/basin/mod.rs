@@ -1,4 +1,4 @@
-//! The basin of attraction: from which disturbances, over forward speed, the bicycle recovers.
+//! Basins of attraction: disturbances, over forward speed, from which a ride does not fall.
 
 mod bound;
 mod compare;

@@ -1,4 +1,4 @@
-//! The basin at one speed over both disturbances: steer rate and roll rate together.
+//! The basin at one speed over two disturbances: steer rate and roll rate.
 
 use super::search::along;
 use super::{Axis, Column, Search, SearchError, Work};
@@ -7,8 +7,8 @@ use crate::ride::{Conditions, Start};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// What is searched: rays from the undisturbed ride, evenly spread over half of the plane in units
-/// of the two largest rates; the other half is the mirror image.
+/// Settings of the search along rays from the undisturbed ride, evenly spread over half of the plane in units
+/// of the two largest rates. The other half is the mirror image.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct PlaneSearch {
     /// Forward speed \[m/s\].
@@ -19,25 +19,25 @@ pub struct PlaneSearch {
     pub max_steer_rate: f64,
     /// Largest roll rate tried \[rad/s\].
     pub max_roll_rate: f64,
-    /// Rides of the scan along each ray.
+    /// Points of the scan along each ray.
     pub points: usize,
-    /// How closely borders are located, as a part of a ray.
+    /// Tolerance of borders, as a fraction of a ray.
     pub tolerance: f64,
 }
 
-/// One direction of disturbances.
+/// One direction in the plane of disturbances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ray {
     /// Steer rate at the ray's end \[rad/s\].
     pub steer_rate: f64,
     /// Roll rate at the ray's end \[rad/s\].
     pub roll_rate: f64,
-    /// What was found along it; its rates are parts of the ray, 0 to 1.
+    /// Result along the ray; its rates are fractions of the ray, 0 to 1.
     pub column: Column,
 }
 
 impl Ray {
-    /// The disturbance at the part `s` of the ray: steer rate, roll rate \[rad/s\].
+    /// The disturbance at the fraction `s` of the ray: steer rate, roll rate \[rad/s\].
     pub fn at(&self, s: f64) -> (f64, f64) {
         (s * self.steer_rate, s * self.roll_rate)
     }
@@ -46,13 +46,12 @@ impl Ray {
 /// A basin over steer rate and roll rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
-    /// The rays that were searched, by angle. Fewer than asked for after an interruption.
+    /// The rays searched, ordered by angle. Incomplete after an interruption.
     pub rays: Vec<Ray>,
 }
 
 impl Plane {
-    /// The border of the star-shaped part around zero, all the way round: steer rate, roll rate
-    /// \[rad/s\].
+    /// Border of the star-shaped part around zero, as a closed curve: steer rate, roll rate \[rad/s\].
     pub fn outline(&self) -> Vec<(f64, f64)> {
         let half = self.rays.iter().map(|ray| ray.at(ray.column.upper));
         let mirrored = half.clone().map(|(steer, roll)| (-steer, -roll));
@@ -66,12 +65,12 @@ impl Plane {
         0.5 * points.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>() + 0.0
     }
 
-    /// Whether the area is a lower bound: nothing fell up to the end of some ray.
+    /// Whether the area is a lower bound: no ride fell up to the end of some ray.
     pub fn capped(&self) -> bool {
         self.rays.iter().any(|ray| ray.column.capped)
     }
 
-    /// What it took.
+    /// Computing effort.
     pub fn work(&self) -> Work {
         self.rays.iter().fold(Work::default(), |sum, ray| sum.plus(&ray.column.work))
     }
@@ -87,7 +86,7 @@ impl PlaneSearch {
     /// Checks ranges.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self) -> Result<(), SearchError> {
         let within = |name, value, min, max| within(name, value, min, max).map_err(SearchError);
         within("speed (m/s)", self.speed, 0.0, 30.0)?;
@@ -99,11 +98,11 @@ impl PlaneSearch {
     }
 }
 
-/// The basin over both rates, on all cores of the current rayon pool; `finished` is called for each
-/// ray, `stop` asked before each. The result does not depend on the number of threads.
+/// Computes the basin over both rates, on all cores of the current rayon pool. `finished` is called after
+/// each ray, `stop` is checked before each. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// When the search or the conditions fail their checks.
+/// The search or the conditions fail their checks.
 pub fn plane(
     conditions: &Conditions,
     search: &PlaneSearch,

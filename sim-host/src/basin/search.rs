@@ -1,4 +1,4 @@
-//! The search: a scan over disturbances, then every border it crosses narrowed down.
+//! Basin search: a scan over disturbances, then each border is narrowed to the tolerance.
 
 use super::{Basin, Column, Island, ScanPoint, Work};
 use crate::range::within;
@@ -17,7 +17,7 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// The start of a ride at `speed` \[m/s\] with a disturbance of `rate` \[rad/s\].
+    /// Initial state of a ride at `speed` \[m/s\] with a disturbance of `rate` \[rad/s\].
     pub fn start(self, speed: f64, rate: f64) -> Start {
         let steady = Start { speed_m_s: speed, ..Start::default() };
         match self {
@@ -27,10 +27,10 @@ impl Axis {
     }
 }
 
-/// What is searched, and how finely.
+/// Range and resolution of the search.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Search {
-    /// Forward speeds \[m/s\], rising.
+    /// Forward speeds \[m/s\], increasing.
     pub speeds: Vec<f64>,
     /// The disturbed rate.
     pub axis: Axis,
@@ -38,11 +38,11 @@ pub struct Search {
     pub max_rate: f64,
     /// Step of the scan \[rad/s\]: islands and gaps narrower than this can be missed.
     pub scan_step: f64,
-    /// How closely the borders are located \[rad/s\].
+    /// Tolerance of the borders \[rad/s\].
     pub tolerance: f64,
 }
 
-/// A search that can't be done.
+/// A rejected search, with the reason.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct SearchError(pub String);
@@ -59,14 +59,14 @@ impl From<SearchError> for RemoteError {
     }
 }
 
-/// Rides between two known ends in one round of narrowing: as many as go side by side.
+/// Rides between the two ends of an interval in one round of narrowing: the number of lanes.
 const SECTIONS: usize = 8;
 
 impl Search {
     /// Checks ranges.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self) -> Result<(), SearchError> {
         let within = |name, value, min, max| within(name, value, min, max).map_err(SearchError);
         within("number of speeds", self.speeds.len() as f64, 1.0, 100_000.0)?;
@@ -79,11 +79,11 @@ impl Search {
     }
 }
 
-/// The basin of every speed, on all cores of the current rayon pool; `finished` is called for each
-/// column, `stop` asked before each. The result does not depend on the number of threads.
+/// Computes the basin at every speed, on all cores of the current rayon pool. `finished` is called after each
+/// column, `stop` is checked before each. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// When the search or the conditions fail their checks.
+/// The search or the conditions fail their checks.
 pub fn basin(
     conditions: &Conditions,
     search: &Search,
@@ -93,10 +93,10 @@ pub fn basin(
     basin_by(conditions, search, |starts| Ok(rides(conditions, starts)), finished, stop)
 }
 
-/// As [`basin`], the rides by `rides`, which gives them in the order of the starts.
+/// As [`basin`], with rides simulated by `rides`, which returns them in the order of the starts.
 ///
 /// # Errors
-/// When the search or the conditions fail their checks, and those of `rides`.
+/// The search or the conditions fail their checks, or `rides` fails.
 pub fn basin_by<E: From<SearchError> + Send>(
     conditions: &Conditions,
     search: &Search,
@@ -126,27 +126,27 @@ pub fn column(conditions: &Conditions, search: &Search, speed: f64) -> Column {
     along(conditions, search, &|rate| search.axis.start(speed, rate))
 }
 
-/// The basin along any line of disturbances: `start` makes the initial state of a disturbance of 0 to
-/// `search.max_rate`. The search's axis is of no meaning.
+/// The basin along any line of disturbances: `start` gives the initial state for a disturbance of 0 to
+/// `search.max_rate`. The search's axis is not used.
 pub(super) fn along(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Start) -> Column {
     let Ok(column) = explored(&ridden(conditions), search, start, usize::MAX);
     column
 }
 
-/// The basin at one speed without what lies beyond: the scan ends soon after the first fall, and there
-/// are no islands. `upper` is that of [`column`].
+/// The basin at one speed without islands: the scan ends soon after the first fall. `upper` equals that of
+/// [`column`].
 pub fn border(conditions: &Conditions, search: &Search, speed: f64) -> Column {
     let start = |rate| search.axis.start(speed, rate);
     let Ok(column) = explored(&ridden(conditions), search, &start, SECTIONS);
     Column { islands: Vec::new(), ..column }
 }
 
-/// [`rides`], as what can't fail.
+/// [`rides`] as an infallible function for [`explored`].
 fn ridden(conditions: &Conditions) -> impl Fn(&[Start]) -> Result<Vec<Ride>, Infallible> {
     |starts| Ok(rides(conditions, starts))
 }
 
-/// The scan in groups of `group` rides, to its end or the first group with a fall; and its borders.
+/// Scans in groups of `group` rides, to the end or the first group with a fall, and narrows the borders.
 fn explored<E>(
     rides: &impl Fn(&[Start]) -> Result<Vec<Ride>, E>,
     search: &Search,
@@ -161,7 +161,7 @@ fn explored<E>(
         work.add(&done);
         Ok(done)
     };
-    // The last point is the cap itself, also when the step does not divide it.
+    // The last point is the largest rate, even if it is not a multiple of the scan step.
     let points = (search.max_rate / search.scan_step - 1e-9).ceil() as usize;
     let rates: Vec<f64> = (1..=points).map(|i| (i as f64 * search.scan_step).min(search.max_rate)).collect();
     let mut scan: Vec<Ride> = Vec::new();
@@ -171,7 +171,7 @@ fn explored<E>(
             break;
         }
     }
-    // Without a disturbance nothing falls; a border lies wherever the scan changes its mind.
+    // The undisturbed ride does not fall; there is a border wherever consecutive points differ.
     let mut runs: Vec<Island> = Vec::new();
     let (mut border, mut beyond) = (None, None);
     let mut open = Some((0.0, None));
@@ -204,8 +204,8 @@ fn explored<E>(
     Ok(Column { speed, upper, capped, islands: runs.split_off(1), scan, border, beyond, work })
 }
 
-/// The rate closest to a border that was seen not to fall, within `tolerance` of one that fell, its ride, and what made
-/// the other fall. `safe` did not fall, `fell` did, for `by`; each may be the larger.
+/// Narrows a border to `tolerance`: returns the closest rate found not to fall, its ride, and the cause of
+/// the fall on the other side. `safe` did not fall; `fell` did, by the cause `by`; either can be the larger.
 pub(super) fn narrow<E>(
     ride: &mut impl FnMut(&[f64]) -> Result<Vec<Ride>, E>,
     mut safe: f64,

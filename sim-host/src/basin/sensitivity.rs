@@ -1,4 +1,4 @@
-//! How the height of the basin changes with everything the ride depends on: central differences.
+//! Sensitivity of the basin's height to each parameter of bicycle and rider, by central differences.
 
 use super::Column;
 use super::search::{Axis, Search, SearchError, border, narrow};
@@ -8,23 +8,23 @@ use crate::rider::{KEYS, Rider, Schedule};
 use rayon::prelude::*;
 use std::convert::Infallible;
 
-/// A quantity of the bicycle or its rider.
+/// A parameter of the bicycle or the rider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// A gain, by its place in [`KEYS`], at all speeds.
+    /// A gain, by its index in [`KEYS`], at all speeds.
     Gain(usize),
     /// The neural delay.
     Delay,
-    /// The muscles' undamped natural frequency.
+    /// Undamped natural frequency of the neuromuscular dynamics.
     MuscleFrequency,
-    /// The muscles' damping ratio.
+    /// Damping ratio of the neuromuscular dynamics.
     MuscleDamping,
-    /// A parameter of the bicycle, by its place in [`bicycle::KEYS`].
+    /// A parameter of the bicycle, by its index in [`bicycle::KEYS`].
     Bicycle(usize),
 }
 
 impl Quantity {
-    /// Everything `rider` on a bicycle depends on; gains that are zero at all speeds are left out.
+    /// All parameters of `rider` and a bicycle, without gains that are zero at all speeds.
     pub fn all(rider: &Rider) -> Vec<Self> {
         let used = |&i: &usize| rider.schedule.points().iter().any(|(_, gains)| gains.0[i] != 0.0);
         let gains = (0..KEYS.len()).filter(used).map(Self::Gain);
@@ -32,7 +32,7 @@ impl Quantity {
         gains.chain(body).chain((0..bicycle::KEYS.len()).map(Self::Bicycle)).collect()
     }
 
-    /// Its symbol.
+    /// Symbol.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gain(i) => KEYS[i],
@@ -43,11 +43,10 @@ impl Quantity {
         }
     }
 
-    /// The conditions with the quantity times `factor`.
+    /// The conditions with the parameter multiplied by `factor`.
     ///
     /// # Errors
-    /// When the schedule or the conditions do not allow it, for a delay that it is no whole number of
-    /// steps.
+    /// The schedule or the conditions reject the value; a delay must be a whole number of steps.
     pub fn scaled(
         self,
         conditions: &Conditions,
@@ -78,7 +77,7 @@ impl Quantity {
         Ok(changed)
     }
 
-    /// The relative step of the differences: `PERCENT`, of a delay the next number of whole double steps.
+    /// Relative step of the differences: `PERCENT`; for a delay the next even number of time steps.
     fn step(self, conditions: &Conditions) -> f64 {
         match (self, &conditions.rider) {
             (Self::Delay, Some(rider)) => 2.0 * conditions.step_s / rider.delay_s,
@@ -90,10 +89,10 @@ impl Quantity {
 /// The larger step of the differences \[%\].
 const PERCENT: f64 = 1.0;
 
-/// How the height of the basin at one speed depends on a quantity.
+/// Sensitivity of the basin's height at one speed to a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity {
-    /// The quantity.
+    /// The parameter.
     pub quantity: Quantity,
     /// Forward speed \[m/s\].
     pub speed: f64,
@@ -101,30 +100,30 @@ pub struct Sensitivity {
     pub height: f64,
     /// Change of the height for +1 % \[rad/s\].
     pub per_percent: f64,
-    /// The same from half the step.
+    /// The same with half the step.
     pub halved: f64,
-    /// How far the located borders can put `halved`, the less sure of the two, off \[rad/s\].
+    /// Largest error of `halved` (the less certain of the two) from the tolerance of the borders \[rad/s\].
     pub resolution: f64,
 }
 
 impl Sensitivity {
-    /// Relative change of the height over relative change of the quantity.
+    /// Elasticity: relative change of the height over relative change of the parameter.
     pub fn elasticity(&self) -> f64 {
         100.0 * self.per_percent / self.height
     }
 
-    /// Whether both steps tell the same: within a tenth, or what the borders resolve.
+    /// Whether both steps agree within a tenth, or within the resolution of the borders.
     pub fn is_smooth(&self) -> bool {
         let apart = (self.halved - self.per_percent).abs();
         apart <= 2.0 * self.resolution + 0.1 * self.per_percent.abs().max(self.halved.abs())
     }
 }
 
-/// The sensitivity at `speed` \[m/s\] to `quantities`, borders within `tolerance` \[rad/s\], on all
-/// cores of the current rayon pool. `parameters` are those of the conditions' bicycle.
+/// Computes the sensitivities at `speed` \[m/s\] to `quantities`, with borders within `tolerance` \[rad/s\],
+/// on all cores of the current rayon pool. `parameters` are those of the conditions' bicycle.
 ///
 /// # Errors
-/// When the conditions fail their checks, or with a quantity changed, or nothing falls up to 20 rad/s.
+/// The conditions fail their checks, also with a parameter changed, or no ride falls up to 20 rad/s.
 pub fn sensitivities(
     conditions: &Conditions,
     parameters: &Parameters,
@@ -166,10 +165,10 @@ pub fn sensitivities(
     quantities.par_iter().map(one).collect()
 }
 
-/// The border next to `guess` \[rad/s\].
+/// The border nearest to `guess` \[rad/s\].
 ///
-/// Eight rides around it, wider and wider until the first does not fall and another does; then as
-/// every border is narrowed.
+/// Eight rides around it, over an increasing width until the first does not fall and another does. The border
+/// is then narrowed as usual.
 fn near(conditions: &Conditions, speed: f64, guess: f64, tolerance: f64) -> f64 {
     let mut ride = |rates: &[f64]| -> Result<Vec<Ride>, Infallible> {
         let starts: Vec<_> = rates.iter().map(|&rate| Axis::SteerRate.start(speed, rate)).collect();

@@ -1,4 +1,4 @@
-//! The motor with its drive and gear: from the commanded torque to the torque on the steer axis.
+//! Actuator model: from the commanded torque to the torque on the steer axis, through drive, motor and gear.
 
 use super::{Friction, PlantError, SteerStop};
 use crate::range::within;
@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// A supply voltage and the motor it drives, seen at the steer axis.
+/// Supply voltage and motor constants, reflected to the steer axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Supply {
@@ -14,13 +14,13 @@ pub struct Supply {
     pub voltage_v: f64,
     /// Winding resistance \[ohm\].
     pub resistance_ohm: f64,
-    /// Torque constant times gear ratio \[N m/A\], which is the voltage constant at the steer axis
-    /// \[V s/rad\] too.
+    /// Torque constant times gear ratio \[N m/A\], equal to the voltage constant at the steer axis \[V
+    /// s/rad\].
     pub constant_nm_a: f64,
 }
 
 impl Supply {
-    /// Least and largest torque at a steer rate \[rad/s\]: `k (-V - k q) / R` and `k (V - k q) / R`.
+    /// Smallest and largest torque at a steer rate \[rad/s\]: `k (-V - k q) / R` and `k (V - k q) / R`.
     fn limits(&self, rate: f64) -> (f64, f64) {
         let k = self.constant_nm_a;
         let per_volt = k / self.resistance_ohm;
@@ -28,20 +28,21 @@ impl Supply {
     }
 }
 
-/// How the motor departs from giving the torque it is asked for, and the friction and end-stop of the
-/// steer. The default does not, and has neither.
+/// Deviations of the motor from the commanded torque, and the friction and end-stop of the steer. The default
+/// is exact and has neither.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ActuatorConfig {
-    /// Control periods from the command to the drive.
+    /// Delay from the command to the drive \[control periods\].
     pub delay_ticks: u16,
-    /// Torque given over torque asked for: the torque constant's error; negative is wired the wrong way.
+    /// Delivered over commanded torque: the error of the torque constant. Negative: wired with the wrong
+    /// sign.
     pub scale: f64,
-    /// Time constant of the torque's first-order response \[s\]; 0 is at once.
+    /// Time constant of the torque's first-order response \[s\]; 0 is no lag.
     pub time_constant_s: f64,
     /// Largest torque either way \[N m\]; null is no limit.
     pub limit_nm: Option<f64>,
-    /// What the voltage allows; null is everything.
+    /// Torque limit by the supply voltage; null is no limit.
     pub supply: Option<Supply>,
     /// Friction about the steer axis.
     pub friction: Friction,
@@ -67,7 +68,7 @@ impl ActuatorConfig {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self) -> Result<(), PlantError> {
         let all = || {
             within("actuator delay (control periods)", f64::from(self.delay_ticks), 0.0, 1000.0)?;
@@ -85,33 +86,33 @@ impl ActuatorConfig {
         self.friction.check()
     }
 
-    /// Whether the motor gives exactly what it is asked for.
+    /// Whether the motor delivers exactly the commanded torque.
     pub fn exact(&self) -> bool {
         *self == Self { friction: self.friction, stop: self.stop, ..Self::default() }
     }
 }
 
-/// One motor: commands on their way, and the response under way. All zero at the start.
+/// State of the actuator: delayed commands and the drive's response. All zero at the start.
 ///
-/// The response to a torque that is held for a control period is known in closed form, so it is as
-/// exact at every stage of an integration step as the exponential.
+/// The response to a torque held for a control period is computed in closed form, so it is exact at every
+/// stage of an integration step.
 #[derive(Clone, Debug)]
 pub struct Actuator {
     on_their_way: VecDeque<f64>,
-    /// The torque that the response tends to in this period, and where it began \[N m\].
+    /// Torque to which the response tends in this period, and torque at the period's start \[N m\].
     target_nm: f64,
     began_nm: f64,
 }
 
 impl Actuator {
-    /// A motor at rest.
+    /// State at zero torque.
     pub fn new(config: &ActuatorConfig) -> Self {
         let on_their_way = vec![0.0; usize::from(config.delay_ticks)].into();
         Self { on_their_way, target_nm: 0.0, began_nm: 0.0 }
     }
 
-    /// Begins a control period, `period_s` after the one before, with the torque commanded at its
-    /// start \[N m\].
+    /// Begins a control period with the torque commanded at its start \[N m\]; the previous period lasted
+    /// `period_s`.
     pub fn command(&mut self, config: &ActuatorConfig, period_s: f64, torque_nm: f64) {
         self.began_nm = self.response(config, period_s);
         let arrived = match self.on_their_way.pop_front() {
@@ -124,8 +125,8 @@ impl Actuator {
         self.target_nm = arrived * config.scale;
     }
 
-    /// The torque on the steer axis \[N m\] `elapsed_s` into the control period, at a steer rate
-    /// \[rad/s\]; friction is not in it.
+    /// Torque on the steer axis \[N m\] `elapsed_s` into the control period, at a steer rate \[rad/s\];
+    /// without friction.
     pub fn torque(&self, config: &ActuatorConfig, elapsed_s: f64, rate: f64) -> f64 {
         let mut torque = self.response(config, elapsed_s);
         if let Some(supply) = &config.supply {
@@ -135,7 +136,7 @@ impl Actuator {
         config.limit_nm.map_or(torque, |limit| torque.clamp(-limit, limit))
     }
 
-    /// The drive's response, limits left out.
+    /// Response of the drive before limits.
     fn response(&self, config: &ActuatorConfig, elapsed_s: f64) -> f64 {
         if config.time_constant_s == 0.0 {
             return self.target_nm;

@@ -1,23 +1,22 @@
-//! Actuators by name or from TOML files.
+//! Loads actuators by name or from TOML files.
 
 use super::{ActuatorConfig, PlantError};
 use serde::Deserialize;
 use std::path::Path;
 
-/// Those that ship, one table each.
+/// The shipped actuators, one table each.
 const SHIPPED: &str = include_str!("../../../data/actuators.toml");
 
-/// The shipped actuators' names; "none" is the exact one.
+/// Names of the shipped actuators; "none" is the exact one.
 pub fn shipped_names() -> Vec<String> {
     let shipped: toml::Table = toml::from_str(SHIPPED).unwrap_or_default();
     std::iter::once("none".into()).chain(shipped.keys().cloned()).collect()
 }
 
-/// An actuator by shipped name, else from a file.
+/// Loads an actuator by shipped name, otherwise from a file.
 ///
 /// # Errors
-/// No such name or file, a key that is missing, unknown or of a wrong type, or a value out of range:
-/// each named.
+/// An unknown name or file, a missing or unknown key, a wrong type, or a value out of range; each is named.
 pub fn load(name: &str) -> Result<ActuatorConfig, PlantError> {
     if name == "none" {
         return Ok(ActuatorConfig::default());

@@ -1,14 +1,14 @@
-//! Faults: what goes wrong, from when to when. Written as `gyro.x:bias=0.1@1.5s..3s`.
+//! Fault injection in sensors, motor command, switch and clock. Text form: `gyro.x:bias=0.1@1.5s..3s`.
 
 use super::{RandomStream, Sensor};
 use std::collections::VecDeque;
 
-/// What a fault is on.
+/// Signal in which a fault is injected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
-    /// A sensor: every sample it delivers.
+    /// All samples of a sensor.
     Sensor(Sensor),
-    /// The torque command on its way to the motor \[N m\].
+    /// The torque command to the motor \[N m\].
     Motor,
     /// The rider's switch: 1 is on.
     Engage,
@@ -16,32 +16,32 @@ pub enum Channel {
     Clock,
 }
 
-/// What goes wrong. Amounts are in the channel's unit.
+/// Type of the fault. Amounts are in the channel's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// Says for ever what it said last.
+    /// The last value before the fault is held.
     Stuck,
-    /// Says nothing.
+    /// No samples.
     Missing,
-    /// Says everything later by this time \[s\].
+    /// Samples are delayed by this time \[s\].
     Late(f64),
     /// White Gaussian noise of this standard deviation.
     Noise(f64),
-    /// This much is added.
+    /// This amount is added.
     Bias(f64),
-    /// This much per second is added, from the fault's beginning.
+    /// This amount per second is added, from the start of the fault.
     Drift(f64),
-    /// Times this.
+    /// The value is multiplied by this factor.
     Scale(f64),
-    /// The other sign (for the switch: on is off).
+    /// The sign is inverted (for the switch: on becomes off).
     Flip,
-    /// A step by this much, for good.
+    /// A permanent step by this amount.
     Jump(f64),
-    /// This much is added to one sample.
+    /// This amount is added to one sample.
     Spike(f64),
     /// Not a number.
     Nan,
-    /// This value.
+    /// The value is replaced by this one.
     Value(f64),
     /// Every sample is lost with this probability.
     Dropout(f64),
@@ -51,51 +51,51 @@ pub enum Kind {
     Slow(f64),
 }
 
-/// One fault. Its text form parses back to it.
+/// One fault. Its text form parses to the same fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fault {
-    /// What it is on.
+    /// Where it is injected.
     pub channel: Channel,
-    /// Which axis by [`Sensor::axes`]; all of them if none.
+    /// Index of the axis in [`Sensor::axes`]; all axes if none.
     pub axis: Option<u8>,
-    /// What goes wrong.
+    /// Type of the fault.
     pub kind: Kind,
-    /// From this time of the ride \[s\], ...
+    /// Start, in the time of the ride \[s\].
     pub from_s: f64,
-    /// ... up to this time, which may be infinite \[s\].
+    /// End, in the time of the ride \[s\]; can be infinite.
     pub to_s: f64,
 }
 
-/// A fault in one ride.
+/// State of a fault in one ride.
 #[derive(Debug)]
 pub struct FaultState {
-    /// First tick it acts at, and first tick it does not any more.
+    /// First tick of the fault, and first tick after it.
     from: i64,
     to: i64,
     period_s: f64,
-    /// What was said last before it.
+    /// Last value before the fault, or output of the lag.
     last: [f64; 3],
-    /// What is said too late.
+    /// Delayed samples.
     late: VecDeque<Option<[f64; 3]>>,
-    /// For how many ticks.
+    /// Delay in ticks.
     late_ticks: usize,
-    /// A spike was there.
+    /// Whether the fault has acted, so that a spike acts once.
     spent: bool,
-    /// What a lag keeps of the difference in a period.
-    keeps: f64,
+    /// Decay of the lag's difference per period.
+    decay: f64,
     random: RandomStream,
 }
 
-/// The first tick not before a time, times that are a whole number of periods being exact.
+/// First tick at or after a time; exact for times that are whole numbers of periods.
 fn tick_of(time_s: f64, period_s: f64) -> i64 {
     // The conversion saturates at infinity.
     (time_s / period_s - 1e-6).ceil() as i64
 }
 
 impl FaultState {
-    /// Before the ride; until it begins, `steady` is said.
+    /// State before the ride; until the fault begins, the value is `steady`.
     pub fn new(fault: &Fault, period_s: f64, steady: [f64; 3], random: RandomStream) -> Self {
-        let (late_ticks, keeps) = match fault.kind {
+        let (late_ticks, decay) = match fault.kind {
             Kind::Late(late_s) => ((late_s / period_s).round() as usize, 0.0),
             Kind::Slow(constant_s) => (0, libm::exp(-period_s / constant_s)),
             _ => (0, 0.0),
@@ -108,30 +108,30 @@ impl FaultState {
             late: VecDeque::new(),
             late_ticks,
             spent: false,
-            keeps,
+            decay,
             random,
         }
     }
 
-    /// What is said at `tick` where `said` would be; `None` is nothing.
-    pub fn apply(&mut self, fault: &Fault, tick: i64, said: Option<[f64; 3]>) -> Option<[f64; 3]> {
+    /// The sample at `tick` with the fault, from the `sample` without; `None` is no sample.
+    pub fn apply(&mut self, fault: &Fault, tick: i64, sample: Option<[f64; 3]>) -> Option<[f64; 3]> {
         if tick < self.from || tick >= self.to {
-            self.last = said.unwrap_or(self.last);
-            return said;
+            self.last = sample.unwrap_or(self.last);
+            return sample;
         }
         match fault.kind {
             Kind::Missing => return None,
             Kind::Late(_) => {
-                self.late.push_back(said);
+                self.late.push_back(sample);
                 return if self.late.len() > self.late_ticks { self.late.pop_front()? } else { None };
             }
-            Kind::Dropout(p) => return said.filter(|_| !self.random.chance(p)),
+            Kind::Dropout(p) => return sample.filter(|_| !self.random.chance(p)),
             _ => {}
         }
-        let mut said = said?;
+        let mut sample = sample?;
         let first = !std::mem::replace(&mut self.spent, true);
         let since_s = (tick - self.from) as f64 * self.period_s;
-        for (axis, x) in said.iter_mut().enumerate() {
+        for (axis, x) in sample.iter_mut().enumerate() {
             if fault.axis.is_some_and(|only| usize::from(only) != axis) {
                 continue;
             }
@@ -140,7 +140,7 @@ impl FaultState {
                 Kind::Noise(deviation) => *x + deviation * self.random.normal(),
                 Kind::Bias(by) | Kind::Jump(by) => *x + by,
                 Kind::Drift(by_s) => *x + by_s * since_s,
-                // A clock goes on from where it is.
+                // The clock continues from its present time, at another rate.
                 Kind::Scale(factor) if fault.channel == Channel::Clock => *x + since_s * (factor - 1.0),
                 Kind::Scale(factor) => *x * factor,
                 Kind::Flip if fault.channel == Channel::Engage => 1.0 - *x,
@@ -149,13 +149,13 @@ impl FaultState {
                 Kind::Nan => f64::NAN,
                 Kind::Value(value) => value,
                 Kind::Dead => 0.0,
-                Kind::Slow(_) => *x + (self.last[axis] - *x) * self.keeps,
+                Kind::Slow(_) => *x + (self.last[axis] - *x) * self.decay,
                 Kind::Spike(_) | Kind::Missing | Kind::Late(_) | Kind::Dropout(_) => *x,
             };
         }
         if let Kind::Slow(_) = fault.kind {
-            self.last = said;
+            self.last = sample;
         }
-        Some(said)
+        Some(sample)
     }
 }

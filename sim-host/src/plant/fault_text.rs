@@ -1,4 +1,4 @@
-//! A fault as text: `CHANNEL[.AXIS]:KIND[=VALUE][@FROM[..TO]]`.
+//! Text form of a fault: `CHANNEL[.AXIS]:KIND[=VALUE][@FROM[..TO]]`.
 
 use super::fault::{Channel, Fault, Kind};
 use super::{PlantError, Sensor};
@@ -12,12 +12,12 @@ const LARGEST: f64 = 1e6;
 const LONGEST_S: f64 = 10.0;
 
 impl Channel {
-    /// All of them.
+    /// All channels.
     pub fn all() -> impl Iterator<Item = Self> {
         Sensor::ALL.into_iter().map(Self::Sensor).chain([Self::Motor, Self::Engage, Self::Clock])
     }
 
-    /// Its name on the command line.
+    /// Name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Sensor(sensor) => sensor.name(),
@@ -27,7 +27,7 @@ impl Channel {
         }
     }
 
-    /// Names of its axes; none if it has but one.
+    /// Names of the axes; none for a channel with one axis.
     const fn axes(self) -> &'static [&'static str] {
         match self {
             Self::Sensor(sensor) => sensor.axes(),
@@ -35,7 +35,7 @@ impl Channel {
         }
     }
 
-    /// The kinds of fault it can have, as they are written.
+    /// Kinds of fault of the channel, in text form.
     const fn kinds(self) -> &'static [&'static str] {
         match self {
             Self::Sensor(_) => &[
@@ -73,7 +73,7 @@ impl Channel {
 }
 
 impl Kind {
-    /// Its name on the command line.
+    /// Name on the command line.
     const fn name(&self) -> &'static str {
         match self {
             Self::Stuck => "stuck",
@@ -94,7 +94,7 @@ impl Kind {
         }
     }
 
-    /// Whether it acts on whole samples, so on all axes.
+    /// Whether the fault acts on whole samples, and so on all axes.
     const fn whole(&self) -> bool {
         matches!(self, Self::Missing | Self::Late(_) | Self::Dropout(_))
     }

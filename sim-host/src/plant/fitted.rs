@@ -1,5 +1,5 @@
-//! What recordings of real sensors show beside a sensor's data sheet: bias that differs and wanders, white noise of each
-//! axis, vibration that grows with the speed, samples off their time. `docs/plant.md`, `docs/sensors.md`.
+//! Sensor errors fitted to recordings, beyond those of a data sheet: bias spread and random walk, white noise
+//! per axis, vibration proportional to speed, sampling jitter. `docs/plant.md`, `docs/sensors.md`.
 
 use super::{PlantError, RandomStream, Sensor};
 use crate::num::sin_cos;
@@ -8,37 +8,39 @@ use control::sensors::wheel_speed::{self, Direction, WheelPulses, WheelPulsesCon
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
-/// Lower ends of the octaves of vibration \[Hz\]; each ends where the next begins, the last at 160 Hz, and none beyond half
-/// the sensor's sample rate.
+/// Lower ends of the octaves of vibration \[Hz\]. Each ends where the next begins, the last at 160 Hz; none
+/// extends beyond half the sensor's sample rate.
 pub const OCTAVES_HZ: [f64; 4] = [10.0, 20.0, 40.0, 80.0];
-/// Sinusoids in an octave: their sum is normal within what rides can show.
+/// Sinusoids per octave: enough for their sum to be practically normal in a ride.
 const SINUSOIDS: usize = 12;
-/// Longest time over which a sensor takes a mean, and longest jitter \[control periods\].
+/// Longest averaging window and longest jitter \[control periods\].
 const MAX_TICKS: u16 = 10_000;
 
-/// Errors as fitted to recordings. The default has none.
+/// Errors fitted to recordings. The default has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct FittedErrors {
-    /// Control periods by which samples come later than the whole multiples of `every_ticks`.
+    /// Offset of the sampling instants from the whole multiples of `every_ticks` \[control periods\].
     pub phase_ticks: u16,
-    /// Random lateness of a sample: 99 in 100 are evenly spread up to the first, the others from there to the second
-    /// \[control periods\].
+    /// Random delay of a sample \[control periods\]: uniform up to the first value for 99 in 100 samples,
+    /// from there to the second for the others.
     pub jitter_ticks: [u16; 2],
-    /// A sample is the mean of so many control periods; 0 and 1 are none.
+    /// A sample is the mean over this number of control periods; 0 and 1 are no averaging.
     pub window_ticks: u16,
-    /// Of a wheel: its speed follows from so many pulses a turn, by `control::sensors::wheel_speed`; 0 is none.
+    /// Pulses per turn, for wheels: the speed is computed from pulses by `control::sensors::wheel_speed`; 0
+    /// is none.
     pub pulses_per_turn: u16,
     /// Standard deviation of white normal noise on every sample, by axis, in the sensor's unit.
     pub white: [f64; 3],
-    /// Random walk of the bias, by axis, in the sensor's unit by the root of a second.
+    /// Random walk of the bias, by axis, in the sensor's unit per square root of a second.
     pub walk: [f64; 3],
-    /// Standard deviation of a bias that is drawn once a ride, by axis, in the sensor's unit.
+    /// Standard deviation of a bias that is drawn once per ride, by axis, in the sensor's unit.
     pub bias_spread: [f64; 3],
-    /// Root mean square of the vibration in each of [`OCTAVES_HZ`], by axis, in the sensor's unit for 1 m/s of forward speed.
+    /// Root mean square of the vibration in each of [`OCTAVES_HZ`], by axis, in the sensor's unit per 1 m/s
+    /// of forward speed.
     pub vibration: [[f64; 4]; 3],
-    /// Step between values that can be told, by axis, in the sensor's unit; 0 is none.
+    /// Quantisation step, by axis, in the sensor's unit; 0 is none.
     pub quantum: [f64; 3],
-    /// Probability that a sample repeats the one before.
+    /// Probability that a sample repeats the previous one.
     pub repeat: f64,
 }
 
@@ -46,7 +48,7 @@ impl FittedErrors {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self, sensor: Sensor, every_ticks: u16) -> Result<(), PlantError> {
         let name = sensor.name();
         let within = |key: &str, value, min, max| within(&format!("{name} {key}"), value, min, max);
@@ -77,7 +79,7 @@ impl FittedErrors {
         all().map_err(PlantError)
     }
 
-    /// Whether something in it is drawn.
+    /// Whether any error is random.
     pub(super) fn draws(&self) -> bool {
         let quiet = Self {
             phase_ticks: self.phase_ticks,
@@ -90,25 +92,26 @@ impl FittedErrors {
     }
 }
 
-/// The fitted errors of one sensor in one ride.
+/// State of the fitted errors of one sensor in one ride.
 #[derive(Debug)]
 pub(super) struct FittedState {
     random: RandomStream,
-    /// Bias of this ride and what it wandered since, by axis.
+    /// Bias of this ride plus its random walk, by axis.
     bias: [f64; 3],
-    /// Root of the time between samples \[s^0.5\].
+    /// Square root of the time between samples \[s^0.5\].
     root_s: f64,
     vibration: Vec<[Vec<Octave>; 3]>,
-    /// The control periods that a sample is the mean of, newest last.
+    /// True values of the control periods in the averaging window, newest last.
     window: VecDeque<[f64; 3]>,
     counter: Option<PulseCounter>,
     last: Option<[f64; 3]>,
-    /// Samples that are late, and when they are due.
+    /// Delayed samples and the ticks at which they are due.
     late: VecDeque<(i64, [f64; 3])>,
 }
 
 impl FittedState {
-    /// Before boot, where the truth was `steady`, with a sample each `sample_s` and a control period of `period_s`.
+    /// State before boot: the true value was `steady`; a sample each `sample_s`, a control period of
+    /// `period_s`.
     pub(super) fn new(
         errors: &FittedErrors,
         steady: [f64; 3],
@@ -138,8 +141,8 @@ impl FittedState {
         }
     }
 
-    /// What the sensor measures at a control instant, before its noise.
-    pub(super) fn seen(&mut self, truth: [f64; 3]) -> [f64; 3] {
+    /// Value measured at a control instant, before noise.
+    pub(super) fn measured(&mut self, truth: [f64; 3]) -> [f64; 3] {
         if let Some(counter) = &mut self.counter {
             return [counter.speed(truth[0]), 0.0, 0.0];
         }
@@ -178,13 +181,13 @@ impl FittedState {
         sample
     }
 
-    /// The sample, or the one before it again.
+    /// The sample, or the previous one repeated.
     pub(super) fn repeated(&mut self, errors: &FittedErrors, sample: [f64; 3]) -> [f64; 3] {
         let again = errors.repeat > 0.0 && self.random.chance(errors.repeat);
         *self.last.insert(self.last.filter(|_| again).unwrap_or(sample))
     }
 
-    /// The newest sample that is due at `tick`, with the one that would arrive now if none were late.
+    /// The newest sample due at `tick`; `arrived` is the sample that arrives without jitter.
     pub(super) fn due(
         &mut self,
         errors: &FittedErrors,
@@ -212,18 +215,19 @@ impl FittedState {
     }
 }
 
-/// Vibration in one octave as a sum of sinusoids of random frequency and phase (Shinozuka 1972), which has no power
-/// outside it.
+/// Vibration in one octave: a sum of sinusoids of random frequency and phase (Shinozuka 1972), without power
+/// outside the octave.
 #[derive(Debug)]
 struct Octave {
-    /// Amplitude of each sinusoid for 1 m/s.
+    /// Amplitude of each sinusoid per 1 m/s.
     amplitude: f64,
-    /// Cosine and sine of each phase, and of its step from sample to sample.
+    /// Cosine and sine of each phase, and of its increment per sample.
     turning: Vec<[(f64, f64); 2]>,
 }
 
 impl Octave {
-    /// From `low_hz` to its double or half the sample rate; none without power, or beyond that rate.
+    /// From `low_hz` to its double or half the sample rate; none without power, or above half the sample
+    /// rate.
     fn new(low_hz: f64, rms: f64, sample_s: f64, random: &mut RandomStream) -> Option<Self> {
         let high_hz = (2.0 * low_hz).min(0.5 / sample_s);
         if rms == 0.0 || high_hz <= low_hz {
@@ -251,16 +255,16 @@ impl Octave {
     }
 }
 
-/// Pulses of a turning wheel, and the speed that the flashed code makes of them.
+/// Pulses of a turning wheel, and the speed that the controller's code computes from them.
 #[derive(Debug)]
 struct PulseCounter {
     config: WheelPulsesConfig,
     state: WheelPulsesState,
     pulses: WheelPulses,
     period_s: f64,
-    /// Speed at the control instant before \[m/s\].
+    /// Speed at the previous control instant \[m/s\].
     speed_m_s: f64,
-    /// Way since the last pulse \[m\].
+    /// Distance since the last pulse \[m\].
     way_m: f64,
     /// Time since the last pulse \[s\]; none before the first.
     age_s: Option<f64>,
@@ -283,7 +287,7 @@ impl PulseCounter {
         }
     }
 
-    /// The speed that is shown a control period after the last, at the end of which the wheel has `now_m_s` \[m/s\].
+    /// Speed computed at the end of a control period, where the wheel's speed is `now_m_s` \[m/s\].
     fn speed(&mut self, now_m_s: f64) -> f64 {
         let each_m = TAU * f64::from(self.config.radius_m) / f64::from(self.config.pulses_per_turn);
         let mean_m_s = 0.5 * (self.speed_m_s + now_m_s).abs();
@@ -295,7 +299,7 @@ impl PulseCounter {
         if new >= 1.0 {
             self.way_m -= new * each_m;
             let age_s = self.way_m / mean_m_s;
-            // Of several pulses in one period the last two are evenly apart.
+            // With several pulses in one period, the last two are evenly spaced.
             let apart_s =
                 if new > 1.0 { Some(each_m / mean_m_s) } else { before_s.map(|before| before - age_s) };
             self.pulses.count = self.pulses.count.wrapping_add(new as u16);

@@ -1,4 +1,4 @@
-//! Friction of the steer bearing and the motor's gear.
+//! Friction of the steer bearing and the motor's gear: from steer rate to torque.
 
 use super::PlantError;
 use crate::num::Scalar;
@@ -6,16 +6,16 @@ use crate::range::within;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Friction about the steer axis, against the steer rate whatever turns the steer. The default has none.
+/// Friction about the steer axis, opposing the steer rate. The default has none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Friction {
-    /// Viscous \[N m s/rad\].
+    /// Viscous coefficient \[N m s/rad\].
     pub viscous_nm_s_rad: f64,
-    /// Coulomb \[N m\].
+    /// Coulomb friction \[N m\].
     pub coulomb_nm: f64,
-    /// Steer rate at which Coulomb friction reaches 71 % of its value: below it the steer creeps
-    /// instead of sticking \[rad/s\].
+    /// Steer rate at which Coulomb friction reaches 71 % of its value \[rad/s\]. Below it the steer creeps
+    /// instead of sticking.
     pub creep_rad_s: f64,
 }
 
@@ -29,26 +29,26 @@ impl Friction {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self) -> Result<(), PlantError> {
         within("viscous friction (N m s/rad)", self.viscous_nm_s_rad, 0.0, 100.0)
             .and_then(|()| within("Coulomb friction (N m)", self.coulomb_nm, 0.0, 50.0))
             .and_then(|()| within("creep (rad/s)", self.creep_rad_s, 1e-3, 1.0))
             .and_then(|()| {
-                // Above it the friction's own time gets short for a step of 1 ms.
+                // A larger slope has a time constant too short for a time step of 1 ms.
                 let slope = self.coulomb_nm / self.creep_rad_s;
                 within("Coulomb friction over creep (N m s/rad)", slope, 0.0, 100.0)
             })
             .map_err(PlantError)
     }
 
-    /// Whether there is any.
+    /// Whether any friction is set.
     pub fn acts(&self) -> bool {
         self.viscous_nm_s_rad != 0.0 || self.coulomb_nm != 0.0
     }
 
-    /// The torque on the steer axis at a steer rate \[rad/s\]: `-(c q + T q / sqrt(q^2 + q0^2))`, smooth
-    /// and odd, never with the motion.
+    /// Torque on the steer axis at a steer rate \[rad/s\]: `-(c q + T q / sqrt(q^2 + q0^2))`. Smooth and odd;
+    /// always opposes the motion.
     #[inline(always)]
     pub fn torque<S: Scalar>(&self, rate: S) -> S {
         let direction = rate / (rate * rate + self.creep_rad_s * self.creep_rad_s).sqrt();

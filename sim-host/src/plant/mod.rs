@@ -1,5 +1,4 @@
-//! What lies between the bicycle and the controller: sensors that measure it, the motor that turns
-//! its steer, and what can be wrong with either. `docs/plant.md`.
+//! The plant between bicycle and controller: sensors, the steer motor, and faults of either. `docs/plant.md`.
 
 mod actuator;
 pub mod catalogue;
@@ -25,19 +24,19 @@ pub(crate) use sensor_suite::faulty;
 pub use sensor_suite::{Held, Measured, SensorSuite};
 pub use stop::SteerStop;
 
-/// A value of the plant that can't be simulated.
+/// A plant that can't be simulated, with the reason.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct PlantError(pub String);
 
-/// Everything between bicycle and controller. The default is exact, at once and without fault.
+/// Sensors, actuator and faults. The default is exact, without delay or fault.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plant {
     /// The sensors.
     pub sensors: SensorConfig,
-    /// The motor, the steer's friction and its end-stop.
+    /// The motor, and the steer's friction and end-stop.
     pub actuator: ActuatorConfig,
-    /// What goes wrong, in the order in which it acts.
+    /// Faults, in the order in which they act.
     pub faults: Vec<Fault>,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -47,23 +46,23 @@ impl Plant {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self) -> Result<(), PlantError> {
         self.sensors.check()?;
         self.actuator.check()
     }
 
-    /// Whether sensors and motor are exact and nothing goes wrong; friction and an end-stop may be there.
+    /// Whether sensors and motor are exact and without faults; friction and end-stop do not count.
     pub fn exact(&self) -> bool {
         self.sensors.exact() && self.actuator.exact() && self.faults.is_empty()
     }
 
-    /// Whether the mirrored ride of every ride is one too.
+    /// Whether the mirror image of every ride is also a ride.
     pub fn mirrors(&self) -> bool {
         self.sensors.mirrors() && self.faults.is_empty()
     }
 
-    /// The same with all sensors later by `ticks` control periods.
+    /// The same plant with all sensors delayed by another `ticks` control periods.
     pub fn delayed(&self, ticks: u16) -> Self {
         let mut later = self.clone();
         for sensor in Sensor::ALL {
@@ -73,11 +72,11 @@ impl Plant {
         later
     }
 
-    /// What an exact sensor would say where it sits.
+    /// Exact value of a sensor in its mounting.
     fn truth(&self, sensor: Sensor, reading: &Reading) -> [f64; 3] {
         let imu = &self.sensors.imu;
         match sensor {
-            Sensor::Gyro | Sensor::Accel if imu.turned_rad != [0.0; 3] => imu.seen(reading.of(sensor)),
+            Sensor::Gyro | Sensor::Accel if imu.turned_rad != [0.0; 3] => imu.rotated(reading.of(sensor)),
             _ => reading.of(sensor),
         }
     }

@@ -1,11 +1,11 @@
-//! Random numbers that depend on what they are for and on nothing else.
+//! Reproducible random numbers that depend only on seed, ride and purpose.
 
 use crate::ride::Start;
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
 
-/// A source of random numbers for one purpose in one ride: seed and start are the generator's key,
-/// the purpose is its stream, so neither lane nor thread nor another purpose's draws change them.
+/// Random numbers for one purpose in one ride. Seed and start are the generator's key, the purpose selects
+/// its stream; lane, thread and other purposes' draws have no effect.
 #[derive(Debug)]
 pub struct RandomStream(ChaCha8Rng);
 
@@ -23,14 +23,14 @@ impl RandomStream {
         Self(rng)
     }
 
-    /// A draw from the uniform distribution over 0 (included) to 1 (excluded).
+    /// Draw from the uniform distribution over \[0, 1).
     pub(super) fn uniform(&mut self) -> f64 {
         const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
         (self.0.next_u64() >> 11) as f64 * STEP
     }
 
-    /// A draw from the normal distribution of mean 0 and standard deviation 1: Marsaglia's polar
-    /// method, by [`libm`], so that the bits are the same on every machine.
+    /// Draw from the normal distribution of mean 0 and standard deviation 1: Marsaglia's polar method with
+    /// [`libm`], so that the bits are the same on every machine.
     pub fn normal(&mut self) -> f64 {
         loop {
             let (x, y) = (2.0 * self.uniform() - 1.0, 2.0 * self.uniform() - 1.0);
@@ -41,7 +41,7 @@ impl RandomStream {
         }
     }
 
-    /// A whole number from 0 to below `n`, each as likely.
+    /// Uniform whole number from 0 to `n - 1`.
     pub fn below(&mut self, n: usize) -> usize {
         (self.uniform() * n as f64) as usize
     }

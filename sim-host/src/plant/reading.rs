@@ -1,10 +1,10 @@
-//! What exact sensors would say.
+//! Exact sensor values from the bicycle's motion.
 
 use crate::bicycle::{Geometry, Pose, Velocities};
 use crate::num::{Vec3, sin_cos};
 use crate::ride::Imu;
 
-/// The sensors of the bicycle, each with a clock of its own.
+/// Sensors of the bicycle; each has its own sampling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Sensor {
     /// Rate gyroscope, three axes \[rad/s\].
@@ -13,22 +13,22 @@ pub enum Sensor {
     Accel,
     /// Absolute steer angle \[rad\].
     Steer,
-    /// Steer rate by the motor's encoder \[rad/s\].
+    /// Steer rate from the motor's encoder \[rad/s\].
     SteerRate,
-    /// Speed of the front wheel \[m/s\].
+    /// Forward speed from the front wheel \[m/s\].
     FrontWheel,
-    /// Speed of the rear wheel \[m/s\].
+    /// Forward speed from the rear wheel \[m/s\].
     RearWheel,
     /// Torque of the rider on the handlebar \[N m\].
     RiderTorque,
-    /// Torque the motor's drive reports \[N m\].
+    /// Torque that the motor's drive reports \[N m\].
     MotorReport,
-    /// Path tracker: heading \[rad\] and lateral offset \[m\].
+    /// Path tracker: heading \[rad\] and lateral deviation \[m\].
     Path,
 }
 
 impl Sensor {
-    /// All of them.
+    /// All sensors.
     pub const ALL: [Self; 9] = [
         Self::Gyro,
         Self::Accel,
@@ -41,7 +41,7 @@ impl Sensor {
         Self::Path,
     ];
 
-    /// Its name on the command line and in files.
+    /// Name on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gyro => "gyro",
@@ -56,7 +56,7 @@ impl Sensor {
         }
     }
 
-    /// Names of its axes; none if it has but one.
+    /// Names of the axes; none for a sensor with one axis.
     pub const fn axes(self) -> &'static [&'static str] {
         match self {
             Self::Gyro | Self::Accel => &["x", "y", "z"],
@@ -66,11 +66,11 @@ impl Sensor {
     }
 }
 
-/// The exact values at one control instant, benchmark axes: x forward and horizontal when upright,
-/// y right, z down, fixed to the rear frame.
+/// Exact values at one control instant in Meijaard's axes fixed to the rear frame: x forward and horizontal
+/// when upright, y right, z down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// Angular velocity of the rear frame; about x by [`Imu`] \[rad/s\].
+    /// Angular velocity of the rear frame \[rad/s\]; the x component as selected by [`Imu`].
     pub gyro_rad_s: [f64; 3],
     /// Specific force at the IMU, mean over the last control period \[m/s^2\].
     pub accel_m_s2: [f64; 3],
@@ -78,22 +78,22 @@ pub struct Reading {
     pub steer_rad: f64,
     /// Steer rate \[rad/s\].
     pub steer_rate_rad_s: f64,
-    /// Front wheel's rate times its radius, forward positive \[m/s\].
+    /// Front wheel's rotation rate times its radius, forward positive \[m/s\].
     pub front_wheel_m_s: f64,
-    /// Rear wheel's rate times its radius, forward positive \[m/s\].
+    /// Rear wheel's rotation rate times its radius, forward positive \[m/s\].
     pub rear_wheel_m_s: f64,
     /// The rider's torque on the handlebar \[N m\].
     pub rider_torque_nm: f64,
     /// The motor's torque on the steer axis \[N m\].
     pub motor_torque_nm: f64,
-    /// Heading of the rear frame from that at the start, right positive \[rad\].
+    /// Heading of the rear frame relative to the start, right positive \[rad\].
     pub heading_rad: f64,
-    /// Rear contact's place beside the line of the start, right positive \[m\].
+    /// Lateral deviation of the rear contact from the line of the start, right positive \[m\].
     pub lateral_m: f64,
 }
 
 impl Reading {
-    /// Riding straight, upright and steadily at `speed_m_s` in the gravity `g` \[m/s^2\].
+    /// Straight, upright, steady riding at `speed_m_s` in the gravity `g` \[m/s^2\].
     pub fn steady(speed_m_s: f64, g: f64) -> Self {
         Self {
             gyro_rad_s: [0.0; 3],
@@ -109,7 +109,7 @@ impl Reading {
         }
     }
 
-    /// The values of one sensor in the order of [`Sensor::axes`]; zero beyond.
+    /// Values of one sensor in the order of [`Sensor::axes`]; unused components are zero.
     pub fn of(&self, sensor: Sensor) -> [f64; 3] {
         match sensor {
             Sensor::Gyro => self.gyro_rad_s,
@@ -125,8 +125,8 @@ impl Reading {
     }
 }
 
-/// Where a ride is and how it got there: what heading, lateral offset and specific force need beside
-/// the present velocities.
+/// Integrated heading and path, and the previous instant, needed for heading, lateral deviation and specific
+/// force.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Odometry {
     heading_rad: f64,
@@ -134,7 +134,7 @@ pub struct Odometry {
     last: Option<Last>,
 }
 
-/// The control instant before, in axes that stand still: forward at the start, right, down.
+/// The previous control instant, in inertial axes: forward at the start, right, down.
 #[derive(Clone, Copy, Debug)]
 struct Last {
     /// Velocity of the IMU \[m/s\].
@@ -143,14 +143,14 @@ struct Last {
     axes: [Vec3<f64>; 3],
     /// Yaw rate \[rad/s\].
     yaw_rate: f64,
-    /// Speed of the rear contact to the right \[m/s\].
+    /// Lateral speed of the rear contact, right positive \[m/s\].
     sideways: f64,
 }
 
-/// The rear frame at a control instant.
+/// Motion of the rear frame at a control instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
-    /// The rear wheel's heading, by [`Pose`].
+    /// The rear wheel's heading, as in [`Pose`].
     pub e1: Vec3<f64>,
     /// Vertical, down.
     pub k: Vec3<f64>,
@@ -161,18 +161,18 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Of a pose, its velocities and the steer angle \[rad\].
+    /// From a pose, its velocities and the steer angle \[rad\].
     pub fn new(pose: &Pose<f64>, velocities: &Velocities<f64>, steer_rad: f64) -> Self {
         Self { e1: pose.e1, k: pose.k, velocities: *velocities, steer_rad }
     }
 }
 
 impl Odometry {
-    /// The exact values `period_s` after those before; at the first instant the velocity has not
-    /// changed. `imu_point_m` is the IMU's place from the rear wheel's centre: forward, right, down.
+    /// Exact values `period_s` after the previous ones; zero acceleration is assumed at the first instant.
+    /// `imu_point_m` is the IMU's position from the rear wheel's centre: forward, right, down.
     ///
-    /// Heading and offset are integrated by the trapezoidal rule (error of the order of the period
-    /// squared). Torques are not filled in: they are the caller's to know.
+    /// Heading and deviation are integrated by the trapezoidal rule (error of the order of the period
+    /// squared). The caller fills in the torques.
     pub fn read(
         &mut self,
         b: &Geometry,
@@ -206,7 +206,7 @@ impl Odometry {
             Some(last) => {
                 self.lateral_m += 0.5 * period_s * (last.sideways + sideways);
                 let force = (velocity - last.velocity).times(1.0 / period_s) - gravity;
-                // The sensor turns with the frame while it sums up: the middle of both ends.
+                // The accelerometer rotates with the frame while it integrates: mean of both ends.
                 let mean = |i: usize| 0.5 * (force.dot(last.axes[i]) + force.dot(axes[i]));
                 [mean(0), mean(1), mean(2)]
             }

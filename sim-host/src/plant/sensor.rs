@@ -1,4 +1,4 @@
-//! Sensors that are not exact: late, slow, noisy, off, skewed, coarse, narrow, lossy.
+//! Sensor errors: sampling, scale, bias, noise, range, quantisation, loss and delay.
 
 use super::fitted::{FittedErrors, FittedState};
 use super::{PlantError, RandomStream, Sensor};
@@ -6,29 +6,29 @@ use crate::num::sin_cos;
 use crate::range::within;
 use std::collections::VecDeque;
 
-/// Most control periods a sensor can be late, or apart between samples.
+/// Largest delay and sampling interval \[control periods\].
 const MAX_TICKS: u16 = 5000;
 
-/// How one sensor departs from the truth, in the order in which it does. The default does not.
+/// Errors of one sensor, in the order in which they act. The default is exact.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct SensorModel {
-    /// A sample every so many control periods; between them the last one stands.
+    /// Sampling interval \[control periods\]; the last sample is held in between.
     pub every_ticks: u16,
-    /// Measured over true value.
+    /// Scale factor: measured over true value.
     pub scale: f64,
     /// Added to each axis, in the sensor's unit.
     pub bias: [f64; 3],
     /// Standard deviation of white Gaussian noise on every sample, in the sensor's unit.
     pub noise: f64,
-    /// Largest magnitude that is told, in the sensor's unit; null is no limit.
+    /// Largest magnitude that the sensor reports, in its unit; null is no limit.
     pub range: Option<f64>,
-    /// Step between values that can be told, in the sensor's unit; 0 is none.
+    /// Quantisation step, in the sensor's unit; 0 is none.
     pub quantum: f64,
     /// Probability that a sample is lost.
     pub dropout: f64,
     /// Control periods from the measurement to its arrival.
     pub delay_ticks: u16,
-    /// What was fitted to recordings of a real one.
+    /// Errors fitted to recordings of a real sensor.
     pub fitted: FittedErrors,
 }
 
@@ -52,7 +52,7 @@ impl SensorModel {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self, sensor: Sensor) -> Result<(), PlantError> {
         let name = sensor.name();
         let within = |key: &str, value, min, max| within(&format!("{name} {key}"), value, min, max);
@@ -70,18 +70,18 @@ impl SensorModel {
         self.fitted.check(sensor, self.every_ticks)
     }
 
-    /// Whether a sample is taken at `tick`.
+    /// Whether `tick` is a sampling instant.
     fn samples_at(&self, tick: i64) -> bool {
         (tick - i64::from(self.fitted.phase_ticks)).rem_euclid(i64::from(self.every_ticks)) == 0
     }
 
-    /// Age of the newest sample at the control instant before the first, if none was lost.
+    /// Age of the newest sample at the control instant before the first, without losses \[control periods\].
     pub(super) fn age_before_boot(&self) -> u16 {
         let latest = -1 - i64::from(self.delay_ticks) - i64::from(self.fitted.phase_ticks);
         latest.rem_euclid(i64::from(self.every_ticks)) as u16
     }
 
-    /// What a sample of `truth` says, if it is not lost, at a forward speed \[m/s\].
+    /// The sample of `truth` at a forward speed \[m/s\]; none if it is lost.
     fn sample(
         &self,
         truth: [f64; 3],
@@ -123,18 +123,18 @@ impl SensorModel {
     }
 }
 
-/// How the IMU (gyro and accelerometer) sits on the rear frame.
+/// Position and orientation of the IMU (gyro and accelerometer) on the rear frame.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct ImuMount {
-    /// Its place from the rear wheel's centre: forward, right, down \[m\].
+    /// Position from the rear wheel's centre: forward, right, down \[m\].
     pub point_m: [f64; 3],
-    /// Its attitude in the frame: turned about z (down), then its y, then its x by these angles
-    /// about x, y and z \[rad\].
+    /// Orientation in the frame: rotated about z (down), then its y, then its x by these angles about x, y
+    /// and z \[rad\].
     pub turned_rad: [f64; 3],
 }
 
 impl Default for ImuMount {
-    /// On the down tube, straight.
+    /// On the down tube, axes aligned with the frame.
     fn default() -> Self {
         Self { point_m: [0.5, 0.0, -0.2], turned_rad: [0.0; 3] }
     }
@@ -144,7 +144,7 @@ impl ImuMount {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self) -> Result<(), PlantError> {
         let point = self.point_m.iter().try_for_each(|x| within("imu point (m)", *x, -3.0, 3.0));
         let turned = |()| {
@@ -154,8 +154,8 @@ impl ImuMount {
         point.and_then(turned).map_err(PlantError)
     }
 
-    /// A vector of the frame in the IMU's axes.
-    pub fn seen(&self, vector: [f64; 3]) -> [f64; 3] {
+    /// Components of a frame vector in the IMU's axes.
+    pub fn rotated(&self, vector: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = vector;
         let [(s1, c1), (s2, c2), (s3, c3)] = self.turned_rad.map(sin_cos);
         let (x, y) = (x * c3 + y * s3, y * c3 - x * s3);
@@ -165,11 +165,11 @@ impl ImuMount {
     }
 }
 
-/// How all sensors depart from the truth.
+/// Errors of all sensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SensorConfig {
     models: [SensorModel; Sensor::ALL.len()],
-    /// The IMU's place and attitude.
+    /// Position and orientation of the IMU.
     pub imu: ImuMount,
 }
 
@@ -179,17 +179,17 @@ impl SensorConfig {
         &self.models[sensor as usize]
     }
 
-    /// The model of a sensor, to be changed.
+    /// The model of a sensor, mutable.
     pub fn model_mut(&mut self, sensor: Sensor) -> &mut SensorModel {
         &mut self.models[sensor as usize]
     }
 
-    /// Whether all sensors tell the truth at once; where the IMU sits is no matter.
+    /// Whether all sensors are exact and without delay; the IMU's mounting does not count.
     pub fn exact(&self) -> bool {
         self.imu.turned_rad == [0.0; 3] && self.models.iter().all(|model| *model == SensorModel::default())
     }
 
-    /// Whether the sensors tell a mirrored truth mirrored.
+    /// Whether a mirrored motion gives mirrored samples.
     pub fn mirrors(&self) -> bool {
         let odd =
             |m: &SensorModel| m.bias == [0.0; 3] && m.noise == 0.0 && m.dropout == 0.0 && !m.fitted.draws();
@@ -199,37 +199,37 @@ impl SensorConfig {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the sensor, the value and its range.
+    /// States the sensor, the value and its range.
     pub fn check(&self) -> Result<(), PlantError> {
         self.imu.check()?;
         Sensor::ALL.into_iter().try_for_each(|sensor| self.model(sensor).check(sensor))
     }
 }
 
-/// One sensor of one ride: its samples on their way.
+/// State of one sensor in one ride, with its delayed samples.
 #[derive(Debug)]
 pub struct SensorState {
-    /// Oldest first; `None` where no sample was taken, or was lost.
+    /// Delayed samples, oldest first; `None` where none was taken or it was lost.
     on_their_way: VecDeque<Option<[f64; 3]>>,
-    /// Only for a model that needs it.
+    /// For models with noise or losses only.
     random: Option<RandomStream>,
-    /// Only for a model that has fitted errors.
+    /// For models with fitted errors only.
     fitted: Option<Box<FittedState>>,
 }
 
-/// The random numbers of a sensor: those of its data sheet's noise, and those of what was fitted.
+/// Random numbers of a sensor: for data-sheet noise and for fitted errors.
 #[derive(Debug)]
 pub struct SensorDice {
-    /// Of noise and dropout.
+    /// For noise and dropout.
     pub plain: RandomStream,
-    /// Of [`FittedErrors`].
+    /// For [`FittedErrors`].
     pub fitted: RandomStream,
 }
 
-/// What a sensor was shown until the control instant 0.
+/// True values before the control instant 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Before {
-    /// The truth.
+    /// True value.
     pub truth: [f64; 3],
     /// Forward speed \[m/s\].
     pub speed_m_s: f64,
@@ -238,7 +238,7 @@ pub struct Before {
 }
 
 impl SensorState {
-    /// Before the control instant 0.
+    /// State before the control instant 0.
     pub fn new(model: &SensorModel, before: &Before, random: SensorDice) -> Self {
         let Before { truth, speed_m_s, period_s } = *before;
         let sample_s = f64::from(model.every_ticks) * period_s;
@@ -251,7 +251,8 @@ impl SensorState {
         state
     }
 
-    /// Takes in the truth and the forward speed \[m/s\] at `tick`, one after the last, and gives the sample that arrives now.
+    /// Accepts true value and forward speed \[m/s\] at `tick`, called for consecutive ticks; returns the
+    /// sample that arrives now.
     pub fn arriving(
         &mut self,
         model: &SensorModel,
@@ -274,9 +275,9 @@ impl SensorState {
         }
     }
 
-    /// The sample taken at `tick`, if one is.
+    /// The sample taken at `tick`, if any.
     fn taken(&mut self, model: &SensorModel, tick: i64, truth: [f64; 3], speed_m_s: f64) -> Option<[f64; 3]> {
-        let truth = self.fitted.as_mut().map_or(truth, |state| state.seen(truth));
+        let truth = self.fitted.as_mut().map_or(truth, |state| state.measured(truth));
         let (random, fitted) = (self.random.as_mut(), self.fitted.as_deref_mut());
         model.samples_at(tick).then(|| model.sample(truth, speed_m_s, random, fitted)).flatten()
     }

@@ -1,11 +1,12 @@
-//! Models of real sensors, as `sim-host identify sensor` writes them: numbers in SI units, whatever the control period is.
+//! Files of fitted sensor models, as written by `sim-host identify sensor`: numbers in SI units, independent
+//! of the control period.
 
 use super::{FittedErrors, PlantError, Sensor, SensorConfig, SensorModel};
 use crate::range::within;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// The models that ship, by name.
+/// The shipped models, by name.
 pub const SHIPPED: [(&str, &str); 7] = [
     ("encoders-robot", include_str!("../../../data/sensors/encoders-robot.toml")),
     ("fused-imu-can", include_str!("../../../data/sensors/fused-imu-can.toml")),
@@ -16,18 +17,18 @@ pub const SHIPPED: [(&str, &str); 7] = [
     ("wheel-sbw", include_str!("../../../data/sensors/wheel-sbw.toml")),
 ];
 
-/// What leaves every sensor as it is, beside the names of [`SHIPPED`].
+/// Name of the exact sensors, in addition to the names in [`SHIPPED`].
 pub const EXACT: &str = "exact";
 
-/// A file of models: one table for each kind of sensor.
+/// A file of models: one table for each type of sensor.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SensorFile {
-    /// Which sensors they are, and where their recordings are from.
+    /// Sensor products and origin of their recordings.
     pub source: String,
     /// The recordings' licence.
     pub licence: String,
-    /// The command that wrote the file.
+    /// Command that wrote the file.
     pub command: String,
     /// Rate gyroscope \[rad/s\].
     pub gyro: Option<SensorNumbers>,
@@ -37,34 +38,34 @@ pub struct SensorFile {
     pub steer: Option<SensorNumbers>,
     /// Steer rate \[rad/s\].
     pub steer_rate: Option<SensorNumbers>,
-    /// Speed of either wheel \[m/s\].
+    /// Forward speed from either wheel \[m/s\].
     pub wheel: Option<SensorNumbers>,
     /// Torque of the rider \[N m\].
     pub rider_torque: Option<SensorNumbers>,
-    /// The drive's report of its torque \[N m\].
+    /// Torque that the drive reports \[N m\].
     pub motor_report: Option<SensorNumbers>,
 }
 
-/// The numbers of one sensor; what is left out is exact. Those by axis have as many values as the sensor has axes, in
-/// the sensor's unit.
+/// Numbers of one sensor; omitted ones are exact. Numbers by axis have as many values as the sensor has axes,
+/// in the sensor's unit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SensorNumbers {
     /// Time between samples \[s\].
     pub period_s: Option<f64>,
-    /// How much later than the whole multiples of the period samples are taken \[s\].
+    /// Offset of the sampling instants from the whole multiples of the period \[s\].
     pub phase_s: Option<f64>,
-    /// Random lateness: of 99 in 100 samples at most, and the worst \[s\].
+    /// Random delay \[s\]: largest of 99 in 100 samples, and largest of all.
     pub jitter_s: Option<[f64; 2]>,
     /// Time from the measurement to its arrival \[s\].
     pub delay_s: Option<f64>,
     /// A sample is the mean over this time \[s\].
     pub window_s: Option<f64>,
-    /// Pulses in a turn of the wheel.
+    /// Pulses per turn of the wheel.
     pub pulses_per_turn: Option<u16>,
-    /// Probability that a sample repeats the one before.
+    /// Probability that a sample repeats the previous one.
     pub repeat: Option<f64>,
-    /// Step between values, by axis.
+    /// Quantisation step, by axis.
     pub quantum: Vec<f64>,
     /// One-sided density of the white noise, by axis \[unit/Hz^0.5\].
     pub white_density: Vec<f64>,
@@ -72,11 +73,12 @@ pub struct SensorNumbers {
     pub walk: Vec<f64>,
     /// Standard deviation of the bias from ride to ride, by axis.
     pub bias_spread: Vec<f64>,
-    /// Root mean square of the vibration in the octaves from 10, 20, 40 and 80 Hz, by axis, for 1 m/s of speed.
+    /// Root mean square of the vibration in the octaves from 10, 20, 40 and 80 Hz, by axis, per 1 m/s of
+    /// speed.
     pub vibration: Vec<[f64; 4]>,
-    /// What was measured, with intervals; for people.
+    /// Measured numbers with intervals, for information only.
     pub measured: Vec<MeasuredNumber>,
-    /// What the recordings can't tell, and why.
+    /// Quantities that the recordings do not determine, with the reason.
     pub left_out: Vec<String>,
 }
 
@@ -84,9 +86,9 @@ pub struct SensorNumbers {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredNumber {
-    /// What it is.
+    /// Name of the quantity.
     pub number: String,
-    /// Of which axis; empty if of all, or of the only one.
+    /// Axis; empty for all axes, or for the only one.
     #[serde(default)]
     pub axis: String,
     /// Its unit.
@@ -97,11 +99,11 @@ pub struct MeasuredNumber {
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// How long a recording it comes from \[s\].
+    /// Duration of the recording used \[s\].
     pub seconds: f64,
 }
 
-/// A sensor's table in a file.
+/// Name of a sensor's table in a file.
 pub const fn table_of(sensor: Sensor) -> &'static str {
     match sensor {
         Sensor::FrontWheel | Sensor::RearWheel => "wheel",
@@ -110,10 +112,11 @@ pub const fn table_of(sensor: Sensor) -> &'static str {
 }
 
 impl SensorFile {
-    /// The models of a shipped name, or of a file.
+    /// Loads the models by shipped name, or from a file.
     ///
     /// # Errors
-    /// No such name or file, a key that is missing, unknown or of a wrong type, or a value out of range: each named.
+    /// An unknown name or file, a missing or unknown key, a wrong type, or a value out of range; each is
+    /// named.
     pub fn load(name: &str) -> Result<Self, PlantError> {
         if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
             return Self::parse(text).map_err(|error| PlantError(format!("sensor model {name}: {error}")));
@@ -130,10 +133,10 @@ impl SensorFile {
         Self::parse(&text).map_err(|error| PlantError(format!("sensor model {name}: {error}")))
     }
 
-    /// The models in a text.
+    /// Parses models from text.
     ///
     /// # Errors
-    /// Names the key, its value and what was expected.
+    /// States the key, its value and the expected form.
     pub fn parse(text: &str) -> Result<Self, String> {
         let file: Self = toml::from_str(text).map_err(|e| e.to_string().trim().to_owned())?;
         for (sensor, numbers) in file.tables() {
@@ -142,7 +145,7 @@ impl SensorFile {
         Ok(file)
     }
 
-    /// The table of a sensor, if there is one.
+    /// The table of a sensor, if the file has one.
     pub fn of(&self, sensor: Sensor) -> Option<&SensorNumbers> {
         match sensor {
             Sensor::Gyro => self.gyro.as_ref(),
@@ -156,7 +159,7 @@ impl SensorFile {
         }
     }
 
-    /// The table of a sensor, to be set; none where a file has none for it.
+    /// The table of a sensor, mutable; none for sensors that files do not describe.
     pub fn of_mut(&mut self, sensor: Sensor) -> Option<&mut Option<SensorNumbers>> {
         match sensor {
             Sensor::Gyro => Some(&mut self.gyro),
@@ -170,15 +173,15 @@ impl SensorFile {
         }
     }
 
-    /// Every sensor that has a table; both wheels have the same.
+    /// Every sensor that has a table; both wheels share one.
     pub fn tables(&self) -> impl Iterator<Item = (Sensor, &SensorNumbers)> {
         Sensor::ALL.into_iter().filter_map(|sensor| Some((sensor, self.of(sensor)?)))
     }
 
-    /// Makes every sensor with a table the one of the file, in control periods of `period_s`.
+    /// Replaces every sensor that has a table by its model, with control periods of `period_s`.
     ///
     /// # Errors
-    /// Names the time that is too long.
+    /// States the time that is too long.
     pub fn apply(&self, sensors: &mut SensorConfig, period_s: f64) -> Result<(), String> {
         self.tables().try_for_each(|(sensor, numbers)| {
             *sensors.model_mut(sensor) = numbers.model(period_s)?;
@@ -215,14 +218,14 @@ impl SensorNumbers {
         if self.period_s.is_none() && !self.white_density.is_empty() {
             return Err("white_density: there is no period_s beside it".into());
         }
-        // What is too long or does not fit the sensor shows once it is counted in control periods, here of 1 ms.
+        // Times too long or unsuited to the sensor show only in control periods, here of 1 ms.
         self.model(1e-3)?.check(sensor).map_err(|e| e.0)
     }
 
-    /// The model, times rounded to control periods of `period_s`.
+    /// The model, with times rounded to control periods of `period_s`.
     ///
     /// # Errors
-    /// Names the time that is too long.
+    /// States the time that is too long.
     pub fn model(&self, period_s: f64) -> Result<SensorModel, String> {
         let ticks = |key: &str, time_s: f64| {
             let ticks = (time_s / period_s).round();
@@ -237,7 +240,7 @@ impl SensorNumbers {
             jitter_ticks: [ticks("jitter_s", most_s)?, ticks("jitter_s", worst_s)?],
             window_ticks: optional("window_s", self.window_s)?,
             pulses_per_turn: self.pulses_per_turn.unwrap_or(0),
-            // Up to half the sample rate.
+            // Noise bandwidth: half the sample rate.
             white: padded(&self.white_density).map(|density| density * (0.5 / sample_s).sqrt()),
             walk: padded(&self.walk),
             bias_spread: padded(&self.bias_spread),
@@ -255,7 +258,7 @@ fn axes_of(key: &str, there: usize, axes: usize) -> Result<(), String> {
     fits.then_some(()).ok_or_else(|| format!("{key} has {there} values, the sensor {axes}"))
 }
 
-/// The values by axis, nothing where there is none.
+/// Values by axis, padded with zeros.
 fn padded<T: Copy + Default>(values: &[T]) -> [T; 3] {
     std::array::from_fn(|axis| values.get(axis).copied().unwrap_or_default())
 }

@@ -5,19 +5,19 @@ use super::sensor::{Before, SensorDice, SensorState};
 use super::{Plant, RandomStream, Reading, Sensor};
 use crate::ride::Start;
 
-/// Where the purposes of random numbers for fitted errors begin: beyond those of sensors and faults.
+/// First random-number purpose of fitted errors, beyond those of sensors and faults.
 const FITTED: usize = 1 << 32;
 
 /// A sensor's newest sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held {
-    /// By [`Sensor::axes`].
+    /// Values in the order of [`Sensor::axes`].
     pub value: [f64; 3],
-    /// Control periods since it arrived; `u16::MAX` and more count as none.
+    /// Control periods since it arrived; `u16::MAX` counts as no sample.
     pub age_ticks: u16,
 }
 
-/// What the controller is told at one control instant.
+/// Inputs of the controller at one control instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     held: [Held; Sensor::ALL.len()],
@@ -28,7 +28,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// Of the newest sample of each sensor, in the order of [`Sensor::ALL`].
+    /// From the newest sample of each sensor, in the order of [`Sensor::ALL`].
     pub fn new(held: [Held; Sensor::ALL.len()], now_us: u32, engage: bool) -> Self {
         Self { held, now_us, engage }
     }
@@ -39,23 +39,23 @@ impl Measured {
     }
 }
 
-/// The sensors of one ride, from the controller's boot on.
+/// Sensors of one ride, from the controller's boot.
 #[derive(Debug)]
 pub struct SensorSuite {
     period_s: f64,
     sensors: Vec<SensorState>,
     faults: Vec<FaultState>,
     held: [Held; Sensor::ALL.len()],
-    /// The present control instant, from boot; -1 before.
+    /// Current control instant, counted from boot; -1 before.
     tick: i64,
-    /// That at t = 0, once it is known.
+    /// Control instant of t = 0, once it is known.
     zero: Option<i64>,
-    /// The torque command that reached the motor last \[N m\].
+    /// The last torque command that reached the motor \[N m\].
     command_nm: f64,
 }
 
 impl SensorSuite {
-    /// At boot; until then the truth was `steady`. The ride will be that from `start`.
+    /// State at boot, before a ride from `start`; until then the true values were `steady`.
     pub fn new(plant: &Plant, period_s: f64, start: &Start, steady: &Reading) -> Self {
         let config = &plant.sensors;
         let random = |purpose: usize| RandomStream::new(plant.seed, start, purpose as u64);
@@ -87,18 +87,18 @@ impl SensorSuite {
         }
     }
 
-    /// The next control instant is at t = 0; faults count from there.
+    /// Marks the next control instant as t = 0; the times of faults count from there.
     pub fn begin(&mut self) {
         self.zero = Some(self.tick + 1);
     }
 
-    /// The present control instant from t = 0; -1 before.
+    /// Current control instant, counted from t = 0; -1 before.
     fn since_start(&self) -> i64 {
         self.zero.map_or(-1, |zero| self.tick - zero)
     }
 
-    /// What the controller is told at the next control instant, where the truth is `now` and the
-    /// rider's switch stands at `engage`.
+    /// Inputs of the controller at the next control instant, from the true values `now` and the state
+    /// `engage` of the rider's switch.
     pub fn measure(&mut self, plant: &Plant, now: &Reading, engage: bool) -> Measured {
         self.tick += 1;
         let (tick, ride) = (self.tick, self.since_start());
@@ -112,8 +112,8 @@ impl SensorSuite {
             };
         }
         let mut through = |channel, value: f64| {
-            let said = Some([value, 0.0, 0.0]);
-            faulty(&plant.faults, &mut self.faults, channel, ride, said).map_or(0.0, |[value, ..]| value)
+            let sample = Some([value, 0.0, 0.0]);
+            faulty(&plant.faults, &mut self.faults, channel, ride, sample).map_or(0.0, |[value, ..]| value)
         };
         let time_s = through(Channel::Clock, tick as f64 * self.period_s);
         let engage = through(Channel::Engage, f64::from(u8::from(engage))) >= 0.5;
@@ -121,24 +121,24 @@ impl SensorSuite {
         Measured { held: self.held, now_us, engage }
     }
 
-    /// The torque command of the present control instant as it reaches the motor \[N m\].
+    /// The torque command of the current control instant as it reaches the motor \[N m\].
     pub fn command(&mut self, plant: &Plant, torque_nm: f64) -> f64 {
-        let (ride, said) = (self.since_start(), Some([torque_nm, 0.0, 0.0]));
-        if let Some([torque_nm, ..]) = faulty(&plant.faults, &mut self.faults, Channel::Motor, ride, said) {
+        let (ride, sample) = (self.since_start(), Some([torque_nm, 0.0, 0.0]));
+        if let Some([torque_nm, ..]) = faulty(&plant.faults, &mut self.faults, Channel::Motor, ride, sample) {
             self.command_nm = torque_nm;
         }
         self.command_nm
     }
 }
 
-/// A channel's word through all its faults, in the order in which they were given.
+/// Applies all faults of a channel to a sample, in the order in which they were given.
 pub(crate) fn faulty(
     faults: &[Fault],
     states: &mut [FaultState],
     channel: Channel,
     tick: i64,
-    said: Option<[f64; 3]>,
+    sample: Option<[f64; 3]>,
 ) -> Option<[f64; 3]> {
     let of_channel = faults.iter().zip(states).filter(|(fault, _)| fault.channel == channel);
-    of_channel.fold(said, |said, (fault, state)| state.apply(fault, tick, said))
+    of_channel.fold(sample, |sample, (fault, state)| state.apply(fault, tick, sample))
 }

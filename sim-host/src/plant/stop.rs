@@ -1,16 +1,16 @@
-//! The mechanical end-stop of the steer.
+//! The mechanical end-stop of the steer: from steer angle and rate to torque.
 
 use super::PlantError;
 use crate::range::within;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Stops at both sides, against the steer whatever turns it: springs with dampers that the steer runs into and
-/// that never hold it back when it leaves.
+/// Stops at both sides: springs with dampers. They push only away from the stop, so they never hold the steer
+/// back when it leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SteerStop {
-    /// Steer angle of the contact, either way \[rad\].
+    /// Steer angle of the contact, on either side \[rad\].
     pub angle_rad: f64,
     /// Stiffness \[N m/rad\].
     pub stiffness_nm_rad: f64,
@@ -19,8 +19,9 @@ pub struct SteerStop {
 }
 
 impl SteerStop {
-    /// At an angle \[rad\], as stiff as a hard rubber bumper: a steer of 0.2 kg m^2 that arrives with 5 rad/s goes
-    /// 1.6 degrees beyond and leaves with 0.3 of its rate. Much stiffer would need steps below 1 ms.
+    /// Stop at an angle \[rad\], as stiff as a hard rubber bumper: a steer of 0.2 kg m^2 that arrives at 5
+    /// rad/s moves 1.6 degrees beyond and rebounds at 0.3 of its rate. A much stiffer stop would need time
+    /// steps below 1 ms.
     pub fn at(angle_rad: f64) -> Self {
         Self { angle_rad, stiffness_nm_rad: 2000.0, damping_nm_s_rad: 20.0 }
     }
@@ -28,7 +29,7 @@ impl SteerStop {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self) -> Result<(), PlantError> {
         within("steer stop (rad)", self.angle_rad, 0.05, 1.5)
             .and_then(|()| within("steer stop stiffness (N m/rad)", self.stiffness_nm_rad, 10.0, 5000.0))

@@ -1,5 +1,4 @@
-//! Who turns the steer: nobody, the control crate that is flashed, or its law as a mathematician
-//! would write it.
+//! Steer assist of a ride: none, the flashed control crate, or its law in continuous time.
 
 use crate::bicycle::{Geometry, Velocities};
 use crate::num::Scalar;
@@ -10,9 +9,9 @@ use control::{Law, Plan};
 pub enum Assist {
     /// No torque.
     None,
-    /// The control crate: f32, sampled at its rate, torque held between samples, limits and all.
+    /// The control crate: f32, sampled, torque held between samples, with all limits.
     Firmware(Box<Plan>),
-    /// The bare law in f64, continuous in time, with exact sensors and no limits.
+    /// The law alone in f64, continuous in time, with exact sensors and no limits.
     Ideal(Box<Law>),
 }
 

@@ -1,19 +1,19 @@
-//! Where the control step of a ride runs: in this program, or on a processor of its own.
+//! Executes the control step of a ride: in this program, or on an external processor.
 
 use super::Start;
 use control::{ActiveLimits, Causes, Command, Mode, Plan, SensorFrame, State};
 
-/// One control step's answer.
+/// Result of one control step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stepped {
     /// The command.
     pub command: Command,
-    /// The part of the torque that is permitted, 0 to 1.
+    /// Authority, 0 to 1.
     pub authority: f32,
 }
 
 impl Stepped {
-    /// Of a controller that is off.
+    /// Result of a controller that is off.
     pub const OFF: Self = Self {
         command: Command {
             torque_nm: 0.0,
@@ -26,59 +26,59 @@ impl Stepped {
     };
 }
 
-/// Why a processor of its own gave no answer.
+/// Failure of an external processor, with the reason.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct RemoteError(pub String);
 
-/// A controller on a processor of its own.
+/// A controller on an external processor.
 pub trait Remote {
-    /// A ride begins: the controller is just started, with the configuration of `plan`.
+    /// Begins a ride: restarts the controller with the configuration of `plan`.
     ///
     /// # Errors
-    /// It can't be.
+    /// The controller can't be restarted.
     fn begin(&mut self, plan: &Plan, start: &Start) -> Result<(), RemoteError>;
 
-    /// The next step is that of t = 0, when the disturbance comes.
+    /// Marks the next step as t = 0, the instant of the disturbance.
     fn disturb(&mut self);
 
-    /// One control step.
+    /// Executes one control step.
     ///
     /// # Errors
-    /// There is no answer, and none will come.
+    /// The processor does not answer.
     fn step(&mut self, frame: &SensorFrame) -> Result<Stepped, RemoteError>;
 }
 
-/// Where the control step runs.
+/// Where the control step is executed.
 pub(super) enum Backend<'a> {
     /// In this program.
     Local,
-    /// On a processor of its own; after its first failure nothing is asked of it any more.
+    /// On an external processor; not called again after its first failure.
     Remote {
-        /// The controller there.
+        /// The external controller.
         remote: &'a mut dyn Remote,
-        /// Its failure.
+        /// Its first failure.
         failure: Option<RemoteError>,
     },
 }
 
 impl<'a> Backend<'a> {
-    /// On a processor of its own.
+    /// Execution on an external processor.
     pub(super) fn away(remote: &'a mut dyn Remote) -> Self {
         Self::Remote { remote, failure: None }
     }
 
-    /// Whether rides from the same speed may share a controller made ready once.
+    /// Whether rides from the same speed can share one warm start.
     pub(super) fn shares(&self) -> bool {
         matches!(self, Self::Local)
     }
 
-    /// Whether it failed, so that a ride is of no use.
+    /// Whether the processor failed, so that the ride is invalid.
     pub(super) fn failed(&self) -> bool {
         matches!(self, Self::Remote { failure: Some(_), .. })
     }
 
-    /// Its failure, if it failed.
+    /// Returns the failure, if any.
     pub(super) fn end(self) -> Result<(), RemoteError> {
         match self {
             Self::Local | Self::Remote { failure: None, .. } => Ok(()),
@@ -86,21 +86,22 @@ impl<'a> Backend<'a> {
         }
     }
 
-    /// A ride from `start` begins.
+    /// Begins a ride from `start`.
     pub(super) fn begin(&mut self, plan: &Plan, start: &Start) {
         if let Self::Remote { remote, failure: failure @ None } = self {
             *failure = remote.begin(plan, start).err();
         }
     }
 
-    /// The next step is that of t = 0.
+    /// Marks the next step as t = 0.
     pub(super) fn disturb(&mut self) {
         if let Self::Remote { remote, .. } = self {
             remote.disturb();
         }
     }
 
-    /// One control step; `state` is the controller that runs here. After a failure the answer is zero torque.
+    /// Executes one control step; `state` is the local controller's. After a failure the result is zero
+    /// torque.
     #[inline]
     pub(super) fn step(&mut self, plan: &Plan, state: &mut State, frame: &SensorFrame) -> Stepped {
         match self {

@@ -1,18 +1,18 @@
-//! Many rides on one core: the widest vector instructions this machine has.
+//! Simulates many rides on one core with the widest available vector instructions.
 #![allow(unsafe_code)]
 
 use super::backend::Backend;
 use super::lanes::{WIDTH, run};
 use super::{Conditions, Remote, RemoteError, Ride, Start, TracePoint};
 
-/// Every ride to its end, in the order of `starts`.
+/// Simulates every ride to its end; results in the order of `starts`.
 ///
-/// Eight abreast if the machine has AVX2 (used without fused multiply-add), else one after the
-/// other: the bits are the same either way.
+/// Eight in parallel if the machine has AVX2 (without fused multiply-add), otherwise one after the other. The
+/// bits are the same.
 pub fn rides(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
     #[cfg(target_arch = "x86_64")]
     if std::is_x86_feature_detected!("avx2") {
-        // SAFETY: the machine was just seen to have AVX2.
+        // SAFETY: the machine was just checked to have AVX2.
         return unsafe { rides_avx2(conditions, starts) };
     }
     run::<1>(conditions, starts, None, &mut Backend::Local)
@@ -24,17 +24,17 @@ fn rides_avx2(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
     run::<WIDTH>(conditions, starts, None, &mut Backend::Local)
 }
 
-/// One ride with every control period written down; the same bits as in a batch.
+/// Simulates one ride and records every control period; the bits are the same as in a batch.
 pub fn traced(conditions: &Conditions, start: Start) -> (Ride, Vec<TracePoint>) {
     let mut trace = Vec::with_capacity(conditions.steps() as usize);
     let mut done = run::<1>(conditions, &[start], Some(&mut trace), &mut Backend::Local);
     (done.remove(0), trace)
 }
 
-/// As [`rides`], one after the other, the control step on a processor of its own.
+/// As [`rides`], one after the other, with the control step on an external processor.
 ///
 /// # Errors
-/// The processor's.
+/// The processor fails.
 pub fn rides_on(
     conditions: &Conditions,
     starts: &[Start],
@@ -45,10 +45,10 @@ pub fn rides_on(
     backend.end().map(|()| done)
 }
 
-/// As [`traced`], the control step on a processor of its own.
+/// As [`traced`], with the control step on an external processor.
 ///
 /// # Errors
-/// The processor's.
+/// The processor fails.
 pub fn traced_on(
     conditions: &Conditions,
     start: Start,

@@ -1,4 +1,4 @@
-//! Everything a ride depends on.
+//! Conditions of a ride: bicycle, assist, rider, plant, fall criterion and time step.
 
 use super::{Assist, FallCriterion};
 use crate::bicycle::Geometry;
@@ -28,45 +28,46 @@ pub enum Imu {
     Body,
 }
 
-/// The conditions all rides of a study share.
+/// Conditions common to all rides of a study.
 #[derive(Clone, Debug)]
 pub struct Conditions {
     /// The bicycle.
     pub bicycle: Geometry,
-    /// What turns the steer.
+    /// The steer assist.
     pub assist: Assist,
-    /// Who rides: human control in parallel with the assist.
+    /// The rider model, in parallel with the assist.
     pub rider: Option<Rider>,
-    /// Which speed schedules the gains.
+    /// Speed that schedules the gains.
     pub schedule_speed: ScheduleSpeed,
-    /// What the gyro reports.
+    /// Signal of the rate gyro.
     pub imu: Imu,
-    /// How late the simulated sensors are, beside what `plant` says \[control periods\].
+    /// Delay of the simulated sensors, in addition to that in `plant` \[control periods\].
     pub sensor_delay_ticks: u16,
-    /// How sensors and motor depart from exact ones, the steer's friction and its end-stop. All of it but
-    /// these two acts on [`Assist::Firmware`] only.
+    /// Errors of sensors and motor, and the steer's friction and end-stop. Except for these two it acts on
+    /// [`Assist::Firmware`] only.
     pub plant: Plant,
     /// When a ride counts as fallen.
     pub fall: FallCriterion,
-    /// How long a ride lasts if it does not fall \[s\].
+    /// Duration of a ride that does not fall \[s\].
     pub time_limit_s: f64,
-    /// The control period, and the integration step \[s\].
+    /// Control period and time step of the integration \[s\].
     pub step_s: f64,
-    /// A ride that did not fall has recovered when roll and steer, in its last second, stay below
-    /// this fraction of their largest values.
+    /// A ride has recovered if it did not fall and, in its last second, roll and steer stay below this
+    /// fraction of their maxima.
     pub recovered_below: f64,
 }
 
-/// Conditions that can't be simulated.
+/// Conditions that can't be simulated, with the reason.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct ConditionsError(pub String);
 
-/// Most control periods a simulated sensor can be late.
+/// Largest delay of a simulated sensor \[control periods\].
 pub(super) const MAX_SENSOR_DELAY_TICKS: u16 = 1000;
 
 impl Conditions {
-    /// The published conditions: 6 s, 1 kHz, exact sensors without delay, gain by front wheel speed.
+    /// The published conditions: 6 s, 1 kHz, exact sensors without delay, gain scheduled by front wheel
+    /// speed.
     pub fn thesis(bicycle: Geometry, assist: Assist) -> Self {
         Self {
             bicycle,
@@ -88,16 +89,17 @@ impl Conditions {
         (self.time_limit_s / self.step_s).round() as u32
     }
 
-    /// Most shorter steps of a ride, before it counts as fallen: in right-hand sides, one of 6 s costs at most eleven
-    /// ordinary ones. Falls that go through 90 degrees at once take up to 1,000.
-    pub(super) fn most_pieces(&self) -> u32 {
+    /// Largest number of substeps of a ride before it counts as fallen. In right-hand sides, a ride of 6 s
+    /// costs at most as much as eleven ordinary ones. Falls that pass 90 degrees without bouncing take up to
+    /// 1,000.
+    pub(super) fn most_substeps(&self) -> u32 {
         10_000 + 7 * self.steps()
     }
 
-    /// Checks what the types do not.
+    /// Checks what the types do not guarantee.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self) -> Result<(), ConditionsError> {
         let within = |name, value, min, max| within(name, value, min, max).map_err(ConditionsError);
         within("time limit (s)", self.time_limit_s, self.step_s, 3600.0)?;
@@ -121,8 +123,8 @@ impl Conditions {
     }
 }
 
-/// The initial state of one ride: upright, straight, on the path of steady riding but for the
-/// disturbance, an instantaneous change of rates.
+/// Initial state of one ride: straight and upright on steady riding, plus a disturbance that changes the
+/// rates instantaneously.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Start {
     /// Forward speed of the rear wheel \[m/s\].

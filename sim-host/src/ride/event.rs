@@ -1,19 +1,19 @@
-//! The instant of a fall inside a step.
+//! Finds the instant of a fall within a time step.
 
 use super::{FallCause, FallCriterion};
 use crate::bicycle::State;
 
-/// Whether a state counts as fallen by its angles; one that is not finite does (the model has no motion there).
+/// Whether a state counts as fallen by its angles, or is not finite (the model has no solution).
 pub(super) fn fallen(fall: &FallCriterion, state: &State<f64>) -> bool {
     let upright = state.roll.abs() < fall.roll_rad && state.steer.abs() < fall.steer_rad;
     !(upright && state.rear_wheel_rate.is_finite())
 }
 
-/// When in a step of `h` seconds, 0 to `h`, the first of roll and steer passes its angle, and which.
+/// Time in a step of `h` seconds, 0 to `h`, at which the first of roll and steer passes its limit, and which
+/// one.
 ///
-/// On the cubic through both ends' values and rates, whose error at a step of 1 ms is below a
-/// nanosecond; to 1e-9 s by bisection. A step that ends in no finite state counts as a fall at its
-/// start.
+/// Bisection to 1e-9 s on the cubic through both ends' values and rates, whose error at a time step of 1 ms
+/// is below a nanosecond. A step that ends in a state that is not finite counts as a fall at its start.
 pub(super) fn time_of_fall(
     fall: &FallCriterion,
     (before, after): (&State<f64>, &State<f64>),
@@ -34,8 +34,8 @@ pub(super) fn time_of_fall(
     (high * h, if rolled(high) { FallCause::Roll } else { FallCause::Steer })
 }
 
-/// The state `tau` seconds into a step of `h`: angles on the cubic of [`time_of_fall`], rates on a
-/// straight line; a step that ends in no finite state gives its start.
+/// State `tau` seconds into a step of `h`: angles on the cubic of [`time_of_fall`], rates interpolated
+/// linearly. A step that ends in a state that is not finite gives its start.
 pub(super) fn at_fall(before: &State<f64>, after: &State<f64>, tau: f64, h: f64) -> State<f64> {
     if tau == 0.0 {
         return *before;
@@ -53,7 +53,7 @@ pub(super) fn at_fall(before: &State<f64>, after: &State<f64>, tau: f64, h: f64)
     }
 }
 
-/// The cubic with values `p[0]`, `p[1]` and slopes `p[2]`, `p[3]` at 0 and 1.
+/// Hermite cubic with values `p[0]`, `p[1]` and slopes `p[2]`, `p[3]` at 0 and 1.
 fn hermite(p: &[f64; 4], s: f64) -> f64 {
     let (s2, s3) = (s * s, s * s * s);
     p[0] * (2.0 * s3 - 3.0 * s2 + 1.0)

@@ -1,45 +1,46 @@
-//! When a ride counts as fallen, as data.
+//! Fall criterion: configuration and causes.
 
 use crate::range::within;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
 
-/// When a ride counts as fallen.
+/// Criterion by which a ride counts as fallen.
 ///
-/// Close to 90 degrees of roll the knife-edge model bounces as a coin does: with a handlebar stop, much steer
-/// damping or a long trail a bicycle can lie there and never pass the angle. Hence [`FallCriterion::flat`].
+/// Near 90 degrees of roll the knife-edge model bounces as a coin does. With a handlebar stop, much steer
+/// damping or a long trail a bicycle can lie there without passing the angle; see [`FallCriterion::flat`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FallCriterion {
-    /// Roll either way beyond this \[rad\]; 90 degrees, as published.
+    /// Largest roll to either side \[rad\]; 90 degrees, as published.
     pub roll_rad: f64,
-    /// Steer either way beyond this \[rad\]; 90 degrees, as published.
+    /// Largest steer to either side \[rad\]; 90 degrees, as published.
     pub steer_rad: f64,
-    /// The bicycle lies on the ground short of that; null is not looked for.
+    /// Criterion for a bicycle that lies on the ground below these angles; null disables it.
     pub flat: Option<LaidFlat>,
 }
 
-/// The bicycle lies on the ground: its roll passed an angle, and it has not fallen by roll or steer in a time from then,
-/// whether it stays there or bounces. A ride whose time is up before counts as laid flat if it has come back.
+/// The bicycle lies on the ground: its roll passed an angle, and a time has elapsed since without a fall by
+/// roll or steer, whether it stays there or bounces. A ride that ends before that time counts as laid flat if
+/// the roll has returned below the angle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LaidFlat {
-    /// Roll either way at which a bicycle lies on the ground \[rad\].
+    /// Roll to either side at which a bicycle lies on the ground \[rad\].
     pub roll_rad: f64,
-    /// How long after it passed the angle the ride ends \[s\].
+    /// Time from passing the angle to the end of the ride \[s\].
     pub lasting_s: f64,
 }
 
 impl FallCriterion {
-    /// 90 degrees of roll or steer, and nothing else.
+    /// 90 degrees of roll or steer only.
     pub const PUBLISHED: Self = Self { roll_rad: FRAC_PI_2, steer_rad: FRAC_PI_2, flat: None };
 
     /// Checks ranges.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self) -> Result<(), String> {
         let angle = |name: &str, rad: f64| {
-            // 90 degrees as typed may be off by rounding.
+            // A typed 90 degrees can differ by rounding.
             within(&format!("{name} (deg)"), (rad.to_degrees() * 1e9).round() / 1e9, 1.0, 90.0)
         };
         angle("fall: roll", self.roll_rad)?;
@@ -52,15 +53,15 @@ impl FallCriterion {
 }
 
 impl Default for FallCriterion {
-    /// As published, and laid flat 1 s after 80 degrees of roll: the falls of ordinary rides that bounce there have mostly
-    /// passed 90 degrees of roll or steer by then, so that their times stay as published.
+    /// The published angles, and laid flat 1 s after 80 degrees of roll. Most falls of ordinary rides that
+    /// bounce there have passed 90 degrees of roll or steer by then, so their times are the published ones.
     fn default() -> Self {
         let flat = LaidFlat { roll_rad: 80f64.to_radians(), lasting_s: 1.0 };
         Self { flat: Some(flat), ..Self::PUBLISHED }
     }
 }
 
-/// What made a ride count as fallen.
+/// Cause for which a ride counts as fallen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FallCause {
     /// Roll passed [`FallCriterion::roll_rad`].
@@ -69,18 +70,18 @@ pub enum FallCause {
     Steer,
     /// [`FallCriterion::flat`].
     LaidFlat,
-    /// Roll and yaw became so quick that the ride would cost many times an ordinary one; happens beside 90 degrees of
-    /// roll, where the yaw rate of a bouncing bicycle has no bound.
+    /// Roll and yaw became so fast that the ride would cost many times an ordinary one. Occurs near 90
+    /// degrees of roll, where the yaw rate of a bouncing bicycle is unbounded.
     TooQuick,
-    /// The model has no motion there.
+    /// The model has no solution.
     NoMotion,
 }
 
 impl FallCause {
-    /// All of them.
+    /// All causes.
     pub const ALL: [Self; 5] = [Self::Roll, Self::Steer, Self::LaidFlat, Self::TooQuick, Self::NoMotion];
 
-    /// Its name in files.
+    /// Name in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Roll => "roll",

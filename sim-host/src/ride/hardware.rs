@@ -1,5 +1,5 @@
-//! The plant of one ride: exact readings, the sensors that tell them, the motor. Rides whose sensors
-//! and motor are exact, and whose controller needs roll rate and one speed only, go without.
+//! Plant of one ride: exact readings, sensors and motor. Not used if sensors and motor are exact and the
+//! controller needs only roll rate and one speed.
 
 use super::backend::Backend;
 use super::sensor::Reading as Signals;
@@ -18,7 +18,7 @@ pub(super) struct RideHardware {
     pub(super) motor: Actuator,
 }
 
-/// Whether rides under these conditions need one.
+/// Whether rides under these conditions need it.
 pub(super) fn needed(conditions: &Conditions) -> bool {
     let Assist::Firmware(plan) = &conditions.assist else { return false };
     let ValidationConfig {
@@ -29,7 +29,8 @@ pub(super) fn needed(conditions: &Conditions) -> bool {
 }
 
 impl RideHardware {
-    /// At t = 0, with the controller that these sensors readied. `frames` gets what it was told.
+    /// State at t = 0 and the controller after its warm start with these sensors. `frames` receives the
+    /// controller's inputs.
     pub(super) fn new(
         conditions: &Conditions,
         plan: &Plan,
@@ -52,7 +53,7 @@ impl RideHardware {
         (Self { sensors, odometry: Odometry::default(), motor }, ready)
     }
 
-    /// What the sensors tell at a control instant.
+    /// Sensor values at a control instant.
     pub(super) fn measured(
         &mut self,
         conditions: &Conditions,
@@ -74,14 +75,14 @@ impl RideHardware {
         self.sensors.measure(plant, &now, true)
     }
 
-    /// Gives the motor its command of this control instant \[N m\].
+    /// Passes the controller's command of this control instant to the motor \[N m\].
     pub(super) fn commanded(&mut self, conditions: &Conditions, plant: &Plant, torque_nm: f64) {
         let reached = self.sensors.command(plant, torque_nm);
         self.motor.command(&plant.actuator, conditions.step_s, reached);
     }
 }
 
-/// What the firmware gets of it: the declared sensors.
+/// Input frame of the controller, with the fitted sensors.
 pub(crate) fn frame(plan: &Plan, measured: &Measured) -> SensorFrame {
     let input = &plan.config().input;
     let of = |sensor| -> &Held { measured.of(sensor) };
@@ -109,7 +110,7 @@ pub(crate) fn frame(plan: &Plan, measured: &Measured) -> SensorFrame {
     }
 }
 
-/// Roll rate and speed as told.
+/// Roll rate and speed as measured.
 pub(super) fn measured_signals(plan: &Plan, measured: &Measured) -> Signals {
     let wheel = match plan.config().input.wheel {
         Wheel::Front => Sensor::FrontWheel,
@@ -118,7 +119,7 @@ pub(super) fn measured_signals(plan: &Plan, measured: &Measured) -> Signals {
     Signals { roll_rate_rad_s: measured.of(Sensor::Gyro).value[0], speed_m_s: measured.of(wheel).value[0] }
 }
 
-/// The rear frame in a lane.
+/// Motion of the rear frame in a lane.
 pub(super) fn lane_frame<const N: usize>(motion: &Motion<Lanes<N>>, lane: usize) -> Frame {
     let vector = |v: Vec3<Lanes<N>>| Vec3::new(v.x.0[lane], v.y.0[lane], v.z.0[lane]);
     let (v, pose) = (&motion.actual, &motion.pose);

@@ -1,4 +1,4 @@
-//! Rides side by side, one in each lane; a lane whose ride ends takes the next.
+//! Simulates rides side by side, one in each lane; when a ride ends, its lane takes the next.
 
 use super::backend::Backend;
 use super::hardware::{self, RideHardware, lane_frame, measured_signals};
@@ -14,32 +14,32 @@ use crate::num::Lanes;
 use crate::plant::{Frame, Plant};
 use crate::rider::Instant;
 
-/// How many rides go side by side: two AVX2 registers a number, which hides the latencies.
+/// Number of parallel rides: two AVX2 registers per number, which hides the latencies.
 pub(super) const WIDTH: usize = 8;
 
-/// The rides in the lanes, as what acts on their bicycles.
+/// The rides in the lanes, as the source of their torques.
 struct LaneBatch<'a, 'p, const N: usize> {
     conditions: &'a Conditions,
     backend: &'a mut Backend<'p>,
-    /// The conditions' plant, every delay in it.
+    /// The plant, with all delays included.
     plant: Plant,
     lanes: [Option<RideRecorder>; N],
-    /// Speeds at the start \[m/s\].
+    /// Speeds at t = 0 \[m/s\].
     initial: Lanes<N>,
-    /// The assist's torques, in the step's middle where they change in it \[N m\].
+    /// Assist torques \[N m\]; at the middle of the step if they change within it.
     assist: Lanes<N>,
     /// The riders.
     riders: Option<RiderLanes<'a, N>>,
-    /// The riders' torques at the step's start \[N m\].
+    /// Rider torques at the start of the step \[N m\].
     human: Lanes<N>,
-    /// How quick each lane's motion is, by [`stiffness`].
+    /// Speed of each lane's motion, from [`stiffness`].
     stiffness: [Lanes<N>; 4],
-    /// Where lane 0 is written down.
+    /// Record of lane 0.
     trace: Option<&'a mut Vec<TracePoint>>,
 }
 
 impl<const N: usize> LaneBatch<'_, '_, N> {
-    /// The control instant at a step's start: sensors, controllers, new torques.
+    /// Control instant at the start of a step: sensors, controllers, new torques.
     fn control(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
         self.stiffness = stiffness(b, motion);
         if let Some(riders) = &self.riders {
@@ -48,7 +48,7 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
         let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
         for (lane, ride) in self.lanes.iter_mut().enumerate() {
             let Some(ride) = ride else { continue };
-            // Near singular places only all six speeds tell the truth.
+            // Near singular configurations only the six-speed state is accurate.
             let (measured, output) = match (ride.hardware.take(), &self.conditions.assist) {
                 (Some(mut hardware), Assist::Firmware(plan)) => {
                     let at = match &ride.full {
@@ -77,7 +77,7 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
                 }
             };
             if let (0, Some(trace)) = (lane, &mut self.trace) {
-                // Whole nanoseconds: the nearest number to 5.999 s, not 5999 times the nearest to 1 ms.
+                // Rounded to whole nanoseconds: the nearest number to 5.999 s, not 5999 times the nearest to 1 ms.
                 let t = (f64::from(ride.step) * self.conditions.step_s * 1e9).round() / 1e9;
                 let steer_torques = SteerTorques { assist_nm: self.assist.0[0], rider_nm: self.human.0[0] };
                 trace.push(TracePoint::new(b, t, motion, &measured, &output, steer_torques));
@@ -186,7 +186,7 @@ pub(super) fn run<const N: usize>(
             if batch.lanes[lane].is_some() {
                 continue;
             }
-            // An empty lane stands upright and still, which costs what any other state costs.
+            // An empty lane is upright at rest; its computing time equals that of any other state.
             let next = waiting.next();
             let start = next.map_or_else(Start::default, |(_, start)| start);
             set(&mut state, lane, &start.state(b));
@@ -224,30 +224,30 @@ pub(super) fn run<const N: usize>(
             let steer_torques =
                 SteerTorques { assist_nm: batch.assist.0[lane], rider_nm: batch.human.0[lane] };
             let Some(ride) = &mut batch.lanes[lane] else { continue };
-            let was = get(&state, lane);
+            let before = get(&state, lane);
             let last = if too_stiff(batch.stiffness.map(|q| q.0[lane]), h) {
                 let human = batch.riders.as_mut().map(|riders| riders.one(lane));
                 let mut period = Period {
                     conditions,
-                    most_pieces: ride.pieces_left,
+                    most_substeps: ride.substeps_left,
                     full: &mut ride.full,
                     assist_nm: steer_torques.assist_nm,
                     motor: ride.hardware.as_ref().map(|hardware| &hardware.motor),
                     initial_m_s: batch.initial.0[lane],
                     human,
                 };
-                let last = refined(&mut period, &was);
+                let last = refined(&mut period, &before);
                 let rider_state = period.human.map(|human: RiderLane| human.rider_state.end);
-                set(&mut after, lane, &last.is);
+                set(&mut after, lane, &last.end);
                 if let (Some(riders), Some(rider_state)) = (&mut batch.riders, rider_state) {
                     riders.set(lane, &rider_state);
                 }
                 last
             } else {
                 ride.full = None;
-                Segment { was, is: get(&after, lane), offset: 0.0, h, pieces: 0 }
+                Segment { start: before, end: get(&after, lane), offset: 0.0, h, substeps: 0 }
             };
-            if let Some(finished) = ride.book(conditions, steer_torques, &was, &last) {
+            if let Some(finished) = ride.book(conditions, steer_torques, &before, &last) {
                 done.push((ride.index, finished));
                 batch.lanes[lane] = None;
             }

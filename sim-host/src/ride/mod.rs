@@ -1,4 +1,4 @@
-//! One ride: the bicycle, the assist, the rider and a disturbance at t = 0, until it falls or time is up.
+//! Simulation of one ride: bicycle, assist, rider and a disturbance at t = 0, until a fall or the time limit.
 
 mod assist;
 mod backend;

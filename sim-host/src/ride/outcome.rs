@@ -1,4 +1,4 @@
-//! What became of a ride.
+//! Results of a ride: outcome, effort and final state.
 
 use super::{FallCause, Start};
 
@@ -7,20 +7,20 @@ use super::{FallCause, Start};
 pub enum Outcome {
     /// By the ride's [`super::FallCriterion`].
     Fallen {
-        /// When \[s\].
+        /// Time of the fall \[s\].
         time_s: f64,
-        /// What made it count as fallen.
+        /// Cause of the fall.
         by: FallCause,
     },
-    /// Not fallen within the time limit, and come back close to straight and upright.
+    /// Not fallen within the time limit, and returned close to straight and upright.
     Recovered,
-    /// Not fallen within the time limit, and not come back either: a slow capsize, a limit cycle, or
-    /// a growing oscillation that only outlasts the time.
+    /// Not fallen within the time limit, but not recovered: a slow capsize, a limit cycle, or a growing
+    /// oscillation that only exceeds the time limit.
     Undecided,
 }
 
 impl Outcome {
-    /// When it fell \[s\], if it did.
+    /// Time of the fall \[s\], if it fell.
     pub fn time_to_fall_s(&self) -> Option<f64> {
         match self {
             Outcome::Fallen { time_s, .. } => Some(*time_s),
@@ -28,7 +28,7 @@ impl Outcome {
         }
     }
 
-    /// What made it count as fallen, if it did.
+    /// Cause of the fall, if it fell.
     pub fn fall(&self) -> Option<FallCause> {
         match self {
             Outcome::Fallen { by, .. } => Some(*by),
@@ -36,7 +36,7 @@ impl Outcome {
         }
     }
 
-    /// Its name in files.
+    /// Name in files.
     pub fn name(&self) -> &'static str {
         match self {
             Outcome::Fallen { .. } => "fallen",
@@ -46,33 +46,33 @@ impl Outcome {
     }
 }
 
-/// What the ride asked of the motor and of the rider.
+/// Torques, angles and work of motor and rider during a ride.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
 )]
 pub struct Effort {
-    /// Largest torque either way \[N m\].
+    /// Largest magnitude of the torque \[N m\].
     pub peak_torque_nm: f64,
     /// Root mean square of the torque over the ride \[N m\].
     pub rms_torque_nm: f64,
     /// Largest change of the torque from one control period to the next, per second \[N m/s\]. The
     /// engagement at t = 0 is not a change.
     pub peak_slew_nm_s: f64,
-    /// Largest roll angle either way \[rad\].
+    /// Largest magnitude of roll \[rad\].
     pub peak_roll_rad: f64,
-    /// Largest steer angle either way \[rad\].
+    /// Largest magnitude of steer \[rad\].
     pub peak_steer_rad: f64,
-    /// Work done by the motor on the steer axis, braking work counted negative \[J\].
+    /// Work done by the motor on the steer axis, braking counted negative \[J\].
     pub motor_energy_j: f64,
-    /// Work done by the motor while it pushes \[J\].
+    /// Work done by the motor at positive power \[J\].
     pub motor_energy_out_j: f64,
-    /// Largest torque of the rider either way \[N m\].
+    /// Largest magnitude of the rider's torque \[N m\].
     pub rider_peak_torque_nm: f64,
     /// Root mean square of the rider's torque over the ride \[N m\].
     pub rider_rms_torque_nm: f64,
-    /// Work done by the rider on the steer axis, braking work counted negative \[J\].
+    /// Work done by the rider on the steer axis, braking counted negative \[J\].
     pub rider_energy_j: f64,
-    /// Part of the ride in which assist and rider pushed against each other, 0 to 1.
+    /// Fraction of the ride in which the torques of assist and rider had opposite signs, 0 to 1.
     pub opposed: f64,
 }
 
@@ -96,25 +96,25 @@ pub struct FinalState {
 /// One finished ride.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ride {
-    /// How it began.
+    /// Initial state.
     pub start: Start,
-    /// How it ended.
+    /// Outcome.
     pub outcome: Outcome,
-    /// Its state then.
+    /// Final state.
     pub end: FinalState,
-    /// What it took.
+    /// Torques and work.
     pub effort: Effort,
-    /// Control periods ridden.
+    /// Control periods simulated.
     pub steps: u32,
 }
 
 impl Ride {
-    /// Whether nothing disturbed it: the model then stays exactly upright, stable or not.
+    /// Whether there was no disturbance: the model then stays exactly upright, stable or not.
     pub fn undisturbed(&self) -> bool {
         self.effort.peak_roll_rad == 0.0 && self.effort.peak_steer_rad == 0.0 && !self.fell()
     }
 
-    /// Whether it fell.
+    /// Whether the ride ended in a fall.
     pub fn fell(&self) -> bool {
         matches!(self.outcome, Outcome::Fallen { .. })
     }

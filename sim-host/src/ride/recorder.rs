@@ -1,4 +1,4 @@
-//! The bookkeeping of one ride while it lasts.
+//! Records effort, fall and outcome of one ride while it is simulated.
 
 use super::backend::Backend;
 use super::event::{at_fall, fallen, time_of_fall};
@@ -17,10 +17,10 @@ pub(super) struct SteerTorques {
     pub(super) rider_nm: f64,
 }
 
-/// The controller's answer at a control instant.
+/// Output of the controller at a control instant.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ControllerOutput {
-    /// What it was told.
+    /// Its input frame.
     pub(super) frame: SensorFrame,
     /// Commanded steer torque \[N m\].
     pub(super) torque_nm: f64,
@@ -30,7 +30,7 @@ pub(super) struct ControllerOutput {
 }
 
 impl ControllerOutput {
-    /// Of no controller.
+    /// Output without a controller.
     const NONE: Self = Self {
         frame: SensorFrame::missing(),
         torque_nm: 0.0,
@@ -40,31 +40,31 @@ impl ControllerOutput {
     };
 }
 
-/// The ride in a lane.
+/// Record of the ride in a lane.
 pub(super) struct RideRecorder {
-    /// Which of the starts.
+    /// Index in the starts.
     pub(super) index: usize,
     pub(super) start: Start,
-    /// Control periods ridden.
+    /// Control periods simulated.
     pub(super) step: u32,
     pub(super) sensors: Sensors,
-    /// The controller, and the control periods since its boot; `None` if there is none.
+    /// The controller and the control periods since its boot; `None` without one.
     controller: Option<Ready>,
-    /// Sensors and motor, where they are not exact.
+    /// Sensors and motor, if they are not exact.
     pub(super) hardware: Option<Box<RideHardware>>,
-    /// All speeds, while the motion is near a place where three do not fix the others.
+    /// Six-speed state, while the motion is near a singular configuration of the independent speeds.
     pub(super) full: Option<FullState>,
     before: SteerTorques,
     effort: Effort,
-    /// Sums over the control periods: squares of both torques, and how many they opposed each other.
+    /// Sums over the control periods: squares of both torques, and periods in which they opposed each other.
     squares: [f64; 2],
     opposed: u32,
-    /// Largest roll and steer of the last second.
+    /// Largest roll and steer in the last second.
     late: [f64; 2],
-    /// Control periods since the roll first passed [`super::LaidFlat::roll_rad`], from 1; 0 before.
+    /// Control periods since roll first passed [`super::LaidFlat::roll_rad`], from 1; 0 before.
     flat_ticks: u32,
-    /// Shorter steps it may still take.
-    pub(super) pieces_left: u32,
+    /// Remaining number of substeps.
+    pub(super) substeps_left: u32,
 }
 
 impl RideRecorder {
@@ -89,11 +89,11 @@ impl RideRecorder {
             opposed: 0,
             late: [0.0; 2],
             flat_ticks: 0,
-            pieces_left: conditions.most_pieces(),
+            substeps_left: conditions.most_substeps(),
         }
     }
 
-    /// The controller's answer to this instant's reading, by exact sensors.
+    /// The controller's output for this instant's reading of exact sensors.
     pub(super) fn command(
         &mut self,
         assist: &Assist,
@@ -113,7 +113,7 @@ impl RideRecorder {
         }
     }
 
-    /// The controller's answer to a frame.
+    /// The controller's output for a frame.
     pub(super) fn output(
         &mut self,
         plan: &Plan,
@@ -132,22 +132,22 @@ impl RideRecorder {
         }
     }
 
-    /// Books one control period that began with `steer_torques`, from `was` to the end of its `last`
-    /// segment; the finished ride, when it was the last.
+    /// Records one control period that began with `steer_torques`, from `start` to the end of its `last`
+    /// segment; returns the finished ride after the last period.
     ///
-    /// The effort of a period in which the bicycle falls is left out.
+    /// The effort of the period in which the bicycle falls is not counted.
     pub(super) fn book(
         &mut self,
         conditions: &Conditions,
         steer_torques: SteerTorques,
-        was: &State<f64>,
+        start: &State<f64>,
         last: &Segment,
     ) -> Option<Ride> {
-        let (h, is) = (conditions.step_s, &last.is);
-        if fallen(&conditions.fall, is) {
-            let (tau, by) = time_of_fall(&conditions.fall, (&last.was, is), last.h);
+        let (h, end) = (conditions.step_s, &last.end);
+        if fallen(&conditions.fall, end) {
+            let (tau, by) = time_of_fall(&conditions.fall, (&last.start, end), last.h);
             let time_s = f64::from(self.step) * h + last.offset + tau;
-            let end = at_fall(&last.was, is, tau, last.h);
+            let end = at_fall(&last.start, end, tau, last.h);
             self.step += 1;
             return Some(self.finish(Outcome::Fallen { time_s, by }, time_s, &end));
         }
@@ -157,9 +157,9 @@ impl RideRecorder {
         if self.step > 0 {
             e.peak_slew_nm_s = e.peak_slew_nm_s.max((assist_nm - self.before.assist_nm).abs() / h);
         }
-        e.peak_roll_rad = e.peak_roll_rad.max(is.roll.abs());
-        e.peak_steer_rad = e.peak_steer_rad.max(is.steer.abs());
-        let turned = is.steer - was.steer;
+        e.peak_roll_rad = e.peak_roll_rad.max(end.roll.abs());
+        e.peak_steer_rad = e.peak_steer_rad.max(end.steer.abs());
+        let turned = end.steer - start.steer;
         e.motor_energy_j += assist_nm * turned;
         e.motor_energy_out_j += (assist_nm * turned).max(0.0);
         e.rider_peak_torque_nm = e.rider_peak_torque_nm.max(rider_nm.abs());
@@ -170,23 +170,23 @@ impl RideRecorder {
         self.step += 1;
         let t = f64::from(self.step) * h;
         if t > conditions.time_limit_s - 1.0 {
-            self.late = [self.late[0].max(is.roll.abs()), self.late[1].max(is.steer.abs())];
+            self.late = [self.late[0].max(end.roll.abs()), self.late[1].max(end.steer.abs())];
         }
         if let Some(by) = self.lies(conditions, last) {
             let time_s = t - h + last.offset + last.h;
-            return Some(self.finish(Outcome::Fallen { time_s, by }, time_s, is));
+            return Some(self.finish(Outcome::Fallen { time_s, by }, time_s, end));
         }
-        (self.step >= conditions.steps()).then(|| self.finish(self.outlasted(conditions), t, is))
+        (self.step >= conditions.steps()).then(|| self.finish(self.outlasted(conditions), t, end))
     }
 
-    /// What makes the ride count as fallen after a control period that ended in `last`, short of the angles of a fall.
+    /// Other causes of a fall than the angles, after a control period that ended in `last`.
     fn lies(&mut self, conditions: &Conditions, last: &Segment) -> Option<FallCause> {
-        self.pieces_left = self.pieces_left.saturating_sub(last.pieces);
-        if self.pieces_left == 0 {
+        self.substeps_left = self.substeps_left.saturating_sub(last.substeps);
+        if self.substeps_left == 0 {
             return Some(FallCause::TooQuick);
         }
         let flat = conditions.fall.flat?;
-        let beyond = last.is.roll.abs() > flat.roll_rad;
+        let beyond = last.end.roll.abs() > flat.roll_rad;
         self.flat_ticks += u32::from(beyond || self.flat_ticks > 0);
         let over = f64::from(self.flat_ticks) * conditions.step_s > flat.lasting_s;
         let came_back = self.flat_ticks > 0 && !beyond && self.step >= conditions.steps();

@@ -1,23 +1,24 @@
-//! The human rider of a ride: muscles that move along with the bicycle, nerves that come late.
+//! Rider models of the rides in the lanes: neuromuscular dynamics integrated with the bicycle, and delay
+//! lines.
 
 use crate::bicycle::Geometry;
 use crate::integrate::{STAGES, Stages};
 use crate::num::Lanes;
 use crate::rider::{DelayLine, Instant, Rider, RiderState, Signals};
 
-/// The riders in the lanes.
+/// Rider models in the lanes.
 pub(super) struct RiderLanes<'a, const N: usize> {
     rider: &'a Rider,
-    /// Their bodies at the step's start, and in the step under way.
+    /// Rider states at the start of the step, and in the stages of the current step.
     pub(super) rider_state: Stages<RiderState<Lanes<N>>>,
-    /// Their nerves; `None` for a rider without delay.
+    /// Neural delays; `None` for a rider without delay.
     delay_line: Option<[DelayLine; N]>,
     /// The signals that arrive at the start, middle and end of the step.
     arriving: [Lanes<N>; 3],
 }
 
 impl<'a, const N: usize> RiderLanes<'a, N> {
-    /// Riders whose nerves take `delay` steps.
+    /// Riders with a neural delay of `delay` steps.
     pub(super) fn new(rider: &'a Rider, delay: usize) -> Self {
         Self {
             rider,
@@ -27,7 +28,7 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
         }
     }
 
-    /// A new ride in a lane.
+    /// Resets a lane for a new ride.
     pub(super) fn restart(&mut self, lane: usize) {
         self.set(lane, &RiderState::fresh());
         if let Some(delay_line) = &mut self.delay_line {
@@ -35,8 +36,8 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
         }
     }
 
-    /// A stage of the step of `h` seconds: what is felt at `now` and the `speeds` \[m/s\] that
-    /// schedule the gains, and the bodies moved on. Nothing is felt in lanes that are not `taken`.
+    /// A stage of the step of `h` seconds: stores the feedback signals at `now`, with gains at the `speeds`
+    /// \[m/s\], and advances the rider states. Lanes that are not `taken` store no signals.
     #[inline(always)]
     pub(super) fn end_stage(
         &mut self,
@@ -63,7 +64,7 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
         self.rider_state.next(stage, h, &k);
     }
 
-    /// The rider in a lane, at the step's start.
+    /// The rider in a lane, at the start of the step.
     pub(super) fn one(&mut self, lane: usize) -> RiderLane<'_> {
         let RiderState { roll_integral, steer_integral, heading, rear_lateral, torque, torque_rate } =
             self.rider_state.start();
@@ -79,7 +80,7 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
         RiderLane { rider: self.rider, rider_state: Stages::new(rider_state), delay_line }
     }
 
-    /// Puts a body into a lane at the end of the step.
+    /// Sets the rider state of a lane at the end of the step.
     pub(super) fn set(&mut self, lane: usize, to: &RiderState<f64>) {
         let end = &mut self.rider_state.end;
         end.roll_integral.0[lane] = to.roll_integral;
@@ -90,14 +91,14 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
         end.torque_rate.0[lane] = to.torque_rate;
     }
 
-    /// The end of a step is the start of the next.
+    /// Makes the end of a step the start of the next.
     #[inline(always)]
     pub(super) fn turn(&mut self) {
         self.rider_state = Stages::new(self.rider_state.end);
     }
 }
 
-/// The neural signals before their delay, each with the gains at its speed.
+/// Neural signals before their delay, each with the gains at its speed.
 #[inline(always)]
 fn neural<const N: usize>(rider: &Rider, signals: &Signals<Lanes<N>>, speeds: &Lanes<N>) -> Lanes<N> {
     let mut out = Lanes([0.0; N]);
@@ -135,7 +136,7 @@ fn arrive<const N: usize>(delay_line: &[DelayLine; N], to: &mut [Lanes<N>; 3], t
     }
 }
 
-/// One rider through the shorter steps of a control period.
+/// One rider in the substeps of a control period.
 pub(super) struct RiderLane<'a> {
     rider: &'a Rider,
     pub(super) rider_state: Stages<RiderState<f64>>,
@@ -144,7 +145,7 @@ pub(super) struct RiderLane<'a> {
 }
 
 impl RiderLane<'_> {
-    /// A stage at the part `s` of the control period, in a step of `h` seconds.
+    /// A stage at the fraction `s` of the control period, in a substep of `h` seconds.
     pub(super) fn end_stage(
         &mut self,
         b: &Geometry,
@@ -157,7 +158,7 @@ impl RiderLane<'_> {
         let alpha = match &mut self.delay_line {
             Some(delay_line) => {
                 if stage == 0 && s == 0.0 {
-                    // In its lane this instant was felt with the independent speeds.
+                    // The lane stored this instant's signal from the independent speeds; replaced here.
                     delay_line.correct(neural());
                 }
                 delay_line.arriving_at(s)
@@ -180,8 +181,8 @@ mod tests {
     const STEP_S: f64 = 1e-3;
     const DELAY_STEPS: usize = 60;
 
-    /// The torques of eight riders over time while roll, steer and yaw swing at `omega` with small
-    /// amplitudes, the bicycle itself held upright at 5 m/s.
+    /// Torques of eight riders over time while roll, steer and yaw oscillate at `omega` with small
+    /// amplitudes, with the bicycle kept upright at 5 m/s.
     fn swung(rider: &Rider, delay: usize, omega: f64, seconds: f64) -> Vec<f64> {
         let b = Geometry::new(&catalogue::load("rigid_jason").unwrap().parameters);
         let state = State::upright(&b, Lanes([5.0; 8]));
@@ -215,8 +216,8 @@ mod tests {
     const STEER: f64 = -2e-6;
     const YAW: f64 = 0.5e-6;
 
-    /// Situation: the rider as ridden, all gains in use, the motion a small sine. Action: take the
-    /// torque's Fourier coefficient once it has settled. It must be that of G_nm exp(-tau s) K(s).
+    /// Situation: the complete rider model, all gains in use, the motion a small sine. Action: take the
+    /// torque's Fourier coefficient once it has settled. Must hold: it equals that of G_nm exp(-tau s) K(s).
     #[test]
     fn frequency_response() {
         let gains = Gains([-8.0, -0.5, 7.0, 4.2, 12.0, 3.0, 1.3, -0.09, -0.6, 0.0]);

@@ -1,4 +1,4 @@
-//! The simulated sensors of one ride: what they measure and how late they tell.
+//! Exact sensors of one ride with a common delay.
 
 use super::assist::{body_roll_rate, front_speed, rear_speed};
 use super::{Conditions, Imu, ScheduleSpeed, Start};
@@ -7,16 +7,16 @@ use crate::num::Scalar;
 use control::{Plan, Sample, SensorFrame, Triple, Wheel};
 use std::collections::VecDeque;
 
-/// What the sensors would say without delay.
+/// Sensor values without delay.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Reading {
-    /// Roll rate by [`Imu`] \[rad/s\].
+    /// Roll rate as selected by [`Imu`] \[rad/s\].
     pub(super) roll_rate_rad_s: f64,
-    /// Speed by [`ScheduleSpeed`] \[m/s\].
+    /// Speed as selected by [`ScheduleSpeed`] \[m/s\].
     pub(super) speed_m_s: f64,
 }
 
-/// The readings on their way. Before t = 0 the bicycle rode steadily.
+/// Delayed readings; before t = 0 those of steady riding.
 #[derive(Clone, Debug)]
 pub(super) struct Sensors {
     pipeline: VecDeque<Reading>,
@@ -28,7 +28,7 @@ impl Sensors {
         Self { pipeline: vec![steady; usize::from(conditions.sensor_delay_ticks)].into() }
     }
 
-    /// Takes in this instant's reading and gives the one that arrives now.
+    /// Stores this instant's reading and returns the one that arrives now.
     pub(super) fn delayed(&mut self, now: Reading) -> Reading {
         // Without delay the queue stays empty and the reading passes through.
         let Some(arrived) = self.pipeline.pop_front() else { return now };
@@ -37,7 +37,7 @@ impl Sensors {
     }
 }
 
-/// A reading as the firmware gets it, `ticks` control periods after its boot.
+/// Input frame of the controller from a reading, `ticks` control periods after boot.
 pub(super) fn frame(plan: &Plan, reading: &Reading, ticks: u32, engage: bool) -> SensorFrame {
     let speed = Sample::fresh(reading.speed_m_s as f32);
     let missing = SensorFrame::missing();
@@ -58,7 +58,7 @@ pub(super) fn frame(plan: &Plan, reading: &Reading, ticks: u32, engage: bool) ->
     }
 }
 
-/// What the sensors would say at these velocities: roll rate \[rad/s\] and speed \[m/s\].
+/// Exact sensor values at these velocities: roll rate \[rad/s\] and speed \[m/s\].
 #[inline(always)]
 pub(super) fn readings<S: Scalar>(conditions: &Conditions, v: &Velocities<S>, initial: S) -> (S, S) {
     let b = &conditions.bicycle;

@@ -1,9 +1,9 @@
-//! Shorter steps where the motion is too quick for the control period; and all six speeds
-//! ([`FullState`]) near places where the three independent ones do not fix the others.
+//! Substeps of a control period where the motion is fast, and the six-speed formulation ([`FullState`]) near
+//! singular configurations of the three independent speeds.
 //!
-//! Rides that end in a fall go there: the front wheel comes to stand across the path or beside the
-//! rear wheel, and close to 90 degrees of roll the yaw rate grows like one over the cosine of roll,
-//! as a coin's does, and may throw the roll back.
+//! Rides that end in a fall reach them: the front wheel turns across the path or beside the rear wheel. Close
+//! to 90 degrees of roll the yaw rate grows like one over the cosine of roll, as a coin's does, and can
+//! reverse the roll.
 
 use super::event::fallen;
 use super::rider_lanes::RiderLane;
@@ -15,28 +15,28 @@ use crate::num::Scalar;
 use crate::plant::Actuator;
 use crate::rider::Instant;
 
-/// Largest step in units of the motion's own time.
+/// Largest substep relative to the time scale of the motion.
 const LARGEST: f64 = 0.05;
-/// Nearest to a singular place that the independent speeds are used, as a part of the upright
-/// bicycle's distance from it.
+/// Smallest distance from a singular configuration at which the independent speeds are used, as a fraction of
+/// the upright bicycle's distance.
 const NEAREST: f64 = 0.15;
-/// Most steps in a control period.
+/// Largest number of substeps in a control period.
 const MOST: f64 = 4096.0;
 
-/// Part of a control period: from `was` to `is`.
+/// Part of a control period, from the state `start` to the state `end`.
 pub(super) struct Segment {
-    pub(super) was: State<f64>,
-    pub(super) is: State<f64>,
-    /// Its start, from the period's \[s\].
+    pub(super) start: State<f64>,
+    pub(super) end: State<f64>,
+    /// Time of its start in the period \[s\].
     pub(super) offset: f64,
-    /// Its length \[s\].
+    /// Its duration \[s\].
     pub(super) h: f64,
-    /// Shorter steps taken in the period up to its end.
-    pub(super) pieces: u32,
+    /// Substeps taken in the period up to its end.
+    pub(super) substeps: u32,
 }
 
-/// What tells how quick the motion is: the sum of squares of its rates \[rad^2/s^2\], the cosine of
-/// roll, and the distances from the two singular places.
+/// Quantities that determine the substep: sum of squared rates \[rad^2/s^2\], cosine of roll, and distances
+/// from the two singular configurations.
 #[inline(always)]
 pub(super) fn stiffness<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> [S; 4] {
     let v = &motion.actual;
@@ -45,18 +45,18 @@ pub(super) fn stiffness<S: Scalar>(b: &Geometry, motion: &Motion<S>) -> [S; 4] {
     [squares, cos_roll, motion.unfolded(b), motion.along_front(b)]
 }
 
-/// Whether a step of `h` seconds with the independent speeds will not do.
+/// Whether a step of `h` seconds with the independent speeds is too inaccurate.
 pub(super) fn too_stiff(stiffness: [f64; 4], h: f64) -> bool {
-    singular(stiffness) || pieces(stiffness, h) > 1.0
+    singular(stiffness) || substeps(stiffness, h) > 1.0
 }
 
-/// Whether the independent speeds do not safely fix the others. NaN counts as singular.
+/// Whether the independent speeds do not determine the others accurately. NaN counts as singular.
 fn singular([_, _, unfolded, along]: [f64; 4]) -> bool {
     !(unfolded.abs() >= NEAREST && along.abs() >= NEAREST)
 }
 
-/// How many steps `h` seconds take.
-fn pieces([squares, cos_roll, ..]: [f64; 4], h: f64) -> f64 {
+/// Number of substeps for `h` seconds.
+fn substeps([squares, cos_roll, ..]: [f64; 4], h: f64) -> f64 {
     let steps = (h * squares.sqrt() / (LARGEST * cos_roll.abs())).ceil();
     if steps.is_nan() { MOST } else { steps.clamp(1.0, MOST) }
 }
@@ -64,13 +64,13 @@ fn pieces([squares, cos_roll, ..]: [f64; 4], h: f64) -> f64 {
 /// A control period of one ride.
 pub(super) struct Period<'a> {
     pub(super) conditions: &'a Conditions,
-    /// Most shorter steps it may take, from 1.
-    pub(super) most_pieces: u32,
-    /// All speeds from one such period to the next, while they are needed.
+    /// Largest number of substeps, at least 1.
+    pub(super) most_substeps: u32,
+    /// Six-speed state from one control period to the next, while needed.
     pub(super) full: &'a mut Option<FullState>,
-    /// The assist's torque at its start \[N m\].
+    /// Assist torque at the start \[N m\].
     pub(super) assist_nm: f64,
-    /// The motor that gives it, if it is not exact.
+    /// The motor, if it is not exact.
     pub(super) motor: Option<&'a Actuator>,
     /// The ride's speed at t = 0 \[m/s\].
     pub(super) initial_m_s: f64,
@@ -101,7 +101,7 @@ impl Period<'_> {
         Torques { roll: 0.0, steer }
     }
 
-    /// Lets the rider feel a stage of the step of `h` seconds that begins at `offset`.
+    /// Passes a stage of the substep of `h` seconds that begins at `offset` to the rider.
     fn end_stage(&mut self, stage: usize, (offset, h): (f64, f64), now: &Instant<f64>) {
         if let Some(human) = &mut self.human {
             let (_, speed) = readings(self.conditions, now.velocities, self.initial_m_s);
@@ -111,44 +111,44 @@ impl Period<'_> {
     }
 }
 
-/// The last segment of a control period from `from`: the one that ends it, the one in which the
-/// bicycle falls, or the last one allowed.
+/// Integrates a control period from `from` in substeps. Returns the last segment: the one that ends the
+/// period, the one with the fall, or the last one allowed.
 pub(super) fn refined(period: &mut Period, from: &State<f64>) -> Segment {
     let (b, step_s) = (&period.conditions.bicycle, period.conditions.step_s);
-    let (mut was, mut offset, mut taken) = (*from, 0.0, 0);
+    let (mut start, mut offset, mut taken) = (*from, 0.0, 0);
     loop {
-        let motion = Motion::new(b, &was);
+        let motion = Motion::new(b, &start);
         let stiffness = stiffness(b, &motion);
         let left = step_s - offset;
-        let pieces = pieces(stiffness, left);
-        let h = left / pieces;
-        let is = if singular(stiffness) {
-            let at = period.full.unwrap_or_else(|| FullState::new(&motion, &was));
+        let substeps = substeps(stiffness, left);
+        let h = left / substeps;
+        let end = if singular(stiffness) {
+            let at = period.full.unwrap_or_else(|| FullState::new(&motion, &start));
             *period.full = step(b, &at, (offset, h), period);
-            period.full.map_or(State { rear_wheel_rate: f64::NAN, ..was }, |next| next.state())
+            period.full.map_or(State { rear_wheel_rate: f64::NAN, ..start }, |next| next.state())
         } else {
             *period.full = None;
-            rk4(b, &was, h, &mut Shorter { period, offset, h })
+            rk4(b, &start, h, &mut Substep { period, offset, h })
         };
         if let Some(human) = &mut period.human {
             human.rider_state = Stages::new(human.rider_state.end);
         }
         taken += 1;
-        if pieces <= 1.0 || taken >= period.most_pieces || fallen(&period.conditions.fall, &is) {
-            return Segment { was, is, offset, h, pieces: taken };
+        if substeps <= 1.0 || taken >= period.most_substeps || fallen(&period.conditions.fall, &end) {
+            return Segment { start, end, offset, h, substeps: taken };
         }
-        (was, offset) = (is, offset + h);
+        (start, offset) = (end, offset + h);
     }
 }
 
-/// A shorter step with the independent speeds.
-struct Shorter<'a, 'b> {
+/// A substep with the independent speeds.
+struct Substep<'a, 'b> {
     period: &'a mut Period<'b>,
     offset: f64,
     h: f64,
 }
 
-impl Actuation<f64> for Shorter<'_, '_> {
+impl Actuation<f64> for Substep<'_, '_> {
     fn torques(&mut self, _: &Geometry, stage: usize, motion: &Motion<f64>) -> Torques<f64> {
         let (sin, cos) = motion.pose.attitude.steer;
         self.period.torques(self.offset + STAGES[stage] * self.h, libm::atan2(sin, cos), &motion.actual)
@@ -166,7 +166,7 @@ impl Actuation<f64> for Shorter<'_, '_> {
     }
 }
 
-/// One Runge-Kutta step with all speeds, `h` seconds from `offset`.
+/// One Runge-Kutta step with six speeds, `h` seconds from `offset`.
 fn step(b: &Geometry, from: &FullState, (offset, h): (f64, f64), period: &mut Period) -> Option<FullState> {
     let mut stages = Stages::new(*from);
     for (stage, part) in STAGES.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! A ride written down, one line a control period.
+//! Record of a ride, one point per control period.
 
 use super::assist::{front_speed, rear_speed};
 use super::backend::Backend;
@@ -34,33 +34,33 @@ pub struct TracePoint {
     pub rear_speed: f64,
     /// Front wheel's forward speed \[m/s\].
     pub front_speed: f64,
-    /// Roll rate as the controller was told \[rad/s\].
+    /// Roll rate as measured by the controller's sensors \[rad/s\].
     pub measured_roll_rate: f64,
-    /// Speed as the controller was told \[m/s\].
+    /// Speed as measured by the controller's sensors \[m/s\].
     pub measured_speed: f64,
-    /// The steer torque the assist commanded \[N m\].
+    /// Steer torque commanded by the assist \[N m\].
     pub torque: f64,
     /// Limits that changed the torque, as bits of [`control::ActiveLimits`].
     pub limits: u16,
     /// The rider's steer torque \[N m\].
     pub rider_torque: f64,
-    /// The steer torque the motor gives in the middle of the control period \[N m\].
+    /// Steer torque of the motor at the middle of the control period \[N m\].
     pub motor_torque: f64,
-    /// Where the controller stood, as the number of [`control::Mode`].
+    /// Mode of the controller, as the number of [`control::Mode`].
     pub mode: u8,
-    /// What stood in the way of the torque, as bits of [`control::Causes`].
+    /// Causes that prevent or reduce torque, as bits of [`control::Causes`].
     pub causes: u64,
-    /// The lower half of `causes`, whose bits are more than a double holds exactly.
+    /// Lower half of `causes`; a double does not hold all its bits exactly.
     pub causes_low: u32,
-    /// The upper half of `causes`.
+    /// Upper half of `causes`.
     pub causes_high: u32,
-    /// All that the controller was told.
+    /// The controller's input frame.
     #[serde(skip)]
     pub frame: SensorFrame,
 }
 
 impl TracePoint {
-    /// What there is to write down of lane 0 at `t`.
+    /// The point of lane 0 at `t`.
     pub(super) fn new<const N: usize>(
         b: &Geometry,
         t: f64,
@@ -97,8 +97,8 @@ impl TracePoint {
     }
 }
 
-/// The sensor frames of a ride as the firmware was given them, from its boot on, to be replayed on
-/// the chip; none without a firmware.
+/// Sensor frames of a ride as the controller received them from its boot, for replay on the chip; none
+/// without the control crate.
 pub fn frames(conditions: &Conditions, start: Start, trace: &[TracePoint]) -> Vec<SensorFrame> {
     let Assist::Firmware(plan) = &conditions.assist else { return Vec::new() };
     let mut frames = Vec::with_capacity(trace.len());

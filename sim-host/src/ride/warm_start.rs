@@ -1,12 +1,12 @@
-//! Before the disturbance: the bicycle rides upright and straight, the controller boots, tests
-//! itself, and is engaged by a fresh press of the switch, all by the step that is flashed.
+//! Warm start before the disturbance: the bicycle rides upright and straight; the controller boots, runs its
+//! self-test and is engaged by a press of the switch, all by the flashed control step.
 
 use super::backend::{Backend, Stepped};
 use super::sensor::{Reading, frame};
 use super::{Assist, Conditions};
 use control::{Command, Plan, SensorFrame, State};
 
-/// A controller at t = 0.
+/// The controller at t = 0.
 #[derive(Clone, Debug)]
 pub(super) struct Ready {
     pub(super) controller: State,
@@ -14,10 +14,10 @@ pub(super) struct Ready {
     pub(super) ticks: u32,
 }
 
-/// Rides steadily by what the sensors tell, given the control periods since boot, the switch and the torque commanded
-/// last \[N m\], until the assist has its whole authority; `observe` gets every frame and command. The switch is
-/// pressed once nothing else is missing, and let go if the press is refused. A controller that does not
-/// engage is given up after ten times the time it should take, and rides on without.
+/// Simulates steady riding until the assist has full authority. `measured` gives the frame from the control
+/// periods since boot, the switch and the last commanded torque \[N m\]; `observe` receives every frame and
+/// command. The switch is pressed once no other condition is missing, and released if the press is rejected.
+/// After ten times the expected time the ride starts with a controller that is not engaged.
 pub(super) fn engage_run(
     plan: &Plan,
     backend: &mut Backend,
@@ -40,18 +40,19 @@ pub(super) fn engage_run(
     Ready { controller, ticks }
 }
 
-/// What exact sensors tell riding steadily at a speed \[m/s\].
+/// Frames of exact sensors in steady riding at a speed \[m/s\].
 pub(super) fn steady(plan: &Plan, speed_m_s: f64) -> impl FnMut(u32, bool, f64) -> SensorFrame {
     let reading = Reading { roll_rate_rad_s: 0.0, speed_m_s };
     move |ticks, pressed, _| frame(plan, &reading, ticks, pressed)
 }
 
-/// The last controller readied: rides from the same speed share it, where it runs here.
+/// Cache of the last warm start: rides from the same speed share it if the control step is executed in this
+/// program.
 #[derive(Default)]
 pub(super) struct WarmStart(Option<(f64, Ready)>);
 
 impl WarmStart {
-    /// A controller ready at this speed \[m/s\], if there is one to be.
+    /// The controller after a warm start at this speed \[m/s\], if the assist has one.
     pub(super) fn at(
         &mut self,
         conditions: &Conditions,
