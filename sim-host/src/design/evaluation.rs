@@ -1,20 +1,20 @@
-//! Judging laws beside each other: the basin of each in every trial.
+//! Evaluates laws: the area of the basin of each law in every trial.
 
 use super::Scenarios;
 use crate::basin::{Basin, Search};
 use crate::study::trial::{Trial, basins};
 use control::Law;
 
-/// The areas of laws in an arena.
+/// Areas of the laws in all trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judged {
-    /// Per trial, those to design with first, the area under each law \[rad m/s^2\].
+    /// For each trial, training trials first, the area of each law \[rad m/s^2\].
     pub areas: Vec<Vec<f64>>,
-    /// Whether they are lower bounds, as nothing fell up to the largest rate tried at some speed.
+    /// Whether these are lower bounds, as no ride fell up to the largest rate tried at some speed.
     pub capped: Vec<Vec<bool>>,
 }
 
-/// The laws that a design has to beat, by their names on the command line.
+/// Laws with which a design is compared, and their names on the command line.
 pub fn competitors() -> Vec<(String, Law)> {
     [
         ("none", Law::None),
@@ -30,10 +30,10 @@ pub fn competitors() -> Vec<(String, Law)> {
     .to_vec()
 }
 
-/// Judges `laws`; `None` if `stop` said so on the way.
+/// Evaluates `laws`; `None` if stopped by `stop`.
 ///
 /// # Errors
-/// When a trial can't be ridden.
+/// A trial can't be simulated.
 pub fn judge(
     arena: &Scenarios,
     laws: &[(String, Law)],
@@ -42,9 +42,9 @@ pub fn judge(
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<Judged>, String> {
     let trials = arena.training.iter().chain(&arena.held_out);
-    let asked: Vec<(&Trial, &Law)> =
+    let cases: Vec<(&Trial, &Law)> =
         trials.flat_map(|trial| laws.iter().map(move |(_, law)| (trial, law))).collect();
-    let basins = basins(&asked, search, advanced, stop)?;
+    let basins = basins(&cases, search, advanced, stop)?;
     Ok(basins.map(|all| {
         let by_trial = || all.chunks(laws.len());
         Judged {

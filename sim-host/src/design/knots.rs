@@ -1,23 +1,23 @@
-//! A gain schedule as numbers to choose: straight lines between knots over speed.
+//! A gain schedule as variables of the search: linear interpolation between knots over speed.
 
 use control::{GainSchedule, Law, ParamError};
 
 /// Allowed gains \[N m s/rad\]: the upper is the thesis's limit for a motor (section 2.4.3).
 pub const GAINS: (f64, f64) = (-10.0, 40.0);
-/// The speeds the schedule is designed for \[m/s\].
+/// Speed range of the design \[m/s\].
 const SPAN_M_S: (f64, f64) = (2.0, 7.5);
-/// Above its last knot a schedule fades to nothing over this \[m/s\]: there it was not judged.
+/// Range above the last knot over which the gain fades to zero \[m/s\]: the schedule was not evaluated there.
 const FADE_M_S: f64 = 1.0;
 
-/// Speeds of the knots \[m/s\], rising.
+/// Speeds of the knots \[m/s\], increasing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Knots(Vec<f64>);
 
 impl Knots {
-    /// `count` knots evenly over the speeds it is designed for.
+    /// `count` knots evenly spaced over the speed range of the design.
     ///
     /// # Errors
-    /// When there are fewer than 2 or more than 8.
+    /// Fewer than 2 or more than 8 knots.
     pub fn new(count: usize) -> Result<Self, String> {
         if !(2..=8).contains(&count) {
             return Err(format!("number of knots = {count} is outside 2 to 8"));
@@ -35,7 +35,7 @@ impl Knots {
     /// The law with `gains` at the knots, constant below the first, zero from 1 m/s above the last.
     ///
     /// # Errors
-    /// When a gain is out of the table's range.
+    /// A gain is outside the table's range.
     pub fn law(&self, gains: &[f64]) -> Result<Law, ParamError> {
         let mut points: Vec<(f32, f32)> =
             self.0.iter().zip(gains).map(|(v, gain)| (*v as f32, *gain as f32)).collect();
@@ -49,7 +49,7 @@ impl Knots {
     }
 }
 
-/// How uneven gains are: the mean square of their second differences \[(N m s/rad)^2\].
+/// Roughness of gains: mean square of their second differences \[(N m s/rad)^2\].
 pub(super) fn roughness(gains: &[f64]) -> f64 {
     let bends: Vec<f64> = gains.windows(3).map(|g| (g[0] - 2.0 * g[1] + g[2]).powi(2)).collect();
     if bends.is_empty() { 0.0 } else { bends.iter().sum::<f64>() / bends.len() as f64 }

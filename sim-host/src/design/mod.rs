@@ -1,5 +1,5 @@
-//! Designing a law: the gain schedule with the largest worst basin over riders and sensor delays, judged beside
-//! the known laws on riders and bicycles it was not designed with. See `docs/design.md`.
+//! Design of a law: the gain schedule that maximises the smallest basin area over riders and sensor delays,
+//! compared with the known laws on hold-out riders and bicycles. See `docs/design.md`.
 
 mod evaluation;
 mod knots;

@@ -1,34 +1,34 @@
-//! What laws are designed for, and what they are then tried on besides.
+//! Trials of a design: training trials and hold-out scenarios.
 
 use crate::ride::FallCriterion;
 use crate::study::trial::Trial;
 use control::Config;
 
-/// Trials to design with, and others to judge by.
+/// Training trials and hold-out trials.
 #[derive(Clone, Debug)]
 pub struct Scenarios {
-    /// The design maximises the least area over these.
+    /// The design maximises the smallest area over these.
     pub training: Vec<Trial>,
-    /// Riders and bicycles the design does not see.
+    /// Hold-out riders and bicycles, not used by the design.
     pub held_out: Vec<Trial>,
 }
 
-/// The bicycle of the design.
+/// Bicycle of the training trials.
 const BICYCLE: &str = "rigid_jason";
-/// Other bicycles, all with a rigid rider.
+/// Hold-out bicycles, all with a rigid rider.
 const OTHERS: [&str; 5] =
     ["benchmark", "rigid_luke", "balanceassistv1_jason", "browser_jason", "stratos_rider"];
-/// Other riders; the naive old one is the young with a delay of 60 ms.
+/// Hold-out riders; the naive old rider is the young one with a delay of 60 ms.
 const RIDERS: [(&str, Option<f64>); 4] =
     [("young", Some(0.060)), ("smart6", None), ("undelayed", None), ("hess", None)];
-/// How late sensors are in what the design does not see \[ms\].
+/// Sensor delay of the hold-out trials \[ms\].
 const LATE_MS: u16 = 20;
 
-/// No rider, the young and the smart one with sensors 0, 20 and 50 ms late; held out are other riders and other
-/// bicycles. The motor gives what the product's limits let through.
+/// Training: no rider, the young and the smart rider, with sensor delays of 0, 20 and 50 ms. Hold-out: other
+/// riders and other bicycles. The motor has the product's limits.
 ///
 /// # Errors
-/// When a bicycle or a rider does not ship.
+/// A bicycle or a rider is not shipped.
 pub fn arena(fall: FallCriterion) -> Result<Scenarios, String> {
     let limits = Config::product().limits;
     let on = |bicycle, rider, delay_s, late| {

@@ -1,5 +1,5 @@
-//! The search: the simplex method of Nelder and Mead, begun again around the best until the evaluations are used
-//! up.
+//! Maximises the smallest basin area over gain schedules: Nelder and Mead's simplex method, restarted around
+//! the best schedule until the evaluations are used up.
 
 use super::knots::{GAINS, Knots, roughness};
 use crate::basin::Search;
@@ -9,67 +9,68 @@ use argmin::solver::neldermead::NelderMead;
 use control::Law;
 use std::cell::RefCell;
 
-/// What is searched, and how long.
+/// Settings of a search.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The schedule's knots.
     pub knots: Knots,
-    /// The law that the search begins with.
+    /// Law from which the search starts.
     pub start: Law,
-    /// How areas are found, coarse: there are many.
+    /// Basin search for the areas; coarse, as there are many.
     pub search: Search,
-    /// Area given up for evenness \[rad m/s^2 per (N m s/rad)^2\]; see [`Knots`].
+    /// Weight of roughness: area given up for smoothness \[rad m/s^2 per (N m s/rad)^2\]; see [`Knots`].
     pub smoothness: f64,
-    /// Of the simplices begun anew.
+    /// Seed of the restarts.
     pub seed: u64,
-    /// Schedules tried at most.
+    /// Largest number of schedules evaluated.
     pub evaluations: u32,
 }
 
-/// How far a search has come.
+/// Progress of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Schedules tried.
+    /// Schedules evaluated.
     pub evaluations: u32,
-    /// The best worst area so far \[rad m/s^2\].
+    /// Best smallest area so far \[rad m/s^2\].
     pub best: f64,
 }
 
-/// What a search has found.
+/// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// Gains at the knots \[N m s/rad\].
     pub gains: Vec<f64>,
-    /// The least area over the trials \[rad m/s^2\], coarse.
+    /// Smallest area over the trials \[rad m/s^2\], coarse.
     pub worst_area: f64,
-    /// Whether it is a lower bound, as nothing fell up to the largest rate tried at some speed.
+    /// Whether it is a lower bound, as no ride fell up to the largest rate tried at some speed.
     pub worst_capped: bool,
-    /// The same of the law it began with.
+    /// The same for the start law.
     pub start_area: f64,
     /// Whether that is a lower bound.
     pub start_capped: bool,
-    /// Schedules tried.
+    /// Schedules evaluated.
     pub evaluations: u32,
-    /// False if it was stopped before its evaluations were used up.
+    /// False if the search was stopped before its evaluations were used up.
     pub complete: bool,
-    /// Each improvement: schedules tried, worst area.
+    /// Each improvement: schedules evaluated, smallest area.
     pub history: Vec<(u32, f64)>,
 }
 
-/// First steps from the law that the search begins with \[N m s/rad\].
+/// Initial steps of the simplex at the start law \[N m s/rad\].
 const FIRST_STEP: f64 = 4.0;
-/// Least and largest first steps of a simplex begun anew \[N m s/rad\].
+/// Smallest and largest initial steps of a restarted simplex \[N m s/rad\].
 const STEPS: (f64, f64) = (1.0, 6.0);
-/// A simplex whose areas differ by less is begun anew \[rad m/s^2\].
+/// Spread of areas below which a simplex is restarted \[rad m/s^2\].
 const ALIKE: f64 = 0.02;
-/// What a gain costs per N m s/rad beyond its range \[rad m/s^2\].
+/// Penalty per N m s/rad beyond the allowed range of a gain \[rad m/s^2\].
 const BEYOND: f64 = 1.0;
 
-/// Searches for the schedule with the largest least area over `trials`. The same plan gives the same answer on
-/// every machine; `stop` ends it early, with the best so far. `None` if that is before the first is tried.
+/// Searches for the schedule with the largest smallest area over `trials`. The same plan gives the same
+/// result on every machine. `stop` ends the search early with the best so far; `None` if no schedule was
+/// evaluated before.
 ///
 /// # Errors
-/// When a trial can't be ridden.
+/// A trial can't be simulated.
 pub fn optimise(
     trials: &[Trial],
     plan: &Plan,
@@ -92,7 +93,7 @@ pub fn optimise(
     while !search_state.borrow().ended {
         let simplex = simplex(&corner, &steps);
         let solver = NelderMead::new(simplex).with_sd_tolerance(ALIKE).map_err(|e| e.to_string())?;
-        // An error here is the hunt's end, and what it found is kept there.
+        // An error ends the search; its result so far stays in `search_state`.
         let run = Executor::new(Objective(&search_state), solver).ctrlc(false).timer(false).run();
         if run.is_err() && !search_state.borrow().ended {
             return Err("the search failed".into());
@@ -106,7 +107,7 @@ pub fn optimise(
     failed.map_or(Ok(found), Err)
 }
 
-/// A corner and one step from it along each axis, the other way where that leads out of the range.
+/// A simplex of `corner` and one step along each axis, reversed if it would leave the range.
 fn simplex(corner: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let mut simplex = vec![corner.to_vec()];
     for (i, step) in steps.iter().enumerate() {
@@ -118,13 +119,13 @@ fn simplex(corner: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     simplex
 }
 
-/// A search under way.
+/// State of a search.
 struct SearchState<'a> {
     trials: &'a [Trial],
     plan: &'a Plan,
     advanced: &'a dyn Fn(Progress),
     stop: &'a (dyn Fn() -> bool + Sync),
-    /// The trial with the least area of the last schedule.
+    /// Index of the trial with the smallest area for the last schedule.
     worst: usize,
     found: Option<Found>,
     failed: Option<String>,
@@ -132,7 +133,7 @@ struct SearchState<'a> {
 }
 
 impl SearchState<'_> {
-    /// The cost of a schedule, to be made small; `None` when the hunt is over.
+    /// Cost of a schedule, to be minimised; `None` when the search is over.
     fn cost(&mut self, requested: &[f64]) -> Option<f64> {
         let tried = self.found.as_ref().map_or(0, |found| found.evaluations);
         if tried >= self.plan.evaluations {
@@ -190,7 +191,7 @@ impl SearchState<'_> {
     }
 }
 
-/// The hunt as the library sees it.
+/// The search as the library's objective.
 struct Objective<'a, 'b>(&'a RefCell<SearchState<'b>>);
 
 impl CostFunction for Objective<'_, '_> {
@@ -198,7 +199,8 @@ impl CostFunction for Objective<'_, '_> {
     type Output = f64;
 
     fn cost(&self, gains: &Vec<f64>) -> Result<f64, Error> {
-        // The library's target: it stops there. Where it shrinks a simplex it can't take an error.
+        // Minus infinity is the library's target and stops it. An error can't be returned while it shrinks a
+        // simplex.
         Ok(self.0.borrow_mut().cost(gains).unwrap_or(f64::NEG_INFINITY))
     }
 }
@@ -214,7 +216,7 @@ impl SplitMix {
         z ^ (z >> 31)
     }
 
-    /// A step of either sign.
+    /// A step of random sign.
     fn step(&mut self) -> f64 {
         let part = (self.next() >> 11) as f64 / (1_u64 << 53) as f64;
         let size = STEPS.0 + (STEPS.1 - STEPS.0) * part;

@@ -1,20 +1,20 @@
-//! The motor and its gear as the linear analysis sees them.
+//! Linear model of the motor and its gear.
 
 use crate::range::within;
 
-/// How the torque on the steer axis departs from the one asked for, and what motor, gear and bearings add
-/// there. The default does neither.
+/// Deviation of the torque on the steer axis from the requested one, and the friction and inertia that motor,
+/// gear and bearings add. The default is exact and adds none.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct LinearActuator {
-    /// Torque given over torque asked for.
+    /// Delivered over requested torque.
     pub scale: f64,
-    /// From the command to the drive \[s\].
+    /// Delay from the command to the drive \[s\].
     pub delay_s: f64,
-    /// Time constant of the torque's first-order response \[s\]; 0 is at once.
+    /// Time constant of the torque's first-order response \[s\]; 0 is no lag.
     pub time_constant_s: f64,
     /// Viscous friction about the steer axis \[N m s/rad\].
     pub viscous_nm_s_rad: f64,
-    /// Inertia about the steer axis that is no part of the bicycle: the rotor's times the gear ratio
+    /// Inertia about the steer axis in addition to the bicycle's: that of the rotor times the gear ratio
     /// squared \[kg m^2\].
     pub inertia_kg_m2: f64,
 }
@@ -29,7 +29,7 @@ impl LinearActuator {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the value and its range.
+    /// States the value and its range.
     pub fn check(&self) -> Result<(), String> {
         within("actuator scale", self.scale, -10.0, 10.0)?;
         within("actuator delay (s)", self.delay_s, 0.0, 1.0)?;

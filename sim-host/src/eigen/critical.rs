@@ -1,35 +1,36 @@
-//! The speeds at which the straight ride changes its nature.
+//! Critical speeds of straight riding without a rider, from the linearised bicycle and a law.
 
 use super::eigenvalues;
 use crate::bicycle::linear::Linear;
 use control::Law;
 use nalgebra::{Complex, ComplexField};
 
-/// Speeds above this are not searched for critical speeds \[m/s\].
+/// Upper end of the search for critical speeds \[m/s\].
 pub const SEARCH_TO_M_S: f64 = 20.0;
 /// Step of the search without a rider \[m/s\].
 const SEARCH_STEP_M_S: f64 = 0.01;
 
-/// Growth below this part of the largest eigenvalue is none: at rest a pair that oscillates is neutral by structure, and
-/// its computed real part has the sign of a rounding error; a double zero is split by the root of one.
+/// A real part below this fraction of the largest eigenvalue counts as zero. At rest an oscillating pair is
+/// neutral by structure, and the sign of its computed real part is a rounding error; rounding splits a double
+/// zero by the square root of its error.
 const NEUTRAL: f64 = 1e-7;
 
-/// The speeds at which the straight ride changes its nature \[m/s\]; `None` where it does not.
+/// Speeds at which the stability of straight riding changes \[m/s\]; `None` for changes that do not occur.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct CriticalSpeeds {
-    /// Two growing real eigenvalues merge into the weave pair; none if there is a growing pair at
-    /// rest. (Two decaying ones may merge before, at a lower speed.)
+    /// Double-root speed: two unstable real eigenvalues merge into the weave pair. None if there is an
+    /// unstable pair at rest. (Two stable ones can merge before, at a lower speed.)
     pub v_d: Option<f64>,
-    /// Weave: the rightmost complex pair moves into the left half plane.
+    /// Weave speed: the rightmost complex pair moves into the left half plane.
     pub v_w: Option<f64>,
-    /// Capsize: a real eigenvalue becomes positive.
+    /// Capsize speed: a real eigenvalue becomes positive.
     pub v_c: Option<f64>,
 }
 
-/// The critical speeds without a rider up to [`SEARCH_TO_M_S`], each by bisection to rounding.
+/// Critical speeds without a rider up to [`SEARCH_TO_M_S`], each by bisection to rounding.
 pub fn critical_speeds(bicycle: &Linear, law: &Law) -> CriticalSpeeds {
     let at = |v: f64| eigenvalues(bicycle, law, v);
-    // The steady turn: det(g K0 + v^2 K2) changes sign, whatever the roll-rate feedback.
+    // Steady turning: det(g K0 + v^2 K2) changes its sign, independent of roll-rate feedback.
     let turn = |v: f64| {
         let k = bicycle.k0 * bicycle.g + bicycle.k2 * (v * v);
         let size = (k[(0, 0)] * k[(1, 1)]).abs() + (k[(0, 1)] * k[(1, 0)]).abs();
@@ -41,7 +42,7 @@ pub fn critical_speeds(bicycle: &Linear, law: &Law) -> CriticalSpeeds {
     };
     let at_rest = pair(0.0);
     CriticalSpeeds {
-        // At rest a pair is there, growing or neutral; or it decays, or all are real.
+        // At rest there is an unstable or neutral pair, or it is stable, or all eigenvalues are real.
         v_d: (sign(at_rest.0, at_rest.1) == Some(false))
             .then(|| first(&|v| (-pair(v).0, pair(v).1)))
             .flatten(),
@@ -50,28 +51,28 @@ pub fn critical_speeds(bicycle: &Linear, law: &Law) -> CriticalSpeeds {
     }
 }
 
-/// Whether a value is positive; `None` if it is no more than rounding beside `size`.
+/// Whether a value is positive; `None` if it is zero within rounding relative to `size`.
 fn sign(value: f64, size: f64) -> Option<bool> {
     (value.abs() > NEUTRAL * size).then_some(value > 0.0)
 }
 
-/// Whether the growth of one of `values` is positive; `None` if it is no more than rounding.
+/// Whether the real part of one of `values` is positive; `None` if it is zero within rounding.
 pub(super) fn grows(growth: f64, values: &[Complex<f64>]) -> Option<bool> {
     sign(growth, largest(values))
 }
 
-/// The largest magnitude.
+/// Largest magnitude.
 fn largest(values: &[Complex<f64>]) -> f64 {
     values.iter().map(|e| e.modulus()).fold(0.0, f64::max)
 }
 
-/// The largest real part of complex values; minus infinity if all are real.
+/// Largest real part of the complex values; minus infinity if all are real.
 pub(super) fn rightmost_pair(values: &[Complex<f64>]) -> f64 {
     values.iter().filter(|e| e.im != 0.0).map(|e| e.re).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The first speed at which a value, given with its size, becomes negative. Speeds at which it is no more than rounding do
-/// not count, nor the end of a value that goes through minus infinity.
+/// First speed at which a value, given with its size, becomes negative. Speeds at which the value is zero
+/// within rounding are ignored, and so is a change of sign through minus infinity.
 fn first(f: &dyn Fn(f64) -> (f64, f64)) -> Option<f64> {
     let steps = (SEARCH_TO_M_S / SEARCH_STEP_M_S).round() as usize;
     let mut positive = None;
@@ -87,7 +88,7 @@ fn first(f: &dyn Fn(f64) -> (f64, f64)) -> Option<f64> {
     None
 }
 
-/// Where `below` ceases to hold between two speeds, to rounding.
+/// Bisects to rounding for the speed at which `below` ceases to hold.
 pub(super) fn bisect((mut low, mut high): (f64, f64), below: impl Fn(f64) -> bool) -> f64 {
     while high - low > 4.0 * f64::EPSILON * high {
         let middle = 0.5 * (low + high);

@@ -1,43 +1,42 @@
-//! What an assist feeds back at a speed.
+//! Feedback gains of an assist at a speed.
 
 use control::{Capsize, Law};
 
-/// A steer torque of `roll * roll + roll_rate * roll rate`, positive into the fall.
+/// Steer torque `roll * roll angle + roll_rate * roll rate`, positive into the fall.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StaticFeedback {
-    /// Gain of the roll angle \[N m/rad\].
+    /// Roll-angle gain \[N m/rad\].
     pub roll: f64,
-    /// Gain of the roll rate \[N m s/rad\].
+    /// Roll-rate gain \[N m s/rad\].
     pub roll_rate: f64,
 }
 
-/// The intuitive controller (eq. 2.16; Schwab, Kooijman and Meijaard 2008): roll rate below
-/// `v_max`, roll angle above. The published torque acts in the opposite sense of ours, hence its
-/// minus signs.
+/// The intuitive controller (eq. 2.16; Schwab, Kooijman and Meijaard 2008): roll-rate feedback below `v_max`,
+/// roll-angle feedback above. The published torque has the opposite sign, hence its minus signs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Intuitive {
     /// Roll-rate gain per speed below `v_max` \[N s^2/rad\].
     pub k_v: f64,
-    /// The speed at which nothing is fed back \[m/s\].
+    /// Speed without feedback \[m/s\].
     pub v_max: f64,
     /// Roll-angle gain per speed above `v_max` \[N s/rad\].
     pub k_c: f64,
 }
 
-/// An assist as the linear analysis sees it.
+/// An assist in the linear analysis.
 #[allow(clippy::large_enum_variant, reason = "there is one of them in an analysis")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Feedback {
     /// A roll-rate law of the control crate; [`Law::None`] for no assist.
     Law(Law),
-    /// A roll-rate law with the capsize term beside it.
+    /// A roll-rate law plus the capsize term.
     WithCapsize(Law, Capsize),
     /// The intuitive controller.
     Intuitive(Intuitive),
 }
 
 impl Feedback {
-    /// A law, with the capsize term if that does anything.
+    /// A law, with the capsize term if its gain is not zero.
     pub fn new(law: Law, capsize: Capsize) -> Self {
         if capsize.is_on() { Self::WithCapsize(law, capsize) } else { Self::Law(law) }
     }

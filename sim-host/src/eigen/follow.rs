@@ -1,36 +1,36 @@
-//! Following roots by continuity along a parameter.
+//! Follows roots by continuity along a parameter.
 
 use nalgebra::{Complex, ComplexField};
 
 type C = Complex<f64>;
 
-/// A gap between two steps can't be followed further down than this share of the first step.
+/// Smallest step, as a fraction of the first step.
 const FINEST: f64 = 1e-4;
 
-/// The roots of a system at one value of the parameter.
+/// Roots of a system at one value of the parameter.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
-    /// The rightmost, all that may be met.
+    /// The rightmost roots.
     pub(super) roots: Vec<C>,
-    /// Whether there are no more.
+    /// Whether these are all roots.
     pub(super) all: bool,
 }
 
-/// How far left of those computed a root is expected when it is given up, relative to the leftmost.
+/// A root is given up when it is expected this far left of the leftmost computed root, relative to that root.
 const BEYOND: f64 = 0.1;
 
-/// Roots on their way along a parameter; `None` for one that has left those computed.
+/// Roots followed along a parameter; `None` for one that has left the computed range.
 #[derive(Clone, Debug)]
 pub(super) struct Followed {
     at: f64,
     now: Vec<Option<C>>,
-    /// Change per unit of the parameter.
+    /// Derivative with respect to the parameter.
     slope: Vec<C>,
     step: f64,
 }
 
 impl Followed {
-    /// Begins with `roots` at the parameter `at`.
+    /// Starts with `roots` at the parameter `at`.
     pub(super) fn new(at: f64, roots: &[C]) -> Self {
         Self {
             at,
@@ -40,13 +40,13 @@ impl Followed {
         }
     }
 
-    /// The roots where it has got to.
+    /// Roots at the current parameter.
     pub(super) fn now(&self) -> &[Option<C>] {
         &self.now
     }
 
-    /// Goes on to the parameter `to` in steps of at most `step`, shorter where it is not plain which
-    /// root is which.
+    /// Continues to the parameter `to` in steps of at most `step`, shorter where the assignment of roots is
+    /// ambiguous.
     pub(super) fn go(&mut self, to: f64, step: f64, find: &impl Fn(f64) -> Found) {
         self.step = self.step.min(step);
         while self.at != to {
@@ -76,8 +76,8 @@ impl Followed {
     }
 }
 
-/// To each expected root the nearest found, if that is plain: nearer by half than the second, and
-/// no two to one. Then no other assignment has a smaller sum of distances.
+/// Assigns to each expected root the nearest found one if that is unambiguous: at most half as far as the
+/// second, and no two to one. Then no other assignment has a smaller sum of distances.
 fn plain(expected: &[Option<C>], found: &[C]) -> Option<Vec<Option<C>>> {
     let mut taken = vec![false; found.len()];
     let mut matched = Vec::with_capacity(expected.len());
@@ -104,9 +104,9 @@ fn plain(expected: &[Option<C>], found: &[C]) -> Option<Vec<Option<C>>> {
     Some(matched)
 }
 
-/// To each root the nearest found, the closest first. Two roots that meet keep their order, by real
-/// and then by imaginary part: of two real ones that become a pair the larger is the upper, and of a
-/// pair that becomes two real ones the upper is the larger.
+/// Assigns to each root the nearest found one, closest pair first. Two roots that meet keep their order, by
+/// real and then by imaginary part. Of two real ones that become a pair, the larger becomes the upper; of a
+/// pair that becomes real, the upper becomes the larger.
 fn closest(now: &[Option<C>], found: &[C]) -> Vec<Option<C>> {
     let mut distances: Vec<(f64, usize, usize)> = Vec::new();
     for (i, root) in now.iter().enumerate() {

@@ -1,15 +1,14 @@
-//! The infinitesimal generator of a delay system, discretised: a matrix whose rightmost eigenvalues
-//! approach the system's characteristic roots (Breda, Maset, Vermiglio 2005, SIAM J. Sci. Comput.
-//! 27, 482-495).
+//! Discretised infinitesimal generator of a delay system: a matrix whose rightmost eigenvalues approximate
+//! the system's characteristic roots (Breda, Maset, Vermiglio 2005, SIAM J. Sci. Comput. 27, 482-495).
 
 use super::system::DelaySystem;
 use nalgebra::linalg::{Schur, balancing::balance_parlett_reinsch};
 use nalgebra::{Complex, DMatrix};
 
-/// The generator with the past of the signal at `nodes` Chebyshev points.
+/// The generator, with the history of the signal at `nodes` Chebyshev points.
 ///
-/// Only the signal is late, so only its past is discretised: `u(theta) = z(t + theta)` travels,
-/// `du/dt = du/dtheta`, from `u(0) = k x` to `u(-delay)`, which acts on `x`.
+/// Only one signal is delayed, so only its history is discretised. `u(theta) = z(t + theta)` is transported
+/// by `du/dt = du/dtheta` from `u(0) = k x` to `u(-delay)`, which acts on `x`.
 pub(super) fn generator(system: &DelaySystem, nodes: usize) -> DMatrix<f64> {
     let n = system.a.nrows();
     let d = differentiation(nodes) * (2.0 / system.delay_s);
@@ -22,7 +21,7 @@ pub(super) fn generator(system: &DelaySystem, nodes: usize) -> DMatrix<f64> {
     g
 }
 
-/// Differentiation of values at `cos(j pi / n)`, j = 0 to `n` (Trefethen 2000, Spectral Methods in
+/// Differentiation matrix for values at `cos(j pi / n)`, j = 0 to `n` (Trefethen 2000, Spectral Methods in
 /// MATLAB, chapter 6).
 fn differentiation(n: usize) -> DMatrix<f64> {
     let x: Vec<f64> = (0..=n).map(|j| libm::cos(std::f64::consts::PI * j as f64 / n as f64)).collect();

@@ -1,5 +1,5 @@
-//! The linear analysis of a bicycle under an assist and a delayed rider: characteristic roots over
-//! speed, the speeds at which stability changes, and the modes. See `docs/eigenvalues.md`.
+//! Linear analysis of a bicycle with an assist and a delayed rider: characteristic roots over speed, critical
+//! speeds, and modes. See `docs/eigenvalues.md`.
 
 mod actuator;
 mod critical;
@@ -23,8 +23,8 @@ use crate::bicycle::linear::Linear;
 use control::Law;
 use nalgebra::Complex;
 
-/// The four eigenvalues \[1/s\] at speed `v` \[m/s\] without a rider, largest real part first, a
-/// conjugate pair with its positive imaginary part first.
+/// The four eigenvalues \[1/s\] at speed `v` \[m/s\] without a rider: largest real part first; of a conjugate
+/// pair, the positive imaginary part first.
 pub fn eigenvalues(bicycle: &Linear, law: &Law, v: f64) -> [Complex<f64>; 4] {
     let mut values: [Complex<f64>; 4] = bicycle.state_matrix(v, law.gain(v)).complex_eigenvalues().into();
     sort(&mut values);

@@ -1,4 +1,4 @@
-//! The modes of a model over speed, followed by continuity.
+//! Modes of a model over speed, followed by continuity.
 
 use super::follow::{Followed, Found};
 use super::roots::{roots, same};
@@ -6,32 +6,33 @@ use super::sort;
 use super::system::Model;
 use nalgebra::Complex;
 
-/// Modes get their names at this speed \[m/s\], where those of a bicycle are well apart.
+/// Speed at which modes are named \[m/s\]; a bicycle's modes are well separated there.
 pub const REFERENCE_SPEED_M_S: f64 = 10.0;
-/// Longest step over speed \[m/s\].
+/// Largest step over speed \[m/s\].
 const SPEED_STEP: f64 = 0.1;
-/// Longest step of the feedback's strength on its way from none to all.
+/// Largest step of the feedback's strength from 0 to 1.
 const STRENGTH_STEP: f64 = 0.05;
-/// Roots computed beyond those followed, so that these are not lost when others overtake them.
+/// Additional roots computed, so that the followed ones are not lost when others overtake them.
 const SPARE: usize = 2;
 
-/// A mode: the two roots of what at the reference speed is a pair, or one real root there.
+/// A mode: the two roots that form a pair at the reference speed, or one real root there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// "weave", "capsize", "caster", or "rider 1", "rider 2" ... for what a rider adds, "actuator 1" ... without a rider.
+    /// "weave", "capsize", "caster", or "rider 1", "rider 2" ... for modes that a rider adds, "actuator 1"
+    /// ... without a rider.
     pub name: String,
-    /// Its roots, each at all speeds \[1/s\]; `None` where it lies left of all roots computed.
+    /// Its roots at all speeds \[1/s\]; `None` where a root lies left of all computed ones.
     pub roots: Vec<Vec<Option<Complex<f64>>>>,
 }
 
-/// The modes at `speeds` \[m/s\]: weave, capsize, caster and, with a rider, those that make up the
-/// `count` rightmost roots at the reference speed.
+/// The modes at `speeds` \[m/s\]: weave, capsize, caster and, with a rider, those of the `count` rightmost
+/// roots at the reference speed.
 ///
-/// The names are those of the uncontrolled bicycle at [`REFERENCE_SPEED_M_S`]: weave its complex
-/// pair, caster the more negative of the real roots, capsize the other (Meijaard et al. 2007). From
-/// there the roots are followed while all feedback grows from nothing to what it is, then over
-/// speed. Whatever they become on the way, names stay with roots: below `v_d` weave is two real
-/// roots. Where two modes meet, form a pair and part again, each leaves on its side.
+/// The names are those of the uncontrolled bicycle at [`REFERENCE_SPEED_M_S`]: weave is its complex pair,
+/// caster the more negative real root, capsize the other (Meijaard et al. 2007). From there the roots are
+/// followed while the feedback's strength grows from 0 to 1, then over speed. Each root keeps its name: below
+/// `v_d` weave is two real roots. Where two modes meet, form a pair and separate again, each leaves on its
+/// side.
 pub fn modes(model: &Model, speeds: &[f64], count: usize) -> Vec<Mode> {
     let (names, start) = named(model, count);
     let find = |v: f64| {
@@ -73,7 +74,7 @@ fn named(model: &Model, count: usize) -> (Vec<String>, Vec<Complex<f64>>) {
     };
     let mut bicycle: Vec<Complex<f64>> =
         model.linear().state_matrix(v, 0.0).complex_eigenvalues().iter().copied().collect();
-    // Real ones last, the more negative at the end.
+    // Real roots last, the most negative at the end.
     sort(&mut bicycle);
     bicycle.sort_by_key(|root| root.im == 0.0);
     let mut followed = Followed::new(0.0, &bicycle);

@@ -1,5 +1,5 @@
-//! The rightmost characteristic roots of a delay system: candidates from its discretised generator,
-//! each then made exact on the characteristic equation itself.
+//! Rightmost characteristic roots of a delay system: eigenvalues of its discretised generator, each refined
+//! on the characteristic equation.
 
 use super::generator::{eigenvalues, generator};
 use super::sort;
@@ -8,22 +8,23 @@ use nalgebra::{Complex, ComplexField, DMatrix};
 
 type C = Complex<f64>;
 
-/// Chebyshev points tried in turn, until two in a row give the same roots.
+/// Numbers of Chebyshev points tried in turn, until two in a row give the same roots.
 const NODES: [usize; 7] = [14, 20, 28, 40, 56, 80, 112];
-/// Two sets of roots are the same when they differ by less, relative to a root or absolute \[1/s\].
+/// Largest difference of equal roots, relative or absolute \[1/s\].
 const SAME: f64 = 1e-7;
-/// A root whose last correction is larger, relative or absolute \[1/s\], is none. Simple roots end
-/// near 1e-14; of a double one rounding leaves half the digits.
+/// Largest last correction of a converged root, relative or absolute \[1/s\]. Simple roots end near 1e-14;
+/// for a double root rounding leaves half the digits.
 const CONVERGED: f64 = 1e-5;
-/// A candidate that is led further away, relative or absolute \[1/s\], was none.
+/// Largest distance from a candidate to its root, relative or absolute \[1/s\]; beyond, the candidate is
+/// spurious.
 const REACH: f64 = 0.01;
 const ITERATIONS: usize = 40;
 
-/// The `count` rightmost characteristic roots \[1/s\], largest real part first, a conjugate pair with
-/// its positive imaginary part first: one more where the last would be half a pair.
+/// The `count` rightmost characteristic roots \[1/s\]: largest real part first; of a conjugate pair, the
+/// positive imaginary part first. One more where the last would be half a pair.
 ///
-/// Fewer where there are no more, in an ordinary system, and where those further left are so fast
-/// that 112 points do not resolve them: of those returned each is exact, and none is missing between.
+/// Fewer if an ordinary system has fewer, or if roots further left are too fast for 112 points to resolve.
+/// Each returned root is exact, and none is missing between them.
 pub fn roots(system: &DelaySystem, count: usize) -> Vec<C> {
     if system.is_ordinary() {
         let mut all = eigenvalues(system.undelayed()).expect("the QR iteration converges");
@@ -34,7 +35,7 @@ pub fn roots(system: &DelaySystem, count: usize) -> Vec<C> {
     let mut settled: Vec<C> = Vec::new();
     for nodes in NODES {
         let Some(mut candidates) = eigenvalues(generator(system, nodes)) else { continue };
-        // Points resolve what turns by about a radian from one to the next; the rest is spurious.
+        // The points resolve about one radian of phase between neighbours; faster candidates are spurious.
         candidates.retain(|s| s.modulus() * system.delay_s <= nodes as f64);
         let now = exact(system, candidates, count);
         let agree = now.iter().take_while(|s| before.iter().any(|b| same(*b, **s))).count();
@@ -49,17 +50,17 @@ pub fn roots(system: &DelaySystem, count: usize) -> Vec<C> {
     settled
 }
 
-/// The rightmost root, of a pair that above \[1/s\]: its real part is the growth rate of a small
+/// The rightmost root \[1/s\], of a pair the upper one. Its real part is the growth rate of a small
 /// disturbance.
 ///
 /// # Panics
-/// If no root settles. Of 2100 random riders with gains up to 100000 and delays up to 1 s all six
-/// rightmost did.
+/// If no root converges. For 2100 random riders with gains up to 100000 and delays up to 1 s all six
+/// rightmost converged.
 pub fn rightmost(system: &DelaySystem) -> C {
     roots(system, 1)[0]
 }
 
-/// The first `count` of sorted roots, and the other half of a pair that would be cut through.
+/// The first `count` of sorted roots, plus the other half of a pair that would be split.
 fn cut(mut sorted: Vec<C>, count: usize) -> Vec<C> {
     let halved = count > 0 && sorted.get(count - 1).is_some_and(|last| last.im > 0.0);
     sorted.truncate(count + usize::from(halved));
@@ -70,17 +71,18 @@ fn scale(root: C) -> f64 {
     root.modulus().max(1.0)
 }
 
-/// Whether two computed roots are one.
+/// Whether two computed roots are equal.
 pub(super) fn same(a: C, b: C) -> bool {
     (a - b).modulus() < SAME * scale(b)
 }
 
-/// The roots that the rightmost of `candidates` lead to, sorted; a few more than `count` are tried.
+/// The roots to which the rightmost of `candidates` converge, sorted; a few more than `count` are tried.
 ///
-/// Newton's corrections with the others' pull taken out (Ehrlich and Aberth): no two end in one root.
+/// Newton's method with deflation of the other roots (Ehrlich and Aberth), so that no two converge to one
+/// root.
 fn exact(system: &DelaySystem, mut candidates: Vec<C>, count: usize) -> Vec<C> {
     sort(&mut candidates);
-    // A pair is kept by its upper half.
+    // A pair is represented by its upper half.
     let start: Vec<C> = cut(candidates, count + 4).into_iter().filter(|s| s.im >= 0.0).collect();
     let mut upper = start.clone();
     let mut corrections = vec![f64::INFINITY; upper.len()];
@@ -112,7 +114,7 @@ fn exact(system: &DelaySystem, mut candidates: Vec<C>, count: usize) -> Vec<C> {
     all
 }
 
-/// What the root `other` and its conjugate add to the logarithmic derivative at `s`.
+/// Contribution of the root `other` and its conjugate to the logarithmic derivative at `s`.
 fn pull(s: C, other: C, itself: bool) -> C {
     let of = |root: C| C::ONE / (s - root);
     match (itself, other.im != 0.0) {
@@ -123,7 +125,7 @@ fn pull(s: C, other: C, itself: bool) -> C {
     }
 }
 
-/// The determinant of the characteristic matrix over its derivative.
+/// Determinant of the characteristic matrix divided by its derivative.
 fn newton_correction(system: &DelaySystem, s: C) -> C {
     let n = system.a.nrows();
     let late = ComplexField::exp(-s * system.delay_s) * system.delay_s;

@@ -1,4 +1,4 @@
-//! The ranges of speed in which the straight ride is stable, for any model.
+//! Speed ranges in which straight riding is stable, for any linear model.
 
 use super::critical::{CriticalSpeeds, SEARCH_TO_M_S, bisect, critical_speeds, grows, rightmost_pair};
 use super::roots::roots;
@@ -7,10 +7,10 @@ use rayon::prelude::*;
 
 /// Step of the search \[m/s\].
 const STEP_M_S: f64 = 0.02;
-/// Roots looked at: the rightmost pair and the real roots beside it.
+/// Number of roots examined: the rightmost pair and the real roots next to it.
 const ROOTS: usize = 6;
 
-/// What crosses the imaginary axis.
+/// Roots that cross the imaginary axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Crossing {
@@ -20,35 +20,35 @@ pub enum Crossing {
     Real,
 }
 
-/// A speed at which small disturbances begin or cease to grow.
+/// A speed at which small disturbances start or cease to grow.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct StabilityChange {
     /// The speed \[m/s\].
     pub speed: f64,
-    /// Whether the ride is stable above it.
+    /// Whether straight riding is stable above it.
     pub stable_above: bool,
-    /// What crosses: "pair" or "real".
+    /// Roots that cross: "pair" or "real".
     #[schemars(with = "String", extend("enum" = ["pair", "real"]))]
     pub crossing: Crossing,
 }
 
-/// Where the straight ride is stable, from rest to [`SEARCH_TO_M_S`].
+/// Stability of straight riding, from rest to [`SEARCH_TO_M_S`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stability {
     /// The critical speeds.
     pub critical: CriticalSpeeds,
-    /// Ranges of speed without a growing root \[m/s\].
+    /// Speed ranges without an unstable root \[m/s\].
     pub ranges: Vec<(f64, f64)>,
-    /// The ends of these ranges, but for those of the search.
+    /// Ends of these ranges, without those of the search.
     pub changes: Vec<StabilityChange>,
 }
 
-/// The stability of a model, its changes by bisection to rounding; what is narrower than 0.02 m/s
-/// can be missed.
+/// Stability of a model. Changes are located by bisection to rounding; ranges narrower than 0.02 m/s can be
+/// missed.
 ///
-/// Under a law without a rider the critical speeds are [`critical_speeds`]'. Else `v_w` and `v_c`
-/// are the first speeds at which the rightmost pair ceases to grow and at which a real root becomes
-/// positive, and `v_d` is not looked for.
+/// With a law and no rider the critical speeds are those of [`critical_speeds`]. Otherwise `v_w` and `v_c`
+/// are the first speeds at which the rightmost pair becomes stable and at which a real root becomes positive;
+/// `v_d` is not computed.
 pub fn stability(model: &Model) -> Stability {
     let steps = (SEARCH_TO_M_S / STEP_M_S).round() as usize;
     let looks: Vec<Look> =
@@ -87,7 +87,8 @@ pub fn stability(model: &Model) -> Stability {
     Stability { critical, ranges: ranges(!grows[0], &changes), changes }
 }
 
-/// Signs without those that are no more than rounding: such a speed counts with the one below it, at first the one above.
+/// Replaces undecided signs (zero within rounding) by that of the speed below; at the first speed by that
+/// above.
 fn definite(looks: &[Look], of: impl Fn(&Look) -> Option<bool>) -> Vec<bool> {
     let mut last = looks.iter().find_map(&of).unwrap_or(false);
     let mut with_last = |look| {
@@ -103,18 +104,18 @@ fn ranges(stable_at_rest: bool, changes: &[StabilityChange]) -> Vec<(f64, f64)> 
     ends.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect()
 }
 
-/// What decides about stability at a speed.
+/// Quantities that determine stability at a speed.
 struct Look {
     speed: f64,
     /// Largest real part \[1/s\].
     growth: f64,
-    /// Whether it is positive; `None` for no more than rounding.
+    /// Whether `growth` is positive; `None` if zero within rounding.
     grows: Option<bool>,
     /// Largest real part of a complex pair \[1/s\].
     pair: f64,
-    /// Whether that is.
+    /// Whether `pair` is positive; `None` if zero within rounding.
     pair_grows: Option<bool>,
-    /// The characteristic determinant at zero: it changes sign where a real root does.
+    /// Characteristic determinant at zero; it changes its sign where a real root does.
     turn: f64,
 }
 

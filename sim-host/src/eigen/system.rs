@@ -1,4 +1,4 @@
-//! Bicycle, assist and rider as one linear system with a delay.
+//! Bicycle, assist and rider as one linear system with one delay.
 
 use super::actuator::LinearActuator;
 use super::feedback::{Feedback, StaticFeedback};
@@ -7,15 +7,15 @@ use crate::rider::{Gains, Rider};
 use control::Law;
 use nalgebra::{Complex, ComplexField, DMatrix, DVector, RowDVector};
 
-/// `x' = a x + b z(t - delay)`, `z = k x`: in the usual form `A0 = a`, `A1 = b k`. All that is
-/// delayed is one signal.
+/// `x' = a x + b z(t - delay)`, `z = k x`; in the usual form `A0 = a`, `A1 = b k`. Only the signal `z` is
+/// delayed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DelaySystem {
-    /// What acts at once.
+    /// Matrix of the undelayed feedback.
     pub a: DMatrix<f64>,
-    /// Where the delayed signal acts.
+    /// Input vector of the delayed signal.
     pub b: DVector<f64>,
-    /// What the signal is made of.
+    /// Row vector that forms the signal.
     pub k: RowDVector<f64>,
     /// The delay \[s\]; 0 gives an ordinary system.
     pub delay_s: f64,
@@ -36,30 +36,30 @@ impl DelaySystem {
         &self.a + &self.b * &self.k
     }
 
-    /// Whether the delay is without effect.
+    /// Whether the delay has no effect.
     pub(super) fn is_ordinary(&self) -> bool {
         self.delay_s == 0.0 || self.b.amax() == 0.0 || self.k.amax() == 0.0
     }
 }
 
-/// A bicycle with an assist and, perhaps, a rider, at any speed.
+/// A bicycle with an assist and optionally a rider, at any speed.
 ///
-/// The states are, in this order: roll, steer, roll rate, steer rate; with a rider, of the integral
-/// of roll, the integral of steer, heading and lateral offset of the front contact those that any
-/// gain needs; the torque of the muscles and its rate; with an actuator that takes its time, its torque.
+/// The states are, in this order: roll, steer, roll rate, steer rate; with a rider, those of integral of
+/// roll, integral of steer, heading and lateral deviation of the front contact that a gain needs, then
+/// neuromuscular torque and its rate; with an actuator that has a lag, its torque.
 #[derive(Clone, Debug)]
 pub struct Model {
     linear: Linear,
-    /// Wheel base \[m\], trail times the cosine of the steer axis tilt \[m\], that cosine.
+    /// Wheelbase \[m\], trail times the cosine of the steer axis tilt \[m\], that cosine.
     path: (f64, f64, f64),
     feedback: Feedback,
     actuator: LinearActuator,
     rider: Option<Rider>,
-    /// Which of integral of roll, integral of steer, heading, lateral offset are states.
+    /// Whether integral of roll, integral of steer, heading, lateral deviation are states.
     integrals: [bool; 4],
 }
 
-/// Gains of the [`Model::integrals`] in [`crate::rider::KEYS`].
+/// Indices in [`crate::rider::KEYS`] of the gains of [`Model::integrals`].
 const INTEGRAL_KEYS: [usize; 4] = [1, 5, 8, 9];
 
 impl Model {
@@ -69,17 +69,18 @@ impl Model {
             rider.iter().any(|r| r.schedule.points().iter().any(|(_, gains)| gains.0[key] != 0.0))
         };
         let mut integrals = INTEGRAL_KEYS.map(used);
-        // The lateral offset follows from the heading.
+        // The lateral deviation needs the heading.
         integrals[2] |= integrals[3];
         let cos = libm::cos(p.lam);
         let path = (p.w, p.c * cos, cos);
         Self { linear: Linear::new(p), path, feedback, actuator: LinearActuator::default(), rider, integrals }
     }
 
-    /// The same, turned by an actuator that is not perfect. Its inertia becomes part of the bicycle.
+    /// The same with an actuator. Its inertia becomes part of the bicycle.
     ///
     /// # Errors
-    /// A value out of its range; a delay beside a rider, for the analysis has room for one late signal.
+    /// A value out of its range, or an actuator delay together with a rider: the analysis allows one delayed
+    /// signal.
     pub fn with_actuator(mut self, actuator: LinearActuator) -> Result<Self, String> {
         actuator.check()?;
         if actuator.delay_s > 0.0 && self.rider.is_some() {
@@ -95,12 +96,12 @@ impl Model {
         &self.linear
     }
 
-    /// What adds roots to the bicycle's four.
+    /// Source of the roots beyond the bicycle's four.
     pub(super) fn adds(&self) -> &'static str {
         if self.rider.is_some() { "rider" } else { "actuator" }
     }
 
-    /// The law, if nothing else acts.
+    /// The law, if there is no other feedback.
     pub(super) fn law_alone(&self) -> Option<&Law> {
         let exact = LinearActuator { inertia_kg_m2: self.actuator.inertia_kg_m2, ..Default::default() };
         match (&self.feedback, &self.rider) {
@@ -114,7 +115,7 @@ impl Model {
         self.scaled(v, 1.0)
     }
 
-    /// The system at speed `v` \[m/s\] with all feedback, assist and rider, times `strength`.
+    /// The system at speed `v` \[m/s\] with all feedback, of assist and rider, multiplied by `strength`.
     pub(super) fn scaled(&self, v: f64, strength: f64) -> DelaySystem {
         let extra = self.integrals.iter().filter(|used| **used).count();
         let late = usize::from(self.actuator.time_constant_s > 0.0);
@@ -150,7 +151,7 @@ impl Model {
         let places = self.add_integrals(&mut a, v);
 
         let Gains(gains) = rider.schedule.at(v);
-        // Roll and steer, their rates, their accelerations as the bicycle's equations give them.
+        // Roll and steer, their rates, and their accelerations from the bicycle's equations.
         for (key, state) in [(0, 0), (4, 1), (2, 2), (6, 3)] {
             k[state] += gains[key];
         }
@@ -164,7 +165,7 @@ impl Model {
         DelaySystem { a, b, k, delay_s: rider.delay_s }
     }
 
-    /// Writes what an actuator makes of the torque of `gains`, of roll and of its rate, that it is asked for.
+    /// Writes the actuator's response to the torque requested by `gains` of roll and roll rate.
     fn add_actuator(
         &self,
         a: &mut DMatrix<f64>,
@@ -192,7 +193,7 @@ impl Model {
         }
     }
 
-    /// Writes the rows of the integrals in use; returns their places in the state.
+    /// Writes the rows of the integrals in use; returns their indices in the state.
     fn add_integrals(&self, a: &mut DMatrix<f64>, v: f64) -> [Option<usize>; 4] {
         let (w, trail, cos) = self.path;
         let mut next = 4..;
@@ -206,8 +207,8 @@ impl Model {
             a[(heading, 1)] = v * cos / w;
             a[(heading, 3)] = trail / w;
             if let Some(lateral) = places[3] {
-                // The rear contact's v psi and what the front contact turns about it: the terms of
-                // the trail cancel.
+                // The rear contact's v psi plus the front contact's motion about it: the terms of the trail
+                // cancel.
                 a[(lateral, heading)] = v;
                 a[(lateral, 1)] = v * cos;
             }

@@ -1,15 +1,15 @@
-//! When samples come: their period, how late some are, and how they lie beside the gyro's.
+//! Sampling of a sensor: period, jitter and phase relative to the gyro.
 
 use super::windows::Recorded;
-use super::{Found, digits, part_of, seen};
+use super::{Found, digits, exact, part_of};
 use crate::plant::Sensor;
 use crate::replay::Sample;
 use std::f64::consts::TAU;
 
-/// Length of a block in which the sensor's and the log's clock run alike \[s\].
+/// Length of a block in which drift between sensor and log clock is negligible \[s\].
 const BLOCK_S: f64 = 10.0;
 
-/// A sample that is later by so many periods tells of others that were lost.
+/// A gap of this many periods means that samples were lost.
 const LOST: f64 = 1.5;
 
 pub(super) fn fit(all: &[Recorded], found: &mut Found) {
@@ -20,7 +20,7 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     let period = part_of(&gaps, 0.5);
     found.number("period, median", None, "s", period, seconds);
     found.number("period, 99 in 100 at most", None, "s", part_of(&gaps, 0.99), seconds);
-    found.number("period, longest seen", None, "s", seen(gaps[gaps.len() - 1]), seconds);
+    found.number("period, longest seen", None, "s", exact(gaps[gaps.len() - 1]), seconds);
     found.numbers.period_s = Some(digits(period.value));
     let mut late: Vec<f64> = all.iter().flat_map(lateness).collect();
     late.sort_by(f64::total_cmp);
@@ -29,7 +29,7 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     } else {
         let (most, worst) = (part_of(&late, 0.99), late[late.len() - 1]);
         found.number("lateness, 99 in 100 at most", None, "s", most, seconds);
-        found.number("lateness, worst seen", None, "s", seen(worst), seconds);
+        found.number("lateness, worst seen", None, "s", exact(worst), seconds);
         found.numbers.jitter_s = Some([digits(most.value), digits(worst)]);
     }
     phase(all, found, period.value);
@@ -40,7 +40,7 @@ fn span_s(one: &Recorded) -> f64 {
     samples[samples.len() - 1].t_s - samples[0].t_s
 }
 
-/// How much later than the earliest each sample of a block comes, beside evenly spaced ones \[s\].
+/// Delay of each sample in a block relative to evenly spaced samples, from the earliest \[s\].
 fn lateness(one: &Recorded) -> Vec<f64> {
     let length = (BLOCK_S / one.period_s).round() as usize;
     let late = |block: &[Sample]| {
@@ -63,7 +63,7 @@ fn lateness(one: &Recorded) -> Vec<f64> {
     one.track.samples.chunks_exact(length.max(3)).flat_map(late).collect()
 }
 
-/// How much later than a sample of the gyro this sensor's comes, within a period.
+/// Phase: delay relative to the gyro's sample, within a period.
 fn phase(all: &[Recorded], found: &mut Found, period_s: f64) {
     if found.sensor == Sensor::Gyro {
         return;

@@ -1,20 +1,21 @@
-//! A wheel's speed beside the way that the same wheel counted: over which time it is the mean, and how late it is.
+//! Averaging time and delay of a wheel's speed, from the distance that the same wheel counted.
 
 use super::windows::Recorded;
 use super::{Found, digits, pooled};
 
-/// Length of a stretch that is fitted by itself \[s\].
+/// Length of a stretch that is fitted separately \[s\].
 const STRETCH_S: f64 = 10.0;
-/// A stretch whose speed changes by less says nothing \[m/s\].
+/// Smallest change of speed in a usable stretch \[m/s\].
 const CHANGE_M_S: f64 = 0.1;
-/// Longest mean looked for \[s\].
+/// Longest averaging time tried \[s\].
 const LONGEST_S: f64 = 8.0;
-/// A way that falls by more in one sample was set anew \[m\].
+/// A larger decrease of the distance within one sample is a reset \[m\].
 const SET_ANEW_M: f64 = 0.05;
-/// Speeds that the best mean does not make within this part of their own change are of another wheel.
+/// Largest residual of the best mean, relative to the change of speed; beyond, the speed belongs to another
+/// wheel.
 const WORST_FIT: f64 = 0.3;
 
-/// What fits a stretch best: the mean's length, the delay \[s\], and the scale.
+/// Best fit of a stretch: averaging time, delay \[s\] and scale.
 struct Fit {
     window_s: f64,
     delay_s: f64,
@@ -62,7 +63,7 @@ fn stretches(one: &Recorded) -> Vec<Fit> {
     one.track.samples.chunks_exact(length).filter_map(fit).collect()
 }
 
-/// The mean and delay of least squares, by ever finer grids.
+/// Least-squares averaging time and delay, on successively finer grids.
 fn best(points: &[(f64, f64)], way: &[(f64, f64)], period_s: f64) -> Option<Fit> {
     let n = points.len() as f64;
     let mean = points.iter().map(|(_, v)| v).sum::<f64>() / n;
@@ -70,7 +71,7 @@ fn best(points: &[(f64, f64)], way: &[(f64, f64)], period_s: f64) -> Option<Fit>
     if (change / n).sqrt() < CHANGE_M_S {
         return None;
     }
-    let judged = |window_s: f64, delay_s: f64| {
+    let evaluated = |window_s: f64, delay_s: f64| {
         let mean = |t: f64| {
             let later = at(way, t - delay_s);
             (later - at(way, t - delay_s - window_s)) / window_s
@@ -88,17 +89,17 @@ fn best(points: &[(f64, f64)], way: &[(f64, f64)], period_s: f64) -> Option<Fit>
         let tried = grid.map(|(i, j)| {
             let window_s = (centre.0 + i * reach.0).clamp(period_s, LONGEST_S);
             let delay_s = (centre.1 + j * reach.1).clamp(0.0, 1.0);
-            (judged(window_s, delay_s).0, (window_s, delay_s))
+            (evaluated(window_s, delay_s).0, (window_s, delay_s))
         });
         centre = tried.min_by(|a, b| a.0.total_cmp(&b.0))?.1;
         reach = (reach.0 / 4.0, reach.1 / 3.0);
     }
-    let (rest, scale) = judged(centre.0, centre.1);
+    let (rest, scale) = evaluated(centre.0, centre.1);
     let fits = 5.0 * rest < WORST_FIT * WORST_FIT * change;
     fits.then_some(Fit { window_s: centre.0, delay_s: centre.1, scale })
 }
 
-/// The way at a time, between two counts \[m\].
+/// Distance at a time, interpolated between two counts \[m\].
 fn at(way: &[(f64, f64)], t_s: f64) -> f64 {
     let after = way.partition_point(|(t, _)| *t < t_s).clamp(1, way.len() - 1);
     let ((t0, a), (t1, b)) = (way[after - 1], way[after]);

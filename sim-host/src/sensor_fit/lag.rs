@@ -1,4 +1,4 @@
-//! How late a sensor is beside another that measures the same motion.
+//! Delay of a sensor relative to another that measures the same motion.
 
 use super::windows::{Motion, Recorded, WINDOW_S};
 use super::{Found, digits, pooled};
@@ -7,15 +7,15 @@ use crate::replay::Sample;
 use crate::weave::Estimate;
 use crate::weave::student::quantile;
 
-/// Windows that are compared at once.
+/// Windows compared together.
 const TOGETHER: usize = 4;
-/// Largest lag looked for \[s\].
+/// Largest delay tried \[s\].
 const MOST_S: f64 = 0.2;
-/// Both signals are means over this time before they are compared \[s\].
+/// Averaging time of both signals before the comparison \[s\].
 const SMOOTH_S: f64 = 0.1;
-/// Signals that are less alike than this say nothing of their lag.
+/// Smallest correlation from which a delay is taken.
 const ALIKE: f64 = 0.9;
-/// Least range of the time a bicycle takes for a metre, over which the trail shows \[s/m\].
+/// Smallest range of the time that a bicycle takes per metre over which the trail is identifiable \[s/m\].
 const RANGE_S_M: f64 = 0.1;
 
 pub(super) fn fit(all: &[Recorded], found: &mut Found) {
@@ -28,7 +28,7 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     }
 }
 
-/// A value between two samples; none outside.
+/// Value interpolated between two samples; none outside.
 pub(super) fn at(samples: &[Sample], t_s: f64, axis: usize) -> Option<f64> {
     let after = samples.partition_point(|sample| sample.t_s < t_s);
     let b = samples.get(after)?;
@@ -40,7 +40,7 @@ pub(super) fn at(samples: &[Sample], t_s: f64, axis: usize) -> Option<f64> {
     Some(a.value[axis] + part * (b.value[axis] - a.value[axis]))
 }
 
-/// Stretches of riding, each a few windows that follow on each other: the samples, and the mean speed \[m/s\].
+/// Stretches of riding, each of a few consecutive windows: the samples, and the mean speed \[m/s\].
 fn stretches<'a>(one: &'a Recorded<'a>) -> impl Iterator<Item = (&'a [Sample], f64)> {
     one.windows.windows(TOGETHER).step_by(TOGETHER / 2).filter_map(|windows| {
         let follow = windows.windows(2).all(|two| two[0].to == two[1].from);
@@ -57,7 +57,7 @@ fn stretches<'a>(one: &'a Recorded<'a>) -> impl Iterator<Item = (&'a [Sample], f
     })
 }
 
-/// A mean over [`SMOOTH_S`], twice: the steps of an encoder, which both signals have, are no motion.
+/// Mean over [`SMOOTH_S`], twice: removes the steps of an encoder, common to both signals.
 fn smooth(values: &[f64], period_s: f64) -> Vec<f64> {
     let length = ((SMOOTH_S / period_s).round() as usize).max(1);
     let mean =
@@ -66,7 +66,8 @@ fn smooth(values: &[f64], period_s: f64) -> Vec<f64> {
     mean(&once)
 }
 
-/// How much later `later` is than `earlier`, both sampled each `period_s`, by their correlation's largest value.
+/// Delay of `later` relative to `earlier`, both sampled each `period_s`, from the maximum of their
+/// correlation.
 fn lag_s(later: &[f64], earlier: &[f64], period_s: f64) -> Option<f64> {
     let (later, earlier) = (&smooth(later, period_s), &smooth(earlier, period_s));
     let most = (MOST_S / period_s) as usize;
@@ -89,7 +90,7 @@ fn lag_s(later: &[f64], earlier: &[f64], period_s: f64) -> Option<f64> {
     (top > ALIKE).then_some((best as f64 - most as f64 + inside) * period_s)
 }
 
-/// The steer rate beside the change of the steer angle.
+/// Delay of the steer rate relative to the change of the steer angle.
 fn steer_rate(all: &[Recorded], found: &mut Found) {
     let lags = |one: &Recorded| -> Vec<f64> {
         let Some(angle) = one.recording.samples.track(Sensor::Steer) else { return Vec::new() };
@@ -114,7 +115,7 @@ fn steer_rate(all: &[Recorded], found: &mut Found) {
     take(lag, found);
 }
 
-/// A lag that is surely there is the model's delay.
+/// Uses a significant delay as the model's.
 fn take(lag: Estimate, found: &mut Found) {
     if lag.low > 0.0 {
         found.numbers.delay_s = Some(digits(lag.value));
@@ -125,8 +126,9 @@ fn take(lag: Estimate, found: &mut Found) {
     }
 }
 
-/// The steer angle beside the yaw rate. The yaw rate leads speed times steer angle by trail over speed, so the lag of
-/// either shows only over different speeds, as what is left where that is none.
+/// Delay of the steer angle relative to the yaw rate. The yaw rate leads speed times steer angle by trail
+/// over speed. The two are separated only over different speeds: the delay is the part that does not depend
+/// on speed.
 fn steer(all: &[Recorded], found: &mut Found) {
     let lags = |one: &Recorded| -> Vec<(f64, f64)> {
         let samples = &one.recording.samples;
@@ -157,7 +159,7 @@ fn steer(all: &[Recorded], found: &mut Found) {
     take(lag, found);
 }
 
-/// The straight line through points: where it begins, and its slope. Neighbouring stretches overlap by half.
+/// Straight line through points: intercept and slope. Neighbouring stretches overlap by half.
 fn line(points: &[(f64, f64)]) -> (Estimate, Estimate) {
     let n = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |(sx, sy), (x, y)| (sx + x / n, sy + y / n));

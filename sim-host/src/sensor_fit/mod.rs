@@ -1,8 +1,9 @@
-//! A model of a sensor, fitted to recordings of a real one.
+//! Fits a sensor model to recordings of a real sensor.
 //!
-//! `windows` cuts the recordings into seconds of standing and riding, `clock` looks at the times of the samples, `step` at
-//! their numbers, `noise` at what a standing sensor says, `vibration` at what riding adds, `lag` and `distance` at how late a
-//! sensor is beside another. Each gives numbers with intervals, and says what the recordings can't tell.
+//! `windows` cuts the recordings into seconds at standstill and riding. `clock` analyses the times of the
+//! samples, `step` their quantisation, `noise` the sensor at standstill, `vibration` the addition by riding,
+//! `lag` and `distance` the delay relative to another sensor. Each gives numbers with intervals, and lists
+//! what the recordings do not determine.
 
 mod clock;
 mod distance;
@@ -26,9 +27,9 @@ use windows::Recorded;
 /// One recording.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
-    /// What the sensors said.
+    /// Samples of the sensors.
     pub samples: Samples,
-    /// The way that the wheel sensor counted \[m\] over time \[s\], if it was recorded beside the speed.
+    /// Distance counted by the wheel sensor \[m\] over time \[s\], if recorded with the speed.
     pub distance_m: Vec<(f64, f64)>,
 }
 
@@ -51,16 +52,16 @@ pub fn fit(sensor: Sensor, recordings: &[Recording]) -> Result<SensorNumbers, St
     Ok(found.numbers)
 }
 
-/// What was found so far.
+/// Results so far.
 struct Found {
     sensor: Sensor,
     numbers: SensorNumbers,
-    /// Density of the white noise while standing, by axis \[unit^2/Hz\].
+    /// Density of the white noise at standstill, by axis \[unit^2/Hz\].
     white_power: [f64; 3],
 }
 
 impl Found {
-    /// Notes a number in the sensor's unit with `per` behind it, of an axis if the sensor has several.
+    /// Records a number in the sensor's unit followed by `unit`; for an axis if the sensor has several.
     fn number(&mut self, number: &str, axis: Option<usize>, unit: &str, found: Estimate, seconds: f64) {
         let axis = axis.and_then(|axis| self.sensor.axes().get(axis)).copied().unwrap_or_default();
         let [value, low, high] = [found.value, found.low, found.high].map(digits);
@@ -75,7 +76,7 @@ impl Found {
         });
     }
 
-    /// Notes what the recordings can't tell.
+    /// Records a quantity that the recordings do not determine.
     fn left_out(&mut self, what: String) {
         self.numbers.left_out.push(what);
     }
@@ -96,7 +97,7 @@ impl Found {
     }
 }
 
-/// A number in four digits: more than any of these is known to. What is left of a rounding is nothing.
+/// Rounds to four digits, more than the accuracy of any of these numbers; rounding residues become zero.
 fn digits(x: f64) -> f64 {
     if x.abs() < 1e-12 {
         return 0.0;
@@ -104,7 +105,7 @@ fn digits(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }
 
-/// The mean of independent values with its interval by Student's t; none of fewer than two.
+/// Mean of independent values with its interval by Student's t; none for fewer than two.
 fn mean(values: &[f64]) -> Option<Estimate> {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -112,17 +113,17 @@ fn mean(values: &[f64]) -> Option<Estimate> {
     (values.len() > 1).then(|| Estimate::new(mean, (square / n).sqrt(), quantile(n - 1.0)))
 }
 
-/// The means of each recording put together; those that scatter make the interval wider.
+/// Combined mean of the recordings; scatter between them widens the interval.
 fn pooled(recordings: &[Vec<f64>]) -> Option<Estimate> {
     let means: Vec<Estimate> = recordings.iter().filter_map(|values| mean(values)).collect();
-    // Values that are all alike have no error to weigh by.
+    // Equal values have no error to weigh by.
     if means.iter().any(|mean| mean.standard_error == 0.0) {
         return mean(&recordings.concat());
     }
     pool(&means).map(|pooled| pooled.mean)
 }
 
-/// The root of a power that can't be negative.
+/// Square root of a power that can't be negative.
 fn root(power: Estimate) -> Estimate {
     let root = |x: f64| x.max(0.0).sqrt();
     let value = root(power.value);
@@ -130,7 +131,7 @@ fn root(power: Estimate) -> Estimate {
     Estimate { value, standard_error, low: root(power.low), high: root(power.high) }
 }
 
-/// A share of `n` events by Wilson's interval.
+/// Share of `n` events, with Wilson's interval.
 fn share(events: usize, n: usize) -> Estimate {
     let (n, z) = (n.max(1) as f64, quantile(1e9));
     let p = events as f64 / n;
@@ -144,7 +145,7 @@ fn share(events: usize, n: usize) -> Estimate {
     }
 }
 
-/// The value below which a part of the sorted values lies, with its interval by order statistics.
+/// Quantile of sorted values, with its interval by order statistics.
 fn part_of(sorted: &[f64], part: f64) -> Estimate {
     let n = sorted.len() as f64;
     let at = |share: f64| sorted[((n - 1.0) * share.clamp(0.0, 1.0)).round() as usize];
@@ -153,7 +154,7 @@ fn part_of(sorted: &[f64], part: f64) -> Estimate {
     Estimate { value, standard_error: 0.25 * (high - low), low, high }
 }
 
-/// A number that is what was seen, and no estimate of anything more.
-const fn seen(value: f64) -> Estimate {
+/// An observed number, without an interval.
+const fn exact(value: f64) -> Estimate {
     Estimate { value, standard_error: 0.0, low: value, high: value }
 }

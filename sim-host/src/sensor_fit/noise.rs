@@ -1,4 +1,4 @@
-//! What a sensor says while the bicycle stands still: white noise, bias, and how the bias wanders.
+//! Noise of a sensor at standstill: white noise, bias, and random walk of the bias.
 
 use super::windows::{Recorded, WINDOW_S, Window, still};
 use super::{Found, digits, pooled, root};
@@ -6,11 +6,11 @@ use crate::plant::Sensor;
 use crate::weave::Estimate;
 use crate::weave::student::quantile;
 
-/// White noise is looked for between these parts of the sample rate: above motion, below its fold.
+/// Frequency range of the white noise as fractions of the sample rate: above motion, below aliasing.
 const WHITE: (f64, f64) = (0.25, 0.48);
-/// Least number of changes of the bias that its walk is taken from.
+/// Smallest number of changes of the bias from which its walk is taken.
 const FEW: usize = 6;
-/// Least time between two seconds of standing still whose means are held against each other \[s\].
+/// Smallest time between two seconds at standstill whose means are compared \[s\].
 const APART_S: f64 = 8.0;
 
 pub(super) fn fit(all: &[Recorded], found: &mut Found) {
@@ -39,7 +39,7 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     }
 }
 
-/// The density of the white noise, standing and riding.
+/// Density of the white noise, at standstill and riding.
 fn white(all: &[Recorded], quiet: &[Vec<&Window>], axis: usize, seconds: f64, found: &mut Found) {
     let of = |one: &Recorded, window: &Window| {
         let rate_hz = 1.0 / one.period_s;
@@ -51,7 +51,7 @@ fn white(all: &[Recorded], quiet: &[Vec<&Window>], axis: usize, seconds: f64, fo
     let Some(power) = pooled(&standing) else { return };
     found.number("white noise, standing", Some(axis), &unit, root(power), seconds);
     found.white_power[axis] = power.value;
-    // The step adds noise of its own to what is simulated.
+    // Quantisation adds its own noise to the simulated noise.
     let step = found.numbers.quantum.get(axis).copied().unwrap_or_default();
     let of_step = step * step * all[0].period_s / 6.0;
     found.numbers.white_density.resize(found.axes(), 0.0);
@@ -64,7 +64,7 @@ fn white(all: &[Recorded], quiet: &[Vec<&Window>], axis: usize, seconds: f64, fo
     }
 }
 
-/// The bias of each recording, and how it differs between them.
+/// Bias of each recording, and its spread between them.
 fn bias(all: &[Recorded], quiet: &[Vec<&Window>], found: &mut Found) {
     for axis in 0..found.axes() {
         let mean_of = |(one, windows): (&Recorded, &Vec<&Window>)| {
@@ -88,8 +88,9 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The walk of the bias: how much more seconds of standing still differ that lie further apart. All axes are of one
-/// chip, so one that walks more than the others can is swayed by whoever holds the bicycle.
+/// Random walk of the bias: increase of the difference between seconds at standstill with their distance in
+/// time. All axes belong to one chip, so an axis with much more walk than the others shows motion of a person
+/// who holds the bicycle.
 fn walk(all: &[Recorded], quiet: &[Vec<&Window>], found: &mut Found) {
     let unit = format!("{}/s^0.5", found.unit());
     let mut axes = Vec::new();
@@ -130,7 +131,8 @@ fn walk(all: &[Recorded], quiet: &[Vec<&Window>], found: &mut Found) {
     }
 }
 
-/// Changes of the mean from one still window to the next that is far enough from it, and the time between them \[s\].
+/// Changes of the mean from one still window to the next that is far enough away, and the time between them
+/// \[s\].
 fn changes(one: &Recorded, windows: &[&Window], axis: usize) -> Vec<(f64, f64)> {
     let mut changes = Vec::new();
     let mut last: Option<&Window> = None;
@@ -149,7 +151,7 @@ fn changes(one: &Recorded, windows: &[&Window], axis: usize) -> Vec<(f64, f64)> 
     changes
 }
 
-/// A variance with its interval by the chi-square distribution, whose points are Wilson's and Hilferty's.
+/// Variance with its interval by the chi-square distribution, with quantiles by Wilson and Hilferty.
 fn variance(value: f64, freedom: f64) -> Estimate {
     let point = |z: f64| {
         freedom * (1.0 - 2.0 / (9.0 * freedom) + z * (2.0 / (9.0 * freedom)).sqrt()).max(0.05).powi(3)

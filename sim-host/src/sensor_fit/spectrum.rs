@@ -1,20 +1,21 @@
-//! The spectrum of one window: the modified periodogram (Welch 1967) with Hann's window, the line through it taken out.
+//! Spectrum of one window: the modified periodogram (Welch 1967) with Hann's window, after removing the
+//! linear trend.
 
 use realfft::RealFftPlanner;
 use std::f64::consts::PI;
 
-/// Power over frequency.
+/// Power density over frequency.
 pub(super) struct Spectrum {
-    /// Distance of the frequencies \[Hz\].
+    /// Frequency resolution \[Hz\].
     step_hz: f64,
-    /// One-sided density at whole multiples of it \[unit^2/Hz\].
+    /// One-sided density at the multiples of the resolution \[unit^2/Hz\].
     density: Vec<f64>,
-    /// Standard deviation about a straight line.
+    /// Standard deviation about the linear trend.
     pub(super) deviation: f64,
 }
 
 impl Spectrum {
-    /// Of samples that come each `period_s`.
+    /// From samples with the period `period_s`.
     pub(super) fn new(values: &[f64], period_s: f64) -> Self {
         let n = values.len();
         let middle = 0.5 * (n as f64 - 1.0);
@@ -38,13 +39,13 @@ impl Spectrum {
         }
     }
 
-    /// The densities from one frequency to below another \[Hz\].
+    /// Densities from one frequency to below another \[Hz\].
     fn between(&self, from_hz: f64, to_hz: f64) -> impl Iterator<Item = f64> {
         let at = |hz: f64| ((hz / self.step_hz).ceil() as usize).min(self.density.len());
         self.density[at(from_hz)..at(to_hz).max(at(from_hz))].iter().copied()
     }
 
-    /// Mean density from one frequency to below another; NaN where there is none \[unit^2/Hz\].
+    /// Mean density from one frequency to below another; NaN if there is none \[unit^2/Hz\].
     pub(super) fn mean(&self, from_hz: f64, to_hz: f64) -> f64 {
         let (sum, count) = self.between(from_hz, to_hz).fold((0.0, 0), |(sum, n), x| (sum + x, n + 1));
         sum / f64::from(count)
@@ -60,7 +61,8 @@ impl Spectrum {
 mod tests {
     use super::*;
 
-    /// A sinusoid of amplitude 2 has a power of 2 at its frequency and none an octave away; a line has none at all.
+    /// A sinusoid of amplitude 2 has a power of 2 at its frequency and none an octave away; a linear trend
+    /// has no power.
     #[test]
     fn a_sinusoid_keeps_its_power() {
         let values: Vec<f64> =

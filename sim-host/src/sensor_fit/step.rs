@@ -1,16 +1,16 @@
-//! The numbers themselves: the step between them, and how often one repeats.
+//! Quantisation step of a sensor's values, and repetition of samples.
 
 use super::windows::{Motion, Recorded};
-use super::{Found, digits, seen, share};
+use super::{Found, digits, exact, share};
 use crate::weave::Estimate;
 
-/// Differences that fit whole steps worse than this part of one have no step in common.
+/// Largest deviation from whole steps, as a fraction of a step; beyond, the differences have no common step.
 const WORST_FIT: f64 = 0.12;
-/// Differences of more steps than this say nothing of the step.
+/// Differences of more steps than this are not used.
 const MOST_STEPS: f64 = 50.0;
-/// How far below the usual least difference the step is looked for.
+/// Range of the search for the step, as divisors of the usual smallest difference.
 const DIVISORS: u32 = 24;
-/// All axes of a sensor that is awake do not repeat for so long \[s\].
+/// If all axes repeat for longer, the sensor sleeps \[s\].
 const SLEEP_S: f64 = 1.0;
 
 pub(super) fn fit(all: &[Recorded], found: &mut Found) {
@@ -56,7 +56,7 @@ fn whole_steps(differences: &[f64], guess: f64) -> Option<Estimate> {
     let few = differences.iter().filter(|d| **d < MOST_STEPS * guess);
     let few: Vec<f64> = few.copied().collect();
     let mut error = f64::INFINITY;
-    // Short differences first: the longer a difference, the better the step must be known to count it.
+    // Small differences first: the larger a difference, the more exactly the step must be known to count it.
     for most in [3.0, 10.0, MOST_STEPS] {
         let counted = few.iter().filter(|d| **d < (most + 0.5) * step).map(|d| (*d, (*d / step).round()));
         let counted: Vec<(f64, f64)> = counted.collect();
@@ -75,7 +75,7 @@ fn whole_steps(differences: &[f64], guess: f64) -> Option<Estimate> {
     Some(Estimate::new(step, error, 1.96))
 }
 
-/// How often all axes repeat, and for how long.
+/// Share and longest duration of repeated samples of all axes.
 fn repeats(all: &[Recorded], found: &mut Found, name: &str, riding: bool) {
     let axes = found.axes();
     let (mut pairs, mut same, mut each) = (0_usize, 0_usize, [0_usize; 3]);
@@ -109,7 +109,7 @@ fn repeats(all: &[Recorded], found: &mut Found, name: &str, riding: bool) {
     }
     let all_axes = share(same, pairs);
     found.number(&format!("share of samples that repeat, {name}"), None, "1", all_axes, seconds);
-    found.number(&format!("longest time without a new value, {name}"), None, "s", seen(longest), seconds);
+    found.number(&format!("longest time without a new value, {name}"), None, "s", exact(longest), seconds);
     if !riding {
         if axes == 3 && longest > SLEEP_S {
             let what =
@@ -122,7 +122,7 @@ fn repeats(all: &[Recorded], found: &mut Found, name: &str, riding: bool) {
         let error = "repeat: of one axis alone a value that repeats is a sensor in between two steps";
         return found.left_out(error.into());
     }
-    // By chance they repeat together, too.
+    // Axes also repeat together by chance.
     let chance: f64 = each[..axes].iter().map(|count| *count as f64 / pairs as f64).product();
     if same > 0 && all_axes.low > chance {
         found.numbers.repeat = Some(digits(all_axes.value - chance));

@@ -1,10 +1,10 @@
-//! A file of models as it is written.
+//! Writes a file of sensor models.
 
 use crate::plant::Sensor;
 use crate::plant::sensor_file::{SensorFile, SensorNumbers, table_of};
 use std::fmt::Write;
 
-/// The file as TOML: what the simulator takes, then what was measured, a line each.
+/// The file as TOML: the numbers used by the simulator, then the measured ones, one per line.
 pub fn to_toml(file: &SensorFile) -> String {
     let quoted = |text: &str| toml::Value::from(text).to_string();
     let mut text = String::from(
@@ -14,7 +14,7 @@ pub fn to_toml(file: &SensorFile) -> String {
     for (key, value) in [("source", &file.source), ("licence", &file.licence), ("command", &file.command)] {
         let _ = writeln!(text, "{key} = {}", quoted(value));
     }
-    // Both wheels have one table.
+    // Both wheels share one table.
     for (sensor, numbers) in file.tables().filter(|(sensor, _)| *sensor != Sensor::FrontWheel) {
         let _ = writeln!(text, "\n[{}]", table_of(sensor));
         table(&mut text, numbers);

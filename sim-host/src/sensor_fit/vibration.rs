@@ -1,14 +1,14 @@
-//! What riding adds above 10 Hz, over the speed.
+//! Vibration above 10 Hz caused by riding, as a function of speed.
 
 use super::windows::{Recorded, WINDOW_S};
 use super::{Found, digits, mean, pooled, root};
 use crate::plant::{OCTAVES_HZ, Sensor};
 
-/// Width of the bins of speed in the account \[m/s\].
+/// Width of the speed bins in the report \[m/s\].
 const BIN_M_S: f64 = 1.0;
-/// How many lines of the spectrum next to an octave's end are not used.
+/// Lines of the spectrum next to an octave's end that are not used.
 const LEAK: f64 = 1.5;
-/// Beyond this speed nothing is told \[m/s\].
+/// Speeds above this are not reported \[m/s\].
 const FASTEST_M_S: f64 = 20.0;
 
 pub(super) fn fit(all: &[Recorded], found: &mut Found) {
@@ -29,7 +29,7 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     }
 }
 
-/// The root mean square above 10 Hz in bins of speed, with the sensor's noise.
+/// Root mean square above 10 Hz in speed bins, including the sensor's noise.
 fn over_speed(all: &[Recorded], axis: usize, found: &mut Found) {
     let mut low = BIN_M_S;
     while low < FASTEST_M_S {
@@ -48,7 +48,7 @@ fn over_speed(all: &[Recorded], axis: usize, found: &mut Found) {
     }
 }
 
-/// The vibration in an octave for 1 m/s.
+/// Vibration in an octave per 1 m/s.
 fn octaves(all: &[Recorded], axis: usize, (octave, low_hz): (usize, f64), seconds: f64, found: &mut Found) {
     let white = found.white_power[axis];
     let high_hz = |one: &Recorded| (2.0 * low_hz).min(0.5 / one.period_s);
@@ -57,7 +57,7 @@ fn octaves(all: &[Recorded], axis: usize, (octave, low_hz): (usize, f64), second
     }
     let of = |one: &Recorded| -> Vec<f64> {
         let high_hz = high_hz(one);
-        // What lies next to an end is leaked over it by Hann's window.
+        // Hann's window leaks lines next to an end into the octave.
         let margin_hz = LEAK / WINDOW_S;
         let each = one.riding().map(|(window, speed)| {
             let density = one.spectrum(window, axis).mean(low_hz + margin_hz, high_hz - margin_hz);

@@ -1,34 +1,35 @@
-//! Recordings cut into seconds, each of them standing, riding or neither.
+//! Cuts recordings into windows of one second and classifies each as standstill, riding or neither.
 
 use super::Recording;
 use super::spectrum::Spectrum;
 use crate::plant::Sensor;
 use crate::replay::{Sample, Track};
 
-/// A wheel slower than this stands \[m/s\].
+/// Wheel speed below which the bicycle is at standstill \[m/s\].
 const STANDING_M_S: f64 = 0.05;
-/// A bicycle faster than this rides \[m/s\].
+/// Speed above which the bicycle rides \[m/s\].
 const RIDING_M_S: f64 = 1.0;
-/// A standing window is still if no axis sways more than this many times what the stillest twentieth does.
+/// A standstill window is still if each axis deviates at most this many times as much as in the stillest
+/// twentieth.
 const STILL: f64 = 1.25;
-/// A sensor of which an axis repeats more often sleeps, or lies between two of its steps.
+/// Share of repeated samples of an axis above which the sensor sleeps, or its value lies between two steps.
 const ASLEEP: f64 = 0.6;
 /// Length of a window \[s\].
 pub(super) const WINDOW_S: f64 = 1.0;
 
-/// What the bicycle does in a window.
+/// Motion of the bicycle in a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Motion {
-    /// It stands.
+    /// At standstill.
     Standing,
-    /// It rides at this speed \[m/s\].
+    /// Riding at this speed \[m/s\].
     Riding(f64),
 }
 
-/// A second without a gap in it.
+/// A window without a gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Window {
-    /// Its first sample, and the one after its last.
+    /// Index of its first sample, and one after its last.
     pub(super) from: usize,
     pub(super) to: usize,
     pub(super) motion: Motion,
@@ -54,17 +55,17 @@ impl<'a> Recorded<'a> {
         Some(Self { recording, track, period_s, windows })
     }
 
-    /// The values of an axis in a window.
+    /// Values of an axis in a window.
     pub(super) fn values(&self, window: &Window, axis: usize) -> Vec<f64> {
         self.track.samples[window.from..window.to].iter().map(|sample| sample.value[axis]).collect()
     }
 
-    /// The spectrum of an axis in a window.
+    /// Spectrum of an axis in a window.
     pub(super) fn spectrum(&self, window: &Window, axis: usize) -> Spectrum {
         Spectrum::new(&self.values(window, axis), self.period_s)
     }
 
-    /// The windows in which the bicycle rides, with its speed \[m/s\].
+    /// Windows in which the bicycle rides, with its speed \[m/s\].
     pub(super) fn riding(&self) -> impl Iterator<Item = (&Window, f64)> {
         self.windows.iter().filter_map(|window| match window.motion {
             Motion::Riding(speed) => Some((window, speed)),
@@ -72,12 +73,12 @@ impl<'a> Recorded<'a> {
         })
     }
 
-    /// How much each axis sways about a straight line in a window.
+    /// Standard deviation of each axis about its linear trend in a window.
     fn sway(&self, window: &Window, axes: usize) -> Vec<f64> {
         (0..axes).map(|axis| Spectrum::new(&self.values(window, axis), self.period_s).deviation).collect()
     }
 
-    /// Whether every axis goes on saying something new.
+    /// Whether every axis still gives new values.
     fn awake(&self, window: &Window, axes: usize) -> bool {
         let repeats = |axis: usize| {
             let values = self.values(window, axis);
@@ -86,7 +87,7 @@ impl<'a> Recorded<'a> {
         (0..axes).all(|axis| self.track.made_up[axis] || repeats(axis) <= ASLEEP)
     }
 
-    /// The windows in which the bicycle stands and the sensor does not sleep, with how much each axis sways.
+    /// Windows at standstill in which the sensor does not sleep, with the deviation of each axis.
     fn standing(&self, axes: usize) -> Vec<(&Window, Vec<f64>)> {
         let standing = self.windows.iter().filter(|window| window.motion == Motion::Standing);
         let awake = standing.filter(|window| self.awake(window, axes));
@@ -94,7 +95,7 @@ impl<'a> Recorded<'a> {
     }
 }
 
-/// The windows in which the bicycle stands still, in each of the recordings.
+/// Windows in which the bicycle is still, for each of the recordings.
 pub(super) fn still<'a>(all: &'a [Recorded<'a>], axes: usize) -> Vec<Vec<&'a Window>> {
     let standing: Vec<_> = all.iter().map(|one| one.standing(axes)).collect();
     let least = |axis: usize| {
@@ -119,7 +120,7 @@ fn windows(samples: &[Sample], period_s: f64, speed: &[Sample]) -> Vec<Window> {
     samples.chunks_exact(length).enumerate().filter_map(whole).collect()
 }
 
-/// What the bicycle does while the samples are taken, if it is one thing.
+/// Motion of the bicycle during the samples, if it is uniform.
 fn motion(window: &[Sample], speed: &[Sample]) -> Option<Motion> {
     let (from, to) = (window[0].t_s, window[window.len() - 1].t_s);
     let first = speed.partition_point(|sample| sample.t_s <= from).saturating_sub(1);

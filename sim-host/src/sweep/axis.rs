@@ -1,27 +1,27 @@
-//! The axes of a sweep: `KEY=VALUES`, values being words and ranges of numbers.
+//! Parses the axes of a sweep: `KEY=VALUES` with words and ranges of numbers.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Most values of one axis.
+/// Largest number of values of one axis.
 const MOST: usize = 1000;
 
-/// What is varied, and the values it takes.
+/// A varied option or placeholder, and its values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Axis {
-    /// An option's long name, or the word in braces in an option's value.
+    /// Long name of an option, or the placeholder in braces in an option's value.
     pub key: String,
-    /// Its values, as on the command line.
+    /// Values, as on the command line.
     pub values: Vec<String>,
 }
 
 impl Axis {
-    /// Reads `KEY=VALUES`: words and ranges, separated by commas. `A:B:STEP` and `A:B/N` are evenly
-    /// spaced, `A:B/logN` evenly in the logarithm; numbers may have a unit, as `0ms:100ms/6`. A comma that is part of a
-    /// value has a backslash before it.
+    /// Parses `KEY=VALUES`: words and ranges, separated by commas. `A:B:STEP` and `A:B/N` are evenly spaced,
+    /// `A:B/logN` evenly in the logarithm; numbers can have a unit, as in `0ms:100ms/6`. A comma inside a
+    /// value is written with a backslash before it.
     ///
     /// # Errors
-    /// Names what is wrong with which range or word.
+    /// States the range or word and the fault.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong = || format!("`{text}` is not KEY=VALUES, for example torque-limit=0.5:20/log9,none");
         let (key, list) = text.split_once('=').ok_or_else(wrong)?;
@@ -48,7 +48,7 @@ impl Axis {
         Ok(Self { key: key.into(), values })
     }
 
-    /// The values as numbers of one unit, if they are.
+    /// The values as numbers of one unit; `None` if they are not.
     pub fn numbers(&self) -> Option<(Vec<f64>, &str)> {
         let all: Vec<(f64, &str)> = self.values.iter().map(|v| number(v)).collect::<Option<_>>()?;
         let (_, unit) = *all.first()?;
@@ -60,7 +60,7 @@ impl Axis {
     }
 }
 
-/// A time in seconds, by its unit.
+/// A time in seconds, from its unit.
 fn seconds(x: f64, unit: &str) -> Option<f64> {
     match unit {
         "ms" => Some(x / 1e3),
@@ -69,7 +69,7 @@ fn seconds(x: f64, unit: &str) -> Option<f64> {
     }
 }
 
-/// Whether two values are the same: each of their parts, as those of `0.5:1.5` or `gyro:stuck@0.3s`, is.
+/// Whether two values are equal in each of their parts, as in `0.5:1.5` or `gyro:stuck@0.3s`.
 fn equal(a: &str, b: &str) -> bool {
     let [a, b] = [a, b].map(|text| text.replace("..", ":"));
     let parts = |text: &'_ str| text.split([':', '=', ',', '@']).map(str::to_owned).collect::<Vec<_>>();
@@ -83,7 +83,7 @@ fn same(a: &str, b: &str) -> bool {
     if u == w { x == y } else { seconds(x, u).is_some_and(|x| Some(x) == seconds(y, w)) }
 }
 
-/// The items of a list separated by commas, but for those with a backslash before them.
+/// Splits a list at commas, except those with a backslash before them.
 fn items(list: &str) -> Vec<String> {
     let mut items = vec![String::new()];
     let mut letters = list.chars().peekable();
@@ -99,9 +99,9 @@ fn items(list: &str) -> Vec<String> {
     items
 }
 
-/// A number and the unit behind it, if the whole text is that.
+/// Splits a text into a number and its unit; `None` for other text.
 fn number(text: &str) -> Option<(f64, &str)> {
-    // Without this `inf` and `nan` were numbers, and the names that begin so.
+    // Otherwise `inf`, `nan` and words that begin so would parse as numbers.
     if !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
         return None;
     }
@@ -110,7 +110,7 @@ fn number(text: &str) -> Option<(f64, &str)> {
     (x.is_finite() && unit.chars().all(char::is_alphabetic)).then_some((x, unit))
 }
 
-/// The values an item of the list stands for: itself, unless it is a range.
+/// Values of an item of the list: the values of a range, otherwise the item itself.
 fn expand(item: &str) -> Result<Vec<String>, String> {
     if item.is_empty() {
         return Err("a value is empty".into());
@@ -166,12 +166,12 @@ fn counted(item: &str, from: f64, to: f64, count: &str) -> Result<Vec<f64>, Stri
     Ok((0..n).map(at).collect())
 }
 
-/// Rounded, so that 0.1 steps read 0.3 and not 0.30000000000000004.
+/// Rounds to 1e-9, so that steps of 0.1 give 0.3 and not 0.30000000000000004.
 fn billionths(x: f64) -> f64 {
     (x * 1e9).round() / 1e9
 }
 
-/// The nearest number of four digits: what lies on a logarithmic axis need not be exact.
+/// Rounds to four digits; values on a logarithmic axis need not be exact.
 fn four_digits(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }

@@ -1,31 +1,31 @@
-//! The folder of a sweep: its plan, and a file for every cell that is done.
+//! The folder of a sweep: its plan, and one file per finished cell.
 
 use super::unit::Unit;
 use super::{Plan, SweepError};
 use crate::report::output::{Output, TEMPORARY};
 use std::path::{Path, PathBuf};
 
-/// The plan's file.
+/// Name of the plan's file.
 pub const PLAN: &str = "plan.json";
 const UNITS: &str = "units";
 
-/// A folder that holds a sweep, or a part of one.
+/// A folder with a sweep, or a part of it.
 #[derive(Clone, Debug)]
 pub struct Folder {
     path: PathBuf,
 }
 
 impl Folder {
-    /// Makes a folder ready for `plan`; one that holds it already, or a part of it, is gone on with.
+    /// Prepares a folder for `plan`; a folder with this sweep, or a part of it, is continued.
     ///
     /// # Errors
-    /// When it can't be made or written to, or holds something else.
+    /// The folder can't be created or written, or has other content.
     pub fn open(path: &Path, plan: &Plan) -> Result<Self, SweepError> {
         let folder = Self { path: path.into() };
         let failed = |e: std::io::Error| folder.failed(e);
         std::fs::create_dir_all(path).map_err(failed)?;
         if !path.join(PLAN).exists() {
-            // Another shard may have begun meanwhile, or one that was killed may have left its beginning.
+            // Another shard may have started in the meantime, or a killed one may have left a partial start.
             let of_sweep = |name: &str| name.starts_with(TEMPORARY) || [PLAN, UNITS].contains(&name);
             for entry in std::fs::read_dir(path).map_err(failed)? {
                 if !of_sweep(&entry.map_err(failed)?.file_name().to_string_lossy()) {
@@ -46,17 +46,17 @@ impl Folder {
         Ok(folder)
     }
 
-    /// A folder of which a sweep's run has made something.
+    /// Opens the folder of a sweep that was started.
     ///
     /// # Errors
-    /// When there is no plan in it that can be read.
+    /// The folder has no readable plan.
     pub fn there(path: &Path) -> Result<(Self, Plan), SweepError> {
         let folder = Self { path: path.into() };
         let plan = folder.plan()?;
         Ok((folder, plan))
     }
 
-    /// Where it is.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -75,15 +75,15 @@ impl Folder {
         Ok(plan)
     }
 
-    /// The file of a unit, within the folder.
+    /// File of a unit, relative to the folder.
     pub fn file(id: &str) -> String {
         format!("{UNITS}/{id}.json")
     }
 
-    /// The unit, if it is there.
+    /// Reads a unit; `None` if it has no file.
     ///
     /// # Errors
-    /// When its file is damaged.
+    /// Its file is damaged.
     pub fn unit(&self, id: &str) -> Result<Option<Unit>, SweepError> {
         let path = self.path.join(Self::file(id));
         match std::fs::read(&path) {
@@ -96,18 +96,18 @@ impl Folder {
         }
     }
 
-    /// Keeps a unit.
+    /// Stores a unit.
     ///
     /// # Errors
-    /// When its file can't be written.
+    /// Its file can't be written.
     pub fn keep(&self, unit: &Unit) -> Result<(), SweepError> {
         self.write(&Self::file(&unit.id), unit.sealed().as_bytes())
     }
 
-    /// Writes a file within the folder, whole or not at all.
+    /// Writes a file in the folder atomically.
     ///
     /// # Errors
-    /// When it can't be written.
+    /// The file can't be written.
     pub fn write(&self, name: &str, content: &[u8]) -> Result<(), SweepError> {
         let path = self.path.join(name);
         if let Some(parent) = path.parent() {

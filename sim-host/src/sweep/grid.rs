@@ -1,22 +1,22 @@
-//! A finished sweep: the plan and what was found in every cell.
+//! A sweep's results: the plan and the result of every cell.
 
 use super::{Folder, Plan, SweepError, Unit};
 use crate::basin::{Bound, area};
 
-/// The cells of a sweep, those that are not done missing.
+/// The cells of a sweep; unfinished ones are missing.
 #[derive(Clone, Debug)]
 pub struct Grid {
-    /// What was asked for.
+    /// The plan.
     pub plan: Plan,
-    /// What was found, in the plan's order.
+    /// Results in the plan's order.
     pub units: Vec<Option<Unit>>,
 }
 
 impl Grid {
-    /// Gathers what `folders` hold of `plan`, each unit from the first that has it whole.
+    /// Collects the results of `plan` from `folders`; each unit from the first folder with an undamaged file.
     ///
     /// # Errors
-    /// When a unit is damaged wherever it is, or can't be read.
+    /// A unit is damaged in every folder that has it, or can't be read.
     pub fn gather(plan: &Plan, folders: &[Folder]) -> Result<Self, SweepError> {
         let find = |id: &String| {
             let mut damaged = None;
@@ -32,7 +32,7 @@ impl Grid {
         Ok(Self { plan: plan.clone(), units: plan.cells.iter().map(find).collect::<Result<_, _>>()? })
     }
 
-    /// How many cells are missing.
+    /// Number of missing cells.
     pub fn missing(&self) -> usize {
         self.units.iter().filter(|u| u.is_none()).count()
     }
@@ -43,26 +43,26 @@ impl Grid {
         area(&self.plan.search.speeds.iter().copied().zip(heights).collect::<Vec<_>>())
     }
 
-    /// Whether there is a single speed, under whose heights is no area.
+    /// Whether the sweep has a single speed, and so no area.
     pub fn one_speed(&self) -> bool {
         self.plan.search.speeds.len() < 2
     }
 
-    /// What cells are compared by: the area \[rad m/s^2\], or the height \[rad/s\] at a single speed; and how it
-    /// lies to the true one.
+    /// The measure by which cells are compared: area \[rad m/s^2\], or height \[rad/s\] at a single speed;
+    /// and its relation to the true one.
     pub fn measure(&self, unit: &Unit) -> (f64, Bound) {
         let measure = if self.one_speed() { unit.mean_height() } else { self.area(unit) };
         (measure, Bound::of(unit.capped()))
     }
 
-    /// Its measures, cell by cell.
+    /// The measure of every cell.
     pub fn measures(&self) -> Vec<Option<(f64, Bound)>> {
         self.units.iter().map(|u| u.as_ref().map(|u| self.measure(u))).collect()
     }
 }
 
 impl Unit {
-    /// Whether some height is a lower bound, and with it the area and the mean.
+    /// Whether any height is a lower bound, and so the area and the mean.
     pub fn capped(&self) -> bool {
         self.found.iter().any(|f| f.capped)
     }
@@ -72,7 +72,7 @@ impl Unit {
         self.found.iter().map(|f| f.height).sum::<f64>() / self.found.len().max(1) as f64
     }
 
-    /// The largest torque \[N m\] and change of torque \[N m/s\] of the rides at the border.
+    /// Largest torque \[N m\] and largest change of torque \[N m/s\] of the rides at the borders.
     pub fn most(&self) -> (f64, f64) {
         let efforts = self.found.iter().filter_map(|f| f.effort);
         efforts

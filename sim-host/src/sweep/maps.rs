@@ -1,4 +1,4 @@
-//! The figures of a sweep.
+//! Figures of a sweep, from its results.
 
 use super::plan::{combination, count, label};
 use super::{Axis, Grid};
@@ -7,18 +7,18 @@ use crate::report::figure::{
     self, Chart, HeatMap, Line, Look, Map, Marker, Picture, Plot, Series, chart, heatmap,
 };
 
-/// What cells are compared by: its name in a title, and its label.
+/// Name in titles and axis label of the measure by which cells are compared.
 fn measured(grid: &Grid) -> (&'static str, &'static str) {
     if grid.one_speed() { ("Height", "Height [rad/s]") } else { ("Area", "Area [rad m/s²]") }
 }
 
-/// Most maps side by side; of more combinations of the other axes the largest area is shown.
+/// Largest number of maps side by side. With more combinations of the other axes, the largest area is shown.
 const MAPS: usize = 12;
-/// What counts as nothing lost.
+/// Contour at this fraction of the largest value, above which nearly nothing is lost.
 const CONTOUR: f64 = 0.95;
 
-/// The figures and their names: the area over every two axes, or over the only one; then also the
-/// height over speed. At a single speed the height stands where the area does.
+/// Figures and their names: area over each pair of axes, or over the only axis and then also height over
+/// speed. At a single speed the height replaces the area.
 pub fn pictures(grid: &Grid) -> Vec<(String, Picture)> {
     let axes = &grid.plan.axes;
     let varied: Vec<usize> = (0..axes.len()).filter(|&i| axes[i].values.len() > 1).collect();
@@ -38,7 +38,7 @@ pub fn pictures(grid: &Grid) -> Vec<(String, Picture)> {
     figures
 }
 
-/// The area over two axes, a map for every combination of the others.
+/// Area over two axes, with one map for every combination of the others.
 fn pair(grid: &Grid, x: usize, y: usize) -> Picture {
     let axes = &grid.plan.axes;
     let others: Vec<usize> = (0..axes.len()).filter(|i| ![x, y].contains(i)).collect();
@@ -77,12 +77,12 @@ fn pair(grid: &Grid, x: usize, y: usize) -> Picture {
     })
 }
 
-/// The larger of two numbers: a lower bound if one of them is.
+/// The larger of two numbers; a lower bound if either is.
 fn larger(a: (f64, Bound), b: (f64, Bound)) -> (f64, Bound) {
     (a.0.max(b.0), Bound::of(!(a.1.is_measured() && b.1.is_measured())))
 }
 
-/// The area over the only axis; lower bounds as triangles.
+/// Area over the only axis; lower bounds as triangles.
 fn line(grid: &Grid, axis: usize) -> Picture {
     let axis = &grid.plan.axes[axis];
     let measured_by = measured(grid);
@@ -110,10 +110,10 @@ fn line(grid: &Grid, axis: usize) -> Picture {
     })
 }
 
-/// In the legend.
+/// Text of the legend for lower bounds.
 pub(crate) const AT_LEAST: &str = "at least this: no fall up to the largest rate tried";
 
-/// The height over the only axis and speed.
+/// Height over the only axis and speed.
 fn heights(grid: &Grid, axis: usize) -> Picture {
     let (axis, speeds) = (&grid.plan.axes[axis], &grid.plan.search.speeds);
     let names: Vec<String> = speeds.iter().map(f64::to_string).collect();

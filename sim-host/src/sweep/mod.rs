@@ -1,5 +1,5 @@
-//! Basins over a grid of conditions: cells that are computed one by one, anywhere and in any order,
-//! and put together to the same bytes.
+//! Basins over a grid of conditions. Cells are computed one by one, on any machine and in any order, and
+//! combined to the same bytes.
 
 mod axis;
 mod folder;
@@ -25,7 +25,7 @@ pub use shard::Shard;
 pub use unit::{Found, Unit};
 pub use write::write;
 
-/// A sweep that can't be done.
+/// A sweep that can't be done, with the reason.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct SweepError(pub String);

@@ -1,11 +1,11 @@
-//! A sweep as a NetCDF file (classic format): dimensions are the axes and the speed.
+//! Writes a sweep as a NetCDF file (classic format); its dimensions are the axes and the speed.
 
 use super::{Axis, Found, Grid, SweepError, Unit};
 use crate::report::sweep::SweepDocument;
 use crate::ride::{Effort, FallCause};
 use netcdf3::{DataSet, FileWriter, Version, WriteError};
 
-/// The names of its variables besides the axes'.
+/// Names of the variables other than the axes'.
 pub(crate) const NAMES: [&str; 11] = [
     "speed",
     "height",
@@ -20,12 +20,12 @@ pub(crate) const NAMES: [&str; 11] = [
     "complete",
 ];
 
-/// An axis' name among the variables.
+/// Variable name of an axis.
 pub(crate) fn name(axis: &Axis) -> String {
     axis.key.replace('-', "_")
 }
 
-/// The unit of an axis of numbers: the one they were typed with, else that of the option; `1` where there is none.
+/// Unit of a numeric axis: the typed one, otherwise the option's; `1` if dimensionless.
 fn unit_of<'a>(axis: &Axis, typed: &'a str) -> &'a str {
     match (axis.key.as_str(), typed) {
         ("torque-limit", "") => "N m",
@@ -36,7 +36,7 @@ fn unit_of<'a>(axis: &Axis, typed: &'a str) -> &'a str {
     }
 }
 
-/// A variable of numbers.
+/// A numeric variable.
 struct Numbers<'a> {
     name: &'a str,
     units: &'a str,
@@ -57,10 +57,10 @@ impl From<netcdf3::InvalidDataSet> for SweepError {
     }
 }
 
-/// The file's bytes. What is not known is NaN.
+/// Contents of the file; unknown values are NaN.
 ///
 /// # Errors
-/// When axes have names NetCDF does not allow, or the system can't keep a temporary file.
+/// An axis has a name that NetCDF does not allow, or a temporary file can't be written.
 pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> Result<Vec<u8>, SweepError> {
     let axes = &grid.plan.axes;
     let names: Vec<String> = axes.iter().map(name).collect();
@@ -170,7 +170,7 @@ fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'
     ]
 }
 
-/// The codes of `fall_cause`, in the order of [`FallCause::ALL`].
+/// Codes of `fall_cause`, in the order of [`FallCause::ALL`].
 const FALL_CODES: &str = "what the ride beyond height fell by: 0 roll, 1 steer, 2 laid-flat, 3 too-quick, 4 no-motion; NaN nothing fell";
 
 fn fall_code(found: &Found) -> f64 {
@@ -187,7 +187,7 @@ fn longest(axis: &Axis) -> usize {
     axis.values.iter().map(String::len).max().unwrap_or(1).max(1)
 }
 
-/// The values as rows of letters of the same length.
+/// The values as rows of letters, padded to the same length.
 fn letters(axis: &Axis) -> Vec<u8> {
     let length = longest(axis);
     let padded = |value: &String| {

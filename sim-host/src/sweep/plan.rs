@@ -1,4 +1,4 @@
-//! What a sweep is: enough to tell one from another, and to put its parts together.
+//! The plan of a sweep: identifies the sweep and its cells, so that parts can be combined.
 
 use super::seal::hash;
 use super::{Axis, SweepError, netcdf};
@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// What the basin of every cell is searched with.
+/// Settings of the basin search in every cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SweepSearch {
     /// Forward speeds \[m/s\].
@@ -20,29 +20,29 @@ pub struct SweepSearch {
     pub max_rate: f64,
     /// Step of the scan \[rad/s\].
     pub scan_step: f64,
-    /// How closely borders are located \[rad/s\].
+    /// Tolerance of the borders \[rad/s\].
     pub tolerance: f64,
 }
 
-/// A sweep.
+/// Plan of a sweep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// The version of this file.
+    /// Schema version of the file.
     pub schema: u32,
-    /// The program.
+    /// The program and its version.
     pub tool: Tool,
-    /// The options all cells share, as on the command line.
+    /// Options common to all cells, as on the command line.
     pub options: Vec<String>,
-    /// What is searched in every cell.
+    /// Search in every cell.
     pub search: SweepSearch,
-    /// What the cells differ in.
+    /// Axes in which the cells differ.
     pub axes: Vec<Axis>,
-    /// The cells' identities, the last axis' values following each other.
+    /// Identities of the cells, with the last axis varying fastest.
     pub cells: Vec<String>,
 }
 
 impl SweepSearch {
-    /// The search for an output.
+    /// The search as it is written to files.
     pub fn new(search: &Search) -> Self {
         Self {
             speeds: search.speeds.clone(),
@@ -55,8 +55,8 @@ impl SweepSearch {
 }
 
 impl Plan {
-    /// The plan of a sweep whose cells have these configurations. A cell's identity is the hash of
-    /// program, options, configuration and search: all that its result follows from.
+    /// Plan of a sweep whose cells have these configurations. A cell's identity is the hash of program,
+    /// options, configuration and search, which together determine its result.
     pub fn new(options: Vec<String>, axes: Vec<Axis>, search: &Search, configs: &[Value]) -> Self {
         let (tool, search) = (Tool::this(), SweepSearch::new(search));
         let identity = |(i, config): (usize, &Value)| {
@@ -67,17 +67,17 @@ impl Plan {
         Self { schema: SCHEMA, tool, options, search, axes, cells }
     }
 
-    /// The values of cell `i`, one an axis.
+    /// Values of cell `i`, one per axis.
     pub fn values(&self, i: usize) -> Vec<String> {
         combination(&self.axes, i)
     }
 
-    /// The values of cell `i` with their keys: "law=h, torque-limit=2".
+    /// Values of cell `i` with their keys: "law=h, torque-limit=2".
     pub fn label(&self, i: usize) -> String {
         label(&self.axes, &self.values(i))
     }
 
-    /// In what `other` differs; `None` if in nothing.
+    /// The first part in which `other` differs; `None` if equal.
     pub fn difference(&self, other: &Plan) -> Option<&'static str> {
         let differences = [
             (self.schema != other.schema || self.tool != other.tool, "the program"),
@@ -90,10 +90,10 @@ impl Plan {
     }
 }
 
-/// Checks that axes can be told apart, from each other and from what is computed.
+/// Checks that the names of the axes are unique and differ from those of the results.
 ///
 /// # Errors
-/// Names the key.
+/// States the key.
 pub(crate) fn check(axes: &[Axis]) -> Result<(), SweepError> {
     for (i, axis) in axes.iter().enumerate() {
         let name = netcdf::name(axis);
@@ -109,12 +109,12 @@ pub(crate) fn check(axes: &[Axis]) -> Result<(), SweepError> {
     Ok(())
 }
 
-/// How many cells axes have.
+/// Number of cells of the axes.
 pub(crate) fn count(axes: &[Axis]) -> usize {
     axes.iter().fold(1, |n, axis| n.saturating_mul(axis.values.len()))
 }
 
-/// The values of cell `i`, the last axis running fastest.
+/// Values of cell `i`, with the last axis varying fastest.
 pub(crate) fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
     let mut values: Vec<String> = Vec::with_capacity(axes.len());
     for axis in axes.iter().rev() {
@@ -125,7 +125,7 @@ pub(crate) fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
     values
 }
 
-/// Values with their keys.
+/// Values with their keys, as text.
 pub(crate) fn label(axes: &[Axis], values: &[String]) -> String {
     let pairs: Vec<String> = axes.iter().zip(values).map(|(a, v)| format!("{}={v}", a.key)).collect();
     pairs.join(", ")

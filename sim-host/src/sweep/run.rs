@@ -1,4 +1,4 @@
-//! Computes cells.
+//! Computes cells of a sweep and stores their results.
 
 use super::unit::Unit;
 use super::{Folder, SweepError};
@@ -8,30 +8,29 @@ use rayon::prelude::*;
 use serde_json::Value;
 use std::sync::Mutex;
 
-/// A cell that can be computed.
+/// A cell to compute.
 pub struct Cell {
-    /// Its identity.
+    /// Identity.
     pub id: String,
-    /// Its full configuration.
+    /// Full configuration.
     pub config: Value,
-    /// The conditions that stand for.
+    /// Conditions that follow from the configuration.
     pub conditions: Conditions,
 }
 
-/// How far the work has come, and whether to go on.
+/// Callbacks for progress and interruption.
 pub struct Progress<'a> {
     /// Called after every column.
     pub advanced: &'a (dyn Fn() + Sync),
-    /// Asked before every column.
+    /// Checked before every column; true stops the run.
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// Computes `cells` on all cores of the current rayon pool and keeps each in `folder` as soon as it
-/// is done; how many are. What is kept does not depend on the number of threads, nor on what was
-/// computed before.
+/// Computes `cells` on all cores of the current rayon pool and stores each in `folder` when it is finished;
+/// returns their number. The results depend neither on the number of threads nor on earlier runs.
 ///
 /// # Errors
-/// When the search or a cell's conditions fail their checks, or a file can't be written.
+/// The search or a cell's conditions fail their checks, or a file can't be written.
 pub fn run(
     cells: &[&Cell],
     search: &Search,
@@ -45,7 +44,7 @@ pub fn run(
     let speeds = search.speeds.len();
     let columns: Vec<Mutex<Vec<(usize, Column)>>> = cells.iter().map(|_| Mutex::default()).collect();
     let done = Mutex::new(0);
-    // Column by column rather than cell by cell: then only as many cells are under way as threads.
+    // Parallel over columns rather than cells: at most as many cells are unfinished as there are threads.
     (0..cells.len() * speeds).into_par_iter().try_for_each(|i| {
         if (progress.stop)() {
             return Ok::<(), SweepError>(());

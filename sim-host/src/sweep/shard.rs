@@ -1,4 +1,4 @@
-//! A part of the work, for one of several machines.
+//! A shard: part of the cells, for one of several machines.
 
 /// Part `number` of `of`, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -8,13 +8,13 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// All of it.
+    /// All cells.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Reads `I/N`.
+    /// Parses `I/N`.
     ///
     /// # Errors
-    /// When it is not, or I is outside 1 to N.
+    /// The text has another form, or I is outside 1 to N.
     pub fn parse(text: &str) -> Result<Self, String> {
         let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
         match numbers {
@@ -23,8 +23,8 @@ impl Shard {
         }
     }
 
-    /// The places in `identities` that are this shard's: every N-th by rising identity, so that the
-    /// shards are alike in size and in what they hold, and no machine need know of another.
+    /// Indices of this shard's `identities`: every N-th in increasing order. Shards are similar in size and
+    /// content, and the machines need no communication.
     pub fn of(&self, identities: &[String]) -> Vec<usize> {
         let mut places: Vec<usize> = (0..identities.len()).collect();
         places.sort_by_key(|&i| &identities[i]);

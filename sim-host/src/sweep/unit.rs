@@ -7,17 +7,17 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// The basin at one speed, as a sweep keeps it.
+/// The basin at one speed, as stored in a sweep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Found {
-    /// Largest disturbance of the interval around zero that does not fall \[rad/s\].
+    /// Height: largest disturbance that does not fall, in the interval around zero \[rad/s\].
     pub height: f64,
-    /// Whether nothing fell up to the largest disturbance tried.
+    /// Whether no ride fell up to the largest disturbance tried.
     pub capped: bool,
-    /// What the ride at `height` took; null if that is 0.
+    /// Torques and work of the ride at `height`; null if `height` is 0.
     pub effort: Option<Effort>,
-    /// What made the nearest ride beyond `height` count as fallen: "roll", "steer", "laid-flat", "too-quick" or
-    /// "no-motion"; null if nothing fell.
+    /// Cause of the fall of the nearest ride beyond `height`: "roll", "steer", "laid-flat", "too-quick" or
+    /// "no-motion"; null if none fell.
     pub fall: Option<String>,
 }
 
@@ -28,13 +28,13 @@ pub struct Unit {
     pub id: String,
     /// The full configuration.
     pub config: Value,
-    /// Per speed of the search.
+    /// Result at each speed of the search.
     pub found: Vec<Found>,
-    /// What it took.
+    /// Computing effort.
     pub work: Work,
 }
 
-/// A unit with its hash, as it is written.
+/// A unit with its hash, as written.
 #[derive(Serialize, Deserialize)]
 struct Sealed<U> {
     sha256: String,
@@ -42,7 +42,7 @@ struct Sealed<U> {
 }
 
 impl Unit {
-    /// The result of a cell whose columns are all there, in the order of the search.
+    /// Result of a cell from all of its columns, in the order of the search.
     pub fn new(id: &str, config: &Value, columns: Vec<Column>) -> Self {
         let basin = Basin { columns };
         let found = |c: &Column| Found {
@@ -59,13 +59,13 @@ impl Unit {
         }
     }
 
-    /// Its file's content.
+    /// Contents of the unit's file.
     pub(super) fn sealed(&self) -> String {
         let sealed = Sealed { sha256: hash(self), unit: self };
         serde_json::to_string_pretty(&sealed).unwrap_or_default() + "\n"
     }
 
-    /// The unit in a file, if it is whole and the one of `id`.
+    /// Parses a unit's file; `None` if it is damaged or has another identity than `id`.
     pub(super) fn unsealed(text: &str, id: &str) -> Option<Self> {
         let Sealed { sha256, unit } = serde_json::from_str::<Sealed<Self>>(text).ok()?;
         (unit.id == id && sha256 == hash(&unit)).then_some(unit)

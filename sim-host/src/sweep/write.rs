@@ -1,4 +1,4 @@
-//! The results of a whole sweep as files.
+//! Writes the results of a whole sweep to files.
 
 use super::maps::pictures;
 use super::netcdf::netcdf;
@@ -6,11 +6,11 @@ use super::{Folder, Grid, SweepError};
 use crate::report::picture::{caption, svg_with_caption};
 use crate::report::sweep::{SweepDocument, cells_table, heights_table};
 
-/// Writes `sweep.json`, `sweep.nc`, `sweep.csv`, `heights.csv` and `figures/*.svg` into `folder`; older
-/// files of these names are replaced.
+/// Writes `sweep.json`, `sweep.nc`, `sweep.csv`, `heights.csv` and `figures/*.svg` to `folder`, replacing
+/// older files of these names.
 ///
 /// # Errors
-/// When a file can't be written.
+/// A file can't be written.
 pub fn write(grid: &Grid, document: &SweepDocument, folder: &Folder) -> Result<(), SweepError> {
     let csv =
         |table: Result<Vec<u8>, csv::Error>| table.map_err(|e| SweepError(format!("can't write CSV: {e}")));

@@ -1,6 +1,6 @@
-//! The fit: separable least squares (variable projection, Golub and Pereyra 1973, with the Jacobian of Kaufman
-//! 1975). The weights of the motions are linear and solved for at once; decay, frequency and mode are searched from several
-//! starts. All axes have these three in common.
+//! Fits a weave to gyro rates by separable least squares (variable projection, Golub and Pereyra 1973, with
+//! the Jacobian of Kaufman 1975). The weights of the motions are linear and solved for directly. Decay,
+//! frequency and real mode, common to all axes, are searched from several starts.
 
 use super::noise::{Noise, period};
 use super::shape::{Beside, Shape};
@@ -9,25 +9,25 @@ use std::f64::consts::{PI, TAU};
 
 /// Bounds of the real part of the weave \[1/s\].
 pub const DECAY_1_S: (f64, f64) = (-15.0, 5.0);
-/// Bounds of the real mode \[1/s\]: a slower one is an offset, a faster one is over at once.
+/// Bounds of the real mode \[1/s\]: a slower mode resembles an offset, a faster one decays at once.
 pub const MODE_1_S: (f64, f64) = (-14.0, -1.2);
-/// Highest frequency looked for \[rad/s\].
+/// Upper bound of the frequency \[rad/s\].
 pub const HIGHEST_RAD_S: f64 = 40.0;
-/// How often noise and shape are estimated in turn.
+/// Alternating estimates of noise and shape.
 const ROUNDS: usize = 5;
-/// How many starts the search has.
+/// Number of starts of the search.
 const STARTS: usize = 6;
 
-/// What is fitted: the stamps from the window's start on \[s\] and the rates of each axis \[rad/s\].
+/// Samples to fit: times from the window's start \[s\] and rates of each axis \[rad/s\].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Samples {
-    /// The stamps, rising from 0 \[s\].
+    /// Sample times, increasing from 0 \[s\].
     pub times_s: Vec<f64>,
-    /// An axis each \[rad/s\].
+    /// Rates, one vector per axis \[rad/s\].
     pub axes_rad_s: Vec<Vec<f64>>,
 }
 
-/// What came out.
+/// Result of the fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// The shape.
@@ -40,22 +40,22 @@ pub struct Fit {
     pub noise: Vec<Noise>,
     /// Amplitude of the weave in each axis at the window's start \[rad/s\].
     pub amplitude_rad_s: Vec<f64>,
-    /// How much more of the variance is explained with the weave than without, in units of the noise's: by chance about
-    /// two an axis.
+    /// Increase of the explained variance by the weave, in units of the noise's variance: about two per axis
+    /// by chance.
     pub explained: f64,
-    /// Whether decay or frequency stopped at a bound.
+    /// Whether decay or frequency is at a bound.
     pub at_bound: [bool; 2],
 }
 
-/// An axis after its linear part was solved for, white and in units of its noise.
+/// An axis after solving for its weights, whitened and in units of its noise.
 struct Solved {
     rest: DVector<f64>,
     jacobian: DMatrix<f64>,
     weights: DVector<f64>,
 }
 
-/// Sum of squares, with the residuals and their Jacobian of all axes one below the other.
-struct Judged {
+/// Sum of squares of the residuals of all axes, its gradient and Gauss-Newton Hessian.
+struct Evaluation {
     cost: f64,
     gradient: DVector<f64>,
     hessian: DMatrix<f64>,
@@ -76,20 +76,20 @@ fn solve(times: &[f64], rates: &[f64], shape: &Shape, noise: &Noise) -> Option<S
     (rest.iter().chain(jacobian.iter()).all(|x| x.is_finite())).then_some(Solved { rest, jacobian, weights })
 }
 
-fn judge(samples: &Samples, shape: &Shape, noise: &[Noise]) -> Option<Judged> {
+fn evaluate(samples: &Samples, shape: &Shape, noise: &[Noise]) -> Option<Evaluation> {
     let free = shape.numbers().len();
-    let mut judged =
-        Judged { cost: 0.0, gradient: DVector::zeros(free), hessian: DMatrix::zeros(free, free) };
+    let mut evaluated =
+        Evaluation { cost: 0.0, gradient: DVector::zeros(free), hessian: DMatrix::zeros(free, free) };
     for (rates, noise) in samples.axes_rad_s.iter().zip(noise) {
         let Solved { rest, jacobian, .. } = solve(&samples.times_s, rates, shape, noise)?;
-        judged.cost += rest.norm_squared();
-        judged.gradient += jacobian.tr_mul(&rest);
-        judged.hessian += jacobian.tr_mul(&jacobian);
+        evaluated.cost += rest.norm_squared();
+        evaluated.gradient += jacobian.tr_mul(&rest);
+        evaluated.hessian += jacobian.tr_mul(&jacobian);
     }
-    Some(judged)
+    Some(evaluated)
 }
 
-/// Between which bounds the numbers are searched.
+/// Bounds of the searched numbers.
 struct Bounds(Vec<(f64, f64)>);
 
 impl Bounds {
@@ -109,7 +109,7 @@ impl Bounds {
         x <= self.0[i].0 || x >= self.0[i].1
     }
 
-    /// The numbers that a step along the negative gradient would not carry over their bound.
+    /// Indices of the numbers that a step along the negative gradient does not move beyond their bound.
     fn free(&self, numbers: &DVector<f64>, gradient: &DVector<f64>) -> Vec<usize> {
         let held = |i: &usize| {
             let (x, g, (low, high)) = (numbers[*i], gradient[*i], self.0[*i]);
@@ -119,11 +119,11 @@ impl Bounds {
     }
 }
 
-/// Levenberg's and Marquardt's search inside the bounds.
+/// Levenberg-Marquardt search inside the bounds.
 fn descend(samples: &Samples, noise: &[Noise], bounds: &Bounds, start: &Shape) -> Option<(Shape, f64)> {
     let shape = |x: &DVector<f64>| Shape::of(x.as_slice());
     let mut at = bounds.into(&DVector::from_vec(start.numbers()));
-    let mut here = judge(samples, &shape(&at), noise)?;
+    let mut here = evaluate(samples, &shape(&at), noise)?;
     let mut damping = 1e-3;
     for _ in 0..60 {
         let free = bounds.free(&at, &here.gradient);
@@ -135,7 +135,7 @@ fn descend(samples: &Samples, noise: &[Noise], bounds: &Bounds, start: &Shape) -
         let mut next = at.clone();
         free.iter().zip(step.iter()).for_each(|(i, s)| next[*i] -= s);
         let next = bounds.into(&next);
-        match judge(samples, &shape(&next), noise).filter(|there| there.cost < here.cost) {
+        match evaluate(samples, &shape(&next), noise).filter(|there| there.cost < here.cost) {
             Some(there) => {
                 let gained = here.cost - there.cost;
                 (at, here, damping) = (next, there, (damping / 5.0).max(1e-9));
@@ -152,7 +152,7 @@ fn descend(samples: &Samples, noise: &[Noise], bounds: &Bounds, start: &Shape) -
     Some((shape(&at), here.cost))
 }
 
-/// The best of a grid, apart from each other.
+/// The best points of a grid that are sufficiently different.
 fn starts(samples: &Samples, noise: &[Noise], bounds: &Bounds, beside: Beside) -> Vec<Shape> {
     let (lowest, highest) = bounds.0[1];
     let span = samples.times_s[samples.times_s.len() - 1] - samples.times_s[0];
@@ -164,7 +164,7 @@ fn starts(samples: &Samples, noise: &[Noise], bounds: &Bounds, beside: Beside) -
         for decay_1_s in [-4.0, -2.0, -1.0, -0.4] {
             for mode_1_s in modes {
                 let shape = Shape { decay_1_s, frequency_rad_s, mode_1_s: *mode_1_s };
-                grid.extend(judge(samples, &shape, noise).map(|judged| (judged.cost, shape)));
+                grid.extend(evaluate(samples, &shape, noise).map(|evaluated| (evaluated.cost, shape)));
             }
         }
     }
@@ -187,7 +187,7 @@ fn best(samples: &Samples, noise: &[Noise], bounds: &Bounds, starts: &[Shape]) -
     ends.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(shape, _)| shape)
 }
 
-/// What of the rates is explained by the weave and not by the rest, in units of the noise's variance.
+/// Variance explained by the weave and not by the other motions, in units of the noise's variance.
 fn explained(samples: &Samples, shape: &Shape, noise: &[Noise]) -> f64 {
     let gain = |(rates, noise): (&Vec<f64>, &Noise)| {
         let mut columns = shape.columns(&samples.times_s).remove_columns(0, 2);
@@ -205,7 +205,7 @@ fn explained(samples: &Samples, shape: &Shape, noise: &[Noise]) -> f64 {
 /// Fits the samples.
 ///
 /// # Errors
-/// When there are not enough samples, or they hold nothing to fit.
+/// Too few samples, or nothing to fit in them.
 pub fn fit(samples: &Samples, beside: Beside) -> Result<Fit, String> {
     let times = &samples.times_s;
     let bounds = Bounds::new(samples, beside);
@@ -229,16 +229,16 @@ pub fn fit(samples: &Samples, beside: Beside) -> Result<Fit, String> {
             Some(Noise::of_rest(times, rates, &columns))
         });
         noise = rests.collect::<Option<_>>().ok_or_else(nothing)?;
-        // The grid was judged as if the noise were white: tried again once it is known.
+        // The grid was evaluated for white noise; it is tried again once the noise is estimated.
         let again: &[Shape] = if round == 1 { &grid } else { &[] };
         let from: Vec<Shape> = [&[shape], again].concat();
         shape = best(samples, &noise, &bounds, &from).ok_or_else(nothing)?;
     }
-    let judged = judge(samples, &shape, &noise).ok_or_else(nothing)?;
+    let evaluated = evaluate(samples, &shape, &noise).ok_or_else(nothing)?;
     let numbers = shape.numbers();
     let inside: Vec<usize> = (0..numbers.len()).filter(|i| !bounds.reached(*i, numbers[*i])).collect();
     let covariance =
-        judged.hessian.select_rows(&inside).select_columns(&inside).cholesky().map(|c| c.inverse());
+        evaluated.hessian.select_rows(&inside).select_columns(&inside).cholesky().map(|c| c.inverse());
     let covariance = covariance.ok_or_else(nothing)?;
     let error = |i: usize| inside.iter().position(|k| *k == i).map_or(0.0, |at| covariance[(at, at)].sqrt());
     let linear = 3 + usize::from(beside == Beside::Mode);
@@ -259,7 +259,7 @@ pub fn fit(samples: &Samples, beside: Beside) -> Result<Fit, String> {
 }
 
 impl Fit {
-    /// How many periods of the weave a time has \[s\].
+    /// Number of weave periods in a time \[s\].
     pub fn periods(&self, span_s: f64) -> f64 {
         self.shape.frequency_rad_s * span_s / TAU
     }

@@ -1,9 +1,9 @@
-//! What a recording's name says: `gain{gain}_speed{speed_kmh}kmh_{n}`.
+//! Parses gain and speed from a recording's name by a pattern such as `gain{gain}_speed{speed_kmh}kmh_{n}`.
 
-/// What may stand in braces.
+/// Placeholders allowed in braces.
 const NAMES: [&str; 4] = ["gain", "speed_kmh", "speed_m_s", "n"];
 
-/// A pattern of names.
+/// Pattern of a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pattern {
     text: String,
@@ -16,7 +16,7 @@ enum Part {
     Number(&'static str),
 }
 
-/// What a name says.
+/// Values from a name.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Label {
     /// The controller's gain.
@@ -26,10 +26,10 @@ pub struct Label {
 }
 
 impl Pattern {
-    /// Reads a pattern.
+    /// Parses a pattern.
     ///
     /// # Errors
-    /// Names the brace that is not closed or the word in it that is unknown.
+    /// States the brace that is not closed or the unknown placeholder.
     pub fn new(text: &str) -> Result<Self, String> {
         let (mut parts, mut rest) = (Vec::new(), text);
         while let Some((word, after)) = rest.split_once('{') {
@@ -49,12 +49,12 @@ impl Pattern {
         Ok(Self { text: text.into(), parts })
     }
 
-    /// The pattern as it was given.
+    /// The pattern's text.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// What `name` says, a file's name without its ending; `None` if it does not fit.
+    /// Values from `name`, a file's name without its extension; `None` if it does not match.
     pub fn read(&self, name: &str) -> Option<Label> {
         let (mut label, mut rest) = (Label::default(), name);
         for part in &self.parts {

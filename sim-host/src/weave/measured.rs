@@ -1,4 +1,5 @@
-//! The measured weave as it is kept: `data/weave_measured.toml`, written by `sim-host identify weave --toml`.
+//! Table of measured weaves, from and to TOML: `data/weave_measured.toml`, written by `sim-host identify
+//! weave --toml`.
 
 use super::pool::Pooled;
 use super::shape::Beside;
@@ -9,11 +10,11 @@ use std::fmt::Write;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Measured {
-    /// Where the recordings are from.
+    /// Origin of the recordings.
     pub source: String,
-    /// The columns that were fitted.
+    /// Fitted columns.
     pub columns: Vec<String>,
-    /// What was fitted beside the weave and an offset: "mode" or "offset".
+    /// Motion fitted in addition to the weave and an offset: "mode" or "offset".
     pub beside: String,
     /// The weave at each gain and speed.
     #[serde(default)]
@@ -28,26 +29,26 @@ pub struct MeasuredWeave {
     pub gain: Option<f64>,
     /// Forward speed \[m/s\].
     pub speed_m_s: f64,
-    /// How many recordings could be used.
+    /// Number of usable recordings.
     pub repeats: usize,
-    /// How many could not.
+    /// Number of rejected recordings.
     pub refused: usize,
     /// Real part of the eigenvalue \[1/s\]: value, lower and upper end of the 95 % interval.
     pub decay_1_s: [f64; 3],
     /// Its standard deviation between repeats \[1/s\].
     pub decay_between_1_s: Option<f64>,
-    /// Imaginary part \[rad/s\], as the decay.
+    /// Imaginary part \[rad/s\], in the same form.
     pub frequency_rad_s: [f64; 3],
     /// Its standard deviation between repeats \[rad/s\].
     pub frequency_between_rad_s: Option<f64>,
 }
 
-/// Value and interval.
+/// Value and interval as three numbers.
 pub fn three(pooled: &Pooled) -> [f64; 3] {
     [pooled.mean.value, pooled.mean.low, pooled.mean.high]
 }
 
-/// The name of what was fitted beside the weave.
+/// Name of the additional motion.
 pub fn beside_name(beside: Beside) -> &'static str {
     match beside {
         Beside::Mode => "mode",
@@ -56,7 +57,7 @@ pub fn beside_name(beside: Beside) -> &'static str {
 }
 
 impl Measured {
-    /// The table as TOML, four digits after the point.
+    /// The table as TOML, with four decimals.
     pub fn to_toml(&self) -> String {
         let number = |x: f64| format!("{x:.4}");
         let row = |x: [f64; 3]| format!("[{}]", x.map(number).join(", "));

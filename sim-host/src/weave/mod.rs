@@ -1,9 +1,9 @@
-//! Frequency and decay of the weave, measured: from a recording of the gyro after a knock to an eigenvalue with
+//! Measures frequency and decay of the weave: from a gyro recording after a disturbance to an eigenvalue with
 //! its confidence interval.
 //!
-//! `record` reads a file, `label` what its name says, `window` finds the motion after the knock, `fit` fits
-//! it (`shape`, `noise`), `segment` does all of that for one recording, `pool` puts repeats together, `predict` has the
-//! linear model's answer, and `measured` is the table that is kept.
+//! `record` reads a file, `label` its name, `window` finds the motion after the disturbance, and `fit` fits
+//! it (`shape`, `noise`). `segment` does this for one recording, `pool` combines repeats, `predict` computes
+//! the linear model's weave, and `measured` is the stored table.
 
 pub mod fit;
 pub mod label;
@@ -31,13 +31,13 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The number whose interval is `quantile` standard errors wide on either side.
+    /// Estimate with an interval of `quantile` standard errors to either side.
     pub fn new(value: f64, standard_error: f64, quantile: f64) -> Self {
         let half = quantile * standard_error;
         Self { value, standard_error, low: value - half, high: value + half }
     }
 
-    /// Whether the interval holds `x`.
+    /// Whether the interval contains `x`.
     pub fn holds(&self, x: f64) -> bool {
         (self.low..=self.high).contains(&x)
     }

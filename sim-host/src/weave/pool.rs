@@ -1,22 +1,23 @@
-//! Repeats put together: the random effects of DerSimonian and Laird (1986), with the interval of Hartung and Knapp (2001)
-//! in the form that is never narrower than the repeats' own errors allow (Röver et al. 2015).
+//! Combines repeats: the random-effects model of DerSimonian and Laird (1986), with the interval of Hartung
+//! and Knapp (2001) in the form that is never narrower than the repeats' own errors allow (Röver et al.
+//! 2015).
 //!
-//! The usual interval of 1.96 standard errors takes the scatter between repeats for known; of three repeats it holds the truth in
-//! 80 to 90 % where they scatter, that of Hartung and Knapp in 95 % and more.
+//! The usual interval of 1.96 standard errors assumes a known scatter between repeats. With three repeats
+//! that scatter it contains the true value in 80 to 90 %, that of Hartung and Knapp in 95 % and more.
 
 use super::Estimate;
 use super::student::quantile;
 
-/// Repeats put together.
+/// Combined repeats.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Pooled {
     /// Their mean.
     pub mean: Estimate,
-    /// Standard deviation between repeats, beyond what their errors explain; null of a single one.
+    /// Standard deviation between repeats in excess of their errors; null for a single one.
     pub between: Option<f64>,
 }
 
-/// The mean of repeats. One alone keeps its own interval; `None` of none.
+/// Mean of repeats. A single one keeps its interval; `None` if there is none.
 pub fn pool(repeats: &[Estimate]) -> Option<Pooled> {
     let (first, k) = (repeats.first()?, repeats.len() as f64);
     if repeats.len() == 1 {
@@ -47,7 +48,7 @@ mod tests {
         let alike = pool(&[of(1.0, 0.1), of(1.01, 0.1), of(0.99, 0.2)]).unwrap();
         assert!((alike.mean.value - 1.003).abs() < 2e-3 && alike.between == Some(0.0));
         assert!((alike.mean.standard_error - (1.0_f64 / 225.0).sqrt()).abs() < 1e-12);
-        // DerSimonian and Laird by hand: equal errors give the sample variance less the error's.
+        // DerSimonian and Laird by hand: with equal errors, the sample variance minus the error's.
         let apart = pool(&[of(1.0, 0.1), of(2.0, 0.1), of(3.0, 0.1)]).unwrap();
         assert!((apart.between.unwrap().powi(2) - 0.99).abs() < 1e-9);
         assert!((apart.mean.high - 2.0 - 4.3027 / 3.0_f64.sqrt()).abs() < 1e-3);

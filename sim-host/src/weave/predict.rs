@@ -1,16 +1,16 @@
-//! The linear model's weave.
+//! The weave of the linear model at given speeds.
 
 use crate::bicycle::Parameters;
 use crate::eigen::{Feedback, LinearActuator, Model, roots};
 use control::Law;
 use nalgebra::{Complex, ComplexField};
 
-/// The upper eigenvalue of the weave \[1/s\] of a bicycle under a law that an actuator turns into torque, at each of the
-/// speeds \[m/s\]; `None` where there is no pair. At low speed caster and capsize can be a pair, too: the weave is the one of
-/// the least damping ratio.
+/// Upper eigenvalue of the weave \[1/s\] of a bicycle with a law and an actuator, at each of the speeds
+/// \[m/s\]; `None` without a complex pair. At low speed caster and capsize can form a pair, too; the weave is
+/// the pair with the smaller damping ratio.
 ///
 /// # Errors
-/// A value of the actuator out of its range.
+/// A value of the actuator is out of its range.
 pub fn weave(
     bicycle: &Parameters,
     law: &Law,

@@ -1,18 +1,18 @@
-//! A recording: a CSV file with a column of time stamps and columns of rates. What is wrong in it is told by line, and the rest
-//! is used.
+//! Reads a recording: a CSV file with a column of times and columns of rates. Faulty lines are listed and
+//! left out.
 
 use crate::recording::stamp::seconds;
 use csv::StringRecord;
 
-/// Columns of time that are looked for if none is named.
+/// Names of time columns searched for by default.
 pub const TIMES: [&str; 4] = ["Time", "time", "t", "time_s"];
-/// Columns of rates that are looked for if none is named: roll and yaw. The pitch rate of a bicycle that weaves is of second
-/// order, with twice the frequency, and mostly vibration.
+/// Names of rate columns searched for by default: roll and yaw. The pitch rate of a weaving bicycle is of
+/// second order, with twice the frequency, and mostly vibration.
 pub const RATES: [&str; 2] = ["gyro_x", "gyro_z"];
-/// Largest rate believed, either way \[rad/s\].
+/// Largest accepted magnitude of a rate \[rad/s\].
 pub const LARGEST_RAD_S: f64 = 50.0;
-/// Of one kind of trouble so many lines are told.
-const TOLD: usize = 3;
+/// Largest number of lines listed for one type of fault.
+const LISTED: usize = 3;
 
 /// Unit of the rates in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// rad/s of one.
+    /// One unit in rad/s.
     pub fn rad_s(self) -> f64 {
         match self {
             Unit::Radian => 1.0,
@@ -34,12 +34,12 @@ impl Unit {
     }
 }
 
-/// What is read of a file.
+/// Columns to read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Columns {
-    /// The column of stamps; one of [`TIMES`] if not told.
+    /// Column of times; by default one of [`TIMES`].
     pub time: Option<String>,
-    /// The columns of rates; those of [`RATES`] that are there if none is told.
+    /// Columns of rates; by default those of [`RATES`] that the file has.
     pub rates: Vec<String>,
     /// Their unit.
     pub unit: Unit,
@@ -57,15 +57,15 @@ pub struct Axis {
 /// A recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// The stamps, rising from 0 \[s\].
+    /// Sample times, increasing from 0 \[s\].
     pub times_s: Vec<f64>,
     /// The rates.
     pub axes: Vec<Axis>,
-    /// What was left out, and why, by line.
+    /// Lines left out, with the reason.
     pub notes: Vec<String>,
 }
 
-/// A line that can be used.
+/// A usable line.
 struct Row {
     line: u64,
     stamp: String,
@@ -73,10 +73,10 @@ struct Row {
     rates: Vec<f64>,
 }
 
-/// Reads a recording.
+/// Reads a recording from text.
 ///
 /// # Errors
-/// When a column is missing or there twice, or no line can be used.
+/// A column is missing or duplicate, or no line is usable.
 pub fn read(text: &str, columns: &Columns) -> Result<Record, String> {
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
@@ -97,7 +97,7 @@ pub fn read(text: &str, columns: &Columns) -> Result<Record, String> {
         }
     }
     let rows = rising(rows, &header[time], &mut notes);
-    let notes = notes.told();
+    let notes = notes.listed();
     if rows.is_empty() {
         return Err([vec!["no line can be used".to_owned()], notes].concat().join("; "));
     }
@@ -147,7 +147,7 @@ fn rate_columns(header: &StringRecord, columns: &Columns) -> Result<Vec<usize>, 
     named.map(|name| place(header, name)?.ok_or_else(|| missing(header, &format!("`{name}`")))).collect()
 }
 
-/// Kinds of trouble with a line.
+/// Types of faults in a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Short,
@@ -182,33 +182,33 @@ fn row(
     Ok(Row { line, time_s, rates: axes.iter().map(rate).collect::<Result<_, _>>()?, stamp })
 }
 
-/// The rows whose stamps rise. Of one stamp that is ahead of the two after it that one is left out.
+/// The rows with increasing times. A single time that is later than the two after it is left out.
 fn rising(rows: Vec<Row>, column: &str, notes: &mut Notes) -> Vec<Row> {
-    let mut kept: Vec<Row> = Vec::with_capacity(rows.len());
+    let mut accepted: Vec<Row> = Vec::with_capacity(rows.len());
     let mut rows = rows.into_iter().peekable();
     while let Some(row) = rows.next() {
-        if let [.., before, last] = &kept[..]
+        if let [.., before, last] = &accepted[..]
             && (before.time_s..last.time_s).contains(&row.time_s)
             && row.time_s > before.time_s
             && rows.peek().is_some_and(|next| next.time_s < last.time_s)
         {
             let (line, stamp) = (last.line, &last.stamp);
             notes.add(Kind::Back, line, &format!("`{column}` = `{stamp}` is later than the next lines'"));
-            kept.pop();
+            accepted.pop();
         }
-        match kept.last() {
+        match accepted.last() {
             Some(last) if row.time_s <= last.time_s => {
                 let how = if row.time_s == last.time_s { "stands" } else { "goes back" };
                 let (stamp, before) = (&row.stamp, &last.stamp);
                 notes.add(Kind::Back, row.line, &format!("`{column}` {how}: `{stamp}` after `{before}`"));
             }
-            _ => kept.push(row),
+            _ => accepted.push(row),
         }
     }
-    kept
+    accepted
 }
 
-/// Trouble, by kind.
+/// Faulty lines, by type.
 #[derive(Default)]
 struct Notes(Vec<(Kind, u64, String)>);
 
@@ -217,16 +217,16 @@ impl Notes {
         self.0.push((kind, line, format!("line {line}: {error}; left out")));
     }
 
-    /// The first of each kind, by line, and how many more there are.
-    fn told(mut self) -> Vec<String> {
+    /// The first lines of each type, and the number of further ones.
+    fn listed(mut self) -> Vec<String> {
         self.0.sort_by_key(|(kind, line, _)| (*kind, *line));
         let groups = self.0.chunk_by(|a, b| a.0 == b.0);
-        let told = groups.flat_map(|group| {
-            let more = group.len().saturating_sub(TOLD);
+        let listed = groups.flat_map(|group| {
+            let more = group.len().saturating_sub(LISTED);
             let more = (more > 0).then(|| format!("{more} more lines like line {}; left out", group[0].1));
-            group.iter().take(TOLD).map(|(_, _, error)| error.clone()).chain(more)
+            group.iter().take(LISTED).map(|(_, _, error)| error.clone()).chain(more)
         });
-        told.collect()
+        listed.collect()
     }
 }
 
@@ -239,14 +239,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_and_the_rest_is_used() {
+    fn faulty_lines_are_listed_and_the_others_are_used() {
         let text = "# a comment\nTime,gyro_x,gyro_y\n0,1,0\n0.1,2,0\n0.1,3,0\n0.05,4,0\n0.2,nan,0\n0.3,5,0\n9.0,6,0\n0.4,7,0\n\
                     0.45,9,0\n0.5,60,0\nnow,1,0\n0.6,8";
         let record = of(text).unwrap();
         assert_eq!(record.axes.len(), 1);
         assert_eq!(record.axes[0].rates_rad_s, [1.0, 2.0, 5.0, 7.0, 9.0]);
         assert_eq!(record.times_s, [0.0, 0.1, 0.3, 0.4, 0.45]);
-        let said = [
+        let expected = [
             "line 14: 2 fields where the heading has 3; left out",
             "line 13: `Time` = `now` is neither seconds nor a date with a time; left out",
             "line 7: `gyro_x` = `nan` is not a number from -50 to 50 rad/s; left out",
@@ -255,7 +255,7 @@ mod tests {
             "line 6: `Time` goes back: `0.05` after `0.1`; left out",
             "line 9: `Time` = `9.0` is later than the next lines'; left out",
         ];
-        assert_eq!(record.notes, said);
+        assert_eq!(record.notes, expected);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! One recording: its window, its fit, and whether that may be believed.
+//! Identifies the weave in one recording: window, fit and plausibility checks.
 
 use super::Estimate;
 use super::fit::{Fit, Samples, fit};
@@ -7,62 +7,62 @@ use super::shape::Beside;
 use super::student::quantile;
 use super::window::{Begins, Ends, Window, window};
 
-/// Fewer samples than this in the window are too few.
+/// Smallest number of samples in the window.
 pub const FEWEST_SAMPLES: usize = 20;
-/// The variance that the weave must explain, in units of the noise's, for each axis; by chance it is about two, the best of
-/// many frequencies some more.
+/// Smallest variance explained by the weave, in units of the noise's variance, per axis. By chance it is
+/// about two; for the best of many frequencies slightly more.
 const LEAST_EXPLAINED: f64 = 15.0;
-/// The amplitude it must have in some axis, in standard deviations of the noise.
+/// Smallest amplitude in some axis, in standard deviations of the noise.
 const LEAST_AMPLITUDE: f64 = 3.0;
 
-/// How a recording is read.
+/// Settings of the identification.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings {
-    /// What is fitted beside the weave.
+    /// Motion fitted in addition to the weave.
     pub beside: Beside,
-    /// Where the window begins, after the first sample \[s\]; found if not told.
+    /// Start of the window after the first sample \[s\]; detected if absent.
     pub from_s: Option<f64>,
-    /// Where it ends \[s\].
+    /// End of the window \[s\]; detected if absent.
     pub to_s: Option<f64>,
 }
 
-/// The weave of an axis.
+/// The weave in an axis.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct AxisFit {
-    /// Its column.
+    /// Column of the axis.
     pub column: String,
     /// Amplitude of the weave at the window's start \[rad/s\].
     pub amplitude_rad_s: f64,
     /// Standard deviation of the noise \[rad/s\].
     pub noise_rad_s: f64,
-    /// Time after which the correlation of the noise's slow part is 1/e \[s\].
+    /// Time in which the correlation of the noise's slow part falls to 1/e \[s\].
     pub noise_memory_s: f64,
-    /// The slow part of its variance.
+    /// Share of the slow part in the noise's variance.
     pub noise_share: f64,
 }
 
-/// What a recording says.
+/// Result for a recording.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Segment {
     /// Start of the window after the first sample \[s\].
     pub from_s: f64,
-    /// Its end \[s\].
+    /// End of the window \[s\].
     pub to_s: f64,
-    /// Samples in it.
+    /// Samples in the window.
     pub samples: usize,
-    /// Why it begins there: at the knock, with the recording, or told.
+    /// Start criterion: at the disturbance, with the recording, or given.
     #[schemars(with = "String", extend("enum" = ["knock", "record", "told"]))]
     pub begins: Begins,
-    /// Why it ends there: with the recording, in the noise, at a gap, after 20 s, or told.
+    /// End criterion: with the recording, in the noise, at a gap, after 20 s, or given.
     #[schemars(with = "String", extend("enum" = ["record", "noise", "gap", "limit", "told"]))]
     pub ends: Ends,
-    /// Periods of the weave in it.
+    /// Periods of the weave in the window.
     pub periods: f64,
-    /// Real part of the weave's eigenvalue, negative where it decays \[1/s\].
+    /// Real part of the weave's eigenvalue, negative if it decays \[1/s\].
     pub decay_1_s: Estimate,
-    /// Its imaginary part \[rad/s\].
+    /// Imaginary part \[rad/s\].
     pub frequency_rad_s: Estimate,
-    /// The real mode fitted beside it \[1/s\]; null without.
+    /// The real mode fitted in addition \[1/s\]; null without.
     pub mode_1_s: Option<f64>,
     /// The axes.
     pub axes: Vec<AxisFit>,
@@ -71,19 +71,19 @@ pub struct Segment {
 /// Finds the weave in a recording.
 ///
 /// # Errors
-/// Says what is wrong with it: too few samples, no oscillation, less than half a period.
+/// Too few samples, no oscillation, or less than half a period.
 pub fn identify(record: &Record, settings: Settings) -> Result<Segment, String> {
     let axes: Vec<&[f64]> = record.axes.iter().map(|axis| &axis.rates_rad_s[..]).collect();
     let mut part = window(&record.times_s, &axes, (settings.from_s, settings.to_s));
     let mut fitted = fit_part(record, part, settings.beside)?;
-    // Where the weave sinks into the noise depends on the fit, which depends on the window.
+    // The time at which the weave falls below the noise depends on the fit, and the fit on the window.
     for _ in 0..3 {
         let Some(shorter) = without_noise(record, part, &fitted) else { break };
         let Ok(again) = fit_part(record, shorter, settings.beside) else { break };
         (part, fitted) = (shorter, again);
     }
     let span_s = record.times_s[part.to - 1] - record.times_s[part.from];
-    believable(&fitted, span_s)?;
+    check_plausible(&fitted, span_s)?;
     let [decay_error, frequency_error] = fitted.standard_errors;
     let wide = quantile(fitted.freedom);
     let axes =
@@ -123,18 +123,18 @@ fn fit_part(record: &Record, part: Window, beside: Beside) -> Result<Fit, String
     )
 }
 
-/// The part in which the weave is larger than the noise in some axis, if that is shorter by a twentieth and more.
+/// The part in which the weave exceeds the noise in some axis, if that is shorter by a twentieth or more.
 fn without_noise(record: &Record, part: Window, fitted: &Fit) -> Option<Window> {
     let times = &record.times_s[part.from..part.to];
     let above = fitted.amplitude_rad_s.iter().zip(&fitted.noise).map(|(a, n)| a / n.deviation_rad_s);
     let lasts_s = libm::log(above.fold(0.0, f64::max)) / -fitted.shape.decay_1_s;
-    let keeps = times.partition_point(|t| t - times[0] <= lasts_s);
-    let enough = keeps >= FEWEST_SAMPLES && fitted.periods(lasts_s) >= 1.0;
-    let shorter = fitted.shape.decay_1_s < 0.0 && 20 * keeps < 19 * times.len();
-    (enough && shorter).then_some(Window { to: part.from + keeps, ends: Ends::Noise, ..part })
+    let used = times.partition_point(|t| t - times[0] <= lasts_s);
+    let enough = used >= FEWEST_SAMPLES && fitted.periods(lasts_s) >= 1.0;
+    let shorter = fitted.shape.decay_1_s < 0.0 && 20 * used < 19 * times.len();
+    (enough && shorter).then_some(Window { to: part.from + used, ends: Ends::Noise, ..part })
 }
 
-fn believable(fitted: &Fit, span_s: f64) -> Result<(), String> {
+fn check_plausible(fitted: &Fit, span_s: f64) -> Result<(), String> {
     let least = LEAST_EXPLAINED * fitted.noise.len() as f64;
     let (frequency, error) = (fitted.shape.frequency_rad_s, fitted.standard_errors[1]);
     let above = fitted

@@ -1,67 +1,69 @@
-//! Which part of a recording is the motion after the knock.
+//! Finds the part of a recording with the motion after the disturbance.
 
 use super::noise::period;
 
-/// The part of the largest rate at which the knock is seen.
-const SEEN: f64 = 0.5;
-/// A recording that was cut after the knock has that part within so long after its first sample \[s\],
+/// Fraction of the largest rate that marks the onset of the disturbance.
+const ONSET: f64 = 0.5;
+/// A recording that starts after the disturbance reaches that fraction within this time of its first sample
+/// \[s\],
 const CUT_S: f64 = 0.1;
-/// and at least this part at the first sample.
+/// and has at least this fraction at the first sample.
 const CUT: f64 = 0.15;
-/// Within this time after a maximum there is no larger one \[s\].
+/// A maximum counts if no larger value follows within this time \[s\].
 const AHEAD_S: f64 = 0.1;
-/// A longer time without a sample ends the window \[s\].
+/// A longer time without samples ends the window \[s\].
 const GAP_S: f64 = 0.1;
 
-/// No longer window is looked at unless that is told \[s\].
+/// Longest window unless given \[s\].
 const LONGEST_S: f64 = 20.0;
 
-/// Why a window begins where it does.
+/// Start criterion of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Begins {
-    /// At the largest rate of the knock.
+    /// At the largest rate of the disturbance.
     Knock,
-    /// With the recording, which begins inside the motion.
+    /// With the recording, which starts during the motion.
     Record,
-    /// Where it was told to.
+    /// At the given time.
     Stated,
 }
 
-/// Why a window ends where it does.
+/// End criterion of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Ends {
     /// With the recording.
     Record,
-    /// Where the weave is smaller than the noise.
+    /// Where the weave falls below the noise.
     Noise,
     /// At a gap in the recording.
     Gap,
-    /// After the longest time that is looked at.
+    /// After the longest time examined.
     Limit,
-    /// Where it was told to.
+    /// At the given time.
     Stated,
 }
 
-/// A part of a recording, by the places of its samples.
+/// Part of a recording, by indices of its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// The first sample.
     pub from: usize,
-    /// One beyond the last.
+    /// One after the last sample.
     pub to: usize,
-    /// Why it begins there.
+    /// Start criterion.
     pub begins: Begins,
-    /// Why it ends there.
+    /// End criterion.
     pub ends: Ends,
 }
 
-/// The window of a recording with stamps \[s\] and axes of rates \[rad/s\]; `stated` are its ends, if someone did \[s\].
+/// The window of a recording with times \[s\] and axes of rates \[rad/s\]; `stated` are its given ends \[s\].
 ///
-/// The size of the motion is the root of the sum of the axes' squares. The knock is seen where it first reaches half of the
-/// largest, and the window begins at the maximum that follows. A recording that begins in motion and has that much within 0.1 s
-/// was cut after the knock: its window begins with it.
+/// The size of the motion is the square root of the sum of the axes' squares. The onset of the disturbance is
+/// where the size first reaches half of its largest value; the window begins at the following maximum. If a
+/// recording starts in motion and reaches that half within 0.1 s, it started after the disturbance and the
+/// window begins with it.
 pub fn window(times: &[f64], axes: &[&[f64]], stated: (Option<f64>, Option<f64>)) -> Window {
     let size = |i: usize| axes.iter().map(|axis| axis[i] * axis[i]).sum::<f64>().sqrt();
     let sizes: Vec<f64> = (0..times.len()).map(size).collect();
@@ -72,10 +74,11 @@ pub fn window(times: &[f64], axes: &[&[f64]], stated: (Option<f64>, Option<f64>)
     let gap = GAP_S.max(5.0 * period(times));
     let gap = (from + 1..times.len()).find(|i| times[*i] - times[i - 1] > gap);
     let longest = times.get(from).map_or(f64::INFINITY, |t| t + LONGEST_S);
-    let told_to = stated.1.map_or(times.len(), |to| times.partition_point(|t| *t <= to));
+    let stated_to = stated.1.map_or(times.len(), |to| times.partition_point(|t| *t <= to));
     let limit = if stated.1.is_some() { times.len() } else { times.partition_point(|t| *t <= longest) };
     let (mut to, mut ends) = (times.len(), Ends::Record);
-    for (at, end) in [(gap.unwrap_or(times.len()), Ends::Gap), (limit, Ends::Limit), (told_to, Ends::Stated)]
+    for (at, end) in
+        [(gap.unwrap_or(times.len()), Ends::Gap), (limit, Ends::Limit), (stated_to, Ends::Stated)]
     {
         if at < to {
             (to, ends) = (at, end);
@@ -86,7 +89,7 @@ pub fn window(times: &[f64], axes: &[&[f64]], stated: (Option<f64>, Option<f64>)
 
 fn knock(times: &[f64], sizes: &[f64]) -> (usize, Begins) {
     let largest = sizes.iter().copied().fold(0.0, f64::max);
-    let mut at = sizes.iter().position(|size| *size >= SEEN * largest).unwrap_or(0);
+    let mut at = sizes.iter().position(|size| *size >= ONSET * largest).unwrap_or(0);
     if at == 0 || (times[at] - times[0] <= CUT_S && sizes[0] >= CUT * largest) {
         return (0, Begins::Record);
     }
