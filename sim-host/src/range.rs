@@ -47,5 +47,9 @@ pub(crate) fn span(text: &str) -> Result<(f64, f64), String> {
     let (from, to) = text.split_once("..").map_or((text, None), |(from, to)| (from, Some(to)));
     let from_s = time(from, LATEST_S)?;
     let to_s = to.map_or(Ok(f64::INFINITY), |to| time(to, LATEST_S))?;
-    if to_s > from_s { Ok((from_s, to_s)) } else { Err(format!("it ends at {to_s} s, not after {from_s} s")) }
+    if to_s > from_s {
+        Ok((from_s, to_s))
+    } else {
+        Err(format!("its end, {to_s} s, is not after {from_s} s"))
+    }
 }

@@ -118,7 +118,7 @@ fn from_file(name: &str, path: &Path, set: Option<&str>) -> Result<Bicycle, Bicy
     let mut bicycle = from_text(name, &text, path, set)?;
     // A file truncated within its last number still parses.
     if text.ends_with(|c: char| c.is_ascii_digit() || c == '.') {
-        bicycle.warnings.push("the file's last line has no end; if it was cut, so was its last value".into());
+        bicycle.warnings.push("the file's last line has no end; its last value may be truncated".into());
     }
     Ok(bicycle)
 }
@@ -218,7 +218,7 @@ pub fn from_text(name: &str, text: &str, path: &Path, set: Option<&str>) -> Resu
 fn missing(values: &Table, key: &str) -> String {
     let riders = values.keys().all(|k| combine::RIDER_KEYS.contains(&k.as_str()));
     let hint = if riders && !values.is_empty() {
-        "; this is a rider's body alone, which stands behind a bicycle: BICYCLE+FILE"
+        "; the file holds a rider's body alone; give it after a bicycle: BICYCLE+FILE"
     } else {
         ""
     };

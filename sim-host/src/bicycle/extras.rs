@@ -32,7 +32,7 @@ pub(super) fn is_extra(key: &str) -> bool {
 pub(super) fn unknown_body(key: &str) -> Option<String> {
     let body = body(key).filter(|b| !BODIES.contains(*b))?;
     Some(format!(
-        "`{key}` is of a body `{body}`; the model has the bodies B, F, H and R, and G and S as parts of H"
+        "`{key}` belongs to a body `{body}`; the model has the bodies B, F, H and R, and G and S as parts of H"
     ))
 }
 
@@ -66,7 +66,7 @@ pub(super) fn left_out(table: &Table) -> Result<(Vec<String>, Option<String>), S
     if let (Some(g), Some(s), Some(h)) = masses {
         let parts = Uncertain { value: g.value + s.value, sd: libm::hypot(g.sd, s.sd) };
         if apart(parts, h) {
-            let error = "G and S are taken as the parts of H, and are not";
+            let error = "G and S are the parts of H, so that mG + mS must equal mH";
             return Err(format!(
                 "mG = {} and mS = {} kg, but mH = {} kg: {error}",
                 g.value, s.value, h.value

@@ -148,7 +148,7 @@ fn pitch_fit(b: &Geometry) -> [f64; 6] {
     normal.lu().solve(&right).map_or([0.0; 6], Into::into)
 }
 
-/// The place where the upright bicycle feels no lateral force, for the ground's acts at the contacts:
+/// The point of the upright bicycle without lateral specific force, as lateral forces act only at the contacts:
 /// `v yaw' + (ITxx roll'' + ITxz yaw'') / (mT hT) = g roll` (Meijaard et al. 2007, eq. A6, without the
 /// steer's own terms).
 fn balance(b: &Geometry) -> Place {

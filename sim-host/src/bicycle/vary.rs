@@ -21,9 +21,7 @@ impl Bicycle {
             values[place] = value.parse().map_err(|_| wrong(format!("`{value}` is not a number")))?;
             if let Some(Measured { bicycle, rider }) = &mut self.measured {
                 if rider.is_some() && RIDER_KEYS.contains(&key) {
-                    return Err(wrong(
-                        "it is of the frame and the rider together; change their files".into(),
-                    ));
+                    return Err(wrong("it combines frame and rider; change their files".into()));
                 }
                 bicycle[place] = Uncertain::exact(values[place]);
             }

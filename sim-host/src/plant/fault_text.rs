@@ -145,11 +145,11 @@ fn parsed(text: &str) -> Result<Fault, String> {
     let (channel, axis) = placed(place)?;
     let kind = kind(channel, what)?;
     if axis.is_some() && kind.whole() {
-        return Err(format!("{} is of whole samples; leave out the axis", kind.name()));
+        return Err(format!("{} acts on whole samples; leave out the axis", kind.name()));
     }
     let (from_s, to_s) = when.map_or(Ok((0.0, f64::INFINITY)), span)?;
     if to_s.is_finite() && matches!(kind, Kind::Jump(_)) {
-        return Err("a jump is for good; leave out its end".into());
+        return Err("a jump is permanent; leave out its end".into());
     }
     Ok(Fault { channel, axis, kind, from_s, to_s })
 }

@@ -57,7 +57,7 @@ impl FittedErrors {
             ticks("phase (control periods)", self.phase_ticks, every_ticks.saturating_sub(1))?;
             self.jitter_ticks.iter().try_for_each(|t| ticks("jitter (control periods)", *t, MAX_TICKS))?;
             if self.jitter_ticks[1] < self.jitter_ticks[0] {
-                return Err(format!("{name} jitter: the worst is less than that of 99 in 100"));
+                return Err(format!("{name} jitter: the largest is below that of 99 in 100 samples"));
             }
             ticks("window (control periods)", self.window_ticks, MAX_TICKS)?;
             ticks("pulses per turn", self.pulses_per_turn, 4096)?;

@@ -10,21 +10,21 @@ use crate::rider::Rider;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum ScheduleSpeed {
-    /// Front wheel rate times its radius: what reproduces the published basins.
+    /// Front wheel rate times its radius; reproduces the published basins.
     Front,
     /// Rear wheel rate times its radius.
     Rear,
-    /// The speed at the start, for ever.
+    /// The speed at t = 0, constant.
     Initial,
 }
 
-/// What the rate gyro reports as roll rate.
+/// Roll rate that the gyro reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Imu {
     /// The exact rate of the roll angle (the published laws' signal).
     Euler,
-    /// The rear frame's angular velocity about its own x axis, as a gyro on it measures.
+    /// The rear frame's angular velocity about its own x axis, as measured by a gyro on it.
     Body,
 }
 

@@ -279,7 +279,7 @@ fn set<const N: usize>(s: &mut State<Lanes<N>>, lane: usize, to: &State<f64>) {
 }
 
 impl Start {
-    /// The state it stands for.
+    /// The bicycle's state at t = 0.
     pub fn state(&self, b: &Geometry) -> State<f64> {
         State {
             roll_rate: self.roll_rate_rad_s,

@@ -18,7 +18,7 @@ pub fn doubts(bicycle: &Bicycle, rider: &RiderTable) -> Vec<String> {
         )),
         _ => None,
     };
-    let empty = empty.map(|what| format!("{what}, and rider {} steers it all the same", rider.name));
+    let empty = empty.map(|what| format!("{what}, but rider {} steers it", rider.name));
     let other = rider.bicycle.as_ref().filter(|made_for| !is_same(bicycle, made_for)).map(|made_for| {
         format!("the gains of rider {} are made for bicycle {made_for}, not for {name}", rider.name)
     });

@@ -105,7 +105,7 @@ impl RiderTable {
         };
         best.map(|r| (r.speed_m_s, r.gains)).ok_or_else(|| {
             ScheduleError(format!(
-                "which of the {} sets at about {} m/s is the best? the table needs the column `vaf`, or `best_runs`",
+                "the best of the {} sets at about {} m/s is unknown; the table needs the column `vaf`, or `best_runs`",
                 group.len(),
                 group[0].speed_m_s
             ))

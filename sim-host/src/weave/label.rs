@@ -37,10 +37,10 @@ impl Pattern {
             let (name, after) =
                 after.split_once('}').ok_or_else(|| format!("`{text}`: a brace is not closed"))?;
             let name = NAMES.into_iter().find(|known| *known == name);
-            let name = name.ok_or_else(|| format!("`{text}`: in braces may stand {known}"))?;
+            let name = name.ok_or_else(|| format!("`{text}`: the names in braces are {known}"))?;
             parts.extend((!word.is_empty()).then(|| Part::Word(word.into())));
             if matches!((parts.last(), word), (Some(Part::Number(_)), "")) {
-                return Err(format!("`{text}`: two numbers have nothing between them"));
+                return Err(format!("`{text}`: two numbers need text between them"));
             }
             parts.push(Part::Number(name));
             rest = after;

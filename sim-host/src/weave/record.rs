@@ -165,7 +165,7 @@ fn row(
     unit: Unit,
 ) -> Result<Row, (Kind, String)> {
     if record.len() != header.len() {
-        return Err((Kind::Short, format!("{} fields where the heading has {}", record.len(), header.len())));
+        return Err((Kind::Short, format!("{} fields, but the heading has {}", record.len(), header.len())));
     }
     let stamp = record[time].to_owned();
     let wrong = || format!("`{}` = `{stamp}` is neither seconds nor a date with a time", &header[time]);
@@ -247,7 +247,7 @@ mod tests {
         assert_eq!(record.axes[0].rates_rad_s, [1.0, 2.0, 5.0, 7.0, 9.0]);
         assert_eq!(record.times_s, [0.0, 0.1, 0.3, 0.4, 0.45]);
         let expected = [
-            "line 14: 2 fields where the heading has 3; left out",
+            "line 14: 2 fields, but the heading has 3; left out",
             "line 13: `Time` = `now` is neither seconds nor a date with a time; left out",
             "line 7: `gyro_x` = `nan` is not a number from -50 to 50 rad/s; left out",
             "line 12: `gyro_x` = `60` is not a number from -50 to 50 rad/s; left out",

@@ -143,7 +143,7 @@ fn check_plausible(fitted: &Fit, span_s: f64) -> Result<(), String> {
         .zip(&fitted.noise)
         .any(|(a, n)| *a >= LEAST_AMPLITUDE * n.deviation_rad_s);
     if fitted.explained < least || !above {
-        return Err("no oscillation that stands out from the noise".into());
+        return Err("no oscillation above the noise".into());
     }
     if fitted.periods(span_s) <= 0.501 {
         return Err(format!("no oscillation: less than half a period in the window of {span_s:.2} s"));
@@ -151,7 +151,7 @@ fn check_plausible(fitted: &Fit, span_s: f64) -> Result<(), String> {
     if fitted.at_bound.iter().any(|at| *at) {
         let decay = fitted.shape.decay_1_s;
         return Err(format!(
-            "no oscillation: the best has {decay:.2} 1/s and {frequency:.2} rad/s, an end of what is searched"
+            "no oscillation: the best has {decay:.2} 1/s and {frequency:.2} rad/s, a bound of the search"
         ));
     }
     let half = quantile(fitted.freedom) * error;
