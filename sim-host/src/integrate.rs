@@ -66,7 +66,7 @@ pub const STAGES: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<X> {
     start: X,
-    /// State at the current stage; undefined in meaning after the last stage.
+    /// State at the current stage; without meaning after the last stage.
     pub at: X,
     /// State at the end of the step, complete after the last stage.
     pub end: X,

@@ -16,9 +16,9 @@ pub enum Quantity {
     /// The neural delay.
     Delay,
     /// Undamped natural frequency of the neuromuscular dynamics.
-    MuscleFrequency,
+    NeuromuscularFrequency,
     /// Damping ratio of the neuromuscular dynamics.
-    MuscleDamping,
+    NeuromuscularDamping,
     /// A parameter of the bicycle, by its index in [`bicycle::KEYS`].
     Bicycle(usize),
 }
@@ -28,7 +28,7 @@ impl Quantity {
     pub fn all(rider: &Rider) -> Vec<Self> {
         let used = |&i: &usize| rider.schedule.points().iter().any(|(_, gains)| gains.0[i] != 0.0);
         let gains = (0..KEYS.len()).filter(used).map(Self::Gain);
-        let body = [Self::Delay, Self::MuscleFrequency, Self::MuscleDamping];
+        let body = [Self::Delay, Self::NeuromuscularFrequency, Self::NeuromuscularDamping];
         gains.chain(body).chain((0..bicycle::KEYS.len()).map(Self::Bicycle)).collect()
     }
 
@@ -37,8 +37,8 @@ impl Quantity {
         match self {
             Self::Gain(i) => KEYS[i],
             Self::Delay => "tau_d",
-            Self::MuscleFrequency => "omega_nm",
-            Self::MuscleDamping => "zeta_nm",
+            Self::NeuromuscularFrequency => "omega_nm",
+            Self::NeuromuscularDamping => "zeta_nm",
             Self::Bicycle(i) => bicycle::KEYS[i],
         }
     }
@@ -68,8 +68,8 @@ impl Quantity {
                     rider.schedule = Schedule::new(points, outside).map_err(|e| SearchError(e.0))?;
                 }
                 Self::Delay => rider.delay_s *= factor,
-                Self::MuscleFrequency => rider.muscles.omega_rad_s *= factor,
-                Self::MuscleDamping => rider.muscles.zeta *= factor,
+                Self::NeuromuscularFrequency => rider.muscles.omega_rad_s *= factor,
+                Self::NeuromuscularDamping => rider.muscles.zeta *= factor,
                 Self::Bicycle(_) => {}
             }
         }

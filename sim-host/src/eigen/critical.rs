@@ -72,7 +72,7 @@ pub(super) fn rightmost_pair(values: &[Complex<f64>]) -> f64 {
 }
 
 /// First speed at which a value, given with its size, becomes negative. Speeds at which the value is zero
-/// within rounding are ignored, and so is a change of sign through minus infinity.
+/// within rounding are ignored, and so is a step to minus infinity.
 fn first(f: &dyn Fn(f64) -> (f64, f64)) -> Option<f64> {
     let steps = (SEARCH_TO_M_S / SEARCH_STEP_M_S).round() as usize;
     let mut positive = None;

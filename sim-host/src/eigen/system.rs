@@ -143,11 +143,11 @@ impl Model {
         let torque = with_rider - 2;
         a[(2, torque)] = of_torque[0];
         a[(3, torque)] = of_torque[1];
-        let muscles = rider.muscles;
+        let neuromuscular = rider.muscles;
         a[(torque, torque + 1)] = 1.0;
-        a[(torque + 1, torque)] = -muscles.omega_rad_s.powi(2);
-        a[(torque + 1, torque + 1)] = -2.0 * muscles.zeta * muscles.omega_rad_s;
-        b[torque + 1] = muscles.omega_rad_s.powi(2);
+        a[(torque + 1, torque)] = -neuromuscular.omega_rad_s.powi(2);
+        a[(torque + 1, torque + 1)] = -2.0 * neuromuscular.zeta * neuromuscular.omega_rad_s;
+        b[torque + 1] = neuromuscular.omega_rad_s.powi(2);
         let places = self.add_integrals(&mut a, v);
 
         let Gains(gains) = rider.schedule.at(v);

@@ -40,7 +40,7 @@ pub struct ActuatorConfig {
     pub scale: f64,
     /// Time constant of the torque's first-order response \[s\]; 0 is no lag.
     pub time_constant_s: f64,
-    /// Largest torque either way \[N m\]; null is no limit.
+    /// Largest magnitude of the torque \[N m\]; null is no limit.
     pub limit_nm: Option<f64>,
     /// Torque limit by the supply voltage; null is no limit.
     pub supply: Option<Supply>,

@@ -6,7 +6,7 @@ use crate::plant::Plant;
 use crate::range::within;
 use crate::rider::Rider;
 
-/// The speed that schedules the gains of assist and rider.
+/// Speed that schedules the gains of assist and rider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum ScheduleSpeed {
@@ -90,8 +90,8 @@ impl Conditions {
     }
 
     /// Largest number of substeps of a ride before it counts as fallen. In right-hand sides, a ride of 6 s
-    /// costs at most as much as eleven ordinary ones. Falls that pass 90 degrees without bouncing take up to
-    /// 1,000.
+    /// costs at most as much as eleven ordinary ones. Falls that pass directly through 90 degrees take up
+    /// to 1,000.
     pub(super) fn most_substeps(&self) -> u32 {
         10_000 + 7 * self.steps()
     }

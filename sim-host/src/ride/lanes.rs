@@ -140,19 +140,19 @@ impl<const N: usize> Actuation<Lanes<N>> for LaneBatch<'_, '_, N> {
         acc: &Accelerations<Lanes<N>>,
     ) {
         if let Some(riders) = &mut self.riders {
-            let mut taken = [false; N];
-            for (taken, lane) in taken.iter_mut().zip(&self.lanes) {
-                *taken = lane.is_some();
+            let mut occupied = [false; N];
+            for (occupied, lane) in occupied.iter_mut().zip(&self.lanes) {
+                *occupied = lane.is_some();
             }
             let (_, speed) = readings(self.conditions, &motion.actual, self.initial);
             let now = Instant::new(state, motion, acc);
-            riders.end_stage(b, stage, self.conditions.step_s, &now, &speed, taken);
+            riders.end_stage(b, stage, self.conditions.step_s, &now, &speed, occupied);
         }
     }
 }
 
-/// Every ride to its end, in the order of `starts`; with `trace`, every instant of lane 0's rides. When the
-/// processor fails, the rides under way are not among them.
+/// Simulates every ride to its end; results in the order of `starts`. With `trace`, records every instant of
+/// lane 0's rides. If the external processor fails, unfinished rides are left out.
 ///
 /// A lane's arithmetic does not depend on its neighbours, so a ride has the same bits in any lane.
 #[inline(always)]

@@ -37,7 +37,7 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
     }
 
     /// A stage of the step of `h` seconds: stores the feedback signals at `now`, with gains at the `speeds`
-    /// \[m/s\], and advances the rider states. Lanes that are not `taken` store no signals.
+    /// \[m/s\], and advances the rider states. Empty lanes store no signals.
     #[inline(always)]
     pub(super) fn end_stage(
         &mut self,
@@ -46,15 +46,15 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
         h: f64,
         now: &Instant<Lanes<N>>,
         speeds: &Lanes<N>,
-        taken: [bool; N],
+        occupied: [bool; N],
     ) {
         let rider_state = self.rider_state.at;
         let alpha = match &mut self.delay_line {
             Some(delay_line) => {
                 if stage == 0 {
                     let signals = rider_state.signals(now);
-                    push(self.rider, delay_line, &signals, speeds, taken);
-                    arrive(delay_line, &mut self.arriving, taken);
+                    push(self.rider, delay_line, &signals, speeds, occupied);
+                    arrive(delay_line, &mut self.arriving, occupied);
                 }
                 self.arriving[(2.0 * STAGES[stage]) as usize]
             }
@@ -121,15 +121,15 @@ fn push<const N: usize>(
     delay_line: &mut [DelayLine; N],
     signals: &Signals<Lanes<N>>,
     speeds: &Lanes<N>,
-    taken: [bool; N],
+    occupied: [bool; N],
 ) {
-    for lane in (0..N).filter(|&lane| taken[lane]) {
+    for lane in (0..N).filter(|&lane| occupied[lane]) {
         delay_line[lane].push(rider.schedule.at(speeds.0[lane]).signal(&lane_of(signals, lane)));
     }
 }
 
-fn arrive<const N: usize>(delay_line: &[DelayLine; N], to: &mut [Lanes<N>; 3], taken: [bool; N]) {
-    for lane in (0..N).filter(|&lane| taken[lane]) {
+fn arrive<const N: usize>(delay_line: &[DelayLine; N], to: &mut [Lanes<N>; 3], occupied: [bool; N]) {
+    for lane in (0..N).filter(|&lane| occupied[lane]) {
         for (to, signal) in to.iter_mut().zip(delay_line[lane].arriving()) {
             to.0[lane] = signal;
         }
@@ -236,15 +236,18 @@ mod tests {
                 let filter = muscles.omega_rad_s.powi(2)
                     / (s * s + s * 2.0 * muscles.zeta * muscles.omega_rad_s + muscles.omega_rad_s.powi(2));
                 let end_stage = k(0) * ROLL + k(4) * STEER + Complex::from(gains.0[8] * YAW);
-                let wanted = end_stage * ComplexField::exp(-s * tau) * filter;
-                let mut got = Complex::new(0.0, 0.0);
+                let expected = end_stage * ComplexField::exp(-s * tau) * filter;
+                let mut measured = Complex::new(0.0, 0.0);
                 for (n, torque) in torques.iter().enumerate().skip(3000) {
                     let turn = ComplexField::exp(Complex::new(0.0, -omega * n as f64 * STEP_S));
                     // A sine is the imaginary part of the exponential.
-                    got += turn * *torque * Complex::new(0.0, 2.0) / 1000.0;
+                    measured += turn * *torque * Complex::new(0.0, 2.0) / 1000.0;
                 }
-                let error = (got - wanted).modulus() / wanted.modulus();
-                assert!((1e-13..5e-7).contains(&error), "{delay} ms, {periods} Hz: {got} {wanted} {error:e}");
+                let error = (measured - expected).modulus() / expected.modulus();
+                assert!(
+                    (1e-13..5e-7).contains(&error),
+                    "{delay} ms, {periods} Hz: {measured} {expected} {error:e}"
+                );
             }
         }
     }

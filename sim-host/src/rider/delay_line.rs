@@ -97,9 +97,9 @@ mod tests {
         let mut out = Vec::new();
         for n in 0..steps {
             delay_line.push(f(n as f64));
-            for (s, got) in [0.0, 0.5, 1.0].into_iter().zip(delay_line.arriving()) {
-                assert!((delay_line.arriving_at(s) - got).abs() <= 1e-12 * got.abs().max(1.0));
-                out.push((n as f64 + s - delay as f64, got));
+            for (s, arrived) in [0.0, 0.5, 1.0].into_iter().zip(delay_line.arriving()) {
+                assert!((delay_line.arriving_at(s) - arrived).abs() <= 1e-12 * arrived.abs().max(1.0));
+                out.push((n as f64 + s - delay as f64, arrived));
             }
         }
         out
@@ -109,12 +109,16 @@ mod tests {
     fn a_cubic_arrives_unchanged() {
         let f = |t: f64| 1.0 + 2.0 * t - 0.3 * t * t + 0.01 * t * t * t;
         for delay in [3, 4, 5, 30, 60, 61] {
-            for (t, got) in delayed(delay, 4 * delay, f) {
+            for (t, arrived) in delayed(delay, 4 * delay, f) {
                 // A step that ends when the first signal arrives still receives zero.
                 if t > 0.0 {
-                    assert!((got - f(t)).abs() < 1e-11 * (1.0 + f(t).abs()), "{delay} {t}: {got} {}", f(t));
+                    assert!(
+                        (arrived - f(t)).abs() < 1e-11 * (1.0 + f(t).abs()),
+                        "{delay} {t}: {arrived} {}",
+                        f(t)
+                    );
                 } else if t < 0.0 {
-                    assert_eq!(got, 0.0, "{delay} {t}");
+                    assert_eq!(arrived, 0.0, "{delay} {t}");
                 }
             }
         }
@@ -124,8 +128,10 @@ mod tests {
     fn whole_steps_arrive_exactly() {
         let f = |t: f64| libm::sin(17.0 * t);
         for delay in [1, 2, 3, 7] {
-            for (t, got) in delayed(delay, 30, f).into_iter().filter(|(t, _)| t.fract() == 0.0 && *t > 0.0) {
-                assert_eq!(got, f(t), "{delay} {t}");
+            for (t, arrived) in
+                delayed(delay, 30, f).into_iter().filter(|(t, _)| t.fract() == 0.0 && *t > 0.0)
+            {
+                assert_eq!(arrived, f(t), "{delay} {t}");
             }
         }
     }
@@ -133,8 +139,8 @@ mod tests {
     #[test]
     fn a_kink_after_one_delay_is_not_smeared() {
         let f = |t: f64| if t <= 10.0 { t } else { 10.0 - 3.0 * (t - 10.0) };
-        for (t, got) in delayed(10, 40, f).into_iter().filter(|(t, _)| *t > 0.0 && *t <= 20.0) {
-            assert!((got - f(t)).abs() < 1e-12, "{t}: {got}");
+        for (t, arrived) in delayed(10, 40, f).into_iter().filter(|(t, _)| *t > 0.0 && *t <= 20.0) {
+            assert!((arrived - f(t)).abs() < 1e-12, "{t}: {arrived}");
         }
     }
 

@@ -25,7 +25,7 @@ struct File {
     note: Option<String>,
     bicycle: Option<String>,
     delay_ms: f64,
-    neuromuscular: Option<MusclesFile>,
+    neuromuscular: Option<NeuromuscularFile>,
     #[serde(default)]
     feedback: Feedback,
     best_runs: Option<Vec<u32>>,
@@ -37,7 +37,7 @@ struct File {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct MusclesFile {
+struct NeuromuscularFile {
     omega_rad_s: f64,
     zeta: f64,
 }

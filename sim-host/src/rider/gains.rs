@@ -3,7 +3,7 @@
 use crate::num::Scalar;
 
 /// The symbols of the gains, in the order of [`Gains`] and [`Signals`]. Units: N m per rad, rad s,
-/// rad/s, rad/s^2 (roll, then steer), rad (heading), m (lateral offset).
+/// rad/s, rad/s^2 (roll, then steer), rad (heading), m (lateral deviation).
 pub const KEYS: [&str; 10] = [
     "K_phi_p",
     "K_phi_i",
@@ -17,7 +17,7 @@ pub const KEYS: [&str; 10] = [
     "K_y",
 ];
 
-/// Feedback gains (eqs 2.7 and 2.8; heading and lateral offset for Hess's family), by [`KEYS`].
+/// Feedback gains (eqs 2.7 and 2.8; heading and lateral deviation for Hess's family), by [`KEYS`].
 /// Positive gains turn the handlebar to the right for a motion to the right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Gains(pub [f64; 10]);

@@ -16,7 +16,7 @@ pub use delay_line::DelayLine;
 pub use doubts::doubts;
 pub use fit::{Fit, Line, mean};
 pub use gains::{Gains, KEYS, Signals};
-pub use neuromuscular::{MusclesError, Neuromuscular};
+pub use neuromuscular::{Neuromuscular, NeuromuscularError};
 pub use schedule::{Outside, Schedule, ScheduleError};
 pub use state::{Instant, RiderState};
 pub use table::{RiderTable, Row};

@@ -16,7 +16,7 @@ pub struct Neuromuscular {
 /// Rejected neuromuscular parameters, with the reason.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
-pub struct MusclesError(pub String);
+pub struct NeuromuscularError(pub String);
 
 impl Neuromuscular {
     /// Shoulder dynamics: 2.17 Hz, damping ratio `sqrt(1/2)` (Schouten et al. 2007, as used by the thesis).
@@ -34,9 +34,9 @@ impl Neuromuscular {
     ///
     /// # Errors
     /// States the value and its range.
-    pub fn check(&self) -> Result<(), MusclesError> {
+    pub fn check(&self) -> Result<(), NeuromuscularError> {
         within("neuromuscular natural frequency (rad/s)", self.omega_rad_s, 0.1, 200.0)
-            .map_err(MusclesError)?;
-        within("neuromuscular damping ratio", self.zeta, 0.01, 10.0).map_err(MusclesError)
+            .map_err(NeuromuscularError)?;
+        within("neuromuscular damping ratio", self.zeta, 0.01, 10.0).map_err(NeuromuscularError)
     }
 }

@@ -89,7 +89,13 @@ impl<S: Scalar> RiderState<S> {
 
     /// Time derivative of every entry, in the same fields, for the arriving neural signal `alpha` \[N m\].
     #[inline(always)]
-    pub fn rate(&self, b: &Geometry, now: &Instant<S>, muscles: &Neuromuscular, alpha: S) -> RiderState<S> {
+    pub fn rate(
+        &self,
+        b: &Geometry,
+        now: &Instant<S>,
+        neuromuscular: &Neuromuscular,
+        alpha: S,
+    ) -> RiderState<S> {
         let v = now.velocities;
         let (sin, _) = self.heading.sin_cos();
         RiderState {
@@ -98,7 +104,7 @@ impl<S: Scalar> RiderState<S> {
             heading: v.yaw,
             rear_lateral: (v.pitch + v.rear_spin) * -b.rR * sin,
             torque: self.torque_rate,
-            torque_rate: muscles.acceleration(alpha, self.torque, self.torque_rate),
+            torque_rate: neuromuscular.acceleration(alpha, self.torque, self.torque_rate),
         }
     }
 }

@@ -61,7 +61,7 @@ struct Found {
 }
 
 impl Found {
-    /// Records a number in the sensor's unit followed by `unit`; for an axis if the sensor has several.
+    /// Records a number with its unit, for an axis if the sensor has several.
     fn number(&mut self, number: &str, axis: Option<usize>, unit: &str, found: Estimate, seconds: f64) {
         let axis = axis.and_then(|axis| self.sensor.axes().get(axis)).copied().unwrap_or_default();
         let [value, low, high] = [found.value, found.low, found.high].map(digits);
