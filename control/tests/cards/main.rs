@@ -10,6 +10,7 @@ mod limiter;
 mod limits;
 mod maths;
 mod monitor;
+mod needs_motion;
 mod polarity;
 mod press;
 mod properties;
