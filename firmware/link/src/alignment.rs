@@ -1,26 +1,26 @@
-//! The offset of the motor's encoder: as an alignment found it, and which one is used.
+//! The stored offset of the motor's encoder, and the choice between the stored offset and the program's.
 
 use crate::bytes::{Reader, Writer};
 use crate::record::NoRecord;
-use crate::store::Doubt;
+use crate::store::InvalidRecord;
 use core::fmt;
 
-/// The layout of its bytes. Another one is not read.
+/// Version of the record's layout; records of another layout are not read.
 pub const LAYOUT: u8 = 1;
-/// Bytes in flash: layout, number, motor, offset.
+/// Bytes in flash: layout, record number, motor, offset.
 pub const ALIGNMENT_BYTES: usize = 1 + 4 + 4 + 4;
 
-/// What a successful alignment leaves behind.
+/// Result of a successful alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alignment {
-    /// The offset found, as `motor::encoder::EncoderConfig::offset_turns` \[electrical turns, -0.5 to 0.5\].
+    /// Encoder offset, used as `motor::encoder::EncoderConfig::offset_turns` \[electrical turns, -0.5 to 0.5\].
     pub offset_turns: f32,
-    /// The motor and encoder it was found with: `motor::Config::motor_id`.
+    /// Motor and encoder of the alignment: `motor::Config::motor_id`.
     pub motor_id: u32,
 }
 
 impl Alignment {
-    /// Its bytes. Each that is stored has a larger number than that before.
+    /// Encodes the record. `number` increases by one with each stored record.
     pub fn encode(&self, number: u32) -> [u8; ALIGNMENT_BYTES] {
         let mut bytes = [0; ALIGNMENT_BYTES];
         let mut writer = Writer::new(&mut bytes);
@@ -31,7 +31,7 @@ impl Alignment {
         bytes
     }
 
-    /// Number and alignment of their bytes. Bytes after those that are known are passed over.
+    /// Decodes a record into its number and alignment. Bytes after the known ones are ignored.
     ///
     /// # Errors
     /// Another layout, too few bytes, or an offset outside its range.
@@ -50,38 +50,42 @@ fn parts(from: &mut Reader<'_>) -> Option<(u32, Alignment)> {
     (-0.5..=0.5).contains(&offset_turns).then_some((number, Alignment { offset_turns, motor_id }))
 }
 
-/// The offset a program begins with, and where it is from.
+/// The encoder offset at start, and its source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Offset {
-    /// Written down in the program \[electrical turns\].
+    /// From the program \[electrical turns\].
     Program(f32),
-    /// Of the alignment in flash \[electrical turns\].
+    /// From the alignment in flash \[electrical turns\].
     Flash(f32),
-    /// None: no alignment was ever stored.
+    /// None: no alignment is stored.
     NoneStored,
-    /// None: the alignment in flash is that of another motor or encoder.
+    /// None: the alignment in flash belongs to another motor or encoder.
     OtherMotor,
-    /// None: the alignment in flash is not believed.
-    Doubt(Doubt),
+    /// None: the alignment in flash is invalid.
+    Invalid(InvalidRecord),
 }
 
 impl Offset {
-    /// The program's own before that in flash, and that only if it was found with this motor.
-    pub fn choose(program: Option<f32>, stored: Result<Option<Alignment>, Doubt>, motor_id: u32) -> Self {
+    /// Chooses the offset: the program's takes precedence; the stored one is used only if its motor is `motor_id`.
+    pub fn choose(
+        program: Option<f32>,
+        stored: Result<Option<Alignment>, InvalidRecord>,
+        motor_id: u32,
+    ) -> Self {
         match (program, stored) {
             (Some(turns), _) => Offset::Program(turns),
-            (None, Err(doubt)) => Offset::Doubt(doubt),
+            (None, Err(invalid)) => Offset::Invalid(invalid),
             (None, Ok(None)) => Offset::NoneStored,
             (None, Ok(Some(found))) if found.motor_id == motor_id => Offset::Flash(found.offset_turns),
             (None, Ok(Some(_))) => Offset::OtherMotor,
         }
     }
 
-    /// The offset \[electrical turns\]; `None`: not known, the motor gives no torque.
+    /// The offset \[electrical turns\]; `None` if unknown: the motor then gives no torque.
     pub fn turns(&self) -> Option<f32> {
         match *self {
             Offset::Program(turns) | Offset::Flash(turns) => Some(turns),
-            Offset::NoneStored | Offset::OtherMotor | Offset::Doubt(_) => None,
+            Offset::NoneStored | Offset::OtherMotor | Offset::Invalid(_) => None,
         }
     }
 }
@@ -93,12 +97,14 @@ impl fmt::Display for Offset {
             Offset::Flash(turns) => write!(f, "{turns:.4} turns, from flash"),
             Offset::NoneStored => write!(f, "none stored"),
             Offset::OtherMotor => write!(f, "the stored one is of another motor, not used"),
-            Offset::Doubt(Doubt::Unreadable) => write!(f, "flash can't be read"),
-            Offset::Doubt(Doubt::Lost) => write!(f, "the newest one is lost"),
-            Offset::Doubt(Doubt::NoRecord(NoRecord::Layout(layout))) => {
+            Offset::Invalid(InvalidRecord::Unreadable) => write!(f, "flash can't be read"),
+            Offset::Invalid(InvalidRecord::Lost) => write!(f, "the newest one is lost"),
+            Offset::Invalid(InvalidRecord::NoRecord(NoRecord::Layout(layout))) => {
                 write!(f, "stored in layout {layout}, which is not known")
             }
-            Offset::Doubt(Doubt::NoRecord(NoRecord::Malformed) | Doubt::Unfit(_)) => {
+            Offset::Invalid(
+                InvalidRecord::NoRecord(NoRecord::Malformed) | InvalidRecord::Inconsistent(_),
+            ) => {
                 write!(f, "the stored one is damaged")
             }
         }

@@ -1,9 +1,9 @@
-//! Little-endian bytes, written and read in order, never beyond their end.
+//! Bounds-checked writer and reader of little-endian bytes.
 
-/// Bits that stand for a limit that is off: a NaN that no parameter may have.
+/// Bits of a limit that is off: a NaN that no parameter can have.
 const OFF: u32 = u32::MAX;
 
-/// Writes in order. What does not fit is not written, and [`Writer::used`] then says `None`.
+/// Writes values in order. A value that does not fit is not written; [`Writer::used`] then returns `None`.
 #[derive(Debug)]
 pub struct Writer<'a> {
     to: &'a mut [u8],
@@ -12,23 +12,23 @@ pub struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    /// From the start of `to`.
+    /// Writes from the start of `to`.
     pub fn new(to: &'a mut [u8]) -> Self {
         Self { to, used: 0, full: false }
     }
 
-    /// How many bytes were written; `None` if not all found room.
+    /// Number of bytes written; `None` if a value did not fit.
     pub fn used(&self) -> Option<usize> {
         (!self.full).then_some(self.used)
     }
 
-    /// What was written; `None` if not all found room.
+    /// The bytes written; `None` if a value did not fit.
     pub fn finish(self) -> Option<&'a [u8]> {
         let used = self.used()?;
         self.to.get(..used)
     }
 
-    /// Bytes as they are.
+    /// Raw bytes.
     pub fn put(&mut self, bytes: &[u8]) {
         match self.to.get_mut(self.used..).and_then(|room| room.get_mut(..bytes.len())) {
             Some(place) => {
@@ -59,17 +59,17 @@ impl<'a> Writer<'a> {
         self.put(&value.to_le_bytes());
     }
 
-    /// The bits of a number.
+    /// The bits of an `f32`.
     pub fn f32(&mut self, value: f32) {
         self.put(&value.to_le_bytes());
     }
 
-    /// The bits of a number that may be off.
+    /// The bits of an `f32` that can be off (`None`).
     pub fn scalar(&mut self, value: Option<f32>) {
         self.u32(to_bits(value));
     }
 
-    /// A text of up to 255 bytes in `parts`, its length first. A longer one counts as no room.
+    /// A text of up to 255 bytes, given in `parts`, preceded by its length. A longer text counts as not fitting.
     pub fn text<'t>(&mut self, parts: impl Iterator<Item = &'t str> + Clone) {
         let length: usize = parts.clone().map(str::len).sum();
         match u8::try_from(length) {
@@ -82,19 +82,19 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Reads in order; `None` past the end.
+/// Reads values in order; `None` past the end.
 #[derive(Clone, Copy, Debug)]
 pub struct Reader<'a>(pub &'a [u8]);
 
 impl<'a> Reader<'a> {
-    /// `N` bytes as they are, where they are.
+    /// The next `N` raw bytes, borrowed.
     pub fn chunk<const N: usize>(&mut self) -> Option<&'a [u8; N]> {
         let (bytes, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
         Some(bytes)
     }
 
-    /// `N` bytes as they are.
+    /// The next `N` raw bytes, copied.
     pub fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
         self.chunk().copied()
     }
@@ -119,17 +119,17 @@ impl<'a> Reader<'a> {
         self.take().map(u64::from_le_bytes)
     }
 
-    /// A number, any bit pattern.
+    /// An `f32`; any bit pattern is accepted.
     pub fn f32(&mut self) -> Option<f32> {
         self.take().map(f32::from_le_bytes)
     }
 
-    /// A number that may be off.
+    /// An `f32` that can be off (`None`).
     pub fn scalar(&mut self) -> Option<Option<f32>> {
         self.u32().map(from_bits)
     }
 
-    /// A text with its length first; `None` also when it is not UTF-8.
+    /// A text preceded by its length; `None` also when the bytes are not UTF-8.
     pub fn text(&mut self) -> Option<&'a str> {
         let length = self.u8()?;
         let (text, rest) = self.0.split_at_checked(usize::from(length))?;
@@ -138,12 +138,12 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The bits of a number that may be off.
+/// Bits of a number that can be off.
 pub fn to_bits(value: Option<f32>) -> u32 {
     value.map_or(OFF, f32::to_bits)
 }
 
-/// A number that may be off, of its bits.
+/// Number that can be off, from its bits.
 pub fn from_bits(bits: u32) -> Option<f32> {
     (bits != OFF).then_some(f32::from_bits(bits))
 }

@@ -1,7 +1,7 @@
-//! What the board tells on CAN: three data frames of eight bytes, classic CAN 2.0A. docs/link.md has them as a table.
+//! The board's CAN broadcasts: three data frames of eight bytes, classic CAN 2.0A. Table: docs/link.md.
 //!
-//! Little-endian. A number is rounded to its unit and stops at the ends of its range; what is not known, or NaN, has a
-//! value of its own.
+//! Little-endian. A number is rounded to its unit and saturates at its range. An unknown value, or NaN, has a reserved
+//! code.
 
 use control::sensors::calibration::CalibrationPlan;
 use control::sensors::polarity::PolarityStep;
@@ -12,14 +12,14 @@ use micromath::F32;
 pub const BIT_HZ: u32 = 500_000;
 /// Time between two broadcasts of all frames \[ms\].
 pub const PERIOD_MS: u64 = 20;
-/// Age from which a sample is not known any more \[control periods\].
+/// Age from which a sample counts as unknown \[control periods\].
 pub const STALE_TICKS: u16 = 250;
 
-/// Identifiers of the frames, the most urgent first.
+/// Identifier of the state frame; lower identifiers win arbitration, so the most urgent frame is first.
 pub const STATE: u16 = 0x320;
-/// As of [`STATE`].
+/// Identifier of the motion frame.
 pub const MOTION: u16 = 0x321;
-/// As of [`STATE`].
+/// Identifier of the causes frame.
 pub const CAUSES: u16 = 0x322;
 
 /// One unit of the speed \[m/s\].
@@ -33,61 +33,61 @@ pub const TORQUE_NM: f32 = 2e-3;
 /// One unit of the authority.
 pub const AUTHORITY: f32 = 5e-3;
 
-/// Stand for a value that is not known.
+/// Codes of an unknown value.
 const UNKNOWN: i16 = i16::MIN;
 const UNKNOWN_U8: u8 = u8::MAX;
 
 /// A data frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// Its identifier, 11 bits.
+    /// Identifier, 11 bits.
     pub identifier: u16,
-    /// Its data.
+    /// Data bytes.
     pub bytes: [u8; 8],
 }
 
-/// Where the controller stands.
+/// State of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// Its mode.
+    /// Mode of the controller.
     pub mode: Mode,
-    /// Whether the motor takes torque.
+    /// Whether the motor accepts torque.
     pub driven: bool,
-    /// Whether the rider's switch asks for assist.
+    /// Whether the rider's switch requests assist.
     pub engage: bool,
-    /// What is to be done next in the polarity check.
+    /// Next step of the polarity check.
     pub polarity: PolarityStep,
-    /// The limits that changed the torque.
+    /// Limits that changed the torque.
     pub limits: ActiveLimits,
-    /// The part of the torque that is permitted, 0 to 1.
+    /// Authority, 0 to 1.
     pub authority: Option<f32>,
     /// Rate of the rear wheel times its radius \[m/s\], positive forward.
     pub speed_m_s: Option<f32>,
-    /// The lowest byte of the number of control steps: while it stands still, so does control.
+    /// Lowest byte of the control step counter; a constant value means that control has stopped.
     pub steps: u8,
 }
 
-/// How the bicycle moves, in its own axes: positive to the right.
+/// Motion of the bicycle in its own axes: positive to the right.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// The gyro's rate about the forward axis \[rad/s\].
+    /// Gyro rate about the forward axis \[rad/s\].
     pub roll_rate_rad_s: Option<f32>,
     /// Steer angle \[rad\].
     pub steer_rad: Option<f32>,
-    /// The torque that is asked of the motor \[N m\].
+    /// Torque requested from the motor \[N m\].
     pub commanded_nm: Option<f32>,
-    /// The torque that the motor says it gives \[N m\].
+    /// Torque reported by the motor \[N m\].
     pub measured_nm: Option<f32>,
 }
 
 impl Motion {
-    /// From the sensors' own axes, zeros and signs, and the motor's.
+    /// Converts from the axes, zeros and signs of the sensors and the motor.
     pub fn of(calibration: &CalibrationPlan, frame: &SensorFrame, command: &Command) -> Self {
         let [roll_rate_rad_s, ..] = calibration.gyro(&frame.gyro_rad_s);
         Self {
             roll_rate_rad_s: fresh(roll_rate_rad_s, frame.gyro_rad_s.age_ticks),
             steer_rad: fresh(calibration.steer(&frame.steer_rad), frame.steer_rad.age_ticks),
-            // A sign that is applied twice is gone.
+            // The sign is its own inverse: the calibration converts in both directions.
             commanded_nm: Some(calibration.motor(command.torque_nm)),
             measured_nm: fresh(
                 calibration.motor_report(&frame.motor_torque_nm),
@@ -97,24 +97,24 @@ impl Motion {
     }
 }
 
-/// A sensor's value while it is known.
+/// The value of a sample younger than [`STALE_TICKS`], else `None`.
 pub fn fresh(value: f32, age_ticks: u16) -> Option<f32> {
     (age_ticks < STALE_TICKS).then_some(value)
 }
 
-/// What a frame says.
+/// Content of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Message {
-    /// Where the controller stands.
+    /// State of the controller.
     State(State),
-    /// How the bicycle moves.
+    /// Motion of the bicycle.
     Motion(Motion),
-    /// Everything that stands in the way of the torque, or is worth knowing.
+    /// All causes that prevent or reduce torque, or are reported.
     Causes(Causes),
 }
 
 impl Message {
-    /// Its frame.
+    /// Encodes the message as a frame.
     pub fn frame(&self) -> Frame {
         match self {
             Message::State(state) => {
@@ -136,7 +136,7 @@ impl Message {
         }
     }
 
-    /// What a frame says; `None` if its identifier, mode or move is none of the board's.
+    /// Decodes a frame; `None` if the identifier, the mode or the polarity step is unknown.
     pub fn of(frame: &Frame) -> Option<Self> {
         let [b0, b1, b2, b3, b4, b5, b6, b7] = frame.bytes;
         match frame.identifier {
@@ -162,7 +162,7 @@ impl Message {
     }
 }
 
-/// A value in units of `unit`, from -32767 to 32767.
+/// A value in units of `unit`, saturated to -32767..=32767.
 fn word(value: Option<f32>, unit: f32) -> i16 {
     match value {
         Some(value) if !value.is_nan() => (F32(value / unit).round().0 as i16).max(-i16::MAX),
@@ -170,13 +170,13 @@ fn word(value: Option<f32>, unit: f32) -> i16 {
     }
 }
 
-/// The value of a word.
+/// Value of a word in units of `unit`; `None` if unknown.
 fn value(bytes: [u8; 2], unit: f32) -> Option<f32> {
     let word = i16::from_le_bytes(bytes);
     (word != UNKNOWN).then_some(f32::from(word) * unit)
 }
 
-/// A part from 0 to 1 in units of [`AUTHORITY`].
+/// A fraction from 0 to 1 in units of [`AUTHORITY`].
 fn part(part: Option<f32>) -> u8 {
     match part {
         Some(part) if !part.is_nan() => F32(part.clamp(0.0, 1.0) / AUTHORITY).round().0 as u8,
@@ -184,13 +184,13 @@ fn part(part: Option<f32>) -> u8 {
     }
 }
 
-/// The mode of a number on the bus.
+/// Mode by its number on the bus.
 fn mode(number: u8) -> Option<Mode> {
     use Mode::*;
     [Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault].into_iter().find(|mode| *mode as u8 == number)
 }
 
-/// The move of a number on the bus.
+/// Polarity step by its number on the bus.
 fn polarity(number: u8) -> Option<PolarityStep> {
     use PolarityStep::*;
     [Lean, Steer, Push, Passed, Wrong].into_iter().find(|next| *next as u8 == number)

@@ -1,36 +1,37 @@
-//! The fate of frames that are put into a mailbox of the CAN controller, which tries each of them once.
+//! Counts sent and lost frames of a CAN transmit mailbox that tries each frame once.
 
-/// What the chip says of a mailbox.
+/// Status of a transmit mailbox, as the chip reports it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mailbox {
-    /// Nothing waits in it.
+    /// No frame is pending.
     pub empty: bool,
-    /// The last frame left it, sent or not. Forgotten when the next is put in.
+    /// The last request has completed, sent or not. Cleared by the next request.
     pub completed: bool,
-    /// That frame was sent, and another node took it.
+    /// That frame was sent and acknowledged by another node.
     pub acknowledged: bool,
 }
 
-/// What to do with a mailbox when a new frame is due.
+/// Action on the mailbox when a new frame is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Put the new frame in.
+    /// Load the new frame.
     Put,
-    /// Take the old frame out, so that it does not go out late; the new one is dropped.
+    /// Abort the pending frame, so that it is not sent late; the new frame is dropped.
     Abort,
 }
 
-/// Frames since the start, wrapping.
+/// Frame counters since the start, wrapping.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Sent, and taken by another node.
+    /// Sent and acknowledged.
     pub sent: u32,
-    /// Dropped, aborted, or sent and not taken.
+    /// Dropped, aborted, or not acknowledged.
     pub lost: u32,
 }
 
 impl Counts {
-    /// A new frame is due: counts the one before, and this one if it is dropped. Each frame is counted once.
+    /// Called when a new frame is due: counts the previous frame, and the new one if it is dropped. Each frame counts
+    /// once.
     pub fn step(&mut self, mailbox: Mailbox) -> Action {
         if mailbox.completed && mailbox.acknowledged {
             self.sent = self.sent.wrapping_add(1);

@@ -1,15 +1,15 @@
-//! The last faults, in memory that keeps its bits through a reset.
+//! Ring of the last fault records, in memory that survives a reset.
 //!
-//! The memory may hold anything: at power-on it is noise. Every slot has a check of its own, so that what was
-//! whole before stays readable, whatever happened while another was written.
+//! The memory is random at power-on. Every slot has its own CRC, so that an intact record stays readable if writing
+//! another one is interrupted.
 //!
 //! | bytes | |
 //! | --- | --- |
 //! | 0..4 | CRC-32 of the next 10 |
-//! | 4..8 | a mark |
-//! | 8..12 | how often the program started |
-//! | 12..14 | faults noted since the memory was last empty, wrapping; the slot of the next follows from it |
-//! | then for each slot | CRC-32 of what follows, u16 length, the record as of [`crate::Message::Fault`] |
+//! | 4..8 | magic number with the layout |
+//! | 8..12 | number of program starts |
+//! | 12..14 | faults recorded since the memory was last empty, wrapping; gives the slot of the next record |
+//! | then for each slot | CRC-32 of the rest of the slot's content, u16 length, the record as in [`crate::Message::Fault`] |
 //! | at the end | CRC-32 of the next 17; u32 steps, u32 us of the frame, u64 causes, u8 mode of the last control step |
 
 use crate::bytes::{Reader, Writer};
@@ -18,22 +18,22 @@ use crate::report::{FAULT_BYTES, FaultRecord};
 use crate::telemetry;
 use control::{Causes, Mode};
 
-/// Faults that are kept; the oldest gives way.
+/// Number of stored faults; a new one replaces the oldest.
 pub const SLOTS: usize = 8;
-/// Bytes of memory it takes.
+/// Size of the ring \[bytes\].
 pub const RING_BYTES: usize = LAST + 4 + STEP;
-/// Where the last control step stands, and its bytes.
+/// Offset of the last control step's entry, and its length without CRC \[bytes\].
 const LAST: usize = HEAD + SLOTS * SLOT;
 const STEP: usize = 17;
 const HEAD: usize = 14;
 const SLOT: usize = 4 + 2 + FAULT_BYTES;
-/// Says that this is such a ring, of this layout.
+/// Magic number of a ring with this layout.
 const MARK: u32 = 0x5341_4601;
 
-/// Where the controller stood at a control step; the default is that of none.
+/// State of the controller at a control step; the default means no step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LastStep {
-    /// Control steps done.
+    /// Number of control steps.
     pub steps: u32,
     /// [`control::SensorFrame::now_us`] of its frame \[us\], wrapping.
     pub frame_us: u32,
@@ -43,7 +43,7 @@ pub struct LastStep {
     pub mode: Mode,
 }
 
-/// Keeps where the controller stands, so that the next start can tell if nobody else could.
+/// Stores the state of the last control step, so that the start after a watchdog reset can report it.
 pub fn stepped(memory: &mut [u8; RING_BYTES], last: &LastStep) {
     let Some((check, step)) = memory.get_mut(LAST..).and_then(|bytes| bytes.split_at_mut_checked(4)) else {
         return;
@@ -56,7 +56,7 @@ pub fn stepped(memory: &mut [u8; RING_BYTES], last: &LastStep) {
     Writer::new(check).u32(CRC.checksum(step));
 }
 
-/// Where the controller stood last, also before a reset; `None` if that is not whole.
+/// State of the last control step, also of before a reset; `None` if its CRC is wrong.
 pub fn last_step(memory: &[u8; RING_BYTES]) -> Option<LastStep> {
     let mut from = Reader(memory.get(LAST..)?);
     let check = from.u32()?;
@@ -65,7 +65,7 @@ pub fn last_step(memory: &[u8; RING_BYTES]) -> Option<LastStep> {
     whole.then_some(LastStep { steps, frame_us, causes, mode: telemetry::mode(from.u8()?)? })
 }
 
-/// What the head says.
+/// Header of the ring.
 #[derive(Clone, Copy, Default)]
 struct Head {
     starts: u32,
@@ -90,8 +90,8 @@ impl Head {
     }
 }
 
-/// To be called once at every start: what is no ring becomes an empty one. How often the program has started since
-/// then, this time included.
+/// Initialises the ring; call once at every start. Memory with an invalid header becomes an empty ring. Returns the
+/// number of starts since then, this one included.
 pub fn start(memory: &mut [u8; RING_BYTES]) -> u32 {
     let head = Head::read(memory).unwrap_or_else(|| {
         memory.fill(0);
@@ -102,7 +102,7 @@ pub fn start(memory: &mut [u8; RING_BYTES]) -> u32 {
     starts
 }
 
-/// Keeps a fault; before [`start`] nothing is kept.
+/// Stores a fault record; does nothing before [`start`].
 pub fn note(memory: &mut [u8; RING_BYTES], fault: &FaultRecord<'_>) {
     let Some(head) = Head::read(memory) else { return };
     let at = HEAD + usize::from(head.noted) % SLOTS * SLOT;
@@ -118,12 +118,12 @@ pub fn note(memory: &mut [u8; RING_BYTES], fault: &FaultRecord<'_>) {
     Head { noted: head.noted.wrapping_add(1), ..head }.write(memory);
 }
 
-/// Faults noted since the memory was last empty, wrapping; 0 where there is no ring.
+/// Faults recorded since the memory was last empty, wrapping; 0 without a valid ring.
 pub fn noted(memory: &[u8; RING_BYTES]) -> u16 {
     Head::read(memory).map_or(0, |head| head.noted)
 }
 
-/// The faults that are kept and whole, the newest first.
+/// The stored faults with a valid CRC, newest first.
 pub fn faults(memory: &[u8; RING_BYTES]) -> impl Iterator<Item = FaultRecord<'_>> {
     let noted = noted(memory);
     (0..SLOTS).filter_map(move |back| {
@@ -137,7 +137,7 @@ pub fn faults(memory: &[u8; RING_BYTES]) -> impl Iterator<Item = FaultRecord<'_>
     })
 }
 
-/// Forgets the faults, not how often the program started.
+/// Deletes all faults; keeps the number of starts.
 pub fn clear(memory: &mut [u8; RING_BYTES]) {
     let Some(head) = Head::read(memory) else { return };
     memory.fill(0);

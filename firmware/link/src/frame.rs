@@ -1,72 +1,73 @@
-//! Frames: what is said, made safe to find and to trust in a stream of bytes.
+//! Framing: encodes payloads as checked frames, and finds frames in a stream of bytes.
 //!
-//! Plain, a frame is version, kind, sequence number, payload and the CRC-32 of all of them. On the line
-//! it is stuffed (COBS, Cheshire and Baker 1999), so that the byte 0 stands only between frames: one
-//! before and one after each, so that damage to the end of one can't take the next one with it.
+//! A plain frame is version, kind, sequence number, payload and the CRC-32 of all of them. On the line it is encoded
+//! with COBS (Cheshire and Baker 1999), so that the byte 0 occurs only between frames. Each frame has a 0 before and
+//! after it, so that damage at its end does not affect the next frame.
 
 use crate::bytes::{Reader, Writer};
 use cobs::{DecodeResult, DecoderState};
 use core::{mem, slice};
 use crc::{CRC_32_ISO_HDLC, Crc};
 
-/// The version spoken here. A frame's first byte, and the CRC its last four, in every version there will be.
+/// Protocol version. In every version, the first byte of a frame is the version and the last four are the CRC.
 pub const VERSION: u8 = 1;
-/// Most bytes that a frame may say.
+/// Largest payload \[bytes\].
 pub const MAX_PAYLOAD: usize = 320;
-/// Version, kind and sequence number.
+/// Length of version, kind and sequence number \[bytes\].
 const HEAD: usize = 4;
-/// Most bytes of a frame that is not stuffed.
+/// Largest plain frame \[bytes\].
 const MAX_PLAIN: usize = HEAD + MAX_PAYLOAD + 4;
-/// Most bytes of a frame on the line.
+/// Largest frame on the line \[bytes\].
 pub const MAX_FRAME: usize = cobs::max_encoding_length(MAX_PLAIN) + 2;
 
-/// The check of frames, keys and configurations: CRC-32 as in Ethernet and zip.
+/// CRC of frames, keys and configurations: CRC-32 as in Ethernet and zip.
 pub const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// A frame that was received whole.
+/// A received frame with a valid CRC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// What kind of message it is; see [`crate::message`].
+    /// Kind of the message; see [`crate::message`].
     pub kind: u8,
-    /// Its number; an answer has that of what it answers.
+    /// Sequence number; an answer repeats that of its request.
     pub sequence: u16,
-    /// What it says.
+    /// Payload.
     pub payload: &'a [u8],
 }
 
-/// What came in.
+/// Result of decoding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Received<'a> {
     /// A frame of this version.
     Frame(Frame<'a>),
-    /// A frame that is whole, but of another version: what it says is not known.
+    /// A frame with a valid CRC, but of another version; its content is unknown.
     WrongVersion {
-        /// The version it is of.
+        /// Version of the frame.
         theirs: u8,
     },
 }
 
-/// What was received and dropped, each since the start, wrapping.
+/// Counters of dropped frames since the start, wrapping.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dropped {
-    /// No frame at all: wrongly stuffed, or too short.
+    /// Not a frame: invalid COBS encoding, or too short.
     pub garbled: u32,
-    /// Longer than any frame.
+    /// Longer than the largest frame.
     pub too_long: u32,
-    /// Not what was sent: its CRC is another.
+    /// Wrong CRC.
     pub bad_crc: u32,
-    /// Whole, but of another version.
+    /// Valid CRC, but another version.
     pub wrong_version: u32,
 }
 
-/// Puts a frame on the line into `to`; how many bytes it takes. `None`: no room, or `payload` is too long.
+/// Encodes a frame into `to` and returns its length on the line \[bytes\]. `None` if it does not fit, or `payload` is
+/// too long.
 ///
-/// [`MAX_FRAME`] bytes are always room enough.
+/// [`MAX_FRAME`] bytes always suffice.
 pub fn encode(kind: u8, sequence: u16, payload: &[u8], to: &mut [u8]) -> Option<usize> {
     encode_with(kind, sequence, |w| w.put(payload), to)
 }
 
-/// As [`encode`], of a payload that is written by `fill`.
+/// As [`encode`], with a payload that is written by `fill`.
 pub fn encode_with(
     kind: u8,
     sequence: u16,
@@ -98,7 +99,7 @@ pub fn encode_with(
 pub struct Decoder {
     stuffing: DecoderState,
     plain: [u8; MAX_PLAIN],
-    /// Bytes of the frame so far; more than [`MAX_PLAIN`] if it is too long.
+    /// Length of the frame so far \[bytes\]; more than [`MAX_PLAIN`] if it is too long.
     length: usize,
     dropped: Dropped,
 }
@@ -110,27 +111,27 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// What was dropped so far.
+    /// Counters of dropped frames.
     pub fn dropped(&self) -> Dropped {
         self.dropped
     }
 
-    /// Takes bytes from the front of `from`, all of them or up to where one may have ended a frame; what they
-    /// completed, if they did. To be called as long as there are any.
+    /// Consumes bytes from the front of `from`, up to the end of a frame or all of them; returns the completed frame,
+    /// if any. Call repeatedly until `from` is empty.
     ///
-    /// Any byte may come. What is no frame is dropped and counted; the frame after the next 0 is found again.
+    /// Accepts any byte. Bytes that form no frame are dropped and counted; decoding resumes after the next 0.
     pub fn take(&mut self, from: &mut &[u8]) -> Option<Received<'_>> {
         if self.fill(from) { self.complete() } else { None }
     }
 
-    /// Takes the next byte; what it completes, if it does. As [`Decoder::take`].
+    /// Consumes one byte; returns the frame that it completes, if any. See [`Decoder::take`].
     pub fn feed(&mut self, byte: u8) -> Option<Received<'_>> {
         self.take(&mut slice::from_ref(&byte))
     }
 
-    /// Takes bytes, up to the end of a frame if one ends; whether it does.
+    /// Consumes bytes up to the end of a frame; returns whether a frame ended.
     fn fill(&mut self, from: &mut &[u8]) -> bool {
-        // In registers while the bytes pass.
+        // Local copies stay in registers during the loop.
         let (mut stuffing, mut length) = (mem::take(&mut self.stuffing), self.length);
         let mut bytes = from.iter();
         let complete = bytes.by_ref().any(|byte| {

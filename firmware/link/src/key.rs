@@ -1,16 +1,15 @@
-//! A parameter's name: its group and its own name, a dot between them.
+//! Parameter keys: group and name, joined by a dot.
 
 use crate::frame::CRC;
 use control::param::ParamSpec;
 use core::fmt;
 
-/// A parameter's name in two parts, so that no memory is needed to put them together. Keys are equal
-/// when they read the same, wherever they are parted.
+/// A parameter's key in two parts, so that joining them needs no memory. Keys are equal if their joined text is equal.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Key<'a> {
     /// The group, dotted; empty for none.
     pub group: &'a str,
-    /// Its own name; a key that came over the link is here as a whole.
+    /// Name within the group; a key received over the link is stored here whole.
     pub name: &'a str,
 }
 
@@ -20,27 +19,27 @@ impl<'a> Key<'a> {
         Key { group: leaf.group, name: leaf.name }
     }
 
-    /// A key that is written out.
+    /// A key given as one text.
     pub const fn whole(name: &'a str) -> Self {
         Key { group: "", name }
     }
 
-    /// What is read one after the other.
+    /// The parts of the joined text.
     pub fn parts(self) -> impl Iterator<Item = &'a str> + Clone {
         let dot = if self.group.is_empty() { "" } else { "." };
         [self.group, dot, self.name].into_iter()
     }
 
-    /// The number it has in the store: the CRC-32 of what it reads. It never changes as long as the name
-    /// does not; a test holds that no two parameters share one.
+    /// Identifier in the store: the CRC-32 of the joined text. It changes only with the name; a test checks that it
+    /// is unique.
     pub fn hash(self) -> u32 {
         let mut digest = CRC.digest();
         self.parts().for_each(|part| digest.update(part.as_bytes()));
         digest.finalize()
     }
 
-    /// The unit its name ends with; empty for a plain number, or one whose unit is that of its sensor. One that begins
-    /// with a stroke is per that, of whatever the sensor measures.
+    /// Unit, from the suffix of the name. Empty for a dimensionless number, or if the unit is that of the sensor. A
+    /// unit that begins with `/` is per that unit, of the sensor's unit.
     pub fn unit(self) -> &'static str {
         let ends = |suffix: &str| {
             let before = self.name.strip_suffix(suffix);
@@ -50,7 +49,7 @@ impl<'a> Key<'a> {
     }
 }
 
-/// The endings of names and their units, the longer before the shorter.
+/// Suffixes of names and their units, longer ones first.
 const UNITS: &[(&str, &str)] = &[
     ("per_nm", "/(N m)"),
     ("per_s", "/s"),

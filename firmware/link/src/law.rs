@@ -1,5 +1,5 @@
-//! The law as bytes: its number, its slope and the points of its table, as `control::wire` puts it
-//! into a configuration, but only as many points as there are.
+//! Encoding of the control law: number, slope and points of the gain schedule, as in `control::wire`, but only with the
+//! points in use.
 
 use crate::bytes::{Reader, Writer};
 use crate::parameter_list::LAW;
@@ -8,15 +8,15 @@ use control::param::ParamError;
 use control::{GainSchedule, Law};
 use heapless::Vec;
 
-/// Most bytes of a law: number, slope, count, and speed and gain of each point.
+/// Largest encoded law \[bytes\]: number, slope, count, and speed and gain of each point.
 pub const LAW_BYTES: usize = 1 + 4 + 1 + 8 * TABLE_POINTS;
 
-/// Why bytes are no law.
+/// Error of decoding a law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoLaw {
-    /// Too few bytes, or more points than there is room for.
+    /// Too few bytes, or too many points.
     Malformed,
-    /// A law that does not exist, or one with a value outside its range.
+    /// An unknown law, or a value outside its range.
     Refused(ParamError),
 }
 

@@ -1,45 +1,46 @@
-//! The board's link to an engineer's computer, and the store its parameters are kept in.
+//! The board's serial link to the host, its CAN broadcasts, and its parameter store in flash.
 //!
-//! The firmware and the host tool are built with this same crate, so neither can mean something else
-//! than the other. `docs/link.md` has the tables of the bytes.
+//! Firmware and host tool share this crate, so that both use the same encoding. `docs/link.md` has the tables of the
+//! bytes.
 //!
 //! * [`frame`]: bytes on the line to checked frames and back;
-//! * [`message`]: what a frame can say, with [`telemetry`] and [`report`] as the larger ones;
-//! * [`leaves`]: every parameter by its [`key`], the [`law`] too; [`page`] lists them, [`parameters`]
-//!   answers what is asked of them, or with a [`rejection`];
+//! * [`message`]: the messages, with [`telemetry`] and [`report`] as the larger ones;
+//! * [`parameter_list`]: every parameter by its [`key`], the [`law`] included; [`page`] lists them, [`requests`]
+//!   answers requests about them, or with a [`rejection`];
 //! * [`store`]: the parameters in flash, as a [`record`], and the encoder's offset, as an [`alignment`];
-//! * [`ring`]: the last faults, in memory that keeps them through a reset;
-//! * [`sender`]: what waits to go out, and what is dropped when too much does;
-//! * [`lockstep`]: what goes over in a control period when the board is emulated.
+//! * [`fault_log`]: the last faults, in memory that survives a reset;
+//! * [`tx_queue`]: frames to be sent, and which are dropped if there are too many;
+//! * [`can`]: the frames on CAN, with [`can_bit_timing`] and [`can_mailbox`] for the chip's controller;
+//! * [`lockstep`]: data exchanged in each control period when the board is emulated.
 //!
-//! A board takes each byte that comes in, and sends each that goes out:
+//! A board decodes each received byte and sends each queued byte:
 //!
 //! ```
-//! use link::{Decoder, Message, Received, Sender, page::PAGE_BYTES, requests};
+//! use link::{Decoder, Message, Received, TxQueue, page::PAGE_BYTES, requests};
 //!
-//! fn take(byte: u8, decoder: &mut Decoder, config: &mut control::Config, engaged: bool, sender: &mut Sender<1024, 1024>) {
+//! fn take(byte: u8, decoder: &mut Decoder, config: &mut control::Config, engaged: bool, queue: &mut TxQueue<1024, 1024>) {
 //!     let Some(received) = decoder.feed(byte) else { return };
 //!     let mut room = [0; PAGE_BYTES];
 //!     match requests::request(&received) {
 //!         Ok((sequence, request)) => {
 //!             let defaults = control::Config::product();
 //!             if let Some(answer) = requests::answer(&defaults, config, engaged, &request, &mut room) {
-//!                 sender.answer(&answer, sequence);
+//!                 queue.answer(&answer, sequence);
 //!             }
 //!         }
 //!         Err(wrong) => {
 //!             let (sequence, answer) = wrong.answer();
-//!             sender.answer(&answer, sequence);
+//!             queue.answer(&answer, sequence);
 //!         }
 //!     }
 //! }
 //!
-//! let (mut line, mut config, mut sender) = ([0; 64], control::Config::product(), Sender::new(20));
+//! let (mut line, mut config, mut queue) = ([0; 64], control::Config::product(), TxQueue::new(20));
 //! let (mut board, mut host) = (Decoder::default(), Decoder::default());
 //! let used = Message::Get { key: link::Key::whole("rate_hz") }.encode(7, &mut line).unwrap();
-//! line[..used].iter().for_each(|byte| take(*byte, &mut board, &mut config, true, &mut sender));
+//! line[..used].iter().for_each(|byte| take(*byte, &mut board, &mut config, true, &mut queue));
 //! let mut answers = 0;
-//! while let Some(byte) = sender.next_byte() {
+//! while let Some(byte) = queue.next_byte() {
 //!     if let Some(Received::Frame(frame)) = host.feed(byte) {
 //!         let answer = Message::Value { key: link::Key::whole("rate_hz"), value: Some(1000.0) };
 //!         assert_eq!((frame.sequence, Message::decode(&frame)), (7, Ok(answer)));
@@ -49,8 +50,7 @@
 //! assert_eq!(answers, 1);
 //! ```
 //!
-//! Plain data in, plain data out: no allocation, no `unsafe`, no hardware. Any byte may come in at any
-//! place; none makes the crate panic.
+//! Plain data in, plain data out: no allocation, no `unsafe`, no hardware. No received byte makes the crate panic.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,37 +1,37 @@
-//! Processor in the loop: what host and board hand each other once every control period.
+//! Processor in the loop: the data that host and emulated board exchange in every control period.
 //!
-//! The board's program runs in an emulator whose clock stands still while it waits for the host, so that
-//! neither is ever ahead. In each period the board hands over first, then it takes:
+//! The firmware runs in an emulator whose clock stops while it waits for the host, so that neither runs ahead. In each
+//! period the board sends first, then it receives:
 //!
 //! | from the board | | to the board | |
 //! | --- | --- | --- | --- |
 //! | u32 | time since the emulator's start \[ms\], resets of the chip included | u16 | bytes of the loop |
-//! | u16 | how often the chip started | u16 | bytes of the line |
+//! | u16 | number of starts of the chip | u16 | bytes of the line |
 //! | u16 | bytes of the loop | | the loop's bytes |
 //! | u16 | bytes of the line | | the line's bytes |
 //! | | the loop's bytes, the line's bytes | | |
 //!
-//! The *loop* stands for sensors and motor: frames of [`crate::Message::PilFrame`] and
-//! [`crate::Message::PilCommand`]. The *line* is the engineer's, as on any board. Both are bytes that may
-//! be damaged, late or missing; what is in this table is not.
+//! The *loop* carries the sensor frames and motor commands: [`crate::Message::PilFrame`] and
+//! [`crate::Message::PilCommand`]. The *line* is the engineer's serial link, as on any board. Both can be damaged,
+//! late or missing; the lengths and times of this table can't.
 
 use crate::bytes::{Reader, Writer};
 
-/// Most bytes handed over at once, head included: a pipe takes them in one piece.
+/// Largest exchange, header included \[bytes\]: small enough for one atomic write to a pipe.
 pub const MAX_CHUNK: usize = 4096;
-/// Longest that a motor goes on with a command: without a newer one it gives no torque \[ms\].
+/// Time after which the motor gives no torque without a new command \[ms\].
 pub const COMMAND_TIMEOUT_MS: u32 = 5;
-/// Bytes before those of loop and line, from the board.
+/// Length of the board's header \[bytes\].
 pub const BOARD_HEAD: usize = 10;
-/// Bytes before those of loop and line, to the board.
+/// Length of the host's header \[bytes\].
 pub const HOST_HEAD: usize = 4;
 
-/// What the board hands over.
+/// Data from the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FromBoard<'a> {
-    /// Time since the emulator's start, whatever was reset since \[ms\].
+    /// Time since the emulator's start, resets of the chip included \[ms\].
     pub time_ms: u32,
-    /// How often the chip started, 1 at first.
+    /// Number of starts of the chip, from 1.
     pub starts: u16,
     /// Bytes of the loop.
     pub motor: &'a [u8],
@@ -39,7 +39,7 @@ pub struct FromBoard<'a> {
     pub line: &'a [u8],
 }
 
-/// What the host hands over.
+/// Data from the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ToBoard<'a> {
     /// Bytes of the loop.
@@ -49,7 +49,7 @@ pub struct ToBoard<'a> {
 }
 
 impl<'a> FromBoard<'a> {
-    /// Writes it; how many bytes it takes, `None` if there is no room.
+    /// Encodes the data and returns the length \[bytes\]; `None` if it does not fit.
     pub fn encode(&self, to: &mut [u8]) -> Option<usize> {
         let mut writer = Writer::new(to);
         writer.u32(self.time_ms);
@@ -57,7 +57,7 @@ impl<'a> FromBoard<'a> {
         put(&mut writer, self.motor, self.line)
     }
 
-    /// Reads it; `None` if these are not just its bytes.
+    /// Decodes the data; `None` if the length is wrong.
     pub fn decode(bytes: &'a [u8]) -> Option<Self> {
         let mut from = Reader(bytes);
         let (time_ms, starts) = (from.u32()?, from.u16()?);
@@ -67,12 +67,12 @@ impl<'a> FromBoard<'a> {
 }
 
 impl<'a> ToBoard<'a> {
-    /// Writes it; how many bytes it takes, `None` if there is no room.
+    /// Encodes the data and returns the length \[bytes\]; `None` if it does not fit.
     pub fn encode(&self, to: &mut [u8]) -> Option<usize> {
         put(&mut Writer::new(to), self.sensors, self.line)
     }
 
-    /// Reads it; `None` if these are not just its bytes.
+    /// Decodes the data; `None` if the length is wrong.
     pub fn decode(bytes: &'a [u8]) -> Option<Self> {
         let (sensors, line) = both(&mut Reader(bytes))?;
         Some(Self { sensors, line })

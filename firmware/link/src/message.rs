@@ -1,9 +1,8 @@
-//! What a frame can say.
+//! The messages of the link, and their encoding.
 //!
-//! Fixed little-endian fields, as in `control::wire`, whose bytes of frames, commands and laws these are:
-//! one table tells every byte, no type of `control` needs a serialiser, and the largest size of each is
-//! known when compiling. Kinds below 0x80 go to the board, the others come from it. Bytes after those that
-//! are known are passed over, so that a message may grow at its end without a new version.
+//! Fixed little-endian fields; frames, commands and laws are encoded as in `control::wire`. The largest size of each
+//! message is a constant, and no type of `control` needs a serialiser. Kinds below 0x80 go to the board, the others
+//! come from it. Bytes after the known ones are ignored, so that a message can grow at its end without a new version.
 
 use crate::bytes::{Reader, Writer};
 use crate::frame::{Frame, MAX_PAYLOAD, encode_with};
@@ -18,102 +17,103 @@ use control::{Command, SensorFrame};
 /// A message, to or from the board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Message<'a> {
-    /// To the board: who are you? Answer: [`Message::Hello`].
+    /// To the board: request its identity. Answer: [`Message::Hello`].
     AskHello,
-    /// To the board: list the parameters beginning with this one. Answer: [`Message::Page`].
+    /// To the board: list the parameters from an index. Answer: [`Message::Page`].
     List {
-        /// The place in the list of the first that is wanted.
+        /// Index of the first parameter.
         from: u16,
     },
-    /// To the board: a parameter's value. Answer: [`Message::Value`].
+    /// To the board: read a parameter. Answer: [`Message::Value`].
     Get {
-        /// Which.
+        /// Key of the parameter.
         key: Key<'a>,
     },
     /// To the board: set a parameter. Answer: [`Message::Value`].
     Set {
-        /// Which.
+        /// Key of the parameter.
         key: Key<'a>,
-        /// To what; `None` switches a limit off.
+        /// New value; `None` switches a limit off.
         value: Option<f32>,
     },
-    /// To the board: the whole law. Answer: [`Message::Law`].
+    /// To the board: read the whole law. Answer: [`Message::Law`].
     GetLaw,
-    /// To the board: set the whole law, its bytes as of [`crate::law`]. Answer: [`Message::Law`].
+    /// To the board: set the whole law, encoded as in [`crate::law`]. Answer: [`Message::Law`].
     SetLaw(&'a [u8]),
-    /// To the board: keep the parameters in flash. Answer: [`Message::Done`].
+    /// To the board: store the parameters in flash. Answer: [`Message::Done`].
     Store,
-    /// To the board: all parameters to their defaults, not yet in flash. Answer: [`Message::Done`].
+    /// To the board: reset all parameters to their defaults, without storing them. Answer: [`Message::Done`].
     Reset,
-    /// To the board: a fault that was kept. Answer: [`Message::StoredFault`].
+    /// To the board: read a stored fault. Answer: [`Message::StoredFault`].
     ListFaults {
-        /// Its place, the newest at 0.
+        /// Index of the fault, 0 for the newest.
         from: u16,
     },
-    /// To the board: forget the faults. Answer: [`Message::Done`].
+    /// To the board: delete the stored faults. Answer: [`Message::Done`].
     ClearFaults,
-    /// To the board, processor in the loop: begin anew, with the configuration whose bytes came before if they are
-    /// all there, else with the one in force. Answer: [`Message::Done`].
+    /// To the board, processor in the loop: restart the controller with the configuration received before, if
+    /// complete, else with the current one. Answer: [`Message::Done`].
     PilReset,
-    /// To the board, processor in the loop: bytes of a configuration as of [`control::wire::encode_config`]. No answer.
+    /// To the board, processor in the loop: a part of an encoded [`control::wire::encode_config`]. No answer.
     PilConfig {
-        /// The place of the first of them.
+        /// Offset of the first byte.
         at: u16,
         /// The bytes.
         bytes: &'a [u8],
     },
-    /// To the board, processor in the loop: a control step of these sensors. Answer: [`Message::PilCommand`].
+    /// To the board, processor in the loop: run a control step with these sensors. Answer: [`Message::PilCommand`].
     PilFrame(SensorFrame),
-    /// From the board: who it is.
+    /// From the board: its identity.
     Hello(Hello<'a>),
-    /// From the board: a part of the list.
+    /// From the board: a part of the parameter list.
     Page(Page<'a>),
-    /// From the board: a parameter's value, after it was set if it was.
+    /// From the board: a parameter's value, after a change if it was set.
     Value {
-        /// Which.
+        /// Key of the parameter.
         key: Key<'a>,
-        /// Its value; `None` is a limit that is off.
+        /// Value; `None` is a limit that is off.
         value: Option<f32>,
     },
-    /// From the board: the law, its bytes as of [`crate::law`].
+    /// From the board: the law, encoded as in [`crate::law`].
     Law(&'a [u8]),
-    /// From the board: it is done.
+    /// From the board: the request is done.
     Done,
-    /// From the board: it is not done, and why.
+    /// From the board: the request is rejected, with the reason.
     Refused(Rejection<'a>),
-    /// From the board: a frame of another version came in. Its frame tells the version spoken here.
+    /// From the board: a frame of another version was received. The answer's frame has the board's version.
     WrongVersion {
-        /// The version that came in.
+        /// Version of the received frame.
         theirs: u8,
     },
-    /// From the board: a fault that was kept, and how many there are.
+    /// From the board: a stored fault, and the number of stored faults.
     StoredFault(StoredFault<'a>),
-    /// From the board, processor in the loop: the command of a step. Its number is that of the newest sensor frame.
+    /// From the board, processor in the loop: the command of a step. Its sequence number is that of the newest sensor
+    /// frame.
     PilCommand {
         /// The command.
         command: Command,
-        /// The part of the torque that is permitted, 0 to 1.
+        /// Authority, 0 to 1.
         authority: f32,
     },
-    /// From the board, unasked: a control step.
+    /// From the board, unsolicited: a control step.
     Telemetry(Telemetry),
-    /// From the board, unasked: a fault.
+    /// From the board, unsolicited: a fault.
     Fault(FaultRecord<'a>),
-    /// From the board, unasked: words, cut to what a frame holds.
+    /// From the board, unsolicited: a log text, cut to a frame's payload.
     Log(&'a str),
 }
 
-/// Why a whole frame of the right version is no message.
+/// Error of decoding a frame of the right version.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoMessage {
-    /// There is no message of this kind.
+    /// Unknown kind.
     UnknownKind(u8),
-    /// Too few bytes, or a field that means nothing.
+    /// Too few bytes, or an invalid field.
     Malformed(u8),
 }
 
 impl<'a> Message<'a> {
-    /// The number of its kind.
+    /// Number of the kind.
     pub const fn kind(&self) -> u8 {
         match self {
             Message::AskHello => 0x01,
@@ -144,8 +144,8 @@ impl<'a> Message<'a> {
         }
     }
 
-    /// Puts it on the line into `to` as a frame of this number; how many bytes it takes. `None`: no room, or
-    /// a text is too long.
+    /// Encodes the message as a frame of this sequence number and returns its length \[bytes\]. `None` if it does not
+    /// fit, or a text is too long.
     pub fn encode(&self, sequence: u16, to: &mut [u8]) -> Option<usize> {
         encode_with(self.kind(), sequence, |payload| self.fill(payload), to)
     }
@@ -169,7 +169,7 @@ impl<'a> Message<'a> {
             }
             Message::Refused(rejection) => rejection.encode(to),
             Message::WrongVersion { theirs } => to.u8(*theirs),
-            Message::StoredFault(kept) => kept.encode(to),
+            Message::StoredFault(stored) => stored.encode(to),
             Message::PilConfig { at, bytes } => {
                 to.u16(*at);
                 to.put(bytes);
@@ -191,7 +191,7 @@ impl<'a> Message<'a> {
         }
     }
 
-    /// Reads the message of a frame.
+    /// Decodes the message of a frame.
     ///
     /// # Errors
     /// As of [`NoMessage`].

@@ -1,4 +1,4 @@
-//! The list of parameters, as many as one frame holds at a time.
+//! Pages of the parameter list, each as long as one frame allows.
 
 use crate::bytes::{Reader, Writer};
 use crate::frame::MAX_PAYLOAD;
@@ -6,49 +6,49 @@ use crate::key::Key;
 use crate::parameter_list::{Kind, ParameterView, each, get};
 use control::Config;
 
-/// Most bytes of a page's entries: what a frame holds beside the three numbers before them.
+/// Largest size of a page's entries \[bytes\]: a payload less the three numbers before them.
 pub const PAGE_BYTES: usize = MAX_PAYLOAD - 5;
 
 /// A page of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Page<'a> {
-    /// The place of its first entry in the list.
+    /// Index of the first entry in the list.
     pub from: u16,
-    /// How many parameters there are.
+    /// Number of parameters.
     pub total: u16,
-    /// How many of them are on this page; none only past the end.
+    /// Number of entries on this page; zero only past the end.
     pub count: u8,
-    /// The entries, one after the other; [`Page::entries`] reads them.
+    /// Encoded entries; [`Page::entries`] decodes them.
     pub bytes: &'a [u8],
 }
 
-/// A parameter as the list shows it.
+/// A parameter in the list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry<'a> {
-    /// Its name.
+    /// Key.
     pub key: Key<'a>,
-    /// What its numbers mean.
+    /// Meaning of its numbers.
     pub kind: Kind,
-    /// Its value; `None` is a limit that is off.
+    /// Value; `None` is a limit that is off.
     pub value: Option<f32>,
-    /// What a reset makes it.
+    /// Value after a reset.
     pub default: Option<f32>,
     /// Least allowed value.
     pub min: f32,
     /// Largest allowed value.
     pub max: f32,
-    /// The names of a choice, in the order of their numbers, a blank between them; empty for all others.
+    /// Names of a choice, in the order of their numbers, separated by spaces; empty for other kinds.
     pub names: &'a str,
 }
 
 impl Entry<'_> {
-    /// The unit, by the end of its key.
+    /// Unit, from the suffix of the key.
     pub fn unit(&self) -> &'static str {
         self.key.unit()
     }
 }
 
-/// Writes the page that begins with the parameter `from`.
+/// Encodes the page that begins with the parameter of index `from`.
 pub fn fill<'a>(defaults: &Config, config: &Config, from: u16, room: &'a mut [u8; PAGE_BYTES]) -> Page<'a> {
     let (mut total, mut count, mut used, mut full) = (0, 0, 0, false);
     each(&mut config.clone(), |view| {
@@ -85,7 +85,7 @@ fn decode<'a>(from: &mut Reader<'a>) -> Option<Entry<'a>> {
 }
 
 impl<'a> Page<'a> {
-    /// The entries. What can't be read ends them early: fewer than [`Page::count`].
+    /// Decodes the entries. An undecodable entry ends the list early: fewer than [`Page::count`].
     pub fn entries(&self) -> impl Iterator<Item = Entry<'a>> + use<'a> {
         let mut from = Reader(self.bytes);
         (0..self.count).map_while(move |_| decode(&mut from))

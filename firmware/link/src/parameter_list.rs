@@ -1,33 +1,33 @@
-//! Every parameter as one number: listing, getting, setting and storing are the same walk over them.
+//! Visits every parameter as one number; listing, reading, setting and storing use the same visitor.
 
 use crate::key::Key;
 use control::law::LAW_NAMES;
 use control::param::{ParamSpec, ParamVisitor};
 use control::{Config, Law};
 
-/// The law by its name. A law that needs more than its name is set as a whole; see [`crate::law`].
+/// The law by its name. A law that needs more than a name is set as a whole; see [`crate::law`].
 pub const LAW: ParamSpec = ParamSpec::new("", "law", 0.0, (LAW_NAMES.len() - 1) as f32);
 const CL2: ParamSpec = ParamSpec::new("law", "cl2.k", 1e-3, 20.0);
 const BALANCE: ParamSpec = ParamSpec::new("law", "balance-assist.kappa", 1e-3, 20.0);
 
-/// What a parameter's number means.
+/// Meaning of a parameter's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Kind {
     /// A number.
     Number = 0,
-    /// A number that may be off.
+    /// A number that can be off.
     Limit = 1,
-    /// A whole number.
+    /// An integer.
     Count = 2,
     /// 0 is off, 1 is on.
     Switch = 3,
-    /// The place of a name among [`ParameterView::names`].
+    /// Index of a name in [`ParameterView::names`].
     Choice = 4,
 }
 
 impl Kind {
-    /// The kind of a number on the wire.
+    /// Kind by its number on the wire.
     pub const fn numbered(number: u8) -> Option<Self> {
         Some(match number {
             0 => Kind::Number,
@@ -40,47 +40,47 @@ impl Kind {
     }
 }
 
-/// A parameter as the walk shows it.
+/// A parameter as the visitor receives it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterView {
     /// Name and range.
     pub leaf: ParamSpec,
-    /// What its number means.
+    /// Meaning of its number.
     pub kind: Kind,
-    /// The names of a choice; empty for all others.
+    /// Names of a choice; empty for other kinds.
     pub names: &'static [&'static str],
-    /// Its value; `None` for a limit that is off.
+    /// Value; `None` for a limit that is off.
     pub value: Option<f32>,
 }
 
 impl ParameterView {
-    /// Its key.
+    /// Key of the parameter.
     pub fn key(&self) -> Key<'static> {
         Key::of(&self.leaf)
     }
 }
 
-/// Shows every parameter to `to`, the law first, and gives each the value that `to` returns.
+/// Calls `to` with every parameter, the law first, and sets each to the returned value.
 ///
-/// What can't be that value (off, for what is no limit) leaves it as it was. A value inside a group
-/// that is off is forgotten with the group.
+/// A value that the parameter can't have (off, if it is not a limit) leaves it unchanged. A value inside a group that
+/// is off is lost with the group.
 pub fn each(config: &mut Config, mut to: impl FnMut(&ParameterView) -> Option<f32>) {
     law(&mut config.law, &mut Walk(&mut to));
     walk(config, &mut to);
 }
 
-/// As [`each`], but not the law's.
+/// As [`each`], without the law.
 pub fn each_but_law(config: &mut Config, mut to: impl FnMut(&ParameterView) -> Option<f32>) {
     walk(config, &mut to);
 }
 
-/// One copy in the image for whatever is done with the parameters: there are many of them.
+/// Not inlined, as the generated code is large: one copy in the image.
 #[inline(never)]
 fn walk(config: &mut Config, to: Each<'_>) {
     config.visit_params(&mut Walk(to));
 }
 
-/// The parameter of a key; `None` if there is none.
+/// Parameter by its key; `None` if unknown.
 pub fn get(config: &Config, key: Key<'_>) -> Option<ParameterView> {
     let mut found = None;
     each(&mut config.clone(), |view| {

@@ -1,5 +1,5 @@
-//! A configuration as the store keeps it: the law, then each parameter's value beside the hash of its
-//! name, so that another version of the program finds those it knows.
+//! Stored form of a configuration: the law, then each parameter's value with the hash of its name, so that another
+//! version of the firmware finds the parameters it has.
 
 use crate::bytes::{Reader, Writer, from_bits, to_bits};
 use crate::law::{self, LAW_BYTES, NoLaw};
@@ -8,51 +8,51 @@ use crate::requests::{CALIBRATION, check};
 use control::Config;
 use control::param::ParamError;
 
-/// The layout of a record. Another one is not read.
+/// Version of the layout; records of another layout are not read.
 pub const LAYOUT: u8 = 1;
-/// Most parameters of a record, those of other versions included.
+/// Largest number of parameters in a record, those of other versions included.
 pub const MAX_ENTRIES: usize = 384;
-/// A parameter's hash and the bits of its value.
+/// Size of a parameter's hash and value \[bytes\].
 const ENTRY_BYTES: usize = 8;
-/// Most bytes of a record: layout, number, length of the law, law, and each parameter.
+/// Largest record \[bytes\]: layout, number, length of the law, law, and each parameter.
 pub const RECORD_BYTES: usize = 1 + 4 + 2 + LAW_BYTES + ENTRY_BYTES * MAX_ENTRIES;
 
-/// Why bytes are no record.
+/// Error of decoding a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoRecord {
-    /// It has another layout.
+    /// Another layout.
     Layout(u8),
-    /// Its lengths do not fit together.
+    /// Inconsistent lengths.
     Malformed,
 }
 
-/// A record's parts.
+/// A decoded record.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
-    /// Its number: each that is stored has a larger one than that before.
+    /// Record number; increases with each stored record.
     pub number: u32,
     law: &'a [u8],
     entries: &'a [u8],
 }
 
-/// What became of a record's values.
+/// Result of applying a record to a configuration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Applied {
-    /// Values that are not allowed today; their parameters have the defaults.
+    /// Number of rejected values; their parameters have the defaults.
     pub refused: u16,
-    /// The first of them.
+    /// First rejected value.
     pub first_refused: Option<ParamError>,
-    /// Values of parameters that this version does not know.
+    /// Number of values of unknown parameters.
     pub unknown: u16,
-    /// Parameters that the record does not have; they have the defaults.
+    /// Number of parameters missing in the record; they have the defaults.
     pub missing: u16,
-    /// One of those is of the calibration, so the polarity check was passed with another one.
+    /// A calibration parameter is missing, so the polarity check was passed with another calibration.
     pub calibration_missing: bool,
 }
 
-/// Writes a record; how many bytes it takes, `None` when there are more than [`MAX_ENTRIES`] parameters.
+/// Encodes a record and returns its length \[bytes\]; `None` if there are more than [`MAX_ENTRIES`] parameters.
 ///
-/// Values of the record `before` that belong to no parameter of this version are kept, as far as there is room.
+/// Values of the previous record `before` for parameters unknown to this version are kept, as far as they fit.
 pub fn encode(
     config: &Config,
     number: u32,
@@ -92,7 +92,7 @@ pub fn encode(
     Some(used)
 }
 
-/// Reads the parts of a record.
+/// Decodes a record.
 ///
 /// # Errors
 /// As of [`NoRecord`].
@@ -112,13 +112,13 @@ fn parts<'a>(from: &mut Reader<'a>) -> Option<Record<'a>> {
 }
 
 impl Record<'_> {
-    /// Hash and bits of each parameter.
+    /// Hash and value bits of each parameter.
     pub fn entries(&self) -> impl Iterator<Item = (u32, u32)> {
         pairs(self.entries)
     }
 
-    /// Gives `config` every value that is known and allowed alone; whether they fit together is
-    /// for `Config::plan` to say.
+    /// Sets every known value that is valid by itself in `config`; `Config::plan` checks whether the values are
+    /// consistent.
     pub fn apply(&self, config: &mut Config) -> Applied {
         let mut applied = Applied::default();
         let refuse = |applied: &mut Applied, error: ParamError| {

@@ -1,40 +1,40 @@
-//! Why a request is not carried out, as it is told.
+//! Rejections: the reason a request is not carried out, and its text.
 
 use crate::bytes::{Reader, Writer};
 use crate::key::Key;
 use control::param::ParamError;
 use core::fmt;
 
-/// Why something is refused.
+/// Reason of a rejection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum RejectReason {
-    /// Torque may flow: nothing may be changed, stored or reset.
+    /// Torque can flow: parameters can't be changed, stored or reset.
     Engaged = 1,
-    /// There is no such parameter.
+    /// Unknown parameter.
     UnknownKey = 2,
-    /// A value outside its range, perhaps of another parameter that this one must fit.
+    /// A value outside its range, or inconsistent with another parameter.
     OutOfRange = 3,
-    /// A number with a fraction where only whole ones are.
+    /// A fractional value for an integer parameter.
     NotWhole = 4,
-    /// Off, for a parameter that can't be.
+    /// Off, for a parameter that can't be off.
     NeverOff = 5,
-    /// The parameter's group is off; switch that on first.
+    /// The parameter's group is off and must be switched on first.
     GroupOff = 6,
-    /// Only a passed polarity check says that it was passed.
+    /// Only a passed polarity check sets this parameter.
     OnlyByCheck = 7,
-    /// There is no such request.
+    /// Unknown request.
     UnknownRequest = 8,
-    /// The request can't be read.
+    /// The request can't be decoded.
     Malformed = 9,
-    /// The flash did not keep it; what it kept before is still there.
+    /// Storing in flash failed; the previous record is still there.
     NotStored = 10,
-    /// This image can't do that.
+    /// This image does not support the request.
     NotHere = 11,
 }
 
 impl RejectReason {
-    /// The reason of a number on the wire.
+    /// Reason by its number on the wire.
     pub fn numbered(number: u8) -> Option<Self> {
         use RejectReason::*;
         let all = [
@@ -54,14 +54,14 @@ impl RejectReason {
     }
 }
 
-/// A refusal. What it is not about is empty or 0.
+/// A rejection. Fields that do not apply are empty or 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rejection<'a> {
-    /// Why.
+    /// Reason.
     pub why: RejectReason,
     /// The parameter.
     pub key: Key<'a>,
-    /// The value that is refused.
+    /// Rejected value.
     pub value: f32,
     /// Least allowed value.
     pub min: f32,
@@ -70,12 +70,12 @@ pub struct Rejection<'a> {
 }
 
 impl<'a> Rejection<'a> {
-    /// For a reason that needs no parameter.
+    /// A rejection without a parameter.
     pub const fn of(why: RejectReason) -> Self {
         Self::about(why, Key::whole(""))
     }
 
-    /// About a parameter.
+    /// A rejection that concerns a parameter.
     pub const fn about(why: RejectReason, key: Key<'a>) -> Self {
         Self { why, key, value: 0.0, min: 0.0, max: 0.0 }
     }
@@ -105,7 +105,7 @@ impl fmt::Display for Rejection<'_> {
         match why {
             RejectReason::Engaged => write!(f, "refused while engaged"),
             RejectReason::UnknownKey => write!(f, "no parameter {key}"),
-            // A limit that is off, where another needs it (`Limits::cross`).
+            // A limit that is off although another limit needs it (`Limits::cross`).
             RejectReason::OutOfRange if *value == f32::INFINITY => {
                 write!(f, "{key} = none, but limits.rider_torque is on and needs it: {min} to {max}")
             }

@@ -1,4 +1,4 @@
-//! Who the board is, and what went wrong with it.
+//! Identity of the board, and its fault records.
 
 use crate::bytes::{Reader, Writer};
 use crate::frame::CRC;
@@ -6,20 +6,20 @@ use crate::telemetry;
 use control::wire::encode_config;
 use control::{Causes, Config, Mode};
 
-/// Who the board is.
+/// Identity of the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hello<'a> {
-    /// The image's name.
+    /// Name of the image.
     pub image: &'a str,
-    /// The program's version.
+    /// Version of the firmware.
     pub version: &'a str,
-    /// The commit it is made from.
+    /// Commit it was built from.
     pub commit: &'a str,
-    /// [`config_hash`] of the configuration in force.
+    /// [`config_hash`] of the configuration in use.
     pub config_hash: u32,
 }
 
-/// What stands for a configuration: the CRC-32 of its bytes by `control::wire`.
+/// Hash of a configuration: the CRC-32 of its encoding by `control::wire`.
 pub fn config_hash(config: &Config) -> u32 {
     CRC.checksum(&encode_config(config))
 }
@@ -36,26 +36,26 @@ impl<'a> Hello<'a> {
     }
 }
 
-/// What a fault record is about.
+/// Kind of a fault record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum FaultKind {
-    /// A panic; the text tells where.
+    /// A panic; the text has the place.
     Panic = 1,
-    /// An exception of the core; the registers tell which.
+    /// A processor exception; the registers have the details.
     Exception = 2,
     /// The watchdog was not fed.
     Watchdog = 3,
-    /// The controller went to `control::Mode::Fault`; the causes tell why. The program went on.
+    /// The controller entered `control::Mode::Fault`, for the recorded causes. The firmware kept running.
     Controller = 4,
-    /// The supply went below what the chip needs.
+    /// The supply voltage fell below the chip's limit.
     BrownOut = 5,
-    /// The motor's bridge was opened until the next start, for the reason in the text. The program went on.
+    /// The motor's bridge was opened until the next start, for the reason in the text. The firmware kept running.
     Drive = 6,
 }
 
 impl FaultKind {
-    /// The kind of a number on the wire.
+    /// Kind by its number on the wire.
     pub fn numbered(number: u8) -> Option<Self> {
         use FaultKind::*;
         [Panic, Exception, Watchdog, Controller, BrownOut, Drive]
@@ -63,7 +63,7 @@ impl FaultKind {
             .find(|kind| *kind as u8 == number)
     }
 
-    /// In words.
+    /// Name for display.
     pub const fn name(self) -> &'static str {
         match self {
             FaultKind::Panic => "panic",
@@ -76,36 +76,36 @@ impl FaultKind {
     }
 }
 
-/// Why the program was started.
+/// Cause of the last reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum ResetCause {
-    /// The board can't tell.
+    /// The board does not report the cause.
     #[default]
     Unknown = 0,
-    /// Power came.
+    /// Power-on.
     PowerOn = 1,
-    /// The supply was too low for a while.
+    /// Brown-out.
     BrownOut = 2,
     /// The reset pin: a button or a debugger.
     Pin = 3,
-    /// The program itself, as after a panic.
+    /// Software reset, for example after a panic.
     Software = 4,
-    /// A watchdog that was not fed.
+    /// Watchdog timeout.
     Watchdog = 5,
-    /// A sleep that is not allowed.
+    /// Illegal entry into a low-power mode.
     LowPower = 6,
 }
 
 impl ResetCause {
-    /// The cause of a number on the wire.
+    /// Cause by its number on the wire.
     pub fn numbered(number: u8) -> Option<Self> {
         use ResetCause::*;
         let all = [Unknown, PowerOn, BrownOut, Pin, Software, Watchdog, LowPower];
         all.into_iter().find(|cause| *cause as u8 == number)
     }
 
-    /// In words.
+    /// Name for display.
     pub const fn name(self) -> &'static str {
         match self {
             ResetCause::Unknown => "unknown",
@@ -119,36 +119,36 @@ impl ResetCause {
     }
 }
 
-/// Most bytes of a fault's text; a longer one is cut.
+/// Largest text of a fault \[bytes\]; longer texts are cut.
 pub const FAULT_TEXT_BYTES: usize = 200;
-/// Most bytes of a fault record on the wire.
+/// Largest fault record on the wire \[bytes\].
 pub const FAULT_BYTES: usize = 51 + 1 + FAULT_TEXT_BYTES;
 
-/// A fault, as it was kept. What does not belong to its kind is 0 or empty.
+/// A stored fault. Fields that do not apply to its kind are 0 or empty.
 ///
 /// Steps, time, mode and causes are those of the last control step before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaultRecord<'a> {
-    /// What kind of fault.
+    /// Kind of the fault.
     pub kind: FaultKind,
-    /// Number of the program's start that recorded it, from 1; a watchdog's is recorded by the start after it.
+    /// Number of the start that recorded the fault, from 1; a watchdog reset is recorded by the start after it.
     pub boot: u32,
-    /// Why the program was started that time.
+    /// Reset cause of that start.
     pub reset: ResetCause,
     /// The controller's mode.
     pub mode: Mode,
-    /// Control steps done.
+    /// Number of control steps.
     pub steps: u32,
     /// [`control::SensorFrame::now_us`] of the last frame \[us\], wrapping.
     pub frame_us: u32,
     /// The controller's causes.
     pub causes: Causes,
-    /// The exception's number.
+    /// Exception number.
     pub exception: u32,
-    /// The core's registers: configurable and hard fault status, bus fault address, stack pointer,
-    /// program counter, link register.
+    /// Core registers: configurable and hard fault status, bus fault address, stack pointer, program counter, link
+    /// register.
     pub registers: [u32; 6],
-    /// In words, cut to [`FAULT_TEXT_BYTES`].
+    /// Text, cut to [`FAULT_TEXT_BYTES`].
     pub text: &'a str,
 }
 
@@ -182,14 +182,14 @@ impl<'a> FaultRecord<'a> {
     }
 }
 
-/// One place of the faults that were kept, the newest at 0.
+/// Answer to a request for a stored fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StoredFault<'a> {
-    /// Its place.
+    /// Index of the fault, 0 for the newest.
     pub place: u16,
-    /// How many are kept.
+    /// Number of stored faults.
     pub total: u16,
-    /// What is there; `None` past the end.
+    /// The record; `None` past the end.
     pub record: Option<FaultRecord<'a>>,
 }
 
@@ -209,7 +209,7 @@ impl<'a> StoredFault<'a> {
     }
 }
 
-/// The first characters of `text` that take no more than `bytes`.
+/// Longest prefix of `text` of at most `bytes` bytes.
 pub(crate) fn cut(text: &str, bytes: usize) -> &str {
     text.get(..text.floor_char_boundary(bytes)).unwrap_or_default()
 }

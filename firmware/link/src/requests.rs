@@ -1,7 +1,7 @@
-//! What is asked of the parameters, and what is answered.
+//! Requests about parameters: checks them, carries them out and answers them.
 //!
-//! A change is accepted as a whole or not at all: it is made on a copy, the copy is checked by
-//! `Config::plan`, and only then it is the configuration.
+//! A change is accepted as a whole or not at all: it is applied to a copy, `Config::plan` checks the copy, and only
+//! then the copy replaces the configuration.
 
 use crate::bytes::{Reader, Writer};
 use crate::frame::Received;
@@ -17,12 +17,12 @@ const CHECKED: Key<'static> = Key { group: CALIBRATION, name: "polarity_checked"
 /// The group whose change needs a new polarity check.
 pub(crate) const CALIBRATION: &str = "calibration";
 
-/// Sets a parameter; on any refusal the configuration stays as it was.
+/// Sets a parameter; on a rejection the configuration stays unchanged.
 ///
-/// What changes the calibration takes back that a polarity check was passed.
+/// A change of the calibration clears `polarity_checked`.
 ///
 /// # Errors
-/// Why not.
+/// The reason of the rejection.
 pub fn set<'a>(config: &mut Config, key: Key<'a>, value: Option<f32>) -> Result<(), Rejection<'a>> {
     let mut draft = config.clone();
     let mut found = None;
@@ -48,10 +48,10 @@ pub fn set<'a>(config: &mut Config, key: Key<'a>, value: Option<f32>) -> Result<
     Ok(())
 }
 
-/// Whether a parameter may have a value, as far as it alone can say.
+/// Checks a parameter's value by itself: kind and range.
 ///
 /// # Errors
-/// Why not.
+/// The reason of the rejection.
 pub fn check(view: &ParameterView, value: Option<f32>) -> Result<(), Rejection<'static>> {
     let range = view.leaf.error(value.unwrap_or_default()).into();
     match value {
@@ -63,10 +63,10 @@ pub fn check(view: &ParameterView, value: Option<f32>) -> Result<(), Rejection<'
     }
 }
 
-/// Sets the whole law from its bytes; on any refusal it stays as it was.
+/// Sets the whole law from its encoding; on a rejection the law stays unchanged.
 ///
 /// # Errors
-/// Why not.
+/// The reason of the rejection.
 pub fn set_law(config: &mut Config, bytes: &[u8]) -> Result<(), Rejection<'static>> {
     let law = law::decode(&mut Reader(bytes)).map_err(|no| match no {
         NoLaw::Malformed => Rejection::of(RejectReason::Malformed),
@@ -76,19 +76,19 @@ pub fn set_law(config: &mut Config, bytes: &[u8]) -> Result<(), Rejection<'stati
     Ok(())
 }
 
-/// Why what was received is no request.
+/// Error of decoding a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoRequest {
-    /// It is of this version.
+    /// A frame of this other version.
     WrongVersion(u8),
-    /// The frame of this number is of no kind there is.
+    /// Unknown kind; the frame has this sequence number.
     Unknown(u16),
-    /// The frame of this number can't be read.
+    /// Undecodable payload; the frame has this sequence number.
     Malformed(u16),
 }
 
 impl NoRequest {
-    /// What to answer, and under which number; 0 where that of the request is not known.
+    /// The answer and its sequence number; 0 if the request's number is unknown.
     pub fn answer(self) -> (u16, Message<'static>) {
         match self {
             NoRequest::WrongVersion(theirs) => (0, Message::WrongVersion { theirs }),
@@ -102,10 +102,10 @@ impl NoRequest {
     }
 }
 
-/// What was received as a request and its number.
+/// Decodes a received frame as a request with its sequence number.
 ///
 /// # Errors
-/// As of [`NoRequest`], which has the answer to it.
+/// As of [`NoRequest`], which has the answer.
 pub fn request<'a>(received: &Received<'a>) -> Result<(u16, Message<'a>), NoRequest> {
     match received {
         Received::WrongVersion { theirs } => Err(NoRequest::WrongVersion(*theirs)),
@@ -117,10 +117,11 @@ pub fn request<'a>(received: &Received<'a>) -> Result<(u16, Message<'a>), NoRequ
     }
 }
 
-/// Carries out what is asked of the parameters and answers it; the answer is put together in `room`.
+/// Carries out a request about parameters and returns the answer, built in `room`.
 ///
-/// `None`: the caller answers, for it has the flash, the image's name, the faults or the loop: `AskHello`, `Store`
-/// when not engaged, `ListFaults`, `ClearFaults`, `PilReset`, `PilFrame`. What comes from a board is no request, and gets `None` as well.
+/// `None` if the caller has to answer, since it has the flash, the image's name, the faults or the loop: `AskHello`,
+/// `Store` when not engaged, `ListFaults`, `ClearFaults`, `PilReset`, `PilFrame`. Messages from a board give `None`
+/// too.
 pub fn answer<'a>(
     defaults: &Config,
     config: &mut Config,

@@ -1,9 +1,9 @@
-//! The parameters and the encoder's offset in flash: kept whole, read back with suspicion.
+//! Store of the parameters and the encoder's offset in flash: written atomically, validated when read.
 //!
-//! A configuration is stored as one item of `sequential-storage`: after a loss of power there is the old one
-//! or the new one, never a mixture that nobody checked (a motor's old sign with the new "polarity checked").
-//! After it its number is stored. A record with a smaller number than that is an old one, laid bare by
-//! damage to a newer, and is not believed. The same holds of the encoder's offset, in two items of its own.
+//! A configuration is one item of `sequential-storage`: after a power failure there is the old or the new one, never an
+//! unchecked mixture (for example a motor's old sign with the new `polarity_checked`). Its record number is stored
+//! after it. A record with a smaller number than that is an old one that damage to a newer one exposed; it is
+//! invalid. The encoder's offset is stored in the same way, in two items of its own.
 
 use crate::alignment::Alignment;
 use crate::record::{self, Applied, NoRecord, RECORD_BYTES, Record};
@@ -16,27 +16,26 @@ use embedded_storage_async::nor_flash::NorFlash;
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
 
-/// The keys of two items: what is kept, and the number of the newest that was stored to the end.
+/// Keys of two items: the record, and the number of the newest completely stored record.
 #[derive(Clone, Copy)]
 struct Keys {
-    kept: u8,
+    stored: u8,
     newest: u8,
 }
 
-const PARAMETERS: Keys = Keys { kept: 1, newest: 2 };
-const ALIGNMENT: Keys = Keys { kept: 3, newest: 4 };
+const PARAMETERS: Keys = Keys { stored: 1, newest: 2 };
+const ALIGNMENT: Keys = Keys { stored: 3, newest: 4 };
 
-/// Bytes of a page beside the items, and of the items beside the record, at words of up to 32 bytes.
+/// Overhead of a page beside its items, and of items beside their records, for words of up to 32 bytes \[bytes\].
 const OVERHEAD: usize = 512;
-/// Bytes that a page must have: two records, so that one can be carried over beside a new one.
+/// Smallest page \[bytes\]: two records, so that one can be moved beside a new one.
 pub const MIN_PAGE: usize = 2 * RECORD_BYTES + OVERHEAD;
 
-/// Pages that a store must have. With two, an erase that was interrupted could take the only copy with it: the
-/// half-erased page may still look whole, and would then be copied over the good one. With three, the page that is
-/// erased holds nothing but what is out of date.
+/// Smallest number of pages. With two, an interrupted erase could destroy the only copy: the half-erased page can still
+/// look valid and would be copied over the good one. With three, an erased page holds only outdated data.
 pub const MIN_PAGES: usize = 3;
 
-/// What the store works in; beside the stack, as it is large.
+/// Work memory of the store; kept outside the stack because of its size.
 #[derive(Debug)]
 pub struct Room {
     record: [u8; RECORD_BYTES],
@@ -44,7 +43,7 @@ pub struct Room {
 }
 
 impl Room {
-    /// Empty.
+    /// Zeroed memory.
     pub const fn new() -> Self {
         Self { record: [0; RECORD_BYTES], item: [0; RECORD_BYTES + 64] }
     }
@@ -56,29 +55,29 @@ impl Default for Room {
     }
 }
 
-/// Why what is stored is not believed.
+/// Reason why a stored record is invalid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Doubt {
-    /// The flash, or its pages, can't be read.
+pub enum InvalidRecord {
+    /// The flash or its pages can't be read.
     Unreadable,
-    /// The newest record is gone, perhaps leaving an older one.
+    /// The newest record is lost; an older one can remain.
     Lost,
-    /// It is no record.
+    /// Not a record.
     NoRecord(NoRecord),
-    /// Its values do not fit together.
-    Unfit(ParamError),
+    /// Inconsistent values.
+    Inconsistent(ParamError),
 }
 
-/// What was found at start.
+/// Result of loading the parameters at start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Found {
-    /// Nothing was ever stored, or everything was erased.
+    /// Nothing is stored.
     Nothing,
-    /// A record. When any value of it was refused, or one of the calibration is missing, the polarity
-    /// check is to be passed anew.
+    /// A valid record. If a value was rejected, or a calibration parameter is missing, the polarity check must be
+    /// repeated.
     Record(Applied),
-    /// Something that is not believed: these are the defaults.
-    Doubt(Doubt),
+    /// An invalid record: the defaults are used.
+    Invalid(InvalidRecord),
 }
 
 impl fmt::Display for Found {
@@ -98,29 +97,29 @@ impl fmt::Display for Found {
                 }
                 Ok(())
             }
-            Found::Doubt(Doubt::Unreadable) => write!(f, "flash can't be read, defaults"),
-            Found::Doubt(Doubt::Lost) => write!(f, "the newest ones are lost, defaults"),
-            Found::Doubt(Doubt::NoRecord(NoRecord::Layout(layout))) => {
+            Found::Invalid(InvalidRecord::Unreadable) => write!(f, "flash can't be read, defaults"),
+            Found::Invalid(InvalidRecord::Lost) => write!(f, "the newest ones are lost, defaults"),
+            Found::Invalid(InvalidRecord::NoRecord(NoRecord::Layout(layout))) => {
                 write!(f, "stored in layout {layout}, which is not known, defaults")
             }
-            Found::Doubt(Doubt::NoRecord(NoRecord::Malformed)) => {
+            Found::Invalid(InvalidRecord::NoRecord(NoRecord::Malformed)) => {
                 write!(f, "stored ones are damaged, defaults")
             }
-            Found::Doubt(Doubt::Unfit(error)) => {
+            Found::Invalid(InvalidRecord::Inconsistent(error)) => {
                 write!(f, "stored ones do not fit together: {error}; defaults")
             }
         }
     }
 }
 
-/// Why nothing was stored. What was stored before still is, unless the flash took nothing beside it.
+/// Error of storing. The previous record stays, unless the flash did not accept anything beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotStored {
-    /// The configuration would not be accepted.
+    /// The configuration is invalid.
     Refused(ParamError),
-    /// More parameters than a record holds.
+    /// More parameters than a record can hold.
     TooMany,
-    /// The flash can't be written, or does not give back what was written.
+    /// Writing the flash failed, or it read back different data.
     Flash,
 }
 
@@ -130,7 +129,8 @@ pub struct Store<F: NorFlash> {
 }
 
 impl<F: NorFlash> Store<F> {
-    /// In a range of whole pages, at least [`MIN_PAGES`] of at least [`MIN_PAGE`] bytes each; `None` for any other.
+    /// Uses a range of whole pages, at least [`MIN_PAGES`] of at least [`MIN_PAGE`] bytes each; `None` for any other
+    /// range.
     pub fn new(flash: F, range: Range<u32>) -> Option<Self> {
         let length = range.end.saturating_sub(range.start) as usize;
         let large = F::ERASE_SIZE >= MIN_PAGE && length / F::ERASE_SIZE >= MIN_PAGES;
@@ -139,20 +139,20 @@ impl<F: NorFlash> Store<F> {
         Some(Self { map: MapStorage::new(WordFlash(flash), config, Cache::new_uncached()) })
     }
 
-    /// The flash back.
+    /// Returns the flash.
     pub fn into_flash(self) -> F {
         self.map.destroy().0.0
     }
 
-    /// The stored configuration, or `defaults`. Always one that `Config::plan` accepts if it accepts `defaults`;
-    /// on any doubt it says that no polarity check was passed, so that it does not engage.
+    /// Loads the stored configuration, or `defaults`. The result passes `Config::plan` if `defaults` does. If the
+    /// record is missing, invalid or incomplete, `polarity_checked` is cleared, so that the controller does not engage.
     pub async fn load(&mut self, defaults: &Config, room: &mut Room) -> (Config, Found) {
         let mut unchecked = defaults.clone();
         unchecked.calibration.polarity_checked = false;
         let mut config = unchecked.clone();
         let found = match self.newest(&mut room.item).await {
             Ok(None) => Found::Nothing,
-            Err(doubt) => Found::Doubt(doubt),
+            Err(invalid) => Found::Invalid(invalid),
             Ok(Some(record)) => {
                 let applied = record.apply(&mut config);
                 if applied.refused > 0 || applied.calibration_missing {
@@ -160,17 +160,17 @@ impl<F: NorFlash> Store<F> {
                 }
                 match config.clone().plan() {
                     Ok(_) => Found::Record(applied),
-                    Err(error) => Found::Doubt(Doubt::Unfit(error)),
+                    Err(error) => Found::Invalid(InvalidRecord::Inconsistent(error)),
                 }
             }
         };
         (if matches!(found, Found::Record(_)) { config } else { unchecked }, found)
     }
 
-    /// Stores a configuration, and reads it back.
+    /// Stores a configuration and reads it back.
     ///
-    /// Where that fails because of damage, everything but the encoder's offset is erased and it is tried once more. The
-    /// chip stands still for as long as the flash erases; never call it while torque may flow.
+    /// If damage prevents this, everything but the encoder's offset is erased and storing is repeated once. The chip
+    /// halts while the flash erases: never call this while torque can flow.
     ///
     /// # Errors
     /// As of [`NotStored`].
@@ -182,7 +182,7 @@ impl<F: NorFlash> Store<F> {
         let number = before.map_or(0, |before| before.number).max(newest).wrapping_add(1);
         let used = record::encode(config, number, before.as_ref(), bytes).ok_or(NotStored::TooMany)?;
         let bytes = bytes.get(..used).ok_or(NotStored::TooMany)?;
-        // Before the write, after which damage may hide it.
+        // Before the write: afterwards damage can hide it.
         let aligned = self.numbered_alignment(item).await.ok().flatten();
         if self.write(PARAMETERS, number, bytes, item).await.is_ok() {
             return Ok(());
@@ -194,42 +194,42 @@ impl<F: NorFlash> Store<F> {
         self.write(PARAMETERS, number, bytes, item).await
     }
 
-    /// The newest alignment of the encoder; `None` if none was ever stored.
+    /// The newest alignment of the encoder; `None` if none is stored.
     ///
     /// # Errors
-    /// Why what is stored is not believed.
-    pub async fn alignment(&mut self, room: &mut Room) -> Result<Option<Alignment>, Doubt> {
+    /// The reason why the stored alignment is invalid.
+    pub async fn alignment(&mut self, room: &mut Room) -> Result<Option<Alignment>, InvalidRecord> {
         let numbered = self.numbered_alignment(&mut room.item).await?;
         Ok(numbered.map(|(_, alignment)| alignment))
     }
 
-    /// Stores an alignment of the encoder, and reads it back.
+    /// Stores an alignment of the encoder and reads it back.
     ///
-    /// Where that fails because of damage, everything but parameters that are believed is erased and it is tried once
-    /// more. The chip stands still as of [`Store::save`].
+    /// If damage prevents this, everything but valid parameters is erased and storing is repeated once. The chip
+    /// halts as in [`Store::save`].
     ///
     /// # Errors
     /// [`NotStored::Flash`].
     pub async fn save_alignment(&mut self, alignment: &Alignment, room: &mut Room) -> Result<(), NotStored> {
         let Room { record: parameters, item } = room;
         let newest = self.number(ALIGNMENT, item).await.ok().flatten().unwrap_or_default();
-        let before = self.kept_alignment(item).await.ok().flatten();
+        let before = self.stored_alignment(item).await.ok().flatten();
         let number = before.map_or(0, |(number, _)| number).max(newest).wrapping_add(1);
         let bytes = alignment.encode(number);
-        // Before the write, after which damage may hide them.
-        let believed = self.newest(item).await.ok().flatten().map(|record| record.number);
+        // Before the write: afterwards damage can hide them.
+        let valid = self.newest(item).await.ok().flatten().map(|record| record.number);
         let copied = self.copy(PARAMETERS, item, parameters).await;
         if self.write(ALIGNMENT, number, &bytes, item).await.is_ok() {
             return Ok(());
         }
         self.erase().await?;
-        if let (Some(number), Some(parameters)) = (believed, copied) {
+        if let (Some(number), Some(parameters)) = (valid, copied) {
             self.write(PARAMETERS, number, parameters, item).await?;
         }
         self.write(ALIGNMENT, number, &bytes, item).await
     }
 
-    /// Writes an item and its number, and reads both back.
+    /// Writes a record and its number, and reads both back.
     async fn write(
         &mut self,
         keys: Keys,
@@ -237,11 +237,11 @@ impl<F: NorFlash> Store<F> {
         bytes: &[u8],
         item: &mut [u8],
     ) -> Result<(), NotStored> {
-        self.map.store_item(item, &keys.kept, &bytes).await.map_err(|_| NotStored::Flash)?;
+        self.map.store_item(item, &keys.stored, &bytes).await.map_err(|_| NotStored::Flash)?;
         self.map.store_item(item, &keys.newest, &number).await.map_err(|_| NotStored::Flash)?;
         let numbered = self.number(keys, item).await == Ok(Some(number));
-        match self.kept(keys, item).await {
-            Ok(Some(kept)) if numbered && kept == bytes => Ok(()),
+        match self.stored(keys, item).await {
+            Ok(Some(stored)) if numbered && stored == bytes => Ok(()),
             _ => Err(NotStored::Flash),
         }
     }
@@ -249,61 +249,68 @@ impl<F: NorFlash> Store<F> {
     /// Erases everything, values of other versions included.
     ///
     /// # Errors
-    /// The flash can't be erased.
+    /// Erasing the flash failed.
     pub async fn erase(&mut self) -> Result<(), NotStored> {
         self.map.erase_all().await.map_err(|_| NotStored::Flash)
     }
 
-    /// The newest record, if it may be believed.
-    async fn newest<'r>(&mut self, item: &'r mut [u8]) -> Result<Option<Record<'r>>, Doubt> {
+    /// The newest record, if valid.
+    async fn newest<'r>(&mut self, item: &'r mut [u8]) -> Result<Option<Record<'r>>, InvalidRecord> {
         let newest = self.number(PARAMETERS, item).await?;
         let record = self.record(item).await?;
-        believed(record, |record| record.number, newest)
+        newest_only(record, |record| record.number, newest)
     }
 
-    /// The newest alignment and its number, if it may be believed.
-    async fn numbered_alignment(&mut self, item: &mut [u8]) -> Result<Option<(u32, Alignment)>, Doubt> {
+    /// The newest alignment and its number, if valid.
+    async fn numbered_alignment(
+        &mut self,
+        item: &mut [u8],
+    ) -> Result<Option<(u32, Alignment)>, InvalidRecord> {
         let newest = self.number(ALIGNMENT, item).await?;
-        let kept = self.kept_alignment(item).await?;
-        believed(kept, |(number, _)| *number, newest)
+        let stored = self.stored_alignment(item).await?;
+        newest_only(stored, |(number, _)| *number, newest)
     }
 
-    async fn record<'r>(&mut self, item: &'r mut [u8]) -> Result<Option<Record<'r>>, Doubt> {
-        let bytes = self.kept(PARAMETERS, item).await?;
-        bytes.map(|bytes| record::decode(bytes).map_err(Doubt::NoRecord)).transpose()
+    async fn record<'r>(&mut self, item: &'r mut [u8]) -> Result<Option<Record<'r>>, InvalidRecord> {
+        let bytes = self.stored(PARAMETERS, item).await?;
+        bytes.map(|bytes| record::decode(bytes).map_err(InvalidRecord::NoRecord)).transpose()
     }
 
-    async fn kept_alignment(&mut self, item: &mut [u8]) -> Result<Option<(u32, Alignment)>, Doubt> {
-        let bytes = self.kept(ALIGNMENT, item).await?;
-        bytes.map(|bytes| Alignment::decode(bytes).map_err(Doubt::NoRecord)).transpose()
+    async fn stored_alignment(&mut self, item: &mut [u8]) -> Result<Option<(u32, Alignment)>, InvalidRecord> {
+        let bytes = self.stored(ALIGNMENT, item).await?;
+        bytes.map(|bytes| Alignment::decode(bytes).map_err(InvalidRecord::NoRecord)).transpose()
     }
 
-    async fn kept<'r>(&mut self, keys: Keys, item: &'r mut [u8]) -> Result<Option<&'r [u8]>, Doubt> {
-        self.map.fetch_item::<&[u8]>(item, &keys.kept).await.map_err(|_| Doubt::Unreadable)
+    async fn stored<'r>(
+        &mut self,
+        keys: Keys,
+        item: &'r mut [u8],
+    ) -> Result<Option<&'r [u8]>, InvalidRecord> {
+        self.map.fetch_item::<&[u8]>(item, &keys.stored).await.map_err(|_| InvalidRecord::Unreadable)
     }
 
-    async fn number(&mut self, keys: Keys, item: &mut [u8]) -> Result<Option<u32>, Doubt> {
-        self.map.fetch_item::<u32>(item, &keys.newest).await.map_err(|_| Doubt::Unreadable)
+    async fn number(&mut self, keys: Keys, item: &mut [u8]) -> Result<Option<u32>, InvalidRecord> {
+        self.map.fetch_item::<u32>(item, &keys.newest).await.map_err(|_| InvalidRecord::Unreadable)
     }
 
-    /// Copies what is kept; `None` if nothing is, or it can't be read or is too long.
+    /// Copies the stored record into `to`; `None` if there is none, it can't be read or is too long.
     async fn copy<'t>(&mut self, keys: Keys, item: &mut [u8], to: &'t mut [u8]) -> Option<&'t [u8]> {
-        let kept = self.kept(keys, item).await.ok().flatten()?;
-        let to = to.get_mut(..kept.len())?;
-        to.copy_from_slice(kept);
+        let stored = self.stored(keys, item).await.ok().flatten()?;
+        let to = to.get_mut(..stored.len())?;
+        to.copy_from_slice(stored);
         Some(to)
     }
 }
 
-/// What was found, unless it is older than the newest that was stored to the end.
-fn believed<T>(
+/// The record found, unless it is older than the newest completely stored one.
+fn newest_only<T>(
     found: Option<T>,
     number: impl Fn(&T) -> u32,
     newest: Option<u32>,
-) -> Result<Option<T>, Doubt> {
+) -> Result<Option<T>, InvalidRecord> {
     match (found, newest) {
-        (Some(found), Some(newest)) if number(&found) < newest => Err(Doubt::Lost),
-        (None, Some(_)) => Err(Doubt::Lost),
+        (Some(found), Some(newest)) if number(&found) < newest => Err(InvalidRecord::Lost),
+        (None, Some(_)) => Err(InvalidRecord::Lost),
         (found, _) => Ok(found),
     }
 }

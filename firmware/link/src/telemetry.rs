@@ -1,4 +1,4 @@
-//! What a control step saw and did.
+//! Telemetry: inputs and outputs of one control step.
 
 use crate::bytes::{Reader, Writer};
 use control::wire::{FRAME_BYTES, decode_frame, encode_command, encode_frame};
@@ -7,26 +7,26 @@ use control::{ActiveLimits, Causes, Command, Mode, SensorFrame};
 /// One control step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Telemetry {
-    /// Steps done, this one included, wrapping.
+    /// Number of steps, this one included, wrapping.
     pub steps: u32,
-    /// Steps that ended too late, wrapping.
+    /// Number of steps that missed their deadline, wrapping.
     pub late: u32,
-    /// Whether the motor got the command.
+    /// Whether the command was sent to the motor.
     pub driven: bool,
     /// The sensors of this step.
     pub frame: SensorFrame,
-    /// The command made of them, with mode, causes and limits.
+    /// The resulting command, with mode, causes and limits.
     pub command: Command,
-    /// How much of what they should do gyro and motor do; [`control::State::slopes`].
+    /// Regression gains of the sign check of gyro and motor; [`control::State::slopes`].
     pub slopes: [Option<f32>; 2],
-    /// What is to be done next in the polarity check, as the number of [`control::sensors::polarity::PolarityStep`].
+    /// Next step of the polarity check, as the number of [`control::sensors::polarity::PolarityStep`].
     pub polarity: u8,
-    /// The torque that the law would ask for during the check \[N m\]; [`control::State::shown_nm`].
+    /// Torque that the law would request during the check \[N m\]; [`control::State::shown_nm`].
     pub shown_nm: f32,
 }
 
 impl Telemetry {
-    /// Writes it.
+    /// Encodes the step.
     pub fn encode(&self, to: &mut Writer<'_>) {
         to.u32(self.steps);
         to.u32(self.late);
@@ -38,7 +38,7 @@ impl Telemetry {
         to.f32(self.shown_nm);
     }
 
-    /// Reads it; `None` where there are too few bytes or a mode that does not exist.
+    /// Decodes a step; `None` for too few bytes or an unknown mode.
     pub fn decode(from: &mut Reader<'_>) -> Option<Self> {
         Some(Self {
             steps: from.u32()?,
@@ -53,12 +53,12 @@ impl Telemetry {
     }
 }
 
-/// Reads a sensor frame; every bit pattern is one.
+/// Decodes a sensor frame; every bit pattern is valid.
 pub fn frame(from: &mut Reader<'_>) -> Option<SensorFrame> {
     from.chunk::<FRAME_BYTES>().map(decode_frame)
 }
 
-/// Reads a command as [`encode_command`] writes it; `None` for a mode that does not exist.
+/// Decodes a command as [`encode_command`] encodes it; `None` for an unknown mode.
 pub fn command(from: &mut Reader<'_>) -> Option<Command> {
     Some(Command {
         torque_nm: from.f32()?,
@@ -69,7 +69,7 @@ pub fn command(from: &mut Reader<'_>) -> Option<Command> {
     })
 }
 
-/// The mode of a number on the wire.
+/// Mode by its number on the wire.
 pub fn mode(number: u8) -> Option<Mode> {
     use Mode::*;
     [Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault].into_iter().find(|mode| *mode as u8 == number)

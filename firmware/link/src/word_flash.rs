@@ -1,7 +1,7 @@
-//! Flash that is read by whole words.
+//! Flash adapter that reads whole words.
 //!
-//! `sequential-storage` tells what a page is by as much of its first and last word as one read gives. Of a page
-//! whose erase was interrupted a byte may well look like another mark; a word hardly does.
+//! `sequential-storage` determines a page's state from one read of its first and last words. In a half-erased page a
+//! single byte can easily look like another marker; a whole word hardly can.
 
 use embedded_storage_async::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 

@@ -226,7 +226,7 @@ fn engineer(mut config: Config) {
             }
         }
     }
-    fault_log::faults(&ring).for_each(|fault| sender.tell(&Message::Fault(fault)));
+    fault_log::faults(&ring).for_each(|fault| sender.send(&Message::Fault(fault)));
     fault_log::clear(&mut ring);
     while let Some(byte) = sender.next_byte() {
         used(byte);

@@ -39,7 +39,7 @@ pub async fn line(image: Image, stored: &'static mut StoredConfig) {
     if let Some(offset) = stored.offset() {
         let _ = write!(words, "; encoder offset: {offset}");
     }
-    waiting.tell(&Message::Log(&words));
+    waiting.send(&Message::Log(&words));
     let mut faults = retained::with(|ring| fault_log::noted(ring)).unwrap_or(0);
     let mut tell = Ticker::every(TELL);
     let mut bytes = [0; 64];
@@ -62,7 +62,7 @@ pub async fn line(image: Image, stored: &'static mut StoredConfig) {
                 retained::with(|ring| {
                     let before = core::mem::replace(&mut faults, fault_log::noted(ring));
                     if let (true, Some(newest)) = (faults != before, fault_log::faults(ring).next()) {
-                        waiting.tell(&Message::Fault(newest));
+                        waiting.send(&Message::Fault(newest));
                     }
                 });
             }

@@ -10,7 +10,7 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use link::Store;
 use link::alignment::{Alignment, Offset};
-use link::store::{Doubt, Found, NotStored, Room};
+use link::store::{Found, InvalidRecord, NotStored, Room};
 use static_cell::{ConstStaticCell, StaticCell};
 
 /// A plan that the controller has not taken yet.
@@ -116,7 +116,7 @@ impl StoredConfig {
     pub fn choose_offset(&mut self, program: Option<f32>, motor_id: u32) -> Offset {
         let stored = match &mut self.store {
             Some(store) => block_on(store.alignment(self.room)),
-            None => Err(Doubt::Unreadable),
+            None => Err(InvalidRecord::Unreadable),
         };
         *self.offset.insert(Offset::choose(program, stored, motor_id))
     }

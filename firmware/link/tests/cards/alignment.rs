@@ -4,7 +4,7 @@ use crate::flash::{Flash, PAGE, PAGES, load, load_alignment, save, save_alignmen
 use control::Config;
 use link::alignment::{Alignment, LAYOUT, Offset};
 use link::record::NoRecord;
-use link::store::Doubt;
+use link::store::InvalidRecord;
 use proptest::prelude::*;
 
 const MOTOR: u32 = 0x89ab_cdef;
@@ -104,7 +104,7 @@ fn an_older_offset_never_stands_in_for_a_damaged_one() {
             let offset = Offset::choose(None, stored, MOTOR);
             match offset.turns() {
                 Some(turns) => assert_eq!(turns, -0.1, "byte {at}, bit {bit}"),
-                None => assert!(matches!(offset, Offset::Doubt(_)), "byte {at}, bit {bit}: {offset}"),
+                None => assert!(matches!(offset, Offset::Invalid(_)), "byte {at}, bit {bit}: {offset}"),
             }
             if offset.turns().is_some() { read += 1 } else { doubts += 1 }
         }
@@ -119,10 +119,10 @@ fn an_older_offset_never_stands_in_for_a_damaged_one() {
 fn the_programs_own_offset_ranks_first() {
     let (mine, other) = (found(0.25), Alignment { motor_id: MOTOR ^ 1, ..found(0.25) });
     let doubts = [
-        (Doubt::Lost, "the newest one is lost"),
-        (Doubt::Unreadable, "flash can't be read"),
-        (Doubt::NoRecord(NoRecord::Malformed), "the stored one is damaged"),
-        (Doubt::NoRecord(NoRecord::Layout(9)), "stored in layout 9, which is not known"),
+        (InvalidRecord::Lost, "the newest one is lost"),
+        (InvalidRecord::Unreadable, "flash can't be read"),
+        (InvalidRecord::NoRecord(NoRecord::Malformed), "the stored one is damaged"),
+        (InvalidRecord::NoRecord(NoRecord::Layout(9)), "stored in layout 9, which is not known"),
     ];
     let mut cases = vec![
         (Ok(Some(mine)), Some(0.25), "0.2500 turns, from flash"),

@@ -2,7 +2,7 @@
 
 use crate::flash::{Flash, PAGE, PAGES, load, random, save};
 use control::Config;
-use link::store::{Doubt, Found};
+use link::store::{Found, InvalidRecord};
 use proptest::prelude::*;
 
 const SIZE: usize = PAGE * PAGES;
@@ -35,7 +35,7 @@ fn a_turned_bit_never_brings_back_an_older_configuration() {
             }
             why => {
                 assert_eq!(found, Config::product(), "byte {at}");
-                if why == Found::Doubt(Doubt::Lost) { lost += 1 } else { other += 1 }
+                if why == Found::Invalid(InvalidRecord::Lost) { lost += 1 } else { other += 1 }
             }
         }
     }

@@ -6,7 +6,7 @@ use embedded_storage_async::nor_flash::{
 };
 use link::Store;
 use link::alignment::Alignment;
-use link::store::{Doubt, Found, NotStored, Room};
+use link::store::{Found, InvalidRecord, NotStored, Room};
 
 /// Bytes of a page: a few records, so that pages change often.
 pub(crate) const PAGE: usize = 8192;
@@ -177,7 +177,7 @@ pub(crate) fn save(flash: Flash, config: &control::Config) -> (Result<(), NotSto
 }
 
 /// The alignment that a start finds, and the flash it leaves.
-pub(crate) fn load_alignment(flash: Flash) -> (Result<Option<Alignment>, Doubt>, Flash) {
+pub(crate) fn load_alignment(flash: Flash) -> (Result<Option<Alignment>, InvalidRecord>, Flash) {
     let range = 0..flash.bytes.len() as u32;
     let mut store = Store::new(flash, range).expect("a range of pages");
     let found = block_on(store.alignment(&mut Room::new()));

@@ -174,7 +174,7 @@ proptest! {
         prop_assert_eq!(alignment, Ok(Some(aligned(0))));
         let (found, why, flash) = load(flash, &defaults);
         let believed = found == old || found == new;
-        let unchecked = found == defaults && matches!(why, Found::Nothing | Found::Doubt(_));
+        let unchecked = found == defaults && matches!(why, Found::Nothing | Found::Invalid(_));
         prop_assert!(believed || (before == 0 && unchecked), "{why:?} {:?}", strange(&found, &old, &new));
         let (done, flash) = save(flash, &numbered(30));
         prop_assert_eq!(done, Ok(()));

@@ -7,7 +7,7 @@ use link::Key;
 use link::bytes::Reader;
 use link::parameter_list::{each, each_but_law};
 use link::record::{Applied, LAYOUT, NoRecord, RECORD_BYTES, decode, encode};
-use link::store::{Doubt, Found, MIN_PAGE, MIN_PAGES, NotStored, Store};
+use link::store::{Found, InvalidRecord, MIN_PAGE, MIN_PAGES, NotStored, Store};
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 
@@ -226,14 +226,14 @@ fn what_does_not_fit_together_is_not_believed() {
     let short = whole[..whole.len() - 1].to_vec();
     for (bytes, expected) in [
         (unfit, None),
-        (layout, Some(Doubt::NoRecord(NoRecord::Layout(LAYOUT + 1)))),
-        (short, Some(Doubt::NoRecord(NoRecord::Malformed))),
-        (vec![], Some(Doubt::NoRecord(NoRecord::Malformed))),
+        (layout, Some(InvalidRecord::NoRecord(NoRecord::Layout(LAYOUT + 1)))),
+        (short, Some(InvalidRecord::NoRecord(NoRecord::Malformed))),
+        (vec![], Some(InvalidRecord::NoRecord(NoRecord::Malformed))),
     ] {
         let (found, why, flash) = load(flashed(&bytes), &Config::product());
         match expected {
-            Some(doubt) => assert_eq!(why, Found::Doubt(doubt)),
-            None => assert!(matches!(why, Found::Doubt(Doubt::Unfit(_))), "{why:?}"),
+            Some(doubt) => assert_eq!(why, Found::Invalid(doubt)),
+            None => assert!(matches!(why, Found::Invalid(InvalidRecord::Inconsistent(_))), "{why:?}"),
         }
         assert_eq!(found, Config::product());
         let (done, flash) = save(flash, &own());

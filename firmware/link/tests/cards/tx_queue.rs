@@ -123,7 +123,7 @@ proptest! {
                 0 if sender.answer(&Message::Law(&vec![0; size]), i as u16) => answers.push(i as u16),
                 0 => {}
                 1 => sender.step(&telemetry(i as u32)),
-                2 => sender.tell(&Message::Log(&"0".repeat(size))),
+                2 => sender.send(&Message::Log(&"0".repeat(size))),
                 _ => got.extend(drain(&mut sender, &mut decoder, size)),
             }
             told += u32::from(act == 1 || act == 2);
