@@ -1,36 +1,36 @@
-//! Alignment: finds the encoder's offset, and refuses one that does not follow the field.
+//! Alignment: finds the encoder's offset, and rejects it if the encoder does not follow the field.
 //!
-//! A current along d holds the rotor like a compass needle. The field goes
+//! A current along d turns the rotor into the field's direction. The field moves
 //!
 //! ```text
 //! -1/4 (current rises) -> 0 (rest, A) -> +1/4 (rest, B) -> 0 (rest, C)      electrical turns
 //! ```
 //!
-//! It begins a quarter off, so that a rotor that happens to stand just against the field is not left there.
-//! From A to B the encoder must go a quarter forward, from B to C back. The offset is the mean of B's and C's,
-//! reached from either side, so that friction drops out.
+//! The field begins a quarter turn off, so that a rotor that happens to point exactly against the final field does not
+//! stay there. From A to B the encoder must move a quarter forward, from B to C back. The offset is the mean of the
+//! offsets at B and C, which are approached from opposite sides, so that friction cancels.
 
 use crate::angle::Angle;
 use crate::fault::Fault;
 use control::param::{ParamSpec, ParamVisitor};
 
-/// How the alignment is done.
+/// Parameters of the alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlignConfig {
     /// Current along d \[A\].
     pub current_a: f32,
-    /// Time in which it rises \[calls\].
+    /// Rise time of the current \[calls\].
     pub ramp_ticks: u16,
-    /// Time of a move by a quarter \[calls\].
+    /// Duration of a move by a quarter turn \[calls\].
     pub move_ticks: u16,
-    /// Time of a rest; the angle is the mean over its second half \[calls\].
+    /// Duration of a rest; the angle is the mean over its second half \[calls\].
     pub rest_ticks: u16,
-    /// How far a move may differ from a quarter, and how far the encoder may move in a rest \[electrical turns\].
+    /// Largest deviation of a move from a quarter turn, and largest motion during a rest \[electrical turns\].
     pub tolerance_turns: f32,
 }
 
 impl AlignConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("align", "current_a", 0.1, 100.0), &mut self.current_a);
         to.count(&ParamSpec::new("align", "ramp_ticks", 1.0, 65535.0), &mut self.ramp_ticks);
@@ -40,7 +40,7 @@ impl AlignConfig {
     }
 }
 
-/// Where the alignment is.
+/// Stage of the alignment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Stage {
     #[default]
@@ -53,32 +53,32 @@ enum Stage {
     RestC,
 }
 
-/// What the alignment remembers.
+/// State of the alignment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AlignState {
     stage: Stage,
     /// Calls since the stage began.
     ticks: u16,
-    /// Electrical angle, without offset, in the rest: the first one, and sum, number and extremes of the distances
-    /// from it \[turns\].
+    /// Electrical angles without offset during a rest \[turns\]: the first, and sum, count and extremes of the
+    /// distances from it.
     first: Angle,
     sum_turns: f32,
     count: u16,
     least_turns: f32,
     most_turns: f32,
-    /// Mean angles of the rests that are over.
+    /// Mean angles of the completed rests.
     a: Angle,
     b: Angle,
 }
 
-/// What alignment wants of this call.
+/// Output of the alignment in one call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Align {
-    /// A field at this electrical angle, of this d current \[A\].
+    /// Apply a field at this electrical angle, with this d current \[A\].
     Field(Angle, f32),
-    /// Nothing more: the offset is found \[electrical turns\].
+    /// Completed: the offset \[electrical turns\].
     Found(Angle),
-    /// Nothing more: it failed.
+    /// Failed.
     Failed(Fault),
 }
 
@@ -103,7 +103,7 @@ pub fn step(config: &AlignConfig, state: &mut AlignState, electrical: Angle) -> 
     if state.ticks < length { Align::Field(field, current) } else { next(config, state, field) }
 }
 
-/// Takes the angle into the rest's mean.
+/// Adds the angle to the mean of the rest.
 fn watch(state: &mut AlignState, electrical: Angle) {
     if state.count == 0 {
         (state.first, state.sum_turns, state.least_turns, state.most_turns) = (electrical, 0.0, 0.0, 0.0);
@@ -114,7 +114,7 @@ fn watch(state: &mut AlignState, electrical: Angle) {
     (state.least_turns, state.most_turns) = (state.least_turns.min(off), state.most_turns.max(off));
 }
 
-/// The end of a stage.
+/// Ends a stage: checks the result and starts the next one.
 fn next(config: &AlignConfig, state: &mut AlignState, field: Angle) -> Align {
     let tolerance = config.tolerance_turns;
     let mean = state.first.plus(Angle::of(state.sum_turns / f32::from(state.count.max(1))));

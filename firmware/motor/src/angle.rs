@@ -1,4 +1,4 @@
-//! Angles as whole numbers, 2^32 to the turn: they wrap by themselves, and no turn is ever lost to rounding.
+//! Angles as integers, 2^32 to the turn: wrapping is exact, and counting turns has no rounding.
 
 use control::maths;
 
@@ -6,46 +6,46 @@ use control::maths;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Angle(pub u32);
 
-/// Parts of a turn.
+/// Units per turn.
 const PARTS: f32 = 4_294_967_296.0;
 
 impl Angle {
     /// A quarter turn.
     pub const QUARTER: Angle = Angle(1 << 30);
 
-    /// Of a part of a turn; what is beyond a half either way counts as a half, NaN as 0.
+    /// From a fraction of a turn; saturates at half a turn either way, NaN gives 0.
     pub fn of(turns: f32) -> Self {
         Angle((turns * PARTS) as i32 as u32)
     }
 
-    /// This angle and another.
+    /// Sum of two angles.
     pub fn plus(self, other: Angle) -> Self {
         Angle(self.0.wrapping_add(other.0))
     }
 
-    /// This angle less another.
+    /// Difference of two angles.
     pub fn minus(self, other: Angle) -> Self {
         Angle(self.0.wrapping_sub(other.0))
     }
 
-    /// The angle the other way round.
+    /// The negative angle.
     pub fn mirrored(self) -> Self {
         Angle(self.0.wrapping_neg())
     }
 
-    /// So many times the angle: the electrical angle of a mechanical one, by the pole pairs.
+    /// Multiple of the angle; with the pole pairs, the electrical angle of a mechanical one.
     pub fn times(self, n: u16) -> Self {
         Angle(self.0.wrapping_mul(u32::from(n)))
     }
 
-    /// As a part of a turn, the short way round: -0.5 to 0.5.
+    /// As a fraction of a turn, -0.5 to 0.5.
     pub fn signed(self) -> f32 {
         self.0 as i32 as f32 / PARTS
     }
 
-    /// Sine and cosine, to [`maths::SIN_COS_ERROR`] and a rounding.
+    /// Sine and cosine, accurate to [`maths::SIN_COS_ERROR`] plus rounding.
     pub fn sin_cos(self) -> (f32, f32) {
-        // By the size of the angle, so that the mirrored angle gives the mirrored sine to the bit.
+        // From the magnitude, so that the negative angle gives exactly the negative sine.
         let size = (self.0 as i32).unsigned_abs();
         let quadrant = (size + (1 << 29)) >> 30;
         let rest = size.wrapping_sub(quadrant << 30) as i32;

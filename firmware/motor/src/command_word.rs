@@ -1,12 +1,12 @@
-//! What control asks of the motor's interrupt: one word, so that it is never seen half changed, and a deadline.
+//! The command from the control task to the motor interrupt: one word, so that it is read atomically, and a deadline.
 
 use crate::MotorCommand;
 
-/// Words that are no torque; both are NaN, which no torque is.
+/// Words of commands other than torque; both are NaN patterns, which no torque uses.
 const OFF: u32 = 0xffff_ffff;
 const ALIGN: u32 = 0xffff_fffe;
 
-/// The word of what is asked. A torque that is NaN becomes another NaN, which the motor's loop refuses as such.
+/// Encodes a command. A NaN torque becomes another NaN pattern, which the motor loop rejects as an invalid command.
 pub fn word(command: MotorCommand) -> u32 {
     match command {
         MotorCommand::Off => OFF,
@@ -16,7 +16,7 @@ pub fn word(command: MotorCommand) -> u32 {
     }
 }
 
-/// What a word asks.
+/// Decodes a command.
 pub fn command(word: u32) -> MotorCommand {
     match word {
         OFF => MotorCommand::Off,
@@ -25,7 +25,7 @@ pub fn command(word: u32) -> MotorCommand {
     }
 }
 
-/// The motor's side of it: how long control has been silent.
+/// Timeout of the command, on the motor's side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Deadline {
     beat: u32,
@@ -33,22 +33,22 @@ pub struct Deadline {
 }
 
 impl Default for Deadline {
-    /// Nothing was ever asked.
+    /// No command received yet.
     fn default() -> Self {
         Self { beat: 0, silent_calls: u16::MAX }
     }
 }
 
 impl Deadline {
-    /// One call of the motor's interrupt: what is to be done now, `asked` while the number `beat` that control raises
-    /// with each order has changed within `timeout_calls`, nothing after.
-    pub fn step(&mut self, beat: u32, asked: MotorCommand, timeout_calls: u16) -> MotorCommand {
+    /// One call of the motor interrupt: returns `command` if the counter `beat`, which control increments with each
+    /// command, has changed within `timeout_calls`, else [`MotorCommand::Off`].
+    pub fn step(&mut self, beat: u32, command: MotorCommand, timeout_calls: u16) -> MotorCommand {
         self.silent_calls = if beat == self.beat { self.silent_calls.saturating_add(1) } else { 0 };
         self.beat = beat;
-        if self.is_over(timeout_calls) { MotorCommand::Off } else { asked }
+        if self.is_over(timeout_calls) { MotorCommand::Off } else { command }
     }
 
-    /// Whether control is silent for too long, or has said nothing yet.
+    /// Whether no command was received for longer than the timeout, or none at all.
     pub fn is_over(&self, timeout_calls: u16) -> bool {
         self.silent_calls > timeout_calls
     }

@@ -1,4 +1,4 @@
-//! What may be chosen, and what follows from it once and for all.
+//! Parameters of the motor loop, their check, and the constants that follow from them.
 
 use crate::align::AlignConfig;
 use crate::current::{CurrentConfig, Gains};
@@ -18,52 +18,52 @@ use crate::torque_limit::TorqueLimit;
 use control::ParamError;
 use control::param::{Checker, ParamSpec, ParamVisitor};
 
-/// Everything that may be chosen.
+/// All parameters of the motor loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// Calls of [`crate::step`] a second: the rate of the PWM \[Hz\].
+    /// Calls of [`crate::step`] per second: the PWM frequency \[Hz\].
     pub rate_hz: f32,
-    /// The machine.
+    /// Motor and gear.
     pub motor: Motor,
-    /// Its encoder.
+    /// Encoder.
     pub encoder: EncoderConfig,
-    /// The bridge.
+    /// Bridge.
     pub bridge: Bridge,
-    /// The current loop.
+    /// Current loop.
     pub current: CurrentConfig,
-    /// Limits of the torque.
+    /// Limits of the requested torque.
     pub demand: TorqueLimit,
-    /// The current sensors' zeros.
+    /// Offset measurement of the current sensors.
     pub zero: CurrentOffsetConfig,
-    /// The alignment.
+    /// Encoder alignment.
     pub align: AlignConfig,
-    /// The current sensors.
+    /// Checks of the current sensors.
     pub sensors: SensorsConfig,
-    /// The winding's heat.
+    /// Thermal overload of the winding.
     pub overload: OverloadConfig,
-    /// The bus.
+    /// Supply voltage.
     pub supply: SupplyConfig,
-    /// The temperature.
+    /// Temperature.
     pub heat: TemperatureConfig,
-    /// Torque without motion.
+    /// Stall: torque without motion.
     pub stall: StallConfig,
-    /// Currents that do not follow.
+    /// Current tracking.
     pub follow: CurrentTrackingConfig,
-    /// Back-EMF that does not fit.
+    /// Magnitude of the back-EMF.
     pub emf: BackEmfConfig,
-    /// Back-EMF that lies elsewhere.
+    /// Direction of the back-EMF.
     pub angle: AngleConfig,
 }
 
-/// Calls from the sampling of a current to the middle of the duty cycles that answer it.
+/// Delay from sampling a current to the middle of the duty cycles that result from it \[calls\].
 pub const DELAY_TICKS: f32 = 1.5;
 
-/// Calls for each period of the loop's bandwidth, at least: less leaves no 45 degrees of phase margin after
+/// Least number of calls per period of the loop's bandwidth: fewer leave less than 45 degrees of phase margin after
 /// [`DELAY_TICKS`].
 pub const TICKS_PER_BANDWIDTH: f32 = 12.0;
 
 impl Config {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("", "rate_hz", 5_000.0, 60_000.0), &mut self.rate_hz);
         self.motor.visit_params(to);
@@ -83,8 +83,8 @@ impl Config {
         self.angle.visit_params(to);
     }
 
-    /// A check value of the motor and encoder that an encoder's offset belongs to: 32 bits of FNV-1a over pole pairs,
-    /// winding, flux, and the encoder's counts and sense. Gear and sense of the steer have no part in the offset.
+    /// Identifies the motor and encoder to which an encoder offset belongs: 32-bit FNV-1a over pole pairs, winding,
+    /// flux, and the encoder's counts and direction. Gear and steer direction do not affect the offset.
     pub fn motor_id(&self) -> u32 {
         let Self { motor, encoder, .. } = self;
         let words = [
@@ -103,7 +103,7 @@ impl Config {
         id
     }
 
-    /// Checks every value, and those that depend on each other, and readies what [`crate::step`] needs.
+    /// Checks every value and their consistency, and computes the constants that [`crate::step`] needs.
     ///
     /// # Errors
     /// The first parameter outside its range, with its value and the range.
@@ -115,7 +115,7 @@ impl Config {
         let most_hz = c.rate_hz / TICKS_PER_BANDWIDTH;
         checker.note(between("current", "bandwidth_hz", 10.0, most_hz, c.current.bandwidth_hz));
         checker.note(between("align", "current_a", 0.1, c.current.max_a, c.align.current_a));
-        // The trip leaves room for the loop's overshoot and for noise.
+        // The trip leaves a margin for the loop's overshoot and for noise.
         checker.note(between(
             "sensors",
             "trip_a",
@@ -125,7 +125,7 @@ impl Config {
         ));
         checker.note(between("supply", "sag_v", 1.01 * c.supply.low_v, c.supply.high_v, c.supply.sag_v));
         checker.note(between("heat", "hot_c", c.heat.warm_c + 1.0, 160.0, c.heat.hot_c));
-        // From the eighth part of an electrical turn on a jump would turn the torque.
+        // A jump of an eighth of an electrical turn or more would misdirect the torque.
         let eighth = 0.125 / f32::from(c.motor.pole_pairs.max(1));
         checker.note(between("encoder", "jump_turns", 1e-4, eighth, c.encoder.jump_turns));
         checker.verdict()?;
@@ -142,7 +142,7 @@ impl Config {
     }
 }
 
-/// A checked [`Config`] and what follows from it.
+/// A checked [`Config`] with the constants that follow from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
     pub(crate) config: Config,
@@ -156,7 +156,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// What was checked.
+    /// The checked configuration.
     pub fn config(&self) -> &Config {
         &self.config
     }

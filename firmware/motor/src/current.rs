@@ -1,11 +1,11 @@
-//! The current loop: two PI controllers with what is known of the motor fed forward.
+//! Current loop: two PI controllers with feed-forward of the motor model.
 //!
-//! **Gains.** With `kp = bandwidth L` and `ki = bandwidth R` the controller's zero lies on the winding's pole, and
-//! the closed loop is of the first order with the bandwidth chosen.
+//! **Gains.** With `kp = bandwidth L` and `ki = bandwidth R` the controller's zero cancels the winding's pole; the
+//! closed loop is of first order with the chosen bandwidth.
 //!
-//! **Anti-windup** is by back-calculation with the gain `ki / kp`: the integral goes on with the error that
-//! would have asked for just the voltage that was left (Hanus's conditioning). Of the ways known it is the one
-//! that needs no case for each axis where a circle cuts both, and it forgets within the winding's own time L/R.
+//! **Anti-windup** is by back-calculation with the gain `ki / kp`: the integral receives the error that would have
+//! requested exactly the limited voltage (Hanus's conditioning). Unlike the alternatives, this method needs no case
+//! distinction per axis where a circle limits both, and it recovers within the winding's time constant L/R.
 
 use crate::machine::Motor;
 use crate::transform::Vector;
@@ -13,35 +13,35 @@ use control::maths::bounded;
 use control::param::{ParamSpec, ParamVisitor};
 use core::f32::consts::TAU;
 
-/// What may be chosen of the loop.
+/// Parameters of the current loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurrentConfig {
-    /// Bandwidth of the closed loop \[Hz\]; at most a twelfth of the rate of calls.
+    /// Bandwidth of the closed loop \[Hz\]; at most a twelfth of the call rate.
     pub bandwidth_hz: f32,
-    /// Largest current, as a vector \[A\].
+    /// Largest current, as the length of a vector \[A\].
     pub max_a: f32,
 }
 
 impl CurrentConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("current", "bandwidth_hz", 10.0, 5000.0), &mut self.bandwidth_hz);
         to.number(&ParamSpec::new("current", "max_a", 0.1, 200.0), &mut self.max_a);
     }
 }
 
-/// The loop's gains.
+/// Gains of the current loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
-    /// Proportional, of d and q \[V/A\].
+    /// Proportional gains of d and q \[V/A\].
     kp: [f32; 2],
-    /// Integral per call \[V/A\].
+    /// Integral gain per call \[V/A\].
     ki: f32,
     motor: Motor,
 }
 
 impl Gains {
-    /// For `rate_hz` calls a second.
+    /// Gains for `rate_hz` calls per second.
     pub fn new(motor: &Motor, config: &CurrentConfig, rate_hz: f32) -> Self {
         let omega = TAU * config.bandwidth_hz;
         Self {
@@ -51,8 +51,8 @@ impl Gains {
         }
     }
 
-    /// Voltage that turning makes in a winding that carries `current`: back-EMF and what d and q lend each
-    /// other, at an electrical speed \[rad/s\].
+    /// Speed-dependent voltage of a winding that carries `current`: back-EMF and cross-coupling of d and q, at an
+    /// electrical speed \[rad/s\].
     pub fn turning(&self, current: Vector, omega_rad_s: f32) -> Vector {
         let m = &self.motor;
         Vector::new(
@@ -61,19 +61,19 @@ impl Gains {
         )
     }
 
-    /// Voltage that a steady current needs.
+    /// Voltage for a constant current.
     pub fn steady(&self, current: Vector, omega_rad_s: f32) -> Vector {
         current.times(self.motor.resistance_ohm).plus(self.turning(current, omega_rad_s))
     }
 }
 
-/// What the loop remembers: the integrals \[V\].
+/// State of the loop: the integrals \[V\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CurrentState {
     integral: Vector,
 }
 
-/// One call: the voltage for a current that is `wanted`, inside a circle of `max_v`.
+/// One call: the voltage for the current set-point `wanted`, limited to a circle of radius `max_v`.
 pub fn step(
     gains: &Gains,
     state: &mut CurrentState,

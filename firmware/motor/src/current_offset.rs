@@ -1,21 +1,21 @@
-//! The current sensors' zeros, taken once while the bridge is off.
+//! Measures the offsets of the current sensors once, while the bridge is open.
 
 use crate::fault::Fault;
 use control::param::{ParamSpec, ParamVisitor};
 
-/// How the zeros are taken.
+/// Parameters of the offset measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurrentOffsetConfig {
-    /// Samples of which they are the mean.
+    /// Number of samples to average.
     pub samples: u16,
-    /// Largest zero that is no fault \[A\].
+    /// Largest valid offset \[A\].
     pub max_a: f32,
-    /// Largest distance between two samples of a phase meanwhile that is no fault \[A\].
+    /// Largest valid spread of the samples of a phase \[A\].
     pub spread_a: f32,
 }
 
 impl CurrentOffsetConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.count(&ParamSpec::new("zero", "samples", 1.0, 20_000.0), &mut self.samples);
         to.number(&ParamSpec::new("zero", "max_a", 0.0, 100.0), &mut self.max_a);
@@ -23,7 +23,7 @@ impl CurrentOffsetConfig {
     }
 }
 
-/// What has been taken so far.
+/// State of the measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CurrentOffsetState {
     taken: u16,
@@ -34,13 +34,13 @@ pub struct CurrentOffsetState {
 }
 
 impl CurrentOffsetState {
-    /// The zeros, once they are taken \[A\].
+    /// The offsets, once measured \[A\].
     pub fn zeros_a(&self) -> Option<[f32; 3]> {
         self.zeros_a
     }
 }
 
-/// One more sample of the three currents; a fault ends it.
+/// Adds one sample of the three currents; a fault ends the measurement.
 pub fn step(config: &CurrentOffsetConfig, state: &mut CurrentOffsetState, raw_a: [f32; 3]) -> Option<Fault> {
     if state.taken == 0 {
         (state.least_a, state.most_a) = (raw_a, raw_a);
@@ -55,7 +55,7 @@ pub fn step(config: &CurrentOffsetConfig, state: &mut CurrentOffsetState, raw_a:
     }
     let zeros = state.sum_a.map(|sum| sum / f32::from(state.taken));
     if state.taken >= config.samples {
-        // Written so that NaN, which compares false, is a fault.
+        // Negated so that NaN, which compares false, is a fault.
         restless |= !zeros.iter().all(|zero| zero.abs() <= config.max_a);
         state.zeros_a = Some(zeros);
     }

@@ -1,4 +1,4 @@
-//! One call of the motor's interrupt: what is measured goes in, duty cycles come out.
+//! One call of the motor interrupt: from measurements and command to duty cycles.
 
 use crate::align::{self, Align, AlignState};
 use crate::angle::Angle;
@@ -17,73 +17,73 @@ use crate::torque_limit;
 use crate::transform::{Vector, clarke, park, stator};
 use core::f32::consts::TAU;
 
-/// What is wanted of the motor.
+/// Command to the motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum MotorCommand {
-    /// Nothing: the bridge is open.
+    /// Bridge open.
     #[default]
     Off,
-    /// Find the encoder's offset, once until something else is asked for. The motor first moves by half an electrical
-    /// turn at most, then a quarter there and back.
+    /// Find the encoder's offset, once per request. The motor first moves by at most half an electrical turn, then a
+    /// quarter turn forward and back.
     Align,
-    /// A torque on the steer axis, to the right \[N m\].
+    /// Torque on the steer axis, positive to the right \[N m\].
     Torque(f32),
 }
 
-/// What is measured, at one instant in the middle of a PWM period.
+/// Measurements, sampled in the middle of a PWM period, and the command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
     /// Phase currents.
     pub phases: Phases,
-    /// Voltage of the bus \[V\].
+    /// Bus voltage \[V\].
     pub bus_v: f32,
-    /// The encoder's newest counts.
+    /// Newest encoder counts.
     pub angle_counts: u16,
-    /// Their age \[calls\]; `control::sensors::frame::MISSING` for none.
+    /// Age of the counts \[calls\]; `control::sensors::frame::MISSING` for none.
     pub angle_age_ticks: u16,
-    /// The hottest of what is measured \[deg C\].
+    /// Highest measured temperature \[deg C\].
     pub temperature_c: f32,
-    /// What is wanted.
+    /// Command.
     pub command: MotorCommand,
 }
 
-/// What the motor does.
+/// Mode of the motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Mode {
-    /// The bridge is open while the current sensors' zeros are taken.
+    /// Bridge open; the current sensors' offsets are being measured.
     #[default]
     Zeroing = 0,
-    /// Open; the encoder's offset is not known, torque will not be given.
+    /// Bridge open; the encoder's offset is unknown, no torque is possible.
     Unaligned = 1,
-    /// Open; torque is given when asked for.
+    /// Bridge open; torque follows on request.
     Ready = 2,
-    /// The offset is being found.
+    /// Alignment is running.
     Aligning = 3,
-    /// Torque is given.
+    /// Torque is applied.
     Running = 4,
-    /// Open for good: something is wrong. Only a new [`State`] leaves it.
+    /// Bridge open after a fault. Only a new [`State`] leaves this mode.
     Off = 5,
 }
 
-/// What is remembered. `State::default()` is that of a start: no zeros, no faults.
+/// State of the motor loop. `State::default()` is that of a start: no offsets, no faults.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     faults: Faults,
-    /// Mode of the last call.
+    /// Mode of the previous call.
     mode: Mode,
     zero: CurrentOffsetState,
     encoder: EncoderState,
     overload: OverloadState,
     stall: StallState,
-    /// The offset that alignment found.
+    /// Offset found by alignment.
     offset: Option<Angle>,
-    /// Whether the alignment that is still asked for is over.
+    /// Whether the requested alignment has completed.
     aligned: bool,
     drive: Drive,
 }
 
-/// What is remembered while one mode lasts.
+/// State that is reset when the mode changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Drive {
     align: AlignState,
@@ -97,40 +97,40 @@ struct Drive {
     angle: angle::AngleState,
 }
 
-/// What comes out.
+/// Output of one call.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Output {
     /// Duty cycles of the upper switches of a, b and c; `None`: all six switches open.
     pub duties: Option<[f32; 3]>,
-    /// What the motor does.
+    /// Mode of the motor.
     pub mode: Mode,
-    /// Everything that has gone wrong since the start.
+    /// All faults since the start.
     pub faults: Faults,
-    /// Torque on the steer axis by the measured current, to the right \[N m\].
+    /// Torque on the steer axis from the measured current, positive to the right \[N m\].
     pub torque_nm: f32,
-    /// Measured current along the rotor's flux \[A\].
+    /// Measured d current \[A\].
     pub id_a: f32,
-    /// Measured current a quarter turn ahead of it \[A\].
+    /// Measured q current \[A\].
     pub iq_a: f32,
-    /// q current that is wanted \[A\].
+    /// Set-point of the q current \[A\].
     pub iq_wanted_a: f32,
-    /// Largest current that heat, supply, stall and an angle without proof leave now \[A\].
+    /// Current limit due to temperature, overload, supply, stall and an unconfirmed angle \[A\].
     pub limit_a: f32,
-    /// Whether only the holding current is left because the motor stands.
+    /// Whether a stall limits the current to the holding current.
     pub stalled: bool,
-    /// Speed of the steer by the encoder, to the right \[rad/s\].
+    /// Steer rate from the encoder, positive to the right \[rad/s\].
     pub steer_rate_rad_s: f32,
-    /// The encoder's offset in use, to be kept as `encoder.offset_turns`.
+    /// Encoder offset in use, to be stored as `encoder.offset_turns`.
     pub offset_turns: Option<f32>,
-    /// Whether the alignment that is asked for is over and found the offset; until something else is asked for.
+    /// Whether the requested alignment has found the offset; cleared by another command.
     pub aligned: bool,
 }
 
-/// One call, once each PWM period; the duty cycles are to be used for the whole of the next one. An open bridge is
-/// to be opened at once.
+/// One call, once per PWM period. The duty cycles apply to the whole next period; an open bridge must be opened at
+/// once.
 ///
-/// Whatever the inputs, duty cycles are inside the bridge's limits, and a fault opens the bridge in the call in
-/// which it is seen.
+/// For all inputs, the duty cycles are inside the bridge's limits, and a fault opens the bridge in the call that
+/// detects it.
 pub fn step(plan: &Plan, state: &mut State, inputs: &Inputs) -> Output {
     let reading =
         encoder::step(&plan.encoder, &mut state.encoder, inputs.angle_counts, inputs.angle_age_ticks);
@@ -172,14 +172,14 @@ pub fn step(plan: &Plan, state: &mut State, inputs: &Inputs) -> Output {
     out
 }
 
-/// Where the field stands in this call, and what is wanted of it.
+/// Angle and speed of the field in this call, and the current set-point.
 struct Field {
     angle: Angle,
     omega_rad_s: f32,
     wanted: Vector,
 }
 
-/// A call with the bridge closed. Faults go into the state; what comes out then does not count.
+/// A call with the bridge active. Faults are added to the state; the output is then invalid.
 fn close(
     plan: &Plan,
     state: &mut State,
@@ -216,7 +216,7 @@ fn close(
     let wanted = wanted.inside(limit_a);
 
     let measured = park(measured, angle.sin_cos());
-    // The rotor swings about the field of an alignment; without voltage along q its own back-EMF brakes it.
+    // During alignment the rotor oscillates about the field; without voltage along q its own back-EMF damps it.
     let wanted = if mode == Mode::Aligning { Vector::new(wanted.d, measured.q) } else { wanted };
     let max_v = inputs.bus_v * plan.reach;
     let reachable = plan.gains.steady(wanted, omega_rad_s).square() < (0.9 * max_v) * (0.9 * max_v);
@@ -254,7 +254,7 @@ fn close(
     }
 }
 
-/// The field of the alignment; `None` when it is over.
+/// Field of the alignment; `None` when it has ended.
 fn aligning(plan: &Plan, state: &mut State, reading: &EncoderReading, limit_a: f32) -> Option<Field> {
     let electrical = reading.angle.times(plan.config.motor.pole_pairs);
     match align::step(&plan.config.align, &mut state.drive.align, electrical) {
@@ -272,7 +272,7 @@ fn aligning(plan: &Plan, state: &mut State, reading: &EncoderReading, limit_a: f
     }
 }
 
-/// The field that goes with the rotor and carries the torque asked for, and the current that is left by a stall.
+/// Rotor-fixed field that produces the requested torque, within the current limit `limit_a` and that of a stall.
 fn running(
     plan: &Plan,
     state: &mut State,
@@ -282,13 +282,13 @@ fn running(
     limit_a: f32,
 ) -> (Option<Field>, f32) {
     let c = &plan.config;
-    let asked_nm = if let MotorCommand::Torque(nm) = command { nm } else { 0.0 };
+    let requested_nm = if let MotorCommand::Torque(nm) = command { nm } else { 0.0 };
     let speed = reading.speed_turns_s;
-    let asked_a = asked_nm / plan.torque_nm_a;
-    let limit_a = stall::step(&c.stall, &mut state.stall, plan.period_s, asked_a, speed, limit_a);
+    let requested_a = requested_nm / plan.torque_nm_a;
+    let limit_a = stall::step(&c.stall, &mut state.stall, plan.period_s, requested_a, speed, limit_a);
     let limit_a = if state.drive.angle.is_proved() { limit_a } else { limit_a.min(plan.unproved_a) };
     let torque = &mut state.drive.torque_nm;
-    *torque = torque_limit::step(&c.demand, plan.period_s, *torque, asked_nm, limit_a, plan.torque_nm_a);
+    *torque = torque_limit::step(&c.demand, plan.period_s, *torque, requested_nm, limit_a, plan.torque_nm_a);
     let field = Field {
         angle: reading.angle.times(c.motor.pole_pairs).minus(offset),
         omega_rad_s: TAU * f32::from(c.motor.pole_pairs) * speed,

@@ -1,7 +1,7 @@
-//! The motor's angle and speed from an encoder's counts: a tracking loop that also judges each sample.
+//! Motor angle and speed from encoder counts: a tracking loop that also validates each sample.
 //!
-//! The angle is the newest good sample, carried on with the speed for its age; only the speed is filtered, so that
-//! a blow does not turn the field away from the rotor.
+//! The angle is the newest valid sample, extrapolated with the speed over its age. Only the speed is filtered, so
+//! that a sudden motion does not misalign the field.
 
 use crate::angle::Angle;
 use crate::fault::{Fault, Faults};
@@ -13,26 +13,26 @@ use core::f32::consts::TAU;
 /// The encoder on the motor's shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderConfig {
-    /// Counts of one turn.
+    /// Counts per turn.
     pub counts: u16,
-    /// Whether the counts fall when the motor turns forward.
+    /// Whether the counts decrease when the motor turns forward.
     pub reversed: bool,
-    /// Electrical angle at which the counts read zero, the other way round, as part of a turn; what alignment finds.
-    /// `None`: not known, no torque before alignment.
+    /// Negative of the electrical angle at zero counts, as a fraction of a turn; found by alignment. `None`: unknown,
+    /// no torque before alignment.
     pub offset_turns: Option<f32>,
-    /// Age at which a sample is too old \[calls\].
+    /// Timeout of a sample \[calls\].
     pub timeout_ticks: u16,
-    /// Largest distance of a sample from where the speed led \[turns of the motor\]; well below the 8th part of an
+    /// Largest difference of a sample from the extrapolated angle \[turns of the motor\]; well below an eighth of an
     /// electrical turn.
     pub jump_turns: f32,
     /// Largest speed \[turns/s of the motor\].
     pub speed_max_turns_s: f32,
-    /// Bandwidth of the speed \[Hz\].
+    /// Bandwidth of the speed estimate \[Hz\].
     pub tracking_hz: f32,
 }
 
 impl EncoderConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.count(&ParamSpec::new("encoder", "counts", 16.0, 65535.0), &mut self.counts);
         to.switch(&ParamSpec::switch("encoder", "reversed"), &mut self.reversed);
@@ -44,20 +44,20 @@ impl EncoderConfig {
     }
 }
 
-/// What follows from the encoder and the rate of calls.
+/// Constants that follow from the encoder and the call rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderPlan {
     config: EncoderConfig,
-    /// Parts of [`Angle`] of one count.
+    /// Units of [`Angle`] per count.
     count: u32,
     period_s: f32,
-    /// Correction of angle and speed by a turn's error that is one period old; both poles at the bandwidth.
+    /// Correction of angle and speed per turn of error and call; both poles lie at the bandwidth.
     angle_gain: f32,
     speed_gain_s: f32,
 }
 
 impl EncoderPlan {
-    /// For `rate_hz` calls a second.
+    /// Constants for `rate_hz` calls per second.
     pub fn new(config: &EncoderConfig, rate_hz: f32) -> Self {
         let pole = TAU * config.tracking_hz;
         Self {
@@ -70,22 +70,22 @@ impl EncoderPlan {
     }
 }
 
-/// What is remembered of the encoder.
+/// State of the encoder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderState {
-    /// The last good sample, in the sense of the motor.
+    /// Last valid sample, positive forward.
     sample: Angle,
     /// Its age \[calls\].
     age: u16,
-    /// The age told with the last sample.
-    told_age: u16,
-    /// Where the loop believes the motor, and how fast.
+    /// Reported age of the last sample.
+    reported_age: u16,
+    /// Tracked angle and speed.
     followed: Angle,
     speed_turns_s: f32,
-    /// Whether a second sample has told a speed.
+    /// Whether a second sample has given a speed.
     moving: bool,
-    /// Why the newest sample was not good.
-    doubt: Fault,
+    /// Reason for which the newest sample was rejected.
+    rejected: Fault,
 }
 
 impl Default for EncoderState {
@@ -93,23 +93,23 @@ impl Default for EncoderState {
         Self {
             sample: Angle(0),
             age: MISSING,
-            told_age: MISSING,
+            reported_age: MISSING,
             followed: Angle(0),
             speed_turns_s: 0.0,
             moving: false,
-            doubt: Fault::EncoderLost,
+            rejected: Fault::EncoderLost,
         }
     }
 }
 
-/// The motor as the encoder sees it.
+/// Angle, speed and faults from the encoder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderReading {
-    /// Angle of the motor now, forward positive.
+    /// Present motor angle, positive forward.
     pub angle: Angle,
-    /// Speed of the motor \[turns/s\].
+    /// Motor speed \[turns/s\].
     pub speed_turns_s: f32,
-    /// What is wrong with it.
+    /// Faults of the encoder.
     pub faults: Faults,
 }
 
@@ -118,11 +118,11 @@ pub fn step(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age_ticks
     let config = &plan.config;
     state.age = state.age.saturating_add(1);
     state.followed = state.followed.plus(Angle::of(state.speed_turns_s * plan.period_s));
-    let new = age_ticks != state.told_age.saturating_add(1) && age_ticks <= config.timeout_ticks;
-    state.told_age = age_ticks;
-    // A loss is told even if it ends in this call.
+    let new = age_ticks != state.reported_age.saturating_add(1) && age_ticks <= config.timeout_ticks;
+    state.reported_age = age_ticks;
+    // A loss is reported even if it ends in this call.
     let mut faults = Faults::NONE;
-    faults.note(state.doubt, state.age > config.timeout_ticks);
+    faults.note(state.rejected, state.age > config.timeout_ticks);
     if new {
         take(plan, state, counts, age_ticks);
     }
@@ -132,11 +132,11 @@ pub fn step(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age_ticks
     EncoderReading { angle: state.sample.plus(Angle::of(speed * since)), speed_turns_s: speed, faults }
 }
 
-/// A new sample.
+/// Processes a new sample.
 fn take(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age: u16) {
     let config = &plan.config;
     if counts >= config.counts {
-        state.doubt = Fault::EncoderRange;
+        state.rejected = Fault::EncoderRange;
         return;
     }
     let forward = Angle(u32::from(counts).wrapping_mul(plan.count));
@@ -144,7 +144,7 @@ fn take(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age: u16) {
     let calls = f32::from(state.age.saturating_sub(age).clamp(1, 20));
     let most = 1.25 * config.speed_max_turns_s;
     if state.age > config.timeout_ticks {
-        // The first one, or the first after a loss: the loop begins anew, with the speed that the second one tells.
+        // First sample at all or after a loss: the loop restarts, and the second sample gives the speed.
         (state.followed, state.speed_turns_s, state.moving) = (sample, 0.0, false);
     } else if !state.moving {
         let speed = sample.minus(state.sample).signed() / (calls * plan.period_s);
@@ -154,11 +154,11 @@ fn take(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age: u16) {
     let now = sample.plus(Angle::of(state.speed_turns_s * f32::from(age) * plan.period_s));
     let error = now.minus(state.followed).signed();
     if error.abs() > config.jump_turns {
-        state.doubt = Fault::EncoderJump;
+        state.rejected = Fault::EncoderJump;
         return;
     }
-    // A sample that comes every n calls is worth n calls.
+    // A sample every n calls is weighted n-fold.
     state.followed = state.followed.plus(Angle::of(bounded(plan.angle_gain * calls, 1.0) * error));
     state.speed_turns_s = bounded(state.speed_turns_s + plan.speed_gain_s * calls * error, most);
-    (state.sample, state.age, state.doubt) = (sample, age, Fault::EncoderLost);
+    (state.sample, state.age, state.rejected) = (sample, age, Fault::EncoderLost);
 }

@@ -1,4 +1,4 @@
-//! An example: a gear motor of about 7 N m on the steer axis, on a VESC-6-class board.
+//! Example configuration: a gear motor of about 7 N m on the steer axis, on a VESC-6-class board.
 //!
 //! Motor: maxon EC 45 flat, 70 W, the winding for 24 V, from its data sheet (catalogue page "EC 45 flat, 43.5 mm,
 //! brushless, 70 watt, provisional"): terminal resistance 0.573 ohm, terminal inductance 0.301 mH, torque constant
@@ -9,7 +9,7 @@
 //! (mechmotum/sbw_bicycle_with_model_matching). Torque limit: 7 N m, the balance-assist prototype's.
 //! Board: shunts of 0.5 mohm, gain 20, 12 bits of 3.3 V: 0.0806 A a step, 165 A either way.
 //!
-//! What stands in no source (dead time, all thresholds) is chosen, and is to be measured anew on a real board.
+//! Values without a source (dead time, all thresholds) are assumptions and must be measured on a real board.
 
 use crate::align::AlignConfig;
 use crate::config::Config;
@@ -28,7 +28,7 @@ use crate::protect::supply::SupplyConfig;
 use crate::protect::temperature::TemperatureConfig;
 use crate::torque_limit::TorqueLimit;
 
-/// Torque constant of the data sheet, for a current that is switched every sixth of a turn \[N m/A\].
+/// Torque constant of the data sheet, for block commutation every sixth of a turn \[N m/A\].
 const SHEET_NM_A: f32 = 40.4e-3;
 
 /// The motor and its gear.
@@ -37,13 +37,13 @@ pub const MOTOR: Motor = Motor {
     resistance_ohm: 0.573 / 2.0,
     inductance_d_h: 0.301e-3 / 2.0,
     inductance_q_h: 0.301e-3 / 2.0,
-    // The sheet's constant is the mean over a sixth of a turn, 3/pi of the peak, between two terminals.
+    // The data sheet's constant is the mean over a sixth of a turn, 3/pi of the peak, between two terminals.
     flux_wb: SHEET_NM_A * core::f32::consts::FRAC_PI_3 / 1.732_050_8 / 8.0,
     ratio: 36.0,
     reversed: false,
 };
 
-/// The motor with everything around it, at 20 kHz. The encoder's offset is not known: it must be aligned.
+/// The complete configuration, at 20 kHz. The encoder's offset is unknown: the motor must be aligned.
 pub const EXAMPLE: Config = Config {
     rate_hz: 20_000.0,
     motor: MOTOR,

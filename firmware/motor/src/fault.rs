@@ -1,58 +1,59 @@
-//! What switches the bridge off, numbered once and for ever.
+//! Faults that open the bridge, with fixed numbers.
 //!
-//! A number is never given to anything else. Every fault latches; `docs/motor.md` has the table.
+//! A number is never reused. Every fault latches; `docs/motor.md` has the table.
 
-/// Why the bridge is off. The number is the code that users see.
+/// Reason for an open bridge. The number is the code that users see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Fault {
-    /// A phase current was beyond the trip.
+    /// A phase current exceeded the trip.
     OverCurrent = 1,
-    /// The winding's heat by the measured current is beyond what the limits would ever have asked for.
+    /// The modelled heat of the winding exceeded the value that the current limits permit.
     Overload = 2,
-    /// A measured current is not a number or beyond the sensor's range.
+    /// A measured current is NaN or outside the sensor's range.
     CurrentSensor = 3,
-    /// The current sensors' zeros are too far off, or restless.
+    /// The current sensors' offsets are too large or vary.
     CurrentZero = 4,
-    /// The three measured currents do not add up to nothing.
+    /// The sum of the three measured currents is not zero.
     CurrentSum = 5,
-    /// The current does not follow what is asked for, though the voltage would suffice.
+    /// The current does not follow its set-point, although the voltage suffices.
     CurrentAstray = 6,
-    /// The same, and phase a alone carries nothing.
+    /// As above, and only phase a carries no current.
     PhaseALost = 7,
-    /// The same, and phase b alone carries nothing.
+    /// As above, and only phase b carries no current.
     PhaseBLost = 8,
-    /// The same, and phase c alone carries nothing.
+    /// As above, and only phase c carries no current.
     PhaseCLost = 9,
-    /// The supply is too low.
+    /// Supply voltage too low.
     BusLow = 10,
-    /// The supply is too high.
+    /// Supply voltage too high.
     BusHigh = 11,
-    /// The measured supply is not a number or no voltage at all.
+    /// The measured supply voltage is NaN or implausible.
     BusSensor = 12,
     /// The bridge or the motor is too hot.
     Hot = 13,
-    /// The measured temperature is not a number or not of this world.
+    /// The measured temperature is NaN or implausible.
     HeatSensor = 14,
-    /// The encoder brought no believable sample in time.
+    /// No valid encoder sample within the timeout.
     EncoderLost = 15,
-    /// The encoder's counts are beyond its turn.
+    /// The encoder's counts exceed one turn.
     EncoderRange = 16,
-    /// The encoder's samples jump away from where the speed led.
+    /// The encoder's samples jump away from the extrapolated angle.
     EncoderJump = 17,
-    /// The encoder turns faster than the motor can.
+    /// The encoder's speed exceeds the motor's largest.
     EncoderSpeed = 18,
-    /// The voltage is not that which current and encoder speed explain: an encoder that stands, or a phase that is cut.
+    /// Current and encoder speed do not explain the voltage: a stuck encoder, or an open phase.
     VoltageAstray = 19,
-    /// The encoder does not follow the field, or not as far.
+    /// The encoder does not follow the field, or by less.
     AlignLag = 20,
-    /// The encoder follows the field the wrong way.
+    /// The encoder follows the field in the wrong direction.
     AlignReversed = 21,
-    /// The encoder does not come to rest in a field that rests.
+    /// The encoder does not come to rest in a constant field.
     AlignRestless = 22,
-    /// The torque asked for is not a number.
+    /// The requested torque is NaN.
     Command = 23,
-    /// The back-EMF does not lie where the encoder's angle puts it: an encoder that slipped, or an offset of another motor.
+    /// The direction of the back-EMF contradicts the encoder's angle: a slipped encoder, or the offset of another
+    /// motor.
     AngleAstray = 24,
 }
 
@@ -68,7 +69,7 @@ pub const FAULTS: [Fault; 24] = {
 };
 
 impl Fault {
-    /// The number that users see and look up.
+    /// The code that users see and look up.
     pub const fn code(self) -> u8 {
         self as u8
     }
@@ -89,14 +90,14 @@ impl Faults {
         }
     }
 
-    /// Adds a fault, if there is one.
+    /// Adds a fault, if any.
     pub fn take(&mut self, fault: Option<Fault>) {
         if let Some(fault) = fault {
             self.note(fault, true);
         }
     }
 
-    /// Both sets together.
+    /// Union of both sets.
     pub const fn with(self, other: Faults) -> Self {
         Faults(self.0 | other.0)
     }
@@ -106,12 +107,12 @@ impl Faults {
         self.0 & (1 << fault.code()) != 0
     }
 
-    /// Whether there is none.
+    /// Whether the set is empty.
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// The faults in it, by rising code.
+    /// The faults of the set, by rising code.
     pub fn iter(self) -> impl Iterator<Item = Fault> {
         FAULTS.into_iter().filter(move |fault| self.has(*fault))
     }

@@ -1,12 +1,12 @@
 //! Clarke's and Park's transforms, amplitude-invariant: a current of 1 A peak in the phases is 1 A in d and q.
 
-/// Two components that stand still with the stator (alpha along phase a, beta a quarter turn ahead) or turn with the
-/// rotor (d along its flux, q a quarter turn ahead).
+/// Two components in stator axes (alpha along phase a, beta a quarter turn ahead) or in rotor axes (d along the rotor's
+/// flux, q a quarter turn ahead).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vector {
-    /// The component alpha or d.
+    /// Component alpha or d.
     pub d: f32,
-    /// The component beta or q.
+    /// Component beta or q.
     pub q: f32,
 }
 
@@ -14,37 +14,37 @@ const INVERSE_SQRT_3: f32 = 0.577_350_26;
 const HALF_SQRT_3: f32 = 0.866_025_4;
 
 impl Vector {
-    /// Of two components.
+    /// From two components.
     pub const fn new(d: f32, q: f32) -> Self {
         Self { d, q }
     }
 
-    /// Its length squared.
+    /// Squared length.
     pub fn square(self) -> f32 {
         self.d * self.d + self.q * self.q
     }
 
-    /// Its length.
+    /// Length.
     pub fn length(self) -> f32 {
         libm::sqrtf(self.square())
     }
 
-    /// This vector and another.
+    /// Sum of two vectors.
     pub fn plus(self, other: Self) -> Self {
         Self::new(self.d + other.d, self.q + other.q)
     }
 
-    /// This vector less another.
+    /// Difference of two vectors.
     pub fn minus(self, other: Self) -> Self {
         Self::new(self.d - other.d, self.q - other.q)
     }
 
-    /// So many times the vector.
+    /// Multiple of the vector.
     pub fn times(self, factor: f32) -> Self {
         Self::new(self.d * factor, self.q * factor)
     }
 
-    /// Inside a circle: d as it is as long as it fits, q what is left.
+    /// Limits the vector to a circle: d has priority, q is limited to the rest.
     pub fn inside(self, radius: f32) -> Self {
         if self.square() <= radius * radius {
             return self;
@@ -55,23 +55,23 @@ impl Vector {
     }
 }
 
-/// Clarke: alpha and beta of three phases. What all three have in common drops out.
+/// Clarke transform: alpha and beta of three phases. The common-mode part cancels.
 pub fn clarke([a, b, c]: [f32; 3]) -> Vector {
     Vector::new((2.0 * a - (b + c)) * (1.0 / 3.0), (b - c) * INVERSE_SQRT_3)
 }
 
-/// Clarke backwards: three phases without a common part.
+/// Inverse Clarke transform: three phases without a common-mode part.
 pub fn phases(stator: Vector) -> [f32; 3] {
     let (half, other) = (-0.5 * stator.d, HALF_SQRT_3 * stator.q);
     [stator.d, half + other, half - other]
 }
 
-/// Park: d and q of alpha and beta, by sine and cosine of the electrical angle.
+/// Park transform: d and q from alpha and beta, with sine and cosine of the electrical angle.
 pub fn park(stator: Vector, (sin, cos): (f32, f32)) -> Vector {
     Vector::new(stator.d * cos + stator.q * sin, stator.q * cos - stator.d * sin)
 }
 
-/// Park backwards: alpha and beta of d and q.
+/// Inverse Park transform: alpha and beta from d and q.
 pub fn stator(rotor: Vector, (sin, cos): (f32, f32)) -> Vector {
     Vector::new(rotor.d * cos - rotor.q * sin, rotor.d * sin + rotor.q * cos)
 }

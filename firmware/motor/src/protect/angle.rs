@@ -1,36 +1,37 @@
-//! Whether the back-EMF lies where the encoder's angle puts it: the only sign of an encoder that slipped on its shaft.
+//! Checks the direction of the back-EMF against the encoder's angle; only this check detects a slipped encoder.
 //!
-//! The magnets' voltage lies along q, by `omega flux`. An angle that is wrong by `x` turns it to
-//! `omega flux (sin x, cos x)`. With no current along d an error of the resistance lies along q alone, and so does most
-//! of the dead time's: d shows an angle near a quarter turn at low speeds already, q one near a half turn, later. What
-//! speaks for the angle proves it for a while; without proof only a small torque is given.
+//! The magnets' voltage `omega flux` lies along q. An angle error `x` rotates it to `omega flux (sin x, cos x)`.
+//! Without d current, an error of the resistance lies along q alone, and so does most of the dead-time error. The d
+//! component therefore shows an error near a quarter turn already at low speed, the q component one near a half turn
+//! at higher speed. A consistent back-EMF confirms the angle for a limited time; without confirmation only a small
+//! torque is permitted.
 
 use super::follow_mean;
 use crate::fault::Fault;
 use crate::transform::Vector;
 use control::param::{ParamSpec, ParamVisitor};
 
-/// What the back-EMF may be off by, and the torque without its proof.
+/// Tolerances of the back-EMF, and the torque without confirmation of the angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngleConfig {
-    /// Largest error of the mean voltage that is left: zeros of the current sensors, their noise, the bus \[V\].
+    /// Constant tolerance of the mean voltage: offsets and noise of the current sensors, bus voltage \[V\].
     pub error_v: f32,
-    /// Part of the resistance's voltage by which it may be wrong.
+    /// Tolerance as a fraction of the resistive voltage.
     pub resistance_part: f32,
-    /// Part of the magnets' voltage by which the back-EMF may be off along d or q: flux, inductance, alignment.
+    /// Tolerance along d or q as a fraction of the magnets' voltage: flux, inductance, alignment.
     pub flux_part: f32,
-    /// Part of the voltage that the dead time takes of a phase by which it may be wrong.
+    /// Tolerance as a fraction of a phase's dead-time voltage.
     pub dead_part: f32,
-    /// Time constant of the means \[calls\].
+    /// Time constant of the mean values \[calls\].
     pub mean_ticks: u16,
-    /// Largest torque on the steer axis while the angle is not proved \[N m\].
+    /// Largest torque on the steer axis while the angle is unconfirmed \[N m\].
     pub unproved_nm: f32,
-    /// Time for which a proof counts \[calls\].
+    /// Time for which a confirmation is valid \[calls\].
     pub proof_ticks: u16,
 }
 
 impl AngleConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("angle", "error_v", 0.01, 50.0), &mut self.error_v);
         to.number(&ParamSpec::new("angle", "resistance_part", 0.0, 2.0), &mut self.resistance_part);
@@ -45,22 +46,22 @@ impl AngleConfig {
 /// Voltages of one call \[V\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Voltages {
-    /// Applied, less what current and speed explain.
+    /// Applied voltage less the part that current and speed explain.
     pub unexplained: Vector,
-    /// The magnets' by the encoder's speed, with its sign.
+    /// Magnets' voltage from the encoder's speed, with sign.
     pub magnets: f32,
-    /// What the resistance should take.
+    /// Expected resistive voltage.
     pub resistive: f32,
-    /// What the dead time takes of a phase.
+    /// Dead-time voltage of a phase.
     pub dead: f32,
 }
 
-/// Means of the last calls \[V\], and how long the last proof still counts \[calls\].
+/// Mean voltages \[V\], and remaining validity of the last confirmation \[calls\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AngleState {
-    /// Unexplained along d.
+    /// Unexplained voltage along d.
     aside: f32,
-    /// Unexplained along q, positive with the magnets' voltage.
+    /// Unexplained voltage along q, positive with the magnets' voltage.
     along: f32,
     magnets: f32,
     resistive: f32,
@@ -68,7 +69,7 @@ pub struct AngleState {
 }
 
 impl AngleState {
-    /// Whether the angle was proved lately.
+    /// Whether the angle is confirmed.
     pub fn is_proved(&self) -> bool {
         self.proved > 0
     }
@@ -85,9 +86,9 @@ pub fn step(config: &AngleConfig, state: &mut AngleState, now: &Voltages) -> Opt
 
     let dead = config.dead_part * now.dead;
     let (aside, flux) = (state.aside.abs(), config.flux_part * state.magnets);
-    // A small current, whose resistance takes little, is the one whose dead time is made up for in part only.
+    // A small current has a small resistive voltage, and its dead time is compensated only in part.
     let error = config.error_v + dead + dead.max(config.resistance_part * state.resistive);
-    // Less than an eighth of a turn off, whatever the errors.
+    // The error is less than an eighth of a turn, for all tolerated errors.
     let proved = state.magnets + state.along > error + aside;
     state.proved = if proved { config.proof_ticks } else { state.proved.saturating_sub(1) };
     let wrong = aside > config.error_v + dead + flux || -state.along > error + flux;

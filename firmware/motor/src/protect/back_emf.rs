@@ -1,23 +1,24 @@
-//! Whether the back-EMF belongs to the encoder's speed: the only sign of an encoder that stands while the motor turns.
+//! Checks the voltage against current and encoder speed; only this check detects a stuck encoder on a turning motor.
 
 use super::follow_mean;
 use crate::fault::Fault;
 use crate::transform::Vector;
 use control::param::{ParamSpec, ParamVisitor};
 
-/// How far the voltage may be off.
+/// Tolerances of the voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BackEmfConfig {
-    /// Largest mean distance between the voltage applied and that which current and speed explain \[V\].
+    /// Largest mean difference between the applied voltage and that which current and speed explain \[V\].
     pub error_v: f32,
-    /// Part of the resistance's voltage that comes on top: the resistance of copper rises by 40 % from 20 to 120 deg C.
+    /// Additional tolerance as a fraction of the resistive voltage: copper's resistance rises by 40 % from 20 to 120
+    /// deg C.
     pub resistance_part: f32,
     /// Time constant of the mean \[calls\].
     pub mean_ticks: u16,
 }
 
 impl BackEmfConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("emf", "error_v", 0.1, 50.0), &mut self.error_v);
         to.number(&ParamSpec::new("emf", "resistance_part", 0.0, 2.0), &mut self.resistance_part);
@@ -25,8 +26,8 @@ impl BackEmfConfig {
     }
 }
 
-/// One call: `unexplained` is the voltage applied less that which current and speed explain, `resistive_v` what the
-/// resistance should take of it, `dead_v` what the dead time takes of a phase. `mean_v` is remembered.
+/// One call: `unexplained` is the applied voltage less the part that current and speed explain, `resistive_v` the
+/// expected resistive voltage, `dead_v` the dead-time voltage of a phase, `mean_v` the state.
 pub fn step(
     config: &BackEmfConfig,
     mean_v: &mut f32,

@@ -1,42 +1,42 @@
-//! Whether the current goes where it is sent: a phase that is cut, a driver that is dead.
+//! Checks that the current follows its set-point; detects an open phase or a dead driver.
 
 use super::follow_mean;
 use crate::fault::Fault;
 use control::param::{ParamSpec, ParamVisitor};
 
-/// How far the current may be off.
+/// Tolerance of the current.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurrentTrackingConfig {
-    /// Largest mean distance from what is wanted \[A\].
+    /// Largest mean deviation from the set-point \[A\].
     pub error_a: f32,
     /// Time constant of the mean \[calls\].
     pub mean_ticks: u16,
 }
 
 impl CurrentTrackingConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("follow", "error_a", 0.01, 100.0), &mut self.error_a);
         to.count(&ParamSpec::new("follow", "mean_ticks", 1.0, 10_000.0), &mut self.mean_ticks);
     }
 }
 
-/// What is remembered of the currents.
+/// State of the check.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CurrentTrackingState {
-    /// Mean distance of the current from what is wanted \[A\].
+    /// Mean deviation of the current from the set-point \[A\].
     error_a: f32,
-    /// Calls in a row in which a phase carried nothing.
+    /// Consecutive calls in which a phase carried no current.
     dead: [u16; 3],
 }
 
-/// Part of the largest distance that is as good as nothing.
+/// Fraction of `error_a` below which a current counts as zero.
 const NOTHING: f32 = 0.2;
-/// Calls without current after which a phase counts as cut, if the others carry some.
+/// Calls without current after which a phase counts as open, if the others carry current.
 const DEAD: u16 = 10;
 
-/// One call, by the distance of the current from what is wanted. `reachable`: the voltage would suffice; what it
-/// does not suffice for is no fault.
+/// One call with the deviation of the current from its set-point. `reachable`: the voltage suffices for the set-point;
+/// otherwise a deviation is no fault.
 pub fn step(
     config: &CurrentTrackingConfig,
     state: &mut CurrentTrackingState,

@@ -1,34 +1,34 @@
-//! The winding's heat by the square of the current: it limits the current to the continuous one in time.
+//! Thermal model of the winding (squared current): limits the current to the continuous one in time.
 
 use super::{follow_mean, share};
 use crate::fault::Fault;
 use control::param::{ParamSpec, ParamVisitor};
 
-/// How long how much current may flow.
+/// Parameters of the thermal model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OverloadConfig {
-    /// Current that may flow for ever, as a vector \[A\].
+    /// Continuous current, as the length of a vector \[A\].
     pub continuous_a: f32,
     /// Thermal time constant of the winding \[s\].
     pub time_s: f32,
 }
 
 impl OverloadConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("overload", "continuous_a", 0.1, 200.0), &mut self.continuous_a);
         to.number(&ParamSpec::new("overload", "time_s", 0.01, 1000.0), &mut self.time_s);
     }
 }
 
-/// Share of the allowed heat at which the limit begins to fall.
+/// Fraction of the allowed heat at which the limit begins to fall.
 const BEGIN: f32 = 0.8;
-/// Share of it that the limited current never reaches: there the bridge goes off.
+/// Fraction of the allowed heat that the limited current can't reach: the bridge opens there.
 const FAULT: f32 = 1.1;
-/// Calls of which the heat is updated by their mean: a single one is too short for f32 to tell.
+/// Number of calls averaged per update of the heat: the change in one call is below f32 resolution.
 const BLOCK: u16 = 64;
 
-/// The heat as a mean square \[A^2\].
+/// Heat as a mean square of the current \[A^2\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OverloadState {
     heat_a2: f32,
@@ -36,7 +36,8 @@ pub struct OverloadState {
     count: u16,
 }
 
-/// One call of `period_s` with a current squared \[A^2\]: the largest current \[A\], of at most `max_a`, and what is wrong.
+/// One call of `period_s` with a squared current \[A^2\]: returns the current limit \[A\], at most `max_a`, and a
+/// fault.
 pub fn step(
     config: &OverloadConfig,
     state: &mut OverloadState,

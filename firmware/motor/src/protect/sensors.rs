@@ -1,14 +1,14 @@
-//! The phase currents: read, freed of their zeros, and held against each other and against the trip.
+//! Checks of the phase currents: range, trip and sum.
 
 use crate::fault::{Fault, Faults};
 use control::param::{ParamSpec, ParamVisitor};
 
-/// Phase currents as measured, into the motor positive \[A\].
+/// Measured phase currents, positive into the motor \[A\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phases {
-    /// Of a, b and c.
+    /// Phases a, b and c.
     Three([f32; 3]),
-    /// Of a and b; c is what makes the sum zero.
+    /// Phases a and b; c makes the sum zero.
     Two([f32; 2]),
 }
 
@@ -22,21 +22,21 @@ impl Phases {
     }
 }
 
-/// The current sensors.
+/// Limits of the current sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorsConfig {
-    /// Largest current that can be measured \[A\].
+    /// Range of the sensors \[A\].
     pub range_a: f32,
-    /// Phase current at which the bridge goes off at once \[A\].
+    /// Trip: phase current that opens the bridge at once \[A\].
     pub trip_a: f32,
-    /// Largest sum of three phases that is no fault \[A\].
+    /// Largest valid sum of three phases \[A\].
     pub sum_a: f32,
-    /// Calls for which the sum may be larger.
+    /// Calls for which a larger sum is tolerated.
     pub sum_ticks: u16,
 }
 
 impl SensorsConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("sensors", "range_a", 0.1, 1000.0), &mut self.range_a);
         to.number(&ParamSpec::new("sensors", "trip_a", 0.1, 1000.0), &mut self.trip_a);
@@ -45,10 +45,10 @@ impl SensorsConfig {
     }
 }
 
-/// One call: what is wrong with three currents \[A\]; `beyond` counts the calls with too large a sum.
+/// One call: the faults of three currents \[A\]; `beyond` counts the calls with too large a sum.
 pub fn step(config: &SensorsConfig, beyond: &mut u16, phases_a: [f32; 3]) -> Faults {
     let mut faults = Faults::NONE;
-    // Written so that NaN, which compares false, is a fault.
+    // Negated so that NaN, which compares false, is a fault.
     if !phases_a.iter().all(|i| i.abs() <= config.range_a) {
         faults.note(Fault::CurrentSensor, true);
         return faults;

@@ -1,24 +1,24 @@
-//! The bus: less current as it sags, none when it is too low or too high.
+//! Supply protection: reduces the current while the bus voltage sags, opens the bridge outside its limits.
 
 use super::share;
 use crate::fault::Fault;
 use control::param::{ParamSpec, ParamVisitor};
 
-/// Voltages of the bus.
+/// Voltage limits of the bus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SupplyConfig {
-    /// Below it the bridge goes off \[V\].
+    /// Voltage below which the bridge opens \[V\].
     pub low_v: f32,
-    /// Below it the current is limited, down to none at `low_v` \[V\].
+    /// Voltage below which the current is limited, down to zero at `low_v` \[V\].
     pub sag_v: f32,
-    /// Above it the bridge goes off \[V\].
+    /// Voltage above which the bridge opens \[V\].
     pub high_v: f32,
-    /// Calls for which the bus may be outside.
+    /// Calls for which the bus voltage can be outside its limits.
     pub persist_ticks: u16,
 }
 
 impl SupplyConfig {
-    /// Shows every parameter.
+    /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("supply", "low_v", 1.0, 100.0), &mut self.low_v);
         to.number(&ParamSpec::new("supply", "sag_v", 1.0, 100.0), &mut self.sag_v);
@@ -27,19 +27,19 @@ impl SupplyConfig {
     }
 }
 
-/// Least voltage that is one at all: the controller itself would not run by less \[V\].
+/// Smallest plausible voltage: the controller itself needs more \[V\].
 const NONE_V: f32 = 1.0;
-/// Voltage that no bus here has \[V\].
+/// Largest plausible voltage \[V\].
 const ABSURD_V: f32 = 200.0;
 
-/// Calls outside so far.
+/// Number of consecutive calls outside the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SupplyState {
     low: u16,
     high: u16,
 }
 
-/// One call: the share of the current that may flow, and what is wrong.
+/// One call: the permitted share of the current, and a fault.
 pub fn step(config: &SupplyConfig, state: &mut SupplyState, bus_v: f32) -> (f32, Option<Fault>) {
     if !(NONE_V..=ABSURD_V).contains(&bus_v) {
         return (0.0, Some(Fault::BusSensor));
