@@ -1,50 +1,50 @@
-//! What is kept when something goes wrong, and what is done first: the outputs go off.
+//! Reaction to fatal failures: switches the outputs off, stores a fault record, restarts.
 
 use crate::{board, retained, tasks};
 use core::sync::atomic::{AtomicU32, Ordering};
 use link::fault_log::{self, LastStep};
 use link::report::{FaultKind, FaultRecord, ResetCause};
 
-/// How often the program started, and why this time.
+/// Number of starts, and the cause of this one.
 static START: AtomicU32 = AtomicU32::new(0);
 static CAUSE: AtomicU32 = AtomicU32::new(0);
 
-/// What else there is to say of a processor's exception; all 0 of anything else.
+/// Details of a processor exception; 0 for other faults.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Registers {
-    /// The exception's number.
+    /// Exception number.
     pub exception: u32,
     /// CFSR, HFSR, BFAR, SP, PC, LR.
     pub values: [u32; 6],
 }
 
-/// To be called first of all, with the cause of this start. A watchdog's bite of which nobody left word before is kept
-/// now.
+/// Call first in `main`, with the cause of this start. Records a watchdog reset that the supervisor had not recorded
+/// before.
 pub fn start(cause: ResetCause) {
     let starts = retained::start();
     START.store(starts, Ordering::Relaxed);
     CAUSE.store(cause as u32, Ordering::Relaxed);
-    let told = retained::with(|ring| {
+    let recorded = retained::with(|ring| {
         let newest = fault_log::faults(ring).next();
         newest.is_some_and(|f| f.kind == FaultKind::Watchdog && f.boot.wrapping_add(1) == starts)
     });
-    if cause == ResetCause::Watchdog && told == Some(false) {
+    if cause == ResetCause::Watchdog && recorded == Some(false) {
         let last = retained::with(|ring| fault_log::last_step(ring)).flatten().unwrap_or_default();
         keep(FaultKind::Watchdog, &last, Registers::default(), "the lowest priority stood still");
     }
 }
 
-/// How often the program started.
+/// Number of starts.
 pub fn starts() -> u32 {
     START.load(Ordering::Relaxed)
 }
 
-/// Why it did this time.
+/// Cause of this start.
 pub fn cause() -> ResetCause {
     ResetCause::numbered(CAUSE.load(Ordering::Relaxed) as u8).unwrap_or_default()
 }
 
-/// Keeps a fault with what the controller did last. From any context.
+/// Stores a fault with the state of the last control step. Can be called from any context.
 pub fn note(kind: FaultKind, registers: Registers, text: &str) {
     keep(kind, &tasks::latest().map_or_else(LastStep::default, |t| t.last_step()), registers, text);
 }
@@ -67,14 +67,14 @@ fn keep(kind: FaultKind, last: &LastStep, registers: Registers, text: &str) {
     });
 }
 
-/// The program can't go on: outputs off, then the record, then the board's end, a new start.
+/// Ends the program: outputs off, then the fault record, then the board's `end`, which restarts.
 pub fn end(kind: FaultKind, registers: Registers, text: &str) -> ! {
     board::outputs_off();
     note(kind, registers, text);
     board::end(kind, &registers, text)
 }
 
-/// The supply falls below what the chip needs. To be called by the board's warning, above all else but the motor.
+/// Handles a brown-out. Called by the board's supply warning, at a priority above all but the motor.
 pub fn brown_out() -> ! {
     end(FaultKind::BrownOut, Registers::default(), "supply too low")
 }

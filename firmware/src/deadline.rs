@@ -1,23 +1,23 @@
-//! Was every control step done within its period?
+//! Counts control steps, missed deadlines, and the longest response time.
 
 use embassy_time::{Duration, Instant};
 
-/// How often the control step is released: 1 kHz.
+/// Period of the control step: 1 kHz.
 pub const PERIOD: Duration = Duration::from_millis(1);
 
-/// The steps done so far, and how late.
+/// Counters of the control steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Deadlines {
-    /// Steps done.
+    /// Number of steps.
     pub steps: u32,
-    /// Steps that ended after the next one's release.
+    /// Number of steps that ended after the next release.
     pub late: u32,
     /// Longest time from a step's release to its end \[us\].
     pub worst_us: u32,
 }
 
 impl Deadlines {
-    /// Counts a step that was released and ended at these instants.
+    /// Counts a step with its release and its end.
     pub fn finished(&mut self, release: Instant, end: Instant) {
         let took = end.saturating_duration_since(release);
         self.steps = self.steps.wrapping_add(1);
@@ -25,7 +25,7 @@ impl Deadlines {
         self.worst_us = self.worst_us.max(took.as_micros() as u32);
     }
 
-    /// Periods of `elapsed` whose step was late or never done.
+    /// Number of periods in `elapsed` whose step was late or missing.
     pub fn missed(&self, elapsed: Duration) -> u32 {
         let released = (elapsed.as_ticks() / PERIOD.as_ticks()) as u32;
         self.late + released.saturating_sub(self.steps)

@@ -1,4 +1,4 @@
-//! Panics, exceptions and stray interrupts, on every board: all end in [`crash::end`].
+//! Handlers of panics, exceptions and unexpected interrupts, for every board: all end in [`crash::end`].
 #![allow(unsafe_code)]
 
 use crate::board;
@@ -9,8 +9,8 @@ use cortex_m::peripheral::SCB;
 use heapless::String;
 use link::report::{FAULT_TEXT_BYTES, FaultKind};
 
-// A fault may come from a stack that has run out: then go on with a fresh one. Otherwise stay on the one that has
-// what the core stacked.
+// After a stack overflow the handler continues on a fresh stack. Otherwise it keeps the stack with the registers that
+// the core saved.
 core::arch::global_asm!(
     ".macro fault name",
     ".global \\name",
@@ -34,24 +34,24 @@ core::arch::global_asm!(
     ".ltorg",
 );
 
-/// Gives each kind of fault its own exception, so that the record names it.
+/// Enables a separate exception for each kind of fault, so that the record names it.
 pub fn enable() {
     const SHCSR_ALL_FAULTS: u32 = 0b111 << 16;
-    // SAFETY: sets bits of the core's own register that nothing else writes.
+    // SAFETY: sets bits of a core register that nothing else writes.
     unsafe { (*SCB::PTR).shcsr.modify(|bits| bits | SHCSR_ALL_FAULTS) }
 }
 
 /// Cause registers: ARMv7-M Architecture Reference Manual, B3.2.15 to B3.2.18.
 #[unsafe(no_mangle)]
 extern "C" fn fault_report(sp: u32, exception: u32) -> ! {
-    // SAFETY: the core's own registers, reading them has no effect.
+    // SAFETY: reading core registers has no side effect.
     let [cfsr, hfsr, bfar] = [0xE000_ED28, 0xE000_ED2C, 0xE000_ED38]
         .map(|at: usize| unsafe { (at as *const u32).read_volatile() });
     let [pc, lr] = stacked(sp).unwrap_or_default();
     crash::end(FaultKind::Exception, Registers { exception, values: [cfsr, hfsr, bfar, sp, pc, lr] }, "")
 }
 
-/// Where it happened and who called, as the core stacked them; `None` if they lie outside the stack.
+/// Program counter and link register that the core stacked; `None` if they lie outside the stack.
 fn stacked(sp: u32) -> Option<[u32; 2]> {
     unsafe extern "C" {
         static _stack_start: u8;
@@ -73,7 +73,7 @@ unsafe fn DefaultHandler(interrupt: i16) -> ! {
 fn panic(info: &PanicInfo<'_>) -> ! {
     board::outputs_off();
     let mut words = String::<FAULT_TEXT_BYTES>::new();
-    // What does not fit is cut.
+    // Longer text is cut.
     let _ = write!(words, "{info}");
     crash::end(FaultKind::Panic, Registers::default(), &words)
 }

@@ -1,7 +1,7 @@
-//! The steer assist on a chip: Embassy tasks around the `control` crate.
+//! Firmware of the steer assist: Embassy tasks around the `control` crate.
 //!
-//! [`tasks`] are the same on every board; [`board`] is the one that the features choose, a folder
-//! each. The images are the files of `src/bin`. On the host there is nothing in this crate.
+//! [`tasks`] are the same on every board; [`board`] is selected by a feature, one folder per board. The files of
+//! `src/bin` are the images. On the host this crate is empty.
 #![no_std]
 #![cfg(target_os = "none")]
 
@@ -24,18 +24,18 @@ pub mod heartbeat;
 pub mod retained;
 pub mod tasks;
 
-/// Which image this is.
+/// Identity of an image.
 #[derive(Clone, Copy, Debug)]
 pub struct Image {
-    /// Its name.
+    /// Name of the image.
     pub name: &'static str,
-    /// The program's version.
+    /// Version of the firmware.
     pub version: &'static str,
-    /// The commit it is made from.
+    /// Commit it was built from.
     pub commit: &'static str,
 }
 
-/// The [`Image`] that is being compiled.
+/// The [`Image`] of this build.
 #[macro_export]
 macro_rules! image {
     () => {
@@ -47,11 +47,11 @@ macro_rules! image {
     };
 }
 
-/// Which image this is: its name, version and commit, one blank between them.
+/// Name, version and commit of this image, separated by spaces.
 #[macro_export]
 macro_rules! identity {
     () => {
-        // Opaque, so that the words stay together in the image instead of in single instructions.
+        // `black_box` keeps the text contiguous in the image instead of split into instructions.
         core::hint::black_box(concat!(
             env!("CARGO_BIN_NAME"),
             " ",

@@ -1,6 +1,6 @@
-//! Memory that keeps its bits through a reset: the ring of the last faults, and how the program ended.
+//! Memory that survives a reset: the fault log, and the board's data behind it.
 //!
-//! The memory is that of `RETAINED` in `memory.x`.
+//! The memory is the region `RETAINED` of `memory.x`.
 #![allow(unsafe_code)]
 
 use core::cell::RefCell;
@@ -13,16 +13,16 @@ unsafe extern "C" {
     static mut RETAINED: [u8; RING_BYTES];
 }
 
-/// Bytes at the start of `RETAINED` that are the ring's; what lies behind them is the board's.
+/// Length of the fault log at the start of `RETAINED`; the rest belongs to the board \[bytes\].
 pub const USED: usize = RING_BYTES.next_multiple_of(1024);
 
 static RING: Mutex<RefCell<Option<&'static mut [u8; RING_BYTES]>>> = Mutex::new(RefCell::new(None));
 
-/// To be called once, at the start of the program; how often it has started since power came.
+/// Initialises the fault log; call once at the start. Returns the number of starts since power-on.
 pub fn start() -> u32 {
     let at = &raw mut RETAINED;
-    // SAFETY: the linker script gives this memory to nobody else, and the cell hands it out to one at a time. It may
-    // hold any bytes, which u8 allows; that nobody wrote them the compiler can't know.
+    // SAFETY: the linker script reserves this memory, and the cell gives exclusive access. It can hold any bytes,
+    // which u8 allows; the compiler can't know that they are uninitialised.
     let memory = unsafe { &mut *at };
     critical_section::with(|cs| {
         let starts = fault_log::start(memory);
@@ -31,15 +31,15 @@ pub fn start() -> u32 {
     })
 }
 
-/// Keeps a fault. From any context, a fault's handler included.
+/// Stores a fault. Can be called from any context, fault handlers included.
 pub fn note(fault: &FaultRecord<'_>) {
     with(|ring| fault_log::note(ring, fault));
 }
 
-/// Gives a look at what is kept; `None` before [`start`].
+/// Accesses the fault log; `None` before [`start`].
 pub fn with<T>(look: impl FnOnce(&mut [u8; RING_BYTES]) -> T) -> Option<T> {
     critical_section::with(|cs| {
-        // A fault within a look finds the cell taken, and gives up rather than fail again.
+        // A fault handler that interrupts an access can't borrow the cell, and gives up rather than fail again.
         let mut cell = RING.borrow(cs).try_borrow_mut().ok()?;
         cell.as_mut().map(|ring| look(ring))
     })

@@ -1,8 +1,8 @@
-//! How old a sample is, in control periods.
+//! Age of a sensor's newest sample, counted in control periods.
 
 use control::sensors::frame::MISSING;
 
-/// The age of a sensor's newest sample; [`MISSING`] before the first.
+/// Age of the newest sample; [`MISSING`] before the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Age(u16);
 
@@ -13,12 +13,12 @@ impl Default for Age {
 }
 
 impl Age {
-    /// The age now [control periods].
+    /// Present age \[control periods\].
     pub fn now(self) -> u16 {
         self.0
     }
 
-    /// One control period, in which a new sample came or none did; the age now \[control periods\].
+    /// One control period with or without a new sample; returns the present age \[control periods\].
     pub fn step(&mut self, new: bool) -> u16 {
         self.0 = if new { 0 } else { self.0.saturating_add(1) };
         self.0

@@ -1,21 +1,21 @@
-//! Counts of a 12-bit converter to what they stand for.
+//! Conversion of 12-bit ADC counts to physical units.
 
-/// The largest count: the converter's reference.
+/// Largest count: the converter's reference.
 pub const FULL_SCALE: u16 = 4095;
 
-/// Counts that close to either rail are a broken wire or a short, never a sample.
+/// Distance from either rail within which counts indicate a broken wire or a short \[counts\].
 const RAIL_COUNTS: u16 = 16;
 
-/// A shunt with an amplifier whose output rests at half of the reference.
+/// A shunt with an amplifier whose output at zero current is half of the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shunt {
-    /// Its resistance \[ohm\].
+    /// Resistance \[ohm\].
     pub resistance_ohm: f32,
     /// Gain of the amplifier.
     pub gain: f32,
     /// Reference of the converter \[V\].
     pub reference_v: f32,
-    /// Whether counts fall when current flows into the motor.
+    /// Whether the counts decrease when current flows into the motor.
     pub reversed: bool,
 }
 
@@ -26,8 +26,7 @@ impl Shunt {
         if self.reversed { -step } else { step }
     }
 
-    /// Current into the motor \[A\], but for the amplifier's own zero. NaN at either rail: the current is beyond what can
-    /// be told.
+    /// Current into the motor \[A\], including the amplifier's offset. NaN at either rail: the current is out of range.
     pub fn ampere(&self, counts: u16) -> f32 {
         let inside = counts > RAIL_COUNTS && counts < FULL_SCALE - RAIL_COUNTS;
         let from_middle = f32::from(counts) - 0.5 * f32::from(FULL_SCALE);
@@ -54,19 +53,19 @@ impl Divider {
     }
 }
 
-/// A thermistor to the reference, above a resistor to ground.
+/// A thermistor between reference and ADC input, with a resistor from the input to ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thermistor {
-    /// The resistor to ground \[ohm\].
+    /// Resistor to ground \[ohm\].
     pub lower_ohm: f32,
-    /// The thermistor at 25 deg C \[ohm\].
+    /// Thermistor's resistance at 25 deg C \[ohm\].
     pub nominal_ohm: f32,
-    /// Its constant beta \[K\].
+    /// Thermistor's constant beta \[K\].
     pub beta_k: f32,
 }
 
 impl Thermistor {
-    /// The temperature \[deg C\]; NaN where it is cut or shorted.
+    /// Temperature \[deg C\]; NaN if the thermistor is open or shorted.
     pub fn celsius(&self, counts: u16) -> f32 {
         if counts <= RAIL_COUNTS || counts >= FULL_SCALE - RAIL_COUNTS {
             return f32::NAN;
@@ -76,26 +75,26 @@ impl Thermistor {
     }
 }
 
-/// A sensor whose output is linear between two counts, and never beyond them while it is whole.
+/// A sensor with a linear output between two counts; an intact sensor stays within them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gauge {
-    /// Least count of a whole sensor.
+    /// Smallest count of an intact sensor.
     pub least_counts: u16,
-    /// Largest count of a whole sensor.
+    /// Largest count of an intact sensor.
     pub most_counts: u16,
-    /// What the least count stands for, in the sensor's unit.
-    pub max: f32,
-    /// What the largest count stands for, in the sensor's unit.
-    pub min: f32,
+    /// Value at the smallest count, in the sensor's unit.
+    pub at_least_counts: f32,
+    /// Value at the largest count, in the sensor's unit.
+    pub at_most_counts: f32,
 }
 
 impl Gauge {
-    /// The value; `None` where the counts are beyond a whole sensor's.
+    /// Measured value; `None` if the counts are outside an intact sensor's range.
     pub fn value(&self, counts: u16) -> Option<f32> {
         let span = f32::from(self.most_counts) - f32::from(self.least_counts);
         let part = (f32::from(counts) - f32::from(self.least_counts)) / span;
         (self.least_counts..=self.most_counts)
             .contains(&counts)
-            .then_some(self.max + part * (self.min - self.max))
+            .then_some(self.at_least_counts + part * (self.at_most_counts - self.at_least_counts))
     }
 }

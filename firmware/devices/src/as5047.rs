@@ -1,38 +1,38 @@
-//! The magnetic encoder AS5047P on its serial line: 14 bits to the turn.
+//! Magnetic encoder AS5047P, SPI protocol: 14 bits per turn.
 //!
-//! 16 bits, the highest first, clock low at rest, data taken at its falling edge. A word is answered in the next
-//! transfer. Bit 15 makes the number of ones even, bit 14 of an answer is the error flag EF: a command was damaged.
+//! 16-bit words, most significant bit first, clock idle low, data sampled on its falling edge. The answer to a word
+//! comes in the next transfer. Bit 15 is even parity; bit 14 of an answer is the error flag EF: a damaged command.
 
-/// Counts of one turn.
+/// Counts per turn.
 pub const COUNTS: u16 = 1 << 14;
 
-/// The command that asks for the angle. All ones, so a line held high asks for it too and needs no wire.
+/// Command that reads the angle. All ones, so that a constantly high line works without a wire.
 pub const ASK_ANGLE: u16 = 0xffff;
 
-/// Answers in a row that EF refuses; from then on it is only counted. Below the age at which the motor's loop calls the
-/// encoder lost.
+/// Number of consecutive answers that EF invalidates; further ones are only counted. Less than the timeout after
+/// which the motor loop raises an encoder loss.
 pub const FLAGGED: u8 = 5;
 
-/// What is remembered of the line.
+/// State of the SPI line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Line {
     flagged_in_row: u8,
-    /// Answers with the error flag. Wrapping.
+    /// Number of answers with the error flag, wrapping.
     pub flagged: u32,
-    /// Damaged answers. Wrapping.
+    /// Number of damaged answers, wrapping.
     pub damaged: u32,
 }
 
 impl Line {
-    /// The angle in an answer to [`ASK_ANGLE`] \[counts\]; `None` where it is damaged, or flagged for the first
-    /// [`FLAGGED`] times in a row.
+    /// Decodes the angle from an answer to [`ASK_ANGLE`] \[counts\]; `None` if the answer is damaged, or flagged for
+    /// the first [`FLAGGED`] times in a row.
     ///
-    /// The flag is about a command frame, not about the angle beside it. Its command being all ones, the only damage is
-    /// a wrong number of clocks: a frame cut by a reset, an edge too many. The register that would clear the flag can't
-    /// be read without a wire to the encoder, and the sister AS5050 keeps it until then (its data sheet, "Clear error
-    /// flag command"); a flag for good must not be an encoder lost until power is cut. The drive's own firmware ignores
-    /// it in this wiring (`encoder/enc_as504x.c` in vedderb/bldc). Parity and the motor's own check of jumps remain. A
-    /// cut line, pulled up, reads as all ones: that is no angle ever.
+    /// The flag concerns a command frame, not the angle in the same answer. As the command is all ones, only a wrong
+    /// number of clocks can damage it: a frame cut by a reset, or an extra edge. The register that clears the flag
+    /// can't be read without a wire to the encoder, and the related AS5050 keeps the flag until then (its data sheet,
+    /// "Clear error flag command"). A permanent flag must not mean an encoder loss until power-off. The VESC firmware
+    /// ignores the flag in this wiring (`encoder/enc_as504x.c` in vedderb/bldc). Parity and the motor loop's jump
+    /// check remain. An open line with pull-up reads as all ones, which is never a valid angle.
     pub const fn step(&mut self, answer: u16) -> Option<u16> {
         let even = answer.count_ones().is_multiple_of(2);
         if !even || answer == 0xffff {

@@ -1,20 +1,20 @@
-//! The gate driver DRV8301: its registers as words.
+//! Gate driver DRV8301: SPI frames, settings and status.
 //!
-//! 16 bits, the highest first, clock low at rest, data taken at its falling edge. Bit 15 asks for a read, bits 14..11
-//! are the register, bits 10..0 the data. A word is answered in the next transfer, with bit 15 set where the frame was
-//! damaged. Source: its data sheet, SLOS719.
+//! 16-bit words, most significant bit first, clock idle low, data sampled on its falling edge. Bit 15 requests a
+//! read, bits 14..11 are the register, bits 10..0 the data. The answer comes in the next transfer, with bit 15 set if
+//! the frame was damaged. Source: data sheet SLOS719.
 
 /// A register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Register {
-    /// What is wrong now, bits of [`Status`].
+    /// Present faults, bits of [`Status`].
     Status1 = 0,
-    /// One more bit of it, and the kind of device.
+    /// One more fault bit, and the device identifier.
     Status2 = 1,
-    /// Gates and over-current.
+    /// Gate current and over-current protection.
     Control1 = 2,
-    /// Amplifiers.
+    /// Current-sense amplifiers.
     Control2 = 3,
 }
 
@@ -28,21 +28,21 @@ pub const fn write(register: Register, data: u16) -> u16 {
     (register as u16) << 11 | data & 0x07ff
 }
 
-/// The data in an answer; `None` where the frame was damaged or the answer is that of another register.
+/// Data of an answer; `None` if the frame was damaged or the answer is of another register.
 ///
-/// A line held low or high by a driver that is not there is refused as well, but for a zero of [`Register::Status1`]:
-/// judge that one only after [`is_present`].
+/// A line held low or high by a missing driver is rejected too, except for a zero of [`Register::Status1`]: check
+/// [`is_present`] before using that register.
 pub const fn data(register: Register, answer: u16) -> Option<u16> {
     let right = answer & 0x8000 == 0 && answer >> 11 & 0xf == register as u16;
     if right { Some(answer & 0x07ff) } else { None }
 }
 
-/// Whether the data of [`Register::Status2`] are those of a DRV8301.
+/// Whether the data of [`Register::Status2`] have the identifier of a DRV8301.
 pub const fn is_present(status2: u16) -> bool {
     status2 & 0x000f == 1
 }
 
-/// Peak current into the gates.
+/// Peak gate current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum GateCurrent {
@@ -54,7 +54,7 @@ pub enum GateCurrent {
     A0_25 = 2,
 }
 
-/// What too much current through a switch does.
+/// Reaction to over-current in a switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum OverCurrent {
@@ -62,13 +62,13 @@ pub enum OverCurrent {
     Limit = 0,
     /// All switches open and stay open.
     Latch = 1,
-    /// It is told, and no more.
+    /// Reported only.
     Report = 2,
-    /// Nothing.
+    /// Disabled.
     Off = 3,
 }
 
-/// Gain of its own two amplifiers.
+/// Gain of the driver's two amplifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Gain {
@@ -82,28 +82,27 @@ pub enum Gain {
     X80 = 3,
 }
 
-/// Voltage across a closed switch that counts as over-current, by its number in the data sheet \[mV\].
+/// Over-current thresholds, as the voltage across a closed switch, by their number in the data sheet \[mV\].
 pub const OVER_CURRENT_MV: [u16; 32] = [
     60, 68, 76, 86, 97, 109, 123, 138, 155, 175, 197, 222, 250, 282, 317, 358, 403, 454, 511, 576, 648, 730,
     822, 926, 1043, 1175, 1324, 1491, 1679, 1892, 2131, 2400,
 ];
 
-/// What the gate driver is told.
+/// Settings of the gate driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Current into the gates.
+    /// Peak gate current.
     pub gate_current: GateCurrent,
-    /// What over-current does.
+    /// Reaction to over-current.
     pub over_current: OverCurrent,
-    /// Voltage across a closed switch that counts as over-current \[mV\]; the next one of [`OVER_CURRENT_MV`] that is
-    /// not above it is taken, or the least.
+    /// Over-current threshold \[mV\], rounded down to a value of [`OVER_CURRENT_MV`], at least the smallest.
     pub over_current_mv: u16,
-    /// Gain of its amplifiers.
+    /// Gain of the amplifiers.
     pub gain: Gain,
 }
 
 impl Settings {
-    /// Number of the over-current voltage, and the voltage \[mV\].
+    /// Number of the over-current threshold, and the threshold \[mV\].
     pub const fn over_current_step(&self) -> (u16, u16) {
         let mut step = OVER_CURRENT_MV.len() - 1;
         while step > 0 && OVER_CURRENT_MV[step] > self.over_current_mv {
@@ -112,7 +111,7 @@ impl Settings {
         (step as u16, OVER_CURRENT_MV[step])
     }
 
-    /// Data of [`Register::Control1`]: six inputs, no reset.
+    /// Data of [`Register::Control1`]: six PWM inputs, no reset.
     pub const fn control1(&self) -> u16 {
         self.over_current_step().0 << 6 | (self.over_current as u16) << 4 | self.gate_current as u16
     }
@@ -123,11 +122,11 @@ impl Settings {
     }
 }
 
-/// What is wrong at the gate driver: the data of [`Register::Status1`] and [`Register::Status2`].
+/// Faults of the gate driver: the data of [`Register::Status1`] and [`Register::Status2`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Status(pub u16, pub u16);
 
-/// Bit of [`Register::Status2`]: the supply of the gates is too high.
+/// Bit of [`Register::Status2`]: gate supply voltage too high.
 const GATE_SUPPLY_HIGH: u16 = 0x80;
 
 /// Names of the bits of [`Register::Status1`], from bit 0.
@@ -146,7 +145,7 @@ pub const STATUS: [&str; 11] = [
 ];
 
 impl Status {
-    /// What is wrong, in words.
+    /// Names of the present faults.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
         let first = STATUS.into_iter().enumerate().filter(move |(bit, _)| self.0 >> bit & 1 == 1);
         let high = self.1 & GATE_SUPPLY_HIGH != 0;

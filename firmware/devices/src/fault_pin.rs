@@ -1,17 +1,17 @@
-//! A fault pin, active low, as it is sampled once in each call of the motor's interrupt.
+//! Filter of an active-low fault pin that is sampled once per call of the motor interrupt.
 
-/// The newest samples, and what came of them.
+/// Recent samples and the number of short pulses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FaultPin {
-    /// Low where set, the newest in bit 0.
+    /// Recent samples, 1 for low, the newest in bit 0.
     low: u8,
-    /// Samples that were low alone: pulses too short to be a fault. Wrapping.
+    /// Number of single low samples: pulses too short to be a fault, wrapping.
     pub pulses: u32,
 }
 
 impl FaultPin {
-    /// One sample; whether there is a fault: two of the last three are low. A disturbance beside a switching bridge is
-    /// shorter than the time between two samples; a fault stays.
+    /// Adds one sample; returns whether there is a fault: two of the last three samples are low. Disturbances by the
+    /// switching bridge are shorter than the sampling interval; a fault lasts.
     pub fn step(&mut self, low: bool) -> bool {
         self.low = self.low << 1 | u8::from(low);
         let last = self.low & 0b111;

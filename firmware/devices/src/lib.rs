@@ -1,10 +1,10 @@
-//! Drivers of the devices around the chip, without the chip: the meaning of their registers, and the conversion of their samples.
+//! Hardware-independent part of the device drivers: register values, protocols, and conversion of samples.
 //!
-//! Everything here is plain data and pure functions, tried on the host; a board moves the bits. One module each:
-//! [`analog`] (counts of the converter to amperes, volts, degrees, radians), [`drv8301`] (gate driver), [`bmi160`]
-//! (IMU), [`as5047`] (encoder), [`wheel`] (pulses to a speed with its age), [`switch`] (debounced), [`age`] (how old a
-//! sample is), [`ticks`] (the clock),
-//! [`fault_pin`], [`slow`] (a rotor), [`silicon`] (the chip's revision), [`vesc6`] (a board and its wiring, in numbers).
+//! Plain data and pure functions, tested on the host; a board does the I/O. One module each: [`analog`] (ADC counts to
+//! amperes, volts, degrees, radians), [`drv8301`] (gate driver), [`bmi160`] (IMU), [`as5047`] (encoder), [`wheel`]
+//! (pulses to a speed with its age), [`switch`] (debounce), [`age`] (age of a sample), [`ticks`] (64-bit clock),
+//! [`fault_pin`] (filter of the fault pin), [`slow`] (rotor below a speed), [`silicon`] (chip revision), [`vesc6`]
+//! (constants of one board and its wiring).
 #![no_std]
 #![forbid(unsafe_code)]
 

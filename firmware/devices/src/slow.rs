@@ -1,22 +1,22 @@
-//! Whether a rotor turns slowly enough for something, by its encoder's counts once a millisecond.
+//! Detects a slowly turning rotor from encoder counts once per millisecond.
 
 use crate::as5047::COUNTS;
 
-/// Samples in a row that must be slow.
+/// Number of consecutive slow samples required.
 const ENOUGH: u8 = 10;
 
-/// What is remembered.
+/// State of the detection.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slow {
     counts: Option<u16>,
     slow: u8,
-    /// The newest speed, either way \[turns/s\]; `None` before two samples in a row.
+    /// Newest absolute speed \[turns/s\]; `None` before two consecutive samples.
     pub turns_s: Option<f32>,
 }
 
 impl Slow {
-    /// One millisecond later: the encoder's counts, if it gave some; whether the rotor has been slower than
-    /// `most_turns_s` for the last ten of them.
+    /// One millisecond with the encoder's counts, if valid; returns whether the rotor has been slower than
+    /// `most_turns_s` for the last ten samples.
     pub fn step(&mut self, counts: Option<u16>, most_turns_s: f32) -> bool {
         let before = core::mem::replace(&mut self.counts, counts);
         self.turns_s = before.zip(counts).map(|(before, now)| turns_s(before, now));
@@ -26,7 +26,7 @@ impl Slow {
     }
 }
 
-/// Speed of the short way from one sample to the next, either way \[turns/s\].
+/// Absolute speed over the shorter arc between two samples \[turns/s\].
 fn turns_s(before: u16, now: u16) -> f32 {
     let way = now.wrapping_sub(before) & (COUNTS - 1);
     1e3 * f32::from(way.min(COUNTS - way)) / f32::from(COUNTS)

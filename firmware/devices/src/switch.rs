@@ -1,16 +1,16 @@
-//! A switch without its bouncing.
+//! Debounce of a switch.
 
-/// A switch as it is believed.
+/// Debounced state of a switch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Switch {
     closed: bool,
-    /// Control periods in a row in which it seemed to be otherwise.
+    /// Number of consecutive control periods in which the contact differs from `closed`.
     otherwise: u16,
 }
 
 impl Switch {
-    /// One control period: what the contact seems to be now, and for how many periods in a row it must seem otherwise
-    /// before that is believed.
+    /// One control period: `closed` is the present contact, `ticks` the number of consecutive periods after which a
+    /// change is accepted. Returns the debounced state.
     pub fn step(&mut self, closed: bool, ticks: u16) -> bool {
         self.otherwise = if closed == self.closed { 0 } else { self.otherwise.saturating_add(1) };
         if self.otherwise >= ticks.max(1) {

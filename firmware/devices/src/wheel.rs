@@ -1,28 +1,28 @@
-//! A wheel's pulses to its speed, with the age of what is known.
+//! Converts a wheel's pulses to a speed sample with its age.
 
 use crate::age::Age;
 use control::sensors::frame::{MISSING, Sample};
 use control::sensors::wheel_speed::{WheelPulses, WheelPulsesConfig, WheelPulsesState, step as speed};
 
-/// Speed beyond which an edge is a disturbance of the line and no pulse \[m/s\].
+/// Speed above which an edge is a disturbance and not a pulse \[m/s\].
 const FASTEST_M_S: f32 = 30.0;
 
-/// Period from which on it is not known when an edge came: the board's timers are of 16 bits \[us\].
+/// Control period from which on the time of an edge is unknown, as the board's timers have 16 bits \[us\].
 pub const SPAN_US: u32 = 1 << 16;
 
-/// Silence after which a wheel stands whose last pulses are not known \[us\]: between two of them a wheel of 0.2 m/s
-/// takes 0.69 s.
+/// Time without pulses after which a wheel with unknown last pulses counts as standing \[us\]: at 0.2 m/s pulses are
+/// 0.69 s apart.
 const STANDS_US: u32 = 1_000_000;
 
-/// What is remembered of a wheel.
+/// State of a wheel.
 #[derive(Clone, Debug)]
 pub struct WheelState {
     pulses: WheelPulses,
     state: WheelPulsesState,
     age: Age,
-    /// The sample is missing until the next two pulses, or until there is none for [`STANDS_US`].
+    /// The sample is missing until two more pulses, or until none for [`STANDS_US`].
     lost: bool,
-    /// Time since that began \[us\].
+    /// Time since the loss began \[us\].
     lost_us: u32,
 }
 
@@ -34,21 +34,21 @@ impl Default for WheelState {
 }
 
 impl WheelState {
-    /// Pulses so far, wrapping.
+    /// Number of pulses, wrapping.
     pub fn count(&self) -> u16 {
         self.pulses.count
     }
 }
 
-/// One control period of `elapsed_us`, in which an edge came `edge_age_us` before its end, or none did. At most one
-/// edge a period is seen, so pulses must stay apart by more than that.
+/// One control period of `elapsed_us`, with an edge `edge_age_us` before its end, or without one. At most one edge per
+/// period is seen, so pulses must be further apart than a period.
 ///
-/// An edge in a period of [`SPAN_US`] or more, the chip having stood still, came at an unknown time, and others may have
-/// come with it: the wheel begins anew, and its sample is missing until two more pulses, or none for [`STANDS_US`].
+/// An edge in a period of [`SPAN_US`] or more (the chip was halted) has an unknown time, and there can be more of
+/// them: the state is reset, and the sample is missing until two more pulses, or none for [`STANDS_US`].
 ///
-/// The sample is new when a pulse came, while the next one is overdue, as that is news as well, and while the wheel
-/// stands. A sensor that never says anything is a wheel that stands. The direction is not known: rolling back is
-/// positive too.
+/// The sample is new with a pulse, while the next pulse is overdue, as that bounds the speed, and while the wheel
+/// stands. A sensor that never gives a pulse is indistinguishable from a standing wheel. The direction is unknown:
+/// rolling back is positive too.
 pub fn step(
     config: &WheelPulsesConfig,
     wheel: &mut WheelState,
@@ -62,7 +62,7 @@ pub fn step(
     let p = &mut wheel.pulses;
     let known = p.last_edge_age_us != u32::MAX;
     if known {
-        // Before the value that stands for "never".
+        // Stays below the value that means "never".
         p.last_edge_age_us = p.last_edge_age_us.saturating_add(elapsed_us).min(u32::MAX - 1);
     }
     let mut pulse = false;
@@ -82,7 +82,7 @@ pub fn step(
     Sample { value, age_ticks: wheel.age.step(new) }
 }
 
-/// Least time between two pulses \[us\].
+/// Smallest time between two pulses \[us\].
 fn shortest_us(config: &WheelPulsesConfig) -> u32 {
     let way_m = core::f32::consts::TAU * config.radius_m / f32::from(config.pulses_per_turn.max(1));
     (1e6 * way_m * (1.0 - config.spacing_error) / FASTEST_M_S) as u32

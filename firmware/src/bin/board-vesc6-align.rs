@@ -1,10 +1,10 @@
-//! The image that finds the offset of the motor's encoder, once for each motor, encoder and wiring, and stores it in flash.
-//! It also sets the chip's brown-out reset, once for each board.
+//! Image that aligns the motor's encoder and stores the offset in flash; needed once per motor, encoder and wiring.
+//! It also sets the chip's brown-out reset, once per board.
 //!
-//! While the rider's switch is held after a deliberate press ([`control::safety::press`]: open for half a second before), the motor
-//! moves the handlebar by less than a degree there and back, for 3.5 s; then the bridge opens and the offset is stored.
-//! Pressed anew, the switch does it again. Released, it opens the bridge at once.
-//! Nothing else makes torque in this image.
+//! While the rider's switch is held after a deliberate press ([`control::safety::press`]: open for half a second
+//! before), the motor moves the handlebar by less than a degree there and back, for 3.5 s; then the bridge opens and
+//! the offset is stored. A new press repeats the alignment. Releasing the switch opens the bridge at once. This image
+//! requests no other torque.
 #![no_std]
 #![no_main]
 
@@ -20,10 +20,10 @@ use link::alignment::Alignment;
 use motor::MotorCommand;
 use static_cell::StaticCell;
 
-/// Periods done by [`hold`].
+/// Number of periods of [`hold`].
 static PERIODS: AtomicU32 = AtomicU32::new(0);
 
-/// An offset that was found and is not stored yet \[electrical turns\].
+/// An offset found but not yet stored \[electrical turns\].
 static FOUND: Signal<CriticalSectionRawMutex, f32> = Signal::new();
 
 #[cortex_m_rt::entry]
@@ -36,22 +36,22 @@ fn main() -> ! {
         crash::starts(),
         crash::cause().name()
     );
-    board::log_kept_fault();
+    board::log_stored_fault();
     let motor = board::start();
     board::raise_level();
     let stored = KEPT.init(StoredConfig::open());
-    // Not that of the program or the flash: what is shown is what was found.
+    // No offset from program or flash: the log shows the one found.
     motor.start(None);
     board::run(
         |control| control.spawn(defmt::unwrap!(hold().ok())),
         |thread| {
-            thread.spawn(defmt::unwrap!(tell(stored).ok()));
+            thread.spawn(defmt::unwrap!(log_and_store(stored).ok()));
             thread.spawn(defmt::unwrap!(board::watch_drive().ok()));
         },
     )
 }
 
-/// Asks for one alignment after each deliberate press of the switch, while it stays held, in place of control.
+/// Requests one alignment per deliberate press of the switch while it is held; runs in place of the control task.
 #[embassy_executor::task]
 async fn hold() {
     let mut release = Instant::from_millis(Instant::now().as_millis());
@@ -72,9 +72,9 @@ async fn hold() {
     }
 }
 
-/// Says twice a second what the motor does, stores what was found, and feeds the watchdog while [`hold`] is alive.
+/// Logs the motor's state twice per second, stores an offset found, and feeds the watchdog while [`hold`] runs.
 #[embassy_executor::task]
-async fn tell(stored: &'static mut StoredConfig) {
+async fn log_and_store(stored: &'static mut StoredConfig) {
     let mut tick = Ticker::every(Duration::from_millis(10));
     let mut seen = 0;
     for count in (0..50_u32).cycle() {
@@ -101,7 +101,7 @@ async fn tell(stored: &'static mut StoredConfig) {
     }
 }
 
-/// Stores an offset; the bridge is open, as nothing asks for anything else once it is found.
+/// Stores an offset. The bridge is open, as nothing is requested after the alignment.
 async fn store(stored: &mut StoredConfig, offset_turns: f32) {
     let alignment = Alignment { offset_turns, motor_id: MOTOR.motor_id() };
     match stored.save_alignment(&alignment).await {

@@ -1,5 +1,5 @@
-//! The image for a VESC 6 (STM32F405): all tasks. It gives no torque until the motor's encoder is aligned and the
-//! polarity check was passed; the reasons are in its log and telemetry.
+//! Image for a VESC 6 (STM32F405) with all tasks. It gives no torque until the motor's encoder is aligned and the
+//! polarity check is passed; log and telemetry have the reasons.
 #![no_std]
 #![no_main]
 
@@ -21,7 +21,7 @@ fn main() -> ! {
         crash::starts(),
         crash::cause().name()
     );
-    board::log_kept_fault();
+    board::log_stored_fault();
     let motor = board::start();
     let stored = KEPT.init(StoredConfig::open());
     let plan = settings::start(stored, &Config::product());

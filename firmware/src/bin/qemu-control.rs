@@ -1,9 +1,9 @@
-//! The shared tasks for some simulated seconds, with a task that keeps the thread busy all the
-//! time. Ends with success only if every period had its step and no step was late.
+//! Image that runs the shared tasks for some simulated seconds with a fully loaded thread executor. Succeeds only if
+//! every period had its step and no step was late.
 //!
-//! Arguments: `seconds=5`; `block_us=N` holds control up for N us once every `every_ms=100`
-//! milliseconds, from a priority above it, beginning at a release; `start_ms=N`: the tasks begin N ms after the clock, as on
-//! a board whose parts take that long to start.
+//! Arguments: `seconds=5`; `block_us=N` blocks control for N us once every `every_ms=100` milliseconds, from a higher
+//! priority, beginning at a release; `start_ms=N`: the tasks start N ms after the clock, as on a board with slowly
+//! starting parts.
 #![no_std]
 #![no_main]
 
@@ -17,7 +17,7 @@ use firmware::tasks;
 use link::report::config_hash;
 use static_cell::StaticCell;
 
-/// The thread without a moment's rest, giving way to its other tasks every 0.3 ms.
+/// Loads the thread executor; yields to its other tasks every 0.3 ms.
 #[embassy_executor::task]
 async fn hog() {
     loop {
@@ -26,7 +26,7 @@ async fn hog() {
     }
 }
 
-/// Holds control up: `hold` from one release in every `every`, the first in the middle of it.
+/// Blocks control for `hold` from one release in every `every`, the first in the middle of it.
 #[embassy_executor::task]
 async fn block(every: Duration, hold: Duration) {
     let mut release = Instant::from_ticks(0) + every / 2;
@@ -37,7 +37,7 @@ async fn block(every: Duration, hold: Duration) {
     }
 }
 
-/// Ends the run and says how it went.
+/// Ends the run and reports the result.
 #[embassy_executor::task]
 async fn judge(length: Duration) {
     let start = Instant::from_millis(Instant::now().as_millis());
@@ -50,7 +50,7 @@ async fn judge(length: Duration) {
     exit(if t.deadlines.steps == expected && missed == 0 { Exit::Success } else { Exit::Failure })
 }
 
-/// The start of a board with slow parts, whose watchdog is patient meanwhile.
+/// Start of a board with slowly starting parts; the watchdog's timeout is extended meanwhile.
 fn start_slowly(length: Duration) {
     let end = Instant::now() + length;
     while Instant::now() < end {
@@ -67,7 +67,7 @@ fn main() -> ! {
     static PLAN: StaticCell<Plan> = StaticCell::new();
     hprintln!("{}", firmware::identity!());
     let mut config = Config::product();
-    // The made-up sensors are as drawn.
+    // The simulated sensors match the configured calibration.
     config.calibration.polarity_checked = true;
     let Ok(plan) = config.plan() else { exit(Exit::Input) };
     let plan = PLAN.init(plan);

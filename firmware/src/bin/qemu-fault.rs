@@ -1,4 +1,4 @@
-//! Fails on purpose, in the way its first argument names, to show that no failure goes unreported.
+//! Image that fails in the way its first argument names, to test that every failure is reported.
 #![no_std]
 #![no_main]
 #![allow(unsafe_code)]
@@ -32,7 +32,7 @@ fn main() -> ! {
         Some("bus") => unsafe {
             black_box((0x6000_0000 as *const u32).read_volatile());
         },
-        // SAFETY: nobody relies on this interrupt; it has no handler, which is the point.
+        // SAFETY: this interrupt is unused; it has no handler, which is the point.
         Some("interrupt") => unsafe {
             NVIC::unmask(Interrupt::SPI3);
             NVIC::pend(Interrupt::SPI3);

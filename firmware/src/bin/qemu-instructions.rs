@@ -1,9 +1,9 @@
-//! Counts the instructions of every control step over the rides of `rides.bin`, then of every call of the motor's loop,
-//! and the stack they take; then the instructions of some functions.
+//! Image that counts the instructions of every control step over the rides of `rides.bin` and of every call of the
+//! motor loop, with their stack use; then the instructions of some functions.
 //!
-//! Under `-icount shift=10` an instruction lasts 1.024 us, 172 counts of SysTick, so that a
-//! difference of counts is a whole number of instructions. Instructions are not cycles: there are
-//! no wait states of the flash and no multi-cycle divisions in QEMU.
+//! Under `-icount shift=10` an instruction lasts 1.024 us, 172 counts of SysTick, so that a difference of counts is a
+//! whole number of instructions. Instructions are not cycles: QEMU has no flash wait states and no multi-cycle
+//! divisions.
 #![no_std]
 #![no_main]
 
@@ -32,7 +32,7 @@ static FRAMES: ConstStaticCell<[[u8; FRAME_BYTES]; BLOCK]> = ConstStaticCell::ne
 const RELOAD: u32 = 0x00ff_ffff;
 const COUNTS_PER_INSTRUCTION: f32 = 168.0 * 1.024;
 
-/// The step as the control task calls it: by reference, result through memory.
+/// The step as the control task calls it: arguments by reference, result through memory.
 #[inline(never)]
 fn measured(plan: &Plan, state: &mut State, frame: &SensorFrame, command: &mut Option<Command>) {
     *command = Some(step(plan, state, frame));
@@ -119,13 +119,13 @@ fn main() -> ! {
     exit(Exit::Success)
 }
 
-/// What was counted.
+/// Result of counting.
 #[derive(Default)]
 struct Tally {
     steps: u32,
     sum: u64,
     max: u32,
-    /// The deepest the stack went \[bytes\].
+    /// Largest stack depth \[bytes\].
     deep: u32,
 }
 
@@ -143,23 +143,23 @@ impl Display for Tally {
     }
 }
 
-/// The example's motor on a bench that knows where its encoder stands.
+/// The example motor on a bench with a known encoder offset.
 const EXAMPLE_ALIGNED: motor::Config = motor::Config {
     encoder: motor::encoder::EncoderConfig { offset_turns: Some(0.0), ..EXAMPLE.encoder },
     ..EXAMPLE
 };
 
-/// Torques \[N m\] asked for while the motor turns so many times a second: the handlebar at up to 14.5 rad/s, the last more
-/// than the bus can give.
+/// Requested torques \[N m\] and motor speeds \[turns/s\]: the handlebar at up to 14.5 rad/s, the last beyond the bus
+/// voltage.
 const TURNS: [(f32, f32); 6] = [(0.0, 0.0), (5.0, 0.1), (3.0, -10.0), (-7.0, 20.0), (2.0, 46.0), (7.0, 83.0)];
-/// Calls of each, and before and after something breaks.
+/// Calls per operating point, and before and after each fault.
 const TURNING: u32 = 4000;
 const BROKEN: u32 = 400;
 
-/// Changes what is measured.
+/// A change of the inputs.
 type Change = fn(&mut Inputs);
 
-/// What breaks, and how the loop calls it.
+/// Injected faults.
 const FAULTS: [(Fault, Change); 9] = [
     (Fault::CurrentSensor, |i| i.phases = motor::Phases::Three([f32::NAN; 3])),
     (Fault::OverCurrent, |i| i.phases = motor::Phases::Three([20.0, -10.0, -10.0])),
@@ -172,7 +172,7 @@ const FAULTS: [(Fault, Change); 9] = [
     (Fault::Command, |i| i.command = MotorCommand::Torque(f32::NAN)),
 ];
 
-/// The loop and its motor.
+/// Motor loop and simulated motor.
 struct Motor<'a> {
     plan: &'a motor::Plan,
     state: motor::State,
@@ -181,7 +181,7 @@ struct Motor<'a> {
 }
 
 impl<'a> Motor<'a> {
-    /// Ready, the zeros of its current sensors taken.
+    /// Ready: the offsets of the current sensors are measured.
     fn new(plan: &'a motor::Plan, turns_s: f32) -> Self {
         let rotor = SimulatedMotor::new(plan, turns_s);
         let mut motor = Self { plan, state: motor::State::default(), rotor, output: Output::default() };
@@ -192,7 +192,7 @@ impl<'a> Motor<'a> {
         motor
     }
 
-    /// So many calls, each with its inputs changed.
+    /// Runs a number of calls with changed inputs.
     fn run(&mut self, tally: &mut Tally, calls: u32, torque_nm: f32, change: Change) {
         let top = stack::paint();
         for _ in 0..calls {
@@ -209,7 +209,7 @@ impl<'a> Motor<'a> {
     }
 }
 
-/// The call as the motor's interrupt makes it.
+/// The call as the motor interrupt makes it.
 #[inline(never)]
 fn called(plan: &motor::Plan, state: &mut motor::State, inputs: &Inputs, output: &mut Output) {
     *output = motor::step(plan, state, inputs);

@@ -1,6 +1,6 @@
-//! All tasks, with the host's bicycle instead of sensors and motor: `sim-host pil`.
+//! Image for processor in the loop (`sim-host pil`): all tasks; the host simulates bicycle, sensors and motor.
 //!
-//! Arguments: those of `board::fault_injection`, for failures on purpose.
+//! Arguments: those of `board::fault_injection`.
 #![no_std]
 #![no_main]
 

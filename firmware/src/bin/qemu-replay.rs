@@ -1,5 +1,5 @@
-//! Runs the control step on recorded frames and writes its commands: the chip's side of the proof
-//! that chip and host agree in every bit. Input `rides.bin`, output `commands.bin`.
+//! Image that runs the control step on recorded frames and writes its commands, to compare chip and host bit by bit.
+//! Input `rides.bin`, output `commands.bin`.
 #![no_std]
 #![no_main]
 

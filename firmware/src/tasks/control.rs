@@ -1,4 +1,4 @@
-//! The 1 kHz task: sensors in, one step, torque out. It waits for nothing but its next release.
+//! The 1 kHz control task: reads the sensors, runs one control step, sends the torque. Waits only for its next release.
 
 use super::settings;
 use crate::deadline::{Deadlines, PERIOD};
@@ -13,25 +13,25 @@ use embassy_time::{Instant, Timer};
 use link::fault_log::{self, LastStep};
 use link::report::FaultKind;
 
-/// Why a board gives no torque, whatever is commanded.
+/// Reason for which a board gives no torque, whatever the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The motor is not ready yet: the zeros of its current sensors are being taken.
+    /// The offsets of the current sensors are still being measured.
     NotReady,
-    /// The offset of the motor's encoder is not known.
+    /// The offset of the motor's encoder is unknown.
     NotAligned,
-    /// The last command came too late; the bridge was open meanwhile.
+    /// The command timed out; the bridge was open in between.
     Stale,
-    /// The gate driver did not take its settings, or told of a fault.
+    /// The gate driver rejected its settings, or reported a fault.
     GateDriver,
     /// The outputs were switched off until the next start.
     OutputsOff,
-    /// The motor's loop found a fault, of this number in docs/motor.md: over-current is 1.
+    /// Fault of the motor loop, by its number in docs/motor.md; over-current is 1.
     MotorFault(u8),
 }
 
 impl Refusal {
-    /// The reason in words.
+    /// Text of the reason.
     pub const fn reason(self) -> &'static str {
         match self {
             Refusal::NotReady => "not ready",
@@ -44,31 +44,31 @@ impl Refusal {
     }
 }
 
-/// What the control task did last.
+/// Inputs and outputs of the last control step.
 #[derive(Clone, Copy, Debug)]
 pub struct Telemetry {
-    /// Steps so far, and how late.
+    /// Number of steps, and of missed deadlines.
     pub deadlines: Deadlines,
     /// The sensors of the last step.
     pub frame: SensorFrame,
-    /// The command made of them.
+    /// The resulting command.
     pub command: Command,
-    /// The part of the torque that is permitted, 0 to 1.
+    /// Authority, 0 to 1.
     pub authority: f32,
-    /// As of [`State::slopes`].
+    /// Regression gains of the sign check; [`State::slopes`].
     pub slopes: [Option<f32>; 2],
-    /// The number of the configuration it stepped with, as of [`settings::take`].
+    /// Number of the configuration of the step; see [`settings::take`].
     pub configuration: u32,
-    /// Where the polarity check stands.
+    /// Step of the polarity check.
     pub polarity: PolarityStep,
-    /// The torque that it shows \[N m\].
+    /// Torque shown by the polarity check \[N m\].
     pub shown_nm: f32,
-    /// Whether the motor got it.
+    /// Whether the motor accepted the command.
     pub drive: Result<(), Refusal>,
 }
 
 impl Telemetry {
-    /// Where the controller stood.
+    /// State of the controller, for the fault log.
     pub fn last_step(&self) -> LastStep {
         LastStep {
             steps: self.deadlines.steps,
@@ -81,22 +81,22 @@ impl Telemetry {
 
 static LATEST: Mutex<CriticalSectionRawMutex, RefCell<Option<Telemetry>>> = Mutex::new(RefCell::new(None));
 
-/// What the control task did last; `None` before its first step, and in a fault of it while it writes.
+/// Data of the last control step; `None` before the first, and in a fault handler that interrupts their writing.
 pub fn latest() -> Option<Telemetry> {
     LATEST.lock(|latest| latest.try_borrow().ok().and_then(|latest| *latest))
 }
 
-/// The command of the last step and its authority, as of [`latest`].
+/// Command and authority of the last step, as in [`latest`].
 pub fn commanded() -> Option<(Command, f32)> {
     let of = |t: &Telemetry| (t.command, t.authority);
     LATEST.lock(|latest| latest.try_borrow().ok().and_then(|latest| latest.as_ref().map(of)))
 }
 
-/// Runs one [`step`] at every whole [`PERIOD`] of the clock, the first at the one after its start, with the plan that
-/// [`settings::offer`] offered last.
+/// Runs one [`step`] at every whole [`PERIOD`] of the clock, beginning with the next one, with the newest plan of
+/// [`settings::offer`].
 ///
-/// A step held up is done as soon as possible, and so are those released meanwhile: their number
-/// is always that of the periods gone by, and each late one is counted.
+/// Delayed steps are run as soon as possible, so that the number of steps equals the number of elapsed periods; each
+/// missed deadline is counted.
 #[embassy_executor::task]
 pub async fn control(plan: &'static mut Plan) {
     let mut state = State::default();

@@ -1,4 +1,5 @@
-//! The engineer's line: parameters, kept faults, telemetry. At the lowest priority; nothing waits for it.
+//! The serial link to the host: parameters, stored faults, telemetry. Runs at the lowest priority and blocks no other
+//! task.
 
 use super::settings::{self, StoredConfig};
 use super::{Telemetry, latest};
@@ -17,39 +18,39 @@ use link::rejection::{RejectReason, Rejection};
 use link::report::{Hello, StoredFault, config_hash};
 use link::{Decoder, TxQueue, fault_log, requests};
 
-/// How often telemetry is told: half of a line of 115200 baud.
-const TELL: Duration = Duration::from_millis(20);
+/// Telemetry period: uses half of a line of 115200 baud.
+const TELEMETRY_PERIOD: Duration = Duration::from_millis(20);
 
-/// Answers and telemetry that wait.
-type Waiting = TxQueue<2048, 1024>;
+/// Queue of answers and telemetry.
+type Queue = TxQueue<2048, 1024>;
 
-/// Takes requests, answers them, and tells telemetry in between, new faults, and first of all how the program started.
+/// Answers requests, and sends telemetry and new faults in between; the first message is the start log.
 #[embassy_executor::task]
 pub async fn line(image: Image, stored: &'static mut StoredConfig) {
-    let (mut decoder, mut waiting) = (Decoder::default(), Waiting::new(1));
-    let mut words = String::<{ MAX_PAYLOAD }>::new();
-    // What does not fit is cut.
+    let (mut decoder, mut queue) = (Decoder::default(), Queue::new(1));
+    let mut text = String::<{ MAX_PAYLOAD }>::new();
+    // Longer text is cut.
     let _ = write!(
-        words,
+        text,
         "start {} after {}; parameters: {}",
         crash::starts(),
         crash::cause().name(),
         stored.found()
     );
     if let Some(offset) = stored.offset() {
-        let _ = write!(words, "; encoder offset: {offset}");
+        let _ = write!(text, "; encoder offset: {offset}");
     }
-    waiting.send(&Message::Log(&words));
+    queue.send(&Message::Log(&text));
     let mut faults = retained::with(|ring| fault_log::noted(ring)).unwrap_or(0);
-    let mut tell = Ticker::every(TELL);
+    let mut telemetry_due = Ticker::every(TELEMETRY_PERIOD);
     let mut bytes = [0; 64];
     loop {
         Task::Line.report();
-        match select(board::serial::read(&mut bytes), tell.next()).await {
+        match select(board::serial::read(&mut bytes), telemetry_due.next()).await {
             Either::First(taken) => {
                 let mut bytes = bytes.get(..taken).unwrap_or_default();
                 while !bytes.is_empty() {
-                    take(&mut bytes, &mut decoder, image, stored, &mut waiting).await;
+                    take(&mut bytes, &mut decoder, image, stored, &mut queue).await;
                 }
             }
             Either::Second(()) => {
@@ -57,27 +58,27 @@ pub async fn line(image: Image, stored: &'static mut StoredConfig) {
                     if telemetry.polarity == PolarityStep::Passed {
                         settings::polarity_passed(telemetry.configuration);
                     }
-                    waiting.step(&told(&telemetry));
+                    queue.step(&message(&telemetry));
                 }
                 retained::with(|ring| {
                     let before = core::mem::replace(&mut faults, fault_log::noted(ring));
                     if let (true, Some(newest)) = (faults != before, fault_log::faults(ring).next()) {
-                        waiting.send(&Message::Fault(newest));
+                        queue.send(&Message::Fault(newest));
                     }
                 });
             }
         }
-        send(&mut waiting).await;
+        send(&mut queue).await;
     }
 }
 
-/// Sends what waits, a little at a time.
-async fn send(waiting: &mut Waiting) {
+/// Sends the queue in small blocks.
+async fn send(queue: &mut Queue) {
     let mut bytes = [0; 64];
     loop {
         let mut used = 0;
         while used < bytes.len() {
-            let Some(byte) = waiting.next_byte() else { break };
+            let Some(byte) = queue.next_byte() else { break };
             bytes[used] = byte;
             used += 1;
         }
@@ -89,20 +90,20 @@ async fn send(waiting: &mut Waiting) {
     }
 }
 
-/// Takes bytes up to the end of a request, and answers it.
+/// Decodes bytes up to the end of a request, and answers it.
 async fn take(
     bytes: &mut &[u8],
     decoder: &mut Decoder,
     image: Image,
     stored: &mut StoredConfig,
-    waiting: &mut Waiting,
+    queue: &mut Queue,
 ) {
     let Some(received) = decoder.take(bytes) else { return };
     let (sequence, request) = match requests::request(&received) {
         Ok(request) => request,
         Err(wrong) => {
             let (sequence, answer) = wrong.answer();
-            waiting.answer(&answer, sequence);
+            queue.answer(&answer, sequence);
             return;
         }
     };
@@ -110,30 +111,30 @@ async fn take(
         Message::AskHello => {
             let Image { name, version, commit } = image;
             let config_hash = config_hash(&settings::config());
-            waiting.answer(&Message::Hello(Hello { image: name, version, commit, config_hash }), sequence);
+            queue.answer(&Message::Hello(Hello { image: name, version, commit, config_hash }), sequence);
         }
         Message::Store if !settings::engaged() => {
             let stored = stored.save(&settings::config()).await;
-            let refused = |_| Message::Refused(Rejection::of(RejectReason::NotStored));
-            waiting.answer(&stored.map_or_else(refused, |()| Message::Done), sequence);
+            let rejected = |_| Message::Refused(Rejection::of(RejectReason::NotStored));
+            queue.answer(&stored.map_or_else(rejected, |()| Message::Done), sequence);
         }
         Message::ListFaults { from } => {
             retained::with(|stored| {
                 let total = fault_log::faults(stored).count() as u16;
                 let record = fault_log::faults(stored).nth(from.into());
-                waiting.answer(&Message::StoredFault(StoredFault { place: from, total, record }), sequence);
+                queue.answer(&Message::StoredFault(StoredFault { place: from, total, record }), sequence);
             });
         }
         Message::ClearFaults => {
             retained::with(fault_log::clear);
-            waiting.answer(&Message::Done, sequence);
+            queue.answer(&Message::Done, sequence);
         }
-        request => change(&request, sequence, waiting),
+        request => change(&request, sequence, queue),
     }
 }
 
-/// Answers what is asked of the parameters; the controller gets those that changed.
-fn change(request: &Message<'_>, sequence: u16, waiting: &mut Waiting) {
+/// Answers a request about parameters; passes a changed configuration to the controller.
+fn change(request: &Message<'_>, sequence: u16, queue: &mut Queue) {
     let before = settings::config();
     let (mut config, mut room) = (before.clone(), [0; PAGE_BYTES]);
     let answer = requests::answer(&Config::product(), &mut config, settings::engaged(), request, &mut room);
@@ -142,11 +143,11 @@ fn change(request: &Message<'_>, sequence: u16, waiting: &mut Waiting) {
     {
         settings::offer(plan, false);
     }
-    waiting.answer(&answer.unwrap_or(Message::Refused(Rejection::of(RejectReason::NotHere))), sequence);
+    queue.answer(&answer.unwrap_or(Message::Refused(Rejection::of(RejectReason::NotHere))), sequence);
 }
 
-/// A control step as it is told.
-fn told(latest: &Telemetry) -> link::telemetry::Telemetry {
+/// Telemetry message of a control step.
+fn message(latest: &Telemetry) -> link::telemetry::Telemetry {
     link::telemetry::Telemetry {
         steps: latest.deadlines.steps,
         late: latest.deadlines.late,

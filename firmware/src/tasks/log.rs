@@ -1,15 +1,15 @@
-//! A line of text for the engineer, from the lowest priority.
+//! Periodic log line, from the lowest priority.
 
 use super::latest;
 use crate::board;
 use crate::heartbeat::Task;
 use embassy_time::{Duration, Ticker};
 
-/// How often the task reports that it is alive, and how many of these make a second.
+/// Heartbeat period, and number of heartbeats per log line.
 const BEAT: Duration = Duration::from_millis(20);
 const BEATS: u32 = 50;
 
-/// Says once a second what the control task did last.
+/// Logs the last control step once per second.
 #[embassy_executor::task]
 pub async fn report() {
     let mut beat = Ticker::every(BEAT);

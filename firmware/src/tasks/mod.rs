@@ -1,18 +1,25 @@
-//! What runs on every board.
+//! The tasks that run on every board, and the functions that a board provides.
 //!
 //! | task | priority | does |
 //! | --- | --- | --- |
-//! | [`control`] | its own executor in an interrupt, above all but clock and motor | the 1 kHz step |
-//! | [`line`] | thread | the engineer's line: parameters, kept faults, telemetry |
-//! | [`report`] | thread | says once a second what the control task did |
+//! | [`control`] | own executor in an interrupt, above all but clock and motor | the 1 kHz control step |
+//! | [`line`] | thread | serial link: parameters, stored faults, telemetry |
+//! | [`report`] | thread | logs the last control step once per second |
 //! | [`supervise`] | thread | feeds the watchdog while all tasks report |
 //!
-//! A board is a module with these functions: `run` (starts the clock and the executors; what must run before, the board of
-//! the chip starts with `start`), `sense`
-//! and `drive` (the sensors and the motor, at every step), `report` (one line to the engineer),
-//! `host_link::read` and `host_link::write` (bytes from and to the engineer's computer), `flash` (where parameters
-//! are kept; it gives the watchdog more patience while it erases), `feed_watchdog`, `reset_cause`, `outputs_off` and `end`
-//! (the last words, then a new start). Its warning of a failing supply ends in [`crate::crash`].
+//! A board is a module that provides:
+//!
+//! | item | purpose |
+//! | --- | --- |
+//! | `run` | starts the clock and the executors; the VESC 6 has `start` for the parts that must run before |
+//! | `sense`, `drive` | sensors and motor, once per control step |
+//! | `report` | one log line |
+//! | `serial::read`, `serial::write` | bytes of the serial link |
+//! | `flash` | range for the parameters; extends the watchdog's timeout while it erases |
+//! | `feed_watchdog`, `heartbeat_lost` | watchdog; whether a task's heartbeat is dropped by fault injection, else false |
+//! | `reset_cause`, `outputs_off`, `end` | cause of the start; outputs off; last log line and restart |
+//!
+//! The board's brown-out warning calls [`crate::crash`].
 
 mod control;
 mod host_link;

@@ -1,5 +1,4 @@
-//! The configuration: the one the controller runs with, the next one on its way to it, the one in flash. Beside that in
-//! flash, the offset of the motor's encoder.
+//! The configuration in use, the next one, and the one stored in flash with the offset of the motor's encoder.
 
 use super::latest;
 use crate::{board, heartbeat};
@@ -13,18 +12,18 @@ use link::alignment::{Alignment, Offset};
 use link::store::{Found, InvalidRecord, NotStored, Room};
 use static_cell::{ConstStaticCell, StaticCell};
 
-/// A plan that the controller has not taken yet.
+/// A plan for the controller.
 struct Next {
     plan: Plan,
-    /// Whatever the controller is doing.
+    /// Whether the controller uses it even while torque flows.
     at_once: bool,
 }
 
-/// What is in force, or about to be.
+/// The newest configuration and its plan.
 struct Settings {
-    /// `None` before the first was offered.
+    /// `None` before the start.
     config: Option<Config>,
-    /// Which one that is, counted from the start.
+    /// Number of the configuration, counted from the start.
     number: u32,
     next: Option<Next>,
 }
@@ -32,17 +31,17 @@ struct Settings {
 static SETTINGS: Mutex<CriticalSectionRawMutex, RefCell<Settings>> =
     Mutex::new(RefCell::new(Settings { config: None, number: 0, next: None }));
 
-/// Whether torque may flow, or does: nothing may be changed then.
+/// Whether torque can flow or does: no parameter can be changed then.
 pub fn engaged() -> bool {
     latest().is_some_and(|t| t.command.mode.drives() || t.command.torque_nm != 0.0)
 }
 
-/// The configuration in force, or about to be; the defaults before the first was offered.
+/// The newest configuration, in use or pending; the defaults before the start.
 pub fn config() -> Config {
     SETTINGS.lock(|settings| settings.borrow().config.clone()).unwrap_or_else(Config::product)
 }
 
-/// The controller begins anew with this plan as soon as no torque flows, or at once.
+/// Passes a plan to the controller, which restarts with it as soon as no torque flows, or at once.
 pub fn offer(plan: Plan, at_once: bool) {
     SETTINGS.lock(|settings| {
         let mut settings = settings.borrow_mut();
@@ -52,9 +51,10 @@ pub fn offer(plan: Plan, at_once: bool) {
     });
 }
 
-/// Remembers that the polarity check was passed with the configuration of this number; the controller itself knows already.
+/// Sets `polarity_checked` in the configuration of this number after a passed polarity check; the controller has set
+/// its own.
 ///
-/// Another one that came since, taken by the controller or not, has a calibration that nobody checked.
+/// A newer configuration, in use or pending, has an unchecked calibration and stays unchanged.
 pub(super) fn polarity_passed(number: u32) {
     SETTINGS.lock(|settings| {
         let mut settings = settings.borrow_mut();
@@ -66,7 +66,7 @@ pub(super) fn polarity_passed(number: u32) {
     });
 }
 
-/// The plan that is offered and its number, if a controller in this mode may take it.
+/// The pending plan and its number, if a controller in this mode can use it.
 pub(super) fn take(mode: Mode) -> Option<(Plan, u32)> {
     SETTINGS.lock(|settings| {
         let mut settings = settings.borrow_mut();
@@ -75,9 +75,9 @@ pub(super) fn take(mode: Mode) -> Option<(Plan, u32)> {
     })
 }
 
-/// The stored parameters and encoder's offset, and what they are worked on in.
+/// Stored parameters and encoder offset, with the store's work memory.
 pub struct StoredConfig {
-    /// The flash's pages; `None` if the board has none.
+    /// Store in the board's flash; `None` if the board has none.
     store: Option<Store<board::Flash>>,
     room: &'static mut Room,
     found: Found,
@@ -85,7 +85,7 @@ pub struct StoredConfig {
 }
 
 impl StoredConfig {
-    /// In the board's flash.
+    /// Opens the store in the board's flash.
     ///
     /// # Panics
     /// When called a second time.
@@ -95,7 +95,7 @@ impl StoredConfig {
         Self { store, room: ROOM.take(), found: Found::Nothing, offset: None }
     }
 
-    /// The stored configuration, or the defaults with the polarity check not passed.
+    /// Loads the stored configuration, or the defaults with `polarity_checked` cleared.
     async fn load(&mut self, defaults: &Config) -> Config {
         let Some(store) = &mut self.store else {
             let mut unchecked = defaults.clone();
@@ -107,12 +107,12 @@ impl StoredConfig {
         config
     }
 
-    /// What was found at the start.
+    /// Result of loading.
     pub fn found(&self) -> &Found {
         &self.found
     }
 
-    /// The offset of the encoder to begin with: the program's own, else that stored with this motor.
+    /// Chooses the encoder offset at start: the program's own, else the stored one of this motor.
     pub fn choose_offset(&mut self, program: Option<f32>, motor_id: u32) -> Offset {
         let stored = match &mut self.store {
             Some(store) => block_on(store.alignment(self.room)),
@@ -121,12 +121,12 @@ impl StoredConfig {
         *self.offset.insert(Offset::choose(program, stored, motor_id))
     }
 
-    /// The offset that was chosen at the start; `None` on a board without encoder.
+    /// The chosen encoder offset; `None` on a board without encoder.
     pub fn offset(&self) -> Option<&Offset> {
         self.offset.as_ref()
     }
 
-    /// Stores an alignment of the encoder. The chip may stand still as of [`StoredConfig::save`].
+    /// Stores an alignment of the encoder. The chip can halt as in [`StoredConfig::save`].
     ///
     /// # Errors
     /// As of [`NotStored`].
@@ -135,7 +135,7 @@ impl StoredConfig {
         store.save_alignment(alignment, self.room).await
     }
 
-    /// Stores a configuration. The chip may stand still for as long as the flash erases, so only while no torque flows.
+    /// Stores a configuration. The chip can halt while the flash erases, so call this only while no torque flows.
     ///
     /// # Errors
     /// As of [`NotStored`].
@@ -148,7 +148,7 @@ impl StoredConfig {
     }
 }
 
-/// The plan to start with: of the stored configuration, or of the defaults. It is also what is in force.
+/// The plan at start, from the stored configuration or the defaults. Sets the configuration in use.
 ///
 /// # Panics
 /// When called a second time.
@@ -157,6 +157,6 @@ pub fn start(stored: &mut StoredConfig, defaults: &Config) -> &'static mut Plan 
     static PLAN: StaticCell<Plan> = StaticCell::new();
     let config = block_on(stored.load(defaults));
     SETTINGS.lock(|settings| settings.borrow_mut().config = Some(config.clone()));
-    // What a store gives passes: else it gave the defaults, which are the program's own.
+    // A loaded configuration is valid; otherwise it is the defaults, which are constants.
     PLAN.init(config.plan().expect("a plan of the defaults"))
 }

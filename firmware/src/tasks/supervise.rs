@@ -1,5 +1,5 @@
-//! Lets the watchdog bite when a task stands still. It runs at the lowest priority, so that an interrupt or a task that
-//! never ends is caught as well.
+//! Supervisor: lets the watchdog reset the chip when a task stops. Runs at the lowest priority, so that an endless
+//! interrupt or task is detected too.
 
 use crate::heartbeat::{self, Task};
 use crate::{board, crash};
@@ -7,11 +7,11 @@ use core::future::pending;
 use embassy_time::{Duration, Ticker};
 use link::report::FaultKind;
 
-/// How long the watchdog waits for food before it resets the chip.
+/// Timeout of the watchdog.
 pub const WATCHDOG: Duration = Duration::from_millis(100);
 
-/// Feeds the watchdog ten times in its patience, as long as each of `tasks` reports, counted from the start of this
-/// task. After the first that does not it is never fed again.
+/// Feeds the watchdog ten times per timeout while each of `tasks` reports, counted from the start of this task. After
+/// the first missing report the watchdog is never fed again.
 #[embassy_executor::task]
 pub async fn supervise(tasks: &'static [Task]) {
     heartbeat::begin();

@@ -1,7 +1,7 @@
-//! Four executors: three that interrupt, by interrupts of peripherals that the board does not use, and the thread's.
+//! Four executors: three in interrupts of peripherals that the board does not use, and one in the thread.
 //!
-//! Interrupts are dear in QEMU. So one is asked for only where something is to be interrupted: while nothing runs, the
-//! thread itself polls what was woken, the urgent first, with the priority that its interrupt would have.
+//! Interrupts are slow in QEMU, so one is requested only where it has to preempt something: otherwise the thread
+//! polls the woken executors, the most urgent first, at the priority of their interrupt.
 #![allow(unsafe_code)]
 
 use super::time;
@@ -16,15 +16,15 @@ use embassy_executor::{SendSpawner, Spawner};
 use static_cell::StaticCell;
 use stm32_metapac::{Interrupt, interrupt};
 
-/// An executor and the interrupt that polls it.
+/// An executor and its interrupt.
 struct Level {
     /// Null before the start.
     executor: AtomicPtr<Executor>,
-    /// Something of it waits to be polled.
+    /// Whether a task of it was woken.
     woken: AtomicBool,
-    /// `None`: the thread's.
+    /// `None` for the thread.
     interrupt: Option<Interrupt>,
-    /// Of the interrupt; lower is more urgent.
+    /// Priority of the interrupt; lower is more urgent.
     priority: u8,
 }
 
@@ -33,7 +33,7 @@ const CONTROL: usize = 1;
 const BELOW_CONTROL: usize = 2;
 const THREAD: usize = 3;
 
-/// By their priority. The clock's interrupt is above all.
+/// Ordered by priority. The clock's interrupt is above all.
 static LEVELS: [Level; 4] = [
     Level::new(Some(Interrupt::USART6), 0x20),
     Level::new(Some(Interrupt::UART5), 0x40),
@@ -41,7 +41,7 @@ static LEVELS: [Level; 4] = [
     Level::new(None, 0),
 ];
 
-/// The thread polls whatever is woken next by itself.
+/// Whether the thread is about to poll the woken executors itself.
 static IDLE: AtomicBool = AtomicBool::new(false);
 
 impl Level {
@@ -51,17 +51,17 @@ impl Level {
     }
 
     fn executor(&self) -> &'static Executor {
-        // SAFETY: null, or what `run` put there for ever.
+        // SAFETY: null, or the executor that `run` stored, which is never freed.
         unsafe { self.executor.load(Ordering::Relaxed).as_ref() }.expect("the board runs")
     }
 
-    /// Polls what was woken.
+    /// Polls the executor if it was woken.
     ///
     /// # Safety
-    /// To be called with the level's priority: it must not interrupt itself.
+    /// Call at the level's priority: the poll must not interrupt itself.
     unsafe fn poll(&self) {
         self.woken.store(false, Ordering::Relaxed);
-        // SAFETY: as the caller says.
+        // SAFETY: guaranteed by the caller.
         unsafe { self.executor().poll() }
     }
 }
@@ -79,7 +79,7 @@ pub fn run(control: impl FnOnce(SendSpawner), thread: impl FnOnce(Spawner)) -> !
     for (level, executor) in LEVELS.iter().zip(executors) {
         level.executor.store(executor, Ordering::Relaxed);
         let Some(interrupt) = level.interrupt else { continue };
-        // SAFETY: no critical section is built on priorities here, and the handlers find their executors.
+        // SAFETY: critical sections do not depend on priorities here, and the handlers find their executors.
         unsafe {
             core.NVIC.set_priority(interrupt, level.priority);
             NVIC::unmask(interrupt);
@@ -93,8 +93,8 @@ pub fn run(control: impl FnOnce(SendSpawner), thread: impl FnOnce(Spawner)) -> !
     loop {
         poll_woken();
         cortex_m::interrupt::disable();
-        // Every alarm rings at a whole millisecond. `wfi` would end there too, after QEMU handed the clock from one of
-        // its threads to another, which takes longer than a control step.
+        // Every alarm is at a whole millisecond. `wfi` would end there too, but only after QEMU switched its threads,
+        // which takes longer than a control step.
         if !LEVELS.iter().any(|level| level.woken.load(Ordering::Relaxed)) {
             IDLE.store(true, Ordering::Relaxed);
             time::skip();
@@ -103,7 +103,7 @@ pub fn run(control: impl FnOnce(SendSpawner), thread: impl FnOnce(Spawner)) -> !
     }
 }
 
-/// Polls the executors that were woken, each with its priority, and leaves interrupts enabled.
+/// Polls the woken executors, each at its priority, and leaves interrupts enabled.
 fn poll_woken() {
     for level in LEVELS.iter().filter(|level| level.woken.load(Ordering::Relaxed)) {
         // SAFETY: raises the priority to that of the level, so that its own interrupt can't come, then
@@ -119,12 +119,12 @@ fn poll_woken() {
     unsafe { cortex_m::interrupt::enable() };
 }
 
-/// Starts an executor whose tasks interrupt control: for tests that hold it up.
+/// Starts an executor above control: for tests that delay control.
 pub fn above_control() -> SendSpawner {
     spawner(ABOVE_CONTROL)
 }
 
-/// Starts an executor whose tasks control interrupts and the thread does not: for what is hardware elsewhere.
+/// Starts an executor between control and the thread: for tasks that replace hardware.
 pub fn below_control() -> SendSpawner {
     spawner(BELOW_CONTROL)
 }
@@ -133,7 +133,7 @@ fn spawner(level: usize) -> SendSpawner {
     LEVELS[level].executor().spawner().make_send()
 }
 
-/// What an executor calls, from anywhere, when one of its tasks is woken.
+/// Called by an executor from any context when one of its tasks is woken.
 #[unsafe(export_name = "__pender")]
 fn wake(level: *mut ()) {
     let level = &LEVELS[level as usize];

@@ -1,4 +1,4 @@
-//! How the program ends: with a new start where the image says so, else with QEMU and a status that is not zero.
+//! End of the program: a restart where the image chose it, else QEMU's end with a non-zero status.
 #![allow(unsafe_code)]
 
 use super::semihosting::exit;
@@ -9,7 +9,7 @@ use link::report::{FaultKind, ResetCause};
 /// Exceptions from this number on are interrupts.
 const INTERRUPTS: u32 = 16;
 
-/// The last words, then a new start or QEMU's end.
+/// Writes the last log line, then restarts or ends QEMU.
 pub fn end(kind: FaultKind, registers: &Registers, words: &str) -> ! {
     let Registers { exception, values: [cfsr, hfsr, bfar, sp, ..] } = *registers;
     let status = match kind {
@@ -34,7 +34,7 @@ pub fn end(kind: FaultKind, registers: &Registers, words: &str) -> ! {
     exit(status)
 }
 
-/// Reads memory that is not there.
+/// Reads unmapped memory.
 pub(super) fn touch_nothing() -> ! {
     // SAFETY: there is no memory at this address; the bus fault is the point.
     unsafe { core::hint::black_box((0x6000_0000 as *const u32).read_volatile()) };

@@ -1,12 +1,12 @@
-//! Failures on purpose, once, in the first start: the argument `mishap=KIND` at `at_ms=N`.
+//! Fault injection: one fault in the first start, given by the arguments `mishap=KIND` and `at_ms=N`.
 //!
-//! | kind | what happens |
+//! | kind | fault |
 //! | --- | --- |
-//! | `control-mute`, `line-mute`, `report-mute` | the task's reports get lost, as if it waited for ever |
+//! | `control-mute`, `line-mute`, `report-mute` | the task's heartbeats are lost, as if it were blocked |
 //! | `control-spin`, `line-spin`, `report-spin` | the task never ends |
 //! | `panic`, `bus` | a panic; an access to memory that is not there |
-//! | `brown-out` | the supply's warning |
-//! | `flash-stuck` | what is written to the flash from then on never gets there |
+//! | `brown-out` | the supply warning |
+//! | `flash-stuck` | later writes to flash are lost |
 
 use super::semihosting::{argument, command_line};
 use crate::crash;
@@ -14,9 +14,9 @@ use crate::heartbeat::Task;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_time::{Instant, Timer};
 
-/// When, or never.
+/// Time of the fault \[ms\]; the maximum means never.
 static AT_MS: AtomicU32 = AtomicU32::new(u32::MAX);
-/// What, as a place in [`KINDS`].
+/// Index of the fault in [`KINDS`].
 static KIND: AtomicU32 = AtomicU32::new(0);
 
 const KINDS: [&str; 10] = [
@@ -36,8 +36,8 @@ const PANIC: usize = 6;
 const BUS: usize = 7;
 const FLASH: usize = 9;
 
-/// Reads the arguments; what happens besides the tasks' own, if any, is to be spawned as [`strike`]. `false`: there is no
-/// such mishap.
+/// Reads the arguments. Faults that do not concern a task need [`strike`] to be spawned. `false`: unknown fault, or
+/// missing time.
 pub fn prepare() -> bool {
     let words = command_line();
     let Some(kind) = words.split(' ').find_map(|word| word.strip_prefix("mishap=")) else { return true };
@@ -51,7 +51,7 @@ pub fn prepare() -> bool {
     true
 }
 
-/// A mishap of the whole program, when it is time.
+/// Injects the faults that concern the whole program.
 #[embassy_executor::task]
 pub async fn strike() {
     let (kind, at_ms) = (KIND.load(Ordering::Relaxed) as usize, AT_MS.load(Ordering::Relaxed));
@@ -66,14 +66,14 @@ pub async fn strike() {
     }
 }
 
-/// Whether the flash takes nothing any more.
+/// Whether writes to flash are lost.
 pub(super) fn flash_is_stuck() -> bool {
     KIND.load(Ordering::Relaxed) as usize == FLASH
         && super::time::milliseconds() >= AT_MS.load(Ordering::Relaxed)
 }
 
-/// Whether this task's report gets lost. Spins for ever where that is the mishap.
-pub fn strikes(task: Task) -> bool {
+/// Whether this task's heartbeat is lost. Never returns for the faults in which the task does not end.
+pub fn heartbeat_lost(task: Task) -> bool {
     let kind = KIND.load(Ordering::Relaxed) as usize;
     if kind >= PANIC
         || kind % SPIN != task as usize

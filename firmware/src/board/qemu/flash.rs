@@ -1,5 +1,5 @@
-//! What stands for the flash: memory that keeps its bits through a reset, not beyond QEMU's end. It is written and
-//! erased as the chip's, but takes no time.
+//! Simulated flash: memory that survives a reset, but not QEMU's end. Write and erase follow the chip's rules, but
+//! take no time.
 #![allow(unsafe_code)]
 
 use super::fault_injection;
@@ -13,7 +13,7 @@ use embedded_storage_async::nor_flash::{
 const PAGE: usize = 8 << 10;
 const PAGES: usize = 3;
 const BYTES: usize = PAGE * PAGES;
-/// Says that the memory behind it was erased once.
+/// Magic number: the memory behind it was erased once.
 const MARK: u32 = 0x464c_5348;
 
 unsafe extern "C" {
@@ -24,7 +24,7 @@ unsafe extern "C" {
 /// Three pages of memory.
 pub struct Flash(&'static mut [u8; BYTES]);
 
-/// An access outside of it, or not aligned.
+/// An access outside the memory, or not aligned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wrong(NorFlashErrorKind);
 
@@ -35,7 +35,7 @@ impl NorFlashError for Wrong {
 }
 
 impl Flash {
-    /// The bytes from `from` to before `to`, both multiples of `unit`.
+    /// The bytes of `from..to`, both multiples of `unit`.
     fn span(&mut self, from: usize, to: usize, unit: usize) -> Result<&mut [u8], Wrong> {
         if !from.is_multiple_of(unit) || !to.is_multiple_of(unit) {
             return Err(Wrong(NorFlashErrorKind::NotAligned));
@@ -44,11 +44,11 @@ impl Flash {
     }
 }
 
-/// The memory and the range for parameters; there always is one. To be called once.
+/// The memory and the range for parameters; always present. Call once.
 pub fn flash() -> Option<(Flash, Range<u32>)> {
     let at = (&raw mut RETAINED).cast::<u8>();
-    // SAFETY: the linker script gives this memory to the ring and to this function alone, which is called once and takes
-    // only what lies behind the ring. It may hold any bytes; that nobody wrote them the compiler can't know.
+    // SAFETY: the linker script reserves this memory for the fault log and this function, which is called once and
+    // uses only the part behind the log. It can hold any bytes; the compiler can't know that they are uninitialised.
     let (mark, bytes) =
         unsafe { (&mut *at.add(USED).cast::<[u8; 4]>(), &mut *at.add(USED + 4).cast::<[u8; BYTES]>()) };
     if *mark != MARK.to_le_bytes() {
@@ -91,7 +91,7 @@ impl NorFlash for Flash {
         }
         let from = offset as usize;
         let places = self.span(from, from + bytes.len(), Self::WRITE_SIZE)?;
-        // Programming only ever clears bits.
+        // Programming only clears bits.
         places.iter_mut().zip(bytes).for_each(|(place, byte)| *place &= byte);
         Ok(())
     }

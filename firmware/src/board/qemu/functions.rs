@@ -1,14 +1,14 @@
-//! Functions of one number, today's beside micromath's, as the table of docs/motor.md has them.
+//! Mathematical functions of one argument beside micromath's, for the table of docs/motor.md.
 
 use core::f32::consts::TAU;
 use core::hint::black_box;
 use micromath::F32;
 use motor::angle::Angle;
 
-/// How many arguments each is called with.
+/// Number of arguments per function.
 pub const ARGUMENTS: u32 = 1000;
 
-/// Calls `count` with the name of each function, and with what calls it (0) or one that does nothing (1) with an argument.
+/// Calls `count` with each function's name and, per argument, with its call (0) or an empty call (1).
 pub fn each(mut count: impl FnMut(&'static str, &dyn Fn(usize, u32))) {
     for (name, function, argument) in NUMBERS {
         let functions = black_box::<[Function; 2]>([function, same]);
@@ -20,12 +20,12 @@ pub fn each(mut count: impl FnMut(&'static str, &dyn Fn(usize, u32))) {
     count("sine and cosine, micromath", &|which, i| _ = black_box(functions[which](angle(i).signed() * TAU)));
 }
 
-/// Of a number to a number.
+/// Function of one number.
 type Function = fn(f32) -> f32;
 /// The argument of a call.
 type Argument = fn(u32) -> f32;
 
-/// Functions, each with its arguments.
+/// Functions with their arguments.
 const NUMBERS: [(&str, Function, Argument); 7] = [
     ("rounding, today", libm::roundf, to_be_sent),
     ("rounding, micromath", |x| F32(x).round().0, to_be_sent),
@@ -56,7 +56,7 @@ fn newton(x: f32, root: f32) -> f32 {
     0.5 * (root + x / root)
 }
 
-/// Once round.
+/// One turn.
 fn angle(i: u32) -> Angle {
     Angle(i.wrapping_mul(u32::MAX / ARGUMENTS))
 }
@@ -66,12 +66,12 @@ fn to_be_sent(i: u32) -> f32 {
     65.43 * (i as f32 - 500.0)
 }
 
-/// A thermistor's, of the one at 25 degrees, over the converter's counts.
+/// Thermistor resistance relative to that at 25 degrees, over the converter's counts.
 fn resistance(i: u32) -> f32 {
     4095.0 / (20.0 + 4.0 * i as f32) - 1.0
 }
 
-/// Of a length up to 32 V.
+/// Squared lengths up to 32 V.
 fn square(i: u32) -> f32 {
     1.0 + i as f32
 }

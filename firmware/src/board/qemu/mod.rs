@@ -1,5 +1,5 @@
-//! The STM32F405 as QEMU's machine `netduinoplus2` has it: core, SysTick, NVIC, memories. Its RCC
-//! and PWR are not modelled, so the chip's HAL does not start there; this thin layer does.
+//! Board of the STM32F405 in QEMU's machine `netduinoplus2`: core, SysTick, NVIC, memories. QEMU does not model RCC
+//! and PWR, so the chip's HAL does not start there; this thin layer does.
 
 pub mod executor;
 mod exit;
@@ -20,6 +20,7 @@ mod watchdog;
 
 pub use executor::run;
 pub use exit::end;
+pub use fault_injection::heartbeat_lost;
 pub use flash::{Flash, flash};
 pub use reset::{outputs_off, reset_cause, restarts};
 pub use sensors::{drive, sense};
@@ -27,27 +28,27 @@ pub use watchdog::feed_watchdog;
 
 use crate::tasks::Telemetry;
 
-/// How an image ends: the exit status of QEMU.
+/// Exit status of QEMU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Exit {
-    /// All that the image checks holds.
+    /// All checks of the image passed.
     Success = 0,
-    /// Something that the image checks does not hold.
+    /// A check of the image failed.
     Failure = 1,
-    /// The image's input is not what it must be.
+    /// Invalid input of the image.
     Input = 2,
     /// A panic.
     Panic = 101,
     /// A processor fault.
     Fault = 102,
-    /// An interrupt that nobody asked for.
+    /// An unexpected interrupt.
     StrayInterrupt = 103,
-    /// The watchdog was not fed.
+    /// Watchdog timeout.
     Watchdog = 104,
 }
 
-/// One line of text; the torque in mN m, since printing an f32 takes 20 KB of flash.
+/// Writes one log line; the torque in mN m, since formatting an f32 takes 20 KB of flash.
 pub fn report(t: &Telemetry) {
     text::line(format_args!(
         "steps={} late={} worst_us={} torque_mn_m={} mode={} drive={:?}",

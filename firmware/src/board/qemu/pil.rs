@@ -1,7 +1,7 @@
-//! Processor in the loop: the host's bicycle instead of sensors and motor.
+//! Processor in the loop: the host simulates bicycle, sensors and motor.
 //!
-//! Once a millisecond, after the control step, the board hands its command to the host, then waits for the
-//! sensors of the next step. QEMU's clock stands still meanwhile. What goes over: [`link::lockstep`].
+//! Once per millisecond, after the control step, the board sends its command to the host, then waits for the sensors
+//! of the next step. QEMU's clock stops meanwhile. Format: [`link::lockstep`].
 
 use super::semihosting::{Stream, exit};
 use super::{Exit, reset, serial, stack, text, time};
@@ -20,21 +20,21 @@ use static_cell::ConstStaticCell;
 /// One control period \[us\].
 const PERIOD_US: u32 = crate::deadline::PERIOD.as_micros() as u32;
 
-/// Most bytes of the engineer's line in a period: ten times what a line of 115200 baud carries.
+/// Largest number of serial-link bytes per period: ten times the rate of 115200 baud.
 const LINE_BYTES: usize = 115;
 
-/// Bytes of the loop that hold more than sensor frames.
+/// Size of the loop's buffer, for more than sensor frames \[bytes\].
 const LONG: usize = 3 * MAX_FRAME / 2;
 
-/// What the controller is told.
+/// Sensor input of the controller.
 struct Sensors {
-    /// Of the last step, or newer.
+    /// Newest sensor frame.
     frame: SensorFrame,
-    /// It came since the last step, and is for the step of this number.
+    /// A frame received since the last step, for the step of this number.
     fresh: Option<u16>,
-    /// The number of the next step.
+    /// Number of the next step.
     step: u16,
-    /// The number of the newest frame that was used; `None` before the first.
+    /// Number of the newest frame used; `None` before the first.
     used: Option<u16>,
 }
 
@@ -44,7 +44,7 @@ impl Sensors {
 
 static SENSORS: Mutex<RefCell<Option<Sensors>>> = Mutex::new(RefCell::new(None));
 
-/// The sensors of this instant, as far as they came; `None` where no host takes part.
+/// The sensors of this instant, as far as received; `None` without a host.
 pub(super) fn sense() -> Option<SensorFrame> {
     critical_section::with(|cs| {
         let mut sensors = SENSORS.borrow(cs).borrow_mut();
@@ -54,7 +54,7 @@ pub(super) fn sense() -> Option<SensorFrame> {
                 s.used = Some(number);
                 s.step.wrapping_sub(number)
             }
-            // Before the first frame every sensor is missing, and stays so.
+            // Before the first frame every sensor is missing and stays so.
             None => u16::from(s.used.is_some()),
         };
         if late > 0 {
@@ -65,7 +65,7 @@ pub(super) fn sense() -> Option<SensorFrame> {
     })
 }
 
-/// Makes them the same samples so many periods later.
+/// Ages the samples by a number of periods.
 fn age(frame: &mut SensorFrame, ticks: u16) {
     frame.now_us = frame.now_us.wrapping_add(PERIOD_US * u32::from(ticks));
     for triple in [&mut frame.gyro_rad_s, &mut frame.accel_m_s2] {
@@ -85,23 +85,23 @@ fn age(frame: &mut SensorFrame, ticks: u16) {
     }
 }
 
-/// Bytes of the loop on their way to the host.
+/// Loop bytes to the host.
 struct Out {
     bytes: [u8; MAX_CHUNK / 4],
     used: usize,
 }
 
 impl Out {
-    /// Puts a frame behind the others; one without room is lost, as on a line.
+    /// Appends a frame; a frame that does not fit is lost, as on a serial line.
     fn put(&mut self, message: &Message<'_>, sequence: u16) {
         self.used += message.encode(sequence, &mut self.bytes[self.used..]).unwrap_or(0);
     }
 }
 
-/// A configuration on its way from the host.
+/// A configuration being received from the host.
 struct Incoming {
     bytes: [u8; CONFIG_BYTES],
-    /// How many of them came, in order.
+    /// Number of bytes received in order.
     have: usize,
 }
 
@@ -119,7 +119,7 @@ impl Incoming {
         }
     }
 
-    /// The plan of what came, or of the configuration in force if less than all of it did.
+    /// The plan of the received configuration, or of the one in use if it is incomplete.
     fn plan(&mut self) -> Result<Plan, Rejection<'static>> {
         let whole = core::mem::take(&mut self.have) == CONFIG_BYTES;
         let config = if whole { decode_config(&self.bytes)? } else { tasks::settings::config() };
@@ -128,14 +128,14 @@ impl Incoming {
     }
 }
 
-/// The board steps once a period, whatever the configuration says.
+/// The board runs one step per period, whatever the configuration.
 fn wrong_rate(config: &Config) -> Rejection<'static> {
     let rate_hz = 1e6 / PERIOD_US as f32;
     let about = Rejection::about(RejectReason::OutOfRange, link::Key::whole("rate_hz"));
     Rejection { value: config.rate_hz, min: rate_hz, max: rate_hz, ..about }
 }
 
-/// The host takes part from now on, until it closes its end: text goes aside.
+/// Connects to the host, until the host closes its end; text then goes to standard error.
 pub fn begin() {
     stack::paint_all();
     text::aside();
@@ -143,7 +143,7 @@ pub fn begin() {
     critical_section::with(|cs| SENSORS.borrow(cs).replace(Some(Sensors::NONE)));
 }
 
-/// Exchanges with the host once a millisecond, right after the control step.
+/// Exchanges data with the host once per millisecond, right after the control step.
 #[embassy_executor::task]
 pub async fn exchange() {
     static CHUNK: ConstStaticCell<[u8; MAX_CHUNK]> = ConstStaticCell::new([0; MAX_CHUNK]);
@@ -154,7 +154,7 @@ pub async fn exchange() {
     let (mut decoder, mut host) = (Decoder::default(), Stream::open());
     let mut now_ms = Instant::now().as_millis();
     loop {
-        // Held up, it leaves out what it missed.
+        // After a delay, missed exchanges are skipped.
         now_ms = Instant::now().as_millis().max(now_ms) + 1;
         Timer::at(Instant::from_millis(now_ms)).await;
         let taken = hand_over(&mut host, chunk, out);
@@ -177,18 +177,18 @@ pub async fn exchange() {
                 }
             }
         };
-        // What stands for hardware takes no time; a configuration would take more than a period.
+        // Simulated hardware takes no time; decoding a configuration would take more than a period.
         if sensors.len() > LONG { time::held(all) } else { all() }
     }
 }
 
-/// How long a chunk from the host is, by its head.
+/// Length of a chunk from the host, from its header.
 fn whole(start: &[u8]) -> Option<usize> {
     let [a, b, c, d] = *start.first_chunk()?;
     Some(4 + usize::from(u16::from_le_bytes([a, b])) + usize::from(u16::from_le_bytes([c, d])))
 }
 
-/// `false`: the host is gone.
+/// `false` if the host has closed the connection.
 fn hand_over(host: &mut Stream, chunk: &mut [u8; MAX_CHUNK], out: &mut Out) -> bool {
     if let Some((command, authority)) = tasks::commanded() {
         let number = critical_section::with(|cs| {

@@ -1,5 +1,5 @@
-//! Recorded rides from the host's file `rides.bin`: for each a configuration record, the number of
-//! frames (u32, little-endian) and the frames, as in [`control::wire`].
+//! Reads recorded rides from the host's file `rides.bin`: per ride a configuration record, the number of frames (u32,
+//! little-endian) and the frames, as in [`control::wire`].
 
 use super::Exit;
 use super::semihosting::{File, exit};
@@ -7,18 +7,18 @@ use control::wire::{CONFIG_BYTES, FRAME_BYTES, decode_config};
 use control::{Config, Plan};
 use cortex_m_semihosting::hprintln;
 
-/// Frames read at once: a call to the host costs as much as hundreds of steps.
+/// Frames per read: a call to the host costs as much as hundreds of steps.
 pub const BLOCK: usize = 256;
 
-/// The frames of one block, as they came.
+/// Raw frames of one block.
 pub type Block = [[u8; FRAME_BYTES]; BLOCK];
 
-/// The file of rides.
+/// File of recorded rides.
 pub struct Recording(File);
 
-/// One ride of it.
+/// One recorded ride.
 pub struct Ride {
-    /// The configuration it was recorded for, checked.
+    /// Checked configuration of the recording.
     pub plan: Plan,
     frames_left: usize,
 }

@@ -1,5 +1,5 @@
-//! Starting anew: by the core's own request, which QEMU follows. RCC's cause of a reset is not modelled; the
-//! program leaves word of it in memory that the reset keeps.
+//! Restart by the core's reset request, which QEMU implements. RCC's reset cause is not modelled; the program stores
+//! the cause in memory that survives the reset.
 #![allow(unsafe_code)]
 
 use super::time;
@@ -7,12 +7,12 @@ use crate::retained::USED;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use link::report::ResetCause;
 
-/// A word left for the next start: mark, cause, time.
+/// Words for the next start: magic number, cause, time.
 type Word = [u32; 3];
-/// Where it lies in the retained memory: behind the ring and the flash.
+/// Offset in the retained memory: behind fault log and flash.
 const AT: usize = 31 << 10;
 const _: () = assert!(USED + (25 << 10) <= AT);
-/// Says that the word was left by this program.
+/// Magic number: this program stored the cause.
 const MARK: u32 = 0x5253_5431;
 
 unsafe extern "C" {
@@ -20,9 +20,9 @@ unsafe extern "C" {
     static mut RETAINED: [u8; AT + size_of::<Word>()];
 }
 
-/// Whether the chip starts anew after a failure, rather than end QEMU.
+/// Whether failures restart the chip rather than end QEMU.
 static RESTARTS: AtomicBool = AtomicBool::new(false);
-/// Time of QEMU before this start \[ms\].
+/// Time of QEMU at this start \[ms\].
 static BEFORE_MS: AtomicU32 = AtomicU32::new(0);
 
 fn word() -> *mut Word {
@@ -30,19 +30,19 @@ fn word() -> *mut Word {
     (&raw mut RETAINED).cast::<u8>().wrapping_add(AT).cast()
 }
 
-/// From now on failures start the chip anew.
+/// Makes failures restart the chip.
 pub fn restarts() {
     RESTARTS.store(true, Ordering::Relaxed);
 }
 
-/// Whether failures start the chip anew.
+/// Whether failures restart the chip.
 pub(super) fn does_restart() -> bool {
     RESTARTS.load(Ordering::Relaxed)
 }
 
-/// Why the chip started, to be asked once.
+/// Cause of the start; call once.
 pub fn reset_cause() -> ResetCause {
-    // SAFETY: aligned memory of nobody else; any bits are words.
+    // SAFETY: aligned memory that nothing else uses; any bits are valid words.
     let [mark, cause, before_ms] = unsafe { word().read_volatile() };
     if mark != MARK {
         return ResetCause::PowerOn;
@@ -58,12 +58,12 @@ pub(super) fn total_ms() -> u32 {
     BEFORE_MS.load(Ordering::Relaxed).wrapping_add(time::milliseconds())
 }
 
-/// Starts the chip anew, for this cause.
+/// Restarts the chip, for this cause.
 pub(super) fn reset(cause: ResetCause) -> ! {
     // SAFETY: as above.
     unsafe { word().write_volatile([MARK, cause as u32, total_ms()]) };
     cortex_m::peripheral::SCB::sys_reset()
 }
 
-/// The motor is off: there is none.
+/// No effect: this board has no motor.
 pub fn outputs_off() {}

@@ -1,4 +1,4 @@
-//! The host's side of QEMU: files, the command line and the exit status.
+//! Semihosting calls to QEMU's host: files, command line and exit status.
 //!
 //! Calls and numbers: Arm, "Semihosting for AArch32 and AArch64", 2.0.
 #![allow(unsafe_code)]
@@ -9,22 +9,22 @@ use core::fmt::Write;
 use cortex_m_semihosting::{nr, syscall};
 use heapless::String;
 
-/// A file of the host, opened in QEMU's working directory. Closed by QEMU's end.
+/// A file on the host, in QEMU's working directory. Closed when QEMU ends.
 pub struct File(usize);
 
 impl File {
     /// Opens a file for reading.
     ///
     /// # Panics
-    /// When the host can't open it.
+    /// If the host can't open it.
     pub fn read_from(name: &CStr) -> Self {
         Self::open(name, nr::open::R_BINARY)
     }
 
-    /// Makes a file, or empties it.
+    /// Creates or truncates a file.
     ///
     /// # Panics
-    /// When the host can't make it.
+    /// If the host can't create it.
     pub fn write_to(name: &CStr) -> Self {
         Self::open(name, nr::open::RW_TRUNC_BINARY)
     }
@@ -48,7 +48,7 @@ impl File {
         true
     }
 
-    /// Waits for bytes, and takes as many as are there and fit; how many, 0 at the end.
+    /// Waits for bytes and reads as many as are available and fit; returns their number, 0 at the end.
     fn read_some(&mut self, bytes: &mut [u8]) -> usize {
         // SAFETY: the arguments of SYS_READ: handle, a buffer the host may write, its length.
         let left = unsafe { syscall!(READ, self.0, bytes.as_mut_ptr(), bytes.len()) };
@@ -58,12 +58,12 @@ impl File {
     /// Writes all of `bytes`.
     ///
     /// # Panics
-    /// When the host can't take them.
+    /// If writing fails.
     pub fn write_all(&mut self, bytes: &[u8]) {
         assert!(self.write(bytes), "the host does not take {} bytes", bytes.len());
     }
 
-    /// Writes all of `bytes`, unless the host does not take them: then `false`.
+    /// Writes all of `bytes`; `false` if writing fails.
     fn write(&mut self, bytes: &[u8]) -> bool {
         // SAFETY: the arguments of SYS_WRITE: handle, a buffer the host may read, its length.
         let left = unsafe { syscall!(WRITE, self.0, bytes.as_ptr(), bytes.len()) };
@@ -102,7 +102,7 @@ impl Stream {
     /// Opens both.
     ///
     /// # Panics
-    /// When the host can't.
+    /// If the host can't open them.
     pub fn open() -> Self {
         Self {
             input: File::open(c":tt", nr::open::R_BINARY),
@@ -110,13 +110,13 @@ impl Stream {
         }
     }
 
-    /// Writes all of `bytes`; `false`: the host is gone.
+    /// Writes all of `bytes`; `false` if the host has closed the connection.
     pub fn write(&mut self, bytes: &[u8]) -> bool {
         self.output.write(bytes)
     }
 
-    /// Waits for one whole chunk, whose length `whole` tells of its beginning; how many bytes it has. `None`: the host
-    /// is gone.
+    /// Waits for one whole chunk, whose length `whole` gives from its header; returns the length. `None` if the host
+    /// has closed the connection.
     pub fn read(&mut self, to: &mut [u8], whole: impl Fn(&[u8]) -> Option<usize>) -> Option<usize> {
         let mut have = 0;
         loop {

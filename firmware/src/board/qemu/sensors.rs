@@ -1,6 +1,6 @@
-//! Made-up sensors for tests of timing: a bicycle at 4 m/s whose roll rate swings by 0.1 rad/s
-//! once a second, and a rider who asks for assist. The motor gives every torque; the handlebar is held, which five times
-//! the swing would make look like a motor that turns the wrong way (fault 37).
+//! Simulated sensors for timing tests: a bicycle at 4 m/s whose roll rate oscillates by 0.1 rad/s at 1 Hz, and a
+//! rider who requests assist. The motor reports every commanded torque; the handlebar does not move. At five times
+//! the amplitude the sign check would report a reversed motor (fault 37).
 
 use super::pil;
 use crate::tasks::Refusal;
@@ -10,16 +10,16 @@ use core::f32::consts::TAU;
 use critical_section::Mutex;
 use embassy_time::Instant;
 
-/// When the rider presses the switch \[ms\]: after the self-test, with nothing left that would refuse the press.
+/// Time of the rider's press \[ms\]: after the self-test, with no cause left that rejects the press.
 const SWITCH_AFTER_MS: u64 = 500;
 
-/// Roll rate and its quarter-period companion \[rad/s\].
+/// Roll rate and its quadrature component \[rad/s\].
 static SWING: Mutex<Cell<(f32, f32)>> = Mutex::new(Cell::new((0.1, 0.0)));
 
-/// The torque commanded last \[N m\].
+/// Last commanded torque \[N m\].
 static TORQUE: Mutex<Cell<f32>> = Mutex::new(Cell::new(0.0));
 
-/// The sensors of this instant: the host's where it takes part.
+/// The sensors of this instant; from the host if connected.
 pub fn sense() -> SensorFrame {
     pil::sense().unwrap_or_else(made_up)
 }
@@ -28,7 +28,7 @@ fn made_up() -> SensorFrame {
     let angle = TAU / 1000.0;
     let (roll_rate, companion, torque_nm) = critical_section::with(|cs| {
         let (a, b) = SWING.borrow(cs).get();
-        // Each half uses the other's newest value, which keeps the swing's size for ever.
+        // Each half uses the other's newest value, which keeps the amplitude constant.
         let a = a - angle * b;
         let b = b + angle * a;
         SWING.borrow(cs).set((a, b));
@@ -50,7 +50,7 @@ fn made_up() -> SensorFrame {
     }
 }
 
-/// Takes the command.
+/// Accepts the command.
 ///
 /// # Errors
 /// None on this board.

@@ -1,17 +1,17 @@
-//! The engineer's line, as bytes that go over in lockstep: [`super::pil`] carries them once a millisecond.
+//! The serial link as bytes in the lockstep exchange: [`super::pil`] transfers them once per millisecond.
 
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::pipe::Pipe;
 
-/// Bytes that wait, each way.
+/// Buffers, one per direction.
 pub(super) const ROOM: usize = 1024;
 
 static IN: Pipe<CriticalSectionRawMutex, ROOM> = Pipe::new();
 pub(super) static OUT: Pipe<CriticalSectionRawMutex, ROOM> = Pipe::new();
 
-/// Puts in what came from the engineer. Bytes that find no room are lost, as on any line.
+/// Stores bytes from the host. Bytes that do not fit are lost, as on a serial line.
 pub(super) fn came(mut bytes: &[u8]) {
-    // The ring takes no more than up to its end at a time.
+    // The ring accepts bytes only up to its end at once.
     while !bytes.is_empty()
         && let Ok(taken @ 1..) = IN.try_write(bytes)
     {
@@ -19,12 +19,12 @@ pub(super) fn came(mut bytes: &[u8]) {
     }
 }
 
-/// Waits for bytes, and takes as many as are there and fit; how many.
+/// Waits for bytes and reads as many as are available and fit; returns their number.
 pub async fn read(bytes: &mut [u8]) -> usize {
     IN.read(bytes).await
 }
 
-/// Waits until all bytes are taken.
+/// Waits until all bytes are queued.
 pub async fn write(bytes: &[u8]) {
     OUT.write_all(bytes).await;
 }

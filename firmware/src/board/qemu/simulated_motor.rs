@@ -1,31 +1,31 @@
-//! A motor made up to count its loop's instructions by: the windings as they are, the rotor turned evenly from outside.
+//! Simulated motor for counting the instructions of the motor loop: modelled windings, rotor at constant speed.
 
 use motor::angle::Angle;
 use motor::transform::{Vector, clarke, phases, stator};
 use motor::{Inputs, MotorCommand, Output, Phases, Plan};
 
-/// Voltage of the bus \[V\].
+/// Bus voltage \[V\].
 const BUS_V: f32 = 24.0;
 
-/// The motor, each call a PWM period apart.
+/// The motor; calls are one PWM period apart.
 pub struct SimulatedMotor {
     angle: Angle,
-    /// Of the motor \[turns\].
+    /// Motor angle \[turns\].
     turned_per_call: f32,
-    /// In the stator's axes \[A\].
+    /// Current in stator axes \[A\].
     current: Vector,
     /// Duty cycles of the period that begins with the next call.
     duties: Option<[f32; 3]>,
 }
 
 impl SimulatedMotor {
-    /// At rest but for its turning, so many turns per second.
+    /// Without current, turning at the given speed \[turns/s\].
     pub fn new(plan: &Plan, turns_s: f32) -> Self {
         let turned_per_call = turns_s / plan.config().rate_hz;
         Self { angle: Angle(0), turned_per_call, current: Vector::new(0.0, 0.0), duties: None }
     }
 
-    /// What is measured now, while this is asked for.
+    /// Present measurements, with the given command.
     pub fn inputs(&self, plan: &Plan, command: MotorCommand) -> Inputs {
         let counts = u32::from(plan.config().encoder.counts);
         Inputs {
@@ -38,7 +38,7 @@ impl SimulatedMotor {
         }
     }
 
-    /// The period after a call: the duty cycles of the call before act.
+    /// The period after a call: the duty cycles of the previous call act.
     pub fn advance(&mut self, plan: &Plan, output: &Output) {
         let (motor, rate_hz) = (&plan.config().motor, plan.config().rate_hz);
         let acting = core::mem::replace(&mut self.duties, output.duties);
@@ -48,13 +48,13 @@ impl SimulatedMotor {
             (Some(duties), Some(_)) => {
                 let voltage = clarke(duties).times(BUS_V);
                 let back_emf = Vector::new(0.0, omega_rad_s * motor.flux_wb);
-                // Its mean over the period.
+                // Mean over the period.
                 let middle = self.angle.plus(Angle::of(0.5 * self.turned_per_call));
                 let back_emf = stator(back_emf, middle.times(motor.pole_pairs).sin_cos());
                 let left = voltage.minus(back_emf).minus(self.current.times(motor.resistance_ohm));
                 self.current.plus(left.times(1.0 / (motor.inductance_q_h * rate_hz)))
             }
-            // An open bridge lets nothing flow for long.
+            // With an open bridge the current decays quickly.
             _ => Vector::new(0.0, 0.0),
         };
         self.angle = self.angle.plus(Angle::of(self.turned_per_call));

@@ -1,28 +1,28 @@
-//! How deep the stack goes: paint what lies below, call, look how far the paint is gone.
+//! Measures stack depth: fills unused stack with a pattern and finds how much was overwritten.
 #![allow(unsafe_code)]
 
 use core::hint::black_box;
 
 const PAINT: u32 = 0xa5c3_96e7;
-/// Words that are painted: 4 KiB of the stack's 32.
+/// Number of words filled: 4 KiB of the stack's 32.
 const WORDS: usize = 1024;
-/// Left out below the caller, for the frame of [`paint`] itself \[bytes\].
+/// Gap below the caller, for the frame of [`paint`] itself \[bytes\].
 const GAP: usize = 64;
 
-/// Paints the stack below the caller; the place from which depths count.
+/// Fills the stack below the caller; returns the reference address of the depth.
 #[inline(never)]
 pub fn paint() -> usize {
     let here = 0_u32;
     let top = (&raw const *black_box(&here)) as usize & !3;
     for word in 0..WORDS {
-        // SAFETY: below the frame of this function nothing is alive, interrupts use no stack of their own before
-        // they happen, and the stack is eight times as deep.
+        // SAFETY: memory below this function's frame is unused, an interrupt writes there only when it occurs, and
+        // the stack is eight times as deep.
         unsafe { ((top - GAP - 4 * word) as *mut u32).write_volatile(PAINT) }
     }
     top
 }
 
-/// How many bytes below `top` were written since [`paint`]; no fewer than the gap it leaves out.
+/// Number of bytes below `top` overwritten since [`paint`]; at least its gap.
 #[inline(never)]
 pub fn depth(top: usize) -> u32 {
     let lowest = top - GAP - 4 * (WORDS - 1);
@@ -36,7 +36,7 @@ unsafe extern "C" {
     static mut _stack_end: u32;
 }
 
-/// Paints all of the stack that lies below the caller.
+/// Fills the whole stack below the caller.
 #[inline(never)]
 pub fn paint_all() {
     let here = 0_u32;
@@ -51,11 +51,11 @@ pub fn paint_all() {
     }
 }
 
-/// How many bytes at the stack's end were never written since [`paint_all`].
+/// Number of bytes at the stack's end not overwritten since [`paint_all`].
 #[inline(never)]
 pub fn never_used() -> u32 {
     let end = &raw const _stack_end;
-    // SAFETY: inside the stack's memory: the frame of this function is above, and is not paint.
+    // SAFETY: inside the stack's memory: this function's frame is above the filled part.
     let whole = (0..).take_while(|word| unsafe { end.add(*word).read_volatile() } == PAINT).count();
     4 * whole as u32
 }

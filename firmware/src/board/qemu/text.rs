@@ -1,4 +1,4 @@
-//! Text to QEMU's standard output; to its standard error while that carries the loop's bytes.
+//! Text output to QEMU's standard output, or to standard error while standard output carries the loop.
 
 use super::semihosting::Text;
 use core::fmt::{Arguments, Write};
@@ -6,12 +6,12 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 static ASIDE: AtomicBool = AtomicBool::new(false);
 
-/// From now on text goes to standard error.
+/// Redirects text to standard error.
 pub fn aside() {
     ASIDE.store(true, Ordering::Relaxed);
 }
 
-/// Writes a line. A host that does not take it changes nothing.
+/// Writes a line. A failed write is ignored.
 pub fn line(text: Arguments<'_>) {
     let mut host = if ASIDE.load(Ordering::Relaxed) { Text::err() } else { Text::out() };
     let _ = host.write_fmt(text).and_then(|()| host.write_str("\n"));

@@ -1,9 +1,9 @@
-//! Embassy's clock on SysTick: 168 counts of the 168 MHz processor clock to the microsecond. Alarms ring at whole
+//! Embassy's time driver on SysTick: 168 counts of the 168 MHz processor clock per microsecond. Alarms are at whole
 //! milliseconds.
 //!
-//! The counter runs round once a millisecond of instructions and is never written after its start: QEMU would wake
-//! another of its threads each time, which takes longer than a control step. A millisecond that is left out, or a
-//! time in which the clock is held, is reckoned instead, by where the counter stood.
+//! The counter wraps once per millisecond of instructions and is not written after its start, as each write wakes
+//! another QEMU thread, which takes longer than a control step. A skipped millisecond, or a time in which the clock
+//! is stopped, is computed from the counter instead.
 #![allow(unsafe_code)]
 
 use super::watchdog;
@@ -19,16 +19,16 @@ use embassy_time_queue_utils::Queue;
 const COUNTS_PER_US: u32 = 168;
 const COUNTS_PER_MS: u32 = 1000 * COUNTS_PER_US;
 
-/// Where the clock stands. Touched with interrupts off only, by everybody but the clock's interrupt.
+/// State of the clock. Accessed with interrupts disabled, except by the clock's interrupt.
 struct SysTickClock {
     ms: AtomicU32,
     /// Counter at the start of this millisecond.
     from: AtomicU32,
-    /// Rounds of the counter since.
+    /// Wraps of the counter since.
     rounds: AtomicU32,
-    /// The clock stands still.
+    /// Whether the clock is stopped.
     held: AtomicBool,
-    /// Nobody looks between whole milliseconds.
+    /// Whether the time is read only at whole milliseconds.
     coarse: AtomicBool,
     queue: Mutex<RefCell<Queue>>,
 }
@@ -51,13 +51,13 @@ pub(super) fn start(mut systick: SYST) {
     systick.enable_interrupt();
 }
 
-/// From now on the time is that of the last whole millisecond: each look at the counter costs QEMU as much as a
-/// thousand instructions.
+/// Makes the time that of the last whole millisecond: reading the counter costs QEMU as much as a thousand
+/// instructions.
 pub(super) fn coarse() {
     CLOCK.coarse.store(true, Ordering::Relaxed);
 }
 
-/// Does something that takes no time by this clock.
+/// Runs a function with the clock stopped.
 pub(super) fn held<T>(what: impl FnOnce() -> T) -> T {
     let counts = critical_section::with(|_| {
         CLOCK.held.store(true, Ordering::Relaxed);
@@ -66,7 +66,7 @@ pub(super) fn held<T>(what: impl FnOnce() -> T) -> T {
     let done = what();
     critical_section::with(|_| {
         let mut from = left();
-        // A round that ended before does not count, its interrupt neither.
+        // A wrap before does not count, nor does its interrupt.
         if SCB::is_pendst_pending() {
             SCB::clear_pendst();
             from = left();
@@ -77,12 +77,12 @@ pub(super) fn held<T>(what: impl FnOnce() -> T) -> T {
     done
 }
 
-/// Nothing is to be done before the next whole millisecond: it is now. To be called with interrupts off.
+/// Advances the clock to the next whole millisecond, if nothing is due before. Call with interrupts disabled.
 pub(super) fn skip() {
     let left = left();
     let rounds = CLOCK.rounds.load(Ordering::Relaxed);
     if left > CLOCK.from.load(Ordering::Relaxed) + rounds * COUNTS_PER_MS {
-        // The round ended since interrupts are off; its own would count it for the next millisecond.
+        // The counter wrapped while interrupts were disabled; its interrupt would count it for the next millisecond.
         SCB::clear_pendst();
     }
     CLOCK.begin(left);
@@ -95,7 +95,7 @@ pub(super) fn milliseconds() -> u32 {
 }
 
 impl SysTickClock {
-    /// The last whole millisecond, when alarms ring \[us\]. QEMU takes its time for a look at the counter.
+    /// The last whole millisecond, the time of alarms \[us\]. Avoids reading the counter, which is slow in QEMU.
     fn whole_us(&self) -> u64 {
         u64::from(self.ms.load(Ordering::Relaxed)) * 1000
     }
@@ -103,20 +103,20 @@ impl SysTickClock {
     /// Counts since the start of this millisecond.
     fn counts(&self) -> u32 {
         let before = left();
-        // The round has ended, perhaps just now, and its interrupt still waits.
+        // The counter has wrapped, and its interrupt is pending.
         let ended = SCB::is_pendst_pending();
         let left = if ended { left() } else { before };
         let rounds = self.rounds.load(Ordering::Relaxed) + u32::from(ended);
         (self.from.load(Ordering::Relaxed) + rounds * COUNTS_PER_MS).saturating_sub(left)
     }
 
-    /// A millisecond begins with this counter.
+    /// Starts a millisecond at this counter value.
     fn begin(&self, from: u32) {
         self.from.store(from, Ordering::Relaxed);
         self.rounds.store(0, Ordering::Relaxed);
     }
 
-    /// A millisecond is over: what is due then is woken.
+    /// Ends a millisecond: wakes the tasks that are due.
     fn tick(&self) {
         let ms = self.ms.fetch_add(1, Ordering::Relaxed) + 1;
         watchdog::check(ms);
@@ -124,8 +124,8 @@ impl SysTickClock {
     }
 }
 
-/// What the counter still has to count in this round: 1 to a whole millisecond. Its interrupt comes with zero, which
-/// belongs to the next round.
+/// Remaining counts in this round: 1 to a whole millisecond. The interrupt comes at zero, which belongs to the next
+/// round.
 fn left() -> u32 {
     match SYST::get_current() {
         0 => COUNTS_PER_MS,
@@ -139,7 +139,7 @@ impl Driver for SysTickClock {
             return self.whole_us();
         }
         let (ms, counts) = critical_section::with(|_| (self.ms.load(Ordering::Relaxed), self.counts()));
-        // 32-bit division: the 64-bit one takes longer the longer the clock runs.
+        // 32-bit division: the duration of the 64-bit one grows with the time.
         u64::from(ms) * 1000 + u64::from(counts / COUNTS_PER_US)
     }
 
@@ -147,7 +147,7 @@ impl Driver for SysTickClock {
         critical_section::with(|cs| {
             let mut queue = self.queue.borrow(cs).borrow_mut();
             if queue.schedule_wake(at, waker) {
-                // The next interrupt looks at the queue anyway; this wakes what is already due.
+                // The next interrupt checks the queue anyway; this wakes tasks that are already due.
                 queue.next_expiration(self.whole_us());
             }
         });

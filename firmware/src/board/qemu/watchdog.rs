@@ -1,5 +1,5 @@
-//! Stands in for the chip's independent watchdog, which QEMU does not have: looked at by the clock's
-//! interrupt, it resets the chip, or ends QEMU.
+//! Simulated independent watchdog, which QEMU does not model: checked by the clock's interrupt, it resets the chip or
+//! ends QEMU.
 
 use super::semihosting::exit;
 use super::{Exit, reset, text, time};
@@ -9,12 +9,12 @@ use link::report::ResetCause;
 
 static FED_MS: AtomicU32 = AtomicU32::new(0);
 
-/// Starts the watchdog's patience anew.
+/// Restarts the watchdog's timeout.
 pub fn feed_watchdog() {
     FED_MS.store(time::milliseconds(), Ordering::Relaxed);
 }
 
-/// Bites when it was not fed for longer than its patience.
+/// Resets if the watchdog was not fed within its timeout.
 pub(super) fn check(now_ms: u32) {
     let hungry_ms = now_ms.saturating_sub(FED_MS.load(Ordering::Relaxed));
     if u64::from(hungry_ms) > WATCHDOG.as_millis() {

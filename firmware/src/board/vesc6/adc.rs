@@ -1,7 +1,7 @@
-//! The three converters, started together by TIM1.
+//! The three ADCs, triggered together by TIM1.
 //!
-//! The chip's HAL has no injected conversions for this family, so its registers are written here. Each converter does
-//! its phase current first, so that all three are of one instant, then what changes slowly.
+//! The HAL has no injected conversions for this family, so the registers are written here. Each ADC converts its phase
+//! current first, so that all three are simultaneous, then the slowly changing values.
 
 use super::pins::{Pin, analog};
 use embassy_stm32::pac::adc::Adc;
@@ -10,14 +10,14 @@ use embassy_stm32::pac::adccommon::vals::Adcpre;
 use embassy_stm32::pac::{ADC1, ADC2, ADC3, ADC123_COMMON};
 use embassy_stm32::{peripherals, rcc};
 
-/// TIM1's trigger output, as a start of injected conversions.
+/// Selection of TIM1's trigger output for injected conversions.
 const TIM1_TRGO: u8 = 1;
 
-/// The channels of each converter, in their order: currents of a, b, c; steer, rider's torque, supply; switch, board's
-/// temperature. The first converter has as many as any, so when it is done all are.
+/// Channels of each ADC, in order: currents of a, b, c; steer, rider's torque, supply; switch, board temperature. The
+/// first ADC has the longest sequence, so its end is the end of all.
 const CHANNELS: [(Adc, [u8; 3]); 3] = [(ADC1, [10, 5, 14]), (ADC2, [11, 6, 3]), (ADC3, [12, 13, 13])];
 
-/// What was converted in one PWM period \[counts\].
+/// Conversions of one PWM period \[counts\].
 pub(super) struct Counts {
     pub(super) phases: [u16; 3],
     pub(super) steer: u16,
@@ -27,7 +27,7 @@ pub(super) struct Counts {
     pub(super) board_heat: u16,
 }
 
-/// Sets the converters up; the interrupt is asked for, but not let through yet.
+/// Configures the ADCs; enables their interrupt at the peripheral, but not in the NVIC.
 pub(super) fn start(pins: [Pin; 8]) {
     pins.into_iter().for_each(analog);
     rcc::enable_and_reset::<peripherals::ADC1>();
@@ -36,7 +36,7 @@ pub(super) fn start(pins: [Pin; 8]) {
     // 84 MHz / 4 = 21 MHz, of 36 allowed.
     ADC123_COMMON.ccr().modify(|w| w.set_adcpre(Adcpre::DIV4));
     for (adc, channels) in CHANNELS {
-        // Currents 15 cycles, everything else 56: 7.8 us in all.
+        // Currents 15 cycles, other channels 56: 7.8 us in total.
         for channel in 0..18 {
             let time = if (10..13).contains(&channel) { SampleTime::CYCLES15 } else { SampleTime::CYCLES56 };
             if channel < 10 {
@@ -47,7 +47,7 @@ pub(super) fn start(pins: [Pin; 8]) {
         }
         adc.jsqr().write(|w| {
             w.set_jl(2);
-            // A sequence of three begins at the second place.
+            // A sequence of three starts at the second position.
             channels.into_iter().enumerate().for_each(|(place, channel)| w.set_jsq(place + 1, channel));
         });
         adc.cr1().modify(|w| w.set_scan(true));
@@ -60,7 +60,7 @@ pub(super) fn start(pins: [Pin; 8]) {
     ADC1.cr1().modify(|w| w.set_jeocie(true));
 }
 
-/// What was converted last.
+/// The last conversions.
 pub(super) fn counts() -> Counts {
     ADC1.sr().modify(|w| w.set_jeoc(false));
     let [[a, steer, switch], [b, rider_torque, board_heat], [c, supply, _]] =
@@ -68,13 +68,13 @@ pub(super) fn counts() -> Counts {
     Counts { phases: [a, b, c], steer, rider_torque, supply, switch, board_heat }
 }
 
-/// What was converted so far asks for no interrupt: the first one comes with the end of conversions still to come, at its place
-/// in the PWM period.
+/// Clears pending interrupts: the first one then comes from the end of a future conversion, at its place in the PWM
+/// period.
 pub(super) fn forget() {
     ADC1.sr().modify(|w| w.set_jeoc(false));
 }
 
-/// Whether the next conversions are over already.
+/// Whether the next conversions have already ended.
 pub(super) fn again() -> bool {
     ADC1.sr().read().jeoc()
 }

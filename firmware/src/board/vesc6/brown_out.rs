@@ -1,23 +1,23 @@
-//! The supply's warning: 3.3 V has fallen below the highest threshold, 2.9 V in the reference manual (3.03 V in the data
-//! sheet of the STM32F427), and some time is left. Below it the chip's own reset: 2.8 V where the option bytes say so;
-//! 168 MHz and programming by words need 2.7 V (data sheet of the STM32F405).
+//! Supply warning: 3.3 V has fallen below the highest threshold, 2.9 V in the reference manual (3.03 V in the data
+//! sheet of the STM32F427), and some time is left. The brown-out reset is below it: 2.8 V if the option bytes are set
+//! so; 168 MHz and programming by words need 2.7 V (data sheet of the STM32F405).
 
 use super::flash::Standstill;
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::InterruptExt;
 use embassy_stm32::pac::{EXTI, FLASH, PWR};
 
-/// The line of the voltage detector, and the highest of its thresholds.
+/// EXTI line of the voltage detector, and its highest threshold.
 const LINE: usize = 16;
 const V2_9: u8 = 7;
 
-/// Level 3 of the brown-out reset in the option bytes, 2.8 V; 2 and 1 are lower, 3 is none, as a chip comes.
+/// Brown-out level 3 in the option bytes, 2.8 V; 2 and 1 are lower, 3 is off, as delivered.
 const LEVEL_3: u8 = 0;
 
-/// What unlocks the option bytes.
+/// Unlock keys of the option bytes.
 const KEYS: [u32; 2] = [0x0819_2a3b, 0x4c5d_6e7f];
 
-/// Waits until the supply is there, and starts the watch.
+/// Waits for the supply voltage, and starts the warning.
 pub(super) fn start() {
     PWR.cr1().modify(|w| {
         w.set_pls(V2_9);
@@ -31,16 +31,16 @@ pub(super) fn start() {
             level
         );
     }
-    // Its output rises when the supply falls.
+    // The detector's output rises when the supply falls.
     EXTI.rtsr(0).modify(|w| w.set_line(LINE, true));
     EXTI.imr(0).modify(|w| w.set_line(LINE, true));
-    // SAFETY: its priority is one that critical sections stop; the handler below is all that runs.
+    // SAFETY: critical sections mask its priority; only the handler below runs.
     unsafe { interrupt::PVD.enable() }
 }
 
-/// Sets the brown-out reset to level 3 for good, once; it acts from the next reset on (RM0090, 3.7.2). For the bench
-/// only: a supply that fails in the middle of it can leave the chip protected against reading, and a probe must then
-/// erase it. The bridge is open meanwhile.
+/// Sets the brown-out reset to level 3 permanently; effective from the next reset (RM0090, 3.7.2). For the bench
+/// only: a power failure during this call can leave the chip read-protected, and a debug probe must then erase it.
+/// The bridge is open meanwhile.
 pub fn raise_level() {
     if FLASH.optcr().read().bor_lev() == LEVEL_3 {
         return;

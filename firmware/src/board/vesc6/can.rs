@@ -1,8 +1,7 @@
-//! CAN: the board's state, told to displays and loggers. Nothing is taken from there: no filter lets a frame in, and nobody
-//! looks for one.
+//! CAN broadcasts of the board's state for displays and loggers. Nothing is received: no filter accepts a frame.
 //!
-//! Each of the three frames has one of the controller's three mailboxes for itself. A frame is tried once; one that still
-//! waits when the next is due is taken out. So a bus that is missing, shorted or full costs nothing but the count.
+//! Each of the three frames uses its own one of the three mailboxes. A frame is tried once; a pending one is aborted
+//! when the next is due. So a missing, shorted or busy bus affects only the counters.
 
 use super::pins::{Pin, alternate};
 use crate::tasks::{Telemetry, latest, settings};
@@ -17,23 +16,22 @@ use link::can::{BIT_HZ, Frame, Message, Motion, PERIOD_MS, State, fresh};
 use link::can_bit_timing::bit_timing;
 use link::can_mailbox::{Action, Counts, Mailbox};
 
-/// Pins' function that is CAN1.
+/// Alternate function of CAN1.
 const FUNCTION: u8 = 9;
-/// The controller answers within a bit or two, and takes part once the bus was quiet for 11 bits of 2 us.
+/// Timeouts: the controller answers within a bit or two, and joins after 11 recessive bits of 2 us.
 const TIMEOUT: Duration = Duration::from_millis(1);
 
-/// Sets the controller up. Where it does not answer it stays out of the bus; where the bus is not quiet it takes part as
-/// soon as that is.
+/// Configures the controller. Without its answer it stays off the bus; on a busy bus it joins as soon as the bus is
+/// idle.
 pub(super) fn start(receive: Pin, transmit: Pin) {
     rcc::enable_and_reset::<peripherals::CAN1>();
-    // Pulled up, so that a bus without a transceiver is quiet.
+    // Pull-up, so that a missing transceiver reads as an idle bus.
     alternate(receive, FUNCTION, AfType::input(Pull::Up));
     alternate(transmit, FUNCTION, AfType::output(OutputType::PushPull, Speed::Medium));
     CAN1.mcr().modify(|w| {
         w.set_sleep(false);
         w.set_inrq(true);
-        // Each frame is tried once; back on the bus by itself after the bus was off; the mailboxes' order is that of the
-        // identifiers.
+        // No retransmission; automatic recovery from bus-off; mailbox priority by identifier.
         w.set_nart(true);
         w.set_abom(true);
         w.set_txfp(false);
@@ -44,20 +42,20 @@ pub(super) fn start(receive: Pin, transmit: Pin) {
         defmt::error!("can: no answer of the controller, nothing is told there");
         return;
     };
-    // The registers hold one less than each number.
+    // The registers contain each number less one.
     CAN1.btr().write(|w| {
         w.set_brp(timing.prescaler - 1);
         w.set_ts(0, timing.segment_1 - 1);
         w.set_ts(1, timing.segment_2 - 1);
         w.set_sjw(timing.jump - 1);
     });
-    // Without a filter that is active, what others send is acknowledged and dropped.
+    // Without an active filter, received frames are acknowledged and dropped.
     CAN1.fmr().modify(|w| w.set_finit(false));
     CAN1.mcr().modify(|w| w.set_inrq(false));
     defmt::info!("can: bus quiet={=bool}", within_timeout(|| !CAN1.msr().read().inak()));
 }
 
-/// Waits for something, not for long; whether it came.
+/// Waits for a condition with a timeout; returns whether it occurred.
 fn within_timeout(came: impl Fn() -> bool) -> bool {
     let end = Instant::now() + TIMEOUT;
     while !came() {
@@ -68,7 +66,7 @@ fn within_timeout(came: impl Fn() -> bool) -> bool {
     true
 }
 
-/// Tells what control did last, every [`PERIOD_MS`], and once a second over RTT what became of it.
+/// Broadcasts the last control step every [`PERIOD_MS`], and logs the frame counters over RTT once per second.
 #[embassy_executor::task]
 pub async fn broadcast() {
     let mut counts = Counts::default();
@@ -98,7 +96,7 @@ pub async fn broadcast() {
     }
 }
 
-/// What is told of a control step, the most urgent first.
+/// Frames of a control step, the most urgent first.
 fn messages(t: &Telemetry, calibration: &CalibrationPlan) -> [Message; 3] {
     let rear = &t.frame.rear_wheel_m_s;
     let state = State {
@@ -115,7 +113,7 @@ fn messages(t: &Telemetry, calibration: &CalibrationPlan) -> [Message; 3] {
     [Message::State(state), Message::Motion(motion), Message::Causes(t.command.causes)]
 }
 
-/// Puts a frame into its mailbox, or takes out the one that still waits there.
+/// Loads a frame into its mailbox, or aborts a pending one.
 fn put(place: usize, frame: &Frame, counts: &mut Counts) {
     let status = CAN1.tsr().read();
     let mailbox =
@@ -132,7 +130,7 @@ fn put(place: usize, frame: &Frame, counts: &mut Counts) {
                 w.set_txrq(true);
             });
         }
-        // What else is in this register changes only where a one is written.
+        // The other bits of this register change only where a one is written.
         Action::Abort => CAN1.tsr().write(|w| w.set_abrq(place, true)),
     }
 }

@@ -1,4 +1,4 @@
-//! 168 MHz from the 8 MHz crystal.
+//! Clock set-up: 168 MHz from the 8 MHz crystal.
 
 use crate::crash::{self, Registers};
 use devices::silicon::has_prefetch;
@@ -10,7 +10,7 @@ use embassy_stm32::rcc::{
 use embassy_stm32::time::Hertz;
 use link::report::FaultKind;
 
-/// The fastest the chip allows: core 168 MHz, APB1 42 MHz, APB2 84 MHz, USB 48 MHz.
+/// The chip's largest frequencies: core 168 MHz, APB1 42 MHz, APB2 84 MHz, USB 48 MHz.
 pub(super) fn config() -> Config {
     let mut config = Config::default();
     config.rcc.hse = Some(Hse { freq: Hertz::mhz(8), mode: HseMode::Oscillator });
@@ -31,7 +31,7 @@ pub(super) fn config() -> Config {
     config
 }
 
-/// Lets the flash keep what it read, and read ahead where the chip can. The HAL leaves that off, and each word then
+/// Enables the flash caches, and prefetch where the chip supports it. The HAL leaves them off, and each word then
 /// takes 6 cycles.
 pub(super) fn quicken_flash() {
     let chip = DBGMCU.idcode().read();
@@ -49,7 +49,8 @@ pub(super) fn quicken_flash() {
     });
 }
 
-/// Watches the crystal: without it the break opens the bridge, and the chip starts anew on its own oscillator.
+/// Enables clock security: if the crystal fails, the break opens the bridge, and the chip restarts on its internal
+/// oscillator.
 pub(super) fn watch_crystal() {
     RCC.cr().modify(|w| w.set_csson(true));
 }

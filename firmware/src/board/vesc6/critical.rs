@@ -1,7 +1,7 @@
-//! Critical sections that leave the motor's interrupt alone.
+//! Critical sections that do not mask the motor interrupt.
 //!
-//! The usual one stops every interrupt, and a log line holds it for longer than the motor's loop may be late. This one
-//! stops those that share anything by critical sections, which the motor's interrupt never does: it shares atomic words.
+//! The usual implementation masks every interrupt, and a log line holds it for longer than the motor loop's delay
+//! budget. This one masks the interrupts that use critical sections; the motor interrupt shares only atomic words.
 
 use super::priority::SHARED;
 use cortex_m::register::{basepri, basepri_max};
@@ -9,8 +9,8 @@ use cortex_m::register::{basepri, basepri_max};
 struct Shared;
 critical_section::set_impl!(Shared);
 
-// SAFETY: every interrupt that enters a critical section has a priority of SHARED or below (`priority::set`), so none of
-// them runs between acquire and release; there is one core. Sections nest: only the outermost lifts the mask.
+// SAFETY: every interrupt that enters a critical section has priority SHARED or below (`priority::set`), so none of
+// them runs between acquire and release; there is one core. Sections nest: only the outermost clears the mask.
 unsafe impl critical_section::Impl for Shared {
     unsafe fn acquire() -> u8 {
         let before = basepri::read();
@@ -21,7 +21,7 @@ unsafe impl critical_section::Impl for Shared {
 
     unsafe fn release(before: u8) {
         core::sync::atomic::compiler_fence(core::sync::atomic::Ordering::SeqCst);
-        // SAFETY: the mask as it was when this section began, which is what the contract of `release` asks for.
+        // SAFETY: restores the mask from the start of this section, as the contract of `release` requires.
         unsafe { basepri::write(before) }
     }
 }

@@ -1,4 +1,4 @@
-//! The flash of the parameters and the encoder's offset: three sectors of 16 KiB that `memory.x` keeps free of code.
+//! Flash driver for parameters and encoder offset: three sectors of 16 KiB that `memory.x` keeps free of code.
 
 use super::{pwm, shared, watchdog};
 use core::ops::Range;
@@ -16,24 +16,24 @@ bind_interrupts!(struct Lines { FLASH => InterruptHandler; });
 /// Sectors 1 to 3. Sector 0 has the vector table.
 const STORE: Range<u32> = 0x4000..0x1_0000;
 
-/// The flash as the store sees it. The motor's bridge is open while it is written or erased, because the chip stands
-/// still meanwhile and would not watch the current; so does the watchdog get more patience.
+/// Flash for the store. During write and erase the chip halts and the current is unmonitored, so the motor's bridge
+/// is open and the watchdog's timeout is extended.
 pub struct Flash(Bank1Region1<'static, Async>);
 
 static FLASH_LEFT: Mutex<CriticalSectionRawMutex, core::cell::Cell<Option<Peri<'static, FLASH>>>> =
     Mutex::new(core::cell::Cell::new(None));
 
-/// What unlocks the flash's control register.
+/// Unlock keys of the flash control register.
 const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
 
-/// Puts the peripheral where [`flash`] finds it.
+/// Stores the peripheral for [`flash`].
 pub(super) fn start(peripheral: Peri<'static, FLASH>) {
     FLASH_LEFT.lock(|left| left.set(Some(peripheral)));
 }
 
-/// The next erases are done by words, 0.5 s at most for a sector of 16 KiB; by bytes it is 0.8 s (data sheet of the
-/// STM32F405, table 40). To be called before each: the HAL's writing sets the register back (embassy-stm32 0.6.0,
-/// `flash/f4.rs`, `disable_write`; embassy's pull request 7046).
+/// Sets erasing by words, at most 0.5 s per sector of 16 KiB; by bytes it is 0.8 s (data sheet of the STM32F405,
+/// table 40). Call before each erase: the HAL's write resets the register (embassy-stm32 0.6.0, `flash/f4.rs`,
+/// `disable_write`; embassy pull request 7046).
 fn erase_by_words() {
     if pac::FLASH.cr().read().lock() {
         KEYS.into_iter().for_each(|key| pac::FLASH.keyr().write_value(key));
@@ -41,19 +41,19 @@ fn erase_by_words() {
     pac::FLASH.cr().modify(|w| w.set_psize(Psize::PSIZE32));
 }
 
-/// The flash, and the range in it that is the store's; `None` when it was given away already.
+/// The flash and the store's range in it; `None` if already taken.
 pub fn flash() -> Option<(Flash, Range<u32>)> {
     let peripheral = FLASH_LEFT.lock(core::cell::Cell::take)?;
     Some((Flash(Chip::new(peripheral, Lines).into_regions().bank1_region1), STORE))
 }
 
-/// While it lives the bridge is open, the watchdog patient and the data cache off. The cache keeps what an erase takes
-/// away, and may be emptied only while it is off (RM0090, 3.6.4).
+/// Guard: while it exists the bridge is open, the watchdog's timeout extended and the data cache off. The cache keeps
+/// erased data, and can be reset only while it is off (RM0090, 3.6.4).
 pub(super) struct Standstill;
 
 impl Standstill {
     pub(super) fn begin() -> Self {
-        // The interrupt would close it again, so that it is told first.
+        // First, as the motor interrupt would close the bridge again.
         shared::set_hold(true);
         pwm::open();
         watchdog::standstill(true);
@@ -97,8 +97,8 @@ impl NorFlash for Flash {
         self.0.write(offset, bytes).await
     }
 
-    /// Each sector is a standstill of its own: after 0.5 s of erasing control makes up for its steps, and three sectors in one
-    /// would outlast the watchdog.
+    /// Erases sector by sector: after each, a halt of 0.5 s, control catches up on its steps; three sectors at once
+    /// would exceed the watchdog's timeout.
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Error> {
         for sector in (from..to).step_by(Self::ERASE_SIZE) {
             let _standstill = Standstill::begin();

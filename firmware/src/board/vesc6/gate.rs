@@ -1,4 +1,5 @@
-//! The gate driver: enabled once the rotor is slow, configured, read back; its status is read when it opened the bridge.
+//! Gate driver: enabled while the rotor is slow, configured, and read back; its status is read when it opened the
+//! bridge.
 
 use super::pins::{GATE_ENABLE, Pin, fixed};
 use super::soft_spi::SoftSpi;
@@ -15,21 +16,21 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_time::{Duration, Instant, block_for};
 
-/// From enabling to ready; its data sheet says 5 to 10 ms.
+/// Time from enabling to ready; the data sheet says 5 to 10 ms.
 const WAKE: Duration = Duration::from_millis(20);
 
-/// How long the start waits for a slow rotor. A handlebar that is faster than the limit, 5.6 rad/s, goes from end to
-/// end in this time; the watchdog's patience in a start is more than twice that.
+/// Longest wait for a slow rotor. A handlebar at more than the limit, 5.6 rad/s, crosses its whole range in this
+/// time; the watchdog's timeout during the start is more than twice that.
 const WAIT: Duration = Duration::from_millis(500);
 
-/// Whether it was started well.
+/// Whether the start succeeded.
 static STARTED: AtomicBool = AtomicBool::new(false);
 
-/// The driver's bus, once that was tried; its pins are never let go beside a switching bridge.
+/// SPI bus of the driver, after the start; its pins stay driven, as they are next to a switching bridge.
 static BUS: Mutex<CriticalSectionRawMutex, Cell<Option<SoftSpi>>> = Mutex::new(Cell::new(None));
 
-/// Enables it and gives it its settings; whether it took them and nothing is wrong. It stays enabled only then. All its
-/// inputs must be low meanwhile. A rotor that never is slow leaves it off.
+/// Enables and configures the driver; returns whether the settings were accepted without a fault. Otherwise it is
+/// disabled again. All its inputs must be low meanwhile. If the rotor does not become slow, the driver stays off.
 pub(super) fn start(enable: Pin, mut bus: SoftSpi, encoder: &mut SoftSpi) -> bool {
     fixed(enable, Level::Low);
     let good = is_slow(encoder) && configure(&mut bus);
@@ -41,12 +42,12 @@ pub(super) fn start(enable: Pin, mut bus: SoftSpi, encoder: &mut SoftSpi) -> boo
     good
 }
 
-/// Whether it was started well.
+/// Whether the start succeeded.
 pub(super) fn is_started() -> bool {
     STARTED.load(Ordering::Relaxed)
 }
 
-/// Whether the rotor is slow, or becomes so in time: turned by hand, its terminals must not reach [`ENABLE_V`].
+/// Whether the rotor is slow, or becomes so in time: if turned by hand, its terminals must stay below [`ENABLE_V`].
 fn is_slow(encoder: &mut SoftSpi) -> bool {
     let most_turns_s = MOTOR.motor.turns_s_at(ENABLE_V);
     let (mut line, mut slow) = (Line::default(), Slow::default());
@@ -68,32 +69,32 @@ fn is_slow(encoder: &mut SoftSpi) -> bool {
     false
 }
 
-/// Enables it, writes the settings and reads them back.
+/// Enables the driver, writes the settings and reads them back.
 fn configure(bus: &mut SoftSpi) -> bool {
     GPIOB.bsrr().write(|w| w.set_bs(GATE_ENABLE, true));
     block_for(WAKE);
-    // The first word may be lost, and the first reading takes away what waking up left behind.
+    // The first word can be lost, and the first read clears the status of power-up.
     ask(bus, Register::Status1);
     let (control1, control2) = (GATE_DRIVER.control1(), GATE_DRIVER.control2());
     bus.word(write(Register::Control1, control1));
     bus.word(write(Register::Control2, control2));
-    let told = [Register::Status2, Register::Status1, Register::Control1, Register::Control2]
+    let registers = [Register::Status2, Register::Status1, Register::Control1, Register::Control2]
         .map(|register| ask(bus, register));
-    let good = match told {
+    let good = match registers {
         [Some(kind), Some(status), Some(one), Some(two)] => {
             is_present(kind) && status == 0 && (one, two) == (control1, control2)
         }
         _ => false,
     };
-    defmt::info!("gate driver: good={=bool} kind, status, controls: {}", good, told);
-    if let [Some(kind), Some(status), ..] = told {
+    defmt::info!("gate driver: good={=bool} kind, status, controls: {}", good, registers);
+    if let [Some(kind), Some(status), ..] = registers {
         Status(status, kind).names().for_each(|name| defmt::warn!("gate driver: {=str}", name));
     }
     good
 }
 
-/// Its status in words. It must still be enabled: disabling clears the status. Takes 0.3 ms, too long for the motor's
-/// interrupt.
+/// Names of the present faults. The driver must still be enabled: disabling clears the status. Takes 0.3 ms, too long
+/// for the motor interrupt.
 pub(super) fn describe(words: &mut impl Write) -> core::fmt::Result {
     let Some(mut bus) = BUS.lock(Cell::take) else { return Ok(()) };
     let answers = [Register::Status1, Register::Status2].map(|register| ask(&mut bus, register));
@@ -103,7 +104,7 @@ pub(super) fn describe(words: &mut impl Write) -> core::fmt::Result {
     write!(words, "status {one:03x} {two:03x}")
 }
 
-/// A register's data.
+/// Data of a register.
 fn ask(bus: &mut SoftSpi, register: Register) -> Option<u16> {
     bus.word(read(register));
     data(register, bus.word(read(register)))

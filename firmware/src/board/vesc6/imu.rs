@@ -1,16 +1,16 @@
-//! The IMU on the board.
+//! Driver of the board's IMU.
 
 use super::soft_spi::SoftSpi;
 use devices::bmi160::{BURST, CHIP, CHIP_ID, FIRST, Imu, SET_UP, STATUS, read, sample};
 use embassy_time::{Duration, block_for};
 
-/// Sets it up; whether it is there. Takes a fifth of a second.
+/// Configures the IMU; returns whether it answers. Takes a fifth of a second.
 pub(super) fn start(bus: &mut SoftSpi) -> bool {
     register(bus, CHIP);
     for step in SET_UP {
         bus.bytes(&mut [step.register, step.value]);
         block_for(Duration::from_millis(step.then_ms.into()));
-        // A reset makes it forget which bus it is on.
+        // A reset clears the IMU's bus selection.
         register(bus, CHIP);
     }
     let chip = register(bus, CHIP);
@@ -18,7 +18,7 @@ pub(super) fn start(bus: &mut SoftSpi) -> bool {
     chip == CHIP_ID
 }
 
-/// Its newest sample.
+/// Reads the newest sample.
 pub(super) fn newest(bus: &mut SoftSpi) -> Imu {
     let status = register(bus, STATUS);
     let mut bytes = [0; 1 + BURST];

@@ -1,25 +1,25 @@
-//! The board's two lamps: green blinks while steps are done, red is on while no torque can be given.
+//! The board's two LEDs: green blinks with the control steps, red is on while no torque is possible.
 
 use super::pins::Pin;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use embassy_stm32::gpio::Level;
 use embassy_stm32::pac::GPIOB;
 
-/// Their numbers on port B.
+/// Pin numbers on port B.
 const GREEN: usize = 0;
 const RED: usize = 1;
 
-/// Steps between two changes of the green one.
+/// Control steps between two changes of the green LED.
 const BLINK: u32 = 500;
 
 static STEPS: AtomicU32 = AtomicU32::new(0);
 
-/// Both on.
+/// Switches both on.
 pub(super) fn start(green: Pin, red: Pin) {
     [green, red].into_iter().for_each(|pin| super::pins::fixed(pin, Level::High));
 }
 
-/// One step was done; whether torque can be given.
+/// Shows one control step, and whether torque is possible.
 pub(super) fn show(able: bool) {
     let steps = STEPS.load(Relaxed).wrapping_add(1);
     STEPS.store(steps, Relaxed);

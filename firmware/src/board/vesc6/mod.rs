@@ -1,5 +1,5 @@
-//! An STM32F405RG on a VESC 6 MK6: gate driver, shunts, IMU and clock of the board; encoder, steer sensor, wheels,
-//! switch and link wired to it as [`pins`] and docs/hardware.md say. Nothing of it ran on hardware yet.
+//! Board VESC 6 MK6 with an STM32F405RG: gate driver, shunts, IMU and clock of the board; encoder, steer sensor,
+//! wheels, switch and link wired as in [`pins`] and docs/hardware.md. Not yet run on hardware.
 #![allow(unsafe_code)]
 
 mod adc;
@@ -29,13 +29,14 @@ mod wheels;
 pub use brown_out::raise_level;
 pub use can::broadcast;
 pub use flash::{Flash, flash};
-pub use reset::{end, log_kept_fault, reset_cause};
+pub use reset::{end, log_stored_fault, reset_cause};
 pub use sensors::sense;
 pub use shared::{Report, order, report as motor_report};
 pub use watch::watch_drive;
 pub use watchdog::feed_watchdog;
 
 use crate::failure;
+use crate::heartbeat::Task;
 use crate::tasks::{Refusal, Telemetry};
 use ::motor::MotorCommand;
 use control::{Command, Mode};
@@ -52,7 +53,7 @@ use static_cell::StaticCell;
 
 static CONTROL: InterruptExecutor = InterruptExecutor::new();
 
-/// Starts the chip and the parts around it but for the motor's interrupt; the watchdog is hungry from now on.
+/// Starts the chip and its peripherals except the motor interrupt; the watchdog runs from here on.
 ///
 /// # Panics
 /// When called a second time.
@@ -68,7 +69,7 @@ pub fn start() -> MotorParts {
     start_parts(peripherals)
 }
 
-/// What the motor's interrupt works with, each started.
+/// Initialised drivers for the motor interrupt.
 #[must_use]
 pub struct MotorParts {
     timer_in_step: bool,
@@ -78,7 +79,7 @@ pub struct MotorParts {
 }
 
 impl MotorParts {
-    /// Starts the motor's interrupt, with the encoder's offset where it is known \[electrical turns\].
+    /// Starts the motor interrupt, with the encoder's offset if known \[electrical turns\].
     pub fn start(self, offset_turns: Option<f32>) {
         let mut config = MOTOR;
         config.encoder.offset_turns = offset_turns;
@@ -97,7 +98,7 @@ impl MotorParts {
     }
 }
 
-/// Starts the executors, `control`'s above `thread`'s.
+/// Starts the executors; `control`'s is above `thread`'s.
 ///
 /// # Panics
 /// When called a second time.
@@ -105,16 +106,16 @@ pub fn run(control: impl FnOnce(SendSpawner), thread: impl FnOnce(Spawner)) -> !
     static THREAD: StaticCell<Executor> = StaticCell::new();
     THREAD.init(Executor::new()).run(|spawner| {
         thread(spawner);
-        // The board does not use UART5: its interrupt is the control executor's.
+        // UART5 is unused: its interrupt runs the control executor.
         control(CONTROL.start(interrupt::UART5));
     })
 }
 
-/// Everything between the clocks and the executors, the way to open the bridge first.
+/// Initialisation between clocks and executors; `outputs_off` works from its first lines on.
 fn start_parts(peripherals: embassy_stm32::Peripherals) -> MotorParts {
     static SENSORS: StaticCell<Sensors> = StaticCell::new();
     let pins = Pins::of(peripherals);
-    // The button holds the power only while it is pressed.
+    // Power latch: the button powers the board only while it is pressed.
     fixed(pins.hold_power, Level::High);
     fixed(pins.current_filter, Level::High);
     fixed(pins.sensor_port_5v, Level::Low);
@@ -142,7 +143,7 @@ fn start_parts(peripherals: embassy_stm32::Peripherals) -> MotorParts {
     MotorParts { timer_in_step, gate_driver_good, encoder, gate_fault: Input::new(pins.gate_fault, Pull::Up) }
 }
 
-/// Half clocks of the buses \[cycles of 6 ns\]: gate driver 1 MHz, IMU below 2 MHz (its clock's pin is a slow one), the
+/// Half clock periods of the buses \[cycles of 6 ns\]: gate driver 1 MHz, IMU below 2 MHz (its clock pin is slow),
 /// encoder below its 10 MHz.
 const GATE_CYCLES: u32 = 84;
 const IMU_CYCLES: u32 = 42;
@@ -150,23 +151,23 @@ const ENCODER_CYCLES: u32 = 10;
 
 #[interrupt]
 fn UART5() {
-    // SAFETY: the handler of the interrupt that CONTROL was started with.
+    // SAFETY: this is the interrupt that CONTROL was started with.
     unsafe { CONTROL.on_interrupt() }
 }
 
-/// Opens all six switches and turns the gate driver off, until the next start. From any context, fault handlers
-/// included: it writes three words and needs nothing but their addresses.
+/// Opens all six switches and disables the gate driver until the next start. Can be called from any context, fault
+/// handlers included: it writes three words at fixed addresses.
 pub fn outputs_off() {
-    // First, so that the motor's interrupt does not close again what is opened here.
+    // First, so that the motor interrupt does not close the bridge again.
     shared::set_off();
     pwm::open();
     GPIOB.bsrr().write(|w| w.set_br(pins::GATE_ENABLE, true));
 }
 
-/// Gives the command to the motor's interrupt, which opens the bridge where the next one does not come in time.
+/// Passes the command to the motor interrupt, which opens the bridge if the next one is late.
 ///
 /// # Errors
-/// Why no torque is given, as the interrupt last saw it.
+/// The reason for which no torque is given, from the interrupt's last report.
 pub fn drive(command: &Command) -> Result<(), Refusal> {
     let wanted = command.torque_nm != 0.0 || matches!(command.mode, Mode::Engaged | Mode::Limp);
     let refusal = motor_report().refusal();
@@ -175,7 +176,12 @@ pub fn drive(command: &Command) -> Result<(), Refusal> {
     refusal.map_or(Ok(()), Err)
 }
 
-/// A second's state over RTT: what was done, what was sensed, what the motor's interrupt says.
+/// Whether the task's heartbeat is lost: never, as this board has no fault injection.
+pub const fn heartbeat_lost(_: Task) -> bool {
+    false
+}
+
+/// Logs over RTT: control step, sensors, report of the motor interrupt.
 pub fn report(t: &Telemetry) {
     defmt::info!(
         "steps={=u32} late={=u32} worst_us={=u32} torque_nm={=f32} mode={=str} motor={=str}",

@@ -1,6 +1,6 @@
-//! The motor's interrupt: samples in, one call of the motor's loop, duty cycles out, 20 000 times a second.
+//! Motor interrupt: samples in, one call of the motor loop, duty cycles out, 20 000 times per second.
 
-use super::shared::{Report, heat_c, is_held, is_off, ordered, set_off, tell};
+use super::shared::{Report, heat_c, is_held, is_off, newest_order, publish, set_off};
 use super::soft_spi::SoftSpi;
 use super::{adc, outputs_off, pwm};
 use core::cell::UnsafeCell;
@@ -13,7 +13,7 @@ use embassy_stm32::interrupt::InterruptExt;
 use motor::command_word::Deadline;
 use motor::{Inputs, MotorCommand, Output, Phases, Plan, State};
 
-/// What the interrupt alone knows.
+/// State of the interrupt.
 struct Loop {
     plan: Plan,
     state: State,
@@ -22,32 +22,31 @@ struct Loop {
     line: Line,
     gate_fault: Input<'static>,
     gate_pin: FaultPin,
-    /// What the last call said; this one's begins with it.
+    /// Report of the last call; that of the present call starts from it.
     report: Report,
     bridge: Bridge,
 }
 
-/// The bridge as the last call left it.
+/// State of the bridge after the last call.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Bridge {
     /// All six switches open.
     Open,
-    /// Still open; the timer takes the first duty cycles meanwhile.
+    /// Still open; the timer loads the first duty cycles.
     Loaded,
-    /// By the duty cycles.
+    /// Switched by the duty cycles.
     Closed,
 }
 
 struct Cell(UnsafeCell<Option<Loop>>);
 
-// SAFETY: written once by `start`, before the interrupt is let through; from then on only the interrupt touches it, and
-// it does not interrupt itself.
+// SAFETY: written once by `start`, before the interrupt is enabled; afterwards only the interrupt uses it, and it
+// does not preempt itself.
 unsafe impl Sync for Cell {}
 
 static LOOP: Cell = Cell(UnsafeCell::new(None));
 
-/// Starts the loop; the converters and the timer must run. `driver` tells whether the gate driver is there and well. To
-/// be called once.
+/// Starts the loop; ADCs and timer must run. `driver`: whether the gate driver works. Call once.
 pub(super) fn start(plan: Plan, driver: bool, encoder: SoftSpi, gate_fault: Input<'static>) {
     let motor = Loop {
         plan,
@@ -60,17 +59,17 @@ pub(super) fn start(plan: Plan, driver: bool, encoder: SoftSpi, gate_fault: Inpu
         report: Report { gate_fault: !driver, ..Report::NONE },
         bridge: Bridge::Open,
     };
-    // SAFETY: the interrupt is not let through yet, so nobody else has the cell.
+    // SAFETY: the interrupt is not enabled yet, so the cell has no other user.
     unsafe { *LOOP.0.get() = Some(motor) }
     adc::forget();
     interrupt::ADC.unpend();
-    // SAFETY: the interrupt enters no critical section, so it may interrupt those of others.
+    // SAFETY: the interrupt enters no critical section, so it can preempt them.
     unsafe { interrupt::ADC.enable() }
 }
 
 #[interrupt]
 fn ADC() {
-    // SAFETY: only this interrupt has the cell once it runs.
+    // SAFETY: only this interrupt uses the cell once it runs.
     if let Some(motor) = unsafe { &mut *LOOP.0.get() } {
         motor.call();
     }
@@ -83,11 +82,11 @@ impl Loop {
         self.ask_encoder();
         if self.gate_pin.step(self.gate_fault.is_low()) {
             self.report.gate_fault = true;
-            // The driver has opened the switches by itself; it stays enabled until its status was read.
+            // The driver has opened the switches itself; it stays enabled until its status is read.
             set_off();
         }
-        let (beat, asked) = ordered();
-        let command = self.deadline.step(beat, asked, COMMAND_TIMEOUT_CALLS);
+        let (beat, requested) = newest_order();
+        let command = self.deadline.step(beat, requested, COMMAND_TIMEOUT_CALLS);
         let supply_v = SUPPLY.volt(counts.supply);
         let inputs = Inputs {
             phases: Phases::Three(counts.phases.map(|phase| SHUNT.ampere(phase))),
@@ -122,7 +121,7 @@ impl Loop {
             board_heat: counts.board_heat,
             ..self.report
         };
-        tell(self.report);
+        publish(self.report);
     }
 
     /// The answer to the last transfer is the angle at its time, one call ago.
@@ -134,7 +133,7 @@ impl Loop {
         }
     }
 
-    /// Moves the bridge. It is closed once: a break that opened it since is never undone.
+    /// Sets the bridge. It is closed once: a later break stays in effect.
     fn switch(&mut self, out: &Output) {
         let Some(duties) = out.duties else {
             pwm::open();

@@ -1,25 +1,25 @@
-//! Every pin in use. The table of docs/hardware.md, as types: what is on which pin, and where that is known from.
+//! Every pin in use, as types: the table of docs/hardware.md, with the source of each assignment.
 
 use embassy_stm32::gpio::{AfType, AnyPin, Flex, Level, Output, Speed};
 use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, FLASH, PB10, USART3};
 use embassy_stm32::{Peri, Peripherals};
 
-/// A pin of which only the number matters.
+/// A pin that is needed only by its number.
 pub(super) type Pin = Peri<'static, AnyPin>;
 
-/// Number of the gate driver's enabling pin on port B.
+/// Number of the gate driver's enable pin on port B.
 pub(super) const GATE_ENABLE: usize = 5;
 
-/// A serial bus that is moved by hand.
+/// Pins of a software SPI bus.
 pub(super) struct Bus {
     pub(super) select: Pin,
     pub(super) clock: Pin,
-    /// Into the part; none where the part need not be told anything.
+    /// Data to the device; none if the device needs no data.
     pub(super) to_part: Option<Pin>,
     pub(super) from_part: Pin,
 }
 
-/// The link's serial port, and the streams that carry its bytes.
+/// Serial port of the link, and its DMA streams.
 pub(super) struct Link {
     pub(super) uart: Peri<'static, USART3>,
     pub(super) tx: Peri<'static, PB10>,
@@ -28,16 +28,16 @@ pub(super) struct Link {
     pub(super) rx_stream: Peri<'static, DMA1_CH1>,
 }
 
-/// The pins by what is on them.
+/// The pins by function.
 pub(super) struct Pins {
     /// Upper switches of a, b, c, then the lower ones.
     pub(super) bridge: [Pin; 6],
     pub(super) gate_enable: Pin,
     pub(super) gate_fault: Pin,
     pub(super) gate_bus: Bus,
-    /// Everything that a converter reads.
+    /// Analog inputs.
     pub(super) analog: [Pin; 8],
-    /// Dividers of the phases' voltages, which nothing reads.
+    /// Dividers of the phase voltages, unused.
     pub(super) phase_voltages: [Pin; 3],
     pub(super) phase_filter: Pin,
     pub(super) current_filter: Pin,
@@ -52,12 +52,12 @@ pub(super) struct Pins {
     pub(super) can_transmit: Pin,
     pub(super) green: Pin,
     pub(super) red: Pin,
-    /// No pin, but on its way with them.
+    /// Flash peripheral, passed along with the pins.
     pub(super) flash: Peri<'static, FLASH>,
 }
 
 impl Pins {
-    /// The pins are the board's own from now on.
+    /// Takes the pins.
     pub(super) fn of(p: Peripherals) -> Self {
         Self {
             bridge: [p.PA8.into(), p.PA9.into(), p.PA10.into(), p.PB13.into(), p.PB14.into(), p.PB15.into()],
@@ -114,20 +114,20 @@ impl Pins {
     }
 }
 
-/// Sets a pin high or low for good.
+/// Sets a pin permanently high or low.
 pub(super) fn fixed(pin: Pin, level: Level) {
-    // Dropped, it would let go of the pin.
+    // Dropping it would release the pin.
     core::mem::forget(Output::new(pin, level, Speed::Low));
 }
 
-/// Gives a pin to a timer, CAN or the serial port for good, as its alternate function of this number.
+/// Assigns a pin permanently to a timer, CAN or the serial port, as its alternate function of this number.
 pub(super) fn alternate(pin: Pin, function: u8, kind: AfType) {
     let mut pin = Flex::new(pin);
     pin.set_as_af_unchecked(function, kind);
     core::mem::forget(pin);
 }
 
-/// Gives a pin to the converters for good.
+/// Makes a pin permanently analog.
 pub(super) fn analog(pin: Pin) {
     let mut pin = Flex::new(pin);
     pin.set_as_analog();

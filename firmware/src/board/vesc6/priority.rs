@@ -1,23 +1,23 @@
-//! Who may interrupt whom.
+//! Interrupt priorities.
 
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 
-/// The motor's loop: above everything, critical sections included.
+/// Motor loop: above everything, critical sections included.
 const MOTOR: Priority = Priority::P1;
-/// The first one that critical sections stop; the supply's warning.
+/// Highest priority that critical sections mask; the supply warning.
 pub(super) const SHARED: Priority = Priority::P2;
-/// The clock that wakes the tasks.
+/// Clock that wakes the tasks.
 const CLOCK: Priority = Priority::P3;
-/// Control's executor.
+/// Executor of the control task.
 const CONTROL: Priority = Priority::P4;
-/// Whatever else.
+/// All others.
 pub(super) const REST: Priority = Priority::P8;
 
-/// Interrupts of the chip, by their numbers.
+/// Number of interrupts of the chip.
 const INTERRUPTS: usize = 82;
 
-/// Gives every interrupt its priority. Out of reset all have the highest one, which critical sections do not stop.
+/// Sets the priority of every interrupt. After reset all have the highest one, which critical sections do not mask.
 pub(super) fn set(core: &mut cortex_m::Peripherals) {
     for line in 0..INTERRUPTS {
         // SAFETY: no interrupt is enabled yet, so none can run while a critical section relies on its priority.

@@ -1,4 +1,4 @@
-//! Why the chip started, and starting it anew.
+//! Reset cause, and restart of the chip.
 
 use crate::crash::Registers;
 use crate::retained;
@@ -8,20 +8,20 @@ use embassy_stm32::pac::rcc::regs::Csr;
 use link::fault_log;
 use link::report::{FaultKind, ResetCause};
 
-/// Bit that no reset cause has: the register was read.
+/// Marker bit outside the reset causes: the register was read.
 const READ: u32 = 1;
 
-/// The register as it was at the start; 0 before it was read.
+/// The register at the start; 0 before it was read.
 static FOUND: AtomicU32 = AtomicU32::new(0);
 
-/// Why the chip started. The register is read and cleared once; the answer stays the same.
+/// Cause of the start. The register is read and cleared once; later calls return the same.
 pub fn reset_cause() -> ResetCause {
     if FOUND.load(Ordering::Relaxed) == 0 {
         FOUND.store(RCC.csr().read().0 | READ, Ordering::Relaxed);
         RCC.csr().modify(|w| w.set_rmvf(true));
     }
     let found = Csr(FOUND.load(Ordering::Relaxed));
-    // The pin is pulled by every other reset as well, and brown-out is told with power-on.
+    // Every reset sets the pin flag too, and brown-out comes with power-on.
     match found {
         f if f.lpwrrstf() => ResetCause::LowPower,
         f if f.wdgrstf() || f.wwdgrstf() => ResetCause::Watchdog,
@@ -32,9 +32,9 @@ pub fn reset_cause() -> ResetCause {
     }
 }
 
-/// The newest fault that was kept, over RTT: the last words themselves are lost with the log's buffer, which each start
-/// empties, and a watchdog's reset has none.
-pub fn log_kept_fault() {
+/// Logs the newest stored fault over RTT: its own last log line is lost, as each start clears the log buffer, and a
+/// watchdog reset has none.
+pub fn log_stored_fault() {
     retained::with(|memory| {
         let Some(fault) = fault_log::faults(memory).next() else { return };
         defmt::warn!(
@@ -53,11 +53,11 @@ pub fn log_kept_fault() {
     });
 }
 
-/// Whether the last words are being said.
+/// Whether the last log line is being written.
 static ENDING: AtomicBool = AtomicBool::new(false);
 
-/// The last words over RTT, then a new start. Without them where saying them is what failed: a log line that breaks off
-/// can't be followed by another.
+/// Writes the last log line over RTT, then restarts. If logging itself failed, restarts without one, as an
+/// interrupted log line can't be followed by another.
 pub fn end(kind: FaultKind, registers: &Registers, words: &str) -> ! {
     if ENDING.swap(true, Ordering::Relaxed) {
         cortex_m::peripheral::SCB::sys_reset()

@@ -1,4 +1,4 @@
-//! What control sees: the newest samples of everything, with their ages.
+//! Sensor inputs of the control step: the newest samples with their ages.
 
 use super::imu;
 use super::shared::{Report, report, set_heat};
@@ -17,11 +17,11 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_time::Instant;
 
-/// What is remembered from one control period to the next.
+/// State between two control periods.
 pub(super) struct Sensors {
-    /// The IMU's bus, where it answered at the start.
+    /// SPI bus of the IMU, if it answered at the start.
     imu: Option<SoftSpi>,
-    /// The IMU's clock at the last sample.
+    /// IMU time of the last sample.
     imu_time: u32,
     gyro: ([f32; 3], Age),
     accel: ([f32; 3], Age),
@@ -37,12 +37,12 @@ pub(super) struct Sensors {
     before: Instant,
 }
 
-/// Taken out while control looks at it, so that no critical section lasts as long as the IMU's bus.
+/// Taken out during use, so that no critical section lasts as long as a transfer from the IMU.
 static SENSORS: Mutex<CriticalSectionRawMutex, Cell<Option<&'static mut Sensors>>> =
     Mutex::new(Cell::new(None));
 
 impl Sensors {
-    /// Without any sample yet.
+    /// Without samples.
     pub(super) fn new(imu: Option<SoftSpi>, edges: [Edges; 2]) -> Self {
         Self {
             imu,
@@ -63,13 +63,13 @@ impl Sensors {
     }
 }
 
-/// Puts them where [`sense`] finds them.
+/// Stores the state for [`sense`].
 pub(super) fn start(sensors: &'static mut Sensors) {
     SENSORS.lock(|cell| cell.set(Some(sensors)));
 }
 
-/// The newest samples with their ages \[control periods\]. Waits for nothing; moving the IMU's bits takes some 0.1 ms.
-/// To be called once in each control period.
+/// The newest samples with their ages \[control periods\]. Does not block; the transfer from the IMU takes some 0.1
+/// ms. Call once per control period.
 pub fn sense() -> SensorFrame {
     let Some(sensors) = SENSORS.lock(Cell::take) else { return SensorFrame::missing() };
     let frame = sensors.frame();
@@ -90,7 +90,7 @@ impl Sensors {
         let [front, rear] =
             [0, 1].map(|i| wheel::step(&self.wheel, &mut self.wheels[i], self.edges[i].age_us(), elapsed_us));
         let closed = report.switch < SWITCH_COUNTS;
-        // A drive that is not able to give torque says nothing, so control does not engage.
+        // A drive that can't give torque reports nothing, so control does not engage.
         let able = matches!(report.mode, Mode::Ready | Mode::Running) && !report.gate_fault && !report.off;
         SensorFrame {
             now_us: now.as_micros() as u32,
@@ -112,7 +112,7 @@ impl Sensors {
 
     fn look_at_imu(&mut self) {
         let newest = self.imu.as_mut().map(imu::newest);
-        // A chip whose clock stands still, or a line that reads the same for ever, says nothing new.
+        // An IMU whose clock stops, or a stuck line, gives no new samples.
         let newest = newest.filter(|sample| sample.time != self.imu_time);
         self.gyro.1.step(newest.is_some_and(|sample| sample.gyro_new));
         self.accel.1.step(newest.is_some_and(|sample| sample.accel_new));
@@ -123,12 +123,12 @@ impl Sensors {
     }
 }
 
-/// Whether the encoder's angle is of the last calls, as many as the motor's loop puts up with.
+/// Whether the encoder's angle is within the motor loop's timeout.
 fn fresh(report: &Report) -> bool {
     report.encoder_age <= devices::vesc6::MOTOR.encoder.timeout_ticks
 }
 
-/// The newest value and its age; what is remembered stays where there is no new one.
+/// The newest value and its age; the stored value stays without a new one.
 fn newest(remembered: &mut (f32, Age), new: Option<f32>) -> Sample {
     let age_ticks = remembered.1.step(new.is_some());
     remembered.0 = new.unwrap_or(remembered.0);

@@ -1,11 +1,10 @@
-//! The serial line of the link: USART3 at 115200 baud, 8 bits, no parity, both ways by DMA.
+//! Serial port of the link: USART3 at 115200 baud, 8 bits, no parity, DMA in both directions.
 //!
-//! The USART has one data register and no FIFO, and control holds the core for a third of each millisecond, in which
-//! four bytes come. So a DMA stream takes every byte as it comes, into a ring that the line's task empties once a
-//! millisecond. Only the stream reads the data register: the HAL's own ring also reads it with the core, to find an
-//! idle line (embassy-stm32 0.6.0, `usart/ringbuffered.rs`), and can take away a byte that has just come. Noise,
-//! framing and overrun errors have no interrupt here and do not stop the stream (RM0090, 30.3.13); a frame with a wrong
-//! byte has a wrong check.
+//! The USART has one data register and no FIFO, and control occupies the core for a third of each millisecond, in
+//! which four bytes arrive. So a DMA stream stores every byte in a ring that the link's task empties once per
+//! millisecond. Only the stream reads the data register: the HAL's ring also reads it with the core, to detect an
+//! idle line (embassy-stm32 0.6.0, `usart/ringbuffered.rs`), and can discard a byte. Noise, framing and overrun
+//! errors have no interrupt here and do not stop the stream (RM0090, 30.3.13); the CRC rejects frames with wrong bytes.
 
 use super::pins::{Link, alternate};
 use embassy_stm32::dma::{Channel, InterruptHandler, ReadableRingBuffer, TransferOptions};
@@ -24,22 +23,22 @@ bind_interrupts!(struct Streams {
     DMA1_STREAM3 => InterruptHandler<DMA1_CH3>;
 });
 
-/// Pins' function that is USART3.
+/// Alternate function of USART3.
 const FUNCTION: u8 = 7;
 
-/// Bytes that wait to be taken. The task does not look while it sends; a telemetry frame takes 11.5 ms at 115200 baud,
-/// the longest answer 29 ms. Meanwhile at most one request of 332 bytes comes from a host that waits for answers; from
-/// one that does not, this is 22 ms at 921600 baud, 178 ms at 115200.
+/// Size of the receive ring \[bytes\]. The task does not read while it sends; a telemetry frame takes 11.5 ms at 115200
+/// baud, the longest answer 29 ms. Meanwhile a host that waits for answers sends at most one request of 332 bytes;
+/// for one that does not, the ring lasts 22 ms at 921600 baud, 178 ms at 115200.
 const WAITING: usize = 2048;
 
-/// How often the task looks for bytes.
+/// Polling period of the task.
 const LOOK: Duration = Duration::from_millis(1);
 
 type Half<T> = Mutex<CriticalSectionRawMutex, Option<T>>;
 static RX: Half<ReadableRingBuffer<'static, u8>> = Mutex::new(None);
 static TX: Half<UartTx<'static, mode::Async>> = Mutex::new(None);
 
-/// Opens the line; without it [`read`] and [`write`] never end.
+/// Opens the port; before that [`read`] and [`write`] never return.
 ///
 /// # Panics
 /// When called a second time.
@@ -48,12 +47,12 @@ pub(super) fn start(link: Link) {
     let mut config = Config::default();
     config.baudrate = 115_200;
     let Ok(to) = UartTx::new(link.uart, link.tx, link.tx_stream, Streams, config) else { return };
-    // Pulled up, so that a port without a plug is quiet.
+    // Pull-up, so that an open port is idle.
     alternate(link.rx, FUNCTION, AfType::input(Pull::Up));
     let request = link.rx_stream.request();
     let stream = Channel::new(link.rx_stream, Streams);
     let register = pac::USART3.dr().as_ptr().cast();
-    // SAFETY: the ring lives for ever, nothing else touches its memory, and the register is the USART's.
+    // SAFETY: the ring is static, nothing else uses its memory, and the register is the USART's.
     let mut from = unsafe {
         ReadableRingBuffer::new(stream, request, register, RECEIVED.take(), TransferOptions::default())
     };
@@ -65,7 +64,7 @@ pub(super) fn start(link: Link) {
     }
 }
 
-/// Waits for bytes; how many came. A ring that ran over begins anew: the frames in it are lost.
+/// Waits for bytes; returns their number. After an overrun the ring is reset: the frames in it are lost.
 pub async fn read(into: &mut [u8]) -> usize {
     let mut rx = RX.lock().await;
     let Some(ring) = rx.as_mut() else { core::future::pending().await };
@@ -77,10 +76,10 @@ pub async fn read(into: &mut [u8]) -> usize {
     }
 }
 
-/// Waits until all bytes are on their way.
+/// Waits until all bytes are passed to DMA.
 pub async fn write(bytes: &[u8]) {
     match TX.lock().await.as_mut() {
-        // The HAL gives no error here.
+        // The HAL returns no error here.
         Some(tx) => tx.write(bytes).await.unwrap_or(()),
         None => core::future::pending().await,
     }

@@ -1,7 +1,7 @@
-//! What the motor's interrupt shares with everything else: orders to it, and its report.
+//! Data shared with the motor interrupt: commands to it, and its report.
 //!
-//! It interrupts critical sections, so it is spoken to by atomic words; its report is read whole because the interrupt,
-//! which nobody interrupts, raises a number after each one.
+//! The interrupt preempts critical sections, so commands are atomic words. The interrupt itself is not preempted and
+//! increments a sequence number after each report, so that readers detect a torn copy.
 
 use crate::tasks::Refusal;
 use core::cell::UnsafeCell;
@@ -9,67 +9,66 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use motor::command_word;
 use motor::{Faults, Mode, MotorCommand};
 
-/// What control asks, by `motor::command_word`, and a number that rises with each order.
+/// Command of control, encoded by `motor::command_word`, and a number that increments with each command.
 static ORDER: AtomicU32 = AtomicU32::new(u32::MAX);
 static BEAT: AtomicU32 = AtomicU32::new(0);
-/// The bridge stays open: until the next start, and while the flash is at work.
+/// Keeps the bridge open: until the next start, and during flash access.
 static OFF: AtomicBool = AtomicBool::new(false);
 static HOLD: AtomicBool = AtomicBool::new(false);
-/// Temperature beside the switches, as bits of an f32 \[deg C\]; control makes it of the counts, as it takes a
-/// logarithm.
+/// Temperature beside the switches, as bits of an f32 \[deg C\]; computed by control, as it needs a logarithm.
 static HEAT_C: AtomicU32 = AtomicU32::new(f32::NAN.to_bits());
 
-/// What the motor's interrupt says of its last call.
+/// Report of the motor interrupt's last call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
-    /// Calls since the start, wrapping.
+    /// Number of calls since the start, wrapping.
     pub calls: u32,
-    /// Calls whose duty cycles were set only after the top that was to take them over, 42.6 us after the interrupt.
+    /// Number of calls whose duty cycles missed the top that loads them, 42.6 us after the interrupt.
     pub late: u32,
-    /// What the motor's loop does.
+    /// Mode of the motor loop.
     pub mode: Mode,
-    /// Faults that it latched.
+    /// Latched faults.
     pub faults: Faults,
-    /// The gate driver is missing, or told of a fault.
+    /// Whether the gate driver is missing or reported a fault.
     pub gate_fault: bool,
-    /// Pulses of its fault pin that were too short to be one.
+    /// Number of fault-pin pulses too short to be a fault.
     pub gate_pulses: u32,
-    /// No order came in time.
+    /// Whether the command timed out.
     pub silent: bool,
-    /// The outputs were switched off until the next start.
+    /// Whether the outputs were switched off until the next start.
     pub off: bool,
-    /// Torque by the measured current, to the right \[N m\].
+    /// Torque from the measured current, positive to the right \[N m\].
     pub torque_nm: f32,
-    /// Current that makes it \[A\].
+    /// Torque-producing q current \[A\].
     pub iq_a: f32,
-    /// Speed of the steer by the encoder, to the right \[rad/s\].
+    /// Steer rate from the encoder, positive to the right \[rad/s\].
     pub steer_rate_rad_s: f32,
-    /// The encoder's offset in use.
+    /// Encoder offset in use.
     pub offset_turns: Option<f32>,
-    /// The alignment that is asked for is over and found it.
+    /// Whether the requested alignment has found the offset.
     pub aligned: bool,
-    /// The encoder's counts.
+    /// Encoder counts.
     pub encoder_counts: u16,
-    /// Their age \[calls\].
+    /// Age of the counts \[calls\].
     pub encoder_age: u16,
-    /// Answers of the encoder with its error flag, and damaged ones.
+    /// Number of encoder answers with the error flag.
     pub encoder_flagged: u32,
-    /// As of [`Report::encoder_flagged`].
+    /// Number of damaged encoder answers.
     pub encoder_damaged: u32,
-    /// The supply \[V\].
+    /// Supply voltage \[V\].
     pub supply_v: f32,
-    /// The steer sensor \[counts\].
+    /// Steer sensor \[counts\].
     pub steer: u16,
-    /// The rider's torque sensor \[counts\].
+    /// Rider's torque sensor \[counts\].
     pub rider_torque: u16,
-    /// The rider's switch \[counts\].
+    /// Rider's switch \[counts\].
     pub switch: u16,
-    /// The thermistor beside the switches of the bridge \[counts\].
+    /// Thermistor beside the bridge's switches \[counts\].
     pub board_heat: u16,
 }
 
 impl Report {
-    /// Before the first call.
+    /// Report before the first call.
     pub(super) const NONE: Self = Self {
         calls: 0,
         late: 0,
@@ -95,7 +94,7 @@ impl Report {
         board_heat: 0,
     };
 
-    /// Why no torque is given, if so.
+    /// Reason for which no torque is given, if any.
     pub fn refusal(&self) -> Option<Refusal> {
         match self.mode {
             Mode::Off => self.faults.iter().next().map(|fault| Refusal::MotorFault(fault.code())),
@@ -110,18 +109,18 @@ impl Report {
 
 struct SharedReport(UnsafeCell<Report>);
 
-// SAFETY: only the motor's interrupt writes it, and nobody interrupts that; a copy that it cut in two is thrown away.
+// SAFETY: only the motor interrupt writes it, and nothing preempts that; a torn copy is discarded.
 unsafe impl Sync for SharedReport {}
 
 static TOLD: SharedReport = SharedReport(UnsafeCell::new(Report::NONE));
-/// Reports so far, wrapping.
+/// Number of reports, wrapping.
 static REPORTS: AtomicU32 = AtomicU32::new(0);
 
-/// What the motor's interrupt said last. Read anew where it spoke meanwhile, which it does every 50 us.
+/// Last report of the motor interrupt. Repeats the copy if a report came meanwhile; reports are 50 us apart.
 pub fn report() -> Report {
     loop {
         let before = REPORTS.load(Ordering::Acquire);
-        // SAFETY: the cell lives for ever; every bit pattern that a torn copy can have is made of whole fields.
+        // SAFETY: the cell is static; every bit pattern of a torn copy consists of whole fields.
         let report = unsafe { TOLD.0.get().read_volatile() };
         if REPORTS.load(Ordering::Acquire) == before {
             return report;
@@ -129,52 +128,53 @@ pub fn report() -> Report {
     }
 }
 
-/// The interrupt's own side of [`report`].
-pub(super) fn tell(report: Report) {
-    // SAFETY: only the motor's interrupt calls this, and readers do not interrupt it.
+/// Writes the report read by [`report`].
+pub(super) fn publish(report: Report) {
+    // SAFETY: only the motor interrupt calls this, and readers do not preempt it.
     unsafe { TOLD.0.get().write_volatile(report) }
     REPORTS.store(report.calls, Ordering::Release);
 }
 
-/// Asks the motor for something, until the patience of its interrupt is over or another order comes.
+/// Sends a command to the motor, valid until the next command or the timeout.
 pub fn order(command: MotorCommand) {
     ORDER.store(command_word::word(command), Ordering::Relaxed);
     BEAT.store(BEAT.load(Ordering::Relaxed).wrapping_add(1), Ordering::Release);
 }
 
-/// The newest order, and its number.
-pub(super) fn ordered() -> (u32, MotorCommand) {
+/// The newest command and its number.
+pub(super) fn newest_order() -> (u32, MotorCommand) {
     let beat = BEAT.load(Ordering::Acquire);
     (beat, command_word::command(ORDER.load(Ordering::Relaxed)))
 }
 
-/// Tells how hot it is beside the switches of the bridge \[deg C\].
+/// Stores the temperature beside the bridge's switches \[deg C\].
 pub(super) fn set_heat(celsius: f32) {
     HEAT_C.store(celsius.to_bits(), Ordering::Relaxed);
 }
 
-/// How hot it is there \[deg C\]; NaN before it was told, and where the sensor is cut or shorted.
+/// Temperature beside the bridge's switches \[deg C\]; NaN before the first value, and if the sensor is open or
+/// shorted.
 pub(super) fn heat_c() -> f32 {
     f32::from_bits(HEAT_C.load(Ordering::Relaxed))
 }
 
 /// Keeps the bridge open until the next start.
 pub(super) fn set_off() {
-    // What the caller does next to the registers comes after this.
+    // The caller's next register writes must come after this.
     OFF.store(true, Ordering::SeqCst);
 }
 
-/// Whether it is kept open until the next start.
+/// Whether the bridge is kept open until the next start.
 pub(super) fn is_off() -> bool {
     OFF.load(Ordering::Relaxed)
 }
 
-/// Keeps the bridge open, or no longer.
+/// Keeps the bridge open temporarily, or releases it.
 pub(super) fn set_hold(hold: bool) {
     HOLD.store(hold, Ordering::SeqCst);
 }
 
-/// Whether it is kept open for a while.
+/// Whether the bridge is temporarily kept open.
 pub(super) fn is_held() -> bool {
     HOLD.load(Ordering::Relaxed)
 }

@@ -1,39 +1,39 @@
-//! A serial bus moved by hand, because the board's wires lead to no serial peripheral of the chip.
+//! Software SPI, as the board's wires lead to no SPI peripheral of the chip.
 
 use super::pins::{Bus, Pin};
 use embassy_stm32::gpio::{Input, Level, Output, Pin as _, Pull, Speed};
 use embassy_stm32::pac::gpio::Gpio;
 use embassy_stm32::pac::{GPIOA, GPIOB, GPIOC, GPIOD};
 
-/// The edge of the clock, low at rest, at which both sides take the data.
+/// Clock edge, from idle low, at which both sides sample the data.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Edge {
     Rising,
     Falling,
 }
 
-/// From selecting a part to its first bit, and between two words: 417 ns, of 400 that the DRV8301 wants and 350 that
-/// the AS5047P wants.
+/// Delay from chip select to the first bit, and between two words: 417 ns; the DRV8301 requires 400 and the AS5047P
+/// 350.
 const SELECT_CYCLES: u32 = 70;
 
-/// Readings of a bit of encoder and gate driver, whose wires run beside the bridge's; the majority counts. So does the
-/// drive's own firmware read the encoder (`driver/spi_bb.c` in vedderb/bldc). The IMU's 152 bits a millisecond are read
-/// once.
+/// Samples per bit of encoder and gate driver, whose wires run beside the bridge's; the majority decides. The VESC
+/// firmware reads the encoder in the same way (`driver/spi_bb.c` in vedderb/bldc). The IMU's 152 bits per millisecond
+/// are sampled once.
 const LOOKS: u32 = 5;
 
-/// The bus and its only part.
+/// A bus with one device.
 pub(super) struct SoftSpi {
     select: Output<'static>,
     clock: Output<'static>,
     to_part: Option<Output<'static>>,
-    /// The port that the part's pin is on, and its number there.
+    /// Port and pin number of the device's data output.
     from_part: (Gpio, u8),
     edge: Edge,
     half_cycles: u32,
 }
 
 impl SoftSpi {
-    /// With a half clock of at least `half_cycles` of the core. What comes from the part is pulled up.
+    /// Bus with a half clock period of at least `half_cycles` core cycles. The input has a pull-up.
     pub(super) fn new(bus: Bus, edge: Edge, half_cycles: u32) -> Self {
         Self {
             select: Output::new(bus.select, Level::High, Speed::Medium),
@@ -45,7 +45,7 @@ impl SoftSpi {
         }
     }
 
-    /// One word of 16 bits, the part selected for it alone; what came back.
+    /// Transfers one 16-bit word with its own chip select; returns the answer.
     pub(super) fn word(&mut self, word: u16) -> u16 {
         self.begin();
         let answer = self.shift(word, 16);
@@ -53,7 +53,7 @@ impl SoftSpi {
         answer
     }
 
-    /// Bytes, the part selected for all of them together; each is replaced by what came back.
+    /// Transfers bytes under one chip select; each is replaced by the answer.
     pub(super) fn bytes(&mut self, bytes: &mut [u8]) {
         self.begin();
         for byte in bytes {
@@ -95,7 +95,7 @@ impl SoftSpi {
         answer
     }
 
-    /// The bit that the part holds now.
+    /// The present bit of the device.
     fn bit(&self) -> u16 {
         let looks = if self.edge == Edge::Falling { LOOKS } else { 1 };
         let (port, pin) = self.from_part;
@@ -108,10 +108,10 @@ impl SoftSpi {
     }
 }
 
-/// The chip's ports, by their numbers; the others have no pins on it.
+/// Ports by number; the package has no pins of the others.
 const PORTS: [Gpio; 4] = [GPIOA, GPIOB, GPIOC, GPIOD];
 
-/// Makes a pin an input for good, pulled up; where it is read.
+/// Makes a pin permanently an input with pull-up; returns its port.
 fn input(pin: Pin) -> (Gpio, u8) {
     let place = (PORTS[usize::from(pin.port())], pin.pin());
     core::mem::forget(Input::new(pin, Pull::Up));

@@ -1,8 +1,8 @@
-//! Embassy's clock on TIM5: 32 bits, 1 us to a count.
+//! Embassy's time driver on TIM5: 32 bits, 1 us per count.
 //!
-//! While flash is erased the chip stands still, its interrupts included, for half a second a sector. The HAL's driver
-//! counts 16 bits by two interrupts a round of 65.5 ms, and loses those that come meanwhile (embassy-stm32 0.6.0,
-//! `time_driver/gp16.rs`). This one needs two in 71 minutes.
+//! While flash is erased the chip and its interrupts halt for half a second per sector. The HAL's driver uses a 16-bit
+//! counter with two interrupts per round of 65.5 ms, and loses those that occur meanwhile (embassy-stm32 0.6.0,
+//! `time_driver/gp16.rs`). This driver needs two in 71 minutes.
 
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -18,15 +18,15 @@ use embassy_stm32::{peripherals, rcc};
 use embassy_time_driver::Driver;
 use embassy_time_queue_utils::Queue;
 
-/// The timer's clock over 1 MHz, less one.
+/// Prescaler: the timer's clock over 1 MHz, less one.
 const TO_1_MHZ: u16 = 84 - 1;
-/// Compare channels: half of the round, and the next alarm.
+/// Compare channels: half of the range, and the next alarm.
 const HALF: usize = 0;
 const ALARM: usize = 1;
 
-/// Where the clock stands.
+/// State of the clock.
 struct Clock {
-    /// Halves of the counter's round that its interrupt has seen.
+    /// Number of half ranges counted by the interrupt.
     halves: AtomicU32,
     queue: Mutex<RefCell<Queue>>,
 }
@@ -42,7 +42,7 @@ pub(super) fn start() {
     TIM5.psc().write_value(TO_1_MHZ);
     TIM5.arr().write_value(u32::MAX);
     TIM5.ccr(HALF).write_value(1 << 31);
-    // The update that takes over the prescaler is not the end of a round.
+    // The update that loads the prescaler is not an overflow.
     TIM5.cr1().modify(|w| w.set_urs(Urs::COUNTER_ONLY));
     TIM5.egr().write(|w| w.set_ug(true));
     TIM5.dier().write(|w| {
@@ -50,19 +50,19 @@ pub(super) fn start() {
         w.set_ccie(HALF, true);
         w.set_ccie(ALARM, true);
     });
-    // SAFETY: its priority is one that critical sections stop.
+    // SAFETY: critical sections mask its priority.
     unsafe { interrupt::TIM5.enable() }
     TIM5.cr1().modify(|w| w.set_cen(true));
 }
 
 impl Clock {
-    /// Wakes what is due and sets the alarm for what is next.
+    /// Wakes the tasks that are due and sets the next alarm.
     fn wake_due(&self, queue: &mut Queue) {
         loop {
             let next = queue.next_expiration(self.now());
-            // One of a later round rings early, and is set anew then.
+            // An alarm of a later round occurs early, and is then set again.
             TIM5.ccr(ALARM).write_value(next as u32);
-            // The channel does not ring for what passed meanwhile.
+            // The channel has no event for a time that passed meanwhile.
             if next > self.now() {
                 return;
             }
@@ -71,7 +71,7 @@ impl Clock {
 
     fn interrupt(&self, cs: CriticalSection<'_>) {
         let seen = TIM5.sr().read();
-        // A flag goes where a zero is written; one that came since stays.
+        // Writing zero clears a flag; a flag set meanwhile stays.
         TIM5.sr().write_value(SrGp16(!seen.0));
         let ended = u32::from(seen.uif()) + u32::from(seen.ccif(HALF));
         self.halves.store(self.halves.load(Ordering::Relaxed).wrapping_add(ended), Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! What opened the bridge until the next start: found out, logged and kept, from the lowest priority.
+//! Finds, logs and stores the reason for which the bridge was opened until the next start; at the lowest priority.
 
 use super::{gate, motor_report, outputs_off};
 use crate::crash::{self, Registers};
@@ -7,19 +7,19 @@ use embassy_time::{Duration, Timer};
 use heapless::String;
 use link::report::{FAULT_TEXT_BYTES, FaultKind};
 
-/// How often it is looked.
+/// Polling period.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Keeps a fault of the gate driver with the driver's status, and the first faults of the motor's loop.
+/// Stores a gate-driver fault with the driver's status, and the first faults of the motor loop.
 #[embassy_executor::task]
 pub async fn watch_drive() {
-    // One that was not started is in the log of the start.
+    // A driver whose start failed is in the log of the start.
     let (mut gate, mut motor) = (!gate::is_started(), false);
     loop {
         Timer::after(LOOK).await;
         let report = motor_report();
         let mut words = String::<FAULT_TEXT_BYTES>::new();
-        // What does not fit is cut.
+        // Longer text is cut.
         if report.gate_fault && !gate {
             gate = true;
             let _ = write!(words, "gate driver: ").and_then(|()| gate::describe(&mut words));

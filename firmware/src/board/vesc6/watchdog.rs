@@ -1,18 +1,18 @@
-//! The independent watchdog: runs from its own oscillator and can't be stopped once started.
+//! Independent watchdog: runs from its own oscillator and can't be stopped once started.
 
 use crate::tasks::WATCHDOG;
 use embassy_stm32::pac::IWDG;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_time::Duration;
 
-/// Patience while the chip stands still: at start, 0.8 s at most, and in an erase of a sector, 0.5 s at most and 0.3 s in
-/// which control makes up for its steps. With the fastest oscillator it is 1.36 s.
+/// Timeout while the chip can halt: at start, at most 0.8 s, and in an erase of a sector, at most 0.5 s plus 0.3 s in
+/// which control catches up on its steps. With the fastest oscillator it is 1.36 s.
 const STANDSTILL: Duration = Duration::from_millis(2000);
 
-/// One count, of 32 kHz / 64; the oscillator is anything from 17 to 47 kHz.
+/// One count, at 32 kHz / 64; the oscillator has 17 to 47 kHz.
 const COUNT: Duration = Duration::from_millis(2);
 
-/// Starts it, with the patience of a standstill.
+/// Starts the watchdog with the extended timeout.
 pub(super) fn start() {
     IWDG.kr().write(|w| w.set_key(Key::START));
     IWDG.kr().write(|w| w.set_key(Key::ENABLE));
@@ -20,7 +20,7 @@ pub(super) fn start() {
     standstill(true);
 }
 
-/// Lengthens its patience for a standstill, or makes it [`WATCHDOG`]; either begins anew.
+/// Sets the extended timeout, or [`WATCHDOG`]; either restarts the count.
 pub(super) fn standstill(is: bool) {
     let patience = if is { STANDSTILL } else { WATCHDOG };
     settled();
@@ -30,7 +30,7 @@ pub(super) fn standstill(is: bool) {
     feed_watchdog();
 }
 
-/// Waits, not for ever, until the registers took what was written last: five of the oscillator's cycles.
+/// Waits, with a limit, until the registers are updated: five cycles of the oscillator.
 fn settled() {
     for _ in 0..100_000 {
         let status = IWDG.sr().read();
@@ -40,7 +40,7 @@ fn settled() {
     }
 }
 
-/// Starts the watchdog's patience anew.
+/// Restarts the watchdog's timeout.
 pub fn feed_watchdog() {
     IWDG.kr().write(|w| w.set_key(Key::RESET));
 }

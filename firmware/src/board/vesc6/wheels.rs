@@ -1,4 +1,4 @@
-//! The wheels' pulses: two timers that note the time of an edge; nobody is interrupted.
+//! Wheel pulses: two timers capture the time of an edge without an interrupt.
 
 use super::pins::{Pin, alternate};
 use embassy_stm32::gpio::{AfType, Pull};
@@ -7,15 +7,15 @@ use embassy_stm32::pac::timer::vals::{CcmrInputCcs, Ckd, FilterValue};
 use embassy_stm32::pac::{TIM3, TIM4};
 use embassy_stm32::{peripherals, rcc};
 
-/// Pins' function that is TIM3 or TIM4.
+/// Alternate function of TIM3 and TIM4.
 const FUNCTION: u8 = 2;
-/// The timers' clock over 1 MHz, less one.
+/// Prescaler: the timers' clock over 1 MHz, less one.
 const TO_1_MHZ: u16 = 84 - 1;
 
-/// A wheel's timer and its channel, from 0.
+/// Timer of a wheel and its channel, from 0.
 pub(super) struct Edges(TimGp16, usize);
 
-/// Starts both: front, rear. An edge counts when the line has been low for 12 us.
+/// Starts front and rear. An edge counts after the line was low for 12 us.
 pub(super) fn start(front: Pin, rear: Pin) -> [Edges; 2] {
     rcc::enable_and_reset::<peripherals::TIM4>();
     rcc::enable_and_reset::<peripherals::TIM3>();
@@ -38,14 +38,13 @@ pub(super) fn start(front: Pin, rear: Pin) -> [Edges; 2] {
 }
 
 impl Edges {
-    /// Time since the newest edge, if one came since this was called last \[us\]. To be called more often than the
-    /// timer's 65 ms.
+    /// Time since the newest edge, if one came since the last call \[us\]. Call more often than the timer's 65 ms.
     pub(super) fn age_us(&mut self) -> Option<u32> {
         let Self(tim, channel) = *self;
         if !tim.sr().read().ccif(channel) {
             return None;
         }
-        // Reading it also says that it was seen.
+        // Reading the capture also clears its flag.
         let edge = tim.ccr(channel).read().ccr();
         Some(u32::from(tim.cnt().read().cnt().wrapping_sub(edge)))
     }

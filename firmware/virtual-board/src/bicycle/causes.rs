@@ -102,7 +102,8 @@ impl Cause {
             }
             Self::Steer => {
                 let counts = f64::from(STEER_RAD.most_counts - STEER_RAD.least_counts);
-                sensors.model_mut(Sensor::Steer).quantum = f64::from(STEER_RAD.min - STEER_RAD.max) / counts;
+                sensors.model_mut(Sensor::Steer).quantum =
+                    f64::from(STEER_RAD.at_most_counts - STEER_RAD.at_least_counts) / counts;
             }
             Self::SteerRate => {
                 let late_s = 2.0 / (TAU * f64::from(MOTOR.encoder.tracking_hz));
