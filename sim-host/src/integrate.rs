@@ -9,8 +9,12 @@ use crate::num::Scalar;
 
 /// Source of the torques that act on the bicycle during a time step.
 pub trait Actuation<S> {
+    /// Begins a step at its start's motion: a sampled controller runs here.
+    #[inline(always)]
+    fn begin_step(&mut self, _: &Geometry, _: &Motion<S>) {}
+
     /// Torques for the motion at a Runge-Kutta stage; `stage` 0 is the start of the step, 3 its end.
-    fn torques(&mut self, b: &Geometry, stage: usize, motion: &Motion<S>) -> Torques<S>;
+    fn torques(&self, b: &Geometry, stage: usize, motion: &Motion<S>) -> Torques<S>;
 
     /// Receives the accelerations that these torques caused. For actuations with their own state, integrated
     /// alongside by [`Stages`].
@@ -21,7 +25,7 @@ pub trait Actuation<S> {
 /// Torques constant over the time step (zero-order hold).
 impl<S: Scalar> Actuation<S> for Torques<S> {
     #[inline(always)]
-    fn torques(&mut self, _: &Geometry, _: usize, _: &Motion<S>) -> Torques<S> {
+    fn torques(&self, _: &Geometry, _: usize, _: &Motion<S>) -> Torques<S> {
         *self
     }
 }
@@ -107,6 +111,7 @@ pub fn rk4<S: Scalar>(b: &Geometry, state: &State<S>, h: f64, actuation: &mut im
             // The pitch solved from roll and steer, not the predicted one.
             let pitch = motion.pose.attitude.pitch;
             stages = Stages::new(State { pitch, ..*state });
+            actuation.begin_step(b, &motion);
         }
         let torques = actuation.torques(b, stage, &motion);
         let acc = motion.accelerations(b, &torques);

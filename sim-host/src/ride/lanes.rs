@@ -5,6 +5,7 @@ use super::hardware::{self, RideHardware, lane_frame, measured_signals};
 use super::recorder::{RideRecorder, SteerTorques};
 use super::rider_lanes::{RiderLane, RiderLanes};
 use super::sensor::{Reading, readings};
+use super::steer_torque::{self, PerRide};
 use super::substeps::{Period, Segment, refined, stiffness, too_stiff};
 use super::warm_start::WarmStart;
 use super::{Assist, Conditions, Ride, Start, TracePoint};
@@ -109,25 +110,17 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
 
 impl<const N: usize> Actuation<Lanes<N>> for LaneBatch<'_, '_, N> {
     #[inline(always)]
-    fn torques(&mut self, b: &Geometry, stage: usize, motion: &Motion<Lanes<N>>) -> Torques<Lanes<N>> {
-        if stage == 0 {
-            self.control(b, motion);
-        }
-        let mut steer = self.given(stage, motion);
-        if let Some(riders) = &self.riders {
-            steer = steer + riders.rider_state.at.torque;
-        }
-        let friction = &self.plant.actuator.friction;
-        if friction.acts() {
-            steer = steer + friction.torque(motion.actual.steer);
-        }
-        if let Some(stop) = &self.plant.actuator.stop {
-            let (sin, cos) = motion.pose.attitude.steer;
-            for (lane, steer) in steer.0.iter_mut().enumerate() {
-                *steer += stop.torque(libm::atan2(sin.0[lane], cos.0[lane]), motion.actual.steer.0[lane]);
-            }
-        }
-        Torques { roll: Lanes([0.0; N]), steer }
+    fn begin_step(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
+        self.control(b, motion);
+    }
+
+    #[inline(always)]
+    fn torques(&self, _: &Geometry, stage: usize, motion: &Motion<Lanes<N>>) -> Torques<Lanes<N>> {
+        let rider_nm = self.riders.as_ref().map(|riders| riders.rider_state.at.torque);
+        let (sin, cos) = motion.pose.attitude.steer;
+        let steer_rad = || sin.zip(cos, libm::atan2);
+        let assist_nm = self.given(stage, motion);
+        steer_torque::torques(&self.plant.actuator, assist_nm, rider_nm, steer_rad, motion.actual.steer)
     }
 
     #[inline(always)]

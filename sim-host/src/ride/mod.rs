@@ -12,6 +12,7 @@ mod outcome;
 mod recorder;
 mod rider_lanes;
 mod sensor;
+mod steer_torque;
 mod substeps;
 mod trace;
 mod warm_start;

@@ -8,6 +8,7 @@
 use super::event::fallen;
 use super::rider_lanes::RiderLane;
 use super::sensor::readings;
+use super::steer_torque;
 use super::{Assist, Conditions};
 use crate::bicycle::{Accelerations, FullState, Geometry, Motion, State, Torques, Velocities};
 use crate::integrate::{Actuation, STAGES, Stages, rk4};
@@ -91,14 +92,7 @@ impl Period<'_> {
             }
         };
         let rider = self.human.as_ref().map_or(0.0, |human| human.rider_state.at.torque);
-        let mut steer = assist + rider;
-        if actuator.friction.acts() {
-            steer += actuator.friction.torque(v.steer);
-        }
-        if let Some(stop) = &actuator.stop {
-            steer += stop.torque(steer_rad, v.steer);
-        }
-        Torques { roll: 0.0, steer }
+        steer_torque::torques(actuator, assist, Some(rider), || steer_rad, v.steer)
     }
 
     /// Passes a stage of the substep of `h` seconds that begins at `offset` to the rider.
@@ -149,7 +143,7 @@ struct Substep<'a, 'b> {
 }
 
 impl Actuation<f64> for Substep<'_, '_> {
-    fn torques(&mut self, _: &Geometry, stage: usize, motion: &Motion<f64>) -> Torques<f64> {
+    fn torques(&self, _: &Geometry, stage: usize, motion: &Motion<f64>) -> Torques<f64> {
         let (sin, cos) = motion.pose.attitude.steer;
         self.period.torques(self.offset + STAGES[stage] * self.h, libm::atan2(sin, cos), &motion.actual)
     }
