@@ -1,30 +1,30 @@
-//! What the converters measure: physical values to counts of 12 bits at 3.3 V.
+//! Analog inputs: physical values to counts of 12 bits at 3.3 V.
 
 use devices::vesc6::{BOARD_HEAT, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
 
 const FULL_SCALE: f64 = 4095.0;
 
-/// The sensors on analog pins.
+/// Sensors on analog pins.
 #[derive(Clone, Debug)]
 pub struct Analog {
-    /// Zeros of the three current amplifiers, from the middle of the range \[counts\].
+    /// Offsets of the three current amplifiers from mid-range \[counts\].
     pub current_zero_counts: [f64; 3],
-    /// Which phase's current reaches which amplifier.
+    /// Phase whose current reaches each amplifier.
     pub current_wiring: [usize; 3],
-    /// An amplifier whose shunt is turned round.
+    /// Amplifier with a reversed shunt.
     pub current_reversed: [bool; 3],
-    /// The rider's switch is closed.
+    /// Whether the rider's switch is closed.
     pub switch_closed: bool,
-    /// Torque of the rider \[N m\]; `None`: no such sensor, the input floats at 0.
+    /// Torque of the rider \[N m\]; `None`: no such sensor, the input reads 0.
     pub rider_torque_nm: Option<f64>,
-    /// The steer sensor's plug is in.
+    /// Whether the steer sensor is connected.
     pub steer_connected: bool,
-    /// Temperature beside the switches of the bridge \[deg C\].
+    /// Temperature beside the bridge's switches \[deg C\].
     pub board_c: f64,
 }
 
 impl Default for Analog {
-    /// A board at 25 deg C with amplifiers that are off by a few counts, everything connected but a torque sensor.
+    /// A board at 25 deg C with amplifier offsets of a few counts; everything connected but a torque sensor.
     fn default() -> Self {
         Self {
             current_zero_counts: [3.0, -4.0, 2.0],
@@ -54,7 +54,7 @@ impl Analog {
         self.rider_torque_nm.map_or(0, |torque_nm| gauge(&RIDER_NM, torque_nm))
     }
 
-    /// A contact to ground under a pull-up.
+    /// A contact to ground with a pull-up.
     pub(crate) fn switch_counts(&self) -> u16 {
         if self.switch_closed { 0 } else { FULL_SCALE as u16 }
     }

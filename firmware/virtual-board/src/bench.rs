@@ -1,7 +1,7 @@
-//! A board on the bench: power on, let time go by, look and change in between.
+//! Test bench for a virtual board: power-on, run for a time, inspect and change the board in between.
 //!
-//! The core runs in a thread of its own and stops at the instants it is asked to; between two of them a test holds the
-//! board in its hands.
+//! The core runs in its own thread and stops at the requested instants; in between a test has exclusive access to the
+//! board.
 
 use crate::board::{CORE_HZ, Options, Vesc6};
 use crate::core_state::program_counter;
@@ -21,53 +21,53 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How often the log is fetched and the run is looked at for gaps \[ns\].
+/// Interval between fetches of the log and checks for unmodelled accesses \[ns\].
 const LOOK_NS: u64 = 1_000_000;
 
-/// The flash of the parameters, as `memory.x` keeps it free.
+/// Flash range of the parameters, which `memory.x` keeps free.
 const STORE: std::ops::Range<u64> = 0x0800_4000..0x0801_0000;
 
-/// Bytes in it.
+/// Size of that range \[bytes\].
 pub const STORE_BYTES: usize = (STORE.end - STORE.start) as usize;
 
-/// What can go wrong.
+/// Errors of a run.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The image can't be read, or is not one.
+    /// The image can't be read, or is invalid.
     #[error("{path}: {why}")]
     Image {
-        /// The file.
+        /// File name.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Reason.
         why: String,
     },
-    /// The emulator refused to start or failed.
+    /// The emulator did not start, or failed.
     #[error("the emulator: {0}")]
     Emulator(String),
-    /// The program did something that no model answers for.
+    /// The program used a feature that is not modelled.
     #[error("at {at_ms:.3} ms: {what}")]
     Gap {
-        /// When it was noticed \[ms\].
+        /// Time of detection \[ms\].
         at_ms: f64,
-        /// What it was, with the instruction and the function where they are known.
+        /// Description, with instruction and function if known.
         what: String,
     },
-    /// Something that was waited for did not happen.
+    /// An expected event did not occur.
     #[error("at {at_ms:.3} ms: still no {what}; {whereabouts}")]
     Endless {
-        /// When it was given up \[ms\].
+        /// Time of the timeout \[ms\].
         at_ms: f64,
-        /// What was waited for.
+        /// Name of the event.
         what: String,
-        /// Where the program is, and which instruction accessed a register last, each with its function.
+        /// Present instruction, and the last one that accessed a register, each with its function.
         whereabouts: String,
     },
     /// The emulator took longer for a step than [`Options::timeout`].
     #[error("at {at_ms:.3} ms: the emulator did not come back within {timeout:?}")]
     Stuck {
-        /// Simulated time at the step's begin \[ms\].
+        /// Simulated time at the start of the step \[ms\].
         at_ms: f64,
-        /// The limit.
+        /// Timeout.
         timeout: Duration,
     },
 }
@@ -79,13 +79,13 @@ enum Order {
     Work(Work),
 }
 
-/// The driver's side of the thread.
+/// The bench's side of the thread.
 struct Stepper {
     orders: Receiver<Order>,
     reached: Sender<Reached>,
 }
 
-/// Where the core stands.
+/// State of the core.
 #[derive(Clone, Copy)]
 struct Reached {
     at_ns: u64,
@@ -125,7 +125,7 @@ impl Driver<Vesc6> for Stepper {
         host: &mut dyn Host,
     ) -> Option<VirtualNanos> {
         session.board_mut().chip.wiring.advance(stop.at.0);
-        // A bench that is gone ends the run.
+        // If the bench was dropped, the run ends.
         let reached = Reached { at_ns: stop.at.0, instructions: stop.instruction_count };
         self.reached.send(reached).ok()?;
         loop {
@@ -137,7 +137,7 @@ impl Driver<Vesc6> for Stepper {
     }
 }
 
-/// A board that is powered.
+/// A powered board.
 pub struct Bench {
     orders: Option<Sender<Order>>,
     reached: Receiver<Reached>,
@@ -156,15 +156,15 @@ impl Bench {
     /// Powers a board with this image in its flash.
     ///
     /// # Errors
-    /// An image that can't be read or is not for this chip.
+    /// An image that can't be read, or is not for this chip.
     pub fn power_on(image: &Path, options: Options, wiring: Wiring) -> Result<Self, Error> {
         Self::power_on_with_store(image, options, wiring, None)
     }
 
-    /// The same with what an earlier board had in the flash of its parameters, as of [`Self::store`].
+    /// As [`Self::power_on`], with the parameter flash of an earlier board ([`Self::store`]).
     ///
     /// # Errors
-    /// An image that can't be read or is not for this chip.
+    /// An image that can't be read, or is not for this chip.
     pub fn power_on_with_store(
         image: &Path,
         options: Options,
@@ -206,15 +206,15 @@ impl Bench {
         Ok(bench)
     }
 
-    /// Lets time go by \[ms\].
+    /// Runs the board for a time \[ms\].
     ///
     /// # Errors
-    /// [`Error::Gap`] where the program used what no model has.
+    /// [`Error::Gap`] if the program uses a feature that is not modelled.
     pub fn run_ms(&mut self, ms: f64) -> Result<(), Error> {
         self.run_until_ns(self.now_ns + (ms * 1e6).round() as u64)
     }
 
-    /// Lets time go by until an instant after power-on \[ns\].
+    /// Runs the board until a time after power-on \[ns\].
     ///
     /// # Errors
     /// As of [`Self::run_ms`].
@@ -230,7 +230,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Lets time go by until something is so, looked at each millisecond; `what` is its name in the error.
+    /// Runs the board until a condition, checked each millisecond, is true; `what` names it in the error.
     ///
     /// # Errors
     /// [`Error::Endless`] after `limit_ms`, and as of [`Self::run_ms`].
@@ -250,7 +250,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Where the only function of this name begins.
+    /// Address of the only function of this name.
     ///
     /// # Errors
     /// [`Error::Image`] where none or several have it.
@@ -258,7 +258,7 @@ impl Bench {
         self.functions.start(name).map_err(|why| Error::Image { path: self.image.clone(), why })
     }
 
-    /// The error of something that was waited for in vain.
+    /// Error for an event that did not occur.
     pub fn endless(&mut self, what: &str) -> Error {
         let (last, saved) =
             self.with_session(|session, host| (session.board().last_access, host.save_state().ok()));
@@ -285,17 +285,17 @@ impl Bench {
         self.now_ns as f64 * 1e-6
     }
 
-    /// Time that the core worked since power-on, as far as it did not wait for an interrupt \[ms\].
+    /// Time since power-on in which the core did not wait for an interrupt \[ms\].
     pub fn busy_ms(&self) -> f64 {
         self.instructions as f64 * self.cycles_per_instruction / CORE_HZ as f64 * 1e3
     }
 
-    /// The lines of the log so far, each with its instant \[ms\].
+    /// Log lines so far, each with its time \[ms\].
     pub fn log(&self) -> &[log::Line] {
         self.log.lines()
     }
 
-    /// Works on the board while it stands between two instructions.
+    /// Accesses the board while it is stopped between two instructions.
     pub fn with<T: Send + 'static>(&mut self, work: impl FnOnce(&mut Vesc6) -> T + Send + 'static) -> T {
         self.with_session(|session, _| work(session.board_mut()))
     }
@@ -306,24 +306,24 @@ impl Bench {
         self.with(move |board| board.computer().send(&bytes, now_ns));
     }
 
-    /// The bytes that the board sent since the last call.
+    /// Bytes sent by the board since the last call.
     pub fn received(&mut self) -> Vec<u8> {
         self.with(|board| board.computer().take())
     }
 
-    /// The resets so far.
+    /// Resets so far.
     pub fn resets(&mut self) -> Vec<Reset> {
         self.with_session(|session, _| session.resets().to_vec())
     }
 
-    /// Works on the session and the core's memory.
+    /// Accesses the session and the core's memory.
     pub fn with_session<T: Send + 'static>(
         &mut self,
         work: impl FnOnce(&mut Session<Vesc6>, &mut dyn Host) -> T + Send + 'static,
     ) -> T {
         let (send, answer) = channel();
         self.order(Order::Work(Box::new(move |session, host| {
-            // The receiver waits just below.
+            // The receiver waits below.
             let _ = send.send(work(session, host));
         })));
         answer.recv().expect("the emulator's thread runs while the bench lives")
@@ -331,7 +331,7 @@ impl Bench {
 
     fn order(&self, order: Order) {
         if let Some(orders) = &self.orders {
-            // A thread that is gone is found by the next wait.
+            // A terminated thread is detected by the next wait.
             let _ = orders.send(order);
         }
     }
@@ -343,7 +343,7 @@ impl Bench {
                 Ok(())
             }
             Err(RecvTimeoutError::Timeout) => {
-                // It is left to itself: nothing can stop it.
+                // The thread is abandoned: nothing can stop it.
                 self.thread = None;
                 Err(Error::Stuck { at_ms: self.now_ms(), timeout: self.timeout })
             }
@@ -351,7 +351,7 @@ impl Bench {
         }
     }
 
-    /// Why the thread ended.
+    /// Reason for the thread's end.
     fn end(&mut self) -> String {
         let ended = self.thread.take().map(JoinHandle::join);
         match ended {
@@ -361,7 +361,7 @@ impl Bench {
         }
     }
 
-    /// Fetches the log, and looks for accesses that no model answered.
+    /// Fetches the log, and checks for unmodelled accesses.
     fn look(&mut self) -> Result<(), Error> {
         let rtt = self.rtt;
         let (bytes, gap) = self.with_session(move |session, host| (rtt.drain(host), gap(session)));
@@ -371,7 +371,7 @@ impl Bench {
         Err(Error::Gap { at_ms: self.now_ms(), what: format!("{what}{by}") })
     }
 
-    /// What is in the flash of the parameters: sectors 1 to 3.
+    /// Content of the parameter flash: sectors 1 to 3.
     pub fn store(&mut self) -> Vec<u8> {
         self.with_session(|_, host| {
             let words = STORE.step_by(4).map(|at| host.read(at, Width::W32).unwrap_or(0) as u32);
@@ -391,7 +391,7 @@ impl Drop for Bench {
     fn drop(&mut self) {
         self.orders = None;
         if let Some(thread) = self.thread.take() {
-            // What it failed with was told by the call that met it.
+            // The call that met the error has returned it.
             let _ = thread.join();
         }
     }

@@ -1,4 +1,4 @@
-//! The board as `rigless` runs it: the chip, its crystal and its supply.
+//! The board as a `rigless` system: chip, crystal and supply.
 
 use crate::chip::Chip;
 use crate::chip::memory::Memory;
@@ -14,25 +14,25 @@ use rigless::soc::Error;
 use std::num::{NonZeroU32, NonZeroU64};
 use std::time::Duration;
 
-/// The core's clock \[Hz\].
+/// Clock of the core \[Hz\].
 pub(crate) const CORE_HZ: u64 = 168_000_000;
 
-/// Place of USART3 in the library's list of serial ports.
+/// Index of USART3 in the library's list of serial ports.
 const USART3: usize = 2;
 
-/// What may differ from one run to another.
+/// Options of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Clock cycles that an instruction is taken to last. The chip's own number depends on the flash's wait states and
-    /// was never measured; 1.0 is faster than it can be, 1.6 pessimistic.
+    /// Assumed clock cycles per instruction. The chip's value depends on the flash's wait states and was never
+    /// measured; 1.0 is faster than possible, 1.6 pessimistic.
     pub cycles_per_instruction: f64,
-    /// The watchdog's oscillator \[Hz\]; 17 to 47 kHz (data sheet of the STM32F405).
+    /// Frequency of the watchdog's oscillator \[Hz\]; 17 to 47 kHz (data sheet of the STM32F405).
     pub lsi_hz: u64,
-    /// The chip's own supply \[mV\].
+    /// Supply of the chip \[mV\].
     pub chip_mv: u32,
-    /// How long the flash takes.
+    /// Flash timing.
     pub flash: Pace,
-    /// How long the emulator may take for a millisecond of simulated time, on this machine's clock.
+    /// Timeout of the emulator for a millisecond of simulated time, on this machine's clock.
     pub timeout: Duration,
 }
 
@@ -51,15 +51,15 @@ impl Default for Options {
 /// A VESC 6 MK6.
 #[derive(Debug)]
 pub struct Vesc6 {
-    /// The chip with everything around it.
+    /// The chip with everything connected to it.
     pub chip: Chip,
-    /// Its flash array.
+    /// Flash array of the chip.
     pub flash: Array,
-    /// The instruction that accessed a register last.
+    /// The instruction that last accessed a register.
     pub(crate) last_access: u32,
-    /// The instruction after whose access a model first had something to object.
+    /// The instruction after whose access a model first reported a problem.
     pub(crate) troubled_by: Option<u32>,
-    /// Arrivals at instructions that were replaced: the instant \[ns\] and the address.
+    /// Executions of replaced instructions: time \[ns\] and address.
     pub hits: Vec<(u64, u32)>,
     pub(crate) damage: Vec<Damage>,
     memory: Memory,
@@ -70,7 +70,7 @@ impl Vesc6 {
     /// The board before power-on.
     ///
     /// # Errors
-    /// A description of the chip that contradicts itself.
+    /// An inconsistent description of the chip.
     pub fn new(options: Options, wiring: Wiring) -> Result<Self, Error> {
         let mut chip = Chip::new(wiring)?;
         chip.library.rcc.attach_crystals(8_000_000, 0);
@@ -94,13 +94,13 @@ impl Vesc6 {
     /// The computer on the serial line.
     ///
     /// # Panics
-    /// Never: it is connected when the board is made.
+    /// Never: it is connected when the board is created.
     pub fn computer(&mut self) -> &mut Computer {
         self.chip.library.usart[USART3].chip_mut().expect("connected in `new`")
     }
 }
 
-/// Snapshots are not taken.
+/// Snapshots are unused.
 impl Store for Vesc6 {}
 
 impl Board for Vesc6 {

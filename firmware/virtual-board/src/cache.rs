@@ -1,18 +1,17 @@
-//! The data cache of the flash: whether it may hold what an erase took away.
+//! Data cache of the flash: whether it can contain erased data.
 //!
-//! RM0090 rev 22, 3.5.2 and 3.6.4: a word that is programmed is changed in the cache as well, a sector that is erased is not; the
-//! cache is emptied by DCRST, which counts only while DCEN is off. Single lines are not modelled: a cache that was on may
-//! hold any of them.
+//! RM0090 rev 22, 3.5.2 and 3.6.4: programming a word updates the cache, erasing a sector does not; DCRST empties the
+//! cache, only while DCEN is off. Single lines are not modelled: a cache that was on can contain any of them.
 
 use rigless::soc::stm32f427::generated::flash::acr;
 
-/// What the cache may hold.
+/// Possible content of the cache.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct DataCache {
     on: bool,
-    /// It was on since it was emptied.
+    /// Whether it was on since it was emptied.
     filled: bool,
-    /// A sector was erased since then.
+    /// Whether a sector was erased since then.
     stale: bool,
 }
 
@@ -22,7 +21,7 @@ impl DataCache {
         Self { on: false, filled: false, stale: false }
     }
 
-    /// After a write to register ACR, with its value then.
+    /// Updates the state after a write to register ACR, with its new value.
     pub(crate) fn control(&mut self, register: u64) {
         if acr::DCRST.is_set(register) {
             (self.filled, self.stale) = (false, false);
@@ -31,17 +30,17 @@ impl DataCache {
         self.filled |= self.on;
     }
 
-    /// After an erase.
+    /// Updates the state after an erase.
     pub(crate) fn erased(&mut self) {
         self.stale = self.filled;
     }
 
-    /// After a reset of the chip.
+    /// Updates the state after a reset of the chip.
     pub(crate) fn reset(&mut self) {
         *self = Self::new();
     }
 
-    /// Whether a reading may be answered by what an erase took away.
+    /// Whether a read can return erased data.
     pub(crate) fn answers_with_erased(self) -> bool {
         self.on && self.stale
     }
@@ -54,8 +53,9 @@ mod tests {
     const ON: u64 = 1 << 10;
     const EMPTIED: u64 = 1 << 12;
 
-    /// Situation: a cache that is on, or off. Action: an erase, then it is emptied before, or after, or not at all. Must hold: it
-    /// answers with what is gone only where it was on before, and is on again without having been emptied after.
+    /// Situation: a cache that is on, or off. Action: an erase, with the cache emptied before, after, or not at all.
+    /// Must hold: the cache returns erased data only if it was on before, and is on again without having been emptied
+    /// after.
     #[test]
     fn only_emptying_after_the_erase_helps() {
         let answers = |writes: &[Option<u64>]| {

@@ -1,8 +1,7 @@
-//! The flash array behind the library's interface registers: what is programmed and erased, and for how long the core
-//! stands still meanwhile.
+//! Flash array behind the library's interface registers: programming, erasing, and the time for which the core halts.
 //!
-//! The chip has one bank, so that every access to it waits while it is busy (RM0090 rev 22, 3.6). A short loop could
-//! go on from the instruction cache until its first miss; here the core stands at once.
+//! The chip has one bank, so every access to it waits while it is busy (RM0090 rev 22, 3.6). A short loop could run
+//! from the instruction cache until its first miss; here the core halts at once.
 
 use crate::board::Vesc6;
 use crate::cache::DataCache;
@@ -13,21 +12,21 @@ use rigless::soc::Width;
 use rigless::soc::stm32f427::generated::flash::{Register, cr, sr};
 use rigless::time::VirtualNanos;
 
-/// Addresses of the registers of access and of control.
+/// Addresses of the access control and control registers.
 const ACR: u64 = 0x4002_3c00;
 const CR: u64 = 0x4002_3c10;
 
-/// How long the array takes, DS8626 rev 9, table 40.
+/// Timing of the array, DS8626 rev 9, table 40.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// The typical times.
+    /// Typical times.
     Typical,
-    /// The longest ones.
+    /// Longest times.
     Longest,
 }
 
 impl Pace {
-    /// To program a unit, of any width \[ns\].
+    /// Programming time of a unit of any width \[ns\].
     pub const fn program_ns(self) -> u64 {
         match self {
             Pace::Typical => 16_000,
@@ -35,7 +34,7 @@ impl Pace {
         }
     }
 
-    /// To erase a sector of so many bytes with a field PSIZE of the control register \[ns\].
+    /// Erase time of a sector of a size \[bytes\] with the field PSIZE of the control register \[ns\].
     pub fn erase_ns(self, bytes: u64, psize: u64) -> u64 {
         /// By 8, 16, 32 bits: typical and longest \[ms\].
         const SMALL: [[u64; 2]; 3] = [[400, 800], [300, 600], [250, 500]];
@@ -51,41 +50,41 @@ impl Pace {
     }
 }
 
-/// Something that was done to the array.
+/// A completed operation of the array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// A sector was erased.
     Erased {
-        /// Its number.
+        /// Number of the sector.
         sector: u32,
-        /// Field PSIZE of the control register meanwhile.
+        /// Field PSIZE of the control register.
         psize: u64,
     },
     /// A word was programmed: only ones become zeros.
     Programmed {
-        /// Its address.
+        /// Address of the word.
         address: u64,
-        /// What was written.
+        /// Written value.
         value: u32,
     },
 }
 
-/// What the array is doing.
+/// Present operation of the array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Work {
     end_ns: u64,
-    /// The sector that is erased; none while a word is programmed.
+    /// The sector being erased; none while a word is programmed.
     sector: Option<u32>,
 }
 
 /// The array.
 #[derive(Clone, Debug)]
 pub struct Array {
-    /// How long it takes.
+    /// Timing.
     pub pace: Pace,
-    /// What was done since power-on: the instant of its end \[ns\], and what.
+    /// Operations since power-on, with the time of their end \[ns\].
     pub changes: Vec<(u64, Change)>,
-    /// When the data cache first answered, or may have, with what an erase had taken away \[ns\].
+    /// First time at which the data cache returned, or could have returned, erased data \[ns\].
     pub stale_ns: Option<u64>,
     cache: DataCache,
     work: Option<Work>,
@@ -93,12 +92,12 @@ pub struct Array {
 }
 
 impl Array {
-    /// An array of this pace.
+    /// An array with this timing.
     pub const fn new(pace: Pace) -> Self {
         Self { pace, changes: Vec::new(), stale_ns: None, cache: DataCache::new(), work: None, resets: 0 }
     }
 
-    /// Whether the run's next step concerns the array; cheap, as it is asked after every access.
+    /// Whether the run's next step concerns the array; fast, as it is called after every access.
     pub(crate) fn concerns(&self, settled: &Settled) -> bool {
         match settled {
             Settled::Access { access, .. } => {
@@ -109,7 +108,7 @@ impl Array {
         }
     }
 
-    /// Takes a step with the run.
+    /// Runs one step.
     pub(crate) fn settled(&mut self, session: &mut Session<Vesc6>, host: &mut dyn Host, settled: Settled) {
         match settled {
             Settled::Access { access, .. } if access.address == CR => self.control(session, host, &access),
@@ -124,7 +123,7 @@ impl Array {
         }
     }
 
-    /// The control register was written: an erase may have begun.
+    /// Handles a write of the control register, which can start an erase.
     fn control(&mut self, session: &mut Session<Vesc6>, host: &mut dyn Host, access: &Access) {
         let (_, registers) = session.board_mut().chip.library.program();
         let (status, control) = (registers.get(Register::Sr), registers.get(Register::Cr));
@@ -138,7 +137,7 @@ impl Array {
         self.begin(session, host, Work { end_ns, sector: Some(number) });
     }
 
-    /// A store into the array: a word is programmed where the interface allows it (3.6.4), else its error is raised.
+    /// Handles a store into the array: programs a word if the interface permits (3.6.4), else raises the error.
     fn store(&mut self, session: &mut Session<Vesc6>, host: &mut dyn Host, access: &Access) {
         let (_, registers) = session.board_mut().chip.library.program();
         let (status, control) = (registers.get(Register::Sr), registers.get(Register::Cr));
@@ -150,7 +149,7 @@ impl Array {
             registers.set(Register::Sr, error.set(status, 1));
             return;
         }
-        // The region is the interface's to program.
+        // Only the interface programs the region.
         let _ = host.program(access.address, Width::W32, old & access.value);
         let end_ns = access.virtual_time.0 + self.pace.program_ns();
         let (address, value) = (access.address, access.value as u32);
@@ -164,7 +163,7 @@ impl Array {
         session.pause_at(Some(VirtualNanos(work.end_ns)));
     }
 
-    /// Ends the work when its time has come, or leaves a sector half erased where a reset came first.
+    /// Completes an operation at its end, or leaves a sector half erased if a reset came first.
     fn stop(&mut self, session: &mut Session<Vesc6>, host: &mut dyn Host, now_ns: u64) {
         let Some(work) = self.work else { return };
         let cut = session.resets().len() != self.resets;
@@ -175,7 +174,7 @@ impl Array {
         if let Some(range) = work.sector.and_then(sector) {
             let end = if cut { range.start + (range.end - range.start) / 2 } else { range.end };
             for address in (range.start..end).step_by(8) {
-                // The region is the interface's to program.
+                // Only the interface programs the region.
                 let _ = host.program(address, Width::W64, u64::MAX);
             }
         }

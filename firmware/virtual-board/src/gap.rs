@@ -1,13 +1,13 @@
-//! What of the chip a program used that no model answers for.
+//! Detects accesses of the program that are not modelled.
 
 use crate::board::Vesc6;
 use crate::chip::memory::FLASH;
 use rigless::session::Session;
 
-/// The first thing the program did that no model answers for, and the instruction where it is known.
+/// The first unmodelled access, and its instruction if known.
 pub(crate) fn gap(session: &Session<Vesc6>) -> Option<(String, Option<u32>)> {
     let by = session.board().troubled_by;
-    // Stores into the flash array are the array's.
+    // Stores into the flash array are handled by the array.
     let unmapped = session.unmapped().into_iter().find(|at| !FLASH.contains(&at.address));
     let unmapped =
         unmapped.map(|at| (format!("no register at {:#010x}", at.address), Some(at.program_counter as u32)));

@@ -1,19 +1,18 @@
-//! The image before power comes: whether it is one of this chip, and which function an address is in.
+//! Image file: check that it is for this chip, and its function symbols.
 
 use crate::chip::memory::{FLASH, RAM};
 use object::{Architecture, Object, ObjectSegment, ObjectSymbol, SymbolKind};
 use std::ops::Range;
 
-/// Code addresses of the image's functions, by their start.
+/// Address ranges of the image's functions, by start address.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Functions(Vec<(Range<u32>, String)>);
 
 impl Functions {
-    /// Of the image in these bytes.
+    /// Reads the image in these bytes.
     ///
     /// # Errors
-    /// What is wrong with the image: not an ELF file, of another machine, a vector table that can't be this chip's, or
-    /// no symbols.
+    /// The reason: not an ELF file, another machine, a vector table that is invalid for this chip, or no symbols.
     pub(crate) fn read(image: &[u8]) -> Result<Self, String> {
         let file = object::File::parse(image).map_err(|why| match image {
             [0x7f, b'E', b'L', b'F', ..] => format!("an ELF file that is damaged or cut short: {why}"),
@@ -39,17 +38,17 @@ impl Functions {
         Ok(Self(functions))
     }
 
-    /// The function that this address is in.
+    /// The function at this address.
     pub(crate) fn at(&self, address: u32) -> Option<&str> {
         let after = self.0.partition_point(|(range, _)| range.start <= address);
         let (range, name) = self.0.get(after.checked_sub(1)?)?;
         range.contains(&address).then_some(name)
     }
 
-    /// Where the only function of this name begins.
+    /// Address of the only function of this name.
     ///
     /// # Errors
-    /// None or several have it.
+    /// No function has this name, or several.
     pub(crate) fn start(&self, name: &str) -> Result<u32, String> {
         let mut starts = self.0.iter().filter(|(_, other)| other == name).map(|(range, _)| range.start);
         match (starts.next(), starts.next()) {
@@ -60,7 +59,7 @@ impl Functions {
     }
 }
 
-/// The first two words of the flash: the stack's top in RAM, the program's start in flash with the bit of Thumb code.
+/// First two words of the flash: initial stack pointer in RAM, program start in flash with the Thumb bit.
 fn check_vectors(file: &object::File<'_>) -> Result<(), String> {
     let words = file.segments().find_map(|segment| {
         let offset = FLASH.start.checked_sub(segment.address())? as usize;

@@ -1,4 +1,4 @@
-//! What a test does to the chip itself: a debugger's halt, other instructions in the flash, a failing crystal or supply.
+//! Fault injection into the chip: debugger halt, replaced instructions, failing crystal or supply, register writes.
 
 use crate::bench::{Bench, Error};
 use crate::board::Vesc6;
@@ -13,22 +13,22 @@ use rigless::time::VirtualNanos;
 pub const BRANCH_TO_ITSELF: u16 = 0xe7fe;
 /// `udf #0`: a permanently undefined instruction.
 pub const UNDEFINED: u16 = 0xde00;
-/// Sets NMIPENDSET of ICSR at 0xe000ed04 (ARMv7-M, B3.2.4): the NMI comes before the next instruction, which would else be
-/// a branch to itself. `movw r0, #0xed04; movt r0, #0xe000; mov.w r1, #0x80000000; str r1, [r0]; b .`
+/// Sets NMIPENDSET of ICSR at 0xe000ed04 (ARMv7-M, B3.2.4): the NMI comes before the next instruction, a branch to
+/// itself. `movw r0, #0xed04; movt r0, #0xe000; mov.w r1, #0x80000000; str r1, [r0]; b .`
 pub const RAISE_NMI: [u16; 8] = [0xf64e, 0x5004, 0xf2ce, 0x0000, 0xf04f, 0x4100, 0x6001, BRANCH_TO_ITSELF];
 
-/// Halfwords of the flash that stand in place of others until the next reset, which puts those back.
+/// Replaced halfwords of the flash; the next reset restores them.
 #[derive(Clone, Debug)]
 pub struct Damage {
     pub(crate) address: u32,
     pub(crate) before: Vec<u16>,
-    /// Resets when it was done.
+    /// Number of resets at the time of replacement.
     pub(crate) resets: usize,
 }
 
 impl Bench {
-    /// A debugger halts the core for this time \[ms\]. What DBGMCU stops of TIM1, TIM3 to TIM5 and the watchdog stands
-    /// meanwhile, TIM1's outputs off (RM0090 rev 22, 17.3.21, 38.16.4, 38.16.5); all else goes on.
+    /// A debugger halts the core for a time \[ms\]. The timers TIM1 and TIM3 to TIM5 and the watchdog stop if DBGMCU
+    /// says so, with TIM1's outputs off (RM0090 rev 22, 17.3.21, 38.16.4, 38.16.5); everything else continues.
     ///
     /// # Errors
     /// As of [`Self::run_ms`].
@@ -47,11 +47,11 @@ impl Bench {
         Ok(())
     }
 
-    /// Puts these halfwords in place of the first ones of a function until the next reset, as a damaged flash would have
-    /// them. Each arrival there is noted in [`crate::board::Vesc6::hits`] from now on.
+    /// Replaces the first halfwords of a function until the next reset, like damaged flash. Each execution is
+    /// recorded in [`crate::board::Vesc6::hits`].
     ///
     /// # Errors
-    /// [`Error::Image`] where no function has this name, or several have.
+    /// [`Error::Image`] if no function has this name, or several.
     pub fn damage(&mut self, function: &str, halfwords: &[u16]) -> Result<(), Error> {
         let address = self.function(function)?;
         let halfwords = halfwords.to_vec();
@@ -64,16 +64,16 @@ impl Bench {
         Ok(())
     }
 
-    /// Drives an interrupt line of the chip, as a peripheral would.
+    /// Drives an interrupt line of the chip, like a peripheral.
     ///
     /// # Panics
-    /// With a number that no line has.
+    /// If the number is not that of a line.
     pub fn drive_interrupt(&mut self, line: u16, high: bool) {
         let line = InterruptLine::new(line).expect("a line of the chip");
         self.with_session(move |_, host| host.set_interrupt(line, Level::from(high)));
     }
 
-    /// The crystal stops. The emulated core has the NMI but no input for it, so that only the timer's break follows.
+    /// Stops the crystal. The emulated core has the NMI but no input for it, so only the timer's break follows.
     pub fn lose_crystal(&mut self) {
         let at = VirtualNanos(self.now_ns());
         self.with(move |board| {
@@ -81,16 +81,16 @@ impl Bench {
         });
     }
 
-    /// Sets the chip's own supply \[mV\].
+    /// Sets the supply of the chip \[mV\].
     pub fn set_chip_supply(&mut self, millivolts: u32) {
         let at = VirtualNanos(self.now_ns());
         self.with(move |board| board.chip.set_supply(millivolts, at));
     }
 
-    /// Writes a register as a fault of the chip would, whatever its lock or gate.
+    /// Writes a register like a fault of the chip, ignoring locks and clock gates.
     ///
     /// # Panics
-    /// Where no register answers at this address.
+    /// If no register has this address.
     pub fn force_register(&mut self, address: u32, change: impl FnOnce(u32) -> u32 + Send + 'static) {
         let at = VirtualNanos(self.now_ns());
         self.with(move |board| {
@@ -102,7 +102,7 @@ impl Bench {
     }
 }
 
-/// Undoes what was damaged before the reset that just came.
+/// Restores replaced instructions after a reset.
 pub(crate) fn put_back(session: &mut Session<Vesc6>, host: &mut dyn Host) {
     let resets = session.resets().len();
     session.board_mut().damage.retain(|damage| {
@@ -114,14 +114,14 @@ pub(crate) fn put_back(session: &mut Session<Vesc6>, host: &mut dyn Host) {
     });
 }
 
-/// Programs halfwords of the flash, ones and zeros; what stood there.
+/// Writes halfwords of the flash, ones and zeros; returns the previous ones.
 fn exchange(host: &mut dyn Host, address: u32, halfwords: &[u16]) -> Vec<u16> {
     (u64::from(address)..)
         .step_by(2)
         .zip(halfwords)
         .map(|(at, halfword)| {
             let before = host.read(at, Width::W16).map_or(0, |before| before as u16);
-            // An address outside the flash keeps what it has.
+            // An address outside the flash is left unchanged.
             let _ = host.program(at, Width::W16, u64::from(*halfword));
             before
         })

@@ -1,12 +1,11 @@
-//! A virtual VESC 6 MK6: the image that is flashed, unchanged, executed at register level.
+//! Virtual VESC 6 MK6: executes the flashed image, unchanged, at register level.
 //!
-//! The core (Cortex-M4F, NVIC, SysTick) and most of the chip's peripherals are those of the crate `rigless`; [`chip`]
-//! replaces the peripherals that crate lacks or that the board exercises hardest. [`parts`] are the parts beside the
-//! chip, [`power`] is the bridge with the motor behind it, [`analog`] what the converters measure. [`Bench`] runs all
-//! of it step by step.
+//! The core (Cortex-M4F, NVIC, SysTick) and most peripherals are those of the crate `rigless`; [`chip`] replaces the
+//! peripherals that the crate lacks or that need speed. [`parts`] models the devices beside the chip, [`power`] the
+//! bridge and the motor, [`analog`] the analog inputs. [`Bench`] runs them step by step.
 //!
-//! Time is instructions at an assumed number of clock cycles each ([`Options::cycles_per_instruction`]); nothing here
-//! measures a cycle of the real chip.
+//! Time is the number of instructions times an assumed number of clock cycles ([`Options::cycles_per_instruction`]);
+//! it is not a measurement of the real chip.
 
 pub mod analog;
 pub mod bench;

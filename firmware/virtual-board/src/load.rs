@@ -1,20 +1,20 @@
-//! How long the motor's interrupt takes, seen from outside: from the end of the conversions to its last access to TIM1.
+//! Duration of the motor interrupt, measured from the end of the conversions to its last access to TIM1.
 
-/// The calls of the motor's interrupt so far.
+/// Calls of the motor interrupt so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Calls {
-    /// How many.
+    /// Number of calls.
     pub count: u64,
-    /// Time of all together \[ns\].
+    /// Total duration \[ns\].
     pub sum_ns: u64,
-    /// The longest \[ns\].
+    /// Longest duration \[ns\].
     pub longest_ns: u64,
     began_ns: Option<u64>,
     last_ns: u64,
 }
 
 impl Calls {
-    /// The conversions are over, and with them whatever the call before did.
+    /// Handles the end of the conversions, which also ends the previous call.
     pub(crate) fn begin(&mut self, now_ns: u64) {
         if let Some(began_ns) = self.began_ns {
             let took_ns = self.last_ns.saturating_sub(began_ns);
@@ -24,12 +24,12 @@ impl Calls {
         (self.began_ns, self.last_ns) = (Some(now_ns), now_ns);
     }
 
-    /// The timer was accessed.
+    /// Handles an access to the timer.
     pub(crate) fn accessed(&mut self, now_ns: u64) {
         self.last_ns = now_ns;
     }
 
-    /// Mean of a call \[us\].
+    /// Mean duration of a call \[us\].
     pub fn mean_us(&self) -> f64 {
         self.sum_ns as f64 * 1e-3 / self.count.max(1) as f64
     }

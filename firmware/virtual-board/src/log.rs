@@ -1,17 +1,17 @@
-//! The board's log: bytes of its RTT buffer, decoded by defmt's own decoder.
+//! The board's log: bytes of its RTT buffer, decoded by defmt's decoder.
 
 use defmt_decoder::{DecodeError, StreamDecoder, Table};
 use rigless::emulator::Host;
 use rigless::soc::Width;
 
-/// A line of the log.
+/// A log line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// When it was fetched, a millisecond later at most than it was written \[us\].
+    /// Time of the fetch, at most a millisecond after it was written \[us\].
     pub at_us: u64,
-    /// Its level, in capitals.
+    /// Level, in capitals.
     pub level: String,
-    /// Its text.
+    /// Text.
     pub text: String,
 }
 
@@ -22,13 +22,13 @@ pub struct Log {
 }
 
 impl Log {
-    /// Of the image in these bytes.
+    /// Reads the table of the image in these bytes.
     ///
     /// # Errors
     /// An image without a defmt table.
     pub(crate) fn new(image: &[u8]) -> Result<Self, String> {
         let table = Table::parse(image).map_err(|e| e.to_string())?.ok_or("no defmt table in it")?;
-        // The table lives as long as the program, as its decoder borrows it; one a board.
+        // Leaked, as the decoder borrows the table; one per board.
         let table: &'static Table = Box::leak(Box::new(table));
         Ok(Self { decoder: table.new_stream_decoder(), lines: Vec::new() })
     }
@@ -53,7 +53,7 @@ impl Log {
     }
 }
 
-/// Where the RTT control block is.
+/// Address of the RTT control block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rtt(u32);
 
@@ -63,7 +63,7 @@ impl Rtt {
         symbols.get("_SEGGER_RTT").map(|at| Self(at as u32)).map_err(|e| e.to_string())
     }
 
-    /// What is in the first up channel, which is emptied. Layout: SEGGER's RTT control block, 24 bytes before the first
+    /// Reads and empties the first up channel. Layout: SEGGER's RTT control block, 24 bytes before the first
     /// channel's name, buffer, size, write and read offset.
     pub(crate) fn drain(self, host: &mut dyn Host) -> Vec<u8> {
         let word =
@@ -79,7 +79,7 @@ impl Rtt {
             at = (at + 1) % size;
         }
         if at != read {
-            // Memory that was just read.
+            // This memory was just read.
             let _ = host.write(u64::from(self.0 + 40), Width::W32, u64::from(at));
         }
         bytes

@@ -1,4 +1,4 @@
-//! The virtual board as a program: a live board with its log and its serial line.
+//! Program `virtual-board`: a live board with its log and its serial line.
 
 use clap::Parser;
 use std::io::{Read, Write};
@@ -13,17 +13,17 @@ use virtual_board::pty::Pty;
 use virtual_board::wiring::Wiring;
 use virtual_board::{Bench, Error, Options};
 
-/// How much simulated time goes by between two looks at the serial line \[ms\].
+/// Simulated time between two polls of the serial line \[ms\].
 const LOOK_MS: f64 = 2.0;
 
-/// An image that has logged nothing by then never will \[ms after power-on\]: the board's say who they are within 5 ms.
+/// Timeout of the first log line \[ms after power-on\]: the board's images log their name within 5 ms.
 const SILENT_MS: f64 = 2000.0;
 
-/// When the board answers on its serial line at the latest \[ms after power-on\]. On this machine that is some seconds, longer
-/// than a tool waits for an answer.
+/// Largest time at which the board answers on its serial line \[ms after power-on\]. On this machine that takes some
+/// seconds, longer than the tools' timeout.
 const LISTENS_MS: f64 = 400.0;
 
-/// When the rider presses the switch \[ms after power-on\]: released for long enough by then.
+/// Time of the rider's press \[ms after power-on\]: the switch was open for long enough by then.
 const SWITCH_MS: f64 = 2000.0;
 
 /// A VESC 6 with the flashed image, executed at register level: its log here, its serial line at a pseudo terminal.
@@ -200,8 +200,8 @@ fn show_can(bench: &mut Bench) {
     }
 }
 
-/// The flash of the parameters in a file, if there is one. A file that is none, or can't be written at the end, is refused
-/// before the run.
+/// The flash of the parameters in a file, if there is one. A file that is none, or can't be written at the end, is
+/// refused before the run.
 fn kept(file: &Path) -> Result<Option<Vec<u8>>, Failure> {
     let failed = |why| Failure::File(file.to_owned(), why);
     let store = match std::fs::read(file) {

@@ -1,5 +1,4 @@
-//! Parameters and the encoder's offset that lie in the flash before power-on, written by the crate that the board reads
-//! them with.
+//! Parameters and encoder offset that are in flash before power-on, written with the board's own store.
 
 use control::Config;
 use embassy_futures::block_on;
@@ -9,14 +8,14 @@ use link::alignment::Alignment;
 use link::store::{NotStored, Room};
 use std::ops::Range;
 
-/// The store's sectors 1 to 3 in the flash (docs/hardware.md).
+/// Sectors 1 to 3 of the flash, which hold the store (docs/hardware.md).
 const STORE: Range<u32> = 0x4000..0x1_0000;
 
-/// The bytes of the store's sectors after this configuration and this offset of the encoder \[electrical turns\] were stored,
-/// for [`crate::Bench::power_on_with_store`].
+/// Content of the store's sectors with this configuration and encoder offset \[electrical turns\], for
+/// [`crate::Bench::power_on_with_store`].
 ///
 /// # Errors
-/// A configuration that the board would refuse.
+/// An invalid configuration.
 pub fn stored(config: &Config, offset_turns: f32) -> Result<Vec<u8>, NotStored> {
     let erased = Flash(vec![0xff; STORE.end as usize]);
     let mut store = Store::new(erased, STORE).ok_or(NotStored::Flash)?;
@@ -27,7 +26,7 @@ pub fn stored(config: &Config, offset_turns: f32) -> Result<Vec<u8>, NotStored> 
     Ok(store.into_flash().0.split_off(STORE.start as usize))
 }
 
-/// The flash up to the store's end; a written bit is only ever cleared.
+/// The flash up to the store's end; writing only clears bits.
 struct Flash(Vec<u8>);
 
 impl Flash {

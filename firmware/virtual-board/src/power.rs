@@ -1,25 +1,25 @@
-//! The bridge, the motor behind it, and the steer axis that it turns.
+//! Model of bridge, motor and steer axis.
 
 use crate::machine::{Machine, Params};
 use std::f64::consts::TAU;
 
-/// Counts of the encoder's turn.
+/// Encoder counts per turn.
 const ENCODER_COUNTS: f64 = devices::as5047::COUNTS as f64;
 
-/// The rotor of the example's motor seen at the steer axis: 181 g cm^2 behind 36:1 \[kg m^2\]. A bicycle that drives the
-/// steer has to have it in its own inertia.
+/// Rotor inertia of the example motor at the steer axis: 181 g cm^2 behind 36:1 \[kg m^2\]. A bicycle that drives the
+/// steer must contain it in its own inertia.
 pub const ROTOR_KG_M2: f64 = 181e-7 * 36.0 * 36.0;
-/// Voltage of the supply at the start \[V\].
+/// Supply voltage at the start \[V\].
 pub const SOURCE_V: f64 = 25.2;
 
-/// What turns the steer axis.
+/// Load of the steer axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axis {
-    /// A steer with its own inertia and friction, nobody's hands on it.
+    /// A free steer with its own inertia and friction.
     Free,
-    /// The handlebar is held.
+    /// A held handlebar.
     Held,
-    /// Another model moves it: its rate is set from outside \[rad/s\].
+    /// A rate that another model sets \[rad/s\].
     Driven,
 }
 
@@ -29,13 +29,13 @@ pub struct PowerStage {
     machine: Machine,
     at_ns: u64,
     steer_zero_rad: f64,
-    /// Where the encoder's zero is \[turns of the motor\].
+    /// Encoder zero \[turns of the motor\].
     pub encoder_zero_turns: f64,
-    /// Which of the motor's phases is at each of the bridge's terminals.
+    /// Motor phase at each of the bridge's terminals.
     pub terminals: [usize; 3],
-    /// The encoder counts the other way.
+    /// Whether the encoder counts backwards.
     pub encoder_reversed: bool,
-    /// Torque on the steer, times time, since [`Self::take_impulse`] \[N m s\].
+    /// Time integral of the torque on the steer since [`Self::take_impulse`] \[N m s\].
     impulse_nm_s: f64,
     /// Largest phase current since the start \[A\].
     pub largest_phase_a: f64,
@@ -56,7 +56,7 @@ impl PowerStage {
         }
     }
 
-    /// Up to an instant, with these duty cycles since the last call.
+    /// Advances to a time, with these duty cycles since the last call.
     pub(crate) fn advance(&mut self, now_ns: u64, duties: Option<[f64; 3]>, dead_time_s: f64) {
         let dt = now_ns.saturating_sub(self.at_ns) as f64 * 1e-9;
         if dt > 0.0 {
@@ -69,12 +69,12 @@ impl PowerStage {
         }
     }
 
-    /// Chooses what turns the steer.
+    /// Sets the load of the steer axis.
     pub fn set_axis(&mut self, axis: Axis) {
         let (params, machine) = (Params::default(), &mut self.machine);
         machine.held = axis == Axis::Held;
         let driven = axis == Axis::Driven;
-        // An axis of infinite inertia keeps the rate that it is given.
+        // An axis of infinite inertia keeps its rate.
         machine.params.inertia_kg_m2 = if driven { f64::INFINITY } else { params.inertia_kg_m2 };
         machine.params.coulomb_nm = if driven { 0.0 } else { params.coulomb_nm };
     }
@@ -85,17 +85,17 @@ impl PowerStage {
         self.machine.motor_turns = (steer_rad - self.steer_zero_rad) * self.machine.params.ratio / TAU;
     }
 
-    /// Torque of somebody's hands on a free steer \[N m\].
+    /// Sets the torque of hands on a free steer \[N m\].
     pub fn set_hands(&mut self, torque_nm: f64) {
         self.machine.load_nm = torque_nm;
     }
 
-    /// Mean torque of the motor on the steer over the time since the last call, `seconds` \[N m\].
+    /// Mean motor torque on the steer since the last call, `seconds` ago \[N m\].
     pub fn take_mean_torque_nm(&mut self, seconds: f64) -> f64 {
         std::mem::take(&mut self.impulse_nm_s) / seconds
     }
 
-    /// Torque of the motor on the steer now \[N m\].
+    /// Present motor torque on the steer \[N m\].
     pub fn torque_nm(&self) -> f64 {
         self.machine.torque_nm()
     }
@@ -106,14 +106,14 @@ impl PowerStage {
         self.terminals.map(|phase| phases_a[phase])
     }
 
-    /// What is at the terminals, by the motor's phases.
+    /// Reorders the terminals by the motor's phases.
     fn at_phases(&self, terminals: [f64; 3]) -> [f64; 3] {
         let mut phases = [0.0; 3];
         self.terminals.iter().zip(terminals).for_each(|(phase, value)| phases[*phase] = value);
         phases
     }
 
-    /// Cuts a phase's wire.
+    /// Opens a phase.
     pub fn cut_phase(&mut self, phase: usize) {
         self.machine.cut[phase] = true;
     }

@@ -1,4 +1,4 @@
-//! A pseudo terminal: the serial line as a device that any program can open.
+//! Pseudo terminal: the serial line as a device that any program can open.
 
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
@@ -8,17 +8,17 @@ use std::io::{Read, Write};
 /// The board's end of a pseudo terminal.
 pub struct Pty {
     end: File,
-    /// The device's name, as /dev/pts/5.
+    /// Name of the device, for example /dev/pts/5.
     pub name: String,
-    /// Kept, so that the terminal stays when a program closes it.
+    /// Kept open, so that the terminal stays when a program closes it.
     _device: File,
 }
 
 impl Pty {
-    /// Opens one, raw: no byte means anything to it.
+    /// Opens a pseudo terminal in raw mode.
     ///
     /// # Errors
-    /// The system has none to give.
+    /// The system has no free pseudo terminal.
     pub fn open() -> std::io::Result<Self> {
         let end = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         grantpt(&end)?;
@@ -32,16 +32,16 @@ impl Pty {
         Ok(Self { end: end.into(), name, _device: device })
     }
 
-    /// Bytes that a program wrote.
+    /// Bytes written by a program.
     pub fn read(&mut self) -> Vec<u8> {
         let mut bytes = vec![0; 4096];
-        // Nothing there is an error of a file that does not wait.
+        // A non-blocking file reports missing data as an error.
         let length = self.end.read(&mut bytes).unwrap_or(0);
         bytes.truncate(length);
         bytes
     }
 
-    /// Bytes to whoever reads; what nobody takes is lost, as on a wire.
+    /// Writes bytes to the reader; unread bytes are lost, as on a wire.
     pub fn write(&mut self, bytes: &[u8]) {
         let _ = self.end.write(bytes);
     }

@@ -1,4 +1,4 @@
-//! The engineer's computer on the serial line: bytes to the board, each not before its time, and bytes from it.
+//! The host on the serial line: timed bytes to the board, and bytes from it.
 
 use rigless::chip::Timeline;
 use rigless::chip::uart::Peer;
@@ -14,24 +14,23 @@ pub struct Computer {
 }
 
 impl Computer {
-    /// Sends bytes one behind the other, the first not before this instant \[ns\]. The line's own speed is that of the
-    /// board's baud rate register.
+    /// Queues bytes, the first not before this time \[ns\]. The speed is that of the board's baud rate register.
     pub fn send(&mut self, bytes: &[u8], from_ns: u64) {
         self.to_board.extend(bytes.iter().map(|byte| (from_ns, *byte)));
     }
 
-    /// The bytes that came since the last call.
+    /// Bytes received since the last call.
     pub fn take(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.from_board)
     }
 
-    /// Bytes that are not on the line yet.
+    /// Number of queued bytes.
     pub fn waiting(&self) -> usize {
         self.to_board.len()
     }
 }
 
-/// Snapshots are not taken.
+/// Snapshots are unused.
 impl Store for Computer {}
 
 impl Peer for Computer {

@@ -1,8 +1,8 @@
-//! What is wired to what: the chip's own peripherals on one side, the parts of the board and the bicycle on the other.
+//! Wiring: the chip's peripherals on one side, the devices of board and bicycle on the other.
 //!
-//! One struct holds both, so that a write to a port reaches the part behind it and a conversion finds the current of its
-//! instant. The bus of `rigless` calls one device per instance; [`AsPort`], [`AsTim1`] and [`AsAdc`] are this struct seen
-//! as one of them.
+//! One struct holds both, so that a write to a port reaches the connected device and a conversion reads the present
+//! current. The bus of `rigless` calls one device per instance; [`AsPort`], [`AsTim1`] and [`AsAdc`] are views of
+//! this struct.
 
 use crate::analog::Analog;
 use crate::chip::adc::Adc;
@@ -22,7 +22,7 @@ const A: usize = 0;
 const B: usize = 1;
 const C: usize = 2;
 
-/// Everything around the library's peripherals.
+/// Peripherals and devices around those of the library.
 #[derive(Debug)]
 pub struct Wiring {
     /// Ports A to D.
@@ -31,7 +31,7 @@ pub struct Wiring {
     pub tim1: Tim1,
     /// The converters.
     pub adc: [Adc; 3],
-    /// The CAN controller, and the bus it is on.
+    /// The CAN controller and its bus.
     pub can: Can,
     /// The external interrupt controller.
     pub exti: Exti,
@@ -43,13 +43,13 @@ pub struct Wiring {
     pub encoder: As5047,
     /// Bridge, motor and steer axis.
     pub power: PowerStage,
-    /// What the converters measure beside the currents.
+    /// Analog inputs other than the currents.
     pub analog: Analog,
-    /// How long the motor's interrupt takes.
+    /// Duration of the motor interrupt.
     pub calls: Calls,
-    /// Changes of the main output enable: instant \[ns\] and the new state.
+    /// Changes of the main output enable: time \[ns\] and new state.
     pub main_output: Vec<(u64, bool)>,
-    /// The outputs were on when a debugger's halt took them.
+    /// Whether a debugger's halt switched the outputs off.
     halted_output: bool,
 }
 
@@ -79,7 +79,7 @@ pub struct AsCan(Wiring);
 pub struct AsExti(Wiring);
 
 impl Wiring {
-    /// Out of reset, nothing connected but the board's own parts.
+    /// State after reset, with only the board's own devices connected.
     pub fn new() -> Self {
         Self {
             ports: [0, 1, 2, 3].map(Port::new),
@@ -118,7 +118,7 @@ impl Wiring {
         AsExti::peel_mut(exti)
     }
 
-    /// A reset of the chip; the parts beside it keep their state.
+    /// Resets the chip; the devices keep their state.
     pub fn reset(&mut self, at: VirtualNanos) {
         self.advance(at.0);
         let before = self.tim1.main_output();
@@ -131,7 +131,7 @@ impl Wiring {
         (0..4).for_each(|port| self.pins_changed(port, 0xffff, at));
     }
 
-    /// Brings bridge, motor and steer axis up to an instant, with the duty cycles that were in force meanwhile.
+    /// Advances bridge, motor and steer axis to a time, with the duty cycles active until then.
     pub fn advance(&mut self, now_ns: u64) {
         while let Some(end_ns) = self.tim1.next_ramp_end_ns().filter(|end| *end <= now_ns) {
             self.power.advance(end_ns, self.duties(), self.tim1.dead_time_s());
@@ -140,15 +140,15 @@ impl Wiring {
         self.power.advance(now_ns, self.duties(), self.tim1.dead_time_s());
     }
 
-    /// Duty cycles that act on the motor: the timer's, unless the gate driver holds all switches open or their pins are
-    /// not the timer's.
+    /// Duty cycles at the motor: the timer's, unless the gate driver holds all switches open or the pins have another
+    /// function.
     pub fn duties(&self) -> Option<[f64; 3]> {
         const PINS: [(usize, u8); 6] = [(A, 8), (A, 9), (A, 10), (B, 13), (B, 14), (B, 15)];
         let connected = PINS.iter().all(|(port, pin)| self.ports[*port].mode(*pin) == Mode::Alternate(1));
         self.tim1.duties().filter(|_| connected && self.gate_driver.drives())
     }
 
-    /// A debugger halts the core: with its bit set TIM1's outputs go off (17.3.21).
+    /// Handles a debugger's halt: if its bit is set, TIM1's outputs go off (17.3.21).
     pub(crate) fn halt(&mut self, stops_tim1: bool, now_ns: u64) {
         self.advance(now_ns);
         let before = self.tim1.main_output();
@@ -159,7 +159,7 @@ impl Wiring {
         self.note_main_output(before, now_ns);
     }
 
-    /// The core goes on, and with it the outputs.
+    /// Handles the end of the halt: the outputs return.
     pub(crate) fn go_on(&mut self, now_ns: u64) {
         self.advance(now_ns);
         let before = self.tim1.main_output();
@@ -169,7 +169,7 @@ impl Wiring {
         self.note_main_output(before, now_ns);
     }
 
-    /// Notes a change of the main output enable, to be called with its state before whatever may have changed it.
+    /// Records a change of the main output enable; call with the state before the possible change.
     pub(crate) fn note_main_output(&mut self, before: bool, now_ns: u64) {
         let now = self.tim1.main_output();
         if now != before {
@@ -177,7 +177,7 @@ impl Wiring {
         }
     }
 
-    /// The level on a pin; `None` where nothing drives it.
+    /// Level on a pin; `None` if nothing drives it.
     pub fn level(&self, port: usize, pin: u8) -> Option<bool> {
         let outside = match (port, pin) {
             (B, 3) => self.gate_driver.output(),
@@ -194,7 +194,7 @@ impl Wiring {
         [8, 9].iter().all(|pin| self.ports[B].mode(*pin) == Mode::Alternate(9))
     }
 
-    /// The input data register of a port.
+    /// Input data register of a port.
     pub(crate) fn input_data(&self, port: usize) -> u32 {
         // The pins that `level` names.
         let outside: &[(u8, Option<bool>)] = match port {
@@ -212,9 +212,9 @@ impl Wiring {
         self.ports[port].input(drives, levels)
     }
 
-    /// Moves the parts on the buses of a port after something of these pins changed.
+    /// Updates the devices on the buses of a port after a change of these pins.
     pub(crate) fn pins_changed(&mut self, port: usize, changed: u32, now: VirtualNanos) {
-        // Resistors of the board hold a select line high and a clock low that nothing drives.
+        // Resistors of the board hold an undriven select line high and an undriven clock low.
         let any = |pins: &[(usize, u8)]| pins.iter().any(|(at, pin)| *at == port && changed >> pin & 1 != 0);
         let high = |wiring: &Self, port: usize, pin: u8| wiring.level(port, pin).unwrap_or(true);
         let low = |wiring: &Self, port: usize, pin: u8| wiring.level(port, pin).unwrap_or(false);
@@ -238,8 +238,8 @@ impl Wiring {
         }
     }
 
-    /// A converter's counts of a channel now (pins of docs/hardware.md); `None` where nothing is wired to it or its pin
-    /// is not set to analog.
+    /// Present counts of a converter's channel (pins of docs/hardware.md); `None` if nothing is connected or the pin
+    /// is not analog.
     pub(crate) fn counts(&self, channel: u8) -> Option<u16> {
         let (port, pin) = match channel {
             0..=7 => (A, channel),
