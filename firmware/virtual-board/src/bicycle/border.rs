@@ -1,19 +1,19 @@
-//! The border of a basin along one disturbance.
+//! Finds the border of a basin along one disturbance.
 
-/// Where rides begin to fall.
+/// Bracket of the border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Border {
-    /// Largest disturbance below the border that was outlasted.
+    /// Largest disturbance below the border without a fall.
     pub outlasted: f64,
-    /// Least one beyond it in which the bicycle fell.
+    /// Smallest disturbance beyond the border with a fall.
     pub fallen: f64,
 }
 
-/// Finds the border nearest to `near`, from there outwards in growing strides, then by halves, until both sides are no
-/// more than `tolerance` apart. Nothing falls at zero.
+/// Finds the border nearest to `near`: growing steps outwards, then bisection until both sides are at most `tolerance`
+/// apart. Assumes no fall at zero.
 ///
 /// # Errors
-/// The ride's.
+/// Those of the ride.
 pub fn border<E>(
     near: f64,
     tolerance: f64,

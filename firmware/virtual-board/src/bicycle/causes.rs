@@ -1,6 +1,6 @@
-//! Why board and simulator differ: each cause as the simulator's own model of it.
+//! Causes of differences between board and simulator, each with the simulator's model of it.
 //!
-//! The numbers are those of the board's own configuration, not fitted to any ride.
+//! The numbers are those of the board's configuration, not fitted to rides.
 
 use super::rides::{PERIOD_S, Reason};
 use crate::power;
@@ -9,35 +9,35 @@ use sim_host::plant::{self, Sensor, Supply};
 use sim_host::ride::Conditions;
 use std::f64::consts::TAU;
 
-/// What the board has and the exact simulator has not.
+/// Properties of the board that the exact simulator lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
-    /// The rotor's inertia behind the gear.
+    /// Rotor inertia behind the gear.
     SimulatedMotor,
     /// Friction of steer bearing and gear.
     Friction,
-    /// The current loop: its bandwidth, and the calls from a sample to the duty cycles that answer it.
+    /// Current loop: its bandwidth, and its delay from a sample to the resulting duty cycles.
     CurrentLoop,
-    /// Bus transfers and the control step itself, from the release to the order: most of a period.
+    /// Bus transfers and the control step, from the release to the command: most of a period.
     Computing,
     /// Largest torque of the drive.
     Limit,
-    /// Voltage of the supply against the winding and its back-EMF.
+    /// Supply voltage against winding resistance and back-EMF.
     Supply,
-    /// The drive reports measured currents, in counts: never the same twice, even at its limit.
+    /// The drive reports measured currents in counts, which vary even at its limit.
     Report,
-    /// Counts of the IMU; its samples are up to a period old when they are read.
+    /// Resolution of the IMU; its samples are up to a period old when read.
     Imu,
-    /// Counts of the steer sensor.
+    /// Resolution of the steer sensor.
     Steer,
-    /// The encoder's tracking loop, two poles.
+    /// Tracking loop of the encoder, two poles.
     SteerRate,
-    /// A wheel's speed is known at its pulses, as the mean since the one before.
+    /// Wheel speed is measured at pulses, as the mean since the previous one.
     Wheels,
 }
 
 impl Cause {
-    /// All of them.
+    /// All causes.
     pub const ALL: [Self; 11] = [
         Self::SimulatedMotor,
         Self::Friction,
@@ -52,7 +52,7 @@ impl Cause {
         Self::Wheels,
     ];
 
-    /// What it is, and how the simulator has it.
+    /// Description, and its model in the simulator.
     pub const fn name(self) -> &'static str {
         match self {
             Self::SimulatedMotor => "rotor behind the gear (inertia on the steer)",
@@ -69,10 +69,10 @@ impl Cause {
         }
     }
 
-    /// Switches it on in the simulator, for a ride at this speed \[m/s\].
+    /// Enables the cause in the simulator, for a ride at this speed \[m/s\].
     ///
     /// # Errors
-    /// The shipped friction is not there.
+    /// The built-in friction is missing.
     pub fn act(self, conditions: &mut Conditions, speed_m_s: f64) -> Result<(), Reason> {
         let Conditions { bicycle, plant, .. } = conditions;
         let (sensors, actuator) = (&mut plant.sensors, &mut plant.actuator);
@@ -123,16 +123,16 @@ impl Cause {
     }
 }
 
-/// Torque on the steer for a q current \[N m/A\].
+/// Steer torque per q current \[N m/A\].
 fn torque_nm_a() -> f64 {
     MOTOR.motor.torque_nm_a().into()
 }
 
-/// The example's winding and supply at the steer axis.
+/// Winding and supply of the example at the steer axis.
 fn supply() -> Supply {
-    // Largest phase voltage over the bus, by the square root of 3 for the circle; 1.5 for three phases.
+    // Largest phase voltage per bus voltage: 1 / sqrt(3) for the circle; 1.5 for three phases.
     let reach = f64::from(MOTOR.bridge.duty_max - MOTOR.bridge.duty_min) / 3.0_f64.sqrt();
-    // Torque k i of the phase current i = (v - w flux) / R, seen as a machine with the voltage constant k.
+    // Torque k i of the phase current i = (v - w flux) / R, as a machine with the voltage constant k.
     Supply {
         voltage_v: 1.5 * reach * power::SOURCE_V,
         resistance_ohm: 1.5 * f64::from(MOTOR.motor.resistance_ohm),

@@ -1,4 +1,4 @@
-//! A display on the CAN bus: what the board broadcast last.
+//! A display on the CAN bus: the board's last broadcasts.
 
 use crate::chip::can::Frame;
 use control::{Cause, Causes, Command, Mode};
@@ -8,16 +8,16 @@ use sim_host::ride::Stepped;
 /// The newest broadcasts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Display {
-    /// Where the controller stands.
+    /// State of the controller.
     pub state: Option<State>,
-    /// How the bicycle moves, as the board sees it.
+    /// Motion of the bicycle, as broadcast.
     pub motion: Option<Motion>,
-    /// What stands in the way of the torque.
+    /// Causes that prevent torque.
     pub causes: Option<Causes>,
 }
 
 impl Display {
-    /// Takes what came over the bus.
+    /// Receives frames from the bus.
     pub fn take(&mut self, frames: &[Frame]) {
         for &Frame { identifier, bytes, .. } in frames {
             match Message::of(&can::Frame { identifier, bytes }) {
@@ -29,17 +29,17 @@ impl Display {
         }
     }
 
-    /// The controller's mode; off before the first broadcast.
+    /// Mode of the controller; off before the first broadcast.
     pub fn mode(&self) -> Mode {
         self.state.map_or(Mode::Off, |state| state.mode)
     }
 
-    /// Whether the controller is in standby and nothing is missing but the switch.
+    /// Whether the controller is in standby and only the switch prevents torque.
     pub fn waits_for_the_switch(&self) -> bool {
         self.mode() == Mode::Standby && self.causes == Some(Causes::of(Cause::SwitchOff))
     }
 
-    /// The controller as far as the bus tells, with the torque that the motor gives \[N m\].
+    /// Controller state from the broadcasts, with the motor torque \[N m\].
     pub(super) fn stepped(&self, torque_nm: f64) -> Stepped {
         let command = Command {
             torque_nm: torque_nm as f32,
@@ -48,7 +48,7 @@ impl Display {
             causes: self.causes.unwrap_or(Causes::NONE),
             ..Stepped::OFF.command
         };
-        // The bus tells it in steps of half a percent.
+        // The bus has a resolution of half a percent.
         let authority = self.state.and_then(|state| state.authority).unwrap_or(0.0);
         Stepped { command, authority: if authority > 0.999 { 1.0 } else { authority } }
     }

@@ -1,9 +1,9 @@
-//! The bicycle of `sim-host` turns the steer of the virtual board.
+//! Ride of the virtual board on the bicycle of `sim-host`.
 //!
-//! The simulator takes the whole board for its controller and its motor ([`Remote`]): in every step its exact readings
-//! become what is on the pins of the sensors, the image runs, and the mean torque of the motor over the step turns the
-//! steer. So the bicycle, the rider with the late nerves, the way to t = 0 and the end of a ride are the simulator's own.
-//! Within a step the steer turns at the rate expected in its middle, and the rates at the IMU go on as they last changed.
+//! The simulator uses the board as its controller and motor ([`Remote`]): in every step its exact sensor values are
+//! applied to the sensor pins, the image runs, and the motor's mean torque over the step acts on the steer. Bicycle,
+//! rider delay, warm start and fall detection are the simulator's own. Within a step the steer turns at the rate
+//! predicted for its middle, and the IMU's rates are extrapolated.
 
 pub mod border;
 pub mod causes;
@@ -22,10 +22,10 @@ use control::{Plan, SensorFrame};
 use sim_host::ride::{Conditions, Remote, RemoteError, Start, Stepped};
 use std::path::PathBuf;
 
-/// Longest time that the board may take from power-on to standby \[s\].
+/// Longest time of the board from power-on to standby \[s\].
 const BOOT_S: f64 = 3.0;
 
-/// The board on the bicycle, one power-on for each ride.
+/// The board on the bicycle, powered on for each ride.
 pub struct OnBicycle {
     image: PathBuf,
     options: Options,
@@ -34,18 +34,18 @@ pub struct OnBicycle {
     ride: Option<Ride>,
 }
 
-/// The ride under way.
+/// The present ride.
 struct Ride {
     bench: Bench,
     display: Display,
     wheels: [Wheel; 2],
-    /// The instant of the step's start after power-on \[ns\].
+    /// Start of the step after power-on \[ns\].
     at_ns: u64,
-    /// What the sensors sensed a step ago; `None` where rates jumped since.
+    /// Sensor values of the previous step; `None` if rates have jumped since.
     before: Option<Sensed>,
 }
 
-/// What there is to be sensed at an instant.
+/// Sensor values at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sensed {
     gyro_rad_s: [f64; 3],
@@ -69,7 +69,7 @@ impl Sensed {
         }
     }
 
-    /// Straight, upright and steady.
+    /// Straight, upright and steady riding.
     fn steady(speed_m_s: f64, gravity_m_s2: f64) -> Self {
         Self {
             gyro_rad_s: [0.0; 3],
@@ -83,25 +83,25 @@ impl Sensed {
 }
 
 impl OnBicycle {
-    /// A board with this image; the bicycle is that of the conditions, whose step is that of the loop.
+    /// A board with this image; the bicycle is that of the conditions, with the loop's time step.
     pub fn new(image: PathBuf, options: Options, conditions: &Conditions) -> Self {
         Self { image, options, step_s: conditions.step_s, gravity_m_s2: conditions.bicycle.g, ride: None }
     }
 
-    /// The board of the ride under way, or of the last one.
+    /// The board of the present or last ride.
     pub fn bench(&mut self) -> Option<&mut Bench> {
         self.ride.as_mut().map(|ride| &mut ride.bench)
     }
 
-    /// What the board broadcast last.
+    /// Last broadcasts of the board.
     pub fn display(&self) -> Display {
         self.ride.as_ref().map_or(Display::default(), |ride| ride.display)
     }
 }
 
 impl Remote for OnBicycle {
-    /// Powers the board on a bicycle that rides steadily, until its controller is in standby and misses nothing but the
-    /// switch: the wheels, which turn at power-on, must have proved themselves.
+    /// Powers the board on during a steady ride, and waits until its controller is in standby with only the switch
+    /// open. The wheels, which turn at power-on, must have become valid.
     fn begin(&mut self, plan: &Plan, start: &Start) -> Result<(), RemoteError> {
         let failed = |why: String| RemoteError(why);
         let mut wiring = Wiring::new();
@@ -143,7 +143,7 @@ impl Remote for OnBicycle {
 }
 
 impl Ride {
-    /// One step of the loop; the motor's mean torque on the steer in it \[N m\].
+    /// One step of the loop; returns the mean motor torque on the steer \[N m\].
     fn step(&mut self, now: &Sensed, step_s: f64) -> Result<f64, Error> {
         let before = self.before.replace(*now).unwrap_or(*now);
         let slope = |is: f64, was: f64| (is - was) / step_s;

@@ -1,4 +1,4 @@
-//! The rides that board and simulator are compared on.
+//! Rides on which board and simulator are compared.
 
 use crate::power;
 use control::safety::engagement::EngagementConfig;
@@ -10,21 +10,21 @@ use sim_host::rider::{self, Fit, Outside};
 
 /// The control period \[s\].
 pub const PERIOD_S: f64 = 1e-3;
-/// The step of the loop with the board \[s\].
+/// Time step of the loop with the board \[s\].
 pub const BOARD_STEP_S: f64 = 0.5e-3;
 
-/// What the board is set to.
+/// Configuration of the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preset {
-    /// The published law h alone, on the gyro's roll rate and the front wheel's speed: no limits, no checks but those of
-    /// the sensors themselves and the self-test.
+    /// The published law h alone, on the gyro's roll rate and the front wheel's speed: no limits; no checks but those
+    /// of the sensors and the self-test.
     H,
-    /// What is flashed.
+    /// The flashed configuration.
     Product,
 }
 
 impl Preset {
-    /// Its name.
+    /// Name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::H => "h",
@@ -32,11 +32,11 @@ impl Preset {
         }
     }
 
-    /// The configuration, the polarity check passed.
+    /// The configuration, with `polarity_checked` set.
     pub fn config(self) -> Config {
         let mut config = Config::product();
         if self == Self::H {
-            // Without a self-test it would begin before the wheels' first pulses.
+            // Without a self-test it would engage before the wheels' first pulses.
             let permit = EngagementConfig {
                 self_test_ticks: config.permit.self_test_ticks,
                 ..EngagementConfig::default()
@@ -48,11 +48,10 @@ impl Preset {
     }
 }
 
-/// Why a ride can't be made ready, in words.
+/// Error text of preparing a ride.
 pub type Reason = Box<dyn std::error::Error + Send + Sync>;
 
-/// The bicycle `rigid_jason`, the gyro on its frame, and nothing between bicycle and controller but exact sensors and an
-/// exact motor.
+/// The bicycle `rigid_jason` with the gyro on its frame, exact sensors and an exact motor.
 ///
 /// # Errors
 /// An unknown rider.
@@ -75,8 +74,8 @@ pub fn simulated(preset: Preset, rider: Option<&str>, time_limit_s: f64) -> Resu
     })
 }
 
-/// The same with the motor's rotor and the friction of the Davis bicycle on the steer, as the board rides; its sensors,
-/// its bridge and its motor are not the simulator's.
+/// As [`simulated`], with the motor's rotor and the friction of the Davis bicycle on the steer, as the board rides;
+/// sensors, bridge and motor are the board's.
 ///
 /// # Errors
 /// As of [`simulated`].

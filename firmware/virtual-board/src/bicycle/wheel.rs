@@ -1,4 +1,4 @@
-//! A wheel with magnets beside a hall switch: the way it rolls to the edges of a line.
+//! A wheel with magnets and a hall switch: from the distance rolled to edges of the line.
 
 use crate::Bench;
 use rigless::device::Level;
@@ -6,27 +6,27 @@ use rigless::soc::st::tim::Channel;
 use rigless::time::VirtualNanos;
 use std::f64::consts::TAU;
 
-/// The wheels' timers among the library's, and their channels: front TIM4 channel 1, rear TIM3 channel 2.
+/// Index of the wheels' timers in the library, and their channels: front TIM4 channel 1, rear TIM3 channel 2.
 const TIMERS: [(usize, u8); 2] = [(2, 1), (1, 2)];
 
 /// An edge of the line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
-    /// When, from the start of the step \[s\].
+    /// Time from the start of the step \[s\].
     pub after_s: f64,
-    /// The level from then on; a magnet pulls it low.
+    /// New level; a magnet pulls the line low.
     pub high: bool,
 }
 
-/// A wheel; its magnets and its radius are those the board is made for ([`devices::vesc6::wheel`]).
+/// A wheel with the magnets and radius that the board is made for ([`devices::vesc6::wheel`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wheel {
-    /// How far it rolled, in halves of the way from magnet to magnet. The line is high in even ones.
+    /// Distance rolled, in halves of the magnet spacing. The line is high in even halves.
     halves: f64,
 }
 
 impl Wheel {
-    /// Rolls on for `step_s` at a speed, forward positive \[m/s\]; the edges meanwhile, in order.
+    /// Rolls for `step_s` at a speed, positive forward \[m/s\]; returns the edges in order.
     pub fn roll(&mut self, speed_m_s: f64, step_s: f64) -> Vec<Edge> {
         let config = devices::vesc6::wheel();
         let half_m = 0.5 * TAU * f64::from(config.radius_m) / f64::from(config.pulses_per_turn);
@@ -45,7 +45,7 @@ impl Wheel {
     }
 }
 
-/// The line of a wheel's hall switch changes now; the front wheel is number 0.
+/// Changes the line of a wheel's hall switch; the front wheel is number 0.
 pub fn line(bench: &mut Bench, wheel: usize, high: bool) {
     let (timer, channel) = TIMERS[wheel];
     let (at, level) = (VirtualNanos(bench.now_ns()), Level::from(high));

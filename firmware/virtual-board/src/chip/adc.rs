@@ -1,6 +1,6 @@
-//! The three converters' injected conversions, started by TIM1's trigger output (RM0090 rev 22, chapter 13).
+//! Injected conversions of the three ADCs, started by TIM1's trigger output (RM0090 rev 22, chapter 13).
 //!
-//! All three convert in step. Regular conversions are not modelled and end the run.
+//! All three convert simultaneously. Regular conversions are not modelled and end the run.
 
 use crate::wiring::{AsAdc, Wiring};
 use rigless::device::{Device, DeviceContext, Level, RegisterFile};
@@ -22,16 +22,16 @@ const JEXTEN_RISING: u32 = 0b01 << 20;
 const JEXTSEL: u32 = 0xf << 16;
 const JEXTSEL_TIM1_TRGO: u32 = 1 << 16;
 
-/// Cycles of the converter's clock for which a channel is sampled, by its number in SMPR (13.13.4).
+/// Sampling time of a channel, by its number in SMPR \[cycles of the converter's clock\] (13.13.4).
 const SAMPLE_CYCLES: [u64; 8] = [3, 15, 28, 56, 84, 112, 144, 480];
-/// Cycles that the conversion to 12 bits takes (13.6).
+/// Conversion time to 12 bits \[cycles\] (13.6).
 const CONVERSION_CYCLES: u64 = 12;
 /// The clock: APB2, 84 MHz, over the common prescaler of 4 \[Hz\].
 const CLOCK_HZ: u64 = 21_000_000;
-/// When to look again for a trigger while TIM1 does not give one.
+/// Polling interval for a trigger while TIM1 gives none.
 const RETRY_NS: u64 = 50_000;
 
-/// One converter.
+/// One ADC.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Adc {
     sr: u32,
@@ -40,11 +40,11 @@ pub struct Adc {
     smpr: [u32; 2],
     jsqr: u32,
     data: [u16; 4],
-    /// When the running conversion is over; of the first converter only, which stands for all three.
+    /// End of the running conversion; only used in the first ADC, for all three.
     event: Option<(EventId, Phase)>,
 }
 
-/// What an event stands for.
+/// Events of the ADC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
     Trigger,
@@ -59,7 +59,7 @@ impl Adc {
             && self.cr1 & SCAN != 0
     }
 
-    /// The channels of the injected sequence, in order: the last JL+1 places of JSQR (13.13.12).
+    /// Channels of the injected sequence, in order: the last JL+1 places of JSQR (13.13.12).
     fn channels(&self) -> impl Iterator<Item = u8> + use<> {
         let (jsqr, length) = (self.jsqr, (self.jsqr >> 20 & 0b11) + 1);
         (4 - length..4).map(move |place| (jsqr >> (5 * place) & 0x1f) as u8)
@@ -72,7 +72,7 @@ impl Adc {
         SAMPLE_CYCLES[number as usize]
     }
 
-    /// How long the whole sequence takes \[ns\].
+    /// Duration of the whole sequence \[ns\].
     fn sequence_ns(&self) -> u64 {
         let cycles: u64 =
             self.channels().map(|channel| self.sample_cycles(channel) + CONVERSION_CYCLES).sum();
@@ -91,8 +91,7 @@ impl Wiring {
         self.adc[0].event = Some((context.schedule(VirtualNanos(at)), Phase::Trigger));
     }
 
-    /// Samples all converters. A channel that measures nothing is reported and ends the run: nothing reads as zero in
-    /// silence.
+    /// Samples all ADCs. An unconnected channel is reported and ends the run, instead of reading as zero.
     fn convert(&mut self, context: &mut DeviceContext<'_>) {
         for number in 0..self.adc.len() {
             if self.adc[number].is_armed() {

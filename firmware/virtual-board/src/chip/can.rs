@@ -1,7 +1,7 @@
-//! CAN1 (bxCAN, RM0090 rev 22, chapter 32) and the bus it is on: three mailboxes, single tries, error counters, bus-off
-//! and recovery; a second node that acknowledges, and sends what nobody's filter lets in.
+//! CAN1 (bxCAN, RM0090 rev 22, chapter 32) and its bus: three mailboxes, single transmission, error counters, bus-off
+//! and recovery; a second node that acknowledges, and sends frames that no filter accepts.
 //!
-//! Reception is the acknowledgement alone: filters are never active on this board, and one that is ends the run.
+//! Reception is only the acknowledgement: this board activates no filter, and an active filter ends the run.
 
 use crate::wiring::{AsCan, Wiring};
 use rigless::device::{Device, DeviceContext, RegisterFile};
@@ -9,7 +9,7 @@ use rigless::soc::Layout;
 use rigless::soc::stm32f427::generated::can1::Register;
 use rigless::time::{EventId, VirtualNanos};
 
-/// The controller's clock: APB1 \[Hz\].
+/// Clock of the controller: APB1 \[Hz\].
 const CLOCK_HZ: u64 = 42_000_000;
 
 const INRQ: u32 = 1;
@@ -19,38 +19,38 @@ const ABOM: u32 = 1 << 6;
 const MCR_RESET: u32 = 0x0001_0000 | SLEEP;
 const INAK: u32 = 1;
 const SLAK: u32 = 1 << 1;
-/// Recessive bits after which a node takes part in the bus, and after which one that was off it comes back (32.7.6).
+/// Number of recessive bits after which a node joins the bus, and after which it recovers from bus-off (32.7.6).
 const QUIET_BITS: u64 = 11;
 const RECOVERY_BITS: u64 = 128 * 11;
-/// Least error counts of a node that is warned, passive, off.
+/// Error counts from which a node is in warning, passive and bus-off state.
 const WARNED: u32 = 96;
 const PASSIVE: u32 = 128;
 const OFF: u32 = 256;
-/// Codes of the last error (32.9.2).
+/// Last error codes (32.9.2).
 const LEC_ACKNOWLEDGEMENT: u32 = 3;
 const LEC_BIT_DOMINANT: u32 = 5;
 
-/// A frame with a standard identifier.
+/// A transmitted frame with a standard identifier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// When its last bit was on the bus \[ns\].
+    /// Time of its last bit \[ns\].
     pub at_ns: u64,
-    /// Its identifier.
+    /// Identifier.
     pub identifier: u16,
-    /// How many of the bytes count.
+    /// Number of data bytes.
     pub length: u8,
-    /// Its data.
+    /// Data.
     pub bytes: [u8; 8],
 }
 
-/// What else is on the bus.
+/// The rest of the bus.
 #[derive(Clone, Debug, Default)]
 pub struct Network {
-    /// A second node is there and acknowledges.
+    /// Whether a second node is present and acknowledges.
     pub node: bool,
-    /// Both wires are shorted: no bit comes back as it was sent.
+    /// Whether the wires are shorted: no bit is read back as sent.
     pub shorted: bool,
-    /// Frames that the second node took.
+    /// Frames received by the second node.
     pub received: Vec<Frame>,
 }
 
@@ -71,14 +71,14 @@ const TXOK: u32 = 1 << 1;
 const TERR: u32 = 1 << 3;
 const ABRQ: u32 = 1 << 7;
 
-/// What the controller waits for.
+/// Event that the controller waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Step {
-    /// The bus is quiet for long enough to take part.
+    /// The bus has been idle for long enough to join.
     Join,
-    /// The end of this mailbox's frame.
+    /// End of this mailbox's frame.
     Sent(usize),
-    /// The bus was quiet for long enough to come back.
+    /// The bus has been idle for long enough to recover from bus-off.
     Recover,
 }
 
@@ -114,7 +114,7 @@ impl Default for Can {
 }
 
 impl Can {
-    /// A reset of the chip; the bus stays.
+    /// Resets the chip's part; the bus keeps its state.
     pub(crate) fn reset(&mut self) {
         *self = Self { network: std::mem::take(&mut self.network), ..Self::default() };
     }
@@ -140,13 +140,13 @@ impl Can {
         self.event = Some((context.schedule(VirtualNanos(at)), step));
     }
 
-    /// Starts what can be started now.
+    /// Starts a pending transmission if possible.
     fn go_on(&mut self, context: &mut DeviceContext<'_>) {
         if self.event.is_some() {
             return;
         }
         if self.off {
-            // A bus that is held dominant is never quiet.
+            // A bus that is held dominant is never idle.
             if self.mcr & ABOM != 0 && !self.network.shorted {
                 self.schedule(RECOVERY_BITS, Step::Recover, context);
             }
@@ -158,7 +158,7 @@ impl Can {
             }
             return;
         }
-        // The lowest identifier goes first (32.7.1).
+        // The lowest identifier has priority (32.7.1).
         let next = (0..3)
             .filter(|place| self.mailboxes[*place].waits)
             .min_by_key(|place| self.mailboxes[*place].identifier >> 21);
@@ -181,7 +181,7 @@ impl Can {
         }
     }
 
-    /// A try is over.
+    /// Ends a transmission attempt.
     fn sent(&mut self, place: usize, at_ns: u64) {
         let frame = self.frame(place, at_ns);
         let good = self.network.node && !self.network.shorted;
@@ -189,7 +189,7 @@ impl Can {
             self.network.received.push(frame);
             self.transmit_errors = self.transmit_errors.saturating_sub(1);
         } else {
-            // A passive node's missing acknowledgement is not counted (ISO 11898-1, fault confinement, exception).
+            // A missing acknowledgement does not count for a passive node (ISO 11898-1, fault confinement, exception).
             let counts = self.network.shorted || self.transmit_errors < PASSIVE;
             self.transmit_errors += if counts { 8 } else { 0 };
             self.last_error = if self.network.shorted { LEC_BIT_DOMINANT } else { LEC_ACKNOWLEDGEMENT };
@@ -225,7 +225,7 @@ impl Can {
                 mailbox.status = 0;
             }
             if bits & ABRQ != 0 && mailbox.waits {
-                // One that is being sent is given up when its try is over (32.7.1).
+                // A frame being sent is aborted at the end of its attempt (32.7.1).
                 mailbox.abort = sending == Some(Step::Sent(place));
                 if !mailbox.abort {
                     (mailbox.waits, mailbox.status) = (false, RQCP);
@@ -302,7 +302,7 @@ impl Device for AsCan {
             }
             _ => context.tell(register.spec().name, "not modelled"),
         }
-        // TXRQ is the hardware's to clear; the file would keep it.
+        // The hardware clears TXRQ; the register file would keep it.
         registers.set(Register::Ti0r, u64::from(can.mailboxes[0].identifier & !1));
         can.go_on(context);
     }
@@ -320,7 +320,7 @@ impl Device for AsCan {
     }
 }
 
-/// Bits of a data frame with its stuff bits, from its start to the end of the space after it (ISO 11898-1).
+/// Length of a data frame with stuff bits, from its start to the end of the interframe space \[bits\] (ISO 11898-1).
 pub fn frame_bits(frame: &Frame) -> u64 {
     let mut bits = vec![false];
     let mut push = |value: u64, count: u32| bits.extend((0..count).rev().map(|bit| value >> bit & 1 == 1));

@@ -1,4 +1,4 @@
-//! The external interrupt controller (RM0090 rev 22, chapter 12), as far as the voltage detector uses it: line 16.
+//! External interrupt controller (RM0090 rev 22, chapter 12), only line 16 of the voltage detector.
 
 use crate::wiring::{AsExti, Wiring};
 use rigless::device::{Device, DeviceContext, Level, RegisterFile};
@@ -6,7 +6,7 @@ use rigless::emulator::InterruptLine;
 use rigless::soc::Layout;
 use rigless::soc::stm32f427::generated::exti::Register;
 
-/// The voltage detector's line (12.2.5), and its interrupt (table 62).
+/// Line of the voltage detector (12.2.5), and its interrupt (table 62).
 const DETECTOR: u32 = 1 << 16;
 const DETECTOR_INTERRUPT: u16 = 1;
 
@@ -20,7 +20,7 @@ pub struct Exti {
 }
 
 impl Exti {
-    /// The detector's output changed; whether its interrupt is asked for now.
+    /// Handles a change of the detector's output; returns whether its interrupt becomes pending.
     pub fn detector(&mut self, supply_is_low: bool) -> bool {
         let edge = if supply_is_low { self.rising } else { self.falling };
         self.pending |= edge & DETECTOR;
@@ -28,10 +28,10 @@ impl Exti {
     }
 }
 
-/// The line of the detector's interrupt.
+/// Interrupt line of the detector.
 ///
 /// # Panics
-/// Never: the number is one of the chip's.
+/// Never: the number is valid.
 pub fn detector_interrupt() -> InterruptLine {
     InterruptLine::new(DETECTOR_INTERRUPT).expect("a line of the chip")
 }

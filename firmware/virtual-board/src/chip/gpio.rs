@@ -1,16 +1,16 @@
-//! A port of sixteen pins (RM0090 rev 22, chapter 8): mode, output type, pull, data.
+//! GPIO port with sixteen pins (RM0090 rev 22, chapter 8): mode, output type, pull, data.
 
 use crate::wiring::{AsPort, Wiring};
 use rigless::device::{Device, DeviceContext, RegisterFile};
 use rigless::soc::Layout;
 use rigless::soc::stm32f427::generated::gpioa::Register;
 
-/// What a pin is set to, section 8.4.1.
+/// Mode of a pin, section 8.4.1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// Digital input.
     Input,
-    /// Output by the data register.
+    /// Output from the data register.
     Output,
     /// Alternate function of this number.
     Alternate(u8),
@@ -18,7 +18,7 @@ pub enum Mode {
     Analog,
 }
 
-/// A port's registers, as far as they decide a level.
+/// Registers of a port that determine levels.
 #[derive(Clone, Copy, Debug)]
 pub struct Port {
     moder: u32,
@@ -26,11 +26,11 @@ pub struct Port {
     pupdr: u32,
     odr: u32,
     afr: u64,
-    /// Pins by what the registers above say of them.
+    /// Pins by the mode in the registers above.
     pins: Pins,
 }
 
-/// Pins of a port, a bit each.
+/// Pins of a port, one bit each.
 #[derive(Clone, Copy, Debug)]
 struct Pins {
     output: u32,
@@ -53,7 +53,7 @@ impl Pins {
 }
 
 impl Port {
-    /// Out of reset, by the port's number: ports A and B begin with the debug pins assigned (8.4.1, 8.4.4).
+    /// State after reset, by port number: ports A and B have the debug pins assigned (8.4.1, 8.4.4).
     pub const fn new(number: usize) -> Self {
         let (moder, pupdr) = match number {
             0 => (0xa800_0000, 0x6400_0000),
@@ -63,7 +63,7 @@ impl Port {
         Self { moder, otyper: 0, pupdr, odr: 0, afr: 0, pins: Pins::new(moder, pupdr) }
     }
 
-    /// What a pin is set to.
+    /// Mode of a pin.
     pub const fn mode(&self, pin: u8) -> Mode {
         match self.moder >> (2 * pin) & 0b11 {
             0b00 => Mode::Input,
@@ -73,7 +73,7 @@ impl Port {
         }
     }
 
-    /// The level of its pull resistor, if one is on.
+    /// Level of the pull resistor, if enabled.
     pub const fn pull(&self, pin: u8) -> Option<bool> {
         match (self.mode(pin), self.pupdr >> (2 * pin) & 0b11) {
             (Mode::Analog, _) => None,
@@ -83,7 +83,7 @@ impl Port {
         }
     }
 
-    /// The level that the chip drives onto a pin by its data register, if it does.
+    /// Level that the chip drives from its data register, if any.
     pub const fn driven(&self, pin: u8) -> Option<bool> {
         let (high, open_drain) = (self.odr >> pin & 1 == 1, self.otyper >> pin & 1 == 1);
         match self.mode(pin) {
@@ -92,13 +92,13 @@ impl Port {
         }
     }
 
-    /// The level on a pin that something outside may drive: the chip's own output, then the outside, then the pull.
+    /// Level on a pin: the chip's own output, else the external level, else the pull resistor.
     pub fn level(&self, pin: u8, outside: Option<bool>) -> Option<bool> {
         self.driven(pin).or(outside).or(self.pull(pin))
     }
 
-    /// The input data register, with the levels `outside` on the pins that something outside drives; a pin that nothing
-    /// drives reads low, and so does an analog one (8.3.12).
+    /// Input data register, with the external levels `outside`; an undriven pin reads low, as does an analog one
+    /// (8.3.12).
     pub(crate) const fn input(&self, outside_drives: u32, outside: u32) -> u32 {
         let Pins { output, analog, pulled_up } = self.pins;
         let driven = output & !(self.otyper & self.odr);
@@ -106,7 +106,7 @@ impl Port {
         (self.odr & driven | others & !driven) & !analog
     }
 
-    /// The output data register.
+    /// Output data register.
     pub const fn odr(&self) -> u32 {
         self.odr
     }

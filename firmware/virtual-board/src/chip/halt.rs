@@ -1,4 +1,4 @@
-//! What stands still while a debugger halts the core, as DBGMCU has it (RM0090 rev 22, 38.16.4 and 38.16.5).
+//! Peripherals that stop while a debugger halts the core, selected by DBGMCU (RM0090 rev 22, 38.16.4 and 38.16.5).
 
 use super::Chip;
 use rigless::mcu::Mcu;
@@ -7,7 +7,7 @@ use rigless::soc::stm32f427::generated::dbg::{Register, dbgmcu_apb1_fz, dbgmcu_a
 use rigless::soc::stm32f427::peripherals::rcc::Apb;
 use rigless::time::VirtualNanos;
 
-/// The library's timers that the program uses, each with its bit in DBGMCU_APB1_FZ.
+/// The library's timers used by the program, each with its bit in DBGMCU_APB1_FZ.
 const TIMERS: [(&str, &FieldSpec); 3] = [
     ("TIM3", dbgmcu_apb1_fz::DBG_TIM3_STOP),
     ("TIM4", dbgmcu_apb1_fz::DBG_TIM4_STOP),
@@ -15,14 +15,14 @@ const TIMERS: [(&str, &FieldSpec); 3] = [
 ];
 
 impl Chip {
-    /// A debugger halts the core.
+    /// Halts the core.
     pub(crate) fn halt(&mut self, at: VirtualNanos) {
         let stops_tim1 = dbgmcu_apb2_fz::DBG_TIM1_STOP.is_set(self.freeze_register(Register::DbgmcuApb2Fz));
         self.wiring.halt(stops_tim1, at.0);
         self.clock_counters(at, 0, 0);
     }
 
-    /// The core goes on.
+    /// Resumes the core.
     pub(crate) fn go_on(&mut self, at: VirtualNanos) {
         self.wiring.go_on(at.0);
         let (clocks, registers) = self.library.clocks();
@@ -30,7 +30,7 @@ impl Chip {
         self.clock_counters(at, timers_hz, watchdog_hz);
     }
 
-    /// Gives the counters that DBGMCU stops another clock \[Hz\].
+    /// Sets the clock of the counters that DBGMCU stops \[Hz\].
     fn clock_counters(&mut self, at: VirtualNanos, timers_hz: u64, watchdog_hz: u64) {
         let frozen = self.freeze_register(Register::DbgmcuApb1Fz);
         // The vendor's description misspells the watchdog's bit.

@@ -1,7 +1,6 @@
-//! The memories of an STM32F405xG (data sheet DS8626, figure 18; RM0090 rev 22, table 5): half of the flash and less of
-//! the RAM that the library's chip has, and a flash array that stores reach.
-//!
-//! The emulator takes the memories from here and everything else from [`super::Chip`].
+//! Memories of an STM32F405xG (data sheet DS8626, figure 18; RM0090 rev 22, table 5): half of the flash and less RAM
+//! than the library's chip, and a flash array that reacts to stores.
+//! The emulator uses the memories from here and the rest from [`super::Chip`].
 
 use rigless::device::{ErasedDevice, ResetCause};
 use rigless::mcu::Mcu;
@@ -13,10 +12,10 @@ use std::ops::Range;
 
 /// Addresses of the flash array.
 pub const FLASH: Range<u64> = 0x0800_0000..0x0810_0000;
-/// Addresses of the RAM that the stack may lie in.
+/// Addresses of the RAM that can contain the stack.
 pub const RAM: Range<u64> = 0x2000_0000..0x2002_0000;
 
-/// Sectors of the flash, in the order of their addresses.
+/// Sectors of the flash, by address.
 static SECTORS: [EraseBlocks; 3] = [blocks(16, 4), blocks(64, 1), blocks(128, 7)];
 
 static MEMORY: [Region; 5] = [
@@ -37,7 +36,7 @@ const fn blocks(kib: u64, count: u32) -> EraseBlocks {
     }
 }
 
-/// Addresses of a sector; `None` where the chip has no sector of that number.
+/// Addresses of a sector; `None` if the chip has no sector of that number.
 pub fn sector(number: u32) -> Option<Range<u64>> {
     let sizes = SECTORS.iter().flat_map(|run| (0..run.count.get()).map(|_| run.size.get()));
     let mut end = FLASH.start;
@@ -49,7 +48,7 @@ pub fn sector(number: u32) -> Option<Range<u64>> {
         .nth(number as usize)
 }
 
-/// The memories, as a chip of which only they count.
+/// The memories, as a chip of which only the memories are used.
 #[derive(Debug)]
 pub struct Memory {
     bus: Bus,
@@ -59,7 +58,7 @@ impl Memory {
     /// The memories.
     ///
     /// # Errors
-    /// A description that contradicts itself.
+    /// An inconsistent description.
     pub fn new() -> Result<Self, Error> {
         Ok(Self { bus: Bus::builder(CPU, &MEMORY, PERIPHERALS).build()? })
     }

@@ -1,12 +1,12 @@
-//! The STM32F405: an STM32F427 of `rigless`, which the same reference manual (RM0090) describes, with own models of the
-//! ports, TIM1, the converters, CAN1 and EXTI.
+//! STM32F405: the STM32F427 of `rigless`, which has the same reference manual (RM0090), with own models of the ports,
+//! TIM1, the ADCs, CAN1 and EXTI.
 //!
-//! | own model | why not `rigless`' |
+//! | own model | reason |
 //! | --- | --- |
-//! | GPIOA to GPIOD | three serial buses are moved by hand over them, more than a million accesses a second |
-//! | TIM1 | one wake-up a PWM period instead of one for each edge of six outputs |
-//! | ADC1 to ADC3 | no external trigger there |
-//! | CAN1, EXTI | no model there |
+//! | GPIOA to GPIOD | three software SPI buses, more than a million accesses per second |
+//! | TIM1 | one event per PWM period instead of one per edge of six outputs |
+//! | ADC1 to ADC3 | `rigless` has no external trigger |
+//! | CAN1, EXTI | `rigless` has no model |
 
 pub mod adc;
 pub mod can;
@@ -26,7 +26,7 @@ use rigless::soc::stm32f427::generated::{dbg, pwr};
 use rigless::soc::{Bus, Error};
 use rigless::time::VirtualNanos;
 
-/// Whose model answers for a slot of the bus.
+/// Owner of the model of a bus slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Owner {
     Library,
@@ -37,7 +37,7 @@ enum Owner {
     Exti,
 }
 
-/// The instances with an own model.
+/// Instances with an own model.
 const OWN: [(&str, Owner); 10] = [
     ("GPIOA", Owner::Port(0)),
     ("GPIOB", Owner::Port(1)),
@@ -51,21 +51,21 @@ const OWN: [(&str, Owner); 10] = [
     ("EXTI", Owner::Exti),
 ];
 
-/// The chip with everything on its pins.
+/// The chip with everything connected to its pins.
 #[derive(Debug)]
 pub struct Chip {
-    /// The peripherals of the library.
+    /// Peripherals of the library.
     pub library: Stm32f427,
-    /// The own peripherals, and what is wired to them.
+    /// Own peripherals, and everything wired to them.
     pub wiring: Wiring,
     owners: Box<[Owner]>,
 }
 
 impl Chip {
-    /// A chip out of reset.
+    /// A chip after reset.
     ///
     /// # Errors
-    /// A description of the chip that contradicts itself.
+    /// An inconsistent description of the chip.
     pub fn new(wiring: Wiring) -> Result<Self, Error> {
         let library = Stm32f427::new()?;
         let mut owners = vec![Owner::Library; library.bus().slots().len()].into_boxed_slice();
@@ -78,14 +78,14 @@ impl Chip {
         Ok(chip)
     }
 
-    /// Makes the library's chip say that it is an STM32F405 of revision Y (RM0090 rev 22, 38.6.1).
+    /// Sets the identifier of an STM32F405 of revision Y (RM0090 rev 22, 38.6.1).
     fn identify(&mut self) {
         let Some(slot) = self.bus().slot_of("DBG") else { return };
         let registers = self.library.bus_mut().slot_mut(slot).registers_mut();
         registers.set(dbg::Register::DbgmcuIdcode, 0x100f_6413);
     }
 
-    /// Sets the chip's own supply \[mV\]; the voltage detector notices.
+    /// Sets the supply of the chip \[mV\]; the voltage detector reacts.
     pub fn set_supply(&mut self, millivolts: u32, now: VirtualNanos) {
         self.library.set_supply(millivolts);
         let status = self.library.power().1.get(pwr::Register::Csr);

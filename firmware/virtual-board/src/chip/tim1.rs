@@ -1,7 +1,7 @@
-//! TIM1 as the board uses it (RM0090 rev 22, chapter 17): centre-aligned, repetition counter, preloaded compare
+//! TIM1 as used by the board (RM0090 rev 22, chapter 17): centre-aligned, repetition counter, preloaded compare
 //! registers, main output enable, break by the crystal's failure, OC4REF as trigger output.
 //!
-//! Anything else that is switched on is reported and ends the run.
+//! Any other enabled feature is reported and ends the run.
 
 use crate::wiring::{AsTim1, Wiring};
 use rigless::device::{Device, DeviceContext, Level, RegisterFile, RequestChange};
@@ -9,7 +9,7 @@ use rigless::soc::Layout;
 use rigless::soc::stm32f427::generated::tim1::Register;
 use rigless::soc::stm32f427::peripherals::rcc::CLOCK_FAILURE;
 
-/// The timer's clock \[Hz\]: twice APB2, 84 MHz (section 6.2, 7.2).
+/// Clock of the timer \[Hz\]: twice APB2, 84 MHz (section 6.2, 7.2).
 pub const CLOCK_HZ: u64 = 168_000_000;
 
 const CEN: u32 = 1;
@@ -38,13 +38,13 @@ pub struct Tim1 {
     arr: u32,
     rcr: u32,
     compare: [u32; 4],
-    /// The compare values in force.
+    /// Active compare values.
     shadow: [u32; 4],
-    /// Ends of a ramp until the next update.
+    /// Number of ramp ends until the next update.
     repetitions: u32,
-    /// When the counter began at 0 \[ns\].
+    /// Time at which the counter started from 0 \[ns\].
     began_ns: u64,
-    /// Ends of a ramp since then that were handled.
+    /// Number of ramp ends handled since then.
     ramps: u64,
 }
 
@@ -57,17 +57,17 @@ impl Tim1 {
         (u128::from(now_ns.saturating_sub(self.began_ns)) * u128::from(CLOCK_HZ) / 1_000_000_000) as u64
     }
 
-    /// The first instant at which so many counts have gone by \[ns\].
+    /// First time at which this number of counts has elapsed \[ns\].
     fn instant_ns(&self, counts: u64) -> u64 {
         self.began_ns + (u128::from(counts) * 1_000_000_000).div_ceil(u128::from(CLOCK_HZ)) as u64
     }
 
-    /// The end of the present ramp \[ns\]; `None` while the counter stands.
+    /// End of the present ramp \[ns\]; `None` while the counter is stopped.
     pub fn next_ramp_end_ns(&self) -> Option<u64> {
         self.is_running().then(|| self.instant_ns((self.ramps + 1) * u64::from(self.arr)))
     }
 
-    /// The end of a ramp: an update when the repetition counter has run down (17.3.3).
+    /// Handles the end of a ramp: an update when the repetition counter has reached zero (17.3.3).
     pub fn end_ramp(&mut self) {
         self.ramps += 1;
         if self.repetitions > 0 {
@@ -83,7 +83,7 @@ impl Tim1 {
         self.sr |= UIF;
     }
 
-    /// The counter and whether it counts down.
+    /// The counter, and whether it counts down.
     pub fn counter(&self, now_ns: u64) -> (u32, bool) {
         if !self.is_running() {
             return (0, false);
@@ -93,8 +93,8 @@ impl Tim1 {
         if phase < arr { (phase as u32, false) } else { ((2 * arr - phase) as u32, true) }
     }
 
-    /// The next rise of OC4REF after an instant \[ns\]: channel 4 in PWM mode 2 rises where the upward count reaches its
-    /// compare value (17.3.9). `None` while it is not the trigger output of a running timer.
+    /// Next rising edge of OC4REF after a time \[ns\]: channel 4 in PWM mode 2 rises where the upward count reaches
+    /// its compare value (17.3.9). `None` unless it is the trigger output of a running timer.
     pub fn next_trigger_ns(&self, after_ns: u64) -> Option<u64> {
         const PWM_MODE_2: u32 = 0b111;
         let triggers = self.cr2 & MMS_OC4REF == MMS_OC4REF && self.ccmr[1] >> 12 & 0b111 == PWM_MODE_2;
@@ -108,14 +108,14 @@ impl Tim1 {
         Some(if at(turn) > after_ns { at(turn) } else { at(turn + 1) })
     }
 
-    /// Duty cycles of the upper switches in force; `None` while the outputs are off.
+    /// Active duty cycles of the upper switches; `None` while the outputs are off.
     pub fn duties(&self) -> Option<[f64; 3]> {
         const ALL_SIX: u32 = 0x555;
         let on = self.bdtr & MOE != 0 && self.ccer & ALL_SIX == ALL_SIX && self.is_running();
         on.then(|| [0, 1, 2].map(|phase| (f64::from(self.shadow[phase]) / f64::from(self.arr)).min(1.0)))
     }
 
-    /// Time for which both switches of a phase are open at each change \[s\] (BDTR.DTG, 17.4.18).
+    /// Dead time \[s\] (BDTR.DTG, 17.4.18).
     pub fn dead_time_s(&self) -> f64 {
         let dtg = self.bdtr & 0xff;
         let counts = match dtg >> 5 {
@@ -132,18 +132,18 @@ impl Tim1 {
         self.bdtr & MOE != 0
     }
 
-    /// Switches the outputs off as a break does (17.3.12).
+    /// Switches the outputs off, like a break (17.3.12).
     pub fn trip(&mut self) {
         self.bdtr &= !MOE;
         self.sr |= BIF;
     }
 
-    /// Switches the outputs off as a halted core does with DBG_TIM1_STOP set (17.3.21).
+    /// Switches the outputs off, like a halted core with DBG_TIM1_STOP set (17.3.21).
     pub fn freeze_outputs(&mut self) {
         self.bdtr &= !MOE;
     }
 
-    /// Switches the outputs on again when such a core goes on.
+    /// Switches the outputs on again when that core resumes.
     pub fn release_outputs(&mut self) {
         self.bdtr |= MOE;
     }
@@ -252,7 +252,7 @@ impl Device for AsTim1 {
         wiring.note_main_output(before, now_ns);
     }
 
-    /// The clock security system's failure reaches the break (17.3.12).
+    /// Passes a failure from the clock security system to the break (17.3.12).
     fn on_request(&mut self, change: RequestChange, _: &mut RegisterFile, context: &mut DeviceContext<'_>) {
         let failed =
             change.instance == "RCC" && change.request == CLOCK_FAILURE && change.level == Level::High;

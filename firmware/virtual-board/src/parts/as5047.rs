@@ -1,4 +1,4 @@
-//! The magnetic encoder AS5047P on a bus without a data line into it: every word asks for the angle.
+//! Model of the magnetic encoder AS5047P without a data line to it: every word reads the angle.
 
 use super::shift::{Event, Lines, Take};
 
@@ -9,18 +9,18 @@ pub struct As5047 {
     bits: u32,
     answer: u16,
     shifting: u16,
-    /// Its plug is pulled: the line is left to the pull resistor.
+    /// Whether it is disconnected: the pull resistor determines the line.
     pub cut: bool,
-    /// It answers with this angle whatever the shaft does \[counts\].
+    /// Stuck angle, independent of the shaft \[counts\].
     pub frozen: Option<u16>,
-    /// The error flag stays set in every answer.
+    /// Whether the error flag is set in every answer.
     pub error_flag: bool,
-    /// Answers that are damaged by a flipped bit, counted down.
+    /// Remaining number of answers damaged by a flipped bit.
     pub glitches: u32,
 }
 
 impl As5047 {
-    /// After power-on.
+    /// State after power-on.
     pub const fn new() -> Self {
         Self {
             lines: Lines::new(),
@@ -34,30 +34,30 @@ impl As5047 {
         }
     }
 
-    /// Whether this level of its select line makes it take the angle for its next answer.
+    /// Whether this level of chip select latches the angle for the next answer.
     pub(crate) const fn latches(&self, select: bool) -> bool {
         select && self.lines.is_selected()
     }
 
-    /// Its data output; `None` while it is not selected or cut.
+    /// Data output; `None` while not selected or disconnected.
     pub fn output(&self) -> Option<bool> {
         (self.lines.is_selected() && !self.cut).then_some(self.shifting & 0x8000 != 0)
     }
 
-    /// The lines as they are now; `angle_counts` where [`Self::latches`] says so.
+    /// Updates the lines; `angle_counts` is used where [`Self::latches`] is true.
     pub(crate) fn lines(&mut self, select: bool, clock: bool, angle_counts: Option<u16>) {
         match self.lines.step(Take::Falling, select, clock, true) {
             Event::None => (),
             Event::Selected => (self.bits, self.shifting) = (0, self.answer),
             Event::Bit(_) => self.bits += 1,
-            // The first bit is out at the first rising edge, which shifts nothing yet.
+            // The first bit is already output at the first rising edge, which therefore shifts nothing.
             Event::Next if self.bits > 0 => self.shifting <<= 1,
             Event::Next => (),
             Event::Released => self.latch(angle_counts.unwrap_or(0)),
         }
     }
 
-    /// The answer to the word that ended: angle, error flag for a frame of another length, even parity.
+    /// Answer to the completed word: angle, error flag for a frame of another length, even parity.
     fn latch(&mut self, angle_counts: u16) {
         let damaged = self.error_flag || self.bits != 16;
         let angle = self.frozen.unwrap_or(angle_counts) & 0x3fff;

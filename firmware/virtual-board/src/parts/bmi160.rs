@@ -1,20 +1,20 @@
-//! The IMU BMI160 (BST-BMI160-DS000): register map, 1600 samples a second through its filter, sensor time.
+//! Model of the IMU BMI160 (BST-BMI160-DS000): register map, 1600 filtered samples per second, sensor time.
 //!
-//! The data sheet gives the filters' bandwidths, not their order: taken for the second.
+//! The data sheet gives the filters' bandwidths, not their order: second order is assumed.
 
 use super::low_pass::LowPass;
 use super::shift::{Event, Lines, Take};
 use devices::bmi160::{CHIP_ID, M_S2_PER_COUNT, RAD_S_PER_COUNT};
 
-/// One count of the sensor's time \[ns\].
+/// One count of the sensor time \[ns\].
 const TIME_COUNT_NS: u64 = 39_062;
-/// Counts of it between two samples at 1600 Hz.
+/// Counts between two samples at 1600 Hz.
 const SAMPLE_COUNTS: u64 = 16;
 /// Time between two samples \[ns\].
 const SAMPLE_NS: u64 = SAMPLE_COUNTS * TIME_COUNT_NS;
-/// Samples a second.
+/// Sampling rate \[Hz\].
 const RATE_HZ: f64 = 1600.0;
-/// Bandwidths by the two bits of oversampling in the set-up: fourfold, twofold, none \[Hz\].
+/// Bandwidths by the two oversampling bits of the set-up: fourfold, twofold, none \[Hz\].
 const GYRO_HZ: [f64; 3] = [136.6, 254.6, 523.9];
 const ACCEL_HZ: [f64; 3] = [162.0, 324.0, 684.0];
 
@@ -40,31 +40,31 @@ pub struct Bmi160 {
     reads: bool,
     shifting: u8,
     now_ns: u64,
-    /// The number of the newest sample that was read.
+    /// Number of the newest sample read.
     seen: u64,
-    /// The sample in the data registers, and its number.
+    /// Sample in the data registers, and its number.
     sample: (u64, [u8; 12]),
-    /// The number of the newest sample that was taken, gyro and accelerometer behind their filters.
+    /// Number of the newest sample taken, and the filters of gyro and accelerometer.
     taken: u64,
     filters: [LowPass; 2],
     filtered: [[f64; 3]; 2],
     gyro_on: bool,
     accel_on: bool,
     motion: Motion,
-    /// It does not answer.
+    /// Whether it does not answer.
     pub silent: bool,
 }
 
-/// Standard deviation of a sample before the filters: the data sheet's density (0.007 degrees/s and 180 ug per root of a Hz)
-/// over half the sampling rate \[rad/s, m/s^2\]. Without noise a sample of three axes would come again and again, which
-/// no chip's does.
+/// Standard deviation of a sample before the filters: the data sheet's density (0.007 degrees/s and 180 ug per root
+/// of a Hz) over half the sampling rate \[rad/s, m/s^2\]. Without noise, samples of three axes would repeat exactly,
+/// unlike those of a real chip.
 const GYRO_NOISE_RAD_S: f64 = 0.0035;
 const ACCEL_NOISE_M_S2: f64 = 0.05;
 
-/// A draw from a distribution of mean 0 and standard deviation 1, nearly normal (the sum of four uniform ones), which
-/// depends on its number alone.
+/// Pseudo-random value of mean 0 and standard deviation 1, approximately normal (sum of four uniform values), as a
+/// function of its number.
 fn normal(number: u64) -> f64 {
-    // The mixing of Steele, Lea and Flood's SplitMix64.
+    // Mixing function of SplitMix64 (Steele, Lea and Flood).
     let mut bits = number.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -73,14 +73,14 @@ fn normal(number: u64) -> f64 {
     (parts.iter().sum::<f64>() - 2.0) * 3.0_f64.sqrt()
 }
 
-/// How the chip moves, from an instant on.
+/// Motion of the chip from a time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
-    /// The instant after power-on \[ns\].
+    /// Time after power-on \[ns\].
     pub at_ns: u64,
-    /// Angular velocity \[rad/s\] and specific force \[m/s^2\] then, in the chip's axes.
+    /// Angular velocity \[rad/s\] and specific force \[m/s^2\] at that time, in the chip's axes.
     pub values: [[f64; 3]; 2],
-    /// How both change from there on, a second.
+    /// Time derivatives of both \[1/s\].
     pub slopes: [[f64; 3]; 2],
 }
 
@@ -97,7 +97,7 @@ impl Motion {
 }
 
 impl Bmi160 {
-    /// After power-on, level and at rest.
+    /// State after power-on, level and at rest.
     pub fn new() -> Self {
         Self {
             lines: Lines::new(),
@@ -120,18 +120,18 @@ impl Bmi160 {
         }
     }
 
-    /// Its data output; `None` while it is not selected or silent.
+    /// Data output; `None` while not selected or silent.
     pub fn output(&self) -> Option<bool> {
         (self.lines.is_selected() && !self.silent).then_some(self.shifting & 0x80 != 0)
     }
 
-    /// Moves the chip from an instant on.
+    /// Sets the motion from a time on.
     pub fn moves(&mut self, motion: Motion) {
         self.take_samples(motion.at_ns);
         self.motion = motion;
     }
 
-    /// Takes the samples up to an instant \[ns\]; returns the newest one's number.
+    /// Takes the samples up to a time \[ns\]; returns the newest one's number.
     fn take_samples(&mut self, now_ns: u64) -> u64 {
         let newest = now_ns / SAMPLE_NS;
         for number in self.taken + 1..=newest {
@@ -146,12 +146,12 @@ impl Bmi160 {
         self.taken
     }
 
-    /// A register as it was written.
+    /// A register as written.
     pub const fn written(&self, register: u8) -> u8 {
         self.registers[(register & 0x7f) as usize]
     }
 
-    /// The lines of its bus as they are now.
+    /// Updates the bus lines.
     pub fn lines(&mut self, select: bool, clock: bool, data: bool, now_ns: u64) {
         self.now_ns = now_ns;
         match self.lines.step(Take::Rising, select, clock, data) {
@@ -169,7 +169,7 @@ impl Bmi160 {
         }
     }
 
-    /// The byte after the one that was just taken.
+    /// The byte after the one just received.
     fn answer(&mut self) -> u8 {
         if !self.reads || self.bits == 0 {
             return 0xff;
@@ -219,7 +219,7 @@ impl Bmi160 {
                 u8::from(fresh && self.accel_on) << 7 | u8::from(fresh && self.gyro_on) << 6
             }
             DATA..TIME => {
-                // A burst reads one sample even where the next comes meanwhile.
+                // A burst reads one sample even if the next comes meanwhile.
                 if register == DATA || self.sample.0 == 0 {
                     self.sample = (newest, self.measure());
                     self.seen = newest;

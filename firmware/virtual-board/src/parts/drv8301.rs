@@ -1,10 +1,10 @@
-//! The gate driver DRV8301 (SLOS719): enabling, four registers, fault pin.
+//! Model of the gate driver DRV8301 (SLOS719): enable, four registers, fault pin.
 
 use super::shift::{Event, Lines, Take};
 
-/// From enabling to ready \[ns\]; the data sheet says 5 to 10 ms.
+/// Time from enabling to ready \[ns\]; the data sheet says 5 to 10 ms.
 const WAKE_NS: u64 = 10_000_000;
-/// Data of status register 2: the device's number.
+/// Data of status register 2: the device identifier.
 const DEVICE: u16 = 1;
 
 /// The driver.
@@ -16,20 +16,20 @@ pub struct Drv8301 {
     bits: u32,
     answer: u16,
     shifting: u16,
-    /// When it is ready for words, once it is enabled \[ns\].
+    /// Time at which it accepts words \[ns\], once enabled.
     ready_ns: Option<u64>,
-    /// Words that came since power-on.
+    /// Number of words received since power-on.
     pub words: Vec<u16>,
-    /// It is not fitted, or its bus is cut.
+    /// Whether it is missing, or its bus is open.
     pub absent: bool,
-    /// It reports this as the data of status register 1 and pulls its fault pin.
+    /// Data of status register 1 for an injected fault; also pulls the fault pin.
     pub fault: Option<u16>,
-    /// Its fault pin is shorted to ground although it reports nothing.
+    /// Whether its fault pin is shorted to ground without a reported fault.
     pub fault_pin_shorted: bool,
 }
 
 impl Drv8301 {
-    /// After power-on, not enabled.
+    /// State after power-on, not enabled.
     pub const fn new() -> Self {
         Self {
             lines: Lines::new(),
@@ -46,12 +46,12 @@ impl Drv8301 {
         }
     }
 
-    /// Whether its enabling input is high.
+    /// Whether its enable input is high.
     pub const fn is_enabled(&self) -> bool {
         self.ready_ns.is_some()
     }
 
-    /// Enables it or not; disabled, it forgets its registers.
+    /// Enables or disables it; disabling clears its registers.
     pub fn enable(&mut self, enabled: bool, now_ns: u64) {
         self.ready_ns = enabled.then_some(now_ns + WAKE_NS);
         if !enabled {
@@ -59,23 +59,23 @@ impl Drv8301 {
         }
     }
 
-    /// Whether it passes its inputs on to the gates.
+    /// Whether it passes its inputs to the gates.
     pub const fn drives(&self) -> bool {
         self.is_enabled() && self.fault.is_none() && !self.absent
     }
 
-    /// The fault pin, an open drain.
+    /// The open-drain fault pin.
     pub const fn fault_pin(&self) -> Option<bool> {
         if self.fault.is_some() || self.fault_pin_shorted { Some(false) } else { None }
     }
 
-    /// Its data output, while selected and enabled.
+    /// Data output, while selected and enabled.
     pub fn output(&self) -> Option<bool> {
         let speaks = self.lines.is_selected() && self.is_enabled() && !self.absent;
         speaks.then_some(self.shifting & 0x8000 != 0)
     }
 
-    /// The lines of its bus as they are now; a word that ends before it is ready is lost.
+    /// Updates the bus lines; a word that ends before it is ready is lost.
     pub fn lines(&mut self, select: bool, clock: bool, data: bool, now_ns: u64) {
         match self.lines.step(Take::Falling, select, clock, data) {
             Event::None => (),
@@ -83,7 +83,7 @@ impl Drv8301 {
             Event::Bit(bit) => {
                 (self.received, self.bits) = (self.received << 1 | u16::from(bit), self.bits + 1);
             }
-            // The first bit is out since the selection.
+            // The first bit is output since the selection.
             Event::Next if self.bits > 0 => self.shifting <<= 1,
             Event::Next => (),
             Event::Released if self.ready_ns.is_some_and(|ready_ns| ready_ns <= now_ns) => self.word(),
@@ -132,7 +132,8 @@ mod tests {
         driver.lines(true, false, false, now_ns);
     }
 
-    /// Situation: just enabled. Action: the same word just before and when it is ready. Must hold: it takes the second one.
+    /// Situation: just enabled. Action: the same word just before and when it is ready. Must hold: only the second is
+    /// accepted.
     #[test]
     fn a_word_before_it_is_ready_is_lost() {
         const CONTROL_1: u16 = 2 << 11 | 0x155;

@@ -1,11 +1,11 @@
-//! A filter of the second order, Butterworth's, of three axes sampled at a fixed rate.
+//! Second-order Butterworth low-pass filter of three axes at a fixed sampling rate.
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// The filter's coefficients and what it remembers.
+/// Coefficients and state of the filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LowPass {
-    /// Weights of the newest inputs, and of the outputs before.
+    /// Weights of the newest inputs, and of the previous outputs.
     inputs: [f64; 3],
     outputs: [f64; 2],
     /// The last two inputs and outputs of each axis; `None` before the first sample.
@@ -13,7 +13,7 @@ pub(super) struct LowPass {
 }
 
 impl LowPass {
-    /// Of a bandwidth (3 dB) at a rate of samples \[Hz\]; the bilinear transform with the bandwidth kept.
+    /// Filter with a bandwidth (3 dB) at a sampling rate \[Hz\]; bilinear transform with prewarped bandwidth.
     pub(super) fn new(bandwidth_hz: f64, rate_hz: f64) -> Self {
         let k = (PI * bandwidth_hz / rate_hz).tan();
         let scale = 1.0 / (1.0 + SQRT_2 * k + k * k);
@@ -24,7 +24,7 @@ impl LowPass {
         }
     }
 
-    /// The next sample; the first one was there for ever.
+    /// Filters the next sample; the initial state is the steady state of the first.
     pub(super) fn step(&mut self, values: [f64; 3]) -> [f64; 3] {
         let before = self.before.get_or_insert(values.map(|x| [[x; 2]; 2]));
         let mut filtered = [0.0; 3];

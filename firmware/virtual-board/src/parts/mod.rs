@@ -1,4 +1,4 @@
-//! The parts beside the chip, at the level of their serial words.
+//! Devices beside the chip, modelled at the level of their SPI words.
 
 pub mod as5047;
 pub mod bmi160;

@@ -1,28 +1,28 @@
-//! A part's side of a serial bus that is moved by hand: edges of three lines to words.
+//! Device side of a software SPI bus: from edges of three lines to words.
 
-/// The edge of the clock, low at rest, at which the part takes a bit; it puts its own out at the other one.
+/// Clock edge, from idle low, at which the device samples a bit; it outputs its own at the other edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Take {
     Rising,
     Falling,
 }
 
-/// What an edge means to the part.
+/// Meaning of an edge for the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Event {
-    /// Nothing.
+    /// No meaning.
     None,
-    /// It was selected.
+    /// Selected.
     Selected,
-    /// It was let go.
+    /// Deselected.
     Released,
-    /// It takes this bit.
+    /// Sample this bit.
     Bit(bool),
-    /// It is to put out the next bit.
+    /// Output the next bit.
     Next,
 }
 
-/// The lines as they were.
+/// Previous levels of the lines.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lines {
     select: bool,
@@ -30,17 +30,17 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// At rest.
+    /// Idle lines.
     pub(super) const fn new() -> Self {
         Self { select: true, clock: false }
     }
 
-    /// Whether the part is selected.
+    /// Whether the device is selected.
     pub(super) const fn is_selected(&self) -> bool {
         !self.select
     }
 
-    /// The lines as they are now; one edge at a time, as software makes them.
+    /// Updates the lines, one edge at a time, as software does.
     pub(super) fn step(&mut self, take: Take, select: bool, clock: bool, data: bool) -> Event {
         let before = core::mem::replace(self, Self { select, clock });
         match (before.select, select) {
