@@ -1,4 +1,4 @@
-//! The encoder's offset in flash: what is stored comes back, what is not believed is not used.
+//! The encoder's offset in flash: a stored one is found again, an invalid one is not used.
 
 use crate::flash::{Flash, PAGE, PAGES, load, load_alignment, save, save_alignment};
 use control::Config;
@@ -20,9 +20,9 @@ fn own() -> Config {
     config
 }
 
-/// Situation: empty flash; then a configuration, an alignment, another configuration and a reset to the defaults, each stored.
-/// Action: start after each.
-/// Must hold: nothing, then the alignment as it was stored: a reset of the parameters leaves it alone.
+/// Situation: empty flash; then a configuration, an alignment, another configuration and a reset to the defaults,
+/// each stored. Action: start after each.
+/// Must hold: no alignment, then the stored one; a reset of the parameters does not change it.
 #[test]
 fn an_alignment_outlives_every_store_of_parameters() {
     let (none, flash) = load_alignment(Flash::new());
@@ -41,7 +41,7 @@ fn an_alignment_outlives_every_store_of_parameters() {
     assert!(flash.erases >= 2, "{}", flash.erases);
 }
 
-/// Situation: flash full of what another program left there, such as the drive's own firmware.
+/// Situation: flash filled by another program, such as the VESC firmware.
 /// Action: store an alignment; store a configuration.
 /// Must hold: both succeed and are found.
 #[test]
@@ -58,9 +58,9 @@ fn an_alignment_is_stored_over_anything() {
     }
 }
 
-/// Situation: a configuration and an alignment in flash that takes nothing more without an erase.
+/// Situation: a configuration and an alignment in flash that is full and needs an erase.
 /// Action: store another alignment; from the same flash, another configuration.
-/// Must hold: after the erase that this takes, what was not being stored is there as before.
+/// Must hold: after the erase, the item that was not being stored is unchanged.
 #[test]
 fn what_damage_costs_is_not_the_other_item() {
     let stored = save_alignment(save(Flash::new(), &own()).1, &found(0.1)).1;
@@ -88,7 +88,7 @@ fn what_damage_costs_is_not_the_other_item() {
 
 /// Situation: two alignments were stored, the later after the encoder was moved.
 /// Action: damage any bit of the later one, or of its number; start.
-/// Must hold: never the earlier offset: the later one, or a doubt with no offset to use.
+/// Must hold: never the earlier offset: the later one, or an invalid record without an offset.
 #[test]
 fn an_older_offset_never_stands_in_for_a_damaged_one() {
     let older = save_alignment(Flash::new(), &found(0.3)).1;
@@ -112,9 +112,9 @@ fn an_older_offset_never_stands_in_for_a_damaged_one() {
     assert!(doubts > 100 && read > 50, "{doubts} {read}");
 }
 
-/// Situation: an offset in the program or not; in flash one of this motor, of another, none, or one that is not believed.
-/// Action: choose.
-/// Must hold: the program's first, then that of this motor; no other is ever used, and the words say which and why.
+/// Situation: an offset in the program or not; in flash one of this motor, one of another motor, none, or an invalid
+/// one. Action: choose the offset.
+/// Must hold: the program's has priority, then that of this motor; no other is used, and the text says which and why.
 #[test]
 fn the_programs_own_offset_ranks_first() {
     let (mine, other) = (found(0.25), Alignment { motor_id: MOTOR ^ 1, ..found(0.25) });
@@ -140,9 +140,10 @@ fn the_programs_own_offset_ranks_first() {
 }
 
 proptest! {
-    /// Situation: any bytes where an alignment should be.
-    /// Action: read them.
-    /// Must hold: no offset outside half a turn, and only of the layout that is known; what is written comes back.
+    /// Situation: any bytes in place of an alignment.
+    /// Action: decode them.
+    /// Must hold: no offset outside half a turn, and only of the known layout; encoding a decoded alignment gives the
+    /// same.
     #[test]
     fn any_bytes_give_an_offset_within_half_a_turn(
         bytes in prop::collection::vec(any::<u8>(), 0..20), offset_turns in -0.5_f32..=0.5, number in any::<u32>()

@@ -6,13 +6,13 @@ use control::{ActiveLimits, Calibration, Causes, Command, Mode, SensorFrame};
 use link::can::*;
 use proptest::prelude::*;
 
-/// A value as a receiver must get it: kept within the range of a word, not known if it was not.
+/// A value as a receiver must decode it: saturated to the range of a word, unknown if it was unknown.
 fn expected(value: Option<f32>, unit: f32) -> Option<f64> {
     let most = 32_767.0 * f64::from(unit);
     value.filter(|value| !value.is_nan()).map(|value| f64::from(value).clamp(-most, most))
 }
 
-/// Whether a value arrived within half a unit, but for the rounding of an f32.
+/// Whether a value is within half a unit, plus the rounding of an f32.
 fn arrived(sent: Option<f32>, got: Option<f32>, unit: f32) -> bool {
     match (expected(sent, unit), got) {
         (Some(sent), Some(got)) => (sent - f64::from(got)).abs() <= 0.505 * f64::from(unit),
@@ -73,7 +73,8 @@ fn bytes_are_as_documented() {
     assert_eq!(causes.frame(), Frame { identifier: 0x322, bytes });
 }
 
-/// Situation: the page that describes the frames. Must hold: identifiers, units, ranges and times there are the program's.
+/// Situation: the page that describes the frames. Must hold: its identifiers, units, ranges and times are the
+/// program's.
 #[test]
 fn the_page_has_the_programs_numbers() {
     let page = include_str!("../../../../docs/link.md").split_whitespace().collect::<Vec<_>>().join(" ");
@@ -102,8 +103,8 @@ fn the_page_has_the_programs_numbers() {
     }
 }
 
-/// Situation: a calibration that turns everything round and moves the steer's zero, fresh samples and stale ones, a motor
-/// that says nothing. Must hold: what is told is the bicycle's; what is stale or missing is not known.
+/// Situation: a calibration that reverses every sign and shifts the steer's zero, fresh and stale samples, a motor
+/// without report. Must hold: the frame has the bicycle's values; stale or missing ones are unknown.
 #[test]
 fn motion_is_the_bicycles() {
     let reversed = Calibration {
@@ -135,8 +136,8 @@ fn motion_is_the_bicycles() {
 }
 
 proptest! {
-    /// Situation: any numbers, NaN and infinities included. Must hold: every value arrives within half a unit of where the
-    /// range stops it; NaN and what is not known arrive as not known; everything else arrives as it was.
+    /// Situation: any numbers, NaN and infinities included. Must hold: every value is decoded within half a unit of
+    /// its saturated value; NaN and unknown values are decoded as unknown; everything else is unchanged.
     #[test]
     fn messages_arrive(
         values in prop::array::uniform6(any_value()),
@@ -168,8 +169,8 @@ proptest! {
         prop_assert_eq!(Message::of(&sent.frame()), Some(sent));
     }
 
-    /// Situation: any frame of any identifier. Must hold: it is refused, or means something that makes a frame of the same
-    /// meaning; identifiers of others are refused.
+    /// Situation: any frame of any identifier. Must hold: it is rejected, or encoding its content gives the same
+    /// content; other identifiers are rejected.
     #[test]
     fn any_frame_is_told_or_refused(identifier in prop_oneof![0x320_u16..0x323, 0_u16..0x800], bytes: [u8; 8]) {
         match Message::of(&Frame { identifier, bytes }) {

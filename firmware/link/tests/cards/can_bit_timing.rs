@@ -1,12 +1,12 @@
-//! Flight cards: a bit of CAN.
+//! Flight cards: CAN bit timing.
 
 use devices::vesc6::CAN_CLOCK_HZ;
 use link::can::BIT_HZ;
 use link::can_bit_timing::bit_timing;
 use proptest::prelude::*;
 
-/// Situation: the board's clock and bit rate. Must hold: 84 clocks to a bit, so the rate is exact; it is read as near to
-/// 87.5 % as a divisor of 84 allows, which is 12 of 14 quanta.
+/// Situation: the board's clock and bit rate. Must hold: 84 clock cycles per bit, so the rate is exact; the sample
+/// point is as near to 87.5 % as a divisor of 84 allows, which is 12 of 14 quanta.
 #[test]
 fn the_board_keeps_the_rate() {
     let timing = bit_timing(CAN_CLOCK_HZ, BIT_HZ).unwrap();
@@ -15,7 +15,7 @@ fn the_board_keeps_the_rate() {
     assert_eq!((timing.prescaler, timing.segment_1, timing.segment_2, timing.jump), (6, 11, 2, 2));
 }
 
-/// Situation: clocks of which a bit has a multiple of eight or sixteen. Must hold: it is read at 87.5 %.
+/// Situation: clocks with a multiple of eight or sixteen cycles per bit. Must hold: the sample point is at 87.5 %.
 #[test]
 fn an_eighth_is_met_where_it_can_be() {
     for clock_hz in [8_000_000, 16_000_000, 24_000_000, 48_000_000] {
@@ -23,7 +23,7 @@ fn an_eighth_is_met_where_it_can_be() {
     }
 }
 
-/// Situation: clocks too slow or too odd for the rate, no clock, no rate. Must hold: there is no timing.
+/// Situation: clocks that are too slow or no multiple of the rate, no clock, no rate. Must hold: there is no timing.
 #[test]
 fn an_impossible_rate_is_refused() {
     for (clock_hz, bit_hz) in
@@ -34,7 +34,7 @@ fn an_impossible_rate_is_refused() {
 }
 
 proptest! {
-    /// Situation: any clock and rate, and those that go together. Must hold: what is found is exact, and every number fits
+    /// Situation: any clock and rate, and matching ones. Must hold: a timing found is exact, and every number fits
     /// its register.
     #[test]
     fn what_is_found_is_exact(clock: u32, bit in 1_u32.., times in 1_u32..4000) {

@@ -1,9 +1,9 @@
-//! Flight cards: the fate of frames for CAN.
+//! Flight cards: counting of CAN frames.
 
 use link::can_mailbox::{Action, Counts, Mailbox};
 use proptest::prelude::*;
 
-/// A mailbox as the chip has it, one frame at most in it, tried once.
+/// Model of the chip's mailbox: at most one frame, tried once.
 #[derive(Default)]
 struct Chip {
     waits: bool,
@@ -20,7 +20,7 @@ impl Chip {
         }
     }
 
-    /// The bus takes the frame, or nobody acknowledges it.
+    /// The frame is acknowledged, or not.
     fn try_once(&mut self, acknowledged: bool) {
         if self.waits {
             *self = Self { waits: false, completed: true, acknowledged };
@@ -29,7 +29,7 @@ impl Chip {
 }
 
 /// Situation: 100 frames on a bus with a listener, then 100 without one, then 100 on a bus that is off, then a listener
-/// again. Must hold: all of the first are sent, none of the others until the last; nothing that waited is sent late.
+/// again. Must hold: all of the first are sent, none of the others until the last; no pending frame is sent late.
 #[test]
 fn nobody_listening_costs_the_count() {
     let (mut chip, mut counts) = (Chip::default(), Counts::default());
@@ -51,8 +51,8 @@ fn nobody_listening_costs_the_count() {
 }
 
 proptest! {
-    /// Situation: a bus that does anything. Must hold: every frame is counted once, but for one that still waits or was
-    /// tried just now.
+    /// Situation: a bus with any behaviour. Must hold: every frame is counted once, except one that is pending or was
+    /// just tried.
     #[test]
     fn every_frame_is_counted_once(bus in prop::collection::vec(prop::option::of(any::<bool>()), 1..200)) {
         let (mut chip, mut counts) = (Chip::default(), Counts::default());

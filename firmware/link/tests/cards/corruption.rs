@@ -1,4 +1,4 @@
-//! Flash that does not hold what was written.
+//! Corrupted flash.
 
 use crate::flash::{Flash, PAGE, PAGES, load, random, save};
 use control::Config;
@@ -17,8 +17,8 @@ fn numbered(i: u16) -> Config {
 
 /// Situation: an older and a newest configuration in flash, both passed their polarity check.
 /// Action: turn one bit of every byte of both; start.
-/// Must hold: the newest configuration, or the defaults unchecked; never the older one, whose calibration may be
-/// another, and never anything else.
+/// Must hold: the newest configuration, or the defaults with the check not passed; never the older one, whose
+/// calibration can differ, and never anything else.
 #[test]
 fn a_turned_bit_never_brings_back_an_older_configuration() {
     let flash = save(save(Flash::new(), &numbered(1)).1, &numbered(2)).1;
@@ -44,10 +44,10 @@ fn a_turned_bit_never_brings_back_an_older_configuration() {
 }
 
 proptest! {
-    /// Situation: flash full of anything, or a good store of which a stretch is anything.
+    /// Situation: flash with any content, or a good store with a corrupted range.
     /// Action: start; store; start again.
-    /// Must hold: no panic; the configuration is one that `plan` accepts; one that is not the stored one is unchecked; the
-    /// store says honestly whether it succeeded, and a good store that lost a stretch succeeds.
+    /// Must hold: no panic; the configuration passes `plan`; if it is not the stored one, the check is not passed;
+    /// storing reports its success correctly, and succeeds on a good store with a corrupted range.
     #[test]
     fn any_flash_is_survived(
         good in any::<bool>(), from in 0..SIZE, length in 1..SIZE, seed in any::<u64>()

@@ -1,4 +1,4 @@
-//! The numbers of `docs/link.md` are those of the program.
+//! The numbers in `docs/link.md` are those of the program.
 
 use crate::messages::all;
 use control::{Config, Plan};
@@ -12,7 +12,7 @@ const PAGE: &str = include_str!("../../../../docs/link.md");
 
 /// Situation: the page that describes every byte.
 /// Action: look for each size, count and number there.
-/// Must hold: all are there as they are in the program, and every message has its row.
+/// Must hold: all are there with the program's values, and every message has its row.
 #[test]
 fn the_page_has_the_programs_numbers() {
     let text = PAGE.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -1,4 +1,4 @@
-//! Faults kept through a reset.
+//! Faults stored through a reset.
 
 use control::{CAUSES, Causes, Mode};
 use link::fault_log::{LastStep, RING_BYTES, SLOTS, clear, faults, last_step, note, noted, start, stepped};
@@ -24,9 +24,9 @@ fn steps(memory: &[u8; RING_BYTES]) -> Vec<u32> {
     faults(memory).map(|fault| fault.steps).collect()
 }
 
-/// Situation: noise, as after power-on.
+/// Situation: random memory, as after power-on.
 /// Action: start, note more faults than there are slots, start again, clear.
-/// Must hold: empty at first; the newest of them in order, whole; starts are counted through all of it.
+/// Must hold: empty at first; then the newest faults in order, unchanged; all starts are counted.
 #[test]
 fn the_newest_faults_are_kept() {
     let mut memory = [0xa5; RING_BYTES];
@@ -48,8 +48,8 @@ fn the_newest_faults_are_kept() {
 
 proptest! {
     /// Situation: any memory.
-    /// Action: start; keep where the controller stands; start again; turn any byte of it.
-    /// Must hold: it is told through a start; damage is told as the same or not at all.
+    /// Action: start; store the controller's state; start again; change any byte of it.
+    /// Must hold: the state survives a start; after damage it is the same or absent.
     #[test]
     fn the_last_step_is_kept(
         fill in any::<u8>(), steps in any::<u32>(), frame_us in any::<u32>(), causes in any::<u64>(), at in 0..RING_BYTES
@@ -67,8 +67,8 @@ proptest! {
     }
 
     /// Situation: any bytes in memory.
-    /// Action: read them; start, note a fault with any text.
-    /// Must hold: no panic; the fault is there, its text cut between letters at most.
+    /// Action: read them; start, record a fault with any text.
+    /// Must hold: no panic; the fault is there, its text cut only between characters.
     #[test]
     fn any_memory_becomes_a_ring(seed in prop::collection::vec(any::<u8>(), 64), text in ".{0,300}") {
         let mut memory = core::array::from_fn(|i| seed[i % 64]);
@@ -80,9 +80,8 @@ proptest! {
     }
 
     /// Situation: a full ring.
-    /// Action: turn any byte into any other; start.
-    /// Must hold: every fault that is still told is one that was noted, in their order; at most one is lost, or all
-    /// of them where the head was hit.
+    /// Action: change any byte; start.
+    /// Must hold: every fault read is a recorded one, in order; at most one is lost, or all if the header was changed.
     #[test]
     fn damage_takes_one_fault_or_empties_the_ring(at in 0..RING_BYTES, to in any::<u8>()) {
         let mut memory = [0; RING_BYTES];

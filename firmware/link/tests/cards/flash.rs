@@ -1,4 +1,4 @@
-//! Simulated NOR flash whose power may go at any word or in the middle of an erase.
+//! Simulated NOR flash with power failures at any word or in the middle of an erase.
 
 use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::{
@@ -8,36 +8,36 @@ use link::Store;
 use link::alignment::Alignment;
 use link::store::{Found, InvalidRecord, NotStored, Room};
 
-/// Bytes of a page: a few records, so that pages change often.
+/// Page size \[bytes\]: a few records, so that pages change often.
 pub(crate) const PAGE: usize = 8192;
 pub(crate) const PAGES: usize = 3;
-/// Steps that an erase takes.
+/// Steps per erase.
 const ERASE_STEPS: u64 = 8;
 
-/// What the step leaves behind that the power goes in.
+/// Effect of the step that the power failure interrupts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tear {
-    /// A word is written or not; an erase has come so far from the start of its page.
+    /// A word is written or not; an erase has reached some place of its page.
     Whole,
-    /// Any of the bits that were to change have, of the word or of the page, by this seed.
+    /// A random subset of the changing bits of the word or page, by this seed.
     Bits(u64),
 }
 
-/// Pages of words that can be cleared bit by bit and set only all at once.
+/// Pages of words whose bits are cleared individually and set only by an erase.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Flash {
     pub(crate) bytes: Vec<u8>,
-    /// Steps until the power goes; a step is a word written or a part of a page erased.
+    /// Steps until the power failure; a step is a word written or a part of a page erased.
     pub(crate) left: Option<u64>,
     pub(crate) tear: Tear,
     /// Steps done.
     pub(crate) steps: u64,
     pub(crate) erases: u64,
-    /// Words written that were not erased before.
+    /// Number of words written without an erase before.
     pub(crate) overwritten: u64,
 }
 
-/// The power is gone, or the access is not allowed.
+/// Power failure, or an invalid access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Gone;
 
@@ -67,17 +67,17 @@ impl Flash {
         }
     }
 
-    /// The same, but the power goes after so many steps more.
+    /// The same flash with a power failure after a number of further steps.
     pub(crate) fn cut(&self, after: u64, tear: Tear) -> Self {
         Self { left: Some(after), tear, ..self.clone() }
     }
 
-    /// The same with the power back.
+    /// The same flash with power.
     pub(crate) fn restarted(&self) -> Self {
         Self { left: None, ..self.clone() }
     }
 
-    /// One step, or the end of the power.
+    /// One step, or the power failure.
     fn step(&mut self) -> Result<(), Gone> {
         match &mut self.left {
             Some(0) => return Err(Gone),
@@ -160,7 +160,7 @@ impl NorFlash for Flash {
     }
 }
 
-/// The configuration that a start finds, and the flash it leaves.
+/// Configuration found at a start, and the resulting flash.
 pub(crate) fn load(flash: Flash, defaults: &control::Config) -> (control::Config, Found, Flash) {
     let range = 0..flash.bytes.len() as u32;
     let mut store = Store::new(flash, range).expect("a range of pages");
@@ -168,7 +168,7 @@ pub(crate) fn load(flash: Flash, defaults: &control::Config) -> (control::Config
     (config, found, store.into_flash())
 }
 
-/// Stores a configuration; the flash it leaves.
+/// Stores a configuration; returns the resulting flash.
 pub(crate) fn save(flash: Flash, config: &control::Config) -> (Result<(), NotStored>, Flash) {
     let range = 0..flash.bytes.len() as u32;
     let mut store = Store::new(flash, range).expect("a range of pages");
@@ -176,7 +176,7 @@ pub(crate) fn save(flash: Flash, config: &control::Config) -> (Result<(), NotSto
     (done, store.into_flash())
 }
 
-/// The alignment that a start finds, and the flash it leaves.
+/// Alignment found at a start, and the resulting flash.
 pub(crate) fn load_alignment(flash: Flash) -> (Result<Option<Alignment>, InvalidRecord>, Flash) {
     let range = 0..flash.bytes.len() as u32;
     let mut store = Store::new(flash, range).expect("a range of pages");
@@ -184,7 +184,7 @@ pub(crate) fn load_alignment(flash: Flash) -> (Result<Option<Alignment>, Invalid
     (found, store.into_flash())
 }
 
-/// Stores an alignment; the flash it leaves.
+/// Stores an alignment; returns the resulting flash.
 pub(crate) fn save_alignment(flash: Flash, alignment: &Alignment) -> (Result<(), NotStored>, Flash) {
     let range = 0..flash.bytes.len() as u32;
     let mut store = Store::new(flash, range).expect("a range of pages");

@@ -1,9 +1,9 @@
-//! Frames in a stream of bytes that may be anything.
+//! Framing in a stream of arbitrary bytes.
 
 use link::frame::{Decoder, Dropped, Frame, MAX_FRAME, MAX_PAYLOAD, Received, VERSION, encode};
 use proptest::prelude::*;
 
-/// A frame as it was received, on its own.
+/// A received frame, owned.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Got {
     Frame(u8, u16, Vec<u8>),
@@ -40,7 +40,7 @@ fn line(kind: u8, sequence: u16, payload: &[u8]) -> Vec<u8> {
     bytes[..used].to_vec()
 }
 
-/// A frame of another version, made by hand.
+/// A frame of another version, built by hand.
 fn foreign(version: u8) -> Vec<u8> {
     let mut plain = vec![version, 1, 2, 3, 4, 5];
     plain.extend_from_slice(&link::frame::CRC.checksum(&plain).to_le_bytes());
@@ -65,7 +65,7 @@ fn payloads() -> impl Strategy<Value = Vec<u8>> {
 proptest! {
     /// Situation: any frames, one after the other.
     /// Action: decode them byte by byte.
-    /// Must hold: the same frames; nothing dropped; on the line 0 stands only at the ends of each.
+    /// Must hold: the same frames; nothing dropped; the byte 0 occurs only at the ends of each.
     #[test]
     fn frames_come_through(frames in prop::collection::vec((any::<u8>(), any::<u16>(), payloads()), 1..5)) {
         let mut decoder = Decoder::default();
@@ -79,7 +79,7 @@ proptest! {
 
     /// Situation: frames with any bytes before, between and in them, cut into pieces anywhere.
     /// Action: decode them byte by byte, and piece by piece.
-    /// Must hold: the same frames, and as much dropped of each kind.
+    /// Must hold: the same frames, and the same drop counts of each kind.
     #[test]
     fn pieces_say_what_their_bytes_say(
         parts in prop::collection::vec((prop::collection::vec(any::<u8>(), 0..400), payloads()), 1..5),
@@ -106,7 +106,7 @@ proptest! {
 
     /// Situation: any bytes, then a frame.
     /// Action: decode them.
-    /// Must hold: no panic; no frame of the bytes (they have none); the frame after them gets through.
+    /// Must hold: no panic; no frame from the bytes (they contain none); the frame after them is received.
     #[test]
     fn a_frame_is_found_after_any_garbage(garbage in prop::collection::vec(any::<u8>(), 0..2000), payload in payloads()) {
         let mut decoder = Decoder::default();
@@ -118,7 +118,7 @@ proptest! {
 
     /// Situation: a frame of which any bytes are replaced, lost or added, and then another.
     /// Action: decode both.
-    /// Must hold: of the first nothing but itself is accepted; the next gets through.
+    /// Must hold: of the first only the original is accepted; the next is received.
     #[test]
     fn damage_never_makes_another_frame(
         payload in payloads(),
@@ -140,8 +140,8 @@ proptest! {
     }
 
     /// Situation: a frame that is cut anywhere within: the decoder starts there, or the sender stops there.
-    /// Action: decode the part and then a whole one.
-    /// Must hold: only the whole one.
+    /// Action: decode the part and then a complete one.
+    /// Must hold: only the complete one is received.
     #[test]
     fn part_of_a_frame_is_none(payload in payloads(), at in any::<prop::sample::Index>(), front in any::<bool>()) {
         let whole = line(7, 9, &payload);
@@ -152,9 +152,9 @@ proptest! {
     }
 }
 
-/// Situation: a frame of every size, with every single bit of it turned in turn.
+/// Situation: a frame of every size, with each single bit flipped in turn.
 /// Action: decode it, then another.
-/// Must hold: nothing of the first is accepted; it is counted once; the next gets through.
+/// Must hold: nothing of the first is accepted; it is counted once; the next is received.
 #[test]
 fn no_turned_bit_is_accepted() {
     for size in [0, 1, 7, 81, MAX_PAYLOAD] {
@@ -176,10 +176,9 @@ fn no_turned_bit_is_accepted() {
     }
 }
 
-/// Situation: nothing but bytes without a 0; a frame of another version; a run that is wrongly stuffed; a CRC of
-/// something else.
+/// Situation: only bytes without a 0; a frame of another version; invalid COBS encoding; a wrong CRC.
 /// Action: decode each.
-/// Must hold: each is counted as what it is.
+/// Must hold: each is counted under its kind.
 #[test]
 fn what_is_dropped_is_counted_by_its_kind() {
     let mut decoder = Decoder::default();
@@ -197,9 +196,9 @@ fn what_is_dropped_is_counted_by_its_kind() {
     assert_eq!(decoder.dropped(), Dropped { too_long: 1, wrong_version: 2, garbled: 2, bad_crc: 1 });
 }
 
-/// Situation: a payload that is too long; room that is too small.
+/// Situation: a payload that is too long; a buffer that is too small.
 /// Action: encode.
-/// Must hold: refused; the longest payload in the largest frame is not, and is what is on the line.
+/// Must hold: rejected; the longest payload in the largest frame is accepted, and decodes to itself.
 #[test]
 fn a_frame_that_does_not_fit_is_refused() {
     let mut bytes = [0; MAX_FRAME];

@@ -1,4 +1,4 @@
-//! The list of parameters, and the law among them.
+//! The parameter list, including the law.
 
 use crate::requests::ask;
 use control::param::{ParamSpec, ParamVisitor};
@@ -11,7 +11,7 @@ use link::page::Entry;
 use link::parameter_list::Kind;
 use link::requests::set;
 
-/// An entry of the list, on its own.
+/// An owned entry of the list.
 #[derive(Clone, Debug, PartialEq)]
 struct Listed {
     key: String,
@@ -45,7 +45,7 @@ fn list(config: &Config) -> (Vec<Listed>, usize) {
     }
 }
 
-/// Every leaf of the configuration by its own visitor, as text.
+/// Every parameter of the configuration by its own visitor, as text.
 struct Names(Vec<(String, Kind)>);
 
 impl Names {
@@ -73,10 +73,10 @@ impl ParamVisitor for Names {
     }
 }
 
-/// Situation: a product of which one parameter is not at its default, while engaged.
+/// Situation: a product with one parameter off its default, while engaged.
 /// Action: list it page by page.
-/// Must hold: the law first, then every leaf in its order under its own name, each with unit, range and default, in 30 to
-/// 80 pages.
+/// Must hold: the law first, then every parameter in order under its own name, each with unit, range and default, in
+/// 30 to 80 pages.
 #[test]
 fn every_parameter_is_listed() {
     let mut config = Config::product();
@@ -115,9 +115,9 @@ fn every_parameter_is_listed() {
     }
 }
 
-/// Situation: the list asked for beyond its end.
-/// Action: ask.
-/// Must hold: an empty page that tells how many there are.
+/// Situation: a request for the list beyond its end.
+/// Action: send it.
+/// Must hold: an empty page with the number of parameters.
 #[test]
 fn beyond_the_list_is_an_empty_page() {
     let total = list(&Config::product()).0.len();
@@ -133,8 +133,8 @@ fn beyond_the_list_is_an_empty_page() {
 }
 
 /// Situation: laws of every kind.
-/// Action: set each as a whole, and ask for it; list the parameters then.
-/// Must hold: the same law; its own slope is among the parameters, and can be set there.
+/// Action: set each as a whole, and read it; then list the parameters.
+/// Must hold: the same law; its slope is among the parameters, and can be set there.
 #[test]
 fn a_law_is_set_as_a_whole() {
     let table = GainSchedule::new(&[(-1.0, 0.0), (2.0, 12.0), (8.0, 0.0)]).expect("a table");

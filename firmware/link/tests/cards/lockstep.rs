@@ -1,4 +1,4 @@
-//! What host and board hand each other in a period.
+//! The lockstep exchange of host and board.
 
 use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
 use proptest::prelude::*;
@@ -9,8 +9,8 @@ fn bytes() -> impl Strategy<Value = Vec<u8>> {
 
 proptest! {
     /// Situation: any bytes for loop and line, any time.
-    /// Action: write and read, both ways; then with a byte more and a byte less.
-    /// Must hold: the same; any other length is refused.
+    /// Action: encode and decode, in both directions; then with a byte more and a byte less.
+    /// Must hold: the same; any other length is rejected.
     #[test]
     fn loop_and_line_stay_apart(first in bytes(), second in bytes(), time_ms in any::<u32>(), starts in any::<u16>()) {
         let mut room = [0; MAX_CHUNK];
@@ -28,8 +28,8 @@ proptest! {
     }
 
     /// Situation: any bytes at all.
-    /// Action: read them as what came from either side.
-    /// Must hold: no panic; what is read takes just these bytes.
+    /// Action: decode them in either direction.
+    /// Must hold: no panic; a decoded exchange uses exactly these bytes.
     #[test]
     fn any_bytes_are_read_or_refused(any in bytes()) {
         if let Some(board) = FromBoard::decode(&any) {

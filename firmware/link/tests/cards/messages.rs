@@ -1,4 +1,4 @@
-//! Every message through its frame and back.
+//! Encoding and decoding of every message.
 
 use control::wire::{decode_frame, encode_command, encode_frame};
 use control::{ActiveLimits, CAUSES, Causes, Command, Mode, SensorFrame};
@@ -19,7 +19,7 @@ const MODES: [Mode; 7] = {
     [Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault]
 };
 
-/// Sends a message and hands what arrives to `seen`; its sequence number.
+/// Sends a message and passes the received one to `seen`; returns its sequence number.
 fn through(message: &Message<'_>, seen: impl FnOnce(&Message<'_>)) -> u16 {
     let (mut bytes, mut decoder) = ([0; MAX_FRAME], Decoder::default());
     let used = message.encode(513, &mut bytes).expect("room");
@@ -52,8 +52,8 @@ fn slopes() -> impl Strategy<Value = [Option<f32>; 2]> {
 
 proptest! {
     /// Situation: any sensor frame's bits, any command, any slopes.
-    /// Action: telemetry and the processor in the loop's frames through the link.
-    /// Must hold: the same in every bit.
+    /// Action: send telemetry and the frames of processor in the loop.
+    /// Must hold: every bit is the same.
     #[test]
     fn what_a_step_saw_and_did_comes_through(
         bits in prop::collection::vec(any::<u8>(), 81), command in commands(), slopes in slopes(), steps in any::<u32>()
@@ -76,8 +76,8 @@ proptest! {
     }
 
     /// Situation: a frame of any kind with any payload.
-    /// Action: read it as a message, and as a page's entries; write again what was read.
-    /// Must hold: no panic; what is a message can be written.
+    /// Action: decode it as a message, and as a page's entries; encode the result.
+    /// Must hold: no panic; a decoded message can be encoded.
     #[test]
     fn any_payload_is_a_message_or_refused(
         kind in any::<u8>(), payload in prop::collection::vec(any::<u8>(), 0..=MAX_PAYLOAD)
@@ -95,7 +95,7 @@ proptest! {
     }
 }
 
-/// Every message with something in each field.
+/// Every message with a non-zero value in each field.
 pub(crate) fn all() -> Vec<Message<'static>> {
     let parted = Key { group: "limits.end_stop", name: "soft_rad" };
     let refusal = Rejection { why: RejectReason::OutOfRange, key: parted, value: 9.0, min: 0.5, max: 1.5 };
@@ -157,8 +157,8 @@ pub(crate) fn all() -> Vec<Message<'static>> {
 }
 
 /// Situation: every message.
-/// Action: through the link; then with a byte more, and with one less than it needs.
-/// Must hold: the same message under the same number; more bytes change nothing; too few are refused.
+/// Action: encode and decode; then with a byte more, and with one less than it needs.
+/// Must hold: the same message and number; extra bytes change nothing; too few are rejected.
 #[test]
 fn every_message_comes_through() {
     for message in all() {
@@ -185,9 +185,9 @@ fn every_message_comes_through() {
     }
 }
 
-/// Situation: every reason, mode, kind of fault and cause of a reset there is, and numbers beyond them.
-/// Action: to its number and back.
-/// Must hold: the same; beyond them none.
+/// Situation: every reason, mode, fault kind and reset cause, and numbers beyond them.
+/// Action: convert to its number and back.
+/// Must hold: the same; none for the numbers beyond.
 #[test]
 fn every_number_means_one_thing() {
     for number in 0..=255 {
@@ -208,8 +208,8 @@ fn every_number_means_one_thing() {
 }
 
 /// Situation: a frame of another version; of a kind that does not exist; of a kind that is too short; a good one.
-/// Action: take them as requests.
-/// Must hold: each but the good one is answered with what is wrong, under its number where that is known.
+/// Action: decode them as requests.
+/// Must hold: each but the good one is answered with its error, under its sequence number where known.
 #[test]
 fn what_is_no_request_is_answered() {
     let refused = |why| Message::Refused(Rejection::of(why));
@@ -225,9 +225,9 @@ fn what_is_no_request_is_answered() {
     assert_eq!(request(&of(0x02, &[1, 0])), Ok((44, Message::List { from: 1 })));
 }
 
-/// Situation: words longer than a frame, of letters of two bytes each.
-/// Action: as a log line and as a fault's text.
-/// Must hold: their beginning comes through, whole letters.
+/// Situation: a text longer than a frame, of two-byte characters.
+/// Action: send it as a log line and as a fault's text.
+/// Must hold: its beginning arrives, cut between characters.
 #[test]
 fn long_words_are_cut_between_letters() {
     let long = "\u{e9}".repeat(400);
@@ -253,8 +253,8 @@ fn panic_of(text: &str) -> FaultRecord<'_> {
 }
 
 /// Situation: a fault record with the longest text.
-/// Action: kept, and through the link.
-/// Must hold: it takes as many bytes as its size says, and a frame has room for it and its place.
+/// Action: store it, and send it.
+/// Must hold: its size is the documented one, and it fits into a frame with its index.
 #[test]
 fn the_largest_fault_record_has_its_size() {
     let text = "x".repeat(FAULT_TEXT_BYTES);
@@ -268,8 +268,8 @@ fn the_largest_fault_record_has_its_size() {
 }
 
 /// Situation: two configurations that differ in one parameter.
-/// Action: their hashes.
-/// Must hold: one each, the same every time.
+/// Action: compute their hashes.
+/// Must hold: they differ, and are reproducible.
 #[test]
 fn the_configuration_has_a_hash() {
     let mut other = control::Config::product();

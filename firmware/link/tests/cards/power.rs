@@ -1,4 +1,4 @@
-//! Loss of power while the parameters are stored.
+//! Power failures during a store.
 
 use crate::flash::{Flash, Tear, load, load_alignment, random, save, save_alignment};
 use control::Config;
@@ -24,7 +24,7 @@ fn aligned(i: u16) -> Alignment {
     Alignment { offset_turns: 0.001 * f32::from(i) - 0.4, motor_id: 0x1234_0000 + u32::from(i) }
 }
 
-/// Each parameter of `found` that is neither the one's nor the other's.
+/// Each parameter of `found` that has neither the old nor the new value.
 fn strange(found: &Config, old: &Config, new: &Config) -> Vec<String> {
     let values = |config: &Config| {
         let mut values = Vec::new();
@@ -38,12 +38,11 @@ fn strange(found: &Config, old: &Config, new: &Config) -> Vec<String> {
     found.into_iter().filter(|pair| !old.contains(pair) && !new.contains(pair)).map(|(key, _)| key).collect()
 }
 
-/// Situation: an alignment in flash, and parameters stored eighteen times over, so that every page was filled and erased.
-/// Action: at each of these, cut the power after every single word and every part of an erase; start again;
-/// then store once more.
-/// Must hold: each parameter has its old or its new value, and all of them together the old or the new ones;
-/// before the first store was whole, the defaults, not to be engaged with; the alignment as it was. The later store
-/// succeeds and is found.
+/// Situation: an alignment in flash, and parameters stored eighteen times, so that every page was filled and erased.
+/// Action: at each of these, cut the power after every single word and every part of an erase; start again; then
+/// store once more.
+/// Must hold: all parameters have their old values, or all their new ones; before the first store completed, the
+/// defaults, with the polarity check not passed; the alignment is unchanged. The later store succeeds and is found.
 /// No word is written twice between erases.
 #[test]
 fn power_lost_at_any_word_leaves_the_old_or_the_new() {
@@ -79,10 +78,10 @@ fn power_lost_at_any_word_leaves_the_old_or_the_new() {
 }
 
 /// Situation: a configuration in flash, and alignments stored so often that every page was filled and erased.
-/// Action: at each of the first few, and each that begins a page or erases one, cut the power after every single word and
-/// every part of an erase; start again; then store once more.
-/// Must hold: the old or the new alignment, offset and motor together, or none before the first; the configuration as it
-/// was. The later store succeeds and is found.
+/// Action: at each of the first few, and each that begins a page or erases one, cut the power after every single word
+/// and every part of an erase; start again; then store once more.
+/// Must hold: the old or the new alignment, offset and motor together, or none before the first; the configuration as
+/// it was. The later store succeeds and is found.
 #[test]
 fn power_lost_at_any_word_leaves_the_old_or_the_new_alignment() {
     let defaults = Config::product();
@@ -112,8 +111,8 @@ fn power_lost_at_any_word_leaves_the_old_or_the_new_alignment() {
     }
     println!("cuts: old {kept_old}, new {kept_new}; {} erases", flash.erases);
     assert!(flash.erases >= 2 && flash.overwritten == 0);
-    // Which of the two items of an alignment meets the end of a page, and has the parameters carried over before it, follows
-    // from the record's length; the other outcome is then the rarer one.
+    // Which of the two items of an alignment meets the end of a page, and has the parameters carried over before it,
+    // follows from the record's length; the other outcome is then the rarer one.
     assert!(kept_old.min(kept_new) >= 30 && kept_old + kept_new >= 500, "{kept_old} {kept_new}");
 }
 
@@ -153,7 +152,8 @@ proptest! {
     /// is mended at the next start, in the middle of words and erases, of which any bits have changed.
     /// Action: start with the power back.
     /// Must hold: no panic; all parameters together as they were or as they were to be; before anything was stored, the
-    /// defaults, not to be engaged with; the alignment that was stored first of all; and a store then succeeds and is found.
+    /// defaults, not to be engaged with; the alignment that was stored first of all; and a store then succeeds and is
+    /// found.
     #[test]
     fn power_lost_again_and_again(
         before in 0_u16..16, cuts in prop::collection::vec(0_u64..1200, 1..6), seed in any::<u64>()

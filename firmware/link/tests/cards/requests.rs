@@ -1,4 +1,4 @@
-//! Parameters asked for and set over the link.
+//! Reading and setting parameters over the link.
 
 use control::Config;
 use link::Key;
@@ -9,7 +9,7 @@ use link::rejection::{RejectReason, Rejection};
 use link::requests::{answer, set};
 use proptest::prelude::*;
 
-/// Asks and hands the answer to `seen`.
+/// Sends a request and passes the answer to `seen`.
 pub(crate) fn ask<T>(
     config: &mut Config,
     engaged: bool,
@@ -19,7 +19,7 @@ pub(crate) fn ask<T>(
     seen(answer(&Config::product(), config, engaged, request, &mut [0; PAGE_BYTES]))
 }
 
-/// A request that is refused; why, and that nothing changed.
+/// Sends a request that must be rejected; returns the rejection and checks that nothing changed.
 fn refused(config: &Config, engaged: bool, request: &Message<'_>) -> (RejectReason, String) {
     let mut asked = config.clone();
     let refusal = ask(&mut asked, engaged, request, |answer| match answer {
@@ -34,10 +34,10 @@ fn to(key: &'static str, value: impl Into<Option<f32>>) -> Message<'static> {
     Message::Set { key: Key::whole(key), value: value.into() }
 }
 
-/// Situation: every parameter that is shown.
-/// Action: ask for each, set it to what it is, to its ends, and a hair beyond them.
-/// Must hold: what was asked; beyond its ends refused as out of range with key, value and range; an end is accepted, or
-/// refused with the reason why not; whatever is refused changes nothing.
+/// Situation: every listed parameter.
+/// Action: read each, set it to its value, to its limits, and slightly beyond them.
+/// Must hold: the value; beyond the limits rejected as out of range with key, value and range; a limit is accepted, or
+/// rejected with the reason; a rejection changes nothing.
 #[test]
 fn every_parameter_is_got_and_set() {
     let mut seen = Vec::new();
@@ -83,9 +83,9 @@ fn every_parameter_is_got_and_set() {
     assert!(taken > 250 && not > 20, "{taken} {not}");
 }
 
-/// Situation: torque may flow.
+/// Situation: torque can flow.
 /// Action: set, set the law, store, reset; get, list.
-/// Must hold: all that changes anything is refused as such, what asks is answered.
+/// Must hold: every change is rejected as such, every read is answered.
 #[test]
 fn nothing_is_changed_while_engaged() {
     let config = Config::product();
@@ -107,7 +107,7 @@ fn nothing_is_changed_while_engaged() {
 
 /// Situation: requests with every kind of mistake.
 /// Action: send each.
-/// Must hold: refused with the reason in words that name key, value and range; nothing changed.
+/// Must hold: rejected with a text that names key, value and range; nothing changed.
 #[test]
 fn a_mistake_is_told() {
     let config = Config::product();
@@ -164,9 +164,9 @@ fn a_mistake_is_told() {
     }
 }
 
-/// Situation: two parameters that must fit each other, each set within its own range.
-/// Action: set the one to where the other forbids it.
-/// Must hold: refused by the check of the whole; nothing changed.
+/// Situation: two parameters that must be consistent, each set within its own range.
+/// Action: set one to a value that is inconsistent with the other.
+/// Must hold: rejected by the check of the configuration; nothing changed.
 #[test]
 fn the_configuration_is_checked_as_a_whole() {
     let config = Config::product();
@@ -178,8 +178,8 @@ fn the_configuration_is_checked_as_a_whole() {
 }
 
 /// Situation: a bicycle whose polarity check was passed.
-/// Action: set something of the calibration; something else; the check's own mark to off.
-/// Must hold: the calibration's change takes the mark away, the other does not; off is allowed, on is not.
+/// Action: set a calibration parameter; another parameter; `polarity_checked` to off.
+/// Must hold: the calibration's change clears `polarity_checked`, the other does not; off is allowed, on is not.
 #[test]
 fn a_changed_calibration_is_an_unchecked_one() {
     let mut checked = Config::product();
@@ -201,9 +201,9 @@ fn a_changed_calibration_is_an_unchecked_one() {
     assert_eq!(checked, Config::product());
 }
 
-/// Situation: requests that the caller has to answer, and what is no request.
-/// Action: ask.
-/// Must hold: no answer from here, nothing changed.
+/// Situation: requests that the caller has to answer, and messages that are no requests.
+/// Action: send them.
+/// Must hold: no answer from this function, nothing changed.
 #[test]
 fn what_others_answer_is_left_to_them() {
     for request in [
@@ -224,7 +224,7 @@ fn what_others_answer_is_left_to_them() {
 proptest! {
     /// Situation: any sequence of sets of any parameter to anything.
     /// Action: carry them out one after the other.
-    /// Must hold: after each the configuration is one that `plan` accepts, and unchanged if it was refused.
+    /// Must hold: after each the configuration passes `plan`, and is unchanged if the request was rejected.
     #[test]
     fn no_set_leaves_a_configuration_that_is_refused(
         sets in prop::collection::vec((any::<prop::sample::Index>(), any::<u32>(), 0.0_f32..1.0, 0..4_u8), 1..12)

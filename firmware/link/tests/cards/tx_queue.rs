@@ -1,4 +1,4 @@
-//! What goes out when more wants to than the line takes.
+//! The transmit queue under overload.
 
 use control::{ActiveLimits, Causes, Command, Mode, SensorFrame};
 use link::frame::{Decoder, MAX_FRAME, Received};
@@ -27,7 +27,7 @@ fn telemetry(steps: u32) -> Telemetry {
     }
 }
 
-/// Takes up to so many bytes; the numbers and kinds of the frames they complete.
+/// Removes up to a number of bytes; returns numbers and kinds of the completed frames.
 fn drain<const A: usize, const U: usize>(
     sender: &mut TxQueue<A, U>,
     decoder: &mut Decoder,
@@ -43,7 +43,7 @@ fn drain<const A: usize, const U: usize>(
     got
 }
 
-/// Situation: a line that takes everything; one step of 20 is to be told, every one, none.
+/// Situation: a line without a limit; telemetry of one step of 20, of every step, of none.
 /// Action: 1000 steps.
 /// Must hold: 50 frames, the first step's among them; 1000; none.
 #[test]
@@ -59,10 +59,10 @@ fn one_step_of_as_many_as_the_divisor_is_told() {
     }
 }
 
-/// Situation: a line that takes 40 bytes in a step, with every step told: three times too few.
-/// Action: 3000 steps, then the rest of what waits.
-/// Must hold: nothing waits for the line; every frame told arrived whole or was counted as dropped, and their numbers
-/// show which; a third arrived.
+/// Situation: a line of 40 bytes per step, with telemetry at every step: a third of the required rate.
+/// Action: 3000 steps, then drain the queue.
+/// Must hold: nothing blocks; every frame arrived complete or was counted as dropped, and the sequence numbers show
+/// which; a third arrived.
 #[test]
 fn telemetry_is_dropped_whole_and_counted() {
     let (mut sender, mut decoder) = (TxQueue::<256, 512>::new(1), Decoder::default());
@@ -78,9 +78,9 @@ fn telemetry_is_dropped_whole_and_counted() {
     assert!((900..=1100).contains(&got.len()), "{}", got.len());
 }
 
-/// Situation: the ring for what nobody asked for is full, a frame of it is half out.
+/// Situation: the ring of unsolicited messages is full, and one of its frames is half sent.
 /// Action: answer a request.
-/// Must hold: there is room for the answer; it goes out next after that frame, under the request's number.
+/// Must hold: the answer fits; it is sent right after that frame, under the request's number.
 #[test]
 fn an_answer_overtakes_telemetry() {
     let (mut sender, mut decoder) = (TxQueue::<256, 512>::new(1), Decoder::default());
@@ -95,9 +95,9 @@ fn an_answer_overtakes_telemetry() {
     assert!(got.len() > 3 && got[2..].iter().all(|(_, kind)| *kind == 0xa0), "{got:?}");
 }
 
-/// Situation: more answers than there is room for.
-/// Action: answer until refused; send; answer again.
-/// Must hold: refused, not cut, and nothing counted as dropped; then there is room again; all that were taken arrive.
+/// Situation: more answers than fit.
+/// Action: answer until rejected; send; answer again.
+/// Must hold: rejected, not cut, and nothing counted as dropped; then answers fit again; all accepted ones arrive.
 #[test]
 fn an_answer_without_room_is_refused() {
     let (mut sender, mut decoder) = (TxQueue::<64, 512>::new(1), Decoder::default());
@@ -111,9 +111,9 @@ fn an_answer_without_room_is_refused() {
 }
 
 proptest! {
-    /// Situation: any order of answers, steps, words and bytes taken by the line.
+    /// Situation: any order of answers, steps, log texts and bytes sent.
     /// Action: all of it; then drain.
-    /// Must hold: no panic; every frame that was taken arrives whole, answers in their order.
+    /// Must hold: no panic; every accepted frame arrives complete, answers in order.
     #[test]
     fn whatever_was_taken_arrives(acts in prop::collection::vec((0..4_u8, 0..200_usize), 1..200)) {
         let (mut sender, mut decoder) = (TxQueue::<{ MAX_FRAME }, 400>::new(1), Decoder::default());

@@ -1,5 +1,6 @@
 //! Memories of an STM32F405xG (data sheet DS8626, figure 18; RM0090 rev 22, table 5): half of the flash and less RAM
 //! than the library's chip, and a flash array that reacts to stores.
+//!
 //! The emulator uses the memories from here and the rest from [`super::Chip`].
 
 use rigless::device::{ErasedDevice, ResetCause};
