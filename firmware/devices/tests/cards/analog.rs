@@ -1,15 +1,15 @@
-//! Flight cards: what the converter's counts stand for.
+//! Flight cards: conversion of ADC counts.
 
 use devices::analog::{FULL_SCALE, Gauge};
 use devices::vesc6::{BOARD_HEAT, SHUNT, STEER_RAD, SUPPLY};
 
-/// Counts that a voltage makes, rounded as the chip's data sheet says.
+/// Counts of a voltage, rounded as the chip's data sheet says.
 fn counts(volt: f64) -> u16 {
     (volt / 3.3 * 4095.0).round() as u16
 }
 
-/// Situation: a current through a shunt, amplified, above half of the reference. Action: it is converted and read.
-/// Must hold: the same current comes out to half a count, of the same sign, and beyond the range nothing does.
+/// Situation: a current through a shunt, amplified, above half of the reference. Action: convert it to counts and back.
+/// Must hold: the same current to half a count, with the same sign; beyond the range, none.
 #[test]
 fn a_current_comes_back() {
     let step = 3.3 / 4095.0 / 0.5e-3 / 20.0;
@@ -25,8 +25,8 @@ fn a_current_comes_back() {
     }
 }
 
-/// Situation: batteries and temperatures. Action: converted and read. Must hold: the same comes out to a count; a
-/// thermistor that is cut or shorted has no temperature.
+/// Situation: bus voltages and temperatures. Action: convert to counts and back. Must hold: the same to a count; an
+/// open or shorted thermistor has no temperature.
 #[test]
 fn supply_and_temperature_come_back() {
     for volt in [5.0, 24.0, 36.0, 57.0] {
@@ -43,8 +43,8 @@ fn supply_and_temperature_come_back() {
     }
 }
 
-/// Situation: a steer sensor, turned from end to end, then cut and shorted. Must hold: the angle rises to the right with
-/// its zero in the middle, and a broken wire is no angle at all.
+/// Situation: a steer sensor, turned from end to end, then open and shorted. Must hold: the angle rises to the right
+/// with zero in the middle; a broken wire gives no angle.
 #[test]
 fn a_gauge_tells_a_broken_wire_from_an_angle() {
     let half = core::f32::consts::FRAC_PI_2;

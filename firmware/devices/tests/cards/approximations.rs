@@ -1,4 +1,4 @@
-//! Flight cards: what micromath is good enough for. The errors in the table of docs/motor.md are computed here.
+//! Flight cards: accuracy of micromath. The errors in the table of docs/motor.md are computed here.
 
 use devices::vesc6::BOARD_HEAT;
 use micromath::F32;
@@ -10,7 +10,7 @@ fn most(errors: impl Iterator<Item = f64>) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-/// The page's row must tell these errors, today's and micromath's, within a twentieth.
+/// The page's row must have these errors, of this project and of micromath, within a twentieth.
 fn holds(row: &str, errors: [f64; 2]) {
     let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/motor.md");
     let page = std::fs::read_to_string(page).expect("the page");
@@ -24,7 +24,7 @@ fn holds(row: &str, errors: [f64; 2]) {
 }
 
 /// Situation: numbers to be sent, from far below a unit to the ends of the range. Must hold: micromath rounds each as
-/// libm does, but for the last number below a half.
+/// libm does, except the largest number below a half.
 #[test]
 fn rounding_is_that_of_libm() {
     let apart: Vec<f32> = (0..=u32::MAX)
@@ -38,8 +38,8 @@ fn rounding_is_that_of_libm() {
     holds("rounding of the values on CAN", [0.0, error]);
 }
 
-/// Situation: every count of the thermistor from -40 to 180 deg C, its logarithm by micromath. Must hold: up to 7 K
-/// from the truth, as its inverse is one of 12 %; as it is done, no more than 0.01 K.
+/// Situation: every count of the thermistor from -40 to 180 deg C, with micromath's logarithm. Must hold: errors up
+/// to 7 K, as its reciprocal has an error of 12 %; with the product's functions at most 0.01 K.
 #[test]
 fn a_logarithm_below_one_is_no_temperature() {
     let celsius = |ln: f64| 1.0 / (ln / f64::from(BOARD_HEAT.beta_k) + 1.0 / 298.15) - 273.15;
@@ -56,7 +56,7 @@ fn a_logarithm_below_one_is_no_temperature() {
     holds("logarithm of the thermistor", [as_done, by_micromath]);
 }
 
-/// Situation: a turn in 200,000 steps. Must hold: today's sine and cosine within 1e-6, micromath's within 1.1e-3.
+/// Situation: a turn in 200,000 steps. Must hold: the product's sine and cosine within 1e-6, micromath's within 1.1e-3.
 #[test]
 fn micromaths_angles_are_rough() {
     let turn = || (-100_000..100_000).map(|i| f64::from(i) * PI / 100_000.0);
@@ -74,8 +74,8 @@ fn micromaths_angles_are_rough() {
     holds("sine and cosine of the rotor's angle", [today, rough]);
 }
 
-/// Situation: lengths of any size. Must hold: a root within a rounding today, by micromath within 6.1 %, 1.6e-6 after two
-/// steps of Newton, whose root of infinity is no number.
+/// Situation: lengths of any size. Must hold: the product's root within a rounding; micromath's within 6.1 %, 1.6e-6
+/// after two Newton steps, which give NaN for infinity.
 #[test]
 fn micromaths_lengths_are_rough() {
     let newton = |x: f32, root: f32| 0.5 * (root + x / root);

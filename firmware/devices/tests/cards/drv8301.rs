@@ -1,9 +1,9 @@
-//! Flight cards: the gate driver's words, on a chip that is simulated from its data sheet.
+//! Flight cards: SPI words of the gate driver, on a chip simulated from its data sheet.
 
 use devices::drv8301::*;
 use devices::vesc6::GATE_DRIVER;
 
-/// Registers, and the answer that waits for the next transfer.
+/// Registers, and the answer for the next transfer.
 #[derive(Default)]
 struct Chip {
     registers: [u16; 4],
@@ -36,8 +36,8 @@ impl Chip {
     }
 }
 
-/// Situation: the chip out of reset. Action: the settings are written and read back. Must hold: they are there, as the
-/// data sheet places them, and the rest of the chip is as before.
+/// Situation: the chip after reset. Action: write the settings and read them back. Must hold: they are at the places
+/// of the data sheet, and the other registers are unchanged.
 #[test]
 fn settings_arrive() {
     let mut chip = Chip::new();
@@ -49,8 +49,8 @@ fn settings_arrive() {
     assert!(is_present(chip.ask(Register::Status2).expect("an answer")));
 }
 
-/// Situation: no chip, a wire cut or shorted, a damaged frame, an answer to another question. Must hold: none of it is
-/// taken for the settings, nor for a chip that is there.
+/// Situation: no chip, an open or shorted wire, a damaged frame, an answer of another register. Must hold: none is
+/// accepted as settings or as a present chip.
 #[test]
 fn a_missing_chip_is_not_taken_for_one() {
     for stuck in [0x0000, 0xffff] {
@@ -67,8 +67,8 @@ fn a_missing_chip_is_not_taken_for_one() {
     assert!(!is_present(0) && !is_present(0xf));
 }
 
-/// Situation: every over-current voltage from nothing to everything. Must hold: the largest step that is not above it is
-/// taken, and steps rise.
+/// Situation: every over-current voltage from zero to the maximum. Must hold: the largest threshold not above it is
+/// used, and thresholds increase.
 #[test]
 fn over_current_is_never_above_what_is_asked() {
     assert!(OVER_CURRENT_MV.is_sorted());
@@ -81,8 +81,8 @@ fn over_current_is_never_above_what_is_asked() {
     }
 }
 
-/// Situation: a phase's lower switch drew too much; then the gates' supply is too high. Must hold: those are the names,
-/// and no others; the kind of device is no fault.
+/// Situation: over-current in a phase's lower switch; then a too high gate supply. Must hold: exactly these names;
+/// the device identifier is no fault.
 #[test]
 fn faults_have_names() {
     let names: Vec<_> = Status(1 << 10 | 1 << 4, 1).names().collect();

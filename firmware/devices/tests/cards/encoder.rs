@@ -1,20 +1,20 @@
-//! Flight cards: the encoder's words.
+//! Flight cards: SPI words of the encoder.
 
 use devices::as5047::{ASK_ANGLE, COUNTS, FLAGGED, Line};
 use devices::vesc6::MOTOR;
 
-/// A word with bit 15 such that the number of ones is even, counted bit by bit.
+/// A word with bit 15 as even parity, counted bit by bit.
 fn with_parity(word: u16) -> u16 {
     let ones = (0..15).filter(|bit| word >> bit & 1 == 1).count();
     word & 0x7fff | if ones % 2 == 1 { 0x8000 } else { 0 }
 }
 
-/// The angle in one answer on a line that never had any trouble.
+/// The angle in one answer on a line without previous errors.
 fn alone(answer: u16) -> Option<u16> {
     Line::default().step(answer)
 }
 
-/// Situation: the encoder tells every angle of a turn. Must hold: each is read; with any single bit wrong, none is.
+/// Situation: answers with every angle of a turn. Must hold: each is decoded; with any single bit wrong, none is.
 #[test]
 fn every_angle_is_read_and_no_damaged_one() {
     assert_eq!(with_parity(0x7fff), ASK_ANGLE, "a read of register 3fff");
@@ -27,9 +27,9 @@ fn every_angle_is_read_and_no_damaged_one() {
     }
 }
 
-/// Situation: a frame is cut, and the next answers have the error flag: one, then for good. Must hold: the first few
-/// are no angles, fewer than make the encoder lost to the motor's loop; from then on all are, and each is counted; once
-/// the flag is gone, it refuses anew.
+/// Situation: a frame is cut, and the next answers have the error flag: one, then all. Must hold: the first few are
+/// rejected, fewer than make the motor loop raise an encoder loss; from then on all are accepted, and each is
+/// counted; after the flag is cleared, the count restarts.
 #[test]
 fn the_error_flag_refuses_a_few_answers_only() {
     let mut line = Line::default();
@@ -44,8 +44,8 @@ fn the_error_flag_refuses_a_few_answers_only() {
     assert_eq!([with_parity(78), flagged].map(|answer| line.step(answer)), [Some(78), None]);
 }
 
-/// Situation: the encoder's wire is cut and pulled up; one bit of a flagged answer is wrong. Must hold: never an angle,
-/// however long it lasts.
+/// Situation: the encoder's wire is open and pulled up; one bit of a flagged answer is wrong. Must hold: never an
+/// angle, for any duration.
 #[test]
 fn a_cut_line_is_no_angle_ever() {
     let mut line = Line::default();

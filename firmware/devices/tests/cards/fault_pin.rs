@@ -2,8 +2,8 @@
 
 use devices::fault_pin::FaultPin;
 
-/// Situation: no fault for a second. Action: the pin goes low for good. Must hold: a fault at the second low sample,
-/// not at the first, and at every one from then on.
+/// Situation: no fault for a second. Action: the pin goes low and stays low. Must hold: a fault at the second low
+/// sample, not at the first, and at every later one.
 #[test]
 fn a_fault_is_one_at_the_second_sample() {
     let mut pin = FaultPin::default();
@@ -14,8 +14,8 @@ fn a_fault_is_one_at_the_second_sample() {
     assert_eq!(pin.pulses, 0);
 }
 
-/// Situation: pulses of one sample, each four samples after the other, as a disturbance makes them. Must hold: none is a
-/// fault, each is counted once.
+/// Situation: pulses of one sample every four samples, like a disturbance. Must hold: none is a fault, each is
+/// counted once.
 #[test]
 fn short_pulses_are_counted() {
     let mut pin = FaultPin::default();
@@ -25,7 +25,7 @@ fn short_pulses_are_counted() {
     assert_eq!(pin.pulses, 1000);
 }
 
-/// Situation: two low samples with a high one between them. Must hold: that is a fault.
+/// Situation: two low samples with a high one between them. Must hold: a fault.
 #[test]
 fn two_of_three_are_a_fault() {
     let mut pin = FaultPin::default();

@@ -1,8 +1,8 @@
-//! Flight cards: the IMU's bytes.
+//! Flight cards: registers of the IMU.
 
 use devices::bmi160::{BURST, SET_UP, read, sample};
 
-/// Registers from 0x0c on for a gyro, an accelerometer and a time.
+/// Registers from 0x0c on with a gyro sample, an accelerometer sample and a time.
 fn bytes(gyro: [i16; 3], accel: [i16; 3], time: u32) -> [u8; BURST] {
     let mut bytes = [0; BURST];
     for (place, value) in gyro.into_iter().chain(accel).enumerate() {
@@ -12,8 +12,8 @@ fn bytes(gyro: [i16; 3], accel: [i16; 3], time: u32) -> [u8; BURST] {
     bytes
 }
 
-/// Situation: the bicycle rolls with 100 degrees a second to the right, upright at rest otherwise. Must hold: rates and
-/// forces are those, each on its own axis, and the flags tell what is new.
+/// Situation: the bicycle rolls at 100 degrees per second to the right, otherwise upright and at rest. Must hold:
+/// these rates and forces, each on its own axis, and the flags of new values.
 #[test]
 fn a_sample_is_read() {
     let imu = sample(0xc0, &bytes([1640, 0, -1640], [0, 1024, -2048], 0x00ab_cdef));
@@ -33,8 +33,8 @@ fn a_sample_is_read() {
     );
 }
 
-/// Situation: a blow beyond the scale; a sensor that was never set up, whose values are -32768. Must hold: no finite
-/// value stands for either; one count less is a value near the scale's end.
+/// Situation: a shock beyond the range; an unconfigured sensor, whose values are -32768. Must hold: no finite value
+/// for either; one count less is a value near the end of the range.
 #[test]
 fn the_end_of_the_scale_is_no_value() {
     let imu = sample(0xc0, &bytes([i16::MAX, i16::MIN, i16::MAX - 1], [i16::MIN, i16::MAX, 0], 0));
@@ -44,8 +44,8 @@ fn the_end_of_the_scale_is_no_value() {
     assert_eq!(imu.accel_m_s2, [f32::NEG_INFINITY, f32::INFINITY, 0.0]);
 }
 
-/// Situation: the set-up's bytes. Must hold: none of them reads, the reset comes first and has its time, and scale and
-/// rate are those that the samples are read by.
+/// Situation: the bytes of the set-up. Must hold: none is a read, the reset comes first with its delay, and range and
+/// rate are those assumed for the samples.
 #[test]
 fn the_set_up_is_the_one_that_samples_are_read_by() {
     assert!(SET_UP.iter().all(|step| read(step.register) != step.register && step.then_ms > 0));

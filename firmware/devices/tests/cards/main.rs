@@ -1,4 +1,4 @@
-//! Flight cards of the parts around the chip.
+//! Flight cards of the devices beside the chip.
 
 mod analog;
 mod approximations;

@@ -2,8 +2,8 @@
 
 use devices::silicon::has_prefetch;
 
-/// Situation: revision A, by its own number and by the wrong one that it gives; the later ones. Must hold: prefetch on
-/// all but revision A.
+/// Situation: revision A, with its own identifier and the wrong one that it reports; the later revisions. Must hold:
+/// prefetch on all but revision A.
 #[test]
 fn only_revision_a_has_no_prefetch() {
     assert!(!has_prefetch(0x413, 0x1000) && !has_prefetch(0x411, 0x2000));

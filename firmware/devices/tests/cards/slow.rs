@@ -1,10 +1,10 @@
-//! Flight cards: whether the rotor is slow enough for the gate driver to be enabled.
+//! Flight cards: detection of a rotor slow enough to enable the gate driver.
 
 use devices::as5047::COUNTS;
 use devices::slow::Slow;
 use devices::vesc6::{ENABLE_V, MOTOR};
 
-/// The first millisecond of 500 in which a rotor of this speed counts as slow, as the encoder shows it.
+/// The first millisecond of 500 in which a rotor of this speed counts as slow, from encoder counts.
 fn slow_after_ms(turns_s: f64, most_turns_s: f32) -> Option<usize> {
     let mut slow = Slow::default();
     (0..500).position(|ms| {
@@ -13,8 +13,8 @@ fn slow_after_ms(turns_s: f64, most_turns_s: f32) -> Option<usize> {
     })
 }
 
-/// Situation: rotors of any speed, either way, over the encoder's zero. Must hold: those below the limit are slow after
-/// 11 samples, those above it never.
+/// Situation: rotors of any speed in both directions, across the encoder's zero. Must hold: those below the limit are
+/// slow after 11 samples, those above it never.
 #[test]
 fn the_limit_parts_slow_from_fast() {
     for turns_s in [0.0, 0.2, 5.0, 28.0, 31.5] {
@@ -27,7 +27,7 @@ fn the_limit_parts_slow_from_fast() {
     }
 }
 
-/// Situation: an encoder that is silent, or gives every other sample. Must hold: its rotor is never slow, and has no
+/// Situation: an encoder without samples, or with every other sample. Must hold: its rotor is never slow, and has no
 /// speed.
 #[test]
 fn a_silent_encoder_has_no_slow_rotor() {
@@ -38,8 +38,8 @@ fn a_silent_encoder_has_no_slow_rotor() {
     }
 }
 
-/// Situation: the board's motor turned by hand, the bridge open. Must hold: the speed at which its terminals reach the
-/// gate driver's limit is that of a handlebar that is thrown, not of one that is ridden: 5 to 6 rad/s.
+/// Situation: the board's motor turned by hand, the bridge open. Must hold: the terminals reach the gate driver's
+/// limit at 5 to 6 rad/s of the handlebar, faster than in riding.
 #[test]
 fn the_limit_is_that_of_the_motor() {
     let turns_s = MOTOR.motor.turns_s_at(ENABLE_V);

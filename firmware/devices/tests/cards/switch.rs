@@ -1,12 +1,12 @@
-//! Flight cards: the rider's switch, and how old samples are.
+//! Flight cards: debounce of the rider's switch, and age of samples.
 
 use control::sensors::frame::MISSING;
 use devices::age::Age;
 use devices::switch::Switch;
 use devices::vesc6::SWITCH_TICKS;
 
-/// Situation: a contact that bounces for 9 ms each time it moves. Must hold: it counts once, 20 ms after it came to
-/// rest, either way.
+/// Situation: a contact that bounces for 9 ms at each change. Must hold: one change, 20 ms after it has settled, in
+/// both directions.
 #[test]
 fn bounces_are_not_presses() {
     let mut switch = Switch::default();
@@ -19,8 +19,8 @@ fn bounces_are_not_presses() {
     assert_eq!(released, Some(20));
 }
 
-/// Situation: a sensor never spoke, then speaks, then is silent for 70 000 periods. Must hold: missing, fresh, older by
-/// one each period, and at last missing again instead of young.
+/// Situation: a sensor without samples, then with one, then without for 70 000 periods. Must hold: missing, fresh,
+/// older by one each period, and finally missing again rather than fresh.
 #[test]
 fn ages_rise_and_do_not_wrap() {
     let mut age = Age::default();

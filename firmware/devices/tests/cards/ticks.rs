@@ -1,15 +1,15 @@
-//! Flight cards: the clock of the tasks.
+//! Flight cards: the time of the tasks.
 
 use devices::ticks::ticks;
 use proptest::prelude::*;
 
-/// Interrupts, at each half of the counter's round, that came until `taken`.
+/// Number of half-range interrupts until `taken`.
 fn halves(taken: u64) -> u32 {
     (taken >> 31) as u32
 }
 
-/// Situation: the counter at the edges of its halves, over three hours. Action: it is read before and after the edge's
-/// interrupt. Must hold: the time is right to the tick either way.
+/// Situation: the counter at the edges of its half ranges, over three hours. Action: read it before and after the
+/// edge's interrupt. Must hold: the time is exact to the tick in both cases.
 #[test]
 fn time_is_right_at_every_edge() {
     for edge in 1..6_u64 {
@@ -24,8 +24,7 @@ fn time_is_right_at_every_edge() {
 }
 
 proptest! {
-    /// Situation: any time of the first year, the chip having stood still for up to 35 minutes before it. Must hold: no
-    /// tick is lost.
+    /// Situation: any time of the first year, after a halt of the chip of up to 35 minutes. Must hold: no tick is lost.
     #[test]
     fn a_standstill_loses_no_time(now in 0_u64..31_536_000_000_000, stood_us in 0_u64..2_100_000_000) {
         let taken = now.saturating_sub(stood_us);

@@ -1,9 +1,9 @@
-//! Flight cards: the board's numbers go together.
+//! Flight cards: consistency of the board's constants.
 
 use devices::vesc6::*;
 
-/// Situation: the board's motor configuration. Must hold: the motor's loop takes it, and torque is impossible until the
-/// encoder's offset was found and written down.
+/// Situation: the board's motor configuration. Must hold: the motor loop accepts it, and torque is impossible until the
+/// encoder's offset is found and stored.
 #[test]
 fn the_motor_is_accepted_and_not_aligned() {
     assert!(MOTOR.plan().is_ok());
@@ -11,8 +11,8 @@ fn the_motor_is_accepted_and_not_aligned() {
     assert_eq!(MOTOR.encoder.counts, 16_384);
 }
 
-/// Situation: currents and voltages at which the motor's loop must act. Must hold: the board can measure each, with room
-/// beyond it.
+/// Situation: currents and voltages at which the motor loop must act. Must hold: the board can measure each, with a
+/// margin.
 #[test]
 fn what_must_be_seen_can_be_measured() {
     let most_a = SHUNT.ampere(4078);
@@ -24,9 +24,9 @@ fn what_must_be_seen_can_be_measured() {
     assert!(BOARD_HEAT.celsius(3800) > MOTOR.heat.hot_c, "{}", BOARD_HEAT.celsius(3800));
 }
 
-/// Situation: the most that the motor's loop lets flow, 1.3 times its trip (docs/motor.md), through a switch that drops
-/// 403 mV at 150 A. Must hold: the gate driver's over-current voltage is four times that, and not above the one that
-/// the board is known to run with.
+/// Situation: the largest current that the motor loop permits, 1.3 times its trip (docs/motor.md), through a switch
+/// that drops 403 mV at 150 A. Must hold: the gate driver's over-current voltage is four times that, and not above
+/// the one with which the board is known to run.
 #[test]
 fn over_current_is_a_short_and_nothing_less() {
     let ohm = 0.403 / 150.0;
@@ -35,16 +35,16 @@ fn over_current_is_a_short_and_nothing_less() {
     assert!((4.0 * most_mv..=403.0).contains(&f64::from(mv)), "{mv} mV, {most_mv} mV at most");
 }
 
-/// Situation: control falls silent. Must hold: the bridge opens after as long as control itself would allow between two
-/// of its periods, counted in the motor's calls.
+/// Situation: control stops. Must hold: the bridge opens after the largest gap that control permits between two
+/// periods, counted in calls of the motor loop.
 #[test]
 fn patience_is_that_of_control() {
     let ms = 1e3 * f32::from(COMMAND_TIMEOUT_CALLS) / MOTOR.rate_hz;
     assert_eq!(Some(ms), control::Config::product().input.max_gap_ms);
 }
 
-/// Situation: the fastest wheel that control believes. Must hold: its pulses are more than one control period apart, as
-/// the board sees one a period at most.
+/// Situation: the fastest wheel that control accepts. Must hold: its pulses are more than one control period apart,
+/// as the board sees at most one per period.
 #[test]
 fn pulses_are_apart() {
     let wheel = wheel();

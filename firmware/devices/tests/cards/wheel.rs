@@ -1,11 +1,11 @@
-//! Flight cards: a wheel's pulses to samples with ages.
+//! Flight cards: wheel pulses to samples with ages.
 
 use control::sensors::frame::Sample;
 use control::sensors::wheel_speed::WheelPulsesConfig;
 use devices::wheel::{WheelState, step};
 use std::f64::consts::TAU;
 
-/// A wheel that is turned, and the board's side of it.
+/// A turning wheel, and the board's state of it.
 struct Rig {
     config: WheelPulsesConfig,
     state: WheelState,
@@ -32,8 +32,8 @@ impl Rig {
     }
 }
 
-/// Situation: from standing to 4 m/s at 1 m/s^2, then held. Must hold: the speed is told to 2 %, and the sample is new
-/// with each pulse and gets older between two, never by more than their distance.
+/// Situation: from standstill to 4 m/s at 1 m/s^2, then constant. Must hold: the speed is accurate to 2 %; the sample
+/// is new with each pulse and ages between two, never by more than their distance.
 #[test]
 fn a_ride_is_told() {
     let mut rig = Rig::new();
@@ -47,8 +47,8 @@ fn a_ride_is_told() {
     assert!(oldest.is_some_and(|age| (30..=35).contains(&age)), "{oldest:?}");
 }
 
-/// Situation: braked from 4 m/s to standing in an instant, then left. Must hold: the silence lowers the speed, those
-/// samples are new, and the wheel stands within 1 s; a standing wheel is always fresh.
+/// Situation: braked from 4 m/s to standstill at once. Must hold: the missing pulses lower the speed, those samples
+/// are new, and the speed is zero within 1 s; the sample of a standing wheel is always fresh.
 #[test]
 fn silence_is_news() {
     let mut rig = Rig::new();
@@ -61,7 +61,7 @@ fn silence_is_news() {
     assert!(stopped[1000..].iter().all(|sample| *sample == Sample::fresh(0.0)));
 }
 
-/// Situation: a wheel that never turned. Must hold: it stands, and that is fresh from the first period on.
+/// Situation: a wheel that never turned. Must hold: speed zero, fresh from the first period on.
 #[test]
 fn a_wheel_that_never_turned_stands() {
     let mut state = WheelState::default();
@@ -71,8 +71,8 @@ fn a_wheel_that_never_turned_stands() {
     assert_eq!(state.count(), 0);
 }
 
-/// Situation: at 4 m/s each pulse is followed by an edge of a disturbance, 1 ms later. Must hold: those are not counted,
-/// and the speed is told as without them.
+/// Situation: at 4 m/s each pulse is followed by a disturbance edge, 1 ms later. Must hold: those are not counted,
+/// and the speed is the same as without them.
 #[test]
 fn edges_too_close_are_no_pulses() {
     let config = WheelPulsesConfig::default();
@@ -89,8 +89,7 @@ fn edges_too_close_are_no_pulses() {
     assert!((4.0..4.1).contains(&speed), "{speed}");
 }
 
-/// A standstill of the chip of 500 ms, in which the wheel goes a way, and an edge comes, by a timer of 16 bits
-/// `edge_age_us` ago.
+/// A halt of the chip of 500 ms, in which the wheel rolls, and an edge is captured by a 16-bit timer `edge_age_us` ago.
 fn stand_still(rig: &mut Rig, way_m: f64, edge_age_us: Option<u32>) -> Sample {
     let pulse_m = TAU * f64::from(rig.config.radius_m) / f64::from(rig.config.pulses_per_turn);
     rig.way_m += way_m;
@@ -98,9 +97,8 @@ fn stand_still(rig: &mut Rig, way_m: f64, edge_age_us: Option<u32>) -> Sample {
     step(&rig.config, &mut rig.state, edge_age_us, 500_000)
 }
 
-/// Situation: rolling at 4 m/s, the chip stands still for 0.5 s, 14 pulses long, and then sees that an edge came. Must
-/// hold: there is no speed until two more pulses came; from then on it is that of the wheel, and never a wrong one in
-/// between.
+/// Situation: rolling at 4 m/s, the chip halts for 0.5 s, 14 pulses long, and then finds one edge. Must hold: there
+/// is no speed until two more pulses; from then on it is that of the wheel, and never a wrong one in between.
 #[test]
 fn an_edge_in_a_standstill_has_no_age() {
     for edge_age_us in [0, 900, 33_000, 65_000] {
@@ -116,7 +114,7 @@ fn an_edge_in_a_standstill_has_no_age() {
 }
 
 /// Situation: the same, but the wheel was braked meanwhile and stands from then on; and a wheel that stood all the
-/// time. Must hold: the first is missing for 1 s, then stands; the other stands at once.
+/// time. Must hold: the first is missing for 1 s, then has speed zero; the other has speed zero at once.
 #[test]
 fn a_wheel_that_stands_after_a_standstill_is_known_to() {
     let mut rig = Rig::new();

@@ -1,4 +1,4 @@
-//! Flight cards: the encoder's offset is found, or refused.
+//! Flight cards: the encoder's offset is found, or rejected.
 
 use crate::machine::Params;
 use crate::rig::{Record, Rig, last, mean};
@@ -26,9 +26,9 @@ fn apart_deg(a: f64, b: f64) -> f64 {
     ((a - b + 0.5).rem_euclid(1.0) - 0.5).abs() * 360.0
 }
 
-/// Situation: a free steer with friction of 0.15 or 1 N m, the rotor anywhere, the encoder mounted anywhere and either way round. Action:
-/// alignment, then 3 N m against a held handlebar. Must hold: the offset within 4 electrical degrees of the truth, the
-/// torque within 2 % of what it would be. `aligned` tells of it from the call that found it until something else is asked for.
+/// Situation: a free steer with friction of 0.15 or 1 N m, any rotor angle, any mounting angle and direction of the
+/// encoder. Action: alignment, then 3 N m against a held handlebar. Must hold: the offset within 4 electrical
+/// degrees, the torque within 2 %. `aligned` is set from the call that found the offset until another command.
 #[test]
 fn the_offset_is_found() {
     let mut worst: f64 = 0.0;
@@ -73,8 +73,8 @@ fn the_offset_is_found() {
     println!("worst offset {worst:.2} electrical degrees");
 }
 
-/// Situation: an offset is known; an alignment is broken off in the middle, torque is asked for, then alignment again. Must
-/// hold: the second alignment takes as long as a whole one and finds the truth.
+/// Situation: a known offset; an alignment is interrupted in the middle, torque is requested, then alignment again.
+/// Must hold: the second alignment takes its whole duration and finds the true offset.
 #[test]
 fn a_broken_off_alignment_begins_anew() {
     let mut config = EXAMPLE;
@@ -91,7 +91,7 @@ fn a_broken_off_alignment_begins_anew() {
     assert!(apart_deg(offset, 0.2 * 8.0) < 4.0, "{offset}");
 }
 
-/// Situation: the encoder counts the other way than told. Must hold: refused as reversed.
+/// Situation: the encoder counts in the opposite direction of the configuration. Must hold: rejected as reversed.
 #[test]
 fn a_reversed_encoder_is_refused() {
     let mut rig = zeroed(EXAMPLE);
@@ -99,7 +99,8 @@ fn a_reversed_encoder_is_refused() {
     refused(&rig.run(CALLS, MotorCommand::Align), Fault::AlignReversed);
 }
 
-/// Situation: the encoder slips, or is geared: 0, 0.5, 0.7 or 1.5 of the motion reach it. Must hold: refused, not followed.
+/// Situation: the encoder slips, or is geared: it moves by 0, 0.5, 0.7 or 1.5 of the motion. Must hold: rejected as a
+/// lag.
 #[test]
 fn a_slipping_encoder_is_refused() {
     // The tolerance is 0.06 of a turn: from 0.76 to 1.24 of a quarter counts as followed.
@@ -110,7 +111,7 @@ fn a_slipping_encoder_is_refused() {
     }
 }
 
-/// Situation: somebody holds the handlebar. Must hold: refused, not followed.
+/// Situation: the handlebar is held. Must hold: rejected as a lag.
 #[test]
 fn a_held_handlebar_is_refused() {
     let mut rig = zeroed(EXAMPLE);
@@ -118,7 +119,7 @@ fn a_held_handlebar_is_refused() {
     refused(&rig.run(CALLS, MotorCommand::Align), Fault::AlignLag);
 }
 
-/// Situation: somebody shakes the handlebar, 4 N m at 5 Hz. Must hold: refused, restless.
+/// Situation: hands shake the handlebar with 4 N m at 5 Hz. Must hold: rejected as restless.
 #[test]
 fn a_shaken_handlebar_is_refused() {
     let mut rig = zeroed(EXAMPLE);
@@ -130,7 +131,7 @@ fn a_shaken_handlebar_is_refused() {
     refused(&records, Fault::AlignRestless);
 }
 
-/// Situation: a phase is cut. Must hold: no offset.
+/// Situation: an open phase. Must hold: no offset.
 #[test]
 fn a_cut_phase_gives_no_offset() {
     for cut in 0..3 {

@@ -1,4 +1,4 @@
-//! Flight cards: what control asks of the motor's interrupt.
+//! Flight cards: the command from control to the motor interrupt.
 
 use devices::vesc6::COMMAND_TIMEOUT_CALLS;
 use motor::MotorCommand;
@@ -6,8 +6,8 @@ use motor::command_word::{Deadline, command, word};
 use proptest::prelude::*;
 
 proptest! {
-    /// Situation: any order, NaN of any bits included. Must hold: it arrives as it was sent; a torque is never taken for
-    /// another order.
+    /// Situation: any command, NaN of any bits included. Must hold: it is decoded as it was encoded; a torque is
+    /// never another command.
     #[test]
     fn orders_arrive(bits: u32) {
         for sent in [MotorCommand::Off, MotorCommand::Align, MotorCommand::Torque(f32::from_bits(bits))] {
@@ -22,8 +22,8 @@ proptest! {
     }
 }
 
-/// Situation: control orders 5 N m each millisecond, then falls silent, then speaks again. Must hold: before the first
-/// order nothing is done; the bridge opens in the call after the patience, not before; with the next order it goes on.
+/// Situation: control commands 5 N m each millisecond, then stops, then resumes. Must hold: nothing before the first
+/// command; the bridge opens in the call after the timeout, not before; with the next command the torque returns.
 #[test]
 fn silence_opens_the_bridge() {
     let torque = MotorCommand::Torque(5.0);

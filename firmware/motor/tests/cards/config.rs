@@ -1,4 +1,4 @@
-//! Flight cards: what a configuration may not be.
+//! Flight cards: invalid configurations.
 
 use motor::Config;
 use motor::example::EXAMPLE;
@@ -11,7 +11,7 @@ fn refused(change: Change) -> String {
     config.plan().expect_err("must be refused").to_string()
 }
 
-/// Situation: one parameter is wrong, or does not go with another. Must hold: it is named, with its range.
+/// Situation: one parameter is invalid, or inconsistent with another. Must hold: the error names it, with its range.
 #[test]
 fn wrong_parameters_are_named() {
     assert!(EXAMPLE.plan().is_ok());
@@ -31,10 +31,10 @@ fn wrong_parameters_are_named() {
     }
 }
 
-/// Situation: an offset kept beside the check value of its motor.
-/// Action: change what the offset depends on, each alone; change what it does not depend on.
-/// Must hold: another value for each of the former, the same for the latter; and that of the example stays what it is in
-/// the flash of boards.
+/// Situation: an offset stored with the check value of its motor.
+/// Action: change each parameter that affects the offset, alone; change those that do not.
+/// Must hold: another value for each of the former, the same for the latter; the example's value is that in the
+/// flash of boards.
 #[test]
 fn an_offset_belongs_to_a_motor_and_its_encoder() {
     let id = EXAMPLE.motor_id();

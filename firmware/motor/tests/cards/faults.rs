@@ -1,4 +1,4 @@
-//! Flight cards: what goes wrong opens the bridge, in time, with its number, for good.
+//! Flight cards: each fault opens the bridge in time, with its number, and latches.
 
 use crate::rig::{Record, Rig, last, opened};
 use motor::{FAULTS, Fault, Faults, Inputs, Mode, MotorCommand, Phases, State};
@@ -9,7 +9,7 @@ fn one(fault: Fault) -> Faults {
     set
 }
 
-/// A handlebar that turns evenly at `rate`, with 4 N m given.
+/// A handlebar that turns at a constant `rate`, with 4 N m applied.
 fn turning(rate: f64) -> Rig {
     let mut rig = Rig::ready(|_| ());
     rig.machine.params.inertia_kg_m2 = 1e6;
@@ -20,7 +20,7 @@ fn turning(rate: f64) -> Rig {
     rig
 }
 
-/// Must open with this fault, alone, in a call from `least` to `most`.
+/// Checks that the bridge opens with this fault alone, in a call from `least` to `most`.
 fn opens(name: &str, records: &[Record], fault: Fault, least: usize, most: usize) {
     let (call, out) = (opened(records), last(records).out);
     assert!(call.is_some_and(|n| (least..=most).contains(&n)), "{name}: {call:?} {out:?}");
@@ -29,7 +29,7 @@ fn opens(name: &str, records: &[Record], fault: Fault, least: usize, most: usize
     println!("{name}: {fault:?} in call {}", call.unwrap_or(0));
 }
 
-/// Situation: 4 N m at 2 rad/s; one input is wrong from one call on. Must hold: its fault, in as many calls as it is given.
+/// Situation: 4 N m at 2 rad/s; one input is wrong from one call on. Must hold: its fault, within its number of calls.
 #[test]
 fn an_input_that_is_wrong() {
     type Tamper = fn(u64, &mut Inputs);
@@ -79,7 +79,7 @@ fn an_input_that_is_wrong() {
     }
 }
 
-/// Situation: 4 N m; the encoder turns faster and faster, beyond what the motor can. Must hold: its speed is a fault.
+/// Situation: 4 N m; the encoder accelerates beyond the motor's largest speed. Must hold: a speed fault.
 #[test]
 fn an_encoder_that_is_too_fast() {
     let mut rig = Rig::ready(|c| c.encoder.speed_max_turns_s = 20.0);
@@ -90,7 +90,7 @@ fn an_encoder_that_is_too_fast() {
     assert!((20.0..=20.5).contains(&rate), "{rate}");
 }
 
-/// Situation: one encoder sample jumps, then all is well. Must hold: nothing happens; the torque stays within 10 %.
+/// Situation: a jump of one encoder sample. Must hold: no fault; the torque stays within 10 %.
 #[test]
 fn one_bad_sample_is_left_out() {
     let mut rig = turning(2.0);
@@ -103,8 +103,8 @@ fn one_bad_sample_is_left_out() {
     assert!(records.iter().all(|r| (r.torque_nm - 4.0).abs() < 0.4));
 }
 
-/// Situation: 4 N m; a blow changes the handlebar's rate, by 8 rad/s in 5 ms or in 2 ms. Must hold: no fault, less than
-/// 3 N m of error meanwhile and less than 0.4 N m after 5 ms more.
+/// Situation: 4 N m; an impact changes the handlebar's rate by 8 rad/s in 5 ms or in 2 ms. Must hold: no fault, a
+/// torque error below 3 N m meanwhile and below 0.4 N m after 5 ms more.
 #[test]
 fn a_blow_to_the_handlebar() {
     let off = |records: &[Record]| records.iter().map(|r| (r.torque_nm - 4.0).abs()).fold(0.0, f64::max);
@@ -126,9 +126,9 @@ fn a_blow_to_the_handlebar() {
     }
 }
 
-/// Situation: 4 N m; the encoder repeats one sample as if fresh while the hands turn the handlebar. Must hold: from
-/// 1 rad/s on voltage or current betray it, within 20 ms from 2 rad/s on, else within 50. At 0.3 rad/s nothing does: a limit that
-/// docs/motor.md tells.
+/// Situation: 4 N m; the encoder repeats one sample as fresh while hands turn the handlebar. Must hold: from 1 rad/s
+/// on voltage or current detect it, within 20 ms from 2 rad/s on, else within 50. At 0.3 rad/s it is undetected: a
+/// limit stated in docs/motor.md.
 #[test]
 fn an_encoder_that_is_stuck() {
     for (rate, seen) in
@@ -156,8 +156,8 @@ fn an_encoder_that_is_stuck() {
     }
 }
 
-/// Situation: a phase is cut, at rest and at 3 rad/s, with 4 N m. Must hold: open within 10 ms; turning, the number says
-/// which phase; at rest never another one.
+/// Situation: a phase opens, at rest and at 3 rad/s, with 4 N m. Must hold: bridge open within 10 ms; while turning,
+/// the fault number identifies the phase; at rest it never names another one.
 #[test]
 fn a_phase_is_cut() {
     for (cut, fault) in [Fault::PhaseALost, Fault::PhaseBLost, Fault::PhaseCLost].into_iter().enumerate() {
@@ -184,8 +184,8 @@ fn a_phase_is_cut() {
     opens("all three cut", &records, Fault::CurrentAstray, 5, 200);
 }
 
-/// Situation: a current sensor shows nothing but its zero, while 4 N m are given at 2 rad/s. Must hold: the sum tells
-/// within half an electrical turn (109 calls); no phase carries more than 15 A until then.
+/// Situation: a current sensor reads only its offset, with 4 N m at 2 rad/s. Must hold: the sum detects it within
+/// half an electrical turn (109 calls); no phase carries more than 15 A until then.
 #[test]
 fn a_current_sensor_is_dead() {
     for x in 0..3 {
@@ -201,8 +201,9 @@ fn a_current_sensor_is_dead() {
     }
 }
 
-/// Situation: the winding's inductance falls to a twentieth (shorted turns) while 7 N m are held; the loop swings up. Must
-/// hold: the bridge opens in the first or second call after a phase passes 15 A, and no phase passes 40 A.
+/// Situation: the winding's inductance falls to a twentieth (shorted turns) while 7 N m are held; the loop
+/// oscillates. Must hold: the bridge opens in the first or second call after a phase exceeds 15 A, and no phase
+/// exceeds 40 A.
 #[test]
 fn a_winding_that_shorts() {
     let mut rig = Rig::ready(|_| ());
@@ -218,8 +219,8 @@ fn a_winding_that_shorts() {
     println!("{most:.1} A");
 }
 
-/// Situation: the battery is cut off while the motor brakes the handlebar at 10 rad/s. Must hold: the capacitor is
-/// charged to 32 V, then the bridge opens; the bus stays below 34 V.
+/// Situation: the battery is disconnected while the motor brakes the handlebar at 10 rad/s. Must hold: the capacitor
+/// charges to 32 V, then the bridge opens; the bus stays below 34 V.
 #[test]
 fn braking_without_a_battery() {
     let mut rig = turning(10.0);
@@ -230,7 +231,7 @@ fn braking_without_a_battery() {
     println!("bus {:.2} V", rig.machine.bus_v);
 }
 
-/// Situation: the battery breaks down to 12 V behind 1 ohm while it turns. Must hold: fault when the bus is below 16 V.
+/// Situation: the battery falls to 12 V behind 1 ohm while turning. Must hold: a fault when the bus is below 16 V.
 #[test]
 fn the_battery_breaks_down() {
     let mut rig = turning(3.0);
@@ -240,8 +241,8 @@ fn the_battery_breaks_down() {
     assert!(rig.machine.bus_v < 16.0);
 }
 
-/// Situation: twice the current of the limits flows for long (a shunt that is read as half). Must hold: the winding's
-/// heat is a fault, when the mean square passes 1.1 of the allowed one.
+/// Situation: twice the permitted current for a long time (a shunt read as half). Must hold: an overload fault when
+/// the mean square exceeds 1.1 of the allowed one.
 #[test]
 fn more_heat_than_the_limits_allow() {
     let mut rig = Rig::ready(|c| {
@@ -258,7 +259,7 @@ fn more_heat_than_the_limits_allow() {
     opens("overload", &records, Fault::Overload, 340, 460);
 }
 
-/// Situation: the current sensors' zeros are too far off, restless, or not numbers. Must hold: never ready.
+/// Situation: the current sensors' offsets are too large, varying, or NaN. Must hold: never ready.
 #[test]
 fn zeros_that_are_no_zeros() {
     let cases: [fn(u64, &mut Inputs); 3] = [
@@ -276,8 +277,8 @@ fn zeros_that_are_no_zeros() {
     }
 }
 
-/// Situation: a fault that is over after one call; then anything is asked for. Must hold: open for good, the number kept; a new
-/// start begins with the zeros.
+/// Situation: a fault condition that lasts one call; then any command. Must hold: the bridge stays open, the number
+/// stays; a new start begins with the offset measurement.
 #[test]
 fn a_fault_latches() {
     let mut rig = turning(2.0);
