@@ -1,24 +1,24 @@
-//! A motor that turns a bicycle's steer, in f64: what the loop is tried on. It shares no code with the loop.
+//! Model of a motor on a bicycle's steer, in f64, as the plant of the loop's tests. It shares no code with the loop.
 //!
-//! Rotor axes with inductances that fall with the current, back-EMF, resistance; a bridge averaged over the PWM
-//! period with dead time, diodes when open, phases that can be cut; a bus with resistance and capacitor; a rigid
-//! gear, inertia and friction of a steer.
+//! Dq axes with inductances that fall with the current, back-EMF, resistance; a bridge averaged over the PWM period
+//! with dead time, diodes when open, phases that can open; a bus with resistance and capacitor; a rigid gear; inertia
+//! and friction of a steer.
 
 use std::f64::consts::TAU;
 
-/// Parameters. Those of the example unless a card changes them.
+/// Parameters; those of the example unless a test changes them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Params {
     pub(crate) pole_pairs: f64,
     pub(crate) resistance_ohm: f64,
     pub(crate) inductance_d_h: f64,
     pub(crate) inductance_q_h: f64,
-    /// Current at which the inductances have fallen to a half \[A\].
+    /// Current at which the inductances have halved \[A\].
     pub(crate) saturation_a: f64,
     pub(crate) flux_wb: f64,
-    /// Turns of the motor to one of the steer; negative if it turns the other way.
+    /// Gear ratio: turns of the motor per turn of the steer; negative if reversed.
     pub(crate) ratio: f64,
-    /// Steer with rotor.
+    /// Inertia of steer and rotor.
     pub(crate) inertia_kg_m2: f64,
     pub(crate) viscous_nm_s_rad: f64,
     pub(crate) coulomb_nm: f64,
@@ -55,21 +55,21 @@ impl Default for Params {
     }
 }
 
-/// What moves.
+/// State.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Machine {
     pub(crate) params: Params,
-    /// Currents along phase a and a quarter turn ahead \[A\].
+    /// Currents in stator axes, alpha and beta \[A\].
     pub(crate) alpha_beta_a: [f64; 2],
     /// Turns of the motor since the start, electrically forward.
     pub(crate) motor_turns: f64,
     pub(crate) steer_rate_rad_s: f64,
     pub(crate) bus_v: f64,
-    /// Phases that are cut.
+    /// Open phases.
     pub(crate) cut: [bool; 3],
-    /// Somebody holds the handlebar so that it does not move.
+    /// Whether the handlebar is held at rest.
     pub(crate) held: bool,
-    /// Torque of somebody's hands \[N m\].
+    /// Torque of hands \[N m\].
     pub(crate) load_nm: f64,
 }
 
@@ -94,13 +94,13 @@ impl Machine {
         self.motor_turns * self.params.pole_pairs * TAU
     }
 
-    /// Phase currents, those of the axes' projections.
+    /// Phase currents, as projections of the axes.
     pub(crate) fn phases_a(&self) -> [f64; 3] {
         let [a, b] = self.alpha_beta_a;
         AXES.map(|[x, y]| x * a + y * b)
     }
 
-    /// Currents along the flux and ahead of it.
+    /// Currents d and q.
     pub(crate) fn dq_a(&self) -> [f64; 2] {
         let (sin, cos) = self.electrical_rad().sin_cos();
         let [a, b] = self.alpha_beta_a;
@@ -113,7 +113,7 @@ impl Machine {
         [p.inductance_d_h * fall(d), p.inductance_q_h * fall(q)]
     }
 
-    /// Torque on the steer, friction not in it.
+    /// Torque on the steer, without friction.
     pub(crate) fn torque_nm(&self) -> f64 {
         let p = &self.params;
         let [d, q] = self.dq_a();
@@ -126,7 +126,7 @@ impl Machine {
         self.advance_for(duties, 1.0 / self.params.rate_hz);
     }
 
-    /// A part of a PWM period, or more than one \[s\].
+    /// Advances by a part of a PWM period, or more \[s\].
     pub(crate) fn advance_for(&mut self, duties: Option<[f64; 3]>, seconds: f64) {
         let steps = (seconds * self.params.rate_hz * STEPS as f64).ceil().max(1.0);
         let dt = seconds / steps;
@@ -138,7 +138,7 @@ impl Machine {
         }
     }
 
-    /// The currents after `dt`; returns what is drawn from the bus \[A\].
+    /// Advances the currents by `dt`; returns the bus current \[A\].
     fn windings(&mut self, duties: Option<[f64; 3]>, dt: f64) -> f64 {
         let p = self.params;
         let phases = self.phases_a();

@@ -8,7 +8,8 @@ use motor::transform::{Vector, clarke, park, phases, stator};
 use proptest::prelude::*;
 
 proptest! {
-    /// Situation: any angle. Must hold: sine and cosine within 4e-7; that of the mirrored angle mirrored to the bit.
+    /// Situation: any angle. Must hold: sine and cosine within 4e-7; those of the negative angle are mirrored to the
+    /// bit.
     #[test]
     fn sine_and_cosine_of_any_turn(parts in any::<u32>()) {
         let (sin, cos) = Angle(parts).sin_cos();
@@ -21,8 +22,8 @@ proptest! {
         }
     }
 
-    /// Situation: any three currents, any angle. Must hold: there and back gives the same currents less their mean,
-    /// and no length is lost.
+    /// Situation: any three currents, any angle. Must hold: transform and inverse give the same currents less their
+    /// mean, and the length is preserved.
     #[test]
     fn there_and_back(abc in prop::array::uniform3(-20.0_f32..20.0), parts in any::<u32>()) {
         let at = Angle(parts).sin_cos();
@@ -35,8 +36,8 @@ proptest! {
         prop_assert!((clarke(abc).length() - rotor.length()).abs() < 2e-5);
     }
 
-    /// Situation: any voltage inside the bridge's reach. Must hold: the duty cycles give it exactly, and their
-    /// largest and least lie as far from the middle.
+    /// Situation: any voltage inside the bridge's reach. Must hold: the duty cycles give it exactly, and the largest
+    /// and the smallest are equally far from the middle.
     #[test]
     fn the_duty_cycles_give_the_voltage(part in 0.0_f32..1.0, parts in any::<u32>(), bus_v in 16.0_f32..32.0) {
         let b = EXAMPLE.bridge;
@@ -50,8 +51,8 @@ proptest! {
     }
 }
 
-/// Situation: a voltage and a current too large for their circle. Must hold: d is kept as far as it fits, q takes
-/// what is left, the length is the radius.
+/// Situation: a voltage and a current too large for their circle. Must hold: d has priority as far as it fits, q
+/// takes the rest, the length is the radius.
 #[test]
 fn the_circle_keeps_d() {
     let cut = |d, q| Vector::new(d, q).inside(5.0);
@@ -61,8 +62,9 @@ fn the_circle_keeps_d() {
     assert_eq!(cut(-7.0, 1.0), Vector::new(-5.0, 0.0));
 }
 
-/// Situation: a winding at rest, on either axis; 40 A are wanted, for which 5 V do not suffice, for 20 ms, then 2 A. Must
-/// hold: the voltage never beyond 5 V; within 0.2 A of 2 A after 30 calls, nowhere below 1.85 A on the way: nothing wound up.
+/// Situation: a winding at rest, on either axis; a set-point of 40 A, for which 5 V do not suffice, for 20 ms, then 2
+/// A. Must hold: the voltage never beyond 5 V; within 0.2 A of 2 A after 30 calls, never below 1.85 A on the way: no
+/// windup.
 #[test]
 fn neither_axis_winds_up() {
     let (r, l) = (EXAMPLE.motor.resistance_ohm, EXAMPLE.motor.inductance_d_h);

@@ -1,4 +1,4 @@
-//! Flight cards: what holds for every input.
+//! Flight cards: properties for every input.
 
 use control::param::{ParamSpec, ParamVisitor};
 use motor::example::EXAMPLE;
@@ -18,7 +18,7 @@ fn any_ask() -> impl Strategy<Value = MotorCommand> {
     ]
 }
 
-/// Plausible ones mostly, so that the bridge is closed often; now and then any bits.
+/// Mostly plausible inputs, so that the bridge is often closed; sometimes arbitrary bits.
 fn any_inputs() -> impl Strategy<Value = Inputs> {
     let current = || prop_oneof![40 => -16.0_f32..16.0, 1 => any_bits()];
     let phases = prop_oneof![
@@ -41,7 +41,7 @@ fn any_inputs() -> impl Strategy<Value = Inputs> {
     )
 }
 
-/// The example with protections so wide that hardly anything but nonsense opens the bridge.
+/// The example with protections so wide that only implausible inputs open the bridge.
 fn wide() -> Config {
     let mut c = EXAMPLE;
     c.encoder.offset_turns = Some(0.1);
@@ -52,7 +52,7 @@ fn wide() -> Config {
     c
 }
 
-/// Draws every parameter somewhere in its range, evenly or by its logarithm.
+/// Draws every parameter in its range, linearly or logarithmically.
 struct Draw(u64);
 
 impl Draw {
@@ -87,7 +87,7 @@ impl ParamVisitor for Draw {
     fn choice(&mut self, _: &ParamSpec, _: &'static [&'static str], _: &mut u8) {}
 }
 
-/// Any configuration that is valid, its zeros taken at once.
+/// Any valid configuration, with its offset measurement shortened.
 fn drawn(seed: u64) -> Config {
     let mut c = EXAMPLE;
     c.visit_params(&mut Draw(seed));
@@ -139,8 +139,8 @@ fn sound(plan: &Plan, out: &Output) -> Result<(), TestCaseError> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
 
-    /// Situation: any inputs to any valid configuration, from a start or ready. Must hold: duty cycles inside their limits or none, everything told
-    /// finite, a fault and an open bridge always together, and for good.
+    /// Situation: any inputs to any valid configuration, from a start or ready. Must hold: duty cycles inside their
+    /// limits or none; every output finite; a fault and an open bridge always together, and latched.
     #[test]
     fn whatever_goes_in(inputs in prop::collection::vec(any_inputs(), 1..120), fresh in any::<bool>(), kind in 0..3, seed in any::<u64>()) {
         let mut config = match kind {
@@ -161,8 +161,8 @@ proptest! {
         }
     }
 
-    /// Situation: two motors in a mirror: phases b and c changed over, counts the other way, the torque of the other
-    /// sign. Must hold: q current, torque and speed mirrored, d current the same, duty cycles changed over; to the bit.
+    /// Situation: two mirrored motors: phases b and c exchanged, counts reversed, the torque of the opposite sign.
+    /// Must hold: q current, torque and speed mirrored, d current equal, duty cycles exchanged; to the bit.
     #[test]
     fn a_mirrored_torque_is_a_mirrored_current(
         calls in prop::collection::vec((prop::array::uniform2(-8.0_f32..8.0), -20.0_f32..20.0), 1..80),

@@ -1,30 +1,30 @@
-//! Flight cards: an encoder that slips on its shaft, is off from the start or turns round, and what is no slip.
+//! Flight cards: an encoder that slips on its shaft, has a wrong offset or reverses, and conditions that are no slip.
 //!
-//! Times and torques of the first card stand in docs/motor.md.
+//! Times and torques of the first card are in docs/motor.md.
 
 use crate::machine::Params;
 use crate::rig::{Rig, last, mean, opened};
 use motor::example::EXAMPLE;
 use motor::{Config, Fault, MotorCommand};
 
-/// A call of the example \[ms\].
+/// Duration of a call of the example \[ms\].
 const CALL_MS: f64 = 0.05;
-/// Largest torque of an angle that is not proved, with the loop's overshoot and what the bridge gives as it closes
-/// while the handlebar turns at up to 0.5 rad/s \[N m\].
+/// Largest torque at an unconfirmed angle, with the loop's overshoot and the transient of closing the bridge while the
+/// handlebar turns at up to 0.5 rad/s \[N m\].
 const UNPROVED_NM: f64 = 2.9;
 
-/// What the encoder does.
+/// Encoder fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Slip {
-    /// It was off before the start, by electrical degrees.
+    /// Offset error from the start \[electrical degrees\].
     Before(f64),
-    /// It slips by electrical degrees in so many calls while torque is given.
+    /// Slip by electrical degrees in a number of calls while torque is applied.
     During(f64, u32),
-    /// Its counts go the other way from one call on.
+    /// Counts reverse from one call on.
     Reversed,
 }
 
-/// The example with a handlebar that is turned evenly.
+/// The example with a handlebar at constant rate.
 fn turned(off_deg: f64, rate_rad_s: f64, change: impl FnOnce(&mut Config)) -> Rig {
     let mut rig = Rig::started(|c| {
         c.encoder.offset_turns = Some(((off_deg / 360.0 + 0.5).rem_euclid(1.0) - 0.5) as f32);
@@ -36,17 +36,17 @@ fn turned(off_deg: f64, rate_rad_s: f64, change: impl FnOnce(&mut Config)) -> Ri
     rig
 }
 
-/// What came of it.
+/// Result.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
-    /// From the beginning of the slip to the open bridge \[ms\].
+    /// Time from the beginning of the slip to the open bridge \[ms\].
     opened_ms: Option<f64>,
-    /// Largest torque against the one asked for meanwhile \[N m\], and that at the end.
+    /// Largest torque against the request until then \[N m\], and that at the end.
     worst_nm: f64,
     end_nm: f64,
 }
 
-/// Torque is asked for, the encoder slips, and `ms` are waited for the bridge to open.
+/// Requests torque, slips the encoder, and waits for `ms` for the bridge to open.
 fn slips(slip: Slip, rate_rad_s: f64, nm: f32, ms: f64) -> Seen {
     let off_deg = if let Slip::Before(deg) = slip { deg } else { 0.0 };
     let mut rig = turned(off_deg, rate_rad_s, |_| ());
@@ -89,13 +89,14 @@ fn worst(slip: Slip, rate_rad_s: f64, nm: f32, ms: f64) -> Seen {
 
 /// Cells of the table: rates of the handlebar \[rad/s\].
 const RATES: [f64; 6] = [0.0, 0.3, 0.5, 1.0, 2.0, 5.0];
-/// How long is watched \[ms\].
+/// Duration of the observation \[ms\].
 const WATCHED_MS: f64 = 400.0;
 
-/// Situation: 4 N m asked for, either way, the handlebar turned at 0 to 5 rad/s, either way; the encoder off by 45 to 180
-/// electrical degrees from the start, slipping by 180 in 0.2 s, or turning round. Must hold: from 1 rad/s on the bridge
-/// opens within 0.1 s, or 0.1 s of the slip's end. Where it does not, the torque the wrong way is at most that of an
-/// angle that is not proved, from the start, or within 0.35 s of the slip's beginning. What docs/motor.md says.
+/// Situation: 4 N m requested in either direction, the handlebar turned at 0 to 5 rad/s in either direction; the
+/// encoder off by 45 to 180 electrical degrees from the start, slipping by 180 in 0.2 s, or reversing. Must hold:
+/// from 1 rad/s on the bridge opens within 0.1 s, or 0.1 s of the slip's end. Where it does not, the torque in the
+/// wrong direction is at most that of an unconfirmed angle, from the start, or within 0.35 s of the slip's beginning.
+/// Equal to the table in docs/motor.md.
 #[test]
 fn a_slip_is_seen_or_bounded() {
     let page = include_str!("../../../../docs/motor.md");
@@ -148,8 +149,8 @@ impl Dice {
     }
 }
 
-/// Situation: 80 encoders off by any angle beyond 60 electrical degrees, or by less than 6; any torque to 7 N m, any rate
-/// of the handlebar from 1 to 8 rad/s. Must hold: the first open within 0.1 s, the others never.
+/// Situation: 80 encoders off by any angle beyond 60 electrical degrees, or by less than 6; any torque to 7 N m, any
+/// rate of the handlebar from 1 to 8 rad/s. Must hold: the first open within 0.1 s, the others never.
 #[test]
 fn any_angle() {
     let mut dice = Dice(7);
@@ -169,8 +170,8 @@ fn any_angle() {
     assert!(latest > 2.0, "{latest}");
 }
 
-/// Situation: 3 N m, the handlebar turned at 1 or 3 rad/s; the encoder creeps on its shaft, an electrical turn in 4 s. Must
-/// hold: open before it is off by 75 electrical degrees, not before it is off by 20.
+/// Situation: 3 N m, the handlebar turned at 1 or 3 rad/s; the encoder creeps on its shaft, an electrical turn in 4
+/// s. Must hold: open before the error is 75 electrical degrees, not before it is 20.
 #[test]
 fn a_creeping_encoder() {
     for rate in [1.0, -1.0, 3.0, -3.0] {
@@ -192,9 +193,9 @@ fn a_creeping_encoder() {
     }
 }
 
-/// Situation: a handlebar at rest that nobody holds, 4 N m asked for; the encoder is off by 135 or 180 electrical degrees. Must
-/// hold: it turns the wrong way by no more than the torque of an angle that is not proved, and the bridge opens before it
-/// turns at 0.5 rad/s: half a turn within 0.1 s; the eighth less, whose torque is less, within 0.2 s.
+/// Situation: a free handlebar at rest, 4 N m requested; the encoder is off by 135 or 180 electrical degrees. Must
+/// hold: the wrong torque is at most that of an unconfirmed angle, and the bridge opens before 0.5 rad/s: with half a
+/// turn within 0.1 s; with an eighth less, whose torque is smaller, within 0.2 s.
 #[test]
 fn a_handlebar_at_rest_and_free() {
     for (deg, latest_ms) in [(180.0, 100.0), (135.0, 200.0)] {
@@ -213,8 +214,8 @@ fn a_handlebar_at_rest_and_free() {
     }
 }
 
-/// Situation: nothing is wrong; the handlebar is held, 4 N m asked for. Must hold: 2.5 N m, what an angle gives that is not
-/// proved. Then the handlebar turns at 1 rad/s: all 4 N m within 30 ms. It stands again: back to 2.5 N m after 0.2 s.
+/// Situation: no fault; the handlebar is held, 4 N m requested. Must hold: 2.5 N m, the limit of an unconfirmed
+/// angle. Then the handlebar turns at 1 rad/s: 4 N m within 30 ms. It stops again: back to 2.5 N m after 0.2 s.
 #[test]
 fn the_whole_torque_comes_with_the_proof() {
     let mut rig = turned(0.0, 0.0, |_| ());
@@ -233,11 +234,11 @@ fn the_whole_torque_comes_with_the_proof() {
     assert!((limit_nm - EXAMPLE.angle.unproved_nm).abs() < 1e-3, "told: {limit_nm}");
 }
 
-/// Situation: nothing is wrong but what is known of motor and bridge: resistance 0.7 and 1.4, flux 0.9 and 1.1, inductance
-/// 0.7 and 1.3 of what is told, dead time half of it or half more, at 12, 24, 55 V; twice as long at 24 V; the alignment
-/// off by 4 electrical degrees. Hands shake the handlebar with 12 N m at 3 Hz and twice it hits a stop, while up to 7 N m are asked
-/// for, either way. Must hold: no fault in 0.4 s, and 7 N m are given in at
-/// least a fourth of the time in which they are asked for.
+/// Situation: no fault, but parameter errors of motor and bridge: resistance 0.7 and 1.4, flux 0.9 and 1.1,
+/// inductance 0.7 and 1.3 of the configured values, dead time half of it or half more, at 12, 24, 55 V; twice as long
+/// at 24 V; alignment error 4 electrical degrees. Hands shake the handlebar with 12 N m at 3 Hz and it hits a stop
+/// twice, while up to 7 N m are requested in either direction. Must hold: no fault in 0.4 s, and 7 N m in at least a
+/// fourth of the time in which they are requested.
 #[test]
 fn what_is_no_slip() {
     let bridges =

@@ -1,23 +1,24 @@
-//! Flight cards: the torque that is asked for, and the limits of it.
+//! Flight cards: the requested torque, and its limits.
 
 use crate::rig::{Record, Rig, last, mean, opened};
 use motor::{Config, Fault, Mode, MotorCommand, Phases};
 
-/// Quick enough that the loop, not the slew limit, decides.
+/// Slew limit so fast that only the loop limits the response.
 fn at_once(c: &mut Config) {
     c.demand.slew_nm_s = 1e6;
 }
 
-/// Time from a tenth to nine tenths \[ms\], and overshoot as part of the step, of a torque from 0 to `nm`.
+/// Rise time from 10 to 90 % \[ms\], and overshoot as a fraction of the step, for a torque from 0 to `nm`.
 fn rise(records: &[Record], nm: f64) -> (f64, f64) {
     let reached = |part: f64| records.iter().position(|r| r.torque_nm / nm >= part).expect("reached") as f64;
     let most = records.iter().map(|r| r.torque_nm / nm).fold(0.0, f64::max);
     ((reached(0.9) - reached(0.1)) * 0.05, most - 1.0)
 }
 
-/// Situation: handlebar held, at twelve angles of the rotor, the sensors with noise and steps. Action: 5 N m at
-/// once, either way. Must hold: 10 to 90 % in 0.1 to 0.3 ms (a loop of the first order with 1 kHz needs 0.35 ms; the
-/// delay makes it steeper), 0.5 to 12 % too far in the first 2 ms, the mean within 1 % from the fourth millisecond on, and told within 1 %.
+/// Situation: handlebar held, at twelve rotor angles, sensors with noise and quantisation. Action: a step of 5 N m in
+/// either direction. Must hold: 10 to 90 % in 0.1 to 0.3 ms (a first-order loop with 1 kHz needs 0.35 ms; the delay
+/// makes it steeper), 0.5 to 12 % overshoot in the first 2 ms, the mean within 1 % from the fourth millisecond on,
+/// and the reported torque within 1 %.
 #[test]
 fn a_step_of_torque() {
     let (mut slowest, mut farthest, mut worst): (f64, f64, f64) = (0.0, 0.0, 0.0);
@@ -42,8 +43,8 @@ fn a_step_of_torque() {
     println!("rise {slowest} ms, overshoot {farthest:.3}, steady error {worst:.4}");
 }
 
-/// Situation: handlebar held. The winding is 40 % hotter in resistance, the inductance 30 % off either way. Action:
-/// 5 N m at once. Must hold: settles within 5 %, at most 25 % too far.
+/// Situation: handlebar held. The winding's resistance is 40 % higher, its inductance 30 % off in either direction.
+/// Action: a step of 5 N m. Must hold: settles within 5 %, at most 25 % overshoot.
 #[test]
 fn a_motor_that_is_not_as_told() {
     let mut farthest: f64 = 0.0;
@@ -63,8 +64,9 @@ fn a_motor_that_is_not_as_told() {
     println!("overshoot {farthest:.3}");
 }
 
-/// Situation: handlebar held, the PWM at other rates, the bandwidth a 20th of it; two current sensors of the three. Action:
-/// 5 N m at once. Must hold: 10 to 90 % in 2 to 6 calls, at most 15 % too far, the mean within 1 % after 80 calls.
+/// Situation: handlebar held, other PWM frequencies with a 20th as bandwidth; two instead of three current sensors.
+/// Action: a step of 5 N m. Must hold: 10 to 90 % in 2 to 6 calls, at most 15 % overshoot, the mean within 1 % after
+/// 80 calls.
 #[test]
 fn other_rates_of_the_pwm() {
     for rate_hz in [10_000.0, 30_000.0, 40_000.0_f32] {
@@ -86,8 +88,8 @@ fn other_rates_of_the_pwm() {
     }
 }
 
-/// Situation: the handlebar turns evenly, from -8 to 8 rad/s. Action: 4 N m, given while it turns. Must hold: the torque
-/// within 1 % of it, d current within 0.2 A of none.
+/// Situation: the handlebar turns at a constant rate, from -8 to 8 rad/s. Action: 4 N m while it turns. Must hold:
+/// the torque within 1 %, the d current within 0.2 A of zero.
 #[test]
 fn a_torque_while_turning() {
     let mut worst: f64 = 0.0;
@@ -108,7 +110,7 @@ fn a_torque_while_turning() {
     println!("error while turning {worst:.4}");
 }
 
-/// Situation: as above at 6 rad/s; the encoder brings a sample each fourth call. Must hold: the same.
+/// Situation: as above at 6 rad/s; the encoder gives a sample every fourth call. Must hold: the same.
 #[test]
 fn an_encoder_slower_than_the_pwm() {
     let mut rig = Rig::ready(|_| ());
@@ -130,8 +132,8 @@ fn an_encoder_slower_than_the_pwm() {
     assert!((0.99..=1.01).contains(&torque) && d.abs() < 0.2, "{torque} {d}");
 }
 
-/// Situation: a free steer, friction and all. Action: 3 N m to the right. Must hold: it turns to the right, as fast as
-/// torque less friction over inertia says; a reversed motor too.
+/// Situation: a free steer with friction. Action: 3 N m to the right. Must hold: it turns to the right, with the
+/// acceleration of torque less friction over inertia; a reversed motor too.
 #[test]
 fn a_torque_to_the_right_steers_to_the_right() {
     for reversed in [false, true] {
@@ -149,8 +151,8 @@ fn a_torque_to_the_right_steers_to_the_right() {
     }
 }
 
-/// Situation: handlebar held. Action: 100 N m. Must hold: 7 N m, the largest torque, no more than 3 % of it beside;
-/// without that limit the largest current, 10 A; the torque wanted never moves faster than 2000 N m/s.
+/// Situation: handlebar held. Action: 100 N m. Must hold: 7 N m, the largest torque, within 3 %; without that limit
+/// the largest current, 10 A; the torque set-point never changes faster than 2000 N m/s.
 #[test]
 fn torque_current_and_slew_are_limited() {
     let mut rig = Rig::ready(|_| ());
@@ -170,8 +172,9 @@ fn torque_current_and_slew_are_limited() {
     assert!((9.8..=10.2).contains(&iq) && most < 11.0, "{iq} {most}");
 }
 
-/// Situation: the handlebar turns so fast that the bus can't drive 7 N m. Action: 7 N m for 50 ms, then none. Must hold:
-/// no fault, less torque than asked for; afterwards the current is within 0.5 A of none after 1 ms, as nothing was wound up.
+/// Situation: the handlebar turns so fast that the bus voltage does not suffice for 7 N m. Action: 7 N m for 50 ms,
+/// then zero. Must hold: no fault, less torque than requested; then a current within 0.5 A of zero after 1 ms, as
+/// there is no windup.
 #[test]
 fn too_little_voltage_winds_nothing_up() {
     let mut rig = Rig::ready(at_once);
@@ -188,8 +191,8 @@ fn too_little_voltage_winds_nothing_up() {
     println!("{torque:.2} N m, current gone after {slow} calls");
 }
 
-/// Situation: the bridge is closed while the handlebar already turns at 10 rad/s, no torque asked for. Must hold: no
-/// phase current beyond 2 A.
+/// Situation: the bridge is closed while the handlebar already turns at 10 rad/s, with no torque requested. Must
+/// hold: no phase current beyond 2 A.
 #[test]
 fn closing_the_bridge_in_motion() {
     let mut rig = Rig::ready(|_| ());
@@ -203,8 +206,8 @@ fn closing_the_bridge_in_motion() {
     println!("{most:.2} A");
 }
 
-/// Situation: the handlebar turns slowly, 4 N m are asked for. Must hold: with the dead time made up for, the torque's
-/// ripple is at most half of that without.
+/// Situation: the handlebar turns slowly, 4 N m requested. Must hold: with dead-time compensation the torque ripple
+/// is at most half of that without.
 #[test]
 fn the_dead_time_is_made_up_for() {
     let ripple = |dead_time_s: f32| {
@@ -222,8 +225,8 @@ fn the_dead_time_is_made_up_for() {
     println!("{with:.3} N m rms with, {without:.3} without");
 }
 
-/// Situation: handlebar held, 6 N m asked for. Must hold: after 2 s only the current that may be held (3 A) is left;
-/// when the handlebar moves again the whole torque is back after 1 s, no sooner.
+/// Situation: handlebar held, 6 N m requested. Must hold: after 2 s only the holding current (3 A) is left; when the
+/// handlebar moves again the whole torque is back after 1 s, no sooner.
 #[test]
 fn a_stall_leaves_a_holding_torque() {
     let mut rig = Rig::ready(|_| ());
@@ -244,7 +247,7 @@ fn a_stall_leaves_a_holding_torque() {
     assert!((5.8..=6.2).contains(&back) && !last(&records).out.stalled, "{back}");
 }
 
-/// Situation: 7 N m held, the winding's time constant shortened to 1 s. Must hold: all of it at first; in the end the
+/// Situation: 7 N m held, the winding's time constant shortened to 1 s. Must hold: all of it at first; finally the
 /// continuous current, 3.29 A, no less; no fault.
 #[test]
 fn the_windings_heat_limits_the_current() {
@@ -261,7 +264,7 @@ fn the_windings_heat_limits_the_current() {
     println!("{first:.2} A, then {end:.2} A");
 }
 
-/// Situation: 7 N m asked for; the board is warm, then hot. Must hold: at 95 of 80 to 100 deg C a quarter of the
+/// Situation: 7 N m requested; the board is warm, then hot. Must hold: at 95 of 80 to 100 deg C a quarter of the
 /// current; above 100 a fault at once.
 #[test]
 fn heat_takes_torque_away() {
@@ -277,7 +280,7 @@ fn heat_takes_torque_away() {
     assert!(last(&records).out.faults.has(Fault::Hot) && opened(&records) == Some(1));
 }
 
-/// Situation: 7 N m asked for, the bus at 17 V of 16 to 18. Must hold: half of the current, 5 A.
+/// Situation: 7 N m requested, the bus at 17 V of 16 to 18. Must hold: half of the current, 5 A.
 #[test]
 fn a_sagging_bus_takes_torque_away() {
     let mut rig = Rig::ready(|_| ());
@@ -289,7 +292,7 @@ fn a_sagging_bus_takes_torque_away() {
     assert!((4.8..=5.2).contains(&iq), "{iq}");
 }
 
-/// Situation: no torque is asked for any more. Must hold: the bridge is open in that call.
+/// Situation: the torque request ends. Must hold: the bridge is open in that call.
 #[test]
 fn off_is_off_at_once() {
     let mut rig = Rig::ready(|_| ());
