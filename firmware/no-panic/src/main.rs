@@ -1,4 +1,5 @@
-//! Links only when no public entry of `control`, `motor` and `devices`, and none of `link` but the store, has a panic path:
+//! Links only when no public entry of `control`, `motor` and `devices`, and none of `link` but the store, has a panic
+//! path:
 //! the panic handler calls a symbol that does not exist, and the linker drops the handler only if nothing can
 //! reach it. Never run.
 //!
