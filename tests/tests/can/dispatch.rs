@@ -48,7 +48,7 @@ fn databases_that_are_missing_or_idle() {
     let why = read_with(&file("ride.log"), &[file("none.dbc")]).unwrap_err().to_string();
     assert!(why.starts_with(&format!("can't read {}: ", dbc("none.dbc"))), "{why}");
     let why = read_with(&file("ride.log"), &[file("ride.asc")]).unwrap_err().to_string();
-    assert!(why.starts_with(&format!("{}: line 1: is no DBC", dbc("ride.asc"))), "{why}");
+    assert!(why.starts_with(&format!("{}: line 1: is no valid DBC", dbc("ride.asc"))), "{why}");
 }
 
 /// Situation: the same message on two buses; a message that two databases have.

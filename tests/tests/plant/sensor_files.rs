@@ -61,7 +61,7 @@ fn what_is_wrong_is_named() {
         ("[accel]\nwalk = [0, -1, 0]\n", &["accel: walk = -1", "0 to 1000"]),
         ("[accel]\nrepeat = 1\n", &["accel: repeat = 1", "0 to 0.999"]),
         ("[accel]\nquantum = [nan, 0, 0]\n", &["accel: quantum = NaN"]),
-        ("[accel]\njitter_s = [0.02, 0.01]\n", &["accel: accel jitter", "less"]),
+        ("[accel]\njitter_s = [0.02, 0.01]\n", &["accel: accel jitter", "below"]),
         ("[steer]\nperiod_s = 0.01\nphase_s = 0.01\n", &["phase (control periods) = 10", "0 to 9"]),
         ("[steer]\npulses_per_turn = 16\n", &["only wheels"]),
         ("[wheel]\nwindow_s = 11\n", &["wheel: window_s = 11", "0 to 10"]),
