@@ -58,7 +58,7 @@ fn columns_that_change_half_way() {
     let mut changed = all[..200].to_vec();
     changed.push(without(HEADER));
     changed.extend(all[200..].iter().map(|line| without(line)));
-    let document = said(&table_of(HEADER, &changed), &["line 202", "8 columns"]);
+    let document = said(&table_of(HEADER, &changed), &["line 202", "8 other columns"]);
     assert_eq!(number(&document["span_s"][1]), 1.995);
     let lost = &document["modes"].as_array().unwrap().last().unwrap();
     assert_eq!(lost["mode"], "limp");

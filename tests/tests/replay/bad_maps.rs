@@ -56,11 +56,11 @@ fn wrong_maps() {
 fn columns_that_are_not_there() {
     let bench = bench(50);
     for (map, named) in [
-        (SMALLEST.replace("'t'", "'T'"), ["T", "for the time"]),
-        (format!("{SMALLEST}time = 'nope'\n"), ["nope", "for the time"]),
+        (SMALLEST.replace("'t'", "'T'"), ["T", "to the time"]),
+        (format!("{SMALLEST}time = 'nope'\n"), ["nope", "to the time"]),
         (format!("{SMALLEST}age = 'nope'\n"), ["nope", "to an age"]),
-        (format!("{SMALLEST}[engage]\ncolumn = 'nope'\n"), ["nope", "for the switch"]),
-        (SMALLEST.replace("'gx'", "'wx'"), ["wx", "for gyro"]),
+        (format!("{SMALLEST}[engage]\ncolumn = 'nope'\n"), ["nope", "to the switch"]),
+        (SMALLEST.replace("'gx'", "'wx'"), ["wx", "to gyro"]),
         (SMALLEST.replace("[time]\ncolumn = 't'\n", ""), ["neither the map nor the recording", "time"]),
     ] {
         bench.write("my.toml", map);
