@@ -98,7 +98,7 @@ fn a_wrong_fault_is_told_what_is_allowed() {
         ("gyro:late=5min", "is not a time"),
         ("gyro:stuck@1", "is not a time"),
         ("gyro:stuck@2s..1s", "its end, 1 s, is not after 2 s"),
-        ("gyro:jump=1@1s..2s", "for good"),
+        ("gyro:jump=1@1s..2s", "permanent"),
         ("gyro.x:missing", "leave out the axis"),
         ("motor:slow=0s", "above 0 s"),
     ] {
