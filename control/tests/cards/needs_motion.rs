@@ -5,6 +5,9 @@ use control::law::path_tracking::PathTracking;
 use control::sensors::sign_check::SteerModel;
 use control::{Config, Law, Sample, SensorFrame, State, Triple, step};
 
+/// Turns a function on.
+type Change = fn(&mut Config);
+
 /// Estimated roll angle after 0.5 s at a roll rate of 0.2 rad/s \[rad\].
 fn roll_rad(config: Config) -> f32 {
     let plan = config.plan().expect("a valid configuration");
@@ -27,13 +30,13 @@ fn roll_rad(config: Config) -> f32 {
 /// Must hold: the roll angle is estimated, 0.05 to 0.15 rad, with each of the functions, and stays 0 without.
 #[test]
 fn each_function_that_needs_the_motion_has_it() {
-    let with = |change: fn(&mut Config)| {
+    let with = |change: Change| {
         let mut config = Config::thesis(Law::H { cut: true });
         change(&mut config);
         roll_rad(config)
     };
     assert_eq!(with(|_| ()), 0.0);
-    let functions: [(&str, fn(&mut Config)); 11] = [
+    let functions: [(&str, Change); 11] = [
         ("estimate.roll_rate", |c| c.estimate.roll_rate = Source::Estimate),
         ("capsize", |c| c.capsize.k_c = 1.0),
         ("cross.wheels_m_s", |c| c.cross.wheels_m_s = Some(0.8)),
