@@ -11,9 +11,52 @@ pub mod real;
 use crate::law::gain_schedule::GainSchedule;
 use crate::law::real::Real;
 use crate::param::{ParamError, ParamSpec, ParamVisitor};
+use core::fmt;
+use core::str::FromStr;
 
-/// Names of the laws, in the order of their numbers on the wire.
-pub const LAW_NAMES: &[&str] = &["none", "h", "h-cut", "f", "g", "cl1", "cl2", "table", "balance-assist"];
+/// Declaration of a law: all but its formula.
+#[derive(Clone, Copy, Debug)]
+pub struct LawSpec {
+    /// Name in options, files and lists.
+    pub name: &'static str,
+    /// Parameter of a law `NAME:VALUE` \[N s^2/rad\]; `None` for a law without one.
+    pub parameter: Option<ParamSpec>,
+    /// Builds the law from its parameter or its table, neither validated.
+    pub build: fn(f32, GainSchedule) -> Law,
+}
+
+/// Every law. Its index is its number on the wire, which is permanent: a new law is appended.
+pub const LAWS: [LawSpec; 9] = [
+    LawSpec { name: "none", parameter: None, build: |_, _| Law::None },
+    LawSpec { name: "h", parameter: None, build: |_, _| Law::H { cut: false } },
+    LawSpec { name: "h-cut", parameter: None, build: |_, _| Law::H { cut: true } },
+    LawSpec { name: "f", parameter: None, build: |_, _| Law::F },
+    LawSpec { name: "g", parameter: None, build: |_, _| Law::G },
+    LawSpec { name: "cl1", parameter: None, build: |_, _| Law::Cl1 },
+    LawSpec { name: "cl2", parameter: Some(slope("cl2.k")), build: |k, _| Law::Cl2 { k } },
+    LawSpec { name: "table", parameter: None, build: |_, table| Law::Table(table) },
+    LawSpec {
+        name: "balance-assist",
+        parameter: Some(slope("balance-assist.kappa")),
+        build: |kappa, _| Law::BalanceAssist { kappa },
+    },
+];
+
+/// Names of [`LAWS`].
+pub const LAW_NAMES: &[&str] = &{
+    let mut names = [""; LAWS.len()];
+    let mut i = 0;
+    while i < names.len() {
+        names[i] = LAWS[i].name;
+        i += 1;
+    }
+    names
+};
+
+/// Slope of a gain over speed.
+const fn slope(name: &'static str) -> ParamSpec {
+    ParamSpec::new("law", name, 1e-3, 20.0)
+}
 
 /// Speed at and above which the balance assist is off \[m/s\].
 const BALANCE_OFF_M_S: f64 = 4.7;
@@ -145,38 +188,33 @@ impl Law {
         }
     }
 
+    /// Declaration of this law.
+    pub fn spec(&self) -> &'static LawSpec {
+        const NONE: &LawSpec = &LAWS[0];
+        const ALL: &[LawSpec] = &LAWS;
+        ALL.get(usize::from(self.number())).unwrap_or(NONE)
+    }
+
     /// The law with this number, not validated; `None` for an unknown number.
     pub fn numbered(number: u8, slope: f32, table: GainSchedule) -> Option<Self> {
-        Some(match number {
-            0 => Law::None,
-            1 => Law::H { cut: false },
-            2 => Law::H { cut: true },
-            3 => Law::F,
-            4 => Law::G,
-            5 => Law::Cl1,
-            6 => Law::Cl2 { k: slope },
-            7 => Law::Table(table),
-            8 => Law::BalanceAssist { kappa: slope },
-            _ => return None,
-        })
+        LAWS.get(usize::from(number)).map(|spec| (spec.build)(slope, table))
     }
 
     /// Visits the law: its kind, then its parameters, the slope or the points of the table.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let (mut number, mut slope) = (self.number(), self.slope());
-        let mut table = match self {
+        let table = match self {
             Law::Table(table) => core::mem::take(table),
             _ => GainSchedule::default(),
         };
-        let kind = ParamSpec::new("law", "kind", 0.0, (LAW_NAMES.len() - 1) as f32);
-        to.choice(&kind, LAW_NAMES, &mut number);
-        match number {
-            6 => to.number(&ParamSpec::new("law", "cl2.k", 1e-3, 20.0), &mut slope),
-            7 => table.visit_params(to),
-            8 => to.number(&ParamSpec::new("law", "balance-assist.kappa", 1e-3, 20.0), &mut slope),
-            _ => {}
+        to.choice(&ParamSpec::new("law", "kind", 0.0, (LAWS.len() - 1) as f32), LAW_NAMES, &mut number);
+        if let Some(parameter) = LAWS.get(usize::from(number)).and_then(|spec| spec.parameter) {
+            to.number(&parameter, &mut slope);
         }
         *self = Law::numbered(number, slope, table).unwrap_or_default();
+        if let Law::Table(table) = self {
+            table.visit_params(to);
+        }
     }
 
     /// Checks the law's own parameters.
@@ -184,13 +222,58 @@ impl Law {
     /// # Errors
     /// The parameter, its value and the allowed range.
     pub fn validate(&self) -> Result<(), ParamError> {
-        let range = |name| ParamSpec::new("", name, 1e-3, 20.0);
-        match self {
-            Law::Cl2 { k } => range("law.cl2.k").check(*k),
-            Law::BalanceAssist { kappa } => range("law.balance-assist.kappa").check(*kappa),
-            Law::Table(table) => table.validate(),
-            _ => Ok(()),
+        if let Law::Table(table) = self {
+            table.validate()?;
         }
+        self.spec().parameter.map_or(Ok(()), |parameter| parameter.check(self.slope()))
+    }
+}
+
+/// Writes `NAME`, or `NAME:VALUE` for a law with a parameter: [`Law::from_str`] reads it back, except a table.
+impl fmt::Display for Law {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let LawSpec { name, parameter, .. } = self.spec();
+        match parameter {
+            Some(_) => write!(f, "{name}:{}", self.slope()),
+            None => f.write_str(name),
+        }
+    }
+}
+
+/// Reason for which a text is not a law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LawError {
+    /// No law has this name, or it is a table, which needs its points.
+    Unknown,
+    /// The law has this parameter, which is missing or not a number.
+    NotANumber(ParamSpec),
+    /// The law has no parameter.
+    NoParameter,
+    /// The parameter is outside its range.
+    OutOfRange(ParamError),
+}
+
+impl FromStr for Law {
+    type Err = LawError;
+
+    /// Reads and validates `NAME` or `NAME:VALUE`.
+    fn from_str(text: &str) -> Result<Self, LawError> {
+        let (name, value) = text.split_once(':').map_or((text, None), |(name, value)| (name, Some(value)));
+        let spec = LAWS.iter().find(|spec| spec.name == name).ok_or(LawError::Unknown)?;
+        let slope = match (spec.parameter, value) {
+            (None, None) => 0.0,
+            (None, Some(_)) => return Err(LawError::NoParameter),
+            (Some(parameter), value) => {
+                let number = value.and_then(|value| value.parse().ok());
+                number.ok_or(LawError::NotANumber(parameter))?
+            }
+        };
+        let law = (spec.build)(slope, GainSchedule::default());
+        if let Law::Table(_) = law {
+            return Err(LawError::Unknown);
+        }
+        law.validate().map_err(LawError::OutOfRange)?;
+        Ok(law)
     }
 }
 

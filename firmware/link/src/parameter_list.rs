@@ -7,8 +7,6 @@ use control::{Config, Law};
 
 /// The law by its name. A law that needs more than a name is set as a whole; see [`crate::law`].
 pub const LAW: ParamSpec = ParamSpec::new("", "law", 0.0, (LAW_NAMES.len() - 1) as f32);
-const CL2: ParamSpec = ParamSpec::new("law", "cl2.k", 1e-3, 20.0);
-const BALANCE: ParamSpec = ParamSpec::new("law", "balance-assist.kappa", 1e-3, 20.0);
 
 /// Meaning of a parameter's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,10 +93,8 @@ pub fn get(config: &Config, key: Key<'_>) -> Option<ParameterView> {
 fn law(law: &mut Law, to: &mut Walk<'_>) {
     let (mut number, mut slope) = (law.number(), law.slope());
     to.choice(&LAW, LAW_NAMES, &mut number);
-    match law {
-        Law::Cl2 { .. } => to.number(&CL2, &mut slope),
-        Law::BalanceAssist { .. } => to.number(&BALANCE, &mut slope),
-        _ => {}
+    if let Some(parameter) = &law.spec().parameter {
+        to.number(parameter, &mut slope);
     }
     let table = match law {
         Law::Table(table) => core::mem::take(table),

@@ -1,6 +1,5 @@
 //! A parameter as a board lists it, and its value as text in the form of `--set`.
 
-use control::law::LAW_NAMES;
 use control::{GainSchedule, Law};
 use link::bytes::{Reader, Writer, to_bits};
 use link::law::{LAW_BYTES, decode, encode};
@@ -113,15 +112,6 @@ impl Parameter {
     /// Whether it has this value, bit for bit.
     pub fn has(&self, value: Option<f32>) -> bool {
         to_bits(self.value) == to_bits(value)
-    }
-}
-
-/// Name of a law as in `--law`; `table` for a gain table.
-pub fn law_name(law: &Law) -> String {
-    let name = LAW_NAMES.get(usize::from(law.number())).unwrap_or(&"?");
-    match law {
-        Law::Cl2 { .. } | Law::BalanceAssist { .. } => format!("{name}:{}", law.slope()),
-        _ => (*name).to_owned(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The settings of a board, and the requested ones.
 
 use super::client::{Client, ClientError};
-use super::parameter::{Parameter, law_name, law_points};
+use super::parameter::{Parameter, law_points};
 use control::Law;
 
 /// A parameter's value, or the law.
@@ -104,7 +104,7 @@ impl Settings {
     pub fn words(&self, key: &str) -> String {
         match law_points(&self.law) {
             Some(points) if key == "law" => format!("table of {} points", points.len()),
-            None if key == "law" => law_name(&self.law),
+            None if key == "law" => self.law.to_string(),
             _ => self.find(key).map_or("nothing".into(), |one| one.text(one.value)),
         }
     }

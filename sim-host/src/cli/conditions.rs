@@ -8,7 +8,6 @@ use super::rider_args::{RiderArgs, step};
 use super::{Failure, cut_files, law, warn};
 use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
-use crate::board::parameter::law_name;
 use crate::parameters;
 use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
@@ -164,7 +163,7 @@ impl ConditionArgs {
         let rider = self.rider.load()?;
         let file = self.parameters.as_deref().map(ParameterFile::read).transpose()?;
         let (law_name, law) = match (&self.law, file.as_ref().and_then(|file| file.law.clone())) {
-            (None, Some(law)) => (law_name(&law), law),
+            (None, Some(law)) => (law.to_string(), law),
             (name, _) => {
                 let name = name.as_deref().unwrap_or(match (product, &rider) {
                     (true, _) => "h-cut",

@@ -1,9 +1,19 @@
 //! Parses laws: a name or a table file.
 
+use control::law::{LAWS, LawError};
+use control::param::ParamSpec;
 use control::{Capsize, GainSchedule, Law};
 
-/// Allowed laws, for help texts.
-pub(super) const HELP: &str = "none, h, h-cut (zero above 7.5 m/s), f, g, cl1, cl2:K, balance-assist:K (K > 0), or a TOML file with speed_m_s and gain_nm_s_rad";
+/// Allowed laws, for messages.
+fn allowed() -> String {
+    let laws = LAWS.iter().filter(|spec| !matches!(spec.name.parse::<Law>(), Err(LawError::Unknown)));
+    let names =
+        laws.map(|spec| if spec.parameter.is_some() { format!("{}:K", spec.name) } else { spec.name.into() });
+    format!(
+        "{} (K > 0), or a TOML file with speed_m_s and gain_nm_s_rad",
+        names.collect::<Vec<String>>().join(", ")
+    )
+}
 
 /// A user's gain table as a file.
 #[derive(serde::Deserialize)]
@@ -20,27 +30,14 @@ struct TableFile {
 
 /// The law with this name or from this file.
 pub(super) fn parse(text: &str) -> Result<Law, String> {
-    let law = match text {
-        "none" => Law::None,
-        "h" => Law::H { cut: false },
-        "h-cut" => Law::H { cut: true },
-        "f" => Law::F,
-        "g" => Law::G,
-        "cl1" => Law::Cl1,
-        _ => match text.split_once(':') {
-            Some(("cl2", k)) => Law::Cl2 { k: slope(text, k)? },
-            Some(("balance-assist", k)) => Law::BalanceAssist { kappa: slope(text, k)? },
-            _ => table(text)?,
-        },
-    };
-    law.validate().map_err(|e| format!("law `{text}`: {e}"))?;
-    Ok(law)
-}
-
-fn slope(law: &str, text: &str) -> Result<f32, String> {
-    text.parse().map_err(|_| {
-        let (name, _) = law.split_once(':').unwrap_or((law, ""));
-        format!("law `{law}`: `{text}` is not a number; expected {name}:K, K from 0.001 to 20")
+    let name = text.split_once(':').map_or(text, |(name, _)| name);
+    text.parse::<Law>().or_else(|error| match error {
+        LawError::Unknown => table(text),
+        LawError::NotANumber(ParamSpec { min, max, .. }) => {
+            Err(format!("law `{text}`: expected {name}:K, K a number from {min} to {max}"))
+        }
+        LawError::NoParameter => Err(format!("law `{text}`: {name} takes no number")),
+        LawError::OutOfRange(error) => Err(format!("law `{text}`: {error}")),
     })
 }
 
@@ -69,7 +66,7 @@ pub(super) fn of_value(value: toml::Value) -> Result<Law, String> {
 
 fn table(path: &str) -> Result<Law, String> {
     if !std::path::Path::new(path).exists() {
-        return Err(format!("unknown law `{path}`: no such file, and not one of {HELP}"));
+        return Err(format!("unknown law `{path}`: no such file, and not one of {}", allowed()));
     }
     let text = std::fs::read_to_string(path).map_err(|e| format!("can't read law file {path}: {e}"))?;
     let file: TableFile =

@@ -1,7 +1,7 @@
 //! Files of firmware parameters: exported from a board, read by board commands and simulator.
 
 use super::law;
-use crate::board::parameter::{law_bytes, law_name, law_points};
+use crate::board::parameter::{law_bytes, law_points};
 use crate::board::settings::Settings;
 use crate::parameters;
 use crate::range::plain;
@@ -148,7 +148,7 @@ fn body(settings: &Settings) -> String {
             let _ = write!(text, "\n[law]\nspeed_m_s = {speeds:?}\ngain_nm_s_rad = {gains:?}\n");
         }
         None => {
-            let _ = writeln!(text, "law = \"{}\"", law_name(&settings.law));
+            let _ = writeln!(text, "law = \"{}\"", settings.law.to_string());
         }
     }
     text += "\n[parameters]\n";

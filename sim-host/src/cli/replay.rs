@@ -7,7 +7,6 @@ use super::parameter_file::ParameterFile;
 use super::{Ended, Failure, law, warn};
 use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
-use crate::board::parameter::law_name;
 use crate::parameters;
 use crate::plant::{Fault, ImuMount};
 use crate::recording::{ReadOptions, read};
@@ -168,7 +167,7 @@ fn common(args: &Args) -> Result<Common, Failure> {
     let faults = args.fault.iter().map(|text| text.parse::<Fault>());
     let faults = faults.collect::<Result<_, _>>().map_err(|e| format!("--fault: {e}"))?;
     let map = args.map.as_deref().map(Map::load).transpose().map_err(|error| format!("--map {error}"))?;
-    let law_name = law_name(&law);
+    let law_name = law.to_string();
     let mut config = Config { law, ..base };
     if let Some(name) = &args.bicycle {
         let bicycle = catalogue::load(name)?;

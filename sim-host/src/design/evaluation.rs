@@ -17,16 +17,16 @@ pub struct Judged {
 /// Laws with which a design is compared, and their names on the command line.
 pub fn competitors() -> Vec<(String, Law)> {
     [
-        ("none", Law::None),
-        ("h-cut", Law::H { cut: true }),
-        ("f", Law::F),
-        ("g", Law::G),
-        ("cl2:2", Law::Cl2 { k: 2.0 }),
-        ("cl2:4", Law::Cl2 { k: 4.0 }),
-        ("balance-assist:5.2", Law::BalanceAssist { kappa: 5.2 }),
-        ("balance-assist:10", Law::BalanceAssist { kappa: 10.0 }),
+        Law::None,
+        Law::H { cut: true },
+        Law::F,
+        Law::G,
+        Law::Cl2 { k: 2.0 },
+        Law::Cl2 { k: 4.0 },
+        Law::BalanceAssist { kappa: 5.2 },
+        Law::BalanceAssist { kappa: 10.0 },
     ]
-    .map(|(name, law)| (name.to_owned(), law))
+    .map(|law| (law.to_string(), law))
     .to_vec()
 }
 

@@ -4,7 +4,7 @@ use super::document::SCHEMA;
 use super::resolved::{ResolvedLaw, Tool};
 use crate::board::BoardName;
 use crate::board::fault::Fault;
-use crate::board::parameter::{Parameter, law_name};
+use crate::board::parameter::Parameter;
 use crate::board::reception::Reception;
 use crate::board::settings::Settings;
 use link::parameter_list::Kind;
@@ -34,7 +34,7 @@ impl ParametersDocument {
             schema: SCHEMA,
             tool: Tool::this(),
             board,
-            law: ResolvedLaw::new(&law_name(&settings.law), &settings.law),
+            law: ResolvedLaw::new(&settings.law.to_string(), &settings.law),
             parameters: parameters.iter().map(|one| ListedParameter::new(one)).collect(),
         }
     }

@@ -22,13 +22,9 @@ const RIDES: [(&str, Option<&str>); 3] =
     [("rigid_jason", None), ("rigid_jason", Some("smart")), ("balanceassistv1_jason", None)];
 
 /// The laws, with their names on the command line.
-pub fn laws() -> [(&'static str, Law); 4] {
-    [
-        ("none", Law::None),
-        ("h-cut", Law::H { cut: true }),
-        ("balance-assist:3.9", Law::BalanceAssist { kappa: 3.9 }),
-        ("balance-assist:5.2", Law::BalanceAssist { kappa: 5.2 }),
-    ]
+pub fn laws() -> [(String, Law); 4] {
+    [Law::None, Law::H { cut: true }, Law::BalanceAssist { kappa: 3.9 }, Law::BalanceAssist { kappa: 5.2 }]
+        .map(|law| (law.to_string(), law))
 }
 
 /// The search of the study: 2 to 7.5 m/s in steps of `step` \[m/s\].
@@ -115,7 +111,7 @@ pub fn study(
 fn text(groups: &[Group], basins: &[Vec<Basin>], search: &Search) -> String {
     let laws = laws();
     let mut heading = vec!["bicycle", "rider", "largest change [N m/s]"];
-    heading.extend(laws.iter().map(|(name, _)| *name));
+    heading.extend(laws.iter().map(|(name, _)| name.as_str()));
     heading.push("5.2 over h-cut");
     let rows = groups.iter().zip(basins).map(|(g, basins)| {
         let ratio = Bound::of_ratio(basins[3].capped(), basins[1].capped());
@@ -193,7 +189,9 @@ fn figure(groups: &[Group], basins: &[Vec<Basin>]) -> Chart {
             .iter()
             .zip(basins)
             .enumerate()
-            .map(|(i, ((name, _), basin))| Series::new(*name, Look::line(i, Line::Solid), basin.outline()))
+            .map(|(i, ((name, _), basin))| {
+                Series::new(name.as_str(), Look::line(i, Line::Solid), basin.outline())
+            })
             .collect(),
         ..Plot::default()
     });

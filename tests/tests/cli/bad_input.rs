@@ -85,6 +85,20 @@ fn unknown_bicycles() {
     refused(&bench, "eigen --bicycle my.toml#city", &["my.toml", "city"]);
 }
 
+/// Situation: the help of a command that takes a law.
+/// Action: read it.
+/// Must hold: it names every law that is chosen by name, as a law's error message does.
+#[test]
+fn the_help_names_every_law() {
+    let bench = Bench::new(PROGRAM);
+    let help = bench.run("basin --help").stdout;
+    for spec in control::law::LAWS.iter().filter(|spec| spec.name != "table") {
+        let name = if spec.parameter.is_some() { format!("{}:K", spec.name) } else { spec.name.to_owned() };
+        assert!(help.contains(&format!(" {name},")), "{name}: {help}");
+        refused(&bench, "eigen --law nope", &[&name]);
+    }
+}
+
 /// Situation: laws that are not there or wrong.
 /// Action: use them.
 /// Must hold: refused, naming law or file, key, value and range.

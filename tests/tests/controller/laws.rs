@@ -1,6 +1,7 @@
 //! Flight cards: the laws beyond those of the thesis, and what may be asked of a law when the speed is not
 //! certain.
 
+use control::law::{LAWS, LawError};
 use control::param::{Checker, ParamVisitor};
 use control::{Capsize, GainSchedule, Law};
 use proptest::prelude::*;
@@ -206,5 +207,42 @@ proptest! {
         to.visit_params(&mut checker);
         prop_assert_eq!(checker.verdict(), Ok(()));
         prop_assert_eq!(to.validate(), Ok(()));
+    }
+}
+
+/// Situation: every declared law, its parameter 1.5 where it has one.
+/// Action: ask for its number, write it and read it back.
+/// Must hold: the number is its place in the declarations and the text gives the same law; a table, which needs points, is no
+/// law by its name.
+#[test]
+fn every_declared_law_is_read_by_its_name() {
+    for (number, spec) in LAWS.iter().enumerate() {
+        let table = GainSchedule::new(&[(0.0, 1.0)]).expect("a table");
+        let law = (spec.build)(1.5, table);
+        assert_eq!(usize::from(law.number()), number, "{}", spec.name);
+        assert_eq!(LAWS.iter().filter(|other| other.name == spec.name).count(), 1, "{}", spec.name);
+        let text = law.to_string();
+        let written = if spec.parameter.is_some() { format!("{}:1.5", spec.name) } else { spec.name.into() };
+        assert_eq!(text, written);
+        let is_table = matches!(law, Law::Table(_));
+        assert_eq!(text.parse(), if is_table { Err(LawError::Unknown) } else { Ok(law) }, "{text}");
+    }
+}
+
+/// Situation: texts that are not a law.
+/// Action: read them.
+/// Must hold: the reason is the one that applies.
+#[test]
+fn a_text_that_is_no_law_has_its_reason() {
+    let read = |text: &str| text.parse::<Law>().expect_err(text);
+    for text in ["", "H", "h ", "table", "table:1", "cl3:2"] {
+        assert_eq!(read(text), LawError::Unknown, "`{text}`");
+    }
+    assert_eq!(read("h:2"), LawError::NoParameter);
+    for text in ["cl2", "cl2:", "cl2:x", "cl2:1:2"] {
+        assert!(matches!(read(text), LawError::NotANumber(spec) if spec.name == "cl2.k"), "{text}");
+    }
+    for text in ["cl2:0", "cl2:-1", "cl2:nan", "cl2:20.5", "balance-assist:inf"] {
+        assert!(matches!(read(text), LawError::OutOfRange(_)), "{text}");
     }
 }
