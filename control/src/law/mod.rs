@@ -25,6 +25,13 @@ pub struct LawSpec {
     pub build: fn(f32, GainSchedule) -> Law,
 }
 
+impl LawSpec {
+    /// Whether the law is a table, which its name alone does not give.
+    pub fn is_table(&self) -> bool {
+        matches!((self.build)(0.0, GainSchedule::default()), Law::Table(_))
+    }
+}
+
 /// Every law. Its index is its number on the wire, which is permanent: a new law is appended.
 pub const LAWS: [LawSpec; 9] = [
     LawSpec { name: "none", parameter: None, build: |_, _| Law::None },
@@ -259,7 +266,7 @@ impl FromStr for Law {
     /// Reads and validates `NAME` or `NAME:VALUE`.
     fn from_str(text: &str) -> Result<Self, LawError> {
         let (name, value) = text.split_once(':').map_or((text, None), |(name, value)| (name, Some(value)));
-        let spec = LAWS.iter().find(|spec| spec.name == name).ok_or(LawError::Unknown)?;
+        let spec = LAWS.iter().find(|spec| spec.name == name && !spec.is_table()).ok_or(LawError::Unknown)?;
         let slope = match (spec.parameter, value) {
             (None, None) => 0.0,
             (None, Some(_)) => return Err(LawError::NoParameter),
@@ -269,9 +276,6 @@ impl FromStr for Law {
             }
         };
         let law = (spec.build)(slope, GainSchedule::default());
-        if let Law::Table(_) = law {
-            return Err(LawError::Unknown);
-        }
         law.validate().map_err(LawError::OutOfRange)?;
         Ok(law)
     }

@@ -6,7 +6,7 @@ use control::{Capsize, GainSchedule, Law};
 
 /// Allowed laws, for messages.
 fn allowed() -> String {
-    let laws = LAWS.iter().filter(|spec| !matches!(spec.name.parse::<Law>(), Err(LawError::Unknown)));
+    let laws = LAWS.iter().filter(|spec| !spec.is_table());
     let names =
         laws.map(|spec| if spec.parameter.is_some() { format!("{}:K", spec.name) } else { spec.name.into() });
     format!(
