@@ -148,7 +148,7 @@ fn body(settings: &Settings) -> String {
             let _ = write!(text, "\n[law]\nspeed_m_s = {speeds:?}\ngain_nm_s_rad = {gains:?}\n");
         }
         None => {
-            let _ = writeln!(text, "law = \"{}\"", settings.law.to_string());
+            let _ = writeln!(text, "law = \"{}\"", settings.law);
         }
     }
     text += "\n[parameters]\n";
