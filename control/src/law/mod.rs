@@ -33,7 +33,7 @@ impl LawSpec {
 }
 
 /// Every law. Its index is its number on the wire, which is permanent: a new law is appended.
-pub const LAWS: [LawSpec; 9] = [
+pub static LAWS: [LawSpec; 9] = [
     LawSpec { name: "none", parameter: None, build: |_, _| Law::None },
     LawSpec { name: "h", parameter: None, build: |_, _| Law::H { cut: false } },
     LawSpec { name: "h-cut", parameter: None, build: |_, _| Law::H { cut: true } },
@@ -197,9 +197,8 @@ impl Law {
 
     /// Declaration of this law.
     pub fn spec(&self) -> &'static LawSpec {
-        const NONE: &LawSpec = &LAWS[0];
-        const ALL: &[LawSpec] = &LAWS;
-        ALL.get(usize::from(self.number())).unwrap_or(NONE)
+        let [none, ..] = &LAWS;
+        LAWS.get(usize::from(self.number())).unwrap_or(none)
     }
 
     /// The law with this number, not validated; `None` for an unknown number.
