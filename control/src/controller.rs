@@ -45,7 +45,7 @@ pub struct State {
     history: History,
 }
 
-/// Estimated roll angle and its error bound.
+/// Estimated roll angle and its error, and the specific force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Roll {
     /// Roll angle, right positive \[rad\].
@@ -111,7 +111,8 @@ impl State {
 pub struct Command {
     /// Steer torque in the motor's sign ([`crate::Calibration::motor_reversed`]) \[N m\]. Always finite.
     pub torque_nm: f32,
-    /// Gain of the law \[N m s/rad\]; 0 while the authority is 0, or speed or roll rate is unknown.
+    /// Gain of the law \[N m s/rad\]; 0 while the authority is 0, or speed or roll rate is unknown or
+    /// not yet aligned.
     pub gain_nm_s_rad: f32,
     /// Limits that changed the torque.
     pub limits: ActiveLimits,
@@ -123,7 +124,7 @@ pub struct Command {
 
 /// One control period: computes the motor torque from the sensors' samples of this instant.
 ///
-/// Without a valid roll rate or speed the requested torque is zero, reached at the rate limit. In the modes before
+/// Without a valid roll rate or speed the law requests zero torque, reached at the rate limit. In the modes before
 /// standby, and on any violation found by the guard, the torque is zero at once.
 pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let config = &plan.config;

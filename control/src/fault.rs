@@ -2,7 +2,7 @@
 //!
 //! A number is never reused, even after its cause is removed. `docs/faults` has one page per cause.
 
-/// Reason why torque is refused or reduced, or a condition that is only reported. The number is the code shown to
+/// Reason why torque is forbidden or reduced, or a condition that is only reported. The number is the code shown to
 /// users.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]

@@ -15,17 +15,18 @@
 //!
 //! * [`sensors`]: converts a [`SensorFrame`] to measurements in the bicycle's axes ([`sensors::calibration`]). Each
 //!   sensor is checked on its own ([`sensors::validation`], one [`sensors::monitor`] per sensor) and against the other
-//!   sensors ([`sensors::cross_check`], [`sensors::sign_check`], [`sensors::polarity`]).
-//! * [`estimate`]: estimates the motion of the bicycle with an error bound, smooths the roll rate and predicts it to
-//!   the instant at which the torque acts.
+//!   sensors ([`sensors::cross_check`], [`sensors::sign_check`], [`sensors::polarity`]). Samples of
+//!   different latency are aligned to one instant ([`sensors::latency`]).
+//! * [`estimate`]: estimates the motion of the bicycle with an error bound, predicts the roll rate to the instant at
+//!   which the torque acts, and smooths it.
 //! * [`law`]: computes the torque of the chosen roll-rate law, and of [`law::capsize`] and [`law::path_tracking`] where
 //!   they are on.
 //! * [`safety`]: decides whether torque is permitted ([`safety::engagement`]), keeps the torque inside the
 //!   [`safety::limits`] ([`safety::limiter`]) and checks the result by a second formulation ([`safety::guard`]).
 //!
 //! [`controller`] calls them in order. [`config`] holds all parameters, [`plan`] the constants derived from them,
-//! [`fault`] the numbered causes; [`param`] declares every parameter with its range, [`wire`] encodes frames and
-//! configurations.
+//! [`fault`] the numbered causes; [`param`] declares every parameter with its range, [`wire`] encodes frames,
+//! commands and configurations. A board computes wheel speeds from pulses by [`sensors::wheel_speed`].
 #![no_std]
 #![forbid(unsafe_code)]
 

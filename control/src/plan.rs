@@ -36,7 +36,7 @@ pub struct Plan {
     pub(crate) polarity_check_due: bool,
     /// Gain of the law at [`polarity::GAIN_SPEED_M_S`], for the polarity check \[N m s/rad\].
     pub(crate) polarity_gain_nm_s_rad: f32,
-    /// Whether any function needs more of the motion than the gyro's x axis.
+    /// Whether any function needs the estimated motion; otherwise the sensors' values are used as they are.
     pub(crate) needs_estimate: bool,
     pub(crate) config: Config,
 }
@@ -70,8 +70,8 @@ impl Plan {
         &self.config
     }
 
-    /// Whether pressing the switch in, or through, the period after `command` would engage if nothing else changes: the
-    /// mode is standby and no other cause prevents engagement.
+    /// Whether a press of the switch that begins or continues in the period after `command` would engage if nothing
+    /// else changes: the mode is standby and only the press is missing.
     pub fn ready(&self, command: &Command) -> bool {
         let rejections = self.reactions.rejections().with(Causes::of(Cause::SwitchHeld));
         let blocking = command.causes.and(rejections);
@@ -90,7 +90,8 @@ impl Plan {
     }
 }
 
-/// Whether any function needs more of the motion than the measured rates. Every field is named, so that a new one must be decided.
+/// Whether any function needs the estimated motion. Every field is named, so a new field does not compile without a
+/// decision.
 fn needs_motion(config: &Config) -> bool {
     let Config {
         rate_hz: _,

@@ -19,7 +19,7 @@ pub const SOURCES: &[&str] = &["gyro_x", "estimate"];
 /// A point in the rear frame's plane, upright, relative to the rear wheel's contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// Forward of it \[m\].
+    /// Forward of the contact point \[m\].
     pub forward_m: f32,
     /// Above the ground \[m\].
     pub up_m: f32,

@@ -20,7 +20,7 @@ pub struct PredictConfig {
 }
 
 impl Default for PredictConfig {
-    /// Off; 1 rad/s, which at a horizon of 50 ms exceeds that of any ride that can be saved.
+    /// Off; at most 1 rad/s, more than the change within 50 ms of any ride that can be saved.
     fn default() -> Self {
         Self { lead_s: 0.0, max_rad_s: 1.0 }
     }

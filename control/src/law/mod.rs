@@ -26,7 +26,7 @@ pub struct LawSpec {
 }
 
 impl LawSpec {
-    /// Whether the law is a table, which its name alone does not give.
+    /// Whether the law is a table, whose points its name does not contain.
     pub fn is_table(&self) -> bool {
         matches!((self.build)(0.0, GainSchedule::default()), Law::Table(_))
     }
@@ -142,8 +142,8 @@ impl Law {
         }
     }
 
-    /// The gain of smallest magnitude between two speeds \[m/s\], in either order: 0 if the gain changes sign there. For a
-    /// speed known only to be within bounds, no larger gain is safe at every speed.
+    /// The gain of smallest magnitude between two speeds \[m/s\], in either order: 0 if the gain changes sign there. For
+    /// a speed known only to be within bounds, no larger gain is safe at every speed.
     ///
     /// Two equal speeds give the bits of [`Law::gain`]. Exact except for the rounding of `gain`.
     pub fn gain_towards_zero(&self, one_m_s: f32, other_m_s: f32) -> f32 {
@@ -160,7 +160,7 @@ impl Law {
         }
         let least = nearer_zero(self.gain(one_m_s), self.gain(other_m_s));
         let inside = |v: f32| low < v && v < high;
-        // Every other law has its smallest magnitude at the ends of the range, at a zero crossing, or at the points below.
+        // Every other law has its smallest magnitude at the ends of the range, at a zero crossing, or at these points.
         match self {
             Law::F if inside(F_LEAST_M_S) => nearer_zero(least, self.gain(F_LEAST_M_S)),
             Law::Table(table) => {

@@ -198,7 +198,7 @@ pub struct EngagementState {
     ticks: u16,
     switch: PressState,
     authority: f32,
-    /// Causes since the fault began.
+    /// Causes of the fault since it began.
     latched: Causes,
     /// Disagreements since the rider engaged.
     disagreements: Causes,
@@ -214,7 +214,7 @@ pub struct EngagementOutput {
     pub mode: Mode,
     /// Permitted fraction of the torque, 0 to 1.
     pub authority: f32,
-    /// Every present cause; in a fault, every cause since the fault began.
+    /// Every present cause; in a fault also those of [`Reactions::fault`] since it began.
     pub causes: Causes,
 }
 

@@ -95,7 +95,7 @@ pub struct GuardState {
     /// Timer of the handlebar turning against the torque \[us\].
     against_us: u32,
     /// Smallest magnitude of the torque since the start of each interval, newest first \[N m\]. Only the newest is
-    /// updated in each period; the older ones take its value when the next interval starts.
+    /// updated in each period; the older ones take its value, where smaller, when the next interval starts.
     minima: [f32; INTERVALS],
     /// [`side`] of the torque; when it changes, every minimum becomes zero.
     side: f32,

@@ -48,8 +48,8 @@ pub struct CrossCheckConfig {
     /// Persistence of the small yaw rate residual \[control periods\].
     pub slow_ticks: u16,
     /// Consecutive checks, 24 ms apart, that find gyro or accelerometer unchanged on all three axes while the bicycle
-    /// rides and another sensor changes; 0 is unlimited. Noise changes every sample of three axes; a sensor that
-    /// filters its noise below its resolution needs more checks.
+    /// rides and another sensor changes. 0 turns these checks off, and with them that of the rear wheel's jump. Noise
+    /// changes every sample of three axes; a sensor that filters its noise below its resolution needs more checks.
     pub same_checks: u16,
 }
 
@@ -254,7 +254,7 @@ impl Debounce {
 /// Result of the cross-checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CrossCheckResult {
-    /// Residuals that have persisted.
+    /// Causes of all checks: persistent residuals, slopes, correlation, and those of `invalidated`.
     pub causes: Causes,
     /// Causes whose sensors must be invalidated from now on.
     pub invalidated: Causes,

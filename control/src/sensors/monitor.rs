@@ -31,7 +31,8 @@ pub struct Sensor {
     pub slope_per_s: Option<f32>,
     /// Timeout: oldest valid age of a held sample \[control periods\].
     pub timeout_ticks: u16,
-    /// Longest time of equal samples while the measured quantity changes \[control periods\]; 0 is unlimited.
+    /// Time of equal samples while the measured quantity changes, at which the sensor is stuck \[control periods\]; 0
+    /// is unlimited.
     pub stuck_ticks: u16,
     /// Consecutive good samples that qualify a sensor, at start-up and after its loss.
     pub qualify_samples: u16,
@@ -201,8 +202,8 @@ impl<const N: usize> SensorMonitor<N> {
         }
     }
 
-    /// One control period. `moving` is true if other sensors show the measured quantity to change; it is evaluated only
-    /// when the value repeats or no new sample arrives.
+    /// One control period. `moving` is true if other sensors show the measured quantity to change; it counts only in
+    /// periods without a new good value.
     #[inline(always)]
     pub fn step(
         &mut self,

@@ -43,8 +43,8 @@ pub const MOTOR_WRONG: f32 = -0.2;
 pub struct SignCheckConfig {
     /// Whether to check the gyro's signs; needs accelerometer and a wheel.
     pub gyro: bool,
-    /// Model of the steer acceleration for the motor check; needs steer angle, steer rate and a wheel. `None` is no
-    /// check.
+    /// Model of the steer acceleration for the motor check; needs gyro, steer angle, steer rate and a wheel. `None` is
+    /// no check.
     pub motor: Option<SteerModel>,
 }
 
@@ -176,7 +176,7 @@ pub fn step(
     // Gyro and motor blocks end in different periods, which spreads the work.
     let gyro_end = state.gyro_tick == plan.motor_ticks / 2;
     let motor_end = state.motor_tick == plan.motor_ticks;
-    // The gyro's means take every second period, the motor's every fourth; no block ends in these.
+    // The gyro's means take every second period, the motor's every fourth; at 1 kHz no block ends in these.
     let (adds_gyro, adds_motor) = (state.motor_tick % 2 == 1, state.motor_tick % 4 == 1);
     let speed = measurements.rear_wheel_m_s().or(measurements.front_wheel_m_s());
     let mut causes = Causes::NONE;

@@ -20,7 +20,7 @@ pub struct ValidationConfig {
     pub recent_samples: u16,
     /// Largest rate of change of the speed without a new sample \[m/s^2\]; the bounds widen at this rate.
     pub drift_m_s2: f32,
-    /// Age from which the bounds widen: the time between samples of a good wheel sensor \[control periods\].
+    /// Age above which the bounds widen: the time between samples of a good wheel sensor \[control periods\].
     pub drift_after_ticks: u16,
     /// Longest time between two control periods \[ms\].
     pub max_gap_ms: Option<f32>,

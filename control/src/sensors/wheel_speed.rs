@@ -149,7 +149,7 @@ pub fn step(
 ///
 /// Over the window the mean speed was `u`; at its end the speed differed from `u` by at most half the window's possible
 /// change. Since the last pulse the wheel has travelled less than one pulse distance: the upper bound is that of a
-/// wheel that started from rest and accelerated over that distance.
+/// wheel that accelerated throughout that distance, from rest at the slowest.
 fn speed(c: &WheelPulsesConfig, state: &WheelPulsesState, age_s: f32, since_s: f32) -> WheelSpeed {
     let distance_m = core::f32::consts::TAU * c.radius_m / f32::from(c.pulses_per_turn.max(1));
     let max_distance_m = distance_m * (1.0 + c.spacing_error);

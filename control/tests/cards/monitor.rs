@@ -216,7 +216,7 @@ fn a_new_level_must_qualify() {
     let mut bench = Bench::valid();
     let valid_samples: Vec<bool> = (0..12).map(|k| bench.fresh(5.0 + 1e-3 * k as f32).is_ok()).collect();
     assert_eq!(valid_samples[..5], [true; 5]);
-    let back = valid_samples[5..].iter().position(|ok| *ok).expect("valid_from again");
+    let back = valid_samples[5..].iter().position(|ok| *ok).expect("valid again");
     assert!((2..=4).contains(&back), "{valid_samples:?}");
 }
 

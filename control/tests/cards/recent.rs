@@ -5,7 +5,7 @@ use control::sensors::measurements::SpeedInterval;
 use control::sensors::validation::{MAX_RECENT_SAMPLES, ValidationState};
 use control::{Sample, Sensor, SensorFrame, ValidationConfig};
 
-/// Both wheels fitted: bounds over three samples, widening at 10 m/s^2 from an age of 4 periods on, lost after 20.
+/// Both wheels fitted: bounds over three samples, widening at 10 m/s^2 above an age of 4 periods, lost after 20.
 fn wheels() -> ValidationConfig {
     let wheel = Sensor { timeout_ticks: 20, ..Sensor::exact(30.0) };
     ValidationConfig {
@@ -20,7 +20,7 @@ fn wheels() -> ValidationConfig {
 
 /// Situation: a wheel's samples rise, fall, stop, return.
 /// Action: step.
-/// Must hold: the bounds span the newest three; they widen in both directions from the declared age on, not before;
+/// Must hold: the bounds span the newest three; they widen in both directions above the declared age, not up to it;
 /// there are none while the sensor is lost, and older samples do not count afterwards. The other wheel's bounds are
 /// independent.
 #[test]
