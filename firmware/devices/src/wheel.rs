@@ -22,7 +22,7 @@ pub struct WheelState {
     age: Age,
     /// The sample is missing until two more pulses, or until none for [`STANDS_US`].
     lost: bool,
-    /// Time since the loss began \[us\].
+    /// Time since the last pulse, or since the loss \[us\].
     lost_us: u32,
 }
 

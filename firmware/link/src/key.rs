@@ -39,7 +39,7 @@ impl<'a> Key<'a> {
     }
 
     /// Unit, from the suffix of the name. Empty for a dimensionless number, or if the unit is that of the sensor. A
-    /// unit that begins with `/` is per that unit, of the sensor's unit.
+    /// unit that begins with `/` follows the unit of the measured quantity.
     pub fn unit(self) -> &'static str {
         let ends = |suffix: &str| {
             let before = self.name.strip_suffix(suffix);

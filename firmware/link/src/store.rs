@@ -144,8 +144,9 @@ impl<F: NorFlash> Store<F> {
         self.map.destroy().0.0
     }
 
-    /// Loads the stored configuration, or `defaults`. The result passes `Config::plan` if `defaults` does. If the
-    /// record is missing, invalid or incomplete, `polarity_checked` is cleared, so that the controller does not engage.
+    /// Loads the stored configuration, or `defaults`. The result passes `Config::plan` if `defaults` does.
+    /// `polarity_checked` is cleared, so that the controller requires a new check, if the record is missing or invalid,
+    /// if one of its values is rejected, or if it lacks a calibration parameter.
     pub async fn load(&mut self, defaults: &Config, room: &mut Room) -> (Config, Found) {
         let mut unchecked = defaults.clone();
         unchecked.calibration.polarity_checked = false;

@@ -17,11 +17,11 @@ pub struct Telemetry {
     pub frame: SensorFrame,
     /// The resulting command, with mode, causes and limits.
     pub command: Command,
-    /// Regression gains of the sign check of gyro and motor; [`control::State::slopes`].
+    /// Slopes of gyro and motor from the sign check; [`control::State::slopes`].
     pub slopes: [Option<f32>; 2],
     /// Next step of the polarity check, as the number of [`control::sensors::polarity::PolarityStep`].
     pub polarity: u8,
-    /// Torque that the law would request during the check \[N m\]; [`control::State::shown_nm`].
+    /// Torque that the law would request during the check \[N m\]; [`control::State::hand_torque_nm`].
     pub shown_nm: f32,
 }
 

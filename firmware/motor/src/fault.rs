@@ -44,13 +44,13 @@ pub enum Fault {
     EncoderSpeed = 18,
     /// Current and encoder speed do not explain the voltage: a stuck encoder, or an open phase.
     VoltageAstray = 19,
-    /// The encoder does not follow the field, or by less.
+    /// The encoder does not follow the field by a quarter turn.
     AlignLag = 20,
     /// The encoder follows the field in the wrong direction.
     AlignReversed = 21,
     /// The encoder does not come to rest in a constant field.
     AlignRestless = 22,
-    /// The requested torque is NaN.
+    /// The requested torque is NaN or infinite.
     Command = 23,
     /// The direction of the back-EMF contradicts the encoder's angle: a slipped encoder, or the offset of another
     /// motor.
