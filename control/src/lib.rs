@@ -15,8 +15,8 @@
 //!
 //! * [`sensors`]: converts a [`SensorFrame`] to measurements in the bicycle's axes ([`sensors::calibration`]). Each
 //!   sensor is checked on its own ([`sensors::validation`], one [`sensors::monitor`] per sensor) and against the other
-//!   sensors ([`sensors::cross_check`], [`sensors::sign_check`], [`sensors::polarity`]). Samples of
-//!   different latency are aligned to one instant ([`sensors::latency`]).
+//!   sensors ([`sensors::cross_check`], [`sensors::sign_check`], [`sensors::polarity`]).
+//!   [`sensors::latency`] aligns samples of different latency to one instant.
 //! * [`estimate`]: estimates the motion of the bicycle with an error bound, predicts the roll rate to the instant at
 //!   which the torque acts, and smooths it.
 //! * [`law`]: computes the torque of the chosen roll-rate law, and of [`law::capsize`] and [`law::path_tracking`] where

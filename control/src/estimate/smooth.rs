@@ -7,7 +7,7 @@
 //! * **Low-pass**: vibration of road and motor is above 10 Hz, a fall of a bicycle below 2 Hz. The filter is of second
 //!   order, maximally flat (Butterworth): `y'' = w^2 (x - y) - sqrt(2) w y'`, which delays slow signals by
 //!   `sqrt(2) / w`. Vibration is also small, so the part that the low-pass removes is bounded: a fall, which is faster,
-//!   is not delayed but reduced by at most that bound.
+//!   is not delayed but reduced by at most half of [`SmoothConfig::most_rad_s`].
 
 use crate::param::{ParamSpec, ParamVisitor};
 use core::f32::consts::SQRT_2;
@@ -23,7 +23,8 @@ pub struct SmoothConfig {
     pub interpolate: bool,
     /// Delay of slow signals by the low-pass \[s\]; 0 is off. The half-power frequency is `1 / (sqrt(2) pi lag_s)`.
     pub lag_s: f32,
-    /// Bound of the part that the low-pass removes, either way \[rad/s\]; `None` is unlimited.
+    /// Bound of the low-pass \[rad/s\]: of a fast part `x` it removes `x / (1 + (x / most_rad_s)^2)`, at most half of the
+    /// bound either way; `None` removes all of `x`.
     pub most_rad_s: Option<f32>,
 }
 

@@ -142,8 +142,8 @@ impl Law {
         }
     }
 
-    /// The gain of smallest magnitude between two speeds \[m/s\], in either order: 0 if the gain changes sign there. For
-    /// a speed known only to be within bounds, no larger gain is safe at every speed.
+    /// The gain of smallest magnitude between two speeds \[m/s\], in either order: 0 if the gain changes sign there.
+    /// For a speed known only to be within bounds, no larger gain is safe at every speed.
     ///
     /// Two equal speeds give the bits of [`Law::gain`]. Exact except for the rounding of `gain`.
     pub fn gain_towards_zero(&self, one_m_s: f32, other_m_s: f32) -> f32 {

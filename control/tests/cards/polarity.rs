@@ -173,8 +173,8 @@ fn a_ride_is_not_a_check() {
 
 /// Situation: one sign is wrong.
 /// Action: the movements.
-/// Must hold: found at the movement that shows it, reported, and kept. With a calibration that corrects the sign the
-/// check is passed.
+/// Must hold: found at the movement that shows it, reported, and no further step follows. With a calibration that
+/// corrects the sign the check is passed.
 #[test]
 fn every_wrong_sign_is_found() {
     let fault: [(&str, PolarityStep, Fault); 6] = [
