@@ -119,9 +119,9 @@ pub fn request<'a>(received: &Received<'a>) -> Result<(u16, Message<'a>), NoRequ
 
 /// Carries out a request about parameters and returns the answer, built in `room`.
 ///
-/// `None` if the caller has to handle the request, since it has the flash, the image's name, the faults or the loop: `AskHello`,
-/// `Store` when not engaged, `ListFaults`, `ClearFaults`, `PilReset`, `PilConfig`, `PilFrame`. Messages from a board give
-/// `None` too.
+/// `None` if the caller has to handle the request, since it has the flash, the image's name, the faults or the loop:
+/// `AskHello`, `Store` when not engaged, `ListFaults`, `ClearFaults`, `PilReset`, `PilConfig`, `PilFrame`. Messages
+/// from a board give `None` too.
 pub fn answer<'a>(
     defaults: &Config,
     config: &mut Config,
