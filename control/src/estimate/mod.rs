@@ -31,7 +31,7 @@ const REST_S: f32 = 1.0;
 const REST_DRIFT_RAD_S: f32 = 0.003;
 /// Gap between two steps after which the state is discarded \[us\].
 const MAX_GAP_US: u32 = 100_000;
-/// Largest angle for which the pitch polynomial is fitted \[rad\].
+/// Limit of the roll and steer angles in the pitch polynomial \[rad\], whose fit does not reach beyond.
 const PITCH_FIT_RAD: f32 = 1.2;
 
 /// Measurements of one control period, in rear-frame axes: x forward (horizontal when upright), y right, z down.

@@ -23,8 +23,8 @@ pub struct SmoothConfig {
     pub interpolate: bool,
     /// Delay of slow signals by the low-pass \[s\]; 0 is off. The half-power frequency is `1 / (sqrt(2) pi lag_s)`.
     pub lag_s: f32,
-    /// Bound of the low-pass \[rad/s\]: of a fast part `x` it removes `x / (1 + (x / most_rad_s)^2)`, at most half of the
-    /// bound either way; `None` removes all of `x`.
+    /// Bound of the low-pass \[rad/s\]: of a fast part `x` it removes `x / (1 + (x / most_rad_s)^2)`, at most half of
+    /// the bound either way; `None` removes all of `x`.
     pub most_rad_s: Option<f32>,
 }
 
