@@ -11,7 +11,7 @@ use embassy_stm32::pac::{EXTI, FLASH, PWR};
 const LINE: usize = 16;
 const V2_9: u8 = 7;
 
-/// Brown-out level 3 in the option bytes, 2.8 V; 2 and 1 are lower, 3 is off, as delivered.
+/// Brown-out level 3 in the option bytes, 2.8 V. The values 1 and 2 are lower levels; 3, as delivered, is off.
 const LEVEL_3: u8 = 0;
 
 /// Unlock keys of the option bytes.
