@@ -23,7 +23,7 @@ pub struct Drawn {
 /// checked before each.
 ///
 /// # Errors
-/// Too few draws are possible bicycles, or a drawn bicycle can't be simulated.
+/// None of the draws of a bicycle is possible, or a drawn bicycle can't be simulated.
 pub fn drawn(
     conditions: &Conditions,
     measured: &Measured,

@@ -77,7 +77,7 @@ impl Quantity {
         Ok(changed)
     }
 
-    /// Relative step of the differences: `PERCENT`; for a delay the next even number of time steps.
+    /// Relative step of the differences: `PERCENT`; for a delay two time steps.
     fn step(self, conditions: &Conditions) -> f64 {
         match (self, &conditions.rider) {
             (Self::Delay, Some(rider)) => 2.0 * conditions.step_s / rider.delay_s,
@@ -112,7 +112,7 @@ impl Sensitivity {
         100.0 * self.per_percent / self.height
     }
 
-    /// Whether both steps agree within a tenth, or within the resolution of the borders.
+    /// Whether both steps agree within a tenth plus twice the resolution of the borders.
     pub fn is_smooth(&self) -> bool {
         let apart = (self.halved - self.per_percent).abs();
         apart <= 2.0 * self.resolution + 0.1 * self.per_percent.abs().max(self.halved.abs())

@@ -8,7 +8,7 @@ pub trait Lockstep {
     /// What the board sent last.
     fn last(&self) -> FromBoard<'_>;
 
-    /// Sends `to` and returns what the board sends after its next control step; [`Lockstep::last`] returns the same.
+    /// Sends `to` and receives what the board sends after its next control step; [`Lockstep::last`] returns it.
     ///
     /// # Errors
     /// The board has ended, or sends something that is no valid chunk.

@@ -181,7 +181,7 @@ fn summary(grid: &Grid, document: &SweepDocument, folder: &Path) -> String {
 }
 
 /// Note on the ranking of `all` cells of which `capped` are lower bounds; `largest` and `smallest` say whether those
-/// cells are certain.
+/// cells are lower bounds themselves.
 fn not_known(all: usize, capped: usize, largest: bool, smallest: bool) -> &'static str {
     match (capped > usize::from(largest), smallest && all > 1) {
         (false, false) => "",

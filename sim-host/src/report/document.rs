@@ -114,7 +114,7 @@ pub struct RideDocument {
     /// The state at the end.
     #[serde(rename = "final")]
     pub end: FinalState,
-    /// Peaks of torque and motion, and the motor's work.
+    /// Torques and work of motor and rider, largest angles.
     pub effort: Effort,
 }
 
@@ -164,7 +164,7 @@ pub struct Border {
     /// "recovered" or "undecided".
     #[schemars(extend("enum" = ["recovered", "undecided"]))]
     pub outcome: &'static str,
-    /// Peaks of torque and motion, and the motor's work.
+    /// Torques and work of motor and rider, largest angles.
     pub effort: Effort,
     /// Reason for which the nearest ride beyond the border counts as fallen; null if nothing fell.
     #[schemars(extend("enum" = FALLS))]

@@ -33,7 +33,7 @@ struct LaneBatch<'a, 'p, const N: usize> {
     riders: Option<RiderLanes<'a, N>>,
     /// Rider torques at the start of the step \[N m\].
     human: Lanes<N>,
-    /// Speed of each lane's motion, from [`stiffness`].
+    /// The quantities of [`stiffness`] of each lane.
     stiffness: [Lanes<N>; 4],
     /// Record of lane 0.
     trace: Option<&'a mut Vec<TracePoint>>,

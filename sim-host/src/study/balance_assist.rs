@@ -57,7 +57,7 @@ pub struct Weave {
     pub source: String,
     /// The slope set in the controller \[N s^2/rad\].
     pub kappa_set: f32,
-    /// The slope of the best-fitting published model \[N s^2/rad\].
+    /// The slope with which the published model comes near the measurement \[N s^2/rad\].
     pub kappa_model: f32,
     /// Forward speeds \[m/s\].
     pub speed_m_s: Vec<f64>,

@@ -173,7 +173,7 @@ fn known() -> String {
 /// The items that `wanted` selects; all if it is empty.
 ///
 /// # Errors
-/// Lists the names that select no item.
+/// The first name that selects no item.
 pub fn selected(wanted: &[String]) -> Result<Vec<&'static Entry>, UnknownItem> {
     if let Some(wanted) = wanted.iter().find(|w| !CATALOGUE.iter().any(|e| e.is(w))) {
         return Err(UnknownItem { wanted: wanted.clone() });
