@@ -95,7 +95,7 @@ impl<'a> Backend<'a> {
 
     /// Marks the next step as t = 0.
     pub(super) fn disturb(&mut self) {
-        if let Self::Remote { remote, .. } = self {
+        if let Self::Remote { remote, failure: None } = self {
             remote.disturb();
         }
     }
