@@ -79,7 +79,7 @@ impl ClientError {
 /// The connection to a board.
 pub struct Client {
     line: Box<dyn Transport>,
-    timeout: RetryPolicy,
+    retry: RetryPolicy,
     decoder: Decoder,
     sequence: u16,
     received: VecDeque<ReceivedMessage>,
@@ -88,11 +88,11 @@ pub struct Client {
 
 impl Client {
     /// A connection over `line`; sends nothing yet.
-    pub fn new(line: Box<dyn Transport>, timeout: RetryPolicy) -> Self {
+    pub fn new(line: Box<dyn Transport>, retry: RetryPolicy) -> Self {
         // Answers to an earlier program can still arrive; their sequence numbers differ.
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         let sequence = now.subsec_micros() as u16;
-        Self { line, timeout, decoder: Decoder::default(), sequence, received: VecDeque::new(), whole: 0 }
+        Self { line, retry, decoder: Decoder::default(), sequence, received: VecDeque::new(), whole: 0 }
     }
 
     /// Sends a request until its answer arrives, which `fits` decodes; `requested` names the request in errors.
@@ -111,8 +111,8 @@ impl Client {
         self.sequence = self.sequence.wrapping_add(1);
         let mismatch = || ClientError::Mismatch { requested: requested.into() };
         let used = request.encode(self.sequence, &mut bytes).ok_or_else(mismatch)?;
-        let wait = if *request == Message::Store { STORING } else { self.timeout.answer };
-        for _ in 0..self.timeout.tries {
+        let wait = if *request == Message::Store { STORING } else { self.retry.answer };
+        for _ in 0..self.retry.tries {
             self.line.send(&bytes[..used])?;
             let Some(answer) = self.answer(wait)? else { continue };
             return match answer.message() {
@@ -124,7 +124,7 @@ impl Client {
                 Err(NoMessage::UnknownKind(_) | NoMessage::Malformed(_)) => Err(mismatch()),
             };
         }
-        Err(ClientError::Silent { requested: requested.into(), tries: self.timeout.tries, wait })
+        Err(ClientError::Silent { requested: requested.into(), tries: self.retry.tries, wait })
     }
 
     /// The unsolicited messages since the last call, after waiting up to `timeout` for the first one.

@@ -51,14 +51,14 @@ impl Counted {
     /// The sequence numbers give the count modulo their range; the steps and the frame rate so far give the number of
     /// wraps. Numbers that go back are no gap.
     fn lost(&mut self, sequence: u16, steps: u32) -> u64 {
-        let reception = u64::from(std::mem::take(&mut self.since)) + 1;
+        let arrived = u64::from(std::mem::take(&mut self.since)) + 1;
         let Some(last) = self.sequence.replace(sequence) else { return 0 };
         let sent = i64::from(sequence.wrapping_sub(last));
         let expected = f64::from(steps) * self.frames as f64 / self.steps.max(1) as f64;
         let rounds = ((expected - sent as f64) / ROUND as f64).round() as i64;
-        let sent = u64::try_from(sent + rounds * ROUND).unwrap_or(0).max(reception);
+        let sent = u64::try_from(sent + rounds * ROUND).unwrap_or(0).max(arrived);
         (self.steps, self.frames) = (self.steps + u64::from(steps), self.frames + sent);
-        sent - reception
+        sent - arrived
     }
 }
 

@@ -236,10 +236,10 @@ pub(super) fn write(
 /// Text: quantiles of area and mean height over the draws.
 fn spread(document: &BasinDocument) -> String {
     let Some(drawn) = &document.uncertain else { return String::new() };
-    let max = if drawn.capped > 0 { ", at least" } else { "" };
+    let at_least = if drawn.capped > 0 { ", at least" } else { "" };
     let line = |name, [low, middle, high]: [f64; 3], unit| {
         format!(
-            "{name} of {} drawn bicycles: 5 % {low:.3}, median {middle:.3}, 95 % {high:.3} {unit}{max}\n",
+            "{name} of {} drawn bicycles: 5 % {low:.3}, median {middle:.3}, 95 % {high:.3} {unit}{at_least}\n",
             drawn.draws
         )
     };
@@ -261,21 +261,21 @@ pub(super) fn progress(shown: bool, command: &str, count: usize, what: &str) -> 
 fn summary(basin: &Basin, search: &Search, fall: &FallCriterion, seconds: f64) -> String {
     let mut text = String::new();
     let Work { rides, steps: _, right_hand_sides } = basin.work();
-    let max = if basin.capped() { "at least " } else { "" };
+    let at_least = if basin.capped() { "at least " } else { "" };
     match (&basin.columns[..], basin.mean_height()) {
         ([only], _) => {
             let _ = writeln!(
                 text,
-                "one speed: no area; height {max}{:.3} rad/s (within {})",
+                "one speed: no area; height {at_least}{:.3} rad/s (within {})",
                 only.upper, search.tolerance
             );
         }
         (_, mean) => {
-            let _ = writeln!(text, "area {max}{:.3} rad m/s^2", basin.area());
+            let _ = writeln!(text, "area {at_least}{:.3} rad m/s^2", basin.area());
             let mean = mean.unwrap_or(0.0);
             let _ = writeln!(
                 text,
-                "mean height {max}{mean:.3} rad/s (borders within {} rad/s)",
+                "mean height {at_least}{mean:.3} rad/s (borders within {} rad/s)",
                 search.tolerance
             );
         }

@@ -111,9 +111,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         rest: 0,
     };
     let ended = session.receive();
-    let received = session.end();
+    let shown = session.end();
     let ended = ended?;
-    received?;
+    shown?;
     let reception = session.reception();
     match (&args.file, reception.unread()) {
         (Some(file), _) if reception.frames == 0 => Err(no_recording(file)),
@@ -141,7 +141,7 @@ fn line(args: &Args) -> Result<Box<dyn Transport>, Failure> {
 impl Session {
     /// Receives and shows messages until the end.
     fn receive(&mut self) -> Result<Ended, Failure> {
-        let (mut reception, mut silence_told) = (Instant::now(), false);
+        let (mut last_received, mut silence_shown) = (Instant::now(), false);
         loop {
             if let Some(ended) = self.ended() {
                 return Ok(ended);
@@ -159,8 +159,8 @@ impl Session {
                 Err(error) => return Err(error.into()),
             };
             if !received.is_empty() {
-                (reception, silence_told) = (Instant::now(), false);
-            } else if reception.elapsed() > SILENCE && !std::mem::replace(&mut silence_told, true) {
+                (last_received, silence_shown) = (Instant::now(), false);
+            } else if last_received.elapsed() > SILENCE && !std::mem::replace(&mut silence_shown, true) {
                 self.view.say(&format!("no data for {} s", SILENCE.as_secs()))?;
             }
             received.iter().try_for_each(|received| self.take(received))?;
@@ -178,10 +178,10 @@ impl Session {
     /// Waits for a lost line; `None` when a board answers on it again.
     fn wait(&mut self, lost: TransportError) -> Result<Option<Ended>, Failure> {
         let (since, seconds) = (Instant::now(), self.reopen.as_secs_f64());
-        let mut received = false;
+        let mut announced = false;
         while since.elapsed() < self.reopen {
             let Some(opened) = self.client.reopen() else { return Err(lost.into()) };
-            if !std::mem::replace(&mut received, true) {
+            if !std::mem::replace(&mut announced, true) {
                 self.view.say(&format!("{lost}; waiting up to {seconds} s for it"))?;
             }
             if opened.is_ok() {
@@ -204,7 +204,7 @@ impl Session {
             }
             sleep(RETRY_INTERVAL);
         }
-        let waited = if received { format!("; not back within {seconds} s") } else { String::new() };
+        let waited = if announced { format!("; not back within {seconds} s") } else { String::new() };
         Err(format!("{lost}{waited}").into())
     }
 

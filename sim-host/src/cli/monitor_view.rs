@@ -58,10 +58,10 @@ impl View {
         }
         *second = monitor.t.floor();
         let new = Causes(now.command.causes.0 & !before.0);
-        let received = named(new)
+        let meanings = named(new)
             .into_iter()
             .map(|cause| format!("  {} {}: {} ({})\n", cause.code, cause.name, cause.meaning, cause.page));
-        print(&format!("{}\n{}", line(monitor, &now, damaged), received.collect::<String>()))
+        print(&format!("{}\n{}", line(monitor, &now, damaged), meanings.collect::<String>()))
     }
 
     /// Redraws the panel; to be called periodically.

@@ -119,7 +119,7 @@ fn on_board(args: &RideArgs) -> Result<Ended, Failure> {
     let (ride, trace) = traced_on(&setup.conditions, start, &mut recorder)?;
     let seconds = begin.elapsed().as_secs_f64();
     let steps = recorder.steps;
-    let mut text = received(&controller, seconds);
+    let mut text = tally(&controller, seconds);
     let same = args.board.compare.then(|| same_ride(&setup.conditions, &steps, &ride, &trace));
     if let Some(Ok(())) = same {
         let _ = writeln!(
@@ -141,7 +141,7 @@ fn speed(steps: u64, seconds: f64) -> f64 {
 }
 
 /// Summary of a controller's counts and speed over `seconds`.
-fn received(controller: &Controller<Qemu>, seconds: f64) -> String {
+fn tally(controller: &Controller<Qemu>, seconds: f64) -> String {
     let tally = controller.tally();
     let steps = tally.steps;
     let mut text = format!(

@@ -50,7 +50,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let seconds = begin.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let result = result?;
-    let mut text = received(&locked(&boards), seconds);
+    let mut text = tally(&locked(&boards), seconds);
     let mut same = Ok(());
     if args.board.compare && !result.columns.is_empty() {
         let speeds = result.columns.iter().map(|column| column.speed).collect();
@@ -68,7 +68,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 }
 
 /// Summary of the boards' counts and speed over `seconds`.
-fn received(boards: &[Controller<Qemu>], seconds: f64) -> String {
+fn tally(boards: &[Controller<Qemu>], seconds: f64) -> String {
     let sum = |of: fn(Tally) -> u64| boards.iter().map(|board| of(board.tally())).sum::<u64>();
     let (steps, affected) = (sum(|t| t.steps), sum(|t| t.affected));
     let mut text = format!(

@@ -101,8 +101,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 fn summary(document: &PlaneDocument, plane: &Plane) -> String {
     let mut text = String::new();
     if let Some(area) = document.area {
-        let max = if document.area_capped { "at least " } else { "" };
-        let _ = writeln!(text, "area {max}{area:.3} rad^2/s^2");
+        let at_least = if document.area_capped { "at least " } else { "" };
+        let _ = writeln!(text, "area {at_least}{area:.3} rad^2/s^2");
     }
     let outline = plane.outline();
     let most = |of: fn(&(f64, f64)) -> f64| outline.iter().map(of).fold(0.0, f64::max);

@@ -241,8 +241,8 @@ fn one(args: &Args, common: &Common, path: &Path) -> Result<Done, Failure> {
         torque_nm: &samples.torque_nm,
     };
     let replayed = run_through(&plan, &options, |pressed| {
-        let (t_s, fitted) = feed.next(pressed)?;
-        let frame = frame_of(&plan, &fitted);
+        let (t_s, measured) = feed.next(pressed)?;
+        let frame = frame_of(&plan, &measured);
         if args.frames.is_some() {
             kept.push(frame);
         }

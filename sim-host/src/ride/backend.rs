@@ -64,7 +64,7 @@ pub(super) enum Backend<'a> {
 
 impl<'a> Backend<'a> {
     /// Execution on an external processor.
-    pub(super) fn away(remote: &'a mut dyn Remote) -> Self {
+    pub(super) fn remote(remote: &'a mut dyn Remote) -> Self {
         Self::Remote { remote, failure: None }
     }
 

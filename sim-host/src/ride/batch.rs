@@ -40,7 +40,7 @@ pub fn rides_on(
     starts: &[Start],
     remote: &mut dyn Remote,
 ) -> Result<Vec<Ride>, RemoteError> {
-    let mut backend = Backend::away(remote);
+    let mut backend = Backend::remote(remote);
     let done = run::<1>(conditions, starts, None, &mut backend);
     backend.end().map(|()| done)
 }
@@ -55,7 +55,7 @@ pub fn traced_on(
     remote: &mut dyn Remote,
 ) -> Result<(Ride, Vec<TracePoint>), RemoteError> {
     let mut trace = Vec::with_capacity(conditions.steps() as usize);
-    let mut backend = Backend::away(remote);
+    let mut backend = Backend::remote(remote);
     let mut done = run::<1>(conditions, &[start], Some(&mut trace), &mut backend);
     backend.end().map(|()| (done.remove(0), trace))
 }

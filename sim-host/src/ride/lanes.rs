@@ -32,7 +32,7 @@ struct LaneBatch<'a, 'p, const N: usize> {
     /// The riders.
     riders: Option<RiderLanes<'a, N>>,
     /// Rider torques at the start of the step \[N m\].
-    human: Lanes<N>,
+    rider_nm: Lanes<N>,
     /// The quantities of [`stiffness`] of each lane.
     stiffness: [Lanes<N>; 4],
     /// Record of lane 0.
@@ -44,7 +44,7 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
     fn control(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
         self.stiffness = stiffness(b, motion);
         if let Some(riders) = &self.riders {
-            self.human = riders.rider_state.at.torque;
+            self.rider_nm = riders.rider_state.at.torque;
         }
         let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
         for (lane, ride) in self.lanes.iter_mut().enumerate() {
@@ -56,7 +56,7 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
                         Some(full) => Frame::new(&full.pose(b), &full.velocities(b), full.angles[2]),
                         None => lane_frame(motion, lane),
                     };
-                    let (rider_nm, initial) = (self.human.0[lane], self.initial.0[lane]);
+                    let (rider_nm, initial) = (self.rider_nm.0[lane], self.initial.0[lane]);
                     let measured = hardware.measured(self.conditions, &self.plant, &at, rider_nm, initial);
                     let output = ride.output(plan, self.backend, hardware::frame(plan, &measured));
                     hardware.commanded(self.conditions, &self.plant, output.torque_nm);
@@ -80,7 +80,8 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
             if let (0, Some(trace)) = (lane, &mut self.trace) {
                 // Rounded to whole nanoseconds: the nearest number to 5.999 s, not 5999 times the nearest to 1 ms.
                 let t = (f64::from(ride.step) * self.conditions.step_s * 1e9).round() / 1e9;
-                let steer_torques = SteerTorques { assist_nm: self.assist.0[0], rider_nm: self.human.0[0] };
+                let steer_torques =
+                    SteerTorques { assist_nm: self.assist.0[0], rider_nm: self.rider_nm.0[0] };
                 trace.push(TracePoint::new(b, t, motion, &measured, &output, steer_torques));
             }
         }
@@ -167,13 +168,13 @@ pub(super) fn run<const N: usize>(
         initial: still,
         assist: still,
         riders: conditions.rider.as_ref().map(|rider| RiderLanes::new(rider, rider.delay_steps(h))),
-        human: still,
+        rider_nm: still,
         stiffness: [still; 4],
         trace,
     };
     let mut done = Vec::with_capacity(starts.len());
     let mut warm_start = WarmStart::default();
-    let fitted_out = hardware::needed(conditions);
+    let needs_hardware = hardware::needed(conditions);
     loop {
         for lane in 0..N {
             if batch.lanes[lane].is_some() {
@@ -194,7 +195,7 @@ pub(super) fn run<const N: usize>(
                     backend.begin(plan, &start);
                 }
                 let (hardware, ready) = match &conditions.assist {
-                    Assist::Firmware(plan) if fitted_out => {
+                    Assist::Firmware(plan) if needs_hardware => {
                         let plant = &batch.plant;
                         let (hardware, ready) =
                             RideHardware::new(conditions, plan, plant, &start, backend, |_| ());

@@ -235,18 +235,18 @@ mod tests {
                 };
                 let filter = muscles.omega_rad_s.powi(2)
                     / (s * s + s * 2.0 * muscles.zeta * muscles.omega_rad_s + muscles.omega_rad_s.powi(2));
-                let end_stage = k(0) * ROLL + k(4) * STEER + Complex::from(gains.0[8] * YAW);
-                let expected = end_stage * ComplexField::exp(-s * tau) * filter;
-                let mut measured = Complex::new(0.0, 0.0);
+                let feedback = k(0) * ROLL + k(4) * STEER + Complex::from(gains.0[8] * YAW);
+                let expected = feedback * ComplexField::exp(-s * tau) * filter;
+                let mut simulated = Complex::new(0.0, 0.0);
                 for (n, torque) in torques.iter().enumerate().skip(3000) {
                     let turn = ComplexField::exp(Complex::new(0.0, -omega * n as f64 * STEP_S));
                     // A sine is the imaginary part of the exponential.
-                    measured += turn * *torque * Complex::new(0.0, 2.0) / 1000.0;
+                    simulated += turn * *torque * Complex::new(0.0, 2.0) / 1000.0;
                 }
-                let error = (measured - expected).modulus() / expected.modulus();
+                let error = (simulated - expected).modulus() / expected.modulus();
                 assert!(
                     (1e-13..5e-7).contains(&error),
-                    "{delay} ms, {periods} Hz: {measured} {expected} {error:e}"
+                    "{delay} ms, {periods} Hz: {simulated} {expected} {error:e}"
                 );
             }
         }

@@ -1,7 +1,7 @@
 //! Sampling of a sensor: period, jitter and phase relative to the gyro.
 
 use super::windows::Recorded;
-use super::{Found, digits, exact, part_of};
+use super::{Found, digits, observed, part_of};
 use crate::plant::Sensor;
 use crate::replay::Sample;
 use std::f64::consts::TAU;
@@ -20,7 +20,7 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     let period = part_of(&gaps, 0.5);
     found.number("period, median", None, "s", period, seconds);
     found.number("period, 99 in 100 at most", None, "s", part_of(&gaps, 0.99), seconds);
-    found.number("period, longest seen", None, "s", exact(gaps[gaps.len() - 1]), seconds);
+    found.number("period, longest seen", None, "s", observed(gaps[gaps.len() - 1]), seconds);
     found.numbers.period_s = Some(digits(period.value));
     let mut late: Vec<f64> = all.iter().flat_map(lateness).collect();
     late.sort_by(f64::total_cmp);
@@ -29,7 +29,7 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     } else {
         let (most, worst) = (part_of(&late, 0.99), late[late.len() - 1]);
         found.number("lateness, 99 in 100 at most", None, "s", most, seconds);
-        found.number("lateness, worst seen", None, "s", exact(worst), seconds);
+        found.number("lateness, worst seen", None, "s", observed(worst), seconds);
         found.numbers.jitter_s = Some([digits(most.value), digits(worst)]);
     }
     phase(all, found, period.value);

@@ -155,6 +155,6 @@ fn part_of(sorted: &[f64], part: f64) -> Estimate {
 }
 
 /// An observed number, without an interval.
-const fn exact(value: f64) -> Estimate {
+const fn observed(value: f64) -> Estimate {
     Estimate { value, standard_error: 0.0, low: value, high: value }
 }

@@ -1,7 +1,7 @@
 //! Quantisation step of a sensor's values, and repetition of samples.
 
 use super::windows::{Motion, Recorded};
-use super::{Found, digits, exact, share};
+use super::{Found, digits, observed, share};
 use crate::weave::Estimate;
 
 /// Largest deviation from whole steps, as a fraction of a step; beyond, the differences have no common step.
@@ -109,7 +109,7 @@ fn repeats(all: &[Recorded], found: &mut Found, name: &str, riding: bool) {
     }
     let all_axes = share(same, pairs);
     found.number(&format!("share of samples that repeat, {name}"), None, "1", all_axes, seconds);
-    found.number(&format!("longest time without a new value, {name}"), None, "s", exact(longest), seconds);
+    found.number(&format!("longest time without a new value, {name}"), None, "s", observed(longest), seconds);
     if !riding {
         if axes == 3 && longest > SLEEP_S {
             let what =

@@ -80,9 +80,9 @@ fn in_words(found: Option<Threshold>, numbers: &[(usize, f64)], unit: &str) -> S
     match found {
         Threshold::Everywhere => format!("{last}{unit} keeps it"),
         Threshold::Nowhere => "lost".into(),
-        Threshold::Until { at, threshold, lost } => {
+        Threshold::Until { at, kept, lost } => {
             let digits = (2 - libm::log10(at.abs().max(1e-9)).floor() as i32).max(0) as usize;
-            let (low, high) = (threshold.min(lost), threshold.max(lost));
+            let (low, high) = (kept.min(lost), kept.max(lost));
             format!("{at:.digits$}{unit} ({low}{unit} to {high}{unit})")
         }
     }

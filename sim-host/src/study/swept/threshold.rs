@@ -13,7 +13,7 @@ pub enum Threshold {
         /// Interpolated.
         at: f64,
         /// The last value that keeps it.
-        threshold: f64,
+        kept: f64,
         /// The first that does not.
         lost: f64,
     },
@@ -28,7 +28,7 @@ pub fn threshold(points: &[(f64, f64)], least: f64) -> Threshold {
     let part = (y0 - least) / (y0 - y1);
     let log = points.iter().all(|p| p.0 > 0.0);
     let at = if log { x0 * libm::pow(x1 / x0, part) } else { x0 + part * (x1 - x0) };
-    Threshold::Until { at, threshold: x0, lost: x1 }
+    Threshold::Until { at, kept: x0, lost: x1 }
 }
 
 #[cfg(test)]
@@ -38,10 +38,10 @@ mod tests {
     #[test]
     fn the_first_loss_counts() {
         let points = [(0.0, 1.0), (10.0, 1.02), (20.0, 0.90), (30.0, 0.99)];
-        let Threshold::Until { at, threshold, lost } = super::threshold(&points, 0.96) else {
+        let Threshold::Until { at, kept, lost } = super::threshold(&points, 0.96) else {
             panic!("it is lost")
         };
-        assert_eq!((threshold, lost), (10.0, 20.0));
+        assert_eq!((kept, lost), (10.0, 20.0));
         assert!((at - 15.0).abs() < 1e-9, "{at}");
         assert_eq!(super::threshold(&points, 0.5), Threshold::Everywhere);
         assert_eq!(super::threshold(&points, 1.01), Threshold::Nowhere);
