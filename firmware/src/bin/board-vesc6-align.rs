@@ -28,7 +28,7 @@ static FOUND: Signal<CriticalSectionRawMutex, f32> = Signal::new();
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static KEPT: StaticCell<StoredConfig> = StaticCell::new();
+    static STORED: StaticCell<StoredConfig> = StaticCell::new();
     crash::start(board::reset_cause());
     defmt::info!(
         "{=str} start {=u32} after {=str}",
@@ -39,7 +39,7 @@ fn main() -> ! {
     board::log_stored_fault();
     let motor = board::start();
     board::raise_level();
-    let stored = KEPT.init(StoredConfig::open());
+    let stored = STORED.init(StoredConfig::open());
     // No offset from program or flash: the log shows the one found.
     motor.start(None);
     board::run(

@@ -13,7 +13,7 @@ use static_cell::StaticCell;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static KEPT: StaticCell<StoredConfig> = StaticCell::new();
+    static STORED: StaticCell<StoredConfig> = StaticCell::new();
     crash::start(board::reset_cause());
     defmt::info!(
         "{=str} start {=u32} after {=str}",
@@ -23,7 +23,7 @@ fn main() -> ! {
     );
     board::log_stored_fault();
     let motor = board::start();
-    let stored = KEPT.init(StoredConfig::open());
+    let stored = STORED.init(StoredConfig::open());
     let plan = settings::start(stored, &Config::product());
     defmt::info!(
         "configuration {=u32:08x}, parameters: {}",

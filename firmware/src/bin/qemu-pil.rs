@@ -15,7 +15,7 @@ use static_cell::StaticCell;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static KEPT: StaticCell<StoredConfig> = StaticCell::new();
+    static STORED: StaticCell<StoredConfig> = StaticCell::new();
     pil::begin();
     board::restarts();
     crash::start(board::reset_cause());
@@ -24,7 +24,7 @@ fn main() -> ! {
         text::line(format_args!("no such mishap, or no time for it"));
         exit(Exit::Input)
     }
-    let stored = KEPT.init(StoredConfig::open());
+    let stored = STORED.init(StoredConfig::open());
     let plan = settings::start(stored, &Config::product());
     text::line(format_args!(
         "configuration {:08x}, parameters: {}",

@@ -114,14 +114,14 @@ async fn take(
             queue.answer(&Message::Hello(Hello { image: name, version, commit, config_hash }), sequence);
         }
         Message::Store if !settings::engaged() => {
-            let stored = stored.save(&settings::config()).await;
+            let saved = stored.save(&settings::config()).await;
             let rejected = |_| Message::Refused(Rejection::of(RejectReason::NotStored));
-            queue.answer(&stored.map_or_else(rejected, |()| Message::Done), sequence);
+            queue.answer(&saved.map_or_else(rejected, |()| Message::Done), sequence);
         }
         Message::ListFaults { from } => {
-            retained::with(|stored| {
-                let total = fault_log::faults(stored).count() as u16;
-                let record = fault_log::faults(stored).nth(from.into());
+            retained::with(|log| {
+                let total = fault_log::faults(log).count() as u16;
+                let record = fault_log::faults(log).nth(from.into());
                 queue.answer(&Message::StoredFault(StoredFault { place: from, total, record }), sequence);
             });
         }

@@ -162,7 +162,7 @@ fn column(image: &Path) -> Result<(), Reason> {
         })?;
     }
     row("with all of them", &|preset| of(&with(preset, BORDER_S, speed_m_s, |_| true)?))?;
-    for cause in [Cause::SimulatedMotor, Cause::Friction, Cause::Wheels] {
+    for cause in [Cause::Rotor, Cause::Friction, Cause::Wheels] {
         row(&format!("with all but {}", cause.name()), &|preset| {
             of(&with(preset, BORDER_S, speed_m_s, |other| other != cause)?)
         })?;

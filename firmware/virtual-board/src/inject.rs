@@ -28,7 +28,8 @@ pub struct Damage {
 
 impl Bench {
     /// A debugger halts the core for a time \[ms\]. Of the timers TIM1 and TIM3 to TIM5 and the watchdog, those stop
-    /// whose bits in DBGMCU are set, with TIM1's outputs off (RM0090 rev 22, 17.3.21, 38.16.4, 38.16.5); everything else continues.
+    /// whose bits in DBGMCU are set, with TIM1's outputs off (RM0090 rev 22, 17.3.21, 38.16.4, 38.16.5). Everything
+    /// else continues.
     ///
     /// # Errors
     /// As of [`Self::run_ms`].

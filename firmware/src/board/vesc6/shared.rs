@@ -112,7 +112,7 @@ struct SharedReport(UnsafeCell<Report>);
 // SAFETY: only the motor interrupt writes it, and nothing preempts that; a torn copy is discarded.
 unsafe impl Sync for SharedReport {}
 
-static TOLD: SharedReport = SharedReport(UnsafeCell::new(Report::NONE));
+static REPORT: SharedReport = SharedReport(UnsafeCell::new(Report::NONE));
 /// Number of reports, wrapping.
 static REPORTS: AtomicU32 = AtomicU32::new(0);
 
@@ -121,7 +121,7 @@ pub fn report() -> Report {
     loop {
         let before = REPORTS.load(Ordering::Acquire);
         // SAFETY: the cell is static; every bit pattern of a torn copy consists of whole fields.
-        let report = unsafe { TOLD.0.get().read_volatile() };
+        let report = unsafe { REPORT.0.get().read_volatile() };
         if REPORTS.load(Ordering::Acquire) == before {
             return report;
         }
@@ -131,7 +131,7 @@ pub fn report() -> Report {
 /// Writes the report read by [`report`].
 pub(super) fn publish(report: Report) {
     // SAFETY: only the motor interrupt calls this, and readers do not preempt it.
-    unsafe { TOLD.0.get().write_volatile(report) }
+    unsafe { REPORT.0.get().write_volatile(report) }
     REPORTS.store(report.calls, Ordering::Release);
 }
 

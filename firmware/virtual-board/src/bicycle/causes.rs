@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
     /// Rotor inertia behind the gear.
-    SimulatedMotor,
+    Rotor,
     /// Friction of steer bearing and gear.
     Friction,
     /// Current loop: its bandwidth, and its delay from a sample to the resulting duty cycles.
@@ -39,7 +39,7 @@ pub enum Cause {
 impl Cause {
     /// All causes.
     pub const ALL: [Self; 11] = [
-        Self::SimulatedMotor,
+        Self::Rotor,
         Self::Friction,
         Self::CurrentLoop,
         Self::Computing,
@@ -55,7 +55,7 @@ impl Cause {
     /// Description, and its model in the simulator.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::SimulatedMotor => "rotor behind the gear (inertia on the steer)",
+            Self::Rotor => "rotor behind the gear (inertia on the steer)",
             Self::Friction => "friction of the Davis bicycle (`--actuator davis`)",
             Self::CurrentLoop => "current loop (first order, 1/bandwidth and 1.5 calls)",
             Self::Computing => "buses and control step (first order, 0.5 ms)",
@@ -77,7 +77,7 @@ impl Cause {
         let Conditions { bicycle, plant, .. } = conditions;
         let (sensors, actuator) = (&mut plant.sensors, &mut plant.actuator);
         match self {
-            Self::SimulatedMotor => bicycle.rotor_kg_m2 = power::ROTOR_KG_M2,
+            Self::Rotor => bicycle.rotor_kg_m2 = power::ROTOR_KG_M2,
             Self::Friction => actuator.friction = plant::catalogue::load("davis")?.friction,
             Self::CurrentLoop => {
                 let answered_s = f64::from(motor::config::DELAY_TICKS / MOTOR.rate_hz);
