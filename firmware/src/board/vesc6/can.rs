@@ -39,7 +39,7 @@ pub(super) fn start(receive: Pin, transmit: Pin) {
     let Some(timing) =
         bit_timing(CAN_CLOCK_HZ, BIT_HZ).filter(|_| within_timeout(|| CAN1.msr().read().inak()))
     else {
-        defmt::error!("can: no answer of the controller, nothing is told there");
+        defmt::error!("can: not initialised, nothing is sent");
         return;
     };
     // The registers contain each number less one.
