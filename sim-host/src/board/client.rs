@@ -95,7 +95,8 @@ impl Client {
         Self { line, retry, decoder: Decoder::default(), sequence, received: VecDeque::new(), whole: 0 }
     }
 
-    /// Sends a request until its answer arrives, which `fits` decodes; `requested` names the request in errors.
+    /// Sends a request, repeatedly if need be, until its answer arrives or the tries are used up. `fits` decodes the
+    /// answer; `requested` names the request in errors.
     ///
     /// The board may carry out the request more than once, since an answer can be lost.
     ///
