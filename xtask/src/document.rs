@@ -42,7 +42,7 @@ are not cycles: the chip adds wait states of the flash, divisions of 14 cycles a
 looked at after; at most {STACK_BUDGET} bytes are allowed.
 
 Of both budgets {MARGIN_PERCENT} % must stay free, which a test checks: no more than {} instructions in the largest step, {} in the
-largest call of the motor's loop; {EVERYTHING_MARGIN_PERCENT} %, which leaves {}, where everything is on at once, which nobody flashes. The same source and compiler give code that differs by about one percent from machine to
+largest call of the motor's loop; {EVERYTHING_MARGIN_PERCENT} %, which leaves {}, where everything is on at once, which is not flashed. The same source and compiler give code that differs by about one percent from machine to
 machine.
 
 {}",
