@@ -14,7 +14,7 @@ pub trait Actuation<S> {
     fn begin_step(&mut self, _: &Geometry, _: &Motion<S>) {}
 
     /// Torques for the motion at a Runge-Kutta stage; `stage` 0 is the start of the step, 3 its end.
-    fn torques(&self, b: &Geometry, stage: usize, motion: &Motion<S>) -> Torques<S>;
+    fn torques(&self, stage: usize, motion: &Motion<S>) -> Torques<S>;
 
     /// Receives the accelerations that these torques caused. For actuations with their own state, integrated
     /// alongside by [`Stages`].
@@ -25,7 +25,7 @@ pub trait Actuation<S> {
 /// Torques constant over the time step (zero-order hold).
 impl<S: Scalar> Actuation<S> for Torques<S> {
     #[inline(always)]
-    fn torques(&self, _: &Geometry, _: usize, _: &Motion<S>) -> Torques<S> {
+    fn torques(&self, _: usize, _: &Motion<S>) -> Torques<S> {
         *self
     }
 }
@@ -113,7 +113,7 @@ pub fn rk4<S: Scalar>(b: &Geometry, state: &State<S>, h: f64, actuation: &mut im
             stages = Stages::new(State { pitch, ..*state });
             actuation.begin_step(b, &motion);
         }
-        let torques = actuation.torques(b, stage, &motion);
+        let torques = actuation.torques(stage, &motion);
         let acc = motion.accelerations(b, &torques);
         actuation.end_stage(b, stage, &stages.at, &motion, &acc);
         let k = rate(&stages.at, &motion, &acc);

@@ -203,7 +203,7 @@ impl<'a> Push<'a> {
 }
 
 impl Actuation<f64> for Push<'_> {
-    fn torques(&self, _: &Geometry, _: usize, _: &bicycle::Motion<f64>) -> Torques<f64> {
+    fn torques(&self, _: usize, _: &bicycle::Motion<f64>) -> Torques<f64> {
         Torques { roll: 0.0, steer: self.assist_nm + self.body.at.torque }
     }
 

@@ -83,9 +83,9 @@ pub struct Gauge {
     /// Largest count of an intact sensor.
     pub most_counts: u16,
     /// Value at the smallest count, in the sensor's unit.
-    pub at_least_counts: f32,
+    pub value_at_least_counts: f32,
     /// Value at the largest count, in the sensor's unit.
-    pub at_most_counts: f32,
+    pub value_at_most_counts: f32,
 }
 
 impl Gauge {
@@ -93,8 +93,8 @@ impl Gauge {
     pub fn value(&self, counts: u16) -> Option<f32> {
         let span = f32::from(self.most_counts) - f32::from(self.least_counts);
         let part = (f32::from(counts) - f32::from(self.least_counts)) / span;
-        (self.least_counts..=self.most_counts)
-            .contains(&counts)
-            .then_some(self.at_least_counts + part * (self.at_most_counts - self.at_least_counts))
+        (self.least_counts..=self.most_counts).contains(&counts).then_some(
+            self.value_at_least_counts + part * (self.value_at_most_counts - self.value_at_least_counts),
+        )
     }
 }

@@ -61,12 +61,16 @@ pub const MOTOR: motor::Config = motor::Config {
 pub const COMMAND_TIMEOUT_CALLS: u16 = 100;
 
 /// Steer sensor: 10 to 90 % of the reference over 180 degrees, rising to the right.
-pub const STEER_RAD: Gauge =
-    Gauge { least_counts: 410, most_counts: 3685, at_least_counts: -FRAC_PI_2, at_most_counts: FRAC_PI_2 };
+pub const STEER_RAD: Gauge = Gauge {
+    least_counts: 410,
+    most_counts: 3685,
+    value_at_least_counts: -FRAC_PI_2,
+    value_at_most_counts: FRAC_PI_2,
+};
 
 /// Optional torque sensor of the rider: 10 to 90 % of the reference over 40 N m, rising to the right.
 pub const RIDER_NM: Gauge =
-    Gauge { least_counts: 410, most_counts: 3685, at_least_counts: -20.0, at_most_counts: 20.0 };
+    Gauge { least_counts: 410, most_counts: 3685, value_at_least_counts: -20.0, value_at_most_counts: 20.0 };
 
 /// Counts below which the rider's switch is closed: a contact to ground with a pull-up, so that a cut wire means open.
 pub const SWITCH_COUNTS: u16 = 1365;

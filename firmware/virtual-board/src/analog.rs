@@ -73,8 +73,8 @@ impl Analog {
 }
 
 fn gauge(gauge: &devices::analog::Gauge, value: f64) -> u16 {
-    let part =
-        (value - f64::from(gauge.at_least_counts)) / f64::from(gauge.at_most_counts - gauge.at_least_counts);
+    let part = (value - f64::from(gauge.value_at_least_counts))
+        / f64::from(gauge.value_at_most_counts - gauge.value_at_least_counts);
     let span = f64::from(gauge.most_counts - gauge.least_counts);
     clamped(f64::from(gauge.least_counts) + part * span)
 }

@@ -116,7 +116,7 @@ impl<const N: usize> Actuation<Lanes<N>> for LaneBatch<'_, '_, N> {
     }
 
     #[inline(always)]
-    fn torques(&self, _: &Geometry, stage: usize, motion: &Motion<Lanes<N>>) -> Torques<Lanes<N>> {
+    fn torques(&self, stage: usize, motion: &Motion<Lanes<N>>) -> Torques<Lanes<N>> {
         let rider_nm = self.riders.as_ref().map(|riders| riders.rider_state.at.torque);
         let (sin, cos) = motion.pose.attitude.steer;
         let steer_rad = || sin.zip(cos, libm::atan2);
@@ -216,11 +216,11 @@ pub(super) fn run<const N: usize>(
         let mut after = rk4(b, &state, h, &mut batch);
         for lane in 0..N {
             let steer_torques =
-                SteerTorques { assist_nm: batch.assist.0[lane], rider_nm: batch.human.0[lane] };
+                SteerTorques { assist_nm: batch.assist.0[lane], rider_nm: batch.rider_nm.0[lane] };
             let Some(ride) = &mut batch.lanes[lane] else { continue };
             let before = get(&state, lane);
             let last = if too_stiff(batch.stiffness.map(|q| q.0[lane]), h) {
-                let human = batch.riders.as_mut().map(|riders| riders.one(lane));
+                let rider = batch.riders.as_mut().map(|riders| riders.one(lane));
                 let mut period = Period {
                     conditions,
                     most_substeps: ride.substeps_left,
@@ -228,10 +228,10 @@ pub(super) fn run<const N: usize>(
                     assist_nm: steer_torques.assist_nm,
                     motor: ride.hardware.as_ref().map(|hardware| &hardware.motor),
                     initial_m_s: batch.initial.0[lane],
-                    human,
+                    rider,
                 };
                 let last = refined(&mut period, &before);
-                let rider_state = period.human.map(|human: RiderLane| human.rider_state.end);
+                let rider_state = period.rider.map(|rider: RiderLane| rider.rider_state.end);
                 set(&mut after, lane, &last.end);
                 if let (Some(riders), Some(rider_state)) = (&mut batch.riders, rider_state) {
                     riders.set(lane, &rider_state);

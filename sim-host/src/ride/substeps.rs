@@ -76,7 +76,7 @@ pub(super) struct Period<'a> {
     /// The ride's speed at t = 0 \[m/s\].
     pub(super) initial_m_s: f64,
     /// The rider.
-    pub(super) human: Option<RiderLane<'a>>,
+    pub(super) rider: Option<RiderLane<'a>>,
 }
 
 impl Period<'_> {
@@ -91,16 +91,16 @@ impl Period<'_> {
                 law.gain(speed) * rate
             }
         };
-        let rider = self.human.as_ref().map_or(0.0, |human| human.rider_state.at.torque);
-        steer_torque::torques(actuator, assist, Some(rider), || steer_rad, v.steer)
+        let rider_nm = self.rider.as_ref().map(|rider| rider.rider_state.at.torque);
+        steer_torque::torques(actuator, assist, rider_nm, || steer_rad, v.steer)
     }
 
     /// Passes a stage of the substep of `h` seconds that begins at `offset` to the rider.
     fn end_stage(&mut self, stage: usize, (offset, h): (f64, f64), now: &Instant<f64>) {
-        if let Some(human) = &mut self.human {
+        if let Some(rider) = &mut self.rider {
             let (_, speed) = readings(self.conditions, now.velocities, self.initial_m_s);
             let s = (offset + STAGES[stage] * h) / self.conditions.step_s;
-            human.end_stage(&self.conditions.bicycle, (stage, h, s), now, speed);
+            rider.end_stage(&self.conditions.bicycle, (stage, h, s), now, speed);
         }
     }
 }
@@ -124,8 +124,8 @@ pub(super) fn refined(period: &mut Period, from: &State<f64>) -> Segment {
             *period.full = None;
             rk4(b, &start, h, &mut Substep { period, offset, h })
         };
-        if let Some(human) = &mut period.human {
-            human.rider_state = Stages::new(human.rider_state.end);
+        if let Some(rider) = &mut period.rider {
+            rider.rider_state = Stages::new(rider.rider_state.end);
         }
         taken += 1;
         if substeps <= 1.0 || taken >= period.most_substeps || fallen(&period.conditions.fall, &end) {
@@ -143,7 +143,7 @@ struct Substep<'a, 'b> {
 }
 
 impl Actuation<f64> for Substep<'_, '_> {
-    fn torques(&self, _: &Geometry, stage: usize, motion: &Motion<f64>) -> Torques<f64> {
+    fn torques(&self, stage: usize, motion: &Motion<f64>) -> Torques<f64> {
         let (sin, cos) = motion.pose.attitude.steer;
         self.period.torques(self.offset + STAGES[stage] * self.h, libm::atan2(sin, cos), &motion.actual)
     }

@@ -131,7 +131,7 @@ struct Rubbing {
 }
 
 impl Actuation<f64> for Rubbing {
-    fn torques(&self, _: &Geometry, _: usize, motion: &Motion<f64>) -> Torques<f64> {
+    fn torques(&self, _: usize, motion: &Motion<f64>) -> Torques<f64> {
         Torques { roll: 0.0, steer: self.friction.torque(motion.actual.steer) }
     }
 

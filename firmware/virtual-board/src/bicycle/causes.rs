@@ -103,7 +103,7 @@ impl Cause {
             Self::Steer => {
                 let counts = f64::from(STEER_RAD.most_counts - STEER_RAD.least_counts);
                 sensors.model_mut(Sensor::Steer).quantum =
-                    f64::from(STEER_RAD.at_most_counts - STEER_RAD.at_least_counts) / counts;
+                    f64::from(STEER_RAD.value_at_most_counts - STEER_RAD.value_at_least_counts) / counts;
             }
             Self::SteerRate => {
                 let late_s = 2.0 / (TAU * f64::from(MOTOR.encoder.tracking_hz));
