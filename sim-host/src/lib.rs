@@ -4,6 +4,7 @@
 pub mod basin;
 pub mod bicycle;
 pub mod board;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod design;
 pub mod eigen;

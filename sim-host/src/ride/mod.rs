@@ -22,6 +22,6 @@ pub use backend::{Remote, RemoteError, Stepped};
 pub use batch::{rides, rides_on, traced, traced_on};
 pub use conditions::{Conditions, ConditionsError, Imu, ScheduleSpeed, Start};
 pub use fall::{FallCause, FallCriterion, LaidFlat};
-pub(crate) use hardware::frame as frame_of;
+pub use hardware::frame as frame_of;
 pub use outcome::{Effort, FinalState, Outcome, Ride};
 pub use trace::{TracePoint, frames};

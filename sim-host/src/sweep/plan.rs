@@ -94,7 +94,7 @@ impl Plan {
 ///
 /// # Errors
 /// States the key.
-pub(crate) fn check(axes: &[Axis]) -> Result<(), SweepError> {
+pub fn check(axes: &[Axis]) -> Result<(), SweepError> {
     for (i, axis) in axes.iter().enumerate() {
         let name = netcdf::name(axis);
         let wrong = if axes[..i].iter().any(|other| netcdf::name(other) == name) {
@@ -110,12 +110,12 @@ pub(crate) fn check(axes: &[Axis]) -> Result<(), SweepError> {
 }
 
 /// Number of cells of the axes.
-pub(crate) fn count(axes: &[Axis]) -> usize {
+pub fn count(axes: &[Axis]) -> usize {
     axes.iter().fold(1, |n, axis| n.saturating_mul(axis.values.len()))
 }
 
 /// Values of cell `i`, with the last axis varying fastest.
-pub(crate) fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
+pub fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
     let mut values: Vec<String> = Vec::with_capacity(axes.len());
     for axis in axes.iter().rev() {
         values.push(axis.values[i % axis.values.len()].clone());
@@ -126,7 +126,7 @@ pub(crate) fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
 }
 
 /// Values with their keys, as text.
-pub(crate) fn label(axes: &[Axis], values: &[String]) -> String {
+pub fn label(axes: &[Axis], values: &[String]) -> String {
     let pairs: Vec<String> = axes.iter().zip(values).map(|(a, v)| format!("{}={v}", a.key)).collect();
     pairs.join(", ")
 }
