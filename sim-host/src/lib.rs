@@ -18,6 +18,7 @@ pub mod replay;
 pub mod report;
 pub mod ride;
 pub mod rider;
+pub mod scenario;
 pub mod sensor_fit;
 pub mod study;
 pub mod sweep;

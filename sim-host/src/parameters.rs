@@ -1,7 +1,40 @@
-//! Lists and sets the controller's parameters by name, with values as text.
+//! Lists and sets the controller's parameters by name.
 
+use crate::range::plain;
 use control::Config;
 use control::param::{ParamSpec, ParamVisitor};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// A parameter's value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a number, a word, true or false")]
+pub enum Value {
+    /// A switch.
+    Switch(bool),
+    /// A number, in the parameter's unit.
+    Number(f64),
+    /// The word of a choice, on or off, or none.
+    Word(String),
+}
+
+impl From<&str> for Value {
+    /// A number if the text is one, otherwise a word.
+    fn from(text: &str) -> Self {
+        text.parse().map_or_else(|_| Self::Word(text.into()), Self::Number)
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Switch(on) => f.write_str(SWITCH[usize::from(*on)]),
+            Self::Number(number) => f.write_str(&plain(*number)),
+            Self::Word(word) => f.write_str(word),
+        }
+    }
+}
 
 /// Name and value of every parameter except the law's, in the text form that [`set`] reads.
 pub fn list(config: &Config) -> Vec<(String, String)> {
@@ -16,11 +49,19 @@ pub fn departing(config: &Config, from: &Config) -> Vec<(String, String)> {
     both.filter(|(a, b)| a != b).map(|(a, _)| a).collect()
 }
 
+/// Sets the parameter `key` to a value in text form.
+///
+/// # Errors
+/// An unknown parameter; a value of another kind or out of range.
+pub fn set(config: &mut Config, key: &str, value: &str) -> Result<(), String> {
+    set_value(config, key, &value.into())
+}
+
 /// Sets the parameter `key`.
 ///
 /// # Errors
-/// An unknown parameter; a value that does not parse or is out of range.
-pub fn set(config: &mut Config, key: &str, value: &str) -> Result<(), String> {
+/// As [`set`].
+pub fn set_value(config: &mut Config, key: &str, value: &Value) -> Result<(), String> {
     let mut setter = Setter { key, value, done: None };
     config.visit_params(&mut setter);
     setter.done.unwrap_or_else(|| {
@@ -48,7 +89,7 @@ const SWITCH: &[&str] = &["off", "on"];
 
 struct Setter<'a> {
     key: &'a str,
-    value: &'a str,
+    value: &'a Value,
     done: Option<Result<(), String>>,
 }
 
@@ -58,8 +99,10 @@ impl Setter<'_> {
         if name(leaf) != self.key {
             return None;
         }
-        let parsed = self.value.parse::<f32>().ok().filter(|x| !x.is_infinite());
-        let parsed = parsed.ok_or_else(|| format!("`{}` is not a number", self.value));
+        let parsed = match self.value {
+            Value::Number(x) if !(*x as f32).is_infinite() => Ok(*x as f32),
+            other => Err(format!("`{other}` is not a number")),
+        };
         let checked = parsed.and_then(|x| leaf.check(x).map(|()| x).map_err(|e| e.to_string()));
         self.done = Some(checked.clone().map(drop));
         checked.ok()
@@ -70,7 +113,8 @@ impl Setter<'_> {
         if name(leaf) != self.key {
             return None;
         }
-        let place = names.iter().position(|name| *name == self.value);
+        let word = self.value.to_string();
+        let place = names.iter().position(|name| *name == word);
         let wrong = || format!("`{}` is none of {}", self.value, names.join(", "));
         self.done = Some(place.map(drop).ok_or_else(wrong));
         place.map(|place| place as u8)
@@ -84,7 +128,7 @@ impl ParamVisitor for Setter<'_> {
         }
     }
     fn optional_number(&mut self, leaf: &ParamSpec, value: &mut Option<f32>) {
-        if name(leaf) == self.key && self.value == "none" {
+        if name(leaf) == self.key && matches!(self.value, Value::Word(word) if word == "none") {
             (*value, self.done) = (None, Some(Ok(())));
         } else if let Some(number) = self.number(leaf) {
             *value = Some(number);

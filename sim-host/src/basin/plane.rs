@@ -9,7 +9,8 @@ use std::f64::consts::PI;
 
 /// Settings of the search along rays from the undisturbed ride, evenly spread over half of the plane in units
 /// of the two largest rates. The other half is the mirror image.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct PlaneSearch {
     /// Forward speed \[m/s\].
     pub speed: f64,
@@ -23,6 +24,20 @@ pub struct PlaneSearch {
     pub points: usize,
     /// Tolerance of borders, as a fraction of a ray.
     pub tolerance: f64,
+}
+
+impl Default for PlaneSearch {
+    /// 60 rays up to 20 and 4 rad/s; the speed is unknown (NaN).
+    fn default() -> Self {
+        Self {
+            speed: f64::NAN,
+            rays: 60,
+            max_steer_rate: 20.0,
+            max_roll_rate: 4.0,
+            points: 80,
+            tolerance: 5e-4,
+        }
+    }
 }
 
 /// One direction in the plane of disturbances.

@@ -18,22 +18,48 @@ const SCHEMA: i64 = 1;
 const EXTRA_KEYS: [&str; 4] = ["source", "note", "rider_included", "schema"];
 
 /// A parameter set and its origin.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Bicycle {
     /// Name, or `FILE` or `FILE#NAME` as given.
     pub name: String,
     /// Origin of the values, from the file.
+    #[serde(default)]
     pub source: Option<String>,
     /// Remark from the file.
+    #[serde(default)]
     pub note: Option<String>,
     /// Whether the rear frame includes a rider's body; `None` if the file does not state it.
+    #[serde(default)]
     pub rider_included: Option<bool>,
     /// Doubtful but accepted values.
+    #[serde(default)]
     pub warnings: Vec<String>,
     /// The values with their uncertainties, if the file has any.
+    #[serde(default)]
     pub measured: Option<Measured>,
     /// The values.
     pub parameters: Parameters,
+}
+
+impl Bicycle {
+    /// Checks a bicycle that does not come from a file, and adds the warnings that a file's would have.
+    ///
+    /// # Errors
+    /// States the key, the value and its range.
+    pub fn checked(mut self) -> Result<Self, String> {
+        if let Some(measured) = &self.measured
+            && !(measured.is_complete() && measured.parameters() == self.parameters)
+        {
+            return Err("`measured` and `parameters` have different values".into());
+        }
+        for warning in check::check(&self.parameters)? {
+            if !self.warnings.contains(&warning) {
+                self.warnings.push(warning);
+            }
+        }
+        Ok(self)
+    }
 }
 
 /// Reason why a bicycle cannot be loaded.

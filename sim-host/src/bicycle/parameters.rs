@@ -6,7 +6,8 @@
 /// Axes of the upright bicycle: origin at the rear contact, x forward, y right, z down. SI units, angles in
 /// radians. Wheels are symmetric about their axles (`IRzz = IRxx`, `IFzz = IFxx`), frames about the plane y =
 /// 0.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Parameters {
     /// Wheel base \[m\].
     pub w: f64,

@@ -6,7 +6,8 @@ use crate::plant::RandomStream;
 use crate::ride::Start;
 
 /// A value and its standard deviation, in the value's unit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Uncertain {
     /// The value.
     pub value: f64,
@@ -37,7 +38,8 @@ impl Uncertain {
 }
 
 /// Uncertain parameters of a bicycle, and of the rider's body combined with it.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Measured {
     /// In the order of [`KEYS`].
     pub bicycle: Vec<Uncertain>,
@@ -52,6 +54,12 @@ impl Measured {
     /// Whether any value has an uncertainty.
     pub fn is_uncertain(&self) -> bool {
         self.bicycle.iter().chain(self.rider.iter().flatten()).any(|one| one.sd > 0.0)
+    }
+
+    /// Whether there is a value for each key.
+    pub(super) fn is_complete(&self) -> bool {
+        self.bicycle.len() == KEYS.len()
+            && self.rider.as_ref().is_none_or(|body| body.len() == RIDER_KEYS.len())
     }
 
     /// The parameters, each value mapped by `of`.

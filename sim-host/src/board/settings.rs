@@ -2,7 +2,9 @@
 
 use super::client::{Client, ClientError};
 use super::parameter::{Parameter, law_points};
+use crate::parameters::Value;
 use control::Law;
+use std::collections::BTreeMap;
 
 /// A parameter's value, or the law.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,18 +69,22 @@ impl Settings {
         std::iter::once(Setting::Law(self.law.clone().into())).chain(self.but_law().map(value)).collect()
     }
 
-    /// The settings given as text: a law, and values by key.
+    /// The settings of a file: a law, and values by key.
     ///
     /// # Errors
     /// All errors: keys that the board does not have, values that are not allowed.
-    pub fn understand(&self, law: Option<&Law>, values: &[(String, String)]) -> Result<Vec<Setting>, String> {
+    pub fn understand(
+        &self,
+        law: Option<&Law>,
+        values: &BTreeMap<String, Value>,
+    ) -> Result<Vec<Setting>, String> {
         let mut wanted: Vec<_> = law.map(|law| Setting::Law(law.clone().into())).into_iter().collect();
         let mut wrong = Vec::new();
-        for (key, text) in values {
+        for (key, value) in values {
             let known = self.but_law().find(|one| one.key == *key);
             match known
                 .ok_or_else(|| format!("the board has no parameter {key}"))
-                .and_then(|one| one.parse(text))
+                .and_then(|one| one.parse(&value.to_string()))
             {
                 Ok(value) => wanted.push(Setting::Value { key: key.clone(), value }),
                 Err(error) => wrong.push(error),

@@ -1,10 +1,11 @@
 //! `sim-host basin`: searches the basin of attraction over forward speed.
 
-use super::conditions::{ConditionArgs, Setup};
+use super::conditions::{Setup, named, printed, setup};
+use super::options::{Basin as BasinOptions, Chosen, UncertainBasin};
 use super::outputs::{OutputArgs, Outputs, Results, complain};
 use super::ride::laid_flat;
-use super::{Ended, Failure, interrupt, speeds};
-use crate::basin::{Axis, Basin, Column, Drawn, Search, Work, basin, drawn};
+use super::{Ended, Failure, interrupt};
+use crate::basin::{Basin, Column, Drawn, Search, Work, basin, drawn};
 use crate::bicycle::linear::Linear;
 use crate::eigen::critical_speeds;
 use crate::report::document::{BasinDocument, UncertainEntry};
@@ -37,20 +38,20 @@ pub(super) struct Args {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
-    basin: BasinArgs,
-    /// Also compute the basins of N bicycles drawn from the uncertainties of the bicycle's parameters, 2 to 10000, as a
-    /// band from the 5 % to the 95 % quantile of their heights; --seed changes the draws
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
-    uncertain: Option<u32>,
+    scenario: Chosen<UncertainBasin>,
+    #[command(flatten)]
+    threads: ThreadArgs,
+    #[command(flatten)]
+    outputs: OutputArgs,
 }
 
-/// Options of `basin`, and of a basin with rides on boards.
+/// Options of a basin with rides on boards.
 #[derive(clap::Args)]
 pub(super) struct BasinArgs {
     #[command(flatten)]
-    pub(super) conditions: ConditionArgs,
+    pub(super) scenario: Chosen<BasinOptions>,
     #[command(flatten)]
-    pub(super) search: SearchArgs,
+    pub(super) threads: ThreadArgs,
     #[command(flatten)]
     pub(super) outputs: OutputArgs,
 }
@@ -61,28 +62,6 @@ enum Command {
     Compare(super::compare::Args),
     /// The basin at one speed over steer rate and roll rate together
     Plane(Box<super::plane::Args>),
-}
-
-/// Range and resolution of the search.
-#[derive(clap::Args)]
-pub(super) struct SearchArgs {
-    /// Forward speeds in m/s: A:B:STEP, B included, or one [default: 0:10:0.1; 2:7.5:0.1 with a rider]
-    #[arg(long, value_parser = speeds::parse, value_name = "A:B:STEP", allow_hyphen_values = true)]
-    speeds: Option<std::vec::Vec<f64>>,
-    /// The rate that is disturbed at t = 0
-    #[arg(long, default_value = "steer-rate")]
-    axis: Axis,
-    /// Largest disturbance tried, in rad/s
-    #[arg(long, default_value_t = 30.0, value_name = "RAD/S", allow_negative_numbers = true)]
-    max_rate: f64,
-    /// Step of the scan, in rad/s; narrower islands or gaps can be missed
-    #[arg(long, default_value_t = 0.25, value_name = "RAD/S", allow_negative_numbers = true)]
-    scan_step: f64,
-    /// Accuracy of the borders, in rad/s
-    #[arg(long, default_value_t = 0.01, value_name = "RAD/S", allow_negative_numbers = true)]
-    tolerance: f64,
-    #[command(flatten)]
-    threads: ThreadArgs,
 }
 
 #[derive(clap::Args)]
@@ -99,34 +78,18 @@ impl ThreadArgs {
     }
 }
 
-impl SearchArgs {
-    /// The checked search; with a rider (`ridden`) over the speeds at which gains are known.
-    pub(super) fn search(&self, ridden: bool) -> Result<Search, Failure> {
-        let speeds = if ridden { "2:7.5:0.1" } else { "0:10:0.1" };
-        let search = Search {
-            speeds: self.speeds.clone().map_or_else(|| speeds::parse(speeds), Ok)?,
-            axis: self.axis,
-            max_rate: self.max_rate,
-            scan_step: self.scan_step,
-            tolerance: self.tolerance,
-        };
-        search.check()?;
-        Ok(search)
-    }
-
-    pub(super) fn pool(&self) -> Result<rayon::ThreadPool, rayon::ThreadPoolBuildError> {
-        self.threads.pool()
-    }
-}
-
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     match &args.command {
         Some(Command::Compare(args)) => return super::compare::run(args),
         Some(Command::Plane(args)) => return super::plane::run(args),
         None => {}
     }
-    let (args, uncertain) = (&args.basin, args.uncertain);
-    let setup = args.conditions.setup()?;
+    let scenario = args.scenario.scenario()?;
+    if let Some(ended) = printed(&args.scenario, &scenario)? {
+        return Ok(ended);
+    }
+    let uncertain = scenario.uncertain;
+    let setup = setup(&scenario)?;
     let measured = setup.measured.as_ref();
     let draws = match (uncertain, measured) {
         (Some(count), Some(measured)) => Some((count, measured)),
@@ -139,10 +102,10 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             .into());
         }
     };
-    let search = args.search.search(args.conditions.ridden())?;
+    let search = scenario.search.resolve(scenario.is_ridden()).map_err(|e| named(&e))?;
     let outputs = args.outputs.open(None)?;
     interrupt::install();
-    let pool = args.search.pool()?;
+    let pool = args.threads.pool()?;
     let basins = 1 + uncertain.unwrap_or(0) as usize;
     let bar = progress(outputs.shows_progress(), "basin", basins * search.speeds.len(), "columns");
     let begin = Instant::now();
@@ -187,7 +150,8 @@ pub(super) fn write(
     }
     let complete = result.columns.len() == search.speeds.len();
     let resolved = ResolvedSearch::new(search);
-    let document = BasinDocument::new(setup.config.clone(), resolved, &search.speeds, result, seconds);
+    let parts = (setup.config.clone(), resolved, setup.scenario.clone());
+    let document = BasinDocument::new(parts, &search.speeds, result, seconds);
     // Without finished draws there is no band.
     let drawn = drawn.filter(|drawn| !drawn.basins.is_empty());
     let document = BasinDocument { uncertain: drawn.map(UncertainEntry::new), ..document };

@@ -1,6 +1,7 @@
 //! `sim-host bicycle`: list, show, check, accel.
 
 use super::eigen::stable_line;
+use super::options::{Bicycle as BicycleOptions, Options};
 use super::outputs::{print, write_json};
 use super::{Ended, Failure, accel, warn};
 use crate::bicycle::catalogue::{self, Bicycle};
@@ -65,12 +66,8 @@ pub(super) enum Command {
 /// Selection of a bicycle.
 #[derive(clap::Args)]
 pub(super) struct Which {
-    /// Built-in bicycle, FILE, or FILE#NAME
-    #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
-    bicycle: String,
-    /// Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated
-    #[arg(long, value_name = "KEY=VALUE")]
-    bicycle_set: Vec<String>,
+    #[command(flatten)]
+    options: Options<BicycleOptions>,
 }
 
 impl Which {
@@ -79,7 +76,7 @@ impl Which {
     /// # Errors
     /// The error with file, key or value.
     pub(super) fn load(&self) -> Result<Bicycle, Failure> {
-        Ok(catalogue::load(&self.bicycle)?.varied(&self.bicycle_set)?)
+        self.options.bicycle()
     }
 }
 

@@ -1,17 +1,20 @@
-//! The cells of a sweep: the common options with one value of every axis, parsed like those of `basin`.
+//! The cells of a sweep: a scenario, changed by the common options and by one value of every axis.
 
-use super::conditions::ConditionArgs;
-use super::words::{Choice, choice, conditions};
+use super::conditions::{named, setup};
+use super::options::Given;
 use crate::basin::Search;
+use crate::scenario::Scenario;
+use crate::scenario::setting::{CONDITIONS, Setting};
 use crate::sweep::{Axis, Cell, Plan, SweepError, check, combination, count, label};
+use std::path::Path;
 
 /// Most cells of a sweep.
 const MOST: usize = 100_000;
 
-/// How the values of an axis become options.
+/// How the values of an axis change a cell.
 enum Role {
-    /// Values of an option.
-    Option(Box<Choice>),
+    /// Values of a setting.
+    Setting(&'static Setting),
     /// Replacements for the axis's key in braces in the common options.
     Place(String),
 }
@@ -24,50 +27,63 @@ pub(super) struct Resolved {
 }
 
 /// Finds the role of every axis.
-fn roles(axes: &[Axis], words: &[String]) -> Result<Vec<Role>, SweepError> {
+fn roles(axes: &[Axis], shared: &[Given]) -> Result<Vec<Role>, SweepError> {
     let role = |axis: &Axis| {
         let key = &axis.key;
         let place = format!("{{{key}}}");
-        let used = words.iter().any(|word| word.contains(&place));
-        let given = words.iter().any(|word| word.split('=').next() == Some(&format!("--{key}")));
-        match choice::<ConditionArgs>(key) {
+        let used = shared.iter().any(|given| given.text.contains(&place));
+        let given = shared.iter().any(|given| given.setting.name == key);
+        match CONDITIONS.iter().find(|setting| setting.name == key) {
             _ if used => Ok(Role::Place(place)),
-            Ok(choice) if given && !choice.repeats() => {
+            Some(setting) if given && !setting.repeats => {
                 Err(format!("--over {key}: --{key} cannot be given in addition"))
             }
-            Ok(choice) => Ok(Role::Option(Box::new(choice))),
-            Err(names) => Err(format!(
-                "--over {key}: there is no option --{key}, nor {place} in another option's value; options are {}",
-                names.join(", ")
-            )),
+            Some(setting) => Ok(Role::Setting(setting)),
+            None => {
+                let names: Vec<_> = CONDITIONS.iter().map(|setting| setting.name).collect();
+                Err(format!(
+                    "--over {key}: there is no option --{key}, nor {place} in another option's value; options are {}",
+                    names.join(", ")
+                ))
+            }
         }
     };
     axes.iter().map(|axis| role(axis).map_err(SweepError)).collect()
 }
 
-/// The command-line words of one cell.
-fn words_of(shared: &[String], roles: &[Role], values: &[String]) -> Result<Vec<String>, String> {
-    let mut words = shared.to_vec();
+/// The scenario of one cell.
+fn cell(base: &Scenario, shared: &[Given], roles: &[Role], values: &[String]) -> Result<Scenario, String> {
+    let mut scenario = base.clone();
+    for given in shared {
+        let mut given = given.clone();
+        for (role, value) in roles.iter().zip(values) {
+            if let Role::Place(place) = role {
+                given.text = given.text.replace(place, value);
+            }
+        }
+        given.apply(&mut scenario)?;
+    }
     for (role, value) in roles.iter().zip(values) {
-        match role {
-            Role::Option(choice) => words.extend(choice.word(value)?),
-            Role::Place(place) => words.iter_mut().for_each(|word| *word = word.replace(place, value)),
+        if let Role::Setting(setting) = role {
+            Given { setting, text: value.clone() }.apply(&mut scenario)?;
         }
     }
-    Ok(words)
+    Ok(scenario)
 }
 
-/// Loads and checks every cell; `search` receives whether any cell has a rider.
+/// Loads and checks every cell. `base` has the search; the speeds that are searched by default are those of a rider if
+/// any cell has one. `file` is the file of `base`.
 ///
 /// # Errors
 /// The axis, or the cell with its error.
 pub(super) fn resolve(
     axes: &[Axis],
-    shared: &[String],
-    search: impl FnOnce(bool) -> Result<Search, super::Failure>,
+    base: &Scenario,
+    shared: Vec<Given>,
+    file: Option<&Path>,
 ) -> Result<Resolved, super::Failure> {
     check(axes)?;
-    let roles = roles(axes, shared)?;
+    let roles = roles(axes, &shared)?;
     let cells = count(axes);
     if cells > MOST {
         return Err(format!("the sweep has {cells} cells; at most {MOST}").into());
@@ -75,16 +91,17 @@ pub(super) fn resolve(
     let (mut setups, mut ridden) = (Vec::with_capacity(cells), false);
     for i in 0..cells {
         let values = combination(axes, i);
-        let named = |e: &dyn std::fmt::Display| format!("cell {}: {e}", label(axes, &values));
-        let words = words_of(shared, &roles, &values).map_err(|e| named(&e))?;
-        let requested = conditions(&words).map_err(|e| named(&e))?;
-        ridden |= requested.ridden();
-        let setup = requested.setup().map_err(|e| named(&e))?;
+        let of_cell = |e: &dyn std::fmt::Display| format!("cell {}: {e}", label(axes, &values));
+        let scenario = cell(base, &shared, &roles, &values).map_err(|e| of_cell(&e))?;
+        ridden |= scenario.is_ridden();
+        let setup = setup(&scenario).map_err(|e| of_cell(&e))?;
         setups.push((serde_json::to_value(&setup.config)?, setup.conditions));
     }
-    let search = search(ridden)?;
+    let search = base.search.resolve(ridden).map_err(|e| named(&e))?;
     let configs: Vec<_> = setups.iter().map(|(config, _)| config.clone()).collect();
-    let plan = Plan::new(shared.to_vec(), axes.to_vec(), &search, &configs);
+    let file = file.map(|path| format!("--scenario={}", path.display()));
+    let options = file.into_iter().chain(shared.iter().map(Given::typed)).collect();
+    let plan = Plan::new(options, axes.to_vec(), &search, &configs);
     let cell = |(id, (config, conditions)): (&String, _)| Cell { id: id.clone(), config, conditions };
     let cells = plan.cells.iter().zip(setups).map(cell).collect();
     Ok(Resolved { plan, cells, search })

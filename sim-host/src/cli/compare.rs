@@ -1,9 +1,10 @@
 //! `sim-host basin compare`: compares basins of several cases.
 
-use super::basin::{SearchArgs, progress};
-use super::conditions::{ConditionArgs, Setup};
+use super::basin::{ThreadArgs, progress};
+use super::conditions::{Setup, named as named_option, setup};
+use super::options::{self, Options, Search as SearchOptions};
 use super::outputs::{OutputArgs, Results, complain};
-use super::{Ended, Failure, interrupt, words};
+use super::{Ended, Failure, interrupt};
 use crate::basin::{Basin, Bound, Column, Work, basin};
 use crate::bicycle::linear::Linear;
 use crate::eigen::critical_speeds;
@@ -11,6 +12,7 @@ use crate::report::compare::{Case, CompareDocument};
 use crate::report::figure::{self, BasinFigure};
 use crate::report::resolved::ResolvedSearch;
 use crate::report::table;
+use crate::scenario::Scenario;
 use control::Law;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -30,7 +32,9 @@ pub(super) struct Args {
     #[arg(required = true, num_args = 1..=24, value_name = "LABEL=OPTIONS|FILE")]
     cases: Vec<String>,
     #[command(flatten)]
-    search: SearchArgs,
+    search: Options<SearchOptions>,
+    #[command(flatten)]
+    threads: ThreadArgs,
     #[command(flatten)]
     outputs: OutputArgs,
 }
@@ -57,12 +61,10 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     for text in &args.cases {
         match text.split_once('=').filter(|_| !std::path::Path::new(text).is_file()) {
             Some((label, options)) => {
-                let case = parse(label, options)?;
-                ridden |= case.ridden();
-                requested.push(RequestedCase::Compute(
-                    label.into(),
-                    Box::new(case.setup().map_err(|e| named(label, e))?),
-                ));
+                let case = options::parsed(options).map_err(|e| named(label, e))?;
+                ridden |= case.is_ridden();
+                let setup = setup(&case).map_err(|e| named(label, e))?;
+                requested.push(RequestedCase::Compute(label.into(), Box::new(setup)));
             }
             None => {
                 let (case, axis) = read(text)?;
@@ -70,7 +72,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             }
         }
     }
-    let search = args.search.search(ridden)?;
+    let mut scenario = Scenario::default();
+    args.search.apply(&mut scenario)?;
+    let search = scenario.search.resolve(ridden).map_err(|e| named_option(&e))?;
     let resolved = ResolvedSearch::new(&search);
     for (i, one) in requested.iter().enumerate() {
         if let RequestedCase::Done(case, axis) = one
@@ -91,7 +95,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     let outputs = args.outputs.open(None)?;
     interrupt::install();
-    let pool = args.search.pool()?;
+    let pool = args.threads.pool()?;
     let to_compute = requested.iter().filter(|a| matches!(a, RequestedCase::Compute(..))).count();
     let bar = progress(outputs.shows_progress(), "basin", to_compute * search.speeds.len(), "columns");
     let (mut cases, mut stable, mut complete) = (Vec::new(), None, true);
@@ -147,11 +151,6 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 
 fn named(label: &str, error: impl std::fmt::Display) -> Failure {
     format!("case `{label}`: {error}").into()
-}
-
-fn parse(label: &str, options: &str) -> Result<ConditionArgs, Failure> {
-    let words = shlex::split(options).ok_or_else(|| named(label, "a quotation mark is not closed"))?;
-    words::conditions(&words).map_err(|e| named(label, e))
 }
 
 /// Reads the outline from a file of `basin --json`.

@@ -1,15 +1,16 @@
 //! `sim-host design`: optimises a gain schedule and evaluates it.
 
 use super::basin::ThreadArgs;
-use super::fall_arg::FallArg;
+use super::options::{Fall, Options};
 use super::outputs::{OutputArgs, Results, complain};
-use super::{Ended, Failure, interrupt, law};
+use super::{Ended, Failure, interrupt};
 use crate::basin::{Axis, Search};
 use crate::design::{Knots, Plan, Progress, arena, competitors, judge, optimise};
 use crate::report::design::{Design, DesignDocument, figure, law_file};
 use crate::report::figure;
 use crate::report::output::Output;
 use crate::report::table;
+use crate::scenario::law;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::path::PathBuf;
@@ -41,7 +42,7 @@ pub(super) struct Args {
     #[arg(long, default_value_t = 0.0, value_name = "WEIGHT", allow_negative_numbers = true)]
     smoothness: f64,
     #[command(flatten)]
-    fall: FallArg,
+    fall: Options<Fall>,
     /// Initial law, as in --law
     #[arg(long, default_value = "h-cut", value_name = "LAW")]
     start: String,
@@ -114,7 +115,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         evaluations: args.evaluations,
     };
     let fine = search("--judge", args.judge.0.unwrap_or(0.25), 0.25, 0.02)?;
-    let scenarios = arena(args.fall.fall)?;
+    let scenarios = arena(args.fall.fall()?);
     let outputs = args.outputs.open(None)?;
     let law_output = args.law_file.as_deref().map(Output::create).transpose()?;
     if let Some(output) = &law_output {

@@ -1,9 +1,8 @@
 //! `sim-host eigen`: eigenvalues over speed and critical speeds.
 
+use super::options::{Bicycle as BicycleOptions, Options, Rider as RiderOptions};
 use super::outputs::{OutputArgs, Results, complain, complain_once};
-use super::rider_args::RiderArgs;
-use super::{Ended, Failure, law, speeds, warn};
-use crate::bicycle::catalogue;
+use super::{Ended, Failure, warn};
 use crate::eigen::{
     CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes, roots, stability,
 };
@@ -13,6 +12,7 @@ use crate::report::figure::{self, EigenFigure};
 use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider, Tool};
 use crate::report::{table, terminal};
 use crate::rider::doubts;
+use crate::scenario::{law, speeds};
 use control::{Capsize, Law};
 use nalgebra::Complex;
 use rayon::prelude::*;
@@ -34,12 +34,8 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Built-in bicycle, FILE, or FILE#NAME of a collection
-    #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
-    bicycle: String,
-    /// Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated
-    #[arg(long, value_name = "KEY=VALUE")]
-    bicycle_set: Vec<String>,
+    #[command(flatten)]
+    bicycle: Options<BicycleOptions>,
     /// Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, balance-assist:K, or a table FILE
     #[arg(long, default_value = "none")]
     law: String,
@@ -49,7 +45,7 @@ pub(super) struct Args {
     #[command(flatten)]
     actuator: ActuatorArgs,
     #[command(flatten)]
-    rider: RiderArgs,
+    rider: Options<RiderOptions>,
     /// Forward speeds in m/s: A:B:STEP, B included, or one; below 0 (backwards, as with a steered rear wheel) without
     /// law and rider
     #[arg(long, default_value = "0:10:0.1", value_parser = speeds::parse_signed, value_name = "A:B:STEP", allow_hyphen_values = true)]
@@ -98,13 +94,11 @@ impl ActuatorArgs {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let bicycle = catalogue::load(&args.bicycle)?.varied(&args.bicycle_set)?;
+    let bicycle = args.bicycle.bicycle()?;
     warn(&bicycle);
     let law = law::parse(&args.law)?;
-    let (resolved, rider) = match args.rider.load()? {
-        Some((rider, table, fit)) => {
-            (Some(ResolvedRider::new(&table, fit, &rider)), Some((rider, doubts(&bicycle, &table))))
-        }
+    let (resolved, rider) = match args.rider.rider()? {
+        Some(one) => (Some(ResolvedRider::new(&one)), Some((one.rider, doubts(&bicycle, &one.table)))),
         None => (None, None),
     };
     let alone = law == Law::None && rider.is_none() && args.capsize.is_none();

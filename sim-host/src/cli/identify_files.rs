@@ -1,11 +1,12 @@
 //! The files of `identify weave`: gain and speed from their names, fits of their content, and the model's prediction.
 
+use super::Failure;
 use super::identify::Args;
-use super::{Failure, law};
 use crate::bicycle::Parameters;
 use crate::eigen::LinearActuator;
 use crate::range::within;
 use crate::report::weave::{Curves, Predicted, RecordingEntry, RefusedEntry, WeaveEntry};
+use crate::scenario::law;
 use crate::weave::label::{Label, Pattern};
 use crate::weave::pool::pool;
 use crate::weave::predict::weave;

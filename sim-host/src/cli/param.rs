@@ -1,9 +1,9 @@
 //! `sim-host param`: list, get, set, store, reset, export, import.
 
 use super::outputs::{complain, print, write_json};
-use super::parameter_file::{self, ParameterFile};
+use super::parameter_file;
 use super::port_args::{PortArgs, board};
-use super::{Ended, Failure, law};
+use super::{Ended, Failure};
 use crate::board::client::Client;
 use crate::board::parameter::{Parameter, law_points};
 use crate::board::settings::{Setting, Settings};
@@ -11,6 +11,7 @@ use crate::board::tune::{Tuned, tune};
 use crate::report::board::ParametersDocument;
 use crate::report::output::Output;
 use crate::report::resolved::Tool;
+use crate::scenario::{ParameterFile, law};
 use std::fmt::Write;
 use std::path::PathBuf;
 

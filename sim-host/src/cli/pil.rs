@@ -1,6 +1,6 @@
 //! `sim-host pil`: a ride whose control step runs on a board in QEMU.
 
-use super::conditions::Setup;
+use super::conditions::{Setup, printed, setup};
 use super::outputs::{complain, print};
 use super::{Ended, Failure, pil_basin, ride};
 use crate::board::compare::{Recorder, same_ride};
@@ -94,8 +94,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 }
 
 fn on_board(args: &RideArgs) -> Result<Ended, Failure> {
-    let start = args.ride.start()?;
-    let setup = args.ride.conditions.setup()?;
+    let scenario = args.ride.scenario.scenario()?;
+    let start = ride::start(&scenario)?;
+    if let Some(ended) = printed(&args.ride.scenario, &scenario)? {
+        return Ok(ended);
+    }
+    let setup = setup(&scenario)?;
     ride::check_direction(start, &setup.conditions)?;
     let start_board = args.board.starter(&setup)?;
     let outputs = args.ride.open()?;

@@ -1,6 +1,7 @@
 //! `sim-host pil basin`: a basin with the control step of every ride on a board in QEMU.
 
 use super::basin::{BasinArgs, Computed, progress, write};
+use super::conditions::{named, printed, setup};
 use super::pil::BoardArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Search, basin, basin_by};
@@ -27,9 +28,13 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let BasinArgs { conditions, search, outputs } = &args.basin;
-    let setup = conditions.setup()?;
-    let searched = search.search(conditions.ridden())?;
+    let BasinArgs { scenario: chosen, threads, outputs } = &args.basin;
+    let scenario = chosen.scenario()?;
+    if let Some(ended) = printed(chosen, &scenario)? {
+        return Ok(ended);
+    }
+    let setup = setup(&scenario)?;
+    let searched = scenario.search.resolve(scenario.is_ridden()).map_err(|e| named(&e))?;
     let start_board = args.board.starter(&setup)?;
     let outputs = outputs.open(None)?;
     // One board is started first, to detect errors early; each thread has its own.
@@ -42,7 +47,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         Ok(done)
     };
     interrupt::install();
-    let pool = search.pool()?;
+    let pool = threads.pool()?;
     let bar = progress(outputs.shows_progress(), "pil basin", searched.speeds.len(), "speeds");
     let begin = Instant::now();
     let result =

@@ -1,11 +1,12 @@
 //! `sim-host basin plane`: a basin over steer rate and roll rate at one speed.
 
 use super::basin::{ThreadArgs, progress};
-use super::conditions::ConditionArgs;
+use super::conditions::{printed, setup};
+use super::options::{Chosen, Plane as PlaneOptions};
 use super::outputs::{OutputArgs, Results, complain};
 use super::ride::laid_flat;
 use super::{Ended, Failure, interrupt};
-use crate::basin::{Plane, PlaneSearch, plane};
+use crate::basin::{Plane, plane};
 use crate::report::figure::{self, PlaneFigure};
 use crate::report::plane::{PlaneDocument, plane_rows};
 use crate::report::table;
@@ -25,25 +26,7 @@ Examples:
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
     #[command(flatten)]
-    conditions: ConditionArgs,
-    /// Forward speed, in m/s
-    #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
-    speed: f64,
-    /// Number of directions over half a turn, 2 to 10000; the other half is the mirror image
-    #[arg(long, default_value_t = 60, value_name = "N")]
-    rays: usize,
-    /// Largest steer rate tried, in rad/s
-    #[arg(long, default_value_t = 20.0, value_name = "RAD/S", allow_negative_numbers = true)]
-    max_steer_rate: f64,
-    /// Largest roll rate tried, in rad/s
-    #[arg(long, default_value_t = 4.0, value_name = "RAD/S", allow_negative_numbers = true)]
-    max_roll_rate: f64,
-    /// Rides of the scan along each ray; an island or gap narrower than their distance can be missed
-    #[arg(long, default_value_t = 80, value_name = "N")]
-    points: usize,
-    /// Accuracy of borders, as a fraction of a ray
-    #[arg(long, default_value_t = 0.0005, value_name = "PART", allow_negative_numbers = true)]
-    ray_tolerance: f64,
+    scenario: Chosen<PlaneOptions>,
     #[command(flatten)]
     threads: ThreadArgs,
     #[command(flatten)]
@@ -51,20 +34,17 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let setup = args.conditions.setup()?;
+    let scenario = args.scenario.scenario()?;
+    let search = scenario.plane.filter(|plane| !plane.speed.is_nan()).ok_or("--speed must be given")?;
+    if let Some(ended) = printed(&args.scenario, &scenario)? {
+        return Ok(ended);
+    }
+    let setup = setup(&scenario)?;
     if !setup.conditions.plant.mirrors() {
         return Err(
             "basin plane mirrors one half: no faults, noise, bias, dropout, no IMU off its middle".into()
         );
     }
-    let search = PlaneSearch {
-        speed: args.speed,
-        rays: args.rays,
-        max_steer_rate: args.max_steer_rate,
-        max_roll_rate: args.max_roll_rate,
-        points: args.points,
-        tolerance: args.ray_tolerance,
-    };
     search.check()?;
     let outputs = args.outputs.open(None)?;
     interrupt::install();
@@ -80,9 +60,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         return Ok(Ended::Interrupted);
     }
     let label = setup.config.label();
-    let document = PlaneDocument::new(setup.config, search, &found, seconds);
+    let document = PlaneDocument::new((setup.config, search, setup.scenario), &found, seconds);
     let cut = if document.complete { "" } else { ", interrupted" };
-    let title = format!("Basin of attraction at {} m/s: {label}{cut}", args.speed);
+    let title = format!("Basin of attraction at {} m/s: {label}{cut}", search.speed);
     let config = json!({"config": document.config, "search": search, "complete": document.complete});
     outputs.write(Results {
         document: &document,

@@ -1,10 +1,8 @@
 //! `sim-host replay`: replays recorded rides through the firmware's control code.
 
-use super::conditions::Preset;
 use super::interrupt;
 use super::outputs::{OutputArgs, Outputs, Results, complain, complain_once};
-use super::parameter_file::ParameterFile;
-use super::{Ended, Failure, law, warn};
+use super::{Ended, Failure, warn};
 use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
 use crate::parameters;
@@ -22,6 +20,7 @@ use crate::report::replay::{
 use crate::report::resolved::Tool;
 use crate::report::table;
 use crate::ride::frame_of;
+use crate::scenario::{ParameterFile, Preset, law};
 use control::wire::encode_frame;
 use control::{Config, Law, SensorFrame};
 use std::path::{Path, PathBuf};

@@ -1,6 +1,7 @@
 //! `sim-host ride`: one ride after a disturbance.
 
-use super::conditions::{ConditionArgs, Setup};
+use super::conditions::{Setup, printed, setup};
+use super::options::{Chosen, Ride as RideOptions};
 use super::outputs::{OutputArgs, Outputs, Results};
 use super::{Ended, Failure};
 use crate::range::within;
@@ -10,6 +11,7 @@ use crate::report::{table, terminal};
 use crate::ride::{
     Assist, Conditions, FallCause, FallCriterion, LaidFlat, Ride, Start, TracePoint, frames, traced,
 };
+use crate::scenario::Scenario;
 use control::SensorFrame;
 use control::wire::encode_frame;
 use serde_json::json;
@@ -27,16 +29,7 @@ Examples:
 #[derive(clap::Args)]
 pub(super) struct Args {
     #[command(flatten)]
-    pub(super) conditions: ConditionArgs,
-    /// Forward speed at the start, in m/s; below 0 only with --law none: backwards, as with a steered rear wheel
-    #[arg(long, required = true, value_name = "M/S", allow_negative_numbers = true)]
-    speed: Option<f64>,
-    /// Steer rate at the start, in rad/s, right positive
-    #[arg(long, default_value_t = 0.0, value_name = "RAD/S", allow_negative_numbers = true)]
-    steer_rate: f64,
-    /// Roll rate at the start, in rad/s, right positive
-    #[arg(long, default_value_t = 0.0, value_name = "RAD/S", allow_negative_numbers = true)]
-    roll_rate: f64,
+    pub(super) scenario: Chosen<RideOptions>,
     /// Write the sensor frames that the firmware received, 81 bytes each, for replay on the chip
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
@@ -44,17 +37,16 @@ pub(super) struct Args {
     outputs: OutputArgs,
 }
 
-impl Args {
-    /// The checked initial state.
-    pub(super) fn start(&self) -> Result<Start, Failure> {
-        // Only a subcommand can omit it.
-        let speed_m_s = self.speed.ok_or("--speed must be given")?;
-        within("--speed (m/s)", speed_m_s, -30.0, 30.0)?;
-        within("--steer-rate (rad/s)", self.steer_rate, -100.0, 100.0)?;
-        within("--roll-rate (rad/s)", self.roll_rate, -100.0, 100.0)?;
-        Ok(Start { speed_m_s, steer_rate_rad_s: self.steer_rate, roll_rate_rad_s: self.roll_rate })
-    }
+/// The checked initial state of a scenario.
+pub(super) fn start(scenario: &Scenario) -> Result<Start, Failure> {
+    let start = scenario.start.filter(|start| !start.speed_m_s.is_nan()).ok_or("--speed must be given")?;
+    within("--speed (m/s)", start.speed_m_s, -30.0, 30.0)?;
+    within("--steer-rate (rad/s)", start.steer_rate_rad_s, -100.0, 100.0)?;
+    within("--roll-rate (rad/s)", start.roll_rate_rad_s, -100.0, 100.0)?;
+    Ok(start)
+}
 
+impl Args {
     /// Checks every requested output.
     pub(super) fn open(&self) -> Result<Outputs, Failure> {
         self.outputs.open(self.frames.as_deref())
@@ -78,8 +70,12 @@ pub(super) fn check_direction(start: Start, conditions: &Conditions) -> Result<(
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let start = args.start()?;
-    let setup = args.conditions.setup()?;
+    let scenario = args.scenario.scenario()?;
+    let start = start(&scenario)?;
+    if let Some(ended) = printed(&args.scenario, &scenario)? {
+        return Ok(ended);
+    }
+    let setup = setup(&scenario)?;
     check_direction(start, &setup.conditions)?;
     let outputs = args.open()?;
     let (ride, trace) = traced(&setup.conditions, start);
@@ -96,7 +92,7 @@ pub(super) fn write(
     sensed: impl FnOnce() -> Vec<SensorFrame>,
     extra: &str,
 ) -> Result<(), Failure> {
-    let document = RideDocument::new(setup.config.clone(), ride);
+    let document = RideDocument::new(setup.config.clone(), setup.scenario.clone(), ride);
     let Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s } = ride.start;
     let title = format!(
         "{}: {speed_m_s} m/s, steer rate {steer_rate_rad_s} rad/s, roll rate {roll_rate_rad_s} rad/s",

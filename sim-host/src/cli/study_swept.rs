@@ -1,15 +1,15 @@
 //! `sim-host study` for studies that are defined as sweeps in a TOML file.
 
-use super::basin::{SearchArgs, progress};
+use super::basin::progress;
 use super::cells::{Resolved, resolve};
-use super::conditions::ConditionArgs;
+use super::options::{Cells, Options, Search, usage_error};
 use super::outputs::complain;
 use super::study::{Args, made, page_path, print_path};
 use super::sweep::{finish, to_do};
-use super::words::{Words, usage_error};
 use super::{Ended, Failure, interrupt};
 use crate::report::output::Output;
 use crate::report::picture::{caption, svg_with_caption};
+use crate::scenario::Scenario;
 use crate::study::swept::{self, Part, Spent, Study};
 use crate::sweep::{self, Folder, Grid, Progress, Shard};
 use clap::Parser;
@@ -21,9 +21,9 @@ use std::time::Instant;
 #[command(no_binary_name = true, disable_help_flag = true)]
 struct PartArgs {
     #[command(flatten)]
-    search: SearchArgs,
+    search: Options<Search>,
     #[command(flatten)]
-    conditions: Words<ConditionArgs>,
+    conditions: Options<Cells>,
 }
 
 pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
@@ -65,7 +65,9 @@ pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
 fn resolved(part: &Part) -> Result<Resolved, Failure> {
     let words = shlex::split(&part.options).ok_or("a quotation mark is not closed")?;
     let args = PartArgs::try_parse_from(words).map_err(|e| usage_error(&e))?;
-    resolve(&part.axes()?, args.conditions.words(), |ridden| args.search.search(ridden))
+    let mut base = Scenario::default();
+    args.search.apply(&mut base)?;
+    resolve(&part.axes()?, &base, args.conditions.given, None)
 }
 
 fn write_figures(study: &Study, grids: &[Grid], folder: &Path) -> Result<(), Failure> {

@@ -1,10 +1,9 @@
 //! `sim-host sweep`: basins over a grid of conditions, from options to a folder of results.
 
-use super::basin::{SearchArgs, progress};
+use super::basin::{ThreadArgs, progress};
 use super::cells::{Resolved, resolve};
-use super::conditions::ConditionArgs;
+use super::options::{Cells, Options, ScenarioFile, Search};
 use super::outputs::{complain, print, write_json};
-use super::words::Words;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Bound, border};
 use crate::report::output::Output;
@@ -47,9 +46,13 @@ pub(super) struct Args {
     #[command(flatten)]
     output: OutputArgs,
     #[command(flatten)]
-    search: SearchArgs,
+    scenario: ScenarioFile,
+    #[command(flatten)]
+    search: Options<Search>,
+    #[command(flatten)]
+    threads: ThreadArgs,
     #[command(flatten, next_help_heading = "Options of `basin`, for all cells")]
-    conditions: Words<ConditionArgs>,
+    conditions: Options<Cells>,
 }
 
 /// Outputs besides the folder.
@@ -86,9 +89,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     if let Some(Command::Merge(args)) = &args.command {
         return merge(args);
     }
-    let resolved = resolve(&args.over, args.conditions.words(), |ridden| args.search.search(ridden))?;
+    let mut base = args.scenario.read()?;
+    args.search.apply(&mut base)?;
+    let file = args.scenario.scenario.as_deref();
+    let resolved = resolve(&args.over, &base, args.conditions.given.clone(), file)?;
     let mine = args.shard.unwrap_or(Shard::WHOLE).of(&resolved.plan.cells);
-    let pool = args.search.pool()?;
+    let pool = args.threads.pool()?;
     if args.dry_run {
         return dry_run(&resolved, &mine, &args.out, pool.current_num_threads());
     }

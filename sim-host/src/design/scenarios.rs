@@ -2,7 +2,7 @@
 
 use crate::ride::FallCriterion;
 use crate::study::trial::Trial;
-use control::Config;
+use control::{Config, Limits};
 
 /// Training trials and hold-out trials.
 #[derive(Clone, Debug)]
@@ -11,6 +11,10 @@ pub struct Scenarios {
     pub training: Vec<Trial>,
     /// Hold-out riders and bicycles, not used by the design.
     pub held_out: Vec<Trial>,
+    /// Limits of the motor torque in every trial.
+    pub limits: Limits,
+    /// When a ride counts as fallen.
+    pub fall: FallCriterion,
 }
 
 /// Bicycle of the training trials.
@@ -26,21 +30,20 @@ const LATE_MS: u16 = 20;
 
 /// Training: no rider, the young and the smart rider, with sensor delays of 0, 20 and 50 ms. Hold-out: other
 /// riders and other bicycles. The motor has the product's limits.
-///
-/// # Errors
-/// A bicycle or a rider is not shipped.
-pub fn arena(fall: FallCriterion) -> Result<Scenarios, String> {
+pub fn arena(fall: FallCriterion) -> Scenarios {
     let limits = Config::product().limits;
     let on = |bicycle, rider, delay_s, late| {
-        Trial::new(bicycle, rider, delay_s, late, limits).map(|trial| Trial { fall, ..trial })
+        let mut trial = Trial::new(bicycle, rider, delay_s, late, limits);
+        trial.scenario.fall = fall.into();
+        trial
     };
     let mut training = Vec::new();
     for rider in [None, Some("young"), Some("smart")] {
         for late in [0, 20, 50] {
-            training.push(on(BICYCLE, rider, None, late)?);
+            training.push(on(BICYCLE, rider, None, late));
         }
     }
     let riders = RIDERS.iter().map(|(rider, delay_s)| on(BICYCLE, Some(rider), *delay_s, LATE_MS));
     let bicycles = OTHERS.iter().map(|bicycle| on(bicycle, None, None, LATE_MS));
-    Ok(Scenarios { training, held_out: riders.chain(bicycles).collect::<Result<_, _>>()? })
+    Scenarios { training, held_out: riders.chain(bicycles).collect(), limits, fall }
 }

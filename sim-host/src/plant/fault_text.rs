@@ -3,6 +3,7 @@
 use super::fault::{Channel, Fault, Kind};
 use super::{PlantError, Sensor};
 use crate::range::{span, time, within};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
@@ -127,6 +128,18 @@ impl fmt::Display for Fault {
             write!(f, "..{}s", self.to_s)?;
         }
         Ok(())
+    }
+}
+
+impl Serialize for Fault {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Fault {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
     }
 }
 

@@ -124,7 +124,8 @@ impl SensorModel {
 }
 
 /// Position and orientation of the IMU (gyro and accelerometer) on the rear frame.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct ImuMount {
     /// Position from the rear wheel's centre: forward, right, down \[m\].
     pub point_m: [f64; 3],

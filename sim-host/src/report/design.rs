@@ -6,6 +6,7 @@ use super::resolved::{ResolvedSearch, Tool};
 use crate::basin::Bound;
 use crate::design::{Found, Judged, Plan};
 use crate::ride::FallCriterion;
+use crate::scenario::Scenario;
 use control::Law;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -76,6 +77,8 @@ pub struct SearchEntry {
 pub struct TrialEntry {
     /// Rider and bicycle.
     pub label: String,
+    /// Its scenario; the law is that of each comparison.
+    pub scenario: Scenario,
     /// Whether it is a design scenario (true) or a hold-out scenario.
     pub designed_with: bool,
     /// Area of the basin under each of `laws`, trapezoidal rule \[rad m/s^2\].
@@ -122,13 +125,14 @@ impl DesignDocument {
             let entries =
                 trials.iter().zip(found).map(|((trial, designed_with), (area, capped))| TrialEntry {
                     label: trial.label.clone(),
+                    scenario: trial.scenario.clone(),
                     designed_with: *designed_with,
                     area: area.clone(),
                     area_capped: capped.clone(),
                 });
             entries.collect()
         };
-        let limits = d.scenarios.training.first().map(|t| t.limits).unwrap_or_default();
+        let limits = d.scenarios.limits;
         Self {
             schema: SCHEMA,
             tool: Tool::this(),
@@ -140,7 +144,7 @@ impl DesignDocument {
             smoothness: d.plan.smoothness,
             torque_limit_nm: limits.max_torque_nm,
             rate_limit_nm_s: limits.rise_nm_s,
-            fall: d.scenarios.training.first().map(|t| t.fall).unwrap_or_default(),
+            fall: d.scenarios.fall,
             schedule: points(d.law),
             worst_area: d.found.worst_area,
             worst_area_capped: d.found.worst_capped,

@@ -4,6 +4,7 @@ use super::resolved::{ResolvedConfig, ResolvedSearch, Tool};
 use crate::basin::{Basin, Drawn, QUANTILES, ScanPoint, Work};
 use crate::eigen::StabilityChange;
 use crate::ride::{Effort, FallCause, FinalState, Ride, Start};
+use crate::scenario::Scenario;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Serialize;
@@ -97,6 +98,8 @@ pub struct RideDocument {
     pub schema: u32,
     /// The program.
     pub tool: Tool,
+    /// The scenario that gives this result again: see `--scenario`.
+    pub scenario: Scenario,
     /// The conditions.
     pub config: ResolvedConfig,
     /// The initial state.
@@ -120,10 +123,11 @@ pub struct RideDocument {
 
 impl RideDocument {
     /// The document of a ride.
-    pub fn new(config: ResolvedConfig, ride: &Ride) -> Self {
+    pub fn new(config: ResolvedConfig, scenario: Scenario, ride: &Ride) -> Self {
         Self {
             schema: SCHEMA,
             tool: Tool::this(),
+            scenario,
             config,
             start: ride.start,
             outcome: ride.outcome.name(),
@@ -230,6 +234,8 @@ pub struct BasinDocument {
     pub schema: u32,
     /// The program.
     pub tool: Tool,
+    /// The scenario that gives this result again: see `--scenario`.
+    pub scenario: Scenario,
     /// The conditions.
     pub config: ResolvedConfig,
     /// The search.
@@ -265,8 +271,7 @@ pub struct BasinDocument {
 impl BasinDocument {
     /// The document of a basin over `speeds`, some of which can be missing.
     pub fn new(
-        config: ResolvedConfig,
-        search: ResolvedSearch,
+        (config, search, scenario): (ResolvedConfig, ResolvedSearch, Scenario),
         speeds: &[f64],
         basin: &Basin,
         seconds: f64,
@@ -296,6 +301,7 @@ impl BasinDocument {
         Self {
             schema: SCHEMA,
             tool: Tool::this(),
+            scenario,
             config,
             search,
             complete,
@@ -343,6 +349,7 @@ pub fn schema(command: &str) -> Option<serde_json::Value> {
         "identify-sensor" => generator.into_root_schema_for::<super::sensor::SensorDocument>(),
         "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
         "rider-show" => generator.into_root_schema_for::<super::rider::RiderDocument>(),
+        "scenario" => generator.into_root_schema_for::<Scenario>(),
         "sweep" => generator.into_root_schema_for::<super::sweep::SweepDocument>(),
         "design" => generator.into_root_schema_for::<super::design::DesignDocument>(),
         "param-list" => generator.into_root_schema_for::<super::board::ParametersDocument>(),

@@ -4,6 +4,7 @@ use super::document::{FALLS, SCHEMA};
 use super::resolved::{ResolvedConfig, Tool};
 use crate::basin::{Plane, PlaneSearch, ScanPoint, Work};
 use crate::ride::FallCause;
+use crate::scenario::Scenario;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -15,6 +16,8 @@ pub struct PlaneDocument {
     pub schema: u32,
     /// The program.
     pub tool: Tool,
+    /// The scenario that gives this result again: see `--scenario`.
+    pub scenario: Scenario,
     /// The conditions.
     pub config: ResolvedConfig,
     /// The search.
@@ -55,7 +58,11 @@ pub struct RayEntry {
 
 impl PlaneDocument {
     /// The document of a plane.
-    pub fn new(config: ResolvedConfig, search: PlaneSearch, plane: &Plane, seconds: f64) -> Self {
+    pub fn new(
+        (config, search, scenario): (ResolvedConfig, PlaneSearch, Scenario),
+        plane: &Plane,
+        seconds: f64,
+    ) -> Self {
         let complete = plane.rays.len() == search.rays;
         let entry = |ray: &crate::basin::Ray| RayEntry {
             steer_rate: ray.steer_rate,
@@ -68,6 +75,7 @@ impl PlaneDocument {
         Self {
             schema: SCHEMA,
             tool: Tool::this(),
+            scenario,
             config,
             search,
             complete,

@@ -4,8 +4,9 @@ use crate::basin::{Axis, Search};
 use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
 use crate::parameters::departing;
 use crate::plant::{ActuatorConfig, ImuMount, Plant, Sensor, SensorModel};
-use crate::ride::{Assist, Conditions, FallCriterion};
-use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};
+use crate::ride::{Assist, FallCriterion};
+use crate::rider::{Gains, Outside};
+use crate::scenario::{LoadedRider, Preset, Resolved};
 use control::estimate::{EstimateConfig, Source};
 use control::{Capsize, Config, Law};
 use schemars::JsonSchema;
@@ -163,7 +164,8 @@ pub struct ResolvedRider {
 
 impl ResolvedRider {
     /// The rider for an output.
-    pub fn new(table: &RiderTable, fit: Fit, rider: &Rider) -> Self {
+    pub fn new(loaded: &LoadedRider) -> Self {
+        let LoadedRider { rider, table, fit } = loaded;
         Self {
             name: table.name.clone(),
             source: table.source.clone(),
@@ -259,22 +261,20 @@ pub struct ResolvedConfig {
 
 impl ResolvedConfig {
     /// The configuration for an output.
-    pub fn new(
-        preset: &str,
-        bicycle: &Bicycle,
-        rider: Option<ResolvedRider>,
-        law: ResolvedLaw,
-        c: &Conditions,
-    ) -> Self {
+    pub fn new(resolved: &Resolved) -> Self {
+        let c = &resolved.conditions;
         let config = match &c.assist {
             Assist::Firmware(plan) => Some(plan.config()),
             Assist::None | Assist::Ideal(_) => None,
         };
         Self {
-            preset: preset.into(),
-            bicycle: ResolvedBicycle::new(bicycle),
-            rider,
-            law,
+            preset: match resolved.scenario.preset {
+                Preset::Thesis => "thesis".into(),
+                Preset::Product => "product".into(),
+            },
+            bicycle: ResolvedBicycle::new(&resolved.bicycle),
+            rider: resolved.rider.as_ref().map(ResolvedRider::new),
+            law: ResolvedLaw::new(&resolved.law_name, &resolved.law),
             assist: match &c.assist {
                 Assist::None => "none",
                 Assist::Firmware(_) => "firmware",
@@ -292,7 +292,7 @@ impl ResolvedConfig {
             step_s: c.step_s,
             fall: c.fall,
             time_limit_s: c.time_limit_s,
-            warnings: Vec::new(),
+            warnings: resolved.warnings.clone(),
             recovered_below: c.recovered_below,
         }
     }

@@ -7,7 +7,7 @@ use crate::range::within;
 use crate::rider::Rider;
 
 /// Speed that schedules the gains of assist and rider.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum ScheduleSpeed {
@@ -20,7 +20,7 @@ pub enum ScheduleSpeed {
 }
 
 /// Roll rate that the gyro reports.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Imu {
@@ -127,12 +127,17 @@ impl Conditions {
 
 /// Initial state of one ride: straight and upright on steady riding, plus a disturbance that changes the
 /// rates instantaneously.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+#[serde(deny_unknown_fields)]
 pub struct Start {
     /// Forward speed of the rear wheel \[m/s\].
     pub speed_m_s: f64,
     /// Steer rate \[rad/s\].
+    #[serde(default)]
     pub steer_rate_rad_s: f64,
     /// Roll rate \[rad/s\].
+    #[serde(default)]
     pub roll_rate_rad_s: f64,
 }

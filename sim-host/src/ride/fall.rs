@@ -2,7 +2,7 @@
 
 use crate::range::within;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
 /// Criterion by which a ride counts as fallen.
@@ -22,7 +22,8 @@ pub struct FallCriterion {
 /// The bicycle lies on the ground: its roll passed an angle, and a time has elapsed since without a fall by
 /// roll or steer, whether it stays there or bounces. A ride that ends before that time counts as laid flat if
 /// the roll has returned below the angle.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct LaidFlat {
     /// Roll to either side at which a bicycle lies on the ground \[rad\].
     pub roll_rad: f64,

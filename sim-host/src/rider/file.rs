@@ -4,7 +4,8 @@ use super::catalogue::RiderError;
 use super::table::{RiderTable, Row};
 use super::{Fit, Gains, KEYS, Line, MAX_DELAY_S, Neuromuscular, Outside};
 use crate::range::within;
-use serde::Deserialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -61,6 +62,27 @@ fn multiplied_out([k_delta, k_phidot, k_phi, k_psi, k_y]: [f64; 5]) -> [f64; 5] 
     let heading = roll * k_psi;
     [-k_delta, roll_rate, roll, heading, heading * k_y]
 }
+
+impl Serialize for RiderTable {
+    /// The content of the table's file, with its name.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut content: toml::Table = self.to_toml().parse().map_err(serde::ser::Error::custom)?;
+        content.insert(NAME.into(), self.name.as_str().into());
+        content.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for RiderTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut content = toml::Table::deserialize(deserializer)?;
+        let name = content.remove(NAME);
+        let name = name.as_ref().and_then(toml::Value::as_str).unwrap_or("in the scenario");
+        File::deserialize(content).map_err(D::Error::custom)?.table(name).map_err(D::Error::custom)
+    }
+}
+
+/// Key of a table's name where its content stands in a scenario.
+const NAME: &str = "name";
 
 impl RiderTable {
     /// Parses a table from a file's text.

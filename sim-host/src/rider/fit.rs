@@ -4,7 +4,9 @@ use super::table::{RiderTable, Row};
 use super::{Gains, KEYS, Outside, Rider, Schedule, ScheduleError};
 
 /// Method that makes gains continuous over speed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Fit {

@@ -1,9 +1,9 @@
 //! A trial: bicycle, rider, sensor delay and motor limits. Laws are compared by their basins in a trial.
 
 use crate::basin::{Basin, Column, Search, border};
-use crate::bicycle::{Geometry, catalogue};
-use crate::ride::{Assist, Conditions, FallCriterion};
-use crate::rider::{Fit, Outside, Rider, catalogue as riders};
+use crate::parameters::departing;
+use crate::ride::Conditions;
+use crate::scenario::{RiderChoice, Scenario, law};
 use control::{Config, Law, Limits};
 use rayon::prelude::*;
 
@@ -12,62 +12,43 @@ use rayon::prelude::*;
 pub struct Trial {
     /// A short label.
     pub label: String,
-    /// The bicycle.
-    pub bicycle: Geometry,
-    /// The rider; `None` for a rigid rider, hands off.
-    pub rider: Option<Rider>,
-    /// Sensor delay \[control periods of 1 ms\].
-    pub sensor_delay_ms: u16,
-    /// Limits of the motor torque.
-    pub limits: Limits,
-    /// When a ride counts as fallen.
-    pub fall: FallCriterion,
+    /// The conditions; the law is that of each comparison.
+    pub scenario: Scenario,
 }
 
 impl Trial {
     /// A trial of a built-in bicycle and rider, with mean gains and the table's own delay or the given one \[s\];
-    /// the default fall criterion.
-    ///
-    /// # Errors
-    /// The bicycle or rider does not exist.
+    /// the default fall criterion. Of the firmware, only these limits of the motor torque are on.
     pub fn new(
         bicycle: &str,
         rider: Option<&str>,
         delay_s: Option<f64>,
         sensor_delay_ms: u16,
         limits: Limits,
-    ) -> Result<Self, String> {
-        let parameters = catalogue::load(bicycle).map_err(|e| e.to_string())?.parameters;
-        let table = rider.map(riders::load).transpose().map_err(|e| e.to_string())?;
-        let rider_of = |t: &crate::rider::RiderTable| t.rider(Fit::default(), Outside::default(), delay_s);
-        let ridden = table.as_ref().map(rider_of).transpose().map_err(|e| e.to_string())?;
+    ) -> Self {
         let late = delay_s.map_or(String::new(), |s| format!(" with {} ms", (s * 1e6).round() / 1e3));
         let label =
             format!("{bicycle}, {}{late}, sensors {sensor_delay_ms} ms late", rider.unwrap_or("no rider"));
-        let (bicycle, fall) = (Geometry::new(&parameters), FallCriterion::default());
-        Ok(Self { label, bicycle, rider: ridden, sensor_delay_ms, limits, fall })
+        let published = Config::thesis(Law::None);
+        let limited = departing(&Config { limits, ..published.clone() }, &published);
+        let scenario = Scenario {
+            bicycle: bicycle.into(),
+            rider: RiderChoice { table: rider.map(Into::into), delay_s, ..RiderChoice::default() },
+            sensor_delay_s: f64::from(sensor_delay_ms) * 1e-3,
+            parameters: limited.into_iter().map(|(key, value)| (key, value.as_str().into())).collect(),
+            ..Scenario::default()
+        };
+        Self { label, scenario }
     }
 
     /// The conditions of a ride under a law, executed by the firmware's control code.
     ///
     /// # Errors
-    /// Law or limits out of range, or invalid conditions.
+    /// The bicycle or rider does not exist, law or limits are out of range, or invalid conditions.
     pub fn conditions(&self, law: &Law) -> Result<Conditions, String> {
-        let assist = match law {
-            Law::None => Assist::None,
-            _ => {
-                let config = Config { limits: self.limits, ..Config::thesis(law.clone()) };
-                Assist::Firmware(Box::new(config.plan().map_err(|e| e.to_string())?))
-            }
-        };
-        let conditions = Conditions {
-            rider: self.rider.clone(),
-            sensor_delay_ticks: self.sensor_delay_ms,
-            fall: self.fall,
-            ..Conditions::thesis(self.bicycle, assist)
-        };
-        conditions.check().map_err(|e| e.to_string())?;
-        Ok(conditions)
+        let law = Some(law::content("table", law));
+        let resolved = Scenario { law, ..self.scenario.clone() }.resolve();
+        resolved.map(|resolved| resolved.conditions).map_err(|e| format!("{}: {e}", self.label))
     }
 }
 

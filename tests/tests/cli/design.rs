@@ -2,7 +2,7 @@
 
 use control::Law;
 use sim_host::basin::{Axis, Search};
-use sim_host::design::{Found, Knots, Plan, Progress, arena, judge, optimise};
+use sim_host::design::{Found, Knots, Plan, Progress, Scenarios, arena, judge, optimise};
 use sim_host::ride::FallCriterion;
 use sim_host::study::trial::Trial;
 use std::cell::Cell;
@@ -29,8 +29,8 @@ fn plan(seed: u64, evaluations: u32) -> Plan {
 
 /// The thesis's bicycle without a rider, sensors in time and late.
 fn trials() -> Vec<Trial> {
-    let all = arena(FallCriterion::default()).expect("ships").training;
-    all.into_iter().filter(|t| t.rider.is_none()).take(2).collect()
+    let all = arena(FallCriterion::default()).training;
+    all.into_iter().filter(|t| !t.scenario.is_ridden()).take(2).collect()
 }
 
 fn found(plan: &Plan) -> Found {
@@ -55,7 +55,7 @@ fn a_design_is_the_same_for_a_seed_and_a_number_of_schedules() {
     assert_eq!(first.history[..shorter.history.len()], shorter.history);
     assert!(first.gains.iter().all(|gain| (-10.0..=40.0).contains(gain)));
     let judged = judge(
-        &sim_host::design::Scenarios { training: trials(), held_out: Vec::new() },
+        &Scenarios { training: trials(), held_out: Vec::new(), ..arena(FallCriterion::default()) },
         &[("it".into(), plan(1, 1).knots.law(&first.gains).expect("in range"))],
         &coarse(),
         &|| {},

@@ -18,6 +18,7 @@ mod parsers;
 mod plant;
 mod riders;
 mod same_bytes;
+mod scenario;
 mod small_words;
 mod study;
 mod sweep;

@@ -2,14 +2,9 @@
 
 use std::path::Path;
 
-/// A warning for each file among `names` whose last line has no line end. The file's name can be part of a name:
-/// `NAME+FILE`, `FILE,KEY=VALUE`, `SENSOR:model=FILE`.
-pub(super) fn doubts<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+/// A warning for each file among `names` whose last line has no line end.
+pub(super) fn warnings<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     names
-        .into_iter()
-        .flat_map(|name| {
-            [name].into_iter().chain(name.split(['+', ',', '=']).filter(move |part| *part != name))
-        })
         .filter(|name| Path::new(name).is_file())
         .filter(|name| std::fs::read(name).is_ok_and(|bytes| bytes.last().is_some_and(|last| *last != b'\n')))
         .map(|name| {

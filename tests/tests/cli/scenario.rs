@@ -1,0 +1,269 @@
+//! Scenarios: files, what `--print-scenario` prints, the scenario in a result.
+
+use proptest::prelude::*;
+use serde_json::{Value, json};
+use sim_host::scenario::Scenario;
+use sim_host::scenario::setting::{CONDITIONS, PLANE, SEARCH, START, Setting, UNCERTAIN};
+use std::path::Path;
+use tests::cli::{Bench, repository};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+
+/// A file of every kind that options can name.
+fn files(bench: &Bench) {
+    let copy = |from: &str, to: &str| bench.write(to, std::fs::read(repository(from)).expect("is there"));
+    copy("data/laws/example.toml", "law.toml");
+    copy("data/riders/young.toml", "rider.toml");
+    copy("data/sensors/hall-16.toml", "hall.toml");
+    bench.write("motor.toml", "time_constant_s = 0.004\nlimit_nm = 6.5\n");
+    bench.write(
+        "set.toml",
+        "law = 'cl2:3'\n[parameters]\n'limits.rise_nm_s' = 55\n'limits.end_stop' = 'off'\n",
+    );
+    let bicycle = bench.run("bicycle show --ini --bicycle rigid_luke").stdout;
+    let measured = |line: &str| match line.strip_prefix("w = ") {
+        Some(value) => format!("w = {value}+/-0.01\n"),
+        None => format!("{line}\n"),
+    };
+    bench.write("bicycle.txt", bicycle.lines().map(measured).collect::<String>());
+}
+
+/// Options that between them use every file and every kind of setting.
+const RIDES: [&str; 5] = [
+    "",
+    "--preset product --steer-rate 3",
+    "--bicycle bicycle.txt --bicycle-set lam=0.35 --law law.toml --steer-rate 2 --torque-limit none --taper 0.1:0.7",
+    "--rider rider.toml --gains best --delay 40ms --parameters set.toml --set limits.fall_nm_s=66 --roll-rate 0.4",
+    "--preset product --sensor mpu6050-robot --sensor front-wheel:model=hall.toml --sensor gyro.y:bias=0.01 --sensor imu:pitch=0.1 \
+     --actuator motor.toml,stop=0.7 --fault gyro.x:noise=0.1@1.5s..2s --seed 7 --fall flat=none --time-limit 3 --imu body",
+];
+
+/// Situation: rides with files of every kind and options of every kind.
+/// Action: take the scenario from the result, ride it in a folder without those files; print the scenario of the options
+/// and ride that where the files are.
+/// Must hold: the same bytes all three times.
+#[test]
+fn a_result_contains_the_scenario_that_reproduces_it() {
+    let (bench, elsewhere) = (Bench::new(PROGRAM), Bench::new(PROGRAM));
+    files(&bench);
+    for options in RIDES {
+        let result = bench.run(&format!("ride --speed 4 {options} --json"));
+        assert_eq!(result.code, Some(0), "{options}: {}", result.stderr);
+        elsewhere.write("result.json", &result.stdout);
+        assert_eq!(elsewhere.run("ride --scenario result.json --json").stdout, result.stdout, "{options}");
+        let scenario = &serde_json::from_str::<Value>(&result.stdout).expect("JSON")["scenario"];
+        elsewhere.write("scenario.json", scenario.to_string());
+        assert_eq!(elsewhere.run("ride --scenario scenario.json --json").stdout, result.stdout, "{options}");
+        let printed = bench.run(&format!("ride --speed 4 {options} --print-scenario"));
+        bench.write("scenario.toml", &printed.stdout);
+        assert_eq!(bench.run("ride --scenario scenario.toml --json").stdout, result.stdout, "{options}");
+    }
+}
+
+/// Situation: a basin with drawn bicycles, and a plane.
+/// Action: compute each again from its result, in a folder without its files; again with an option that changes it.
+/// Must hold: the same document but for the computing time; another one with the option.
+#[test]
+fn a_basin_is_reproduced_from_its_result() {
+    let (bench, elsewhere) = (Bench::new(PROGRAM), Bench::new(PROGRAM));
+    files(&bench);
+    let timeless = |run: &str, bench: &Bench| {
+        let mut document = bench.json(run);
+        document["seconds"] = Value::Null;
+        document
+    };
+    let coarse = "--scan-step 2 --tolerance 0.5 --max-rate 8";
+    for (command, options, other) in [
+        ("basin", format!("--bicycle bicycle.txt --uncertain 2 --speeds 3:4:1 {coarse}"), "--speeds 3"),
+        ("basin", format!("--rider rider.toml --axis roll-rate --speeds 4 {coarse}"), "--axis steer-rate"),
+        ("basin plane", "--speed 4 --rays 4 --points 4".into(), "--rays 5"),
+    ] {
+        let first = timeless(&format!("{command} {options}"), &bench);
+        elsewhere.write("result.json", first.to_string());
+        let again = timeless(&format!("{command} --scenario result.json"), &elsewhere);
+        assert_eq!(again, first, "{options}");
+        let changed = timeless(&format!("{command} --scenario result.json {other}"), &elsewhere);
+        assert_ne!(changed, first, "{options}");
+    }
+}
+
+/// Situation: a scenario with one thing wrong each.
+/// Action: ride it.
+/// Must hold: rejected with the file or option, the key, the value and what is expected.
+#[test]
+fn a_wrong_scenario_is_rejected_with_its_key() {
+    let bench = Bench::new(PROGRAM);
+    let right = "law = 'h'\n[start]\nspeed_m_s = 4\n";
+    bench.write("right.toml", right);
+    assert_eq!(bench.run("ride --scenario right.toml").code, Some(0));
+    for (added, named) in [
+        ("lwa = 'h'", &["wrong.toml", "line 1", "lwa", "law"][..]),
+        ("time_limit_s = 'x'", &["wrong.toml", "line 1", "\"x\""]),
+        ("time_limit_s = 0", &["time limit", "= 0 ", "3600"]),
+        ("torque_limit_nm = 'off'", &["wrong.toml", "line 1", "off", "none"]),
+        ("torque_limit_nm = -1", &["--torque-limit", "-1", "max_torque_nm"]),
+        ("taper_m_s = [1]", &["wrong.toml", "line 1", "length"]),
+        ("sensor_delay_s = 0.0025", &["--sensor-delay", "2.5 ms", "whole number"]),
+        ("sensor_delay_s = -1", &["--sensor-delay", "-1000 ms", "0 to 1000"]),
+        ("bicycle = 'bike'", &["unknown bicycle `bike`", "rigid_jason"]),
+        ("bicycle = 1", &["wrong.toml", "line 1", "a name, a file"]),
+        ("bicycle_set = { lam = 7 }", &["--bicycle-set", "`lam` = 7", "1.4"]),
+        ("rider = { gains = 'best' }", &["--rider", "table"]),
+        ("rider = { table = 'young', gains = 'fit' }", &["line 1", "fit", "regression"]),
+        ("rider = { table = 'young', delay_s = 2 }", &["--delay", "= 2 ", "0 to 1"]),
+        ("plant = { faults = ['gyro:melt'] }", &["line 1", "gyro:melt"]),
+        ("plant = { sensors = [{ sensor = 'nose', noise = 1 }] }", &["--sensor", "`nose`", "gyro"]),
+        ("plant = { sensors = [{ noise = 1 }] }", &["--sensor", "`sensor`", "`model`"]),
+        ("plant = { actuator = { voltage_v = 24 } }", &["--actuator", "given together"]),
+        ("parameters = { 'limits.nope' = 1 }", &["--set", "limits.nope"]),
+        ("parameters = { 'limits.rise_nm_s' = -1 }", &["--set", "limits.rise_nm_s=-1", "outside"]),
+        ("fall = { roll_rad = 2 }", &["fall: roll", "90"]),
+    ] {
+        bench.write("wrong.toml", format!("{added}\n{}", right.replace("law = 'h'\n", "")));
+        bench.run("ride --scenario wrong.toml").refused_naming(named);
+    }
+    bench.run("ride --scenario none.toml").refused_naming(&["none.toml"]);
+    bench.write("result.json", json!({"tool": {}, "config": {}}).to_string());
+    bench.run("ride --scenario result.json").refused_naming(&["result.json", "no `scenario`"]);
+    bench.write("list.json", "[1]");
+    bench.run("ride --scenario list.json").refused_naming(&["list.json", "object"]);
+    bench.write("bad.json", "{\"law\": \"h\",}");
+    bench.run("ride --scenario bad.json").refused_naming(&["bad.json", "line 1"]);
+    bench.write("moved.json", json!({"start": {"speed_m_s": 4}, "bicycle": inline(0.3)}).to_string());
+    assert_eq!(bench.run("ride --scenario moved.json").code, Some(0));
+    bench.write("moved.json", json!({"start": {"speed_m_s": 4}, "bicycle": inline(7.0)}).to_string());
+    bench.run("ride --scenario moved.json").refused_naming(&["--bicycle", "`lam` = 7"]);
+}
+
+/// A bicycle in place, with this tilt of the steer axis.
+fn inline(lam: f64) -> Value {
+    let text = std::fs::read_to_string(repository("data/bicycles.toml")).expect("is there");
+    let all: toml::Table = text.parse().expect("TOML");
+    let mut parameters = all["rigid_jason"].clone().try_into::<toml::Table>().expect("a set");
+    for key in ["source", "note", "rider_included", "schema"] {
+        parameters.remove(key);
+    }
+    parameters.insert("lam".into(), lam.into());
+    json!({"name": "mine", "parameters": parameters})
+}
+
+/// An example of a text for each setting that differs from its default.
+fn example(setting: &Setting) -> String {
+    if let Some((word, _)) = setting.words.last() {
+        return (*word).into();
+    }
+    let text = match setting.name {
+        "bicycle" => "benchmark",
+        "bicycle-set" => "lam=0.3",
+        "rider" => "smart",
+        "law" => "cl2:3",
+        "set" => "limits.rise_nm_s=3",
+        "taper" => "0.2:0.4",
+        "sensor-delay" | "delay" => "25ms",
+        "sensor" => "gyro:noise=0.5",
+        "actuator" => "gazelle",
+        "fault" => "motor:dead@1s",
+        "parameters" => "set.toml",
+        "fall" => "flat=none",
+        "speeds" => "3:4:0.5",
+        "recovered-below" | "ray-tolerance" => "0.2",
+        _ => "3",
+    };
+    text.into()
+}
+
+/// Situation: every setting of the table that options and axes read.
+/// Action: set it in a scenario, and write that as a file.
+/// Must hold: the file has the key that the table says, and reads back as the same scenario, also as JSON.
+#[test]
+fn every_setting_has_its_key() {
+    let all = [CONDITIONS, SEARCH, START, PLANE, &[UNCERTAIN]].into_iter().flatten();
+    let mut count = 0;
+    for setting in all {
+        let mut scenario = Scenario::default();
+        (setting.set)(&mut scenario, &example(setting)).unwrap_or_else(|e| panic!("{}: {e}", setting.name));
+        assert_ne!(scenario, Scenario::default(), "{}", setting.name);
+        if setting.key.starts_with("start.") && setting.name != "speed" {
+            (START[0].set)(&mut scenario, "4").expect("a speed");
+        }
+        if setting.key.starts_with("plane.") && setting.name != "speed" {
+            (PLANE[0].set)(&mut scenario, "4").expect("a speed");
+        }
+        let text = scenario.to_toml().expect("can be written");
+        let table: toml::Table = text.parse().expect("TOML");
+        let found =
+            setting.key.split('.').try_fold(toml::Value::Table(table), |value, key| value.get(key).cloned());
+        assert!(found.is_some(), "{}: no {} in\n{text}", setting.name, setting.key);
+        assert_eq!(Scenario::from_toml(&text).as_ref(), Ok(&scenario), "{text}");
+        let json = serde_json::to_string(&scenario).expect("JSON");
+        assert_eq!(Scenario::from_json(&json).as_ref(), Ok(&scenario), "{json}");
+        count += 1;
+    }
+    assert!(count > 30, "{count}");
+}
+
+proptest! {
+    /// Situation: any text, and any change of one byte of a good scenario.
+    /// Action: read it as TOML and as JSON.
+    /// Must hold: a scenario or an error with words, no panic.
+    #[test]
+    fn any_text_is_read_or_rejected(text in ".{0,200}", at in 0_usize..400, byte in any::<u8>()) {
+        let good = Scenario::read(&repository("data/scenarios/product.toml")).expect("is right").to_toml().expect("TOML");
+        let mut changed = good.into_bytes();
+        let at = at % changed.len();
+        changed[at] = byte;
+        for text in [text, String::from_utf8_lossy(&changed).into_owned()] {
+            for read in [Scenario::from_toml(&text), Scenario::from_json(&text)] {
+                prop_assert!(read.is_ok() || read.is_err_and(|e| !e.is_empty()));
+            }
+        }
+    }
+
+    /// Situation: settings with any numbers.
+    /// Action: write the scenario as TOML and as JSON, and read it.
+    /// Must hold: the same bits.
+    #[test]
+    fn numbers_survive(limit in 0.1_f64..50.0, delay in 0.0_f64..1.0, noise in 0.0_f64..9.0, lam in -1.0_f64..1.4) {
+        let mut scenario = Scenario::default();
+        for (name, text) in [
+            ("torque-limit", limit.to_string()),
+            ("sensor-delay", format!("{delay}s")),
+            ("sensor", format!("accel:noise={noise}")),
+            ("bicycle-set", format!("lam={lam}")),
+        ] {
+            let setting = CONDITIONS.iter().find(|setting| setting.name == name).expect("is one");
+            (setting.set)(&mut scenario, &text).expect("a number");
+        }
+        prop_assert_eq!(Scenario::from_toml(&scenario.to_toml().expect("TOML")), Ok(scenario.clone()));
+        let json = serde_json::to_string(&scenario).expect("JSON");
+        prop_assert_eq!(Scenario::from_json(&json), Ok(scenario));
+    }
+}
+
+/// Situation: the scenarios in the folder of examples.
+/// Action: run each with the command in its first line.
+/// Must hold: exit code 0, and `--print-scenario` prints a scenario that reads back.
+#[test]
+fn the_shipped_scenarios_run() {
+    let bench = Bench::new(PROGRAM);
+    let folder = repository("data/scenarios");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let command = command_of(&path);
+        let place = tests::cli::word(&path);
+        let run = bench.run(&format!("{command} --scenario {place} --quiet"));
+        assert_eq!(run.code, Some(0), "{place}: {}", run.stderr);
+        let printed = bench.run(&format!("{command} --scenario {place} --print-scenario")).stdout;
+        assert!(Scenario::from_toml(&printed).is_ok(), "{printed}");
+        count += 1;
+    }
+    assert!(count >= 3, "{count}");
+}
+
+/// The command in a scenario's first line: `# sim-host COMMAND --scenario FILE: ...`.
+fn command_of(path: &Path) -> String {
+    let text = std::fs::read_to_string(path).expect("is there");
+    let line = text.lines().next().and_then(|line| line.strip_prefix("# sim-host ")).expect("a command");
+    line.split(" --scenario").next().expect("a command").into()
+}
