@@ -5,7 +5,7 @@ use crate::range::within;
 
 /// Behaviour outside the speeds at which the gains were measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Outside {
     /// The outermost straight lines are extrapolated, as published.
