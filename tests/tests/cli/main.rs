@@ -11,6 +11,7 @@ mod falls;
 mod identify;
 mod identify_sensor;
 mod interrupt;
+mod library;
 mod none;
 mod options;
 mod outputs;

@@ -14,9 +14,12 @@ use tests::draws::runner;
 use tests::estimator_inputs::Noise;
 use tests::fault_cards::product;
 use tests::inside::{AXES, RIDERS, SPEEDS, borders, sensed, unchecked, with};
+use tests::sets::whole;
 
-/// Rides drawn inside each basin.
-const DRAWN: usize = 40;
+/// Number of rides drawn inside each basin, fewer by default.
+fn drawn_per_basin() -> usize {
+    if whole() { 40 } else { 16 }
+}
 
 /// The product's checks and permission; the law and the torque as in the thesis.
 fn checked() -> Config {
@@ -55,7 +58,7 @@ fn starts() -> Vec<(Option<&'static str>, Start)> {
     let gap = SPEEDS.len() - 1;
     let draw = (0..RIDERS.len(), 0..AXES.len(), 0..gap, 0.0..1.0_f64, -0.99..0.99_f64);
     let mut runner = runner(1);
-    for _ in 0..DRAWN * RIDERS.len() {
+    for _ in 0..drawn_per_basin() * RIDERS.len() {
         let (rider, axis, i, along, part) = draw.new_tree(&mut runner).expect("a draw").current();
         let row = &borders()[(rider * AXES.len() + axis) * SPEEDS.len()..];
         let height = row[i].height_rad_s.min(row[i + 1].height_rad_s);
@@ -125,7 +128,7 @@ fn listed(told: &[Told], what: impl Fn(&&Told) -> bool) -> String {
 #[test]
 fn no_check_trips_inside_the_basins() {
     let told = told(&checked(), &Plant::default());
-    assert_eq!(told.len(), 72 + DRAWN * RIDERS.len());
+    assert_eq!(told.len(), 72 + drawn_per_basin() * RIDERS.len());
     let wrong = listed(&told, |t| (t.trip.is_some() || t.fell) && !(t.fell && t.falls_anyhow));
     assert!(wrong.is_empty(), "{wrong}");
     let (border, drawn) = told.split_at(72);
@@ -180,7 +183,7 @@ fn no_check_trips_by_noise() {
         let row = format!("| {also} | {gyro:.3} rad/s | {steer:.3} rad | {speed:.3} m/s |");
         assert!(page.contains(&row), "docs/sensors.md should say: {row}");
     }
-    let rides = 72 + DRAWN * RIDERS.len();
+    let rides = 72 + drawn_per_basin() * RIDERS.len();
     let [some, all] = [BORNE_WITHOUT, 1.0].map(reported_gyros);
     let line = format!("it reports a correct gyro in {some} of the {rides} rides, with all of it in {all},");
     assert!(page.contains(&line), "docs/sensors.md should say: {line}");

@@ -8,13 +8,13 @@ use std::path::Path;
 
 /// The shipped models, by name.
 pub const SHIPPED: [(&str, &str); 7] = [
-    ("encoders-robot", include_str!("../../../data/sensors/encoders-robot.toml")),
-    ("fused-imu-can", include_str!("../../../data/sensors/fused-imu-can.toml")),
-    ("hall-16", include_str!("../../../data/sensors/hall-16.toml")),
-    ("mpu6050-robot", include_str!("../../../data/sensors/mpu6050-robot.toml")),
-    ("steer-lws", include_str!("../../../data/sensors/steer-lws.toml")),
-    ("wheel-can", include_str!("../../../data/sensors/wheel-can.toml")),
-    ("wheel-sbw", include_str!("../../../data/sensors/wheel-sbw.toml")),
+    ("encoders-robot", include_str!("../../../../data/sensors/encoders-robot.toml")),
+    ("fused-imu-can", include_str!("../../../../data/sensors/fused-imu-can.toml")),
+    ("hall-16", include_str!("../../../../data/sensors/hall-16.toml")),
+    ("mpu6050-robot", include_str!("../../../../data/sensors/mpu6050-robot.toml")),
+    ("steer-lws", include_str!("../../../../data/sensors/steer-lws.toml")),
+    ("wheel-can", include_str!("../../../../data/sensors/wheel-can.toml")),
+    ("wheel-sbw", include_str!("../../../../data/sensors/wheel-sbw.toml")),
 ];
 
 /// Name of the exact sensors, in addition to the names in [`SHIPPED`].

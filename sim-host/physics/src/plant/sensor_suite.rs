@@ -132,7 +132,7 @@ impl SensorSuite {
 }
 
 /// Applies all faults of a channel to a sample, in the order in which they were given.
-pub(crate) fn faulty(
+pub fn faulty(
     faults: &[Fault],
     states: &mut [FaultState],
     channel: Channel,

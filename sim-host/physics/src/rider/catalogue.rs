@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 
 /// Names and texts of the shipped riders in `data/riders/`.
 const SHIPPED: [(&str, &str); 10] = [
-    ("young", include_str!("../../../data/riders/young.toml")),
-    ("smart", include_str!("../../../data/riders/smart.toml")),
-    ("smart6", include_str!("../../../data/riders/smart6.toml")),
-    ("undelayed", include_str!("../../../data/riders/undelayed.toml")),
-    ("undelayed-alt", include_str!("../../../data/riders/undelayed-alt.toml")),
-    ("hess", include_str!("../../../data/riders/hess.toml")),
-    ("hess-benchmark", include_str!("../../../data/riders/hess-benchmark.toml")),
-    ("young-reduction", include_str!("../../../data/riders/young-reduction.toml")),
-    ("smart-reduction", include_str!("../../../data/riders/smart-reduction.toml")),
-    ("undelayed-reduction", include_str!("../../../data/riders/undelayed-reduction.toml")),
+    ("young", include_str!("../../../../data/riders/young.toml")),
+    ("smart", include_str!("../../../../data/riders/smart.toml")),
+    ("smart6", include_str!("../../../../data/riders/smart6.toml")),
+    ("undelayed", include_str!("../../../../data/riders/undelayed.toml")),
+    ("undelayed-alt", include_str!("../../../../data/riders/undelayed-alt.toml")),
+    ("hess", include_str!("../../../../data/riders/hess.toml")),
+    ("hess-benchmark", include_str!("../../../../data/riders/hess-benchmark.toml")),
+    ("young-reduction", include_str!("../../../../data/riders/young-reduction.toml")),
+    ("smart-reduction", include_str!("../../../../data/riders/smart-reduction.toml")),
+    ("undelayed-reduction", include_str!("../../../../data/riders/undelayed-reduction.toml")),
 ];
 
 /// Reason why a rider cannot be loaded.

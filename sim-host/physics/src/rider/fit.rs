@@ -7,7 +7,7 @@ use super::{Gains, KEYS, Outside, Rider, Schedule, ScheduleError};
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
 )]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Fit {
     /// One straight line per gain (LR in the thesis): the table's own `regression`, otherwise least squares

@@ -4,7 +4,7 @@
 ///
 /// # Errors
 /// States the name, the value and the range.
-pub(crate) fn within(name: &str, value: f64, min: f64, max: f64) -> Result<(), String> {
+pub fn within(name: &str, value: f64, min: f64, max: f64) -> Result<(), String> {
     if value >= min && value <= max {
         Ok(())
     } else {
@@ -13,7 +13,7 @@ pub(crate) fn within(name: &str, value: f64, min: f64, max: f64) -> Result<(), S
 }
 
 /// A number as text, with an exponent if very small or very large.
-pub(crate) fn plain(value: f64) -> String {
+pub fn plain(value: f64) -> String {
     if value == 0.0 || !value.is_finite() || (1e-9..1e16).contains(&value.abs()) {
         value.to_string()
     } else {
@@ -25,7 +25,7 @@ pub(crate) fn plain(value: f64) -> String {
 ///
 /// # Errors
 /// States the text and the expected form.
-pub(crate) fn time(text: &str, max: f64) -> Result<f64, String> {
+pub fn time(text: &str, max: f64) -> Result<f64, String> {
     let wrong =
         || format!("`{text}` is not a time; expected a number with its unit, for example 20ms or 0.02s");
     let (number, per_s) = match text.strip_suffix("ms") {
@@ -43,7 +43,7 @@ const LATEST_S: f64 = 3600.0;
 ///
 /// # Errors
 /// States the text and the expected form.
-pub(crate) fn span(text: &str) -> Result<(f64, f64), String> {
+pub fn span(text: &str) -> Result<(f64, f64), String> {
     let (from, to) = text.split_once("..").map_or((text, None), |(from, to)| (from, Some(to)));
     let from_s = time(from, LATEST_S)?;
     let to_s = to.map_or(Ok(f64::INFINITY), |to| time(to, LATEST_S))?;

@@ -8,7 +8,7 @@ use crate::rider::Rider;
 
 /// Speed that schedules the gains of assist and rider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum ScheduleSpeed {
     /// Front wheel rate times its radius; reproduces the published basins.
@@ -21,7 +21,7 @@ pub enum ScheduleSpeed {
 
 /// Roll rate that the gyro reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Imu {
     /// The exact rate of the roll angle (the published laws' signal).

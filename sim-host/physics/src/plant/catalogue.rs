@@ -5,7 +5,7 @@ use serde::Deserialize;
 use std::path::Path;
 
 /// The shipped actuators, one table each.
-const SHIPPED: &str = include_str!("../../../data/actuators.toml");
+const SHIPPED: &str = include_str!("../../../../data/actuators.toml");
 
 /// Names of the shipped actuators; "none" is the exact one.
 pub fn shipped_names() -> Vec<String> {

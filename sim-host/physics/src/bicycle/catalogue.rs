@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use toml::{Table, Value};
 
 /// The shipped sets, a collection.
-const SHIPPED: &str = include_str!("../../../data/bicycles.toml");
+const SHIPPED: &str = include_str!("../../../../data/bicycles.toml");
 /// File of the shipped sets, for messages.
 const SHIPPED_FILE: &str = "data/bicycles.toml";
 /// Supported schema version of a set's file.
