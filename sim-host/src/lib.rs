@@ -11,6 +11,7 @@ pub mod eigen;
 pub mod integrate;
 pub mod num;
 pub mod parameters;
+pub mod pil;
 pub mod plant;
 mod range;
 pub mod recording;
