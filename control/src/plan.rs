@@ -1,9 +1,11 @@
 //! Constants derived from a configuration, computed once before the first step.
 
+use crate::command::Command;
 use crate::config::Config;
-use crate::controller::Command;
 use crate::estimate::smooth::SmoothPlan;
 use crate::fault::{Cause, Causes};
+use crate::law::path_tracking::PathTracking;
+use crate::param::{Checker, ParamError};
 use crate::safety::engagement::{EngagementPlan, Mode, Reactions};
 use crate::safety::guard::GuardPlan;
 use crate::safety::limiter::LimiterPlan;
@@ -39,6 +41,23 @@ pub struct Plan {
     /// Whether any function needs the estimated motion; otherwise the sensors' values are used as they are.
     pub(crate) needs_estimate: bool,
     pub(crate) config: Config,
+}
+
+impl Config {
+    /// Validates every value and computes the plan for [`crate::step`].
+    ///
+    /// # Errors
+    /// The first parameter outside its range, with its value and the range.
+    pub fn plan(mut self) -> Result<Plan, ParamError> {
+        let mut checker = Checker::default();
+        self.visit_params(&mut checker);
+        checker.note(self.law.validate());
+        checker.note(self.limits.cross());
+        checker.note(self.input.cross());
+        checker.note(self.track.as_ref().map_or(Ok(()), PathTracking::cross));
+        checker.verdict()?;
+        Ok(Plan::new(self))
+    }
 }
 
 impl Plan {

@@ -6,6 +6,7 @@ pub mod board;
 pub mod cli;
 pub mod design;
 pub mod parameters;
+pub mod pil;
 pub mod recording;
 pub mod replay;
 pub mod report;

@@ -2,7 +2,7 @@
 
 use crate::range::plain;
 use control::Config;
-use control::param::{ParamSpec, ParamVisitor};
+use control::param::{ParamError, ParamSpec, ParamVisitor};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -49,11 +49,48 @@ pub fn departing(config: &Config, from: &Config) -> Vec<(String, String)> {
     both.filter(|(a, b)| a != b).map(|(a, _)| a).collect()
 }
 
+/// A parameter that can't be set.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SetError {
+    /// No parameter has this name.
+    #[error("no parameter {key}; nearest are {}; `sim-host param list --virtual-board` shows all", near.join(", "))]
+    Unknown {
+        /// As given.
+        key: String,
+        /// The three most similar names.
+        near: Vec<String>,
+    },
+    /// Not a number.
+    #[error("`{0}` is not a number")]
+    Number(String),
+    /// Not a whole number.
+    #[error("`{0}` is not a whole number")]
+    Whole(String),
+    /// A number outside its range.
+    #[error("{0}")]
+    Range(ParamError),
+    /// None of the names that it can have.
+    #[error("`{value}` is none of {known}")]
+    Choice {
+        /// As given.
+        value: String,
+        /// The names.
+        known: String,
+    },
+}
+
+impl From<ParamError> for SetError {
+    fn from(error: ParamError) -> Self {
+        Self::Range(error)
+    }
+}
+
 /// Sets the parameter `key` to a value in text form.
 ///
 /// # Errors
 /// An unknown parameter; a value of another kind or out of range.
-pub fn set(config: &mut Config, key: &str, value: &str) -> Result<(), String> {
+pub fn set(config: &mut Config, key: &str, value: &str) -> Result<(), SetError> {
     set_value(config, key, &value.into())
 }
 
@@ -61,15 +98,12 @@ pub fn set(config: &mut Config, key: &str, value: &str) -> Result<(), String> {
 ///
 /// # Errors
 /// As [`set`].
-pub fn set_value(config: &mut Config, key: &str, value: &Value) -> Result<(), String> {
+pub fn set_value(config: &mut Config, key: &str, value: &Value) -> Result<(), SetError> {
     let mut setter = Setter { key, value, done: None };
     config.visit_params(&mut setter);
     setter.done.unwrap_or_else(|| {
         let near = nearest(list(config).into_iter().map(|(name, _)| name), key);
-        Err(format!(
-            "no parameter {key}; nearest are {}; `sim-host param list --virtual-board` shows all",
-            near.join(", ")
-        ))
+        Err(SetError::Unknown { key: key.into(), near })
     })
 }
 
@@ -90,7 +124,7 @@ const SWITCH: &[&str] = &["off", "on"];
 struct Setter<'a> {
     key: &'a str,
     value: &'a Value,
-    done: Option<Result<(), String>>,
+    done: Option<Result<(), SetError>>,
 }
 
 impl Setter<'_> {
@@ -101,9 +135,9 @@ impl Setter<'_> {
         }
         let parsed = match self.value {
             Value::Number(x) if !(*x as f32).is_infinite() => Ok(*x as f32),
-            other => Err(format!("`{other}` is not a number")),
+            other => Err(SetError::Number(other.to_string())),
         };
-        let checked = parsed.and_then(|x| leaf.check(x).map(|()| x).map_err(|e| e.to_string()));
+        let checked = parsed.and_then(|x| leaf.check(x).map(|()| x).map_err(SetError::from));
         self.done = Some(checked.clone().map(drop));
         checked.ok()
     }
@@ -115,7 +149,7 @@ impl Setter<'_> {
         }
         let word = self.value.to_string();
         let place = names.iter().position(|name| *name == word);
-        let wrong = || format!("`{}` is none of {}", self.value, names.join(", "));
+        let wrong = || SetError::Choice { value: word.clone(), known: names.join(", ") };
         self.done = Some(place.map(drop).ok_or_else(wrong));
         place.map(|place| place as u8)
     }
@@ -139,7 +173,7 @@ impl ParamVisitor for Setter<'_> {
             if number.fract() == 0.0 {
                 *value = number as u16;
             } else {
-                self.done = Some(Err(format!("`{}` is not a whole number", self.value)));
+                self.done = Some(Err(SetError::Whole(self.value.to_string())));
             }
         }
     }

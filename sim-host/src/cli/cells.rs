@@ -48,7 +48,7 @@ fn roles(axes: &[Axis], shared: &[Given]) -> Result<Vec<Role>, SweepError> {
             }
         }
     };
-    axes.iter().map(|axis| role(axis).map_err(SweepError)).collect()
+    axes.iter().map(|axis| role(axis).map_err(SweepError::Axis)).collect()
 }
 
 /// The scenario of one cell.

@@ -7,9 +7,10 @@ use crate::eigen::{
     CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes, roots, stability,
 };
 use crate::range::time;
-use crate::report::document::{EigenDocument, SCHEMA};
+use crate::report::document::EigenDocument;
 use crate::report::figure::{self, EigenFigure};
-use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider, Tool};
+use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider};
+use crate::report::tool::{SCHEMA, Tool};
 use crate::report::{table, terminal};
 use crate::rider::doubts;
 use crate::scenario::{law, speeds};
@@ -78,7 +79,7 @@ struct ActuatorArgs {
 }
 
 fn second(text: &str) -> Result<f64, String> {
-    time(text, 1.0)
+    Ok(time(text, 1.0)?)
 }
 
 impl ActuatorArgs {

@@ -1,13 +1,13 @@
 //! `sim-host pil basin`: a basin with the control step of every ride on a board in QEMU.
 
 use super::basin::{BasinArgs, Computed, progress, write};
+use super::board_args::BoardArgs;
 use super::conditions::{named, printed, setup};
-use super::pil::BoardArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Search, basin, basin_by};
-use crate::board::compare::same_basin;
-use crate::board::qemu::Qemu;
-use crate::board::{Controller, Tally};
+use crate::pil::compare::same_basin;
+use crate::pil::qemu::Qemu;
+use crate::pil::{Controller, Tally};
 use crate::ride::{RemoteError, rides_on};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;

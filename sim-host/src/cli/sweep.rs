@@ -7,7 +7,7 @@ use super::outputs::{complain, print, write_json};
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Bound, border};
 use crate::report::output::Output;
-use crate::report::sweep::SweepDocument;
+use crate::sweep::document::SweepDocument;
 use crate::sweep::{self, Axis, Cell, Folder, Grid, Progress, Shard};
 use std::collections::BTreeSet;
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! Errors of scenarios.
 
 use crate::bicycle::catalogue::BicycleError;
-use crate::rider::catalogue::RiderError;
+use crate::rider::RiderError;
 use std::path::PathBuf;
 
 /// A scenario that can't be read or resolved, with the reason.

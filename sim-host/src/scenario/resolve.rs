@@ -54,9 +54,9 @@ impl Scenario {
     /// # Errors
     /// States the key or file, the value and its range.
     pub fn resolve(&self) -> Result<Resolved, ScenarioError> {
-        let wrong = ScenarioError::value;
         let given = self.load_bicycle()?;
-        let bicycle = given.clone().varied(&self.bicycle_set).map_err(|e| wrong("bicycle_set", e))?;
+        let bicycle =
+            given.clone().varied(&self.bicycle_set).map_err(|e| ScenarioError::value("bicycle_set", e))?;
         let rider = self.rider.load()?;
         let file = self.load_parameters()?;
         let (law_name, law) = self.load_law(file.as_ref(), rider.is_some())?;
@@ -79,7 +79,7 @@ impl Scenario {
         let limited = config.limits != Limits::default();
         let assist = self.assist(&law, config, limited, &given.name)?;
         let sensor_delay_ticks = whole_ticks("", self.sensor_delay_s, step_s, LONGEST_S)
-            .map_err(|e| wrong("sensor_delay_s", e))?;
+            .map_err(|e| ScenarioError::value("sensor_delay_s", e))?;
         let mut warnings = rider.as_ref().map_or(Vec::new(), |one| doubts(&bicycle, &one.table));
         warnings.extend(cut_files::warnings(self.files()));
         let conditions = self.conditions(&bicycle, assist, rider.as_ref(), (step_s, plant));

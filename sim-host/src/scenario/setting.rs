@@ -3,6 +3,7 @@
 use super::search::Speeds;
 use super::{Content, Scenario, speeds, text};
 use crate::parameters::Value;
+use crate::plant::FaultTextError;
 use crate::range::time;
 use crate::ride::Start;
 use crate::rider::MAX_DELAY_S;
@@ -192,7 +193,7 @@ pub const CONDITIONS: &[Setting] = &[
         repeats: true,
         set: |s, text| {
             if text != super::content::NONE {
-                s.plant.faults.push(text.parse().map_err(|e: crate::plant::PlantError| e.to_string())?);
+                s.plant.faults.push(text.parse().map_err(|e: FaultTextError| e.to_string())?);
             }
             Ok(())
         },

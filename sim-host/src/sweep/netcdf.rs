@@ -1,29 +1,10 @@
 //! Writes a sweep as a NetCDF file (classic format); its dimensions are the axes and the speed.
 
+use super::document::SweepDocument;
+use super::names::variable;
 use super::{Axis, Found, Grid, SweepError, Unit};
-use crate::report::sweep::SweepDocument;
 use crate::ride::{Effort, FallCause};
 use netcdf3::{DataSet, FileWriter, Version, WriteError};
-
-/// Names of the variables other than the axes'.
-pub(crate) const NAMES: [&str; 11] = [
-    "speed",
-    "height",
-    "capped",
-    "peak_torque",
-    "rms_torque",
-    "peak_slew",
-    "fall_cause",
-    "area",
-    "mean_height",
-    "area_capped",
-    "complete",
-];
-
-/// Variable name of an axis.
-pub(crate) fn name(axis: &Axis) -> String {
-    axis.key.replace('-', "_")
-}
 
 /// Unit of a numeric axis: the typed one, otherwise the option's; `1` if dimensionless.
 fn unit_of<'a>(axis: &Axis, typed: &'a str) -> &'a str {
@@ -47,13 +28,13 @@ struct Numbers<'a> {
 
 impl From<WriteError> for SweepError {
     fn from(error: WriteError) -> Self {
-        Self(format!("can't write NetCDF: {error:?}"))
+        Self::NetCdf(format!("{error:?}"))
     }
 }
 
 impl From<netcdf3::InvalidDataSet> for SweepError {
     fn from(error: netcdf3::InvalidDataSet) -> Self {
-        Self(format!("can't write NetCDF: {error:?}"))
+        Self::NetCdf(format!("{error:?}"))
     }
 }
 
@@ -63,7 +44,7 @@ impl From<netcdf3::InvalidDataSet> for SweepError {
 /// An axis has a name that NetCDF does not allow, or a temporary file can't be written.
 pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> Result<Vec<u8>, SweepError> {
     let axes = &grid.plan.axes;
-    let names: Vec<String> = axes.iter().map(name).collect();
+    let names: Vec<String> = axes.iter().map(variable).collect();
     let mut cell_dims: Vec<&str> = names.iter().map(String::as_str).collect();
     let cells = cell_dims.clone();
     cell_dims.push("speed");
@@ -97,7 +78,7 @@ pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> Result<Vec<u8>, S
     set.add_global_attr_string("title", "Basins of attraction over a grid of conditions")?;
     set.add_global_attr_string("source", format!("{} {} commit {}", tool.name, tool.version, tool.commit))?;
     set.add_global_attr_string("configuration", document.heading().to_string())?;
-    let file = tempfile::NamedTempFile::new().map_err(|e| SweepError(format!("no temporary file: {e}")))?;
+    let file = tempfile::NamedTempFile::new().map_err(SweepError::Temporary)?;
     let mut writer = FileWriter::open(file.path())?;
     writer.set_def(&set, Version::Classic, 0)?;
     for (axis, name) in axes.iter().zip(&names) {
@@ -110,7 +91,7 @@ pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> Result<Vec<u8>, S
         writer.write_var_f64(name, data)?;
     }
     writer.close()?;
-    std::fs::read(file.path()).map_err(|e| SweepError(format!("no temporary file: {e}")))
+    std::fs::read(file.path()).map_err(SweepError::Temporary)
 }
 
 fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'a>> {
@@ -171,7 +152,7 @@ fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'
 }
 
 /// Codes of `fall_cause`, in the order of [`FallCause::ALL`].
-const FALL_CODES: &str = "what the ride beyond height fell by: 0 roll, 1 steer, 2 laid-flat, 3 too-quick, 4 no-motion; NaN nothing fell";
+const FALL_CODES: &str = "cause of the fall beyond height: 0 roll, 1 steer, 2 laid-flat, 3 too-quick, 4 no-motion; NaN without a fall";
 
 fn fall_code(found: &Found) -> f64 {
     let name = found.fall.as_deref();

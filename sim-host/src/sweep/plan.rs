@@ -1,13 +1,16 @@
 //! The plan of a sweep: identifies the sweep and its cells, so that parts can be combined.
 
+use super::Axis;
 use super::seal::hash;
-use super::{Axis, SweepError, netcdf};
 use crate::basin::Search;
-use crate::report::document::SCHEMA;
-use crate::report::resolved::{Tool, axis_name};
+use crate::report::resolved::axis_name;
+use crate::report::tool::{SCHEMA, Tool};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+
+/// Name of the plan's file.
+pub const PLAN: &str = "plan.json";
 
 /// Settings of the basin search in every cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -88,25 +91,6 @@ impl Plan {
         ];
         differences.into_iter().find_map(|(differs, what)| differs.then_some(what))
     }
-}
-
-/// Checks that the names of the axes are unique and differ from those of the results.
-///
-/// # Errors
-/// States the key.
-pub fn check(axes: &[Axis]) -> Result<(), SweepError> {
-    for (i, axis) in axes.iter().enumerate() {
-        let name = netcdf::name(axis);
-        let wrong = if axes[..i].iter().any(|other| netcdf::name(other) == name) {
-            "is listed twice"
-        } else if netcdf::NAMES.contains(&&*name) {
-            "is the name of a result; choose another"
-        } else {
-            continue;
-        };
-        return Err(SweepError(format!("--over {}: the name {wrong}", axis.key)));
-    }
-    Ok(())
 }
 
 /// Number of cells of the axes.

@@ -10,6 +10,7 @@ pub mod catalogue;
 mod check;
 pub mod combine;
 mod dynamics;
+mod error;
 mod extras;
 mod formats;
 mod geometry;
@@ -21,16 +22,21 @@ mod parameters;
 mod pitch;
 mod pose;
 mod redundant;
+mod rider_body;
+mod set;
+mod start;
 pub mod uncertain;
 mod vary;
 
 pub use dynamics::{Accelerations, Torques};
+pub use error::{FormatError, NumberError, ParameterError, SetError, VariationError};
 pub use geometry::{Geometry, Gyrostat};
 pub use motion::{Motion, Velocities};
 pub use parameters::{KEYS, Parameters};
 pub use pitch::{Attitude, front_contact_residual, pitch_from_upright};
 pub use pose::Pose;
 pub use redundant::FullState;
+pub use start::Start;
 
 use crate::num::Scalar;
 

@@ -2,11 +2,11 @@
 
 mod actuator;
 pub mod catalogue;
+mod error;
 mod fault;
 mod fault_text;
 mod fitted;
 mod friction;
-mod random_stream;
 mod reading;
 mod sensor;
 pub mod sensor_file;
@@ -14,20 +14,16 @@ mod sensor_suite;
 mod stop;
 
 pub use actuator::{Actuator, ActuatorConfig, Supply};
+pub use error::PlantError;
 pub use fault::{Channel, Fault, FaultState, Kind};
+pub use fault_text::{FaultFormError, FaultTextError};
 pub use fitted::{FittedErrors, OCTAVES_HZ};
 pub use friction::Friction;
-pub use random_stream::RandomStream;
-pub use reading::{Frame, Odometry, Reading, Sensor};
+pub use reading::{Frame, Imu, Odometry, Reading, Sensor};
 pub use sensor::{Before, ImuMount, SensorConfig, SensorDice, SensorModel, SensorState};
 pub use sensor_suite::faulty;
 pub use sensor_suite::{Held, Measured, SensorSuite};
 pub use stop::SteerStop;
-
-/// A plant that can't be simulated, with the reason.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct PlantError(pub String);
 
 /// Sensors, actuator and faults. The default is exact, without delay or fault.
 #[derive(Clone, Debug, Default, PartialEq)]
