@@ -148,13 +148,13 @@ fn actuators_that_cannot_be_analysed_are_refused() {
         (LinearActuator { viscous_nm_s_rad: 101.0, ..perfect }, "(N m s/rad) = 101 is outside 0 to 100"),
     ] {
         let error = model().with_actuator(actuator).expect_err("out of range");
-        assert!(error.contains(says), "{error}");
+        assert!(error.to_string().contains(says), "{error}");
     }
     let smart = sim_host::rider::catalogue::load("smart").expect("ships");
     let smart = smart.rider(Default::default(), Default::default(), None).expect("valid");
     let ridden = Model::new(&bicycle(RIDDEN), Feedback::Law(Law::None), Some(smart));
     let error = ridden.with_actuator(LinearActuator { delay_s: 0.01, ..perfect }).expect_err("two delays");
-    assert!(error.contains("combined with --rider"), "{error}");
+    assert!(error.to_string().contains("combined with --rider"), "{error}");
 }
 
 /// Situation: the page in the documentation.
