@@ -25,8 +25,8 @@
 //!   [`safety::limits`] ([`safety::limiter`]) and checks the result by a second formulation ([`safety::guard`]).
 //!
 //! [`controller`] calls them in order. [`config`] holds all parameters, [`plan`] the constants derived from them,
-//! [`fault`] the numbered causes; [`param`] declares every parameter with its range, [`wire`] encodes frames,
-//! commands and configurations. A board computes wheel speeds from pulses by [`sensors::wheel_speed`].
+//! [`fault`] the numbered causes; [`param`] declares every parameter with its range, [`numbered`]
+//! enums with permanent numbers, [`wire`] encodes frames, commands and configurations. A board computes wheel speeds from pulses by [`sensors::wheel_speed`].
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -36,6 +36,7 @@ pub mod estimate;
 pub mod fault;
 pub mod law;
 pub mod maths;
+pub mod numbered;
 pub mod param;
 pub mod plan;
 pub mod safety;

@@ -8,21 +8,22 @@
 use crate::sensors::measurements::{Measurements, SpeedInterval};
 use crate::sensors::validation::ValidationConfig;
 
-/// Next step of the polarity check.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum PolarityStep {
-    /// Lean the bicycle to the right, by a quarter of a radian or more.
-    #[default]
-    Lean = 0,
-    /// Turn the handlebar to the right, by a third of a radian or more.
-    Steer = 1,
-    /// Push the bicycle forward, at a slow walk.
-    Push = 2,
-    /// None: the check was passed.
-    Passed = 3,
-    /// None: a sign is wrong. The calibration must be corrected; the check restarts at the next start-up.
-    Wrong = 4,
+crate::numbered! {
+    /// Next step of the polarity check.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum PolarityStep {
+        /// Lean the bicycle to the right, by a quarter of a radian or more.
+        #[default]
+        Lean = 0,
+        /// Turn the handlebar to the right, by a third of a radian or more.
+        Steer = 1,
+        /// Push the bicycle forward, at a slow walk.
+        Push = 2,
+        /// None: the check was passed.
+        Passed = 3,
+        /// None: a sign is wrong. The calibration must be corrected; the check restarts at the next start-up.
+        Wrong = 4,
+    }
 }
 
 /// Minimum roll angle of a lean to the right \[rad\].

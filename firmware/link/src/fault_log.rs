@@ -15,7 +15,6 @@
 use crate::bytes::{Reader, Writer};
 use crate::frame::CRC;
 use crate::report::{FAULT_BYTES, FaultRecord};
-use crate::telemetry;
 use control::{Causes, Mode};
 
 /// Number of stored faults; a new one replaces the oldest.
@@ -62,7 +61,7 @@ pub fn last_step(memory: &[u8; RING_BYTES]) -> Option<LastStep> {
     let check = from.u32()?;
     let whole = check == CRC.checksum(from.0);
     let (steps, frame_us, causes) = (from.u32()?, from.u32()?, Causes(from.u64()?));
-    whole.then_some(LastStep { steps, frame_us, causes, mode: telemetry::mode(from.u8()?)? })
+    whole.then_some(LastStep { steps, frame_us, causes, mode: Mode::numbered(from.u8()?)? })
 }
 
 /// Header of the ring.

@@ -4,33 +4,20 @@ use crate::key::Key;
 use control::Config;
 use control::param::{ParamSpec, ParamVisitor};
 
-/// Meaning of a parameter's number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Kind {
-    /// A number.
-    Number = 0,
-    /// A number that can be off.
-    Limit = 1,
-    /// An integer.
-    Count = 2,
-    /// 0 is off, 1 is on.
-    Switch = 3,
-    /// Index of a name in [`ParameterView::names`].
-    Choice = 4,
-}
-
-impl Kind {
-    /// Kind by its number on the wire.
-    pub const fn numbered(number: u8) -> Option<Self> {
-        Some(match number {
-            0 => Kind::Number,
-            1 => Kind::Limit,
-            2 => Kind::Count,
-            3 => Kind::Switch,
-            4 => Kind::Choice,
-            _ => return None,
-        })
+control::numbered! {
+    /// Meaning of a parameter's number.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Kind {
+        /// A number.
+        Number = 0,
+        /// A number that can be off.
+        Limit = 1,
+        /// An integer.
+        Count = 2,
+        /// 0 is off, 1 is on.
+        Switch = 3,
+        /// Index of a name in [`ParameterView::names`].
+        Choice = 4,
     }
 }
 

@@ -64,13 +64,7 @@ pub fn command(from: &mut Reader<'_>) -> Option<Command> {
         torque_nm: from.f32()?,
         gain_nm_s_rad: from.f32()?,
         limits: ActiveLimits(from.u16()?),
-        mode: mode(from.u8()?)?,
+        mode: Mode::numbered(from.u8()?)?,
         causes: Causes(from.u64()?),
     })
-}
-
-/// Mode by its number on the wire.
-pub fn mode(number: u8) -> Option<Mode> {
-    use Mode::*;
-    [Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault].into_iter().find(|mode| *mode as u8 == number)
 }

@@ -11,7 +11,7 @@ use link::report::{
     FAULT_BYTES, FAULT_TEXT_BYTES, FaultKind, FaultRecord, Hello, ResetCause, StoredFault, config_hash,
 };
 use link::requests::request;
-use link::telemetry::{Telemetry, mode};
+use link::telemetry::Telemetry;
 use proptest::prelude::*;
 
 const MODES: [Mode; 7] = {
@@ -195,7 +195,10 @@ fn every_number_means_one_thing() {
             RejectReason::numbered(number).map(|why| why as u8),
             (1..=11).contains(&number).then_some(number)
         );
-        assert_eq!(mode(number).map(|mode| mode as u8), (0..=6).contains(&number).then_some(number));
+        assert_eq!(
+            Mode::numbered(number).map(|mode| mode as u8),
+            (0..=6).contains(&number).then_some(number)
+        );
         assert_eq!(
             FaultKind::numbered(number).map(|kind| kind as u8),
             (1..=6).contains(&number).then_some(number)
