@@ -162,9 +162,14 @@ impl Cause {
     }
 }
 
-/// A set of causes.
+/// A set of causes, bit *n* for code *n*. [`crate::wire`] encodes it with room for codes up to 127.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Causes(pub u64);
+
+const _: () = assert!(
+    CAUSES.len() < u64::BITS as usize,
+    "a wider set needs more instructions in each step, and columns and CAN frames for the codes from 64 on"
+);
 
 impl Causes {
     /// No cause.

@@ -19,7 +19,7 @@ pub const STALE_TICKS: u16 = 250;
 pub const STATE: u16 = 0x320;
 /// Identifier of the motion frame.
 pub const MOTION: u16 = 0x321;
-/// Identifier of the causes frame.
+/// Identifier of the causes frame, codes 0 to 63; the next identifier is reserved for 64 to 127.
 pub const CAUSES: u16 = 0x322;
 
 /// One unit of the speed \[m/s\].

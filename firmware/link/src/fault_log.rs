@@ -27,7 +27,7 @@ const STEP: usize = 17;
 const HEAD: usize = 14;
 const SLOT: usize = 4 + 2 + FAULT_BYTES;
 /// Magic number of a ring with this layout.
-const MARK: u32 = 0x5341_4601;
+const MARK: u32 = 0x5341_4602;
 
 /// State of the controller at a control step; the default means no step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

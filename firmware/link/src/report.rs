@@ -3,7 +3,7 @@
 use crate::bytes::{Reader, Writer};
 use crate::frame::CRC;
 use crate::telemetry;
-use control::wire::encode_config;
+use control::wire::{encode_causes, encode_config};
 use control::{Causes, Config, Mode};
 
 /// Identity of the board.
@@ -109,7 +109,7 @@ impl ResetCause {
 /// Largest text of a fault \[bytes\]; longer texts are cut.
 pub const FAULT_TEXT_BYTES: usize = 200;
 /// Largest fault record on the wire \[bytes\].
-pub const FAULT_BYTES: usize = 51 + 1 + FAULT_TEXT_BYTES;
+pub const FAULT_BYTES: usize = 59 + 1 + FAULT_TEXT_BYTES;
 
 /// A stored fault. Fields that do not apply to its kind are 0 or empty.
 ///
@@ -147,7 +147,7 @@ impl<'a> FaultRecord<'a> {
         to.u8(self.mode as u8);
         to.u32(self.steps);
         to.u32(self.frame_us);
-        to.u64(self.causes.0);
+        to.put(&encode_causes(self.causes));
         to.u32(self.exception);
         self.registers.into_iter().for_each(|register| to.u32(register));
         to.text([cut(self.text, FAULT_TEXT_BYTES)].into_iter());
@@ -161,7 +161,7 @@ impl<'a> FaultRecord<'a> {
             mode: Mode::numbered(from.u8()?)?,
             steps: from.u32()?,
             frame_us: from.u32()?,
-            causes: Causes(from.u64()?),
+            causes: telemetry::causes(from)?,
             exception: from.u32()?,
             registers: [from.u32()?, from.u32()?, from.u32()?, from.u32()?, from.u32()?, from.u32()?],
             text: from.text()?,
