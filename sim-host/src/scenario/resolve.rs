@@ -10,7 +10,7 @@ use crate::bicycle::catalogue::{self, Bicycle};
 use crate::bicycle::onboard::fit;
 use crate::parameters;
 use crate::plant::Plant;
-use crate::ride::{Assist, Conditions, ScheduleSpeed};
+use crate::ride::{Assist, Conditions, IdealLaw, ScheduleSpeed};
 use crate::rider::doubts;
 use control::param::ParamError;
 use control::{Config, Law, Limits, Taper, Wheel};
@@ -215,7 +215,10 @@ impl Scenario {
         Ok(match self.assist {
             _ if *law == Law::None => Assist::None,
             AssistKind::Firmware => Assist::Firmware(Box::new(plan)),
-            AssistKind::Ideal => Assist::Ideal(Box::new(law.clone())),
+            AssistKind::Ideal => {
+                let dead_band = plan.config().dead_band;
+                Assist::Ideal(Box::new(IdealLaw { law: law.clone(), dead_band }))
+            }
         })
     }
 
