@@ -6,8 +6,7 @@ use crate::estimate::{EstimateConfig, Source};
 use crate::law::Law;
 use crate::law::capsize::Capsize;
 use crate::law::path_tracking::PathTracking;
-use crate::param::{Checker, ParamError, ParamSpec, ParamVisitor, optional};
-use crate::plan::Plan;
+use crate::param::{ParamSpec, ParamVisitor, optional};
 use crate::safety::engagement::EngagementConfig;
 use crate::safety::limits::Limits;
 use crate::safety::press::PressConfig;
@@ -169,20 +168,5 @@ impl Config {
         self.smooth.visit_params(to);
         optional(to, &ParamSpec::switch("", "track"), &mut self.track, PathTracking::visit_params);
         self.limits.visit_params(to);
-    }
-
-    /// Validates every value and computes the plan for [`crate::step`].
-    ///
-    /// # Errors
-    /// The first parameter outside its range, with its value and the range.
-    pub fn plan(mut self) -> Result<Plan, ParamError> {
-        let mut checker = Checker::default();
-        self.visit_params(&mut checker);
-        checker.note(self.law.validate());
-        checker.note(self.limits.cross());
-        checker.note(self.input.cross());
-        checker.note(self.track.as_ref().map_or(Ok(()), PathTracking::cross));
-        checker.verdict()?;
-        Ok(Plan::new(self))
     }
 }

@@ -323,3 +323,13 @@ fn speed(
 
 /// Minimum assumed cosine of the ground steer angle; also used while that angle is unknown.
 const MIN_COS: f32 = 0.4;
+
+impl Plan {
+    /// Whether a press of the switch that begins or continues in the period after `command` would engage if nothing
+    /// else changes: the mode is standby and only the press is missing.
+    pub fn ready(&self, command: &Command) -> bool {
+        let rejections = self.reactions.rejections().with(Causes::of(Cause::SwitchHeld));
+        let blocking = command.causes.and(rejections);
+        command.mode == Mode::Standby && (blocking.is_empty() || blocking == Causes::of(Cause::SwitchOff))
+    }
+}

@@ -1,10 +1,10 @@
 //! Constants derived from a configuration, computed once before the first step.
 
 use crate::config::Config;
-use crate::controller::Command;
 use crate::estimate::smooth::SmoothPlan;
-use crate::fault::{Cause, Causes};
-use crate::safety::engagement::{EngagementPlan, Mode, Reactions};
+use crate::law::path_tracking::PathTracking;
+use crate::param::{Checker, ParamError};
+use crate::safety::engagement::{EngagementPlan, Reactions};
 use crate::safety::guard::GuardPlan;
 use crate::safety::limiter::LimiterPlan;
 use crate::sensors::calibration::CalibrationPlan;
@@ -41,9 +41,26 @@ pub struct Plan {
     pub(crate) config: Config,
 }
 
+impl Config {
+    /// Validates every value and computes the plan for [`crate::step`].
+    ///
+    /// # Errors
+    /// The first parameter outside its range, with its value and the range.
+    pub fn plan(mut self) -> Result<Plan, ParamError> {
+        let mut checker = Checker::default();
+        self.visit_params(&mut checker);
+        checker.note(self.law.validate());
+        checker.note(self.limits.cross());
+        checker.note(self.input.cross());
+        checker.note(self.track.as_ref().map_or(Ok(()), PathTracking::cross));
+        checker.verdict()?;
+        Ok(Plan::new(self))
+    }
+}
+
 impl Plan {
-    /// Builds the plan of a validated configuration.
-    pub(crate) fn new(config: Config) -> Self {
+    /// Computes the plan of a validated configuration.
+    fn new(config: Config) -> Self {
         let c = &config;
         Self {
             period_s: 1.0 / c.rate_hz,
@@ -68,14 +85,6 @@ impl Plan {
     /// The configuration that this plan was built from.
     pub fn config(&self) -> &Config {
         &self.config
-    }
-
-    /// Whether a press of the switch that begins or continues in the period after `command` would engage if nothing
-    /// else changes: the mode is standby and only the press is missing.
-    pub fn ready(&self, command: &Command) -> bool {
-        let rejections = self.reactions.rejections().with(Causes::of(Cause::SwitchHeld));
-        let blocking = command.causes.and(rejections);
-        command.mode == Mode::Standby && (blocking.is_empty() || blocking == Causes::of(Cause::SwitchOff))
     }
 
     /// Control periods from boot to full authority, if every sensor is valid from the start and the switch is pressed
