@@ -5,7 +5,7 @@
 //! rounding (`docs/performance.md`), so the step size is not adaptive.
 
 use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques};
-use crate::num::Scalar;
+use crate::num::{Moves, Scalar};
 
 /// Source of the torques that act on the bicycle during a time step.
 pub trait Actuation<S> {
@@ -41,12 +41,6 @@ pub fn rate<S: Scalar>(state: &State<S>, motion: &Motion<S>, acc: &Accelerations
         rear_wheel_rate: acc.rear_wheel,
         pitch: motion.actual.pitch,
     }
-}
-
-/// A state that can be advanced by its time derivative.
-pub trait Moves: Copy {
-    /// `self + h * rate`, entry by entry.
-    fn moved(&self, h: f64, rate: &Self) -> Self;
 }
 
 impl<S: Scalar> Moves for State<S> {

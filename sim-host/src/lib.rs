@@ -4,12 +4,14 @@
 pub mod basin;
 pub mod bicycle;
 pub mod board;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod design;
 pub mod eigen;
 pub mod integrate;
 pub mod num;
 pub mod parameters;
+pub mod pil;
 pub mod plant;
 mod range;
 pub mod recording;

@@ -7,7 +7,7 @@ use link::frame::MAX_FRAME;
 use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
 use link::rejection::{RejectReason, Rejection};
 use link::{Decoder, Message, Received};
-use sim_host::board::{BoardError, Lockstep};
+use sim_host::pil::{BoardError, Lockstep};
 
 /// A board made of the control crate and the link's own messages.
 pub struct FakeBoard {

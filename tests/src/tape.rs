@@ -1,7 +1,7 @@
 //! Everything that goes over between a board in lockstep and its host.
 
 use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
-use sim_host::board::{BoardError, Lockstep};
+use sim_host::pil::{BoardError, Lockstep};
 
 /// A board whose chunks are kept.
 pub struct Taped<B> {

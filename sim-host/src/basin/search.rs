@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use std::convert::Infallible;
 
 /// Which rate the disturbance changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Axis {
     /// The steer rate.

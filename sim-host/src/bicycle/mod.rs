@@ -21,6 +21,7 @@ mod parameters;
 mod pitch;
 mod pose;
 mod redundant;
+mod start;
 pub mod uncertain;
 mod vary;
 
@@ -31,6 +32,7 @@ pub use parameters::{KEYS, Parameters};
 pub use pitch::{Attitude, front_contact_residual, pitch_from_upright};
 pub use pose::Pose;
 pub use redundant::FullState;
+pub use start::Start;
 
 use crate::num::Scalar;
 

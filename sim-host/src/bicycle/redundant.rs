@@ -8,8 +8,7 @@
 use super::inertia::Inertia;
 use super::pitch::Attitude;
 use super::{Geometry, Motion, Pose, State, Torques, Velocities};
-use crate::integrate::Moves;
-use crate::num::{Vec3, sin_cos};
+use crate::num::{Moves, Vec3, sin_cos};
 use nalgebra::{SMatrix, SVector};
 
 /// A state with redundant speeds, which satisfy the constraints.

@@ -2,8 +2,7 @@
 
 use super::combine::{RIDER_KEYS, combined};
 use super::{KEYS, Parameters, check};
-use crate::plant::RandomStream;
-use crate::ride::Start;
+use crate::num::RandomStream;
 
 /// A value and its standard deviation, in the value's unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -93,8 +92,7 @@ impl Measured {
     /// # Errors
     /// None of the draws is possible; states the reason of the last.
     pub fn draw(&self, seed: u64, i: u64) -> Result<Parameters, String> {
-        let still = Start { speed_m_s: 0.0, steer_rate_rad_s: 0.0, roll_rate_rad_s: 0.0 };
-        let mut random = RandomStream::new(seed, &still, PURPOSE + i);
+        let mut random = RandomStream::new(seed, [0.0; 3], PURPOSE + i);
         let mut error = String::new();
         for _ in 0..TRIES {
             let drawn = self.parameters_of(&mut |one| one.value + one.sd * random.normal());

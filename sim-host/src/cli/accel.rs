@@ -1,6 +1,6 @@
 //! `sim-host bicycle accel`: accelerations of the nonlinear bicycle from a table of states.
 
-use super::bicycle::Which;
+use super::bicycle_args::BicycleArgs;
 use super::{Failure, warn};
 use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques, pitch_from_upright};
 use crate::report::output::Output;
@@ -22,7 +22,7 @@ Example:
 #[command(after_help = HELP)]
 pub(super) struct Args {
     #[command(flatten)]
-    which: Which,
+    which: BicycleArgs,
     /// CSV file of states and torques
     #[arg(long, value_name = "IN.csv")]
     states: PathBuf,

@@ -1,5 +1,6 @@
 //! `sim-host bicycle`: list, show, check, accel.
 
+use super::bicycle_args::BicycleArgs;
 use super::eigen::stable_line;
 use super::outputs::{print, write_json};
 use super::{Ended, Failure, accel, warn};
@@ -9,9 +10,10 @@ use crate::bicycle::uncertain::Measured;
 use crate::bicycle::{Geometry, KEYS, onboard};
 use crate::eigen::{Feedback, Model, Stability, stability};
 use crate::plant::ImuMount;
-use crate::report::document::{CheckDocument, SCHEMA};
+use crate::report::document::CheckDocument;
 use crate::report::output::Output;
-use crate::report::resolved::{ResolvedBicycle, Tool};
+use crate::report::resolved::ResolvedBicycle;
+use crate::report::tool::{SCHEMA, Tool};
 use control::{Capsize, Config, Law};
 use nalgebra::Matrix2;
 use std::fmt::Write;
@@ -44,7 +46,7 @@ pub(super) enum Command {
     #[command(after_help = SHOW_HELP)]
     Show {
         #[command(flatten)]
-        which: Which,
+        which: BicycleArgs,
         /// In the format of BicycleParameters: remarks after #, values and deviations without quotation marks
         #[arg(long)]
         ini: bool,
@@ -53,34 +55,13 @@ pub(super) enum Command {
     #[command(after_help = CHECK_HELP)]
     Check {
         #[command(flatten)]
-        which: Which,
+        which: BicycleArgs,
         /// Write JSON to FILE, or to standard output (also -)
         #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
         json: Option<PathBuf>,
     },
     /// Accelerations of the nonlinear bicycle at given states
     Accel(accel::Args),
-}
-
-/// Selection of a bicycle.
-#[derive(clap::Args)]
-pub(super) struct Which {
-    /// Built-in bicycle, FILE, or FILE#NAME
-    #[arg(long, default_value = "rigid_jason", value_name = "NAME|FILE")]
-    bicycle: String,
-    /// Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated
-    #[arg(long, value_name = "KEY=VALUE")]
-    bicycle_set: Vec<String>,
-}
-
-impl Which {
-    /// The bicycle with the requested changes.
-    ///
-    /// # Errors
-    /// The error with file, key or value.
-    pub(super) fn load(&self) -> Result<Bicycle, Failure> {
-        Ok(catalogue::load(&self.bicycle)?.varied(&self.bicycle_set)?)
-    }
 }
 
 pub(super) fn run(command: &Command) -> Result<Ended, Failure> {

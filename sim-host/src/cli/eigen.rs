@@ -8,9 +8,10 @@ use crate::eigen::{
     CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes, roots, stability,
 };
 use crate::range::time;
-use crate::report::document::{EigenDocument, SCHEMA};
+use crate::report::document::EigenDocument;
 use crate::report::figure::{self, EigenFigure};
-use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider, Tool};
+use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider};
+use crate::report::tool::{SCHEMA, Tool};
 use crate::report::{table, terminal};
 use crate::rider::doubts;
 use control::{Capsize, Law};

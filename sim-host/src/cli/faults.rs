@@ -8,9 +8,8 @@ use crate::board::reception::Reception;
 use crate::board::recorded::Recording;
 use crate::board::{Client, ClientError, RetryPolicy, TransportError};
 use crate::report::board::FaultsDocument;
-use crate::report::document::SCHEMA;
 use crate::report::output::Output;
-use crate::report::resolved::Tool;
+use crate::report::tool::{SCHEMA, Tool};
 use link::message::Message;
 use std::path::{Path, PathBuf};
 

@@ -3,12 +3,14 @@
 mod accel;
 mod basin;
 mod bicycle;
+mod bicycle_args;
 mod cells;
 mod compare;
 mod conditions;
 mod cut_files;
 mod design;
 mod eigen;
+mod ended;
 mod fall_arg;
 mod faults;
 mod identify;
@@ -30,6 +32,7 @@ mod replay;
 mod ride;
 mod rider;
 mod rider_args;
+mod schema;
 mod speeds;
 mod study;
 mod study_swept;
@@ -37,22 +40,10 @@ mod sweep;
 mod thesis;
 mod words;
 
-use crate::bicycle::catalogue::Bicycle;
 use clap::{Parser, Subcommand};
+use ended::{Ended, Failure, is_broken_pipe};
+use outputs::warn;
 use std::process::ExitCode;
-
-/// Error of a command.
-type Failure = Box<dyn std::error::Error>;
-
-/// How a command without an error ended.
-enum Ended {
-    /// Complete.
-    Done,
-    /// Interrupted with Ctrl-C; finished results are written.
-    Interrupted,
-    /// Part of the input was unreadable, as reported.
-    Partly,
-}
 
 const EXAMPLES: &str = "\
 Exit codes: 0 ran (a fall is a result), 1 bad input or I/O, 2 usage, 3 part of a board's
@@ -124,7 +115,7 @@ enum Command {
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
         /// Name of the document
-        #[arg(value_parser = ["basin", "ride", "replay", "replay-many", "eigen", "bicycle-check", "rider-show", "thesis", "basin-compare", "basin-plane", "sweep", "design", "param-list", "faults", "identify-weave", "identify-sensor"])]
+        #[arg(value_parser = schema::names())]
         document: String,
     },
 }
@@ -149,7 +140,7 @@ pub fn run() -> ExitCode {
         Command::Monitor(args) => monitor::run(&args),
         Command::Param(command) => param::run(&command),
         Command::Faults(args) => faults::run(&args),
-        Command::Schema { document } => schema(&document),
+        Command::Schema { document } => schema::run(&document),
     };
     match ended {
         Ok(Ended::Done) => ExitCode::SUCCESS,
@@ -162,22 +153,4 @@ pub fn run() -> ExitCode {
             ExitCode::from(1)
         }
     }
-}
-
-/// Prints doubts about a bicycle to standard error.
-fn warn(bicycle: &Bicycle) {
-    for warning in &bicycle.warnings {
-        outputs::complain_once(&format!("warning: {}: {warning}", bicycle.name));
-    }
-}
-
-fn is_broken_pipe(e: &(dyn std::error::Error + 'static)) -> bool {
-    let pipe = |e: &std::io::Error| e.kind() == std::io::ErrorKind::BrokenPipe;
-    std::iter::successors(Some(e), |e| e.source()).any(|e| e.downcast_ref().is_some_and(pipe))
-}
-
-fn schema(document: &str) -> Result<Ended, Failure> {
-    let schema = crate::report::document::schema(document).ok_or("no such document")?;
-    outputs::print(&(serde_json::to_string_pretty(&schema)? + "\n"))?;
-    Ok(Ended::Done)
 }

@@ -1,6 +1,7 @@
 //! Destinations of results: standard output and files, all checked before the computation.
 
-use super::{Failure, is_broken_pipe};
+use super::ended::{Failure, is_broken_pipe};
+use crate::bicycle::catalogue::Bicycle;
 use crate::report::figure::Picture;
 use crate::report::output::Output;
 use crate::report::picture::{caption, png_with_caption, svg_with_caption};
@@ -197,5 +198,12 @@ pub(super) fn complain_once(text: &str) {
     static SAID: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
     if SAID.lock().unwrap_or_else(PoisonError::into_inner).insert(text.into()) {
         complain(text);
+    }
+}
+
+/// Prints doubts about a bicycle to standard error.
+pub(super) fn warn(bicycle: &Bicycle) {
+    for warning in &bicycle.warnings {
+        complain_once(&format!("warning: {}: {warning}", bicycle.name));
     }
 }

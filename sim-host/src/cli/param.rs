@@ -10,7 +10,7 @@ use crate::board::settings::{Setting, Settings};
 use crate::board::tune::{Tuned, tune};
 use crate::report::board::ParametersDocument;
 use crate::report::output::Output;
-use crate::report::resolved::Tool;
+use crate::report::tool::Tool;
 use std::fmt::Write;
 use std::path::PathBuf;
 

@@ -3,9 +3,9 @@
 use super::conditions::Setup;
 use super::outputs::{complain, print};
 use super::{Ended, Failure, pil_basin, ride};
-use crate::board::compare::{Recorder, same_ride};
-use crate::board::qemu::{LIMIT, Qemu, default_image};
-use crate::board::{BoardError, Controller, LinkFault};
+use crate::pil::compare::{Recorder, same_ride};
+use crate::pil::qemu::{LIMIT, Qemu, default_image};
+use crate::pil::{BoardError, Controller, LinkFault};
 use crate::ride::{Assist, rides_on, traced_on};
 use std::fmt::Write;
 use std::path::PathBuf;

@@ -1,11 +1,11 @@
 //! The options that select the board and its line.
 
 use super::Failure;
-use crate::board::demo_board::DemoBoard;
-use crate::board::qemu::default_image;
 use crate::board::serial::Serial;
 use crate::board::virtual_board::{VirtualBoard, default_program};
 use crate::board::{BoardName, Client, RetryPolicy, Transport};
+use crate::pil::demo_board::DemoBoard;
+use crate::pil::qemu::default_image;
 use clap::ArgGroup;
 use std::path::PathBuf;
 

@@ -14,13 +14,13 @@ use crate::replay::{
     CauseRecord, Feed, FeedOptions, Fitted, Map, Press, Resample, RunOptions, Samples, Summary, fitted,
     frames, run as run_through, samples,
 };
-use crate::report::document::SCHEMA;
 use crate::report::figure::{self, ReplayFigure};
 use crate::report::replay::{
     ReplayConfig, ReplayDocument, ReplayResult, ReplaysDocument, summary_text, text,
 };
-use crate::report::resolved::Tool;
 use crate::report::table;
+use crate::report::tool::SCHEMA;
+use crate::report::tool::Tool;
 use crate::ride::frame_of;
 use control::wire::encode_frame;
 use control::{Config, Law, SensorFrame};

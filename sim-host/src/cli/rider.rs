@@ -3,9 +3,9 @@
 use super::outputs::{print, write_json};
 use super::{Ended, Failure};
 use crate::report::output::Output;
-use crate::report::resolved::Tool;
 use crate::report::rider::{FitEntry, RiderDocument, gain_rows};
 use crate::report::table;
+use crate::report::tool::Tool;
 use crate::rider::{Fit, KEYS, Outside, RiderTable, catalogue};
 use serde_json::json;
 use std::fmt::Write;

@@ -8,7 +8,7 @@ use super::words::Words;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Bound, border};
 use crate::report::output::Output;
-use crate::report::sweep::SweepDocument;
+use crate::sweep::document::SweepDocument;
 use crate::sweep::{self, Axis, Cell, Folder, Grid, Progress, Shard};
 use std::collections::BTreeSet;
 use std::fmt::Write;

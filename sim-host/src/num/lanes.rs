@@ -1,6 +1,7 @@
 //! Several numbers side by side; the compiler vectorises the loops.
 
-use super::{Scalar, sincos};
+use super::Scalar;
+use super::sincos::{by_quadrant, reduced};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// `N` independent numbers. Operations act on each lane alone, so each lane has the same bits as an `f64`
@@ -84,6 +85,10 @@ impl<const N: usize> Scalar for Lanes<N> {
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        sincos::sin_cos_lanes(self)
+        let (mut s, mut c, quadrant) = reduced(self);
+        for i in 0..N {
+            (s.0[i], c.0[i]) = by_quadrant(s.0[i], c.0[i], quadrant.0[i].to_bits());
+        }
+        (s, c)
     }
 }

@@ -6,11 +6,15 @@
 
 mod dual;
 mod lanes;
+mod moves;
+mod random_stream;
 mod sincos;
 mod vector;
 
 pub use dual::Dual;
 pub use lanes::Lanes;
+pub use moves::Moves;
+pub use random_stream::RandomStream;
 pub use sincos::sin_cos;
 pub use vector::Vec3;
 

@@ -1,6 +1,6 @@
 //! Sine and cosine of an angle together, without branches, so that lanes of angles compile to vector code.
 
-use super::{Lanes, Scalar};
+use super::Scalar;
 
 /// pi/2 in three parts; the first two have 33 significant bits, so their products with the
 /// quadrant number are exact (fdlibm, `e_rem_pio2.c`).
@@ -19,20 +19,10 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     by_quadrant(s, c, quadrant.to_bits())
 }
 
-/// [`sin_cos`] of every lane.
-#[inline(always)]
-pub(super) fn sin_cos_lanes<const N: usize>(x: Lanes<N>) -> (Lanes<N>, Lanes<N>) {
-    let (mut s, mut c, quadrant) = reduced(x);
-    for i in 0..N {
-        (s.0[i], c.0[i]) = by_quadrant(s.0[i], c.0[i], quadrant.0[i].to_bits());
-    }
-    (s, c)
-}
-
 /// Sine and cosine of `x` reduced by the nearest multiple of pi/2; the low bits of the third value hold the
 /// quadrant.
 #[inline(always)]
-fn reduced<S: Scalar>(x: S) -> (S, S, S) {
+pub(super) fn reduced<S: Scalar>(x: S) -> (S, S, S) {
     let quadrant = x * std::f64::consts::FRAC_2_PI + ROUND;
     let n = quadrant + -ROUND;
     let r = ((x - n * PIO2[0]) - n * PIO2[1]) - n * PIO2[2];
@@ -42,7 +32,7 @@ fn reduced<S: Scalar>(x: S) -> (S, S, S) {
 
 /// Odd quadrants swap sine and cosine; the signs follow from the quadrant's two low bits.
 #[inline(always)]
-fn by_quadrant(s: f64, c: f64, quadrant: u64) -> (f64, f64) {
+pub(super) fn by_quadrant(s: f64, c: f64, quadrant: u64) -> (f64, f64) {
     let swap = 0u64.wrapping_sub(quadrant & 1);
     let (s, c) = (s.to_bits(), c.to_bits());
     let (sin, cos) = ((s & !swap) | (c & swap), (c & !swap) | (s & swap));

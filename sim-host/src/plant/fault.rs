@@ -1,6 +1,7 @@
 //! Fault injection in sensors, motor command, switch and clock. Text form: `gyro.x:bias=0.1@1.5s..3s`.
 
-use super::{RandomStream, Sensor};
+use super::Sensor;
+use crate::num::RandomStream;
 use std::collections::VecDeque;
 
 /// Signal in which a fault is injected.

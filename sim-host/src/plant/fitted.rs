@@ -1,7 +1,8 @@
 //! Sensor errors fitted to recordings, beyond those of a data sheet: bias spread and random walk, white noise
 //! per axis, vibration proportional to speed, sampling jitter. `docs/plant.md`, `docs/sensors.md`.
 
-use super::{PlantError, RandomStream, Sensor};
+use super::{PlantError, Sensor};
+use crate::num::RandomStream;
 use crate::num::sin_cos;
 use crate::range::within;
 use control::sensors::wheel_speed::{self, Direction, WheelPulses, WheelPulsesConfig, WheelPulsesState};

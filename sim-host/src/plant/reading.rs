@@ -2,7 +2,17 @@
 
 use crate::bicycle::{Geometry, Pose, Velocities};
 use crate::num::{Vec3, sin_cos};
-use crate::ride::Imu;
+
+/// Roll rate that the gyro reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Imu {
+    /// The exact rate of the roll angle (the published laws' signal).
+    Euler,
+    /// The rear frame's angular velocity about its own x axis, as measured by a gyro on it.
+    Body,
+}
 
 /// Sensors of the bicycle; each has its own sampling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,7 +1,8 @@
 //! Sensor errors: sampling, scale, bias, noise, range, quantisation, loss and delay.
 
 use super::fitted::{FittedErrors, FittedState};
-use super::{PlantError, RandomStream, Sensor};
+use super::{PlantError, Sensor};
+use crate::num::RandomStream;
 use crate::num::sin_cos;
 use crate::range::within;
 use std::collections::VecDeque;

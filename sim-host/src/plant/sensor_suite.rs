@@ -2,8 +2,9 @@
 
 use super::fault::{Channel, Fault, FaultState};
 use super::sensor::{Before, SensorDice, SensorState};
-use super::{Plant, RandomStream, Reading, Sensor};
-use crate::ride::Start;
+use super::{Plant, Reading, Sensor};
+use crate::bicycle::Start;
+use crate::num::RandomStream;
 
 /// First random-number purpose of fitted errors, beyond those of sensors and faults.
 const FITTED: usize = 1 << 32;
@@ -58,7 +59,7 @@ impl SensorSuite {
     /// State at boot, before a ride from `start`; until then the true values were `steady`.
     pub fn new(plant: &Plant, period_s: f64, start: &Start, steady: &Reading) -> Self {
         let config = &plant.sensors;
-        let random = |purpose: usize| RandomStream::new(plant.seed, start, purpose as u64);
+        let random = |purpose: usize| RandomStream::new(plant.seed, start.key(), purpose as u64);
         let state = |s: Sensor| {
             let truth = plant.truth(s, steady);
             let before = Before { truth, speed_m_s: steady.rear_wheel_m_s, period_s };

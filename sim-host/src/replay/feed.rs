@@ -3,7 +3,8 @@
 use super::leap::Leap;
 use super::map::Resample;
 use super::samples::{Sample, Samples, Track};
-use crate::plant::{Channel, Fault, FaultState, Held, Measured, RandomStream, Sensor, faulty};
+use crate::num::RandomStream;
+use crate::plant::{Channel, Fault, FaultState, Held, Measured, Sensor, faulty};
 use crate::ride::Start;
 
 /// Longest recording, in control periods: five hours at 1 kHz.
@@ -80,7 +81,7 @@ impl<'a> Feed<'a> {
             Channel::Sensor(sensor) => samples.track(sensor).map_or([0.0; 3], |track| track.samples[0].value),
             Channel::Motor | Channel::Engage | Channel::Clock => [0.0; 3],
         };
-        let random = |purpose: usize| RandomStream::new(options.seed, &Start::default(), purpose as u64);
+        let random = |purpose: usize| RandomStream::new(options.seed, Start::default().key(), purpose as u64);
         let state = |(index, fault): (usize, &Fault)| {
             FaultState::new(fault, options.period_s, first(fault.channel), random(index))
         };

@@ -1,6 +1,5 @@
 //! Jumps far ahead in time: a wrong time stamp, or a pause in the recording.
 
-use super::samples::Sample;
 use std::fmt::{self, Display};
 
 /// Time between two rows above which the time stamp is doubtful \[s\].
@@ -25,12 +24,11 @@ impl Display for Leap {
     }
 }
 
-/// The jumps between the samples of a sensor; `line_of` gives the line of a sample by its index. Empty if there are
-/// many.
-pub(super) fn leaps(samples: &[Sample], line_of: impl Fn(usize) -> Option<u64>) -> Vec<Leap> {
-    let leap =
-        |(at, two): (usize, &[Sample])| Leap { line: line_of(at + 1), from_s: two[0].t_s, to_s: two[1].t_s };
+/// The jumps between the times of a sensor's samples \[s\]; `line_of` gives the line of a sample by its index. Empty if
+/// there are many.
+pub(super) fn leaps(times_s: &[f64], line_of: impl Fn(usize) -> Option<u64>) -> Vec<Leap> {
+    let leap = |(at, two): (usize, &[f64])| Leap { line: line_of(at + 1), from_s: two[0], to_s: two[1] };
     let far = |leap: &Leap| leap.to_s - leap.from_s > PAUSE_S;
-    let found: Vec<Leap> = samples.windows(2).enumerate().map(leap).filter(far).collect();
-    if RARE * found.len() < samples.len() { found } else { Vec::new() }
+    let found: Vec<Leap> = times_s.windows(2).enumerate().map(leap).filter(far).collect();
+    if RARE * found.len() < times_s.len() { found } else { Vec::new() }
 }

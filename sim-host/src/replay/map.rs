@@ -44,9 +44,8 @@ pub struct Map {
 }
 
 /// How samples are converted to the control periods between them.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize, clap::ValueEnum,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Resample {
     /// Each sample is held, with growing age, until the next one: what a board would have received.

@@ -1,7 +1,7 @@
 //! Plausibility of samples: remarks on values that suggest another unit or orientation.
 
 use super::map::quantity_of;
-use super::samples::{Track, remark};
+use super::samples::Track;
 use crate::plant::Sensor;
 use crate::recording::Remark;
 
@@ -16,7 +16,7 @@ pub(super) fn plausible(track: &Track, remarks: &mut Vec<Remark>) {
         && part(0.95) > most
         && track.sensor != Sensor::Path
     {
-        remarks.push(remark(
+        remarks.push(Remark::of_column(
             None,
             format!(
                 "{name}: one sample in twenty is beyond {:.3} in SI units; are these {unit}?",
@@ -29,19 +29,19 @@ pub(super) fn plausible(track: &Track, remarks: &mut Vec<Remark>) {
         && !(1e-4..0.25).contains(&period_s)
     {
         let what = format!("{name}: samples are {period_s} s apart; is the unit of the time right?");
-        remarks.push(remark(None, what));
+        remarks.push(Remark::of_column(None, what));
     }
     if track.sensor == Sensor::Accel {
         let down: f64 = track.samples.iter().map(|sample| sample.value[2]).sum::<f64>() / sizes.len() as f64;
         if part(0.5) < 2.0 {
             let what =
                 format!("{name}: half of the samples are below {:.3} m/s^2; is the unit g?", part(0.5));
-            remarks.push(remark(None, what));
+            remarks.push(Remark::of_column(None, what));
         } else if down > -0.5 * part(0.5) {
             let what = format!(
                 "{name}: the mean along z is {down:.2} m/s^2; upright and at rest it must be -9.81: are the axes right?"
             );
-            remarks.push(remark(None, what));
+            remarks.push(Remark::of_column(None, what));
         }
     }
 }

@@ -9,7 +9,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 /// When the rider's switch is pressed, for a recording without a switch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Press {
     /// Whenever a press would engage, also after a fault.

@@ -1,7 +1,7 @@
 //! The JSON documents of `param list` and `faults`.
 
-use super::document::SCHEMA;
-use super::resolved::{ResolvedLaw, Tool};
+use super::resolved::ResolvedLaw;
+use super::tool::{SCHEMA, Tool};
 use crate::board::BoardName;
 use crate::board::fault::Fault;
 use crate::board::parameter::Parameter;

@@ -1,7 +1,7 @@
 //! Document of `basin compare`.
 
-use super::document::SCHEMA;
-use super::resolved::{ResolvedSearch, Tool};
+use super::resolved::ResolvedSearch;
+use super::tool::{SCHEMA, Tool};
 use crate::basin::{Basin, Bound, Rmse, rmse};
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -1,16 +1,13 @@
-//! The JSON documents, schema 1: the contract for scripts (`docs/cli.md`, `docs/schema/`).
+//! The JSON documents of rides, basins and eigenvalues: the contract for scripts (`docs/cli.md`, `docs/schema/`).
 
-use super::resolved::{ResolvedConfig, ResolvedSearch, Tool};
+use super::resolved::{ResolvedConfig, ResolvedSearch};
+use super::tool::{SCHEMA, Tool};
 use crate::basin::{Basin, Drawn, QUANTILES, ScanPoint, Work};
 use crate::eigen::StabilityChange;
 use crate::ride::{Effort, FallCause, FinalState, Ride, Start};
 use schemars::JsonSchema;
-use schemars::generate::SchemaSettings;
 use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// The version of these documents.
-pub const SCHEMA: u32 = 1;
 
 /// Reasons for which a ride can count as fallen, by the names of [`FallCause`], or none.
 pub(super) const FALLS: [Option<&str>; 6] =
@@ -325,32 +322,4 @@ impl BasinDocument {
             seconds,
         }
     }
-}
-
-/// The JSON schema of a document by its command's name; `None` for another name.
-pub fn schema(command: &str) -> Option<serde_json::Value> {
-    // Schema of serialised output: a nullable value is still required.
-    let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
-    let schema = match command {
-        "basin" => generator.into_root_schema_for::<BasinDocument>(),
-        "basin-compare" => generator.into_root_schema_for::<super::compare::CompareDocument>(),
-        "basin-plane" => generator.into_root_schema_for::<super::plane::PlaneDocument>(),
-        "ride" => generator.into_root_schema_for::<RideDocument>(),
-        "replay" => generator.into_root_schema_for::<super::replay::ReplayDocument>(),
-        "replay-many" => generator.into_root_schema_for::<super::replay::ReplaysDocument>(),
-        "eigen" => generator.into_root_schema_for::<EigenDocument>(),
-        "identify-weave" => generator.into_root_schema_for::<super::weave::WeaveDocument>(),
-        "identify-sensor" => generator.into_root_schema_for::<super::sensor::SensorDocument>(),
-        "bicycle-check" => generator.into_root_schema_for::<CheckDocument>(),
-        "rider-show" => generator.into_root_schema_for::<super::rider::RiderDocument>(),
-        "sweep" => generator.into_root_schema_for::<super::sweep::SweepDocument>(),
-        "design" => generator.into_root_schema_for::<super::design::DesignDocument>(),
-        "param-list" => generator.into_root_schema_for::<super::board::ParametersDocument>(),
-        "faults" => generator.into_root_schema_for::<super::board::FaultsDocument>(),
-        "thesis" => generator.into_root_schema_for::<crate::thesis::document::ThesisDocument>(),
-        _ => return None,
-    };
-    // The descriptions are doc comments, whose brackets are escaped.
-    let text = serde_json::to_string(&schema).ok()?.replace(r"\\[", "[").replace(r"\\]", "]");
-    serde_json::from_str(&text).ok()
 }

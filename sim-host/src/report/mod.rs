@@ -2,7 +2,6 @@
 
 pub mod board;
 pub mod compare;
-pub mod design;
 pub mod document;
 pub mod figure;
 pub mod output;
@@ -12,7 +11,7 @@ pub mod replay;
 pub mod resolved;
 pub mod rider;
 pub mod sensor;
-pub mod sweep;
 pub mod table;
 pub mod terminal;
+pub mod tool;
 pub mod weave;

@@ -1,6 +1,6 @@
 //! Writes figures to SVG and PNG with the configuration inside.
 
-use super::resolved::Tool;
+use super::tool::Tool;
 use serde::Serialize;
 
 /// Caption of a figure: the program and the full configuration.

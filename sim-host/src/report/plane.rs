@@ -1,7 +1,8 @@
 //! Document and table of `basin plane`.
 
-use super::document::{FALLS, SCHEMA};
-use super::resolved::{ResolvedConfig, Tool};
+use super::document::FALLS;
+use super::resolved::ResolvedConfig;
+use super::tool::{SCHEMA, Tool};
 use crate::basin::{Plane, PlaneSearch, ScanPoint, Work};
 use crate::ride::FallCause;
 use schemars::JsonSchema;

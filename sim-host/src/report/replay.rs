@@ -1,7 +1,6 @@
 //! Document and text of `replay`.
 
-use super::document::SCHEMA;
-use super::resolved::Tool;
+use super::tool::{SCHEMA, Tool};
 use crate::replay::{Compared, Fitted, Replayed, Summary};
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -9,31 +9,8 @@ use crate::rider::{Fit, Gains, Outside, Rider, RiderTable};
 use control::estimate::{EstimateConfig, Source};
 use control::{Capsize, Config, Law};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
+use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// The program that computed a result.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Tool {
-    /// Always "sim-host".
-    pub name: Cow<'static, str>,
-    /// Version.
-    pub version: Cow<'static, str>,
-    /// Commit it was built from, "unknown" outside a repository.
-    pub commit: Cow<'static, str>,
-}
-
-impl Tool {
-    /// This program.
-    pub const fn this() -> Self {
-        Self {
-            name: Cow::Borrowed("sim-host"),
-            version: Cow::Borrowed(env!("CARGO_PKG_VERSION")),
-            commit: Cow::Borrowed(env!("SIM_HOST_COMMIT")),
-        }
-    }
-}
 
 /// The bicycle of a result.
 #[derive(Clone, Debug, Serialize, JsonSchema)]

@@ -1,8 +1,8 @@
 //! Document and table of `rider show`.
 #![allow(non_snake_case, reason = "the symbols of the thesis")]
 
-use super::document::SCHEMA;
-use super::resolved::{ResolvedGains, ResolvedMuscles, Tool};
+use super::resolved::{ResolvedGains, ResolvedMuscles};
+use super::tool::{SCHEMA, Tool};
 use crate::rider::{Fit, Gains, KEYS, Outside, RiderTable, ScheduleError};
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -1,7 +1,6 @@
 //! Document, table and text of `sim-host identify sensor`.
 
-use super::document::SCHEMA;
-use super::resolved::Tool;
+use super::tool::{SCHEMA, Tool};
 use crate::plant::Sensor;
 use crate::plant::sensor_file::{MeasuredNumber, SensorFile, SensorNumbers, table_of};
 use schemars::JsonSchema;

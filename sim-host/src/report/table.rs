@@ -1,6 +1,6 @@
 //! CSV tables, headed by `#` lines with the program and the full configuration.
 
-use super::resolved::Tool;
+use super::tool::Tool;
 use crate::basin::ScanPoint;
 use crate::ride::FallCause;
 use serde::Serialize;

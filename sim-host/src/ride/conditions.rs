@@ -2,12 +2,13 @@
 
 use super::{Assist, FallCriterion};
 use crate::bicycle::Geometry;
-use crate::plant::Plant;
+use crate::plant::{Imu, Plant};
 use crate::range::within;
 use crate::rider::Rider;
 
 /// Speed that schedules the gains of assist and rider.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum ScheduleSpeed {
     /// Front wheel rate times its radius; reproduces the published basins.
@@ -16,16 +17,6 @@ pub enum ScheduleSpeed {
     Rear,
     /// The speed at t = 0, constant.
     Initial,
-}
-
-/// Roll rate that the gyro reports.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum Imu {
-    /// The exact rate of the roll angle (the published laws' signal).
-    Euler,
-    /// The rear frame's angular velocity about its own x axis, as measured by a gyro on it.
-    Body,
 }
 
 /// Conditions common to all rides of a study.
@@ -121,16 +112,4 @@ impl Conditions {
             f64::from(MAX_SENSOR_DELAY_TICKS),
         )
     }
-}
-
-/// Initial state of one ride: straight and upright on steady riding, plus a disturbance that changes the
-/// rates instantaneously.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
-pub struct Start {
-    /// Forward speed of the rear wheel \[m/s\].
-    pub speed_m_s: f64,
-    /// Steer rate \[rad/s\].
-    pub steer_rate_rad_s: f64,
-    /// Roll rate \[rad/s\].
-    pub roll_rate_rad_s: f64,
 }

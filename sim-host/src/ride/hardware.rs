@@ -83,7 +83,7 @@ impl RideHardware {
 }
 
 /// Input frame of the controller, with the fitted sensors.
-pub(crate) fn frame(plan: &Plan, measured: &Measured) -> SensorFrame {
+pub fn frame(plan: &Plan, measured: &Measured) -> SensorFrame {
     let input = &plan.config().input;
     let of = |sensor| -> &Held { measured.of(sensor) };
     let one = |fitted: bool, sensor: Sensor, axis: usize| match fitted {

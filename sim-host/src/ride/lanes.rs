@@ -271,14 +271,3 @@ fn set<const N: usize>(s: &mut State<Lanes<N>>, lane: usize, to: &State<f64>) {
     s.rear_wheel_rate.0[lane] = to.rear_wheel_rate;
     s.pitch.0[lane] = to.pitch;
 }
-
-impl Start {
-    /// The bicycle's state at t = 0.
-    pub fn state(&self, b: &Geometry) -> State<f64> {
-        State {
-            roll_rate: self.roll_rate_rad_s,
-            steer_rate: self.steer_rate_rad_s,
-            ..State::upright(b, self.speed_m_s)
-        }
-    }
-}

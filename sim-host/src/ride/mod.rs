@@ -17,11 +17,13 @@ mod substeps;
 mod trace;
 mod warm_start;
 
+pub use crate::bicycle::Start;
+pub use crate::plant::Imu;
 pub use assist::Assist;
 pub use backend::{Remote, RemoteError, Stepped};
 pub use batch::{rides, rides_on, traced, traced_on};
-pub use conditions::{Conditions, ConditionsError, Imu, ScheduleSpeed, Start};
+pub use conditions::{Conditions, ConditionsError, ScheduleSpeed};
 pub use fall::{FallCause, FallCriterion, LaidFlat};
-pub(crate) use hardware::frame as frame_of;
+pub use hardware::frame as frame_of;
 pub use outcome::{Effort, FinalState, Outcome, Ride};
 pub use trace::{TracePoint, frames};

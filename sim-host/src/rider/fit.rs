@@ -4,7 +4,8 @@ use super::table::{RiderTable, Row};
 use super::{Gains, KEYS, Outside, Rider, Schedule, ScheduleError};
 
 /// Method that makes gains continuous over speed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Fit {
     /// One straight line per gain (LR in the thesis): the table's own `regression`, otherwise least squares

@@ -4,7 +4,8 @@ use super::{Gains, KEYS};
 use crate::range::within;
 
 /// Behaviour outside the speeds at which the gains were measured.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Outside {
     /// The outermost straight lines are extrapolated, as published.

@@ -2,8 +2,7 @@
 
 use super::{Neuromuscular, Signals};
 use crate::bicycle::{Accelerations, Geometry, Motion, Pose, State, Velocities};
-use crate::integrate::Moves;
-use crate::num::Scalar;
+use crate::num::{Moves, Scalar};
 
 /// State of a rider model without the delay line. All zero at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,8 @@
 //! Sampling of a sensor: period, jitter and phase relative to the gyro.
 
+use super::estimates::{digits, observed, part_of};
+use super::found::Found;
 use super::windows::Recorded;
-use super::{Found, digits, observed, part_of};
 use crate::plant::Sensor;
 use crate::replay::Sample;
 use std::f64::consts::TAU;

@@ -1,7 +1,8 @@
 //! Averaging time and delay of a wheel's speed, from the distance that the same wheel counted.
 
+use super::estimates::{digits, pooled};
+use super::found::Found;
 use super::windows::Recorded;
-use super::{Found, digits, pooled};
 
 /// Length of a stretch that is fitted separately \[s\].
 const STRETCH_S: f64 = 10.0;

@@ -1,7 +1,8 @@
 //! Delay of a sensor relative to another that measures the same motion.
 
+use super::estimates::{digits, pooled};
+use super::found::Found;
 use super::windows::{Motion, Recorded, WINDOW_S};
-use super::{Found, digits, pooled};
 use crate::plant::Sensor;
 use crate::replay::Sample;
 use crate::weave::Estimate;

@@ -1,7 +1,8 @@
 //! Noise of a sensor at standstill: white noise, bias, and random walk of the bias.
 
+use super::estimates::{digits, pooled, root};
+use super::found::Found;
 use super::windows::{Recorded, WINDOW_S, Window, still};
-use super::{Found, digits, pooled, root};
 use crate::plant::Sensor;
 use crate::weave::Estimate;
 use crate::weave::student::quantile;

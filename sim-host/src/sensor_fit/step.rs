@@ -1,7 +1,8 @@
 //! Quantisation step of a sensor's values, and repetition of samples.
 
+use super::estimates::{digits, observed, share};
+use super::found::Found;
 use super::windows::{Motion, Recorded};
-use super::{Found, digits, observed, share};
 use crate::weave::Estimate;
 
 /// Largest deviation from whole steps, as a fraction of a step; beyond, the differences have no common step.

@@ -1,7 +1,8 @@
 //! Vibration above 10 Hz caused by riding, as a function of speed.
 
+use super::estimates::{digits, mean, pooled, root};
+use super::found::Found;
 use super::windows::{Recorded, WINDOW_S};
-use super::{Found, digits, mean, pooled, root};
 use crate::plant::{OCTAVES_HZ, Sensor};
 
 /// Width of the speed bins in the report \[m/s\].

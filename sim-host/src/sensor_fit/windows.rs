@@ -1,9 +1,17 @@
 //! Cuts recordings into windows of one second and classifies each as standstill, riding or neither.
 
-use super::Recording;
 use super::spectrum::Spectrum;
 use crate::plant::Sensor;
-use crate::replay::{Sample, Track};
+use crate::replay::{Sample, Samples, Track};
+
+/// One recording.
+#[derive(Clone, Debug, Default)]
+pub struct Recording {
+    /// Samples of the sensors.
+    pub samples: Samples,
+    /// Distance counted by the wheel sensor \[m\] over time \[s\], if recorded with the speed.
+    pub distance_m: Vec<(f64, f64)>,
+}
 
 /// Wheel speed below which the bicycle is at standstill \[m/s\].
 const STANDING_M_S: f64 = 0.05;

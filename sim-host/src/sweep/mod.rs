@@ -2,9 +2,11 @@
 //! combined to the same bytes.
 
 mod axis;
+pub mod document;
 mod folder;
 mod grid;
 mod maps;
+mod names;
 mod netcdf;
 mod plan;
 mod run;
@@ -18,8 +20,8 @@ pub use folder::{Folder, PLAN};
 pub use grid::Grid;
 pub(crate) use maps::AT_LEAST;
 pub use maps::pictures;
-pub use plan::{Plan, SweepSearch};
-pub(crate) use plan::{check, combination, count, label};
+pub use names::check;
+pub use plan::{Plan, SweepSearch, combination, count, label};
 pub use run::{Cell, Progress, run};
 pub use shard::Shard;
 pub use unit::{Found, Unit};

@@ -1,29 +1,10 @@
 //! Writes a sweep as a NetCDF file (classic format); its dimensions are the axes and the speed.
 
+use super::document::SweepDocument;
+use super::names::variable;
 use super::{Axis, Found, Grid, SweepError, Unit};
-use crate::report::sweep::SweepDocument;
 use crate::ride::{Effort, FallCause};
 use netcdf3::{DataSet, FileWriter, Version, WriteError};
-
-/// Names of the variables other than the axes'.
-pub(crate) const NAMES: [&str; 11] = [
-    "speed",
-    "height",
-    "capped",
-    "peak_torque",
-    "rms_torque",
-    "peak_slew",
-    "fall_cause",
-    "area",
-    "mean_height",
-    "area_capped",
-    "complete",
-];
-
-/// Variable name of an axis.
-pub(crate) fn name(axis: &Axis) -> String {
-    axis.key.replace('-', "_")
-}
 
 /// Unit of a numeric axis: the typed one, otherwise the option's; `1` if dimensionless.
 fn unit_of<'a>(axis: &Axis, typed: &'a str) -> &'a str {
@@ -63,7 +44,7 @@ impl From<netcdf3::InvalidDataSet> for SweepError {
 /// An axis has a name that NetCDF does not allow, or a temporary file can't be written.
 pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> Result<Vec<u8>, SweepError> {
     let axes = &grid.plan.axes;
-    let names: Vec<String> = axes.iter().map(name).collect();
+    let names: Vec<String> = axes.iter().map(variable).collect();
     let mut cell_dims: Vec<&str> = names.iter().map(String::as_str).collect();
     let cells = cell_dims.clone();
     cell_dims.push("speed");

@@ -1,10 +1,10 @@
 //! The plan of a sweep: identifies the sweep and its cells, so that parts can be combined.
 
+use super::Axis;
 use super::seal::hash;
-use super::{Axis, SweepError, netcdf};
 use crate::basin::Search;
-use crate::report::document::SCHEMA;
-use crate::report::resolved::{Tool, axis_name};
+use crate::report::resolved::axis_name;
+use crate::report::tool::{SCHEMA, Tool};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -90,32 +90,13 @@ impl Plan {
     }
 }
 
-/// Checks that the names of the axes are unique and differ from those of the results.
-///
-/// # Errors
-/// States the key.
-pub(crate) fn check(axes: &[Axis]) -> Result<(), SweepError> {
-    for (i, axis) in axes.iter().enumerate() {
-        let name = netcdf::name(axis);
-        let wrong = if axes[..i].iter().any(|other| netcdf::name(other) == name) {
-            "is listed twice"
-        } else if netcdf::NAMES.contains(&&*name) {
-            "is the name of a result; choose another"
-        } else {
-            continue;
-        };
-        return Err(SweepError(format!("--over {}: the name {wrong}", axis.key)));
-    }
-    Ok(())
-}
-
 /// Number of cells of the axes.
-pub(crate) fn count(axes: &[Axis]) -> usize {
+pub fn count(axes: &[Axis]) -> usize {
     axes.iter().fold(1, |n, axis| n.saturating_mul(axis.values.len()))
 }
 
 /// Values of cell `i`, with the last axis varying fastest.
-pub(crate) fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
+pub fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
     let mut values: Vec<String> = Vec::with_capacity(axes.len());
     for axis in axes.iter().rev() {
         values.push(axis.values[i % axis.values.len()].clone());
@@ -126,7 +107,7 @@ pub(crate) fn combination(axes: &[Axis], mut i: usize) -> Vec<String> {
 }
 
 /// Values with their keys, as text.
-pub(crate) fn label(axes: &[Axis], values: &[String]) -> String {
+pub fn label(axes: &[Axis], values: &[String]) -> String {
     let pairs: Vec<String> = axes.iter().zip(values).map(|(a, v)| format!("{}={v}", a.key)).collect();
     pairs.join(", ")
 }

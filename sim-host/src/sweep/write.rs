@@ -1,10 +1,10 @@
 //! Writes the results of a whole sweep to files.
 
+use super::document::{SweepDocument, cells_table, heights_table};
 use super::maps::pictures;
 use super::netcdf::netcdf;
 use super::{Folder, Grid, SweepError};
 use crate::report::picture::{caption, svg_with_caption};
-use crate::report::sweep::{SweepDocument, cells_table, heights_table};
 
 /// Writes `sweep.json`, `sweep.nc`, `sweep.csv`, `heights.csv` and `figures/*.svg` to `folder`, replacing
 /// older files of these names.

@@ -4,7 +4,7 @@ use super::case::Resolution;
 use super::catalogue::Made;
 use super::item::{Explanation, Value};
 use super::run::Outcome;
-use crate::report::resolved::Tool;
+use crate::report::tool::Tool;
 use schemars::JsonSchema;
 use serde::Serialize;
 

@@ -5,8 +5,8 @@ use link::frame::{Decoder, MAX_FRAME, Received};
 use link::lockstep::ToBoard;
 use link::message::Message;
 use link::report::FaultKind;
-use sim_host::board::Lockstep;
-use sim_host::board::qemu::Qemu;
+use sim_host::pil::Lockstep;
+use sim_host::pil::qemu::Qemu;
 use tests::wait::LONG;
 use xtask::{image, rides};
 

@@ -1,8 +1,8 @@
 //! Basins ridden on boards.
 
 use sim_host::basin::{Basin, Search, basin, basin_by};
-use sim_host::board::compare::same_basin;
-use sim_host::board::{BoardError, Controller, Lockstep};
+use sim_host::pil::compare::same_basin;
+use sim_host::pil::{BoardError, Controller, Lockstep};
 use sim_host::ride::{Conditions, RemoteError, rides_on};
 use std::sync::Mutex;
 use tests::basins::{H, assisted, search};

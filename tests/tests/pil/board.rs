@@ -2,8 +2,8 @@
 
 use control::{ActiveLimits, Mode};
 use link::lockstep::{FromBoard, ToBoard};
-use sim_host::board::compare::same_ride;
-use sim_host::board::{BoardError, Controller, Lockstep};
+use sim_host::pil::compare::same_ride;
+use sim_host::pil::{BoardError, Controller, Lockstep};
 use sim_host::ride::{Conditions, Remote, Start};
 use tests::basins::{H, assisted, configured};
 use tests::fake_board::FakeBoard;

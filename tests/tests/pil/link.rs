@@ -3,7 +3,7 @@
 use control::{Mode, SensorFrame, State, step};
 use proptest::prelude::*;
 use proptest::sample::select;
-use sim_host::board::{Controller, Direction, LinkFault, LinkFaultKind, Lockstep};
+use sim_host::pil::{Controller, Direction, LinkFault, LinkFaultKind, Lockstep};
 use sim_host::ride::{Assist, Conditions, Stepped};
 use tests::draws::runner;
 use tests::fake_board::{FakeBoard, aged};

@@ -1,7 +1,7 @@
 //! What befalls the chip in a ride, and what the ride makes of it.
 
 use super::image::started;
-use sim_host::board::{Controller, Lockstep};
+use sim_host::pil::{Controller, Lockstep};
 use sim_host::ride::Conditions;
 use tests::pil::{KNOCK, Ridden, product, ridden};
 use xtask::image;

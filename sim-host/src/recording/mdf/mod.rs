@@ -11,25 +11,15 @@
 mod block;
 mod bus;
 mod channel;
+mod content;
 mod conversion;
 mod data;
 mod group;
 mod record;
 
-use super::frames::Frames;
-use super::{Group, Remark};
+use super::Remark;
 use block::File;
-
-/// Content of a measurement file.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Content {
-    /// Groups of numeric channels.
-    pub groups: Vec<Group>,
-    /// Frames of CAN.
-    pub frames: Frames,
-    /// Data that could not be used.
-    pub remarks: Vec<Remark>,
-}
+pub use content::Content;
 
 /// Whether the bytes are an MDF file, finished or not.
 pub fn is_one(bytes: &[u8]) -> bool {

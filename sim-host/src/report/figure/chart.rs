@@ -1,7 +1,7 @@
 //! Charts: panels in a grid, each with curves and markers, and a common legend below.
 
 use super::canvas::{Area, Canvas, Dash, Stroke};
-use super::chart_axes::Fitted;
+use super::chart_axes::{Axis, Fitted};
 use super::colour::{GREY, INK, SERIES, STABLE};
 use super::legend::{Entry, Sign, entry, rows, rows_height};
 use super::marker::{Marker, mark};
@@ -37,19 +37,6 @@ pub struct Plot {
     pub shaded: Vec<(f64, f64)>,
     /// Thin vertical lines.
     pub verticals: Vec<f64>,
-}
-
-/// An axis.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Axis {
-    /// Quantity and unit.
-    pub label: String,
-    /// Ends of the range; fitted to the data if `None`.
-    pub range: Option<(f64, f64)>,
-    /// Whether it is logarithmic.
-    pub log: bool,
-    /// Names at 1, 2...; numbers if empty.
-    pub names: Vec<String>,
 }
 
 /// Points of one series. A point with NaN interrupts the line.
@@ -118,29 +105,6 @@ impl Look {
             (line, Some(marker)) => Sign::Marked(marker, self.stroke(), line != Line::None),
             _ => Sign::Line(self.stroke()),
         }
-    }
-}
-
-impl Axis {
-    /// A linear axis.
-    pub fn new(label: &str) -> Self {
-        Self { label: label.into(), ..Self::default() }
-    }
-
-    /// The axis with the range `low` to `high`.
-    pub fn over(self, low: f64, high: f64) -> Self {
-        Self { range: Some((low, high)), ..self }
-    }
-
-    /// An axis of names, at 1, 2...
-    pub fn of_names(label: &str, names: Vec<String>) -> Self {
-        let range = Some((0.4, names.len() as f64 + 0.6));
-        Self { label: label.into(), range, log: false, names }
-    }
-
-    /// The axis, logarithmic.
-    pub fn log(self) -> Self {
-        Self { log: true, ..self }
     }
 }
 

@@ -1,7 +1,42 @@
 //! Axes of a chart: from data to a linear or logarithmic range with ticks.
 
-use super::chart::Axis;
 use super::scale::{nice, ticks};
+
+/// An axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axis {
+    /// Quantity and unit.
+    pub label: String,
+    /// Ends of the range; fitted to the data if `None`.
+    pub range: Option<(f64, f64)>,
+    /// Whether it is logarithmic.
+    pub log: bool,
+    /// Names at 1, 2...; numbers if empty.
+    pub names: Vec<String>,
+}
+
+impl Axis {
+    /// A linear axis.
+    pub fn new(label: &str) -> Self {
+        Self { label: label.into(), ..Self::default() }
+    }
+
+    /// The axis with the range `low` to `high`.
+    pub fn over(self, low: f64, high: f64) -> Self {
+        Self { range: Some((low, high)), ..self }
+    }
+
+    /// An axis of names, at 1, 2...
+    pub fn of_names(label: &str, names: Vec<String>) -> Self {
+        let range = Some((0.4, names.len() as f64 + 0.6));
+        Self { label: label.into(), range, log: false, names }
+    }
+
+    /// The axis, logarithmic.
+    pub fn log(self) -> Self {
+        Self { log: true, ..self }
+    }
+}
 
 /// An axis with its range, in decades if it is logarithmic.
 pub(super) struct Fitted {

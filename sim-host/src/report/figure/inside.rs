@@ -1,6 +1,6 @@
 //! Figure of one basin: its inside, and the times to fall outside.
 
-use super::basin::{AREA, Band, BasinFigure, LEGEND_GAP, SPEED, caps, height};
+use super::basin_axes::{AREA, Band, BasinFigure, LEGEND_GAP, SPEED, caps, height};
 use super::canvas::{Canvas, Stroke};
 use super::colour::{BASIN, INK, ISLAND, SHADES, shade};
 use super::legend::{Entry, SOFTER, Sign, entry, rows};

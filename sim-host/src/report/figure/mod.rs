@@ -1,6 +1,7 @@
 //! Figures of results: pure functions from data to a [`Picture`].
 
 mod basin;
+mod basin_axes;
 mod canvas;
 mod chart;
 mod chart_axes;
@@ -22,8 +23,10 @@ mod shape;
 mod thin;
 mod time_scale;
 
-pub use basin::{Band, BasinFigure, basin};
-pub use chart::{Axis, Chart, Line, Look, Plot, Series, chart};
+pub use basin::basin;
+pub use basin_axes::{Band, BasinFigure};
+pub use chart::{Chart, Line, Look, Plot, Series, chart};
+pub use chart_axes::Axis;
 pub use eigen::{EigenFigure, eigen};
 pub use heatmap::{HeatMap, Map, heatmap};
 pub use marker::Marker;

@@ -1,6 +1,6 @@
 //! Figure of the outlines of several basins.
 
-use super::basin::{AREA, BasinFigure, LEGEND_GAP, SPEED, caps, height};
+use super::basin_axes::{AREA, BasinFigure, LEGEND_GAP, SPEED, caps, height};
 use super::canvas::{Canvas, Dash, Stroke};
 use super::colour::{INK, SERIES};
 use super::legend::{Sign, entry, rows};

@@ -1,6 +1,6 @@
 //! Figure of a basin over steer rate and roll rate at one speed.
 
-use super::basin::{AREA, LEGEND_GAP, height};
+use super::basin_axes::{AREA, LEGEND_GAP, height};
 use super::canvas::{Canvas, Stroke};
 use super::colour::{BASIN, GREY, INK, ISLAND, SHADES, shade};
 use super::legend::{Sign, entry, rows, triangle};

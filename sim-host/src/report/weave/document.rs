@@ -1,8 +1,8 @@
 //! Document of `identify weave`.
 
 use crate::eigen::LinearActuator;
-use crate::report::document::SCHEMA;
-use crate::report::resolved::{ResolvedBicycle, Tool};
+use crate::report::resolved::ResolvedBicycle;
+use crate::report::tool::{SCHEMA, Tool};
 use crate::weave::measured::{Measured, MeasuredWeave, three};
 use crate::weave::pool::Pooled;
 use crate::weave::segment::Segment;

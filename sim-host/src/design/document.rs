@@ -1,10 +1,10 @@
 //! Document, table, figure and law file of `design`.
 
-use super::document::SCHEMA;
-use super::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
-use super::resolved::{ResolvedSearch, Tool};
+use super::{Found, Judged, Plan, Scenarios};
 use crate::basin::Bound;
-use crate::design::{Found, Judged, Plan};
+use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
+use crate::report::resolved::ResolvedSearch;
+use crate::report::tool::{SCHEMA, Tool};
 use crate::ride::FallCriterion;
 use control::Law;
 use schemars::JsonSchema;
@@ -103,7 +103,7 @@ pub struct Design<'a> {
     /// The resulting law.
     pub law: &'a Law,
     /// The design and hold-out scenarios.
-    pub scenarios: &'a crate::design::Scenarios,
+    pub scenarios: &'a Scenarios,
     /// Search of areas for the evaluation.
     pub fine: &'a crate::basin::Search,
     /// The compared laws; the designed one is the last.

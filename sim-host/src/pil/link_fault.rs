@@ -1,6 +1,6 @@
 //! Faults of the loop's link, as text: `DIRECTION:FAULT[=TIME][@FROM[..TO]]`, for example `sensors:late=3ms@1.5s..2s`.
 
-use crate::plant::RandomStream;
+use crate::num::RandomStream;
 use crate::range::{span, time};
 use std::collections::VecDeque;
 use std::fmt;

@@ -1,10 +1,9 @@
 //! JSON document and CSV tables of `sweep`.
 
-use super::document::SCHEMA;
-use super::resolved::Tool;
-use super::table;
+use super::{Axis, Found, Grid, SweepSearch, Unit};
 use crate::basin::Work;
-use crate::sweep::{Axis, Found, Grid, SweepSearch, Unit};
+use crate::report::table;
+use crate::report::tool::{SCHEMA, Tool};
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};

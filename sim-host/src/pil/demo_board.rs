@@ -2,8 +2,8 @@
 //! without hardware.
 
 use super::qemu::{LIMIT, Qemu};
-use super::transport::{Transport, TransportError};
 use super::{BoardError, Lockstep};
+use crate::board::transport::{Transport, TransportError};
 use control::{Sample, SensorFrame, Triple};
 use link::frame::MAX_FRAME;
 use link::lockstep::ToBoard;

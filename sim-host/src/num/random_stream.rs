@@ -1,19 +1,18 @@
-//! Reproducible random numbers that depend only on seed, ride and purpose.
+//! Reproducible random numbers that depend only on seed, key and purpose.
 
-use crate::ride::Start;
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
 
-/// Random numbers for one purpose in one ride. Seed and start are the generator's key, the purpose selects
-/// its stream; lane, thread and other purposes' draws have no effect.
+/// Random numbers for one purpose, for example one sensor of one ride. Seed and key (the ride's start) are the
+/// generator's key, the purpose selects its stream; lane, thread and other purposes' draws have no effect.
 #[derive(Debug)]
 pub struct RandomStream(ChaCha8Rng);
 
 impl RandomStream {
-    /// The numbers of `purpose` in the ride from `start`.
-    pub fn new(seed: u64, start: &Start, purpose: u64) -> Self {
-        let Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s } = *start;
-        let words = [seed, speed_m_s.to_bits(), steer_rate_rad_s.to_bits(), roll_rate_rad_s.to_bits()];
+    /// The numbers of `purpose` for `seed` and `key`.
+    pub fn new(seed: u64, key: [f64; 3], purpose: u64) -> Self {
+        let [a, b, c] = key.map(f64::to_bits);
+        let words = [seed, a, b, c];
         let mut key = [0; 32];
         for (bytes, word) in key.chunks_exact_mut(8).zip(words) {
             bytes.copy_from_slice(&word.to_le_bytes());
@@ -24,7 +23,7 @@ impl RandomStream {
     }
 
     /// Draw from the uniform distribution over \[0, 1).
-    pub(super) fn uniform(&mut self) -> f64 {
+    pub fn uniform(&mut self) -> f64 {
         const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
         (self.0.next_u64() >> 11) as f64 * STEP
     }

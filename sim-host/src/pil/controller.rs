@@ -2,7 +2,7 @@
 
 use super::link_fault::LinkChannel;
 use super::{BoardError, Direction, LinkFault, Lockstep};
-use crate::plant::RandomStream;
+use crate::num::RandomStream;
 use crate::ride::{Remote, RemoteError, Start, Stepped};
 use control::wire::encode_config;
 use control::{Plan, SensorFrame};
@@ -72,7 +72,7 @@ impl RideState {
             LinkChannel::new(
                 faults,
                 direction,
-                RandomStream::new(seed, start, RANDOM_STREAM + direction as u64),
+                RandomStream::new(seed, start.key(), RANDOM_STREAM + direction as u64),
             )
         };
         Self {

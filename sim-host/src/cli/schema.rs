@@ -1,0 +1,58 @@
+//! `sim-host schema`: the JSON schema of each document.
+
+use super::ended::{Ended, Failure};
+use super::outputs::print;
+use crate::design::document::DesignDocument;
+use crate::report::board::{FaultsDocument, ParametersDocument};
+use crate::report::compare::CompareDocument;
+use crate::report::document::{BasinDocument, CheckDocument, EigenDocument, RideDocument};
+use crate::report::plane::PlaneDocument;
+use crate::report::replay::{ReplayDocument, ReplaysDocument};
+use crate::report::rider::RiderDocument;
+use crate::report::sensor::SensorDocument;
+use crate::report::weave::WeaveDocument;
+use crate::sweep::document::SweepDocument;
+use crate::thesis::document::ThesisDocument;
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema};
+
+/// The documents by their commands' names.
+const DOCUMENTS: [(&str, fn() -> Schema); 16] = [
+    ("basin", of::<BasinDocument>),
+    ("ride", of::<RideDocument>),
+    ("replay", of::<ReplayDocument>),
+    ("replay-many", of::<ReplaysDocument>),
+    ("eigen", of::<EigenDocument>),
+    ("bicycle-check", of::<CheckDocument>),
+    ("rider-show", of::<RiderDocument>),
+    ("thesis", of::<ThesisDocument>),
+    ("basin-compare", of::<CompareDocument>),
+    ("basin-plane", of::<PlaneDocument>),
+    ("sweep", of::<SweepDocument>),
+    ("design", of::<DesignDocument>),
+    ("param-list", of::<ParametersDocument>),
+    ("faults", of::<FaultsDocument>),
+    ("identify-weave", of::<WeaveDocument>),
+    ("identify-sensor", of::<SensorDocument>),
+];
+
+/// Names of the documents, for the argument.
+pub(super) fn names() -> [&'static str; DOCUMENTS.len()] {
+    DOCUMENTS.map(|(name, _)| name)
+}
+
+/// The schema of a document.
+fn of<D: JsonSchema>() -> Schema {
+    // Schema of serialised output: a nullable value is still required.
+    SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<D>()
+}
+
+/// Prints the schema of a document.
+pub(super) fn run(document: &str) -> Result<Ended, Failure> {
+    let (_, schema) = DOCUMENTS.iter().find(|(name, _)| *name == document).ok_or("no such document")?;
+    let schema = serde_json::to_value(schema())?;
+    // The descriptions are doc comments, whose brackets are escaped.
+    let text = serde_json::to_string_pretty(&schema)?.replace(r"\\[", "[").replace(r"\\]", "]");
+    print(&(text + "\n"))?;
+    Ok(Ended::Done)
+}

@@ -1,0 +1,137 @@
+//! Reads a file of any of the formats, and decodes its CAN frames.
+
+use super::dbc::Database;
+use super::frames::Frames;
+use super::{Recording, Remark, asc, candump, decode, mdf, table};
+use std::path::{Path, PathBuf};
+
+/// Why a file cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// The file cannot be read.
+    #[error("can't read {}: {error}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        error: std::io::Error,
+    },
+    /// The file has no usable data, or an error that must not be skipped.
+    #[error("{}: {remark}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// The problem and its position.
+        remark: Remark,
+    },
+}
+
+/// Options of reading.
+#[derive(Clone, Debug, Default)]
+pub struct ReadOptions {
+    /// Reject a file at the first [`Remark`] instead of using the rest.
+    pub strict: bool,
+    /// The databases that decode CAN frames.
+    pub dbc: Vec<PathBuf>,
+}
+
+/// Reads a recording. Its content determines the format, not its name.
+///
+/// The databases of the options decode CAN frames to groups: one per message, its signals as columns in the database's
+/// units, with the file's times. Frames that are in no database become remarks.
+///
+/// # Errors
+/// The file, with the line if there is one; CAN frames without a database, or with databases that decode none of them;
+/// an unreadable database.
+pub fn read(path: &Path, options: &ReadOptions) -> Result<Recording, RecordingError> {
+    let bytes = std::fs::read(path)
+        .and_then(|bytes| unpacked(path, bytes))
+        .map_err(|error| RecordingError::Read { path: path.to_owned(), error })?;
+    let content = |remark| RecordingError::Content { path: path.to_owned(), remark };
+    let databases = options.dbc.iter().map(|path| database(path)).collect::<Result<Vec<_>, _>>()?;
+    let recording = of_bytes(&bytes, &databases, &options.dbc).map_err(content)?;
+    match recording.remarks.first() {
+        Some(first) if options.strict => Err(content(first.clone())),
+        _ => Ok(recording),
+    }
+}
+
+/// Parses the bytes of a file; `names` are the paths of the databases.
+fn of_bytes(bytes: &[u8], databases: &[Database], names: &[PathBuf]) -> Result<Recording, Remark> {
+    let (decoded, frames) = if mdf::is_one(bytes) {
+        let mdf::Content { groups, frames, remarks } = mdf::parse(bytes)?;
+        (Recording { groups, remarks }, frames)
+    } else if bytes.starts_with(b"LOGG") {
+        let what = "is a log of Vector's in binary (BLF), which is not read; convert it to ASC";
+        return Err(Remark::of_file(what.to_owned()));
+    } else {
+        let text = String::from_utf8_lossy(bytes);
+        if candump::is_one(&text) {
+            (Recording::default(), candump::parse(&text)?)
+        } else if asc::is_one(&text) {
+            (Recording::default(), asc::parse(&text)?)
+        } else {
+            (table::parse(&text)?, Frames::default())
+        }
+    };
+    with_frames(decoded, &frames, databases, names)
+}
+
+/// Adds the decoded frames to a recording.
+fn with_frames(
+    mut recording: Recording,
+    frames: &Frames,
+    databases: &[Database],
+    names: &[PathBuf],
+) -> Result<Recording, Remark> {
+    const GIVE: &str = "give the database that decodes them with --dbc FILE";
+    let shown = |paths: &mut dyn Iterator<Item = &PathBuf>| {
+        paths.map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+    };
+    recording.remarks.extend(frames.remarks.iter().cloned());
+    if databases.is_empty() {
+        if !frames.is_empty() {
+            let remark = Remark::of_file(format!("has {} frames of CAN; {GIVE}", frames.len()));
+            if recording.groups.is_empty() {
+                return Err(remark);
+            }
+            recording.remarks.push(remark);
+        }
+        return Ok(recording);
+    }
+    let decoded = decode::groups(frames, databases);
+    if decoded.groups.is_empty() {
+        let what = match frames.is_empty() {
+            true => "has no frame of CAN to decode by".to_owned(),
+            false => format!("has {} frames of CAN, and none is decoded by", frames.len()),
+        };
+        return Err(Remark::of_file(format!("{what} {}", shown(&mut names.iter()))));
+    }
+    let idle: Vec<&PathBuf> =
+        names.iter().zip(&decoded.used).filter(|(_, used)| **used == 0).map(|(name, _)| name).collect();
+    if !idle.is_empty() {
+        let what = format!("no frame of it is decoded by {}", shown(&mut idle.into_iter()));
+        recording.remarks.push(Remark::of_file(what));
+    }
+    recording.remarks.extend(decoded.remarks);
+    recording.groups.extend(decoded.groups);
+    Ok(recording)
+}
+
+/// Reads a database.
+fn database(path: &Path) -> Result<Database, RecordingError> {
+    let bytes = std::fs::read(path).map_err(|error| RecordingError::Read { path: path.to_owned(), error })?;
+    Database::parse(&bytes).map_err(|remark| RecordingError::Content { path: path.to_owned(), remark })
+}
+
+/// The bytes of a file, decompressed if necessary.
+fn unpacked(path: &Path, bytes: Vec<u8>) -> std::io::Result<Vec<u8>> {
+    const GZIP: [u8; 2] = [0x1f, 0x8b];
+    if !bytes.starts_with(&GZIP) {
+        return Ok(bytes);
+    }
+    let mut plain = Vec::new();
+    std::io::Read::read_to_end(&mut flate2::read::MultiGzDecoder::new(bytes.as_slice()), &mut plain)
+        .map_err(|error| std::io::Error::new(error.kind(), format!("{}: gzip: {error}", path.display())))?;
+    Ok(plain)
+}
