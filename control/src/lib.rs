@@ -19,8 +19,8 @@
 //!   [`sensors::latency`] aligns samples of different latency to one instant.
 //! * [`estimate`]: estimates the motion of the bicycle with an error bound, predicts the roll rate to the instant at
 //!   which the torque acts, and smooths it.
-//! * [`law`]: computes the torque of the chosen roll-rate law, and of [`law::capsize`] and [`law::path_tracking`] where
-//!   they are on.
+//! * [`law`]: computes the torque of the chosen roll-rate law, behind its [`law::dead_band`], and of [`law::capsize`] and
+//!   [`law::path_tracking`] where they are on.
 //! * [`safety`]: decides whether torque is permitted ([`safety::engagement`]), keeps the torque inside the
 //!   [`safety::limits`] ([`safety::limiter`]) and checks the result by a second formulation ([`safety::guard`]).
 //!
@@ -48,6 +48,7 @@ pub use controller::{Command, State, step};
 pub use fault::{CAUSES, Cause, Causes};
 pub use law::Law;
 pub use law::capsize::Capsize;
+pub use law::dead_band::DeadBand;
 pub use law::gain_schedule::GainSchedule;
 pub use param::ParamError;
 pub use plan::Plan;

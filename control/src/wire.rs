@@ -18,7 +18,7 @@ pub const COMMAND_BYTES: usize = 11 + CAUSE_BYTES;
 /// another encoding.
 pub const CAUSE_BYTES: usize = 16;
 /// Bytes of a [`Config`]: the law with room for a full table, then every parameter in order.
-pub const CONFIG_BYTES: usize = 1002;
+pub const CONFIG_BYTES: usize = 1006;
 
 /// Encodes a sensor frame.
 pub fn encode_frame(frame: &SensorFrame) -> [u8; FRAME_BYTES] {

@@ -4,6 +4,7 @@
 //! gain. Here `gain = -K_phi_d`, converted once, in this file.
 
 pub mod capsize;
+pub mod dead_band;
 pub mod gain_schedule;
 pub mod path_tracking;
 pub mod real;

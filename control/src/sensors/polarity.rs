@@ -83,23 +83,21 @@ impl SignAgreement {
 }
 
 /// One control period without torque, from calibrated sensors. `gain_nm_s_rad` is the law's gain at [`GAIN_SPEED_M_S`].
-/// Returns the torque that the law would request, in the bicycle's sign \[N m\].
 pub fn step(
     input: &ValidationConfig,
     period_s: f32,
     state: &mut PolarityState,
     measurements: &Measurements,
     gain_nm_s_rad: f32,
-) -> f32 {
+) {
     let roll_rate = measurements.gyro_rad_s().map(|[x, ..]| x);
-    let hand_torque_nm = gain_nm_s_rad * roll_rate.unwrap_or(0.0);
     let wheels = [measurements.front_wheel_m_s(), measurements.rear_wheel_m_s()];
     let stands = wheels.iter().any(Option::is_some)
         && wheels.iter().flatten().all(|speed| speed.newest.abs() < PUSH_M_S);
     if !stands && matches!(state.next, PolarityStep::Lean | PolarityStep::Steer) {
         // The check does not advance while riding, and a fall to the right must not pass it.
         *state = PolarityState { next: state.next, ..PolarityState::default() };
-        return hand_torque_nm;
+        return;
     }
     let rate = match state.next {
         PolarityStep::Lean => roll_rate,
@@ -144,7 +142,7 @@ pub fn step(
                 SignAgreement::Right,
             ]
         }
-        PolarityStep::Passed | PolarityStep::Wrong => return hand_torque_nm,
+        PolarityStep::Passed | PolarityStep::Wrong => return,
     };
     let next = if agreement.contains(&SignAgreement::Wrong) {
         PolarityStep::Wrong
@@ -155,8 +153,7 @@ pub fn step(
             _ => PolarityStep::Passed,
         }
     } else {
-        return hand_torque_nm;
+        return;
     };
     *state = PolarityState { next, ..PolarityState::default() };
-    hand_torque_nm
 }

@@ -17,7 +17,7 @@ mod substeps;
 mod trace;
 mod warm_start;
 
-pub use assist::Assist;
+pub use assist::{Assist, IdealLaw};
 pub use backend::{Remote, RemoteError, Stepped};
 pub use batch::{rides, rides_on, traced, traced_on};
 pub use conditions::{Conditions, ConditionsError, Imu, ScheduleSpeed, Start};
