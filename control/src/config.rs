@@ -5,6 +5,7 @@ use crate::estimate::smooth::SmoothConfig;
 use crate::estimate::{EstimateConfig, Source};
 use crate::law::Law;
 use crate::law::capsize::Capsize;
+use crate::law::dead_band::DeadBand;
 use crate::law::path_tracking::PathTracking;
 use crate::param::{ParamSpec, ParamVisitor, optional};
 use crate::safety::engagement::EngagementConfig;
@@ -24,6 +25,8 @@ pub struct Config {
     pub rate_hz: f32,
     /// Roll-rate law.
     pub law: Law,
+    /// Dead band of the roll rate, in front of the roll-rate law.
+    pub dead_band: DeadBand,
     /// Capsize term, added to the roll-rate law.
     pub capsize: Capsize,
     /// Mounting, zeros and signs of sensors and motor.
@@ -56,6 +59,7 @@ impl Config {
         Self {
             rate_hz: 1000.0,
             law,
+            dead_band: DeadBand::default(),
             capsize: Capsize::default(),
             calibration: Calibration::default(),
             input: ValidationConfig::default(),
@@ -156,6 +160,7 @@ impl Config {
     /// Visits every parameter except the law's.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("", "rate_hz", 100.0, 10_000.0), &mut self.rate_hz);
+        self.dead_band.visit_params(to);
         self.capsize.visit_params(to);
         self.calibration.visit_params(to);
         self.input.visit_params(to);

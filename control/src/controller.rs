@@ -181,8 +181,9 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
 
     if plan.polarity_check_due {
         let gain = plan.polarity_gain_nm_s_rad;
-        state.hand_torque_nm =
-            polarity::step(&config.input, plan.period_s, &mut state.polarity, &measurements, gain);
+        polarity::step(&config.input, plan.period_s, &mut state.polarity, &measurements, gain);
+        let roll_rate_rad_s = measurements.gyro_rad_s().map_or(0.0, |[x, ..]| x);
+        state.hand_torque_nm = gain * config.dead_band.excess(roll_rate_rad_s);
         causes.note(Cause::PolarityWrong, state.polarity.next == PolarityStep::Wrong);
     }
     let engagement_input = engagement::EngagementInput {
@@ -206,7 +207,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let (gain, law_nm, speed) = match aligned {
         Some(Aligned { roll_rate_rad_s, speed }) => {
             let gain = config.law.gain_towards_zero(speed.low, speed.high);
-            let mut law_nm = gain * roll_rate_rad_s;
+            let mut law_nm = gain * config.dead_band.excess(roll_rate_rad_s);
             if config.capsize.is_on() {
                 law_nm += config.capsize.torque(speed.low, predicted.roll_rad);
             }

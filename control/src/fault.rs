@@ -2,12 +2,39 @@
 //!
 //! A number is never reused, even after its cause is removed. `docs/faults` has one page per cause.
 
-/// Reason why torque is forbidden or reduced, or a condition that is only reported. The number is the code shown to
-/// users.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-#[rustfmt::skip]
-pub enum Cause {
+/// Declares every cause once: its meaning (the doc comment, one sentence), its name and its number.
+macro_rules! causes {
+    ($(#[doc = $meaning:literal] $name:ident = $code:literal,)*) => {
+        /// Reason why torque is forbidden or reduced, or a condition that is only reported. The number is the code
+        /// shown to users.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum Cause {
+            $(#[doc = $meaning] $name = $code,)*
+        }
+
+        /// Every cause, in the order of the codes.
+        pub const CAUSES: [Cause; [$($code),*].len()] = [$(Cause::$name),*];
+
+        impl Cause {
+            /// Name shown to users.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Cause::$name => stringify!($name),)*
+                }
+            }
+
+            /// Meaning, in one sentence.
+            pub const fn meaning(self) -> &'static str {
+                match self {
+                    $(Cause::$name => $meaning.trim_ascii_start(),)*
+                }
+            }
+        }
+    };
+}
+
+causes! {
     /// The gyro delivered no valid sample within its timeout.
     GyroLost = 1,
     /// The gyro's samples are NaN or beyond its range.
@@ -82,7 +109,7 @@ pub enum Cause {
     MotorDisagrees = 36,
     /// The steer acceleration is opposite to the motor's torque.
     WrongResponse = 37,
-    /// The yaw rate and the steer angle have opposite signs.
+    /// The yaw rate is inconsistent with the speed and the steer angle.
     YawDisagrees = 38,
     /// The guard found a torque that is NaN or infinite.
     GuardNotFinite = 39,
@@ -128,22 +155,6 @@ pub enum Cause {
     Crash = 59,
 }
 
-/// Every cause, in the order of the codes.
-#[rustfmt::skip]
-pub const CAUSES: [Cause; 59] = {
-    use Cause::*;
-    [
-        GyroLost, GyroRange, GyroJump, GyroStuck, AccelLost, AccelRange, AccelJump, AccelStuck,
-        SteerLost, SteerRange, SteerJump, SteerStuck, SteerRateLost, SteerRateRange, SteerRateJump, SteerRateStuck,
-        FrontWheelLost, FrontWheelRange, FrontWheelJump, FrontWheelStuck, RearWheelLost, RearWheelRange, RearWheelJump,
-        RearWheelStuck, RiderTorqueLost, RiderTorqueRange, RiderTorqueJump, RiderTorqueStuck, MotorLost, MotorRange,
-        MotorJump, MotorStuck, WheelsDisagree, GyroDisagrees, SteerDisagrees, MotorDisagrees, WrongResponse, YawDisagrees,
-        GuardNotFinite, GuardPermission, GuardTorque, GuardRate, GuardWindow, GuardOverride, GuardEndStop,
-        PolarityUnchecked, Filling, Fallen, Lifted, Backwards, Parked, SwitchHeld, SwitchOff, SelfTest, Timing, PathLost,
-        PolarityWrong, RollUnknown, Crash,
-    ]
-};
-
 impl Cause {
     /// The code shown to users.
     pub const fn code(self) -> u8 {
@@ -151,9 +162,14 @@ impl Cause {
     }
 }
 
-/// A set of causes.
+/// A set of causes, bit *n* for code *n*. [`crate::wire`] encodes it with room for codes up to 127.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Causes(pub u64);
+
+const _: () = assert!(
+    CAUSES.len() < u64::BITS as usize,
+    "a wider set needs more instructions in each step, and columns and CAN frames for the codes from 64 on"
+);
 
 impl Causes {
     /// No cause.

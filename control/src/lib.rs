@@ -19,14 +19,14 @@
 //!   [`sensors::latency`] aligns samples of different latency to one instant.
 //! * [`estimate`]: estimates the motion of the bicycle with an error bound, predicts the roll rate to the instant at
 //!   which the torque acts, and smooths it.
-//! * [`law`]: computes the torque of the chosen roll-rate law, and of [`law::capsize`] and [`law::path_tracking`] where
-//!   they are on.
+//! * [`law`]: computes the torque of the chosen roll-rate law, behind its [`law::dead_band`], and of [`law::capsize`] and
+//!   [`law::path_tracking`] where they are on.
 //! * [`safety`]: decides whether torque is permitted ([`safety::engagement`]), keeps the torque inside the
 //!   [`safety::limits`] ([`safety::limiter`]) and checks the result by a second formulation ([`safety::guard`]).
 //!
 //! [`controller`] calls them in order. [`config`] holds all parameters, [`plan`] the constants derived from them,
-//! [`fault`] the numbered causes; [`param`] declares every parameter with its range, [`wire`] encodes frames,
-//! commands and configurations. A board computes wheel speeds from pulses by [`sensors::wheel_speed`].
+//! [`fault`] the numbered causes; [`param`] declares every parameter with its range, [`numbered`]
+//! enums with permanent numbers, [`wire`] encodes frames, commands and configurations. A board computes wheel speeds from pulses by [`sensors::wheel_speed`].
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -36,6 +36,7 @@ pub mod estimate;
 pub mod fault;
 pub mod law;
 pub mod maths;
+pub mod numbered;
 pub mod param;
 pub mod plan;
 pub mod safety;
@@ -47,6 +48,7 @@ pub use controller::{Command, State, step};
 pub use fault::{CAUSES, Cause, Causes};
 pub use law::Law;
 pub use law::capsize::Capsize;
+pub use law::dead_band::DeadBand;
 pub use law::gain_schedule::GainSchedule;
 pub use param::ParamError;
 pub use plan::Plan;

@@ -105,6 +105,7 @@ fn needs_motion(config: &Config) -> bool {
     let Config {
         rate_hz: _,
         law: _,
+        dead_band: _,
         capsize,
         calibration: _,
         input: _,

@@ -3,6 +3,7 @@
 
 use crate::config::Config;
 use crate::controller::Command;
+use crate::fault::Causes;
 use crate::law::gain_schedule::{GainSchedule, TABLE_POINTS};
 use crate::law::{LAW_NAMES, Law};
 use crate::param::{ParamError, ParamSpec, ParamVisitor};
@@ -12,9 +13,12 @@ use heapless::Vec;
 /// Bytes of a [`SensorFrame`]: its fields in their order, a sample as f32 values and a u16 age.
 pub const FRAME_BYTES: usize = 81;
 /// Bytes of a [`Command`]: torque and gain as f32, limits, mode, causes.
-pub const COMMAND_BYTES: usize = 19;
+pub const COMMAND_BYTES: usize = 11 + CAUSE_BYTES;
+/// Bytes of a set of causes, bit *n* for code *n*: more than today's codes need, so that sensors can be added without
+/// another encoding.
+pub const CAUSE_BYTES: usize = 16;
 /// Bytes of a [`Config`]: the law with room for a full table, then every parameter in order.
-pub const CONFIG_BYTES: usize = 1002;
+pub const CONFIG_BYTES: usize = 1006;
 
 /// Encodes a sensor frame.
 pub fn encode_frame(frame: &SensorFrame) -> [u8; FRAME_BYTES] {
@@ -69,8 +73,18 @@ pub fn encode_command(command: &Command) -> [u8; COMMAND_BYTES] {
     to.f32(command.gain_nm_s_rad);
     to.u16(command.limits.0);
     to.u8(command.mode as u8);
-    to.u64(command.causes.0);
+    to.bytes(encode_causes(command.causes));
     bytes
+}
+
+/// Encodes a set of causes.
+pub fn encode_causes(causes: Causes) -> [u8; CAUSE_BYTES] {
+    u128::from(causes.0).to_le_bytes()
+}
+
+/// Decodes a set of causes. Codes from 64 on, which this version does not have, are left out.
+pub fn decode_causes(bytes: &[u8; CAUSE_BYTES]) -> Causes {
+    Causes(u128::from_le_bytes(*bytes) as u64)
 }
 
 /// Encodes a configuration. Bytes that the law or an unset limit does not use are zero.
@@ -140,9 +154,6 @@ impl Writer<'_> {
         self.bytes(value.to_le_bytes());
     }
     fn u32(&mut self, value: u32) {
-        self.bytes(value.to_le_bytes());
-    }
-    fn u64(&mut self, value: u64) {
         self.bytes(value.to_le_bytes());
     }
     fn f32(&mut self, value: f32) {

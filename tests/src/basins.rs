@@ -27,7 +27,7 @@ pub fn configured(config: Config) -> Conditions {
 
 /// The thesis bicycle under the bare continuous law.
 pub fn ideal(law: Law) -> Conditions {
-    Conditions { assist: Assist::Ideal(Box::new(law)), ..alone() }
+    Conditions { assist: Assist::Ideal(Box::new(law.into())), ..alone() }
 }
 
 /// A search over `speeds` \[m/s\] up to `max_rate` \[rad/s\], the other settings the default ones.

@@ -52,10 +52,11 @@ pub fn product() -> Config {
     product
 }
 
-/// The product with everything on that is off in it: the capsize term, the lead, path tracking, a rider torque sensor,
+/// The product with everything on that is off in it: the dead band, the capsize term, the lead, path tracking, a rider torque sensor,
 /// a torque limit over speed, sensors of different latency.
 pub fn everything() -> Config {
     let mut config = product();
+    config.dead_band.roll_rate_rad_s = 0.02;
     config.capsize = Capsize { k_c: 1.0, v_max_m_s: 2.0 };
     config.predict.lead_s = 0.02;
     config.track = Some(PathTracking::default());

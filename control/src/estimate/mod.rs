@@ -196,7 +196,7 @@ pub fn step(config: &EstimateConfig, state: &mut EstimateState, input: &Estimato
     if run.rest_s > REST_S {
         run.rest_s = 2.0 * REST_S;
         let observed = c.gyro_walk_rad * c.gyro_walk_rad / max(1e-6, dt);
-        let _ = run.roll.observe_bias(wx, observed, c.bias_max_rad_s);
+        run.roll.observe_bias(wx, observed, c.bias_max_rad_s);
         let variance = bias_deviation * bias_deviation;
         let gain = variance / (variance + observed);
         bias_deviation = root(variance - gain * variance);

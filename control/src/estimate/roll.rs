@@ -65,16 +65,14 @@ impl Roll {
         self.p11 -= k1 * self.p11;
     }
 
-    /// Updates with an observation: the bias is `error` above the estimate, with `variance`. Returns the gain of the
-    /// bias.
-    pub(super) fn observe_bias(&mut self, error: f32, variance: f32, bias_max: f32) -> f32 {
+    /// Updates with an observation: the bias is `error` above the estimate, with `variance`.
+    pub(super) fn observe_bias(&mut self, error: f32, variance: f32, bias_max: f32) {
         let per = 1.0 / (self.p22 + variance);
         let (k1, k2) = (self.p12 * per, self.p22 * per);
         self.correct(k1, k2, error, bias_max);
         self.p11 = max(0.0, self.p11 - k1 * self.p12);
         self.p12 -= k1 * self.p22;
         self.p22 -= k2 * self.p22;
-        k2
     }
 
     fn correct(&mut self, k1: f32, k2: f32, error: f32, bias_max: f32) {

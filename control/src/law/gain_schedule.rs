@@ -1,7 +1,7 @@
 //! A user-defined gain schedule, linear between its points.
 
 use crate::law::real::Real;
-use crate::param::{ParamError, ParamSpec, ParamVisitor};
+use crate::param::{ParamError, ParamSpec};
 use heapless::Vec;
 
 /// Largest number of points of a gain table.
@@ -40,18 +40,6 @@ impl GainSchedule {
     /// The points, `(speed_m_s, gain_nm_s_rad)`, by rising speed.
     pub fn points(&self) -> &[(f32, f32)] {
         &self.points
-    }
-
-    /// Visits the number of points, then speed and gain of each.
-    pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
-        let mut count = self.points.len() as u16;
-        to.count(&POINTS, &mut count);
-        // A count above the capacity leaves the table unchanged.
-        let _ = self.points.resize(usize::from(count), (0.0, 0.0));
-        for (speed, gain) in &mut self.points {
-            to.number(&SPEED, speed);
-            to.number(&GAIN, gain);
-        }
     }
 
     /// Checks every point, and that speeds rise.

@@ -4,6 +4,7 @@
 //! gain. Here `gain = -K_phi_d`, converted once, in this file.
 
 pub mod capsize;
+pub mod dead_band;
 pub mod gain_schedule;
 pub mod path_tracking;
 pub mod real;
@@ -59,6 +60,9 @@ pub const LAW_NAMES: &[&str] = &{
     }
     names
 };
+
+/// The law by its name, as a parameter.
+pub const LAW: ParamSpec = ParamSpec::new("", "law", 0.0, (LAWS.len() - 1) as f32);
 
 /// Slope of a gain over speed.
 const fn slope(name: &'static str) -> ParamSpec {
@@ -206,21 +210,18 @@ impl Law {
         LAWS.get(usize::from(number)).map(|spec| (spec.build)(slope, table))
     }
 
-    /// Visits the law: its kind, then its parameters, the slope or the points of the table.
+    /// Visits the law by its name, then its parameter, if it has one. A table keeps its points, which are no parameters.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         let (mut number, mut slope) = (self.number(), self.slope());
         let table = match self {
             Law::Table(table) => core::mem::take(table),
             _ => GainSchedule::default(),
         };
-        to.choice(&ParamSpec::new("law", "kind", 0.0, (LAWS.len() - 1) as f32), LAW_NAMES, &mut number);
+        to.choice(&LAW, LAW_NAMES, &mut number);
         if let Some(parameter) = LAWS.get(usize::from(number)).and_then(|spec| spec.parameter) {
             to.number(&parameter, &mut slope);
         }
         *self = Law::numbered(number, slope, table).unwrap_or_default();
-        if let Law::Table(table) = self {
-            table.visit_params(to);
-        }
     }
 
     /// Checks the law's own parameters.

@@ -11,25 +11,26 @@ use crate::sensors::monitor::Loss;
 use crate::sensors::validation::ValidationConfig;
 use core::hint::cold_path;
 
-/// Mode of the controller. The discriminant is its number on the wire.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-#[repr(u8)]
-pub enum Mode {
-    /// Before the first step.
-    #[default]
-    Off = 0,
-    /// Waiting for the sensors' first good samples.
-    Initialise = 1,
-    /// All sensors must stay valid for the self-test time.
-    SelfTest = 2,
-    /// Ready; waiting for the rider's switch.
-    Standby = 3,
-    /// Engaged: torque is permitted.
-    Engaged = 4,
-    /// Reduced torque is permitted, because a dispensable sensor is lost or sensors disagree.
-    Limp = 5,
-    /// No torque until the causes are gone and the switch has been released; initialisation and self-test then repeat.
-    Fault = 6,
+crate::numbered! {
+    /// Mode of the controller. The discriminant is its number on the wire.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Mode {
+        /// Before the first step.
+        #[default]
+        Off = 0,
+        /// Waiting for the sensors' first good samples.
+        Initialise = 1,
+        /// All sensors must stay valid for the self-test time.
+        SelfTest = 2,
+        /// Ready; waiting for the rider's switch.
+        Standby = 3,
+        /// Engaged: torque is permitted.
+        Engaged = 4,
+        /// Reduced torque is permitted, because a dispensable sensor is lost or sensors disagree.
+        Limp = 5,
+        /// No torque until the causes are gone and the switch has been released; initialisation and self-test then repeat.
+        Fault = 6,
+    }
 }
 
 impl Mode {

@@ -8,21 +8,22 @@
 use crate::sensors::measurements::{Measurements, SpeedInterval};
 use crate::sensors::validation::ValidationConfig;
 
-/// Next step of the polarity check.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum PolarityStep {
-    /// Lean the bicycle to the right, by a quarter of a radian or more.
-    #[default]
-    Lean = 0,
-    /// Turn the handlebar to the right, by a third of a radian or more.
-    Steer = 1,
-    /// Push the bicycle forward, at a slow walk.
-    Push = 2,
-    /// None: the check was passed.
-    Passed = 3,
-    /// None: a sign is wrong. The calibration must be corrected; the check restarts at the next start-up.
-    Wrong = 4,
+crate::numbered! {
+    /// Next step of the polarity check.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum PolarityStep {
+        /// Lean the bicycle to the right, by a quarter of a radian or more.
+        #[default]
+        Lean = 0,
+        /// Turn the handlebar to the right, by a third of a radian or more.
+        Steer = 1,
+        /// Push the bicycle forward, at a slow walk.
+        Push = 2,
+        /// None: the check was passed.
+        Passed = 3,
+        /// None: a sign is wrong. The calibration must be corrected; the check restarts at the next start-up.
+        Wrong = 4,
+    }
 }
 
 /// Minimum roll angle of a lean to the right \[rad\].
@@ -82,23 +83,21 @@ impl SignAgreement {
 }
 
 /// One control period without torque, from calibrated sensors. `gain_nm_s_rad` is the law's gain at [`GAIN_SPEED_M_S`].
-/// Returns the torque that the law would request, in the bicycle's sign \[N m\].
 pub fn step(
     input: &ValidationConfig,
     period_s: f32,
     state: &mut PolarityState,
     measurements: &Measurements,
     gain_nm_s_rad: f32,
-) -> f32 {
+) {
     let roll_rate = measurements.gyro_rad_s().map(|[x, ..]| x);
-    let hand_torque_nm = gain_nm_s_rad * roll_rate.unwrap_or(0.0);
     let wheels = [measurements.front_wheel_m_s(), measurements.rear_wheel_m_s()];
     let stands = wheels.iter().any(Option::is_some)
         && wheels.iter().flatten().all(|speed| speed.newest.abs() < PUSH_M_S);
     if !stands && matches!(state.next, PolarityStep::Lean | PolarityStep::Steer) {
         // The check does not advance while riding, and a fall to the right must not pass it.
         *state = PolarityState { next: state.next, ..PolarityState::default() };
-        return hand_torque_nm;
+        return;
     }
     let rate = match state.next {
         PolarityStep::Lean => roll_rate,
@@ -143,7 +142,7 @@ pub fn step(
                 SignAgreement::Right,
             ]
         }
-        PolarityStep::Passed | PolarityStep::Wrong => return hand_torque_nm,
+        PolarityStep::Passed | PolarityStep::Wrong => return,
     };
     let next = if agreement.contains(&SignAgreement::Wrong) {
         PolarityStep::Wrong
@@ -154,8 +153,7 @@ pub fn step(
             _ => PolarityStep::Passed,
         }
     } else {
-        return hand_torque_nm;
+        return;
     };
     *state = PolarityState { next, ..PolarityState::default() };
-    hand_torque_nm
 }

@@ -3,6 +3,7 @@
 
 mod answer;
 mod cross_check;
+mod dead_band;
 mod engagement;
 mod fuzz;
 mod guard;

@@ -1,8 +1,10 @@
 //! The binary record that carries a configuration to an image.
 
 use control::param::{ParamSpec, ParamVisitor};
-use control::wire::{CONFIG_BYTES, config_bytes_used, decode_config, encode_config};
-use control::{Config, GainSchedule, Law};
+use control::wire::{
+    CONFIG_BYTES, config_bytes_used, decode_causes, decode_config, encode_causes, encode_config,
+};
+use control::{CAUSES, Causes, Config, GainSchedule, Law};
 use proptest::prelude::*;
 use proptest::test_runner::TestRng;
 
@@ -86,6 +88,20 @@ proptest! {
             prop_assert_eq!(decode_config(&again).map(|c| encode_config(&c)), Ok(again));
         }
     }
+}
+
+/// Situation: every cause alone, and all.
+/// Action: encode and decode.
+/// Must hold: 16 bytes, the bit of the cause's number; the same set again.
+#[test]
+fn causes_have_the_bits_of_their_numbers() {
+    for cause in CAUSES {
+        let bytes = encode_causes(Causes::of(cause));
+        assert_eq!(u128::from_le_bytes(bytes), 1 << cause.code(), "{}", cause.name());
+    }
+    let all = Causes::all(&CAUSES);
+    assert_eq!(decode_causes(&encode_causes(all)), all);
+    assert_eq!(decode_causes(&[0xff; 16]), Causes(u64::MAX), "numbers from 64 on are left out");
 }
 
 /// Situation: the published and the flashed configuration.

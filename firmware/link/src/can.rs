@@ -19,7 +19,7 @@ pub const STALE_TICKS: u16 = 250;
 pub const STATE: u16 = 0x320;
 /// Identifier of the motion frame.
 pub const MOTION: u16 = 0x321;
-/// Identifier of the causes frame.
+/// Identifier of the causes frame, codes 0 to 63; the next identifier is reserved for 64 to 127.
 pub const CAUSES: u16 = 0x322;
 
 /// One unit of the speed \[m/s\].
@@ -141,10 +141,10 @@ impl Message {
         let [b0, b1, b2, b3, b4, b5, b6, b7] = frame.bytes;
         match frame.identifier {
             STATE => Some(Message::State(State {
-                mode: mode(b0)?,
+                mode: Mode::numbered(b0)?,
                 driven: b1 & 1 != 0,
                 engage: b1 & 2 != 0,
-                polarity: polarity(b1 >> 2 & 7)?,
+                polarity: PolarityStep::numbered(b1 >> 2 & 7)?,
                 limits: ActiveLimits(u16::from_le_bytes([b2, b3])),
                 authority: (b4 != UNKNOWN_U8).then_some(f32::from(b4) * AUTHORITY),
                 speed_m_s: value([b5, b6], SPEED_M_S),
@@ -182,16 +182,4 @@ fn part(part: Option<f32>) -> u8 {
         Some(part) if !part.is_nan() => F32(part.clamp(0.0, 1.0) / AUTHORITY).round().0 as u8,
         _ => UNKNOWN_U8,
     }
-}
-
-/// Mode by its number on the bus.
-fn mode(number: u8) -> Option<Mode> {
-    use Mode::*;
-    [Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault].into_iter().find(|mode| *mode as u8 == number)
-}
-
-/// Polarity step by its number on the bus.
-fn polarity(number: u8) -> Option<PolarityStep> {
-    use PolarityStep::*;
-    [Lean, Steer, Push, Passed, Wrong].into_iter().find(|next| *next as u8 == number)
 }

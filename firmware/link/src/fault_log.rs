@@ -15,7 +15,6 @@
 use crate::bytes::{Reader, Writer};
 use crate::frame::CRC;
 use crate::report::{FAULT_BYTES, FaultRecord};
-use crate::telemetry;
 use control::{Causes, Mode};
 
 /// Number of stored faults; a new one replaces the oldest.
@@ -28,7 +27,7 @@ const STEP: usize = 17;
 const HEAD: usize = 14;
 const SLOT: usize = 4 + 2 + FAULT_BYTES;
 /// Magic number of a ring with this layout.
-const MARK: u32 = 0x5341_4601;
+const MARK: u32 = 0x5341_4602;
 
 /// State of the controller at a control step; the default means no step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,7 +61,7 @@ pub fn last_step(memory: &[u8; RING_BYTES]) -> Option<LastStep> {
     let check = from.u32()?;
     let whole = check == CRC.checksum(from.0);
     let (steps, frame_us, causes) = (from.u32()?, from.u32()?, Causes(from.u64()?));
-    whole.then_some(LastStep { steps, frame_us, causes, mode: telemetry::mode(from.u8()?)? })
+    whole.then_some(LastStep { steps, frame_us, causes, mode: Mode::numbered(from.u8()?)? })
 }
 
 /// Header of the ring.

@@ -10,7 +10,7 @@ use core::{mem, slice};
 use crc::{CRC_32_ISO_HDLC, Crc};
 
 /// Protocol version. In every version, the first byte of a frame is the version and the last four are the CRC.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
 /// Largest payload \[bytes\].
 pub const MAX_PAYLOAD: usize = 320;
 /// Length of version, kind and sequence number \[bytes\].

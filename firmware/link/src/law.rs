@@ -2,7 +2,7 @@
 //! points in use.
 
 use crate::bytes::{Reader, Writer};
-use crate::parameter_list::LAW;
+use control::law::LAW;
 use control::law::gain_schedule::TABLE_POINTS;
 use control::param::ParamError;
 use control::{GainSchedule, Law};

@@ -1,40 +1,23 @@
 //! Visits every parameter as one number; listing, reading, setting and storing use the same visitor.
 
 use crate::key::Key;
-use control::law::LAW_NAMES;
+use control::Config;
 use control::param::{ParamSpec, ParamVisitor};
-use control::{Config, Law};
 
-/// The law by its name. A law that needs more than a name is set as a whole; see [`crate::law`].
-pub const LAW: ParamSpec = ParamSpec::new("", "law", 0.0, (LAW_NAMES.len() - 1) as f32);
-
-/// Meaning of a parameter's number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Kind {
-    /// A number.
-    Number = 0,
-    /// A number that can be off.
-    Limit = 1,
-    /// An integer.
-    Count = 2,
-    /// 0 is off, 1 is on.
-    Switch = 3,
-    /// Index of a name in [`ParameterView::names`].
-    Choice = 4,
-}
-
-impl Kind {
-    /// Kind by its number on the wire.
-    pub const fn numbered(number: u8) -> Option<Self> {
-        Some(match number {
-            0 => Kind::Number,
-            1 => Kind::Limit,
-            2 => Kind::Count,
-            3 => Kind::Switch,
-            4 => Kind::Choice,
-            _ => return None,
-        })
+control::numbered! {
+    /// Meaning of a parameter's number.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Kind {
+        /// A number.
+        Number = 0,
+        /// A number that can be off.
+        Limit = 1,
+        /// An integer.
+        Count = 2,
+        /// 0 is off, 1 is on.
+        Switch = 3,
+        /// Index of a name in [`ParameterView::names`].
+        Choice = 4,
     }
 }
 
@@ -61,9 +44,9 @@ impl ParameterView {
 /// Calls `to` with every parameter, the law first, and sets each to the returned value.
 ///
 /// A value that the parameter can't have (off, if it is not a limit) leaves it unchanged. A value inside a group that
-/// is off is lost with the group.
+/// is off is lost with the group. A law that needs more than a name is set as a whole; see [`crate::law`].
 pub fn each(config: &mut Config, mut to: impl FnMut(&ParameterView) -> Option<f32>) {
-    law(&mut config.law, &mut Walk(&mut to));
+    config.law.visit_params(&mut Walk(&mut to));
     walk(config, &mut to);
 }
 
@@ -88,19 +71,6 @@ pub fn get(config: &Config, key: Key<'_>) -> Option<ParameterView> {
         view.value
     });
     found
-}
-
-fn law(law: &mut Law, to: &mut Walk<'_>) {
-    let (mut number, mut slope) = (law.number(), law.slope());
-    to.choice(&LAW, LAW_NAMES, &mut number);
-    if let Some(parameter) = &law.spec().parameter {
-        to.number(parameter, &mut slope);
-    }
-    let table = match law {
-        Law::Table(table) => core::mem::take(table),
-        _ => Default::default(),
-    };
-    *law = Law::numbered(number, slope, table).unwrap_or_default();
 }
 
 type Each<'a> = &'a mut dyn FnMut(&ParameterView) -> Option<f32>;

@@ -3,9 +3,10 @@
 
 use crate::bytes::{Reader, Writer, from_bits, to_bits};
 use crate::law::{self, LAW_BYTES, NoLaw};
-use crate::parameter_list::{LAW, each_but_law};
+use crate::parameter_list::each_but_law;
 use crate::requests::{CALIBRATION, check};
 use control::Config;
+use control::law::LAW;
 use control::param::ParamError;
 
 /// Version of the layout; records of another layout are not read.

@@ -5,52 +5,32 @@ use crate::key::Key;
 use control::param::ParamError;
 use core::fmt;
 
-/// Reason of a rejection.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum RejectReason {
-    /// Torque can flow: parameters can't be changed, stored or reset.
-    Engaged = 1,
-    /// Unknown parameter.
-    UnknownKey = 2,
-    /// A value outside its range, or inconsistent with another parameter.
-    OutOfRange = 3,
-    /// A fractional value for an integer parameter.
-    NotWhole = 4,
-    /// Off, for a parameter that can't be off.
-    NeverOff = 5,
-    /// The parameter's group is off and must be switched on first.
-    GroupOff = 6,
-    /// Only a passed polarity check sets this parameter.
-    OnlyByCheck = 7,
-    /// Unknown request.
-    UnknownRequest = 8,
-    /// The request can't be decoded.
-    Malformed = 9,
-    /// Storing in flash failed; the previous record is still there.
-    NotStored = 10,
-    /// This image does not support the request.
-    NotHere = 11,
-}
-
-impl RejectReason {
-    /// Reason by its number on the wire.
-    pub fn numbered(number: u8) -> Option<Self> {
-        use RejectReason::*;
-        let all = [
-            Engaged,
-            UnknownKey,
-            OutOfRange,
-            NotWhole,
-            NeverOff,
-            GroupOff,
-            OnlyByCheck,
-            UnknownRequest,
-            Malformed,
-            NotStored,
-            NotHere,
-        ];
-        all.into_iter().find(|why| *why as u8 == number)
+control::numbered! {
+    /// Reason of a rejection.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum RejectReason {
+        /// Torque can flow: parameters can't be changed, stored or reset.
+        Engaged = 1,
+        /// Unknown parameter.
+        UnknownKey = 2,
+        /// A value outside its range, or inconsistent with another parameter.
+        OutOfRange = 3,
+        /// A fractional value for an integer parameter.
+        NotWhole = 4,
+        /// Off, for a parameter that can't be off.
+        NeverOff = 5,
+        /// The parameter's group is off and must be switched on first.
+        GroupOff = 6,
+        /// Only a passed polarity check sets this parameter.
+        OnlyByCheck = 7,
+        /// Unknown request.
+        UnknownRequest = 8,
+        /// The request can't be decoded.
+        Malformed = 9,
+        /// Storing in flash failed; the previous record is still there.
+        NotStored = 10,
+        /// This image does not support the request.
+        NotHere = 11,
     }
 }
 

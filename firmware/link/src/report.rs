@@ -3,7 +3,7 @@
 use crate::bytes::{Reader, Writer};
 use crate::frame::CRC;
 use crate::telemetry;
-use control::wire::encode_config;
+use control::wire::{encode_causes, encode_config};
 use control::{Causes, Config, Mode};
 
 /// Identity of the board.
@@ -36,33 +36,26 @@ impl<'a> Hello<'a> {
     }
 }
 
-/// Kind of a fault record.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum FaultKind {
-    /// A panic; the text has the place.
-    Panic = 1,
-    /// A processor exception; the registers have the details.
-    Exception = 2,
-    /// The watchdog was not fed.
-    Watchdog = 3,
-    /// The controller entered `control::Mode::Fault`, for the recorded causes. The firmware kept running.
-    Controller = 4,
-    /// The supply voltage fell below the chip's limit.
-    BrownOut = 5,
-    /// The motor's bridge was opened until the next start, for the reason in the text. The firmware kept running.
-    Drive = 6,
+control::numbered! {
+    /// Kind of a fault record.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum FaultKind {
+        /// A panic; the text has the place.
+        Panic = 1,
+        /// A processor exception; the registers have the details.
+        Exception = 2,
+        /// The watchdog was not fed.
+        Watchdog = 3,
+        /// The controller entered `control::Mode::Fault`, for the recorded causes. The firmware kept running.
+        Controller = 4,
+        /// The supply voltage fell below the chip's limit.
+        BrownOut = 5,
+        /// The motor's bridge was opened until the next start, for the reason in the text. The firmware kept running.
+        Drive = 6,
+    }
 }
 
 impl FaultKind {
-    /// Kind by its number on the wire.
-    pub fn numbered(number: u8) -> Option<Self> {
-        use FaultKind::*;
-        [Panic, Exception, Watchdog, Controller, BrownOut, Drive]
-            .into_iter()
-            .find(|kind| *kind as u8 == number)
-    }
-
     /// Name for display.
     pub const fn name(self) -> &'static str {
         match self {
@@ -76,35 +69,29 @@ impl FaultKind {
     }
 }
 
-/// Cause of the last reset.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum ResetCause {
-    /// The board does not report the cause.
-    #[default]
-    Unknown = 0,
-    /// Power-on.
-    PowerOn = 1,
-    /// Brown-out.
-    BrownOut = 2,
-    /// The reset pin: a button or a debugger.
-    Pin = 3,
-    /// Software reset, for example after a panic.
-    Software = 4,
-    /// Watchdog timeout.
-    Watchdog = 5,
-    /// Illegal entry into a low-power mode.
-    LowPower = 6,
+control::numbered! {
+    /// Cause of the last reset.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum ResetCause {
+        /// The board does not report the cause.
+        #[default]
+        Unknown = 0,
+        /// Power-on.
+        PowerOn = 1,
+        /// Brown-out.
+        BrownOut = 2,
+        /// The reset pin: a button or a debugger.
+        Pin = 3,
+        /// Software reset, for example after a panic.
+        Software = 4,
+        /// Watchdog timeout.
+        Watchdog = 5,
+        /// Illegal entry into a low-power mode.
+        LowPower = 6,
+    }
 }
 
 impl ResetCause {
-    /// Cause by its number on the wire.
-    pub fn numbered(number: u8) -> Option<Self> {
-        use ResetCause::*;
-        let all = [Unknown, PowerOn, BrownOut, Pin, Software, Watchdog, LowPower];
-        all.into_iter().find(|cause| *cause as u8 == number)
-    }
-
     /// Name for display.
     pub const fn name(self) -> &'static str {
         match self {
@@ -122,7 +109,7 @@ impl ResetCause {
 /// Largest text of a fault \[bytes\]; longer texts are cut.
 pub const FAULT_TEXT_BYTES: usize = 200;
 /// Largest fault record on the wire \[bytes\].
-pub const FAULT_BYTES: usize = 51 + 1 + FAULT_TEXT_BYTES;
+pub const FAULT_BYTES: usize = 59 + 1 + FAULT_TEXT_BYTES;
 
 /// A stored fault. Fields that do not apply to its kind are 0 or empty.
 ///
@@ -160,7 +147,7 @@ impl<'a> FaultRecord<'a> {
         to.u8(self.mode as u8);
         to.u32(self.steps);
         to.u32(self.frame_us);
-        to.u64(self.causes.0);
+        to.put(&encode_causes(self.causes));
         to.u32(self.exception);
         self.registers.into_iter().for_each(|register| to.u32(register));
         to.text([cut(self.text, FAULT_TEXT_BYTES)].into_iter());
@@ -171,10 +158,10 @@ impl<'a> FaultRecord<'a> {
             kind: FaultKind::numbered(from.u8()?)?,
             boot: from.u32()?,
             reset: ResetCause::numbered(from.u8()?)?,
-            mode: telemetry::mode(from.u8()?)?,
+            mode: Mode::numbered(from.u8()?)?,
             steps: from.u32()?,
             frame_us: from.u32()?,
-            causes: Causes(from.u64()?),
+            causes: telemetry::causes(from)?,
             exception: from.u32()?,
             registers: [from.u32()?, from.u32()?, from.u32()?, from.u32()?, from.u32()?, from.u32()?],
             text: from.text()?,

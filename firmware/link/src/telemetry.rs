@@ -1,7 +1,7 @@
 //! Telemetry: inputs and outputs of one control step.
 
 use crate::bytes::{Reader, Writer};
-use control::wire::{FRAME_BYTES, decode_frame, encode_command, encode_frame};
+use control::wire::{CAUSE_BYTES, FRAME_BYTES, decode_causes, decode_frame, encode_command, encode_frame};
 use control::{ActiveLimits, Causes, Command, Mode, SensorFrame};
 
 /// One control step.
@@ -13,8 +13,6 @@ pub struct Telemetry {
     pub late: u32,
     /// Whether the command was sent to the motor.
     pub driven: bool,
-    /// The sensors of this step.
-    pub frame: SensorFrame,
     /// The resulting command, with mode, causes and limits.
     pub command: Command,
     /// Slopes of gyro and motor from the sign check; [`control::State::slopes`].
@@ -23,6 +21,8 @@ pub struct Telemetry {
     pub polarity: u8,
     /// Torque that the law would request during the check \[N m\]; [`control::State::hand_torque_nm`].
     pub shown_nm: f32,
+    /// The sensors of this step. Last, so that a new sensor extends the message at its end.
+    pub frame: SensorFrame,
 }
 
 impl Telemetry {
@@ -31,11 +31,11 @@ impl Telemetry {
         to.u32(self.steps);
         to.u32(self.late);
         to.u8(u8::from(self.driven));
-        to.put(&encode_frame(&self.frame));
         to.put(&encode_command(&self.command));
         self.slopes.into_iter().for_each(|slope| to.scalar(slope));
         to.u8(self.polarity);
         to.f32(self.shown_nm);
+        to.put(&encode_frame(&self.frame));
     }
 
     /// Decodes a step; `None` for too few bytes or an unknown mode.
@@ -44,11 +44,11 @@ impl Telemetry {
             steps: from.u32()?,
             late: from.u32()?,
             driven: from.u8()? == 1,
-            frame: frame(from)?,
             command: command(from)?,
             slopes: [from.scalar()?, from.scalar()?],
             polarity: from.u8()?,
             shown_nm: from.f32()?,
+            frame: frame(from)?,
         })
     }
 }
@@ -58,19 +58,18 @@ pub fn frame(from: &mut Reader<'_>) -> Option<SensorFrame> {
     from.chunk::<FRAME_BYTES>().map(decode_frame)
 }
 
+/// Decodes a set of causes.
+pub fn causes(from: &mut Reader<'_>) -> Option<Causes> {
+    from.chunk::<CAUSE_BYTES>().map(decode_causes)
+}
+
 /// Decodes a command as [`encode_command`] encodes it; `None` for an unknown mode.
 pub fn command(from: &mut Reader<'_>) -> Option<Command> {
     Some(Command {
         torque_nm: from.f32()?,
         gain_nm_s_rad: from.f32()?,
         limits: ActiveLimits(from.u16()?),
-        mode: mode(from.u8()?)?,
-        causes: Causes(from.u64()?),
+        mode: Mode::numbered(from.u8()?)?,
+        causes: causes(from)?,
     })
-}
-
-/// Mode by its number on the wire.
-pub fn mode(number: u8) -> Option<Mode> {
-    use Mode::*;
-    [Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault].into_iter().find(|mode| *mode as u8 == number)
 }

@@ -116,7 +116,7 @@ fn run(plan: &Plan) {
         let frame = wire::decode_frame(&black_box([0; wire::FRAME_BYTES]));
         used((wire::encode_frame(&frame), SensorFrame::missing(), Sample::fresh(black_box(0.0))));
         let command = control::step(black_box(plan), black_box(&mut state), &frame);
-        used(wire::encode_command(&command));
+        used((wire::encode_command(&command), wire::decode_causes(&black_box([0; wire::CAUSE_BYTES]))));
         let first = command.causes.iter().next();
         #[cfg(feature = "unwrap")]
         let first = Some(first.unwrap());

@@ -1,11 +1,9 @@
-//! Names and meanings of causes and limits.
+//! Causes and limits as text.
 
 use control::{ActiveLimits, Cause, Causes};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// The list of all causes with names, pages and meanings.
-const LIST: &str = include_str!("../../../docs/faults/README.md");
 /// Directory of the pages.
 const PAGES: &str = "docs/faults";
 
@@ -22,18 +20,27 @@ pub struct NamedCause {
     pub page: String,
 }
 
-/// The causes of a set, by rising number; bits unknown to this program are left out.
-pub fn named(causes: Causes) -> Vec<NamedCause> {
-    causes.iter().filter_map(find).collect()
+impl From<Cause> for NamedCause {
+    fn from(cause: Cause) -> Self {
+        Self { code: cause.code(), name: cause.name(), meaning: cause.meaning(), page: page(cause) }
+    }
 }
 
-fn find(cause: Cause) -> Option<NamedCause> {
-    let begins = format!("| {} | [", cause.code());
-    let row = LIST.lines().find_map(|line| line.strip_prefix(&begins))?;
-    let (name, rest) = row.split_once("](")?;
-    let (page, meaning) = rest.split_once(") | ")?;
-    let meaning = meaning.trim_end_matches(" |");
-    Some(NamedCause { code: cause.code(), name, meaning, page: format!("{PAGES}/{page}") })
+/// The causes of a set, by rising number; bits unknown to this program are left out.
+pub fn named(causes: Causes) -> Vec<NamedCause> {
+    causes.iter().map(NamedCause::from).collect()
+}
+
+/// Page of a cause: its number and its name in lower case with hyphens.
+fn page(cause: Cause) -> String {
+    let mut page = format!("{PAGES}/{:02}", cause.code());
+    for letter in cause.name().chars() {
+        if letter.is_ascii_uppercase() {
+            page.push('-');
+        }
+        page.push(letter.to_ascii_lowercase());
+    }
+    page + ".md"
 }
 
 /// The limits in the order of their bits, named as in `docs/cli.md`.

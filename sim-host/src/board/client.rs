@@ -36,7 +36,9 @@ pub enum ClientError {
     #[error(transparent)]
     Transport(#[from] TransportError),
     /// The board uses another version of the link.
-    #[error("the board speaks version {theirs} of the link, this program version {VERSION}")]
+    #[error(
+        "the board uses version {theirs} of the link, this program version {VERSION}: flash the firmware of this program's release, or use the sim-host of the board's"
+    )]
     Version {
         /// The board's version.
         theirs: u8,

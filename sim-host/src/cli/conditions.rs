@@ -11,7 +11,7 @@ use crate::bicycle::{Geometry, catalogue};
 use crate::parameters;
 use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
-use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
+use crate::ride::{Assist, Conditions, IdealLaw, Imu, ScheduleSpeed};
 use crate::rider::doubts;
 use clap::ValueEnum;
 use control::param::ParamSpec;
@@ -236,7 +236,10 @@ impl ConditionArgs {
         let assist = match self.assist {
             _ if law == Law::None => Assist::None,
             AssistKind::Firmware => Assist::Firmware(Box::new(plan)),
-            AssistKind::Ideal => Assist::Ideal(Box::new(law.clone())),
+            AssistKind::Ideal => {
+                let dead_band = plan.config().dead_band;
+                Assist::Ideal(Box::new(IdealLaw { law: law.clone(), dead_band }))
+            }
         };
         let sensor_delay_ticks = whole_ticks("--sensor-delay", self.sensor_delay, step_s, LONGEST_S)?;
         let mut doubts = rider.as_ref().map_or(Vec::new(), |(_, table, _)| doubts(&bicycle, table));

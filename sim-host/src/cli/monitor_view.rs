@@ -128,12 +128,13 @@ fn line(monitor: &Monitor, step: &Telemetry, damaged: u32) -> String {
 
 /// Next action of the polarity check (docs/safety.md), motor off.
 fn todo(polarity: u8) -> &'static str {
-    match polarity {
-        n if n == PolarityStep::Lean as u8 => "polarity: lean the bicycle to the right",
-        n if n == PolarityStep::Steer as u8 => "polarity: turn the handlebar to the right",
-        n if n == PolarityStep::Push as u8 => "polarity: push the bicycle forward",
-        n if n == PolarityStep::Passed as u8 => "polarity: passed",
-        _ => "polarity: a sign is wrong",
+    match PolarityStep::numbered(polarity) {
+        Some(PolarityStep::Lean) => "polarity: lean the bicycle to the right",
+        Some(PolarityStep::Steer) => "polarity: turn the handlebar to the right",
+        Some(PolarityStep::Push) => "polarity: push the bicycle forward",
+        Some(PolarityStep::Passed) => "polarity: passed",
+        Some(PolarityStep::Wrong) => "polarity: a sign is wrong",
+        None => "polarity: unknown step",
     }
 }
 

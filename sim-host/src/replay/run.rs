@@ -4,7 +4,7 @@ use super::checks::{Check, Checks};
 use super::compare::{Compared, Comparison, held};
 use super::row::{Row, row};
 use control::wire::{FRAME_BYTES, decode_frame};
-use control::{ActiveLimits, CAUSES, Cause, Causes, Command, Mode, Plan, SensorFrame, State};
+use control::{ActiveLimits, Cause, Causes, Command, Mode, Plan, SensorFrame, State};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -294,14 +294,13 @@ fn causes(
     before: Causes,
     counts: bool,
 ) {
-    for cause in CAUSES.into_iter().filter(|cause| now.has(*cause)) {
+    for cause in now.iter() {
         let number = cause.code();
         let at = records.partition_point(|record| record.number < number);
         if records.get(at).is_none_or(|record| record.number != number) {
-            let name = crate::board::causes::named(Causes::of(cause)).first().map_or("?", |named| named.name);
             let record = CauseRecord {
                 number,
-                name,
+                name: cause.name(),
                 first_s: t_s,
                 count: 0,
                 total_s: 0.0,

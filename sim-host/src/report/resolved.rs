@@ -247,6 +247,14 @@ impl ResolvedConfig {
             Assist::Firmware(plan) => Some(plan.config()),
             Assist::None | Assist::Ideal(_) => None,
         };
+        let parameters = match &c.assist {
+            Assist::None => Vec::new(),
+            Assist::Firmware(plan) => departing(plan.config(), &published(plan.config())),
+            Assist::Ideal(ideal) => {
+                let published = Config::thesis(ideal.law.clone());
+                departing(&Config { dead_band: ideal.dead_band, ..published.clone() }, &published)
+            }
+        };
         Self {
             preset: preset.into(),
             bicycle: ResolvedBicycle::new(bicycle),
@@ -264,7 +272,7 @@ impl ResolvedConfig {
             taper_m_s: config.and_then(|c| c.limits.taper).map(|t| (t.zero_m_s, t.full_m_s)),
             sensor_delay_s: f64::from(c.sensor_delay_ticks) * c.step_s,
             plant: ResolvedPlant::new(&c.plant),
-            parameters: config.map_or(BTreeMap::new(), |c| departing(c, &published(c)).into_iter().collect()),
+            parameters: parameters.into_iter().collect(),
             control_rate_hz: config.map(|c| c.rate_hz),
             step_s: c.step_s,
             fall: c.fall,

@@ -94,7 +94,7 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
         if let Assist::Ideal(law) = &self.conditions.assist {
             if stage > 0 {
                 let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
-                given = speed.map(|v| law.gain(v)) * rate;
+                given = rate.zip(speed, |p, v| law.torque_nm(p, v));
             }
         } else if !self.plant.actuator.exact() {
             let elapsed_s = STAGES[stage] * self.conditions.step_s;

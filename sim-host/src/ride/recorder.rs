@@ -107,7 +107,7 @@ impl RideRecorder {
                 self.output(plan, backend, frame(plan, measured, ticks, true))
             }
             Assist::Ideal(law) => ControllerOutput {
-                torque_nm: law.gain(measured.speed_m_s) * measured.roll_rate_rad_s,
+                torque_nm: law.torque_nm(measured.roll_rate_rad_s, measured.speed_m_s),
                 ..ControllerOutput::NONE
             },
         }

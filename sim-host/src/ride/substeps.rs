@@ -88,7 +88,7 @@ impl Period<'_> {
             (Assist::None | Assist::Firmware(_), Some(motor)) => motor.torque(actuator, elapsed_s, v.steer),
             (Assist::Ideal(law), _) => {
                 let (rate, speed) = readings(self.conditions, v, self.initial_m_s);
-                law.gain(speed) * rate
+                law.torque_nm(rate, speed)
             }
         };
         let rider_nm = self.rider.as_ref().map(|rider| rider.rider_state.at.torque);

@@ -75,7 +75,7 @@ impl Assisted {
     fn assist(self) -> Assist {
         match self {
             Assisted::Alone => Assist::None,
-            _ => Assist::Ideal(Box::new(self.law())),
+            _ => Assist::Ideal(Box::new(self.law().into())),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The program, on a board at a serial port.
 
 use control::{Config, GainSchedule, Law};
+use link::frame::VERSION;
 use link::message::Message;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
@@ -97,7 +98,8 @@ fn bad_input_is_told() {
         assert_eq!(bench.run(usage).code, Some(2), "{usage}");
     }
     lock(&board).version = 3;
-    run("list").refused_naming(&["the board speaks version 3 of the link, this program version 1"]);
+    let versions = format!("the board uses version 3 of the link, this program version {VERSION}:");
+    run("list").refused_naming(&[&versions]);
 }
 
 /// Situation: a board with a law of points and values of its own.

@@ -1,6 +1,7 @@
-//! Every cause has its number for ever, its page, and its line in the list.
+//! Every cause has a permanent number, a page, and a row in the list.
 
 use control::{CAUSES, Cause, Causes};
+use sim_host::board::causes::NamedCause;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -49,25 +50,31 @@ fn a_set_gives_back_what_it_got() {
     assert_eq!(set.and(Causes::of(Cause::PathLost)), Causes::of(Cause::PathLost));
 }
 
-/// Situation: the pages in docs/faults. Action: look for each cause's. Must hold: one page each, headed by number and
-/// name, with the three sections, listed in the README; no page more.
+/// Situation: docs/faults: a page for each cause, and the list of all.
+/// Action: compare with the causes of `control`.
+/// Must hold: each cause has one page, headed by its number, name and meaning, with the three sections; the rows of the list
+/// are number, name, page and meaning of each cause. No page and no row more.
 #[test]
-fn every_cause_has_its_page() {
-    let list = std::fs::read_to_string(folder().join("README.md")).unwrap();
+fn the_pages_and_the_list_are_those_of_control() {
     let pages: BTreeSet<String> = std::fs::read_dir(folder())
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .filter(|name| name != "README.md")
         .collect();
     assert_eq!(pages.len(), CAUSES.len());
+    let mut rows = Vec::new();
     for cause in CAUSES {
-        let start = format!("{:02}-", cause.code());
-        let name = pages.iter().find(|name| name.starts_with(&start)).unwrap_or_else(|| panic!("{cause:?}"));
-        let page = std::fs::read_to_string(folder().join(name)).unwrap();
-        assert!(page.starts_with(&format!("# {}: {cause:?}\n", cause.code())), "{name}");
-        for section in ["## When", "## What the controller does", "## What to look at"] {
-            assert!(page.contains(section), "{name}: {section}");
+        let NamedCause { code, name, meaning, page } = NamedCause::from(cause);
+        let file = page.strip_prefix("docs/faults/").unwrap();
+        assert!(pages.contains(file), "{page}");
+        let text = std::fs::read_to_string(folder().join(file)).unwrap();
+        assert!(text.starts_with(&format!("# {code}: {name}\n\n{meaning}\n\n## When\n")), "{page}");
+        for section in ["## What the controller does", "## What to look at"] {
+            assert!(text.contains(section), "{page}: {section}");
         }
-        assert!(list.contains(&format!("| {} | [{cause:?}]({name}) |", cause.code())), "{name}");
+        rows.push(format!("| {code} | [{name}]({file}) | {meaning} |"));
     }
+    let list = std::fs::read_to_string(folder().join("README.md")).unwrap();
+    let listed: Vec<&str> = list.lines().skip_while(|line| !line.starts_with("| ---")).skip(1).collect();
+    assert_eq!(listed, rows);
 }

@@ -1,5 +1,6 @@
 //! Flight cards: the parts of the controller on the nonlinear bicycle.
 
+mod dead_band;
 mod estimate;
 mod fault_heights;
 mod fault_pages;

@@ -23,7 +23,7 @@ fn model(law: Law, rider: &Rider) -> Model {
 
 /// A ride after a steer rate so small that the bicycle is linear.
 fn small(law: &Law, rider: &Rider, speed: f64, seconds: f64) -> Vec<TracePoint> {
-    let assist = if *law == Law::None { Assist::None } else { Assist::Ideal(Box::new(law.clone())) };
+    let assist = if *law == Law::None { Assist::None } else { Assist::Ideal(Box::new(law.clone().into())) };
     let conditions = Conditions { assist, rider: Some(rider.clone()), time_limit_s: seconds, ..alone() };
     let start = Start { speed_m_s: speed, steer_rate_rad_s: SMALL, roll_rate_rad_s: 0.0 };
     let (ride, trace) = traced(&conditions, start);

@@ -1,8 +1,9 @@
 //! Encoding and decoding of every message.
 
 use control::wire::{decode_frame, encode_command, encode_frame};
-use control::{ActiveLimits, CAUSES, Causes, Command, Mode, SensorFrame};
+use control::{ActiveLimits, CAUSES, Causes, Command, Mode, Sample, SensorFrame};
 use link::Key;
+use link::bytes::Writer;
 use link::frame::{Decoder, Frame, MAX_FRAME, MAX_PAYLOAD, Received, VERSION};
 use link::message::{Message, NoMessage};
 use link::page::Page;
@@ -11,7 +12,7 @@ use link::report::{
     FAULT_BYTES, FAULT_TEXT_BYTES, FaultKind, FaultRecord, Hello, ResetCause, StoredFault, config_hash,
 };
 use link::requests::request;
-use link::telemetry::{Telemetry, mode};
+use link::telemetry::Telemetry;
 use proptest::prelude::*;
 
 const MODES: [Mode; 7] = {
@@ -185,6 +186,43 @@ fn every_message_comes_through() {
     }
 }
 
+/// Situation: a later board of this version: causes 60, 63, 64 and 127 beside those of today, and the sample of one more
+/// sensor at the end of its frame.
+/// Action: decode its telemetry, its sensor frame and its command as today's program does, and encode the result.
+/// Must hold: every field of today is the same; causes up to 63 are there, and come through again; causes from 64 on are
+/// left out and change no other field.
+#[test]
+fn a_sensor_can_be_added() {
+    const CAUSES_AT: usize = 4 + 4 + 1 + 4 + 4 + 2 + 1;
+    let Some(Message::Telemetry(today)) = all().into_iter().find(|m| matches!(m, Message::Telemetry(_)))
+    else {
+        panic!("no telemetry")
+    };
+    let frame = SensorFrame { steer_rad: Sample { value: 0.25, age_ticks: 3 }, engage: true, ..today.frame };
+    let today = Telemetry { frame, ..today };
+    let mut bytes = [0; MAX_PAYLOAD];
+    let mut writer = Writer::new(&mut bytes);
+    today.encode(&mut writer);
+    writer.put(&[0, 0, 0x80, 0x3f, 0, 0]);
+    let used = writer.used().expect("room");
+    let known = u128::from(today.command.causes.0);
+    let reported = known | 1 << 60 | 1 << 63 | 1 << 64 | 1 << 127;
+    bytes[CAUSES_AT..][..16].copy_from_slice(&reported.to_le_bytes());
+    let of = |kind, payload| Message::decode(&Frame { kind, sequence: 0, payload }).expect("a message");
+
+    let causes = Causes(today.command.causes.0 | 1 << 60 | 1 << 63);
+    let command = Command { causes, ..today.command };
+    let received = Telemetry { command, ..today };
+    assert_eq!(of(0xa0, &bytes[..used]), Message::Telemetry(received));
+    through(&Message::Telemetry(received), |got| assert_eq!(*got, Message::Telemetry(received)));
+
+    assert_eq!(of(0x11, &bytes[used - 6 - 81..used]), Message::PilFrame(frame));
+    let mut answer = encode_command(&today.command).to_vec();
+    answer[CAUSES_AT - 9..].copy_from_slice(&reported.to_le_bytes());
+    answer.extend(0.5_f32.to_le_bytes());
+    assert_eq!(of(0x91, &answer), Message::PilCommand { command, authority: 0.5 });
+}
+
 /// Situation: every reason, mode, fault kind and reset cause, and numbers beyond them.
 /// Action: convert to its number and back.
 /// Must hold: the same; none for the numbers beyond.
@@ -195,7 +233,10 @@ fn every_number_means_one_thing() {
             RejectReason::numbered(number).map(|why| why as u8),
             (1..=11).contains(&number).then_some(number)
         );
-        assert_eq!(mode(number).map(|mode| mode as u8), (0..=6).contains(&number).then_some(number));
+        assert_eq!(
+            Mode::numbered(number).map(|mode| mode as u8),
+            (0..=6).contains(&number).then_some(number)
+        );
         assert_eq!(
             FaultKind::numbered(number).map(|kind| kind as u8),
             (1..=6).contains(&number).then_some(number)

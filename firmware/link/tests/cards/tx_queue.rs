@@ -59,7 +59,7 @@ fn one_step_of_as_many_as_the_divisor_is_told() {
     }
 }
 
-/// Situation: a line of 40 bytes per step, with telemetry at every step: a third of the required rate.
+/// Situation: a line of 47 bytes per step, with telemetry at every step: a third of the required rate.
 /// Action: 3000 steps, then drain the queue.
 /// Must hold: nothing blocks; every frame arrived complete or was counted as dropped, and the sequence numbers show
 /// which; a third arrived.
@@ -69,7 +69,7 @@ fn telemetry_is_dropped_whole_and_counted() {
     let mut got = Vec::new();
     for steps in 1..=3000 {
         sender.step(&telemetry(steps));
-        got.extend(drain(&mut sender, &mut decoder, 40));
+        got.extend(drain(&mut sender, &mut decoder, 47));
     }
     got.extend(drain(&mut sender, &mut decoder, usize::MAX));
     assert_eq!(decoder.dropped(), Default::default());
