@@ -1,5 +1,6 @@
 //! One control period: computes one torque command from one sensor frame.
 
+use crate::command::Command;
 use crate::estimate::predict;
 use crate::estimate::smooth::{self, SmoothState};
 use crate::estimate::{self, EstimateState, EstimatorInput, Motion, RollError};
@@ -104,22 +105,6 @@ impl State {
     pub fn roll(&self) -> Roll {
         self.roll
     }
-}
-
-/// Requested motor torque and the reasons for it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Command {
-    /// Steer torque in the motor's sign ([`crate::Calibration::motor_reversed`]) \[N m\]. Always finite.
-    pub torque_nm: f32,
-    /// Gain of the law \[N m s/rad\]; 0 while the authority is 0, or speed or roll rate is unknown or
-    /// not yet aligned.
-    pub gain_nm_s_rad: f32,
-    /// Limits that changed the torque.
-    pub limits: ActiveLimits,
-    /// Mode of the controller.
-    pub mode: Mode,
-    /// All causes present: those that forbid or reduce torque, and those that are only reported.
-    pub causes: Causes,
 }
 
 /// One control period: computes the motor torque from the sensors' samples of this instant.
@@ -324,13 +309,3 @@ fn speed(
 
 /// Minimum assumed cosine of the ground steer angle; also used while that angle is unknown.
 const MIN_COS: f32 = 0.4;
-
-impl Plan {
-    /// Whether a press of the switch that begins or continues in the period after `command` would engage if nothing
-    /// else changes: the mode is standby and only the press is missing.
-    pub fn ready(&self, command: &Command) -> bool {
-        let rejections = self.reactions.rejections().with(Causes::of(Cause::SwitchHeld));
-        let blocking = command.causes.and(rejections);
-        command.mode == Mode::Standby && (blocking.is_empty() || blocking == Causes::of(Cause::SwitchOff))
-    }
-}

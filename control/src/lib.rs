@@ -30,6 +30,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod command;
 pub mod config;
 pub mod controller;
 pub mod estimate;
@@ -43,8 +44,9 @@ pub mod safety;
 pub mod sensors;
 pub mod wire;
 
+pub use command::Command;
 pub use config::Config;
-pub use controller::{Command, State, step};
+pub use controller::{State, step};
 pub use fault::{CAUSES, Cause, Causes};
 pub use law::Law;
 pub use law::capsize::Capsize;

@@ -1,10 +1,12 @@
 //! Constants derived from a configuration, computed once before the first step.
 
+use crate::command::Command;
 use crate::config::Config;
 use crate::estimate::smooth::SmoothPlan;
+use crate::fault::{Cause, Causes};
 use crate::law::path_tracking::PathTracking;
 use crate::param::{Checker, ParamError};
-use crate::safety::engagement::{EngagementPlan, Reactions};
+use crate::safety::engagement::{EngagementPlan, Mode, Reactions};
 use crate::safety::guard::GuardPlan;
 use crate::safety::limiter::LimiterPlan;
 use crate::sensors::calibration::CalibrationPlan;
@@ -85,6 +87,14 @@ impl Plan {
     /// The configuration that this plan was built from.
     pub fn config(&self) -> &Config {
         &self.config
+    }
+
+    /// Whether a press of the switch that begins or continues in the period after `command` would engage if nothing
+    /// else changes: the mode is standby and only the press is missing.
+    pub fn ready(&self, command: &Command) -> bool {
+        let rejections = self.reactions.rejections().with(Causes::of(Cause::SwitchHeld));
+        let blocking = command.causes.and(rejections);
+        command.mode == Mode::Standby && (blocking.is_empty() || blocking == Causes::of(Cause::SwitchOff))
     }
 
     /// Control periods from boot to full authority, if every sensor is valid from the start and the switch is pressed

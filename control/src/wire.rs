@@ -1,8 +1,8 @@
 //! Binary encoding of frames, commands and configurations, the same on every link: little-endian, fixed length, any bit
 //! pattern accepted.
 
+use crate::command::Command;
 use crate::config::Config;
-use crate::controller::Command;
 use crate::fault::Causes;
 use crate::law::gain_schedule::{GainSchedule, TABLE_POINTS};
 use crate::law::{LAW_NAMES, Law};

@@ -1,6 +1,6 @@
 //! Reaction to fatal failures: switches the outputs off, stores a fault record, restarts.
 
-use crate::{board, retained, tasks};
+use crate::{board, retained, telemetry};
 use core::sync::atomic::{AtomicU32, Ordering};
 use link::fault_log::{self, LastStep};
 use link::report::{FaultKind, FaultRecord, ResetCause};
@@ -46,7 +46,7 @@ pub fn cause() -> ResetCause {
 
 /// Stores a fault with the state of the last control step. Can be called from any context.
 pub fn note(kind: FaultKind, registers: Registers, text: &str) {
-    keep(kind, &tasks::latest().map_or_else(LastStep::default, |t| t.last_step()), registers, text);
+    keep(kind, &telemetry::latest().map_or_else(LastStep::default, |t| t.last_step()), registers, text);
 }
 
 fn keep(kind: FaultKind, last: &LastStep, registers: Registers, text: &str) {

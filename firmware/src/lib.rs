@@ -23,6 +23,7 @@ pub mod failure;
 pub mod heartbeat;
 pub mod retained;
 pub mod tasks;
+pub mod telemetry;
 
 /// Identity of an image.
 #[derive(Clone, Copy, Debug)]

@@ -13,7 +13,7 @@ pub mod num;
 pub mod parameters;
 pub mod pil;
 pub mod plant;
-mod range;
+pub mod range;
 pub mod recording;
 pub mod replay;
 pub mod report;

@@ -1,7 +1,7 @@
 //! Lists and sets the controller's parameters by name, with values as text.
 
 use control::Config;
-use control::param::{ParamSpec, ParamVisitor};
+use control::param::{ParamError, ParamSpec, ParamVisitor};
 
 /// Name and value of every parameter except the law's, in the text form that [`set`] reads.
 pub fn list(config: &Config) -> Vec<(String, String)> {
@@ -16,19 +16,53 @@ pub fn departing(config: &Config, from: &Config) -> Vec<(String, String)> {
     both.filter(|(a, b)| a != b).map(|(a, _)| a).collect()
 }
 
+/// A parameter that can't be set.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SetError {
+    /// No parameter has this name.
+    #[error("no parameter {key}; nearest are {}; `sim-host param list --virtual-board` shows all", near.join(", "))]
+    Unknown {
+        /// As given.
+        key: String,
+        /// The three most similar names.
+        near: Vec<String>,
+    },
+    /// Not a number.
+    #[error("`{0}` is not a number")]
+    Number(String),
+    /// Not a whole number.
+    #[error("`{0}` is not a whole number")]
+    Whole(String),
+    /// A number outside its range.
+    #[error("{0}")]
+    Range(ParamError),
+    /// None of the names that it can have.
+    #[error("`{value}` is none of {known}")]
+    Choice {
+        /// As given.
+        value: String,
+        /// The names.
+        known: String,
+    },
+}
+
+impl From<ParamError> for SetError {
+    fn from(error: ParamError) -> Self {
+        Self::Range(error)
+    }
+}
+
 /// Sets the parameter `key`.
 ///
 /// # Errors
 /// An unknown parameter; a value that does not parse or is out of range.
-pub fn set(config: &mut Config, key: &str, value: &str) -> Result<(), String> {
+pub fn set(config: &mut Config, key: &str, value: &str) -> Result<(), SetError> {
     let mut setter = Setter { key, value, done: None };
     config.visit_params(&mut setter);
     setter.done.unwrap_or_else(|| {
         let near = nearest(list(config).into_iter().map(|(name, _)| name), key);
-        Err(format!(
-            "no parameter {key}; nearest are {}; `sim-host param list --virtual-board` shows all",
-            near.join(", ")
-        ))
+        Err(SetError::Unknown { key: key.into(), near })
     })
 }
 
@@ -49,7 +83,7 @@ const SWITCH: &[&str] = &["off", "on"];
 struct Setter<'a> {
     key: &'a str,
     value: &'a str,
-    done: Option<Result<(), String>>,
+    done: Option<Result<(), SetError>>,
 }
 
 impl Setter<'_> {
@@ -59,8 +93,8 @@ impl Setter<'_> {
             return None;
         }
         let parsed = self.value.parse::<f32>().ok().filter(|x| !x.is_infinite());
-        let parsed = parsed.ok_or_else(|| format!("`{}` is not a number", self.value));
-        let checked = parsed.and_then(|x| leaf.check(x).map(|()| x).map_err(|e| e.to_string()));
+        let parsed = parsed.ok_or_else(|| SetError::Number(self.value.into()));
+        let checked = parsed.and_then(|x| leaf.check(x).map(|()| x).map_err(SetError::from));
         self.done = Some(checked.clone().map(drop));
         checked.ok()
     }
@@ -71,7 +105,7 @@ impl Setter<'_> {
             return None;
         }
         let place = names.iter().position(|name| *name == self.value);
-        let wrong = || format!("`{}` is none of {}", self.value, names.join(", "));
+        let wrong = || SetError::Choice { value: self.value.into(), known: names.join(", ") };
         self.done = Some(place.map(drop).ok_or_else(wrong));
         place.map(|place| place as u8)
     }
@@ -95,7 +129,7 @@ impl ParamVisitor for Setter<'_> {
             if number.fract() == 0.0 {
                 *value = number as u16;
             } else {
-                self.done = Some(Err(format!("`{}` is not a whole number", self.value)));
+                self.done = Some(Err(SetError::Whole(self.value.into())));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Compares the time of a delayed rider's ride and basin in sim-host with that of Python programs for the same ride.
 
-use crate::image::root;
 use crate::instructions::field;
+use crate::paths::root;
 use crate::process::{capture, must};
 use crate::{Result, process};
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! Measures line coverage of the control crate's torque path by that crate's tests.
 
 use crate::Result;
-use crate::image::root;
+use crate::paths::root;
 use crate::process::{Outcome, capture, must};
 use std::path::{Path, PathBuf};
 use std::process::Command;

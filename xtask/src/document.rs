@@ -1,10 +1,10 @@
 //! Writes `docs/images.md` with sizes and instruction counts (`cargo xtask size`, `cargo xtask instructions`); a test
 //! compares the committed numbers with fresh ones.
 
-use crate::image::root;
 use crate::instructions::{
     BUDGET, Count, EVERYTHING_MARGIN_PERCENT, MARGIN_PERCENT, MOTOR_BUDGET, STACK_BUDGET, with_margin,
 };
+use crate::paths::root;
 use crate::size::Size;
 use crate::{Result, instructions, size};
 use std::collections::BTreeMap;

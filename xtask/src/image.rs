@@ -1,5 +1,7 @@
 //! The firmware images: list, build and paths.
 
+use crate::paths::target_dir;
+pub use crate::paths::{TARGET, cargo_home, path, root};
 use crate::process::{Outcome, capture, must};
 use crate::{Result, setup};
 use std::ffi::{OsStr, OsString};
@@ -8,9 +10,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 use std::time::Duration;
-
-/// The target of every image: Cortex-M4 with hardware f32.
-pub const TARGET: &str = "thumbv7em-none-eabihf";
 
 /// An image with its budgets.
 pub struct Image {
@@ -53,27 +52,6 @@ pub fn build_all() -> Result<()> {
 /// Longer than any build takes, even on a busy machine.
 const BUILD_LIMIT: Duration = Duration::from_secs(4 * 3600);
 
-/// The workspace's root.
-pub fn root() -> &'static Path {
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
-    manifest.parent().unwrap_or(manifest)
-}
-
-/// Cargo's target directory of the images, separate from the host's.
-pub fn target_dir() -> PathBuf {
-    root().join("target/firmware")
-}
-
-/// Path of a built image.
-pub fn path(name: &str) -> PathBuf {
-    path_in(root(), name)
-}
-
-/// Path of an image built in the clone at `root`.
-pub(crate) fn path_in(root: &Path, name: &str) -> PathBuf {
-    root.join("target/firmware").join(TARGET).join("firmware").join(name)
-}
-
 /// The bytes of an image that are flashed, without debug information.
 ///
 /// # Errors
@@ -83,12 +61,6 @@ pub fn loaded(image: &Path) -> Result<Vec<u8>> {
     let mut objcopy = Command::new("arm-none-eabi-objcopy");
     must(objcopy.args(["-O", "binary"]).arg(image).arg(&bytes), Duration::from_secs(600))?;
     std::fs::read(&bytes).map_err(|error| format!("{}: {error}", bytes.display()))
-}
-
-/// Cargo's home directory, with its downloads.
-pub fn cargo_home() -> Option<PathBuf> {
-    let set = std::env::var_os("CARGO_HOME").map(PathBuf::from);
-    set.or_else(|| Some(std::env::home_dir()?.join(".cargo")))
 }
 
 /// Builds the images of one board.

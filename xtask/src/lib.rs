@@ -8,6 +8,7 @@ pub mod document;
 pub mod image;
 pub mod instructions;
 pub mod mutants;
+pub mod paths;
 pub mod process;
 pub mod progress;
 pub mod qemu;

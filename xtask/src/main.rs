@@ -7,7 +7,7 @@ use xtask::bench::bench;
 use xtask::document::{self, instruction_table, size_table};
 use xtask::reproducible::reproducible;
 use xtask::setup::{TargetSource, setup};
-use xtask::{Result, coverage, image, instructions, mutants, progress, qemu, virtual_board};
+use xtask::{Result, coverage, image, instructions, mutants, paths, progress, qemu, virtual_board};
 
 const HELP: &str = "\
 cargo xtask <command> [--help]
@@ -225,7 +225,7 @@ fn test(words: &[&str]) -> Result<()> {
     image::build_all()?;
     let arguments = words.get(split + 1..).unwrap_or_default();
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    cargo.current_dir(image::root()).arg("test").env("STEER_ASSIST_REQUIRE_QEMU", "1");
+    cargo.current_dir(paths::root()).arg("test").env("STEER_ASSIST_REQUIRE_QEMU", "1");
     if !arguments.iter().any(|word| word.starts_with("-p") || word.starts_with("--package")) {
         cargo.args(EVERYTHING);
     }

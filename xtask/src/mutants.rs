@@ -1,7 +1,7 @@
 //! Runs mutation tests of the control crate with cargo-mutants, configured in `.cargo/mutants.toml`.
 
 use crate::Result;
-use crate::image::root;
+use crate::paths::root;
 use crate::process::{capture, must};
 use std::process::Command;
 use std::time::Duration;

@@ -1,7 +1,7 @@
 //! Runs images in QEMU, on a machine with the same chip as the board.
 
 use crate::process::{Outcome, capture};
-use crate::{Result, image};
+use crate::{Result, paths};
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -37,7 +37,7 @@ pub fn run(
         qemu.arg("-icount").arg(format!("shift={shift},sleep=off"));
     }
     qemu.arg("-semihosting-config").arg(format!("enable=on,target=native{words}"));
-    capture(qemu.arg("-kernel").arg(image::path(image)), limit)
+    capture(qemu.arg("-kernel").arg(paths::path(image)), limit)
 }
 
 /// A directory for one run's files, under `target`. Removed with this value, except in a failing test, where it remains
@@ -66,7 +66,7 @@ impl Drop for Directory {
 /// # Errors
 /// It cannot be created.
 pub fn directory(name: &str) -> Result<Directory> {
-    let directory = image::root().join("target/qemu").join(format!("{name}-{}", std::process::id()));
+    let directory = paths::root().join("target/qemu").join(format!("{name}-{}", std::process::id()));
     // It may not exist.
     let _ = std::fs::remove_dir_all(&directory);
     std::fs::create_dir_all(&directory).map_err(|e| format!("{}: {e}", directory.display()))?;

@@ -1,8 +1,9 @@
 //! Checks that an image's bytes depend on source and compiler only, by comparing builds in three folders.
 
-use crate::image::{IMAGES, loaded, root};
+use crate::image::{IMAGES, loaded};
+use crate::paths::{self, root};
 use crate::process::{capture, must};
-use crate::{Result, image, progress};
+use crate::{Result, progress};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
@@ -62,7 +63,7 @@ fn clone(folder: &Path, name: &str) -> Result<Vec<Vec<u8>>> {
     progress::must_whenever(&mut cargo)?;
     IMAGES
         .iter()
-        .map(|image| Ok(without(&loaded(&image::path_in(folder, image.name))?, commit.trim())))
+        .map(|image| Ok(without(&loaded(&paths::path_in(folder, image.name))?, commit.trim())))
         .collect()
 }
 
@@ -71,7 +72,7 @@ fn cargo_home(folder: &Path) -> Result<PathBuf> {
     let home = folder.with_extension("cargo-home");
     let make = || {
         std::fs::create_dir_all(&home)?;
-        let real = image::cargo_home().unwrap_or_default();
+        let real = paths::cargo_home().unwrap_or_default();
         std::os::unix::fs::symlink(real.join("registry"), home.join("registry"))
     };
     make().map_err(|error| format!("{}: {error}", home.display()))?;

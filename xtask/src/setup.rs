@@ -1,7 +1,7 @@
 //! Installs what the images need beyond stable Rust: the chip's target, QEMU and the size tool.
 
 use crate::Result;
-use crate::image::{self, TARGET, root};
+use crate::paths::{TARGET, root, target_dir};
 use crate::process::must;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -60,7 +60,7 @@ fn add_target(source: TargetSource) -> Result<()> {
     };
     // Cargo does not detect another `core` of the same release, so everything built with an earlier one is removed, if
     // there is any.
-    let _ = std::fs::remove_dir_all(image::target_dir());
+    let _ = std::fs::remove_dir_all(target_dir());
     match source {
         TargetSource::Rustup => rustup(),
         TargetSource::Debian => debian(),

@@ -1,6 +1,7 @@
 //! Measures the use of flash and RAM by the images.
 
-use crate::image::{self, IMAGES};
+use crate::image::IMAGES;
+use crate::paths;
 use crate::process::capture;
 use crate::{Result, setup};
 use std::process::Command;
@@ -50,7 +51,7 @@ pub fn sizes() -> Result<Vec<Size>> {
         .iter()
         .map(|image| {
             let mut tool = Command::new("arm-none-eabi-size");
-            let outcome = capture(tool.arg(image::path(image.name)), Duration::from_secs(600))
+            let outcome = capture(tool.arg(paths::path(image.name)), Duration::from_secs(600))
                 .map_err(|error| format!("{error}\n{}", setup::missing().join("\n")))?;
             let row = outcome.stdout.lines().nth(1).unwrap_or_default();
             let mut numbers = row.split_whitespace().map_while(|word| word.parse().ok());

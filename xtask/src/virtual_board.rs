@@ -2,14 +2,14 @@
 //! dependencies.
 
 use crate::process::must;
-use crate::{Result, image, progress};
+use crate::{Result, image, paths, progress};
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
 /// Path of the built program.
 pub fn program() -> PathBuf {
-    image::root().join("target/virtual-board/virtual-board")
+    paths::root().join("target/virtual-board/virtual-board")
 }
 
 /// Builds the program and the images it runs.
@@ -41,7 +41,7 @@ pub fn test(arguments: &[&str]) -> Result<()> {
 
 fn cargo(command: &str) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    cargo.current_dir(image::root()).arg(command);
+    cargo.current_dir(paths::root()).arg(command);
     // The emulated core declares a newer Rust version than it needs.
     cargo.args(["--package", "virtual-board", "--ignore-rust-version"]);
     cargo

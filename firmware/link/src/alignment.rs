@@ -1,8 +1,7 @@
 //! The stored offset of the motor's encoder, and the choice between the stored offset and the program's.
 
 use crate::bytes::{Reader, Writer};
-use crate::record::NoRecord;
-use crate::store::InvalidRecord;
+use crate::record::{InvalidRecord, NoRecord};
 use core::fmt;
 
 /// Version of the record's layout; records of another layout are not read.

@@ -27,6 +27,19 @@ pub enum NoRecord {
     Malformed,
 }
 
+/// Reason why a stored record is invalid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum InvalidRecord {
+    /// The flash or its pages can't be read.
+    Unreadable,
+    /// The newest record is lost; an older one can remain.
+    Lost,
+    /// Not a record.
+    NoRecord(NoRecord),
+    /// Inconsistent values.
+    Inconsistent(ParamError),
+}
+
 /// A decoded record.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {

@@ -6,7 +6,7 @@
 //! invalid. The encoder's offset is stored in the same way, in two items of its own.
 
 use crate::alignment::Alignment;
-use crate::record::{self, Applied, NoRecord, RECORD_BYTES, Record};
+use crate::record::{self, Applied, InvalidRecord, NoRecord, RECORD_BYTES, Record};
 use crate::word_flash::WordFlash;
 use control::Config;
 use control::param::ParamError;
@@ -53,19 +53,6 @@ impl Default for Room {
     fn default() -> Self {
         Self::new()
     }
-}
-
-/// Reason why a stored record is invalid.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum InvalidRecord {
-    /// The flash or its pages can't be read.
-    Unreadable,
-    /// The newest record is lost; an older one can remain.
-    Lost,
-    /// Not a record.
-    NoRecord(NoRecord),
-    /// Inconsistent values.
-    Inconsistent(ParamError),
 }
 
 /// Result of loading the parameters at start.

@@ -13,7 +13,7 @@ use embassy_time::{Duration, Instant, Timer};
 use firmware::board::semihosting::{argument, exit};
 use firmware::board::{self, Exit, executor};
 use firmware::heartbeat::Task;
-use firmware::tasks;
+use firmware::{tasks, telemetry};
 use link::report::config_hash;
 use static_cell::StaticCell;
 
@@ -42,7 +42,7 @@ async fn block(every: Duration, hold: Duration) {
 async fn judge(length: Duration) {
     let start = Instant::from_millis(Instant::now().as_millis());
     Timer::at(start + length).await;
-    let Some(t) = tasks::latest() else { exit(Exit::Failure) };
+    let Some(t) = telemetry::latest() else { exit(Exit::Failure) };
     let expected = (length.as_micros() / firmware::deadline::PERIOD.as_micros()) as u32;
     let missed = t.deadlines.missed(length);
     let (steps, worst_us, mode) = (t.deadlines.steps, t.deadlines.worst_us, t.command.mode.name());

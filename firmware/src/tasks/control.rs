@@ -3,94 +3,12 @@
 use super::settings;
 use crate::deadline::{Deadlines, PERIOD};
 use crate::heartbeat::Task;
+use crate::telemetry::{self, Telemetry};
 use crate::{board, crash, retained};
-use ::control::sensors::polarity::PolarityStep;
-use ::control::{Command, Mode, Plan, SensorFrame, State, step};
-use core::cell::RefCell;
-use embassy_sync::blocking_mutex::Mutex;
-use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use ::control::{Mode, Plan, State, step};
 use embassy_time::{Instant, Timer};
-use link::fault_log::{self, LastStep};
+use link::fault_log;
 use link::report::FaultKind;
-
-/// Reason for which a board gives no torque, whatever the command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
-    /// The offsets of the current sensors are still being measured.
-    NotReady,
-    /// The offset of the motor's encoder is unknown.
-    NotAligned,
-    /// The command timed out; the bridge was open in between.
-    Stale,
-    /// The gate driver rejected its settings, or reported a fault.
-    GateDriver,
-    /// The outputs were switched off until the next start.
-    OutputsOff,
-    /// Fault of the motor loop, by its number in docs/motor.md; over-current is 1.
-    MotorFault(u8),
-}
-
-impl Refusal {
-    /// Text of the reason.
-    pub const fn reason(self) -> &'static str {
-        match self {
-            Refusal::NotReady => "not ready",
-            Refusal::NotAligned => "not aligned",
-            Refusal::Stale => "command too late",
-            Refusal::GateDriver => "gate driver",
-            Refusal::OutputsOff => "outputs off",
-            Refusal::MotorFault(_) => "motor fault",
-        }
-    }
-}
-
-/// Inputs and outputs of the last control step.
-#[derive(Clone, Copy, Debug)]
-pub struct Telemetry {
-    /// Number of steps, and of missed deadlines.
-    pub deadlines: Deadlines,
-    /// The sensors of the last step.
-    pub frame: SensorFrame,
-    /// The resulting command.
-    pub command: Command,
-    /// Authority, 0 to 1.
-    pub authority: f32,
-    /// Regression gains of the sign check; [`State::slopes`].
-    pub slopes: [Option<f32>; 2],
-    /// Number of the configuration of the step; see [`settings::take`].
-    pub configuration: u32,
-    /// Step of the polarity check.
-    pub polarity: PolarityStep,
-    /// Torque shown by the polarity check \[N m\].
-    pub shown_nm: f32,
-    /// Whether the motor accepted the command.
-    pub drive: Result<(), Refusal>,
-}
-
-impl Telemetry {
-    /// State of the controller, for the fault log.
-    pub fn last_step(&self) -> LastStep {
-        LastStep {
-            steps: self.deadlines.steps,
-            frame_us: self.frame.now_us,
-            causes: self.command.causes,
-            mode: self.command.mode,
-        }
-    }
-}
-
-static LATEST: Mutex<CriticalSectionRawMutex, RefCell<Option<Telemetry>>> = Mutex::new(RefCell::new(None));
-
-/// Data of the last control step; `None` before the first, and in a fault handler that interrupts their writing.
-pub fn latest() -> Option<Telemetry> {
-    LATEST.lock(|latest| latest.try_borrow().ok().and_then(|latest| *latest))
-}
-
-/// Command and authority of the last step, as in [`latest`].
-pub fn commanded() -> Option<(Command, f32)> {
-    let of = |t: &Telemetry| (t.command, t.authority);
-    LATEST.lock(|latest| latest.try_borrow().ok().and_then(|latest| latest.as_ref().map(of)))
-}
 
 /// Runs one [`step`] at every whole [`PERIOD`] of the clock, beginning with the next one, with the newest plan of
 /// [`settings::offer`].
@@ -125,7 +43,7 @@ pub async fn control(plan: &'static mut Plan) {
             shown_nm: state.hand_torque_nm(),
             drive,
         };
-        LATEST.lock(|latest| *latest.borrow_mut() = Some(telemetry));
+        telemetry::set(telemetry);
         retained::with(|ring| fault_log::stepped(ring, &telemetry.last_step()));
         if command.mode == Mode::Fault && mode != Mode::Fault {
             crash::note(FaultKind::Controller, crash::Registers::default(), "");

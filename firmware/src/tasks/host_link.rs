@@ -2,8 +2,8 @@
 //! task.
 
 use super::settings::{self, StoredConfig};
-use super::{Telemetry, latest};
 use crate::heartbeat::Task;
+use crate::telemetry::{Telemetry, latest};
 use crate::{Image, board, crash, retained};
 use ::control::Config;
 use ::control::sensors::polarity::PolarityStep;

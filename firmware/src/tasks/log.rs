@@ -1,8 +1,8 @@
 //! Periodic log line, from the lowest priority.
 
-use super::latest;
 use crate::board;
 use crate::heartbeat::Task;
+use crate::telemetry::latest;
 use embassy_time::{Duration, Ticker};
 
 /// Heartbeat period, and number of heartbeats per log line.

@@ -1,6 +1,6 @@
 //! The configuration in use, the next one, and the one stored in flash with the offset of the motor's encoder.
 
-use super::latest;
+use crate::telemetry::latest;
 use crate::{board, heartbeat};
 use ::control::{Config, Mode, Plan};
 use core::cell::RefCell;
@@ -9,7 +9,8 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use link::Store;
 use link::alignment::{Alignment, Offset};
-use link::store::{Found, InvalidRecord, NotStored, Room};
+use link::record::InvalidRecord;
+use link::store::{Found, NotStored, Room};
 use static_cell::{ConstStaticCell, StaticCell};
 
 /// A plan for the controller.

@@ -34,7 +34,7 @@ pub fn drawn(
 ) -> Result<Drawn, SearchError> {
     let seed = conditions.plant.seed;
     let ridden = |i: u32| {
-        let parameters = measured.draw(seed, i.into()).map_err(SearchError)?;
+        let parameters = measured.draw(seed, i.into())?;
         let drawn = Conditions { bicycle: Geometry::new(&parameters), ..conditions.clone() };
         drawn.check()?;
         Ok(drawn)

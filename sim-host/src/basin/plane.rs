@@ -88,13 +88,13 @@ impl PlaneSearch {
     /// # Errors
     /// States the value and its range.
     pub fn check(&self) -> Result<(), SearchError> {
-        let within = |name, value, min, max| within(name, value, min, max).map_err(SearchError);
         within("speed (m/s)", self.speed, 0.0, 30.0)?;
         within("number of rays", self.rays as f64, 2.0, 10_000.0)?;
         within("largest steer rate (rad/s)", self.max_steer_rate, 0.01, 100.0)?;
         within("largest roll rate (rad/s)", self.max_roll_rate, 0.01, 100.0)?;
         within("points of a ray", self.points as f64, 1.0, 10_000.0)?;
-        within("tolerance as a part of a ray", self.tolerance, 1e-9, 1.0 / self.points as f64)
+        within("tolerance as a part of a ray", self.tolerance, 1e-9, 1.0 / self.points as f64)?;
+        Ok(())
     }
 }
 

@@ -1,8 +1,10 @@
 //! Basin search: a scan over disturbances, then each border is narrowed to the tolerance.
 
 use super::{Basin, Column, Island, ScanPoint, Work};
-use crate::range::within;
+use crate::bicycle::uncertain::DrawError;
+use crate::range::{RangeError, within};
 use crate::ride::{Conditions, ConditionsError, FallCause, RemoteError, Ride, Start, rides};
+use crate::rider::ScheduleError;
 use rayon::prelude::*;
 use std::convert::Infallible;
 
@@ -43,20 +45,35 @@ pub struct Search {
     pub tolerance: f64,
 }
 
-/// A rejected search, with the reason.
+/// A search that can't be done.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct SearchError(pub String);
-
-impl From<ConditionsError> for SearchError {
-    fn from(error: ConditionsError) -> Self {
-        Self(error.0)
-    }
+#[non_exhaustive]
+pub enum SearchError {
+    /// A value outside its range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// Conditions that can't be simulated.
+    #[error(transparent)]
+    Conditions(#[from] ConditionsError),
+    /// A changed schedule of the rider.
+    #[error(transparent)]
+    Schedule(#[from] ScheduleError),
+    /// No bicycle can be drawn.
+    #[error(transparent)]
+    Draw(#[from] DrawError),
+    /// A sensitivity where no ride falls.
+    #[error("nothing falls up to {max_rate} rad/s at {speed} m/s: a lower bound has no sensitivity")]
+    NothingFalls {
+        /// Largest disturbance tried \[rad/s\].
+        max_rate: f64,
+        /// Forward speed \[m/s\].
+        speed: f64,
+    },
 }
 
 impl From<SearchError> for RemoteError {
     fn from(error: SearchError) -> Self {
-        Self(error.0)
+        Self(error.into())
     }
 }
 
@@ -69,14 +86,14 @@ impl Search {
     /// # Errors
     /// States the value and its range.
     pub fn check(&self) -> Result<(), SearchError> {
-        let within = |name, value, min, max| within(name, value, min, max).map_err(SearchError);
         within("number of speeds", self.speeds.len() as f64, 1.0, 100_000.0)?;
         for &v in &self.speeds {
             within("speed (m/s)", v, 0.0, 30.0)?;
         }
         within("max rate (rad/s)", self.max_rate, 0.01, 100.0)?;
         within("scan step (rad/s)", self.scan_step, 1e-3, self.max_rate)?;
-        within("tolerance (rad/s)", self.tolerance, 1e-9, self.scan_step)
+        within("tolerance (rad/s)", self.tolerance, 1e-9, self.scan_step)?;
+        Ok(())
     }
 }
 

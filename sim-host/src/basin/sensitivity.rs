@@ -65,7 +65,7 @@ impl Quantity {
                     let mut points = rider.schedule.points().to_vec();
                     points.iter_mut().for_each(|(_, gains)| gains.0[i] *= factor);
                     let outside = rider.schedule.outside();
-                    rider.schedule = Schedule::new(points, outside).map_err(|e| SearchError(e.0))?;
+                    rider.schedule = Schedule::new(points, outside)?;
                 }
                 Self::Delay => rider.delay_s *= factor,
                 Self::NeuromuscularFrequency => rider.muscles.omega_rad_s *= factor,
@@ -137,10 +137,7 @@ pub fn sensitivities(
     search.check()?;
     let Column { upper: height, capped, .. } = border(conditions, &search, speed);
     if capped {
-        return Err(SearchError(format!(
-            "nothing falls up to {} rad/s at {speed} m/s: a lower bound has no sensitivity",
-            search.max_rate
-        )));
+        return Err(SearchError::NothingFalls { max_rate: search.max_rate, speed });
     }
     let one = |&quantity: &Quantity| -> Result<Sensitivity, SearchError> {
         let step = quantity.step(conditions);

@@ -1,10 +1,13 @@
 //! Loads bicycles by name or from files: one flat set per file, or `FILE#NAME` of a collection.
 
-use super::combine::{self, number, packaged};
+pub use super::error::BicycleError;
+use super::error::{SCHEMA, SetError};
 use super::extras::{is_extra, left_out, unknown_body};
-use super::uncertain::Measured;
-use super::{KEYS, Parameters, check, formats};
-use std::path::{Path, PathBuf};
+use super::rider_body::{packaged, rider_file, split, with_rider};
+pub use super::set::Bicycle;
+use super::uncertain::{Measured, Uncertain};
+use super::{KEYS, check, formats};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use toml::{Table, Value};
 
@@ -12,74 +15,8 @@ use toml::{Table, Value};
 const SHIPPED: &str = include_str!("../../../data/bicycles.toml");
 /// File of the shipped sets, for messages.
 const SHIPPED_FILE: &str = "data/bicycles.toml";
-/// Supported schema version of a set's file.
-const SCHEMA: i64 = 1;
 /// Keys of a set that are not parameters.
 const EXTRA_KEYS: [&str; 4] = ["source", "note", "rider_included", "schema"];
-
-/// A parameter set and its origin.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct Bicycle {
-    /// Name, or `FILE` or `FILE#NAME` as given.
-    pub name: String,
-    /// Origin of the values, from the file.
-    pub source: Option<String>,
-    /// Remark from the file.
-    pub note: Option<String>,
-    /// Whether the rear frame includes a rider's body; `None` if the file does not state it.
-    pub rider_included: Option<bool>,
-    /// Doubtful but accepted values.
-    pub warnings: Vec<String>,
-    /// The values with their uncertainties, if the file has any.
-    pub measured: Option<Measured>,
-    /// The values.
-    pub parameters: Parameters,
-}
-
-/// Reason why a bicycle cannot be loaded.
-#[derive(Debug, thiserror::Error)]
-pub enum BicycleError {
-    /// Neither a shipped name nor a file.
-    #[error("unknown bicycle `{name}`: no such file, and no such shipped set; shipped are {known}")]
-    Unknown {
-        /// As given.
-        name: String,
-        /// The shipped names.
-        known: String,
-    },
-    /// The file can't be read.
-    #[error("can't read bicycle file {path}: {source}")]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The operating system's error.
-        source: std::io::Error,
-    },
-    /// The file's syntax is wrong.
-    #[error("{path} {reason}")]
-    Syntax {
-        /// The file.
-        path: PathBuf,
-        /// The parser's message, with line and column.
-        reason: String,
-    },
-    /// The file has several sets, and no or an unknown name was given.
-    #[error("{path} holds several sets; choose one with {path}#NAME, NAME one of {known}")]
-    Collection {
-        /// The file.
-        path: PathBuf,
-        /// Names of its sets.
-        known: String,
-    },
-    /// A set has a wrong value or key.
-    #[error("{set}: {reason}")]
-    Set {
-        /// The file, and the set's name in a collection.
-        set: String,
-        /// Key, value and range.
-        reason: String,
-    },
-}
 
 /// Names of the shipped sets, in the file's order.
 pub fn shipped_names() -> Vec<String> {
@@ -89,13 +26,15 @@ pub fn shipped_names() -> Vec<String> {
 
 /// Loads a bicycle by `name`: a shipped set, a `FILE` (`-` is standard input), a `FILE#NAME` (the file's name
 /// may contain a `#`), a folder of BicycleParameters' `data/bicycles`, or one of these with a rider's body,
-/// `BICYCLE+RIDER` ([`combine`]).
+/// `BICYCLE+RIDER` ([`super::combine`]).
 ///
 /// # Errors
 /// States file, key, value and allowed range.
 pub fn load(name: &str) -> Result<Bicycle, BicycleError> {
-    if let Some((bicycle, rider)) = combine::split(name) {
-        return combine::load_with(name, bicycle, rider);
+    if let Some((bicycle, rider)) = split(name) {
+        let (base, path) = (load(bicycle)?, rider_file(bicycle, rider));
+        let table = parse(&read(&path)?, &path)?;
+        return with_rider(name, bicycle, base, &table, &path);
     }
     if shipped_names().iter().any(|n| n == name) {
         return from_text(name, SHIPPED, Path::new(SHIPPED_FILE), Some(name));
@@ -140,25 +79,20 @@ fn standard_input() -> Result<String, BicycleError> {
 }
 
 /// Checks the keys that are not parameters.
-fn check_remarks(values: &Table) -> Result<(), String> {
+fn check_remarks(values: &Table) -> Result<(), SetError> {
     for (key, kind) in [("source", "string"), ("note", "string"), ("rider_included", "boolean")] {
         if let Some(value) = values.get(key).filter(|value| value.type_str() != kind) {
-            return Err(format!("`{key}` must be a {kind}, not the {} {value}", value.type_str()));
+            return Err(SetError::Type { key, kind, found: value.type_str(), value: value.to_string() });
         }
     }
     match values.get("schema") {
         None | Some(Value::Integer(SCHEMA)) => Ok(()),
-        Some(other) => Err(format!("`schema` = {other} is not known; this program reads {SCHEMA}")),
+        Some(other) => Err(SetError::Schema(other.to_string())),
     }
 }
 
 fn parse(text: &str, path: &Path) -> Result<Table, BicycleError> {
     formats::table(text, path).map_err(|reason| BicycleError::Syntax { path: path.into(), reason })
-}
-
-/// Reads a file as a table.
-pub(super) fn read_table(path: &Path) -> Result<Table, BicycleError> {
-    parse(&read(path)?, path)
 }
 
 /// A bicycle from a file's text; `set` is the name of a set in a collection.
@@ -172,7 +106,7 @@ pub fn from_text(name: &str, text: &str, path: &Path, set: Option<&str>) -> Resu
         Some(set) => match table.get(set) {
             Some(Value::Table(values)) => (format!("{}#{set}", path.display()), values),
             _ if sets.is_empty() => {
-                let reason = format!("holds one set without a name, not `{set}`; leave out #{set}");
+                let reason = SetError::OneSet(set.into());
                 return Err(BicycleError::Set { set: path.display().to_string(), reason });
             }
             _ => return Err(BicycleError::Collection { path: path.into(), known: sets.join(", ") }),
@@ -182,23 +116,22 @@ pub fn from_text(name: &str, text: &str, path: &Path, set: Option<&str>) -> Resu
         }
         None => (path.display().to_string(), &table),
     };
-    let wrong = |reason: String| BicycleError::Set { set: label.clone(), reason };
+    let wrong = |reason: SetError| BicycleError::Set { set: label.clone(), reason };
     if let Some(key) = values
         .keys()
         .find(|k| !KEYS.contains(&k.as_str()) && !EXTRA_KEYS.contains(&k.as_str()) && !is_extra(k))
     {
-        let error = unknown_body(key).unwrap_or(format!("unknown key `{key}`"));
-        return Err(wrong(format!("{error}; the parameters are {}", KEYS.join(", "))));
+        return Err(wrong(SetError::Key { key: key.clone(), body: unknown_body(key) }));
     }
     check_remarks(values).map_err(wrong)?;
     let mut bicycle = Vec::new();
     for key in KEYS {
         let value = values.get(key).ok_or_else(|| wrong(missing(values, key)))?;
-        bicycle.push(number(value).map_err(|error| wrong(format!("`{key}` {error}")))?);
+        bicycle.push(Uncertain::of_value(value).map_err(|error| wrong(SetError::Number { key, error }))?);
     }
     let measured = Measured { bicycle, rider: None };
     let parameters = measured.parameters();
-    let mut warnings = check::check(&parameters).map_err(wrong)?;
+    let mut warnings = check::check(&parameters).map_err(|error| wrong(error.into()))?;
     let (extra_warnings, left_out) = left_out(values).map_err(wrong)?;
     warnings.extend(extra_warnings);
     let text = |key: &str| values.get(key).and_then(Value::as_str).map(str::to_owned);
@@ -214,13 +147,8 @@ pub fn from_text(name: &str, text: &str, path: &Path, set: Option<&str>) -> Resu
     })
 }
 
-/// Error text for a missing key.
-fn missing(values: &Table, key: &str) -> String {
-    let riders = values.keys().all(|k| combine::RIDER_KEYS.contains(&k.as_str()));
-    let hint = if riders && !values.is_empty() {
-        "; the file holds a rider's body alone; give it after a bicycle: BICYCLE+FILE"
-    } else {
-        ""
-    };
-    format!("`{key}` is missing; {}{hint}", check::describe(key))
+/// The error of a missing key.
+fn missing(values: &Table, key: &'static str) -> SetError {
+    let of_rider = values.keys().all(|k| super::combine::RIDER_KEYS.contains(&k.as_str()));
+    SetError::Missing { key, rider_alone: of_rider && !values.is_empty() }
 }

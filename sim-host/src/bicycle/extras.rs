@@ -1,7 +1,7 @@
 //! Keys of BicycleParameters' files that the model does not use: checked against the model's values, then
 //! left out.
 
-use super::combine::number;
+use super::error::SetError;
 use super::uncertain::Uncertain;
 use toml::Table;
 
@@ -28,21 +28,21 @@ pub(super) fn is_extra(key: &str) -> bool {
     matches!(key, "IRzz" | "IFzz" | "yB" | "yH" | "v") || body(key).is_some_and(|b| PARTS_OF_H.contains(&b))
 }
 
-/// Error text for a key of a body that the model does not have.
-pub(super) fn unknown_body(key: &str) -> Option<String> {
-    let body = body(key).filter(|b| !BODIES.contains(*b))?;
-    Some(format!(
-        "`{key}` belongs to a body `{body}`; the model has the bodies B, F, H and R, and G and S as parts of H"
-    ))
+/// The body of a key if the model does not have it.
+pub(super) fn unknown_body(key: &str) -> Option<char> {
+    body(key).filter(|b| !BODIES.contains(*b))
 }
 
 /// Warnings from the unused keys, and a remark that lists them.
 ///
 /// # Errors
 /// A value contradicts the model's own.
-pub(super) fn left_out(table: &Table) -> Result<(Vec<String>, Option<String>), String> {
+pub(super) fn left_out(table: &Table) -> Result<(Vec<String>, Option<String>), SetError> {
     let get = |key: &str| match table.get(key) {
-        Some(value) => number(value).map(Some).map_err(|error| format!("`{key}`: {error}")),
+        Some(value) => {
+            let number = Uncertain::of_value(value).map(Some);
+            number.map_err(|error| SetError::OtherNumber { key: key.into(), error })
+        }
         None => Ok(None),
     };
     let mut warnings = Vec::new();
@@ -66,11 +66,7 @@ pub(super) fn left_out(table: &Table) -> Result<(Vec<String>, Option<String>), S
     if let (Some(g), Some(s), Some(h)) = masses {
         let parts = Uncertain { value: g.value + s.value, sd: libm::hypot(g.sd, s.sd) };
         if apart(parts, h) {
-            let error = "G and S are the parts of H, so that mG + mS must equal mH";
-            return Err(format!(
-                "mG = {} and mS = {} kg, but mH = {} kg: {error}",
-                g.value, s.value, h.value
-            ));
+            return Err(SetError::Parts { g: g.value, s: s.value, h: h.value });
         }
     }
     let keys: Vec<&str> = table.keys().map(String::as_str).filter(|key| is_extra(key)).collect();

@@ -1,6 +1,7 @@
 //! Parses bicycle files by their extension: `.txt` and `.ini` as written by BicycleParameters, sets in YAML
 //! or JSON, otherwise TOML.
 
+use super::error::{FormatError, NumberError};
 use super::uncertain::Uncertain;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +11,7 @@ use toml::{Table, Value};
 ///
 /// # Errors
 /// States the fault and its line.
-pub(super) fn table(text: &str, path: &Path) -> Result<Table, String> {
+pub(super) fn table(text: &str, path: &Path) -> Result<Table, FormatError> {
     let ending = path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase());
     match ending.as_str() {
         "txt" | "ini" => lines(text),
@@ -43,30 +44,33 @@ fn of_json(value: serde_json::Value) -> Option<Value> {
     }
 }
 
-fn invalid(format: &str, error: &dyn std::fmt::Display) -> String {
-    format!("is not valid {format}: {}", error.to_string().trim())
+fn invalid(format: &'static str, error: &dyn std::fmt::Display) -> FormatError {
+    FormatError::Invalid { format, reason: error.to_string().trim().into() }
 }
 
 /// Lines `KEY = VALUE`, values as `1.12` or `1.12+/-0.02`; comma-separated values are averaged; `#` begins a
 /// comment.
-fn lines(text: &str) -> Result<Table, String> {
+fn lines(text: &str) -> Result<Table, FormatError> {
     let mut table = Table::new();
     for (n, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
         if line.is_empty() {
             continue;
         }
-        let wrong = |error: &str| format!("line {}: `{line}`: {error}", n + 1);
-        let (key, values) = line.split_once('=').ok_or_else(|| wrong("expected KEY = VALUE"))?;
-        let value = mean(values).map_err(|error| wrong(&error))?;
+        let (text, line) = (line.to_owned(), n + 1);
+        let Some((key, values)) = text.split_once('=') else { return Err(FormatError::Line { line, text }) };
+        let value = match mean(values) {
+            Ok(value) => value,
+            Err(error) => return Err(FormatError::Number { line, text, error }),
+        };
         if table.insert(key.trim().into(), value).is_some() {
-            return Err(wrong("the key is listed twice"));
+            return Err(FormatError::Twice { line, text });
         }
     }
     Ok(table)
 }
 
-fn mean(list: &str) -> Result<Value, String> {
+fn mean(list: &str) -> Result<Value, NumberError> {
     let one = |text: &str| match text.trim().parse() {
         Ok(value) => Ok(Uncertain::exact(value)),
         Err(_) => Uncertain::parse(text.trim()),
@@ -83,16 +87,14 @@ const PARAMETERIZATIONS: [&str; 2] = ["benchmark", "Meijaard2007"];
 
 /// A mapping of keys to numbers, either flat or under `values` next to one of [`PARAMETERIZATIONS`]. Null
 /// values are ignored.
-fn set(all: BTreeMap<String, Option<Value>>) -> Result<Table, String> {
+fn set(all: BTreeMap<String, Option<Value>>) -> Result<Table, FormatError> {
     let mut table: Table = all.into_iter().filter_map(|(key, value)| Some((key, value?))).collect();
     let Some(values) = table.remove("values") else { return Ok(table) };
-    let Value::Table(mut values) = values else { return Err("`values` must be a mapping".into()) };
+    let Value::Table(mut values) = values else { return Err(FormatError::NoMapping) };
     let named = table.get("parameterization").and_then(Value::as_str);
     if let Some(other) = named.filter(|name| !PARAMETERIZATIONS.contains(name)) {
         let known = PARAMETERIZATIONS.map(|name| format!("`{name}`")).join(" and ");
-        return Err(format!(
-            "has parameterization `{other}`, which is not known; {known} are (Meijaard et al. 2007)"
-        ));
+        return Err(FormatError::Parameterization { found: other.into(), known });
     }
     let rider = table.remove("rider").map(|rider| ("rider_included".to_owned(), rider));
     let note = table.remove("description").map(|note| ("note".to_owned(), note));

@@ -1,8 +1,10 @@
 //! Measured parameters with uncertainties: parsing, propagation and random draws.
 
 use super::combine::{RIDER_KEYS, combined};
+use super::error::{NumberError, ParameterError};
 use super::{KEYS, Parameters, check};
 use crate::num::RandomStream;
+use toml::Value;
 
 /// A value and its standard deviation, in the value's unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -23,15 +25,28 @@ impl Uncertain {
     ///
     /// # Errors
     /// States the text and the fault.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let wrong = || format!("`{text}` is not VALUE+/-STANDARD_DEVIATION");
+    pub fn parse(text: &str) -> Result<Self, NumberError> {
+        let wrong = || NumberError::Form(text.into());
         let (value, sd) = text.split_once("+/-").or_else(|| text.split_once('±')).ok_or_else(wrong)?;
         let number = |part: &str| part.trim().parse::<f64>().map_err(|_| wrong());
         let (value, sd) = (number(value)?, number(sd)?);
         if !(sd >= 0.0 && sd.is_finite()) {
-            return Err(format!("`{text}`: a standard deviation is 0 or more"));
+            return Err(NumberError::Deviation(text.into()));
         }
         Ok(Self { value, sd })
+    }
+
+    /// A number from a file, with or without uncertainty.
+    ///
+    /// # Errors
+    /// The value is not a number.
+    pub(super) fn of_value(value: &Value) -> Result<Self, NumberError> {
+        match value {
+            Value::Float(x) => Ok(Self::exact(*x)),
+            Value::Integer(i) => Ok(Self::exact(*i as f64)),
+            Value::String(text) if text.contains("+/-") || text.contains('±') => Self::parse(text),
+            other => Err(NumberError::Type { found: other.type_str(), value: other.to_string() }),
+        }
     }
 }
 
@@ -46,6 +61,14 @@ pub struct Measured {
 
 /// Largest number of draws for one bicycle; impossible ones are drawn again.
 const TRIES: usize = 1000;
+
+/// None of the drawn bicycles can exist.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("none of {TRIES} draws can exist: {}", .last.as_ref().map(ToString::to_string).unwrap_or_default())]
+pub struct DrawError {
+    /// The reason of the last draw.
+    pub last: Option<ParameterError>,
+}
 
 impl Measured {
     /// Whether any value has an uncertainty.
@@ -91,17 +114,17 @@ impl Measured {
     ///
     /// # Errors
     /// None of the draws is possible; states the reason of the last.
-    pub fn draw(&self, seed: u64, i: u64) -> Result<Parameters, String> {
+    pub fn draw(&self, seed: u64, i: u64) -> Result<Parameters, DrawError> {
         let mut random = RandomStream::new(seed, [0.0; 3], PURPOSE + i);
-        let mut error = String::new();
+        let mut last = None;
         for _ in 0..TRIES {
             let drawn = self.parameters_of(&mut |one| one.value + one.sd * random.normal());
             match check::check(&drawn) {
                 Ok(_) => return Ok(drawn),
-                Err(reason) => error = reason,
+                Err(error) => last = Some(error),
             }
         }
-        Err(format!("none of {TRIES} draws can exist: {error}"))
+        Err(DrawError { last })
     }
 }
 

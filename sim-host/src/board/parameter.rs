@@ -85,26 +85,28 @@ impl Parameter {
     ///
     /// # Errors
     /// The error with key, value and the allowed values.
-    pub fn parse(&self, text: &str) -> Result<Option<f32>, String> {
+    pub fn parse(&self, text: &str) -> Result<Option<f32>, ValueError> {
         let Self { key, min, max, .. } = self;
+        let (of, given) = (|| key.clone(), || text.to_owned());
         let words = self.words();
         let place = words.iter().position(|word| *word == text);
         match (self.kind, place) {
             (Kind::Limit, Some(_)) => return Ok(None),
             (Kind::Switch | Kind::Choice, Some(place)) => return Ok(Some(place as f32)),
             (Kind::Switch | Kind::Choice, None) => {
-                return Err(format!("{key} = `{text}`: expected one of {}", words.join(", ")));
+                return Err(ValueError::Choice { key: of(), value: given(), known: words.join(", ") });
             }
             (Kind::Number | Kind::Limit | Kind::Count, _) => {}
         }
         let allowed = self.allowed();
-        let number: f32 =
-            text.parse().map_err(|_| format!("{key} = `{text}` is no number; allowed: {allowed}"))?;
+        let Ok(number) = text.parse::<f32>() else {
+            return Err(ValueError::Number { key: of(), value: given(), allowed });
+        };
         if !(number >= *min && number <= *max) {
-            return Err(format!("{key} = {text} is outside {allowed}"));
+            return Err(ValueError::Range { key: of(), value: given(), allowed });
         }
         if self.kind == Kind::Count && number % 1.0 != 0.0 {
-            return Err(format!("{key} = {text} is not a whole number of {allowed}"));
+            return Err(ValueError::Whole { key: of(), value: given(), allowed });
         }
         Ok(Some(number))
     }
@@ -113,6 +115,55 @@ impl Parameter {
     pub fn has(&self, value: Option<f32>) -> bool {
         to_bits(self.value) == to_bits(value)
     }
+}
+
+/// A value that a board's parameter cannot have.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ValueError {
+    /// No parameter of the board.
+    #[error("the board has no parameter {0}")]
+    NoParameter(String),
+    /// None of the names that it can have.
+    #[error("{key} = `{value}`: expected one of {known}")]
+    Choice {
+        /// The parameter.
+        key: String,
+        /// As given.
+        value: String,
+        /// The names.
+        known: String,
+    },
+    /// Not a number.
+    #[error("{key} = `{value}` is no number; allowed: {allowed}")]
+    Number {
+        /// The parameter.
+        key: String,
+        /// As given.
+        value: String,
+        /// The range.
+        allowed: String,
+    },
+    /// A number outside its range.
+    #[error("{key} = {value} is outside {allowed}")]
+    Range {
+        /// The parameter.
+        key: String,
+        /// As given.
+        value: String,
+        /// The range.
+        allowed: String,
+    },
+    /// A number that must be whole.
+    #[error("{key} = {value} is not a whole number of {allowed}")]
+    Whole {
+        /// The parameter.
+        key: String,
+        /// As given.
+        value: String,
+        /// The range.
+        allowed: String,
+    },
 }
 
 /// The points of a table: speed \[m/s\] and gain \[N m s/rad\]; none for a formula.

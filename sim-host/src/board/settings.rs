@@ -1,7 +1,7 @@
 //! The settings of a board, and the requested ones.
 
 use super::client::{Client, ClientError};
-use super::parameter::{Parameter, law_points};
+use super::parameter::{Parameter, ValueError, law_points};
 use control::Law;
 
 /// A parameter's value, or the law.
@@ -47,6 +47,11 @@ pub struct Settings {
     pub parameters: Vec<Parameter>,
 }
 
+/// Settings that a board cannot have: all errors.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+pub struct SettingsError(pub Vec<ValueError>);
+
 impl Settings {
     /// Reads all settings of the board.
     ///
@@ -71,20 +76,21 @@ impl Settings {
     ///
     /// # Errors
     /// All errors: keys that the board does not have, values that are not allowed.
-    pub fn understand(&self, law: Option<&Law>, values: &[(String, String)]) -> Result<Vec<Setting>, String> {
+    pub fn understand(
+        &self,
+        law: Option<&Law>,
+        values: &[(String, String)],
+    ) -> Result<Vec<Setting>, SettingsError> {
         let mut wanted: Vec<_> = law.map(|law| Setting::Law(law.clone().into())).into_iter().collect();
         let mut wrong = Vec::new();
         for (key, text) in values {
             let known = self.but_law().find(|one| one.key == *key);
-            match known
-                .ok_or_else(|| format!("the board has no parameter {key}"))
-                .and_then(|one| one.parse(text))
-            {
+            match known.ok_or_else(|| ValueError::NoParameter(key.clone())).and_then(|one| one.parse(text)) {
                 Ok(value) => wanted.push(Setting::Value { key: key.clone(), value }),
                 Err(error) => wrong.push(error),
             }
         }
-        if wrong.is_empty() { Ok(wanted) } else { Err(wrong.join("; ")) }
+        if wrong.is_empty() { Ok(wanted) } else { Err(SettingsError(wrong)) }
     }
 
     /// Whether the board has this setting, bit for bit.

@@ -42,7 +42,7 @@ fn roles(axes: &[Axis], words: &[String]) -> Result<Vec<Role>, SweepError> {
             )),
         }
     };
-    axes.iter().map(|axis| role(axis).map_err(SweepError)).collect()
+    axes.iter().map(|axis| role(axis).map_err(SweepError::Axis)).collect()
 }
 
 /// The command-line words of one cell.

@@ -110,7 +110,7 @@ fn taper(text: &str) -> Result<Limit<(f32, f32)>, String> {
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
-    time(text, 3600.0)
+    Ok(time(text, 3600.0)?)
 }
 
 /// The option that sets a parameter of the control crate.

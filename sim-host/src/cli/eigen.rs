@@ -83,7 +83,7 @@ struct ActuatorArgs {
 }
 
 fn second(text: &str) -> Result<f64, String> {
-    time(text, 1.0)
+    Ok(time(text, 1.0)?)
 }
 
 impl ActuatorArgs {

@@ -48,7 +48,8 @@ fn parse(text: &str) -> Result<FallCriterion, String> {
         }
         (None, _) => {}
     }
-    fall.check().map(|()| fall)
+    fall.check()?;
+    Ok(fall)
 }
 
 /// An angle with its unit, as \[rad\].

@@ -1,6 +1,6 @@
 //! The files of `identify weave`: gain and speed from their names, fits of their content, and the model's prediction.
 
-use super::identify::Args;
+use super::weave_args::WeaveArgs;
 use super::{Failure, law};
 use crate::bicycle::Parameters;
 use crate::eigen::LinearActuator;
@@ -27,7 +27,7 @@ type Sorted = (Vec<RecordingEntry>, Vec<RefusedEntry>);
 ///
 /// # Errors
 /// Wrong options, or a file given twice.
-pub(super) fn identify(args: &Args) -> Result<Sorted, Failure> {
+pub(super) fn identify(args: &WeaveArgs) -> Result<Sorted, Failure> {
     let pattern = Pattern::new(&args.label).map_err(|e| format!("--label: {e}"))?;
     args.speed.map_or(Ok(()), |v| within("--speed", v, 0.0, 30.0))?;
     args.gain.map_or(Ok(()), |k| within("--gain", k, 0.001, 20.0))?;
@@ -60,7 +60,7 @@ fn once(files: &[PathBuf]) -> Result<(), String> {
     }
 }
 
-fn of_file(args: &Args, pattern: &Pattern, path: &Path) -> Result<RecordingEntry, RefusedEntry> {
+fn of_file(args: &WeaveArgs, pattern: &Pattern, path: &Path) -> Result<RecordingEntry, RefusedEntry> {
     let file = path.display().to_string();
     let stem = path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
     let label = pattern.read(&stem);
@@ -75,16 +75,16 @@ fn of_file(args: &Args, pattern: &Pattern, path: &Path) -> Result<RecordingEntry
         ))
     };
     let speed = speed_m_s.ok_or_else(|| unknown("speed", "--speed"))?;
-    within("speed (m/s)", speed, 0.0, 30.0).map_err(refused)?;
+    within("speed (m/s)", speed, 0.0, 30.0).map_err(|e| refused(e.to_string()))?;
     if gain.is_none() && args.law.contains(GAIN) {
         return Err(unknown("gain", "--gain"));
     }
     law_of(&args.law, gain).map_err(refused)?;
     let text = std::fs::read_to_string(path).map_err(|e| refused(format!("can't be read: {e}")))?;
-    let record = read(&text, &args.columns()).map_err(refused)?;
+    let record = read(&text, &args.columns()).map_err(|e| refused(e.to_string()))?;
     let weave = identify_segment(&record, args.settings()).map_err(|why| {
         let notes = record.notes.iter().map(|note| format!("; {note}")).collect::<String>();
-        refused(why + &notes)
+        refused(format!("{why}{notes}"))
     })?;
     Ok(RecordingEntry { file, gain, speed_m_s: speed, left_out: record.notes, weave })
 }
@@ -108,7 +108,7 @@ type Both = [Vec<Option<Complex<f64>>>; 2];
 impl Models<'_> {
     fn weave(&self, gain: Option<f64>, speeds: &[f64]) -> Result<Both, String> {
         let law = law_of(self.law, gain)?;
-        let of = |motor| weave(self.bicycle, &law, motor, speeds);
+        let of = |motor| weave(self.bicycle, &law, motor, speeds).map_err(|e| e.to_string());
         Ok([of(LinearActuator::default())?, of(self.motor)?])
     }
 }

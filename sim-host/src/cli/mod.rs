@@ -4,6 +4,7 @@ mod accel;
 mod basin;
 mod bicycle;
 mod bicycle_args;
+mod board_args;
 mod cells;
 mod compare;
 mod conditions;
@@ -38,6 +39,7 @@ mod study;
 mod study_swept;
 mod sweep;
 mod thesis;
+mod weave_args;
 mod words;
 
 use clap::{Parser, Subcommand};

@@ -63,7 +63,7 @@ pub(super) struct Args {
 }
 
 fn duration(text: &str) -> Result<f64, String> {
-    time(text, 1e6)
+    Ok(time(text, 1e6)?)
 }
 
 /// State of a monitor session.

@@ -1,7 +1,7 @@
 //! `sim-host pil basin`: a basin with the control step of every ride on a board in QEMU.
 
 use super::basin::{BasinArgs, Computed, progress, write};
-use super::pil::BoardArgs;
+use super::board_args::BoardArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Search, basin, basin_by};
 use crate::pil::compare::same_basin;

@@ -150,7 +150,7 @@ fn models(sensors: &mut SensorConfig, name: &str, period_s: f64) -> Result<(), S
             "`{name}` is neither NAME:KEY=VALUE,... nor a FILE nor a built-in model: {EXACT}, {names}"
         ));
     }
-    SensorFile::load(name).map_err(|e| e.0)?.apply(sensors, period_s)
+    Ok(SensorFile::load(name).map_err(|e| e.to_string())?.apply(sensors, period_s)?)
 }
 
 /// A file's model of a sensor.
@@ -158,12 +158,12 @@ fn model_of(sensor: Sensor, name: &str, period_s: f64) -> Result<SensorModel, St
     if name == EXACT {
         return Ok(SensorModel::default());
     }
-    let file = SensorFile::load(name).map_err(|e| e.0)?;
+    let file = SensorFile::load(name).map_err(|e| e.to_string())?;
     let numbers = file.of(sensor).ok_or_else(|| {
         let tables: Vec<_> = file.tables().map(|(sensor, _)| table_of(sensor)).collect();
         format!("the model {name} has no table {}; it has {}", table_of(sensor), tables.join(", "))
     })?;
-    numbers.model(period_s)
+    Ok(numbers.model(period_s)?)
 }
 
 fn mount(imu: &mut ImuMount, key: &str, value: &str) -> Result<(), String> {

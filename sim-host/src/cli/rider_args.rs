@@ -22,7 +22,7 @@ pub(super) struct RiderArgs {
 }
 
 fn delay(text: &str) -> Result<f64, String> {
-    time(text, MAX_DELAY_S)
+    Ok(time(text, MAX_DELAY_S)?)
 }
 
 impl RiderArgs {

@@ -1,5 +1,6 @@
 //! A gain schedule as variables of the search: linear interpolation between knots over speed.
 
+use crate::range::{RangeError, within};
 use control::{GainSchedule, Law, ParamError};
 
 /// Allowed gains \[N m s/rad\]: the upper is the thesis's limit for a motor (section 2.4.3).
@@ -18,10 +19,8 @@ impl Knots {
     ///
     /// # Errors
     /// Fewer than 2 or more than 8 knots.
-    pub fn new(count: usize) -> Result<Self, String> {
-        if !(2..=8).contains(&count) {
-            return Err(format!("number of knots = {count} is outside 2 to 8"));
-        }
+    pub fn new(count: usize) -> Result<Self, RangeError> {
+        within("number of knots", count as f64, 2.0, 8.0)?;
         let (from, to) = SPAN_M_S;
         let step = (to - from) / (count - 1) as f64;
         Ok(Self((0..count).map(|i| ((from + i as f64 * step) * 1e6).round() / 1e6).collect()))

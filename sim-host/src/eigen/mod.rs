@@ -11,7 +11,7 @@ mod roots;
 mod stability;
 mod system;
 
-pub use actuator::LinearActuator;
+pub use actuator::{ActuatorError, LinearActuator};
 pub use critical::{CriticalSpeeds, SEARCH_TO_M_S, critical_speeds};
 pub use feedback::{Feedback, Intuitive, StaticFeedback};
 pub use modes::{Mode, REFERENCE_SPEED_M_S, modes};

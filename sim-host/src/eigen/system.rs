@@ -1,6 +1,6 @@
 //! Bicycle, assist and rider as one linear system with one delay.
 
-use super::actuator::LinearActuator;
+use super::actuator::{ActuatorError, LinearActuator};
 use super::feedback::{Feedback, StaticFeedback};
 use crate::bicycle::{Parameters, linear::Linear};
 use crate::rider::{Gains, Rider};
@@ -81,10 +81,10 @@ impl Model {
     /// # Errors
     /// A value out of its range, or an actuator delay together with a rider: the analysis allows one delayed
     /// signal.
-    pub fn with_actuator(mut self, actuator: LinearActuator) -> Result<Self, String> {
+    pub fn with_actuator(mut self, actuator: LinearActuator) -> Result<Self, ActuatorError> {
         actuator.check()?;
         if actuator.delay_s > 0.0 && self.rider.is_some() {
-            return Err("--actuator-delay cannot be combined with --rider".into());
+            return Err(ActuatorError::TwoDelays);
         }
         self.linear.m[(1, 1)] += actuator.inertia_kg_m2;
         self.actuator = actuator;

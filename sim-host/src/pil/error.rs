@@ -65,6 +65,6 @@ pub enum BoardError {
 
 impl From<BoardError> for RemoteError {
     fn from(error: BoardError) -> Self {
-        Self(error.to_string())
+        Self(error.into())
     }
 }

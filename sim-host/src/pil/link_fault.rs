@@ -1,7 +1,7 @@
 //! Faults of the loop's link, as text: `DIRECTION:FAULT[=TIME][@FROM[..TO]]`, for example `sensors:late=3ms@1.5s..2s`.
 
 use crate::num::RandomStream;
-use crate::range::{span, time};
+use crate::range::{TimeError, span, time};
 use std::collections::VecDeque;
 use std::fmt;
 use std::str::FromStr;
@@ -83,41 +83,73 @@ impl fmt::Display for LinkFault {
 }
 
 impl FromStr for LinkFault {
-    type Err = String;
+    type Err = LinkFaultTextError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        parsed(text).map_err(|error| format!("`{text}`: {error}"))
+    fn from_str(text: &str) -> Result<Self, LinkFaultTextError> {
+        parsed(text).map_err(|error| LinkFaultTextError { text: text.into(), error })
     }
 }
 
-fn parsed(text: &str) -> Result<LinkFault, String> {
-    let form = "expected DIRECTION:FAULT[=TIME][@FROM[..TO]], for example sensors:late=3ms@1.5s..2s";
-    let (direction, what) = text.split_once(':').ok_or(form)?;
-    let direction = Direction::ALL.into_iter().find(|known| known.name() == direction).ok_or_else(|| {
-        format!(
-            "unknown direction `{direction}`; expected {}",
-            Direction::ALL.map(Direction::name).join(" or ")
-        )
-    })?;
+/// A text that is no fault of the link.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("`{text}`: {error}")]
+pub struct LinkFaultTextError {
+    /// The text.
+    pub text: String,
+    /// The error.
+    pub error: LinkFaultFormError,
+}
+
+/// Why a text is no fault of the link.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LinkFaultFormError {
+    /// No direction and fault.
+    #[error("expected DIRECTION:FAULT[=TIME][@FROM[..TO]], for example sensors:late=3ms@1.5s..2s")]
+    Form,
+    /// A direction that does not exist.
+    #[error("unknown direction `{0}`; expected {known}", known = Direction::ALL.map(Direction::name).join(" or "))]
+    Direction(String),
+    /// A fault that does not exist.
+    #[error("unknown link fault `{0}`; expected drop, late=TIME or corrupt")]
+    Fault(String),
+    /// `late` without its time.
+    #[error("late needs a value: late=TIME")]
+    NoTime,
+    /// A value of a fault without one.
+    #[error("{0}: it takes no value")]
+    Value(String),
+    /// A time or an interval.
+    #[error(transparent)]
+    Time(#[from] TimeError),
+    /// A delay that is no number of control periods.
+    #[error("late={0} is not a whole number of control periods of 1 ms, 1 ms to {LATEST_S} s")]
+    Periods(String),
+}
+
+fn parsed(text: &str) -> Result<LinkFault, LinkFaultFormError> {
+    let (direction, what) = text.split_once(':').ok_or(LinkFaultFormError::Form)?;
+    let known = Direction::ALL.into_iter().find(|known| known.name() == direction);
+    let direction = known.ok_or_else(|| LinkFaultFormError::Direction(direction.into()))?;
     let (what, when) = what.split_once('@').map_or((what, None), |(what, when)| (what, Some(when)));
     let kind = match what.split_once('=').map_or((what, None), |(name, value)| (name, Some(value))) {
         ("drop", None) => LinkFaultKind::Drop,
         ("corrupt", None) => LinkFaultKind::Corrupt,
         ("late", Some(by)) => LinkFaultKind::Late(periods(by)?),
-        ("late", None) => return Err("late needs a value: late=TIME".into()),
-        ("drop" | "corrupt", Some(_)) => return Err(format!("{what}: it takes no value")),
-        _ => return Err(format!("unknown link fault `{what}`; expected drop, late=TIME or corrupt")),
+        ("late", None) => return Err(LinkFaultFormError::NoTime),
+        ("drop" | "corrupt", Some(_)) => return Err(LinkFaultFormError::Value(what.into())),
+        _ => return Err(LinkFaultFormError::Fault(what.into())),
     };
     let (from_s, to_s) = when.map_or(Ok((0.0, f64::INFINITY)), span)?;
     Ok(LinkFault { direction, kind, from_s, to_s })
 }
 
-fn periods(text: &str) -> Result<u32, String> {
+fn periods(text: &str) -> Result<u32, LinkFaultFormError> {
     let periods = time(text, LATEST_S)? / PERIOD_S;
     if periods >= 0.5 && (periods - periods.round()).abs() < 1e-6 {
         return Ok(periods.round() as u32);
     }
-    Err(format!("late={text} is not a whole number of control periods of 1 ms, 1 ms to {LATEST_S} s"))
+    Err(LinkFaultFormError::Periods(text.into()))
 }
 
 /// One direction of the link in one ride.

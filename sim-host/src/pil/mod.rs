@@ -11,5 +11,5 @@ mod watchdog;
 
 pub use controller::{Controller, Tally};
 pub use error::BoardError;
-pub use link_fault::{Direction, LinkFault, LinkFaultKind};
+pub use link_fault::{Direction, LinkFault, LinkFaultFormError, LinkFaultKind, LinkFaultTextError};
 pub use lockstep::Lockstep;

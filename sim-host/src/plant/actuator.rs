@@ -70,20 +70,17 @@ impl ActuatorConfig {
     /// # Errors
     /// States the value and its range.
     pub fn check(&self) -> Result<(), PlantError> {
-        let all = || {
-            within("actuator delay (control periods)", f64::from(self.delay_ticks), 0.0, 1000.0)?;
-            within("actuator scale", self.scale, -10.0, 10.0)?;
-            within("actuator time constant (s)", self.time_constant_s, 0.0, 10.0)?;
-            self.limit_nm.map_or(Ok(()), |limit| within("actuator limit (N m)", limit, 0.0, 1000.0))?;
-            self.supply.map_or(Ok(()), |supply| {
-                within("supply voltage (V)", supply.voltage_v, 1.0, 1000.0)?;
-                within("motor resistance (ohm)", supply.resistance_ohm, 1e-3, 1e3)?;
-                within("motor constant at the steer axis (N m/A)", supply.constant_nm_a, 1e-3, 100.0)
-            })
-        };
-        all().map_err(PlantError)?;
+        within("actuator delay (control periods)", f64::from(self.delay_ticks), 0.0, 1000.0)?;
+        within("actuator scale", self.scale, -10.0, 10.0)?;
+        within("actuator time constant (s)", self.time_constant_s, 0.0, 10.0)?;
+        self.limit_nm.map_or(Ok(()), |limit| within("actuator limit (N m)", limit, 0.0, 1000.0))?;
+        self.supply.map_or(Ok(()), |supply| {
+            within("supply voltage (V)", supply.voltage_v, 1.0, 1000.0)?;
+            within("motor resistance (ohm)", supply.resistance_ohm, 1e-3, 1e3)?;
+            within("motor constant at the steer axis (N m/A)", supply.constant_nm_a, 1e-3, 100.0)
+        })?;
         self.stop.map_or(Ok(()), |stop| stop.check())?;
-        self.friction.check()
+        Ok(self.friction.check()?)
     }
 
     /// Whether the motor delivers exactly the commanded torque.

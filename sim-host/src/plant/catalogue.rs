@@ -13,27 +13,63 @@ pub fn shipped_names() -> Vec<String> {
     std::iter::once("none".into()).chain(shipped.keys().cloned()).collect()
 }
 
+/// An actuator that can't be loaded.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ActuatorFileError {
+    /// Neither a shipped name nor a file.
+    #[error("unknown actuator `{name}`: no such file, and not one of {known}")]
+    Unknown {
+        /// As given.
+        name: String,
+        /// The shipped names.
+        known: String,
+    },
+    /// The file can't be read.
+    #[error("can't read actuator file {name}: {error}")]
+    Read {
+        /// The file.
+        name: String,
+        /// The system's error.
+        error: String,
+    },
+    /// The file is not TOML, or a key is missing, unknown or of a wrong type.
+    #[error("actuator file {name}: {reason}")]
+    Syntax {
+        /// The file.
+        name: String,
+        /// The parser's message.
+        reason: String,
+    },
+    /// A value is wrong.
+    #[error("actuator file {name}: {error}")]
+    Value {
+        /// The file.
+        name: String,
+        /// The value and its range.
+        error: PlantError,
+    },
+}
+
 /// Loads an actuator by shipped name, otherwise from a file.
 ///
 /// # Errors
 /// An unknown name or file, a missing or unknown key, a wrong type, or a value out of range; each is named.
-pub fn load(name: &str) -> Result<ActuatorConfig, PlantError> {
+pub fn load(name: &str) -> Result<ActuatorConfig, ActuatorFileError> {
     if name == "none" {
         return Ok(ActuatorConfig::default());
     }
-    let fail = |reason: String| PlantError(format!("actuator file {name}: {}", reason.trim()));
+    let fail = |reason: String| ActuatorFileError::Syntax { name: name.into(), reason: reason.trim().into() };
     let mut shipped: toml::Table = toml::from_str(SHIPPED).unwrap_or_default();
     let mut table = match shipped.remove(name) {
         Some(toml::Value::Table(table)) => table,
         _ if !Path::new(name).exists() => {
-            return Err(PlantError(format!(
-                "unknown actuator `{name}`: no such file, and not one of {}",
-                shipped_names().join(", ")
-            )));
+            let known = shipped_names().join(", ");
+            return Err(ActuatorFileError::Unknown { name: name.into(), known });
         }
         _ => {
             let text = std::fs::read_to_string(name)
-                .map_err(|e| PlantError(format!("can't read actuator file {name}: {e}")))?;
+                .map_err(|e| ActuatorFileError::Read { name: name.into(), error: e.to_string() })?;
             toml::from_str(&text).map_err(|e| fail(e.to_string()))?
         }
     };
@@ -41,6 +77,6 @@ pub fn load(name: &str) -> Result<ActuatorConfig, PlantError> {
         return Err(fail("source must be text".into()));
     }
     let config = ActuatorConfig::deserialize(table).map_err(|e| fail(e.to_string()))?;
-    config.check().map_err(|e| fail(e.0))?;
+    config.check().map_err(|error| ActuatorFileError::Value { name: name.into(), error })?;
     Ok(config)
 }

@@ -1,8 +1,8 @@
 //! Text form of a fault: `CHANNEL[.AXIS]:KIND[=VALUE][@FROM[..TO]]`.
 
+use super::Sensor;
 use super::fault::{Channel, Fault, Kind};
-use super::{PlantError, Sensor};
-use crate::range::{span, time, within};
+use crate::range::{RangeError, TimeError, span, time, within};
 use std::fmt;
 use std::str::FromStr;
 
@@ -130,60 +130,153 @@ impl fmt::Display for Fault {
     }
 }
 
-impl FromStr for Fault {
-    type Err = PlantError;
+/// A text that is no fault.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("fault `{text}`: {error}")]
+pub struct FaultTextError {
+    /// The text.
+    pub text: String,
+    /// The error.
+    pub error: FaultFormError,
+}
 
-    fn from_str(text: &str) -> Result<Self, PlantError> {
-        parsed(text).map_err(|error| PlantError(format!("fault `{text}`: {error}")))
+/// Why a text is no fault.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FaultFormError {
+    /// No channel and kind.
+    #[error("expected CHANNEL[.AXIS]:KIND[=VALUE][@FROM[..TO]], for example gyro.x:bias=0.1@1.5s..3s")]
+    Form,
+    /// An axis of a kind that acts on whole samples.
+    #[error("{0} acts on whole samples; leave out the axis")]
+    WholeSamples(&'static str),
+    /// The end of a jump.
+    #[error("a jump is permanent; leave out its end")]
+    JumpEnds,
+    /// A channel that does not exist.
+    #[error("no channel `{name}`; there are {known}")]
+    Channel {
+        /// As given.
+        name: String,
+        /// The channels.
+        known: String,
+    },
+    /// An axis of a channel with one axis.
+    #[error("{channel} has one axis only; leave out `.{axis}`")]
+    OneAxis {
+        /// The channel.
+        channel: &'static str,
+        /// As given.
+        axis: String,
+    },
+    /// An axis that the channel does not have.
+    #[error("{channel} has no axis `{axis}`; it has {known}")]
+    Axis {
+        /// The channel.
+        channel: &'static str,
+        /// As given.
+        axis: String,
+        /// The channel's axes.
+        known: String,
+    },
+    /// A kind that the channel does not have.
+    #[error("no kind `{name}` of {channel}; there are {known}")]
+    Kind {
+        /// As given.
+        name: String,
+        /// The channel.
+        channel: &'static str,
+        /// The channel's kinds.
+        known: String,
+    },
+    /// A kind without its value.
+    #[error("{name} needs a value: {form}")]
+    NoValue {
+        /// The kind.
+        name: String,
+        /// The kind with its value.
+        form: &'static str,
+    },
+    /// A value of a kind without one.
+    #[error("{0} takes no value")]
+    Value(String),
+    /// A value that is no number.
+    #[error("{name}: `{value}` is not a number")]
+    Number {
+        /// The kind.
+        name: String,
+        /// As given.
+        value: String,
+    },
+    /// A value outside its range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// A time or an interval.
+    #[error(transparent)]
+    Time(#[from] TimeError),
+    /// A time constant of zero.
+    #[error("slow: the time constant must be above 0 s")]
+    NotSlow,
+}
+
+impl FromStr for Fault {
+    type Err = FaultTextError;
+
+    fn from_str(text: &str) -> Result<Self, FaultTextError> {
+        parsed(text).map_err(|error| FaultTextError { text: text.into(), error })
     }
 }
 
-fn parsed(text: &str) -> Result<Fault, String> {
-    let form = "expected CHANNEL[.AXIS]:KIND[=VALUE][@FROM[..TO]], for example gyro.x:bias=0.1@1.5s..3s";
-    let (place, what) = text.split_once(':').ok_or(form)?;
+fn parsed(text: &str) -> Result<Fault, FaultFormError> {
+    let (place, what) = text.split_once(':').ok_or(FaultFormError::Form)?;
     let (what, when) = what.split_once('@').map_or((what, None), |(what, when)| (what, Some(when)));
     let (channel, axis) = placed(place)?;
     let kind = kind(channel, what)?;
     if axis.is_some() && kind.whole() {
-        return Err(format!("{} acts on whole samples; leave out the axis", kind.name()));
+        return Err(FaultFormError::WholeSamples(kind.name()));
     }
     let (from_s, to_s) = when.map_or(Ok((0.0, f64::INFINITY)), span)?;
     if to_s.is_finite() && matches!(kind, Kind::Jump(_)) {
-        return Err("a jump is permanent; leave out its end".into());
+        return Err(FaultFormError::JumpEnds);
     }
     Ok(Fault { channel, axis, kind, from_s, to_s })
 }
 
-fn placed(text: &str) -> Result<(Channel, Option<u8>), String> {
+fn placed(text: &str) -> Result<(Channel, Option<u8>), FaultFormError> {
     let (name, axis) = text.split_once('.').map_or((text, None), |(name, axis)| (name, Some(axis)));
     let channel = Channel::all().find(|channel| channel.name() == name).ok_or_else(|| {
         let names: Vec<_> = Channel::all().map(Channel::name).collect();
-        format!("no channel `{name}`; there are {}", names.join(", "))
+        FaultFormError::Channel { name: name.into(), known: names.join(", ") }
     })?;
     let Some(axis) = axis else { return Ok((channel, None)) };
     let axes = channel.axes();
     let index = axes.iter().position(|known| *known == axis).ok_or_else(|| match axes {
-        [] => format!("{name} has one axis only; leave out `.{axis}`"),
-        _ => format!("{name} has no axis `{axis}`; it has {}", axes.join(", ")),
+        [] => FaultFormError::OneAxis { channel: channel.name(), axis: axis.into() },
+        _ => FaultFormError::Axis { channel: channel.name(), axis: axis.into(), known: axes.join(", ") },
     })?;
     Ok((channel, Some(index as u8)))
 }
 
-fn kind(channel: Channel, text: &str) -> Result<Kind, String> {
+fn kind(channel: Channel, text: &str) -> Result<Kind, FaultFormError> {
     let (name, value) = text.split_once('=').map_or((text, None), |(name, value)| (name, Some(value)));
     let known =
         channel.kinds().iter().find(|kind| kind.split('=').next() == Some(name)).ok_or_else(|| {
-            format!("no kind `{name}` of {}; there are {}", channel.name(), channel.kinds().join(", "))
+            let known = channel.kinds().join(", ");
+            FaultFormError::Kind { name: name.into(), channel: channel.name(), known }
         })?;
     let value = match (known.contains('='), value) {
-        (true, None) => return Err(format!("{name} needs a value: {known}")),
-        (false, Some(_)) => return Err(format!("{name} takes no value")),
+        (true, None) => return Err(FaultFormError::NoValue { name: name.into(), form: *known }),
+        (false, Some(_)) => return Err(FaultFormError::Value(name.into())),
         (_, value) => value.unwrap_or_default(),
     };
     let number = |min: f64, max: f64| {
         let text = if name == "drift" { value.strip_suffix("/s").unwrap_or(value) } else { value };
-        let x: f64 = text.trim().parse().map_err(|_| format!("{name}: `{value}` is not a number"))?;
-        within(name, x, min, max).map(|()| x)
+        let x: f64 = text
+            .trim()
+            .parse()
+            .map_err(|_| FaultFormError::Number { name: name.into(), value: value.into() })?;
+        within(name, x, min, max)?;
+        Ok::<f64, FaultFormError>(x)
     };
     let any = || number(-LARGEST, LARGEST);
     Ok(match name {
@@ -206,6 +299,6 @@ fn kind(channel: Channel, text: &str) -> Result<Kind, String> {
     })
 }
 
-fn positive(time_s: f64) -> Result<f64, String> {
-    if time_s > 0.0 { Ok(time_s) } else { Err("slow: the time constant must be above 0 s".into()) }
+fn positive(time_s: f64) -> Result<f64, FaultFormError> {
+    if time_s > 0.0 { Ok(time_s) } else { Err(FaultFormError::NotSlow) }
 }

@@ -54,30 +54,28 @@ impl FittedErrors {
         let name = sensor.name();
         let within = |key: &str, value, min, max| within(&format!("{name} {key}"), value, min, max);
         let ticks = |key: &str, value: u16, max: u16| within(key, f64::from(value), 0.0, f64::from(max));
-        let all = || {
-            ticks("phase (control periods)", self.phase_ticks, every_ticks.saturating_sub(1))?;
-            self.jitter_ticks.iter().try_for_each(|t| ticks("jitter (control periods)", *t, MAX_TICKS))?;
-            if self.jitter_ticks[1] < self.jitter_ticks[0] {
-                return Err(format!("{name} jitter: the largest is below that of 99 in 100 samples"));
-            }
-            ticks("window (control periods)", self.window_ticks, MAX_TICKS)?;
-            ticks("pulses per turn", self.pulses_per_turn, 4096)?;
-            if self.pulses_per_turn > 0 && !matches!(sensor, Sensor::FrontWheel | Sensor::RearWheel) {
-                return Err(format!("{name} pulses per turn: only wheels have pulses"));
-            }
-            let by_axis = [
-                ("white", self.white),
-                ("walk", self.walk),
-                ("bias spread", self.bias_spread),
-                ("quantum", self.quantum),
-            ];
-            for (key, axes) in by_axis {
-                axes.iter().try_for_each(|x| within(key, *x, 0.0, 1e3))?;
-            }
-            self.vibration.iter().flatten().try_for_each(|x| within("vibration", *x, 0.0, 1e3))?;
-            within("repeat", self.repeat, 0.0, 0.999)
-        };
-        all().map_err(PlantError)
+        ticks("phase (control periods)", self.phase_ticks, every_ticks.saturating_sub(1))?;
+        self.jitter_ticks.iter().try_for_each(|t| ticks("jitter (control periods)", *t, MAX_TICKS))?;
+        if self.jitter_ticks[1] < self.jitter_ticks[0] {
+            return Err(PlantError::Jitter { sensor: name });
+        }
+        ticks("window (control periods)", self.window_ticks, MAX_TICKS)?;
+        ticks("pulses per turn", self.pulses_per_turn, 4096)?;
+        if self.pulses_per_turn > 0 && !matches!(sensor, Sensor::FrontWheel | Sensor::RearWheel) {
+            return Err(PlantError::Pulses { sensor: name });
+        }
+        let by_axis = [
+            ("white", self.white),
+            ("walk", self.walk),
+            ("bias spread", self.bias_spread),
+            ("quantum", self.quantum),
+        ];
+        for (key, axes) in by_axis {
+            axes.iter().try_for_each(|x| within(key, *x, 0.0, 1e3))?;
+        }
+        self.vibration.iter().flatten().try_for_each(|x| within("vibration", *x, 0.0, 1e3))?;
+        within("repeat", self.repeat, 0.0, 0.999)?;
+        Ok(())
     }
 
     /// Whether any error is random.

@@ -1,8 +1,7 @@
 //! Friction of the steer bearing and the motor's gear: from steer rate to torque.
 
-use super::PlantError;
 use crate::num::Scalar;
-use crate::range::within;
+use crate::range::{RangeError, within};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +29,7 @@ impl Friction {
     ///
     /// # Errors
     /// States the value and its range.
-    pub fn check(&self) -> Result<(), PlantError> {
+    pub fn check(&self) -> Result<(), RangeError> {
         within("viscous friction (N m s/rad)", self.viscous_nm_s_rad, 0.0, 100.0)
             .and_then(|()| within("Coulomb friction (N m)", self.coulomb_nm, 0.0, 50.0))
             .and_then(|()| within("creep (rad/s)", self.creep_rad_s, 1e-3, 1.0))
@@ -39,7 +38,6 @@ impl Friction {
                 let slope = self.coulomb_nm / self.creep_rad_s;
                 within("Coulomb friction over creep (N m s/rad)", slope, 0.0, 100.0)
             })
-            .map_err(PlantError)
     }
 
     /// Whether any friction is set.

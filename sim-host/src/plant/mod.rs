@@ -2,6 +2,7 @@
 
 mod actuator;
 pub mod catalogue;
+mod error;
 mod fault;
 mod fault_text;
 mod fitted;
@@ -13,7 +14,9 @@ mod sensor_suite;
 mod stop;
 
 pub use actuator::{Actuator, ActuatorConfig, Supply};
+pub use error::PlantError;
 pub use fault::{Channel, Fault, FaultState, Kind};
+pub use fault_text::{FaultFormError, FaultTextError};
 pub use fitted::{FittedErrors, OCTAVES_HZ};
 pub use friction::Friction;
 pub use reading::{Frame, Imu, Odometry, Reading, Sensor};
@@ -21,11 +24,6 @@ pub use sensor::{Before, ImuMount, SensorConfig, SensorDice, SensorModel, Sensor
 pub(crate) use sensor_suite::faulty;
 pub use sensor_suite::{Held, Measured, SensorSuite};
 pub use stop::SteerStop;
-
-/// A plant that can't be simulated, with the reason.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct PlantError(pub String);
 
 /// Sensors, actuator and faults. The default is exact, without delay or fault.
 #[derive(Clone, Debug, Default, PartialEq)]

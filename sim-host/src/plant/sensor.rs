@@ -57,17 +57,14 @@ impl SensorModel {
     pub fn check(&self, sensor: Sensor) -> Result<(), PlantError> {
         let name = sensor.name();
         let within = |key: &str, value, min, max| within(&format!("{name} {key}"), value, min, max);
-        let all = || {
-            within("every (control periods)", f64::from(self.every_ticks), 1.0, f64::from(MAX_TICKS))?;
-            within("scale", self.scale, -10.0, 10.0)?;
-            self.bias.iter().try_for_each(|bias| within("bias", *bias, -1e3, 1e3))?;
-            within("noise", self.noise, 0.0, 1e3)?;
-            self.range.map_or(Ok(()), |range| within("range", range, 1e-6, 1e6))?;
-            within("quantum", self.quantum, 0.0, 1e3)?;
-            within("dropout", self.dropout, 0.0, 1.0)?;
-            within("delay (control periods)", f64::from(self.delay_ticks), 0.0, f64::from(MAX_TICKS))
-        };
-        all().map_err(PlantError)?;
+        within("every (control periods)", f64::from(self.every_ticks), 1.0, f64::from(MAX_TICKS))?;
+        within("scale", self.scale, -10.0, 10.0)?;
+        self.bias.iter().try_for_each(|bias| within("bias", *bias, -1e3, 1e3))?;
+        within("noise", self.noise, 0.0, 1e3)?;
+        self.range.map_or(Ok(()), |range| within("range", range, 1e-6, 1e6))?;
+        within("quantum", self.quantum, 0.0, 1e3)?;
+        within("dropout", self.dropout, 0.0, 1.0)?;
+        within("delay (control periods)", f64::from(self.delay_ticks), 0.0, f64::from(MAX_TICKS))?;
         self.fitted.check(sensor, self.every_ticks)
     }
 
@@ -152,7 +149,7 @@ impl ImuMount {
             let half_turn = std::f64::consts::PI;
             self.turned_rad.iter().try_for_each(|x| within("imu turned (rad)", *x, -half_turn, half_turn))
         };
-        point.and_then(turned).map_err(PlantError)
+        Ok(point.and_then(turned)?)
     }
 
     /// Components of a frame vector in the IMU's axes.

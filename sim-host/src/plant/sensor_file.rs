@@ -2,7 +2,7 @@
 //! of the control period.
 
 use super::{FittedErrors, PlantError, Sensor, SensorConfig, SensorModel};
-use crate::range::within;
+use crate::range::{RangeError, within};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -111,36 +111,106 @@ pub const fn table_of(sensor: Sensor) -> &'static str {
     }
 }
 
+/// Sensor models that can't be loaded.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SensorFileError {
+    /// Neither a shipped name nor a file.
+    #[error("unknown sensor model `{0}`: no such file, and not one of {EXACT}, {known}", known = shipped())]
+    Unknown(String),
+    /// The file can't be read.
+    #[error("can't read the sensor model {name}: {error}")]
+    Read {
+        /// The file.
+        name: String,
+        /// The system's error.
+        error: String,
+    },
+    /// Its content is wrong.
+    #[error("sensor model {name}: {error}")]
+    Content {
+        /// Name or file.
+        name: String,
+        /// The error.
+        error: SensorTextError,
+    },
+}
+
+fn shipped() -> String {
+    SHIPPED.map(|(name, _)| name).join(", ")
+}
+
+/// Text that is no file of sensor models.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SensorTextError {
+    /// Not TOML, or a key is missing, unknown or of a wrong type: the parser's message.
+    #[error("{0}")]
+    Syntax(String),
+    /// A wrong number in a table.
+    #[error("{table}: {error}")]
+    Table {
+        /// The table.
+        table: &'static str,
+        /// The error.
+        error: SensorNumberError,
+    },
+}
+
+/// A wrong number of a sensor model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SensorNumberError {
+    /// A value outside its range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// Numbers that are no model.
+    #[error(transparent)]
+    Model(#[from] PlantError),
+    /// More or fewer values than axes.
+    #[error("{key} has {values} values, the sensor {axes}")]
+    Axes {
+        /// The key.
+        key: &'static str,
+        /// Number of values.
+        values: usize,
+        /// Number of axes.
+        axes: usize,
+    },
+    /// A density of noise without a time between samples.
+    #[error("white_density: there is no period_s beside it")]
+    NoPeriod,
+}
+
 impl SensorFile {
     /// Loads the models by shipped name, or from a file.
     ///
     /// # Errors
     /// An unknown name or file, a missing or unknown key, a wrong type, or a value out of range; each is
     /// named.
-    pub fn load(name: &str) -> Result<Self, PlantError> {
+    pub fn load(name: &str) -> Result<Self, SensorFileError> {
+        let content = |error| SensorFileError::Content { name: name.into(), error };
         if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
-            return Self::parse(text).map_err(|error| PlantError(format!("sensor model {name}: {error}")));
+            return Self::parse(text).map_err(content);
         }
         if !Path::new(name).exists() {
-            let names: Vec<_> = SHIPPED.iter().map(|(shipped, _)| *shipped).collect();
-            let names = names.join(", ");
-            let error =
-                format!("unknown sensor model `{name}`: no such file, and not one of {EXACT}, {names}");
-            return Err(PlantError(error));
+            return Err(SensorFileError::Unknown(name.into()));
         }
         let text = std::fs::read_to_string(name)
-            .map_err(|e| PlantError(format!("can't read the sensor model {name}: {e}")))?;
-        Self::parse(&text).map_err(|error| PlantError(format!("sensor model {name}: {error}")))
+            .map_err(|e| SensorFileError::Read { name: name.into(), error: e.to_string() })?;
+        Self::parse(&text).map_err(content)
     }
 
     /// Parses models from text.
     ///
     /// # Errors
-    /// States the key, its value and the expected form.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let file: Self = toml::from_str(text).map_err(|e| e.to_string().trim().to_owned())?;
+    /// The key, its value and the expected form.
+    pub fn parse(text: &str) -> Result<Self, SensorTextError> {
+        let file: Self =
+            toml::from_str(text).map_err(|e| SensorTextError::Syntax(e.to_string().trim().into()))?;
         for (sensor, numbers) in file.tables() {
-            numbers.check(sensor).map_err(|error| format!("{}: {error}", table_of(sensor)))?;
+            let wrong = |error| SensorTextError::Table { table: table_of(sensor), error };
+            numbers.check(sensor).map_err(wrong)?;
         }
         Ok(file)
     }
@@ -182,7 +252,7 @@ impl SensorFile {
     ///
     /// # Errors
     /// States the time that is too long.
-    pub fn apply(&self, sensors: &mut SensorConfig, period_s: f64) -> Result<(), String> {
+    pub fn apply(&self, sensors: &mut SensorConfig, period_s: f64) -> Result<(), RangeError> {
         self.tables().try_for_each(|(sensor, numbers)| {
             *sensors.model_mut(sensor) = numbers.model(period_s)?;
             Ok(())
@@ -191,7 +261,7 @@ impl SensorFile {
 }
 
 impl SensorNumbers {
-    fn check(&self, sensor: Sensor) -> Result<(), String> {
+    fn check(&self, sensor: Sensor) -> Result<(), SensorNumberError> {
         let axes = sensor.axes().len().max(1);
         let optional =
             |key: &str, value: Option<f64>, min, max| value.map_or(Ok(()), |x| within(key, x, min, max));
@@ -216,17 +286,17 @@ impl SensorNumbers {
         axes_of("vibration", self.vibration.len(), axes)?;
         self.vibration.iter().flatten().try_for_each(|x| within("vibration", *x, 0.0, 1e3))?;
         if self.period_s.is_none() && !self.white_density.is_empty() {
-            return Err("white_density: there is no period_s beside it".into());
+            return Err(SensorNumberError::NoPeriod);
         }
         // Times too long or unsuited to the sensor show only in control periods, here of 1 ms.
-        self.model(1e-3)?.check(sensor).map_err(|e| e.0)
+        Ok(self.model(1e-3)?.check(sensor)?)
     }
 
     /// The model, with times rounded to control periods of `period_s`.
     ///
     /// # Errors
     /// States the time that is too long.
-    pub fn model(&self, period_s: f64) -> Result<SensorModel, String> {
+    pub fn model(&self, period_s: f64) -> Result<SensorModel, RangeError> {
         let ticks = |key: &str, time_s: f64| {
             let ticks = (time_s / period_s).round();
             within(&format!("{key} (control periods)"), ticks, 0.0, 1e4).map(|()| ticks as u16)
@@ -253,9 +323,9 @@ impl SensorNumbers {
     }
 }
 
-fn axes_of(key: &str, there: usize, axes: usize) -> Result<(), String> {
-    let fits = there == 0 || there == axes;
-    fits.then_some(()).ok_or_else(|| format!("{key} has {there} values, the sensor {axes}"))
+fn axes_of(key: &'static str, values: usize, axes: usize) -> Result<(), SensorNumberError> {
+    let fits = values == 0 || values == axes;
+    fits.then_some(()).ok_or(SensorNumberError::Axes { key, values, axes })
 }
 
 /// Values by axis, padded with zeros.

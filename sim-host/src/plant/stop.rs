@@ -1,7 +1,6 @@
 //! The mechanical end-stop of the steer: from steer angle and rate to torque.
 
-use super::PlantError;
-use crate::range::within;
+use crate::range::{RangeError, within};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -30,11 +29,10 @@ impl SteerStop {
     ///
     /// # Errors
     /// States the value and its range.
-    pub fn check(&self) -> Result<(), PlantError> {
+    pub fn check(&self) -> Result<(), RangeError> {
         within("steer stop (rad)", self.angle_rad, 0.05, 1.5)
             .and_then(|()| within("steer stop stiffness (N m/rad)", self.stiffness_nm_rad, 10.0, 5000.0))
             .and_then(|()| within("steer stop damping (N m s/rad)", self.damping_nm_s_rad, 0.0, 50.0))
-            .map_err(PlantError)
     }
 
     /// The torque on the steer axis \[N m\] at a steer angle \[rad\] and rate \[rad/s\].

@@ -2,7 +2,7 @@
 
 use super::map::Map;
 use super::samples::Samples;
-use crate::parameters;
+use crate::parameters::{self, SetError};
 use crate::plant::Sensor;
 use control::{Config, Wheel};
 
@@ -17,11 +17,23 @@ pub struct Fitted {
     pub unchecked: Vec<String>,
 }
 
+/// A parameter of a map that can't be set.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("parameters: {key} = {value}: {error}")]
+pub struct MapParameterError {
+    /// The parameter.
+    pub key: String,
+    /// Its value.
+    pub value: String,
+    /// The error.
+    pub error: SetError,
+}
+
 /// Declares the recorded sensors in a configuration, and sets the map's parameters.
 ///
 /// # Errors
 /// A parameter of the map that does not exist, or a value that is not allowed.
-pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitted, String> {
+pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitted, MapParameterError> {
     let mut fitted = Fitted { absent: samples.absent.clone(), ..Fitted::default() };
     let has = |sensor| samples.track(sensor).is_some();
     for sensor in Sensor::ALL {
@@ -49,8 +61,11 @@ pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitte
             toml::Value::Boolean(on) => if *on { "on" } else { "off" }.into(),
             number => number.to_string(),
         };
-        parameters::set(config, key, &words)
-            .map_err(|error| format!("parameters: {key} = {words}: {error}"))?;
+        parameters::set(config, key, &words).map_err(|error| MapParameterError {
+            key: key.clone(),
+            value: words.clone(),
+            error,
+        })?;
     }
     Ok(fitted)
 }

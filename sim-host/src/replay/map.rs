@@ -1,5 +1,6 @@
 //! A map assigns the columns of a recording to sensors, with unit, sign and axes. `docs/replay.md`.
 
+use super::map_error::{MapError, MapTextError, SignalError};
 use super::unit::Quantity;
 use crate::plant::Sensor;
 use crate::recording::Recording;
@@ -148,24 +149,23 @@ impl Map {
     ///
     /// # Errors
     /// The file with key, value and expected values.
-    pub fn load(name: &str) -> Result<Self, String> {
+    pub fn load(name: &str) -> Result<Self, MapError> {
+        let content = |error| MapError::Content { name: name.into(), error };
         if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
-            return Self::parse(text).map_err(|error| format!("{name}: {error}"));
+            return Self::parse(text).map_err(content);
         }
-        let path = Path::new(name);
-        let text = std::fs::read_to_string(path).map_err(|error| {
-            let names: Vec<_> = SHIPPED.iter().map(|(shipped, _)| *shipped).collect();
-            format!("can't read the map {name}: {error}; built-in maps are {}", names.join(", "))
-        })?;
-        Self::parse(&text).map_err(|error| format!("{name}: {error}"))
+        let known = || SHIPPED.map(|(name, _)| name).join(", ");
+        let read = |error| MapError::Read { name: name.into(), error, known: known() };
+        Self::parse(&std::fs::read_to_string(Path::new(name)).map_err(read)?).map_err(content)
     }
 
     /// Parses a map.
     ///
     /// # Errors
     /// The key with its value and the expected values.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let map: Self = toml::from_str(text).map_err(|error| error.to_string().trim().to_owned())?;
+    pub fn parse(text: &str) -> Result<Self, MapTextError> {
+        let map: Self =
+            toml::from_str(text).map_err(|e| MapTextError::Syntax(e.to_string().trim().into()))?;
         map.check()?;
         Ok(map)
     }
@@ -201,27 +201,28 @@ impl Map {
         Sensor::ALL.into_iter().filter_map(mapped)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), MapTextError> {
         if let Some(time) = &self.time {
-            Quantity::Time.factor(time.unit.as_deref()).map_err(|error| format!("time: {error}"))?;
+            Quantity::Time.factor(time.unit.as_deref()).map_err(MapTextError::TimeUnit)?;
             match (&time.column, time.rate_hz) {
                 (Some(_), None) => {}
                 (None, Some(rate_hz)) if (0.01..=1e5).contains(&rate_hz) => {}
                 (None, Some(rate_hz)) => {
-                    return Err(format!("time: rate_hz = {rate_hz} is outside 0.01 to 100000"));
+                    return Err(MapTextError::Rate(rate_hz));
                 }
-                _ => return Err("time: either column or rate_hz must be there".into()),
+                _ => return Err(MapTextError::Time),
             }
         }
         for Mapped { sensor, signal } in self.sensors() {
             let key = sensor.name().replace('-', "_");
-            signal.check(axes_of(sensor), quantity_of(sensor)).map_err(|error| format!("{key}: {error}"))?;
+            let checked = signal.check(axes_of(sensor), quantity_of(sensor));
+            checked.map_err(|error| MapTextError::Signal { key, error })?;
         }
         let References { roll, torque } = &self.reference;
         for (key, signal, quantity) in [("roll", roll, Quantity::Angle), ("torque", torque, Quantity::Torque)]
         {
             let checked = signal.as_ref().map_or(Ok(()), |signal| signal.check(1, quantity));
-            checked.map_err(|error| format!("reference.{key}: {error}"))?;
+            checked.map_err(|error| MapTextError::Signal { key: format!("reference.{key}"), error })?;
         }
         Ok(())
     }
@@ -244,26 +245,26 @@ pub(super) const fn quantity_of(sensor: Sensor) -> Quantity {
 }
 
 impl Signal {
-    fn check(&self, axes: usize, quantity: Quantity) -> Result<(), String> {
+    fn check(&self, axes: usize, quantity: Quantity) -> Result<(), SignalError> {
         if self.columns.len() != axes {
-            return Err(format!("columns: {} given, expected {axes}", self.columns.len()));
+            return Err(SignalError::Columns { given: self.columns.len(), expected: axes });
         }
         quantity.factor(self.unit.as_deref())?;
-        let in_range = |key: &str, value: f64, most: f64| {
-            let good = value.abs() <= most;
-            good.then_some(()).ok_or(format!("{key} = {value} is outside -{most} to {most}"))
+        let in_range = |key: &'static str, value: f64, most: f64| match value.abs() <= most {
+            true => Ok(()),
+            false => Err(SignalError::Range { key, value, most }),
         };
         in_range("scale", self.scale, 1e6)?;
         if self.scale == 0.0 {
-            return Err("scale = 0 is not allowed".into());
+            return Err(SignalError::Scale);
         }
         in_range("offset", self.offset, 1e6)?;
         if !(0.0..=1.0).contains(&self.late_s) {
-            return Err(format!("late_s = {} is outside 0 to 1", self.late_s));
+            return Err(SignalError::Late(self.late_s));
         }
         match (&self.axes, axes) {
             (Some(axes), 3) => turned(axes).map(drop),
-            (Some(_), _) => Err("axes: only allowed for a sensor with three axes".into()),
+            (Some(_), _) => Err(SignalError::NoAxes),
             (None, _) => Ok(()),
         }
     }
@@ -276,11 +277,11 @@ impl Signal {
 }
 
 /// Indices and signs of `["-y", "x", "z"]`.
-fn turned(axes: &[String; 3]) -> Result<[(usize, f64); 3], String> {
+fn turned(axes: &[String; 3]) -> Result<[(usize, f64); 3], SignalError> {
     let one = |word: &String| {
         let (sign, letter) = word.strip_prefix('-').map_or((1.0, word.as_str()), |letter| (-1.0, letter));
         let place = ["x", "y", "z"].iter().position(|axis| *axis == letter);
-        place.map(|place| (place, sign)).ok_or(format!("axes: `{word}`: expected one of x, y, z, -x, -y, -z"))
+        place.map(|place| (place, sign)).ok_or_else(|| SignalError::Axis(word.clone()))
     };
     let [x, y, z] = axes;
     let turns = [one(x)?, one(y)?, one(z)?];
@@ -290,11 +291,9 @@ fn turned(axes: &[String; 3]) -> Result<[(usize, f64); 3], String> {
     let odd = [(0, 2, 1), (2, 1, 0), (1, 0, 2)].contains(&(a.0, b.0, c.0));
     let signs = a.1 * b.1 * c.1;
     match (even, odd) {
-        (false, false) => Err(format!("axes: {axes:?} names an axis twice")),
+        (false, false) => Err(SignalError::Twice(axes.clone())),
         (true, _) if signs > 0.0 => Ok(turns),
         (_, true) if signs < 0.0 => Ok(turns),
-        _ => Err(format!(
-            "axes: {axes:?} is left-handed (a mirror image), which no orientation is; change a sign"
-        )),
+        _ => Err(SignalError::LeftHanded(axes.clone())),
     }
 }

@@ -115,14 +115,22 @@ const STATES: Causes = Causes::all(&[
 /// Speed above which a bicycle counts as riding \[m/s\].
 const RIDING_M_S: f32 = 1.0;
 
+/// A file that is no whole number of frames.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{bytes} bytes are no whole number of frames of {FRAME_BYTES} bytes")]
+pub struct FramesError {
+    /// Size of the file \[bytes\].
+    pub bytes: usize,
+}
+
 /// The frames in a file of `ride --frames` or `replay --frames`, each with its time \[s\], the first at 0.
 ///
 /// # Errors
 /// The bytes are not a whole number of frames, or there is no frame.
-pub fn frames(bytes: &[u8]) -> Result<Vec<(f64, SensorFrame)>, String> {
+pub fn frames(bytes: &[u8]) -> Result<Vec<(f64, SensorFrame)>, FramesError> {
     let (whole, rest) = bytes.as_chunks::<FRAME_BYTES>();
     if whole.is_empty() || !rest.is_empty() {
-        return Err(format!("{} bytes are no whole number of frames of {FRAME_BYTES} bytes", bytes.len()));
+        return Err(FramesError { bytes: bytes.len() });
     }
     let mut t_s = 0.0;
     let mut before_us: Option<u32> = None;

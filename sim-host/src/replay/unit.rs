@@ -1,5 +1,7 @@
 //! The units allowed in a map, each with its factor to SI.
 
+use super::map_error::UnitError;
+
 /// Physical quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
@@ -38,12 +40,12 @@ impl Quantity {
     ///
     /// # Errors
     /// An unknown unit, with the allowed ones.
-    pub(super) fn factor(self, unit: Option<&str>) -> Result<f64, String> {
+    pub(super) fn factor(self, unit: Option<&str>) -> Result<f64, UnitError> {
         let Some(unit) = unit else { return Ok(1.0) };
         let found = self.units().iter().find(|(name, _)| *name == unit);
         found.map(|(_, factor)| *factor).ok_or_else(|| {
             let names: Vec<_> = self.units().iter().map(|(name, _)| *name).collect();
-            format!("unit = \"{unit}\": expected one of {}", names.join(", "))
+            UnitError { unit: unit.into(), known: names.join(", ") }
         })
     }
 

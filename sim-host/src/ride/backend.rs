@@ -26,10 +26,10 @@ impl Stepped {
     };
 }
 
-/// Failure of an external processor, with the reason.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+/// Failure of an external processor: its error, which `downcast_ref` gives.
+#[derive(Debug, thiserror::Error)]
 #[error("{0}")]
-pub struct RemoteError(pub String);
+pub struct RemoteError(pub Box<dyn std::error::Error + Send + Sync>);
 
 /// A controller on an external processor.
 pub trait Remote {

@@ -2,9 +2,9 @@
 
 use super::{Assist, FallCriterion};
 use crate::bicycle::Geometry;
-use crate::plant::{Imu, Plant};
-use crate::range::within;
-use crate::rider::Rider;
+use crate::plant::{Imu, Plant, PlantError};
+use crate::range::{RangeError, within};
+use crate::rider::{Rider, UnfitError};
 
 /// Speed that schedules the gains of assist and rider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -48,10 +48,25 @@ pub struct Conditions {
     pub recovered_below: f64,
 }
 
-/// Conditions that can't be simulated, with the reason.
+/// Conditions that can't be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct ConditionsError(pub String);
+#[non_exhaustive]
+pub enum ConditionsError {
+    /// A value outside its range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// The rider can't be simulated.
+    #[error(transparent)]
+    Rider(#[from] UnfitError),
+    /// The plant can't be simulated.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
+    /// The plant of an ideal law is not exact.
+    #[error(
+        "the ideal law has exact sensors and an exact motor: of the plant only friction and end-stop act on it"
+    )]
+    IdealLaw,
+}
 
 /// Largest delay of a simulated sensor \[control periods\].
 pub(super) const MAX_SENSOR_DELAY_TICKS: u16 = 1000;
@@ -92,24 +107,17 @@ impl Conditions {
     /// # Errors
     /// States the value and its range.
     pub fn check(&self) -> Result<(), ConditionsError> {
-        let within = |name, value, min, max| within(name, value, min, max).map_err(ConditionsError);
         within("time limit (s)", self.time_limit_s, self.step_s, 3600.0)?;
         within("step (s)", self.step_s, 1e-5, 1e-2)?;
         within("recovered-below fraction", self.recovered_below, 1e-6, 1.0)?;
-        self.fall.check().map_err(ConditionsError)?;
-        if let Some(rider) = &self.rider {
-            rider.check(self.step_s).map_err(|e| ConditionsError(e.0))?;
-        }
-        self.plant.check().map_err(|e| ConditionsError(e.0))?;
+        self.fall.check()?;
+        self.rider.as_ref().map_or(Ok(()), |rider| rider.check(self.step_s))?;
+        self.plant.check()?;
         if matches!(self.assist, Assist::Ideal(_)) && !self.plant.exact() {
-            let error = "the ideal law has exact sensors and an exact motor: of the plant only friction and end-stop act on it";
-            return Err(ConditionsError(error.into()));
+            return Err(ConditionsError::IdealLaw);
         }
-        within(
-            "sensor delay in control periods",
-            f64::from(self.sensor_delay_ticks),
-            0.0,
-            f64::from(MAX_SENSOR_DELAY_TICKS),
-        )
+        let delay_ticks = f64::from(self.sensor_delay_ticks);
+        within("sensor delay in control periods", delay_ticks, 0.0, f64::from(MAX_SENSOR_DELAY_TICKS))?;
+        Ok(())
     }
 }

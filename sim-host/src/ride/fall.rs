@@ -1,6 +1,6 @@
 //! Fall criterion: configuration and causes.
 
-use crate::range::within;
+use crate::range::{RangeError, within};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
@@ -38,7 +38,7 @@ impl FallCriterion {
     ///
     /// # Errors
     /// States the value and its range.
-    pub fn check(&self) -> Result<(), String> {
+    pub fn check(&self) -> Result<(), RangeError> {
         let angle = |name: &str, rad: f64| {
             // A typed 90 degrees can differ by rounding.
             within(&format!("{name} (deg)"), (rad.to_degrees() * 1e9).round() / 1e9, 1.0, 90.0)

@@ -1,7 +1,7 @@
 //! Loads riders by name or from TOML files.
 
-use super::table::RiderTable;
-use std::path::{Path, PathBuf};
+use super::{RiderError, RiderTable};
+use std::path::Path;
 
 /// Names and texts of the shipped riders in `data/riders/`.
 const SHIPPED: [(&str, &str); 10] = [
@@ -16,43 +16,6 @@ const SHIPPED: [(&str, &str); 10] = [
     ("smart-reduction", include_str!("../../../data/riders/smart-reduction.toml")),
     ("undelayed-reduction", include_str!("../../../data/riders/undelayed-reduction.toml")),
 ];
-
-/// Reason why a rider cannot be loaded.
-#[derive(Debug, thiserror::Error)]
-pub enum RiderError {
-    /// Neither a shipped name nor a file.
-    #[error("unknown rider `{name}`: no such file, and no such shipped rider; shipped are {known}")]
-    Unknown {
-        /// As given.
-        name: String,
-        /// The shipped names.
-        known: String,
-    },
-    /// The file can't be read.
-    #[error("can't read rider file {path}: {source}")]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The operating system's error.
-        source: std::io::Error,
-    },
-    /// The file is not TOML, or a key is missing, unknown or of a wrong type.
-    #[error("rider file {path}: {reason}")]
-    Syntax {
-        /// The file.
-        path: PathBuf,
-        /// The parser's message, with line and column.
-        reason: String,
-    },
-    /// A value is wrong.
-    #[error("rider file {path}: {reason}")]
-    Table {
-        /// The file.
-        path: PathBuf,
-        /// Key or row, value and range.
-        reason: String,
-    },
-}
 
 /// Names of the shipped riders.
 pub fn shipped_names() -> impl Iterator<Item = &'static str> {

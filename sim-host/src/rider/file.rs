@@ -1,15 +1,12 @@
 //! Parses riders' files: TOML with `columns` and `rows` (`docs/riders.md`).
 
-use super::catalogue::RiderError;
-use super::table::{RiderTable, Row};
-use super::{Fit, Gains, KEYS, Line, MAX_DELAY_S, Neuromuscular, Outside};
+use super::table::{RiderTable, Row, SCHEMA};
+use super::{Fit, Gains, KEYS, Line, MAX_DELAY_S, Neuromuscular, Outside, RiderError, RowError, TableError};
 use crate::range::within;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Supported schema version.
-pub(super) const SCHEMA: u32 = 1;
 /// Columns that are not gains.
 const ROW_KEYS: [&str; 4] = ["speed_m_s", "run", "group", "vaf"];
 /// Gains of nested loops, innermost first.
@@ -74,18 +71,15 @@ impl RiderTable {
     }
 
     /// Checks `best_runs` against the rows.
-    fn check_best(&self) -> Result<(), String> {
+    fn check_best(&self) -> Result<(), TableError> {
         let Some(best) = &self.best_runs else { return Ok(()) };
         if let Some(run) = best.iter().find(|b| !self.rows.iter().any(|r| r.run == Some(**b))) {
-            return Err(format!("`best_runs`: no row has run {run}"));
+            return Err(TableError::BestRun(*run));
         }
         for group in self.groups() {
             let n = group.iter().filter(|r| r.run.is_some_and(|run| best.contains(&run))).count();
             if n != 1 {
-                return Err(format!(
-                    "`best_runs` names {n} rows of the group at {} m/s; it must be one of each group",
-                    group[0].speed_m_s
-                ));
+                return Err(TableError::BestRuns { rows: n, speed_m_s: group[0].speed_m_s });
             }
         }
         Ok(())
@@ -93,21 +87,21 @@ impl RiderTable {
 }
 
 impl File {
-    fn table(self, name: &str) -> Result<RiderTable, String> {
+    fn table(self, name: &str) -> Result<RiderTable, TableError> {
         if self.schema != SCHEMA {
-            return Err(format!("`schema` = {} is not known; this program reads {SCHEMA}", self.schema));
+            return Err(TableError::Schema(self.schema));
         }
         within("`delay_ms`", self.delay_ms, 0.0, MAX_DELAY_S * 1e3)?;
         let muscles = self
             .neuromuscular
             .as_ref()
             .map_or(Neuromuscular::SHOULDERS, |m| Neuromuscular { omega_rad_s: m.omega_rad_s, zeta: m.zeta });
-        muscles.check().map_err(|e| format!("`neuromuscular`: {e}"))?;
+        muscles.check().map_err(TableError::Neuromuscular)?;
         let columns = self.gain_columns()?;
         within("number of `rows`", self.rows.len() as f64, 1.0, 1000.0)?;
         let mut rows: Vec<Row> = Vec::new();
         for (i, cells) in self.rows.iter().enumerate() {
-            let row = self.row(cells, rows.last()).map_err(|e| format!("row {}: {e}", i + 1))?;
+            let row = self.row(cells, rows.last()).map_err(|error| TableError::Row { row: i + 1, error })?;
             rows.push(row);
         }
         let regression = self.line(&columns)?;
@@ -124,26 +118,26 @@ impl File {
             rows,
         };
         table.check_best()?;
-        table.schedule(Fit::Mean, Outside::default()).map_err(|e| format!("means of groups: {e}"))?;
+        table.schedule(Fit::Mean, Outside::default()).map_err(TableError::Means)?;
         Ok(table)
     }
 
     /// Indices of the gains that have a column; checks the columns.
-    fn gain_columns(&self) -> Result<Vec<usize>, String> {
+    fn gain_columns(&self) -> Result<Vec<usize>, TableError> {
         let keys = self.gain_keys();
         for (i, column) in self.columns.iter().enumerate() {
             let column = column.as_str();
             if !ROW_KEYS.contains(&column) && !keys.contains(&column) {
                 let known = [&ROW_KEYS, keys].concat().join(", ");
-                return Err(format!("`columns`: unknown column `{column}`; known are {known}"));
+                return Err(TableError::UnknownColumn { column: column.into(), known });
             }
             if self.columns[..i].iter().any(|c| c == column) {
-                return Err(format!("`columns`: `{column}` is listed twice"));
+                return Err(TableError::RepeatedColumn(column.into()));
             }
         }
         let has = |key: &str| self.columns.iter().any(|c| c == key);
         if !has("speed_m_s") {
-            return Err("`columns`: `speed_m_s` is missing".into());
+            return Err(TableError::NoSpeed);
         }
         let present = (0..keys.len()).filter(|&i| has(keys[i]));
         let mut gains: Vec<usize> = match self.feedback {
@@ -152,22 +146,21 @@ impl File {
         };
         gains.sort_unstable();
         if gains.is_empty() {
-            return Err(format!("`columns`: no gains; known are {}", keys.join(", ")));
+            return Err(TableError::NoGains { known: keys.join(", ") });
         }
         Ok(gains)
     }
 
     /// The published regression from the file: one line for each gain that has a column, and no others.
-    fn line(&self, columns: &[usize]) -> Result<Option<Line>, String> {
+    fn line(&self, columns: &[usize]) -> Result<Option<Line>, TableError> {
         let Some(lines) = &self.regression else { return Ok(None) };
         let gains: Vec<&str> = columns.iter().map(|&i| KEYS[i]).collect();
         if let Some(key) = lines.keys().find(|key| !gains.contains(&key.as_str())) {
-            return Err(format!("`regression`: `{key}` is not a gain with a column ({})", gains.join(", ")));
+            return Err(TableError::RegressionKey { key: key.clone(), gains: gains.join(", ") });
         }
         let mut line = Line { slope: Gains::default(), intercept: Gains::default() };
         for &i in columns {
-            let [slope, rest] =
-                lines.get(KEYS[i]).ok_or_else(|| format!("`regression`: `{}` is missing", KEYS[i]))?;
+            let [slope, rest] = lines.get(KEYS[i]).ok_or(TableError::RegressionMissing(KEYS[i]))?;
             within(&format!("`regression`: slope of `{}`", KEYS[i]), *slope, -1e5, 1e5)?;
             within(&format!("`regression`: `{}` at rest", KEYS[i]), *rest, -1e5, 1e5)?;
             (line.slope.0[i], line.intercept.0[i]) = (*slope, *rest);
@@ -182,10 +175,10 @@ impl File {
         }
     }
 
-    fn row(&self, cells: &[f64], before: Option<&Row>) -> Result<Row, String> {
+    fn row(&self, cells: &[f64], before: Option<&Row>) -> Result<Row, RowError> {
         let (n, m) = (cells.len(), self.columns.len());
         if n != m {
-            return Err(format!("{n} values for {m} columns ({})", self.columns.join(", ")));
+            return Err(RowError::Length { values: n, columns: m, names: self.columns.join(", ") });
         }
         let cell = |key: &str| self.columns.iter().position(|c| c == key).map(|i| cells[i]);
         let whole = |key: &str, max: f64| match cell(key) {
@@ -194,7 +187,7 @@ impl File {
             Some(x) => {
                 within(&format!("`{key}`"), x, 1.0, max)?;
                 if x.fract() != 0.0 {
-                    return Err(format!("`{key}` = {x} is not a whole number"));
+                    return Err(RowError::NotWhole { key: key.into(), value: x });
                 }
                 Ok(Some(x as u32))
             }
@@ -202,16 +195,13 @@ impl File {
         let speed_m_s = cell("speed_m_s").unwrap_or_default();
         within("`speed_m_s`", speed_m_s, 0.0, 30.0)?;
         if let Some(before) = before.filter(|b| b.speed_m_s > speed_m_s) {
-            return Err(format!(
-                "`speed_m_s` = {speed_m_s} after {}: rows must be sorted by speed",
-                before.speed_m_s
-            ));
+            return Err(RowError::Speed { speed_m_s, before_m_s: before.speed_m_s });
         }
         let same = before.is_some_and(|b| b.speed_m_s == speed_m_s);
         let last = before.map_or(0, |b| b.group);
         let group = whole("group", 1e6)?.unwrap_or(if same { last } else { last + 1 });
         if group < last {
-            return Err(format!("`group` = {group} after {last}: groups must rise with speed"));
+            return Err(RowError::Group { group, before: last });
         }
         let run = whole("run", 1e9)?;
         let vaf = cell("vaf").filter(|x| !x.is_nan());

@@ -1,7 +1,7 @@
 //! From measured sets of gains to gains as functions of speed (Kuipers 2020, section 2.3.3).
 
 use super::table::{RiderTable, Row};
-use super::{Gains, KEYS, Outside, Rider, Schedule, ScheduleError};
+use super::{Gains, KEYS, Line, Outside, Rider, Schedule, ScheduleError};
 
 /// Method that makes gains continuous over speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -29,22 +29,6 @@ impl Fit {
             Self::Mean => "mean",
             Self::Best => "best",
         }
-    }
-}
-
-/// A straight line per gain, `slope * speed + intercept`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
-    /// Slope of the gains per m/s.
-    pub slope: Gains,
-    /// Gains at zero speed.
-    pub intercept: Gains,
-}
-
-impl Line {
-    /// The gains at `speed` \[m/s\].
-    pub fn at(&self, speed: f64) -> Gains {
-        Gains(std::array::from_fn(|i| self.slope.0[i] * speed + self.intercept.0[i]))
     }
 }
 
@@ -104,13 +88,8 @@ impl RiderTable {
             [one] => Some(one),
             _ => group.iter().find(named).or_else(highest),
         };
-        best.map(|r| (r.speed_m_s, r.gains)).ok_or_else(|| {
-            ScheduleError(format!(
-                "the best of the {} sets at about {} m/s is unknown; the table needs the column `vaf`, or `best_runs`",
-                group.len(),
-                group[0].speed_m_s
-            ))
-        })
+        let none = || ScheduleError::NoBest { sets: group.len(), speed_m_s: group[0].speed_m_s };
+        best.map(|r| (r.speed_m_s, r.gains)).ok_or_else(none)
     }
 
     /// Coefficient of determination of each gain: `1 - sum (K - f)^2 / sum (K - mean K)^2` over the rows,

@@ -4,9 +4,11 @@
 pub mod catalogue;
 mod delay_line;
 mod doubts;
+mod error;
 mod file;
 mod fit;
 mod gains;
+mod line;
 mod neuromuscular;
 mod schedule;
 mod state;
@@ -14,10 +16,12 @@ mod table;
 
 pub use delay_line::DelayLine;
 pub use doubts::doubts;
-pub use fit::{Fit, Line, mean};
+pub use error::{RiderError, RowError, ScheduleError, TableError, UnfitError};
+pub use fit::{Fit, mean};
 pub use gains::{Gains, KEYS, Signals};
-pub use neuromuscular::{Neuromuscular, NeuromuscularError};
-pub use schedule::{Outside, Schedule, ScheduleError};
+pub use line::Line;
+pub use neuromuscular::Neuromuscular;
+pub use schedule::{Outside, Schedule};
 pub use state::{Instant, RiderState};
 pub use table::{RiderTable, Row};
 
@@ -37,11 +41,6 @@ pub struct Rider {
 /// Longest neural delay \[s\].
 pub const MAX_DELAY_S: f64 = 1.0;
 
-/// A rider that can't be simulated, with the reason.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct UnfitError(pub String);
-
 impl Rider {
     /// The delay in steps of `step_s` seconds, rounded to the nearest whole number.
     pub fn delay_steps(&self, step_s: f64) -> usize {
@@ -53,19 +52,12 @@ impl Rider {
     /// # Errors
     /// States the value and its range, or the nearest possible delays.
     pub fn check(&self, step_s: f64) -> Result<(), UnfitError> {
-        within("neural delay (s)", self.delay_s, 0.0, MAX_DELAY_S).map_err(UnfitError)?;
-        self.muscles.check().map_err(|e| UnfitError(e.0))?;
+        within("neural delay (s)", self.delay_s, 0.0, MAX_DELAY_S)?;
+        self.muscles.check()?;
         let steps = self.delay_s / step_s;
         if (steps - self.delay_steps(step_s) as f64).abs() <= 1e-6 {
             return Ok(());
         }
-        let ms = |n: f64| format!("{} ms", n * step_s * 1e3);
-        Err(UnfitError(format!(
-            "neural delay {} ms is not a whole number of steps of {} ms; nearest are {} and {}",
-            self.delay_s * 1e3,
-            step_s * 1e3,
-            ms(steps.floor()),
-            ms(steps.ceil())
-        )))
+        Err(UnfitError::Steps { delay_s: self.delay_s, step_s })
     }
 }

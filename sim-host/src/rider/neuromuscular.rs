@@ -2,7 +2,7 @@
 //! (eq. B.5; eq. 2.9 is printed without the square of its input gain).
 
 use crate::num::Scalar;
-use crate::range::within;
+use crate::range::{RangeError, within};
 
 /// `T'' = omega^2 (alpha - T) - 2 zeta omega T'`.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -12,11 +12,6 @@ pub struct Neuromuscular {
     /// Damping ratio.
     pub zeta: f64,
 }
-
-/// Rejected neuromuscular parameters, with the reason.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct NeuromuscularError(pub String);
 
 impl Neuromuscular {
     /// Shoulder dynamics: 2.17 Hz, damping ratio `sqrt(1/2)` (Schouten et al. 2007, as used by the thesis).
@@ -33,10 +28,9 @@ impl Neuromuscular {
     /// Checks ranges.
     ///
     /// # Errors
-    /// States the value and its range.
-    pub fn check(&self) -> Result<(), NeuromuscularError> {
-        within("neuromuscular natural frequency (rad/s)", self.omega_rad_s, 0.1, 200.0)
-            .map_err(NeuromuscularError)?;
-        within("neuromuscular damping ratio", self.zeta, 0.01, 10.0).map_err(NeuromuscularError)
+    /// The value and its range.
+    pub fn check(&self) -> Result<(), RangeError> {
+        within("neuromuscular natural frequency (rad/s)", self.omega_rad_s, 0.1, 200.0)?;
+        within("neuromuscular damping ratio", self.zeta, 0.01, 10.0)
     }
 }

@@ -1,6 +1,6 @@
 //! Gain schedule: gains as functions of forward speed.
 
-use super::{Gains, KEYS};
+use super::{Gains, KEYS, ScheduleError};
 use crate::range::within;
 
 /// Behaviour outside the speeds at which the gains were measured.
@@ -22,11 +22,6 @@ pub struct Schedule {
     outside: Outside,
 }
 
-/// Rejected points of a schedule, with the reason.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct ScheduleError(pub String);
-
 impl Schedule {
     /// A schedule through `points`: increasing speeds \[m/s\], at least one; a single point gives constant
     /// gains.
@@ -34,7 +29,6 @@ impl Schedule {
     /// # Errors
     /// States the value and its range.
     pub fn new(points: Vec<(f64, Gains)>, outside: Outside) -> Result<Self, ScheduleError> {
-        let within = |name: &str, value, min, max| within(name, value, min, max).map_err(ScheduleError);
         within("number of gain sets", points.len() as f64, 1.0, 1000.0)?;
         for (speed, gains) in &points {
             within("speed (m/s)", *speed, 0.0, 30.0)?;
@@ -43,10 +37,7 @@ impl Schedule {
             }
         }
         if let Some(w) = points.windows(2).find(|w| w[1].0 - w[0].0 < 1e-3) {
-            return Err(ScheduleError(format!(
-                "speed {} m/s after {} m/s: speeds must rise by at least 0.001",
-                w[1].0, w[0].0
-            )));
+            return Err(ScheduleError::Order { speed_m_s: w[1].0, before_m_s: w[0].0 });
         }
         Ok(Self { points, outside })
     }

@@ -1,7 +1,9 @@
 //! Tables of measured gains: one set per row, sets of similar speed in a group.
 
-use super::file::SCHEMA;
 use super::{Gains, KEYS, Line, Neuromuscular};
+
+/// Version of the files' schema.
+pub(super) const SCHEMA: u32 = 1;
 
 /// One measured set of gains.
 #[derive(Clone, Debug, PartialEq)]

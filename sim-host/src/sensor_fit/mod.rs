@@ -24,15 +24,20 @@ pub use toml::to_toml;
 use windows::Recorded;
 pub use windows::Recording;
 
+/// A sensor that none of the recordings has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("none of the recordings has {}", .0.name())]
+pub struct NotRecorded(pub Sensor);
+
 /// Fits a model of `sensor` to recordings.
 ///
 /// # Errors
 /// None of the recordings has the sensor.
-pub fn fit(sensor: Sensor, recordings: &[Recording]) -> Result<SensorNumbers, String> {
+pub fn fit(sensor: Sensor, recordings: &[Recording]) -> Result<SensorNumbers, NotRecorded> {
     let of_sensor = |recording| Recorded::new(recording, sensor);
     let all: Vec<Recorded> = recordings.iter().filter_map(of_sensor).collect();
     if all.is_empty() {
-        return Err(format!("none of the recordings has {}", sensor.name()));
+        return Err(NotRecorded(sensor));
     }
     let mut found = Found { sensor, numbers: SensorNumbers::default(), white_power: [0.0; 3] };
     clock::fit(&all, &mut found);

@@ -3,13 +3,13 @@
 
 use super::motor_fit::{Explained, Free, fits, published_residual};
 use super::page::{Page, table};
+use super::published_weave::{StableFrom, Weave, published, weave};
 use super::weave_recorded;
 use crate::bicycle::{Parameters, catalogue};
-use crate::eigen::{Feedback, LinearActuator, Model, SEARCH_TO_M_S, roots, stability};
+use crate::eigen::{Feedback, LinearActuator, Model, SEARCH_TO_M_S, stability};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use control::Law;
 use nalgebra::Complex;
-use serde::Deserialize;
 use std::fmt::Write;
 
 /// The name of the page.
@@ -25,84 +25,12 @@ pub const RIDERLESS: &str = "balanceassistv1";
 /// The same bicycle with a rigid rider.
 pub const RIDDEN: &str = "balanceassistv1_jason";
 
-/// The published numbers.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Published {
-    /// The lowest speeds at which the straight ride is stable.
-    pub stable_from: StableFrom,
-    /// Measured weave eigenvalues.
-    pub weave: Vec<Weave>,
-}
-
-/// The lowest speeds at which the straight ride is stable, as printed.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StableFrom {
-    /// Where they are printed (reference).
-    pub source: String,
-    /// Slopes of the gain \[N s^2/rad\].
-    pub kappa: [f32; 2],
-    /// Without a rider \[km/h\].
-    pub riderless_kmh: [f64; 2],
-    /// With a rigid rider \[km/h\].
-    pub ridden_kmh: [f64; 2],
-}
-
-/// Measured weave eigenvalues of one setting.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Weave {
-    /// Where they are published (reference).
-    pub source: String,
-    /// The slope set in the controller \[N s^2/rad\].
-    pub kappa_set: f32,
-    /// The slope with which the published model comes near the measurement \[N s^2/rad\].
-    pub kappa_model: f32,
-    /// Forward speeds \[m/s\].
-    pub speed_m_s: Vec<f64>,
-    /// Real parts \[1/s\].
-    pub re: Vec<f64>,
-    /// Imaginary parts \[1/s\].
-    pub im: Vec<f64>,
-}
-
-impl Weave {
-    /// The eigenvalues \[1/s\].
-    pub fn roots(&self) -> impl Iterator<Item = Complex<f64>> {
-        self.re.iter().zip(&self.im).map(|(re, im)| Complex::new(*re, *im))
-    }
-}
-
-/// The published numbers.
-///
-/// # Panics
-/// The built-in file is invalid.
-pub fn published() -> Published {
-    toml::from_str(include_str!("../../../data/balance_assist.toml"))
-        .expect("data/balance_assist.toml is sound")
-}
-
 /// The lowest speed at which the straight ride is stable \[m/s\] (`None` if it is nowhere stable up to 20 m/s), and the
 /// speed from which it is unstable again.
 pub fn stable_range(bicycle: &Parameters, law: Law) -> (Option<f64>, f64) {
     let found = stability(&Model::new(bicycle, Feedback::Law(law), None));
     let (from, to) = found.ranges.first().copied().unzip();
     (from, to.unwrap_or(SEARCH_TO_M_S))
-}
-
-/// The weave eigenvalue at each speed \[1/s\], the upper of the rightmost pair, under the balance assist of a given
-/// slope through an actuator; `None` where there is no pair.
-pub fn weave(
-    bicycle: &Parameters,
-    kappa: f32,
-    actuator: LinearActuator,
-    speeds: &[f64],
-) -> Vec<Option<Complex<f64>>> {
-    let model = Model::new(bicycle, Feedback::Law(Law::BalanceAssist { kappa }), None);
-    let Ok(model) = model.with_actuator(actuator) else { return vec![None; speeds.len()] };
-    let pair = |v: &f64| roots(&model.at(*v), 6).into_iter().find(|root| root.im > 0.0);
-    speeds.iter().map(pair).collect()
 }
 
 /// Computes the study.
@@ -128,7 +56,8 @@ pub fn study() -> Result<Page, String> {
              number was fitted.\n\n## The measured weave\n\n";
     text += &measured(&riderless, &published.weave, &fits);
     text += "\n![Weave eigenvalues](balance-assist.svg)\n\n";
-    text += &weave_recorded::section(&riderless, &published.weave, best(&fits).actuator)?;
+    text += &weave_recorded::section(&riderless, &published.weave, best(&fits).actuator)
+        .map_err(|e| e.to_string())?;
     Ok(Page { name: NAME, text, chart: figure(&riderless, &published.weave, &fits) })
 }
 

@@ -5,6 +5,7 @@ pub mod catalogue;
 pub mod motor_fit;
 pub mod page;
 pub mod prototype;
+pub mod published_weave;
 pub mod swept;
 pub mod trial;
 pub mod weave_recorded;

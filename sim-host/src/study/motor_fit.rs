@@ -1,6 +1,6 @@
 //! Fits motor models to the weave measured on the balance-assist prototype.
 
-use super::balance_assist::{Weave, weave};
+use super::published_weave::{Weave, weave};
 use crate::bicycle::Parameters;
 use crate::eigen::LinearActuator;
 use crate::thesis::nelder_mead::minimum;

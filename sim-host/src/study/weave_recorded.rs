@@ -1,10 +1,10 @@
 //! The weave of the balance-assist prototype from its recordings, beside the published values and the model. Measured
 //! numbers: `data/weave_measured.toml` and `data/weave_measured_offset.toml`.
 
-use super::balance_assist::Weave;
 use super::page::table;
+use super::published_weave::Weave;
 use crate::bicycle::Parameters;
-use crate::eigen::{Feedback, LinearActuator, Model, roots};
+use crate::eigen::{ActuatorError, Feedback, LinearActuator, Model, roots};
 use crate::weave::fit::MODE_1_S;
 use crate::weave::measured::{Measured, MeasuredWeave};
 use crate::weave::predict::weave;
@@ -43,7 +43,7 @@ struct Row {
 /// Speeds of the same setting differ by at most this, since the published ones are rounded \[m/s\].
 const SAME_M_S: f64 = 0.02;
 
-fn rows(bicycle: &Parameters, published: &[Weave], motor: LinearActuator) -> Result<Vec<Row>, String> {
+fn rows(bicycle: &Parameters, published: &[Weave], motor: LinearActuator) -> Result<Vec<Row>, ActuatorError> {
     let offset = recorded_offset();
     let row = |measured: MeasuredWeave| {
         let (gain, speed) = (measured.gain.unwrap_or_default(), measured.speed_m_s);
@@ -64,7 +64,12 @@ fn rows(bicycle: &Parameters, published: &[Weave], motor: LinearActuator) -> Res
 }
 
 /// The model's real modes that a fit can confuse with the weave's \[1/s\].
-fn modes(bicycle: &Parameters, law: Law, motor: LinearActuator, speed: f64) -> Result<Vec<f64>, String> {
+fn modes(
+    bicycle: &Parameters,
+    law: Law,
+    motor: LinearActuator,
+    speed: f64,
+) -> Result<Vec<f64>, ActuatorError> {
     let model = Model::new(bicycle, Feedback::Law(law), None).with_actuator(motor)?;
     let slow_or_fast = |re: &f64| (MODE_1_S.0..=MODE_1_S.1).contains(re);
     Ok(roots(&model.at(speed), 6)
@@ -79,7 +84,11 @@ fn modes(bicycle: &Parameters, law: Law, motor: LinearActuator, speed: f64) -> R
 ///
 /// # Errors
 /// The motor is out of range.
-pub fn section(bicycle: &Parameters, published: &[Weave], motor: LinearActuator) -> Result<String, String> {
+pub fn section(
+    bicycle: &Parameters,
+    published: &[Weave],
+    motor: LinearActuator,
+) -> Result<String, ActuatorError> {
     let rows = rows(bicycle, published, motor)?;
     let interval = |[value, low, high]: [f64; 3]| format!("{value:.2} [{low:.2}, {high:.2}]");
     let root =

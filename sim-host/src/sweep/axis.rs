@@ -15,6 +15,84 @@ pub struct Axis {
     pub values: Vec<String>,
 }
 
+/// A text that is no axis.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AxisError {
+    /// Not a key and its values.
+    #[error("`{0}` is not KEY=VALUES, for example torque-limit=0.5:20/log9,none")]
+    Form(String),
+    /// A wrong value or range.
+    #[error("{key}: {error}")]
+    Item {
+        /// The key.
+        key: String,
+        /// The error.
+        error: ItemError,
+    },
+    /// A value listed twice.
+    #[error("{key}: `{value}` is listed twice")]
+    Twice {
+        /// The key.
+        key: String,
+        /// The value.
+        value: String,
+    },
+    /// Two forms of one value.
+    #[error("{key}: `{first}` and `{second}` are equal: listed twice")]
+    Equal {
+        /// The key.
+        key: String,
+        /// The first form.
+        first: String,
+        /// The second form.
+        second: String,
+    },
+    /// Too many values.
+    #[error("{key} has {values} values; at most {MOST}")]
+    Many {
+        /// The key.
+        key: String,
+        /// The number of values.
+        values: usize,
+    },
+}
+
+/// A wrong value or range of an axis; each with the range as given.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ItemError {
+    /// Nothing between two commas.
+    #[error("a value is empty")]
+    Empty,
+    /// Different units.
+    #[error("the range {0} has several units")]
+    Units(String),
+    /// Another form.
+    #[error("the range {0} is none of A:B:STEP, A:B/N, A:B/logN")]
+    Form(String),
+    /// A falling range, or a step too small.
+    #[error("the range {0} must rise, in steps of at least 0.000001")]
+    Steps(String),
+    /// A falling range.
+    #[error("the range {0} must rise")]
+    Falling(String),
+    /// Too many values.
+    #[error("the range {0} has more than {MOST} values")]
+    Many(String),
+    /// A wrong number of values.
+    #[error("the range {range}: `{count}` is not a whole number of values from 2 to {MOST}")]
+    Count {
+        /// The range.
+        range: String,
+        /// The number as given.
+        count: String,
+    },
+    /// A logarithmic range from zero or below.
+    #[error("the range {0}: a logarithmic range begins above 0")]
+    Logarithm(String),
+}
+
 impl Axis {
     /// Parses `KEY=VALUES`: words and ranges, separated by commas. `A:B:STEP` and `A:B/N` are evenly spaced,
     /// `A:B/logN` evenly in the logarithm; numbers can have a unit, as in `0ms:100ms/6`. A comma inside a
@@ -22,8 +100,8 @@ impl Axis {
     ///
     /// # Errors
     /// States the range or word and the fault.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let wrong = || format!("`{text}` is not KEY=VALUES, for example torque-limit=0.5:20/log9,none");
+    pub fn parse(text: &str) -> Result<Self, AxisError> {
+        let wrong = || AxisError::Form(text.into());
         let (key, list) = text.split_once('=').ok_or_else(wrong)?;
         if !key.starts_with(char::is_alphabetic)
             || !key.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c))
@@ -32,18 +110,19 @@ impl Axis {
         }
         let mut values: Vec<String> = Vec::new();
         for item in items(list) {
-            for value in expand(item.trim()).map_err(|e| format!("{key}: {e}"))? {
+            for value in expand(item.trim()).map_err(|error| AxisError::Item { key: key.into(), error })? {
                 if let Some(same) = values.iter().find(|other| equal(other, &value)) {
+                    let key = key.into();
                     return Err(match *same == value {
-                        true => format!("{key}: `{value}` is listed twice"),
-                        false => format!("{key}: `{same}` and `{value}` are equal: listed twice"),
+                        true => AxisError::Twice { key, value },
+                        false => AxisError::Equal { key, first: same.clone(), second: value },
                     });
                 }
                 values.push(value);
             }
         }
         if values.len() > MOST {
-            return Err(format!("{key} has {} values; at most {MOST}", values.len()));
+            return Err(AxisError::Many { key: key.into(), values: values.len() });
         }
         Ok(Self { key: key.into(), values })
     }
@@ -111,9 +190,9 @@ fn number(text: &str) -> Option<(f64, &str)> {
 }
 
 /// Values of an item of the list: the values of a range, otherwise the item itself.
-fn expand(item: &str) -> Result<Vec<String>, String> {
+fn expand(item: &str) -> Result<Vec<String>, ItemError> {
     if item.is_empty() {
-        return Err("a value is empty".into());
+        return Err(ItemError::Empty);
     }
     let (ends, count) = match item.split_once('/') {
         Some((ends, count)) => (ends, Some(count)),
@@ -124,38 +203,40 @@ fn expand(item: &str) -> Result<Vec<String>, String> {
     };
     let unit = parts.iter().map(|p| p.1).find(|u| !u.is_empty()).unwrap_or_default();
     if parts.iter().any(|p| !p.1.is_empty() && p.1 != unit) {
-        return Err(format!("the range {item} has several units"));
+        return Err(ItemError::Units(item.into()));
     }
     let points = match (&parts[..], count) {
         (&[(from, _), (to, _), (step, _)], None) => stepped(item, from, to, step)?,
         (&[(from, _), (to, _)], Some(count)) => counted(item, from, to, count)?,
         (_, None) => return Ok(vec![item.into()]),
-        _ => return Err(format!("the range {item} is none of A:B:STEP, A:B/N, A:B/logN")),
+        _ => return Err(ItemError::Form(item.into())),
     };
     Ok(points.into_iter().map(|x| format!("{}{unit}", x + 0.0)).collect())
 }
 
-fn stepped(item: &str, from: f64, to: f64, step: f64) -> Result<Vec<f64>, String> {
+fn stepped(item: &str, from: f64, to: f64, step: f64) -> Result<Vec<f64>, ItemError> {
     if step < 1e-6 || to < from {
-        return Err(format!("the range {item} must rise, in steps of at least 0.000001"));
+        return Err(ItemError::Steps(item.into()));
     }
     let n = ((to - from) / step + 1e-9).floor();
     if n >= MOST as f64 {
-        return Err(format!("the range {item} has more than {MOST} values"));
+        return Err(ItemError::Many(item.into()));
     }
     Ok((0..=n as usize).map(|i| billionths(from + i as f64 * step)).collect())
 }
 
-fn counted(item: &str, from: f64, to: f64, count: &str) -> Result<Vec<f64>, String> {
+fn counted(item: &str, from: f64, to: f64, count: &str) -> Result<Vec<f64>, ItemError> {
     let (log, digits) = count.strip_prefix("log").map_or((false, count), |n| (true, n));
-    let n = digits.parse().ok().filter(|n| (2..=MOST).contains(n)).ok_or_else(|| {
-        format!("the range {item}: `{digits}` is not a whole number of values from 2 to {MOST}")
-    })?;
+    let n = digits
+        .parse()
+        .ok()
+        .filter(|n| (2..=MOST).contains(n))
+        .ok_or_else(|| ItemError::Count { range: item.into(), count: digits.into() })?;
     if to <= from {
-        return Err(format!("the range {item} must rise"));
+        return Err(ItemError::Falling(item.into()));
     }
     if log && from <= 0.0 {
-        return Err(format!("the range {item}: a logarithmic range begins above 0"));
+        return Err(ItemError::Logarithm(item.into()));
     }
     let at = |i: usize| match (i as f64 / (n - 1) as f64, log) {
         _ if i == 0 => from,
@@ -232,7 +313,7 @@ mod tests {
             ("a=0ms:1s/3", "several units"),
             ("a=0:1:1e-5", "more than 1000"),
         ] {
-            let error = Axis::parse(text).unwrap_err();
+            let error = Axis::parse(text).unwrap_err().to_string();
             assert!(error.contains(expected), "{text}: {error}");
         }
     }

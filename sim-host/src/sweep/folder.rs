@@ -1,12 +1,11 @@
 //! The folder of a sweep: its plan, and one file per finished cell.
 
+use super::plan::PLAN;
 use super::unit::Unit;
 use super::{Plan, SweepError};
 use crate::report::output::{Output, TEMPORARY};
 use std::path::{Path, PathBuf};
 
-/// Name of the plan's file.
-pub const PLAN: &str = "plan.json";
 const UNITS: &str = "units";
 
 /// A folder with a sweep, or a part of it.
@@ -29,18 +28,14 @@ impl Folder {
             let of_sweep = |name: &str| name.starts_with(TEMPORARY) || [PLAN, UNITS].contains(&name);
             for entry in std::fs::read_dir(path).map_err(failed)? {
                 if !of_sweep(&entry.map_err(failed)?.file_name().to_string_lossy()) {
-                    let folder = path.display();
-                    return Err(SweepError(format!("{folder} is neither empty nor the folder of a sweep")));
+                    return Err(SweepError::OtherContent(path.into()));
                 }
             }
             let json = serde_json::to_string_pretty(plan).unwrap_or_default() + "\n";
             folder.write(PLAN, json.as_bytes())?;
         }
-        if let Some(what) = plan.difference(&folder.plan()?) {
-            let folder = path.display();
-            return Err(SweepError(format!(
-                "{folder} holds another sweep: {what} differs ({PLAN}); choose another --out, or empty it"
-            )));
+        if let Some(difference) = plan.difference(&folder.plan()?) {
+            return Err(SweepError::OtherSweep { folder: path.into(), difference });
         }
         std::fs::create_dir_all(path.join(UNITS)).map_err(failed)?;
         Ok(folder)
@@ -63,16 +58,14 @@ impl Folder {
 
     fn plan(&self) -> Result<Plan, SweepError> {
         let path = self.path.join(PLAN);
-        let shown = path.display();
-        let text = std::fs::read_to_string(&path).map_err(|e| {
-            SweepError(format!("{} is not the folder of a sweep: {PLAN}: {e}", self.path.display()))
-        })?;
-        let plan: Plan = serde_json::from_str(&text)
-            .map_err(|e| SweepError(format!("{shown} is not a sweep's plan: {e}")))?;
-        if plan.cells.len() != super::plan::count(&plan.axes) {
-            return Err(SweepError(format!("{shown}: {} cells do not fit the axes", plan.cells.len())));
+        let text = std::fs::read_to_string(&path)
+            .map_err(|error| SweepError::NoPlan { folder: self.path.clone(), error })?;
+        let plan: Plan =
+            serde_json::from_str(&text).map_err(|error| SweepError::Plan { path: path.clone(), error })?;
+        match plan.cells.len() {
+            cells if cells != super::plan::count(&plan.axes) => Err(SweepError::Cells { path, cells }),
+            _ => Ok(plan),
         }
-        Ok(plan)
     }
 
     /// File of a unit, relative to the folder.
@@ -89,10 +82,10 @@ impl Folder {
         match std::fs::read(&path) {
             Ok(bytes) => {
                 let unit = std::str::from_utf8(&bytes).ok().and_then(|text| Unit::unsealed(text, id));
-                unit.map(Some).ok_or_else(|| SweepError(format!("{} is damaged", path.display())))
+                unit.map(Some).ok_or(SweepError::Damaged(path))
             }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(e) => Err(SweepError(format!("can't read {}: {e}", path.display()))),
+            Err(error) => Err(SweepError::Read { path, error }),
         }
     }
 
@@ -116,7 +109,7 @@ impl Folder {
         Ok(Output::create(&path)?.finish(content)?)
     }
 
-    fn failed(&self, e: std::io::Error) -> SweepError {
-        SweepError(format!("can't write to {}: {e}", self.path.display()))
+    fn failed(&self, error: std::io::Error) -> SweepError {
+        SweepError::Write { folder: self.path.clone(), error }
     }
 }

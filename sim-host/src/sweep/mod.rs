@@ -3,6 +3,7 @@
 
 mod axis;
 pub mod document;
+mod error;
 mod folder;
 mod grid;
 mod maps;
@@ -15,25 +16,15 @@ mod shard;
 mod unit;
 mod write;
 
-pub use axis::Axis;
-pub use folder::{Folder, PLAN};
+pub use axis::{Axis, AxisError, ItemError};
+pub use error::SweepError;
+pub use folder::Folder;
 pub use grid::Grid;
 pub(crate) use maps::AT_LEAST;
 pub use maps::pictures;
 pub use names::check;
-pub use plan::{Plan, SweepSearch, combination, count, label};
+pub use plan::{PLAN, Plan, SweepSearch, combination, count, label};
 pub use run::{Cell, Progress, run};
-pub use shard::Shard;
+pub use shard::{Shard, ShardError};
 pub use unit::{Found, Unit};
 pub use write::write;
-
-/// A sweep that can't be done, with the reason.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct SweepError(pub String);
-
-impl From<crate::report::output::OutputError> for SweepError {
-    fn from(error: crate::report::output::OutputError) -> Self {
-        Self(error.to_string())
-    }
-}

@@ -29,14 +29,14 @@ pub(super) fn variable(axis: &Axis) -> String {
 pub fn check(axes: &[Axis]) -> Result<(), SweepError> {
     for (i, axis) in axes.iter().enumerate() {
         let name = variable(axis);
-        let wrong = if axes[..i].iter().any(|other| variable(other) == name) {
+        let reason = if axes[..i].iter().any(|other| variable(other) == name) {
             "is listed twice"
         } else if RESULTS.contains(&&*name) {
             "is the name of a result; choose another"
         } else {
             continue;
         };
-        return Err(SweepError(format!("--over {}: the name {wrong}", axis.key)));
+        return Err(SweepError::Name { key: axis.key.clone(), reason });
     }
     Ok(())
 }

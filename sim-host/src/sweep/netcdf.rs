@@ -28,13 +28,13 @@ struct Numbers<'a> {
 
 impl From<WriteError> for SweepError {
     fn from(error: WriteError) -> Self {
-        Self(format!("can't write NetCDF: {error:?}"))
+        Self::NetCdf(format!("{error:?}"))
     }
 }
 
 impl From<netcdf3::InvalidDataSet> for SweepError {
     fn from(error: netcdf3::InvalidDataSet) -> Self {
-        Self(format!("can't write NetCDF: {error:?}"))
+        Self::NetCdf(format!("{error:?}"))
     }
 }
 
@@ -78,7 +78,7 @@ pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> Result<Vec<u8>, S
     set.add_global_attr_string("title", "Basins of attraction over a grid of conditions")?;
     set.add_global_attr_string("source", format!("{} {} commit {}", tool.name, tool.version, tool.commit))?;
     set.add_global_attr_string("configuration", document.heading().to_string())?;
-    let file = tempfile::NamedTempFile::new().map_err(|e| SweepError(format!("no temporary file: {e}")))?;
+    let file = tempfile::NamedTempFile::new().map_err(SweepError::Temporary)?;
     let mut writer = FileWriter::open(file.path())?;
     writer.set_def(&set, Version::Classic, 0)?;
     for (axis, name) in axes.iter().zip(&names) {
@@ -91,7 +91,7 @@ pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> Result<Vec<u8>, S
         writer.write_var_f64(name, data)?;
     }
     writer.close()?;
-    std::fs::read(file.path()).map_err(|e| SweepError(format!("no temporary file: {e}")))
+    std::fs::read(file.path()).map_err(SweepError::Temporary)
 }
 
 fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'a>> {
@@ -152,7 +152,7 @@ fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'
 }
 
 /// Codes of `fall_cause`, in the order of [`FallCause::ALL`].
-const FALL_CODES: &str = "what the ride beyond height fell by: 0 roll, 1 steer, 2 laid-flat, 3 too-quick, 4 no-motion; NaN nothing fell";
+const FALL_CODES: &str = "cause of the fall beyond height: 0 roll, 1 steer, 2 laid-flat, 3 too-quick, 4 no-motion; NaN without a fall";
 
 fn fall_code(found: &Found) -> f64 {
     let name = found.fall.as_deref();

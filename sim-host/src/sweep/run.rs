@@ -37,9 +37,9 @@ pub fn run(
     folder: &Folder,
     progress: &Progress,
 ) -> Result<usize, SweepError> {
-    search.check().map_err(|e| SweepError(e.0))?;
+    search.check()?;
     for cell in cells {
-        cell.conditions.check().map_err(|e| SweepError(e.0))?;
+        cell.conditions.check()?;
     }
     let speeds = search.speeds.len();
     let columns: Vec<Mutex<Vec<(usize, Column)>>> = cells.iter().map(|_| Mutex::default()).collect();

@@ -7,6 +7,11 @@ pub struct Shard {
     of: usize,
 }
 
+/// A text that is no shard.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is not I/N, I from 1 to N, for example 2/3")]
+pub struct ShardError(pub String);
+
 impl Shard {
     /// All cells.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
@@ -15,11 +20,11 @@ impl Shard {
     ///
     /// # Errors
     /// The text has another form, or I is outside 1 to N.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    pub fn parse(text: &str) -> Result<Self, ShardError> {
         let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
         match numbers {
             Some((number, of)) if 1 <= number && number <= of => Ok(Self { number, of }),
-            _ => Err(format!("`{text}` is not I/N, I from 1 to N, for example 2/3")),
+            _ => Err(ShardError(text.into())),
         }
     }
 

@@ -12,16 +12,14 @@ use crate::report::picture::{caption, svg_with_caption};
 /// # Errors
 /// A file can't be written.
 pub fn write(grid: &Grid, document: &SweepDocument, folder: &Folder) -> Result<(), SweepError> {
-    let csv =
-        |table: Result<Vec<u8>, csv::Error>| table.map_err(|e| SweepError(format!("can't write CSV: {e}")));
     folder.write("sweep.nc", &netcdf(grid, document)?)?;
-    folder.write("sweep.csv", &csv(cells_table(document))?)?;
-    folder.write("heights.csv", &csv(heights_table(document))?)?;
+    folder.write("sweep.csv", &cells_table(document)?)?;
+    folder.write("heights.csv", &heights_table(document)?)?;
     let about = caption(&document.heading());
     for (name, picture) in pictures(grid) {
         let svg = svg_with_caption(&picture.svg(), &about);
         folder.write(&format!("figures/{name}.svg"), svg.as_bytes())?;
     }
-    let json = serde_json::to_string_pretty(document).map_err(|e| SweepError(e.to_string()))?;
+    let json = serde_json::to_string_pretty(document)?;
     folder.write("sweep.json", (json + "\n").as_bytes())
 }

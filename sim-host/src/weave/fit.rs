@@ -202,20 +202,32 @@ fn explained(samples: &Samples, shape: &Shape, noise: &[Noise]) -> f64 {
     samples.axes_rad_s.iter().zip(noise).map(gain).sum()
 }
 
+/// Samples that can't be fitted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// An axis without any motion.
+    #[error("an axis is zero all along")]
+    Zero,
+    /// No fit.
+    #[error("no damped oscillation could be fitted")]
+    Nothing,
+}
+
 /// Fits the samples.
 ///
 /// # Errors
 /// Too few samples, or nothing to fit in them.
-pub fn fit(samples: &Samples, beside: Beside) -> Result<Fit, String> {
+pub fn fit(samples: &Samples, beside: Beside) -> Result<Fit, FitError> {
     let times = &samples.times_s;
     let bounds = Bounds::new(samples, beside);
     let root_mean = |rates: &Vec<f64>| (rates.iter().map(|x| x * x).sum::<f64>() / rates.len() as f64).sqrt();
     let white = |rates| Noise::white(root_mean(rates));
     let mut noise: Vec<Noise> = samples.axes_rad_s.iter().map(white).collect();
     if noise.iter().any(|n| n.deviation_rad_s < 1e-9) {
-        return Err("an axis is zero all along".into());
+        return Err(FitError::Zero);
     }
-    let nothing = || "no damped oscillation could be fitted".to_owned();
+    let nothing = || FitError::Nothing;
     let grid = starts(samples, &noise, &bounds, beside);
     let mut shape = best(samples, &noise, &bounds, &grid).ok_or_else(nothing)?;
     for round in 0..ROUNDS {

@@ -25,22 +25,35 @@ pub struct Label {
     pub speed_m_s: Option<f64>,
 }
 
+/// A text that is no pattern; each with the text.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PatternError {
+    /// A brace is not closed.
+    #[error("`{0}`: a brace is not closed")]
+    Brace(String),
+    /// An unknown placeholder.
+    #[error("`{0}`: the names in braces are {known}", known = NAMES.map(|name| format!("{{{name}}}")).join(", "))]
+    Name(String),
+    /// Two placeholders without text between them.
+    #[error("`{0}`: two numbers need text between them")]
+    Adjacent(String),
+}
+
 impl Pattern {
     /// Parses a pattern.
     ///
     /// # Errors
     /// States the brace that is not closed or the unknown placeholder.
-    pub fn new(text: &str) -> Result<Self, String> {
+    pub fn new(text: &str) -> Result<Self, PatternError> {
         let (mut parts, mut rest) = (Vec::new(), text);
         while let Some((word, after)) = rest.split_once('{') {
-            let known = NAMES.map(|name| format!("{{{name}}}")).join(", ");
-            let (name, after) =
-                after.split_once('}').ok_or_else(|| format!("`{text}`: a brace is not closed"))?;
+            let (name, after) = after.split_once('}').ok_or_else(|| PatternError::Brace(text.into()))?;
             let name = NAMES.into_iter().find(|known| *known == name);
-            let name = name.ok_or_else(|| format!("`{text}`: the names in braces are {known}"))?;
+            let name = name.ok_or_else(|| PatternError::Name(text.into()))?;
             parts.extend((!word.is_empty()).then(|| Part::Word(word.into())));
             if matches!((parts.last(), word), (Some(Part::Number(_)), "")) {
-                return Err(format!("`{text}`: two numbers need text between them"));
+                return Err(PatternError::Adjacent(text.into()));
             }
             parts.push(Part::Number(name));
             rest = after;

@@ -1,7 +1,7 @@
 //! The weave of the linear model at given speeds.
 
 use crate::bicycle::Parameters;
-use crate::eigen::{Feedback, LinearActuator, Model, roots};
+use crate::eigen::{ActuatorError, Feedback, LinearActuator, Model, roots};
 use control::Law;
 use nalgebra::{Complex, ComplexField};
 
@@ -16,7 +16,7 @@ pub fn weave(
     law: &Law,
     actuator: LinearActuator,
     speeds: &[f64],
-) -> Result<Vec<Option<Complex<f64>>>, String> {
+) -> Result<Vec<Option<Complex<f64>>>, ActuatorError> {
     let model = Model::new(bicycle, Feedback::Law(law.clone()), None).with_actuator(actuator)?;
     let damping = |root: &Complex<f64>| -root.re / root.modulus();
     let least = |v: &f64| {

@@ -73,23 +73,49 @@ struct Row {
     rates: Vec<f64>,
 }
 
+/// A text that is no recording.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// Not a table.
+    #[error(transparent)]
+    Csv(#[from] csv::Error),
+    /// A column listed twice.
+    #[error("line 1: column `{0}` is listed twice")]
+    Twice(String),
+    /// A missing column.
+    #[error("line 1: column {column} is missing; there are {known}")]
+    Missing {
+        /// The column.
+        column: String,
+        /// The columns that there are.
+        known: String,
+    },
+    /// No usable line.
+    #[error("no line can be used{}", notes.iter().map(|note| format!("; {note}")).collect::<String>())]
+    NoLine {
+        /// The faults of the lines.
+        notes: Vec<String>,
+    },
+}
+
 /// Reads a recording from text.
 ///
 /// # Errors
 /// A column is missing or duplicate, or no line is usable.
-pub fn read(text: &str, columns: &Columns) -> Result<Record, String> {
+pub fn read(text: &str, columns: &Columns) -> Result<Record, RecordError> {
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
         .flexible(true)
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
-    let header = reader.headers().map_err(|e| e.to_string())?.clone();
+    let header = reader.headers()?.clone();
     let time = time_column(&header, columns)?;
     let axes = rate_columns(&header, columns)?;
     let mut notes = Notes::default();
     let mut rows: Vec<Row> = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|e| e.to_string())?;
+        let record = record?;
         let line = record.position().map_or(0, csv::Position::line);
         match row(&header, &record, line, time, &axes, columns.unit) {
             Ok(row) => rows.push(row),
@@ -99,7 +125,7 @@ pub fn read(text: &str, columns: &Columns) -> Result<Record, String> {
     let rows = rising(rows, &header[time], &mut notes);
     let notes = notes.listed();
     if rows.is_empty() {
-        return Err([vec!["no line can be used".to_owned()], notes].concat().join("; "));
+        return Err(RecordError::NoLine { notes });
     }
     let begin = rows[0].time_s;
     let axis = |(i, place): (usize, &usize)| Axis {
@@ -113,19 +139,19 @@ pub fn read(text: &str, columns: &Columns) -> Result<Record, String> {
     })
 }
 
-fn place(header: &StringRecord, name: &str) -> Result<Option<usize>, String> {
+fn place(header: &StringRecord, name: &str) -> Result<Option<usize>, RecordError> {
     let mut found = header.iter().enumerate().filter(|(_, h)| *h == name).map(|(i, _)| i);
     match (found.next(), found.next()) {
         (at, None) => Ok(at),
-        _ => Err(format!("line 1: column `{name}` is listed twice")),
+        _ => Err(RecordError::Twice(name.into())),
     }
 }
 
-fn missing(header: &StringRecord, what: &str) -> String {
-    format!("line 1: column {what} is missing; there are {}", header.iter().collect::<Vec<_>>().join(", "))
+fn missing(header: &StringRecord, column: &str) -> RecordError {
+    RecordError::Missing { column: column.into(), known: header.iter().collect::<Vec<_>>().join(", ") }
 }
 
-fn time_column(header: &StringRecord, columns: &Columns) -> Result<usize, String> {
+fn time_column(header: &StringRecord, columns: &Columns) -> Result<usize, RecordError> {
     if let Some(name) = &columns.time {
         return place(header, name)?.ok_or_else(|| missing(header, &format!("`{name}`")));
     }
@@ -137,7 +163,7 @@ fn time_column(header: &StringRecord, columns: &Columns) -> Result<usize, String
     Err(missing(header, "`Time` (or --time-column)"))
 }
 
-fn rate_columns(header: &StringRecord, columns: &Columns) -> Result<Vec<usize>, String> {
+fn rate_columns(header: &StringRecord, columns: &Columns) -> Result<Vec<usize>, RecordError> {
     if columns.rates.is_empty() {
         let there =
             RATES.iter().filter_map(|name| place(header, name).transpose()).collect::<Result<Vec<_>, _>>()?;
@@ -235,7 +261,7 @@ mod tests {
     use super::*;
 
     fn of(text: &str) -> Result<Record, String> {
-        read(text, &Columns::default())
+        read(text, &Columns::default()).map_err(|e| e.to_string())
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Identifies the weave in one recording: window, fit and plausibility checks.
 
 use super::Estimate;
-use super::fit::{Fit, Samples, fit};
+use super::fit::{Fit, FitError, Samples, fit};
 use super::record::Record;
 use super::shape::Beside;
 use super::student::quantile;
@@ -68,11 +68,52 @@ pub struct Segment {
     pub axes: Vec<AxisFit>,
 }
 
+/// A recording without a weave.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SegmentError {
+    /// Too few samples.
+    #[error("{0} samples in the window; at least {FEWEST_SAMPLES} are needed")]
+    Samples(usize),
+    /// No fit.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+    /// An oscillation below the noise.
+    #[error("no oscillation above the noise")]
+    Noise,
+    /// A window too short for the frequency found.
+    #[error("no oscillation: less than half a period in the window of {span_s:.2} s")]
+    Short {
+        /// Duration of the window \[s\].
+        span_s: f64,
+    },
+    /// A bound of the search.
+    #[error(
+        "no oscillation: the best has {decay_1_s:.2} 1/s and {frequency_rad_s:.2} rad/s, a bound of the search"
+    )]
+    Bound {
+        /// Real part \[1/s\].
+        decay_1_s: f64,
+        /// Imaginary part \[rad/s\].
+        frequency_rad_s: f64,
+    },
+    /// An interval as wide as the frequency.
+    #[error(
+        "no oscillation: {frequency_rad_s:.2} rad/s, but with an interval of {half_rad_s:.2} to either side"
+    )]
+    Uncertain {
+        /// The frequency \[rad/s\].
+        frequency_rad_s: f64,
+        /// Half of the interval \[rad/s\].
+        half_rad_s: f64,
+    },
+}
+
 /// Finds the weave in a recording.
 ///
 /// # Errors
 /// Too few samples, no oscillation, or less than half a period.
-pub fn identify(record: &Record, settings: Settings) -> Result<Segment, String> {
+pub fn identify(record: &Record, settings: Settings) -> Result<Segment, SegmentError> {
     let axes: Vec<&[f64]> = record.axes.iter().map(|axis| &axis.rates_rad_s[..]).collect();
     let mut part = window(&record.times_s, &axes, (settings.from_s, settings.to_s));
     let mut fitted = fit_part(record, part, settings.beside)?;
@@ -110,17 +151,15 @@ pub fn identify(record: &Record, settings: Settings) -> Result<Segment, String> 
     })
 }
 
-fn fit_part(record: &Record, part: Window, beside: Beside) -> Result<Fit, String> {
+fn fit_part(record: &Record, part: Window, beside: Beside) -> Result<Fit, SegmentError> {
     let samples = part.to.saturating_sub(part.from);
     if samples < FEWEST_SAMPLES {
-        return Err(format!("{samples} samples in the window; at least {FEWEST_SAMPLES} are needed"));
+        return Err(SegmentError::Samples(samples));
     }
     let times = &record.times_s[part.from..part.to];
     let axes = record.axes.iter().map(|axis| axis.rates_rad_s[part.from..part.to].to_vec());
-    fit(
-        &Samples { times_s: times.iter().map(|t| t - times[0]).collect(), axes_rad_s: axes.collect() },
-        beside,
-    )
+    let times_s = times.iter().map(|t| t - times[0]).collect();
+    Ok(fit(&Samples { times_s, axes_rad_s: axes.collect() }, beside)?)
 }
 
 /// The part in which the weave exceeds the noise in some axis, if that is shorter by a twentieth or more.
@@ -134,7 +173,7 @@ fn without_noise(record: &Record, part: Window, fitted: &Fit) -> Option<Window> 
     (enough && shorter).then_some(Window { to: part.from + used, ends: Ends::Noise, ..part })
 }
 
-fn check_plausible(fitted: &Fit, span_s: f64) -> Result<(), String> {
+fn check_plausible(fitted: &Fit, span_s: f64) -> Result<(), SegmentError> {
     let least = LEAST_EXPLAINED * fitted.noise.len() as f64;
     let (frequency, error) = (fitted.shape.frequency_rad_s, fitted.standard_errors[1]);
     let above = fitted
@@ -143,22 +182,18 @@ fn check_plausible(fitted: &Fit, span_s: f64) -> Result<(), String> {
         .zip(&fitted.noise)
         .any(|(a, n)| *a >= LEAST_AMPLITUDE * n.deviation_rad_s);
     if fitted.explained < least || !above {
-        return Err("no oscillation above the noise".into());
+        return Err(SegmentError::Noise);
     }
     if fitted.periods(span_s) <= 0.501 {
-        return Err(format!("no oscillation: less than half a period in the window of {span_s:.2} s"));
+        return Err(SegmentError::Short { span_s });
     }
     if fitted.at_bound.iter().any(|at| *at) {
-        let decay = fitted.shape.decay_1_s;
-        return Err(format!(
-            "no oscillation: the best has {decay:.2} 1/s and {frequency:.2} rad/s, a bound of the search"
-        ));
+        let decay_1_s = fitted.shape.decay_1_s;
+        return Err(SegmentError::Bound { decay_1_s, frequency_rad_s: frequency });
     }
     let half = quantile(fitted.freedom) * error;
     if half >= frequency {
-        return Err(format!(
-            "no oscillation: {frequency:.2} rad/s, but with an interval of {half:.2} to either side"
-        ));
+        return Err(SegmentError::Uncertain { frequency_rad_s: frequency, half_rad_s: half });
     }
     Ok(())
 }

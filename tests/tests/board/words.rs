@@ -37,7 +37,7 @@ fn a_value_in_words_is_read_again() {
         };
         let wrong = wrong.iter().filter(|word| !one.words().contains(&word.as_str()));
         for word in wrong {
-            let why = one.parse(word).expect_err(word);
+            let why = one.parse(word).expect_err(word).to_string();
             assert!(why.starts_with(&one.key) && why.contains(&one.allowed()), "{why}");
         }
     }

@@ -305,7 +305,7 @@ fn any_text_is_an_axis_or_a_reason() {
                     prop_assert_eq!(values.len(), axis.values.len());
                     prop_assert!(!values.is_empty() && values.iter().all(|v| !v.is_empty()));
                 }
-                Err(e) => prop_assert!(e.contains("key"), "{e}"),
+                Err(e) => prop_assert!(e.to_string().contains("key"), "{e}"),
             }
             Ok(())
         })

@@ -38,7 +38,7 @@ fn each_kind_is_set() {
         ("input.wheel", "left", "front, rear"),
         ("limits.end_stop", "2", "off, on"),
     ] {
-        let error = set(&mut config, key, value).unwrap_err();
+        let error = set(&mut config, key, value).unwrap_err().to_string();
         assert!(error.contains(why), "{error}");
     }
 }

@@ -4,9 +4,10 @@ use control::Law;
 use nalgebra::Complex;
 use sim_host::bicycle::{Parameters, catalogue};
 use sim_host::eigen::{Feedback, LinearActuator, Model, rightmost, roots};
-use sim_host::study::balance_assist::{NAME, RIDDEN, RIDERLESS, published, stable_range, weave};
+use sim_host::study::balance_assist::{NAME, RIDDEN, RIDERLESS, stable_range};
 use sim_host::study::motor_fit::{Free, fits, published_residual};
 use sim_host::study::prototype;
+use sim_host::study::published_weave::{published, weave};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tests::cli::{Bench, repository};
 

@@ -187,7 +187,7 @@ fn what_does_not_oscillate_is_refused() {
         let found: Vec<_> = found.collect();
         assert!(found.len() <= 1, "{name}: {found:?}");
     }
-    let why = |record| identify(&record, Settings::default()).expect_err("refused");
+    let why = |record| identify(&record, Settings::default()).expect_err("refused").to_string();
     assert!(why(record(&decay, 19, 1)).contains("19 samples in the window; at least 20"));
     assert!(why(record(&rest, 50, 1)).contains("zero all along"));
     assert!(why(record(&noise, 150, 2)).contains("no oscillation"));

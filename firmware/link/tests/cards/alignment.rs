@@ -3,8 +3,7 @@
 use crate::flash::{Flash, PAGE, PAGES, load, load_alignment, save, save_alignment};
 use control::Config;
 use link::alignment::{Alignment, LAYOUT, Offset};
-use link::record::NoRecord;
-use link::store::InvalidRecord;
+use link::record::{InvalidRecord, NoRecord};
 use proptest::prelude::*;
 
 const MOTOR: u32 = 0x89ab_cdef;

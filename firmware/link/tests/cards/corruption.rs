@@ -2,7 +2,8 @@
 
 use crate::flash::{Flash, PAGE, PAGES, load, random, save};
 use control::Config;
-use link::store::{Found, InvalidRecord};
+use link::record::InvalidRecord;
+use link::store::Found;
 use proptest::prelude::*;
 
 const SIZE: usize = PAGE * PAGES;

@@ -6,7 +6,8 @@ use embedded_storage_async::nor_flash::{
 };
 use link::Store;
 use link::alignment::Alignment;
-use link::store::{Found, InvalidRecord, NotStored, Room};
+use link::record::InvalidRecord;
+use link::store::{Found, NotStored, Room};
 
 /// Page size \[bytes\]: a few records, so that pages change often.
 pub(crate) const PAGE: usize = 8192;

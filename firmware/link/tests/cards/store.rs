@@ -6,8 +6,8 @@ use embassy_futures::block_on;
 use link::Key;
 use link::bytes::Reader;
 use link::parameter_list::{each, each_but_law};
-use link::record::{Applied, LAYOUT, NoRecord, RECORD_BYTES, decode, encode};
-use link::store::{Found, InvalidRecord, MIN_PAGE, MIN_PAGES, NotStored, Store};
+use link::record::{Applied, InvalidRecord, LAYOUT, NoRecord, RECORD_BYTES, decode, encode};
+use link::store::{Found, MIN_PAGE, MIN_PAGES, NotStored, Store};
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 

@@ -23,30 +23,11 @@ pub use exit::end;
 pub use fault_injection::heartbeat_lost;
 pub use flash::{Flash, flash};
 pub use reset::{outputs_off, reset_cause, restarts};
+pub use semihosting::Exit;
 pub use sensors::{drive, sense};
 pub use watchdog::feed_watchdog;
 
-use crate::tasks::Telemetry;
-
-/// Exit status of QEMU.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
-pub enum Exit {
-    /// All checks of the image passed.
-    Success = 0,
-    /// A check of the image failed.
-    Failure = 1,
-    /// Invalid input of the image.
-    Input = 2,
-    /// A panic.
-    Panic = 101,
-    /// A processor fault.
-    Fault = 102,
-    /// An unexpected interrupt.
-    StrayInterrupt = 103,
-    /// Watchdog timeout.
-    Watchdog = 104,
-}
+use crate::telemetry::Telemetry;
 
 /// Writes one log line; the torque in mN m, since formatting an f32 takes 20 KB of flash.
 pub fn report(t: &Telemetry) {

@@ -5,7 +5,7 @@
 
 use super::semihosting::{Stream, exit};
 use super::{Exit, reset, serial, stack, text, time};
-use crate::{crash, tasks};
+use crate::{crash, tasks, telemetry};
 use control::wire::{CONFIG_BYTES, decode_config};
 use control::{Config, Plan, SensorFrame};
 use core::cell::RefCell;
@@ -190,7 +190,7 @@ fn whole(start: &[u8]) -> Option<usize> {
 
 /// `false` if the host has closed the connection.
 fn hand_over(host: &mut Stream, chunk: &mut [u8; MAX_CHUNK], out: &mut Out) -> bool {
-    if let Some((command, authority)) = tasks::commanded() {
+    if let Some((command, authority)) = telemetry::commanded() {
         let number = critical_section::with(|cs| {
             SENSORS.borrow(cs).borrow().as_ref().and_then(|sensors| sensors.used).unwrap_or(u16::MAX)
         });

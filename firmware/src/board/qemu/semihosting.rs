@@ -3,11 +3,30 @@
 //! Calls and numbers: Arm, "Semihosting for AArch32 and AArch64", 2.0.
 #![allow(unsafe_code)]
 
-use super::Exit;
 use core::ffi::CStr;
 use core::fmt::Write;
 use cortex_m_semihosting::{nr, syscall};
 use heapless::String;
+
+/// Exit status of QEMU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Exit {
+    /// All checks of the image passed.
+    Success = 0,
+    /// A check of the image failed.
+    Failure = 1,
+    /// Invalid input of the image.
+    Input = 2,
+    /// A panic.
+    Panic = 101,
+    /// A processor fault.
+    Fault = 102,
+    /// An unexpected interrupt.
+    StrayInterrupt = 103,
+    /// Watchdog timeout.
+    Watchdog = 104,
+}
 
 /// A file on the host, in QEMU's working directory. Closed when QEMU ends.
 pub struct File(usize);

@@ -3,7 +3,7 @@
 //! the amplitude the sign check would report a reversed motor (fault 37).
 
 use super::pil;
-use crate::tasks::Refusal;
+use crate::telemetry::Refusal;
 use control::{Command, Sample, SensorFrame, Triple};
 use core::cell::Cell;
 use core::f32::consts::TAU;

@@ -4,7 +4,8 @@
 //! when the next is due. So a missing, shorted or busy bus affects only the counters.
 
 use super::pins::{Pin, alternate};
-use crate::tasks::{Telemetry, latest, settings};
+use crate::tasks::settings;
+use crate::telemetry::{Telemetry, latest};
 use control::Calibration;
 use control::sensors::calibration::CalibrationPlan;
 use devices::vesc6::CAN_CLOCK_HZ;

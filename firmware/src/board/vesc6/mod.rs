@@ -13,6 +13,7 @@ mod halt;
 mod imu;
 mod leds;
 mod motor;
+mod outputs;
 mod pins;
 mod priority;
 mod pwm;
@@ -29,6 +30,7 @@ mod wheels;
 pub use brown_out::raise_level;
 pub use can::broadcast;
 pub use flash::{Flash, flash};
+pub use outputs::outputs_off;
 pub use reset::{end, log_stored_fault, reset_cause};
 pub use sensors::sense;
 pub use shared::{Report, order, report as motor_report};
@@ -37,7 +39,7 @@ pub use watchdog::feed_watchdog;
 
 use crate::failure;
 use crate::heartbeat::Task;
-use crate::tasks::{Refusal, Telemetry};
+use crate::telemetry::{Refusal, Telemetry};
 use ::motor::MotorCommand;
 use control::{Command, Mode};
 use defmt_rtt as _;
@@ -45,7 +47,6 @@ use devices::vesc6::MOTOR;
 use embassy_executor::{Executor, InterruptExecutor, SendSpawner, Spawner};
 use embassy_stm32::gpio::{Input, Level, Pull};
 use embassy_stm32::interrupt;
-use embassy_stm32::pac::GPIOB;
 use pins::{Pins, fixed};
 use sensors::Sensors;
 use soft_spi::{Edge, SoftSpi};
@@ -153,15 +154,6 @@ const ENCODER_CYCLES: u32 = 10;
 fn UART5() {
     // SAFETY: this is the interrupt that CONTROL was started with.
     unsafe { CONTROL.on_interrupt() }
-}
-
-/// Opens all six switches and disables the gate driver until the next start. Can be called from any context, fault
-/// handlers included: it writes three words at fixed addresses.
-pub fn outputs_off() {
-    // First, so that the motor interrupt does not close the bridge again.
-    shared::set_off();
-    pwm::open();
-    GPIOB.bsrr().write(|w| w.set_br(pins::GATE_ENABLE, true));
 }
 
 /// Passes the command to the motor interrupt, which opens the bridge if the next one is late.

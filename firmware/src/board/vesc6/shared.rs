@@ -3,7 +3,7 @@
 //! The interrupt preempts critical sections, so commands are atomic words. The interrupt itself is not preempted and
 //! increments a sequence number after each report, so that readers detect a torn copy.
 
-use crate::tasks::Refusal;
+use crate::telemetry::Refusal;
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use motor::command_word;

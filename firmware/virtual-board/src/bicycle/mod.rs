@@ -103,7 +103,7 @@ impl Remote for OnBicycle {
     /// Powers the board on during a steady ride, and waits until its controller is in standby with only the switch
     /// open. The wheels, which turn at power-on, must have become valid.
     fn begin(&mut self, plan: &Plan, start: &Start) -> Result<(), RemoteError> {
-        let failed = |why: String| RemoteError(why);
+        let failed = |why: String| RemoteError(why.into());
         let mut wiring = Wiring::new();
         wiring.power.set_axis(power::Axis::Driven);
         wiring.can.network.node = true;
@@ -137,7 +137,8 @@ impl Remote for OnBicycle {
 
     fn step(&mut self, frame: &SensorFrame) -> Result<Stepped, RemoteError> {
         let ride = self.ride.as_mut().ok_or(RemoteError("no ride was begun".into()))?;
-        let torque_nm = ride.step(&Sensed::of(frame), self.step_s).map_err(|e| RemoteError(e.to_string()))?;
+        let torque_nm =
+            ride.step(&Sensed::of(frame), self.step_s).map_err(|e| RemoteError(e.to_string().into()))?;
         Ok(ride.display.stepped(torque_nm))
     }
 }

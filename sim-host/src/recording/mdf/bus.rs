@@ -4,7 +4,7 @@ use super::super::Remark;
 use super::super::frames::{Id, MOST_BYTES};
 use super::block::File;
 use super::channel::{Channel, Kind};
-use super::group::ChannelGroup;
+use super::channel_group::ChannelGroup;
 use super::{Content, data};
 use std::collections::HashMap;
 use std::ops::Range;

@@ -3,49 +3,13 @@
 use super::super::remarks::Remarks;
 use super::super::{Column, Group, Remark};
 use super::block::{Block, File};
-use super::channel::{self, Channel, Kind};
+use super::channel::{self, Kind};
+use super::channel_group::ChannelGroup;
 use super::record::{Shape, apart};
 use super::{Content, bus, data};
-use std::ops::Range;
 
 /// Most channels per byte of a record; each bit can be a channel, and channels can share bits.
 const MOST_CHANNELS_A_BYTE: usize = 16;
-
-/// A channel group and its records.
-pub(super) struct ChannelGroup<'a> {
-    /// Position of its block.
-    pub(super) at: usize,
-    pub(super) name: String,
-    /// Name of the source, such as a bus.
-    pub(super) source: String,
-    pub(super) shape: Shape,
-    pub(super) channels: Vec<Channel>,
-    pub(super) bytes: &'a [u8],
-    pub(super) records: Vec<Range<usize>>,
-}
-
-impl ChannelGroup<'_> {
-    /// Its records.
-    pub(super) fn iter(&self) -> impl Iterator<Item = &[u8]> {
-        self.records.iter().map(|record| &self.bytes[record.clone()])
-    }
-
-    /// The channel with the time of each record.
-    pub(super) fn master(&self) -> Option<&Channel> {
-        self.channels.iter().find(|c| matches!(c.kind, Kind::Time | Kind::CountedTime) && c.is_number())
-    }
-
-    /// The times of its records \[s\], from the master channel.
-    pub(super) fn times_s(&self) -> Option<Vec<f64>> {
-        self.master().map(|master| self.values(master))
-    }
-
-    /// A channel's values, one per record.
-    fn values(&self, channel: &Channel) -> Vec<f64> {
-        let value = |(n, record)| channel.value(n, record, self.shape.data_bytes);
-        self.iter().enumerate().map(value).collect()
-    }
-}
 
 /// Reads a data group.
 pub(super) fn read(file: &mut File, block: &Block, content: &mut Content) {

@@ -11,6 +11,7 @@
 mod block;
 mod bus;
 mod channel;
+mod channel_group;
 mod content;
 mod conversion;
 mod data;

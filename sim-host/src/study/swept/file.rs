@@ -72,7 +72,7 @@ impl Part {
     /// # Errors
     /// An invalid axis.
     pub fn axes(&self) -> Result<Vec<Axis>, String> {
-        self.over.iter().map(|text| Axis::parse(text)).collect()
+        self.over.iter().map(|text| Axis::parse(text).map_err(|e| e.to_string())).collect()
     }
 
     fn check(&self) -> Result<(), String> {

@@ -1,0 +1,206 @@
+//! Errors of riders: of their values, their schedules and their files.
+
+use super::table::SCHEMA;
+use crate::range::RangeError;
+use std::path::PathBuf;
+
+/// A rider that can't be simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum UnfitError {
+    /// A value outside its range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// The delay is not a whole number of steps.
+    #[error(
+        "neural delay {} ms is not a whole number of steps of {} ms; nearest are {} and {}",
+        .delay_s * 1e3, .step_s * 1e3, whole_ms((.delay_s / .step_s).floor(), *.step_s),
+        whole_ms((.delay_s / .step_s).ceil(), *.step_s)
+    )]
+    Steps {
+        /// The delay \[s\].
+        delay_s: f64,
+        /// The time step \[s\].
+        step_s: f64,
+    },
+}
+
+fn whole_ms(steps: f64, step_s: f64) -> String {
+    format!("{} ms", steps * step_s * 1e3)
+}
+
+/// Gains that are no schedule over speed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScheduleError {
+    /// A value outside its range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// The speeds do not increase.
+    #[error("speed {speed_m_s} m/s after {before_m_s} m/s: speeds must rise by at least 0.001")]
+    Order {
+        /// A speed \[m/s\].
+        speed_m_s: f64,
+        /// The speed before it \[m/s\].
+        before_m_s: f64,
+    },
+    /// Nothing says which set of a group is its best.
+    #[error(
+        "the best of the {sets} sets at about {speed_m_s} m/s is unknown; the table needs the column `vaf`, or `best_runs`"
+    )]
+    NoBest {
+        /// Number of sets in the group.
+        sets: usize,
+        /// Speed of the first \[m/s\].
+        speed_m_s: f64,
+    },
+}
+
+/// Reason why a rider cannot be loaded.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RiderError {
+    /// Neither a shipped name nor a file.
+    #[error("unknown rider `{name}`: no such file, and no such shipped rider; shipped are {known}")]
+    Unknown {
+        /// As given.
+        name: String,
+        /// The shipped names.
+        known: String,
+    },
+    /// The file can't be read.
+    #[error("can't read rider file {path}: {source}")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The operating system's error.
+        source: std::io::Error,
+    },
+    /// The file is not TOML, or a key is missing, unknown or of a wrong type.
+    #[error("rider file {path}: {reason}")]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// The parser's message, with line and column.
+        reason: String,
+    },
+    /// A value is wrong.
+    #[error("rider file {path}: {reason}")]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// Key or row, value and range.
+        reason: TableError,
+    },
+}
+
+/// A wrong value in a table of measured gains.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TableError {
+    /// An unknown version of the schema.
+    #[error("`schema` = {0} is not known; this program reads {SCHEMA}")]
+    Schema(u32),
+    /// A value outside its range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// A neuromuscular parameter outside its range.
+    #[error("`neuromuscular`: {0}")]
+    Neuromuscular(RangeError),
+    /// A column that no table has.
+    #[error("`columns`: unknown column `{column}`; known are {known}")]
+    UnknownColumn {
+        /// The column.
+        column: String,
+        /// The known ones.
+        known: String,
+    },
+    /// A column listed twice.
+    #[error("`columns`: `{0}` is listed twice")]
+    RepeatedColumn(String),
+    /// No column of speeds.
+    #[error("`columns`: `speed_m_s` is missing")]
+    NoSpeed,
+    /// No column of a gain.
+    #[error("`columns`: no gains; known are {known}")]
+    NoGains {
+        /// The known gains.
+        known: String,
+    },
+    /// A regression of something that has no column.
+    #[error("`regression`: `{key}` is not a gain with a column ({gains})")]
+    RegressionKey {
+        /// The key.
+        key: String,
+        /// The gains with a column.
+        gains: String,
+    },
+    /// A gain without its regression.
+    #[error("`regression`: `{0}` is missing")]
+    RegressionMissing(&'static str),
+    /// A wrong row.
+    #[error("row {row}: {error}")]
+    Row {
+        /// Its number, from 1.
+        row: usize,
+        /// The error.
+        error: RowError,
+    },
+    /// A best run that no row has.
+    #[error("`best_runs`: no row has run {0}")]
+    BestRun(u32),
+    /// Not one best run in a group.
+    #[error("`best_runs` names {rows} rows of the group at {speed_m_s} m/s; it must be one of each group")]
+    BestRuns {
+        /// The number of rows.
+        rows: usize,
+        /// Speed of the group \[m/s\].
+        speed_m_s: f64,
+    },
+    /// The means of the groups are no schedule.
+    #[error("means of groups: {0}")]
+    Means(ScheduleError),
+}
+
+/// A wrong row of a table of measured gains.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RowError {
+    /// More or fewer values than columns.
+    #[error("{values} values for {columns} columns ({names})")]
+    Length {
+        /// Number of values.
+        values: usize,
+        /// Number of columns.
+        columns: usize,
+        /// Their names.
+        names: String,
+    },
+    /// A value outside its range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// A number that must be whole.
+    #[error("`{key}` = {value} is not a whole number")]
+    NotWhole {
+        /// The column.
+        key: String,
+        /// The value.
+        value: f64,
+    },
+    /// A speed below that of the row before.
+    #[error("`speed_m_s` = {speed_m_s} after {before_m_s}: rows must be sorted by speed")]
+    Speed {
+        /// The speed \[m/s\].
+        speed_m_s: f64,
+        /// The speed before it \[m/s\].
+        before_m_s: f64,
+    },
+    /// A group below that of the row before.
+    #[error("`group` = {group} after {before}: groups must rise with speed")]
+    Group {
+        /// The group.
+        group: u32,
+        /// The group before it.
+        before: u32,
+    },
+}
