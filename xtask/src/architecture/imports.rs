@@ -151,13 +151,19 @@ fn collect_first_names(tokens: &[TokenTree], found: &mut Vec<String>) {
                 collect_first_names(&group.stream().into_iter().collect::<Vec<_>>(), found);
             }
             TokenTree::Ident(name)
-                if is_separator(tokens, at + 1) && !(at >= 2 && is_separator(tokens, at - 2)) =>
+                if is_separator(tokens, at + 1) && *name != "use" && !continues(tokens, at) =>
             {
                 found.push(name.to_string());
             }
             _ => {}
         }
     }
+}
+
+/// Whether the name at `at` is not the first of its path: `b` of `a::b` and of `<T>::b`, but not of `use ::b`.
+fn continues(tokens: &[TokenTree], at: usize) -> bool {
+    let Some(before) = at.checked_sub(3).filter(|_| is_separator(tokens, at - 2)) else { return false };
+    punct(tokens, before, '>') || ident(tokens, before).is_some_and(|name| name != "use")
 }
 
 fn ident(tokens: &[TokenTree], at: usize) -> Option<String> {
