@@ -68,6 +68,25 @@ fn documents_fit_their_committed_schemas() {
     }
 }
 
+/// Situation: the documents that `schema` knows.
+/// Action: compare their names with the folder of the committed schemas and with docs/cli.md.
+/// Must hold: a schema for each document and no other; each name in the row of `schema`.
+#[test]
+fn every_document_has_a_committed_schema() {
+    let help = Bench::new(PROGRAM).run("schema --help").stdout.replace('\n', " ");
+    let (_, rest) = help.split_once("[possible values:").unwrap();
+    let mut names: Vec<&str> = rest.split(']').next().unwrap().split(',').map(str::trim).collect();
+    let entries = std::fs::read_dir(repository("docs/schema")).unwrap();
+    let mut files: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    (names.sort(), files.sort());
+    assert_eq!(files, names.iter().map(|name| format!("{name}.json")).collect::<Vec<_>>());
+    let page = std::fs::read_to_string(repository("docs/cli.md")).unwrap();
+    let row = page.lines().find(|line| line.starts_with("| `sim-host schema NAME` |")).unwrap();
+    for name in names {
+        assert!(row.contains(&format!("`{name}`")), "docs/cli.md: {name}");
+    }
+}
+
 /// Situation: a document that fits, then one with a key missing, added, of a wrong type, or NaN.
 /// Action: compare each with the schema.
 /// Must hold: every one of the wrong ones is noticed.

@@ -1,7 +1,8 @@
 //! Flight cards: the motor beside closed forms, and the friction's energy.
 
 use sim_host::bicycle::{Accelerations, Geometry, Motion, State, Torques};
-use sim_host::integrate::{Actuation, Moves, Stages, rk4};
+use sim_host::integrate::{Actuation, Stages, rk4};
+use sim_host::num::Moves;
 use sim_host::plant::catalogue::{load, shipped_names};
 use sim_host::plant::{Actuator, ActuatorConfig, Friction, SteerStop, Supply};
 use tests::rides::{knocked, shipped};

@@ -186,6 +186,29 @@ fn every_shipped_table_loads_whole() {
     assert_eq!((table.rows.len(), table.groups().count()), (6, 2));
 }
 
+/// Situation: the shipped riders. Action: look for each in its folder, in docs/riders.md and in the README.
+/// Must hold: a file for each, and for no other but the example; a row for each; the README's number.
+#[test]
+fn every_shipped_rider_is_documented() {
+    let text = |path: &str| std::fs::read_to_string(repository(path)).unwrap();
+    let mut files: Vec<String> = std::fs::read_dir(repository("data/riders"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name != "example.toml")
+        .collect();
+    let mut shipped: Vec<String> = catalogue::shipped_names().map(|name| format!("{name}.toml")).collect();
+    (files.sort(), shipped.sort());
+    assert_eq!(files, shipped);
+    let page = text("docs/riders.md");
+    let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
+    for name in catalogue::shipped_names() {
+        let named =
+            |row: &&str| row.split(" | ").next().is_some_and(|cell| cell.contains(&format!("`{name}`")));
+        assert!(rows.iter().any(|row| named(&row)), "docs/riders.md has no row for {name}");
+    }
+    assert!(text("README.md").contains(&format!("{} tables of rider gains", shipped.len())));
+}
+
 /// The state matrix of roll, steer, their rates, heading, lateral offset of the front contact, torque
 /// and its rate: the linear bicycle at `v` under gains of these, without delay.
 fn closed_loop(bicycle: &str, v: f64, gains: &Gains, muscles: &Neuromuscular) -> SMatrix<f64, 8, 8> {
