@@ -48,7 +48,7 @@ fn what_is_no_link_fault_is_refused_by_name() {
         ("motor:drop@4000s", "3600"),
     ] {
         let why = text.parse::<LinkFault>().expect_err(text);
-        assert!(why.contains(text) && why.contains(named), "{why}");
+        assert!(why.to_string().contains(text) && why.to_string().contains(named), "{why}");
     }
 }
 

@@ -238,5 +238,5 @@ fn repeats_and_lateness_are_found_again() {
     {
         assert!(found.left_out.iter().any(|what| what.starts_with(why)), "{:?}", found.left_out);
     }
-    assert!(fit(Sensor::RiderTorque, &all).expect_err("none").contains("rider-torque"));
+    assert!(fit(Sensor::RiderTorque, &all).expect_err("none").to_string().contains("rider-torque"));
 }
