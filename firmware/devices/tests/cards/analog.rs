@@ -1,4 +1,4 @@
-//! Flight cards: conversion of ADC counts.
+//! Conversion of ADC counts.
 
 use devices::analog::{FULL_SCALE, Gauge};
 use devices::vesc6::{BOARD_HEAT, SHUNT, STEER_RAD, SUPPLY};
@@ -46,7 +46,7 @@ fn supply_and_temperature_come_back() {
 /// Situation: a steer sensor, turned from end to end, then open and shorted. Must hold: the angle rises to the right
 /// with zero in the middle; a broken wire gives no angle.
 #[test]
-fn a_gauge_tells_a_broken_wire_from_an_angle() {
+fn a_broken_wire_is_no_angle() {
     let half = core::f32::consts::FRAC_PI_2;
     assert_eq!(STEER_RAD.value(410), Some(-half));
     assert_eq!(STEER_RAD.value(3685), Some(half));

@@ -1,4 +1,4 @@
-//! Flight cards: accuracy of micromath. The errors in the table of docs/motor.md are computed here.
+//! Accuracy of micromath. The errors in the table of docs/motor.md are computed here.
 
 use devices::vesc6::BOARD_HEAT;
 use micromath::F32;
@@ -16,11 +16,12 @@ fn holds(row: &str, errors: [f64; 2]) {
     let page = std::fs::read_to_string(page).expect("the page");
     let line = page.lines().find(|line| line.starts_with(&format!("| {row} |"))).expect(row);
     let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-    let told =
+    let documented =
         [2, 4].map(|cell: usize| cells[cell].split(' ').next().and_then(|word| word.parse::<f64>().ok()));
-    let same =
-        |(told, error): (&Option<f64>, &f64)| told.is_some_and(|told| (told - error).abs() <= 0.05 * error);
-    assert!(told.iter().zip(&errors).all(same), "docs/motor.md says\n{line}, here {errors:?}");
+    let same = |(documented, error): (&Option<f64>, &f64)| {
+        documented.is_some_and(|documented| (documented - error).abs() <= 0.05 * error)
+    };
+    assert!(documented.iter().zip(&errors).all(same), "docs/motor.md says\n{line}, here {errors:?}");
 }
 
 /// Situation: numbers to be sent, from far below a unit to the ends of the range. Must hold: micromath rounds each as
