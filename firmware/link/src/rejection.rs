@@ -103,7 +103,7 @@ impl fmt::Display for Rejection<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { why, key, value, min, max } = self;
         match why {
-            RejectReason::Engaged => write!(f, "refused while engaged"),
+            RejectReason::Engaged => write!(f, "rejected while engaged"),
             RejectReason::UnknownKey => write!(f, "no parameter {key}"),
             // A limit that is off although another limit needs it (`Limits::cross`).
             RejectReason::OutOfRange if *value == f32::INFINITY => {
