@@ -1,4 +1,4 @@
-//! Every cause has its number for ever, its page, and its line in the list.
+//! Every cause has its permanent number, its page, and its line in the list.
 
 use control::{CAUSES, Cause, Causes};
 use std::collections::BTreeSet;
@@ -8,9 +8,11 @@ fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../docs/faults")
 }
 
-/// Situation: the numbers as they were given out. Action: compare. Must hold: unchanged; new ones come after.
+/// Situation: the published numbers.
+/// Action: compare.
+/// Must hold: unchanged; new ones come after.
 #[test]
-fn numbers_are_for_ever() {
+fn published_numbers_never_change() {
     let given = [
         (Cause::GyroLost, 1),
         (Cause::AccelLost, 5),
@@ -38,9 +40,11 @@ fn numbers_are_for_ever() {
     assert!(CAUSES.iter().enumerate().all(|(i, c)| usize::from(c.code()) == i + 1));
 }
 
-/// Situation: sets of causes. Action: make, join, list. Must hold: what was put in comes out, by rising number.
+/// Situation: sets of causes.
+/// Action: make, join, list.
+/// Must hold: the listed causes are those inserted, by rising number.
 #[test]
-fn a_set_gives_back_what_it_got() {
+fn a_set_lists_its_causes() {
     let set = Causes::all(&[Cause::PathLost, Cause::GyroLost]);
     assert_eq!(set.iter().collect::<Vec<_>>(), [Cause::GyroLost, Cause::PathLost]);
     assert!(set.has(Cause::GyroLost) && !set.has(Cause::GyroRange) && !set.is_empty());
@@ -49,8 +53,9 @@ fn a_set_gives_back_what_it_got() {
     assert_eq!(set.and(Causes::of(Cause::PathLost)), Causes::of(Cause::PathLost));
 }
 
-/// Situation: the pages in docs/faults. Action: look for each cause's. Must hold: one page each, headed by number and
-/// name, with the three sections, listed in the README; no page more.
+/// Situation: the pages in docs/faults.
+/// Action: look up each cause's.
+/// Must hold: one page each, headed by number and name, with the three sections, listed in the README; no page more.
 #[test]
 fn every_cause_has_its_page() {
     let list = std::fs::read_to_string(folder().join("README.md")).unwrap();
