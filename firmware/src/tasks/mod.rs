@@ -27,7 +27,7 @@ mod log;
 pub mod settings;
 mod supervise;
 
-pub use control::{Refusal, Telemetry, commanded, control, latest};
+pub use control::{DriveError, Telemetry, commanded, control, latest};
 pub use host_link::line;
 pub use log::report;
 pub use supervise::{WATCHDOG, supervise};

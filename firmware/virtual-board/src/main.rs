@@ -117,9 +117,9 @@ impl Line {
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            eprintln!("virtual-board: {why}");
-            let program = matches!(why, Failure::Board(Error::Gap { .. } | Error::Endless { .. }));
+        Err(error) => {
+            eprintln!("virtual-board: {error}");
+            let program = matches!(error, Failure::Board(Error::Gap { .. } | Error::Endless { .. }));
             ExitCode::from(if program { 1 } else { 2 })
         }
     }
@@ -203,12 +203,12 @@ fn show_can(bench: &mut Bench) {
 /// The flash of the parameters in a file, if there is one. A file that is none, or can't be written at the end, is
 /// refused before the run.
 fn kept(file: &Path) -> Result<Option<Vec<u8>>, Failure> {
-    let failed = |why| Failure::File(file.to_owned(), why);
+    let failed = |error| Failure::File(file.to_owned(), error);
     let store = match std::fs::read(file) {
         Ok(bytes) if bytes.len() == STORE_BYTES => Some(bytes),
         Ok(bytes) => return Err(Failure::NoStore(file.to_owned(), bytes.len(), STORE_BYTES)),
-        Err(why) if why.kind() == std::io::ErrorKind::NotFound => None,
-        Err(why) => return Err(failed(why)),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
+        Err(error) => return Err(failed(error)),
     };
     std::fs::OpenOptions::new().append(true).create(true).open(file).map_err(failed)?;
     if store.is_none() {

@@ -1,6 +1,6 @@
 //! Accuracy of micromath. The errors in the table of docs/motor.md are computed here.
 
-use devices::vesc6::BOARD_HEAT;
+use devices::vesc6::BOARD_TEMPERATURE;
 use micromath::F32;
 use motor::angle::Angle;
 use std::f64::consts::{PI, TAU};
@@ -43,14 +43,14 @@ fn rounding_is_that_of_libm() {
 /// to 7 K, as its reciprocal has an error of 12 %; with the product's functions at most 0.01 K.
 #[test]
 fn a_logarithm_below_one_is_no_temperature() {
-    let celsius = |ln: f64| 1.0 / (ln / f64::from(BOARD_HEAT.beta_k) + 1.0 / 298.15) - 273.15;
+    let celsius = |ln: f64| 1.0 / (ln / f64::from(BOARD_TEMPERATURE.beta_k) + 1.0 / 298.15) - 273.15;
     let (mut by_micromath, mut as_done) = (0.0_f64, 0.0_f64);
     for counts in 17..4079_u16 {
         let ratio = 4095.0 / f32::from(counts) - 1.0;
         let truth = celsius(f64::from(ratio).ln());
         if (-40.0..180.0).contains(&truth) {
             by_micromath = by_micromath.max((celsius(F32(ratio).ln().0.into()) - truth).abs());
-            as_done = as_done.max((f64::from(BOARD_HEAT.celsius(counts)) - truth).abs());
+            as_done = as_done.max((f64::from(BOARD_TEMPERATURE.celsius(counts)) - truth).abs());
         }
     }
     assert!((6.9..7.2).contains(&by_micromath) && as_done < 0.01, "{by_micromath} K, {as_done} K");

@@ -1,6 +1,6 @@
 //! SPI words of the encoder.
 
-use devices::as5047::{ASK_ANGLE, COUNTS, FLAGGED, Line};
+use devices::as5047::{COUNTS, FLAGGED, Line, READ_ANGLE};
 use devices::vesc6::MOTOR;
 
 /// A word with bit 15 as even parity, counted bit by bit.
@@ -17,7 +17,7 @@ fn alone(answer: u16) -> Option<u16> {
 /// Situation: answers with every angle of a turn. Must hold: each is decoded; with any single bit wrong, none is.
 #[test]
 fn every_angle_is_read_and_no_damaged_one() {
-    assert_eq!(with_parity(0x7fff), ASK_ANGLE, "a read of register 3fff");
+    assert_eq!(with_parity(0x7fff), READ_ANGLE, "a read of register 3fff");
     for angle in 0..COUNTS {
         let word = with_parity(angle);
         assert_eq!(alone(word), Some(angle));

@@ -98,7 +98,8 @@ proptest! {
 /// Every message with a non-zero value in each field.
 pub(crate) fn all() -> Vec<Message<'static>> {
     let parted = Key { group: "limits.end_stop", name: "soft_rad" };
-    let rejection = Rejection { why: RejectReason::OutOfRange, key: parted, value: 9.0, min: 0.5, max: 1.5 };
+    let rejection =
+        Rejection { reason: RejectReason::OutOfRange, key: parted, value: 9.0, min: 0.5, max: 1.5 };
     let hello =
         Hello { image: "board-vesc6", version: "0.1.0", commit: "0123456789ab", config_hash: 0xdead_beef };
     let fault = FaultRecord {
@@ -134,7 +135,7 @@ pub(crate) fn all() -> Vec<Message<'static>> {
         Message::Value { key: parted, value: Some(-0.0) },
         Message::Law(&[0, 0, 0]),
         Message::Done,
-        Message::Refused(rejection),
+        Message::Rejected(rejection),
         Message::WrongVersion { theirs: 9 },
         Message::StoredFault(StoredFault { place: 1, total: 2, record: Some(fault) }),
         Message::StoredFault(StoredFault { place: 2, total: 2, record: None }),
@@ -212,7 +213,7 @@ fn every_number_means_one_thing() {
 /// Must hold: each but the good one is answered with its error, under its sequence number where known.
 #[test]
 fn an_invalid_request_is_answered() {
-    let rejected = |why| Message::Refused(Rejection::of(why));
+    let rejected = |why| Message::Rejected(Rejection::of(why));
     let of = |kind, payload| Received::Frame(Frame { kind, sequence: 44, payload });
     for (received, answer) in [
         (Received::WrongVersion { theirs: VERSION + 1 }, (0, Message::WrongVersion { theirs: VERSION + 1 })),

@@ -23,7 +23,7 @@ pub(crate) fn answer_to<T>(
 fn rejection(config: &Config, engaged: bool, request: &Message<'_>) -> (RejectReason, String) {
     let mut changed = config.clone();
     let rejection = answer_to(&mut changed, engaged, request, |answer| match answer {
-        Some(Message::Refused(rejection)) => (rejection.why, rejection.to_string()),
+        Some(Message::Rejected(rejection)) => (rejection.reason, rejection.to_string()),
         other => panic!("{request:?}: {other:?}"),
     });
     assert_eq!(changed, *config, "{request:?}");
@@ -72,7 +72,7 @@ fn every_parameter_is_read_and_set() {
             let mut config = Config::product();
             let rejection = set(&mut config, key, Some(beyond)).expect_err("out of range");
             assert_eq!(
-                (rejection.why, rejection.key, rejection.min, rejection.max),
+                (rejection.reason, rejection.key, rejection.min, rejection.max),
                 (RejectReason::OutOfRange, key, one.leaf.min, one.leaf.max)
             );
             assert_eq!(rejection.value.to_bits(), beyond.to_bits());
@@ -103,7 +103,7 @@ fn nothing_is_changed_while_engaged() {
     }
     for request in [Message::List { from: 0 }, Message::Get { key: Key::whole("law") }, Message::GetLaw] {
         answer_to(&mut config.clone(), true, &request, |answer| {
-            assert!(!matches!(answer, Some(Message::Refused(_)) | None))
+            assert!(!matches!(answer, Some(Message::Rejected(_)) | None))
         });
     }
 }
@@ -243,7 +243,7 @@ proptest! {
             let inside = one.leaf.min + share * (one.leaf.max - one.leaf.min);
             let value = [None, Some(f32::from_bits(bits)), Some(inside), Some(inside.round())][usize::from(how)];
             let before = config.clone();
-            let done = set(&mut config, one.key(), value).map_err(|Rejection { why, .. }| why);
+            let done = set(&mut config, one.key(), value).map_err(|Rejection { reason, .. }| reason);
             prop_assert!(config.clone().plan().is_ok(), "{} {:?}", one.key(), value);
             prop_assert!(done.is_ok() || config == before, "{} {:?}", one.key(), value);
         }

@@ -85,7 +85,7 @@ fn an_invalid_configuration_is_not_stored() {
     let mut wrong = own();
     wrong.rate_hz = 1.0;
     let (done, after) = save(flash.clone(), &wrong);
-    assert!(matches!(done, Err(NotStored::Refused(error)) if error.leaf.name == "rate_hz"), "{done:?}");
+    assert!(matches!(done, Err(NotStored::Rejected(error)) if error.leaf.name == "rate_hz"), "{done:?}");
     assert_eq!(after, flash);
 }
 
@@ -160,7 +160,7 @@ fn todays_values_come_first_when_there_is_no_room() {
     let used = encode(&own(), 2, Some(&decode(&stuffed).expect("a record")), &mut room).expect("room");
     let mut config = Config::product();
     let applied = decode(&room[..used]).expect("a record").apply(&mut config);
-    assert_eq!((config, applied.missing, applied.refused), (own(), 0, 0));
+    assert_eq!((config, applied.missing, applied.rejected), (own(), 0, 0));
     assert!(applied.unknown > 50 && used > RECORD_BYTES - 8, "{} {used}", applied.unknown);
 }
 
@@ -181,8 +181,8 @@ fn a_value_outside_todays_range_is_rejected_and_named() {
     ] {
         let (found, result, _) = load(flashed(&with(&whole, key, value)), &Config::product());
         let Found::Record(applied) = result else { panic!("{key}: {result:?}") };
-        assert_eq!((applied.refused, applied.missing, applied.unknown), (1, 0, 0), "{key}");
-        assert_eq!(applied.first_refused.map(|error| error.leaf.name), Some(name));
+        assert_eq!((applied.rejected, applied.missing, applied.unknown), (1, 0, 0), "{key}");
+        assert_eq!(applied.first_rejected.map(|error| error.leaf.name), Some(name));
         let mut expected = own();
         expected.calibration.polarity_checked = false;
         each_but_law(&mut expected, |parameter| match parameter.key() == Key::whole(key) {
@@ -195,7 +195,7 @@ fn a_value_outside_todays_range_is_rejected_and_named() {
     let mut lawless = whole;
     lawless[7] = 200;
     let (found, result, _) = load(flashed(&lawless), &Config::product());
-    assert!(matches!(result, Found::Record(Applied { refused: 1, .. })), "{result:?}");
+    assert!(matches!(result, Found::Record(Applied { rejected: 1, .. })), "{result:?}");
     assert_eq!((found.law, found.calibration.polarity_checked), (Config::product().law, false));
 }
 

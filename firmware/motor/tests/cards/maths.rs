@@ -63,7 +63,7 @@ fn the_circle_keeps_d() {
 }
 
 /// Situation: a winding at rest, on either axis; a set-point of 40 A, for which 5 V do not suffice, for 20 ms, then 2
-/// A. Must hold: the voltage never beyond 5 V; within 0.2 A of 2 A after 30 calls, never below 1.85 A on the way: no
+/// A. Must hold: the voltage never beyond 5 V; within 0.2 A of 2 A after 30 calls, never below 1.85 A before: no
 /// windup.
 #[test]
 fn neither_axis_winds_up() {

@@ -1,6 +1,6 @@
 //! An encoder that slips on its shaft, has a wrong offset or reverses, and conditions that are no slip.
 //!
-//! Times and torques of the first card are in docs/motor.md.
+//! Times and torques of the first test are in docs/motor.md.
 
 use crate::bench::{Bench, last, mean, opened};
 use crate::machine::Params;

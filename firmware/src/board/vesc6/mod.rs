@@ -37,7 +37,7 @@ pub use watchdog::feed_watchdog;
 
 use crate::failure;
 use crate::heartbeat::Task;
-use crate::tasks::{Refusal, Telemetry};
+use crate::tasks::{DriveError, Telemetry};
 use ::motor::MotorCommand;
 use control::{Command, Mode};
 use defmt_rtt as _;
@@ -168,12 +168,12 @@ pub fn outputs_off() {
 ///
 /// # Errors
 /// The reason for which no torque is given, from the interrupt's last report.
-pub fn drive(command: &Command) -> Result<(), Refusal> {
+pub fn drive(command: &Command) -> Result<(), DriveError> {
     let wanted = command.torque_nm != 0.0 || matches!(command.mode, Mode::Engaged | Mode::Limp);
-    let refusal = motor_report().refusal();
+    let error = motor_report().error();
     order(if wanted { MotorCommand::Torque(command.torque_nm) } else { MotorCommand::Off });
-    leds::show(refusal.is_none());
-    refusal.map_or(Ok(()), Err)
+    leds::show(error.is_none());
+    error.map_or(Ok(()), Err)
 }
 
 /// Whether the task's heartbeat is lost: never, as this board has no fault injection.
@@ -190,7 +190,7 @@ pub fn report(t: &Telemetry) {
         t.deadlines.worst_us,
         t.command.torque_nm,
         t.command.mode.name(),
-        t.drive.map_or_else(Refusal::reason, |()| "able")
+        t.drive.map_or_else(DriveError::reason, |()| "able")
     );
     let f = &t.frame;
     defmt::info!(
@@ -220,7 +220,7 @@ pub fn report(t: &Telemetry) {
         m.faults.0,
         m.gate_pulses,
         m.supply_v,
-        shared::heat_c(),
+        shared::temperature_c(),
         m.encoder_counts,
         m.encoder_age,
         m.encoder_flagged,

@@ -20,7 +20,7 @@ impl Monitor {
         listener.take(bytes, |_, message| match message {
             Message::Telemetry(telemetry) => *newest = Some(*telemetry),
             Message::Value { key, value } => answers.push(format!("{key}={}", value.unwrap_or(f32::NAN))),
-            Message::Refused(refusal) => answers.push(refusal.to_string()),
+            Message::Rejected(refusal) => answers.push(refusal.to_string()),
             _ => (),
         });
     }
