@@ -106,7 +106,7 @@ impl FakeBoard {
                 Ok(Message::PilReset) => {
                     match self.begin() {
                         Ok(()) => self.send(&Message::Done, sequence),
-                        Err(rejection) => self.send(&Message::Refused(rejection), sequence),
+                        Err(rejection) => self.send(&Message::Rejected(rejection), sequence),
                     };
                 }
                 other => panic!("{other:?} in the direction of the board"),

@@ -222,7 +222,7 @@ impl Actuation<f64> for Push<'_> {
             delay_line.push(rider.schedule.at(speed).signal(&body.signals(&now)));
             self.arriving = delay_line.arriving();
         }
-        let k = body.rate(b, &now, &rider.muscles, self.arriving[(2.0 * STAGES[stage]) as usize]);
+        let k = body.rate(b, &now, &rider.neuromuscular, self.arriving[(2.0 * STAGES[stage]) as usize]);
         self.body.next(stage, STEP_S, &k);
     }
 }

@@ -100,7 +100,7 @@ impl LinkBoard {
                 self.faults.clear();
                 Message::Done
             }
-            _ => Message::Refused(Rejection::of(RejectReason::NotHere)),
+            _ => Message::Rejected(Rejection::of(RejectReason::NotHere)),
         };
         encoded(&answer, sequence)
     }

@@ -11,5 +11,5 @@ pub fn thorough(delay_s: f64) -> Rider {
         (6.0, Gains([-12.0, -0.2, 5.0, 3.4, 62.0, 2.5, 3.6, -0.05, -0.7, -0.05])),
     ];
     let schedule = Schedule::new(points, Outside::Extrapolate).unwrap_or_else(|e| panic!("{e}"));
-    Rider { schedule, delay_s, muscles: Neuromuscular::SHOULDERS }
+    Rider { schedule, delay_s, neuromuscular: Neuromuscular::SHOULDERS }
 }

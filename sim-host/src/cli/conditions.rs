@@ -12,7 +12,7 @@ use crate::parameters;
 use crate::range::time;
 use crate::report::resolved::{ResolvedConfig, ResolvedLaw, ResolvedRider};
 use crate::ride::{Assist, Conditions, Imu, ScheduleSpeed};
-use crate::rider::doubts;
+use crate::rider::compatibility_warnings;
 use clap::ValueEnum;
 use control::param::ParamSpec;
 use control::{Config, Law, Limits, Taper, Wheel};
@@ -239,7 +239,8 @@ impl ConditionArgs {
             AssistKind::Ideal => Assist::Ideal(Box::new(law.clone())),
         };
         let sensor_delay_ticks = whole_ticks("--sensor-delay", self.sensor_delay, step_s, LONGEST_S)?;
-        let mut doubts = rider.as_ref().map_or(Vec::new(), |(_, table, _)| doubts(&bicycle, table));
+        let mut doubts =
+            rider.as_ref().map_or(Vec::new(), |(_, table, _)| compatibility_warnings(&bicycle, table));
         doubts.extend(cut_files::doubts(self.files()));
         doubts.iter().for_each(|doubt| complain_once(&format!("warning: {doubt}")));
         let resolved = rider.as_ref().map(|(rider, table, fit)| ResolvedRider::new(table, *fit, rider));

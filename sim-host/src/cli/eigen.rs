@@ -12,7 +12,7 @@ use crate::report::document::{EigenDocument, SCHEMA};
 use crate::report::figure::{self, EigenFigure};
 use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider, Tool};
 use crate::report::{table, terminal};
-use crate::rider::doubts;
+use crate::rider::compatibility_warnings;
 use control::{Capsize, Law};
 use nalgebra::Complex;
 use rayon::prelude::*;
@@ -102,9 +102,10 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     warn(&bicycle);
     let law = law::parse(&args.law)?;
     let (resolved, rider) = match args.rider.load()? {
-        Some((rider, table, fit)) => {
-            (Some(ResolvedRider::new(&table, fit, &rider)), Some((rider, doubts(&bicycle, &table))))
-        }
+        Some((rider, table, fit)) => (
+            Some(ResolvedRider::new(&table, fit, &rider)),
+            Some((rider, compatibility_warnings(&bicycle, &table))),
+        ),
         None => (None, None),
     };
     let alone = law == Law::None && rider.is_none() && args.capsize.is_none();

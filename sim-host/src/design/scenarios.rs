@@ -29,7 +29,7 @@ const LATE_MS: u16 = 20;
 ///
 /// # Errors
 /// A bicycle or a rider is not shipped.
-pub fn arena(fall: FallCriterion) -> Result<Scenarios, String> {
+pub fn scenarios(fall: FallCriterion) -> Result<Scenarios, String> {
     let limits = Config::product().limits;
     let on = |bicycle, rider, delay_s, late| {
         Trial::new(bicycle, rider, delay_s, late, limits).map(|trial| Trial { fall, ..trial })

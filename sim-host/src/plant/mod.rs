@@ -19,7 +19,7 @@ pub use fitted::{FittedErrors, OCTAVES_HZ};
 pub use friction::Friction;
 pub use random_stream::RandomStream;
 pub use reading::{Frame, Odometry, Reading, Sensor};
-pub use sensor::{Before, ImuMount, SensorConfig, SensorDice, SensorModel, SensorState};
+pub use sensor::{Before, ImuMount, SensorConfig, SensorModel, SensorRng, SensorState};
 pub(crate) use sensor_suite::faulty;
 pub use sensor_suite::{Held, Measured, SensorSuite};
 pub use stop::SteerStop;

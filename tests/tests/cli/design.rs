@@ -2,7 +2,7 @@
 
 use control::Law;
 use sim_host::basin::{Axis, Search};
-use sim_host::design::{Found, Knots, Plan, Progress, arena, judge, optimise};
+use sim_host::design::{Found, Knots, Plan, Progress, evaluate, optimise, scenarios};
 use sim_host::ride::FallCriterion;
 use sim_host::study::trial::Trial;
 use std::cell::Cell;
@@ -29,7 +29,7 @@ fn plan(seed: u64, evaluations: u32) -> Plan {
 
 /// The thesis bicycle without a rider, without sensor delay and with one.
 fn trials() -> Vec<Trial> {
-    let all = arena(FallCriterion::default()).expect("ships").training;
+    let all = scenarios(FallCriterion::default()).expect("ships").training;
     all.into_iter().filter(|t| t.rider.is_none()).take(2).collect()
 }
 
@@ -54,7 +54,7 @@ fn a_design_is_the_same_for_a_seed_and_a_number_of_schedules() {
     let shorter = pool.install(|| found(&plan(1, 12)));
     assert_eq!(first.history[..shorter.history.len()], shorter.history);
     assert!(first.gains.iter().all(|gain| (-10.0..=40.0).contains(gain)));
-    let evaluated = judge(
+    let evaluated = evaluate(
         &sim_host::design::Scenarios { training: trials(), held_out: Vec::new() },
         &[("it".into(), plan(1, 1).knots.law(&first.gains).expect("in range"))],
         &coarse(),

@@ -231,7 +231,7 @@ fn a_time_stamp_far_ahead_is_named() {
     bench.run("replay one.csv --map extract --strict").rejected_naming(&["line 302", "ahead"]);
     bench
         .run("replay last.csv --map extract")
-        .rejected_naming(&["line 801", "leaps from 3.99 s to 1000000000 s"]);
+        .rejected_naming(&["line 801", "jumps from 3.99 s to 1000000000 s"]);
 }
 
 /// Situation: a ride of 4 s whose last row's time is far ahead; the same in milliseconds taken as seconds for 6

@@ -72,7 +72,7 @@ impl Reference {
         let (s, _) = self.instant(y);
         let (sin, cos) = y[7].sin_cos();
         let sideways = sin * s.rear_axle_velocity.x + cos * s.rear_axle_velocity.y;
-        let Neuromuscular { omega_rad_s: w, zeta } = self.rider.muscles;
+        let Neuromuscular { omega_rad_s: w, zeta } = self.rider.neuromuscular;
         let (roll_acc, steer_acc, wheel_acc) =
             (s.roll_acceleration, s.steer_acceleration, s.rear_wheel_acceleration);
         let muscle = w * w * (alpha - y[9]) - 2.0 * zeta * w * y[10];
@@ -201,7 +201,7 @@ fn a_rider_without_gains_is_no_rider() {
     let numb = Rider {
         schedule: Schedule::constant(Gains::default()),
         delay_s: 0.03,
-        muscles: Neuromuscular::SHOULDERS,
+        neuromuscular: Neuromuscular::SHOULDERS,
     };
     let with = ridden(&ideal(H), numb, 1e-3, 1.0);
     let (_, without) = traced(&Conditions { time_limit_s: 1.0, ..ideal(H) }, START);

@@ -46,7 +46,7 @@ fn lambert_w(z: f64) -> Vec<C> {
 
 fn rider(of: impl Fn(&str) -> f64, delay_s: f64) -> Rider {
     let gains = Gains(KEYS.map(of));
-    Rider { schedule: Schedule::constant(gains), delay_s, muscles: Neuromuscular::SHOULDERS }
+    Rider { schedule: Schedule::constant(gains), delay_s, neuromuscular: Neuromuscular::SHOULDERS }
 }
 
 fn with_rider(bicycle: &str, law: Law, rider: Rider) -> Model {

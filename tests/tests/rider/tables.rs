@@ -178,7 +178,7 @@ fn every_shipped_table_loads_completely() {
             assert!(table.rider(fit, Outside::Hold, None).is_ok(), "{name} {}", fit.name());
         }
         let shoulders = !name.starts_with("hess");
-        assert_eq!(table.muscles == Neuromuscular::SHOULDERS, shoulders, "{name}");
+        assert_eq!(table.neuromuscular == Neuromuscular::SHOULDERS, shoulders, "{name}");
     }
     assert_eq!(catalogue::shipped_names().count(), 10);
     let example = repository("data/riders/example.toml");
@@ -188,7 +188,7 @@ fn every_shipped_table_loads_completely() {
 
 /// The state matrix of roll, steer, their rates, heading, lateral offset of the front contact, torque
 /// and its rate: the linear bicycle at `v` under gains of these, without delay.
-fn closed_loop(bicycle: &str, v: f64, gains: &Gains, muscles: &Neuromuscular) -> SMatrix<f64, 8, 8> {
+fn closed_loop(bicycle: &str, v: f64, gains: &Gains, neuromuscular: &Neuromuscular) -> SMatrix<f64, 8, 8> {
     let p = shipped(bicycle).parameters;
     let linear = Linear::new(&p);
     let free = linear.state_matrix(v, 0.0);
@@ -201,14 +201,14 @@ fn closed_loop(bicycle: &str, v: f64, gains: &Gains, muscles: &Neuromuscular) ->
     (a[(4, 1)], a[(4, 3)]) = (v * cos / p.w, p.c * cos / p.w);
     (a[(5, 4)], a[(5, 1)], a[(5, 3)]) = (v, v * cos, 0.0);
     a[(6, 7)] = 1.0;
-    let omega2 = muscles.omega_rad_s.powi(2);
+    let omega2 = neuromuscular.omega_rad_s.powi(2);
     let signals =
         [("K_phi_p", 0), ("K_delta_p", 1), ("K_phi_d", 2), ("K_delta_d", 3), ("K_psi", 4), ("K_y", 5)];
     for (key, state) in signals {
         a[(7, state)] = omega2 * gains.get(key).expect("a gain");
     }
     a[(7, 6)] = -omega2;
-    a[(7, 7)] = -2.0 * muscles.zeta * muscles.omega_rad_s;
+    a[(7, 7)] = -2.0 * neuromuscular.zeta * neuromuscular.omega_rad_s;
     a
 }
 
@@ -221,7 +221,7 @@ fn nested_gains_multiplied_out_stabilise_their_bicycle() {
         let table = rider(name);
         for row in &table.rows {
             let growth = |gains: &Gains| {
-                let a = closed_loop(bicycle, row.speed_m_s, gains, &table.muscles);
+                let a = closed_loop(bicycle, row.speed_m_s, gains, &table.neuromuscular);
                 let values = DMatrix::from_column_slice(8, 8, a.as_slice()).complex_eigenvalues();
                 values.iter().map(|e| e.re).fold(f64::NEG_INFINITY, f64::max)
             };

@@ -10,7 +10,11 @@ use tests::basins::{alone, search};
 use tests::rides::shipped;
 
 fn constant(gains: Gains, delay_ms: f64) -> Rider {
-    Rider { schedule: Schedule::constant(gains), delay_s: delay_ms * 1e-3, muscles: Neuromuscular::SHOULDERS }
+    Rider {
+        schedule: Schedule::constant(gains),
+        delay_s: delay_ms * 1e-3,
+        neuromuscular: Neuromuscular::SHOULDERS,
+    }
 }
 
 /// The height as Tables I.1 and I.2 print it: the first multiple of 0.1 rad/s that falls; and the printed one.
