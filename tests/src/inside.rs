@@ -48,27 +48,27 @@ pub fn with(name: Option<&str>, conditions: Conditions) -> Conditions {
 pub fn borders() -> &'static [Border] {
     static BORDERS: OnceLock<Vec<Border>> = OnceLock::new();
     BORDERS.get_or_init(|| {
-        let mut expected = Vec::new();
+        let mut conditions = Vec::new();
         for rider in RIDERS {
             for axis in AXES {
-                expected.extend(SPEEDS.map(|speed_m_s| Border { rider, axis, speed_m_s, height_rad_s: 0.0 }));
+                conditions.extend(SPEEDS.map(|speed_m_s| Border { rider, axis, speed_m_s, height_rad_s: 0.0 }));
             }
         }
-        expected.into_par_iter().map(found).collect()
+        conditions.into_par_iter().map(found).collect()
     })
 }
 
-fn found(wanted: Border) -> Border {
-    let (max_rate, scan_step) = match expected.axis {
+fn found(conditions: Border) -> Border {
+    let (max_rate, scan_step) = match conditions.axis {
         Axis::SteerRate => (24.0, 0.5),
         Axis::RollRate => (6.0, 0.125),
     };
-    let speed = expected.speed_m_s;
+    let speed = conditions.speed_m_s;
     let search =
-        Search { speeds: vec![speed], axis: expected.axis, max_rate, scan_step, tolerance: 0.02 * scan_step };
-    let column = border(&with(expected.rider, assisted(H)), &search, speed);
-    assert!(!column.capped, "{expected:?} ends beyond {max_rate} rad/s");
-    Border { height_rad_s: column.upper, ..expected }
+        Search { speeds: vec![speed], axis: conditions.axis, max_rate, scan_step, tolerance: 0.02 * scan_step };
+    let column = border(&with(conditions.rider, assisted(H)), &search, speed);
+    assert!(!column.capped, "{conditions:?} ends beyond {max_rate} rad/s");
+    Border { height_rad_s: column.upper, ..conditions }
 }
 
 /// The product under h as published, without limits and checks; boot, self-test and ramps unchanged.

@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_refused_with_the_reason() {
+    fn invalid_axes_are_rejected_with_the_reason() {
         for (text, expected) in [
             ("torque-limit", "KEY=VALUES"),
             ("=1", "KEY=VALUES"),
