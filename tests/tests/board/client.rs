@@ -119,13 +119,13 @@ fn a_missing_answer_has_its_reason() {
 #[test]
 fn unsolicited_messages_are_preserved() {
     let board = shared(LinkBoard::default());
-    let (board, mut steps) = (board.clone(), 0);
+    let (sender, mut steps) = (board.clone(), 0);
     let also = move |answer: Vec<u8>| {
         steps += 1;
-        let mut board = lock(&board);
-        let mut bytes = board.unsolicited(&Message::Telemetry(telemetry(steps)));
-        bytes.extend(board.unsolicited(&Message::Log("text")));
-        bytes.extend(board.unsolicited(&Message::Fault(faults()[0])));
+        let mut sender = lock(&sender);
+        let mut bytes = sender.unsolicited(&Message::Telemetry(telemetry(steps)));
+        bytes.extend(sender.unsolicited(&Message::Log("text")));
+        bytes.extend(sender.unsolicited(&Message::Fault(faults()[0])));
         LinkChannel::Arrives([bytes, answer].concat())
     };
     let mut client = client(Wire::new(&board, Box::new(LinkChannel::Arrives), Box::new(also)));

@@ -58,12 +58,12 @@ proptest! {
         };
         let written = format!("any = {}", one.toml());
         let table: toml::Table = written.parse().expect("TOML");
-        let texts = match &table["any"] {
+        let text = match &table["any"] {
             toml::Value::Integer(number) => number.to_string(),
             toml::Value::Float(number) => number.to_string(),
             other => panic!("{other}"),
         };
-        prop_assert_eq!(one.parse(&texts).map(|got| got.map(f32::to_bits)), Ok(Some(bits)));
+        prop_assert_eq!(one.parse(&text).map(|got| got.map(f32::to_bits)), Ok(Some(bits)));
     }
 }
 
@@ -74,10 +74,10 @@ proptest! {
 fn every_cause_and_limit_has_a_text() {
     let all = named(Causes::all(&CAUSES));
     assert_eq!(all.len(), CAUSES.len());
-    for (cause, texts) in CAUSES.iter().zip(&all) {
-        assert_eq!((texts.code, texts.name.to_owned()), (cause.code(), format!("{cause:?}")));
-        assert!(texts.meaning.ends_with('.') && texts.meaning.len() > 10, "{texts:?}");
-        assert!(repository(&texts.page).is_file(), "{}", texts.page);
+    for (cause, described) in CAUSES.iter().zip(&all) {
+        assert_eq!((described.code, described.name.to_owned()), (cause.code(), format!("{cause:?}")));
+        assert!(described.meaning.ends_with('.') && described.meaning.len() > 10, "{described:?}");
+        assert!(repository(&described.page).is_file(), "{}", described.page);
     }
     assert_eq!(causes::named(Causes(1 << 63 | 1)), []);
     let names: BTreeSet<_> = (0..10).flat_map(|bit| limits(ActiveLimits(1 << bit))).collect();
@@ -93,8 +93,8 @@ fn every_cause_and_limit_has_a_text() {
 fn an_exception_has_a_text() {
     let fault = Exception::new(5, [0x8200, 0x4000_0000, 0xdead_beef, 1, 2, 3]);
     assert_eq!(fault.name, "bus fault");
-    let begins: Vec<_> = fault.status.iter().filter_map(|text| text.split(':').next()).collect();
-    assert_eq!(begins, ["PRECISERR", "BFARVALID", "FORCED"]);
+    let names: Vec<_> = fault.status.iter().filter_map(|text| text.split(':').next()).collect();
+    assert_eq!(names, ["PRECISERR", "BFARVALID", "FORCED"]);
     assert_eq!(
         (fault.bfar.as_str(), fault.sp.as_str(), fault.lr.as_str()),
         ("deadbeef", "00000001", "00000003")
@@ -121,7 +121,7 @@ fn a_fault_has_a_text() {
         &["panic in start 1", "  panicked at src/tasks/control.rs:12:5:\n  attempt to divide by zero\n"],
         &["drive in start 1", "  gate driver: over-current low a, fault, status 410 001\n"],
     ]) {
-        assert!(named.iter().all(|word| text.contains(word)), "{text}");
+        assert!(named.iter().all(|part| text.contains(part)), "{text}");
     }
     assert!(!texts[4].contains("pc "), "{}", texts[4]);
 }

@@ -85,10 +85,10 @@ fn the_image_of_the_loop_prints_its_stored_output() {
         let mut board = SteadyBoard::start(texts);
         board.ride(500, false);
         board.ride(1700, true);
-        let (status, words_said) = board.board.close();
-        let left: u32 = field(&words_said, "stack_left").expect("it says so");
+        let (status, printed) = board.board.close();
+        let left: u32 = field(&printed, "stack_left").expect("a number");
         assert!((8 << 10..28 << 10).contains(&left), "{left} bytes of stack left");
-        output(&format!("qemu-pil {}", texts.join(" ")), words_said.lines(), &status)
+        output(&format!("qemu-pil {}", texts.join(" ")), printed.lines(), &status)
     });
     same(&rides.concat(), expect_file!["outputs/qemu-pil.txt"]);
 }

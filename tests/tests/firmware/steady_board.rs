@@ -45,8 +45,8 @@ pub(crate) struct SteadyBoard {
 impl SteadyBoard {
     /// Started with these arguments; the product with every sensor rides; its configuration, the polarity check
     /// passed, is in flash.
-    pub(crate) fn start(texts: &[&str]) -> Self {
-        let mut board = Self::with(texts, &rides::product());
+    pub(crate) fn start(arguments: &[&str]) -> Self {
+        let mut board = Self::with(arguments, &rides::product());
         board.request(&Message::Store);
         board.ride(20, false);
         assert_eq!(board.done, 1, "stored");
@@ -54,8 +54,8 @@ impl SteadyBoard {
     }
 
     /// Started with these arguments; this configuration rides.
-    pub(crate) fn with(texts: &[&str], config: &Config) -> Self {
-        let board = Qemu::start(&image::path("qemu-pil"), texts, LONG).expect("the image starts");
+    pub(crate) fn with(arguments: &[&str], config: &Config) -> Self {
+        let board = Qemu::start(&image::path("qemu-pil"), arguments, LONG).expect("the image starts");
         let mut board = Self {
             board,
             motor: Decoder::default(),
@@ -106,7 +106,7 @@ impl SteadyBoard {
     fn exchange(&mut self, sensors: &[u8]) {
         let line = std::mem::take(&mut self.request);
         let starts = self.starts();
-        self.board.exchange(&ToBoard { sensors, line: &line }).expect("the board goes on");
+        self.board.exchange(&ToBoard { sensors, line: &line }).expect("the board runs");
         if self.starts() != starts {
             // A new program counts its steps from the beginning; it has done the first before the exchange.
             self.step = 1;

@@ -16,8 +16,8 @@ use tests::wait::LONG;
 use xtask::image;
 
 /// The image with these arguments, just started.
-pub(crate) fn started(texts: &[&str]) -> Qemu {
-    Qemu::start(&image::path("qemu-pil"), texts, LONG).unwrap_or_else(|error| panic!("{error}"))
+pub(crate) fn started(arguments: &[&str]) -> Qemu {
+    Qemu::start(&image::path("qemu-pil"), arguments, LONG).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Situation: rides with exact and with noisy sensors, with faults, with a rider, one that falls.
@@ -107,8 +107,8 @@ fn a_basin_on_chips_has_the_same_bits() {
     same_basin(&here, &there).unwrap();
 }
 
-fn failure(name: &str, texts: &[&str], limit: Duration) -> String {
-    Qemu::start(&image::path(name), texts, limit).expect_err("it is no board in the loop").to_string()
+fn failure(name: &str, arguments: &[&str], limit: Duration) -> String {
+    Qemu::start(&image::path(name), arguments, limit).expect_err("it is no board in the loop").to_string()
 }
 
 /// Situation: an image that prints text to its standard output; one with a shorter timeout than it needs to start;
