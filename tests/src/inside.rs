@@ -51,7 +51,12 @@ pub fn borders() -> &'static [Border] {
         let mut conditions = Vec::new();
         for rider in RIDERS {
             for axis in AXES {
-                conditions.extend(SPEEDS.map(|speed_m_s| Border { rider, axis, speed_m_s, height_rad_s: 0.0 }));
+                conditions.extend(SPEEDS.map(|speed_m_s| Border {
+                    rider,
+                    axis,
+                    speed_m_s,
+                    height_rad_s: 0.0,
+                }));
             }
         }
         conditions.into_par_iter().map(found).collect()
@@ -64,8 +69,13 @@ fn found(conditions: Border) -> Border {
         Axis::RollRate => (6.0, 0.125),
     };
     let speed = conditions.speed_m_s;
-    let search =
-        Search { speeds: vec![speed], axis: conditions.axis, max_rate, scan_step, tolerance: 0.02 * scan_step };
+    let search = Search {
+        speeds: vec![speed],
+        axis: conditions.axis,
+        max_rate,
+        scan_step,
+        tolerance: 0.02 * scan_step,
+    };
     let column = border(&with(conditions.rider, assisted(H)), &search, speed);
     assert!(!column.capped, "{conditions:?} ends beyond {max_rate} rad/s");
     Border { height_rad_s: column.upper, ..conditions }

@@ -185,8 +185,8 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn target_source(words: &[&str], help: &str) -> Result<TargetSource> {
-    match words {
+fn target_source(arguments: &[&str], help: &str) -> Result<TargetSource> {
+    match arguments {
         [] | ["--target-source", "auto"] => Ok(TargetSource::Auto),
         ["--target-source", "rustup"] => Ok(TargetSource::Rustup),
         ["--target-source", "debian"] => Ok(TargetSource::Debian),
@@ -200,7 +200,7 @@ const EVERYTHING: [&str; 6] =
     ["--workspace", "--exclude", "firmware", "--exclude", "no-panic", "--ignore-rust-version"];
 
 fn test(words: &[&str]) -> Result<()> {
-    let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
+    let split = words.iter().position(|argument| *argument == "--").unwrap_or(words.len());
     let (rest, sample) = match words[..split] {
         [ref rest @ .., "--mutants", count] => (rest, Some(mutants::sample(count)?)),
         ref rest => (rest, None),
@@ -214,7 +214,7 @@ fn test(words: &[&str]) -> Result<()> {
     let arguments = words.get(split + 1..).unwrap_or_default();
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     cargo.current_dir(image::root()).arg("test").env("STEER_ASSIST_REQUIRE_QEMU", "1");
-    if !arguments.iter().any(|word| word.starts_with("-p") || word.starts_with("--package")) {
+    if !arguments.iter().any(|argument| argument.starts_with("-p") || argument.starts_with("--package")) {
         cargo.args(EVERYTHING);
     }
     cargo.args(arguments);
@@ -226,14 +226,14 @@ fn test(words: &[&str]) -> Result<()> {
     sample.map_or(Ok(()), |sample| mutants::mutants(Some(sample), &[]))
 }
 
-fn mutants(words: &[&str]) -> Result<()> {
-    let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
-    let sample = match words[..split] {
+fn mutants(arguments: &[&str]) -> Result<()> {
+    let split = arguments.iter().position(|argument| *argument == "--").unwrap_or(arguments.len());
+    let sample = match arguments[..split] {
         [] => None,
         ["--sample", count] => Some(mutants::sample(count)?),
         _ => return Err(format!("wrong arguments\n\n{MUTANTS_HELP}")),
     };
-    mutants::mutants(sample, words.get(split + 1..).unwrap_or_default())
+    mutants::mutants(sample, arguments.get(split + 1..).unwrap_or_default())
 }
 
 fn build_all() -> Result<()> {

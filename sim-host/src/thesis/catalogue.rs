@@ -23,7 +23,7 @@ pub struct Entry {
 pub enum Made {
     /// Computed.
     Computed {
-        /// What it needs, as text.
+        /// Its requirements, as text.
         needs: &'static str,
         /// The basins it needs.
         cases: fn() -> Vec<Case>,
