@@ -46,7 +46,7 @@ fn main() -> ! {
         |control| control.spawn(defmt::unwrap!(hold().ok())),
         |thread| {
             thread.spawn(defmt::unwrap!(log_and_store(stored).ok()));
-            thread.spawn(defmt::unwrap!(board::watch_drive().ok()));
+            thread.spawn(defmt::unwrap!(board::record_drive_faults().ok()));
         },
     )
 }

@@ -44,13 +44,13 @@ pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitte
     // The recorded bicycle was assembled and checked before the ride.
     config.calibration.polarity_checked = true;
     for (key, value) in &map.parameters {
-        let words = match value {
+        let text = match value {
             toml::Value::String(word) => word.clone(),
             toml::Value::Boolean(on) => if *on { "on" } else { "off" }.into(),
             number => number.to_string(),
         };
-        parameters::set(config, key, &words)
-            .map_err(|error| format!("parameters: {key} = {words}: {error}"))?;
+        parameters::set(config, key, &text)
+            .map_err(|error| format!("parameters: {key} = {text}: {error}"))?;
     }
     Ok(fitted)
 }

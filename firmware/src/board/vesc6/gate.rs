@@ -95,13 +95,13 @@ fn configure(bus: &mut SoftSpi) -> bool {
 
 /// Names of the present faults. The driver must still be enabled: disabling clears the status. Takes 0.3 ms, too long
 /// for the motor interrupt.
-pub(super) fn describe(words: &mut impl Write) -> core::fmt::Result {
+pub(super) fn describe(text: &mut impl Write) -> core::fmt::Result {
     let Some(mut bus) = BUS.lock(Cell::take) else { return Ok(()) };
     let answers = [Register::Status1, Register::Status2].map(|register| read_register(&mut bus, register));
     BUS.lock(|cell| cell.set(Some(bus)));
-    let [Some(one), Some(two)] = answers else { return write!(words, "no answer") };
-    Status(one, two).names().try_for_each(|name| write!(words, "{name}, "))?;
-    write!(words, "status {one:03x} {two:03x}")
+    let [Some(one), Some(two)] = answers else { return write!(text, "no answer") };
+    Status(one, two).names().try_for_each(|name| write!(text, "{name}, "))?;
+    write!(text, "status {one:03x} {two:03x}")
 }
 
 /// Data of a register.

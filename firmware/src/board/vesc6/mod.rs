@@ -7,6 +7,7 @@ mod brown_out;
 mod can;
 mod clock;
 mod critical;
+mod drive_faults;
 mod flash;
 mod gate;
 mod halt;
@@ -22,17 +23,16 @@ pub mod serial;
 mod shared;
 mod soft_spi;
 mod time;
-mod watch;
 mod watchdog;
 mod wheels;
 
 pub use brown_out::raise_level;
 pub use can::broadcast;
+pub use drive_faults::record_drive_faults;
 pub use flash::{Flash, flash};
 pub use reset::{end, log_stored_fault, reset_cause};
 pub use sensors::sense;
 pub use shared::{Report, order, report as motor_report};
-pub use watch::watch_drive;
 pub use watchdog::feed_watchdog;
 
 use crate::failure;
