@@ -14,7 +14,7 @@ fn ridden(plant: Plant) -> Conditions {
     Conditions { time_limit_s: 3.0, ..smart(product(), plant) }
 }
 
-fn traced(fault: Fault) -> Vec<TracePoint> {
+fn trace_of(fault: Fault) -> Vec<TracePoint> {
     traced(&ridden(Plant { faults: vec![fault], ..Plant::default() }), KNOCK).1
 }
 
@@ -49,7 +49,7 @@ fn only_long_periods_are_a_timing_fault() {
         ("clock:scale=6@1s", Some(1.0)),
         ("clock:jump=-0.002@1s", Some(1.0)),
     ] {
-        let trace = traced(fault.parse().unwrap());
+        let trace = trace_of(fault.parse().unwrap());
         let timing = trace.iter().find(|p| control::Causes(p.causes).has(Cause::Timing)).map(|p| p.t);
         let near = match (timing, expected) {
             (Some(at), Some(from)) => (from..from + 0.003).contains(&at),
@@ -69,7 +69,7 @@ fn every_fault_ends_in_its_safe_state_in_time() {
     let mut wrong = Vec::new();
     for reaction @ FaultReaction(fault, cause, mode, within_ms) in FAULT_REACTIONS {
         let from = (1e3 * reaction.fault(None).from_s).round() as usize;
-        let trace = traced(reaction.fault(None));
+        let trace = trace_of(reaction.fault(None));
         let early = trace[..from].iter().find(|p| p.causes != 0);
         if let Some(p) = early {
             wrong.push(format!("{fault}: causes {:?} at {} s, before it", causes(p), p.t));
@@ -102,7 +102,7 @@ fn every_fault_ends_in_its_safe_state_in_time() {
 /// Must hold: the gain is never above that of the true speed by more than the accepted disagreement of the wheels.
 #[test]
 fn a_wrong_speed_never_raises_the_gain_for_long() {
-    let trace = traced("front-wheel:drift=-2/s@300ms".parse().unwrap());
+    let trace = trace_of("front-wheel:drift=-2/s@300ms".parse().unwrap());
     let limp = trace.iter().filter(|p| p.mode == Mode::Limp as u8).count();
     assert!(limp > 500, "{limp}");
     let mut count = 0;

@@ -21,7 +21,7 @@ fn the_limits_can_be_measured() {
     assert!(MOTOR.sensors.trip_a < 0.5 * most_a);
     let most_v = SUPPLY.volt(4095);
     assert!(MOTOR.supply.high_v < most_v && (61.0..63.0).contains(&most_v), "{most_v} V");
-    assert!(BOARD_TEMPERATURE.celsius(3800) > MOTOR.heat.hot_c, "{}", BOARD_TEMPERATURE.celsius(3800));
+    assert!(BOARD_TEMPERATURE.celsius(3800) > MOTOR.temperature.hot_c, "{}", BOARD_TEMPERATURE.celsius(3800));
 }
 
 /// Situation: the largest current that the motor loop permits, 1.3 times its trip (docs/motor.md), through a switch

@@ -22,7 +22,7 @@ fn wrong_parameters_are_named() {
         (|c| c.align.current_a = 11.0, "align.current_a = 11 is outside 0.1 to 10"),
         (|c| c.sensors.trip_a = 11.0, "sensors.trip_a = 11 is outside 12 to 160"),
         (|c| c.supply.sag_v = 16.0, "supply.sag_v = 16 is outside"),
-        (|c| c.heat.hot_c = 80.0, "heat.hot_c = 80 is outside 81 to 160"),
+        (|c| c.temperature.hot_c = 80.0, "heat.hot_c = 80 is outside 81 to 160"),
         (|c| c.encoder.jump_turns = 0.02, "encoder.jump_turns = 0.02 is outside 0.0001 to 0.015625"),
     ];
     for (change, expected) in cases {
