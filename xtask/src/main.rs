@@ -197,8 +197,8 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn target_source(words: &[&str], help: &str) -> Result<TargetSource> {
-    match words {
+fn target_source(arguments: &[&str], help: &str) -> Result<TargetSource> {
+    match arguments {
         [] | ["--target-source", "auto"] => Ok(TargetSource::Auto),
         ["--target-source", "rustup"] => Ok(TargetSource::Rustup),
         ["--target-source", "debian"] => Ok(TargetSource::Debian),
@@ -212,7 +212,7 @@ const EVERYTHING: [&str; 6] =
     ["--workspace", "--exclude", "firmware", "--exclude", "no-panic", "--ignore-rust-version"];
 
 fn test(words: &[&str]) -> Result<()> {
-    let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
+    let split = words.iter().position(|argument| *argument == "--").unwrap_or(words.len());
     let (rest, sample) = match words[..split] {
         [ref rest @ .., "--mutants", count] => (rest, Some(mutants::sample(count)?)),
         ref rest => (rest, None),
@@ -238,14 +238,14 @@ fn test(words: &[&str]) -> Result<()> {
     sample.map_or(Ok(()), |sample| mutants::mutants(Some(sample), &[]))
 }
 
-fn mutants(words: &[&str]) -> Result<()> {
-    let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
-    let sample = match words[..split] {
+fn mutants(arguments: &[&str]) -> Result<()> {
+    let split = arguments.iter().position(|argument| *argument == "--").unwrap_or(arguments.len());
+    let sample = match arguments[..split] {
         [] => None,
         ["--sample", count] => Some(mutants::sample(count)?),
         _ => return Err(format!("wrong arguments\n\n{MUTANTS_HELP}")),
     };
-    mutants::mutants(sample, words.get(split + 1..).unwrap_or_default())
+    mutants::mutants(sample, arguments.get(split + 1..).unwrap_or_default())
 }
 
 fn on_virtual_board(words: &[&str]) -> Result<()> {

@@ -152,7 +152,10 @@ impl ResolvedRider {
                 Outside::Extrapolate => "extrapolate",
                 Outside::Hold => "hold",
             },
-            muscles: ResolvedMuscles { omega_rad_s: rider.muscles.omega_rad_s, zeta: rider.muscles.zeta },
+            muscles: ResolvedMuscles {
+                omega_rad_s: rider.neuromuscular.omega_rad_s,
+                zeta: rider.neuromuscular.zeta,
+            },
             points: rider.schedule.points().iter().map(|(v, k)| ResolvedGains::new(*v, k)).collect(),
         }
     }
