@@ -71,9 +71,10 @@ fn is(stated: f64, within: f64, conditions: &Conditions, speed: f64) -> bool {
     fell == [false, false, false, false, false, false, true]
 }
 
-/// Situation: the smart old rider with what is flashed, and nothing or one thing broken. Action: find how large a blow to the
-/// handlebar he outlasts, as a part of what he outlasts without assist. Must hold: it is what the table says, from a few rides
-/// about it, by default for every sixth fault; every fault of the cards is in the table; below 90 % a reason is stated, above none.
+/// Situation: the smart old rider with the flashed configuration, and one fault or none.
+/// Action: find the largest blow to the handlebar without a fall, as a part of that without assist.
+/// Must hold: it is that of the table, from a few rides about it, by default for every sixth fault; every fault of
+/// the fault tests is in the table; below 90 % a reason is stated, above none.
 #[test]
 fn heights_with_faults_are_as_documented() {
     let rows = rows();

@@ -191,11 +191,11 @@ impl ParamVisitor for Tape {
 
 proptest! {
     /// Situation: any law, and another one.
-    /// Action: show the first to a visitor that writes its parameters down, and the other to one that sets them from that.
+    /// Action: visit the parameters of the first with a visitor that records them, and of the other with one that sets them.
     /// Must hold: the first is unchanged, the other becomes the first; of a table only the kind, since a table keeps its
-    /// points. The checker of ranges accepts a law, as `validate` does.
+    /// points. The range check accepts a law, as `validate` does.
     #[test]
-    fn the_parameters_are_all_there_is_of_a_law_but_a_tables_points(law in any_law(), other in any_law()) {
+    fn the_parameters_define_a_law_except_the_points_of_a_table(law in any_law(), other in any_law()) {
         let (mut from, mut to, mut tape) = (law.clone(), other.clone(), Tape::default());
         from.visit_params(&mut tape);
         prop_assert_eq!(&from, &law);

@@ -61,9 +61,10 @@ fn load(name: &str, cycles_per_instruction: f64) -> Option<[f64; 4]> {
     Some([calls.mean_us(), calls.longest_ns as f64 * 1e-3, control_us, 100.0 * (1.0 - busy)])
 }
 
-/// Situation: the product with its bridge open, and the image that aligns with the bridge closed. Action: measure what the
-/// core's time goes to, at the longest length of an instruction (with `--all` also at the usual one). Must hold: the table of docs/virtual-board.md says the same
-/// within 5 %; the motor's interrupt is always done before the top at which its duty cycles count, 42.6 us later.
+/// Situation: the product with its bridge open, and the image that aligns with the bridge closed.
+/// Action: measure the core's load, at the longest length of an instruction (with `--all` also at the usual one).
+/// Must hold: equal to the table of docs/virtual-board.md within 5 %; the motor's interrupt always ends before the
+/// top at which its duty cycles count, 42.6 us later.
 #[test]
 fn the_load_is_as_documented() {
     let page = std::fs::read_to_string(xtask::image::root().join("docs/virtual-board.md"))

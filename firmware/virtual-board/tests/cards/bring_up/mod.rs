@@ -78,6 +78,6 @@ fn the_board_is_brought_up_as_documented() {
 /// unchanged between the images.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
-fn the_motor_is_brought_up_as_the_page_says() {
+fn the_motor_is_brought_up_as_documented() {
     bring_up(12..=15);
 }
