@@ -167,12 +167,15 @@ fn found(nodes: &[&str], edges: &[(&str, &str)]) -> Found {
     }
 }
 
+/// Found modules, found imports, expected lines.
+type Case<'a> = (&'a [&'a str], &'a [(&'a str, &'a str)], &'a [&'a str]);
+
 /// Situation: a small graph; sources that agree, import more, import less, have another module, or lack one.
 /// Action: compare.
 /// Must hold: agreement gives nothing; each difference one line with its names, an import also with file and line.
 #[test]
 fn every_difference_is_named() {
-    let cases: [(&[&str], &[(&str, &str)], &[&str]); 5] = [
+    let cases: [Case; 5] = [
         (&["high", "low"], &[("high", "low"), ("high", "low")], &[]),
         (&["high", "low"], &[("high", "low"), ("low", "high")], &["src/a.rs:7: low -> high is not declared"]),
         (&["high", "low"], &[], &["small: high -> low is declared and does not occur"]),
