@@ -7,7 +7,7 @@ use sim_host::basin::{Axis, Search, basin};
 use sim_host::ride::{Assist, Conditions, OwnLaw};
 use sim_host::scenario::{AssistKind, Scenario};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let published = Scenario { law: Some("h".into()), assist: AssistKind::Ideal, ..Scenario::default() }
         .resolve()?
         .conditions;

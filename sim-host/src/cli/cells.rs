@@ -3,8 +3,8 @@
 use super::conditions::{named, setup};
 use super::options::Given;
 use crate::basin::Search;
-use crate::scenario::Scenario;
 use crate::scenario::setting::{CONDITIONS, Setting};
+use crate::scenario::{Scenario, Speeds};
 use crate::sweep::{Axis, Cell, Plan, SweepError, check, combination, count, label};
 use std::path::Path;
 
@@ -95,14 +95,19 @@ pub(super) fn resolve(
         let scenario = cell(base, &shared, &roles, &values).map_err(|e| of_cell(&e))?;
         ridden |= scenario.is_ridden();
         let setup = setup(&scenario).map_err(|e| of_cell(&e))?;
-        setups.push((serde_json::to_value(&setup.config)?, setup.conditions));
+        setups.push((serde_json::to_value(&setup.config)?, setup.scenario, setup.conditions));
     }
     let search = base.search.resolve(ridden).map_err(|e| named(&e))?;
-    let configs: Vec<_> = setups.iter().map(|(config, _)| config.clone()).collect();
+    // Without riders in a cell its own default would be other speeds.
+    let speeds = base.search.speeds.clone().unwrap_or_else(|| Speeds::List(search.speeds.clone()));
+    let configs: Vec<_> = setups.iter().map(|(config, ..)| config.clone()).collect();
     let file = file.map(|path| format!("--scenario={}", path.display()));
     let options = file.into_iter().chain(shared.iter().map(Given::typed)).collect();
     let plan = Plan::new(options, axes.to_vec(), &search, &configs);
-    let cell = |(id, (config, conditions)): (&String, _)| Cell { id: id.clone(), config, conditions };
-    let cells = plan.cells.iter().zip(setups).map(cell).collect();
+    let mut cells = Vec::with_capacity(setups.len());
+    for (id, (config, mut scenario, conditions)) in plan.cells.iter().zip(setups) {
+        scenario.search.speeds = Some(speeds.clone());
+        cells.push(Cell { id: id.clone(), config, scenario: serde_json::to_value(&scenario)?, conditions });
+    }
     Ok(Resolved { plan, cells, search })
 }

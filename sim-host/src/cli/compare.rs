@@ -12,7 +12,7 @@ use crate::report::compare::{Case, CompareDocument};
 use crate::report::figure::{self, BasinFigure};
 use crate::report::resolved::ResolvedSearch;
 use crate::report::table;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, SearchChoice, Speeds};
 use control::Law;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -75,6 +75,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let mut scenario = Scenario::default();
     args.search.apply(&mut scenario)?;
     let search = scenario.search.resolve(ridden).map_err(|e| named_option(&e))?;
+    let own_search = SearchChoice { speeds: Some(Speeds::List(search.speeds.clone())), ..scenario.search };
     let resolved = ResolvedSearch::new(&search);
     for (i, one) in requested.iter().enumerate() {
         if let RequestedCase::Done(case, axis) = one
@@ -108,7 +109,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
                 let found =
                     pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
                 let config = json!(setup.config);
-                Case { label, config, basin: found? }
+                let scenario = json!(Scenario { search: own_search.clone(), ..setup.scenario });
+                Case { label, config, scenario, basin: found? }
             }
         };
         complete &= !interrupt::stopped();
@@ -195,7 +197,8 @@ fn read(path: &str) -> Result<(Case, String), Failure> {
     }
     let label =
         std::path::Path::new(path).file_stem().map_or(path.into(), |s| s.to_string_lossy().into_owned());
-    let case = Case { label, config: document["config"].clone(), basin: Basin { columns } };
+    let [config, scenario] = ["config", "scenario"].map(|key| document[key].clone());
+    let case = Case { label, config, scenario, basin: Basin { columns } };
     Ok((case, axis.into()))
 }
 

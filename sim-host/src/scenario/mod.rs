@@ -61,6 +61,32 @@ pub enum AssistKind {
 }
 
 /// An experiment. Absent keys have their defaults, which are the published conditions.
+///
+/// ```
+/// use sim_host::ride::{Outcome, traced};
+/// use sim_host::scenario::Scenario;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let scenario = Scenario::from_toml(
+///     "preset = 'product'
+///      rider = 'smart'
+///      [start]
+///      speed_m_s = 4
+///      steer_rate_rad_s = 3
+///      [plant]
+///      faults = ['gyro:stuck@2s']",
+/// )?;
+/// let resolved = scenario.resolve()?;
+/// let (ride, trace) = traced(&resolved.conditions, scenario.start.unwrap_or_default());
+/// assert!(ride.effort.peak_torque_nm <= 7.0 && trace.len() > 1000);
+/// assert_eq!(Scenario::from_toml(&scenario.to_toml()?)?, scenario);
+///
+/// // Errors name the key, the value and its range.
+/// let wrong = Scenario::from_toml("time_limit_s = 0")?.resolve().unwrap_err();
+/// assert!(wrong.to_string().contains("time limit (s) = 0 is outside"));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Scenario {

@@ -1,5 +1,7 @@
 //! A sweep study as defined in a TOML file.
 
+use crate::parameters::Value;
+use crate::scenario::setting::{CONDITIONS, SEARCH, Setting};
 use crate::sweep::Axis;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -35,7 +37,7 @@ pub struct Part {
     #[serde(default)]
     pub text: String,
     /// Options of `sweep` for all cells, and those of the search.
-    pub options: String,
+    pub options: StudyOptions,
     /// The axes, in the form of `--over`.
     pub over: Vec<String>,
     /// The reference cell: values by key. Axes without an entry define groups, each with its own reference.
@@ -45,6 +47,67 @@ pub struct Part {
     pub unit: String,
     /// The axis along which the area is compared; along an axis of names, every value is compared.
     pub along: String,
+}
+
+/// The options that all cells of a sweep share.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "a table of options, or options as text")]
+pub enum StudyOptions {
+    /// Values by the name of the option; a list for an option that may be repeated.
+    Table(BTreeMap<String, OptionValue>),
+    /// As on the command line.
+    Text(String),
+}
+
+/// The value of an option, or several.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "a number, text, or a list of them")]
+pub enum OptionValue {
+    /// One.
+    One(Value),
+    /// Several.
+    Several(Vec<Value>),
+}
+
+impl StudyOptions {
+    /// The settings and their texts, in the order of the table of settings; `None` for options as text.
+    ///
+    /// # Errors
+    /// An unknown option, or several values of one that can't be repeated.
+    pub fn settings(&self) -> Result<Option<Vec<(&'static Setting, String)>>, String> {
+        let Self::Table(table) = self else { return Ok(None) };
+        let all = || [CONDITIONS, SEARCH].into_iter().flatten();
+        if let Some(name) = table.keys().find(|name| !all().any(|setting| setting.name == **name)) {
+            let names: Vec<_> = all().map(|setting| setting.name).collect();
+            return Err(format!("options: unknown option `{name}`; there are {}", names.join(", ")));
+        }
+        let mut found = Vec::new();
+        for setting in all() {
+            match table.get(setting.name) {
+                None => {}
+                Some(OptionValue::One(value)) => found.push((setting, value.to_string())),
+                Some(OptionValue::Several(_)) if !setting.repeats => {
+                    return Err(format!("options: `{}` can be given once only, not as a list", setting.name));
+                }
+                Some(OptionValue::Several(values)) => {
+                    found.extend(values.iter().map(|value| (setting, value.to_string())));
+                }
+            }
+        }
+        Ok(Some(found))
+    }
+
+    /// As typed on the command line.
+    pub fn typed(&self) -> String {
+        match (self, self.settings()) {
+            (Self::Text(text), _) => text.clone(),
+            (_, Ok(Some(settings))) => {
+                let options = settings.iter().map(|(setting, text)| format!("--{} {text}", setting.name));
+                options.collect::<Vec<_>>().join(" ")
+            }
+            (_, _) => String::new(),
+        }
+    }
 }
 
 /// Why a study cannot be computed.
@@ -76,6 +139,7 @@ impl Part {
     }
 
     fn check(&self) -> Result<(), String> {
+        self.options.settings()?;
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '-';
         if self.name.is_empty() || !self.name.chars().all(plain) {
             return Err("a name is of letters, digits and hyphens".into());
@@ -102,6 +166,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn options_as_a_table_are_typed_in_the_order_of_the_settings() {
+        let part = |options: &str| {
+            let text = format!(
+                "title='t'\nquestion='q'\n[[sweep]]\nname='a'\ntitle='t'\noptions={options}\nover=['law=h,f']\n\
+                 reference={{law='h'}}\nalong='law'\n"
+            );
+            parse("s", &text).unwrap().parts.remove(0).options
+        };
+        let table =
+            part("{ scan-step = 0.5, speeds = '2:7:1', torque-limit = 7, set = ['a.b=on', 'c={d}'] }");
+        assert_eq!(table.typed(), "--torque-limit 7 --set a.b=on --set c={d} --speeds 2:7:1 --scan-step 0.5");
+        let text = part("'--law h --speeds 4'");
+        assert_eq!((text.typed(), text.settings()), ("--law h --speeds 4".into(), Ok(None)));
+    }
+
+    #[test]
     fn errors_in_a_file_are_named() {
         let right = "title='t'\nquestion='q'\n[[sweep]]\nname='a'\ntitle='t'\noptions=''\nover=['law=h,f']\n\
                      reference={law='h'}\nalong='law'\n";
@@ -112,6 +192,9 @@ mod tests {
             ("name='a'", "name='../a'", "name"),
             ("law=h,f", "law=h,h", "twice"),
             ("options=''", "option=''", "option"),
+            ("options=''", "options={lwa='h'}", "`lwa`"),
+            ("options=''", "options={law=['h','f']}", "`law` can be given once"),
+            ("options=''", "options=3", "a table of options"),
         ] {
             let error = parse("s", &right.replace(from, to)).unwrap_err().0;
             assert!(error.starts_with("study s: ") && error.contains(named), "{error}");

@@ -7,6 +7,6 @@ mod part_result;
 mod threshold;
 
 pub use figure::figures;
-pub use file::{Part, Study, StudyError, parse};
+pub use file::{OptionValue, Part, Study, StudyError, StudyOptions, parse};
 pub use page::{Spent, page};
 pub use threshold::{Threshold, threshold};

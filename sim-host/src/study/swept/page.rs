@@ -49,8 +49,12 @@ fn section(study: &Study, part: &Part, grid: &Grid, figures: &str) -> String {
         let _ = writeln!(text, "{}\n", part.text.trim());
     }
     let over: Vec<String> = part.over.iter().map(|axis| format!("--over {axis}")).collect();
-    let _ =
-        writeln!(text, "```sh\nsim-host sweep {} \\\n    {}\n```\n", part.options, over.join(" \\\n    "));
+    let _ = writeln!(
+        text,
+        "```sh\nsim-host sweep {} \\\n    {}\n```\n",
+        part.options.typed(),
+        over.join(" \\\n    ")
+    );
     match PartResult::new(part, grid) {
         None => text += "Not every cell is computed.\n\n",
         Some(result) => match (result.numbers(part), &result.others[..]) {
