@@ -34,6 +34,7 @@ pub(super) fn setup(scenario: &Scenario) -> Result<Setup, Failure> {
 pub(super) fn named(error: &ScenarioError) -> String {
     match error {
         ScenarioError::Value { key, reason } => match setting::of_key(key) {
+            Some(setting) if setting.grammar => format!("--{} {reason}", setting.name),
             Some(setting) => format!("--{}: {reason}", setting.name),
             None => error.to_string(),
         },

@@ -117,13 +117,10 @@ fn arg<S: Settings>(setting: &'static Setting) -> Arg {
         None => arg,
     };
     let arg = if setting.required { arg.required_unless_present("scenario") } else { arg };
-    let arg = match setting.name {
-        "gains" | "delay" | "gains-outside" => {
-            arg.requires_ifs([(clap::builder::ArgPredicate::IsPresent, "rider")])
-        }
-        _ => arg,
-    };
     if !S::CHECKED {
+        return arg.value_parser(ValueParser::string());
+    }
+    if setting.grammar {
         return arg.value_parser(ValueParser::string());
     }
     if setting.words.is_empty() {

@@ -39,7 +39,7 @@ pub(super) struct Args {
 
 /// The checked initial state of a scenario.
 pub(super) fn start(scenario: &Scenario) -> Result<Start, Failure> {
-    let start = scenario.start.filter(|start| !start.speed_m_s.is_nan()).ok_or("--speed must be given")?;
+    let start = scenario.start.ok_or("--speed must be given")?;
     within("--speed (m/s)", start.speed_m_s, -30.0, 30.0)?;
     within("--steer-rate (rad/s)", start.steer_rate_rad_s, -100.0, 100.0)?;
     within("--roll-rate (rad/s)", start.roll_rate_rad_s, -100.0, 100.0)?;

@@ -132,8 +132,9 @@ impl PlantChoice {
         for change in &self.sensors {
             change.apply(&mut sensors, period_s).map_err(|e| ScenarioError::value("plant.sensors", e))?;
         }
-        let actuator =
-            self.actuator.resolve(period_s).map_err(|e| ScenarioError::value("plant.actuator", e))?;
+        let name = self.actuator.model.as_ref().and_then(Content::name).unwrap_or("model");
+        let wrong = |e| ScenarioError::value("plant.actuator", format!("{name}: {e}"));
+        let actuator = self.actuator.resolve(period_s).map_err(wrong)?;
         let plant = Plant { sensors, actuator, faults: self.faults.clone(), seed: self.seed };
         plant.check().map_err(|e| ScenarioError::Conditions(e.to_string()))?;
         Ok(plant)
@@ -186,7 +187,10 @@ impl SensorChange {
         let Some(name) = &self.sensor else {
             let others = Self { model: None, ..self.clone() } != Self::default();
             return match &self.model {
-                Some(model) if !others => apply_file(model, sensors, period_s),
+                Some(model) if !others => {
+                    let name = model.name().unwrap_or("model");
+                    apply_file(model, sensors, period_s).map_err(|e| format!("{name}: {e}"))
+                }
                 _ => Err("a change needs a `sensor`, or a `model` alone".into()),
             };
         };

@@ -29,6 +29,8 @@ pub struct Setting {
     pub repeats: bool,
     /// Whether a value may begin with a hyphen.
     pub hyphen: bool,
+    /// Whether a wrong value is bad input, not wrong usage: values with a grammar of their own.
+    pub grammar: bool,
     /// Changes a scenario; an error states the text and what is expected.
     pub set: fn(&mut Scenario, &str) -> Result<(), String>,
 }
@@ -44,6 +46,7 @@ const PLAIN: Setting = Setting {
     required: false,
     repeats: false,
     hyphen: true,
+    grammar: false,
     set: |_, _| Ok(()),
 };
 
@@ -170,6 +173,7 @@ pub const CONDITIONS: &[Setting] = &[
         value: "MODEL|NAME:KEY=VALUE,...",
         help: "Sensor errors: models of real sensors by name or FILE, several joined by +; or NAME:KEY=VALUE,... for example gyro:noise=0.01,bias=0.02,delay=5ms or front-wheel:model=hall-16; or none; may be repeated",
         repeats: true,
+        grammar: true,
         set: |s, text| text::sensor(&mut s.plant, text),
         ..PLAIN
     },
@@ -179,6 +183,7 @@ pub const CONDITIONS: &[Setting] = &[
         value: "NAME|FILE|KEY=VALUE,...",
         help: "Motor, steer friction and end stop: none, davis, gazelle, a FILE, and KEY=VALUE to change values",
         default: Some("none"),
+        grammar: true,
         set: |s, text| {
             s.plant.actuator = text::actuator(text)?;
             Ok(())
@@ -191,6 +196,7 @@ pub const CONDITIONS: &[Setting] = &[
         value: "CHANNEL:KIND@FROM..TO",
         help: "Inject a fault, for example gyro.x:stuck@1.5s..2s or motor:dead@1s, or none; may be repeated",
         repeats: true,
+        grammar: true,
         set: |s, text| {
             if text != super::content::NONE {
                 s.plant.faults.push(text.parse().map_err(|e: FaultTextError| e.to_string())?);
@@ -231,6 +237,7 @@ pub const CONDITIONS: &[Setting] = &[
         help: "Any parameter of the firmware, for example limits.rise_nm_s=50 or limits.end_stop=on; may be repeated",
         repeats: true,
         hyphen: false,
+        grammar: true,
         set: |s, text| {
             let (key, value) = text::pair(text)?;
             s.parameters.insert(key.into(), Value::from(value));
@@ -306,6 +313,7 @@ const BICYCLE_SET: Setting = Setting {
     help: "Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated",
     repeats: true,
     hyphen: false,
+    grammar: true,
     set: |s, text| {
         let (key, value) = text::pair(text)?;
         s.bicycle_set.insert(key.into(), text::number(value)?);
