@@ -1,13 +1,11 @@
 //! Writes a sweep study's answer as a page of Markdown.
 
 use super::part_result::{Group, PartResult};
+use super::threshold::LEAST;
 use super::{Part, Study, Threshold, threshold};
 use crate::basin::{Bound, Work};
 use crate::sweep::{Axis, Grid};
 use std::fmt::Write;
-
-/// Smallest fraction of the reference's area that counts as sufficient.
-pub(super) const LEAST: f64 = 0.95;
 
 /// Cost of an answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
