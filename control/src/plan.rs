@@ -61,8 +61,8 @@ impl Config {
 }
 
 impl Plan {
-    /// Builds the plan of a validated configuration.
-    pub(crate) fn new(config: Config) -> Self {
+    /// Computes the plan of a validated configuration.
+    fn new(config: Config) -> Self {
         let c = &config;
         Self {
             period_s: 1.0 / c.rate_hz,

@@ -72,8 +72,8 @@ unsafe fn DefaultHandler(interrupt: i16) -> ! {
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
     board::outputs_off();
-    let mut words = String::<FAULT_TEXT_BYTES>::new();
+    let mut text = String::<FAULT_TEXT_BYTES>::new();
     // Longer text is cut.
-    let _ = write!(words, "{info}");
-    crash::end(FaultKind::Panic, Registers::default(), &words)
+    let _ = write!(text, "{info}");
+    crash::end(FaultKind::Panic, Registers::default(), &text)
 }

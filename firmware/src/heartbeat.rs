@@ -40,7 +40,7 @@ impl Task {
         }
     }
 
-    /// Reports that this task is alive, unless the board drops the report (`heartbeat_lost`).
+    /// Reports that this task is running, unless the board drops the report (`heartbeat_lost`).
     pub fn report(self) {
         if !board::heartbeat_lost(self) {
             LAST_MS[self as usize].store(now_ms(), Ordering::Relaxed);

@@ -10,7 +10,7 @@ use link::fault_log::LastStep;
 
 /// Reason for which a board gives no torque, whatever the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
+pub enum DriveError {
     /// The offsets of the current sensors are still being measured.
     NotReady,
     /// The offset of the motor's encoder is unknown.
@@ -25,16 +25,16 @@ pub enum Refusal {
     MotorFault(u8),
 }
 
-impl Refusal {
+impl DriveError {
     /// Text of the reason.
     pub const fn reason(self) -> &'static str {
         match self {
-            Refusal::NotReady => "not ready",
-            Refusal::NotAligned => "not aligned",
-            Refusal::Stale => "command too late",
-            Refusal::GateDriver => "gate driver",
-            Refusal::OutputsOff => "outputs off",
-            Refusal::MotorFault(_) => "motor fault",
+            DriveError::NotReady => "not ready",
+            DriveError::NotAligned => "not aligned",
+            DriveError::Stale => "command too late",
+            DriveError::GateDriver => "gate driver",
+            DriveError::OutputsOff => "outputs off",
+            DriveError::MotorFault(_) => "motor fault",
         }
     }
 }
@@ -59,7 +59,7 @@ pub struct Telemetry {
     /// Torque shown by the polarity check \[N m\].
     pub shown_nm: f32,
     /// Whether the motor accepted the command.
-    pub drive: Result<(), Refusal>,
+    pub drive: Result<(), DriveError>,
 }
 
 impl Telemetry {

@@ -97,7 +97,7 @@ fn control_step_x1000(bencher: Bencher) {
     let mut config = Config::product();
     config.calibration.polarity_checked = true;
     let plan = config.plan().expect("in range");
-    let told = |tick: u32, roll_rate: f32, engage| SensorFrame {
+    let frame_at = |tick: u32, roll_rate: f32, engage| SensorFrame {
         now_us: 1000 * tick,
         gyro_rad_s: Triple::fresh([black_box(roll_rate), 0.0, 0.0]),
         accel_m_s2: Triple::fresh([0.0, roll_rate, -9.81]),
@@ -112,7 +112,7 @@ fn control_step_x1000(bencher: Bencher) {
     let (mut ready, mut ticks, mut pressed) = (control::State::default(), 0, false);
     while ready.authority() < 1.0 {
         pressed |=
-            control::step(&plan, &mut ready, &told(ticks, 0.0, pressed)).mode == control::Mode::Standby;
+            control::step(&plan, &mut ready, &frame_at(ticks, 0.0, pressed)).mode == control::Mode::Standby;
         ticks += 1;
     }
     bencher.bench_local(|| {
@@ -120,7 +120,7 @@ fn control_step_x1000(bencher: Bencher) {
         for i in 0..1000_u16 {
             // Small enough that the drive, which stands still here, is not missed.
             let roll_rate = f32::from(i % 100) * 1e-4;
-            black_box(control::step(&plan, &mut state, &told(ticks + u32::from(i), roll_rate, true)));
+            black_box(control::step(&plan, &mut state, &frame_at(ticks + u32::from(i), roll_rate, true)));
         }
     });
 }

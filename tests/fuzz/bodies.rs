@@ -1,19 +1,20 @@
-//! What must hold for any bytes on a link. The fuzz targets beside this file call it with bytes that look
-//! for trouble, `control/tests/cards/fuzz.rs` with the corpus and drawn ones.
+//! Invariants for arbitrary bytes on a link. The fuzz targets beside this file call them with bytes chosen by the
+//! fuzzer, `control/tests/cards/fuzz.rs` with the corpus and random ones.
 //!
-//! A broken promise is a panic.
+//! A violation panics.
 
 use control::safety::limits::Limits;
 use control::wire::{CONFIG_BYTES, FRAME_BYTES, decode_config, decode_frame, encode_config, encode_frame};
 use control::{Command, Config, Law, ParamError, Plan, Sample, SensorFrame, State, Triple, step};
 
-/// Control periods that a configuration is tried for, the roll rate swinging, once its controller drives.
+/// Number of control periods for which a configuration is run, the roll rate swinging, after its controller has
+/// engaged.
 const TRIED: u32 = 200;
-/// Longest way to full authority that is waited for \[control periods\].
+/// Longest time to full authority that is waited for \[control periods\].
 const TIMEOUT: u32 = 2_000;
 
 /// Frames one after the other, the rest dropped.
-/// Must hold: each comes back from its value in every bit, but for the switch, which is on for 1 alone.
+/// Must hold: each is recovered from its value in every bit, except the switch, which is on for 1 only.
 pub(crate) fn frames(bytes: &[u8]) {
     for record in bytes.as_chunks::<FRAME_BYTES>().0 {
         let mut expected = *record;
@@ -22,19 +23,19 @@ pub(crate) fn frames(bytes: &[u8]) {
     }
 }
 
-/// A configuration record, patched as [`record`] says.
-/// Must hold: refused with a value outside the range that is named; or read, the same from its own
-/// bytes, and then refused in the same way or ridden with, the torque inside its limits.
+/// A configuration record, patched as [`record`] describes.
+/// Must hold: rejected with a value outside the named range; or read, unchanged by encoding and decoding, and then
+/// rejected in the same way or ridden with, the torque inside its limits.
 pub(crate) fn configuration(bytes: &[u8]) {
     let config = match decode_config(&record(bytes)) {
         Ok(config) => config,
-        Err(why) => return refused(&why),
+        Err(error) => return assert_rejected(&error),
     };
     let again = encode_config(&config);
     assert_eq!(decode_config(&again).map(|config| encode_config(&config)), Ok(again));
     let plan = match config.plan() {
         Ok(plan) => plan,
-        Err(why) => return refused(&why),
+        Err(error) => return assert_rejected(&error),
     };
     assert_eq!(encode_config(plan.config()), again);
     let period_us = (1e6 / plan.config().rate_hz) as u32;
@@ -63,8 +64,8 @@ pub(crate) fn ride(bytes: &[u8]) {
     }
 }
 
-/// The product's, the bare law's or no record at all, by the first byte; then patches of six bytes, each a
-/// place (u16, counted round) and four bytes for it. So a patch is about as large as a parameter.
+/// The record of the product, of the bare law or none, by the first byte; then patches of six bytes, each a position
+/// (u16, modulo the size) and four bytes for it. So a patch is about as large as a parameter.
 fn record(bytes: &[u8]) -> [u8; CONFIG_BYTES] {
     let (choice, patches) = bytes.split_first().unwrap_or((&0, &[]));
     let mut record = match choice % 3 {
@@ -86,7 +87,7 @@ fn product() -> Config {
     config
 }
 
-/// Riding straight at 4 m/s, every sensor fresh, the motor as asked.
+/// Riding straight at 4 m/s, every sensor fresh, the motor's torque as requested.
 fn straight(tick: u32, period_us: u32, torque_nm: f32, engage: bool) -> SensorFrame {
     let none = Sample::fresh(0.0);
     SensorFrame {
@@ -105,14 +106,14 @@ fn straight(tick: u32, period_us: u32, torque_nm: f32, engage: bool) -> SensorFr
     }
 }
 
-fn refused(why: &ParamError) {
-    let (leaf, value) = (why.leaf, why.value);
-    assert!(!leaf.name.is_empty() && leaf.min <= leaf.max, "{why}");
-    assert!(!(value >= leaf.min && value <= leaf.max), "{why}");
+fn assert_rejected(error: &ParamError) {
+    let (leaf, value) = (error.leaf, error.value);
+    assert!(!leaf.name.is_empty() && leaf.min <= leaf.max, "{error}");
+    assert!(!(value >= leaf.min && value <= leaf.max), "{error}");
 }
 
-/// One step and its command, and what holds for every one: a finite torque that is zero or inside the largest torque
-/// and, from the one before, inside both rates.
+/// One step and its command, with the invariants of every one: a finite torque that is zero or inside the largest
+/// torque and, from the previous one, inside both rates.
 fn checked(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let before = state.torque_nm();
     let command = step(plan, state, frame);
@@ -125,7 +126,7 @@ fn checked(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     if let (Some(rise), Some(fall)) = (rise_nm_s, fall_nm_s) {
         let change = (f64::from(state.torque_nm()) - f64::from(before)).abs();
         let most = f64::from(rise.max(fall)) / f64::from(plan.config().rate_hz);
-        // With room for the rounding of an addition in f32.
+        // With tolerance for the rounding of an addition in f32.
         let room = f64::from(f32::EPSILON) * f64::from(before.abs() + torque.abs());
         assert!(torque == 0.0 || change <= most * (1.0 + 1e-6) + room, "{change} {command:?}");
     }

@@ -1,4 +1,4 @@
-//! Conditions and searches the flight cards about rides and basins start from.
+//! Conditions and searches shared by the tests of rides and basins.
 
 use crate::rides::shipped;
 use control::{Config, Law};
@@ -6,7 +6,7 @@ use sim_host::basin::{Axis, Search};
 use sim_host::bicycle::Geometry;
 use sim_host::ride::{Assist, Conditions};
 
-/// The thesis bicycle, left alone.
+/// The thesis bicycle without assist.
 pub fn alone() -> Conditions {
     Conditions::thesis(Geometry::new(&shipped("rigid_jason").parameters), Assist::None)
 }
@@ -19,7 +19,7 @@ pub fn assisted(law: Law) -> Conditions {
 /// The thesis bicycle under a configuration of the control crate.
 ///
 /// # Panics
-/// When the configuration is out of range.
+/// If the configuration is out of range.
 pub fn configured(config: Config) -> Conditions {
     let plan = config.plan().unwrap_or_else(|e| panic!("{e}"));
     Conditions { assist: Assist::Firmware(Box::new(plan)), ..alone() }

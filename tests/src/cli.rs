@@ -1,4 +1,4 @@
-//! The simulator's program, run as a user would, in a folder of its own.
+//! The simulator's program, run as by a user, in a folder of its own.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ pub struct Bench {
     folder: TempDir,
 }
 
-/// How a run ended and what it said.
+/// Result of a run.
 #[derive(Debug)]
 pub struct Run {
     /// Exit code; none after a signal.
@@ -23,8 +23,7 @@ pub struct Run {
 }
 
 impl Bench {
-    /// A fresh folder for `program`, which a flight card gets from
-    /// `env!("CARGO_BIN_EXE_sim-host-under-test")`.
+    /// A fresh folder for `program`, which a test gets from `env!("CARGO_BIN_EXE_sim-host-under-test")`.
     pub fn new(program: &'static str) -> Self {
         Self { program, folder: TempDir::new().expect("a temporary folder") }
     }
@@ -39,12 +38,12 @@ impl Bench {
         std::fs::write(self.path(name), content).expect("the folder can be written to");
     }
 
-    /// Reads a file of text.
+    /// Reads a text file.
     pub fn read(&self, name: &str) -> String {
         std::fs::read_to_string(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
-    /// The names of all files, hidden ones too.
+    /// The names of all files, including hidden ones.
     pub fn files(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.folder.path()).expect("the folder is there");
         let mut names: Vec<_> =
@@ -53,7 +52,7 @@ impl Bench {
         names
     }
 
-    /// The program with the words of `line`, in the folder; nothing comes from standard input.
+    /// The program with the arguments of `line`, in the folder; standard input is empty.
     pub fn command(&self, line: &str) -> Command {
         let mut command = Command::new(self.program);
         command
@@ -70,7 +69,7 @@ impl Bench {
         command.output().expect("sh runs").into()
     }
 
-    /// Runs the program with the words of `line`.
+    /// Runs the program with the arguments of `line`.
     pub fn run(&self, line: &str) -> Run {
         self.command(line).output().expect("the program runs").into()
     }
@@ -91,9 +90,8 @@ impl From<Output> for Run {
 }
 
 impl Run {
-    /// Checks that the run was refused, exit code 1, in one paragraph that names every one of
-    /// `named`.
-    pub fn refused_naming(&self, named: &[&str]) {
+    /// Checks that the run was rejected, exit code 1, in one paragraph that names every one of `named`.
+    pub fn rejected_naming(&self, named: &[&str]) {
         assert_eq!(self.code, Some(1), "{self:?}");
         assert_eq!(self.stdout, "");
         let message = self.stderr.strip_prefix("error: ").unwrap_or_else(|| panic!("{self:?}"));
@@ -109,7 +107,7 @@ pub fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace").join(path)
 }
 
-/// A path as one word of a command line, whatever the folder is named.
+/// A path as one argument of a command line, whatever the folder's name.
 pub fn word(path: &Path) -> String {
     let text = path.to_str().expect("a path in UTF-8");
     shlex::try_quote(text).expect("no zero byte in a path").into_owned()

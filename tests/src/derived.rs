@@ -11,11 +11,11 @@ pub struct Derived {
     pub name: String,
     /// M, C1, K0, K2, row by row.
     pub matrices: [[f64; 4]; 4],
-    /// Where the weave pair is born \[m/s\], if the file knows.
+    /// Double-root speed \[m/s\], if the file has it.
     pub v_d: Option<f64>,
-    /// Where weave becomes stable \[m/s\].
+    /// Weave speed \[m/s\].
     pub v_w: f64,
-    /// Where capsize becomes unstable \[m/s\], if it does.
+    /// Capsize speed \[m/s\], if there is one.
     pub v_c: Option<f64>,
     /// Speed \[m/s\] and the four eigenvalues there, (real, imaginary) \[1/s\].
     pub eigenvalues: Vec<(f64, [(f64, f64); 4])>,
@@ -24,7 +24,7 @@ pub struct Derived {
 /// All bicycles of the file.
 ///
 /// # Panics
-/// When the file has another form.
+/// If the file has another form.
 pub fn all() -> Vec<Derived> {
     let file: Table = DERIVED.parse().expect("data/derived_linear.toml is valid TOML");
     let bicycles = file.iter().filter_map(|(name, value)| Some((name, value.as_table()?)));

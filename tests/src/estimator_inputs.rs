@@ -1,4 +1,4 @@
-//! What sensors on the bicycle would feel, by exact differentiation; noise of a stated size.
+//! Exact sensor values on the bicycle, by exact differentiation; noise of a stated size.
 
 use crate::flow::{along, rear_axle_velocity};
 use control::estimate::{EstimatorInput, Place};
@@ -6,7 +6,7 @@ use sim_host::bicycle::{Geometry, State, Torques};
 use sim_host::num::Dual;
 use sim_host::ride::{Conditions, Start, TracePoint, traced};
 
-/// The truth about one instant.
+/// True motion at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Truth {
     /// Roll \[rad\].
@@ -29,7 +29,7 @@ pub struct Truth {
     pub front_speed: f64,
     /// Body rates about x, y, z \[rad/s\].
     pub gyro: [f64; 3],
-    /// Specific force of an accelerometer at the place asked for, along x, y, z \[m/s^2\].
+    /// Specific force of an accelerometer at the given position, along x, y, z \[m/s^2\].
     pub accel: [f64; 3],
 }
 
@@ -39,7 +39,7 @@ fn cross([a, b, c]: Triple, [x, y, z]: Triple) -> Triple {
     [b * z - c * y, c * x - a * z, a * y - b * x]
 }
 
-/// What is true, and felt at `place`, in a state under `torques`.
+/// The true motion, and the specific force at `place`, in a state under `torques`.
 pub fn truth(b: &Geometry, state: &State<f64>, torques: &Torques<f64>, place: &Place) -> Truth {
     let (moving, motion) = along(b, state, torques);
     let constant = |re: f64| Dual { re, eps: 0.0 };
@@ -88,7 +88,7 @@ pub fn truth(b: &Geometry, state: &State<f64>, torques: &Torques<f64>, place: &P
 }
 
 impl Truth {
-    /// As exact sensors tell it after `elapsed_us`.
+    /// Values of exact sensors after `elapsed_us`.
     pub fn estimator_input(&self, elapsed_us: u32) -> EstimatorInput {
         EstimatorInput {
             gyro_rad_s: self.gyro.map(|w| w as f32),
@@ -102,7 +102,7 @@ impl Truth {
 }
 
 impl Truth {
-    /// The instant `now`, with the forces' mean over the period since `before`.
+    /// The instant `now`, with the mean specific force over the period since `before`.
     pub fn between(before: &Self, now: &Self) -> Self {
         let mut accel = now.accel;
         accel.iter_mut().zip(before.accel).for_each(|(a, b)| *a = 0.5 * (*a + b));
@@ -110,7 +110,7 @@ impl Truth {
     }
 }
 
-/// The truth at every control instant of a ride.
+/// The true motion at every control instant of a ride.
 pub fn ridden(conditions: &Conditions, start: Start, place: &Place) -> Vec<Truth> {
     let b = &conditions.bicycle;
     let at = |p: &TracePoint| {
@@ -131,9 +131,9 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// Standard deviations of gyro \[rad/s\], accelerometer \[m/s^2\], steer \[rad\], steer rate
-    /// \[rad/s\] and speed \[m/s\]: what chris-konrad/stochastic-balancing-rider (MIT),
-    /// scripts/config.yaml, takes for the TU Delft sensor bicycle, sampled at 100 Hz.
+    /// Standard deviations of gyro \[rad/s\], accelerometer \[m/s^2\], steer \[rad\], steer rate \[rad/s\] and speed
+    /// \[m/s\]: the values of chris-konrad/stochastic-balancing-rider (MIT), scripts/config.yaml, for the TU Delft
+    /// sensor bicycle, sampled at 100 Hz.
     pub const SIZES: [f32; 5] = [0.054, 0.30, 0.03, 0.05, 0.05];
 
     /// The same noise for the same seed.
@@ -141,7 +141,7 @@ impl Noise {
         Self { random: seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1, tick: 0, held: [0.0; 9] }
     }
 
-    /// A normal deviate, as twelve uniform ones.
+    /// A normal deviate, as a sum of twelve uniform ones.
     fn normal(&mut self) -> f32 {
         let mut sum = -6.0;
         for _ in 0..12 {

@@ -1,5 +1,5 @@
-//! The board's side of the lockstep (docs/pil.md), in this process: what an image in QEMU is held against, and what
-//! stands for it where only the host's side is tried.
+//! The board's side of the lockstep (docs/pil.md), in this process: the reference for an image in QEMU, and its
+//! substitute where only the host's side is tested.
 
 use control::wire::{CONFIG_BYTES, decode_config};
 use control::{Config, Plan, Sample, SensorFrame, State, Triple};
@@ -11,9 +11,9 @@ use sim_host::pil::{BoardError, Lockstep};
 
 /// A board made of the control crate and the link's own messages.
 pub struct FakeBoard {
-    /// At this time the chip is reset, and is back so many milliseconds later.
+    /// Time at which the chip is reset, and after how many milliseconds it is back.
     pub reset_at_ms: Option<(u32, u32)>,
-    /// At this time it is held up for so many milliseconds, and then makes up for every step.
+    /// Time at which it is delayed, and for how many milliseconds; it then makes up for every step.
     pub held_up_at_ms: Option<(u32, u32)>,
     config: Vec<u8>,
     plan: Plan,
@@ -52,7 +52,7 @@ fn plan(config: &Config) -> Result<Plan, Rejection<'static>> {
     config.clone().plan().map_err(Rejection::from)
 }
 
-/// The frame so many control periods after its own.
+/// The frame a number of control periods after its own.
 pub fn aged(frame: &SensorFrame, late: u16) -> SensorFrame {
     let one = |s: Sample| Sample { age_ticks: s.age_ticks.saturating_add(late), ..s };
     let three = |t: Triple| Triple { age_ticks: t.age_ticks.saturating_add(late), ..t };
@@ -73,7 +73,7 @@ pub fn aged(frame: &SensorFrame, late: u16) -> SensorFrame {
 }
 
 impl FakeBoard {
-    /// One control step, and a millisecond gone.
+    /// One control step; a millisecond elapses.
     fn control(&mut self) {
         let frame = match &self.newest {
             Some((number, frame)) => aged(frame, self.step.wrapping_sub(*number)),
@@ -82,12 +82,12 @@ impl FakeBoard {
         let command = control::step(&self.plan, &mut self.controller, &frame);
         let authority = self.controller.authority();
         let of = self.newest.map_or(u16::MAX, |(number, _)| number);
-        self.say(&Message::PilCommand { command, authority }, of);
+        self.send(&Message::PilCommand { command, authority }, of);
         self.step = self.step.wrapping_add(1);
         self.time_ms += 1;
     }
 
-    fn say(&mut self, message: &Message<'_>, sequence: u16) {
+    fn send(&mut self, message: &Message<'_>, sequence: u16) {
         let mut room = [0; MAX_FRAME];
         let used = message.encode(sequence, &mut room).expect("it fits");
         self.motor.extend_from_slice(&room[..used]);
@@ -105,11 +105,11 @@ impl FakeBoard {
                 }
                 Ok(Message::PilReset) => {
                     match self.begin() {
-                        Ok(()) => self.say(&Message::Done, sequence),
-                        Err(refusal) => self.say(&Message::Refused(refusal), sequence),
+                        Ok(()) => self.send(&Message::Done, sequence),
+                        Err(rejection) => self.send(&Message::Rejected(rejection), sequence),
                     };
                 }
-                other => panic!("{other:?} on the sensors' way"),
+                other => panic!("{other:?} in the direction of the board"),
             }
         }
     }
@@ -136,9 +136,9 @@ impl Lockstep for FakeBoard {
     fn exchange(&mut self, to: &ToBoard<'_>) -> Result<(), BoardError> {
         to.encode(&mut [0; MAX_CHUNK]).ok_or(BoardError::TooMuch(to.sensors.len(), to.line.len()))?;
         self.motor.clear();
-        let due = |at: Option<(u32, u32)>, now| at.filter(|(at, _)| *at == now).map(|(_, gone)| gone);
-        if let Some(gone_ms) = due(self.reset_at_ms, self.time_ms) {
-            let (time_ms, starts) = (self.time_ms + gone_ms, self.starts + 1);
+        let due = |at: Option<(u32, u32)>, now| at.filter(|(at, _)| *at == now).map(|(_, duration)| duration);
+        if let Some(absent_ms) = due(self.reset_at_ms, self.time_ms) {
+            let (time_ms, starts) = (self.time_ms + absent_ms, self.starts + 1);
             *self = Self { time_ms, starts, ..Self::default() };
         } else {
             self.take(to.sensors);

@@ -1,10 +1,10 @@
-//! Exact time derivatives: the state as dual numbers that move along the equations of motion.
+//! Exact time derivatives: the state as dual numbers along the equations of motion.
 
 use sim_host::bicycle::{Geometry, Motion, State, Torques};
 use sim_host::integrate::rate;
 use sim_host::num::Dual;
 
-/// The state with its time derivative, and all that follows from it, likewise.
+/// The state with its time derivative, and all quantities that follow from it, likewise.
 pub fn along(b: &Geometry, state: &State<f64>, torques: &Torques<f64>) -> (State<Dual>, Motion<Dual>) {
     let motion = Motion::new(b, state);
     let rate = rate(state, &motion, &motion.accelerations(b, torques));

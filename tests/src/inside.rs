@@ -1,8 +1,8 @@
-//! The basins that the flashed limits and checks are judged by: h alone and with two riders, in the thesis
-//! conditions, up to the speed at which h changes sign.
+//! The basins with which the flashed limits and checks are evaluated: h without a rider and with two riders, in the
+//! thesis conditions, up to the speed at which h changes sign.
 
 use crate::basins::{H, assisted, configured};
-use crate::fault_cards::{product, rider};
+use crate::fault_reactions::{product, rider};
 use control::{Config, Limits, Sensor};
 use rayon::prelude::*;
 use sim_host::basin::{Axis, Search, border};
@@ -10,7 +10,7 @@ use sim_host::plant::Plant;
 use sim_host::ride::{Conditions, Imu, Start};
 use std::sync::OnceLock;
 
-/// Who rides with h: nobody, and two riders.
+/// Riders with h: none, and two riders.
 pub const RIDERS: [Option<&str>; 3] = [None, Some("young"), Some("smart")];
 
 /// The disturbances.
@@ -22,9 +22,9 @@ pub const SPEEDS: [f64; 12] = [2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0, 6.5,
 /// The height of a basin at a speed.
 #[derive(Clone, Copy, Debug)]
 pub struct Border {
-    /// Who rides.
+    /// The rider.
     pub rider: Option<&'static str>,
-    /// What is disturbed.
+    /// The disturbed rate.
     pub axis: Axis,
     /// Forward speed \[m/s\].
     pub speed_m_s: f64,
@@ -33,7 +33,7 @@ pub struct Border {
 }
 
 impl Border {
-    /// The ride from this part of the height.
+    /// The ride from this fraction of the height.
     pub fn start(&self, part: f64) -> Start {
         self.axis.start(self.speed_m_s, part * self.height_rad_s)
     }
@@ -44,34 +44,44 @@ pub fn with(name: Option<&str>, conditions: Conditions) -> Conditions {
     Conditions { rider: name.map(rider), ..conditions }
 }
 
-/// Every border of [`RIDERS`], [`AXES`] and [`SPEEDS`], in this order, found once in a program.
+/// Every border of [`RIDERS`], [`AXES`] and [`SPEEDS`], in this order, computed once in a program.
 pub fn borders() -> &'static [Border] {
     static BORDERS: OnceLock<Vec<Border>> = OnceLock::new();
     BORDERS.get_or_init(|| {
-        let mut wanted = Vec::new();
+        let mut conditions = Vec::new();
         for rider in RIDERS {
             for axis in AXES {
-                wanted.extend(SPEEDS.map(|speed_m_s| Border { rider, axis, speed_m_s, height_rad_s: 0.0 }));
+                conditions.extend(SPEEDS.map(|speed_m_s| Border {
+                    rider,
+                    axis,
+                    speed_m_s,
+                    height_rad_s: 0.0,
+                }));
             }
         }
-        wanted.into_par_iter().map(found).collect()
+        conditions.into_par_iter().map(found).collect()
     })
 }
 
-fn found(wanted: Border) -> Border {
-    let (max_rate, scan_step) = match wanted.axis {
+fn found(conditions: Border) -> Border {
+    let (max_rate, scan_step) = match conditions.axis {
         Axis::SteerRate => (24.0, 0.5),
         Axis::RollRate => (6.0, 0.125),
     };
-    let speed = wanted.speed_m_s;
-    let search =
-        Search { speeds: vec![speed], axis: wanted.axis, max_rate, scan_step, tolerance: 0.02 * scan_step };
-    let column = border(&with(wanted.rider, assisted(H)), &search, speed);
-    assert!(!column.capped, "{wanted:?} ends beyond {max_rate} rad/s");
-    Border { height_rad_s: column.upper, ..wanted }
+    let speed = conditions.speed_m_s;
+    let search = Search {
+        speeds: vec![speed],
+        axis: conditions.axis,
+        max_rate,
+        scan_step,
+        tolerance: 0.02 * scan_step,
+    };
+    let column = border(&with(conditions.rider, assisted(H)), &search, speed);
+    assert!(!column.capped, "{conditions:?} ends beyond {max_rate} rad/s");
+    Border { height_rad_s: column.upper, ..conditions }
 }
 
-/// The product under h as published, without a limit or a check; boot, self-test and ramps as they are.
+/// The product under h as published, without limits and checks; boot, self-test and ramps unchanged.
 pub fn unchecked() -> Config {
     let mut config = Config { law: H, limits: Limits::default(), ..product() };
     let input = &mut config.input;

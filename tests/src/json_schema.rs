@@ -1,12 +1,12 @@
-//! As much of JSON Schema (draft 2020-12) as the committed schemas use, and stricter: an unknown key
-//! in a document and an unknown keyword in a schema are violations too.
+//! The part of JSON Schema (draft 2020-12) that the committed schemas use, and stricter: an unknown key in a document
+//! and an unknown keyword in a schema are violations too.
 
 use serde_json::Value;
 
-/// Keywords that say nothing about which documents fit.
+/// Keywords that do not affect which documents are valid.
 const REMARKS: [&str; 6] = ["$schema", "$defs", "title", "description", "format", "default"];
 
-/// Where and how `document` does not fit `schema`; empty if it does.
+/// Places and kinds of the violations of `schema` by `document`; empty if it is valid.
 pub fn violations(schema: &Value, document: &Value) -> Vec<String> {
     let mut found = Vec::new();
     check(schema, schema, document, "$", &mut found);

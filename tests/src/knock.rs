@@ -1,15 +1,15 @@
-//! Recordings of a gyro after a knock, made by the linear model: the weave in them is known.
+//! Recordings of a gyro after a knock, computed with the linear model, so that their weave mode is known.
 
 use nalgebra::{Complex, DVector};
 use sim_host::bicycle::Parameters;
 use sim_host::eigen::{Feedback, LinearActuator, Model, roots};
 use sim_host::weave::record::{Axis, Record};
 
-/// Numbers that look random, the same in every run (SplitMix64).
+/// Pseudo-random numbers, the same in every run (SplitMix64).
 #[derive(Clone, Copy, Debug)]
-pub struct Dice(pub u64);
+pub struct SplitMix64(pub u64);
 
-impl Dice {
+impl SplitMix64 {
     /// From 0 to 1, both excluded.
     pub fn even(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
@@ -39,20 +39,20 @@ pub struct Knocked {
     pub speed_m_s: f64,
 }
 
-/// How a recording is made.
+/// Properties of a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct Recording {
-    /// Still before the push \[s\].
+    /// Rest before the push \[s\].
     pub before_s: f64,
-    /// How long the push lasts \[s\].
+    /// Duration of the push \[s\].
     pub push_s: f64,
-    /// How long it goes on after the push \[s\].
+    /// Duration after the push \[s\].
     pub after_s: f64,
     /// Samples per second.
     pub rate_hz: f64,
-    /// Standard deviation of the noise, one half of its variance white, the other with a memory \[rad/s\].
+    /// Standard deviation of the noise, one half of its variance white, the other correlated in time \[rad/s\].
     pub noise_rad_s: f64,
-    /// That memory \[s\].
+    /// Correlation time \[s\].
     pub memory_s: f64,
 }
 
@@ -68,9 +68,9 @@ impl Knocked {
         model.with_actuator(self.actuator).expect("in range")
     }
 
-    /// Pushes it and records roll and yaw rate; stamps jitter by a hundredth of their distance. The roll rate is 0.7 rad/s at
-    /// the end of the push.
-    pub fn record(&self, how: &Recording, dice: &mut Dice) -> Record {
+    /// Pushes it and records roll and yaw rate; time stamps jitter by a hundredth of their distance. The roll rate is
+    /// 0.7 rad/s at the end of the push.
+    pub fn record(&self, how: &Recording, random: &mut SplitMix64) -> Record {
         let system = self.model().at(self.speed_m_s);
         assert!(system.delay_s == 0.0, "no delay");
         let a = system.undelayed();
@@ -78,8 +78,8 @@ impl Knocked {
         let step_s = 1.0 / (how.rate_hz * FINE as f64);
         let whole = (&a * step_s).exp();
         let mut pushed = DVector::zeros(a.nrows());
-        // Roll and, by how the push is held, some steer.
-        (pushed[2], pushed[3]) = (1.0, dice.normal());
+        // Roll and, depending on the push, some steer.
+        (pushed[2], pushed[3]) = (1.0, random.normal());
         let all = ((how.before_s + how.push_s + how.after_s) * how.rate_hz) as usize;
         let end = ((how.before_s + how.push_s) * how.rate_hz) as usize;
         let (mut state, mut clean) = (DVector::zeros(a.nrows()), Vec::new());
@@ -96,32 +96,33 @@ impl Knocked {
             state = &whole * state;
         }
         let scale = 0.7 / clean[end][0].abs();
-        let mut noise = [0; 2].map(|_| self.noise(how, all, dice));
+        let mut noise = [0; 2].map(|_| self.noise(how, all, random));
         for (i, sample) in clean.iter().enumerate() {
             (0..2).for_each(|axis| noise[axis][i] += scale * sample[axis]);
         }
         let times_s: Vec<f64> = (0..all).map(|i| i as f64 / how.rate_hz).collect();
         let jitter = 0.01 / how.rate_hz;
-        let times_s =
-            times_s.iter().map(|t| t + if *t > 0.0 { jitter * dice.normal().clamp(-3.0, 3.0) } else { 0.0 });
+        let times_s = times_s
+            .iter()
+            .map(|t| t + if *t > 0.0 { jitter * random.normal().clamp(-3.0, 3.0) } else { 0.0 });
         let axes = ["gyro_x", "gyro_z"].into_iter().zip(noise);
         let axes = axes.map(|(column, rates_rad_s)| Axis { column: column.into(), rates_rad_s });
         Record { times_s: times_s.collect(), axes: axes.collect(), notes: Vec::new() }
     }
 
-    fn noise(&self, how: &Recording, samples: usize, dice: &mut Dice) -> Vec<f64> {
+    fn noise(&self, how: &Recording, samples: usize, random: &mut SplitMix64) -> Vec<f64> {
         let each = how.noise_rad_s / 2.0_f64.sqrt();
-        let kept = (-1.0 / (how.rate_hz * how.memory_s)).exp();
-        let mut slow = dice.normal();
+        let decay = (-1.0 / (how.rate_hz * how.memory_s)).exp();
+        let mut slow = random.normal();
         let next = |_| {
-            slow = kept * slow + (1.0 - kept * kept).sqrt() * dice.normal();
-            each * (slow + dice.normal())
+            slow = decay * slow + (1.0 - decay * decay).sqrt() * random.normal();
+            each * (slow + random.normal())
         };
         (0..samples).map(next).collect()
     }
 }
 
-/// The record as a CSV file, its stamps as dates with a time.
+/// The record as a CSV file, its time stamps as dates with a time.
 pub fn csv(record: &Record) -> String {
     let mut text = String::from("Time,gyro_accuracy,gyro_z,gyro_x\n");
     for (i, t) in record.times_s.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Rides with late sensors and a slow actuator, and a controller that may make up for both.
+//! Rides with late sensors and a slow actuator, and a controller that can compensate for both.
 
 use crate::estimator_inputs::{Noise, Truth, truth};
 use crate::model::{LinearBicycle, Model, OnTheWay};
@@ -12,53 +12,53 @@ use sim_host::rider::{DelayLine, Instant, Rider, RiderState};
 use std::collections::VecDeque;
 use std::f64::consts::FRAC_PI_2;
 
-/// The step, and the control period \[s\].
+/// The time step, and the control period \[s\].
 const STEP_S: f64 = 1e-3;
 /// The same \[us\].
 const STEP_US: u32 = 1000;
-/// How long the estimator rides along before the disturbance \[steps\].
+/// Duration for which the estimator runs before the disturbance \[steps\].
 const BEFORE: usize = 1000;
 
-/// How the controller makes up for the delay.
+/// Compensation of the delay in the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PredictedMotion {
     /// Not at all.
     Off,
-    /// By the roll acceleration, as flashed, this far \[s\].
+    /// By extrapolation with the roll acceleration, as flashed, over this time \[s\].
     Lead(f64),
-    /// By a linear bicycle, this far \[s\].
+    /// By a linear bicycle, over this time \[s\].
     Model(LinearBicycle, f64),
 }
 
-/// What all rides of a comparison share.
+/// Common conditions of the rides of a comparison.
 #[derive(Clone, Debug)]
 pub struct Late<'a> {
     /// The bicycle.
     pub bicycle: &'a Geometry,
-    /// Who rides.
+    /// The rider.
     pub rider: Option<&'a Rider>,
     /// The law; its gain by the front wheel's speed, as published.
     pub law: &'a Law,
-    /// How late every sensor is \[ms\].
+    /// Delay of every sensor \[ms\].
     pub sensors_ms: usize,
     /// Time constant of the actuator \[s\].
     pub actuator_s: f64,
-    /// What the controller knows of the bicycle's attitude.
+    /// The controller's estimator of the attitude.
     pub estimate: EstimateConfig,
-    /// How it makes up for the delay.
+    /// Compensation of the delay.
     pub ahead: PredictedMotion,
     /// The noise of the sensors, by its seed.
     pub noise: Option<u64>,
-    /// How long a ride lasts \[s\].
+    /// Duration of a ride \[s\].
     pub seconds: f64,
 }
 
-/// How a ride went.
+/// Result of a ride.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ridden {
     /// Roll or steer reached 90 degrees.
     pub fell: bool,
-    /// Root mean square of the torque asked for \[N m\].
+    /// Root mean square of the requested torque \[N m\].
     pub rms_nm: f64,
     /// Root mean square of its change from one control period to the next, by time \[N m/s\].
     pub rms_nm_s: f64,
@@ -78,15 +78,15 @@ impl Late<'_> {
         for i in 0..steps {
             let torques = Torques { roll: 0.0, steer: push.assist_nm + push.body.end.torque };
             let now = truth(b, &state, &torques, &self.estimate.imu);
-            let wanted = controller.step(self, &Truth::between(&before, &now));
-            squares += wanted * wanted;
-            changes += ((wanted - last) / STEP_S).powi(2);
-            last = wanted;
+            let expected = controller.step(self, &Truth::between(&before, &now));
+            squares += expected * expected;
+            changes += ((expected - last) / STEP_S).powi(2);
+            last = expected;
             let share = if self.actuator_s > 0.0 { 1.0 - (-STEP_S / self.actuator_s).exp() } else { 1.0 };
-            push.assist_nm += share * (wanted - push.assist_nm);
+            push.assist_nm += share * (expected - push.assist_nm);
             push.body = Stages::new(push.body.end);
             state = rk4(b, &state, STEP_S, &mut push);
-            // Not below, so that a state that is no number falls too.
+            // The negation also counts a NaN state as a fall.
             if !(state.roll.abs() < FRAC_PI_2 && state.steer.abs() < FRAC_PI_2) {
                 let n = (i + 1) as f64;
                 return Ridden { fell: true, rms_nm: (squares / n).sqrt(), rms_nm_s: (changes / n).sqrt() };
@@ -135,7 +135,7 @@ impl Controller {
             &Torques { roll: 0.0, steer: 0.0 },
             &late.estimate.imu,
         );
-        let told = (steady.estimator_input(STEP_US), steady.front_speed as f32);
+        let first = (steady.estimator_input(STEP_US), steady.front_speed as f32);
         let mut controller = Self {
             estimator: EstimateState::default(),
             lead: PredictConfig {
@@ -150,7 +150,7 @@ impl Controller {
             },
             torques: OnTheWay::default(),
             noise: late.noise.map(Noise::new),
-            arriving: vec![told; late.sensors_ms].into(),
+            arriving: vec![first; late.sensors_ms].into(),
         };
         for _ in 0..BEFORE {
             let _ = controller.step(late, &steady);
@@ -159,7 +159,7 @@ impl Controller {
         controller
     }
 
-    /// The torque wanted \[N m\].
+    /// The requested torque \[N m\].
     fn step(&mut self, late: &Late<'_>, now: &Truth) -> f64 {
         let mut input = now.estimator_input(STEP_US);
         if let Some(noise) = &mut self.noise {
@@ -180,7 +180,7 @@ impl Controller {
     }
 }
 
-/// What acts on the handlebar.
+/// The torques on the handlebar.
 struct Push<'a> {
     rider: Option<&'a Rider>,
     delay_line: Option<DelayLine>,
@@ -222,7 +222,7 @@ impl Actuation<f64> for Push<'_> {
             delay_line.push(rider.schedule.at(speed).signal(&body.signals(&now)));
             self.arriving = delay_line.arriving();
         }
-        let k = body.rate(b, &now, &rider.muscles, self.arriving[(2.0 * STAGES[stage]) as usize]);
+        let k = body.rate(b, &now, &rider.neuromuscular, self.arriving[(2.0 * STAGES[stage]) as usize]);
         self.body.next(stage, STEP_S, &k);
     }
 }

@@ -1,13 +1,14 @@
-//! What the flight cards in `tests/tests/` share; the cards themselves are the tests.
+//! Code shared by the tests in `tests/tests/`.
 
 pub mod basins;
 
 pub mod cli;
 pub mod derived;
+pub mod detection;
 pub mod draws;
 pub mod estimator_inputs;
 pub mod fake_board;
-pub mod fault_cards;
+pub mod fault_reactions;
 pub mod flow;
 pub mod inside;
 pub mod json_schema;
@@ -17,7 +18,6 @@ pub mod linearised;
 pub mod link_board;
 pub mod model;
 pub mod newton_euler;
-pub mod noticed;
 pub mod pil;
 #[cfg(unix)]
 pub mod pty;

@@ -1,4 +1,4 @@
-//! The simulator's nonlinear equations linearised at the upright ride, exactly, by dual numbers.
+//! The simulator's nonlinear equations linearised at upright riding, exactly, by dual numbers.
 
 use nalgebra::Matrix2;
 use sim_host::bicycle::{Geometry, Motion, State, Torques};
@@ -13,15 +13,15 @@ pub struct Linearised {
     pub damping: Matrix2<f64>,
     /// Stiffness: `g K0 + v^2 K2`.
     pub stiffness: Matrix2<f64>,
-    /// Derivatives of the rear wheel's acceleration by roll, steer, their rates and torques: zero,
-    /// for a mirrored deviation must do the same to the speed.
+    /// Derivatives of the rear wheel's acceleration by roll, steer, their rates and torques: zero, as a mirrored
+    /// deviation must have the same effect on the speed.
     pub speed: [f64; 6],
 }
 
 /// Linearises at forward speed `v` \[m/s\].
 ///
 /// # Panics
-/// When the mass matrix is singular.
+/// If the mass matrix is singular.
 pub fn linearise(b: &Geometry, v: f64) -> Linearised {
     let constant = |re| Dual { re, eps: 0.0 };
     let column = |input: usize| {

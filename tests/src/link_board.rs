@@ -1,4 +1,4 @@
-//! A board made of the `link` crate alone, and a line to it that may do anything to what goes over it.
+//! A board made of the `link` crate alone, and a transport to it that can lose, change and delay bytes.
 
 use control::{ActiveLimits, CAUSES, Causes, Command, Config, Mode, SensorFrame, Triple};
 use link::frame::{CRC, Frame, MAX_FRAME, MAX_PAYLOAD};
@@ -18,19 +18,19 @@ use std::time::Duration;
 pub struct LinkBoard {
     /// The configuration in force.
     pub config: Config,
-    /// What is in its flash.
+    /// Configuration in its flash.
     pub stored: Option<Config>,
     /// Whether torque may flow.
     pub engaged: bool,
-    /// The faults it kept, the newest first.
+    /// Its stored faults, newest first.
     pub faults: Vec<FaultRecord<'static>>,
-    /// The version of the link that it speaks; another than this one's makes it mute but for that.
+    /// Its protocol version; with another than this crate's it answers only with its version.
     pub version: u8,
-    /// Requests that reached it whole.
+    /// Number of complete requests received.
     pub requests: u32,
-    /// What it is receiving.
+    /// Decoder of the received bytes.
     pub decoder: Decoder,
-    /// The number of what it says unasked next.
+    /// Sequence number of its next unsolicited message.
     pub sequence: u16,
 }
 
@@ -50,18 +50,18 @@ impl Default for LinkBoard {
 }
 
 impl LinkBoard {
-    /// Takes what came over the line; what goes back.
+    /// Processes received bytes; returns the answers.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
         for byte in bytes {
             let Some(received) = self.decoder.feed(*byte) else { continue };
             // The answer borrows the received bytes, and `reply` needs the whole board.
-            let kept = match &received {
+            let complete = match &received {
                 Received::Frame(frame) => (frame.kind, frame.sequence, frame.payload.to_vec()),
                 Received::WrongVersion { .. } => continue,
             };
             self.requests += 1;
-            out.extend(self.reply(kept.0, kept.1, &kept.2));
+            out.extend(self.reply(complete.0, complete.1, &complete.2));
         }
         out
     }
@@ -100,13 +100,13 @@ impl LinkBoard {
                 self.faults.clear();
                 Message::Done
             }
-            _ => Message::Refused(Rejection::of(RejectReason::NotHere)),
+            _ => Message::Rejected(Rejection::of(RejectReason::NotHere)),
         };
         encoded(&answer, sequence)
     }
 
-    /// Something it says unasked, under the next number.
-    pub fn tell(&mut self, message: &Message<'_>) -> Vec<u8> {
+    /// An unsolicited message, under the next number.
+    pub fn unsolicited(&mut self, message: &Message<'_>) -> Vec<u8> {
         let bytes = encoded(message, self.sequence);
         self.sequence = self.sequence.wrapping_add(1);
         bytes
@@ -120,7 +120,7 @@ pub fn encoded(message: &Message<'_>, sequence: u16) -> Vec<u8> {
     bytes[..used].to_vec()
 }
 
-/// A whole frame of another version.
+/// A complete frame of another version.
 fn other_version(version: u8) -> Vec<u8> {
     let mut plain = vec![version, 0x87, 0, 0, link::frame::VERSION];
     plain.extend(CRC.checksum(&plain).to_le_bytes());
@@ -186,33 +186,33 @@ pub fn faults() -> Vec<FaultRecord<'static>> {
     ]
 }
 
-/// A board that several hold.
+/// A board with several owners.
 pub type Shared = Arc<Mutex<LinkBoard>>;
 
-/// A board to be shared.
+/// A shared board.
 pub fn shared(board: LinkBoard) -> Shared {
     Arc::new(Mutex::new(board))
 }
 
-/// The board, also after another thread died with it.
+/// The board, also after another thread has panicked.
 pub fn lock(board: &Shared) -> MutexGuard<'_, LinkBoard> {
     board.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What happens to some bytes on their way.
+/// Effect of the channel on some bytes.
 pub type Fate = Box<dyn FnMut(Vec<u8>) -> LinkChannel + Send>;
 
-/// What becomes of bytes.
+/// Result of a transfer.
 pub enum LinkChannel {
-    /// They arrive, perhaps changed.
+    /// They arrive, possibly changed.
     Arrives(Vec<u8>),
     /// They arrive after the next ones were sent.
     Late(Vec<u8>),
-    /// The line is gone from now on.
+    /// The connection is lost from now on.
     Lost,
 }
 
-/// A line in this process.
+/// A connection in this process.
 pub struct Wire {
     board: Shared,
     to_board: Fate,
@@ -223,7 +223,7 @@ pub struct Wire {
 }
 
 impl Wire {
-    /// To `board`, with what happens on the way there and back.
+    /// To `board`, with the channel's effects in both directions.
     pub fn new(board: &Shared, to_board: Fate, from_board: Fate) -> Self {
         Self {
             board: board.clone(),
@@ -235,14 +235,14 @@ impl Wire {
         }
     }
 
-    /// On which everything arrives.
+    /// A connection on which everything arrives.
     pub fn good(board: &Shared) -> Self {
         Self::new(board, Box::new(LinkChannel::Arrives), Box::new(LinkChannel::Arrives))
     }
 
     fn check(&self) -> Result<(), TransportError> {
-        let why = || io::ErrorKind::BrokenPipe.into();
-        if self.lost { Err(TransportError::Lost { line: "wire".into(), error: why() }) } else { Ok(()) }
+        let error = || io::ErrorKind::BrokenPipe.into();
+        if self.lost { Err(TransportError::Lost { line: "wire".into(), error: error() }) } else { Ok(()) }
     }
 }
 
@@ -270,7 +270,7 @@ impl Transport for Wire {
         let bytes = std::mem::take(&mut self.waiting);
         if bytes.is_empty() {
             self.check()?;
-            // Nothing comes before something is sent.
+            // Nothing arrives before something is sent.
             std::thread::sleep(timeout);
         }
         Ok(bytes)

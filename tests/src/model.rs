@@ -1,6 +1,6 @@
-//! A predictor that is not flashed: the linear bicycle (Meijaard et al. 2007) takes the state as it was,
-//! and the torques that have been commanded since, over the whole delay. The transition depends on the
-//! speed alone and is tabulated. In f32, as it would be on the chip; compared in `docs/delay.md`.
+//! A predictor that is not flashed: the linear bicycle (Meijaard et al. 2007) propagates the delayed state, with the
+//! torques commanded since, over the whole delay. The transition depends on the speed alone and is tabulated. In f32,
+//! as on the chip; compared in `docs/delay.md`.
 
 use control::estimate::Motion;
 use control::maths::bounded;
@@ -22,7 +22,7 @@ pub struct LinearBicycle {
 }
 
 impl LinearBicycle {
-    /// Of a bicycle's parameters.
+    /// From a bicycle's parameters.
     pub fn new(p: &Parameters) -> Self {
         let linear = Linear::new(p);
         // The state matrix is linear in v and in v squared.
@@ -68,17 +68,17 @@ impl LinearBicycle {
     }
 }
 
-/// Speeds in the table, and how far they are apart.
+/// Speeds in the table, and their distance.
 const SPEEDS: usize = 21;
 const SPEED_STEP_M_S: f32 = 0.5;
 /// Parts of the delay over each of which the torque counts with its mean.
 const BLOCKS: usize = 4;
 /// Runge-Kutta steps to a block.
 const STEPS: usize = 4;
-/// Numbers to a row: by roll, steer, their rates; by the torques, oldest block first.
+/// Numbers in a row: by roll, steer, their rates; by the torques, oldest block first.
 const WEIGHTS: usize = 4 + BLOCKS;
 
-/// Roll and roll rate after the delay, by what there was before it.
+/// Roll and roll rate after the delay, from the state before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Transition {
     roll: [f32; WEIGHTS],
@@ -112,7 +112,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// Of a bicycle, for a delay and a control period \[s\].
+    /// For a bicycle, a delay and a control period \[s\].
     pub fn new(b: &LinearBicycle, delay_s: f32, period_s: f32) -> Self {
         let table = std::array::from_fn(|i| Transition::new(b, i as f32 * SPEED_STEP_M_S, delay_s));
         let ticks = (delay_s / period_s / BLOCKS as f32).round() as u16;
@@ -120,18 +120,18 @@ impl Model {
     }
 }
 
-/// The torques that are on their way.
+/// The torques within the delay.
 #[derive(Clone, Debug, Default)]
 pub struct OnTheWay {
-    /// Means of the last whole blocks, newest first \[N m\].
+    /// Means of the last complete blocks, newest first \[N m\].
     means_nm: [f32; BLOCKS],
-    /// The block under way.
+    /// Sum of the incomplete block.
     sum_nm: f32,
     ticks: u16,
 }
 
 impl OnTheWay {
-    /// Takes in the torque that was commanded in this period, after every limit \[N m\].
+    /// Adds the torque that was commanded in this period, after every limit \[N m\].
     pub fn commanded(&mut self, model: &Model, torque_nm: f32) {
         self.sum_nm += bounded(torque_nm, 1e3);
         self.ticks = self.ticks.saturating_add(1);
@@ -142,8 +142,8 @@ impl OnTheWay {
         }
     }
 
-    /// Mean torques over the parts of the delay that end now, oldest first: a block that lies across
-    /// two of those kept counts them by its shares.
+    /// Mean torques over the parts of the delay that end now, oldest first: a block across two of the stored ones is
+    /// weighted by its shares.
     fn blocks(&self, model: &Model) -> [f32; BLOCKS] {
         let part = f32::from(self.ticks) / f32::from(model.block_ticks);
         let [a, b, c, d] = self.means_nm;
@@ -154,7 +154,7 @@ impl OnTheWay {
 }
 
 impl Model {
-    /// The motion with roll and roll rate as they will be when the torque acts.
+    /// The motion with the predicted roll and roll rate at the instant at which the torque acts.
     pub fn ahead(&self, torques: &OnTheWay, now: &Motion) -> Motion {
         let [r, d, rd, dd] = [now.roll_rad, now.steer_rad, now.roll_rate_rad_s, now.steer_rate_rad_s];
         let [t1, t2, t3, t4] = torques.blocks(self);

@@ -1,4 +1,4 @@
-//! Rides for the flight cards about a board in the loop.
+//! Rides for the tests with a board in the loop.
 
 use crate::basins::{H, assisted, configured};
 use control::wire::{encode_command, encode_frame};
@@ -10,12 +10,12 @@ use sim_host::plant::{Plant, Sensor};
 use sim_host::ride::{Conditions, RemoteError, Ride, Start, Stepped, TracePoint, traced_on};
 use sim_host::rider::{Fit, Outside, catalogue};
 
-/// A knock at the handlebar that the assist recovers from.
+/// A knock from which the assist recovers.
 pub const KNOCK: Start = Start { speed_m_s: 4.0, steer_rate_rad_s: 5.0, roll_rate_rad_s: 0.0 };
-/// One that it does not.
+/// One from which it does not.
 pub const FALL: Start = Start { speed_m_s: 2.0, steer_rate_rad_s: 25.0, roll_rate_rad_s: 0.0 };
 
-/// The flashed configuration on the thesis bicycle, every sensor there.
+/// The flashed configuration on the thesis bicycle, every sensor fitted.
 pub fn product() -> Conditions {
     let mut config = Config::product();
     config.calibration.polarity_checked = true;
@@ -24,11 +24,11 @@ pub fn product() -> Conditions {
     Conditions { time_limit_s: 2.0, ..configured(config) }
 }
 
-/// Rides that use all of the loop: the published law with exact sensors and a fall under it, the flashed configuration with
-/// all of its sensors, noise and a fault, and a delayed rider beside it.
+/// Rides that use all of the loop: the published law with exact sensors and a fall under it, the flashed
+/// configuration with all of its sensors, noise and a fault, and a delayed rider beside it.
 ///
 /// # Panics
-/// When a shipped rider does not load.
+/// If a shipped rider does not load.
 pub fn varied() -> Vec<(&'static str, Conditions, Start)> {
     let law = Conditions { time_limit_s: 2.0, ..assisted(H) };
     let mut noisy = product();
@@ -52,7 +52,7 @@ pub fn varied() -> Vec<(&'static str, Conditions, Start)> {
     ]
 }
 
-/// What a ride on a board left behind.
+/// Record of a ride on a board.
 #[derive(Clone, Debug)]
 pub struct Ridden {
     /// The ride.
@@ -91,7 +91,7 @@ pub fn ridden<B: Lockstep>(
 /// Faults of the link from their text.
 ///
 /// # Panics
-/// When one is not a fault.
+/// If one is not a fault.
 pub fn link_faults(texts: &[&str]) -> Vec<LinkFault> {
-    texts.iter().map(|text| text.parse().unwrap_or_else(|why| panic!("{why}"))).collect()
+    texts.iter().map(|text| text.parse().unwrap_or_else(|error| panic!("{error}"))).collect()
 }

@@ -10,41 +10,41 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{JoinHandle, spawn};
 
-/// Between two looks at the line, where nothing comes in: 4 ms.
+/// Polling period of the line while it is idle: 4 ms.
 const LOOK: Timespec = Timespec { tv_sec: 0, tv_nsec: 4_000_000 };
 
-/// A board at a pseudo terminal, as long as this lives.
+/// A board at a pseudo terminal, while this value exists.
 pub struct Port {
     /// The device's name.
     pub name: String,
-    gone: Arc<AtomicBool>,
+    unplugged: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
-    /// Kept, so that the terminal stays when a program closes it.
+    /// Open, so that the terminal stays when a program closes it.
     _device: File,
 }
 
 impl Port {
-    /// Answers as `board` does. After every look at the line `also` says what else goes out, or with `None` that the
-    /// board is pulled out.
+    /// Answers like `board`. After every poll of the line `also` gives further bytes to send, or `None` if the board
+    /// is unplugged.
     pub fn new(board: &Shared, mut also: impl FnMut(&Shared) -> Option<Vec<u8>> + Send + 'static) -> Self {
         let (mut end, name, device) = open().expect("a pseudo terminal");
-        let (gone, board) = (Arc::new(AtomicBool::new(false)), board.clone());
+        let (unplugged, board) = (Arc::new(AtomicBool::new(false)), board.clone());
         let thread = spawn({
-            let gone = gone.clone();
+            let unplugged = unplugged.clone();
             move || {
                 let mut bytes = [0; 4096];
-                while !gone.load(Ordering::SeqCst) {
+                while !unplugged.load(Ordering::SeqCst) {
                     let _ = poll(&mut [PollFd::new(&end, PollFlags::IN)], Some(&LOOK));
                     let length = end.read(&mut bytes).unwrap_or(0);
                     let mut out = lock(&board).take(&bytes[..length]);
                     let Some(mut more) = also(&board) else { return };
                     out.append(&mut more);
-                    // Where nobody listens it is lost, as on a wire.
+                    // Without a listener it is lost, as on a wire.
                     let _ = end.write(&out);
                 }
             }
         });
-        Self { name, gone, thread: Some(thread), _device: device }
+        Self { name, unplugged, thread: Some(thread), _device: device }
     }
 
     /// One that only answers.
@@ -70,7 +70,7 @@ fn open() -> std::io::Result<(File, String, File)> {
 
 impl Drop for Port {
     fn drop(&mut self) {
-        self.gone.store(true, Ordering::SeqCst);
+        self.unplugged.store(true, Ordering::SeqCst);
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }

@@ -1,5 +1,4 @@
-//! Published values: `data/published.toml`, each entry with its source, and the tolerance it is
-//! compared with and why.
+//! Published values: `data/published.toml`, each entry with its source, and its tolerance with the reason for it.
 
 use toml::{Table, Value};
 
@@ -19,7 +18,7 @@ pub fn names() -> Vec<String> {
 /// The entry called `name`.
 ///
 /// # Panics
-/// When there is none.
+/// If there is none.
 pub fn entry(name: &str) -> Published {
     match entries().remove(name) {
         Some(Value::Table(table)) => Published { name: name.into(), table },
@@ -32,12 +31,12 @@ fn entries() -> Table {
 }
 
 impl Published {
-    /// The tolerance that the entry's values are compared with.
+    /// The tolerance of comparisons with the entry's values.
     pub fn tolerance(&self) -> f64 {
         self.number("tolerance")
     }
 
-    /// Whether there is such a key.
+    /// Whether it has a key.
     pub fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
     }

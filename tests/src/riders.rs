@@ -1,9 +1,9 @@
-//! Riders the flight cards start from.
+//! Riders shared by the tests.
 
 use sim_host::rider::{Gains, Neuromuscular, Outside, Rider, Schedule};
 
-/// A rider with every gain in use, scheduled over speed, who keeps the thesis bicycle up between 3
-/// and 6 m/s: near the published 60 ms riders, but made for these tests.
+/// A rider with every gain in use, scheduled over speed, who balances the thesis bicycle between 3 and 6 m/s: near
+/// the published 60 ms riders, but made for these tests.
 pub fn thorough(delay_s: f64) -> Rider {
     let points = vec![
         (3.0, Gains([-8.0, -0.5, 7.0, 4.2, 12.0, 3.0, 1.3, -0.09, -0.6, -0.10])),
@@ -11,5 +11,5 @@ pub fn thorough(delay_s: f64) -> Rider {
         (6.0, Gains([-12.0, -0.2, 5.0, 3.4, 62.0, 2.5, 3.6, -0.05, -0.7, -0.05])),
     ];
     let schedule = Schedule::new(points, Outside::Extrapolate).unwrap_or_else(|e| panic!("{e}"));
-    Rider { schedule, delay_s, muscles: Neuromuscular::SHOULDERS }
+    Rider { schedule, delay_s, neuromuscular: Neuromuscular::SHOULDERS }
 }

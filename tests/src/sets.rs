@@ -1,5 +1,5 @@
-//! How much of a large set is run: a part by default, all of it with `STEER_ASSIST_SLOW` set, as `cargo xtask test --all`
-//! does and continuous integration does each night.
+//! Share of a large set that is run: a part by default, all of it with `STEER_ASSIST_SLOW` set, as `cargo xtask test
+//! --all` does and continuous integration does each night.
 
 /// Whether all of it is run.
 pub fn whole() -> bool {

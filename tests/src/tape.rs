@@ -1,13 +1,13 @@
-//! Everything that goes over between a board in lockstep and its host.
+//! Record of all chunks exchanged between a board in lockstep and its host.
 
 use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
 use sim_host::pil::{BoardError, Lockstep};
 
-/// A board whose chunks are kept.
+/// A board whose chunks are recorded.
 pub struct Taped<B> {
     /// The board.
     pub board: B,
-    /// The chunks either way, in order, from the board's first on.
+    /// The chunks of both directions, in order, from the board's first on.
     pub chunks: Vec<Vec<u8>>,
 }
 

@@ -1,31 +1,31 @@
-//! Waiting for something that another program does: for as long as a busy machine may take, and no longer than it is there.
+//! Waiting for another program: as long as a busy machine may need, and no longer than the program exists.
 
 use std::process::Child;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Longer than anything here takes, however busy the machine.
+/// Longer than any wait here, however busy the machine.
 pub const LONG: Duration = Duration::from_secs(600);
 
-/// Between two looks.
+/// Polling period.
 const PAUSE: Duration = Duration::from_millis(5);
 
-/// What `look` finds, as soon as it finds something.
+/// The result of `look`, as soon as there is one.
 ///
 /// # Panics
-/// When it finds nothing for [`LONG`].
+/// If there is none for [`LONG`].
 pub fn until<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
-    let begin = Instant::now();
+    let start = Instant::now();
     loop {
         if let Some(found) = look() {
             return found;
         }
-        assert!(begin.elapsed() < LONG, "{what}: not within {LONG:?}");
+        assert!(start.elapsed() < LONG, "{what}: not within {LONG:?}");
         sleep(PAUSE);
     }
 }
 
-/// Processor time that a process of Linux has used \[s\]; nothing when there is none of this number.
+/// Processor time used by a process of Linux \[s\]; none if there is no such process.
 pub fn used_s(process: u32) -> Option<f64> {
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     // The twelfth field after the name is the user time in hundredths of a second.
@@ -36,7 +36,7 @@ pub fn used_s(process: u32) -> Option<f64> {
 /// Waits until a program has computed for this long.
 ///
 /// # Panics
-/// When it ended before, or does nothing.
+/// If it ended before, or does nothing.
 pub fn until_used(child: &Child, seconds: f64) {
     until("processor time", || (used_s(child.id()).expect("the program runs") >= seconds).then_some(()));
 }

@@ -23,7 +23,7 @@ pub struct Image {
     pub ram: u32,
 }
 
-/// Every image.
+/// Every image; those of a board are beside each other. A test compares them with the places that name them.
 pub const IMAGES: [Image; 7] = [
     Image { name: "qemu-control", board: "board-qemu", flash: 112 << 10, ram: 48 << 10 },
     Image { name: "qemu-pil", board: "board-qemu", flash: 256 << 10, ram: 72 << 10 },
@@ -33,6 +33,21 @@ pub const IMAGES: [Image; 7] = [
     Image { name: "board-vesc6", board: "board-vesc6", flash: 288 << 10, ram: 64 << 10 },
     Image { name: "board-vesc6-align", board: "board-vesc6", flash: 96 << 10, ram: 48 << 10 },
 ];
+
+/// The boards' features, each once.
+pub fn boards() -> Vec<&'static str> {
+    let mut boards: Vec<&str> = IMAGES.iter().map(|image| image.board).collect();
+    boards.dedup();
+    boards
+}
+
+/// Builds the images of all boards.
+///
+/// # Errors
+/// Cargo failed.
+pub fn build_all() -> Result<()> {
+    boards().into_iter().try_for_each(build)
+}
 
 /// Longer than any build takes, even on a busy machine.
 const BUILD_LIMIT: Duration = Duration::from_secs(4 * 3600);

@@ -2,6 +2,7 @@
 
 use std::process::{Command, ExitCode};
 use std::time::Duration;
+use xtask::architecture::architecture;
 use xtask::bench::bench;
 use xtask::document::{self, instruction_table, size_table};
 use xtask::reproducible::reproducible;
@@ -20,6 +21,7 @@ cargo xtask <command> [--help]
   reproducible  check that clones in different folders build identical images
   size          flash and RAM used by the images, against their budgets
   instructions  instructions of a control step, against the budget
+  architecture  figure and tables of docs/architecture.md, and the check of the dependencies
   mutants       mutation tests of the control crate
   coverage      lines of the control crate's torque path that its tests do not cover
   bench         computing time of a delayed rider's ride and basin, beside Python programs for the same ride
@@ -78,8 +80,8 @@ const FLASH_HELP: &str = "\
 cargo xtask flash IMAGE
 
 Builds a board's image, as `cargo xtask firmware` does, and hands it to the runner of
-.cargo/config.toml: probe-rs, which flashes it and shows its log until Ctrl-C. The images:
-board-vesc6 and board-vesc6-align.
+.cargo/config.toml: probe-rs, which flashes it and shows its log until Ctrl-C. IMAGE is one of
+docs/firmware.md that is not for QEMU.
 ";
 
 const REPRODUCIBLE_HELP: &str = "\
@@ -113,6 +115,14 @@ Times a ride of 6 s with a rider 30 ms late, in sim-host and in Python with numb
 the rider's basin in sim-host, one after the other; prints one table. Fails if the final states
 differ by more than 1e-6, or if the Python programs are unavailable; the rest is printed nevertheless.
 Needs Python 3.11 or later for a virtual environment in target/bench-python, with packages from PyPI.
+";
+
+const ARCHITECTURE_HELP: &str = "\
+cargo xtask architecture
+
+Compares the dependencies of the crates, and of the top modules of sim-host and control, with
+docs/architecture.toml; prints each difference with file and line, and fails if there is one.
+Otherwise it writes docs/img/architecture.svg and the tables of docs/architecture.md.
 ";
 
 const MUTANTS_HELP: &str = "\
@@ -159,6 +169,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         "size" => SIZE_HELP,
         "instructions" => INSTRUCTIONS_HELP,
         "bench" => BENCH_HELP,
+        "architecture" => ARCHITECTURE_HELP,
         "mutants" => MUTANTS_HELP,
         "coverage" => COVERAGE_HELP,
         "--help" | "-h" | "help" => HELP,
@@ -171,11 +182,12 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
     match (*command, rest) {
         ("setup", _) => setup(target_source(rest, help)?)?,
         ("test", _) => test(rest)?,
-        ("firmware", []) => build_all()?,
+        ("firmware", []) => image::build_all()?,
         ("qemu", [image, arguments @ ..]) => return run(image, arguments),
         ("virtual-board", _) => on_virtual_board(rest)?,
         ("flash", [image]) => image::flash(image)?,
         ("reproducible", []) => reproducible()?,
+        ("architecture", []) => architecture(&image::root())?,
         ("bench", []) => bench()?,
         ("coverage", []) => coverage::coverage()?,
         ("mutants", _) => mutants(rest)?,
@@ -185,8 +197,8 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn target_source(words: &[&str], help: &str) -> Result<TargetSource> {
-    match words {
+fn target_source(arguments: &[&str], help: &str) -> Result<TargetSource> {
+    match arguments {
         [] | ["--target-source", "auto"] => Ok(TargetSource::Auto),
         ["--target-source", "rustup"] => Ok(TargetSource::Rustup),
         ["--target-source", "debian"] => Ok(TargetSource::Debian),
@@ -200,7 +212,7 @@ const EVERYTHING: [&str; 6] =
     ["--workspace", "--exclude", "firmware", "--exclude", "no-panic", "--ignore-rust-version"];
 
 fn test(words: &[&str]) -> Result<()> {
-    let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
+    let split = words.iter().position(|argument| *argument == "--").unwrap_or(words.len());
     let (rest, sample) = match words[..split] {
         [ref rest @ .., "--mutants", count] => (rest, Some(mutants::sample(count)?)),
         ref rest => (rest, None),
@@ -210,7 +222,7 @@ fn test(words: &[&str]) -> Result<()> {
         source => (source, false),
     };
     setup(target_source(source, TEST_HELP)?)?;
-    build_all()?;
+    image::build_all()?;
     let arguments = words.get(split + 1..).unwrap_or_default();
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     cargo.current_dir(paths::root()).arg("test").env("STEER_ASSIST_REQUIRE_QEMU", "1");
@@ -226,25 +238,20 @@ fn test(words: &[&str]) -> Result<()> {
     sample.map_or(Ok(()), |sample| mutants::mutants(Some(sample), &[]))
 }
 
-fn mutants(words: &[&str]) -> Result<()> {
-    let split = words.iter().position(|word| *word == "--").unwrap_or(words.len());
-    let sample = match words[..split] {
+fn mutants(arguments: &[&str]) -> Result<()> {
+    let split = arguments.iter().position(|argument| *argument == "--").unwrap_or(arguments.len());
+    let sample = match arguments[..split] {
         [] => None,
         ["--sample", count] => Some(mutants::sample(count)?),
         _ => return Err(format!("wrong arguments\n\n{MUTANTS_HELP}")),
     };
-    mutants::mutants(sample, words.get(split + 1..).unwrap_or_default())
-}
-
-fn build_all() -> Result<()> {
-    image::build("board-qemu")?;
-    image::build("board-vesc6")
+    mutants::mutants(sample, arguments.get(split + 1..).unwrap_or_default())
 }
 
 fn on_virtual_board(words: &[&str]) -> Result<()> {
     match words {
         ["--test", arguments @ ..] => {
-            build_all()?;
+            image::build_all()?;
             virtual_board::test(arguments)
         }
         _ => {
@@ -267,7 +274,7 @@ fn run(name: &str, arguments: &[&str]) -> Result<ExitCode> {
 }
 
 fn measure(command: &str) -> Result<()> {
-    build_all()?;
+    image::build_all()?;
     let (sizes, counts) = document::regenerate()?;
     let sizes_only = command == "size";
     print!("{}", if sizes_only { size_table(&sizes) } else { instruction_table(&counts) });

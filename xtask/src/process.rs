@@ -12,9 +12,9 @@ use std::time::{Duration, Instant};
 pub struct Outcome {
     /// Its exit status; `None` when a signal ended it.
     pub status: Option<i32>,
-    /// What it wrote to standard output.
+    /// Its output on standard output.
     pub stdout: String,
-    /// What it wrote to standard error.
+    /// Its output on standard error.
     pub stderr: String,
 }
 

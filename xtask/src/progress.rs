@@ -68,9 +68,10 @@ fn started_by(process: u32) -> Vec<String> {
 
 /// A program's name, with the crate if it is the compiler.
 fn named(command: &[u8]) -> String {
-    let words: Vec<_> = command.split(|byte| *byte == 0).map(String::from_utf8_lossy).collect();
-    let program = words.first().map_or("", |word| word.rsplit('/').next().unwrap_or_default());
-    let crate_name = words.iter().position(|word| word == "--crate-name").and_then(|at| words.get(at + 1));
+    let arguments: Vec<_> = command.split(|byte| *byte == 0).map(String::from_utf8_lossy).collect();
+    let program = arguments.first().map_or("", |argument| argument.rsplit('/').next().unwrap_or_default());
+    let crate_name =
+        arguments.iter().position(|argument| argument == "--crate-name").and_then(|at| arguments.get(at + 1));
     crate_name.map_or_else(|| program.into(), |name| format!("{program} {name}"))
 }
 

@@ -17,7 +17,7 @@ pub const COUNTED: Option<u8> = Some(10);
 /// No simulated time: fastest, for images independent of time.
 pub const UNTIMED: Option<u8> = None;
 
-/// Runs an image with `words` as arguments in a directory with its files; an instruction takes 2^`shift` ns of
+/// Runs an image with `arguments` in a directory with its files; an instruction takes 2^`shift` ns of
 /// simulated time.
 ///
 /// # Errors
@@ -29,14 +29,15 @@ pub fn run(
     shift: Option<u8>,
     limit: Duration,
 ) -> Result<Outcome> {
-    let words: String = [image].iter().chain(arguments).map(|word| format!(",arg={word}")).collect();
+    let options: String =
+        [image].iter().chain(arguments).map(|argument| format!(",arg={argument}")).collect();
     let mut qemu = Command::new("qemu-system-arm");
     qemu.current_dir(directory);
     qemu.args(["-machine", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "none"]);
     if let Some(shift) = shift {
         qemu.arg("-icount").arg(format!("shift={shift},sleep=off"));
     }
-    qemu.arg("-semihosting-config").arg(format!("enable=on,target=native{words}"));
+    qemu.arg("-semihosting-config").arg(format!("enable=on,target=native{options}"));
     capture(qemu.arg("-kernel").arg(paths::path(image)), limit)
 }
 

@@ -32,10 +32,10 @@ pub fn missing() -> Vec<String> {
     target.into_iter().chain(tools).collect()
 }
 
-/// Installs whatever is missing; does nothing if nothing is.
+/// Installs everything that is missing.
 ///
 /// # Errors
-/// What could not be installed, and how to install it.
+/// The parts that could not be installed, and how to install them.
 pub fn setup(source: TargetSource) -> Result<()> {
     let target = if has_target() { Ok(()) } else { add_target(source) };
     let tools = add_tools();

@@ -118,18 +118,34 @@ impl ValidationConfig {
         self.path.visit_params("input.path", to);
     }
 
-    /// Each sensor with its causes.
+    /// Each sensor with its causes. Every field is named, so a new sensor does not compile without its causes.
     fn declared(&self) -> [(&Sensor, &'static SensorCauses); 9] {
+        let Self {
+            wheel: _,
+            recent_samples: _,
+            drift_m_s2: _,
+            drift_after_ticks: _,
+            max_gap_ms: _,
+            gyro,
+            accel,
+            steer,
+            steer_rate,
+            front_wheel,
+            rear_wheel,
+            rider_torque,
+            motor,
+            path,
+        } = self;
         [
-            (&self.gyro, &GYRO),
-            (&self.accel, &ACCEL),
-            (&self.steer, &STEER),
-            (&self.steer_rate, &STEER_RATE),
-            (&self.front_wheel, &FRONT_WHEEL),
-            (&self.rear_wheel, &REAR_WHEEL),
-            (&self.rider_torque, &RIDER_TORQUE),
-            (&self.motor, &MOTOR),
-            (&self.path, &PATH),
+            (gyro, &GYRO),
+            (accel, &ACCEL),
+            (steer, &STEER),
+            (steer_rate, &STEER_RATE),
+            (front_wheel, &FRONT_WHEEL),
+            (rear_wheel, &REAR_WHEEL),
+            (rider_torque, &RIDER_TORQUE),
+            (motor, &MOTOR),
+            (path, &PATH),
         ]
     }
 

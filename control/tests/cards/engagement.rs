@@ -111,7 +111,7 @@ fn from_boot_to_torque_and_back() {
 
 /// Situation: the switch is stuck on at boot.
 /// Action: wait long, then release and press.
-/// Must hold: never engaged while held, and the causes say that the switch is held; after release and press it engages.
+/// Must hold: never engaged while held, and the causes report a held switch; after release and press it engages.
 #[test]
 fn a_switch_held_at_boot_does_not_engage() {
     let mut bench = Bench::new();
@@ -187,13 +187,13 @@ fn every_rejection_is_listed() {
 /// Must hold: still engaged for the allowed time, then standby; a held switch does not engage again.
 #[test]
 fn fallen_or_lifted_needs_a_new_press() {
-    let ways = [
+    let inputs = [
         (EngagementInput { roll_rad: Some((1.01, EXACT)), ..PRESSED }, Cause::Fallen, 3),
         (EngagementInput { roll_rad: Some((-1.01, EXACT)), ..PRESSED }, Cause::Fallen, 3),
         (EngagementInput { force_m_s2: Some(2.9), ..PRESSED }, Cause::Lifted, 3),
         (EngagementInput { polarity_checked: false, ..PRESSED }, Cause::PolarityUnchecked, 0),
     ];
-    for (input, cause, allowed_ticks) in ways {
+    for (input, cause, allowed_ticks) in inputs {
         let mut bench = Bench::engaged();
         for _ in 0..allowed_ticks {
             assert_eq!(bench.step(&input).mode, Mode::Engaged, "{cause:?}");

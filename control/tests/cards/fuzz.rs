@@ -10,7 +10,7 @@ use std::path::Path;
 /// Committed corpus of a body, by file name.
 fn corpus(body: &str) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fuzz/corpus").join(body);
-    let files = std::fs::read_dir(&folder).unwrap_or_else(|why| panic!("{}: {why}", folder.display()));
+    let files = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut files: Vec<_> = files.map(|file| file.expect("a file of the corpus").path()).collect();
     files.sort();
     files
@@ -24,7 +24,7 @@ fn corpus(body: &str) -> Vec<(String, Vec<u8>)> {
 /// Action: run each file through its body.
 /// Must hold: the assertions of the body.
 #[test]
-fn the_corpus_breaks_nothing() {
+fn the_corpus_satisfies_the_invariants() {
     for (name, body) in [
         ("frames", bodies::frames as fn(&[u8])),
         ("configuration", bodies::configuration),

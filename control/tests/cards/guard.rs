@@ -114,13 +114,13 @@ proptest! {
     fn a_faulty_limiter_is_stopped_outside_the_limits(
         (table, rate_hz) in tables(), sequence in calls(1..100), fault in any_fault(),
     ) {
-        let known = fault.table(table);
-        let (limiter_plan, guard) = (LimiterPlan::new(&known, rate_hz), GuardPlan::new(&table, rate_hz));
+        let limiter_table = fault.table(table);
+        let (limiter_plan, guard) = (LimiterPlan::new(&limiter_table, rate_hz), GuardPlan::new(&table, rate_hz));
         let (mut limiter, mut guard_state) = (LimiterState::default(), GuardState::default());
         let mut reference = Reference::new(&table, rate_hz);
         let mut correct = Vec::new();
         for (i, request) in sequence.iter().enumerate() {
-            correct.push(step(&known, &limiter_plan, &mut limiter, request).0);
+            correct.push(step(&limiter_table, &limiter_plan, &mut limiter, request).0);
             let torque = fault.torque(i, &correct);
             reference.wait(request);
             let (least, rounding) = reference.excess(torque, request, 0.875);
@@ -132,10 +132,10 @@ proptest! {
                     prop_assert!(least <= rounding, "call {i}: {torque} let through, {least} N m outside: {request:?}");
                     reference.output(torque);
                 }
-                Err(why) => {
+                Err(error) => {
                     prop_assert!(
-                        most > 0.0 || why == Violation::NotFinite,
-                        "call {i}: {torque} stopped for {why:?}: {request:?}"
+                        most > 0.0 || error == Violation::NotFinite,
+                        "call {i}: {torque} stopped for {error:?}: {request:?}"
                     );
                     reference.clear();
                     limiter = LimiterState::default();
@@ -170,7 +170,7 @@ fn first_violation(
     let mut state = GuardState::default();
     let results =
         torques.into_iter().map(|(torque, request)| check(table, &plan, &mut state, torque, true, &request));
-    results.enumerate().find_map(|(i, result)| result.err().map(|why| (i, why)))
+    results.enumerate().find_map(|(i, result)| result.err().map(|error| (i, error)))
 }
 
 /// Situation: each limit of the flashed configuration in turn, exceeded alone.
@@ -200,7 +200,7 @@ fn each_violation_is_named() {
     let override_limit = product.rider_motion.expect("set");
     let after = usize::from(override_limit.after_ms);
     let full = after + usize::from(override_limit.fade_ms);
-    for (name, table, torques, at, why) in [
+    for (name, table, torques, at, error) in [
         ("not a number", off, at(plain(), f32::NAN), 1..=1, Violation::NotFinite),
         ("infinite", off, at(plain(), f32::NEG_INFINITY), 1..=1, Violation::NotFinite),
         ("too much", only(|_, _| ()), at(plain(), -7.001), 1..=1, Violation::Magnitude),
@@ -248,7 +248,7 @@ fn each_violation_is_named() {
         ("window", window, ramp(0.05), 41..=41, Violation::Window),
     ] {
         let violation = first_violation(&table, torques);
-        assert!(violation.is_some_and(|(i, w)| at.contains(&i) && w == why), "{name}: {violation:?}");
+        assert!(violation.is_some_and(|(i, w)| at.contains(&i) && w == error), "{name}: {violation:?}");
     }
     // Just inside each limit nothing is rejected.
     for (name, table, torques) in [
@@ -330,14 +330,14 @@ fn each_fault_of_the_limiter_is_found() {
         })
         .collect();
     let run = |fault: Option<LimiterFault>| {
-        let known = fault.map_or(table, |b| b.table(table));
-        let plan = LimiterPlan::new(&known, 1000.0);
+        let limiter_table = fault.map_or(table, |b| b.table(table));
+        let plan = LimiterPlan::new(&limiter_table, 1000.0);
         let mut limiter = LimiterState::default();
         let mut correct = Vec::new();
         first_violation(
             &table,
             sequence.iter().enumerate().map(|(i, request)| {
-                correct.push(step(&known, &plan, &mut limiter, request).0);
+                correct.push(step(&limiter_table, &plan, &mut limiter, request).0);
                 (fault.map_or(correct[i], |b| b.torque(i, &correct)), *request)
             }),
         )
@@ -379,7 +379,7 @@ fn the_limit_and_its_slack_are_allowed() {
         Limits { rider_torque: Some(RiderTorque { allowance_nm: 1.0, multiplier: 1.0 }), ..seven };
     let window = Limits { window: Some(Window { ms: 100, nm: 4.0 }), ..off };
     let against = |rider: f32| TorqueRequest { rider_torque_nm: Some(rider), ..plain() };
-    for (name, table, request, limit, why) in [
+    for (name, table, request, limit, error) in [
         ("largest", seven, plain(), 7.0_f32, Violation::Magnitude),
         ("authority", seven, TorqueRequest { authority: 0.5, ..plain() }, 3.5, Violation::Authority),
         ("cap, slower", cap, at_speed(0.0, 0.5), 5.0, Violation::Speed),
@@ -395,7 +395,7 @@ fn the_limit_and_its_slack_are_allowed() {
         for torque in (middle - 400..middle + 400).map(f32::from_bits) {
             let inside = torque - slack(torque, 0.0);
             at_the_limit += u32::from(inside == limit);
-            let expected = if inside <= limit { Ok(torque) } else { Err(why) };
+            let expected = if inside <= limit { Ok(torque) } else { Err(error) };
             let checked = |torque: f32, request: &TorqueRequest| {
                 check(&table, &plan, &mut GuardState::default(), torque, true, request)
             };
@@ -417,7 +417,7 @@ fn turning_at_the_allowed_rate_is_not_an_override() {
         let turned = |rate: f32| TorqueRequest { steer_rate_rad_s: Some(rate * torque.signum()), ..plain() };
         assert_eq!(first_violation(&table, vec![(torque, turned(-1.0)); 1000]), None);
         let rejected = first_violation(&table, vec![(torque, turned(-1.001)); 1000]);
-        assert!(rejected.is_some_and(|(i, why)| (20..=31).contains(&i) && why == Violation::RiderMotion));
+        assert!(rejected.is_some_and(|(i, error)| (20..=31).contains(&i) && error == Violation::RiderMotion));
     }
 }
 

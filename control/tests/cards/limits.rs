@@ -266,8 +266,8 @@ impl Reference {
             cap = cap.min(band.max(0.0));
         }
         if let Some(r) = table.rider_motion {
-            let gone = self.against_us - 1e3 * f64::from(r.after_ms);
-            cap = cap.min(max * fraction(1.0 - gone / (1e3 * f64::from(r.fade_ms))));
+            let beyond_us = self.against_us - 1e3 * f64::from(r.after_ms);
+            cap = cap.min(max * fraction(1.0 - beyond_us / (1e3 * f64::from(r.fade_ms))));
         }
         if let (Some(e), Some(steer)) = (table.end_stop, finite(request.steer_rad)) {
             let (soft, hard) = (f64::from(e.soft_rad), f64::from(e.hard_rad));

@@ -12,6 +12,7 @@ mod limits;
 mod maths;
 mod monitor;
 mod needs_motion;
+mod parameters;
 mod polarity;
 mod press;
 mod properties;

@@ -49,7 +49,7 @@ fn the_reciprocal_root_is_finite() {
 
 /// Situation: angles beyond a quarter turn, infinite, NaN, negative zero.
 /// Action: compute sine and cosine.
-/// Must hold: those of the nearest angle within, of 0 for NaN, with the sign of zero kept.
+/// Must hold: those of the nearest angle within, of 0 for NaN, with the sign of zero unchanged.
 #[test]
 fn beyond_a_quarter_turn() {
     assert_eq!(sin_cos(7.0), sin_cos(QUARTER));

@@ -322,10 +322,10 @@ fn the_scheduling_speed_must_be_measurable() {
         assert!(by_rear.plan().is_ok());
         match config.plan() {
             Ok(_) => assert!(front || steer || !rear),
-            Err(why) => {
-                assert!(!front && !steer && rear, "{why}");
-                let why = why.to_string();
-                assert!(why.contains("input.wheel = front") && why.ends_with(": rear"), "{why}");
+            Err(error) => {
+                assert!(!front && !steer && rear, "{error}");
+                let error = error.to_string();
+                assert!(error.contains("input.wheel = front") && error.ends_with(": rear"), "{error}");
             }
         }
     }

@@ -7,7 +7,7 @@
 pub const COUNTS: u16 = 1 << 14;
 
 /// Command that reads the angle. All ones, so that a constantly high line works without a wire.
-pub const ASK_ANGLE: u16 = 0xffff;
+pub const READ_ANGLE: u16 = 0xffff;
 
 /// Number of consecutive answers that EF invalidates; further ones are only counted. Less than the timeout after
 /// which the motor loop raises an encoder loss.
@@ -24,7 +24,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// Decodes the angle from an answer to [`ASK_ANGLE`] \[counts\]; `None` if the answer is damaged, or flagged for
+    /// Decodes the angle from an answer to [`READ_ANGLE`] \[counts\]; `None` if the answer is damaged, or flagged for
     /// the first [`FLAGGED`] times in a row.
     ///
     /// The flag concerns a command frame, not the angle in the same answer. As the command is all ones, only a wrong

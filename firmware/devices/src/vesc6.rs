@@ -22,7 +22,8 @@ pub const SHUNT: Shunt =
 pub const SUPPLY: Divider = Divider { upper_ohm: 39_000.0, lower_ohm: 2_200.0, reference_v: REFERENCE_V };
 
 /// Thermistor beside the switches.
-pub const BOARD_HEAT: Thermistor = Thermistor { lower_ohm: 10_000.0, nominal_ohm: 10_000.0, beta_k: 3380.0 };
+pub const BOARD_TEMPERATURE: Thermistor =
+    Thermistor { lower_ohm: 10_000.0, nominal_ohm: 10_000.0, beta_k: 3380.0 };
 
 /// Settings of the gate driver. The VESC firmware runs this board with 1.7 A, 403 mV and cycle-by-cycle limiting,
 /// dead time 0.36 us (`hwconf/drv8301.c`, `mcconf_default.h` in vedderb/bldc).

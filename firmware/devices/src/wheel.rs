@@ -84,6 +84,6 @@ pub fn step(
 
 /// Smallest time between two pulses \[us\].
 fn shortest_us(config: &WheelPulsesConfig) -> u32 {
-    let way_m = core::f32::consts::TAU * config.radius_m / f32::from(config.pulses_per_turn.max(1));
-    (1e6 * way_m * (1.0 - config.spacing_error) / FASTEST_M_S) as u32
+    let distance_m = core::f32::consts::TAU * config.radius_m / f32::from(config.pulses_per_turn.max(1));
+    (1e6 * distance_m * (1.0 - config.spacing_error) / FASTEST_M_S) as u32
 }

@@ -17,7 +17,7 @@ pub enum NoLaw {
     /// Too few bytes, or too many points.
     Malformed,
     /// An unknown law, or a value outside its range.
-    Refused(ParamError),
+    Rejected(ParamError),
 }
 
 /// Writes a law.
@@ -43,10 +43,10 @@ pub fn decode(from: &mut Reader<'_>) -> Result<Law, NoLaw> {
     let (number, slope, points) = read(from).ok_or(NoLaw::Malformed)?;
     let table = match points.is_empty() {
         true => GainSchedule::default(),
-        false => GainSchedule::new(&points).map_err(NoLaw::Refused)?,
+        false => GainSchedule::new(&points).map_err(NoLaw::Rejected)?,
     };
-    let law = Law::numbered(number, slope, table).ok_or(NoLaw::Refused(LAW.error(f32::from(number))))?;
-    law.validate().map_err(NoLaw::Refused)?;
+    let law = Law::numbered(number, slope, table).ok_or(NoLaw::Rejected(LAW.error(f32::from(number))))?;
+    law.validate().map_err(NoLaw::Rejected)?;
     Ok(law)
 }
 

@@ -79,7 +79,7 @@ pub enum Message<'a> {
     /// From the board: the request is done.
     Done,
     /// From the board: the request is rejected, with the reason.
-    Refused(Rejection<'a>),
+    Rejected(Rejection<'a>),
     /// From the board: a frame of another version was received. The answer's frame has the board's version.
     WrongVersion {
         /// Version of the received frame.
@@ -134,7 +134,7 @@ impl<'a> Message<'a> {
             Message::Value { .. } => 0x83,
             Message::Law(_) => 0x84,
             Message::Done => 0x85,
-            Message::Refused(_) => 0x86,
+            Message::Rejected(_) => 0x86,
             Message::WrongVersion { .. } => 0x87,
             Message::StoredFault(_) => 0x88,
             Message::PilCommand { .. } => 0x91,
@@ -167,7 +167,7 @@ impl<'a> Message<'a> {
                 to.u8(page.count);
                 to.put(page.bytes);
             }
-            Message::Refused(rejection) => rejection.encode(to),
+            Message::Rejected(rejection) => rejection.encode(to),
             Message::WrongVersion { theirs } => to.u8(*theirs),
             Message::StoredFault(stored) => stored.encode(to),
             Message::PilConfig { at, bytes } => {
@@ -216,7 +216,7 @@ impl<'a> Message<'a> {
             0x83 => valued(&mut from).map(|(key, value)| Message::Value { key, value }),
             0x84 => Some(Message::Law(frame.payload)),
             0x85 => Some(Message::Done),
-            0x86 => Rejection::decode(&mut from).map(Message::Refused),
+            0x86 => Rejection::decode(&mut from).map(Message::Rejected),
             0x87 => from.u8().map(|theirs| Message::WrongVersion { theirs }),
             0x88 => StoredFault::decode(&mut from).map(Message::StoredFault),
             0x91 => pil_command(&mut from),

@@ -53,9 +53,9 @@ pub struct Record<'a> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Applied {
     /// Number of rejected values; their parameters have the defaults.
-    pub refused: u16,
+    pub rejected: u16,
     /// First rejected value.
-    pub first_refused: Option<ParamError>,
+    pub first_rejected: Option<ParamError>,
     /// Number of values of unknown parameters.
     pub unknown: u16,
     /// Number of parameters missing in the record; they have the defaults.
@@ -135,14 +135,14 @@ impl Record<'_> {
     /// consistent.
     pub fn apply(&self, config: &mut Config) -> Applied {
         let mut applied = Applied::default();
-        let refuse = |applied: &mut Applied, error: ParamError| {
-            applied.refused += 1;
-            applied.first_refused = applied.first_refused.or(Some(error));
+        let reject = |applied: &mut Applied, error: ParamError| {
+            applied.rejected += 1;
+            applied.first_rejected = applied.first_rejected.or(Some(error));
         };
         match law::decode(&mut Reader(self.law)) {
             Ok(law) => config.law = law,
-            Err(NoLaw::Refused(error)) => refuse(&mut applied, error),
-            Err(NoLaw::Malformed) => refuse(&mut applied, LAW.error(f32::NAN)),
+            Err(NoLaw::Rejected(error)) => reject(&mut applied, error),
+            Err(NoLaw::Malformed) => reject(&mut applied, LAW.error(f32::NAN)),
         }
         let mut used = 0;
         each_but_law(config, |view| {
@@ -156,7 +156,7 @@ impl Record<'_> {
             match check(view, value) {
                 Ok(()) => value,
                 Err(_) => {
-                    refuse(&mut applied, view.leaf.error(value.unwrap_or(f32::NAN)));
+                    reject(&mut applied, view.leaf.error(value.unwrap_or(f32::NAN)));
                     view.value
                 }
             }

@@ -38,7 +38,7 @@ control::numbered! {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rejection<'a> {
     /// Reason.
-    pub why: RejectReason,
+    pub reason: RejectReason,
     /// The parameter.
     pub key: Key<'a>,
     /// Rejected value.
@@ -51,39 +51,39 @@ pub struct Rejection<'a> {
 
 impl<'a> Rejection<'a> {
     /// A rejection without a parameter.
-    pub const fn of(why: RejectReason) -> Self {
-        Self::about(why, Key::whole(""))
+    pub const fn of(reason: RejectReason) -> Self {
+        Self::about(reason, Key::whole(""))
     }
 
     /// A rejection that concerns a parameter.
-    pub const fn about(why: RejectReason, key: Key<'a>) -> Self {
-        Self { why, key, value: 0.0, min: 0.0, max: 0.0 }
+    pub const fn about(reason: RejectReason, key: Key<'a>) -> Self {
+        Self { reason, key, value: 0.0, min: 0.0, max: 0.0 }
     }
 
     pub(crate) fn encode(&self, to: &mut Writer<'_>) {
-        to.u8(self.why as u8);
+        to.u8(self.reason as u8);
         [self.value, self.min, self.max].into_iter().for_each(|number| to.f32(number));
         to.text(self.key.parts());
     }
 
     pub(crate) fn decode(from: &mut Reader<'a>) -> Option<Self> {
-        let why = RejectReason::numbered(from.u8()?)?;
+        let reason = RejectReason::numbered(from.u8()?)?;
         let (value, min, max) = (from.f32()?, from.f32()?, from.f32()?);
-        Some(Self { why, key: Key::whole(from.text()?), value, min, max })
+        Some(Self { reason, key: Key::whole(from.text()?), value, min, max })
     }
 }
 
 impl From<ParamError> for Rejection<'static> {
     fn from(ParamError { leaf, value }: ParamError) -> Self {
-        Self { why: RejectReason::OutOfRange, key: Key::of(&leaf), value, min: leaf.min, max: leaf.max }
+        Self { reason: RejectReason::OutOfRange, key: Key::of(&leaf), value, min: leaf.min, max: leaf.max }
     }
 }
 
 impl fmt::Display for Rejection<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { why, key, value, min, max } = self;
-        match why {
-            RejectReason::Engaged => write!(f, "refused while engaged"),
+        let Self { reason, key, value, min, max } = self;
+        match reason {
+            RejectReason::Engaged => write!(f, "rejected while engaged"),
             RejectReason::UnknownKey => write!(f, "no parameter {key}"),
             // A limit that is off although another limit needs it (`Limits::cross`).
             RejectReason::OutOfRange if *value == f32::INFINITY => {

@@ -56,10 +56,10 @@ pub fn check(view: &ParameterView, value: Option<f32>) -> Result<(), Rejection<'
     let range = view.leaf.error(value.unwrap_or_default()).into();
     match value {
         None if view.kind == Kind::Limit => Ok(()),
-        None => Err(Rejection { why: RejectReason::NeverOff, ..range }),
+        None => Err(Rejection { reason: RejectReason::NeverOff, ..range }),
         Some(value) if view.leaf.check(value).is_err() => Err(range),
         Some(value) if matches!(view.kind, Kind::Number | Kind::Limit) || value % 1.0 == 0.0 => Ok(()),
-        Some(_) => Err(Rejection { why: RejectReason::NotWhole, ..range }),
+        Some(_) => Err(Rejection { reason: RejectReason::NotWhole, ..range }),
     }
 }
 
@@ -70,7 +70,7 @@ pub fn check(view: &ParameterView, value: Option<f32>) -> Result<(), Rejection<'
 pub fn set_law(config: &mut Config, bytes: &[u8]) -> Result<(), Rejection<'static>> {
     let law = law::decode(&mut Reader(bytes)).map_err(|no| match no {
         NoLaw::Malformed => Rejection::of(RejectReason::Malformed),
-        NoLaw::Refused(error) => error.into(),
+        NoLaw::Rejected(error) => error.into(),
     })?;
     *config = Config { law, ..config.clone() }.plan()?.config().clone();
     Ok(())
@@ -93,10 +93,10 @@ impl NoRequest {
         match self {
             NoRequest::WrongVersion(theirs) => (0, Message::WrongVersion { theirs }),
             NoRequest::Unknown(sequence) => {
-                (sequence, Message::Refused(Rejection::of(RejectReason::UnknownRequest)))
+                (sequence, Message::Rejected(Rejection::of(RejectReason::UnknownRequest)))
             }
             NoRequest::Malformed(sequence) => {
-                (sequence, Message::Refused(Rejection::of(RejectReason::Malformed)))
+                (sequence, Message::Rejected(Rejection::of(RejectReason::Malformed)))
             }
         }
     }
@@ -131,7 +131,7 @@ pub fn answer<'a>(
 ) -> Option<Message<'a>> {
     use Message::{Done, Get, GetLaw, List, Reset, Set, SetLaw, Store};
     if engaged && matches!(request, Set { .. } | SetLaw(_) | Store | Reset) {
-        return Some(Message::Refused(Rejection::of(RejectReason::Engaged)));
+        return Some(Message::Rejected(Rejection::of(RejectReason::Engaged)));
     }
     let answer = match *request {
         List { from } => Ok(Message::Page(page::fill(defaults, config, from, room))),
@@ -146,7 +146,7 @@ pub fn answer<'a>(
         }
         _ => return None,
     };
-    Some(answer.unwrap_or_else(Message::Refused))
+    Some(answer.unwrap_or_else(Message::Rejected))
 }
 
 fn value<'a>(config: &Config, key: Key<'a>) -> Result<Message<'a>, Rejection<'a>> {

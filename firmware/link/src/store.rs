@@ -73,8 +73,8 @@ impl fmt::Display for Found {
             Found::Nothing => write!(f, "none stored, defaults"),
             Found::Record(applied) => {
                 write!(f, "stored ones")?;
-                if let Some(first) = &applied.first_refused {
-                    write!(f, "; {} refused, first {first}", applied.refused)?;
+                if let Some(first) = &applied.first_rejected {
+                    write!(f, "; {} rejected, first {first}", applied.rejected)?;
                 }
                 if applied.missing > 0 {
                     write!(f, "; {} not among them have their defaults", applied.missing)?;
@@ -103,7 +103,7 @@ impl fmt::Display for Found {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotStored {
     /// The configuration is invalid.
-    Refused(ParamError),
+    Rejected(ParamError),
     /// More parameters than a record can hold.
     TooMany,
     /// Writing the flash failed, or it read back different data.
@@ -143,7 +143,7 @@ impl<F: NorFlash> Store<F> {
             Err(invalid) => Found::Invalid(invalid),
             Ok(Some(record)) => {
                 let applied = record.apply(&mut config);
-                if applied.refused > 0 || applied.calibration_missing {
+                if applied.rejected > 0 || applied.calibration_missing {
                     config.calibration.polarity_checked = false;
                 }
                 match config.clone().plan() {
@@ -163,7 +163,7 @@ impl<F: NorFlash> Store<F> {
     /// # Errors
     /// As of [`NotStored`].
     pub async fn save(&mut self, config: &Config, room: &mut Room) -> Result<(), NotStored> {
-        config.clone().plan().map_err(NotStored::Refused)?;
+        config.clone().plan().map_err(NotStored::Rejected)?;
         let Room { record: bytes, item } = room;
         let newest = self.number(PARAMETERS, item).await.ok().flatten().unwrap_or_default();
         let before = self.record(item).await.ok().flatten();

@@ -44,7 +44,7 @@ pub struct Config {
     /// Supply voltage.
     pub supply: SupplyConfig,
     /// Temperature.
-    pub heat: TemperatureConfig,
+    pub temperature: TemperatureConfig,
     /// Stall: torque without motion.
     pub stall: StallConfig,
     /// Current tracking.
@@ -76,7 +76,7 @@ impl Config {
         self.sensors.visit_params(to);
         self.overload.visit_params(to);
         self.supply.visit_params(to);
-        self.heat.visit_params(to);
+        self.temperature.visit_params(to);
         self.stall.visit_params(to);
         self.follow.visit_params(to);
         self.emf.visit_params(to);
@@ -124,7 +124,7 @@ impl Config {
             c.sensors.trip_a,
         ));
         checker.note(between("supply", "sag_v", 1.01 * c.supply.low_v, c.supply.high_v, c.supply.sag_v));
-        checker.note(between("heat", "hot_c", c.heat.warm_c + 1.0, 160.0, c.heat.hot_c));
+        checker.note(between("heat", "hot_c", c.temperature.warm_c + 1.0, 160.0, c.temperature.hot_c));
         // A jump of an eighth of an electrical turn or more would misdirect the torque.
         let eighth = 0.125 / f32::from(c.motor.pole_pairs.max(1));
         checker.note(between("encoder", "jump_turns", 1e-4, eighth, c.encoder.jump_turns));

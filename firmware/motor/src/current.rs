@@ -73,20 +73,20 @@ pub struct CurrentState {
     integral: Vector,
 }
 
-/// One call: the voltage for the current set-point `wanted`, limited to a circle of radius `max_v`.
+/// One call: the voltage for the current set-point `set_point`, limited to a circle of radius `max_v`.
 pub fn step(
     gains: &Gains,
     state: &mut CurrentState,
-    wanted: Vector,
+    set_point: Vector,
     measured: Vector,
     omega_rad_s: f32,
     max_v: f32,
 ) -> Vector {
-    let error = wanted.minus(measured);
+    let error = set_point.minus(measured);
     let [kp_d, kp_q] = gains.kp;
     let requested = Vector::new(kp_d * error.d, kp_q * error.q)
         .plus(state.integral)
-        .plus(gains.turning(wanted, omega_rad_s));
+        .plus(gains.turning(set_point, omega_rad_s));
     let given = requested.inside(max_v);
     let left = given.minus(requested);
     state.integral = Vector::new(

@@ -192,7 +192,7 @@ fn close(
     let c = &plan.config;
     let mut faults = sensors::step(&c.sensors, &mut state.drive.sum_beyond, phases_a);
     let (supply_share, low) = supply::step(&c.supply, &mut state.drive.supply, inputs.bus_v);
-    let (heat_share, hot) = temperature::check(&c.heat, inputs.temperature_c);
+    let (temperature_share, hot) = temperature::check(&c.temperature, inputs.temperature_c);
     faults.take(low);
     faults.take(hot);
     faults = faults.with(reading.faults);
@@ -201,7 +201,7 @@ fn close(
         state.faults = faults;
         return Output::default();
     }
-    let most = c.current.max_a * supply_share.min(heat_share);
+    let most = c.current.max_a * supply_share.min(temperature_share);
     let measured = clarke(phases_a);
     let (limit, overload) =
         overload::step(&c.overload, &mut state.overload, plan.period_s, measured.square(), most);

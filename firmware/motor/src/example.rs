@@ -70,7 +70,7 @@ pub const EXAMPLE: Config = Config {
     sensors: SensorsConfig { range_a: 160.0, trip_a: 15.0, sum_a: 2.0, sum_ticks: 4 },
     overload: OverloadConfig { continuous_a: 3.29, time_s: 43.1 },
     supply: SupplyConfig { low_v: 16.0, sag_v: 18.0, high_v: 32.0, persist_ticks: 2 },
-    heat: TemperatureConfig { warm_c: 80.0, hot_c: 100.0 },
+    temperature: TemperatureConfig { warm_c: 80.0, hot_c: 100.0 },
     stall: StallConfig { hold_a: 3.0, still_turns_s: 0.3, time_s: 2.0 },
     follow: CurrentTrackingConfig { error_a: 1.5, mean_ticks: 20 },
     emf: BackEmfConfig { error_v: 1.0, resistance_part: 0.5, mean_ticks: 100 },

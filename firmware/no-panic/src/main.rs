@@ -19,7 +19,7 @@ use control::{
     wire,
 };
 use core::hint::black_box;
-use devices::vesc6::{BOARD_HEAT, GATE_DRIVER, MOTOR, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
+use devices::vesc6::{BOARD_TEMPERATURE, GATE_DRIVER, MOTOR, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
 use devices::wheel::{self, WheelState};
 use devices::{as5047, bmi160, drv8301};
 use link::alignment::{ALIGNMENT_BYTES, Alignment, Offset};
@@ -135,7 +135,7 @@ fn pulses_of_a_wheel() {
     ));
 }
 
-/// The current loop, told anything.
+/// The current loop, with any input.
 fn motor() {
     used(black_box(motor::example::EXAMPLE).motor_id());
     let Ok(plan) = black_box(motor::example::EXAMPLE).plan() else { return };
@@ -151,10 +151,10 @@ fn motor() {
     }
 }
 
-/// The parts of a board, which say anything.
+/// The parts of a board, with any values.
 fn board() {
     let counts = black_box(0_u16);
-    used((SHUNT.ampere(counts), SUPPLY.volt(counts), BOARD_HEAT.celsius(counts)));
+    used((SHUNT.ampere(counts), SUPPLY.volt(counts), BOARD_TEMPERATURE.celsius(counts)));
     used((STEER_RAD.value(counts), RIDER_NM.value(counts), black_box(as5047::Line::default()).step(counts)));
     used(bmi160::sample(black_box(0), &black_box([0; bmi160::BURST])));
     let settings = black_box(GATE_DRIVER);
@@ -199,7 +199,7 @@ fn offset() {
     used(Offset::choose(black_box(None), stored, black_box(0)).turns());
 }
 
-/// The engineer's line: any bytes in, whatever they ask for, and all that goes out; the kept faults; the loop's chunks.
+/// The engineer's line: any bytes in, any requests, and all output; the stored faults; the loop's chunks.
 fn engineer(mut config: Config) {
     let (mut decoder, mut sender) = (Decoder::default(), TxQueue::<1024, 1024>::new(1));
     let (mut ring, mut chunk) = (black_box([0; RING_BYTES]), black_box([0; MAX_CHUNK]));

@@ -46,7 +46,7 @@ fn main() -> ! {
         |control| control.spawn(defmt::unwrap!(hold().ok())),
         |thread| {
             thread.spawn(defmt::unwrap!(log_and_store(stored).ok()));
-            thread.spawn(defmt::unwrap!(board::watch_drive().ok()));
+            thread.spawn(defmt::unwrap!(board::record_drive_faults().ok()));
         },
     )
 }
@@ -76,14 +76,14 @@ async fn hold() {
 #[embassy_executor::task]
 async fn log_and_store(stored: &'static mut StoredConfig) {
     let mut tick = Ticker::every(Duration::from_millis(10));
-    let mut seen = 0;
+    let mut counted = 0;
     for count in (0..50_u32).cycle() {
         tick.next().await;
         let periods = PERIODS.load(Relaxed);
-        if periods != seen {
+        if periods != counted {
             board::feed_watchdog();
         }
-        seen = periods;
+        counted = periods;
         if let Some(offset_turns) = FOUND.try_take() {
             store(stored, offset_turns).await;
         }

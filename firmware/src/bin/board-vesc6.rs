@@ -39,7 +39,7 @@ fn main() -> ! {
             thread.spawn(defmt::unwrap!(tasks::line(firmware::image!(), stored).ok()));
             thread.spawn(defmt::unwrap!(tasks::report().ok()));
             thread.spawn(defmt::unwrap!(board::broadcast().ok()));
-            thread.spawn(defmt::unwrap!(board::watch_drive().ok()));
+            thread.spawn(defmt::unwrap!(board::record_drive_faults().ok()));
             thread.spawn(defmt::unwrap!(tasks::supervise(&[Task::Control, Task::Line, Task::Report]).ok()));
         },
     )

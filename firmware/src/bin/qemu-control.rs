@@ -39,7 +39,7 @@ async fn block(every: Duration, hold: Duration) {
 
 /// Ends the run and reports the result.
 #[embassy_executor::task]
-async fn judge(length: Duration) {
+async fn end_run(length: Duration) {
     let start = Instant::from_millis(Instant::now().as_millis());
     Timer::at(start + length).await;
     let Some(t) = telemetry::latest() else { exit(Exit::Failure) };
@@ -88,7 +88,7 @@ fn main() -> ! {
             thread.spawn(tasks::supervise(&[Task::Control, Task::Report]).unwrap());
             thread.spawn(tasks::report().unwrap());
             thread.spawn(hog().unwrap());
-            thread.spawn(judge(length).unwrap());
+            thread.spawn(end_run(length).unwrap());
         },
     )
 }

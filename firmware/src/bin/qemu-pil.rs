@@ -21,7 +21,7 @@ fn main() -> ! {
     crash::start(board::reset_cause());
     text::line(format_args!("{}", firmware::identity!()));
     if !fault_injection::prepare() {
-        text::line(format_args!("no such mishap, or no time for it"));
+        text::line(format_args!("no such fault, or at_ms is missing"));
         exit(Exit::Input)
     }
     let stored = STORED.init(StoredConfig::open());

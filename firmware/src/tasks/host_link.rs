@@ -115,7 +115,7 @@ async fn take(
         }
         Message::Store if !settings::engaged() => {
             let saved = stored.save(&settings::config()).await;
-            let rejected = |_| Message::Refused(Rejection::of(RejectReason::NotStored));
+            let rejected = |_| Message::Rejected(Rejection::of(RejectReason::NotStored));
             queue.answer(&saved.map_or_else(rejected, |()| Message::Done), sequence);
         }
         Message::ListFaults { from } => {
@@ -143,7 +143,7 @@ fn change(request: &Message<'_>, sequence: u16, queue: &mut Queue) {
     {
         settings::offer(plan, false);
     }
-    queue.answer(&answer.unwrap_or(Message::Refused(Rejection::of(RejectReason::NotHere))), sequence);
+    queue.answer(&answer.unwrap_or(Message::Rejected(Rejection::of(RejectReason::NotHere))), sequence);
 }
 
 /// Telemetry message of a control step.

@@ -1,5 +1,5 @@
-//! Rides the virtual board beside the simulator: `ride IMAGE rides|causes|column`; `ride IMAGE SECONDS` rides it alone,
-//! to be timed.
+//! Rides the virtual board beside the simulator: `ride IMAGE rides|causes|column`; `ride IMAGE SECONDS` rides it
+//! alone, to measure the time it takes.
 
 use std::path::{Path, PathBuf};
 use virtual_board::Options;
@@ -13,11 +13,11 @@ use sim_host::ride::{Conditions, Ride, Start, rides_on, traced, traced_on};
 
 /// Steer rate of the disturbance \[rad/s\].
 const KNOCK_RAD_S: f64 = 1.5;
-/// What is compared of a ride \[s\].
+/// Duration of the comparison of a ride \[s\].
 const COMPARED_S: f64 = 2.0;
-/// How exactly a border is found \[rad/s\].
+/// Tolerance of a border \[rad/s\].
 const TOLERANCE_RAD_S: f64 = 0.25;
-/// How long a ride beside a border lasts \[s\].
+/// Duration of a ride beside a border \[s\].
 const BORDER_S: f64 = 4.0;
 
 fn main() -> Result<(), Reason> {
@@ -33,7 +33,7 @@ fn main() -> Result<(), Reason> {
     }
 }
 
-/// The product at 5 m/s, hands off, as long as it lasts.
+/// The product at 5 m/s, hands off, for the whole duration.
 fn alone(image: &Path, seconds: f64) -> Result<(), Reason> {
     let conditions = on_board(Preset::Product, None, seconds)?;
     let mut board = OnBicycle::new(PathBuf::from(image), Options::default(), &conditions);

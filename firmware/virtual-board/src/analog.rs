@@ -1,6 +1,6 @@
 //! Analog inputs: physical values to counts of 12 bits at 3.3 V.
 
-use devices::vesc6::{BOARD_HEAT, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
+use devices::vesc6::{BOARD_TEMPERATURE, RIDER_NM, SHUNT, STEER_RAD, SUPPLY};
 
 const FULL_SCALE: f64 = 4095.0;
 
@@ -61,9 +61,12 @@ impl Analog {
 
     pub(crate) fn board_temperature_counts(&self) -> u16 {
         let kelvin = self.board_c + 273.15;
-        let ohm = f64::from(BOARD_HEAT.nominal_ohm)
-            * (f64::from(BOARD_HEAT.beta_k) * (1.0 / kelvin - 1.0 / 298.15)).exp();
-        clamped(FULL_SCALE * f64::from(BOARD_HEAT.lower_ohm) / (f64::from(BOARD_HEAT.lower_ohm) + ohm))
+        let ohm = f64::from(BOARD_TEMPERATURE.nominal_ohm)
+            * (f64::from(BOARD_TEMPERATURE.beta_k) * (1.0 / kelvin - 1.0 / 298.15)).exp();
+        clamped(
+            FULL_SCALE * f64::from(BOARD_TEMPERATURE.lower_ohm)
+                / (f64::from(BOARD_TEMPERATURE.lower_ohm) + ohm),
+        )
     }
 
     pub(crate) fn supply_counts(&self, bus_v: f64) -> u16 {

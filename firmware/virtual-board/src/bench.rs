@@ -34,12 +34,12 @@ pub const STORE_BYTES: usize = (STORE.end - STORE.start) as usize;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The image can't be read, or is invalid.
-    #[error("{path}: {why}")]
+    #[error("{path}: {reason}")]
     Image {
         /// File name.
         path: PathBuf,
         /// Reason.
-        why: String,
+        reason: String,
     },
     /// The emulator did not start, or failed.
     #[error("the emulator: {0}")]
@@ -171,7 +171,7 @@ impl Bench {
         wiring: Wiring,
         store: Option<&[u8]>,
     ) -> Result<Self, Error> {
-        let wrong = |why: String| Error::Image { path: image.to_owned(), why };
+        let wrong = |reason: String| Error::Image { path: image.to_owned(), reason };
         let bytes = std::fs::read(image).map_err(|e| wrong(e.to_string()))?;
         let functions = Functions::read(&bytes).map_err(wrong)?;
         let log = Log::new(&bytes).map_err(wrong)?;
@@ -255,7 +255,7 @@ impl Bench {
     /// # Errors
     /// [`Error::Image`] where none or several have it.
     pub fn function(&self, name: &str) -> Result<u32, Error> {
-        self.functions.start(name).map_err(|why| Error::Image { path: self.image.clone(), why })
+        self.functions.start(name).map_err(|reason| Error::Image { path: self.image.clone(), reason })
     }
 
     /// Error for an event that did not occur.
@@ -355,7 +355,7 @@ impl Bench {
     fn end(&mut self) -> String {
         let ended = self.thread.take().map(JoinHandle::join);
         match ended {
-            Some(Ok(Err(why))) => why,
+            Some(Ok(Err(reason))) => reason,
             Some(Ok(Ok(()))) | None => "the run ended".into(),
             Some(Err(_)) => "the emulator's thread panicked".into(),
         }

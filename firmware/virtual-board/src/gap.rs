@@ -12,11 +12,12 @@ pub(crate) fn gap(session: &Session<Vesc6>) -> Option<(String, Option<u32>)> {
     let unmapped =
         unmapped.map(|at| (format!("no register at {:#010x}", at.address), Some(at.program_counter as u32)));
     let refused = session.refused().iter().next().map(|(at, fault)| (format!("{at:#010x}: {fault}"), by));
-    let unimplemented = session.unimplemented().iter().next().map(|(at, seen)| {
-        let what = format!("{}.{} at {at:#010x} has no model", seen.instance, seen.register);
-        (what, Some(seen.program_counter as u32))
+    let unimplemented = session.unimplemented().iter().next().map(|(at, access)| {
+        let what = format!("{}.{} at {at:#010x} has no model", access.instance, access.register);
+        (what, Some(access.program_counter as u32))
     });
-    let told = session.told().next();
-    let told = told.map(|told| (format!("{}.{}: {}", told.instance, told.register, told.reason), by));
-    unmapped.or(refused).or(unimplemented).or(told)
+    let reason = session.told().next();
+    let reason =
+        reason.map(|reason| (format!("{}.{}: {}", reason.instance, reason.register, reason.reason), by));
+    unmapped.or(refused).or(unimplemented).or(reason)
 }

@@ -14,8 +14,8 @@ impl Functions {
     /// # Errors
     /// The reason: not an ELF file, another machine, a vector table that is invalid for this chip, or no symbols.
     pub(crate) fn read(image: &[u8]) -> Result<Self, String> {
-        let file = object::File::parse(image).map_err(|why| match image {
-            [0x7f, b'E', b'L', b'F', ..] => format!("an ELF file that is damaged or cut short: {why}"),
+        let file = object::File::parse(image).map_err(|error| match image {
+            [0x7f, b'E', b'L', b'F', ..] => format!("an ELF file that is damaged or cut short: {error}"),
             _ => "not an ELF file".into(),
         })?;
         if file.architecture() != Architecture::Arm || file.is_64() {

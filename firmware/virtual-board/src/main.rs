@@ -34,10 +34,10 @@ const SWITCH_MS: f64 = 2000.0;
 Examples:
   virtual-board                                   # the product image, until Ctrl-C
   virtual-board --align --switch --seconds 7      # align the encoder of the virtual motor
-  virtual-board --store board.flash --seconds 3   # parameters kept from one run to the next
+  virtual-board --store board.flash --seconds 3   # parameters preserved between runs
   sim-host monitor --port /dev/pts/5              # in another terminal, with the device that was printed
 
-Exit status: 0 after the time asked for or Ctrl-C; 1 where the program did something that no model answers for,
+Exit status: 0 after the requested time or Ctrl-C; 1 where the program used something without a model,
 or wrote no line of its log in the first 2 s; 2 for wrong options and images that can't be used."
 )]
 struct Arguments {
@@ -65,7 +65,7 @@ struct Arguments {
     /// A second node on the CAN bus acknowledges; what it takes is printed
     #[arg(long)]
     can: bool,
-    /// As fast as it goes, not held to real time
+    /// As fast as possible, not in real time
     #[arg(long)]
     fast: bool,
 }
@@ -90,7 +90,7 @@ enum Line {
 }
 
 impl Line {
-    /// Bytes for the board; `None` where nobody can send any more.
+    /// Bytes for the board; `None` if nothing can be sent any more.
     fn read(&mut self) -> Option<Vec<u8>> {
         match self {
             Line::Pty(pty) => Some(pty.read()),
@@ -107,7 +107,7 @@ impl Line {
             Line::Pty(pty) => pty.write(bytes),
             Line::Stdio(_) => {
                 let mut out = std::io::stdout().lock();
-                // A reader that is gone is noticed at its end of the input.
+                // A closed output is detected at the end of the input.
                 let _ = out.write_all(bytes).and_then(|()| out.flush());
             }
         }
@@ -117,9 +117,9 @@ impl Line {
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            eprintln!("virtual-board: {why}");
-            let program = matches!(why, Failure::Board(Error::Gap { .. } | Error::Endless { .. }));
+        Err(error) => {
+            eprintln!("virtual-board: {error}");
+            let program = matches!(error, Failure::Board(Error::Gap { .. } | Error::Endless { .. }));
             ExitCode::from(if program { 1 } else { 2 })
         }
     }
@@ -141,9 +141,9 @@ enum Failure {
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let stop = Arc::new(AtomicBool::new(false));
-    let asked = Arc::clone(&stop);
-    ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed)).map_err(Failure::Interrupt)?;
-    let store = arguments.store.as_deref().map(kept).transpose()?.flatten();
+    let requested = Arc::clone(&stop);
+    ctrlc::set_handler(move || requested.store(true, Ordering::Relaxed)).map_err(Failure::Interrupt)?;
+    let store = arguments.store.as_deref().map(stored).transpose()?.flatten();
     let mut wiring = Wiring::new();
     wiring.can.network.node = arguments.can;
     let options = Options { cycles_per_instruction: arguments.cycles_per_instruction, ..Options::default() };
@@ -201,14 +201,14 @@ fn show_can(bench: &mut Bench) {
 }
 
 /// The flash of the parameters in a file, if there is one. A file that is none, or can't be written at the end, is
-/// refused before the run.
-fn kept(file: &Path) -> Result<Option<Vec<u8>>, Failure> {
-    let failed = |why| Failure::File(file.to_owned(), why);
+/// rejected before the run.
+fn stored(file: &Path) -> Result<Option<Vec<u8>>, Failure> {
+    let failed = |error| Failure::File(file.to_owned(), error);
     let store = match std::fs::read(file) {
         Ok(bytes) if bytes.len() == STORE_BYTES => Some(bytes),
         Ok(bytes) => return Err(Failure::NoStore(file.to_owned(), bytes.len(), STORE_BYTES)),
-        Err(why) if why.kind() == std::io::ErrorKind::NotFound => None,
-        Err(why) => return Err(failed(why)),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
+        Err(error) => return Err(failed(error)),
     };
     std::fs::OpenOptions::new().append(true).create(true).open(file).map_err(failed)?;
     if store.is_none() {

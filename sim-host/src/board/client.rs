@@ -119,9 +119,9 @@ impl Client {
             self.line.send(&bytes[..used])?;
             let Some(answer) = self.answer(wait)? else { continue };
             return match answer.message() {
-                Ok(Message::Refused(refusal)) => {
-                    let (requested, text) = (requested.into(), refusal.to_string());
-                    Err(ClientError::Refused { requested, reason: refusal.why, text })
+                Ok(Message::Rejected(rejection)) => {
+                    let (requested, text) = (requested.into(), rejection.to_string());
+                    Err(ClientError::Refused { requested, reason: rejection.reason, text })
                 }
                 Ok(message) => fits(&message).ok_or_else(mismatch),
                 Err(NoMessage::UnknownKind(_) | NoMessage::Malformed(_)) => Err(mismatch()),

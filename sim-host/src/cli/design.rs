@@ -6,7 +6,7 @@ use super::outputs::{OutputArgs, Results, complain};
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Axis, Search};
 use crate::design::document::{Design, DesignDocument, figure, law_file};
-use crate::design::{Knots, Plan, Progress, arena, competitors, judge, optimise};
+use crate::design::{Knots, Plan, Progress, competitors, evaluate, optimise, scenarios};
 use crate::report::figure;
 use crate::report::output::Output;
 use crate::report::table;
@@ -115,7 +115,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         evaluations: args.evaluations,
     };
     let fine = search("--judge", args.judge.0.unwrap_or(0.25), 0.25, 0.02)?;
-    let scenarios = arena(args.fall.fall()?);
+    let scenarios = scenarios(args.fall.fall()?);
     let outputs = args.outputs.open(None)?;
     let law_output = args.law_file.as_deref().map(Output::create).transpose()?;
     if let Some(output) = &law_output {
@@ -143,11 +143,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let law = plan.knots.law(&found.gains)?;
     let mut laws = competitors();
     laws.push(("design".into(), law.clone()));
-    let mut judged = None;
+    let mut evaluation = None;
     if args.judge.0.is_some() && !interrupt::stopped() {
         let columns = (scenarios.training.len() + scenarios.held_out.len()) * laws.len() * fine.speeds.len();
         let bar = progress(outputs.shows_progress(), "judge", columns as u64);
-        judged = pool.install(|| judge(&scenarios, &laws, &fine, &|| bar.inc(1), &interrupt::stopped))?;
+        evaluation =
+            pool.install(|| evaluate(&scenarios, &laws, &fine, &|| bar.inc(1), &interrupt::stopped))?;
         bar.finish_and_clear();
     }
     let design = Design {
@@ -158,7 +159,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         scenarios: &scenarios,
         fine: &fine,
         laws: &laws,
-        judged: judged.as_ref(),
+        evaluation: evaluation.as_ref(),
     };
     if let Some(output) = &law_output {
         output.finish(law_file(&design).as_bytes())?;

@@ -12,7 +12,7 @@ use crate::report::figure::{self, EigenFigure};
 use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider};
 use crate::report::tool::{SCHEMA, Tool};
 use crate::report::{table, terminal};
-use crate::rider::doubts;
+use crate::rider::compatibility_warnings;
 use crate::scenario::{law, speeds};
 use control::{Capsize, Law};
 use nalgebra::Complex;
@@ -99,7 +99,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     warn(&bicycle);
     let law = law::parse(&args.law)?;
     let (resolved, rider) = match args.rider.rider()? {
-        Some(one) => (Some(ResolvedRider::new(&one)), Some((one.rider, doubts(&bicycle, &one.table)))),
+        Some(one) => {
+            (Some(ResolvedRider::new(&one)), Some((one.rider, compatibility_warnings(&bicycle, &one.table))))
+        }
         None => (None, None),
     };
     let alone = law == Law::None && rider.is_none() && args.capsize.is_none();

@@ -83,8 +83,8 @@ fn summary(t: &RiderTable) -> String {
         first.speed_m_s,
         last.speed_m_s,
         (t.delay_s * 1e9).round() / 1e6,
-        t.muscles.omega_rad_s,
-        t.muscles.zeta
+        t.neuromuscular.omega_rad_s,
+        t.neuromuscular.zeta
     )
 }
 
@@ -118,7 +118,7 @@ fn show(args: &ShowArgs) -> Result<(), Failure> {
         return Err("--json and --csv have the same place to write to".into());
     }
     if let Some(output) = &csv {
-        let config = json!({"rider": table.name, "delay_s": table.delay_s, "muscles": table.muscles});
+        let config = json!({"rider": table.name, "delay_s": table.delay_s, "muscles": table.neuromuscular});
         output.finish(&table::table(&config, &gain_rows(&table, &fits)?)?)?;
     }
     if let Some(output) = &json {

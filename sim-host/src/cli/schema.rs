@@ -17,8 +17,11 @@ use crate::thesis::document::ThesisDocument;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 
+/// Name of a document, and the function that makes its schema.
+type Document = (&'static str, fn() -> Schema);
+
 /// The documents by their commands' names.
-const DOCUMENTS: [(&str, fn() -> Schema); 17] = [
+const DOCUMENTS: [Document; 17] = [
     ("basin", of::<BasinDocument>),
     ("ride", of::<RideDocument>),
     ("scenario", of::<Scenario>),

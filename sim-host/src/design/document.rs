@@ -1,6 +1,6 @@
 //! Document, table, figure and law file of `design`.
 
-use super::{Found, Judged, Plan, Scenarios};
+use super::{Evaluation, Found, Plan, Scenarios};
 use crate::basin::Bound;
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use crate::report::resolved::ResolvedSearch;
@@ -112,7 +112,7 @@ pub struct Design<'a> {
     /// The compared laws; the designed one is the last.
     pub laws: &'a [(String, Law)],
     /// Their areas, if evaluated.
-    pub judged: Option<&'a Judged>,
+    pub evaluation: Option<&'a Evaluation>,
 }
 
 impl DesignDocument {
@@ -120,8 +120,8 @@ impl DesignDocument {
     pub fn new(d: &Design, seconds: f64) -> Self {
         let trials = d.scenarios.training.iter().map(|t| (t, true));
         let trials: Vec<_> = trials.chain(d.scenarios.held_out.iter().map(|t| (t, false))).collect();
-        let entries = |judged: &Judged| {
-            let found = judged.areas.iter().zip(&judged.capped);
+        let entries = |evaluation: &Evaluation| {
+            let found = evaluation.areas.iter().zip(&evaluation.capped);
             let entries =
                 trials.iter().zip(found).map(|((trial, designed_with), (area, capped))| TrialEntry {
                     label: trial.label.clone(),
@@ -154,7 +154,7 @@ impl DesignDocument {
             coarse: SearchEntry::new(&d.plan.search),
             fine: SearchEntry::new(d.fine),
             laws: d.laws.iter().map(|(name, _)| name.clone()).collect(),
-            trials: d.judged.map_or(Vec::new(), entries),
+            trials: d.evaluation.map_or(Vec::new(), entries),
             seconds,
         }
     }
@@ -259,7 +259,7 @@ pub fn figure(document: &DesignDocument, laws: &[(String, Law)]) -> Chart {
             points,
         )
     });
-    let judged = Plot {
+    let evaluation = Plot {
         title: "Area of the basin; right of the line: held out".into(),
         x: Axis::new("Trial"),
         y: Axis::new("Area [rad m/s²]"),
@@ -267,6 +267,6 @@ pub fn figure(document: &DesignDocument, laws: &[(String, Law)]) -> Chart {
         verticals: vec![document.trials.iter().filter(|t| t.designed_with).count() as f64 + 0.5],
         ..Plot::default()
     };
-    let plots = if document.trials.is_empty() { vec![schedule] } else { vec![schedule, judged] };
+    let plots = if document.trials.is_empty() { vec![schedule] } else { vec![schedule, evaluation] };
     Chart { title: "A designed law beside the known ones".into(), columns: 2, plots, shaded: String::new() }
 }

@@ -7,7 +7,7 @@ use control::Law;
 
 /// Areas of the laws in all trials.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judged {
+pub struct Evaluation {
     /// For each trial, training trials first, the area of each law \[rad m/s^2\].
     pub areas: Vec<Vec<f64>>,
     /// Whether these are lower bounds, as no ride fell up to the largest rate tried at some speed.
@@ -34,20 +34,20 @@ pub fn competitors() -> Vec<(String, Law)> {
 ///
 /// # Errors
 /// A trial can't be simulated.
-pub fn judge(
-    arena: &Scenarios,
+pub fn evaluate(
+    scenarios: &Scenarios,
     laws: &[(String, Law)],
     search: &Search,
     advanced: &(dyn Fn() + Sync),
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<Judged>, String> {
-    let trials = arena.training.iter().chain(&arena.held_out);
+) -> Result<Option<Evaluation>, String> {
+    let trials = scenarios.training.iter().chain(&scenarios.held_out);
     let cases: Vec<(&Trial, &Law)> =
         trials.flat_map(|trial| laws.iter().map(move |(_, law)| (trial, law))).collect();
     let basins = basins(&cases, search, advanced, stop)?;
     Ok(basins.map(|all| {
         let by_trial = || all.chunks(laws.len());
-        Judged {
+        Evaluation {
             areas: by_trial().map(|of_laws| of_laws.iter().map(Basin::area).collect()).collect(),
             capped: by_trial().map(|of_laws| of_laws.iter().map(Basin::capped).collect()).collect(),
         }

@@ -7,7 +7,7 @@ mod knots;
 mod scenarios;
 mod search;
 
-pub use evaluation::{Judged, competitors, judge};
+pub use evaluation::{Evaluation, competitors, evaluate};
 pub use knots::{GAINS, Knots};
-pub use scenarios::{Scenarios, arena};
+pub use scenarios::{Scenarios, scenarios};
 pub use search::{Found, Plan, Progress, optimise};

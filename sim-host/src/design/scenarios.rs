@@ -30,7 +30,7 @@ const LATE_MS: u16 = 20;
 
 /// Training: no rider, the young and the smart rider, with sensor delays of 0, 20 and 50 ms. Hold-out: other
 /// riders and other bicycles. The motor has the product's limits.
-pub fn arena(fall: FallCriterion) -> Scenarios {
+pub fn scenarios(fall: FallCriterion) -> Scenarios {
     let limits = Config::product().limits;
     let on = |bicycle, rider, delay_s, late| {
         let mut trial = Trial::new(bicycle, rider, delay_s, late, limits);

@@ -150,7 +150,7 @@ impl<B: Lockstep> Controller<B> {
                     command = Some((Stepped { command: newest, authority }, received.sequence));
                 }
                 Ok(Message::Done) => reset |= received.sequence == ride.number,
-                Ok(Message::Refused(refusal)) => return Err(BoardError::Refused(refusal.to_string())),
+                Ok(Message::Rejected(rejection)) => return Err(BoardError::Refused(rejection.to_string())),
                 Ok(_) => {}
                 Err(NoMessage::UnknownKind(kind) | NoMessage::Malformed(kind)) => {
                     return Err(ride.violation(format!("a message of kind {kind:#04x} that can't be read")));

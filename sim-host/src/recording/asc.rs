@@ -57,8 +57,8 @@ pub fn parse(text: &str) -> Result<Frames, Remark> {
             continue;
         };
         now_s = if relative { now_s + stamp_s } else { stamp_s };
-        let words: Vec<&str> = rest.split_whitespace().collect();
-        let event = match words.as_slice() {
+        let tokens: Vec<&str> = rest.split_whitespace().collect();
+        let event = match tokens.as_slice() {
             ["CANFD", bus, rest @ ..] => flexible(rest, radix).map(|event| (*bus, event)),
             [bus, rest @ ..] if is_number(bus) => classic(rest, radix).map(|event| (*bus, event)),
             _ => Ok(("", Event::Other)),
@@ -83,14 +83,14 @@ pub fn parse(text: &str) -> Result<Frames, Remark> {
 
 /// Radix of a header's `base` line, and whether its time stamps are relative.
 fn base_of(line: &str) -> Option<(u32, bool)> {
-    let words: Vec<String> = line.split_whitespace().take(4).map(str::to_ascii_lowercase).collect();
-    let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let radix = match words.as_slice() {
+    let tokens: Vec<String> = line.split_whitespace().take(4).map(str::to_ascii_lowercase).collect();
+    let tokens: Vec<&str> = tokens.iter().map(String::as_str).collect();
+    let radix = match tokens.as_slice() {
         ["base", "hex", ..] => 16,
         ["base", "dec", ..] => 10,
         _ => return None,
     };
-    Some((radix, matches!(words.as_slice(), [_, _, "timestamps", "relative"])))
+    Some((radix, matches!(tokens.as_slice(), [_, _, "timestamps", "relative"])))
 }
 
 /// Whether a line is the date at the beginning; a table's header can begin with the same word.
@@ -111,13 +111,13 @@ fn is_header(line: &str) -> bool {
         "no internal events",
         "previous log file",
     ];
-    is_date(line) || WORDS.iter().any(|word| starts(line, word))
+    is_date(line) || WORDS.iter().any(|token| starts(line, token))
 }
 
 /// Whether a line is a data frame, without any header.
 fn is_frame(line: &str) -> bool {
-    let words: Vec<&str> = line.split_whitespace().collect();
-    match words.as_slice() {
+    let tokens: Vec<&str> = line.split_whitespace().collect();
+    match tokens.as_slice() {
         [time, "CANFD", _, "Rx" | "Tx", ..] => stamp(time).is_some(),
         [time, bus, _, "Rx" | "Tx", "d" | "r", ..] => stamp(time).is_some() && is_number(bus),
         _ => false,
@@ -125,36 +125,36 @@ fn is_frame(line: &str) -> bool {
 }
 
 /// A time stamp in seconds: digits, a point, digits.
-fn stamp(word: &str) -> Option<f64> {
-    let (whole, part) = word.split_once('.')?;
+fn stamp(token: &str) -> Option<f64> {
+    let (whole, part) = token.split_once('.')?;
     let digits = is_number(whole.strip_prefix('-').unwrap_or(whole)) && is_number(part);
-    digits.then(|| word.parse().ok()).flatten()
+    digits.then(|| token.parse().ok()).flatten()
 }
 
-fn is_number(word: &str) -> bool {
-    !word.is_empty() && word.bytes().all(|digit| digit.is_ascii_digit())
+fn is_number(token: &str) -> bool {
+    !token.is_empty() && token.bytes().all(|digit| digit.is_ascii_digit())
 }
 
 /// A number in the file's base.
-fn number(word: &str, radix: u32) -> Option<u32> {
-    let digits = word.chars().all(|digit| digit.is_digit(radix));
-    digits.then(|| u32::from_str_radix(word, radix).ok()).flatten()
+fn number(token: &str, radix: u32) -> Option<u32> {
+    let digits = token.chars().all(|digit| digit.is_digit(radix));
+    digits.then(|| u32::from_str_radix(token, radix).ok()).flatten()
 }
 
 /// An identifier; a trailing `x` marks 29 bits.
-fn id_of(word: &str, radix: u32) -> Result<Id, &'static str> {
-    let (digits, extended) = match word.strip_suffix(['x', 'X']) {
+fn id_of(token: &str, radix: u32) -> Result<Id, &'static str> {
+    let (digits, extended) = match token.strip_suffix(['x', 'X']) {
         Some(digits) => (digits, true),
-        None => (word, false),
+        None => (token, false),
     };
     let number = number(digits, radix).ok_or("its identifier is no number of the file's base")?;
     Id::new(number, extended).ok_or("its identifier has too many bits")
 }
 
 /// An event of a classic bus, from its identifier on: `123 Rx d 4 DE AD BE EF`.
-fn classic(words: &[&str], radix: u32) -> Result<Event, &'static str> {
-    match words {
-        [word, ..] if word.eq_ignore_ascii_case("ErrorFrame") => Ok(Event::Error),
+fn classic(tokens: &[&str], radix: u32) -> Result<Event, &'static str> {
+    match tokens {
+        [token, ..] if token.eq_ignore_ascii_case("ErrorFrame") => Ok(Event::Error),
         [_, "Rx" | "Tx", "r", ..] => Ok(Event::Remote),
         [id, "Rx" | "Tx", "d", rest @ ..] => {
             let id = id_of(id, radix)?;
@@ -169,19 +169,19 @@ fn classic(words: &[&str], radix: u32) -> Result<Event, &'static str> {
 }
 
 /// An event of a CAN FD bus, from its direction on: `Rx 123 [name] 1 0 d 32 DE ...`.
-fn flexible(words: &[&str], radix: u32) -> Result<Event, &'static str> {
-    let ([_, id, rest @ ..], true) = (words, matches!(words.first(), Some(&("Rx" | "Tx")))) else {
+fn flexible(tokens: &[&str], radix: u32) -> Result<Event, &'static str> {
+    let ([_, id, rest @ ..], true) = (tokens, matches!(tokens.first(), Some(&("Rx" | "Tx")))) else {
         return Ok(Event::Other);
     };
     if id.eq_ignore_ascii_case("ErrorFrame") {
         return Ok(Event::Error);
     }
     let id = id_of(id, radix)?;
-    let named = rest.first().is_some_and(|word| !matches!(*word, "0" | "1"));
+    let named = rest.first().is_some_and(|token| !matches!(*token, "0" | "1"));
     let [_switched, _passive, code, length, rest @ ..] = &rest[usize::from(named)..] else {
         return Err("is no whole frame");
     };
-    let length = Some(length).filter(|word| is_number(word)).and_then(|word| word.parse::<usize>().ok());
+    let length = Some(length).filter(|token| is_number(token)).and_then(|token| token.parse::<usize>().ok());
     let length = length.filter(|length| *length <= MOST_BYTES).ok_or("its length is invalid for a frame")?;
     if length == 0 && *code != "0" {
         return Ok(Event::Remote);
@@ -190,11 +190,11 @@ fn flexible(words: &[&str], radix: u32) -> Result<Event, &'static str> {
 }
 
 /// The bytes of a frame; the words after them belong to the event.
-fn bytes_of(words: &[&str], length: usize, radix: u32) -> Result<([u8; MOST_BYTES], usize), &'static str> {
+fn bytes_of(tokens: &[&str], length: usize, radix: u32) -> Result<([u8; MOST_BYTES], usize), &'static str> {
     let mut bytes = [0; MOST_BYTES];
-    let words = words.get(..length).ok_or("has fewer bytes than its stated length")?;
-    for (byte, word) in bytes.iter_mut().zip(words) {
-        let number = number(word, radix).filter(|number| *number < 256);
+    let tokens = tokens.get(..length).ok_or("has fewer bytes than its stated length")?;
+    for (byte, token) in bytes.iter_mut().zip(tokens) {
+        let number = number(token, radix).filter(|number| *number < 256);
         *byte = number.ok_or("its bytes are no numbers of the file's base")? as u8;
     }
     Ok((bytes, length))

@@ -92,17 +92,17 @@ fn line_of(line: &str) -> Result<Line<'_>, &'static str> {
     const SHAPE: &str = "is no line of candump";
     let (stamp, rest) = line.strip_prefix('(').and_then(|line| line.split_once(')')).ok_or(SHAPE)?;
     let time_s = seconds(stamp).ok_or("its time stamp is no number")?;
-    let mut words = rest.split_whitespace();
-    let (bus, second) = (words.next().ok_or(SHAPE)?, words.next().ok_or(SHAPE)?);
+    let mut tokens = rest.split_whitespace();
+    let (bus, second) = (tokens.next().ok_or(SHAPE)?, tokens.next().ok_or(SHAPE)?);
     match second.split_once('#') {
         Some((id, data)) => {
             // Since 2020 a word follows that distinguishes received from sent frames.
-            match words.next() {
+            match tokens.next() {
                 None | Some("R" | "T") => compact(Stamp { time_s, screen: false }, bus, id, data),
                 Some(_) => Err(SHAPE),
             }
         }
-        None => screen(Stamp { time_s, screen: true }, bus, second, words),
+        None => screen(Stamp { time_s, screen: true }, bus, second, tokens),
     }
 }
 
@@ -174,18 +174,18 @@ fn screen<'a>(
     stamp: Stamp,
     bus: &'a str,
     second: &'a str,
-    mut words: std::str::SplitWhitespace<'a>,
+    mut tokens: std::str::SplitWhitespace<'a>,
 ) -> Result<Line<'a>, &'static str> {
     let mut id = second;
-    let mut length = words.next();
+    let mut length = tokens.next();
     for _ in 0..3 {
         if matches!(id, "RX" | "TX" | "-" | "B" | "E") {
-            (id, length) = (length.unwrap_or_default(), words.next());
+            (id, length) = (length.unwrap_or_default(), tokens.next());
         }
     }
     let (number, extended) = id_of(id)?;
-    let length = length.and_then(|word| word.strip_prefix('[')).and_then(|word| word.strip_suffix(']'));
-    let length: usize = length.and_then(|word| word.parse().ok()).ok_or("its length is missing")?;
+    let length = length.and_then(|token| token.strip_prefix('[')).and_then(|token| token.strip_suffix(']'));
+    let length: usize = length.and_then(|token| token.parse().ok()).ok_or("its length is missing")?;
     if extended && number & ERROR_FLAG != 0 {
         return Ok(Line::Error);
     }
@@ -195,15 +195,15 @@ fn screen<'a>(
     }
     let mut bytes = [0; MOST_BYTES];
     for byte in &mut bytes[..length] {
-        match words.next() {
+        match tokens.next() {
             Some("remote") => return Ok(Line::Remote),
-            Some(word) if word.len() == 2 => {
-                *byte = hexadecimal(word).ok_or("its bytes are no hexadecimal digits")? as u8;
+            Some(token) if token.len() == 2 => {
+                *byte = hexadecimal(token).ok_or("its bytes are no hexadecimal digits")? as u8;
             }
             _ => return Err("has fewer bytes than its stated length"),
         }
     }
-    if length == 0 && words.next() == Some("remote") {
+    if length == 0 && tokens.next() == Some("remote") {
         return Ok(Line::Remote);
     }
     Ok(Line::Data { stamp, bus, id, data: (bytes, length) })
@@ -211,12 +211,13 @@ fn screen<'a>(
 
 /// Whether a line is screen output without a time stamp.
 fn screen_without_stamp(line: &str) -> bool {
-    let mut words = line.split_whitespace();
-    let bus = words.next().is_some_and(|bus| bus.starts_with(|c: char| c.is_ascii_alphabetic()));
-    let id = words.next().is_some_and(|id| id_of(id).is_ok());
-    let length = words.next().is_some_and(|word| {
-        word.strip_prefix('[')
-            .and_then(|word| word.strip_suffix(']'))
+    let mut tokens = line.split_whitespace();
+    let bus = tokens.next().is_some_and(|bus| bus.starts_with(|c: char| c.is_ascii_alphabetic()));
+    let id = tokens.next().is_some_and(|id| id_of(id).is_ok());
+    let length = tokens.next().is_some_and(|token| {
+        token
+            .strip_prefix('[')
+            .and_then(|token| token.strip_suffix(']'))
             .is_some_and(|n| n.parse::<usize>().is_ok())
     });
     bus && id && length

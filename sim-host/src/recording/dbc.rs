@@ -340,7 +340,7 @@ fn gaps(signal: &can_dbc::Signal, message: MessageId, dbc: &Dbc, kind: Kind, bit
 }
 
 /// Whether a name in a value table means "no value".
-pub fn is_gap(words: &str) -> bool {
+pub fn is_gap(name: &str) -> bool {
     const NONE: [&str; 10] = [
         "sna",
         "na",
@@ -354,16 +354,16 @@ pub fn is_gap(words: &str) -> bool {
         "no data",
     ];
     const OF: [&str; 3] = ["signal", "value", "data"];
-    let lower = words.to_lowercase();
-    let mut words: Vec<&str> =
+    let lower = name.to_lowercase();
+    let mut tokens: Vec<&str> =
         lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
-    if NONE.contains(&words.join(" ").as_str()) {
+    if NONE.contains(&tokens.join(" ").as_str()) {
         return true;
     }
-    if words.first().is_some_and(|first| OF.contains(first)) {
-        words.remove(0);
-    } else if words.last().is_some_and(|last| OF.contains(last)) {
-        words.pop();
+    if tokens.first().is_some_and(|first| OF.contains(first)) {
+        tokens.remove(0);
+    } else if tokens.last().is_some_and(|last| OF.contains(last)) {
+        tokens.pop();
     }
-    NONE.contains(&words.join(" ").as_str())
+    NONE.contains(&tokens.join(" ").as_str())
 }

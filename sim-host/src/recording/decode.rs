@@ -128,7 +128,7 @@ impl Rows {
     }
 }
 
-/// What was passed over, by how often it came.
+/// Skipped content, with its number of occurrences.
 fn unread(frames: &Frames, unknown: &BTreeMap<Id, u64>) -> Vec<Remark> {
     let mut remarks: Vec<Remark> = unknown
         .iter()

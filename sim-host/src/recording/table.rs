@@ -123,8 +123,9 @@ fn names_of(line: &str, separator: char) -> Option<Vec<String>> {
     let names: Vec<String> =
         line.split(separator).map(|name| name.trim().trim_matches('"').to_owned()).collect();
     let named = |name: &String| !name.is_empty() && number_of(name).is_none() && !is_blank(name);
-    let says = |name: &String| name.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_' || c == '/');
-    (names.iter().all(named) && names.iter().all(says)).then_some(names)
+    let starts_a_name =
+        |name: &String| name.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_' || c == '/');
+    (names.iter().all(named) && names.iter().all(starts_a_name)).then_some(names)
 }
 
 /// The index of a column; a new one has no value in earlier rows.

@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 pub struct Check {
     /// Its name.
     pub name: &'static str,
-    /// What is compared, with its unit.
+    /// The compared quantity, with its unit.
     pub residual: &'static str,
     /// The largest residual that lasted; null without values to compare.
     pub largest_residual: Option<f64>,

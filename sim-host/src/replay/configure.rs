@@ -56,14 +56,14 @@ pub fn fitted(config: &mut Config, samples: &Samples, map: &Map) -> Result<Fitte
     // The recorded bicycle was assembled and checked before the ride.
     config.calibration.polarity_checked = true;
     for (key, value) in &map.parameters {
-        let words = match value {
+        let text = match value {
             toml::Value::String(word) => word.clone(),
             toml::Value::Boolean(on) => if *on { "on" } else { "off" }.into(),
             number => number.to_string(),
         };
-        parameters::set(config, key, &words).map_err(|error| MapParameterError {
+        parameters::set(config, key, &text).map_err(|error| MapParameterError {
             key: key.clone(),
-            value: words.clone(),
+            value: text.clone(),
             error,
         })?;
     }

@@ -3,9 +3,9 @@
 use super::leap::Leap;
 use super::map::Resample;
 use super::samples::{Sample, Samples, Track};
+use crate::bicycle::Start;
 use crate::num::RandomStream;
 use crate::plant::{Channel, Fault, FaultState, Held, Measured, Sensor, faulty};
-use crate::ride::Start;
 
 /// Longest recording, in control periods: five hours at 1 kHz.
 const MOST_TICKS: f64 = 18e6;

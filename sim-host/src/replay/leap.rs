@@ -20,7 +20,7 @@ pub struct Leap {
 
 impl Display for Leap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "time jumps from {} s to {} s; is the time stamp right?", self.from_s, self.to_s)
+        write!(f, "time jumps from {} s to {} s: check this time stamp", self.from_s, self.to_s)
     }
 }
 

@@ -150,7 +150,7 @@ impl Map {
     /// # Errors
     /// The file with key, value and expected values.
     pub fn load(name: &str) -> Result<Self, MapError> {
-        let content = |error| MapError::Content { name: name.into(), error };
+        let content = |error| MapError::Content { name: name.into(), error: Box::new(error) };
         if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
             return Self::parse(text).map_err(content);
         }

@@ -22,7 +22,7 @@ pub enum MapError {
         /// Name or file.
         name: String,
         /// The error.
-        error: MapTextError,
+        error: Box<MapTextError>,
     },
 }
 

@@ -152,7 +152,10 @@ impl ResolvedRider {
                 Outside::Extrapolate => "extrapolate",
                 Outside::Hold => "hold",
             },
-            muscles: ResolvedMuscles { omega_rad_s: rider.muscles.omega_rad_s, zeta: rider.muscles.zeta },
+            muscles: ResolvedMuscles {
+                omega_rad_s: rider.neuromuscular.omega_rad_s,
+                zeta: rider.neuromuscular.zeta,
+            },
             points: rider.schedule.points().iter().map(|(v, k)| ResolvedGains::new(*v, k)).collect(),
         }
     }
@@ -242,10 +245,10 @@ impl ResolvedConfig {
         let c = &resolved.conditions;
         let config = match &c.assist {
             Assist::Firmware(plan) => Some(plan.config()),
-            Assist::None | Assist::Ideal(_) => None,
+            Assist::None | Assist::Ideal(_) | Assist::Own(_) => None,
         };
         let parameters = match &c.assist {
-            Assist::None => Vec::new(),
+            Assist::None | Assist::Own(_) => Vec::new(),
             Assist::Firmware(plan) => departing(plan.config(), &published(plan.config())),
             Assist::Ideal(ideal) => {
                 let published = Config::thesis(ideal.law.clone());
@@ -263,7 +266,7 @@ impl ResolvedConfig {
             assist: match &c.assist {
                 Assist::None => "none",
                 Assist::Firmware(_) => "firmware",
-                Assist::Ideal(_) => "ideal",
+                Assist::Ideal(_) | Assist::Own(_) => "ideal",
             },
             schedule_speed: format!("{:?}", c.schedule_speed).to_lowercase(),
             imu: format!("{:?}", c.imu).to_lowercase(),

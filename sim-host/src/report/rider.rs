@@ -96,7 +96,10 @@ impl RiderDocument {
             source: table.source.clone(),
             note: table.note.clone(),
             delay_s: table.delay_s,
-            muscles: ResolvedMuscles { omega_rad_s: table.muscles.omega_rad_s, zeta: table.muscles.zeta },
+            muscles: ResolvedMuscles {
+                omega_rad_s: table.neuromuscular.omega_rad_s,
+                zeta: table.neuromuscular.zeta,
+            },
             rows: table.rows.iter().map(row).collect(),
             fits,
         }

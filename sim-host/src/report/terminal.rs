@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn signs_tell_the_kinds_apart() {
+    fn signs_differ_between_kinds() {
         let text = basin_text(vec![column(1.0, 5.0, false), column(2.0, 8.0, true)], 60);
         for sign in ["law: initial steer rate [rad/s]", "forward speed [m/s]", "▒ ", "▓ ", "▲ "] {
             assert!(text.contains(sign), "{sign}\n{text}");

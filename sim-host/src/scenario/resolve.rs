@@ -11,7 +11,7 @@ use crate::bicycle::onboard::fit;
 use crate::parameters;
 use crate::plant::Plant;
 use crate::ride::{Assist, Conditions, IdealLaw, ScheduleSpeed};
-use crate::rider::doubts;
+use crate::rider::compatibility_warnings;
 use control::param::ParamError;
 use control::{Config, Law, Limits, Taper, Wheel};
 use std::path::Path;
@@ -80,7 +80,8 @@ impl Scenario {
         let assist = self.assist(&law, config, limited, &given.name)?;
         let sensor_delay_ticks = whole_ticks("", self.sensor_delay_s, step_s, LONGEST_S)
             .map_err(|e| ScenarioError::value("sensor_delay_s", e))?;
-        let mut warnings = rider.as_ref().map_or(Vec::new(), |one| doubts(&bicycle, &one.table));
+        let mut warnings =
+            rider.as_ref().map_or(Vec::new(), |one| compatibility_warnings(&bicycle, &one.table));
         warnings.extend(cut_files::warnings(self.files()));
         let conditions = self.conditions(&bicycle, assist, rider.as_ref(), (step_s, plant));
         let conditions = Conditions { schedule_speed, sensor_delay_ticks, ..conditions };

@@ -25,8 +25,7 @@ struct Fit {
 
 pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     if all.iter().all(|one| one.recording.distance_m.is_empty()) {
-        let what = "lag and mean: nothing was recorded that the speed follows; the way that the wheel counted would \
-                    do (--distance)";
+        let what = "lag and mean: no reference for the speed was recorded; the wheel's distance would be one (--distance)";
         return found.left_out(what.into());
     }
     let each: Vec<Vec<Fit>> = all.iter().map(stretches).collect();
@@ -37,7 +36,7 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     let numbers =
         (pooled(&of(|fit| fit.window_s)), pooled(&of(|fit| fit.delay_s)), pooled(&of(|fit| fit.scale)));
     let (Some(window), Some(delay), Some(scale)) = numbers else {
-        return found.left_out("lag and mean: in too few stretches of 10 s does the speed change".into());
+        return found.left_out("lag and mean: the speed changes in too few stretches of 10 s".into());
     };
     found.number("mean over", None, "s", window, seconds);
     found.number("delay beside the way", None, "s", delay, seconds);
@@ -49,23 +48,23 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
 }
 
 fn stretches(one: &Recorded) -> Vec<Fit> {
-    let way = &one.recording.distance_m;
+    let distance_m = &one.recording.distance_m;
     let length = (STRETCH_S / one.period_s).round() as usize;
     let fit = |samples: &[crate::replay::Sample]| {
         let (from, to) = (samples[0].t_s - LONGEST_S - 1.0, samples[samples.len() - 1].t_s);
-        let first = way.partition_point(|(t, _)| *t < from);
-        let last = way.partition_point(|(t, _)| *t <= to);
-        let way = &way[first..last];
-        let whole = way.first().is_some_and(|(t, _)| *t < from + 0.1);
-        let set_anew = way.windows(2).any(|two| two[1].1 < two[0].1 - SET_ANEW_M);
+        let first = distance_m.partition_point(|(t, _)| *t < from);
+        let last = distance_m.partition_point(|(t, _)| *t <= to);
+        let distance_m = &distance_m[first..last];
+        let whole = distance_m.first().is_some_and(|(t, _)| *t < from + 0.1);
+        let set_anew = distance_m.windows(2).any(|two| two[1].1 < two[0].1 - SET_ANEW_M);
         let points: Vec<(f64, f64)> = samples.iter().map(|sample| (sample.t_s, sample.value[0])).collect();
-        if !whole || set_anew { None } else { best(&points, way, one.period_s) }
+        if !whole || set_anew { None } else { best(&points, distance_m, one.period_s) }
     };
     one.track.samples.chunks_exact(length).filter_map(fit).collect()
 }
 
 /// Least-squares averaging time and delay, on successively finer grids.
-fn best(points: &[(f64, f64)], way: &[(f64, f64)], period_s: f64) -> Option<Fit> {
+fn best(points: &[(f64, f64)], distance_m: &[(f64, f64)], period_s: f64) -> Option<Fit> {
     let n = points.len() as f64;
     let mean = points.iter().map(|(_, v)| v).sum::<f64>() / n;
     let change: f64 = points.iter().map(|(_, v)| (v - mean).powi(2)).sum();
@@ -74,8 +73,8 @@ fn best(points: &[(f64, f64)], way: &[(f64, f64)], period_s: f64) -> Option<Fit>
     }
     let evaluated = |window_s: f64, delay_s: f64| {
         let mean = |t: f64| {
-            let later = at(way, t - delay_s);
-            (later - at(way, t - delay_s - window_s)) / window_s
+            let later = at(distance_m, t - delay_s);
+            (later - at(distance_m, t - delay_s - window_s)) / window_s
         };
         let sums = points.iter().step_by(5).fold([0.0; 3], |[vm, mm, vv], (t, v)| {
             let m = mean(*t);
@@ -101,8 +100,8 @@ fn best(points: &[(f64, f64)], way: &[(f64, f64)], period_s: f64) -> Option<Fit>
 }
 
 /// Distance at a time, interpolated between two counts \[m\].
-fn at(way: &[(f64, f64)], t_s: f64) -> f64 {
-    let after = way.partition_point(|(t, _)| *t < t_s).clamp(1, way.len() - 1);
-    let ((t0, a), (t1, b)) = (way[after - 1], way[after]);
+fn at(distance_m: &[(f64, f64)], t_s: f64) -> f64 {
+    let after = distance_m.partition_point(|(t, _)| *t < t_s).clamp(1, distance_m.len() - 1);
+    let ((t0, a), (t1, b)) = (distance_m[after - 1], distance_m[after]);
     a + ((t_s - t0) / (t1 - t0)).clamp(0.0, 1.0) * (b - a)
 }

@@ -24,8 +24,10 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
         Sensor::SteerRate => steer_rate(all, found),
         Sensor::Steer => steer(all, found),
         Sensor::FrontWheel | Sensor::RearWheel => super::distance::fit(all, found),
-        Sensor::Gyro => found.left_out("lag: beside the gyro nothing is known to be early".into()),
-        _ => found.left_out("lag: nothing was recorded that moves as this sensor says".into()),
+        Sensor::Gyro => {
+            found.left_out("lag: no recorded quantity is known to be earlier than the gyro".into())
+        }
+        _ => found.left_out("lag: no reference for this sensor was recorded".into()),
     }
 }
 
@@ -110,7 +112,7 @@ fn steer_rate(all: &[Recorded], found: &mut Found) {
     let each: Vec<Vec<f64>> = all.iter().map(lags).collect();
     let seconds = each.iter().flatten().count() as f64 * WINDOW_S * TOGETHER as f64;
     let Some(lag) = pooled(&each) else {
-        return found.left_out("lag: no steer angle moves beside the rate".into());
+        return found.left_out("lag: no changing steer angle was recorded beside the rate".into());
     };
     found.number("later than the change of the steer angle", None, "s", lag, seconds);
     take(lag, found);
@@ -121,9 +123,9 @@ fn take(lag: Estimate, found: &mut Found) {
     if lag.low > 0.0 {
         found.numbers.delay_s = Some(digits(lag.value));
     } else if lag.high > 0.0 {
-        found.left_out(format!("lag: it may be none; at most {} s", digits(lag.high)));
+        found.left_out(format!("lag: not distinguishable from zero; at most {} s", digits(lag.high)));
     } else {
-        found.left_out("lag: it is not later than what it was held against".into());
+        found.left_out("lag: not later than its reference".into());
     }
 }
 
@@ -148,7 +150,7 @@ fn steer(all: &[Recorded], found: &mut Found) {
     let least = points.iter().map(|(x, _)| *x).fold(f64::INFINITY, f64::min);
     let most = points.iter().map(|(x, _)| *x).fold(0.0, f64::max);
     if points.len() < 8 || most - least < RANGE_S_M {
-        let what = "lag: the yaw rate leads by trail over speed, and the speeds are too much alike to tell the two apart";
+        let what = "lag: the yaw rate leads by trail over speed, and the speeds differ too little to separate the two";
         return found.left_out(what.into());
     }
     let (intercept, slope) = line(&points);

@@ -17,14 +17,14 @@ const APART_S: f64 = 8.0;
 pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     let moved = [Sensor::Steer, Sensor::SteerRate, Sensor::FrontWheel, Sensor::RearWheel];
     if moved.contains(&found.sensor) {
-        let what = "noise, bias and walk: a value that changes while the bicycle stands is a fork or a wheel that is moved";
+        let what = "noise, bias and walk: a change at standstill is a moved fork or wheel";
         return found.left_out(what.into());
     }
     let axes = found.axes();
     let quiet = still(all, axes);
     let seconds = quiet.iter().flatten().count() as f64 * WINDOW_S;
     if seconds < 3.0 {
-        let what = "noise, bias and walk: in no 3 s does the bicycle stand still while the value changes";
+        let what = "noise, bias and walk: no standstill of 3 s with a changing value";
         found.left_out(what.into());
         return;
     }
@@ -35,7 +35,7 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
         bias(all, &quiet, found);
         walk(all, &quiet, found);
     } else {
-        let what = "bias and walk: what the sensor should say of a bicycle that stands is not known";
+        let what = "bias and walk: the true value at standstill is unknown";
         found.left_out(what.into());
     }
 }
@@ -74,7 +74,7 @@ fn bias(all: &[Recorded], quiet: &[Vec<&Window>], found: &mut Found) {
         };
         let biases: Vec<(f64, usize)> = all.iter().zip(quiet).filter_map(mean_of).collect();
         if biases.is_empty() {
-            return found.left_out("bias: no recording with 3 s of standing still".into());
+            return found.left_out("bias: no recording with 3 s of standstill".into());
         }
         let seconds = biases.iter().map(|(_, n)| *n as f64).sum::<f64>() * WINDOW_S;
         let square = mean(&biases.iter().map(|(bias, _)| bias * bias).collect::<Vec<_>>());
@@ -99,7 +99,7 @@ fn walk(all: &[Recorded], quiet: &[Vec<&Window>], found: &mut Found) {
         let changes: Vec<(f64, f64)> =
             all.iter().zip(quiet).flat_map(|(one, windows)| changes(one, windows, axis)).collect();
         if changes.len() < FEW {
-            let what = format!("walk: fewer than {FEW} pairs of seconds of standing still {APART_S} s apart");
+            let what = format!("walk: fewer than {FEW} pairs of seconds of standstill {APART_S} s apart");
             return found.left_out(what);
         }
         let (squares, apart_s) =
@@ -120,10 +120,10 @@ fn walk(all: &[Recorded], quiet: &[Vec<&Window>], found: &mut Found) {
         let name = found.sensor.axes()[axis];
         let others = axes.iter().enumerate().filter(|(other, _)| *other != axis);
         if power.low <= 0.0 {
-            found.left_out(format!("walk, axis {name}: the white noise explains all of it"));
+            found.left_out(format!("walk, axis {name}: not distinguishable from the white noise"));
         } else if others.into_iter().all(|(_, other)| other.high < power.low) {
             found.left_out(format!(
-                "walk, axis {name}: more than the other axes have: the bicycle is held, and sways"
+                "walk, axis {name}: larger than on the other axes: the bicycle is held and sways"
             ));
         } else {
             found.numbers.walk.resize(found.axes(), 0.0);

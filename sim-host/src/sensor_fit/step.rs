@@ -35,7 +35,7 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
             }
             None => {
                 let name = found.sensor.axes().get(axis).copied().unwrap_or("its only");
-                found.left_out(format!("step: the values of axis {name} have none in common"));
+                found.left_out(format!("step: the values of axis {name} have no common step"));
             }
         }
     }
@@ -106,21 +106,20 @@ fn repeats(all: &[Recorded], found: &mut Found, name: &str, riding: bool) {
         }
     }
     if pairs == 0 {
-        return found.left_out(format!("repeats, {name}: no second of it"));
+        return found.left_out(format!("repeats, {name}: less than one second"));
     }
     let all_axes = share(same, pairs);
     found.number(&format!("share of samples that repeat, {name}"), None, "1", all_axes, seconds);
     found.number(&format!("longest time without a new value, {name}"), None, "s", observed(longest), seconds);
     if !riding {
         if axes == 3 && longest > SLEEP_S {
-            let what =
-                "sleep: the sensor of a standing bicycle repeats itself for seconds, which is not modelled";
+            let what = "sleep: at standstill the sensor repeats a sample for seconds, which is not modelled";
             found.left_out(what.into());
         }
         return;
     }
     if axes < 3 {
-        let error = "repeat: of one axis alone a value that repeats is a sensor in between two steps";
+        let error = "repeat: a repeated value of a single axis is a signal between two steps";
         return found.left_out(error.into());
     }
     // Axes also repeat together by chance.

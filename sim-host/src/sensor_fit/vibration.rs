@@ -14,12 +14,12 @@ const FASTEST_M_S: f64 = 20.0;
 
 pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     if !matches!(found.sensor, Sensor::Gyro | Sensor::Accel) {
-        let what = "vibration: above 10 Hz what turns or pulls can't be told from the sensor's own errors";
+        let what = "vibration: above 10 Hz motion cannot be separated from the sensor's own errors";
         return found.left_out(what.into());
     }
     let seconds = all.iter().map(|one| one.riding().count()).sum::<usize>() as f64 * WINDOW_S;
     if seconds < 3.0 {
-        return found.left_out(format!("vibration: {seconds} s of riding are too few"));
+        return found.left_out(format!("vibration: only {seconds} s of riding"));
     }
     for axis in (0..found.axes()).filter(|axis| all.iter().any(|one| !one.track.made_up[*axis])) {
         over_speed(all, axis, found);

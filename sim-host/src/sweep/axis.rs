@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_and_words_mix() {
+    fn ranges_and_texts_mix() {
         assert_eq!(values("torque-limit=0.5:20/log4,none"), ["0.5", "1.71", "5.848", "20", "none"]);
         assert_eq!(values("sensor-delay=0ms:100ms/6"), ["0ms", "20ms", "40ms", "60ms", "80ms", "100ms"]);
         assert_eq!(values("sensor-delay=0:0.3:0.1s"), ["0s", "0.1s", "0.2s", "0.3s"]);
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_refused_with_the_reason() {
+    fn invalid_axes_are_rejected_with_the_reason() {
         for (text, expected) in [
             ("torque-limit", "KEY=VALUES"),
             ("=1", "KEY=VALUES"),

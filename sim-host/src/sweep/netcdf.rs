@@ -152,7 +152,7 @@ fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'
 }
 
 /// Codes of `fall_cause`, in the order of [`FallCause::ALL`].
-const FALL_CODES: &str = "cause of the fall beyond height: 0 roll, 1 steer, 2 laid-flat, 3 too-quick, 4 no-motion; NaN without a fall";
+const FALL_CODES: &str = "fall criterion of the ride beyond height: 0 roll, 1 steer, 2 laid-flat, 3 too-quick, 4 no-motion; NaN no fall";
 
 fn fall_code(found: &Found) -> f64 {
     let name = found.fall.as_deref();

@@ -43,8 +43,8 @@ fn response(study: &Study, speed: f64, disturbance: f64) -> Vec<TracePoint> {
 }
 
 fn samples(trace: &[TracePoint], from_s: f64, of: fn(&TracePoint) -> f64) -> Vec<(f64, f64)> {
-    let kept = trace.iter().step_by(EVERY).filter(|p| p.t >= from_s);
-    kept.map(|p| (p.t - from_s, of(p))).collect()
+    let selected = trace.iter().step_by(EVERY).filter(|p| p.t >= from_s);
+    selected.map(|p| (p.t - from_s, of(p))).collect()
 }
 
 /// Attempt 1: unbounded, roll rate.
@@ -149,8 +149,9 @@ pub fn figure_c_3(study: &Study) -> Item {
         // Late in the motion, only the capsize mode remains.
         if v < CAPSIZE_FROM { bounded(&samples, &bounds) } else { decay(&samples[samples.len() / 2..]) }
     });
-    let (kept, outliers): (Vec<_>, Vec<_>) = fits.into_iter().partition(|(_, f)| f.residual <= OUTLIER);
-    let (oscillations, capsizes): (Vec<_>, Vec<_>) = kept.into_iter().partition(|(v, _)| *v < CAPSIZE_FROM);
+    let (selected, outliers): (Vec<_>, Vec<_>) = fits.into_iter().partition(|(_, f)| f.residual <= OUTLIER);
+    let (oscillations, capsizes): (Vec<_>, Vec<_>) =
+        selected.into_iter().partition(|(v, _)| *v < CAPSIZE_FROM);
     let points =
         |fits: &[(f64, Fitted)], of: fn(&Fitted) -> f64| fits.iter().map(|(v, f)| (*v, of(f))).collect();
     let fitted = vec![
@@ -188,9 +189,9 @@ pub fn pencil_at(study: &Study, speed: f64, disturbance: f64) -> Option<[Complex
 
 /// The largest distance of `found` from the corresponding eigenvalues of [`true_four`] \[1/s\].
 pub fn pencil_error(study: &Study, speed: f64, found: &[Complex<f64>; 4]) -> f64 {
-    let wanted = true_four(study, speed);
+    let exact = true_four(study, speed);
     let nearest = |e: &Complex<f64>| found.iter().map(|f| (f - e).modulus()).fold(f64::INFINITY, f64::min);
-    wanted.iter().map(nearest).fold(0.0, f64::max)
+    exact.iter().map(nearest).fold(0.0, f64::max)
 }
 
 /// All four eigenvalues from the same rides, which a single oscillation cannot give.

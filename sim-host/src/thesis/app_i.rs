@@ -142,9 +142,9 @@ fn heights(study: &Study, item: &str, sets: &[Set], young: Option<&[Set]>) -> Ve
         let value = Value { capped, ..Value::new(cell.clone(), Some(exact)) };
         let mut value = value.on_grid_of(Some(coarse), ON_GRID);
         if all_rows && sets.iter().any(Set::is_left_out) {
-            let kept = sets.iter().filter(|s| !s.is_left_out());
+            let selected = sets.iter().filter(|s| !s.is_left_out());
             let name = "the same without the two sets of Table F.3 that Table I.1 leaves out";
-            value = value.tried(name, mean(&kept.map(Set::on_grid).collect::<Vec<_>>()));
+            value = value.tried(name, mean(&selected.map(Set::on_grid).collect::<Vec<_>>()));
         }
         value.tried("of the printed heights, computed ones where none can be read", of(printed))
     });

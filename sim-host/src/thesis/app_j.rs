@@ -123,7 +123,7 @@ pub(super) fn figure_j_3(study: &Study) -> Item {
         plots: Fit::ALL.map(plot).to_vec(),
         shaded: "stable".into(),
     };
-    let caption = "Eigenvalues of the linearised bicycle with the undelayed rider, muscles and steer integral included, \
+    let caption = "Eigenvalues of the linearised bicycle with the undelayed rider, neuromuscular dynamics and steer integral included, \
                    for the three fits of the gains.";
     Item { figures: vec![Figure::of_chart("figure-J.3", caption, &chart)], ..Item::default() }
 }

@@ -23,7 +23,7 @@ pub struct Entry {
 pub enum Made {
     /// Computed.
     Computed {
-        /// What it needs, as text.
+        /// Its requirements, as text.
         needs: &'static str,
         /// The basins it needs.
         cases: fn() -> Vec<Case>,
@@ -193,8 +193,8 @@ mod tests {
         assert_eq!(names("figure-3.6"), Ok(vec!["figure-3.6"]));
         assert_eq!(names("3.14"), Ok(vec!["figure-3.14"]));
         assert_eq!(names("c"), Ok(vec!["figure-C.1", "figure-C.2", "figure-C.3"]));
-        let refused = names("9.9").unwrap_err().to_string();
-        assert!(refused.contains("`9.9`") && refused.contains("figure-2.2"), "{refused}");
+        let error = names("9.9").unwrap_err().to_string();
+        assert!(error.contains("`9.9`") && error.contains("figure-2.2"), "{error}");
         assert_eq!(selected(&[]).unwrap().len(), CATALOGUE.len());
         assert_eq!(CATALOGUE[0].label(), "Figure 2.2");
     }

@@ -19,7 +19,7 @@ pub(super) fn cases_3_7() -> Vec<Case> {
 /// Figure 3.7: the basin of CL1.
 pub(super) fn figure_3_7(study: &Study) -> Item {
     let basin = study.basin(&Case::of(Assisted::Cl1).mapped());
-    let caption = "Basin of attraction under CL1. Inside: rides of 6 s that do not fall; outside, the colour tells the \
+    let caption = "Basin of attraction under CL1. Inside: rides of 6 s that do not fall; outside, the colour shows the \
                    time to the fall.";
     Item {
         figures: vec![Figure::of_basins("figure-3.7", caption, study, &[("CL1", &basin)])],

@@ -195,7 +195,7 @@ pub(super) fn figure_3_5(study: &Study) -> Item {
     let mut figures = vec![Figure::of_chart("figure-3.5", caption, &chart)];
     for (name, who) in THREE {
         let caption = format!(
-            "Basin of the {name} cyclist. Inside: rides of 6 s that do not fall; outside, the colour tells the time \
+            "Basin of the {name} cyclist. Inside: rides of 6 s that do not fall; outside, the colour shows the time \
              to the fall."
         );
         figures.push(Figure::of_basins(&format!("figure-3.5-{name}"), &caption, study, &[(name, &of(who))]));

@@ -6,7 +6,7 @@ use crate::rider::{Gains, Neuromuscular, Rider, Schedule};
 
 /// A rider with the same gains at every speed and the neuromuscular dynamics of the thesis.
 pub(super) fn constant(gains: Gains, delay_s: f64) -> Rider {
-    Rider { schedule: Schedule::constant(gains), delay_s, muscles: Neuromuscular::SHOULDERS }
+    Rider { schedule: Schedule::constant(gains), delay_s, neuromuscular: Neuromuscular::SHOULDERS }
 }
 
 /// The published conditions for a rider without assist.

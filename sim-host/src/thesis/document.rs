@@ -85,7 +85,7 @@ pub struct ExperimentEntry {
 
 impl Explanation {
     /// The explanation as text.
-    pub fn words(&self) -> String {
+    pub fn text(&self) -> String {
         match self {
             Explanation::NotNeeded => String::new(),
             Explanation::Explained(by) => format!("explained: {by}"),
@@ -112,7 +112,7 @@ impl ValueEntry {
             exact: finite(value.exact),
             coarse: finite(value.coarse),
             difference_percent: finite(value.difference()),
-            explanation: value.explanation().words(),
+            explanation: value.explanation().text(),
             experiments: experiments
                 .map(|e| ExperimentEntry { name: e.name.clone(), value: e.value })
                 .collect(),

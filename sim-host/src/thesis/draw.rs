@@ -137,8 +137,8 @@ pub(super) fn over_time(
     of: impl Fn(&TracePoint) -> f64,
 ) -> Vec<(f64, f64)> {
     let last = trace.len().saturating_sub(1);
-    let kept = trace.iter().enumerate().filter(|(i, _)| i.is_multiple_of(every.max(1)) || *i == last);
-    kept.map(|(_, p)| (p.t, of(p))).collect()
+    let selected = trace.iter().enumerate().filter(|(i, _)| i.is_multiple_of(every.max(1)) || *i == last);
+    selected.map(|(_, p)| (p.t, of(p))).collect()
 }
 
 /// An outline as a series.

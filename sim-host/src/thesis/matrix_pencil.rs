@@ -25,10 +25,10 @@ pub fn eigenvalues(signals: &[Vec<f64>], dt: f64, order: usize) -> Option<Vec<Co
     let svd = hankel(0).svd(true, true);
     let mut by_size: Vec<usize> = (0..svd.singular_values.len()).collect();
     by_size.sort_by(|&a, &b| svd.singular_values[b].total_cmp(&svd.singular_values[a]));
-    let (u, v_t, kept) = (svd.u.as_ref()?, svd.v_t.as_ref()?, by_size.get(..order)?);
-    let (u, v_t) = (u.select_columns(kept), v_t.select_rows(kept));
+    let (u, v_t, selected) = (svd.u.as_ref()?, svd.v_t.as_ref()?, by_size.get(..order)?);
+    let (u, v_t) = (u.select_columns(selected), v_t.select_rows(selected));
     let mut pencil = u.transpose() * hankel(1) * v_t.transpose();
-    for (column, &k) in kept.iter().enumerate() {
+    for (column, &k) in selected.iter().enumerate() {
         let size = svd.singular_values[k];
         if size <= 0.0 {
             return None;

@@ -1,11 +1,11 @@
-//! Where the four bodies are, and what joins them.
+//! Positions of the four bodies, and their joints.
 //!
 //! Ground axes: origin at the rear contact, x along the rear wheel's heading, y right, z down.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use sim_host::bicycle::Parameters;
 
-/// The bodies' places in [`Bicycle::bodies`].
+/// Indices in [`Bicycle::bodies`].
 pub(super) const REAR_WHEEL: usize = 0;
 pub(super) const REAR_FRAME: usize = 1;
 pub(super) const FRONT_FRAME: usize = 2;
@@ -41,7 +41,7 @@ impl Contact {
         (Vector3::z() - self.axle * self.axle.z).normalize() * self.radius
     }
 
-    /// How fast that arm turns when the wheel turns at `omega`: the contact wanders along the rim.
+    /// Rate of that arm when the wheel turns at `omega`: the contact moves along the rim.
     pub(super) fn arm_rate(&self, omega: &Vector3<f64>) -> Vector3<f64> {
         let axle_rate = omega.cross(&self.axle);
         let d = Vector3::z() - self.axle * self.axle.z;
@@ -63,7 +63,7 @@ pub(super) struct Bicycle {
 }
 
 impl Bicycle {
-    /// With both wheels on the ground; `None` when no pitch below 80 degrees brings them there.
+    /// With both wheels on the ground; `None` if no pitch below 80 degrees brings them there.
     pub(super) fn on_ground(p: &Parameters, roll: f64, steer: f64) -> Option<Self> {
         let depth = |pitch: f64| Self::placed(p, roll, steer, pitch).front_depth();
         let (mut low, mut high) = (-1.4, 1.4);
@@ -80,7 +80,7 @@ impl Bicycle {
         }
     }
 
-    /// How far the front wheel's lowest point is below the ground \[m\].
+    /// Depth of the front wheel's lowest point below the ground \[m\].
     fn front_depth(&self) -> f64 {
         (self.bodies[FRONT_WHEEL].centre + self.contacts[1].arm()).z
     }
@@ -95,7 +95,7 @@ impl Bicycle {
         let rear_contact = Contact { wheel: REAR_WHEEL, axle: rear * Vector3::y(), radius: p.rR };
         let front_contact = Contact { wheel: FRONT_WHEEL, axle: front * Vector3::y(), radius: p.rF };
 
-        // A point of the upright bicycle, carried along with the rear or the front frame.
+        // A point of the upright bicycle, moved with the rear or the front frame.
         let (hub, head) = (Vector3::new(0.0, 0.0, -p.rR), Vector3::new(p.w + p.c, 0.0, 0.0));
         let with_rear = |x: Vector3<f64>| rear * (x - hub) - rear_contact.arm();
         let with_front = |x: Vector3<f64>| front * (x - head) + with_rear(head);

@@ -37,7 +37,7 @@ pub(super) fn jacobian(bicycle: &Bicycle) -> DMatrix<f64> {
     j
 }
 
-/// What the constraints' second derivative has besides `J * accelerations`.
+/// Terms of the constraints' second derivative other than `J * accelerations`.
 pub(super) fn rates(bicycle: &Bicycle, velocities: &DVector<f64>) -> DVector<f64> {
     let mut rates = DVector::zeros(ROWS);
     for (i, hinge) in bicycle.hinges.iter().enumerate() {

@@ -1,9 +1,8 @@
-//! A second formulation of the bicycle, to check the simulator's against.
+//! A second formulation of the bicycle, to verify the simulator.
 //!
-//! Newton's and Euler's equations of each of the four bodies, in ground axes, with every joint and
-//! contact force as an unknown: 24 accelerations and 21 constraint forces from one linear system.
-//! Nothing is shared with the simulator but the parameters and the state; the state's pitch is not
-//! read but solved for.
+//! Newton's and Euler's equations of each of the four bodies, in ground axes, with every joint and contact force as
+//! an unknown: 24 accelerations and 21 constraint forces from one linear system. It shares only the parameters and
+//! the state with the simulator; the state's pitch is not read but solved for.
 
 mod bodies;
 mod constraints;
@@ -37,11 +36,11 @@ pub struct Solution {
     pub yaw_acceleration: f64,
     /// Front wheel's acceleration relative to the front frame \[rad/s^2\].
     pub front_wheel_acceleration: f64,
-    /// Place of the rear wheel's centre, from the rear contact \[m\].
+    /// Position of the rear wheel's centre, from the rear contact \[m\].
     pub rear_axle: Vector3<f64>,
     /// Its velocity \[m/s\].
     pub rear_axle_velocity: Vector3<f64>,
-    /// Place of the front contact, from the rear one \[m\].
+    /// Position of the front contact, from the rear one \[m\].
     pub front_contact_place: Vector3<f64>,
     /// Acceleration of the rear wheel's centre \[m/s^2\].
     pub rear_axle_acceleration: Vector3<f64>,
@@ -53,7 +52,7 @@ pub struct Solution {
     pub front_contact: Vector3<f64>,
 }
 
-/// Solves one state; `None` when the front wheel can't be put on the ground.
+/// Solves one state; `None` if the front wheel cannot be put on the ground.
 pub fn solve(p: &Parameters, state: &State<f64>, torques: &Torques<f64>) -> Option<Solution> {
     let bicycle = Bicycle::on_ground(p, state.roll, state.steer)?;
     let j = jacobian(&bicycle);

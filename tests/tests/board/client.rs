@@ -8,19 +8,19 @@ use sim_host::board::client::{Client, ClientError, RetryPolicy};
 use std::time::Duration;
 use tests::link_board::{LinkBoard, LinkChannel, Wire, encoded, faults, lock, shared, telemetry};
 
-/// Hardly any: these lines answer at once or not at all.
+/// Short, as these connections answer at once or never.
 pub(crate) const SHORT: RetryPolicy = RetryPolicy { answer: Duration::from_millis(2), tries: 5 };
 
 fn client(wire: Wire) -> Client {
     Client::new(Box::new(wire), SHORT)
 }
 
-/// Situation: a good line to a board with a parameter that is not at its default.
-/// Action: everything that can be asked for.
-/// Must hold: each answer is what the board has; what is set is there, what is stored is in the flash, cleared faults are
-/// gone; one request each reaches the board, and a list takes 30 to 80.
+/// Situation: a good connection to a board with a parameter that is not at its default.
+/// Action: send every request.
+/// Must hold: each answer has the board's values; a set value is set, a stored one is in the flash, cleared faults
+/// are gone; one request each reaches the board, and a list takes 30 to 80.
 #[test]
-fn everything_asked_for_is_answered() {
+fn every_request_is_answered() {
     let mut config = Config::product();
     config.limits.max_torque_nm = Some(3.5);
     let board = shared(LinkBoard { config: config.clone(), faults: faults(), ..LinkBoard::default() });
@@ -31,9 +31,15 @@ fn everything_asked_for_is_answered() {
     let listed = client.list().expect("a list");
     assert!((30..=80).contains(&lock(&board).requests), "{}", lock(&board).requests);
     let mut expected = Vec::new();
-    each(&mut config.clone(), |seen| {
-        expected.push((seen.key().to_string(), seen.kind, seen.value, seen.leaf.min, seen.leaf.max));
-        seen.value
+    each(&mut config.clone(), |parameter| {
+        expected.push((
+            parameter.key().to_string(),
+            parameter.kind,
+            parameter.value,
+            parameter.leaf.min,
+            parameter.leaf.max,
+        ));
+        parameter.value
     });
     let got = listed.iter().map(|one| (one.key.clone(), one.kind, one.value, one.min, one.max));
     assert_eq!(got.collect::<Vec<_>>(), expected);
@@ -48,8 +54,8 @@ fn everything_asked_for_is_answered() {
     client.reset().expect("reset");
     assert_eq!(lock(&board).config, Config::product());
     assert_eq!(lock(&board).requests - before, 6);
-    let kept = client.faults().expect("faults");
-    let kinds: Vec<_> = kept.iter().map(|fault| (fault.kind, fault.boot)).collect();
+    let stored = client.faults().expect("faults");
+    let kinds: Vec<_> = stored.iter().map(|fault| (fault.kind, fault.boot)).collect();
     assert_eq!(
         kinds,
         [("controller", 5), ("brown-out", 4), ("watchdog", 3), ("exception", 2), ("panic", 1), ("drive", 1)]
@@ -59,38 +65,39 @@ fn everything_asked_for_is_answered() {
     assert_eq!(lock(&board).faults.len(), 0);
 }
 
-/// Situation: a key that is none, a value out of range, a fraction for a count, off for what can't be, a change while
-/// engaged.
-/// Action: ask.
-/// Must hold: refused at once, naming what was asked and why; nothing changed.
+/// Situation: an unknown key, a value out of range, a fraction for a count, off for a parameter that cannot be off, a
+/// change while engaged.
+/// Action: send.
+/// Must hold: rejected at once, naming the request and the reason; nothing changed.
 #[test]
-fn a_refusal_names_what_and_why() {
+fn a_rejection_names_request_and_reason() {
     let board = shared(LinkBoard::default());
     let mut client = client(Wire::good(&board));
-    let mut refused = |act: &dyn Fn(&mut Client) -> Result<Option<f32>, ClientError>, named: &[&str]| {
+    let mut assert_rejected = |act: &dyn Fn(&mut Client) -> Result<Option<f32>, ClientError>,
+                               named: &[&str]| {
         let before = lock(&board).requests;
         let error = act(&mut client).expect_err("refused").to_string();
         assert_eq!(lock(&board).requests, before + 1);
         assert!(named.iter().all(|word| error.contains(word)), "{error}");
         assert_eq!(lock(&board).config, Config::product());
     };
-    refused(&|c| c.get("limits.nonsense"), &["get limits.nonsense", "no parameter limits.nonsense"]);
-    refused(
+    assert_rejected(&|c| c.get("limits.nonsense"), &["get limits.nonsense", "no parameter limits.nonsense"]);
+    assert_rejected(
         &|c| c.set("limits.max_torque_nm", Some(70.0)),
         &["limits.max_torque_nm = 70 is outside 0.1 to 50"],
     );
-    refused(&|c| c.set("permit.ramp_in_ticks", Some(1.5)), &["not a whole number"]);
-    refused(&|c| c.set("rate_hz", None), &["set rate_hz to none", "can't be off"]);
+    assert_rejected(&|c| c.set("permit.ramp_in_ticks", Some(1.5)), &["not a whole number"]);
+    assert_rejected(&|c| c.set("rate_hz", None), &["set rate_hz to none", "can't be off"]);
     lock(&board).engaged = true;
-    refused(&|c| c.set("limits.max_torque_nm", Some(5.0)), &["refused while engaged"]);
-    refused(&|c| c.store().map(|()| None), &["`store`", "refused while engaged"]);
+    assert_rejected(&|c| c.set("limits.max_torque_nm", Some(5.0)), &["rejected while engaged"]);
+    assert_rejected(&|c| c.store().map(|()| None), &["`store`", "rejected while engaged"]);
 }
 
-/// Situation: a board of another version; one that says nothing; one whose line is lost.
-/// Action: ask who is there.
-/// Must hold: told which versions; that nothing answered, how often and how long; which line is lost.
+/// Situation: a board of another version; one that does not answer; one whose connection is lost.
+/// Action: request the identity.
+/// Must hold: the error has both versions; the attempts and the time without an answer; the lost line.
 #[test]
-fn who_does_not_answer_is_told_why() {
+fn a_missing_answer_has_its_reason() {
     let board = shared(LinkBoard { version: 7, ..LinkBoard::default() });
     let error = client(Wire::good(&board)).hello().expect_err("another version").to_string();
     let versions = format!("uses version 7 of the link, this program version {VERSION}:");
@@ -108,26 +115,26 @@ fn who_does_not_answer_is_told_why() {
     assert!(error.contains("lost wire"), "{error}");
 }
 
-/// Situation: a board that tells a step, words and a fault before each answer.
-/// Action: ask some things; then listen.
-/// Must hold: the answers are right; everything told is there once, in its order.
+/// Situation: a board that sends a step, a log text and a fault before each answer.
+/// Action: send some requests; then listen.
+/// Must hold: the answers are right; every unsolicited message is there once, in order.
 #[test]
-fn what_comes_unasked_meanwhile_is_kept() {
+fn unsolicited_messages_are_preserved() {
     let board = shared(LinkBoard::default());
-    let (teller, mut steps) = (board.clone(), 0);
+    let (sender, mut steps) = (board.clone(), 0);
     let also = move |answer: Vec<u8>| {
         steps += 1;
-        let mut teller = lock(&teller);
-        let mut bytes = teller.tell(&Message::Telemetry(telemetry(steps)));
-        bytes.extend(teller.tell(&Message::Log("words")));
-        bytes.extend(teller.tell(&Message::Fault(faults()[0])));
+        let mut sender = lock(&sender);
+        let mut bytes = sender.unsolicited(&Message::Telemetry(telemetry(steps)));
+        bytes.extend(sender.unsolicited(&Message::Log("text")));
+        bytes.extend(sender.unsolicited(&Message::Fault(faults()[0])));
         LinkChannel::Arrives([bytes, answer].concat())
     };
     let mut client = client(Wire::new(&board, Box::new(LinkChannel::Arrives), Box::new(also)));
     for _ in 0..3 {
         assert_eq!(client.get("rate_hz").expect("a value"), Some(1000.0));
     }
-    let received = client.listen(Duration::ZERO).expect("kept");
+    let received = client.listen(Duration::ZERO).expect("stored");
     assert_eq!(received.iter().map(|one| one.sequence).collect::<Vec<_>>(), (0..9).collect::<Vec<_>>());
     let steps = received.iter().filter_map(|one| match one.message() {
         Ok(Message::Telemetry(step)) => Some(step.steps),
@@ -137,9 +144,9 @@ fn what_comes_unasked_meanwhile_is_kept() {
     assert!(client.listen(Duration::ZERO).expect("nothing more").is_empty());
 }
 
-/// Situation: before each answer the line brings answers to other programs, of every number but the right one.
-/// Action: ask.
-/// Must hold: they are passed over.
+/// Situation: before each answer come answers to other programs, with every sequence number but the right one.
+/// Action: send a request.
+/// Must hold: they are skipped.
 #[test]
 fn answers_to_others_are_passed_over() {
     let board = shared(LinkBoard::default());

@@ -1,4 +1,4 @@
-//! Lines that damage, drop and hold up bytes, both ways.
+//! Connections that damage, drop and delay bytes, in both directions.
 
 use crate::client::SHORT;
 use control::Config;
@@ -6,11 +6,11 @@ use proptest::prelude::*;
 use sim_host::board::client::{Client, ClientError};
 use tests::link_board::{Fate, LinkBoard, LinkChannel, Wire, lock, shared};
 
-/// What a line does to what goes over it, one after the other, then from the start.
+/// Damage to the bytes of a line, one after the other, then from the start.
 #[derive(Clone, Debug)]
 enum LinkFaultKind {
     None,
-    /// A byte is another.
+    /// A byte is changed.
     Turned {
         at: usize,
         by: u8,
@@ -19,7 +19,7 @@ enum LinkFaultKind {
     Cut {
         at: usize,
     },
-    /// A byte more.
+    /// An additional byte.
     Grown {
         at: usize,
         byte: u8,
@@ -28,7 +28,7 @@ enum LinkFaultKind {
     Late,
 }
 
-fn harms() -> impl Strategy<Value = Vec<LinkFaultKind>> {
+fn kinds() -> impl Strategy<Value = Vec<LinkFaultKind>> {
     let at = 0..40_usize;
     let kind = prop_oneof![
         4 => Just(LinkFaultKind::None),
@@ -41,8 +41,8 @@ fn harms() -> impl Strategy<Value = Vec<LinkFaultKind>> {
     prop::collection::vec(kind, 7..=11)
 }
 
-fn fate(harms: Vec<LinkFaultKind>) -> Fate {
-    let mut next = harms.into_iter().cycle();
+fn fate(kinds: Vec<LinkFaultKind>) -> Fate {
+    let mut next = kinds.into_iter().cycle();
     Box::new(move |mut bytes: Vec<u8>| {
         let inside = |at: usize, length: usize| at.min(length.saturating_sub(1));
         match next.next().unwrap_or(LinkFaultKind::None) {
@@ -63,22 +63,22 @@ fn fate(harms: Vec<LinkFaultKind>) -> Fate {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
-    /// Situation: half of what goes over the line is damaged, cut, dropped or late, there and back.
-    /// Action: set and get a parameter again and again, to another value each time.
-    /// Must hold: a set or get that succeeds is true of the board; one that does not tells that nothing answered, never
-    /// a refusal; what a set that failed left is the old or the new value.
+    /// Situation: half of the transfers are damaged, cut, dropped or late, in both directions.
+    /// Action: set and get a parameter repeatedly, to another value each time.
+    /// Must hold: a set or get that succeeds is true of the board; one that fails reports that nothing answered,
+    /// never a rejection; a failed set leaves the old or the new value.
     #[test]
-    fn an_answer_is_true_or_there_is_none(there in harms(), back in harms()) {
+    fn an_answer_is_true_or_there_is_none(there in kinds(), back in kinds()) {
         let board = shared(LinkBoard::default());
         let mut client = Client::new(Box::new(Wire::new(&board, fate(there), fate(back))), SHORT);
         let now = || lock(&board).config.limits.max_torque_nm;
         for i in 1..=12_u8 {
-            let (before, wanted) = (now(), Some(f32::from(i)));
-            match client.set("limits.max_torque_nm", wanted) {
-                Ok(value) => prop_assert!(value == wanted && now() == wanted),
+            let (before, expected) = (now(), Some(f32::from(i)));
+            match client.set("limits.max_torque_nm", expected) {
+                Ok(value) => prop_assert!(value == expected && now() == expected),
                 Err(error) => {
                     prop_assert!(matches!(error, ClientError::Silent { .. }), "{error}");
-                    prop_assert!(now() == wanted || now() == before);
+                    prop_assert!(now() == expected || now() == before);
                 }
             }
             match client.get("limits.max_torque_nm") {
@@ -89,11 +89,11 @@ proptest! {
     }
 }
 
-/// Situation: every third frame there is damaged, every fourth back is dropped.
+/// Situation: every third frame to the board is damaged, every fourth from it is dropped.
 /// Action: list all parameters, and set ten.
-/// Must hold: all of it succeeds, with the board asked 1.1 to 1.7 times as often as over a good line.
+/// Must hold: all of it succeeds, with 1.1 to 1.7 times as many requests as over a good connection.
 #[test]
-fn what_is_lost_is_asked_for_again() {
+fn lost_requests_are_repeated() {
     let count = |board: &tests::link_board::Shared, wire: Wire| {
         let mut client = Client::new(Box::new(wire), SHORT);
         let listed = client.list().expect("a list");

@@ -1,4 +1,4 @@
-//! Flight cards: the tools for a board, on a board made of the `link` crate.
+//! The tools for a board, on a board made of the `link` crate.
 
 mod client;
 mod damage;
@@ -6,5 +6,5 @@ mod monitor;
 #[cfg(unix)]
 mod partial;
 mod program;
+mod texts;
 mod tune;
-mod words;

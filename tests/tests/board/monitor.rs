@@ -1,4 +1,4 @@
-//! What is made of what a board tells.
+//! Evaluation of a board's messages.
 
 use crate::client::SHORT;
 use control::{Sample, sensors::frame::MISSING};
@@ -13,7 +13,7 @@ use std::time::Duration;
 use tempfile::TempDir;
 use tests::link_board::{LinkBoard, telemetry};
 
-/// Bytes that come in so many at a time, then the end.
+/// Bytes that arrive in pieces of this size, then the end.
 struct Pieces(Vec<u8>, usize);
 
 impl Transport for Pieces {
@@ -29,7 +29,7 @@ impl Transport for Pieces {
     }
 }
 
-/// All that comes over a line until its end, and how many frames were damaged.
+/// All messages of a line until its end, and the number of damaged frames.
 fn hear(line: Box<dyn Transport>) -> (Monitor, Vec<News>, u32) {
     let (mut client, mut monitor, mut news) = (Client::new(line, SHORT), Monitor::default(), Vec::new());
     while let Ok(received) = client.listen(Duration::ZERO) {
@@ -39,14 +39,14 @@ fn hear(line: Box<dyn Transport>) -> (Monitor, Vec<News>, u32) {
 }
 
 fn step(board: &mut LinkBoard, steps: u32) -> Vec<u8> {
-    board.tell(&Message::Telemetry(telemetry(steps)))
+    board.unsolicited(&Message::Telemetry(telemetry(steps)))
 }
 
-/// Situation: 400 steps told; three frames are lost whole, one is damaged; in pieces of any size.
-/// Action: hear.
+/// Situation: 400 steps; three frames are lost, one is damaged; in pieces of any size.
+/// Action: receive.
 /// Must hold: 396 frames, four missing by their numbers, one of them damaged; the clock at the last step; no restart.
 #[test]
-fn what_is_missing_and_what_is_damaged_is_counted() {
+fn missing_and_damaged_frames_are_counted() {
     let mut board = LinkBoard::default();
     let mut bytes = Vec::new();
     for i in 1..=400 {
@@ -66,10 +66,10 @@ fn what_is_missing_and_what_is_damaged_is_counted() {
     }
 }
 
-/// Situation: steps told every 20 ms, words now and then; for long enough that the frames' numbers go round, once and
-/// twice, nothing comes over.
-/// Action: hear.
-/// Must hold: every frame that is missing is counted; no restart.
+/// Situation: steps every 20 ms, log texts now and then; nothing arrives for so long that the frames' numbers wrap
+/// around, once and twice.
+/// Action: receive.
+/// Must hold: every missing frame is counted; no restart.
 #[test]
 fn a_long_gap_is_counted_whole() {
     for gap in [0, 5, 32_767, 32_768, 60_000, 65_535, 65_536, 70_000, 150_000_u32] {
@@ -81,7 +81,7 @@ fn a_long_gap_is_counted_whole() {
             let steps = 20 * (i + if i > 100 { gap } else { 0 });
             bytes.extend(step(&mut board, steps));
             if i % 50 == 0 {
-                bytes.extend(board.tell(&Message::Log("words")));
+                bytes.extend(board.unsolicited(&Message::Log("text")));
             }
         }
         let (monitor, ..) = hear(Box::new(Pieces(bytes, 4096)));
@@ -89,11 +89,11 @@ fn a_long_gap_is_counted_whole() {
     }
 }
 
-/// Situation: the board's clock and step count go over their ends; later it starts anew.
-/// Action: hear.
-/// Must hold: time goes on over the ends; the restart is counted, is no gap, and its time begins anew.
+/// Situation: the board's clock and step count wrap around; later it restarts.
+/// Action: receive.
+/// Must hold: time continues over the wrap; the restart is counted, is no gap, and its time begins again.
 #[test]
-fn a_clock_that_wraps_goes_on_and_a_restart_is_told() {
+fn a_clock_continues_over_its_wrap_and_a_restart_is_reported() {
     let (mut board, mut bytes) = (LinkBoard::default(), Vec::new());
     let at = |now_us: u32, steps: u32| {
         let mut step = telemetry(steps);
@@ -102,27 +102,27 @@ fn a_clock_that_wraps_goes_on_and_a_restart_is_told() {
     };
     for i in 0..10_u32 {
         let step = at((u32::MAX - 5_000).wrapping_add(i * 1_000), (u32::MAX - 5).wrapping_add(i));
-        bytes.extend(board.tell(&Message::Telemetry(step)));
+        bytes.extend(board.unsolicited(&Message::Telemetry(step)));
     }
     let before = f64::from(u32::MAX - 5_000) * 1e-6;
     let (monitor, ..) = hear(Box::new(Pieces(bytes.clone(), 100)));
     assert!((monitor.t - before - 0.009).abs() < 1e-6 && monitor.restarts == 0, "{monitor:?}");
     board.sequence = 0;
-    bytes.extend((1..=3_u32).flat_map(|i| board.tell(&Message::Telemetry(at(i * 1_000, i)))));
+    bytes.extend((1..=3_u32).flat_map(|i| board.unsolicited(&Message::Telemetry(at(i * 1_000, i)))));
     let (monitor, ..) = hear(Box::new(Pieces(bytes, 100)));
     assert_eq!((monitor.frames, monitor.missing, monitor.restarts), (13, 0, 1));
     assert!((monitor.t - 0.003).abs() < 1e-9, "{}", monitor.t);
 }
 
-/// Situation: a fault, words, and a kind that no program knows, between two steps.
-/// Action: hear.
-/// Must hold: each told as what it is; none is a gap.
+/// Situation: a fault, a log text, and an unknown kind, between two steps.
+/// Action: receive.
+/// Must hold: each is reported as its kind; none is a gap.
 #[test]
-fn faults_and_words_are_told() {
+fn faults_and_texts_are_reported() {
     let mut board = LinkBoard::default();
     let mut bytes = step(&mut board, 1);
-    bytes.extend(board.tell(&Message::Fault(tests::link_board::faults()[4])));
-    bytes.extend(board.tell(&Message::Log("steer sensor found")));
+    bytes.extend(board.unsolicited(&Message::Fault(tests::link_board::faults()[4])));
+    bytes.extend(board.unsolicited(&Message::Log("steer sensor found")));
     let mut frame = [0; link::frame::MAX_FRAME];
     let used = link::frame::encode(0xbf, 3, &[1, 2, 3], &mut frame).expect("room");
     bytes.extend(&frame[..used]);
@@ -134,10 +134,11 @@ fn faults_and_words_are_told() {
 }
 
 /// Situation: a line that is recorded.
-/// Action: hear it; then hear the recording.
-/// Must hold: the same, news for news and byte for byte up to the last end of a frame; a recording answers nothing, and says so.
+/// Action: read it; then read the recording.
+/// Must hold: the same, message by message and byte by byte up to the last end of a frame; a recording answers
+/// nothing, and the error says so.
 #[test]
-fn a_recording_is_what_was_heard() {
+fn a_recording_has_the_received_messages() {
     let folder = TempDir::new().expect("a folder");
     let path = folder.path().join("ride.link");
     let mut board = LinkBoard::default();
@@ -156,10 +157,10 @@ fn a_recording_is_what_was_heard() {
     assert!(error.contains("ride.link is a recording"), "{error}");
 }
 
-/// Situation: a step with every sensor at a value of its own, and one with none.
+/// Situation: a step with a different value for every sensor, and one with none.
 /// Action: as a row.
-/// Must hold: each under its column with its age; nothing where there is no sample; every column that `ride` has as well
-/// means the same.
+/// Must hold: each value under its column with its age; empty where there is no sample; every column that `ride` has
+/// as well has the same meaning.
 #[test]
 fn a_row_has_every_sensor_under_its_name() {
     let mut received = telemetry(7);

@@ -15,18 +15,18 @@ fn done(run: &Run) -> &str {
     &run.stdout
 }
 
-/// A run that could read a part of its input only, and said so.
+/// A run that could read only a part of its input, and reported it.
 fn partly(run: &Run) -> &str {
     assert_eq!(run.code, Some(3), "{run:?}");
     &run.stdout
 }
 
-/// Situation: files that are no recordings: a table, a picture's beginning, a bicycle, nothing, 100 kB of ff; and a recording
-/// of a board that says what this program does not know.
-/// Action: ask each for faults, and monitor it.
-/// Must hold: no file without a frame has "no faults"; what is not understood is counted and the exit code is 3.
+/// Situation: files that are no recordings: a table, a picture's beginning, a bicycle, nothing, 100 kB of ff; and a
+/// recording of a board with messages unknown to this program.
+/// Action: list the faults of each, and monitor it.
+/// Must hold: no file without a frame has "no faults"; unknown messages are counted and the exit code is 3.
 #[test]
-fn a_wrong_file_has_not_no_faults() {
+fn a_wrong_file_is_not_without_faults() {
     let bench = Bench::new(PROGRAM);
     let ride = bench.run("ride --speed 4 --time-limit 0.2 --csv ride.csv");
     assert_eq!(ride.code, Some(0), "{ride:?}");
@@ -43,7 +43,7 @@ fn a_wrong_file_has_not_no_faults() {
         }
     }
     let mut board = LinkBoard::default();
-    let mut bytes = board.tell(&Message::Telemetry(telemetry(20)));
+    let mut bytes = board.unsolicited(&Message::Telemetry(telemetry(20)));
     for sequence in 2..5 {
         let mut room = [0; link::frame::MAX_FRAME];
         let used = link::frame::encode(0xfe, sequence, &[1, 2, 3], &mut room).expect("room");
@@ -63,16 +63,16 @@ fn a_wrong_file_has_not_no_faults() {
     assert_eq!(violations(&schema, &document), [""; 0]);
 }
 
-/// Situation: a board's log line and a panic's text with what commands a terminal.
-/// Action: monitor the recording and ask it for faults.
-/// Must hold: no control character but line ends comes out; the words do.
+/// Situation: a board's log line and a panic's text with control sequences of a terminal.
+/// Action: monitor the recording and list its faults.
+/// Must hold: the output has no control character but line ends; the text is there.
 #[test]
-fn a_boards_words_do_not_command_the_terminal() {
+fn a_boards_texts_do_not_control_the_terminal() {
     let (bench, mut board) = (Bench::new(PROGRAM), LinkBoard::default());
-    let mut bytes = board.tell(&Message::Log("gain\u{1b}[2J set"));
+    let mut bytes = board.unsolicited(&Message::Log("gain\u{1b}[2J set"));
     let mut fault = faults()[0];
     fault.text = "panicked\u{1b}]0;title\u{7} at main.rs";
-    bytes.extend(board.tell(&Message::Fault(fault)));
+    bytes.extend(board.unsolicited(&Message::Fault(fault)));
     bench.write("ansi.link", bytes);
     for line in ["monitor --file ansi.link", "faults --file ansi.link"] {
         let run = bench.run(line);
@@ -82,25 +82,25 @@ fn a_boards_words_do_not_command_the_terminal() {
 }
 
 /// Situation: the backup of a board, and the recording of a ride.
-/// Action: cut each at 60 random places, and turn a byte of the backup at 40; import, or read.
-/// Must hold: the backup is imported only where all its parameters are left as they were; the recording ends without a word
-/// only between two frames.
+/// Action: cut each at 60 random places, and change a byte of the backup at 40; import, or read.
+/// Must hold: the backup is imported only where all its parameters are unchanged; the recording ends without a
+/// message only between two frames.
 #[test]
-fn what_was_cut_is_no_success_with_less() {
+fn a_cut_file_is_no_success() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     lock(&board).config.limits.max_torque_nm = Some(6.25);
     let port = Port::quiet(&board);
     let run = |line: &str| bench.run(&format!("param {line} --port {}", port.name));
     done(&run("export whole.toml"));
-    let kept = lock(&board).config.clone();
+    let unchanged = lock(&board).config.clone();
     let whole = bench.read("whole.toml");
     assert!(whole.contains("\ncount = 2") && whole.contains("\nchecksum = \""), "{whole}");
     done(&run("reset"));
     let values = whole.trim_end().rsplit_once('#').expect("the last remark").0.trim_end().len();
-    let mut dice = 14_u32;
+    let mut random = 14_u32;
     let mut below = |n: usize| {
-        dice = dice.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (dice >> 8) as usize % n
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (random >> 8) as usize % n
     };
     for i in 0..100 {
         let mut bytes = whole.clone().into_bytes();
@@ -113,11 +113,11 @@ fn what_was_cut_is_no_success_with_less() {
         bench.write("part.toml", &bytes);
         let part = run("import part.toml");
         if part.code == Some(0) {
-            assert_eq!(lock(&board).config, kept, "byte {at}: {part:?}");
+            assert_eq!(lock(&board).config, unchanged, "byte {at}: {part:?}");
             assert!(!part.stdout.contains("others stay"), "byte {at}: {part:?}");
             done(&run("reset"));
         } else {
-            part.refused_naming(&["part.toml"]);
+            part.rejected_naming(&["part.toml"]);
         }
         assert_eq!(lock(&board).config, Config::product(), "byte {at}");
     }
@@ -133,9 +133,9 @@ fn what_was_cut_is_no_success_with_less() {
         "{}",
         part.stdout
     );
-    let mut teller = LinkBoard::default();
+    let mut board = LinkBoard::default();
     let frames: Vec<Vec<u8>> =
-        (1..=40).map(|i| teller.tell(&Message::Telemetry(telemetry(20 * i)))).collect();
+        (1..=40).map(|i| board.unsolicited(&Message::Telemetry(telemetry(20 * i)))).collect();
     let ends: Vec<usize> = frames
         .iter()
         .scan(0, |end, f| {
@@ -161,18 +161,19 @@ fn what_was_cut_is_no_success_with_less() {
     }
 }
 
-/// Situation: a recording in which the board's clock goes back by 20 ms three times, and one in which it goes round.
+/// Situation: a recording in which the board's clock goes back by 20 ms three times, and one in which it wraps
+/// around.
 /// Action: monitor each.
-/// Must hold: the steps back are counted and take 20 ms each; going round is none.
+/// Must hold: the steps back are counted and take 20 ms each; the wrap is none.
 #[test]
-fn a_clock_that_goes_back_is_not_71_minutes_ahead() {
+fn a_clock_that_steps_back_is_not_71_minutes_ahead() {
     let bench = Bench::new(PROGRAM);
     let record = |clock: &dyn Fn(u32) -> u32| {
         let mut board = LinkBoard::default();
         let frames = (1..=40).flat_map(|i| {
             let mut step = telemetry(20 * i);
             step.frame.now_us = clock(i);
-            board.tell(&Message::Telemetry(step))
+            board.unsolicited(&Message::Telemetry(step))
         });
         frames.collect::<Vec<u8>>()
     };
@@ -188,17 +189,17 @@ fn a_clock_that_goes_back_is_not_71_minutes_ahead() {
     assert!(done(&round).ends_with("0 restarts; the board's clock at 4295.367 s\n"), "{}", round.stdout);
 }
 
-/// Situation: a board with the product's limits, of which the rider's override needs a largest torque.
+/// Situation: a board with the product's limits, whose rider override needs a largest torque.
 /// Action: set the largest torque to none; then with the override off.
-/// Must hold: refused with who needs it, not as infinity; then set.
+/// Must hold: rejected with the parameter that needs it, not as infinity; then set.
 #[test]
-fn a_limit_that_another_needs_says_so() {
+fn a_limit_that_another_needs_is_reported() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let port = Port::quiet(&board);
     let run = |line: &str| bench.run(&format!("param set {line} --port {}", port.name));
-    let refused = run("limits.max_torque_nm none");
-    refused.refused_naming(&["limits.max_torque_nm = none", "limits.rider_torque is on", "0.1 to 50"]);
-    assert!(!refused.stderr.contains("inf"), "{}", refused.stderr);
+    let rejected = run("limits.max_torque_nm none");
+    rejected.rejected_naming(&["limits.max_torque_nm = none", "limits.rider_torque is on", "0.1 to 50"]);
+    assert!(!rejected.stderr.contains("inf"), "{}", rejected.stderr);
     done(&run("limits.rider_torque off"));
     assert!(done(&run("limits.max_torque_nm none")).contains("limits.max_torque_nm = none (was 7)"));
 }

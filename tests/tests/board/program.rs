@@ -14,12 +14,12 @@ use tests::pty::Port;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
-/// A board that tells a step every time its line is looked at, 20 ms of its own time apart.
-fn telling(board: &Shared) -> Port {
+/// A board that sends a step whenever its line is read, 20 ms of its own time apart.
+fn sending(board: &Shared) -> Port {
     let mut steps = 0;
     Port::new(board, move |board| {
         steps += 20;
-        Some(lock(board).tell(&Message::Telemetry(telemetry(steps))))
+        Some(lock(board).unsolicited(&Message::Telemetry(telemetry(steps))))
     })
 }
 
@@ -28,19 +28,20 @@ fn done(run: &Run) -> &str {
     &run.stdout
 }
 
-/// Situation: a board that rides along with telemetry.
+/// Situation: a board that sends telemetry.
 /// Action: list, get, set, store, reset.
-/// Must hold: each tells what the board has; a set is told with what was, is in force and not stored; then it is stored.
+/// Must hold: each shows the board's values; a set is reported with the old value, in force and not stored; then it
+/// is stored.
 #[test]
-fn a_parameter_is_seen_set_and_stored() {
+fn a_parameter_is_read_set_and_stored() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
-    let port = telling(&board);
+    let port = sending(&board);
     let run = |line: &str| bench.run(&format!("param {line} --port {}", port.name));
     let all = run("list");
     let mut listed = 0;
-    link::parameter_list::each(&mut Config::product(), |seen| {
+    link::parameter_list::each(&mut Config::product(), |parameter| {
         listed += 1;
-        seen.value
+        parameter.value
     });
     assert_eq!(done(&all).lines().count(), 1 + listed, "the board, and each parameter");
     let taper = run("list taper");
@@ -63,29 +64,29 @@ fn a_parameter_is_seen_set_and_stored() {
     assert_eq!(lock(&board).config, Config::product());
 }
 
-/// Situation: a key that is none, values that may not be, a board that is engaged, no board, no such port.
+/// Situation: an unknown key, invalid values, a board that is engaged, no board, no such port.
 /// Action: run.
-/// Must hold: exit code 1 and what is wrong, with key, value and what is allowed; usage is 2; nothing set.
+/// Must hold: exit code 1 and the reason, with key, value and allowed range; usage is 2; nothing set.
 #[test]
-fn bad_input_is_told() {
+fn bad_input_is_named() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let port = Port::quiet(&board);
     let run = |line: &str| bench.run(&format!("param {line} --port {}", port.name));
-    run("get limits.nonsense").refused_naming(&["no parameter limits.nonsense", "param list"]);
-    run("list nonsense").refused_naming(&["`nonsense`"]);
-    run("set limits.max_torque_nm 70").refused_naming(&["limits.max_torque_nm = 70", "0.1 to 50 or none"]);
-    run("set limits.max_torque_nm off").refused_naming(&["`off` is no number", "0.1 to 50 or none"]);
-    run("set limits.end_stop maybe").refused_naming(&["limits.end_stop = `maybe`", "off, on"]);
-    run("set input.wheel left").refused_naming(&["input.wheel", "front, rear"]);
-    run("set law cl3").refused_naming(&["unknown law `cl3`", "h-cut"]);
+    run("get limits.nonsense").rejected_naming(&["no parameter limits.nonsense", "param list"]);
+    run("list nonsense").rejected_naming(&["`nonsense`"]);
+    run("set limits.max_torque_nm 70").rejected_naming(&["limits.max_torque_nm = 70", "0.1 to 50 or none"]);
+    run("set limits.max_torque_nm off").rejected_naming(&["`off` is no number", "0.1 to 50 or none"]);
+    run("set limits.end_stop maybe").rejected_naming(&["limits.end_stop = `maybe`", "off, on"]);
+    run("set input.wheel left").rejected_naming(&["input.wheel", "front, rear"]);
+    run("set law cl3").rejected_naming(&["unknown law `cl3`", "h-cut"]);
     run("set limits.taper.zero_m_s 9")
-        .refused_naming(&["limits.taper.full_m_s = 1.5 is outside 9.1 to 10", "nothing is set"]);
+        .rejected_naming(&["limits.taper.full_m_s = 1.5 is outside 9.1 to 10", "nothing is set"]);
     lock(&board).engaged = true;
     for line in ["set limits.max_torque_nm 5", "store", "reset"] {
-        run(line).refused_naming(&["refused while engaged"]);
+        run(line).rejected_naming(&["rejected while engaged"]);
     }
     assert_eq!(lock(&board).config, Config::product());
-    bench.run("param list --port /no/such/port").refused_naming(&["can't open /no/such/port"]);
+    bench.run("param list --port /no/such/port").rejected_naming(&["can't open /no/such/port"]);
     bench.write("noise.link", [7; 100]);
     for usage in [
         "param list",
@@ -99,13 +100,13 @@ fn bad_input_is_told() {
     }
     lock(&board).version = 3;
     let versions = format!("the board uses version 3 of the link, this program version {VERSION}:");
-    run("list").refused_naming(&[&versions]);
+    run("list").rejected_naming(&[&versions]);
 }
 
-/// Situation: a board with a law of points and values of its own.
+/// Situation: a board with a law of points and its own values.
 /// Action: export; reset; import; export again; ride the simulator with the file.
-/// Must hold: the board has what it had; the files are the same but for the line that says whose they are; the ride has
-/// law and parameters of the file, and its own calibration.
+/// Must hold: the board has its former values; the files are the same except the line that names the board; the ride
+/// has law and parameters of the file, and its own calibration.
 #[test]
 fn an_export_is_imported_and_ridden() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
@@ -144,9 +145,9 @@ fn an_export_is_imported_and_ridden() {
 
 /// Situation: files that are no TOML, have unknown keys, values out of range, a law among the parameters.
 /// Action: import each; ride the simulator with each.
-/// Must hold: refused with file, key and value; nothing set, though other values in the file are right.
+/// Must hold: rejected with file, key and value; nothing set, though other values in the file are right.
 #[test]
-fn a_wrong_file_sets_nothing() {
+fn an_invalid_file_sets_nothing() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let port = Port::quiet(&board);
     for (text, named) in [
@@ -168,18 +169,19 @@ fn a_wrong_file_sets_nothing() {
         ("[parameters]\nrate_hz = \"on\"\n", &["wrong.toml", "rate_hz", "`on`"]),
     ] {
         bench.write("wrong.toml", text);
-        bench.run(&format!("param import wrong.toml --port {}", port.name)).refused_naming(named);
-        bench.run("ride --speed 4 --parameters wrong.toml").refused_naming(named);
+        bench.run(&format!("param import wrong.toml --port {}", port.name)).rejected_naming(named);
+        bench.run("ride --speed 4 --parameters wrong.toml").rejected_naming(named);
         assert_eq!(lock(&board).config, Config::product(), "{text}");
     }
-    bench.run(&format!("param import missing.toml --port {}", port.name)).refused_naming(&["missing.toml"]);
+    bench.run(&format!("param import missing.toml --port {}", port.name)).rejected_naming(&["missing.toml"]);
 }
 
-/// Situation: a board that is pulled out after its fourth setting.
+/// Situation: a board that is unplugged after its fourth setting.
 /// Action: import a file that sets eight.
-/// Must hold: exit code 1, not that of a reader that goes away; what was set, what was not and what is not known.
+/// Must hold: exit code 1, not that of a closed output; the output lists what was set, what was not and the unknown
+/// one.
 #[test]
-fn a_board_pulled_out_half_way_is_told() {
+fn a_board_unplugged_during_an_import_is_reported() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let values: Vec<_> = (0..8).map(|i| format!("\"{}\" = {}\n", KEYS[i], i + 1)).collect();
     bench.write("eight.toml", format!("[parameters]\n{}", values.concat()));
@@ -192,7 +194,7 @@ fn a_board_pulled_out_half_way_is_told() {
         (board.requests < begun + 4).then(Vec::new)
     });
     let run = bench.run(&format!("param import eight.toml --port {}", port.name));
-    run.refused_naming(&["lost /dev/", "set: ", "not known: ", "not set: ", "can't be read back"]);
+    run.rejected_naming(&["lost /dev/", "set: ", "not known: ", "not set: ", "can't be read back"]);
 }
 
 const KEYS: [&str; 8] = [
@@ -208,12 +210,12 @@ const KEYS: [&str; 8] = [
 
 /// Situation: a board with a fault of every kind.
 /// Action: faults, as text and JSON; with --clear; again.
-/// Must hold: all in words, the newest first; then none.
+/// Must hold: all described in text, newest first; then none.
 #[test]
-fn faults_are_told_and_cleared() {
+fn faults_are_listed_and_cleared() {
     let (bench, board) =
         (Bench::new(PROGRAM), shared(LinkBoard { faults: faults(), ..LinkBoard::default() }));
-    let port = telling(&board);
+    let port = sending(&board);
     let line = format!("faults --port {}", port.name);
     let document = bench.json(&line);
     assert_eq!(violations(&schema("faults"), &document), [""; 0]);
@@ -221,7 +223,7 @@ fn faults_are_told_and_cleared() {
     let text = bench.run(&format!("{line} --clear"));
     let kinds =
         ["controller in start 5", "brown-out", "watchdog", "exception in", "panic", "drive in start 1"];
-    let places: Vec<_> = kinds.iter().map(|kind| done(&text).find(kind).expect("told")).collect();
+    let places: Vec<_> = kinds.iter().map(|kind| done(&text).find(kind).expect("listed")).collect();
     assert!(places.is_sorted(), "{}", text.stdout);
     assert_eq!(done(&bench.run(&line)), "no faults\n");
 }
@@ -233,7 +235,7 @@ fn schema(name: &str) -> Value {
 
 /// Situation: the documents of `param list` and `faults`.
 /// Action: compare them with the committed schemas, and these with the program's own.
-/// Must hold: they fit; the same.
+/// Must hold: they are valid; the schemas are the same.
 #[test]
 fn documents_fit_their_committed_schemas() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
@@ -249,19 +251,19 @@ fn documents_fit_their_committed_schemas() {
     }
 }
 
-/// Situation: a board that tells steps and a fault.
-/// Action: monitor for four seconds with table and recording; then monitor the recording, and ask it for faults.
-/// Must hold: lines with mode, causes with their pages and limits; the table of the recording is that of the ride but for who
-/// told it; the fault is in it.
+/// Situation: a board that sends steps and a fault.
+/// Action: monitor for four seconds with table and recording; then monitor the recording, and list its faults.
+/// Must hold: lines with mode, causes with their pages and limits; the table of the recording is that of the ride
+/// except for its source; the fault is in it.
 #[test]
-fn a_ride_is_watched_recorded_and_watched_again() {
+fn a_ride_is_monitored_recorded_and_monitored_again() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let mut steps = 0;
     let port = Port::new(&board, move |board| {
         steps += 20;
-        let mut bytes = lock(board).tell(&Message::Telemetry(telemetry(steps)));
+        let mut bytes = lock(board).unsolicited(&Message::Telemetry(telemetry(steps)));
         if steps == 400 {
-            bytes.extend(lock(board).tell(&Message::Fault(faults()[0])));
+            bytes.extend(lock(board).unsolicited(&Message::Fault(faults()[0])));
         }
         Some(bytes)
     });
@@ -296,19 +298,19 @@ fn a_ride_is_watched_recorded_and_watched_again() {
     assert_eq!(done(&table).lines().skip(2).collect::<Vec<_>>(), rows("live.csv"));
     bench
         .run(&format!("monitor --port {} --csv same --record same", port.name))
-        .refused_naming(&["--csv and --record"]);
-    bench.run("monitor --file ride.link --csv no/such/folder.csv").refused_naming(&["no/such"]);
+        .rejected_naming(&["--csv and --record"]);
+    bench.run("monitor --file ride.link --csv no/such/folder.csv").rejected_naming(&["no/such"]);
 }
 
-/// Situation: a recording of which bytes were turned, one that is noise, one that is missing.
+/// Situation: a recording with changed bytes, one that is noise, one that is missing.
 /// Action: monitor each.
-/// Must hold: what is whole is told, what is not is counted; noise has no frames; a missing file is named.
+/// Must hold: complete frames are reported, others counted; noise has no frames; a missing file is named.
 #[test]
-fn a_damaged_recording_is_read_as_far_as_it_goes() {
+fn valid_frames_of_a_damaged_recording_are_read() {
     let bench = Bench::new(PROGRAM);
     let mut board = LinkBoard::default();
     let mut bytes: Vec<u8> =
-        (1..=100).flat_map(|i| board.tell(&Message::Telemetry(telemetry(20 * i)))).collect();
+        (1..=100).flat_map(|i| board.unsolicited(&Message::Telemetry(telemetry(20 * i)))).collect();
     for frame in [10, 20, 30] {
         bytes[frame * 128 + 60] ^= 0x11;
     }
@@ -328,22 +330,22 @@ fn a_damaged_recording_is_read_as_far_as_it_goes() {
         "{noise:?}"
     );
     assert!(noise.stdout.contains("\n0 frames, 0 missing, "), "{}", noise.stdout);
-    bench.run("monitor --file missing.link").refused_naming(&["can't open missing.link"]);
+    bench.run("monitor --file missing.link").rejected_naming(&["can't open missing.link"]);
 }
 
 /// Situation: a monitor with table and recording, some of it written.
 /// Action: Ctrl-C.
 /// Must hold: exit code 130; the summary; whole lines in the table, as many as whole frames in the recording.
 #[test]
-fn ctrl_c_ends_a_monitor_and_keeps_what_was_written() {
+fn ctrl_c_ends_a_monitor_with_complete_files() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
-    let port = telling(&board);
+    let port = sending(&board);
     let mut command =
         bench.command(&format!("monitor --port {} --csv ride.csv --record ride.link", port.name));
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
     let mut received = [0; 300];
     let out = child.stdout.as_mut().expect("piped");
-    out.read_exact(&mut received).expect("it tells something");
+    out.read_exact(&mut received).expect("output");
     let kill = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status();
     assert!(kill.expect("sh runs").success());
     let run = Run::from(child.wait_with_output().expect("it ends"));
@@ -356,25 +358,26 @@ fn ctrl_c_ends_a_monitor_and_keeps_what_was_written() {
     assert_eq!(bench.read("replayed.csv").lines().count(), table.lines().count());
 }
 
-/// A board that is pulled out after 50 steps that were watched, from `steps` on.
+/// A board that is unplugged after 50 monitored steps, from `steps` on.
 fn pulled_out(board: &Shared, mut steps: u32) -> Port {
     let last = steps + 1000;
-    let asked = lock(board).requests;
+    let requests = lock(board).requests;
     Port::new(board, move |board| {
-        let watched = lock(board).requests > asked;
-        if !watched {
+        let monitored = lock(board).requests > requests;
+        if !monitored {
             return Some(Vec::new());
         }
         steps += 20;
-        (steps < last).then(|| lock(board).tell(&Message::Telemetry(telemetry(steps))))
+        (steps < last).then(|| lock(board).unsolicited(&Message::Telemetry(telemetry(steps))))
     })
 }
 
-/// Situation: a board that is pulled out while it is watched.
+/// Situation: a board that is unplugged while it is monitored.
 /// Action: monitor, without waiting and waiting a second.
-/// Must hold: exit code 1, the line named, and the time if it was waited for; the summary told, the table whole.
+/// Must hold: exit code 1, the line named, and the time if it was waited for; the summary printed, the table
+/// complete.
 #[test]
-fn a_board_pulled_out_while_watched_is_told() {
+fn a_board_unplugged_while_monitored_is_reported() {
     for (reopen, received) in [("0s", ""), ("1s", "; not back within 1 s")] {
         let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
         let port = pulled_out(&board, 0);
@@ -388,16 +391,17 @@ fn a_board_pulled_out_while_watched_is_told() {
     }
 }
 
-/// Situation: a board that is pulled out while it is watched and recorded, and put in again at another device, to which the
-/// port's name then leads. Action: monitor; pull it out for good.
-/// Must hold: that it is lost, and back, and who it is, is told; table and recording have the steps of both times, and no more.
+/// Situation: a board that is unplugged while it is monitored and recorded, and plugged in again at another device,
+/// to which the port's name then leads.
+/// Action: monitor; unplug it for good.
+/// Must hold: loss, return and identity are reported; table and recording have the steps of both times, and no more.
 #[test]
-fn a_board_that_comes_back_is_heard_again() {
+fn a_board_that_returns_is_monitored_again() {
     let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
     let first = pulled_out(&board, 0);
     symlink(&first.name, bench.path("port")).expect("a link");
-    let words = "monitor --port port --csv ride.csv --record ride.link --reopen 10s";
-    let mut command = bench.command(words);
+    let texts = "monitor --port port --csv ride.csv --record ride.link --reopen 10s";
+    let mut command = bench.command(texts);
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
     let mut lines =
         BufReader::new(child.stdout.take().expect("piped")).lines().map(|line| line.expect("text"));

@@ -16,12 +16,13 @@ fn client(wire: Wire) -> Client {
     Client::new(Box::new(wire), SHORT)
 }
 
-/// All that a board with this configuration has.
+/// All settings of a board with this configuration.
 fn settings_of(config: &Config) -> Vec<Setting> {
     Settings::read(&mut client(Wire::good(&board(config)))).expect("settings").all()
 }
 
-/// A configuration with other values of every kind: a law with points, numbers, limits on and off, groups switched on.
+/// A configuration with other values of every kind: a law with points, numbers, limits on and off, groups switched
+/// on.
 fn other() -> Config {
     let mut config = Config::product();
     config.law = Law::Table(GainSchedule::new(&[(0.0, 12.0), (6.0, 0.5)]).expect("a table"));
@@ -35,76 +36,76 @@ fn other() -> Config {
 }
 
 /// Situation: two boards of different configurations, one beyond the other's ranges that depend on each other.
-/// Action: what one has is set on the other, both ways; then once more.
+/// Action: set the values of each on the other; then once more.
 /// Must hold: bit for bit the same configuration; the second time nothing is set.
 #[test]
-fn what_one_board_has_another_gets() {
+fn settings_are_copied_between_boards() {
     assert!(other().plan().is_ok());
     for (from, to) in [(Config::product(), other()), (other(), Config::product())] {
         let board = board(&from);
         let mut client = client(Wire::good(&board));
-        let wanted = settings_of(&to);
+        let expected = settings_of(&to);
         let before = Settings::read(&mut client).expect("settings");
-        let Tuned { set, differing, now } = tune(&mut client, &before, &wanted).expect("set");
+        let Tuned { set, differing, now } = tune(&mut client, &before, &expected).expect("set");
         assert_eq!((lock(&board).config.clone(), differing.len()), (to, 0));
         assert!((7..=20).contains(&set.len()), "{set:?}");
-        assert_eq!(tune(&mut client, &now, &wanted).expect("set").set, [""; 0]);
+        assert_eq!(tune(&mut client, &now, &expected).expect("set").set, [""; 0]);
     }
 }
 
 /// Situation: a board whose polarity check is passed.
-/// Action: set another calibration; then what a board has whose check is passed.
-/// Must hold: the check is taken back, never set, and told as differing.
+/// Action: set another calibration; then the settings of a board whose check is passed.
+/// Must hold: the check is cleared, never set, and reported as differing.
 #[test]
 fn a_passed_polarity_check_is_never_set() {
     let mut checked = Config::product();
     checked.calibration.polarity_checked = true;
     let mut turned = checked.clone();
     turned.calibration.gyro_bias_rad_s[0] = 0.01;
-    let wanted = settings_of(&turned);
+    let expected = settings_of(&turned);
     let board = board(&checked);
     let mut client = client(Wire::good(&board));
     let before = Settings::read(&mut client).expect("settings");
-    let tuned = tune(&mut client, &before, &wanted).expect("set");
+    let tuned = tune(&mut client, &before, &expected).expect("set");
     assert_eq!(tuned.set, ["calibration.gyro_bias_x_rad_s"]);
     assert_eq!(tuned.differing, ["calibration.polarity_checked"]);
     assert!(!lock(&board).config.calibration.polarity_checked);
 }
 
-/// Situation: settings of which each alone may be, but not all together; a board that is engaged.
+/// Situation: settings that are valid alone, but not together; a board that is engaged.
 /// Action: set them.
-/// Must hold: an error that names why; the configuration is bit for bit what it was.
+/// Must hold: an error with the reason; the configuration is unchanged to the bit.
 #[test]
-fn what_is_refused_leaves_all_as_it_was() {
+fn a_rejected_set_changes_nothing() {
     let start = other();
     let board = board(&start);
     let mut client = client(Wire::good(&board));
     let before = Settings::read(&mut client).expect("settings");
     let of = |key: &str, value| Setting::Value { key: key.into(), value };
-    // The end-stop's ends the wrong way round, after changes that are accepted and in front of the calibration.
-    let wanted = [
+    // The end-stop's ends in the wrong order, after changes that are accepted and in front of the calibration.
+    let expected = [
         Setting::Law(Law::Cl1.into()),
         of("limits.taper", Some(0.0)),
         of("limits.end_stop.soft_rad", Some(1.4)),
         of("limits.end_stop.hard_rad", Some(0.6)),
         of("calibration.gyro_bias_x_rad_s", Some(0.0)),
     ];
-    let error = tune(&mut client, &before, &wanted).map(drop).expect_err("refused").to_string();
+    let error = tune(&mut client, &before, &expected).map(drop).expect_err("refused").to_string();
     for word in ["limits.end_stop", "is outside", "nothing is set: the previous values are restored"] {
         assert!(error.contains(word), "{error}");
     }
     assert_eq!(lock(&board).config, start);
     lock(&board).engaged = true;
-    let error = tune(&mut client, &before, &wanted).map(drop).expect_err("engaged").to_string();
-    assert!(error.contains("refused while engaged; nothing is set"), "{error}");
+    let error = tune(&mut client, &before, &expected).map(drop).expect_err("engaged").to_string();
+    assert!(error.contains("rejected while engaged; nothing is set"), "{error}");
     assert_eq!(lock(&board).config, start);
 }
 
-/// Situation: a board that gets engaged after the third setting.
+/// Situation: a board that is engaged after the third setting.
 /// Action: set six.
-/// Must hold: told that it refuses, which three are set, and that they can't be put back: which is so.
+/// Must hold: the error reports the rejection, the three that are set, and that they cannot be reset, which is true.
 #[test]
-fn what_cannot_be_put_back_is_told() {
+fn settings_that_cannot_be_reset_are_reported() {
     let start = Config::product();
     let board = board(&start);
     let (rider, mut sets) = (board.clone(), 0);
@@ -117,11 +118,11 @@ fn what_cannot_be_put_back_is_told() {
     let mut client = client(Wire::new(&board, Box::new(engages), Box::new(LinkChannel::Arrives)));
     let before = Settings::read(&mut client).expect("settings");
     let keys = ["limits.rise_nm_s", "limits.fall_nm_s", "limits.max_torque_nm", "permit.ramp_in_ticks"];
-    let wanted: Vec<_> =
+    let expected: Vec<_> =
         keys.iter().map(|key| Setting::Value { key: (*key).into(), value: Some(40.0) }).collect();
-    let error = tune(&mut client, &before, &wanted).map(drop).expect_err("engaged").to_string();
+    let error = tune(&mut client, &before, &expected).map(drop).expect_err("engaged").to_string();
     for word in [
-        "refused while engaged",
+        "rejected while engaged",
         "set: limits.rise_nm_s, limits.fall_nm_s, limits.max_torque_nm;",
         "can't be restored",
     ] {
@@ -134,23 +135,24 @@ fn what_cannot_be_put_back_is_told() {
     );
 }
 
-/// What a line does from the frame of a number on.
+/// Behaviour of a line from the frame of a number on.
 #[derive(Clone, Copy, PartialEq)]
 enum Break {
-    /// Gone, before the request arrives.
+    /// Lost, before the request arrives.
     Before,
-    /// Gone, before the answer arrives.
+    /// Lost, before the answer arrives.
     After,
-    /// Nothing comes back for a while.
+    /// No answer for a while.
     Mute,
 }
 
-/// Situation: six settings over a line that is lost, before or after the request, or silent for a while, at each of them.
+/// Situation: six settings over a line that is lost, before or after the request, or silent for a while, at each of
+/// them.
 /// Action: set them.
-/// Must hold: what is told as set is set, what is told as not set is not; only the one under way is not known, and after a
-/// silence none.
+/// Must hold: each setting reported as set is set, each reported as not set is not; only the current one is unknown,
+/// and after a silence none.
 #[test]
-fn a_line_that_fails_half_way_is_told_honestly() {
+fn a_line_that_fails_half_way_is_reported_correctly() {
     let keys = [
         "rise_nm_s",
         "fall_nm_s",
@@ -184,28 +186,28 @@ fn a_line_that_fails_half_way_is_told_honestly() {
                 }),
             );
             let mut client = client(wire);
-            let wanted: Vec<_> = keys
+            let expected: Vec<_> = keys
                 .iter()
                 .zip([11.0, 12.0, 6.5, 0.75, 2.5, 1.25])
                 .map(|(key, value)| Setting::Value { key: key.clone(), value: Some(value) })
                 .collect();
-            let error = tune(&mut client, &before, &wanted).map(drop).expect_err("it failed").to_string();
+            let error = tune(&mut client, &before, &expected).map(drop).expect_err("it failed").to_string();
             let now = Settings::read(&mut reader).expect("settings");
-            let received = |begin: &str| {
-                let rest = error.split_once(begin).map_or("", |(_, rest)| rest);
+            let received = |start: &str| {
+                let rest = error.split_once(start).map_or("", |(_, rest)| rest);
                 rest.split(';').next().unwrap_or("").split(", ").map(String::from).collect::<Vec<_>>()
             };
             let (set, unset, unknown) = (received("; set: "), received("not set: "), received("not known: "));
             let set = if error.contains("read back: set: ") { received("read back: set: ") } else { set };
             let mut counts = [0; 3];
-            for one in &wanted {
+            for one in &expected {
                 let key = one.key().to_owned();
                 let place = [&set, &unset, &unknown].iter().position(|keys| keys.contains(&key));
-                let place = place.unwrap_or_else(|| panic!("{key} is not told: {error}"));
+                let place = place.unwrap_or_else(|| panic!("{key} is not reported: {error}"));
                 counts[place] += 1;
                 match place {
-                    0 => assert!(now.has(one), "{key} is told as set: {error}"),
-                    1 => assert!(!now.has(one), "{key} is told as not set: {error}"),
+                    0 => assert!(now.has(one), "{key} is reported as set: {error}"),
+                    1 => assert!(!now.has(one), "{key} is reported as not set: {error}"),
                     _ => {}
                 }
             }

@@ -11,12 +11,12 @@ fn id(number: u32, extended: bool) -> Id {
     Id { number, extended }
 }
 
-/// Situation: events of every kind that Vector's tools write, with what they put behind the bytes.
+/// Situation: events of every kind that Vector's tools write, with the fields after the bytes.
 /// Action: read.
-/// Must hold: time, bus, identifier and bytes as written; remote and error frames counted; all others passed over, and
-/// nothing said.
+/// Must hold: time, bus, identifier and bytes as written; remote and error frames counted; all others skipped without
+/// a message.
 #[test]
-fn every_kind_of_event_is_read_or_passed_over() {
+fn every_kind_of_event_is_read_or_skipped() {
     let text = format!(
         "{HEADER}   0.010000 1  123             Rx   d 4 DE AD BE EF  Length = 264000 BitCount = 138 ID = 291\r\n\
          \x20  0.020000 2  1FFFFFFFx       Tx   d 8 00 01 02 03 04 05 06 07\r\n\
@@ -34,7 +34,7 @@ fn every_kind_of_event_is_read_or_passed_over() {
     assert!(is_one(&text));
     let frames = parse(&text).unwrap();
     let (eight, twelve): (Vec<u8>, Vec<u8>) = ((0..8).collect(), (0..12).collect());
-    let want = [
+    let expected = [
         (0.01, 7, 0, id(0x123, false), &[0xde, 0xad, 0xbe, 0xef][..]),
         (0.02, 8, 1, id(0x1fff_ffff, true), &eight),
         (0.03, 9, 0, id(0x7ff, false), &[]),
@@ -44,17 +44,18 @@ fn every_kind_of_event_is_read_or_passed_over() {
     ];
     let all: Vec<Frame> = frames.iter().collect();
     assert_eq!(frames.remarks, []);
-    assert_eq!(all.len(), want.len());
-    for (got, (time_s, line, bus, id, data)) in all.iter().zip(want) {
+    assert_eq!(all.len(), expected.len());
+    for (got, (time_s, line, bus, id, data)) in all.iter().zip(expected) {
         assert_eq!(*got, Frame { time_s, line, bus, id, data });
     }
     assert_eq!((frames.remote, frames.errors), (1, 2));
     assert_eq!(frames.buses, ["1", "2", "3"]);
 }
 
-/// Situation: decimal identifiers and bytes, times that count from the event before, an event that is no frame in between.
+/// Situation: decimal identifiers and bytes, times relative to the previous event, an event that is no frame in
+/// between.
 /// Action: read.
-/// Must hold: the numbers are decimal, and the times are added up over all events.
+/// Must hold: the numbers are decimal, and the times are summed over all events.
 #[test]
 fn decimal_numbers_and_relative_times() {
     let text = "date Wed Jun 7 10:00:00 2023\nbase dec timestamps relative\n   0.500000 Start of measurement\n   \
@@ -76,7 +77,7 @@ fn decimal_numbers_and_relative_times() {
 /// Action: read.
 /// Must hold: each is named with its line, the good ones are there; without a header it is hexadecimal.
 #[test]
-fn damaged_lines_cost_themselves_alone() {
+fn only_damaged_lines_are_lost() {
     for line in [
         "0.5 1 123 Rx d",
         "0.5 1 123 Rx d 3 01 02",
@@ -101,6 +102,6 @@ fn damaged_lines_cost_themselves_alone() {
         let lines: Vec<Option<u64>> = frames.remarks.iter().map(|remark| remark.line).collect();
         assert_eq!(lines, [Some(2)], "{line}");
     }
-    let why = parse("base hex timestamps absolute\n").unwrap_err();
-    assert_eq!(why.to_string(), "no data frame in it");
+    let error = parse("base hex timestamps absolute\n").unwrap_err();
+    assert_eq!(error.to_string(), "no data frame in it");
 }

@@ -8,10 +8,10 @@ fn id(number: u32, extended: bool) -> Id {
     Id { number, extended }
 }
 
-/// Situation: one line of each kind that can-utils write: classic, extended, CAN FD, no bytes, the direction behind it,
-/// the code for the length; a remote frame, an error frame.
+/// Situation: one line of each kind that can-utils write: classic, extended, CAN FD, no bytes, the direction after
+/// it, the code for the length; a remote frame, an error frame.
 /// Action: read.
-/// Must hold: time, bus, identifier and bytes as written; frames without data counted, nothing else said.
+/// Must hold: time, bus, identifier and bytes as written; frames without data counted, no other message.
 #[test]
 fn every_kind_of_line_is_read() {
     let text = "(1436509052.249713) can0 123#DEADBEEF\n(1436509052.249714) can0 00000123#01\n\
@@ -22,15 +22,15 @@ fn every_kind_of_line_is_read() {
     let frames = parse(text).unwrap();
     let all: Vec<Frame> = frames.iter().collect();
     let fd: Vec<u8> = (0..12).collect();
-    let want = [
+    let expected = [
         (1_436_509_052.249_713, 1, 0, id(0x123, false), &[0xde, 0xad, 0xbe, 0xef][..]),
         (1_436_509_052.249_714, 2, 0, id(0x123, true), &[1]),
         (1_436_509_052.3, 3, 1, id(0x7ff, false), &fd),
         (1_436_509_053.0, 4, 0, id(0, false), &[]),
         (1_436_509_053.5, 5, 0, id(0x1fff_ffff, true), &[0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77, 0x88]),
     ];
-    assert_eq!(all.len(), want.len());
-    for (got, (time_s, line, bus, id, data)) in all.iter().zip(want) {
+    assert_eq!(all.len(), expected.len());
+    for (got, (time_s, line, bus, id, data)) in all.iter().zip(expected) {
         assert_eq!(*got, Frame { time_s, line, bus, id, data });
     }
     assert_eq!(
@@ -40,7 +40,7 @@ fn every_kind_of_line_is_read() {
     assert_eq!(frames.remarks, []);
 }
 
-/// Situation: the lines for the screen: absolute times, a date, with the words of `-x`, letters behind the bytes.
+/// Situation: the lines for the screen: absolute times, a date, with the text of `-x`, letters after the bytes.
 /// Action: read.
 /// Must hold: the same frames; the date is universal time.
 #[test]
@@ -53,32 +53,33 @@ fn lines_for_the_screen_are_read_where_their_times_are_clear() {
     let frames = parse(text).unwrap();
     let all: Vec<(f64, Id, usize)> =
         frames.iter().map(|frame| (frame.time_s, frame.id, frame.data.len())).collect();
-    let want = [(1_700_000_000.000_001, false, 3), (1_700_000_000.5, true, 2), (1_700_000_001.0, false, 12)];
-    assert_eq!(all, want.map(|(time_s, extended, bytes)| (time_s, id(0x123, extended), bytes)));
+    let expected =
+        [(1_700_000_000.000_001, false, 3), (1_700_000_000.5, true, 2), (1_700_000_001.0, false, 12)];
+    assert_eq!(all, expected.map(|(time_s, extended, bytes)| (time_s, id(0x123, extended), bytes)));
     assert_eq!((frames.remote, frames.errors, frames.remarks), (1, 1, Vec::new()));
 }
 
 /// Situation: lines for the screen whose times begin at 0 and rise; the same that fall; lines without any time.
 /// Action: read.
-/// Must hold: the first are read; the others are refused with the line and how to record.
+/// Must hold: the first are read; the others are rejected with the line and the way to record.
 #[test]
-fn times_that_may_mean_two_things_are_refused() {
+fn ambiguous_times_are_rejected() {
     let rising = " (000.000000)  can0  304   [2]  90 01\n (000.009000)  can0  304   [2]  90 01\n";
     let falling = format!("{rising} (000.008000)  can0  304   [2]  90 01\n");
     assert_eq!(parse(rising).unwrap().len(), 2);
-    let why = parse(&falling).unwrap_err();
-    assert_eq!(why.line, Some(3));
-    assert!(why.what.contains("candump -t d") && why.what.contains("candump -L"), "{why}");
-    let why = written("a.log", "  can0  304   [2]  90 01\n", &["ride.dbc"]).unwrap_err();
-    assert_eq!(why, "a.log: line 1: has no time stamp; record with `candump -L`");
+    let error = parse(&falling).unwrap_err();
+    assert_eq!(error.line, Some(3));
+    assert!(error.what.contains("candump -t d") && error.what.contains("candump -L"), "{error}");
+    let error = written("a.log", "  can0  304   [2]  90 01\n", &["ride.dbc"]).unwrap_err();
+    assert_eq!(error, "a.log: line 1: has no time stamp; record with `candump -L`");
 }
 
 /// Situation: damaged lines of every kind between good ones, the last one cut; a time that jumps back.
 /// Action: read.
-/// Must hold: each of the first three is named with its line, the rest counted; the good frames are all there, the jump as
-/// it was recorded.
+/// Must hold: each of the first three is named with its line, the rest counted; the good frames are all there, the
+/// jump as recorded.
 #[test]
-fn damaged_lines_cost_themselves_alone() {
+fn only_damaged_lines_are_lost() {
     let bad = [
         "(1.0) can0 12#00",
         "(1.0) can0 800#00",

@@ -7,16 +7,16 @@ use sim_host::recording::frames::Id;
 
 fn database(messages: &str) -> Result<Database, String> {
     let text = format!("VERSION \"\"\n\nNS_ :\n\nBS_:\n\nBU_: A\n\n{messages}");
-    Database::parse(text.as_bytes()).map_err(|why| why.to_string())
+    Database::parse(text.as_bytes()).map_err(|error| error.to_string())
 }
 
 fn values(database: &Database, id: u32, data: &[u8]) -> Vec<f64> {
     database.message(Id { number: id, extended: false }).unwrap().1.values(data).collect()
 }
 
-/// Situation: places of signals, worked out by hand; the last bit in the last byte of CAN FD.
-/// Action: take them out of bytes.
-/// Must hold: the bits in the order of each; a frame that ends before them has none.
+/// Situation: positions of signals, worked out by hand; the last bit in the last byte of CAN FD.
+/// Action: extract them from bytes.
+/// Must hold: the bits in the order of each; none from a frame that ends before them.
 #[test]
 fn bits_are_taken_in_both_orders() {
     let data = [0b1010_0101, 0b0011_1100, 0xff, 0x00];
@@ -44,11 +44,12 @@ fn bits_are_taken_in_both_orders() {
     );
 }
 
-/// Situation: words of value tables. Action: ask whether they mean that there is no value.
-/// Must hold: those of the documentation do, in any case and with anything between; states of a thing do not.
+/// Situation: texts of value tables.
+/// Action: check whether they mean that there is no value.
+/// Must hold: those of the documentation do, in any case and with anything between; states of a device do not.
 #[test]
-fn words_that_mean_no_value() {
-    for words in [
+fn texts_that_mean_no_value() {
+    for texts in [
         "SNA",
         "Not known",
         "not_available",
@@ -62,9 +63,9 @@ fn words_that_mean_no_value() {
         "No data",
         "not-valid",
     ] {
-        assert!(is_gap(words), "{words}");
+        assert!(is_gap(texts), "{texts}");
     }
-    for words in [
+    for texts in [
         "",
         "off",
         "error",
@@ -76,7 +77,7 @@ fn words_that_mean_no_value() {
         "SNAP",
         "nan",
     ] {
-        assert!(!is_gap(words), "{words}");
+        assert!(!is_gap(texts), "{texts}");
     }
 }
 
@@ -96,12 +97,12 @@ fn values_that_are_not_available_are_nan() {
     assert_eq!(got, [-327.67, 253.0, 0.0, 2.0, -2.0, 14.0]);
 }
 
-/// Situation: what a message may have that can't be used: signals of more than 64 bits or beyond every frame, pages without
-/// or in a circle of signals that choose, a second message of the same identifier.
+/// Situation: unusable parts of a message: signals of more than 64 bits or beyond every frame, pages without or in a
+/// cycle of multiplexor signals, a second message of the same identifier.
 /// Action: read.
-/// Must hold: the rest of the message is read; what can't be used is named and NaN.
+/// Must hold: the rest of the message is read; each unusable signal is named and NaN.
 #[test]
-fn what_can_not_be_used_is_named() {
+fn unusable_signals_are_named() {
     let wide = database("BO_ 1 M: 8 A\n SG_ Wide : 0|65@1+ (1,0) [0|0] \"\" A\n SG_ Out : 511|2@1+ (1,0) [0|0] \"\" A\n SG_ Good : 0|8@1+ (1,0) [0|0] \"\" A\n").unwrap();
     assert_eq!(values(&wide, 1, &[7]), [7.0]);
     assert_eq!(
@@ -128,9 +129,11 @@ fn what_can_not_be_used_is_named() {
     );
 }
 
-/// Situation: names of more than 32 letters, which Vector's tools cut and keep whole in an attribute; two signals of one name.
+/// Situation: names of more than 32 letters, which Vector's tools cut and store complete in an attribute; two signals
+/// of one name.
 /// Action: read.
-/// Must hold: the whole names; those without the attribute as they are; the second of the same name has its bit behind it.
+/// Must hold: the complete names; those without the attribute as they are; the second of the same name has its bit
+/// appended.
 #[test]
 fn long_names_are_whole() {
     let long = database(
@@ -149,19 +152,19 @@ fn long_names_are_whole() {
 
 /// Situation: texts that are no database, one without a message, an identifier of more than 11 bits without its mark.
 /// Action: read.
-/// Must hold: refused, with the line where there is one, in one line of text.
+/// Must hold: rejected, with the line where there is one, in one line of text.
 #[test]
-fn what_is_no_database_is_refused() {
+fn texts_that_are_no_database_are_rejected() {
     let wide = database("BO_ 65792 M: 8 A\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" A\n").unwrap_err();
     assert!(wide.starts_with("line 9: its identifier is larger than 2047"), "{wide}");
     assert_eq!(database("").unwrap_err(), "no message (`BO_`) in it");
     let damaged = database("BO_ 1 M: 8 A\n SG_ S : 0|8@1+ (1,0 [0|0] \"\" A\n").unwrap_err();
     assert!(damaged.starts_with("line ") && damaged.contains("is no valid DBC"), "{damaged}");
     for text in ["", "<xml/>", "time,roll\n0,1\n", "\u{0}\u{1}"] {
-        let why = Database::parse(text.as_bytes()).unwrap_err().to_string();
-        assert!(!why.is_empty() && !why.contains('\n'), "{why}");
+        let error = Database::parse(text.as_bytes()).unwrap_err().to_string();
+        assert!(!error.is_empty() && !error.contains('\n'), "{error}");
     }
-    // What belongs to no message has an identifier that is none.
+    // Signals without a message have an invalid identifier.
     let independent = Database::parse(&std::fs::read(file("odd.dbc")).unwrap()).unwrap();
     let (_, message) = independent.message(Id { number: 0, extended: true }).unwrap();
     assert_eq!((message.name.as_str(), independent.messages.len()), ("ExtendedZero", 10));

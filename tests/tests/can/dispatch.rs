@@ -1,8 +1,8 @@
-//! Which reader a file is given to, and what is said of files that lack something.
+//! Choice of the reader for a file, and messages about incomplete files.
 
 use super::{column, file, group, read_with, recorded, remarks, written};
 
-/// Situation: each kind of file under a name that says something else, one of them packed.
+/// Situation: each kind of file under a name of another kind, one of them packed.
 /// Action: read.
 /// Must hold: the content decides.
 #[test]
@@ -17,17 +17,17 @@ fn the_content_decides_and_not_the_name() {
     assert_eq!(dated.groups[0].columns[0].name, "date time");
 }
 
-/// Situation: frames without a database; with one that has none of their messages; with that one beside the right one; a
-/// database for a file that has no frames; a database that is not there or none.
+/// Situation: frames without a database; with one that has none of their messages; with that one beside the right
+/// one; a database for a file that has no frames; a database that does not exist or is invalid.
 /// Action: read.
-/// Must hold: the first two are refused, and say what to give or name both; the third says which database was idle; the
-/// others are refused with the file at fault.
+/// Must hold: the first two are rejected, with the missing option or both names; the third reports the unused
+/// database; the others are rejected with the file at fault.
 #[test]
-fn databases_that_are_missing_or_idle() {
+fn databases_that_are_missing_or_unused() {
     let dbc = |name: &str| file(name).display().to_string();
-    let why = recorded("ride.log", &[]).unwrap_err().to_string();
+    let error = recorded("ride.log", &[]).unwrap_err().to_string();
     assert_eq!(
-        why,
+        error,
         format!(
             "{}: has 100 frames of CAN; give the database that decodes them with --dbc FILE",
             dbc("ride.log")
@@ -36,24 +36,24 @@ fn databases_that_are_missing_or_idle() {
     for name in ["ride.asc", "ride.mf4"] {
         assert!(recorded(name, &[]).unwrap_err().to_string().ends_with("with --dbc FILE"), "{name}");
     }
-    let why = recorded("ride.log", &["odd.dbc"]).unwrap_err().to_string();
+    let error = recorded("ride.log", &["odd.dbc"]).unwrap_err().to_string();
     assert_eq!(
-        why,
+        error,
         format!("{}: has 100 frames of CAN, and none is decoded by {}", dbc("ride.log"), dbc("odd.dbc"))
     );
     let both = recorded("ride.log", &["odd.dbc", "ride.dbc"]).unwrap();
     assert_eq!(remarks(&both), [format!("no frame of it is decoded by {}", dbc("odd.dbc"))]);
-    let why = written("a.csv", "t_s,roll_rad\n0,0.1\n", &["ride.dbc"]).unwrap_err();
-    assert_eq!(why, format!("a.csv: has no frame of CAN to decode by {}", dbc("ride.dbc")));
-    let why = read_with(&file("ride.log"), &[file("none.dbc")]).unwrap_err().to_string();
-    assert!(why.starts_with(&format!("can't read {}: ", dbc("none.dbc"))), "{why}");
-    let why = read_with(&file("ride.log"), &[file("ride.asc")]).unwrap_err().to_string();
-    assert!(why.starts_with(&format!("{}: line 1: is no valid DBC", dbc("ride.asc"))), "{why}");
+    let error = written("a.csv", "t_s,roll_rad\n0,0.1\n", &["ride.dbc"]).unwrap_err();
+    assert_eq!(error, format!("a.csv: has no frame of CAN to decode by {}", dbc("ride.dbc")));
+    let error = read_with(&file("ride.log"), &[file("none.dbc")]).unwrap_err().to_string();
+    assert!(error.starts_with(&format!("can't read {}: ", dbc("none.dbc"))), "{error}");
+    let error = read_with(&file("ride.log"), &[file("ride.asc")]).unwrap_err().to_string();
+    assert!(error.starts_with(&format!("{}: line 1: is no valid DBC", dbc("ride.asc"))), "{error}");
 }
 
 /// Situation: the same message on two buses; a message that two databases have.
 /// Action: read.
-/// Must hold: a group for each bus, named with it; the first database is used, and it is said.
+/// Must hold: a group for each bus, named with it; the first database is used, and this is reported.
 #[test]
 fn two_buses_and_two_databases() {
     let text = "(1.0) can0 304#9001\n(1.1) can1 304#9101\n(1.2) can0 304#9201\n";
@@ -67,18 +67,19 @@ fn two_buses_and_two_databases() {
     assert_eq!(remarks(&twice)[1], "message RearWheel: two databases have 0x304; the first is used");
 }
 
-/// Situation: a log of Vector in binary, a measurement file of the version before, one that is a header alone.
+/// Situation: a binary log of Vector, a measurement file of the previous version, one that is only a header.
 /// Action: read.
-/// Must hold: refused, and what to do is said.
+/// Must hold: rejected, with a remedy.
 #[test]
-fn kinds_that_are_not_read_say_so() {
-    let why = written("a.blf", b"LOGG\x90\0\0\0", &["ride.dbc"]).unwrap_err();
-    assert!(why.contains("BLF") && why.contains("ASC"), "{why}");
+fn unsupported_kinds_are_rejected() {
+    let error = written("a.blf", b"LOGG\x90\0\0\0", &["ride.dbc"]).unwrap_err();
+    assert!(error.contains("BLF") && error.contains("ASC"), "{error}");
     let mut old = b"MDF     3.30    program ".to_vec();
     old.resize(64, 0);
     old[28..30].copy_from_slice(&330_u16.to_le_bytes());
-    let why = written("a.mf4", &old, &[]).unwrap_err();
-    assert_eq!(why, "a.mf4: is of MDF `3.30`; only MDF 4 is read, convert it");
-    let why = written("a.mf4", &std::fs::read(file("ride.mf4")).unwrap()[..100], &["ride.dbc"]).unwrap_err();
-    assert_eq!(why, "a.mf4: has no header where MDF 4 has it");
+    let error = written("a.mf4", &old, &[]).unwrap_err();
+    assert_eq!(error, "a.mf4: is of MDF `3.30`; only MDF 4 is read, convert it");
+    let error =
+        written("a.mf4", &std::fs::read(file("ride.mf4")).unwrap()[..100], &["ride.dbc"]).unwrap_err();
+    assert_eq!(error, "a.mf4: has no header where MDF 4 has it");
 }

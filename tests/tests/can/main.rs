@@ -1,6 +1,6 @@
-//! Flight cards: recordings of CAN frames and measurement files become columns.
+//! Recordings of CAN frames and measurement files become columns.
 //!
-//! The files are in `tests/data/can`; its README says by which programs they were made.
+//! The files are in `tests/data/can`; its README names the programs that made them.
 
 mod asc;
 mod candump;
@@ -35,7 +35,7 @@ fn written(name: &str, bytes: impl AsRef<[u8]>, dbc: &[&str]) -> Result<Recordin
     std::fs::write(&path, bytes).unwrap();
     let dbc: Vec<PathBuf> = dbc.iter().map(|name| file(name)).collect();
     read_with(&path, &dbc)
-        .map_err(|why| why.to_string().replace(&format!("{}/", folder.path().display()), ""))
+        .map_err(|error| error.to_string().replace(&format!("{}/", folder.path().display()), ""))
 }
 
 fn group<'a>(recording: &'a Recording, name: &str) -> &'a Group {

@@ -3,10 +3,10 @@
 use super::{column, file, group, recorded, remarks, written};
 use sim_host::recording::mdf;
 
-/// Situation: channels that asammdf wrote decoded: a conversion, samples that are not valid, both byte orders, a number of 64
+/// Situation: channels that asammdf wrote decoded: a conversion, invalid samples, both byte orders, a number of 64
 /// bits; two groups of other rates, compressed and transposed.
 /// Action: read without a database.
-/// Must hold: a group each, its times those of its own master, the numbers those that were written.
+/// Must hold: a group each, its times those of its own master, the numbers as written.
 #[test]
 fn channels_that_are_numbers_are_columns() {
     let recording = recorded("channels.mf4", &[]).unwrap();
@@ -33,12 +33,12 @@ fn channels_that_are_numbers_are_columns() {
     assert_eq!(units, ["rad/s", "rad", "", "N", ""]);
 }
 
-/// Situation: a logger's file cut at every length, as when its power goes.
+/// Situation: a logger's file cut at every length, as at a power failure.
 /// Action: read.
-/// Must hold: never more frames than the whole file has, and none fewer at a greater length; the frames that are read are the
-/// first ones of the whole file; from the first whole frame on it is a recording, and says that it was not finished.
+/// Must hold: never more frames than the complete file has, and none fewer at a greater length; the frames are the
+/// first ones of the complete file; from the first complete frame on it is a recording, reported as not finished.
 #[test]
-fn a_loggers_file_may_end_anywhere() {
+fn a_loggers_file_can_end_anywhere() {
     let whole = std::fs::read(file("logger.mf4")).unwrap();
     let all = mdf::parse(&whole).unwrap().frames;
     assert_eq!((all.len(), all.errors), (60, 0));
@@ -49,7 +49,7 @@ fn a_loggers_file_may_end_anywhere() {
             continue;
         };
         assert!(content.frames.len() >= before && content.frames.len() <= 60, "{length}");
-        assert!(content.frames.iter().zip(all.iter()).all(|(got, want)| got == want), "{length}");
+        assert!(content.frames.iter().zip(all.iter()).all(|(got, expected)| got == expected), "{length}");
         assert!(content.remarks[0].what.contains("not finished"), "{:?}", content.remarks);
         before = content.frames.len();
     }
@@ -58,9 +58,9 @@ fn a_loggers_file_may_end_anywhere() {
 
 /// Situation: a finished file that was cut while it was copied.
 /// Action: read.
-/// Must hold: what is there is read, and it is said that the file ends within its data.
+/// Must hold: its content is read, and the message reports that the file ends within its data.
 #[test]
-fn a_finished_file_that_was_cut_says_so() {
+fn a_finished_file_that_was_cut_is_reported() {
     let whole = std::fs::read(file("unsorted.mf4")).unwrap();
     let recording = written("a.mf4", &whole[..whole.len() - 400], &["odd.dbc"]).unwrap();
     let rows: usize = recording.groups.iter().map(|group| group.times_s.as_ref().unwrap().len()).sum();
@@ -68,9 +68,9 @@ fn a_finished_file_that_was_cut_says_so() {
     assert!(remarks(&recording)[0].contains("the file ends within its data"), "{:?}", remarks(&recording));
 }
 
-/// Situation: six records of a time and a number, in two blocks of which the first ends within the third record; the same in
-/// a transposed block whose size is no multiple of its columns, by itself and in a list; a list that names a block twice; a
-/// list that leads back to itself.
+/// Situation: six records of a time and a number, in two blocks of which the first ends within the third record; the
+/// same in a transposed block whose size is no multiple of its columns, by itself and in a list; a list that names a
+/// block twice; a list that leads back to itself.
 /// Action: read.
 /// Must hold: in the first three all six numbers; the last two give an error or the records once, and end.
 #[test]
@@ -163,7 +163,7 @@ fn channel(file: &mut Vec<u8>, next: u64, name: &str, kind: [u8; 4], byte: u32, 
     put(file, b"##CN", &[next, 0, text, 0, 0, 0, 0, 0], &data)
 }
 
-/// A compressed block whose bytes were transposed in whole rows of `columns` bytes.
+/// A compressed block whose bytes were transposed in complete rows of `columns` bytes.
 fn transposed(file: &mut Vec<u8>, bytes: &[u8], columns: usize) -> u64 {
     let rows = bytes.len() / columns;
     let mut across: Vec<u8> = (0..rows * columns).map(|n| bytes[n % rows * columns + n / rows]).collect();

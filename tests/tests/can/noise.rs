@@ -9,7 +9,7 @@ use sim_host::recording::frames::Frames;
 use sim_host::recording::{asc, candump, decode, mdf};
 use tests::draws::runner;
 
-/// Bytes of the frames may be no more than those of the file, and a column no longer than its group.
+/// The bytes of the frames are no more than those of the file, and a column is no longer than its group.
 fn sound(frames: &Frames, size: usize, database: &Database) -> Result<(), TestCaseError> {
     prop_assert!(frames.iter().map(|frame| frame.data.len()).sum::<usize>() <= size);
     prop_assert!(frames.iter().all(|frame| frame.data.len() <= 64));
@@ -27,7 +27,7 @@ fn odd() -> Database {
     Database::parse(&std::fs::read(file("odd.dbc")).unwrap()).unwrap()
 }
 
-/// Pieces of a text instead of others, at any place.
+/// Replacements of pieces of a text, at any place.
 fn changes() -> impl Strategy<Value = Vec<(prop::sample::Index, usize, String)>> {
     let odd = [
         "",
@@ -73,10 +73,10 @@ fn changed(text: &str, changes: &[(prop::sample::Index, usize, String)]) -> Stri
 }
 
 /// Situation: logs as text with pieces changed, and any text.
-/// Action: read by both readers of text, whichever it is, and decode.
-/// Must hold: a recording or a reason, in the bounds of the file's size.
+/// Action: read with both text readers, and decode.
+/// Must hold: a recording or a reason, bounded by the file's size.
 #[test]
-fn texts_of_frames_are_read_or_refused() {
+fn texts_of_frames_are_read_or_rejected() {
     let logs: Vec<String> = ["odd.log", "odd.asc", "log2asc.asc", "ride.long.log"]
         .map(|name| std::fs::read_to_string(file(name)).unwrap().chars().take(3000).collect())
         .to_vec();
@@ -88,7 +88,7 @@ fn texts_of_frames_are_read_or_refused() {
                 for frames in [candump::parse(&text), asc::parse(&text)] {
                     match frames {
                         Ok(frames) => sound(&frames, text.len(), &database)?,
-                        Err(why) => prop_assert!(!why.what.is_empty()),
+                        Err(error) => prop_assert!(!error.what.is_empty()),
                     }
                 }
             }
@@ -101,10 +101,10 @@ fn texts_of_frames_are_read_or_refused() {
 /// Action: read; decode frames of any bytes.
 /// Must hold: a database or a reason in one line; a value for each signal.
 #[test]
-fn texts_of_databases_are_read_or_refused() {
+fn texts_of_databases_are_read_or_rejected() {
     let bytes = std::fs::read(file("odd.dbc")).unwrap();
     let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
-    let words = [
+    let texts = [
         "BO_ ",
         "SG_ ",
         " m0",
@@ -118,7 +118,7 @@ fn texts_of_databases_are_read_or_refused() {
         "-1",
         "SG_MUL_VAL_ 261 Outer Inner 0-9;",
     ];
-    let piece = prop_oneof![select(words.to_vec()).prop_map(str::to_owned), "[0-9]{1,20}"];
+    let piece = prop_oneof![select(texts.to_vec()).prop_map(str::to_owned), "[0-9]{1,20}"];
     let changes = vec((any::<prop::sample::Index>(), 0..20_usize, piece), 0..4);
     runner(4000)
         .run(&(changes, vec(any::<u8>(), 0..64)), |(changes, data)| {
@@ -128,19 +128,19 @@ fn texts_of_databases_are_read_or_refused() {
                         prop_assert_eq!(message.values(&data).count(), message.signals.len());
                     }
                 }
-                Err(why) => prop_assert!(!why.what.is_empty() && !why.what.contains('\n'), "{why}"),
+                Err(error) => prop_assert!(!error.what.is_empty() && !error.what.contains('\n'), "{error}"),
             }
             Ok(())
         })
         .unwrap();
 }
 
-/// Situation: measurement files of every kind with bytes, numbers of 64 bits or a whole block's length changed, and cut; any
-/// bytes behind the mark of one.
+/// Situation: measurement files of every kind with bytes, numbers of 64 bits or a complete block's length changed,
+/// and cut; any bytes after the mark of one.
 /// Action: read and decode.
-/// Must hold: a recording or a reason; the numbers in it are bounded by what the file can hold.
+/// Must hold: a recording or a reason; the numbers in it are bounded by the file's size.
 #[test]
-fn measurement_files_are_read_or_refused() {
+fn measurement_files_are_read_or_rejected() {
     let files: Vec<Vec<u8>> =
         ["ride.mf4", "odd.mf4", "logger.mf4", "unsorted.mf4", "sorted.mf4", "channels.mf4"]
             .map(|name| std::fs::read(file(name)).unwrap())
@@ -182,7 +182,7 @@ fn measurement_files_are_read_or_refused() {
                         }
                         prop_assert!(content.remarks.len() < 1000);
                     }
-                    Err(why) => prop_assert!(!why.what.is_empty()),
+                    Err(error) => prop_assert!(!error.what.is_empty()),
                 }
                 Ok(())
             },
@@ -197,8 +197,8 @@ fn measurement_files_are_read_or_refused() {
         .unwrap();
 }
 
-/// Situation: measurement files in whose blocks one number after another is as large as it can be: places, sizes, counts,
-/// bits, links.
+/// Situation: measurement files in whose blocks one number after another has its largest value: positions, sizes,
+/// counts, bits, links.
 /// Action: read.
 /// Must hold: a recording or a reason.
 #[test]

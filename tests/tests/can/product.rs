@@ -32,7 +32,7 @@ fn value(signals: &[(String, f64)], name: &str) -> f64 {
     signals.iter().find(|(other, _)| other == name).unwrap_or_else(|| panic!("no {name}")).1
 }
 
-/// Whether a signal is the board's own decoded value, to the rounding of an f32; NaN for what is not known.
+/// Whether a signal is the board's own decoded value, to the rounding of an f32; NaN if unknown.
 fn is(got: f64, value: Option<f32>) -> bool {
     match value {
         Some(value) => (got - f64::from(value)).abs() <= 1e-6 * (1.0 + got.abs()),
@@ -49,8 +49,9 @@ fn any_value() -> impl Strategy<Value = Option<f32>> {
     ]
 }
 
-/// Situation: any state, motion and causes. Action: encode with the firmware's encoder, decode by the database.
-/// Must hold: every number is the one that the firmware's decoder has; what is not known is NaN.
+/// Situation: any state, motion and causes.
+/// Action: encode with the firmware's encoder, decode with the database.
+/// Must hold: every number is that of the firmware's decoder; unknown values are NaN.
 #[test]
 fn the_database_reads_what_the_firmware_writes() {
     use Mode::*;
@@ -82,7 +83,7 @@ fn the_database_reads_what_the_firmware_writes() {
                 ("PolarityMove", polarity as u8 as f64),
                 ("Steps", f64::from(steps)),
             ];
-            prop_assert!(whole.iter().all(|(name, want)| value(&got, name) == *want), "{got:?}");
+            prop_assert!(whole.iter().all(|(name, expected)| value(&got, name) == *expected), "{got:?}");
             for (name, bit) in LIMITS {
                 prop_assert_eq!(value(&got, name), f64::from(limits.contains(bit)), "{}", name);
             }
@@ -90,13 +91,13 @@ fn the_database_reads_what_the_firmware_writes() {
             let sent = Message::Motion(Motion { roll_rate_rad_s, steer_rad, commanded_nm, measured_nm });
             let got = signals(&database, &sent);
             let Some(Message::Motion(read)) = Message::of(&sent.frame()) else { panic!("no motion") };
-            for (name, want) in [
+            for (name, expected) in [
                 ("RollRate", read.roll_rate_rad_s),
                 ("Steer", read.steer_rad),
                 ("TorqueCommanded", read.commanded_nm),
                 ("TorqueMeasured", read.measured_nm),
             ] {
-                prop_assert!(is(value(&got, name), want), "{name}: {got:?}, {want:?}");
+                prop_assert!(is(value(&got, name), expected), "{name}: {got:?}, {expected:?}");
             }
 
             let causes = Causes(causes);
@@ -127,9 +128,10 @@ const LIMITS: [(&str, ActiveLimits); 10] = [
     ("LimitAuthority", ActiveLimits::AUTHORITY),
 ];
 
-/// Situation: the database as it is shipped. Action: look through it.
-/// Must hold: three messages, no signal that the firmware does not have, one for every cause, nothing unused; units as in
-/// docs/link.md.
+/// Situation: the shipped database.
+/// Action: check its content.
+/// Must hold: three messages, no signal that the firmware does not have, one for every cause, nothing unused; units
+/// as in docs/link.md.
 #[test]
 fn the_database_has_the_boards_signals_and_no_others() {
     let database = parsed();
@@ -145,8 +147,9 @@ fn the_database_has_the_boards_signals_and_no_others() {
     assert_eq!(steps, unit);
 }
 
-/// Situation: a log of the board's own frames. Action: read it with the database that is shipped.
-/// Must hold: three groups, the numbers of docs/link.md's worked frames.
+/// Situation: a log of the board's own frames.
+/// Action: read it with the shipped database.
+/// Must hold: three groups, the numbers of the example frames in docs/link.md.
 #[test]
 fn a_log_of_the_board_is_read() {
     let folder = tempfile::tempdir().unwrap();

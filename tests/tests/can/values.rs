@@ -1,4 +1,4 @@
-//! Every signal of every frame beside the value that cantools has for it.
+//! Every signal of every frame, compared with the value of cantools.
 
 use super::{column, file, group, recorded, remarks, same};
 use sim_host::recording::Recording;
@@ -19,7 +19,7 @@ fn expected(name: &str, frames: u64) -> BTreeMap<(String, String), Vec<f64>> {
     all
 }
 
-/// How many values there are; all are those of cantools, and there is no other.
+/// Number of values; all are those of cantools, and there are no others.
 fn compared(recording: &Recording, expected: &BTreeMap<(String, String), Vec<f64>>) -> usize {
     for ((message, signal), values) in expected {
         let got = column(group(recording, message), signal);
@@ -65,7 +65,8 @@ fn a_ride_is_the_same_in_every_format() {
 /// Situation: any bytes in messages of every kind: both byte orders, across bytes, signed, of 64 bits, floating-point
 /// numbers, pages, pages in pages, CAN FD, extended identifiers, one of them 0.
 /// Action: read in each format with the database, whose text is Windows-1252.
-/// Must hold: every value is that of cantools in every bit; what is in no database, remote and error frames are counted.
+/// Must hold: every value is that of cantools in every bit; frames in no database, remote and error frames are
+/// counted.
 #[test]
 fn odd_messages_are_the_same_in_every_format() {
     let expected = expected("odd", u64::MAX);
@@ -86,10 +87,10 @@ fn odd_messages_are_the_same_in_every_format() {
     }
 }
 
-/// Situation: the first 60 of these frames as a logger writes them, records of all groups as they came: finished, not
-/// finished, and finished and sorted by asammdf.
+/// Situation: the first 60 of these frames as a logger writes them, records of all groups in order of arrival:
+/// finished, not finished, and finished and sorted by asammdf.
 /// Action: read.
-/// Must hold: the same values; the one that was not finished says so.
+/// Must hold: the same values; the unfinished one is reported as such.
 #[test]
 fn a_loggers_file_has_the_same_values_finished_or_not() {
     let expected = expected("odd", 60);

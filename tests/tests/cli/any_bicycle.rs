@@ -1,4 +1,4 @@
-//! What `bicycle check` calls sound every command takes.
+//! Every command accepts the bicycles that `bicycle check` accepts.
 
 use proptest::prelude::*;
 use serde_json::json;
@@ -12,7 +12,7 @@ const ROBOT: &str = "w = 0.27\nc = 0.015\nlam = 0.314\ng = 9.81\nrR = 0.08\nmR =
     xB = 0.12\nzB = -0.16\nmB = 1.6\nIBxx = 0.006\nIByy = 0.012\nIBzz = 0.009\nIBxz = 0.001\nxH = 0.24\nzH = -0.17\n\
     mH = 0.15\nIHxx = 0.0004\nIHyy = 0.0004\nIHzz = 0.0001\nIHxz = -0.00005\nrF = 0.08\nmF = 0.12\nIFxx = 0.00025\nIFyy = 0.0005\n";
 
-/// One line of each command that rides, short.
+/// A short run of each command that rides.
 const COMMANDS: [&str; 6] = [
     "ride --law none --speed 4 --steer-rate 0.1 --time-limit 0.3",
     "ride --law h --assist ideal --speed 4 --steer-rate 0.1 --time-limit 0.3",
@@ -33,10 +33,11 @@ fn changed(lines: &[(&str, f64)]) -> String {
     text
 }
 
-/// Situation: a 1:4 model, an optimised bicycle with a short wheelbase, a long cargo bicycle, a steep tilt, a trail longer than the wheelbase.
+/// Situation: a 1:4 model, an optimised bicycle with a short wheelbase, a long cargo bicycle, a steep tilt, a trail
+/// longer than the wheelbase.
 /// Action: check each, then every command that rides, with and without the flashed code; a sweep over bicycles.
-/// Must hold: all run. Where the flashed code does not fit, a note names file, parameter, value, range and the option that
-/// does the same, and the check says it before.
+/// Must hold: all run. Where the flashed code does not fit, a note names file, parameter, value, range and the
+/// equivalent option, and the check reports it before.
 #[test]
 fn model_cargo_and_optimised_bicycles_ride() {
     let bench = Bench::new(PROGRAM);
@@ -52,16 +53,16 @@ fn model_cargo_and_optimised_bicycles_ride() {
         }
     }
     let note = "response.motor.per_nm = 2027";
-    let said = bench.run(&format!("{} --bicycle robot.toml", COMMANDS[3])).stderr;
+    let output = bench.run(&format!("{} --bicycle robot.toml", COMMANDS[3])).stderr;
     for word in ["robot.toml", note, "0.1 to 100", "--set response.motor=off"] {
-        assert!(said.contains(word), "{said}");
+        assert!(output.contains(word), "{output}");
     }
     let check = bench.json("bicycle check --bicycle robot.toml");
     assert!(check["flashed_off"][0].as_str().unwrap().contains(note), "{check}");
     assert_eq!(bench.json("bicycle check")["flashed_off"], json!([]));
     let free = bench.run(&format!("{} --bicycle robot.toml", COMMANDS[0]));
     assert_eq!(free.stderr, "");
-    bench.run("ride --speed 4 --bicycle trail.toml --set predict.lead_s=0.02").refused_naming(&[
+    bench.run("ride --speed 4 --bicycle trail.toml --set predict.lead_s=0.02").rejected_naming(&[
         "trail.toml",
         "estimate.pitch",
         "-1 to 1",
@@ -73,9 +74,9 @@ fn model_cargo_and_optimised_bicycles_ride() {
 
 /// Situation: a parameter that is fitted to the bicycle, set by hand.
 /// Action: ride with it.
-/// Must hold: the set value is in the configuration; one out of range is refused by its name.
+/// Must hold: the set value is in the configuration; one out of range is rejected by its name.
 #[test]
-fn what_is_set_wins_over_what_is_fitted() {
+fn a_set_parameter_overrides_the_fitted_one() {
     let bench = Bench::new(PROGRAM);
     let line = "ride --preset product --speed 4 --time-limit 0.1 --set cross.wheelbase_m=0.9";
     assert_eq!(bench.run(line).code, Some(0));
@@ -83,12 +84,12 @@ fn what_is_set_wins_over_what_is_fitted() {
     assert_eq!(bench.run(set).code, Some(0));
     bench
         .run("ride --speed 4 --set cross.wheelbase_m=9")
-        .refused_naming(&["cross.wheelbase_m = 9", "0.1 to 5"]);
+        .rejected_naming(&["cross.wheelbase_m = 9", "0.1 to 5"]);
 }
 
 /// Situation: random bicycles inside the ranges of their file.
-/// Action: check each; one that is sound rides by every command.
-/// Must hold: every command takes what the check takes; what is refused is refused with the file and its key.
+/// Action: check each; a valid one rides by every command.
+/// Must hold: every command accepts the bicycles that the check accepts; a rejection names the file and its key.
 #[test]
 fn random_bicycles_are_taken_by_all_commands_or_named() {
     let bench = Bench::new(PROGRAM);
@@ -137,10 +138,10 @@ fn random_bicycles_are_taken_by_all_commands_or_named() {
     result.unwrap();
 }
 
-/// Situation: bicycles whose steer is held up at rest, where the pair of eigenvalues is neutral and its real part is rounding;
+/// Situation: bicycles whose steer is neutral at rest, where the real part of the pair of eigenvalues is rounding;
 /// and the shipped ones.
-/// Action: check trails close to each other; look at the stable ranges.
-/// Must hold: the critical speeds do not jump between none and zero; stable ranges are told by check and list.
+/// Action: check trails close to each other; read the stable ranges.
+/// Must hold: the critical speeds do not jump between none and zero; check and list print the stable ranges.
 #[test]
 fn critical_speeds_do_not_hang_on_rounding() {
     let bench = Bench::new(PROGRAM);
@@ -161,8 +162,8 @@ fn critical_speeds_do_not_hang_on_rounding() {
 
 /// Situation: the benchmark bicycle, forward and backwards.
 /// Action: eigenvalues from -5 to 5 m/s; a ride at -3 m/s; both with a law.
-/// Must hold: backwards the eigenvalues are the negatives of those forward (time turned round), the ride falls, and a
-/// law is refused with the range.
+/// Must hold: backwards the eigenvalues are the negatives of those forward (time reversed), the ride falls, and a law
+/// is rejected with the range.
 #[test]
 fn backwards_is_riding_with_a_steered_rear_wheel() {
     let bench = Bench::new(PROGRAM);
@@ -181,6 +182,6 @@ fn backwards_is_riding_with_a_steered_rear_wheel() {
     assert!(!bench.run("eigen --bicycle benchmark --speeds 5").stdout.contains("riding forward"));
     let ride = bench.json("ride --bicycle benchmark --law none --speed=-3 --steer-rate 0.1");
     assert_eq!((&ride["outcome"], &ride["start"]["speed_m_s"]), (&json!("fallen"), &json!(-3.0)));
-    bench.run("ride --law h --speed=-3").refused_naming(&["--speed", "-3", "0 to 30", "--law none"]);
-    bench.run("eigen --law h --speeds=-3").refused_naming(&["--speeds", "-3", "--law none"]);
+    bench.run("ride --law h --speed=-3").rejected_naming(&["--speed", "-3", "0 to 30", "--law none"]);
+    bench.run("eigen --law h --speeds=-3").rejected_naming(&["--speeds", "-3", "--law none"]);
 }

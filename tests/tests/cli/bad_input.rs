@@ -1,25 +1,25 @@
-//! What the program says to input it can't work with, and what it leaves alone.
+//! Errors for invalid input, and the files that stay unchanged.
 #![cfg(unix)]
 
 use tests::cli::{Bench, Run, bicycle_with, repository, word};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
-/// Runs a command that must be refused, with an older file where its document would go; that file
-/// must survive and no other appear.
-fn refused(bench: &Bench, line: &str, named: &[&str]) -> Run {
+/// Runs a command that must be rejected, with an older file where its document would go; that file must survive and
+/// no other appear.
+fn assert_rejected(bench: &Bench, line: &str, named: &[&str]) -> Run {
     bench.write("old.json", "older result");
     let before = bench.files();
     let run = bench.run(&format!("{line} --json old.json"));
-    run.refused_naming(named);
+    run.rejected_naming(named);
     assert_eq!(bench.files(), before, "{line}");
     assert_eq!(bench.read("old.json"), "older result", "{line}");
     run
 }
 
-/// Situation: parameter files with one thing wrong each.
+/// Situation: parameter files with one error each.
 /// Action: use them.
-/// Must hold: refused, naming file, key, value and range; nothing written.
+/// Must hold: rejected, naming file, key, value and range; nothing written.
 #[test]
 fn wrong_parameter_files() {
     let bench = Bench::new(PROGRAM);
@@ -40,20 +40,20 @@ fn wrong_parameter_files() {
         bench.write("my.toml", bicycle_with(key, line));
         for command in ["bicycle check", "eigen --speeds 4", "ride --speed 4", "basin --speeds 4"] {
             let named: Vec<&str> = named.iter().copied().chain(["my.toml"]).collect();
-            refused(&bench, &format!("{command} --bicycle my.toml"), &named);
+            assert_rejected(&bench, &format!("{command} --bicycle my.toml"), &named);
         }
     }
     bench.write("bytes.toml", [0xff, 0x00, 0xfe]);
-    refused(&bench, "eigen --bicycle bytes.toml", &["bytes.toml", "UTF-8"]);
+    assert_rejected(&bench, "eigen --bicycle bytes.toml", &["bytes.toml", "UTF-8"]);
     bench.write("empty.toml", "");
-    refused(&bench, "eigen --bicycle empty.toml", &["empty.toml", "`w` is missing"]);
+    assert_rejected(&bench, "eigen --bicycle empty.toml", &["empty.toml", "`w` is missing"]);
 }
 
-/// Situation: a bicycle whose inertias no rigid body has.
+/// Situation: a bicycle with inertias that no rigid body has.
 /// Action: check it, and ride it.
 /// Must hold: a warning with the reason and the values, in the document too; it still runs.
 #[test]
-fn inertias_of_no_rigid_body_are_warned_of() {
+fn impossible_inertias_cause_a_warning() {
     let bench = Bench::new(PROGRAM);
     bench.write("my.toml", bicycle_with("IByy", "IByy = 50.0"));
     for command in ["bicycle check", "eigen --speeds 4", "ride --speed 4", "basin --speeds 4 --max-rate 1"] {
@@ -67,22 +67,22 @@ fn inertias_of_no_rigid_body_are_warned_of() {
     assert!(document["bicycle"]["warnings"][0].as_str().unwrap().contains("triangle inequality"));
 }
 
-/// Situation: bicycles that are not there, and collections without a choice.
+/// Situation: bicycles that do not exist, and collections without a choice.
 /// Action: use them.
-/// Must hold: refused, with the names there are.
+/// Must hold: rejected, with the available names.
 #[test]
 fn unknown_bicycles() {
     let bench = Bench::new(PROGRAM);
-    refused(&bench, "eigen --bicycle unicycle", &["`unicycle`", "rigid_jason", "benchmark"]);
-    refused(&bench, "eigen --bicycle missing.toml#x", &["missing.toml"]);
-    refused(&bench, "eigen --bicycle .", &["."]);
+    assert_rejected(&bench, "eigen --bicycle unicycle", &["`unicycle`", "rigid_jason", "benchmark"]);
+    assert_rejected(&bench, "eigen --bicycle missing.toml#x", &["missing.toml"]);
+    assert_rejected(&bench, "eigen --bicycle .", &["."]);
     let path = repository("data/bicycles.toml");
     let collection = word(&path);
     let name = path.display().to_string();
-    refused(&bench, &format!("eigen --bicycle {collection}"), &[&name, "#NAME", "benchmark"]);
-    refused(&bench, &format!("eigen --bicycle {collection}#unicycle"), &["#NAME", "benchmark"]);
+    assert_rejected(&bench, &format!("eigen --bicycle {collection}"), &[&name, "#NAME", "benchmark"]);
+    assert_rejected(&bench, &format!("eigen --bicycle {collection}#unicycle"), &["#NAME", "benchmark"]);
     bench.write("my.toml", bicycle_with("w", "w = 1.1"));
-    refused(&bench, "eigen --bicycle my.toml#city", &["my.toml", "city"]);
+    assert_rejected(&bench, "eigen --bicycle my.toml#city", &["my.toml", "city"]);
 }
 
 /// Situation: the help of a command that takes a law.
@@ -95,20 +95,20 @@ fn the_help_names_every_law() {
     for spec in control::law::LAWS.iter().filter(|spec| !spec.is_table()) {
         let name = if spec.parameter.is_some() { format!("{}:K", spec.name) } else { spec.name.to_owned() };
         assert!(help.contains(&format!(" {name},")), "{name}: {help}");
-        refused(&bench, "eigen --law nope", &[&name]);
+        assert_rejected(&bench, "eigen --law nope", &[&name]);
     }
 }
 
-/// Situation: laws that are not there or wrong.
+/// Situation: laws that do not exist or are wrong.
 /// Action: use them.
-/// Must hold: refused, naming law or file, key, value and range.
+/// Must hold: rejected, naming law or file, key, value and range.
 #[test]
 fn wrong_laws() {
     let bench = Bench::new(PROGRAM);
-    refused(&bench, "eigen --law H", &["`H`", "h-cut", "cl2:K"]);
-    refused(&bench, "eigen --law cl2:", &["`cl2:`", "0.001 to 20"]);
-    refused(&bench, "eigen --law cl2:-1", &["`cl2:-1`", "-1", "0.001 to 20"]);
-    refused(&bench, "eigen --law cl2:nan", &["`cl2:nan`", "NaN", "0.001 to 20"]);
+    assert_rejected(&bench, "eigen --law H", &["`H`", "h-cut", "cl2:K"]);
+    assert_rejected(&bench, "eigen --law cl2:", &["`cl2:`", "0.001 to 20"]);
+    assert_rejected(&bench, "eigen --law cl2:-1", &["`cl2:-1`", "-1", "0.001 to 20"]);
+    assert_rejected(&bench, "eigen --law cl2:nan", &["`cl2:nan`", "NaN", "0.001 to 20"]);
     for (text, named) in [
         ("", &["speed_m_s"][..]),
         ("speed_m_s = [0]", &["gain_nm_s_rad"]),
@@ -123,13 +123,13 @@ fn wrong_laws() {
     ] {
         bench.write("law.toml", text);
         let named: Vec<&str> = named.iter().copied().chain(["law.toml"]).collect();
-        refused(&bench, "eigen --law law.toml", &named);
+        assert_rejected(&bench, "eigen --law law.toml", &named);
     }
 }
 
 /// Situation: numbers out of their range: negative, huge, NaN.
 /// Action: give them as options.
-/// Must hold: refused, naming the quantity, the value and the range.
+/// Must hold: rejected, naming the quantity, the value and the range.
 #[test]
 fn numbers_out_of_range() {
     let bench = Bench::new(PROGRAM);
@@ -153,7 +153,7 @@ fn numbers_out_of_range() {
         ("basin --speeds 4 --scan-step 0", &["scan step", "0", "0.001 to 30"]),
         ("basin --speeds 4 --tolerance -1", &["tolerance", "-1"]),
     ] {
-        refused(&bench, line, named);
+        assert_rejected(&bench, line, named);
     }
     for (line, word) in [
         ("basin --speeds 10:0:0.1", "rise"),
@@ -189,9 +189,9 @@ fn extremes_within_the_ranges_run() {
     }
 }
 
-/// Situation: tables of states that are wrong.
-/// Action: ask for accelerations, into an older file.
-/// Must hold: refused, naming file, line, column, value and range; the older file survives.
+/// Situation: tables of states with errors.
+/// Action: request accelerations, into an older file.
+/// Must hold: rejected, naming file, line, column, value and range; the older file survives.
 #[test]
 fn wrong_tables_of_states() {
     let bench = Bench::new(PROGRAM);
@@ -209,15 +209,15 @@ fn wrong_tables_of_states() {
         bench.write("in.csv", text);
         bench.write("old.csv", "older result");
         let named: Vec<&str> = named.iter().copied().chain(["in.csv"]).collect();
-        bench.run("bicycle accel --states in.csv --csv old.csv").refused_naming(&named);
+        bench.run("bicycle accel --states in.csv --csv old.csv").rejected_naming(&named);
         assert_eq!((bench.read("old.csv").as_str(), bench.files().len()), ("older result", 2));
     }
-    bench.run("bicycle accel --states missing.csv").refused_naming(&["missing.csv"]);
+    bench.run("bicycle accel --states missing.csv").rejected_naming(&["missing.csv"]);
 }
 
-/// Situation: places that can't be written to, and one place for two results.
+/// Situation: paths that cannot be written, and one path for two results.
 /// Action: name them as outputs of every kind.
-/// Must hold: refused before any work, naming the place and the reason; no file appears.
+/// Must hold: rejected before any work, naming the path and the reason; no file appears.
 #[test]
 fn outputs_that_can_not_be() {
     let bench = Bench::new(PROGRAM);
@@ -232,13 +232,13 @@ fn outputs_that_can_not_be() {
             ("file/out", "no folder file"),
             ("link", "dangling symlink"),
         ] {
-            // Longer than any test may take, if the place were tried only at the end.
+            // Longer than any test may take, if the path were checked only at the end.
             let line = format!("basin --time-limit 3600 --speeds 6:7:0.01 {option} {place}");
-            bench.run(&line).refused_naming(&[place, reason]);
+            bench.run(&line).rejected_naming(&[place, reason]);
         }
     }
-    bench.run("ride --speed 4 --csv out --json ./out").refused_naming(&["--csv", "--json", "same place"]);
-    bench.run("ride --speed 4 --csv out --frames out").refused_naming(&["--csv", "--frames", "same place"]);
-    bench.run("ride --speed 4 --csv - --json").refused_naming(&["--csv", "--json", "same place"]);
+    bench.run("ride --speed 4 --csv out --json ./out").rejected_naming(&["--csv", "--json", "same place"]);
+    bench.run("ride --speed 4 --csv out --frames out").rejected_naming(&["--csv", "--frames", "same place"]);
+    bench.run("ride --speed 4 --csv - --json").rejected_naming(&["--csv", "--json", "same place"]);
     assert_eq!(bench.files(), before);
 }

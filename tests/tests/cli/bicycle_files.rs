@@ -1,5 +1,5 @@
-//! Files that people have: parameters as BicycleParameters and others write them, uncertainties, a rider's body; and
-//! what a file says of its bicycle is kept.
+//! Users' files: parameters as BicycleParameters and others write them, uncertainties, a rider's body; a file's
+//! remarks on its bicycle are preserved.
 
 use serde_json::Value;
 use sim_host::bicycle::{KEYS, catalogue};
@@ -21,8 +21,8 @@ fn near(a: &Value, b: f64, part: f64) -> bool {
 
 /// Situation: the measured bicycle Rigid and the rider Jason of BicycleParameters, in the package's folders.
 /// Action: check them together, by folder and name, by file and name, and by two files.
-/// Must hold: the values of the shipped `rigid_jason`, which the package combined; standard deviations as the Python
-/// package `uncertainties` 3.2 has them; parts of the fork said to be not used; a rider's body.
+/// Must hold: the values of the shipped `rigid_jason`, which the package combined; standard deviations as of the
+/// Python package `uncertainties` 3.2; parts of the fork reported as not used; a rider's body.
 #[test]
 fn a_measured_bicycle_and_its_rider_are_combined() {
     let bench = bench();
@@ -74,11 +74,11 @@ fn a_measured_bicycle_and_its_rider_are_combined() {
     assert!(near(&again["bicycle"]["uncertainties"]["IBxx"], 0.06454, 0.01), "{}", shown.stdout);
 }
 
-/// Situation: files of other programs with one thing wrong each.
+/// Situation: files of other programs with one error each.
 /// Action: check them.
-/// Must hold: refused with file, line or key and what is wrong.
+/// Must hold: rejected with file, line or key and the reason.
 #[test]
-fn what_is_wrong_in_a_file_of_another_program_is_named() {
+fn errors_in_files_of_other_programs_are_named() {
     let bench = bench();
     let rigid = bench.read("data/bicycles/Rigid/Parameters/RigidBenchmark.txt");
     for (from, to, named) in [
@@ -93,7 +93,7 @@ fn what_is_wrong_in_a_file_of_another_program_is_named() {
     ] {
         assert!(rigid.contains(from));
         bench.write("my.txt", rigid.replace(from, to));
-        bench.run("bicycle check --bicycle my.txt").refused_naming(named);
+        bench.run("bicycle check --bicycle my.txt").rejected_naming(named);
     }
     bench.write("round.txt", rigid.clone() + "IFzz = 0.06\nyB = 0.02\n");
     let doubtful = bench.run("bicycle check --bicycle round.txt");
@@ -104,25 +104,25 @@ fn what_is_wrong_in_a_file_of_another_program_is_named() {
     let rider = "data/riders/Jason/Parameters/JasonRigidBenchmark.txt";
     bench
         .run(&format!("bicycle check --bicycle {rider}"))
-        .refused_naming(&["rider's body alone", "BICYCLE+FILE"]);
+        .rejected_naming(&["rider's body alone", "BICYCLE+FILE"]);
     bench
         .run("bicycle check --bicycle data/bicycles/Rigid+Luke")
-        .refused_naming(&["data/riders/Luke/Parameters/LukeRigidBenchmark.txt"]);
+        .rejected_naming(&["data/riders/Luke/Parameters/LukeRigidBenchmark.txt"]);
     bench
         .run(&format!("bicycle check --bicycle rigid_jason+{rider}"))
-        .refused_naming(&["has a rider already"]);
+        .rejected_naming(&["has a rider already"]);
     bench.write("p.yml", "parameterization: principal\nvalues:\n  w: 1.0\n");
     bench
         .run("bicycle check --bicycle p.yml")
-        .refused_naming(&["p.yml has parameterization `principal`", "benchmark"]);
+        .rejected_naming(&["p.yml has parameterization `principal`", "benchmark"]);
     bench.write("q.yml", "w: [1.0\n");
-    bench.run("bicycle check --bicycle q.yml").refused_naming(&["q.yml", "YAML"]);
+    bench.run("bicycle check --bicycle q.yml").rejected_naming(&["q.yml", "YAML"]);
 }
 
-/// Situation: a set as BicycleParameters' `to_yaml` writes it, with empty remarks and its other name for the same 26 parameters; the
-/// same in JSON, flat and below `values`.
+/// Situation: a set as BicycleParameters' `to_yaml` writes it, with empty remarks and its other name for the same 26
+/// parameters; the same in JSON, flat and below `values`.
 /// Action: check them.
-/// Must hold: the shipped values; nothing said of a rider's body, for the file says nothing; no empty note.
+/// Must hold: the shipped values; no statement on a rider's body, as the file has none; no empty note.
 #[test]
 fn sets_as_bicycleparameters_writes_them() {
     let bench = bench();
@@ -149,15 +149,15 @@ fn sets_as_bicycleparameters_writes_them() {
         assert_eq!((&bicycle["note"], &bicycle["rider_included"]), (&note, &Value::Null), "{file}");
     }
     bench.write("cut.json", format!("{{{json}"));
-    bench.run("bicycle check --bicycle cut.json").refused_naming(&["cut.json", "JSON"]);
+    bench.run("bicycle check --bicycle cut.json").rejected_naming(&["cut.json", "JSON"]);
 }
 
 /// Situation: a measured bicycle with its rider, and a shipped one.
 /// Action: show them for BicycleParameters, one with a parameter changed; read that again.
-/// Must hold: every line is a remark or a key, `=`, a number and perhaps its deviation, as that package's reader wants them; the same
-/// values and deviations come back.
+/// Must hold: every line is a remark or a key, `=`, a number and perhaps its deviation, as that package's reader
+/// requires; the same values and deviations are read.
 #[test]
-fn a_bicycle_is_shown_for_bicycleparameters() {
+fn a_bicycle_is_written_for_bicycleparameters() {
     let bench = bench();
     for name in ["data/bicycles/Rigid+Jason", "browser --bicycle-set lam=0.4"] {
         let shown = bench.run(&format!("bicycle show --ini --bicycle {name}")).stdout;
@@ -183,11 +183,11 @@ fn a_bicycle_is_shown_for_bicycleparameters() {
 }
 
 /// Situation: bicycles without a rider's body and with one; riders whose gains are made for a bicycle.
-/// Action: ride, sweep and look at eigenvalues with a rider.
-/// Must hold: a warning that names both, in the output and in the results; none where they belong together; `show` and
-/// `check` say whether a rider's body is there.
+/// Action: ride, sweep and compute eigenvalues with a rider.
+/// Must hold: a warning that names both, in the output and in the results; none where they belong together; `show`
+/// and `check` report whether there is a rider's body.
 #[test]
-fn a_rider_on_a_bicycle_that_is_not_the_riders_is_warned_of() {
+fn a_rider_on_another_bicycle_causes_a_warning() {
     let bench = bench();
     let ride = "--speed 4 --steer-rate 0.1 --time-limit 0.1 --json";
     for (bicycle, rider, warned) in [
@@ -206,9 +206,9 @@ fn a_rider_on_a_bicycle_that_is_not_the_riders_is_warned_of() {
             } else {
                 &document["warnings"]
             };
-            let said: Vec<&str> = at.as_array().expect("a list").iter().filter_map(Value::as_str).collect();
-            assert_eq!(said.is_empty(), warned.is_empty(), "{bicycle} {rider}: {said:?}");
-            let all = said.join(" ");
+            let output: Vec<&str> = at.as_array().expect("a list").iter().filter_map(Value::as_str).collect();
+            assert_eq!(output.is_empty(), warned.is_empty(), "{bicycle} {rider}: {output:?}");
+            let all = output.join(" ");
             assert!(
                 warned.iter().all(|word| all.contains(word) && run.stderr.contains(word)),
                 "{all} {}",
@@ -224,7 +224,8 @@ fn a_rider_on_a_bicycle_that_is_not_the_riders_is_warned_of() {
 
 /// Situation: a measured bicycle with uncertainties; one without.
 /// Action: its basin with 20 draws, twice and with another seed; the other with draws.
-/// Must hold: a band around the basin in document, table and figure, the same with the same seed; the other is refused.
+/// Must hold: a band around the basin in document, table and figure, the same with the same seed; the other is
+/// rejected.
 #[test]
 fn uncertainties_are_a_band_around_the_basin() {
     let bench = bench();
@@ -246,12 +247,17 @@ fn uncertainties_are_a_band_around_the_basin() {
     let heights = |line: &str| bench.json(line)["uncertain"]["heights"].clone();
     assert_eq!(heights(&format!("{line} --uncertain 20 --threads 1")), band["heights"]);
     assert_ne!(heights(&format!("{line} --uncertain 20 --seed 2")), band["heights"]);
-    bench.run("basin --uncertain 20").refused_naming(&["--uncertain", "rigid_jason", "has no uncertainties"]);
+    bench.run("basin --uncertain 20").rejected_naming(&[
+        "--uncertain",
+        "rigid_jason",
+        "has no uncertainties",
+    ]);
 }
 
 /// Situation: the parameters of Rigid with Jason.
 /// Action: draw 4000 bicycles.
-/// Must hold: means and standard deviations are the files', to first order, within what 4000 draws can tell.
+/// Must hold: means and standard deviations are the files', to first order, within the statistical error of 4000
+/// draws.
 #[test]
 fn draws_have_the_files_spread() {
     let folder = repository("tests/data/bicycleparameters/bicycles/Rigid+Jason");
@@ -277,7 +283,7 @@ fn draws_have_the_files_spread() {
 
 /// Situation: files of a bicycle in three formats.
 /// Action: cut each at every byte.
-/// Must hold: refused with its name; or all its values are what they were, or it is doubtful.
+/// Must hold: rejected with its name; or all its values are unchanged, or a warning is given.
 #[test]
 fn a_cut_file_is_no_bicycle_with_less() {
     let bench = bench();
@@ -302,7 +308,7 @@ fn a_cut_file_is_no_bicycle_with_less() {
 
 /// Situation: shipped and measured bicycles.
 /// Action: change a parameter of each, wrongly too; sweep one.
-/// Must hold: the changed value, and no other, in the results, whose name says so; wrong ones are named.
+/// Must hold: the changed value, and no other, in the results, whose name contains it; wrong ones are named.
 #[test]
 fn one_parameter_is_changed_by_name() {
     let bench = bench();
@@ -325,14 +331,14 @@ fn one_parameter_is_changed_by_name() {
     let measured = eigen(&format!("{rigid} --bicycle-set w=1.1"));
     let sds = measured["bicycle"]["uncertainties"].as_object().expect("deviations");
     assert!(!sds.contains_key("w") && sds.contains_key("c"), "{sds:?}");
-    for (words, named) in [
+    for (texts, named) in [
         ("--bicycle-set lam", &["--bicycle-set lam", "KEY=VALUE"][..]),
         ("--bicycle-set laM=1", &["`laM`", "w, c, lam"]),
         ("--bicycle-set w=x", &["`x` is not a number"]),
         ("--bicycle-set w=99", &["`w` = 99", "0.1 to 5"]),
         (&format!("{rigid} --bicycle-set mB=90"), &["mB=90", "change their files"]),
     ] {
-        bench.run(&format!("eigen {words}")).refused_naming(named);
+        bench.run(&format!("eigen {texts}")).rejected_naming(named);
     }
     let sweep = "sweep --law h --over bicycle-set=lam=0.3,lam=0.4 --speeds 4 --scan-step 4 --tolerance 1 --max-rate 8 --time-limit 0.5 --out s";
     assert_eq!(bench.run(sweep).code, Some(0));

@@ -1,4 +1,4 @@
-//! Heights that are lower bounds: whoever compares them is told so, in every output.
+//! Heights that are lower bounds: every comparison marks them, in every output.
 
 use proptest::prelude::*;
 use serde_json::Value;
@@ -7,10 +7,11 @@ use tests::cli::{Bench, repository};
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 const SEARCH: &str = "--scan-step 1 --tolerance 0.5";
 
-/// Situation: law h with 0.5 N m and without limit at 4 and 5 m/s; the second outlasts 4 rad/s, the first does not.
+/// Situation: law h with 0.5 N m and without limit at 4 and 5 m/s; the second recovers from 4 rad/s, the first does
+/// not.
 /// Action: compare their basins with a largest rate of 4 rad/s and of 30 rad/s.
-/// Must hold: with 4 rad/s the part and the distance are lower bounds in text, document and table; with 30 rad/s, where
-/// all falls, nothing is marked and the part is larger than the bound.
+/// Must hold: with 4 rad/s the part and the distance are lower bounds in text, document and table; with 30 rad/s,
+/// where every ride falls, nothing is marked and the part is larger than the bound.
 #[test]
 fn a_capped_basin_is_compared_as_a_bound() {
     let bench = Bench::new(PROGRAM);
@@ -39,9 +40,10 @@ fn a_capped_basin_is_compared_as_a_bound() {
     assert!(part(&whole) > part(&capped) && part(&capped) > 1.0, "{} {}", part(&whole), part(&capped));
 }
 
-/// Situation: a sweep of the torque limit whose larger cells outlast the largest rate, and one at a single speed.
+/// Situation: a sweep of the torque limit whose larger cells recover from the largest rate, and one at a single
+/// speed.
 /// Action: read text, tables, NetCDF and figures.
-/// Must hold: capped cells are marked in each; at one speed the ranking is by height, none of which is zero.
+/// Must hold: censored cells are marked in each; at one speed the ranking is by height, none of which is zero.
 #[test]
 fn a_sweep_marks_its_lower_bounds_and_ranks_one_speed_by_height() {
     let bench = Bench::new(PROGRAM);
@@ -74,11 +76,12 @@ fn a_sweep_marks_its_lower_bounds_and_ranks_one_speed_by_height() {
     assert!(!bench.read("b/figures/area-torque-limit.svg").contains("Area"));
 }
 
-/// Situation: sweeps of which no, one or all of two cells outlast the largest rate.
+/// Situation: sweeps of which no, one or all of two cells recover from the largest rate.
 /// Action: read the ranking in the text.
-/// Must hold: that it is not known is said where it is not, and nowhere else: one lower bound above a measured area is the largest.
+/// Must hold: it is marked as unknown where it is unknown, and nowhere else: one lower bound above a measured area is
+/// the largest.
 #[test]
-fn a_ranking_is_doubted_only_where_it_is_not_known() {
+fn a_ranking_is_unknown_only_between_bounds() {
     let bench = Bench::new(PROGRAM);
     for (limits, rate, ending) in [
         ("0.5,7", 30, ""),
@@ -97,9 +100,9 @@ fn a_ranking_is_doubted_only_where_it_is_not_known() {
     }
 }
 
-/// Situation: the page on end-stops, whose rider outlasts the largest rate at two of its stops.
+/// Situation: the page on end-stops, whose rider recovers from the largest rate at two of its stops.
 /// Action: compute the basins of its first table's last column again.
-/// Must hold: each area is the page's, and what is a lower bound is marked as one, what is not is not.
+/// Must hold: each area is the page's, lower bounds are marked as such, others are not.
 #[test]
 fn the_page_on_end_stops_marks_its_lower_bounds() {
     let bench = Bench::new(PROGRAM);
@@ -117,7 +120,8 @@ fn the_page_on_end_stops_marks_its_lower_bounds() {
     }
 }
 
-/// Situation: a plane of steer rate and roll rate whose rays along the roll rate end before a fall, and one that reaches further.
+/// Situation: a plane of steer rate and roll rate whose rays along the roll rate end before a fall, and one that
+/// reaches further.
 /// Action: read text, document and figure.
 /// Must hold: the first is marked in each, the second in none.
 #[test]
@@ -138,11 +142,11 @@ fn a_plane_marks_its_lower_bounds() {
     }
 }
 
-/// Situation: a study of one sweep, searched up to a rate that its reference outlasts.
+/// Situation: a study of one sweep, searched up to a rate from which its reference recovers.
 /// Action: make its page.
-/// Must hold: what keeps 95 % is refused, parts are marked as bounds; with a larger rate neither.
+/// Must hold: the threshold for 95 % is rejected, parts are marked as bounds; with a larger rate neither.
 #[test]
-fn a_study_refuses_what_keeps_95_percent_of_a_bound() {
+fn a_study_rejects_95_percent_of_a_bound() {
     let bench = Bench::new(PROGRAM);
     let page = |rate: u8| {
         bench.write(
@@ -169,7 +173,7 @@ proptest! {
 
     /// Situation: two basins from files, with heights and caps at random.
     /// Action: compare them.
-    /// Must hold: the true part and distance, drawn at random beyond each cap, never contradict what the bounds say.
+    /// Must hold: the true part and distance, drawn at random beyond each cap, never contradict the bounds.
     #[test]
     fn no_comparison_of_bounds_without_a_mark(
         heights in prop::collection::vec((0.5..8.0f64, 0.5..8.0f64), 2..5),
@@ -196,12 +200,12 @@ proptest! {
         prop_assert_eq!(a_capped || b_capped, text.contains("nothing fell up to"), "{}", text);
         let area = |h: &[f64]| h.windows(2).map(|w| 0.5 * (w[0] + w[1])).sum::<f64>();
         let rmse = (a.iter().zip(&b).map(|(x, y)| (x - y).powi(2)).sum::<f64>() / a.len() as f64).sqrt();
-        let holds = |is: &Value, told: &Value, truth: f64| {
-            let told = told.as_f64().expect("a number");
+        let holds = |is: &Value, stated: &Value, truth: f64| {
+            let stated = stated.as_f64().expect("a number");
             match is.as_str().expect("a bound") {
-                "measured" => (told - truth).abs() < 1e-9,
-                "at_least" => truth >= told - 1e-9,
-                "at_most" => truth <= told + 1e-9,
+                "measured" => (stated - truth).abs() < 1e-9,
+                "at_least" => truth >= stated - 1e-9,
+                "at_most" => truth <= stated + 1e-9,
                 _ => true,
             }
         };

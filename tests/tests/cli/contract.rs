@@ -1,4 +1,4 @@
-//! What scripts may rely on.
+//! Interfaces on which scripts rely.
 
 use serde_json::{Value, json};
 use sim_host::bicycle::{Geometry, Motion, State, Torques, linear::Linear, pitch_from_upright};
@@ -17,7 +17,7 @@ fn committed(name: &str) -> Value {
 
 /// Situation: one document of each kind, of a fall and a recovery, with and without limits.
 /// Action: compare it with the committed schema, and that with the program's own.
-/// Must hold: it fits; the schemas are the same.
+/// Must hold: it is valid; the schemas are the same.
 #[test]
 fn documents_fit_their_committed_schemas() {
     let bench = Bench::new(PROGRAM);
@@ -68,11 +68,30 @@ fn documents_fit_their_committed_schemas() {
     }
 }
 
+/// Situation: the documents that `schema` knows.
+/// Action: compare their names with the folder of the committed schemas and with docs/cli.md.
+/// Must hold: a schema for each document and no other; each name in the row of `schema`.
+#[test]
+fn every_document_has_a_committed_schema() {
+    let help = Bench::new(PROGRAM).run("schema --help").stdout.replace('\n', " ");
+    let (_, rest) = help.split_once("[possible values:").unwrap();
+    let mut names: Vec<&str> = rest.split(']').next().unwrap().split(',').map(str::trim).collect();
+    let entries = std::fs::read_dir(repository("docs/schema")).unwrap();
+    let mut files: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    (names.sort(), files.sort());
+    assert_eq!(files, names.iter().map(|name| format!("{name}.json")).collect::<Vec<_>>());
+    let page = std::fs::read_to_string(repository("docs/cli.md")).unwrap();
+    let row = page.lines().find(|line| line.starts_with("| `sim-host schema NAME` |")).unwrap();
+    for name in names {
+        assert!(row.contains(&format!("`{name}`")), "docs/cli.md: {name}");
+    }
+}
+
 /// Situation: a document that fits, then one with a key missing, added, of a wrong type, or NaN.
 /// Action: compare each with the schema.
-/// Must hold: every one of the wrong ones is noticed.
+/// Must hold: every one of the wrong ones is reported.
 #[test]
-fn the_comparison_with_a_schema_notices_what_is_wrong() {
+fn the_comparison_with_a_schema_finds_violations() {
     let (schema, right) = (committed("ride"), Bench::new(PROGRAM).json("ride --speed 4"));
     let wrong = |change: &dyn Fn(&mut Value)| {
         let mut document = right.clone();
@@ -88,8 +107,8 @@ fn the_comparison_with_a_schema_notices_what_is_wrong() {
 }
 
 /// Situation: the benchmark bicycle.
-/// Action: ask for its linear model and for accelerations, columns in another order.
-/// Must hold: the library's numbers to the last bit; 17 digits; the promised header.
+/// Action: request its linear model and accelerations, columns in another order.
+/// Must hold: the library's numbers to the last bit; 17 digits; the documented header.
 #[test]
 fn check_and_accel_give_the_librarys_numbers() {
     let bench = Bench::new(PROGRAM);
@@ -117,7 +136,7 @@ fn check_and_accel_give_the_librarys_numbers() {
 }
 
 /// Situation: ranges of speeds whose steps have no exact binary value, and a single speed.
-/// Action: ask for eigenvalues.
+/// Action: request eigenvalues.
 /// Must hold: both ends are there, four pairs per speed, largest real part first.
 #[test]
 fn eigenvalues_of_every_speed_ends_included() {
@@ -134,7 +153,7 @@ fn eigenvalues_of_every_speed_ends_included() {
 }
 
 /// Situation: a small basin.
-/// Action: look at how its parts fit.
+/// Action: check the consistency of its parts.
 /// Must hold: one value per speed, lower mirrors upper, area by the trapezoidal rule.
 #[test]
 fn a_basins_parts_fit_together() {
@@ -153,7 +172,7 @@ fn a_basins_parts_fit_together() {
 
 /// Situation: the same search on one thread and on two.
 /// Action: compare the documents.
-/// Must hold: equal but for the time it took.
+/// Must hold: equal except for the time it took.
 #[test]
 fn threads_do_not_change_a_bit() {
     let bench = Bench::new(PROGRAM);

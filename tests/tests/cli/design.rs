@@ -1,8 +1,8 @@
-//! Flight cards: `sim-host design`, with searches so small that they end at once.
+//! `sim-host design`, with searches so small that they end at once.
 
 use control::Law;
 use sim_host::basin::{Axis, Search};
-use sim_host::design::{Found, Knots, Plan, Progress, Scenarios, arena, judge, optimise};
+use sim_host::design::{Found, Knots, Plan, Progress, Scenarios, evaluate, optimise, scenarios};
 use sim_host::ride::FallCriterion;
 use sim_host::study::trial::Trial;
 use std::cell::Cell;
@@ -27,9 +27,9 @@ fn plan(seed: u64, evaluations: u32) -> Plan {
     Plan { knots, start: Law::Cl2 { k: 1.0 }, search: coarse(), smoothness: 0.0, seed, evaluations }
 }
 
-/// The thesis's bicycle without a rider, sensors in time and late.
+/// The thesis bicycle without a rider, without sensor delay and with one.
 fn trials() -> Vec<Trial> {
-    let all = arena(FallCriterion::default()).training;
+    let all = scenarios(FallCriterion::default()).training;
     all.into_iter().filter(|t| !t.scenario.is_ridden()).take(2).collect()
 }
 
@@ -37,10 +37,10 @@ fn found(plan: &Plan) -> Found {
     optimise(&trials(), plan, &|_| {}, &|| false).expect("rides").expect("not stopped")
 }
 
-/// Situation: a small search, begun with a weak law.
+/// Situation: a small search from a weak law.
 /// Action: run it on one thread and on two, by default with fewer schedules on one.
-/// Must hold: the same to the bit; as many schedules as asked; never worse than the start, and better at the end;
-/// a shorter search is the beginning of a longer; every improvement is one.
+/// Must hold: the same to the bit; the requested number of schedules; never worse than the start, and better at the
+/// end; a shorter search is the beginning of a longer; every improvement is one.
 #[test]
 fn a_design_is_the_same_for_a_seed_and_a_number_of_schedules() {
     let first = found(&plan(1, 24));
@@ -54,19 +54,19 @@ fn a_design_is_the_same_for_a_seed_and_a_number_of_schedules() {
     let shorter = pool.install(|| found(&plan(1, 12)));
     assert_eq!(first.history[..shorter.history.len()], shorter.history);
     assert!(first.gains.iter().all(|gain| (-10.0..=40.0).contains(gain)));
-    let judged = judge(
-        &Scenarios { training: trials(), held_out: Vec::new(), ..arena(FallCriterion::default()) },
+    let evaluated = evaluate(
+        &Scenarios { training: trials(), held_out: Vec::new(), ..scenarios(FallCriterion::default()) },
         &[("it".into(), plan(1, 1).knots.law(&first.gains).expect("in range"))],
         &coarse(),
         &|| {},
         &|| false,
     );
-    let areas = judged.expect("rides").expect("not stopped").areas;
+    let areas = evaluated.expect("rides").expect("not stopped").areas;
     let least = areas.iter().map(|of_trial| of_trial[0]).fold(f64::INFINITY, f64::min);
     assert_eq!(least, first.worst_area, "what the search says is what its basins are");
 }
 
-/// Situation: a search under way.
+/// Situation: a running search.
 /// Action: stop it after some schedules, and before the first.
 /// Must hold: the best so far, marked as not complete; nothing.
 #[test]
@@ -86,7 +86,7 @@ fn a_stopped_design_keeps_the_best_so_far() {
 
 /// Situation: knots, and a law that is not made of them.
 /// Action: make laws of their gains.
-/// Must hold: the law has those gains at the knots, and nothing from a metre per second above the last.
+/// Must hold: the law has those gains at the knots, and zero from a metre per second above the last.
 #[test]
 fn a_schedule_is_the_table_of_its_knots() {
     let knots = Knots::new(6).expect("enough");
@@ -101,9 +101,9 @@ fn a_schedule_is_the_table_of_its_knots() {
     assert!(Knots::new(1).is_err() && Knots::new(9).is_err());
 }
 
-/// Situation: the program with a budget for nothing, then for two schedules.
-/// Action: ask for all outputs; give the law file back as --law and as --start.
-/// Must hold: the file is a law; the search goes on where it was; documents say what was done.
+/// Situation: the program with a budget of no schedule, then of two.
+/// Action: request all outputs; use the law file as --law and as --start.
+/// Must hold: the file is a law; the search resumes at its end; documents record the search.
 #[test]
 fn the_law_file_is_a_law_and_a_start() {
     let bench = Bench::new(PROGRAM);
@@ -125,8 +125,8 @@ fn the_law_file_is_a_law_and_a_start() {
 }
 
 /// Situation: a design whose rides fall at 10 degrees of roll, and one by default.
-/// Action: try one schedule.
-/// Must hold: the same start has less area by the stricter fall, and the document says which it was.
+/// Action: evaluate one schedule.
+/// Must hold: the same start has less area by the stricter fall, and the document names the fall.
 #[test]
 fn the_fall_of_a_design_is_chosen() {
     let bench = Bench::new(PROGRAM);
@@ -141,11 +141,11 @@ fn the_fall_of_a_design_is_chosen() {
     assert!((strict["fall"]["roll_rad"].as_f64().expect("an angle") - 10f64.to_radians()).abs() < 1e-12);
 }
 
-/// Situation: options that make no sense.
+/// Situation: invalid options.
 /// Action: run.
-/// Must hold: refused before any ride, with option, value and range.
+/// Must hold: rejected before any ride, with option, value and range.
 #[test]
-fn nonsense_is_refused() {
+fn invalid_options_are_rejected() {
     let bench = Bench::new(PROGRAM);
     for (options, named) in [
         ("--smoothness 11", ["--smoothness 11", "0 to 10"]),
@@ -155,7 +155,7 @@ fn nonsense_is_refused() {
         ("--law-file no/where.toml", ["where.toml", "no folder"]),
         ("--law-file same --json same", ["--json", "--law-file"]),
     ] {
-        bench.run(&format!("design {options}")).refused_naming(&named);
+        bench.run(&format!("design {options}")).rejected_naming(&named);
     }
     for usage in ["--knots 9", "--evaluations 0", "--budget 10", "--budget 1e9h", "--seed -1", "--judge some"]
     {

@@ -1,4 +1,4 @@
-//! When a ride counts as fallen, and what it may cost.
+//! Criteria of a fall, and their effect.
 
 use serde_json::{Value, json};
 use sim_host::plant::SteerStop;
@@ -8,10 +8,10 @@ use tests::cli::Bench;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
-/// Situation: no assist, 3 m/s, the steer kicked with 0.5 rad/s; without a handlebar stop, and with one at 45 degrees.
+/// Situation: no assist, 3 m/s, a steer rate of 0.5 rad/s; without a handlebar stop, and with one at 45 degrees.
 /// Action: ride, as text and as document; with the published criterion, too.
-/// Must hold: without a stop it falls by its steer at the same time under both criteria. With it the steer cannot pass 90
-/// degrees: laid flat 1 s after 80 degrees of roll, and "not fallen" only if the published criterion is asked for.
+/// Must hold: without a stop it falls by its steer at the same time under both criteria. With it the steer cannot
+/// pass 90 degrees: laid flat 1 s after 80 degrees of roll, and "not fallen" only with the published criterion.
 #[test]
 fn a_bicycle_that_lies_at_90_degrees_has_fallen() {
     let bench = Bench::new(PROGRAM);
@@ -35,7 +35,8 @@ fn a_bicycle_that_lies_at_90_degrees_has_fallen() {
 
 /// Situation: a bicycle without assist at speeds at which it is unstable, and a handlebar stop at 30 degrees.
 /// Action: its basin, in all forms.
-/// Must hold: no basin: area below 1 rad m/s^2, as without a stop; document and table name the fall beyond the border.
+/// Must hold: no basin: area below 1 rad m/s^2, as without a stop; document and table name the fall beyond the
+/// border.
 #[test]
 fn a_handlebar_stop_makes_no_endless_basin() {
     let bench = Bench::new(PROGRAM);
@@ -53,10 +54,11 @@ fn a_handlebar_stop_makes_no_endless_basin() {
     assert!(bench.read("out.csv").contains(",border,,laid-flat"));
 }
 
-/// Situation: rides with stops, strong dampers, and kicks of every size, without assist: those that bounce at 90 degrees.
-/// Action: ride 144 of them; once more without looking for bicycles that lie flat.
-/// Must hold: no ride that is left standing had its peak beyond 80 degrees of roll, and some are laid flat; the ride without
-/// that criterion ends, too: its shorter steps are bounded.
+/// Situation: rides with stops, strong dampers, and knocks of every size, without assist: those that bounce at 90
+/// degrees.
+/// Action: ride 144 of them; once more without the criterion of lying flat.
+/// Must hold: no ride that did not fall had its peak beyond 80 degrees of roll, and some are laid flat; the ride
+/// without that criterion ends, too: its shorter steps are bounded.
 #[test]
 fn no_ride_ends_beyond_the_flat_angle_as_not_fallen() {
     let starts: Vec<Start> = (0..48)
@@ -82,9 +84,9 @@ fn no_ride_ends_beyond_the_flat_angle_as_not_fallen() {
     assert!((20..=144).contains(&flat), "{flat}");
 }
 
-/// Situation: ordinary rides, no assist and law h, speeds and kicks over the whole map.
+/// Situation: ordinary rides, no assist and law h, speeds and knocks over the whole map.
 /// Action: ride them by the published criterion and by the default one.
-/// Must hold: the same rides to the bit, but for at most 2 % that lie flat for more than a second before they fall.
+/// Must hold: the same rides to the bit, except at most 2 % that lie flat for more than a second before they fall.
 #[test]
 fn ordinary_rides_keep_every_bit() {
     let starts: Vec<Start> = (0..120)
@@ -103,11 +105,11 @@ fn ordinary_rides_keep_every_bit() {
     }
 }
 
-/// Situation: criteria that are not.
+/// Situation: invalid criteria.
 /// Action: give them.
-/// Must hold: wrong usage, with the key, the value and the range or the names there are.
+/// Must hold: wrong usage, with the key, the value and the range or the available names.
 #[test]
-fn wrong_criteria_are_refused() {
+fn wrong_criteria_are_rejected() {
     let bench = Bench::new(PROGRAM);
     for (fall, named) in [
         ("roll=120deg", "fall: roll (deg) = 120 is outside 1 to 90"),

@@ -1,4 +1,4 @@
-//! `sim-host identify weave`: recordings of any quality, told by file and line; tables, documents, figures.
+//! `sim-host identify weave`: recordings of any quality, named by file and line; tables, documents, figures.
 
 use control::Law;
 use serde_json::Value;
@@ -8,7 +8,7 @@ use sim_host::study::balance_assist::RIDERLESS;
 use sim_host::weave::measured::Measured;
 use tests::cli::{Bench, repository};
 use tests::json_schema::violations;
-use tests::knock::{Dice, Knocked, Recording, csv};
+use tests::knock::{Knocked, Recording, SplitMix64, csv};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
@@ -25,7 +25,7 @@ fn recording(kappa: f32, speed_m_s: f64, seed: u64) -> String {
         noise_rad_s: 0.02,
         memory_s: 0.02,
     };
-    csv(&knocked.record(&how, &mut Dice(seed)))
+    csv(&knocked.record(&how, &mut SplitMix64(seed)))
 }
 
 /// Two repeats at 12 km/h and one at 10.8 km/h.
@@ -38,12 +38,12 @@ fn bench() -> Bench {
     bench
 }
 
-/// Situation: recordings whose names say gain and speed.
+/// Situation: recordings whose names contain gain and speed.
 /// Action: find the weave, as text and as every kind of file.
-/// Must hold: the perfect motor's eigenvalue, of which the recordings were made, lies near; repeats are together; the document
-/// fits its schema; tables and figures are there.
+/// Must hold: the perfect motor's eigenvalue, with which the recordings were made, is near; repeats are together; the
+/// document is valid; tables and figures are there.
 #[test]
-fn the_weave_of_recordings_is_told() {
+fn the_weave_of_recordings_is_found() {
     let bench = bench();
     let line = "identify weave gain8_speed12kmh_1.csv gain8_speed12kmh_2.csv gain5_speed10.8kmh_1.csv";
     let run = bench.run(&format!(
@@ -70,8 +70,8 @@ fn the_weave_of_recordings_is_told() {
     let table = bench.read("o.csv");
     assert_eq!(table.lines().filter(|l| l.starts_with("recording,")).count(), 3);
     assert_eq!(table.lines().filter(|l| l.starts_with("pooled,")).count(), 2);
-    let kept: Measured = toml::from_str(&bench.read("o.toml")).expect("TOML");
-    assert_eq!((&*kept.source, kept.weave.len(), kept.weave[1].repeats), ("here", 2, 2));
+    let written: Measured = toml::from_str(&bench.read("o.toml")).expect("TOML");
+    assert_eq!((&*written.source, written.weave.len(), written.weave[1].repeats), ("here", 2, 2));
     assert!(bench.read("o.svg").starts_with("<svg"));
     let schema = bench.run("schema identify-weave").stdout;
     let file = std::fs::read_to_string(repository("docs/schema/identify-weave.json")).expect("a schema");
@@ -79,10 +79,10 @@ fn the_weave_of_recordings_is_told() {
 }
 
 /// Situation: a recording with other columns, degrees, seconds and name.
-/// Action: tell all that by options.
-/// Must hold: the same answer as of the plain one, from one axis; gain and speed of the options win.
+/// Action: give all that by options.
+/// Must hold: the same result as of the plain one, from one axis; gain and speed of the options have priority.
 #[test]
-fn columns_units_and_names_can_be_told() {
+fn columns_units_and_names_are_given_by_options() {
     let bench = bench();
     let plain = bench.json("identify weave gain8_speed12kmh_1.csv --column gyro_x");
     let text = bench.read("gain8_speed12kmh_1.csv");
@@ -96,22 +96,23 @@ fn columns_units_and_names_can_be_told() {
         ["roll;clock\n".to_owned()].into_iter().chain(lines).collect::<String>().replace(';', ",");
     bench.write("v3.3333333 k8.csv", other);
     let named = "--column roll --time-column clock --unit deg/s --label 'v{speed_m_s} k{gain}'";
-    let told = bench.json(&format!("identify weave 'v3.3333333 k8.csv' {named}"));
+    let by_options = bench.json(&format!("identify weave 'v3.3333333 k8.csv' {named}"));
     let frequency =
         |d: &Value| d["recordings"][0]["weave"]["frequency_rad_s"]["value"].as_f64().expect("a number");
-    assert!((frequency(&plain) - frequency(&told)).abs() < 1e-4);
-    assert_eq!(told["recordings"][0]["gain"], 8.0);
+    assert!((frequency(&plain) - frequency(&by_options)).abs() < 1e-4);
+    assert_eq!(by_options["recordings"][0]["gain"], 8.0);
     let over = bench.json("identify weave gain8_speed12kmh_1.csv --speed 3.5 --gain 6");
     assert_eq!((&over["weave"][0]["gain"], &over["weave"][0]["speed_m_s"]), (&6.0.into(), &3.5.into()));
     let lawless = bench.json("identify weave gain8_speed12kmh_1.csv --law none --bicycle benchmark");
     assert_eq!((&lawless["weave"][0]["gain"], &lawless["config"]["law"]), (&Value::Null, &"none".into()));
 }
 
-/// Situation: files that are damaged in places, and files that can't be used, beside a good one.
+/// Situation: files that are damaged in places, and unusable files, beside a good one.
 /// Action: find the weave.
-/// Must hold: file, line, column and value are told; what is right is used; exit code 0, and 1 if nothing could be used.
+/// Must hold: file, line, column and value are reported; valid lines are used; exit code 0, and 1 if nothing could be
+/// used.
 #[test]
-fn what_is_wrong_is_told_by_file_and_line() {
+fn errors_are_named_by_file_and_line() {
     let bench = bench();
     let good = bench.read("gain8_speed12kmh_1.csv");
     let mut lines: Vec<String> = good.lines().map(str::to_owned).collect();
@@ -142,7 +143,7 @@ fn what_is_wrong_is_told_by_file_and_line() {
     let run = bench.run(&format!("identify weave {all}"));
     assert_eq!(run.code, Some(0), "{run:?}");
     let end = last + 1;
-    for said in [
+    for output in [
         "gain8_speed12kmh_3.csv: line 4: `gyro_x` = `NaN` is not a number from -50 to 50 rad/s; left out",
         "gain8_speed12kmh_3.csv: line 6: `gyro_z` = `99` is not a number from -50 to 50 rad/s; left out",
         "gain8_speed12kmh_3.csv: line 8: `Time` stands",
@@ -155,7 +156,7 @@ fn what_is_wrong_is_told_by_file_and_line() {
         "missing.csv: not used: its speed is not known",
         "gain99_speed12kmh_1.csv: not used: law `balance-assist:99`: law.balance-assist.kappa = 99 is outside 0.001 to 20",
     ] {
-        assert!(run.stderr.contains(said), "{said}: {}", run.stderr);
+        assert!(run.stderr.contains(output), "{output}: {}", run.stderr);
     }
     assert!(run.stdout.contains("1 of 4"), "{}", run.stdout);
     let run = bench.run("identify weave other.csv gain8_speed12kmh_4.csv --json");
@@ -163,9 +164,9 @@ fn what_is_wrong_is_told_by_file_and_line() {
     assert!(run.stderr.contains("none of the 2 files could be used"), "{}", run.stderr);
 }
 
-/// Situation: options that are wrong or do not fit each other.
+/// Situation: options that are wrong or inconsistent.
 /// Action: give them.
-/// Must hold: refused, naming option, value and range; nothing is written.
+/// Must hold: rejected, naming option, value and range; nothing is written.
 #[test]
 fn wrong_options_are_named() {
     let bench = bench();
@@ -182,7 +183,7 @@ fn wrong_options_are_named() {
         (format!("{good} --csv x --toml x"), &["--csv", "--toml", "same place"]),
         (format!("{good} --json nowhere/x"), &["nowhere"]),
     ] {
-        bench.run(&line).refused_naming(named);
+        bench.run(&line).rejected_naming(named);
     }
     for (line, word) in [
         ("identify weave".to_owned(), "FILE"),

@@ -12,9 +12,10 @@ fn plant(bench: &Bench, options: &str) -> Value {
         .clone()
 }
 
-/// Situation: a recording that ships. Action: fit two sensors, write document, table and model, ride with the model.
-/// Must hold: the document fits its schema; the period of 5 ms and the step of the file's digits come out; what can't be told is said; the ride has
-/// the model's numbers.
+/// Situation: a shipped recording.
+/// Action: fit two sensors, write document, table and model, ride with the model.
+/// Must hold: the document is valid; the period of 5 ms and the step of the file's digits are found; quantities that
+/// cannot be estimated are named; the ride has the model's numbers.
 #[test]
 fn a_model_is_fitted_written_and_ridden_with() {
     let bench = Bench::new(PROGRAM);
@@ -47,8 +48,9 @@ fn a_model_is_fitted_written_and_ridden_with() {
     assert!(bench.run(&line).stdout.contains("95 % interval"));
 }
 
-/// Situation: models by name, joined, of one sensor only, changed, exact. Must hold: each sensor is what was asked for last; the others are
-/// exact; a ride repeats, and differs with another seed.
+/// Situation: models by name, joined, of one sensor only, changed, exact.
+/// Must hold: each sensor has the last given model; the others are exact; a ride repeats, and differs with another
+/// seed.
 #[test]
 fn models_are_taken_by_name() {
     let bench = Bench::new(PROGRAM);
@@ -80,8 +82,8 @@ fn models_are_taken_by_name() {
     assert_eq!(swept["cells"].as_array().map(Vec::len), Some(2));
 }
 
-/// Situation: models, recordings and sensors that are not there or wrong. Must hold: exit code 1, or 2 for the use; what is wrong and
-/// what there is are named.
+/// Situation: models, recordings and sensors that do not exist or are wrong.
+/// Must hold: exit code 1, or 2 for the use; the error and the available names are printed.
 #[test]
 fn wrong_models_are_named() {
     let bench = Bench::new(PROGRAM);
@@ -122,7 +124,8 @@ fn below(folder: &Path, name: &str) -> Option<PathBuf> {
     })
 }
 
-/// Situation: the models that ship, where the recordings are at hand, below the folder that `STEER_ASSIST_SENSOR_RECORDINGS` names.
+/// Situation: the shipped models, where the recordings are available, below the folder that
+/// `STEER_ASSIST_SENSOR_RECORDINGS` names.
 /// Action: run the command of each again.
 /// Must hold: the same file, to the byte.
 #[test]
@@ -144,11 +147,11 @@ fn shipped_models_are_made_again() {
             true => word(&below(&folder, name).unwrap_or_else(|| panic!("{name} is not there"))),
             false => name.to_owned(),
         };
-        let words: Vec<String> = command.split(' ').map(found).collect();
-        let told = [("--source", of("source")), ("--licence", of("licence"))];
+        let texts: Vec<String> = command.split(' ').map(found).collect();
+        let options = [("--source", of("source")), ("--licence", of("licence"))];
         let status = bench
-            .command(&words.join(" "))
-            .args(told.iter().flat_map(|(option, text)| [*option, text.as_str()]))
+            .command(&texts.join(" "))
+            .args(options.iter().flat_map(|(option, text)| [*option, text.as_str()]))
             .args(["--out", "again.toml", "--quiet"])
             .status()
             .expect("the program runs");

@@ -1,4 +1,4 @@
-//! Ctrl-C, SIGTERM and readers that go away.
+//! Ctrl-C, SIGTERM and closed outputs.
 #![cfg(target_os = "linux")]
 
 use serde_json::Value;
@@ -10,7 +10,7 @@ use tests::cli::{Bench, Run};
 use tests::wait::until_used;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
-/// Many short columns, together far more than the test waits for.
+/// Many short columns, together far longer than the test's timeout.
 const MANY: &str = "basin --speeds 0:30:0.0005 --time-limit 0.2 --scan-step 10 --tolerance 5";
 /// One column that takes minutes.
 const LONG: &str = "basin --speeds 6 --time-limit 3600 --max-rate 0.5 --scan-step 0.01";
@@ -29,7 +29,7 @@ fn send(signal: &str, child: &Child) {
     assert!(kill.expect("sh runs").success());
 }
 
-/// Reads until these words have come.
+/// Reads until this text has come.
 fn wait_for_word(from: &mut impl Read, word: &str) {
     let (mut text, mut byte) = (Vec::new(), [0]);
     while !text.ends_with(word.as_bytes()) {
@@ -45,9 +45,9 @@ fn spawn(bench: &Bench, line: &str) -> Child {
 
 /// Situation: a long basin, some of it done.
 /// Action: Ctrl-C.
-/// Must hold: exit code 130 soon; all outputs written, what is done kept, what is not null.
+/// Must hold: exit code 130 soon; all outputs written, completed results preserved, the others null.
 #[test]
-fn an_interrupted_basin_keeps_what_is_done() {
+fn an_interrupted_basin_preserves_completed_speeds() {
     let bench = Bench::new(PROGRAM);
     let child = spawn(&bench, &format!("{MANY} --json out.json --csv out.csv --svg out.svg --png out.png"));
     wait_for_work(&child);
@@ -74,25 +74,26 @@ fn an_interrupted_basin_keeps_what_is_done() {
 
 /// Situation: a long basin and a sweep of many short cells, some of each done.
 /// Action: SIGTERM, as a cluster sends it at a time limit.
-/// Must hold: exit code 130, not the signal's; what is done is kept: speeds of the basin, cells of the sweep.
+/// Must hold: exit code 130, not the signal's; completed results are preserved: speeds of the basin, cells of the
+/// sweep.
 #[test]
-fn a_sigterm_keeps_what_is_done() {
+fn a_sigterm_preserves_completed_results() {
     let bench = Bench::new(PROGRAM);
     let units = || std::fs::read_dir(bench.path("s/units")).map_or(0, Iterator::count);
     let sweep = "sweep --over torque-limit=1:40/400 --law h --speeds 5 --threads 1 --out s";
     let basin = format!("{MANY} --csv out.csv");
-    for (line, said) in [(&*basin, "speeds are done and kept"), (sweep, "cells are done and kept")] {
+    for (line, output) in [(&*basin, "speeds are done and kept"), (sweep, "cells are done and kept")] {
         let child = spawn(&bench, line);
         wait_for_work(&child);
-        let begin = Instant::now();
+        let start = Instant::now();
         while line == sweep && units() == 0 {
-            assert!(begin.elapsed() < Duration::from_secs(60), "no cell is done");
+            assert!(start.elapsed() < Duration::from_secs(60), "no cell is done");
             std::thread::sleep(Duration::from_millis(5));
         }
         send("TERM", &child);
         let run = Run::from(child.wait_with_output().unwrap());
         assert_eq!(run.code, Some(130), "{line}: {run:?}");
-        assert!(run.stderr.contains(said), "{line}: {}", run.stderr);
+        assert!(run.stderr.contains(output), "{line}: {}", run.stderr);
     }
     assert!(bench.read("out.csv").contains(",border,"));
     assert!((1..400).contains(&units()), "{}", units());
@@ -100,21 +101,21 @@ fn a_sigterm_keeps_what_is_done() {
 
 /// Situation: a column that takes minutes, results going to a new and to an older file.
 /// Action: Ctrl-C twice.
-/// Must hold: exit code 130 at once; the older file as it was, nothing new.
+/// Must hold: exit code 130 at once; the older file unchanged, nothing new.
 #[test]
-fn a_second_ctrl_c_quits_at_once_and_leaves_nothing() {
+fn a_second_ctrl_c_quits_at_once_without_files() {
     let bench = Bench::new(PROGRAM);
     bench.write("old.json", "older result");
     let mut child = spawn(&bench, &format!("{LONG} --json old.json --csv new.csv"));
     wait_for_work(&child);
-    let begin = Instant::now();
+    let start = Instant::now();
     press_ctrl_c(&child);
     wait_for_word(child.stderr.as_mut().expect("piped"), "again to quit at once");
     press_ctrl_c(&child);
     let run = Run::from(child.wait_with_output().unwrap());
     assert_eq!(run.code, Some(130), "{run:?}");
     // Far less than the column takes.
-    assert!(begin.elapsed() < Duration::from_secs(30), "{:?}", begin.elapsed());
+    assert!(start.elapsed() < Duration::from_secs(30), "{:?}", start.elapsed());
     assert_eq!((bench.files(), bench.read("old.json").as_str()), (vec!["old.json".into()], "older result"));
 }
 
@@ -122,7 +123,7 @@ fn a_second_ctrl_c_quits_at_once_and_leaves_nothing() {
 /// Action: kill the program.
 /// Must hold: no file is left behind.
 #[test]
-fn a_killed_run_leaves_nothing() {
+fn a_killed_run_leaves_no_file() {
     let bench = Bench::new(PROGRAM);
     for line in ["ride --speed 6 --time-limit 3600", LONG] {
         let mut child = spawn(&bench, &format!("{line} --json new.json --csv new.csv"));
@@ -133,36 +134,36 @@ fn a_killed_run_leaves_nothing() {
     }
 }
 
-/// Situation: a reader of standard output that goes away at once, as `head` does.
+/// Situation: a reader of standard output that closes it at once, as `head` does.
 /// Action: run each command.
-/// Must hold: no panic, exit code 0, and files asked for are written all the same.
+/// Must hold: no panic, exit code 0, and requested files are written nevertheless.
 #[test]
-fn a_reader_that_goes_away_is_no_error() {
+fn a_closed_output_is_no_error() {
     let bench = Bench::new(PROGRAM);
     for line in [
-        "basin --speeds 4 --max-rate 1 --csv kept.csv",
-        "basin --speeds 4 --max-rate 1 --csv kept.csv --json",
-        "ride --speed 4 --csv kept.csv --json",
-        "eigen --speeds 4 --csv kept.csv",
+        "basin --speeds 4 --max-rate 1 --csv table.csv",
+        "basin --speeds 4 --max-rate 1 --csv table.csv --json",
+        "ride --speed 4 --csv table.csv --json",
+        "eigen --speeds 4 --csv table.csv",
         "bicycle list",
         "bicycle show",
         "bicycle check --json",
         "schema basin",
     ] {
-        let _ = std::fs::remove_file(bench.path("kept.csv"));
+        let _ = std::fs::remove_file(bench.path("table.csv"));
         let mut child = spawn(&bench, line);
         drop(child.stdout.take());
         let run = Run::from(child.wait_with_output().unwrap());
         assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{line}");
-        assert_eq!(bench.path("kept.csv").exists(), line.contains("kept.csv"), "{line}");
+        assert_eq!(bench.path("table.csv").exists(), line.contains("table.csv"), "{line}");
     }
 }
 
-/// Situation: nobody reads standard error.
-/// Action: give a command something to complain about.
-/// Must hold: exit code 1 as ever, no panic.
+/// Situation: standard error is closed.
+/// Action: run a command that reports an error.
+/// Must hold: exit code 1 as usual, no panic.
 #[test]
-fn complaints_nobody_reads_are_no_panic() {
+fn errors_on_a_closed_stream_are_no_panic() {
     let bench = Bench::new(PROGRAM);
     let mut child = spawn(&bench, "eigen --bicycle missing.toml");
     drop(child.stderr.take());

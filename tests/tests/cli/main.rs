@@ -1,4 +1,4 @@
-//! Flight cards: the command line.
+//! The command line.
 
 mod any_bicycle;
 mod bad_input;
@@ -6,6 +6,7 @@ mod bicycle_files;
 mod capped;
 mod contract;
 mod design;
+mod details;
 mod document;
 mod falls;
 mod identify;
@@ -20,6 +21,6 @@ mod plant;
 mod riders;
 mod same_bytes;
 mod scenario;
-mod small_words;
+
 mod study;
 mod sweep;

@@ -1,31 +1,31 @@
-//! The word `none`, where a value may be left out: taken, or refused with the reason.
+//! The value `none`, where a value is optional: accepted, or rejected with the reason.
 
 use tests::cli::Bench;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
-/// Situation: the product's limits, of which the rider's override needs a largest torque.
+/// Situation: the product's limits, whose rider override needs a largest torque.
 /// Action: switch the largest torque off by its parameter, alone and with the override off; give infinity.
-/// Must hold: alone it is refused by its own name with who needs it, not as infinity nor by an option that was not given;
-/// with the override off it is ridden; infinity is no number.
+/// Must hold: alone it is rejected by its own name with the parameter that needs it, not as infinity nor by an option
+/// that was not given; with the override off it is ridden; infinity is no number.
 #[test]
-fn a_torque_limit_that_is_needed_says_by_whom() {
+fn a_required_torque_limit_names_its_user() {
     let bench = Bench::new(PROGRAM);
     let ride = "ride --preset product --speed 4 --time-limit 0.1 --set limits.max_torque_nm=none";
-    let refused = bench.run(ride);
-    refused.refused_naming(&["limits.max_torque_nm = none", "limits.rider_torque", "0.1 to 50"]);
+    let rejected = bench.run(ride);
+    rejected.rejected_naming(&["limits.max_torque_nm = none", "limits.rider_torque", "0.1 to 50"]);
     assert!(
-        !refused.stderr.contains("inf") && !refused.stderr.contains("--torque-limit"),
+        !rejected.stderr.contains("inf") && !rejected.stderr.contains("--torque-limit"),
         "{}",
-        refused.stderr
+        rejected.stderr
     );
     assert_eq!(bench.run(&format!("{ride} --set limits.rider_torque=off")).code, Some(0));
-    bench.run("ride --speed 4 --set limits.max_torque_nm=inf").refused_naming(&["`inf` is not a number"]);
+    bench.run("ride --speed 4 --set limits.max_torque_nm=inf").rejected_naming(&["`inf` is not a number"]);
 }
 
 /// Situation: a sweep of faults and one of sensors, each with its reference cell.
 /// Action: sweep; ride with `none` alone.
-/// Must hold: the reference's heights are those without the option; the same words in `ride`.
+/// Must hold: the reference's heights are those without the option; the same text in `ride`.
 #[test]
 fn a_sweep_of_faults_has_a_reference() {
     let bench = Bench::new(PROGRAM);
@@ -47,7 +47,7 @@ fn a_sweep_of_faults_has_a_reference() {
 }
 
 /// Situation: a bicycle of a collection as a value of an axis, `FILE#NAME`.
-/// Action: sweep; read the tables as a program that takes `#` for a comment.
+/// Action: sweep; read the tables as a program that treats `#` as a comment.
 /// Must hold: every value with a `#` is quoted.
 #[test]
 fn a_value_with_a_hash_is_quoted() {
@@ -63,7 +63,7 @@ fn a_value_with_a_hash_is_quoted() {
 
 /// Situation: eight shards of one sweep, and a temporary file of one that was killed, in one folder.
 /// Action: start all at once.
-/// Must hold: each does its part, and the last writes the results; a folder with something else in it is refused.
+/// Must hold: each does its part, and the last writes the results; a folder with other content is rejected.
 #[test]
 fn shards_that_start_together_share_a_folder() {
     let bench = Bench::new(PROGRAM);
@@ -80,5 +80,5 @@ fn shards_that_start_together_share_a_folder() {
     bench.write("other/notes", "mine");
     bench
         .run(&format!("{line} --out other"))
-        .refused_naming(&["other is neither empty nor the folder of a sweep"]);
+        .rejected_naming(&["other is neither empty nor the folder of a sweep"]);
 }

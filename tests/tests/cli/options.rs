@@ -1,4 +1,4 @@
-//! What the options mean: laws, presets, defaults, help.
+//! Meaning of the options: laws, presets, defaults, help.
 
 use serde_json::{Value, json};
 use tests::cli::{Bench, repository, word};
@@ -32,7 +32,7 @@ fn laws_by_name_and_by_file() {
 
 /// Situation: no options, the product preset, the product preset with options of its own, ideal.
 /// Action: read the configuration of a ride's document.
-/// Must hold: the documented defaults; options win over the preset.
+/// Must hold: the documented defaults; options have priority over the preset.
 #[test]
 fn defaults_and_presets_are_as_documented() {
     let bench = Bench::new(PROGRAM);
@@ -64,7 +64,7 @@ fn defaults_and_presets_are_as_documented() {
 
 /// Situation: a strong knock at speed, a limited motor.
 /// Action: ride with and without the limit.
-/// Must hold: the torque keeps the limit and reaches it; without it, it goes beyond.
+/// Must hold: the torque stays within the limit and reaches it; without it, it exceeds it.
 #[test]
 fn limits_limit() {
     let bench = Bench::new(PROGRAM);
@@ -77,7 +77,7 @@ fn limits_limit() {
 }
 
 /// Situation: the help of every command, and every example in it.
-/// Action: ask for the help; give the examples' options with `--help` after them.
+/// Action: request the help; give the examples' options with `--help` after them.
 /// Must hold: examples are there, and no option in them is unknown.
 #[test]
 fn every_help_has_examples_whose_options_exist() {
@@ -111,9 +111,9 @@ fn every_help_has_examples_whose_options_exist() {
         let examples: Vec<&str> = help.stdout.lines().filter_map(|l| l.strip_prefix("  sim-host ")).collect();
         assert!(!examples.is_empty(), "no example in: {command} --help");
         for example in examples {
-            let words = example.split("  ").next().unwrap().split(" > ").next().unwrap();
-            let run = bench.run(&format!("{words} --help"));
-            assert_eq!(run.code, Some(0), "{words}: {}", run.stderr);
+            let texts = example.split("  ").next().unwrap().split(" > ").next().unwrap();
+            let run = bench.run(&format!("{texts} --help"));
+            assert_eq!(run.code, Some(0), "{texts}: {}", run.stderr);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Files: what they carry, and that they are whole or not there.
+//! Output files: their contents, and that they are complete or absent.
 #![cfg(unix)]
 
 use control::wire::FRAME_BYTES;
@@ -12,7 +12,7 @@ const COMMANDS: [&str; 3] = [
     "eigen --speeds 0:10:1 --law h",
 ];
 
-/// The program's name, version and commit as texts carry them, from a document.
+/// The program's name, version and commit as in texts, from a document.
 fn identity(document: &Value) -> String {
     let tool = |key: &str| document["tool"][key].as_str().unwrap();
     assert_eq!(tool("version"), env!("CARGO_PKG_VERSION"));
@@ -21,7 +21,7 @@ fn identity(document: &Value) -> String {
     format!("{} {} commit {commit}", tool("name"), tool("version"))
 }
 
-/// Checks that everything `config` says is in the document.
+/// Checks that every value of `config` is in the document.
 fn agrees(config: &Value, document: &Value) {
     let keys = config.as_object().unwrap();
     assert!(keys.contains_key("config") || keys.contains_key("bicycle"));
@@ -45,9 +45,9 @@ fn png_description(png: &[u8]) -> String {
     panic!("no description");
 }
 
-/// Situation: each command that writes files, all of them asked for.
+/// Situation: each command that writes files, with all of them requested.
 /// Action: run it.
-/// Must hold: CSV, SVG and PNG carry the document's version, commit and configuration.
+/// Must hold: CSV, SVG and PNG contain the document's version, commit and configuration.
 #[test]
 fn every_file_carries_version_commit_and_configuration() {
     for line in COMMANDS {
@@ -74,8 +74,7 @@ fn every_file_carries_version_commit_and_configuration() {
 
 /// Situation: tables of each command.
 /// Action: read them.
-/// Must hold: the documented columns, as many rows as there are results, every cell a number or
-/// word, no NaN.
+/// Must hold: the documented columns, as many rows as there are results, every cell a number or text, no NaN.
 #[test]
 fn tables_have_their_documented_columns() {
     let bench = Bench::new(PROGRAM);
@@ -98,7 +97,7 @@ fn tables_have_their_documented_columns() {
 
 /// Situation: an older, longer file where the result goes, and a link to a file.
 /// Action: write there.
-/// Must hold: the file is the new result and nothing else; the link still is one.
+/// Must hold: the file is the new result and nothing else; the link is still one.
 #[test]
 fn results_replace_older_files_and_follow_links() {
     let bench = Bench::new(PROGRAM);
@@ -110,9 +109,9 @@ fn results_replace_older_files_and_follow_links() {
     assert_eq!(bench.files(), ["link.json", "out.json"]);
 }
 
-/// Situation: a pipe with a name as output.
+/// Situation: a named pipe as output.
 /// Action: write there, and read the other end.
-/// Must hold: the document comes through; the pipe is still a pipe.
+/// Must hold: the document is received; the pipe is still a pipe.
 #[test]
 fn a_pipe_is_written_to_and_not_replaced() {
     let bench = Bench::new(PROGRAM);
@@ -125,21 +124,21 @@ fn a_pipe_is_written_to_and_not_replaced() {
 
 /// Situation: a disk that is full after half a kilobyte.
 /// Action: write a document over an older one, and one to standard output.
-/// Must hold: exit code 1 naming the place; the older file as it was, nothing beside it.
+/// Must hold: exit code 1 naming the place; the older file unchanged, nothing beside it.
 #[test]
-fn a_full_disk_costs_no_older_file() {
+fn a_full_disk_leaves_the_older_file() {
     let bench = Bench::new(PROGRAM);
     bench.write("old.json", "older result");
     let full = "trap '' XFSZ; ulimit -f 1; \"$0\" ride --speed 4 --time-limit 0.1 -q";
-    bench.shell(&format!("{full} --json old.json")).refused_naming(&["old.json", "large"]);
+    bench.shell(&format!("{full} --json old.json")).rejected_naming(&["old.json", "large"]);
     assert_eq!((bench.files(), bench.read("old.json").as_str()), (vec!["old.json".into()], "older result"));
     let run = bench.shell(&format!("({full} --json) > out.json"));
-    run.refused_naming(&["standard output", "large"]);
+    run.rejected_naming(&["standard output", "large"]);
 }
 
-/// Situation: a ride whose frames are asked for besides its table.
+/// Situation: a ride with its frames and its table requested.
 /// Action: run it, once with the frames on standard output.
-/// Must hold: whole frames, one for each line of the table after those of the pre-roll; the same bytes, and no
+/// Must hold: complete frames, one for each line of the table after those of the warm start; the same bytes, and no
 /// text among them.
 #[test]
 fn frames_are_as_many_as_lines_of_the_table() {
@@ -168,8 +167,8 @@ fn text_and_documents_do_not_mix() {
     }
 }
 
-/// Situation: a product ride whose clock jumps and whose gyro is gone, causes of which the numbers lie far apart.
-/// Action: read its table as a program does that has doubles only.
+/// Situation: a product ride whose clock jumps and whose gyro is lost, causes of which the numbers are far apart.
+/// Action: read its table like a program that has doubles only.
 /// Must hold: the bits of `causes` are lost to it, those of the two halves are not.
 #[test]
 fn causes_survive_a_reader_of_doubles() {

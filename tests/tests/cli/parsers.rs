@@ -1,4 +1,4 @@
-//! Whatever is in a file or an option: a result or a reason, never a panic.
+//! Any file and any option: a result or a reason, never a panic.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -11,7 +11,7 @@ use tests::draws::runner;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
-/// A value as a file may have it: ordinary, odd, or no number.
+/// A value as in a file: ordinary, odd, or no number.
 fn value() -> impl Strategy<Value = String> {
     let odd = [
         "nan",
@@ -38,8 +38,7 @@ fn value() -> impl Strategy<Value = String> {
 
 /// Situation: the example bicycle with one value replaced by anything.
 /// Action: load it.
-/// Must hold: it loads and its linear model is finite, or the message names the key (the line, if it
-/// is no TOML).
+/// Must hold: it loads and its linear model is finite, or the message names the key (the line, if it is no TOML).
 #[test]
 fn a_bicycle_loads_or_its_key_is_named() {
     let text = |(key, value): (&str, &str)| bicycle_with(key, &format!("{key} = {value}"));
@@ -82,7 +81,7 @@ fn no_text_makes_the_bicycle_loader_panic() {
         .unwrap();
 }
 
-/// Situation: words made of the characters of ranges.
+/// Situation: texts made of the characters of ranges.
 /// Action: give them as speeds.
 /// Must hold: a usage error, or rising speeds from -30 to 30 m/s.
 #[test]
@@ -131,7 +130,7 @@ fn ranges_of_whole_steps_include_their_end() {
 /// Must hold: accepted exactly when speeds rise within +-30 m/s and gains stay within +-200; then
 /// the document has the points, else the message names file and key.
 #[test]
-fn law_tables_are_used_as_given_or_refused() {
+fn law_tables_are_used_as_given_or_rejected() {
     let bench = Bench::new(PROGRAM);
     let points = vec((-35.0..35.0_f32, -220.0..220.0_f32), 0..5);
     runner(60)
@@ -160,10 +159,10 @@ fn law_tables_are_used_as_given_or_refused() {
 }
 
 /// Situation: tables of states with cells of all kinds.
-/// Action: ask for accelerations.
+/// Action: request accelerations.
 /// Must hold: a line of finite numbers for each, or a reason that names file and line.
 #[test]
-fn tables_of_states_are_answered_line_by_line_or_refused() {
+fn tables_of_states_are_answered_line_by_line_or_rejected() {
     let bench = Bench::new(PROGRAM);
     let cell = prop_oneof![
         20 => (-3.0..3.0).prop_map(|x: f64| format!("{x}")),

@@ -1,4 +1,4 @@
-//! Flight cards: the options of sensors, motor and faults.
+//! The options of sensors, motor and faults.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -9,9 +9,10 @@ use tests::draws::runner;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
-/// Situation: no options, then all of them. Action: read the configuration of a ride's document.
-/// Must hold: exact by default; all that was asked for is there, times in control periods, faults as they
-/// read back; the ride repeats from them, and differs with another seed.
+/// Situation: no options, then all of them.
+/// Action: read the configuration of a ride's document.
+/// Must hold: exact by default; all requested values are there, times in control periods, faults as parsed; the ride
+/// repeats from them, and differs with another seed.
 #[test]
 fn the_document_has_the_plant() {
     let bench = Bench::new(PROGRAM);
@@ -52,10 +53,10 @@ fn the_document_has_the_plant() {
     assert_ne!(end(1), end(2));
 }
 
-/// Situation: options with something wrong. Must hold: exit code 1; the message names option, key, value and
-/// what is allowed.
+/// Situation: options with an error each.
+/// Must hold: exit code 1; the message names option, key, value and the allowed ones.
 #[test]
-fn wrong_options_are_told_what_is_allowed() {
+fn wrong_options_name_the_allowed_ones() {
     let bench = Bench::new(PROGRAM);
     for (options, says) in [
         ("--sensor gyro", &["--sensor gyro", "NAME:KEY=VALUE"][..]),
@@ -91,7 +92,8 @@ fn wrong_options_are_told_what_is_allowed() {
     assert_eq!(bench.run("ride --speed 4 --assist ideal --actuator davis").code, Some(0));
 }
 
-/// Situation: options made of anything that options are made of. Must hold: a ride or a reason.
+/// Situation: options made of random parts of options.
+/// Must hold: a ride or a reason.
 #[test]
 fn no_option_makes_the_program_panic() {
     let bench = Bench::new(PROGRAM);
@@ -99,9 +101,9 @@ fn no_option_makes_the_program_panic() {
         "gyro", "imu", "davis", ".x", ":", "=", ",", "noise", "delay", "limit", "x", "5ms", "-1", "1e99",
         "nan", "@1s",
     ];
-    let words = vec(select(&PIECES[..]), 1..7).prop_map(|pieces| pieces.concat());
+    let texts = vec(select(&PIECES[..]), 1..7).prop_map(|pieces| pieces.concat());
     runner(80)
-        .run(&(select(&["--sensor", "--actuator", "--fault"][..]), words), |(option, word)| {
+        .run(&(select(&["--sensor", "--actuator", "--fault"][..]), texts), |(option, word)| {
             let run = bench.run(&format!("ride --speed 4 --time-limit 0.1 --json {option}={word}"));
             prop_assert!(matches!(run.code, Some(0..=2)), "{option} {word}: {run:?}");
             prop_assert!(

@@ -1,4 +1,4 @@
-//! Riders on the command line: names, files, options, and what is wrong with them.
+//! Riders on the command line: names, files, options, and their errors.
 
 use serde_json::{Value, json};
 use tests::cli::{Bench, repository, word};
@@ -16,12 +16,11 @@ rows = [
 ]
 ";
 
-/// Situation: a table with one thing wrong each.
+/// Situation: a table with one error each.
 /// Action: check it, and ride it.
-/// Must hold: refused in one paragraph that names the file, the key or row, the value and what is
-/// allowed.
+/// Must hold: rejected in one paragraph that names the file, the key or row, the value and the allowed ones.
 #[test]
-fn wrong_tables_are_refused_with_the_reason() {
+fn wrong_tables_are_rejected_with_the_reason() {
     let bench = Bench::new(PROGRAM);
     bench.write("my.toml", TABLE);
     assert_eq!(bench.run("rider check my.toml").code, Some(0));
@@ -71,29 +70,28 @@ fn wrong_tables_are_refused_with_the_reason() {
         assert!(TABLE.contains(right), "{right}");
         bench.write("my.toml", TABLE.replacen(right, wrong, 1));
         let named: Vec<&str> = named.iter().copied().chain(["my.toml"]).collect();
-        bench.run("rider check my.toml").refused_naming(&named);
-        bench.run("ride --speed 4 --rider my.toml").refused_naming(&named);
+        bench.run("rider check my.toml").rejected_naming(&named);
+        bench.run("ride --speed 4 --rider my.toml").rejected_naming(&named);
     }
     let without = |rows: &str, columns: &str| {
         format!("schema = 1\ndelay_ms = 0\ncolumns = [{columns}]\nrows = {rows}\n")
     };
     bench.write("my.toml", without("[[2.0, 90]]", "'speed_m_s', 'vaf'"));
-    bench.run("rider check my.toml").refused_naming(&["my.toml", "no gains", "K_phi_p"]);
+    bench.run("rider check my.toml").rejected_naming(&["my.toml", "no gains", "K_phi_p"]);
     bench.write("my.toml", without("[]", "'speed_m_s', 'K_y'"));
-    bench.run("rider check my.toml").refused_naming(&["my.toml", "`rows` = 0", "1 to 1000"]);
+    bench.run("rider check my.toml").rejected_naming(&["my.toml", "`rows` = 0", "1 to 1000"]);
     bench.write("my.toml", b"\xff\xfe");
-    bench.run("rider check my.toml").refused_naming(&["my.toml", "UTF-8"]);
-    bench.run("rider check missing.toml").refused_naming(&["missing.toml", "no such file", "young", "hess"]);
+    bench.run("rider check my.toml").rejected_naming(&["my.toml", "UTF-8"]);
+    bench.run("rider check missing.toml").rejected_naming(&["missing.toml", "no such file", "young", "hess"]);
     std::fs::create_dir(bench.path("folder")).unwrap();
-    bench.run("rider check folder").refused_naming(&["folder"]);
+    bench.run("rider check folder").rejected_naming(&["folder"]);
 }
 
-/// Situation: options of a rider that can't be.
+/// Situation: invalid options of a rider.
 /// Action: give them.
-/// Must hold: refused, naming the option, the value and what is allowed; without a rider they are no
-/// options at all.
+/// Must hold: rejected, naming the option, the value and the allowed ones; without a rider the options do not exist.
 #[test]
-fn wrong_options_of_a_rider_are_refused() {
+fn wrong_options_of_a_rider_are_rejected() {
     let bench = Bench::new(PROGRAM);
     for (line, named) in [
         ("ride --speed 4 --rider old", &["unknown rider `old`", "young, smart, smart6"][..]),
@@ -105,7 +103,7 @@ fn wrong_options_of_a_rider_are_refused() {
         ("ride --speed 4 --rider young --preset product --delay 0.4ms", &["--delay", "0 ms and 1 ms"]),
         ("ride --speed 4 --rider young --delay 0.004ms", &["--delay", "0.004 ms", "0.01 ms"]),
     ] {
-        bench.run(line).refused_naming(named);
+        bench.run(line).rejected_naming(named);
     }
     for (options, word) in [
         ("--rider young --delay -60ms", "0 s to 1 s"),
@@ -125,7 +123,7 @@ fn wrong_options_of_a_rider_are_refused() {
     }
     bench.write("my.toml", TABLE.replace("'vaf'", "'K_y'"));
     let run = bench.run("ride --speed 4 --rider my.toml --gains best");
-    run.refused_naming(&["my.toml", "best", "2 sets", "2 m/s", "`vaf`", "best_runs"]);
+    run.rejected_naming(&["my.toml", "best", "2 sets", "2 m/s", "`vaf`", "best_runs"]);
     assert_eq!(bench.run("ride --speed 4 --rider my.toml --gains mean").code, Some(0));
 }
 
@@ -164,7 +162,7 @@ fn options_of_a_rider_are_in_the_configuration() {
     let line = config("--rider young --gains regression")["rider"]["points"].clone();
     assert_eq!((line.as_array().unwrap().len(), &line[1]["speed_m_s"]), (2, &json!(7.4)));
 
-    // A rider comes without assist, unless it is asked for.
+    // A rider has no assist by default.
     for (options, law, assist) in [
         ("--rider young --law h", "h", "firmware"),
         ("--rider young --preset product", "h-cut", "firmware"),
@@ -178,8 +176,8 @@ fn options_of_a_rider_are_in_the_configuration() {
 
 /// Situation: delays that are no whole milliseconds, without the firmware.
 /// Action: ride.
-/// Must hold: the largest step up to 1 ms of which the delay is a whole number, told on standard
-/// error; whole milliseconds leave the step alone and say nothing.
+/// Must hold: the largest step up to 1 ms of which the delay is a whole number, reported on standard error; whole
+/// milliseconds leave the step unchanged and report nothing.
 #[test]
 fn the_step_divides_the_delay() {
     let bench = Bench::new(PROGRAM);
@@ -219,10 +217,10 @@ fn a_riders_basin_is_over_the_measured_speeds() {
     assert_eq!(ends(&speeds("")), (101, 0.0, 10.0));
 }
 
-/// Situation: the riders that ship.
+/// Situation: the shipped riders.
 /// Action: list, show, check.
-/// Must hold: every name is in the list; what `show` prints is a file with the same gains; JSON and
-/// CSV have all rows and fits; `--gains` leaves the others out.
+/// Must hold: every name is in the list; the output of `show` is a file with the same gains; JSON and CSV have all
+/// rows and fits; `--gains` leaves the others out.
 #[test]
 fn list_show_and_check() {
     let bench = Bench::new(PROGRAM);
@@ -253,18 +251,18 @@ fn list_show_and_check() {
     assert!(lines[0].starts_with("kind,speed_m_s,run,group,vaf,K_phi_p,"), "{}", lines[0]);
     assert_eq!(lines.len(), 1 + 15 + 2 + 5 + 5);
     assert!(lines[1].starts_with("measured,2.1,248,1,93.82,44.08,0.0,51.7,"), "{}", lines[1]);
-    bench.run("rider show young --csv a --json ./a").refused_naming(&["--csv", "--json", "same place"]);
+    bench.run("rider show young --csv a --json ./a").rejected_naming(&["--csv", "--json", "same place"]);
 
     bench.write("my.toml", TABLE.replace("'vaf'", "'K_y'"));
     let check = bench.run("rider check my.toml").stdout;
     assert!(check.contains("gains best: not possible") && check.contains("gains mean: 2 points"), "{check}");
-    bench.run("rider show my.toml --gains best").refused_naming(&["my.toml", "best", "`vaf`"]);
+    bench.run("rider show my.toml --gains best").rejected_naming(&["my.toml", "best", "`vaf`"]);
     assert_eq!(bench.json("rider show my.toml")["fits"].as_array().unwrap().len(), 2);
 }
 
 /// Situation: the commented example.
 /// Action: check it and ride it.
-/// Must hold: it is sound.
+/// Must hold: it is valid.
 #[test]
 fn the_example_is_a_rider() {
     let bench = Bench::new(PROGRAM);

@@ -7,10 +7,10 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 /// The C library's code for a processor without fused multiply-add.
 const WITHOUT_FMA: (&str, &str) = ("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F");
 
-/// Situation: a tilt of 0.259 rad, whose sine has another last bit in the C library's code for processors without fused
-/// multiply-add; a processor that has it.
-/// Action: eigenvalues without and with a late rider, a ride with noise, a basin; each as it is, and with the C library made to
-/// use that code.
+/// Situation: a tilt of 0.259 rad, whose sine has another last bit in the C library's code for processors without
+/// fused multiply-add; a processor that has it.
+/// Action: eigenvalues without and with a late rider, a ride with noise, a basin; each by default, and with the C
+/// library forced to use that code.
 /// Must hold: the same bytes.
 #[test]
 fn the_c_library_does_not_change_results() {

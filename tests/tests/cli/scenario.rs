@@ -120,19 +120,19 @@ fn a_wrong_scenario_is_rejected_with_its_key() {
         ("fall = { roll_rad = 2 }", &["fall: roll", "90"]),
     ] {
         bench.write("wrong.toml", format!("{added}\n{}", right.replace("law = 'h'\n", "")));
-        bench.run("ride --scenario wrong.toml").refused_naming(named);
+        bench.run("ride --scenario wrong.toml").rejected_naming(named);
     }
-    bench.run("ride --scenario none.toml").refused_naming(&["none.toml"]);
+    bench.run("ride --scenario none.toml").rejected_naming(&["none.toml"]);
     bench.write("result.json", json!({"tool": {}, "config": {}}).to_string());
-    bench.run("ride --scenario result.json").refused_naming(&["result.json", "no `scenario`"]);
+    bench.run("ride --scenario result.json").rejected_naming(&["result.json", "no `scenario`"]);
     bench.write("list.json", "[1]");
-    bench.run("ride --scenario list.json").refused_naming(&["list.json", "object"]);
+    bench.run("ride --scenario list.json").rejected_naming(&["list.json", "object"]);
     bench.write("bad.json", "{\"law\": \"h\",}");
-    bench.run("ride --scenario bad.json").refused_naming(&["bad.json", "line 1"]);
+    bench.run("ride --scenario bad.json").rejected_naming(&["bad.json", "line 1"]);
     bench.write("moved.json", json!({"start": {"speed_m_s": 4}, "bicycle": inline(0.3)}).to_string());
     assert_eq!(bench.run("ride --scenario moved.json").code, Some(0));
     bench.write("moved.json", json!({"start": {"speed_m_s": 4}, "bicycle": inline(7.0)}).to_string());
-    bench.run("ride --scenario moved.json").refused_naming(&["--bicycle", "`lam` = 7"]);
+    bench.run("ride --scenario moved.json").rejected_naming(&["--bicycle", "`lam` = 7"]);
 }
 
 /// A bicycle in place, with this tilt of the steer axis.

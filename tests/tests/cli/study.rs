@@ -25,19 +25,19 @@ reference = { law = "h" }
 along = "law"
 "#;
 
-/// Situation: a study of one's own, of an axis of numbers and one of words.
+/// Situation: a user's study, of an axis of numbers and one of texts.
 /// Action: compute it, and again.
-/// Must hold: the page has both answers with the numbers of the sweeps' tables, and the figures it shows;
-/// computed again, only the time taken is missing.
+/// Must hold: the page has both answers with the numbers of the sweeps' tables, and its figures; computed again, only
+/// the time taken is missing.
 #[test]
 fn a_study_is_answered_by_a_page() {
     let bench = Bench::new(PROGRAM);
     bench.write("little.toml", STUDY);
-    let said = must(&bench, "study little.toml --out s --pages p");
-    assert_eq!(said, "p/studies/little.md\n");
+    let output = must(&bench, "study little.toml --out s --pages p");
+    assert_eq!(output, "p/studies/little.md\n");
     let page = bench.read("p/studies/little.md");
-    for words in ["# Little\n", "## Torque\n", "--over torque-limit=0.5:20/log4,none", "| rider smart | "] {
-        assert!(page.contains(words), "{words}: {page}");
+    for texts in ["# Little\n", "## Torque\n", "--over torque-limit=0.5:20/log4,none", "| rider smart | "] {
+        assert!(page.contains(texts), "{texts}: {page}");
     }
     let figures: Vec<&str> =
         page.split("](../").skip(1).map(|rest| rest.split(')').next().unwrap()).collect();
@@ -53,9 +53,9 @@ fn a_study_is_answered_by_a_page() {
     let part = |value| 100.0 * area(value) / area("none");
     assert!(page.contains(&format!("| {:.2} | ", area("none"))), "{page}");
     assert!(page.contains(&format!("| {:.1} %, ", part("20"))), "{page}");
-    let (lost, kept) = (part("0.5"), part("20"));
+    let (lost, left) = (part("0.5"), part("20"));
     assert!(page.contains(&format!(", {lost:.1} % |")), "{page}");
-    assert!(lost < 95.0 && kept >= 95.0, "{lost} {kept}");
+    assert!(lost < 95.0 && left >= 95.0, "{lost} {left}");
     must(&bench, "study little.toml --out s --pages p -q");
     let again = bench.read("p/studies/little.md");
     let timeless = |page: &str| page.lines().filter(|l| !l.starts_with("This page")).collect::<String>();
@@ -63,7 +63,7 @@ fn a_study_is_answered_by_a_page() {
     assert_eq!(timeless(&page), timeless(&again));
 }
 
-/// Situation: the studies that ship.
+/// Situation: the shipped studies.
 /// Action: list them.
 /// Must hold: one list of all, each with its question.
 #[test]
@@ -80,20 +80,20 @@ fn studies_are_listed_with_their_questions() {
     }
 }
 
-/// Situation: studies that are wrong, are not there, or take no such option.
+/// Situation: studies that are wrong, do not exist, or do not have such an option.
 /// Action: compute them.
-/// Must hold: study, sweep, option and value named; nothing is left.
+/// Must hold: study, sweep, option and value named; no file is left.
 #[test]
 fn wrong_studies_are_named() {
     let bench = Bench::new(PROGRAM);
-    bench.run("study nothing").refused_naming(&["`nothing`", "balance-assist, prototype, limits, imu"]);
-    bench.run("study imu --quick").refused_naming(&["--quick", "study imu", "prototype"]);
+    bench.run("study nothing").rejected_naming(&["`nothing`", "balance-assist, prototype, limits, imu"]);
+    bench.run("study imu --quick").rejected_naming(&["--quick", "study imu", "prototype"]);
     bench.write("a.toml", STUDY.replace("law=h,f\"", "law=h,q\""));
-    bench.run("study a.toml").refused_naming(&["study a, sweep laws", "cell rider=none, law=q"]);
+    bench.run("study a.toml").rejected_naming(&["study a, sweep laws", "cell rider=none, law=q"]);
     bench.write("a.toml", STUDY.replace("--law h --speeds", "--law h --speed"));
-    bench.run("study a.toml").refused_naming(&["study a, sweep torque", "--speed"]);
+    bench.run("study a.toml").rejected_naming(&["study a, sweep torque", "--speed"]);
     bench.write("a.toml", STUDY.replace("along = \"law\"", "along = \"rider\""));
-    bench.run("study a.toml").refused_naming(&["study a", "sweep laws", "`rider`"]);
-    bench.run("study balance-assist --pages a.toml").refused_naming(&["can't make a.toml/studies"]);
+    bench.run("study a.toml").rejected_naming(&["study a", "sweep laws", "`rider`"]);
+    bench.run("study balance-assist --pages a.toml").rejected_naming(&["can't make a.toml/studies"]);
     assert_eq!(bench.files(), ["a.toml"]);
 }

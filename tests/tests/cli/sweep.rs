@@ -1,4 +1,4 @@
-//! Sweeps: the same bytes however they are computed, and nothing of another sweep among them.
+//! Sweeps: the same bytes however they are computed, without results of another sweep.
 
 use netcdf3::FileReader;
 use proptest::collection::vec;
@@ -35,7 +35,7 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// What a command that must succeed says.
+/// Output of a command that must succeed.
 pub(crate) fn must(bench: &Bench, line: &str) -> String {
     let run = bench.run(line);
     assert_eq!(run.code, Some(0), "{line}: {}", run.stderr);
@@ -48,11 +48,11 @@ fn units(bench: &Bench, folder: &str) -> Vec<String> {
 }
 
 /// Situation: two laws with and without a torque limit.
-/// Action: sweep; then ask `basin` for one of the cells.
-/// Must hold: the document fits its schema; the cell has `basin`'s heights, area and border efforts to
-/// the bit; a limit of 2 N m is never passed and costs area; without assist it changes nothing.
+/// Action: sweep; then run `basin` for one of the cells.
+/// Must hold: the document is valid; the cell has `basin`'s heights, area and border efforts to the bit; a limit of 2
+/// N m is never exceeded and costs area; without assist it changes nothing.
 #[test]
-fn a_cell_is_what_basin_finds() {
+fn a_cell_has_the_values_of_basin() {
     let bench = Bench::new(PROGRAM);
     must(&bench, &format!("{SMALL} --out s"));
     let document: Value = serde_json::from_str(&bench.read("s/sweep.json")).unwrap();
@@ -89,11 +89,11 @@ fn wait_for_unit(child: &mut Child, units: &Path) {
 
 /// Situation: a sweep of sixty cells.
 /// Action: Ctrl-C after the first cells; the same command again; the same at once in another folder.
-/// Must hold: exit code 130 with whole cells kept and no results; then the rest alone is computed; both
-/// folders have the same bytes.
+/// Must hold: exit code 130 with complete cells stored and no results; then the rest alone is computed; both folders
+/// have the same bytes.
 #[test]
 #[cfg(target_os = "linux")]
-fn what_was_interrupted_goes_on_to_the_same_bytes() {
+fn an_interrupted_sweep_resumes_to_the_same_bytes() {
     let bench = Bench::new(PROGRAM);
     let line = "sweep --over torque-limit=0.5:20/log60 --speeds 4:5:0.5 --max-rate 10 --scan-step 1 \
                 --tolerance 0.5 --time-limit 1 -q";
@@ -108,22 +108,26 @@ fn what_was_interrupted_goes_on_to_the_same_bytes() {
     assert!(kill.unwrap().success());
     let run = tests::cli::Run::from(child.wait_with_output().unwrap());
     assert_eq!(run.code, Some(130), "{run:?}");
-    let kept = units(&bench, "cut");
-    assert!(!kept.is_empty() && kept.len() < 60, "{}", kept.len());
-    assert!(run.stderr.contains(&format!("{} of 60 cells are done and kept", kept.len())), "{}", run.stderr);
+    let stored = units(&bench, "cut");
+    assert!(!stored.is_empty() && stored.len() < 60, "{}", stored.len());
+    assert!(
+        run.stderr.contains(&format!("{} of 60 cells are done and kept", stored.len())),
+        "{}",
+        run.stderr
+    );
     assert!(!bench.path("cut/sweep.json").exists());
     let written = |name: &String| std::fs::metadata(bench.path(name)).unwrap().modified().unwrap();
-    let before: Vec<_> = kept.iter().map(written).collect();
+    let before: Vec<_> = stored.iter().map(written).collect();
     must(&bench, &format!("{line} --out cut"));
-    assert_eq!(kept.iter().map(written).collect::<Vec<_>>(), before, "computed again");
+    assert_eq!(stored.iter().map(written).collect::<Vec<_>>(), before, "computed again");
     must(&bench, &format!("{line} --out whole --threads 1"));
     assert!(files(&bench.path("cut")) == files(&bench.path("whole")));
 }
 
 /// Situation: a sweep, and the same in three shards.
 /// Action: merge the shards, given in another order.
-/// Must hold: disjoint shards; every file of the merged folder has the bytes of the whole one's, figures
-/// and NetCDF too; two shards alone are refused with the missing cells named.
+/// Must hold: disjoint shards; every file of the merged folder has the bytes of the unsharded one's, figures and
+/// NetCDF too; two shards alone are rejected with the missing cells named.
 #[test]
 fn merged_shards_are_the_whole_to_the_bit() {
     let bench = Bench::new(PROGRAM);
@@ -133,7 +137,7 @@ fn merged_shards_are_the_whole_to_the_bit() {
     }
     let parts: Vec<usize> = (1..=3).map(|i| units(&bench, &format!("part{i}")).len()).collect();
     assert_eq!(parts, [2, 1, 1]);
-    bench.run("sweep merge part1 part3 --out merged").refused_naming(&["1 of 4 cells", "law=", "shards"]);
+    bench.run("sweep merge part1 part3 --out merged").rejected_naming(&["1 of 4 cells", "law=", "shards"]);
     assert!(!bench.path("merged").exists());
     must(&bench, "sweep merge part3 part1 part2 --out merged -q");
     let (whole, merged) = (files(&bench.path("whole")), files(&bench.path("merged")));
@@ -143,9 +147,9 @@ fn merged_shards_are_the_whole_to_the_bit() {
 }
 
 /// Situation: a finished sweep.
-/// Action: change one digit in a cell's file, cut another's short; run again; damage one and merge.
-/// Must hold: both are named and computed again, with the same bytes in the end; a merge, which can't
-/// compute, names the file.
+/// Action: change one digit in a cell's file, truncate another's; run again; damage one and merge.
+/// Must hold: both are named and computed again, with the same bytes in the end; a merge, which cannot compute, names
+/// the file.
 #[test]
 fn damaged_cells_are_found_and_computed_again() {
     let bench = Bench::new(PROGRAM);
@@ -158,41 +162,41 @@ fn damaged_cells_are_found_and_computed_again() {
     let changed = format!("{}{digit}{}", &text[..at], &text[at + 1..]);
     bench.write(&damaged[0], &changed);
     bench.write(&damaged[1], &bench.read(&damaged[1])[..200]);
-    let said = must(&bench, &format!("{SMALL} --out s"));
+    let output = must(&bench, &format!("{SMALL} --out s"));
     for name in &damaged[..2] {
-        assert!(said.contains(name.strip_prefix("s/").unwrap()), "{said}");
+        assert!(output.contains(name.strip_prefix("s/").unwrap()), "{output}");
     }
-    assert_eq!(said.matches("is damaged: computed again").count(), 2);
+    assert_eq!(output.matches("is damaged: computed again").count(), 2);
     assert!(files(&bench.path("s")) == before);
     bench.write(&damaged[0], &changed);
-    bench.run("sweep merge s --out merged").refused_naming(&[&damaged[0], "damaged"]);
+    bench.run("sweep merge s --out merged").rejected_naming(&[&damaged[0], "damaged"]);
 }
 
-/// Situation: folders of other sweeps, of something else, and none.
+/// Situation: folders of other sweeps, of other content, and none.
 /// Action: sweep into them, and merge them.
-/// Must hold: refused, with what differs; nothing in them is changed.
+/// Must hold: rejected, with the differences; nothing in them is changed.
 #[test]
-fn a_folder_of_something_else_is_refused() {
+fn a_folder_with_other_content_is_rejected() {
     let bench = Bench::new(PROGRAM);
     must(&bench, &format!("{SMALL} --out s"));
     let before = files(&bench.path("s"));
     for (change, what) in
         [("--over imu=body", "axes"), ("--imu body", "options"), ("--threads 1 --axis roll-rate", "search")]
     {
-        bench.run(&format!("{SMALL} --out s {change}")).refused_naming(&["s holds another sweep", what]);
+        bench.run(&format!("{SMALL} --out s {change}")).rejected_naming(&["s holds another sweep", what]);
     }
     must(&bench, &format!("{SMALL} --imu body --out other"));
-    bench.run("sweep merge s other --out both").refused_naming(&["s and other", "options"]);
-    bench.run("sweep merge s nothing").refused_naming(&["nothing", "plan.json"]);
+    bench.run("sweep merge s other --out both").rejected_naming(&["s and other", "options"]);
+    bench.run("sweep merge s nothing").rejected_naming(&["nothing", "plan.json"]);
     std::fs::create_dir(bench.path("full")).unwrap();
     bench.write("full/letter.txt", "");
-    bench.run(&format!("{SMALL} --out full")).refused_naming(&["full", "neither empty"]);
+    bench.run(&format!("{SMALL} --out full")).rejected_naming(&["full", "neither empty"]);
     assert!(files(&bench.path("s")) == before);
 }
 
 /// Situation: axes with wrong names and values.
 /// Action: sweep.
-/// Must hold: the axis, the cell and the value are named, before anything is made.
+/// Must hold: the axis, the cell and the value are named, before any file is made.
 #[test]
 fn wrong_axes_and_values_are_named() {
     let bench = Bench::new(PROGRAM);
@@ -208,7 +212,7 @@ fn wrong_axes_and_values_are_named() {
         ("--over delay=30ms,60ms", &["cell delay=30ms", "--rider"]),
         ("--over torque-limit=1:20/1000 --over rate-limit=10:1000/1000", &["1000000 cells", "100000"]),
     ] {
-        bench.run(&format!("sweep {options}")).refused_naming(named);
+        bench.run(&format!("sweep {options}")).rejected_naming(named);
     }
     for options in
         ["", "--over law", "--over torque-limit=2:1:1", "--over law=h --shard 3/2", "--over law=h --speeds x"]
@@ -219,10 +223,10 @@ fn wrong_axes_and_values_are_named() {
 }
 
 /// Situation: a law's parameter, and riders beside none.
-/// Action: vary it by its name in braces, and by the law's whole word; vary riders with a delay.
+/// Action: vary it by its name in braces, and by the law's whole text; vary riders with a delay.
 /// Must hold: the same heights; a rider's delay is no error in the cell without a rider.
 #[test]
-fn a_word_in_braces_stands_for_the_axis() {
+fn a_name_in_braces_is_the_axis() {
     let bench = Bench::new(PROGRAM);
     let quick = "--speeds 4 --max-rate 12 --scan-step 2 --tolerance 1 --time-limit 1";
     let heights = |axes: &str| {
@@ -237,26 +241,30 @@ fn a_word_in_braces_stands_for_the_axis() {
     assert!(ridden.iter().all(|h| (1.0..12.0).contains(h)) && ridden[0] != ridden[1], "{ridden:?}");
 }
 
-/// Situation: a sweep that is not yet begun, and one that is done in part.
+/// Situation: a sweep that has not begun, and one that is partly done.
 /// Action: `--dry-run`.
-/// Must hold: every cell of the shard with its state; nothing is made.
+/// Must hold: every cell of the shard with its state; no file is made.
 #[test]
-fn a_dry_run_lists_the_cells_and_makes_nothing() {
+fn a_dry_run_lists_the_cells_and_writes_nothing() {
     let bench = Bench::new(PROGRAM);
     let line = SMALL.replace(" -q", "");
-    let said = must(&bench, &format!("{line} --out s --dry-run"));
-    assert_eq!(said.matches("to do  law=").count(), 4, "{said}");
-    assert!(said.contains("4 of 4 cells to do, 2 speeds each: about "), "{said}");
+    let output = must(&bench, &format!("{line} --out s --dry-run"));
+    assert_eq!(output.matches("to do  law=").count(), 4, "{output}");
+    assert!(output.contains("4 of 4 cells to do, 2 speeds each: about "), "{output}");
     assert_eq!(bench.files(), [""; 0]);
     must(&bench, &format!("{line} --out s --shard 1/2 -q"));
-    let said = must(&bench, &format!("{line} --out s --dry-run"));
-    assert_eq!((said.matches("to do  law=").count(), said.matches("done   law=").count()), (2, 2), "{said}");
+    let output = must(&bench, &format!("{line} --out s --dry-run"));
+    assert_eq!(
+        (output.matches("to do  law=").count(), output.matches("done   law=").count()),
+        (2, 2),
+        "{output}"
+    );
 }
 
-/// Situation: axes of numbers with a unit and of words.
+/// Situation: axes of numbers with a unit and of texts.
 /// Action: sweep, and read the NetCDF file.
-/// Must hold: dimensions axes and speed; the axes' values and the document's heights and areas, to the
-/// bit; units told.
+/// Must hold: dimensions axes and speed; the axes' values and the document's heights and areas, to the bit; units
+/// given.
 #[test]
 fn netcdf_has_the_documents_numbers() {
     let bench = Bench::new(PROGRAM);
@@ -287,8 +295,8 @@ fn netcdf_has_the_documents_numbers() {
     assert_eq!(file.read_var_f64("height").unwrap(), heights);
 }
 
-/// Situation: words made of the characters of ranges.
-/// Action: read them as an axis.
+/// Situation: texts made of the characters of ranges.
+/// Action: parse them as an axis.
 /// Must hold: no panic; values without repetition, or an error that names the key.
 #[test]
 fn any_text_is_an_axis_or_a_reason() {
@@ -313,8 +321,8 @@ fn any_text_is_an_axis_or_a_reason() {
 }
 
 /// Situation: ranges of N values, even and logarithmic, with and without a unit.
-/// Action: read them.
-/// Must hold: N rising values, both ends exact, steps or ratios alike within what rounding allows.
+/// Action: parse them.
+/// Must hold: N rising values, both ends exact, steps or ratios equal within rounding.
 #[test]
 fn ranges_of_n_values_are_even() {
     let range = (0.01..10.0_f64, 1.5..100.0_f64, 2..40_usize, any::<bool>(), select(&["", "ms"][..]));
@@ -327,12 +335,12 @@ fn ranges_of_n_values_are_even() {
             prop_assert_eq!((x.len(), found_unit), (n, unit));
             prop_assert_eq!((x[0], x[n - 1]), (from, to));
             for pair in x.windows(2) {
-                let (step, wanted) = if log {
+                let (step, expected) = if log {
                     (pair[1] / pair[0], factor.powf(1.0 / (n - 1) as f64))
                 } else {
                     (pair[1] - pair[0], (to - from) / (n - 1) as f64)
                 };
-                prop_assert!((step / wanted - 1.0).abs() < 2e-3, "{pair:?}");
+                prop_assert!((step / expected - 1.0).abs() < 2e-3, "{pair:?}");
             }
             Ok(())
         })

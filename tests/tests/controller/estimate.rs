@@ -1,4 +1,4 @@
-//! Flight cards: what the estimator makes of a nonlinear bicycle's sensors.
+//! The estimator on the sensors of a nonlinear bicycle.
 
 use control::estimate::{EstimateConfig, EstimateState, EstimatorInput, Motion, Place, Source, step};
 use proptest::prelude::*;
@@ -20,14 +20,14 @@ fn jason() -> EstimateConfig {
     EstimateConfig { roll_rate: Source::Estimate, ..estimator_parameters(&alone().bicycle) }
 }
 
-/// What the sensors are like.
+/// Properties of the sensors.
 #[derive(Clone, Copy, Debug)]
 struct Sensors {
     bias: f32,
     noise: Option<u64>,
     accel: bool,
     steer: bool,
-    /// Seconds of straight riding before.
+    /// Duration of straight riding before \[s\].
     before_s: usize,
 }
 
@@ -42,14 +42,14 @@ struct Errors {
     yaw_rate: f64,
     pitch: f64,
     steer_rate: f64,
-    /// Largest roll angle there was.
+    /// Largest roll angle.
     reached: f64,
     /// Least distance between the roll's error and its bound.
     margin: f64,
     last: Motion,
 }
 
-/// The estimator along on a ride under the law h, judged from the disturbance on.
+/// The estimator on a ride under the law h, evaluated from the disturbance on.
 fn estimated(config: &EstimateConfig, sensors: Sensors, start: Start) -> Errors {
     estimated_in(&assisted(H), config, sensors, start)
 }
@@ -91,9 +91,10 @@ fn estimated_in(conditions: &Conditions, config: &EstimateConfig, sensors: Senso
     errors
 }
 
-/// Situation: any attitude and motion of any shipped bicycle, the IMU anywhere in the frame. Action:
-/// differentiate the exact motion. What an accelerometer feels sideways must be what the estimator
-/// takes it for, and roll and yaw rate must follow from the gyro and the pitch.
+/// Situation: any attitude and motion of any shipped bicycle, the IMU anywhere in the frame.
+/// Action: differentiate the exact motion.
+/// Must hold: the estimator's lateral specific force is that of the accelerometer, and its roll and yaw rate follow
+/// from the gyro and the pitch.
 #[test]
 fn the_kinematics_are_exact() {
     let place = Place { forward_m: 0.31, up_m: 0.87 };
@@ -124,8 +125,9 @@ fn the_kinematics_are_exact() {
         .unwrap_or_else(|e| panic!("{e}"));
 }
 
-/// Situation: every shipped bicycle. Action: compare the fitted pitch with the exact one over the
-/// attitudes of ordinary riding. It must be near, and much better than no pitch at all.
+/// Situation: every shipped bicycle.
+/// Action: compare the fitted pitch with the exact one over the attitudes of ordinary riding.
+/// Must hold: it is near, and much better than no pitch at all.
 #[test]
 fn the_pitch_fits_every_bicycle() {
     for bicycle in all_shipped() {
@@ -158,15 +160,16 @@ fn the_pitch_fits_every_bicycle() {
     }
 }
 
-/// Held at a roll angle, standing.
+/// At rest at a roll angle.
 fn leaning(roll: f64) -> EstimatorInput {
     let (s, c) = roll.sin_cos();
     let accel = [0.0, -9.81 * s as f32, -9.81 * c as f32];
     EstimatorInput { accel_m_s2: Some(accel), elapsed_us: 1000, ..EstimatorInput::default() }
 }
 
-/// Situation: rides inside the basin of h and at its border, exact sensors. Action: estimate from the
-/// first instant. Roll angle, rates and pitch must be right but for the pitch's fit.
+/// Situation: rides inside the basin of h and at its border, exact sensors.
+/// Action: estimate from the first instant.
+/// Must hold: roll angle, rates and pitch are right except for the error of the pitch's fit.
 #[test]
 fn exact_sensors_give_the_exact_motion() {
     let config = jason();
@@ -181,9 +184,11 @@ fn exact_sensors_give_the_exact_motion() {
     }
 }
 
-/// Situation: the same rides with a gyro bias of 0.05 rad/s and the noise of a consumer IMU, after five
-/// seconds of straight riding. Action: estimate. The bias must be found, the roll angle be good, the
-/// stated bound cover its error and be no more than a few times what is needed.
+/// Situation: the same rides with a gyro bias of 0.05 rad/s and the noise of a consumer IMU, after five seconds of
+/// straight riding.
+/// Action: estimate.
+/// Must hold: the bias is found, the roll angle is good, the stated bound covers its error and is no more than a few
+/// times the necessary one.
 #[test]
 fn bias_and_noise_leave_a_useful_roll_angle() {
     let config = jason();
@@ -200,10 +205,11 @@ fn bias_and_noise_leave_a_useful_roll_angle() {
     }
 }
 
-/// Situation: the same without accelerometer, and without steer sensor. Action: estimate. Both must
-/// cost accuracy, neither may break it, and the bound must still cover the error.
+/// Situation: the same without accelerometer, and without steer sensor.
+/// Action: estimate.
+/// Must hold: both cost accuracy, neither breaks it, and the bound still covers the error.
 #[test]
-fn fewer_sensors_cost_accuracy_and_say_so() {
+fn fewer_sensors_widen_the_error_bound() {
     let config = jason();
     for (v, kick) in [(2.0, 7.3), (3.5, 4.0), (5.0, 8.2), (7.5, 7.0)] {
         let whole = estimated(&config, REAL, knock(v, kick));
@@ -217,10 +223,11 @@ fn fewer_sensors_cost_accuracy_and_say_so() {
     }
 }
 
-/// Situation: standing, without accelerometer, nothing that shows the roll angle. Action: wait. The
-/// bound must only grow, to the point of saying nothing.
+/// Situation: standing, without accelerometer, nothing that shows the roll angle.
+/// Action: wait.
+/// Must hold: the bound only grows, until it contains every angle.
 #[test]
-fn without_anything_to_see_the_bound_grows() {
+fn without_measurements_the_bound_grows() {
     let config = jason();
     let conditions = assisted(H);
     let b = &conditions.bicycle;
@@ -241,8 +248,9 @@ fn without_anything_to_see_the_bound_grows() {
     assert!(last > 1.0, "{last}");
 }
 
-/// Situation: standing still before the ride, every gyro axis with a bias. Action: wait two seconds.
-/// All three biases must be found; with a gyro that moves more than any bias none may be invented.
+/// Situation: standing still before the ride, every gyro axis with a bias.
+/// Action: wait two seconds.
+/// Must hold: all three biases are found; with a gyro that moves more than any bias none is found.
 #[test]
 fn standing_still_shows_every_bias() {
     let config = jason();
@@ -251,18 +259,18 @@ fn standing_still_shows_every_bias() {
         let input = EstimatorInput { gyro_rad_s: gyro, ..leaning(0.1) };
         (0..4000).map(|_| step(&config, &mut state, &input)).last().expect("steps")
     };
-    let wanted = [0.04, -0.02, 0.03];
-    let m = found(wanted);
-    for (bias, wanted) in m.gyro_bias_rad_s.iter().zip(wanted) {
-        assert!((bias - wanted).abs() < 0.002, "{:?}", m.gyro_bias_rad_s);
+    let expected = [0.04, -0.02, 0.03];
+    let m = found(expected);
+    for (bias, expected) in m.gyro_bias_rad_s.iter().zip(expected) {
+        assert!((bias - expected).abs() < 0.002, "{:?}", m.gyro_bias_rad_s);
     }
     assert!((m.roll_rad - 0.1).abs() < 0.01 && m.roll_rate_rad_s.abs() < 0.002, "{m:?}");
     assert_eq!(found([0.0, 0.0, 0.2]).gyro_bias_rad_s[1..], [0.0, 0.0]);
 }
 
-/// Situation: a steer angle that sweeps at a constant rate, from an encoder of 13 bits. Action:
-/// estimate the rate from the angle alone, from both, from the rate alone. The lag must be the stated
-/// one, the quantisation small, and a rate sensor must leave no lag.
+/// Situation: a steer angle that sweeps at a constant rate, from an encoder of 13 bits.
+/// Action: estimate the rate from the angle alone, from both, from the rate alone.
+/// Must hold: the lag is the stated one, the quantisation small, and with a rate sensor there is no lag.
 #[test]
 fn steer_rate_of_an_encoder() {
     let config = EstimateConfig { steer_lag_s: 0.01, ..jason() };
@@ -298,8 +306,9 @@ fn steer_rate_of_an_encoder() {
     assert!((rate - 0.1).abs() < 0.001, "{rate}");
 }
 
-/// Situation: the published conditions, roll rate by the gyro's x axis. Action: any finite gyro value.
-/// It must come out with unchanged bits.
+/// Situation: the published conditions, roll rate by the gyro's x axis.
+/// Action: any finite gyro value.
+/// Must hold: the output has the same bits.
 #[test]
 fn the_gyro_passes_with_unchanged_bits() {
     let config = EstimateConfig::default();
@@ -361,8 +370,10 @@ fn numbers(m: &Motion) -> [f32; 12] {
 }
 
 proptest! {
-    /// Situation: anything at all, for a while. Action: step. Every number must be finite, the roll
-    /// angle within a quarter turn, the bound between nothing and everything.
+    /// Situation: any inputs, for a while.
+    /// Action: step.
+    /// Must hold: every number is finite, the roll angle within a quarter turn, the bound between zero and its
+    /// maximum.
     #[test]
     fn every_motion_is_finite(sequence in proptest::collection::vec(any_input(), 1..60), own in any::<bool>()) {
         let config = if own { jason() } else { EstimateConfig::default() };
@@ -375,8 +386,9 @@ proptest! {
         }
     }
 
-    /// Situation: any motion and its mirror image. Action: step both. Everything sideways must change
-    /// its sign, everything else stay, to the bit.
+    /// Situation: any motion and its mirror image.
+    /// Action: step both.
+    /// Must hold: all lateral quantities change their sign, all others are equal, to the bit.
     #[test]
     fn left_mirrors_right(sequence in proptest::collection::vec(any_input(), 1..60)) {
         let config = jason();
@@ -399,8 +411,9 @@ proptest! {
     }
 }
 
-/// Situation: a gap in time longer than the estimator bridges. Action: step. The roll angle must be
-/// unknown again, the biases that standing still has shown kept.
+/// Situation: a gap in time longer than the estimator bridges.
+/// Action: step.
+/// Must hold: the roll angle is unknown again, the biases found at standstill are unchanged.
 #[test]
 fn a_gap_makes_the_roll_angle_unknown() {
     let config = jason();

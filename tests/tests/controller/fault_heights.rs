@@ -1,24 +1,25 @@
-//! Flight card: what a fault costs, as the height of the basin. The table is that of docs/safety.md.
+//! Effect of each fault on the height of the basin. The table is that of docs/safety.md.
 
 use rayon::prelude::*;
 use sim_host::basin::{Axis, Search, border};
 use sim_host::plant::{Fault, Plant};
 use sim_host::ride::{Assist, Conditions, Ride, rides};
-use tests::fault_cards::{CARDS, product, smart};
+use tests::fault_reactions::{FAULT_REACTIONS, product, smart};
 use tests::sets::every;
 
 /// The table's speeds \[m/s\].
 const SPEEDS: [f64; 5] = [2.0, 3.0, 4.3, 6.0, 7.3];
-/// A height lies within this of the stated one, each as a part of the height without assist: 0.5 % of rounding, the rest
-/// is what the border's search leaves open.
+/// Tolerance of a stated height, as a part of the height without assist: 0.5 % of rounding, the rest for the
+/// tolerance of the border's search.
 const WITHIN: f64 = 0.02;
 /// Below this a reason is stated \[%\].
 const LEAST: f64 = 90.0;
 
-/// A row of the table: faults that cost the same.
+/// A row of the table: faults with the same heights.
 struct Row {
     faults: Vec<&'static str>,
-    /// Heights in % of that without assist at [`SPEEDS`]; the fault beginning when it says, and with the disturbance.
+    /// Heights in % of that without assist at [`SPEEDS`]; the fault beginning at its own time, and with the
+    /// disturbance.
     heights: [Vec<f64>; 2],
     reason: &'static str,
 }
@@ -61,7 +62,7 @@ fn height(conditions: &Conditions, speed: f64) -> f64 {
     border(conditions, &search, speed).upper
 }
 
-/// Whether the height is `stated`, give or take `within`: of six rides evenly up to it none falls, one just beyond does.
+/// Whether the height is `stated`, to `within`: of six rides evenly up to it none falls, one just beyond does.
 fn is(stated: f64, within: f64, conditions: &Conditions, speed: f64) -> bool {
     let below = (1..=6).map(|i| (stated - within) * f64::from(i) / 6.0);
     let starts: Vec<_> =
@@ -70,11 +71,12 @@ fn is(stated: f64, within: f64, conditions: &Conditions, speed: f64) -> bool {
     fell == [false, false, false, false, false, false, true]
 }
 
-/// Situation: the smart old rider with what is flashed, and nothing or one thing broken. Action: find how large a blow to the
-/// handlebar he outlasts, as a part of what he outlasts without assist. Must hold: it is what the table says, from a few rides
-/// about it, by default for every sixth fault; every fault of the cards is in the table; below 90 % a reason is stated, above none.
+/// Situation: the smart old rider with the flashed configuration, and one fault or none.
+/// Action: find the largest blow to the handlebar without a fall, as a part of that without assist.
+/// Must hold: it is that of the table, from a few rides about it, by default for every sixth fault; every fault of
+/// the fault tests is in the table; below 90 % a reason is stated, above none.
 #[test]
-fn a_fault_costs_what_the_table_says() {
+fn heights_with_faults_are_as_documented() {
     let rows = rows();
     let row_of = |name: &str| {
         let mut found = rows.iter().filter(|row| row.faults.contains(&name));
@@ -85,14 +87,15 @@ fn a_fault_costs_what_the_table_says() {
     let listed = bases.iter().map(|base| format!("{base:.1}")).collect::<Vec<_>>().join(", ");
     assert!(section().contains(&format!("{listed} rad/s")), "without assist: {listed} rad/s");
     let mut names = vec!["none"];
-    names.extend(CARDS.iter().map(|card| card.0));
+    names.extend(FAULT_REACTIONS.iter().map(|reaction| reaction.0));
     let ridden: Vec<_> = every(6, &names).collect();
     let mut wrong: Vec<String> = ridden
         .par_iter()
         .filter_map(|name| {
             let (row, _) = row_of(name);
-            let card = CARDS.iter().find(|card| card.0 == **name);
-            let conditions = [None, Some(0.0)].map(|from_s| faulty(card.map(|card| card.fault(from_s))));
+            let reaction = FAULT_REACTIONS.iter().find(|reaction| reaction.0 == **name);
+            let conditions =
+                [None, Some(0.0)].map(|from_s| faulty(reaction.map(|reaction| reaction.fault(from_s))));
             let right = row.is_some_and(|row| {
                 conditions.iter().zip(&row.heights).all(|(conditions, stated)| {
                     let mut cells = SPEEDS.iter().zip(stated).zip(&bases);
@@ -126,8 +129,8 @@ fn a_fault_costs_what_the_table_says() {
             wrong.push(format!("{:?}: a reason belongs below {LEAST} % and only there", row.faults));
         }
         for fault in row.faults.iter().filter(|fault| !names.contains(fault)) {
-            wrong.push(format!("`{fault}` is no card"));
+            wrong.push(format!("`{fault}` is no fault of the tests"));
         }
     }
-    assert!(wrong.is_empty(), "docs/safety.md should say:\n{}", wrong.join("\n"));
+    assert!(wrong.is_empty(), "docs/safety.md should have:\n{}", wrong.join("\n"));
 }

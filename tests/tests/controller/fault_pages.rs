@@ -9,9 +9,11 @@ fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../docs/faults")
 }
 
-/// Situation: the numbers as they were given out. Action: compare. Must hold: unchanged; new ones come after.
+/// Situation: the published numbers.
+/// Action: compare.
+/// Must hold: unchanged; new ones come after.
 #[test]
-fn numbers_are_for_ever() {
+fn published_numbers_never_change() {
     let given = [
         (Cause::GyroLost, 1),
         (Cause::AccelLost, 5),
@@ -39,9 +41,11 @@ fn numbers_are_for_ever() {
     assert!(CAUSES.iter().enumerate().all(|(i, c)| usize::from(c.code()) == i + 1));
 }
 
-/// Situation: sets of causes. Action: make, join, list. Must hold: what was put in comes out, by rising number.
+/// Situation: sets of causes.
+/// Action: make, join, list.
+/// Must hold: the listed causes are those inserted, by rising number.
 #[test]
-fn a_set_gives_back_what_it_got() {
+fn a_set_lists_its_causes() {
     let set = Causes::all(&[Cause::PathLost, Cause::GyroLost]);
     assert_eq!(set.iter().collect::<Vec<_>>(), [Cause::GyroLost, Cause::PathLost]);
     assert!(set.has(Cause::GyroLost) && !set.has(Cause::GyroRange) && !set.is_empty());

@@ -1,5 +1,4 @@
-//! Flight cards: the laws beyond those of the thesis, and what may be asked of a law when the speed is not
-//! certain.
+//! The laws beyond those of the thesis, and the gain at an uncertain speed.
 
 use control::law::{LAWS, LawError};
 use control::param::{Checker, ParamVisitor};
@@ -31,7 +30,7 @@ fn any_law() -> impl Strategy<Value = Law> {
     ]
 }
 
-/// What rounding may do to a gain: the terms of f are up to this large.
+/// Effect of rounding on a gain: the terms of f are up to this large.
 fn rounding(v: f32, gain: f32) -> f32 {
     4e-7 * (0.88 * v * v + 12.0 * v.abs() + 41.0 + gain.abs())
 }
@@ -39,10 +38,10 @@ fn rounding(v: f32, gain: f32) -> f32 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
-    /// Situation: a speed known to lie between two, any law.
-    /// Action: ask for the gain towards zero; look at a thousand speeds between.
-    /// Must hold: no gain between is smaller or of the other sign; and it is the least there is, not less;
-    /// the order of the two does not matter; one speed twice gives the gain itself, to the bit.
+    /// Situation: a speed interval, any law.
+    /// Action: compute the gain towards zero; evaluate a thousand speeds in the interval.
+    /// Must hold: no gain in the interval is smaller or of the other sign; and it is the least of them, not less; the
+    /// order of the two does not matter; one speed twice gives the gain itself, to the bit.
     #[test]
     fn a_wrong_speed_never_raises_the_gain(law in any_law(), a in -12.0_f32..14.0, width in 0.0_f32..9.0) {
         let b = a + width;
@@ -66,10 +65,10 @@ proptest! {
 }
 
 /// Situation: f, whose gain is least at 6.8 m/s; a table with a dip; h, which changes sign at 7.5 m/s.
-/// Action: ask between speeds on both sides.
-/// Must hold: what is inside counts, not only the ends.
+/// Action: evaluate between speeds on both sides.
+/// Must hold: the gains inside the interval count, not only those at its ends.
 #[test]
-fn what_lies_between_counts() {
+fn the_gains_inside_the_interval_count() {
     assert!((Law::F.gain_towards_zero(6.0, 7.5) - 0.0909).abs() < 1e-4);
     assert!(Law::F.gain(6.0_f32) > 0.6 && Law::F.gain(7.5_f32) > 0.4);
     let dip = Law::Table(GainSchedule::new(&[(0.0, 9.0), (3.0, 2.0), (5.0, 8.0)]).expect("valid"));
@@ -82,7 +81,7 @@ fn what_lies_between_counts() {
 
 /// Situation: the balance assist as published: 0 at rest, 3.2 kappa at 1.5 m/s, 0 from 4.7 m/s.
 /// Action: evaluate in both number types.
-/// Must hold: those values, straight lines between, nothing backwards.
+/// Must hold: those values, straight lines between, zero when rolling backwards.
 #[test]
 fn the_balance_assist_is_as_published() {
     for kappa in [3.9_f32, 5.2] {
@@ -108,10 +107,10 @@ fn the_balance_assist_is_as_published() {
     assert_eq!(out_of_range.to_string(), "law.balance-assist.kappa = 20.5 is outside 0.001 to 20");
 }
 
-/// Situation: every bicycle that ships and has a capsize speed, hands off.
+/// Situation: every shipped bicycle that has a capsize speed, hands off.
 /// Action: add the capsize term, then the same with the other sign.
-/// Must hold: a lean to the right is answered to the right; with the gain of the steer-by-wire bicycle and
-/// enough of it capsize is stable up to 20 m/s, and with the other sign the fall is faster than alone.
+/// Must hold: a lean to the right gives a torque to the right; with the gain of the steer-by-wire bicycle and enough
+/// of it capsize is stable up to 20 m/s, and with the other sign the fall is faster than without assist.
 #[test]
 fn the_capsize_term_steers_into_the_lean() {
     let mut bicycles = 0;
@@ -140,21 +139,21 @@ fn the_capsize_term_steers_into_the_lean() {
 }
 
 /// Situation: the capsize term off, below its speed, and out of range.
-/// Action: ask for its torque; check it.
+/// Action: compute its torque; check it.
 /// Must hold: zero; the parameter, value and range are named.
 #[test]
-fn the_capsize_term_is_off_unless_asked_for() {
+fn the_capsize_term_is_off_by_default() {
     assert!(!Capsize::default().is_on());
     assert_eq!(Capsize::default().torque(20.0, 0.5), 0.0);
     let on = Capsize { k_c: 0.7, v_max_m_s: 6.5 };
     assert_eq!([on.torque(6.5, 0.5), on.torque(-9.0, 0.5)], [0.0, 0.0]);
     assert_eq!(on.torque(8.5, 0.5), 0.7);
-    let refused = Capsize { k_c: 21.0, ..on }.validate().expect_err("too large");
-    assert_eq!(refused.to_string(), "capsize.k_c = 21 is outside 0 to 20");
+    let rejected = Capsize { k_c: 21.0, ..on }.validate().expect_err("too large");
+    assert_eq!(rejected.to_string(), "capsize.k_c = 21 is outside 0 to 20");
     assert!(Capsize { v_max_m_s: f32::NAN, ..on }.validate().is_err());
 }
 
-/// Writes a law's values down and reads them into another.
+/// Records a law's values, or sets them in another.
 #[derive(Default)]
 struct Tape {
     values: std::collections::VecDeque<f32>,
@@ -192,11 +191,11 @@ impl ParamVisitor for Tape {
 
 proptest! {
     /// Situation: any law, and another one.
-    /// Action: show the first to a visitor that writes its parameters down, and the other to one that sets them from that.
+    /// Action: visit the parameters of the first with a visitor that records them, and of the other with one that sets them.
     /// Must hold: the first is unchanged, the other becomes the first; of a table only the kind, since a table keeps its
-    /// points. The checker of ranges accepts a law, as `validate` does.
+    /// points. The range check accepts a law, as `validate` does.
     #[test]
-    fn the_parameters_are_all_there_is_of_a_law_but_a_tables_points(law in any_law(), other in any_law()) {
+    fn the_parameters_define_a_law_except_the_points_of_a_table(law in any_law(), other in any_law()) {
         let (mut from, mut to, mut tape) = (law.clone(), other.clone(), Tape::default());
         from.visit_params(&mut tape);
         prop_assert_eq!(&from, &law);
@@ -216,9 +215,9 @@ proptest! {
 }
 
 /// Situation: every declared law, its parameter 1.5 where it has one.
-/// Action: ask for its number, write it and read it back.
-/// Must hold: the number is its place in the declarations and the text gives the same law; a table, which needs points, is no
-/// law by its name.
+/// Action: get its number, write it as text and parse it.
+/// Must hold: the number is its place in the declarations and the text gives the same law; a table, which needs
+/// points, is no law by its name.
 #[test]
 fn every_declared_law_is_read_by_its_name() {
     for (number, spec) in LAWS.iter().enumerate() {
@@ -235,10 +234,10 @@ fn every_declared_law_is_read_by_its_name() {
 }
 
 /// Situation: texts that are not a law.
-/// Action: read them.
-/// Must hold: the reason is the one that applies.
+/// Action: parse them.
+/// Must hold: the error is the applicable one.
 #[test]
-fn a_text_that_is_no_law_has_its_reason() {
+fn an_invalid_law_has_its_reason() {
     let read = |text: &str| text.parse::<Law>().expect_err(text);
     for text in ["", "H", "h ", "table", "table:1", "cl3:2"] {
         assert_eq!(read(text), LawError::Unknown, "`{text}`");

@@ -4,8 +4,9 @@ use control::{Config, Law};
 use proptest::prelude::*;
 use sim_host::parameters::{departing, list, set};
 
-/// Situation: a parameter of each kind. Action: set it. Must hold: it has the value; a wrong name, value or
-/// range is refused with what is allowed.
+/// Situation: a parameter of each kind.
+/// Action: set it.
+/// Must hold: it has the value; a wrong name, value or range is rejected with the allowed ones.
 #[test]
 fn each_kind_is_set() {
     let mut config = Config::thesis(Law::None);
@@ -43,10 +44,11 @@ fn each_kind_is_set() {
     }
 }
 
-/// Situation: the flashed configuration. Action: set what departs from the published one, on that. Must
-/// hold: the same but for the law.
+/// Situation: the flashed configuration.
+/// Action: set its differences from the published one, on that.
+/// Must hold: the same except for the law.
 #[test]
-fn a_list_makes_the_configuration_again() {
+fn a_list_reproduces_the_configuration() {
     let (product, mut config) = (Config::product(), Config::thesis(Law::H { cut: true }));
     let departing = departing(&product, &config);
     assert!((30..200).contains(&departing.len()), "{}", departing.len());
@@ -57,7 +59,9 @@ fn a_list_makes_the_configuration_again() {
 }
 
 proptest! {
-    /// Situation: any texts. Action: set. Must hold: an answer, never a panic.
+    /// Situation: any texts.
+    /// Action: set.
+    /// Must hold: a result or an error, never a panic.
     #[test]
     fn any_text_is_answered(key in "\\PC*", value in "\\PC*") {
         let mut config = Config::thesis(Law::None);

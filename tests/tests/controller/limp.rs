@@ -1,11 +1,11 @@
-//! Flight card: what the part of the torque that is left in limp mode is worth, and what it is not good for.
+//! Benefit and risk of the torque that limp mode leaves.
 
 use control::{Config, GainSchedule, Law};
 use rayon::prelude::*;
 use sim_host::basin::{Axis, Search, border};
 use sim_host::plant::Plant;
 use sim_host::ride::Conditions;
-use tests::fault_cards::{product, smart};
+use tests::fault_reactions::{product, smart};
 use tests::sets::every;
 
 /// Forward speeds \[m/s\].
@@ -18,8 +18,8 @@ fn h_times(factor: f32) -> Law {
     Law::Table(GainSchedule::new(&points).unwrap())
 }
 
-/// Mean height over [`SPEEDS`] \[rad/s\] of the smart old rider with this law, this sensor lost with the blow, and this part of
-/// the torque left in limp mode.
+/// Mean height over [`SPEEDS`] \[rad/s\] of the smart old rider with this law, this sensor lost with the blow, and
+/// this part of the torque left in limp mode.
 fn mean_height(law: &Law, lost: &str, part: f32) -> f64 {
     let mut config = Config { law: law.clone(), ..product() };
     config.limits.limp_fraction = Some(part);
@@ -42,11 +42,13 @@ fn heights(factor: f32, lost: &str) -> [f64; 3] {
     heights
 }
 
-/// Situation: limping, the steer angle or the front wheel's speed lost; the gain right, twice and half what it should be. Action:
-/// leave none, half and all of the torque. Must hold: more torque is no less height; half leaves most of what all of it is
-/// worth. By default with the right gain only.
+/// Situation: limp mode, the steer angle or the front wheel's speed lost; the gain right, twice and half the right
+/// one.
+/// Action: leave none, half and all of the torque.
+/// Must hold: more torque is no less height; half gives most of the benefit of all of it. By default with the right
+/// gain only.
 #[test]
-fn half_the_torque_leaves_most_of_the_use() {
+fn half_the_torque_leaves_most_of_the_benefit() {
     let cases = [
         (1.0, "steer:missing", 0.6, 0.75),
         (2.0, "steer:missing", 0.55, 0.75),
@@ -61,10 +63,11 @@ fn half_the_torque_leaves_most_of_the_use() {
     }
 }
 
-/// Situation: limping, and the gain has the wrong sign. Action: the same. Must hold: half the torque is no help: the blows that
-/// fell him ask for less than that.
+/// Situation: limp mode, and the gain has the wrong sign.
+/// Action: the same.
+/// Must hold: half the torque is no help: the blows that cause a fall need less torque than that.
 #[test]
-fn half_the_torque_does_not_make_up_for_a_wrong_sign() {
+fn half_the_torque_is_no_remedy_for_a_wrong_sign() {
     let [none, half, all] = heights(-1.0, "steer:missing");
     assert!((half - all).abs() < 0.1 && half < none + 0.1, "{none} {half} {all}");
 }

@@ -1,17 +1,17 @@
-//! Flight cards: a bicycle with a gyro and one wheel's speed, the least that the law needs.
+//! A bicycle with a gyro and one wheel's speed, the minimum for the law.
 
 use control::{Cause, Config, Mode};
 use sim_host::parameters::set;
 use sim_host::ride::{Conditions, ScheduleSpeed, Start, TracePoint};
-use tests::fault_cards::{product, smart};
-use tests::noticed::{Noticed, noticed, of_the_fault};
+use tests::detection::{Detection, detect, of_the_fault};
+use tests::fault_reactions::{product, smart};
 
 const KNOCK: Start = Start { speed_m_s: 4.0, steer_rate_rad_s: 1.0, roll_rate_rad_s: 0.0 };
-/// When the fault begins \[s\].
+/// Beginning of the fault \[s\].
 const FROM_S: f64 = 0.3;
 const WHEELS: [&str; 2] = ["rear", "front"];
 
-/// What is flashed, with a gyro and this wheel alone.
+/// The flashed configuration with a gyro and this wheel only.
 fn lone(wheel: &str) -> Config {
     let mut config = product();
     let other = if wheel == "rear" { "front_wheel" } else { "rear_wheel" };
@@ -22,28 +22,29 @@ fn lone(wheel: &str) -> Config {
     config
 }
 
-fn ridden(wheel: &str, fault: &str) -> Noticed {
+fn ridden(wheel: &str, fault: &str) -> Detection {
     let fault = format!("{fault}@{FROM_S}s").replace("wheel", &format!("{wheel}-wheel"));
     let schedule_speed = if wheel == "rear" { ScheduleSpeed::Rear } else { ScheduleSpeed::Front };
-    noticed(&fault, KNOCK, |plant| Conditions {
+    detect(&fault, KNOCK, |plant| Conditions {
         time_limit_s: 6.0,
         schedule_speed,
         ..smart(lone(wheel), plant)
     })
 }
 
-/// The largest torque from so long after the fault on \[N m\].
+/// The largest torque from this time after the fault on.
 fn torque_nm(trace: &[TracePoint], after_s: f64) -> f64 {
     let late = trace.iter().filter(|p| p.t > FROM_S + after_s);
     late.map(|p| p.torque.abs()).fold(0.0, f64::max)
 }
 
-/// Situation: either wheel with the gyro, a knock, nothing broken (the accelerometer that dies is not fitted). Action: ride.
+/// Situation: either wheel with the gyro, a knock, no fault (the accelerometer that fails is not fitted).
+/// Action: ride.
 /// Must hold: engaged to the end, no cause, the torque flows.
 #[test]
-fn it_is_enough_to_ride() {
+fn gyro_and_one_wheel_are_enough_to_ride() {
     for wheel in WHEELS {
-        let Noticed { first, fell, trace } = ridden(wheel, "accel:missing");
+        let Detection { first, fell, trace } = ridden(wheel, "accel:missing");
         assert!(first.is_none() && !fell, "{wheel}: {first:?}");
         assert!(trace.iter().all(|p| p.mode == Mode::Engaged as u8 && p.causes == 0), "{wheel}");
         let peak_nm = torque_nm(&trace, -FROM_S);
@@ -51,10 +52,12 @@ fn it_is_enough_to_ride() {
     }
 }
 
-/// Situation: the same. Action: gyro or wheel fall silent, say nonsense, jump, repeat themselves. Must hold: the sensor is named
-/// within its time; with the gyro it ends in a fault, with the wheel in limp mode, and either way no torque is left soon after.
+/// Situation: the same.
+/// Action: gyro or wheel stop sending, send invalid values, jump, repeat a sample.
+/// Must hold: the sensor is named within its time; with the gyro it ends in a fault, with the wheel in limp mode, and
+/// in both cases no torque is left soon after.
 #[test]
-fn a_sensor_that_breaks_is_named() {
+fn a_sensor_that_fails_is_named() {
     for wheel in WHEELS {
         let [lost, range, jump] = match wheel {
             "rear" => [Cause::RearWheelLost, Cause::RearWheelRange, Cause::RearWheelJump],
@@ -71,11 +74,11 @@ fn a_sensor_that_breaks_is_named() {
             ("wheel:value=0", jump, Mode::Limp, 0.252),
             ("wheel:flip", jump, Mode::Limp, 0.252),
         ] {
-            let Noticed { first, trace, .. } = ridden(wheel, fault);
-            let first = first.unwrap_or_else(|| panic!("{wheel}, {fault}: not noticed"));
+            let Detection { first, trace, .. } = ridden(wheel, fault);
+            let first = first.unwrap_or_else(|| panic!("{wheel}, {fault}: not detected"));
             assert_eq!(first.causes, [cause], "{wheel}, {fault}");
             assert!((0.008..within_s).contains(&first.after_s), "{wheel}, {fault}: {first}");
-            let at = trace.iter().find(|p| !of_the_fault(p).is_empty()).expect("noticed");
+            let at = trace.iter().find(|p| !of_the_fault(p).is_empty()).expect("detected");
             assert_eq!(at.mode, mode as u8, "{wheel}, {fault}");
             let left_nm = torque_nm(&trace, within_s + 0.3);
             assert!(left_nm < 1e-6, "{wheel}, {fault}: {left_nm} N m");
@@ -83,23 +86,25 @@ fn a_sensor_that_breaks_is_named() {
     }
 }
 
-/// Situation: the same. Action: what nothing else on the bicycle can show: the wheel repeats its speed, drifts, says half of it;
-/// the gyro is reversed. Must hold: as docs/sensors.md says, the first two are never told, half of the speed is a jump and then
-/// believed, and a reversed gyro is not told before the bicycle falls; the torque stays within its limit.
+/// Situation: the same.
+/// Action: faults that no other sensor of the bicycle shows: the wheel repeats its speed, drifts, reads half of it;
+/// the gyro is reversed.
+/// Must hold: as docs/sensors.md states, the first two are never reported, half of the speed is a jump and then
+/// accepted, and a reversed gyro is not reported before the bicycle falls; the torque stays within its limit.
 #[test]
-fn what_one_sensor_alone_can_not_show() {
+fn faults_that_one_sensor_does_not_show() {
     for wheel in WHEELS {
         for fault in ["wheel:stuck", "wheel:drift=2/s"] {
-            let Noticed { first, fell, trace } = ridden(wheel, fault);
+            let Detection { first, fell, trace } = ridden(wheel, fault);
             assert!(first.is_none() && !fell, "{wheel}, {fault}: {first:?}");
             assert!((0.01..7.0).contains(&torque_nm(&trace, 0.0)), "{wheel}, {fault}");
         }
-        let Noticed { first, trace, .. } = ridden(wheel, "wheel:scale=0.5");
+        let Detection { first, trace, .. } = ridden(wheel, "wheel:scale=0.5");
         let jump = if wheel == "rear" { Cause::RearWheelJump } else { Cause::FrontWheelJump };
         assert_eq!(first.map(|first| first.causes), Some(vec![jump]), "{wheel}");
         let last = trace.last().expect("a ride");
         assert_eq!((last.mode, last.causes), (Mode::Engaged as u8, 0), "{wheel}");
-        let Noticed { first, fell, trace } = ridden(wheel, "gyro:flip");
+        let Detection { first, fell, trace } = ridden(wheel, "gyro:flip");
         assert!(fell && first.is_none_or(|first| first.roll_rad > 0.5), "{wheel}");
         assert!((1.0..7.001).contains(&torque_nm(&trace, 0.0)), "{wheel}");
     }

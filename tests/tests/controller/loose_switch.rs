@@ -1,9 +1,9 @@
-//! Flight cards: a rider's switch whose contact is loose, during a ride and after a fault.
+//! A rider's switch whose contact is loose, during a ride and after a fault.
 
 use control::Mode;
 use sim_host::plant::{Fault, Plant};
 use sim_host::ride::{Conditions, Start, TracePoint, traced};
-use tests::fault_cards::{product, smart};
+use tests::fault_reactions::{product, smart};
 
 const KNOCK: Start = Start { speed_m_s: 4.0, steer_rate_rad_s: 1.0, roll_rate_rad_s: 0.0 };
 
@@ -18,8 +18,9 @@ fn drives(p: &TracePoint) -> bool {
     p.mode == Mode::Engaged as u8 || p.mode == Mode::Limp as u8
 }
 
-/// Situation: engaged; the gyro fails for 40 ms, so that torque ends. Action: the held switch opens by itself: twice for
-/// 12 ms, for 1 ms ten times a second, for 0.3 s, for 0.44 s. Must hold: no torque from the fault on.
+/// Situation: engaged; the gyro fails for 40 ms, so that torque ends.
+/// Action: the held switch opens by itself: twice for 12 ms, for 1 ms ten times a second, for 0.3 s, for 0.44 s.
+/// Must hold: no torque from the fault on.
 #[test]
 fn a_loose_contact_never_engages_after_a_fault() {
     let openings: [Vec<String>; 4] = [
@@ -39,8 +40,9 @@ fn a_loose_contact_never_engages_after_a_fault() {
     }
 }
 
-/// Situation: the same fault. Action: the rider releases the switch for 1.5 s and presses it again. Must hold: standby,
-/// then engaged with the press, and to the end.
+/// Situation: the same fault.
+/// Action: the rider releases the switch for 1.5 s and presses it again.
+/// Must hold: standby, then engaged with the press, and to the end.
 #[test]
 fn a_deliberate_press_engages_after_a_fault() {
     let trace = ridden(&["gyro:missing@300ms..340ms", "engage:value=0@1s..2500ms"]);

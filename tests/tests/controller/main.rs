@@ -1,4 +1,4 @@
-//! Flight cards: the parts of the controller on the nonlinear bicycle.
+//! The parts of the controller on the nonlinear bicycle.
 
 mod dead_band;
 mod estimate;

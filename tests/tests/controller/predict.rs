@@ -1,4 +1,4 @@
-//! Flight cards: making up for late sensors and a slow actuator.
+//! Compensation of late sensors and a slow actuator.
 
 use control::Law;
 use control::estimate::predict::{PredictConfig, step};
@@ -20,7 +20,9 @@ fn any_motion() -> impl Strategy<Value = Motion> {
 }
 
 proptest! {
-    /// Situation: any motion. Action: predict with the default configuration. Every bit must pass.
+    /// Situation: any motion.
+    /// Action: predict with the default configuration.
+    /// Must hold: unchanged to the bit.
     #[test]
     fn off_changes_no_bit(now in any_motion()) {
         let ahead = step(&PredictConfig::default(), &now);
@@ -28,8 +30,10 @@ proptest! {
         prop_assert_eq!(ahead.roll_rad.to_bits(), now.roll_rad.to_bits());
     }
 
-    /// Situation: any motion and its mirror image. Action: predict. What is added must be mirrored to the
-    /// bit, finite, no more than allowed, and what a straight line gives where that is less.
+    /// Situation: any motion and its mirror image.
+    /// Action: predict.
+    /// Must hold: the correction is mirrored to the bit, finite, within its limit, and equal to linear extrapolation
+    /// where that is less.
     #[test]
     fn a_lead_is_bounded_and_mirrors(now in any_motion(), lead_s in 0.001_f32..0.1) {
         let config = PredictConfig { lead_s, ..PredictConfig::default() };
@@ -56,11 +60,12 @@ fn jason() -> (Geometry, LinearBicycle, EstimateConfig) {
     (b, LinearBicycle::new(&parameters), estimate)
 }
 
-/// Situation: sensors 30 ms late at 4.5 m/s, the law h. Action: search the border without and with a
-/// lead of the delay. The lead must win back most of what the delay costs; half a lead and one half
-/// longer must still win back more than half.
+/// Situation: sensors 30 ms late at 4.5 m/s, the law h.
+/// Action: search the border without and with a lead of the delay.
+/// Must hold: the lead regains most of the height lost to the delay; half a lead and one half longer still regain
+/// more than half.
 #[test]
-fn a_lead_wins_the_basin_back() {
+fn a_lead_regains_the_basin() {
     let (b, _, estimate) = jason();
     let law = Law::H { cut: false };
     let height = |sensors_ms, ahead| {
@@ -85,9 +90,10 @@ fn a_lead_wins_the_basin_back() {
     assert!((0.6..1.0).contains(&whole) && half > 0.4 && more > 0.6, "{half} {whole} {more}");
 }
 
-/// Situation: calm riding with the noise of a consumer IMU. Action: lead by 30 ms. The noise in the
-/// torque must grow, but not beyond what a rider would feel (half a newton metre) or a rate limit of
-/// 100 N m/s hold back half the time.
+/// Situation: calm riding with the noise of a consumer IMU.
+/// Action: lead by 30 ms.
+/// Must hold: the noise in the torque grows, but not beyond the threshold of a rider's perception (half a newton
+/// metre) or beyond a change that a rate limit of 100 N m/s limits half the time.
 #[test]
 fn a_lead_costs_noise() {
     let (b, _, estimate) = jason();
@@ -112,8 +118,9 @@ fn a_lead_costs_noise() {
     assert!(with.rms_nm_s > 1.5 * without.rms_nm_s && with.rms_nm_s < 3.0 * without.rms_nm_s, "{with:?}");
 }
 
-/// Situation: the linear bicycle of the comparison, a torque that changes all the while. Action: predict
-/// over 40 ms and then ride those with fine steps. Roll and roll rate must agree.
+/// Situation: the linear bicycle of the comparison, a continually changing torque.
+/// Action: predict over 40 ms and then integrate those with fine steps.
+/// Must hold: roll and roll rate agree.
 #[test]
 fn the_model_of_the_comparison_predicts_the_linear_bicycle() {
     let (_, bicycle, _) = jason();

@@ -1,4 +1,4 @@
-//! Flight cards: what is noticed with fewer sensors. The tables are those of docs/sensors.md.
+//! Detection of faults with fewer sensors. The tables are those of docs/sensors.md.
 
 use control::{Config, Mode};
 use rayon::prelude::*;
@@ -6,8 +6,8 @@ use sim_host::basin::basin;
 use sim_host::parameters::set;
 use sim_host::ride::{Conditions, ScheduleSpeed, Start};
 use tests::basins::{configured, search};
-use tests::fault_cards::{product, smart};
-use tests::noticed::{Noticed, noticed, of_the_fault, rows_of};
+use tests::detection::{Detection, detect, of_the_fault, rows_of};
+use tests::fault_reactions::{product, smart};
 
 const PAGE: &str = include_str!("../../../docs/sensors.md");
 /// The faults of the table's last columns.
@@ -21,7 +21,7 @@ struct Row<'a> {
     config: Config,
 }
 
-/// What is flashed with the options of a text, as `--set input.motor.fitted=off`.
+/// The flashed configuration with the options of a text, as `--set input.motor.fitted=off`.
 fn with(options: &str, mut config: Config) -> Config {
     let settings = options.split("--set ").skip(1);
     for setting in settings.map(|s| s.split(['`', ' ']).next().unwrap_or(s)) {
@@ -31,7 +31,7 @@ fn with(options: &str, mut config: Config) -> Config {
     config
 }
 
-/// The table's rows, each with what its options make of what is flashed.
+/// The table's rows, each with its configuration.
 fn rows() -> Vec<Row<'static>> {
     let mut rows: Vec<Row> = Vec::new();
     for line in rows_of(PAGE, "sets") {
@@ -46,21 +46,23 @@ fn rows() -> Vec<Row<'static>> {
     rows
 }
 
-/// The speed that schedules the rider's gains, and the law's where no other sensor is fitted: the only wheel's if one is missing.
+/// The speed that schedules the rider's gains, and the law's where no other sensor is fitted: that of the only wheel
+/// if one is missing.
 fn schedule(config: &Config) -> ScheduleSpeed {
     if config.input.front_wheel.fitted { ScheduleSpeed::Front } else { ScheduleSpeed::Rear }
 }
 
-fn ridden(config: &Config, fault: &str, speed_m_s: f64, time_limit_s: f64) -> Noticed {
+fn ridden(config: &Config, fault: &str, speed_m_s: f64, time_limit_s: f64) -> Detection {
     let start = Start { speed_m_s, steer_rate_rad_s: 1.0, roll_rate_rad_s: 0.0 };
     let schedule_speed = schedule(config);
-    noticed(fault, start, |plant| Conditions { time_limit_s, schedule_speed, ..smart(config.clone(), plant) })
+    detect(fault, start, |plant| Conditions { time_limit_s, schedule_speed, ..smart(config.clone(), plant) })
 }
 
-/// One cell: at both speeds the causes and the time from the fault, and whether the bicycle falls; once where they agree.
+/// One cell: at both speeds the causes and the time from the fault, and whether the bicycle falls; once where they
+/// agree.
 fn cell(config: &Config, fault: &str) -> String {
     let one = |speed| {
-        let Noticed { first, fell, .. } = ridden(config, &format!("{fault}@100ms"), speed, 10.0);
+        let Detection { first, fell, .. } = ridden(config, &format!("{fault}@100ms"), speed, 10.0);
         match (first, fell) {
             (None, false) => "-".into(),
             (None, true) => "falls".into(),
@@ -71,23 +73,25 @@ fn cell(config: &Config, fault: &str) -> String {
     if slow == fast { slow } else { format!("{slow} / {fast}") }
 }
 
-/// Situation: the smart old rider with each set of sensors of the table, a knock to the handlebar, one thing broken.
-/// Action: ride on. Must hold: what is told, how long after the fault, and who falls, are what the table says.
+/// Situation: the smart old rider with each set of sensors of the table, a knock to the handlebar, one fault.
+/// Action: ride on.
+/// Must hold: the causes, their time after the fault, and the falls are those of the table.
 #[test]
-fn each_set_notices_what_the_table_says() {
+fn detection_with_each_set_is_as_documented() {
     let rows = rows();
     let should: Vec<String> = rows
         .par_iter()
         .map(|row| {
-            let noticed: Vec<String> = FAULTS.par_iter().map(|fault| cell(&row.config, fault)).collect();
-            format!("| {} | {} |", row.cells[..3].join(" | "), noticed.join(" | "))
+            let detected: Vec<String> = FAULTS.par_iter().map(|fault| cell(&row.config, fault)).collect();
+            format!("| {} | {} |", row.cells[..3].join(" | "), detected.join(" | "))
         })
         .collect();
-    assert!(rows_of(PAGE, "sets") == should, "docs/sensors.md should say:\n{}", should.join("\n"));
+    assert!(rows_of(PAGE, "sets") == should, "docs/sensors.md should have:\n{}", should.join("\n"));
 }
 
-/// Situation: the bicycle alone with each set of sensors of the table. Action: find the basins over 1 to 7 m/s. Must hold:
-/// their areas beside that of the whole set are what the table says.
+/// Situation: the bicycle without a rider with each set of sensors of the table.
+/// Action: find the basins over 1 to 7 m/s.
+/// Must hold: their areas relative to that of the whole set are those of the table.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn each_set_has_the_basin_of_the_table() {
@@ -100,15 +104,16 @@ fn each_set_has_the_basin_of_the_table() {
     let rows = rows();
     let areas: Vec<f64> = rows.par_iter().map(|row| area(&row.config)).collect();
     assert!(areas[0] > 10.0, "{areas:?}");
-    let said: Vec<&str> = rows.iter().map(|row| row.cells[2]).collect();
+    let output: Vec<&str> = rows.iter().map(|row| row.cells[2]).collect();
     let should: Vec<String> = areas.iter().map(|a| format!("{:.0} %", 100.0 * a / areas[0])).collect();
-    assert_eq!(said, should);
+    assert_eq!(output, should);
 }
 
-/// Situation: the whole set, and for the only wheel that with the rear one alone, at 4 m/s after a knock. Action: each sensor
-/// falls silent. Must hold: cause, time and reaction are what the table says.
+/// Situation: the whole set, and for the only wheel that with the rear one alone, at 4 m/s after a knock.
+/// Action: each sensor stops sending.
+/// Must hold: cause, time and reaction are those of the table.
 #[test]
-fn a_lost_sensor_costs_what_the_table_says() {
+fn reactions_to_a_lost_sensor_are_as_documented() {
     const REAR: &str = "--set input.front_wheel.fitted=off --set input.wheel=rear";
     let cases = [
         ("gyro", "gyro", ""),
@@ -122,9 +127,9 @@ fn a_lost_sensor_costs_what_the_table_says() {
     ];
     let rows = rows_of(PAGE, "lost");
     for (name, sensor, options) in cases {
-        let Noticed { first, trace, .. } =
+        let Detection { first, trace, .. } =
             ridden(&with(options, product()), &format!("{sensor}:missing@300ms"), 4.0, 1.0);
-        let first = first.unwrap_or_else(|| panic!("{name} is not noticed"));
+        let first = first.unwrap_or_else(|| panic!("{name} is not detected"));
         let after_ms = (1e3 * first.after_s).round();
         let code = first.causes[0].code();
         let mode = trace.iter().find(|p| !of_the_fault(p).is_empty()).map(|p| p.mode);
@@ -132,10 +137,10 @@ fn a_lost_sensor_costs_what_the_table_says() {
         let row = rows.iter().find(|row| row.starts_with(&format!("| {name} |")));
         let row = row.unwrap_or_else(|| panic!("no row {name}"));
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-        let told = cells[2].starts_with(&format!("{code} after"))
+        let reported = cells[2].starts_with(&format!("{code} after"))
             || cells[2].starts_with("17 or 21") && [17, 21].contains(&code);
         assert!(
-            told && cells[2].ends_with(&format!("after {after_ms} ms")),
+            reported && cells[2].ends_with(&format!("after {after_ms} ms")),
             "{code} after {after_ms} ms: {row}"
         );
         assert!(cells[3].starts_with(mode), "{mode}: {row}");

@@ -1,4 +1,4 @@
-//! Flight cards: a balanced bicycle comes back to its path, and tracking is the weakest voice.
+//! A balanced bicycle returns to its path, and path tracking has the lowest priority.
 
 use control::Law;
 use control::law::path_tracking::{
@@ -26,7 +26,7 @@ struct Point {
     tracking: f64,
 }
 
-/// 12 s of the nonlinear bicycle, hands off, under the law within 7 N m and, if there is one, the track.
+/// 12 s of the nonlinear bicycle, hands off, under the law within 7 N m and, if given, path tracking.
 fn ride(speed: f64, from: PathError, track: Option<&PathTracking>) -> Vec<Point> {
     let b = Geometry::new(&bicycle());
     let mut state = State::upright(&b, speed);
@@ -60,7 +60,7 @@ fn ride(speed: f64, from: PathError, track: Option<&PathTracking>) -> Vec<Point>
     points
 }
 
-/// When the lateral error was last larger than 5 cm \[s\].
+/// Time at which the lateral error was last larger than 5 cm \[s\].
 fn settled(points: &[Point]) -> f64 {
     points.iter().rev().find(|p| p.lateral.abs() > 0.05).map_or(0.0, |p| p.t)
 }
@@ -69,11 +69,13 @@ fn extremes(points: &[Point], of: fn(&Point) -> f64) -> (f64, f64) {
     points.iter().map(of).fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)))
 }
 
-/// Situation: the nonlinear bicycle upright, 0.5 m to the right of its path and along it, 3 to 6 m/s, the law in the loop, hands off.
-/// Action: ride with tracking. Must hold: it first goes further away (a bicycle must countersteer), is within 5 cm
-/// after a time that is shorter the faster it goes, overshoots by no more than 12 cm, asks for less than 1 N m.
+/// Situation: the nonlinear bicycle upright, 0.5 m to the right of its path and along it, 3 to 6 m/s, the law in the
+/// loop, hands off.
+/// Action: ride with path tracking.
+/// Must hold: it first moves further away (a bicycle must countersteer), is within 5 cm after a time that is shorter
+/// the faster it goes, overshoots by no more than 12 cm, and requests less than 1 N m.
 #[test]
-fn an_offset_is_ridden_away() {
+fn a_lateral_offset_decays() {
     for (speed, within_s) in [(3.0, 3.0..7.5), (4.0, 2.5..6.5), (5.0, 2.5..6.0), (6.0, 2.0..5.5)] {
         let points =
             ride(speed, PathError { heading_rad: 0.0, lateral_m: 0.5 }, Some(&PathTracking::default()));
@@ -86,10 +88,11 @@ fn an_offset_is_ridden_away() {
     }
 }
 
-/// Situation: the same, on the path but pointing 0.1 rad to the right of it. Action, must hold: alike, no further off
-/// than the bicycle rides in 1.5 s at that angle.
+/// Situation: the same, on the path but with a heading of 0.1 rad to the right of it.
+/// Action: ride.
+/// Must hold: the same, with a deviation no larger than the distance of 1.5 s at that angle.
 #[test]
-fn a_heading_error_is_ridden_away() {
+fn a_heading_error_decays() {
     for (speed, within_s) in [(3.0, 3.0..8.0), (4.0, 3.0..7.0), (5.0, 2.5..6.5), (6.0, 2.0..6.0)] {
         let points =
             ride(speed, PathError { heading_rad: 0.1, lateral_m: 0.0 }, Some(&PathTracking::default()));
@@ -105,8 +108,10 @@ fn a_heading_error_is_ridden_away() {
     }
 }
 
-/// Situation: as above without tracking, and 5 m off with it. Action: ride. Must hold: without, it stays off; with, it
-/// approaches at a bounded angle, never beyond its own torque, and rolls by less than 15 degrees.
+/// Situation: as above without path tracking, and 5 m off with it.
+/// Action: ride.
+/// Must hold: without, it stays off; with, it approaches at a bounded angle, never beyond its own torque, and rolls
+/// by less than 15 degrees.
 #[test]
 fn large_errors_are_approached_with_care() {
     let off = ride(4.0, PathError { heading_rad: 0.0, lateral_m: 0.5 }, None);
@@ -118,8 +123,10 @@ fn large_errors_are_approached_with_care() {
     assert!(far.last().is_some_and(|p| p.lateral.abs() < 1.0), "{:?}", far.last());
 }
 
-/// Situation: the table of gains. Action: compute it again. Must hold: equal to the third digit after the point; and at every
-/// speed from 2 to 8 m/s, between the points too, the linear bicycle with it comes back with a time constant below 10 s.
+/// Situation: the table of gains.
+/// Action: compute it again.
+/// Must hold: equal to the third decimal; and at every speed from 2 to 8 m/s, between the points too, the linear
+/// bicycle with it returns with a time constant below 10 s.
 #[test]
 fn the_gains_are_the_computed_ones() {
     let (parameters, track) = (bicycle(), PathTracking::default());
@@ -153,18 +160,20 @@ fn input() -> TrackingInput {
     TrackingInput { speed_m_s: 5.0, path, authority: 1.0, elapsed_us: 1000, ..TrackingInput::default() }
 }
 
-/// The torques of a sequence of situations, each for so many steps.
+/// The torques of a sequence of inputs, each for a number of steps.
 fn torques(sequence: &[(usize, TrackingInput)]) -> Vec<f32> {
     let (track, mut state) = (PathTracking::default(), PathTrackingState::default());
     let all = sequence.iter().flat_map(|(steps, input)| std::iter::repeat_n(*input, *steps));
     all.map(|input| step(&track, &mut state, &input)).collect()
 }
 
-/// Situation: tracking in full; then the path is lost, the rider pushes, a limit of the rider acts, permission ends, or the
-/// bicycle is slow. Action: 400 steps. Must hold: the torque fades to exactly zero over its 300 ms, not before half
-/// of them, never faster than its slew, and comes back when the cause is gone.
+/// Situation: path tracking with its whole torque; then the path is lost, the rider pushes, a limit of the rider
+/// acts, permission ends, or the bicycle is slow.
+/// Action: 400 steps.
+/// Must hold: the torque fades to exactly zero over its 300 ms, not before half of them, never faster than its slew,
+/// and returns when the cause is gone.
 #[test]
-fn tracking_gives_way() {
+fn tracking_fades_out() {
     for cause in [
         TrackingInput { path: None, ..input() },
         TrackingInput { path: Some(PathError { heading_rad: f32::NAN, lateral_m: 0.0 }), ..input() },
@@ -182,11 +191,13 @@ fn tracking_gives_way() {
     assert_eq!(torques(&[(500, quiet)]), torques(&[(500, input())]));
 }
 
-/// Situation: 0.5 m off for a minute, the bicycle not moving as if held; the same with a limit acting, and with half the
-/// authority. Action: step. Must hold: the integral's torque grows to no more than its bound's 0.7 N m, and not at
-/// all where the torque is not wholly tracking's own.
+/// Situation: 0.5 m off for a minute, the bicycle at rest as if held; the same with a limit acting, and with half the
+/// authority.
+/// Action: step.
+/// Must hold: the integral's torque grows to no more than its bound's 0.7 N m, and not at all where the torque is not
+/// only that of path tracking.
 #[test]
-fn nothing_winds_up() {
+fn the_integral_has_no_windup() {
     let free = torques(&[(60_000, input())]);
     assert!((0.6..0.9).contains(&(free[59_999] - free[400])), "{}", free[59_999] - free[400]);
     for held in [
@@ -207,7 +218,7 @@ fn any_float() -> impl Strategy<Value = f32> {
     prop_oneof![4 => -2.0_f32..2.0, 1 => any::<u32>().prop_map(f32::from_bits)]
 }
 
-fn any_seen() -> impl Strategy<Value = TrackingInput> {
+fn any_tracking_input() -> impl Strategy<Value = TrackingInput> {
     let path = proptest::option::weighted(0.9, (any_float(), any_float()))
         .prop_map(|path| path.map(|(heading_rad, lateral_m)| PathError { heading_rad, lateral_m }));
     let rider = proptest::option::weighted(0.2, any_float());
@@ -237,9 +248,11 @@ fn any_seen() -> impl Strategy<Value = TrackingInput> {
 }
 
 proptest! {
-    /// Situation: anything. Action: step. Must hold: finite and within its own torque; mirrored, to the bit.
+    /// Situation: any input.
+    /// Action: step.
+    /// Must hold: finite and within its own torque; mirrored, to the bit.
     #[test]
-    fn any_input_gives_a_bounded_torque(sequence in proptest::collection::vec(any_seen(), 1..300)) {
+    fn any_input_gives_a_bounded_torque(sequence in proptest::collection::vec(any_tracking_input(), 1..300)) {
         let track = PathTracking::default();
         let (mut right, mut left) = (PathTrackingState::default(), PathTrackingState::default());
         for input in &sequence {

@@ -7,18 +7,18 @@ use motor::{Faults, Inputs, MotorCommand, Output, Phases};
 use sim_host::ride::{Remote, RemoteError, Start, Stepped};
 use std::f64::consts::TAU;
 
-/// An encoder that turns on its shaft.
+/// A slip of the encoder on its shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Slip {
-    /// In the end by so much \[electrical degrees\].
+    /// Final angle \[electrical degrees\].
     pub(crate) by_deg: f64,
-    /// From this time of the ride on \[s\]; before power-on if negative.
+    /// Beginning in the ride \[s\]; before power-on if negative.
     pub(crate) from_s: f64,
-    /// In so much time \[s\].
+    /// Duration \[s\].
     pub(crate) in_s: f64,
 }
 
-/// What the drive of one ride remembers.
+/// State of the drive of one ride.
 struct Drive {
     control: control::State,
     plan: Plan,
@@ -26,7 +26,7 @@ struct Drive {
     machine: Machine,
     acting: Option<[f32; 3]>,
     out: Output,
-    /// The rate a step ago \[rad/s\].
+    /// Rate of the previous step \[rad/s\].
     before_rad_s: f64,
     /// Calls of the motor's loop since the knock; none before.
     since: Option<u64>,
@@ -40,12 +40,12 @@ pub(crate) struct Axle {
     drive: Option<Drive>,
     /// Seconds after the knock at which the loop latched its faults, and the faults.
     pub(crate) opened: Option<(f64, Faults)>,
-    /// Torque against the one commanded while the bridge was closed, times time \[N m s\].
+    /// Torque against the commanded one while the bridge was closed, times time \[N m s\].
     pub(crate) against_nm_s: f64,
 }
 
 impl Axle {
-    /// The example's motor, its offset known.
+    /// The example's motor with its offset.
     pub(crate) fn new(step_s: f64, slip: Option<Slip>, change: impl FnOnce(&mut motor::Config)) -> Self {
         let mut config = EXAMPLE;
         config.encoder.offset_turns = Some(0.0);
@@ -54,7 +54,7 @@ impl Axle {
         Self { motor, step_s, slip, drive: None, opened: None, against_nm_s: 0.0 }
     }
 
-    /// Where the encoder has slipped to \[turns of the motor\].
+    /// Angle of the slip \[turns of the motor\].
     fn slipped_turns(&self, drive: &Drive) -> f64 {
         let Some(slip) = self.slip else { return 0.0 };
         let t = drive.since.map_or(0.0, |calls| calls as f64 / f64::from(self.motor.config().rate_hz));
@@ -78,7 +78,7 @@ impl Axle {
         let acting = if drive.out.duties.is_none() { None } else { drive.acting };
         let machine = &mut drive.machine;
         if acting.is_none() && machine.alpha_beta_a == [0.0; 2] {
-            // Without current nothing happens but the turning.
+            // Without current only the angle changes.
             machine.motor_turns +=
                 machine.steer_rate_rad_s * machine.params.ratio / TAU / machine.params.rate_hz;
         } else {
@@ -95,7 +95,7 @@ impl Axle {
 
 impl Remote for Axle {
     fn begin(&mut self, plan: &Plan, _: &Start) -> Result<(), RemoteError> {
-        // An axis of infinite inertia keeps the rate that it is given.
+        // An axis of infinite inertia keeps its given rate.
         let params = Params { inertia_kg_m2: f64::INFINITY, coulomb_nm: 0.0, ..Params::default() };
         let mut drive = Drive {
             control: control::State::default(),
@@ -123,22 +123,23 @@ impl Remote for Axle {
 
     fn step(&mut self, frame: &SensorFrame) -> Result<Stepped, RemoteError> {
         let mut drive = self.drive.take().ok_or(RemoteError("no ride was begun".into()))?;
-        let mut seen = *frame;
-        seen.motor_torque_nm =
+        let mut measured = *frame;
+        measured.motor_torque_nm =
             if drive.out.faults.is_empty() { Sample::fresh(drive.out.torque_nm) } else { Sample::missing() };
-        seen.steer_rate_rad_s = Sample::fresh(drive.out.steer_rate_rad_s);
-        let mut command = control::step(&drive.plan, &mut drive.control, &seen);
+        measured.steer_rate_rad_s = Sample::fresh(drive.out.steer_rate_rad_s);
+        let mut command = control::step(&drive.plan, &mut drive.control, &measured);
 
         let rate = f64::from(frame.steer_rate_rad_s.value);
-        // The rate expected in the middle of the step; after a knock the one of now.
+        // The rate expected in the middle of the step; after a knock the present one.
         let fresh = drive.since == Some(0);
         let middle = if fresh { rate } else { rate + 0.5 * (rate - drive.before_rad_s) };
         drive.before_rad_s = rate;
         drive.machine.steer_rate_rad_s = middle;
         drive.machine.motor_turns = f64::from(frame.steer_rad.value) * drive.machine.params.ratio / TAU;
 
-        let wanted = command.torque_nm != 0.0 || matches!(command.mode, Mode::Engaged | Mode::Limp);
-        let motor_command = if wanted { MotorCommand::Torque(command.torque_nm) } else { MotorCommand::Off };
+        let expected = command.torque_nm != 0.0 || matches!(command.mode, Mode::Engaged | Mode::Limp);
+        let motor_command =
+            if expected { MotorCommand::Torque(command.torque_nm) } else { MotorCommand::Off };
         let calls = (self.step_s * f64::from(self.motor.config().rate_hz)).round() as usize;
         let mut sum_nm = 0.0;
         for _ in 0..calls {

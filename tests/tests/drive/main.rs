@@ -1,4 +1,4 @@
-//! Flight cards: controller, motor's loop and simulated motor together on the bicycle.
+//! Controller, motor's loop and simulated motor together on the bicycle.
 
 #[path = "../../../firmware/motor/tests/cards/machine.rs"]
 #[allow(dead_code, reason = "shared with the motor's own cards")]

@@ -1,4 +1,4 @@
-//! What the images take of the chip, whether the documented numbers are true, and what no image may contain.
+//! Resources of the chip that the images use, the documented numbers, and the absence of local paths in the images.
 
 use std::process::Command;
 use xtask::document::{margin_too_small, over_budget, path, stale, text};
@@ -7,7 +7,8 @@ use xtask::{image, instructions, size};
 
 /// Situation: all images, built.
 /// Action: measure their sizes and the instructions of every step of the border ride.
-/// Must hold: no budget exceeded, of those of instructions as much left free as must be; `docs/images.md` says the same within 3 %.
+/// Must hold: no budget exceeded, and of those of instructions the required reserve is left; `docs/images.md` has the
+/// same numbers within 3 %.
 #[test]
 fn images_keep_their_budgets_and_the_document_is_true() {
     if !image::ready() {
@@ -21,10 +22,12 @@ fn images_keep_their_budgets_and_the_document_is_true() {
     assert_eq!(stale(&committed, &text(&sizes, &counts)), [""; 0], "run `cargo xtask size`");
 }
 
-/// Situation: rows at nine tenths of their budget, one instruction more, at it, and one beyond; with everything on at 99 %, and one
-/// instruction more. Action: look for what is too close, and for what is over. Must hold: each but the first of both is named once.
+/// Situation: rows at nine tenths of their budget, one instruction more, at it, and one beyond; with every feature on
+/// at 99 %, and one instruction more.
+/// Action: list the rows without reserve, and those over their budget.
+/// Must hold: each but the first of both is named once.
 #[test]
-fn a_row_that_leaves_less_than_a_tenth_is_noticed() {
+fn a_row_that_leaves_less_than_a_tenth_is_named() {
     let row = |name, max| instructions::Count { name, mean: 100, max, budget: BUDGET, stack: 500 };
     let rows = [
         row("most", 2700),
@@ -45,7 +48,7 @@ fn a_row_that_leaves_less_than_a_tenth_is_noticed() {
 /// Action: compare it with the right one.
 /// Must hold: the rows are named; the right document has none.
 #[test]
-fn a_stale_document_is_noticed() {
+fn a_stale_document_is_named() {
     let count = |name, max| instructions::Count { name, mean: 100, max, budget: 200, stack: 500 };
     let right = text(&[], &[count("h", 150), count("f", 80)]);
     assert_eq!(stale(&right, &right), [""; 0]);
@@ -54,8 +57,8 @@ fn a_stale_document_is_noticed() {
 }
 
 /// Situation: the built images.
-/// Action: look for the words name, version and commit in their bytes.
-/// Must hold: every image says which it is.
+/// Action: search their bytes for name, version and commit.
+/// Must hold: every image contains its identity.
 #[test]
 fn every_image_carries_its_identity() {
     if !image::ready() {
@@ -67,15 +70,15 @@ fn every_image_carries_its_identity() {
         let identity = format!("{} {} ", image.name, env!("CARGO_PKG_VERSION"));
         let at = bytes.windows(identity.len()).position(|w| w == identity.as_bytes());
         let commit = at.map(|at| &bytes[at + identity.len()..][..7]);
-        let known = |commit: &[u8]| commit == b"unknown" || commit.iter().all(u8::is_ascii_hexdigit);
-        assert!(commit.is_some_and(known), "{}", image.name);
+        let valid = |commit: &[u8]| commit == b"unknown" || commit.iter().all(u8::is_ascii_hexdigit);
+        assert!(commit.is_some_and(valid), "{}", image.name);
     }
 }
 
-/// Situation: the built images, in whose panic messages the names of source files stand.
-/// Action: look in the bytes that are flashed for the clone's folder and cargo's.
-/// Must hold: none is there, so that the same source gives the same bytes in any folder; a source file's name is, so that
-/// the search looks at the right bytes.
+/// Situation: the built images, whose panic messages contain names of source files.
+/// Action: search the flashed bytes for the clone's folder and cargo's.
+/// Must hold: neither is there, so that the same source gives the same bytes in any folder; a source file's name is,
+/// which shows that the search covers the right bytes.
 #[test]
 fn no_image_names_a_folder_of_this_machine() {
     if !image::ready() {
@@ -97,8 +100,8 @@ fn no_image_names_a_folder_of_this_machine() {
 
 /// Situation: the board's image as a file with addresses and as a plain binary, as other programmers take them.
 /// Action: make both by objcopy.
-/// Must hold: the first leaves the store of parameters alone, from 0x08004000 to 0x08010000, with bytes below and above;
-/// the second fills it with zeros, which is why the document has the recipe of the first.
+/// Must hold: the first leaves the store of parameters unchanged, from 0x08004000 to 0x08010000, with bytes below and
+/// above; the second fills it with zeros, which is why the document has the recipe of the first.
 #[test]
 fn a_hex_file_leaves_the_store_alone() {
     if !image::ready() {

@@ -4,7 +4,7 @@ use xtask::instructions::field;
 use xtask::process::Outcome;
 use xtask::{image, qemu};
 
-/// Milliseconds from one injected hold-up to the next, the first after half of it.
+/// Milliseconds between two injected delays, the first after half of it.
 const EVERY_MS: u32 = 100;
 
 fn fly(name: &str, arguments: &[&str]) -> Outcome {
@@ -24,11 +24,10 @@ fn result(outcome: &Outcome) -> (u32, u32) {
     (field(line, "steps").unwrap(), field(line, "missed").unwrap())
 }
 
-/// Missed deadlines when control is held up for `hold_us` from one release in [`EVERY_MS`].
+/// Missed deadlines when control is delayed by `hold_us` from one release in [`EVERY_MS`].
 ///
-/// The step released at that instant ends just after the hold-up, and so do those released while
-/// it lasts; a step is missed when its period, 1 ms, is over by then: as many as there are whole
-/// milliseconds in the hold-up.
+/// The step released at that instant ends just after the delay, and so do those released during it; a step is missed
+/// if its period, 1 ms, is over by then: as many as there are whole milliseconds in the delay.
 fn expected_misses(seconds: u32, hold_us: u32) -> u32 {
     seconds * 1000 / EVERY_MS * (hold_us / 1000)
 }
@@ -51,11 +50,11 @@ fn five_busy_seconds_miss_no_deadline() {
 }
 
 /// Situation: as above.
-/// Action: something above control holds it up every 100 ms, for 0.8, 1.5, 2.5 or 7.1 ms.
-/// Must hold: the missed deadlines are exactly those of the schedule, all steps are made up for,
-/// and the image fails if one was missed.
+/// Action: an interrupt of higher priority delays control every 100 ms, for 0.8, 1.5, 2.5 or 7.1 ms.
+/// Must hold: the missed deadlines are exactly those of the schedule, all steps are made up for, and the image fails
+/// if one was missed.
 #[test]
-fn a_held_up_control_task_misses_exactly_the_scheduled_deadlines() {
+fn a_delayed_control_task_misses_exactly_the_scheduled_deadlines() {
     if !image::ready() {
         return;
     }
@@ -68,10 +67,10 @@ fn a_held_up_control_task_misses_exactly_the_scheduled_deadlines() {
 }
 
 /// Situation: as above.
-/// Action: something above control never gives way again.
-/// Must hold: the watchdog, 100 ms after it was fed last, ends it with its own status.
+/// Action: an interrupt of higher priority never returns.
+/// Must hold: the watchdog, 100 ms after it was last fed, ends the run with its own status.
 #[test]
-fn the_watchdog_bites_when_control_stands_still() {
+fn the_watchdog_resets_when_control_hangs() {
     if !image::ready() {
         return;
     }
@@ -82,11 +81,12 @@ fn the_watchdog_bites_when_control_stands_still() {
     assert!((590..=601).contains(&at), "held up from 500 ms, bitten at {at} ms");
 }
 
-/// Situation: a board whose parts take 300 ms to start, six times as long as a task may be silent, with the clock running.
+/// Situation: a board whose components take 300 ms to start, six times the longest permitted silence of a task, with
+/// the clock running.
 /// Action: 2 simulated seconds from the start of the tasks.
-/// Must hold: no task is blamed for the start: no reset, every step done in time, success.
+/// Must hold: the start causes no reset, every step is done in time, success.
 #[test]
-fn no_task_is_blamed_for_a_slow_start() {
+fn a_slow_start_causes_no_reset() {
     if !image::ready() {
         return;
     }
@@ -99,7 +99,7 @@ fn no_task_is_blamed_for_a_slow_start() {
 /// Action: the same run twice.
 /// Must hold: the same output, byte for byte: time is simulated, not the host's.
 #[test]
-fn two_runs_are_alike() {
+fn two_runs_are_equal() {
     if !image::ready() {
         return;
     }

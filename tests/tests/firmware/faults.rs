@@ -1,11 +1,11 @@
-//! Whatever goes wrong on the chip ends with a report and a status of its own.
+//! Every failure on the chip ends with a report and a status of its own.
 
 use xtask::{image, qemu};
 
 /// Situation: the image that fails on purpose.
-/// Action: a panic, the stack running out, an undefined instruction, memory that isn't there, an
-/// interrupt without a handler.
-/// Must hold: the status of its kind, a report that names the cause, and which image it was.
+/// Action: a panic, a stack overflow, an undefined instruction, an access to absent memory, an interrupt without a
+/// handler.
+/// Must hold: the status of its kind, a report that names the cause and the image.
 #[test]
 fn every_failure_is_reported_and_none_exits_with_success() {
     if !image::ready() {
@@ -26,11 +26,11 @@ fn every_failure_is_reported_and_none_exits_with_success() {
     }
 }
 
-/// Situation: a file of rides whose configuration no controller accepts, and one cut off.
+/// Situation: a file of rides whose configuration no controller accepts, and a truncated one.
 /// Action: replay it.
-/// Must hold: refused with a reason and status 2; no command is made up.
+/// Must hold: rejected with a reason and status 2; no command is output.
 #[test]
-fn a_bad_file_of_rides_is_refused() {
+fn a_bad_file_of_rides_is_rejected() {
     if !image::ready() {
         return;
     }

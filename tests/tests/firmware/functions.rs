@@ -1,8 +1,8 @@
-//! Instructions of single functions, today's and micromath's.
+//! Instructions of single functions, the product's and micromath's.
 
 use xtask::{image, instructions};
 
-/// The rows of the table in docs/motor.md, and the functions of `qemu-instructions` whose instructions they tell.
+/// The rows of the table in docs/motor.md, and the functions of `qemu-instructions` whose instructions they state.
 const ROWS: [(&str, [&str; 2]); 5] = [
     ("rounding of the values on CAN", ["rounding, today", "rounding, micromath"]),
     ("logarithm of the thermistor", ["logarithm, today", "logarithm, micromath"]),
@@ -11,13 +11,14 @@ const ROWS: [(&str, [&str; 2]); 5] = [
     ("the same with two steps of Newton", ["root, today", "root, micromath and two steps of Newton"]),
 ];
 
-/// How far a number of the page may be from the fresh one, as in docs/images.md, or one instruction.
+/// Tolerance of the page's numbers, as in docs/images.md, or one instruction.
 const TOLERANCE: f64 = 0.03;
 
-/// Situation: each function that docs/motor.md compares with micromath's, on the chip of QEMU. Action: count the instructions of a
-/// thousand calls. Must hold: the page says the same, and the one that is taken is less than half of the other.
+/// Situation: each function that docs/motor.md compares with micromath's, on the chip of QEMU.
+/// Action: count the instructions of a thousand calls.
+/// Must hold: the page has the same numbers, and the product's function needs less than half of the other.
 #[test]
-fn the_page_tells_what_micromath_would_save() {
+fn the_instructions_of_micromath_are_as_documented() {
     if !image::ready() {
         return;
     }
@@ -30,13 +31,13 @@ fn the_page_tells_what_micromath_would_save() {
         .filter_map(|(row, names)| {
             let line = page.lines().find(|line| line.starts_with(&format!("| {row} |"))).expect(row);
             let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-            let told = [3, 5].map(|cell: usize| cells[cell].parse().unwrap_or(f64::NAN));
+            let documented = [3, 5].map(|cell: usize| cells[cell].parse().unwrap_or(f64::NAN));
             let fresh = names.map(|name| f64::from(mean(name)));
-            let same = told
+            let same = documented
                 .iter()
                 .zip(fresh)
-                .all(|(told, fresh)| (told - fresh).abs() <= (TOLERANCE * fresh).max(1.0));
-            (!same).then(|| format!("{row}: {fresh:?}, docs/motor.md says {told:?}"))
+                .all(|(documented, fresh)| (documented - fresh).abs() <= (TOLERANCE * fresh).max(1.0));
+            (!same).then(|| format!("{row}: {fresh:?}, docs/motor.md has {documented:?}"))
         })
         .collect();
     assert_eq!(stale, [""; 0]);

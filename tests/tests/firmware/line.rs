@@ -1,6 +1,6 @@
-//! The tools for a board on an image in QEMU: the same requests that other cards put to a board of the link.
+//! The tools for a board on an image in QEMU: the requests that other tests send to a board of the link.
 
-use crate::rig::Rig;
+use crate::steady_board::SteadyBoard;
 use control::{Config, Law};
 use link::Key;
 use link::message::Message;
@@ -14,9 +14,10 @@ use tests::cli::{Bench, word};
 use xtask::image;
 
 /// Situation: the image with every task, on a bicycle that rolls upright.
-/// Action: ask who it is; list; set a parameter, the law and a group; store; ask for faults; listen.
-/// Must hold: every parameter of the flashed code is listed; what is set is read back, and stands for another
-/// configuration; there is no fault; telemetry goes on, its steps 18 to 22 apart in the mean: behind answers it waits.
+/// Action: request its identity; list; set a parameter, the law and a group; store; request its faults; listen.
+/// Must hold: every parameter of the flashed code is listed; set values are read back, and the hash of the
+/// configuration differs; there is no fault; telemetry continues, its steps 18 to 22 apart in the mean, as it waits
+/// behind answers.
 #[test]
 fn an_image_answers_as_a_board() {
     if !image::ready() {
@@ -28,26 +29,26 @@ fn an_image_answers_as_a_board() {
     assert_eq!(hello.image, "qemu-pil");
     let before = Settings::read(&mut client).expect("settings");
     let mut names = Vec::new();
-    each(&mut Config::product(), |seen| {
-        names.push(seen.key().to_string());
-        seen.value
+    each(&mut Config::product(), |parameter| {
+        names.push(parameter.key().to_string());
+        parameter.value
     });
     assert_eq!(before.parameters.iter().map(|one| one.key.clone()).collect::<Vec<_>>(), names);
     let of = |key: &str, value| Setting::Value { key: key.into(), value: Some(value) };
-    let wanted = [
+    let expected = [
         of("limits.max_torque_nm", 5.0),
         of("limits.end_stop", 0.0),
         Setting::Law(Law::Cl2 { k: 3.0 }.into()),
     ];
-    let tuned = tune(&mut client, &before, &wanted).expect("set");
+    let tuned = tune(&mut client, &before, &expected).expect("set");
     assert_eq!((tuned.set.len(), tuned.differing.len()), (3, 0), "{:?}", tuned.differing);
     client.store().expect("stored");
     assert_ne!(client.hello().expect("an answer").configuration, hello.configuration);
     assert_eq!(client.faults().expect("faults"), []);
     let mut steps = Vec::new();
     while steps.len() < 40 {
-        for told in client.listen(Duration::from_secs(1)).expect("it goes on") {
-            if let Ok(Message::Telemetry(step)) = told.message() {
+        for received in client.listen(Duration::from_secs(1)).expect("it goes on") {
+            if let Ok(Message::Telemetry(step)) = received.message() {
                 steps.push(step.steps);
             }
         }
@@ -59,7 +60,8 @@ fn an_image_answers_as_a_board() {
 
 /// Situation: the same image, by the program.
 /// Action: get a parameter, list faults, monitor, by the image's name and without.
-/// Must hold: they succeed and say what the board is; what stands behind is no image; an image that is not there is named.
+/// Must hold: they succeed and name the board; further arguments are not taken for an image; a missing image is
+/// named.
 #[test]
 fn the_program_takes_an_image_for_a_board() {
     if !image::ready() {
@@ -75,26 +77,27 @@ fn the_program_takes_an_image_for_a_board() {
     assert!(run(&format!("param get rate_hz --qemu={image}")).contains("1000 Hz"));
     assert!(run("param get --qemu rate_hz").contains("1000 Hz"));
     assert_eq!(run("faults --qemu"), "no faults\n");
-    let watched = run("monitor --qemu --for 1s");
+    let monitored = run("monitor --qemu --for 1s");
     assert!(
-        watched.contains("qemu-pil") && watched.contains(" 0 missing, 0 damaged, 0 restarts"),
-        "{watched}"
+        monitored.contains("qemu-pil") && monitored.contains(" 0 missing, 0 damaged, 0 restarts"),
+        "{monitored}"
     );
-    bench.run("param list --qemu=no-such-image").refused_naming(&["no-such-image", "cargo xtask firmware"]);
+    bench.run("param list --qemu=no-such-image").rejected_naming(&["no-such-image", "cargo xtask firmware"]);
 }
 
-/// Situation: image qemu-pil at rest. Action: ask for a parameter again and again, some kilobytes in all.
+/// Situation: image qemu-pil at rest.
+/// Action: request a parameter repeatedly, some kilobytes in all.
 /// Must hold: every request is answered, and once.
 #[test]
 fn no_request_is_lost() {
     if !image::ready() {
         return;
     }
-    let mut rig = Rig::with(&[], &Config::product());
-    let asked = 150;
-    for _ in 0..asked {
-        rig.ask(&Message::Get { key: Key::whole("rate_hz") });
-        rig.ride(30, false);
+    let mut board = SteadyBoard::with(&[], &Config::product());
+    let requests = 150;
+    for _ in 0..requests {
+        board.request(&Message::Get { key: Key::whole("rate_hz") });
+        board.ride(30, false);
     }
-    assert_eq!((rig.values.len(), rig.values[0]), (asked, Some(1000.0)));
+    assert_eq!((board.values.len(), board.values[0]), (requests, Some(1000.0)));
 }

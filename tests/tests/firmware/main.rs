@@ -1,4 +1,4 @@
-//! Flight cards: the images, in QEMU.
+//! The images, in QEMU.
 
 mod budgets;
 mod deadlines;
@@ -10,5 +10,5 @@ mod outputs;
 mod polarity;
 mod replay;
 mod resets;
-mod rig;
 mod runner;
+mod steady_board;

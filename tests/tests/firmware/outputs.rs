@@ -1,7 +1,7 @@
-//! What each image says, word for word: `outputs/NAME.txt`. After a change that is wanted:
-//! `UPDATE_EXPECT=1 cargo test --test firmware outputs::`, and look at what git shows.
+//! Text output of each image, word for word: `outputs/NAME.txt`. After an intended change: `UPDATE_EXPECT=1 cargo
+//! test --test firmware outputs::`, and check the result with git.
 
-use crate::rig::Rig;
+use crate::steady_board::SteadyBoard;
 use control::{Config, SensorFrame};
 use expect_test::{ExpectFile, expect_file};
 use std::fmt::Write;
@@ -10,25 +10,25 @@ use xtask::instructions::field;
 use xtask::process::Outcome;
 use xtask::{image, qemu, rides};
 
-/// What changes from commit to commit, or from QEMU to QEMU, and means nothing here.
+/// Parts that change from commit to commit, or with QEMU's version, and have no meaning here.
 const VARIES: [&str; 3] = ["worst_us=", "sp=", "stack_left="];
 
-/// An image's words and its status, without what varies.
-fn said<'a>(arguments: &str, lines: impl Iterator<Item = &'a str>, status: &str) -> String {
+/// An image's text and its status, without the varying parts.
+fn output<'a>(arguments: &str, lines: impl Iterator<Item = &'a str>, status: &str) -> String {
     let mut text = format!("$ {arguments}\n");
     for line in lines {
-        let words = line.split(' ').enumerate().map(|(i, word)| {
+        let texts = line.split(' ').enumerate().map(|(i, word)| {
             let varying = VARIES.iter().find(|name| word.starts_with(**name));
             let commit = i == 2 && line.starts_with("qemu-");
             match varying {
                 Some(name) => format!("{name}..."),
                 None if commit => "COMMIT".into(),
-                // Where a panic happened, without the line.
+                // Place of a panic, without the line.
                 None if word.contains(".rs:") => word.split(':').next().unwrap_or_default().into(),
                 None => word.into(),
             }
         });
-        text += &words.collect::<Vec<String>>().join(" ");
+        text += &texts.collect::<Vec<String>>().join(" ");
         text.push('\n');
     }
     let _ = writeln!(text, "{status}\n");
@@ -39,7 +39,7 @@ fn run(image: &str, arguments: &[&str], directory: &Path) -> String {
     let outcome = qemu::run(image, arguments, directory, qemu::TIMED, qemu::LIMIT).unwrap();
     let Outcome { status, stdout, stderr } = &outcome;
     let lines = stdout.lines().chain(stderr.lines());
-    said(&format!("{image} {}", arguments.join(" ")), lines, &format!("status {status:?}"))
+    output(&format!("{image} {}", arguments.join(" ")), lines, &format!("status {status:?}"))
 }
 
 fn same(text: &str, expected: ExpectFile) {
@@ -47,10 +47,10 @@ fn same(text: &str, expected: ExpectFile) {
 }
 
 /// Situation: the images that run by themselves, or on a file.
-/// Action: run each in each of its ways.
-/// Must hold: they say what they said before, word for word, and end with the same status.
+/// Action: run each with each of its arguments.
+/// Must hold: their text is the stored one, word for word, and they end with the same status.
 #[test]
-fn every_image_says_what_it_said() {
+fn every_image_prints_its_stored_output() {
     if !image::ready() {
         return;
     }
@@ -75,20 +75,20 @@ fn every_image_says_what_it_said() {
 
 /// Situation: the image of the loop, on a ride of 2.2 s with the switch pressed; the same with a panic after 1.5 s.
 /// Action: ride, then close the host's end.
-/// Must hold: what it writes for people, and its status, are what they were; 8 to 28 KiB of its stack of 32 were never used.
+/// Must hold: its text and its status are the stored ones; 8 to 28 KiB of its stack of 32 were never used.
 #[test]
-fn the_image_of_the_loop_says_what_it_said() {
+fn the_image_of_the_loop_prints_its_stored_output() {
     if !image::ready() {
         return;
     }
-    let rides = [&[][..], &["mishap=panic", "at_ms=1500"]].map(|words: &[&str]| {
-        let mut rig = Rig::start(words);
-        rig.ride(500, false);
-        rig.ride(1700, true);
-        let (status, words_said) = rig.board.close();
-        let left: u32 = field(&words_said, "stack_left").expect("it says so");
+    let rides = [&[][..], &["fault=panic", "at_ms=1500"]].map(|texts: &[&str]| {
+        let mut board = SteadyBoard::start(texts);
+        board.ride(500, false);
+        board.ride(1700, true);
+        let (status, printed) = board.board.close();
+        let left: u32 = field(&printed, "stack_left").expect("a number");
         assert!((8 << 10..28 << 10).contains(&left), "{left} bytes of stack left");
-        said(&format!("qemu-pil {}", words.join(" ")), words_said.lines(), &status)
+        output(&format!("qemu-pil {}", texts.join(" ")), printed.lines(), &status)
     });
     same(&rides.concat(), expect_file!["outputs/qemu-pil.txt"]);
 }

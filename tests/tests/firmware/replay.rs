@@ -1,4 +1,4 @@
-//! The control step on the chip and on the host: the same bits, whatever the sensors say.
+//! The control step on the chip and on the host: the same bits for all sensor values.
 
 use control::safety::press::PressConfig;
 use control::wire::{COMMAND_BYTES, encode_command, encode_frame};
@@ -10,13 +10,14 @@ use tests::cli::Bench;
 use tests::sets::whole;
 use xtask::{image, qemu, rides};
 
-/// Least parts of the random frames in which a configuration must drive, and must refuse a sensor. The flashed
-/// ones hold sensors against each other, which random ones seldom pass.
+/// Least parts of the random frames in which a configuration must drive, and must reject a sensor. The flashed ones
+/// have cross-checks, which random frames seldom pass.
 fn least(name: &str) -> (f64, f64) {
     if name.starts_with("product") { (0.001, 0.5) } else { (0.9, 0.01) }
 }
 
-/// Every configuration, each press counting in its first period: random frames never open the switch for long enough.
+/// Every configuration with presses that count in their first period: random frames never open the switch for long
+/// enough.
 fn pressed_at_once() -> impl Iterator<Item = (&'static str, Config)> {
     rides::configurations().into_iter().map(|(name, mut config)| {
         config.permit.press = PressConfig::default();
@@ -24,8 +25,8 @@ fn pressed_at_once() -> impl Iterator<Item = (&'static str, Config)> {
     })
 }
 
-/// Pseudo-random frames for a configuration: a million for the published one and the flashed ones, a tenth of
-/// that for those that differ from them in little.
+/// Pseudo-random frames for a configuration: a million for the published one and the flashed ones, a tenth of that
+/// for those that differ little from them.
 fn random_frames(name: &str) -> usize {
     if name == "h" || name.starts_with("product") { 1_000_000 } else { 100_000 }
 }
@@ -54,7 +55,7 @@ fn on_chip(name: &str, rides: &[(&Config, &[SensorFrame])]) -> Vec<[u8; COMMAND_
     commands.to_vec()
 }
 
-/// Fails at the first command that differs, with all that is known about it.
+/// Fails at the first command that differs, with the context.
 fn assert_same_bits(name: &str, rides: &[(&Config, &[SensorFrame])]) {
     let (host, chip) = (on_host(rides), on_chip(name, rides));
     assert_eq!(host.len(), chip.len(), "commands");
@@ -69,10 +70,10 @@ fn assert_same_bits(name: &str, rides: &[(&Config, &[SensorFrame])]) {
     }
 }
 
-/// Situation: rides of the simulator: the recorded one, and rides at other speeds and disturbances,
-/// some of which fall; and a made-up one whose wheel pulses are up to 19 ms old.
+/// Situation: rides of the simulator: the recorded one, and rides at other speeds and disturbances, some of which
+/// fall; and an artificial one whose wheel pulses are up to 19 ms old.
 /// Action: every law, the product, and sensors of different latency, on host and chip.
-/// Must hold: every bit of every command alike.
+/// Must hold: every bit of every command is equal.
 #[test]
 fn recorded_rides_give_the_same_bits_on_host_and_chip() {
     if !image::ready() {
@@ -99,7 +100,7 @@ fn recorded_rides_give_the_same_bits_on_host_and_chip() {
     assert_same_bits("ride", &rides);
 }
 
-/// The flashed configuration on the thesis bicycle, every sensor there, and the ride's conditions with it.
+/// The flashed configuration on the thesis bicycle, every sensor fitted, with the ride's conditions.
 fn flashed() -> (Conditions, Config) {
     let mut config = Config::product();
     config.calibration.polarity_checked = true;
@@ -114,10 +115,12 @@ fn simulated(speed_m_s: f64, steer_rate_rad_s: f64) -> Vec<SensorFrame> {
     frames(&conditions, start, &traced(&conditions, start).1)
 }
 
-/// Situation: the ride in data/all_sensors.frames, made by the command line's options. Action: ride it again. Must hold: every
-/// bit of what the declared sensors said alike; the controller engages, and no cause is told after it.
+/// Situation: the ride in data/all_sensors.frames, made by the command line's options.
+/// Action: ride it again.
+/// Must hold: every bit of the declared sensors' values is equal; the controller engages, and no cause is reported
+/// after it.
 #[test]
-fn the_recorded_ride_with_every_sensor_is_what_the_simulator_rides() {
+fn the_recorded_ride_with_every_sensor_is_reproduced() {
     let bench = Bench::new(env!("CARGO_BIN_EXE_sim-host-under-test"));
     let run =
         bench.run("ride --preset product --speed 4 --steer-rate 5 --time-limit 1.25 --frames again.frames");
@@ -133,10 +136,12 @@ fn the_recorded_ride_with_every_sensor_is_what_the_simulator_rides() {
     assert!(commands[engaged..].iter().all(|c| c.causes == control::Causes::NONE));
 }
 
-/// Situation: the ride in data/border_ride.frames. Action: simulate it again. Must hold: every bit
-/// of every frame alike, on any machine; and it is a border ride, hard on the assist and not a fall.
+/// Situation: the ride in data/border_ride.frames.
+/// Action: simulate it again.
+/// Must hold: every bit of every frame is equal, on any machine; and it is a border ride with large assist torques
+/// that does not fall.
 #[test]
-fn the_recorded_border_ride_is_what_the_simulator_rides() {
+fn the_recorded_border_ride_is_reproduced() {
     let recorded = rides::border_ride();
     let again = simulated(4.0, 8.42);
     assert_eq!(recorded.len(), again.len());
@@ -148,11 +153,11 @@ fn the_recorded_border_ride_is_what_the_simulator_rides() {
     assert!((1..100).contains(&pre_roll) && (1.0..6.0).contains(&peak), "{pre_roll} frames, {peak} rad/s");
 }
 
-/// Situation: sensors gone mad: any bit pattern, NaN of every kind, denormals, infinities, the
-/// ranges' edges, late and missing samples, between stretches in which the law runs.
+/// Situation: arbitrary sensor values: any bit pattern, NaN of every kind, denormals, infinities, the ranges' edges,
+/// late and missing samples, between stretches in which the law runs.
 /// Action: a million such frames for the published and the flashed configurations, 100,000 for each other, on host
 /// and chip; by default a tenth as many.
-/// Must hold: every bit of every command alike.
+/// Must hold: every bit of every command is equal.
 #[test]
 fn a_million_random_frames_give_the_same_bits_on_host_and_chip() {
     if !image::ready() {
@@ -165,25 +170,25 @@ fn a_million_random_frames_give_the_same_bits_on_host_and_chip() {
 }
 
 /// Situation: the random frames of the test above.
-/// Action: look at what they exercise.
-/// Must hold: the published ones drive in nine tenths of them and refuse a sensor in a hundredth, the flashed ones
-/// in a thousandth and half; every reason to lose gyro or wheel but jump and stuck occurs; every torque is finite.
+/// Action: count the covered conditions.
+/// Must hold: the published ones drive in nine tenths of them and reject a sensor in a hundredth, the flashed ones in
+/// a thousandth and half; every reason to lose gyro or wheel but jump and stuck occurs; every torque is finite.
 #[test]
-fn the_random_frames_reach_the_law_and_every_refusal() {
+fn the_random_frames_reach_the_law_and_every_rejection() {
     for (seed, (name, config)) in (1..).zip(pressed_at_once()) {
         let (plan, mut state) = (plan(&config), State::default());
         let commands: Vec<Command> = rides::random_frames(seed, random_frames(name))
             .iter()
             .map(|f| step(&plan, &mut state, f))
             .collect();
-        let share = |wanted: &dyn Fn(&Command) -> bool| {
-            commands.iter().filter(|c| wanted(c)).count() as f64 / commands.len() as f64
+        let share = |expected: &dyn Fn(&Command) -> bool| {
+            commands.iter().filter(|c| expected(c)).count() as f64 / commands.len() as f64
         };
         let driving = share(&|c| c.mode.drives());
-        let refused = share(&|c| c.causes.iter().any(|cause| (1..=36).contains(&cause.code())));
-        println!("{name}: {driving} driving, {refused} with a sensor refused");
+        let rejected = share(&|c| c.causes.iter().any(|cause| (1..=36).contains(&cause.code())));
+        println!("{name}: {driving} driving, {rejected} with a sensor refused");
         let least = least(name);
-        assert!(driving > least.0 && refused > least.1, "{name}: {driving} driving, {refused} refused");
+        assert!(driving > least.0 && rejected > least.1, "{name}: {driving} driving, {rejected} refused");
         let wheel = match config.input.wheel {
             control::Wheel::Front => [Cause::FrontWheelLost, Cause::FrontWheelRange],
             control::Wheel::Rear => [Cause::RearWheelLost, Cause::RearWheelRange],

@@ -1,15 +1,16 @@
-//! What flashes the board's images: the commands of docs/hardware.md, with a probe-rs that only writes down how it was called.
+//! Flashing of the board's images: the commands of docs/hardware.md, with a probe-rs that only records its arguments.
 
 use std::fs::Permissions;
 use std::os::unix::fs::PermissionsExt;
 use std::process::Command;
 use xtask::image;
 
-/// Situation: a `probe-rs` at the front of `PATH` that prints its arguments. Action: `cargo flash-vesc6` and `cargo align-vesc6`.
-/// Must hold: each calls it once, to run its own image on this chip, and with both options without which probe-rs halts
-/// the core at a reset or a hard fault, where docs/hardware.md promises a new start.
+/// Situation: a `probe-rs` at the front of `PATH` that prints its arguments.
+/// Action: `cargo flash-vesc6` and `cargo align-vesc6`.
+/// Must hold: each calls it once, to run its own image on this chip, and with both options without which probe-rs
+/// halts the core at a reset or a hard fault, where docs/hardware.md promises a restart.
 #[test]
-fn a_chip_that_is_flashed_starts_anew_after_a_reset() {
+fn a_flashed_chip_restarts_after_a_reset() {
     if !image::ready() {
         return;
     }
@@ -25,16 +26,16 @@ fn a_chip_that_is_flashed_starts_anew_after_a_reset() {
     for (command, name) in [("flash-vesc6", "board-vesc6"), ("align-vesc6", "board-vesc6-align")] {
         let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
         let output = cargo.current_dir(image::root()).arg(command).env("PATH", &path).output().unwrap();
-        let told = String::from_utf8_lossy(&output.stdout);
+        let printed = String::from_utf8_lossy(&output.stdout);
         assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
-        let calls: Vec<&str> = told.lines().filter_map(|line| line.strip_prefix("probe-rs ")).collect();
-        let [call] = calls[..] else { panic!("{command}: {told}") };
-        let words: Vec<&str> = call.split(' ').collect();
-        assert_eq!(words[..3], ["run", "--chip", "STM32F405RG"], "{call}");
+        let calls: Vec<&str> = printed.lines().filter_map(|line| line.strip_prefix("probe-rs ")).collect();
+        let [call] = calls[..] else { panic!("{command}: {printed}") };
+        let texts: Vec<&str> = call.split(' ').collect();
+        assert_eq!(texts[..3], ["run", "--chip", "STM32F405RG"], "{call}");
         assert!(
-            ["--no-catch-reset", "--no-catch-hardfault"].iter().all(|word| words.contains(word)),
+            ["--no-catch-reset", "--no-catch-hardfault"].iter().all(|word| texts.contains(word)),
             "{call}"
         );
-        assert!(words.last().is_some_and(|file| file.ends_with(&format!("/{name}"))), "{call}");
+        assert!(texts.last().is_some_and(|file| file.ends_with(&format!("/{name}"))), "{call}");
     }
 }

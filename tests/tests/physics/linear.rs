@@ -1,5 +1,4 @@
-//! The linear model: published matrices and eigenvalues, and the nonlinear equations' own
-//! linearisation.
+//! The linear model: published matrices and eigenvalues, and the linearisation of the nonlinear equations.
 
 use control::Law;
 use nalgebra::{Complex, Matrix2};
@@ -37,7 +36,8 @@ fn benchmark_eigenvalues_match_the_published_table() {
     let mut worst: f64 = 0.0;
     for [v, re, im] in &rows {
         let values = eigenvalues(&linear, &Law::None, *v);
-        let nearest = |wanted: Complex<f64>| values.iter().map(|e| (e - wanted).norm()).fold(9.0, f64::min);
+        let nearest =
+            |expected: Complex<f64>| values.iter().map(|e| (e - expected).norm()).fold(9.0, f64::min);
         worst = worst.max(nearest(Complex::new(*re, *im))).max(nearest(Complex::new(*re, -*im)));
     }
     println!("{} eigenvalues, largest difference {worst:.1e}", rows.len());
@@ -53,8 +53,8 @@ fn benchmark_state_matrix_matches_sympy_at_any_speed() {
         for (row, key) in [(2, "roll"), (3, "steer")] {
             let terms = published.rows::<4>(key);
             for column in 0..4 {
-                let wanted = terms[0][column] + v * terms[1][column] + v * v * terms[2][column];
-                let off = (a[(row, column)] - wanted).abs();
+                let expected = terms[0][column] + v * terms[1][column] + v * v * terms[2][column];
+                let off = (a[(row, column)] - expected).abs();
                 assert!(off < published.tolerance(), "{key} {column} at {v} m/s differs by {off:e}");
             }
         }

@@ -1,4 +1,4 @@
-//! Flight cards: the bicycle.
+//! The bicycle.
 
 mod energy;
 mod linear;

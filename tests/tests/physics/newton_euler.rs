@@ -1,4 +1,4 @@
-//! The simulator's equations beside Newton's and Euler's for each body.
+//! The simulator's equations compared with Newton's and Euler's for each body.
 
 use sim_host::bicycle::{Geometry, State};
 use std::cell::Cell;
@@ -13,7 +13,7 @@ fn relative(pairs: &[(f64, f64)]) -> f64 {
     pairs.iter().map(|p| (p.0 - p.1).abs()).fold(0.0, f64::max) / size
 }
 
-/// What the two formulations differ by.
+/// Differences between the two formulations.
 struct Found {
     /// Pitch \[rad\], dependent rates and all accelerations relative to their size.
     off: [f64; 3],
@@ -45,22 +45,22 @@ fn compare(draw: &Draw) -> Option<Found> {
 #[test]
 fn a_thousand_random_states_of_all_bicycles_accelerate_alike() {
     let worst = Cell::new([0.0_f64; 3]);
-    // How many, the steepest roll and steer, the largest steer acceleration.
-    let seen = Cell::new((0, [0.0_f64; 3]));
+    // Their number, the largest roll and steer, the largest steer acceleration.
+    let extremes = Cell::new((0, [0.0_f64; 3]));
     runner(1000)
         .run(&situations(60_f64.to_radians()), |draw| {
             let found = compare(&draw).expect("the front wheel reaches the ground");
             let w = worst.get();
             worst.set([0, 1, 2].map(|i| w[i].max(found.off[i])));
-            let (count, most) = seen.get();
+            let (count, most) = extremes.get();
             let here = [draw.state.roll, draw.state.steer, found.steer_acceleration];
-            seen.set((count + 1, [0, 1, 2].map(|i| most[i].max(here[i].abs()))));
+            extremes.set((count + 1, [0, 1, 2].map(|i| most[i].max(here[i].abs()))));
             proptest::prop_assert!(found.off.iter().all(|d| *d < 1e-11), "{}: {:?}", draw.name, found.off);
             Ok(())
         })
         .unwrap();
     let [pitch, rates, accelerations] = worst.get();
-    let (count, [roll, steer, steer_acceleration]) = seen.get();
+    let (count, [roll, steer, steer_acceleration]) = extremes.get();
     println!("{count} states: pitch {pitch:.1e} rad, rates {rates:.1e}, accelerations {accelerations:.1e}");
     println!(
         "roll to {roll:.3}, steer to {steer:.3} rad, steer acceleration to {steer_acceleration:.0} rad/s^2"

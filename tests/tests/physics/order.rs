@@ -1,4 +1,4 @@
-//! The integrator beside an adaptive solver of another library on the other formulation.
+//! The integrator compared with an adaptive solver of another library on the other formulation.
 
 use differential_equations::prelude::*;
 use sim_host::bicycle::{Geometry, Parameters, State, Torques};
@@ -35,18 +35,18 @@ fn errors(name: &str, start: [f64; 2], torques: Torques<f64>, seconds: f64) -> [
     let parameters = shipped(name).parameters;
     let b = Geometry::new(&parameters);
     let start = knocked(&b, start[0], start[1]);
-    // The longest step keeps trial steps from states in which the wheels can't both stand.
+    // The longest step avoids trial steps from states in which the wheels cannot both be on the ground.
     let method = ExplicitRungeKutta::dop853().rtol(1e-13).atol(1e-13).h_max(0.02);
     let reference = Reference { parameters, torques };
     let solution = IVP::ode(&reference, 0.0, seconds, entries(&start)).method(method).solve().unwrap();
-    let wanted = solution.y.last().unwrap();
+    let expected = solution.y.last().unwrap();
 
     let [mut roll, mut steer] = [0.0_f64; 2];
     let errors = [2e-3, 1e-3, 5e-4].map(|step| {
         let end = ride(&b, start, &torques, step, (seconds / step).round() as usize, |s| {
             (roll, steer) = (roll.max(s.roll.abs()), steer.max(s.steer.abs()));
         });
-        entries(&end).iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        entries(&end).iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     });
     let angles = [roll, steer].map(f64::to_degrees);
     println!("{name}: roll {:.1} deg, steer {:.1} deg", angles[0], angles[1]);
@@ -64,7 +64,7 @@ fn orders(e: [f64; 3]) -> [f64; 2] {
     [(e[0] / e[1]).log2(), (e[1] / e[2]).log2()]
 }
 
-/// Also bounded below: the reference is exacter than the ride it judges.
+/// Also bounded below: the reference is more exact than the tested ride.
 fn assert_fourth_order(errors: [f64; 3], at_1_ms: std::ops::Range<f64>) {
     assert!(at_1_ms.contains(&errors[1]), "{errors:?}");
     for order in orders(errors) {
@@ -83,7 +83,7 @@ fn a_hard_knock_of_the_benchmark_under_torques() {
     assert_fourth_order(errors("benchmark", [5.0, 5.0], torques, 3.0), 1e-11..5e-9);
 }
 
-/// The handlebar turns in at 7 rad/s, the bicycle lies at 46 degrees.
+/// The handlebar turns in at 7 rad/s, the bicycle rolls to 46 degrees.
 #[test]
 fn a_fall_with_the_front_wheel_folding_under() {
     assert_fourth_order(errors("rigid_jason", [4.0, 3.0], FREE, 0.8), 1e-8..1e-6);

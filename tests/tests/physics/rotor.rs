@@ -1,13 +1,14 @@
-//! A motor's rotor behind its gear: only the steer gets heavier.
+//! A motor's rotor behind its gear: it only adds to the steer's inertia.
 
 use proptest::prop_assert;
 use sim_host::bicycle::{FullState, Geometry, Motion, Torques};
 use std::cell::Cell;
 use tests::draws::{runner, situations};
 
-/// Situation: any state under any torques, a rotor of 0.02346 kg m^2 on the steer. Action: take the accelerations.
-/// Must hold: they are those of the bicycle without a rotor whose steer torque is less by the rotor's inertia times the
-/// steer acceleration, with three speeds and with six; and the rotor matters.
+/// Situation: any state under any torques, a rotor of 0.02346 kg m^2 on the steer.
+/// Action: compute the accelerations.
+/// Must hold: they are those of the bicycle without a rotor whose steer torque is less by the rotor's inertia times
+/// the steer acceleration, with three speeds and with six; and the rotor has an effect.
 #[test]
 fn a_rotor_takes_its_part_of_the_steer_torque() {
     const ROTOR_KG_M2: f64 = 0.02346;

@@ -1,4 +1,4 @@
-//! Critical speeds and matrices: the thesis's bicycle, and every bicycle of the derived table.
+//! Critical speeds and matrices: the thesis bicycle, and every bicycle of the derived table.
 
 use control::Law;
 use nalgebra::Matrix2;
@@ -8,7 +8,7 @@ use tests::derived::{self, Derived};
 use tests::published::entry;
 use tests::rides::{all_shipped, shipped};
 
-/// What the derived table is compared to: its own rounding and that of the search.
+/// Tolerance of the derived table: its own rounding and that of the search.
 const DERIVED_TOLERANCE: f64 = 1e-9;
 
 fn matrices(linear: &Linear) -> [(&'static str, Matrix2<f64>); 4] {
@@ -36,7 +36,7 @@ fn thesis_bicycles_have_the_printed_matrices() {
 
 /// 10.1449 is printed 10.14, 5.8267 is printed 5.83, 1.0104 is printed 1.01.
 #[test]
-fn thesis_bicycle_changes_its_nature_at_the_printed_speeds() {
+fn the_modes_of_the_thesis_bicycle_change_at_the_printed_speeds() {
     let printed = entry("thesis_speeds");
     let linear = Linear::new(&shipped(printed.text("bicycle")).parameters);
     let found = critical_speeds(&linear, &Law::None);
@@ -53,15 +53,15 @@ fn every_derived_bicycle_has_its_matrices_and_critical_speeds() {
     let mut worst = [0.0_f64; 2];
     for d in &bicycles {
         let linear = Linear::new(&shipped(&d.name).parameters);
-        for ((key, computed), wanted) in matrices(&linear).iter().zip(&d.matrices) {
-            let off = (computed - Matrix2::from_row_slice(wanted)).abs().max();
+        for ((key, computed), expected) in matrices(&linear).iter().zip(&d.matrices) {
+            let off = (computed - Matrix2::from_row_slice(expected)).abs().max();
             worst[0] = worst[0].max(off);
             assert!(off < DERIVED_TOLERANCE, "{} {key} differs by {off:e}", d.name);
         }
         let found = critical_speeds(&linear, &Law::None);
         assert_eq!(found.v_c.is_some(), d.v_c.is_some(), "{}: {found:?}", d.name);
         let off =
-            |found: Option<f64>, wanted: Option<f64>| wanted.map_or(0.0, |w| (found.unwrap() - w).abs());
+            |found: Option<f64>, expected: Option<f64>| expected.map_or(0.0, |w| (found.unwrap() - w).abs());
         let off = off(found.v_d, d.v_d).max(off(found.v_w, Some(d.v_w))).max(off(found.v_c, d.v_c));
         worst[1] = worst[1].max(off);
         assert!(off < DERIVED_TOLERANCE, "{}: {found:?} instead of {d:?}", d.name);
@@ -73,7 +73,7 @@ fn every_derived_bicycle_has_its_matrices_and_critical_speeds() {
 /// Just below v_d two growing real modes, just above a growing oscillation; that one still grows
 /// just below v_w and no longer does just above.
 #[test]
-fn every_shipped_bicycle_changes_its_nature_at_its_critical_speeds() {
+fn the_modes_of_shipped_bicycles_change_at_their_critical_speeds() {
     const ASIDE: f64 = 1e-6;
     for bicycle in all_shipped() {
         let linear = Linear::new(&bicycle.parameters);
@@ -99,9 +99,9 @@ fn derived_eigenvalues_match_from_rest_to_10_m_s() {
     let mut count = 0;
     for Derived { name, eigenvalues: table, .. } in derived::all() {
         let linear = Linear::new(&shipped(&name).parameters);
-        for (v, wanted) in table {
+        for (v, expected) in table {
             let values = eigenvalues(&linear, &Law::None, v);
-            for (re, im) in wanted {
+            for (re, im) in expected {
                 let off = values.iter().map(|e| (e.re - re).hypot(e.im - im)).fold(9.0, f64::min);
                 (worst, count) = (worst.max(off), count + 1);
                 assert!(off < DERIVED_TOLERANCE, "{name} at {v} m/s: {re} {im} differs by {off:e}");

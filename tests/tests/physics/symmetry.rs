@@ -1,4 +1,4 @@
-//! Left and right are the same, nothing stays nothing, and little stays proportionate.
+//! Left-right symmetry, equilibrium without disturbance, and proportionality of small deviations.
 
 use proptest::prop_assert_eq;
 use sim_host::bicycle::linear::Linear;

@@ -10,7 +10,7 @@ use tests::rides::{FREE, shipped};
 const NAMES: [&str; 9] =
     ["x_dd", "y_dd", "z_dd", "theta_dd", "psi_dd", "phi_dd", "psif_dd", "betar_dd", "betaf_dd"];
 
-/// The table's state; the pitch is the table's own, not solved for.
+/// The table's state; the pitch is that of the table, not solved for.
 fn state(table: &Published) -> State<f64> {
     use std::f64::consts::{FRAC_PI_2, PI};
     State {

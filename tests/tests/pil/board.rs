@@ -23,7 +23,7 @@ fn a_ride_on_the_fake_board_has_the_same_bits() {
     let mut controller = fresh();
     for (name, conditions, start) in varied() {
         let Ridden { ride, trace, steps } = ridden(&conditions, start, &mut controller).unwrap();
-        same_ride(&conditions, &steps, &ride, &trace).unwrap_or_else(|why| panic!("{name}: {why}"));
+        same_ride(&conditions, &steps, &ride, &trace).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(steps.len() > trace.len() && trace.len() > 80, "{name}: {} steps", steps.len());
         assert!(!name.starts_with("law") || ride.fell() == name.contains("fall"), "{name}");
         assert!(steps.iter().any(|(_, s)| s.command.mode == Mode::Engaged), "{name} never engages");
@@ -31,11 +31,12 @@ fn a_ride_on_the_fake_board_has_the_same_bits() {
     assert_eq!(controller.tally().missed + controller.tally().restarts + controller.tally().affected, 0);
 }
 
-/// Situation: a ride as it was ridden. Action: change one thing of it: the last bit of a torque, a limit, an authority, a
-/// sample's age, an instant's roll by its last bit, the sign of a zero, the outcome; leave out the last step.
-/// Must hold: the comparison fails for each, and names the step or what it is.
+/// Situation: a recorded ride.
+/// Action: change one value of it: the last bit of a torque, a limit, an authority, a sample's age, an instant's roll
+/// by its last bit, the sign of a zero, the outcome; leave out the last step.
+/// Must hold: the comparison fails for each, and names the step or the quantity.
 #[test]
-fn the_comparison_notices_every_bit() {
+fn the_comparison_finds_every_bit() {
     let conditions = product();
     let right = ridden(&conditions, KNOCK, &mut fresh()).unwrap();
     let difference = |change: &dyn Fn(&mut Ridden)| {
@@ -45,27 +46,28 @@ fn the_comparison_notices_every_bit() {
     };
     assert_eq!(difference(&|_| ()), Ok(()));
     let bump = |x: f32| f32::from_bits(x.to_bits() ^ 1);
-    let refused = |named: &str, change: &dyn Fn(&mut Ridden)| {
-        let why = difference(change).expect_err(named);
-        assert!(why.contains(named), "no `{named}` in: {why}");
+    let rejected = |named: &str, change: &dyn Fn(&mut Ridden)| {
+        let error = difference(change).expect_err(named);
+        assert!(error.contains(named), "no `{named}` in: {error}");
     };
-    refused("the command of control step 700", &|r| {
+    rejected("the command of control step 700", &|r| {
         r.steps[700].1.command.torque_nm = bump(r.steps[700].1.command.torque_nm);
     });
-    refused("the command of control step 9", &|r| r.steps[9].1.command.limits = ActiveLimits(1));
-    refused("the authority of control step 650", &|r| {
+    rejected("the command of control step 9", &|r| r.steps[9].1.command.limits = ActiveLimits(1));
+    rejected("the authority of control step 650", &|r| {
         r.steps[650].1.authority = bump(r.steps[650].1.authority);
     });
-    refused("the frame of control step 3", &|r| r.steps[3].0.gyro_rad_s.age_ticks += 1);
-    refused("the number of control steps", &|r| r.steps.truncate(600));
-    refused("the motion at 0.1 s", &|r| r.trace[100].roll = f64::from_bits(r.trace[100].roll.to_bits() ^ 1));
-    refused("the motion at 0 s", &|r| r.trace[0].roll = -r.trace[0].roll);
-    refused("the number of instants", &|r| r.trace.truncate(600));
-    refused("the ride's end", &|r| r.ride.steps += 1);
+    rejected("the frame of control step 3", &|r| r.steps[3].0.gyro_rad_s.age_ticks += 1);
+    rejected("the number of control steps", &|r| r.steps.truncate(600));
+    rejected("the motion at 0.1 s", &|r| r.trace[100].roll = f64::from_bits(r.trace[100].roll.to_bits() ^ 1));
+    rejected("the motion at 0 s", &|r| r.trace[0].roll = -r.trace[0].roll);
+    rejected("the number of instants", &|r| r.trace.truncate(600));
+    rejected("the ride's end", &|r| r.ride.steps += 1);
 }
 
-/// Situation: the same ride twice on one board, and on a fresh one. Action: keep all chunks.
-/// Must hold: sensors and commands have the same bits each time; two fresh boards hand over the same bytes, and the fake
+/// Situation: the same ride twice on one board, and on a fresh one.
+/// Action: record all chunks.
+/// Must hold: sensors and commands have the same bits each time; two fresh boards send the same bytes, and the fake
 /// one's chunks are as many as the steps.
 #[test]
 fn a_ride_after_another_is_as_on_a_fresh_board() {
@@ -82,11 +84,13 @@ fn a_ride_after_another_is_as_on_a_fresh_board() {
     assert_eq!(new.board.chunks.len(), 2 * first.steps.len() + 1);
 }
 
-/// Situation: a product ride. Action: the fake board's chip is reset at 1.5 s of its time and back 120 ms later.
-/// Must hold: the ride goes on to its end; for 5 ms the motor holds the command, then it gives none; the controller that came
-/// back, with the stored configuration, is told of the sensors and stays off for want of a polarity check; 120 steps are missed.
+/// Situation: a product ride.
+/// Action: the fake board's chip is reset at 1.5 s of its time and back 120 ms later.
+/// Must hold: the ride continues to its end; for 5 ms the motor holds the command, then it gives none; the restarted
+/// controller, with the stored configuration, receives the sensors and stays off without a polarity check; 120 steps
+/// are missed.
 #[test]
-fn a_chip_that_starts_anew_takes_the_torque_away() {
+fn a_chip_that_restarts_gives_no_torque() {
     let conditions = Conditions { time_limit_s: 1.5, ..product() };
     let undisturbed = ridden(&conditions, KNOCK, &mut fresh()).unwrap();
     let reset_at_ms = 1100;
@@ -96,7 +100,7 @@ fn a_chip_that_starts_anew_takes_the_torque_away() {
     let Ridden { ride, trace, steps } = ridden(&conditions, KNOCK, &mut controller).unwrap();
     let tally = controller.tally();
     assert_eq!((tally.restarts, tally.missed), (1, 119));
-    // The board had stepped once when the ride came.
+    // The board had done one step before the ride began.
     let at = reset_at_ms as usize - 1;
     let torque = |k: usize| steps[k].1.command.torque_nm;
     assert!(torque(at - 1) != 0.0);
@@ -110,14 +114,16 @@ fn a_chip_that_starts_anew_takes_the_torque_away() {
     assert!(!last.mode.drives() && last.causes.has(control::Cause::PolarityUnchecked), "{last:?}");
     assert!(!last.causes.has(control::Cause::GyroLost), "the frames are those of the steps: {last:?}");
     assert!(steps.len() > at + 500, "the ride goes on: {} steps", steps.len());
-    let why = same_ride(&conditions, &steps, &ride, &trace).expect_err("another ride");
-    assert!(why.0.contains(&format!("control step {at}:")), "{why}");
+    let error = same_ride(&conditions, &steps, &ride, &trace).expect_err("another ride");
+    assert!(error.0.contains(&format!("control step {at}:")), "{error}");
 }
 
-/// Situation: a product ride. Action: the board is held up for 3 ms at 1.1 s of its time, then makes up for its steps.
-/// Must hold: the motor holds the command for the 3 steps that are missed; the numbers of frames go on fitting those of steps.
+/// Situation: a product ride.
+/// Action: the board is delayed by 3 ms at 1.1 s of its time, then makes up for its steps.
+/// Must hold: the motor holds the command for the 3 steps that are missed; the numbers of frames still match those of
+/// steps.
 #[test]
-fn a_board_that_is_held_up_holds_its_command() {
+fn the_motor_holds_the_command_of_a_delayed_board() {
     let conditions = Conditions { time_limit_s: 1.5, ..product() };
     let mut board = FakeBoard::default();
     board.held_up_at_ms = Some((1100, 3));
@@ -131,7 +137,7 @@ fn a_board_that_is_held_up_holds_its_command() {
     assert!(steps[steps.len() - 1].1.command.mode == Mode::Engaged);
 }
 
-/// A board that answers each exchange in its own way.
+/// A board with its own answer to each exchange.
 struct Odd(FakeBoard, fn(&mut FakeBoard, &ToBoard<'_>) -> Result<(), BoardError>);
 
 impl Lockstep for Odd {
@@ -143,41 +149,50 @@ impl Lockstep for Odd {
     }
 }
 
-/// Situation: boards that don't do what the lockstep promises: one that never takes the reset, one that takes no frame, one
+/// Situation: boards that violate the lockstep: one that never accepts the reset, one that accepts no frame, one
 /// whose time stands still, one that ends.
-/// Action: ride. Must hold: each ends the ride with an error that says so, and nothing else.
+/// Action: ride.
+/// Must hold: each ends the ride with an error that names the violation, and nothing else.
 #[test]
-fn a_board_gone_astray_ends_the_ride_with_its_reason() {
-    let why = |exchange| {
+fn a_board_that_violates_the_lockstep_ends_the_ride() {
+    let error = |exchange| {
         let mut controller = Controller::new(Odd(FakeBoard::default(), exchange), &[], 0);
         ridden(&assisted(H), KNOCK, &mut controller).expect_err("an error").0
     };
-    let deaf = why(|board, _| board.exchange(&ToBoard { sensors: &[], line: &[] }));
-    assert!(deaf.contains("control step 0") && deaf.contains("reset was not answered"), "{deaf}");
-    let forgetful = why(|board, to| {
+    let deaf = error(|board, _| board.exchange(&ToBoard { sensors: &[], line: &[] }));
+    assert!(
+        deaf.to_string().contains("control step 0") && deaf.to_string().contains("reset was not answered"),
+        "{deaf}"
+    );
+    let forgetful = error(|board, to| {
         let again = board.last().time_ms > 40;
         board.exchange(&ToBoard { sensors: if again { &[] } else { to.sensors }, line: &[] })
     });
-    assert!(forgetful.contains("control step 40") && forgetful.contains("frame 39"), "{forgetful}");
-    let still = why(|board, to| if board.last().time_ms < 9 { board.exchange(to) } else { Ok(()) });
-    assert!(still.contains("from 9 ms to 9 ms"), "{still}");
-    let ended = why(|_, _| Err(BoardError::NoChunk("so it is".into())));
-    assert!(ended.contains("so it is"), "{ended}");
+    assert!(
+        forgetful.to_string().contains("control step 40") && forgetful.to_string().contains("frame 39"),
+        "{forgetful}"
+    );
+    let still = error(|board, to| if board.last().time_ms < 9 { board.exchange(to) } else { Ok(()) });
+    assert!(still.to_string().contains("from 9 ms to 9 ms"), "{still}");
+    let ended = error(|_, _| Err(BoardError::NoChunk("so it is".into())));
+    assert!(ended.to_string().contains("so it is"), "{ended}");
 }
 
-/// Situation: a configuration for 500 Hz. Action: begin a ride.
-/// Must hold: refused, naming the parameter, its value and the rate that there is.
+/// Situation: a configuration for 500 Hz.
+/// Action: begin a ride.
+/// Must hold: rejected, naming the parameter, its value and the available rate.
 #[test]
-fn another_rate_is_refused() {
+fn another_rate_is_rejected() {
     let config = control::Config { rate_hz: 500.0, ..control::Config::thesis(H) };
     let conditions = configured(config);
     let sim_host::ride::Assist::Firmware(plan) = &conditions.assist else { unreachable!() };
     let why = fresh().begin(plan, &Start::default()).expect_err("refused").0;
-    assert!(["rate_hz", "500", "1000"].iter().all(|word| why.contains(word)), "{why}");
+    assert!(["rate_hz", "500", "1000"].iter().all(|word| why.to_string().contains(word)), "{why}");
 }
 
-/// Situation: a ride of 70 s, longer than the frames' numbers. Action: ride, with a frame lost at each of the wraps' places.
-/// Must hold: no number goes wrong.
+/// Situation: a ride of 70 s, longer than the range of the frames' numbers.
+/// Action: ride, with a frame lost at each wrap.
+/// Must hold: no number is wrong.
 #[test]
 fn the_numbers_of_frames_wrap() {
     let conditions = Conditions { time_limit_s: 70.0, ..assisted(H) };

@@ -11,10 +11,11 @@ fn on_image() -> String {
     format!("--image {}", word(&image::path("qemu-pil")))
 }
 
-/// Situation: options that no board can be ridden with. Action: `pil`.
-/// Must hold: refused, naming the option, the value and what there is.
+/// Situation: options for which no board can ride.
+/// Action: `pil`.
+/// Must hold: rejected, naming the option, the value and the allowed ones.
 #[test]
-fn what_can_not_be_ridden_is_refused_by_name() {
+fn options_without_a_board_ride_are_rejected() {
     let bench = Bench::new(PROGRAM);
     for (line, named) in [
         ("pil --speed 4 --law none", vec!["--law"]),
@@ -28,7 +29,7 @@ fn what_can_not_be_ridden_is_refused_by_name() {
         ("pil basin --image no/such/image", vec!["no/such/image"]),
         ("pil basin --speeds 4 --max-rate 1000", vec!["max rate", "100"]),
     ] {
-        bench.run(line).refused_naming(&named);
+        bench.run(line).rejected_naming(&named);
     }
     for line in ["pil", "pil --speed 4 --compare --inject sensors:drop", "pil --speed 4 --compare --bench"] {
         assert_eq!(bench.run(line).code, Some(2), "{line}");
@@ -36,10 +37,12 @@ fn what_can_not_be_ridden_is_refused_by_name() {
     assert_eq!(bench.files(), [""; 0]);
 }
 
-/// Situation: a product ride with a fault. Action: `pil --compare` and `ride`, each with all outputs.
-/// Must hold: exit 0, and the text says how many steps were the same; document, table, figure and frames are the same bytes.
+/// Situation: a product ride with a fault.
+/// Action: `pil --compare` and `ride`, each with all outputs.
+/// Must hold: exit 0, and the text has the number of equal steps; document, table, figure and frames are the same
+/// bytes.
 #[test]
-fn a_ride_on_the_chip_writes_what_a_ride_writes() {
+fn a_ride_on_the_chip_writes_the_same_files() {
     if !image::ready() {
         return;
     }
@@ -62,10 +65,11 @@ fn a_ride_on_the_chip_writes_what_a_ride_writes() {
     }
 }
 
-/// Situation: a link that loses sensors for 50 ms. Action: `pil --inject`.
-/// Must hold: exit 0; the text says on how many steps it acted; the document is another one than without.
+/// Situation: a link that loses sensors for 50 ms.
+/// Action: `pil --inject`.
+/// Must hold: exit 0; the text has the number of affected steps; the document differs from the one without.
 #[test]
-fn a_fault_of_the_link_is_told() {
+fn a_fault_of_the_link_is_reported() {
     if !image::ready() {
         return;
     }
@@ -80,7 +84,7 @@ fn a_fault_of_the_link_is_told() {
 
 /// Situation: a short ride. Action: `pil --bench`. Must hold: one line with the median; no other output.
 #[test]
-fn the_speed_is_told_as_a_median() {
+fn the_speed_is_a_median() {
     if !image::ready() {
         return;
     }
@@ -93,10 +97,11 @@ fn the_speed_is_told_as_a_median() {
     );
 }
 
-/// Situation: a coarse basin. Action: `pil basin --compare` on two boards, and `basin`.
-/// Must hold: exit 0, and the text says that it is the same; the tables are the same bytes.
+/// Situation: a coarse basin.
+/// Action: `pil basin --compare` on two boards, and `basin`.
+/// Must hold: exit 0, and the text reports that it is the same; the tables are the same bytes.
 #[test]
-fn a_basin_on_chips_writes_what_a_basin_writes() {
+fn a_basin_on_chips_writes_the_same_files() {
     if !image::ready() {
         return;
     }

@@ -15,9 +15,9 @@ use tests::tape::Taped;
 use tests::wait::LONG;
 use xtask::image;
 
-/// The image with words as its arguments, just started.
-pub(crate) fn started(words: &[&str]) -> Qemu {
-    Qemu::start(&image::path("qemu-pil"), words, LONG).unwrap_or_else(|why| panic!("{why}"))
+/// The image with these arguments, just started.
+pub(crate) fn started(arguments: &[&str]) -> Qemu {
+    Qemu::start(&image::path("qemu-pil"), arguments, LONG).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Situation: rides with exact and with noisy sensors, with faults, with a rider, one that falls.
@@ -32,15 +32,17 @@ fn a_ride_on_the_chip_has_the_same_bits() {
     let mut controller = Controller::new(started(&[]), &[], 0);
     for (name, conditions, start) in varied() {
         let Ridden { ride, trace, steps } = ridden(&conditions, start, &mut controller).unwrap();
-        same_ride(&conditions, &steps, &ride, &trace).unwrap_or_else(|why| panic!("{name}: {why}"));
+        same_ride(&conditions, &steps, &ride, &trace).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(steps.iter().any(|(_, s)| s.command.mode == Mode::Engaged), "{name} never engages");
     }
     let tally = controller.tally();
     assert!(tally.steps > 10_000 && tally.missed + tally.restarts + tally.affected == 0, "{tally:?}");
 }
 
-/// Situation: the same ride on a chip that rode before, and on two fresh ones. Action: keep all chunks.
-/// Must hold: sensors and commands have the same bits each time; the fresh chips hand over the same bytes, time and line included.
+/// Situation: the same ride on a chip that rode before, and on two fresh ones.
+/// Action: record all chunks.
+/// Must hold: sensors and commands have the same bits each time; the fresh chips send the same bytes, time and line
+/// included.
 #[test]
 fn a_ride_after_another_is_as_on_a_fresh_chip() {
     if !image::ready() {
@@ -60,7 +62,7 @@ fn a_ride_after_another_is_as_on_a_fresh_chip() {
 
 /// As of [`sensors_lost_and_late`] and [`commands_lost_and_late`], on the chip.
 #[test]
-fn a_link_that_goes_wrong_on_the_chip() {
+fn link_faults_on_the_chip() {
     if !image::ready() {
         return;
     }
@@ -71,7 +73,7 @@ fn a_link_that_goes_wrong_on_the_chip() {
 /// Situation: a product ride over a link with several faults at once. Action: ride it on the chip and on the fake board.
 /// Must hold: the same bits, step for step.
 #[test]
-fn the_fake_board_is_like_the_chip() {
+fn the_fake_board_has_the_bits_of_the_chip() {
     if !image::ready() {
         return;
     }
@@ -90,7 +92,8 @@ fn the_fake_board_is_like_the_chip() {
     assert!(chip.ride == fake.ride);
 }
 
-/// Situation: a coarse basin of law h. Action: ride it on chips, one a thread, and here.
+/// Situation: a coarse basin of law h.
+/// Action: ride it on chips, one a thread, and in this program.
 /// Must hold: every border, island, outcome and number of rides has the same bits.
 #[test]
 fn a_basin_on_chips_has_the_same_bits() {
@@ -104,15 +107,16 @@ fn a_basin_on_chips_has_the_same_bits() {
     same_basin(&here, &there).unwrap();
 }
 
-fn failure(name: &str, words: &[&str], limit: Duration) -> String {
-    Qemu::start(&image::path(name), words, limit).expect_err("it is no board in the loop").to_string()
+fn failure(name: &str, arguments: &[&str], limit: Duration) -> String {
+    Qemu::start(&image::path(name), arguments, limit).expect_err("it is no board in the loop").to_string()
 }
 
-/// Situation: an image that prints text to its standard output; one that is given less time than it needs to start; words
-/// that the image does not know.
-/// Action: start them. Must hold: an error that tells what happened, with the image's last words where it ended.
+/// Situation: an image that prints text to its standard output; one with a shorter timeout than it needs to start;
+/// unknown arguments of the image.
+/// Action: start them.
+/// Must hold: an error with the reason, and the image's last text where it ended.
 #[test]
-fn what_is_no_board_in_the_loop_is_told() {
+fn an_image_without_the_lockstep_is_rejected() {
     if !image::ready() {
         return;
     }
@@ -120,21 +124,24 @@ fn what_is_no_board_in_the_loop_is_told() {
     assert!(prints.contains("docs/link.md") && prints.contains("version"), "{prints}");
     let slow = failure("qemu-pil", &[], Duration::from_millis(2));
     assert!(["qemu-pil", "did not answer within 2ms"].iter().all(|word| slow.contains(word)), "{slow}");
-    let ends = failure("qemu-pil", &["mishap=none-of-them", "at_ms=5"], LONG);
-    assert!(["qemu-pil", "ended", "no such mishap"].iter().all(|word| ends.contains(word)), "{ends}");
+    let ends = failure("qemu-pil", &["fault=none-of-them", "at_ms=5"], LONG);
+    assert!(["qemu-pil", "ended", "no such fault"].iter().all(|word| ends.contains(word)), "{ends}");
 }
 
-/// Situation: no image. Action: start it. Must hold: the error names the file and how it is built.
+/// Situation: no image.
+/// Action: start it.
+/// Must hold: the error names the file and the command that builds it.
 #[test]
-fn a_missing_image_is_told() {
-    let why = Qemu::start(Path::new("no/such/image"), &[], LONG).expect_err("there is none");
-    assert!(matches!(&why, BoardError::NoImage(_)));
-    let why = why.to_string();
-    assert!(why.contains("no/such/image") && why.contains("cargo xtask firmware"), "{why}");
+fn a_missing_image_is_named() {
+    let error = Qemu::start(Path::new("no/such/image"), &[], LONG).expect_err("there is none");
+    assert!(matches!(&error, BoardError::NoImage(_)));
+    let error = error.to_string();
+    assert!(error.contains("no/such/image") && error.contains("cargo xtask firmware"), "{error}");
 }
 
-/// Situation: a chip at rest. Action: hand it nothing a hundred times.
-/// Must hold: a millisecond goes by each time, the chip started once, and each chunk has a command.
+/// Situation: a chip at rest.
+/// Action: a hundred empty exchanges.
+/// Must hold: a millisecond elapses each time, the chip started once, and each chunk has a command.
 #[test]
 fn an_exchange_is_a_millisecond() {
     if !image::ready() {

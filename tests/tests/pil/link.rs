@@ -1,4 +1,4 @@
-//! Faults of the loop's link: as text, and what they do.
+//! Faults of the loop's link: as text, and their effects.
 
 use control::{Mode, SensorFrame, State, step};
 use proptest::prelude::*;
@@ -12,13 +12,13 @@ use tests::pil::{KNOCK, Ridden, link_faults, product, ridden};
 /// Situation: any fault of the link. Action: write it, read it back. Must hold: the same.
 #[test]
 fn a_written_link_fault_reads_back() {
-    let harms = prop_oneof![
+    let kinds = prop_oneof![
         Just(LinkFaultKind::Drop),
         Just(LinkFaultKind::Corrupt),
         (1..=1000u32).prop_map(LinkFaultKind::Late)
     ];
     let when = (0.0..3000.0, prop_oneof![Just(f64::INFINITY), 0.001..600.0]);
-    let faults = (select(&Direction::ALL), harms, when).prop_map(|(direction, kind, (from_s, long))| {
+    let faults = (select(&Direction::ALL), kinds, when).prop_map(|(direction, kind, (from_s, long))| {
         LinkFault { direction, kind, from_s, to_s: from_s + long }
     });
     runner(1000)
@@ -30,10 +30,11 @@ fn a_written_link_fault_reads_back() {
         .unwrap();
 }
 
-/// Situation: texts that are no fault of the link. Action: read them.
-/// Must hold: refused, naming the text and what there is.
+/// Situation: texts that are no fault of the link.
+/// Action: read them.
+/// Must hold: rejected, naming the text and the allowed ones.
 #[test]
-fn what_is_no_link_fault_is_refused_by_name() {
+fn invalid_link_faults_are_named() {
     for (text, named) in [
         ("drop@1s", "DIRECTION:FAULT"),
         ("gyro:drop", "sensors or motor"),
@@ -48,11 +49,11 @@ fn what_is_no_link_fault_is_refused_by_name() {
         ("motor:drop@4000s", "3600"),
     ] {
         let why = text.parse::<LinkFault>().expect_err(text);
-        assert!(why.contains(text) && why.contains(named), "{why}");
+        assert!(why.to_string().contains(text) && why.to_string().contains(named), "{why}");
     }
 }
 
-/// The flashed controller's answers when of these frames only those of `arrived` come, each at the step it names.
+/// The flashed controller's answers if only the frames of `arrived` arrive, each at the step it names.
 fn expected(
     conditions: &Conditions,
     frames: &[SensorFrame],
@@ -68,8 +69,9 @@ fn expected(
     (0..frames.len()).map(&mut one).collect()
 }
 
-/// Situation: a product ride with a noisy gyro. Action: sensor frames are dropped, damaged, or late by 3 ms, from 0.2 s to 0.25 s.
-/// Must hold: each command is that of the last frame that came, older by as many ticks as it is late; dropped and damaged ones
+/// Situation: a product ride with a noisy gyro.
+/// Action: sensor frames are dropped, damaged, or late by 3 ms, from 0.2 s to 0.25 s.
+/// Must hold: each command is that of the last frame received, older by its delay in ticks; dropped and damaged ones
 /// are the same; the ride differs from the undisturbed one; as many steps are reported as affected.
 pub(crate) fn sensors_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) {
     let mut conditions = Conditions { time_limit_s: 0.8, ..product() };
@@ -100,9 +102,10 @@ pub(crate) fn sensors_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) {
     assert!(answers(&dropped) != expected(&conditions, &frames(&dropped), all));
 }
 
-/// Situation: a product ride that engages. Action: its commands are dropped, damaged, or late by 2 ms, from 0.2 s to 0.25 s.
-/// Must hold: dropped and damaged, the motor holds the last command for 5 ms and then gives no torque until the next one; late,
-/// it does what was commanded 2 ms before.
+/// Situation: a product ride that engages.
+/// Action: its commands are dropped, damaged, or late by 2 ms, from 0.2 s to 0.25 s.
+/// Must hold: dropped and damaged, the motor holds the last command for 5 ms and then gives no torque until the next
+/// one; late, it executes the command of 2 ms before.
 pub(crate) fn commands_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) {
     let conditions = Conditions { time_limit_s: 0.4, ..product() };
     let mut ride = |fault: &str| {
@@ -123,7 +126,7 @@ pub(crate) fn commands_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) 
     assert!(dropped.steps[to].1.command.torque_nm != 0.0);
     let Assist::Firmware(plan) = &conditions.assist else { unreachable!() };
     let mut state = State::default();
-    let asked: Vec<f32> =
+    let requested: Vec<f32> =
         late.steps.iter().map(|(frame, _)| step(plan, &mut state, frame).torque_nm).collect();
     let given = |k: usize| late.steps[k].1.command.torque_nm;
     for k in from - 50..to + 50 {
@@ -132,7 +135,7 @@ pub(crate) fn commands_lost_and_late<B: Lockstep>(mut board: impl FnMut() -> B) 
             _ if k < from + 2 => from - 1,
             _ => k - 2,
         };
-        assert_eq!(given(k).to_bits(), asked[of].to_bits(), "step {k}");
+        assert_eq!(given(k).to_bits(), requested[of].to_bits(), "step {k}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! What becomes of the emulators when the program stops.
+//! The emulators when the program stops.
 #![cfg(target_os = "linux")]
 
 use serde_json::Value;
@@ -33,10 +33,11 @@ fn signal(name: &str, child: &Child) {
     assert!(kill.expect("sh runs").success());
 }
 
-/// Situation: a basin of many short columns on the chip, some of it done. Action: Ctrl-C.
-/// Must hold: exit code 130; what is done is kept and written, the rest is null; the emulator is gone.
+/// Situation: a basin of many short columns on the chip, some of it done.
+/// Action: Ctrl-C.
+/// Must hold: exit code 130; completed results are written, the rest is null; the emulator has ended.
 #[test]
-fn an_interrupted_basin_on_the_chip_keeps_what_is_done() {
+fn an_interrupted_basin_on_the_chip_preserves_completed_speeds() {
     if !image::ready() {
         return;
     }
@@ -55,10 +56,11 @@ fn an_interrupted_basin_on_the_chip_keeps_what_is_done() {
     assert!(!emulator.exists());
 }
 
-/// Situation: a ride on the chip. Action: the program is killed, without a chance to end its emulator.
+/// Situation: a ride on the chip.
+/// Action: the program is killed, and cannot end its emulator.
 /// Must hold: the emulator ends by itself.
 #[test]
-fn an_emulator_does_not_outlive_its_program() {
+fn an_emulator_ends_with_its_program() {
     if !image::ready() {
         return;
     }

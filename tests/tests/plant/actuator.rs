@@ -1,7 +1,8 @@
-//! Flight cards: the motor beside closed forms, and the friction's energy.
+//! The motor compared with closed forms, and the friction's energy.
 
 use sim_host::bicycle::{Accelerations, Geometry, Motion, State, Torques};
-use sim_host::integrate::{Actuation, Moves, Stages, rk4};
+use sim_host::integrate::{Actuation, Stages, rk4};
+use sim_host::num::Moves;
 use sim_host::plant::catalogue::{load, shipped_names};
 use sim_host::plant::{Actuator, ActuatorConfig, Friction, SteerStop, Supply};
 use tests::rides::{knocked, shipped};
@@ -22,7 +23,7 @@ fn given(config: &ActuatorConfig, command: impl Fn(usize) -> f64, periods: usize
 
 /// Situation: no actuator. Must hold: the command at every instant, to the bit.
 #[test]
-fn the_default_actuator_gives_what_it_is_asked_for() {
+fn the_default_actuator_gives_the_requested_torque() {
     let command = |period: usize| [0.0, -0.0, 3.7, -1e9][period % 4];
     for (period, torques) in given(&ActuatorConfig::default(), command, 8).into_iter().enumerate() {
         assert_eq!(torques.map(f64::to_bits), [command(period).to_bits(); 3]);
@@ -59,9 +60,10 @@ fn limit_scale_and_sign() {
     assert_eq!(at(ActuatorConfig { scale: -1.0, ..limited }, 9.0), -7.0);
 }
 
-/// Situation: 24 V, 0.6 ohm, 0.75 N m/A at the steer axis. Action: ask for a lot at steer rates both ways.
-/// Must hold: `k (V - k q) / R` where that is less, so 30 N m at standstill, less with the motion, none at
-/// `V / k`; a small torque passes.
+/// Situation: 24 V, 0.6 ohm, 0.75 N m/A at the steer axis.
+/// Action: request a large torque at steer rates in both directions.
+/// Must hold: `k (V - k q) / R` where that is less, so 30 N m at standstill, less with the motion, none at `V / k`; a
+/// small torque passes.
 #[test]
 fn the_voltage_limits_the_torque_at_speed() {
     let supply = Supply { voltage_v: 24.0, resistance_ohm: 0.6, constant_nm_a: 0.75 };
@@ -81,8 +83,8 @@ fn the_voltage_limits_the_torque_at_speed() {
     assert!(at(1000.0, f64::NAN) == 1000.0);
 }
 
-/// Situation: the shipped actuators, and files with something wrong. Must hold: the shipped ones load with
-/// the published values; a file's fault is named.
+/// Situation: the shipped actuators, and files with an error each.
+/// Must hold: the shipped ones load with the published values; a file's error is named.
 #[test]
 fn actuators_load_by_name_or_file() {
     for name in shipped_names() {
@@ -115,7 +117,7 @@ fn actuators_load_by_name_or_file() {
     }
 }
 
-/// Work done by friction, integrated along with the bicycle.
+/// Work done by friction, integrated with the bicycle.
 #[derive(Clone, Copy)]
 struct Work(f64);
 
@@ -148,9 +150,10 @@ impl Actuation<f64> for Rubbing {
     }
 }
 
-/// Situation: the benchmark bicycle knocked at 5 m/s with the Davis friction, then with ten times the
-/// Coulomb part. Action: 5 s of riding.
-/// Must hold: the energy changes by the friction's work, which is never positive and worth the name.
+/// Situation: the benchmark bicycle after a knock at 5 m/s with the Davis friction, then with ten times the Coulomb
+/// part.
+/// Action: 5 s of riding.
+/// Must hold: the energy changes by the friction's work, which is never positive and not negligible.
 #[test]
 fn friction_takes_exactly_its_work() {
     let b = Geometry::new(&shipped("benchmark").parameters);
@@ -189,7 +192,8 @@ fn coulomb_friction_is_smooth_through_zero() {
 /// Situation: a steer of 0.2 kg m^2 that runs into a stop at 0.5 rad with 5 rad/s, to the right and to the left.
 /// Action: 0.2 s in steps of 1 ms.
 /// Must hold: it goes 1.6 degrees beyond and leaves with 0.30 of its rate, as the closed form of the damped spring
-/// without pull says, both within a twentieth; before and after the contact there is no torque; left mirrors right.
+/// without tension gives, both within a twentieth; before and after the contact there is no torque; left mirrors
+/// right.
 #[test]
 fn the_stop_throws_the_steer_back_with_loss() {
     let stop = SteerStop::at(0.5);
@@ -212,13 +216,13 @@ fn the_stop_throws_the_steer_back_with_loss() {
             rate += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
             most = most.max(angle * side);
         }
-        let (deep, kept) = (most - 0.5, -rate * side / 5.0);
-        println!("{deep} rad, {kept}; closed form {deepest}, {left_with}");
-        assert!((deep / deepest - 1.0).abs() < 0.05 && (kept / left_with - 1.0).abs() < 0.05);
+        let (deep, left_part) = (most - 0.5, -rate * side / 5.0);
+        println!("{deep} rad, {left_part}; closed form {deepest}, {left_with}");
+        assert!((deep / deepest - 1.0).abs() < 0.05 && (left_part / left_with - 1.0).abs() < 0.05);
         assert!((deepest.to_degrees() - 1.6).abs() < 0.05 && (left_with - 0.3).abs() < 0.005);
     }
     assert_eq!((stop.torque(0.499, 9.0), stop.torque(-0.499, -9.0)), (0.0, 0.0));
-    // Leaving fast, the spring can't follow: the stop does not hold the steer back.
+    // Leaving fast, the spring cannot follow: the stop does not hold the steer back.
     assert_eq!(stop.torque(0.51, -9.0), 0.0);
     assert_eq!(stop.torque(0.51, 1.0), -stop.torque(-0.51, -1.0));
     for angle_rad in [0.0, 2.0, f64::NAN] {

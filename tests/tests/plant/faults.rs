@@ -1,4 +1,4 @@
-//! Flight cards: faults as text, and what they do when.
+//! Faults as text, and the times of their effects.
 
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -35,9 +35,10 @@ fn faults() -> impl Strategy<Value = Fault> {
     )
 }
 
-/// Situation: any fault. Action: write it and read it back.
-/// Must hold: what is accepted is the same fault; what is not is one that its channel can't have, and
-/// the message names the text.
+/// Situation: any fault.
+/// Action: write it and parse it.
+/// Must hold: an accepted text is the same fault; a rejected one is a fault that its channel cannot have, and the
+/// message names the text.
 #[test]
 fn a_written_fault_reads_back() {
     let accepted = std::cell::Cell::new(0);
@@ -60,7 +61,8 @@ fn a_written_fault_reads_back() {
     assert!(accepted.get() > 1000, "{}", accepted.get());
 }
 
-/// Situation: any text, and pieces of faults put together anyhow. Must hold: no panic.
+/// Situation: any text, and random combinations of parts of faults.
+/// Must hold: no panic.
 #[test]
 fn no_text_makes_the_fault_parser_panic() {
     let pieces = [
@@ -78,9 +80,10 @@ fn no_text_makes_the_fault_parser_panic() {
         .unwrap();
 }
 
-/// Situation: faults with something wrong. Must hold: the message says what, and what is allowed.
+/// Situation: faults with an error each.
+/// Must hold: the message names it, and the allowed values.
 #[test]
-fn a_wrong_fault_is_told_what_is_allowed() {
+fn an_invalid_fault_names_the_allowed_ones() {
     for (text, says) in [
         ("gyro", "expected CHANNEL"),
         ("gyros:stuck", "gyro, accel, steer"),
@@ -107,7 +110,7 @@ fn a_wrong_fault_is_told_what_is_allowed() {
     }
 }
 
-/// What the controller is told from t = 0 of a ride whose every reading at tick t is `truth(t)`.
+/// The controller's measurements from t = 0 of a ride whose every reading at tick t is `truth(t)`.
 fn measured(faults: &[&str], ticks: i64, truth: impl Fn(f64) -> Reading) -> Vec<Measured> {
     let faults = faults.iter().map(|text| text.parse().unwrap()).collect();
     let plant = Plant { faults, ..Plant::default() };
@@ -121,9 +124,10 @@ fn counting(t: f64) -> Reading {
     Reading { steer_rate_rad_s: t, gyro_rad_s: [t, 10.0 * t, 100.0 * t], ..Reading::steady(4.0, 9.81) }
 }
 
-/// Situation: no fault. Must hold: exactly the truth, fresh, and the clock counts microseconds.
+/// Situation: no fault.
+/// Must hold: exactly the true values, fresh, and the clock counts microseconds.
 #[test]
-fn without_fault_the_truth_is_told() {
+fn without_a_fault_the_true_values_are_measured() {
     for (tick, m) in measured(&[], 50, counting).iter().enumerate() {
         let t = tick as f64;
         assert_eq!((m.of(Sensor::Gyro).value, m.of(Sensor::Gyro).age_ticks), ([t, 10.0 * t, 100.0 * t], 0));
@@ -132,12 +136,13 @@ fn without_fault_the_truth_is_told() {
     }
 }
 
-/// Situation: each kind of fault on the steer rate from 10 ms to 20 ms. Action: 30 ticks.
-/// Must hold: before tick 10 and from tick 20 on the truth; in between exactly what the kind says.
+/// Situation: each kind of fault on the steer rate from 10 ms to 20 ms.
+/// Action: 30 ticks.
+/// Must hold: before tick 10 and from tick 20 on the true value; in between exactly the definition of the kind.
 #[test]
 fn a_fault_acts_at_exactly_its_instants() {
-    type Says = fn(f64) -> Option<f64>;
-    let kinds: [(&str, Says); 9] = [
+    type Effect = fn(f64) -> Option<f64>;
+    let kinds: [(&str, Effect); 9] = [
         ("stuck", |_| Some(9.0)),
         ("missing", |_| None),
         ("late=4ms", |t| (t >= 14.0).then_some(t - 4.0)),
@@ -149,13 +154,13 @@ fn a_fault_acts_at_exactly_its_instants() {
         ("value=-2", |_| Some(-2.0)),
     ];
     for (kind, says) in kinds {
-        let seen = measured(&[&format!("steer-rate:{kind}@10ms..20ms")], 30, counting);
+        let values = measured(&[&format!("steer-rate:{kind}@10ms..20ms")], 30, counting);
         let (mut last, mut age) = (0.0, 0);
-        for (tick, m) in seen.iter().enumerate() {
+        for (tick, m) in values.iter().enumerate() {
             let t = tick as f64;
-            let said = if (10..20).contains(&tick) { says(t) } else { Some(t) };
-            age = if said.is_some() { 0 } else { age + 1 };
-            last = said.unwrap_or(last);
+            let output = if (10..20).contains(&tick) { says(t) } else { Some(t) };
+            age = if output.is_some() { 0 } else { age + 1 };
+            last = output.unwrap_or(last);
             let held = m.of(Sensor::SteerRate);
             assert_eq!((held.value[0], held.age_ticks), (last, age), "{kind} at {tick}");
             assert_eq!(m.of(Sensor::Gyro).value[0], t, "{kind}: another sensor");
@@ -169,10 +174,10 @@ fn a_fault_acts_at_exactly_its_instants() {
 }
 
 /// Situation: faults on one axis, two faults on one sensor, faults on switch and clock.
-/// Must hold: the other axes are told truly; faults act in their order; the switch opens; the clock stands,
-/// runs fast from there on, or jumps.
+/// Must hold: the other axes have the true values; faults act in their order; the switch opens; the clock stops, runs
+/// fast from there on, or jumps.
 #[test]
-fn faults_keep_to_their_axis_and_their_order() {
+fn faults_act_on_their_axis_in_their_order() {
     let axis = measured(&["gyro.y:value=3@5ms"], 10, counting);
     assert_eq!(axis[7].of(Sensor::Gyro).value, [7.0, 3.0, 700.0]);
     let [a, b] = [["scale=2", "bias=1"], ["bias=1", "scale=2"]].map(|kinds| {
@@ -224,8 +229,8 @@ fn random_faults_have_their_statistics_and_their_seed() {
     assert_eq!(first(3, START), first(3, START));
 }
 
-/// Situation: faults of the motor on a command of 2 N m. Must hold: dead is nothing, a slow motor rises as
-/// `1 - exp(-t / T)`, the rest as named.
+/// Situation: faults of the motor on a command of 2 N m.
+/// Must hold: dead is zero, a slow motor rises as `1 - exp(-t / T)`, the rest as named.
 #[test]
 fn motor_faults_act_on_the_command() {
     let given = |fault: &str, ticks: i64| {

@@ -1,4 +1,4 @@
-//! Flight cards: errors as fitted to recordings, in the simulated sensor and found again in what it says.
+//! Errors as fitted to recordings, simulated in a sensor and estimated again from its output.
 
 use sim_host::plant::sensor_file::{MeasuredNumber, SensorNumbers};
 use sim_host::plant::{FittedErrors, Plant, Reading, Sensor, SensorModel, SensorSuite};
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 const START: Start = Start { speed_m_s: 0.0, steer_rate_rad_s: 5.0, roll_rate_rad_s: 0.0 };
 
-/// The samples that arrive of `sensors` for `ticks` periods of 1 ms, where the truth is `truth(t)` \[s\].
+/// The samples that arrive of `sensors` for `ticks` periods of 1 ms, where the true value is `truth(t)` \[s\].
 fn arrived(
     models: &[(Sensor, SensorModel)],
     seed: u64,
@@ -50,8 +50,8 @@ fn rides(speed_m_s: f64) -> Reading {
     Reading::steady(speed_m_s, 9.81)
 }
 
-/// Situation: a wheel whose speed is a mean over 50 ms, and rises by 1 m/s each second. Must hold: 24.5 ms late, to a
-/// rounding, once the mean is full of it.
+/// Situation: a wheel whose speed is a mean over 50 ms, and rises by 1 m/s each second.
+/// Must hold: 24.5 ms late, to a rounding, once the mean is full.
 #[test]
 fn a_mean_is_late_by_half_of_it() {
     let model = FittedErrors { window_ticks: 50, ..FittedErrors::default() };
@@ -60,21 +60,21 @@ fn a_mean_is_late_by_half_of_it() {
     }
 }
 
-/// Situation: a wheel with 16 pulses a turn, steady at 0.3 to 8 m/s, and one that stands. Must hold: the speed to 0.2 % once
-/// two pulses came, and none where it stands.
+/// Situation: a wheel with 16 pulses a turn, steady at 0.3 to 8 m/s, and one at rest.
+/// Must hold: the speed to 0.2 % once two pulses came, and zero at rest.
 #[test]
-fn pulses_tell_a_steady_speed() {
+fn pulses_give_a_steady_speed() {
     let model = FittedErrors { pulses_per_turn: 16, ..FittedErrors::default() };
     for speed in [0.0, 0.3, 1.0, 3.3, 8.0] {
-        let said = values(model, Sensor::FrontWheel, 3000, |_| rides(speed));
-        for sample in &said[1500..] {
+        let output = values(model, Sensor::FrontWheel, 3000, |_| rides(speed));
+        for sample in &output[1500..] {
             assert!((sample.value[0] - speed).abs() <= 2e-3 * speed, "{speed}: {sample:?}");
         }
     }
 }
 
 /// Situation: samples each 10 ms, 4 ms after the whole multiples, late by up to 3 ms in 99 of 100 and 20 ms at worst.
-/// Must hold: none early, none later than that, in their order; as many in 100 are later than 3 ms as there should be.
+/// Must hold: none early, none later than that, in their order; the fraction later than 3 ms is the declared one.
 #[test]
 fn lateness_has_its_distribution() {
     let fitted = FittedErrors { phase_ticks: 4, jitter_ticks: [3, 20], ..FittedErrors::default() };
@@ -90,22 +90,22 @@ fn lateness_has_its_distribution() {
     assert!((0.21..0.29).contains(&count(2)), "{}", count(2));
 }
 
-/// Situation: vibration of 0.01 rad/s for 1 m/s in the octave from 20 Hz, at 0, 2 and 4 m/s. Must hold: nothing where the
-/// bicycle stands; twice as much at twice the speed; of its power less than 1 % below 18 Hz.
+/// Situation: vibration of 0.01 rad/s for 1 m/s in the octave from 20 Hz, at 0, 2 and 4 m/s.
+/// Must hold: none at standstill; twice as much at twice the speed; of its power less than 1 % below 18 Hz.
 #[test]
 fn vibration_grows_with_the_speed_and_keeps_its_octave() {
     let vibration = [[0.0, 0.01, 0.0, 0.0], [0.0; 4], [0.0; 4]];
     let model = FittedErrors { vibration, ..FittedErrors::default() };
     let rms = |speed: f64| {
-        let said = values(model, Sensor::Gyro, 20_000, |_| rides(speed));
-        assert!(said.iter().all(|sample| sample.value[1] == 0.0 && sample.value[2] == 0.0));
+        let output = values(model, Sensor::Gyro, 20_000, |_| rides(speed));
+        assert!(output.iter().all(|sample| sample.value[1] == 0.0 && sample.value[2] == 0.0));
         let slow: Vec<f64> =
-            said.windows(100).map(|w| w.iter().map(|s| s.value[0]).sum::<f64>() / 100.0).collect();
+            output.windows(100).map(|w| w.iter().map(|s| s.value[0]).sum::<f64>() / 100.0).collect();
         let square = |values: &mut dyn Iterator<Item = f64>, n: usize| {
             (values.map(|x| x * x).sum::<f64>() / n as f64).sqrt()
         };
-        let all = square(&mut said.iter().map(|sample| sample.value[0]), said.len());
-        // A mean over 100 ms lets 5 % of 20 Hz and more through at most, and 90 % of 3 Hz.
+        let all = square(&mut output.iter().map(|sample| sample.value[0]), output.len());
+        // A mean over 100 ms passes at most 5 % of 20 Hz and more, and 90 % of 3 Hz.
         assert!(square(&mut slow.iter().copied(), slow.len()) <= 0.1 * all);
         all
     };
@@ -117,15 +117,16 @@ fn vibration_grows_with_the_speed_and_keeps_its_octave() {
 /// The first and the last sample of a ride.
 type Ends = ([f64; 3], [f64; 3]);
 
-/// Situation: a bias of 0.02 rad/s from ride to ride, and a walk of 0.001 rad/s by the root of a second, in 400 rides of 4 s.
-/// Must hold: both spreads within five standard errors, by axis; the axes do not go together.
+/// Situation: a bias of 0.02 rad/s from ride to ride, and a random walk of 0.001 rad/s by the root of a second, in
+/// 400 rides of 4 s.
+/// Must hold: both standard deviations within five standard errors, by axis; the axes are uncorrelated.
 #[test]
 fn bias_differs_from_ride_to_ride_and_wanders() {
     let fitted = FittedErrors { bias_spread: [0.02; 3], walk: [1e-3; 3], ..FittedErrors::default() };
     let model = SensorModel { every_ticks: 10, fitted, ..SensorModel::default() };
     let ends = |seed: u64| {
-        let said = arrived(&[(Sensor::Gyro, model)], seed, 4001, |_| rides(3.0)).remove(0).samples;
-        (said[0].value, said[said.len() - 1].value)
+        let output = arrived(&[(Sensor::Gyro, model)], seed, 4001, |_| rides(3.0)).remove(0).samples;
+        (output[0].value, output[output.len() - 1].value)
     };
     let all: Vec<Ends> = (0..400).map(ends).collect();
     let spread = |of: &dyn Fn(&Ends) -> f64| (all.iter().map(|x| of(x).powi(2)).sum::<f64>() / 400.0).sqrt();
@@ -139,7 +140,7 @@ fn bias_differs_from_ride_to_ride_and_wanders() {
 }
 
 /// Standing for 60 s, riding at 2, 3 and 4 m/s for 15 s each with slow motion, standing for 30 s.
-fn card(t_s: f64) -> Reading {
+fn reading_at(t_s: f64) -> Reading {
     let speed = match t_s {
         t if !(60.0..105.0).contains(&t) => 0.0,
         t => 2.0 + ((t - 60.0) / 15.0).floor(),
@@ -152,12 +153,12 @@ fn card(t_s: f64) -> Reading {
     }
 }
 
-/// Recordings of what sensors of these models say, each with other random numbers.
+/// Recordings of the output of sensors of these models, each with other random numbers.
 fn recordings(models: &[(Sensor, SensorModel)], seeds: u64) -> Vec<Recording> {
     let wheel = (Sensor::RearWheel, SensorModel { every_ticks: 10, ..SensorModel::default() });
     let models = [models, &[wheel]].concat();
     let one = |seed| {
-        let samples = Samples { tracks: arrived(&models, seed, 135_000, card), ..Samples::default() };
+        let samples = Samples { tracks: arrived(&models, seed, 135_000, reading_at), ..Samples::default() };
         Recording { samples, distance_m: Vec::new() }
     };
     (0..seeds).map(one).collect()
@@ -168,12 +169,14 @@ fn number<'a>(found: &'a SensorNumbers, name: &str, axis: &str) -> &'a MeasuredN
     found.measured.iter().find(fits).unwrap_or_else(|| panic!("{name} {axis}: {found:?}"))
 }
 
-/// Situation: three rides, each with standing before and after, by a gyro with noise, a walk, a bias and vibration of known size in
-/// steps of 0.5 mrad/s at 200 Hz. Action: fit a model to what it said.
-/// Must hold: of the 21 numbers at least 18 inside their 95 % intervals and none further out than their width; no interval is wider than
-/// its number, but the bias' of three rides and the walk's; the step and the period as they were.
+/// Situation: three rides, each with standstill before and after, by a gyro with noise, a random walk, a bias and
+/// vibration of known size in steps of 0.5 mrad/s at 200 Hz.
+/// Action: fit a model to its output.
+/// Must hold: of the 21 numbers at least 18 inside their 95 % intervals and none further out than their width; no
+/// interval is wider than its number, except the bias' of three rides and the walk's; step and period are the
+/// simulated ones.
 #[test]
-fn what_was_simulated_is_found_again() {
+fn simulated_errors_are_estimated() {
     let truth = FittedErrors {
         white: [2e-3, 3e-3, 4e-3],
         walk: [4e-4, 5e-4, 6e-4],
@@ -208,10 +211,12 @@ fn what_was_simulated_is_found_again() {
     assert!(numbers == 21 && inside >= 18, "{inside} of {numbers}");
 }
 
-/// Situation: an accelerometer that repeats one sample in ten and a steer angle 4 ms after the gyro, late by up to 2 ms in 99 of 100 and 6 ms at
-/// worst. Action: fit models. Must hold: share, phase and lateness as they were; the other reasons are said.
+/// Situation: an accelerometer that repeats one sample in ten and a steer angle 4 ms after the gyro, late by up to 2
+/// ms in 99 of 100 and 6 ms at worst.
+/// Action: fit models.
+/// Must hold: fraction, phase and lateness are the simulated ones; the reasons of the others are reported.
 #[test]
-fn repeats_and_lateness_are_found_again() {
+fn repeats_and_lateness_are_estimated() {
     let fitted = FittedErrors { repeat: 0.1, white: [0.03; 3], ..FittedErrors::default() };
     let accel = SensorModel { every_ticks: 10, fitted, ..SensorModel::default() };
     let fitted = FittedErrors {
@@ -233,10 +238,10 @@ fn repeats_and_lateness_are_found_again() {
     let phase = steer.phase_s.expect("a phase");
     assert!((0.004..0.0065).contains(&phase), "{phase}");
     assert_eq!(steer.quantum, [0.002]);
-    for (found, why) in
+    for (found, error) in
         [(&steer, "lag: the yaw rate leads"), (&steer, "vibration: "), (&accel, "bias and walk: ")]
     {
-        assert!(found.left_out.iter().any(|what| what.starts_with(why)), "{:?}", found.left_out);
+        assert!(found.left_out.iter().any(|what| what.starts_with(error)), "{:?}", found.left_out);
     }
-    assert!(fit(Sensor::RiderTorque, &all).expect_err("none").contains("rider-torque"));
+    assert!(fit(Sensor::RiderTorque, &all).expect_err("none").to_string().contains("rider-torque"));
 }

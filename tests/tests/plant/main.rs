@@ -1,4 +1,4 @@
-//! Flight cards: sensors, actuators and what breaks in them.
+//! Sensors, actuators and their faults.
 
 mod actuator;
 mod faults;

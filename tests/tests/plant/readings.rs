@@ -1,4 +1,4 @@
-//! Flight cards: exact sensors beside the bicycle's path through the world.
+//! Exact sensors compared with the bicycle's path in space.
 
 use nalgebra::{Rotation3, Vector3};
 use sim_host::bicycle::{Geometry, Motion, State};
@@ -9,7 +9,7 @@ use tests::rides::{FREE, knocked, ride, shipped};
 const PERIOD_S: f64 = 1e-3;
 const IMU_M: [f64; 3] = [0.5, 0.1, -0.3];
 
-/// Where the rear frame is: attitude from the ground, place of the IMU, and heading and offset.
+/// Position of the rear frame: attitude from the ground, position of the IMU, and heading and offset.
 struct Place {
     attitude: Rotation3<f64>,
     imu: Vector3<f64>,
@@ -17,8 +17,8 @@ struct Place {
     lateral: f64,
 }
 
-/// The places of a ride every `PERIOD_S / fine` seconds: path of the rear contact by the trapezoidal
-/// rule, the rest by Euler angles.
+/// The positions of a ride every `PERIOD_S / fine` seconds: path of the rear contact by the trapezoidal rule, the
+/// rest by Euler angles.
 fn places(b: &Geometry, start: State<f64>, fine: usize, periods: usize) -> Vec<Place> {
     let h = PERIOD_S / fine as f64;
     let mut before: Option<[f64; 3]> = None;
@@ -46,11 +46,11 @@ fn places(b: &Geometry, start: State<f64>, fine: usize, periods: usize) -> Vec<P
     places
 }
 
-/// Situation: the benchmark bicycle knocked at 5 m/s, 2 s of riding with roll, steer, pitch and yaw.
+/// Situation: the benchmark bicycle after a knock at 5 m/s, 2 s of riding with roll, steer, pitch and yaw.
 /// Action: read the exact sensors every millisecond.
-/// Must hold: gyro and accelerometer are what the IMU's place and attitude in the world, differentiated
-/// numerically in a fiftieth of the period, say; heading and offset are the integrated ones. The rates
-/// and forces met are worth the name.
+/// Must hold: gyro and accelerometer are the numerical derivatives, in a fiftieth of the period, of the IMU's
+/// position and attitude in space; heading and offset are the integrated ones. The rates and forces are not
+/// negligible.
 #[test]
 fn exact_sensors_are_those_of_the_path() {
     const FINE: usize = 50;
@@ -101,9 +101,10 @@ fn exact_sensors_are_those_of_the_path() {
     assert!(largest[0] > 0.5 && largest[1] > 1.0 && largest[2] > 0.2 && largest[3] > 0.2, "{largest:?}");
 }
 
-/// Situation: a steady straight ride, and a frame standing still leant over by 0.3 rad. Action: read.
-/// Must hold: straight, the reading is [`Reading::steady`]'s; leant over, the accelerometer shows gravity
-/// only, to its left and up.
+/// Situation: a steady straight ride, and a frame at rest leant over by 0.3 rad.
+/// Action: read.
+/// Must hold: straight, the reading is [`Reading::steady`]'s; leant over, the accelerometer measures gravity only, to
+/// its left and up.
 #[test]
 fn steady_riding_shows_gravity_only() {
     let b = Geometry::new(&shipped("rigid_jason").parameters);
@@ -128,8 +129,8 @@ fn steady_riding_shows_gravity_only() {
     assert!((y + b.g * 0.3_f64.sin()).abs() < 1e-9 && (z + b.g * 0.3_f64.cos()).abs() < 1e-3, "{x} {y} {z}");
 }
 
-/// Situation: the same motion, x by the Euler angle or by the gyro. Must hold: they differ by yaw rate
-/// times sine of pitch, and nothing else does.
+/// Situation: the same motion, x by the Euler angle or by the gyro.
+/// Must hold: they differ by yaw rate times sine of pitch, and nothing else does.
 #[test]
 fn the_published_roll_rate_is_the_euler_angles() {
     let b = Geometry::new(&shipped("rigid_jason").parameters);

@@ -1,4 +1,4 @@
-//! Flight cards: rides with sensors, motors and faults.
+//! Rides with sensors, motors and faults.
 
 use control::{Causes, Config, Loss, Mode, Sensor as Declared};
 use sim_host::bicycle::{Motion, State};
@@ -22,7 +22,7 @@ fn actuated(actuator: ActuatorConfig) -> Conditions {
     with(Plant { actuator, ..Plant::default() })
 }
 
-/// A plant in which everything is a little wrong.
+/// A plant in which every part has a small error.
 fn worn(seed: u64) -> Plant {
     let mut plant = Plant { seed, ..Plant::default() };
     let model =
@@ -36,11 +36,11 @@ fn worn(seed: u64) -> Plant {
 }
 
 /// A configuration that holds samples for a while.
-fn patient() -> Config {
+fn holding() -> Config {
     let mut config = Config::thesis(H);
-    let patient = Declared { timeout_ticks: 50, ..Declared::exact(100.0) };
-    config.input.gyro = patient;
-    config.input.front_wheel = patient;
+    let holding = Declared { timeout_ticks: 50, ..Declared::exact(100.0) };
+    config.input.gyro = holding;
+    config.input.front_wheel = holding;
     config
 }
 
@@ -54,8 +54,8 @@ fn all_declared() -> Config {
     config
 }
 
-/// Situation: exact sensors, all of them declared, and a plant whose only departure is a fault after the
-/// ride. Action: rides that recover and fall, also where only all six speeds tell the truth.
+/// Situation: exact sensors, all of them declared, and a plant whose only departure is a fault after the ride.
+/// Action: rides that recover and fall, also where only all six speeds are exact.
 /// Must hold: the same bits as without a plant.
 #[test]
 fn an_exact_plant_changes_no_bit() {
@@ -68,11 +68,12 @@ fn an_exact_plant_changes_no_bit() {
     assert_eq!(rides(&faulty("gyro:bias=1@100s"), &starts), plain);
 }
 
-/// Situation: a worn plant, noise and all. Action: many rides in a batch, backwards, and each alone.
-/// Must hold: the same bits in any company; another seed gives another ride; the mirrored start too.
+/// Situation: a worn plant with noise.
+/// Action: many rides in a batch, backwards, and each alone.
+/// Must hold: the same bits in any batch; another seed gives another ride; the mirrored start too.
 #[test]
-fn noise_does_not_depend_on_the_company() {
-    let conditions = |seed| Conditions { plant: worn(seed), ..configured(patient()) };
+fn noise_does_not_depend_on_the_batch() {
+    let conditions = |seed| Conditions { plant: worn(seed), ..configured(holding()) };
     let starts: Vec<Start> =
         (0..24).map(|i| Start { speed_m_s: 2.0 + 0.2 * f64::from(i), ..KNOCK }).collect();
     let together = rides(&conditions(7), &starts);
@@ -92,10 +93,10 @@ fn same(a: &TracePoint, b: &TracePoint) -> bool {
     (a.roll, a.steer, a.torque, a.motor_torque) == (b.roll, b.steer, b.torque, b.motor_torque)
 }
 
-/// Situation: law h at 4 m/s; faults of every channel that the controller has a use for, from 0.2 s on.
+/// Situation: law h at 4 m/s; faults of every channel that the controller uses, from 0.2 s on.
 /// Action: ride with and without.
-/// Must hold: both rides are the same until the control instant at 0.2 s, and differ in what the controller
-/// was told or the motor gave from that very one on.
+/// Must hold: both rides are the same until the control instant at 0.2 s, and differ in the controller's measurements
+/// or the motor's torque from that instant on.
 #[test]
 fn a_fault_changes_the_ride_from_its_instant_on() {
     let plain = traced(&faulty("gyro:bias=1@100s"), KNOCK).1;
@@ -112,7 +113,7 @@ fn a_fault_changes_the_ride_from_its_instant_on() {
         "motor:value=-3",
         "engage:missing",
     ] {
-        let (_, seen) = traced(&faulty(&format!("{fault}@200ms")), KNOCK);
+        let (_, faulty_trace) = traced(&faulty(&format!("{fault}@200ms")), KNOCK);
         let measured = |p: &TracePoint| {
             (p.frame.gyro_rad_s.value.map(f32::to_bits), p.frame.front_wheel_m_s, p.frame.engage)
         };
@@ -120,17 +121,17 @@ fn a_fault_changes_the_ride_from_its_instant_on() {
         let differs = |(a, b): (&TracePoint, &TracePoint)| {
             measured(a) != measured(b) || aged(a) != aged(b) || !same(a, b)
         };
-        let first = plain.iter().zip(&seen).position(differs);
+        let first = plain.iter().zip(&faulty_trace).position(differs);
         assert_eq!(first, Some(200), "{fault}");
     }
 }
 
-/// Situation: the gyro gets lost for good, and for 20 ms while the controller holds samples for 50.
-/// Must hold: for good, the causes name it and the torque is zero from there on; for a while, torque flows
-/// on. The trace has the mode.
+/// Situation: the gyro is lost permanently, and for 20 ms while the controller holds samples for 50.
+/// Must hold: permanently, the causes name it and the torque is zero from there on; for a while, torque continues.
+/// The trace has the mode.
 #[test]
 fn a_lost_gyro_stops_the_assist() {
-    let mut config = patient();
+    let mut config = holding();
     config.input.gyro.loss = Loss::Fault;
     let fault = |text: &str| {
         let plant = Plant { faults: vec![text.parse().unwrap()], ..Plant::default() };
@@ -145,11 +146,12 @@ fn a_lost_gyro_stops_the_assist() {
     assert!(hole[310].frame.gyro_rad_s.age_ticks == 11 && hole[321].frame.gyro_rad_s.age_ticks == 0);
 }
 
-/// Situation: motors wired the wrong way, dead, weak and slow. Action: the knock that h saves.
-/// Must hold: the first makes it fall sooner than no assist, the second falls as without assist, to the
-/// bit; half the torque constant still saves it; a lag of 200 ms does not.
+/// Situation: motors with reversed sign, dead, weak and slow.
+/// Action: the knock from which h recovers.
+/// Must hold: the first makes it fall sooner than no assist, the second falls as without assist, to the bit; half the
+/// torque constant still recovers; a lag of 200 ms does not.
 #[test]
-fn motors_that_do_not_what_they_are_asked_for() {
+fn faulty_motors_change_the_ride() {
     let fallen = |conditions: &Conditions| traced(conditions, KNOCK).0.outcome.time_to_fall_s();
     let none = fallen(&alone()).expect("falls");
     let wrong = fallen(&actuated(ActuatorConfig { scale: -1.0, ..ActuatorConfig::default() }));
@@ -161,8 +163,9 @@ fn motors_that_do_not_what_they_are_asked_for() {
     assert!(fallen(&actuated(slow)).is_some());
 }
 
-/// Situation: a lag of 20 ms and a delay of 3 ms under a ride. Must hold: the torque given follows from the
-/// commanded one by the closed form, period by period, at each period's middle; its largest change is gentler.
+/// Situation: a lag of 20 ms and a delay of 3 ms under a ride.
+/// Must hold: the acting torque follows from the commanded one by the closed form, period by period, at each period's
+/// middle; its largest change is smaller.
 #[test]
 fn the_torque_given_is_the_response_to_the_commands() {
     let lag = ActuatorConfig { time_constant_s: 0.02, delay_ticks: 3, ..ActuatorConfig::default() };
@@ -180,12 +183,13 @@ fn the_torque_given_is_the_response_to_the_commands() {
     assert!(largest > 0.5);
 }
 
-/// Situation: the bicycle alone, under the ideal law and under the firmware, with the friction of the Davis
-/// bicycle. Action: a knock at 6 m/s.
-/// Must hold: alone, the energy falls, and by no more than friction can have taken; under either assist
-/// friction changes the ride.
+/// Situation: the bicycle without assist, under the ideal law and under the firmware, with the friction of the Davis
+/// bicycle.
+/// Action: a knock at 6 m/s.
+/// Must hold: without assist, the energy falls, and by no more than the friction's work; under either assist friction
+/// changes the ride.
 #[test]
-fn friction_acts_whatever_turns_the_steer() {
+fn friction_acts_under_every_assist() {
     let start = Start { speed_m_s: 6.0, ..KNOCK };
     let actuator = load("davis").unwrap();
     let rubbed = |c: Conditions| Conditions { plant: Plant { actuator, ..Plant::default() }, ..c };
@@ -214,11 +218,12 @@ fn friction_acts_whatever_turns_the_steer() {
     }
 }
 
-/// Situation: a worn plant. Action: take the frames of the ride and step the controller with them anew.
+/// Situation: a worn plant.
+/// Action: step the controller again with the frames of the ride.
 /// Must hold: the torques of the trace, to the bit.
 #[test]
 fn the_frames_of_a_worn_ride_replay() {
-    let config = patient();
+    let config = holding();
     let conditions = Conditions { plant: worn(3), ..configured(config.clone()) };
     let (_, trace) = traced(&conditions, KNOCK);
     let frames = frames(&conditions, KNOCK, &trace);
@@ -230,20 +235,22 @@ fn the_frames_of_a_worn_ride_replay() {
     assert_eq!(torques[frames.len() - trace.len()..], ridden);
 }
 
-/// Situation: the ideal law with a noisy sensor, a weak motor or a fault. Must hold: refused, with the reason.
+/// Situation: the ideal law with a noisy sensor, a weak motor or a fault.
+/// Must hold: rejected, with the reason.
 #[test]
 fn the_ideal_law_has_an_exact_plant() {
     let weak = ActuatorConfig { scale: 0.5, ..ActuatorConfig::default() };
     for plant in [worn(0), Plant { actuator: weak, ..Plant::default() }] {
-        let refused = Conditions { plant, ..ideal(H) }.check().expect_err("refused").to_string();
-        assert!(refused.contains("only friction"), "{refused}");
+        let rejected = Conditions { plant, ..ideal(H) }.check().expect_err("refused").to_string();
+        assert!(rejected.contains("only friction"), "{rejected}");
     }
 }
 
-/// Situation: a knock that turns the steer beyond 0.5 rad and is survived, to the right and to the left; the same with a
-/// stop there. Action: ride, alone and in a batch.
-/// Must hold: with the stop the steer goes no more than 3 degrees beyond it, where without it goes further; until it
-/// gets there both rides have the same bits; left mirrors right; the batch has the bits of the ride alone.
+/// Situation: a knock that turns the steer beyond 0.5 rad without a fall, to the right and to the left; the same with
+/// a stop there.
+/// Action: ride, alone and in a batch.
+/// Must hold: with the stop the steer goes no more than 3 degrees beyond it, where without it goes further; until
+/// then both rides have the same bits; left mirrors right; the batch has the bits of the single ride.
 #[test]
 fn the_stop_holds_the_steer() {
     let start = |side: f64| Start { speed_m_s: 2.5, steer_rate_rad_s: 6.0 * side, roll_rate_rad_s: 0.0 };
@@ -263,19 +270,20 @@ fn the_stop_holds_the_steer() {
     assert!(mirrored < 1e-9, "{mirrored}");
 }
 
-/// Situation: the front wheel's speed through a lag of 0.5 s, and 2 s late. Action: a knock.
-/// Must hold: what the controller is told follows the first-order closed recursion of the exact readings; with the
-/// delay it is the speed of the start for the whole second that is looked at, and its sample counts as fresh.
+/// Situation: the front wheel's speed through a lag of 0.5 s, and 2 s late.
+/// Action: a knock.
+/// Must hold: the measured speed follows the first-order closed recursion of the exact readings; with the delay it is
+/// the speed of the start for the whole second of the test, and its sample counts as fresh.
 #[test]
 fn a_speed_lags_and_is_late() {
     let (_, exact) = traced(&faulty("gyro:bias=1@100s"), KNOCK);
     let front = |p: &TracePoint| p.front_speed;
     assert!(exact.iter().any(|p| (front(p) - 4.0).abs() > 0.05));
     let (_, lagged) = traced(&faulty("front-wheel:slow=500ms"), KNOCK);
-    let (mut said, keeps) = (4.0, (-1e-3_f64 / 0.5).exp());
+    let (mut output, keeps) = (4.0, (-1e-3_f64 / 0.5).exp());
     for p in lagged.iter().take(1000) {
-        said = front(p) + (said - front(p)) * keeps;
-        assert!((p.measured_speed - said).abs() < 1e-6, "{} {said}", p.measured_speed);
+        output = front(p) + (output - front(p)) * keeps;
+        assert!((p.measured_speed - output).abs() < 1e-6, "{} {output}", p.measured_speed);
     }
     let mut plant = Plant::default();
     plant.sensors.model_mut(Sensor::FrontWheel).delay_ticks = 2000;

@@ -1,4 +1,4 @@
-//! Flight cards: each part of a sensor model beside its closed form.
+//! Each part of a sensor model compared with its closed form.
 
 use nalgebra::{Rotation3, Vector3};
 use sim_host::plant::{ImuMount, Plant, Reading, Sensor, SensorModel, SensorSuite};
@@ -6,7 +6,7 @@ use sim_host::ride::Start;
 
 const START: Start = Start { speed_m_s: 4.0, steer_rate_rad_s: 5.0, roll_rate_rad_s: 0.0 };
 
-/// Value and age the controller is told of the steer angle, whose truth at tick t is `truth(t)`.
+/// Measured value and age of the steer angle, whose true value at tick t is `truth(t)`.
 fn measured(model: SensorModel, ticks: i64, truth: impl Fn(f64) -> f64) -> Vec<(f64, u16)> {
     let mut plant = Plant::default();
     *plant.sensors.model_mut(Sensor::Steer) = model;
@@ -22,9 +22,10 @@ fn measured(model: SensorModel, ticks: i64, truth: impl Fn(f64) -> f64) -> Vec<(
         .collect()
 }
 
-/// Situation: delays of 0 to 20 control periods, a sample every 1 to 7. Action: a truth that counts.
-/// Must hold: at every tick the newest sample that can have arrived, and its age since then; before the
-/// first one the steady ride's.
+/// Situation: delays of 0 to 20 control periods, a sample every 1 to 7.
+/// Action: a true value that counts.
+/// Must hold: at every tick the newest sample that can have arrived, and its age since then; before the first one the
+/// steady ride's.
 #[test]
 fn delay_and_sampling_are_exact() {
     for delay in [0, 1, 5, 20] {
@@ -44,9 +45,10 @@ fn delay_and_sampling_are_exact() {
     }
 }
 
-/// Situation: a scale of 1.1 and a bias of 0.02; steps of 0.01; a range of 0.5. Action: a sweep both ways.
-/// Must hold: `1.1 x + 0.02` before the range cuts it; within half a step of it and on a whole step; odd
-/// without bias.
+/// Situation: a scale of 1.1 and a bias of 0.02; steps of 0.01; a range of 0.5.
+/// Action: a sweep in both directions.
+/// Must hold: `1.1 x + 0.02` before the range cuts it; within half a step of it and on a whole step; odd without
+/// bias.
 #[test]
 fn scale_bias_range_and_quantum() {
     let sweep = |t: f64| (t - 100.0) * 0.00931;
@@ -66,9 +68,10 @@ fn scale_bias_range_and_quantum() {
     assert!((0.0045..=0.005 + 1e-15).contains(&furthest), "{furthest}");
 }
 
-/// Situation: noise of 0.05 rad, and one sample in ten lost. Action: 20,000 ticks.
-/// Must hold: mean, deviation and neighbours' correlation within five standard errors; the lost share too,
-/// and a lost sample leaves the one before standing.
+/// Situation: noise of 0.05 rad, and one sample in ten lost.
+/// Action: 20,000 ticks.
+/// Must hold: mean, deviation and neighbours' correlation within five standard errors; the lost fraction too, and a
+/// lost sample leaves the previous one in place.
 #[test]
 fn noise_and_dropout_have_their_statistics() {
     let n = 20_000;
@@ -92,7 +95,7 @@ fn noise_and_dropout_have_their_statistics() {
 /// Situation: an IMU turned by up to 0.4 rad about all three axes. Action: read gyro and accelerometer.
 /// Must hold: the rotation about z, then y, then x, by another implementation.
 #[test]
-fn a_turned_imu_sees_the_turned_vector() {
+fn a_turned_imu_measures_the_turned_vector() {
     let turned_rad = [0.1, -0.2, 0.4];
     let mut plant = Plant::default();
     plant.sensors.imu = ImuMount { turned_rad, ..ImuMount::default() };
@@ -107,18 +110,20 @@ fn a_turned_imu_sees_the_turned_vector() {
     }
 }
 
-/// Situation: the default model, and any truth. Must hold: the truth, to the bit, with no age.
+/// Situation: the default model, and any true value.
+/// Must hold: the true value, to the bit, with no age.
 #[test]
 fn the_default_sensor_is_exact() {
     let odd = [0.0, -0.0, 1.0, f64::MIN_POSITIVE, -3.7e300, f64::INFINITY];
-    for (seen, x) in measured(SensorModel::default(), 6, |t| odd[t as usize]).into_iter().zip(odd) {
-        assert_eq!((seen.0.to_bits(), seen.1), (x.to_bits(), 0));
+    for (sample, x) in measured(SensorModel::default(), 6, |t| odd[t as usize]).into_iter().zip(odd) {
+        assert_eq!((sample.0.to_bits(), sample.1), (x.to_bits(), 0));
     }
 }
 
-/// Situation: models with one value outside its range. Must hold: refused, sensor and value named.
+/// Situation: models with one value outside its range.
+/// Must hold: rejected, sensor and value named.
 #[test]
-fn a_model_out_of_range_is_refused() {
+fn a_model_out_of_range_is_rejected() {
     let ok = SensorModel::default();
     for (model, says) in [
         (SensorModel { every_ticks: 0, ..ok }, "steer every"),

@@ -1,10 +1,10 @@
-//! Maps in which something is wrong.
+//! Maps with errors.
 
 use super::{SMALLEST, bench};
 
-/// Situation: maps with one thing wrong each.
+/// Situation: maps with one error each.
 /// Action: replay a good ride with them.
-/// Must hold: refused, naming map or parameter, key, value and what was expected.
+/// Must hold: rejected, naming map or parameter, key, value and the expected one.
 #[test]
 fn wrong_maps() {
     let bench = bench(50);
@@ -31,7 +31,7 @@ fn wrong_maps() {
     ] {
         bench.write("my.toml", map);
         let named: Vec<&str> = named.iter().copied().chain(["my.toml"]).collect();
-        bench.run("replay ride.csv --map my.toml").refused_naming(&named);
+        bench.run("replay ride.csv --map my.toml").rejected_naming(&named);
     }
     for (line, named) in [
         ("'cross.wheelbase_m' = 99", &["cross.wheelbase_m = 99", "0.1 to 5"][..]),
@@ -39,19 +39,18 @@ fn wrong_maps() {
         ("'cross.yaw_slope' = 'maybe'", &["cross.yaw_slope = maybe"]),
     ] {
         bench.write("my.toml", format!("{SMALLEST}[parameters]\n{line}\n"));
-        bench.run("replay ride.csv --map my.toml").refused_naming(named);
+        bench.run("replay ride.csv --map my.toml").rejected_naming(named);
     }
-    // The message lists all parameters there are.
+    // The message lists all parameters.
     bench.write("my.toml", format!("{SMALLEST}[parameters]\n'cross.nope' = 1\n"));
     let run = bench.run("replay ride.csv --map my.toml");
     assert!(run.code == Some(1) && run.stderr.contains("no parameter cross.nope"), "{run:?}");
-    bench.run("replay ride.csv --map absent.toml").refused_naming(&["absent.toml", "extract", "monitor"]);
+    bench.run("replay ride.csv --map absent.toml").rejected_naming(&["absent.toml", "extract", "monitor"]);
 }
 
-/// Situation: maps that name a column which is not there: for time, age, switch, a sensor's own time, the axis that must be
-/// there.
+/// Situation: maps that name a missing column: for time, age, switch, a sensor's own time, the required axis.
 /// Action: replay.
-/// Must hold: refused with the column's name and what it was for.
+/// Must hold: rejected with the column's name and its use.
 #[test]
 fn columns_that_are_not_there() {
     let bench = bench(50);
@@ -64,13 +63,13 @@ fn columns_that_are_not_there() {
         (SMALLEST.replace("[time]\ncolumn = 't'\n", ""), ["neither the map nor the recording", "time"]),
     ] {
         bench.write("my.toml", map);
-        bench.run("replay ride.csv --map my.toml").refused_naming(&named);
+        bench.run("replay ride.csv --map my.toml").rejected_naming(&named);
     }
 }
 
-/// Situation: a map that names a column of a sensor that may be missing, with a letter wrong.
+/// Situation: a map that names a column of an optional sensor, with a letter wrong.
 /// Action: replay.
-/// Must hold: it runs without the sensor, and the column's name is told.
+/// Must hold: it runs without the sensor, and the column's name is reported.
 #[test]
 fn a_sensor_whose_column_is_not_there() {
     let bench = bench(400);

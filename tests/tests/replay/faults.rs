@@ -1,12 +1,12 @@
-//! Faults put into a recording.
+//! Faults injected into a recording.
 
 use super::{bench, cause, number};
 use serde_json::Value;
 
-/// Situation: a gentle ride of 4 s in which nothing is wrong.
-/// Action: replay it; take the gyro away from 2 s on; for a while only.
-/// Must hold: nothing is noticed without; with it cause 1 comes within 20 ms after its time and never before; the mode is
-/// fault, and after the fault has gone it is engaged again.
+/// Situation: a gentle ride of 4 s without faults.
+/// Action: replay it; without the gyro from 2 s on; for a while only.
+/// Must hold: no fault is detected without; with it cause 1 comes within 20 ms after its time and never before; the
+/// mode is fault, and after the fault has ended it is engaged again.
 #[test]
 fn a_fault_acts_at_its_time() {
     let bench = bench(800);
@@ -39,8 +39,9 @@ fn last_mode(document: &Value) -> (&str, f64) {
 }
 
 /// Situation: the same ride.
-/// Action: a fault of another kind on another sensor; a wrong one.
-/// Must hold: the cause of that sensor once its last good sample is older than 20 ms; the wrong one is refused with the words there are.
+/// Action: a fault of another kind on another sensor; an invalid one.
+/// Must hold: the cause of that sensor once its last good sample is older than 20 ms; the invalid one is rejected
+/// with the allowed texts.
 #[test]
 fn faults_of_other_sensors() {
     let bench = bench(800);
@@ -49,5 +50,5 @@ fn faults_of_other_sensors() {
     assert!((2.0..2.021).contains(&number(&range["first_s"])), "{range}");
     let peak_nm = number(&document["peak_torque_nm"]);
     assert!((0.05..3.0).contains(&peak_nm), "{peak_nm}");
-    bench.run("replay ride.csv --map extract --fault gyro:melts@2s").refused_naming(&["--fault", "melts"]);
+    bench.run("replay ride.csv --map extract --fault gyro:melts@2s").rejected_naming(&["--fault", "melts"]);
 }

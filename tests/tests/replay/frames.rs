@@ -11,7 +11,7 @@ fn column(text: &str, name: &str) -> Vec<String> {
     lines.map(|line| line.split(',').nth(place).unwrap().to_owned()).collect()
 }
 
-/// Torques as they were commanded, in f32.
+/// Commanded torques, in f32.
 fn torques(text: &str) -> Vec<u32> {
     column(text, "torque").iter().map(|cell| (cell.parse::<f64>().unwrap() as f32).to_bits()).collect()
 }
@@ -50,16 +50,16 @@ fn a_simulated_ride_gives_the_same_commands() {
     }
 }
 
-/// Situation: files named `.frames` that are none: half a frame, nothing.
+/// Situation: files named `.frames` that are none: half a frame, empty.
 /// Action: replay them.
-/// Must hold: refused with the size that was found and the size of a frame.
+/// Must hold: rejected with the size of the file and the size of a frame.
 #[test]
 fn frames_that_are_none() {
     let bench = Bench::new(PROGRAM);
     for (bytes, size) in [(vec![1; 100], "100 bytes"), (Vec::new(), "0 bytes")] {
         bench.write("half.frames", bytes);
-        bench.run("replay half.frames").refused_naming(&["half.frames", size, "81 bytes"]);
+        bench.run("replay half.frames").rejected_naming(&["half.frames", size, "81 bytes"]);
     }
     bench.write("half.frames", [0; 81]);
-    bench.run("replay half.frames --fault gyro:flip@1s").refused_naming(&["half.frames", "--fault"]);
+    bench.run("replay half.frames --fault gyro:flip@1s").rejected_naming(&["half.frames", "--fault"]);
 }

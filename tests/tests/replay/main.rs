@@ -1,4 +1,4 @@
-//! Flight cards: recorded rides through the flashed code.
+//! Recorded rides through the flashed code.
 #![cfg(unix)]
 
 mod bad_input;
@@ -32,7 +32,8 @@ const HEADER: &str = "t,gx,gy,gz,ax,ay,az,steer,steer_rate,front,rear";
 const SMALLEST: &str =
     "[time]\ncolumn = 't'\n[gyro]\ncolumns = ['gx', 'gy', 'gz']\n[rear_wheel]\ncolumns = ['rear']\n";
 
-/// A gentle ride at 4 m/s, 200 rows a second, whose sensors fit each other and have some noise; the columns of [`HEADER`].
+/// A gentle ride at 4 m/s, 200 rows a second, whose sensors are consistent and have some noise; the columns of
+/// [`HEADER`].
 fn rows(count: usize) -> Vec<[f64; 11]> {
     let omega = TAU * 0.8;
     let noise = |i: usize, factor: f64| ((i * i) as f64 * factor).sin();
@@ -73,21 +74,21 @@ fn table_of(header: &str, lines: &[String]) -> String {
 
 /// The samples of a table by a map.
 fn sampled(text: &str, map: &str) -> Result<Samples, Remark> {
-    let map = Map::parse(map).unwrap_or_else(|why| panic!("{why}"));
+    let map = Map::parse(map).unwrap_or_else(|error| panic!("{error}"));
     samples(&table::parse(text)?, &map, PERIOD_S)
 }
 
 /// A sensor's samples in a table.
 fn track(text: &str, map: &str, sensor: Sensor) -> Vec<Sample> {
-    let samples = sampled(text, map).unwrap_or_else(|why| panic!("{why}"));
+    let samples = sampled(text, map).unwrap_or_else(|error| panic!("{error}"));
     samples.track(sensor).unwrap_or_else(|| panic!("no {}", sensor.name())).samples.clone()
 }
 
-/// What the controller is told at each instant, before any fault.
+/// The controller's measurements at each instant, before any fault.
 fn fed(samples: &Samples, resample: Resample, longest_gap_s: f64) -> Vec<Measured> {
     let options = FeedOptions { period_s: PERIOD_S, resample, longest_gap_s, faults: &[], seed: 0 };
     let mut feed = Feed::new(samples, options).unwrap();
-    std::iter::from_fn(|| feed.next(false)).map(|(_, told)| told).collect()
+    std::iter::from_fn(|| feed.next(false)).map(|(_, input)| input).collect()
 }
 
 /// The product's plan, ready for torque.

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 
 /// Situation: a ride of 10 s and one of 6 s.
 /// Action: replay both, without and with a fault at 2 s.
-/// Must hold: each is there as if alone; times add up; the cause of the fault is counted in both and by the hour, and how
-/// soon it came is told.
+/// Must hold: each is there as if alone; times add up; the cause of the fault is counted in both and by the hour, and
+/// its delay is reported.
 #[test]
 fn a_summary_of_all() {
     let bench = bench(2000);
@@ -38,11 +38,11 @@ fn a_summary_of_all() {
     }
 }
 
-/// Situation: one of three recordings can't be used; none can.
+/// Situation: one of three recordings is unusable; all are.
 /// Action: replay them.
 /// Must hold: the others are there, the one is named with its reason, exit code 1; with none there is no document.
 #[test]
-fn one_unusable_file_does_not_lose_the_others() {
+fn an_unusable_file_leaves_the_others() {
     let bench = bench(400);
     bench.write("bad.csv", "1,2,3\n");
     let run = bench.run("replay ride.csv bad.csv ride.csv --map extract --json all.json --csv all.csv");
@@ -63,30 +63,30 @@ fn one_unusable_file_does_not_lose_the_others() {
     assert!(!bench.files().contains(&"none.json".to_owned()));
 }
 
-/// Situation: of two recordings one has two lines that can't be used.
+/// Situation: one of two recordings has two unusable lines.
 /// Action: replay both.
-/// Must hold: the text names that one with the first of its remarks, and says that there is another.
+/// Must hold: the text names that one with the first of its remarks, and reports that there is another.
 #[test]
-fn remarks_are_told_with_their_file() {
+fn remarks_are_reported_with_their_file() {
     let bench = bench(400);
     let text = bench.read("ride.csv");
     bench.write("cut.csv", text.replacen("\n0.5,", "\n0.5;", 1).replacen("\n0.6,", "\n0.6;", 1));
     let run = bench.run("replay ride.csv cut.csv --map extract");
-    let said: Vec<&str> = run.stdout.lines().filter(|line| line.starts_with("remark: ")).collect();
-    assert!(said.len() == 1 && said[0].starts_with("remark: cut.csv: line 102: "), "{run:?}");
-    assert!(said[0].ends_with(", and 1 more"), "{run:?}");
-    bench.run("replay cut.csv cut.csv --map extract --strict").refused_naming(&["cut.csv", "line 102"]);
+    let output: Vec<&str> = run.stdout.lines().filter(|line| line.starts_with("remark: ")).collect();
+    assert!(output.len() == 1 && output[0].starts_with("remark: cut.csv: line 102: "), "{run:?}");
+    assert!(output[0].ends_with(", and 1 more"), "{run:?}");
+    bench.run("replay cut.csv cut.csv --map extract --strict").rejected_naming(&["cut.csv", "line 102"]);
 }
 
 /// Situation: two recordings.
-/// Action: ask for a figure, for frames.
-/// Must hold: refused before anything is done, each with the option.
+/// Action: request a figure, or frames.
+/// Must hold: rejected before any work, each with the option.
 #[test]
 fn figures_and_frames_are_of_one_recording() {
     let bench = bench(50);
     for option in ["--svg", "--png", "--frames"] {
         let run = bench.run(&format!("replay ride.csv ride.csv --map extract {option} out"));
-        run.refused_naming(&[option, "one recording only"]);
+        run.rejected_naming(&[option, "one recording only"]);
     }
     assert_eq!(bench.files(), ["ride.csv"]);
     let run = bench.run("replay ride.csv --map extract --svg ride.svg --png ride.png -q");

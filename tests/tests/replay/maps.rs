@@ -1,17 +1,17 @@
-//! What a map says of the columns.
+//! Meaning of the columns by a map.
 
 use super::{SMALLEST, sampled, track};
 use sim_host::plant::Sensor;
 use sim_host::replay::{Map, SHIPPED};
 use std::f64::consts::PI;
 
-/// Within rounding errors of so many digits.
+/// Within rounding errors of this number of digits.
 fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * a.abs().max(1.0)
 }
 
 /// Situation: columns in degrees, g, km/h and milliseconds.
-/// Action: say so in the map.
+/// Action: declare them in the map.
 /// Must hold: the samples are in rad, rad/s, m/s^2, m/s and s.
 #[test]
 fn units() {
@@ -33,7 +33,7 @@ fn units() {
 }
 
 /// Situation: an IMU whose y points forward, whose x points left, and whose z points down.
-/// Action: turn it by `axes`.
+/// Action: rotate it by `axes`.
 /// Must hold: x forward, y right, z down.
 #[test]
 fn axes_are_turned() {
@@ -42,7 +42,7 @@ fn axes_are_turned() {
     assert_eq!(track(text, &map, Sensor::Gyro)[0].value, [2.0, -1.0, 3.0]);
 }
 
-/// Situation: a steer sensor in degrees that counts to the left, twice as far, and says 8 straight ahead.
+/// Situation: a steer sensor in degrees that counts to the left, twice as far, and reads 8 straight ahead.
 /// Action: scale, then offset, both in its unit.
 /// Must hold: radians to the right.
 #[test]
@@ -55,9 +55,9 @@ fn sign_scale_and_offset() {
 
 /// Situation: a log with the roll rate alone.
 /// Action: constants for the other axes; or leave them to the program.
-/// Must hold: the constants, in the unit of the map; gravity for an accelerometer's z; told as made up.
+/// Must hold: the constants, in the unit of the map; gravity for an accelerometer's z; reported as substituted.
 #[test]
-fn constants_and_stand_ins() {
+fn constants_and_substitutes() {
     let text = "t,gx,ay,rear\n0,1,0.1,4\n1,1,0.1,4\n";
     let map = "[time]\ncolumn = 't'\n[gyro]\ncolumns = ['gx', 0, 180]\nunit = 'deg/s'\n\
         [accel]\ncolumns = ['ax', 'ay', 'az']\n[rear_wheel]\ncolumns = ['rear']\n";
@@ -71,10 +71,10 @@ fn constants_and_stand_ins() {
 }
 
 /// Situation: an IMU in g, mounted upside down, with its sideways axis alone in the log.
-/// Action: turn it by `axes`.
-/// Must hold: gravity still points where it does for every other bicycle.
+/// Action: rotate it by `axes`.
+/// Must hold: gravity has the direction that it has for every other bicycle.
 #[test]
-fn stand_ins_of_a_turned_sensor() {
+fn substitutes_of_a_rotated_sensor() {
     let text = "t,gx,gy,gz,ay,rear\n0,0,0,0,0.5,4\n1,0,0,0,0.5,4\n";
     let map = format!(
         "{SMALLEST}[accel]\ncolumns = ['ax', 'ay', 'az']\nunit = 'g'\noffset = 0.1\naxes = ['x', '-y', '-z']\n"
@@ -95,7 +95,7 @@ fn blanks_are_no_samples() {
     assert_eq!(track(text, SMALLEST, Sensor::Gyro).len(), 5);
 }
 
-/// Situation: a wheel with times of its own; one whose column says how old it is; one that comes 20 ms late.
+/// Situation: a wheel with times of its own; one with a column of its age; one that comes 20 ms late.
 /// Action: name the column of the time, of the age, or the lateness.
 /// Must hold: its samples are at these times; a sample that only grew older is not new.
 #[test]
@@ -113,8 +113,8 @@ fn own_times_ages_and_lateness() {
 }
 
 /// Situation: a log without a column of time; one whose times are dates.
-/// Action: say how many rows a second; name the column.
-/// Must hold: rows that far apart; seconds.
+/// Action: give the rows per second; name the column.
+/// Must hold: rows at that distance; seconds.
 #[test]
 fn rates_and_dates() {
     let text = "gx,gy,gz,rear\n1,1,1,4\n1,1,1,4\n1,1,1,4\n";
@@ -128,13 +128,13 @@ fn rates_and_dates() {
     assert!((at[1] - at[0] - 1.25).abs() < 1e-6 && at[0] > 1.7e9, "{at:?}");
 }
 
-/// Situation: the maps that ship.
+/// Situation: the shipped maps.
 /// Action: load each by its name.
-/// Must hold: they are right, know at least gyro and a wheel, and name no column twice.
+/// Must hold: they are valid, have at least gyro and a wheel, and name no column twice.
 #[test]
 fn shipped_maps_are_right() {
     for (name, _) in SHIPPED {
-        let map = Map::load(name).unwrap_or_else(|why| panic!("{why}"));
+        let map = Map::load(name).unwrap_or_else(|error| panic!("{error}"));
         let sensors: Vec<Sensor> = map.sensors().map(|mapped| mapped.sensor).collect();
         assert!(sensors.contains(&Sensor::Gyro) && sensors.contains(&Sensor::RearWheel), "{name}");
         let mut columns: Vec<String> = map

@@ -3,23 +3,23 @@
 use super::{Bench, HEADER, PROGRAM, bench, lines, number, rows, table_of};
 use serde_json::{Value, json};
 
-fn words(value: &Value) -> Vec<&str> {
+fn texts(value: &Value) -> Vec<&str> {
     value.as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect()
 }
 
 /// Situation: a ride without steer rate, front wheel and drive.
 /// Action: replay it under the flashed configuration, which declares them.
-/// Must hold: they are switched off and told, with the columns that the map names and the checks that go with them; it
-/// engages all the same.
+/// Must hold: they are switched off and reported, with the columns that the map names and the checks that depend on
+/// them; it engages nevertheless.
 #[test]
-fn missing_sensors_are_switched_off_and_told() {
+fn missing_sensors_are_switched_off_and_reported() {
     let bench = Bench::new(PROGRAM);
     let header = HEADER.replace("steer_rate", "other").replace("front", "more");
     bench.write("ride.csv", table_of(&header, &lines(&rows(400))));
     let document = bench.json("replay ride.csv --map extract");
     assert_eq!(document["switched_off"], json!(["steer-rate", "front-wheel", "motor-report"]));
     assert_eq!(document["absent"], json!(["steer-rate (`steer_rate`)", "front-wheel (`front`)"]));
-    let unchecked = words(&document["unchecked"]).join("\n");
+    let unchecked = texts(&document["unchecked"]).join("\n");
     for word in ["wheels", "steer: angle and rate", "motor: no report", "motor response"] {
         assert!(unchecked.contains(word), "{word}: {unchecked}");
     }
@@ -33,17 +33,17 @@ fn missing_sensors_are_switched_off_and_told() {
 
 /// Situation: a ride with all the sensors of the table.
 /// Action: replay it.
-/// Must hold: only the drive's report is switched off, and the check of the motor's response.
+/// Must hold: only the drive's report is switched off, and the sign check of the motor.
 #[test]
-fn what_was_recorded_stays_on() {
+fn recorded_sensors_stay_on() {
     let document = bench(400).json("replay ride.csv --map extract");
     assert_eq!(document["switched_off"], json!(["motor-report"]));
-    assert_eq!((document["absent"].clone(), words(&document["unchecked"]).len()), (json!([]), 2));
+    assert_eq!((document["absent"].clone(), texts(&document["unchecked"]).len()), (json!([]), 2));
     let named = |name: &str| {
         let checks = document["checks"].as_array().unwrap();
         checks.iter().find(|check| check["name"] == name).unwrap_or_else(|| panic!("no {name}")).clone()
     };
-    // What a check saw lies above the noise that was put in and below its limit.
+    // The largest residual of a check is above the added noise and below its limit.
     for (name, least, limit) in
         [("gyro range", 0.04, 35.0), ("rear wheel range", 4.0, 30.0), ("yaw", 0.0, 2.0)]
     {
@@ -55,7 +55,7 @@ fn what_was_recorded_stays_on() {
 
 /// Situation: a ride without gyro, one without a wheel.
 /// Action: replay each.
-/// Must hold: refused: there is nothing to replay; with the columns the map names and those there are.
+/// Must hold: rejected: there is nothing to replay; with the columns that the map names and the existing ones.
 #[test]
 fn without_gyro_or_wheel_there_is_no_replay() {
     let bench = Bench::new(PROGRAM);
@@ -64,14 +64,14 @@ fn without_gyro_or_wheel_there_is_no_replay() {
         (HEADER.replace("front,rear", "d,e"), ["no wheel speed", "`rear`", "d, e"]),
     ] {
         bench.write("ride.csv", table_of(&header, &lines(&rows(50))));
-        bench.run("replay ride.csv --map extract").refused_naming(&named);
+        bench.run("replay ride.csv --map extract").rejected_naming(&named);
     }
     let mut blank = lines(&rows(50));
     for line in &mut blank {
         *line = format!("{},,", line.rsplitn(3, ',').last().unwrap());
     }
     bench.write("ride.csv", table_of(HEADER, &blank));
-    bench.run("replay ride.csv --map extract").refused_naming(&["rear-wheel (no value in `rear`)"]);
+    bench.run("replay ride.csv --map extract").rejected_naming(&["rear-wheel (no value in `rear`)"]);
     bench.write("ride.csv", "a,b\n1,2\n");
-    bench.run("replay ride.csv").refused_naming(&["no built-in map", "--map"]);
+    bench.run("replay ride.csv").rejected_naming(&["no built-in map", "--map"]);
 }

@@ -1,4 +1,4 @@
-//! What a board told, replayed.
+//! A board's telemetry, replayed.
 
 use super::{PROGRAM, product};
 use control::{State, step};
@@ -8,10 +8,11 @@ use sim_host::replay::frames;
 use tests::cli::Bench;
 use tests::link_board::LinkBoard;
 
-/// Situation: a board rides a simulated ride with a gyro of 100 Hz and wheels of 50 Hz, and tells each step over its link.
-/// Action: write it with `monitor --csv`, replay the table as it is, and write the frames.
-/// Must hold: they are the frames that the board got, ages and the switch included, but for the clock's zero; so the
-/// commands are the same.
+/// Situation: a board rides a simulated ride with a gyro of 100 Hz and wheels of 50 Hz, and sends each step over its
+/// link.
+/// Action: write it with `monitor --csv`, replay the table unchanged, and write the frames.
+/// Must hold: they are the frames that the board received, ages and the switch included, except the clock's zero; so
+/// the commands are the same.
 #[test]
 fn the_monitors_table_is_replayed_as_it_is() {
     let bench = Bench::new(PROGRAM);
@@ -36,7 +37,7 @@ fn the_monitors_table_is_replayed_as_it_is() {
             polarity: 0,
             shown_nm: 0.0,
         };
-        bytes.extend(board.tell(&Message::Telemetry(telemetry)));
+        bytes.extend(board.unsolicited(&Message::Telemetry(telemetry)));
     }
     bench.write("ride.link", bytes);
     let monitor = bench.run("monitor --file ride.link --csv ride.csv");
@@ -58,7 +59,7 @@ fn the_monitors_table_is_replayed_as_it_is() {
     assert_eq!(oldest, Some(9));
     let named = bench.json("replay ride.csv --map monitor");
     assert_eq!(named["remarks"], serde_json::json!([]));
-    // The board has no sensor of the rider's torque; that is no reason to refuse its table.
+    // The board has no sensor of the rider's torque; its table is accepted nevertheless.
     let absent = serde_json::json!(["rider-torque (no value in `measured_rider_torque`)"]);
     assert_eq!(named["absent"], absent);
     assert_eq!(bench.run("replay ride.csv --strict -q").code, Some(0));

@@ -36,17 +36,17 @@ fn sound(text: &str) -> Result<(), TestCaseError> {
 
 /// Situation: any text.
 /// Action: read it as a table, apply a map, feed it.
-/// Must hold: an error or a recording, never a panic; what is in it is sound.
+/// Must hold: an error or a valid recording, never a panic.
 #[test]
 fn any_text() {
     runner(2000).run(&"(?s).{0,300}", |text| sound(&text)).unwrap();
 }
 
-/// Situation: a good table with pieces of text put in at any place.
+/// Situation: a good table with pieces of text inserted at any place.
 /// Action: the same.
 /// Must hold: the same.
 #[test]
-fn a_table_with_anything_in_it() {
+fn a_table_with_random_insertions() {
     let good = table_of(HEADER, &lines(&rows(40)));
     let odd = [
         "",

@@ -1,4 +1,4 @@
-//! Whole recordings of real bicycles, where they are at hand. The tables are those of docs/safety.md.
+//! Complete recordings of real bicycles, where they are available. The tables are those of docs/safety.md.
 
 use super::{PROGRAM, number};
 use rayon::prelude::*;
@@ -6,15 +6,16 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use tests::cli::{Bench, word};
-use tests::noticed::{LAST_FAULT, rows_of};
+use tests::detection::{LAST_FAULT, rows_of};
 
 const PAGE: &str = include_str!("../../../docs/safety.md");
 /// Folders of the recordings, and their maps.
 const SETS: [(&str, &str); 2] = [("robot", "robot-bicycle"), ("sbw", "extract")];
-/// Recordings in which something did break.
+/// Recordings of rides with a real fault.
 const BROKEN: [&str; 2] = ["2013-07-13_007.csv.gz", "2013-07-13_019.csv.gz"];
 
-/// The recordings of a set, by name; `STEER_ASSIST_RIDE_RECORDINGS` names the folder of the sets, which do not ship.
+/// The recordings of a set, by name; `STEER_ASSIST_RIDE_RECORDINGS` names the folder of the sets, which are not
+/// shipped.
 fn recordings(set: &str) -> Option<Vec<PathBuf>> {
     let folder = std::env::var_os("STEER_ASSIST_RIDE_RECORDINGS").map(PathBuf::from).filter(|f| f.is_dir());
     let Some(folder) = folder else {
@@ -33,7 +34,7 @@ fn replayed(file: &Path, map: &str, faults: &str) -> Value {
     Bench::new(PROGRAM).json(&format!("replay {} --map {map}{faults}", word(file)))
 }
 
-/// How often each cause that tells of something broken began.
+/// Number of beginnings of each cause that reports a fault.
 fn counts(document: &Value, of: &str) -> BTreeMap<u64, u64> {
     let causes = document["causes"].as_array().expect("causes").iter();
     let whole = |cause: &Value, key: &str| cause[key].as_u64().expect("a whole number");
@@ -41,8 +42,8 @@ fn counts(document: &Value, of: &str) -> BTreeMap<u64, u64> {
     pairs.filter(|(code, count)| *code <= u64::from(LAST_FAULT.code()) && *count > 0).collect()
 }
 
-/// In how many recordings a fault adds a cause, of how many, and which causes, the most frequent first.
-fn noticed(files: &[PathBuf], map: &str, faults: &str) -> [String; 2] {
+/// Number of recordings in which a fault adds a cause, total number, and the causes, the most frequent first.
+fn detected(files: &[PathBuf], map: &str, faults: &str) -> [String; 2] {
     let added = |file: &PathBuf| -> Vec<u64> {
         let [without, with] = ["", faults].map(|faults| counts(&replayed(file, map, faults), "count"));
         with.into_iter()
@@ -65,8 +66,9 @@ fn cells(row: &str) -> Vec<&str> {
     row.trim_matches('|').split('|').map(str::trim).collect()
 }
 
-/// Situation: recorded rides in which nothing was broken. Action: replay each with a fault from its first moment on. Must hold:
-/// in how many of them it is noticed, and by which causes, is what the table says.
+/// Situation: recorded rides without faults.
+/// Action: replay each with a fault from its first moment on.
+/// Must hold: the number of rides in which it is detected, and the causes, are those of the table.
 #[test]
 fn faults_in_recorded_rides() {
     let [Some(robot), Some(sbw)] = SETS.map(|(set, _)| recordings(set)) else { return };
@@ -79,15 +81,17 @@ fn faults_in_recorded_rides() {
         .map(|row| {
             let faults = cells(row)[0];
             let [a, b] = [(&robot, SETS[0].1), (&sbw, SETS[1].1)]
-                .map(|(files, map)| noticed(files, map, &faults.replace('`', "")));
+                .map(|(files, map)| detected(files, map, &faults.replace('`', "")));
             format!("| {faults} | {} | {} | {} | {} |", a[0], a[1], b[0], b[1])
         })
         .collect();
-    assert!(rows == should, "docs/safety.md should say:\n{}", should.join("\n"));
+    assert!(rows == should, "docs/safety.md should have:\n{}", should.join("\n"));
 }
 
-/// Situation: recorded rides. Action: replay each as it is. Must hold: how often each cause raised an alarm, in all and in an
-/// hour of riding, is what the table says, and no other did.
+/// Situation: recorded rides.
+/// Action: replay each unchanged.
+/// Must hold: the number of alarms of each cause, in all and in an hour of riding, is that of the table, and no other
+/// cause occurs.
 #[test]
 fn false_alarms_in_recorded_rides() {
     let mut columns = Vec::new();
@@ -103,9 +107,9 @@ fn false_alarms_in_recorded_rides() {
     }
     let rows = rows_of(PAGE, "false alarms");
     let code = |row: &str| cells(row)[0].split(' ').next().and_then(|code| code.parse().ok());
-    let said: BTreeSet<u64> = rows.iter().filter_map(|row| code(row)).collect();
+    let output: BTreeSet<u64> = rows.iter().filter_map(|row| code(row)).collect();
     let happened: BTreeSet<u64> = columns.iter().flat_map(|(alarms, _)| alarms.keys().copied()).collect();
-    assert_eq!(said, happened);
+    assert_eq!(output, happened);
     let should: Vec<String> = rows
         .iter()
         .map(|row| {
@@ -118,5 +122,5 @@ fn false_alarms_in_recorded_rides() {
             format!("| {} | {} | {} |", cells(row)[0], often.join(" | "), cells(row)[3])
         })
         .collect();
-    assert!(rows == should, "docs/safety.md should say:\n{}", should.join("\n"));
+    assert!(rows == should, "docs/safety.md should have:\n{}", should.join("\n"));
 }

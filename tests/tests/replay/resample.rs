@@ -1,4 +1,4 @@
-//! What the controller is told between two samples.
+//! The controller's measurements between two samples.
 
 use super::{SMALLEST, fed, sampled};
 use sim_host::plant::Sensor;
@@ -6,12 +6,12 @@ use sim_host::replay::Resample;
 
 /// Situation: a gyro of 200 Hz on a ramp, with a gap of 20 ms.
 /// Action: hold it.
-/// Must hold: at each millisecond the newest sample and its age, growing by one; nothing of what comes later.
+/// Must hold: at each millisecond the newest sample and its age, growing by one; nothing of later samples.
 #[test]
 fn held() {
     let text = "t,gx,gy,gz,rear\n0,0,0,0,4\n0.005,1,0,0,4\n0.025,2,0,0,4\n";
-    let told = fed(&sampled(text, SMALLEST).unwrap(), Resample::Hold, 0.5);
-    let gyro: Vec<_> = told.iter().map(|told| told.of(Sensor::Gyro)).collect();
+    let inputs = fed(&sampled(text, SMALLEST).unwrap(), Resample::Hold, 0.5);
+    let gyro: Vec<_> = inputs.iter().map(|input| input.of(Sensor::Gyro)).collect();
     assert_eq!(gyro.len(), 26);
     for (tick, held) in gyro.iter().enumerate() {
         let (value, since) = match tick {
@@ -25,13 +25,13 @@ fn held() {
 
 /// Situation: the same gyro.
 /// Action: interpolate, over gaps up to 10 ms.
-/// Must hold: on the line between two samples and always new; over the longer gap held, growing older.
+/// Must hold: on the line between two samples and always new; over the longer gap held, with a growing age.
 #[test]
 fn interpolated() {
     let text = "t,gx,gy,gz,rear\n0,0,0,0,4\n0.005,1,0,0,4\n0.025,2,0,0,4\n";
-    let told = fed(&sampled(text, SMALLEST).unwrap(), Resample::Interpolate, 0.01);
-    for (tick, told) in told.iter().enumerate() {
-        let held = told.of(Sensor::Gyro);
+    let inputs = fed(&sampled(text, SMALLEST).unwrap(), Resample::Interpolate, 0.01);
+    for (tick, input) in inputs.iter().enumerate() {
+        let held = input.of(Sensor::Gyro);
         let (value, age) = match tick {
             0..5 => (0.2 * tick as f64, 0),
             5..25 => (1.0, tick - 5),
@@ -48,7 +48,7 @@ fn interpolated() {
 #[test]
 fn nothing_before_the_first_sample() {
     let text = "t,gx,gy,gz,rear\n0,0,0,0,\n0.01,1,0,0,4\n0.02,1,0,0,4\n";
-    let told = fed(&sampled(text, SMALLEST).unwrap(), Resample::Hold, 0.5);
-    let ages: Vec<u16> = told.iter().map(|told| told.of(Sensor::RearWheel).age_ticks).collect();
+    let inputs = fed(&sampled(text, SMALLEST).unwrap(), Resample::Hold, 0.5);
+    let ages: Vec<u16> = inputs.iter().map(|input| input.of(Sensor::RearWheel).age_ticks).collect();
     assert!(ages[..10].iter().all(|age| *age == u16::MAX) && ages[10] == 0, "{ages:?}");
 }

@@ -1,5 +1,5 @@
-//! Flight cards: a delayed rider's ride beside an independent solver of delay differential equations
-//! on the other formulation of the bicycle; order of convergence; what the delay is.
+//! A delayed rider's ride compared with an independent solver of delay differential equations on the other
+//! formulation of the bicycle; order of convergence; meaning of the delay.
 
 use control::Law;
 use differential_equations::prelude::*;
@@ -21,9 +21,9 @@ fn ridden(assist: &Conditions, rider: Rider, step_s: f64, seconds: f64) -> Vec<T
     trace
 }
 
-/// Newton's and Euler's equations, a law and a rider, with the rider's delay. The state: roll,
-/// steer, roll rate, steer rate, rear wheel rate, integrals of roll and steer, heading, sideways
-/// place of the rear axle, torque and torque rate of the muscles. Not a number before t = 0.
+/// Newton's and Euler's equations, a law and a rider, with the rider's delay. The state: roll, steer, roll rate,
+/// steer rate, rear wheel rate, integrals of roll and steer, heading, lateral position of the rear axle,
+/// neuromuscular torque and its rate. NaN before t = 0.
 struct Reference {
     parameters: Parameters,
     law: Law,
@@ -33,7 +33,7 @@ struct Reference {
 type Entries = [f64; 11];
 
 impl Reference {
-    /// Everything about the bicycle in a state, and its front wheel's speed.
+    /// All quantities of the bicycle in a state, and its front wheel's speed.
     fn instant(&self, y: &Entries) -> (Solution, f64) {
         let state = State {
             roll: y[0],
@@ -45,7 +45,7 @@ impl Reference {
         };
         let p = &self.parameters;
         let speed = |s: &Solution| -p.rF * s.front_wheel_rate;
-        // The speed does not depend on the torque, so the first solution may have none.
+        // The speed does not depend on the torque, so the first solution needs none.
         let free = newton_euler::solve(p, &state, &Torques { roll: 0.0, steer: 0.0 });
         let v = speed(&free.expect("wheels on the ground"));
         let torque = self.law.gain(v) * y[2] + y[9];
@@ -53,7 +53,7 @@ impl Reference {
         (solution.expect("wheels on the ground"), v)
     }
 
-    /// The neural signal felt in a state.
+    /// The neural signal of a state.
     fn neural_signal(&self, y: &Entries) -> f64 {
         if y[0].is_nan() {
             return 0.0;
@@ -72,7 +72,7 @@ impl Reference {
         let (s, _) = self.instant(y);
         let (sin, cos) = y[7].sin_cos();
         let sideways = sin * s.rear_axle_velocity.x + cos * s.rear_axle_velocity.y;
-        let Neuromuscular { omega_rad_s: w, zeta } = self.rider.muscles;
+        let Neuromuscular { omega_rad_s: w, zeta } = self.rider.neuromuscular;
         let (roll_acc, steer_acc, wheel_acc) =
             (s.roll_acceleration, s.steer_acceleration, s.rear_wheel_acceleration);
         let muscle = w * w * (alpha - y[9]) - 2.0 * zeta * w * y[10];
@@ -107,7 +107,7 @@ fn reference(law: Law, rider: Rider, seconds: f64) -> Vec<[f64; 6]> {
     ];
     let delay = rider.delay_s;
     let reference = Reference { parameters, law, rider };
-    // Steps of a small part of the delay, so that few of them meet the kinks at its multiples.
+    // Steps of a small part of the delay, so that few of them contain the kinks at its multiples.
     let method =
         ExplicitRungeKutta::dopri5().rtol(1e-10).atol(1e-10).h_max(delay / 20.0).max_delay(2.0 * delay);
     let before = |_: f64| [f64::NAN; 11];
@@ -122,12 +122,12 @@ fn entries(p: &TracePoint) -> [f64; 6] {
 
 fn compare(assist: &Conditions, law: Law, delay_s: f64) {
     let seconds = 1.5;
-    let wanted = reference(law, thorough(delay_s), seconds);
+    let expected = reference(law, thorough(delay_s), seconds);
     let trace = ridden(assist, thorough(delay_s), 1e-3, seconds + 2e-3);
     let got: Vec<_> = trace.iter().step_by(50).map(entries).collect();
-    assert_eq!(got.len(), wanted.len());
+    assert_eq!(got.len(), expected.len());
     let mut largest = [0.0_f64; 6];
-    for (a, b) in got.iter().zip(&wanted) {
+    for (a, b) in got.iter().zip(&expected) {
         for (l, (x, y)) in largest.iter_mut().zip(a.iter().zip(b)) {
             *l = l.max((x - y).abs());
         }
@@ -138,23 +138,26 @@ fn compare(assist: &Conditions, law: Law, delay_s: f64) {
     assert!(largest.iter().all(|&d| (1e-13..2e-6).contains(&d)), "{largest:?}");
 }
 
-/// Situation: all ten gains, scheduled by front wheel speed, 60 ms late, no assist. Action: ride
-/// 1.5 s. The ride must be that of a library's solver for delay equations on Newton's and Euler's.
+/// Situation: all ten gains, scheduled by front wheel speed, 60 ms late, no assist.
+/// Action: ride 1.5 s.
+/// Must hold: the ride is that of a library's solver for delay equations on Newton's and Euler's.
 #[test]
 fn a_delayed_ride_is_the_other_solvers() {
     compare(&alone(), Law::None, 0.06);
 }
 
-/// Situation: the same rider 30 ms late beside the continuous law h. Action: ride. The same holds:
-/// rider and assist push in parallel.
+/// Situation: the same rider 30 ms late beside the continuous law h.
+/// Action: ride.
+/// Must hold: the same; rider and assist act in parallel.
 #[test]
 fn rider_and_assist_push_in_parallel() {
     compare(&ideal(H), H, 0.03);
 }
 
-/// Situation: one ride at several steps, the gains on one line over speed (where lines meet, the
-/// signal has a kink that the speed may pass inside a step). Action: compare with a step four times
-/// as fine. The order must be four.
+/// Situation: one ride at several steps, the gains on one line over speed (where lines meet, the signal has a kink
+/// that the speed may pass inside a step).
+/// Action: compare with a step four times as fine.
+/// Must hold: the order is four.
 #[test]
 fn the_order_is_four() {
     for (name, assist, delay) in
@@ -177,10 +180,11 @@ fn the_order_is_four() {
     }
 }
 
-/// Situation: a knock at t = 0, a rider with 60 ms delay. Action: watch the rider's torque. It must be
-/// exactly zero until 60 ms have passed, and then begin as the muscles' answer to the jump.
+/// Situation: a knock at t = 0, a rider with 60 ms delay.
+/// Action: record the rider's torque.
+/// Must hold: exactly zero until 60 ms have passed, then the beginning of the neuromuscular response to the jump.
 #[test]
-fn nothing_is_done_before_the_delay_has_passed() {
+fn the_torque_is_zero_before_the_delay() {
     let trace = ridden(&alone(), thorough(0.06), 1e-3, 0.2);
     assert!(trace[..=60].iter().all(|p| p.rider_torque == 0.0));
     // The signal at t = 0 arrives at 60 ms; from there T = alpha (omega t)^2 / 2 at first.
@@ -189,21 +193,24 @@ fn nothing_is_done_before_the_delay_has_passed() {
     assert!((0.8..1.2).contains(&early), "{early}");
 }
 
-/// Situation: a rider whose gains are all zero. Action: ride. The bits must be those of no rider.
+/// Situation: a rider whose gains are all zero.
+/// Action: ride.
+/// Must hold: the bits of no rider.
 #[test]
-fn a_rider_who_feels_nothing_is_no_rider() {
+fn a_rider_without_gains_is_no_rider() {
     let numb = Rider {
         schedule: Schedule::constant(Gains::default()),
         delay_s: 0.03,
-        muscles: Neuromuscular::SHOULDERS,
+        neuromuscular: Neuromuscular::SHOULDERS,
     };
     let with = ridden(&ideal(H), numb, 1e-3, 1.0);
     let (_, without) = traced(&Conditions { time_limit_s: 1.0, ..ideal(H) }, START);
     assert_eq!(with, without);
 }
 
-/// Situation: eight riders abreast, ended and followed by others. Action: ride each alone too. Every
-/// bit must agree, falls near singular places included.
+/// Situation: eight riders in the lanes, ended and followed by others.
+/// Action: ride each alone too.
+/// Must hold: every bit agrees, falls near singular states included.
 #[test]
 fn a_ride_has_the_same_bits_in_any_lane() {
     for delay in [0.0, 0.06] {
@@ -224,8 +231,9 @@ fn a_ride_has_the_same_bits_in_any_lane() {
     }
 }
 
-/// Situation: the assist as flashed and as the continuous law, beside the same rider. Action: ride.
-/// The rides must be close, but not the same.
+/// Situation: the assist as flashed and as the continuous law, beside the same rider.
+/// Action: ride.
+/// Must hold: the rides are close, but not the same.
 #[test]
 fn the_flashed_assist_beside_a_rider() {
     let flashed = ridden(&tests::basins::assisted(H), thorough(0.06), 1e-3, 1.5);

@@ -1,5 +1,5 @@
-//! Flight cards: small rides of riders beside the linear analysis: closed loops without delay against
-//! the matrix exponential, growth rates with delay against characteristic roots.
+//! Small rides of riders compared with the linear analysis: closed loops without delay with the matrix exponential,
+//! growth rates with delay with characteristic roots.
 
 use control::Law;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -33,9 +33,10 @@ fn small(law: &Law, rider: &Rider, speed: f64, seconds: f64) -> Vec<TracePoint> 
 
 const SMALL: f64 = 1e-6;
 
-/// Situation: riders without delay, one with all ten gains, with and without the law h. Action: ride
-/// 2 s after a tiny knock. Roll, steer, their rates and the rider's torque must be those of the
-/// matrix exponential of the linear closed loop.
+/// Situation: riders without delay, one with all ten gains, with and without the law h.
+/// Action: ride 2 s after a tiny knock.
+/// Must hold: roll, steer, their rates and the rider's torque are those of the matrix exponential of the linear
+/// closed loop.
 #[test]
 fn undelayed_closed_loops_are_their_matrix_exponentials() {
     let everything = Rider { schedule: Schedule::constant(thorough(0.0).schedule.at(4.0)), ..thorough(0.0) };
@@ -48,22 +49,22 @@ fn undelayed_closed_loops_are_their_matrix_exponentials() {
             let mut start = DVector::zeros(n);
             start[3] = SMALL;
             for i in [100, 500, 1000, 2000] {
-                let wanted = (&matrix * (1e-3 * i as f64)).exp() * &start;
+                let expected = (&matrix * (1e-3 * i as f64)).exp() * &start;
                 let p = &trace[i];
                 let got = [p.roll, p.steer, p.roll_rate, p.steer_rate, p.rider_torque];
-                let wanted = [wanted[0], wanted[1], wanted[2], wanted[3], wanted[n - 2]];
-                let size = wanted.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-                let off = got.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
+                let expected = [expected[0], expected[1], expected[2], expected[3], expected[n - 2]];
+                let size = expected.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                let off = got.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
                 println!("{name}, {law:?}, {} s: off by {off:.1e}", 1e-3 * i as f64);
-                assert!((1e-16..1e-7).contains(&off), "{name} {law:?} {i}: {got:?} {wanted:?}");
+                assert!((1e-16..1e-7).contains(&off), "{name} {law:?} {i}: {got:?} {expected:?}");
             }
         }
     }
 }
 
-/// The root with the largest real part that a signal shows from `from` to `to` \[s\]: a linear
-/// recurrence of `order` through points 40 ms apart, by least squares (Prony).
-fn shown(trace: &[TracePoint], (from, to): (f64, f64), order: usize) -> Complex<f64> {
+/// The root with the largest real part in a signal from `from` to `to` \[s\]: a linear recurrence of `order` through
+/// points 40 ms apart, by least squares (Prony).
+fn dominant_root(trace: &[TracePoint], (from, to): (f64, f64), order: usize) -> Complex<f64> {
     let gap = 40;
     let at = |i: usize| trace[i].steer;
     let rows: Vec<usize> = ((from * 1e3) as usize..(to * 1e3) as usize - gap * order).step_by(7).collect();
@@ -86,9 +87,9 @@ fn shown(trace: &[TracePoint], (from, to): (f64, f64), order: usize) -> Complex<
     logs.max_by(|a, b| a.re.total_cmp(&b.re)).expect("roots")
 }
 
-/// Situation: delayed riders, growing and decaying, with and without assist. Action: ride after a
-/// tiny knock, take the growth rate from the ride's later part. It must be the rightmost
-/// characteristic root to 1e-4 1/s, frequency included.
+/// Situation: delayed riders, growing and decaying, with and without assist.
+/// Action: ride after a tiny knock, take the growth rate from the ride's later part.
+/// Must hold: it is the rightmost characteristic root to 1e-4 1/s, frequency included.
 #[test]
 fn growth_rates_of_small_rides_are_characteristic_roots() {
     let cases = [
@@ -106,7 +107,7 @@ fn growth_rates_of_small_rides_are_characteristic_roots() {
         let rider = Rider { delay_s: delay.unwrap_or(rider.delay_s), ..rider };
         let root = rightmost(&model(law.clone(), &rider).at(speed));
         let trace = small(&law, &rider, speed, 7.1);
-        let got = shown(&trace, (1.0, 7.0), 8);
+        let got = dominant_root(&trace, (1.0, 7.0), 8);
         println!("{name} {} {speed} m/s {law:?}: ride {got:.6}, root {root:.6}", fit.name());
         assert!((got.re - root.re).abs() < 1e-4, "{name} {speed}: {got} {root}");
         assert!((got.im - root.im.abs()).abs() < 1e-4, "{name} {speed}: {got} {root}");
@@ -115,9 +116,10 @@ fn growth_rates_of_small_rides_are_characteristic_roots() {
     assert_eq!(signs, [true; 2], "growing and decaying ones");
 }
 
-/// Situation: the smart rider's regression, frozen at 4.3 m/s, whose root grows. Action: ride 15 s
-/// after 0.5 rad/s. The ride must end in a limit cycle of some degrees, not fall; with the gains
-/// over speed it must fall within 6 s.
+/// Situation: the smart rider's regression, constant as at 4.3 m/s, whose root grows.
+/// Action: ride 15 s after 0.5 rad/s.
+/// Must hold: the ride ends in a limit cycle of some degrees and does not fall; with the gains over speed it falls
+/// within 6 s.
 #[test]
 fn the_regression_at_4_3_is_a_limit_cycle_until_its_gains_follow_the_speed() {
     let frozen = constant("smart", Fit::Regression, 4.3);

@@ -1,4 +1,4 @@
-//! Flight cards: the delayed human riders.
+//! The delayed human riders.
 
 mod delay;
 mod linear;

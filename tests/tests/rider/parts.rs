@@ -1,21 +1,22 @@
-//! Flight cards: the parts of a rider against closed forms.
+//! The parts of a rider compared with closed forms.
 
 use sim_host::bicycle::{Geometry, Motion, State};
 use sim_host::integrate::{STAGES, Stages};
 use sim_host::rider::{DelayLine, Instant, Neuromuscular, RiderState};
 use tests::rides::shipped;
 
-/// Situation: muscles at rest, the neural signal jumps to 1 N m. Action: integrate for a second in
-/// steps of 0.1 ms. Torque and rate must be the closed step response to 1e-12.
+/// Situation: neuromuscular dynamics at rest, the neural signal jumps to 1 N m.
+/// Action: integrate for a second in steps of 0.1 ms.
+/// Must hold: torque and rate are the closed step response to 1e-12.
 #[test]
-fn step_response_of_the_muscles() {
+fn step_response_of_the_neuromuscular_dynamics() {
     let b = Geometry::new(&shipped("rigid_jason").parameters);
     let state = State::upright(&b, 5.0);
     let motion = Motion::new(&b, &state);
     let now =
         Instant { angles: [0.0; 2], accelerations: [0.0; 2], pose: &motion.pose, velocities: &motion.actual };
-    for muscles in [Neuromuscular::SHOULDERS, Neuromuscular { omega_rad_s: 30.0, zeta: 0.707 }] {
-        let Neuromuscular { omega_rad_s: w, zeta } = muscles;
+    for dynamics in [Neuromuscular::SHOULDERS, Neuromuscular { omega_rad_s: 30.0, zeta: 0.707 }] {
+        let Neuromuscular { omega_rad_s: w, zeta } = dynamics;
         let damped = w * (1.0 - zeta * zeta).sqrt();
         let h = 1e-4;
         let mut body = RiderState::<f64>::fresh();
@@ -30,20 +31,21 @@ fn step_response_of_the_muscles() {
             overshoot = overshoot.max(body.torque - 1.0);
             let mut stages = Stages::new(body);
             for stage in 0..STAGES.len() {
-                let k = stages.at.rate(&b, &now, &muscles, 1.0);
+                let k = stages.at.rate(&b, &now, &dynamics, 1.0);
                 stages.next(stage, h, &k);
             }
             body = stages.end;
         }
-        println!("{muscles:?}: largest error {largest:e}, overshoot {overshoot:.6}");
+        println!("{dynamics:?}: largest error {largest:e}, overshoot {overshoot:.6}");
         assert!((1e-16..1e-12).contains(&largest), "{largest:e}");
         let closed = (-std::f64::consts::PI * zeta / (1.0 - zeta * zeta).sqrt()).exp();
         assert!((overshoot - closed).abs() < 1e-5, "{overshoot} {closed}");
     }
 }
 
-/// Situation: a sine felt every millisecond. Action: let it arrive 30, 60 or 7 steps later. At whole
-/// steps it must be the sine to the bit, between them to 1e-12, and nothing before.
+/// Situation: a sine sampled every millisecond.
+/// Action: delay it by 30, 60 or 7 steps.
+/// Must hold: at whole steps the sine to the bit, between them to 1e-12, and zero before.
 #[test]
 fn pure_delay() {
     let sine = |n: f64| (2e-3 * n).sin();
@@ -67,8 +69,9 @@ fn pure_delay() {
     }
 }
 
-/// Situation: the same at ever smaller steps. Action: watch the error between whole steps. It must
-/// fall with the fourth power.
+/// Situation: the same at ever smaller steps.
+/// Action: compute the error between whole steps.
+/// Must hold: it falls with the fourth power.
 #[test]
 fn the_delay_line_is_of_fourth_order() {
     let error = |per_second: usize| {

@@ -1,5 +1,5 @@
-//! The linear analysis with a delay: characteristic roots of known systems, none missed, none
-//! invented; published roots and stable speeds of riders; modes.
+//! The linear analysis with a delay: characteristic roots of known systems, none missed, none spurious; published
+//! roots and stable speeds of riders; modes.
 
 use control::Law;
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
@@ -24,8 +24,8 @@ fn scalar(a: f64, delay_s: f64) -> DelaySystem {
     }
 }
 
-/// Branches of Lambert's W, `w exp(w) = z`, around the real ones, for a negative `z`: by Newton on
-/// `w + ln w = ln z + 2 pi i k`; the two real ones that there are above `-1/e` share their `k`.
+/// Branches of Lambert's W, `w exp(w) = z`, around the real ones, for a negative `z`: by Newton on `w + ln w = ln z +
+/// 2 pi i k`; the two real ones above `-1/e` share their `k`.
 fn lambert_w(z: f64) -> Vec<C> {
     let branch = |k: i32, start: Option<C>| {
         let target = C::new(z, 0.0).ln() + C::new(0.0, TAU * f64::from(k));
@@ -46,7 +46,7 @@ fn lambert_w(z: f64) -> Vec<C> {
 
 fn rider(of: impl Fn(&str) -> f64, delay_s: f64) -> Rider {
     let gains = Gains(KEYS.map(of));
-    Rider { schedule: Schedule::constant(gains), delay_s, muscles: Neuromuscular::SHOULDERS }
+    Rider { schedule: Schedule::constant(gains), delay_s, neuromuscular: Neuromuscular::SHOULDERS }
 }
 
 fn with_rider(bicycle: &str, law: Law, rider: Rider) -> Model {
@@ -72,8 +72,8 @@ fn undelayed(fit: Fit) -> Rider {
     table.rider(fit, Outside::Extrapolate, None).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// About how far `s` is from a root, relative or absolute: the determinant over its derivative, that
-/// by central differences.
+/// Approximate distance of `s` from a root, relative or absolute: the determinant over its derivative, that by
+/// central differences.
 fn residual(system: &DelaySystem, s: C) -> f64 {
     let determinant = |s: C| system.characteristic(s).determinant();
     let size = s.norm().max(1.0);
@@ -82,8 +82,8 @@ fn residual(system: &DelaySystem, s: C) -> f64 {
     (determinant(s) / derivative).norm() / size
 }
 
-/// How often the characteristic determinant winds round zero along the border of a rectangle: the
-/// number of roots in it.
+/// Winding number of the characteristic determinant around zero along the border of a rectangle: the number of roots
+/// in it.
 fn count(system: &DelaySystem, corner: C, opposite: C) -> i32 {
     let determinant = |s: C| system.characteristic(s).determinant();
     let (low, high) = (corner, opposite);
@@ -113,9 +113,9 @@ fn scalar_roots_are_lamberts() {
     for (a, delay) in [(1.0, 1.0), (0.2, 1.0), (PI / 2.0, 1.0), (5.0, 0.06), (300.0, 0.03)] {
         let found = roots(&scalar(a, delay), 12);
         assert!(found.len() >= 12);
-        let known: Vec<C> = lambert_w(-a * delay).into_iter().map(|w| w / delay).collect();
+        let branches: Vec<C> = lambert_w(-a * delay).into_iter().map(|w| w / delay).collect();
         for root in found {
-            let off = known.iter().map(|w| (w - root).norm()).fold(f64::INFINITY, f64::min);
+            let off = branches.iter().map(|w| (w - root).norm()).fold(f64::INFINITY, f64::min);
             worst = worst.max(off / root.norm().max(1.0));
             assert!(off < 1e-11 * root.norm().max(1.0), "a = {a}, delay {delay}: {root} is off by {off:e}");
         }
@@ -143,9 +143,9 @@ fn roots_go_to_eigenvalues_with_the_delay() {
 }
 
 /// Situation: riders with all kinds of gains, laws, speeds and delays.
-/// Action: compute the rightmost roots; wind round the region right of the last.
-/// Must hold: each root solves the characteristic equation, what is beside it does not; there are as many as the winding
-/// number says, so none is missed and none invented.
+/// Action: compute the rightmost roots, and the winding number of the region right of the last.
+/// Must hold: each root solves the characteristic equation, points beside it do not; there are as many as the winding
+/// number, so none is missed and none spurious.
 #[test]
 fn no_root_is_missed_and_none_invented() {
     let everything = |key: &str| match key {
@@ -179,7 +179,7 @@ fn no_root_is_missed_and_none_invented() {
                     assert!(off < 1e-12, "{name}, {delay} s, {v} m/s: {root} is off by {off:e}");
                     worst = worst.max(off);
                 }
-                // The border goes between the last root and what is left of it.
+                // The border lies between the last root and the next one to its left.
                 let more = roots(&system, found.len() + 1);
                 let border = 0.5 * (found[found.len() - 1].re + more[found.len()].re);
                 let high = 40.0 + 3.0 * found.iter().map(|s| s.norm()).fold(0.0, f64::max);
@@ -198,13 +198,13 @@ fn no_root_is_missed_and_none_invented() {
 
 /// Situation: a system of ten states: integrals, heading and lateral offset.
 /// Action: multiply it out for one mode by hand.
-/// Must hold: the signal is the sum of gains times what is integrated and differentiated.
+/// Must hold: the signal is the sum of gains times the integrals and derivatives.
 #[test]
 fn the_signal_is_made_of_the_motion() {
     let ones = rider(|_| 1.0, 0.1);
     let p = shipped("benchmark").parameters;
     let system = Model::new(&p, Feedback::Law(Law::None), Some(ones)).at(3.0);
-    // Along exp(s t) roll and steer are free; all else follows from what it is.
+    // Along exp(s t) roll and steer are free; all else follows from them.
     let s = C::new(0.7, 1.9);
     let (roll, steer, torque) = (C::new(1.0, 0.0), C::new(0.4, -0.3), C::new(0.0, 0.0));
     let heading = (steer * 3.0 + s * steer * p.c) * p.lam.cos() / p.w / s;
@@ -215,8 +215,8 @@ fn the_signal_is_made_of_the_motion() {
         assert!((row(kinematic) - s * state[kinematic]).norm() < 1e-12, "state {kinematic}");
     }
     let signal: C = (0..10).map(|j| state[j] * system.k[j]).sum();
-    let wanted = state[..8].iter().sum::<C>() + row(2) + row(3);
-    assert!((signal - wanted).norm() < 1e-10, "{signal} {wanted}");
+    let expected = state[..8].iter().sum::<C>() + row(2) + row(3);
+    assert!((signal - expected).norm() < 1e-10, "{signal} {expected}");
 }
 
 /// Situation: the smart rider at 4.3 m/s with 60 ms, gains as printed.
@@ -242,10 +242,10 @@ fn smart_rider_at_4_3_has_the_independent_roots() {
     }
 }
 
-/// Situation: the undelayed rider by each course of the gains.
-/// Action: look for stable speeds.
-/// Must hold: one range, between the independent speeds; the regression's begins where the steer
-/// integral's gain changes sign, a real root, and ends where an oscillation begins to grow.
+/// Situation: the undelayed rider by each gain schedule.
+/// Action: search for stable speeds.
+/// Must hold: one range, between the independent speeds; the regression's begins where the steer integral's gain
+/// changes sign, a real root, and ends where an oscillation begins to grow.
 #[test]
 fn undelayed_riders_are_stable_between_the_independent_speeds() {
     let published = entry("undelayed_stable_ranges");
@@ -257,9 +257,9 @@ fn undelayed_riders_are_stable_between_the_independent_speeds() {
         let Some(&(from, to)) = found.ranges.iter().find(|(from, to)| (*from..*to).contains(&5.0)) else {
             panic!("{found:?}")
         };
-        let wanted: [f64; 2] = published.row(fit.name());
-        assert!((from - wanted[0]).abs() < published.tolerance(), "{from}");
-        assert!((to - wanted[1]).abs() < published.tolerance(), "{to}");
+        let expected: [f64; 2] = published.row(fit.name());
+        assert!((from - expected[0]).abs() < published.tolerance(), "{from}");
+        assert!((to - expected[1]).abs() < published.tolerance(), "{to}");
         if fit == Fit::Regression {
             let steer_integral = |v: f64| rider.schedule.at(v).0[5];
             assert!(steer_integral(from - 1e-6) * steer_integral(from + 1e-6) < 0.0, "{from}");
@@ -294,9 +294,8 @@ fn without_a_rider_the_stable_range_is_from_weave_to_capsize_speed() {
     assert!(ranges >= 40, "{ranges}");
 }
 
-/// Situation: the benchmark bicycle under the intuitive controller, its roll rate gain below
-/// 40 N m s/rad.
-/// Action: look for stable speeds.
+/// Situation: the benchmark bicycle under the intuitive controller, its roll rate gain below 40 N m s/rad.
+/// Action: search for stable speeds.
 /// Must hold: stable from below the bicycle's own weave speed on, and capsize is stable at all speeds.
 #[test]
 fn the_intuitive_controller_stabilises_weave_and_capsize() {
@@ -316,11 +315,11 @@ fn mode<'a>(modes: &'a [Mode], name: &str) -> &'a Mode {
     modes.iter().find(|m| m.name == name).unwrap_or_else(|| panic!("no {name}"))
 }
 
-/// Situation: the benchmark bicycle and the thesis's, alone and under h and CL1.
+/// Situation: the benchmark bicycle and the thesis bicycle, without assist and under h and CL1.
 /// Action: follow the modes from rest to 10 m/s.
-/// Must hold: together they are all eigenvalues; at high speed weave is the pair, caster the most
-/// negative; from rest to v_d weave is two growing real roots; caster stays left of capsize, and under
-/// CL1 they are a pair in between, and each leaves on its side.
+/// Must hold: together they are all eigenvalues; at high speed weave is the pair, caster the most negative; from rest
+/// to v_d weave is two growing real roots; caster stays left of capsize, and under CL1 they are a pair in between,
+/// and each leaves on its side.
 #[test]
 fn modes_keep_their_identity_over_speed() {
     let speeds: Vec<f64> = (0..=200).map(|i| 0.05 * f64::from(i)).collect();
@@ -355,7 +354,7 @@ fn modes_keep_their_identity_over_speed() {
 
 /// Situation: a delayed rider.
 /// Action: follow the modes in steps, and in others.
-/// Must hold: each is a root at every speed, no root is two, and steps do not matter.
+/// Must hold: each is a root at every speed, no root is two, and the steps have no effect.
 #[test]
 fn modes_of_a_delayed_rider_are_roots_whatever_the_steps() {
     let model = with_rider("rigid_jason", Law::H { cut: false }, smart("mean"));

@@ -1,4 +1,4 @@
-//! The riders that ship: the published regressions and R^2, and what every table must be.
+//! The shipped riders: the published regressions and R^2, and the properties of every table.
 
 use nalgebra::{DMatrix, SMatrix};
 use proptest::collection::vec;
@@ -19,7 +19,7 @@ fn place(key: &str) -> usize {
     KEYS.iter().position(|k| *k == key).expect("a gain")
 }
 
-/// What is said to be missed: `[column, printed, computed]`.
+/// The values listed as missed: `[column, printed, computed]`.
 fn missed(published: &Published, key: &str) -> Vec<[f64; 3]> {
     let key = format!("missed_{key}");
     if published.has(&key) { published.rows(&key) } else { vec![] }
@@ -27,15 +27,15 @@ fn missed(published: &Published, key: &str) -> Vec<[f64; 3]> {
 
 /// Situation: the published regression and R^2 of each delayed rider.
 /// Action: compute them from the rows.
-/// Must hold: every printed value, but for those listed as missed, which are what is listed and
-/// differ from the printed ones by more than the tolerance.
+/// Must hold: every printed value, except those listed as missed, which have the listed values and differ from the
+/// printed ones by more than the tolerance.
 #[test]
 fn regressions_and_r_squared_are_the_published_ones() {
     for (name, gains) in [("young_fits", 5), ("smart_fits", 7), ("smart6_fits", 6)] {
         let published = entry(name);
         let table = rider(published.text("rider"));
         assert_eq!(table.columns.len(), gains, "{name}");
-        // What the rows give, whatever regression the file carries.
+        // The regression of the rows, whatever regression the file contains.
         let table = RiderTable { regression: None, ..table };
         let line = table.least_squares();
         let r_squared = Fit::ALL.map(|fit| {
@@ -57,8 +57,8 @@ fn regressions_and_r_squared_are_the_published_ones() {
                 let off = (printed - computed).abs();
                 match missed.iter().find(|m| m[0] == column as f64) {
                     None => assert!(off <= tolerance, "{name} {key} {column}: {printed} {computed}"),
-                    Some([_, said, found]) => {
-                        assert_eq!(*said, printed, "{name} {key} {column}");
+                    Some([_, output, found]) => {
+                        assert_eq!(*output, printed, "{name} {key} {column}");
                         assert!(off > tolerance, "{name} {key} {column} is not missed: {computed}");
                         let near = (computed - found).abs() <= 1e-3 * found.abs().max(0.1);
                         assert!(near, "{name} {key} {column}: {computed} is not {found}");
@@ -69,10 +69,10 @@ fn regressions_and_r_squared_are_the_published_ones() {
     }
 }
 
-/// Situation: the files that carry the published regression.
+/// Situation: the files with the published regression.
 /// Action: compare it with the published lines and with least squares.
-/// Must hold: it is what was printed, but for the one typing error; `regression` means it; and
-/// least squares over the rows are close by, but not the same.
+/// Must hold: it is as printed, except for the one typing error; `regression` selects it; and least squares over the
+/// rows are close, but not the same.
 #[test]
 fn regressions_are_the_printed_ones() {
     for name in ["young_fits", "smart_fits", "smart6_fits"] {
@@ -83,10 +83,10 @@ fn regressions_are_the_printed_ones() {
         for &i in &table.columns {
             let [slope, _, intercept, ..] = published.row::<7>(KEYS[i]);
             let typo = (name, KEYS[i]) == ("smart6_fits", "K_delta_d");
-            let wanted = if typo { 10.0 * intercept } else { intercept };
-            assert!((line.slope.0[i], line.intercept.0[i]) == (slope, wanted), "{name} {}", KEYS[i]);
+            let expected = if typo { 10.0 * intercept } else { intercept };
+            assert!((line.slope.0[i], line.intercept.0[i]) == (slope, expected), "{name} {}", KEYS[i]);
             let at_5 = schedule.at(5.0).0[i];
-            assert!((at_5 - (5.0 * slope + wanted)).abs() < 1e-9, "{name} {}: {at_5}", KEYS[i]);
+            assert!((at_5 - (5.0 * slope + expected)).abs() < 1e-9, "{name} {}: {at_5}", KEYS[i]);
         }
         assert_ne!(line, table.least_squares());
     }
@@ -108,8 +108,8 @@ fn the_undelayed_regression_is_the_published_one() {
     }
 }
 
-/// Situation: Table K.1, the smart rider's gains at 4.3 m/s by two courses.
-/// Action: ask the schedules.
+/// Situation: Table K.1, the smart rider's gains at 4.3 m/s by two schedules.
+/// Action: evaluate the schedules.
 /// Must hold: to the printed digits.
 #[test]
 fn the_smart_riders_gains_at_4_3_are_the_published_ones() {
@@ -151,10 +151,10 @@ fn r_squared_as_printed_does_not_give_the_published_values() {
 
 /// Situation: every shipped rider and the example.
 /// Action: load it, count its sets.
-/// Must hold: the number of sets of its table, and the sum of its gains as added up from the text; every course of gains that can
-/// be is there; gains without a column are zero.
+/// Must hold: the number of sets of its table, and the sum of its gains as added up from the text; every possible
+/// gain schedule is there; gains without a column are zero.
 #[test]
-fn every_shipped_table_loads_whole() {
+fn every_shipped_table_loads_completely() {
     for (name, rows, delay_ms, sum) in [
         ("young", 15, 30.0, 7203.746),
         ("smart", 11, 60.0, 630.408),
@@ -178,7 +178,7 @@ fn every_shipped_table_loads_whole() {
             assert!(table.rider(fit, Outside::Hold, None).is_ok(), "{name} {}", fit.name());
         }
         let shoulders = !name.starts_with("hess");
-        assert_eq!(table.muscles == Neuromuscular::SHOULDERS, shoulders, "{name}");
+        assert_eq!(table.neuromuscular == Neuromuscular::SHOULDERS, shoulders, "{name}");
     }
     assert_eq!(catalogue::shipped_names().count(), 10);
     let example = repository("data/riders/example.toml");
@@ -186,9 +186,32 @@ fn every_shipped_table_loads_whole() {
     assert_eq!((table.rows.len(), table.groups().count()), (6, 2));
 }
 
+/// Situation: the shipped riders. Action: look for each in its folder, in docs/riders.md and in the README.
+/// Must hold: a file for each, and for no other but the example; a row for each; the README's number.
+#[test]
+fn every_shipped_rider_is_documented() {
+    let text = |path: &str| std::fs::read_to_string(repository(path)).unwrap();
+    let mut files: Vec<String> = std::fs::read_dir(repository("data/riders"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name != "example.toml")
+        .collect();
+    let mut shipped: Vec<String> = catalogue::shipped_names().map(|name| format!("{name}.toml")).collect();
+    (files.sort(), shipped.sort());
+    assert_eq!(files, shipped);
+    let page = text("docs/riders.md");
+    let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
+    for name in catalogue::shipped_names() {
+        let named =
+            |row: &&str| row.split(" | ").next().is_some_and(|cell| cell.contains(&format!("`{name}`")));
+        assert!(rows.iter().any(|row| named(&row)), "docs/riders.md has no row for {name}");
+    }
+    assert!(text("README.md").contains(&format!("{} tables of rider gains", shipped.len())));
+}
+
 /// The state matrix of roll, steer, their rates, heading, lateral offset of the front contact, torque
 /// and its rate: the linear bicycle at `v` under gains of these, without delay.
-fn closed_loop(bicycle: &str, v: f64, gains: &Gains, muscles: &Neuromuscular) -> SMatrix<f64, 8, 8> {
+fn closed_loop(bicycle: &str, v: f64, gains: &Gains, neuromuscular: &Neuromuscular) -> SMatrix<f64, 8, 8> {
     let p = shipped(bicycle).parameters;
     let linear = Linear::new(&p);
     let free = linear.state_matrix(v, 0.0);
@@ -196,35 +219,32 @@ fn closed_loop(bicycle: &str, v: f64, gains: &Gains, muscles: &Neuromuscular) ->
     let mut a = SMatrix::<f64, 8, 8>::zeros();
     a.fixed_view_mut::<4, 4>(0, 0).copy_from(&free);
     (a[(2, 6)], a[(3, 6)]) = (m[(0, 1)], m[(1, 1)]);
-    // Heading rate (v steer + c steer rate) cos(lam) / w; the front contact is w ahead and its trail
-    // moves it back.
+    // Heading rate (v steer + c steer rate) cos(lam) / w; the front contact is w ahead and moves back by its trail.
     let cos = p.lam.cos();
     (a[(4, 1)], a[(4, 3)]) = (v * cos / p.w, p.c * cos / p.w);
     (a[(5, 4)], a[(5, 1)], a[(5, 3)]) = (v, v * cos, 0.0);
     a[(6, 7)] = 1.0;
-    let omega2 = muscles.omega_rad_s.powi(2);
+    let omega2 = neuromuscular.omega_rad_s.powi(2);
     let signals =
         [("K_phi_p", 0), ("K_delta_p", 1), ("K_phi_d", 2), ("K_delta_d", 3), ("K_psi", 4), ("K_y", 5)];
     for (key, state) in signals {
         a[(7, state)] = omega2 * gains.get(key).expect("a gain");
     }
     a[(7, 6)] = -omega2;
-    a[(7, 7)] = -2.0 * muscles.zeta * muscles.omega_rad_s;
+    a[(7, 7)] = -2.0 * neuromuscular.zeta * neuromuscular.omega_rad_s;
     a
 }
 
-/// Situation: the riders of nested loops on the bicycles they were made for, at their own speeds;
-/// and with one sign wrong.
+/// Situation: the riders of nested loops on their own bicycles and at their own speeds; and with one sign wrong.
 /// Action: close the loop on the linear bicycle, heading and lateral offset included.
-/// Must hold: all eigenvalues decay, the slowest neither at once nor never; with a wrong sign some
-/// grow.
+/// Must hold: all eigenvalues decay, the slowest within bounds; with a wrong sign some grow.
 #[test]
 fn nested_gains_multiplied_out_stabilise_their_bicycle() {
     for (name, bicycle) in [("hess", "rigid_jason"), ("hess-benchmark", "benchmark")] {
         let table = rider(name);
         for row in &table.rows {
             let growth = |gains: &Gains| {
-                let a = closed_loop(bicycle, row.speed_m_s, gains, &table.muscles);
+                let a = closed_loop(bicycle, row.speed_m_s, gains, &table.neuromuscular);
                 let values = DMatrix::from_column_slice(8, 8, a.as_slice()).complex_eigenvalues();
                 values.iter().map(|e| e.re).fold(f64::NEG_INFINITY, f64::max)
             };
@@ -247,7 +267,7 @@ fn nested_gains_multiplied_out_stabilise_their_bicycle() {
 #[test]
 fn nested_gains_are_products() {
     let gains = rider("hess").rows[0].gains;
-    for (key, want) in [
+    for (key, expected) in [
         ("K_delta_p", -20.1532),
         ("K_phi_d", 20.1532 * 0.0346),
         ("K_phi_p", 20.1532 * 0.0346 * 62.0767),
@@ -255,7 +275,7 @@ fn nested_gains_are_products() {
         ("K_y", 20.1532 * 0.0346 * 62.0767 * 0.0491 * 0.2143),
         ("K_delta_d", 0.0),
     ] {
-        assert!((gains.get(key).unwrap() - want).abs() < 1e-12, "{key}");
+        assert!((gains.get(key).unwrap() - expected).abs() < 1e-12, "{key}");
     }
 }
 
@@ -266,7 +286,7 @@ fn nested_gains_are_products() {
 fn no_text_makes_the_parser_panic() {
     let example: Vec<char> =
         std::fs::read_to_string(repository("data/riders/example.toml")).unwrap().chars().collect();
-    // From the first key on, so that what changes is seldom a comment.
+    // From the first key on, so that changes are seldom in a comment.
     let body = example.iter().collect::<String>().find("delay_ms = ").unwrap();
     let places = vec(
         (
@@ -293,8 +313,8 @@ fn no_text_makes_the_parser_panic() {
 }
 
 /// Situation: tables of any sets at rising speeds.
-/// Action: parse them, write what was read, parse that.
-/// Must hold: the numbers that were given; the same table again; means within the sets.
+/// Action: parse them, write the result, parse that.
+/// Must hold: the given numbers; the same table again; means within the sets.
 #[test]
 fn a_valid_table_is_read_as_given_and_round_trips() {
     let row = (0.001..3.0_f64, -1e5..1e5_f64, -20.0..20.0_f64, 0.0..100.0_f64);

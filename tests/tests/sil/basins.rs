@@ -1,4 +1,4 @@
-//! Flight cards: what a basin search promises.
+//! Properties of a basin search.
 
 use control::{Config, Law};
 use sim_host::basin::{Axis, Search, basin, column, rmse};
@@ -6,8 +6,9 @@ use sim_host::ride::rides;
 use tests::basins::{H, alone, assisted, configured, ideal, search};
 use tests::sets::every;
 
-/// Situation: law h, in the control crate, at 4 m/s. Action: find the border. The ride at the border must survive
-/// and one just beyond must fall.
+/// Situation: law h, in the control crate, at 4 m/s.
+/// Action: find the border.
+/// Must hold: the ride at the border does not fall and one just beyond does.
 #[test]
 fn the_border_is_a_border() {
     let conditions = assisted(H);
@@ -20,8 +21,9 @@ fn the_border_is_a_border() {
     assert!(!found.capped && found.islands.is_empty());
 }
 
-/// Situation: the search may try no more than 5 rad/s, and the basin is higher. Action: search. It
-/// must say that it reached the cap, at exactly 5, also when the step does not divide it.
+/// Situation: a search limited to 5 rad/s, and a higher basin.
+/// Action: search.
+/// Must hold: it reports that it reached the limit, at exactly 5, also when the step does not divide it.
 #[test]
 fn the_cap_is_reported() {
     let search = Search { scan_step: 0.23, ..search(&[4.0], 5.0) };
@@ -30,8 +32,9 @@ fn the_cap_is_reported() {
     assert_eq!(found.scan.last().map(|p| p.rate), Some(5.0));
 }
 
-/// Situation: the bicycle alone at 4.6 m/s, where some knocks beyond the first fall are survived.
-/// Action: search. These islands must be reported, be true, and leave `upper` alone.
+/// Situation: the bicycle without assist at 4.6 m/s, where some knocks beyond the first fall do not fall.
+/// Action: search.
+/// Must hold: these islands are reported, are true, and leave `upper` unchanged.
 #[test]
 fn islands_are_reported_not_merged() {
     let conditions = alone();
@@ -47,14 +50,18 @@ fn islands_are_reported_not_merged() {
     }
 }
 
-/// Situation: a bicycle at rest. Action: search. Every knock must fall and nothing must break.
+/// Situation: a bicycle at rest.
+/// Action: search.
+/// Must hold: every knock falls, without an error.
 #[test]
 fn a_bicycle_at_rest_has_no_basin() {
     let found = column(&assisted(H), &search(&[0.0], 5.0), 0.0);
     assert!(found.upper < 0.01 && !found.capped && found.scan.iter().all(|p| p.outcome.name() == "fallen"));
 }
 
-/// Situation: eleven speeds, by default six. Action: search on one thread and on three. Every bit must agree.
+/// Situation: eleven speeds, by default six.
+/// Action: search on one thread and on three.
+/// Must hold: every bit agrees.
 #[test]
 fn the_number_of_threads_does_not_matter() {
     let speeds: Vec<f64> = every(2, 0..=10).map(f64::from).collect();
@@ -67,13 +74,15 @@ fn the_number_of_threads_does_not_matter() {
     assert!(one.area() > 10.0);
 }
 
-/// Situation: an interruption after the first column. Action: search. What is done must be kept.
+/// Situation: an interruption after the first column.
+/// Action: search.
+/// Must hold: completed columns are preserved.
 #[test]
-fn an_interruption_keeps_what_is_done() {
+fn an_interruption_preserves_completed_columns() {
     let done = std::sync::atomic::AtomicUsize::new(0);
     let count = || done.load(std::sync::atomic::Ordering::SeqCst);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
-    let kept = pool.install(|| {
+    let partial = pool.install(|| {
         basin(
             &alone(),
             &search(&[2.0, 4.0, 6.0], 2.0),
@@ -83,13 +92,18 @@ fn an_interruption_keeps_what_is_done() {
             || count() >= 1,
         )
     });
-    let kept = kept.expect("a basin");
-    assert_eq!(kept.columns.len(), 1);
-    assert!(kept.columns[0].speed == 2.0 || kept.columns[0].speed == 6.0, "{}", kept.columns[0].speed);
+    let partial = partial.expect("a basin");
+    assert_eq!(partial.columns.len(), 1);
+    assert!(
+        partial.columns[0].speed == 2.0 || partial.columns[0].speed == 6.0,
+        "{}",
+        partial.columns[0].speed
+    );
 }
 
-/// Situation: the roll rate is disturbed instead. Action: search. There must be a basin, a smaller
-/// one in rad/s than for the light steering assembly.
+/// Situation: the roll rate is disturbed instead.
+/// Action: search.
+/// Must hold: there is a basin, a smaller one in rad/s than for the light steering assembly.
 #[test]
 fn roll_rate_disturbances_have_a_basin_too() {
     let steer = column(&assisted(H), &search(&[5.0], 15.0), 5.0);
@@ -98,8 +112,9 @@ fn roll_rate_disturbances_have_a_basin_too() {
     assert!(roll.upper < 0.5 * steer.upper);
 }
 
-/// Situation: the law sampled at 1 kHz in f32 beside the continuous one. Action: compare outlines.
-/// They must be close, but not the same.
+/// Situation: the law sampled at 1 kHz in f32, and the continuous one.
+/// Action: compare outlines.
+/// Must hold: they are close, but not the same.
 #[test]
 fn sampling_costs_little() {
     let search = search(&[2.0, 4.0, 6.0, 8.0], 12.0);
@@ -111,11 +126,12 @@ fn sampling_costs_little() {
     assert!((distance.as_printed - distance.mean * 2.0).abs() < 1e-12, "four columns: root 4 times");
 }
 
-/// Situation: the product's limits and h cut at 7.5 m/s. Action: compare with the bare law. The
-/// limits must cost basin where the bare law asks for more torque than they give, and the cut must
-/// add basin where h steers out of the fall.
+/// Situation: the product's limits and h cut at 7.5 m/s.
+/// Action: compare with the bare law.
+/// Must hold: the limits cost basin where the bare law requests more torque than they permit, and the cut adds basin
+/// where h steers out of the fall.
 #[test]
-fn what_the_product_limits_cost() {
+fn the_product_limits_reduce_the_basin() {
     let speeds = [1.0, 3.0, 9.0];
     let of = |c| basin(&c, &search(&speeds, 15.0), |_| (), || false).expect("a basin");
     let (bare, product) = (of(assisted(H)), of(configured(Config::product())));
@@ -127,8 +143,9 @@ fn what_the_product_limits_cost() {
     assert!(product.columns[2].upper > bare.columns[2].upper + 0.2);
 }
 
-/// Situation: a law that does nothing. Action: compare with no assist. The outlines must agree to
-/// the bit.
+/// Situation: a law of zero.
+/// Action: compare with no assist.
+/// Must hold: the outlines agree to the bit.
 #[test]
 fn a_law_of_zero_is_no_assist() {
     let none = configured(Config::thesis(Law::None));

@@ -1,4 +1,4 @@
-//! Flight cards: no check trips on a bicycle that nothing is wrong with.
+//! No check triggers on a bicycle without faults.
 
 use control::estimate::predict::PredictConfig;
 use control::estimate::smooth::SmoothConfig;
@@ -12,7 +12,7 @@ use std::fmt;
 use tests::basins::H;
 use tests::draws::runner;
 use tests::estimator_inputs::Noise;
-use tests::fault_cards::product;
+use tests::fault_reactions::product;
 use tests::inside::{AXES, RIDERS, SPEEDS, borders, sensed, unchecked, with};
 use tests::sets::whole;
 
@@ -21,7 +21,7 @@ fn drawn_per_basin() -> usize {
     if whole() { 40 } else { 16 }
 }
 
-/// The product's checks and permission; the law and the torque as in the thesis.
+/// The product's checks and engagement; law and torque as in the thesis.
 fn checked() -> Config {
     let (predict, smooth) = (PredictConfig::default(), SmoothConfig::default());
     Config { law: H, limits: Limits::default(), predict, smooth, ..product() }
@@ -33,7 +33,7 @@ fn without_checks() -> Config {
     Config { predict, smooth, ..unchecked() }
 }
 
-/// Sensors as often as those of the TU Delft sensor bicycle, with `part` of their noise, see [`Noise::SIZES`].
+/// Sensors at the rate of those of the TU Delft sensor bicycle, with `part` of their noise, see [`Noise::SIZES`].
 fn noisy(part: f64) -> Plant {
     let mut plant = Plant { seed: 1, ..Plant::default() };
     let [gyro, accel, steer, steer_rate, speed] = Noise::SIZES.map(f64::from);
@@ -51,8 +51,8 @@ fn noisy(part: f64) -> Plant {
     plant
 }
 
-/// Rides at 99 % of every border, and drawn ones between 0 and 99 % of the lower of the two borders beside
-/// them; to either side.
+/// Rides at 99 % of every border, and drawn ones between 0 and 99 % of the lower of the two neighbouring borders; to
+/// either side.
 fn starts() -> Vec<(Option<&'static str>, Start)> {
     let mut starts: Vec<_> = borders().iter().map(|border| (border.rider, border.start(0.99))).collect();
     let gap = SPEEDS.len() - 1;
@@ -68,26 +68,26 @@ fn starts() -> Vec<(Option<&'static str>, Start)> {
     starts
 }
 
-/// What a ride told before its fall, if anything, and whether it fell.
-struct Told {
+/// The first report of a ride before its fall, if any, and whether it fell.
+struct Report {
     rider: Option<&'static str>,
     start: Start,
     trip: Option<String>,
     /// The causes of that instant.
     causes: Causes,
     fell: bool,
-    /// Whether it falls without the checks too; not ridden where nothing was told.
+    /// Whether it falls without the checks too; not ridden where nothing was reported.
     falls_anyhow: bool,
 }
 
-impl Told {
+impl Report {
     /// Whether a cause was reported in a ride that stays up, or that falls by the reaction to it.
     fn is_wrong(&self) -> bool {
         self.trip.is_some() && !(self.fell && self.falls_anyhow)
     }
 }
 
-impl fmt::Display for Told {
+impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s } = self.start;
         let rider = self.rider.unwrap_or("nobody");
@@ -97,11 +97,11 @@ impl fmt::Display for Told {
     }
 }
 
-fn ridden(config: &Config, plant: &Plant, rider: Option<&'static str>, start: Start) -> Told {
+fn ridden(config: &Config, plant: &Plant, rider: Option<&'static str>, start: Start) -> Report {
     let conditions = |config| with(rider, sensed(config, plant.clone()));
     let (ride, trace) = traced(&conditions(config.clone()), start);
     let fell = ride.fell();
-    // A bicycle that lies down may say so.
+    // The reports of a bicycle that lies down do not count.
     let lies = trace.iter().position(|p| fell && p.roll.abs() > 1.0).unwrap_or(trace.len());
     let first = trace[..lies].iter().find(|p| p.causes != 0 || p.mode != Mode::Engaged as u8);
     let causes = first.map_or(Causes::NONE, |p| Causes(p.causes));
@@ -110,60 +110,62 @@ fn ridden(config: &Config, plant: &Plant, rider: Option<&'static str>, start: St
         format!("{causes:?} in mode {} at {:.3} s, roll {:.2}, steer {:.2}", p.mode, p.t, p.roll, p.steer)
     });
     let falls_anyhow = trip.is_some() && rides(&conditions(without_checks()), &[start])[0].fell();
-    Told { rider, start, trip, causes, fell, falls_anyhow }
+    Report { rider, start, trip, causes, fell, falls_anyhow }
 }
 
-fn told(config: &Config, plant: &Plant) -> Vec<Told> {
+fn reports(config: &Config, plant: &Plant) -> Vec<Report> {
     starts().into_par_iter().map(|(rider, start)| ridden(config, plant, rider, start)).collect()
 }
 
-fn listed(told: &[Told], what: impl Fn(&&Told) -> bool) -> String {
-    told.iter().filter(what).map(|t| t.to_string()).collect()
+fn listed(reports: &[Report], what: impl Fn(&&Report) -> bool) -> String {
+    reports.iter().filter(what).map(|t| t.to_string()).collect()
 }
 
-/// Situation: rides drawn inside the basins of h, alone and with riders, and at their borders; exact sensors. Action:
-/// ride with every check of the product. Must hold: engaged throughout, no cause told in any ride that stays up; what falls
-/// falls without checks too, as the borders are those of the gyro's own rate and the product rides on the estimated one:
-/// at most 4 of the 72 rides at 99 % of a border, and no other.
+/// Situation: rides drawn inside the basins of h, without a rider and with riders, and at their borders; exact
+/// sensors.
+/// Action: ride with every check of the product.
+/// Must hold: engaged throughout, no cause reported in any ride that does not fall; a ride that falls falls without
+/// checks too, as the borders are those of the gyro's own rate and the product rides on the estimated one: at most 4
+/// of the 72 rides at 99 % of a border, and no other.
 #[test]
 fn no_check_trips_inside_the_basins() {
-    let told = told(&checked(), &Plant::default());
-    assert_eq!(told.len(), 72 + drawn_per_basin() * RIDERS.len());
-    let wrong = listed(&told, |t| (t.trip.is_some() || t.fell) && !(t.fell && t.falls_anyhow));
+    let reports = reports(&checked(), &Plant::default());
+    assert_eq!(reports.len(), 72 + drawn_per_basin() * RIDERS.len());
+    let wrong = listed(&reports, |t| (t.trip.is_some() || t.fell) && !(t.fell && t.falls_anyhow));
     assert!(wrong.is_empty(), "{wrong}");
-    let (border, drawn) = told.split_at(72);
-    let fell = |told: &[Told]| told.iter().filter(|t| t.fell).count();
-    assert!(fell(border) <= 4 && fell(drawn) == 0, "{}", listed(&told, |t| t.fell));
+    let (border, drawn) = reports.split_at(72);
+    let fell = |reports: &[Report]| reports.iter().filter(|t| t.fell).count();
+    assert!(fell(border) <= 4 && fell(drawn) == 0, "{}", listed(&reports, |t| t.fell));
 }
 
-/// The noise at which every check of the product may be on, as a part of [`Noise::SIZES`], and every one but the roll's
-/// correlation.
+/// The largest noise, as a part of [`Noise::SIZES`], with which every check of the product may be on, and every one
+/// but the roll's correlation.
 const BORNE: f64 = 0.5;
 const BORNE_WITHOUT: f64 = 0.75;
 
-/// Rides with `part` of the noise: none that stays up reports a cause, and what is reported in one that falls is not what makes it
-/// fall, but for at most 3 of the 72 at the border, which noise drives to the force of a crash; about a third fall, most of
-/// them at the border.
+/// Rides with `part` of the noise: none that does not fall reports a cause, and a report in one that falls is not the
+/// reason of the fall, except in at most 3 of the 72 at the border, which noise drives to the force of a crash; about
+/// a third fall, most of them at the border.
 fn no_trip_with_noise(config: &Config, part: f64) {
-    let told = told(config, &noisy(part));
-    let fell = told.iter().filter(|t| t.fell).count();
+    let reports = reports(config, &noisy(part));
+    let fell = reports.iter().filter(|t| t.fell).count();
     println!(
         "{fell} of {} rides fall; reported before:\n{}",
-        told.len(),
-        listed(&told, |t| t.trip.is_some())
+        reports.len(),
+        listed(&reports, |t| t.trip.is_some())
     );
-    let (border, drawn) = told.split_at(72);
-    let crash = |t: &Told| t.causes.has(Cause::Crash);
+    let (border, drawn) = reports.split_at(72);
+    let crash = |t: &Report| t.causes.has(Cause::Crash);
     let crashes = border.iter().filter(|t| crash(t) && t.is_wrong()).count();
     let others = listed(border, |t| t.is_wrong() && !crash(t)) + &listed(drawn, |t| t.is_wrong());
     assert!(others.is_empty() && crashes <= 3, "{part} of the noise, {crashes} crashes: {others}");
-    assert!((30..90).contains(&fell), "{fell} of {}", told.len());
+    assert!((30..90).contains(&fell), "{fell} of {}", reports.len());
 }
 
-/// In how many rides with `part` of the noise and every check on a correct gyro is reported as reversed.
+/// Number of rides with `part` of the noise and every check on in which a correct gyro is reported as reversed.
 fn reported_gyros(part: f64) -> usize {
-    let told = told(&checked(), &noisy(part));
-    told.iter().filter(|t| t.is_wrong() && t.causes.has(Cause::GyroDisagrees)).count()
+    let reports = reports(&checked(), &noisy(part));
+    reports.iter().filter(|t| t.is_wrong() && t.causes.has(Cause::GyroDisagrees)).count()
 }
 
 /// Situation: the same rides, sensors with the noise of a real bicycle, which makes the basins smaller. Must hold: engaged
@@ -181,10 +183,10 @@ fn no_check_trips_by_noise() {
     for (part, also) in [(BORNE, "every check"), (BORNE_WITHOUT, "every other check")] {
         let [gyro, _, steer, _, speed] = Noise::SIZES.map(|size| f64::from(size) * part);
         let row = format!("| {also} | {gyro:.3} rad/s | {steer:.3} rad | {speed:.3} m/s |");
-        assert!(page.contains(&row), "docs/sensors.md should say: {row}");
+        assert!(page.contains(&row), "docs/sensors.md should have: {row}");
     }
     let rides = 72 + drawn_per_basin() * RIDERS.len();
     let [some, all] = [BORNE_WITHOUT, 1.0].map(reported_gyros);
     let line = format!("it reports a correct gyro in {some} of the {rides} rides, with all of it in {all},");
-    assert!(page.contains(&line), "docs/sensors.md should say: {line}");
+    assert!(page.contains(&line), "docs/sensors.md should have: {line}");
 }

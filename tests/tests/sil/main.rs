@@ -1,4 +1,4 @@
-//! Flight cards: the flashed code in the simulated loop.
+//! The flashed code in the simulated loop.
 
 mod basins;
 mod checks;

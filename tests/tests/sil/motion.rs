@@ -1,4 +1,4 @@
-//! Flight card: the largest motion inside the basins, and the limits that must let it pass.
+//! The largest motion inside the basins, and the limits that must permit it.
 
 use control::estimate::EstimateConfig;
 use control::sensors::cross_check::{CrossCheckConfig, CrossCheckPlan, on_the_ground};
@@ -10,14 +10,14 @@ use sim_host::ride::{Conditions, Start, TracePoint, traced};
 use tests::inside::{Border, borders, sensed, unchecked, with};
 use toml::Table;
 
-/// Parts of the height that are ridden, for 4 s.
+/// Ridden fractions of the height, for 4 s.
 const PARTS: [f64; 3] = [0.4, 0.7, 0.99];
-/// Until then a change counts as part of the disturbance \[s\].
+/// Time until which a change counts as part of the disturbance \[s\].
 const BLOW_S: f64 = 0.05;
-/// By this part the table may lie above what is ridden.
+/// Largest part by which the table may exceed the ridden motion.
 const SLACK: f64 = 0.03;
 
-/// What is recorded: what each sensor tells by its axes, and what cross checks find unexplained.
+/// Recorded quantities: each sensor's values by its axes, and the residuals of the cross-checks.
 const QUANTITIES: [&str; 14] = [
     "gyro_x",
     "gyro_y",
@@ -66,7 +66,7 @@ fn quantities(b: &Geometry, p: &TracePoint, summed: &mut f32) -> [f64; QUANTITIE
     let ([gx, gy, gz], [ax, ay, az]) = (frame.gyro_rad_s.value, frame.accel_m_s2.value);
     let (steer, rate) = (frame.steer_rad.value, frame.steer_rate_rad_s.value);
     let (front, rear) = (frame.front_wheel_m_s.value, frame.rear_wheel_m_s.value);
-    // As control::cross compares them.
+    // As compared by `control::sensors::cross_check`.
     let (sin_roll, cos_roll) = (p.roll as f32).sin_cos();
     let cross =
         CrossCheckConfig { wheelbase_m: b.w as f32, tilt_rad: b.lam as f32, ..CrossCheckConfig::default() };
@@ -83,7 +83,7 @@ fn quantities(b: &Geometry, p: &TracePoint, summed: &mut f32) -> [f64; QUANTITIE
     all.map(f64::from)
 }
 
-/// What a ride records.
+/// Record of a ride.
 fn recorded(conditions: &Conditions, start: Start) -> Record {
     let b = &conditions.bicycle;
     let (ride, trace) = traced(conditions, start);
@@ -124,8 +124,10 @@ fn number(table: &Table, group: &str, key: &str) -> Option<f64> {
     table.get(group)?.get(key)?.as_float()
 }
 
-/// Situation: rides in the basins of h, alone and with riders, at parts of the height up to the border; no limit, no check.
-/// Action: record the largest motion. Must hold: nothing is larger than the table says, nor smaller by more than 3 %.
+/// Situation: rides in the basins of h, without a rider and with riders, at parts of the height up to the border; no
+/// limit, no check.
+/// Action: record the largest motion.
+/// Must hold: nothing is larger than in the table, nor smaller by more than 3 %.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn the_table_is_the_largest_motion() {
@@ -133,9 +135,9 @@ fn the_table_is_the_largest_motion() {
     let mut wrong = Vec::new();
     for (i, (quantity, ridden)) in QUANTITIES.into_iter().zip(ridden()).enumerate() {
         let keys = [("largest", ridden.value), ("step", ridden.step), ("slope_per_s", ridden.slope_per_s)];
-        // Only what sensors tell has a limit on its change.
-        let judged = if i < SENSED { 3 } else { 1 };
-        for (key, ridden) in keys.into_iter().take(judged) {
+        // Only sensor values have a limit on their change.
+        let limited = if i < SENSED { 3 } else { 1 };
+        for (key, ridden) in keys.into_iter().take(limited) {
             let Some(stated) = number(&table, quantity, key) else {
                 wrong.push(format!("{quantity}.{key} is missing, ridden {ridden:.5}"));
                 continue;
@@ -148,8 +150,9 @@ fn the_table_is_the_largest_motion() {
     assert!(wrong.is_empty(), "data/motion.toml:\n{}", wrong.join("\n"));
 }
 
-/// Situation: the limits that are flashed. Action: compare. Must hold: each is above the largest motion by the table's
-/// margin.
+/// Situation: the flashed limits.
+/// Action: compare.
+/// Must hold: each is above the largest motion by the table's margin.
 #[test]
 fn every_limit_lies_above_the_motion() {
     let (table, config) = (table(), Config::product());
@@ -180,7 +183,7 @@ fn every_limit_lies_above_the_motion() {
         let largest = number(&table, quantity, "largest").expect("a number");
         limits.push((quantity.into(), "largest", limit, largest));
     }
-    // The drive's torque is as large, and as late by a period, as the limits let it be.
+    // Size and delay of the drive's torque are bounded by the limits.
     let fall_nm = config.limits.fall_nm_s.map_or(0.0, |fall| fall / config.rate_hz);
     let most_nm = config.limits.max_torque_nm.unwrap_or(0.0);
     limits.push(("motor_unexplained".into(), "largest", cross.motor_nm, f64::from(fall_nm)));

@@ -1,4 +1,4 @@
-//! Flight cards: the basins and weave speeds that were published, computed again.
+//! The published basins and weave speeds, computed again.
 
 use control::Law;
 use sim_host::basin::column;
@@ -14,8 +14,9 @@ fn height(conditions: &Conditions, speed: f64) -> f64 {
     column(conditions, &search(&[speed], 15.0), speed).upper
 }
 
-/// Situation: the linearised thesis bicycle under each published law. Action: find its weave
-/// speed. It must be the independent program's; what the text prints is printed beside it.
+/// Situation: the linearised thesis bicycle under each published law.
+/// Action: find its weave speed.
+/// Must hold: it is the independent program's; the text's value is printed beside it.
 #[test]
 fn weave_speeds() {
     let published = entry("weave_speeds");
@@ -37,8 +38,9 @@ fn weave_speeds() {
     assert!(cl2 < of(&Law::Cl1) && (printed("printed_cl2_4") - cl2) > 0.1, "{cl2}");
 }
 
-/// Situation: the ideal law h, gain by front wheel speed. Action: find the basin's height. It must
-/// be the independent program's at every speed it gives, by default at every second.
+/// Situation: the ideal law h, gain by front wheel speed.
+/// Action: find the basin's height.
+/// Must hold: it is the independent program's at every given speed, by default at every second.
 #[test]
 fn height_of_h_by_front_wheel_speed() {
     let published = entry("h_basin");
@@ -53,8 +55,9 @@ fn height_of_h_by_front_wheel_speed() {
     }
 }
 
-/// Situation: the same law, gain by rear wheel speed. Action: find the basin's height. It must be
-/// the independent program's, and clearly not the published constant.
+/// Situation: the same law, gain by rear wheel speed.
+/// Action: find the basin's height.
+/// Must hold: it is the independent program's, and clearly not the published constant.
 #[test]
 fn height_of_h_by_rear_wheel_speed() {
     let published = entry("h_basin");
@@ -72,9 +75,10 @@ fn height_of_h_by_rear_wheel_speed() {
     assert!(tallest > published.number("printed") + 2.0, "{tallest}");
 }
 
-/// Situation: the law in the control crate, f32 at 1 kHz. Action: the height over the whole range
-/// in which the thesis calls it constant. It must stay in the independent program's band, less what
-/// sampling costs, and vanish at low speed. By default at every fourth speed.
+/// Situation: the law in the control crate, f32 at 1 kHz.
+/// Action: the height over the whole range in which the thesis calls it constant.
+/// Must hold: it is in the independent program's band, less the effect of sampling, and vanishes at low speed. By
+/// default at every fourth speed.
 #[test]
 fn height_of_the_flashed_h_is_nearly_constant() {
     let published = entry("h_basin");
@@ -89,7 +93,9 @@ fn height_of_the_flashed_h_is_nearly_constant() {
     assert!(standing < 0.01, "{standing}");
 }
 
-/// Situation: CL2 with K = 1 at 8.2 m/s. Action: find the height. It must be the published one.
+/// Situation: CL2 with K = 1 at 8.2 m/s.
+/// Action: find the height.
+/// Must hold: it is the published one.
 #[test]
 fn height_of_cl2() {
     let published = entry("cl2_1_height");

@@ -1,4 +1,4 @@
-//! Flight cards: basins of riders and of both disturbances at once.
+//! Basins of riders and of both disturbances at once.
 
 use rayon::prelude::*;
 use sim_host::basin::{Axis, PlaneSearch, Search, border, column, plane};
@@ -13,7 +13,7 @@ fn rider(name: &str, fit: Fit, delay_s: Option<f64>) -> Rider {
     table.rider(fit, Outside::Extrapolate, delay_s).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The same with run 186 at the speed that the independent program has it at.
+/// The same with run 186 at the speed of the independent program.
 fn as_independent(name: &str, fit: Fit, delay_s: Option<f64>) -> Rider {
     let mut table = catalogue::load(name).unwrap_or_else(|e| panic!("{e}"));
     for row in table.rows.iter_mut().filter(|row| name == "young" && row.run == Some(186)) {
@@ -53,8 +53,9 @@ fn areas_of_riders() {
     }
 }
 
-/// Situation: the smart rider at 3 m/s. Action: add h. The basin must grow to between two and five
-/// times, and lie near the same with the flashed assist.
+/// Situation: the smart rider at 3 m/s.
+/// Action: add h.
+/// Must hold: the basin grows to between two and five times, and is near the same with the flashed assist.
 #[test]
 fn the_assist_helps_the_rider() {
     let height =
@@ -65,10 +66,11 @@ fn the_assist_helps_the_rider() {
     assert!((flashed - continuous).abs() < 0.1);
 }
 
-/// Situation: the search that ends soon after the first fall. Action: compare with the whole one. The
-/// border must be the same to the bit.
+/// Situation: the search that ends soon after the first fall.
+/// Action: compare with the complete one.
+/// Must hold: the border is the same to the bit.
 #[test]
-fn a_border_is_that_of_the_whole_column() {
+fn a_border_is_that_of_the_complete_column() {
     let conditions = ridden(alone(), rider("young", Fit::Best, None));
     for v in [2.0, 4.3, 7.0] {
         let (whole, short) =
@@ -78,12 +80,14 @@ fn a_border_is_that_of_the_whole_column() {
     }
 }
 
-/// Situation: both rates disturbed at 4.3 m/s. Action: search the plane. On the axes it must be the
-/// two one-dimensional basins; its outline a border all the way round; its mirror image itself.
+/// Situation: both rates disturbed at 4.3 m/s.
+/// Action: search the plane.
+/// Must hold: on the axes it is the two one-dimensional basins; its outline is a closed border; its mirror image is
+/// itself.
 #[test]
 fn the_plane_contains_both_axes() {
     let conditions = ridden(assisted(H), rider("smart", Fit::Mean, None));
-    let wanted = PlaneSearch {
+    let expected = PlaneSearch {
         speed: 4.3,
         rays: 8,
         max_steer_rate: 20.0,
@@ -91,7 +95,7 @@ fn the_plane_contains_both_axes() {
         points: 40,
         tolerance: 0.0005,
     };
-    let found = plane(&conditions, &wanted, |_| (), || false).expect("a plane");
+    let found = plane(&conditions, &expected, |_| (), || false).expect("a plane");
     let outline = found.outline();
     assert_eq!(outline.len(), 16);
     let steer = column(&conditions, &search(&[4.3], 20.0), 4.3).upper;

@@ -1,4 +1,4 @@
-//! Flight cards: rides with the control crate in the loop.
+//! Rides with the control crate in the loop.
 
 use control::{Config, Law, Taper};
 use sim_host::ride::{Conditions, Imu, Outcome, Ride, Start, rides, traced};
@@ -12,11 +12,12 @@ fn one(conditions: &Conditions, start: Start) -> Ride {
     rides(conditions, &[start])[0]
 }
 
-/// Situation: 4 m/s, where the bicycle alone is unstable. Action: the handlebar is knocked with
-/// 5 rad/s. Alone it must fall; assisted it must come back, with 3 to 9 N m and
-/// 4 to 8 J, of which the motor takes back 0.1 to 1 J.
+/// Situation: 4 m/s, where the bicycle without assist is unstable.
+/// Action: a knock of 5 rad/s to the handlebar.
+/// Must hold: without assist it falls; assisted it recovers, with 3 to 9 N m and 4 to 8 J, of which the motor takes
+/// back 0.1 to 1 J.
 #[test]
-fn the_assist_saves_a_ride_that_falls_without() {
+fn the_assist_recovers_a_ride_that_falls_without() {
     let start = knock(4.0, 5.0);
     let fallen = one(&alone(), start);
     let time = fallen.outcome.time_to_fall_s().expect("falls");
@@ -29,16 +30,18 @@ fn the_assist_saves_a_ride_that_falls_without() {
     assert!((4.0..8.0).contains(&out_j) && (0.1..1.0).contains(&(out_j - net_j)), "{:?}", saved.effort);
 }
 
-/// Situation: h at 2 m/s, below its weave speed of 2.445 m/s. Action: a small knock. It must outlast
-/// the time limit, and not be called recovered.
+/// Situation: h at 2 m/s, below its weave speed of 2.445 m/s.
+/// Action: a small knock.
+/// Must hold: it does not fall within the time limit, and is not called recovered.
 #[test]
-fn an_unstable_ride_that_outlasts_the_time_is_undecided() {
+fn an_unstable_ride_that_lasts_to_the_time_limit_is_undecided() {
     assert_eq!(one(&assisted(H), knock(2.0, 1.0)).outcome, Outcome::Undecided);
     assert_eq!(one(&assisted(H), knock(5.0, 1.0)).outcome, Outcome::Recovered);
 }
 
-/// Situation: any disturbance. Action: the same to the other side. Everything must mirror, to the
-/// bit.
+/// Situation: any disturbance.
+/// Action: the same to the other side.
+/// Must hold: all quantities mirror, to the bit.
 #[test]
 fn left_mirrors_right_to_the_bit() {
     for conditions in [alone(), assisted(H), ideal(H), configured(Config::product())] {
@@ -52,10 +55,11 @@ fn left_mirrors_right_to_the_bit() {
     }
 }
 
-/// Situation: many rides of different length. Action: ride them in a batch, in another order, and
-/// each alone. A ride must have the same bits in any company.
+/// Situation: many rides of different length.
+/// Action: ride them in a batch, in another order, and each alone.
+/// Must hold: a ride has the same bits in any batch.
 #[test]
-fn a_ride_has_the_same_bits_in_any_company() {
+fn a_ride_has_the_same_bits_in_any_batch() {
     let starts: Vec<Start> = (0..40).map(|i| knock(0.25 * f64::from(i), 0.3 * f64::from(i))).collect();
     for conditions in [alone(), assisted(H), ideal(Law::G)] {
         let together = rides(&conditions, &starts);
@@ -72,9 +76,10 @@ fn a_ride_has_the_same_bits_in_any_company() {
     }
 }
 
-/// Situation: the bicycle alone falls, in the last two rides with its front wheel passing across the
-/// path, where rear wheel rate and steer rate no longer fix the yaw rate. Action: quarter the step.
-/// The time of the fall must stay within a microsecond.
+/// Situation: the bicycle without assist falls, in the last two rides with its front wheel passing across the path,
+/// where rear wheel rate and steer rate no longer fix the yaw rate.
+/// Action: quarter the step.
+/// Must hold: the time of the fall stays within a microsecond.
 #[test]
 fn the_fall_is_located_within_a_microsecond() {
     for (v, w) in [(3.0, 4.5), (7.0, 8.0), (4.0, 5.0), (5.0, 8.5)] {
@@ -86,8 +91,9 @@ fn the_fall_is_located_within_a_microsecond() {
     }
 }
 
-/// Situation: each limit switched on alone. Action: a hard knock. The ride must obey the limit, use
-/// it to the full, and differ from the unlimited one.
+/// Situation: each limit switched on alone.
+/// Action: a hard knock.
+/// Must hold: the ride obeys the limit, reaches it, and differs from the unlimited one.
 #[test]
 fn limits_are_obeyed_in_the_loop() {
     let start = knock(4.0, 7.0);
@@ -109,8 +115,9 @@ fn limits_are_obeyed_in_the_loop() {
     assert_eq!(far, free);
 }
 
-/// Situation: sensors that are 0, 20 and 60 ms late. Action: the same knock. The torque must begin
-/// that much later and the ride must get worse.
+/// Situation: sensors that are 0, 20 and 60 ms late.
+/// Action: the same knock.
+/// Must hold: the torque begins that much later and the ride gets worse.
 #[test]
 fn a_late_sensor_makes_the_torque_late() {
     let mut peaks = Vec::new();
@@ -125,8 +132,9 @@ fn a_late_sensor_makes_the_torque_late() {
     assert!(peaks[0] < peaks[1] && peaks[1] < peaks[2], "{peaks:?}");
 }
 
-/// Situation: a gyro on the frame instead of the rate of the roll angle. Action: the same ride. The
-/// two signals must differ once the bicycle yaws and pitches, by little.
+/// Situation: a gyro on the frame instead of the rate of the roll angle.
+/// Action: the same ride.
+/// Must hold: the two signals differ slightly once the bicycle yaws and pitches.
 #[test]
 fn the_body_rate_is_not_the_euler_rate() {
     let body = Conditions { imu: Imu::Body, ..assisted(H) };
@@ -136,9 +144,11 @@ fn the_body_rate_is_not_the_euler_rate() {
     assert!((1e-4..0.5).contains(&gap), "{gap}");
 }
 
-/// Situation: no disturbance at all, any speed, zero too. Action: ride. Nothing must move.
+/// Situation: no disturbance at all, any speed, zero too.
+/// Action: ride.
+/// Must hold: nothing moves.
 #[test]
-fn nothing_happens_without_a_disturbance() {
+fn an_undisturbed_ride_stays_straight() {
     for conditions in [alone(), assisted(H)] {
         for ride in rides(&conditions, &[0.0, 0.5, 3.0, 30.0].map(|v| knock(v, 0.0))) {
             assert_eq!(ride.outcome, Outcome::Recovered);
@@ -147,14 +157,15 @@ fn nothing_happens_without_a_disturbance() {
     }
 }
 
-/// Situation: rides that come back and rides that fall, under the crate and under the ideal law.
-/// Action: work out the effort again from the trace. It must be the one that was booked.
+/// Situation: rides that recover and rides that fall, under the crate and under the ideal law.
+/// Action: compute the effort again from the trace.
+/// Must hold: it is the reported one.
 #[test]
 fn the_effort_is_that_of_the_trace() {
     for conditions in [assisted(H), ideal(H)] {
         for (v, w) in [(5.0, 5.0), (4.0, 9.0), (8.0, 15.0), (8.0, 30.0)] {
             let (ride, trace) = traced(&conditions, knock(v, w));
-            // The period in which the bicycle falls is not booked.
+            // The period in which the bicycle falls is not counted.
             let booked = &trace[..trace.len() - usize::from(ride.fell())];
             let peak = booked.iter().map(|p| p.torque.abs()).fold(0.0, f64::max);
             let slew =

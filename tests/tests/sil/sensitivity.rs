@@ -1,4 +1,4 @@
-//! Flight card: how the height of the basin depends on gains and bicycle.
+//! Sensitivity of the height of the basin to gains and bicycle parameters.
 
 use sim_host::basin::{Axis, Quantity, Search, border, sensitivities};
 use sim_host::bicycle::{self, Geometry, Parameters};
@@ -20,10 +20,11 @@ fn height(conditions: &Conditions) -> f64 {
     border(conditions, &search, SPEED).upper
 }
 
-/// Situation: the old cyclist at 4.3 m/s. Action: find the sensitivity of the height to a gain and to a
-/// parameter of the bicycle; and each from two whole basin searches with the quantity 1 % less and
-/// more. Both ways must tell the same elasticity, which must not be nothing; quantities that the
-/// height can't depend on do not exist: all seven gains, three of the body, 26 of the bicycle.
+/// Situation: the old cyclist at 4.3 m/s.
+/// Action: find the sensitivity of the height to a gain and to a parameter of the bicycle; and each from two whole
+/// basin searches with the quantity 1 % less and more.
+/// Must hold: both give the same elasticity, which is not zero; quantities on which the height cannot depend do not
+/// exist: all seven gains, three of the body, 26 of the bicycle.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn elasticities_are_those_of_whole_searches() {

@@ -1,4 +1,4 @@
-//! Flight cards: the Gazelle and TU Delft prototype's bicycle under its law, beside what was published of it.
+//! The bicycle of the Gazelle and TU Delft prototype under its law, compared with the published values.
 
 use control::Law;
 use nalgebra::Complex;
@@ -18,11 +18,11 @@ fn bicycle(name: &str) -> Parameters {
 }
 
 /// Situation: the published bicycle, riderless and with a rigid rider, under the law with the published slopes.
-/// Action: find from which speed the straight ride is stable.
-/// Must hold: the speeds that were computed from the same parameters elsewhere, to 0.002 km/h; the printed
-/// ones to 0.06 km/h; without the law it is stable only from much further up.
+/// Action: find the speed from which the straight ride is stable.
+/// Must hold: the speeds that were computed from the same parameters elsewhere, to 0.002 km/h; the printed ones to
+/// 0.06 km/h; without the law it is stable only from a much higher speed.
 #[test]
-fn the_published_stable_speeds_come_out() {
+fn the_published_stable_speeds_are_reproduced() {
     let printed = published().stable_from;
     let cases = [
         (RIDERLESS, printed.riderless_kmh, [3.744, 3.420], 12.36),
@@ -43,12 +43,12 @@ fn the_published_stable_speeds_come_out() {
     }
 }
 
-/// Situation: the measured weave; what is free to explain it, from nothing to four numbers.
+/// Situation: the measured weave; models of the motor with zero to four free parameters.
 /// Action: fit each.
-/// Must hold: more freedom never explains less; the torque alone is about half of what was set, as the
+/// Must hold: more parameters never leave a larger error; the torque alone is about half of the set one, as the
 /// authors found; lag and friction leave a good part; friction and inertia leave less with all of the torque.
 #[test]
-fn what_a_motor_explains_of_the_measured_weave() {
+fn motor_models_fitted_to_the_measured_weave() {
     let (bicycle, measured) = (bicycle(RIDERLESS), published().weave);
     let fits = fits(&bicycle, &measured);
     for e in &fits {
@@ -75,10 +75,10 @@ fn what_a_motor_explains_of_the_measured_weave() {
     assert!((0.5..0.65).contains(&heavy.residual) && (0.1..0.2).contains(&heavy.actuator.inertia_kg_m2));
 }
 
-/// Situation: an actuator that is as good as perfect in one respect after the other.
+/// Situation: an actuator that is almost perfect in one respect after the other.
 /// Action: compute the weave.
-/// Must hold: it is the perfect one's, off in proportion to what is left; none of them is without effect when
-/// it is not small.
+/// Must hold: it is the perfect one's, with a difference in proportion to the remainder; each has an effect when it
+/// is not small.
 #[test]
 fn a_perfect_actuator_is_the_limit_of_others() {
     let bicycle = bicycle(RIDERLESS);
@@ -100,8 +100,8 @@ fn a_perfect_actuator_is_the_limit_of_others() {
     }
 }
 
-/// Situation: an actuator with delay, lag, friction and inertia at once, under h on the thesis's bicycle.
-/// Action: take its roots.
+/// Situation: an actuator with delay, lag, friction and inertia at once, under h on the thesis bicycle.
+/// Action: compute its roots.
 /// Must hold: each solves the characteristic equation written out by hand.
 #[test]
 fn roots_with_an_actuator_solve_the_equation_written_by_hand() {
@@ -135,10 +135,10 @@ fn roots_with_an_actuator_solve_the_equation_written_by_hand() {
 }
 
 /// Situation: actuators out of range; a delay beside a rider.
-/// Action: ask for the analysis.
-/// Must hold: refused, with what is wrong and the range.
+/// Action: request the analysis.
+/// Must hold: rejected, with the reason and the range.
 #[test]
-fn actuators_that_cannot_be_analysed_are_refused() {
+fn actuators_that_cannot_be_analysed_are_rejected() {
     let model = || Model::new(&bicycle(RIDERLESS), Feedback::Law(Law::None), None);
     let perfect = LinearActuator::default();
     for (actuator, says) in [
@@ -159,18 +159,18 @@ fn actuators_that_cannot_be_analysed_are_refused() {
 
 /// Situation: the page in the documentation.
 /// Action: make the study again, by the program.
-/// Must hold: it is the page, with its figure; the program says where it lies.
+/// Must hold: it is the page, with its figure; the program prints its path.
 #[test]
-fn the_page_is_what_the_study_makes() {
+fn the_page_is_that_of_the_study() {
     let bench = Bench::new(PROGRAM);
     let run = bench.run("study balance-assist --pages docs");
     let page = format!("docs/studies/{NAME}.md");
     assert_eq!((run.code, &*run.stdout), (Some(0), &*format!("{page}\n")), "{run:?}");
     let (pages, written) =
         (repository("docs/studies"), |name: &str| bench.read(&format!("docs/studies/{name}")));
-    let kept = std::fs::read_to_string(pages.join("balance-assist.md")).expect("the page is there");
+    let committed = std::fs::read_to_string(pages.join("balance-assist.md")).expect("the page is there");
     assert!(
-        written("balance-assist.md") == kept,
+        written("balance-assist.md") == committed,
         "make it again: sim-host study balance-assist --pages docs"
     );
     assert!(written("balance-assist.svg").starts_with("<svg"));
@@ -178,8 +178,8 @@ fn the_page_is_what_the_study_makes() {
 
 /// Situation: the study of the prototype's law beside h, at the two ends of its speeds only.
 /// Action: make it; stop it.
-/// Must hold: at equal torque h survives more at 2 m/s in every case, at 7.5 m/s, where both laws end, both are
-/// the bicycle alone; nothing of a stopped study.
+/// Must hold: at equal torque h has the higher basin at 2 m/s in every case, at 7.5 m/s, where both laws end, both
+/// are the bicycle without assist; no result of a stopped study.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn h_beside_the_prototypes_law() {

@@ -1,4 +1,4 @@
-//! Flight cards: `docs/delay.md`, computed again.
+//! The tables of `docs/delay.md`, computed again.
 
 use control::Law;
 use control::estimate::{EstimateConfig, Source};
@@ -33,9 +33,9 @@ impl Line {
     }
 
     fn late<'a>(&self, bicycle: &'a Geometry, rider: Option<&'a Rider>) -> Late<'a> {
-        // What the controller knows is the thesis bicycle's, whatever it rides on.
-        let known = Geometry::new(&shipped("rigid_jason").parameters);
-        let estimate = EstimateConfig { roll_rate: Source::Estimate, ..estimator_parameters(&known) };
+        // The controller's geometry is that of the thesis bicycle, whatever it rides on.
+        let assumed = Geometry::new(&shipped("rigid_jason").parameters);
+        let estimate = EstimateConfig { roll_rate: Source::Estimate, ..estimator_parameters(&assumed) };
         Late {
             bicycle,
             rider,
@@ -88,8 +88,8 @@ fn heights(lines: &[Line], speeds: &[f64]) -> (String, Vec<Vec<f64>>) {
 fn documented(name: &str, table: &str) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/delay.md");
     let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{path}: {e}"));
-    let begin = format!("<!-- {name} -->\n");
-    let found = text.split_once(&begin).and_then(|(_, rest)| rest.split_once("\n<!-- end -->"));
+    let start = format!("<!-- {name} -->\n");
+    let found = text.split_once(&start).and_then(|(_, rest)| rest.split_once("\n<!-- end -->"));
     let (found, _) = found.unwrap_or_else(|| panic!("docs/delay.md has no table `{name}`"));
     assert!(found == table, "docs/delay.md, `{name}`, must be\n{table}\nbut is\n{found}");
 }
@@ -99,21 +99,21 @@ fn model() -> LinearBicycle {
 }
 
 /// Without compensation, with a lead, with the model.
-fn ways(delay_s: f64) -> [PredictedMotion; 3] {
+fn compensations(delay_s: f64) -> [PredictedMotion; 3] {
     [PredictedMotion::Off, PredictedMotion::Lead(delay_s), PredictedMotion::Model(model(), delay_s)]
 }
 
-/// Situation: the law h on the thesis bicycle, sensors 5 to 50 ms late, a slow actuator. Action: search
-/// the border without compensation, with a lead, with the linear bicycle. The lead must win back more
-/// than half of what is lost, the model hardly more than the lead.
+/// Situation: the law h on the thesis bicycle, sensors 5 to 50 ms late, a slow actuator.
+/// Action: search the border without compensation, with a lead, with the linear bicycle.
+/// Must hold: the lead regains more than half of the loss, the model hardly more than the lead.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
-fn what_each_way_wins_back() {
+fn heights_with_each_compensation() {
     let mut lines = vec![Line::new(0, PredictedMotion::Off)];
     for ms in [5, 10, 20, 30, 50] {
-        lines.extend(ways(ms as f64 * 1e-3).map(|ahead| Line::new(ms, ahead)));
+        lines.extend(compensations(ms as f64 * 1e-3).map(|ahead| Line::new(ms, ahead)));
     }
-    lines.extend(ways(0.03).map(|ahead| Line {
+    lines.extend(compensations(0.03).map(|ahead| Line {
         label: "10 ms, actuator 20 ms".to_owned(),
         actuator_s: 0.02,
         ..Line::new(10, ahead)
@@ -130,21 +130,26 @@ fn what_each_way_wins_back() {
     documented("won back", &table);
 }
 
-/// Situation: sensors 30 ms late; the lead or the model is told half or one and a half times that, or
-/// another bicycle. Action: search the border. Each must still be better than nothing.
+/// Situation: sensors 30 ms late; the lead or the model assumes half or one and a half times that, or another
+/// bicycle.
+/// Action: search the border.
+/// Must hold: each is still better than nothing.
 #[test]
 fn a_wrong_delay_and_another_bicycle() {
-    let told = |ahead| Line { label: "30 ms".to_owned(), ..Line::new(30, ahead) };
-    let mut lines = vec![told(PredictedMotion::Off)];
+    let assumed_line = |ahead| Line { label: "30 ms".to_owned(), ..Line::new(30, ahead) };
+    let mut lines = vec![assumed_line(PredictedMotion::Off)];
     for s in [0.015, 0.045] {
-        lines.extend([told(PredictedMotion::Lead(s)), told(PredictedMotion::Model(model(), s))]);
+        lines.extend([
+            assumed_line(PredictedMotion::Lead(s)),
+            assumed_line(PredictedMotion::Model(model(), s)),
+        ]);
     }
     let wrong = lines.len();
     for bicycle in ["benchmark", "balanceassistv1_jason", "pista_rider", "browser_jason"] {
         let other =
             |ms, ahead| Line { label: format!("{bicycle}, {ms} ms"), bicycle, ..Line::new(ms, ahead) };
         lines.push(other(0, PredictedMotion::Off));
-        lines.extend(ways(0.03).map(|ahead| other(30, ahead)));
+        lines.extend(compensations(0.03).map(|ahead| other(30, ahead)));
     }
     let (table, rows) = heights(&lines, &[2.5, 4.5, 6.5]);
     println!("{table}");
@@ -157,14 +162,17 @@ fn a_wrong_delay_and_another_bicycle() {
     documented("wrong", &table);
 }
 
-/// Situation: the smart old rider with the law h. Action: search the border with sensors up to 50 ms
-/// late. The lead must not cost the rider anything.
+/// Situation: the smart old rider with the law h.
+/// Action: search the border with sensors up to 50 ms late.
+/// Must hold: the lead costs the rider nothing.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn with_the_smart_rider() {
     let mut lines = vec![Line { rider: true, ..Line::new(0, PredictedMotion::Off) }];
     for ms in [10, 30, 50] {
-        lines.extend(ways(ms as f64 * 1e-3).map(|ahead| Line { rider: true, ..Line::new(ms, ahead) }));
+        lines.extend(
+            compensations(ms as f64 * 1e-3).map(|ahead| Line { rider: true, ..Line::new(ms, ahead) }),
+        );
     }
     let (table, rows) = heights(&lines, &[3.0, 4.5, 6.0]);
     println!("{table}");
@@ -174,14 +182,17 @@ fn with_the_smart_rider() {
     documented("rider", &table);
 }
 
-/// Situation: the noise of a consumer IMU. Action: search the border; ride straight on at 5 m/s and
-/// take the torque that the noise makes. The lead must still win.
+/// Situation: the noise of a consumer IMU.
+/// Action: search the border; ride straight on at 5 m/s and measure the torque caused by the noise.
+/// Must hold: the lead is still better.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn with_noise() {
     let mut lines = Vec::new();
     for ms in [10, 30, 50] {
-        lines.extend(ways(ms as f64 * 1e-3).map(|ahead| Line { noise: Some(1), ..Line::new(ms, ahead) }));
+        lines.extend(
+            compensations(ms as f64 * 1e-3).map(|ahead| Line { noise: Some(1), ..Line::new(ms, ahead) }),
+        );
     }
     let (mut table, rows) = heights(&lines, &[2.5, 4.5, 6.5]);
     let b = Geometry::new(&shipped("rigid_jason").parameters);

@@ -1,4 +1,4 @@
-//! Flight cards: questions answered with a computation.
+//! Questions answered by a computation.
 
 mod balance_assist;
 mod delay;

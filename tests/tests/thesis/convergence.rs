@@ -1,4 +1,4 @@
-//! Appendices C and D of the thesis: eigenvalues out of rides, and how exact integrators are.
+//! Appendices C and D of the thesis: eigenvalues from rides, and the accuracy of integrators.
 
 use sim_host::bicycle::{Geometry, catalogue};
 use sim_host::thesis::app_c::{TINY, pencil_at, pencil_error};
@@ -8,11 +8,10 @@ use sim_host::thesis::study::Study;
 
 /// Situation: the uncontrolled thesis bicycle after 1e-6 rad/s and after the thesis's 0.1 rad/s, 0 to 10 m/s.
 /// Action: all four eigenvalues by matrix pencil from 1.2 s of the ride.
-/// Must hold: after the small disturbance they are the linearised bicycle's to 1e-4 of a second, the
-/// fast castering mode included; after the large one the nonlinearity shows, but nowhere below
-/// rounding.
+/// Must hold: after the small disturbance they are the linearised bicycle's to 1e-4 of a second, the fast caster mode
+/// included; after the large one the nonlinearity has an effect, but nowhere below rounding.
 #[test]
-fn all_four_eigenvalues_come_out_of_a_ride() {
+fn all_four_eigenvalues_are_found_from_a_ride() {
     let study = Study::new(true).unwrap();
     let worst = |disturbance: f64| {
         let speeds = (0..=20).map(|i| 0.5 * f64::from(i));
@@ -30,8 +29,8 @@ fn all_four_eigenvalues_come_out_of_a_ride() {
 
 /// Situation: the four rides of the convergence study on the benchmark bicycle.
 /// Action: RK4 in steps of 10 and 5 ms, RKF45 in the same.
-/// Must hold: where the ride does not fall the order is four, and five or more; RKF45 is exacter;
-/// the reference is far exacter than what it judges.
+/// Must hold: where the ride does not fall the order is four, and five or more; RKF45 is more exact; the reference is
+/// far more exact than the tested solvers.
 #[test]
 fn fixed_steps_converge_at_their_order() {
     let benchmark = Geometry::new(&catalogue::load("benchmark").unwrap().parameters);
@@ -52,8 +51,8 @@ fn fixed_steps_converge_at_their_order() {
 
 /// Situation: the fourth ride, which falls.
 /// Action: RK4 in steps of 1 ms; adaptive solvers at 1e-8.
-/// Must hold: it falls within a second, and is compared just before; no solver breaks off; the explicit one is
-/// exacter than backward differentiation at the same tolerance.
+/// Must hold: it falls within a second, and is compared just before; no solver aborts; the explicit one is more exact
+/// than backward differentiation at the same tolerance.
 #[test]
 fn the_ride_that_falls_is_compared_before_the_fall() {
     let benchmark = Geometry::new(&catalogue::load("benchmark").unwrap().parameters);

@@ -1,4 +1,4 @@
-//! Flight cards: the thesis, computed again.
+//! The thesis, computed again.
 
 mod convergence;
 mod report;

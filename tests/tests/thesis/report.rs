@@ -1,4 +1,4 @@
-//! `sim-host thesis`: what it writes, for whom it can be read, and what it refuses.
+//! `sim-host thesis`: its outputs, and its rejections.
 
 use serde_json::Value;
 use sim_host::thesis::catalogue::CATALOGUE;
@@ -7,7 +7,7 @@ use tests::cli::{Bench, repository};
 use tests::json_schema::violations;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
-/// Items of every kind: eigenvalues, rides, a basin, one that can't be computed.
+/// Items of every kind: eigenvalues, rides, a basin, one that cannot be computed.
 const SOME: &str = "2.2,section-3.4,figure-3.7,figure-3.11,figure-3.14,C.3,figure-I.2";
 const SOME_NAMES: [&str; 7] =
     ["figure-2.2", "section-3.4", "figure-3.7", "figure-3.11", "figure-3.14", "figure-C.3", "figure-I.2"];
@@ -23,10 +23,10 @@ fn report() -> (Bench, Value) {
 
 /// Situation: a report of a few items.
 /// Action: read the page.
-/// Must hold: every item and its figures are on it; nothing on it comes from elsewhere; no two parts
-/// of it have the same name.
+/// Must hold: every item and its figures are on it; it loads nothing from elsewhere; no two parts of it have the same
+/// name.
 #[test]
-fn the_page_stands_alone_and_is_complete() {
+fn the_page_is_self_contained_and_complete() {
     let (bench, _) = report();
     let page = bench.read("look/report.html");
     for name in SOME_NAMES {
@@ -51,9 +51,8 @@ fn the_page_stands_alone_and_is_complete() {
 
 /// Situation: the same.
 /// Action: read the values, and every figure's files.
-/// Must hold: the published numbers are those of data/thesis.toml, in JSON and CSV; every item asked
-/// for is there with its state; figures are whole; those of the weave speeds that are printed but for
-/// CL2 with K = 4 are met, and that one is not.
+/// Must hold: the published numbers are those of data/thesis.toml, in JSON and CSV; every requested item is there
+/// with its state; figures are complete; the printed weave speeds except CL2 with K = 4 are met, and that one is not.
 #[test]
 fn the_values_are_those_of_the_file() {
     let (bench, document) = report();
@@ -73,11 +72,11 @@ fn the_values_are_those_of_the_file() {
         assert!(bench.read(&format!("look/figures/{figure}.csv")).lines().count() > 2, "{figure}");
     }
     let values = document["values"].as_array().unwrap();
-    let wanted: Vec<_> = SOME_NAMES.iter().flat_map(|name| cells(name)).collect();
-    assert_eq!(values.len(), wanted.len());
+    let expected: Vec<_> = SOME_NAMES.iter().flat_map(|name| cells(name)).collect();
+    assert_eq!(values.len(), expected.len());
     let csv = bench.read("look/values.csv");
-    assert_eq!(csv.lines().count(), wanted.len() + 1);
-    for (value, cell) in values.iter().zip(&wanted) {
+    assert_eq!(csv.lines().count(), expected.len() + 1);
+    for (value, cell) in values.iter().zip(&expected) {
         assert_eq!(value["published"].as_f64(), cell.printed.map(|p| p.value), "{cell:?}");
         assert_eq!(value["row"], cell.row.as_str());
         assert_eq!(value["from"], cell.from.as_str());
@@ -108,7 +107,7 @@ fn threads_change_nothing() {
 
 /// Situation: every item.
 /// Action: list them.
-/// Must hold: each has a line; those that can't be computed say why; nothing is written.
+/// Must hold: each has a line; those that cannot be computed have the reason; nothing is written.
 #[test]
 fn the_list_names_every_item() {
     let bench = Bench::new(PROGRAM);
@@ -121,24 +120,24 @@ fn the_list_names_every_item() {
     assert!(bench.files().is_empty());
 }
 
-/// Situation: an item that is none, a folder that can't be.
-/// Action: ask for them.
+/// Situation: an unknown item, an impossible folder.
+/// Action: request them.
 /// Must hold: one clear error each, before any work; the first names the items.
 #[test]
-fn bad_items_and_folders_are_refused() {
+fn bad_items_and_folders_are_rejected() {
     let bench = Bench::new(PROGRAM);
-    bench.run("thesis --only 3.99").refused_naming(&["`3.99`", "figure-2.2", "figure-C.3", "section-3.4"]);
-    bench.run("thesis --only 2.2,,3.6").refused_naming(&["``"]);
+    bench.run("thesis --only 3.99").rejected_naming(&["`3.99`", "figure-2.2", "figure-C.3", "section-3.4"]);
+    bench.run("thesis --only 2.2,,3.6").rejected_naming(&["``"]);
     bench.write("file", "");
-    bench.run("thesis --only 2.2 --out file").refused_naming(&["file"]);
+    bench.run("thesis --only 2.2 --out file").rejected_naming(&["file"]);
     assert_eq!(bench.files(), ["file"]);
 }
 
 /// Situation: riders, coarsely.
 /// Action: compute the fits of the young cyclist, the critical speeds of the undelayed one, and basins.
-/// Must hold: eq. F.2's steer gains and Table J.4 come out as printed; the areas of the young cyclist's
-/// basins are within 4 % of the print; each has its coarse grid; the naive, old cyclist's are the
-/// smallest, far below the young one's; 60 ms destroy the undelayed gains.
+/// Must hold: eq. F.2's steer gains and Table J.4 are as printed; the areas of the young cyclist's basins are within
+/// 4 % of the print; each has its coarse grid; the naive, old cyclist's are the smallest, far below the young one's;
+/// 60 ms destroy the undelayed gains.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn riders_are_as_published() {
@@ -176,8 +175,8 @@ fn riders_are_as_published() {
 }
 
 /// Situation: data/thesis.toml.
-/// Action: look for every item that numbers are printed for.
-/// Must hold: the catalogue knows it.
+/// Action: look up every item with printed numbers.
+/// Must hold: the catalogue contains it.
 #[test]
 fn every_published_number_has_an_item() {
     let tables = published().table.iter().map(|t| &t.item);

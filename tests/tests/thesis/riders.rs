@@ -1,4 +1,4 @@
-//! Flight cards: the published riders of appendices I and K, their gains held constant.
+//! The published riders of appendices I and K, their gains held constant.
 
 use control::Law;
 use sim_host::basin::border;
@@ -10,11 +10,14 @@ use tests::basins::{alone, search};
 use tests::rides::shipped;
 
 fn constant(gains: Gains, delay_ms: f64) -> Rider {
-    Rider { schedule: Schedule::constant(gains), delay_s: delay_ms * 1e-3, muscles: Neuromuscular::SHOULDERS }
+    Rider {
+        schedule: Schedule::constant(gains),
+        delay_s: delay_ms * 1e-3,
+        neuromuscular: Neuromuscular::SHOULDERS,
+    }
 }
 
-/// The height as Tables I.1 and I.2 print it: the first multiple of 0.1 rad/s that falls; and the one
-/// they print.
+/// The height as Tables I.1 and I.2 print it: the first multiple of 0.1 rad/s that falls; and the printed one.
 fn heights(table: &str, run: u32, set: usize) -> (f64, f64) {
     let of = published().height.iter().find(|h| h.table == table && h.run == run).expect("a run");
     let row = &of.rows[set - 1];
@@ -24,9 +27,10 @@ fn heights(table: &str, run: u32, set: usize) -> (f64, f64) {
     ((10.0 * upper + 1e-9).floor() / 10.0 + 0.1, row.height)
 }
 
-/// Situation: sets of gains of Tables I.1 and I.2, strong and weak ones, held constant at the speed of
-/// their run. Action: find the height of the basin. The first disturbance on the tables' grid that
-/// falls must be the printed one; of the two sets known not to be met it must be 0.8 rad/s lower.
+/// Situation: sets of gains of Tables I.1 and I.2, strong and weak ones, held constant at the speed of their run.
+/// Action: find the height of the basin.
+/// Must hold: the first disturbance on the tables' grid that falls is the printed one; for the two sets known not to
+/// be met it is 0.8 rad/s lower.
 #[test]
 fn heights_of_reduced_gain_sets() {
     for (table, run, set) in
@@ -42,10 +46,10 @@ fn heights_of_reduced_gain_sets() {
     }
 }
 
-/// Situation: the old cyclist at 4.3 m/s, gains held constant. Action: find the rightmost root of the
-/// regression's gains, of the mean's, and of the regression's with the mean's gain of the roll
-/// acceleration. As appendix K says the first is unstable and the other two are stable; the mean but
-/// barely.
+/// Situation: the old cyclist at 4.3 m/s, gains held constant.
+/// Action: find the rightmost root of the regression's gains, of the mean's, and of the regression's with the mean's
+/// gain of the roll acceleration.
+/// Must hold: as appendix K states, the first is unstable and the other two are stable; the mean only just.
 #[test]
 fn the_regression_is_unstable_and_one_gain_makes_it_stable() {
     let table = catalogue::load("smart").unwrap_or_else(|e| panic!("{e}"));

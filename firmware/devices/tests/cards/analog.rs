@@ -1,7 +1,7 @@
-//! Flight cards: conversion of ADC counts.
+//! Conversion of ADC counts.
 
 use devices::analog::{FULL_SCALE, Gauge};
-use devices::vesc6::{BOARD_HEAT, SHUNT, STEER_RAD, SUPPLY};
+use devices::vesc6::{BOARD_TEMPERATURE, SHUNT, STEER_RAD, SUPPLY};
 
 /// Counts of a voltage, rounded as the chip's data sheet says.
 fn counts(volt: f64) -> u16 {
@@ -35,18 +35,18 @@ fn supply_and_temperature_come_back() {
     }
     for celsius in [-20.0_f64, 25.0, 80.0, 100.0] {
         let ohm = 10_000.0 * (3380.0 * (1.0 / (celsius + 273.15) - 1.0 / 298.15)).exp();
-        let read = f64::from(BOARD_HEAT.celsius(counts(3.3 * 10_000.0 / (10_000.0 + ohm))));
+        let read = f64::from(BOARD_TEMPERATURE.celsius(counts(3.3 * 10_000.0 / (10_000.0 + ohm))));
         assert!((read - celsius).abs() < 0.1, "{celsius} deg C reads as {read}");
     }
     for rail in [0, 10, 4090, FULL_SCALE] {
-        assert!(BOARD_HEAT.celsius(rail).is_nan(), "{rail} counts are no temperature");
+        assert!(BOARD_TEMPERATURE.celsius(rail).is_nan(), "{rail} counts are no temperature");
     }
 }
 
 /// Situation: a steer sensor, turned from end to end, then open and shorted. Must hold: the angle rises to the right
 /// with zero in the middle; a broken wire gives no angle.
 #[test]
-fn a_gauge_tells_a_broken_wire_from_an_angle() {
+fn a_broken_wire_is_no_angle() {
     let half = core::f32::consts::FRAC_PI_2;
     assert_eq!(STEER_RAD.value(410), Some(-half));
     assert_eq!(STEER_RAD.value(3685), Some(half));

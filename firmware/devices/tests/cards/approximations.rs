@@ -1,6 +1,6 @@
-//! Flight cards: accuracy of micromath. The errors in the table of docs/motor.md are computed here.
+//! Accuracy of micromath. The errors in the table of docs/motor.md are computed here.
 
-use devices::vesc6::BOARD_HEAT;
+use devices::vesc6::BOARD_TEMPERATURE;
 use micromath::F32;
 use motor::angle::Angle;
 use std::f64::consts::{PI, TAU};
@@ -16,11 +16,12 @@ fn holds(row: &str, errors: [f64; 2]) {
     let page = std::fs::read_to_string(page).expect("the page");
     let line = page.lines().find(|line| line.starts_with(&format!("| {row} |"))).expect(row);
     let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-    let told =
+    let documented =
         [2, 4].map(|cell: usize| cells[cell].split(' ').next().and_then(|word| word.parse::<f64>().ok()));
-    let same =
-        |(told, error): (&Option<f64>, &f64)| told.is_some_and(|told| (told - error).abs() <= 0.05 * error);
-    assert!(told.iter().zip(&errors).all(same), "docs/motor.md says\n{line}, here {errors:?}");
+    let same = |(documented, error): (&Option<f64>, &f64)| {
+        documented.is_some_and(|documented| (documented - error).abs() <= 0.05 * error)
+    };
+    assert!(documented.iter().zip(&errors).all(same), "docs/motor.md says\n{line}, here {errors:?}");
 }
 
 /// Situation: numbers to be sent, from far below a unit to the ends of the range. Must hold: micromath rounds each as
@@ -42,14 +43,14 @@ fn rounding_is_that_of_libm() {
 /// to 7 K, as its reciprocal has an error of 12 %; with the product's functions at most 0.01 K.
 #[test]
 fn a_logarithm_below_one_is_no_temperature() {
-    let celsius = |ln: f64| 1.0 / (ln / f64::from(BOARD_HEAT.beta_k) + 1.0 / 298.15) - 273.15;
+    let celsius = |ln: f64| 1.0 / (ln / f64::from(BOARD_TEMPERATURE.beta_k) + 1.0 / 298.15) - 273.15;
     let (mut by_micromath, mut as_done) = (0.0_f64, 0.0_f64);
     for counts in 17..4079_u16 {
         let ratio = 4095.0 / f32::from(counts) - 1.0;
         let truth = celsius(f64::from(ratio).ln());
         if (-40.0..180.0).contains(&truth) {
             by_micromath = by_micromath.max((celsius(F32(ratio).ln().0.into()) - truth).abs());
-            as_done = as_done.max((f64::from(BOARD_HEAT.celsius(counts)) - truth).abs());
+            as_done = as_done.max((f64::from(BOARD_TEMPERATURE.celsius(counts)) - truth).abs());
         }
     }
     assert!((6.9..7.2).contains(&by_micromath) && as_done < 0.01, "{by_micromath} K, {as_done} K");

@@ -1,4 +1,4 @@
-//! Flight cards: SPI words of the gate driver, on a chip simulated from its data sheet.
+//! SPI words of the gate driver, on a chip simulated from its data sheet.
 
 use devices::drv8301::*;
 use devices::vesc6::GATE_DRIVER;
@@ -30,7 +30,7 @@ impl Chip {
         answer
     }
 
-    fn ask(&mut self, register: Register) -> Option<u16> {
+    fn read_register(&mut self, register: Register) -> Option<u16> {
         self.word(read(register));
         data(register, self.word(read(register)))
     }
@@ -43,16 +43,20 @@ fn settings_arrive() {
     let mut chip = Chip::new();
     chip.word(write(Register::Control1, GATE_DRIVER.control1()));
     chip.word(write(Register::Control2, GATE_DRIVER.control2()));
-    assert_eq!(chip.ask(Register::Control1), Some(12 << 6 | 1 << 4), "step 12, latched, 6 inputs, 1.7 A");
-    assert_eq!(chip.ask(Register::Control2), Some(1 << 2), "20 V/V, all faults told");
-    assert_eq!(chip.ask(Register::Status1), Some(0));
-    assert!(is_present(chip.ask(Register::Status2).expect("an answer")));
+    assert_eq!(
+        chip.read_register(Register::Control1),
+        Some(12 << 6 | 1 << 4),
+        "step 12, latched, 6 inputs, 1.7 A"
+    );
+    assert_eq!(chip.read_register(Register::Control2), Some(1 << 2), "20 V/V, all faults reported");
+    assert_eq!(chip.read_register(Register::Status1), Some(0));
+    assert!(is_present(chip.read_register(Register::Status2).expect("an answer")));
 }
 
 /// Situation: no chip, an open or shorted wire, a damaged frame, an answer of another register. Must hold: none is
 /// accepted as settings or as a present chip.
 #[test]
-fn a_missing_chip_is_not_taken_for_one() {
+fn a_missing_chip_is_detected() {
     for stuck in [0x0000, 0xffff] {
         assert_eq!(data(Register::Control1, stuck), None);
         assert_eq!(data(Register::Control2, stuck), None);
@@ -70,7 +74,7 @@ fn a_missing_chip_is_not_taken_for_one() {
 /// Situation: every over-current voltage from zero to the maximum. Must hold: the largest threshold not above it is
 /// used, and thresholds increase.
 #[test]
-fn over_current_is_never_above_what_is_asked() {
+fn over_current_is_never_above_the_requested() {
     assert!(OVER_CURRENT_MV.is_sorted());
     for over_current_mv in 0..3000 {
         let (step, mv) = Settings { over_current_mv, ..GATE_DRIVER }.over_current_step();

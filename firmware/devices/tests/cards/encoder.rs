@@ -1,6 +1,6 @@
-//! Flight cards: SPI words of the encoder.
+//! SPI words of the encoder.
 
-use devices::as5047::{ASK_ANGLE, COUNTS, FLAGGED, Line};
+use devices::as5047::{COUNTS, FLAGGED, Line, READ_ANGLE};
 use devices::vesc6::MOTOR;
 
 /// A word with bit 15 as even parity, counted bit by bit.
@@ -17,7 +17,7 @@ fn alone(answer: u16) -> Option<u16> {
 /// Situation: answers with every angle of a turn. Must hold: each is decoded; with any single bit wrong, none is.
 #[test]
 fn every_angle_is_read_and_no_damaged_one() {
-    assert_eq!(with_parity(0x7fff), ASK_ANGLE, "a read of register 3fff");
+    assert_eq!(with_parity(0x7fff), READ_ANGLE, "a read of register 3fff");
     for angle in 0..COUNTS {
         let word = with_parity(angle);
         assert_eq!(alone(word), Some(angle));
@@ -31,13 +31,13 @@ fn every_angle_is_read_and_no_damaged_one() {
 /// rejected, fewer than make the motor loop raise an encoder loss; from then on all are accepted, and each is
 /// counted; after the flag is cleared, the count restarts.
 #[test]
-fn the_error_flag_refuses_a_few_answers_only() {
+fn the_error_flag_rejects_a_few_answers_only() {
     let mut line = Line::default();
     let flagged = with_parity(0x4000 | 77);
     let answers: Vec<_> = (0..1000).map(|_| line.step(flagged)).collect();
-    let refused = usize::from(FLAGGED);
+    let rejected = usize::from(FLAGGED);
     assert!(
-        answers[..refused].iter().all(Option::is_none) && answers[refused..].iter().all(|a| *a == Some(77))
+        answers[..rejected].iter().all(Option::is_none) && answers[rejected..].iter().all(|a| *a == Some(77))
     );
     assert!(u16::from(FLAGGED) + 1 < MOTOR.encoder.timeout_ticks);
     assert_eq!((line.flagged, line.damaged), (1000, 0));
@@ -47,7 +47,7 @@ fn the_error_flag_refuses_a_few_answers_only() {
 /// Situation: the encoder's wire is open and pulled up; one bit of a flagged answer is wrong. Must hold: never an
 /// angle, for any duration.
 #[test]
-fn a_cut_line_is_no_angle_ever() {
+fn an_open_line_is_never_an_angle() {
     let mut line = Line::default();
     assert!((0..1000).all(|_| line.step(0xffff).is_none()));
     assert_eq!((line.flagged, line.damaged), (0, 1000));

@@ -1,4 +1,4 @@
-//! Flight cards: the gate driver's fault pin.
+//! The gate driver's fault pin.
 
 use devices::fault_pin::FaultPin;
 
@@ -8,9 +8,9 @@ use devices::fault_pin::FaultPin;
 fn a_fault_is_one_at_the_second_sample() {
     let mut pin = FaultPin::default();
     assert!((0..20_000).all(|_| !pin.step(false)));
-    let seen: Vec<_> = (0..100).map(|_| pin.step(true)).collect();
-    assert_eq!(seen.iter().position(|fault| *fault), Some(1));
-    assert!(seen[1..].iter().all(|fault| *fault));
+    let faults: Vec<_> = (0..100).map(|_| pin.step(true)).collect();
+    assert_eq!(faults.iter().position(|fault| *fault), Some(1));
+    assert!(faults[1..].iter().all(|fault| *fault));
     assert_eq!(pin.pulses, 0);
 }
 

@@ -1,4 +1,4 @@
-//! Flight cards: registers of the IMU.
+//! Registers of the IMU.
 
 use devices::bmi160::{BURST, SET_UP, read, sample};
 

@@ -1,4 +1,4 @@
-//! Flight cards: the chip's revision.
+//! The chip's revision.
 
 use devices::silicon::has_prefetch;
 

@@ -1,4 +1,4 @@
-//! Flight cards: detection of a rotor slow enough to enable the gate driver.
+//! Detection of a rotor slow enough to enable the gate driver.
 
 use devices::as5047::COUNTS;
 use devices::slow::Slow;
@@ -16,7 +16,7 @@ fn slow_after_ms(turns_s: f64, most_turns_s: f32) -> Option<usize> {
 /// Situation: rotors of any speed in both directions, across the encoder's zero. Must hold: those below the limit are
 /// slow after 11 samples, those above it never.
 #[test]
-fn the_limit_parts_slow_from_fast() {
+fn the_limit_separates_slow_from_fast() {
     for turns_s in [0.0, 0.2, 5.0, 28.0, 31.5] {
         assert_eq!(slow_after_ms(turns_s, 32.0), Some(10), "{turns_s}");
         assert_eq!(slow_after_ms(-turns_s, 32.0), Some(10), "-{turns_s}");
@@ -30,7 +30,7 @@ fn the_limit_parts_slow_from_fast() {
 /// Situation: an encoder without samples, or with every other sample. Must hold: its rotor is never slow, and has no
 /// speed.
 #[test]
-fn a_silent_encoder_has_no_slow_rotor() {
+fn without_samples_the_rotor_is_not_slow() {
     let (mut silent, mut patchy) = (Slow::default(), Slow::default());
     for ms in 0..500 {
         assert!(!silent.step(None, 32.0) && !patchy.step((ms % 2 == 0).then_some(77), 32.0));

@@ -1,4 +1,4 @@
-//! Flight cards: debounce of the rider's switch, and age of samples.
+//! Debounce of the rider's switch, and age of samples.
 
 use control::sensors::frame::MISSING;
 use devices::age::Age;
@@ -8,7 +8,7 @@ use devices::vesc6::SWITCH_TICKS;
 /// Situation: a contact that bounces for 9 ms at each change. Must hold: one change, 20 ms after it has settled, in
 /// both directions.
 #[test]
-fn bounces_are_not_presses() {
+fn contact_bounce_is_no_press() {
     let mut switch = Switch::default();
     let bounces = [true, false, true, true, false, true, false, true, false];
     assert!(bounces.iter().all(|closed| !switch.step(*closed, SWITCH_TICKS)));

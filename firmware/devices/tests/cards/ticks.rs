@@ -1,4 +1,4 @@
-//! Flight cards: the time of the tasks.
+//! The time of the tasks.
 
 use devices::ticks::ticks;
 use proptest::prelude::*;
@@ -26,7 +26,7 @@ fn time_is_right_at_every_edge() {
 proptest! {
     /// Situation: any time of the first year, after a halt of the chip of up to 35 minutes. Must hold: no tick is lost.
     #[test]
-    fn a_standstill_loses_no_time(now in 0_u64..31_536_000_000_000, stood_us in 0_u64..2_100_000_000) {
+    fn a_halt_loses_no_time(now in 0_u64..31_536_000_000_000, stood_us in 0_u64..2_100_000_000) {
         let taken = now.saturating_sub(stood_us);
         prop_assert_eq!(ticks(halves(taken), now as u32), now);
     }

@@ -1,4 +1,4 @@
-//! Flight cards: consistency of the board's constants.
+//! Consistency of the board's constants.
 
 use devices::vesc6::*;
 
@@ -14,14 +14,14 @@ fn the_motor_is_accepted_and_not_aligned() {
 /// Situation: currents and voltages at which the motor loop must act. Must hold: the board can measure each, with a
 /// margin.
 #[test]
-fn what_must_be_seen_can_be_measured() {
+fn the_limits_can_be_measured() {
     let most_a = SHUNT.ampere(4078);
     assert!((160.0..166.0).contains(&most_a), "{most_a} A");
     assert!(MOTOR.sensors.range_a <= most_a);
     assert!(MOTOR.sensors.trip_a < 0.5 * most_a);
     let most_v = SUPPLY.volt(4095);
     assert!(MOTOR.supply.high_v < most_v && (61.0..63.0).contains(&most_v), "{most_v} V");
-    assert!(BOARD_HEAT.celsius(3800) > MOTOR.heat.hot_c, "{}", BOARD_HEAT.celsius(3800));
+    assert!(BOARD_TEMPERATURE.celsius(3800) > MOTOR.temperature.hot_c, "{}", BOARD_TEMPERATURE.celsius(3800));
 }
 
 /// Situation: the largest current that the motor loop permits, 1.3 times its trip (docs/motor.md), through a switch
@@ -38,7 +38,7 @@ fn over_current_is_a_short_and_nothing_less() {
 /// Situation: control stops. Must hold: the bridge opens after the largest gap that control permits between two
 /// periods, counted in calls of the motor loop.
 #[test]
-fn patience_is_that_of_control() {
+fn the_timeout_is_that_of_control() {
     let ms = 1e3 * f32::from(COMMAND_TIMEOUT_CALLS) / MOTOR.rate_hz;
     assert_eq!(Some(ms), control::Config::product().input.max_gap_ms);
 }
@@ -48,8 +48,8 @@ fn patience_is_that_of_control() {
 #[test]
 fn pulses_are_apart() {
     let wheel = wheel();
-    let way_m = core::f32::consts::TAU * wheel.radius_m / f32::from(wheel.pulses_per_turn);
+    let distance_m = core::f32::consts::TAU * wheel.radius_m / f32::from(wheel.pulses_per_turn);
     let apart_ms =
-        1e3 * way_m * (1.0 - wheel.spacing_error) / control::Config::product().input.front_wheel.max;
+        1e3 * distance_m * (1.0 - wheel.spacing_error) / control::Config::product().input.front_wheel.max;
     assert!((2.0..10.0).contains(&apart_ms), "{apart_ms} ms");
 }

@@ -23,7 +23,7 @@ fn own() -> Config {
 /// each stored. Action: start after each.
 /// Must hold: no alignment, then the stored one; a reset of the parameters does not change it.
 #[test]
-fn an_alignment_outlives_every_store_of_parameters() {
+fn an_alignment_survives_every_store_of_parameters() {
     let (none, flash) = load_alignment(Flash::new());
     assert_eq!(none, Ok(None));
     let flash = save(flash, &own()).1;
@@ -61,7 +61,7 @@ fn an_alignment_is_stored_over_anything() {
 /// Action: store another alignment; from the same flash, another configuration.
 /// Must hold: after the erase, the item that was not being stored is unchanged.
 #[test]
-fn what_damage_costs_is_not_the_other_item() {
+fn an_erase_leaves_the_other_item_unchanged() {
     let stored = save_alignment(save(Flash::new(), &own()).1, &found(0.1)).1;
     // The pages' marks, in their first and last words, are as they were; what lies free between them holds zeros.
     let mut full = stored.clone();
@@ -89,12 +89,12 @@ fn what_damage_costs_is_not_the_other_item() {
 /// Action: damage any bit of the later one, or of its number; start.
 /// Must hold: never the earlier offset: the later one, or an invalid record without an offset.
 #[test]
-fn an_older_offset_never_stands_in_for_a_damaged_one() {
+fn an_older_offset_never_replaces_a_damaged_one() {
     let older = save_alignment(Flash::new(), &found(0.3)).1;
     let newer = save_alignment(older.clone(), &found(-0.1)).1;
     let changed: Vec<usize> =
         (0..newer.bytes.len()).filter(|at| older.bytes[*at] != newer.bytes[*at]).collect();
-    let (mut doubts, mut read) = (0, 0);
+    let (mut invalid, mut read) = (0, 0);
     for at in changed {
         for bit in 0..8 {
             let mut damaged = newer.clone();
@@ -105,10 +105,10 @@ fn an_older_offset_never_stands_in_for_a_damaged_one() {
                 Some(turns) => assert_eq!(turns, -0.1, "byte {at}, bit {bit}"),
                 None => assert!(matches!(offset, Offset::Invalid(_)), "byte {at}, bit {bit}: {offset}"),
             }
-            if offset.turns().is_some() { read += 1 } else { doubts += 1 }
+            if offset.turns().is_some() { read += 1 } else { invalid += 1 }
         }
     }
-    assert!(doubts > 100 && read > 50, "{doubts} {read}");
+    assert!(invalid > 100 && read > 50, "{invalid} {read}");
 }
 
 /// Situation: an offset in the program or not; in flash one of this motor, one of another motor, none, or an invalid
@@ -117,7 +117,7 @@ fn an_older_offset_never_stands_in_for_a_damaged_one() {
 #[test]
 fn the_programs_own_offset_ranks_first() {
     let (mine, other) = (found(0.25), Alignment { motor_id: MOTOR ^ 1, ..found(0.25) });
-    let doubts = [
+    let invalid = [
         (InvalidRecord::Lost, "the newest one is lost"),
         (InvalidRecord::Unreadable, "flash can't be read"),
         (InvalidRecord::NoRecord(NoRecord::Malformed), "the stored one is damaged"),
@@ -128,10 +128,10 @@ fn the_programs_own_offset_ranks_first() {
         (Ok(Some(other)), None, "the stored one is of another motor, not used"),
         (Ok(None), None, "none stored"),
     ];
-    cases.extend(doubts.map(|(doubt, words)| (Err(doubt), None, words)));
-    for (stored, turns, words) in cases {
+    cases.extend(invalid.map(|(reason, text)| (Err(reason), None, text)));
+    for (stored, turns, text) in cases {
         let chosen = Offset::choose(None, stored, MOTOR);
-        assert_eq!((chosen.turns(), chosen.to_string().as_str()), (turns, words));
+        assert_eq!((chosen.turns(), chosen.to_string().as_str()), (turns, text));
         let program = Offset::choose(Some(-0.125), stored, MOTOR);
         assert_eq!(program.turns(), Some(-0.125));
         assert_eq!(program.to_string(), "-0.1250 turns, from the program");

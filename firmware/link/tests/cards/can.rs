@@ -1,4 +1,4 @@
-//! Flight cards: frames on CAN.
+//! Frames on CAN.
 
 use control::sensors::frame::{MISSING, Sample, Triple};
 use control::sensors::polarity::PolarityStep;
@@ -81,7 +81,7 @@ fn the_page_has_the_programs_numbers() {
     let range = |unit: f32| 32_767.0 * f64::from((unit * 1e4).round()) / 1e4;
     // The longest frame of eight bytes, with the bits that are stuffed in and the pause after it.
     let ms = 3.0 * 1e3 * 135.0 / f64::from(BIT_HZ);
-    for words in [
+    for text in [
         format!("{} kbit/s", BIT_HZ / 1000),
         format!(
             "every {PERIOD_MS} ms (at most {ms:.2} ms of the bus, {:.0} %)",
@@ -99,7 +99,7 @@ fn the_page_has_the_programs_numbers() {
         format!("motor, i16 | {TORQUE_NM} N m | -{0} to {0}, right + |", range(TORQUE_NM)),
         format!("no sample for {STALE_TICKS} ms"),
     ] {
-        assert!(page.contains(&words), "docs/link.md does not say {words:?}");
+        assert!(page.contains(&text), "docs/link.md does not contain {text:?}");
     }
 }
 
@@ -172,13 +172,13 @@ proptest! {
     /// Situation: any frame of any identifier. Must hold: it is rejected, or encoding its content gives the same
     /// content; other identifiers are rejected.
     #[test]
-    fn any_frame_is_told_or_refused(identifier in prop_oneof![0x320_u16..0x323, 0_u16..0x800], bytes: [u8; 8]) {
+    fn any_frame_is_decoded_or_rejected(identifier in prop_oneof![0x320_u16..0x323, 0_u16..0x800], bytes: [u8; 8]) {
         match Message::of(&Frame { identifier, bytes }) {
             Some(message) => {
                 prop_assert_eq!(message.frame().identifier, identifier);
-                // Not of any bytes: authorities beyond 1 come back as 1, spare bits as 0.
-                let told = Message::of(&message.frame());
-                prop_assert_eq!(told, told.and_then(|message| Message::of(&message.frame())));
+                // Arbitrary bytes are not preserved: authorities beyond 1 come back as 1, spare bits as 0.
+                let decoded = Message::of(&message.frame());
+                prop_assert_eq!(decoded, decoded.and_then(|message| Message::of(&message.frame())));
             }
             None => prop_assert!(identifier == STATE || !(STATE..=CAUSES).contains(&identifier)),
         }

@@ -1,4 +1,4 @@
-//! Flight cards: CAN bit timing.
+//! CAN bit timing.
 
 use devices::vesc6::CAN_CLOCK_HZ;
 use link::can::BIT_HZ;
@@ -17,7 +17,7 @@ fn the_board_keeps_the_rate() {
 
 /// Situation: clocks with a multiple of eight or sixteen cycles per bit. Must hold: the sample point is at 87.5 %.
 #[test]
-fn an_eighth_is_met_where_it_can_be() {
+fn the_sample_point_is_exact_where_possible() {
     for clock_hz in [8_000_000, 16_000_000, 24_000_000, 48_000_000] {
         assert_eq!(bit_timing(clock_hz, BIT_HZ).unwrap().sample_point(), 0.875, "{clock_hz} Hz");
     }
@@ -25,7 +25,7 @@ fn an_eighth_is_met_where_it_can_be() {
 
 /// Situation: clocks that are too slow or no multiple of the rate, no clock, no rate. Must hold: there is no timing.
 #[test]
-fn an_impossible_rate_is_refused() {
+fn an_impossible_rate_is_rejected() {
     for (clock_hz, bit_hz) in
         [(3_500_000, BIT_HZ), (42_000_001, BIT_HZ), (42_000_000, 1), (0, BIT_HZ), (1, 0)]
     {
@@ -37,7 +37,7 @@ proptest! {
     /// Situation: any clock and rate, and matching ones. Must hold: a timing found is exact, and every number fits
     /// its register.
     #[test]
-    fn what_is_found_is_exact(clock: u32, bit in 1_u32.., times in 1_u32..4000) {
+    fn a_timing_is_exact(clock: u32, bit in 1_u32.., times in 1_u32..4000) {
         let bit_hz = bit % 1_000_000 + 1;
         for (clock_hz, bit_hz) in [(clock, bit), (bit_hz * times, bit_hz)] {
             let Some(t) = bit_timing(clock_hz, bit_hz) else { continue };

@@ -1,9 +1,9 @@
-//! Flight cards: counting of CAN frames.
+//! Counting of CAN frames.
 
 use link::can_mailbox::{Action, Counts, Mailbox};
 use proptest::prelude::*;
 
-/// Model of the chip's mailbox: at most one frame, tried once.
+/// Model of the chip's mailbox: at most one frame, one attempt.
 #[derive(Default)]
 struct Chip {
     waits: bool,
@@ -31,7 +31,7 @@ impl Chip {
 /// Situation: 100 frames on a bus with a listener, then 100 without one, then 100 on a bus that is off, then a listener
 /// again. Must hold: all of the first are sent, none of the others until the last; no pending frame is sent late.
 #[test]
-fn nobody_listening_costs_the_count() {
+fn without_a_listener_frames_are_lost() {
     let (mut chip, mut counts) = (Chip::default(), Counts::default());
     let mut send = |frames: u32, bus: Option<bool>| {
         for _ in 0..frames {

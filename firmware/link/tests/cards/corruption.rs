@@ -21,22 +21,22 @@ fn numbered(i: u16) -> Config {
 /// Must hold: the newest configuration, or the defaults with the check not passed; never the older one, whose
 /// calibration can differ, and never anything else.
 #[test]
-fn a_turned_bit_never_brings_back_an_older_configuration() {
+fn a_flipped_bit_never_restores_an_older_configuration() {
     let flash = save(save(Flash::new(), &numbered(1)).1, &numbered(2)).1;
     let end = flash.bytes.iter().rposition(|byte| *byte != 0xff).expect("something was written");
     let (mut whole, mut lost, mut other) = (0, 0, 0);
     for at in 0..=end {
         let mut turned = flash.clone();
         turned.bytes[at] ^= 1 << (at % 8);
-        let (found, why, _) = load(turned, &Config::product());
-        match why {
+        let (found, result, _) = load(turned, &Config::product());
+        match result {
             Found::Record(_) => {
                 assert_eq!(found, numbered(2), "byte {at}");
                 whole += 1;
             }
-            why => {
+            result => {
                 assert_eq!(found, Config::product(), "byte {at}");
-                if why == Found::Invalid(InvalidRecord::Lost) { lost += 1 } else { other += 1 }
+                if result == Found::Invalid(InvalidRecord::Lost) { lost += 1 } else { other += 1 }
             }
         }
     }

@@ -17,9 +17,9 @@ const PAGE: &str = include_str!("../../../../docs/link.md");
 fn the_page_has_the_programs_numbers() {
     let text = PAGE.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut parameters = 0;
-    each_but_law(&mut Config::product(), |seen| {
+    each_but_law(&mut Config::product(), |parameter| {
         parameters += 1;
-        seen.value
+        parameter.value
     });
     let record = encode(&Config::product(), 1, None, &mut [0; RECORD_BYTES]).expect("room");
     // A record and its number, each with a header and padded to words, in a sector but for its two marks.
@@ -27,7 +27,7 @@ fn the_page_has_the_programs_numbers() {
     let telemetry =
         all().iter().find(|message| message.kind() == 0xa0).and_then(|m| m.encode(0, &mut [0; MAX_FRAME]));
     let telemetry = telemetry.expect("telemetry");
-    for words in [
+    for line in [
         format!("| 0 | version | {VERSION};"),
         format!("up to {MAX_PAYLOAD} bytes"),
         format!("the payload; {MAX_FRAME} at most, {telemetry} for telemetry"),
@@ -42,7 +42,7 @@ fn the_page_has_the_programs_numbers() {
         format!("takes {stores} stores before"),
         format!("room for {MAX_ENTRIES} parameters"),
     ] {
-        assert!(text.contains(&words), "docs/link.md does not say: {words}");
+        assert!(text.contains(&line), "docs/link.md does not contain: {line}");
     }
     for message in all() {
         let name = format!("{message:?}");

@@ -25,10 +25,10 @@ fn steps(memory: &[u8; RING_BYTES]) -> Vec<u32> {
 }
 
 /// Situation: random memory, as after power-on.
-/// Action: start, note more faults than there are slots, start again, clear.
+/// Action: start, record more faults than there are slots, start again, clear.
 /// Must hold: empty at first; then the newest faults in order, unchanged; all starts are counted.
 #[test]
-fn the_newest_faults_are_kept() {
+fn the_newest_faults_are_stored() {
     let mut memory = [0xa5; RING_BYTES];
     note(&mut memory, &fault(0, "too early"));
     assert_eq!(start(&mut memory), 1);
@@ -51,7 +51,7 @@ proptest! {
     /// Action: start; store the controller's state; start again; change any byte of it.
     /// Must hold: the state survives a start; after damage it is the same or absent.
     #[test]
-    fn the_last_step_is_kept(
+    fn the_last_step_is_stored(
         fill in any::<u8>(), steps in any::<u32>(), frame_us in any::<u32>(), causes in any::<u64>(), at in 0..RING_BYTES
     ) {
         let mut memory = [fill; RING_BYTES];
@@ -62,8 +62,8 @@ proptest! {
         start(&mut memory);
         prop_assert_eq!(last_step(&memory), Some(last));
         memory[at] ^= 1;
-        let told = last_step(&memory);
-        prop_assert!(told == if at < RING_BYTES - 21 { Some(last) } else { None }, "{:?}", told);
+        let step = last_step(&memory);
+        prop_assert!(step == if at < RING_BYTES - 21 { Some(last) } else { None }, "{:?}", step);
     }
 
     /// Situation: any bytes in memory.
@@ -75,8 +75,8 @@ proptest! {
         let _ = faults(&memory).count();
         prop_assert!(start(&mut memory) >= 1);
         note(&mut memory, &fault(7, &text));
-        let kept = faults(&memory).next().expect("kept");
-        prop_assert!(text.starts_with(kept.text) && kept.steps == 7);
+        let stored = faults(&memory).next().expect("stored");
+        prop_assert!(text.starts_with(stored.text) && stored.steps == 7);
     }
 
     /// Situation: a full ring.
@@ -92,8 +92,8 @@ proptest! {
         memory[at] = to;
         start(&mut memory);
         let left = steps(&memory);
-        let mut kept = all.iter();
-        prop_assert!(left.iter().all(|n| kept.any(|m| m == n)), "{:?}", left);
+        let mut stored = all.iter();
+        prop_assert!(left.iter().all(|n| stored.any(|m| m == n)), "{:?}", left);
         prop_assert!(left.len() >= SLOTS - 1 || (at < 14 && left.is_empty()), "{:?}", left);
     }
 }

@@ -40,9 +40,9 @@ pub(crate) struct Flash {
 
 /// Power failure, or an invalid access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Gone;
+pub(crate) struct FlashError;
 
-impl NorFlashError for Gone {
+impl NorFlashError for FlashError {
     fn kind(&self) -> NorFlashErrorKind {
         NorFlashErrorKind::Other
     }
@@ -79,9 +79,9 @@ impl Flash {
     }
 
     /// One step, or the power failure.
-    fn step(&mut self) -> Result<(), Gone> {
+    fn step(&mut self) -> Result<(), FlashError> {
         match &mut self.left {
-            Some(0) => return Err(Gone),
+            Some(0) => return Err(FlashError),
             Some(left) => *left -= 1,
             None => {}
         }
@@ -91,14 +91,14 @@ impl Flash {
 }
 
 impl ErrorType for Flash {
-    type Error = Gone;
+    type Error = FlashError;
 }
 
 impl ReadNorFlash for Flash {
     const READ_SIZE: usize = 1;
 
-    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Gone> {
-        let from = self.bytes.get(offset as usize..offset as usize + bytes.len()).ok_or(Gone)?;
+    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
+        let from = self.bytes.get(offset as usize..offset as usize + bytes.len()).ok_or(FlashError)?;
         bytes.copy_from_slice(from);
         Ok(())
     }
@@ -112,7 +112,7 @@ impl NorFlash for Flash {
     const WRITE_SIZE: usize = 4;
     const ERASE_SIZE: usize = PAGE;
 
-    async fn erase(&mut self, from: u32, to: u32) -> Result<(), Gone> {
+    async fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashError> {
         assert!(
             (from as usize).is_multiple_of(PAGE) && (to as usize).is_multiple_of(PAGE),
             "erases whole pages"
@@ -127,7 +127,7 @@ impl NorFlash for Flash {
                         self.bytes[page..page + PAGE].iter_mut().for_each(|b| *b |= random(&mut seed) as u8);
                     }
                     self.tear = Tear::Whole;
-                    return Err(Gone);
+                    return Err(FlashError);
                 }
                 if self.tear == Tear::Whole || self.left.is_none() {
                     self.bytes[at..at + part].fill(0xff);
@@ -139,14 +139,14 @@ impl NorFlash for Flash {
         Ok(())
     }
 
-    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Gone> {
+    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
         assert!(offset.is_multiple_of(4) && bytes.len().is_multiple_of(4), "writes whole words");
         for (i, word) in bytes.chunks(4).enumerate() {
             let at = offset as usize + 4 * i;
             let mut keep = 0_u64;
             let done = self.step();
             if done.is_err() {
-                let Tear::Bits(mut seed) = self.tear else { return Err(Gone) };
+                let Tear::Bits(mut seed) = self.tear else { return Err(FlashError) };
                 keep = random(&mut seed);
                 self.tear = Tear::Whole;
             }

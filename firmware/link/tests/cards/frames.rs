@@ -81,26 +81,26 @@ proptest! {
     /// Action: decode them byte by byte, and piece by piece.
     /// Must hold: the same frames, and the same drop counts of each kind.
     #[test]
-    fn pieces_say_what_their_bytes_say(
+    fn pieces_are_decoded_like_their_bytes(
         parts in prop::collection::vec((prop::collection::vec(any::<u8>(), 0..400), payloads()), 1..5),
-        harm in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..4),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..4),
         cuts in prop::collection::vec(any::<prop::sample::Index>(), 0..6),
     ) {
         let mut bytes: Vec<u8> =
             parts.iter().flat_map(|(garbage, payload)| [&garbage[..], &line(7, 9, payload)].concat()).collect();
-        for (at, byte) in harm {
+        for (at, byte) in changes {
             let at = at.index(bytes.len());
             bytes[at] = byte;
         }
         let (mut one, mut other) = (Decoder::default(), Decoder::default());
         let mut ends: Vec<usize> = cuts.iter().map(|cut| cut.index(bytes.len())).chain([bytes.len()]).collect();
         ends.sort_unstable();
-        let mut begin = 0;
+        let mut start = 0;
         for end in ends {
-            let piece = &bytes[begin..end];
+            let piece = &bytes[start..end];
             prop_assert_eq!(feed(&mut one, piece), take(&mut other, piece));
             prop_assert_eq!(one.dropped(), other.dropped());
-            begin = end;
+            start = end;
         }
     }
 
@@ -120,12 +120,12 @@ proptest! {
     /// Action: decode both.
     /// Must hold: of the first only the original is accepted; the next is received.
     #[test]
-    fn damage_never_makes_another_frame(
+    fn a_damaged_frame_is_never_another(
         payload in payloads(),
-        harm in prop::collection::vec((any::<prop::sample::Index>(), 0..3_u8, any::<u8>()), 1..8),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), 0..3_u8, any::<u8>()), 1..8),
     ) {
         let mut bytes = line(7, 9, &payload);
-        for (at, how, byte) in harm {
+        for (at, how, byte) in changes {
             let at = at.index(bytes.len());
             match how {
                 0 => bytes[at] = byte,
@@ -156,7 +156,7 @@ proptest! {
 /// Action: decode it, then another.
 /// Must hold: nothing of the first is accepted; it is counted once; the next is received.
 #[test]
-fn no_turned_bit_is_accepted() {
+fn no_flipped_bit_is_accepted() {
     for size in [0, 1, 7, 81, MAX_PAYLOAD] {
         let payload: Vec<u8> = (0..size).map(|i| (i % 5) as u8).collect();
         let whole = line(7, 9, &payload);
@@ -180,7 +180,7 @@ fn no_turned_bit_is_accepted() {
 /// Action: decode each.
 /// Must hold: each is counted under its kind.
 #[test]
-fn what_is_dropped_is_counted_by_its_kind() {
+fn dropped_bytes_are_counted_by_kind() {
     let mut decoder = Decoder::default();
     feed(&mut decoder, &[1; 5000]);
     feed(&mut decoder, &[0]);
@@ -200,7 +200,7 @@ fn what_is_dropped_is_counted_by_its_kind() {
 /// Action: encode.
 /// Must hold: rejected; the longest payload in the largest frame is accepted, and decodes to itself.
 #[test]
-fn a_frame_that_does_not_fit_is_refused() {
+fn a_frame_that_does_not_fit_is_rejected() {
     let mut bytes = [0; MAX_FRAME];
     assert_eq!(encode(1, 2, &[1; MAX_PAYLOAD + 1], &mut bytes), None);
     assert_eq!(encode(1, 2, &[1; MAX_PAYLOAD], &mut bytes), Some(MAX_FRAME));

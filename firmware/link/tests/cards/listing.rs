@@ -1,6 +1,6 @@
 //! The parameter list, including the law.
 
-use crate::requests::ask;
+use crate::requests::answer_to;
 use control::param::{ParamSpec, ParamVisitor};
 use control::{Config, GainSchedule, Law};
 use link::Key;
@@ -25,7 +25,7 @@ fn list(config: &Config) -> (Vec<Listed>, usize) {
     let (mut listed, mut pages) = (Vec::new(), 0);
     loop {
         let from = listed.len() as u16;
-        let done = ask(&mut config.clone(), true, &Message::List { from }, |answer| {
+        let done = answer_to(&mut config.clone(), true, &Message::List { from }, |answer| {
             let Some(Message::Page(page)) = answer else { panic!("{answer:?}") };
             assert_eq!((page.from, page.entries().count()), (from, usize::from(page.count)));
             listed.extend(page.entries().map(|entry: Entry<'_>| Listed {
@@ -122,7 +122,7 @@ fn every_parameter_is_listed() {
 fn beyond_the_list_is_an_empty_page() {
     let total = list(&Config::product()).0.len();
     for from in [total as u16, u16::MAX] {
-        ask(&mut Config::product(), false, &Message::List { from }, |answer| {
+        answer_to(&mut Config::product(), false, &Message::List { from }, |answer| {
             let Some(Message::Page(page)) = answer else { panic!("{answer:?}") };
             assert_eq!(
                 (page.from, usize::from(page.total), page.count, page.bytes),
@@ -152,11 +152,13 @@ fn a_law_is_set_as_a_whole() {
         law::encode(&law, &mut writer);
         let bytes = writer.finish().expect("room");
         let mut config = Config::product();
-        ask(&mut config, false, &Message::SetLaw(bytes), |answer| {
+        answer_to(&mut config, false, &Message::SetLaw(bytes), |answer| {
             assert_eq!(answer, Some(Message::Law(bytes)))
         });
         assert_eq!(config.law, law);
-        ask(&mut config, true, &Message::GetLaw, |answer| assert_eq!(answer, Some(Message::Law(bytes))));
+        answer_to(&mut config, true, &Message::GetLaw, |answer| {
+            assert_eq!(answer, Some(Message::Law(bytes)))
+        });
         let listed = list(&config).0;
         let own: Vec<_> =
             listed.iter().map(|one| one.key.as_str()).filter(|key| key.starts_with("law.")).collect();

@@ -31,7 +31,7 @@ proptest! {
     /// Action: decode them in either direction.
     /// Must hold: no panic; a decoded exchange uses exactly these bytes.
     #[test]
-    fn any_bytes_are_read_or_refused(any in bytes()) {
+    fn any_bytes_are_decoded_or_rejected(any in bytes()) {
         if let Some(board) = FromBoard::decode(&any) {
             prop_assert_eq!(board.encode(&mut [0; MAX_CHUNK]), Some(any.len()));
         }

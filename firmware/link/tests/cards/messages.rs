@@ -20,8 +20,8 @@ const MODES: [Mode; 7] = {
     [Off, Initialise, SelfTest, Standby, Engaged, Limp, Fault]
 };
 
-/// Sends a message and passes the received one to `seen`; returns its sequence number.
-fn through(message: &Message<'_>, seen: impl FnOnce(&Message<'_>)) -> u16 {
+/// Sends a message and passes the received one to `check`; returns its sequence number.
+fn through(message: &Message<'_>, check: impl FnOnce(&Message<'_>)) -> u16 {
     let (mut bytes, mut decoder) = ([0; MAX_FRAME], Decoder::default());
     let used = message.encode(513, &mut bytes).expect("room");
     for byte in &bytes[..used - 1] {
@@ -30,7 +30,7 @@ fn through(message: &Message<'_>, seen: impl FnOnce(&Message<'_>)) -> u16 {
     match decoder.feed(0) {
         Some(Received::Frame(frame)) => {
             assert_eq!(frame.kind, message.kind());
-            seen(&Message::decode(&frame).expect("a message"));
+            check(&Message::decode(&frame).expect("a message"));
             frame.sequence
         }
         other => panic!("{other:?}"),
@@ -56,7 +56,7 @@ proptest! {
     /// Action: send telemetry and the frames of processor in the loop.
     /// Must hold: every bit is the same.
     #[test]
-    fn what_a_step_saw_and_did_comes_through(
+    fn frame_command_and_slopes_are_sent_bit_by_bit(
         bits in prop::collection::vec(any::<u8>(), 81), command in commands(), slopes in slopes(), steps in any::<u32>()
     ) {
         let frame = decode_frame(&bits.try_into().expect("81 bytes"));
@@ -80,7 +80,7 @@ proptest! {
     /// Action: decode it as a message, and as a page's entries; encode the result.
     /// Must hold: no panic; a decoded message can be encoded.
     #[test]
-    fn any_payload_is_a_message_or_refused(
+    fn any_payload_is_a_message_or_rejected(
         kind in any::<u8>(), payload in prop::collection::vec(any::<u8>(), 0..=MAX_PAYLOAD)
     ) {
         let frame = Frame { kind, sequence: 0, payload: &payload };
@@ -99,7 +99,8 @@ proptest! {
 /// Every message with a non-zero value in each field.
 pub(crate) fn all() -> Vec<Message<'static>> {
     let parted = Key { group: "limits.end_stop", name: "soft_rad" };
-    let refusal = Rejection { why: RejectReason::OutOfRange, key: parted, value: 9.0, min: 0.5, max: 1.5 };
+    let rejection =
+        Rejection { reason: RejectReason::OutOfRange, key: parted, value: 9.0, min: 0.5, max: 1.5 };
     let hello =
         Hello { image: "board-vesc6", version: "0.1.0", commit: "0123456789ab", config_hash: 0xdead_beef };
     let fault = FaultRecord {
@@ -135,7 +136,7 @@ pub(crate) fn all() -> Vec<Message<'static>> {
         Message::Value { key: parted, value: Some(-0.0) },
         Message::Law(&[0, 0, 0]),
         Message::Done,
-        Message::Refused(refusal),
+        Message::Rejected(rejection),
         Message::WrongVersion { theirs: 9 },
         Message::StoredFault(StoredFault { place: 1, total: 2, record: Some(fault) }),
         Message::StoredFault(StoredFault { place: 2, total: 2, record: None }),
@@ -161,7 +162,7 @@ pub(crate) fn all() -> Vec<Message<'static>> {
 /// Action: encode and decode; then with a byte more, and with one less than it needs.
 /// Must hold: the same message and number; extra bytes change nothing; too few are rejected.
 #[test]
-fn every_message_comes_through() {
+fn every_message_is_decoded_as_encoded() {
     for message in all() {
         assert_eq!(through(&message, |got| assert_eq!(*got, message)), 513);
         let mut bytes = [0; MAX_FRAME];
@@ -252,14 +253,14 @@ fn every_number_means_one_thing() {
 /// Action: decode them as requests.
 /// Must hold: each but the good one is answered with its error, under its sequence number where known.
 #[test]
-fn what_is_no_request_is_answered() {
-    let refused = |why| Message::Refused(Rejection::of(why));
+fn an_invalid_request_is_answered() {
+    let rejected = |why| Message::Rejected(Rejection::of(why));
     let of = |kind, payload| Received::Frame(Frame { kind, sequence: 44, payload });
     for (received, answer) in [
         (Received::WrongVersion { theirs: VERSION + 1 }, (0, Message::WrongVersion { theirs: VERSION + 1 })),
-        (of(0x7f, &[][..]), (44, refused(RejectReason::UnknownRequest))),
-        (of(0x02, &[1]), (44, refused(RejectReason::Malformed))),
-        (of(0x03, &[2, 0xff, 0xff]), (44, refused(RejectReason::Malformed))),
+        (of(0x7f, &[][..]), (44, rejected(RejectReason::UnknownRequest))),
+        (of(0x02, &[1]), (44, rejected(RejectReason::Malformed))),
+        (of(0x03, &[2, 0xff, 0xff]), (44, rejected(RejectReason::Malformed))),
     ] {
         assert_eq!(request(&received).expect_err("no request").answer(), answer);
     }
@@ -270,7 +271,7 @@ fn what_is_no_request_is_answered() {
 /// Action: send it as a log line and as a fault's text.
 /// Must hold: its beginning arrives, cut between characters.
 #[test]
-fn long_words_are_cut_between_letters() {
+fn long_texts_are_cut_between_characters() {
     let long = "\u{e9}".repeat(400);
     through(&Message::Log(&long), |got| assert_eq!(*got, Message::Log(&long[..MAX_PAYLOAD])));
     through(&Message::Fault(panic_of(&long)), |got| {
@@ -299,13 +300,13 @@ fn panic_of(text: &str) -> FaultRecord<'_> {
 #[test]
 fn the_largest_fault_record_has_its_size() {
     let text = "x".repeat(FAULT_TEXT_BYTES);
-    let kept = StoredFault { place: 0, total: 1, record: Some(panic_of(&text)) };
+    let stored = StoredFault { place: 0, total: 1, record: Some(panic_of(&text)) };
     let mut bytes = [0; MAX_FRAME];
-    let used = Message::StoredFault(kept).encode(1, &mut bytes).expect("room");
+    let used = Message::StoredFault(stored).encode(1, &mut bytes).expect("room");
     let plain = cobs::decode(&bytes[1..used], &mut [0; MAX_FRAME]).expect("stuffed").frame_size();
     assert_eq!(plain - 8, 4 + FAULT_BYTES);
     assert!((200..=300).contains(&(4 + FAULT_BYTES)));
-    through(&Message::StoredFault(kept), |got| assert_eq!(*got, Message::StoredFault(kept)));
+    through(&Message::StoredFault(stored), |got| assert_eq!(*got, Message::StoredFault(stored)));
 }
 
 /// Situation: two configurations that differ in one parameter.

@@ -9,25 +9,25 @@ use link::rejection::{RejectReason, Rejection};
 use link::requests::{answer, set};
 use proptest::prelude::*;
 
-/// Sends a request and passes the answer to `seen`.
-pub(crate) fn ask<T>(
+/// Sends a request and passes the answer to `read`.
+pub(crate) fn answer_to<T>(
     config: &mut Config,
     engaged: bool,
     request: &Message<'_>,
-    seen: impl FnOnce(Option<Message<'_>>) -> T,
+    read: impl FnOnce(Option<Message<'_>>) -> T,
 ) -> T {
-    seen(answer(&Config::product(), config, engaged, request, &mut [0; PAGE_BYTES]))
+    read(answer(&Config::product(), config, engaged, request, &mut [0; PAGE_BYTES]))
 }
 
 /// Sends a request that must be rejected; returns the rejection and checks that nothing changed.
-fn refused(config: &Config, engaged: bool, request: &Message<'_>) -> (RejectReason, String) {
-    let mut asked = config.clone();
-    let refusal = ask(&mut asked, engaged, request, |answer| match answer {
-        Some(Message::Refused(refusal)) => (refusal.why, refusal.to_string()),
+fn rejection(config: &Config, engaged: bool, request: &Message<'_>) -> (RejectReason, String) {
+    let mut changed = config.clone();
+    let rejection = answer_to(&mut changed, engaged, request, |answer| match answer {
+        Some(Message::Rejected(rejection)) => (rejection.reason, rejection.to_string()),
         other => panic!("{request:?}: {other:?}"),
     });
-    assert_eq!(asked, *config, "{request:?}");
-    refusal
+    assert_eq!(changed, *config, "{request:?}");
+    rejection
 }
 
 fn to(key: &'static str, value: impl Into<Option<f32>>) -> Message<'static> {
@@ -39,16 +39,16 @@ fn to(key: &'static str, value: impl Into<Option<f32>>) -> Message<'static> {
 /// Must hold: the value; beyond the limits rejected as out of range with key, value and range; a limit is accepted, or
 /// rejected with the reason; a rejection changes nothing.
 #[test]
-fn every_parameter_is_got_and_set() {
-    let mut seen = Vec::new();
+fn every_parameter_is_read_and_set() {
+    let mut parameters = Vec::new();
     each(&mut Config::product(), |one| {
-        seen.push(*one);
+        parameters.push(*one);
         one.value
     });
     let (mut taken, mut not) = (0, 0);
-    for one in seen {
+    for one in parameters {
         let key = one.key();
-        let value = ask(&mut Config::product(), true, &Message::Get { key }, |answer| {
+        let value = answer_to(&mut Config::product(), true, &Message::Get { key }, |answer| {
             answer.map(|a| format!("{a:?}"))
         });
         assert_eq!(value, Some(format!("{:?}", Message::Value { key, value: one.value })));
@@ -60,8 +60,8 @@ fn every_parameter_is_got_and_set() {
                     assert!(config.plan().is_ok());
                     taken += 1;
                 }
-                Err(refusal) => {
-                    assert_ne!(refusal.to_string(), "");
+                Err(rejection) => {
+                    assert_ne!(rejection.to_string(), "");
                     assert_eq!(config, Config::product(), "{key}");
                     not += 1;
                 }
@@ -70,16 +70,16 @@ fn every_parameter_is_got_and_set() {
         let above = one.leaf.max + one.leaf.max.abs().max(1.0) * 0.01;
         for beyond in [above, one.leaf.min - 1.0, f32::NAN, f32::INFINITY] {
             let mut config = Config::product();
-            let refusal = set(&mut config, key, Some(beyond)).expect_err("out of range");
+            let rejection = set(&mut config, key, Some(beyond)).expect_err("out of range");
             assert_eq!(
-                (refusal.why, refusal.key, refusal.min, refusal.max),
+                (rejection.reason, rejection.key, rejection.min, rejection.max),
                 (RejectReason::OutOfRange, key, one.leaf.min, one.leaf.max)
             );
-            assert_eq!(refusal.value.to_bits(), beyond.to_bits());
+            assert_eq!(rejection.value.to_bits(), beyond.to_bits());
             assert_eq!(config, Config::product());
         }
     }
-    println!("ends: {taken} taken, {not} refused");
+    println!("limits: {taken} accepted, {not} rejected");
     assert!(taken > 250 && not > 20, "{taken} {not}");
 }
 
@@ -96,11 +96,14 @@ fn nothing_is_changed_while_engaged() {
         Message::Store,
         Message::Reset,
     ] {
-        assert_eq!(refused(&config, true, &request), (RejectReason::Engaged, "refused while engaged".into()));
+        assert_eq!(
+            rejection(&config, true, &request),
+            (RejectReason::Engaged, "rejected while engaged".into())
+        );
     }
     for request in [Message::List { from: 0 }, Message::Get { key: Key::whole("law") }, Message::GetLaw] {
-        ask(&mut config.clone(), true, &request, |answer| {
-            assert!(!matches!(answer, Some(Message::Refused(_)) | None))
+        answer_to(&mut config.clone(), true, &request, |answer| {
+            assert!(!matches!(answer, Some(Message::Rejected(_)) | None))
         });
     }
 }
@@ -109,11 +112,11 @@ fn nothing_is_changed_while_engaged() {
 /// Action: send each.
 /// Must hold: rejected with a text that names key, value and range; nothing changed.
 #[test]
-fn a_mistake_is_told() {
+fn a_mistake_is_named() {
     let config = Config::product();
     let mut untapered = config.clone();
     untapered.limits.taper = None;
-    for (config, request, why, words) in [
+    for (config, request, why, text) in [
         (&config, to("limits.max_torque", 1.0), RejectReason::UnknownKey, "no parameter limits.max_torque"),
         (&config, Message::Get { key: Key::whole("") }, RejectReason::UnknownKey, "no parameter "),
         (&config, to("law.cl2.k", 1.0), RejectReason::UnknownKey, "no parameter law.cl2.k"),
@@ -160,7 +163,7 @@ fn a_mistake_is_told() {
             "law.cl2.k = 0 is outside 0.001 to 20",
         ),
     ] {
-        assert_eq!(refused(config, false, &request), (why, words.into()), "{request:?}");
+        assert_eq!(rejection(config, false, &request), (why, text.into()), "{request:?}");
     }
 }
 
@@ -172,9 +175,9 @@ fn the_configuration_is_checked_as_a_whole() {
     let config = Config::product();
     let taper = config.limits.taper.expect("a taper");
     let request = to("limits.taper.full_m_s", taper.zero_m_s / 2.0);
-    let (why, words) = refused(&config, false, &request);
+    let (why, text) = rejection(&config, false, &request);
     assert_eq!(why, RejectReason::OutOfRange);
-    assert!(words.contains("limits.taper"), "{words}");
+    assert!(text.contains("limits.taper"), "{text}");
 }
 
 /// Situation: a bicycle whose polarity check was passed.
@@ -195,9 +198,9 @@ fn a_changed_calibration_is_an_unchecked_one() {
         let mut config = checked.clone();
         set(&mut config, Key::whole(key), Some(value)).expect("allowed");
         assert_eq!(config.calibration.polarity_checked, stays, "{key}");
-        assert_eq!(get(&config, Key::whole(key)).and_then(|seen| seen.value), Some(value));
+        assert_eq!(get(&config, Key::whole(key)).and_then(|parameter| parameter.value), Some(value));
     }
-    ask(&mut checked, false, &Message::Reset, |answer| assert_eq!(answer, Some(Message::Done)));
+    answer_to(&mut checked, false, &Message::Reset, |answer| assert_eq!(answer, Some(Message::Done)));
     assert_eq!(checked, Config::product());
 }
 
@@ -205,7 +208,7 @@ fn a_changed_calibration_is_an_unchecked_one() {
 /// Action: send them.
 /// Must hold: no answer from this function, nothing changed.
 #[test]
-fn what_others_answer_is_left_to_them() {
+fn requests_to_others_are_not_answered() {
     for request in [
         Message::AskHello,
         Message::Store,
@@ -216,7 +219,7 @@ fn what_others_answer_is_left_to_them() {
         Message::WrongVersion { theirs: 2 },
     ] {
         let mut config = Config::product();
-        ask(&mut config, false, &request, |answer| assert_eq!(answer, None));
+        answer_to(&mut config, false, &request, |answer| assert_eq!(answer, None));
         assert_eq!(config, Config::product());
     }
 }
@@ -226,21 +229,21 @@ proptest! {
     /// Action: carry them out one after the other.
     /// Must hold: after each the configuration passes `plan`, and is unchanged if the request was rejected.
     #[test]
-    fn no_set_leaves_a_configuration_that_is_refused(
+    fn no_set_leaves_an_invalid_configuration(
         sets in prop::collection::vec((any::<prop::sample::Index>(), any::<u32>(), 0.0_f32..1.0, 0..4_u8), 1..12)
     ) {
         let mut config = Config::product();
         for (which, bits, share, how) in sets {
-            let mut seen = Vec::new();
+            let mut parameters = Vec::new();
             each(&mut config.clone(), |one| {
-                seen.push(*one);
+                parameters.push(*one);
                 one.value
             });
-            let one = seen[which.index(seen.len())];
+            let one = parameters[which.index(parameters.len())];
             let inside = one.leaf.min + share * (one.leaf.max - one.leaf.min);
             let value = [None, Some(f32::from_bits(bits)), Some(inside), Some(inside.round())][usize::from(how)];
             let before = config.clone();
-            let done = set(&mut config, one.key(), value).map_err(|Rejection { why, .. }| why);
+            let done = set(&mut config, one.key(), value).map_err(|Rejection { reason, .. }| reason);
             prop_assert!(config.clone().plan().is_ok(), "{} {:?}", one.key(), value);
             prop_assert!(done.is_ok() || config == before, "{} {:?}", one.key(), value);
         }

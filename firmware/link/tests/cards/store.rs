@@ -1,4 +1,4 @@
-//! What is stored comes back; what another version stored is taken with care.
+//! Stored values are found again; those of another version are checked.
 
 use crate::flash::{Flash, PAGE, PAGES, load, save};
 use control::{Config, GainSchedule, Law};
@@ -11,7 +11,7 @@ use link::store::{Found, MIN_PAGE, MIN_PAGES, NotStored, Store};
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 
-/// A checked product with a law of the user's own.
+/// A checked product with a user's law.
 fn own() -> Config {
     let table = GainSchedule::new(&[(-1.0, 0.0), (2.0, 12.0), (8.0, 0.0)]).expect("a table");
     let mut config = Config { law: Law::Table(table), ..Config::product() };
@@ -29,7 +29,7 @@ fn record(config: &Config, number: u32) -> Vec<u8> {
     room[..used].to_vec()
 }
 
-/// Flash in which this record stands, whatever its bytes.
+/// Flash with this record, whatever its bytes.
 fn flashed(record: &[u8]) -> Flash {
     let flash = Flash::new();
     let range = 0..flash.bytes.len() as u32;
@@ -38,7 +38,7 @@ fn flashed(record: &[u8]) -> Flash {
     map.destroy().0
 }
 
-/// The same bytes, but for the value of one parameter.
+/// The same bytes, except the value of one parameter.
 fn with(record: &[u8], key: &str, value: f32) -> Vec<u8> {
     let hash = Key::whole(key).hash().to_le_bytes();
     let at = record.windows(4).rposition(|four| four == hash).expect("the parameter");
@@ -56,11 +56,11 @@ fn renamed(record: &[u8], key: &str) -> Vec<u8> {
     changed
 }
 
-/// Situation: flash that is empty.
+/// Situation: empty flash.
 /// Action: start, with defaults that claim a passed polarity check; store; start again.
-/// Must hold: nothing was found and the check is to be passed; then every parameter, the law too, as stored.
+/// Must hold: nothing was found and the check is not passed; then every parameter, the law included, as stored.
 #[test]
-fn what_is_stored_comes_back() {
+fn a_stored_configuration_is_found_again() {
     let mut boastful = Config::product();
     boastful.calibration.polarity_checked = true;
     let (config, found, flash) = load(Flash::new(), &boastful);
@@ -71,34 +71,34 @@ fn what_is_stored_comes_back() {
         let config = Config { law, ..own() };
         let (done, flash) = save(flash.clone(), &config);
         assert_eq!(done, Ok(()));
-        let (found, why, _) = load(flash, &Config::product());
-        assert_eq!((found, why), (config, Found::Record(Applied::default())));
+        let (found, result, _) = load(flash, &Config::product());
+        assert_eq!((found, result), (config, Found::Record(Applied::default())));
     }
 }
 
-/// Situation: a configuration that `Config::plan` refuses, with another one stored.
+/// Situation: a configuration that `Config::plan` rejects, with another one stored.
 /// Action: store it.
-/// Must hold: refused with its parameter; not a byte of the flash is another.
+/// Must hold: rejected with its parameter; no byte of the flash changes.
 #[test]
-fn what_would_not_be_accepted_is_not_stored() {
+fn an_invalid_configuration_is_not_stored() {
     let flash = save(Flash::new(), &own()).1;
     let mut wrong = own();
     wrong.rate_hz = 1.0;
     let (done, after) = save(flash.clone(), &wrong);
-    assert!(matches!(done, Err(NotStored::Refused(error)) if error.leaf.name == "rate_hz"), "{done:?}");
+    assert!(matches!(done, Err(NotStored::Rejected(error)) if error.leaf.name == "rate_hz"), "{done:?}");
     assert_eq!(after, flash);
 }
 
-/// Situation: all parameters there are, with each law.
+/// Situation: all parameters, with each law.
 /// Action: hash their names.
-/// Must hold: no two have the same hash, and 200 to 300 of them leave room for those of other versions.
+/// Must hold: no two have the same hash, and their number, 200 to 300, leaves room for those of other versions.
 #[test]
 fn no_two_parameters_share_a_hash() {
     for law in [Law::None, Law::Cl2 { k: 1.0 }, Law::BalanceAssist { kappa: 1.0 }] {
         let mut hashes = Vec::new();
-        each(&mut Config { law, ..Config::product() }, |seen| {
-            hashes.push(seen.key().hash());
-            seen.value
+        each(&mut Config { law, ..Config::product() }, |parameter| {
+            hashes.push(parameter.key().hash());
+            parameter.value
         });
         let count = hashes.len();
         hashes.sort_unstable();
@@ -108,9 +108,9 @@ fn no_two_parameters_share_a_hash() {
     }
 }
 
-/// Situation: the names that are hashed.
+/// Situation: the hashed names.
 /// Action: hash one of them by its parts and as a whole.
-/// Must hold: the number that is in the flash of every board: it can't change any more.
+/// Must hold: the number that is in the flash of every board: it cannot change any more.
 #[test]
 fn the_hash_of_a_name_stays() {
     // The check value of CRC-32/ISO-HDLC.
@@ -120,25 +120,25 @@ fn the_hash_of_a_name_stays() {
     assert_eq!(parted, Key::whole("limits.end_stop.soft_rad"));
 }
 
-/// Situation: a record of another version: one parameter of today's has another name there.
+/// Situation: a record of another version: one of today's parameters has another name there.
 /// Action: start; store; read the record that was stored.
 /// Must hold: one value unknown, one missing and at its default; the unknown one is still in the flash, after any
 /// number of stores.
 #[test]
-fn values_of_another_version_are_kept_and_ignored() {
+fn values_of_another_version_are_preserved_and_ignored() {
     let mut config = own();
     config.permit.ramp_in_ticks = 777;
-    let (found, why, mut flash) =
+    let (found, result, mut flash) =
         load(flashed(&renamed(&record(&config, 1), "permit.ramp_in_ticks")), &Config::product());
-    assert_eq!(why, Found::Record(Applied { unknown: 1, missing: 1, ..Applied::default() }));
+    assert_eq!(result, Found::Record(Applied { unknown: 1, missing: 1, ..Applied::default() }));
     config.permit.ramp_in_ticks = Config::product().permit.ramp_in_ticks;
     assert_eq!(found, config);
     for _ in 0..20 {
         let (done, after) = save(flash, &found);
         assert_eq!(done, Ok(()));
-        let (again, why, after) = load(after, &Config::product());
+        let (again, result, after) = load(after, &Config::product());
         assert_eq!(
-            (again, why),
+            (again, result),
             (found.clone(), Found::Record(Applied { unknown: 1, ..Applied::default() }))
         );
         flash = after;
@@ -146,9 +146,9 @@ fn values_of_another_version_are_kept_and_ignored() {
     assert!(flash.erases > 0);
 }
 
-/// Situation: a record full of values of other versions, as many as there is room for.
+/// Situation: a record full of values of other versions.
 /// Action: write today's configuration after it.
-/// Must hold: all of today's are there, those of others as far as there is room.
+/// Must hold: all of today's values are there, those of others as far as there is room.
 #[test]
 fn todays_values_come_first_when_there_is_no_room() {
     let mut stuffed = record(&own(), 1);
@@ -160,16 +160,16 @@ fn todays_values_come_first_when_there_is_no_room() {
     let used = encode(&own(), 2, Some(&decode(&stuffed).expect("a record")), &mut room).expect("room");
     let mut config = Config::product();
     let applied = decode(&room[..used]).expect("a record").apply(&mut config);
-    assert_eq!((config, applied.missing, applied.refused), (own(), 0, 0));
+    assert_eq!((config, applied.missing, applied.rejected), (own(), 0, 0));
     assert!(applied.unknown > 50 && used > RECORD_BYTES - 8, "{} {used}", applied.unknown);
 }
 
-/// Situation: a stored value outside today's range; not whole; not a number; a law that does not exist.
+/// Situation: a stored value outside today's range; a fraction; not a number; a law that does not exist.
 /// Action: start.
-/// Must hold: it is told which; its parameter has the default, all others what was stored; the polarity check is
-/// to be passed anew.
+/// Must hold: the value is named; its parameter has the default, all others the stored values; the polarity check
+/// must be passed again.
 #[test]
-fn a_value_outside_todays_range_is_refused_and_told() {
+fn a_value_outside_todays_range_is_rejected_and_named() {
     let whole = record(&own(), 1);
     for (key, value, name) in [
         ("limits.max_torque_nm", 1e9, "max_torque_nm"),
@@ -179,46 +179,46 @@ fn a_value_outside_todays_range_is_refused_and_told() {
         ("input.wheel", 7.0, "wheel"),
         ("calibration.motor_reversed", 2.0, "motor_reversed"),
     ] {
-        let (found, why, _) = load(flashed(&with(&whole, key, value)), &Config::product());
-        let Found::Record(applied) = why else { panic!("{key}: {why:?}") };
-        assert_eq!((applied.refused, applied.missing, applied.unknown), (1, 0, 0), "{key}");
-        assert_eq!(applied.first_refused.map(|error| error.leaf.name), Some(name));
+        let (found, result, _) = load(flashed(&with(&whole, key, value)), &Config::product());
+        let Found::Record(applied) = result else { panic!("{key}: {result:?}") };
+        assert_eq!((applied.rejected, applied.missing, applied.unknown), (1, 0, 0), "{key}");
+        assert_eq!(applied.first_rejected.map(|error| error.leaf.name), Some(name));
         let mut expected = own();
         expected.calibration.polarity_checked = false;
-        each_but_law(&mut expected, |seen| match seen.key() == Key::whole(key) {
-            true => {
-                link::parameter_list::get(&Config::product(), seen.key()).and_then(|default| default.value)
-            }
-            false => seen.value,
+        each_but_law(&mut expected, |parameter| match parameter.key() == Key::whole(key) {
+            true => link::parameter_list::get(&Config::product(), parameter.key())
+                .and_then(|default| default.value),
+            false => parameter.value,
         });
         assert_eq!(found, expected, "{key}");
     }
     let mut lawless = whole;
     lawless[7] = 200;
-    let (found, why, _) = load(flashed(&lawless), &Config::product());
-    assert!(matches!(why, Found::Record(Applied { refused: 1, .. })), "{why:?}");
+    let (found, result, _) = load(flashed(&lawless), &Config::product());
+    assert!(matches!(result, Found::Record(Applied { rejected: 1, .. })), "{result:?}");
     assert_eq!((found.law, found.calibration.polarity_checked), (Config::product().law, false));
 }
 
 /// Situation: a record without one parameter of the calibration.
 /// Action: start.
-/// Must hold: all others as stored, but the polarity check, passed with another calibration, is to be passed anew.
+/// Must hold: all others as stored, except the polarity check: it was passed with another calibration and must be
+/// passed again.
 #[test]
 fn a_missing_calibration_is_an_unchecked_one() {
     let record = renamed(&record(&own(), 1), "calibration.motor_reversed");
-    let (found, why, _) = load(flashed(&record), &Config::product());
+    let (found, result, _) = load(flashed(&record), &Config::product());
     let missing = Applied { unknown: 1, missing: 1, calibration_missing: true, ..Applied::default() };
-    assert_eq!(why, Found::Record(missing));
+    assert_eq!(result, Found::Record(missing));
     let mut expected = own();
     expected.calibration.polarity_checked = false;
     assert_eq!(found, expected);
 }
 
-/// Situation: values that are allowed each alone, but not together; another layout; lengths that do not fit.
+/// Situation: values that are valid each alone, but inconsistent; another layout; wrong lengths.
 /// Action: start with each, then store.
-/// Must hold: the defaults, unchecked, and why; the store succeeds and is found.
+/// Must hold: the defaults, with the check not passed, and the reason; the store succeeds and is found.
 #[test]
-fn what_does_not_fit_together_is_not_believed() {
+fn an_inconsistent_record_is_not_used() {
     let whole = record(&own(), 1);
     let unfit = with(&with(&whole, "limits.taper.full_m_s", 0.5), "limits.taper.zero_m_s", 1.5);
     let mut layout = whole.clone();
@@ -230,10 +230,10 @@ fn what_does_not_fit_together_is_not_believed() {
         (short, Some(InvalidRecord::NoRecord(NoRecord::Malformed))),
         (vec![], Some(InvalidRecord::NoRecord(NoRecord::Malformed))),
     ] {
-        let (found, why, flash) = load(flashed(&bytes), &Config::product());
+        let (found, result, flash) = load(flashed(&bytes), &Config::product());
         match expected {
-            Some(doubt) => assert_eq!(why, Found::Invalid(doubt)),
-            None => assert!(matches!(why, Found::Invalid(InvalidRecord::Inconsistent(_))), "{why:?}"),
+            Some(invalid) => assert_eq!(result, Found::Invalid(invalid)),
+            None => assert!(matches!(result, Found::Invalid(InvalidRecord::Inconsistent(_))), "{result:?}"),
         }
         assert_eq!(found, Config::product());
         let (done, flash) = save(flash, &own());
@@ -243,7 +243,7 @@ fn what_does_not_fit_together_is_not_believed() {
     assert!(Reader(&whole).u8() == Some(LAYOUT));
 }
 
-/// Situation: ranges of flash that are no store: two pages, half pages, beyond the end, none.
+/// Situation: ranges of flash that cannot be a store: two pages, half pages, beyond the end, none.
 /// Action: open a store there.
 /// Must hold: none; three pages are one, and a page of the simulated flash is large enough.
 #[test]

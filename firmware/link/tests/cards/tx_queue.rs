@@ -47,15 +47,15 @@ fn drain<const A: usize, const U: usize>(
 /// Action: 1000 steps.
 /// Must hold: 50 frames, the first step's among them; 1000; none.
 #[test]
-fn one_step_of_as_many_as_the_divisor_is_told() {
+fn every_nth_step_is_sent() {
     for (divisor, expected) in [(20, 50), (1, 1000), (0, 0), (u16::MAX, 1)] {
         let (mut sender, mut decoder) = (TxQueue::<256, 512>::new(divisor), Decoder::default());
-        let mut told = 0;
+        let mut sent = 0;
         for steps in 1..=1000 {
             sender.step(&telemetry(steps));
-            told += drain(&mut sender, &mut decoder, usize::MAX).len();
+            sent += drain(&mut sender, &mut decoder, usize::MAX).len();
         }
-        assert_eq!((told, sender.dropped()), (expected, 0), "{divisor}");
+        assert_eq!((sent, sender.dropped()), (expected, 0), "{divisor}");
     }
 }
 
@@ -99,7 +99,7 @@ fn an_answer_overtakes_telemetry() {
 /// Action: answer until rejected; send; answer again.
 /// Must hold: rejected, not cut, and nothing counted as dropped; then answers fit again; all accepted ones arrive.
 #[test]
-fn an_answer_without_room_is_refused() {
+fn an_answer_without_room_is_rejected() {
     let (mut sender, mut decoder) = (TxQueue::<64, 512>::new(1), Decoder::default());
     let taken = (0..20).filter(|sequence| sender.answer(&Message::Done, *sequence)).count();
     assert_eq!(taken, 64 / 11);
@@ -115,9 +115,9 @@ proptest! {
     /// Action: all of it; then drain.
     /// Must hold: no panic; every accepted frame arrives complete, answers in order.
     #[test]
-    fn whatever_was_taken_arrives(acts in prop::collection::vec((0..4_u8, 0..200_usize), 1..200)) {
+    fn every_accepted_frame_arrives(acts in prop::collection::vec((0..4_u8, 0..200_usize), 1..200)) {
         let (mut sender, mut decoder) = (TxQueue::<{ MAX_FRAME }, 400>::new(1), Decoder::default());
-        let (mut answers, mut told, mut got) = (Vec::new(), 0, Vec::new());
+        let (mut answers, mut sent, mut got) = (Vec::new(), 0, Vec::new());
         for (i, (act, size)) in acts.into_iter().enumerate() {
             match act {
                 0 if sender.answer(&Message::Law(&vec![0; size]), i as u16) => answers.push(i as u16),
@@ -126,12 +126,12 @@ proptest! {
                 2 => sender.send(&Message::Log(&"0".repeat(size))),
                 _ => got.extend(drain(&mut sender, &mut decoder, size)),
             }
-            told += u32::from(act == 1 || act == 2);
+            sent += u32::from(act == 1 || act == 2);
         }
         got.extend(drain(&mut sender, &mut decoder, usize::MAX));
         prop_assert_eq!(decoder.dropped(), Default::default());
         let arrived: Vec<_> = got.iter().filter(|(_, kind)| *kind == 0x84).map(|(sequence, _)| *sequence).collect();
-        prop_assert_eq!(arrived.len() as u32 + told - sender.dropped(), got.len() as u32);
+        prop_assert_eq!(arrived.len() as u32 + sent - sender.dropped(), got.len() as u32);
         prop_assert_eq!(arrived, answers);
     }
 }

@@ -22,11 +22,11 @@ impl TemperatureConfig {
 }
 
 /// Range of a working sensor \[deg C\]: a broken wire or a short is outside.
-const BELIEVABLE_C: core::ops::RangeInclusive<f32> = -40.0..=180.0;
+const PLAUSIBLE_C: core::ops::RangeInclusive<f32> = -40.0..=180.0;
 
 /// The permitted share of the current, and a fault.
 pub fn check(config: &TemperatureConfig, temperature_c: f32) -> (f32, Option<Fault>) {
-    if !BELIEVABLE_C.contains(&temperature_c) {
+    if !PLAUSIBLE_C.contains(&temperature_c) {
         return (0.0, Some(Fault::HeatSensor));
     }
     let fault = (temperature_c > config.hot_c).then_some(Fault::Hot);

@@ -1,24 +1,24 @@
-//! Flight cards: the encoder's offset is found, or rejected.
+//! The encoder's offset is found, or rejected.
 
+use crate::bench::{Bench, Record, last, mean};
 use crate::machine::Params;
-use crate::rig::{Record, Rig, last, mean};
 use motor::example::EXAMPLE;
 use motor::{Config, Fault, Mode, MotorCommand};
 
 /// Calls of a whole alignment: a ramp, three moves, three rests of half a second each.
 const CALLS: usize = 70_000;
 
-fn zeroed(config: Config) -> Rig {
-    let mut rig = Rig::new(config, Params::default());
-    let records = rig.run(usize::from(config.zero.samples) + 1, MotorCommand::Off);
+fn zeroed(config: Config) -> Bench {
+    let mut bench = Bench::new(config, Params::default());
+    let records = bench.run(usize::from(config.zero.samples) + 1, MotorCommand::Off);
     assert_eq!(last(&records).out.mode, Mode::Unaligned);
-    rig
+    bench
 }
 
-fn refused(records: &[Record], fault: Fault) {
+fn assert_rejected(records: &[Record], fault: Fault) {
     let out = last(records).out;
-    let told: Vec<Fault> = out.faults.iter().collect();
-    assert!(told == [fault] && out.duties.is_none() && out.offset_turns.is_none(), "{out:?}");
+    let faults: Vec<Fault> = out.faults.iter().collect();
+    assert!(faults == [fault] && out.duties.is_none() && out.offset_turns.is_none(), "{out:?}");
 }
 
 /// Distance of two angles \[electrical degrees\].
@@ -44,16 +44,16 @@ fn the_offset_is_found() {
         let mut config = EXAMPLE;
         config.encoder.reversed = reversed;
         config.angle.unproved_nm = 7.0;
-        let mut rig = zeroed(config);
-        rig.machine.motor_turns = start / 8.0;
-        rig.machine.params.coulomb_nm = friction_nm;
-        rig.encoder_zero = zero;
-        let _ = rig.run(20, MotorCommand::Off);
-        assert_eq!(last(&rig.run(10, MotorCommand::Torque(1.0))).out.mode, Mode::Unaligned);
-        let records = rig.run(CALLS + 10, MotorCommand::Align);
+        let mut bench = zeroed(config);
+        bench.machine.motor_turns = start / 8.0;
+        bench.machine.params.coulomb_nm = friction_nm;
+        bench.encoder_zero = zero;
+        let _ = bench.run(20, MotorCommand::Off);
+        assert_eq!(last(&bench.run(10, MotorCommand::Torque(1.0))).out.mode, Mode::Unaligned);
+        let records = bench.run(CALLS + 10, MotorCommand::Align);
         let out = last(&records).out;
         assert_eq!((out.mode, out.duties), (Mode::Ready, None), "{start} {zero}: {out:?}");
-        let first = records.iter().position(|r| r.out.aligned).expect("it is told");
+        let first = records.iter().position(|r| r.out.aligned).expect("it is faults");
         assert!(first.abs_diff(CALLS) <= 2 && records[first..].iter().all(|r| r.out.aligned), "{first}");
         assert!(records[..first].iter().all(|r| r.out.offset_turns.is_none()));
         let most = records.iter().map(|r| r.iq_a.hypot(0.0)).fold(0.0, f64::max);
@@ -63,10 +63,10 @@ fn the_offset_is_found() {
         assert!(error < 4.0, "{start} {zero}: {offset}, {error} deg");
         println!("friction {friction_nm} N m: {error:.2} electrical degrees off");
         worst = worst.max(error);
-        rig.machine.held = true;
-        rig.machine.steer_rate_rad_s = 0.0;
-        assert!(rig.run(20, MotorCommand::Off).iter().all(|r| !r.out.aligned));
-        let records = rig.run(1000, MotorCommand::Torque(3.0));
+        bench.machine.held = true;
+        bench.machine.steer_rate_rad_s = 0.0;
+        assert!(bench.run(20, MotorCommand::Off).iter().all(|r| !r.out.aligned));
+        let records = bench.run(1000, MotorCommand::Torque(3.0));
         let torque = mean(&records[500..], |r| r.torque_nm) / 3.0;
         assert!((0.98..=1.02).contains(&torque), "{torque}");
     }
@@ -76,15 +76,15 @@ fn the_offset_is_found() {
 /// Situation: a known offset; an alignment is interrupted in the middle, torque is requested, then alignment again.
 /// Must hold: the second alignment takes its whole duration and finds the true offset.
 #[test]
-fn a_broken_off_alignment_begins_anew() {
+fn an_interrupted_alignment_restarts() {
     let mut config = EXAMPLE;
     config.encoder.offset_turns = Some(-0.3);
-    let mut rig = Rig::new(config, Params::default());
-    rig.encoder_zero = 0.2;
-    let _ = rig.run(usize::from(config.zero.samples) + 1, MotorCommand::Off);
-    let _ = rig.run(CALLS / 2, MotorCommand::Align);
-    assert_eq!(last(&rig.run(100, MotorCommand::Torque(0.0))).out.mode, Mode::Running);
-    let records = rig.run(CALLS + 10, MotorCommand::Align);
+    let mut bench = Bench::new(config, Params::default());
+    bench.encoder_zero = 0.2;
+    let _ = bench.run(usize::from(config.zero.samples) + 1, MotorCommand::Off);
+    let _ = bench.run(CALLS / 2, MotorCommand::Align);
+    assert_eq!(last(&bench.run(100, MotorCommand::Torque(0.0))).out.mode, Mode::Running);
+    let records = bench.run(CALLS + 10, MotorCommand::Align);
     let took = records.iter().position(|r| r.out.mode == Mode::Ready).expect("an end") + 1;
     assert_eq!(took, CALLS);
     let offset = f64::from(last(&records).out.offset_turns.expect("an offset"));
@@ -93,51 +93,51 @@ fn a_broken_off_alignment_begins_anew() {
 
 /// Situation: the encoder counts in the opposite direction of the configuration. Must hold: rejected as reversed.
 #[test]
-fn a_reversed_encoder_is_refused() {
-    let mut rig = zeroed(EXAMPLE);
-    rig.encoder_reversed = true;
-    refused(&rig.run(CALLS, MotorCommand::Align), Fault::AlignReversed);
+fn a_reversed_encoder_is_rejected() {
+    let mut bench = zeroed(EXAMPLE);
+    bench.encoder_reversed = true;
+    assert_rejected(&bench.run(CALLS, MotorCommand::Align), Fault::AlignReversed);
 }
 
 /// Situation: the encoder slips, or is geared: it moves by 0, 0.5, 0.7 or 1.5 of the motion. Must hold: rejected as a
 /// lag.
 #[test]
-fn a_slipping_encoder_is_refused() {
+fn a_slipping_encoder_is_rejected() {
     // The tolerance is 0.06 of a turn: from 0.76 to 1.24 of a quarter counts as followed.
     for grip in [0.0, 0.5, 0.7, 1.5] {
-        let mut rig = zeroed(EXAMPLE);
-        rig.encoder_grip = grip;
-        refused(&rig.run(CALLS, MotorCommand::Align), Fault::AlignLag);
+        let mut bench = zeroed(EXAMPLE);
+        bench.encoder_grip = grip;
+        assert_rejected(&bench.run(CALLS, MotorCommand::Align), Fault::AlignLag);
     }
 }
 
 /// Situation: the handlebar is held. Must hold: rejected as a lag.
 #[test]
-fn a_held_handlebar_is_refused() {
-    let mut rig = zeroed(EXAMPLE);
-    rig.machine.held = true;
-    refused(&rig.run(CALLS, MotorCommand::Align), Fault::AlignLag);
+fn a_held_handlebar_is_rejected() {
+    let mut bench = zeroed(EXAMPLE);
+    bench.machine.held = true;
+    assert_rejected(&bench.run(CALLS, MotorCommand::Align), Fault::AlignLag);
 }
 
 /// Situation: hands shake the handlebar with 4 N m at 5 Hz. Must hold: rejected as restless.
 #[test]
-fn a_shaken_handlebar_is_refused() {
-    let mut rig = zeroed(EXAMPLE);
+fn a_shaken_handlebar_is_rejected() {
+    let mut bench = zeroed(EXAMPLE);
     let mut records = Vec::new();
     for i in 0..CALLS {
-        rig.machine.load_nm = 4.0 * (i as f64 / 20_000.0 * 5.0 * std::f64::consts::TAU).sin();
-        records.push(rig.call(MotorCommand::Align, |_, _| ()));
+        bench.machine.load_nm = 4.0 * (i as f64 / 20_000.0 * 5.0 * std::f64::consts::TAU).sin();
+        records.push(bench.call(MotorCommand::Align, |_, _| ()));
     }
-    refused(&records, Fault::AlignRestless);
+    assert_rejected(&records, Fault::AlignRestless);
 }
 
 /// Situation: an open phase. Must hold: no offset.
 #[test]
-fn a_cut_phase_gives_no_offset() {
+fn an_open_phase_gives_no_offset() {
     for cut in 0..3 {
-        let mut rig = zeroed(EXAMPLE);
-        rig.machine.cut[cut] = true;
-        let records = rig.run(CALLS, MotorCommand::Align);
+        let mut bench = zeroed(EXAMPLE);
+        bench.machine.cut[cut] = true;
+        let records = bench.run(CALLS, MotorCommand::Align);
         let out = last(&records).out;
         assert!(!out.faults.is_empty() && out.offset_turns.is_none(), "{out:?}");
     }

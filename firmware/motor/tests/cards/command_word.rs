@@ -1,4 +1,4 @@
-//! Flight cards: the command from control to the motor interrupt.
+//! The command from control to the motor interrupt.
 
 use devices::vesc6::COMMAND_TIMEOUT_CALLS;
 use motor::MotorCommand;
@@ -9,7 +9,7 @@ proptest! {
     /// Situation: any command, NaN of any bits included. Must hold: it is decoded as it was encoded; a torque is
     /// never another command.
     #[test]
-    fn orders_arrive(bits: u32) {
+    fn commands_are_unchanged_by_encoding(bits: u32) {
         for sent in [MotorCommand::Off, MotorCommand::Align, MotorCommand::Torque(f32::from_bits(bits))] {
             let arrived = command(word(sent));
             match sent {

@@ -1,14 +1,14 @@
-//! Flight cards: invalid configurations.
+//! Invalid configurations.
 
 use motor::Config;
 use motor::example::EXAMPLE;
 
 type Change = fn(&mut Config);
 
-fn refused(change: Change) -> String {
+fn error_of(change: Change) -> String {
     let mut config = EXAMPLE;
     change(&mut config);
-    config.plan().expect_err("must be refused").to_string()
+    config.plan().expect_err("must be error_of").to_string()
 }
 
 /// Situation: one parameter is invalid, or inconsistent with another. Must hold: the error names it, with its range.
@@ -22,12 +22,12 @@ fn wrong_parameters_are_named() {
         (|c| c.align.current_a = 11.0, "align.current_a = 11 is outside 0.1 to 10"),
         (|c| c.sensors.trip_a = 11.0, "sensors.trip_a = 11 is outside 12 to 160"),
         (|c| c.supply.sag_v = 16.0, "supply.sag_v = 16 is outside"),
-        (|c| c.heat.hot_c = 80.0, "heat.hot_c = 80 is outside 81 to 160"),
+        (|c| c.temperature.hot_c = 80.0, "heat.hot_c = 80 is outside 81 to 160"),
         (|c| c.encoder.jump_turns = 0.02, "encoder.jump_turns = 0.02 is outside 0.0001 to 0.015625"),
     ];
-    for (change, told) in cases {
-        let text = refused(change);
-        assert!(text.starts_with(told), "{text}");
+    for (change, expected) in cases {
+        let text = error_of(change);
+        assert!(text.starts_with(expected), "{text}");
     }
 }
 

@@ -1,6 +1,6 @@
-//! Flight cards: each fault opens the bridge in time, with its number, and latches.
+//! Each fault opens the bridge in time, with its number, and latches.
 
-use crate::rig::{Record, Rig, last, opened};
+use crate::bench::{Bench, Record, last, opened};
 use motor::{FAULTS, Fault, Faults, Inputs, Mode, MotorCommand, Phases, State};
 
 fn one(fault: Fault) -> Faults {
@@ -10,14 +10,14 @@ fn one(fault: Fault) -> Faults {
 }
 
 /// A handlebar that turns at a constant `rate`, with 4 N m applied.
-fn turning(rate: f64) -> Rig {
-    let mut rig = Rig::ready(|_| ());
-    rig.machine.params.inertia_kg_m2 = 1e6;
-    rig.machine.steer_rate_rad_s = rate;
-    let _ = rig.run(600, MotorCommand::Off);
-    let records = rig.run(400, MotorCommand::Torque(4.0));
+fn turning(rate: f64) -> Bench {
+    let mut bench = Bench::ready(|_| ());
+    bench.machine.params.inertia_kg_m2 = 1e6;
+    bench.machine.steer_rate_rad_s = rate;
+    let _ = bench.run(600, MotorCommand::Off);
+    let records = bench.run(400, MotorCommand::Torque(4.0));
     assert_eq!(opened(&records), None, "{:?}", last(&records).out);
-    rig
+    bench
 }
 
 /// Checks that the bridge opens with this fault alone, in a call from `least` to `most`.
@@ -67,7 +67,7 @@ fn an_input_that_is_wrong() {
             11,
         ),
         (
-            "an encoder that runs away",
+            "an encoder that accelerates without end",
             |n, i| i.angle_counts = (n * 150 % 16_384) as u16,
             Fault::EncoderJump,
             11,
@@ -82,9 +82,9 @@ fn an_input_that_is_wrong() {
 /// Situation: 4 N m; the encoder accelerates beyond the motor's largest speed. Must hold: a speed fault.
 #[test]
 fn an_encoder_that_is_too_fast() {
-    let mut rig = Rig::ready(|c| c.encoder.speed_max_turns_s = 20.0);
-    rig.machine.load_nm = 30.0;
-    let records = rig.run(4000, MotorCommand::Torque(4.0));
+    let mut bench = Bench::ready(|c| c.encoder.speed_max_turns_s = 20.0);
+    bench.machine.load_nm = 30.0;
+    let records = bench.run(4000, MotorCommand::Torque(4.0));
     opens("too fast", &records, Fault::EncoderSpeed, 10, 4000);
     let rate = records[opened(&records).unwrap_or(1) - 1].out.steer_rate_rad_s * 36.0 / std::f32::consts::TAU;
     assert!((20.0..=20.5).contains(&rate), "{rate}");
@@ -93,8 +93,8 @@ fn an_encoder_that_is_too_fast() {
 /// Situation: a jump of one encoder sample. Must hold: no fault; the torque stays within 10 %.
 #[test]
 fn one_bad_sample_is_left_out() {
-    let mut rig = turning(2.0);
-    let records = rig.tampered(100, MotorCommand::Torque(4.0), |n, i| {
+    let mut bench = turning(2.0);
+    let records = bench.tampered(100, MotorCommand::Torque(4.0), |n, i| {
         if n == 10 {
             i.angle_counts = (i.angle_counts + 4000) % 16_384;
         }
@@ -106,16 +106,16 @@ fn one_bad_sample_is_left_out() {
 /// Situation: 4 N m; an impact changes the handlebar's rate by 8 rad/s in 5 ms or in 2 ms. Must hold: no fault, a
 /// torque error below 3 N m meanwhile and below 0.4 N m after 5 ms more.
 #[test]
-fn a_blow_to_the_handlebar() {
+fn an_impact_on_the_handlebar() {
     let off = |records: &[Record]| records.iter().map(|r| (r.torque_nm - 4.0).abs()).fold(0.0, f64::max);
     for (blow, calls) in [(8.0, 100), (-8.0, 100), (8.0, 40), (-8.0, 40)] {
-        let mut rig = turning(0.0);
+        let mut bench = turning(0.0);
         let mut during = Vec::new();
         for call in 1..=calls {
-            rig.machine.steer_rate_rad_s = blow * f64::from(call) / f64::from(calls);
-            during.push(rig.call(MotorCommand::Torque(4.0), |_, _| ()));
+            bench.machine.steer_rate_rad_s = blow * f64::from(call) / f64::from(calls);
+            during.push(bench.call(MotorCommand::Torque(4.0), |_, _| ()));
         }
-        let after = rig.run(200, MotorCommand::Torque(4.0));
+        let after = bench.run(200, MotorCommand::Torque(4.0));
         assert_eq!(opened(&after), None, "{blow}: {:?}", last(&after).out);
         println!(
             "{blow} rad/s in {calls} calls: {:.2} N m, then {:.2} N m",
@@ -131,19 +131,19 @@ fn a_blow_to_the_handlebar() {
 /// limit stated in docs/motor.md.
 #[test]
 fn an_encoder_that_is_stuck() {
-    for (rate, seen) in
+    for (rate, detected) in
         [(0.3, false), (1.0, true), (2.0, true), (4.0, true), (6.0, true), (10.0, true), (-6.0, true)]
     {
-        let mut rig = turning(rate);
-        let counts = rig.inputs(MotorCommand::Off).angle_counts;
-        let records = rig.tampered(4000, MotorCommand::Torque(4.0), |_, i| i.angle_counts = counts);
+        let mut bench = turning(rate);
+        let counts = bench.inputs(MotorCommand::Off).angle_counts;
+        let records = bench.tampered(4000, MotorCommand::Torque(4.0), |_, i| i.angle_counts = counts);
         let most = records.iter().map(|r| r.torque_nm.abs()).fold(0.0, f64::max);
         println!(
             "stuck at {rate} rad/s: call {:?}, {:?}, {most:.1} N m",
             opened(&records),
             last(&records).out.faults
         );
-        if seen {
+        if detected {
             let latest = if rate.abs() < 2.0 { 1000 } else { 400 };
             assert!(opened(&records).is_some_and(|n| (2..=latest).contains(&n)));
             let faults = last(&records).out.faults;
@@ -161,26 +161,26 @@ fn an_encoder_that_is_stuck() {
 #[test]
 fn a_phase_is_cut() {
     for (cut, fault) in [Fault::PhaseALost, Fault::PhaseBLost, Fault::PhaseCLost].into_iter().enumerate() {
-        let mut rig = turning(3.0);
-        rig.machine.cut[cut] = true;
-        let records = rig.run(400, MotorCommand::Torque(4.0));
+        let mut bench = turning(3.0);
+        bench.machine.cut[cut] = true;
+        let records = bench.run(400, MotorCommand::Torque(4.0));
         opens("cut, turning", &records, fault, 5, 200);
         for angle in 0..6 {
-            let mut rig = Rig::ready(|_| ());
-            rig.machine.motor_turns = f64::from(angle) / 6.0 / 8.0 + 0.003;
-            rig.machine.held = true;
-            rig.machine.cut[cut] = true;
-            let _ = rig.run(12, MotorCommand::Off);
-            let records = rig.run(400, MotorCommand::Torque(4.0));
+            let mut bench = Bench::ready(|_| ());
+            bench.machine.motor_turns = f64::from(angle) / 6.0 / 8.0 + 0.003;
+            bench.machine.held = true;
+            bench.machine.cut[cut] = true;
+            let _ = bench.run(12, MotorCommand::Off);
+            let records = bench.run(400, MotorCommand::Torque(4.0));
             let out = last(&records).out;
             assert!(opened(&records).is_some_and(|n| (5..=200).contains(&n)), "{cut} {angle}: {out:?}");
             let may = [fault, Fault::CurrentAstray, Fault::VoltageAstray, Fault::AngleAstray];
             assert!(out.faults.iter().all(|f| may.contains(&f)), "{out:?}");
         }
     }
-    let mut rig = turning(3.0);
-    rig.machine.cut = [true; 3];
-    let records = rig.run(400, MotorCommand::Torque(4.0));
+    let mut bench = turning(3.0);
+    bench.machine.cut = [true; 3];
+    let records = bench.run(400, MotorCommand::Torque(4.0));
     opens("all three cut", &records, Fault::CurrentAstray, 5, 200);
 }
 
@@ -189,9 +189,9 @@ fn a_phase_is_cut() {
 #[test]
 fn a_current_sensor_is_dead() {
     for x in 0..3 {
-        let mut rig = turning(2.0);
-        let zero = rig.zeros_a[x] as f32;
-        let records = rig.tampered(500, MotorCommand::Torque(4.0), |_, i| {
+        let mut bench = turning(2.0);
+        let zero = bench.zeros_a[x] as f32;
+        let records = bench.tampered(500, MotorCommand::Torque(4.0), |_, i| {
             let mut all = i.phases.all();
             all[x] = zero;
             i.phases = Phases::Three(all);
@@ -206,12 +206,12 @@ fn a_current_sensor_is_dead() {
 /// exceeds 40 A.
 #[test]
 fn a_winding_that_shorts() {
-    let mut rig = Rig::ready(|_| ());
-    rig.machine.held = true;
-    let _ = rig.run(400, MotorCommand::Torque(7.0));
-    rig.machine.params.inductance_d_h /= 20.0;
-    rig.machine.params.inductance_q_h /= 20.0;
-    let records = rig.run(400, MotorCommand::Torque(7.0));
+    let mut bench = Bench::ready(|_| ());
+    bench.machine.held = true;
+    let _ = bench.run(400, MotorCommand::Torque(7.0));
+    bench.machine.params.inductance_d_h /= 20.0;
+    bench.machine.params.inductance_q_h /= 20.0;
+    let records = bench.run(400, MotorCommand::Torque(7.0));
     let beyond = records.iter().position(|r| r.largest_phase_a > 15.0).expect("it swings") + 1;
     let most = records.iter().map(|r| r.largest_phase_a).fold(0.0, f64::max);
     opens("shorted", &records, Fault::OverCurrent, beyond, beyond + 1);
@@ -223,36 +223,36 @@ fn a_winding_that_shorts() {
 /// charges to 32 V, then the bridge opens; the bus stays below 34 V.
 #[test]
 fn braking_without_a_battery() {
-    let mut rig = turning(10.0);
-    rig.machine.params.source_ohm = 1e9;
-    let records = rig.run(2000, MotorCommand::Torque(-7.0));
+    let mut bench = turning(10.0);
+    bench.machine.params.source_ohm = 1e9;
+    let records = bench.run(2000, MotorCommand::Torque(-7.0));
     opens("no battery", &records, Fault::BusHigh, 20, 2000);
-    assert!((32.0..=34.0).contains(&rig.machine.bus_v), "{}", rig.machine.bus_v);
-    println!("bus {:.2} V", rig.machine.bus_v);
+    assert!((32.0..=34.0).contains(&bench.machine.bus_v), "{}", bench.machine.bus_v);
+    println!("bus {:.2} V", bench.machine.bus_v);
 }
 
 /// Situation: the battery falls to 12 V behind 1 ohm while turning. Must hold: a fault when the bus is below 16 V.
 #[test]
-fn the_battery_breaks_down() {
-    let mut rig = turning(3.0);
-    (rig.machine.params.source_v, rig.machine.params.source_ohm) = (12.0, 1.0);
-    let records = rig.run(2000, MotorCommand::Torque(4.0));
+fn a_falling_battery_is_an_undervoltage() {
+    let mut bench = turning(3.0);
+    (bench.machine.params.source_v, bench.machine.params.source_ohm) = (12.0, 1.0);
+    let records = bench.run(2000, MotorCommand::Torque(4.0));
     opens("breakdown", &records, Fault::BusLow, 5, 400);
-    assert!(rig.machine.bus_v < 16.0);
+    assert!(bench.machine.bus_v < 16.0);
 }
 
 /// Situation: twice the permitted current for a long time (a shunt read as half). Must hold: an overload fault when
 /// the mean square exceeds 1.1 of the allowed one.
 #[test]
-fn more_heat_than_the_limits_allow() {
-    let mut rig = Rig::ready(|c| {
+fn a_mean_current_above_the_limit_is_an_overload() {
+    let mut bench = Bench::ready(|c| {
         c.overload.time_s = 0.1;
         (c.overload.continuous_a, c.follow.error_a) = (2.0, 100.0);
         (c.emf.error_v, c.angle.error_v) = (50.0, 50.0);
     });
-    rig.machine.held = true;
-    let records = rig.tampered(4000, MotorCommand::Torque(1.0), |_, i| {
-        // With the zeros of the rig.
+    bench.machine.held = true;
+    let records = bench.tampered(4000, MotorCommand::Torque(1.0), |_, i| {
+        // With the current offsets of the bench.
         i.phases = Phases::Three([5.0 + 0.9, -2.5 - 1.3, -2.5 + 0.4]);
     });
     // 25 (1 - exp(-t / 0.1 s)) = 1.1 * 4 at 19.3 ms.
@@ -261,18 +261,18 @@ fn more_heat_than_the_limits_allow() {
 
 /// Situation: the current sensors' offsets are too large, varying, or NaN. Must hold: never ready.
 #[test]
-fn zeros_that_are_no_zeros() {
+fn invalid_current_offsets_are_rejected() {
     let cases: [fn(u64, &mut Inputs); 3] = [
         |_, i| i.phases = Phases::Three([5.5, 0.0, 0.0]),
         |n, i| i.phases = Phases::Three([0.0, if n == 700 { 2.5 } else { 0.0 }, 0.0]),
         |n, i| i.phases = Phases::Two([0.0, if n == 700 { f32::NAN } else { 0.0 }]),
     ];
     for tamper in cases {
-        let mut rig = Rig::ready(|_| ());
-        rig.state = State::default();
-        let records = rig.tampered(2100, MotorCommand::Off, tamper);
+        let mut bench = Bench::ready(|_| ());
+        bench.state = State::default();
+        let records = bench.tampered(2100, MotorCommand::Off, tamper);
         assert_eq!(last(&records).out.faults, one(Fault::CurrentZero));
-        let records = rig.run(100, MotorCommand::Torque(1.0));
+        let records = bench.run(100, MotorCommand::Torque(1.0));
         assert!(records.iter().all(|r| r.out.duties.is_none() && r.out.mode == Mode::Off));
     }
 }
@@ -281,18 +281,18 @@ fn zeros_that_are_no_zeros() {
 /// stays; a new start begins with the offset measurement.
 #[test]
 fn a_fault_latches() {
-    let mut rig = turning(2.0);
-    let _ = rig.call(MotorCommand::Torque(4.0), |_, i| i.temperature_c = 101.0);
+    let mut bench = turning(2.0);
+    let _ = bench.call(MotorCommand::Torque(4.0), |_, i| i.temperature_c = 101.0);
     for command in
         [MotorCommand::Torque(4.0), MotorCommand::Off, MotorCommand::Align, MotorCommand::Torque(0.0)]
     {
-        for r in rig.run(500, command) {
+        for r in bench.run(500, command) {
             assert!(r.out.duties.is_none() && r.out.mode == Mode::Off && r.out.faults == one(Fault::Hot));
         }
     }
-    rig.state = State::default();
-    assert_eq!(last(&rig.run(1, MotorCommand::Torque(1.0))).out.mode, Mode::Zeroing);
-    assert_eq!(last(&rig.run(2100, MotorCommand::Off)).out.mode, Mode::Ready);
+    bench.state = State::default();
+    assert_eq!(last(&bench.run(1, MotorCommand::Torque(1.0))).out.mode, Mode::Zeroing);
+    assert_eq!(last(&bench.run(2100, MotorCommand::Off)).out.mode, Mode::Ready);
 }
 
 /// Situation: the list of faults. Must hold: numbers 1 to 24 in order, as printed in docs/motor.md, each with its name.

@@ -180,7 +180,7 @@ impl Machine {
         let rate = self.steer_rate_rad_s;
         let torque = self.torque_nm() - p.viscous_nm_s_rad * rate + self.load_nm;
         let free = rate + dt * torque / p.inertia_kg_m2;
-        // Dry friction takes what it can and no more: the steer sticks.
+        // Dry friction does not reverse the motion: the steer sticks.
         let dry = (free.abs() - dt * p.coulomb_nm / p.inertia_kg_m2).max(0.0);
         self.steer_rate_rad_s = if self.held { 0.0 } else { dry.copysign(free) };
         self.motor_turns += dt * self.steer_rate_rad_s * p.ratio / TAU;

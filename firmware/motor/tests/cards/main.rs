@@ -1,6 +1,7 @@
 //! Flight cards of the motor's loop, on a motor that is simulated.
 
 mod alignment;
+mod bench;
 mod command_word;
 mod config;
 mod faults;
@@ -8,6 +9,5 @@ mod machine;
 mod maths;
 mod model;
 mod properties;
-mod rig;
 mod slip;
 mod torque;

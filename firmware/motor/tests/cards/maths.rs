@@ -1,4 +1,4 @@
-//! Flight cards: angles, transforms, modulation.
+//! Angles, transforms, modulation.
 
 use motor::angle::Angle;
 use motor::current::{self, CurrentState, Gains};
@@ -42,10 +42,10 @@ proptest! {
     fn the_duty_cycles_give_the_voltage(part in 0.0_f32..1.0, parts in any::<u32>(), bus_v in 16.0_f32..32.0) {
         let b = EXAMPLE.bridge;
         let (sin, cos) = Angle(parts).sin_cos();
-        let wanted = Vector::new(cos, sin).times(part * b.reach() * bus_v);
-        let d = duties(&b, 0.0, wanted, Vector::default(), bus_v);
+        let requested = Vector::new(cos, sin).times(part * b.reach() * bus_v);
+        let d = duties(&b, 0.0, requested, Vector::default(), bus_v);
         let given = clarke(d.map(|d| d * bus_v));
-        prop_assert!(given.minus(wanted).length() < 1e-4 * bus_v, "{given:?} is not {wanted:?}");
+        prop_assert!(given.minus(requested).length() < 1e-4 * bus_v, "{given:?} is not {requested:?}");
         let (most, least) = (d[0].max(d[1]).max(d[2]), d[0].min(d[1]).min(d[2]));
         prop_assert!((most + least - b.duty_max - b.duty_min).abs() < 1e-5);
     }
@@ -63,7 +63,7 @@ fn the_circle_keeps_d() {
 }
 
 /// Situation: a winding at rest, on either axis; a set-point of 40 A, for which 5 V do not suffice, for 20 ms, then 2
-/// A. Must hold: the voltage never beyond 5 V; within 0.2 A of 2 A after 30 calls, never below 1.85 A on the way: no
+/// A. Must hold: the voltage never beyond 5 V; within 0.2 A of 2 A after 30 calls, never below 1.85 A before: no
 /// windup.
 #[test]
 fn neither_axis_winds_up() {
@@ -74,8 +74,8 @@ fn neither_axis_winds_up() {
         let (mut state, mut is) = (CurrentState::default(), Vector::default());
         let mut end = Vec::new();
         for call in 0..500 {
-            let wanted = axis.times(if call < 400 { 40.0 } else { 2.0 });
-            let v = current::step(&gains, &mut state, wanted, is, 0.0, 5.0);
+            let requested = axis.times(if call < 400 { 40.0 } else { 2.0 });
+            let v = current::step(&gains, &mut state, requested, is, 0.0, 5.0);
             assert!(v.length() < 5.001);
             is = is.times(keep).plus(v.times((1.0 - keep) / r));
             end.push(is.length());

@@ -1,4 +1,4 @@
-//! Flight cards: the machine that the loop is tried on agrees with what can be computed by hand.
+//! The simulated machine agrees with calculations by hand.
 
 use crate::machine::{Machine, Params};
 
@@ -39,9 +39,10 @@ fn the_steer_ends_at_torque_over_friction() {
     assert!((m.steer_rate_rad_s / should - 1.0).abs() < 1e-3, "{} is not {should}", m.steer_rate_rad_s);
 }
 
-/// Situation: a cut phase. Must hold: it carries nothing, the two others carry the same, opposed.
+/// Situation: an open phase.
+/// Must hold: it carries no current, the two others carry the same, opposed.
 #[test]
-fn a_cut_phase_carries_nothing() {
+fn an_open_phase_carries_no_current() {
     for cut in 0..3 {
         let mut m = Machine { held: true, motor_turns: 0.03, ..Machine::new(plain()) };
         m.cut[cut] = true;

@@ -1,4 +1,4 @@
-//! Flight cards: properties for every input.
+//! Properties for every input.
 
 use control::param::{ParamSpec, ParamVisitor};
 use motor::example::EXAMPLE;
@@ -9,7 +9,7 @@ fn any_bits() -> impl Strategy<Value = f32> {
     any::<u32>().prop_map(f32::from_bits)
 }
 
-fn any_ask() -> impl Strategy<Value = MotorCommand> {
+fn any_command() -> impl Strategy<Value = MotorCommand> {
     prop_oneof![
         1 => Just(MotorCommand::Off),
         1 => Just(MotorCommand::Align),
@@ -26,10 +26,10 @@ fn any_inputs() -> impl Strategy<Value = Inputs> {
         prop::array::uniform2(current()).prop_map(|[a, b]| Phases::Three([a, b, -a - b])),
     ];
     let bus = prop_oneof![40 => 16.0_f32..32.0, 1 => any_bits()];
-    let heat = prop_oneof![40 => 0.0_f32..100.0, 1 => any_bits()];
+    let temperature = prop_oneof![40 => 0.0_f32..100.0, 1 => any_bits()];
     let age = prop_oneof![20 => 0_u16..5, 1 => any::<u16>()];
     let counts = prop_oneof![10 => 0_u16..100, 1 => any::<u16>()];
-    (phases, bus, heat, counts, age, any_ask()).prop_map(
+    (phases, bus, temperature, counts, age, any_command()).prop_map(
         |(phases, bus_v, temperature_c, angle_counts, angle_age_ticks, command)| Inputs {
             phases,
             bus_v,
@@ -98,7 +98,7 @@ fn drawn(seed: u64) -> Config {
     c.align.current_a = c.align.current_a.min(c.current.max_a);
     (c.sensors.trip_a, c.sensors.range_a) = (1.3 * c.current.max_a, 2.0 * c.current.max_a);
     (c.supply.low_v, c.supply.sag_v, c.supply.high_v) = (15.0, 16.0, 33.0);
-    (c.heat.warm_c, c.heat.hot_c) = (80.0, 110.0);
+    (c.temperature.warm_c, c.temperature.hot_c) = (80.0, 110.0);
     c.encoder.jump_turns = c.encoder.jump_turns.min(0.1 / f32::from(c.motor.pole_pairs));
     c
 }
@@ -142,7 +142,7 @@ proptest! {
     /// Situation: any inputs to any valid configuration, from a start or ready. Must hold: duty cycles inside their
     /// limits or none; every output finite; a fault and an open bridge always together, and latched.
     #[test]
-    fn whatever_goes_in(inputs in prop::collection::vec(any_inputs(), 1..120), fresh in any::<bool>(), kind in 0..3, seed in any::<u64>()) {
+    fn any_inputs_give_safe_outputs(inputs in prop::collection::vec(any_inputs(), 1..120), fresh in any::<bool>(), kind in 0..3, seed in any::<u64>()) {
         let mut config = match kind {
             0 => EXAMPLE,
             1 => wide(),

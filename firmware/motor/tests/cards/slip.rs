@@ -1,9 +1,9 @@
-//! Flight cards: an encoder that slips on its shaft, has a wrong offset or reverses, and conditions that are no slip.
+//! An encoder that slips on its shaft, has a wrong offset or reverses, and conditions that are no slip.
 //!
-//! Times and torques of the first card are in docs/motor.md.
+//! Times and torques of the first test are in docs/motor.md.
 
+use crate::bench::{Bench, last, mean, opened};
 use crate::machine::Params;
-use crate::rig::{Rig, last, mean, opened};
 use motor::example::EXAMPLE;
 use motor::{Config, Fault, MotorCommand};
 
@@ -11,7 +11,7 @@ use motor::{Config, Fault, MotorCommand};
 const CALL_MS: f64 = 0.05;
 /// Largest torque at an unconfirmed angle, with the loop's overshoot and the transient of closing the bridge while the
 /// handlebar turns at up to 0.5 rad/s \[N m\].
-const UNPROVED_NM: f64 = 2.9;
+const UNCONFIRMED_NM: f64 = 2.9;
 
 /// Encoder fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,20 +25,20 @@ enum Slip {
 }
 
 /// The example with a handlebar at constant rate.
-fn turned(off_deg: f64, rate_rad_s: f64, change: impl FnOnce(&mut Config)) -> Rig {
-    let mut rig = Rig::started(|c| {
+fn turned(off_deg: f64, rate_rad_s: f64, change: impl FnOnce(&mut Config)) -> Bench {
+    let mut bench = Bench::started(|c| {
         c.encoder.offset_turns = Some(((off_deg / 360.0 + 0.5).rem_euclid(1.0) - 0.5) as f32);
         change(c);
     });
-    rig.machine.params.inertia_kg_m2 = 1e6;
-    rig.machine.steer_rate_rad_s = rate_rad_s;
-    let _ = rig.run(600, MotorCommand::Off);
-    rig
+    bench.machine.params.inertia_kg_m2 = 1e6;
+    bench.machine.steer_rate_rad_s = rate_rad_s;
+    let _ = bench.run(600, MotorCommand::Off);
+    bench
 }
 
 /// Result.
 #[derive(Clone, Copy, Debug)]
-struct Seen {
+struct Outcome {
     /// Time from the beginning of the slip to the open bridge \[ms\].
     opened_ms: Option<f64>,
     /// Largest torque against the request until then \[N m\], and that at the end.
@@ -47,50 +47,50 @@ struct Seen {
 }
 
 /// Requests torque, slips the encoder, and waits for `ms` for the bridge to open.
-fn slips(slip: Slip, rate_rad_s: f64, nm: f32, ms: f64) -> Seen {
+fn slips(slip: Slip, rate_rad_s: f64, nm: f32, ms: f64) -> Outcome {
     let off_deg = if let Slip::Before(deg) = slip { deg } else { 0.0 };
-    let mut rig = turned(off_deg, rate_rad_s, |_| ());
+    let mut bench = turned(off_deg, rate_rad_s, |_| ());
     if off_deg == 0.0 {
-        // The angle is proved, then the slip begins.
-        rig.machine.steer_rate_rad_s = f64::from(nm.signum());
-        assert_eq!(opened(&rig.run(1000, MotorCommand::Torque(nm))), None);
-        rig.machine.steer_rate_rad_s = rate_rad_s;
-        assert_eq!(opened(&rig.run(200, MotorCommand::Torque(nm))), None);
+        // The angle is confirmed, then the slip begins.
+        bench.machine.steer_rate_rad_s = f64::from(nm.signum());
+        assert_eq!(opened(&bench.run(1000, MotorCommand::Torque(nm))), None);
+        bench.machine.steer_rate_rad_s = rate_rad_s;
+        assert_eq!(opened(&bench.run(200, MotorCommand::Torque(nm))), None);
     }
     if slip == Slip::Reversed {
-        rig.encoder_zero = -2.0 * rig.machine.motor_turns;
-        rig.encoder_reversed = true;
+        bench.encoder_zero = -2.0 * bench.machine.motor_turns;
+        bench.encoder_reversed = true;
     }
     let (mut worst_nm, mut end_nm) = (0.0_f64, 0.0);
     for call in 1..=(ms / CALL_MS) as u32 {
         if let Slip::During(deg, calls) = slip {
-            rig.encoder_zero = deg / 360.0 / 8.0 * (f64::from(call) / f64::from(calls)).min(1.0);
+            bench.encoder_zero = deg / 360.0 / 8.0 * (f64::from(call) / f64::from(calls)).min(1.0);
         }
-        let record = rig.call(MotorCommand::Torque(nm), |_, _| ());
+        let record = bench.call(MotorCommand::Torque(nm), |_, _| ());
         if record.out.duties.is_none() {
-            return Seen { opened_ms: Some(f64::from(call) * CALL_MS), worst_nm, end_nm };
+            return Outcome { opened_ms: Some(f64::from(call) * CALL_MS), worst_nm, end_nm };
         }
         end_nm = -record.torque_nm * f64::from(nm.signum());
         worst_nm = worst_nm.max(end_nm);
     }
-    Seen { opened_ms: None, worst_nm, end_nm }
+    Outcome { opened_ms: None, worst_nm, end_nm }
 }
 
 /// The worst of both directions of torque and rate.
-fn worst(slip: Slip, rate_rad_s: f64, nm: f32, ms: f64) -> Seen {
+fn worst(slip: Slip, rate_rad_s: f64, nm: f32, ms: f64) -> Outcome {
     let runs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)]
         .map(|(rate, torque)| slips(slip, rate * rate_rad_s, torque * nm, ms));
-    let late = |seen: &Seen| seen.opened_ms.unwrap_or(f64::INFINITY);
+    let late = |outcome: &Outcome| outcome.opened_ms.unwrap_or(f64::INFINITY);
     let mut all = runs.into_iter().max_by(|a, b| late(a).total_cmp(&late(b))).expect("four runs");
-    all.worst_nm = runs.iter().map(|seen| seen.worst_nm).fold(0.0, f64::max);
-    all.end_nm = runs.iter().map(|seen| seen.end_nm).fold(f64::MIN, f64::max);
+    all.worst_nm = runs.iter().map(|outcome| outcome.worst_nm).fold(0.0, f64::max);
+    all.end_nm = runs.iter().map(|outcome| outcome.end_nm).fold(f64::MIN, f64::max);
     all
 }
 
 /// Cells of the table: rates of the handlebar \[rad/s\].
 const RATES: [f64; 6] = [0.0, 0.3, 0.5, 1.0, 2.0, 5.0];
 /// Duration of the observation \[ms\].
-const WATCHED_MS: f64 = 400.0;
+const OBSERVED_MS: f64 = 400.0;
 
 /// Situation: 4 N m requested in either direction, the handlebar turned at 0 to 5 rad/s in either direction; the
 /// encoder off by 45 to 180 electrical degrees from the start, slipping by 180 in 0.2 s, or reversing. Must hold:
@@ -98,7 +98,7 @@ const WATCHED_MS: f64 = 400.0;
 /// wrong direction is at most that of an unconfirmed angle, from the start, or within 0.35 s of the slip's beginning.
 /// Equal to the table in docs/motor.md.
 #[test]
-fn a_slip_is_seen_or_bounded() {
+fn a_slip_is_detected_or_bounded() {
     let page = include_str!("../../../../docs/motor.md");
     let slips = [
         ("off by 45 degrees", Slip::Before(45.0)),
@@ -110,18 +110,18 @@ fn a_slip_is_seen_or_bounded() {
     ];
     let mut wrong = Vec::new();
     for (name, slip) in slips {
-        let seen = RATES.map(|rate| worst(slip, rate, 4.0, WATCHED_MS));
-        let cell = |s: &Seen| match s.opened_ms {
+        let outcome = RATES.map(|rate| worst(slip, rate, 4.0, OBSERVED_MS));
+        let cell = |s: &Outcome| match s.opened_ms {
             Some(ms) => format!("{ms:.0}, {:.1}", s.worst_nm),
             None => format!("-, {:.1}", s.end_nm.max(0.0)),
         };
-        let fresh = format!("| {name} | {} |", seen.each_ref().map(cell).join(" | "));
+        let fresh = format!("| {name} | {} |", outcome.each_ref().map(cell).join(" | "));
         println!("{fresh}");
         let slipping_ms = if let Slip::During(..) = slip { 200.0 } else { 0.0 };
-        for (rate, seen) in RATES.iter().zip(&seen) {
-            let in_time = seen.opened_ms.is_some_and(|ms| ms <= 100.0 + slipping_ms);
-            assert!(in_time || *rate < 1.0 || name.contains(" 45 "), "{name}, {rate} rad/s: {seen:?}");
-            assert!(in_time || seen.end_nm < UNPROVED_NM, "{name}, {rate} rad/s: {seen:?}");
+        for (rate, outcome) in RATES.iter().zip(&outcome) {
+            let in_time = outcome.opened_ms.is_some_and(|ms| ms <= 100.0 + slipping_ms);
+            assert!(in_time || *rate < 1.0 || name.contains(" 45 "), "{name}, {rate} rad/s: {outcome:?}");
+            assert!(in_time || outcome.end_nm < UNCONFIRMED_NM, "{name}, {rate} rad/s: {outcome:?}");
         }
         let line = page.lines().find(|line| line.starts_with(&format!("| {name} |"))).unwrap_or_default();
         let same = |(a, b): (&str, &str)| match (a.trim().parse::<f64>(), b.trim().parse::<f64>()) {
@@ -129,9 +129,9 @@ fn a_slip_is_seen_or_bounded() {
             _ => a.trim() == b.trim(),
         };
         let cells = |line: &str| line.replace(',', "|").split('|').map(str::to_owned).collect::<Vec<_>>();
-        let (fresh_cells, told) = (cells(&fresh), cells(line));
-        let alike = fresh_cells.len() == told.len()
-            && fresh_cells.iter().zip(&told).all(|(a, b)| same((a.as_str(), b.as_str())));
+        let (fresh_cells, documented) = (cells(&fresh), cells(line));
+        let alike = fresh_cells.len() == documented.len()
+            && fresh_cells.iter().zip(&documented).all(|(a, b)| same((a.as_str(), b.as_str())));
         if !alike {
             wrong.push(fresh);
         }
@@ -140,9 +140,9 @@ fn a_slip_is_seen_or_bounded() {
 }
 
 /// Numbers from 0 to 1.
-struct Dice(u64);
+struct SplitMix64(u64);
 
-impl Dice {
+impl SplitMix64 {
     fn between(&mut self, least: f64, most: f64) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         least + (most - least) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
@@ -153,18 +153,21 @@ impl Dice {
 /// rate of the handlebar from 1 to 8 rad/s. Must hold: the first open within 0.1 s, the others never.
 #[test]
 fn any_angle() {
-    let mut dice = Dice(7);
+    let mut random = SplitMix64(7);
     let mut latest: f64 = 0.0;
     for _ in 0..80 {
-        let sense = if dice.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
-        let (rate, nm) = (sense * dice.between(1.0, 8.0), dice.between(-7.0, 7.0) as f32);
-        let deg = dice.between(60.0, 300.0);
-        let seen = slips(Slip::Before(deg), rate, nm, 150.0);
-        assert!(seen.opened_ms.is_some_and(|ms| ms <= 100.0), "{deg} deg, {rate} rad/s, {nm} N m: {seen:?}");
-        latest = latest.max(seen.opened_ms.unwrap_or(0.0));
-        let deg = dice.between(-6.0, 6.0);
-        let seen = slips(Slip::Before(deg), rate, nm, 150.0);
-        assert!(seen.opened_ms.is_none(), "{deg} deg, {rate} rad/s, {nm} N m: {seen:?}");
+        let sense = if random.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
+        let (rate, nm) = (sense * random.between(1.0, 8.0), random.between(-7.0, 7.0) as f32);
+        let deg = random.between(60.0, 300.0);
+        let outcome = slips(Slip::Before(deg), rate, nm, 150.0);
+        assert!(
+            outcome.opened_ms.is_some_and(|ms| ms <= 100.0),
+            "{deg} deg, {rate} rad/s, {nm} N m: {outcome:?}"
+        );
+        latest = latest.max(outcome.opened_ms.unwrap_or(0.0));
+        let deg = random.between(-6.0, 6.0);
+        let outcome = slips(Slip::Before(deg), rate, nm, 150.0);
+        assert!(outcome.opened_ms.is_none(), "{deg} deg, {rate} rad/s, {nm} N m: {outcome:?}");
     }
     println!("latest {latest} ms");
     assert!(latest > 2.0, "{latest}");
@@ -175,12 +178,12 @@ fn any_angle() {
 #[test]
 fn a_creeping_encoder() {
     for rate in [1.0, -1.0, 3.0, -3.0] {
-        let mut rig = turned(0.0, rate, |_| ());
+        let mut bench = turned(0.0, rate, |_| ());
         let mut off_deg = 0.0;
         let fault = loop {
             off_deg += 360.0 / 80_000.0;
-            rig.encoder_zero = off_deg / 360.0 / 8.0;
-            let record = rig.call(MotorCommand::Torque(3.0), |_, _| ());
+            bench.encoder_zero = off_deg / 360.0 / 8.0;
+            let record = bench.call(MotorCommand::Torque(3.0), |_, _| ());
             if record.out.duties.is_none() {
                 break record.out.faults;
             }
@@ -199,17 +202,17 @@ fn a_creeping_encoder() {
 #[test]
 fn a_handlebar_at_rest_and_free() {
     for (deg, latest_ms) in [(180.0, 100.0), (135.0, 200.0)] {
-        let mut rig = turned(deg, 0.0, |_| ());
-        rig.machine.params.inertia_kg_m2 = Params::default().inertia_kg_m2;
-        let records = rig.run(5000, MotorCommand::Torque(4.0));
+        let mut bench = turned(deg, 0.0, |_| ());
+        bench.machine.params.inertia_kg_m2 = Params::default().inertia_kg_m2;
+        let records = bench.run(5000, MotorCommand::Torque(4.0));
         let open_ms = opened(&records).map(|call| call as f64 * CALL_MS);
         let worst_nm = records.iter().map(|r| -r.torque_nm).fold(0.0, f64::max);
         println!(
             "{deg} degrees: {open_ms:?} ms, {worst_nm:.2} N m, {:.2} rad/s",
-            rig.machine.steer_rate_rad_s
+            bench.machine.steer_rate_rad_s
         );
         assert!(open_ms.is_some_and(|ms| (30.0..latest_ms).contains(&ms)), "{deg}: {open_ms:?}");
-        assert!((0.8..UNPROVED_NM).contains(&worst_nm), "{deg}: {worst_nm}");
+        assert!((0.8..UNCONFIRMED_NM).contains(&worst_nm), "{deg}: {worst_nm}");
         assert!(last(&records).out.faults.has(Fault::AngleAstray));
     }
 }
@@ -217,21 +220,21 @@ fn a_handlebar_at_rest_and_free() {
 /// Situation: no fault; the handlebar is held, 4 N m requested. Must hold: 2.5 N m, the limit of an unconfirmed
 /// angle. Then the handlebar turns at 1 rad/s: 4 N m within 30 ms. It stops again: back to 2.5 N m after 0.2 s.
 #[test]
-fn the_whole_torque_comes_with_the_proof() {
-    let mut rig = turned(0.0, 0.0, |_| ());
-    let before = mean(&rig.run(2000, MotorCommand::Torque(4.0))[1000..], |r| r.torque_nm);
-    rig.machine.steer_rate_rad_s = 1.0;
-    let proved = rig.run(4000, MotorCommand::Torque(4.0));
+fn confirmation_of_the_angle_permits_the_whole_torque() {
+    let mut bench = turned(0.0, 0.0, |_| ());
+    let before = mean(&bench.run(2000, MotorCommand::Torque(4.0))[1000..], |r| r.torque_nm);
+    bench.machine.steer_rate_rad_s = 1.0;
+    let proved = bench.run(4000, MotorCommand::Torque(4.0));
     let whole_ms = proved.iter().position(|r| r.torque_nm > 3.8).expect("proved") as f64 * CALL_MS;
-    rig.machine.steer_rate_rad_s = 0.0;
-    let stands = rig.run(8000, MotorCommand::Torque(4.0));
+    bench.machine.steer_rate_rad_s = 0.0;
+    let stopped = bench.run(8000, MotorCommand::Torque(4.0));
     let little_ms =
-        stands.iter().position(|r| r.torque_nm < 2.7).expect("the proof grew old") as f64 * CALL_MS;
+        stopped.iter().position(|r| r.torque_nm < 2.7).expect("the confirmation expires") as f64 * CALL_MS;
     println!("{before:.2} N m; whole after {whole_ms:.1} ms; little after {little_ms:.1} ms");
     assert!((2.4..2.6).contains(&before) && (2.0..30.0).contains(&whole_ms), "{before} {whole_ms}");
-    assert!((195.0..220.0).contains(&little_ms) && opened(&stands).is_none(), "{little_ms}");
-    let limit_nm = last(&stands).out.limit_a * EXAMPLE.motor.torque_nm_a();
-    assert!((limit_nm - EXAMPLE.angle.unproved_nm).abs() < 1e-3, "told: {limit_nm}");
+    assert!((195.0..220.0).contains(&little_ms) && opened(&stopped).is_none(), "{little_ms}");
+    let limit_nm = last(&stopped).out.limit_a * EXAMPLE.motor.torque_nm_a();
+    assert!((limit_nm - EXAMPLE.angle.unproved_nm).abs() < 1e-3, "documented: {limit_nm}");
 }
 
 /// Situation: no fault, but parameter errors of motor and bridge: resistance 0.7 and 1.4, flux 0.9 and 1.1,
@@ -240,33 +243,33 @@ fn the_whole_torque_comes_with_the_proof() {
 /// twice, while up to 7 N m are requested in either direction. Must hold: no fault in 0.4 s, and 7 N m in at least a
 /// fourth of the time in which they are requested.
 #[test]
-fn what_is_no_slip() {
+fn parameter_errors_and_impacts_are_no_slip() {
     let bridges =
         [(0.25, 12.0), (0.25, 24.0), (0.25, 55.0), (0.75, 12.0), (0.75, 24.0), (0.75, 55.0), (1.0, 24.0)];
     for motor in 0..8 {
         for (dead_time_us, bus_v) in bridges {
-            let mut rig = Rig::started(|c| {
+            let mut bench = Bench::started(|c| {
                 c.encoder.offset_turns = Some(4.0 / 360.0);
                 (c.supply.low_v, c.supply.sag_v, c.supply.high_v) = (9.0, 10.0, 65.0);
             });
-            let p = &mut rig.machine.params;
+            let p = &mut bench.machine.params;
             let of = |bit: i32, low: f64, high: f64| if motor & bit == 0 { low } else { high };
             (p.resistance_ohm, p.flux_wb) = (p.resistance_ohm * of(1, 0.7, 1.4), p.flux_wb * of(2, 0.9, 1.1));
             p.inductance_d_h *= of(4, 0.7, 1.3);
             p.inductance_q_h = p.inductance_d_h;
-            (p.dead_time_s, p.source_v, rig.machine.bus_v) = (dead_time_us * 1e-6, bus_v, bus_v);
+            (p.dead_time_s, p.source_v, bench.machine.bus_v) = (dead_time_us * 1e-6, bus_v, bus_v);
             let (mut whole, mut before) = (0, 0.0);
             for call in 0..8000_u32 {
                 let t = f64::from(call) * CALL_MS * 1e-3;
-                rig.machine.load_nm = 12.0 * (t * 3.0 * std::f64::consts::TAU).sin();
+                bench.machine.load_nm = 12.0 * (t * 3.0 * std::f64::consts::TAU).sin();
                 // The stop takes 2 ms and gives back 0.3 of the rate.
                 match call % 4000 {
-                    3000 => before = rig.machine.steer_rate_rad_s,
-                    3001..=3040 => rig.machine.steer_rate_rad_s -= 1.3 / 40.0 * before,
+                    3000 => before = bench.machine.steer_rate_rad_s,
+                    3001..=3040 => bench.machine.steer_rate_rad_s -= 1.3 / 40.0 * before,
                     _ => (),
                 }
                 let nm = [1.0, -7.0, 7.0, 4.0, -2.0, 0.2, 0.0, -0.5][(call / 1000 % 8) as usize];
-                let record = rig.call(MotorCommand::Torque(nm), |_, _| ());
+                let record = bench.call(MotorCommand::Torque(nm), |_, _| ());
                 let faults = record.out.faults;
                 assert!(faults.is_empty(), "{motor:03b}, {dead_time_us} us, {bus_v} V, {t} s: {faults:?}");
                 whole += usize::from((5.8..8.2).contains(&record.torque_nm.abs()));

@@ -1,6 +1,6 @@
-//! Flight cards: the requested torque, and its limits.
+//! The requested torque, and its limits.
 
-use crate::rig::{Record, Rig, last, mean, opened};
+use crate::bench::{Bench, Record, last, mean, opened};
 use motor::{Config, Fault, Mode, MotorCommand, Phases};
 
 /// Slew limit so fast that only the loop limits the response.
@@ -24,18 +24,21 @@ fn a_step_of_torque() {
     let (mut slowest, mut farthest, mut worst): (f64, f64, f64) = (0.0, 0.0, 0.0);
     for angle in 0..12 {
         for nm in [5.0_f64, -5.0] {
-            let mut rig = Rig::ready(at_once);
-            rig.machine.held = true;
-            rig.machine.motor_turns = f64::from(angle) / 12.0 / 8.0;
-            let _ = rig.run(40, MotorCommand::Off);
-            let records = rig.run(2000, MotorCommand::Torque(nm as f32));
+            let mut bench = Bench::ready(at_once);
+            bench.machine.held = true;
+            bench.machine.motor_turns = f64::from(angle) / 12.0 / 8.0;
+            let _ = bench.run(40, MotorCommand::Off);
+            let records = bench.run(2000, MotorCommand::Torque(nm as f32));
             assert_eq!(opened(&records), None, "{:?}", last(&records).out);
             let (rise_ms, over) = rise(&records[..40], nm);
             assert!((0.1..=0.3).contains(&rise_ms), "{angle}: {rise_ms} ms");
             assert!((0.005..=0.12).contains(&over), "{angle}: {over}");
             let steady = mean(&records[80..], |r| r.torque_nm) / nm;
-            let told = mean(&records[80..], |r| f64::from(r.out.torque_nm)) / nm;
-            assert!((0.99..=1.01).contains(&steady) && (0.99..=1.01).contains(&told), "{steady} {told}");
+            let reported = mean(&records[80..], |r| f64::from(r.out.torque_nm)) / nm;
+            assert!(
+                (0.99..=1.01).contains(&steady) && (0.99..=1.01).contains(&reported),
+                "{steady} {reported}"
+            );
             (slowest, farthest) = (slowest.max(rise_ms), farthest.max(over));
             worst = worst.max((steady - 1.0).abs());
         }
@@ -46,16 +49,16 @@ fn a_step_of_torque() {
 /// Situation: handlebar held. The winding's resistance is 40 % higher, its inductance 30 % off in either direction.
 /// Action: a step of 5 N m. Must hold: settles within 5 %, at most 25 % overshoot.
 #[test]
-fn a_motor_that_is_not_as_told() {
+fn a_motor_that_is_not_as_configured() {
     let mut farthest: f64 = 0.0;
     for (r, l) in [(1.4, 0.7), (1.4, 1.3), (0.8, 0.7), (0.8, 1.3)] {
-        let mut rig = Rig::ready(at_once);
-        let p = &mut rig.machine.params;
+        let mut bench = Bench::ready(at_once);
+        let p = &mut bench.machine.params;
         p.resistance_ohm *= r;
         p.inductance_d_h *= l;
         p.inductance_q_h *= l;
-        rig.machine.held = true;
-        let records = rig.run(400, MotorCommand::Torque(5.0));
+        bench.machine.held = true;
+        let records = bench.run(400, MotorCommand::Torque(5.0));
         let (_, over) = rise(&records[..40], 5.0);
         let steady = mean(&records[200..], |r| r.torque_nm) / 5.0;
         assert!(over < 0.25 && (0.95..=1.05).contains(&steady), "{r} {l}: {over} {steady}");
@@ -70,12 +73,12 @@ fn a_motor_that_is_not_as_told() {
 #[test]
 fn other_rates_of_the_pwm() {
     for rate_hz in [10_000.0, 30_000.0, 40_000.0_f32] {
-        let mut rig = Rig::ready(|c| {
+        let mut bench = Bench::ready(|c| {
             at_once(c);
             (c.rate_hz, c.current.bandwidth_hz) = (rate_hz, rate_hz / 20.0);
         });
-        rig.machine.held = true;
-        let records = rig.tampered(400, MotorCommand::Torque(5.0), |_, i| {
+        bench.machine.held = true;
+        let records = bench.tampered(400, MotorCommand::Torque(5.0), |_, i| {
             let [a, b, _] = i.phases.all();
             i.phases = Phases::Two([a, b]);
         });
@@ -94,17 +97,17 @@ fn other_rates_of_the_pwm() {
 fn a_torque_while_turning() {
     let mut worst: f64 = 0.0;
     for rate in [-8.0, -3.0, -0.5, 0.5, 3.0, 8.0] {
-        let mut rig = Rig::ready(|_| ());
-        rig.machine.params.inertia_kg_m2 = 1e6;
-        rig.machine.steer_rate_rad_s = rate;
-        let _ = rig.run(600, MotorCommand::Off);
-        let records = rig.run(2000, MotorCommand::Torque(4.0));
+        let mut bench = Bench::ready(|_| ());
+        bench.machine.params.inertia_kg_m2 = 1e6;
+        bench.machine.steer_rate_rad_s = rate;
+        let _ = bench.run(600, MotorCommand::Off);
+        let records = bench.run(2000, MotorCommand::Torque(4.0));
         assert_eq!(opened(&records), None, "{rate}: {:?}", last(&records).out);
         let torque = mean(&records[400..], |r| r.torque_nm) / 4.0;
         let d = mean(&records[400..], |r| r.id_a);
-        let told = f64::from(last(&records).out.steer_rate_rad_s);
+        let reported = f64::from(last(&records).out.steer_rate_rad_s);
         assert!((0.99..=1.01).contains(&torque) && d.abs() < 0.2, "{rate}: {torque} {d}");
-        assert!((told - rate).abs() < 0.1, "{told} is not {rate}");
+        assert!((reported - rate).abs() < 0.1, "{reported} is not {rate}");
         worst = worst.max((torque - 1.0).abs());
     }
     println!("error while turning {worst:.4}");
@@ -113,9 +116,9 @@ fn a_torque_while_turning() {
 /// Situation: as above at 6 rad/s; the encoder gives a sample every fourth call. Must hold: the same.
 #[test]
 fn an_encoder_slower_than_the_pwm() {
-    let mut rig = Rig::ready(|_| ());
-    rig.machine.params.inertia_kg_m2 = 1e6;
-    rig.machine.steer_rate_rad_s = 6.0;
+    let mut bench = Bench::ready(|_| ());
+    bench.machine.params.inertia_kg_m2 = 1e6;
+    bench.machine.steer_rate_rad_s = 6.0;
     let held = std::cell::Cell::new((0, 0));
     let slow = |tick: u64, inputs: &mut motor::Inputs| {
         if tick.is_multiple_of(4) {
@@ -124,8 +127,8 @@ fn an_encoder_slower_than_the_pwm() {
         (inputs.angle_counts, inputs.angle_age_ticks) = held.get();
         held.set((inputs.angle_counts, inputs.angle_age_ticks + 1));
     };
-    let _ = rig.tampered(1000, MotorCommand::Off, slow);
-    let records = rig.tampered(2000, MotorCommand::Torque(4.0), slow);
+    let _ = bench.tampered(1000, MotorCommand::Off, slow);
+    let records = bench.tampered(2000, MotorCommand::Torque(4.0), slow);
     assert_eq!(opened(&records), None, "{:?}", last(&records).out);
     let torque = mean(&records[400..], |r| r.torque_nm) / 4.0;
     let d = mean(&records[400..], |r| r.id_a);
@@ -137,16 +140,17 @@ fn an_encoder_slower_than_the_pwm() {
 #[test]
 fn a_torque_to_the_right_steers_to_the_right() {
     for reversed in [false, true] {
-        let mut rig = Rig::ready(|c| c.motor.reversed = reversed);
-        let records = rig.run(1000, MotorCommand::Torque(3.0));
-        let p = rig.machine.params;
+        let mut bench = Bench::ready(|c| c.motor.reversed = reversed);
+        let records = bench.run(1000, MotorCommand::Torque(3.0));
+        let p = bench.machine.params;
         let should = (3.0 - p.coulomb_nm) / p.inertia_kg_m2 * 0.05;
-        let rate = rig.machine.steer_rate_rad_s;
+        let rate = bench.machine.steer_rate_rad_s;
         assert!((0.9..=1.02).contains(&(rate / should)), "{reversed}: {rate} is not {should}");
-        let told = last(&records).out;
-        assert!((f64::from(told.steer_rate_rad_s) - rate).abs() < 0.1, "{told:?}");
+        let reported = last(&records).out;
+        assert!((f64::from(reported.steer_rate_rad_s) - rate).abs() < 0.1, "{reported:?}");
         assert!(
-            (told.torque_nm - 3.0).abs() < 0.6 && told.iq_a.signum() == if reversed { -1.0 } else { 1.0 }
+            (reported.torque_nm - 3.0).abs() < 0.6
+                && reported.iq_a.signum() == if reversed { -1.0 } else { 1.0 }
         );
     }
 }
@@ -155,18 +159,20 @@ fn a_torque_to_the_right_steers_to_the_right() {
 /// the largest current, 10 A; the torque set-point never changes faster than 2000 N m/s.
 #[test]
 fn torque_current_and_slew_are_limited() {
-    let mut rig = Rig::ready(|_| ());
-    rig.machine.held = true;
-    let records = rig.run(600, MotorCommand::Torque(100.0));
+    let mut bench = Bench::ready(|_| ());
+    bench.machine.held = true;
+    let records = bench.run(600, MotorCommand::Torque(100.0));
     let torque = mean(&records[300..], |r| r.torque_nm);
     assert!((6.8..=7.2).contains(&torque), "{torque}");
-    let wanted = |r: &Record| f64::from(r.out.iq_wanted_a) * f64::from(motor::example::MOTOR.torque_nm_a());
-    let fastest = records.windows(2).map(|w| wanted(&w[1]) - wanted(&w[0])).fold(0.0, f64::max) * 20_000.0;
+    let set_point_nm =
+        |r: &Record| f64::from(r.out.iq_wanted_a) * f64::from(motor::example::MOTOR.torque_nm_a());
+    let fastest =
+        records.windows(2).map(|w| set_point_nm(&w[1]) - set_point_nm(&w[0])).fold(0.0, f64::max) * 20_000.0;
     assert!((1990.0..=2010.0).contains(&fastest), "{fastest}");
 
-    let mut rig = Rig::ready(|c| c.demand.max_nm = 100.0);
-    rig.machine.held = true;
-    let records = rig.run(600, MotorCommand::Torque(100.0));
+    let mut bench = Bench::ready(|c| c.demand.max_nm = 100.0);
+    bench.machine.held = true;
+    let records = bench.run(600, MotorCommand::Torque(100.0));
     let iq = mean(&records[300..], |r| r.iq_a);
     let most = records.iter().map(|r| r.largest_phase_a).fold(0.0, f64::max);
     assert!((9.8..=10.2).contains(&iq) && most < 11.0, "{iq} {most}");
@@ -176,30 +182,30 @@ fn torque_current_and_slew_are_limited() {
 /// then zero. Must hold: no fault, less torque than requested; then a current within 0.5 A of zero after 1 ms, as
 /// there is no windup.
 #[test]
-fn too_little_voltage_winds_nothing_up() {
-    let mut rig = Rig::ready(at_once);
-    rig.machine.params.inertia_kg_m2 = 1e6;
-    rig.machine.steer_rate_rad_s = 14.5;
-    let _ = rig.run(600, MotorCommand::Off);
-    let records = rig.run(1000, MotorCommand::Torque(7.0));
+fn too_little_voltage_causes_no_windup() {
+    let mut bench = Bench::ready(at_once);
+    bench.machine.params.inertia_kg_m2 = 1e6;
+    bench.machine.steer_rate_rad_s = 14.5;
+    let _ = bench.run(600, MotorCommand::Off);
+    let records = bench.run(1000, MotorCommand::Torque(7.0));
     assert_eq!(opened(&records), None, "{:?}", last(&records).out);
     let torque = mean(&records[500..], |r| r.torque_nm);
     assert!((0.5..=6.0).contains(&torque), "{torque}");
-    let records = rig.run(400, MotorCommand::Torque(0.0));
+    let records = bench.run(400, MotorCommand::Torque(0.0));
     let slow = records.iter().rposition(|r| r.iq_a.abs() > 0.5).expect("it began with more") + 1;
     assert!((2..=20).contains(&slow), "{slow} calls");
-    println!("{torque:.2} N m, current gone after {slow} calls");
+    println!("{torque:.2} N m, current zero after {slow} calls");
 }
 
 /// Situation: the bridge is closed while the handlebar already turns at 10 rad/s, with no torque requested. Must
 /// hold: no phase current beyond 2 A.
 #[test]
 fn closing_the_bridge_in_motion() {
-    let mut rig = Rig::ready(|_| ());
-    rig.machine.params.inertia_kg_m2 = 1e6;
-    rig.machine.steer_rate_rad_s = 10.0;
-    let _ = rig.run(600, MotorCommand::Off);
-    let records = rig.run(400, MotorCommand::Torque(0.0));
+    let mut bench = Bench::ready(|_| ());
+    bench.machine.params.inertia_kg_m2 = 1e6;
+    bench.machine.steer_rate_rad_s = 10.0;
+    let _ = bench.run(600, MotorCommand::Off);
+    let records = bench.run(400, MotorCommand::Torque(0.0));
     let most = records.iter().map(|r| r.largest_phase_a).fold(0.0, f64::max);
     assert_eq!(opened(&records), None);
     assert!((0.01..=2.0).contains(&most), "{most}");
@@ -209,14 +215,14 @@ fn closing_the_bridge_in_motion() {
 /// Situation: the handlebar turns slowly, 4 N m requested. Must hold: with dead-time compensation the torque ripple
 /// is at most half of that without.
 #[test]
-fn the_dead_time_is_made_up_for() {
+fn the_dead_time_is_compensated() {
     let ripple = |dead_time_s: f32| {
-        let mut rig = Rig::ready(|c| c.bridge.dead_time_s = dead_time_s);
-        rig.noise_a = 0.0;
-        rig.machine.params.inertia_kg_m2 = 1e6;
-        rig.machine.steer_rate_rad_s = 2.0;
-        rig.machine.params.dead_time_s = 2e-6;
-        let records = rig.run(4000, MotorCommand::Torque(4.0));
+        let mut bench = Bench::ready(|c| c.bridge.dead_time_s = dead_time_s);
+        bench.noise_a = 0.0;
+        bench.machine.params.inertia_kg_m2 = 1e6;
+        bench.machine.steer_rate_rad_s = 2.0;
+        bench.machine.params.dead_time_s = 2e-6;
+        let records = bench.run(4000, MotorCommand::Torque(4.0));
         assert_eq!(opened(&records), None);
         mean(&records[2000..], |r| (r.torque_nm - 4.0).powi(2)).sqrt()
     };
@@ -229,18 +235,18 @@ fn the_dead_time_is_made_up_for() {
 /// handlebar moves again the whole torque is back after 1 s, no sooner.
 #[test]
 fn a_stall_leaves_a_holding_torque() {
-    let mut rig = Rig::ready(|_| ());
-    rig.machine.held = true;
-    let records = rig.run(60_000, MotorCommand::Torque(6.0));
+    let mut bench = Bench::ready(|_| ());
+    bench.machine.held = true;
+    let records = bench.run(60_000, MotorCommand::Torque(6.0));
     let derated = records.iter().position(|r| r.out.stalled).expect("stalled") as f64 / 20_000.0;
     assert!((1.99..=2.01).contains(&derated), "{derated} s");
     let iq = mean(&records[50_000..], |r| r.iq_a);
     assert!((2.9..=3.1).contains(&iq), "{iq}");
     assert_eq!(opened(&records), None);
-    rig.machine.held = false;
-    rig.machine.params.inertia_kg_m2 = 1e6;
-    rig.machine.steer_rate_rad_s = 0.5;
-    let records = rig.run(30_000, MotorCommand::Torque(6.0));
+    bench.machine.held = false;
+    bench.machine.params.inertia_kg_m2 = 1e6;
+    bench.machine.steer_rate_rad_s = 0.5;
+    let records = bench.run(30_000, MotorCommand::Torque(6.0));
     let derated = records.iter().rposition(|r| r.out.stalled).expect("stalled") as f64 / 20_000.0;
     assert!((0.98..=1.02).contains(&derated), "{derated} s");
     let back = mean(&records[29_000..], |r| r.torque_nm);
@@ -250,13 +256,13 @@ fn a_stall_leaves_a_holding_torque() {
 /// Situation: 7 N m held, the winding's time constant shortened to 1 s. Must hold: all of it at first; finally the
 /// continuous current, 3.29 A, no less; no fault.
 #[test]
-fn the_windings_heat_limits_the_current() {
-    let mut rig = Rig::ready(|c| {
+fn the_windings_temperature_limits_the_current() {
+    let mut bench = Bench::ready(|c| {
         c.overload.time_s = 1.0;
         c.stall.hold_a = 9.0;
     });
-    rig.machine.held = true;
-    let records = rig.run(100_000, MotorCommand::Torque(7.0));
+    bench.machine.held = true;
+    let records = bench.run(100_000, MotorCommand::Torque(7.0));
     assert_eq!(opened(&records), None);
     let first = mean(&records[1000..4000], |r| r.iq_a);
     let end = mean(&records[90_000..], |r| r.iq_a);
@@ -267,25 +273,25 @@ fn the_windings_heat_limits_the_current() {
 /// Situation: 7 N m requested; the board is warm, then hot. Must hold: at 95 of 80 to 100 deg C a quarter of the
 /// current; above 100 a fault at once.
 #[test]
-fn heat_takes_torque_away() {
-    let mut rig = Rig::ready(|_| ());
-    rig.machine.held = true;
-    let _ = rig.run(400, MotorCommand::Torque(7.0));
-    rig.temperature_c = 95.0;
-    let records = rig.run(400, MotorCommand::Torque(7.0));
+fn a_hot_board_has_less_torque() {
+    let mut bench = Bench::ready(|_| ());
+    bench.machine.held = true;
+    let _ = bench.run(400, MotorCommand::Torque(7.0));
+    bench.temperature_c = 95.0;
+    let records = bench.run(400, MotorCommand::Torque(7.0));
     let iq = mean(&records[200..], |r| r.iq_a);
     assert!((2.4..=2.6).contains(&iq), "{iq}");
-    rig.temperature_c = 100.5;
-    let records = rig.run(1, MotorCommand::Torque(7.0));
+    bench.temperature_c = 100.5;
+    let records = bench.run(1, MotorCommand::Torque(7.0));
     assert!(last(&records).out.faults.has(Fault::Hot) && opened(&records) == Some(1));
 }
 
 /// Situation: 7 N m requested, the bus at 17 V of 16 to 18. Must hold: half of the current, 5 A.
 #[test]
-fn a_sagging_bus_takes_torque_away() {
-    let mut rig = Rig::ready(|_| ());
-    rig.machine.held = true;
-    let records = rig.tampered(600, MotorCommand::Torque(7.0), |_, i| i.bus_v = 17.0);
+fn a_low_bus_voltage_reduces_torque() {
+    let mut bench = Bench::ready(|_| ());
+    bench.machine.held = true;
+    let records = bench.tampered(600, MotorCommand::Torque(7.0), |_, i| i.bus_v = 17.0);
     assert_eq!(opened(&records), None);
     assert!((last(&records).out.limit_a - 5.0).abs() < 1e-3);
     let iq = mean(&records[300..], |r| r.iq_a);
@@ -294,10 +300,10 @@ fn a_sagging_bus_takes_torque_away() {
 
 /// Situation: the torque request ends. Must hold: the bridge is open in that call.
 #[test]
-fn off_is_off_at_once() {
-    let mut rig = Rig::ready(|_| ());
-    let records = rig.run(100, MotorCommand::Torque(2.0));
+fn off_opens_the_bridge_at_once() {
+    let mut bench = Bench::ready(|_| ());
+    let records = bench.run(100, MotorCommand::Torque(2.0));
     assert_eq!(last(&records).out.mode, Mode::Running);
-    let out = last(&rig.run(1, MotorCommand::Off)).out;
+    let out = last(&bench.run(1, MotorCommand::Off)).out;
     assert!(out.duties.is_none() && out.mode == Mode::Ready && out.faults.is_empty());
 }

@@ -1,4 +1,4 @@
-//! Fault injection: one fault in the first start, given by the arguments `mishap=KIND` and `at_ms=N`.
+//! Fault injection: one fault in the first start, given by the arguments `fault=KIND` and `at_ms=N`.
 //!
 //! | kind | fault |
 //! | --- | --- |
@@ -39,8 +39,8 @@ const FLASH: usize = 9;
 /// Reads the arguments. Faults that do not concern a task need [`strike`] to be spawned. `false`: unknown fault, or
 /// missing time.
 pub fn prepare() -> bool {
-    let words = command_line();
-    let Some(kind) = words.split(' ').find_map(|word| word.strip_prefix("mishap=")) else { return true };
+    let arguments = command_line();
+    let Some(kind) = arguments.split(' ').find_map(|word| word.strip_prefix("fault=")) else { return true };
     let (Some(kind), Some(at_ms)) = (KINDS.iter().position(|known| *known == kind), argument("at_ms")) else {
         return false;
     };

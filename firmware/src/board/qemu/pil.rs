@@ -196,13 +196,13 @@ fn hand_over(host: &mut Stream, chunk: &mut [u8; MAX_CHUNK], out: &mut Out) -> b
         });
         out.put(&Message::PilCommand { command, authority }, number);
     }
-    let mut said = [0; LINE_BYTES];
-    let length = serial::OUT.try_read(&mut said).unwrap_or(0);
+    let mut line = [0; LINE_BYTES];
+    let length = serial::OUT.try_read(&mut line).unwrap_or(0);
     let from = FromBoard {
         time_ms: reset::total_ms(),
         starts: crash::starts() as u16,
         motor: &out.bytes[..out.used],
-        line: &said[..length],
+        line: &line[..length],
     };
     let used = from.encode(chunk).unwrap_or(0);
     out.used = 0;
@@ -224,10 +224,10 @@ fn take(message: &Message<'_>, sequence: u16, incoming: &mut Incoming, out: &mut
                     critical_section::with(|cs| SENSORS.borrow(cs).replace(Some(Sensors::NONE)));
                     Message::Done
                 }
-                Err(refusal) => Message::Refused(refusal),
+                Err(rejection) => Message::Rejected(rejection),
             };
             out.put(&answer, sequence);
         }
-        _ => out.put(&Message::Refused(Rejection::of(RejectReason::NotHere)), sequence),
+        _ => out.put(&Message::Rejected(Rejection::of(RejectReason::NotHere)), sequence),
     }
 }

@@ -40,7 +40,7 @@ impl Recording {
         match decode_config(&record).and_then(Config::plan) {
             Ok(plan) => Some(Ride { plan, frames_left: u32::from_le_bytes(frames) as usize }),
             Err(wrong) => {
-                hprintln!("configuration refused: {}", wrong);
+                hprintln!("configuration rejected: {}", wrong);
                 exit(Exit::Input)
             }
         }

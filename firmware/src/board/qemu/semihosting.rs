@@ -153,24 +153,24 @@ impl Stream {
 
 /// The number in `name=number` on the image's command line (`-semihosting-config arg=...`).
 pub fn argument(name: &str) -> Option<u32> {
-    let words = command_line();
-    words.split(' ').find_map(|word| word.strip_prefix(name)?.strip_prefix('=')?.parse().ok())
+    let arguments = command_line();
+    arguments.split(' ').find_map(|word| word.strip_prefix(name)?.strip_prefix('=')?.parse().ok())
 }
 
-/// The words of the image's command line, one blank between them.
+/// The arguments of the image, separated by blanks.
 pub fn command_line() -> String<256> {
     let mut bytes = [0_u8; 256];
     let mut block = [bytes.as_mut_ptr() as usize, bytes.len() - 1];
     // SAFETY: the argument of SYS_GET_CMDLINE: a buffer the host may write and its length.
     let failed = unsafe { cortex_m_semihosting::syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) };
-    let mut words = String::new();
+    let mut arguments = String::new();
     if failed == 0
         && let Ok(line) = CStr::from_bytes_until_nul(&bytes)
     {
         // Both hold 256 bytes.
-        let _ = words.write_str(line.to_str().unwrap_or_default());
+        let _ = arguments.write_str(line.to_str().unwrap_or_default());
     }
-    words
+    arguments
 }
 
 /// Ends QEMU with the status.

@@ -3,7 +3,7 @@
 //! the amplitude the sign check would report a reversed motor (fault 37).
 
 use super::pil;
-use crate::telemetry::Refusal;
+use crate::telemetry::DriveError;
 use control::{Command, Sample, SensorFrame, Triple};
 use core::cell::Cell;
 use core::f32::consts::TAU;
@@ -54,7 +54,7 @@ fn made_up() -> SensorFrame {
 ///
 /// # Errors
 /// None on this board.
-pub fn drive(command: &Command) -> Result<(), Refusal> {
+pub fn drive(command: &Command) -> Result<(), DriveError> {
     critical_section::with(|cs| TORQUE.borrow(cs).set(command.torque_nm));
     Ok(())
 }

@@ -24,7 +24,7 @@ pub(super) struct Counts {
     pub(super) rider_torque: u16,
     pub(super) supply: u16,
     pub(super) switch: u16,
-    pub(super) board_heat: u16,
+    pub(super) board_temperature: u16,
 }
 
 /// Configures the ADCs; enables their interrupt at the peripheral, but not in the NVIC.
@@ -63,9 +63,9 @@ pub(super) fn start(pins: [Pin; 8]) {
 /// The last conversions.
 pub(super) fn counts() -> Counts {
     ADC1.sr().modify(|w| w.set_jeoc(false));
-    let [[a, steer, switch], [b, rider_torque, board_heat], [c, supply, _]] =
+    let [[a, steer, switch], [b, rider_torque, board_temperature], [c, supply, _]] =
         CHANNELS.map(|(adc, _)| [0, 1, 2].map(|place| adc.jdr(place).read().jdata()));
-    Counts { phases: [a, b, c], steer, rider_torque, supply, switch, board_heat }
+    Counts { phases: [a, b, c], steer, rider_torque, supply, switch, board_temperature }
 }
 
 /// Clears pending interrupts: the first one then comes from the end of a future conversion, at its place in the PWM

@@ -6,7 +6,7 @@ use super::soft_spi::SoftSpi;
 use core::cell::Cell;
 use core::fmt::Write;
 use core::sync::atomic::{AtomicBool, Ordering};
-use devices::as5047::{ASK_ANGLE, Line};
+use devices::as5047::{Line, READ_ANGLE};
 use devices::drv8301::{Register, Status, data, is_present, read, write};
 use devices::slow::Slow;
 use devices::vesc6::{ENABLE_V, GATE_DRIVER, MOTOR};
@@ -53,7 +53,7 @@ fn is_slow(encoder: &mut SoftSpi) -> bool {
     let (mut line, mut slow) = (Line::default(), Slow::default());
     let end = Instant::now() + WAIT;
     while Instant::now() < end {
-        if slow.step(line.step(encoder.word(ASK_ANGLE)), most_turns_s) {
+        if slow.step(line.step(encoder.word(READ_ANGLE)), most_turns_s) {
             return true;
         }
         block_for(Duration::from_millis(1));
@@ -74,12 +74,12 @@ fn configure(bus: &mut SoftSpi) -> bool {
     GPIOB.bsrr().write(|w| w.set_bs(GATE_ENABLE, true));
     block_for(WAKE);
     // The first word can be lost, and the first read clears the status of power-up.
-    ask(bus, Register::Status1);
+    read_register(bus, Register::Status1);
     let (control1, control2) = (GATE_DRIVER.control1(), GATE_DRIVER.control2());
     bus.word(write(Register::Control1, control1));
     bus.word(write(Register::Control2, control2));
     let registers = [Register::Status2, Register::Status1, Register::Control1, Register::Control2]
-        .map(|register| ask(bus, register));
+        .map(|register| read_register(bus, register));
     let good = match registers {
         [Some(kind), Some(status), Some(one), Some(two)] => {
             is_present(kind) && status == 0 && (one, two) == (control1, control2)
@@ -95,17 +95,17 @@ fn configure(bus: &mut SoftSpi) -> bool {
 
 /// Names of the present faults. The driver must still be enabled: disabling clears the status. Takes 0.3 ms, too long
 /// for the motor interrupt.
-pub(super) fn describe(words: &mut impl Write) -> core::fmt::Result {
+pub(super) fn describe(text: &mut impl Write) -> core::fmt::Result {
     let Some(mut bus) = BUS.lock(Cell::take) else { return Ok(()) };
-    let answers = [Register::Status1, Register::Status2].map(|register| ask(&mut bus, register));
+    let answers = [Register::Status1, Register::Status2].map(|register| read_register(&mut bus, register));
     BUS.lock(|cell| cell.set(Some(bus)));
-    let [Some(one), Some(two)] = answers else { return write!(words, "no answer") };
-    Status(one, two).names().try_for_each(|name| write!(words, "{name}, "))?;
-    write!(words, "status {one:03x} {two:03x}")
+    let [Some(one), Some(two)] = answers else { return write!(text, "no answer") };
+    Status(one, two).names().try_for_each(|name| write!(text, "{name}, "))?;
+    write!(text, "status {one:03x} {two:03x}")
 }
 
 /// Data of a register.
-fn ask(bus: &mut SoftSpi, register: Register) -> Option<u16> {
+fn read_register(bus: &mut SoftSpi, register: Register) -> Option<u16> {
     bus.word(read(register));
     data(register, bus.word(read(register)))
 }

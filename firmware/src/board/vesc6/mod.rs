@@ -7,6 +7,7 @@ mod brown_out;
 mod can;
 mod clock;
 mod critical;
+mod drive_faults;
 mod flash;
 mod gate;
 mod halt;
@@ -23,23 +24,22 @@ pub mod serial;
 mod shared;
 mod soft_spi;
 mod time;
-mod watch;
 mod watchdog;
 mod wheels;
 
 pub use brown_out::raise_level;
 pub use can::broadcast;
+pub use drive_faults::record_drive_faults;
 pub use flash::{Flash, flash};
 pub use outputs::outputs_off;
 pub use reset::{end, log_stored_fault, reset_cause};
 pub use sensors::sense;
 pub use shared::{Report, order, report as motor_report};
-pub use watch::watch_drive;
 pub use watchdog::feed_watchdog;
 
 use crate::failure;
 use crate::heartbeat::Task;
-use crate::telemetry::{Refusal, Telemetry};
+use crate::telemetry::{DriveError, Telemetry};
 use ::motor::MotorCommand;
 use control::{Command, Mode};
 use defmt_rtt as _;
@@ -160,12 +160,12 @@ fn UART5() {
 ///
 /// # Errors
 /// The reason for which no torque is given, from the interrupt's last report.
-pub fn drive(command: &Command) -> Result<(), Refusal> {
+pub fn drive(command: &Command) -> Result<(), DriveError> {
     let wanted = command.torque_nm != 0.0 || matches!(command.mode, Mode::Engaged | Mode::Limp);
-    let refusal = motor_report().refusal();
+    let error = motor_report().error();
     order(if wanted { MotorCommand::Torque(command.torque_nm) } else { MotorCommand::Off });
-    leds::show(refusal.is_none());
-    refusal.map_or(Ok(()), Err)
+    leds::show(error.is_none());
+    error.map_or(Ok(()), Err)
 }
 
 /// Whether the task's heartbeat is lost: never, as this board has no fault injection.
@@ -182,7 +182,7 @@ pub fn report(t: &Telemetry) {
         t.deadlines.worst_us,
         t.command.torque_nm,
         t.command.mode.name(),
-        t.drive.map_or_else(Refusal::reason, |()| "able")
+        t.drive.map_or_else(DriveError::reason, |()| "able")
     );
     let f = &t.frame;
     defmt::info!(
@@ -212,7 +212,7 @@ pub fn report(t: &Telemetry) {
         m.faults.0,
         m.gate_pulses,
         m.supply_v,
-        shared::heat_c(),
+        shared::temperature_c(),
         m.encoder_counts,
         m.encoder_age,
         m.encoder_flagged,

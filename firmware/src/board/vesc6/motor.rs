@@ -1,10 +1,10 @@
 //! Motor interrupt: samples in, one call of the motor loop, duty cycles out, 20 000 times per second.
 
-use super::shared::{Report, heat_c, is_held, is_off, newest_order, publish, set_off};
+use super::shared::{Report, is_held, is_off, newest_order, publish, set_off, temperature_c};
 use super::soft_spi::SoftSpi;
 use super::{adc, outputs_off, pwm};
 use core::cell::UnsafeCell;
-use devices::as5047::{ASK_ANGLE, Line};
+use devices::as5047::{Line, READ_ANGLE};
 use devices::fault_pin::FaultPin;
 use devices::vesc6::{COMMAND_TIMEOUT_CALLS, SHUNT, SUPPLY};
 use embassy_stm32::gpio::Input;
@@ -79,7 +79,7 @@ impl Loop {
     fn call(&mut self) {
         pwm::begin();
         let counts = adc::counts();
-        self.ask_encoder();
+        self.request_angle();
         if self.gate_pin.step(self.gate_fault.is_low()) {
             self.report.gate_fault = true;
             // The driver has opened the switches itself; it stays enabled until its status is read.
@@ -93,7 +93,7 @@ impl Loop {
             bus_v: supply_v,
             angle_counts: self.report.encoder_counts,
             angle_age_ticks: self.report.encoder_age,
-            temperature_c: heat_c(),
+            temperature_c: temperature_c(),
             command: if is_off() || is_held() { MotorCommand::Off } else { command },
         };
         let out = motor::step(&self.plan, &mut self.state, &inputs);
@@ -118,16 +118,16 @@ impl Loop {
             steer: counts.steer,
             rider_torque: counts.rider_torque,
             switch: counts.switch,
-            board_heat: counts.board_heat,
+            board_temperature: counts.board_temperature,
             ..self.report
         };
         publish(self.report);
     }
 
     /// The answer to the last transfer is the angle at its time, one call ago.
-    fn ask_encoder(&mut self) {
+    fn request_angle(&mut self) {
         let report = &mut self.report;
-        match self.line.step(self.encoder.word(ASK_ANGLE)) {
+        match self.line.step(self.encoder.word(READ_ANGLE)) {
             Some(counts) => (report.encoder_counts, report.encoder_age) = (counts, 1),
             None => report.encoder_age = report.encoder_age.saturating_add(1),
         }

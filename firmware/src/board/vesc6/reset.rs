@@ -58,14 +58,14 @@ static ENDING: AtomicBool = AtomicBool::new(false);
 
 /// Writes the last log line over RTT, then restarts. If logging itself failed, restarts without one, as an
 /// interrupted log line can't be followed by another.
-pub fn end(kind: FaultKind, registers: &Registers, words: &str) -> ! {
+pub fn end(kind: FaultKind, registers: &Registers, text: &str) -> ! {
     if ENDING.swap(true, Ordering::Relaxed) {
         cortex_m::peripheral::SCB::sys_reset()
     }
     defmt::error!(
         "{=str}: {=str} exception={=u32} registers={:08x}",
         kind.name(),
-        words,
+        text,
         registers.exception,
         registers.values
     );

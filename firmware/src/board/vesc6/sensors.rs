@@ -1,7 +1,7 @@
 //! Sensor inputs of the control step: the newest samples with their ages.
 
 use super::imu;
-use super::shared::{Report, report, set_heat};
+use super::shared::{Report, report, set_temperature};
 use super::soft_spi::SoftSpi;
 use super::wheels::Edges;
 use ::motor::Mode;
@@ -11,7 +11,7 @@ use control::sensors::wheel_speed::WheelPulsesConfig;
 use core::cell::Cell;
 use devices::age::Age;
 use devices::switch::Switch;
-use devices::vesc6::{BOARD_HEAT, RIDER_NM, STEER_RAD, SWITCH_COUNTS, SWITCH_TICKS};
+use devices::vesc6::{BOARD_TEMPERATURE, RIDER_NM, STEER_RAD, SWITCH_COUNTS, SWITCH_TICKS};
 use devices::wheel::{self, WheelState};
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
@@ -84,9 +84,9 @@ impl Sensors {
         self.before = now;
         self.look_at_imu();
         let report = report();
-        let alive = report.calls != self.calls;
+        let running = report.calls != self.calls;
         self.calls = report.calls;
-        set_heat(BOARD_HEAT.celsius(report.board_heat));
+        set_temperature(BOARD_TEMPERATURE.celsius(report.board_temperature));
         let [front, rear] =
             [0, 1].map(|i| wheel::step(&self.wheel, &mut self.wheels[i], self.edges[i].age_us(), elapsed_us));
         let closed = report.switch < SWITCH_COUNTS;
@@ -96,16 +96,16 @@ impl Sensors {
             now_us: now.as_micros() as u32,
             gyro_rad_s: Triple { value: self.gyro.0, age_ticks: self.gyro.1.now() },
             accel_m_s2: Triple { value: self.accel.0, age_ticks: self.accel.1.now() },
-            steer_rad: newest(&mut self.steer, STEER_RAD.value(report.steer).filter(|_| alive)),
+            steer_rad: newest(&mut self.steer, STEER_RAD.value(report.steer).filter(|_| running)),
             steer_rate_rad_s: Sample {
                 value: report.steer_rate_rad_s,
-                age_ticks: self.steer_rate.step(alive && fresh(&report)),
+                age_ticks: self.steer_rate.step(running && fresh(&report)),
             },
             front_wheel_m_s: front,
             rear_wheel_m_s: rear,
-            rider_torque_nm: newest(&mut self.rider, RIDER_NM.value(report.rider_torque).filter(|_| alive)),
-            motor_torque_nm: Sample { value: report.torque_nm, age_ticks: self.torque.step(alive && able) },
-            engage: self.switch.step(closed && alive, SWITCH_TICKS),
+            rider_torque_nm: newest(&mut self.rider, RIDER_NM.value(report.rider_torque).filter(|_| running)),
+            motor_torque_nm: Sample { value: report.torque_nm, age_ticks: self.torque.step(running && able) },
+            engage: self.switch.step(closed && running, SWITCH_TICKS),
             ..SensorFrame::missing()
         }
     }

@@ -3,7 +3,7 @@
 //! The interrupt preempts critical sections, so commands are atomic words. The interrupt itself is not preempted and
 //! increments a sequence number after each report, so that readers detect a torn copy.
 
-use crate::telemetry::Refusal;
+use crate::telemetry::DriveError;
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use motor::command_word;
@@ -16,7 +16,7 @@ static BEAT: AtomicU32 = AtomicU32::new(0);
 static OFF: AtomicBool = AtomicBool::new(false);
 static HOLD: AtomicBool = AtomicBool::new(false);
 /// Temperature beside the switches, as bits of an f32 \[deg C\]; computed by control, as it needs a logarithm.
-static HEAT_C: AtomicU32 = AtomicU32::new(f32::NAN.to_bits());
+static TEMPERATURE_C: AtomicU32 = AtomicU32::new(f32::NAN.to_bits());
 
 /// Report of the motor interrupt's last call.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +64,7 @@ pub struct Report {
     /// Rider's switch \[counts\].
     pub switch: u16,
     /// Thermistor beside the bridge's switches \[counts\].
-    pub board_heat: u16,
+    pub board_temperature: u16,
 }
 
 impl Report {
@@ -91,18 +91,18 @@ impl Report {
         steer: 0,
         rider_torque: 0,
         switch: 0,
-        board_heat: 0,
+        board_temperature: 0,
     };
 
     /// Reason for which no torque is given, if any.
-    pub fn refusal(&self) -> Option<Refusal> {
+    pub fn error(&self) -> Option<DriveError> {
         match self.mode {
-            Mode::Off => self.faults.iter().next().map(|fault| Refusal::MotorFault(fault.code())),
-            _ if self.gate_fault => Some(Refusal::GateDriver),
-            _ if self.off => Some(Refusal::OutputsOff),
-            Mode::Zeroing => Some(Refusal::NotReady),
-            Mode::Unaligned | Mode::Aligning => Some(Refusal::NotAligned),
-            Mode::Ready | Mode::Running => self.silent.then_some(Refusal::Stale),
+            Mode::Off => self.faults.iter().next().map(|fault| DriveError::MotorFault(fault.code())),
+            _ if self.gate_fault => Some(DriveError::GateDriver),
+            _ if self.off => Some(DriveError::OutputsOff),
+            Mode::Zeroing => Some(DriveError::NotReady),
+            Mode::Unaligned | Mode::Aligning => Some(DriveError::NotAligned),
+            Mode::Ready | Mode::Running => self.silent.then_some(DriveError::Stale),
         }
     }
 }
@@ -148,14 +148,14 @@ pub(super) fn newest_order() -> (u32, MotorCommand) {
 }
 
 /// Stores the temperature beside the bridge's switches \[deg C\].
-pub(super) fn set_heat(celsius: f32) {
-    HEAT_C.store(celsius.to_bits(), Ordering::Relaxed);
+pub(super) fn set_temperature(celsius: f32) {
+    TEMPERATURE_C.store(celsius.to_bits(), Ordering::Relaxed);
 }
 
 /// Temperature beside the bridge's switches \[deg C\]; NaN before the first value, and if the sensor is open or
 /// shorted.
-pub(super) fn heat_c() -> f32 {
-    f32::from_bits(HEAT_C.load(Ordering::Relaxed))
+pub(super) fn temperature_c() -> f32 {
+    f32::from_bits(TEMPERATURE_C.load(Ordering::Relaxed))
 }
 
 /// Keeps the bridge open until the next start.

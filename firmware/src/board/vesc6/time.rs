@@ -70,10 +70,10 @@ impl Clock {
     }
 
     fn interrupt(&self, cs: CriticalSection<'_>) {
-        let seen = TIM5.sr().read();
+        let flags = TIM5.sr().read();
         // Writing zero clears a flag; a flag set meanwhile stays.
-        TIM5.sr().write_value(SrGp16(!seen.0));
-        let ended = u32::from(seen.uif()) + u32::from(seen.ccif(HALF));
+        TIM5.sr().write_value(SrGp16(!flags.0));
+        let ended = u32::from(flags.uif()) + u32::from(flags.ccif(HALF));
         self.halves.store(self.halves.load(Ordering::Relaxed).wrapping_add(ended), Ordering::Relaxed);
         self.wake_due(&mut self.queue.borrow_ref_mut(cs));
     }

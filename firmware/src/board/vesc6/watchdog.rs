@@ -22,10 +22,10 @@ pub(super) fn start() {
 
 /// Sets the extended timeout, or [`WATCHDOG`]; either restarts the count.
 pub(super) fn standstill(is: bool) {
-    let patience = if is { STANDSTILL } else { WATCHDOG };
+    let timeout = if is { STANDSTILL } else { WATCHDOG };
     settled();
     IWDG.kr().write(|w| w.set_key(Key::ENABLE));
-    IWDG.rlr().write(|w| w.set_rl((patience.as_ticks() / COUNT.as_ticks()) as u16));
+    IWDG.rlr().write(|w| w.set_rl((timeout.as_ticks() / COUNT.as_ticks()) as u16));
     settled();
     feed_watchdog();
 }

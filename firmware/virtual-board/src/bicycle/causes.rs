@@ -111,8 +111,8 @@ impl Cause {
             }
             Self::Wheels => {
                 let wheel = devices::vesc6::wheel();
-                let way_m = TAU * f64::from(wheel.radius_m) / f64::from(wheel.pulses_per_turn);
-                let ticks = (way_m / speed_m_s / PERIOD_S).round() as u16;
+                let distance_m = TAU * f64::from(wheel.radius_m) / f64::from(wheel.pulses_per_turn);
+                let ticks = (distance_m / speed_m_s / PERIOD_S).round() as u16;
                 for sensor in [Sensor::FrontWheel, Sensor::RearWheel] {
                     let model = sensors.model_mut(sensor);
                     (model.every_ticks, model.delay_ticks) = (ticks, ticks / 2);

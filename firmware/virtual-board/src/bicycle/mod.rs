@@ -103,7 +103,7 @@ impl Remote for OnBicycle {
     /// Powers the board on during a steady ride, and waits until its controller is in standby with only the switch
     /// open. The wheels, which turn at power-on, must have become valid.
     fn begin(&mut self, plan: &Plan, start: &Start) -> Result<(), RemoteError> {
-        let failed = |why: String| RemoteError(why.into());
+        let failed = |reason: String| RemoteError(reason.into());
         let mut wiring = Wiring::new();
         wiring.power.set_axis(power::Axis::Driven);
         wiring.can.network.node = true;

@@ -246,8 +246,8 @@ impl Device for AsTim1 {
         wiring.advance(now_ns);
         wiring.calls.accessed(now_ns);
         let before = wiring.tim1.main_output();
-        if let Err(why) = wiring.tim1.written(register, value as u32, now_ns) {
-            context.tell(register.spec().name, why);
+        if let Err(reason) = wiring.tim1.written(register, value as u32, now_ns) {
+            context.tell(register.spec().name, reason);
         }
         wiring.note_main_output(before, now_ns);
     }

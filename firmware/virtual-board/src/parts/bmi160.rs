@@ -41,7 +41,7 @@ pub struct Bmi160 {
     shifting: u8,
     now_ns: u64,
     /// Number of the newest sample read.
-    seen: u64,
+    last_read: u64,
     /// Sample in the data registers, and its number.
     sample: (u64, [u8; 12]),
     /// Number of the newest sample taken, and the filters of gyro and accelerometer.
@@ -108,7 +108,7 @@ impl Bmi160 {
             reads: false,
             shifting: 0xff,
             now_ns: 0,
-            seen: 0,
+            last_read: 0,
             sample: (0, [0; 12]),
             gyro_on: false,
             accel_on: false,
@@ -215,14 +215,14 @@ impl Bmi160 {
         match register {
             CHIP => CHIP_ID,
             STATUS => {
-                let fresh = newest != self.seen;
+                let fresh = newest != self.last_read;
                 u8::from(fresh && self.accel_on) << 7 | u8::from(fresh && self.gyro_on) << 6
             }
             DATA..TIME => {
                 // A burst reads one sample even if the next comes meanwhile.
                 if register == DATA || self.sample.0 == 0 {
                     self.sample = (newest, self.measure());
-                    self.seen = newest;
+                    self.last_read = newest;
                 }
                 self.sample.1[usize::from(register - DATA)]
             }

@@ -1,4 +1,4 @@
-//! What the cards share: images, boards, the engineer's end of the serial line.
+//! Shared by the tests: images, boards, the engineer's end of the serial line.
 
 use link::frame::MAX_FRAME;
 use link::message::Message;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use virtual_board::wiring::Wiring;
 use virtual_board::{Bench, Options};
 
-/// The product's image; `None` where the target or the tools are missing, which was said.
+/// The product's image; `None` where the target or the tools are missing, which has been reported.
 pub(crate) fn product() -> Option<PathBuf> {
     built("board-vesc6")
 }
@@ -33,7 +33,7 @@ pub(crate) fn request(message: &Message<'_>, sequence: u16) -> Vec<u8> {
     bytes[..used].to_vec()
 }
 
-/// What the engineer's end takes out of the board's bytes.
+/// Decodes the board's bytes at the engineer's end.
 #[derive(Default)]
 pub(crate) struct Listener(Decoder);
 
@@ -49,14 +49,14 @@ impl Listener {
         }
     }
 
-    /// Frames that came damaged.
+    /// Number of damaged frames.
     pub(crate) fn damaged(&self) -> u32 {
         let dropped = self.0.dropped();
         dropped.garbled + dropped.too_long + dropped.bad_crc
     }
 }
 
-/// The number in `name=number` of the newest line of the log that has it.
+/// The number in `name=number` of the newest log line that contains it.
 pub(crate) fn newest<T: std::str::FromStr>(bench: &Bench, name: &str) -> Option<T> {
     bench.log().iter().rev().find_map(|line| xtask::instructions::field(&line.text, name))
 }

@@ -14,7 +14,7 @@ use virtual_board::board::Vesc6;
 use virtual_board::wiring::Wiring;
 use xtask::{image, qemu, rides};
 
-/// Lets the run go on to its own end.
+/// Lets the run continue to its own end.
 struct On;
 
 impl Driver<Vesc6> for On {
@@ -23,7 +23,7 @@ impl Driver<Vesc6> for On {
     }
 }
 
-/// Runs an image with semihosting in a directory that holds its files; its exit status.
+/// Runs an image with semihosting in a directory with its files; returns its exit status.
 fn run(name: &str, directory: &Path) -> Option<u32> {
     let board = Vesc6::new(Options::default(), Wiring::new()).expect("the chip is described soundly");
     let session = Session::new(Box::new(board), 0, VirtualNanos(1_000_000_000)).expect("the board fits");
@@ -35,14 +35,15 @@ fn run(name: &str, directory: &Path) -> Option<u32> {
     let mut start = Start::new(&images);
     (start.debugger, start.wait_for_debugger, start.semihosting) = (Some(&server), true, true);
     let finished = emulator::run(session, &start, On).expect("the core runs");
-    let served = files.join().expect("the files' thread ends").expect("the connection holds");
+    let served = files.join().expect("the files' thread ends").expect("the connection check");
     assert_eq!(served.map(u32::from), finished.exit_status, "exit status over the connection");
     finished.exit_status
 }
 
-/// Situation: rides with every sensor and each of them broken, NaN, infinities and denormals among the values, under
-/// law h, the product and everything there is. Action: `qemu-replay` steps through them in QEMU and on the emulated
-/// core. Must hold: both end with 0, and every byte of every command is the same; there are some, and not all are alike.
+/// Situation: rides with every sensor and each of them faulty, NaN, infinities and denormals among the values, under
+/// law h, the product and every feature.
+/// Action: `qemu-replay` steps through them in QEMU and on the emulated core.
+/// Must hold: both end with 0, and every byte of every command is the same; there are some, and not all are alike.
 #[test]
 fn the_core_gives_the_same_bits_as_qemu() {
     if !image::ready() {

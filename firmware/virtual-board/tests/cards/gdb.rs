@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 /// Flags of the protocol's `open`.
 const CREATE: u64 = 0x200;
 const TRUNCATE: u64 = 0x400;
-/// Most bytes of memory in one packet of 4096, two digits each.
+/// Largest number of bytes of memory in one packet of 4096, two digits each.
 const CHUNK: usize = 1024;
 
-/// A client that lets the core run and serves files of one directory until the run ends.
+/// A client that runs the core and serves files of one directory until the run ends.
 pub(crate) struct FileHost {
     stream: TcpStream,
     directory: PathBuf,
@@ -27,7 +27,7 @@ impl FileHost {
         Ok(Self { stream, directory: directory.to_owned(), files: HashMap::new(), next: 3 })
     }
 
-    /// Serves until the program exits or the connection ends; the exit code, if there was one.
+    /// Serves until the program exits or the connection ends; returns the exit code, if any.
     pub(crate) fn serve(mut self) -> std::io::Result<Option<u8>> {
         self.send("c")?;
         loop {
@@ -46,11 +46,11 @@ impl FileHost {
     }
 
     fn call(&mut self, call: &str) -> std::io::Result<u64> {
-        let mut words = call.split(',');
-        let name = words.next().unwrap_or_default();
-        let numbers: Vec<u64> = words
-            .flat_map(|word| word.split('/'))
-            .map(|word| u64::from_str_radix(word, 16).unwrap_or(0))
+        let mut fields = call.split(',');
+        let name = fields.next().unwrap_or_default();
+        let numbers: Vec<u64> = fields
+            .flat_map(|field| field.split('/'))
+            .map(|field| u64::from_str_radix(field, 16).unwrap_or(0))
             .collect();
         match (name, numbers.as_slice()) {
             ("open", [path, length, flags, ..]) => {
@@ -132,7 +132,7 @@ impl FileHost {
         write!(self.stream, "${packet}#{sum:02x}")
     }
 
-    /// The next packet, acknowledged; acknowledgements of the other side are passed over.
+    /// The next packet, acknowledged; acknowledgements of the other side are skipped.
     fn receive(&mut self) -> std::io::Result<String> {
         let mut byte = [0];
         while byte != *b"$" {

@@ -1,6 +1,6 @@
-//! Images and runs that can't be: what the error says.
+//! Invalid images and runs: their errors.
 
-use crate::rig::{ALIGN, image};
+use crate::boards::{ALIGN, image};
 use std::path::Path;
 use std::time::Duration;
 use virtual_board::chip::gpio::Port;
@@ -8,8 +8,8 @@ use virtual_board::inject::BRANCH_TO_ITSELF;
 use virtual_board::wiring::Wiring;
 use virtual_board::{Bench, Options};
 
-/// What power-on says of an image.
-fn refused(image: &Path) -> String {
+/// The error of power-on for an image.
+fn power_on_error(image: &Path) -> String {
     match Bench::power_on(image, Options::default(), Wiring::new()) {
         Ok(_) => panic!("{} runs", image.display()),
         Err(error) => error.to_string(),
@@ -23,22 +23,23 @@ fn changed(change: impl FnOnce(&mut Vec<u8>)) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("image");
     std::fs::write(&path, bytes).unwrap();
-    refused(&path)
+    power_on_error(&path)
 }
 
-/// Where the vector table is in the file: the stack's top, then the program's start in flash, with the bit of Thumb code.
+/// Place of the vector table in the file: the stack's top, then the program's start in flash, with the bit of Thumb
+/// code.
 fn vectors(bytes: &[u8]) -> usize {
-    let is_table = |words: &[u8]| {
-        let word = |at: usize| u32::from_le_bytes([words[at], words[at + 1], words[at + 2], words[at + 3]]);
+    let is_table = |bytes: &[u8]| {
+        let word = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
         word(0) == 0x2000_8000 && word(4) >> 16 == 0x0801 && word(4) & 1 == 1
     };
     bytes.windows(8).position(is_table).expect("a vector table")
 }
 
-/// Must hold: an image that can't run on this chip is refused by a sentence that names the file and what is wrong.
+/// Must hold: an image that cannot run on this chip is rejected by a sentence that names the file and the reason.
 #[test]
-fn an_image_that_is_not_for_this_chip_is_refused() {
-    let missing = refused(Path::new("/no/such/image"));
+fn an_image_for_another_chip_is_rejected() {
+    let missing = power_on_error(Path::new("/no/such/image"));
     assert!(missing.starts_with("/no/such/image: No such file"), "{missing}");
     let text = changed(|bytes| *bytes = b"no image".to_vec());
     assert!(text.ends_with(": not an ELF file"), "{text}");
@@ -46,7 +47,7 @@ fn an_image_that_is_not_for_this_chip_is_refused() {
         let cut = changed(|bytes| bytes.truncate(length));
         assert!(cut.contains(": an ELF file that is damaged or cut short: "), "{length} bytes: {cut}");
     }
-    let host = refused(&std::env::current_exe().unwrap());
+    let host = power_on_error(&std::env::current_exe().unwrap());
     assert!(host.ends_with(", not for a 32-bit Arm core"), "{host}");
     let other = changed(|bytes| {
         let at = vectors(bytes);
@@ -62,21 +63,22 @@ fn an_image_that_is_not_for_this_chip_is_refused() {
     });
     assert!(start.contains("its program begins at 0x00000101, which is no Thumb code"), "{start}");
     let nothing = changed(|bytes| {
-        // No sections any more: neither symbols nor the table of the log.
+        // No sections: neither symbols nor the table of the log.
         bytes[32..36].fill(0);
         bytes[48..52].fill(0);
     });
     assert!(nothing.ends_with(": no symbols in it"), "{nothing}");
     let silent = changed(|bytes| {
-        // The names of the sections stand behind everything else that could have such bytes.
+        // The names of the sections come after everything else that could have such bytes.
         let at = bytes.windows(7).rposition(|word| word == b".defmt\0").expect("the section's name");
         bytes[at + 1] = b'x';
     });
     assert!(silent.contains(".defmt"), "{silent}");
 }
 
-/// Situation: the aligning image. Action: what the motor's interrupt reads is a register that no model has. Must hold: the
-/// run ends, with the register's address, the instant, the instruction and its function.
+/// Situation: the aligning image.
+/// Action: the motor's interrupt reads a register that no model has.
+/// Must hold: the run ends, with the register's address, the instant, the instruction and its function.
 #[test]
 fn a_register_without_a_model_ends_the_run() {
     // movw r0, #0x5c00; movt r0, #0x4001; ldr r0, [r0]: a reserved address (RM0090 rev 22, table 1).
@@ -109,11 +111,11 @@ fn a_conversion_of_a_pin_that_is_not_analog_ends_the_run() {
     assert!(parts.iter().all(|part| error.contains(part)), "{error}");
 }
 
-/// Situation: the aligning image with the switch open. Must hold: a wait that never ends is given up after its limit, with
-/// the instant, what was waited for and where the program is, also where it went no further than its first instruction; a
-/// step that takes the emulator too long, too.
+/// Situation: the aligning image with the switch open.
+/// Must hold: a wait that never ends is abandoned after its limit, with the instant, the awaited condition and the
+/// program's position, also if it never left its first instruction; likewise a step that takes the emulator too long.
 #[test]
-fn a_wait_without_end_is_given_up() {
+fn an_endless_wait_is_abandoned() {
     let mut bench = Bench::power_on(&image(ALIGN), Options::default(), Wiring::new()).unwrap();
     let waited = bench
         .run_until(10.0, "closed bridge", |bench| bench.with(|board| board.chip.wiring.tim1.main_output()));

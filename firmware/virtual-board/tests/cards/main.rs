@@ -1,22 +1,22 @@
-//! Flight cards: the image that is flashed, on the virtual board.
+//! The flashed image on the virtual board; tests in the form of flight cards.
 
-mod alive;
 mod bed;
+mod boards;
 mod bring_up;
 mod core;
 mod core_beside_qemu;
+mod documented_times;
 mod gate;
 mod gdb;
 mod input;
-mod measured;
 mod motor;
 mod product;
 mod program;
 mod registers;
 mod rides;
 mod rides_page;
-mod rig;
 mod serial;
 mod slip;
+mod startup;
 mod store;
 mod vibration;

@@ -1,4 +1,4 @@
-//! What the image writes into the chip's registers, against the page that says why.
+//! The values that the image writes into the chip's registers, against the page that gives the reasons.
 
 use crate::bed::{board, product};
 use rigless::mcu::{Mcu, Operate};
@@ -12,13 +12,13 @@ const INSTANCES: [&str; 19] = [
     "RCC", "PWR", "FLASH", "GPIOA", "GPIOB", "GPIOC", "GPIOD", "TIM1", "TIM3", "TIM4", "TIM5", "ADC1",
     "ADC2", "ADC3", "C_ADC", "USART3", "CAN1", "EXTI", "DBG",
 ];
-/// Registers whose value is what happens, not what was set.
+/// Registers whose value is an event or a state, not a setting.
 const MOVING: [&str; 22] = [
     "CNT", "SR", "CCR1", "CCR2", "CCR3", "CCR4", "JDR1", "JDR2", "JDR3", "JDR4", "DR", "IDR", "ODR", "CSR",
     "TSR", "ESR", "MSR", "CIR", "DMAR", "BDCR", "KEYR", "OPTKEYR",
 ];
 
-/// The registers that are not moving, by name.
+/// The registers that are not in `MOVING`, by name.
 fn values(board: &mut Vesc6) -> BTreeMap<String, u32> {
     let chip = &mut board.chip;
     let mut found = BTreeMap::new();
@@ -54,9 +54,10 @@ fn documented() -> BTreeMap<String, u32> {
         .collect()
 }
 
-/// Situation: the product image, started. Action: read every register that is not as it
-/// was at power-on. Must hold: docs/registers.md has the
-/// same registers with the same values, each with the section of the manual that says what it means.
+/// Situation: the product image, started.
+/// Action: read every register that differs from its value at power-on.
+/// Must hold: docs/registers.md has the same registers with the same values, each with the section of the manual that
+/// explains it.
 #[test]
 fn the_registers_are_those_of_the_page() {
     let Some(image) = product() else { return };
@@ -71,11 +72,12 @@ fn the_registers_are_those_of_the_page() {
         .filter(|(register, value)| documented.get(*register) != Some(value))
         .map(|(register, value)| format!("| {register} | {value:#010x} |"))
         .collect();
-    let gone: Vec<&String> = documented.keys().filter(|register| !written.contains_key(*register)).collect();
+    let missing: Vec<&String> =
+        documented.keys().filter(|register| !written.contains_key(*register)).collect();
     assert!(written.len() > 40, "only {} registers", written.len());
     assert!(
-        differ.is_empty() && gone.is_empty(),
-        "not on the page:\n{}\nno longer set: {gone:?}",
+        differ.is_empty() && missing.is_empty(),
+        "not on the page:\n{}\nno longer set: {missing:?}",
         differ.join("\n")
     );
 }

@@ -1,7 +1,7 @@
 //! The bicycle rides on the virtual board.
 
 use crate::bed::product;
-use crate::rig::slow;
+use crate::boards::slow;
 use control::Mode;
 use sim_host::ride::{Conditions, Ride, Start, traced, traced_on};
 use std::path::Path;
@@ -13,7 +13,7 @@ use virtual_board::bicycle::rides::{BOARD_STEP_S, PERIOD_S, Preset, on_board, si
 
 /// Steer rate of the disturbance \[rad/s\].
 const KNOCK_RAD_S: f64 = 1.5;
-/// How long it is ridden on \[s\].
+/// Duration of the ride after the disturbance \[s\].
 const RIDDEN_S: f64 = 1.0;
 
 /// A ride in the simulator and its torque in each control period \[N m\].
@@ -22,7 +22,7 @@ fn in_simulator(conditions: &Conditions, start: Start) -> (Ride, Vec<f64>) {
     (ride, torques_nm(&trace, 1))
 }
 
-/// One ride of the cards below; where the bicycle is at its end is left to the caller.
+/// One ride of the tests below; the check of the final state is left to the caller.
 fn rides(image: &Path, preset: Preset, rider: Option<&str>, speed_m_s: f64) -> Ride {
     let name = format!("{} {rider:?} {speed_m_s} m/s", preset.name());
     let start = Start { speed_m_s, steer_rate_rad_s: KNOCK_RAD_S, roll_rate_rad_s: 0.0 };
@@ -31,11 +31,11 @@ fn rides(image: &Path, preset: Preset, rider: Option<&str>, speed_m_s: f64) -> R
     let (rode, trace) = traced_on(&conditions, start, &mut board).expect("the board rides to the end");
     let torque = torques_nm(&trace, (PERIOD_S / BOARD_STEP_S).round() as usize);
 
-    let stands: Vec<(u8, u64)> = trace.iter().map(|point| (point.mode, point.causes)).collect();
-    let mut changes: Vec<_> = trace.iter().map(|point| point.t).zip(&stands).collect();
-    changes.dedup_by_key(|(_, stands)| *stands);
+    let states: Vec<(u8, u64)> = trace.iter().map(|point| (point.mode, point.causes)).collect();
+    let mut changes: Vec<_> = trace.iter().map(|point| point.t).zip(&states).collect();
+    changes.dedup_by_key(|(_, states)| *states);
     assert!(
-        stands.iter().all(|(mode, _)| *mode == Mode::Engaged as u8),
+        states.iter().all(|(mode, _)| *mode == Mode::Engaged as u8),
         "{name}: engaged from the knock to the end, {changes:?}"
     );
     let state = board.display().state.expect("broadcast");
@@ -75,17 +75,19 @@ fn rides_of(preset: Preset) {
     }
 }
 
-/// Situation: the flashed image on the virtual board on a bicycle, set to the published law h without limits by stored
-/// parameters, the encoder aligned; hands off at 3 m/s, and the smart rider at 5 m/s (with `--all` both at both speeds). Action: the rider engages it, then the
-/// handlebar is knocked with 1.5 rad/s. Must hold: engaged without a pause to the end of 1 s, no reset, upright; the
-/// motor's torque within 6 % (root mean square) and 0.6 N m of the simulator's with the board's parts modelled, the
-/// largest roll within 5 %, and both not the very same.
+/// Situation: the flashed image on the virtual board on a bicycle, set to the published law h without limits by
+/// stored parameters, the encoder aligned; hands off at 3 m/s, and the smart rider at 5 m/s (with `--all` both at both
+/// speeds).
+/// Action: the rider engages it, then a knock gives the handlebar 1.5 rad/s.
+/// Must hold: engaged without a pause to the end of 1 s, no reset, upright; the motor's torque within 6 % (root mean
+/// square) and 0.6 N m of the simulator's with the board's parts modelled, the largest roll within 5 %, and the two
+/// not identical.
 #[test]
 fn law_h_rides_on_the_board() {
     rides_of(Preset::H);
 }
 
-/// As above, set to what is flashed.
+/// As above, set to the flashed configuration.
 #[test]
 fn the_product_rides_on_the_board() {
     rides_of(Preset::Product);

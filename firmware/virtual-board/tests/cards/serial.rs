@@ -1,14 +1,15 @@
-//! The engineer's line: no request is lost, whatever else the chip is doing.
+//! The engineer's line: no request is lost, whatever the load of the chip.
 
 use crate::bed::{Listener, board, product, request};
 use link::message::Message;
 use rigless::soc::stm32f427::generated::usart6::Register;
 use virtual_board::Bench;
 
-/// Requests of each card, their beginnings spread evenly over the millisecond of the control step.
+/// Requests of each test, their beginnings spread evenly over the millisecond of the control step.
 const REQUESTS: u16 = 100;
 
-/// Sends so many requests at this baud rate, each in another phase of the millisecond; the numbers of those answered.
+/// Sends this number of requests at this baud rate, each in another phase of the millisecond; returns the numbers of
+/// the answered ones.
 fn answered(baud: u32, apart_ms: f64) -> Option<Vec<u16>> {
     let mut bench = board(&product()?);
     bench.run_ms(300.0).expect("no gap");
@@ -43,9 +44,10 @@ fn all_numbers() -> Vec<u16> {
     (1000..1000 + REQUESTS).collect()
 }
 
-/// Situation: the product image at work, 115,200 baud: a byte every 87 us, while control holds the core for a third of
-/// each millisecond. Action: a hundred requests, beginning in every hundredth of the millisecond. Must hold: each is
-/// answered once, in order.
+/// Situation: the product image under load, 115,200 baud: a byte every 87 us, while control occupies the core for a
+/// third of each millisecond.
+/// Action: a hundred requests, beginning in every hundredth of the millisecond.
+/// Must hold: each is answered once, in order.
 #[test]
 fn no_request_is_lost_at_115200_baud() {
     let Some(answers) = answered(115_200, 12.0) else { return };

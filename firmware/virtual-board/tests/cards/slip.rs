@@ -1,7 +1,7 @@
 //! The magnet of the motor's encoder slips while the bicycle rides on the virtual board.
 
 use crate::bed::product;
-use crate::rig::says;
+use crate::boards::log_has;
 use control::{Plan, SensorFrame};
 use sim_host::ride::{Remote, RemoteError, Start, Stepped, traced_on};
 use virtual_board::Options;
@@ -16,7 +16,7 @@ const SLIP_S: f64 = 0.1;
 struct Slipping {
     board: OnBicycle,
     step_s: f64,
-    /// When the knock came \[ms after power-on\].
+    /// Time of the knock \[ms after power-on\].
     knock_ms: Option<f64>,
     slipped_turns: f64,
 }
@@ -41,9 +41,10 @@ impl Remote for Slipping {
     }
 }
 
-/// Situation: the product with the smart rider at 3 m/s, engaged; a knock of 2 rad/s proves the encoder's angle. Action: from
-/// the knock on the encoder slips by half an electrical turn, in 0.1 s. Must hold: the bridge is closed at the knock, and
-/// open for good within 0.1 s, not before the slip is a fifth of a turn; motor fault 24 or 19 in the log; the rider goes on.
+/// Situation: the product with the smart rider at 3 m/s, engaged; a knock of 2 rad/s confirms the encoder's angle.
+/// Action: from the knock on the encoder slips by half an electrical turn, in 0.1 s.
+/// Must hold: the bridge is closed at the knock, and permanently open within 0.1 s, not before the slip is a fifth of
+/// a turn; motor fault 24 or 19 in the log; the rider rides on.
 #[test]
 fn a_magnet_that_slips_opens_the_bridge() {
     let Some(image) = product() else { return };
@@ -60,7 +61,7 @@ fn a_magnet_that_slips_opens_the_bridge() {
     println!("open {open_ms:.1} ms after the slip began");
     assert!(closed_ns as f64 * 1e-6 < knock_ms, "{changes:?}, knock at {knock_ms} ms");
     assert!((0.2 * SLIP_S * 1e3..100.0).contains(&open_ms), "{open_ms} ms");
-    let log = ["motor fault 24", "motor fault 19"].map(|words| says(bench, knock_ms, words));
+    let log = ["motor fault 24", "motor fault 19"].map(|text| log_has(bench, knock_ms, text));
     assert!(log.contains(&true), "{:#?}", bench.log());
     assert!(!ride.fell(), "{:?}", ride.end);
 }

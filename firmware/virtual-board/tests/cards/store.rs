@@ -1,6 +1,6 @@
-//! The flash of the parameters: time, watchdog and power while it is erased and programmed.
+//! The flash of the parameters: time, watchdog and power failures during erase and programming.
 
-use crate::rig::{PRODUCT, ask, image, slow};
+use crate::boards::{PRODUCT, image, query, slow};
 use link::key::Key;
 use link::message::Message;
 use std::ops::Range;
@@ -11,37 +11,39 @@ use virtual_board::{Bench, Options};
 /// Addresses of the flash of the parameters.
 const STORE: Range<u32> = 0x0800_4000..0x0801_0000;
 
-/// The product's board after its start, with this in the flash of its parameters.
+/// The product's board after its start, with these bytes in the flash of its parameters.
 fn started(options: Options, store: &[u8]) -> Bench {
     let mut bench = Bench::power_on_with_store(&image(PRODUCT), options, Wiring::new(), Some(store)).unwrap();
     bench.run_ms(280.0).unwrap();
     bench
 }
 
-/// Sets the limit of the torque and has it stored.
+/// Sets the limit of the torque and stores it.
 fn store(bench: &mut Bench, torque_nm: f32) {
     let set = Message::Set { key: Key::whole("limits.max_torque_nm"), value: Some(torque_nm) };
     let value = |message: &Message<'_>| match message {
         Message::Value { value, .. } => Some(*value),
         _ => None,
     };
-    assert_eq!(ask(bench, &set, 200.0, value), Some(torque_nm));
-    ask(bench, &Message::Store, 6000.0, |message| matches!(message, Message::Done).then_some(()));
+    assert_eq!(query(bench, &set, 200.0, value), Some(torque_nm));
+    query(bench, &Message::Store, 6000.0, |message| matches!(message, Message::Done).then_some(()));
 }
 
-/// Steps and clock \[us\] of the next telemetry, and when it was there \[us\].
+/// Steps and clock \[us\] of the next telemetry, and its time of arrival \[us\].
 fn clocks(bench: &mut Bench) -> [f64; 3] {
     let telemetry = |message: &Message<'_>| match message {
         Message::Telemetry(t) => Some((t.steps, t.frame.now_us)),
         _ => None,
     };
-    let (steps, now_us) = ask(bench, &Message::AskHello, 200.0, telemetry);
+    let (steps, now_us) = query(bench, &Message::AskHello, 200.0, telemetry);
     [f64::from(steps), f64::from(now_us), bench.now_ms() * 1e3]
 }
 
 /// Situation: a flash full of zeros, which takes the longest times of its data sheet, and a watchdog whose oscillator
-/// is the fastest. Action: a store, which erases all three sectors. Must hold: each is erased by words; the data cache holds
-/// nothing that an erase took away; no reset; the program's clock loses nothing and control makes up for every step.
+/// is the fastest.
+/// Action: a store, which erases all three sectors.
+/// Must hold: each is erased by words; the data cache holds nothing that was erased; no reset; the program's clock
+/// loses nothing and control makes up for every step.
 #[test]
 fn the_longest_store_is_survived_without_losing_time() {
     let options = Options { flash: Pace::Longest, lsi_hz: 47_000, ..Options::default() };
@@ -59,34 +61,31 @@ fn the_longest_store_is_survived_without_losing_time() {
         board.flash.changes.iter().filter_map(erased).collect()
     });
     assert_eq!(erased, [(1, 2), (2, 2), (3, 2)], "sectors and PSIZE");
-    assert_eq!(
-        bench.with(|board| board.flash.stale_ns),
-        None,
-        "[ns], the data cache answers with what is gone"
-    );
+    assert_eq!(bench.with(|board| board.flash.stale_ns), None, "[ns], the data cache returns erased bytes");
     let [steps, clock_us, true_us] = [0, 1, 2].map(|i| after[i] - before[i]);
     println!("{:.1} ms true, {:.1} ms by the clock, {steps} steps", true_us * 1e-3, clock_us * 1e-3);
     assert!(true_us > 2.0e6, "{true_us} us");
-    // Telemetry is some milliseconds old when it is there, not always as many.
+    // Telemetry arrives some milliseconds old, not always by the same number.
     assert!((true_us - clock_us).abs() < 15e3, "{true_us} us, by the clock {clock_us} us");
     assert!((clock_us * 1e-3 - steps).abs() <= 1.0, "{clock_us} us, {steps} steps");
 }
 
-/// What the log of a start says of its configuration.
+/// The configuration as reported in the log of a start.
 fn configuration(store: &[u8]) -> String {
     let mut bench =
         Bench::power_on_with_store(&image(PRODUCT), Options::default(), Wiring::new(), Some(store)).unwrap();
-    let told = |bench: &mut Bench| {
+    let logged = |bench: &mut Bench| {
         let mut lines = bench.log().iter().map(|line| &line.text);
         lines.find(|text| text.starts_with("configuration ")).cloned()
     };
-    bench.run_until(300.0, "configuration", |bench| told(bench).is_some()).unwrap();
-    told(&mut bench).expect("told")
+    bench.run_until(300.0, "configuration", |bench| logged(bench).is_some()).unwrap();
+    logged(&mut bench).expect("logged")
 }
 
-/// Situation: a configuration is stored. Action: another is stored over it, and the power fails between two words that
-/// are programmed. Must hold: the next start has the old one or the new one, from some word on the new one, and says that it is
-/// a stored one. A few of the words; all of them with `STEER_ASSIST_SLOW`.
+/// Situation: a configuration is stored.
+/// Action: another is stored over it, and the power fails between two words that are programmed.
+/// Must hold: the next start has the old one or the new one, from some word on the new one, and reports a stored one.
+/// A few of the words; all of them with `STEER_ASSIST_SLOW`.
 #[test]
 fn a_store_cut_by_a_power_failure_is_the_old_one_or_the_new_one() {
     let mut bench = started(Options::default(), &[0xff; 48 << 10]);
@@ -113,7 +112,7 @@ fn a_store_cut_by_a_power_failure_is_the_old_one_or_the_new_one() {
         }
         flash
     };
-    assert_eq!(after(words.len()), new, "the words are all that was done");
+    assert_eq!(after(words.len()), new, "the words are all changes");
     let (before, then) = (configuration(&old), configuration(&new));
     assert_ne!(before, then);
     assert!(before.ends_with("stored ones") && then.ends_with("stored ones"), "{before}, {then}");

@@ -1,7 +1,7 @@
 //! The frame vibrates faster than the gyro is read.
 
 use crate::bed::{Listener, request};
-use crate::rig::{PRODUCT, powered};
+use crate::boards::{PRODUCT, powered};
 use link::message::Message;
 use std::f64::consts::TAU;
 use virtual_board::Bench;
@@ -11,7 +11,7 @@ use virtual_board::wiring::Wiring;
 /// Time between two corners of the motion \[ms\].
 const CORNER_MS: f64 = 0.1;
 
-/// The largest roll rate in the telemetry of so many corners, while the gyro vibrates about x with 1 rad/s.
+/// The largest roll rate in the telemetry over a number of corners, while the gyro vibrates about x with 1 rad/s.
 fn largest_rad_s(bench: &mut Bench, hz: f64, corners: u32) -> f64 {
     let rate = |at_ms: f64| (TAU * hz * 1e-3 * at_ms).sin();
     bench.received();
@@ -32,9 +32,10 @@ fn largest_rad_s(bench: &mut Bench, hz: f64, corners: u32) -> f64 {
     largest.into()
 }
 
-/// Situation: the product runs, and reads its gyro 1000 times a second; what is faster than 500 Hz seems to be something
-/// slower. Action: the frame rolls with 1 rad/s at 7 Hz, then at 613 Hz, which seems to be 387. Must hold: of the slow
-/// motion all is seen, of the fast one between a fiftieth and a tenth: the sensor filters it before it is read.
+/// Situation: the product runs, and reads its gyro 1000 times a second; frequencies above 500 Hz fold to lower ones.
+/// Action: the frame rolls with 1 rad/s at 7 Hz, then at 613 Hz, which folds to 387.
+/// Must hold: the slow motion is measured fully, the fast one between a fiftieth and a tenth: the sensor filters it
+/// before it is read.
 #[test]
 fn a_vibration_does_not_fold_into_the_motion() {
     let mut bench = powered(PRODUCT, Wiring::new());

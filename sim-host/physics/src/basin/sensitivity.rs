@@ -68,8 +68,8 @@ impl Quantity {
                     rider.schedule = Schedule::new(points, outside)?;
                 }
                 Self::Delay => rider.delay_s *= factor,
-                Self::NeuromuscularFrequency => rider.muscles.omega_rad_s *= factor,
-                Self::NeuromuscularDamping => rider.muscles.zeta *= factor,
+                Self::NeuromuscularFrequency => rider.neuromuscular.omega_rad_s *= factor,
+                Self::NeuromuscularDamping => rider.neuromuscular.zeta *= factor,
                 Self::Bicycle(_) => {}
             }
         }

@@ -45,9 +45,9 @@ pub fn modes(model: &Model, speeds: &[f64], count: usize) -> Vec<Mode> {
     order.sort_by(|&i, &j| speeds[i].total_cmp(&speeds[j]));
     let (below, above): (Vec<usize>, Vec<usize>) =
         order.into_iter().partition(|&i| speeds[i] <= REFERENCE_SPEED_M_S);
-    for way in [below.into_iter().rev().collect(), above] {
+    for direction in [below.into_iter().rev().collect(), above] {
         let mut followed = Followed::new(REFERENCE_SPEED_M_S, &start);
-        for i in way {
+        for i in direction {
             followed.go(speeds[i], SPEED_STEP, &find);
             for (curve, root) in curves.iter_mut().zip(followed.now()) {
                 curve[i] = *root;

@@ -143,7 +143,7 @@ impl Model {
         let torque = with_rider - 2;
         a[(2, torque)] = of_torque[0];
         a[(3, torque)] = of_torque[1];
-        let neuromuscular = rider.muscles;
+        let neuromuscular = rider.neuromuscular;
         a[(torque, torque + 1)] = 1.0;
         a[(torque + 1, torque)] = -neuromuscular.omega_rad_s.powi(2);
         a[(torque + 1, torque + 1)] = -2.0 * neuromuscular.zeta * neuromuscular.omega_rad_s;

@@ -278,7 +278,7 @@ fn kind(channel: Channel, text: &str) -> Result<Kind, FaultFormError> {
             FaultFormError::Kind { name: name.into(), channel: channel.name(), known }
         })?;
     let value = match (known.contains('='), value) {
-        (true, None) => return Err(FaultFormError::NoValue { name: name.into(), form: *known }),
+        (true, None) => return Err(FaultFormError::NoValue { name: name.into(), form: known }),
         (false, Some(_)) => return Err(FaultFormError::Value(name.into())),
         (_, value) => value.unwrap_or_default(),
     };

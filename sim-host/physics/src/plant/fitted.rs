@@ -264,7 +264,7 @@ struct PulseCounter {
     /// Speed at the previous control instant \[m/s\].
     speed_m_s: f64,
     /// Distance since the last pulse \[m\].
-    way_m: f64,
+    distance_m: f64,
     /// Time since the last pulse \[s\]; none before the first.
     age_s: Option<f64>,
 }
@@ -281,7 +281,7 @@ impl PulseCounter {
             },
             period_s,
             speed_m_s,
-            way_m: 0.0,
+            distance_m: 0.0,
             age_s: None,
         }
     }
@@ -291,13 +291,13 @@ impl PulseCounter {
         let each_m = TAU * f64::from(self.config.radius_m) / f64::from(self.config.pulses_per_turn);
         let mean_m_s = 0.5 * (self.speed_m_s + now_m_s).abs();
         self.speed_m_s = now_m_s;
-        self.way_m += mean_m_s * self.period_s;
+        self.distance_m += mean_m_s * self.period_s;
         let before_s = self.age_s.map(|age| age + self.period_s);
         self.age_s = before_s;
-        let new = (self.way_m / each_m).floor();
+        let new = (self.distance_m / each_m).floor();
         if new >= 1.0 {
-            self.way_m -= new * each_m;
-            let age_s = self.way_m / mean_m_s;
+            self.distance_m -= new * each_m;
+            let age_s = self.distance_m / mean_m_s;
             // With several pulses in one period, the last two are evenly spaced.
             let apart_s =
                 if new > 1.0 { Some(each_m / mean_m_s) } else { before_s.map(|before| before - age_s) };

@@ -20,7 +20,7 @@ pub use fault_text::{FaultFormError, FaultTextError};
 pub use fitted::{FittedErrors, OCTAVES_HZ};
 pub use friction::Friction;
 pub use reading::{Frame, Imu, Odometry, Reading, Sensor};
-pub use sensor::{Before, ImuMount, SensorConfig, SensorDice, SensorModel, SensorState};
+pub use sensor::{Before, ImuMount, SensorConfig, SensorModel, SensorRng, SensorState};
 pub use sensor_suite::faulty;
 pub use sensor_suite::{Held, Measured, SensorSuite};
 pub use stop::SteerStop;

@@ -218,7 +218,7 @@ pub struct SensorState {
 
 /// Random numbers of a sensor: for data-sheet noise and for fitted errors.
 #[derive(Debug)]
-pub struct SensorDice {
+pub struct SensorRng {
     /// For noise and dropout.
     pub plain: RandomStream,
     /// For [`FittedErrors`].
@@ -238,7 +238,7 @@ pub struct Before {
 
 impl SensorState {
     /// State before the control instant 0.
-    pub fn new(model: &SensorModel, before: &Before, random: SensorDice) -> Self {
+    pub fn new(model: &SensorModel, before: &Before, random: SensorRng) -> Self {
         let Before { truth, speed_m_s, period_s } = *before;
         let sample_s = f64::from(model.every_ticks) * period_s;
         let fitted = (model.fitted != FittedErrors::default())

@@ -1,7 +1,7 @@
 //! All sensors, the switch and the clock of one ride, with their faults.
 
 use super::fault::{Channel, Fault, FaultState};
-use super::sensor::{Before, SensorDice, SensorState};
+use super::sensor::{Before, SensorRng, SensorState};
 use super::{Plant, Reading, Sensor};
 use crate::bicycle::Start;
 use crate::num::RandomStream;
@@ -63,7 +63,7 @@ impl SensorSuite {
         let state = |s: Sensor| {
             let truth = plant.truth(s, steady);
             let before = Before { truth, speed_m_s: steady.rear_wheel_m_s, period_s };
-            let random = SensorDice { plain: random(s as usize), fitted: random(FITTED + s as usize) };
+            let random = SensorRng { plain: random(s as usize), fitted: random(FITTED + s as usize) };
             SensorState::new(config.model(s), &before, random)
         };
         let held = |sensor: Sensor| Held {

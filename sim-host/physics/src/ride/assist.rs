@@ -3,6 +3,8 @@
 use crate::bicycle::{Geometry, Velocities};
 use crate::num::Scalar;
 use control::{DeadBand, Law, Plan};
+use std::fmt;
+use std::sync::Arc;
 
 /// The steer assist of a ride.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +15,8 @@ pub enum Assist {
     Firmware(Box<Plan>),
     /// The law alone in f64, continuous in time, with exact sensors and no limits.
     Ideal(Box<IdealLaw>),
+    /// A law of another program, under the same conditions as [`Assist::Ideal`].
+    Own(OwnLaw),
 }
 
 /// A roll-rate law behind its dead band, in f64.
@@ -29,6 +33,39 @@ impl IdealLaw {
     #[inline(always)]
     pub(super) fn torque_nm(&self, roll_rate_rad_s: f64, speed_m_s: f64) -> f64 {
         self.law.gain(speed_m_s) * self.dead_band.excess(roll_rate_rad_s)
+    }
+}
+
+/// Steer torque \[N m\] from roll rate \[rad/s\] and forward speed \[m/s\].
+type TorqueNm = dyn Fn(f64, f64) -> f64 + Send + Sync;
+
+/// A law of another program: a function of roll rate and forward speed. Two are equal if they are clones of one.
+#[derive(Clone)]
+pub struct OwnLaw(Arc<TorqueNm>);
+
+impl OwnLaw {
+    /// A law from a function of the roll rate \[rad/s\] and the forward speed \[m/s\] to the steer torque, positive to
+    /// the right \[N m\]. It is called at every stage of the integration, from several threads. Basins are searched to
+    /// one side: the function must be odd in the roll rate.
+    pub fn new(torque_nm: impl Fn(f64, f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self(Arc::new(torque_nm))
+    }
+
+    /// Steer torque at a roll rate \[rad/s\] and a forward speed \[m/s\], positive to the right \[N m\].
+    pub(super) fn torque_nm(&self, roll_rate_rad_s: f64, speed_m_s: f64) -> f64 {
+        self.0(roll_rate_rad_s, speed_m_s)
+    }
+}
+
+impl fmt::Debug for OwnLaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("OwnLaw")
+    }
+}
+
+impl PartialEq for OwnLaw {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
     }
 }
 

@@ -113,7 +113,7 @@ impl Conditions {
         self.fall.check()?;
         self.rider.as_ref().map_or(Ok(()), |rider| rider.check(self.step_s))?;
         self.plant.check()?;
-        if matches!(self.assist, Assist::Ideal(_)) && !self.plant.exact() {
+        if matches!(self.assist, Assist::Ideal(_) | Assist::Own(_)) && !self.plant.exact() {
             return Err(ConditionsError::IdealLaw);
         }
         let delay_ticks = f64::from(self.sensor_delay_ticks);

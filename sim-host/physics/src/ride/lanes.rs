@@ -96,6 +96,11 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
                 let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
                 given = rate.zip(speed, |p, v| law.torque_nm(p, v));
             }
+        } else if let Assist::Own(law) = &self.conditions.assist {
+            if stage > 0 {
+                let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
+                given = rate.zip(speed, |p, v| law.torque_nm(p, v));
+            }
         } else if !self.plant.actuator.exact() {
             let elapsed_s = STAGES[stage] * self.conditions.step_s;
             for (lane, ride) in self.lanes.iter().enumerate() {

@@ -19,7 +19,7 @@ mod warm_start;
 
 pub use crate::bicycle::Start;
 pub use crate::plant::Imu;
-pub use assist::{Assist, IdealLaw};
+pub use assist::{Assist, IdealLaw, OwnLaw};
 pub use backend::{Remote, RemoteError, Stepped};
 pub use batch::{rides, rides_on, traced, traced_on};
 pub use conditions::{Conditions, ConditionsError, ScheduleSpeed};

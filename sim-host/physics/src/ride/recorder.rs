@@ -110,6 +110,10 @@ impl RideRecorder {
                 torque_nm: law.torque_nm(measured.roll_rate_rad_s, measured.speed_m_s),
                 ..ControllerOutput::NONE
             },
+            Assist::Own(law) => ControllerOutput {
+                torque_nm: law.torque_nm(measured.roll_rate_rad_s, measured.speed_m_s),
+                ..ControllerOutput::NONE
+            },
         }
     }
 

@@ -32,7 +32,7 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
     pub(super) fn restart(&mut self, lane: usize) {
         self.set(lane, &RiderState::fresh());
         if let Some(delay_line) = &mut self.delay_line {
-            delay_line[lane].forget();
+            delay_line[lane].clear();
         }
     }
 
@@ -60,7 +60,7 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
             }
             None => neural(self.rider, &rider_state.signals(now), speeds),
         };
-        let k = rider_state.rate(b, now, &self.rider.muscles, alpha);
+        let k = rider_state.rate(b, now, &self.rider.neuromuscular, alpha);
         self.rider_state.next(stage, h, &k);
     }
 
@@ -165,7 +165,7 @@ impl RiderLane<'_> {
             }
             None => neural(),
         };
-        let k = rider_state.rate(b, now, &self.rider.muscles, alpha);
+        let k = rider_state.rate(b, now, &self.rider.neuromuscular, alpha);
         self.rider_state.next(stage, h, &k);
     }
 }
@@ -223,8 +223,8 @@ mod tests {
         let gains = Gains([-8.0, -0.5, 7.0, 4.2, 12.0, 3.0, 1.3, -0.09, -0.6, 0.0]);
         for delay in [0, 30, DELAY_STEPS] {
             for periods in [1_usize, 3, 10] {
-                let (muscles, tau) = (Neuromuscular::SHOULDERS, delay as f64 * STEP_S);
-                let rider = Rider { schedule: Schedule::constant(gains), delay_s: tau, muscles };
+                let (neuromuscular, tau) = (Neuromuscular::SHOULDERS, delay as f64 * STEP_S);
+                let rider = Rider { schedule: Schedule::constant(gains), delay_s: tau, neuromuscular };
                 // Whole periods in the last second.
                 let omega = TAU * periods as f64;
                 let torques = swung(&rider, delay, omega, 4.0);
@@ -233,8 +233,10 @@ mod tests {
                     let [p, i, d, dd] = [0, 1, 2, 3].map(|j| Complex::from(gains.0[at + j]));
                     p + i / s + d * s + dd * s * s
                 };
-                let filter = muscles.omega_rad_s.powi(2)
-                    / (s * s + s * 2.0 * muscles.zeta * muscles.omega_rad_s + muscles.omega_rad_s.powi(2));
+                let filter = neuromuscular.omega_rad_s.powi(2)
+                    / (s * s
+                        + s * 2.0 * neuromuscular.zeta * neuromuscular.omega_rad_s
+                        + neuromuscular.omega_rad_s.powi(2));
                 let feedback = k(0) * ROLL + k(4) * STEER + Complex::from(gains.0[8] * YAW);
                 let expected = feedback * ComplexField::exp(-s * tau) * filter;
                 let mut simulated = Complex::new(0.0, 0.0);

@@ -90,6 +90,10 @@ impl Period<'_> {
                 let (rate, speed) = readings(self.conditions, v, self.initial_m_s);
                 law.torque_nm(rate, speed)
             }
+            (Assist::Own(law), _) => {
+                let (rate, speed) = readings(self.conditions, v, self.initial_m_s);
+                law.torque_nm(rate, speed)
+            }
         };
         let rider_nm = self.rider.as_ref().map(|rider| rider.rider_state.at.torque);
         steer_torque::torques(actuator, assist, rider_nm, || steer_rad, v.steer)

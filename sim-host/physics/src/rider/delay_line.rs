@@ -26,7 +26,7 @@ impl DelayLine {
     }
 
     /// Clears all signals, for a new ride.
-    pub fn forget(&mut self) {
+    pub fn clear(&mut self) {
         self.pushed = 0;
     }
 
@@ -149,7 +149,7 @@ mod tests {
         let mut delay_line = DelayLine::new(4);
         (0..20).for_each(|_| delay_line.push(1.0));
         assert_eq!(delay_line.arriving()[1], 1.0);
-        delay_line.forget();
+        delay_line.clear();
         delay_line.push(2.0);
         assert_eq!(delay_line.arriving()[2], 0.0);
         delay_line.correct(3.0);

@@ -114,11 +114,11 @@ impl File {
             return Err(TableError::Schema(self.schema));
         }
         within("`delay_ms`", self.delay_ms, 0.0, MAX_DELAY_S * 1e3)?;
-        let muscles = self
+        let neuromuscular = self
             .neuromuscular
             .as_ref()
             .map_or(Neuromuscular::SHOULDERS, |m| Neuromuscular { omega_rad_s: m.omega_rad_s, zeta: m.zeta });
-        muscles.check().map_err(TableError::Neuromuscular)?;
+        neuromuscular.check().map_err(TableError::Neuromuscular)?;
         let columns = self.gain_columns()?;
         within("number of `rows`", self.rows.len() as f64, 1.0, 1000.0)?;
         let mut rows: Vec<Row> = Vec::new();
@@ -133,7 +133,7 @@ impl File {
             note: self.note,
             bicycle: self.bicycle,
             delay_s: self.delay_ms / 1e3,
-            muscles,
+            neuromuscular,
             regression,
             best_runs: self.best_runs,
             columns,

@@ -119,6 +119,6 @@ impl RiderTable {
     /// As [`RiderTable::schedule`].
     pub fn rider(&self, fit: Fit, outside: Outside, delay_s: Option<f64>) -> Result<Rider, ScheduleError> {
         let schedule = self.schedule(fit, outside)?;
-        Ok(Rider { schedule, delay_s: delay_s.unwrap_or(self.delay_s), muscles: self.muscles })
+        Ok(Rider { schedule, delay_s: delay_s.unwrap_or(self.delay_s), neuromuscular: self.neuromuscular })
     }
 }

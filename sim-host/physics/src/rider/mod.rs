@@ -2,8 +2,8 @@
 //! shoulders, in parallel with the assist (Kuipers 2020, sections 2.1.3 and 2.3; Schwab et al. 2013).
 
 pub mod catalogue;
+mod compatibility;
 mod delay_line;
-mod doubts;
 mod error;
 mod file;
 mod fit;
@@ -14,8 +14,8 @@ mod schedule;
 mod state;
 mod table;
 
+pub use compatibility::compatibility_warnings;
 pub use delay_line::DelayLine;
-pub use doubts::doubts;
 pub use error::{RiderError, RowError, ScheduleError, TableError, UnfitError};
 pub use fit::{Fit, mean};
 pub use gains::{Gains, KEYS, Signals};
@@ -35,7 +35,7 @@ pub struct Rider {
     /// Effective neural delay \[s\].
     pub delay_s: f64,
     /// Neuromuscular dynamics.
-    pub muscles: Neuromuscular,
+    pub neuromuscular: Neuromuscular,
 }
 
 /// Longest neural delay \[s\].
@@ -53,7 +53,7 @@ impl Rider {
     /// States the value and its range, or the nearest possible delays.
     pub fn check(&self, step_s: f64) -> Result<(), UnfitError> {
         within("neural delay (s)", self.delay_s, 0.0, MAX_DELAY_S)?;
-        self.muscles.check()?;
+        self.neuromuscular.check()?;
         let steps = self.delay_s / step_s;
         if (steps - self.delay_steps(step_s) as f64).abs() <= 1e-6 {
             return Ok(());

@@ -90,10 +90,10 @@ mod tests {
         let points = vec![(2.0, gains(1.0)), (4.0, gains(2.0)), (5.0, gains(0.0))];
         let of = |outside| Schedule::new(points.clone(), outside).unwrap();
         let (on, stop) = (of(Outside::Extrapolate), of(Outside::Hold));
-        for (v, want, held) in
+        for (v, expected, held) in
             [(1.0, 0.5, 1.0), (2.0, 1.0, 1.0), (3.0, 1.5, 1.5), (4.5, 1.0, 1.0), (6.0, -2.0, 0.0)]
         {
-            assert_eq!(on.at(v), gains(want), "{v}");
+            assert_eq!(on.at(v), gains(expected), "{v}");
             assert_eq!(stop.at(v), gains(held), "{v}");
         }
     }

@@ -34,7 +34,7 @@ pub struct RiderTable {
     /// Effective neural delay of the identification \[s\].
     pub delay_s: f64,
     /// Neuromuscular dynamics of the identification.
-    pub muscles: Neuromuscular,
+    pub neuromuscular: Neuromuscular,
     /// Run of each group that counts as its best; if absent, the one with the highest VAF.
     pub best_runs: Option<Vec<u32>>,
     /// The published regression, if the rows do not reproduce it to all digits.
@@ -82,8 +82,8 @@ impl RiderTable {
             text("note", &self.note),
             text("bicycle", &self.bicycle),
             self.delay_s * 1e3,
-            self.muscles.omega_rad_s,
-            self.muscles.zeta,
+            self.neuromuscular.omega_rad_s,
+            self.neuromuscular.zeta,
             self.best_runs.as_ref().map_or(String::new(), |runs| format!("best_runs = {runs:?}\n")),
             rows.collect::<String>(),
             if lines.is_empty() { "" } else { "\n[regression]\n" },

@@ -47,12 +47,12 @@ pub(super) fn read(file: &mut File, block: &Block, content: &mut Content) {
             .collect();
     if !file.unfinished && joined.broken.is_none() && rest.is_none() {
         for part in &mut parts {
-            let (has, says) = (part.records.len(), part.shape.count);
-            if !part.shape.variable && (has as u64) < says {
-                let what = format!("group {}: its header states {says} records, it has {has}", part.name);
+            let (has, declared) = (part.records.len(), part.shape.count);
+            if !part.shape.variable && (has as u64) < declared {
+                let what = format!("group {}: its header states {declared} records, it has {has}", part.name);
                 remarks.push(Remark::of_file(what));
             }
-            part.records.truncate(usize::try_from(says).unwrap_or(usize::MAX));
+            part.records.truncate(usize::try_from(declared).unwrap_or(usize::MAX));
         }
     }
     content.remarks.append(&mut remarks);

@@ -46,7 +46,7 @@ pub(super) fn apart(
     let mut records = vec![Vec::new(); shapes.len()];
     if id_bytes == 0 {
         let [shape] = shapes else {
-            return (records, Some("its records have no number that tells the groups apart"));
+            return (records, Some("its records have no number of their group"));
         };
         let size = shape.bytes();
         let Some(whole) = bytes.len().checked_div(size) else { return (records, None) };

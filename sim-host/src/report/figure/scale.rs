@@ -3,23 +3,23 @@
 use kuva::render::render_utils::{auto_nice_range, compute_tick_step, generate_ticks};
 
 /// Round numbers in a range, with their texts.
-pub(in crate::report) fn ticks(range: (f64, f64), wanted: usize) -> Vec<(f64, String)> {
-    let wanted = wanted.clamp(3, 10);
-    let step = compute_tick_step(range.0, range.1, wanted);
+pub(in crate::report) fn ticks(range: (f64, f64), count: usize) -> Vec<(f64, String)> {
+    let count = count.clamp(3, 10);
+    let step = compute_tick_step(range.0, range.1, count);
     let decimals = (1..6).find(|&d| (step * 10f64.powi(d)).fract() < 1e-9).unwrap_or(6) as usize;
     let decimals = if step.fract() == 0.0 { 0 } else { decimals };
     // + 0.0 turns -0 into 0.
-    generate_ticks(range.0, range.1, wanted)
+    generate_ticks(range.0, range.1, count)
         .into_iter()
         .map(|v| (v, format!("{:.decimals$}", v + 0.0)))
         .collect()
 }
 
 /// A range with round ends around the finite values; 0 to 1 without any.
-pub(in crate::report) fn nice(values: impl IntoIterator<Item = f64>, wanted: usize) -> (f64, f64) {
+pub(in crate::report) fn nice(values: impl IntoIterator<Item = f64>, count: usize) -> (f64, f64) {
     let finite = values.into_iter().filter(|v| v.is_finite());
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-    if low > high { (0.0, 1.0) } else { auto_nice_range(low, high, wanted) }
+    if low > high { (0.0, 1.0) } else { auto_nice_range(low, high, count) }
 }
 
 #[cfg(test)]

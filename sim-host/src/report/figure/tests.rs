@@ -56,7 +56,7 @@ fn a_basin_says_what_its_signs_mean() {
     let columns = vec![column(0.0, 3.0, &[island]), column(1.0, 8.0, &[])];
     let basin = Basin { columns };
     let text = svg(&super::basin(&figure(&[("law", &basin)])));
-    for words in [
+    for texts in [
         "a &lt; b",
         "Forward speed v [m/s]",
         "Initial steer rate [rad/s]",
@@ -67,7 +67,7 @@ fn a_basin_says_what_its_signs_mean() {
         "no fall up to the largest rate tried",
         "self-stable, 1.00–2.50 m/s",
     ] {
-        assert!(text.contains(words), "{words}");
+        assert!(text.contains(texts), "{texts}");
     }
 }
 
@@ -111,10 +111,10 @@ fn rides_of_any_length_are_drawn() {
         let trace: Vec<_> = (0..n).map(point).collect();
         let draw = |outcome| svg(&ride(&RideFigure { title: "", trace: &trace, outcome }));
         let text = draw(Outcome::Fallen { time_s: 1.5, by: FallCause::Steer });
-        for words in
+        for texts in
             ["Angle [deg]", "Rate [rad/s]", "Speed [m/s]", "Torque [N m]", "Time [s]", "falls at 1.500 s"]
         {
-            assert!(text.contains(words), "{words}");
+            assert!(text.contains(texts), "{texts}");
         }
         assert_eq!(n > 0, text.contains("limit: rate of change"));
         assert!(draw(Outcome::Undecided).contains("undecided"));

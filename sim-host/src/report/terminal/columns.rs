@@ -19,10 +19,10 @@ pub(super) fn plot(basin: &Basin, title: &str, width: usize) -> String {
     let x = if first < last { (first, last) } else { (first - 0.5, first + 0.5) };
     let reach = basin.columns.iter().flat_map(|c| c.islands.iter().map(|i| i.to).chain([c.upper]));
     let top = nice(reach.chain([0.0]), 6).1;
-    let seen: Vec<Option<&Column>> = (0..across).map(|i| nearest(basin, x, i, across)).collect();
+    let shown: Vec<Option<&Column>> = (0..across).map(|i| nearest(basin, x, i, across)).collect();
 
     let capped: String =
-        seen.iter().map(|c| if c.is_some_and(|c| c.capped) { CAPPED } else { ' ' }).collect();
+        shown.iter().map(|c| if c.is_some_and(|c| c.capped) { CAPPED } else { ' ' }).collect();
     let mut text = format!("{title}\n");
     if capped.contains(CAPPED) {
         text += &format!("{:MARGIN$}{}\n", "", capped.trim_end());
@@ -34,7 +34,7 @@ pub(super) fn plot(basin: &Basin, title: &str, width: usize) -> String {
         let (low, high) = (row as f64 * height, (row + 1) as f64 * height);
         let number =
             numbers.iter().find(|(v, _)| *v > low + 1e-9 && *v <= high + 1e-9 || *v <= 0.0 && row == 0);
-        let line: String = seen.iter().map(|c| c.map_or(' ', |c| sign(c, low, high))).collect();
+        let line: String = shown.iter().map(|c| c.map_or(' ', |c| sign(c, low, high))).collect();
         text += &margin(number.map(|(_, n)| n.as_str()));
         text += line.trim_end();
         text.push('\n');

@@ -102,7 +102,7 @@ pub struct Predicted {
 impl WeaveDocument {
     /// The pooled weave as measured values; `source` names their origin.
     pub fn measured(&self, source: &str) -> Measured {
-        let kept = |entry: &WeaveEntry| {
+        let selected = |entry: &WeaveEntry| {
             let (decay, frequency) = (entry.decay_1_s?, entry.frequency_rad_s?);
             Some(MeasuredWeave {
                 gain: entry.gain,
@@ -119,7 +119,7 @@ impl WeaveDocument {
             source: source.into(),
             columns: self.config.columns.clone(),
             beside: self.config.beside.into(),
-            weave: self.weave.iter().filter_map(kept).collect(),
+            weave: self.weave.iter().filter_map(selected).collect(),
         }
     }
 }

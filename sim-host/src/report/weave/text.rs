@@ -66,8 +66,8 @@ fn recordings(document: &WeaveDocument) -> String {
         let name =
             Path::new(&entry.file).file_name().map_or(entry.file.clone().into(), |n| n.to_string_lossy());
         let w = &entry.weave;
-        let words = |text: &str| text.to_lowercase();
-        let (begins, ends) = (words(&format!("{:?}", w.begins)), words(&format!("{:?}", w.ends)));
+        let lowercase = |text: &str| text.to_lowercase();
+        let (begins, ends) = (lowercase(&format!("{:?}", w.begins)), lowercase(&format!("{:?}", w.ends)));
         let window = format!("{:.2} {begins}, {:.2} {ends}", w.from_s, w.to_s);
         let line = format!(
             "{name:<28} {:>5} {:>6.2}  {window:<25} {:>7.2}  {:<22} {}",

@@ -1,21 +1,22 @@
-//! docs/hardware.md's bring-up, step by step: the page says what is done and what must be shown, these cards do it.
+//! The bring-up of docs/hardware.md, step by step: the page states the actions and what must be shown; these tests do
+//! them.
 
-mod hands;
+mod actions;
 mod monitor;
 mod page;
 mod pattern;
 mod table;
 
 use crate::bed::built;
-use hands::HANDS;
+use actions::ACTIONS;
 use page::{Check, checks};
 use pattern::is_shown;
 use std::ops::RangeInclusive;
 use table::Table;
 
-/// How long it may take until what must be shown is shown \[ms\]: an alignment, and the second of a report.
+/// Longest time until the expected text is shown \[ms\]: an alignment, and the second between two reports.
 const HEARTBEAT_TIMEOUT_MS: u32 = 4700;
-/// How often that is looked for \[ms\].
+/// Period of the look-up \[ms\].
 const LOOK_MS: u32 = 5;
 
 /// Does the checks of these steps, in the order of the page.
@@ -25,9 +26,9 @@ fn bring_up(steps: RangeInclusive<u32>) {
     };
     let mut table = Table::new([product, align]);
     for Check { step, action, shows } in checks().iter().filter(|check| steps.contains(&check.step)) {
-        if let Some(hand) = hand(action) {
+        if let Some(implementation) = implementation(action) {
             table.begin();
-            hand(&mut table);
+            implementation(&mut table);
         }
         let mut missing = Vec::new();
         for _ in 0..HEARTBEAT_TIMEOUT_MS / LOOK_MS {
@@ -45,36 +46,38 @@ fn bring_up(steps: RangeInclusive<u32>) {
     }
 }
 
-/// What an action of the page is here.
-fn hand(action: &str) -> Option<fn(&mut Table)> {
-    let known = HANDS.iter().find(|(words, _)| *words == action);
-    known.unwrap_or_else(|| panic!("docs/hardware.md: no hand knows how to: {action}")).1
+/// The implementation of an action of the page.
+fn implementation(action: &str) -> Option<fn(&mut Table)> {
+    let known = ACTIONS.iter().find(|(text, _)| *text == action);
+    known.unwrap_or_else(|| panic!("docs/hardware.md: no implementation knows how to: {action}")).1
 }
 
-/// Situation: the page and what is known of its actions. Action: compare. Must hold: each action of the page is known,
-/// and each that is known is on the page.
+/// Situation: the page and the implemented actions.
+/// Action: compare.
+/// Must hold: each action of the page is implemented, and each implemented action is on the page.
 #[test]
-fn every_action_of_the_page_is_done_and_no_other() {
+fn actions_and_page_are_the_same() {
     let checks = checks();
     for check in &checks {
-        let _ = hand(&check.action);
+        let _ = implementation(&check.action);
     }
-    for (words, _) in HANDS {
-        assert!(checks.iter().any(|check| check.action == *words), "not in docs/hardware.md: {words}");
+    for (text, _) in ACTIONS {
+        assert!(checks.iter().any(|check| check.action == *text), "not in docs/hardware.md: {text}");
     }
 }
 
 /// Situation: a board on the table at 24 V, its encoder wired, no motor on its bridge. Action and what must hold: steps 1 to 11 of
 /// docs/hardware.md.
 #[test]
-fn the_board_is_brought_up_as_the_page_says() {
+fn the_board_is_brought_up_as_documented() {
     bring_up(1..=11);
 }
 
-/// Situation: the motor connected, the handlebar free. Action and what must hold: steps 12 to 15 of docs/hardware.md, from the
-/// alignment to the first torque, the flash kept from image to image.
+/// Situation: the motor connected, the handlebar free.
+/// Action and what must hold: steps 12 to 15 of docs/hardware.md, from the alignment to the first torque, the flash
+/// unchanged between the images.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
-fn the_motor_is_brought_up_as_the_page_says() {
+fn the_motor_is_brought_up_as_documented() {
     bring_up(12..=15);
 }

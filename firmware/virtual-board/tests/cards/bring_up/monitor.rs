@@ -1,16 +1,16 @@
-//! `sim-host monitor` and `sim-host param` at the other end of the serial line, in one line.
+//! `sim-host monitor` and `sim-host param` at the other end of the serial line, as one line.
 
 use crate::bed::Listener;
 use control::sensors::polarity::PolarityStep;
 use link::message::Message;
 use link::telemetry::Telemetry;
 
-/// What the board said last.
+/// The board's last messages.
 #[derive(Default)]
 pub(super) struct Monitor {
     listener: Listener,
     newest: Option<Telemetry>,
-    /// The parameters that were set, or what was refused.
+    /// The parameters that were set, or the rejections.
     answers: Vec<String>,
 }
 
@@ -20,7 +20,7 @@ impl Monitor {
         listener.take(bytes, |_, message| match message {
             Message::Telemetry(telemetry) => *newest = Some(*telemetry),
             Message::Value { key, value } => answers.push(format!("{key}={}", value.unwrap_or(f32::NAN))),
-            Message::Refused(refusal) => answers.push(refusal.to_string()),
+            Message::Rejected(refusal) => answers.push(refusal.to_string()),
             _ => (),
         });
     }
@@ -35,14 +35,14 @@ impl Monitor {
             command.mode.name(),
             command.torque_nm,
             frame.steer_rate_rad_s.value,
-            polarity_words(polarity),
+            polarity_text(polarity),
             self.answers.join(" ")
         )
     }
 }
 
-/// The words of `sim-host monitor` for what is to be done next.
-fn polarity_words(next: u8) -> &'static str {
+/// The text of `sim-host monitor` for the next polarity step.
+fn polarity_text(next: u8) -> &'static str {
     match next {
         n if n == PolarityStep::Lean as u8 => "polarity: lean the bicycle to the right",
         n if n == PolarityStep::Steer as u8 => "polarity: turn the handlebar to the right",

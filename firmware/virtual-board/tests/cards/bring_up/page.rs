@@ -1,11 +1,11 @@
 //! The checks of docs/hardware.md: its lines with an arrow.
 
-/// A line of the page: what is done, and what must then be shown.
+/// A line of the page: an action, and what must then be shown.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Check {
-    /// The number of the step it is in.
+    /// Number of its step.
     pub(super) step: u32,
-    /// What is done.
+    /// The action.
     pub(super) action: String,
     /// What must be shown, as of [`super::pattern`].
     pub(super) shows: Vec<String>,
@@ -14,7 +14,7 @@ pub(super) struct Check {
 /// The checks, in the order of the page.
 ///
 /// # Panics
-/// When the page has none, or one that shows nothing.
+/// If the page has none, or one without an expected text.
 pub(super) fn checks() -> Vec<Check> {
     let page = include_str!("../../../../../docs/hardware.md");
     let start = page.find("## Bring-up").expect("the section");
@@ -56,8 +56,9 @@ fn read(section: &str) -> Vec<Check> {
     items.into_iter().filter_map(check).collect()
 }
 
-/// Situation: a list with prose, a hint and checks over one and two lines. Action: read it. Must hold: the checks alone, each
-/// with its step.
+/// Situation: a list with prose, a hint and checks over one and two lines.
+/// Action: read it.
+/// Must hold: only the checks, each with its step.
 #[test]
 fn checks_are_the_items_with_an_arrow() {
     let section = "1. **One.** Prose\n   - Do it -> `a=1`, `b=2`\n   - a hint: `c`\n2. **Two.** Prose -> no item\n   - Do\n     that -> `d ...\n     e`\n";
@@ -66,6 +67,6 @@ fn checks_are_the_items_with_an_arrow() {
         action: action.into(),
         shows: shows.iter().map(|text| (*text).into()).collect(),
     };
-    let wanted = [check(1, "Do it", &["a=1", "b=2"]), check(2, "Do that", &["d ... e"])];
-    assert_eq!(read(section), wanted);
+    let expected = [check(1, "Do it", &["a=1", "b=2"]), check(2, "Do that", &["d ... e"])];
+    assert_eq!(read(section), expected);
 }

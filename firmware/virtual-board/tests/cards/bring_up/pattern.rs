@@ -1,32 +1,32 @@
-//! What a line of the log must look like, as docs/hardware.md writes it.
+//! Patterns of log lines, as written in docs/hardware.md.
 //!
-//! Text stands for itself, `...` for anything. In braces stands a number: `{-0.05 to 0.05}` one in this range,
-//! `{140 to 160 more}` one so much above that in the line of this kind before, `{within 0.02 of before}` one so near to it.
+//! Text is literal, `...` matches anything. Braces hold a number: `{-0.05 to 0.05}` in this range, `{140 to 160
+//! more}` greater by that than in the previous line of this kind, `{within 0.02 of before}` within that of it.
 
 /// A part of a pattern.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Part<'p> {
     Text(&'p str),
     Anything,
-    Number(Wanted),
+    Number(Expected),
 }
 
-/// What is wanted of a number.
+/// Requirement on a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Wanted {
+enum Expected {
     Between(f64, f64),
     More(f64, f64),
     Near(f64),
 }
 
-/// The pattern's parts; `None` where braces hold nothing that is known.
+/// The pattern's parts; `None` where braces hold nothing valid.
 fn parts(mut pattern: &str) -> Option<Vec<Part<'_>>> {
     let mut parts = Vec::new();
     while !pattern.is_empty() {
         let (part, rest) = if let Some(rest) = pattern.strip_prefix("...") {
             (Part::Anything, rest)
         } else if let Some((inside, rest)) = pattern.strip_prefix('{').and_then(|p| p.split_once('}')) {
-            (Part::Number(wanted(inside)?), rest)
+            (Part::Number(expected(inside)?), rest)
         } else {
             let ends = ["...", "{"].iter().filter_map(|end| pattern.find(end));
             let (text, rest) = pattern.split_at(ends.min().unwrap_or(pattern.len()));
@@ -38,17 +38,17 @@ fn parts(mut pattern: &str) -> Option<Vec<Part<'_>>> {
     Some(parts)
 }
 
-fn wanted(inside: &str) -> Option<Wanted> {
+fn expected(inside: &str) -> Option<Expected> {
     if let Some(near) = inside.strip_prefix("within ").and_then(|rest| rest.strip_suffix(" of before")) {
-        return near.parse().ok().map(Wanted::Near);
+        return near.parse().ok().map(Expected::Near);
     }
     let (range, more) = inside.strip_suffix(" more").map_or((inside, false), |range| (range, true));
     let (least, most) = range.split_once(" to ").unwrap_or((range, range));
     let (least, most) = (least.parse().ok()?, most.parse().ok()?);
-    Some(if more { Wanted::More(least, most) } else { Wanted::Between(least, most) })
+    Some(if more { Expected::More(least, most) } else { Expected::Between(least, most) })
 }
 
-/// The numbers of a line that has the pattern's text, whatever they are.
+/// The numbers of a line that has the pattern's text, whatever their values.
 fn numbers(parts: &[Part<'_>], line: &str) -> Option<Vec<f64>> {
     let (mut rest, mut found, mut anywhere) = (line, Vec::new(), true);
     for part in parts {
@@ -75,43 +75,45 @@ fn numbers(parts: &[Part<'_>], line: &str) -> Option<Vec<f64>> {
 pub(super) struct Line {
     /// Its text.
     pub(super) text: String,
-    /// It came after the last action.
+    /// Whether it came after the last action.
     pub(super) new: bool,
 }
 
-/// Whether the newest line of the pattern's kind, which is that of its text up to the first `=` or number, is new and looks
-/// like it.
+/// Whether the newest line of the pattern's kind, which is that of its text up to the first `=` or number, is new and
+/// matches.
 ///
 /// # Panics
-/// When the pattern can't be read.
+/// If the pattern is invalid.
 pub(super) fn is_shown(pattern: &str, newest_first: &[Line]) -> bool {
     let parts = parts(pattern).unwrap_or_else(|| panic!("docs/hardware.md: braces of `{pattern}`"));
     let Some(Part::Text(first)) = parts.first() else {
-        panic!("docs/hardware.md: `{pattern}` begins with no text")
+        panic!("docs/hardware.md: `{pattern}` does not begin with text")
     };
     let kind = first.find('=').map_or(*first, |end| &first[..=end]);
     let mut lines = newest_first.iter().filter(|line| line.text.contains(kind));
     let now = lines.next().filter(|line| line.new).and_then(|line| numbers(&parts, &line.text));
     let Some(now) = now else { return false };
     let before = lines.next().and_then(|line| numbers(&parts, &line.text));
-    let wanted =
-        parts.iter().filter_map(|part| if let Part::Number(wanted) = part { Some(*wanted) } else { None });
-    wanted.zip(now).enumerate().all(|(place, (wanted, now))| {
+    let expected = parts
+        .iter()
+        .filter_map(|part| if let Part::Number(expected) = part { Some(*expected) } else { None });
+    expected.zip(now).enumerate().all(|(place, (expected, now))| {
         let before = before.as_ref().map(|numbers| numbers[place]);
-        match (wanted, before) {
-            (Wanted::Between(least, most), _) => (least..=most).contains(&now),
-            (Wanted::More(least, most), Some(before)) => (least..=most).contains(&(now - before)),
-            (Wanted::Near(most), Some(before)) => (now - before).abs() <= most,
-            (Wanted::More(..) | Wanted::Near(_), None) => false,
+        match (expected, before) {
+            (Expected::Between(least, most), _) => (least..=most).contains(&now),
+            (Expected::More(least, most), Some(before)) => (least..=most).contains(&(now - before)),
+            (Expected::Near(most), Some(before)) => (now - before).abs() <= most,
+            (Expected::More(..) | Expected::Near(_), None) => false,
         }
     })
 }
 
-/// Situation: two lines of one kind and one of another, and a line from before the action. Action: look for patterns. Must
-/// hold: text, ranges, rises and distances are judged on the newest line of the kind alone, at both ends of their
-/// ranges; a line from before shows nothing.
+/// Situation: two lines of one kind and one of another, and a line from before the action.
+/// Action: search for patterns.
+/// Must hold: text, ranges, rises and distances are checked on the newest line of the kind only, at both ends of
+/// their ranges; a line from before matches nothing.
 #[test]
-fn patterns_are_judged_on_the_newest_line() {
+fn patterns_are_matched_on_the_newest_line() {
     let line = |new, text: &str| Line { text: text.into(), new };
     let lines = [
         line(true, "steps=3000 late=0 motor=able"),

@@ -1,4 +1,4 @@
-//! The board on the engineer's table: what is connected to it, and the instruments that look at it.
+//! The board on the engineer's table: its connections and the instruments.
 
 use super::monitor::Monitor;
 use super::pattern::Line;
@@ -11,17 +11,17 @@ use virtual_board::power::Axis;
 use virtual_board::wiring::Wiring;
 use virtual_board::{Bench, Options};
 
-/// Ports and pins of the lamps.
+/// Ports and pins of the LEDs.
 const GREEN: (usize, u8) = (1, 0);
 const RED: (usize, u8) = (1, 1);
 /// At rest with its z axis up \[m/s^2\].
 const LEVEL_M_S2: [f64; 3] = [0.0, 0.0, G_M_S2];
 pub(super) const G_M_S2: f64 = 9.806_65;
-/// How long the lamps are remembered, and how long one that is on or off must have been so \[ms\].
+/// History of the LEDs, and how long one must have been on or off \[ms\].
 const REMEMBERED: usize = 2100;
 const STEADY: usize = 600;
 
-/// A board with what is around it.
+/// A board and its surroundings.
 pub(super) struct Table {
     images: [PathBuf; 2],
     bench: Option<Bench>,
@@ -30,19 +30,19 @@ pub(super) struct Table {
     wheels: [Wheel; 2],
     /// Lean of the bicycle to the right \[rad\].
     pub(super) lean_rad: f64,
-    /// What the IMU feels, in its own axes \[rad/s\], \[m/s^2\].
+    /// Sensed by the IMU, in its own axes \[rad/s\], \[m/s^2\].
     pub(super) gyro_rad_s: [f64; 3],
     pub(super) accel_m_s2: [f64; 3],
     shake: u32,
-    /// When the last action began \[ms\].
+    /// Beginning of the last action \[ms\].
     since_ms: f64,
     /// Green and red, each millisecond.
-    lamps: VecDeque<[bool; 2]>,
+    leds: VecDeque<[bool; 2]>,
     /// The computer on the serial line.
     monitor: Monitor,
 }
 
-/// Which image is flashed.
+/// The flashed image.
 #[derive(Clone, Copy)]
 pub(super) enum Flashed {
     Product = 0,
@@ -50,7 +50,7 @@ pub(super) enum Flashed {
 }
 
 impl Table {
-    /// An empty table, with the images of the product and of the alignment at hand.
+    /// An empty table, with the images of the product and of the alignment.
     pub(super) fn new(images: [PathBuf; 2]) -> Self {
         Self {
             images,
@@ -62,12 +62,12 @@ impl Table {
             accel_m_s2: LEVEL_M_S2,
             shake: 0,
             since_ms: 0.0,
-            lamps: VecDeque::new(),
+            leds: VecDeque::new(),
             monitor: Monitor::default(),
         }
     }
 
-    /// Flashes an image, which leaves the parameters' flash as it is, and powers the board.
+    /// Flashes an image, which leaves the parameters' flash unchanged, and powers the board.
     pub(super) fn flash(&mut self, image: Flashed, wiring: Wiring) {
         let store = self.bench.as_mut().map(Bench::store);
         let image = &self.images[image as usize];
@@ -75,11 +75,11 @@ impl Table {
         self.bench = Some(bench.expect("the board starts"));
         (self.wheels_m_s, self.wheels, self.lean_rad, self.since_ms) = Default::default();
         (self.gyro_rad_s, self.accel_m_s2) = ([0.0; 3], LEVEL_M_S2);
-        self.lamps.clear();
+        self.leds.clear();
         self.monitor = Monitor::default();
     }
 
-    /// An action begins: what was shown before does not count.
+    /// Begins an action: what was shown before does not count.
     pub(super) fn begin(&mut self) {
         self.since_ms = self.bench.as_ref().map_or(0.0, Bench::now_ms);
     }
@@ -97,7 +97,7 @@ impl Table {
         self.bench().with(|board| change(&mut board.chip.wiring))
     }
 
-    /// The handlebar is at an angle and turns at a rate, both to the right \[rad\], \[rad/s\].
+    /// The handlebar is at an angle and turns at a rate, both positive to the right \[rad\], \[rad/s\].
     pub(super) fn steer(&mut self, steer_rad: f64, rate_rad_s: f64) {
         self.wire(move |wiring| {
             wiring.power.set_axis(Axis::Driven);
@@ -106,13 +106,13 @@ impl Table {
     }
 
     /// Sends a request on the serial line.
-    pub(super) fn ask(&mut self, request: &Message<'_>) {
+    pub(super) fn send(&mut self, request: &Message<'_>) {
         let bytes = crate::bed::request(request, 1);
         self.bench().send(&bytes);
     }
 
-    /// Lets a millisecond go by: the wheels roll, and the IMU shakes by a few of its counts, as a real one that is never
-    /// quite still.
+    /// Advances by a millisecond: the wheels roll, and the IMU's values vary by a few counts, like those of a real
+    /// one, which is never quite at rest.
     pub(super) fn step(&mut self) {
         let speeds = self.wheels_m_s;
         for (number, speed_m_s) in speeds.into_iter().enumerate() {
@@ -126,30 +126,30 @@ impl Table {
         self.shake = (self.shake + 1) % 7;
         let now_ns = self.bench().now_ns();
         let (gyro, accel, shake) = (self.gyro_rad_s, self.accel_m_s2, f64::from(self.shake) - 3.0);
-        let lamps = self.wire(move |wiring| {
+        let leds = self.wire(move |wiring| {
             let values = [gyro.map(|rate| rate + 2e-3 * shake), accel.map(|force| force - 1e-2 * shake)];
             wiring.imu.moves(Motion { at_ns: now_ns, values, slopes: [[0.0; 3]; 2] });
             [GREEN, RED].map(|(port, pin)| wiring.level(port, pin) == Some(true))
         });
-        self.lamps.push_back(lamps);
-        if self.lamps.len() > REMEMBERED {
-            self.lamps.pop_front();
+        self.leds.push_back(leds);
+        if self.leds.len() > REMEMBERED {
+            self.leds.pop_front();
         }
     }
 
-    /// The log's lines, the newest first, and before them what the other instruments show now.
+    /// The log's lines, newest first, preceded by the present readings of the other instruments.
     pub(super) fn shown(&mut self) -> Vec<Line> {
         let since_us = (self.since_ms * 1e3) as u64;
-        let instruments = [self.lamps(), self.scope(), self.candump(), self.monitor.line()];
+        let instruments = [self.leds(), self.scope(), self.candump(), self.monitor.line()];
         let mut lines: Vec<Line> = instruments.into_iter().map(|text| Line { text, new: true }).collect();
         let log = self.bench().log().iter().rev();
         lines.extend(log.map(|line| Line { text: line.text.clone(), new: line.at_us >= since_us }));
         lines
     }
 
-    fn lamps(&self) -> String {
-        let lamp = |number: usize| words(self.lamps.iter().map(|lamps| lamps[number]));
-        format!("green={} red={}", lamp(0), lamp(1))
+    fn leds(&self) -> String {
+        let led = |number: usize| led_text(self.leds.iter().map(|leds| leds[number]));
+        format!("green={} red={}", led(0), led(1))
     }
 
     /// The bridge's pins since the last action.
@@ -175,8 +175,8 @@ impl Table {
     }
 }
 
-/// What a lamp does, by its levels in each millisecond.
-fn words(levels: impl Iterator<Item = bool>) -> String {
+/// Description of an LED from its levels in each millisecond.
+fn led_text(levels: impl Iterator<Item = bool>) -> String {
     let levels: Vec<bool> = levels.collect();
     let rises: Vec<usize> = (1..levels.len()).filter(|at| levels[*at] && !levels[at - 1]).collect();
     let lately = &levels[levels.len().saturating_sub(STEADY)..];

@@ -4,11 +4,11 @@ use crate::machine::{Machine, Params};
 use motor::example::EXAMPLE;
 use motor::{Config, Inputs, Mode, MotorCommand, Output, Phases, Plan, State, step};
 
-/// A current of one step of the converter \[A\].
+/// Current of one step of the converter \[A\].
 pub(crate) const ADC_A: f64 = 3.3 / 4096.0 / (0.5e-3 * 20.0);
 
-/// Everything between machine and loop.
-pub(crate) struct Rig {
+/// The loop, the machine and the components between them.
+pub(crate) struct Bench {
     pub(crate) plan: Plan,
     pub(crate) state: State,
     pub(crate) machine: Machine,
@@ -17,7 +17,7 @@ pub(crate) struct Rig {
     /// Zeros of the current sensors, and the standard deviation of their noise \[A\].
     pub(crate) zeros_a: [f64; 3],
     pub(crate) noise_a: f64,
-    /// Where the encoder's zero is \[turns of the motor\].
+    /// Position of the encoder's zero \[turns of the motor\].
     pub(crate) encoder_zero: f64,
     pub(crate) encoder_reversed: bool,
     /// Part of the motor's motion that reaches the encoder.
@@ -27,19 +27,19 @@ pub(crate) struct Rig {
     pub(crate) tick: u64,
 }
 
-/// What happened in one call.
+/// Result of one call.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Record {
     pub(crate) out: Output,
-    /// What the machine really does.
+    /// Actual values of the machine.
     pub(crate) torque_nm: f64,
     pub(crate) id_a: f64,
     pub(crate) iq_a: f64,
     pub(crate) largest_phase_a: f64,
 }
 
-impl Rig {
-    /// At rest, nothing known.
+impl Bench {
+    /// At rest, nothing measured yet.
     pub(crate) fn new(config: Config, params: Params) -> Self {
         Self {
             plan: config.plan().expect("a valid configuration"),
@@ -57,7 +57,8 @@ impl Rig {
         }
     }
 
-    /// The example, its zeros taken, its encoder aligned by the truth: ready, and the whole torque given without proof.
+    /// The example with measured current offsets and an exactly aligned encoder: ready, with the whole torque
+    /// permitted at an unconfirmed angle.
     pub(crate) fn ready(change: impl FnOnce(&mut Config)) -> Self {
         Self::started(|config| {
             config.angle.unproved_nm = 100.0;
@@ -65,7 +66,7 @@ impl Rig {
         })
     }
 
-    /// The same, but for the proof of the angle: the example as it is.
+    /// As [`Bench::ready`], but with the example's confirmation of the angle.
     pub(crate) fn started(change: impl FnOnce(&mut Config)) -> Self {
         let mut config = EXAMPLE;
         config.encoder.offset_turns = Some(0.0);
@@ -75,13 +76,13 @@ impl Rig {
             rate_hz: f64::from(config.rate_hz),
             ..Params::default()
         };
-        let mut rig = Self::new(config, params);
-        let last = rig.run(usize::from(config.zero.samples) + 1, MotorCommand::Off).pop().expect("a call");
+        let mut bench = Self::new(config, params);
+        let last = bench.run(usize::from(config.zero.samples) + 1, MotorCommand::Off).pop().expect("a call");
         assert_eq!(last.out.mode, Mode::Ready, "{:?}", last.out);
-        rig
+        bench
     }
 
-    /// A number that is normally distributed, nearly: the sum of twelve even ones.
+    /// A normal deviate, approximately: the sum of twelve uniform ones.
     fn gauss(&mut self) -> f64 {
         let mut even = || {
             self.random ^= self.random << 13;
@@ -92,7 +93,7 @@ impl Rig {
         (0..12).map(|_| even()).sum::<f64>() - 6.0
     }
 
-    /// What the sensors say now.
+    /// The present sensor values.
     pub(crate) fn inputs(&mut self, command: MotorCommand) -> Inputs {
         let phases = self.machine.phases_a();
         let measured = std::array::from_fn(|x| {
@@ -127,12 +128,12 @@ impl Rig {
         Record { out, torque_nm, id_a, iq_a, largest_phase_a }
     }
 
-    /// So many calls.
+    /// This number of calls.
     pub(crate) fn run(&mut self, calls: usize, command: MotorCommand) -> Vec<Record> {
         self.tampered(calls, command, |_, _| ())
     }
 
-    /// So many calls, each with its inputs changed; the number of the call counts from 0.
+    /// This number of calls, each with its inputs changed; the number of the call counts from 0.
     pub(crate) fn tampered(
         &mut self,
         calls: usize,
@@ -154,7 +155,7 @@ pub(crate) fn last(records: &[Record]) -> Record {
     *records.last().expect("a call")
 }
 
-/// Mean of something over the records.
+/// Mean of a value over the records.
 pub(crate) fn mean(records: &[Record], of: impl Fn(&Record) -> f64) -> f64 {
     records.iter().map(of).sum::<f64>() / records.len() as f64
 }

@@ -1,18 +1,18 @@
-//! What each action of docs/hardware.md is on the virtual board.
+//! Each action of docs/hardware.md on the virtual board.
 
 use super::table::{Flashed, G_M_S2, Table};
-use crate::rig::START_MS;
+use crate::boards::START_MS;
 use control::safety::press::PressConfig;
 use link::Key;
 use link::message::Message;
 use virtual_board::power::Axis;
 use virtual_board::wiring::Wiring;
 
-/// What is done; nothing where the page only looks.
-type Hand = Option<fn(&mut Table)>;
+/// The action; none where the page only observes.
+type Action = Option<fn(&mut Table)>;
 
-/// Every action of the page, by its words.
-pub(super) const HANDS: &[(&str, Hand)] = &[
+/// Every action of the page, by its text.
+pub(super) const ACTIONS: &[(&str, Action)] = &[
     ("Power on", Some(|table| table.flash(Flashed::Product, without_motor()))),
     ("Read on", None),
     ("Lower the supply to 15 V for a second", Some(lower_the_supply)),
@@ -91,7 +91,7 @@ fn without_motor() -> Wiring {
     wiring
 }
 
-/// Runs for so long \[ms\].
+/// Runs for a time \[ms\].
 fn wait(table: &mut Table, ms: u32) {
     (0..ms).for_each(|_| table.step());
 }
@@ -117,7 +117,7 @@ fn press(table: &mut Table) {
     switch(table, true);
 }
 
-/// The alignment with something wrong.
+/// The alignment with a fault.
 fn misaligned(table: &mut Table, wrong: fn(&mut Wiring)) {
     let mut wiring = Wiring::new();
     wrong(&mut wiring);
@@ -127,11 +127,11 @@ fn misaligned(table: &mut Table, wrong: fn(&mut Wiring)) {
 
 fn set(table: &mut Table, key: &'static str, value: &str) {
     let value = value.parse().expect("a number, as it is typed");
-    table.ask(&Message::Set { key: Key::whole(key), value: Some(value) });
+    table.send(&Message::Set { key: Key::whole(key), value: Some(value) });
 }
 
-/// Leans the bicycle at a rate to the right \[rad/s\] for so long \[ms\], and keeps it there. The board lies with z up and x
-/// forward, so that y is to the left.
+/// Leans the bicycle at a rate to the right \[rad/s\] for a time \[ms\], and holds it there. The board lies with z up
+/// and x forward, so that y is to the left.
 fn lean(table: &mut Table, rate_rad_s: f64, ms: u32) {
     for _ in 0..ms {
         table.lean_rad += 1e-3 * rate_rad_s;
@@ -157,7 +157,7 @@ fn push(table: &mut Table) {
     table.wheels_m_s = [1.0; 2];
 }
 
-/// Upright, straight and nobody's hands on the handlebar; then the switch is held.
+/// Upright, straight, hands off the handlebar; then the switch is held.
 fn engage(table: &mut Table) {
     let upright_ms = (table.lean_rad / 0.8 * 1e3).round() as u32;
     lean(table, -0.8, upright_ms);
@@ -167,7 +167,7 @@ fn engage(table: &mut Table) {
     press(table);
 }
 
-/// Leans and goes on leaning.
+/// Leans and continues to lean.
 fn fall(table: &mut Table) {
     lean(table, 0.4, 150);
     table.gyro_rad_s = [0.4, 0.0, 0.0];
@@ -180,7 +180,7 @@ fn let_go(table: &mut Table) {
     table.begin();
 }
 
-/// The motor's loop puts up with ten calls without an angle, half a millisecond.
+/// The motor's loop tolerates ten calls without an angle, half a millisecond.
 fn pull_the_encoders_plug(table: &mut Table) {
     table.wire(|wiring| wiring.encoder.cut = true);
     wait(table, 1);

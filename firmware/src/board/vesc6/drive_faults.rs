@@ -12,29 +12,29 @@ const LOOK: Duration = Duration::from_millis(10);
 
 /// Stores a gate-driver fault with the driver's status, and the first faults of the motor loop.
 #[embassy_executor::task]
-pub async fn watch_drive() {
+pub async fn record_drive_faults() {
     // A driver whose start failed is in the log of the start.
     let (mut gate, mut motor) = (!gate::is_started(), false);
     loop {
         Timer::after(LOOK).await;
         let report = motor_report();
-        let mut words = String::<FAULT_TEXT_BYTES>::new();
+        let mut text = String::<FAULT_TEXT_BYTES>::new();
         // Longer text is cut.
         if report.gate_fault && !gate {
             gate = true;
-            let _ = write!(words, "gate driver: ").and_then(|()| gate::describe(&mut words));
+            let _ = write!(text, "gate driver: ").and_then(|()| gate::describe(&mut text));
             outputs_off();
-            keep(&words);
+            store(&text);
         } else if !report.faults.is_empty() && !motor {
             motor = true;
-            let _ = write!(words, "motor fault");
-            report.faults.iter().for_each(|fault| _ = write!(words, " {}", fault.code()));
-            keep(&words);
+            let _ = write!(text, "motor fault");
+            report.faults.iter().for_each(|fault| _ = write!(text, " {}", fault.code()));
+            store(&text);
         }
     }
 }
 
-fn keep(words: &str) {
-    defmt::error!("{=str}", words);
-    crash::note(FaultKind::Drive, Registers::default(), words);
+fn store(text: &str) {
+    defmt::error!("{=str}", text);
+    crash::note(FaultKind::Drive, Registers::default(), text);
 }

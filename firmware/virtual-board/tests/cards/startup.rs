@@ -1,12 +1,12 @@
-//! The product image lives: it starts, keeps its deadlines and leaves the core time to spare.
+//! Start of the product image: its deadlines and the core's spare time.
 
 use crate::bed::{built, newest, product};
-use crate::rig::{press, slow};
+use crate::boards::{press, slow};
 use std::path::Path;
 use virtual_board::wiring::Wiring;
 use virtual_board::{Bench, Options};
 
-/// Cycles that an instruction lasts at the worst (docs/virtual-board.md).
+/// Worst-case cycles per instruction (docs/virtual-board.md).
 const WORST: f64 = 1.6;
 
 fn board(image: &Path, cycles_per_instruction: f64, wiring: Wiring) -> Bench {
@@ -14,13 +14,14 @@ fn board(image: &Path, cycles_per_instruction: f64, wiring: Wiring) -> Bench {
     Bench::power_on(image, options, wiring).expect("the board starts")
 }
 
-/// Situation: the board is powered, nothing is connected but what is on it; instructions last as long as they are ever
-/// taken to. Action: three seconds. Must hold: no reset;
-/// the log begins with the image's name and this start; control does a step each millisecond and none late; the motor's
-/// loop is called 20,000 times a second and none late; the core is idle for at least a tenth of the time, and busy for a
-/// fifth.
+/// Situation: the board is powered, only its own components are connected; instructions take the longest assumed
+/// time.
+/// Action: three seconds.
+/// Must hold: no reset; the log begins with the image's name and this start; control does a step each millisecond and
+/// none late; the motor's loop is called 20,000 times a second and none late; the core is idle for at least a tenth
+/// of the time, and busy for a fifth.
 #[test]
-fn the_product_image_starts_and_lives() {
+fn the_product_image_starts_and_runs() {
     let Some(image) = product() else { return };
     let mut bench = board(&image, WORST, Wiring::new());
     bench.run_ms(2300.0).expect("no gap");
@@ -42,12 +43,12 @@ fn the_product_image_starts_and_lives() {
     assert!((0.2..=0.9).contains(&busy), "busy {:.0} %", 100.0 * busy);
 }
 
-/// What the core's time goes to, as the page has it: the motor's interrupt, mean and longest \[us\], control's longest
+/// The core's load, in the columns of the page: the motor's interrupt, mean and longest \[us\], control's longest
 /// step from its release \[us\], idle \[%\].
 fn load(name: &str, cycles_per_instruction: f64) -> Option<[f64; 4]> {
     let mut bench = board(&built(name)?, cycles_per_instruction, Wiring::new());
     if name.ends_with("align") {
-        // It closes the bridge for the press.
+        // The press closes the bridge.
         press(&mut bench);
     }
     bench.run_ms(400.0).expect("no gap");
@@ -60,30 +61,34 @@ fn load(name: &str, cycles_per_instruction: f64) -> Option<[f64; 4]> {
     Some([calls.mean_us(), calls.longest_ns as f64 * 1e-3, control_us, 100.0 * (1.0 - busy)])
 }
 
-/// Situation: the product with its bridge open, and the image that aligns with the bridge closed. Action: measure what the
-/// core's time goes to, at the longest length of an instruction (with `--all` also at the usual one). Must hold: the table of docs/virtual-board.md says the same
-/// within 5 %; the motor's interrupt is always done before the top at which its duty cycles count, 42.6 us later.
+/// Situation: the product with its bridge open, and the image that aligns with the bridge closed.
+/// Action: measure the core's load, at the longest length of an instruction (with `--all` also at the usual one).
+/// Must hold: equal to the table of docs/virtual-board.md within 5 %; the motor's interrupt always ends before the
+/// top at which its duty cycles count, 42.6 us later.
 #[test]
-fn the_load_is_that_of_the_page() {
+fn the_load_is_as_documented() {
     let page = std::fs::read_to_string(xtask::image::root().join("docs/virtual-board.md"))
         .expect("the page is there");
     let mut missing = Vec::new();
-    for (what, name) in [("open", "board-vesc6"), ("closed", "board-vesc6-align")] {
+    for (bridge, name) in [("open", "board-vesc6"), ("closed", "board-vesc6-align")] {
         let lengths = if slow() { &[1.3, WORST][..] } else { &[WORST] };
         for &cycles in lengths {
-            let Some(seen) = load(name, cycles) else { return };
-            let row = page.lines().find_map(|line| line.strip_prefix(&format!("| {what} | {cycles} |")));
-            let told: Vec<f64> =
+            let Some(measured) = load(name, cycles) else { return };
+            let row = page.lines().find_map(|line| line.strip_prefix(&format!("| {bridge} | {cycles} |")));
+            let documented: Vec<f64> =
                 row.unwrap_or("").split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
-            let same = told.len() == 4
-                && told.iter().zip(seen).all(|(told, seen)| (told - seen).abs() <= 0.05 * seen.max(1.0));
+            let same = documented.len() == 4
+                && documented
+                    .iter()
+                    .zip(measured)
+                    .all(|(documented, measured)| (documented - measured).abs() <= 0.05 * measured.max(1.0));
             if !same {
-                let [mean, longest, control, idle] = seen;
+                let [mean, longest, control, idle] = measured;
                 missing.push(format!(
-                    "| {what} | {cycles} | {mean:.1} | {longest:.1} | {control:.0} | {idle:.0} |"
+                    "| {bridge} | {cycles} | {mean:.1} | {longest:.1} | {control:.0} | {idle:.0} |"
                 ));
             }
-            assert!(seen[1] > 5.0 && seen[1] < 42.6, "{what}, {cycles}: {seen:?}");
+            assert!(measured[1] > 5.0 && measured[1] < 42.6, "{bridge}, {cycles}: {measured:?}");
         }
     }
     assert!(missing.is_empty(), "docs/virtual-board.md must say\n{}", missing.join("\n"));

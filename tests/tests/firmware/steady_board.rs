@@ -1,4 +1,4 @@
-//! The image `qemu-pil` with a bicycle that rides as it is told.
+//! The image `qemu-pil` with a bicycle that rides steadily.
 
 use control::{Command, Config, Mode, SensorFrame};
 use link::frame::{Decoder, MAX_FRAME, Received};
@@ -10,9 +10,9 @@ use sim_host::pil::qemu::Qemu;
 use tests::wait::LONG;
 use xtask::{image, rides};
 
-/// What a fault record tells.
+/// Contents of a fault record.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Kept {
+pub(crate) struct FoundFault {
     pub(crate) kind: FaultKind,
     pub(crate) boot: u32,
     pub(crate) mode: Mode,
@@ -21,48 +21,49 @@ pub(crate) struct Kept {
 }
 
 /// A board that rides steadily, upright.
-pub(crate) struct Rig {
+pub(crate) struct SteadyBoard {
     pub(crate) board: Qemu,
     motor: Decoder,
     line: Decoder,
-    /// The number of the next step since the loop began anew.
+    /// Number of the next step since the last start of the loop.
     step: u16,
     now_us: u32,
     /// Sent with the next exchange.
     request: Vec<u8>,
-    /// What the board said over the line, as far as it was asked for.
-    pub(crate) kept: Vec<Kept>,
+    /// The board's requested fault records.
+    pub(crate) faults: Vec<FoundFault>,
     pub(crate) logs: Vec<String>,
     pub(crate) done: u32,
     pub(crate) hash: Option<u32>,
-    /// Values of the parameters asked for.
+    /// Values of the requested parameters.
     pub(crate) values: Vec<Option<f32>>,
     pub(crate) latest: Option<Command>,
-    /// What the sensors say, upright.
+    /// Sensor values, upright.
     pub(crate) steady: SensorFrame,
 }
 
-impl Rig {
-    /// Started with these words; the product with every sensor rides, its configuration, the polarity check passed, is in flash.
-    pub(crate) fn start(words: &[&str]) -> Self {
-        let mut rig = Self::with(words, &rides::product());
-        rig.ask(&Message::Store);
-        rig.ride(20, false);
-        assert_eq!(rig.done, 1, "stored");
-        rig
+impl SteadyBoard {
+    /// Started with these arguments; the product with every sensor rides; its configuration, the polarity check
+    /// passed, is in flash.
+    pub(crate) fn start(arguments: &[&str]) -> Self {
+        let mut board = Self::with(arguments, &rides::product());
+        board.request(&Message::Store);
+        board.ride(20, false);
+        assert_eq!(board.done, 1, "stored");
+        board
     }
 
-    /// Started with these words; this configuration rides.
-    pub(crate) fn with(words: &[&str], config: &Config) -> Self {
-        let board = Qemu::start(&image::path("qemu-pil"), words, LONG).expect("the image starts");
-        let mut rig = Self {
+    /// Started with these arguments; this configuration rides.
+    pub(crate) fn with(arguments: &[&str], config: &Config) -> Self {
+        let board = Qemu::start(&image::path("qemu-pil"), arguments, LONG).expect("the image starts");
+        let mut board = Self {
             board,
             motor: Decoder::default(),
             line: Decoder::default(),
             step: 0,
             now_us: 0,
             request: Vec::new(),
-            kept: Vec::new(),
+            faults: Vec::new(),
             logs: Vec::new(),
             done: 0,
             hash: None,
@@ -70,8 +71,8 @@ impl Rig {
             latest: None,
             steady: rides::all_sensors_ride()[200],
         };
-        rig.begin(config);
-        rig
+        board.begin(config);
+        board
     }
 
     fn begin(&mut self, config: &Config) {
@@ -86,11 +87,11 @@ impl Rig {
         self.exchange(&sensors);
     }
 
-    pub(crate) fn ask(&mut self, message: &Message<'_>) {
+    pub(crate) fn request(&mut self, message: &Message<'_>) {
         put(message, 9, &mut self.request);
     }
 
-    /// So many milliseconds with the switch so.
+    /// This number of milliseconds with the switch in this position.
     pub(crate) fn ride(&mut self, ms: u32, engage: bool) {
         for _ in 0..ms {
             let steady = self.steady;
@@ -105,13 +106,13 @@ impl Rig {
     fn exchange(&mut self, sensors: &[u8]) {
         let line = std::mem::take(&mut self.request);
         let starts = self.starts();
-        self.board.exchange(&ToBoard { sensors, line: &line }).expect("the board goes on");
+        self.board.exchange(&ToBoard { sensors, line: &line }).expect("the board runs");
         if self.starts() != starts {
-            // A new program counts its steps anew; it has done the first before it hands over.
+            // A new program counts its steps from the beginning; it has done the first before the exchange.
             self.step = 1;
         }
-        let said = self.board.last();
-        for byte in said.motor {
+        let output = self.board.last();
+        for byte in output.motor {
             if let Some(Received::Frame(frame)) = self.motor.feed(*byte) {
                 match Message::decode(&frame) {
                     Ok(Message::PilCommand { command, .. }) => self.latest = Some(command),
@@ -120,16 +121,18 @@ impl Rig {
                 }
             }
         }
-        for byte in said.line {
+        for byte in output.line {
             if let Some(Received::Frame(frame)) = self.line.feed(*byte) {
                 match Message::decode(&frame) {
-                    Ok(Message::StoredFault(kept)) => self.kept.extend(kept.record.map(|record| Kept {
-                        kind: record.kind,
-                        boot: record.boot,
-                        mode: record.mode,
-                        steps: record.steps,
-                        text: record.text.into(),
-                    })),
+                    Ok(Message::StoredFault(faults)) => {
+                        self.faults.extend(faults.record.map(|record| FoundFault {
+                            kind: record.kind,
+                            boot: record.boot,
+                            mode: record.mode,
+                            steps: record.steps,
+                            text: record.text.into(),
+                        }))
+                    }
                     Ok(Message::Log(text)) => self.logs.push(text.into()),
                     Ok(Message::Value { value, .. }) => self.values.push(value),
                     Ok(Message::Hello(hello)) => self.hash = Some(hello.config_hash),

@@ -8,7 +8,7 @@ use crate::bicycle::catalogue::{self, Bicycle};
 const EMPTY_KG: f64 = 30.0;
 
 /// Warnings about a rider's gains on a bicycle, as text.
-pub fn doubts(bicycle: &Bicycle, rider: &RiderTable) -> Vec<String> {
+pub fn compatibility_warnings(bicycle: &Bicycle, rider: &RiderTable) -> Vec<String> {
     let Bicycle { name, parameters, rider_included, .. } = bicycle;
     let empty = match rider_included {
         Some(false) => Some(format!("bicycle {name} has no rider's body (rider_included = false)")),

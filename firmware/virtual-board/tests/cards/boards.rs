@@ -1,4 +1,4 @@
-//! Boards to try things on, and what is asked of them over the serial line.
+//! Powered boards, and requests to them over the serial line.
 
 use crate::bed::{Listener, request as bytes_of};
 use control::safety::press::PressConfig;
@@ -11,10 +11,10 @@ use virtual_board::{Bench, Options};
 pub(crate) const PRODUCT: &str = "board-vesc6";
 pub(crate) const ALIGN: &str = "board-vesc6-align";
 
-/// From power-on to the first sample of the switch at the latest, with the first start's brown-out reset \[ms\].
+/// Longest time from power-on to the first sample of the switch, with the first start's brown-out reset \[ms\].
 pub(crate) const START_MS: u32 = 400;
 
-/// Where `cargo xtask firmware` builds an image.
+/// Path to which `cargo xtask firmware` builds an image.
 pub(crate) fn image(name: &str) -> PathBuf {
     xtask::image::path(name)
 }
@@ -32,7 +32,7 @@ pub(crate) fn closed(wiring: Wiring) -> Bench {
     bench
 }
 
-/// The rider's switch is opened, closed after the program has seen it open for long enough, and held.
+/// The rider's switch is opened, closed after it was open for the minimum time, and held.
 pub(crate) fn press(bench: &mut Bench) {
     bench.with(|board| board.chip.wiring.analog.switch_closed = false);
     bench.run_ms(f64::from(START_MS + u32::from(PressConfig::product().release_ticks))).unwrap();
@@ -50,7 +50,7 @@ pub(crate) fn is_closed(bench: &mut Bench) -> bool {
     bench.with(|board| board.chip.wiring.tim1.main_output())
 }
 
-/// Runs on until the bridge is open; from now to its opening \[us\].
+/// Runs until the bridge is open; returns the time from now to its opening \[us\].
 pub(crate) fn opens_us(bench: &mut Bench, limit_ms: f64) -> f64 {
     assert!(is_closed(bench), "the bridge is closed");
     let from_ms = bench.now_ms();
@@ -62,26 +62,26 @@ pub(crate) fn opens_us(bench: &mut Bench, limit_ms: f64) -> f64 {
     opened_ns.expect("noted") as f64 * 1e-3 - from_ms * 1e3
 }
 
-/// Words of the log since an instant \[ms\].
-pub(crate) fn says(bench: &Bench, since_ms: f64, words: &str) -> bool {
-    bench.log().iter().any(|line| line.at_us as f64 >= since_ms * 1e3 && line.text.contains(words))
+/// Whether the log contains a text since an instant \[ms\].
+pub(crate) fn log_has(bench: &Bench, since_ms: f64, text: &str) -> bool {
+    bench.log().iter().any(|line| line.at_us as f64 >= since_ms * 1e3 && line.text.contains(text))
 }
 
-/// Waits for words in the log.
-pub(crate) fn hear(bench: &mut Bench, limit_ms: f64, words: &str) {
+/// Waits for a text in the log.
+pub(crate) fn wait_for_log(bench: &mut Bench, limit_ms: f64, text: &str) {
     let from_ms = bench.now_ms();
-    let heard = bench.run_until(limit_ms, words, |bench| says(bench, from_ms, words));
+    let heard = bench.run_until(limit_ms, text, |bench| log_has(bench, from_ms, text));
     heard.unwrap_or_else(|error| panic!("{error}; the log: {:#?}", bench.log()));
 }
 
-/// Asks for something and waits for an answer that is looked for, at most this time \[ms\].
-pub(crate) fn ask<T>(
+/// Sends a request and waits for an answer that `look` accepts, at most this time \[ms\].
+pub(crate) fn query<T>(
     bench: &mut Bench,
     request: &Message<'_>,
     limit_ms: f64,
     mut look: impl FnMut(&Message<'_>) -> Option<T>,
 ) -> T {
-    // What came before is of another time.
+    // Bytes received before belong to an earlier request.
     bench.received();
     bench.send(&bytes_of(request, 7));
     let (mut listener, mut found) = (Listener::default(), None);
@@ -93,7 +93,7 @@ pub(crate) fn ask<T>(
     found.expect("answered")
 }
 
-/// Whether what takes minutes is to be tried as well.
+/// Whether tests that take minutes are run as well.
 pub(crate) fn slow() -> bool {
     std::env::var_os("STEER_ASSIST_SLOW").is_some()
 }

@@ -1,4 +1,4 @@
-//! Small things that mislead: names of files, remarks in them, numbers that are zero or tiny.
+//! Misleading details: names of files, remarks in them, numbers that are zero or tiny.
 
 use serde_json::json;
 use std::io::Write;
@@ -18,7 +18,7 @@ fn names_with_a_hash_and_standard_input() {
         bench.json("bicycle check --bicycle 'my bike #2.toml'")["bicycle"]["parameters"]["w"],
         json!(1.1)
     );
-    bench.run("bicycle check --bicycle 'my bike #3.toml'").refused_naming(&["my bike"]);
+    bench.run("bicycle check --bicycle 'my bike #3.toml'").rejected_naming(&["my bike"]);
     for line in [
         "bicycle check --bicycle -",
         "basin compare --speeds 4 --max-rate 1 --scan-step 1 a=--bicycle=- b=--bicycle=-",
@@ -29,11 +29,13 @@ fn names_with_a_hash_and_standard_input() {
     }
 }
 
-/// Situation: remarks of a wrong kind in a bicycle's file, another form of file, a head angle for the tilt, a tiny number.
+/// Situation: remarks of a wrong kind in a bicycle's file, another form of file, a head angle for the tilt, a tiny
+/// number.
 /// Action: check the bicycles.
-/// Must hold: refused with file, key and value; the head angle is doubted with the tilt it would be; no line of zeros.
+/// Must hold: rejected with file, key and value; the head angle causes a warning with the corresponding tilt; no line
+/// of zeros.
 #[test]
-fn remarks_are_looked_at() {
+fn remarks_are_checked() {
     let bench = Bench::new(PROGRAM);
     for (line, named) in [
         ("w = 1.02\nschema = 99", &["`schema` = 99", "reads 1"][..]),
@@ -41,10 +43,10 @@ fn remarks_are_looked_at() {
         ("w = 1e-320", &["`w` = 1e-320", "0.1 to 5 m"]),
     ] {
         bench.write("my.toml", bicycle_with("w", line));
-        bench.run("bicycle check --bicycle my.toml").refused_naming(&[&["my.toml"], named].concat());
+        bench.run("bicycle check --bicycle my.toml").rejected_naming(&[&["my.toml"], named].concat());
     }
     bench.write("my.toml", bicycle_with("source", "source = 5"));
-    bench.run("bicycle check --bicycle my.toml").refused_naming(&["my.toml", "`source`", "string"]);
+    bench.run("bicycle check --bicycle my.toml").rejected_naming(&["my.toml", "`source`", "string"]);
     bench.write("my.toml", bicycle_with("w", "w = 1.02\nschema = 1\nrider_included = true"));
     assert_eq!(bench.run("bicycle check --bicycle my.toml").code, Some(0));
     bench.write("my.toml", bicycle_with("lam", "lam = 1.2566"));
@@ -53,11 +55,11 @@ fn remarks_are_looked_at() {
     assert!(run.stdout.contains("doubtful"), "{}", run.stdout);
 }
 
-/// Situation: a ride that nothing disturbs, unstable at its speed.
+/// Situation: an undisturbed ride, unstable at its speed.
 /// Action: ride, read the text.
-/// Must hold: it is not called recovered in words, and its document says it was undisturbed.
+/// Must hold: it is not called recovered in text, and its document reports it as undisturbed.
 #[test]
-fn an_undisturbed_ride_tells_nothing_of_stability() {
+fn an_undisturbed_ride_is_not_called_recovered() {
     let bench = Bench::new(PROGRAM);
     let text = bench.run("ride --law none --speed 2").stdout;
     assert!(text.contains("undisturbed") && !text.contains("recovered"), "{text}");
@@ -66,8 +68,9 @@ fn an_undisturbed_ride_tells_nothing_of_stability() {
 }
 
 /// Situation: the table of a ride.
-/// Action: ask for the accelerations of its states.
-/// Must hold: a line for each, the first those of the same state written as states and torques; a table with `;` is told why.
+/// Action: request the accelerations of its states.
+/// Must hold: a line for each, the first those of the same state written as states and torques; a table with `;` is
+/// rejected with the reason.
 #[test]
 fn the_table_of_a_ride_is_one_of_states() {
     let bench = Bench::new(PROGRAM);
@@ -90,14 +93,14 @@ fn the_table_of_a_ride_is_one_of_states() {
     let same = bench.run("bicycle accel --states states.csv").stdout;
     assert_eq!(same.lines().nth(1), answer.stdout.lines().nth(20));
     bench.write("semicolons.csv", "roll;steer\n1;2\n");
-    bench.run("bicycle accel --states semicolons.csv").refused_naming(&["`roll` is missing", "commas"]);
+    bench.run("bicycle accel --states semicolons.csv").rejected_naming(&["`roll` is missing", "commas"]);
 }
 
-/// Situation: more eigenvalues asked for than can be found.
-/// Action: ask.
-/// Must hold: what is found is written, and a note says how many, at which speed.
+/// Situation: more eigenvalues requested than can be found.
+/// Action: run.
+/// Must hold: those found are written, and a note gives their number and speed.
 #[test]
-fn missing_eigenvalues_are_told() {
+fn missing_eigenvalues_are_reported() {
     let bench = Bench::new(PROGRAM);
     let run = bench.run("eigen --rider smart --roots 40 --speeds 4");
     assert!(run.code == Some(0) && run.stderr.contains("--roots 40: "), "{}", run.stderr);
@@ -106,7 +109,7 @@ fn missing_eigenvalues_are_told() {
 
 /// Situation: the table of a ride of 6 s.
 /// Action: read its times.
-/// Must hold: each is the number of its milliseconds as one would type it, no multiple of the nearest number to 1 ms.
+/// Must hold: each is the number of its milliseconds as typed, no multiple of the nearest number to 1 ms.
 #[test]
 fn times_are_whole_milliseconds() {
     let bench = Bench::new(PROGRAM);
@@ -123,11 +126,13 @@ fn times_are_whole_milliseconds() {
     }
 }
 
-/// Situation: files of an actuator, a sensor, a rider and a parameter, cut within their last line, and whole; an interrupted basin.
+/// Situation: files of an actuator, a sensor, a rider and a parameter, cut within their last line, and complete; an
+/// interrupted basin.
 /// Action: ride with each; compare the basin.
-/// Must hold: what was cut is doubted by name, in the output and in the document, what is whole is not; so is the interrupted basin.
+/// Must hold: a cut file causes a warning with its name, in the output and in the document, a complete one does not;
+/// likewise the interrupted basin.
 #[test]
-fn what_may_have_been_cut_is_doubted() {
+fn possibly_cut_files_cause_a_warning() {
     let bench = Bench::new(PROGRAM);
     let shown = bench.run("rider show young").stdout;
     let sensor = std::fs::read_to_string(repository("data/sensors/hall-16.toml")).unwrap();
@@ -144,8 +149,8 @@ fn what_may_have_been_cut_is_doubted() {
             assert_eq!(run.code, Some(0), "{run:?}");
             let warning = format!("{file}: its last line has no end");
             let document: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
-            let kept = document["config"]["warnings"].to_string().contains(&warning);
-            assert_eq!((run.stderr.contains(&warning), kept), (cut, cut), "{run:?}");
+            let recorded = document["config"]["warnings"].to_string().contains(&warning);
+            assert_eq!((run.stderr.contains(&warning), recorded), (cut, cut), "{run:?}");
         }
     }
     let basin = |upper: &str| {

@@ -1,4 +1,4 @@
-//! Parameters, causes, limits and exceptions in words.
+//! Parameters, causes, limits and exceptions as text.
 
 use crate::client::SHORT;
 use control::{ActiveLimits, CAUSES, Causes};
@@ -18,11 +18,11 @@ fn listed() -> Vec<Parameter> {
 }
 
 /// Situation: every parameter of a board.
-/// Action: its value, its default, its ends and off in words, and read again; words beyond.
-/// Must hold: the same to the bit; beyond the ends, a fraction of a count and unknown names are refused with key and what is
-/// allowed.
+/// Action: its value, its default, its limits and off as text, and parsed again; text beyond.
+/// Must hold: the same to the bit; values beyond the limits, a fraction of a count and unknown names are rejected
+/// with key and allowed range.
 #[test]
-fn a_value_in_words_is_read_again() {
+fn a_value_as_text_is_parsed_again() {
     let mut kinds = BTreeSet::new();
     for one in listed() {
         kinds.insert(one.kind as u8);
@@ -45,8 +45,8 @@ fn a_value_in_words_is_read_again() {
 }
 
 proptest! {
-    /// Situation: any number a parameter may have.
-    /// Action: in words, as TOML, and read again.
+    /// Situation: any number a parameter can have.
+    /// Action: as text, as TOML, and parsed again.
     /// Must hold: the same to the bit.
     #[test]
     fn a_number_survives_a_file(bits in any::<u32>()) {
@@ -58,26 +58,26 @@ proptest! {
         };
         let written = format!("any = {}", one.toml());
         let table: toml::Table = written.parse().expect("TOML");
-        let words = match &table["any"] {
+        let text = match &table["any"] {
             toml::Value::Integer(number) => number.to_string(),
             toml::Value::Float(number) => number.to_string(),
             other => panic!("{other}"),
         };
-        prop_assert_eq!(one.parse(&words).map(|got| got.map(f32::to_bits)), Ok(Some(bits)));
+        prop_assert_eq!(one.parse(&text).map(|got| got.map(f32::to_bits)), Ok(Some(bits)));
     }
 }
 
 /// Situation: every cause, every limit.
-/// Action: in words.
-/// Must hold: each cause with number, name, a sentence, and a page that is there; each limit by a name of its own.
+/// Action: as text.
+/// Must hold: each cause with number, name, a sentence, and an existing page; each limit with a name of its own.
 #[test]
-fn every_cause_and_limit_has_words() {
+fn every_cause_and_limit_has_a_text() {
     let all = named(Causes::all(&CAUSES));
     assert_eq!(all.len(), CAUSES.len());
-    for (cause, words) in CAUSES.iter().zip(&all) {
-        assert_eq!((words.code, words.name.to_owned()), (cause.code(), format!("{cause:?}")));
-        assert!(words.meaning.ends_with('.') && words.meaning.len() > 10, "{words:?}");
-        assert!(repository(&words.page).is_file(), "{}", words.page);
+    for (cause, described) in CAUSES.iter().zip(&all) {
+        assert_eq!((described.code, described.name.to_owned()), (cause.code(), format!("{cause:?}")));
+        assert!(described.meaning.ends_with('.') && described.meaning.len() > 10, "{described:?}");
+        assert!(repository(&described.page).is_file(), "{}", described.page);
     }
     assert_eq!(causes::named(Causes(1 << 63 | 1)), []);
     let names: BTreeSet<_> = (0..10).flat_map(|bit| limits(ActiveLimits(1 << bit))).collect();
@@ -87,14 +87,14 @@ fn every_cause_and_limit_has_words() {
 }
 
 /// Situation: the status of a bus fault by a known address; every bit set; interrupts.
-/// Action: in words.
-/// Must hold: what the manual says of each bit that means something, and no other.
+/// Action: as text.
+/// Must hold: the manual's description of each defined bit, and no other.
 #[test]
-fn an_exception_has_words() {
+fn an_exception_has_a_text() {
     let fault = Exception::new(5, [0x8200, 0x4000_0000, 0xdead_beef, 1, 2, 3]);
     assert_eq!(fault.name, "bus fault");
-    let begins: Vec<_> = fault.status.iter().filter_map(|text| text.split(':').next()).collect();
-    assert_eq!(begins, ["PRECISERR", "BFARVALID", "FORCED"]);
+    let names: Vec<_> = fault.status.iter().filter_map(|text| text.split(':').next()).collect();
+    assert_eq!(names, ["PRECISERR", "BFARVALID", "FORCED"]);
     assert_eq!(
         (fault.bfar.as_str(), fault.sp.as_str(), fault.lr.as_str()),
         ("deadbeef", "00000001", "00000003")
@@ -108,10 +108,10 @@ fn an_exception_has_words() {
 }
 
 /// Situation: a fault of every kind.
-/// Action: in words.
+/// Action: as text.
 /// Must hold: kind, start, reset cause and steps; the causes with their pages, the panic's text, the registers.
 #[test]
-fn a_fault_has_words() {
+fn a_fault_has_a_text() {
     let texts: Vec<_> = faults().into_iter().map(|record| Fault::from(record).to_string()).collect();
     for (text, named) in texts.iter().zip([
         &["controller in start 5 (software), after 1234 steps at 1.234 s, mode engaged", "1 GyroLost", "docs/faults/01-gyro-lost.md", "57 PolarityWrong"][..],
@@ -121,7 +121,7 @@ fn a_fault_has_words() {
         &["panic in start 1", "  panicked at src/tasks/control.rs:12:5:\n  attempt to divide by zero\n"],
         &["drive in start 1", "  gate driver: over-current low a, fault, status 410 001\n"],
     ]) {
-        assert!(named.iter().all(|word| text.contains(word)), "{text}");
+        assert!(named.iter().all(|part| text.contains(part)), "{text}");
     }
     assert!(!texts[4].contains("pc "), "{}", texts[4]);
 }
