@@ -78,7 +78,8 @@ fn every_document_has_a_committed_schema() {
     let mut names: Vec<&str> = rest.split(']').next().unwrap().split(',').map(str::trim).collect();
     let entries = std::fs::read_dir(repository("docs/schema")).unwrap();
     let mut files: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-    (names.sort(), files.sort());
+    names.sort();
+    files.sort();
     assert_eq!(files, names.iter().map(|name| format!("{name}.json")).collect::<Vec<_>>());
     let page = std::fs::read_to_string(repository("docs/cli.md")).unwrap();
     let row = page.lines().find(|line| line.starts_with("| `sim-host schema NAME` |")).unwrap();
