@@ -8,7 +8,7 @@ use crate::scenario::setting::{
 };
 use crate::scenario::{LoadedRider, Scenario};
 use clap::builder::{PossibleValue, PossibleValuesParser, ValueParser};
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Parser};
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Args, Command, FromArgMatches, Parser};
 use std::marker::PhantomData;
 use std::path::PathBuf;
 
@@ -17,6 +17,8 @@ pub(super) trait Settings {
     const LISTS: &'static [&'static [Setting]];
     /// Whether values are checked when they are given. Otherwise they can contain a sweep's names in braces.
     const CHECKED: bool = true;
+    /// Whether the command also takes a scenario's file.
+    const FILE: bool = true;
 }
 
 /// Conditions of a ride.
@@ -54,18 +56,22 @@ impl Settings for UncertainBasin {
 }
 impl Settings for Bicycle {
     const LISTS: &'static [&'static [Setting]] = &[BICYCLES];
+    const FILE: bool = false;
 }
 impl Settings for Plane {
     const LISTS: &'static [&'static [Setting]] = &[CONDITIONS, PLANE];
 }
 impl Settings for Search {
     const LISTS: &'static [&'static [Setting]] = &[SEARCH];
+    const FILE: bool = false;
 }
 impl Settings for Rider {
     const LISTS: &'static [&'static [Setting]] = &[RIDERS];
+    const FILE: bool = false;
 }
 impl Settings for Fall {
     const LISTS: &'static [&'static [Setting]] = &[&[FALL]];
+    const FILE: bool = false;
 }
 impl Settings for Cells {
     const LISTS: &'static [&'static [Setting]] = &[CONDITIONS];
@@ -134,7 +140,17 @@ fn arg<S: Settings>(setting: &'static Setting) -> Arg {
 
 impl<S: Settings> Args for Options<S> {
     fn augment_args(command: Command) -> Command {
-        command.args(all::<S>().map(arg::<S>))
+        let command = command.args(all::<S>().map(arg::<S>));
+        let gains = ["gains", "delay", "gains-outside"];
+        if !S::CHECKED || !all::<S>().any(|setting| setting.name == gains[0]) {
+            return command;
+        }
+        // A scenario's file can have the rider, too.
+        let riders = ["rider", "scenario"].into_iter().take(if S::FILE { 2 } else { 1 });
+        let group = ArgGroup::new("a rider").args(riders).multiple(true);
+        gains
+            .iter()
+            .fold(command.group(group), |command, name| command.mut_arg(name, |arg| arg.requires("a rider")))
     }
 
     fn augment_args_for_update(command: Command) -> Command {

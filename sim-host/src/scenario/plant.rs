@@ -3,6 +3,7 @@
 
 use super::content::{Content, NONE, name_or_table};
 use super::error::ScenarioError;
+use super::is_default;
 use super::ticks::{LONGEST_S, whole_ticks};
 use crate::plant::sensor_file::{EXACT, SHIPPED, SensorFile, table_of};
 use crate::plant::{
@@ -20,14 +21,17 @@ const LONGEST_SENSOR_S: f64 = 5.0;
 #[serde(default, deny_unknown_fields)]
 pub struct PlantChoice {
     /// Sensor errors, in the order in which they are applied.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sensors: Vec<SensorChange>,
     /// Position and orientation of the IMU.
+    #[serde(skip_serializing_if = "is_default")]
     pub imu: ImuMount,
     /// Motor, friction of the steer and end stop.
-    #[serde(deserialize_with = "name_or_table")]
+    #[serde(deserialize_with = "name_or_table", skip_serializing_if = "is_default")]
     pub actuator: ActuatorChoice,
     /// Faults as text, for example "gyro.x:stuck@1.5s..2s", in the order in which they act.
     #[schemars(with = "Vec<String>")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
     /// Seed of noise and dropouts.
     pub seed: u64,
@@ -194,7 +198,8 @@ impl SensorChange {
                 _ => Err("a change needs a `sensor`, or a `model` alone".into()),
             };
         };
-        let named = |e: String| format!("{name}: {e}");
+        let place = self.axis.as_ref().map_or(name.clone(), |axis| format!("{name}.{axis}"));
+        let named = |e: String| format!("{place}: {e}");
         self.apply_to(sensor_named(name)?, sensors, period_s).map_err(named)
     }
 
@@ -210,7 +215,7 @@ impl SensorChange {
         let axis = axis.transpose()?;
         let others = Self { sensor: None, axis: None, bias: None, ..self.clone() } != Self::default();
         if axis.is_some() && others {
-            return Err("an axis has a bias of its own only; everything else applies to all axes".into());
+            return Err("only bias can differ between axes; everything else applies to all of them".into());
         }
         let model = sensors.model_mut(sensor);
         if let Some(content) = &self.model {

@@ -80,7 +80,8 @@ mod tests {
             );
             parse("s", &text).unwrap().parts.remove(0).options
         };
-        let table = part("{ scan-step = 0.5, speeds = '2:7:1', torque-limit = 7, set = ['a.b=on', 'c={d}'] }");
+        let table =
+            part("{ scan-step = 0.5, speeds = '2:7:1', torque-limit = 7, set = ['a.b=on', 'c={d}'] }");
         assert_eq!(table.typed(), "--torque-limit 7 --set a.b=on --set c={d} --speeds 2:7:1 --scan-step 0.5");
         let text = part("'--law h --speeds 4'");
         assert_eq!((text.typed(), text.settings().unwrap().is_none()), ("--law h --speeds 4".into(), true));
