@@ -187,7 +187,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         ("virtual-board", _) => on_virtual_board(rest)?,
         ("flash", [image]) => image::flash(image)?,
         ("reproducible", []) => reproducible()?,
-        ("architecture", []) => architecture(&image::root())?,
+        ("architecture", []) => architecture(image::root())?,
         ("bench", []) => bench()?,
         ("coverage", []) => coverage::coverage()?,
         ("mutants", _) => mutants(rest)?,

@@ -23,7 +23,9 @@ fn every_image_and_board_is_listed() {
         .collect();
     let mut listed: Vec<(&str, &str)> = IMAGES.iter().map(|image| (image.name, image.board)).collect();
     let mut sources = names("firmware/src/bin");
-    (declared.sort(), listed.sort(), sources.sort());
+    declared.sort();
+    listed.sort();
+    sources.sort();
     assert_eq!(declared, listed);
     assert_eq!(sources, declared.iter().map(|(name, _)| format!("{name}.rs")).collect::<Vec<_>>());
 
@@ -33,7 +35,9 @@ fn every_image_and_board_is_listed() {
     let mut folders: Vec<String> =
         names("firmware/src/board").into_iter().map(|name| format!("board-{name}")).collect();
     let mut listed = boards();
-    (features.sort(), folders.sort(), listed.sort());
+    features.sort();
+    folders.sort();
+    listed.sort();
     assert_eq!(features, listed);
     assert_eq!(folders, listed);
 }
