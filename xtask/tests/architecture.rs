@@ -172,7 +172,8 @@ fn found(nodes: &[&str], edges: &[(&str, &str)]) -> Found {
 /// Must hold: agreement gives nothing; each difference one line with its names, an import also with file and line.
 #[test]
 fn every_difference_is_named() {
-    let cases: [(&[&str], &[(&str, &str)], &[&str]); 5] = [
+    type Case<'a> = (&'a [&'a str], &'a [(&'a str, &'a str)], &'a [&'a str]);
+    let cases: [Case; 5] = [
         (&["high", "low"], &[("high", "low"), ("high", "low")], &[]),
         (&["high", "low"], &[("high", "low"), ("low", "high")], &["src/a.rs:7: low -> high is not declared"]),
         (&["high", "low"], &[], &["small: high -> low is declared and does not occur"]),

@@ -125,8 +125,8 @@ pub(super) fn actuator(text: &str) -> Result<ActuatorChoice, String> {
         Some((name, settings)) => (name, Some(settings)),
         None => (text, None),
     };
-    let mut choice = ActuatorChoice::default();
-    choice.model = (name != NONE).then(|| name.into());
+    let model = (name != NONE).then(|| name.into());
+    let mut choice = ActuatorChoice { model, ..ActuatorChoice::default() };
     for pair in settings.into_iter().flat_map(pairs) {
         let (key, value) = pair?;
         let place = match key {

@@ -39,7 +39,7 @@ pub enum StudyError {
         /// The sweep.
         sweep: String,
         /// The error.
-        error: PartError,
+        error: Box<PartError>,
     },
 }
 

@@ -60,7 +60,8 @@ pub fn parse(name: &str, text: &str) -> Result<Study, StudyError> {
     study.name = name.into();
     for part in &study.parts {
         let (name, sweep) = (&study.name, &part.name);
-        let wrong = |error| StudyError::Part { name: name.clone(), sweep: sweep.clone(), error };
+        let wrong =
+            |error| StudyError::Part { name: name.clone(), sweep: sweep.clone(), error: Box::new(error) };
         part.check().map_err(wrong)?;
     }
     Ok(study)
