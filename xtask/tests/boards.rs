@@ -27,7 +27,9 @@ fn every_image_and_board_is_listed() {
     listed.sort();
     sources.sort();
     assert_eq!(declared, listed);
-    assert_eq!(sources, declared.iter().map(|(name, _)| format!("{name}.rs")).collect::<Vec<_>>());
+    let mut expected: Vec<String> = declared.iter().map(|(name, _)| format!("{name}.rs")).collect();
+    expected.sort();
+    assert_eq!(sources, expected);
 
     let features = manifest["features"].as_table().unwrap().keys();
     let mut features: Vec<&str> =

@@ -38,6 +38,9 @@ pub struct Resolved {
     pub scenario: Scenario,
 }
 
+/// Beginning of the names of the firmware's parameters that the ideal law has, too.
+const IDEAL_PARAMETERS: &str = "dead_band.";
+
 /// Key of the option that sets a parameter of the control crate.
 fn key_of(error: &ParamError) -> Option<&'static str> {
     match (error.leaf.group, error.leaf.name) {
@@ -212,6 +215,11 @@ impl Scenario {
         if self.assist == AssistKind::Ideal && (limited || self.sensor_delay_s > 0.0) {
             let reason = "limits and sensor delay act on --assist firmware only; the ideal law has none";
             return Err(ScenarioError::Conditions(reason.into()));
+        }
+        let ideal = self.assist == AssistKind::Ideal;
+        if let Some(key) = self.parameters.keys().find(|key| ideal && !key.starts_with(IDEAL_PARAMETERS)) {
+            let reason = format!("{key} acts on --assist firmware only; the ideal law has {IDEAL_PARAMETERS}* alone");
+            return Err(ScenarioError::value("parameters", reason));
         }
         Ok(match self.assist {
             _ if *law == Law::None => Assist::None,

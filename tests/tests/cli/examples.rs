@@ -13,12 +13,14 @@ mod ride;
 
 use tests::cli::repository;
 
+type Main = fn() -> Result<(), Box<dyn std::error::Error>>;
+
 /// Situation: the programs in the folder of examples.
 /// Action: run each.
 /// Must hold: none returns an error or panics; each file of the folder is among them.
 #[test]
 fn the_examples_run() {
-    let all: [(&str, fn() -> Result<(), Box<dyn std::error::Error>>); 5] = [
+    let all: [(&str, Main); 5] = [
         ("basin", basin::main),
         ("own_law", own_law::main),
         ("own_rider", own_rider::main),
