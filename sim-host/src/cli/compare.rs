@@ -27,8 +27,8 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Case: LABEL=OPTIONS with the options of `basin` for bicycle, rider, law and conditions, or the FILE of a `basin
-    /// --json`
+    /// Case: LABEL=OPTIONS with the options of `basin` for bicycle, rider, law and conditions, `--scenario` included, or
+    /// the FILE of a `basin --json`
     #[arg(required = true, num_args = 1..=24, value_name = "LABEL=OPTIONS|FILE")]
     cases: Vec<String>,
     #[command(flatten)]
@@ -72,7 +72,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             }
         }
     }
-    let mut scenario = Scenario::default();
+    let mut scenario = Scenario { search: common_search(&requested)?, ..Scenario::default() };
     args.search.apply(&mut scenario)?;
     let search = scenario.search.resolve(ridden).map_err(|e| named_option(&e))?;
     let own_search = SearchChoice { speeds: Some(Speeds::List(search.speeds.clone())), ..scenario.search };
@@ -109,7 +109,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
                 let found =
                     pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
                 let config = json!(setup.config);
-                let scenario = json!(Scenario { search: own_search.clone(), ..setup.scenario });
+                let own = Scenario { search: own_search.clone(), uncertain: None, ..setup.scenario };
+                let scenario = json!(own);
                 Case { label, config, scenario, basin: found? }
             }
         };
@@ -149,6 +150,23 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     complain("interrupted: finished results are kept");
     Ok(Ended::Interrupted)
+}
+
+/// The search of the scenarios of the cases, if they have one; it must be the same in all that have one.
+fn common_search(cases: &[RequestedCase]) -> Result<SearchChoice, Failure> {
+    let searches = cases.iter().filter_map(|case| match case {
+        RequestedCase::Compute(label, setup) => Some((label, &setup.scenario.search)),
+        RequestedCase::Done(..) => None,
+    });
+    let mut own = searches.filter(|(_, search)| **search != SearchChoice::default());
+    let Some((first, search)) = own.next() else { return Ok(SearchChoice::default()) };
+    match own.find(|(_, other)| *other != search) {
+        Some((label, _)) => Err(format!(
+            "the scenarios of the cases `{first}` and `{label}` have different searches; a comparison has one"
+        )
+        .into()),
+        None => Ok(search.clone()),
+    }
 }
 
 fn named(label: &str, error: impl std::fmt::Display) -> Failure {

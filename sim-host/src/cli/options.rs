@@ -2,11 +2,12 @@
 
 use super::Failure;
 use super::conditions::named;
+use super::outputs::complain_once;
 use crate::ride::FallCriterion;
 use crate::scenario::setting::{
     BICYCLES, CONDITIONS, FALL, PLANE, RIDERS, SEARCH, START, Setting, UNCERTAIN,
 };
-use crate::scenario::{LoadedRider, Scenario};
+use crate::scenario::{LoadedRider, RiderChoice, Scenario, cut_warnings};
 use clap::builder::{PossibleValue, PossibleValuesParser, ValueParser};
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Args, Command, FromArgMatches, Parser};
 use std::marker::PhantomData;
@@ -182,6 +183,10 @@ impl<S> Options<S> {
     /// # Errors
     /// The option with its text, and what is expected.
     pub(super) fn apply(&self, scenario: &mut Scenario) -> Result<(), String> {
+        // Another rider does not have this one's delay and gains.
+        if self.given.iter().any(|given| given.setting.name == "rider") {
+            scenario.rider = RiderChoice::default();
+        }
         self.given.iter().try_for_each(|given| given.apply(scenario))
     }
 }
@@ -236,7 +241,11 @@ impl ScenarioFile {
     /// # Errors
     /// The file is wrong.
     pub(super) fn read(&self) -> Result<Scenario, Failure> {
-        Ok(self.scenario.as_deref().map(Scenario::read).transpose()?.unwrap_or_default())
+        let Some(path) = self.scenario.as_deref() else { return Ok(Scenario::default()) };
+        for warning in cut_warnings(path.to_str().into_iter()) {
+            complain_once(&format!("warning: {warning}"));
+        }
+        Ok(Scenario { file: Some(path.into()), ..Scenario::read(path)? })
     }
 }
 

@@ -25,7 +25,7 @@ type Document = (&'static str, fn() -> Schema);
 const DOCUMENTS: [Document; 17] = [
     ("basin", of::<BasinDocument>),
     ("ride", of::<RideDocument>),
-    (SCENARIO, of::<Scenario>),
+    (SCENARIO, of_scenario),
     ("replay", of::<ReplayDocument>),
     ("replay-many", of::<ReplaysDocument>),
     ("eigen", of::<EigenDocument>),
@@ -60,6 +60,11 @@ fn open(schema: &mut Value) {
 /// Names of the documents, for the argument.
 pub(super) fn names() -> [&'static str; DOCUMENTS.len()] {
     DOCUMENTS.map(|(name, _)| name)
+}
+
+/// The schema of a scenario, which is read: keys with a default are not required.
+fn of_scenario() -> Schema {
+    SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<Scenario>()
 }
 
 /// The schema of a document.

@@ -81,7 +81,7 @@ fn resolved(part: &Part) -> Result<Resolved, Failure> {
         }
         (None, StudyOptions::Table(_)) => Vec::new(),
     };
-    resolve(&part.axes()?, &base, given, None)
+    resolve(&part.axes()?, &base, given)
 }
 
 fn write_figures(study: &Study, grids: &[Grid], folder: &Path) -> Result<(), Failure> {

@@ -19,6 +19,7 @@ mod text;
 mod ticks;
 
 pub use content::{Content, OrNone};
+pub(crate) use cut_files::warnings as cut_warnings;
 pub use error::ScenarioError;
 pub use fall::FallChoice;
 pub use law::LawTable;
@@ -32,10 +33,11 @@ use crate::basin::PlaneSearch;
 use crate::bicycle::catalogue::Bicycle;
 use crate::parameters::Value;
 use crate::ride::{Imu, ScheduleSpeed, Start};
-use content::name_or_table;
+use content::{NameOr, name_or_table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// Source of the defaults of law, limits and parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -97,6 +99,7 @@ pub struct Scenario {
     pub bicycle_set: BTreeMap<String, f64>,
     /// The rider; absent for a rigid one, hands off.
     #[serde(deserialize_with = "name_or_table", skip_serializing_if = "is_default")]
+    #[schemars(with = "NameOr<RiderChoice>")]
     pub rider: RiderChoice,
     /// Roll-rate law: its name, a table FILE, or a table in place; absent: h, none with a rider, product: h-cut.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -145,9 +148,12 @@ pub struct Scenario {
     /// Search of a basin over steer rate and roll rate at one speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plane: Option<PlaneSearch>,
-    /// Number of bicycles drawn from the uncertainties of the bicycle's parameters.
+    /// Number of bicycles drawn from the uncertainties of the bicycle's parameters, 2 to 10000.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<u32>,
+    /// File that the scenario was read from, for messages.
+    #[serde(skip)]
+    pub file: Option<PathBuf>,
 }
 
 impl Default for Scenario {
@@ -175,6 +181,7 @@ impl Default for Scenario {
             search: SearchChoice::default(),
             plane: None,
             uncertain: None,
+            file: None,
         }
     }
 }

@@ -1,10 +1,10 @@
 //! The plant of a scenario: changes to exact sensors and an exact motor, in seconds, to the models of a ride in control
 //! periods.
 
-use super::content::{Content, NONE, name_or_table};
+use super::content::{Content, NONE, NameOr, name_or_table};
 use super::error::ScenarioError;
 use super::is_default;
-use super::ticks::{LONGEST_S, whole_ticks};
+use super::ticks::{LONGEST_S, LONGEST_SENSOR_S, whole_ticks};
 use crate::plant::sensor_file::{EXACT, SHIPPED, SensorFile, table_of};
 use crate::plant::{
     ActuatorConfig, Fault, ImuMount, Plant, Sensor, SensorConfig, SensorModel, SteerStop, Supply, catalogue,
@@ -12,9 +12,6 @@ use crate::plant::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-
-/// Longest delay of one sensor \[s\].
-const LONGEST_SENSOR_S: f64 = 5.0;
 
 /// Sensors, motor and faults; the default is exact.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,6 +25,7 @@ pub struct PlantChoice {
     pub imu: ImuMount,
     /// Motor, friction of the steer and end stop.
     #[serde(deserialize_with = "name_or_table", skip_serializing_if = "is_default")]
+    #[schemars(with = "NameOr<ActuatorChoice>")]
     pub actuator: ActuatorChoice,
     /// Faults as text, for example "gyro.x:stuck@1.5s..2s", in the order in which they act.
     #[schemars(with = "Vec<String>")]
@@ -200,6 +198,9 @@ impl SensorChange {
         };
         let place = self.axis.as_ref().map_or(name.clone(), |axis| format!("{name}.{axis}"));
         let named = |e: String| format!("{place}: {e}");
+        if *self == (Self { sensor: self.sensor.clone(), axis: self.axis.clone(), ..Self::default() }) {
+            return Err(named("a change needs a value".into()));
+        }
         self.apply_to(sensor_named(name)?, sensors, period_s).map_err(named)
     }
 

@@ -129,6 +129,7 @@ pub const CONDITIONS: &[Setting] = &[
         help: "Largest torque in N m, or none [default: none; product: 7]",
         set: |s, text| {
             s.torque_limit_nm = Some(text::limit(text)?);
+            s.parameters.remove("limits.max_torque_nm");
             Ok(())
         },
         ..PLAIN
@@ -140,6 +141,8 @@ pub const CONDITIONS: &[Setting] = &[
         help: "Largest change of torque in N m/s, or none [default: none; product: 100]",
         set: |s, text| {
             s.rate_limit_nm_s = Some(text::limit(text)?);
+            s.parameters.remove("limits.rise_nm_s");
+            s.parameters.remove("limits.fall_nm_s");
             Ok(())
         },
         ..PLAIN
@@ -151,6 +154,7 @@ pub const CONDITIONS: &[Setting] = &[
         help: "Taper: torque zero at the first, full at the second speed in m/s, or none [default: none; product: 0.5:1.5]",
         set: |s, text| {
             s.taper_m_s = Some(text::taper(text)?);
+            s.parameters.retain(|key, _| !key.starts_with("limits.taper"));
             Ok(())
         },
         ..PLAIN
@@ -198,8 +202,9 @@ pub const CONDITIONS: &[Setting] = &[
         repeats: true,
         grammar: true,
         set: |s, text| {
-            if text != super::content::NONE {
-                s.plant.faults.push(text.parse().map_err(|e: FaultTextError| e.to_string())?);
+            match text {
+                super::content::NONE => s.plant.faults.clear(),
+                _ => s.plant.faults.push(text.parse().map_err(|e: FaultTextError| e.to_string())?),
             }
             Ok(())
         },
@@ -475,15 +480,16 @@ pub const UNCERTAIN: Setting = Setting {
     value: "N",
     help: "Also compute the basins of N bicycles drawn from the uncertainties of the bicycle's parameters, 2 to 10000, as a band from the 5 % to the 95 % quantile of their heights; --seed changes the draws",
     set: |s, text| {
-        let count = text::whole(text)?;
-        s.uncertain = Some(count);
-        if MOST_DRAWS.contains(&count) { Ok(()) } else { Err(format!("{count} is not in 2..=10000")) }
+        let count = text::whole(text).ok().filter(|count| DRAWS.contains(count));
+        let wrong = || format!("{text} is not in {}..={}", DRAWS.start(), DRAWS.end());
+        s.uncertain = Some(count.ok_or_else(wrong)?);
+        Ok(())
     },
     ..PLAIN
 };
 
 /// Allowed numbers of drawn bicycles.
-pub(super) const MOST_DRAWS: std::ops::RangeInclusive<u32> = 2..=10_000;
+pub(super) const DRAWS: std::ops::RangeInclusive<u32> = 2..=10_000;
 
 /// The disturbance of one ride.
 pub const START: &[Setting] = &[
