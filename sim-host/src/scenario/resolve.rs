@@ -106,7 +106,8 @@ impl Scenario {
                 within(key, value, -most, most).map_err(|e| ScenarioError::value(key, e))
             };
             if start.speed_m_s.is_nan() {
-                return Err(ScenarioError::value("start.speed_m_s", "must be given"));
+                let reason = format!("must be given, from -{FASTEST_M_S} to {FASTEST_M_S} m/s, not NaN");
+                return Err(ScenarioError::value("start.speed_m_s", reason));
             }
             given("start.speed_m_s", start.speed_m_s, FASTEST_M_S)?;
             given("start.steer_rate_rad_s", start.steer_rate_rad_s, 100.0)?;
@@ -115,7 +116,7 @@ impl Scenario {
         self.search.resolve(self.is_ridden())?;
         if let Some(plane) = &self.plane {
             if plane.speed.is_nan() {
-                return Err(ScenarioError::value("plane.speed", "must be given"));
+                return Err(ScenarioError::value("plane.speed", "must be given, from 0 to 30 m/s, not NaN"));
             }
             plane.check().map_err(|e| ScenarioError::value("plane", e))?;
         }

@@ -164,7 +164,7 @@ fn options_change_a_scenario() {
     assert_eq!((&base["torque_limit_nm"], &base["rider"]["delay_s"]), (&json!(3.0), &json!(0.05)));
     let changed = config("--torque-limit 6 --rate-limit 90 --rider smart --fault none --sensor none");
     assert_eq!((&changed["torque_limit_nm"], &changed["rate_limit_nm_s"]), (&json!(6.0), &json!(90.0)));
-    assert_eq!((&changed["rider"]["delay_s"], &changed["rider"]["gains"]), (&json!(0.03), &json!("mean")));
+    assert_eq!((&changed["rider"]["delay_s"], &changed["rider"]["gains"]), (&json!(0.06), &json!("mean")));
     assert_eq!((&changed["plant"]["faults"], &changed["plant"]["sensors"]), (&json!([]), &json!({})));
     assert_eq!(config("--set limits.max_torque_nm=5 --torque-limit 6")["torque_limit_nm"], json!(5.0));
 
