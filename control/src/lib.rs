@@ -27,6 +27,27 @@
 //! [`controller`] calls them in order. [`config`] holds all parameters, [`plan`] the constants derived from them,
 //! [`fault`] the numbered causes; [`param`] declares every parameter with its range, [`numbered`]
 //! enums with permanent numbers, [`wire`] encodes frames, commands and configurations. A board computes wheel speeds from pulses by [`sensors::wheel_speed`].
+//!
+//! ```
+//! use control::{Config, Law, Sample, SensorFrame, State, Triple, step};
+//!
+//! let plan = Config::thesis(Law::H { cut: false }).plan().unwrap();
+//! let mut state = State::default();
+//! let mut frame = SensorFrame {
+//!     gyro_rad_s: Triple::fresh([0.1, 0.0, 0.0]),
+//!     front_wheel_m_s: Sample::fresh(4.0),
+//!     ..SensorFrame::missing()
+//! };
+//! let mut torque_nm = 0.0;
+//! // The switch is first open, then pressed; the assist engages after its self-test.
+//! for period in 0..2000_u32 {
+//!     frame.now_us = 1000 * period;
+//!     frame.engage = period > 1000;
+//!     torque_nm = step(&plan, &mut state, &frame).torque_nm;
+//! }
+//! // h(4 m/s) = (30 - 16) exp(-0.48) = 8.66 N m s/rad, times a roll rate of 0.1 rad/s to the right.
+//! assert!((torque_nm - 0.866).abs() < 0.001);
+//! ```
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -9,7 +9,7 @@ fn searched(scenario: &Scenario) -> Result<Basin, Box<dyn std::error::Error>> {
     Ok(basin(&scenario.resolve()?.conditions, &search, |_| (), || false)?)
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let search = SearchChoice {
         speeds: Some(Speeds::Range("2:7:1".into())),
         tolerance: 0.05,

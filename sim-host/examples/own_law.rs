@@ -7,14 +7,15 @@ use sim_host::basin::{Axis, Search, basin};
 use sim_host::ride::{Assist, Conditions, OwnLaw};
 use sim_host::scenario::{AssistKind, Scenario};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let published = Scenario { law: Some("h".into()), assist: AssistKind::Ideal, ..Scenario::default() }
         .resolve()?
         .conditions;
     // Positive steers into the fall; the torque saturates softly at 4 N m.
     let law = OwnLaw::new(|roll_rate_rad_s, speed_m_s| {
         let gain = if speed_m_s < 7.5 { 12.0 - 1.6 * speed_m_s } else { 0.0 };
-        4.0 * (gain * roll_rate_rad_s / 4.0).tanh()
+        let torque_nm = gain * roll_rate_rad_s;
+        torque_nm / (1.0 + torque_nm.abs() / 4.0)
     });
     let own = Conditions { assist: Assist::Own(law), ..published.clone() };
     let search = Search {

@@ -13,7 +13,7 @@ columns = ['speed_m_s', 'group', 'K_phi_p', 'K_phi_d', 'K_delta_d']
 rows = [[3.0, 1, 30, 22, -1.5], [6.0, 2, 20, 12, -2.5]]
 ";
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let table = RiderTable::from_text("mine", TABLE, Path::new("mine.toml"))?;
     let rider = RiderChoice { table: Some(Content::Given(Box::new(table))), ..RiderChoice::default() };
     let start = Start { speed_m_s: 4.0, steer_rate_rad_s: 1.0, ..Start::default() };

@@ -4,7 +4,7 @@ use sim_host::plant::sensor_file::{SensorFile, SensorNumbers};
 use sim_host::ride::{Start, traced};
 use sim_host::scenario::{Content, PlantChoice, Preset, Scenario, SensorChange};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gyro = SensorNumbers {
         period_s: Some(0.005),
         delay_s: Some(0.004),

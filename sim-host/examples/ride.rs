@@ -3,7 +3,7 @@
 use sim_host::ride::{Outcome, Start, traced};
 use sim_host::scenario::{Preset, Scenario};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scenario =
         Scenario { preset: Preset::Product, rider: "smart".to_owned().into(), ..Scenario::default() };
     let resolved = scenario.resolve()?;

@@ -25,11 +25,8 @@ fn check(root: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<
                 check(root, root.pointer(pointer).unwrap_or(&Value::Null), value, at, found);
                 true
             }
-            "anyOf" => list(rule).iter().any(|one| {
-                let mut misfits = Vec::new();
-                check(root, one, value, at, &mut misfits);
-                misfits.is_empty()
-            }),
+            "anyOf" => list(rule).iter().any(|one| fits_alone(root, one, value, at)),
+            "oneOf" => list(rule).iter().filter(|one| fits_alone(root, one, value, at)).count() == 1,
             "type" => match rule {
                 Value::Array(kinds) => kinds.iter().any(|kind| is(value, kind)),
                 kind => is(value, kind),
@@ -62,6 +59,13 @@ fn check(root: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<
         }
     }
     check_keys(root, schema, value, at, found);
+}
+
+/// Whether a value fits a schema by itself.
+fn fits_alone(root: &Value, schema: &Value, value: &Value, at: &str) -> bool {
+    let mut misfits = Vec::new();
+    check(root, schema, value, at, &mut misfits);
+    misfits.is_empty()
 }
 
 /// Every key of an object by its own rule, or by the rule for all others.

@@ -167,14 +167,12 @@ fn found(nodes: &[&str], edges: &[(&str, &str)]) -> Found {
     }
 }
 
-/// Found modules, found imports, expected lines.
-type Case<'a> = (&'a [&'a str], &'a [(&'a str, &'a str)], &'a [&'a str]);
-
 /// Situation: a small graph; sources that agree, import more, import less, have another module, or lack one.
 /// Action: compare.
 /// Must hold: agreement gives nothing; each difference one line with its names, an import also with file and line.
 #[test]
 fn every_difference_is_named() {
+    type Case<'a> = (&'a [&'a str], &'a [(&'a str, &'a str)], &'a [&'a str]);
     let cases: [Case; 5] = [
         (&["high", "low"], &[("high", "low"), ("high", "low")], &[]),
         (&["high", "low"], &[("high", "low"), ("low", "high")], &["src/a.rs:7: low -> high is not declared"]),

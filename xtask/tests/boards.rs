@@ -18,19 +18,30 @@ fn table(path: &str) -> Table {
 fn every_image_and_board_is_listed() {
     let manifest = table("firmware/Cargo.toml");
     let bins = manifest["bin"].as_array().unwrap().iter();
-    let declared = bins.map(|bin| {
-        format!("{} of {}", bin["name"].as_str().unwrap(), bin["required-features"][0].as_str().unwrap())
-    });
-    let listed = IMAGES.iter().map(|image| format!("{} of {}", image.name, image.board));
-    assert_eq!(sorted(declared), sorted(listed));
-    let sources = names("firmware/src/bin");
-    assert_eq!(sorted(sources), sorted(IMAGES.iter().map(|image| format!("{}.rs", image.name))));
+    let mut declared: Vec<(&str, &str)> = bins
+        .map(|bin| (bin["name"].as_str().unwrap(), bin["required-features"][0].as_str().unwrap()))
+        .collect();
+    let mut listed: Vec<(&str, &str)> = IMAGES.iter().map(|image| (image.name, image.board)).collect();
+    let mut sources = names("firmware/src/bin");
+    declared.sort();
+    listed.sort();
+    sources.sort();
+    assert_eq!(declared, listed);
+    let mut expected: Vec<String> = declared.iter().map(|(name, _)| format!("{name}.rs")).collect();
+    expected.sort();
+    assert_eq!(sources, expected);
 
     let features = manifest["features"].as_table().unwrap().keys();
-    let features = sorted(features.filter(|name| name.starts_with("board-")).cloned());
-    let folders = sorted(names("firmware/src/board").into_iter().map(|name| format!("board-{name}")));
-    let listed = sorted(boards().into_iter().map(str::to_owned));
-    assert_eq!((&features, &folders), (&listed, &listed));
+    let mut features: Vec<&str> =
+        features.filter(|name| name.starts_with("board-")).map(String::as_str).collect();
+    let mut folders: Vec<String> =
+        names("firmware/src/board").into_iter().map(|name| format!("board-{name}")).collect();
+    let mut listed = boards();
+    features.sort();
+    folders.sort();
+    listed.sort();
+    assert_eq!(features, listed);
+    assert_eq!(folders, listed);
 }
 
 /// Situation: the page of the images, and the aliases of cargo.
@@ -54,10 +65,4 @@ fn every_image_is_documented_and_each_of_a_board_has_an_alias() {
 fn names(folder: &str) -> Vec<String> {
     let entries = std::fs::read_dir(root().join(folder)).unwrap();
     entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
-}
-
-fn sorted(names: impl IntoIterator<Item = String>) -> Vec<String> {
-    let mut names: Vec<String> = names.into_iter().collect();
-    names.sort();
-    names
 }

@@ -3,10 +3,9 @@
 use super::conditions::{named, setup};
 use super::options::Given;
 use crate::basin::Search;
-use crate::scenario::Scenario;
 use crate::scenario::setting::{CONDITIONS, Setting};
+use crate::scenario::{RiderChoice, Scenario, Speeds};
 use crate::sweep::{Axis, Cell, Plan, SweepError, check, combination, count, label};
-use std::path::Path;
 
 /// Most cells of a sweep.
 const MOST: usize = 100_000;
@@ -54,6 +53,9 @@ fn roles(axes: &[Axis], shared: &[Given]) -> Result<Vec<Role>, SweepError> {
 /// The scenario of one cell.
 fn cell(base: &Scenario, shared: &[Given], roles: &[Role], values: &[String]) -> Result<Scenario, String> {
     let mut scenario = base.clone();
+    if roles.iter().any(|role| matches!(role, Role::Setting(setting) if setting.name == "rider")) {
+        scenario.rider = RiderChoice::default();
+    }
     for given in shared {
         let mut given = given.clone();
         for (role, value) in roles.iter().zip(values) {
@@ -72,7 +74,7 @@ fn cell(base: &Scenario, shared: &[Given], roles: &[Role], values: &[String]) ->
 }
 
 /// Loads and checks every cell. `base` has the search; the speeds that are searched by default are those of a rider if
-/// any cell has one. `file` is the file of `base`.
+/// any cell has one.
 ///
 /// # Errors
 /// The axis, or the cell with its error.
@@ -80,7 +82,6 @@ pub(super) fn resolve(
     axes: &[Axis],
     base: &Scenario,
     shared: Vec<Given>,
-    file: Option<&Path>,
 ) -> Result<Resolved, super::Failure> {
     check(axes)?;
     let roles = roles(axes, &shared)?;
@@ -95,14 +96,19 @@ pub(super) fn resolve(
         let scenario = cell(base, &shared, &roles, &values).map_err(|e| of_cell(&e))?;
         ridden |= scenario.is_ridden();
         let setup = setup(&scenario).map_err(|e| of_cell(&e))?;
-        setups.push((serde_json::to_value(&setup.config)?, setup.conditions));
+        setups.push((serde_json::to_value(&setup.config)?, setup.scenario, setup.conditions));
     }
     let search = base.search.resolve(ridden).map_err(|e| named(&e))?;
-    let configs: Vec<_> = setups.iter().map(|(config, _)| config.clone()).collect();
-    let file = file.map(|path| format!("--scenario={}", path.display()));
-    let options = file.into_iter().chain(shared.iter().map(Given::typed)).collect();
+    // Without riders in a cell its own default would be other speeds.
+    let speeds = base.search.speeds.clone().unwrap_or_else(|| Speeds::List(search.speeds.clone()));
+    let configs: Vec<_> = setups.iter().map(|(config, ..)| config.clone()).collect();
+    let options = shared.iter().map(Given::typed).collect();
     let plan = Plan::new(options, axes.to_vec(), &search, &configs);
-    let cell = |(id, (config, conditions)): (&String, _)| Cell { id: id.clone(), config, conditions };
-    let cells = plan.cells.iter().zip(setups).map(cell).collect();
+    let mut cells = Vec::with_capacity(setups.len());
+    for (id, (config, mut scenario, conditions)) in plan.cells.iter().zip(setups) {
+        scenario.search.speeds = Some(speeds.clone());
+        scenario.uncertain = None;
+        cells.push(Cell { id: id.clone(), config, scenario: serde_json::to_value(&scenario)?, conditions });
+    }
     Ok(Resolved { plan, cells, search })
 }

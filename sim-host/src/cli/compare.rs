@@ -12,7 +12,7 @@ use crate::report::compare::{Case, CompareDocument};
 use crate::report::figure::{self, BasinFigure};
 use crate::report::resolved::ResolvedSearch;
 use crate::report::table;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, SearchChoice, Speeds};
 use control::Law;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -27,8 +27,8 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Case: LABEL=OPTIONS with the options of `basin` for bicycle, rider, law and conditions, or the FILE of a `basin
-    /// --json`
+    /// Case: LABEL=OPTIONS with the options of `basin` for bicycle, rider, law and conditions, `--scenario` included, or
+    /// the FILE of a `basin --json`
     #[arg(required = true, num_args = 1..=24, value_name = "LABEL=OPTIONS|FILE")]
     cases: Vec<String>,
     #[command(flatten)]
@@ -72,9 +72,10 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             }
         }
     }
-    let mut scenario = Scenario::default();
+    let mut scenario = Scenario { search: common_search(&requested)?, ..Scenario::default() };
     args.search.apply(&mut scenario)?;
     let search = scenario.search.resolve(ridden).map_err(|e| named_option(&e))?;
+    let own_search = SearchChoice { speeds: Some(Speeds::List(search.speeds.clone())), ..scenario.search };
     let resolved = ResolvedSearch::new(&search);
     for (i, one) in requested.iter().enumerate() {
         if let RequestedCase::Done(case, axis) = one
@@ -108,7 +109,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
                 let found =
                     pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
                 let config = json!(setup.config);
-                Case { label, config, basin: found? }
+                let own = Scenario { search: own_search.clone(), uncertain: None, ..setup.scenario };
+                let scenario = json!(own);
+                Case { label, config, scenario, basin: found? }
             }
         };
         complete &= !interrupt::stopped();
@@ -147,6 +150,23 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     complain("interrupted: finished results are kept");
     Ok(Ended::Interrupted)
+}
+
+/// The search of the scenarios of the cases, if they have one; it must be the same in all that have one.
+fn common_search(cases: &[RequestedCase]) -> Result<SearchChoice, Failure> {
+    let searches = cases.iter().filter_map(|case| match case {
+        RequestedCase::Compute(label, setup) => Some((label, &setup.scenario.search)),
+        RequestedCase::Done(..) => None,
+    });
+    let mut own = searches.filter(|(_, search)| **search != SearchChoice::default());
+    let Some((first, search)) = own.next() else { return Ok(SearchChoice::default()) };
+    match own.find(|(_, other)| *other != search) {
+        Some((label, _)) => Err(format!(
+            "the scenarios of the cases `{first}` and `{label}` have different searches; a comparison has one"
+        )
+        .into()),
+        None => Ok(search.clone()),
+    }
 }
 
 fn named(label: &str, error: impl std::fmt::Display) -> Failure {
@@ -195,7 +215,8 @@ fn read(path: &str) -> Result<(Case, String), Failure> {
     }
     let label =
         std::path::Path::new(path).file_stem().map_or(path.into(), |s| s.to_string_lossy().into_owned());
-    let case = Case { label, config: document["config"].clone(), basin: Basin { columns } };
+    let [config, scenario] = ["config", "scenario"].map(|key| document[key].clone());
+    let case = Case { label, config, scenario, basin: Basin { columns } };
     Ok((case, axis.into()))
 }
 

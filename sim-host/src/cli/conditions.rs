@@ -7,7 +7,7 @@ use crate::bicycle::Parameters;
 use crate::bicycle::uncertain::Measured;
 use crate::report::resolved::ResolvedConfig;
 use crate::ride::Conditions;
-use crate::scenario::{Content, Resolved, Scenario, ScenarioError, setting};
+use crate::scenario::{Resolved, Scenario, ScenarioError, setting};
 
 /// What a command needs of its scenario.
 pub(super) struct Setup {
@@ -21,7 +21,7 @@ pub(super) struct Setup {
 
 /// Loads and checks all conditions of a scenario.
 pub(super) fn setup(scenario: &Scenario) -> Result<Setup, Failure> {
-    let resolved = scenario.resolve().map_err(|e| named(&e))?;
+    let resolved = scenario.resolve().map_err(|e| of_file(scenario, &e))?;
     warn(&resolved.bicycle);
     resolved.notes.iter().for_each(|note| complain_once(&format!("note: {note}")));
     resolved.warnings.iter().for_each(|warning| complain_once(&format!("warning: {warning}")));
@@ -30,10 +30,19 @@ pub(super) fn setup(scenario: &Scenario) -> Result<Setup, Failure> {
     Ok(Setup { conditions, config, parameters: bicycle.parameters, measured: bicycle.measured, scenario })
 }
 
+/// An error of a scenario, with its file.
+fn of_file(scenario: &Scenario, error: &ScenarioError) -> String {
+    match &scenario.file {
+        Some(path) => format!("scenario {}: {}", path.display(), named(error)),
+        None => named(error),
+    }
+}
+
 /// An error of a scenario, with the option that sets its key.
 pub(super) fn named(error: &ScenarioError) -> String {
     match error {
         ScenarioError::Value { key, reason } => match setting::of_key(key) {
+            Some(setting) if setting.grammar => format!("--{} {reason}", setting.name),
             Some(setting) => format!("--{}: {reason}", setting.name),
             None => error.to_string(),
         },
@@ -49,11 +58,7 @@ pub(super) fn printed<S: Settings>(
     if !chosen.print_scenario {
         return Ok(None);
     }
-    let resolved = scenario.resolve().map_err(|e| named(&e))?;
-    let mut meant = scenario.clone();
-    if meant.law.is_none() && meant.parameter_file.is_none() {
-        meant.law = Some(Content::Named(resolved.law_name));
-    }
-    print(&meant.to_toml()?)?;
+    scenario.resolve().map_err(|e| of_file(scenario, &e))?;
+    print(&scenario.to_toml()?)?;
     Ok(Some(Ended::Done))
 }

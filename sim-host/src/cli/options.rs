@@ -2,13 +2,14 @@
 
 use super::Failure;
 use super::conditions::named;
+use super::outputs::complain_once;
 use crate::ride::FallCriterion;
 use crate::scenario::setting::{
     BICYCLES, CONDITIONS, FALL, PLANE, RIDERS, SEARCH, START, Setting, UNCERTAIN,
 };
-use crate::scenario::{LoadedRider, Scenario};
+use crate::scenario::{LoadedRider, RiderChoice, Scenario, cut_warnings};
 use clap::builder::{PossibleValue, PossibleValuesParser, ValueParser};
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Parser};
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Args, Command, FromArgMatches, Parser};
 use std::marker::PhantomData;
 use std::path::PathBuf;
 
@@ -17,6 +18,8 @@ pub(super) trait Settings {
     const LISTS: &'static [&'static [Setting]];
     /// Whether values are checked when they are given. Otherwise they can contain a sweep's names in braces.
     const CHECKED: bool = true;
+    /// Whether the command also takes a scenario's file.
+    const FILE: bool = true;
 }
 
 /// Conditions of a ride.
@@ -54,18 +57,22 @@ impl Settings for UncertainBasin {
 }
 impl Settings for Bicycle {
     const LISTS: &'static [&'static [Setting]] = &[BICYCLES];
+    const FILE: bool = false;
 }
 impl Settings for Plane {
     const LISTS: &'static [&'static [Setting]] = &[CONDITIONS, PLANE];
 }
 impl Settings for Search {
     const LISTS: &'static [&'static [Setting]] = &[SEARCH];
+    const FILE: bool = false;
 }
 impl Settings for Rider {
     const LISTS: &'static [&'static [Setting]] = &[RIDERS];
+    const FILE: bool = false;
 }
 impl Settings for Fall {
     const LISTS: &'static [&'static [Setting]] = &[&[FALL]];
+    const FILE: bool = false;
 }
 impl Settings for Cells {
     const LISTS: &'static [&'static [Setting]] = &[CONDITIONS];
@@ -117,13 +124,10 @@ fn arg<S: Settings>(setting: &'static Setting) -> Arg {
         None => arg,
     };
     let arg = if setting.required { arg.required_unless_present("scenario") } else { arg };
-    let arg = match setting.name {
-        "gains" | "delay" | "gains-outside" => {
-            arg.requires_ifs([(clap::builder::ArgPredicate::IsPresent, "rider")])
-        }
-        _ => arg,
-    };
     if !S::CHECKED {
+        return arg.value_parser(ValueParser::string());
+    }
+    if setting.grammar {
         return arg.value_parser(ValueParser::string());
     }
     if setting.words.is_empty() {
@@ -137,7 +141,17 @@ fn arg<S: Settings>(setting: &'static Setting) -> Arg {
 
 impl<S: Settings> Args for Options<S> {
     fn augment_args(command: Command) -> Command {
-        command.args(all::<S>().map(arg::<S>))
+        let command = command.args(all::<S>().map(arg::<S>));
+        let gains = ["gains", "delay", "gains-outside"];
+        if !S::CHECKED || !all::<S>().any(|setting| setting.name == gains[0]) {
+            return command;
+        }
+        // A scenario's file can have the rider, too.
+        let riders = ["rider", "scenario"].into_iter().take(if S::FILE { 2 } else { 1 });
+        let group = ArgGroup::new("a rider").args(riders).multiple(true);
+        gains
+            .iter()
+            .fold(command.group(group), |command, name| command.mut_arg(name, |arg| arg.requires("a rider")))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -169,6 +183,10 @@ impl<S> Options<S> {
     /// # Errors
     /// The option with its text, and what is expected.
     pub(super) fn apply(&self, scenario: &mut Scenario) -> Result<(), String> {
+        // Another rider does not have this one's delay and gains.
+        if self.given.iter().any(|given| given.setting.name == "rider") {
+            scenario.rider = RiderChoice::default();
+        }
         self.given.iter().try_for_each(|given| given.apply(scenario))
     }
 }
@@ -223,7 +241,13 @@ impl ScenarioFile {
     /// # Errors
     /// The file is wrong.
     pub(super) fn read(&self) -> Result<Scenario, Failure> {
-        Ok(self.scenario.as_deref().map(Scenario::read).transpose()?.unwrap_or_default())
+        let Some(path) = self.scenario.as_deref() else { return Ok(Scenario::default()) };
+        // JSON that was cut cannot be parsed.
+        let toml = path.extension().is_none_or(|ending| ending != "json");
+        for warning in cut_warnings(path.to_str().into_iter().filter(|_| toml)) {
+            complain_once(&format!("warning: {warning}"));
+        }
+        Ok(Scenario { file: Some(path.into()), ..Scenario::read(path)? })
     }
 }
 

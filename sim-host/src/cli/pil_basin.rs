@@ -29,7 +29,8 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let BasinArgs { scenario: chosen, threads, outputs } = &args.basin;
-    let scenario = chosen.scenario()?;
+    let mut scenario = chosen.scenario()?;
+    scenario.uncertain = None;
     if let Some(ended) = printed(chosen, &scenario)? {
         return Ok(ended);
     }

@@ -35,7 +35,7 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let scenario = args.scenario.scenario()?;
-    let search = scenario.plane.filter(|plane| !plane.speed.is_nan()).ok_or("--speed must be given")?;
+    let search = scenario.plane.ok_or("--speed must be given (plane.speed)")?;
     if let Some(ended) = printed(&args.scenario, &scenario)? {
         return Ok(ended);
     }
@@ -45,7 +45,6 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             "basin plane mirrors one half: no faults, noise, bias, dropout, no IMU off its middle".into()
         );
     }
-    search.check()?;
     let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = args.threads.pool()?;

@@ -4,7 +4,6 @@ use super::conditions::{Setup, printed, setup};
 use super::options::{Chosen, Ride as RideOptions};
 use super::outputs::{OutputArgs, Outputs, Results};
 use super::{Ended, Failure};
-use crate::range::within;
 use crate::report::document::RideDocument;
 use crate::report::figure::{self, RideFigure};
 use crate::report::{table, terminal};
@@ -37,13 +36,9 @@ pub(super) struct Args {
     outputs: OutputArgs,
 }
 
-/// The checked initial state of a scenario.
+/// The initial state of a scenario.
 pub(super) fn start(scenario: &Scenario) -> Result<Start, Failure> {
-    let start = scenario.start.filter(|start| !start.speed_m_s.is_nan()).ok_or("--speed must be given")?;
-    within("--speed (m/s)", start.speed_m_s, -30.0, 30.0)?;
-    within("--steer-rate (rad/s)", start.steer_rate_rad_s, -100.0, 100.0)?;
-    within("--roll-rate (rad/s)", start.roll_rate_rad_s, -100.0, 100.0)?;
-    Ok(start)
+    Ok(scenario.start.ok_or("--speed must be given (start.speed_m_s)")?)
 }
 
 impl Args {

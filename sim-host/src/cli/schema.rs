@@ -16,6 +16,7 @@ use crate::sweep::document::SweepDocument;
 use crate::thesis::document::ThesisDocument;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
+use serde_json::Value;
 
 /// Name of a document, and the function that makes its schema.
 type Document = (&'static str, fn() -> Schema);
@@ -24,7 +25,7 @@ type Document = (&'static str, fn() -> Schema);
 const DOCUMENTS: [Document; 17] = [
     ("basin", of::<BasinDocument>),
     ("ride", of::<RideDocument>),
-    ("scenario", of::<Scenario>),
+    (SCENARIO, of_scenario),
     ("replay", of::<ReplayDocument>),
     ("replay-many", of::<ReplaysDocument>),
     ("eigen", of::<EigenDocument>),
@@ -41,9 +42,29 @@ const DOCUMENTS: [Document; 17] = [
     ("identify-sensor", of::<SensorDocument>),
 ];
 
+/// The document that is input: a key that is not in its schema is an error.
+const SCENARIO: &str = "scenario";
+
+/// Allows more keys everywhere: documents may grow.
+fn open(schema: &mut Value) {
+    match schema {
+        Value::Object(entries) => {
+            entries.retain(|key, value| !(key == "additionalProperties" && *value == Value::Bool(false)));
+            entries.values_mut().for_each(open);
+        }
+        Value::Array(items) => items.iter_mut().for_each(open),
+        _ => {}
+    }
+}
+
 /// Names of the documents, for the argument.
 pub(super) fn names() -> [&'static str; DOCUMENTS.len()] {
     DOCUMENTS.map(|(name, _)| name)
+}
+
+/// The schema of a scenario, which is read: keys with a default are not required.
+fn of_scenario() -> Schema {
+    SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<Scenario>()
 }
 
 /// The schema of a document.
@@ -55,7 +76,10 @@ fn of<D: JsonSchema>() -> Schema {
 /// Prints the schema of a document.
 pub(super) fn run(document: &str) -> Result<Ended, Failure> {
     let (_, schema) = DOCUMENTS.iter().find(|(name, _)| *name == document).ok_or("no such document")?;
-    let schema = serde_json::to_value(schema())?;
+    let mut schema = serde_json::to_value(schema())?;
+    if document != SCENARIO {
+        open(&mut schema);
+    }
     // The descriptions are doc comments, whose brackets are escaped.
     let text = serde_json::to_string_pretty(&schema)?.replace(r"\\[", "[").replace(r"\\]", "]");
     print(&(text + "\n"))?;

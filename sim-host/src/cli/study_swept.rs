@@ -2,7 +2,7 @@
 
 use super::basin::progress;
 use super::cells::{Resolved, resolve};
-use super::options::{Cells, Options, Search, usage_error};
+use super::options::{Cells, Given, Options, Search, usage_error};
 use super::outputs::complain;
 use super::study::{Args, made, page_path, print_path};
 use super::sweep::{finish, to_do};
@@ -10,7 +10,8 @@ use super::{Ended, Failure, interrupt};
 use crate::report::output::Output;
 use crate::report::picture::{caption, svg_with_caption};
 use crate::scenario::Scenario;
-use crate::study::swept::{self, Part, Spent, Study};
+use crate::scenario::setting::SEARCH;
+use crate::study::swept::{self, Part, Spent, Study, StudyOptions};
 use crate::sweep::{self, Folder, Grid, Progress, Shard};
 use clap::Parser;
 use std::path::Path;
@@ -63,17 +64,30 @@ pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
 }
 
 fn resolved(part: &Part) -> Result<Resolved, Failure> {
-    let words = shlex::split(&part.options).ok_or("a quotation mark is not closed")?;
-    let args = PartArgs::try_parse_from(words).map_err(|e| usage_error(&e))?;
     let mut base = Scenario::default();
-    args.search.apply(&mut base)?;
-    resolve(&part.axes()?, &base, args.conditions.given, None)
+    let given = match (part.options.settings()?, &part.options) {
+        (Some(settings), _) => {
+            let given = settings.into_iter().map(|(setting, text)| Given { setting, text });
+            let (search, given): (Vec<_>, Vec<_>) =
+                given.partition(|given| SEARCH.iter().any(|setting| setting.name == given.setting.name));
+            search.iter().try_for_each(|given| given.apply(&mut base))?;
+            given
+        }
+        (None, StudyOptions::Text(text)) => {
+            let words = shlex::split(text).ok_or("a quotation mark is not closed")?;
+            let args = PartArgs::try_parse_from(words).map_err(|e| usage_error(&e))?;
+            args.search.apply(&mut base)?;
+            args.conditions.given
+        }
+        (None, StudyOptions::Table(_)) => Vec::new(),
+    };
+    resolve(&part.axes()?, &base, given)
 }
 
 fn write_figures(study: &Study, grids: &[Grid], folder: &Path) -> Result<(), Failure> {
     for (part, grid) in study.parts.iter().zip(grids) {
         // The page has the command; the full configuration is in the sweep's folder.
-        let about = caption(&serde_json::json!({"options": part.options, "over": part.over}));
+        let about = caption(&serde_json::json!({"options": part.options.typed(), "over": part.over}));
         for (name, picture) in swept::figures(part, grid) {
             let path = folder.join(format!("{}-{name}.svg", study.name));
             Output::create(&path)?.finish(svg_with_caption(&picture.svg(), &about).as_bytes())?;

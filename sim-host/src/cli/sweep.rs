@@ -91,8 +91,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     let mut base = args.scenario.read()?;
     args.search.apply(&mut base)?;
-    let file = args.scenario.scenario.as_deref();
-    let resolved = resolve(&args.over, &base, args.conditions.given.clone(), file)?;
+    let resolved = resolve(&args.over, &base, args.conditions.given.clone())?;
     let mine = args.shard.unwrap_or(Shard::WHOLE).of(&resolved.plan.cells);
     let pool = args.threads.pool()?;
     if args.dry_run {

@@ -37,6 +37,8 @@ pub struct CaseEntry {
     pub label: String,
     /// Its full configuration, as in the document of `basin`.
     pub config: serde_json::Value,
+    /// The scenario that gives this case again; null for a file without one.
+    pub scenario: serde_json::Value,
     /// Forward speeds \[m/s\].
     pub speeds: Vec<f64>,
     /// The outline \[rad/s\].
@@ -65,6 +67,8 @@ pub struct Case {
     pub label: String,
     /// Its full configuration.
     pub config: serde_json::Value,
+    /// Its scenario; null if unknown.
+    pub scenario: serde_json::Value,
     /// Its outline; a case from a file has no scan and no border rides.
     pub basin: Basin,
 }
@@ -84,6 +88,7 @@ impl CompareDocument {
         let entry = |case: &Case| CaseEntry {
             label: case.label.clone(),
             config: case.config.clone(),
+            scenario: case.scenario.clone(),
             speeds: speeds(case),
             upper: case.basin.columns.iter().map(|c| c.upper).collect(),
             area: case.basin.area(),

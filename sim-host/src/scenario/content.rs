@@ -151,6 +151,19 @@ impl<T: JsonSchema> JsonSchema for OrNone<T> {
     }
 }
 
+/// In a schema: a name alone, or a table.
+pub(super) struct NameOr<T>(PhantomData<T>);
+
+impl<T: JsonSchema> JsonSchema for NameOr<T> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("NameOr{}", T::schema_name()).into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let table = generator.subschema_for::<T>();
+        json_schema!({"anyOf": [{"type": "string"}, table]})
+    }
+}
+
 /// Reads a table, or a name alone as the table with this name.
 pub(super) fn name_or_table<'de, D, T>(deserializer: D) -> Result<T, D::Error>
 where

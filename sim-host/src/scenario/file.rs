@@ -6,16 +6,21 @@ use std::path::Path;
 use toml::Value;
 
 impl Scenario {
-    /// Reads a scenario from a file: TOML, or JSON if its name ends in `.json`. Of a result of `ride`, `basin` or
-    /// `basin plane`, the scenario in it.
+    /// Reads a scenario from a file, or from standard input (`-`): JSON if it begins with a brace or its name ends in `.json`, otherwise TOML. Of a
+    /// result of `ride`, `basin` or `basin plane`, the scenario in it.
     ///
     /// # Errors
     /// States file, line or key, and what was expected.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| ScenarioError::Read { path: path.into(), source })?;
-        let json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-        let read = if json { Self::from_json(&text) } else { Self::from_toml(&text) };
+        let text = match path.to_str() {
+            Some("-") => std::io::read_to_string(std::io::stdin()),
+            _ => std::fs::read_to_string(path),
+        };
+        let text = text.map_err(|source| ScenarioError::Read { path: path.into(), source })?;
+        let text = text.trim_start_matches('\u{feff}');
+        let json = text.trim_start().starts_with('{')
+            || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+        let read = if json { Self::from_json(text) } else { Self::from_toml(text) };
         read.map_err(|reason| ScenarioError::Syntax { path: path.into(), reason })
     }
 
@@ -24,7 +29,7 @@ impl Scenario {
     /// # Errors
     /// States line, key and what was expected.
     pub fn from_toml(text: &str) -> Result<Self, String> {
-        toml::from_str(text).map_err(|e| e.to_string().trim().to_owned())
+        toml::from_str(text).map_err(|e| in_plain_words(e.to_string().trim()))
     }
 
     /// Parses a scenario in JSON, or the scenario of a result.
@@ -36,13 +41,21 @@ impl Scenario {
         let Some(Value::Table(mut table)) = of_json(value) else {
             return Err("expected an object".into());
         };
-        let of_result = table.contains_key("tool");
-        let own = match (table.remove("scenario"), of_result) {
-            (Some(own), _) => own,
-            (None, true) => return Err("this result has no `scenario`".into()),
-            (None, false) => Value::Table(table),
+        // Every document with a scenario in it has its configuration beside it.
+        let of_result = table.contains_key("tool") || table.contains_key("config");
+        let own = match table.remove("scenario") {
+            Some(own) if of_result => own,
+            Some(_) => return Err("`scenario` is a key of results only".into()),
+            None if table.contains_key("cells") => {
+                return Err("the scenarios are in `cells[i].scenario`".into());
+            }
+            None if table.contains_key("cases") => {
+                return Err("the scenarios are in `cases[i].scenario`".into());
+            }
+            None if of_result => return Err("this result has no `scenario`".into()),
+            None => Value::Table(table),
         };
-        Self::deserialize(own).map_err(|e| e.to_string().trim().to_owned())
+        Self::deserialize(own).map_err(|e| in_plain_words(e.to_string().trim()))
     }
 
     /// The scenario as a TOML file.
@@ -52,6 +65,27 @@ impl Scenario {
     pub fn to_toml(&self) -> Result<String, String> {
         toml::to_string(self).map_err(|e| e.to_string())
     }
+}
+
+/// A parser's message without the names of Rust's types.
+fn in_plain_words(message: &str) -> String {
+    let words: Vec<String> = message.split(' ').map(str::to_owned).collect();
+    let mut plain: Vec<&str> = Vec::with_capacity(words.len());
+    let mut words = words.iter().map(String::as_str).peekable();
+    while let Some(word) = words.next() {
+        plain.push(match word.trim_end() {
+            "f64" => "a number",
+            "u64" | "u32" | "usize" => "a whole number from 0",
+            "struct" => {
+                words.next();
+                "a table"
+            }
+            "sequence" => "list",
+            "field" => "key",
+            _ => word,
+        });
+    }
+    plain.join(" ")
 }
 
 /// A JSON value as a TOML value. A null in a list is a missing number, NaN; any other is left out.

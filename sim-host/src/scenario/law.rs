@@ -57,6 +57,11 @@ pub(super) fn resolve(choice: &Content<LawTable>) -> Result<(String, Law), Strin
         Content::Named(name) => Ok((name.clone(), parse(name)?)),
         Content::Given(table) => {
             let name = table.name.clone().unwrap_or_else(|| "table".into());
+            if name.parse::<Law>().is_ok() {
+                return Err(format!(
+                    "law: `{name}` is the name of a built-in law; choose another for the table"
+                ));
+            }
             let law = of_table((**table).clone(), &format!("law {name}"))?;
             Ok((name, law))
         }

@@ -19,6 +19,7 @@ mod text;
 mod ticks;
 
 pub use content::{Content, OrNone};
+pub(crate) use cut_files::warnings as cut_warnings;
 pub use error::ScenarioError;
 pub use fall::FallChoice;
 pub use law::LawTable;
@@ -32,10 +33,11 @@ use crate::basin::PlaneSearch;
 use crate::bicycle::catalogue::Bicycle;
 use crate::parameters::Value;
 use crate::ride::{Imu, ScheduleSpeed, Start};
-use content::name_or_table;
+use content::{NameOr, name_or_table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// Source of the defaults of law, limits and parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -61,6 +63,32 @@ pub enum AssistKind {
 }
 
 /// An experiment. Absent keys have their defaults, which are the published conditions.
+///
+/// ```
+/// use sim_host::ride::{Outcome, traced};
+/// use sim_host::scenario::Scenario;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let scenario = Scenario::from_toml(
+///     "preset = 'product'
+///      rider = 'smart'
+///      [start]
+///      speed_m_s = 4
+///      steer_rate_rad_s = 3
+///      [plant]
+///      faults = ['gyro:stuck@2s']",
+/// )?;
+/// let resolved = scenario.resolve()?;
+/// let (ride, trace) = traced(&resolved.conditions, scenario.start.unwrap_or_default());
+/// assert!(ride.effort.peak_torque_nm <= 7.0 && trace.len() > 1000);
+/// assert_eq!(Scenario::from_toml(&scenario.to_toml()?)?, scenario);
+///
+/// // Errors name the key, the value and its range.
+/// let wrong = Scenario::from_toml("time_limit_s = 0")?.resolve().unwrap_err();
+/// assert!(wrong.to_string().contains("time limit (s) = 0 is outside"));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Scenario {
@@ -71,6 +99,7 @@ pub struct Scenario {
     pub bicycle_set: BTreeMap<String, f64>,
     /// The rider; absent for a rigid one, hands off.
     #[serde(deserialize_with = "name_or_table", skip_serializing_if = "is_default")]
+    #[schemars(with = "NameOr<RiderChoice>")]
     pub rider: RiderChoice,
     /// Roll-rate law: its name, a table FILE, or a table in place; absent: h, none with a rider, product: h-cut.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -119,9 +148,12 @@ pub struct Scenario {
     /// Search of a basin over steer rate and roll rate at one speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plane: Option<PlaneSearch>,
-    /// Number of bicycles drawn from the uncertainties of the bicycle's parameters.
+    /// Number of bicycles drawn from the uncertainties of the bicycle's parameters, 2 to 10000.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<u32>,
+    /// File that the scenario was read from, for messages.
+    #[serde(skip)]
+    pub file: Option<PathBuf>,
 }
 
 impl Default for Scenario {
@@ -149,6 +181,7 @@ impl Default for Scenario {
             search: SearchChoice::default(),
             plane: None,
             uncertain: None,
+            file: None,
         }
     }
 }

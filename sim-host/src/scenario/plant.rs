@@ -1,9 +1,10 @@
 //! The plant of a scenario: changes to exact sensors and an exact motor, in seconds, to the models of a ride in control
 //! periods.
 
-use super::content::{Content, NONE, name_or_table};
+use super::content::{Content, NONE, NameOr, name_or_table};
 use super::error::ScenarioError;
-use super::ticks::{LONGEST_S, whole_ticks};
+use super::is_default;
+use super::ticks::{LONGEST_S, LONGEST_SENSOR_S, whole_ticks};
 use crate::plant::sensor_file::{EXACT, SHIPPED, SensorFile, table_of};
 use crate::plant::{
     ActuatorConfig, Fault, ImuMount, Plant, Sensor, SensorConfig, SensorModel, SteerStop, Supply, catalogue,
@@ -12,22 +13,23 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Longest delay of one sensor \[s\].
-const LONGEST_SENSOR_S: f64 = 5.0;
-
 /// Sensors, motor and faults; the default is exact.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PlantChoice {
     /// Sensor errors, in the order in which they are applied.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sensors: Vec<SensorChange>,
     /// Position and orientation of the IMU.
+    #[serde(skip_serializing_if = "is_default")]
     pub imu: ImuMount,
     /// Motor, friction of the steer and end stop.
-    #[serde(deserialize_with = "name_or_table")]
+    #[serde(deserialize_with = "name_or_table", skip_serializing_if = "is_default")]
+    #[schemars(with = "NameOr<ActuatorChoice>")]
     pub actuator: ActuatorChoice,
     /// Faults as text, for example "gyro.x:stuck@1.5s..2s", in the order in which they act.
     #[schemars(with = "Vec<String>")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
     /// Seed of noise and dropouts.
     pub seed: u64,
@@ -132,8 +134,9 @@ impl PlantChoice {
         for change in &self.sensors {
             change.apply(&mut sensors, period_s).map_err(|e| ScenarioError::value("plant.sensors", e))?;
         }
-        let actuator =
-            self.actuator.resolve(period_s).map_err(|e| ScenarioError::value("plant.actuator", e))?;
+        let name = self.actuator.model.as_ref().and_then(Content::name).unwrap_or("model");
+        let wrong = |e| ScenarioError::value("plant.actuator", format!("{name}: {e}"));
+        let actuator = self.actuator.resolve(period_s).map_err(wrong)?;
         let plant = Plant { sensors, actuator, faults: self.faults.clone(), seed: self.seed };
         plant.check().map_err(|e| ScenarioError::Conditions(e.to_string()))?;
         Ok(plant)
@@ -186,11 +189,18 @@ impl SensorChange {
         let Some(name) = &self.sensor else {
             let others = Self { model: None, ..self.clone() } != Self::default();
             return match &self.model {
-                Some(model) if !others => apply_file(model, sensors, period_s),
+                Some(model) if !others => {
+                    let name = model.name().unwrap_or("model");
+                    apply_file(model, sensors, period_s).map_err(|e| format!("{name}: {e}"))
+                }
                 _ => Err("a change needs a `sensor`, or a `model` alone".into()),
             };
         };
-        let named = |e: String| format!("{name}: {e}");
+        let place = self.axis.as_ref().map_or(name.clone(), |axis| format!("{name}.{axis}"));
+        let named = |e: String| format!("{place}: {e}");
+        if *self == (Self { sensor: self.sensor.clone(), axis: self.axis.clone(), ..Self::default() }) {
+            return Err(named("a change needs a value".into()));
+        }
         self.apply_to(sensor_named(name)?, sensors, period_s).map_err(named)
     }
 
@@ -206,7 +216,7 @@ impl SensorChange {
         let axis = axis.transpose()?;
         let others = Self { sensor: None, axis: None, bias: None, ..self.clone() } != Self::default();
         if axis.is_some() && others {
-            return Err("an axis has a bias of its own only; everything else applies to all axes".into());
+            return Err("only bias can differ between axes; everything else applies to all of them".into());
         }
         let model = sensors.model_mut(sensor);
         if let Some(content) = &self.model {

@@ -3,6 +3,7 @@
 use super::content::{Content, NONE, OrNone};
 use super::error::ScenarioError;
 use super::rider::LoadedRider;
+use super::setting::DRAWS;
 use super::ticks::{LONGEST_S, whole_ticks};
 use super::{AssistKind, Preset, Scenario, cut_files, law, parameter_file::ParameterFile};
 use crate::bicycle::Geometry;
@@ -10,6 +11,7 @@ use crate::bicycle::catalogue::{self, Bicycle};
 use crate::bicycle::onboard::fit;
 use crate::parameters;
 use crate::plant::Plant;
+use crate::range::within;
 use crate::ride::{Assist, Conditions, IdealLaw, ScheduleSpeed};
 use crate::rider::compatibility_warnings;
 use control::param::ParamError;
@@ -33,10 +35,15 @@ pub struct Resolved {
     pub warnings: Vec<String>,
     /// Choices that were made to suit bicycle and delay, as text.
     pub notes: Vec<String>,
-    /// The same scenario with its law, and with the contents of files in the places of their names: it can be run
-    /// elsewhere.
+    /// The same scenario with the contents of files in the places of their names: it can be run elsewhere.
     pub scenario: Scenario,
 }
+
+/// Largest speed at the start, forwards and backwards \[m/s\].
+const FASTEST_M_S: f64 = 30.0;
+
+/// Beginning of the names of the firmware's parameters that the ideal law has, too.
+const IDEAL_PARAMETERS: &str = "dead_band.";
 
 /// Key of the option that sets a parameter of the control crate.
 fn key_of(error: &ParamError) -> Option<&'static str> {
@@ -54,6 +61,7 @@ impl Scenario {
     /// # Errors
     /// States the key or file, the value and its range.
     pub fn resolve(&self) -> Result<Resolved, ScenarioError> {
+        self.check_uses()?;
         let given = self.load_bicycle()?;
         let bicycle =
             given.clone().varied(&self.bicycle_set).map_err(|e| ScenarioError::value("bicycle_set", e))?;
@@ -86,8 +94,39 @@ impl Scenario {
         let conditions = self.conditions(&bicycle, assist, rider.as_ref(), (step_s, plant));
         let conditions = Conditions { schedule_speed, sensor_delay_ticks, ..conditions };
         conditions.check().map_err(|e| ScenarioError::Conditions(e.to_string()))?;
-        let scenario = self.complete(given, rider.as_ref(), law::content(&law_name, &law), file)?;
+        let own_law = self.law.as_ref().map(|_| law::content(&law_name, &law));
+        let scenario = self.complete(given, rider.as_ref(), own_law, file)?;
         Ok(Resolved { conditions, bicycle, rider, law, law_name, warnings, notes, scenario })
+    }
+
+    /// Checks the start, the searches and the draws.
+    fn check_uses(&self) -> Result<(), ScenarioError> {
+        if let Some(start) = &self.start {
+            let given = |key: &str, value: f64, most: f64| {
+                within(key, value, -most, most).map_err(|e| ScenarioError::value(key, e))
+            };
+            if start.speed_m_s.is_nan() {
+                let reason = format!("must be given, from -{FASTEST_M_S} to {FASTEST_M_S} m/s, not NaN");
+                return Err(ScenarioError::value("start.speed_m_s", reason));
+            }
+            given("start.speed_m_s", start.speed_m_s, FASTEST_M_S)?;
+            given("start.steer_rate_rad_s", start.steer_rate_rad_s, 100.0)?;
+            given("start.roll_rate_rad_s", start.roll_rate_rad_s, 100.0)?;
+        }
+        self.search.resolve(self.is_ridden())?;
+        if let Some(plane) = &self.plane {
+            if plane.speed.is_nan() {
+                return Err(ScenarioError::value("plane.speed", "must be given, from 0 to 30 m/s, not NaN"));
+            }
+            plane.check().map_err(|e| ScenarioError::value("plane", e))?;
+        }
+        match self.uncertain {
+            Some(count) if !DRAWS.contains(&count) => {
+                let (least, most) = (DRAWS.start(), DRAWS.end());
+                Err(ScenarioError::value("uncertain", format!("{count} is outside {least} to {most}")))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The bicycle, with its changed parameters.
@@ -198,7 +237,8 @@ impl Scenario {
         let flashed = *law != Law::None && self.assist == AssistKind::Firmware;
         let given = |key| match key {
             "torque_limit_nm" => self.torque_limit_nm.is_some(),
-            _ => true,
+            "rate_limit_nm_s" => self.rate_limit_nm_s.is_some(),
+            _ => self.taper_m_s.is_some(),
         };
         let plan = config.plan().map_err(|e| match key_of(&e) {
             Some(key) if given(key) => ScenarioError::value(key, e),
@@ -212,6 +252,12 @@ impl Scenario {
         if self.assist == AssistKind::Ideal && (limited || self.sensor_delay_s > 0.0) {
             let reason = "limits and sensor delay act on --assist firmware only; the ideal law has none";
             return Err(ScenarioError::Conditions(reason.into()));
+        }
+        let ideal = self.assist == AssistKind::Ideal;
+        if let Some(key) = self.parameters.keys().find(|key| ideal && !key.starts_with(IDEAL_PARAMETERS)) {
+            let reason =
+                format!("{key} acts on --assist firmware only; the ideal law has {IDEAL_PARAMETERS}* alone");
+            return Err(ScenarioError::value("parameters", reason));
         }
         Ok(match self.assist {
             _ if *law == Law::None => Assist::None,
@@ -250,15 +296,15 @@ impl Scenario {
         [law, rider, parameters].into_iter().flatten().chain(self.plant.files())
     }
 
-    /// The scenario with its law, and with contents in the places of files.
+    /// The scenario with contents in the places of files.
     fn complete(
         &self,
         bicycle: Bicycle,
         rider: Option<&LoadedRider>,
-        law: Content<super::LawTable>,
+        law: Option<Content<super::LawTable>>,
         file: Option<ParameterFile>,
     ) -> Result<Self, ScenarioError> {
-        let mut all = Self { law: Some(law), ..self.clone() };
+        let mut all = Self { law, ..self.clone() };
         if !catalogue::shipped_names().contains(&bicycle.name) {
             all.bicycle = Content::Given(Box::new(bicycle));
         }

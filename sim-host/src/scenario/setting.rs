@@ -29,6 +29,8 @@ pub struct Setting {
     pub repeats: bool,
     /// Whether a value may begin with a hyphen.
     pub hyphen: bool,
+    /// Whether a wrong value is bad input, not wrong usage: values with a grammar of their own.
+    pub grammar: bool,
     /// Changes a scenario; an error states the text and what is expected.
     pub set: fn(&mut Scenario, &str) -> Result<(), String>,
 }
@@ -44,6 +46,7 @@ const PLAIN: Setting = Setting {
     required: false,
     repeats: false,
     hyphen: true,
+    grammar: false,
     set: |_, _| Ok(()),
 };
 
@@ -126,6 +129,7 @@ pub const CONDITIONS: &[Setting] = &[
         help: "Largest torque in N m, or none [default: none; product: 7]",
         set: |s, text| {
             s.torque_limit_nm = Some(text::limit(text)?);
+            s.parameters.remove("limits.max_torque_nm");
             Ok(())
         },
         ..PLAIN
@@ -137,6 +141,8 @@ pub const CONDITIONS: &[Setting] = &[
         help: "Largest change of torque in N m/s, or none [default: none; product: 100]",
         set: |s, text| {
             s.rate_limit_nm_s = Some(text::limit(text)?);
+            s.parameters.remove("limits.rise_nm_s");
+            s.parameters.remove("limits.fall_nm_s");
             Ok(())
         },
         ..PLAIN
@@ -148,6 +154,7 @@ pub const CONDITIONS: &[Setting] = &[
         help: "Taper: torque zero at the first, full at the second speed in m/s, or none [default: none; product: 0.5:1.5]",
         set: |s, text| {
             s.taper_m_s = Some(text::taper(text)?);
+            s.parameters.retain(|key, _| !key.starts_with("limits.taper"));
             Ok(())
         },
         ..PLAIN
@@ -170,6 +177,7 @@ pub const CONDITIONS: &[Setting] = &[
         value: "MODEL|NAME:KEY=VALUE,...",
         help: "Sensor errors: models of real sensors by name or FILE, several joined by +; or NAME:KEY=VALUE,... for example gyro:noise=0.01,bias=0.02,delay=5ms or front-wheel:model=hall-16; or none; may be repeated",
         repeats: true,
+        grammar: true,
         set: |s, text| text::sensor(&mut s.plant, text),
         ..PLAIN
     },
@@ -179,6 +187,7 @@ pub const CONDITIONS: &[Setting] = &[
         value: "NAME|FILE|KEY=VALUE,...",
         help: "Motor, steer friction and end stop: none, davis, gazelle, a FILE, and KEY=VALUE to change values",
         default: Some("none"),
+        grammar: true,
         set: |s, text| {
             s.plant.actuator = text::actuator(text)?;
             Ok(())
@@ -191,9 +200,11 @@ pub const CONDITIONS: &[Setting] = &[
         value: "CHANNEL:KIND@FROM..TO",
         help: "Inject a fault, for example gyro.x:stuck@1.5s..2s or motor:dead@1s, or none; may be repeated",
         repeats: true,
+        grammar: true,
         set: |s, text| {
-            if text != super::content::NONE {
-                s.plant.faults.push(text.parse().map_err(|e: FaultTextError| e.to_string())?);
+            match text {
+                super::content::NONE => s.plant.faults.clear(),
+                _ => s.plant.faults.push(text.parse().map_err(|e: FaultTextError| e.to_string())?),
             }
             Ok(())
         },
@@ -231,6 +242,7 @@ pub const CONDITIONS: &[Setting] = &[
         help: "Any parameter of the firmware, for example limits.rise_nm_s=50 or limits.end_stop=on; may be repeated",
         repeats: true,
         hyphen: false,
+        grammar: true,
         set: |s, text| {
             let (key, value) = text::pair(text)?;
             s.parameters.insert(key.into(), Value::from(value));
@@ -306,6 +318,7 @@ const BICYCLE_SET: Setting = Setting {
     help: "Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated",
     repeats: true,
     hyphen: false,
+    grammar: true,
     set: |s, text| {
         let (key, value) = text::pair(text)?;
         s.bicycle_set.insert(key.into(), text::number(value)?);
@@ -467,15 +480,16 @@ pub const UNCERTAIN: Setting = Setting {
     value: "N",
     help: "Also compute the basins of N bicycles drawn from the uncertainties of the bicycle's parameters, 2 to 10000, as a band from the 5 % to the 95 % quantile of their heights; --seed changes the draws",
     set: |s, text| {
-        let count = text::whole(text)?;
-        s.uncertain = Some(count);
-        if MOST_DRAWS.contains(&count) { Ok(()) } else { Err(format!("{count} is not in 2..=10000")) }
+        let count = text::whole(text).ok().filter(|count| DRAWS.contains(count));
+        let wrong = || format!("{text} is not in {}..={}", DRAWS.start(), DRAWS.end());
+        s.uncertain = Some(count.ok_or_else(wrong)?);
+        Ok(())
     },
     ..PLAIN
 };
 
 /// Allowed numbers of drawn bicycles.
-pub(super) const MOST_DRAWS: std::ops::RangeInclusive<u32> = 2..=10_000;
+pub(super) const DRAWS: std::ops::RangeInclusive<u32> = 2..=10_000;
 
 /// The disturbance of one ride.
 pub const START: &[Setting] = &[

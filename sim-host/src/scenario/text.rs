@@ -2,6 +2,7 @@
 
 use super::content::{Content, NONE, OrNone};
 use super::plant::{ActuatorChoice, PlantChoice, SensorChange, sensor_named};
+use super::ticks::{LONGEST_S, LONGEST_SENSOR_S};
 use crate::range::time;
 use crate::ride::{FallCriterion, LaidFlat};
 use serde::de::IntoDeserializer;
@@ -54,12 +55,10 @@ fn keyed(key: &str, value: &str) -> Result<f64, String> {
     value.trim().parse().map_err(|_| format!("{key}: `{value}` is not a number"))
 }
 
-/// Longest delay of one sensor that is accepted as text \[s\].
-const LONGEST_S: f64 = 5.0;
-
-/// Adds one `MODEL+...`, `NAME[.AXIS]:KEY=VALUE,...` or `imu:KEY=VALUE,...`; none adds nothing.
+/// Adds one `MODEL+...`, `NAME[.AXIS]:KEY=VALUE,...` or `imu:KEY=VALUE,...`; none removes all models.
 pub(super) fn sensor(plant: &mut PlantChoice, text: &str) -> Result<(), String> {
     if text == NONE {
+        plant.sensors.clear();
         return Ok(());
     }
     let Some((place, settings)) = text.split_once(':') else {
@@ -79,8 +78,8 @@ pub(super) fn sensor(plant: &mut PlantChoice, text: &str) -> Result<(), String> 
         let (key, value) = pair?;
         match key {
             "model" => change.model = Some(Content::Named(value.into())),
-            "delay" => change.delay_s = Some(time(value, LONGEST_S).map_err(|e| e.to_string())?),
-            "every" => change.every_s = Some(time(value, LONGEST_S).map_err(|e| e.to_string())?),
+            "delay" => change.delay_s = Some(time(value, LONGEST_SENSOR_S).map_err(|e| e.to_string())?),
+            "every" => change.every_s = Some(time(value, LONGEST_SENSOR_S).map_err(|e| e.to_string())?),
             "bias" => change.bias = Some(keyed(key, value)?),
             "scale" => change.scale = Some(keyed(key, value)?),
             "noise" => change.noise = Some(keyed(key, value)?),
@@ -125,13 +124,13 @@ pub(super) fn actuator(text: &str) -> Result<ActuatorChoice, String> {
         Some((name, settings)) => (name, Some(settings)),
         None => (text, None),
     };
-    let mut choice = ActuatorChoice::default();
-    choice.model = (name != NONE).then(|| name.into());
+    let model = (name != NONE).then(|| name.into());
+    let mut choice = ActuatorChoice { model, ..ActuatorChoice::default() };
     for pair in settings.into_iter().flat_map(pairs) {
         let (key, value) = pair?;
         let place = match key {
             "delay" => {
-                choice.delay_s = Some(time(value, 1.0).map_err(|e| e.to_string())?);
+                choice.delay_s = Some(time(value, LONGEST_S).map_err(|e| e.to_string())?);
                 continue;
             }
             "time-constant" => {

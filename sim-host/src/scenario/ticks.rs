@@ -3,6 +3,9 @@
 /// Longest delay of the motor, and of all sensors in common \[s\].
 pub(super) const LONGEST_S: f64 = 1.0;
 
+/// Longest delay and sampling interval of one sensor \[s\].
+pub(super) const LONGEST_SENSOR_S: f64 = 5.0;
+
 /// Number of control periods in a time, which must be an integer. `name` begins the error's text.
 ///
 /// # Errors

@@ -77,10 +77,10 @@ pub fn load(name: &str) -> Result<Study, StudyError> {
     if !path.exists() {
         let known: Vec<&str> = shipped.iter().map(Study::name).collect();
         let known = known.join(", ");
-        return Err(StudyError(format!("unknown study `{name}`: no such file; shipped are {known}")));
+        return Err(StudyError::Unknown { name: name.into(), known });
     }
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| StudyError(format!("can't read study file {name}: {e}")))?;
+    let text =
+        std::fs::read_to_string(path).map_err(|error| StudyError::Read { name: name.into(), error })?;
     let stem = path.file_stem().map_or(name.into(), |s| s.to_string_lossy().into_owned());
     parse(&stem, &text).map(Study::Swept)
 }

@@ -41,6 +41,8 @@ pub struct CellDocument {
     pub values: Vec<String>,
     /// The configuration entries that differ between cells.
     pub config: Value,
+    /// The scenario that gives this cell again: see `basin --scenario`.
+    pub scenario: Value,
     /// Area under the heights, trapezoidal rule \[rad m/s^2\].
     pub area: f64,
     /// Mean height \[rad/s\].
@@ -66,6 +68,7 @@ impl SweepDocument {
                 id: unit.id.clone(),
                 values: plan.values(i),
                 config: without(&unit.config, &shared),
+                scenario: unit.scenario.clone(),
                 area: grid.area(unit),
                 mean_height: unit.mean_height(),
                 area_capped: unit.capped(),

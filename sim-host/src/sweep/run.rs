@@ -14,6 +14,8 @@ pub struct Cell {
     pub id: String,
     /// Full configuration.
     pub config: Value,
+    /// The scenario that gives its result again.
+    pub scenario: Value,
     /// Conditions that follow from the configuration.
     pub conditions: Conditions,
 }
@@ -59,7 +61,7 @@ pub fn run(
         }
         there.sort_by_key(|(speed, _)| *speed);
         let whole = std::mem::take(&mut *there).into_iter().map(|(_, column)| column).collect();
-        folder.keep(&Unit::new(&cells[cell].id, &cells[cell].config, whole))?;
+        folder.keep(&Unit::new(&cells[cell].id, (&cells[cell].config, &cells[cell].scenario), whole))?;
         *lock(&done) += 1;
         Ok(())
     })?;

@@ -28,6 +28,8 @@ pub struct Unit {
     pub id: String,
     /// The full configuration.
     pub config: Value,
+    /// The scenario that gives this result again.
+    pub scenario: Value,
     /// Result at each speed of the search.
     pub found: Vec<Found>,
     /// Computing effort.
@@ -43,7 +45,7 @@ struct Sealed<U> {
 
 impl Unit {
     /// Result of a cell from all of its columns, in the order of the search.
-    pub fn new(id: &str, config: &Value, columns: Vec<Column>) -> Self {
+    pub fn new(id: &str, (config, scenario): (&Value, &Value), columns: Vec<Column>) -> Self {
         let basin = Basin { columns };
         let found = |c: &Column| Found {
             height: c.upper,
@@ -54,6 +56,7 @@ impl Unit {
         Self {
             id: id.into(),
             config: config.clone(),
+            scenario: scenario.clone(),
             found: basin.columns.iter().map(found).collect(),
             work: basin.work(),
         }

@@ -326,7 +326,7 @@ fn one_parameter_is_changed_by_name() {
             &0.05.into()
         )
     );
-    assert_eq!(changed["bicycle"]["name"], "rigid_jason with lam=0.3, c=0.05");
+    assert_eq!(changed["bicycle"]["name"], "rigid_jason with c=0.05, lam=0.3");
     let rigid = "--bicycle data/bicycles/Rigid+Jason";
     let measured = eigen(&format!("{rigid} --bicycle-set w=1.1"));
     let sds = measured["bicycle"]["uncertainties"].as_object().expect("deviations");

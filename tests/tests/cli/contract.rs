@@ -75,14 +75,13 @@ fn documents_fit_their_committed_schemas() {
 fn every_document_has_a_committed_schema() {
     let help = Bench::new(PROGRAM).run("schema --help").stdout.replace('\n', " ");
     let (_, rest) = help.split_once("[possible values:").unwrap();
-    let mut names: Vec<&str> = rest.split(']').next().unwrap().split(',').map(str::trim).collect();
+    let names: Vec<&str> = rest.split(']').next().unwrap().split(',').map(str::trim).collect();
     let entries = std::fs::read_dir(repository("docs/schema")).unwrap();
-    let file =
-        |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().path().file_stem().unwrap().to_owned();
-    let mut files: Vec<String> = entries.map(|entry| file(entry).into_string().unwrap()).collect();
-    names.sort();
+    let mut files: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    let mut expected: Vec<String> = names.iter().map(|name| format!("{name}.json")).collect();
+    expected.sort();
     files.sort();
-    assert_eq!(files, names);
+    assert_eq!(files, expected);
     let page = std::fs::read_to_string(repository("docs/cli.md")).unwrap();
     let row = page.lines().find(|line| line.starts_with("| `sim-host schema NAME` |")).unwrap();
     for name in names {

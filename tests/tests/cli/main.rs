@@ -8,6 +8,7 @@ mod contract;
 mod design;
 mod details;
 mod document;
+mod examples;
 mod falls;
 mod identify;
 mod identify_sensor;

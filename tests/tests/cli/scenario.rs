@@ -6,6 +6,7 @@ use sim_host::scenario::Scenario;
 use sim_host::scenario::setting::{CONDITIONS, PLANE, SEARCH, START, Setting, UNCERTAIN};
 use std::path::Path;
 use tests::cli::{Bench, repository};
+use tests::json_schema::violations;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
@@ -118,6 +119,14 @@ fn a_wrong_scenario_is_rejected_with_its_key() {
         ("parameters = { 'limits.nope' = 1 }", &["--set", "limits.nope"]),
         ("parameters = { 'limits.rise_nm_s' = -1 }", &["--set", "limits.rise_nm_s=-1", "outside"]),
         ("fall = { roll_rad = 2 }", &["fall: roll", "90"]),
+        ("search = { speeds = [6, 4] }", &["must rise", "4 m/s comes after 6"]),
+        ("uncertain = 1", &["--uncertain", "1 is outside 2 to 10000"]),
+        ("law = { name = 'h', speed_m_s = [0], gain_nm_s_rad = [1] }", &["`h`", "built-in"]),
+        ("plant = { sensors = [{ sensor = 'gyro' }] }", &["--sensor gyro", "needs a value"]),
+        ("assist = 'ideal'\nparameters = { 'predict.lead_s' = 0.05 }", &["predict.lead_s", "firmware only"]),
+        ("plane = { rays = 4 }", &["--speed", "must be given"]),
+        ("plane = { speed = 40 }", &["speed (m/s) = 40", "0 to 30"]),
+        ("torque_limit_nm = [1]", &["line 1", "a number"]),
     ] {
         bench.write("wrong.toml", format!("{added}\n{}", right.replace("law = 'h'\n", "")));
         bench.run("ride --scenario wrong.toml").rejected_naming(named);
@@ -133,6 +142,81 @@ fn a_wrong_scenario_is_rejected_with_its_key() {
     assert_eq!(bench.run("ride --scenario moved.json").code, Some(0));
     bench.write("moved.json", json!({"start": {"speed_m_s": 4}, "bicycle": inline(7.0)}).to_string());
     bench.run("ride --scenario moved.json").rejected_naming(&["--bicycle", "`lam` = 7"]);
+}
+
+/// Situation: a scenario with a limit as a parameter, a fault, a noisy gyro and a rider with its own delay.
+/// Action: ride it with options that change each; sweep over a limit and over faults.
+/// Must hold: the options have precedence, `none` removes, another rider has its own delay; the cells differ as their
+/// labels say, and a cell is reproduced from its scenario.
+#[test]
+fn options_change_a_scenario() {
+    let bench = Bench::new(PROGRAM);
+    bench.write(
+        "base.toml",
+        "law = 'h'\nparameters = { 'limits.max_torque_nm' = 3, 'limits.fall_nm_s' = 60 }\n\
+         rider = { table = 'young', delay_s = 0.05, gains = 'best' }\n\
+         plant = { faults = ['motor:dead@0.1s'], sensors = [{ sensor = 'gyro', noise = 0.01 }] }\n\
+         [start]\nspeed_m_s = 4\nsteer_rate_rad_s = 2\n",
+    );
+    let config =
+        |options: &str| bench.json(&format!("ride --scenario base.toml {options}"))["config"].clone();
+    let base = config("");
+    assert_eq!((&base["torque_limit_nm"], &base["rider"]["delay_s"]), (&json!(3.0), &json!(0.05)));
+    let changed = config("--torque-limit 6 --rate-limit 90 --rider smart --fault none --sensor none");
+    assert_eq!((&changed["torque_limit_nm"], &changed["rate_limit_nm_s"]), (&json!(6.0), &json!(90.0)));
+    assert_eq!((&changed["rider"]["delay_s"], &changed["rider"]["gains"]), (&json!(0.06), &json!("mean")));
+    assert_eq!((&changed["plant"]["faults"], &changed["plant"]["sensors"]), (&json!([]), &json!({})));
+    assert_eq!(config("--set limits.max_torque_nm=5 --torque-limit 6")["torque_limit_nm"], json!(5.0));
+
+    let coarse = "--speeds 4 --scan-step 2 --tolerance 0.5 --max-rate 8 --time-limit 2";
+    let sweep = "--over torque-limit=1,6 --over fault=none,motor:dead@0.1s --out cells";
+    let document = bench.json(&format!("sweep --scenario base.toml {sweep} {coarse}"));
+    let cells = document["cells"].as_array().expect("cells");
+    let limit = |i: usize| cells[i]["config"]["torque_limit_nm"].clone();
+    assert_eq!([0, 1, 2, 3].map(limit), [json!(1.0), json!(1.0), json!(6.0), json!(6.0)]);
+    assert_ne!(cells[2]["found"], cells[3]["found"]);
+    bench.write("cell.json", cells[2].to_string());
+    let again = bench.json("basin --scenario cell.json");
+    assert_eq!(again["height"]["upper"][0], cells[2]["found"][0]["height"]);
+    bench.write("sweep.json", document.to_string());
+    bench.run("basin --scenario sweep.json").rejected_naming(&["sweep.json", "cells[i].scenario"]);
+}
+
+/// Situation: two scenarios with searches of their own.
+/// Action: compare their basins, with the same search and with different ones.
+/// Must hold: the search of the scenarios is used; different ones are rejected with the labels.
+#[test]
+fn a_comparison_uses_the_search_of_its_scenarios() {
+    let bench = Bench::new(PROGRAM);
+    let search =
+        "[search]\nspeeds = [3, 4]\naxis = 'roll-rate'\nmax_rate = 2\nscan_step = 0.5\ntolerance = 0.2\n";
+    bench.write("a.toml", format!("law = 'h'\ntime_limit_s = 2\n{search}"));
+    bench.write("b.toml", format!("law = 'f'\ntime_limit_s = 2\n{search}"));
+    let compare = "basin compare 'a=--scenario a.toml' 'b=--scenario b.toml'";
+    let document = bench.json(compare);
+    assert_eq!(document["search"]["axis"], json!("roll-rate"));
+    assert_eq!(document["cases"][1]["speeds"], json!([3.0, 4.0]));
+    assert_eq!(document["cases"][1]["scenario"]["search"]["max_rate"], json!(2.0));
+    bench.write("b.toml", format!("law = 'f'\n{}", search.replace("max_rate = 2", "max_rate = 3")));
+    bench.run(compare).rejected_naming(&["`a` and `b`", "different searches"]);
+}
+
+/// Situation: the schema of scenarios, and the shipped ones.
+/// Action: compare each with the schema; also one with an unknown key, and one with a wrong word.
+/// Must hold: the shipped ones fit, the others do not.
+#[test]
+fn the_shipped_scenarios_fit_the_schema() {
+    let schema: Value =
+        serde_json::from_str(&Bench::new(PROGRAM).run("schema scenario").stdout).expect("JSON");
+    for entry in std::fs::read_dir(repository("data/scenarios")).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let text = std::fs::read_to_string(&path).expect("is there");
+        let scenario = json!(text.parse::<toml::Table>().expect("TOML"));
+        assert_eq!(violations(&schema, &scenario), [""; 0], "{}", path.display());
+    }
+    for wrong in [json!({"lwa": "h"}), json!({"preset": "none"}), json!({"rider": 3})] {
+        assert!(!violations(&schema, &wrong).is_empty(), "{wrong}");
+    }
 }
 
 /// A bicycle in place, with this tilt of the steer axis.

@@ -205,7 +205,7 @@ fn every_shipped_rider_is_documented() {
     for name in catalogue::shipped_names() {
         let named =
             |row: &&str| row.split(" | ").next().is_some_and(|cell| cell.contains(&format!("`{name}`")));
-        assert!(rows.iter().any(|row| named(&row)), "docs/riders.md has no row for {name}");
+        assert!(rows.iter().any(named), "docs/riders.md has no row for {name}");
     }
     assert!(text("README.md").contains(&format!("{} tables of rider gains", shipped.len())));
 }

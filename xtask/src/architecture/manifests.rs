@@ -2,8 +2,7 @@
 
 use super::check::{Edge, Found};
 use super::imports::first_names;
-use super::read;
-use super::sources::rust_files;
+use super::sources::{read, rust_files};
 use crate::Result;
 use std::collections::BTreeSet;
 use std::path::Path;

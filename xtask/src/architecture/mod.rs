@@ -12,6 +12,7 @@ pub mod sources;
 
 use crate::Result;
 use graph::Graph;
+use sources::read;
 use std::path::{Path, PathBuf};
 
 /// The allowed dependencies, below the root of the repository.
@@ -58,8 +59,4 @@ pub fn architecture(root: &Path) -> Result<()> {
         println!("{}", path.display());
     }
     Ok(())
-}
-
-fn read(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
 }

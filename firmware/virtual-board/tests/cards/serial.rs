@@ -16,8 +16,11 @@ fn answered(baud: u32, apart_ms: f64) -> Option<Vec<u16>> {
     // As a debugger would: the image always starts with 115,200. APB1 runs at 42 MHz (RM0090 30.3.4).
     let divider = u64::from((42_000_000 + baud / 2) / baud);
     bench.with(move |board| board.chip.library.serial_port(2).1.set(Register::Brr, divider));
-    bench.received();
     let (mut listener, mut answers) = (Listener::default(), Vec::new());
+    // The rate may have changed within a frame; the frames from here on are whole.
+    bench.run_ms(30.0).expect("no gap");
+    listener.take(&bench.received(), |_, _| ());
+    let before = listener.damaged();
     for number in 0..REQUESTS {
         let phase_ms = f64::from(number) / f64::from(REQUESTS);
         let next_ms = bench.now_ms().floor() + 1.0 + phase_ms;
@@ -28,7 +31,7 @@ fn answered(baud: u32, apart_ms: f64) -> Option<Vec<u16>> {
     }
     bench.run_ms(30.0).expect("no gap");
     take(&mut bench, &mut listener, &mut answers);
-    assert_eq!(listener.damaged(), 0, "frames from the board");
+    assert_eq!(listener.damaged(), before, "frames from the board");
     Some(answers)
 }
 

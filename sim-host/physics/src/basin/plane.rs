@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// Settings of the search along rays from the undisturbed ride, evenly spread over half of the plane in units
 /// of the two largest rates. The other half is the mirror image.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub struct PlaneSearch {
     /// Forward speed \[m/s\].
     pub speed: f64,

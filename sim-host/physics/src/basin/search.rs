@@ -52,6 +52,14 @@ pub enum SearchError {
     /// A value outside its range.
     #[error(transparent)]
     Range(#[from] RangeError),
+    /// Speeds that do not rise \[m/s\].
+    #[error("speeds must rise: {after} m/s comes after {before} m/s")]
+    Order {
+        /// A speed.
+        before: f64,
+        /// The next one.
+        after: f64,
+    },
     /// Conditions that can't be simulated.
     #[error(transparent)]
     Conditions(#[from] ConditionsError),
@@ -89,6 +97,9 @@ impl Search {
         within("number of speeds", self.speeds.len() as f64, 1.0, 100_000.0)?;
         for &v in &self.speeds {
             within("speed (m/s)", v, 0.0, 30.0)?;
+        }
+        if let Some(pair) = self.speeds.windows(2).find(|pair| pair[1] <= pair[0]) {
+            return Err(SearchError::Order { before: pair[0], after: pair[1] });
         }
         within("max rate (rad/s)", self.max_rate, 0.01, 100.0)?;
         within("scan step (rad/s)", self.scan_step, 1e-3, self.max_rate)?;

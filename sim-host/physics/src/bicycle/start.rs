@@ -10,6 +10,7 @@ use super::{Geometry, State};
 #[serde(deny_unknown_fields)]
 pub struct Start {
     /// Forward speed of the rear wheel \[m/s\].
+    #[serde(default = "unknown")]
     pub speed_m_s: f64,
     /// Steer rate \[rad/s\].
     #[serde(default)]
@@ -17,6 +18,11 @@ pub struct Start {
     /// Roll rate \[rad/s\].
     #[serde(default)]
     pub roll_rate_rad_s: f64,
+}
+
+/// A speed that is not given.
+fn unknown() -> f64 {
+    f64::NAN
 }
 
 impl Start {

@@ -23,7 +23,7 @@ pub struct FallCriterion {
 /// roll or steer, whether it stays there or bounces. A ride that ends before that time counts as laid flat if
 /// the roll has returned below the angle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub struct LaidFlat {
     /// Roll to either side at which a bicycle lies on the ground \[rad\].
     pub roll_rad: f64,
@@ -53,12 +53,18 @@ impl FallCriterion {
     }
 }
 
+impl Default for LaidFlat {
+    /// 1 s after 80 degrees of roll.
+    fn default() -> Self {
+        Self { roll_rad: 80f64.to_radians(), lasting_s: 1.0 }
+    }
+}
+
 impl Default for FallCriterion {
     /// The published angles, and laid flat 1 s after 80 degrees of roll. Most falls of ordinary rides that
     /// bounce there have passed 90 degrees of roll or steer by then, so their times are the published ones.
     fn default() -> Self {
-        let flat = LaidFlat { roll_rad: 80f64.to_radians(), lasting_s: 1.0 };
-        Self { flat: Some(flat), ..Self::PUBLISHED }
+        Self { flat: Some(LaidFlat::default()), ..Self::PUBLISHED }
     }
 }
 

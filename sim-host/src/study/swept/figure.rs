@@ -1,8 +1,8 @@
 //! Figures of a sweep study.
 
 use super::Part;
-use super::page::LEAST;
 use super::part_result::{Group, PartResult};
+use super::threshold::LEAST;
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Picture, Plot, Series, chart};
 use crate::sweep::{AT_LEAST, Grid, pictures};
 

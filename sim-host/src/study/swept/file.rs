@@ -1,6 +1,8 @@
 //! A sweep study as defined in a TOML file.
 
-use crate::sweep::Axis;
+use super::error::{PartError, StudyError};
+use super::options::StudyOptions;
+use crate::sweep::{Axis, AxisError};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -35,7 +37,7 @@ pub struct Part {
     #[serde(default)]
     pub text: String,
     /// Options of `sweep` for all cells, and those of the search.
-    pub options: String,
+    pub options: StudyOptions,
     /// The axes, in the form of `--over`.
     pub over: Vec<String>,
     /// The reference cell: values by key. Axes without an entry define groups, each with its own reference.
@@ -47,21 +49,20 @@ pub struct Part {
     pub along: String,
 }
 
-/// Why a study cannot be computed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct StudyError(pub String);
-
 /// Parses the study `name` from a TOML text.
 ///
 /// # Errors
 /// Names study, sweep and key.
 pub fn parse(name: &str, text: &str) -> Result<Study, StudyError> {
-    let wrong = |what: &str| StudyError(format!("study {name}: {}", what.trim()));
-    let mut study: Study = toml::from_str(text).map_err(|e| wrong(&e.to_string()))?;
+    let syntax =
+        |e: toml::de::Error| StudyError::Syntax { name: name.into(), reason: e.to_string().trim().into() };
+    let mut study: Study = toml::from_str(text).map_err(syntax)?;
     study.name = name.into();
     for part in &study.parts {
-        part.check().map_err(|e| wrong(&format!("sweep {}: {e}", part.name)))?;
+        let (name, sweep) = (&study.name, &part.name);
+        let wrong =
+            |error| StudyError::Part { name: name.clone(), sweep: sweep.clone(), error: Box::new(error) };
+        part.check().map_err(wrong)?;
     }
     Ok(study)
 }
@@ -71,27 +72,28 @@ impl Part {
     ///
     /// # Errors
     /// An invalid axis.
-    pub fn axes(&self) -> Result<Vec<Axis>, String> {
-        self.over.iter().map(|text| Axis::parse(text).map_err(|e| e.to_string())).collect()
+    pub fn axes(&self) -> Result<Vec<Axis>, AxisError> {
+        self.over.iter().map(|text| Axis::parse(text)).collect()
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), PartError> {
+        self.options.settings()?;
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '-';
         if self.name.is_empty() || !self.name.chars().all(plain) {
-            return Err("a name is of letters, digits and hyphens".into());
+            return Err(PartError::Name);
         }
         let axes = self.axes()?;
         for (key, value) in &self.reference {
             let axis = axes.iter().find(|axis| axis.key == *key);
             if !axis.is_some_and(|axis| axis.values.contains(value)) {
-                return Err(format!("reference: no axis has {key}={value}"));
+                return Err(PartError::Reference { key: key.clone(), value: value.clone() });
             }
         }
         if !self.reference.contains_key(&self.along) {
-            return Err(format!("along = `{}` is not in the reference", self.along));
+            return Err(PartError::Along(self.along.clone()));
         }
         if self.reference.len() > 3 {
-            return Err("a reference of more than three axes can't be shown as a table".into());
+            return Err(PartError::Large);
         }
         Ok(())
     }
@@ -112,8 +114,11 @@ mod tests {
             ("name='a'", "name='../a'", "name"),
             ("law=h,f", "law=h,h", "twice"),
             ("options=''", "option=''", "option"),
+            ("options=''", "options={lwa='h'}", "`lwa`"),
+            ("options=''", "options={law=['h','f']}", "`law` can be given once"),
+            ("options=''", "options=3", "a table of options"),
         ] {
-            let error = parse("s", &right.replace(from, to)).unwrap_err().0;
+            let error = parse("s", &right.replace(from, to)).unwrap_err().to_string();
             assert!(error.starts_with("study s: ") && error.contains(named), "{error}");
         }
     }

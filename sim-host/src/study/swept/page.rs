@@ -1,13 +1,11 @@
 //! Writes a sweep study's answer as a page of Markdown.
 
 use super::part_result::{Group, PartResult};
+use super::threshold::LEAST;
 use super::{Part, Study, Threshold, threshold};
 use crate::basin::{Bound, Work};
 use crate::sweep::{Axis, Grid};
 use std::fmt::Write;
-
-/// Smallest fraction of the reference's area that counts as sufficient.
-pub(super) const LEAST: f64 = 0.95;
 
 /// Cost of an answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,8 +47,12 @@ fn section(study: &Study, part: &Part, grid: &Grid, figures: &str) -> String {
         let _ = writeln!(text, "{}\n", part.text.trim());
     }
     let over: Vec<String> = part.over.iter().map(|axis| format!("--over {axis}")).collect();
-    let _ =
-        writeln!(text, "```sh\nsim-host sweep {} \\\n    {}\n```\n", part.options, over.join(" \\\n    "));
+    let _ = writeln!(
+        text,
+        "```sh\nsim-host sweep {} \\\n    {}\n```\n",
+        part.options.typed(),
+        over.join(" \\\n    ")
+    );
     match PartResult::new(part, grid) {
         None => text += "Not every cell is computed.\n\n",
         Some(result) => match (result.numbers(part), &result.others[..]) {

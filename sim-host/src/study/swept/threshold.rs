@@ -1,5 +1,8 @@
 //! Finds the value of an axis up to which a fraction of the area remains.
 
+/// Smallest fraction of the reference's area that counts as sufficient.
+pub(super) const LEAST: f64 = 0.95;
+
 /// Range of an axis over which the area remains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Threshold {
