@@ -61,7 +61,7 @@ impl Scenario {
     /// The scenario as a TOML file.
     ///
     /// # Errors
-    /// A number that TOML does not have: a seed above 2^63 - 1.
+    /// A number that TOML does not have: a seed above 2^63 - 1, which only code can set.
     pub fn to_toml(&self) -> Result<String, String> {
         toml::to_string(self).map_err(|e| e.to_string())
     }

@@ -218,7 +218,10 @@ pub const CONDITIONS: &[Setting] = &[
         default: Some("0"),
         hyphen: false,
         set: |s, text| {
-            s.plant.seed = text::whole(text)?;
+            // TOML has no larger whole numbers.
+            let seed = text::whole(text).ok().filter(|seed| *seed <= i64::MAX as u64);
+            s.plant.seed =
+                seed.ok_or_else(|| format!("`{text}` is not a whole number from 0 to {}", i64::MAX))?;
             Ok(())
         },
         ..PLAIN

@@ -120,6 +120,7 @@ fn a_wrong_scenario_is_rejected_with_its_key() {
         ("parameters = { 'limits.rise_nm_s' = -1 }", &["--set", "limits.rise_nm_s=-1", "outside"]),
         ("fall = { roll_rad = 2 }", &["fall: roll", "90"]),
         ("search = { speeds = [6, 4] }", &["must rise", "4 m/s comes after 6"]),
+        ("plant = { seed = -1 }", &["wrong.toml", "line 1", "a whole number from 0"]),
         ("uncertain = 1", &["--uncertain", "1 is outside 2 to 10000"]),
         ("law = { name = 'h', speed_m_s = [0], gain_nm_s_rad = [1] }", &["`h`", "built-in"]),
         ("plant = { sensors = [{ sensor = 'gyro' }] }", &["--sensor gyro", "needs a value"]),
