@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// A warning for each file among `names` whose last line has no line end.
-pub(crate) fn warnings<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+pub fn warnings<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     names
         .filter(|name| Path::new(name).is_file())
         .filter(|name| std::fs::read(name).is_ok_and(|bytes| bytes.last().is_some_and(|last| *last != b'\n')))

@@ -69,7 +69,7 @@ pub(super) fn resolve(choice: &Content<LawTable>) -> Result<(String, Law), Strin
 }
 
 /// The law with this name or from this file.
-pub(crate) fn parse(text: &str) -> Result<Law, String> {
+pub fn parse(text: &str) -> Result<Law, String> {
     let name = text.split_once(':').map_or(text, |(name, _)| name);
     text.parse::<Law>().or_else(|error| match error {
         LawError::Unknown => table(text),
@@ -82,7 +82,7 @@ pub(crate) fn parse(text: &str) -> Result<Law, String> {
 }
 
 /// The capsize term of `K:V`.
-pub(crate) fn capsize(text: &str) -> Result<Capsize, String> {
+pub fn capsize(text: &str) -> Result<Capsize, String> {
     let numbers = text.split_once(':').and_then(|(k, v)| Some((k.parse().ok()?, v.parse().ok()?)));
     let (k_c, v_max_m_s) =
         numbers.ok_or_else(|| format!("`{text}` is not K:V, N s/rad and m/s, for example 0.7:6.5"))?;

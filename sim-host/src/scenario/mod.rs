@@ -14,12 +14,12 @@ mod resolve;
 mod rider;
 mod search;
 pub mod setting;
-pub(crate) mod speeds;
+pub mod speeds;
 mod text;
 mod ticks;
 
 pub use content::{Content, OrNone};
-pub(crate) use cut_files::warnings as cut_warnings;
+pub use cut_files::warnings as cut_warnings;
 pub use error::ScenarioError;
 pub use fall::FallChoice;
 pub use law::LawTable;

@@ -46,11 +46,11 @@ mod law_in_place {
     use control::Law;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    pub(crate) fn serialize<S: Serializer>(law: &Option<Law>, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(law: &Option<Law>, serializer: S) -> Result<S::Ok, S::Error> {
         law.as_ref().map(|law| law::content("table", law)).serialize(serializer)
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Law>, D::Error> {
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Law>, D::Error> {
         let choice = Content::<LawTable>::deserialize(deserializer)?;
         law::resolve(&choice).map(|(_, law)| Some(law)).map_err(serde::de::Error::custom)
     }
@@ -58,13 +58,17 @@ mod law_in_place {
 
 impl ParameterFile {
     /// Reads a file, without checking that its parameters exist and allow these values.
-    pub(crate) fn read(path: &Path) -> Result<Self, String> {
+    pub fn read(path: &Path) -> Result<Self, String> {
         let path = path.display().to_string();
         let text = std::fs::read_to_string(&path).map_err(|e| format!("can't read {path}: {e}"))?;
         Self::of_text(&path, &text)
     }
 
-    pub(crate) fn of_text(path: &str, text: &str) -> Result<Self, String> {
+    /// Parses a file's text; `path` names it in errors.
+    ///
+    /// # Errors
+    /// States file and key, and what is allowed or damaged.
+    pub fn of_text(path: &str, text: &str) -> Result<Self, String> {
         let path = path.to_owned();
         let file: File = toml::from_str(text).map_err(|e| format!("{path}: {}", e.to_string().trim()))?;
         let law = file.law.map(law::of_value).transpose().map_err(|error| format!("{path}: {error}"))?;
@@ -107,7 +111,7 @@ impl ParameterFile {
 
     /// Checksum of law and parameters: CRC-32 of the law's bytes and of a line `KEY=WORDS` per parameter, sorted by
     /// key.
-    pub(crate) fn checksum(&self) -> String {
+    pub fn checksum(&self) -> String {
         let mut lines: Vec<String> =
             self.values.iter().map(|(key, value)| format!("{key}={value}\n")).collect();
         lines.sort();
@@ -118,7 +122,7 @@ impl ParameterFile {
 
     /// Sets the parameters in a simulated controller. The calibration belongs to the board: it is checked and not
     /// applied.
-    pub(crate) fn apply(&self, config: &mut Config) -> Result<(), String> {
+    pub fn apply(&self, config: &mut Config) -> Result<(), String> {
         let calibration = config.calibration;
         let known = parameters::list(config);
         for (key, value) in &self.values {

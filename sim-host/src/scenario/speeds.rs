@@ -1,12 +1,12 @@
 //! Parses ranges of speeds: `A:B:STEP` with B included, or a single value.
 
 /// The speeds in a text \[m/s\], at least 0.
-pub(crate) fn parse(text: &str) -> Result<Vec<f64>, String> {
+pub fn parse(text: &str) -> Result<Vec<f64>, String> {
     within(text, 0.0)
 }
 
 /// The speeds in a text \[m/s\], including negative ones.
-pub(crate) fn parse_signed(text: &str) -> Result<Vec<f64>, String> {
+pub fn parse_signed(text: &str) -> Result<Vec<f64>, String> {
     within(text, -30.0)
 }
 
