@@ -43,5 +43,5 @@ pub mod sweep;
 pub mod thesis;
 pub mod weave;
 
-use physics::range;
 pub use physics::{basin, bicycle, eigen, integrate, num, plant, ride, rider, tracking};
+use physics::{json, range};

@@ -26,6 +26,7 @@ pub mod basin;
 pub mod bicycle;
 pub mod eigen;
 pub mod integrate;
+pub mod json;
 pub mod num;
 pub mod plant;
 pub mod range;

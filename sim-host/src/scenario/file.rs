@@ -1,6 +1,7 @@
 //! Scenario files: TOML, or JSON, which can also be a result that contains its scenario.
 
 use super::{Scenario, ScenarioError};
+use crate::json;
 use serde::Deserialize;
 use std::path::Path;
 use toml::Value;
@@ -38,7 +39,7 @@ impl Scenario {
     /// States line or key, and what was expected.
     pub fn from_json(text: &str) -> Result<Self, String> {
         let value: serde_json::Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
-        let Some(Value::Table(mut table)) = of_json(value) else {
+        let Some(Value::Table(mut table)) = json::as_toml(value) else {
             return Err("expected an object".into());
         };
         // Every document with a scenario in it has its configuration beside it.
@@ -69,43 +70,16 @@ impl Scenario {
 
 /// A parser's message without the names of Rust's types.
 fn in_plain_words(message: &str) -> String {
-    let words: Vec<String> = message.split(' ').map(str::to_owned).collect();
-    let mut plain: Vec<&str> = Vec::with_capacity(words.len());
-    let mut words = words.iter().map(String::as_str).peekable();
-    while let Some(word) = words.next() {
-        plain.push(match word.trim_end() {
-            "f64" => "a number",
-            "u64" | "u32" | "usize" => "a whole number from 0",
-            "struct" => {
-                words.next();
-                "a table"
-            }
-            "sequence" => "list",
-            "field" => "key",
-            _ => word,
-        });
-    }
-    plain.join(" ")
+    let tables = ["Scenario", "RiderChoice", "PlantChoice", "SensorChange", "ActuatorChoice", "FallChoice"];
+    let tables = tables.into_iter().chain(["SearchChoice", "PlaneSearch", "Start", "ImuMount", "LaidFlat"]);
+    let plain =
+        tables.fold(message.to_owned(), |text, name| text.replace(&format!("struct {name}"), "a table"));
+    let types =
+        [("usize", WHOLE), ("u64", WHOLE), ("u32", WHOLE), ("f64", "a number"), ("a sequence", "a list")];
+    types.into_iter().fold(plain, |text, (name, words)| {
+        text.replace(&format!("expected {name}"), &format!("expected {words}"))
+    })
 }
 
-/// A JSON value as a TOML value. A null in a list is a missing number, NaN; any other is left out.
-///
-/// Written out because another crate in a build may enable serde_json 1.0's feature `arbitrary_precision`, with which
-/// numbers are maps for any type except serde_json's own.
-fn of_json(value: serde_json::Value) -> Option<Value> {
-    use serde_json::Value as Json;
-    match value {
-        Json::Null => None,
-        Json::Bool(on) => Some(Value::Boolean(on)),
-        Json::Number(n) => n.as_i64().map(Value::Integer).or(n.as_f64().map(Value::Float)),
-        Json::String(text) => Some(Value::String(text)),
-        Json::Array(items) => {
-            let items = items.into_iter().map(|item| of_json(item).unwrap_or(Value::Float(f64::NAN)));
-            Some(Value::Array(items.collect()))
-        }
-        Json::Object(entries) => {
-            let entries = entries.into_iter().filter_map(|(key, value)| Some((key, of_json(value)?)));
-            Some(Value::Table(entries.collect()))
-        }
-    }
-}
+/// The integer types of a scenario.
+const WHOLE: &str = "a whole number from 0";

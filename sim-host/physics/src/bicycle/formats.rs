@@ -3,6 +3,7 @@
 
 use super::error::{FormatError, NumberError};
 use super::uncertain::Uncertain;
+use crate::json;
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};
@@ -19,28 +20,9 @@ pub(super) fn table(text: &str, path: &Path) -> Result<Table, FormatError> {
         "json" => {
             let all: BTreeMap<String, serde_json::Value> =
                 serde_json::from_str(text).map_err(|e| invalid("JSON", &e))?;
-            set(all.into_iter().map(|(key, value)| (key, of_json(value))).collect())
+            set(all.into_iter().map(|(key, value)| (key, json::as_toml(value))).collect())
         }
         _ => toml::from_str(text).map_err(|e| invalid("TOML", &e)),
-    }
-}
-
-/// A JSON value as a TOML value; `None` for null.
-///
-/// Written out because another crate in a build may enable serde_json 1.0's feature `arbitrary_precision`. It
-/// turns every number into a map for any type except serde_json's own.
-fn of_json(value: serde_json::Value) -> Option<Value> {
-    use serde_json::Value as Json;
-    match value {
-        Json::Null => None,
-        Json::Bool(on) => Some(Value::Boolean(on)),
-        Json::Number(n) => n.as_i64().map(Value::Integer).or(n.as_f64().map(Value::Float)),
-        Json::String(text) => Some(Value::String(text)),
-        Json::Array(items) => Some(Value::Array(items.into_iter().filter_map(of_json).collect())),
-        Json::Object(entries) => {
-            let entries = entries.into_iter().filter_map(|(key, value)| Some((key, of_json(value)?)));
-            Some(Value::Table(entries.collect()))
-        }
     }
 }
 
