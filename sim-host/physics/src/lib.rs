@@ -25,11 +25,9 @@
 pub mod basin;
 pub mod bicycle;
 pub mod eigen;
-pub mod integrate;
 pub mod json;
-pub mod num;
 pub mod plant;
-pub mod range;
-pub mod ride;
 pub mod rider;
 pub mod tracking;
+
+pub use motion::{integrate, num, range, ride};

@@ -1,8 +1,8 @@
 //! Checks that a bicycle is physically possible: ranges of the parameters, inertias of rigid bodies.
 
 use super::error::ParameterError;
-use super::parameters::RANGES;
-use super::{KEYS, Parameters};
+
+use super::{KEYS, Parameters, RANGES};
 use std::f64::consts::FRAC_PI_2;
 
 /// A steer axis tilt above this \[rad\] (54 degrees) is probably a head angle; recumbents reach 40.

@@ -2,7 +2,7 @@
 
 use super::KEYS;
 use super::combine::RIDER_KEYS;
-use super::parameters::describe;
+use super::describe;
 use crate::range::{RangeError, plain};
 use std::path::PathBuf;
 

@@ -1,73 +1,17 @@
-//! The nonlinear Whipple bicycle.
-//!
-//! Four rigid bodies: rear frame with rigid rider, rear wheel, front frame, front wheel. Knife-edge wheels
-//! roll without slip on level ground. Three independent speeds: roll rate, steer rate, rear wheel rate.
-//! Derivation: `docs/bicycle.md`. Axes and signs of Meijaard et al. 2007: roll right +, steer right +, wheel
-//! rates negative when rolling forward.
+//! Bicycles: the equations of motion (crate `motion`), the files that hold their parameters, and their linear form.
 
-mod bias;
 pub mod catalogue;
 mod check;
 pub mod combine;
-mod dynamics;
 mod error;
 mod extras;
 mod formats;
-mod geometry;
-mod inertia;
 pub mod linear;
-mod motion;
 pub mod onboard;
-mod parameters;
-mod pitch;
-mod pose;
-mod redundant;
 mod rider_body;
 mod set;
-mod start;
 pub mod uncertain;
 mod vary;
 
-pub use dynamics::{Accelerations, Torques};
 pub use error::{FormatError, NumberError, ParameterError, SetError, VariationError};
-pub use geometry::{Geometry, Gyrostat};
-pub use motion::{Motion, Velocities};
-pub use parameters::{KEYS, Parameters};
-pub use pitch::{Attitude, front_contact_residual, pitch_from_upright};
-pub use pose::Pose;
-pub use redundant::FullState;
-pub use start::Start;
-
-use crate::num::Scalar;
-
-/// The part of the bicycle's state on which its accelerations depend.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State<S> {
-    /// Roll angle \[rad\], right positive.
-    pub roll: S,
-    /// Steer angle \[rad\], right positive.
-    pub steer: S,
-    /// Roll rate, time derivative of the roll angle \[rad/s\].
-    pub roll_rate: S,
-    /// Steer rate \[rad/s\].
-    pub steer_rate: S,
-    /// Rear wheel's rate relative to the rear frame \[rad/s\], negative when rolling forward.
-    pub rear_wheel_rate: S,
-    /// Pitch \[rad\]: follows from roll and steer; stored as the initial guess of the next solution.
-    pub pitch: S,
-}
-
-impl<S: Scalar> State<S> {
-    /// Upright and straight at forward speed `v` \[m/s\], the rear wheel rolling.
-    pub fn upright(b: &Geometry, v: S) -> Self {
-        let zero = S::constant(0.0);
-        Self {
-            roll: zero,
-            steer: zero,
-            roll_rate: zero,
-            steer_rate: zero,
-            rear_wheel_rate: v * (-1.0 / b.rR),
-            pitch: zero,
-        }
-    }
-}
+pub use motion::bicycle::*;

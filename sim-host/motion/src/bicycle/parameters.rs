@@ -19,7 +19,7 @@ macro_rules! parameters {
         pub const KEYS: [&str; 26] = [$(stringify!($name)),*];
 
         /// Unit and allowed range of each parameter, in the order of [`KEYS`].
-        pub(super) const RANGES: [(&str, f64, f64); 26] = [$(($unit, $min, $max)),*];
+        pub const RANGES: [(&str, f64, f64); 26] = [$(($unit, $min, $max)),*];
 
         impl Parameters {
             /// From values in the order of [`KEYS`].
@@ -92,7 +92,7 @@ parameters! {
 }
 
 /// Unit and range of a parameter, as text.
-pub(super) fn describe(key: &str) -> String {
+pub fn describe(key: &str) -> String {
     let Some(i) = KEYS.iter().position(|k| *k == key) else { return String::new() };
     let (unit, min, max) = RANGES[i];
     format!("it must be a number from {min} to {max} {unit}")

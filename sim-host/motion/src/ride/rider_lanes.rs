@@ -173,7 +173,7 @@ impl RiderLane<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bicycle::{Motion, State, catalogue};
+    use crate::bicycle::{Motion, Parameters, State};
     use crate::rider::{Gains, Neuromuscular, Schedule};
     use nalgebra::{Complex, ComplexField};
     use std::f64::consts::TAU;
@@ -184,7 +184,8 @@ mod tests {
     /// Torques of eight riders over time while roll, steer and yaw oscillate at `omega` with small
     /// amplitudes, with the bicycle kept upright at 5 m/s.
     fn swung(rider: &Rider, delay: usize, omega: f64, seconds: f64) -> Vec<f64> {
-        let b = Geometry::new(&catalogue::load("rigid_jason").unwrap().parameters);
+        let shipped = physics::bicycle::catalogue::load("rigid_jason").unwrap().parameters.to_values();
+        let b = Geometry::new(&Parameters::from_values(&shipped));
         let state = State::upright(&b, Lanes([5.0; 8]));
         let mut riders = RiderLanes::<8>::new(rider, delay);
         let mut torques = Vec::new();
