@@ -82,6 +82,23 @@ pub struct Page {
     pub ranges: Vec<(u64, u64)>,
 }
 
+/// Reason for which a signal is unusable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+enum SignalFault {
+    #[error("a floating-point number of {0} bits")]
+    Float(u64),
+    #[error("{0} bits, not 1 to 64")]
+    Bits(u64),
+    #[error("its bits are in no frame")]
+    Place,
+    #[error("its factor or offset is no finite number")]
+    Factor,
+    #[error("it has no multiplexor")]
+    NoMultiplexor,
+    #[error("it is its own multiplexor")]
+    OwnMultiplexor,
+}
+
 impl Signal {
     /// The value of raw bits in the signal's unit; NaN if they mean "no value".
     pub fn value(&self, raw: u64) -> f64 {
@@ -225,7 +242,7 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
             }),
             None => switch.map(|switch| Page { switch, ranges: vec![(value, value)] }),
         };
-        pages.push(page.map(Some).ok_or("it has no multiplexor"));
+        pages.push(page.map(Some).ok_or(SignalFault::NoMultiplexor));
     }
     let chain: Vec<Option<usize>> =
         pages.iter().map(|page| page.as_ref().ok()?.as_ref().map(|page| page.switch)).collect();
@@ -237,7 +254,7 @@ fn of(message: &can_dbc::Message, dbc: &Dbc) -> Message {
                 usable.push(signal);
                 continue;
             }
-            Ok(_) => "it is its own multiplexor",
+            Ok(_) => SignalFault::OwnMultiplexor,
             Err(error) => error,
         };
         // The signal stays, as NaN, so that the indices of the others remain valid.
@@ -280,7 +297,7 @@ fn circular(from: usize, chain: &[Option<usize>]) -> bool {
 }
 
 /// A signal without its multiplexing condition.
-fn signal_of(signal: &can_dbc::Signal, message: MessageId, dbc: &Dbc) -> Result<Signal, String> {
+fn signal_of(signal: &can_dbc::Signal, message: MessageId, dbc: &Dbc) -> Result<Signal, SignalFault> {
     let float = dbc
         .signal_extended_value_type_list
         .iter()
@@ -290,7 +307,7 @@ fn signal_of(signal: &can_dbc::Signal, message: MessageId, dbc: &Dbc) -> Result<
         (Some(SignalExtendedValueType::IEEEfloat32Bit), _) if signal.size == 32 => Kind::F32,
         (Some(SignalExtendedValueType::IEEEdouble64bit), _) if signal.size == 64 => Kind::F64,
         (Some(SignalExtendedValueType::IEEEfloat32Bit | SignalExtendedValueType::IEEEdouble64bit), _) => {
-            return Err(format!("a floating-point number of {} bits", signal.size));
+            return Err(SignalFault::Float(signal.size));
         }
         (_, ValueType::Signed) => Kind::Signed,
         (_, ValueType::Unsigned) => Kind::Unsigned,
@@ -300,12 +317,12 @@ fn signal_of(signal: &can_dbc::Signal, message: MessageId, dbc: &Dbc) -> Result<
         ByteOrder::BigEndian => Order::Big,
     };
     let bits = u8::try_from(signal.size).ok().filter(|bits| (1..=64).contains(bits));
-    let bits = bits.ok_or_else(|| format!("{} bits, not 1 to 64", signal.size))?;
+    let bits = bits.ok_or(SignalFault::Bits(signal.size))?;
     let start = u16::try_from(signal.start_bit).ok().filter(|start| usize::from(*start) < 8 * MOST_BYTES);
     let place = start.map(|start| Place { start, bits, order }).filter(|place| place.bytes() <= MOST_BYTES);
-    let place = place.ok_or("its bits are in no frame")?;
+    let place = place.ok_or(SignalFault::Place)?;
     if !(signal.factor.is_finite() && signal.offset.is_finite()) {
-        return Err("its factor or offset is no finite number".to_owned());
+        return Err(SignalFault::Factor);
     }
     Ok(Signal {
         name: signal.name.clone(),

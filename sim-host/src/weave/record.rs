@@ -260,8 +260,12 @@ impl Notes {
 mod tests {
     use super::*;
 
-    fn of(text: &str) -> Result<Record, String> {
-        read(text, &Columns::default()).map_err(|e| e.to_string())
+    fn of(text: &str) -> Result<Record, RecordError> {
+        read(text, &Columns::default())
+    }
+
+    fn error(text: &str) -> String {
+        of(text).unwrap_err().to_string()
     }
 
     #[test]
@@ -291,12 +295,10 @@ mod tests {
         assert_eq!(record.times_s, [0.0, 1.0]);
         assert!((record.axes[0].rates_rad_s[0] - std::f64::consts::PI).abs() < 1e-12);
         assert!(
-            of("x,gyro_x\n1,2\n")
-                .unwrap_err()
-                .contains("`Time` (or --time-column) is missing; there are x, gyro_x")
+            error("x,gyro_x\n1,2\n").contains("`Time` (or --time-column) is missing; there are x, gyro_x")
         );
-        assert!(of("t,x\n1,2\n").unwrap_err().contains("`gyro_x` (or --column) is missing"));
-        assert!(of("t,gyro_x,gyro_x\n1,2,3\n").unwrap_err().contains("`gyro_x` is listed twice"));
-        assert!(of("t,gyro_x\n").unwrap_err().contains("no line can be used"));
+        assert!(error("t,x\n1,2\n").contains("`gyro_x` (or --column) is missing"));
+        assert!(error("t,gyro_x,gyro_x\n1,2,3\n").contains("`gyro_x` is listed twice"));
+        assert!(error("t,gyro_x\n").contains("no line can be used"));
     }
 }
