@@ -5,6 +5,7 @@ use super::outputs::{complain, print};
 use super::{Ended, Failure, interrupt, study_swept};
 use crate::study::catalogue::{Study, load, shipped};
 use crate::study::page::{Page, Places};
+use crate::study::trial::TrialError;
 use crate::study::{balance_assist, prototype};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -70,7 +71,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 }
 
 /// The prototype's page; `None` if interrupted.
-fn prototype(args: &Args) -> Result<Option<Page>, String> {
+fn prototype(args: &Args) -> Result<Option<Page>, TrialError> {
     interrupt::install();
     let search = prototype::search(if args.quick { 1.1 } else { 0.25 });
     let bar = progress(!args.quiet, "study", prototype::work(&search), "columns");
@@ -80,10 +81,10 @@ fn prototype(args: &Args) -> Result<Option<Page>, String> {
 }
 
 /// A study with a single page and figure.
-fn one_page(
+fn one_page<E: std::error::Error + Send + 'static>(
     args: &Args,
     name: &str,
-    compute: impl FnOnce() -> Result<Option<Page>, String> + Send,
+    compute: impl FnOnce() -> Result<Option<Page>, E> + Send,
 ) -> Result<Ended, Failure> {
     let folder = made(args.pages(), "studies")?;
     let places = Places::create(&folder, name)?;

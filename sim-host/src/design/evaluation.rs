@@ -2,7 +2,7 @@
 
 use super::Scenarios;
 use crate::basin::{Basin, Search};
-use crate::study::trial::{Trial, basins};
+use crate::study::trial::{Trial, TrialError, basins};
 use control::Law;
 
 /// Areas of the laws in all trials.
@@ -40,7 +40,7 @@ pub fn evaluate(
     search: &Search,
     advanced: &(dyn Fn() + Sync),
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<Evaluation>, String> {
+) -> Result<Option<Evaluation>, TrialError> {
     let trials = scenarios.training.iter().chain(&scenarios.held_out);
     let cases: Vec<(&Trial, &Law)> =
         trials.flat_map(|trial| laws.iter().map(move |(_, law)| (trial, law))).collect();

@@ -10,4 +10,4 @@ mod search;
 pub use evaluation::{Evaluation, competitors, evaluate};
 pub use knots::{GAINS, Knots};
 pub use scenarios::{Scenarios, scenarios};
-pub use search::{Found, Plan, Progress, optimise};
+pub use search::{DesignError, Found, Plan, Progress, optimise};

@@ -3,10 +3,11 @@
 
 use super::knots::{GAINS, Knots, roughness};
 use crate::basin::Search;
-use crate::study::trial::{Least, Trial, least_area};
+use crate::study::trial::{Least, Trial, TrialError, least_area};
 use argmin::core::{CostFunction, Error, Executor};
 use argmin::solver::neldermead::NelderMead;
 use control::Law;
+use control::param::ParamError;
 use std::cell::RefCell;
 
 /// Settings of a search.
@@ -56,6 +57,21 @@ pub struct Found {
     pub history: Vec<(u32, f64)>,
 }
 
+/// A search that failed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DesignError {
+    /// A trial can't be simulated.
+    #[error(transparent)]
+    Trial(#[from] TrialError),
+    /// A gain is outside the range of a law.
+    #[error(transparent)]
+    Gain(#[from] ParamError),
+    /// The optimiser failed.
+    #[error("the search failed")]
+    Optimiser(#[source] Error),
+}
+
 /// Initial steps of the simplex at the start law \[N m s/rad\].
 const FIRST_STEP: f64 = 4.0;
 /// Smallest and largest initial steps of a restarted simplex \[N m s/rad\].
@@ -76,7 +92,7 @@ pub fn optimise(
     plan: &Plan,
     advanced: &dyn Fn(Progress),
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<Found>, String> {
+) -> Result<Option<Found>, DesignError> {
     let search_state = RefCell::new(SearchState {
         trials,
         plan,
@@ -92,11 +108,13 @@ pub fn optimise(
     let mut steps = vec![FIRST_STEP; corner.len()];
     while !search_state.borrow().ended {
         let simplex = simplex(&corner, &steps);
-        let solver = NelderMead::new(simplex).with_sd_tolerance(ALIKE).map_err(|e| e.to_string())?;
+        let solver = NelderMead::new(simplex).with_sd_tolerance(ALIKE).map_err(DesignError::Optimiser)?;
         // An error ends the search; its result so far stays in `search_state`.
         let run = Executor::new(Objective(&search_state), solver).ctrlc(false).timer(false).run();
-        if run.is_err() && !search_state.borrow().ended {
-            return Err("the search failed".into());
+        if let Err(error) = run
+            && !search_state.borrow().ended
+        {
+            return Err(DesignError::Optimiser(error));
         }
         if let Some(found) = &search_state.borrow().found {
             corner.clone_from(&found.gains);
@@ -128,7 +146,7 @@ struct SearchState<'a> {
     /// Index of the trial with the smallest area for the last schedule.
     worst: usize,
     found: Option<Found>,
-    failed: Option<String>,
+    failed: Option<DesignError>,
     ended: bool,
 }
 
@@ -176,8 +194,8 @@ impl SearchState<'_> {
         Some(now + BEYOND * beyond)
     }
 
-    fn worst_area(&mut self, gains: &[f64]) -> Result<Option<Least>, String> {
-        let law = self.plan.knots.law(gains).map_err(|e| e.to_string())?;
+    fn worst_area(&mut self, gains: &[f64]) -> Result<Option<Least>, DesignError> {
+        let law = self.plan.knots.law(gains)?;
         let found = least_area(self.trials, &law, &self.plan.search, self.worst, self.stop)?;
         self.worst = found.map_or(self.worst, |least| least.of);
         Ok(found)

@@ -5,8 +5,9 @@ use super::motor_fit::{Explained, Free, fits, published_residual};
 use super::page::{Page, table};
 use super::published_weave::{StableFrom, Weave, published, weave};
 use super::weave_recorded;
-use crate::bicycle::{Parameters, catalogue};
-use crate::eigen::{Feedback, LinearActuator, Model, SEARCH_TO_M_S, stability};
+use crate::bicycle::Parameters;
+use crate::bicycle::catalogue::{self, BicycleError};
+use crate::eigen::{ActuatorError, Feedback, LinearActuator, Model, SEARCH_TO_M_S, stability};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use control::Law;
 use nalgebra::Complex;
@@ -33,12 +34,24 @@ pub fn stable_range(bicycle: &Parameters, law: Law) -> (Option<f64>, f64) {
     (from, to.unwrap_or(SEARCH_TO_M_S))
 }
 
+/// A study that cannot be computed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BalanceAssistError {
+    /// A bicycle cannot be loaded.
+    #[error(transparent)]
+    Bicycle(#[from] BicycleError),
+    /// The fitted motor is outside the model's range.
+    #[error(transparent)]
+    Motor(#[from] ActuatorError),
+}
+
 /// Computes the study.
 ///
 /// # Errors
-/// A bicycle of the catalogue cannot be loaded.
-pub fn study() -> Result<Page, String> {
-    let load = |name| catalogue::load(name).map(|b| b.parameters).map_err(|e| e.to_string());
+/// A bicycle of the catalogue cannot be loaded, or the fitted motor is outside the model's range.
+pub fn study() -> Result<Page, BalanceAssistError> {
+    let load = |name| catalogue::load(name).map(|b| b.parameters);
     let (riderless, ridden) = (load(RIDERLESS)?, load(RIDDEN)?);
     let published = published();
     let fits = fits(&riderless, &published.weave);
@@ -56,8 +69,7 @@ pub fn study() -> Result<Page, String> {
              number was fitted.\n\n## The measured weave\n\n";
     text += &measured(&riderless, &published.weave, &fits);
     text += "\n![Weave eigenvalues](balance-assist.svg)\n\n";
-    text += &weave_recorded::section(&riderless, &published.weave, best(&fits).actuator)
-        .map_err(|e| e.to_string())?;
+    text += &weave_recorded::section(&riderless, &published.weave, best(&fits).actuator)?;
     Ok(Page { name: NAME, text, chart: figure(&riderless, &published.weave, &fits) })
 }
 

@@ -1,7 +1,7 @@
 //! Study of the prototype's balance-assist law beside law h, both with the prototype's torque limit of 7 N m.
 
 use super::page::{Page, table};
-use super::trial::{Trial, basins};
+use super::trial::{Trial, TrialError, basins};
 use crate::basin::{Axis as Disturbance, Basin, Bound, Column, Search};
 use crate::report::figure::{Axis, Chart, Line, Look, Plot, Series};
 use control::{Law, Limits};
@@ -82,7 +82,7 @@ pub fn study(
     search: &Search,
     advanced: &(dyn Fn() + Sync),
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<Page>, String> {
+) -> Result<Option<Page>, TrialError> {
     let (groups, laws) = (groups(), laws());
     // Without a law no limit has an effect, so that case is computed once.
     let matters = |g: &Group, law: &Law| *law != Law::None || !g.rate_limited;

@@ -1,9 +1,9 @@
 //! A trial: bicycle, rider, sensor delay and motor limits. Laws are compared by their basins in a trial.
 
-use crate::basin::{Basin, Column, Search, border};
+use crate::basin::{Basin, Column, Search, SearchError, border};
 use crate::parameters::departing;
 use crate::ride::Conditions;
-use crate::scenario::{RiderChoice, Scenario, law};
+use crate::scenario::{RiderChoice, Scenario, ScenarioError, law};
 use control::{Config, Law, Limits};
 use rayon::prelude::*;
 
@@ -14,6 +14,26 @@ pub struct Trial {
     pub label: String,
     /// The conditions; the law is that of each comparison.
     pub scenario: Scenario,
+}
+
+/// Trials that cannot be simulated.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TrialError {
+    /// Conditions that cannot be ridden.
+    #[error("{label}: {error}")]
+    Conditions {
+        /// The trial's label.
+        label: String,
+        /// The error.
+        error: ScenarioError,
+    },
+    /// A value of the search is outside its range.
+    #[error(transparent)]
+    Search(#[from] SearchError),
+    /// An index of no trial.
+    #[error("there is no such trial")]
+    Index,
 }
 
 impl Trial {
@@ -45,10 +65,11 @@ impl Trial {
     ///
     /// # Errors
     /// The bicycle or rider does not exist, law or limits are out of range, or invalid conditions.
-    pub fn conditions(&self, law: &Law) -> Result<Conditions, String> {
+    pub fn conditions(&self, law: &Law) -> Result<Conditions, TrialError> {
         let law = Some(law::content("table", law));
         let resolved = Scenario { law, ..self.scenario.clone() }.resolve();
-        resolved.map(|resolved| resolved.conditions).map_err(|e| format!("{}: {e}", self.label))
+        let wrong = |error| TrialError::Conditions { label: self.label.clone(), error };
+        resolved.map(|resolved| resolved.conditions).map_err(wrong)
     }
 }
 
@@ -62,8 +83,8 @@ pub fn basins(
     search: &Search,
     advanced: &(dyn Fn() + Sync),
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<Vec<Basin>>, String> {
-    search.check().map_err(|e| e.to_string())?;
+) -> Result<Option<Vec<Basin>>, TrialError> {
+    search.check()?;
     let conditions: Vec<Conditions> =
         requested.iter().map(|(trial, law)| trial.conditions(law)).collect::<Result<_, _>>()?;
     let speeds = search.speeds.len();
@@ -104,8 +125,8 @@ pub fn least_area(
     search: &Search,
     first: usize,
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<Least>, String> {
-    let Some(trial) = trials.get(first) else { return Err("there is no such trial".into()) };
+) -> Result<Option<Least>, TrialError> {
+    let Some(trial) = trials.get(first) else { return Err(TrialError::Index) };
     let Some(bound) = basins(&[(trial, law)], search, &|| {}, stop)? else { return Ok(None) };
     let bound = &bound[0];
     let conditions: Vec<Conditions> =

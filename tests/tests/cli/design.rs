@@ -81,7 +81,7 @@ fn a_stopped_design_keeps_the_best_so_far() {
     let found = optimise(&trials(), &plan(1, 1000), &advanced, &stop).expect("rides").expect("some");
     assert!(!found.complete && found.evaluations == 5);
     assert_eq!(last.get(), Progress { evaluations: 5, best: found.worst_area });
-    assert_eq!(optimise(&trials(), &plan(1, 1000), &advanced, &|| true), Ok(None));
+    assert_eq!(optimise(&trials(), &plan(1, 1000), &advanced, &|| true).expect("rides"), None);
 }
 
 /// Situation: knots, and a law that is not made of them.
