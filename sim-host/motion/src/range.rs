@@ -86,17 +86,3 @@ pub fn span(text: &str) -> Result<(f64, f64), TimeError> {
     let to_s = to.map_or(Ok(f64::INFINITY), |to| time(to, LATEST_S))?;
     if to_s > from_s { Ok((from_s, to_s)) } else { Err(TimeError::Order { from_s, to_s }) }
 }
-
-/// For messages that are put together as text.
-impl From<RangeError> for String {
-    fn from(error: RangeError) -> Self {
-        error.to_string()
-    }
-}
-
-/// For messages that are put together as text.
-impl From<TimeError> for String {
-    fn from(error: TimeError) -> Self {
-        error.to_string()
-    }
-}

@@ -6,7 +6,7 @@ use super::{Ended, Failure, warn};
 use crate::eigen::{
     CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes, roots, stability,
 };
-use crate::range::time;
+use crate::range::{TimeError, time};
 use crate::report::document::EigenDocument;
 use crate::report::figure::{self, EigenFigure};
 use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider};
@@ -78,8 +78,8 @@ struct ActuatorArgs {
     steer_inertia: f64,
 }
 
-fn second(text: &str) -> Result<f64, String> {
-    Ok(time(text, 1.0)?)
+fn second(text: &str) -> Result<f64, TimeError> {
+    time(text, 1.0)
 }
 
 impl ActuatorArgs {

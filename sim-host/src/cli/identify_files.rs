@@ -6,7 +6,7 @@ use crate::bicycle::Parameters;
 use crate::eigen::LinearActuator;
 use crate::range::within;
 use crate::report::weave::{Curves, Predicted, RecordingEntry, RefusedEntry, WeaveEntry};
-use crate::scenario::law;
+use crate::scenario::law::{self, LawChoiceError};
 use crate::weave::label::{Label, Pattern};
 use crate::weave::pool::pool;
 use crate::weave::predict::weave;
@@ -80,7 +80,7 @@ fn of_file(args: &WeaveArgs, pattern: &Pattern, path: &Path) -> Result<Recording
     if gain.is_none() && args.law.contains(GAIN) {
         return Err(unknown("gain", "--gain"));
     }
-    law_of(&args.law, gain).map_err(refused)?;
+    law_of(&args.law, gain).map_err(|e| refused(e.to_string()))?;
     let text = std::fs::read_to_string(path).map_err(|e| refused(format!("can't be read: {e}")))?;
     let record = read(&text, &args.columns()).map_err(|e| refused(e.to_string()))?;
     let weave = identify_segment(&record, args.settings()).map_err(|why| {
@@ -90,7 +90,7 @@ fn of_file(args: &WeaveArgs, pattern: &Pattern, path: &Path) -> Result<Recording
     Ok(RecordingEntry { file, gain, speed_m_s: speed, left_out: record.notes, weave })
 }
 
-fn law_of(template: &str, gain: Option<f64>) -> Result<Law, String> {
+fn law_of(template: &str, gain: Option<f64>) -> Result<Law, LawChoiceError> {
     law::parse(&gain.map_or(template.into(), |gain| template.replace(GAIN, &gain.to_string())))
 }
 
@@ -108,7 +108,7 @@ type Both = [Vec<Option<Complex<f64>>>; 2];
 
 impl Models<'_> {
     fn weave(&self, gain: Option<f64>, speeds: &[f64]) -> Result<Both, String> {
-        let law = law_of(self.law, gain)?;
+        let law = law_of(self.law, gain).map_err(|e| e.to_string())?;
         let of = |motor| weave(self.bicycle, &law, motor, speeds).map_err(|e| e.to_string());
         Ok([of(LinearActuator::default())?, of(self.motor)?])
     }

@@ -12,7 +12,7 @@ use crate::board::reception::Reception;
 use crate::board::recorded::{Recorder, Recording};
 use crate::board::telemetry_row::TelemetryRow;
 use crate::board::{BoardName, Client, ClientError, RetryPolicy, Transport, TransportError};
-use crate::range::time;
+use crate::range::{TimeError, time};
 use crate::report::output::Output;
 use crate::report::table::heading;
 use serde_json::json;
@@ -62,8 +62,8 @@ pub(super) struct Args {
     reopen: f64,
 }
 
-fn duration(text: &str) -> Result<f64, String> {
-    Ok(time(text, 1e6)?)
+fn duration(text: &str) -> Result<f64, TimeError> {
+    time(text, 1e6)
 }
 
 /// State of a monitor session.

@@ -2,7 +2,7 @@
 
 use crate::board::parameter::law_points;
 use crate::board::settings::Settings;
-use crate::scenario::parameter_file::ParameterFile;
+use crate::scenario::{ParameterFile, ParameterFileError};
 use std::fmt::Write;
 
 /// Description of the files, for help texts.
@@ -15,7 +15,7 @@ export also has `count` and `checksum`; to edit it by hand, delete both lines, o
 ///
 /// # Errors
 /// The written text cannot be read back.
-pub(super) fn text(settings: &Settings, remark: &str) -> Result<String, String> {
+pub(super) fn text(settings: &Settings, remark: &str) -> Result<String, ParameterFileError> {
     let body = body(settings);
     let read = ParameterFile::of_text("export", &body)?;
     let head = format!("count = {}\nchecksum = \"{}\"\n", read.values.len(), read.checksum());

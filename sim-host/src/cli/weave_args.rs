@@ -1,7 +1,7 @@
 //! Options of `identify weave`.
 
 use super::outputs::OutputArgs;
-use crate::range::time;
+use crate::range::{TimeError, time};
 use crate::study::balance_assist::RIDERLESS;
 use crate::weave::record::{Columns, Unit};
 use crate::weave::segment::Settings;
@@ -70,8 +70,8 @@ pub(super) struct WeaveArgs {
     pub(super) outputs: OutputArgs,
 }
 
-fn moment(text: &str) -> Result<f64, String> {
-    Ok(time(text, 3600.0)?)
+fn moment(text: &str) -> Result<f64, TimeError> {
+    time(text, 3600.0)
 }
 
 impl WeaveArgs {

@@ -1,7 +1,16 @@
 //! Errors of scenarios.
 
+use super::file::SyntaxError;
+use super::law::LawChoiceError;
+use super::parameter_file::ParameterFileError;
+use super::plant_error::PlantChoiceError;
+use crate::basin::SearchError;
 use crate::bicycle::catalogue::BicycleError;
-use crate::rider::RiderError;
+use crate::plant::PlantError;
+use crate::ride::ConditionsError;
+use crate::rider::{RiderError, ScheduleError};
+use control::param::ParamError;
+use std::error::Error;
 use std::path::PathBuf;
 
 /// A scenario that can't be read or resolved, with the reason.
@@ -22,7 +31,7 @@ pub enum ScenarioError {
         /// The file.
         path: PathBuf,
         /// The parser's message, with line or key.
-        reason: String,
+        reason: SyntaxError,
     },
     /// The bicycle can't be loaded.
     #[error(transparent)]
@@ -36,16 +45,58 @@ pub enum ScenarioError {
         /// The scenario's key, with dots.
         key: String,
         /// The value and its range.
-        reason: String,
+        reason: Box<dyn Error + Send + Sync>,
     },
-    /// Values that can't be combined, or the file of one.
-    #[error("{0}")]
-    Conditions(String),
+    /// The law can't be loaded.
+    #[error(transparent)]
+    Law(#[from] LawChoiceError),
+    /// The file of the firmware's parameters can't be used.
+    #[error(transparent)]
+    ParameterFile(#[from] ParameterFileError),
+    /// The file of a sensor or motor can't be loaded.
+    #[error(transparent)]
+    PlantFile(#[from] PlantChoiceError),
+    /// A value of sensors, motor or faults is outside its range.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
+    /// A value of the search is outside its range.
+    #[error(transparent)]
+    Search(#[from] SearchError),
+    /// Conditions that can't be ridden.
+    #[error(transparent)]
+    Conditions(#[from] ConditionsError),
+    /// The rider's gains can't be fitted.
+    #[error("rider `{table}`, gains {gains}: {error}")]
+    Fit {
+        /// The rider's table.
+        table: String,
+        /// The fit.
+        gains: &'static str,
+        /// The error.
+        error: ScheduleError,
+    },
+    /// A parameter of the firmware is outside its range.
+    #[error(transparent)]
+    Parameter(#[from] ParamError),
+    /// The bicycle is outside the range of the firmware's estimator.
+    #[error(
+        "{bicycle}: for the flashed code {error}, and capsize, predict and track need it; --assist ideal leaves the \
+         flashed code out"
+    )]
+    Flashed {
+        /// The bicycle.
+        bicycle: String,
+        /// The error.
+        error: ParamError,
+    },
+    /// The ideal law with limits or sensor delay.
+    #[error("limits and sensor delay act on --assist firmware only; the ideal law has none")]
+    Ideal,
 }
 
 impl ScenarioError {
     /// The value of `key` is wrong.
-    pub(super) fn value(key: &str, reason: impl ToString) -> Self {
-        Self::Value { key: key.into(), reason: reason.to_string() }
+    pub(super) fn value(key: &str, reason: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+        Self::Value { key: key.into(), reason: reason.into() }
     }
 }

@@ -6,6 +6,18 @@ use serde::Deserialize;
 use std::path::Path;
 use toml::Value;
 
+/// A text that is no scenario: the parser's message, with line or key and what was expected.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct SyntaxError(String);
+
+impl SyntaxError {
+    /// A parser's message, without the names of Rust's types.
+    fn new(error: &impl ToString) -> Self {
+        Self(in_plain_words(error.to_string().trim()))
+    }
+}
+
 impl Scenario {
     /// Reads a scenario from a file, or from standard input (`-`): JSON if it begins with a brace or its name ends in `.json`, otherwise TOML. Of a
     /// result of `ride`, `basin` or `basin plane`, the scenario in it.
@@ -29,42 +41,39 @@ impl Scenario {
     ///
     /// # Errors
     /// States line, key and what was expected.
-    pub fn from_toml(text: &str) -> Result<Self, String> {
-        toml::from_str(text).map_err(|e| in_plain_words(e.to_string().trim()))
+    pub fn from_toml(text: &str) -> Result<Self, SyntaxError> {
+        toml::from_str(text).map_err(|e| SyntaxError::new(&e))
     }
 
     /// Parses a scenario in JSON, or the scenario of a result.
     ///
     /// # Errors
     /// States line or key, and what was expected.
-    pub fn from_json(text: &str) -> Result<Self, String> {
-        let value: serde_json::Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
+    pub fn from_json(text: &str) -> Result<Self, SyntaxError> {
+        let value: serde_json::Value = serde_json::from_str(text).map_err(|e| SyntaxError(e.to_string()))?;
         let Some(Value::Table(mut table)) = json::as_toml(value) else {
-            return Err("expected an object".into());
+            return Err(SyntaxError("expected an object".into()));
         };
+        let wrong = |reason: &str| Err(SyntaxError(reason.into()));
         // Every document with a scenario in it has its configuration beside it.
         let of_result = table.contains_key("tool") || table.contains_key("config");
         let own = match table.remove("scenario") {
             Some(own) if of_result => own,
-            Some(_) => return Err("`scenario` is a key of results only".into()),
-            None if table.contains_key("cells") => {
-                return Err("the scenarios are in `cells[i].scenario`".into());
-            }
-            None if table.contains_key("cases") => {
-                return Err("the scenarios are in `cases[i].scenario`".into());
-            }
-            None if of_result => return Err("this result has no `scenario`".into()),
+            Some(_) => return wrong("`scenario` is a key of results only"),
+            None if table.contains_key("cells") => return wrong("the scenarios are in `cells[i].scenario`"),
+            None if table.contains_key("cases") => return wrong("the scenarios are in `cases[i].scenario`"),
+            None if of_result => return wrong("this result has no `scenario`"),
             None => Value::Table(table),
         };
-        Self::deserialize(own).map_err(|e| in_plain_words(e.to_string().trim()))
+        Self::deserialize(own).map_err(|e| SyntaxError::new(&e))
     }
 
     /// The scenario as a TOML file.
     ///
     /// # Errors
     /// A number that TOML does not have: a seed above 2^63 - 1, which only code can set.
-    pub fn to_toml(&self) -> Result<String, String> {
-        toml::to_string(self).map_err(|e| e.to_string())
+    pub fn to_toml(&self) -> Result<String, SyntaxError> {
+        toml::to_string(self).map_err(|e| SyntaxError(e.to_string()))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::content::Content;
 use control::law::{LAWS, LawError};
-use control::param::ParamSpec;
+use control::param::{ParamError, ParamSpec};
 use control::{Capsize, GainSchedule, Law};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,6 +16,88 @@ fn allowed() -> String {
         "{} (K > 0), or a TOML file with speed_m_s and gain_nm_s_rad",
         names.collect::<Vec<String>>().join(", ")
     )
+}
+
+/// A law that cannot be loaded.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LawChoiceError {
+    /// Neither a built-in law nor a file.
+    #[error("unknown law `{0}`: no such file, and not one of {known}", known = allowed())]
+    Unknown(String),
+    /// The law's number is missing or not a number.
+    #[error(
+        "law `{text}`: expected {name}:K, K a number from {min} to {max}",
+        name = name_of(.text), min = .number.min, max = .number.max
+    )]
+    Number {
+        /// As given.
+        text: String,
+        /// The number.
+        number: ParamSpec,
+    },
+    /// A number for a law without one.
+    #[error("law `{0}`: {name} takes no number", name = name_of(.0))]
+    NoNumber(String),
+    /// The law's number is outside its range.
+    #[error("law `{text}`: {error}")]
+    Range {
+        /// As given.
+        text: String,
+        /// The error.
+        error: ParamError,
+    },
+    /// The file can't be read.
+    #[error("can't read law file {path}: {reason}")]
+    Read {
+        /// The file.
+        path: String,
+        /// The operating system's error.
+        reason: String,
+    },
+    /// Not a table of gains.
+    #[error("{place}: {reason}")]
+    Syntax {
+        /// The law, and its file.
+        place: String,
+        /// The parser's message.
+        reason: String,
+    },
+    /// Different numbers of speeds and gains.
+    #[error("{place}: speed_m_s has {speeds} values, gain_nm_s_rad has {gains}; they must match")]
+    Lengths {
+        /// The law, and its file or name.
+        place: String,
+        /// Number of speeds.
+        speeds: usize,
+        /// Number of gains.
+        gains: usize,
+    },
+    /// A speed or a gain outside its range.
+    #[error("{place}: {error}{}", if error.leaf.name.contains("speed") { " (speeds must rise)" } else { "" })]
+    Point {
+        /// The law, and its file or name.
+        place: String,
+        /// The error.
+        error: ParamError,
+    },
+    /// A table with the name of a built-in law.
+    #[error("law: `{0}` is the name of a built-in law; choose another for the table")]
+    BuiltIn(String),
+    /// A file in the place of its table.
+    #[error("law `{0}` is a file; insert its table here")]
+    File(String),
+    /// A text that is no capsize term.
+    #[error("`{0}` is not K:V, N s/rad and m/s, for example 0.7:6.5")]
+    CapsizeForm(String),
+    /// A number of the capsize term is outside its range.
+    #[error(transparent)]
+    Capsize(ParamError),
+}
+
+/// The law's name in `NAME:K`.
+fn name_of(text: &str) -> &str {
+    text.split_once(':').map_or(text, |(name, _)| name)
 }
 
 /// A gain table, as in a law file.
@@ -52,15 +134,13 @@ pub fn content(name: &str, law: &Law) -> Content<LawTable> {
 ///
 /// # Errors
 /// States the law, its number and range, or file and value.
-pub(super) fn resolve(choice: &Content<LawTable>) -> Result<(String, Law), String> {
+pub(super) fn resolve(choice: &Content<LawTable>) -> Result<(String, Law), LawChoiceError> {
     match choice {
         Content::Named(name) => Ok((name.clone(), parse(name)?)),
         Content::Given(table) => {
             let name = table.name.clone().unwrap_or_else(|| "table".into());
             if name.parse::<Law>().is_ok() {
-                return Err(format!(
-                    "law: `{name}` is the name of a built-in law; choose another for the table"
-                ));
+                return Err(LawChoiceError::BuiltIn(name));
             }
             let law = of_table((**table).clone(), &format!("law {name}"))?;
             Ok((name, law))
@@ -69,61 +149,65 @@ pub(super) fn resolve(choice: &Content<LawTable>) -> Result<(String, Law), Strin
 }
 
 /// The law with this name or from this file.
-pub fn parse(text: &str) -> Result<Law, String> {
-    let name = text.split_once(':').map_or(text, |(name, _)| name);
+///
+/// # Errors
+/// States the law, its number and range, or file and value.
+pub fn parse(text: &str) -> Result<Law, LawChoiceError> {
     text.parse::<Law>().or_else(|error| match error {
         LawError::Unknown => table(text),
-        LawError::NotANumber(ParamSpec { min, max, .. }) => {
-            Err(format!("law `{text}`: expected {name}:K, K a number from {min} to {max}"))
-        }
-        LawError::NoParameter => Err(format!("law `{text}`: {name} takes no number")),
-        LawError::OutOfRange(error) => Err(format!("law `{text}`: {error}")),
+        LawError::NotANumber(number) => Err(LawChoiceError::Number { text: text.into(), number }),
+        LawError::NoParameter => Err(LawChoiceError::NoNumber(text.into())),
+        LawError::OutOfRange(error) => Err(LawChoiceError::Range { text: text.into(), error }),
     })
 }
 
 /// The capsize term of `K:V`.
-pub fn capsize(text: &str) -> Result<Capsize, String> {
+///
+/// # Errors
+/// The expected form, or a number outside its range.
+pub fn capsize(text: &str) -> Result<Capsize, LawChoiceError> {
     let numbers = text.split_once(':').and_then(|(k, v)| Some((k.parse().ok()?, v.parse().ok()?)));
-    let (k_c, v_max_m_s) =
-        numbers.ok_or_else(|| format!("`{text}` is not K:V, N s/rad and m/s, for example 0.7:6.5"))?;
+    let (k_c, v_max_m_s) = numbers.ok_or_else(|| LawChoiceError::CapsizeForm(text.into()))?;
     let capsize = Capsize { k_c, v_max_m_s };
-    capsize.validate().map_err(|e| e.to_string())?;
+    capsize.validate().map_err(LawChoiceError::Capsize)?;
     Ok(capsize)
 }
 
 /// The law in a parameter file: a name, or a table.
-pub(super) fn of_value(value: toml::Value) -> Result<Law, String> {
+pub(super) fn of_value(value: toml::Value) -> Result<Law, LawChoiceError> {
     match value {
         toml::Value::String(name) => match parse(&name) {
-            Ok(Law::Table(_)) => Err(format!("law `{name}` is a file; insert its table here")),
+            Ok(Law::Table(_)) => Err(LawChoiceError::File(name)),
             law => law,
         },
         table => {
-            of_table(table.try_into().map_err(|e: toml::de::Error| format!("law: {}", e.message()))?, "law")
+            let wrong = |e: toml::de::Error| syntax("law", e.message());
+            of_table(table.try_into().map_err(wrong)?, "law")
         }
     }
 }
 
-fn table(path: &str) -> Result<Law, String> {
+fn table(path: &str) -> Result<Law, LawChoiceError> {
     if !std::path::Path::new(path).exists() {
-        return Err(format!("unknown law `{path}`: no such file, and not one of {}", allowed()));
+        return Err(LawChoiceError::Unknown(path.into()));
     }
-    let text = std::fs::read_to_string(path).map_err(|e| format!("can't read law file {path}: {e}"))?;
-    let file: LawTable =
-        toml::from_str(&text).map_err(|e| format!("law file {path}: {}", e.to_string().trim()))?;
-    of_table(file, &format!("law file {path}"))
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| LawChoiceError::Read { path: path.into(), reason: e.to_string() })?;
+    let place = format!("law file {path}");
+    of_table(toml::from_str(&text).map_err(|e| syntax(&place, e.to_string().trim()))?, &place)
 }
 
-fn of_table(file: LawTable, place: &str) -> Result<Law, String> {
-    let (n, m) = (file.speed_m_s.len(), file.gain_nm_s_rad.len());
-    if n != m {
-        return Err(format!("{place}: speed_m_s has {n} values, gain_nm_s_rad has {m}; they must match"));
+fn syntax(place: &str, reason: &str) -> LawChoiceError {
+    LawChoiceError::Syntax { place: place.into(), reason: reason.into() }
+}
+
+fn of_table(file: LawTable, place: &str) -> Result<Law, LawChoiceError> {
+    let (speeds, gains) = (file.speed_m_s.len(), file.gain_nm_s_rad.len());
+    if speeds != gains {
+        return Err(LawChoiceError::Lengths { place: place.into(), speeds, gains });
     }
     let points = file.speed_m_s.into_iter().zip(file.gain_nm_s_rad);
     let points: Vec<(f32, f32)> = points.map(|(speed, gain)| (speed as f32, gain as f32)).collect();
-    let table = GainSchedule::new(&points).map_err(|e| {
-        let rising = if e.leaf.name.contains("speed") { " (speeds must rise)" } else { "" };
-        format!("{place}: {e}{rising}")
-    })?;
-    Ok(Law::Table(table))
+    let wrong = |error| LawChoiceError::Point { place: place.into(), error };
+    GainSchedule::new(&points).map(Law::Table).map_err(wrong)
 }

@@ -1,8 +1,8 @@
 //! Files of firmware parameters: exported from a board, read by board commands and simulator.
 
-use super::law;
+use super::law::{self, LawChoiceError};
 use crate::board::parameter::law_bytes;
-use crate::parameters::{self, Value};
+use crate::parameters::{self, SetError, Value};
 use control::{Config, Law};
 use link::frame::CRC;
 use serde::{Deserialize, Serialize};
@@ -22,6 +22,94 @@ struct File {
     count: Option<usize>,
     /// In an export: checksum of law and parameters.
     checksum: Option<String>,
+}
+
+/// A file of parameters that cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ParameterFileError {
+    /// The file can't be read.
+    #[error("can't read {path}: {reason}")]
+    Read {
+        /// The file.
+        path: String,
+        /// The operating system's error.
+        reason: String,
+    },
+    /// The content is wrong.
+    #[error("{path}: {error}")]
+    Content {
+        /// The file.
+        path: String,
+        /// The error.
+        error: ParameterTextError,
+    },
+}
+
+/// A text that is no file of parameters.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ParameterTextError {
+    /// Not TOML, or an unknown key.
+    #[error("{0}")]
+    Syntax(String),
+    /// A wrong law.
+    #[error(transparent)]
+    Law(#[from] LawChoiceError),
+    /// The law among the parameters.
+    #[error("parameters: {0}: the law belongs above the parameters, as in law = \"cl2:3\"")]
+    LawAmong(String),
+    /// A parameter of a wrong type.
+    #[error("parameters: {key}: expected a number or a word, not {found}")]
+    Type {
+        /// The parameter.
+        key: String,
+        /// The type found.
+        found: &'static str,
+    },
+    /// Neither a law nor parameters.
+    #[error("empty: neither `law` nor `parameters`")]
+    Empty,
+    /// Another number of parameters than exported.
+    #[error("count = {count}, but it has {found} parameters: it was cut or changed")]
+    Count {
+        /// The number exported.
+        count: usize,
+        /// The number found.
+        found: usize,
+    },
+    /// Another content than exported.
+    #[error(
+        "checksum = \"{checksum}\", but law and parameters have \"{found}\": it was damaged or changed; what was changed \
+         on purpose is taken without the lines `count` and `checksum`"
+    )]
+    Checksum {
+        /// The checksum exported.
+        checksum: String,
+        /// The checksum of the content.
+        found: String,
+    },
+    /// One of count and checksum is missing.
+    #[error("`count` and `checksum` must be given together: one is missing")]
+    OneMissing,
+    /// A parameter that the controller does not have.
+    #[error("{key} = {value}: no parameter {key}")]
+    Unknown {
+        /// The parameter.
+        key: String,
+        /// Its value.
+        value: Value,
+    },
+    /// A value that the parameter cannot have.
+    #[error("{key} = {value}: {error}")]
+    Value {
+        /// The parameter.
+        key: String,
+        /// Its value.
+        value: Value,
+        /// The error.
+        error: SetError,
+    },
 }
 
 /// Content of a file.
@@ -58,54 +146,59 @@ mod law_in_place {
 
 impl ParameterFile {
     /// Reads a file, without checking that its parameters exist and allow these values.
-    pub fn read(path: &Path) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// States file and key, and what is allowed or damaged.
+    pub fn read(path: &Path) -> Result<Self, ParameterFileError> {
         let path = path.display().to_string();
-        let text = std::fs::read_to_string(&path).map_err(|e| format!("can't read {path}: {e}"))?;
-        Self::of_text(&path, &text)
+        match std::fs::read_to_string(&path) {
+            Ok(text) => Self::of_text(&path, &text),
+            Err(error) => Err(ParameterFileError::Read { path, reason: error.to_string() }),
+        }
     }
 
     /// Parses a file's text; `path` names it in errors.
     ///
     /// # Errors
     /// States file and key, and what is allowed or damaged.
-    pub fn of_text(path: &str, text: &str) -> Result<Self, String> {
-        let path = path.to_owned();
-        let file: File = toml::from_str(text).map_err(|e| format!("{path}: {}", e.to_string().trim()))?;
-        let law = file.law.map(law::of_value).transpose().map_err(|error| format!("{path}: {error}"))?;
+    pub fn of_text(path: &str, text: &str) -> Result<Self, ParameterFileError> {
+        Self::parse(path, text).map_err(|error| ParameterFileError::Content { path: path.into(), error })
+    }
+
+    fn parse(path: &str, text: &str) -> Result<Self, ParameterTextError> {
+        let syntax = |e: toml::de::Error| ParameterTextError::Syntax(e.to_string().trim().into());
+        let file: File = toml::from_str(text).map_err(syntax)?;
+        let law = file.law.map(law::of_value).transpose()?;
         let values = file.parameters.into_iter().map(|(key, value)| {
             if key == "law" || key.starts_with("law.") {
-                return Err(format!(
-                    "{path}: parameters: {key}: the law belongs above the parameters, as in law = \"cl2:3\""
-                ));
+                return Err(ParameterTextError::LawAmong(key));
             }
-            let kind = value.type_str();
-            let wrong = |_| format!("{path}: parameters: {key}: expected a number or a word, not {kind}");
-            Ok((key.clone(), Value::deserialize(value).map_err(wrong)?))
+            let found = value.type_str();
+            match Value::deserialize(value) {
+                Ok(value) => Ok((key, value)),
+                Err(_) => Err(ParameterTextError::Type { key, found }),
+            }
         });
         let values = values.collect::<Result<_, _>>()?;
-        let read = Self { path, law, values };
-        read.check(file.count, file.checksum.as_deref())?;
+        let read = Self { path: path.into(), law, values };
+        read.check(file.count, file.checksum)?;
         Ok(read)
     }
 
     /// Checks that an export is complete.
-    fn check(&self, count: Option<usize>, checksum: Option<&str>) -> Result<(), String> {
-        let (path, found) = (&self.path, self.values.len());
+    fn check(&self, count: Option<usize>, checksum: Option<String>) -> Result<(), ParameterTextError> {
+        let found = self.values.len();
         if found == 0 && self.law.is_none() {
-            return Err(format!("{path}: empty: neither `law` nor `parameters`"));
+            return Err(ParameterTextError::Empty);
         }
         match (count, checksum) {
             (None, None) => Ok(()),
-            (Some(count), _) if count != found => {
-                Err(format!("{path}: count = {count}, but it has {found} parameters: it was cut or changed"))
-            }
+            (Some(count), _) if count != found => Err(ParameterTextError::Count { count, found }),
             (Some(_), Some(checksum)) if checksum == self.checksum() => Ok(()),
-            (Some(_), Some(checksum)) => Err(format!(
-                "{path}: checksum = \"{checksum}\", but law and parameters have \"{}\": it was damaged or changed; \
-                 what was changed on purpose is taken without the lines `count` and `checksum`",
-                self.checksum()
-            )),
-            _ => Err(format!("{path}: `count` and `checksum` must be given together: one is missing")),
+            (Some(_), Some(checksum)) => {
+                Err(ParameterTextError::Checksum { checksum, found: self.checksum() })
+            }
+            _ => Err(ParameterTextError::OneMissing),
         }
     }
 
@@ -122,15 +215,26 @@ impl ParameterFile {
 
     /// Sets the parameters in a simulated controller. The calibration belongs to the board: it is checked and not
     /// applied.
-    pub fn apply(&self, config: &mut Config) -> Result<(), String> {
+    ///
+    /// # Errors
+    /// An unknown parameter, or a value that it cannot have.
+    pub fn apply(&self, config: &mut Config) -> Result<(), ParameterFileError> {
+        self.set(config).map_err(|error| ParameterFileError::Content { path: self.path.clone(), error })
+    }
+
+    fn set(&self, config: &mut Config) -> Result<(), ParameterTextError> {
         let calibration = config.calibration;
         let known = parameters::list(config);
         for (key, value) in &self.values {
-            if !known.iter().any(|(name, _)| name == key) {
-                return Err(format!("{}: {key} = {value}: no parameter {key}", self.path));
+            let (key, value) = (key.clone(), value.clone());
+            if !known.iter().any(|(name, _)| *name == key) {
+                return Err(ParameterTextError::Unknown { key, value });
             }
-            parameters::set_value(config, key, value)
-                .map_err(|error| format!("{}: {key} = {value}: {error}", self.path))?;
+            parameters::set_value(config, &key, &value).map_err(|error| ParameterTextError::Value {
+                key,
+                value,
+                error,
+            })?;
         }
         config.calibration = calibration;
         Ok(())

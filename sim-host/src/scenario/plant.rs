@@ -4,8 +4,9 @@
 use super::content::{Content, NONE, NameOr, name_or_table};
 use super::error::ScenarioError;
 use super::is_default;
+use super::plant_error::{PlantChoiceError, UnknownSensorError};
 use super::ticks::{LONGEST_S, LONGEST_SENSOR_S, whole_ticks};
-use crate::plant::sensor_file::{EXACT, SHIPPED, SensorFile, table_of};
+use crate::plant::sensor_file::{EXACT, SHIPPED, SensorFile};
 use crate::plant::{
     ActuatorConfig, Fault, ImuMount, Plant, Sensor, SensorConfig, SensorModel, SteerStop, Supply, catalogue,
 };
@@ -135,10 +136,10 @@ impl PlantChoice {
             change.apply(&mut sensors, period_s).map_err(|e| ScenarioError::value("plant.sensors", e))?;
         }
         let name = self.actuator.model.as_ref().and_then(Content::name).unwrap_or("model");
-        let wrong = |e| ScenarioError::value("plant.actuator", format!("{name}: {e}"));
+        let wrong = |e: PlantChoiceError| ScenarioError::value("plant.actuator", e.at(name));
         let actuator = self.actuator.resolve(period_s).map_err(wrong)?;
         let plant = Plant { sensors, actuator, faults: self.faults.clone(), seed: self.seed };
-        plant.check().map_err(|e| ScenarioError::Conditions(e.to_string()))?;
+        plant.check()?;
         Ok(plant)
     }
 
@@ -149,19 +150,18 @@ impl PlantChoice {
     }
 
     /// Puts the contents of files in the places of their names.
-    pub(super) fn include(&mut self) -> Result<(), String> {
+    pub(super) fn include(&mut self) -> Result<(), PlantChoiceError> {
         for change in &mut self.sensors {
             if let Some(Content::Named(name)) = &change.model
                 && is_file(name)
             {
-                change.model =
-                    Some(Content::Given(Box::new(SensorFile::load(name).map_err(|e| e.to_string())?)));
+                change.model = Some(Content::Given(Box::new(SensorFile::load(name)?)));
             }
         }
         if let Some(Content::Named(name)) = &self.actuator.model
             && !catalogue::shipped_names().iter().any(|shipped| shipped == name)
         {
-            let config = catalogue::load(name).map_err(|e| e.to_string())?;
+            let config = catalogue::load(name)?;
             self.actuator.model = Some(Content::Given(Box::new(config)));
         }
         Ok(())
@@ -177,46 +177,49 @@ fn is_file(name: &str) -> bool {
 ///
 /// # Errors
 /// Lists the names.
-pub(super) fn sensor_named(name: &str) -> Result<Sensor, String> {
-    Sensor::ALL.into_iter().find(|sensor| sensor.name() == name).ok_or_else(|| {
-        format!("unknown sensor `{name}`; expected imu, {}", Sensor::ALL.map(Sensor::name).join(", "))
-    })
+pub(super) fn sensor_named(name: &str) -> Result<Sensor, UnknownSensorError> {
+    let known = Sensor::ALL.into_iter().find(|sensor| sensor.name() == name);
+    known.ok_or_else(|| UnknownSensorError(name.into()))
 }
 
 impl SensorChange {
     /// Applies the change.
-    fn apply(&self, sensors: &mut SensorConfig, period_s: f64) -> Result<(), String> {
+    fn apply(&self, sensors: &mut SensorConfig, period_s: f64) -> Result<(), PlantChoiceError> {
         let Some(name) = &self.sensor else {
             let others = Self { model: None, ..self.clone() } != Self::default();
             return match &self.model {
                 Some(model) if !others => {
                     let name = model.name().unwrap_or("model");
-                    apply_file(model, sensors, period_s).map_err(|e| format!("{name}: {e}"))
+                    apply_file(model, sensors, period_s).map_err(|e| e.at(name))
                 }
-                _ => Err("a change needs a `sensor`, or a `model` alone".into()),
+                _ => Err(PlantChoiceError::NoSensor),
             };
         };
         let place = self.axis.as_ref().map_or(name.clone(), |axis| format!("{name}.{axis}"));
-        let named = |e: String| format!("{place}: {e}");
         if *self == (Self { sensor: self.sensor.clone(), axis: self.axis.clone(), ..Self::default() }) {
-            return Err(named("a change needs a value".into()));
+            return Err(PlantChoiceError::NoValue.at(&place));
         }
-        self.apply_to(sensor_named(name)?, sensors, period_s).map_err(named)
+        self.apply_to(sensor_named(name)?, sensors, period_s).map_err(|e| e.at(&place))
     }
 
-    fn apply_to(&self, sensor: Sensor, sensors: &mut SensorConfig, period_s: f64) -> Result<(), String> {
+    fn apply_to(
+        &self,
+        sensor: Sensor,
+        sensors: &mut SensorConfig,
+        period_s: f64,
+    ) -> Result<(), PlantChoiceError> {
         let axes = sensor.axes();
         let axis = self.axis.as_ref().map(|axis| {
             let known = axes.iter().position(|known| known == axis);
             known.ok_or_else(|| match axes {
-                [] => format!("it has one axis only; leave out `{axis}`"),
-                _ => format!("no axis `{axis}`; it has {}", axes.join(", ")),
+                [] => PlantChoiceError::OneAxis(axis.clone()),
+                known => PlantChoiceError::Axis { axis: axis.clone(), known },
             })
         });
         let axis = axis.transpose()?;
         let others = Self { sensor: None, axis: None, bias: None, ..self.clone() } != Self::default();
         if axis.is_some() && others {
-            return Err("only bias can differ between axes; everything else applies to all of them".into());
+            return Err(PlantChoiceError::BiasOnly);
         }
         let model = sensors.model_mut(sensor);
         if let Some(content) = &self.model {
@@ -227,7 +230,10 @@ impl SensorChange {
             (Some(bias), None) => model.bias.iter_mut().take(axes.len().max(1)).for_each(|axis| *axis = bias),
             (None, _) => {}
         }
-        let ticks = |name, time_s| whole_ticks(name, time_s, period_s, LONGEST_SENSOR_S);
+        let ticks = |key, time_s| {
+            whole_ticks(time_s, period_s, LONGEST_SENSOR_S)
+                .map_err(|error| PlantChoiceError::Ticks { key, error })
+        };
         set(&mut model.delay_ticks, self.delay_s.map(|s| ticks("delay", s)).transpose()?);
         set(&mut model.every_ticks, self.every_s.map(|s| ticks("every", s)).transpose()?);
         set(&mut model.scale, self.scale);
@@ -246,43 +252,52 @@ fn set<T>(place: &mut T, value: Option<T>) {
 }
 
 /// Applies all models of a file.
-fn apply_file(model: &Content<SensorFile>, sensors: &mut SensorConfig, period_s: f64) -> Result<(), String> {
+fn apply_file(
+    model: &Content<SensorFile>,
+    sensors: &mut SensorConfig,
+    period_s: f64,
+) -> Result<(), PlantChoiceError> {
     let name = match model {
-        Content::Given(file) => return file.apply(sensors, period_s).map_err(|e| e.to_string()),
+        Content::Given(file) => return Ok(file.apply(sensors, period_s)?),
         Content::Named(name) if name == EXACT => return Ok(()),
         Content::Named(name) => name,
     };
     if is_file(name) && !Path::new(name).exists() {
-        let names = SHIPPED.map(|(shipped, _)| shipped).join(", ");
-        return Err(format!(
-            "`{name}` is neither NAME:KEY=VALUE,... nor a FILE nor a built-in model: {EXACT}, {names}"
-        ));
+        return Err(PlantChoiceError::Model(name.clone()));
     }
-    SensorFile::load(name).map_err(|e| e.to_string())?.apply(sensors, period_s).map_err(|e| e.to_string())
+    Ok(SensorFile::load(name)?.apply(sensors, period_s)?)
 }
 
 /// A file's model of one sensor.
-fn model_of(sensor: Sensor, content: &Content<SensorFile>, period_s: f64) -> Result<SensorModel, String> {
+fn model_of(
+    sensor: Sensor,
+    content: &Content<SensorFile>,
+    period_s: f64,
+) -> Result<SensorModel, PlantChoiceError> {
     let (name, file) = match content {
         Content::Named(name) if name == EXACT => return Ok(SensorModel::default()),
-        Content::Named(name) => (&**name, &SensorFile::load(name).map_err(|e| e.to_string())?),
+        Content::Named(name) => (&**name, &SensorFile::load(name)?),
         Content::Given(file) => ("in the scenario", &**file),
     };
-    let numbers = file.of(sensor).ok_or_else(|| {
-        let tables: Vec<_> = file.tables().map(|(sensor, _)| table_of(sensor)).collect();
-        format!("the model {name} has no table {}; it has {}", table_of(sensor), tables.join(", "))
+    let numbers = file.of(sensor).ok_or_else(|| PlantChoiceError::Table {
+        name: name.into(),
+        sensor,
+        known: file.tables().map(|(sensor, _)| sensor).collect(),
     })?;
-    numbers.model(period_s).map_err(|e| e.to_string())
+    Ok(numbers.model(period_s)?)
 }
 
 impl ActuatorChoice {
-    fn resolve(&self, period_s: f64) -> Result<ActuatorConfig, String> {
+    fn resolve(&self, period_s: f64) -> Result<ActuatorConfig, PlantChoiceError> {
         let mut config = match &self.model {
             Some(Content::Given(config)) => **config,
-            Some(Content::Named(name)) => catalogue::load(name).map_err(|e| e.to_string())?,
-            None => catalogue::load(NONE).map_err(|e| e.to_string())?,
+            Some(Content::Named(name)) => catalogue::load(name)?,
+            None => catalogue::load(NONE)?,
         };
-        let ticks = |time_s| whole_ticks("delay", time_s, period_s, LONGEST_S);
+        let ticks = |time_s| {
+            whole_ticks(time_s, period_s, LONGEST_S)
+                .map_err(|error| PlantChoiceError::Ticks { key: "delay", error })
+        };
         set(&mut config.delay_ticks, self.delay_s.map(ticks).transpose()?);
         set(&mut config.time_constant_s, self.time_constant_s);
         set(&mut config.scale, self.scale);
@@ -296,7 +311,7 @@ impl ActuatorChoice {
             (Some(voltage_v), Some(resistance_ohm), Some(constant_nm_a)) => {
                 config.supply = Some(Supply { voltage_v, resistance_ohm, constant_nm_a });
             }
-            _ => return Err("voltage, resistance and constant must be given together".into()),
+            _ => return Err(PlantChoiceError::Supply),
         }
         Ok(config)
     }

@@ -86,14 +86,14 @@ impl Scenario {
         let schedule_speed = self.scheduled_by(&config, flashed);
         let limited = config.limits != Limits::default();
         let assist = self.assist(&law, config, limited, &given.name)?;
-        let sensor_delay_ticks = whole_ticks("", self.sensor_delay_s, step_s, LONGEST_S)
+        let sensor_delay_ticks = whole_ticks(self.sensor_delay_s, step_s, LONGEST_S)
             .map_err(|e| ScenarioError::value("sensor_delay_s", e))?;
         let mut warnings =
             rider.as_ref().map_or(Vec::new(), |one| compatibility_warnings(&bicycle, &one.table));
         warnings.extend(cut_files::warnings(self.files()));
         let conditions = self.conditions(&bicycle, assist, rider.as_ref(), (step_s, plant));
         let conditions = Conditions { schedule_speed, sensor_delay_ticks, ..conditions };
-        conditions.check().map_err(|e| ScenarioError::Conditions(e.to_string()))?;
+        conditions.check()?;
         let own_law = self.law.as_ref().map(|_| law::content(&law_name, &law));
         let scenario = self.complete(given, rider.as_ref(), own_law, file)?;
         Ok(Resolved { conditions, bicycle, rider, law, law_name, warnings, notes, scenario })
@@ -155,9 +155,7 @@ impl Scenario {
         let file = match &self.parameter_file {
             None => return Ok(None),
             Some(Content::Given(file)) => (**file).clone(),
-            Some(Content::Named(name)) => {
-                ParameterFile::read(Path::new(name)).map_err(ScenarioError::Conditions)?
-            }
+            Some(Content::Named(name)) => ParameterFile::read(Path::new(name))?,
         };
         Ok(Some(file))
     }
@@ -172,7 +170,7 @@ impl Scenario {
             (Preset::Thesis, true) => NONE,
             (Preset::Thesis, false) => "h",
         };
-        law::resolve(self.law.as_ref().unwrap_or(&default.into())).map_err(ScenarioError::Conditions)
+        Ok(law::resolve(self.law.as_ref().unwrap_or(&default.into()))?)
     }
 
     /// The controller's configuration before it is fitted to the bicycle.
@@ -187,7 +185,7 @@ impl Scenario {
             ScheduleSpeed::Rear => Wheel::Rear,
         });
         if let Some(file) = file {
-            file.apply(&mut config).map_err(ScenarioError::Conditions)?;
+            file.apply(&mut config)?;
         }
         // The simulated bicycle is assembled correctly.
         config.calibration.polarity_checked = true;
@@ -242,16 +240,13 @@ impl Scenario {
         };
         let plan = config.plan().map_err(|e| match key_of(&e) {
             Some(key) if given(key) => ScenarioError::value(key, e),
-            Some(_) => ScenarioError::Conditions(e.to_string()),
-            None if flashed && e.leaf.group.starts_with("estimate") => ScenarioError::Conditions(format!(
-                "{bicycle}: for the flashed code {e}, and capsize, predict and track need it; --assist ideal leaves the \
-                 flashed code out"
-            )),
-            None => ScenarioError::Conditions(e.to_string()),
+            None if flashed && e.leaf.group.starts_with("estimate") => {
+                ScenarioError::Flashed { bicycle: bicycle.into(), error: e }
+            }
+            _ => ScenarioError::Parameter(e),
         })?;
         if self.assist == AssistKind::Ideal && (limited || self.sensor_delay_s > 0.0) {
-            let reason = "limits and sensor delay act on --assist firmware only; the ideal law has none";
-            return Err(ScenarioError::Conditions(reason.into()));
+            return Err(ScenarioError::Ideal);
         }
         let ideal = self.assist == AssistKind::Ideal;
         if let Some(key) = self.parameters.keys().find(|key| ideal && !key.starts_with(IDEAL_PARAMETERS)) {
@@ -314,7 +309,7 @@ impl Scenario {
             all.rider.table = Some(Content::Given(Box::new(rider.table.clone())));
         }
         all.parameter_file = file.map(|file| Content::Given(Box::new(file)));
-        all.plant.include().map_err(ScenarioError::Conditions)?;
+        all.plant.include()?;
         Ok(all)
     }
 }

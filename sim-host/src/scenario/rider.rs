@@ -76,8 +76,10 @@ impl RiderChoice {
             Content::Given(table) => (**table).clone(),
         };
         let (fit, outside) = (self.gains.unwrap_or_default(), self.outside.unwrap_or_default());
-        let rider = table.rider(fit, outside, self.delay_s).map_err(|e| {
-            ScenarioError::Conditions(format!("rider `{}`, gains {}: {e}", table.name, fit.name()))
+        let rider = table.rider(fit, outside, self.delay_s).map_err(|error| ScenarioError::Fit {
+            table: table.name.clone(),
+            gains: fit.name(),
+            error,
         })?;
         Ok(Some(LoadedRider { rider, table, fit }))
     }

@@ -1,7 +1,7 @@
 //! The search of a scenario: speeds, disturbance and resolution of a basin.
 
 use super::error::ScenarioError;
-use super::speeds;
+use super::speeds::{self, SpeedsError};
 use crate::basin::{Axis, Search};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,7 +23,7 @@ impl Speeds {
     ///
     /// # Errors
     /// States the speed or range, and what is allowed.
-    pub fn list(&self) -> Result<Vec<f64>, String> {
+    pub fn list(&self) -> Result<Vec<f64>, SpeedsError> {
         match self {
             Self::Range(text) => speeds::parse(text),
             Self::List(speeds) => Ok(speeds.clone()),
@@ -70,7 +70,7 @@ impl SearchChoice {
             scan_step: self.scan_step,
             tolerance: self.tolerance,
         };
-        search.check().map_err(|e| ScenarioError::Conditions(e.to_string()))?;
+        search.check()?;
         Ok(search)
     }
 }

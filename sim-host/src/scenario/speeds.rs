@@ -1,20 +1,56 @@
 //! Parses ranges of speeds: `A:B:STEP` with B included, or a single value.
 
+/// Largest number of speeds of a range.
+const MOST: usize = 100_000;
+
+/// Largest speed \[m/s\].
+const FASTEST_M_S: f64 = 30.0;
+
+/// A text that is no range of speeds.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SpeedsError {
+    /// Not a number.
+    #[error("`{0}` is not a number; expected A:B:STEP in m/s, for example 0:10:0.1, or one speed")]
+    Number(String),
+    /// Another form.
+    #[error("expected A:B:STEP or one speed, not {0}")]
+    Form(String),
+    /// A falling range, or a step too small.
+    #[error("the range {0} must rise, in steps of at least 0.000001 m/s")]
+    Steps(String),
+    /// Too many speeds.
+    #[error("the range {range} has {count} speeds; at most {MOST}")]
+    Many {
+        /// The range.
+        range: String,
+        /// Number of its speeds.
+        count: f64,
+    },
+    /// A speed outside its range.
+    #[error("speed {speed_m_s} m/s is outside {least_m_s} to {FASTEST_M_S}")]
+    Range {
+        /// The speed \[m/s\].
+        speed_m_s: f64,
+        /// Smallest allowed speed \[m/s\].
+        least_m_s: f64,
+    },
+}
+
 /// The speeds in a text \[m/s\], at least 0.
-pub fn parse(text: &str) -> Result<Vec<f64>, String> {
+pub fn parse(text: &str) -> Result<Vec<f64>, SpeedsError> {
     within(text, 0.0)
 }
 
 /// The speeds in a text \[m/s\], including negative ones.
-pub fn parse_signed(text: &str) -> Result<Vec<f64>, String> {
-    within(text, -30.0)
+pub fn parse_signed(text: &str) -> Result<Vec<f64>, SpeedsError> {
+    within(text, -FASTEST_M_S)
 }
 
-fn within(text: &str, least: f64) -> Result<Vec<f64>, String> {
+fn within(text: &str, least: f64) -> Result<Vec<f64>, SpeedsError> {
     let number = |part: &str| {
-        part.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| {
-            format!("`{part}` is not a number; expected A:B:STEP in m/s, for example 0:10:0.1, or one speed")
-        })
+        let number = part.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+        number.ok_or_else(|| SpeedsError::Number(part.into()))
     };
     let parts: Vec<&str> = text.split(':').collect();
     let speeds = match parts[..] {
@@ -23,19 +59,19 @@ fn within(text: &str, least: f64) -> Result<Vec<f64>, String> {
         [from, to, step] => {
             let (from, to, step) = (number(from)?, number(to)?, number(step)?);
             if step < 1e-6 || to < from {
-                return Err(format!("the range {text} must rise, in steps of at least 0.000001 m/s"));
+                return Err(SpeedsError::Steps(text.into()));
             }
             let n = ((to - from) / step + 1e-9).floor();
-            if n > 1e5 {
-                return Err(format!("the range {text} has {n} speeds; at most 100000"));
+            if n > MOST as f64 {
+                return Err(SpeedsError::Many { range: text.into(), count: n });
             }
             // Rounded to a billionth, so that steps of 0.1 give 0.3 and not 0.30000000000000004.
             (0..=n as usize).map(|i| ((from + i as f64 * step) * 1e9).round() / 1e9 + 0.0).collect()
         }
-        _ => return Err(format!("expected A:B:STEP or one speed, not {text}")),
+        _ => return Err(SpeedsError::Form(text.into())),
     };
-    match speeds.iter().find(|v| !(least..=30.0).contains(*v)) {
-        Some(v) => Err(format!("speed {v} m/s is outside {least} to 30")),
+    match speeds.iter().find(|v| !(least..=FASTEST_M_S).contains(*v)) {
+        Some(v) => Err(SpeedsError::Range { speed_m_s: *v, least_m_s: least }),
         None => Ok(speeds),
     }
 }

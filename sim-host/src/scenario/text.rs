@@ -2,61 +2,72 @@
 
 use super::content::{Content, NONE, OrNone};
 use super::plant::{ActuatorChoice, PlantChoice, SensorChange, sensor_named};
+use super::text_error::TextError;
 use super::ticks::{LONGEST_S, LONGEST_SENSOR_S};
 use crate::range::time;
 use crate::ride::{FallCriterion, LaidFlat};
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error, StrDeserializer};
 
+/// An error about a text of another form.
+pub(super) fn form(text: &str, wrong: &'static str) -> TextError {
+    TextError::Form { text: text.into(), wrong }
+}
+
 /// A number.
-pub(super) fn number(text: &str) -> Result<f64, String> {
-    text.trim().parse().map_err(|_| format!("`{text}` is not a number"))
+pub(super) fn number(text: &str) -> Result<f64, TextError> {
+    text.trim().parse().map_err(|_| form(text, "not a number"))
 }
 
 /// A whole number.
-pub(super) fn whole<T: std::str::FromStr>(text: &str) -> Result<T, String> {
-    text.trim().parse().map_err(|_| format!("`{text}` is not a whole number in range"))
+pub(super) fn whole<T: std::str::FromStr>(text: &str) -> Result<T, TextError> {
+    text.trim().parse().map_err(|_| form(text, "not a whole number in range"))
 }
 
 /// A word among those of an enum.
-pub(super) fn word<'a, T: serde::Deserialize<'a>>(text: &'a str) -> Result<T, String> {
+pub(super) fn word<'a, T: serde::Deserialize<'a>>(text: &'a str) -> Result<T, TextError> {
     let deserializer: StrDeserializer<'a, Error> = text.into_deserializer();
-    T::deserialize(deserializer).map_err(|e| e.to_string())
+    Ok(T::deserialize(deserializer)?)
 }
 
 /// A number or none.
-pub(super) fn limit(text: &str) -> Result<OrNone<f64>, String> {
+pub(super) fn limit(text: &str) -> Result<OrNone<f64>, TextError> {
     match text {
         NONE => Ok(OrNone::Off),
-        _ => text.parse().map(OrNone::At).map_err(|_| format!("`{text}` is neither a number nor none")),
+        _ => text.parse().map(OrNone::At).map_err(|_| form(text, "neither a number nor none")),
     }
 }
 
 /// `ZERO:FULL` or none.
-pub(super) fn taper(text: &str) -> Result<OrNone<[f64; 2]>, String> {
+pub(super) fn taper(text: &str) -> Result<OrNone<[f64; 2]>, TextError> {
     if text == NONE {
         return Ok(OrNone::Off);
     }
     let speeds = text.split_once(':').and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
-    speeds.map(OrNone::At).ok_or_else(|| format!("`{text}` is neither ZERO:FULL in m/s nor none"))
+    speeds.map(OrNone::At).ok_or_else(|| form(text, "neither ZERO:FULL in m/s nor none"))
 }
 
 /// `KEY=VALUE`.
-pub(super) fn pair(text: &str) -> Result<(&str, &str), String> {
-    text.split_once('=').ok_or_else(|| "expected KEY=VALUE".into())
+pub(super) fn pair(text: &str) -> Result<(&str, &str), TextError> {
+    text.split_once('=').ok_or(TextError::Pair)
 }
 
 /// The pairs of `KEY=VALUE,...`.
-fn pairs(text: &str) -> impl Iterator<Item = Result<(&str, &str), String>> {
-    text.split(',').map(|pair| pair.split_once('=').ok_or_else(|| format!("`{pair}` is not KEY=VALUE")))
+fn pairs(text: &str) -> impl Iterator<Item = Result<(&str, &str), TextError>> {
+    text.split(',').map(|pair| pair.split_once('=').ok_or_else(|| form(pair, "not KEY=VALUE")))
 }
 
-fn keyed(key: &str, value: &str) -> Result<f64, String> {
-    value.trim().parse().map_err(|_| format!("{key}: `{value}` is not a number"))
+fn keyed(key: &str, value: &str) -> Result<f64, TextError> {
+    value.trim().parse().map_err(|_| TextError::Number { key: key.into(), value: value.into() })
+}
+
+/// An error about an unknown key.
+fn unknown(key: &str, place: &'static str, known: &'static str) -> TextError {
+    TextError::Key { key: key.into(), place, known }
 }
 
 /// Adds one `MODEL+...`, `NAME[.AXIS]:KEY=VALUE,...` or `imu:KEY=VALUE,...`; none removes all models.
-pub(super) fn sensor(plant: &mut PlantChoice, text: &str) -> Result<(), String> {
+pub(super) fn sensor(plant: &mut PlantChoice, text: &str) -> Result<(), TextError> {
     if text == NONE {
         plant.sensors.clear();
         return Ok(());
@@ -78,8 +89,8 @@ pub(super) fn sensor(plant: &mut PlantChoice, text: &str) -> Result<(), String> 
         let (key, value) = pair?;
         match key {
             "model" => change.model = Some(Content::Named(value.into())),
-            "delay" => change.delay_s = Some(time(value, LONGEST_SENSOR_S).map_err(|e| e.to_string())?),
-            "every" => change.every_s = Some(time(value, LONGEST_SENSOR_S).map_err(|e| e.to_string())?),
+            "delay" => change.delay_s = Some(time(value, LONGEST_SENSOR_S)?),
+            "every" => change.every_s = Some(time(value, LONGEST_SENSOR_S)?),
             "bias" => change.bias = Some(keyed(key, value)?),
             "scale" => change.scale = Some(keyed(key, value)?),
             "noise" => change.noise = Some(keyed(key, value)?),
@@ -87,8 +98,10 @@ pub(super) fn sensor(plant: &mut PlantChoice, text: &str) -> Result<(), String> 
             "range" => change.range = Some(keyed(key, value)?),
             "dropout" => change.dropout = Some(keyed(key, value)?),
             _ => {
-                return Err(format!(
-                    "unknown key `{key}`; expected model=NAME|FILE, delay=TIME, every=TIME, noise, bias, scale, quantum, range, dropout"
+                return Err(unknown(
+                    key,
+                    "",
+                    "model=NAME|FILE, delay=TIME, every=TIME, noise, bias, scale, quantum, range, dropout",
                 ));
             }
         }
@@ -97,7 +110,7 @@ pub(super) fn sensor(plant: &mut PlantChoice, text: &str) -> Result<(), String> 
     Ok(())
 }
 
-fn mount(plant: &mut PlantChoice, key: &str, value: &str) -> Result<(), String> {
+fn mount(plant: &mut PlantChoice, key: &str, value: &str) -> Result<(), TextError> {
     let [x, y, z] = &mut plant.imu.point_m;
     let [roll, pitch, yaw] = &mut plant.imu.turned_rad;
     let place = match key {
@@ -107,18 +120,14 @@ fn mount(plant: &mut PlantChoice, key: &str, value: &str) -> Result<(), String> 
         "roll" => roll,
         "pitch" => pitch,
         "yaw" => yaw,
-        _ => {
-            return Err(format!(
-                "unknown key `{key}` of the imu; expected x, y, z in m, roll, pitch, yaw in rad"
-            ));
-        }
+        _ => return Err(unknown(key, " of the imu", "x, y, z in m, roll, pitch, yaw in rad")),
     };
     *place = keyed(key, value)?;
     Ok(())
 }
 
 /// The actuator of `NAME|FILE|KEY=VALUE,...`.
-pub(super) fn actuator(text: &str) -> Result<ActuatorChoice, String> {
+pub(super) fn actuator(text: &str) -> Result<ActuatorChoice, TextError> {
     let (name, settings) = match text.split_once(',') {
         _ if text.split(',').next().is_some_and(|first| first.contains('=')) => (NONE, Some(text)),
         Some((name, settings)) => (name, Some(settings)),
@@ -130,11 +139,11 @@ pub(super) fn actuator(text: &str) -> Result<ActuatorChoice, String> {
         let (key, value) = pair?;
         let place = match key {
             "delay" => {
-                choice.delay_s = Some(time(value, LONGEST_S).map_err(|e| e.to_string())?);
+                choice.delay_s = Some(time(value, LONGEST_S)?);
                 continue;
             }
             "time-constant" => {
-                choice.time_constant_s = Some(time(value, 10.0).map_err(|e| e.to_string())?);
+                choice.time_constant_s = Some(time(value, 10.0)?);
                 continue;
             }
             "scale" => &mut choice.scale,
@@ -147,9 +156,11 @@ pub(super) fn actuator(text: &str) -> Result<ActuatorChoice, String> {
             "resistance" => &mut choice.resistance_ohm,
             "constant" => &mut choice.constant_nm_a,
             _ => {
-                return Err(format!(
-                    "unknown key `{key}`; expected delay=TIME, time-constant=TIME, scale, limit, viscous, coulomb, creep, \
-                     stop, voltage, resistance, constant"
+                return Err(unknown(
+                    key,
+                    "",
+                    "delay=TIME, time-constant=TIME, scale, limit, viscous, coulomb, creep, stop, voltage, resistance, \
+                     constant",
                 ));
             }
         };
@@ -162,7 +173,7 @@ pub(super) fn actuator(text: &str) -> Result<ActuatorChoice, String> {
 ///
 /// # Errors
 /// The error with key, value and range.
-pub(super) fn fall(text: &str) -> Result<FallCriterion, String> {
+pub(super) fn fall(text: &str) -> Result<FallCriterion, TextError> {
     let mut fall = FallCriterion::default();
     if text == "published" {
         return Ok(FallCriterion::PUBLISHED);
@@ -178,27 +189,22 @@ pub(super) fn fall(text: &str) -> Result<FallCriterion, String> {
                 let roll_rad = angle(value)?;
                 fall.flat = fall.flat.map(|flat| LaidFlat { roll_rad, ..flat });
             }
-            "lasting" => lasting_s = Some(time(value, 10.0).map_err(|e| e.to_string())?),
-            _ => {
-                return Err(format!(
-                    "unknown key `{key}`; expected roll, steer, flat=ANGLE, lasting=TIME, or published"
-                ));
-            }
+            "lasting" => lasting_s = Some(time(value, 10.0)?),
+            _ => return Err(unknown(key, "", "roll, steer, flat=ANGLE, lasting=TIME, or published")),
         }
     }
     match (lasting_s, &mut fall.flat) {
         (Some(lasting_s), Some(flat)) => flat.lasting_s = lasting_s,
-        (Some(_), None) => {
-            return Err("lasting needs flat=ANGLE; it cannot be combined with flat=none".into());
-        }
+        (Some(_), None) => return Err(TextError::Lasting),
         (None, _) => {}
     }
-    fall.check().map(|()| fall).map_err(|e| e.to_string())
+    fall.check()?;
+    Ok(fall)
 }
 
 /// An angle with its unit, as \[rad\].
-fn angle(text: &str) -> Result<f64, String> {
-    let wrong = || format!("`{text}` is not an angle; expected a number with its unit, as 80deg or 1.4rad");
+fn angle(text: &str) -> Result<f64, TextError> {
+    let wrong = || form(text, "not an angle; expected a number with its unit, as 80deg or 1.4rad");
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong);
     match text.strip_suffix("deg") {
         Some(degrees) => number(degrees).map(f64::to_radians),
@@ -233,7 +239,7 @@ mod tests {
             "lasting=1",
             "flat=none,lasting=1s",
         ] {
-            assert!(fall(text).is_err_and(|error| !error.is_empty()), "{text}");
+            assert!(fall(text).is_err_and(|error| !error.to_string().is_empty()), "{text}");
         }
     }
 }

@@ -3,10 +3,9 @@
 use super::rider::{DELAY, GAINS, GAINS_OUTSIDE, RIDER};
 use super::{PLAIN, Setting};
 use crate::parameters::Value;
-use crate::plant::FaultTextError;
 use crate::range::time;
 use crate::scenario::content::{Content, NONE};
-use crate::scenario::text;
+use crate::scenario::{TextError, text};
 
 /// Bicycle, rider, law, limits, plant and fall: what a ride needs besides its disturbance.
 pub const CONDITIONS: &[Setting] = &[
@@ -124,7 +123,7 @@ pub const CONDITIONS: &[Setting] = &[
         help: "Delay of the simulated sensors, for example 20ms; a whole number of control periods",
         default: Some("0ms"),
         set: |s, text| {
-            s.sensor_delay_s = time(text, 3600.0).map_err(|e| e.to_string())?;
+            s.sensor_delay_s = time(text, 3600.0)?;
             Ok(())
         },
         ..PLAIN
@@ -162,7 +161,7 @@ pub const CONDITIONS: &[Setting] = &[
         set: |s, text| {
             match text {
                 NONE => s.plant.faults.clear(),
-                _ => s.plant.faults.push(text.parse().map_err(|e: FaultTextError| e.to_string())?),
+                _ => s.plant.faults.push(text.parse()?),
             }
             Ok(())
         },
@@ -178,8 +177,7 @@ pub const CONDITIONS: &[Setting] = &[
         set: |s, text| {
             // TOML has no larger whole numbers.
             let seed = text::whole(text).ok().filter(|seed| *seed <= i64::MAX as u64);
-            s.plant.seed =
-                seed.ok_or_else(|| format!("`{text}` is not a whole number from 0 to {}", i64::MAX))?;
+            s.plant.seed = seed.ok_or_else(|| TextError::Seed(text.into()))?;
             Ok(())
         },
         ..PLAIN

@@ -9,7 +9,7 @@ pub use rider::RIDERS;
 pub(super) use start::DRAWS;
 pub use start::{PLANE, SEARCH, START, UNCERTAIN};
 
-use super::Scenario;
+use super::{Scenario, TextError};
 
 /// A setting: how it is named and described, and how its text changes a scenario.
 #[derive(Debug)]
@@ -35,7 +35,7 @@ pub struct Setting {
     /// Whether a wrong value is bad input, not wrong usage: values with a grammar of their own.
     pub grammar: bool,
     /// Changes a scenario; an error states the text and what is expected.
-    pub set: fn(&mut Scenario, &str) -> Result<(), String>,
+    pub set: fn(&mut Scenario, &str) -> Result<(), TextError>,
 }
 
 /// A setting with the most usual properties.

@@ -48,7 +48,7 @@ pub(super) const DELAY: Setting = Setting {
     value: "TIME",
     help: "The rider's neural delay, 0 to 1 s, for example 60ms [default: the table's own]",
     set: |s, text| {
-        s.rider.delay_s = Some(time(text, MAX_DELAY_S).map_err(|e| e.to_string())?);
+        s.rider.delay_s = Some(time(text, MAX_DELAY_S)?);
         Ok(())
     },
     ..PLAIN

@@ -3,7 +3,7 @@
 use super::{PLAIN, Setting};
 use crate::ride::Start;
 use crate::scenario::search::Speeds;
-use crate::scenario::{Scenario, speeds, text};
+use crate::scenario::{Scenario, TextError, speeds, text};
 
 /// The search of a basin.
 pub const SEARCH: &[Setting] = &[
@@ -79,8 +79,7 @@ pub const UNCERTAIN: Setting = Setting {
     help: "Also compute the basins of N bicycles drawn from the uncertainties of the bicycle's parameters, 2 to 10000, as a band from the 5 % to the 95 % quantile of their heights; --seed changes the draws",
     set: |s, text| {
         let count = text::whole(text).ok().filter(|count| DRAWS.contains(count));
-        let wrong = || format!("{text} is not in {}..={}", DRAWS.start(), DRAWS.end());
-        s.uncertain = Some(count.ok_or_else(wrong)?);
+        s.uncertain = Some(count.ok_or_else(|| TextError::Draws(text.into()))?);
         Ok(())
     },
     ..PLAIN
