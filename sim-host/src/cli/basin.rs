@@ -1,9 +1,12 @@
 //! `sim-host basin`: searches the basin of attraction over forward speed.
 
-use super::conditions::{Setup, named, printed, setup};
+use super::conditions::{Setup, printed, setup};
 use super::options::{Basin as BasinOptions, Chosen, UncertainBasin};
 use super::outputs::{OutputArgs, Outputs, Results, complain};
+use super::progress::progress;
 use super::ride::laid_flat;
+use super::scenario_error::named;
+use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Basin, Column, Drawn, Search, Work, basin, drawn};
 use crate::bicycle::linear::Linear;
@@ -14,7 +17,6 @@ use crate::report::resolved::ResolvedSearch;
 use crate::report::{table, terminal};
 use crate::ride::{FallCause, FallCriterion, Outcome};
 use control::Law;
-use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::fmt::Write;
 use std::time::Instant;
@@ -62,20 +64,6 @@ enum Command {
     Compare(super::compare::Args),
     /// The basin at one speed over steer rate and roll rate together
     Plane(Box<super::plane::Args>),
-}
-
-#[derive(clap::Args)]
-pub(super) struct ThreadArgs {
-    /// Threads; the result does not depend on them [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-}
-
-impl ThreadArgs {
-    /// A pool of the requested threads.
-    pub(super) fn pool(&self) -> Result<rayon::ThreadPool, rayon::ThreadPoolBuildError> {
-        rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0).into()).build()
-    }
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
@@ -209,16 +197,6 @@ fn spread(document: &BasinDocument) -> String {
     };
     let area = if document.speeds.len() > 1 { line("area", drawn.area, "rad m/s^2") } else { String::new() };
     area + &line("mean height", drawn.mean_height, "rad/s")
-}
-
-/// A progress bar with the remaining time, on standard error if it is a terminal.
-pub(super) fn progress(shown: bool, command: &str, count: usize, what: &str) -> ProgressBar {
-    if !shown {
-        return ProgressBar::hidden();
-    }
-    let template = format!("{command} {{bar:40}} {{pos}}/{{len}} {what}, {{elapsed}} gone, {{eta}} left");
-    let style = ProgressStyle::with_template(&template);
-    ProgressBar::new(count as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
 /// The result as text.

@@ -1,7 +1,8 @@
 //! The cells of a sweep: a scenario, changed by the common options and by one value of every axis.
 
-use super::conditions::{named, setup};
+use super::conditions::setup;
 use super::options::Given;
+use super::scenario_error::named;
 use crate::basin::Search;
 use crate::scenario::setting::{CONDITIONS, Setting};
 use crate::scenario::{RiderChoice, Scenario, Speeds};

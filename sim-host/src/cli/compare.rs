@@ -1,9 +1,11 @@
 //! `sim-host basin compare`: compares basins of several cases.
 
-use super::basin::{ThreadArgs, progress};
-use super::conditions::{Setup, named as named_option, setup};
+use super::conditions::{Setup, setup};
 use super::options::{self, Options, Search as SearchOptions};
 use super::outputs::{OutputArgs, Results, complain};
+use super::progress::progress;
+use super::scenario_error::named as named_option;
+use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Basin, Bound, Column, Work, basin};
 use crate::bicycle::linear::Linear;

@@ -2,12 +2,13 @@
 
 use super::options::{Chosen, Settings};
 use super::outputs::{complain_once, print};
+use super::scenario_error::of_file;
 use super::{Ended, Failure, warn};
 use crate::bicycle::Parameters;
 use crate::bicycle::uncertain::Measured;
 use crate::report::resolved::ResolvedConfig;
 use crate::ride::Conditions;
-use crate::scenario::{Resolved, Scenario, ScenarioError, setting};
+use crate::scenario::{Resolved, Scenario};
 
 /// What a command needs of its scenario.
 pub(super) struct Setup {
@@ -28,26 +29,6 @@ pub(super) fn setup(scenario: &Scenario) -> Result<Setup, Failure> {
     let config = ResolvedConfig::new(&resolved);
     let Resolved { conditions, bicycle, scenario, .. } = resolved;
     Ok(Setup { conditions, config, parameters: bicycle.parameters, measured: bicycle.measured, scenario })
-}
-
-/// An error of a scenario, with its file.
-fn of_file(scenario: &Scenario, error: &ScenarioError) -> String {
-    match &scenario.file {
-        Some(path) => format!("scenario {}: {}", path.display(), named(error)),
-        None => named(error),
-    }
-}
-
-/// An error of a scenario, with the option that sets its key.
-pub(super) fn named(error: &ScenarioError) -> String {
-    match error {
-        ScenarioError::Value { key, reason } => match setting::of_key(key) {
-            Some(setting) if setting.grammar => format!("--{} {reason}", setting.name),
-            Some(setting) => format!("--{}: {reason}", setting.name),
-            None => error.to_string(),
-        },
-        _ => error.to_string(),
-    }
 }
 
 /// Prints the scenario, if that is requested.

@@ -1,8 +1,8 @@
 //! `sim-host design`: optimises a gain schedule and evaluates it.
 
-use super::basin::ThreadArgs;
 use super::options::{Fall, Options};
 use super::outputs::{OutputArgs, Results, complain};
+use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Axis, Search};
 use crate::design::document::{Design, DesignDocument, figure, law_file};

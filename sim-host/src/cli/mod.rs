@@ -26,14 +26,18 @@ mod pil;
 mod pil_basin;
 mod plane;
 mod port_args;
+mod progress;
 mod replay;
 mod ride;
 mod rider;
+mod scenario_error;
 mod schema;
 mod study;
+mod study_args;
 mod study_swept;
 mod sweep;
 mod thesis;
+mod threads;
 mod weave_args;
 
 use clap::{Parser, Subcommand};
@@ -96,7 +100,7 @@ enum Command {
     /// A gain schedule with the largest worst-case basin, evaluated beside the known laws.
     Design(design::Args),
     /// A study: a computed answer to a question, as a page with figures.
-    Study(study::Args),
+    Study(study_args::Args),
     /// The built-in studies with their questions.
     #[command(after_help = "Example:\n  sim-host studies")]
     Studies,

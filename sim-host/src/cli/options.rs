@@ -1,8 +1,8 @@
 //! Options of the command line from the settings of a scenario, and the scenario that the given options mean.
 
 use super::Failure;
-use super::conditions::named;
 use super::outputs::complain_once;
+use super::scenario_error::named;
 use crate::ride::FallCriterion;
 use crate::scenario::setting::{
     BICYCLES, CONDITIONS, FALL, PLANE, RIDERS, SEARCH, START, Setting, UNCERTAIN,

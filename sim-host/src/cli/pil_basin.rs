@@ -1,8 +1,10 @@
 //! `sim-host pil basin`: a basin with the control step of every ride on a board in QEMU.
 
-use super::basin::{BasinArgs, Computed, progress, write};
+use super::basin::{BasinArgs, Computed, write};
 use super::board_args::BoardArgs;
-use super::conditions::{named, printed, setup};
+use super::conditions::{printed, setup};
+use super::progress::progress;
+use super::scenario_error::named;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Search, basin, basin_by};
 use crate::pil::compare::same_basin;

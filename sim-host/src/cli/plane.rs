@@ -1,10 +1,11 @@
 //! `sim-host basin plane`: a basin over steer rate and roll rate at one speed.
 
-use super::basin::{ThreadArgs, progress};
 use super::conditions::{printed, setup};
 use super::options::{Chosen, Plane as PlaneOptions};
 use super::outputs::{OutputArgs, Results, complain};
+use super::progress::progress;
 use super::ride::laid_flat;
+use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Plane, plane};
 use crate::report::figure::{self, PlaneFigure};

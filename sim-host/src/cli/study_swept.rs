@@ -1,10 +1,10 @@
 //! `sim-host study` for studies that are defined as sweeps in a TOML file.
 
-use super::basin::progress;
 use super::cells::{Resolved, resolve};
 use super::options::{Cells, Given, Options, Search, usage_error};
 use super::outputs::complain;
-use super::study::{Args, made, page_path, print_path};
+use super::progress::progress;
+use super::study_args::{Args, made, page_path, print_path};
 use super::sweep::{finish, to_do};
 use super::{Ended, Failure, interrupt};
 use crate::report::output::Output;

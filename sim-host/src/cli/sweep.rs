@@ -1,9 +1,10 @@
 //! `sim-host sweep`: basins over a grid of conditions, from options to a folder of results.
 
-use super::basin::{ThreadArgs, progress};
 use super::cells::{Resolved, resolve};
 use super::options::{Cells, Options, ScenarioFile, Search};
 use super::outputs::{complain, print, write_json};
+use super::progress::progress;
+use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Bound, border};
 use crate::report::output::Output;

@@ -1,0 +1,13 @@
+//! The progress bar of long computations.
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A progress bar with the remaining time, on standard error if it is a terminal.
+pub(super) fn progress(shown: bool, command: &str, count: usize, what: &str) -> ProgressBar {
+    if !shown {
+        return ProgressBar::hidden();
+    }
+    let template = format!("{command} {{bar:40}} {{pos}}/{{len}} {what}, {{elapsed}} gone, {{eta}} left");
+    let style = ProgressStyle::with_template(&template);
+    ProgressBar::new(count as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
