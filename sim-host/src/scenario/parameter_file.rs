@@ -42,7 +42,7 @@ pub enum ParameterFileError {
         /// The file.
         path: String,
         /// The error.
-        error: ParameterTextError,
+        error: Box<ParameterTextError>,
     },
 }
 
@@ -112,6 +112,13 @@ pub enum ParameterTextError {
     },
 }
 
+impl ParameterTextError {
+    /// The error, of the file `path`.
+    fn of(self, path: &str) -> ParameterFileError {
+        ParameterFileError::Content { path: path.into(), error: Box::new(self) }
+    }
+}
+
 /// Content of a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -162,7 +169,7 @@ impl ParameterFile {
     /// # Errors
     /// States file and key, and what is allowed or damaged.
     pub fn of_text(path: &str, text: &str) -> Result<Self, ParameterFileError> {
-        Self::parse(path, text).map_err(|error| ParameterFileError::Content { path: path.into(), error })
+        Self::parse(path, text).map_err(|error| error.of(path))
     }
 
     fn parse(path: &str, text: &str) -> Result<Self, ParameterTextError> {
@@ -219,7 +226,7 @@ impl ParameterFile {
     /// # Errors
     /// An unknown parameter, or a value that it cannot have.
     pub fn apply(&self, config: &mut Config) -> Result<(), ParameterFileError> {
-        self.set(config).map_err(|error| ParameterFileError::Content { path: self.path.clone(), error })
+        self.set(config).map_err(|error| error.of(&self.path))
     }
 
     fn set(&self, config: &mut Config) -> Result<(), ParameterTextError> {

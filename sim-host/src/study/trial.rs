@@ -26,7 +26,7 @@ pub enum TrialError {
         /// The trial's label.
         label: String,
         /// The error.
-        error: ScenarioError,
+        error: Box<ScenarioError>,
     },
     /// A value of the search is outside its range.
     #[error(transparent)]
@@ -68,7 +68,7 @@ impl Trial {
     pub fn conditions(&self, law: &Law) -> Result<Conditions, TrialError> {
         let law = Some(law::content("table", law));
         let resolved = Scenario { law, ..self.scenario.clone() }.resolve();
-        let wrong = |error| TrialError::Conditions { label: self.label.clone(), error };
+        let wrong = |error| TrialError::Conditions { label: self.label.clone(), error: Box::new(error) };
         resolved.map(|resolved| resolved.conditions).map_err(wrong)
     }
 }
