@@ -90,7 +90,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             .into());
         }
     };
-    let search = scenario.search.resolve(scenario.is_ridden()).map_err(|e| named(&e))?;
+    let search = scenario.search.resolve(scenario.is_ridden()).map_err(|e| named(&scenario, &e))?;
     let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = args.threads.pool()?;

@@ -99,7 +99,7 @@ pub(super) fn resolve(
         let setup = setup(&scenario).map_err(|e| of_cell(&e))?;
         setups.push((serde_json::to_value(&setup.config)?, setup.scenario, setup.conditions));
     }
-    let search = base.search.resolve(ridden).map_err(|e| named(&e))?;
+    let search = base.search.resolve(ridden).map_err(|e| named(base, &e))?;
     // Without riders in a cell its own default would be other speeds.
     let speeds = base.search.speeds.clone().unwrap_or_else(|| Speeds::List(search.speeds.clone()));
     let configs: Vec<_> = setups.iter().map(|(config, ..)| config.clone()).collect();

@@ -76,7 +76,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     let mut scenario = Scenario { search: common_search(&requested)?, ..Scenario::default() };
     args.search.apply(&mut scenario)?;
-    let search = scenario.search.resolve(ridden).map_err(|e| named_option(&e))?;
+    let search = scenario.search.resolve(ridden).map_err(|e| named_option(&scenario, &e))?;
     let own_search = SearchChoice { speeds: Some(Speeds::List(search.speeds.clone())), ..scenario.search };
     let resolved = ResolvedSearch::new(&search);
     for (i, one) in requested.iter().enumerate() {

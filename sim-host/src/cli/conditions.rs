@@ -2,7 +2,7 @@
 
 use super::options::{Chosen, Settings};
 use super::outputs::{complain_once, print};
-use super::scenario_error::of_file;
+use super::scenario_error::named;
 use super::{Ended, Failure, warn};
 use crate::bicycle::Parameters;
 use crate::bicycle::uncertain::Measured;
@@ -22,7 +22,7 @@ pub(super) struct Setup {
 
 /// Loads and checks all conditions of a scenario.
 pub(super) fn setup(scenario: &Scenario) -> Result<Setup, Failure> {
-    let resolved = scenario.resolve().map_err(|e| of_file(scenario, &e))?;
+    let resolved = scenario.resolve().map_err(|e| named(scenario, &e))?;
     warn(&resolved.bicycle);
     resolved.notes.iter().for_each(|note| complain_once(&format!("note: {note}")));
     resolved.warnings.iter().for_each(|warning| complain_once(&format!("warning: {warning}")));
@@ -39,7 +39,7 @@ pub(super) fn printed<S: Settings>(
     if !chosen.print_scenario {
         return Ok(None);
     }
-    scenario.resolve().map_err(|e| of_file(scenario, &e))?;
+    scenario.resolve().map_err(|e| named(scenario, &e))?;
     print(&scenario.to_toml()?)?;
     Ok(Some(Ended::Done))
 }

@@ -92,6 +92,7 @@ impl Given {
     /// # Errors
     /// The option with its text, and what is expected.
     pub(super) fn apply(&self, scenario: &mut Scenario) -> Result<(), String> {
+        scenario.options.insert(self.setting.key);
         (self.setting.set)(scenario, &self.text)
             .map_err(|e| format!("--{} {}: {e}", self.setting.name, self.text))
     }
@@ -199,7 +200,7 @@ impl Options<Bicycle> {
     pub(super) fn bicycle(&self) -> Result<crate::bicycle::catalogue::Bicycle, Failure> {
         let mut scenario = Scenario::default();
         self.apply(&mut scenario)?;
-        Ok(scenario.bicycle().map_err(|e| named(&e))?)
+        Ok(scenario.bicycle().map_err(|e| named(&scenario, &e))?)
     }
 }
 
@@ -223,7 +224,7 @@ impl Options<Rider> {
     pub(super) fn rider(&self) -> Result<Option<LoadedRider>, Failure> {
         let mut scenario = Scenario::default();
         self.apply(&mut scenario)?;
-        Ok(scenario.rider.load().map_err(|e| named(&e))?)
+        Ok(scenario.rider.load().map_err(|e| named(&scenario, &e))?)
     }
 }
 

@@ -37,7 +37,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         return Ok(ended);
     }
     let setup = setup(&scenario)?;
-    let searched = scenario.search.resolve(scenario.is_ridden()).map_err(|e| named(&e))?;
+    let searched = scenario.search.resolve(scenario.is_ridden()).map_err(|e| named(&scenario, &e))?;
     let start_board = args.board.starter(&setup)?;
     let outputs = outputs.open(None)?;
     // One board is started first, to detect errors early; each thread has its own.

@@ -43,7 +43,7 @@ use crate::ride::{Imu, ScheduleSpeed, Start};
 use content::{NameOr, name_or_table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 /// Source of the defaults of law, limits and parameters.
@@ -161,6 +161,9 @@ pub struct Scenario {
     /// File that the scenario was read from, for messages.
     #[serde(skip)]
     pub file: Option<PathBuf>,
+    /// Keys that options changed, for messages.
+    #[serde(skip)]
+    pub options: BTreeSet<&'static str>,
 }
 
 impl Default for Scenario {
@@ -189,6 +192,7 @@ impl Default for Scenario {
             plane: None,
             uncertain: None,
             file: None,
+            options: BTreeSet::new(),
         }
     }
 }

@@ -103,15 +103,15 @@ impl Scenario {
     fn check_uses(&self) -> Result<(), ScenarioError> {
         if let Some(start) = &self.start {
             let given = |key: &str, value: f64, most: f64| {
-                within(key, value, -most, most).map_err(|e| ScenarioError::value(key, e))
+                within(key, value, -most, most).map_err(|e| ScenarioError::value(&format!("start.{key}"), e))
             };
             if start.speed_m_s.is_nan() {
                 let reason = format!("must be given, from -{FASTEST_M_S} to {FASTEST_M_S} m/s, not NaN");
                 return Err(ScenarioError::value("start.speed_m_s", reason));
             }
-            given("start.speed_m_s", start.speed_m_s, FASTEST_M_S)?;
-            given("start.steer_rate_rad_s", start.steer_rate_rad_s, 100.0)?;
-            given("start.roll_rate_rad_s", start.roll_rate_rad_s, 100.0)?;
+            given("speed_m_s", start.speed_m_s, FASTEST_M_S)?;
+            given("steer_rate_rad_s", start.steer_rate_rad_s, 100.0)?;
+            given("roll_rate_rad_s", start.roll_rate_rad_s, 100.0)?;
         }
         self.search.resolve(self.is_ridden())?;
         if let Some(plane) = &self.plane {

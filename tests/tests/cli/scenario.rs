@@ -90,7 +90,7 @@ fn a_basin_is_reproduced_from_its_result() {
 
 /// Situation: a scenario with one thing wrong each.
 /// Action: ride it.
-/// Must hold: rejected with the file or option, the key, the value and what is expected.
+/// Must hold: rejected with the file, the key, the value and what is expected.
 #[test]
 fn a_wrong_scenario_is_rejected_with_its_key() {
     let bench = Bench::new(PROGRAM);
@@ -102,30 +102,39 @@ fn a_wrong_scenario_is_rejected_with_its_key() {
         ("time_limit_s = 'x'", &["wrong.toml", "line 1", "\"x\""]),
         ("time_limit_s = 0", &["time limit", "= 0 ", "3600"]),
         ("torque_limit_nm = 'off'", &["wrong.toml", "line 1", "off", "none"]),
-        ("torque_limit_nm = -1", &["--torque-limit", "-1", "max_torque_nm"]),
+        ("torque_limit_nm = -1", &["wrong.toml: torque_limit_nm: ", "-1", "max_torque_nm"]),
         ("taper_m_s = [1]", &["wrong.toml", "line 1", "length"]),
-        ("sensor_delay_s = 0.0025", &["--sensor-delay", "2.5 ms", "whole number"]),
-        ("sensor_delay_s = -1", &["--sensor-delay", "-1000 ms", "0 to 1000"]),
+        ("sensor_delay_s = 0.0025", &["wrong.toml: sensor_delay_s: ", "2.5 ms", "whole number"]),
+        ("sensor_delay_s = -1", &["wrong.toml: sensor_delay_s: ", "-1000 ms", "0 to 1000"]),
         ("bicycle = 'bike'", &["unknown bicycle `bike`", "rigid_jason"]),
         ("bicycle = 1", &["wrong.toml", "line 1", "a name, a file"]),
-        ("bicycle_set = { lam = 7 }", &["--bicycle-set", "`lam` = 7", "1.4"]),
-        ("rider = { gains = 'best' }", &["--rider", "table"]),
+        ("bicycle_set = { lam = 7 }", &["wrong.toml: bicycle_set: ", "`lam` = 7", "1.4"]),
+        ("rider = { gains = 'best' }", &["wrong.toml: rider.table: ", "gains"]),
         ("rider = { table = 'young', gains = 'fit' }", &["line 1", "fit", "regression"]),
-        ("rider = { table = 'young', delay_s = 2 }", &["--delay", "= 2 ", "0 to 1"]),
+        ("rider = { table = 'young', delay_s = 2 }", &["wrong.toml: rider.delay_s: ", "= 2 ", "0 to 1"]),
         ("plant = { faults = ['gyro:melt'] }", &["line 1", "gyro:melt"]),
-        ("plant = { sensors = [{ sensor = 'nose', noise = 1 }] }", &["--sensor", "`nose`", "gyro"]),
-        ("plant = { sensors = [{ noise = 1 }] }", &["--sensor", "`sensor`", "`model`"]),
-        ("plant = { actuator = { voltage_v = 24 } }", &["--actuator", "given together"]),
-        ("parameters = { 'limits.nope' = 1 }", &["--set", "limits.nope"]),
-        ("parameters = { 'limits.rise_nm_s' = -1 }", &["--set", "limits.rise_nm_s=-1", "outside"]),
+        (
+            "plant = { sensors = [{ sensor = 'nose', noise = 1 }] }",
+            &["wrong.toml: plant.sensors: ", "`nose`", "gyro"],
+        ),
+        ("plant = { sensors = [{ noise = 1 }] }", &["wrong.toml: plant.sensors: ", "`sensor`", "`model`"]),
+        ("plant = { actuator = { voltage_v = 24 } }", &["wrong.toml: plant.actuator: ", "given together"]),
+        ("parameters = { 'limits.nope' = 1 }", &["wrong.toml: parameters: ", "limits.nope"]),
+        (
+            "parameters = { 'limits.rise_nm_s' = -1 }",
+            &["wrong.toml: parameters: ", "limits.rise_nm_s=-1", "outside"],
+        ),
         ("fall = { roll_rad = 2 }", &["fall: roll", "90"]),
         ("search = { speeds = [6, 4] }", &["must rise", "4 m/s comes after 6"]),
         ("plant = { seed = -1 }", &["wrong.toml", "line 1", "a whole number from 0"]),
-        ("uncertain = 1", &["--uncertain", "1 is outside 2 to 10000"]),
+        ("uncertain = 1", &["wrong.toml: uncertain: ", "1 is outside 2 to 10000"]),
         ("law = { name = 'h', speed_m_s = [0], gain_nm_s_rad = [1] }", &["`h`", "built-in"]),
-        ("plant = { sensors = [{ sensor = 'gyro' }] }", &["--sensor gyro", "needs a value"]),
+        (
+            "plant = { sensors = [{ sensor = 'gyro' }] }",
+            &["wrong.toml: plant.sensors: gyro: ", "needs a value"],
+        ),
         ("assist = 'ideal'\nparameters = { 'predict.lead_s' = 0.05 }", &["predict.lead_s", "firmware only"]),
-        ("plane = { rays = 4 }", &["--speed", "must be given"]),
+        ("plane = { rays = 4 }", &["wrong.toml: plane.speed: ", "must be given"]),
         ("plane = { speed = 40 }", &["speed (m/s) = 40", "0 to 30"]),
         ("torque_limit_nm = [1]", &["line 1", "a number"]),
     ] {
@@ -142,7 +151,30 @@ fn a_wrong_scenario_is_rejected_with_its_key() {
     bench.write("moved.json", json!({"start": {"speed_m_s": 4}, "bicycle": inline(0.3)}).to_string());
     assert_eq!(bench.run("ride --scenario moved.json").code, Some(0));
     bench.write("moved.json", json!({"start": {"speed_m_s": 4}, "bicycle": inline(7.0)}).to_string());
-    bench.run("ride --scenario moved.json").rejected_naming(&["--bicycle", "`lam` = 7"]);
+    bench.run("ride --scenario moved.json").rejected_naming(&["moved.json: bicycle: ", "`lam` = 7"]);
+}
+
+/// Situation: a right scenario, and one with a wrong delay and a wrong sensor.
+/// Action: ride them with options that are wrong in themselves, or right.
+/// Must hold: a wrong option is named without the file; a wrong value of the file by its key, also beside a right option;
+/// of a list that file and options fill, both are named.
+#[test]
+fn a_wrong_option_beside_a_scenario_is_named_as_the_option() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("right.toml", "sensor_delay_s = 0.002\n[start]\nspeed_m_s = 4\n");
+    bench.write("late.toml", "sensor_delay_s = 0.0025\n[start]\nspeed_m_s = 4\n");
+    bench.write("nose.toml", "[start]\nspeed_m_s = 4\n[plant]\nsensors = [{ sensor = 'nose', noise = 1 }]\n");
+    for (options, expected) in [
+        ("--scenario right.toml --sensor-delay 2.5ms", "error: --sensor-delay: 2.5 ms is not"),
+        ("--scenario right.toml --steer-rate 200", "error: --steer-rate: steer_rate_rad_s = 200 is outside"),
+        ("--scenario late.toml --torque-limit 7", "error: scenario late.toml: sensor_delay_s: 2.5 ms is not"),
+        ("--scenario nose.toml --sensor gyro:noise=1", "error: scenario nose.toml: --sensor unknown sensor"),
+        ("--speed 4 --sensor-delay 2.5ms", "error: --sensor-delay: 2.5 ms is not"),
+    ] {
+        let run = bench.run(&format!("ride {options}"));
+        assert_eq!(run.code, Some(1), "{options}");
+        assert!(run.stderr.starts_with(expected), "{options}: {}", run.stderr);
+    }
 }
 
 /// Situation: a scenario with a limit as a parameter, a fault, a noisy gyro and a rider with its own delay.
