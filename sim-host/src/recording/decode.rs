@@ -1,6 +1,6 @@
 //! Decodes CAN frames to columns: one group per message, one column per signal.
 
-use super::dbc::Database;
+use super::database::Database;
 use super::frames::{Frames, Id};
 use super::{Column, Group, Remark};
 use std::collections::{BTreeMap, HashMap};

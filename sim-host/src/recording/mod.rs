@@ -6,6 +6,8 @@ pub mod asc;
 pub mod bits;
 pub mod candump;
 mod columns;
+pub mod database;
+#[cfg(feature = "dbc")]
 pub mod dbc;
 pub mod decode;
 pub mod frames;

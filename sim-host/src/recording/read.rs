@@ -1,6 +1,6 @@
 //! Reads a file of any of the formats, and decodes its CAN frames.
 
-use super::dbc::Database;
+use super::database::Database;
 use super::frames::Frames;
 use super::{Recording, Remark, asc, candump, decode, mdf, table};
 use std::path::{Path, PathBuf};
@@ -121,7 +121,17 @@ fn with_frames(
 /// Reads a database.
 fn database(path: &Path) -> Result<Database, RecordingError> {
     let bytes = std::fs::read(path).map_err(|error| RecordingError::Read { path: path.to_owned(), error })?;
-    Database::parse(&bytes).map_err(|remark| RecordingError::Content { path: path.to_owned(), remark })
+    parsed(&bytes).map_err(|remark| RecordingError::Content { path: path.to_owned(), remark })
+}
+
+#[cfg(feature = "dbc")]
+fn parsed(bytes: &[u8]) -> Result<Database, Remark> {
+    Database::parse(bytes)
+}
+
+#[cfg(not(feature = "dbc"))]
+fn parsed(_: &[u8]) -> Result<Database, Remark> {
+    Err(Remark::of_file("this build reads no CAN database: build sim-host with `--features full`".to_owned()))
 }
 
 /// The bytes of a file, decompressed if necessary.

@@ -1,11 +1,11 @@
 //! The items of the thesis that are reproduced, in its order.
 
+#[cfg(feature = "solvers")]
+use super::app_d;
 use super::case::Case;
 use super::item::Item;
 use super::study::Study;
-use super::{
-    app_c, app_d, app_h, app_i, app_j, app_k, ch2, ch3_assist, ch3_laws, ch3_riders, fits, sensitivity,
-};
+use super::{app_c, app_h, app_i, app_j, app_k, ch2, ch3_assist, ch3_laws, ch3_riders, fits, sensitivity};
 
 /// An item of the thesis.
 #[derive(Debug)]
@@ -82,6 +82,9 @@ const fn basins(
     Entry { name, title, made: Made::Computed { needs: "basins", cases, compute, work: 2 } }
 }
 
+#[cfg(not(feature = "solvers"))]
+const SOLVERS: Made = Made::Unavailable("needs adaptive solvers: build sim-host with `--features full`");
+
 const MEASURED: Made =
     Made::Unavailable("needs the measured roll rates of the experiments, which are not published");
 
@@ -117,9 +120,18 @@ pub const CATALOGUE: &[Entry] = &[
     rides("figure-C.1", "Eigenvalues fitted to the roll rate", app_c::figure_c_1, 8),
     rides("figure-C.2", "Eigenvalues fitted to the steer rate", app_c::figure_c_2, 8),
     rides("figure-C.3", "Eigenvalues fitted within bounds, and by matrix pencil", app_c::figure_c_3, 12),
+    #[cfg(feature = "solvers")]
     rides("figure-D.1", "The rides of the convergence study", app_d::figure_d_1, 2),
+    #[cfg(not(feature = "solvers"))]
+    Entry { name: "figure-D.1", title: "The rides of the convergence study", made: SOLVERS },
+    #[cfg(feature = "solvers")]
     rides("figure-D.2", "Errors of fixed steps", app_d::figure_d_2, 40),
+    #[cfg(not(feature = "solvers"))]
+    Entry { name: "figure-D.2", title: "Errors of fixed steps", made: SOLVERS },
+    #[cfg(feature = "solvers")]
     rides("figure-D.3", "Errors of adaptive solvers", app_d::figure_d_3, 20),
+    #[cfg(not(feature = "solvers"))]
+    Entry { name: "figure-D.3", title: "Errors of adaptive solvers", made: SOLVERS },
     gains("table-F.1", "Fit of the young cyclist's gains", fits::table_f_1),
     gains("equation-F.2", "Regression of the young cyclist's gains", fits::equation_f_2),
     gains("table-G.2", "Fit of the smart cyclist's gains", fits::table_g_2),

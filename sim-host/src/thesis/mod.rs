@@ -2,6 +2,7 @@
 //! published number beside the computed one.
 
 pub mod app_c;
+#[cfg(feature = "solvers")]
 pub mod app_d;
 mod app_h;
 mod app_i;
@@ -28,6 +29,7 @@ pub mod nelder_mead;
 pub mod published;
 pub mod run;
 mod sensitivity;
+#[cfg(feature = "solvers")]
 pub mod solvers;
 pub mod study;
 pub mod write;

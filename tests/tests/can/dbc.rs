@@ -2,7 +2,7 @@
 
 use super::file;
 use sim_host::recording::bits::{Order, Place, signed};
-use sim_host::recording::dbc::{Database, is_gap};
+use sim_host::recording::database::{Database, is_gap};
 use sim_host::recording::frames::Id;
 
 fn database(messages: &str) -> Result<Database, String> {

@@ -4,7 +4,7 @@ use super::file;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::select;
-use sim_host::recording::dbc::Database;
+use sim_host::recording::database::Database;
 use sim_host::recording::frames::Frames;
 use sim_host::recording::{asc, candump, decode, mdf};
 use tests::draws::runner;

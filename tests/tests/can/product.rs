@@ -6,7 +6,7 @@ use control::sensors::polarity::PolarityStep;
 use control::{ActiveLimits, Causes, Mode};
 use link::can::{self, Message, Motion, State};
 use proptest::prelude::*;
-use sim_host::recording::dbc::Database;
+use sim_host::recording::database::Database;
 use sim_host::recording::frames::Id;
 use std::path::{Path, PathBuf};
 use tests::draws::runner;

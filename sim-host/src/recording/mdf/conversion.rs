@@ -1,6 +1,6 @@
 //! Conversion of a raw number to the value in the channel's unit.
 
-use super::super::dbc::is_gap;
+use super::super::database::is_gap;
 use super::block::File;
 
 /// Largest number of chained conversions.
