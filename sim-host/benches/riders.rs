@@ -1,7 +1,7 @@
 //! A delayed rider's ride and basin, timed beside Python programs of the same ride by `cargo xtask
 //! bench`. Prints lines of name=value, those of `reference/ride.py`.
 
-use sim_host::basin::{Axis, Search, basin};
+use sim_host::basin::{Axis, Method, Search, basin};
 use sim_host::bicycle::{Geometry, catalogue};
 use sim_host::ride::{Assist, Conditions, Ride, Start, rides, traced};
 use sim_host::rider::{self, Fit, Outside};
@@ -33,6 +33,7 @@ fn main() {
         max_rate: 30.0,
         scan_step: 0.25,
         tolerance: 0.01,
+        method: Method::Fast,
     };
     let (seconds, found) = timed(3, || basin(&conditions, &search, |_| (), || false).expect("in range"));
     let work = found.work();

@@ -2,7 +2,7 @@
 
 use control::{Config, Law, Sample, SensorFrame, Triple};
 use divan::{Bencher, black_box};
-use sim_host::basin::{Axis, Search, basin};
+use sim_host::basin::{Axis, Method, Search, basin};
 use sim_host::bicycle::{Geometry, Motion, State, Torques, catalogue, pitch_from_upright};
 use sim_host::integrate::rk4;
 use sim_host::ride::{Assist, Conditions, Start, rides};
@@ -133,6 +133,7 @@ fn whole_basin(bencher: Bencher, conditions: &Conditions, tenths: std::ops::Rang
         max_rate: 30.0,
         scan_step: 0.25,
         tolerance: 0.01,
+        method: Method::Fast,
     };
     bencher.bench_local(|| basin(conditions, &search, |_| (), || false));
 }

@@ -3,7 +3,7 @@
 //! A function is evaluated continuously, with exact sensors. To fly on a board a law is a gain table (docs/cli.md, "Laws") or a
 //! variant of `control::Law` (CONTRIBUTING.md, "Add a law").
 
-use sim_host::basin::{Axis, Search, basin};
+use sim_host::basin::{Axis, Method, Search, basin};
 use sim_host::ride::{Assist, Conditions, OwnLaw};
 use sim_host::scenario::{AssistKind, Scenario};
 
@@ -24,6 +24,7 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
         max_rate: 20.0,
         scan_step: 0.5,
         tolerance: 0.05,
+        method: Method::Fast,
     };
     let [published, own] = [published, own].map(|conditions| basin(&conditions, &search, |_| (), || false));
     let (published, own) = (published?, own?);

@@ -2,7 +2,7 @@
 
 use crate::rides::shipped;
 use control::{Config, Law};
-use sim_host::basin::{Axis, Search};
+use sim_host::basin::{Axis, Method, Search};
 use sim_host::bicycle::Geometry;
 use sim_host::ride::{Assist, Conditions};
 
@@ -32,7 +32,14 @@ pub fn ideal(law: Law) -> Conditions {
 
 /// A search over `speeds` \[m/s\] up to `max_rate` \[rad/s\], the other settings the default ones.
 pub fn search(speeds: &[f64], max_rate: f64) -> Search {
-    Search { speeds: speeds.to_vec(), axis: Axis::SteerRate, max_rate, scan_step: 0.25, tolerance: 0.01 }
+    Search {
+        speeds: speeds.to_vec(),
+        axis: Axis::SteerRate,
+        max_rate,
+        scan_step: 0.25,
+        tolerance: 0.01,
+        method: Method::Fast,
+    }
 }
 
 /// The law whose gain changes sign at 7.5 m/s.

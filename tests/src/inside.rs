@@ -5,7 +5,7 @@ use crate::basins::{H, assisted, configured};
 use crate::fault_reactions::{product, rider};
 use control::{Config, Limits, Sensor};
 use rayon::prelude::*;
-use sim_host::basin::{Axis, Search, border};
+use sim_host::basin::{Axis, Method, Search, border};
 use sim_host::plant::Plant;
 use sim_host::ride::{Conditions, Imu, Start};
 use std::sync::OnceLock;
@@ -75,6 +75,7 @@ fn found(conditions: Border) -> Border {
         max_rate,
         scan_step,
         tolerance: 0.02 * scan_step,
+        method: Method::Fast,
     };
     let column = border(&with(conditions.rider, assisted(H)), &search, speed);
     assert!(!column.capped, "{conditions:?} ends beyond {max_rate} rad/s");

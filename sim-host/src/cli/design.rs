@@ -4,7 +4,7 @@ use super::options::{Fall, Options};
 use super::outputs::{OutputArgs, Results, complain};
 use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
-use crate::basin::{Axis, Search};
+use crate::basin::{Axis, Method, Search};
 use crate::design::document::{Design, DesignDocument, figure, law_file};
 use crate::design::{Knots, Plan, Progress, competitors, evaluate, optimise, scenarios};
 use crate::report::figure;
@@ -96,7 +96,8 @@ fn search(option: &str, step: f64, scan_step: f64, tolerance: f64) -> Result<Sea
     // The last speed is 7.5 m/s even if the step does not divide the range.
     let steps = (5.5 / step - 1e-9).ceil() as usize;
     let speeds = (0..=steps).map(|i| ((2.0 + i as f64 * step).min(7.5) * 1e9).round() / 1e9).collect();
-    let search = Search { speeds, axis: Axis::SteerRate, max_rate: 20.0, scan_step, tolerance };
+    let search =
+        Search { speeds, axis: Axis::SteerRate, max_rate: 20.0, scan_step, tolerance, method: Method::Fast };
     search.check()?;
     Ok(search)
 }

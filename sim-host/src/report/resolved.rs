@@ -1,6 +1,6 @@
 //! The full configuration of a result, contained in every output.
 
-use crate::basin::{Axis, Search};
+use crate::basin::{Axis, Method, Search};
 use crate::bicycle::{KEYS, Parameters, catalogue::Bicycle};
 use crate::parameters::departing;
 use crate::plant::{ActuatorConfig, ImuMount, Plant, Sensor, SensorModel};
@@ -313,6 +313,8 @@ pub struct ResolvedSearch {
     pub scan_step: f64,
     /// Accuracy of borders \[rad/s\].
     pub tolerance: f64,
+    /// "fast" or "plain".
+    pub method: Method,
 }
 
 impl ResolvedSearch {
@@ -323,6 +325,7 @@ impl ResolvedSearch {
             max_rate: search.max_rate,
             scan_step: search.scan_step,
             tolerance: search.tolerance,
+            method: search.method,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::error::ScenarioError;
 use super::speeds::{self, SpeedsError};
-use crate::basin::{Axis, Search};
+use crate::basin::{Axis, Method, Search};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -47,11 +47,20 @@ pub struct SearchChoice {
     pub scan_step: f64,
     /// Accuracy of the borders \[rad/s\].
     pub tolerance: f64,
+    /// How the rides are simulated.
+    pub method: Method,
 }
 
 impl Default for SearchChoice {
     fn default() -> Self {
-        Self { speeds: None, axis: Axis::SteerRate, max_rate: 30.0, scan_step: 0.25, tolerance: 0.01 }
+        Self {
+            speeds: None,
+            axis: Axis::SteerRate,
+            max_rate: 30.0,
+            scan_step: 0.25,
+            tolerance: 0.01,
+            method: Method::Fast,
+        }
     }
 }
 
@@ -69,6 +78,7 @@ impl SearchChoice {
             max_rate: self.max_rate,
             scan_step: self.scan_step,
             tolerance: self.tolerance,
+            method: self.method,
         };
         search.check()?;
         Ok(search)

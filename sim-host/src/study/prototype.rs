@@ -2,7 +2,7 @@
 
 use super::page::{Page, table};
 use super::trial::{Trial, TrialError, basins};
-use crate::basin::{Axis as Disturbance, Basin, Bound, Column, Search};
+use crate::basin::{Axis as Disturbance, Basin, Bound, Column, Method, Search};
 use crate::report::figure::{Axis, Chart, Line, Look, Plot, Series};
 use control::{Law, Limits};
 
@@ -36,6 +36,7 @@ pub fn search(step: f64) -> Search {
         max_rate: 30.0,
         scan_step: 0.25,
         tolerance: 0.01,
+        method: Method::Fast,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Axis;
 use super::seal::hash;
-use crate::basin::Search;
+use crate::basin::{Method, Search};
 use crate::report::resolved::axis_name;
 use crate::report::tool::{SCHEMA, Tool};
 use schemars::JsonSchema;
@@ -25,6 +25,8 @@ pub struct SweepSearch {
     pub scan_step: f64,
     /// Tolerance of the borders \[rad/s\].
     pub tolerance: f64,
+    /// How the rides are simulated.
+    pub method: Method,
 }
 
 /// Plan of a sweep.
@@ -53,6 +55,7 @@ impl SweepSearch {
             max_rate: search.max_rate,
             scan_step: search.scan_step,
             tolerance: search.tolerance,
+            method: search.method,
         }
     }
 }

@@ -5,7 +5,7 @@ use super::draw::SPEED;
 use super::item::{Figure, Item, Value};
 use super::published::{Cell, GainRow, Heights, cells, height_cell, published};
 use super::study::Study;
-use crate::basin::{Axis as Disturbed, Column, Search, border, column};
+use crate::basin::{Axis as Disturbed, Column, Method, Search, border, column};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use crate::ride::{Conditions, rides, traced};
 use crate::rider::Gains;
@@ -55,7 +55,14 @@ fn multiple(n: f64) -> f64 {
 }
 
 fn search(scan_step: f64) -> Search {
-    Search { speeds: Vec::new(), axis: Disturbed::SteerRate, max_rate: 15.0, scan_step, tolerance: 0.005 }
+    Search {
+        speeds: Vec::new(),
+        axis: Disturbed::SteerRate,
+        max_rate: 15.0,
+        scan_step,
+        tolerance: 0.005,
+        method: Method::Fast,
+    }
 }
 
 /// Step of a scan that finds only wide gaps in the basin.

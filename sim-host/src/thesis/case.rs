@@ -1,7 +1,7 @@
 //! The conditions of a basin search, as a small hashable key.
 
 use super::cyclist::Cyclist;
-use crate::basin::{Axis, Column, Search, border, column};
+use crate::basin::{Axis, Column, Method, Search, border, column};
 use crate::bicycle::Geometry;
 use crate::ride::{Assist, Conditions, ScheduleSpeed};
 use control::Law;
@@ -132,6 +132,7 @@ impl Case {
             max_rate: 30.0,
             scan_step: resolution.scan_step,
             tolerance: resolution.tolerance,
+            method: Method::Fast,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `sim-host design`, with searches so small that they end at once.
 
 use control::Law;
-use sim_host::basin::{Axis, Search};
+use sim_host::basin::{Axis, Method, Search};
 use sim_host::design::{Found, Knots, Plan, Progress, Scenarios, evaluate, optimise, scenarios};
 use sim_host::ride::FallCriterion;
 use sim_host::study::trial::Trial;
@@ -19,6 +19,7 @@ fn coarse() -> Search {
         max_rate: 12.0,
         scan_step: 1.5,
         tolerance: 0.2,
+        method: Method::Fast,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Effect of each fault on the height of the basin. The table is that of docs/safety.md.
 
 use rayon::prelude::*;
-use sim_host::basin::{Axis, Search, border};
+use sim_host::basin::{Axis, Method, Search, border};
 use sim_host::plant::{Fault, Plant};
 use sim_host::ride::{Assist, Conditions, Ride, rides};
 use tests::fault_reactions::{FAULT_REACTIONS, product, smart};
@@ -58,7 +58,14 @@ fn faulty(fault: Option<Fault>) -> Conditions {
 /// The height \[rad/s\].
 fn height(conditions: &Conditions, speed: f64) -> f64 {
     let axis = Axis::SteerRate;
-    let search = Search { speeds: vec![speed], axis, max_rate: 20.0, scan_step: 0.25, tolerance: 0.02 };
+    let search = Search {
+        speeds: vec![speed],
+        axis,
+        max_rate: 20.0,
+        scan_step: 0.25,
+        tolerance: 0.02,
+        method: Method::Fast,
+    };
     border(conditions, &search, speed).upper
 }
 

@@ -2,7 +2,7 @@
 
 use control::{Config, GainSchedule, Law};
 use rayon::prelude::*;
-use sim_host::basin::{Axis, Search, border};
+use sim_host::basin::{Axis, Method, Search, border};
 use sim_host::plant::Plant;
 use sim_host::ride::Conditions;
 use tests::fault_reactions::{product, smart};
@@ -27,7 +27,14 @@ fn mean_height(law: &Law, lost: &str, part: f32) -> f64 {
     let conditions = Conditions { time_limit_s: 4.0, ..smart(config, plant) };
     let axis = Axis::SteerRate;
     let height = |speed: &f64| {
-        let search = Search { speeds: vec![*speed], axis, max_rate: 20.0, scan_step: 0.5, tolerance: 0.05 };
+        let search = Search {
+            speeds: vec![*speed],
+            axis,
+            max_rate: 20.0,
+            scan_step: 0.5,
+            tolerance: 0.05,
+            method: Method::Fast,
+        };
         border(&conditions, &search, *speed).upper
     };
     let sum: f64 = SPEEDS.par_iter().map(height).sum();

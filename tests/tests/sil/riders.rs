@@ -94,6 +94,7 @@ fn the_plane_contains_both_axes() {
         max_roll_rate: 4.0,
         points: 40,
         tolerance: 0.0005,
+        ..PlaneSearch::default()
     };
     let found = plane(&conditions, &expected, |_| (), || false).expect("a plane");
     let outline = found.outline();

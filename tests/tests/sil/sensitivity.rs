@@ -1,6 +1,6 @@
 //! Sensitivity of the height of the basin to gains and bicycle parameters.
 
-use sim_host::basin::{Axis, Quantity, Search, border, sensitivities};
+use sim_host::basin::{Axis, Method, Quantity, Search, border, sensitivities};
 use sim_host::bicycle::{self, Geometry, Parameters};
 use sim_host::ride::Conditions;
 use sim_host::rider::{Fit, KEYS, Outside, Schedule, catalogue};
@@ -16,6 +16,7 @@ fn height(conditions: &Conditions) -> f64 {
         max_rate: 15.0,
         scan_step: 0.25,
         tolerance: 1e-4,
+        method: Method::Fast,
     };
     border(conditions, &search, SPEED).upper
 }

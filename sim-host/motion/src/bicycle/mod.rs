@@ -25,7 +25,7 @@ pub use pose::Pose;
 pub use redundant::FullState;
 pub use start::Start;
 
-use crate::num::Scalar;
+use crate::num::{Lanes, Scalar};
 
 /// The part of the bicycle's state on which its accelerations depend.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +55,43 @@ impl<S: Scalar> State<S> {
             steer_rate: zero,
             rear_wheel_rate: v * (-1.0 / b.rR),
             pitch: zero,
+        }
+    }
+}
+
+impl<const N: usize> State<Lanes<N>> {
+    /// The state of one lane.
+    pub fn lane(&self, lane: usize) -> State<f64> {
+        State {
+            roll: self.roll.0[lane],
+            steer: self.steer.0[lane],
+            roll_rate: self.roll_rate.0[lane],
+            steer_rate: self.steer_rate.0[lane],
+            rear_wheel_rate: self.rear_wheel_rate.0[lane],
+            pitch: self.pitch.0[lane],
+        }
+    }
+
+    /// Sets the state of one lane.
+    pub fn set_lane(&mut self, lane: usize, to: &State<f64>) {
+        self.roll.0[lane] = to.roll;
+        self.steer.0[lane] = to.steer;
+        self.roll_rate.0[lane] = to.roll_rate;
+        self.steer_rate.0[lane] = to.steer_rate;
+        self.rear_wheel_rate.0[lane] = to.rear_wheel_rate;
+        self.pitch.0[lane] = to.pitch;
+    }
+
+    /// The state after a time of its own in each lane \[s\] at the given rates.
+    #[inline(always)]
+    pub(crate) fn moved_each(&self, h: Lanes<N>, rate: &Self) -> Self {
+        State {
+            roll: self.roll + rate.roll * h,
+            steer: self.steer + rate.steer * h,
+            roll_rate: self.roll_rate + rate.roll_rate * h,
+            steer_rate: self.steer_rate + rate.steer_rate * h,
+            rear_wheel_rate: self.rear_wheel_rate + rate.rear_wheel_rate * h,
+            pitch: self.pitch + rate.pitch * h,
         }
     }
 }

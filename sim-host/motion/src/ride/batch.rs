@@ -3,6 +3,7 @@
 
 use super::backend::Backend;
 use super::lanes::{WIDTH, run};
+use super::quick::{self, Quick, QuickRide};
 use super::{Conditions, Remote, RemoteError, Ride, Start, TracePoint};
 
 /// Simulates every ride to its end; results in the order of `starts`.
@@ -22,6 +23,24 @@ pub fn rides(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
 #[target_feature(enable = "avx2")]
 fn rides_avx2(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
     run::<WIDTH>(conditions, starts, None, &mut Backend::Local)
+}
+
+impl Quick<'_> {
+    /// Simulates every ride; results in the order of `starts`.
+    pub fn rides(&self, starts: &[Start]) -> Vec<QuickRide> {
+        #[cfg(target_arch = "x86_64")]
+        if std::is_x86_feature_detected!("avx2") {
+            // SAFETY: the machine was just checked to have AVX2.
+            return unsafe { quick_rides_avx2(self, starts) };
+        }
+        quick::run::<1>(self, starts)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn quick_rides_avx2(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
+    quick::run::<WIDTH>(quick, starts)
 }
 
 /// Simulates one ride and records every control period; the bits are the same as in a batch.

@@ -188,7 +188,7 @@ pub(super) fn run<const N: usize>(
             // An empty lane is upright at rest; its computing time equals that of any other state.
             let next = waiting.next();
             let start = next.map_or_else(Start::default, |(_, start)| start);
-            set(&mut state, lane, &start.state(b));
+            state.set_lane(lane, &start.state(b));
             batch.initial.0[lane] = start.speed_m_s;
             batch.assist.0[lane] = 0.0;
             if let Some(riders) = &mut batch.riders {
@@ -223,7 +223,7 @@ pub(super) fn run<const N: usize>(
             let steer_torques =
                 SteerTorques { assist_nm: batch.assist.0[lane], rider_nm: batch.rider_nm.0[lane] };
             let Some(ride) = &mut batch.lanes[lane] else { continue };
-            let before = get(&state, lane);
+            let before = state.lane(lane);
             let last = if too_stiff(batch.stiffness.map(|q| q.0[lane]), h) {
                 let rider = batch.riders.as_mut().map(|riders| riders.one(lane));
                 let mut period = Period {
@@ -237,14 +237,14 @@ pub(super) fn run<const N: usize>(
                 };
                 let last = refined(&mut period, &before);
                 let rider_state = period.rider.map(|rider: RiderLane| rider.rider_state.end);
-                set(&mut after, lane, &last.end);
+                after.set_lane(lane, &last.end);
                 if let (Some(riders), Some(rider_state)) = (&mut batch.riders, rider_state) {
                     riders.set(lane, &rider_state);
                 }
                 last
             } else {
                 ride.full = None;
-                Segment { start: before, end: get(&after, lane), offset: 0.0, h, substeps: 0 }
+                Segment { start: before, end: after.lane(lane), offset: 0.0, h, substeps: 0 }
             };
             if let Some(finished) = ride.book(conditions, steer_torques, &before, &last) {
                 done.push((ride.index, finished));
@@ -255,24 +255,4 @@ pub(super) fn run<const N: usize>(
     }
     done.sort_by_key(|(index, _): &(usize, Ride)| *index);
     done.into_iter().map(|(_, ride)| ride).collect()
-}
-
-fn get<const N: usize>(s: &State<Lanes<N>>, lane: usize) -> State<f64> {
-    State {
-        roll: s.roll.0[lane],
-        steer: s.steer.0[lane],
-        roll_rate: s.roll_rate.0[lane],
-        steer_rate: s.steer_rate.0[lane],
-        rear_wheel_rate: s.rear_wheel_rate.0[lane],
-        pitch: s.pitch.0[lane],
-    }
-}
-
-fn set<const N: usize>(s: &mut State<Lanes<N>>, lane: usize, to: &State<f64>) {
-    s.roll.0[lane] = to.roll;
-    s.steer.0[lane] = to.steer;
-    s.roll_rate.0[lane] = to.roll_rate;
-    s.steer_rate.0[lane] = to.steer_rate;
-    s.rear_wheel_rate.0[lane] = to.rear_wheel_rate;
-    s.pitch.0[lane] = to.pitch;
 }

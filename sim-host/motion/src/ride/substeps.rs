@@ -52,8 +52,13 @@ pub(super) fn too_stiff(stiffness: [f64; 4], h: f64) -> bool {
 }
 
 /// Whether the independent speeds do not determine the others accurately. NaN counts as singular.
-fn singular([_, _, unfolded, along]: [f64; 4]) -> bool {
-    !(unfolded.abs() >= NEAREST && along.abs() >= NEAREST)
+fn singular(stiffness: [f64; 4]) -> bool {
+    nearer(stiffness, NEAREST)
+}
+
+/// Whether a configuration is nearer to a singular one than `nearest`, a fraction of the upright bicycle's distance.
+pub(super) fn nearer([_, _, unfolded, along]: [f64; 4], nearest: f64) -> bool {
+    !(unfolded.abs() >= nearest && along.abs() >= nearest)
 }
 
 /// Number of substeps for `h` seconds.

@@ -3,8 +3,11 @@
 mod bound;
 mod compare;
 mod drawn;
+mod fast;
 mod outline;
+mod plain;
 mod plane;
+mod scan;
 mod search;
 mod sensitivity;
 
@@ -13,5 +16,5 @@ pub use compare::{Rmse, rmse};
 pub use drawn::{Drawn, QUANTILES, drawn};
 pub use outline::{Basin, Column, Island, ScanPoint, Work, area};
 pub use plane::{Plane, PlaneSearch, Ray, plane};
-pub use search::{Axis, Search, SearchError, basin, basin_by, border, column};
+pub use search::{Axis, Method, Search, SearchError, basin, basin_by, border, column};
 pub use sensitivity::{Quantity, Sensitivity, sensitivities};

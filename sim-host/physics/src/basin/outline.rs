@@ -27,9 +27,9 @@ pub struct Island {
 pub struct Work {
     /// Rides.
     pub rides: u64,
-    /// Control periods simulated.
+    /// Time steps simulated: control periods of exact rides, longer steps of others.
     pub steps: u64,
-    /// Right-hand sides of the equations of motion evaluated: four per control period. Those of substeps
+    /// Right-hand sides of the equations of motion evaluated: four per step. Those of substeps
     /// before falls are not counted.
     pub right_hand_sides: u64,
 }
@@ -41,6 +41,13 @@ impl Work {
         self.rides += rides.len() as u64;
         self.steps += steps;
         self.right_hand_sides += 4 * steps;
+    }
+
+    /// Adds a ride of `steps` steps of another length.
+    pub(super) fn add_steps(&mut self, steps: u32) {
+        self.rides += 1;
+        self.steps += u64::from(steps);
+        self.right_hand_sides += 4 * u64::from(steps);
     }
 
     /// Sum of both.

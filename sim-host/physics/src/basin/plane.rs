@@ -1,7 +1,7 @@
 //! The basin at one speed over two disturbances: steer rate and roll rate.
 
 use super::search::along;
-use super::{Axis, Column, Search, SearchError, Work};
+use super::{Axis, Column, Method, Search, SearchError, Work};
 use crate::range::within;
 use crate::ride::{Conditions, Start};
 use rayon::prelude::*;
@@ -24,6 +24,8 @@ pub struct PlaneSearch {
     pub points: usize,
     /// Tolerance of borders, as a fraction of a ray.
     pub tolerance: f64,
+    /// How the rides are simulated.
+    pub method: Method,
 }
 
 impl Default for PlaneSearch {
@@ -36,6 +38,7 @@ impl Default for PlaneSearch {
             max_roll_rate: 4.0,
             points: 80,
             tolerance: 5e-4,
+            method: Method::Fast,
         }
     }
 }
@@ -132,6 +135,7 @@ pub fn plane(
         max_rate: 1.0,
         scan_step: 1.0 / search.points as f64,
         tolerance: search.tolerance,
+        method: search.method,
     };
     let rays: Vec<Option<Ray>> = (0..search.rays)
         .into_par_iter()
@@ -145,7 +149,7 @@ pub fn plane(
                 steer_rate_rad_s: s * steer_rate,
                 roll_rate_rad_s: s * roll_rate,
             };
-            let ray = Ray { steer_rate, roll_rate, column: along(conditions, &line, &start) };
+            let ray = Ray { steer_rate, roll_rate, column: along(conditions, &line, start) };
             finished(&ray);
             Some(ray)
         })

@@ -1,12 +1,12 @@
 //! Basin search: a scan over disturbances, then each border is narrowed to the tolerance.
 
-use super::{Basin, Column, Island, ScanPoint, Work};
+use super::plain::{explored, ridden};
+use super::{Basin, Column, fast};
 use crate::bicycle::uncertain::DrawError;
 use crate::range::{RangeError, within};
-use crate::ride::{Conditions, ConditionsError, FallCause, RemoteError, Ride, Start, rides};
+use crate::ride::{Conditions, ConditionsError, Quick, RemoteError, Ride, Start};
 use crate::rider::ScheduleError;
 use rayon::prelude::*;
-use std::convert::Infallible;
 
 /// Which rate the disturbance changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
@@ -30,6 +30,20 @@ impl Axis {
     }
 }
 
+/// How the rides of a search are simulated.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Long steps find the borders and exact rides confirm them, where the law is all that acts; otherwise as plain.
+    #[default]
+    Fast,
+    /// Every ride exact and to its end.
+    Plain,
+}
+
 /// Range and resolution of the search.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Search {
@@ -43,6 +57,8 @@ pub struct Search {
     pub scan_step: f64,
     /// Tolerance of the borders \[rad/s\].
     pub tolerance: f64,
+    /// How the rides are simulated.
+    pub method: Method,
 }
 
 /// A search that can't be done.
@@ -85,9 +101,6 @@ impl From<SearchError> for RemoteError {
     }
 }
 
-/// Rides between the two ends of an interval in one round of narrowing: the number of lanes.
-const SECTIONS: usize = 8;
-
 impl Search {
     /// Checks ranges.
     ///
@@ -106,10 +119,16 @@ impl Search {
         within("tolerance (rad/s)", self.tolerance, 1e-9, self.scan_step)?;
         Ok(())
     }
+
+    /// Quick rides, if the search may use them and they exist for the conditions.
+    fn quick<'a>(&self, conditions: &'a Conditions) -> Option<Quick<'a>> {
+        Quick::new(conditions).filter(|_| self.method == Method::Fast)
+    }
 }
 
 /// Computes the basin at every speed, on all cores of the current rayon pool. `finished` is called after each
-/// column, `stop` is checked before each. The result does not depend on the number of threads.
+/// column, `stop` is checked before each or, in a fast search, before each [`fast::TOGETHER`]. The result does not depend
+/// on the number of threads.
 ///
 /// # Errors
 /// The search or the conditions fail their checks.
@@ -119,10 +138,30 @@ pub fn basin(
     finished: impl Fn(&Column) + Sync,
     stop: impl Fn() -> bool + Sync,
 ) -> Result<Basin, SearchError> {
-    basin_by(conditions, search, |starts| Ok(rides(conditions, starts)), finished, stop)
+    let Some(quick) = search.quick(conditions) else {
+        return basin_by(
+            conditions,
+            search,
+            |starts| Ok(crate::ride::rides(conditions, starts)),
+            finished,
+            stop,
+        );
+    };
+    search.check()?;
+    conditions.check()?;
+    let explored = |speeds: &[f64]| {
+        if stop() {
+            return Vec::new();
+        }
+        let lines: Vec<_> = speeds.iter().map(|&speed| move |rate| search.axis.start(speed, rate)).collect();
+        let columns = fast::columns(conditions, &quick, search, &lines);
+        columns.iter().for_each(&finished);
+        columns
+    };
+    Ok(Basin { columns: search.speeds.par_chunks(fast::TOGETHER).flat_map_iter(explored).collect() })
 }
 
-/// As [`basin`], with rides simulated by `rides`, which returns them in the order of the starts.
+/// As [`basin`], with exact rides only, simulated by `rides`, which returns them in the order of the starts.
 ///
 /// # Errors
 /// The search or the conditions fail their checks, or `rides` fails.
@@ -142,7 +181,7 @@ pub fn basin_by<E: From<SearchError> + Send>(
             if stop() {
                 return Ok(None);
             }
-            let column = explored(&rides, search, &|rate| search.axis.start(speed, rate), usize::MAX)?;
+            let column = explored(&rides, search, &|rate| search.axis.start(speed, rate), false)?;
             finished(&column);
             Ok(Some(column))
         })
@@ -152,13 +191,18 @@ pub fn basin_by<E: From<SearchError> + Send>(
 
 /// The basin at one speed.
 pub fn column(conditions: &Conditions, search: &Search, speed: f64) -> Column {
-    along(conditions, search, &|rate| search.axis.start(speed, rate))
+    along(conditions, search, |rate| search.axis.start(speed, rate))
 }
 
 /// The basin along any line of disturbances: `start` gives the initial state for a disturbance of 0 to
 /// `search.max_rate`. The search's axis is not used.
-pub(super) fn along(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Start) -> Column {
-    let Ok(column) = explored(&ridden(conditions), search, start, usize::MAX);
+pub(super) fn along(conditions: &Conditions, search: &Search, start: impl Fn(f64) -> Start) -> Column {
+    if let Some(quick) = search.quick(conditions)
+        && let Some(column) = fast::columns(conditions, &quick, search, std::slice::from_ref(&start)).pop()
+    {
+        return column;
+    }
+    let Ok(column) = explored(&ridden(conditions), search, &start, false);
     column
 }
 
@@ -166,95 +210,9 @@ pub(super) fn along(conditions: &Conditions, search: &Search, start: &dyn Fn(f64
 /// [`column`].
 pub fn border(conditions: &Conditions, search: &Search, speed: f64) -> Column {
     let start = |rate| search.axis.start(speed, rate);
-    let Ok(column) = explored(&ridden(conditions), search, &start, SECTIONS);
-    Column { islands: Vec::new(), ..column }
-}
-
-/// [`rides`] as an infallible function for [`explored`].
-fn ridden(conditions: &Conditions) -> impl Fn(&[Start]) -> Result<Vec<Ride>, Infallible> {
-    |starts| Ok(rides(conditions, starts))
-}
-
-/// Scans in groups of `group` rides, to the end or the first group with a fall, and narrows the borders.
-fn explored<E>(
-    rides: &impl Fn(&[Start]) -> Result<Vec<Ride>, E>,
-    search: &Search,
-    start: &dyn Fn(f64) -> Start,
-    group: usize,
-) -> Result<Column, E> {
-    let speed = start(0.0).speed_m_s;
-    let mut work = Work::default();
-    let mut ride = |rates: &[f64]| -> Result<Vec<Ride>, E> {
-        let starts: Vec<Start> = rates.iter().map(|&r| start(r)).collect();
-        let done = rides(&starts)?;
-        work.add(&done);
-        Ok(done)
-    };
-    // The last point is the largest rate, even if it is not a multiple of the scan step.
-    let points = (search.max_rate / search.scan_step - 1e-9).ceil() as usize;
-    let rates: Vec<f64> = (1..=points).map(|i| (i as f64 * search.scan_step).min(search.max_rate)).collect();
-    let mut scan: Vec<Ride> = Vec::new();
-    for group in rates.chunks(group.min(points.max(1))) {
-        scan.extend(ride(group)?);
-        if scan.iter().any(Ride::fell) {
-            break;
-        }
+    if let Some(quick) = search.quick(conditions) {
+        return fast::border(conditions, &quick, search, &start);
     }
-    // The undisturbed ride does not fall; there is a border wherever consecutive points differ.
-    let mut runs: Vec<Island> = Vec::new();
-    let (mut border, mut beyond) = (None, None);
-    let mut open = Some((0.0, None));
-    let (mut last_rate, mut last_fell, mut last_ride) = (0.0, false, None);
-    for (&rate, now) in rates.iter().zip(&scan) {
-        if now.fell() && !last_fell {
-            let (to, at, by) =
-                narrow(&mut ride, last_rate, (rate, now.outcome.fall()), search.tolerance, last_ride)?;
-            if let Some((from, _)) = open.take() {
-                runs.push(Island { from, to });
-                if runs.len() == 1 {
-                    (border, beyond) = (at, by);
-                }
-            }
-        } else if !now.fell() && last_fell {
-            let (from, at, _) = narrow(&mut ride, rate, (last_rate, None), search.tolerance, Some(*now))?;
-            open = Some((from, at));
-        }
-        (last_rate, last_fell, last_ride) = (rate, now.fell(), Some(*now));
-    }
-    let capped = runs.is_empty();
-    if let Some((from, _)) = open {
-        runs.push(Island { from, to: search.max_rate });
-        if capped {
-            border = last_ride;
-        }
-    }
-    let upper = runs.first().map_or(0.0, |run| run.to);
-    let scan = rates.iter().zip(&scan).map(|(&rate, r)| ScanPoint { rate, outcome: r.outcome }).collect();
-    Ok(Column { speed, upper, capped, islands: runs.split_off(1), scan, border, beyond, work })
-}
-
-/// Narrows a border to `tolerance`: returns the closest rate found not to fall, its ride, and the cause of
-/// the fall on the other side. `safe` did not fall; `fell` did, by the cause `by`; either can be the larger.
-pub(super) fn narrow<E>(
-    ride: &mut impl FnMut(&[f64]) -> Result<Vec<Ride>, E>,
-    mut safe: f64,
-    (mut fell, mut by): (f64, Option<FallCause>),
-    tolerance: f64,
-    mut at: Option<Ride>,
-) -> Result<(f64, Option<Ride>, Option<FallCause>), E> {
-    while (fell - safe).abs() > tolerance {
-        let cell = (fell - safe) / (SECTIONS + 1) as f64;
-        let rates: Vec<f64> = (1..=SECTIONS).map(|i| safe + i as f64 * cell).collect();
-        let done = ride(&rates)?;
-        match done.iter().position(Ride::fell) {
-            Some(first) => {
-                (fell, by) = (rates[first], done[first].outcome.fall());
-                if first > 0 {
-                    (safe, at) = (rates[first - 1], Some(done[first - 1]));
-                }
-            }
-            None => (safe, at) = (rates[SECTIONS - 1], Some(done[SECTIONS - 1])),
-        }
-    }
-    Ok((safe, at, by))
+    let Ok(column) = explored(&ridden(conditions), search, &start, true);
+    column
 }

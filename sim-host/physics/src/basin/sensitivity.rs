@@ -1,7 +1,9 @@
 //! Sensitivity of the basin's height to each parameter of bicycle and rider, by central differences.
 
 use super::Column;
-use super::search::{Axis, Search, SearchError, border, narrow};
+use super::plain::narrow;
+use super::scan::Edge;
+use super::search::{Axis, Method, Search, SearchError, border};
 use crate::bicycle::{self, Geometry, Parameters};
 use crate::ride::{Conditions, Ride, rides};
 use crate::rider::{KEYS, Rider, Schedule};
@@ -132,8 +134,14 @@ pub fn sensitivities(
     tolerance: f64,
 ) -> Result<Vec<Sensitivity>, SearchError> {
     conditions.check()?;
-    let search =
-        Search { speeds: vec![speed], axis: Axis::SteerRate, max_rate: 20.0, scan_step: 0.25, tolerance };
+    let search = Search {
+        speeds: vec![speed],
+        axis: Axis::SteerRate,
+        max_rate: 20.0,
+        scan_step: 0.25,
+        tolerance,
+        method: Method::Fast,
+    };
     search.check()?;
     let Column { upper: height, capped, .. } = border(conditions, &search, speed);
     if capped {
@@ -179,9 +187,9 @@ fn near(conditions: &Conditions, speed: f64, guess: f64, tolerance: f64) -> f64 
         let first = done.iter().position(Ride::fell);
         match first {
             Some(first) if first > 0 => {
-                let Ok((border, ..)) =
-                    narrow(&mut ride, rates[first - 1], (rates[first], None), tolerance, None);
-                return border;
+                let edge = Edge { safe: rates[first - 1], fell: rates[first] };
+                let Ok(border) = narrow(&mut ride, edge, None, tolerance, None);
+                return border.safe;
             }
             _ if width > guess.max(1.0) => return if first.is_none() { rates[7] } else { 0.0 },
             _ => width *= 8.0,

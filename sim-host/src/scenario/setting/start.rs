@@ -69,6 +69,20 @@ pub const SEARCH: &[Setting] = &[
         },
         ..PLAIN
     },
+    Setting {
+        name: "search",
+        key: "search.method",
+        value: "METHOD",
+        help: "How the rides are simulated. fast: long steps find the borders, and exact rides confirm them, where the law is \
+               all that acts (docs/performance.md); plain: every ride exact and to its end",
+        default: Some("fast"),
+        words: &[("fast", "Long steps, confirmed by exact rides"), ("plain", "Every ride exact")],
+        set: |s, text| {
+            s.search.method = text::word(text)?;
+            Ok(())
+        },
+        ..PLAIN
+    },
 ];
 
 /// The number of drawn bicycles.
@@ -205,6 +219,20 @@ pub const PLANE: &[Setting] = &[
         default: Some("0.0005"),
         set: |s, text| {
             s.plane.get_or_insert_default().tolerance = text::number(text)?;
+            Ok(())
+        },
+        ..PLAIN
+    },
+    Setting {
+        name: "ray-search",
+        key: "plane.method",
+        value: "METHOD",
+        help: "How the rides are simulated. fast: long steps find the borders, and exact rides confirm them, where the law is \
+               all that acts (docs/performance.md); plain: every ride exact and to its end",
+        default: Some("fast"),
+        words: &[("fast", "Long steps, confirmed by exact rides"), ("plain", "Every ride exact")],
+        set: |s, text| {
+            s.plane.get_or_insert_default().method = text::word(text)?;
             Ok(())
         },
         ..PLAIN

@@ -1,0 +1,209 @@
+//! The fast search: quick rides scan and narrow, and exact rides confirm every border.
+//!
+//! The disturbances are those of the plain search, so a confirmed border has the same bits. A border that is not confirmed
+//! is narrowed by exact rides; a scan that an exact ride contradicts is done again, plainly.
+
+use super::plain::{explored, narrow, ridden};
+use super::scan::{Border, Edge, SECTIONS, column, edges, fell, rates};
+use super::{Column, ScanPoint, Search, Work};
+use crate::ride::{Conditions, Outcome, Quick, Ride, Start, rides};
+use std::convert::Infallible;
+
+/// Number of lines of disturbances searched together: their exact rides, two for each border, fill the lanes.
+pub(super) const TOGETHER: usize = 4;
+
+/// A line of disturbances during the search.
+struct Line<'a, L> {
+    start: &'a L,
+    scan: Vec<ScanPoint>,
+    /// The edges of the scan.
+    wide: Vec<Edge>,
+    /// The same, narrowed by quick rides.
+    edges: Vec<Edge>,
+    work: Work,
+}
+
+/// The basins along some lines of disturbances.
+pub(super) fn columns<L: Fn(f64) -> Start>(
+    conditions: &Conditions,
+    quick: &Quick,
+    search: &Search,
+    lines: &[L],
+) -> Vec<Column> {
+    let rates = rates(search);
+    let mut lines: Vec<Line<L>> = lines.iter().map(Line::new).collect();
+    let wanted: Vec<(usize, f64)> =
+        (0..lines.len()).flat_map(|line| rates.iter().map(move |&rate| (line, rate))).collect();
+    let outcomes = outcomes(conditions, quick, &mut lines, &wanted);
+    for (line, outcomes) in lines.iter_mut().zip(outcomes.chunks(rates.len())) {
+        line.scanned(&rates, outcomes);
+    }
+    confirmed(conditions, quick, search, lines)
+}
+
+/// The basin along a line without islands: the scan ends soon after the first fall.
+pub(super) fn border<L: Fn(f64) -> Start>(
+    conditions: &Conditions,
+    quick: &Quick,
+    search: &Search,
+    start: &L,
+) -> Column {
+    let rates = rates(search);
+    let mut lines = vec![Line::new(start)];
+    let mut all: Vec<Outcome> = Vec::new();
+    for group in rates.chunks(SECTIONS) {
+        let wanted: Vec<(usize, f64)> = group.iter().map(|&rate| (0, rate)).collect();
+        all.extend(outcomes(conditions, quick, &mut lines, &wanted));
+        if all.iter().any(|outcome| fell(*outcome)) {
+            break;
+        }
+    }
+    lines[0].scanned(&rates, &all);
+    lines[0].wide.truncate(1);
+    lines[0].edges.truncate(1);
+    let only = confirmed(conditions, quick, search, lines).pop();
+    only.map_or_else(|| plain(conditions, search, start), |column| Column { islands: Vec::new(), ..column })
+}
+
+impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
+    fn new(start: &'a L) -> Self {
+        Self { start, scan: Vec::new(), wide: Vec::new(), edges: Vec::new(), work: Work::default() }
+    }
+
+    /// Stores the outcomes of a scan, in the order of the rates.
+    fn scanned(&mut self, rates: &[f64], outcomes: &[Outcome]) {
+        self.scan = rates.iter().zip(outcomes).map(|(&rate, &outcome)| ScanPoint { rate, outcome }).collect();
+        self.wide = edges(&self.scan);
+        self.edges = self.wide.clone();
+    }
+}
+
+/// The outcomes of rides, each given by its line and disturbance \[rad/s\]: quick ones, and exact ones where those decide
+/// nothing.
+fn outcomes<L: Fn(f64) -> Start>(
+    conditions: &Conditions,
+    quick: &Quick,
+    lines: &mut [Line<L>],
+    wanted: &[(usize, f64)],
+) -> Vec<Outcome> {
+    let starts: Vec<Start> = wanted.iter().map(|&(line, rate)| (lines[line].start)(rate)).collect();
+    let done = quick.rides(&starts);
+    for (ride, &(line, _)) in done.iter().zip(wanted) {
+        lines[line].work.add_steps(ride.steps);
+    }
+    let open: Vec<usize> = (0..done.len()).filter(|&i| done[i].outcome.is_none()).collect();
+    let again = exact(conditions, lines, &open.iter().map(|&i| wanted[i]).collect::<Vec<_>>());
+    let mut again = again.into_iter();
+    let decided = done.iter().map(|ride| ride.outcome.or_else(|| again.next().map(|ride| ride.outcome)));
+    decided.map(|outcome| outcome.unwrap_or(Outcome::Undecided)).collect()
+}
+
+/// Exact rides, each given by its line and disturbance \[rad/s\].
+fn exact<L: Fn(f64) -> Start>(
+    conditions: &Conditions,
+    lines: &mut [Line<L>],
+    wanted: &[(usize, f64)],
+) -> Vec<Ride> {
+    let starts: Vec<Start> = wanted.iter().map(|&(line, rate)| (lines[line].start)(rate)).collect();
+    let done = rides(conditions, &starts);
+    for (ride, &(line, _)) in done.iter().zip(wanted) {
+        lines[line].work.add(std::slice::from_ref(ride));
+    }
+    done
+}
+
+/// Narrows the edges of all lines by quick rides and confirms them by exact ones.
+fn confirmed<L: Fn(f64) -> Start>(
+    conditions: &Conditions,
+    quick: &Quick,
+    search: &Search,
+    mut lines: Vec<Line<L>>,
+) -> Vec<Column> {
+    loop {
+        let mut wanted = Vec::new();
+        for (i, line) in lines.iter().enumerate() {
+            let wide = line.edges.iter().filter(|edge| !edge.narrow(search.tolerance));
+            wanted.extend(wide.flat_map(Edge::sections).map(|rate| (i, rate)));
+        }
+        if wanted.is_empty() {
+            break;
+        }
+        let outcomes = outcomes(conditions, quick, &mut lines, &wanted);
+        let mut sections = wanted.chunks(SECTIONS).zip(outcomes.chunks(SECTIONS));
+        let edges = lines.iter_mut().flat_map(|line| &mut line.edges);
+        for edge in edges.filter(|edge| !edge.narrow(search.tolerance)) {
+            let Some((rates, outcomes)) = sections.next() else { break };
+            let first = outcomes.iter().position(|outcome| fell(*outcome));
+            if let Some(first) = first {
+                edge.fell = rates[first].1;
+            }
+            if let Some(safe) = first.unwrap_or(SECTIONS).checked_sub(1) {
+                edge.safe = rates[safe].1;
+            }
+        }
+    }
+    // Both ends of every edge, and the largest disturbance where none falls.
+    let mut wanted = Vec::new();
+    for (i, line) in lines.iter().enumerate() {
+        wanted.extend(line.edges.iter().flat_map(|edge| [(i, edge.safe), (i, edge.fell)]));
+        if line.edges.is_empty() {
+            wanted.extend(line.scan.last().map(|point| (i, point.rate)));
+        }
+    }
+    let mut ends = exact(conditions, &mut lines, &wanted).into_iter();
+    let mut of_lines: Vec<Vec<Ride>> = Vec::with_capacity(lines.len());
+    for line in &lines {
+        of_lines.push(ends.by_ref().take((2 * line.edges.len()).max(1)).collect());
+    }
+    lines.into_iter().zip(of_lines).map(|(line, ends)| finished(conditions, search, line, &ends)).collect()
+}
+
+/// The column of a line whose edges have these exact rides: at the safe and the falling end of each.
+fn finished<L: Fn(f64) -> Start>(
+    conditions: &Conditions,
+    search: &Search,
+    mut line: Line<L>,
+    ends: &[Ride],
+) -> Column {
+    let speed = (line.start)(0.0).speed_m_s;
+    if line.edges.is_empty() {
+        let last = ends.first().copied();
+        return match last.is_some_and(|ride| ride.fell()) {
+            true => plain(conditions, search, line.start),
+            false => column(speed, search, line.scan, &[], last, line.work),
+        };
+    }
+    let mut borders = Vec::with_capacity(line.edges.len());
+    let edges: Vec<(Edge, Edge)> = line.wide.iter().copied().zip(line.edges.iter().copied()).collect();
+    for ((wide, edge), ends) in edges.into_iter().zip(ends.chunks(2)) {
+        let &[safe, beyond] = ends else { return plain(conditions, search, line.start) };
+        if !safe.fell() && beyond.fell() {
+            let ride = (edge.safe != 0.0).then_some(safe);
+            borders.push(Border { safe: edge.safe, ride, beyond: beyond.outcome.fall() });
+            continue;
+        }
+        let wanted = [(0, wide.safe), (0, wide.fell)];
+        let ends = exact(conditions, std::slice::from_mut(&mut line), &wanted);
+        let &[safe, beyond] = ends.as_slice() else { return plain(conditions, search, line.start) };
+        if safe.fell() || !beyond.fell() {
+            return plain(conditions, search, line.start);
+        }
+        let start = line.start;
+        let work = &mut line.work;
+        let mut ride = |rates: &[f64]| -> Result<Vec<Ride>, Infallible> {
+            let done = rides(conditions, &rates.iter().map(|&rate| start(rate)).collect::<Vec<_>>());
+            work.add(&done);
+            Ok(done)
+        };
+        let at = (wide.safe != 0.0).then_some(safe);
+        let Ok(border) = narrow(&mut ride, wide, beyond.outcome.fall(), search.tolerance, at);
+        borders.push(border);
+    }
+    column(speed, search, line.scan, &borders, None, line.work)
+}
+
+/// The column by exact rides only.
+fn plain(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Start) -> Column {
+    let Ok(column) = explored(&ridden(conditions), search, start, false);
+    column
+}
