@@ -1,7 +1,7 @@
 //! Quick rides: outcomes of rides under a law in continuous time, with steps as long as the motion permits.
 //!
 //! The exact rides ([`super::rides`]) have the control period as their step and record the effort. These have a step of
-//! their own in each lane, up to 10 ms, and end as soon as the linear model decides ([`super::forecast`]).
+//! their own in each lane, up to 20 ms, and end as soon as the linear model decides ([`super::forecast`]).
 
 use super::assist::{IdealLaw, OwnLaw};
 use super::event::{fallen, time_of_fall};
@@ -16,7 +16,7 @@ use control::estimate::{EstimateConfig, Source as RollRate};
 use control::{Config, Law, Plan};
 
 /// Longest step \[s\].
-const LONGEST_S: f64 = 10e-3;
+const LONGEST_S: f64 = 20e-3;
 /// Largest step relative to the time scale of the motion.
 const LARGEST: f64 = 0.05;
 /// Shortest step \[s\]: close to 90 degrees of roll the time scale is arbitrarily short.

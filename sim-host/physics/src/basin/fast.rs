@@ -10,7 +10,7 @@ use crate::ride::{Conditions, Outcome, Quick, Ride, Start, rides};
 use std::convert::Infallible;
 
 /// Number of lines of disturbances searched together: their exact rides, two for each border, fill the lanes.
-pub(super) const TOGETHER: usize = 4;
+pub(super) const TOGETHER: usize = 8;
 
 /// A line of disturbances during the search.
 struct Line<'a, L> {
