@@ -26,14 +26,19 @@ pub(super) fn bias<S: Scalar>(
     // Time derivatives of the directions in the inertial frame. e1 and e3 turn with roll and yaw only.
     let w2 = w.y - v.pitch;
     let e1_dot = Vec3::new(sr * st * v.yaw, cr * v.yaw, -(sr * ct * v.yaw));
-    let u2_dot = Vec3::new(-w.z, zero, w.x);
+    let u2_dot = (-w.z, w.x);
     let e3_dot = Vec3::new(w2 * ct, -(w.z * st + w.x * ct), w2 * st);
     let f1_dot = Vec3::new(-(wf.z * sd), wf.z * cd, w.x * sd - w.y * cd);
     let f2_dot = Vec3::new(-(wf.z * cd), -(wf.z * sd), w.x * cd + w.y * sd);
     // The front wheel's own frame (heading, f2, down) turns with its yaw and its lean.
     let front_yaw = -(f2_dot.dot(p.heading) * p.per_m);
     let front_lean = f2_dot.dot(p.down);
-    let down_dot = p.heading.times(front_yaw * p.n) - p.f2.times(front_lean);
+    let turn = front_yaw * p.n;
+    let down_dot = Vec3::new(
+        p.heading.x * turn - p.f2.x * front_lean,
+        p.heading.y * turn - p.f2.y * front_lean,
+        p.heading.z * turn,
+    );
 
     // The front contact's acceleration without pitch, yaw and front wheel acceleration.
     let trail_dot = f1_dot.scaled(b.d3) + down_dot.scaled(b.rF);
@@ -44,7 +49,7 @@ pub(super) fn bias<S: Scalar>(
         trail_dot.x - w.y * p.trail.z,
         w.y * p.trail.y + w.x * p.trail.x,
     );
-    let alpha_free = e1_dot.times(v.roll) + u2_dot.times(v.pitch);
+    let alpha_free = plus_xz(e1_dot.times(v.roll), u2_dot, v.pitch);
     let free = alpha_free.cross(p.base) + w.cross(base_dot) - e1_dot.times(v.rear_spin * b.rR)
         + arm_dot.times(v.steer)
         + p.lateral.times(v.front_spin * front_yaw * b.rF);
@@ -57,7 +62,7 @@ pub(super) fn bias<S: Scalar>(
     alpha.y = alpha.y + pitch;
     let alpha_f = Vec3::new(alpha.x + w.y * v.steer, alpha.y - w.x * v.steer, alpha.z);
     // Acceleration of P; gravity acts like an upward acceleration.
-    let mut axle = e1_dot.times(v.rolling * -b.rR) + u2_dot.times(v.roll * b.rR) - p.k.scaled(b.g);
+    let mut axle = plus_xz(e1_dot.times(v.rolling * -b.rR), u2_dot, v.roll * b.rR) - p.k.scaled(b.g);
     let along = alpha.y * -b.rR;
     axle.x = axle.x + p.e1.x * along;
     axle.z = axle.z + p.e1.z * along;
@@ -66,8 +71,8 @@ pub(super) fn bias<S: Scalar>(
     let s = b.rear.moment;
     let force_r = axle.scaled(b.rear.mass) + swing(alpha, w, s);
     let moment_r = turned(&b.rear, alpha)
-        + w.cross(turned(&b.rear, w))
-        + u2_dot.times(v.rear_spin * b.rear.spin_inertia)
+        + w.cross(turned(&b.rear, w));
+    let moment_r = plus_xz(moment_r, u2_dot, v.rear_spin * b.rear.spin_inertia)
         + Vec3::new(-(axle.y * s[1]), axle.x * s[1] - axle.z * s[0], axle.y * s[0]);
 
     // Front gyrostat about its centre of mass.
@@ -77,8 +82,9 @@ pub(super) fn bias<S: Scalar>(
     let force_f = (axle + swing(alpha, w, [b.d1, b.front.com[1]]) + arm).scaled(b.front.mass);
     let moment_f = inertia.front.times(alpha_f)
         + wf.cross(inertia.front.times(wf))
-        + f2_dot.times(v.front_spin * b.front.spin_inertia)
-        + p.f2.times(front_spin * b.front.spin_inertia);
+        + f2_dot.times(v.front_spin * b.front.spin_inertia);
+    let spin = front_spin * b.front.spin_inertia;
+    let moment_f = Vec3::new(moment_f.x + p.f2.x * spin, moment_f.y + p.f2.y * spin, moment_f.z);
 
     let force = Momenta {
         momentum: force_r + force_f,
@@ -88,6 +94,12 @@ pub(super) fn bias<S: Scalar>(
         front_axle: (p.f2.x * alpha_f.x + p.f2.y * alpha_f.y + front_spin) * b.front.spin_inertia,
     };
     (force, free)
+}
+
+/// Adds a vector without second component, times `s`.
+#[inline(always)]
+fn plus_xz<S: Scalar>(to: Vec3<S>, (x, z): (S, S), s: S) -> Vec3<S> {
+    Vec3::new(to.x + x * s, to.y, to.z + z * s)
 }
 
 /// `alpha x r + omega x (omega x r)` for r = (x, 0, z).

@@ -36,9 +36,9 @@ impl<S: Scalar> Motion<S> {
         let (bias, _) = bias(b, &self.pose, &self.actual, &inertia, Some(&self.contact));
         let [u, v, w] = &self.partial;
         let force = [
-            torques.roll - u.power(b, &self.pose, &bias),
-            torques.steer - v.power(b, &self.pose, &bias),
-            -w.power(b, &self.pose, &bias),
+            torques.roll - u.power::<true, false, false>(b, &self.pose, &bias),
+            torques.steer - v.power::<false, true, false>(b, &self.pose, &bias),
+            -w.power::<false, false, true>(b, &self.pose, &bias),
         ];
         let [roll, steer, rear_wheel] = solve(&mass, force);
         Accelerations { roll, steer, rear_wheel }

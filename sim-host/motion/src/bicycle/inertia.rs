@@ -78,40 +78,64 @@ impl<S: Scalar> Inertia<S> {
     #[inline(always)]
     pub(super) fn mass(&self, b: &Geometry, pose: &Pose<S>, partial: &[Velocities<S>; 3]) -> [S; 6] {
         let [u, v, w] = partial;
-        let (by_roll, by_steer, by_wheel) =
-            (self.momenta(b, pose, u), self.momenta(b, pose, v), self.momenta(b, pose, w));
+        let by_roll = self.momenta::<true, false, false>(b, pose, u);
+        let by_steer = self.momenta::<false, true, false>(b, pose, v);
+        let by_wheel = self.momenta::<false, false, true>(b, pose, w);
         [
-            u.power(b, pose, &by_roll),
-            u.power(b, pose, &by_steer),
-            u.power(b, pose, &by_wheel),
-            v.power(b, pose, &by_steer),
-            v.power(b, pose, &by_wheel),
-            w.power(b, pose, &by_wheel),
+            u.power::<true, false, false>(b, pose, &by_roll),
+            u.power::<true, false, false>(b, pose, &by_steer),
+            u.power::<true, false, false>(b, pose, &by_wheel),
+            v.power::<false, true, false>(b, pose, &by_steer),
+            v.power::<false, true, false>(b, pose, &by_wheel),
+            w.power::<false, false, true>(b, pose, &by_wheel),
         ]
     }
 
-    /// Momenta of one set of velocities.
+    /// Momenta of one set of velocities. Roll rate, steer rate or rear wheel rate is zero if its constant is `false`: the
+    /// compiler must not leave out a product with zero.
     #[inline(always)]
-    pub(super) fn momenta(&self, b: &Geometry, pose: &Pose<S>, v: &Velocities<S>) -> Momenta<S> {
-        let axle = v.axle(b, pose.e1);
+    pub(super) fn momenta<const ROLL: bool, const STEER: bool, const WHEEL: bool>(
+        &self,
+        b: &Geometry,
+        pose: &Pose<S>,
+        v: &Velocities<S>,
+    ) -> Momenta<S> {
+        // Components that are zero for every pose: e1.y, f2.z, steer_momentum.z.
+        let (w, m, f2) = (v.omega, self.moment, pose.f2);
+        let forward = v.rolling * -b.rR;
+        let (x, y, z) = (pose.e1.x * forward, v.roll * b.rR, pose.e1.z * forward);
         let spin = v.front_spin * b.front.spin_inertia;
-        let mut angular = self.whole.times(v.omega)
-            + self.moment.cross(axle)
-            + pose.f2.times(spin)
-            + self.steer_angular.times(v.steer);
-        angular.y = angular.y + v.rear_spin * b.rear.spin_inertia;
-        let about_f2 = pose.f2.x * v.omega.x + pose.f2.y * v.omega.y;
+        let mass = b.rear.mass + b.front.mass;
+        let whole = self.whole.times(w);
+        let mut angular = Vec3::new(m.y * z, m.z * x - m.x * z, -(m.y * x));
+        let mut momentum = Vec3::new(x * mass, S::constant(0.0), z * mass) + w.cross(m);
+        let mut steer = self.steer_angular.dot(w) + self.steer_momentum.x * x;
+        if ROLL {
+            angular = Vec3::new(m.y * z - m.z * y, angular.y, m.x * y - m.y * x);
+            momentum.y = y * mass + (w.z * m.x - w.x * m.z);
+            steer = steer + self.steer_momentum.y * y;
+        }
+        angular = Vec3::new(
+            whole.x + angular.x + f2.x * spin,
+            whole.y + angular.y + f2.y * spin,
+            whole.z + angular.z,
+        );
+        if STEER {
+            angular = angular + self.steer_angular.times(v.steer);
+            momentum.x = momentum.x + self.steer_momentum.x * v.steer;
+            momentum.y = momentum.y + self.steer_momentum.y * v.steer;
+            steer = steer
+                + v.steer * (b.front.inertia[2] + b.front.moment[0] * b.front.com[0] + b.rotor_kg_m2);
+        }
+        if WHEEL {
+            angular.y = angular.y + v.rear_spin * b.rear.spin_inertia;
+        }
         Momenta {
-            momentum: axle.scaled(b.rear.mass + b.front.mass)
-                + v.omega.cross(self.moment)
-                + self.steer_momentum.times(v.steer),
+            momentum,
             angular,
-            steer: self.steer_angular.dot(v.omega)
-                + self.steer_momentum.x * axle.x
-                + self.steer_momentum.y * axle.y
-                + v.steer * (b.front.inertia[2] + b.front.moment[0] * b.front.com[0] + b.rotor_kg_m2),
+            steer,
             rear_axle: v.rolling * b.rear.spin_inertia,
-            front_axle: spin + about_f2 * b.front.spin_inertia,
+            front_axle: spin + (f2.x * w.x + f2.y * w.y) * b.front.spin_inertia,
         }
     }
 }
@@ -131,14 +155,23 @@ pub(super) struct Momenta<S> {
 }
 
 impl<S: Scalar> Velocities<S> {
-    /// Power of forces at these velocities (or the scalar product with momenta).
+    /// Power of forces at these velocities (or the scalar product with momenta); constants as in [`Inertia::momenta`].
     #[inline(always)]
-    pub(super) fn power(&self, b: &Geometry, pose: &Pose<S>, f: &Momenta<S>) -> S {
-        let along = pose.e1.x * f.momentum.x + pose.e1.z * f.momentum.z;
-        (self.roll * f.momentum.y - self.rolling * along) * b.rR
-            + self.omega.dot(f.angular)
-            + self.steer * f.steer
-            + self.rear_spin * f.rear_axle
-            + self.front_spin * f.front_axle
+    pub(super) fn power<const ROLL: bool, const STEER: bool, const WHEEL: bool>(
+        &self,
+        b: &Geometry,
+        pose: &Pose<S>,
+        f: &Momenta<S>,
+    ) -> S {
+        let along = self.rolling * (pose.e1.x * f.momentum.x + pose.e1.z * f.momentum.z);
+        let axle = if ROLL { self.roll * f.momentum.y - along } else { -along };
+        let mut power = axle * b.rR + self.omega.dot(f.angular);
+        if STEER {
+            power = power + self.steer * f.steer;
+        }
+        if WHEEL {
+            power = power + self.rear_spin * f.rear_axle;
+        }
+        power + self.front_spin * f.front_axle
     }
 }

@@ -69,17 +69,17 @@ impl FullState {
         let mut a = SMatrix::<f64, 9, 9>::zeros();
         let mut r = SVector::<f64, 9>::zeros();
         for j in 0..6 {
-            let momenta = inertia.momenta(b, &pose, &unit[j]);
+            let momenta = inertia.momenta::<true, true, true>(b, &pose, &unit[j]);
             let contact = contact_velocity(b, &pose, &unit[j]);
             for i in 0..=j {
-                a[(i, j)] = unit[i].power(b, &pose, &momenta);
+                a[(i, j)] = unit[i].power::<true, true, true>(b, &pose, &momenta);
                 a[(j, i)] = a[(i, j)];
             }
             for (i, c) in [contact.x, contact.y, contact.z].into_iter().enumerate() {
                 a[(6 + i, j)] = c;
                 a[(j, 6 + i)] = c;
             }
-            r[j] = -unit[j].power(b, &pose, &bias);
+            r[j] = -unit[j].power::<true, true, true>(b, &pose, &bias);
         }
         r[0] += torques.roll;
         r[3] += torques.steer;
