@@ -5,11 +5,10 @@
 //! the rear wheel (only pitch moves). The motion passes these smoothly. This formulation follows it, at ten
 //! times the cost. `docs/bicycle.md`, section 9.
 
-use super::inertia::Inertia;
+use super::inertia::{Inertia, Momenta};
 use super::pitch::Attitude;
 use super::{Geometry, Motion, Pose, State, Torques, Velocities};
 use crate::num::{Moves, Vec3, sin_cos};
-use nalgebra::{SMatrix, SVector};
 
 /// A state with redundant speeds, which satisfy the constraints.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,28 +65,81 @@ impl FullState {
         let actual = velocities(&pose, &self.speeds);
         let inertia = Inertia::new(b, &pose);
         let (bias, free) = super::bias::bias(b, &pose, &actual, &inertia, None);
-        let mut a = SMatrix::<f64, 9, 9>::zeros();
-        let mut r = SVector::<f64, 9>::zeros();
-        for j in 0..6 {
-            let momenta = inertia.momenta::<true, true, true>(b, &pose, &unit[j]);
-            let contact = contact_velocity(b, &pose, &unit[j]);
-            for i in 0..=j {
-                a[(i, j)] = unit[i].power::<true, true, true>(b, &pose, &momenta);
-                a[(j, i)] = a[(i, j)];
+        let [roll, pitch, yaw, steer, rear, front] = &unit;
+        let momenta = [
+            inertia.momenta::<true, false, false>(b, &pose, roll),
+            inertia.momenta::<false, false, false>(b, &pose, pitch),
+            inertia.momenta::<false, false, false>(b, &pose, yaw),
+            inertia.momenta::<false, true, false>(b, &pose, steer),
+            inertia.momenta::<false, false, true>(b, &pose, rear),
+            inertia.momenta::<false, false, false>(b, &pose, front),
+        ];
+        let powers = |f: &Momenta<f64>| {
+            [
+                roll.power::<true, false, false>(b, &pose, f),
+                pitch.power::<false, false, false>(b, &pose, f),
+                yaw.power::<false, false, false>(b, &pose, f),
+                steer.power::<false, true, false>(b, &pose, f),
+                rear.power::<false, false, true>(b, &pose, f),
+                front.power::<false, false, false>(b, &pose, f),
+            ]
+        };
+        let (mut a, mut r) = ([[0.0; 9]; 9], [0.0; 9]);
+        for (j, (unit, momenta)) in unit.iter().zip(&momenta).enumerate() {
+            for (i, power) in powers(momenta).into_iter().enumerate().take(j + 1) {
+                a[i][j] = power;
+                a[j][i] = power;
             }
+            let contact = contact_velocity(b, &pose, unit);
             for (i, c) in [contact.x, contact.y, contact.z].into_iter().enumerate() {
-                a[(6 + i, j)] = c;
-                a[(j, 6 + i)] = c;
+                a[6 + i][j] = c;
+                a[j][6 + i] = c;
             }
-            r[j] = -unit[j].power::<true, true, true>(b, &pose, &bias);
+        }
+        for (j, power) in powers(&bias).into_iter().enumerate() {
+            r[j] = -power;
         }
         r[0] += torques.roll;
         r[3] += torques.steer;
         (r[6], r[7], r[8]) = (-free.x, -free.y, -free.z);
-        let solution = a.lu().solve(&r)?;
+        let solution = solve(a, r)?;
         let speeds = std::array::from_fn(|i| solution[i]);
         Some(FullState { angles: [actual.roll, actual.pitch, actual.steer], speeds })
     }
+}
+
+/// Solves `a x = r` by elimination with the largest pivot of each column; `None` if a pivot is zero.
+fn solve<const N: usize>(mut a: [[f64; N]; N], mut r: [f64; N]) -> Option<[f64; N]> {
+    for i in 0..N {
+        let mut largest = i;
+        for row in i + 1..N {
+            if a[row][i].abs() > a[largest][i].abs() {
+                largest = row;
+            }
+        }
+        a.swap(i, largest);
+        r.swap(i, largest);
+        if a[i][i] == 0.0 {
+            return None;
+        }
+        let (above, below) = a.split_at_mut(i + 1);
+        let (pivot, per_pivot, known) = (&above[i], 1.0 / above[i][i], r[i]);
+        for (row, r) in below.iter_mut().zip(&mut r[i + 1..]) {
+            let part = row[i] * per_pivot;
+            for j in i + 1..N {
+                row[j] -= part * pivot[j];
+            }
+            *r -= part * known;
+        }
+    }
+    for i in (0..N).rev() {
+        r[i] /= a[i][i];
+        let known = r[i];
+        for (row, r) in a.iter().zip(&mut r[..i]) {
+            *r -= row[i] * known;
+        }
+    }
+    Some(r)
 }
 
 fn velocities(

@@ -23,7 +23,7 @@ const LARGEST: f64 = 0.05;
 const SHORTEST_S: f64 = 1e-6;
 /// Smallest distance from a singular configuration at which the independent speeds are used, as a fraction of the
 /// upright bicycle's distance.
-const NEAREST: f64 = 0.15;
+const NEAREST: f64 = 0.1;
 /// Steps per second of the time limit after which a ride is left to the exact method.
 const STEPS_PER_S: f64 = 2000.0;
 /// The end of a ride is decided if the late amplitude differs from the limit by this factor.

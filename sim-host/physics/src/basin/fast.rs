@@ -142,32 +142,41 @@ fn confirmed<L: Fn(f64) -> Start>(
             }
         }
     }
-    // Both ends of every edge, and the largest disturbance where none falls.
-    let mut wanted = Vec::new();
+    // Both ends of every edge, and the largest disturbance where none falls. Rides that do not fall are the longest, and
+    // first: the short ones fill the lanes at the end.
+    let (mut safe, mut fell) = (Vec::new(), Vec::new());
     for (i, line) in lines.iter().enumerate() {
-        wanted.extend(line.edges.iter().flat_map(|edge| [(i, edge.safe), (i, edge.fell)]));
+        safe.extend(line.edges.iter().map(|edge| (i, edge.safe)));
+        fell.extend(line.edges.iter().map(|edge| (i, edge.fell)));
         if line.edges.is_empty() {
-            wanted.extend(line.scan.last().map(|point| (i, point.rate)));
+            safe.extend(line.scan.last().map(|point| (i, point.rate)));
         }
     }
-    let mut ends = exact(conditions, &mut lines, &wanted).into_iter();
-    let mut of_lines: Vec<Vec<Ride>> = Vec::with_capacity(lines.len());
-    for line in &lines {
-        of_lines.push(ends.by_ref().take((2 * line.edges.len()).max(1)).collect());
-    }
-    lines.into_iter().zip(of_lines).map(|(line, ends)| finished(conditions, search, line, &ends)).collect()
+    let wanted: Vec<(usize, f64)> = safe.iter().chain(&fell).copied().collect();
+    let mut safe_rides = exact(conditions, &mut lines, &wanted);
+    let mut fell_rides = safe_rides.split_off(safe.len()).into_iter();
+    let mut safe_rides = safe_rides.into_iter();
+    let finished = |line: Line<L>| {
+        let edges = line.edges.len();
+        let safe: Vec<Ride> = safe_rides.by_ref().take(edges.max(1)).collect();
+        let fell: Vec<Ride> = fell_rides.by_ref().take(edges).collect();
+        finished(conditions, search, line, &safe, &fell)
+    };
+    lines.into_iter().map(finished).collect()
 }
 
-/// The column of a line whose edges have these exact rides: at the safe and the falling end of each.
+/// The column of a line whose edges have these exact rides at their safe and falling ends. Without edges, `safe` has the
+/// ride of the largest disturbance.
 fn finished<L: Fn(f64) -> Start>(
     conditions: &Conditions,
     search: &Search,
     mut line: Line<L>,
-    ends: &[Ride],
+    safe: &[Ride],
+    fell: &[Ride],
 ) -> Column {
     let speed = (line.start)(0.0).speed_m_s;
     if line.edges.is_empty() {
-        let last = ends.first().copied();
+        let last = safe.first().copied();
         return match last.is_some_and(|ride| ride.fell()) {
             true => plain(conditions, search, line.start),
             false => column(speed, search, line.scan, &[], last, line.work),
@@ -175,10 +184,9 @@ fn finished<L: Fn(f64) -> Start>(
     }
     let mut borders = Vec::with_capacity(line.edges.len());
     let edges: Vec<(Edge, Edge)> = line.wide.iter().copied().zip(line.edges.iter().copied()).collect();
-    for ((wide, edge), ends) in edges.into_iter().zip(ends.chunks(2)) {
-        let &[safe, beyond] = ends else { return plain(conditions, search, line.start) };
+    for ((wide, edge), (safe, beyond)) in edges.into_iter().zip(safe.iter().zip(fell)) {
         if !safe.fell() && beyond.fell() {
-            let ride = (edge.safe != 0.0).then_some(safe);
+            let ride = (edge.safe != 0.0).then_some(*safe);
             borders.push(Border { safe: edge.safe, ride, beyond: beyond.outcome.fall() });
             continue;
         }
