@@ -6,4 +6,5 @@ mod motion;
 mod published;
 mod riders;
 mod rides;
+mod search;
 mod sensitivity;

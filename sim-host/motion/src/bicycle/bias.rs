@@ -70,8 +70,7 @@ pub(super) fn bias<S: Scalar>(
     // Rear gyrostat about P.
     let s = b.rear.moment;
     let force_r = axle.scaled(b.rear.mass) + swing(alpha, w, s);
-    let moment_r = turned(&b.rear, alpha)
-        + w.cross(turned(&b.rear, w));
+    let moment_r = turned(&b.rear, alpha) + w.cross(turned(&b.rear, w));
     let moment_r = plus_xz(moment_r, u2_dot, v.rear_spin * b.rear.spin_inertia)
         + Vec3::new(-(axle.y * s[1]), axle.x * s[1] - axle.z * s[0], axle.y * s[0]);
 

@@ -124,8 +124,8 @@ impl<S: Scalar> Inertia<S> {
             angular = angular + self.steer_angular.times(v.steer);
             momentum.x = momentum.x + self.steer_momentum.x * v.steer;
             momentum.y = momentum.y + self.steer_momentum.y * v.steer;
-            steer = steer
-                + v.steer * (b.front.inertia[2] + b.front.moment[0] * b.front.com[0] + b.rotor_kg_m2);
+            steer =
+                steer + v.steer * (b.front.inertia[2] + b.front.moment[0] * b.front.com[0] + b.rotor_kg_m2);
         }
         if WHEEL {
             angular.y = angular.y + v.rear_spin * b.rear.spin_inertia;

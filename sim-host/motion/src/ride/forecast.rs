@@ -10,9 +10,9 @@ use crate::num::{Dual, Scalar};
 use control::Law;
 
 /// Largest roll and steer \[rad\].
-const LARGEST_RAD: f64 = 0.1;
+const LARGEST_RAD: f64 = 0.05;
 /// Largest rates of roll and steer \[rad/s\].
-const LARGEST_RAD_S: f64 = 0.8;
+const LARGEST_RAD_S: f64 = 0.4;
 /// Factor between a late amplitude and the limit that decides.
 const CLEAR: f64 = 1.25;
 /// Time step of the linear motion \[s\].

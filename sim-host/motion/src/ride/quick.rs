@@ -27,7 +27,7 @@ const NEAREST: f64 = 0.1;
 /// Steps per second of the time limit after which a ride is left to the exact method.
 const STEPS_PER_S: f64 = 2000.0;
 /// The end of a ride is decided if the late amplitude differs from the limit by this factor.
-const CLEAR: f64 = 1.02;
+const CLEAR: f64 = 1.03;
 
 /// The result of a quick ride.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -284,11 +284,13 @@ impl Lane {
         }
         self.t += h;
         let angles = [after.roll.abs(), after.steer.abs()];
-        let late = self.t > conditions.time_limit_s - 1.0;
-        for (i, angle) in angles.into_iter().enumerate() {
+        // The exact ride's last second begins with the end of its first control period.
+        let since_s = self.t - (conditions.time_limit_s - 1.0 + conditions.step_s);
+        for (i, (angle, before)) in angles.into_iter().zip([before.roll, before.steer]).enumerate() {
             self.peak[i] = self.peak[i].max(angle);
-            if late {
-                self.late[i] = self.late[i].max(angle);
+            if since_s >= 0.0 {
+                let at_begin = angle + (before.abs() - angle) * (since_s / h).min(1.0);
+                self.late[i] = self.late[i].max(angle).max(at_begin);
             }
         }
         let over = self.t >= conditions.time_limit_s - 1e-9;

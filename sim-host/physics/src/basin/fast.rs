@@ -3,7 +3,7 @@
 //! The disturbances are those of the plain search, so a confirmed border has the same bits. A border that is not confirmed
 //! is narrowed by exact rides; a scan that an exact ride contradicts is done again, plainly.
 
-use super::plain::{explored, narrow, ridden};
+use super::plain::{narrow, plain};
 use super::scan::{Border, Edge, SECTIONS, column, edges, fell, rates};
 use super::{Column, ScanPoint, Search, Work};
 use crate::ride::{Conditions, Outcome, Quick, Ride, Start, rides};
@@ -11,6 +11,9 @@ use std::convert::Infallible;
 
 /// Number of lines of disturbances searched together: their exact rides, two for each border, fill the lanes.
 pub(super) const TOGETHER: usize = 8;
+
+/// Distance from a border up to which the scan's rides are exact, in tolerances: there a ride is most sensitive.
+const NEAR: f64 = 5.0;
 
 /// A line of disturbances during the search.
 struct Line<'a, L> {
@@ -20,6 +23,8 @@ struct Line<'a, L> {
     wide: Vec<Edge>,
     /// The same, narrowed by quick rides.
     edges: Vec<Edge>,
+    /// Whether an exact ride contradicts the scan.
+    contradicted: bool,
     work: Work,
 }
 
@@ -67,7 +72,26 @@ pub(super) fn border<L: Fn(f64) -> Start>(
 
 impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
     fn new(start: &'a L) -> Self {
-        Self { start, scan: Vec::new(), wide: Vec::new(), edges: Vec::new(), work: Work::default() }
+        let (scan, wide, edges) = (Vec::new(), Vec::new(), Vec::new());
+        Self { start, scan, wide, edges, contradicted: false, work: Work::default() }
+    }
+
+    /// The disturbances of the scan so near a border that its last ride can end otherwise; with the line's index `i`.
+    fn near(&self, i: usize, search: &Search) -> impl Iterator<Item = (usize, f64)> {
+        let of_edge = |(wide, edge): (&Edge, &Edge)| {
+            [(wide.safe, edge.safe), (wide.fell, edge.fell)]
+                .map(|(point, border)| (point, (point - border).abs() <= NEAR * search.tolerance))
+        };
+        let points = self.wide.iter().zip(&self.edges).flat_map(of_edge);
+        points.filter(|&(rate, near)| near && rate > 0.0).map(move |(rate, _)| (i, rate))
+    }
+
+    /// Replaces an outcome of the scan by that of an exact ride.
+    fn corrected(&mut self, rate: f64, outcome: Outcome) {
+        for point in self.scan.iter_mut().filter(|point| point.rate == rate) {
+            self.contradicted |= fell(point.outcome) != fell(outcome);
+            point.outcome = outcome;
+        }
     }
 
     /// Stores the outcomes of a scan, in the order of the rates.
@@ -152,10 +176,16 @@ fn confirmed<L: Fn(f64) -> Start>(
             safe.extend(line.scan.last().map(|point| (i, point.rate)));
         }
     }
-    let wanted: Vec<(usize, f64)> = safe.iter().chain(&fell).copied().collect();
+    let near: Vec<(usize, f64)> =
+        lines.iter().enumerate().flat_map(|(i, line)| line.near(i, search)).collect();
+    let wanted: Vec<(usize, f64)> = safe.iter().chain(&fell).chain(&near).copied().collect();
     let mut safe_rides = exact(conditions, &mut lines, &wanted);
-    let mut fell_rides = safe_rides.split_off(safe.len()).into_iter();
-    let mut safe_rides = safe_rides.into_iter();
+    let mut fell_rides = safe_rides.split_off(safe.len());
+    let near_rides = fell_rides.split_off(fell.len());
+    for (&(line, rate), ride) in near.iter().zip(near_rides) {
+        lines[line].corrected(rate, ride.outcome);
+    }
+    let (mut safe_rides, mut fell_rides) = (safe_rides.into_iter(), fell_rides.into_iter());
     let finished = |line: Line<L>| {
         let edges = line.edges.len();
         let safe: Vec<Ride> = safe_rides.by_ref().take(edges.max(1)).collect();
@@ -175,6 +205,9 @@ fn finished<L: Fn(f64) -> Start>(
     fell: &[Ride],
 ) -> Column {
     let speed = (line.start)(0.0).speed_m_s;
+    if line.contradicted {
+        return plain(conditions, search, line.start);
+    }
     if line.edges.is_empty() {
         let last = safe.first().copied();
         return match last.is_some_and(|ride| ride.fell()) {
@@ -208,10 +241,4 @@ fn finished<L: Fn(f64) -> Start>(
         borders.push(border);
     }
     column(speed, search, line.scan, &borders, None, line.work)
-}
-
-/// The column by exact rides only.
-fn plain(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Start) -> Column {
-    let Ok(column) = explored(&ridden(conditions), search, start, false);
-    column
 }

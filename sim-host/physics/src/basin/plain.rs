@@ -10,6 +10,12 @@ pub(super) fn ridden(conditions: &Conditions) -> impl Fn(&[Start]) -> Result<Vec
     |starts| Ok(rides(conditions, starts))
 }
 
+/// The column by exact rides only.
+pub(super) fn plain(conditions: &Conditions, search: &Search, start: &dyn Fn(f64) -> Start) -> Column {
+    let Ok(column) = explored(&ridden(conditions), search, start, false);
+    column
+}
+
 /// Scans a line of disturbances and narrows the borders; with `first_only` in groups up to the first with a fall, and only
 /// the first border.
 pub(super) fn explored<E>(

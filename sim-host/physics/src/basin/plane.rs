@@ -1,6 +1,6 @@
 //! The basin at one speed over two disturbances: steer rate and roll rate.
 
-use super::search::along;
+use super::search::{along, together};
 use super::{Axis, Column, Method, Search, SearchError, Work};
 use crate::range::within;
 use crate::ride::{Conditions, Start};
@@ -137,22 +137,27 @@ pub fn plane(
         tolerance: search.tolerance,
         method: search.method,
     };
-    let rays: Vec<Option<Ray>> = (0..search.rays)
-        .into_par_iter()
-        .map(|i| {
-            if stop() {
-                return None;
-            }
-            let (steer_rate, roll_rate) = search.direction(i);
-            let start = |s: f64| Start {
-                speed_m_s: search.speed,
-                steer_rate_rad_s: s * steer_rate,
-                roll_rate_rad_s: s * roll_rate,
-            };
-            let ray = Ray { steer_rate, roll_rate, column: along(conditions, &line, start) };
-            finished(&ray);
-            Some(ray)
-        })
-        .collect();
-    Ok(Plane { rays: rays.into_iter().flatten().collect() })
+    let all: Vec<usize> = (0..search.rays).collect();
+    let explored = |group: &[usize]| -> Vec<Ray> {
+        if stop() {
+            return Vec::new();
+        }
+        let ends: Vec<(f64, f64)> = group.iter().map(|&i| search.direction(i)).collect();
+        let starts: Vec<_> = ends
+            .iter()
+            .map(|&(steer_rate, roll_rate)| {
+                move |s: f64| Start {
+                    speed_m_s: search.speed,
+                    steer_rate_rad_s: s * steer_rate,
+                    roll_rate_rad_s: s * roll_rate,
+                }
+            })
+            .collect();
+        let columns = along(conditions, &line, &starts);
+        let rays = ends.into_iter().zip(columns);
+        rays.map(|((steer_rate, roll_rate), column)| Ray { steer_rate, roll_rate, column })
+            .inspect(|ray| finished(ray))
+            .collect()
+    };
+    Ok(Plane { rays: all.par_chunks(together(conditions, &line)).flat_map_iter(explored).collect() })
 }

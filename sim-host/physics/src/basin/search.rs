@@ -1,6 +1,6 @@
 //! Basin search: a scan over disturbances, then each border is narrowed to the tolerance.
 
-use super::plain::{explored, ridden};
+use super::plain::{explored, plain, ridden};
 use super::{Basin, Column, fast};
 use crate::bicycle::uncertain::DrawError;
 use crate::range::{RangeError, within};
@@ -127,8 +127,8 @@ impl Search {
 }
 
 /// Computes the basin at every speed, on all cores of the current rayon pool. `finished` is called after each
-/// column, `stop` is checked before each or, in a fast search, before each [`fast::TOGETHER`]. The result does not depend
-/// on the number of threads.
+/// column, `stop` is checked before each or, in a fast search, before every eight. The result does not depend on the
+/// number of threads.
 ///
 /// # Errors
 /// The search or the conditions fail their checks.
@@ -138,15 +138,6 @@ pub fn basin(
     finished: impl Fn(&Column) + Sync,
     stop: impl Fn() -> bool + Sync,
 ) -> Result<Basin, SearchError> {
-    let Some(quick) = search.quick(conditions) else {
-        return basin_by(
-            conditions,
-            search,
-            |starts| Ok(crate::ride::rides(conditions, starts)),
-            finished,
-            stop,
-        );
-    };
     search.check()?;
     conditions.check()?;
     let explored = |speeds: &[f64]| {
@@ -154,11 +145,17 @@ pub fn basin(
             return Vec::new();
         }
         let lines: Vec<_> = speeds.iter().map(|&speed| move |rate| search.axis.start(speed, rate)).collect();
-        let columns = fast::columns(conditions, &quick, search, &lines);
+        let columns = along(conditions, search, &lines);
         columns.iter().for_each(&finished);
         columns
     };
-    Ok(Basin { columns: search.speeds.par_chunks(fast::TOGETHER).flat_map_iter(explored).collect() })
+    let groups = search.speeds.par_chunks(together(conditions, search));
+    Ok(Basin { columns: groups.flat_map_iter(explored).collect() })
+}
+
+/// Number of lines of disturbances to search together.
+pub(super) fn together(conditions: &Conditions, search: &Search) -> usize {
+    search.quick(conditions).map_or(1, |_| fast::TOGETHER)
 }
 
 /// As [`basin`], with exact rides only, simulated by `rides`, which returns them in the order of the starts.
@@ -191,19 +188,21 @@ pub fn basin_by<E: From<SearchError> + Send>(
 
 /// The basin at one speed.
 pub fn column(conditions: &Conditions, search: &Search, speed: f64) -> Column {
-    along(conditions, search, |rate| search.axis.start(speed, rate))
+    let start = |rate| search.axis.start(speed, rate);
+    along(conditions, search, &[start]).remove(0)
 }
 
-/// The basin along any line of disturbances: `start` gives the initial state for a disturbance of 0 to
-/// `search.max_rate`. The search's axis is not used.
-pub(super) fn along(conditions: &Conditions, search: &Search, start: impl Fn(f64) -> Start) -> Column {
-    if let Some(quick) = search.quick(conditions)
-        && let Some(column) = fast::columns(conditions, &quick, search, std::slice::from_ref(&start)).pop()
-    {
-        return column;
+/// The basins along lines of disturbances: each gives the initial state for a disturbance of 0 to `search.max_rate`. The
+/// search's axis is not used.
+pub(super) fn along<L: Fn(f64) -> Start>(
+    conditions: &Conditions,
+    search: &Search,
+    lines: &[L],
+) -> Vec<Column> {
+    match search.quick(conditions) {
+        Some(quick) => fast::columns(conditions, &quick, search, lines),
+        None => lines.iter().map(|line| plain(conditions, search, line)).collect(),
     }
-    let Ok(column) = explored(&ridden(conditions), search, &start, false);
-    column
 }
 
 /// The basin at one speed without islands: the scan ends soon after the first fall. `upper` equals that of

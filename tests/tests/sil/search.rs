@@ -1,0 +1,207 @@
+//! The fast search of basins against the plain one, and quick rides against exact ones.
+
+use control::{Config, DeadBand, Law};
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+use sim_host::basin::{Axis, Column, Method, PlaneSearch, Search, basin, border, plane};
+use sim_host::ride::{Conditions, Imu, Outcome, Quick, Start, rides};
+use tests::basins::{H, alone, assisted, configured, ideal, search};
+
+/// Difference of a time of fall that counts \[s\].
+const TIME_S: f64 = 1e-3;
+
+/// Both searches of a basin.
+fn both(conditions: &Conditions, fast: &Search) -> [Vec<Column>; 2] {
+    let plain = Search { method: Method::Plain, ..fast.clone() };
+    [fast, &plain].map(|search| basin(conditions, search, |_| (), || false).expect("a basin").columns)
+}
+
+/// Compares all but the computing effort: bit for bit, the times of falls of the scan within [`TIME_S`]. Returns the number
+/// of falls, and of those that differ by more or in their cause.
+fn compared(conditions: &Conditions, fast: &Search) -> (usize, usize) {
+    let [fast, plain] = both(conditions, fast);
+    assert_eq!(fast.len(), plain.len());
+    let (mut falls, mut apart) = (0, 0);
+    for (fast, plain) in fast.iter().zip(&plain) {
+        let at = fast.speed;
+        assert_eq!((fast.upper, fast.capped), (plain.upper, plain.capped), "height at {at} m/s");
+        assert_eq!(fast.islands, plain.islands, "islands at {at} m/s");
+        assert_eq!((fast.border, fast.beyond), (plain.border, plain.beyond), "border at {at} m/s");
+        for (fast, plain) in fast.scan.iter().zip(&plain.scan) {
+            assert_eq!(fast.rate, plain.rate);
+            match (fast.outcome.time_to_fall_s(), plain.outcome.time_to_fall_s()) {
+                (Some(one), Some(other)) => {
+                    falls += 1;
+                    let same = fast.outcome.fall() == plain.outcome.fall() && (one - other).abs() <= TIME_S;
+                    apart += usize::from(!same);
+                }
+                _ => assert_eq!(fast.outcome, plain.outcome, "{at} m/s, {} rad/s", fast.rate),
+            }
+        }
+    }
+    (falls, apart)
+}
+
+/// Situation: basins of h in the control crate, with islands, undecided borders and a height without a fall; of no assist;
+/// of cl2:4 and of h in continuous time, there with roll rate as the disturbance. Action: search them fast and plainly.
+/// Must hold: heights, islands, border rides and outcomes have the same bits; of the falls at most one in fifty
+/// differs by more than 1 ms or in its cause (bicycles that turn over first), and some differ in their last digits.
+#[test]
+fn fast_and_plain_searches_agree() {
+    let roll = Search { axis: Axis::RollRate, ..search(&[3.0, 6.0], 6.0) };
+    let cases = [
+        (assisted(H), search(&[0.0, 0.8, 2.0, 4.0, 5.8, 7.5, 9.0], 20.0)),
+        (assisted(H), search(&[5.0], 3.0)),
+        (alone(), search(&[2.0, 4.6, 6.5], 8.0)),
+        (assisted("cl2:4".parse().expect("a law")), search(&[1.0, 4.0], 12.0)),
+        (ideal(H), roll),
+    ];
+    let (mut falls, mut apart) = (0, 0);
+    for (conditions, search) in &cases {
+        assert!(Quick::new(conditions).is_some());
+        let (more, further) = compared(conditions, search);
+        (falls, apart) = (falls + more, apart + further);
+    }
+    assert!(falls > 300 && 50 * apart <= falls, "{apart} of {falls} times of falls differ by more than 1 ms");
+}
+
+/// Situation: as above, every speed of the default basin under h, g and cl2:4, without assist, and in continuous time.
+/// Action and what must hold: as above.
+#[test]
+#[ignore = "slow: cargo xtask test --all"]
+fn fast_and_plain_default_basins_agree() {
+    let speeds: Vec<f64> = (0..=100).map(|i| f64::from(i) / 10.0).collect();
+    let cl2: Law = "cl2:4".parse().expect("a law");
+    for conditions in [assisted(H), assisted(Law::G), assisted(cl2), alone(), ideal(H)] {
+        let (falls, apart) = compared(&conditions, &search(&speeds, 30.0));
+        println!("{apart} of {falls} falls differ by more than 1 ms or in their cause");
+        assert!(falls > 5000 && 100 * apart <= falls, "{apart} of {falls}");
+    }
+}
+
+/// Situation: bicycles under any law with any small or large disturbance. Action: ride quickly and exactly.
+/// Must hold: every quick outcome is the exact one, but for at most one in 500 chaotic rides; few are left open; and quick
+/// rides take at most a third of the steps.
+fn random_rides(cases: u32) {
+    let laws = [Law::None, H, Law::H { cut: true }, Law::F, Law::G, "cl1".parse().expect("a law")];
+    let starts = (0..laws.len(), 0.0..10.0, -20.0..20.0, -3.0..3.0, any::<bool>());
+    let mut runner = TestRunner::default();
+    let mut rides_of: Vec<Vec<Start>> = vec![Vec::new(); laws.len()];
+    for _ in 0..cases {
+        let (law, speed_m_s, steer_rate_rad_s, roll_rate_rad_s, small) =
+            starts.new_tree(&mut runner).expect("a start").current();
+        let scale = if small { 0.1 } else { 1.0 };
+        let (steer_rate_rad_s, roll_rate_rad_s) = (scale * steer_rate_rad_s, scale * roll_rate_rad_s);
+        rides_of[law].push(Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s });
+    }
+    let (mut other, mut open, mut quick_steps, mut steps) = (Vec::new(), 0, 0, 0);
+    for (law, starts) in laws.iter().zip(&rides_of) {
+        let conditions = assisted(law.clone());
+        let quick = Quick::new(&conditions).expect("quick rides").rides(starts);
+        for (quick, exact) in quick.iter().zip(rides(&conditions, starts)) {
+            (quick_steps, steps) = (quick_steps + quick.steps, steps + exact.steps);
+            let same = |outcome: Outcome| match (outcome.fall(), exact.outcome.fall()) {
+                (None, None) => outcome == exact.outcome,
+                (one, other) => one == other,
+            };
+            match quick.outcome {
+                Some(outcome) if !same(outcome) => {
+                    other.push((law.clone(), exact.start, outcome, exact.outcome))
+                }
+                Some(_) => {}
+                None => open += 1,
+            }
+        }
+    }
+    assert!(500 * other.len() <= cases as usize, "{other:?}");
+    assert!((0..=cases / 50).contains(&open), "{open} open");
+    assert!(quick_steps > 0 && 3 * quick_steps < steps, "{quick_steps} of {steps} steps");
+}
+
+/// Situation, action and what must hold: see [`random_rides`].
+#[test]
+fn quick_rides_end_as_exact_ones() {
+    random_rides(500);
+}
+
+/// Situation, action and what must hold: see [`random_rides`].
+#[test]
+#[ignore = "slow: cargo xtask test --all"]
+fn many_quick_rides_end_as_exact_ones() {
+    random_rides(20_000);
+}
+
+/// Situation: small disturbances at speeds on both sides of weave and capsize speed, and ride times from 2 to 30 s.
+/// Action: ride quickly, where the linear model decides most, and exactly.
+/// Must hold: recovered and undecided are the same, and both occur.
+#[test]
+fn the_linear_model_decides_as_the_nonlinear() {
+    let speeds = (0..40).map(|i| 0.25 * f64::from(i));
+    let starts: Vec<Start> =
+        speeds.flat_map(|speed| [0.1, 1.0, 2.0].map(|rate| Axis::SteerRate.start(speed, rate))).collect();
+    let mut counts = [0; 2];
+    for time_limit_s in [2.0, 6.0, 30.0] {
+        for conditions in [alone(), assisted(H)] {
+            let conditions = Conditions { time_limit_s, ..conditions };
+            let quick = Quick::new(&conditions).expect("quick rides").rides(&starts);
+            for (quick, exact) in quick.iter().zip(rides(&conditions, &starts)) {
+                let Some(outcome) = quick.outcome.filter(|outcome| outcome.fall().is_none()) else {
+                    continue;
+                };
+                assert_eq!(outcome, exact.outcome, "{:?} in {time_limit_s} s", exact.start);
+                counts[usize::from(outcome == Outcome::Recovered)] += 1;
+            }
+        }
+    }
+    assert!(counts.iter().all(|count| *count > 100), "{counts:?}");
+}
+
+/// Situation: a plane of disturbances, and the height alone at one speed. Action: search both fast and plainly.
+/// Must hold: the rays' borders and the height have the same bits.
+#[test]
+fn fast_and_plain_planes_and_heights_agree() {
+    let fast = PlaneSearch { speed: 4.0, rays: 10, points: 40, tolerance: 0.002, ..PlaneSearch::default() };
+    let plain = PlaneSearch { method: Method::Plain, ..fast };
+    let conditions = assisted(H);
+    let [fast, plain] =
+        [fast, plain].map(|search| plane(&conditions, &search, |_| (), || false).expect("a plane"));
+    assert_eq!(fast.rays.len(), 10);
+    for (fast, plain) in fast.rays.iter().zip(&plain.rays) {
+        assert_eq!((fast.column.upper, fast.column.border), (plain.column.upper, plain.column.border));
+    }
+    assert!(fast.work().steps < plain.work().steps);
+    let fast = search(&[4.0], 30.0);
+    let plain = Search { method: Method::Plain, ..fast.clone() };
+    let [fast, plain] = [&fast, &plain].map(|search| border(&conditions, search, 4.0));
+    assert_eq!((fast.upper, fast.border, fast.beyond), (plain.upper, plain.border, plain.beyond));
+    assert!((8.0..9.0).contains(&fast.upper), "{}", fast.upper);
+    assert!(2 * fast.work.steps < plain.work.steps, "{:?} {:?}", fast.work, plain.work);
+}
+
+/// Situation: conditions under which more than the law acts: a limit, a sensor's delay, a rider, friction. Action: search.
+/// Must hold: there are no quick rides, and both searches are one. A dead band, the gyro's own axis and the speed of the
+/// rear wheel are part of the law.
+#[test]
+fn quick_rides_exist_for_a_law_alone() {
+    let mut limited = Config::thesis(H);
+    limited.limits.max_torque_nm = Some(5.0);
+    let mut friction = assisted(H);
+    friction.plant.actuator.friction.coulomb_nm = 0.1;
+    let others = [
+        configured(limited),
+        configured(Config::product()),
+        Conditions { sensor_delay_ticks: 5, ..assisted(H) },
+        friction,
+    ];
+    for conditions in &others {
+        assert!(Quick::new(conditions).is_none());
+    }
+    let [fast, plain] = both(&others[0], &search(&[4.0], 10.0));
+    assert_eq!(fast, plain);
+    let band = DeadBand { roll_rate_rad_s: 0.05 };
+    let law = configured(Config { dead_band: band, ..Config::thesis(H) });
+    let body = Conditions { imu: Imu::Body, ..law };
+    let (falls, apart) = compared(&body, &search(&[3.0, 5.0], 12.0));
+    assert!(falls > 20 && apart <= 1, "{apart} of {falls}");
+}
