@@ -17,7 +17,7 @@ pub mod late;
 pub mod linearised;
 pub mod link_board;
 pub mod model;
-pub mod newton_euler;
+
 pub mod pil;
 #[cfg(unix)]
 pub mod pty;

@@ -1,6 +1,7 @@
 //! Builds the firmware images, runs them in QEMU and measures them; used by the `xtask` binary and by tests that run
 //! QEMU.
 
+pub mod against;
 pub mod architecture;
 pub mod bench;
 pub mod coverage;

@@ -2,6 +2,7 @@
 
 use std::process::{Command, ExitCode};
 use std::time::Duration;
+use xtask::against::against;
 use xtask::architecture::architecture;
 use xtask::bench::bench;
 use xtask::document::{self, instruction_table, size_table};
@@ -25,6 +26,7 @@ cargo xtask <command> [--help]
   mutants       mutation tests of the control crate
   coverage      lines of the control crate's torque path that its tests do not cover
   bench         computing time of a delayed rider's ride and basin, beside Python programs for the same ride
+  against       computing time of basins and rides, beside an earlier commit
 ";
 
 const SETUP_HELP: &str = "\
@@ -117,6 +119,16 @@ differ by more than 1e-6, or if the Python programs are unavailable; the rest is
 Needs Python 3.11 or later for a virtual environment in target/bench-python, with packages from PyPI.
 ";
 
+const AGAINST_HELP: &str = "\
+cargo xtask against COMMIT [--runs N]
+
+Checks out COMMIT below target/against, builds sim-host there and here, runs the same basins and rides
+in turn on one thread, N times each (default 3), and prints the medians of the processor time and
+their ratios as a table. Several minutes. Remove the work tree with `git worktree remove --force`.
+
+Try: cargo xtask against HEAD~20 --runs 5
+";
+
 const ARCHITECTURE_HELP: &str = "\
 cargo xtask architecture
 
@@ -169,6 +181,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         "size" => SIZE_HELP,
         "instructions" => INSTRUCTIONS_HELP,
         "bench" => BENCH_HELP,
+        "against" => AGAINST_HELP,
         "architecture" => ARCHITECTURE_HELP,
         "mutants" => MUTANTS_HELP,
         "coverage" => COVERAGE_HELP,
@@ -189,6 +202,11 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         ("reproducible", []) => reproducible()?,
         ("architecture", []) => architecture(image::root())?,
         ("bench", []) => bench()?,
+        ("against", [commit]) => against(commit, 3)?,
+        ("against", [commit, "--runs", runs]) => {
+            let runs = runs.parse().ok().filter(|runs| (1..=100).contains(runs));
+            against(commit, runs.ok_or_else(|| format!("--runs: a number from 1 to 100\n\n{help}"))?)?;
+        }
         ("coverage", []) => coverage::coverage()?,
         ("mutants", _) => mutants(rest)?,
         ("size" | "instructions", []) => measure(command)?,

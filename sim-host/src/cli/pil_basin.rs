@@ -6,7 +6,7 @@ use super::conditions::{printed, setup};
 use super::progress::progress;
 use super::scenario_error::named;
 use super::{Ended, Failure, interrupt};
-use crate::basin::{Search, basin, basin_by};
+use crate::basin::{Method, Search, basin, basin_by};
 use crate::pil::compare::same_basin;
 use crate::pil::qemu::Qemu;
 use crate::pil::{Controller, Tally};
@@ -62,7 +62,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let mut same = Ok(());
     if args.board.compare && !result.columns.is_empty() {
         let speeds = result.columns.iter().map(|column| column.speed).collect();
-        let done = Search { speeds, ..searched.clone() };
+        let done = Search { speeds, method: Method::Plain, ..searched.clone() };
         let here = pool.install(|| basin(&setup.conditions, &done, |_| (), || false))?;
         same = same_basin(&here, &result);
         if same.is_ok() {

@@ -4,8 +4,8 @@ use proptest::prop_assert;
 use sim_host::bicycle::{Geometry, Motion, State, front_contact_residual};
 use std::cell::Cell;
 use tests::draws::{runner, situations};
+use tests::flow;
 use tests::rides::{FREE, knocked, ride, shipped};
-use tests::{flow, newton_euler};
 
 /// Result of a ride.
 struct Extremes {

@@ -3,6 +3,7 @@
 mod energy;
 mod linear;
 mod newton_euler;
+mod operations;
 mod order;
 mod pitch;
 mod published;

@@ -3,9 +3,9 @@
 use sim_host::bicycle::{Geometry, State};
 use std::cell::Cell;
 use tests::draws::{Draw, runner, situations};
+use tests::flow;
 use tests::published::entry;
 use tests::rides::{FREE, shipped};
-use tests::{flow, newton_euler};
 
 /// Largest of the differences of all rates or accelerations, relative to their own size.
 fn relative(pairs: &[(f64, f64)]) -> f64 {

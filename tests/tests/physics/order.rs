@@ -2,7 +2,7 @@
 
 use differential_equations::prelude::*;
 use sim_host::bicycle::{Geometry, Parameters, State, Torques};
-use tests::newton_euler;
+
 use tests::rides::{FREE, knocked, ride, shipped};
 
 /// Newton's and Euler's equations as a first-order system of [`entries`].

@@ -3,7 +3,7 @@
 
 use sim_host::bicycle::{Geometry, State};
 use tests::flow;
-use tests::newton_euler;
+
 use tests::published::{Published, entry};
 use tests::rides::{FREE, shipped};
 

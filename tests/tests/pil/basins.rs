@@ -1,6 +1,6 @@
 //! Basins ridden on boards.
 
-use sim_host::basin::{Basin, Search, basin, basin_by};
+use sim_host::basin::{Basin, Method, Search, basin, basin_by};
 use sim_host::pil::compare::same_basin;
 use sim_host::pil::{BoardError, Controller, Lockstep};
 use sim_host::ride::{Conditions, RemoteError, rides_on};
@@ -28,7 +28,10 @@ pub(crate) fn on_boards<B: Lockstep + Send>(
 /// Law h, two seconds, three speeds.
 pub(crate) fn coarse() -> (Conditions, Search) {
     let conditions = Conditions { time_limit_s: 2.0, ..assisted(H) };
-    (conditions, Search { scan_step: 2.0, tolerance: 0.2, ..search(&[2.0, 4.0, 7.0], 16.0) })
+    (
+        conditions,
+        Search { scan_step: 2.0, tolerance: 0.2, method: Method::Plain, ..search(&[2.0, 4.0, 7.0], 16.0) },
+    )
 }
 
 /// Situation: a coarse basin of law h, with borders inside the range.

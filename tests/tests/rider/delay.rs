@@ -3,11 +3,11 @@
 
 use control::Law;
 use differential_equations::prelude::*;
+use newton_euler::{self, Solution};
 use sim_host::bicycle::{Parameters, State, Torques};
 use sim_host::ride::{Assist, Conditions, Start, TracePoint, traced};
 use sim_host::rider::{Gains, Neuromuscular, Outside, Rider, Schedule};
 use tests::basins::{H, alone, ideal};
-use tests::newton_euler::{self, Solution};
 use tests::riders::thorough;
 use tests::rides::shipped;
 

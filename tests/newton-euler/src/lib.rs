@@ -9,8 +9,8 @@ mod constraints;
 
 use bodies::{Bicycle, Body, FRONT_FRAME, FRONT_WHEEL, REAR_FRAME, REAR_WHEEL};
 use constraints::{COLUMNS, CONTACT_ROWS, ROWS, angular, jacobian, rates};
+use motion::bicycle::{Parameters, State, Torques};
 use nalgebra::{DMatrix, DVector, Vector3};
-use sim_host::bicycle::{Parameters, State, Torques};
 
 /// Everything about one state: rates, accelerations, contact forces. Ground axes have x along the
 /// rear wheel's heading, y right, z down; angles and their signs are those of the simulator.

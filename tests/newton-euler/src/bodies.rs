@@ -2,8 +2,8 @@
 //!
 //! Ground axes: origin at the rear contact, x along the rear wheel's heading, y right, z down.
 
+use motion::bicycle::Parameters;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
-use sim_host::bicycle::Parameters;
 
 /// Indices in [`Bicycle::bodies`].
 pub(super) const REAR_WHEEL: usize = 0;
