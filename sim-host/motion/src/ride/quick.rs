@@ -143,36 +143,25 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             return done;
         }
 
-        // The vector step of all lanes.
-        let motion = Motion::new(b, &state);
-        let stiff = stiffness(b, &motion);
-        let mut h = Lanes([LONGEST_S; N]);
-        for lane in 0..N {
-            if let Some(ride) = &lanes[lane] {
-                let [squares, cos_roll, ..] = stiff.map(|q| q.0[lane]);
-                let scale_s = LARGEST * cos_roll.abs() / squares.sqrt();
-                let left_s = conditions.time_limit_s - ride.t;
-                h.0[lane] = scale_s.clamp(SHORTEST_S, LONGEST_S).min(left_s);
-            }
-        }
-        let start = State { pitch: motion.pose.attitude.pitch, ..state };
-        let at_start = readings(conditions, &motion.actual, initial);
+        // The step of all lanes, in one loop so that the binary contains the equations of motion once.
         let slopes_before = slopes;
-        let mut end = start;
-        let mut at = start;
-        let mut now = motion;
+        let (mut start, mut end, mut at) = (state, state, state);
+        let (mut h, mut stiff, mut at_start) = (still, [still; 4], (still, still));
         for stage in 0..STAGES.len() {
-            if stage > 0 {
-                now = Motion::new(b, &at);
-            }
-            let measured = readings(conditions, &now.actual, initial);
-            if stage > 0 {
+            let motion = Motion::new(b, &at);
+            let measured = readings(conditions, &motion.actual, initial);
+            if stage == 0 {
+                // The pitch solved from roll and steer, not the predicted one.
+                start.pitch = motion.pose.attitude.pitch;
+                (end, at_start, stiff) = (start, measured, stiffness(b, &motion));
+                h = steps(conditions, &lanes, &stiff);
+            } else {
                 let per_s = Lanes([1.0; N]) / (h * STAGES[stage]);
                 slopes = [(measured.0 - at_start.0) * per_s, (measured.1 - at_start.1) * per_s];
             }
             let steer = source.torques(measured, slopes);
-            let acc = now.accelerations(b, &Torques { roll: still, steer });
-            let k = rate(&at, &now, &acc);
+            let acc = motion.accelerations(b, &Torques { roll: still, steer });
+            let k = rate(&at, &motion, &acc);
             end = end.moved_each(h * WEIGHT[stage], &k);
             at = start.moved_each(h * AHEAD[stage], &k);
         }
@@ -182,7 +171,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             let (before, h) = (start.lane(lane), h.0[lane]);
             let mut after = end.lane(lane);
             if nearer(stiff.map(|q| q.0[lane]), NEAREST) {
-                let from = ride.full.unwrap_or_else(|| FullState::new(&Motion::new(b, &before), &before));
+                let from = ride.full.unwrap_or_else(|| six_speeds(b, &before));
                 let mut slope = slopes_before.map(|slope| slope.0[lane]);
                 ride.full = source.full_step(conditions, &from, h, (initial.0[lane], &mut slope));
                 (slopes[0].0[lane], slopes[1].0[lane]) = (slope[0], slope[1]);
@@ -204,6 +193,30 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
         }
         state = end;
     }
+}
+
+/// The steps of all lanes \[s\].
+#[inline(always)]
+fn steps<const N: usize>(
+    conditions: &Conditions,
+    lanes: &[Option<Lane>; N],
+    stiff: &[Lanes<N>; 4],
+) -> Lanes<N> {
+    let mut h = Lanes([LONGEST_S; N]);
+    for (i, ride) in lanes.iter().enumerate() {
+        let Some(ride) = ride else { continue };
+        let [squares, cos_roll, ..] = stiff.map(|q| q.0[i]);
+        let scale_s = LARGEST * cos_roll.abs() / squares.sqrt();
+        let left_s = conditions.time_limit_s - ride.t;
+        h.0[i] = scale_s.clamp(SHORTEST_S, LONGEST_S).min(left_s);
+    }
+    h
+}
+
+/// The state with its dependent speeds.
+#[inline(never)]
+fn six_speeds(b: &Geometry, state: &State<f64>) -> FullState {
+    FullState::new(&Motion::new(b, state), state)
 }
 
 const AHEAD: [f64; 4] = [0.5, 0.5, 1.0, 0.0];
