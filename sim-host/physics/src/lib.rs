@@ -29,5 +29,6 @@ pub mod json;
 pub mod plant;
 pub mod rider;
 pub mod tracking;
+pub mod weave;
 
 pub use motion::{integrate, num, range, ride};

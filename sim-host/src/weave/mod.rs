@@ -1,44 +1,8 @@
-//! Measures frequency and decay of the weave: from a gyro recording after a disturbance to an eigenvalue with
-//! its confidence interval.
-//!
-//! `record` reads a file, `label` its name, `window` finds the motion after the disturbance, and `fit` fits
-//! it (`shape`, `noise`). `segment` does this for one recording, `pool` combines repeats, `predict` computes
-//! the linear model's weave, and `measured` is the stored table.
+//! Recordings of the weave after a disturbance, in files: `record` reads one, `label` its name, and `measured` is the stored
+//! table. The measurement itself is in the crate `physics`, whose modules are passed on.
 
-pub mod fit;
 pub mod label;
 pub mod measured;
-pub mod noise;
-pub mod pool;
-pub mod predict;
 pub mod record;
-pub mod segment;
-pub mod shape;
-pub(crate) mod student;
-pub mod window;
 
-/// A number with its 95 % confidence interval.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
-pub struct Estimate {
-    /// The number.
-    pub value: f64,
-    /// Its standard error.
-    pub standard_error: f64,
-    /// Lower end of the interval.
-    pub low: f64,
-    /// Upper end of the interval.
-    pub high: f64,
-}
-
-impl Estimate {
-    /// Estimate with an interval of `quantile` standard errors to either side.
-    pub fn new(value: f64, standard_error: f64, quantile: f64) -> Self {
-        let half = quantile * standard_error;
-        Self { value, standard_error, low: value - half, high: value + half }
-    }
-
-    /// Whether the interval contains `x`.
-    pub fn holds(&self, x: f64) -> bool {
-        (self.low..=self.high).contains(&x)
-    }
-}
+pub use physics::weave::{Estimate, fit, noise, pool, predict, segment, shape, student, window};

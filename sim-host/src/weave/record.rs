@@ -3,6 +3,7 @@
 
 use crate::recording::stamp::seconds;
 use csv::StringRecord;
+pub use physics::weave::record::{Axis, Record};
 
 /// Names of time columns searched for by default.
 pub const TIMES: [&str; 4] = ["Time", "time", "t", "time_s"];
@@ -43,26 +44,6 @@ pub struct Columns {
     pub rates: Vec<String>,
     /// Their unit.
     pub unit: Unit,
-}
-
-/// A column of rates.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
-    /// Its name.
-    pub column: String,
-    /// The rates \[rad/s\].
-    pub rates_rad_s: Vec<f64>,
-}
-
-/// A recording.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Record {
-    /// Sample times, increasing from 0 \[s\].
-    pub times_s: Vec<f64>,
-    /// The rates.
-    pub axes: Vec<Axis>,
-    /// Lines left out, with the reason.
-    pub notes: Vec<String>,
 }
 
 /// A usable line.

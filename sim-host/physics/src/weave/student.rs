@@ -6,7 +6,7 @@ const NORMAL: f64 = 1.959_963_984_540_054;
 /// The 97.5 % point of Student's t with `freedom` degrees of freedom, at least 1: half the width of a 95 %
 /// interval in standard errors. Exact for one and two; otherwise the expansion of Fisher and Cornish to the
 /// fourth order, within 0.2 %. Below three a fraction is rounded down.
-pub(crate) fn quantile(freedom: f64) -> f64 {
+pub fn quantile(freedom: f64) -> f64 {
     match freedom {
         n if n < 2.0 => 12.706_204_736_432_1,
         n if n < 3.0 => 4.302_652_729_696_14,
