@@ -26,6 +26,7 @@ pub struct SweepSearch {
     /// Tolerance of the borders \[rad/s\].
     pub tolerance: f64,
     /// How the rides are simulated.
+    #[serde(default)]
     pub method: Method,
 }
 

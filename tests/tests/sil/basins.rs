@@ -1,7 +1,7 @@
 //! Properties of a basin search.
 
 use control::{Config, Law};
-use sim_host::basin::{Axis, Search, basin, column, rmse};
+use sim_host::basin::{Axis, Method, Search, basin, column, rmse};
 use sim_host::ride::rides;
 use tests::basins::{H, alone, assisted, configured, ideal, search};
 use tests::sets::every;
@@ -75,30 +75,33 @@ fn the_number_of_threads_does_not_matter() {
 }
 
 /// Situation: an interruption after the first column.
-/// Action: search.
-/// Must hold: completed columns are preserved.
+/// Action: search plainly, column by column, and fast, eight columns at a time.
+/// Must hold: completed columns are preserved, and no further ones are begun.
 #[test]
 fn an_interruption_preserves_completed_columns() {
-    let done = std::sync::atomic::AtomicUsize::new(0);
-    let count = || done.load(std::sync::atomic::Ordering::SeqCst);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
-    let partial = pool.install(|| {
-        basin(
-            &alone(),
-            &search(&[2.0, 4.0, 6.0], 2.0),
-            |_| {
-                done.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
-            },
-            || count() >= 1,
-        )
-    });
-    let partial = partial.expect("a basin");
-    assert_eq!(partial.columns.len(), 1);
-    assert!(
-        partial.columns[0].speed == 2.0 || partial.columns[0].speed == 6.0,
-        "{}",
-        partial.columns[0].speed
-    );
+    let speeds: Vec<f64> = (0..20).map(|i| 2.0 + 0.25 * f64::from(i)).collect();
+    for (method, first_group, last_group) in [(Method::Plain, 1, 1), (Method::Fast, 8, 4)] {
+        let done = std::sync::atomic::AtomicUsize::new(0);
+        let count = || done.load(std::sync::atomic::Ordering::SeqCst);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+        let partial = pool.install(|| {
+            basin(
+                &alone(),
+                &Search { method, ..search(&speeds, 2.0) },
+                |_| {
+                    done.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
+                },
+                || count() >= 1,
+            )
+        });
+        let partial = partial.expect("a basin");
+        // On one thread a group at either end is the first; the last of the fast search has four.
+        let found = partial.columns.len();
+        let first = partial.columns[0].speed;
+        let begun = (found == first_group && first == 2.0)
+            || (found == last_group && first == speeds[speeds.len() - last_group]);
+        assert!(begun, "{method:?}: {found} from {first} m/s");
+    }
 }
 
 /// Situation: the roll rate is disturbed instead.

@@ -40,9 +40,10 @@ impl Operations {
     }
 }
 
-fn count(kind: impl FnOnce(&mut Operations)) {
+/// Adds one operation to a kind.
+fn count(kind: impl FnOnce(&mut Operations) -> &mut u32) {
     let mut counted = COUNTED.get();
-    kind(&mut counted);
+    *kind(&mut counted) += 1;
     COUNTED.set(counted);
 }
 
@@ -51,7 +52,7 @@ macro_rules! counted {
         impl $trait for Counted {
             type Output = Self;
             fn $method(self, other: Self) -> Self {
-                count(|counted| counted.$kind += 1);
+                count(|counted| &mut counted.$kind);
                 Self(self.0 $op other.0)
             }
         }
@@ -88,11 +89,11 @@ impl Scalar for Counted {
         Self(value)
     }
     fn sqrt(self) -> Self {
-        count(|counted| counted.roots += 1);
+        count(|counted| &mut counted.roots);
         Self(self.0.sqrt())
     }
     fn sin_cos(self) -> (Self, Self) {
-        count(|counted| counted.angles += 1);
+        count(|counted| &mut counted.angles);
         let (s, c) = sin_cos(self.0);
         (Self(s), Self(c))
     }

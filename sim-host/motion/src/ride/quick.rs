@@ -44,7 +44,7 @@ enum Source<'a> {
     None,
     /// A law and the delay of its torque \[s\], to first order: it acts on roll rate and speed minus this time times
     /// their slopes.
-    Ideal(IdealLaw, f64),
+    Ideal(Box<IdealLaw>, f64),
     Own(&'a OwnLaw),
 }
 
@@ -70,9 +70,9 @@ impl<'a> Quick<'a> {
             && actuator.stop.is_none();
         let source = match &conditions.assist {
             Assist::None => Source::None,
-            Assist::Ideal(law) => Source::Ideal((**law).clone(), 0.0),
+            Assist::Ideal(law) => Source::Ideal(law.clone(), 0.0),
             Assist::Own(law) => Source::Own(law),
-            Assist::Firmware(plan) => Source::Ideal(continuous(plan)?, 0.5 * conditions.step_s),
+            Assist::Firmware(plan) => Source::Ideal(Box::new(continuous(plan)?), 0.5 * conditions.step_s),
         };
         let forecast = match &source {
             Source::None => Forecast::new(conditions, &IdealLaw::from(Law::None), 0.0),
@@ -128,16 +128,13 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
     let mut slopes = [still; 2];
     let mut lanes: [Option<Lane>; N] = std::array::from_fn(|_| None);
     loop {
-        for lane in 0..N {
-            if lanes[lane].is_some() {
-                continue;
-            }
+        for (lane, ride) in lanes.iter_mut().enumerate().filter(|(_, ride)| ride.is_none()) {
             let next = waiting.next();
             let start = next.map_or_else(Start::default, |(_, start)| start);
             state.set_lane(lane, &start.state(b));
             initial.0[lane] = start.speed_m_s;
             slopes.iter_mut().for_each(|slope| slope.0[lane] = 0.0);
-            lanes[lane] = next.map(|(index, _)| Lane::new(index));
+            *ride = next.map(|(index, _)| Lane::new(index));
         }
         if lanes.iter().all(Option::is_none) {
             return done;
@@ -147,7 +144,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
         let slopes_before = slopes;
         let (mut start, mut end, mut at) = (state, state, state);
         let (mut h, mut stiff, mut at_start) = (still, [still; 4], (still, still));
-        for stage in 0..STAGES.len() {
+        for (stage, part) in STAGES.into_iter().enumerate() {
             let motion = Motion::new(b, &at);
             let measured = readings(conditions, &motion.actual, initial);
             if stage == 0 {
@@ -156,7 +153,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 (end, at_start, stiff) = (start, measured, stiffness(b, &motion));
                 h = steps(conditions, &lanes, &stiff);
             } else {
-                let per_s = Lanes([1.0; N]) / (h * STAGES[stage]);
+                let per_s = Lanes([1.0; N]) / (h * part);
                 slopes = [(measured.0 - at_start.0) * per_s, (measured.1 - at_start.1) * per_s];
             }
             let steer = source.torques(measured, slopes);
@@ -166,8 +163,8 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             at = start.moved_each(h * AHEAD[stage], &k);
         }
 
-        for lane in 0..N {
-            let Some(ride) = &mut lanes[lane] else { continue };
+        for (lane, slot) in lanes.iter_mut().enumerate() {
+            let Some(ride) = slot else { continue };
             let (before, h) = (start.lane(lane), h.0[lane]);
             let mut after = end.lane(lane);
             if nearer(stiff.map(|q| q.0[lane]), NEAREST) {
@@ -188,7 +185,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             };
             if let Some(outcome) = ended {
                 done[ride.index] = QuickRide { outcome, steps: ride.steps };
-                lanes[lane] = None;
+                *slot = None;
             }
         }
         state = end;
@@ -256,10 +253,10 @@ impl Source<'_> {
         let b: &Geometry = &conditions.bicycle;
         let mut stages = Stages::new(*from);
         let at_start = readings(conditions, &from.velocities(b), initial);
-        for stage in 0..STAGES.len() {
+        for (stage, part) in STAGES.into_iter().enumerate() {
             let measured = readings(conditions, &stages.at.velocities(b), initial);
             if stage > 0 {
-                let elapsed_s = h * STAGES[stage];
+                let elapsed_s = h * part;
                 *slope = [(measured.0 - at_start.0) / elapsed_s, (measured.1 - at_start.1) / elapsed_s];
             }
             let steer = self.torque(measured, *slope);
