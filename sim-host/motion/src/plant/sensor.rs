@@ -70,7 +70,13 @@ impl SensorModel {
 
     /// Whether `tick` is a sampling instant.
     fn samples_at(&self, tick: i64) -> bool {
-        (tick - i64::from(self.fitted.phase_ticks)).rem_euclid(i64::from(self.every_ticks)) == 0
+        self.every_ticks == 1
+            || (tick - i64::from(self.fitted.phase_ticks)).rem_euclid(i64::from(self.every_ticks)) == 0
+    }
+
+    /// Whether samples are the true values.
+    fn is_true(&self) -> bool {
+        *self == Self { delay_ticks: self.delay_ticks, every_ticks: self.every_ticks, ..Self::default() }
     }
 
     /// Age of the newest sample at the control instant before the first, without losses \[control periods\].
@@ -88,10 +94,6 @@ impl SensorModel {
         fitted: Option<&mut FittedState>,
     ) -> Option<[f64; 3]> {
         let mut output = truth;
-        if *self == (Self { delay_ticks: self.delay_ticks, every_ticks: self.every_ticks, ..Self::default() })
-        {
-            return Some(output);
-        }
         for (output, bias) in output.iter_mut().zip(self.bias) {
             *output = *output * self.scale + bias;
         }
@@ -210,6 +212,8 @@ impl SensorConfig {
 pub struct SensorState {
     /// Delayed samples, oldest first; `None` where none was taken or it was lost.
     on_their_way: VecDeque<Option<[f64; 3]>>,
+    /// Whether samples are the true values.
+    exact: bool,
     /// For models with noise or losses only.
     random: Option<RandomStream>,
     /// For models with fitted errors only.
@@ -244,7 +248,7 @@ impl SensorState {
         let fitted = (model.fitted != FittedErrors::default())
             .then(|| Box::new(FittedState::new(&model.fitted, truth, sample_s, period_s, random.fitted)));
         let random = (model.noise > 0.0 || model.dropout > 0.0).then_some(random.plain);
-        let mut state = Self { on_their_way: VecDeque::new(), random, fitted };
+        let mut state = Self { on_their_way: VecDeque::new(), exact: model.is_true(), random, fitted };
         let before = -i64::from(model.delay_ticks)..0;
         state.on_their_way = before.map(|at| state.taken(model, at, truth, speed_m_s)).collect();
         state
@@ -276,6 +280,9 @@ impl SensorState {
 
     /// The sample taken at `tick`, if any.
     fn taken(&mut self, model: &SensorModel, tick: i64, truth: [f64; 3], speed_m_s: f64) -> Option<[f64; 3]> {
+        if self.exact {
+            return model.samples_at(tick).then_some(truth);
+        }
         let truth = self.fitted.as_mut().map_or(truth, |state| state.measured(truth));
         let (random, fitted) = (self.random.as_mut(), self.fitted.as_deref_mut());
         model.samples_at(tick).then(|| model.sample(truth, speed_m_s, random, fitted)).flatten()
