@@ -26,10 +26,22 @@ const WORK: [(&str, &[&str]); 9] = [
     ("product, one speed in ten", &["basin", "--preset", "product", "--speeds", "0:10:1"]),
     ("plane at 4 m/s", &["basin", "plane", "--speed", "4"]),
     (
-        "one ride of 6 s with the young rider",
-        &["ride", "--speed", "4", "--steer-rate", "5", "--rider", "young", "--law", "none"],
+        "one ride of 300 s with the young rider",
+        &[
+            "ride",
+            "--speed",
+            "4",
+            "--steer-rate",
+            "1",
+            "--rider",
+            "young",
+            "--law",
+            "none",
+            "--time-limit",
+            "300",
+        ],
     ),
-    ("eigenvalues over speed", &["eigen", "--law", "h"]),
+    ("eigenvalues of the young rider", &["eigen", "--rider", "young"]),
 ];
 
 /// Builds `commit` beside the work tree, runs each command `runs` times with either program, and prints a table.
