@@ -3,6 +3,7 @@
 pub mod basins;
 
 pub mod cli;
+pub mod count;
 pub mod derived;
 pub mod detection;
 pub mod draws;

@@ -43,9 +43,10 @@ pub fn rate<S: Scalar>(state: &State<S>, motion: &Motion<S>, acc: &Accelerations
     }
 }
 
-impl<S: Scalar> Moves for State<S> {
+impl<S: Scalar> State<S> {
+    /// The state after `h` seconds, in each lane its own time, at the given rates.
     #[inline(always)]
-    fn moved(&self, h: f64, rate: &Self) -> Self {
+    pub(crate) fn after(&self, h: S, rate: &Self) -> Self {
         State {
             roll: self.roll + rate.roll * h,
             steer: self.steer + rate.steer * h,
@@ -57,8 +58,19 @@ impl<S: Scalar> Moves for State<S> {
     }
 }
 
+impl<S: Scalar> Moves for State<S> {
+    #[inline(always)]
+    fn moved(&self, h: f64, rate: &Self) -> Self {
+        self.after(S::constant(h), rate)
+    }
+}
+
 /// Times of the stages, as fractions of the time step.
 pub const STAGES: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
+/// Part of the time step from its start to the state of the next stage.
+pub(crate) const AHEAD: [f64; 4] = [0.5, 0.5, 1.0, 0.0];
+/// Weights of the stages' time derivatives.
+pub(crate) const WEIGHT: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
 /// The four stages of a time step, of the bicycle or of any state integrated with it.
 #[derive(Clone, Copy, Debug)]
@@ -86,8 +98,6 @@ impl<X: Moves> Stages<X> {
     /// \[s\].
     #[inline(always)]
     pub fn next(&mut self, stage: usize, h: f64, k: &X) {
-        const AHEAD: [f64; 4] = [0.5, 0.5, 1.0, 0.0];
-        const WEIGHT: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
         self.end = self.end.moved(h * WEIGHT[stage], k);
         self.at = self.start.moved(h * AHEAD[stage], k);
     }

@@ -1,7 +1,7 @@
 //! Operations of a right-hand side.
 
 use sim_host::bicycle::{Geometry, Motion, State, Torques};
-use sim_host::num::{Counted, Operations};
+use tests::count::{Counted, Operations};
 use tests::rides::shipped;
 
 /// Operations of generated C code for the same model (PyDy, pull request 122).

@@ -7,6 +7,7 @@ use proptest::test_runner::TestRunner;
 use sim_host::basin::{Axis, Column, Method, PlaneSearch, Search, basin, border, plane};
 use sim_host::ride::{Conditions, Imu, Outcome, Quick, Start, rides};
 use tests::basins::{H, alone, assisted, configured, ideal, search};
+use tests::fault_reactions::rider;
 
 /// Difference of a time of fall that counts \[s\].
 const TIME_S: f64 = 1e-3;
@@ -193,6 +194,7 @@ fn quick_rides_exist_for_a_law_alone() {
         configured(Config::product()),
         Conditions { sensor_delay_ticks: 5, ..assisted(H) },
         friction,
+        Conditions { rider: Some(rider("young")), ..assisted(H) },
     ];
     for conditions in &others {
         assert!(Quick::new(conditions).is_none());

@@ -81,17 +81,4 @@ impl<const N: usize> State<Lanes<N>> {
         self.rear_wheel_rate.0[lane] = to.rear_wheel_rate;
         self.pitch.0[lane] = to.pitch;
     }
-
-    /// The state after a time of its own in each lane \[s\] at the given rates.
-    #[inline(always)]
-    pub(crate) fn moved_each(&self, h: Lanes<N>, rate: &Self) -> Self {
-        State {
-            roll: self.roll + rate.roll * h,
-            steer: self.steer + rate.steer * h,
-            roll_rate: self.roll_rate + rate.roll_rate * h,
-            steer_rate: self.steer_rate + rate.steer_rate * h,
-            rear_wheel_rate: self.rear_wheel_rate + rate.rear_wheel_rate * h,
-            pitch: self.pitch + rate.pitch * h,
-        }
-    }
 }

@@ -4,7 +4,6 @@
 //! Only `+ - * /`, square root and [`sin_cos`] are used. None depends on the C library or on fused
 //! multiply-add, so a ride has the same bits alone, in a batch, and on every x86-64.
 
-mod count;
 mod dual;
 mod lanes;
 mod moves;
@@ -12,7 +11,6 @@ mod random_stream;
 mod sincos;
 mod vector;
 
-pub use count::{Counted, Operations};
 pub use dual::Dual;
 pub use lanes::Lanes;
 pub use moves::Moves;

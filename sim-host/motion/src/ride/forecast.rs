@@ -3,7 +3,6 @@
 //! Within [`LARGEST_RAD`] and [`LARGEST_RAD_S`] the nonlinear terms change a motion by less than 1 %; the outcome is
 //! decided only if the late amplitudes differ from the limit by the factor [`CLEAR`].
 
-use super::quick::decided;
 use super::{Conditions, IdealLaw, Imu, Outcome, ScheduleSpeed};
 use crate::bicycle::{Geometry, Motion, State, Torques};
 use crate::num::{Dual, Scalar};
@@ -96,7 +95,7 @@ impl Forecast {
 
     /// The outcome, if it is clear.
     pub(super) fn outcome(&self, recovered_below: f64, late: [f64; 2], peak: [f64; 2]) -> Option<Outcome> {
-        decided(recovered_below, late, peak, CLEAR)
+        Outcome::of_amplitudes(recovered_below, late, peak, CLEAR)
     }
 }
 

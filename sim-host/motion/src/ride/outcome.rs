@@ -20,6 +20,22 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// The outcome of a ride that did not fall, from its largest roll and steer in the last second and in all \[rad\]:
+    /// recovered if both are below the fraction `recovered_below` of their maxima. `None` if that is not clear by the
+    /// factor `clear`, at least 1.
+    pub(super) fn of_amplitudes(
+        recovered_below: f64,
+        late: [f64; 2],
+        peak: [f64; 2],
+        clear: f64,
+    ) -> Option<Self> {
+        let limit = peak.map(|peak| recovered_below * peak);
+        if (0..2).all(|i| late[i] * clear <= limit[i]) {
+            return Some(Outcome::Recovered);
+        }
+        (0..2).any(|i| late[i] > limit[i] * clear).then_some(Outcome::Undecided)
+    }
+
     /// Time of the fall \[s\], if it fell.
     pub fn time_to_fall_s(&self) -> Option<f64> {
         match self {

@@ -10,7 +10,7 @@ use super::sensor::readings;
 use super::substeps::{nearer, stiffness};
 use super::{Assist, Conditions, FallCause, Outcome, Start};
 use crate::bicycle::{FullState, Geometry, Motion, State, Torques};
-use crate::integrate::{STAGES, Stages, rate};
+use crate::integrate::{AHEAD, STAGES, Stages, WEIGHT, rate};
 use crate::num::Lanes;
 use control::estimate::{EstimateConfig, Source as RollRate};
 use control::{Config, Law, Plan};
@@ -159,8 +159,8 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             let steer = source.torques(measured, slopes);
             let acc = motion.accelerations(b, &Torques { roll: still, steer });
             let k = rate(&at, &motion, &acc);
-            end = end.moved_each(h * WEIGHT[stage], &k);
-            at = start.moved_each(h * AHEAD[stage], &k);
+            end = end.after(h * WEIGHT[stage], &k);
+            at = start.after(h * AHEAD[stage], &k);
         }
 
         for (lane, slot) in lanes.iter_mut().enumerate() {
@@ -215,9 +215,6 @@ fn steps<const N: usize>(
 fn six_speeds(b: &Geometry, state: &State<f64>) -> FullState {
     FullState::new(&Motion::new(b, state), state)
 }
-
-const AHEAD: [f64; 4] = [0.5, 0.5, 1.0, 0.0];
-const WEIGHT: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
 impl Source<'_> {
     /// The steer torques at a stage \[N m\], from roll rate and speed and their slopes over time.
@@ -322,7 +319,7 @@ impl Lane {
                 }
             }
         }
-        over.then(|| outlasted(conditions, self.late, self.peak))
+        over.then(|| Outcome::of_amplitudes(conditions.recovered_below, self.late, self.peak, CLEAR))
     }
 
     /// The outcome by the linear model, if the motion is small and the model decides.
@@ -343,18 +340,4 @@ impl Lane {
         let (late, peak) = (larger(self.late, late), larger(self.peak, peak));
         forecast.outcome(conditions.recovered_below, late, peak)
     }
-}
-
-/// The outcome of a ride that did not fall; `None` if an amplitude is too close to the limit.
-fn outlasted(conditions: &Conditions, late: [f64; 2], peak: [f64; 2]) -> Option<Outcome> {
-    decided(conditions.recovered_below, late, peak, CLEAR)
-}
-
-/// Whether the late amplitudes are below (recovered) or above the limit, by the factor `clear`.
-pub(super) fn decided(recovered_below: f64, late: [f64; 2], peak: [f64; 2], clear: f64) -> Option<Outcome> {
-    let limit = peak.map(|peak| recovered_below * peak);
-    if (0..2).all(|i| late[i] * clear <= limit[i]) {
-        return Some(Outcome::Recovered);
-    }
-    (0..2).any(|i| late[i] > limit[i] * clear).then_some(Outcome::Undecided)
 }

@@ -217,12 +217,8 @@ impl RideRecorder {
     }
 
     fn outlasted(&self, conditions: &Conditions) -> Outcome {
-        let small = |late: f64, peak: f64| late <= conditions.recovered_below * peak;
-        let e = &self.effort;
-        if small(self.late[0], e.peak_roll_rad) && small(self.late[1], e.peak_steer_rad) {
-            Outcome::Recovered
-        } else {
-            Outcome::Undecided
-        }
+        let peak = [self.effort.peak_roll_rad, self.effort.peak_steer_rad];
+        let outcome = Outcome::of_amplitudes(conditions.recovered_below, self.late, peak, 1.0);
+        outcome.unwrap_or(Outcome::Undecided)
     }
 }

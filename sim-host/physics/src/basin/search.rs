@@ -122,7 +122,7 @@ impl Search {
 
     /// Quick rides, if the search may use them and they exist for the conditions.
     fn quick<'a>(&self, conditions: &'a Conditions) -> Option<Quick<'a>> {
-        Quick::new(conditions).filter(|_| self.method == Method::Fast)
+        (self.method == Method::Fast).then(|| Quick::new(conditions)).flatten()
     }
 }
 

@@ -1,6 +1,6 @@
 //! A number that counts the operations on it.
 
-use super::{Scalar, sin_cos};
+use sim_host::num::{Scalar, sin_cos};
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
