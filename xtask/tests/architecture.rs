@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use xtask::architecture::check::{self, Edge, Found};
 use xtask::architecture::graph::{Graph, parse};
 use xtask::architecture::imports::{first_names, paths, re_exports};
-use xtask::architecture::layout::layout;
+use xtask::architecture::layout::{Area, layout};
 use xtask::architecture::{declared, differences, files};
 use xtask::image::root;
 
@@ -52,10 +52,17 @@ fn boxes_and_lines_do_not_overlap() {
                 assert!(line.iter().all(|&(x, y)| !inside(x, y)), "{name}: {line:?}");
             }
         }
-        // A tree at least, without the boxes that no arrow joins.
+        // A tree at least, without the boxes that no arrow joins. Those stand beside another.
         let used = |name: &String| graph.nodes.values().any(|node| node.uses.contains(name));
-        let joined = graph.nodes.iter().filter(|(name, node)| !node.uses.is_empty() || used(name)).count();
-        assert!(panel.edges.len() >= joined - 1, "{}", graph.name);
+        let (joined, alone): (Vec<_>, Vec<_>) =
+            graph.nodes.iter().partition(|(name, node)| !node.uses.is_empty() || used(name));
+        assert!(panel.edges.len() >= joined.len() - 1, "{}", graph.name);
+        for (name, _) in alone {
+            let a = &panel.boxes[name];
+            let beside =
+                |b: &Area| (15.0..=17.0).contains(&(b.x - (a.x + a.width)).max(a.x - (b.x + b.width)));
+            assert!(panel.boxes.values().any(|b| a.y == b.y && beside(b)), "{name}");
+        }
     }
 }
 

@@ -179,13 +179,15 @@ fn place(slots: &mut [Slot], order: &mut [Vec<usize>]) {
     for pass in 0..PASSES {
         for step in 0..order.len() {
             let layer = &order[if pass % 2 == 0 { step } else { order.len() - 1 - step }];
-            let wanted: Vec<f64> = layer
-                .iter()
-                .map(|&at| {
-                    let neighbours = slots[at].above.iter().chain(&slots[at].below).map(|&n| slots[n].x);
-                    mean(neighbours).unwrap_or(slots[at].x)
-                })
-                .collect();
+            // A slot that no dependency joins stands beside the one before it.
+            let mut wanted: Vec<f64> = Vec::with_capacity(layer.len());
+            for (place, &at) in layer.iter().enumerate() {
+                let joined = slots[at].above.iter().chain(&slots[at].below).map(|&n| slots[n].x);
+                let beside = place.checked_sub(1).map(|before| {
+                    wanted[before] + (slots[layer[before]].width + slots[at].width) / 2.0 + GAP
+                });
+                wanted.push(mean(joined).or(beside).unwrap_or(slots[at].x));
+            }
             spread(slots, layer, &wanted);
         }
     }
