@@ -7,6 +7,7 @@
 
 mod bias;
 mod dynamics;
+mod force;
 mod geometry;
 mod inertia;
 mod motion;
@@ -17,6 +18,7 @@ mod redundant;
 mod start;
 
 pub use dynamics::{Accelerations, Torques};
+pub use force::{ForcePoint, Forces};
 pub use geometry::{Geometry, Gyrostat};
 pub use motion::{Motion, Velocities};
 pub use parameters::{KEYS, Parameters, RANGES, describe};

@@ -1,7 +1,7 @@
 //! The linearised bicycle, computed from the parameters: Meijaard et al. 2007, appendix A.
 #![allow(non_snake_case, reason = "the symbols of the paper")]
 
-use super::Parameters;
+use super::{ForcePoint, Parameters};
 use crate::num::sin_cos;
 use nalgebra::{Matrix2, Matrix4, Vector2};
 
@@ -18,6 +18,8 @@ pub struct Linear {
     pub k2: Matrix2<f64>,
     /// Gravity \[m/s^2\].
     pub g: f64,
+    /// Mechanical trail by wheelbase, `c cos(lam) / w`: yaw rate of the rear frame per unit steer rate.
+    pub mu: f64,
 }
 
 impl Linear {
@@ -67,6 +69,7 @@ impl Linear {
             k0: symmetric(mT * zT, -SA, -SA * sin),
             k2: Matrix2::new(0.0, (ST - mT * zT) / p.w * cos, 0.0, (SA + SF * sin) / p.w * cos),
             g: p.g,
+            mu,
         }
     }
 
@@ -88,6 +91,15 @@ impl Linear {
     /// Accelerations of roll and steer per unit steer torque \[rad/s^2 per N m\].
     pub fn steer_torque_response(&self) -> Vector2<f64> {
         inverse(&self.m).column(1).into()
+    }
+
+    /// Generalised forces on roll and steer \[N m per N\] of a lateral force of 1 N to the right on the rear frame;
+    /// the inverse of `m` times them are accelerations.
+    ///
+    /// By virtual work: the point moves to the right by `height` per unit roll and by `ahead` per unit yaw, and at
+    /// rest the bicycle yaws by `mu` per unit steer.
+    pub fn lateral_force_input(&self, point: ForcePoint) -> [f64; 2] {
+        [point.height_m, self.mu * point.ahead_m]
     }
 }
 
