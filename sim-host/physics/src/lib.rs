@@ -25,6 +25,7 @@
 pub mod basin;
 pub mod bicycle;
 pub mod eigen;
+pub mod identify;
 pub mod json;
 pub mod plant;
 pub mod rider;

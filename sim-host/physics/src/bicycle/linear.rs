@@ -93,6 +93,11 @@ impl Linear {
         inverse(&self.m).column(1).into()
     }
 
+    /// Accelerations of roll and steer of the bicycle at rest under generalised forces on roll and steer.
+    pub fn acceleration(&self, forces: Vector2<f64>) -> Vector2<f64> {
+        inverse(&self.m) * forces
+    }
+
     /// Generalised forces on roll and steer \[N m per N\] of a lateral force of 1 N to the right on the rear frame;
     /// the inverse of `m` times them are accelerations.
     ///

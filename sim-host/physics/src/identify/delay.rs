@@ -1,0 +1,146 @@
+//! What a record tells about the neural delay: the likelihood of each delay with its own best gains.
+
+use super::descent::descend;
+use super::fit::{Fit, FitError, Problem, Residuals};
+use super::gray_box::PerGain;
+
+/// Half of the 95 % quantile of chi-squared with one degree of freedom: the drop of the log-likelihood at the ends of a
+/// 95 % interval (Wilks 1938).
+const DROP_95: f64 = 3.841_458_820_694_124 / 2.0;
+/// Refinements of the best delay.
+const REFINEMENTS: usize = 4;
+
+/// One delay of the profile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DelayPoint {
+    /// The delay \[s\].
+    pub delay_s: f64,
+    /// The best gains with this delay.
+    pub gains: PerGain,
+    /// Drop of the log-likelihood below the best delay's.
+    pub drop: f64,
+    /// Mean of the signals' variance accounted for.
+    pub vaf: f64,
+}
+
+/// Profile likelihood of the delay.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DelayProfile {
+    /// The delays, rising, with the best one among them.
+    pub points: Vec<DelayPoint>,
+    /// The best delay \[s\].
+    pub estimate_s: f64,
+    /// Ends of the 95 % interval \[s\]; `None` where it reaches beyond the profile.
+    pub interval_s: [Option<f64>; 2],
+}
+
+/// The best gains with one delay.
+struct At {
+    delay_s: f64,
+    gains: PerGain,
+    likelihood: f64,
+    vaf: f64,
+}
+
+fn at(problem: &Problem, fit: &Fit, delay_s: f64, start: &PerGain) -> Option<At> {
+    let mut model = problem.model;
+    model.delay_s = delay_s;
+    let objective = problem.objective_of(&model, fit, &|_| true);
+    let gains = descend(&objective, &fit.active, start)?.gains;
+    let means = objective.mean_squares(&objective.evaluate(&gains, &[])?);
+    let half = |(mean, residuals): (f64, &Residuals)| {
+        residuals.independent / 2.0 * libm::log(mean.max(f64::MIN_POSITIVE))
+    };
+    let likelihood = -means.into_iter().zip(&fit.residuals).map(half).sum::<f64>();
+    let vaf = objective.vaf(&gains, &|_| true)?;
+    Some(At { delay_s, gains, likelihood, vaf: vaf.iter().sum::<f64>() / vaf.len() as f64 })
+}
+
+/// Vertex of the parabola through three points.
+fn vertex(points: [(f64, f64); 3]) -> Option<f64> {
+    let [(a, fa), (b, fb), (c, fc)] = points;
+    let (left, right) = ((fb - fa) / (b - a), (fc - fb) / (c - b));
+    let curvature = (right - left) / (c - a);
+    (curvature < 0.0).then(|| ((a + b) / 2.0 - left / (2.0 * curvature)).clamp(a, c))
+}
+
+/// The profile over `delays_s`, rising, for the gains of `fit`. Each delay starts from the gains of its neighbour towards
+/// the delay of `problem`. Delays whose response is unbounded from there are left out. `finished` is called after each
+/// delay.
+///
+/// # Errors
+/// No delay can be fitted, or interrupted.
+pub fn delay_profile(
+    problem: &Problem,
+    fit: &Fit,
+    delays_s: &[f64],
+    finished: &(impl Fn() + Sync),
+    stop: &(impl Fn() -> bool + Sync),
+) -> Result<DelayProfile, FitError> {
+    let walk = |delays: &mut dyn Iterator<Item = f64>| {
+        let (mut points, mut gains) = (Vec::new(), fit.gains);
+        for delay_s in delays {
+            if stop() {
+                break;
+            }
+            if let Some(point) = at(problem, fit, delay_s, &gains) {
+                gains = point.gains;
+                points.push(point);
+            }
+            finished();
+        }
+        points
+    };
+    let from = problem.model.delay_s;
+    let (below, above): (Vec<f64>, Vec<f64>) = delays_s.iter().partition(|delay| **delay < from);
+    let (mut points, above) =
+        rayon::join(|| walk(&mut below.into_iter().rev()), || walk(&mut above.into_iter()));
+    points.reverse();
+    points.extend(above);
+    if stop() {
+        return Err(FitError::Interrupted);
+    }
+    let best = |points: &[At]| {
+        (0..points.len()).max_by(|a, b| points[*a].likelihood.total_cmp(&points[*b].likelihood))
+    };
+    for _ in 0..REFINEMENTS {
+        let Some(top) = best(&points) else { break };
+        if top == 0 || top + 1 >= points.len() {
+            break;
+        }
+        let three = [top - 1, top, top + 1].map(|i| (points[i].delay_s, points[i].likelihood));
+        let Some(delay_s) = vertex(three) else { break };
+        let near = points.iter().any(|point| (point.delay_s - delay_s).abs() < 1e-6);
+        let Some(refined) = (!near).then(|| at(problem, fit, delay_s, &points[top].gains)).flatten() else {
+            break;
+        };
+        points.push(refined);
+        points.sort_by(|a, b| a.delay_s.total_cmp(&b.delay_s));
+    }
+    let top = best(&points).ok_or(FitError::Unbounded)?;
+    let highest = points[top].likelihood;
+    let drop = |point: &At| highest - point.likelihood;
+    // Linear in the root of the drop, which is linear in the delay for a parabola.
+    let crossing = |inside: &At, outside: &At| {
+        let [a, b] = [inside, outside].map(|point| drop(point).max(0.0).sqrt());
+        let share = (DROP_95.sqrt() - a) / (b - a);
+        inside.delay_s + share * (outside.delay_s - inside.delay_s)
+    };
+    let end = |indices: &mut dyn Iterator<Item = usize>| {
+        let mut inside = top;
+        for i in indices {
+            if drop(&points[i]) > DROP_95 {
+                return Some(crossing(&points[inside], &points[i]));
+            }
+            inside = i;
+        }
+        None
+    };
+    let interval_s = [end(&mut (0..top).rev()), end(&mut (top + 1..points.len()))];
+    let point = |at: &At| DelayPoint { delay_s: at.delay_s, gains: at.gains, drop: drop(at), vaf: at.vaf };
+    Ok(DelayProfile {
+        estimate_s: points[top].delay_s,
+        points: points.iter().map(point).collect(),
+        interval_s,
+    })
+}

@@ -1,0 +1,340 @@
+//! Fit of the gains to a record.
+
+use super::descent::descend;
+use super::gray_box::{GAINS, GrayBox, PerGain, symbols};
+use super::objective::{Chosen, Drift, Objective};
+use super::record::Record;
+use super::response::Signal;
+use super::search::{Global, Optimum, TYPICAL, optima};
+use super::uncertainty::{Uncertainty, uncertainty};
+use crate::eigen::{DelaySystem, rightmost};
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+/// Time after the start of a perturbation in which a rider recovers or falls \[s\]: the part of the response that decides
+/// (Kuipers 2020, chapter 5: the variance accounted for over a long record misjudges it).
+pub const AFTER_ONSET_S: f64 = 1.0;
+/// Shortest record \[s\].
+pub const SHORTEST_S: f64 = 5.0;
+/// Fewest samples per gain.
+const SAMPLES_PER_GAIN: usize = 10;
+
+/// A record with the model that is fitted to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// The record.
+    pub record: Record,
+    /// The model without its gains.
+    pub model: GrayBox,
+    /// Slow motion that is no response.
+    pub drift: Drift,
+    /// Time from the record's start that is not fitted, because the model starts from rest \[s\].
+    pub skip_s: f64,
+    /// Seed of the global search.
+    pub seed: u64,
+}
+
+/// A record that can't be fitted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// Too short.
+    #[error(
+        "the record is {duration_s:.2} s long; the fit needs at least {SHORTEST_S} s after the first {skip_s} s"
+    )]
+    Short {
+        /// Duration of the record \[s\].
+        duration_s: f64,
+        /// Time that is skipped \[s\].
+        skip_s: f64,
+    },
+    /// Too few samples.
+    #[error("{samples} valid samples of {signal} are too few for {gains} gains; {} are needed", gains * SAMPLES_PER_GAIN)]
+    Few {
+        /// The signal.
+        signal: &'static str,
+        /// The number of samples.
+        samples: usize,
+        /// The number of gains.
+        gains: usize,
+    },
+    /// A value that is not a number.
+    #[error("sample {sample} of {signal} is not a number")]
+    NotANumber {
+        /// The signal.
+        signal: &'static str,
+        /// Its index.
+        sample: usize,
+    },
+    /// No perturbation.
+    #[error(
+        "there is no perturbation: lateral force and steer torque are zero throughout, so no gain can be identified"
+    )]
+    Undisturbed,
+    /// A signal that does not move.
+    #[error("{0} does not move")]
+    Still(&'static str),
+    /// No signal or no gain.
+    #[error("nothing to fit: {0}")]
+    Nothing(&'static str),
+    /// No bounded response.
+    #[error("no set of gains was found for which the response stays bounded over the record")]
+    Unbounded,
+    /// Gains that can't be separated.
+    #[error("the gains {0} can't be identified together: the record does not move them independently")]
+    Inseparable(String),
+    /// Interrupted.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// A local optimum of the fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LocalOptimum {
+    /// The gains.
+    pub gains: PerGain,
+    /// Variance accounted for of each signal.
+    pub vaf: Vec<(Signal, f64)>,
+    /// Variance accounted for after the onsets of perturbations.
+    pub vaf_after_onset: Option<Vec<(Signal, f64)>>,
+    /// Real part of the closed loop's rightmost eigenvalue \[1/s\].
+    pub rightmost_1_s: f64,
+    /// The number of starts that led here.
+    pub starts: usize,
+}
+
+/// Fitted gains.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// Indices of the fitted gains; the others are zero.
+    pub active: Vec<usize>,
+    /// The gains.
+    pub gains: PerGain,
+    /// Covariance of the fitted gains, in the order of `active`.
+    pub covariance: DMatrix<f64>,
+    /// Variance accounted for of each signal (eq. 2.12), from 1 for a perfect model to below 0.
+    pub vaf: Vec<(Signal, f64)>,
+    /// The same within [`AFTER_ONSET_S`] of the perturbations' onsets; `None` if the record has none.
+    pub vaf_after_onset: Option<Vec<(Signal, f64)>>,
+    /// Residuals of each signal.
+    pub residuals: Vec<Residuals>,
+    /// Condition number of the Jacobian with columns of unit length.
+    pub condition: f64,
+    /// Real part of the rightmost eigenvalue of the closed loop \[1/s\]; positive if unstable.
+    pub rightmost_1_s: f64,
+    /// The distinct optima, best first, with this one; a single one if the search started from known gains.
+    pub optima: Vec<LocalOptimum>,
+}
+
+/// Residuals of one signal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residuals {
+    /// Mean square \[rad^2 or rad^2/s^2\].
+    pub mean_square: f64,
+    /// The number of independent ones: all, less what their correlation takes.
+    pub independent: f64,
+}
+
+/// Where the search for gains starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum From<'a> {
+    /// Everywhere: global search.
+    Everywhere,
+    /// From known gains only.
+    Gains(&'a PerGain),
+}
+
+impl Fit {
+    /// Standard error of each gain; zero for gains that are not fitted.
+    pub fn standard_errors(&self) -> PerGain {
+        let mut errors = PerGain::default();
+        self.active
+            .iter()
+            .enumerate()
+            .for_each(|(i, gain)| errors[*gain] = self.covariance[(i, i)].max(0.0).sqrt());
+        errors
+    }
+
+    /// Mean of the signals' variance accounted for.
+    pub fn mean_vaf(&self) -> f64 {
+        self.vaf.iter().map(|(_, vaf)| vaf).sum::<f64>() / self.vaf.len() as f64
+    }
+
+    /// Variance of each gain relative to its square: the diagonal of eq. 2.15.
+    pub fn relative_variances(&self) -> Vec<(usize, f64)> {
+        let relative =
+            |(i, gain): (usize, &usize)| (*gain, self.covariance[(i, i)] / self.gains[*gain].powi(2));
+        self.active.iter().enumerate().map(relative).collect()
+    }
+
+    /// Twice the negative logarithm of the likelihood of normal residuals, but for a constant, if each signal has the
+    /// `independent` number of independent ones: `sum n ln(mean square)`.
+    pub fn deviance(&self, independent: &[f64]) -> f64 {
+        let of =
+            |(residuals, n): (&Residuals, &f64)| n * libm::log(residuals.mean_square.max(f64::MIN_POSITIVE));
+        self.residuals.iter().zip(independent).map(of).sum()
+    }
+
+    /// Correlation of two fitted gains, by their place in `active`.
+    pub fn correlation(&self, i: usize, j: usize) -> f64 {
+        self.covariance[(i, j)] / (self.covariance[(i, i)] * self.covariance[(j, j)]).sqrt()
+    }
+}
+
+/// Integral gains below this fraction of [`TYPICAL`] count as zero: their eigenvalue would be zero but for rounding.
+const NO_INTEGRAL: f64 = 1e-7;
+
+/// Real part of the rightmost eigenvalue of the model closed by `gains` \[1/s\], without integrals that no gain uses.
+pub fn rightmost_real(model: &GrayBox, gains: &PerGain) -> f64 {
+    let system = model.open_loop();
+    let used = |state: &usize| match state {
+        4 => gains[1].abs() > NO_INTEGRAL * TYPICAL[1],
+        5 => gains[5].abs() > NO_INTEGRAL * TYPICAL[5],
+        _ => true,
+    };
+    let states: Vec<usize> = (0..system.a.nrows()).filter(used).collect();
+    let row = nalgebra::SVector::<f64, GAINS>::from_column_slice(gains).transpose() * system.c;
+    let n = states.len();
+    rightmost(&DelaySystem {
+        a: DMatrix::from_fn(n, n, |i, j| system.a[(states[i], states[j])]),
+        b: DVector::from_fn(n, |i, _| system.alpha[states[i]]),
+        k: RowDVector::from_fn(n, |_, j| row[states[j]]),
+        delay_s: model.delay_s,
+    })
+    .re
+}
+
+impl Problem {
+    /// Whether a sample is fitted.
+    pub(super) fn fitted(&self, k: usize) -> bool {
+        k as f64 * self.record.disturbances.sample_s >= self.skip_s
+    }
+
+    /// The objective of a fit to the samples `chosen` beside those that are always left out, weighted by the noise of `fit`.
+    pub(super) fn objective_of(&self, model: &GrayBox, fit: &Fit, chosen: Chosen) -> Objective<'_> {
+        let objective = Objective::new(&self.record, model, self.drift, &|k| self.fitted(k) && chosen(k));
+        match fit.residuals.len() {
+            1 => objective,
+            _ => objective.weighted(fit.residuals.iter().map(|residuals| residuals.mean_square)),
+        }
+    }
+
+    /// Checks that the record can be fitted with these gains.
+    ///
+    /// # Errors
+    /// States what is missing.
+    pub fn check(&self, active: &[usize]) -> Result<(), FitError> {
+        let Record { disturbances, measured } = &self.record;
+        let duration_s = self.record.duration_s();
+        if active.is_empty() {
+            return Err(FitError::Nothing("no gain"));
+        }
+        if measured.is_empty() {
+            return Err(FitError::Nothing("no measured signal"));
+        }
+        if duration_s < SHORTEST_S + self.skip_s {
+            return Err(FitError::Short { duration_s, skip_s: self.skip_s });
+        }
+        for (input, signal) in ["the lateral force", "the steer torque disturbance"].into_iter().enumerate() {
+            let sample = disturbances.samples.iter().position(|x| !x[input].is_finite());
+            sample.map_or(Ok(()), |sample| Err(FitError::NotANumber { signal, sample }))?;
+        }
+        if disturbances.samples.iter().flatten().all(|x| *x == 0.0) {
+            return Err(FitError::Undisturbed);
+        }
+        for one in measured {
+            let name = one.signal.name();
+            let valid = || (0..one.values.len()).filter(|k| one.valid[*k]);
+            if let Some(sample) = valid().find(|k| !one.values[*k].is_finite()) {
+                return Err(FitError::NotANumber { signal: name, sample });
+            }
+            let samples = valid().filter(|k| self.fitted(*k)).count();
+            if samples < SAMPLES_PER_GAIN * active.len() {
+                return Err(FitError::Few { signal: name, samples, gains: active.len() });
+            }
+            let mut values = valid().map(|k| one.values[k]);
+            if values.next().is_none_or(|first| values.all(|x| x == first)) {
+                return Err(FitError::Still(name));
+            }
+        }
+        Ok(())
+    }
+
+    /// Fits the gains `active` by indices in [`symbols`]; `stop` interrupts.
+    ///
+    /// # Errors
+    /// The record can't be fitted, or no bounded response was found.
+    pub fn fit(
+        &self,
+        active: &[usize],
+        from: From,
+        stop: &(impl Fn() -> bool + Sync),
+    ) -> Result<Fit, FitError> {
+        self.check(active)?;
+        let chosen = |k: usize| self.fitted(k);
+        let mut objective = Objective::new(&self.record, &self.model, self.drift, &chosen);
+        let mut ends = match from {
+            From::Gains(gains) => {
+                let found = descend(&objective, active, gains).ok_or(FitError::Unbounded)?;
+                vec![Optimum { found, starts: 1 }]
+            }
+            From::Everywhere => {
+                let Self { record, model, drift, seed, .. } = self;
+                optima(&objective, &Global { record, model, drift: *drift, active, seed: *seed }, stop)
+            }
+        };
+        if stop() {
+            return Err(FitError::Interrupted);
+        }
+        let best = ends.first_mut().ok_or(FitError::Unbounded)?;
+        if self.record.measured.len() > 1 {
+            // With several signals, their noise is known only after a first fit.
+            let at = objective.evaluate(&best.found.gains, &[]).ok_or(FitError::Unbounded)?;
+            let means = objective.mean_squares(&at);
+            objective = objective.weighted(means.into_iter());
+            best.found = descend(&objective, active, &best.found.gains).ok_or(FitError::Unbounded)?;
+        }
+        let gains = best.found.gains;
+        let at = objective.evaluate(&gains, active).ok_or(FitError::Unbounded)?;
+        let Uncertainty { covariance, independent, condition } =
+            uncertainty(&objective, &at, self.record.disturbances.sample_s)
+                .ok_or_else(|| FitError::Inseparable(names(active)))?;
+        let means = objective.mean_squares(&at);
+        let residuals = means.into_iter().zip(independent);
+        let optima: Vec<LocalOptimum> = ends.iter().map(|end| self.local(&objective, end)).collect();
+        Ok(Fit {
+            active: active.to_vec(),
+            covariance,
+            vaf: optima[0].vaf.clone(),
+            vaf_after_onset: optima[0].vaf_after_onset.clone(),
+            residuals: residuals
+                .map(|(mean_square, independent)| Residuals { mean_square, independent })
+                .collect(),
+            condition,
+            rightmost_1_s: optima[0].rightmost_1_s,
+            gains,
+            optima,
+        })
+    }
+
+    fn local(&self, objective: &Objective, end: &Optimum) -> LocalOptimum {
+        let gains = end.found.gains;
+        let signals = self.record.measured.iter().map(|measured| measured.signal);
+        let of = |within: &dyn Fn(usize) -> bool| -> Vec<(Signal, f64)> {
+            signals.clone().zip(objective.vaf(&gains, within).unwrap_or_default()).collect()
+        };
+        let after = self.record.after_onsets(AFTER_ONSET_S);
+        let disturbed = (0..after.len()).any(|k| after[k] && self.fitted(k));
+        LocalOptimum {
+            gains,
+            vaf: of(&|_| true),
+            vaf_after_onset: disturbed.then(|| of(&|k| after[k])),
+            rightmost_1_s: rightmost_real(&self.model, &gains),
+            starts: end.starts,
+        }
+    }
+}
+
+/// The symbols of some gains, as a list.
+pub(super) fn names(active: &[usize]) -> String {
+    active.iter().map(|i| symbols()[*i]).collect::<Vec<_>>().join(", ")
+}
