@@ -26,6 +26,7 @@ pub mod basin;
 pub mod bicycle;
 pub mod eigen;
 pub mod json;
+pub mod perturbation;
 pub mod plant;
 pub mod rider;
 pub mod tracking;
