@@ -43,5 +43,5 @@ pub mod sweep;
 pub mod thesis;
 pub mod weave;
 
-pub use physics::{basin, bicycle, eigen, integrate, num, plant, ride, rider, tracking};
+pub use physics::{basin, bicycle, eigen, integrate, num, perturbation, plant, ride, rider, tracking};
 use physics::{json, range};

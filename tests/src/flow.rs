@@ -1,13 +1,23 @@
 //! Exact time derivatives: the state as dual numbers along the equations of motion.
 
-use sim_host::bicycle::{Geometry, Motion, State, Torques};
+use sim_host::bicycle::{Accelerations, Geometry, Motion, State, Torques};
 use sim_host::integrate::rate;
 use sim_host::num::Dual;
 
 /// The state with its time derivative, and all quantities that follow from it, likewise.
 pub fn along(b: &Geometry, state: &State<f64>, torques: &Torques<f64>) -> (State<Dual>, Motion<Dual>) {
     let motion = Motion::new(b, state);
-    let rate = rate(state, &motion, &motion.accelerations(b, torques));
+    accelerated(b, state, &motion, &motion.accelerations(b, torques))
+}
+
+/// The same from the accelerations.
+pub fn accelerated(
+    b: &Geometry,
+    state: &State<f64>,
+    motion: &Motion<f64>,
+    accelerations: &Accelerations<f64>,
+) -> (State<Dual>, Motion<Dual>) {
+    let rate = rate(state, motion, accelerations);
     let dual = |re, eps| Dual { re, eps };
     let moving = State {
         roll: dual(state.roll, rate.roll),

@@ -8,13 +8,19 @@ use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques};
 use crate::num::{Moves, Scalar};
 
 /// Source of the torques that act on the bicycle during a time step.
-pub trait Actuation<S> {
+pub trait Actuation<S: Scalar> {
     /// Begins a step at its start's motion: a sampled controller runs here.
     #[inline(always)]
     fn begin_step(&mut self, _: &Geometry, _: &Motion<S>) {}
 
     /// Torques for the motion at a Runge-Kutta stage; `stage` 0 is the start of the step, 3 its end.
     fn torques(&self, stage: usize, motion: &Motion<S>) -> Torques<S>;
+
+    /// Accelerations for the motion at a stage; a source of other forces than torques replaces it.
+    #[inline(always)]
+    fn accelerations(&self, b: &Geometry, stage: usize, motion: &Motion<S>) -> Accelerations<S> {
+        motion.accelerations(b, &self.torques(stage, motion))
+    }
 
     /// Receives the accelerations that these torques caused. For actuations with their own state, integrated
     /// alongside by [`Stages`].
@@ -117,8 +123,7 @@ pub fn rk4<S: Scalar>(b: &Geometry, state: &State<S>, h: f64, actuation: &mut im
             stages = Stages::new(State { pitch, ..*state });
             actuation.begin_step(b, &motion);
         }
-        let torques = actuation.torques(stage, &motion);
-        let acc = motion.accelerations(b, &torques);
+        let acc = actuation.accelerations(b, stage, &motion);
         actuation.end_stage(b, stage, &stages.at, &motion, &acc);
         let k = rate(&stages.at, &motion, &acc);
         stages.next(stage, h, &k);

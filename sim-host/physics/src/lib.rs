@@ -27,6 +27,7 @@ pub mod bicycle;
 pub mod eigen;
 pub mod identify;
 pub mod json;
+pub mod perturbation;
 pub mod plant;
 pub mod rider;
 pub mod tracking;

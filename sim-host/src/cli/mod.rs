@@ -27,6 +27,7 @@ mod pil_basin;
 mod plane;
 mod port_args;
 mod progress;
+mod record;
 mod replay;
 mod ride;
 mod rider;
@@ -89,6 +90,9 @@ enum Command {
     /// Identification from recordings: weave, sensor.
     #[command(subcommand, after_help = identify::EXAMPLES)]
     Identify(identify::Command),
+    /// A synthetic perturbation record: a rider on a treadmill, pushed sideways at random times.
+    #[command(after_help = record::EXAMPLES)]
+    Record(Box<record::Args>),
     /// The reproduced tables and figures of the thesis, as a report.
     Thesis(thesis::Args),
     /// Bicycles: list, show, check, accelerations.
@@ -131,6 +135,7 @@ pub fn run() -> ExitCode {
         Command::Pil(args) => pil::run(&args),
         Command::Eigen(args) => eigen::run(&args),
         Command::Identify(command) => identify::run(&command),
+        Command::Record(args) => record::run(&args),
         Command::Thesis(args) => thesis::run(&args),
         Command::Bicycle(command) => bicycle::run(&command),
         Command::Rider(command) => rider::run(&command),

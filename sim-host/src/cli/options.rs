@@ -38,6 +38,8 @@ pub(super) struct Plane;
 pub(super) struct Search;
 /// The rider alone.
 pub(super) struct Rider;
+/// The bicycle and the rider.
+pub(super) struct Ridden;
 /// The fall criterion alone.
 pub(super) struct Fall;
 /// Conditions of a sweep's cells and their search, with names in braces.
@@ -68,6 +70,10 @@ impl Settings for Search {
 }
 impl Settings for Rider {
     const LISTS: &'static [&'static [Setting]] = &[RIDERS];
+    const FILE: bool = false;
+}
+impl Settings for Ridden {
+    const LISTS: &'static [&'static [Setting]] = &[BICYCLES, RIDERS];
     const FILE: bool = false;
 }
 impl Settings for Fall {

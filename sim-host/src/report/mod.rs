@@ -5,6 +5,7 @@ pub mod compare;
 pub mod document;
 pub mod figure;
 pub mod output;
+pub mod perturbation;
 pub mod picture;
 pub mod plane;
 pub mod replay;

@@ -2,7 +2,7 @@
 //!
 //! Ground axes: origin at the rear contact, x along the rear wheel's heading, y right, z down.
 
-use motion::bicycle::Parameters;
+use motion::bicycle::{ForcePoint, Parameters};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 /// Indices in [`Bicycle::bodies`].
@@ -60,9 +60,16 @@ pub(super) struct Bicycle {
     pub(super) hinges: [Hinge; 3],
     /// Rear, front.
     pub(super) contacts: [Contact; 2],
+    /// From the upright rear frame to its attitude.
+    rear: Rotation3<f64>,
 }
 
 impl Bicycle {
+    /// From the rear frame's centre of mass to a point of it.
+    pub(super) fn arm_on_rear_frame(&self, p: &Parameters, point: ForcePoint) -> Vector3<f64> {
+        self.rear * Vector3::new(point.ahead_m - p.xB, 0.0, -point.height_m - p.zB)
+    }
+
     /// With both wheels on the ground; `None` if no pitch below 80 degrees brings them there.
     pub(super) fn on_ground(p: &Parameters, roll: f64, steer: f64) -> Option<Self> {
         let depth = |pitch: f64| Self::placed(p, roll, steer, pitch).front_depth();
@@ -117,6 +124,6 @@ impl Bicycle {
             (FRONT_FRAME, FRONT_WHEEL, bodies[FRONT_WHEEL].centre, front_contact.axle),
         ]
         .map(|(parent, child, point, axis)| Hinge { parent, child, point, axis });
-        Self { pitch, bodies, hinges, contacts: [rear_contact, front_contact] }
+        Self { pitch, bodies, hinges, contacts: [rear_contact, front_contact], rear }
     }
 }

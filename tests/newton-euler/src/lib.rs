@@ -9,7 +9,7 @@ mod constraints;
 
 use bodies::{Bicycle, Body, FRONT_FRAME, FRONT_WHEEL, REAR_FRAME, REAR_WHEEL};
 use constraints::{COLUMNS, CONTACT_ROWS, ROWS, angular, jacobian, rates};
-use motion::bicycle::{Parameters, State, Torques};
+use motion::bicycle::{ForcePoint, Parameters, State, Torques};
 use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Everything about one state: rates, accelerations, contact forces. Ground axes have x along the
@@ -54,10 +54,23 @@ pub struct Solution {
 
 /// Solves one state; `None` if the front wheel cannot be put on the ground.
 pub fn solve(p: &Parameters, state: &State<f64>, torques: &Torques<f64>) -> Option<Solution> {
+    solve_pushed(p, state, torques, ForcePoint { ahead_m: 0.0, height_m: 0.0 }, 0.0)
+}
+
+/// The same with a lateral force \[N\] on a point of the rear frame, across the rear wheel's heading, to the right
+/// positive.
+pub fn solve_pushed(
+    p: &Parameters,
+    state: &State<f64>,
+    torques: &Torques<f64>,
+    point: ForcePoint,
+    force_n: f64,
+) -> Option<Solution> {
     let bicycle = Bicycle::on_ground(p, state.roll, state.steer)?;
     let j = jacobian(&bicycle);
     let v = velocities(&bicycle, &j, state)?;
-    let (a, force) = accelerations(&bicycle, &j, &v, p.g, torques)?;
+    let push = Push { arm: bicycle.arm_on_rear_frame(p, point), force: Vector3::y() * force_n };
+    let (a, force) = accelerations(&bicycle, &j, &v, p.g, torques, &push)?;
 
     let axle = bicycle.contacts[0].axle;
     let wheel = |x: &DVector<f64>, frame, wheel, axle: &Vector3<f64>| {
@@ -129,6 +142,13 @@ fn energy(bicycle: &Bicycle, velocities: &DVector<f64>, gravity: f64) -> f64 {
     bicycle.bodies.iter().enumerate().map(one).sum()
 }
 
+/// A force on the rear frame.
+struct Push {
+    /// From the centre of mass to where it acts \[m\].
+    arm: Vector3<f64>,
+    force: Vector3<f64>,
+}
+
 /// Accelerations of the four bodies and the 21 constraint forces.
 fn accelerations(
     bicycle: &Bicycle,
@@ -136,6 +156,7 @@ fn accelerations(
     velocities: &DVector<f64>,
     gravity: f64,
     torques: &Torques<f64>,
+    push: &Push,
 ) -> Option<(DVector<f64>, DVector<f64>)> {
     let mut matrix = DMatrix::zeros(COLUMNS + ROWS, COLUMNS + ROWS);
     let mut right = DVector::zeros(COLUMNS + ROWS);
@@ -146,12 +167,14 @@ fn accelerations(
         right[6 * i + 2] = body.mass * gravity;
         right.fixed_rows_mut::<3>(6 * i + 3).copy_from(&-omega.cross(&(body.inertia * omega)));
     }
+    let mut on_frame = right.fixed_rows_mut::<3>(6 * REAR_FRAME);
+    on_frame += push.force;
     let mut turn = |body: usize, moment: Vector3<f64>| {
         let mut rows = right.fixed_rows_mut::<3>(6 * body + 3);
         rows += moment;
     };
     let head = bicycle.hinges[1].axis;
-    turn(REAR_FRAME, Vector3::x() * torques.roll - head * torques.steer);
+    turn(REAR_FRAME, Vector3::x() * torques.roll - head * torques.steer + push.arm.cross(&push.force));
     turn(FRONT_FRAME, head * torques.steer);
 
     matrix.view_mut((0, COLUMNS), (COLUMNS, ROWS)).copy_from(&-j.transpose());

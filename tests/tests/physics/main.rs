@@ -1,6 +1,7 @@
 //! The bicycle.
 
 mod energy;
+mod lateral_force;
 mod linear;
 mod newton_euler;
 mod operations;

@@ -3,7 +3,7 @@
 
 use super::bias::bias;
 use super::inertia::Inertia;
-use super::{Geometry, Motion, State};
+use super::{Forces, Geometry, Motion, State};
 use crate::num::Scalar;
 
 /// Applied torques \[N m\].
@@ -31,15 +31,29 @@ impl<S: Scalar> Motion<S> {
     /// Accelerations under `torques` and gravity.
     #[inline(always)]
     pub fn accelerations(&self, b: &Geometry, torques: &Torques<S>) -> Accelerations<S> {
+        self.accelerations_with(b, |[roll, steer, wheel]| {
+            [torques.roll - roll, torques.steer - steer, -wheel]
+        })
+    }
+
+    /// Accelerations under generalised forces and gravity.
+    pub fn accelerations_under(&self, b: &Geometry, forces: &Forces<S>) -> Accelerations<S> {
+        let [f1, f2, f3] = forces.0;
+        self.accelerations_with(b, |[roll, steer, wheel]| [f1 - roll, f2 - steer, f3 - wheel])
+    }
+
+    /// Accelerations from the bias to all generalised forces, as `applied` adds the applied ones.
+    #[inline(always)]
+    fn accelerations_with(&self, b: &Geometry, applied: impl FnOnce([S; 3]) -> [S; 3]) -> Accelerations<S> {
         let inertia = Inertia::new(b, &self.pose);
         let mass = inertia.mass(b, &self.pose, &self.partial);
         let (bias, _) = bias(b, &self.pose, &self.actual, &inertia, Some(&self.contact));
         let [u, v, w] = &self.partial;
-        let force = [
-            torques.roll - u.power::<true, false, false>(b, &self.pose, &bias),
-            torques.steer - v.power::<false, true, false>(b, &self.pose, &bias),
-            -w.power::<false, false, true>(b, &self.pose, &bias),
-        ];
+        let force = applied([
+            u.power::<true, false, false>(b, &self.pose, &bias),
+            v.power::<false, true, false>(b, &self.pose, &bias),
+            w.power::<false, false, true>(b, &self.pose, &bias),
+        ]);
         let [roll, steer, rear_wheel] = solve(&mass, force);
         Accelerations { roll, steer, rear_wheel }
     }

@@ -4,7 +4,7 @@ use super::{Geometry, Motion, Torques, Velocities};
 use crate::num::{Scalar, Vec3, sin_cos};
 
 /// A material point of the rear frame on the symmetry plane, by its place in the upright bicycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct ForcePoint {
     /// Ahead of the rear contact \[m\].
     pub ahead_m: f64,
