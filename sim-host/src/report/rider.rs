@@ -3,7 +3,7 @@
 
 use super::resolved::{ResolvedGains, ResolvedMuscles};
 use super::tool::{SCHEMA, Tool};
-use crate::rider::{Fit, Gains, KEYS, Outside, RiderTable, ScheduleError};
+use crate::rider::{Fit, Gains, KEYS, Outside, RiderTable, Row, ScheduleError};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -43,6 +43,8 @@ pub struct RowEntry {
     pub group: u32,
     /// Variance accounted for \[%\].
     pub vaf: Option<f64>,
+    /// Standard error of each gain that has one, in the gain's unit.
+    pub standard_errors: Option<ByKey<f64>>,
     /// Speed and gains.
     #[serde(flatten)]
     pub at: ResolvedGains,
@@ -83,10 +85,11 @@ impl FitEntry {
 impl RiderDocument {
     /// The document of a table and the requested fits.
     pub fn new(table: &RiderTable, fits: Vec<FitEntry>) -> Self {
-        let row = |r: &crate::rider::Row| RowEntry {
+        let row = |r: &Row| RowEntry {
             run: r.run,
             group: r.group,
             vaf: r.vaf,
+            standard_errors: standard_errors(table, r),
             at: ResolvedGains::new(r.speed_m_s, &r.gains),
         };
         Self {
@@ -106,10 +109,16 @@ impl RiderDocument {
     }
 }
 
-/// One line of the table: a measured set, or a point of a fit.
+/// Standard error of each gain of a row, if its covariance is known.
+pub fn standard_errors(table: &RiderTable, row: &Row) -> Option<ByKey<f64>> {
+    let errors = row.covariance.as_ref()?.standard_errors();
+    Some(table.columns.iter().map(|&i| KEYS[i]).zip(errors).collect())
+}
+
+/// One line of the table: a measured set, its standard errors, or a point of a fit.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct GainRow {
-    /// "measured", or the fit.
+    /// "measured", "measured error" (standard errors of the row above, zero for gains without), or the fit.
     pub kind: &'static str,
     /// Forward speed.
     pub speed_m_s: f64,
@@ -170,13 +179,23 @@ impl GainRow {
 /// # Errors
 /// See [`RiderTable::schedule`].
 pub fn gain_rows(table: &RiderTable, fits: &[Fit]) -> Result<Vec<GainRow>, ScheduleError> {
-    let measured = |r: &crate::rider::Row| GainRow {
-        run: r.run,
-        group: Some(r.group),
-        vaf: r.vaf,
-        ..GainRow::new("measured", r.speed_m_s, r.gains)
-    };
-    let mut rows: Vec<GainRow> = table.rows.iter().map(measured).collect();
+    let mut rows = Vec::new();
+    for r in &table.rows {
+        let of = |kind, gains| GainRow {
+            run: r.run,
+            group: Some(r.group),
+            vaf: r.vaf,
+            ..GainRow::new(kind, r.speed_m_s, gains)
+        };
+        rows.push(of("measured", r.gains));
+        if let Some(covariance) = &r.covariance {
+            let mut errors = Gains::default();
+            for (&i, error) in table.columns.iter().zip(covariance.standard_errors()) {
+                errors.0[i] = error;
+            }
+            rows.push(of("measured error", errors));
+        }
+    }
     for fit in fits {
         let schedule = table.schedule(*fit, Outside::default())?;
         rows.extend(schedule.points().iter().map(|(v, k)| GainRow::new(fit.name(), *v, *k)));

@@ -113,7 +113,8 @@ impl Cyclist {
 fn with_run_249(shipped: RiderTable, printed: &[f64; 8]) -> RiderTable {
     let of = &published().run_249;
     let gains = Gains::of_states(printed);
-    let row = Row { speed_m_s: of.speed, run: Some(249), group: 1, vaf: Some(of.vaf), gains };
+    let row =
+        Row { speed_m_s: of.speed, run: Some(249), group: 1, vaf: Some(of.vaf), gains, covariance: None };
     let mut rows = shipped.rows;
     let at = rows.partition_point(|r| r.speed_m_s < row.speed_m_s);
     rows.insert(at, row);

@@ -1,5 +1,6 @@
 //! The delayed human riders.
 
+mod covariance;
 mod delay;
 mod linear;
 mod parts;
