@@ -8,6 +8,7 @@ use crate::report::table;
 use crate::report::tool::Tool;
 use crate::rider::{Fit, KEYS, Outside, RiderTable, catalogue, merge};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -184,16 +185,30 @@ fn errors(text: &mut String, table: &RiderTable) {
 fn comment(text: &mut String, fit: &FitEntry, columns: &[usize]) {
     let keys: Vec<&str> = columns.iter().map(|&i| KEYS[i]).collect();
     let _ = writeln!(text, "\n# gains {}", fit.gains);
-    let speeds: String = fit.points.iter().map(|p| format!(" {:9.3}", p.speed_m_s)).collect();
+    // Eight intervals of a spline's many.
+    let every = if fit.spline.is_some() { fit.points.len().div_ceil(9) } else { 1 };
+    let speeds: String = fit.points.iter().step_by(every).map(|p| format!(" {:9.3}", p.speed_m_s)).collect();
     let _ = writeln!(text, "# at m/s    {speeds}        R^2{}", fit.line.as_ref().map_or("", |_| "   line"));
     for key in keys {
-        let values: String = fit.points.iter().map(|p| format!(" {:9.3}", p.gains[key])).collect();
+        let values: String =
+            fit.points.iter().step_by(every).map(|p| format!(" {:9.3}", p.gains[key])).collect();
         let r_squared = fit.r_squared[key].map_or("       none".into(), |r| format!("{r:11.3}"));
         let line = fit.line.as_ref().map_or(String::new(), |line| {
             let (slope, rest) = line[key];
             format!("   {slope:.4} v {} {:.4}", if rest < 0.0 { '-' } else { '+' }, rest.abs())
         });
         let _ = writeln!(text, "# {key:10}{values}{r_squared}{line}");
+        if let Some(spline) = &fit.spline {
+            let error = |errors: &BTreeMap<_, Option<f64>>| {
+                errors[key].map_or("      none".into(), |error| format!(" {error:9.3}"))
+            };
+            let errors: String = spline.standard_errors.iter().step_by(every).map(error).collect();
+            let _ = writeln!(
+                text,
+                "#       +/-{errors}   {:.2} degrees of freedom",
+                spline.degrees_of_freedom[key]
+            );
+        }
     }
 }
 

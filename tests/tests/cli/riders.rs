@@ -131,7 +131,7 @@ fn wrong_options_of_a_rider_are_rejected() {
         ("--rider young --delay 1.001s", "0 s to 1 s"),
         ("--rider young --delay nanms", "0 s to 1 s"),
         ("--rider young --delay 60", "20ms or 0.02s"),
-        ("--rider young --gains median", "regression, mean, best"),
+        ("--rider young --gains median", "regression, mean, best, spline"),
         ("--rider young --gains-outside zero", "extrapolate, hold"),
         ("--gains mean", "--rider"),
         ("--delay 60ms", "--rider"),
@@ -260,17 +260,31 @@ fn list_show_and_check() {
     }
     let young = bench.json("rider show young");
     let fits = young["fits"].as_array().unwrap();
-    assert_eq!((young["rows"].as_array().unwrap().len(), fits.len()), (15, 3));
+    assert_eq!((young["rows"].as_array().unwrap().len(), fits.len()), (15, 4));
     assert_eq!(young["rows"][3]["gains"]["K_delta_i"], json!(121.1));
     assert!((fits[0]["r_squared"]["K_delta_i"].as_f64().unwrap() - 0.855).abs() < 0.001);
     assert_eq!((&fits[0]["r_squared"]["K_psi"], &fits[1]["line"]), (&Value::Null, &Value::Null));
+    // The spline: a curve where the line explains little of a gain that changes with speed.
+    let (line, spline) = (&fits[0], &fits[3]);
+    for key in ["K_phi_d", "K_delta_i", "K_delta_d", "K_delta_dd"] {
+        let r = |fit: &Value| fit["r_squared"][key].as_f64().unwrap();
+        assert!(r(spline) > r(line) + 0.05 && r(spline) < 1.0, "{key}: {} {}", r(line), r(spline));
+        let freedom = spline["spline"]["degrees_of_freedom"][key].as_f64().unwrap();
+        assert!((4.0..5.0).contains(&freedom), "{key}: {freedom}");
+    }
+    assert_eq!((&line["spline"], &fits[2]["spline"]), (&Value::Null, &Value::Null));
+    let errors = spline["spline"]["standard_errors"].as_array().unwrap();
+    assert_eq!(errors.len(), 129);
+    assert!(errors.iter().all(|at| at["K_delta_i"].as_f64().is_some_and(|e| (5.0..150.0).contains(&e))));
+    let text = bench.run("rider show young --gains spline").stdout;
+    assert_eq!(text.lines().filter(|l| l.starts_with("#       +/-")).count(), 5, "{text}");
     let one = bench.json("rider show young --gains best");
     assert_eq!((one["fits"].as_array().unwrap().len(), &one["fits"][0]["gains"]), (1, &json!("best")));
 
     let csv = bench.run("rider show young --csv -").stdout;
     let lines: Vec<&str> = csv.lines().filter(|l| !l.starts_with('#')).collect();
     assert!(lines[0].starts_with("kind,speed_m_s,run,group,vaf,K_phi_p,"), "{}", lines[0]);
-    assert_eq!(lines.len(), 1 + 15 + 2 + 5 + 5);
+    assert_eq!(lines.len(), 1 + 15 + 2 + 5 + 5 + 129);
     assert!(lines[1].starts_with("measured,2.1,248,1,93.82,44.08,0.0,51.7,"), "{}", lines[1]);
     bench.run("rider show young --csv a --json ./a").rejected_naming(&["--csv", "--json", "same place"]);
 
@@ -278,7 +292,7 @@ fn list_show_and_check() {
     let check = bench.run("rider check my.toml").stdout;
     assert!(check.contains("gains best: not possible") && check.contains("gains mean: 2 points"), "{check}");
     bench.run("rider show my.toml --gains best").rejected_naming(&["my.toml", "best", "`vaf`"]);
-    assert_eq!(bench.json("rider show my.toml")["fits"].as_array().unwrap().len(), 2);
+    assert_eq!(bench.json("rider show my.toml")["fits"].as_array().unwrap().len(), 3);
 }
 
 /// Situation: a table in which one set has a covariance, and a copy at other speeds.

@@ -5,4 +5,5 @@ mod delay;
 mod linear;
 mod parts;
 mod roots;
+mod spline;
 mod tables;

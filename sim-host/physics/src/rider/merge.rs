@@ -39,22 +39,26 @@ pub fn merge(name: &str, tables: &[RiderTable], tolerance_m_s: f64) -> Result<Ri
     })
 }
 
+/// What all sets of a table share, as text.
+fn shared(table: &RiderTable) -> [(&'static str, String); 4] {
+    let gains: Vec<&str> = table.columns.iter().map(|&i| KEYS[i]).collect();
+    let muscles = table.neuromuscular;
+    [
+        ("gains", gains.join(", ")),
+        ("delay", format!("{} ms", (table.delay_s * 1e9).round() / 1e6)),
+        ("neuromuscular dynamics", format!("{} rad/s, {}", muscles.omega_rad_s, muscles.zeta)),
+        ("bicycle", table.bicycle.clone().unwrap_or_else(|| "none".into())),
+    ]
+}
+
 /// Checks that two tables describe the same kind of rider.
 fn agree(first: &RiderTable, other: &RiderTable) -> Result<(), MergeError> {
-    let gains = |t: &RiderTable| t.columns.iter().map(|&i| KEYS[i]).collect::<Vec<_>>().join(", ");
-    let muscles = |t: &RiderTable| format!("{} rad/s, {}", t.neuromuscular.omega_rad_s, t.neuromuscular.zeta);
-    let traits: [(&'static str, &dyn Fn(&RiderTable) -> String); 4] = [
-        ("gains", &gains),
-        ("delay", &|t| format!("{} ms", (t.delay_s * 1e9).round() / 1e6)),
-        ("neuromuscular dynamics", &muscles),
-        ("bicycle", &|t| t.bicycle.clone().unwrap_or_else(|| "none".into())),
-    ];
-    for (what, of) in traits {
-        let (value, other_value) = (of(first), of(other));
-        if value != other_value {
+    let differs = |(a, b): &((_, String), (_, String))| a.1 != b.1;
+    match shared(first).into_iter().zip(shared(other)).find(differs) {
+        None => Ok(()),
+        Some(((what, value), (_, other_value))) => {
             let (first, other) = (first.name.clone(), other.name.clone());
-            return Err(MergeError::Differs { first, other, what, value, other_value });
+            Err(MergeError::Differs { first, other, what, value, other_value })
         }
     }
-    Ok(())
 }

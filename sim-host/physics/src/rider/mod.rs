@@ -8,6 +8,7 @@ mod file;
 mod fit;
 mod line;
 mod merge;
+mod spline;
 mod table;
 
 pub use compatibility::compatibility_warnings;
@@ -17,4 +18,5 @@ pub use fit::{Fit, mean};
 pub use line::Line;
 pub use merge::merge;
 pub use motion::rider::*;
+pub use spline::{Point, Spline, Variances};
 pub use table::{RiderTable, Row};
