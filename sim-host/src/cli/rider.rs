@@ -1,13 +1,14 @@
-//! `sim-host rider`: list, show, check.
+//! `sim-host rider`: list, show, check, merge.
 
 use super::outputs::{print, write_json};
 use super::{Ended, Failure};
 use crate::report::output::Output;
-use crate::report::rider::{FitEntry, RiderDocument, gain_rows};
+use crate::report::rider::{FitEntry, RiderDocument, gain_rows, standard_errors};
 use crate::report::table;
 use crate::report::tool::Tool;
-use crate::rider::{Fit, KEYS, Outside, RiderTable, catalogue};
+use crate::rider::{Fit, KEYS, Outside, RiderTable, catalogue, merge};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -16,7 +17,8 @@ Examples:
   sim-host rider list
   sim-host rider show young
   sim-host rider show smart --gains regression --json
-  sim-host rider check my-rider.toml";
+  sim-host rider check my-rider.toml
+  sim-host rider merge run1.toml run2.toml run3.toml --out rider.toml";
 
 const SHOW_HELP: &str = "\
 The output is a file for --rider; its comments contain the fits over speed.
@@ -25,6 +27,14 @@ Examples:
   sim-host rider show young > my-rider.toml
   sim-host rider show smart --gains regression --json
   sim-host rider show hess --csv hess.csv";
+
+const MERGE_HELP: &str = "\
+The files' own groups, best_runs, regression and note are left out; gains, delay, neuromuscular
+dynamics and bicycle must agree.
+
+Examples:
+  sim-host rider merge run1.toml run2.toml run3.toml --out rider.toml
+  sim-host rider merge slow.toml fast.toml --group-within 0.5 > rider.toml";
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
@@ -41,6 +51,22 @@ pub(super) enum Command {
         #[arg(value_name = "NAME|FILE")]
         rider: String,
     },
+    /// One table from several with the same gains and delay: their rows, grouped by speed
+    #[command(after_help = MERGE_HELP)]
+    Merge(MergeArgs),
+}
+
+#[derive(clap::Args)]
+pub(super) struct MergeArgs {
+    /// Riders' files, or built-in riders
+    #[arg(value_name = "NAME|FILE", required = true)]
+    riders: Vec<String>,
+    /// A group takes rows up to this much faster than its slowest [m/s]
+    #[arg(long, value_name = "M_S", default_value_t = 0.3)]
+    group_within: f64,
+    /// Write the table to FILE; - is standard output
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    out: PathBuf,
 }
 
 #[derive(clap::Args)]
@@ -64,6 +90,7 @@ pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
         Command::List => list()?,
         Command::Show(args) => show(args)?,
         Command::Check { rider } => check(rider)?,
+        Command::Merge(args) => merged(args)?,
     }
     Ok(Ended::Done)
 }
@@ -129,27 +156,71 @@ fn show(args: &ShowArgs) -> Result<(), Failure> {
     }
     let Tool { name: tool, version, commit } = Tool::this();
     let mut text = format!("# {tool} {version} commit {commit}, rider {}\n{}", table.name, table.to_toml());
+    errors(&mut text, &table);
     for entry in &entries {
         comment(&mut text, entry, &table.columns);
     }
     print(&text)
 }
 
+/// Standard errors of the measured gains as comment lines, if there are any.
+fn errors(text: &mut String, table: &RiderTable) {
+    if table.rows.iter().all(|row| row.covariance.is_none()) {
+        return;
+    }
+    let _ = writeln!(text, "\n# measured gains +/- standard error");
+    for row in &table.rows {
+        let errors = standard_errors(table, row);
+        let gain = |&i: &usize| match &errors {
+            Some(errors) => format!("  {} {:.4} +/- {:.2}", KEYS[i], row.gains.0[i], errors[KEYS[i]]),
+            None => format!("  {} {:.4}", KEYS[i], row.gains.0[i]),
+        };
+        let run = row.run.map_or(String::new(), |run| format!(", run {run}"));
+        let gains: String = table.columns.iter().map(gain).collect();
+        let _ = writeln!(text, "# {} m/s{run}:{gains}", row.speed_m_s);
+    }
+}
+
 /// A fit as comment lines.
 fn comment(text: &mut String, fit: &FitEntry, columns: &[usize]) {
     let keys: Vec<&str> = columns.iter().map(|&i| KEYS[i]).collect();
     let _ = writeln!(text, "\n# gains {}", fit.gains);
-    let speeds: String = fit.points.iter().map(|p| format!(" {:9.3}", p.speed_m_s)).collect();
+    // Eight intervals of a spline's many.
+    let every = if fit.spline.is_some() { fit.points.len().div_ceil(9) } else { 1 };
+    let speeds: String = fit.points.iter().step_by(every).map(|p| format!(" {:9.3}", p.speed_m_s)).collect();
     let _ = writeln!(text, "# at m/s    {speeds}        R^2{}", fit.line.as_ref().map_or("", |_| "   line"));
     for key in keys {
-        let values: String = fit.points.iter().map(|p| format!(" {:9.3}", p.gains[key])).collect();
+        let values: String =
+            fit.points.iter().step_by(every).map(|p| format!(" {:9.3}", p.gains[key])).collect();
         let r_squared = fit.r_squared[key].map_or("       none".into(), |r| format!("{r:11.3}"));
         let line = fit.line.as_ref().map_or(String::new(), |line| {
             let (slope, rest) = line[key];
             format!("   {slope:.4} v {} {:.4}", if rest < 0.0 { '-' } else { '+' }, rest.abs())
         });
         let _ = writeln!(text, "# {key:10}{values}{r_squared}{line}");
+        if let Some(spline) = &fit.spline {
+            let error = |errors: &BTreeMap<_, Option<f64>>| {
+                errors[key].map_or("      none".into(), |error| format!(" {error:9.3}"))
+            };
+            let errors: String = spline.standard_errors.iter().step_by(every).map(error).collect();
+            let _ = writeln!(
+                text,
+                "#       +/-{errors}   {:.2} degrees of freedom",
+                spline.degrees_of_freedom[key]
+            );
+        }
     }
+}
+
+fn merged(args: &MergeArgs) -> Result<(), Failure> {
+    let tables = args.riders.iter().map(|name| catalogue::load(name)).collect::<Result<Vec<_>, _>>()?;
+    let name = args.out.display().to_string();
+    let table = merge(&name, &tables, args.group_within)?;
+    // Groups' means too close for a schedule are rejected before the file is written.
+    table.schedule(Fit::Mean, Outside::default()).map_err(|e| format!("means of groups: {e}"))?;
+    let Tool { name: tool, version, commit } = Tool::this();
+    let comment = format!("# {tool} {version} commit {commit}, rider merge\n");
+    Ok(Output::create(&args.out)?.finish((comment + &table.to_toml()).as_bytes())?)
 }
 
 fn check(name: &str) -> Result<(), Failure> {

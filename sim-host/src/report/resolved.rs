@@ -127,7 +127,7 @@ pub struct ResolvedRider {
     /// Source of the gains.
     pub source: Option<String>,
     /// Method that makes them functions of speed.
-    #[schemars(extend("enum" = ["regression", "mean", "best"]))]
+    #[schemars(extend("enum" = ["regression", "mean", "best", "spline"]))]
     pub gains: &'static str,
     /// Neural delay \[s\].
     pub delay_s: f64,

@@ -3,7 +3,7 @@
 
 use super::resolved::{ResolvedGains, ResolvedMuscles};
 use super::tool::{SCHEMA, Tool};
-use crate::rider::{Fit, Gains, KEYS, Outside, RiderTable, ScheduleError};
+use crate::rider::{Fit, Gains, KEYS, Outside, RiderTable, Row, Schedule, ScheduleError, Spline};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -43,6 +43,8 @@ pub struct RowEntry {
     pub group: u32,
     /// Variance accounted for \[%\].
     pub vaf: Option<f64>,
+    /// Standard error of each gain that has one, in the gain's unit.
+    pub standard_errors: Option<ByKey<f64>>,
     /// Speed and gains.
     #[serde(flatten)]
     pub at: ResolvedGains,
@@ -52,14 +54,52 @@ pub struct RowEntry {
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct FitEntry {
     /// Method of the fit.
-    #[schemars(extend("enum" = ["regression", "mean", "best"]))]
+    #[schemars(extend("enum" = ["regression", "mean", "best", "spline"]))]
     pub gains: &'static str,
     /// Points of the piecewise linear functions, extrapolated beyond the outermost.
     pub points: Vec<ResolvedGains>,
     /// Slope \[per m/s\] and gain at rest of a regression; null for others.
     pub line: Option<ByKey<(f64, f64)>>,
+    /// What else is known of a smoothing spline; null for others.
+    pub spline: Option<SplineEntry>,
     /// Coefficient of determination; null for a gain that is equal in all rows.
     pub r_squared: ByKey<Option<f64>>,
+}
+
+/// Smoothing splines of the gains.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct SplineEntry {
+    /// Standard error of each gain at the points, in the gain's unit; null if the sets are too few for one.
+    pub standard_errors: Vec<ByKey<Option<f64>>>,
+    /// Effective degrees of freedom of each gain: 1 for a constant, 2 for a straight line, more for a curve.
+    pub degrees_of_freedom: ByKey<f64>,
+    /// Largest difference in the middle between two points of the spline and the straight line between them, in the
+    /// gain's unit.
+    pub sampling_error: ByKey<f64>,
+}
+
+impl SplineEntry {
+    /// The splines of a table, sampled at the points of `schedule`.
+    fn new(table: &RiderTable, schedule: &Schedule) -> Self {
+        let splines = table.splines();
+        let of = |value: &dyn Fn(&Spline) -> f64| -> ByKey<f64> {
+            table.columns.iter().map(|&i| KEYS[i]).zip(splines.iter().map(value)).collect()
+        };
+        let errors = |v: f64| {
+            let errors = splines.iter().map(|spline| spline.standard_error(v));
+            table.columns.iter().map(|&i| KEYS[i]).zip(errors).collect()
+        };
+        let middles = || schedule.points().windows(2).map(|pair| f64::midpoint(pair[0].0, pair[1].0));
+        let off = |(&i, spline): (&usize, &Spline)| {
+            let off = middles().map(|v| (spline.at(v) - schedule.at(v).0[i]).abs());
+            (KEYS[i], off.fold(0.0, f64::max))
+        };
+        Self {
+            standard_errors: schedule.points().iter().map(|(v, _)| errors(*v)).collect(),
+            degrees_of_freedom: of(&|spline| spline.degrees_of_freedom),
+            sampling_error: table.columns.iter().zip(&splines).map(off).collect(),
+        }
+    }
 }
 
 impl FitEntry {
@@ -75,6 +115,7 @@ impl FitEntry {
             gains: fit.name(),
             points: schedule.points().iter().map(|(v, k)| ResolvedGains::new(*v, k)).collect(),
             line: (fit == Fit::Regression).then(|| KEYS.into_iter().zip(pairs).collect()),
+            spline: (fit == Fit::Spline).then(|| SplineEntry::new(table, &schedule)),
             r_squared: KEYS.into_iter().zip(table.r_squared(&schedule)).collect(),
         })
     }
@@ -83,10 +124,11 @@ impl FitEntry {
 impl RiderDocument {
     /// The document of a table and the requested fits.
     pub fn new(table: &RiderTable, fits: Vec<FitEntry>) -> Self {
-        let row = |r: &crate::rider::Row| RowEntry {
+        let row = |r: &Row| RowEntry {
             run: r.run,
             group: r.group,
             vaf: r.vaf,
+            standard_errors: standard_errors(table, r),
             at: ResolvedGains::new(r.speed_m_s, &r.gains),
         };
         Self {
@@ -106,10 +148,16 @@ impl RiderDocument {
     }
 }
 
-/// One line of the table: a measured set, or a point of a fit.
+/// Standard error of each gain of a row, if its covariance is known.
+pub fn standard_errors(table: &RiderTable, row: &Row) -> Option<ByKey<f64>> {
+    let errors = row.covariance.as_ref()?.standard_errors();
+    Some(table.columns.iter().map(|&i| KEYS[i]).zip(errors).collect())
+}
+
+/// One line of the table: a measured set, its standard errors, or a point of a fit.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct GainRow {
-    /// "measured", or the fit.
+    /// "measured", "measured error" (standard errors of the row above, zero for gains without), or the fit.
     pub kind: &'static str,
     /// Forward speed.
     pub speed_m_s: f64,
@@ -170,13 +218,23 @@ impl GainRow {
 /// # Errors
 /// See [`RiderTable::schedule`].
 pub fn gain_rows(table: &RiderTable, fits: &[Fit]) -> Result<Vec<GainRow>, ScheduleError> {
-    let measured = |r: &crate::rider::Row| GainRow {
-        run: r.run,
-        group: Some(r.group),
-        vaf: r.vaf,
-        ..GainRow::new("measured", r.speed_m_s, r.gains)
-    };
-    let mut rows: Vec<GainRow> = table.rows.iter().map(measured).collect();
+    let mut rows = Vec::new();
+    for r in &table.rows {
+        let of = |kind, gains| GainRow {
+            run: r.run,
+            group: Some(r.group),
+            vaf: r.vaf,
+            ..GainRow::new(kind, r.speed_m_s, gains)
+        };
+        rows.push(of("measured", r.gains));
+        if let Some(covariance) = &r.covariance {
+            let mut errors = Gains::default();
+            for (&i, error) in table.columns.iter().zip(covariance.standard_errors()) {
+                errors.0[i] = error;
+            }
+            rows.push(of("measured error", errors));
+        }
+    }
     for fit in fits {
         let schedule = table.schedule(*fit, Outside::default())?;
         rows.extend(schedule.points().iter().map(|(v, k)| GainRow::new(fit.name(), *v, *k)));

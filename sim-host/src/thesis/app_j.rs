@@ -82,9 +82,9 @@ fn quantile(sorted: &[f64], part: f64) -> f64 {
 
 /// Table J.4: speeds at which the undelayed rider's straight ride is stable.
 pub(super) fn table_j_4(study: &Study) -> Item {
-    let all = Fit::ALL.map(|fit| stability(&model(study, fit)));
+    let all = Fit::THESIS.map(|fit| stability(&model(study, fit)));
     let values = Item::compare("table-J.4", |cell| {
-        let found = fit_named(&cell.column).and_then(|fit| Fit::ALL.iter().position(|f| *f == fit));
+        let found = fit_named(&cell.column).and_then(|fit| Fit::THESIS.iter().position(|f| *f == fit));
         let Some(of) = found.map(|i| &all[i]) else { return Value::new(cell, None) };
         let weave = cell.row == "v_w";
         let end = longest(of).map(|range| if weave { range.0 } else { range.1 });
@@ -120,7 +120,7 @@ pub(super) fn figure_j_3(study: &Study) -> Item {
     let chart = Chart {
         title: "Eigenvalues of the undelayed rider".into(),
         columns: 2,
-        plots: Fit::ALL.map(plot).to_vec(),
+        plots: Fit::THESIS.map(plot).to_vec(),
         shaded: "stable".into(),
     };
     let caption = "Eigenvalues of the linearised bicycle with the undelayed rider, neuromuscular dynamics and steer integral included, \

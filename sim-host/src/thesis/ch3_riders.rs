@@ -24,7 +24,7 @@ pub(super) fn ridden(who: Who, fits: &[Fit]) -> Vec<Case> {
 
 /// The basins of riders by all fits.
 pub(super) fn all_fits(riders: &[Who]) -> Vec<Case> {
-    riders.iter().flat_map(|&who| ridden(who, &Fit::ALL)).collect()
+    riders.iter().flat_map(|&who| ridden(who, &Fit::THESIS)).collect()
 }
 
 /// The basins of Table 3.1 and Figure 3.2.
@@ -80,8 +80,8 @@ fn decline(outlines: &[Outline]) -> f64 {
 pub(super) fn table_3_1(study: &Study) -> Item {
     let values = Item::compare("table-3.1", |cell| match (named(&cell.row), cell.column.as_str()) {
         (Some(rider), _) => basin_cell(study, cell, rider),
-        (None, "area") => merit(study, cell, &ridden(Cyclist::young, &Fit::ALL), &mean_area),
-        (None, _) => merit(study, cell, &ridden(Cyclist::young, &Fit::ALL), &mean_height),
+        (None, "area") => merit(study, cell, &ridden(Cyclist::young, &Fit::THESIS), &mean_area),
+        (None, _) => merit(study, cell, &ridden(Cyclist::young, &Fit::THESIS), &mean_height),
     });
     Item { values, ..Item::default() }
 }
@@ -141,7 +141,7 @@ pub(super) fn of_rider(study: &Study, name: &str, colour: usize, who: Who) -> Ve
         let basin = study.basin(&Case::ridden(who(fit)));
         outline(format!("{name} {}", fit_name(fit)).trim(), Look::line(colour, line), &basin)
     };
-    Fit::ALL.into_iter().zip(LINES).map(one).collect()
+    Fit::THESIS.into_iter().zip(LINES).map(one).collect()
 }
 
 const VERTICALS: &str = "The vertical lines are the speeds the gains were measured at.";

@@ -156,14 +156,14 @@ fn measured(name: &str, look: Look, table: &RiderTable, key: usize) -> Series {
 /// The gains over speed: measured sets and the three fits.
 fn gains(name: &str, title: &str, rider: fn(Fit) -> Cyclist) -> Item {
     let table = rider(Fit::Mean).table();
-    let schedules = Fit::ALL.map(|fit| rider(fit).schedule());
+    let schedules = Fit::THESIS.map(|fit| rider(fit).schedule());
     let line = |i: usize, key: usize| {
         // An interpolation bends only at its points.
         let points = schedules[i].points().iter().map(|p| p.0);
         let mut speeds: Vec<f64> = RIDDEN.into_iter().chain(points).collect();
         speeds.sort_by(f64::total_cmp);
         let on = |&v: &f64| (v, schedules[i].at(v).0[key]);
-        Series::new(fit_name(Fit::ALL[i]), Look::line(i, LINES[i]), speeds.iter().map(on).collect())
+        Series::new(fit_name(Fit::THESIS[i]), Look::line(i, LINES[i]), speeds.iter().map(on).collect())
     };
     let plot = |&key: &usize| {
         let sets = measured("measured", Look::marks(4, Marker::Dot), &table, key);

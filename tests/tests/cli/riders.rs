@@ -66,6 +66,27 @@ fn wrong_tables_are_rejected_with_the_reason() {
         ("[2.2, 2, 1, 95, 20, -2]", "[2.2, 2, 1, 195, 20, -2]", &["row 2", "`vaf` = 195", "to 100"]),
         ("[4.0, 4, 2, 91, 40, -5]", "[4.0, 4, 3, 91, 40, -5]", &["means of groups", "4", "rise"]),
         ("[2.2, 2, 1, 95, 20, -2]", "['a', 2, 1, 95, 20, -2]", &["line 5", "\"a\""]),
+        ("delay_ms = 30", "delay_ms = 30\ncovariances = [[]]", &["`covariances`", "1 matrices", "4 `rows`"]),
+        (
+            "delay_ms = 30",
+            "delay_ms = 30\ncovariances = [[], [[1, 0]], [], []]",
+            &["row 2", "`covariances`", "1 x 2", "2 x 2"],
+        ),
+        (
+            "delay_ms = 30",
+            "delay_ms = 30\ncovariances = [[], [], [[1, 0], [0, -1]], []]",
+            &["row 3", "`covariances`", "variance of K_delta_d = -1", "0 to 10000000000"],
+        ),
+        (
+            "delay_ms = 30",
+            "delay_ms = 30\ncovariances = [[], [], [], [[1, 3], [3, 4]]]",
+            &["row 4", "`covariances`", "K_phi_p and K_delta_d = 3", "-2"],
+        ),
+        (
+            "delay_ms = 30",
+            "delay_ms = 30\ncovariances = [[[1, 0.5], [0, 1]], [], [], []]",
+            &["row 1", "`covariances`", "0.5", "symmetric"],
+        ),
     ] {
         assert!(TABLE.contains(right), "{right}");
         bench.write("my.toml", TABLE.replacen(right, wrong, 1));
@@ -110,7 +131,7 @@ fn wrong_options_of_a_rider_are_rejected() {
         ("--rider young --delay 1.001s", "0 s to 1 s"),
         ("--rider young --delay nanms", "0 s to 1 s"),
         ("--rider young --delay 60", "20ms or 0.02s"),
-        ("--rider young --gains median", "regression, mean, best"),
+        ("--rider young --gains median", "regression, mean, best, spline"),
         ("--rider young --gains-outside zero", "extrapolate, hold"),
         ("--gains mean", "--rider"),
         ("--delay 60ms", "--rider"),
@@ -239,17 +260,31 @@ fn list_show_and_check() {
     }
     let young = bench.json("rider show young");
     let fits = young["fits"].as_array().unwrap();
-    assert_eq!((young["rows"].as_array().unwrap().len(), fits.len()), (15, 3));
+    assert_eq!((young["rows"].as_array().unwrap().len(), fits.len()), (15, 4));
     assert_eq!(young["rows"][3]["gains"]["K_delta_i"], json!(121.1));
     assert!((fits[0]["r_squared"]["K_delta_i"].as_f64().unwrap() - 0.855).abs() < 0.001);
     assert_eq!((&fits[0]["r_squared"]["K_psi"], &fits[1]["line"]), (&Value::Null, &Value::Null));
+    // The spline: a curve where the line explains little of a gain that changes with speed.
+    let (line, spline) = (&fits[0], &fits[3]);
+    for key in ["K_phi_d", "K_delta_i", "K_delta_d", "K_delta_dd"] {
+        let r = |fit: &Value| fit["r_squared"][key].as_f64().unwrap();
+        assert!(r(spline) > r(line) + 0.05 && r(spline) < 1.0, "{key}: {} {}", r(line), r(spline));
+        let freedom = spline["spline"]["degrees_of_freedom"][key].as_f64().unwrap();
+        assert!((4.0..5.0).contains(&freedom), "{key}: {freedom}");
+    }
+    assert_eq!((&line["spline"], &fits[2]["spline"]), (&Value::Null, &Value::Null));
+    let errors = spline["spline"]["standard_errors"].as_array().unwrap();
+    assert_eq!(errors.len(), 129);
+    assert!(errors.iter().all(|at| at["K_delta_i"].as_f64().is_some_and(|e| (5.0..150.0).contains(&e))));
+    let text = bench.run("rider show young --gains spline").stdout;
+    assert_eq!(text.lines().filter(|l| l.starts_with("#       +/-")).count(), 5, "{text}");
     let one = bench.json("rider show young --gains best");
     assert_eq!((one["fits"].as_array().unwrap().len(), &one["fits"][0]["gains"]), (1, &json!("best")));
 
     let csv = bench.run("rider show young --csv -").stdout;
     let lines: Vec<&str> = csv.lines().filter(|l| !l.starts_with('#')).collect();
     assert!(lines[0].starts_with("kind,speed_m_s,run,group,vaf,K_phi_p,"), "{}", lines[0]);
-    assert_eq!(lines.len(), 1 + 15 + 2 + 5 + 5);
+    assert_eq!(lines.len(), 1 + 15 + 2 + 5 + 5 + 129);
     assert!(lines[1].starts_with("measured,2.1,248,1,93.82,44.08,0.0,51.7,"), "{}", lines[1]);
     bench.run("rider show young --csv a --json ./a").rejected_naming(&["--csv", "--json", "same place"]);
 
@@ -257,7 +292,43 @@ fn list_show_and_check() {
     let check = bench.run("rider check my.toml").stdout;
     assert!(check.contains("gains best: not possible") && check.contains("gains mean: 2 points"), "{check}");
     bench.run("rider show my.toml --gains best").rejected_naming(&["my.toml", "best", "`vaf`"]);
-    assert_eq!(bench.json("rider show my.toml")["fits"].as_array().unwrap().len(), 2);
+    assert_eq!(bench.json("rider show my.toml")["fits"].as_array().unwrap().len(), 3);
+}
+
+/// Situation: a table in which one set has a covariance, and a copy at other speeds.
+/// Action: show it, merge both.
+/// Must hold: standard errors beside that set's gains, as text, JSON and CSV; the text is a file with the covariance;
+/// the merged table has all rows, and its groups are by speed.
+#[test]
+fn standard_errors_are_shown_and_tables_merged() {
+    let bench = Bench::new(PROGRAM);
+    let covariances = "covariances = [[], [[4, -1], [-1, 0.25]], [], []]\n";
+    bench.write("my.toml", format!("{TABLE}{covariances}"));
+    let shown = bench.run("rider show my.toml").stdout;
+    assert!(
+        shown.contains("# 2.2 m/s, run 2:  K_phi_p 20.0000 +/- 2.00  K_delta_d -2.0000 +/- 0.50"),
+        "{shown}"
+    );
+    assert!(shown.contains("# 2 m/s, run 1:  K_phi_p 10.0000  K_delta_d -1.0000"), "{shown}");
+    bench.write("shown.toml", shown);
+    let of = |file: &str| bench.json(&format!("rider show {file}"))["rows"].clone();
+    assert_eq!(of("my.toml"), of("shown.toml"));
+    assert_eq!(of("my.toml")[1]["standard_errors"], json!({"K_phi_p": 2.0, "K_delta_d": 0.5}));
+    assert_eq!(of("my.toml")[0]["standard_errors"], Value::Null);
+    let csv = bench.run("rider show my.toml --csv -").stdout;
+    assert!(csv.contains("\nmeasured error,2.2,2,1,95.0,2.0,0.0,0.0,0.0,0.0,0.0,0.5,"), "{csv}");
+
+    bench.write("fast.toml", TABLE.replace("[2.0, 1", "[2.4, 5").replace("[2.2, 2", "[2.6, 6"));
+    let merge = bench.run("rider merge my.toml fast.toml --out both.toml");
+    assert_eq!((merge.code, merge.stdout.as_str()), (Some(0), ""), "{merge:?}");
+    let both = of("both.toml");
+    let rows: Vec<_> = both.as_array().unwrap().iter().map(|r| (&r["speed_m_s"], &r["group"])).collect();
+    let speeds = [2.0, 2.2, 2.4, 2.6, 4.0, 4.0, 4.0, 4.0].map(|v| json!(v));
+    let groups = [1, 1, 2, 2, 3, 3, 3, 3].map(|g| json!(g));
+    assert_eq!(rows, speeds.iter().zip(&groups).collect::<Vec<_>>());
+    assert_eq!(both[1]["standard_errors"], json!({"K_phi_p": 2.0, "K_delta_d": 0.5}));
+    bench.run("rider merge my.toml young").rejected_naming(&["my.toml", "young", "gains", "K_delta_i"]);
+    bench.run("rider merge my.toml --group-within 0").rejected_naming(&["tolerance", "0", "0.001"]);
 }
 
 /// Situation: the commented example.

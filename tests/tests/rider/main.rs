@@ -1,7 +1,9 @@
 //! The delayed human riders.
 
+mod covariance;
 mod delay;
 mod linear;
 mod parts;
 mod roots;
+mod spline;
 mod tables;

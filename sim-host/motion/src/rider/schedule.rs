@@ -67,7 +67,7 @@ impl Schedule {
         if last == 0 {
             return p[0].1;
         }
-        let right = (1..last).find(|&i| speed < p[i].0).unwrap_or(last);
+        let right = 1 + p[1..last].partition_point(|point| point.0 <= speed);
         let ((v0, k0), (v1, k1)) = (&p[right - 1], &p[right]);
         let speed = match self.outside {
             Outside::Extrapolate => speed,

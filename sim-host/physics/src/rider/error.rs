@@ -87,6 +87,19 @@ pub enum TableError {
     /// A gain without its regression.
     #[error("`regression`: `{0}` is missing")]
     RegressionMissing(&'static str),
+    /// Not one covariance for each row.
+    #[error("`covariances` has {matrices} matrices for {rows} `rows`; a row without one has an empty list")]
+    Covariances {
+        /// The number of matrices.
+        matrices: usize,
+        /// The number of rows.
+        rows: usize,
+    },
+    /// Covariances of nested gains, of which products are stored.
+    #[error(
+        "`covariances` of gains with `feedback` = \"nested\" are not supported; multiply the loops out first"
+    )]
+    NestedCovariances,
     /// A wrong row.
     #[error("row {row}: {error}")]
     Row {
@@ -128,6 +141,9 @@ pub enum RowError {
     /// A value outside its range.
     #[error(transparent)]
     Range(#[from] RangeError),
+    /// A wrong covariance.
+    #[error("`covariances`: {0}")]
+    Covariance(#[from] CovarianceError),
     /// A number that must be whole.
     #[error("`{key}` = {value} is not a whole number")]
     NotWhole {
@@ -152,4 +168,59 @@ pub enum RowError {
         /// The group before it.
         before: u32,
     },
+}
+
+/// Reason why a matrix is not the covariance of a set of gains.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CovarianceError {
+    /// More or fewer rows or columns than gains.
+    #[error("{rows} x {columns} values, but {gains} gains need {gains} x {gains}")]
+    Shape {
+        /// Number of gains.
+        gains: usize,
+        /// Number of rows.
+        rows: usize,
+        /// Number of columns of the first wrong row.
+        columns: usize,
+    },
+    /// A value outside its range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// Not symmetric.
+    #[error("{pair} = {above}, but {below} across the diagonal; a covariance is symmetric")]
+    Asymmetric {
+        /// The two gains.
+        pair: String,
+        /// The value.
+        above: f64,
+        /// The value across the diagonal.
+        below: f64,
+    },
+}
+
+/// Reason why several tables are not one.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MergeError {
+    /// No tables.
+    #[error("no tables to merge")]
+    None,
+    /// Tables that differ in what the sets of a table share.
+    #[error("riders `{first}` and `{other}` differ in {what}: {value} and {other_value}")]
+    Differs {
+        /// The first table's name.
+        first: String,
+        /// The other table's name.
+        other: String,
+        /// What differs.
+        what: &'static str,
+        /// The first table's value.
+        value: String,
+        /// The other table's value.
+        other_value: String,
+    },
+    /// A value outside its range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
 }

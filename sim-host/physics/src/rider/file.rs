@@ -1,8 +1,12 @@
 //! Parses riders' files: TOML with `columns` and `rows` (`docs/riders.md`).
 
 use super::table::{RiderTable, Row, SCHEMA};
-use super::{Fit, Gains, KEYS, Line, MAX_DELAY_S, Neuromuscular, Outside, RiderError, RowError, TableError};
+use super::{
+    Covariance, CovarianceError, Fit, Gains, KEYS, Line, MAX_DELAY_S, Neuromuscular, Outside, RiderError,
+    RowError, TableError,
+};
 use crate::range::within;
+use nalgebra::DMatrix;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -29,6 +33,8 @@ struct File {
     best_runs: Option<Vec<u32>>,
     columns: Vec<String>,
     rows: Vec<Vec<f64>>,
+    /// For each row, the covariance of its gains in the order of their columns, or an empty list.
+    covariances: Option<Vec<Vec<Vec<f64>>>>,
     /// For each gain, its slope per m/s and its value at zero speed.
     regression: Option<BTreeMap<String, [f64; 2]>>,
 }
@@ -121,10 +127,15 @@ impl File {
         neuromuscular.check().map_err(TableError::Neuromuscular)?;
         let columns = self.gain_columns()?;
         within("number of `rows`", self.rows.len() as f64, 1.0, 1000.0)?;
+        let covariances = self.checked_covariances()?;
         let mut rows: Vec<Row> = Vec::new();
         for (i, cells) in self.rows.iter().enumerate() {
-            let row = self.row(cells, rows.last()).map_err(|error| TableError::Row { row: i + 1, error })?;
-            rows.push(row);
+            let wrong = |error| TableError::Row { row: i + 1, error };
+            let covariance = match &covariances {
+                Some(all) => self.covariance(&all[i], &columns).map_err(|e| wrong(e.into()))?,
+                None => None,
+            };
+            rows.push(Row { covariance, ..self.row(cells, rows.last()).map_err(wrong)? });
         }
         let regression = self.line(&columns)?;
         let table = RiderTable {
@@ -190,6 +201,38 @@ impl File {
         Ok(Some(line))
     }
 
+    /// `covariances`, one for each row, if given.
+    fn checked_covariances(&self) -> Result<Option<&[Vec<Vec<f64>>]>, TableError> {
+        let Some(all) = &self.covariances else { return Ok(None) };
+        if self.feedback == Feedback::Nested {
+            return Err(TableError::NestedCovariances);
+        }
+        if all.len() != self.rows.len() {
+            return Err(TableError::Covariances { matrices: all.len(), rows: self.rows.len() });
+        }
+        Ok(Some(all))
+    }
+
+    /// A row's covariance in the order of `columns`, from lists in the order of the file's columns; none from an
+    /// empty list.
+    fn covariance(
+        &self,
+        lists: &[Vec<f64>],
+        columns: &[usize],
+    ) -> Result<Option<Covariance>, CovarianceError> {
+        if lists.is_empty() {
+            return Ok(None);
+        }
+        let gains = columns.len();
+        if let Some(list) = lists.iter().find(|list| lists.len() != gains || list.len() != gains) {
+            return Err(CovarianceError::Shape { gains, rows: lists.len(), columns: list.len() });
+        }
+        let listed: Vec<&String> = self.columns.iter().filter(|c| KEYS.contains(&c.as_str())).collect();
+        let place = |i: usize| listed.iter().position(|c| *c == KEYS[columns[i]]).unwrap_or(i);
+        let matrix = DMatrix::from_fn(gains, gains, |i, j| lists[place(i)][place(j)]);
+        Covariance::new(&matrix, columns).map(Some)
+    }
+
     fn gain_keys(&self) -> &'static [&'static str] {
         match self.feedback {
             Feedback::States => &KEYS,
@@ -249,6 +292,6 @@ impl File {
                 }
             }
         }
-        Ok(Row { speed_m_s, run, group, vaf, gains: Gains(gains) })
+        Ok(Row { speed_m_s, run, group, vaf, gains: Gains(gains), covariance: None })
     }
 }

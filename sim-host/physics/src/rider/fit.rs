@@ -1,7 +1,8 @@
-//! From measured sets of gains to gains as functions of speed (Kuipers 2020, section 2.3.3).
+//! From measured sets of gains to gains as functions of speed (Kuipers 2020, section 2.3.3; `spline` is not his).
 
+use super::spline::{Point, Spline, Variances};
 use super::table::{RiderTable, Row};
-use super::{Gains, KEYS, Line, Outside, Rider, Schedule, ScheduleError};
+use super::{Covariance, Gains, KEYS, Line, Outside, Rider, Schedule, ScheduleError};
 
 /// Method that makes gains continuous over speed.
 #[derive(
@@ -18,11 +19,16 @@ pub enum Fit {
     Mean,
     /// Straight lines through each group's best set, at that set's speed (LI, HV).
     Best,
+    /// A cubic smoothing spline per gain through all sets, weighted by their standard errors or the scatter in their
+    /// groups, as rough as is likeliest (REML); straight beyond the outermost sets.
+    Spline,
 }
 
 impl Fit {
     /// All methods.
-    pub const ALL: [Self; 3] = [Self::Regression, Self::Mean, Self::Best];
+    pub const ALL: [Self; 4] = [Self::Regression, Self::Mean, Self::Best, Self::Spline];
+    /// Those of the thesis.
+    pub const THESIS: [Self; 3] = [Self::Regression, Self::Mean, Self::Best];
 
     /// Name on the command line and in files.
     pub fn name(self) -> &'static str {
@@ -30,9 +36,15 @@ impl Fit {
             Self::Regression => "regression",
             Self::Mean => "mean",
             Self::Best => "best",
+            Self::Spline => "spline",
         }
     }
 }
+
+/// Most intervals in which a spline is sampled.
+const SAMPLED: f64 = 128.0;
+/// Degrees of freedom that the groups' common variance has in each group: few sets give a variance no precision.
+const COMMON: f64 = 4.0;
 
 /// Mean speed \[m/s\] and gains of some rows.
 pub fn mean(rows: &[Row]) -> (f64, Gains) {
@@ -75,8 +87,69 @@ impl RiderTable {
             }
             Fit::Mean => self.groups().map(mean).collect(),
             Fit::Best => self.groups().map(|g| self.best(g)).collect::<Result<_, _>>()?,
+            Fit::Spline => {
+                let splines = self.splines();
+                self.sampled_speeds().map(|v| (v, self.gains_of(|j| splines[j].at(v)))).collect()
+            }
         };
         Schedule::new(points, outside)
+    }
+
+    /// The smoothing spline of each gain that has a column.
+    pub fn splines(&self) -> Vec<Spline> {
+        let one = |(j, &i): (usize, &usize)| {
+            let (variances, kind) = self.variances(j);
+            let point =
+                |(row, variance): (&Row, f64)| Point { x: row.speed_m_s, value: row.gains.0[i], variance };
+            Spline::new(&self.rows.iter().zip(variances).map(point).collect::<Vec<_>>(), kind)
+        };
+        self.columns.iter().enumerate().map(one).collect()
+    }
+
+    /// Gains from a value for each column.
+    fn gains_of(&self, value: impl Fn(usize) -> f64) -> Gains {
+        let mut gains = Gains::default();
+        self.columns.iter().enumerate().for_each(|(j, &i)| gains.0[i] = value(j));
+        gains
+    }
+
+    /// Speeds at which a spline is sampled \[m/s\]: evenly over those of the sets, at least 2 mm/s apart.
+    fn sampled_speeds(&self) -> impl Iterator<Item = f64> + use<> {
+        let (first, last) = (self.rows[0].speed_m_s, self.rows[self.rows.len() - 1].speed_m_s);
+        let intervals = ((last - first) / 2e-3).clamp(1.0, SAMPLED) as usize;
+        let one = last == first;
+        (0..=if one { 0 } else { intervals }).map(move |i| {
+            if i == intervals { last } else { first + (last - first) * i as f64 / intervals as f64 }
+        })
+    }
+
+    /// Variance of each row's gain in column `j`: its squared standard error, if all rows have one, not below
+    /// 1e-6 of the largest; otherwise that of its group, as if the groups' common variance had been measured in it with
+    /// [`COMMON`] more degrees of freedom.
+    fn variances(&self, j: usize) -> (Vec<f64>, Variances) {
+        let variance = |c: &Covariance| c.matrix()[(j, j)];
+        let known: Option<Vec<f64>> = self.rows.iter().map(|r| r.covariance.as_ref().map(variance)).collect();
+        if let Some(known) = known {
+            let largest = known.iter().fold(0.0, |a: f64, b| a.max(*b));
+            if largest > 0.0 {
+                return (known.into_iter().map(|v| v.max(1e-6 * largest)).collect(), Variances::Known);
+            }
+        }
+        let i = self.columns[j];
+        let squares = |group: &[Row]| {
+            let (_, mean) = mean(group);
+            group.iter().map(|r| (r.gains.0[i] - mean.0[i]).powi(2)).sum::<f64>()
+        };
+        let free = (self.rows.len() - self.groups().count()) as f64;
+        let common = self.groups().map(squares).sum::<f64>() / free;
+        if free == 0.0 || common == 0.0 {
+            return (vec![1.0; self.rows.len()], Variances::Relative);
+        }
+        let of = |group: &[Row]| {
+            let free = group.len() as f64 - 1.0 + COMMON;
+            vec![(squares(group) + COMMON * common) / free; group.len()]
+        };
+        (self.groups().flat_map(of).collect(), Variances::Relative)
     }
 
     fn best(&self, group: &[Row]) -> Result<(f64, Gains), ScheduleError> {

@@ -2,15 +2,21 @@
 
 pub mod catalogue;
 mod compatibility;
+mod covariance;
 mod error;
 mod file;
 mod fit;
 mod line;
+mod merge;
+mod spline;
 mod table;
 
 pub use compatibility::compatibility_warnings;
-pub use error::{RiderError, RowError, TableError};
+pub use covariance::Covariance;
+pub use error::{CovarianceError, MergeError, RiderError, RowError, TableError};
 pub use fit::{Fit, mean};
 pub use line::Line;
+pub use merge::merge;
 pub use motion::rider::*;
+pub use spline::{Point, Spline, Variances};
 pub use table::{RiderTable, Row};

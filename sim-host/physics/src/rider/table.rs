@@ -1,6 +1,6 @@
 //! Tables of measured gains: one set per row, sets of similar speed in a group.
 
-use super::{Gains, KEYS, Line, Neuromuscular};
+use super::{Covariance, Gains, KEYS, Line, Neuromuscular};
 
 /// Version of the files' schema.
 pub(super) const SCHEMA: u32 = 1;
@@ -18,6 +18,8 @@ pub struct Row {
     pub vaf: Option<f64>,
     /// The gains; zero for those without a column.
     pub gains: Gains,
+    /// Covariance of the gains that have a column, if known.
+    pub covariance: Option<Covariance>,
 }
 
 /// A rider's measured gains and the conditions of their identification.
@@ -70,6 +72,11 @@ impl RiderTable {
             cells.extend(self.columns.iter().map(|&i| format!("{:?}", r.gains.0[i])));
             format!("  [{}],\n", cells.join(", "))
         });
+        let covariances = if has(|r| r.covariance.is_some()) {
+            format!("covariances = [\n{}]\n", self.rows.iter().map(covariance_line).collect::<String>())
+        } else {
+            String::new()
+        };
         let lines = self.regression.iter().flat_map(|line| {
             let pair = |i: &usize| (KEYS[*i], line.slope.0[*i], line.intercept.0[*i]);
             self.columns.iter().map(pair).map(|(key, a, b)| format!("{key} = [{a:?}, {b:?}]\n"))
@@ -77,7 +84,7 @@ impl RiderTable {
         let lines: String = lines.collect();
         format!(
             "schema = {SCHEMA}\n{}{}{}delay_ms = {:?}\nneuromuscular = {{ omega_rad_s = {:?}, zeta = {:?} }}\n{}\
-             columns = {columns:?}\nrows = [\n{}]\n{}{lines}",
+             columns = {columns:?}\nrows = [\n{}]\n{covariances}{}{lines}",
             text("source", &self.source),
             text("note", &self.note),
             text("bicycle", &self.bicycle),
@@ -89,4 +96,10 @@ impl RiderTable {
             if lines.is_empty() { "" } else { "\n[regression]\n" },
         )
     }
+}
+
+/// A row's covariance as a line of the file's `covariances`.
+fn covariance_line(row: &Row) -> String {
+    let rows: Vec<Vec<f64>> = row.covariance.iter().flat_map(Covariance::rows).collect();
+    format!("  {rows:?},\n")
 }

@@ -33,6 +33,10 @@ pub(super) const GAINS: Setting = Setting {
         ),
         ("mean", "Straight lines through the groups' means, at the mean of their speeds (LI, mean)"),
         ("best", "Straight lines through each group's best set, at that set's speed (LI, HV)"),
+        (
+            "spline",
+            "A smoothing spline per gain through all sets, weighted by their standard errors, if there, or the groups' scatter",
+        ),
     ],
     hyphen: false,
     set: |s, text| {
