@@ -36,6 +36,7 @@ pub mod pil;
 pub mod recording;
 pub mod replay;
 pub mod report;
+pub mod rider_record;
 pub mod scenario;
 pub mod sensor_fit;
 pub mod study;
@@ -43,5 +44,7 @@ pub mod sweep;
 pub mod thesis;
 pub mod weave;
 
-pub use physics::{basin, bicycle, eigen, integrate, num, perturbation, plant, ride, rider, tracking};
+pub use physics::{
+    basin, bicycle, eigen, identify, integrate, num, perturbation, plant, ride, rider, tracking,
+};
 use physics::{json, range};

@@ -1,8 +1,8 @@
-//! `sim-host identify`: identification of the weave and of sensors from recordings.
+//! `sim-host identify`: identification of riders, the weave and sensors from recordings.
 
 use super::outputs::{Outputs, Results, complain};
 use super::weave_args::WeaveArgs;
-use super::{Ended, Failure, identify_files, identify_sensor, warn};
+use super::{Ended, Failure, identify_files, identify_rider, identify_rider_args, identify_sensor, warn};
 use crate::bicycle::catalogue;
 use crate::report::figure;
 use crate::report::output::Output;
@@ -16,23 +16,39 @@ use crate::weave::measured::beside_name;
 use serde_json::json;
 
 pub(super) const EXAMPLES: &str = "\
+A perturbation record has a lateral force or a steer torque that disturbs a rider at constant speed, and the steer angle:
+docs/identify.md. `sim-host record` makes synthetic ones.
+
 Examples:
+  sim-host identify run1.csv --bicycle rigid_jason --delay 30ms --out rider.toml
+  sim-host identify run*.csv --delay estimate --fit steer,roll-rate --select bic --results found
+  sim-host identify run1.csv --delay-profile 0:120:5 --svg run1.svg --json
   sim-host identify weave gain*_speed*kmh_*.csv --svg weave.svg
   sim-host identify weave ride.csv --speed 3.9 --gain 8 --json
   sim-host identify sensor ride.csv --map extract --sensor gyro --out gyro.toml";
 
+/// Options of `identify`.
+#[derive(clap::Args)]
+pub(super) struct Args {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    rider: identify_rider_args::RiderArgs,
+}
+
 #[derive(clap::Subcommand)]
-pub(super) enum Command {
+enum Command {
     /// Frequency and decay of the weave after a disturbance, beside the linear model's
     Weave(Box<WeaveArgs>),
     /// A model of a real sensor: noise, quantisation, timing and vibration, for --sensor of `ride` and others
     Sensor(Box<identify_sensor::Args>),
 }
 
-pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
-    match command {
-        Command::Weave(args) => weave(args),
-        Command::Sensor(args) => identify_sensor::run(args),
+pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    match &args.command {
+        Some(Command::Weave(args)) => weave(args),
+        Some(Command::Sensor(args)) => identify_sensor::run(args),
+        None => identify_rider::run(&args.rider),
     }
 }
 

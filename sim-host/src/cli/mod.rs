@@ -14,6 +14,9 @@ mod ended;
 mod faults;
 mod identify;
 mod identify_files;
+mod identify_rider;
+mod identify_rider_args;
+mod identify_rider_results;
 mod identify_sensor;
 mod interrupt;
 mod monitor;
@@ -87,9 +90,9 @@ enum Command {
     Sweep(Box<sweep::Args>),
     /// Eigenvalues of the linearised bicycle over speed, and its critical speeds.
     Eigen(eigen::Args),
-    /// Identification from recordings: weave, sensor.
-    #[command(subcommand, after_help = identify::EXAMPLES)]
-    Identify(identify::Command),
+    /// Identification from recordings: the gains of a rider, the weave, sensors.
+    #[command(after_help = identify::EXAMPLES, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+    Identify(Box<identify::Args>),
     /// A synthetic perturbation record: a rider on a treadmill, pushed sideways at random times.
     #[command(after_help = record::EXAMPLES)]
     Record(Box<record::Args>),

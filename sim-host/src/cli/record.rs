@@ -93,7 +93,7 @@ pub(super) struct Args {
 }
 
 /// Parses `AHEAD,HEIGHT` \[m\].
-fn point(text: &str) -> Result<ForcePoint, String> {
+pub(super) fn point(text: &str) -> Result<ForcePoint, String> {
     let numbers = text.split_once(',').map(|(ahead, height)| (ahead.trim().parse(), height.trim().parse()));
     match numbers {
         Some((Ok(ahead_m), Ok(height_m))) => Ok(ForcePoint { ahead_m, height_m }),

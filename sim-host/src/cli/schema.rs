@@ -6,6 +6,7 @@ use crate::design::document::DesignDocument;
 use crate::report::board::{FaultsDocument, ParametersDocument};
 use crate::report::compare::CompareDocument;
 use crate::report::document::{BasinDocument, CheckDocument, EigenDocument, RideDocument};
+use crate::report::identify::{IdentifyDocument, IdentifyManyDocument};
 use crate::report::perturbation::PerturbationDocument;
 use crate::report::plane::PlaneDocument;
 use crate::report::replay::{ReplayDocument, ReplaysDocument};
@@ -23,7 +24,7 @@ use serde_json::Value;
 type Document = (&'static str, fn() -> Schema);
 
 /// The documents by their commands' names.
-const DOCUMENTS: [Document; 18] = [
+const DOCUMENTS: [Document; 20] = [
     ("basin", of::<BasinDocument>),
     ("ride", of::<RideDocument>),
     (SCENARIO, of_scenario),
@@ -39,6 +40,8 @@ const DOCUMENTS: [Document; 18] = [
     ("design", of::<DesignDocument>),
     ("param-list", of::<ParametersDocument>),
     ("faults", of::<FaultsDocument>),
+    ("identify", of::<IdentifyDocument>),
+    ("identify-many", of::<IdentifyManyDocument>),
     ("identify-weave", of::<WeaveDocument>),
     ("identify-sensor", of::<SensorDocument>),
     ("record", of::<PerturbationDocument>),

@@ -39,6 +39,9 @@ pub struct Map {
     /// The recording's own motion signals, for comparison.
     #[serde(default)]
     pub reference: References,
+    /// Disturbances of a perturbation record, for `identify`.
+    #[serde(default)]
+    pub perturbation: Perturbation,
     /// Parameters of the firmware for this bicycle, with values as in `--set`.
     #[serde(default)]
     pub parameters: toml::Table,
@@ -84,6 +87,18 @@ pub struct References {
     pub roll: Option<Signal>,
     /// Steer torque of the recorded bicycle's own assist.
     pub torque: Option<Signal>,
+}
+
+/// The disturbances of a perturbation record, and its roll rate where there is no gyro.
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Perturbation {
+    /// Lateral force on the rear frame, to the right positive.
+    pub lateral_force: Option<Signal>,
+    /// Steer torque beside the rider's, to the right positive.
+    pub steer_torque: Option<Signal>,
+    /// Roll rate.
+    pub roll_rate: Option<Signal>,
 }
 
 /// A column, or a constant in place of a missing one.
@@ -184,6 +199,11 @@ impl Map {
         SHIPPED.iter().filter_map(|(_, text)| Self::parse(text).ok()).find(fits)
     }
 
+    /// The signal of one sensor.
+    pub(super) fn of(&self, sensor: Sensor) -> Option<&Signal> {
+        self.sensors().find(|mapped| mapped.sensor == sensor).map(|mapped| mapped.signal)
+    }
+
     /// The sensors that the map assigns, in the order of [`Sensor::ALL`].
     pub fn sensors(&self) -> impl Iterator<Item = Mapped<'_>> {
         let of = |sensor| match sensor {
@@ -219,10 +239,16 @@ impl Map {
             checked.map_err(|error| MapTextError::Signal { key, error })?;
         }
         let References { roll, torque } = &self.reference;
-        for (key, signal, quantity) in [("roll", roll, Quantity::Angle), ("torque", torque, Quantity::Torque)]
-        {
+        let Perturbation { lateral_force, steer_torque, roll_rate } = &self.perturbation;
+        for (key, signal, quantity) in [
+            ("reference.roll", roll, Quantity::Angle),
+            ("reference.torque", torque, Quantity::Torque),
+            ("perturbation.lateral_force", lateral_force, Quantity::Force),
+            ("perturbation.steer_torque", steer_torque, Quantity::Torque),
+            ("perturbation.roll_rate", roll_rate, Quantity::Rate),
+        ] {
             let checked = signal.as_ref().map_or(Ok(()), |signal| signal.check(1, quantity));
-            checked.map_err(|error| MapTextError::Signal { key: format!("reference.{key}"), error })?;
+            checked.map_err(|error| MapTextError::Signal { key: key.into(), error })?;
         }
         Ok(())
     }
@@ -237,7 +263,7 @@ pub(super) fn axes_of(sensor: Sensor) -> usize {
 pub(super) const fn quantity_of(sensor: Sensor) -> Quantity {
     match sensor {
         Sensor::Gyro | Sensor::SteerRate => Quantity::Rate,
-        Sensor::Accel => Quantity::Force,
+        Sensor::Accel => Quantity::SpecificForce,
         Sensor::Steer | Sensor::Path => Quantity::Angle,
         Sensor::FrontWheel | Sensor::RearWheel => Quantity::Speed,
         Sensor::RiderTorque | Sensor::MotorReport => Quantity::Torque,

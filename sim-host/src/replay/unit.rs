@@ -12,6 +12,8 @@ pub(super) enum Quantity {
     /// \[rad/s\]
     Rate,
     /// \[m/s^2\]
+    SpecificForce,
+    /// \[N\]
     Force,
     /// \[m/s\]
     Speed,
@@ -30,7 +32,8 @@ impl Quantity {
             Self::Time => &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)],
             Self::Angle => &[("rad", 1.0), ("deg", DEGREE)],
             Self::Rate => &[("rad/s", 1.0), ("deg/s", DEGREE)],
-            Self::Force => &[("m/s^2", 1.0), ("g", GRAVITY)],
+            Self::SpecificForce => &[("m/s^2", 1.0), ("g", GRAVITY)],
+            Self::Force => &[("N", 1.0), ("kN", 1e3), ("kgf", GRAVITY), ("lbf", 4.448_221_615_260_5)],
             Self::Speed => &[("m/s", 1.0), ("km/h", 1.0 / 3.6)],
             Self::Torque => &[("N m", 1.0)],
         }

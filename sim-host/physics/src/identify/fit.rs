@@ -76,6 +76,9 @@ pub enum FitError {
     /// No signal or no gain.
     #[error("nothing to fit: {0}")]
     Nothing(&'static str),
+    /// Too short for an impulse response.
+    #[error("the record is too short, or too little disturbed, for an impulse response of {0}")]
+    NoImpulseResponse(&'static str),
     /// No bounded response.
     #[error("no set of gains was found for which the response stays bounded over the record")]
     Unbounded,

@@ -1,7 +1,7 @@
 //! Identification of a rider: the feedback gains of a delayed rider model from a record of a perturbed ride (Kuipers 2020,
 //! sections 2.1.3 and 2.3; Schwab et al. 2013).
 //!
-//! From a [`Record`], a bicycle, a speed and a delay ([`GrayBox`]) to gains with their covariance ([`Fit`]). The model's
+//! [`identify`] runs all steps. From a [`Record`], a bicycle, a speed and a delay ([`GrayBox`]) to gains with their covariance ([`Fit`]). The model's
 //! response is simulated from rest with exact discretisation (`interval`); its difference from the measured signals is
 //! minimised by a global search in the frequency domain (`spectrum`, `evolution`) and a Levenberg-Marquardt search in
 //! time with exact derivatives (`descent`). [`reduce`] leaves out the gains that the record does not need,
@@ -16,6 +16,7 @@ mod fit;
 mod gray_box;
 mod interval;
 mod objective;
+mod pipeline;
 mod record;
 mod reduction;
 mod response;
@@ -30,6 +31,7 @@ pub use fit::{
 };
 pub use gray_box::{GAINS, GrayBox, PerGain, symbols};
 pub use objective::Drift;
+pub use pipeline::{IMPULSE_RESPONSE_S, Identified, Plan, Stage, identify};
 pub use record::{Measured, Record};
 pub use reduction::{Criteria, Select, Step, reduce};
 pub use response::{Disturbances, Hold, Signal};

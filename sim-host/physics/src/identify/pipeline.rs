@@ -1,0 +1,111 @@
+//! The whole identification of one record: impulse response, fit, reduction, selection, delay.
+
+use super::delay::{DelayProfile, delay_profile};
+use super::fir::{Fir, impulse_response};
+use super::fit::{Fit, FitError, From, Problem};
+use super::reduction::{Select, Step, reduce};
+
+/// Length of the impulse response \[s\].
+pub const IMPULSE_RESPONSE_S: f64 = 4.0;
+
+/// What to identify.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Indices of the gains of the full fit.
+    pub gains: Vec<usize>,
+    /// Variance accounted for, from 0 to 1, at which the reduction ends; `None` for no reduction.
+    pub reduce_until: Option<f64>,
+    /// Criterion that selects the gains.
+    pub select: Select,
+    /// Delays of the profile \[s\], rising; empty for no profile.
+    pub delays_s: Vec<f64>,
+    /// Whether the record's delay is the profile's best one, rounded to whole milliseconds, in place of the given one.
+    pub estimate_delay: bool,
+    /// Whether the impulse response's output is fitted in place of the measured signals.
+    pub filter: bool,
+}
+
+/// Stages of an identification, each with what it finds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Global search of the full fit.
+    Search,
+    /// Profile of the delay.
+    Delay,
+    /// Reduction of the gains.
+    Reduction,
+}
+
+/// An identified rider.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identified {
+    /// The problem as fitted: with the estimated delay and the filtered signals, if requested.
+    pub problem: Problem,
+    /// The full fit and the steps of the reduction.
+    pub steps: Vec<Step>,
+    /// Index of the selected step.
+    pub selected: usize,
+    /// Profile of the delay.
+    pub delay: Option<DelayProfile>,
+    /// Impulse response of each signal; `None` if the record is too short for one.
+    pub impulse_responses: Vec<Option<Fir>>,
+}
+
+impl Identified {
+    /// The selected fit.
+    pub fn fit(&self) -> &Fit {
+        &self.steps[self.selected].fit
+    }
+}
+
+/// Identifies the rider of a record. `begins` is called at the start of each stage, `stop` interrupts.
+///
+/// # Errors
+/// The record can't be fitted, or interrupted.
+pub fn identify(
+    mut problem: Problem,
+    plan: &Plan,
+    begins: &(impl Fn(Stage) + Sync),
+    stop: &(impl Fn() -> bool + Sync),
+) -> Result<Identified, FitError> {
+    problem.check(&plan.gains)?;
+    let response = |measured| impulse_response(&problem.record, measured, problem.drift, IMPULSE_RESPONSE_S);
+    let impulse_responses: Vec<Option<Fir>> = problem.record.measured.iter().map(response).collect();
+    if plan.filter {
+        for (measured, fir) in problem.record.measured.iter_mut().zip(&impulse_responses) {
+            let Some(fir) = fir else { return Err(FitError::NoImpulseResponse(measured.signal.name())) };
+            measured.values.clone_from(&fir.response);
+            measured.valid.fill(true);
+        }
+    }
+    begins(Stage::Search);
+    let mut full = problem.fit(&plan.gains, From::Everywhere, stop)?;
+    let mut delay = None;
+    if !plan.delays_s.is_empty() {
+        begins(Stage::Delay);
+        let profile = delay_profile(&problem, &full, &plan.delays_s, &|| (), stop)?;
+        if plan.estimate_delay {
+            problem.model.delay_s = (profile.estimate_s * 1e3).round() * 1e-3;
+            let nearest = profile.points.iter().min_by(|a, b| {
+                let far = |at: f64| (at - problem.model.delay_s).abs();
+                far(a.delay_s).total_cmp(&far(b.delay_s))
+            });
+            let start = nearest.map_or(full.gains, |point| point.gains);
+            full = problem
+                .fit(&plan.gains, From::Gains(&start), stop)
+                .or_else(|_| problem.fit(&plan.gains, From::Everywhere, stop))?;
+        }
+        delay = Some(profile);
+    }
+    let until = match plan.reduce_until {
+        Some(until) => {
+            begins(Stage::Reduction);
+            until
+        }
+        // No fit accounts for more: the full fit is the only step.
+        None => f64::INFINITY,
+    };
+    let steps = reduce(&problem, full, until, stop)?;
+    let selected = plan.select.index(&steps);
+    Ok(Identified { problem, steps, selected, delay, impulse_responses })
+}

@@ -1,0 +1,275 @@
+//! `sim-host identify RECORD`: the gains of a rider from perturbation records.
+
+use super::identify_rider_args::{Delay, RiderArgs, drift_name, select_name};
+use super::identify_rider_results::{Finished, Store};
+use super::interrupt;
+use super::outputs::{Outputs, Results, complain};
+use super::progress::progress;
+use super::{Ended, Failure, warn};
+use crate::bicycle::catalogue::Bicycle;
+use crate::bicycle::linear::Linear;
+use crate::identify::{FitError, GAINS, GrayBox, Identified, Plan, Problem, Stage, identify};
+use crate::recording::{ReadOptions, read};
+use crate::replay::{Map, perturbed};
+use crate::report::figure;
+use crate::report::identify::{
+    IdentifyDocument, IdentifyManyDocument, RecordEntry, ReductionRow, ResolvedIdentify, chart, rows, text,
+};
+use crate::report::output::Output;
+use crate::report::resolved::ResolvedBicycle;
+use crate::report::table;
+use crate::report::tool::{SCHEMA, Tool};
+use crate::rider::{Covariance, Gains, Neuromuscular, RiderTable, Row, merge};
+use crate::rider_record::{Prepared, Settings, prepare};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Delays of the profile if the delay is to be estimated and no range is given \[s\].
+fn default_delays() -> Vec<f64> {
+    (0..=24).map(|i| 0.005 * f64::from(i)).collect()
+}
+
+/// Delay from which the estimate of the delay starts \[s\]: the young cyclist's.
+const START_DELAY_S: f64 = 0.03;
+/// Speeds of records in one group of the rider's file differ by at most this \[m/s\].
+const GROUP_M_S: f64 = 0.3;
+
+pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
+    let bicycle = args.bicycle.load()?;
+    warn(&bicycle);
+    let map = args.map.as_deref().map(Map::load).transpose().map_err(|error| format!("--map {error}"))?;
+    let many = args.files.len() > 1;
+    if many {
+        args.outputs.refuse_figures("a figure shows one record; give one, or --results")?;
+    }
+    let outputs = args.outputs.open(None)?;
+    let out = args.out.as_deref().map(Output::create).transpose()?;
+    if let Some(out) = &out {
+        outputs.refuse_place_of("--out", out)?;
+    }
+    let store = args.results.as_deref().map(Store::open).transpose()?;
+    interrupt::install_saying("finished records are written");
+    let bar = progress(outputs.shows_progress(), "identify", 3 * args.files.len(), "stages");
+    let (mut finished, mut refused) = (Vec::new(), BTreeMap::new());
+    for file in &args.files {
+        if interrupt::stopped() {
+            break;
+        }
+        let begins = |stage: Stage| {
+            bar.set_message(format!("{stage:?}"));
+            bar.inc(1);
+        };
+        let of_one = one(args, &bicycle, map.as_ref(), file, store.as_ref(), &begins);
+        match of_one {
+            Ok(one) => finished.push(one),
+            Err(error) if error.downcast_ref() == Some(&FitError::Interrupted) => break,
+            Err(error) if many => {
+                complain(&format!("{}: not used: {error}", file.display()));
+                refused.insert(file.display().to_string(), error.to_string());
+            }
+            Err(error) => return Err(format!("{}: {error}", file.display()).into()),
+        }
+    }
+    bar.finish_and_clear();
+    if finished.is_empty() {
+        if interrupt::stopped() {
+            return Ok(Ended::Interrupted);
+        }
+        return Err(format!("none of the {} records could be used", args.files.len()).into());
+    }
+    let rider = rider(&finished)?;
+    let rider_file = args.out.as_ref().filter(|_| out.is_some()).map(|path| path.display().to_string());
+    write(outputs, finished, refused, rider_file, many)?;
+    if let Some(out) = out {
+        out.finish(rider.to_toml().as_bytes())?;
+    }
+    Ok(if interrupt::stopped() { Ended::Interrupted } else { Ended::Done })
+}
+
+/// One rider of all records.
+fn rider(finished: &[Finished]) -> Result<RiderTable, Failure> {
+    match finished {
+        [one] => Ok(one.rider.clone()),
+        all => {
+            let riders: Vec<RiderTable> = all.iter().map(|one| one.rider.clone()).collect();
+            Ok(merge("identified", &riders, GROUP_M_S)?)
+        }
+    }
+}
+
+fn write(
+    outputs: Outputs,
+    finished: Vec<Finished>,
+    refused: BTreeMap<String, String>,
+    rider_file: Option<String>,
+    many: bool,
+) -> Result<(), Failure> {
+    let texts: Vec<String> = finished.iter().map(|one| one.text.clone()).collect();
+    let lines: Vec<ReductionRow> = finished.iter().flat_map(|one| one.rows.clone()).collect();
+    let figure = finished[0].chart.clone();
+    let mut documents: Vec<serde_json::Value> = finished.into_iter().map(|one| one.document).collect();
+    documents.iter_mut().for_each(|document| document["rider_file"] = rider_file.clone().into());
+    let config = serde_json::json!({"bicycle": documents[0]["bicycle"], "config": documents[0]["config"]});
+    let document = if many {
+        let tool = Tool::this();
+        serde_json::to_value(IdentifyManyDocument {
+            schema: SCHEMA,
+            tool,
+            records: documents,
+            refused,
+            rider_file,
+        })?
+    } else {
+        documents.remove(0)
+    };
+    outputs.write(Results {
+        document: &document,
+        config: &config,
+        summary: || texts.join("\n"),
+        table: || table::table(&config, &lines),
+        figure: || figure::chart(&figure),
+    })
+}
+
+/// Identifies the rider of one record, or takes it from the finished ones.
+fn one(
+    args: &RiderArgs,
+    bicycle: &Bicycle,
+    map: Option<&Map>,
+    file: &Path,
+    store: Option<&Store>,
+    begins: &(impl Fn(Stage) + Sync),
+) -> Result<Finished, Failure> {
+    let name = file.display().to_string();
+    let recording = read(file, &ReadOptions { strict: false, dbc: args.dbc.clone() })?;
+    let map = map.map_or_else(|| Map::of_perturbation(&recording), |map| Ok(map.clone()))?;
+    let signals = perturbed(&recording, &map).map_err(|remark| remark.to_string())?;
+    let settings = Settings { signals: args.fit.clone(), hold: args.hold, speed_m_s: args.speed };
+    let mut prepared = prepare(&signals, &settings)?;
+    prepared.remarks.splice(0..0, recording.remarks.iter().map(ToString::to_string));
+    prepared.remarks.iter().for_each(|remark| complain(&format!("{name}: {remark}")));
+    let (problem, plan) = problem(args, bicycle, &prepared);
+    let record = RecordEntry {
+        sha256: Sha256::digest(std::fs::read(file)?).iter().map(|byte| format!("{byte:02x}")).collect(),
+        ..entry(&name, &prepared)
+    };
+    let config = config(args, &problem, &plan);
+    if let Some(done) = store.and_then(|store| store.finished(file, &record, &config, bicycle)) {
+        complain(&format!("{name}: finished before; not fitted again"));
+        return Ok(done);
+    }
+    let found = identify(problem, &plan, begins, &interrupt::stopped)?;
+    let document = IdentifyDocument::new(record, ResolvedBicycle::new(bicycle), config, &found);
+    let finished = Finished {
+        text: text(&document),
+        rows: rows(&document),
+        chart: chart(&document, &found),
+        rider: table_of(&name, bicycle, &found)?,
+        document: serde_json::to_value(&document)?,
+    };
+    store.map_or(Ok(()), |store| store.keep(file, &finished))?;
+    Ok(finished)
+}
+
+fn problem(args: &RiderArgs, bicycle: &Bicycle, prepared: &Prepared) -> (Problem, Plan) {
+    let linear = Linear::new(&bicycle.parameters);
+    let (delay_s, estimate_delay) = match args.delay {
+        Delay::Given(delay_s) => (delay_s, false),
+        Delay::Estimate => (START_DELAY_S, true),
+    };
+    let profile = args.delay_profile.0.clone();
+    let delays_s = if profile.is_empty() && estimate_delay { default_delays() } else { profile };
+    let mut gains = args.feedback.clone();
+    gains.sort_unstable();
+    gains.dedup();
+    let gains = if gains.is_empty() { (0..GAINS).collect() } else { gains };
+    let model = GrayBox {
+        bicycle: linear,
+        force_input: linear.lateral_force_input(args.force_at).into(),
+        neuromuscular: args.neuromuscular.unwrap_or(Neuromuscular::SHOULDERS),
+        speed_m_s: prepared.speed_m_s,
+        delay_s,
+    };
+    let problem = Problem {
+        record: prepared.record.clone(),
+        model,
+        drift: args.drift,
+        skip_s: args.skip,
+        seed: args.seed,
+    };
+    let plan = Plan {
+        gains,
+        reduce_until: args.reduce_until.0,
+        select: args.select,
+        delays_s,
+        estimate_delay,
+        filter: args.filter,
+    };
+    (problem, plan)
+}
+
+fn entry(name: &str, prepared: &Prepared) -> RecordEntry {
+    let record = &prepared.record;
+    let root_mean_square = record.measured.iter().map(|measured| {
+        let valid = (0..record.len()).filter(|k| measured.valid[*k]);
+        let (sum, count) = valid.fold((0.0, 0.0), |(sum, n), k| (sum + measured.values[k].powi(2), n + 1.0));
+        (measured.signal.name(), (sum / count).sqrt())
+    });
+    RecordEntry {
+        file: name.into(),
+        sha256: String::new(),
+        samples: record.len(),
+        sample_s: record.disturbances.sample_s,
+        duration_s: record.duration_s(),
+        speed_m_s: prepared.speed_m_s,
+        speed_deviation_m_s: prepared.speed_deviation_m_s,
+        root_mean_square: root_mean_square.collect(),
+        remarks: prepared.remarks.clone(),
+    }
+}
+
+fn config(args: &RiderArgs, problem: &Problem, plan: &Plan) -> ResolvedIdentify {
+    ResolvedIdentify {
+        map: args.map.clone().unwrap_or_else(|| "by the columns".into()),
+        force_at: args.force_at,
+        fit: args.fit.clone(),
+        feedback: plan.gains.iter().map(|i| crate::identify::symbols()[*i]).collect(),
+        neuromuscular: problem.model.neuromuscular,
+        delay_s: (!plan.estimate_delay).then_some(problem.model.delay_s),
+        delay_profile_s: plan.delays_s.clone(),
+        drift: drift_name(args.drift),
+        skip_s: args.skip,
+        hold: args.hold,
+        filter: args.filter,
+        select: select_name(args.select),
+        reduce_until: plan.reduce_until,
+        seed: args.seed,
+    }
+}
+
+/// The rider's table with one row.
+fn table_of(name: &str, bicycle: &Bicycle, found: &Identified) -> Result<RiderTable, Failure> {
+    let fit = found.fit();
+    let model = &found.problem.model;
+    let row = Row {
+        speed_m_s: model.speed_m_s,
+        run: None,
+        group: 1,
+        vaf: Some(100.0 * fit.mean_vaf()),
+        gains: Gains::of_states(&fit.gains),
+        covariance: Some(Covariance::new(&fit.covariance, &fit.active)?),
+    };
+    Ok(RiderTable {
+        name: "identified".into(),
+        source: Some(format!("identified from {name}")),
+        note: None,
+        bicycle: Some(bicycle.name.clone()),
+        delay_s: model.delay_s,
+        neuromuscular: model.neuromuscular,
+        best_runs: None,
+        regression: None,
+        columns: fit.active.clone(),
+        rows: vec![row],
+    })
+}

@@ -1,0 +1,194 @@
+//! Options of `identify RECORD`.
+
+use super::bicycle_args::BicycleArgs;
+use super::outputs::OutputArgs;
+use super::record::point;
+use crate::bicycle::ForcePoint;
+use crate::identify::{Drift, Hold, Select, Signal, symbols};
+use crate::range::{TimeError, time, within};
+use crate::rider::Neuromuscular;
+use std::path::PathBuf;
+
+/// Options of `identify RECORD`.
+#[derive(clap::Args)]
+pub(super) struct RiderArgs {
+    /// Perturbation records: time_s, lateral_force_n or steer_torque_nm, steer_rad, optionally roll_rad, roll_rate_rad_s,
+    /// speed_m_s; CSV, MDF4, or CAN with --dbc
+    #[arg(value_name = "RECORD", required = true)]
+    pub(super) files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(super) bicycle: BicycleArgs,
+    /// Neural delay for which the gains are fitted, for example 30ms, or `estimate`: the likeliest one of the record
+    #[arg(long, value_name = "TIME|estimate", default_value = "30ms", value_parser = delay)]
+    pub(super) delay: Delay,
+    /// Delays whose likelihood is computed, in ms: FROM:TO:STEP, or none
+    #[arg(long, value_name = "RANGE", default_value = "none", value_parser = delays)]
+    pub(super) delay_profile: Delays,
+    /// Forward speed in m/s [default: the mean of the recorded one]
+    #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
+    pub(super) speed: Option<f64>,
+    /// Point of the rear frame where the lateral force acts, in m: ahead of the rear contact, above the ground
+    #[arg(long, value_name = "AHEAD,HEIGHT", default_value = "0.3,0.9", value_parser = point, allow_hyphen_values = true)]
+    pub(super) force_at: ForcePoint,
+    /// Signals to fit, with weights by their noise
+    #[arg(long, value_name = "SIGNALS", value_delimiter = ',', default_value = "steer")]
+    pub(super) fit: Vec<Signal>,
+    /// Gains of the full fit [default: all eight]
+    #[arg(long, value_name = "GAINS", value_delimiter = ',', value_parser = gain)]
+    pub(super) feedback: Vec<usize>,
+    /// Neuromuscular dynamics: frequency in Hz and damping ratio
+    #[arg(long, value_name = "HZ,RATIO", value_parser = neuromuscular)]
+    pub(super) neuromuscular: Option<Neuromuscular>,
+    /// Slow motion that is no response, estimated with the gains: none, offset, or all below a frequency, for example 0.05Hz
+    #[arg(long, value_name = "DRIFT", default_value = "offset", value_parser = drift)]
+    pub(super) drift: Drift,
+    /// Time from the start that is not fitted: the model starts from rest
+    #[arg(long, value_name = "TIME", default_value = "2s", value_parser = moment)]
+    pub(super) skip: f64,
+    /// Course of the disturbance between two samples
+    #[arg(long, default_value = "zero")]
+    pub(super) hold: Hold,
+    /// Fit the output of the impulse response in place of the measured signals
+    #[arg(long)]
+    pub(super) filter: bool,
+    /// Variance accounted for in % at which the reduction ends; `none` for no reduction
+    #[arg(long, value_name = "PERCENT", default_value = "50", value_parser = until)]
+    pub(super) reduce_until: Until,
+    /// Gains to select: full (all), vaf:PERCENT (the fewest that account for it), aic, bic, or held (best for data that was
+    /// not fitted)
+    #[arg(long, value_name = "CRITERION", default_value = "full", value_parser = select)]
+    pub(super) select: Select,
+    /// Assignment of the columns: the name of a built-in map, or a FILE [default: by the columns' names]
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(super) map: Option<String>,
+    /// Database that decodes CAN frames; may be repeated
+    #[arg(long, value_name = "FILE")]
+    pub(super) dbc: Vec<PathBuf>,
+    /// Seed of the global search
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Write the rider as a file for --rider, one row per record
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: Option<PathBuf>,
+    /// Write each record's document and rider to FOLDER as soon as it is finished; a record that is finished there with the
+    /// same options is not fitted again
+    #[arg(long, value_name = "FOLDER")]
+    pub(super) results: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) outputs: OutputArgs,
+}
+
+/// The neural delay of a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Delay {
+    /// Given \[s\].
+    Given(f64),
+    /// The likeliest.
+    Estimate,
+}
+
+/// Delays of a profile \[s\].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Delays(pub(super) Vec<f64>);
+
+/// End of the reduction: a fraction of the variance, or `None` for no reduction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Until(pub(super) Option<f64>);
+
+/// Longest delay of a fit \[s\].
+const LONGEST_S: f64 = 0.5;
+
+fn delay(text: &str) -> Result<Delay, TimeError> {
+    if text == "estimate" { Ok(Delay::Estimate) } else { time(text, LONGEST_S).map(Delay::Given) }
+}
+
+fn delays(text: &str) -> Result<Delays, String> {
+    if text == "none" {
+        return Ok(Delays(Vec::new()));
+    }
+    let wrong = || "expected FROM:TO:STEP in ms, for example 0:120:5, or none".to_owned();
+    let numbers: Vec<f64> = text.split(':').map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let [from, to, step] = numbers[..] else { return Err(wrong()) };
+    within("FROM (ms)", from, 0.0, 1e3 * LONGEST_S).map_err(|e| e.to_string())?;
+    within("TO (ms)", to, from, 1e3 * LONGEST_S).map_err(|e| e.to_string())?;
+    within("STEP (ms)", step, 0.1, 100.0).map_err(|e| e.to_string())?;
+    let count = ((to - from) / step + 1e-9) as usize;
+    within("number of delays", count as f64 + 1.0, 3.0, 1000.0).map_err(|e| e.to_string())?;
+    Ok(Delays((0..=count).map(|i| (from + step * i as f64) * 1e-3).collect()))
+}
+
+fn gain(text: &str) -> Result<usize, String> {
+    let place = symbols().iter().position(|symbol| *symbol == text);
+    place.ok_or_else(|| format!("expected gains of {}", symbols().join(", ")))
+}
+
+fn neuromuscular(text: &str) -> Result<Neuromuscular, String> {
+    let numbers = text.split_once(',').map(|(hz, ratio)| (hz.trim().parse::<f64>(), ratio.trim().parse()));
+    let Some((Ok(hz), Ok(zeta))) = numbers else {
+        return Err("expected HZ,RATIO, for example 2.17,0.707".into());
+    };
+    let muscles = Neuromuscular { omega_rad_s: hz * std::f64::consts::TAU, zeta };
+    muscles.check().map_err(|e| e.to_string())?;
+    Ok(muscles)
+}
+
+fn drift(text: &str) -> Result<Drift, String> {
+    match text {
+        "none" => Ok(Drift::None),
+        "offset" => Ok(Drift::Offset),
+        _ => {
+            let wrong = || "expected none, offset, or a frequency such as 0.05Hz".to_owned();
+            let hz =
+                text.strip_suffix("Hz").and_then(|hz| hz.trim().parse::<f64>().ok()).ok_or_else(wrong)?;
+            within("frequency (Hz)", hz, 1e-4, 0.5).map_err(|e| e.to_string())?;
+            Ok(Drift::Below(hz))
+        }
+    }
+}
+
+/// The drift as on the command line.
+pub(super) fn drift_name(drift: Drift) -> String {
+    match drift {
+        Drift::None => "none".into(),
+        Drift::Offset => "offset".into(),
+        Drift::Below(hz) => format!("{hz}Hz"),
+    }
+}
+
+fn moment(text: &str) -> Result<f64, TimeError> {
+    time(text, 3600.0)
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let wrong = || "expected a percentage from 0 to 100".to_owned();
+    let value = text.parse::<f64>().ok().filter(|x| (0.0..=100.0).contains(x));
+    value.map(|x| x / 100.0).ok_or_else(wrong)
+}
+
+fn until(text: &str) -> Result<Until, String> {
+    if text == "none" { Ok(Until(None)) } else { percent(text).map(|x| Until(Some(x))) }
+}
+
+fn select(text: &str) -> Result<Select, String> {
+    match text {
+        "full" => Ok(Select::Full),
+        "aic" => Ok(Select::Aic),
+        "bic" => Ok(Select::Bic),
+        "held" => Ok(Select::CrossValidated),
+        _ => match text.strip_prefix("vaf:") {
+            Some(number) => percent(number).map(Select::Vaf),
+            None => Err("expected full, vaf:PERCENT, aic, bic or held".into()),
+        },
+    }
+}
+
+/// The criterion as on the command line.
+pub(super) fn select_name(select: Select) -> String {
+    match select {
+        Select::Full => "full".into(),
+        Select::Vaf(vaf) => format!("vaf:{}", 100.0 * vaf),
+        Select::Aic => "aic".into(),
+        Select::Bic => "bic".into(),
+        Select::CrossValidated => "held".into(),
+    }
+}

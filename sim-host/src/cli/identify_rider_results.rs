@@ -1,0 +1,61 @@
+//! Finished records of an identification, in a folder.
+
+use super::Failure;
+use crate::bicycle::catalogue::Bicycle;
+use crate::report::figure::Chart;
+use crate::report::identify::{RecordEntry, ReductionRow, ResolvedIdentify};
+use crate::report::output::Output;
+use crate::report::resolved::ResolvedBicycle;
+use crate::rider::{RiderTable, catalogue};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// A finished record.
+pub(super) struct Finished {
+    pub(super) text: String,
+    pub(super) rows: Vec<ReductionRow>,
+    pub(super) chart: Chart,
+    pub(super) rider: RiderTable,
+    pub(super) document: Value,
+}
+
+/// The folder.
+pub(super) struct Store(PathBuf);
+
+impl Store {
+    /// Creates the folder, if needed.
+    pub(super) fn open(folder: &Path) -> Result<Self, Failure> {
+        std::fs::create_dir_all(folder).map_err(|e| format!("--results {}: {e}", folder.display()))?;
+        Ok(Self(folder.to_owned()))
+    }
+
+    fn place(&self, record: &Path, extension: &str) -> PathBuf {
+        let stem = record.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        self.0.join(format!("{stem}.{extension}"))
+    }
+
+    /// The result of a record with the same content and options; `None` if there is none.
+    pub(super) fn finished(
+        &self,
+        file: &Path,
+        record: &RecordEntry,
+        config: &ResolvedIdentify,
+        bicycle: &Bicycle,
+    ) -> Option<Finished> {
+        let document: Value = serde_json::from_slice(&std::fs::read(self.place(file, "json")).ok()?).ok()?;
+        let same = document["record"]["sha256"] == record.sha256.as_str()
+            && document["config"] == serde_json::to_value(config).ok()?
+            && document["bicycle"] == serde_json::to_value(ResolvedBicycle::new(bicycle)).ok()?;
+        let rider = catalogue::load(&self.place(file, "toml").display().to_string()).ok()?;
+        let text = format!("{}: finished before, in {}\n", record.file, self.place(file, "json").display());
+        same.then(|| Finished { text, rows: Vec::new(), chart: Chart::default(), rider, document })
+    }
+
+    /// Writes the document and the rider of a record.
+    pub(super) fn keep(&self, file: &Path, finished: &Finished) -> Result<(), Failure> {
+        // The rider first: a document means that the record is finished.
+        Output::create(&self.place(file, "toml"))?.finish(finished.rider.to_toml().as_bytes())?;
+        let text = serde_json::to_string_pretty(&finished.document)? + "\n";
+        Ok(Output::create(&self.place(file, "json"))?.finish(text.as_bytes())?)
+    }
+}

@@ -1,0 +1,8 @@
+//! Perturbation records of real or simulated riders: from a recording to equal intervals, as an identification needs them.
+
+mod doubts;
+mod error;
+mod uniform;
+
+pub use error::RecordError;
+pub use uniform::{Prepared, Settings, prepare};

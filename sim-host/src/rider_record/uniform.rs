@@ -1,0 +1,198 @@
+//! From signals with times of their own to samples at equal intervals.
+
+use super::doubts::doubts;
+use super::error::RecordError;
+use crate::identify::{Disturbances, Hold, Measured, Record, Signal};
+use crate::range::within;
+use crate::replay::{Perturbed, Timed};
+
+/// Longest bridged time between two samples, in sample times; a longer one is a gap.
+const GAP: f64 = 3.0;
+/// Largest deviation from a sample's time that counts as none, in sample times.
+const ON_TIME: f64 = 1e-3;
+/// Time after a gap in the disturbance whose response is unknown \[s\].
+const UNKNOWN_AFTER_S: f64 = 2.0;
+const FEWEST: usize = 100;
+const MOST: f64 = 2e6;
+
+/// Options of the preparation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Signals to fit.
+    pub signals: Vec<Signal>,
+    /// Course of the disturbances between two samples.
+    pub hold: Hold,
+    /// Forward speed \[m/s\] in place of the recorded one.
+    pub speed_m_s: Option<f64>,
+}
+
+/// A record at equal intervals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prepared {
+    /// The record.
+    pub record: Record,
+    /// Time of its first sample \[s\].
+    pub start_s: f64,
+    /// Mean forward speed \[m/s\].
+    pub speed_m_s: f64,
+    /// Standard deviation of the recorded speed \[m/s\]; `None` if the speed was not recorded.
+    pub speed_deviation_m_s: Option<f64>,
+    /// What was left out, bridged or looks wrong.
+    pub remarks: Vec<String>,
+}
+
+/// Samples with rising times; the others are left out and counted.
+fn rising(signal: &Timed) -> (Timed, usize) {
+    let mut rising: Timed = Vec::with_capacity(signal.len());
+    for sample in signal {
+        if rising.last().is_none_or(|last| sample.0 > last.0) {
+            rising.push(*sample);
+        }
+    }
+    let left_out = signal.len() - rising.len();
+    (rising, left_out)
+}
+
+/// Median time between two samples \[s\].
+fn median_period(signal: &Timed) -> f64 {
+    let mut periods: Vec<f64> = signal.windows(2).map(|two| two[1].0 - two[0].0).collect();
+    periods.sort_by(f64::total_cmp);
+    periods.get(periods.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// A signal on the grid of times.
+struct Gridded {
+    values: Vec<f64>,
+    valid: Vec<bool>,
+}
+
+/// Values at `start + k * sample_s`, linear between two samples or constant from the one before; not valid in gaps and beyond
+/// the ends.
+fn gridded(signal: &Timed, start_s: f64, sample_s: f64, count: usize, hold: Hold) -> Gridded {
+    let (mut values, mut valid) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    let mut next = 0;
+    for k in 0..count {
+        let t = start_s + k as f64 * sample_s;
+        while next < signal.len() && signal[next].0 <= t + ON_TIME * sample_s {
+            next += 1;
+        }
+        let (before, after) = (next.checked_sub(1).map(|i| signal[i]), signal.get(next));
+        let (value, known) = match (before, after) {
+            (Some((at, value)), _) if (t - at).abs() <= ON_TIME * sample_s => (value, true),
+            (Some((from, a)), Some((to, b))) => {
+                let share = (t - from) / (to - from);
+                let value = if hold == Hold::Zero { a } else { a + (b - a) * share };
+                (value, to - from <= GAP * sample_s)
+            }
+            (Some((from, value)), None) => (value, t - from <= GAP * sample_s),
+            (None, _) => (0.0, false),
+        };
+        values.push(value);
+        valid.push(known);
+    }
+    Gridded { values, valid }
+}
+
+/// Brings the signals to equal intervals: the median time between two samples of the steer angle, or of the first signal
+/// to fit.
+///
+/// # Errors
+/// A signal is missing or has too few samples, or the speed is not known.
+pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, RecordError> {
+    let mut remarks = Vec::new();
+    let mut sorted = |what: &'static str, signal: &Timed| {
+        let (rising, left_out) = rising(signal);
+        if left_out > 0 {
+            remarks.push(format!(
+                "{what}: {left_out} samples without a later time than the one before; left out"
+            ));
+        }
+        rising
+    };
+    let mut measured = Vec::new();
+    for signal in &settings.signals {
+        let (what, columns, of) = match signal {
+            Signal::Steer => ("steer angle", "steer_rad or steer_deg", &signals.steer_rad),
+            Signal::Roll => ("roll angle", "roll_rad or roll_deg", &signals.roll_rad),
+            Signal::RollRate => ("roll rate", "roll_rate_rad_s or roll_rate_deg_s", &signals.roll_rate_rad_s),
+        };
+        if of.is_empty() {
+            return Err(RecordError::Missing { what, columns });
+        }
+        let of = sorted(what, of);
+        if of.len() < FEWEST {
+            return Err(RecordError::Few { what, samples: of.len() });
+        }
+        measured.push((*signal, what, of));
+    }
+    let force = sorted("lateral force", &signals.lateral_force_n);
+    let torque = sorted("steer torque", &signals.steer_torque_nm);
+    if force.is_empty() && torque.is_empty() {
+        let columns = "lateral_force_n, lateral_force_kn, lateral_force_lbf or steer_torque_nm";
+        return Err(RecordError::Missing { what: "perturbation", columns });
+    }
+    let speed = sorted("speed", &signals.speed_m_s);
+    let Some((_, _, leading)) = measured.first() else {
+        return Err(RecordError::Missing { what: "signal to fit", columns: "steer_rad" });
+    };
+    let sample_s = median_period(leading);
+    let rate_hz = sample_s.recip();
+    if !(20.0..=2000.0).contains(&rate_hz) {
+        return Err(RecordError::Rate { rate_hz });
+    }
+    let (start_s, end_s) = (leading[0].0, leading[leading.len() - 1].0);
+    let duration_s = end_s - start_s;
+    if duration_s * rate_hz > MOST {
+        return Err(RecordError::Long { duration_s, rate_hz });
+    }
+    let count = (duration_s * rate_hz + 0.5) as usize + 1;
+    let grid = |signal: &Timed, hold| gridded(signal, start_s, sample_s, count, hold);
+    let disturbed = [&force, &torque].map(|signal| grid(signal, settings.hold));
+    let mut unknown = vec![false; count];
+    for (what, of, recorded) in
+        [("lateral force", &disturbed[0], &force), ("steer torque", &disturbed[1], &torque)]
+    {
+        if recorded.is_empty() {
+            continue;
+        }
+        let missing = of.valid.iter().filter(|valid| !**valid).count();
+        if missing > 0 {
+            remarks.push(format!(
+                "{what}: {missing} of {count} samples are missing; the response to them, until {UNKNOWN_AFTER_S} s later, is left out"
+            ));
+        }
+        let mut since = f64::INFINITY;
+        for (k, valid) in of.valid.iter().enumerate() {
+            since = if *valid { since + sample_s } else { 0.0 };
+            unknown[k] |= since <= UNKNOWN_AFTER_S;
+        }
+    }
+    let mut fitted = Vec::new();
+    for (signal, what, of) in &measured {
+        let Gridded { values, mut valid } = grid(of, Hold::Linear);
+        let missing = valid.iter().filter(|valid| !**valid).count();
+        if missing > 0 {
+            remarks.push(format!("{what}: {missing} of {count} samples are missing; they are not fitted"));
+        }
+        valid.iter_mut().zip(&unknown).for_each(|(valid, unknown)| *valid &= !unknown);
+        let left_out = valid.iter().filter(|valid| !**valid).count();
+        if 2 * left_out > count {
+            return Err(RecordError::Gaps { what, missing: left_out, samples: count });
+        }
+        fitted.push(Measured { signal: *signal, values, valid });
+    }
+    let mean = speed.iter().map(|(_, v)| v).sum::<f64>() / speed.len() as f64;
+    let speed_m_s = match (settings.speed_m_s, speed.is_empty()) {
+        (Some(speed), _) => speed,
+        (None, false) => mean,
+        (None, true) => return Err(RecordError::NoSpeed),
+    };
+    within("forward speed (m/s)", speed_m_s, 0.1, 30.0)?;
+    let deviation = (speed.iter().map(|(_, v)| (v - mean).powi(2)).sum::<f64>() / speed.len() as f64).sqrt();
+    let samples = (0..count).map(|k| [0, 1].map(|i| disturbed[i].values[k])).collect();
+    let record =
+        Record { disturbances: Disturbances { sample_s, samples, hold: settings.hold }, measured: fitted };
+    let speed_deviation_m_s = (!speed.is_empty()).then_some(deviation);
+    remarks.extend(doubts(&record, speed_m_s, speed_deviation_m_s));
+    Ok(Prepared { record, start_s, speed_m_s, speed_deviation_m_s, remarks })
+}
