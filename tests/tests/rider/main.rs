@@ -3,5 +3,6 @@
 mod delay;
 mod linear;
 mod parts;
+mod perturbation;
 mod roots;
 mod tables;
