@@ -13,16 +13,16 @@ use crate::scenario::Scenario;
 use std::path::PathBuf;
 
 pub(super) const EXAMPLES: &str = "\
-A rider on a treadmill is pushed sideways at random times, to both sides: the experiment of a rider identification, with
-a rider that is known. The columns are time_s, lateral_force_n, steer_torque_nm (with --steer-pulse), steer_rad,
-roll_rad, roll_rate_rad_s, speed_m_s; right positive; force and torque act from their line to the next.
-Without options for noise and drift there is none.
+The experiment of a rider identification, with a rider that is known. Columns: time_s,
+lateral_force_n, steer_torque_nm (with --steer-pulse), steer_rad, roll_rad, roll_rate_rad_s,
+speed_m_s. Right is positive; force and torque act from their line to the next. Without options
+for noise and drift there is none.
 
 Examples:
   sim-host record --rider young --speed 5 --out young.csv
-  sim-host record --rider smart --delay 100ms --speed 4 --pulse 60 --force-at 0,1 --json -q --out smart.csv
-  sim-host record --rider young --speed 5 --remnant 0.5 --steer-noise 0.001 --roll-noise 0.002 --roll-rate-noise 0.01
-  sim-host record --rider young --speed 5 --treadmill-drift 0.05 --steer-drift 0.01 --seed 2 --out drifting.csv";
+  sim-host record --rider smart --speed 4 --pulse 60 --force-at 0,1 --out smart.csv --json smart.json
+  sim-host record --rider young --speed 5 --remnant 0.5 --steer-noise 0.001 --roll-rate-noise 0.01
+  sim-host record --rider young --speed 5 --treadmill-drift 0.05 --steer-drift 0.01 --seed 2";
 
 /// Options of `record`.
 #[derive(clap::Args)]

@@ -19,6 +19,7 @@ mod options;
 mod outputs;
 mod parsers;
 mod plant;
+mod record;
 mod riders;
 mod same_bytes;
 mod scenario;

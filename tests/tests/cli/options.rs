@@ -105,6 +105,7 @@ fn every_help_has_examples_whose_options_exist() {
         "faults",
         "identify",
         "identify weave",
+        "record",
     ] {
         let help = bench.run(&format!("{command} --help"));
         assert_eq!(help.code, Some(0), "{command}");

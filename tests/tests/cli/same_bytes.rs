@@ -9,7 +9,7 @@ const WITHOUT_FMA: (&str, &str) = ("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-FM
 
 /// Situation: a tilt of 0.259 rad, whose sine has another last bit in the C library's code for processors without
 /// fused multiply-add; a processor that has it.
-/// Action: eigenvalues without and with a late rider, a ride with noise, a basin; each by default, and with the C
+/// Action: eigenvalues without and with a late rider, a ride with noise, a basin, a perturbation record; each by default, and with the C
 /// library forced to use that code.
 /// Must hold: the same bytes.
 #[test]
@@ -17,13 +17,14 @@ fn the_c_library_does_not_change_results() {
     let bench = Bench::new(PROGRAM);
     bench.write("tilted.toml", bicycle_with("lam", "lam = 0.259"));
     for line in [
-        "eigen --speeds 0:10:1",
-        "eigen --rider young --speeds 3:6:1",
-        "ride --preset product --law h-cut --speed 4 --steer-rate 1 --sensor gyro:noise=0.01",
-        "basin --rider young --law h --speeds 4 --max-rate 4 --scan-step 1",
+        "eigen --speeds 0:10:1 --csv -",
+        "eigen --rider young --speeds 3:6:1 --csv -",
+        "ride --preset product --law h-cut --speed 4 --steer-rate 1 --sensor gyro:noise=0.01 --csv -",
+        "basin --rider young --law h --speeds 4 --max-rate 4 --scan-step 1 --csv -",
+        "record --rider young --speed 5 --duration 3 --until-fall --remnant 0.5 --steer-noise 0.001 --treadmill-drift 0.1",
     ] {
         let table = |with: Option<(&str, &str)>| {
-            let mut command = bench.command(&format!("{line} --bicycle tilted.toml --csv - -q"));
+            let mut command = bench.command(&format!("{line} --bicycle tilted.toml -q"));
             let run = Run::from(command.envs(with).output().expect("runs"));
             assert_eq!(run.code, Some(0), "{line}: {run:?}");
             run.stdout

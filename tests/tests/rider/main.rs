@@ -4,6 +4,7 @@ mod covariance;
 mod delay;
 mod linear;
 mod parts;
+mod perturbation;
 mod roots;
 mod spline;
 mod tables;

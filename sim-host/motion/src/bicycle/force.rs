@@ -32,7 +32,7 @@ impl<S: Scalar> Forces<S> {
 
 impl ForcePoint {
     /// From P, the rear wheel's centre, in the steer-axis frame \[m\]: forward across the steer axis, and down along it.
-    fn from_rear_axle(self, b: &Geometry) -> [f64; 2] {
+    fn arm(self, b: &Geometry) -> [f64; 2] {
         let (s, c) = sin_cos(b.lam);
         let (x, z) = (self.ahead_m, b.rR - self.height_m);
         [x * c - z * s, x * s + z * c]
@@ -56,7 +56,7 @@ impl<S: Scalar> Motion<S> {
 
     fn lateral(&self, b: &Geometry, point: ForcePoint, v: &Velocities<S>) -> S {
         let (e1, k) = (self.pose.e1, self.pose.k);
-        let [x, z] = point.from_rear_axle(b);
+        let [x, z] = point.arm(b);
         let arm = Vec3::new(S::constant(x), S::constant(0.0), S::constant(z));
         (v.axle(b, e1) + v.omega.cross(arm)).dot(k.cross(e1))
     }

@@ -25,7 +25,7 @@ pub enum PerturbationError {
         sample_s: f64,
     },
     /// The bicycle fell.
-    #[error("the bicycle fell after {time_s:.3} s ({}); a weaker pulse or another speed may keep it upright", .cause.name())]
+    #[error("the bicycle fell after {time_s:.3} s; a weaker pulse or another speed may keep it upright")]
     Fall {
         /// Time of the fall \[s\].
         time_s: f64,

@@ -32,8 +32,7 @@ pub struct SensorNoise {
     pub roll_rate_rad_s: f64,
 }
 
-/// Slow changes, each white noise through a first-order low-pass filter with a time constant of [`Drift::TIME_S`],
-/// beginning at 0. Standard deviations after several time constants; 0 for none.
+/// Slow changes, each white noise through a first-order low-pass filter with a time constant of 20 s, beginning at 0. Standard deviations after several time constants; 0 for none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Drift {
     /// Of the belt's speed, which the bicycle follows \[m/s\].
