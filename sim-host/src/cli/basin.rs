@@ -1,6 +1,7 @@
 //! `sim-host basin`: searches the basin of attraction over forward speed.
 
 use super::conditions::{Setup, printed, setup};
+use super::drawn::{DrawnBasins, Draws, draws};
 use super::options::{Basin as BasinOptions, Chosen, UncertainBasin};
 use super::outputs::{OutputArgs, Outputs, Results, complain};
 use super::progress::progress;
@@ -8,10 +9,10 @@ use super::ride::laid_flat;
 use super::scenario_error::named;
 use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
-use crate::basin::{Basin, Column, Drawn, Search, Work, basin, drawn};
+use crate::basin::{Basin, Column, Search, Work, basin};
 use crate::bicycle::linear::Linear;
 use crate::eigen::critical_speeds;
-use crate::report::document::{BasinDocument, UncertainEntry};
+use crate::report::document::BasinDocument;
 use crate::report::figure::{self, Band, BasinFigure};
 use crate::report::resolved::ResolvedSearch;
 use crate::report::{table, terminal};
@@ -29,6 +30,7 @@ Examples:
   sim-host basin --law cl2:4 --assist ideal --schedule-speed rear
   sim-host basin --preset product --sensor-delay 20ms --csv product.csv
   sim-host basin --bicycle data/bicycles/Rigid+Jason --speeds 2:8:0.5 --uncertain 50 --svg band.svg
+  sim-host basin --rider young --rider-draws 100 --gains spline --svg band.svg
   sim-host basin --bicycle my.toml#city --axis roll-rate --max-rate 5
   sim-host basin compare 'young=--rider young' 'smart=--rider smart' --svg riders.svg
   sim-host basin plane --speed 4 --rider smart --law h --svg plane.svg";
@@ -76,39 +78,27 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     if let Some(ended) = printed(&args.scenario, &scenario)? {
         return Ok(ended);
     }
-    let uncertain = scenario.uncertain;
     let setup = setup(&scenario)?;
-    let measured = setup.measured.as_ref();
-    let draws = match (uncertain, measured) {
-        (Some(count), Some(measured)) => Some((count, measured)),
-        (None, _) => None,
-        (Some(_), None) => {
-            return Err(format!(
-                "--uncertain: bicycle {} has no uncertainties; a value with one is written \"1.12+/-0.02\"",
-                setup.config.bicycle.name
-            )
-            .into());
-        }
-    };
+    let draws = draws(&scenario, &setup)?;
     let search = scenario.search.resolve(scenario.is_ridden()).map_err(|e| named(&scenario, &e))?;
     let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = args.threads.pool()?;
-    let basins = 1 + uncertain.unwrap_or(0) as usize;
+    let basins = 1 + draws.as_ref().map_or(0, Draws::count);
     let bar = progress(outputs.shows_progress(), "basin", basins * search.speeds.len(), "columns");
     let begin = Instant::now();
     let result = pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped))?;
     let seconds = begin.elapsed().as_secs_f64();
-    let drawn = draws.map(|(count, measured)| {
-        pool.install(|| drawn(&setup.conditions, measured, &search, count, || bar.inc(1), interrupt::stopped))
-    });
-    let drawn = drawn.transpose()?;
+    let drawn =
+        draws.map(|draws| pool.install(|| draws.basins(&setup, &search, || bar.inc(1), interrupt::stopped)));
     bar.finish_and_clear();
-    let short = drawn.as_ref().zip(uncertain).filter(|(drawn, count)| drawn.basins.len() < *count as usize);
     let ended =
         write(&setup, &search, &outputs, &Computed { basin: &result, drawn: drawn.as_ref(), seconds }, "")?;
-    if let (Ended::Done, Some((drawn, count))) = (&ended, short) {
-        complain(&format!("interrupted: {} of {count} draws are done and kept", drawn.basins.len()));
+    if let (Ended::Done, Some(drawn)) = (&ended, &drawn)
+        && drawn.of.basins.len() < drawn.count
+    {
+        let (done, all) = (drawn.of.basins.len(), drawn.count);
+        complain(&format!("interrupted: {done} of {all} draws are done and kept"));
         return Ok(Ended::Interrupted);
     }
     Ok(ended)
@@ -117,8 +107,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 /// Results of a search.
 pub(super) struct Computed<'a> {
     pub(super) basin: &'a Basin,
-    /// Results for drawn bicycles, if requested.
-    pub(super) drawn: Option<&'a Drawn>,
+    /// Results for draws, if requested.
+    pub(super) drawn: Option<&'a DrawnBasins>,
     /// Computing time of the basin \[s\].
     pub(super) seconds: f64,
 }
@@ -141,13 +131,15 @@ pub(super) fn write(
     let parts = (setup.config.clone(), resolved, setup.scenario.clone());
     let document = BasinDocument::new(parts, &search.speeds, result, seconds);
     // Without finished draws there is no band.
-    let drawn = drawn.filter(|drawn| !drawn.basins.is_empty());
-    let document = BasinDocument { uncertain: drawn.map(UncertainEntry::new), ..document };
-    let heights = drawn.map_or(Vec::new(), Drawn::heights);
+    let drawn = drawn.filter(|drawn| !drawn.of.basins.is_empty());
+    let document = match drawn {
+        Some(drawn) => drawn.add_to(document),
+        None => document,
+    };
+    let heights = drawn.map_or(Vec::new(), |drawn| drawn.of.heights());
     let band: Vec<_> =
         search.speeds.iter().zip(&heights).map(|(v, [low, _, high])| (*v, *low, *high)).collect();
-    let band_label =
-        drawn.map_or(String::new(), |d| format!("5 % to 95 % of {} drawn bicycles", d.basins.len()));
+    let band_label = drawn.map_or(String::new(), DrawnBasins::label);
     let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
     let label = setup.config.label();
     let cut = if complete { "" } else { ", interrupted" };
@@ -167,11 +159,11 @@ pub(super) fn write(
         summary: || {
             terminal::basin(&figure, 80)
                 + &summary(result, search, &setup.conditions.fall, seconds)
-                + &spread(&document)
+                + &drawn.map_or(String::new(), |drawn| drawn.summary(&search.speeds))
                 + extra
         },
         table: || {
-            let drawn = drawn.map_or(Vec::new(), |drawn| table::drawn_rows(&search.speeds, drawn));
+            let drawn = drawn.map_or(Vec::new(), |drawn| table::drawn_rows(&search.speeds, &drawn.of));
             table::table(&config, &[table::basin_rows(result), drawn].concat())
         },
         figure: || figure::basin(&figure),
@@ -183,20 +175,6 @@ pub(super) fn write(
         complain(&format!("interrupted: {done} of {all} speeds are done and kept"));
         Ok(Ended::Interrupted)
     }
-}
-
-/// Text: quantiles of area and mean height over the draws.
-fn spread(document: &BasinDocument) -> String {
-    let Some(drawn) = &document.uncertain else { return String::new() };
-    let at_least = if drawn.capped > 0 { ", at least" } else { "" };
-    let line = |name, [low, middle, high]: [f64; 3], unit| {
-        format!(
-            "{name} of {} drawn bicycles: 5 % {low:.3}, median {middle:.3}, 95 % {high:.3} {unit}{at_least}\n",
-            drawn.draws
-        )
-    };
-    let area = if document.speeds.len() > 1 { line("area", drawn.area, "rad m/s^2") } else { String::new() };
-    area + &line("mean height", drawn.mean_height, "rad/s")
 }
 
 /// The result as text.

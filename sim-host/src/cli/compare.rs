@@ -111,7 +111,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
                 let found =
                     pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
                 let config = json!(setup.config);
-                let own = Scenario { search: own_search.clone(), uncertain: None, ..setup.scenario };
+                let own = Scenario {
+                    search: own_search.clone(),
+                    uncertain: None,
+                    rider_draws: None,
+                    ..setup.scenario
+                };
                 let scenario = json!(own);
                 Case { label, config, scenario, basin: found? }
             }

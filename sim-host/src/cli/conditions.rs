@@ -8,7 +8,7 @@ use crate::bicycle::Parameters;
 use crate::bicycle::uncertain::Measured;
 use crate::report::resolved::ResolvedConfig;
 use crate::ride::Conditions;
-use crate::scenario::{Resolved, Scenario};
+use crate::scenario::{LoadedRider, Resolved, Scenario};
 
 /// What a command needs of its scenario.
 pub(super) struct Setup {
@@ -16,6 +16,7 @@ pub(super) struct Setup {
     pub(super) config: ResolvedConfig,
     pub(super) parameters: Parameters,
     pub(super) measured: Option<Measured>,
+    pub(super) rider: Option<LoadedRider>,
     /// The scenario that reproduces the result.
     pub(super) scenario: Scenario,
 }
@@ -27,8 +28,9 @@ pub(super) fn setup(scenario: &Scenario) -> Result<Setup, Failure> {
     resolved.notes.iter().for_each(|note| complain_once(&format!("note: {note}")));
     resolved.warnings.iter().for_each(|warning| complain_once(&format!("warning: {warning}")));
     let config = ResolvedConfig::new(&resolved);
-    let Resolved { conditions, bicycle, scenario, .. } = resolved;
-    Ok(Setup { conditions, config, parameters: bicycle.parameters, measured: bicycle.measured, scenario })
+    let Resolved { conditions, bicycle, rider, scenario, .. } = resolved;
+    let (parameters, measured) = (bicycle.parameters, bicycle.measured);
+    Ok(Setup { conditions, config, parameters, measured, rider, scenario })
 }
 
 /// Prints the scenario, if that is requested.

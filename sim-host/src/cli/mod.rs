@@ -9,6 +9,7 @@ mod cells;
 mod compare;
 mod conditions;
 mod design;
+mod drawn;
 mod eigen;
 mod ended;
 mod faults;

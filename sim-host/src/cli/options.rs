@@ -28,7 +28,7 @@ pub(super) struct Conditions;
 pub(super) struct Ride;
 /// Conditions and search of a basin.
 pub(super) struct Basin;
-/// Conditions and search of a basin, and drawn bicycles.
+/// Conditions and search of a basin, and drawn bicycles or riders.
 pub(super) struct UncertainBasin;
 /// The bicycle alone.
 pub(super) struct Bicycle;
@@ -55,7 +55,7 @@ impl Settings for Basin {
     const LISTS: &'static [&'static [Setting]] = &[CONDITIONS, SEARCH];
 }
 impl Settings for UncertainBasin {
-    const LISTS: &'static [&'static [Setting]] = &[CONDITIONS, SEARCH, &[UNCERTAIN]];
+    const LISTS: &'static [&'static [Setting]] = &[CONDITIONS, SEARCH, UNCERTAIN];
 }
 impl Settings for Bicycle {
     const LISTS: &'static [&'static [Setting]] = &[BICYCLES];

@@ -5,6 +5,7 @@ use super::tool::{SCHEMA, Tool};
 use crate::basin::{Basin, Drawn, QUANTILES, ScanPoint, Work};
 use crate::eigen::StabilityChange;
 use crate::ride::{Effort, FallCause, FinalState, Ride, Start};
+use crate::rider::Drawing;
 use crate::scenario::Scenario;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -185,10 +186,10 @@ pub struct Map {
     pub fall: Vec<Vec<Option<&'static str>>>,
 }
 
-/// The basins of drawn bicycles.
+/// The basins of drawn bicycles or riders.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct UncertainEntry {
-    /// Bicycles whose basin is complete.
+    /// Draws whose basin is complete.
     pub draws: usize,
     /// Seed of the draws.
     pub seed: u64,
@@ -223,6 +224,20 @@ impl UncertainEntry {
     }
 }
 
+/// The basins of drawn riders.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct RiderDrawsEntry {
+    /// What the gains are drawn from: each set from the normal distribution of its covariance ("posterior"), or sets of each
+    /// group with replacement ("bootstrap").
+    pub drawn_from: Drawing,
+    /// Per speed, the number of drawn riders whose straight ride is unstable by the linear model. They are part of all
+    /// quantiles.
+    pub unstable: Vec<usize>,
+    /// The basins.
+    #[serde(flatten)]
+    pub basins: UncertainEntry,
+}
+
 /// `basin`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct BasinDocument {
@@ -255,6 +270,8 @@ pub struct BasinDocument {
     pub area_capped: bool,
     /// The basins of bicycles drawn from the uncertainties of the parameters; null if not requested.
     pub uncertain: Option<UncertainEntry>,
+    /// The basins of riders drawn from what is known of the gains; null if not requested.
+    pub rider_draws: Option<RiderDrawsEntry>,
     /// The rides at the border.
     pub border: Vec<Border>,
     /// All rides of the scan.
@@ -311,6 +328,7 @@ impl BasinDocument {
             mean_height: basin.mean_height().filter(|_| complete),
             area_capped: basin.capped(),
             uncertain: None,
+            rider_draws: None,
             border,
             map: Map {
                 rates: basin.columns.first().map_or(Vec::new(), |c| c.scan.iter().map(|p| p.rate).collect()),

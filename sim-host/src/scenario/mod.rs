@@ -158,6 +158,9 @@ pub struct Scenario {
     /// Number of bicycles drawn from the uncertainties of the bicycle's parameters, 2 to 10000.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<u32>,
+    /// Number of riders drawn from the covariances of the rider's gains, or from the sets in its groups, 2 to 10000.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rider_draws: Option<u32>,
     /// File that the scenario was read from, for messages.
     #[serde(skip)]
     pub file: Option<PathBuf>,
@@ -191,6 +194,7 @@ impl Default for Scenario {
             search: SearchChoice::default(),
             plane: None,
             uncertain: None,
+            rider_draws: None,
             file: None,
             options: BTreeSet::new(),
         }

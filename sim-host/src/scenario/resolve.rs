@@ -120,11 +120,18 @@ impl Scenario {
             }
             plane.check().map_err(|e| ScenarioError::value("plane", e))?;
         }
-        match self.uncertain {
-            Some(count) if !DRAWS.contains(&count) => {
+        for (key, draws) in [("uncertain", self.uncertain), ("rider_draws", self.rider_draws)] {
+            if let Some(count) = draws.filter(|count| !DRAWS.contains(count)) {
                 let (least, most) = (DRAWS.start(), DRAWS.end());
-                Err(ScenarioError::value("uncertain", format!("{count} is outside {least} to {most}")))
+                return Err(ScenarioError::value(key, format!("{count} is outside {least} to {most}")));
             }
+        }
+        match self.rider_draws {
+            Some(_) if self.uncertain.is_some() => Err(ScenarioError::value(
+                "rider_draws",
+                "bicycles are drawn already (uncertain); one band at a time",
+            )),
+            Some(_) if !self.is_ridden() => Err(ScenarioError::value("rider_draws", "there is no rider")),
             _ => Ok(()),
         }
     }

@@ -63,7 +63,7 @@ pub enum TextError {
     /// A seed that TOML does not have.
     #[error("`{0}` is not a whole number from 0 to {most}", most = i64::MAX)]
     Seed(String),
-    /// A number of drawn bicycles outside its range.
+    /// A number of drawn bicycles or riders outside its range.
     #[error("{0} is not in {least}..={most}", least = DRAWS.start(), most = DRAWS.end())]
     Draws(String),
 }

@@ -2,6 +2,7 @@
 
 mod covariance;
 mod delay;
+mod draws;
 mod linear;
 mod parts;
 mod perturbation;

@@ -13,7 +13,7 @@ mod sensitivity;
 
 pub use bound::Bound;
 pub use compare::{Rmse, rmse};
-pub use drawn::{Drawn, QUANTILES, drawn};
+pub use drawn::{Drawn, QUANTILES, drawn, drawn_bicycles, drawn_riders};
 pub use outline::{Basin, Column, Island, ScanPoint, Work, area};
 pub use plane::{Plane, PlaneSearch, Ray, plane};
 pub use search::{Axis, Method, Search, SearchError, basin, basin_by, border, column};

@@ -22,6 +22,7 @@ pub use system::{DelaySystem, Model};
 use crate::bicycle::linear::Linear;
 use control::Law;
 use nalgebra::Complex;
+use rayon::prelude::*;
 
 /// The four eigenvalues \[1/s\] at speed `v` \[m/s\] without a rider: largest real part first; of a conjugate
 /// pair, the positive imaginary part first.
@@ -29,6 +30,13 @@ pub fn eigenvalues(bicycle: &Linear, law: &Law, v: f64) -> [Complex<f64>; 4] {
     let mut values: [Complex<f64>; 4] = bicycle.state_matrix(v, law.gain(v)).complex_eigenvalues().into();
     sort(&mut values);
     values
+}
+
+/// Per speed \[m/s\], the number of models whose straight ride is unstable: the rightmost root has a positive real part,
+/// beyond rounding.
+pub fn unstable(models: &[Model], speeds: &[f64]) -> Vec<usize> {
+    let grows = |model: &Model, v: f64| rightmost(&model.at(v)).re > 1e-9;
+    speeds.par_iter().map(|&v| models.iter().filter(|model| grows(model, v)).count()).collect()
 }
 
 /// Largest real part first, then largest imaginary part.

@@ -224,3 +224,20 @@ pub enum MergeError {
     #[error(transparent)]
     Range(#[from] RangeError),
 }
+
+/// A table from which no riders can be drawn.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "rider `{rider}`: row {row}, at {speed_m_s} m/s, has no covariance, and there is one set alone at {alone_m_s} m/s; \
+     drawn riders need `covariances` of all rows, or several sets in each group"
+)]
+pub struct DrawError {
+    /// The table's name.
+    pub rider: String,
+    /// Number of the first row without a covariance, from 1.
+    pub row: usize,
+    /// Its speed \[m/s\].
+    pub speed_m_s: f64,
+    /// Speed of the first group of one set \[m/s\].
+    pub alone_m_s: f64,
+}

@@ -3,6 +3,7 @@
 pub mod catalogue;
 mod compatibility;
 mod covariance;
+mod draw;
 mod error;
 mod file;
 mod fit;
@@ -13,7 +14,8 @@ mod table;
 
 pub use compatibility::compatibility_warnings;
 pub use covariance::Covariance;
-pub use error::{CovarianceError, MergeError, RiderError, RowError, TableError};
+pub use draw::Drawing;
+pub use error::{CovarianceError, DrawError, MergeError, RiderError, RowError, TableError};
 pub use fit::{Fit, mean};
 pub use line::Line;
 pub use merge::merge;

@@ -55,5 +55,5 @@ const PLAIN: Setting = Setting {
 
 /// The setting with this key in a scenario's file.
 pub fn of_key(key: &str) -> Option<&'static Setting> {
-    [CONDITIONS, SEARCH, START, PLANE, &[UNCERTAIN]].into_iter().flatten().find(|setting| setting.key == key)
+    [CONDITIONS, SEARCH, START, PLANE, UNCERTAIN].into_iter().flatten().find(|setting| setting.key == key)
 }

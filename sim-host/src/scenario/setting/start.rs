@@ -85,8 +85,10 @@ pub const SEARCH: &[Setting] = &[
     },
 ];
 
-/// The number of drawn bicycles.
-pub const UNCERTAIN: Setting = Setting {
+/// The numbers of drawn bicycles and of drawn riders.
+pub const UNCERTAIN: &[Setting] = &[BICYCLE_DRAWS, RIDER_DRAWS];
+
+const BICYCLE_DRAWS: Setting = Setting {
     name: "uncertain",
     key: "uncertain",
     value: "N",
@@ -99,7 +101,20 @@ pub const UNCERTAIN: Setting = Setting {
     ..PLAIN
 };
 
-/// Allowed numbers of drawn bicycles.
+const RIDER_DRAWS: Setting = Setting {
+    name: "rider-draws",
+    key: "rider_draws",
+    value: "N",
+    help: "Also compute the basins of N riders drawn from the covariances of the rider's gains, 2 to 10000, or from the sets in its groups if there are none, as a band from the 5 % to the 95 % quantile of their heights; --seed changes the draws",
+    set: |s, text| {
+        let count = text::whole(text).ok().filter(|count| DRAWS.contains(count));
+        s.rider_draws = Some(count.ok_or_else(|| TextError::Draws(text.into()))?);
+        Ok(())
+    },
+    ..PLAIN
+};
+
+/// Allowed numbers of drawn bicycles or riders.
 pub(in crate::scenario) const DRAWS: std::ops::RangeInclusive<u32> = 2..=10_000;
 
 /// The disturbance of one ride.
