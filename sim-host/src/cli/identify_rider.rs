@@ -6,9 +6,10 @@ use super::interrupt;
 use super::outputs::{Outputs, Results, complain};
 use super::progress::progress;
 use super::{Ended, Failure, warn};
+use crate::bicycle::Geometry;
 use crate::bicycle::catalogue::Bicycle;
 use crate::bicycle::linear::Linear;
-use crate::identify::{FitError, GAINS, GrayBox, Identified, Plan, Problem, Stage, identify};
+use crate::identify::{FitError, GAINS, GrayBox, Identified, Plan, Problem, Pushed, Stage, identify};
 use crate::recording::{ReadOptions, read};
 use crate::replay::{Map, perturbed};
 use crate::report::figure;
@@ -50,7 +51,7 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     }
     let store = args.results.as_deref().map(Store::open).transpose()?;
     interrupt::install_saying("finished records are written");
-    let bar = progress(outputs.shows_progress(), "identify", 3 * args.files.len(), "stages");
+    let bar = progress(outputs.shows_progress(), "identify", 4 * args.files.len(), "stages");
     let (mut finished, mut refused) = (Vec::new(), BTreeMap::new());
     for file in &args.files {
         if interrupt::stopped() {
@@ -160,6 +161,9 @@ fn one(
         return Ok(done);
     }
     let found = identify(problem, &plan, begins, &interrupt::stopped)?;
+    if let Some(Err(error)) = &found.refined {
+        complain(&format!("{name}: not refined on the nonlinear bicycle: {error}"));
+    }
     let document = IdentifyDocument::new(record, ResolvedBicycle::new(bicycle), config, &found);
     let finished = Finished {
         text: text(&document),
@@ -204,6 +208,11 @@ fn problem(args: &RiderArgs, bicycle: &Bicycle, prepared: &Prepared) -> (Problem
         select: args.select,
         delays_s,
         estimate_delay,
+        nonlinear: (!args.linear).then(|| Pushed {
+            bicycle: Geometry::new(&bicycle.parameters),
+            point: args.force_at,
+            speeds_m_s: prepared.speeds_m_s.clone(),
+        }),
         filter: args.filter,
     };
     (problem, plan)
@@ -242,6 +251,7 @@ fn config(args: &RiderArgs, problem: &Problem, plan: &Plan) -> ResolvedIdentify 
         skip_s: args.skip,
         hold: args.hold,
         filter: args.filter,
+        linear: args.linear,
         select: select_name(args.select),
         reduce_until: plan.reduce_until,
         seed: args.seed,

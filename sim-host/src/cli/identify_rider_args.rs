@@ -51,6 +51,9 @@ pub(super) struct RiderArgs {
     /// Fit the output of the impulse response in place of the measured signals
     #[arg(long)]
     pub(super) filter: bool,
+    /// Keep the gains of the linear bicycle: without this option the selected ones are refined on the nonlinear bicycle
+    #[arg(long)]
+    pub(super) linear: bool,
     /// Variance accounted for in % at which the reduction ends; `none` for no reduction
     #[arg(long, value_name = "PERCENT", default_value = "50", value_parser = until)]
     pub(super) reduce_until: Until,

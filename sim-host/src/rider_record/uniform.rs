@@ -35,6 +35,8 @@ pub struct Prepared {
     pub start_s: f64,
     /// Mean forward speed \[m/s\].
     pub speed_m_s: f64,
+    /// Recorded speed at each sample \[m/s\]; empty if another one is given or none was recorded.
+    pub speeds_m_s: Vec<f64>,
     /// Standard deviation of the recorded speed \[m/s\]; `None` if the speed was not recorded.
     pub speed_deviation_m_s: Option<f64>,
     /// What was left out, bridged or looks wrong.
@@ -194,5 +196,6 @@ pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, Rec
         Record { disturbances: Disturbances { sample_s, samples, hold: settings.hold }, measured: fitted };
     let speed_deviation_m_s = (!speed.is_empty()).then_some(deviation);
     remarks.extend(doubts(&record, speed_m_s, speed_deviation_m_s));
-    Ok(Prepared { record, start_s, speed_m_s, speed_deviation_m_s, remarks })
+    let recorded = if settings.speed_m_s.is_none() { grid(&speed, Hold::Linear).values } else { Vec::new() };
+    Ok(Prepared { record, speeds_m_s: recorded, start_s, speed_m_s, speed_deviation_m_s, remarks })
 }

@@ -79,6 +79,12 @@ pub enum FitError {
     /// Too short for an impulse response.
     #[error("the record is too short, or too little disturbed, for an impulse response of {0}")]
     NoImpulseResponse(&'static str),
+    /// A fall of the nonlinear bicycle.
+    #[error("with these gains the nonlinear bicycle falls after {time_s:.2} s of the record")]
+    Falls {
+        /// Time of the fall \[s\].
+        time_s: f64,
+    },
     /// No bounded response.
     #[error("no set of gains was found for which the response stays bounded over the record")]
     Unbounded,

@@ -4,7 +4,8 @@
 //! [`identify`] runs all steps. From a [`Record`], a bicycle, a speed and a delay ([`GrayBox`]) to gains with their covariance ([`Fit`]). The model's
 //! response is simulated from rest with exact discretisation (`interval`); its difference from the measured signals is
 //! minimised by a global search in the frequency domain (`spectrum`, `evolution`) and a Levenberg-Marquardt search in
-//! time with exact derivatives (`descent`). [`reduce`] leaves out the gains that the record does not need,
+//! time with exact derivatives (`descent`). [`refine`] corrects them for the nonlinearity of the
+//! bicycle. [`reduce`] leaves out the gains that the record does not need,
 //! [`delay_profile`] asks what it tells about the delay, [`impulse_response`] separates the response from the rider's own
 //! motion.
 
@@ -15,6 +16,7 @@ mod fir;
 mod fit;
 mod gray_box;
 mod interval;
+mod nonlinear;
 mod objective;
 mod pipeline;
 mod record;
@@ -30,6 +32,7 @@ pub use fit::{
     AFTER_ONSET_S, Fit, FitError, From, LocalOptimum, Problem, Residuals, SHORTEST_S, rightmost_real,
 };
 pub use gray_box::{GAINS, GrayBox, PerGain, symbols};
+pub use nonlinear::{Pushed, Refined, refine};
 pub use objective::Drift;
 pub use pipeline::{IMPULSE_RESPONSE_S, Identified, Plan, Stage, identify};
 pub use record::{Measured, Record};

@@ -131,17 +131,28 @@ impl<'a> Objective<'a> {
         self.outputs.iter().map(|output| output.values.len())
     }
 
+    /// Residuals of a response: roll, steer and roll rate at each sample.
+    pub(super) fn residual(&self, response: &[[f64; 3]]) -> DVector<f64> {
+        let mut residual = DVector::zeros(self.size());
+        let mut first = 0;
+        for output in &self.outputs {
+            let rest = &output.values - output.of(response);
+            residual
+                .rows_mut(first, output.values.len())
+                .copy_from(&(output.without_drift(rest) * output.weight));
+            first += output.values.len();
+        }
+        residual
+    }
+
     /// Residuals at `gains`, and the Jacobian for those of the indices `active`; `None` if the response is unbounded.
     pub(super) fn evaluate(&self, gains: &PerGain, active: &[usize]) -> Option<Evaluation> {
         let response = self.discrete.respond(&self.record.disturbances, gains, !active.is_empty())?;
-        let mut residual = DVector::zeros(self.size());
+        let residual = self.residual(&response.states);
         let mut columns = DMatrix::zeros(self.size(), active.len());
         let mut first = 0;
         for output in &self.outputs {
             let (state, count) = (output.signal.state(), output.values.len());
-            let answered = output.samples.iter().map(|k| response.states[*k][state]);
-            let rest = &output.values - DVector::from_iterator(count, answered);
-            residual.rows_mut(first, count).copy_from(&(output.without_drift(rest) * output.weight));
             for (column, gain) in active.iter().enumerate() {
                 let of = output.samples.iter().map(|k| response.tangents[*k][state][*gain]);
                 let of = output.without_drift(DVector::from_iterator(count, of)) * output.weight;
@@ -156,9 +167,13 @@ impl<'a> Objective<'a> {
     /// its drift as estimated with the response; over the samples `within`.
     pub(super) fn vaf(&self, gains: &PerGain, within: Chosen) -> Option<Vec<f64>> {
         let response = self.discrete.respond(&self.record.disturbances, gains, false)?;
+        Some(self.vaf_of(&response.states, within))
+    }
+
+    /// The same of a response.
+    pub(super) fn vaf_of(&self, response: &[[f64; 3]], within: Chosen) -> Vec<f64> {
         let of = |output: &Output| {
-            let answered = output.samples.iter().map(|k| response.states[*k][output.signal.state()]);
-            let answered = DVector::from_iterator(output.values.len(), answered);
+            let answered = output.of(response);
             let rest = output.without_drift(&output.values - &answered);
             let (mut unexplained, mut all) = (0.0, 0.0);
             for (row, _) in output.samples.iter().enumerate().filter(|(_, k)| within(**k)) {
@@ -168,11 +183,17 @@ impl<'a> Objective<'a> {
             }
             1.0 - unexplained / all
         };
-        Some(self.outputs.iter().map(of).collect())
+        self.outputs.iter().map(of).collect()
     }
 }
 
 impl Output {
+    /// The signal in a response, at the samples in use.
+    fn of(&self, response: &[[f64; 3]]) -> DVector<f64> {
+        let at = self.samples.iter().map(|k| response[*k][self.signal.state()]);
+        DVector::from_iterator(self.samples.len(), at)
+    }
+
     fn without_drift(&self, values: DVector<f64>) -> DVector<f64> {
         if self.drift.ncols() == 0 {
             return values;

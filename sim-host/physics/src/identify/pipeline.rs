@@ -3,13 +3,14 @@
 use super::delay::{DelayProfile, delay_profile};
 use super::fir::{Fir, impulse_response};
 use super::fit::{Fit, FitError, From, Problem};
+use super::nonlinear::{Pushed, Refined, refine};
 use super::reduction::{Select, Step, reduce};
 
 /// Length of the impulse response \[s\].
 pub const IMPULSE_RESPONSE_S: f64 = 4.0;
 
 /// What to identify.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Plan {
     /// Indices of the gains of the full fit.
     pub gains: Vec<usize>,
@@ -21,6 +22,8 @@ pub struct Plan {
     pub delays_s: Vec<f64>,
     /// Whether the record's delay is the profile's best one, rounded to whole milliseconds, in place of the given one.
     pub estimate_delay: bool,
+    /// The bicycle on which the selected gains are refined; `None` for those of the linear one.
+    pub nonlinear: Option<Pushed>,
     /// Whether the impulse response's output is fitted in place of the measured signals.
     pub filter: bool,
 }
@@ -34,6 +37,8 @@ pub enum Stage {
     Delay,
     /// Reduction of the gains.
     Reduction,
+    /// Refinement on the nonlinear bicycle.
+    Refinement,
 }
 
 /// An identified rider.
@@ -45,6 +50,8 @@ pub struct Identified {
     pub steps: Vec<Step>,
     /// Index of the selected step.
     pub selected: usize,
+    /// The selected fit refined on the nonlinear bicycle, or why it is not; `None` if that was not asked for.
+    pub refined: Option<Result<Refined, FitError>>,
     /// Profile of the delay.
     pub delay: Option<DelayProfile>,
     /// Impulse response of each signal; `None` if the record is too short for one.
@@ -52,9 +59,23 @@ pub struct Identified {
 }
 
 impl Identified {
-    /// The selected fit.
+    /// The selected fit, refined if possible.
     pub fn fit(&self) -> &Fit {
-        &self.steps[self.selected].fit
+        match &self.refined {
+            Some(Ok(refined)) => &refined.fit,
+            _ => &self.steps[self.selected].fit,
+        }
+    }
+
+    /// Response of the selected fit: roll \[rad\], steer \[rad\] and roll rate \[rad/s\] at each sample.
+    pub fn response(&self) -> Vec<[f64; 3]> {
+        match &self.refined {
+            Some(Ok(refined)) => refined.response.clone(),
+            _ => {
+                let Problem { model, record, .. } = &self.problem;
+                model.response(&record.disturbances, &self.fit().gains).unwrap_or_default()
+            }
+        }
     }
 }
 
@@ -107,5 +128,16 @@ pub fn identify(
     };
     let steps = reduce(&problem, full, until, stop)?;
     let selected = plan.select.index(&steps);
-    Ok(Identified { problem, steps, selected, delay, impulse_responses })
+    let refined = match &plan.nonlinear {
+        // The impulse response's output is that of a linear system.
+        Some(pushed) if !plan.filter => {
+            begins(Stage::Refinement);
+            Some(refine(&problem, pushed, &steps[selected].fit, stop))
+        }
+        _ => None,
+    };
+    if let Some(Err(FitError::Interrupted)) = refined {
+        return Err(FitError::Interrupted);
+    }
+    Ok(Identified { problem, steps, selected, refined, delay, impulse_responses })
 }

@@ -13,9 +13,9 @@ pub enum PerturbationError {
     /// The rider cannot be simulated.
     #[error(transparent)]
     Conditions(#[from] ConditionsError),
-    /// No time step from 0.01 to 1 ms divides the neural delay and the time between samples.
+    /// No time step from 0.01 to 0.25 ms divides the neural delay and the time between samples.
     #[error(
-        "no step from 0.01 to 1 ms divides both the neural delay of {} ms and the {} ms from sample to sample", 
+        "no step from 0.01 to 0.25 ms divides both the neural delay of {} ms and the {} ms from sample to sample", 
         .delay_s * 1e3, .sample_s * 1e3
     )]
     Step {

@@ -14,6 +14,7 @@ pub use error::PerturbationError;
 pub use noise::{Drift, Remnant, SensorNoise};
 pub use pulses::Pulses;
 pub use record::{Record, RecordSample, record};
+pub(crate) use record::{SPEED_HOLD_S, nearest_steps};
 
 use crate::bicycle::ForcePoint;
 use crate::range::within;

@@ -7,10 +7,10 @@ use crate::ride::{Assist, Conditions, FallCause, Perturbed, Push, perturbed};
 use serde::Serialize;
 
 /// Time constant with which the rider holds the belt's speed by pedalling \[s\].
-const SPEED_HOLD_S: f64 = 1.0;
+pub(crate) const SPEED_HOLD_S: f64 = 1.0;
 
 /// Longest and shortest time step of the integration \[s\].
-const STEPS_S: [f64; 2] = [1e-3, 1e-5];
+const STEPS_S: [f64; 2] = [2.5e-4, 1e-5];
 
 /// One line of a record. Right positive.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -123,6 +123,20 @@ pub fn record(conditions: &Conditions, experiment: &Experiment) -> Result<Record
         speed_m_s: motion.speed_m_s,
     });
     Ok(Record { samples: samples.collect(), fall: ride.fall })
+}
+
+/// The time steps per sample, and their length \[s\], of which the delay is nearly a multiple: as [`steps`], otherwise those
+/// with the smallest rounding of the delay among ten times as many.
+pub(crate) fn nearest_steps(delay_s: f64, sample_s: f64) -> (u32, f64) {
+    let fewest = (sample_s / STEPS_S[0] - 1e-6).ceil().max(1.0) as u32;
+    let rounding = |steps: &u32| {
+        let delay = delay_s / sample_s * f64::from(*steps);
+        (delay - delay.round()).abs() / f64::from(*steps)
+    };
+    let fitting = (fewest..=10 * fewest).find(|steps| rounding(steps) < 1e-6);
+    let nearest = || (fewest..=10 * fewest).min_by(|a, b| rounding(a).total_cmp(&rounding(b)));
+    let steps = fitting.or_else(nearest).unwrap_or(fewest);
+    (steps, sample_s / f64::from(steps))
 }
 
 /// The fewest time steps per sample that divide the delay, too, and their length \[s\].

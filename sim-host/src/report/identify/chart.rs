@@ -10,7 +10,7 @@ const SHOWN_S: f64 = 20.0;
 /// The figure.
 pub fn chart(document: &IdentifyDocument, found: &Identified) -> Chart {
     let record = &found.problem.record;
-    let response = found.problem.model.response(&record.disturbances, &found.fit().gains).unwrap_or_default();
+    let response = found.response();
     let mut plots = vec![disturbance(found)];
     plots.extend(record.measured.iter().map(|measured| signal(found, measured, &response)));
     plots.extend(document.delay.as_ref().map(|delay| Plot {

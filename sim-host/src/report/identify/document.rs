@@ -65,6 +65,8 @@ pub struct ResolvedIdentify {
     pub delay_s: Option<f64>,
     /// Delays of the profile \[s\].
     pub delay_profile_s: Vec<f64>,
+    /// Whether the gains of the linear bicycle are kept, without refinement on the nonlinear one.
+    pub linear: bool,
     /// Criterion that selects the gains.
     pub select: String,
     /// Variance accounted for at which the reduction ends; null without a reduction.
@@ -200,6 +202,8 @@ pub struct IdentifyDocument {
     pub delay_s: f64,
     /// Real part of the closed loop's rightmost eigenvalue \[1/s\]; positive if unstable.
     pub rightmost_eigenvalue_1_s: f64,
+    /// Whether the gains are refined on the nonlinear bicycle; the optima and the reduction are those of the linear one.
+    pub refined: bool,
     /// Condition number of the fit.
     pub condition: f64,
     /// The number of independent samples: all, less what the correlation of the residuals takes.
@@ -340,6 +344,7 @@ impl IdentifyDocument {
             vaf_after_onset: fit.vaf_after_onset.as_deref().map(by_signal),
             delay_s: found.problem.model.delay_s,
             rightmost_eigenvalue_1_s: fit.rightmost_1_s,
+            refined: matches!(found.refined, Some(Ok(_))),
             condition: fit.condition,
             independent_samples: fit.residuals.iter().map(|residuals| residuals.independent).sum(),
             not_identified: unidentified(fit),

@@ -41,7 +41,8 @@ pub fn text(document: &IdentifyDocument) -> String {
             number(black_box.signal_to_noise)
         );
     }
-    let _ = writeln!(text, "\n{:11} {:>12} {:>14}", "gain", "value", "std. error");
+    let bicycle = if document.refined { "nonlinear" } else { "linear" };
+    let _ = writeln!(text, "\n{:11} {:>12} {:>14}   ({bicycle} bicycle)", "gain", "value", "std. error");
     for name in symbols() {
         if let Some(gain) = document.gains.get(name) {
             let _ = writeln!(text, "{name:11} {:>12} {:>14}", number(gain.value), number(gain.std_error));
@@ -87,7 +88,7 @@ pub fn text(document: &IdentifyDocument) -> String {
 fn reduction(text: &mut String, document: &IdentifyDocument) {
     let shown: Vec<&str> =
         symbols().iter().copied().filter(|name| document.reduction[0].gains.contains_key(name)).collect();
-    let _ = write!(text, "\nReduction (* selected):\n ");
+    let _ = write!(text, "\nReduction on the linear bicycle (* selected):\n ");
     shown.iter().for_each(|name| {
         let _ = write!(text, "{name:>11}");
     });
