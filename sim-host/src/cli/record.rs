@@ -39,7 +39,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "HZ", default_value_t = 200.0, allow_negative_numbers = true)]
     rate: f64,
     /// Point of the rear frame where the lateral force acts, in m: ahead of the rear contact, above the ground
-    #[arg(long, value_name = "AHEAD,HEIGHT", default_value = "0.3,0.9", value_parser = point, allow_hyphen_values = true)]
+    #[arg(long, value_name = "AHEAD,HEIGHT", default_value = "0.1984375,0.942975", value_parser = point, allow_hyphen_values = true)]
     force_at: ForcePoint,
     /// Lateral force of a pulse in N; 0 for none
     #[arg(long, value_name = "N", default_value_t = 40.0, allow_negative_numbers = true)]
@@ -51,7 +51,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "S", default_value_t = 0.25, allow_negative_numbers = true)]
     pulse_duration: f64,
     /// Mean pause between pulses in s; each is from half to one and a half times it
-    #[arg(long, value_name = "S", default_value_t = 3.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 5.0, allow_negative_numbers = true)]
     pulse_interval: f64,
     /// Standard deviation of the noise of the rider's torque (remnant) in N m
     #[arg(long, value_name = "NM", default_value_t = 0.0, allow_negative_numbers = true)]
@@ -97,7 +97,7 @@ fn point(text: &str) -> Result<ForcePoint, String> {
     let numbers = text.split_once(',').map(|(ahead, height)| (ahead.trim().parse(), height.trim().parse()));
     match numbers {
         Some((Ok(ahead_m), Ok(height_m))) => Ok(ForcePoint { ahead_m, height_m }),
-        _ => Err("expected AHEAD,HEIGHT in m, for example 0.3,0.9".into()),
+        _ => Err("expected AHEAD,HEIGHT in m, for example 0.2,0.9".into()),
     }
 }
 
