@@ -28,7 +28,7 @@ pub(super) struct RiderArgs {
     #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
     pub(super) speed: Option<f64>,
     /// Point of the rear frame where the lateral force acts, in m: ahead of the rear contact, above the ground
-    #[arg(long, value_name = "AHEAD,HEIGHT", default_value = "0.3,0.9", value_parser = point, allow_hyphen_values = true)]
+    #[arg(long, value_name = "AHEAD,HEIGHT", default_value_t = ForcePoint::SADDLE, value_parser = point, allow_hyphen_values = true)]
     pub(super) force_at: ForcePoint,
     /// Signals to fit, with weights by their noise
     #[arg(long, value_name = "SIGNALS", value_delimiter = ',', default_value = "steer")]

@@ -9,6 +9,7 @@ use crate::perturbation::{Drift, Experiment, Pulses, Remnant, SensorNoise, recor
 use crate::report::output::Output;
 use crate::report::perturbation::PerturbationDocument;
 use crate::report::table::csv_text;
+use crate::ride::ScheduleSpeed;
 use crate::scenario::Scenario;
 use std::path::PathBuf;
 
@@ -39,7 +40,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "HZ", default_value_t = 200.0, allow_negative_numbers = true)]
     rate: f64,
     /// Point of the rear frame where the lateral force acts, in m: ahead of the rear contact, above the ground
-    #[arg(long, value_name = "AHEAD,HEIGHT", default_value = "0.3,0.9", value_parser = point, allow_hyphen_values = true)]
+    #[arg(long, value_name = "AHEAD,HEIGHT", default_value_t = ForcePoint::SADDLE, value_parser = point, allow_hyphen_values = true)]
     force_at: ForcePoint,
     /// Lateral force of a pulse in N; 0 for none
     #[arg(long, value_name = "N", default_value_t = 40.0, allow_negative_numbers = true)]
@@ -51,7 +52,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "S", default_value_t = 0.25, allow_negative_numbers = true)]
     pulse_duration: f64,
     /// Mean pause between pulses in s; each is from half to one and a half times it
-    #[arg(long, value_name = "S", default_value_t = 3.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 5.0, allow_negative_numbers = true)]
     pulse_interval: f64,
     /// Standard deviation of the noise of the rider's torque (remnant) in N m
     #[arg(long, value_name = "NM", default_value_t = 0.0, allow_negative_numbers = true)]
@@ -97,7 +98,7 @@ pub(super) fn point(text: &str) -> Result<ForcePoint, String> {
     let numbers = text.split_once(',').map(|(ahead, height)| (ahead.trim().parse(), height.trim().parse()));
     match numbers {
         Some((Ok(ahead_m), Ok(height_m))) => Ok(ForcePoint { ahead_m, height_m }),
-        _ => Err("expected AHEAD,HEIGHT in m, for example 0.3,0.9".into()),
+        _ => Err("expected AHEAD,HEIGHT in m, for example 0.2,0.9".into()),
     }
 }
 
@@ -139,7 +140,9 @@ impl Args {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     // The notes are about the step, which a record chooses itself.
-    let mut scenario = Scenario { law: Some("none".into()), ..Scenario::default() };
+    // Constant gains are those that an identification should find.
+    let schedule_speed = ScheduleSpeed::Initial;
+    let mut scenario = Scenario { law: Some("none".into()), schedule_speed, ..Scenario::default() };
     args.ridden.apply(&mut scenario)?;
     let resolved = scenario.resolve().map_err(|e| named(&scenario, &e))?;
     warn(&resolved.bicycle);

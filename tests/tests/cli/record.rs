@@ -41,7 +41,7 @@ fn a_record_has_its_columns_and_its_document() {
         bench.run("schema record").stdout == schema,
         "run: sim-host schema record > docs/schema/record.json"
     );
-    assert_eq!(document["experiment"]["point"], json!({"ahead_m": 0.3, "height_m": 0.9}));
+    assert_eq!(document["experiment"]["point"], json!({"ahead_m": 0.1984375, "height_m": 0.942975}));
     assert_eq!((&document["samples"], &document["fall"]), (&json!(2000), &Value::Null));
     assert!(document["gains"]["gains"]["K_phi_d"].as_f64().is_some_and(|gain| gain != 0.0));
     let text = bench.run(line).stdout;

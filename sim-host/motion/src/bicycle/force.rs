@@ -2,6 +2,7 @@
 
 use super::{Geometry, Motion, Torques, Velocities};
 use crate::num::{Scalar, Vec3, sin_cos};
+use std::fmt;
 
 /// A material point of the rear frame on the symmetry plane, by its place in the upright bicycle.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
@@ -30,7 +31,18 @@ impl<S: Scalar> Forces<S> {
     }
 }
 
+impl fmt::Display for ForcePoint {
+    /// As on the command line: `AHEAD,HEIGHT` \[m\].
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.ahead_m, self.height_m)
+    }
+}
+
 impl ForcePoint {
+    /// Beneath the saddle of the Davis bicycle, 0.198 m ahead of the rear contact and 0.943 m up (`RigidJasonPar.txt` of
+    /// moorepants/HumanControl): where the rope of Moore's experiment pulled (2012).
+    pub const SADDLE: Self = Self { ahead_m: 0.198_437_5, height_m: 0.942_975 };
+
     /// From P, the rear wheel's centre, in the steer-axis frame \[m\]: forward across the steer axis, and down along it.
     fn arm(self, b: &Geometry) -> [f64; 2] {
         let (s, c) = sin_cos(b.lam);

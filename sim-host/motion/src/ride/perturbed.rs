@@ -68,7 +68,7 @@ struct Pushed<'a> {
     push: Push,
     initial: Lanes<1>,
     riders: Option<RiderLanes<'a, 1>>,
-    /// Motion at the start of the step.
+    /// Yaw rate at the start of the step \[rad/s\].
     yaw_rate_rad_s: f64,
     /// The quantities of [`stiffness`] at the start of the step.
     stiffness: [f64; 4],

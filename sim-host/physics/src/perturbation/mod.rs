@@ -45,15 +45,15 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// 60 s at 200 Hz; a force beneath the saddle, of 40 N for 0.25 s every 3 s on average; nothing else that is random.
+    /// 60 s at 200 Hz; 40 N for 0.25 s every 5 s on average, at [`ForcePoint::SADDLE`]; nothing else that is random.
     pub fn at(speed_m_s: f64) -> Self {
         Self {
             speed_m_s,
             duration_s: 60.0,
             rate_hz: 200.0,
-            point: ForcePoint { ahead_m: 0.3, height_m: 0.9 },
-            force: Pulses { amplitude: 40.0, duration_s: 0.25, interval_s: 3.0 },
-            steer_torque: Pulses { amplitude: 0.0, duration_s: 0.25, interval_s: 3.0 },
+            point: ForcePoint::SADDLE,
+            force: Pulses { amplitude: 40.0, duration_s: 0.25, interval_s: 5.0 },
+            steer_torque: Pulses { amplitude: 0.0, duration_s: 0.25, interval_s: 5.0 },
             remnant: Remnant::default(),
             noise: SensorNoise::default(),
             drift: Drift::default(),
