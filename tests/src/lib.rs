@@ -11,6 +11,7 @@ pub mod estimator_inputs;
 pub mod fake_board;
 pub mod fault_reactions;
 pub mod flow;
+pub mod identification;
 pub mod inside;
 pub mod json_schema;
 pub mod knock;

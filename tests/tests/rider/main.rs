@@ -3,6 +3,7 @@
 mod covariance;
 mod delay;
 mod draws;
+mod identify;
 mod linear;
 mod parts;
 mod perturbation;

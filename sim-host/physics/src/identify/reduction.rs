@@ -72,7 +72,7 @@ impl Select {
 }
 
 /// From the full fit to fits with fewer and fewer gains: each step is without the gain whose variance, relative to its
-/// square, is highest. Ends below the variance accounted for `until` (from 0 to 1), that step included, or at one gain.
+/// square, is highest. Ends where fewer gains give no bounded response, below the variance accounted for `until` (from 0 to 1), that step included, or at one gain.
 ///
 /// # Errors
 /// Interrupted.
