@@ -5,6 +5,7 @@ use super::progress::progress;
 use super::study_args::{Args, made, page_path, print_path};
 use super::{Ended, Failure, interrupt, study_swept};
 use crate::study::catalogue::{Study, load, shipped};
+use crate::study::equal_vaf::{self, EqualVafError, Extent};
 use crate::study::page::{Page, Places};
 use crate::study::trial::TrialError;
 use crate::study::{balance_assist, prototype};
@@ -29,6 +30,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     match study {
         Study::BalanceAssist => one_page(args, balance_assist::NAME, || balance_assist::study().map(Some)),
+        Study::EqualVaf => one_page(args, equal_vaf::NAME, || equal_vaf(args)),
         Study::Prototype => one_page(args, prototype::NAME, || prototype(args)),
         Study::Swept(study) => study_swept::run(args, &study),
     }
@@ -40,6 +42,16 @@ fn prototype(args: &Args) -> Result<Option<Page>, TrialError> {
     let search = prototype::search(if args.quick { 1.1 } else { 0.25 });
     let bar = progress(!args.quiet, "study", prototype::work(&search), "columns");
     let page = prototype::study(&search, &|| bar.inc(1), &interrupt::stopped);
+    bar.finish_and_clear();
+    page
+}
+
+/// The page of gains with equal VAF; `None` if interrupted.
+fn equal_vaf(args: &Args) -> Result<Option<Page>, EqualVafError> {
+    interrupt::install();
+    let extent = Extent::page();
+    let bar = progress(!args.quiet, "study", equal_vaf::work(&extent)?, "columns");
+    let page = equal_vaf::study(&extent, &|| bar.inc(1), &interrupt::stopped);
     bar.finish_and_clear();
     page
 }

@@ -1,7 +1,7 @@
 //! Loads studies by name or from TOML files.
 
 use super::swept::{self, StudyError, parse};
-use super::{balance_assist, prototype};
+use super::{balance_assist, equal_vaf, prototype};
 use std::path::Path;
 
 /// The built-in sweep studies: names, and files in `data/studies/`.
@@ -20,6 +20,8 @@ const SWEPT: [(&str, &str); 7] = [
 pub enum Study {
     /// [`balance_assist`].
     BalanceAssist,
+    /// [`equal_vaf`].
+    EqualVaf,
     /// [`prototype`].
     Prototype,
     /// Sweeps defined in a TOML file.
@@ -31,6 +33,7 @@ impl Study {
     pub fn name(&self) -> &str {
         match self {
             Study::BalanceAssist => balance_assist::NAME,
+            Study::EqualVaf => equal_vaf::NAME,
             Study::Prototype => prototype::NAME,
             Study::Swept(study) => &study.name,
         }
@@ -40,6 +43,7 @@ impl Study {
     pub fn title(&self) -> &str {
         match self {
             Study::BalanceAssist => balance_assist::TITLE,
+            Study::EqualVaf => equal_vaf::TITLE,
             Study::Prototype => prototype::TITLE,
             Study::Swept(study) => &study.title,
         }
@@ -49,6 +53,7 @@ impl Study {
     pub fn question(&self) -> &str {
         match self {
             Study::BalanceAssist => balance_assist::QUESTION,
+            Study::EqualVaf => equal_vaf::QUESTION,
             Study::Prototype => prototype::QUESTION,
             Study::Swept(study) => study.question.trim(),
         }
@@ -61,7 +66,7 @@ impl Study {
 /// A built-in file is invalid.
 pub fn shipped() -> Result<Vec<Study>, StudyError> {
     let swept = SWEPT.iter().map(|(name, text)| parse(name, text).map(Study::Swept));
-    [Study::BalanceAssist, Study::Prototype].into_iter().map(Ok).chain(swept).collect()
+    [Study::BalanceAssist, Study::EqualVaf, Study::Prototype].into_iter().map(Ok).chain(swept).collect()
 }
 
 /// A study by `name`: a built-in one, or a `FILE`. Names have precedence over files.

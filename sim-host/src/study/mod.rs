@@ -2,6 +2,7 @@
 
 pub mod balance_assist;
 pub mod catalogue;
+pub mod equal_vaf;
 pub mod motor_fit;
 pub mod page;
 pub mod prototype;

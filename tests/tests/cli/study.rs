@@ -73,7 +73,7 @@ fn studies_are_listed_with_their_questions() {
     let heads: Vec<&str> = list.lines().filter(|l| !l.starts_with(' ')).collect();
     let names: Vec<&str> = heads.iter().map(|l| l.split(' ').next().unwrap()).collect();
     let shipped = ["limits", "imu", "compensate", "tracking", "speed", "sensors", "end-stop"];
-    assert_eq!(names, [&["balance-assist", "prototype"], &shipped[..]].concat());
+    assert_eq!(names, [&["balance-assist", "equal-vaf", "prototype"], &shipped[..]].concat());
     for head in heads {
         let (_, question) = list.split_once(&format!("{head}\n    ")).unwrap();
         assert!(question.split_once("\n").is_some_and(|(line, _)| line.len() > 20), "{head}: {question}");
@@ -86,7 +86,9 @@ fn studies_are_listed_with_their_questions() {
 #[test]
 fn wrong_studies_are_named() {
     let bench = Bench::new(PROGRAM);
-    bench.run("study nothing").rejected_naming(&["`nothing`", "balance-assist, prototype, limits, imu"]);
+    bench
+        .run("study nothing")
+        .rejected_naming(&["`nothing`", "balance-assist, equal-vaf, prototype, limits, imu"]);
     bench.run("study imu --quick").rejected_naming(&["--quick", "study imu", "prototype"]);
     bench.write("a.toml", STUDY.replace("law=h,f\"", "law=h,q\""));
     bench.run("study a.toml").rejected_naming(&["study a, sweep laws", "cell rider=none, law=q"]);

@@ -4,11 +4,12 @@
 use control::Law;
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 use sim_host::eigen::{
-    Crossing, DelaySystem, Feedback, Intuitive, Mode, Model, critical_speeds, modes, rightmost, roots,
-    stability,
+    Crossing, DelaySystem, Feedback, Intuitive, Mode, Model, NEUTRAL_1_S, critical_speeds, modes, rightmost,
+    roots, stability,
 };
-use sim_host::rider::{Fit, Gains, KEYS, Neuromuscular, Outside, Rider, Schedule, catalogue};
+use sim_host::rider::{Fit, Gains, KEYS, Neuromuscular, Outside, Rider, Row, Schedule, catalogue};
 use std::f64::consts::{PI, TAU};
+use tests::cli::repository;
 use tests::published::{Published, entry};
 use tests::rides::{all_shipped, shipped};
 
@@ -249,7 +250,7 @@ fn smart_rider_at_4_3_has_the_independent_roots() {
 #[test]
 fn undelayed_riders_are_stable_between_the_independent_speeds() {
     let published = entry("undelayed_stable_ranges");
-    for fit in Fit::ALL {
+    for fit in Fit::THESIS {
         let rider = undelayed(fit);
         let found = stability(&with_rider(published.text("bicycle"), Law::None, rider.clone()));
         let printed: [f64; 2] = published.row(&format!("printed_{}", fit.name()));
@@ -378,4 +379,48 @@ fn modes_of_a_delayed_rider_are_roots_whatever_the_steps() {
             assert!(apart < 1e-6, "{}: {apart}", mode.name);
         }
     }
+}
+
+/// Situation: every printed set of gains on the bicycle of the runs, at the speed of its run, with its table's delay.
+/// Action: compute the rightmost root of the linear model.
+/// Must hold: the numbers of stable sets, and the least and the most stable set, are those of docs/riders.md.
+#[test]
+fn printed_sets_are_as_stable_as_documented() {
+    let page = std::fs::read_to_string(repository("docs/riders.md")).expect("the page");
+    let bicycle = shipped("rigid_jason").parameters;
+    let names = ["young", "smart", "smart6", "undelayed", "undelayed-alt"];
+    let reductions = ["young-reduction", "smart-reduction", "undelayed-reduction"];
+    let mut missing = 0;
+    for name in names.into_iter().chain(reductions) {
+        let table = catalogue::load(name).expect("shipped");
+        let growth = |row: &Row| {
+            let rider = Rider {
+                schedule: Schedule::constant(row.gains),
+                delay_s: table.delay_s,
+                neuromuscular: table.neuromuscular,
+            };
+            rightmost(&Model::new(&bicycle, Feedback::Law(Law::None), Some(rider)).at(row.speed_m_s)).re
+        };
+        let signed = |growth: f64| format!("{:+.2}", (100.0 * growth).round() / 100.0 + 0.0);
+        let growths: Vec<f64> = table.rows.iter().map(growth).collect();
+        if name == "smart" {
+            // A negative gain of the steer integral, and nothing else, makes these sets drift.
+            let drifts = table.rows.iter().zip(&growths).map(|(r, g)| (*g > NEUTRAL_1_S, r.gains.0[5] < 0.0));
+            assert!(drifts.clone().all(|(grows, negative)| grows == negative));
+        }
+        let stable = growths.iter().filter(|growth| **growth <= NEUTRAL_1_S).count();
+        let good = table.rows.iter().zip(&growths).filter(|(row, _)| row.vaf.is_some_and(|vaf| vaf >= 90.0));
+        let (good, unstable) =
+            good.fold((0, 0), |(n, bad), (_, g)| (n + 1, bad + usize::from(*g > NEUTRAL_1_S)));
+        let (low, high) = growths.iter().fold((f64::MAX, f64::MIN), |(a, b), g| (a.min(*g), b.max(*g)));
+        let line = format!(
+            "| `{name}` | {} | {stable} | {good} | {unstable} | {} to {} |",
+            growths.len(),
+            signed(low),
+            signed(high)
+        );
+        println!("{line}");
+        missing += usize::from(!page.contains(&line));
+    }
+    assert_eq!(missing, 0, "docs/riders.md should have the lines above");
 }

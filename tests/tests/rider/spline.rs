@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 use sim_host::num::RandomStream;
-use sim_host::rider::{Fit, Outside, Point, Schedule, Spline, Variances, catalogue};
+use sim_host::rider::{Fit, Outside, Point, Schedule, Spline, Variances, catalogue, mean};
+use tests::cli::repository;
 
 /// Values about a wave of one period over 0 to 10, three near each of `places` places, with errors of standard
 /// deviation `error`, from the given seed.
@@ -152,6 +153,23 @@ fn few_speeds_give_a_constant_or_a_line() {
     }
 }
 
+/// Situation: the example, two groups whose sets differ by 0.1 m/s and by much of a gain.
+/// Action: schedule it by splines.
+/// Must hold: lines, from the mean of one group to near that of the other: no curve from slopes inside the groups.
+#[test]
+fn speeds_inside_a_group_make_no_slope() {
+    let example = repository("data/riders/example.toml");
+    let table = catalogue::load(example.to_str().expect("text")).expect("the example");
+    assert!(table.splines().iter().all(|spline| (spline.degrees_of_freedom - 2.0).abs() < 1e-6));
+    let schedule = table.schedule(Fit::Spline, Outside::Hold).expect("two groups");
+    let means: Vec<_> = table.groups().map(mean).collect();
+    for (speed, gains) in means {
+        for &i in &table.columns {
+            assert!((schedule.at(speed).0[i] - gains.0[i]).abs() < 1e-6 * gains.0[i].abs(), "{speed} {i}");
+        }
+    }
+}
+
 /// Situation: the published riders' gains.
 /// Action: schedule them by splines.
 /// Must hold: sampled to 0.1 % of each gain's range; explained variance no less than that of a line less 0.05,
@@ -167,7 +185,8 @@ fn splines_of_the_published_riders() {
         for (&i, exact) in table.columns.iter().zip(&splines) {
             let gains = || table.rows.iter().map(|row| row.gains.0[i]);
             let range = gains().fold(f64::MIN, f64::max) - gains().fold(f64::MAX, f64::min);
-            let (first, last) = (table.rows[0].speed_m_s, table.rows[table.rows.len() - 1].speed_m_s);
+            let points = spline.points();
+            let (first, last) = (points[0].0, points[points.len() - 1].0);
             let at = |k: u32| first + (last - first) * f64::from(k) / 999.0;
             let off = (0..1000).map(|k| (spline.at(at(k)).0[i] - exact.at(at(k))).abs());
             let off = off.fold(0.0, f64::max);

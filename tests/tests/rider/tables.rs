@@ -359,3 +359,46 @@ fn a_valid_table_is_read_as_given_and_round_trips() {
         })
         .unwrap();
 }
+
+/// Situation: the reductions of one run per speed (Tables F.3, J.1) and the sets of all runs (F.2, J.2, J.3).
+/// Action: find the smallest sets that describe each run, and the sets that two tables have in common.
+/// Must hold: what sections F.1.1 and J.1 say of them: three and two gains suffice for runs 248 and 249, the five of
+/// F.1 for half of the runs; nearly all sets of J.2 describe their run, and few of the alternative; where F.3 or J.1 has
+/// a set of F.2, J.2 or eq. J.3 it is the same.
+#[test]
+fn reductions_end_as_the_text_says() {
+    let used = |gains: &Gains| (0..KEYS.len()).filter(|&i| gains.0[i] != 0.0).collect::<Vec<_>>();
+    let good = |row: &sim_host::rider::Row| row.vaf.is_some_and(|vaf| vaf >= 90.0);
+    let smallest = |name: &str| -> Vec<(u32, Vec<usize>)> {
+        let table = rider(name);
+        let of = |group: &[sim_host::rider::Row]| {
+            let sets = group.iter().filter(|row| good(row));
+            let least = sets.min_by_key(|row| used(&row.gains).len()).expect("every run has a good set");
+            (least.run.expect("a run"), used(&least.gains))
+        };
+        table.groups().map(of).collect()
+    };
+    let reduced = smallest("young-reduction");
+    let counts: Vec<(u32, usize)> = reduced.iter().map(|(run, gains)| (*run, gains.len())).collect();
+    assert_eq!(counts, [(248, 3), (249, 2), (184, 5), (252, 5), (190, 5), (256, 6)]);
+    let young = rider("young");
+    assert_eq!(reduced.iter().filter(|(_, gains)| *gains == young.columns).count(), 3);
+
+    let good_of = |name: &str| rider(name).rows.iter().filter(|row| good(row)).count();
+    assert_eq!(["young", "undelayed", "undelayed-alt"].map(good_of), [14, 12, 3]);
+
+    for (reduction, of_all, common) in [
+        ("young-reduction", "young", &[184, 252, 190, 256][..]),
+        ("undelayed-reduction", "undelayed", &[249]),
+    ] {
+        let (reduction, of_all) = (rider(reduction), rider(of_all));
+        let same = |run: u32| {
+            let all = of_all.rows.iter().find(|row| row.run == Some(run)).expect("all runs");
+            let of_run = reduction.rows.iter().filter(|row| row.run == Some(run));
+            of_run.filter(|row| used(&row.gains) == of_all.columns).any(|row| row.gains == all.gains)
+        };
+        for &run in common {
+            assert!(same(run), "{run}");
+        }
+    }
+}

@@ -2,4 +2,5 @@
 
 mod balance_assist;
 mod delay;
+mod equal_vaf;
 mod weave;

@@ -32,10 +32,14 @@ pub fn eigenvalues(bicycle: &Linear, law: &Law, v: f64) -> [Complex<f64>; 4] {
     values
 }
 
-/// Per speed \[m/s\], the number of models whose straight ride is unstable: the rightmost root has a positive real part,
-/// beyond rounding.
+/// Growth up to which a root counts as neutral \[1/s\]: it has no effect in a ride. A rider that feeds back the integrals of
+/// both roll and steer has a root of zero, as only their weighted sum acts.
+pub const NEUTRAL_1_S: f64 = 1e-3;
+
+/// Per speed \[m/s\], the number of models whose straight ride is unstable: the rightmost root grows by more than
+/// [`NEUTRAL_1_S`].
 pub fn unstable(models: &[Model], speeds: &[f64]) -> Vec<usize> {
-    let grows = |model: &Model, v: f64| rightmost(&model.at(v)).re > 1e-9;
+    let grows = |model: &Model, v: f64| rightmost(&model.at(v)).re > NEUTRAL_1_S;
     speeds.par_iter().map(|&v| models.iter().filter(|model| grows(model, v)).count()).collect()
 }
 

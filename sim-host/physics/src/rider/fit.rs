@@ -95,13 +95,16 @@ impl RiderTable {
         Schedule::new(points, outside)
     }
 
-    /// The smoothing spline of each gain that has a column.
+    /// The smoothing spline of each gain that has a column, through all sets, each at the mean speed of its group: the
+    /// small differences of speed inside a group have no meaning for a slope.
     pub fn splines(&self) -> Vec<Spline> {
+        let speeds: Vec<f64> = self.groups().flat_map(|group| vec![mean(group).0; group.len()]).collect();
         let one = |(j, &i): (usize, &usize)| {
             let (variances, kind) = self.variances(j);
+            let points = self.rows.iter().zip(&speeds).zip(variances);
             let point =
-                |(row, variance): (&Row, f64)| Point { x: row.speed_m_s, value: row.gains.0[i], variance };
-            Spline::new(&self.rows.iter().zip(variances).map(point).collect::<Vec<_>>(), kind)
+                |((row, &x), variance): ((&Row, &f64), f64)| Point { x, value: row.gains.0[i], variance };
+            Spline::new(&points.map(point).collect::<Vec<_>>(), kind)
         };
         self.columns.iter().enumerate().map(one).collect()
     }
@@ -113,14 +116,16 @@ impl RiderTable {
         gains
     }
 
-    /// Speeds at which a spline is sampled \[m/s\]: evenly over those of the sets, at least 2 mm/s apart.
+    /// Speeds at which a spline is sampled \[m/s\]: evenly over the mean speeds of the groups, at least 2 mm/s apart.
     fn sampled_speeds(&self) -> impl Iterator<Item = f64> + use<> {
-        let (first, last) = (self.rows[0].speed_m_s, self.rows[self.rows.len() - 1].speed_m_s);
-        let intervals = ((last - first) / 2e-3).clamp(1.0, SAMPLED) as usize;
-        let one = last == first;
-        (0..=if one { 0 } else { intervals }).map(move |i| {
-            if i == intervals { last } else { first + (last - first) * i as f64 / intervals as f64 }
-        })
+        let (first, last) = self.groups().fold((f64::INFINITY, 0.0), |(first, _): (f64, f64), group| {
+            let (speed, _) = mean(group);
+            (first.min(speed), speed)
+        });
+        let intervals = if last > first { ((last - first) / 2e-3).clamp(1.0, SAMPLED) as usize } else { 0 };
+        let width = last - first;
+        (0..=intervals)
+            .map(move |i| if i == intervals { last } else { first + width * i as f64 / intervals as f64 })
     }
 
     /// Variance of each row's gain in column `j`: its squared standard error, if all rows have one, not below
