@@ -2,7 +2,7 @@
 
 use super::outputs::{Outputs, Results, complain};
 use super::weave_args::WeaveArgs;
-use super::{Ended, Failure, identify_files, identify_sensor, warn};
+use super::{Ended, Failure, identify_files, identify_loop, identify_sensor, warn};
 use crate::bicycle::catalogue;
 use crate::report::figure;
 use crate::report::output::Output;
@@ -19,7 +19,8 @@ pub(super) const EXAMPLES: &str = "\
 Examples:
   sim-host identify weave gain*_speed*kmh_*.csv --svg weave.svg
   sim-host identify weave ride.csv --speed 3.9 --gain 8 --json
-  sim-host identify sensor ride.csv --map extract --sensor gyro --out gyro.toml";
+  sim-host identify sensor ride.csv --map extract --sensor gyro --out gyro.toml
+  sim-host identify loop ride.csv --map robot-bicycle";
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
@@ -27,12 +28,15 @@ pub(super) enum Command {
     Weave(Box<WeaveArgs>),
     /// A model of a real sensor: noise, quantisation, timing and vibration, for --sensor of `ride` and others
     Sensor(Box<identify_sensor::Args>),
+    /// Steer angle scale, control law, and inertia and friction of the steer axis, from a ride with a controller
+    Loop(Box<identify_loop::Args>),
 }
 
 pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
     match command {
         Command::Weave(args) => weave(args),
         Command::Sensor(args) => identify_sensor::run(args),
+        Command::Loop(args) => identify_loop::run(args),
     }
 }
 

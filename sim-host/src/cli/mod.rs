@@ -14,6 +14,7 @@ mod ended;
 mod faults;
 mod identify;
 mod identify_files;
+mod identify_loop;
 mod identify_sensor;
 mod interrupt;
 mod monitor;

@@ -4,6 +4,7 @@ use super::ended::{Ended, Failure};
 use super::outputs::print;
 use crate::design::document::DesignDocument;
 use crate::report::board::{FaultsDocument, ParametersDocument};
+use crate::report::closed_loop::LoopDocument;
 use crate::report::compare::CompareDocument;
 use crate::report::document::{BasinDocument, CheckDocument, EigenDocument, RideDocument};
 use crate::report::plane::PlaneDocument;
@@ -22,7 +23,7 @@ use serde_json::Value;
 type Document = (&'static str, fn() -> Schema);
 
 /// The documents by their commands' names.
-const DOCUMENTS: [Document; 17] = [
+const DOCUMENTS: [Document; 18] = [
     ("basin", of::<BasinDocument>),
     ("ride", of::<RideDocument>),
     (SCENARIO, of_scenario),
@@ -40,6 +41,7 @@ const DOCUMENTS: [Document; 17] = [
     ("faults", of::<FaultsDocument>),
     ("identify-weave", of::<WeaveDocument>),
     ("identify-sensor", of::<SensorDocument>),
+    ("identify-loop", of::<LoopDocument>),
 ];
 
 /// The document that is input: a key that is not in its schema is an error.

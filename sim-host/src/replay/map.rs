@@ -8,11 +8,12 @@ use std::fmt::{self, Display};
 use std::path::Path;
 
 /// The built-in maps, by name.
-pub const SHIPPED: [(&str, &str); 4] = [
+pub const SHIPPED: [(&str, &str); 5] = [
     ("can-bicycle", include_str!("../../../data/maps/can-bicycle.toml")),
     ("extract", include_str!("../../../data/maps/extract.toml")),
     ("monitor", include_str!("../../../data/maps/monitor.toml")),
     ("robot-bicycle", include_str!("../../../data/maps/robot-bicycle.toml")),
+    ("sbw-bicycle", include_str!("../../../data/maps/sbw-bicycle.toml")),
 ];
 
 /// Assignment of a recording's columns.
@@ -84,6 +85,8 @@ pub struct References {
     pub roll: Option<Signal>,
     /// Steer torque of the recorded bicycle's own assist.
     pub torque: Option<Signal>,
+    /// Distance counted by a wheel sensor.
+    pub distance: Option<Signal>,
 }
 
 /// A column, or a constant in place of a missing one.
@@ -218,9 +221,12 @@ impl Map {
             let checked = signal.check(axes_of(sensor), quantity_of(sensor));
             checked.map_err(|error| MapTextError::Signal { key, error })?;
         }
-        let References { roll, torque } = &self.reference;
-        for (key, signal, quantity) in [("roll", roll, Quantity::Angle), ("torque", torque, Quantity::Torque)]
-        {
+        let References { roll, torque, distance } = &self.reference;
+        for (key, signal, quantity) in [
+            ("roll", roll, Quantity::Angle),
+            ("torque", torque, Quantity::Torque),
+            ("distance", distance, Quantity::Length),
+        ] {
             let checked = signal.as_ref().map_or(Ok(()), |signal| signal.check(1, quantity));
             checked.map_err(|error| MapTextError::Signal { key: format!("reference.{key}"), error })?;
         }

@@ -17,6 +17,8 @@ pub(super) enum Quantity {
     Speed,
     /// \[N m\]
     Torque,
+    /// \[m\]
+    Length,
 }
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -33,6 +35,7 @@ impl Quantity {
             Self::Force => &[("m/s^2", 1.0), ("g", GRAVITY)],
             Self::Speed => &[("m/s", 1.0), ("km/h", 1.0 / 3.6)],
             Self::Torque => &[("N m", 1.0)],
+            Self::Length => &[("m", 1.0), ("km", 1e3)],
         }
     }
 
