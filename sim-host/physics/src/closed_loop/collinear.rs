@@ -31,10 +31,7 @@ pub(super) fn separable(x: &DMatrix<f64>) -> (Vec<usize>, Vec<(usize, Inseparabl
             left.push((j, Inseparable::Constant));
             continue;
         }
-        let mut rest = column.clone();
-        for direction in basis.iter().chain(&basis) {
-            rest -= direction * direction.dot(&rest);
-        }
+        let rest = without(&basis, column.clone());
         let inflation = whole / rest.norm_squared().max(f64::MIN_POSITIVE);
         if inflation > MOST_INFLATION {
             let likeness = |k: &usize| (centred[*k].dot(column) / centred[*k].norm()).abs();
@@ -46,4 +43,24 @@ pub(super) fn separable(x: &DMatrix<f64>) -> (Vec<usize>, Vec<(usize, Inseparabl
         }
     }
     (kept, left)
+}
+
+/// Variance inflation of a column by others and a constant.
+pub(super) fn inflation(x: &DMatrix<f64>, column: &DVector<f64>) -> f64 {
+    let centred = |column: &DVector<f64>| column.add_scalar(-column.mean());
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    for other in separable(x).0 {
+        let rest = without(&basis, centred(&x.column(other).into_owned()));
+        basis.push(rest.normalize());
+    }
+    let whole = centred(column);
+    whole.norm_squared() / without(&basis, whole.clone()).norm_squared().max(f64::MIN_POSITIVE)
+}
+
+/// What is left of a column without the directions of an orthonormal basis; twice, for the rounding.
+fn without(basis: &[DVector<f64>], mut column: DVector<f64>) -> DVector<f64> {
+    for direction in basis.iter().chain(basis) {
+        column -= direction * direction.dot(&column);
+    }
+    column
 }

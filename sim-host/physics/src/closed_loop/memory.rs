@@ -79,13 +79,6 @@ pub struct MemoryLaw {
     pub responses: Vec<Response>,
 }
 
-impl MemoryLaw {
-    /// Whether a law of one instant is no description of the torque.
-    pub const fn is_needed(&self) -> bool {
-        self.states > 0
-    }
-}
-
 /// Identifies a law with internal states in the longest stretch of uniform speed.
 pub fn memory(record: &Record, checked: &Checked) -> Part<MemoryLaw> {
     let recorded = INPUTS.into_iter().filter_map(|signal| Some((signal, record.channel(signal)?)));

@@ -25,6 +25,9 @@ pub use regress::{Fit, Weights, regress};
 pub use steer_dynamics::{Bracket, SteerDynamics, steer_dynamics};
 pub use steer_scale::{Geometry, SteerScale, steer_scale};
 
+/// A law of one instant is refused if it leaves this many times as much unexplained as one with internal states.
+const WITHOUT_PAST: f64 = 4.0;
+
 /// A part of the identification: its result, or the reason why the recording does not determine it.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 #[serde(untagged)]
@@ -92,11 +95,13 @@ pub fn identify(record: &Record, geometry: Option<&Geometry>) -> Result<Identifi
     let checked = check(record)?;
     let memory = memory(record, &checked);
     let law = law(record, &checked);
-    let explained = law.found().map(|law| law.vaf);
-    let law = if memory.found().is_some_and(MemoryLaw::is_needed) {
-        Part::not("the torque depends on the past of the signals; see the law with internal states")
-    } else {
-        law
+    let law = match (law.found(), memory.found()) {
+        (Some(instant), Some(past))
+            if past.states > 0 && 1.0 - instant.vaf_followed > WITHOUT_PAST * (1.0 - past.vaf) =>
+        {
+            Part::not("the torque depends on the past of the signals; see the law with internal states")
+        }
+        _ => law,
     };
     Ok(Identified {
         period_s: checked.period_s,
@@ -113,7 +118,7 @@ pub fn identify(record: &Record, geometry: Option<&Geometry>) -> Result<Identifi
             |geometry| steer_scale(record, &checked, geometry),
         ),
         memory,
-        steer_dynamics: steer_dynamics(record, &checked, explained),
+        steer_dynamics: steer_dynamics(record, &checked),
         law,
     })
 }

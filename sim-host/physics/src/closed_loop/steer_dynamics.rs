@@ -14,7 +14,7 @@
 
 use super::Part;
 use super::checked::{Checked, FEWEST, SHORTEST_S};
-use super::collinear::separable;
+use super::collinear::{inflation, separable};
 use super::record::{Record, Signal};
 use super::regress::{Fit, Weights, regress};
 use super::smooth::smooth;
@@ -33,6 +33,8 @@ const MEMORY_S: f64 = 1.0;
 const SLIDING_RAD_S: f64 = 0.1;
 /// Before the torque ends the bicycle is caught by hand or by its supports \[s\].
 const CAUGHT_S: f64 = 1.0;
+/// Largest variance inflation of the torque by the signals that a law uses: a tenth of it must be its own.
+const MOST_INFLATION: f64 = 10.0;
 /// The two regressions may differ by this factor.
 const AGREEMENT: f64 = 3.0;
 
@@ -73,12 +75,12 @@ pub struct SteerDynamics {
     pub seconds: f64,
 }
 
-/// Estimates inertia and friction; `explained` is the fraction of the torque that the law of one instant explains.
-pub fn steer_dynamics(record: &Record, checked: &Checked, explained: Option<f64>) -> Part<SteerDynamics> {
+/// Estimates inertia and friction.
+pub fn steer_dynamics(record: &Record, checked: &Checked) -> Part<SteerDynamics> {
     let Some(steer) = record.channel(Signal::Steer) else {
         return Part::not("no steer angle is recorded");
     };
-    let Terms { rows, columns, torque } = Terms::new(record, checked, steer);
+    let Terms { rows, columns, of_law, torque } = Terms::new(record, checked, steer);
     let seconds = rows.len() as f64 * checked.period_s;
     if rows.len() < FEWEST || seconds < SHORTEST_S {
         return Part::not(format!(
@@ -92,6 +94,14 @@ pub fn steer_dynamics(record: &Record, checked: &Checked, explained: Option<f64>
             "the steer hardly moves, or only as one sine: inertia and friction are not separable",
         );
     }
+    let own = inflation(&of_law, &torque);
+    if own > MOST_INFLATION {
+        return Part::not(format!(
+            "the controller made {:.1} % of the torque from roll, steer angle and their rates: the relation of torque and \
+             motion is its law's and not the bicycle's. A torque of its own beside the law would show the inertia",
+            100.0 * (1.0 - 1.0 / own)
+        ));
+    }
     let kept_columns = columns.select_columns(&kept);
     let memory = checked.samples(MEMORY_S);
     let of_torque = fit(&kept_columns, &torque, memory);
@@ -104,11 +114,10 @@ pub fn steer_dynamics(record: &Record, checked: &Checked, explained: Option<f64>
     let inverse = of_motion.estimate(0);
     if inverse.low <= 0.0 {
         return Part::not(format!(
-            "the steer acceleration does not follow the torque ({} rad/s² per N m, interval {} to {}){}",
+            "the steer acceleration does not follow the torque ({} rad/s² per N m, interval {} to {})",
             digits(inverse.value),
             digits(inverse.low),
-            digits(inverse.high),
-            same_signals(explained)
+            digits(inverse.high)
         ));
     }
     let moved = Estimate {
@@ -120,14 +129,13 @@ pub fn steer_dynamics(record: &Record, checked: &Checked, explained: Option<f64>
     let inertia = Bracket::new(of_torque.estimate(0), moved);
     if inertia.low <= 0.0 || inertia.high > AGREEMENT * inertia.low {
         return Part::not(format!(
-            "the two regressions do not agree: inertia {} (of the torque; {} to {}) and {} kg m² (of the motion; {} to {}){}",
+            "the two regressions do not agree: inertia {} (of the torque; {} to {}) and {} kg m² (of the motion; {} to {})",
             digits(inertia.of_torque.value),
             digits(inertia.of_torque.low),
             digits(inertia.of_torque.high),
             digits(inertia.of_motion.value),
             digits(inertia.of_motion.low),
-            digits(inertia.of_motion.high),
-            same_signals(explained)
+            digits(inertia.of_motion.high)
         ));
     }
     let negative = |ratio: Estimate| Estimate {
@@ -156,21 +164,12 @@ fn digits(x: f64) -> String {
     format!("{x:.3}")
 }
 
-/// The closed loop as the reason, if the law explains the torque.
-fn same_signals(explained: Option<f64>) -> String {
-    explained.filter(|vaf| *vaf > 0.9).map_or(String::new(), |vaf| {
-        format!(
-            "; the law makes {:.1} % of the torque from the same signals, so that their relation is the law's and not the \
-             bicycle's, and nothing else pushed the steer",
-            100.0 * vaf
-        )
-    })
-}
-
 /// The terms of the equation at the usable samples.
 struct Terms {
     rows: Vec<usize>,
     columns: DMatrix<f64>,
+    /// The signals of a law.
+    of_law: DMatrix<f64>,
     torque: DVector<f64>,
 }
 
@@ -191,6 +190,12 @@ impl Terms {
             terms.extend([smooth(roll_rate, 1), smooth(&of_speed(roll_rate, 1), 0)]);
         }
         terms.extend(record.channel(Signal::Roll).map(|roll| smooth(roll, 0)));
+        // All but acceleration, friction and roll acceleration.
+        let mut of_law: Vec<Vec<f64>> = vec![rate.clone(), terms[3].clone(), terms[4].clone()];
+        if let Some(roll_rate) = record.channel(Signal::RollRate) {
+            of_law.extend([smooth(roll_rate, 0), terms[6].clone()]);
+        }
+        of_law.extend(record.channel(Signal::Roll).map(|roll| smooth(roll, 0)));
         let torque = smooth(&record.torque_nm, 0);
         let acted = acted(record, checked, half);
         let usable = |i: &usize| {
@@ -206,6 +211,7 @@ impl Terms {
         let rows: Vec<usize> = (0..steer.len()).filter(usable).collect();
         Self {
             columns: DMatrix::from_fn(rows.len(), terms.len(), |i, j| terms[j][rows[i]]),
+            of_law: DMatrix::from_fn(rows.len(), of_law.len(), |i, j| of_law[j][rows[i]]),
             torque: DVector::from_iterator(rows.len(), rows.iter().map(|row| torque[*row])),
             rows,
         }
