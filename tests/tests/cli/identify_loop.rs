@@ -89,7 +89,7 @@ fn wrong_use_is_named() {
 /// Situation: complete recordings of two real bicycles, where `STEER_ASSIST_RIDE_RECORDINGS` names their folder.
 /// Must hold: the law of the steer-by-wire bicycle is that of its source to 0.01 %, and the stated law holds; its steer
 /// scale is wrong by 1.4 to 1.7 and that of the robot right to 6 %; the robot's response from the roll rate at 4 Hz is
-/// within 4 % of its source in every ride without a fault, and its steer inertia in 0.07 to 0.23.
+/// within 4 % of its source in every ride without a fault, and its steer inertia in 0.06 to 0.25.
 #[test]
 fn laws_of_real_bicycles_are_those_of_their_sources() {
     let folder = std::env::var_os("STEER_ASSIST_RIDE_RECORDINGS").map(PathBuf::from).filter(|f| f.is_dir());
@@ -136,7 +136,7 @@ fn laws_of_real_bicycles_are_those_of_their_sources() {
         }
         let inertia = &entry["identified"]["steer_dynamics"]["inertia_kg_m2"];
         if let (Some(low), Some(high)) = (inertia["low"].as_f64(), inertia["high"].as_f64()) {
-            assert!(low > 0.07 && high < 0.23, "{file}: {inertia}");
+            assert!(low > 0.06 && high < 0.25, "{file}: {inertia}");
             inertias += 1;
         }
     }
