@@ -4,6 +4,9 @@ use super::{Identified, Signal};
 use crate::weave::Estimate;
 use std::path::Path;
 
+/// A law that is followed exactly has an interval without width: it is taken wider by this part of the stated number.
+const ROUNDING: f64 = 1e-9;
+
 /// A stated law: a TOML file.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -114,7 +117,8 @@ impl StatedLaw {
             speed_m_s,
             stated,
             identified,
-            holds: identified.holds(stated),
+            holds: (identified.low - ROUNDING * stated.abs()..=identified.high + ROUNDING * stated.abs())
+                .contains(&stated),
         };
         let gains = self.gain.iter().filter_map(|stated| {
             let law = identified.law.found()?;
