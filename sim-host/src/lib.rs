@@ -30,6 +30,7 @@
 pub mod board;
 #[cfg(feature = "cli")]
 pub mod cli;
+pub mod closed_loop;
 pub mod design;
 pub mod parameters;
 pub mod pil;

@@ -3,6 +3,7 @@
 pub mod basins;
 
 pub mod cli;
+pub mod closed_loop;
 pub mod count;
 pub mod derived;
 pub mod detection;

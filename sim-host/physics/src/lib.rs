@@ -24,6 +24,7 @@
 
 pub mod basin;
 pub mod bicycle;
+pub mod closed_loop;
 pub mod eigen;
 pub mod identify;
 pub mod json;

@@ -2,7 +2,9 @@
 
 use super::outputs::{Outputs, Results, complain};
 use super::weave_args::WeaveArgs;
-use super::{Ended, Failure, identify_files, identify_rider, identify_rider_args, identify_sensor, warn};
+use super::{
+    Ended, Failure, identify_files, identify_loop, identify_rider, identify_rider_args, identify_sensor, warn,
+};
 use crate::bicycle::catalogue;
 use crate::report::figure;
 use crate::report::output::Output;
@@ -25,7 +27,8 @@ Examples:
   sim-host identify run1.csv --delay-profile 0:120:5 --svg run1.svg --json
   sim-host identify weave gain*_speed*kmh_*.csv --svg weave.svg
   sim-host identify weave ride.csv --speed 3.9 --gain 8 --json
-  sim-host identify sensor ride.csv --map extract --sensor gyro --out gyro.toml";
+  sim-host identify sensor ride.csv --map extract --sensor gyro --out gyro.toml
+  sim-host identify loop ride.csv --map robot-bicycle";
 
 /// Options of `identify`.
 #[derive(clap::Args)]
@@ -42,12 +45,15 @@ enum Command {
     Weave(Box<WeaveArgs>),
     /// A model of a real sensor: noise, quantisation, timing and vibration, for --sensor of `ride` and others
     Sensor(Box<identify_sensor::Args>),
+    /// Steer angle scale, control law, and inertia and friction of the steer axis, from a ride with a controller
+    Loop(Box<identify_loop::Args>),
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     match &args.command {
         Some(Command::Weave(args)) => weave(args),
         Some(Command::Sensor(args)) => identify_sensor::run(args),
+        Some(Command::Loop(args)) => identify_loop::run(args),
         None => identify_rider::run(&args.rider),
     }
 }

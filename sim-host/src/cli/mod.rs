@@ -15,6 +15,7 @@ mod ended;
 mod faults;
 mod identify;
 mod identify_files;
+mod identify_loop;
 mod identify_rider;
 mod identify_rider_args;
 mod identify_rider_results;

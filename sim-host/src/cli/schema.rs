@@ -4,6 +4,7 @@ use super::ended::{Ended, Failure};
 use super::outputs::print;
 use crate::design::document::DesignDocument;
 use crate::report::board::{FaultsDocument, ParametersDocument};
+use crate::report::closed_loop::LoopDocument;
 use crate::report::compare::CompareDocument;
 use crate::report::document::{BasinDocument, CheckDocument, EigenDocument, RideDocument};
 use crate::report::identify::{IdentifyDocument, IdentifyManyDocument};
@@ -24,7 +25,7 @@ use serde_json::Value;
 type Document = (&'static str, fn() -> Schema);
 
 /// The documents by their commands' names.
-const DOCUMENTS: [Document; 20] = [
+const DOCUMENTS: [Document; 21] = [
     ("basin", of::<BasinDocument>),
     ("ride", of::<RideDocument>),
     (SCENARIO, of_scenario),
@@ -44,6 +45,7 @@ const DOCUMENTS: [Document; 20] = [
     ("identify-many", of::<IdentifyManyDocument>),
     ("identify-weave", of::<WeaveDocument>),
     ("identify-sensor", of::<SensorDocument>),
+    ("identify-loop", of::<LoopDocument>),
     ("record", of::<PerturbationDocument>),
 ];
 

@@ -59,6 +59,7 @@ pub fn samples(recording: &Recording, map: &Map, period_s: f64) -> Result<Sample
     for (signal, quantity, to) in [
         (&map.reference.roll, Quantity::Angle, &mut all.roll_rad),
         (&map.reference.torque, Quantity::Torque, &mut all.torque_nm),
+        (&map.reference.distance, Quantity::Length, &mut all.distance_m),
     ] {
         if let Some(signal) = signal
             && let [Source::Column(name)] = signal.columns.as_slice()

@@ -8,11 +8,12 @@ use std::fmt::{self, Display};
 use std::path::Path;
 
 /// The built-in maps, by name.
-pub const SHIPPED: [(&str, &str); 4] = [
+pub const SHIPPED: [(&str, &str); 5] = [
     ("can-bicycle", include_str!("../../../data/maps/can-bicycle.toml")),
     ("extract", include_str!("../../../data/maps/extract.toml")),
     ("monitor", include_str!("../../../data/maps/monitor.toml")),
     ("robot-bicycle", include_str!("../../../data/maps/robot-bicycle.toml")),
+    ("sbw-bicycle", include_str!("../../../data/maps/sbw-bicycle.toml")),
 ];
 
 /// Assignment of a recording's columns.
@@ -87,6 +88,8 @@ pub struct References {
     pub roll: Option<Signal>,
     /// Steer torque of the recorded bicycle's own assist.
     pub torque: Option<Signal>,
+    /// Distance counted by a wheel sensor.
+    pub distance: Option<Signal>,
 }
 
 /// The disturbances of a perturbation record, and its roll rate where there is no gyro.
@@ -238,11 +241,12 @@ impl Map {
             let checked = signal.check(axes_of(sensor), quantity_of(sensor));
             checked.map_err(|error| MapTextError::Signal { key, error })?;
         }
-        let References { roll, torque } = &self.reference;
+        let References { roll, torque, distance } = &self.reference;
         let Perturbation { lateral_force, steer_torque, roll_rate } = &self.perturbation;
         for (key, signal, quantity) in [
             ("reference.roll", roll, Quantity::Angle),
             ("reference.torque", torque, Quantity::Torque),
+            ("reference.distance", distance, Quantity::Length),
             ("perturbation.lateral_force", lateral_force, Quantity::Force),
             ("perturbation.steer_torque", steer_torque, Quantity::Torque),
             ("perturbation.roll_rate", roll_rate, Quantity::Rate),

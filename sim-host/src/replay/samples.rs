@@ -44,6 +44,8 @@ pub struct Samples {
     pub roll_rad: Vec<(f64, f64)>,
     /// The recording's own steer torque \[N m\] over time \[s\].
     pub torque_nm: Vec<(f64, f64)>,
+    /// The distance counted by a wheel sensor \[m\] over time \[s\].
+    pub distance_m: Vec<(f64, f64)>,
     /// Optional sensors of the map that the recording lacks, each with its columns that are missing or have no value.
     pub absent: Vec<String>,
     /// Data that is unusable or looks wrong.

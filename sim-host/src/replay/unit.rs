@@ -19,6 +19,8 @@ pub(super) enum Quantity {
     Speed,
     /// \[N m\]
     Torque,
+    /// \[m\]
+    Length,
 }
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -36,6 +38,7 @@ impl Quantity {
             Self::Force => &[("N", 1.0), ("kN", 1e3), ("kgf", GRAVITY), ("lbf", 4.448_221_615_260_5)],
             Self::Speed => &[("m/s", 1.0), ("km/h", 1.0 / 3.6)],
             Self::Torque => &[("N m", 1.0)],
+            Self::Length => &[("m", 1.0), ("km", 1e3)],
         }
     }
 

@@ -1,6 +1,7 @@
 //! Outputs of the program: documents, tables, figures, files.
 
 pub mod board;
+pub mod closed_loop;
 pub mod compare;
 pub mod document;
 pub mod figure;

@@ -1,5 +1,6 @@
 //! The bicycle.
 
+mod closed_loop;
 mod energy;
 mod lateral_force;
 mod linear;
