@@ -31,6 +31,16 @@ impl<S: Scalar> Motion<S> {
     /// Accelerations under `torques` and gravity.
     #[inline(always)]
     pub fn accelerations(&self, b: &Geometry, torques: &Torques<S>) -> Accelerations<S> {
+        self.accelerations_by_steer(b, torques).0
+    }
+
+    /// Accelerations under `torques` and gravity, and their derivatives by the steer torque \[1/(kg m^2)\].
+    #[inline(always)]
+    pub(crate) fn accelerations_by_steer(
+        &self,
+        b: &Geometry,
+        torques: &Torques<S>,
+    ) -> (Accelerations<S>, Accelerations<S>) {
         let inertia = Inertia::new(b, &self.pose);
         let mass = inertia.mass(b, &self.pose, &self.partial);
         let (bias, _) = bias(b, &self.pose, &self.actual, &inertia, Some(&self.contact));
@@ -40,8 +50,9 @@ impl<S: Scalar> Motion<S> {
             torques.steer - v.power::<false, true, false>(b, &self.pose, &bias),
             -w.power::<false, false, true>(b, &self.pose, &bias),
         ];
-        let [roll, steer, rear_wheel] = solve(&mass, force);
-        Accelerations { roll, steer, rear_wheel }
+        let of = |[roll, steer, rear_wheel]: [S; 3]| Accelerations { roll, steer, rear_wheel };
+        let unit = [0.0, 1.0, 0.0].map(S::constant);
+        (of(solve(&mass, force)), of(solve(&mass, unit)))
     }
 
     /// Kinetic plus potential energy \[J\]; the potential energy is zero when the centres of mass are at

@@ -86,7 +86,12 @@ impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
         points.filter(|&(rate, near)| near && rate > 0.0).map(move |(rate, _)| (i, rate))
     }
 
-    /// Replaces an outcome of the scan by that of an exact ride.
+    /// Whether the ride of the scan with this disturbance fell.
+    fn scanned_fall(&self, rate: f64) -> bool {
+        self.scan.iter().any(|point| point.rate == rate && fell(point.outcome))
+    }
+
+    /// Replaces an outcome of the scan by that of a better ride.
     fn corrected(&mut self, rate: f64, outcome: Outcome) {
         for point in self.scan.iter_mut().filter(|point| point.rate == rate) {
             self.contradicted |= fell(point.outcome) != fell(outcome);
@@ -143,6 +148,9 @@ fn confirmed<L: Fn(f64) -> Start>(
     search: &Search,
     mut lines: Vec<Line<L>>,
 ) -> Vec<Column> {
+    let fine = quick.fine();
+    // A rider's delay and accelerations leave an error of the order of the tolerance in the usual steps.
+    let narrowing = if conditions.rider.is_some() { &fine } else { quick };
     loop {
         let mut wanted = Vec::new();
         for (i, line) in lines.iter().enumerate() {
@@ -152,7 +160,7 @@ fn confirmed<L: Fn(f64) -> Start>(
         if wanted.is_empty() {
             break;
         }
-        let outcomes = outcomes(conditions, quick, &mut lines, &wanted);
+        let outcomes = outcomes(conditions, narrowing, &mut lines, &wanted);
         let mut sections = wanted.chunks(SECTIONS).zip(outcomes.chunks(SECTIONS));
         let edges = lines.iter_mut().flat_map(|line| &mut line.edges);
         for edge in edges.filter(|edge| !edge.narrow(search.tolerance)) {
@@ -168,29 +176,35 @@ fn confirmed<L: Fn(f64) -> Start>(
     }
     // Both ends of every edge, and the largest disturbance where none falls. Rides that do not fall are the longest, and
     // first: the short ones fill the lanes at the end.
-    let (mut safe, mut fell) = (Vec::new(), Vec::new());
+    let (mut safe, mut fallen) = (Vec::new(), Vec::new());
     for (i, line) in lines.iter().enumerate() {
         safe.extend(line.edges.iter().map(|edge| (i, edge.safe)));
-        fell.extend(line.edges.iter().map(|edge| (i, edge.fell)));
+        fallen.extend(line.edges.iter().map(|edge| (i, edge.fell)));
         if line.edges.is_empty() {
             safe.extend(line.scan.last().map(|point| (i, point.rate)));
         }
     }
     let near: Vec<(usize, f64)> =
         lines.iter().enumerate().flat_map(|(i, line)| line.near(i, search)).collect();
-    let wanted: Vec<(usize, f64)> = safe.iter().chain(&fell).chain(&near).copied().collect();
-    let mut safe_rides = exact(conditions, &mut lines, &wanted);
-    let mut fell_rides = safe_rides.split_off(safe.len());
-    let near_rides = fell_rides.split_off(fell.len());
-    for (&(line, rate), ride) in near.iter().zip(near_rides) {
+    let mut contradicting = Vec::new();
+    for (&(line, rate), outcome) in near.iter().zip(outcomes(conditions, &fine, &mut lines, &near)) {
+        match lines[line].scanned_fall(rate) == fell(outcome) {
+            true => lines[line].corrected(rate, outcome),
+            false => contradicting.push((line, rate)),
+        }
+    }
+    for (&(line, rate), ride) in contradicting.iter().zip(exact(conditions, &mut lines, &contradicting)) {
         lines[line].corrected(rate, ride.outcome);
     }
-    let (mut safe_rides, mut fell_rides) = (safe_rides.into_iter(), fell_rides.into_iter());
+    let wanted: Vec<(usize, f64)> = safe.iter().chain(&fallen).copied().collect();
+    let mut safe_rides = exact(conditions, &mut lines, &wanted);
+    let fallen_rides = safe_rides.split_off(safe.len());
+    let (mut safe_rides, mut fallen_rides) = (safe_rides.into_iter(), fallen_rides.into_iter());
     let finished = |line: Line<L>| {
         let edges = line.edges.len();
         let safe: Vec<Ride> = safe_rides.by_ref().take(edges.max(1)).collect();
-        let fell: Vec<Ride> = fell_rides.by_ref().take(edges).collect();
-        finished(conditions, search, line, &safe, &fell)
+        let fallen: Vec<Ride> = fallen_rides.by_ref().take(edges).collect();
+        finished(conditions, search, line, &safe, &fallen)
     };
     lines.into_iter().map(finished).collect()
 }
