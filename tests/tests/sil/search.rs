@@ -156,7 +156,8 @@ fn many_quick_rides_end_as_exact_ones() {
     random_rides(20_000);
 }
 
-/// Situation: small disturbances at speeds on both sides of weave and capsize speed, and ride times from 2 to 30 s.
+/// Situation: small disturbances at speeds on both sides of weave and capsize speed, and ride times from 2 to 30 s; without
+/// riders, and with riders with and without neural delay.
 /// Action: ride quickly, where the linear model decides most, and exactly.
 /// Must hold: recovered and undecided are the same, and both occur.
 #[test]
@@ -166,7 +167,9 @@ fn the_linear_model_decides_as_the_nonlinear() {
         speeds.flat_map(|speed| [0.1, 1.0, 2.0].map(|rate| Axis::SteerRate.start(speed, rate))).collect();
     let mut counts = [0; 2];
     for time_limit_s in [2.0, 6.0, 30.0] {
-        for conditions in [alone(), assisted(H)] {
+        let with_riders =
+            [ridden("young", alone()), ridden("smart", assisted(H)), ridden("hess-benchmark", alone())];
+        for conditions in [alone(), assisted(H)].into_iter().chain(with_riders) {
             let conditions = Conditions { time_limit_s, ..conditions };
             let quick = Quick::new(&conditions).expect("quick rides").rides(&starts);
             for (quick, exact) in quick.iter().zip(rides(&conditions, &starts)) {

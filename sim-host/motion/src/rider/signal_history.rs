@@ -30,7 +30,7 @@ impl SignalHistory {
     /// Stores the signal at the start of a step, `t` seconds after t = 0, and forgets those that no later step needs.
     pub fn push(&mut self, t: f64, signal: f64) {
         self.nodes.push_back((t, signal));
-        while self.nodes.get(2).is_some_and(|node| node.0 <= t - self.delay_s) {
+        while self.nodes.get(3).is_some_and(|node| node.0 <= t - self.delay_s) {
             self.nodes.pop_front();
         }
     }
@@ -62,7 +62,7 @@ impl SignalHistory {
     /// The signal at a past time \[s\], not before the oldest that is kept.
     pub fn at(&self, t: f64) -> f64 {
         let nodes = &self.nodes;
-        let last = nodes.len().saturating_sub(1);
+        let Some(last) = nodes.len().checked_sub(1) else { return 0.0 };
         let after = nodes.iter().position(|node| node.0 >= t).unwrap_or(last);
         let early = t < self.delay_s;
         let smooth = |i: usize| match early {
@@ -74,13 +74,16 @@ impl SignalHistory {
         let from = after.saturating_sub(2).max(lowest).min((highest + 1).saturating_sub(4).max(lowest));
         let to = highest.min(from + 3);
         // Lagrange interpolation.
-        let weight = |j: usize| {
-            let of = |(above, below): (f64, f64), k: usize| {
-                (above * (t - nodes[k].0), below * (nodes[j].0 - nodes[k].0))
-            };
-            let (above, below) = (from..=to).filter(|&k| k != j).fold((1.0, 1.0), of);
-            above / below
-        };
-        if nodes.is_empty() { 0.0 } else { (from..=to).map(|j| weight(j) * nodes[j].1).sum() }
+        let mut sum = 0.0;
+        for (j, &(at, signal)) in nodes.range(from..=to).enumerate() {
+            let (mut above, mut below) = (signal, 1.0);
+            for (k, &(other, _)) in nodes.range(from..=to).enumerate() {
+                if k != j {
+                    (above, below) = (above * (t - other), below * (at - other));
+                }
+            }
+            sum += above / below;
+        }
+        sum
     }
 }

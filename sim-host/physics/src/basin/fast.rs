@@ -1,7 +1,8 @@
 //! The fast search: quick rides scan and narrow, and exact rides confirm every border.
 //!
 //! The disturbances are those of the plain search, so a confirmed border has the same bits. A border that is not confirmed
-//! is narrowed by exact rides; a scan that an exact ride contradicts is done again, plainly.
+//! is narrowed by exact rides, first within the bracket of the last round; a scan that an exact ride contradicts is done
+//! again, plainly.
 
 use super::plain::{narrow, plain};
 use super::scan::{Border, Edge, SECTIONS, column, edges, fell, rates};
@@ -12,7 +13,8 @@ use std::convert::Infallible;
 /// Number of lines of disturbances searched together: their exact rides, two for each border, fill the lanes.
 pub(super) const TOGETHER: usize = 8;
 
-/// Distance from a border up to which the scan's rides are exact, in tolerances: there a ride is most sensitive.
+/// Distance from a border up to which the scan's rides are ridden again in finer steps, in tolerances: there a ride is most
+/// sensitive.
 const NEAR: f64 = 5.0;
 
 /// A line of disturbances during the search.
@@ -23,6 +25,8 @@ struct Line<'a, L> {
     wide: Vec<Edge>,
     /// The same, narrowed by quick rides.
     edges: Vec<Edge>,
+    /// The same, before the last round of narrowing.
+    outer: Vec<Edge>,
     /// Whether an exact ride contradicts the scan.
     contradicted: bool,
     work: Work,
@@ -72,8 +76,15 @@ pub(super) fn border<L: Fn(f64) -> Start>(
 
 impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
     fn new(start: &'a L) -> Self {
-        let (scan, wide, edges) = (Vec::new(), Vec::new(), Vec::new());
-        Self { start, scan, wide, edges, contradicted: false, work: Work::default() }
+        Self {
+            start,
+            scan: Vec::new(),
+            wide: Vec::new(),
+            edges: Vec::new(),
+            outer: Vec::new(),
+            contradicted: false,
+            work: Work::default(),
+        }
     }
 
     /// The disturbances of the scan so near a border that its last ride can end otherwise; with the line's index `i`.
@@ -104,6 +115,7 @@ impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
         self.scan = rates.iter().zip(outcomes).map(|(&rate, &outcome)| ScanPoint { rate, outcome }).collect();
         self.wide = edges(&self.scan);
         self.edges = self.wide.clone();
+        self.outer = self.wide.clone();
     }
 }
 
@@ -162,9 +174,10 @@ fn confirmed<L: Fn(f64) -> Start>(
         }
         let outcomes = outcomes(conditions, narrowing, &mut lines, &wanted);
         let mut sections = wanted.chunks(SECTIONS).zip(outcomes.chunks(SECTIONS));
-        let edges = lines.iter_mut().flat_map(|line| &mut line.edges);
-        for edge in edges.filter(|edge| !edge.narrow(search.tolerance)) {
+        let edges = lines.iter_mut().flat_map(|line| line.edges.iter_mut().zip(&mut line.outer));
+        for (edge, outer) in edges.filter(|(edge, _)| !edge.narrow(search.tolerance)) {
             let Some((rates, outcomes)) = sections.next() else { break };
+            *outer = *edge;
             let first = outcomes.iter().position(|outcome| fell(*outcome));
             if let Some(first) = first {
                 edge.fell = rates[first].1;
@@ -230,29 +243,46 @@ fn finished<L: Fn(f64) -> Start>(
         };
     }
     let mut borders = Vec::with_capacity(line.edges.len());
-    let edges: Vec<(Edge, Edge)> = line.wide.iter().copied().zip(line.edges.iter().copied()).collect();
-    for ((wide, edge), (safe, beyond)) in edges.into_iter().zip(safe.iter().zip(fell)) {
-        if !safe.fell() && beyond.fell() {
-            let ride = (edge.safe != 0.0).then_some(*safe);
-            borders.push(Border { safe: edge.safe, ride, beyond: beyond.outcome.fall() });
-            continue;
-        }
-        let wanted = [(0, wide.safe), (0, wide.fell)];
-        let ends = exact(conditions, std::slice::from_mut(&mut line), &wanted);
-        let &[safe, beyond] = ends.as_slice() else { return plain(conditions, search, line.start) };
-        if safe.fell() || !beyond.fell() {
-            return plain(conditions, search, line.start);
-        }
-        let start = line.start;
-        let work = &mut line.work;
-        let mut ride = |rates: &[f64]| -> Result<Vec<Ride>, Infallible> {
-            let done = rides(conditions, &rates.iter().map(|&rate| start(rate)).collect::<Vec<_>>());
-            work.add(&done);
-            Ok(done)
+    for i in 0..line.edges.len() {
+        let (edge, safe, beyond) = (line.edges[i], safe[i], fell[i]);
+        let quick = (!safe.fell() && beyond.fell()).then(|| Border {
+            safe: edge.safe,
+            ride: (edge.safe != 0.0).then_some(safe),
+            beyond: beyond.outcome.fall(),
+        });
+        let mut within = |bracket: Edge| {
+            let (start, work) = (line.start, &mut line.work);
+            within(search, bracket, |rates| {
+                let done = rides(conditions, &rates.iter().map(|&rate| start(rate)).collect::<Vec<_>>());
+                work.add(&done);
+                done
+            })
         };
-        let at = (wide.safe != 0.0).then_some(safe);
-        let Ok(border) = narrow(&mut ride, wide, beyond.outcome.fall(), search.tolerance, at);
+        let (outer, wide) = (line.outer[i], line.wide[i]);
+        let Some(border) = quick.or_else(|| within(outer)).or_else(|| within(wide)) else {
+            return plain(conditions, search, line.start);
+        };
         borders.push(border);
     }
     column(speed, search, line.scan, &borders, None, line.work)
+}
+
+/// The border in a bracket by exact rides; `None` if they contradict it.
+fn within(search: &Search, mut bracket: Edge, mut ride: impl FnMut(&[f64]) -> Vec<Ride>) -> Option<Border> {
+    let mut rates = vec![bracket.safe];
+    if !bracket.narrow(search.tolerance) {
+        rates.extend(bracket.sections());
+    }
+    rates.push(bracket.fell);
+    let done = ride(&rates);
+    let (safe, beyond) = (done.first()?, done.last()?);
+    if safe.fell() || !beyond.fell() {
+        return None;
+    }
+    let first = done.iter().position(Ride::fell)?;
+    bracket = Edge { safe: rates[first - 1], fell: rates[first] };
+    let at = (bracket.safe != 0.0).then_some(done[first - 1]);
+    let mut ride = |rates: &[f64]| Ok::<_, Infallible>(ride(rates));
+    let Ok(border) = narrow(&mut ride, bracket, done[first].outcome.fall(), search.tolerance, at);
+    Some(border)
 }

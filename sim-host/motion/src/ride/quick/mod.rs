@@ -5,6 +5,7 @@
 
 mod forecast;
 mod lane;
+mod linear;
 mod riders;
 mod source;
 
@@ -26,7 +27,7 @@ const LONGEST_S: f64 = 20e-3;
 const WORTH: f64 = 5.0;
 /// Largest step relative to the time scale of the motion.
 const LARGEST: f64 = 0.05;
-/// The same of fine quick rides: a sixteenth of the error or less.
+/// The same of fine quick rides: a sixteenth of the error.
 const LARGEST_FINE: f64 = 0.025;
 /// Shortest step \[s\]: close to 90 degrees of roll the time scale is arbitrarily short.
 const SHORTEST_S: f64 = 1e-6;
