@@ -29,6 +29,9 @@ const WORTH: f64 = 5.0;
 const LARGEST: f64 = 0.05;
 /// The same of fine quick rides: a sixteenth of the error.
 const LARGEST_FINE: f64 = 0.025;
+/// With a rider, the cosine of roll down to which the step shortens with it: nearer to the ground mostly the yaw rate grows,
+/// which is counted already. Without a rider more falls bounce there, and their times need the shorter steps.
+const LEAST_COS: f64 = 0.2;
 /// Shortest step \[s\]: close to 90 degrees of roll the time scale is arbitrarily short.
 const SHORTEST_S: f64 = 1e-6;
 /// Smallest distance from a singular configuration at which the independent speeds are used, as a fraction of the
@@ -92,6 +95,7 @@ impl<'a> Quick<'a> {
 pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
     let Quick { conditions, source, forecast, longest_s, largest } = quick;
     let b = &conditions.bicycle;
+    let least_cos = if conditions.rider.is_some() { LEAST_COS } else { 0.0 };
     let most_steps = (STEPS_PER_S * conditions.time_limit_s.max(1.0)) as u32;
     let mut done = vec![QuickRide { outcome: None, steps: 0 }; starts.len()];
     let mut waiting = starts.iter().copied().enumerate();
@@ -132,7 +136,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 // The pitch solved from roll and steer, not the predicted one.
                 start.pitch = motion.pose.attitude.pitch;
                 (end, at_start, stiff) = (start, measured, stiffness(b, &motion));
-                h = steps((conditions.time_limit_s, *largest), &t, &stiff, |lane, t| {
+                h = steps((conditions.time_limit_s, *largest, least_cos), &t, &stiff, |lane, t| {
                     riders.as_ref().map_or(*longest_s, |riders| longest_s.min(riders.longest_step_s(lane, t)))
                 });
             } else {
@@ -201,7 +205,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
 /// of lane and time.
 #[inline(always)]
 fn steps<const N: usize>(
-    (time_limit_s, largest): (f64, f64),
+    (time_limit_s, largest, least_cos): (f64, f64, f64),
     t: &[Option<f64>; N],
     stiff: &[Lanes<N>; 4],
     longest_s: impl Fn(usize, f64) -> f64,
@@ -210,7 +214,7 @@ fn steps<const N: usize>(
     for (i, t) in t.iter().enumerate() {
         let Some(t) = *t else { continue };
         let [squares, cos_roll, ..] = stiff.map(|q| q.0[i]);
-        let scale_s = largest * cos_roll.abs() / squares.sqrt();
+        let scale_s = largest * cos_roll.abs().max(least_cos) / squares.sqrt();
         h.0[i] = scale_s.max(SHORTEST_S).min(longest_s(i, t)).min(time_limit_s - t);
     }
     h
