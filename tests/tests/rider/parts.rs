@@ -2,7 +2,7 @@
 
 use sim_host::bicycle::{Geometry, Motion, State};
 use sim_host::integrate::{STAGES, Stages};
-use sim_host::rider::{DelayLine, Instant, Neuromuscular, RiderState};
+use sim_host::rider::{DelayLine, Instant, Neuromuscular, RiderState, SignalHistory};
 use tests::rides::shipped;
 
 /// Situation: neuromuscular dynamics at rest, the neural signal jumps to 1 N m.
@@ -91,4 +91,41 @@ fn the_delay_line_is_of_fourth_order() {
     let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
     println!("errors {errors:?}, orders {orders:.3?}");
     assert!(orders.iter().all(|o| (3.8..4.2).contains(o)), "{orders:?}");
+}
+
+/// Situation: a neural delay in steps of irregular lengths; the signal is one cubic up to the delay and another after it.
+/// Action: ask for the signals that arrive in each step.
+/// Must hold: nothing before the delay, then either cubic to rounding, also beside the kink between them; a step never
+/// passes the first two multiples of the delay, nor is longer than it.
+#[test]
+fn signals_of_irregular_steps_arrive_unchanged() {
+    const DELAY_S: f64 = 0.03;
+    let sent = |t: f64| {
+        let after = (t - DELAY_S).max(0.0);
+        1.0 + 40.0 * t - 900.0 * t * t + 7000.0 * t * t * t - 5000.0 * after * after
+    };
+    let mut history = SignalHistory::new(DELAY_S);
+    let (mut t, mut arrivals, mut ends) = (0.0, 0, Vec::new());
+    for step in 0..120 {
+        history.push(t, sent(t));
+        let longest_s = history.longest_step_s(t);
+        let h = longest_s.min([0.02, 0.004, 0.0007, 0.011][step % 4]);
+        for (part, arrived) in [0.0, 0.5, 1.0].into_iter().zip(history.arriving(t, h)) {
+            let when = t + part * h - DELAY_S;
+            if t < DELAY_S - 1e-9 {
+                assert_eq!(arrived, 0.0, "at {t} s");
+            } else {
+                arrivals += 1;
+                let error = (arrived - sent(when)).abs();
+                assert!(error < 1e-9 * sent(when).abs().max(1.0), "at {t} s: {arrived}, {}", sent(when));
+            }
+        }
+        assert!(longest_s <= DELAY_S * (1.0 + 1e-9));
+        t += h;
+        ends.push(t);
+    }
+    assert!(arrivals > 300, "{arrivals}");
+    for kink in [DELAY_S, 2.0 * DELAY_S] {
+        assert!(ends.iter().any(|end| (end - kink).abs() < 1e-9), "no step ends at {kink} s");
+    }
 }

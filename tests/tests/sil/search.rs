@@ -6,11 +6,17 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use sim_host::basin::{Axis, Column, Method, PlaneSearch, Search, basin, border, plane};
 use sim_host::ride::{Conditions, Imu, Outcome, Quick, Start, rides};
+use sim_host::rider::Rider;
 use tests::basins::{H, alone, assisted, configured, ideal, search};
 use tests::fault_reactions::rider;
 
 /// Difference of a time of fall that counts \[s\].
 const TIME_S: f64 = 1e-3;
+
+/// The conditions with a rider.
+fn ridden(name: &str, conditions: Conditions) -> Conditions {
+    Conditions { rider: Some(rider(name)), ..conditions }
+}
 
 /// Both searches of a basin.
 fn both(conditions: &Conditions, fast: &Search) -> [Vec<Column>; 2] {
@@ -45,7 +51,8 @@ fn compared(conditions: &Conditions, fast: &Search) -> (usize, usize) {
 }
 
 /// Situation: basins of h in the control crate, with islands, undecided borders and a height without a fall; of no assist;
-/// of cl2:4 and of h in continuous time, there with roll rate as the disturbance. Action: search them fast and plainly.
+/// of cl2:4 and of h in continuous time, there with roll rate as the disturbance; of riders alone, with and without neural
+/// delay, and beside h. Action: search them fast and plainly.
 /// Must hold: heights, islands, border rides and outcomes have the same bits; of the falls at most one in fifty
 /// differs by more than 1 ms or in its cause (bicycles that turn over first), and some differ in their last digits.
 #[test]
@@ -57,6 +64,9 @@ fn fast_and_plain_searches_agree() {
         (alone(), search(&[2.0, 4.6, 6.5], 8.0)),
         (assisted("cl2:4".parse().expect("a law")), search(&[1.0, 4.0], 12.0)),
         (ideal(H), roll),
+        (ridden("young", alone()), search(&[2.0, 4.6, 7.2], 14.0)),
+        (ridden("smart", assisted(H)), search(&[2.0, 4.3, 6.5], 14.0)),
+        (ridden("hess", alone()), search(&[3.0], 6.0)),
     ];
     let (mut falls, mut apart) = (0, 0);
     for (conditions, search) in &cases {
@@ -78,6 +88,19 @@ fn fast_and_plain_default_basins_agree() {
         let (falls, apart) = compared(&conditions, &search(&speeds, 30.0));
         println!("{apart} of {falls} falls differ by more than 1 ms or in their cause");
         assert!(falls > 5000 && 100 * apart <= falls, "{apart} of {falls}");
+    }
+}
+
+/// Situation: as above, every speed of the riders' default basin: the young rider alone, the smart one alone and beside h.
+/// Action and what must hold: as above.
+#[test]
+#[ignore = "slow: cargo xtask test --all"]
+fn fast_and_plain_basins_with_riders_agree() {
+    let speeds: Vec<f64> = (20..=75).map(|i| f64::from(i) / 10.0).collect();
+    for conditions in [ridden("young", alone()), ridden("smart", alone()), ridden("smart", assisted(H))] {
+        let (falls, apart) = compared(&conditions, &search(&speeds, 30.0));
+        println!("{apart} of {falls} falls differ by more than 1 ms or in their cause");
+        assert!(falls > 4000 && 80 * apart <= falls, "{apart} of {falls}");
     }
 }
 
@@ -133,7 +156,8 @@ fn many_quick_rides_end_as_exact_ones() {
     random_rides(20_000);
 }
 
-/// Situation: small disturbances at speeds on both sides of weave and capsize speed, and ride times from 2 to 30 s.
+/// Situation: small disturbances at speeds on both sides of weave and capsize speed, and ride times from 2 to 30 s; without
+/// riders, and with riders with and without neural delay.
 /// Action: ride quickly, where the linear model decides most, and exactly.
 /// Must hold: recovered and undecided are the same, and both occur.
 #[test]
@@ -143,7 +167,9 @@ fn the_linear_model_decides_as_the_nonlinear() {
         speeds.flat_map(|speed| [0.1, 1.0, 2.0].map(|rate| Axis::SteerRate.start(speed, rate))).collect();
     let mut counts = [0; 2];
     for time_limit_s in [2.0, 6.0, 30.0] {
-        for conditions in [alone(), assisted(H)] {
+        let with_riders =
+            [ridden("young", alone()), ridden("smart", assisted(H)), ridden("hess-benchmark", alone())];
+        for conditions in [alone(), assisted(H)].into_iter().chain(with_riders) {
             let conditions = Conditions { time_limit_s, ..conditions };
             let quick = Quick::new(&conditions).expect("quick rides").rides(&starts);
             for (quick, exact) in quick.iter().zip(rides(&conditions, &starts)) {
@@ -180,11 +206,12 @@ fn fast_and_plain_planes_and_heights_agree() {
     assert!(2 * fast.work.steps < plain.work.steps, "{:?} {:?}", fast.work, plain.work);
 }
 
-/// Situation: conditions under which more than the law acts: a limit, a sensor's delay, a rider, friction. Action: search.
+/// Situation: conditions under which more than law and rider acts: a limit, a sensor's delay, friction; and a rider whose
+/// neural delay would limit the steps to two control periods. Action: search.
 /// Must hold: there are no quick rides, and both searches are one. A dead band, the gyro's own axis and the speed of the
 /// rear wheel are part of the law.
 #[test]
-fn quick_rides_exist_for_a_law_alone() {
+fn quick_rides_exist_for_law_and_rider_alone() {
     let mut limited = Config::thesis(H);
     limited.limits.max_torque_nm = Some(5.0);
     let mut friction = assisted(H);
@@ -194,7 +221,7 @@ fn quick_rides_exist_for_a_law_alone() {
         configured(Config::product()),
         Conditions { sensor_delay_ticks: 5, ..assisted(H) },
         friction,
-        Conditions { rider: Some(rider("young")), ..assisted(H) },
+        Conditions { rider: Some(Rider { delay_s: 2e-3, ..rider("young") }), ..alone() },
     ];
     for conditions in &others {
         assert!(Quick::new(conditions).is_none());

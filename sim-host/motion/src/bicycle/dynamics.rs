@@ -31,20 +31,33 @@ impl<S: Scalar> Motion<S> {
     /// Accelerations under `torques` and gravity.
     #[inline(always)]
     pub fn accelerations(&self, b: &Geometry, torques: &Torques<S>) -> Accelerations<S> {
-        self.accelerations_with(b, |[roll, steer, wheel]| {
-            [torques.roll - roll, torques.steer - steer, -wheel]
-        })
+        let (mass, force) = self.equations(b, |forces| against(torques, forces));
+        solve(&mass, force).into()
+    }
+
+    /// Accelerations under `torques` and gravity, and their derivatives by the steer torque \[1/(kg m^2)\].
+    #[inline(always)]
+    pub(crate) fn accelerations_by_steer(
+        &self,
+        b: &Geometry,
+        torques: &Torques<S>,
+    ) -> (Accelerations<S>, Accelerations<S>) {
+        let (mass, force) = self.equations(b, |forces| against(torques, forces));
+        let unit = [0.0, 1.0, 0.0].map(S::constant);
+        (solve(&mass, force).into(), solve(&mass, unit).into())
     }
 
     /// Accelerations under generalised forces and gravity.
     pub fn accelerations_under(&self, b: &Geometry, forces: &Forces<S>) -> Accelerations<S> {
         let [f1, f2, f3] = forces.0;
-        self.accelerations_with(b, |[roll, steer, wheel]| [f1 - roll, f2 - steer, f3 - wheel])
+        let (mass, force) = self.equations(b, |[roll, steer, wheel]| [f1 - roll, f2 - steer, f3 - wheel]);
+        solve(&mass, force).into()
     }
 
-    /// Accelerations from the bias to all generalised forces, as `applied` adds the applied ones.
+    /// Mass matrix and right-hand side of the equations for the accelerations; `applied` adds the applied forces to those of
+    /// the bias.
     #[inline(always)]
-    fn accelerations_with(&self, b: &Geometry, applied: impl FnOnce([S; 3]) -> [S; 3]) -> Accelerations<S> {
+    fn equations(&self, b: &Geometry, applied: impl FnOnce([S; 3]) -> [S; 3]) -> ([S; 6], [S; 3]) {
         let inertia = Inertia::new(b, &self.pose);
         let mass = inertia.mass(b, &self.pose, &self.partial);
         let (bias, _) = bias(b, &self.pose, &self.actual, &inertia, Some(&self.contact));
@@ -54,8 +67,7 @@ impl<S: Scalar> Motion<S> {
             v.power::<false, true, false>(b, &self.pose, &bias),
             w.power::<false, false, true>(b, &self.pose, &bias),
         ]);
-        let [roll, steer, rear_wheel] = solve(&mass, force);
-        Accelerations { roll, steer, rear_wheel }
+        (mass, force)
     }
 
     /// Kinetic plus potential energy \[J\]; the potential energy is zero when the centres of mass are at
@@ -68,6 +80,19 @@ impl<S: Scalar> Motion<S> {
         let (_, cr) = self.pose.attitude.roll;
         let moment = self.pose.k.dot(inertia.moment) - cr * (b.rR * (b.rear.mass + b.front.mass));
         twice * 0.5 + moment * -b.g
+    }
+}
+
+/// The applied torques less the forces of the bias.
+#[inline(always)]
+fn against<S: Scalar>(torques: &Torques<S>, [roll, steer, wheel]: [S; 3]) -> [S; 3] {
+    [torques.roll - roll, torques.steer - steer, -wheel]
+}
+
+impl<S> From<[S; 3]> for Accelerations<S> {
+    #[inline(always)]
+    fn from([roll, steer, rear_wheel]: [S; 3]) -> Self {
+        Self { roll, steer, rear_wheel }
     }
 }
 

@@ -241,6 +241,13 @@ pub struct Before {
 }
 
 impl SensorState {
+    /// A copy; `None` if anything is random.
+    pub fn copied(&self) -> Option<Self> {
+        let on_their_way = self.on_their_way.clone();
+        let fixed = self.random.is_none() && self.fitted.is_none();
+        fixed.then_some(Self { on_their_way, exact: self.exact, random: None, fitted: None })
+    }
+
     /// State before the control instant 0.
     pub fn new(model: &SensorModel, before: &Before, random: SensorRng) -> Self {
         let Before { truth, speed_m_s, period_s } = *before;

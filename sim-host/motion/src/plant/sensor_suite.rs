@@ -88,6 +88,13 @@ impl SensorSuite {
         }
     }
 
+    /// A copy; `None` if anything is random or there are faults, so that rides at one speed differ before t = 0.
+    pub fn copied(&self) -> Option<Self> {
+        let sensors: Option<Vec<SensorState>> = self.sensors.iter().map(SensorState::copied).collect();
+        let sensors = sensors.filter(|_| self.faults.is_empty())?;
+        Some(Self { sensors, faults: Vec::new(), ..*self })
+    }
+
     /// Marks the next control instant as t = 0; the times of faults count from there.
     pub fn begin(&mut self) {
         self.zero = Some(self.tick + 1);

@@ -53,6 +53,12 @@ impl RideHardware {
         (Self { sensors, odometry: Odometry::default(), motor }, ready)
     }
 
+    /// A copy for another ride; `None` if anything is random or there are faults.
+    pub(super) fn copied(&self) -> Option<Self> {
+        let sensors = self.sensors.copied()?;
+        Some(Self { sensors, odometry: self.odometry, motor: self.motor.clone() })
+    }
+
     /// Sensor values at a control instant.
     pub(super) fn measured(
         &mut self,

@@ -1,7 +1,7 @@
 //! Simulates rides side by side, one in each lane; when a ride ends, its lane takes the next.
 
 use super::backend::Backend;
-use super::hardware::{self, RideHardware, lane_frame, measured_signals};
+use super::hardware::{self, lane_frame, measured_signals};
 use super::recorder::{RideRecorder, SteerTorques};
 use super::rider_lanes::{RiderLane, RiderLanes};
 use super::sensor::{Reading, readings};
@@ -199,15 +199,8 @@ pub(super) fn run<const N: usize>(
                 if let Assist::Firmware(plan) = &conditions.assist {
                     backend.begin(plan, &start);
                 }
-                let (hardware, ready) = match &conditions.assist {
-                    Assist::Firmware(plan) if needs_hardware => {
-                        let plant = &batch.plant;
-                        let (hardware, ready) =
-                            RideHardware::new(conditions, plan, plant, &start, backend, |_| ());
-                        (Some(Box::new(hardware)), Some(ready))
-                    }
-                    _ => (None, warm_start.at(conditions, backend, start.speed_m_s)),
-                };
+                let warm = warm_start.at(conditions, (&batch.plant, needs_hardware), backend, &start);
+                let (ready, hardware) = warm.map_or((None, None), |warm| (Some(warm.ready), warm.hardware));
                 backend.disturb();
                 RideRecorder::new(conditions, index, start, ready, hardware)
             });

@@ -6,7 +6,6 @@ mod batch;
 mod conditions;
 mod event;
 mod fall;
-mod forecast;
 mod hardware;
 mod lanes;
 mod outcome;

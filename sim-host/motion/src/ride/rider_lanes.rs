@@ -66,29 +66,14 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
 
     /// The rider in a lane, at the start of the step.
     pub(super) fn one(&mut self, lane: usize) -> RiderLane<'_> {
-        let RiderState { roll_integral, steer_integral, heading, rear_lateral, torque, torque_rate } =
-            self.rider_state.start();
-        let rider_state = RiderState {
-            roll_integral: roll_integral.0[lane],
-            steer_integral: steer_integral.0[lane],
-            heading: heading.0[lane],
-            rear_lateral: rear_lateral.0[lane],
-            torque: torque.0[lane],
-            torque_rate: torque_rate.0[lane],
-        };
+        let rider_state = self.rider_state.start().lane(lane);
         let delay_line = self.delay_line.as_mut().map(|delay_line| &mut delay_line[lane]);
         RiderLane { rider: self.rider, rider_state: Stages::new(rider_state), delay_line }
     }
 
     /// Sets the rider state of a lane at the end of the step.
     pub(super) fn set(&mut self, lane: usize, to: &RiderState<f64>) {
-        let end = &mut self.rider_state.end;
-        end.roll_integral.0[lane] = to.roll_integral;
-        end.steer_integral.0[lane] = to.steer_integral;
-        end.heading.0[lane] = to.heading;
-        end.rear_lateral.0[lane] = to.rear_lateral;
-        end.torque.0[lane] = to.torque;
-        end.torque_rate.0[lane] = to.torque_rate;
+        self.rider_state.end.set_lane(lane, to);
     }
 
     /// Makes the end of a step the start of the next.
@@ -100,7 +85,11 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
 
 /// Neural signals before their delay, each with the gains at its speed.
 #[inline(always)]
-fn neural<const N: usize>(rider: &Rider, signals: &Signals<Lanes<N>>, speeds: &Lanes<N>) -> Lanes<N> {
+pub(super) fn neural<const N: usize>(
+    rider: &Rider,
+    signals: &Signals<Lanes<N>>,
+    speeds: &Lanes<N>,
+) -> Lanes<N> {
     let mut out = Lanes([0.0; N]);
     for lane in 0..N {
         out.0[lane] = rider.schedule.at(speeds.0[lane]).signal(&lane_of(signals, lane));
@@ -108,7 +97,7 @@ fn neural<const N: usize>(rider: &Rider, signals: &Signals<Lanes<N>>, speeds: &L
     out
 }
 
-fn lane_of<const N: usize>(signals: &Signals<Lanes<N>>, lane: usize) -> Signals<f64> {
+pub(super) fn lane_of<const N: usize>(signals: &Signals<Lanes<N>>, lane: usize) -> Signals<f64> {
     let mut one = [0.0; 10];
     for (to, from) in one.iter_mut().zip(&signals.0) {
         *to = from.0[lane];

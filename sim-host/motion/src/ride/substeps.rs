@@ -176,14 +176,7 @@ fn step(b: &Geometry, from: &FullState, (offset, h): (f64, f64), period: &mut Pe
         let at = stages.at;
         let (pose, velocities) = (at.pose(b), at.velocities(b));
         let k = at.rate(b, &period.torques(offset + part * h, at.angles[2], &velocities))?;
-        let [roll, _, steer] = at.angles;
-        let [roll_acc, _, _, steer_acc, _, _] = k.speeds;
-        let now = Instant {
-            angles: [roll, steer],
-            accelerations: [roll_acc, steer_acc],
-            pose: &pose,
-            velocities: &velocities,
-        };
+        let now = Instant::full(&at, (&pose, &velocities), &k);
         period.end_stage(stage, (offset, h), &now);
         stages.next(stage, h, &k);
     }

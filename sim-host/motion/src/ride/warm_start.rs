@@ -2,8 +2,10 @@
 //! self-test and is engaged by a press of the switch, all by the flashed control step.
 
 use super::backend::{Backend, Stepped};
+use super::hardware::RideHardware;
 use super::sensor::{Reading, frame};
-use super::{Assist, Conditions};
+use super::{Assist, Conditions, Start};
+use crate::plant::Plant;
 use control::{Command, Plan, SensorFrame, State};
 
 /// The controller at t = 0.
@@ -46,27 +48,55 @@ pub(super) fn steady(plan: &Plan, speed_m_s: f64) -> impl FnMut(u32, bool, f64) 
     move |ticks, pressed, _| frame(plan, &reading, ticks, pressed)
 }
 
-/// Cache of the last warm start: rides from the same speed share it if the control step is executed in this
-/// program.
+/// State of a ride at t = 0: the controller, and sensors and motor if they are not exact.
+pub(super) struct Warm {
+    pub(super) ready: Ready,
+    pub(super) hardware: Option<Box<RideHardware>>,
+}
+
+impl Warm {
+    /// A copy for another ride from the same speed; `None` if anything is random.
+    fn copied(&self) -> Option<Self> {
+        let ready = self.ready.clone();
+        match &self.hardware {
+            None => Some(Self { ready, hardware: None }),
+            Some(hardware) => {
+                hardware.copied().map(|hardware| Self { ready, hardware: Some(Box::new(hardware)) })
+            }
+        }
+    }
+}
+
+/// Cache of warm starts by speed \[m/s\]: rides from the same speed share one if the control step is executed in this program
+/// and nothing is random.
 #[derive(Default)]
-pub(super) struct WarmStart(Option<(f64, Ready)>);
+pub(super) struct WarmStart(Vec<(f64, Warm)>);
 
 impl WarmStart {
-    /// The controller after a warm start at this speed \[m/s\], if the assist has one.
+    /// The state after a warm start with the sensors and the motor of `plant`, if the assist has one. `simulated`: whether
+    /// they are needed.
     pub(super) fn at(
         &mut self,
         conditions: &Conditions,
+        (plant, simulated): (&Plant, bool),
         backend: &mut Backend,
-        speed_m_s: f64,
-    ) -> Option<Ready> {
+        start: &Start,
+    ) -> Option<Warm> {
         let Assist::Firmware(plan) = &conditions.assist else { return None };
-        match &self.0 {
-            Some((speed, ready)) if *speed == speed_m_s && backend.shares() => Some(ready.clone()),
-            _ => {
-                let ready = engage_run(plan, backend, steady(plan, speed_m_s), |_, _| ());
-                self.0 = Some((speed_m_s, ready.clone()));
-                Some(ready)
-            }
+        let known = self.0.iter().find(|(speed, _)| *speed == start.speed_m_s);
+        if let Some((_, warm)) = known.filter(|_| backend.shares()) {
+            return warm.copied();
         }
+        let warm = if simulated {
+            let (hardware, ready) = RideHardware::new(conditions, plan, plant, start, backend, |_| ());
+            Warm { ready, hardware: Some(Box::new(hardware)) }
+        } else {
+            let ready = engage_run(plan, backend, steady(plan, start.speed_m_s), |_, _| ());
+            Warm { ready, hardware: None }
+        };
+        if let Some(copy) = warm.copied().filter(|_| backend.shares()) {
+            self.0.push((start.speed_m_s, copy));
+        }
+        Some(warm)
     }
 }

@@ -6,6 +6,7 @@ mod error;
 mod gains;
 mod neuromuscular;
 mod schedule;
+mod signal_history;
 mod state;
 
 pub use delay_line::DelayLine;
@@ -13,6 +14,7 @@ pub use error::{ScheduleError, UnfitError};
 pub use gains::{Gains, KEYS, Signals};
 pub use neuromuscular::Neuromuscular;
 pub use schedule::{Outside, Schedule};
+pub use signal_history::SignalHistory;
 pub use state::{Instant, RiderState};
 
 use crate::range::within;

@@ -1,8 +1,8 @@
 //! State of a rider model, and its feedback signals from the bicycle's motion.
 
 use super::{Neuromuscular, Signals};
-use crate::bicycle::{Accelerations, Geometry, Motion, Pose, State, Velocities};
-use crate::num::{Moves, Scalar};
+use crate::bicycle::{Accelerations, FullState, Geometry, Motion, Pose, State, Velocities};
+use crate::num::{Lanes, Moves, Scalar};
 
 /// State of a rider model without the delay line. All zero at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +44,19 @@ impl<'a, S: Scalar> Instant<'a, S> {
             pose: &motion.pose,
             velocities: &motion.actual,
         }
+    }
+}
+
+impl<'a> Instant<'a, f64> {
+    /// From a state with six speeds, its pose and velocities, and its time derivative.
+    pub(crate) fn full(
+        state: &FullState,
+        (pose, velocities): (&'a Pose<f64>, &'a Velocities<f64>),
+        rate: &FullState,
+    ) -> Self {
+        let [roll, _, steer] = state.angles;
+        let [roll_acc, _, _, steer_acc, _, _] = rate.speeds;
+        Self { angles: [roll, steer], accelerations: [roll_acc, steer_acc], pose, velocities }
     }
 }
 
@@ -108,9 +121,10 @@ impl<S: Scalar> RiderState<S> {
     }
 }
 
-impl<S: Scalar> Moves for RiderState<S> {
+impl<S: Scalar> RiderState<S> {
+    /// The state after `h` seconds, in each lane its own time, at the given rates.
     #[inline(always)]
-    fn moved(&self, h: f64, rate: &Self) -> Self {
+    pub(crate) fn after(&self, h: S, rate: &Self) -> Self {
         Self {
             roll_integral: self.roll_integral + rate.roll_integral * h,
             steer_integral: self.steer_integral + rate.steer_integral * h,
@@ -119,5 +133,36 @@ impl<S: Scalar> Moves for RiderState<S> {
             torque: self.torque + rate.torque * h,
             torque_rate: self.torque_rate + rate.torque_rate * h,
         }
+    }
+}
+
+impl<S: Scalar> Moves for RiderState<S> {
+    #[inline(always)]
+    fn moved(&self, h: f64, rate: &Self) -> Self {
+        self.after(S::constant(h), rate)
+    }
+}
+
+impl<const N: usize> RiderState<Lanes<N>> {
+    /// The state of one lane.
+    pub(crate) fn lane(&self, lane: usize) -> RiderState<f64> {
+        RiderState {
+            roll_integral: self.roll_integral.0[lane],
+            steer_integral: self.steer_integral.0[lane],
+            heading: self.heading.0[lane],
+            rear_lateral: self.rear_lateral.0[lane],
+            torque: self.torque.0[lane],
+            torque_rate: self.torque_rate.0[lane],
+        }
+    }
+
+    /// Sets the state of one lane.
+    pub(crate) fn set_lane(&mut self, lane: usize, to: &RiderState<f64>) {
+        self.roll_integral.0[lane] = to.roll_integral;
+        self.steer_integral.0[lane] = to.steer_integral;
+        self.heading.0[lane] = to.heading;
+        self.rear_lateral.0[lane] = to.rear_lateral;
+        self.torque.0[lane] = to.torque;
+        self.torque_rate.0[lane] = to.torque_rate;
     }
 }

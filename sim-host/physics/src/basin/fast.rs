@@ -1,7 +1,8 @@
 //! The fast search: quick rides scan and narrow, and exact rides confirm every border.
 //!
 //! The disturbances are those of the plain search, so a confirmed border has the same bits. A border that is not confirmed
-//! is narrowed by exact rides; a scan that an exact ride contradicts is done again, plainly.
+//! is narrowed by exact rides, first within the bracket of the last round; a scan that an exact ride contradicts is done
+//! again, plainly.
 
 use super::plain::{narrow, plain};
 use super::scan::{Border, Edge, SECTIONS, column, edges, fell, rates};
@@ -12,7 +13,8 @@ use std::convert::Infallible;
 /// Number of lines of disturbances searched together: their exact rides, two for each border, fill the lanes.
 pub(super) const TOGETHER: usize = 8;
 
-/// Distance from a border up to which the scan's rides are exact, in tolerances: there a ride is most sensitive.
+/// Distance from a border up to which the scan's rides are ridden again in finer steps, in tolerances: there a ride is most
+/// sensitive.
 const NEAR: f64 = 5.0;
 
 /// A line of disturbances during the search.
@@ -23,6 +25,8 @@ struct Line<'a, L> {
     wide: Vec<Edge>,
     /// The same, narrowed by quick rides.
     edges: Vec<Edge>,
+    /// The same, before the last round of narrowing.
+    outer: Vec<Edge>,
     /// Whether an exact ride contradicts the scan.
     contradicted: bool,
     work: Work,
@@ -72,8 +76,15 @@ pub(super) fn border<L: Fn(f64) -> Start>(
 
 impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
     fn new(start: &'a L) -> Self {
-        let (scan, wide, edges) = (Vec::new(), Vec::new(), Vec::new());
-        Self { start, scan, wide, edges, contradicted: false, work: Work::default() }
+        Self {
+            start,
+            scan: Vec::new(),
+            wide: Vec::new(),
+            edges: Vec::new(),
+            outer: Vec::new(),
+            contradicted: false,
+            work: Work::default(),
+        }
     }
 
     /// The disturbances of the scan so near a border that its last ride can end otherwise; with the line's index `i`.
@@ -86,7 +97,12 @@ impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
         points.filter(|&(rate, near)| near && rate > 0.0).map(move |(rate, _)| (i, rate))
     }
 
-    /// Replaces an outcome of the scan by that of an exact ride.
+    /// Whether the ride of the scan with this disturbance fell.
+    fn scanned_fall(&self, rate: f64) -> bool {
+        self.scan.iter().any(|point| point.rate == rate && fell(point.outcome))
+    }
+
+    /// Replaces an outcome of the scan by that of a better ride.
     fn corrected(&mut self, rate: f64, outcome: Outcome) {
         for point in self.scan.iter_mut().filter(|point| point.rate == rate) {
             self.contradicted |= fell(point.outcome) != fell(outcome);
@@ -99,6 +115,7 @@ impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
         self.scan = rates.iter().zip(outcomes).map(|(&rate, &outcome)| ScanPoint { rate, outcome }).collect();
         self.wide = edges(&self.scan);
         self.edges = self.wide.clone();
+        self.outer = self.wide.clone();
     }
 }
 
@@ -143,6 +160,9 @@ fn confirmed<L: Fn(f64) -> Start>(
     search: &Search,
     mut lines: Vec<Line<L>>,
 ) -> Vec<Column> {
+    let fine = quick.fine();
+    // A rider's delay and accelerations leave an error of the order of the tolerance in the usual steps.
+    let narrowing = if conditions.rider.is_some() { &fine } else { quick };
     loop {
         let mut wanted = Vec::new();
         for (i, line) in lines.iter().enumerate() {
@@ -152,11 +172,12 @@ fn confirmed<L: Fn(f64) -> Start>(
         if wanted.is_empty() {
             break;
         }
-        let outcomes = outcomes(conditions, quick, &mut lines, &wanted);
+        let outcomes = outcomes(conditions, narrowing, &mut lines, &wanted);
         let mut sections = wanted.chunks(SECTIONS).zip(outcomes.chunks(SECTIONS));
-        let edges = lines.iter_mut().flat_map(|line| &mut line.edges);
-        for edge in edges.filter(|edge| !edge.narrow(search.tolerance)) {
+        let edges = lines.iter_mut().flat_map(|line| line.edges.iter_mut().zip(&mut line.outer));
+        for (edge, outer) in edges.filter(|(edge, _)| !edge.narrow(search.tolerance)) {
             let Some((rates, outcomes)) = sections.next() else { break };
+            *outer = *edge;
             let first = outcomes.iter().position(|outcome| fell(*outcome));
             if let Some(first) = first {
                 edge.fell = rates[first].1;
@@ -168,29 +189,35 @@ fn confirmed<L: Fn(f64) -> Start>(
     }
     // Both ends of every edge, and the largest disturbance where none falls. Rides that do not fall are the longest, and
     // first: the short ones fill the lanes at the end.
-    let (mut safe, mut fell) = (Vec::new(), Vec::new());
+    let (mut safe, mut fallen) = (Vec::new(), Vec::new());
     for (i, line) in lines.iter().enumerate() {
         safe.extend(line.edges.iter().map(|edge| (i, edge.safe)));
-        fell.extend(line.edges.iter().map(|edge| (i, edge.fell)));
+        fallen.extend(line.edges.iter().map(|edge| (i, edge.fell)));
         if line.edges.is_empty() {
             safe.extend(line.scan.last().map(|point| (i, point.rate)));
         }
     }
     let near: Vec<(usize, f64)> =
         lines.iter().enumerate().flat_map(|(i, line)| line.near(i, search)).collect();
-    let wanted: Vec<(usize, f64)> = safe.iter().chain(&fell).chain(&near).copied().collect();
-    let mut safe_rides = exact(conditions, &mut lines, &wanted);
-    let mut fell_rides = safe_rides.split_off(safe.len());
-    let near_rides = fell_rides.split_off(fell.len());
-    for (&(line, rate), ride) in near.iter().zip(near_rides) {
+    let mut contradicting = Vec::new();
+    for (&(line, rate), outcome) in near.iter().zip(outcomes(conditions, &fine, &mut lines, &near)) {
+        match lines[line].scanned_fall(rate) == fell(outcome) {
+            true => lines[line].corrected(rate, outcome),
+            false => contradicting.push((line, rate)),
+        }
+    }
+    for (&(line, rate), ride) in contradicting.iter().zip(exact(conditions, &mut lines, &contradicting)) {
         lines[line].corrected(rate, ride.outcome);
     }
-    let (mut safe_rides, mut fell_rides) = (safe_rides.into_iter(), fell_rides.into_iter());
+    let wanted: Vec<(usize, f64)> = safe.iter().chain(&fallen).copied().collect();
+    let mut safe_rides = exact(conditions, &mut lines, &wanted);
+    let fallen_rides = safe_rides.split_off(safe.len());
+    let (mut safe_rides, mut fallen_rides) = (safe_rides.into_iter(), fallen_rides.into_iter());
     let finished = |line: Line<L>| {
         let edges = line.edges.len();
         let safe: Vec<Ride> = safe_rides.by_ref().take(edges.max(1)).collect();
-        let fell: Vec<Ride> = fell_rides.by_ref().take(edges).collect();
-        finished(conditions, search, line, &safe, &fell)
+        let fallen: Vec<Ride> = fallen_rides.by_ref().take(edges).collect();
+        finished(conditions, search, line, &safe, &fallen)
     };
     lines.into_iter().map(finished).collect()
 }
@@ -216,29 +243,46 @@ fn finished<L: Fn(f64) -> Start>(
         };
     }
     let mut borders = Vec::with_capacity(line.edges.len());
-    let edges: Vec<(Edge, Edge)> = line.wide.iter().copied().zip(line.edges.iter().copied()).collect();
-    for ((wide, edge), (safe, beyond)) in edges.into_iter().zip(safe.iter().zip(fell)) {
-        if !safe.fell() && beyond.fell() {
-            let ride = (edge.safe != 0.0).then_some(*safe);
-            borders.push(Border { safe: edge.safe, ride, beyond: beyond.outcome.fall() });
-            continue;
-        }
-        let wanted = [(0, wide.safe), (0, wide.fell)];
-        let ends = exact(conditions, std::slice::from_mut(&mut line), &wanted);
-        let &[safe, beyond] = ends.as_slice() else { return plain(conditions, search, line.start) };
-        if safe.fell() || !beyond.fell() {
-            return plain(conditions, search, line.start);
-        }
-        let start = line.start;
-        let work = &mut line.work;
-        let mut ride = |rates: &[f64]| -> Result<Vec<Ride>, Infallible> {
-            let done = rides(conditions, &rates.iter().map(|&rate| start(rate)).collect::<Vec<_>>());
-            work.add(&done);
-            Ok(done)
+    for i in 0..line.edges.len() {
+        let (edge, safe, beyond) = (line.edges[i], safe[i], fell[i]);
+        let quick = (!safe.fell() && beyond.fell()).then(|| Border {
+            safe: edge.safe,
+            ride: (edge.safe != 0.0).then_some(safe),
+            beyond: beyond.outcome.fall(),
+        });
+        let mut within = |bracket: Edge| {
+            let (start, work) = (line.start, &mut line.work);
+            within(search, bracket, |rates| {
+                let done = rides(conditions, &rates.iter().map(|&rate| start(rate)).collect::<Vec<_>>());
+                work.add(&done);
+                done
+            })
         };
-        let at = (wide.safe != 0.0).then_some(safe);
-        let Ok(border) = narrow(&mut ride, wide, beyond.outcome.fall(), search.tolerance, at);
+        let (outer, wide) = (line.outer[i], line.wide[i]);
+        let Some(border) = quick.or_else(|| within(outer)).or_else(|| within(wide)) else {
+            return plain(conditions, search, line.start);
+        };
         borders.push(border);
     }
     column(speed, search, line.scan, &borders, None, line.work)
+}
+
+/// The border in a bracket by exact rides; `None` if they contradict it.
+fn within(search: &Search, mut bracket: Edge, mut ride: impl FnMut(&[f64]) -> Vec<Ride>) -> Option<Border> {
+    let mut rates = vec![bracket.safe];
+    if !bracket.narrow(search.tolerance) {
+        rates.extend(bracket.sections());
+    }
+    rates.push(bracket.fell);
+    let done = ride(&rates);
+    let (safe, beyond) = (done.first()?, done.last()?);
+    if safe.fell() || !beyond.fell() {
+        return None;
+    }
+    let first = done.iter().position(Ride::fell)?;
+    bracket = Edge { safe: rates[first - 1], fell: rates[first] };
+    let at = (bracket.safe != 0.0).then_some(done[first - 1]);
+    let mut ride = |rates: &[f64]| Ok::<_, Infallible>(ride(rates));
+    let Ok(border) = narrow(&mut ride, bracket, done[first].outcome.fall(), search.tolerance, at);
+    Some(border)
 }

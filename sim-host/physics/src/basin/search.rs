@@ -37,7 +37,7 @@ impl Axis {
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// Long steps find the borders and exact rides confirm them, where the law is all that acts; otherwise as plain.
+    /// Long steps find the borders and exact rides confirm them, if law and rider are all that acts; else as plain.
     #[default]
     Fast,
     /// Every ride exact and to its end.

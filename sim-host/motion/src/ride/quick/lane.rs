@@ -1,0 +1,102 @@
+//! The ride in a lane: its time, fall, amplitudes and outcome.
+
+use super::CLEAR;
+use super::forecast::{Forecast, Now};
+use crate::bicycle::{FullState, State};
+use crate::ride::event::{fallen, time_of_fall};
+use crate::ride::{Conditions, FallCause, Outcome};
+
+/// One ride in its lane.
+pub(super) struct Lane {
+    pub(super) index: usize,
+    /// Time since the disturbance \[s\].
+    pub(super) t: f64,
+    pub(super) steps: u32,
+    /// Largest roll and steer \[rad\].
+    peak: [f64; 2],
+    /// Largest roll and steer in the last second \[rad\].
+    late: [f64; 2],
+    /// Time at which the roll first passed [`crate::ride::LaidFlat::roll_rad`].
+    flat_s: Option<f64>,
+    /// Six-speed state near singular configurations.
+    pub(super) full: Option<FullState>,
+    /// Earliest time of the next forecast \[s\].
+    forecast_s: f64,
+}
+
+impl Lane {
+    pub(super) fn new(index: usize) -> Self {
+        Self {
+            index,
+            t: 0.0,
+            steps: 0,
+            peak: [0.0; 2],
+            late: [0.0; 2],
+            flat_s: None,
+            full: None,
+            forecast_s: 0.0,
+        }
+    }
+
+    /// Records a step of `h` seconds; the outcome if the ride has ended, or `Some(None)` if it is not decided.
+    pub(super) fn book(
+        &mut self,
+        conditions: &Conditions,
+        (before, after): (&State<f64>, &State<f64>),
+        h: f64,
+    ) -> Option<Option<Outcome>> {
+        if fallen(&conditions.fall, after) {
+            let (tau, by) = time_of_fall(&conditions.fall, (before, after), h);
+            return Some(Some(Outcome::Fallen { time_s: self.t + tau, by }));
+        }
+        self.t += h;
+        let angles = [after.roll.abs(), after.steer.abs()];
+        // The exact ride's last second begins with the end of its first control period.
+        let since_s = self.t - (conditions.time_limit_s - 1.0 + conditions.step_s);
+        for (i, (angle, before)) in angles.into_iter().zip([before.roll, before.steer]).enumerate() {
+            self.peak[i] = self.peak[i].max(angle);
+            if since_s >= 0.0 {
+                let at_begin = angle + (before.abs() - angle) * (since_s / h).min(1.0);
+                self.late[i] = self.late[i].max(angle).max(at_begin);
+            }
+        }
+        let over = self.t >= conditions.time_limit_s - 1e-9;
+        if let Some(flat) = conditions.fall.flat {
+            let beyond = angles[0] > flat.roll_rad;
+            if beyond && self.flat_s.is_none() {
+                // The exact ride counts from the end of the control period in which the angle is passed.
+                let part = (flat.roll_rad - before.roll.abs()) / (angles[0] - before.roll.abs());
+                let passed = self.t - h * (1.0 - part.clamp(0.0, 1.0));
+                self.flat_s = Some((passed / conditions.step_s).ceil() * conditions.step_s);
+            }
+            if let Some(since) = self.flat_s {
+                let by = FallCause::LaidFlat;
+                if self.t >= since + flat.lasting_s {
+                    return Some(Some(Outcome::Fallen { time_s: since + flat.lasting_s, by }));
+                }
+                if over && !beyond {
+                    return Some(Some(Outcome::Fallen { time_s: conditions.time_limit_s, by }));
+                }
+            }
+        }
+        over.then(|| Outcome::of_amplitudes(conditions.recovered_below, self.late, self.peak, CLEAR))
+    }
+
+    /// The outcome by the linear model, if the motion is small and the model decides.
+    pub(super) fn decide_early(
+        &mut self,
+        conditions: &Conditions,
+        forecast: &Option<Forecast>,
+        now: &Now,
+    ) -> Option<Outcome> {
+        let forecast = forecast.as_ref()?;
+        if self.t < self.forecast_s || self.flat_s.is_some() || !forecast.covers(now) {
+            return None;
+        }
+        self.forecast_s = self.t + Forecast::INTERVAL_S;
+        let (late, peak) = forecast.amplitudes(now, conditions.time_limit_s - now.t_s)?;
+        let larger = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
+        let (late, peak) = (larger(self.late, late), larger(self.peak, peak));
+        forecast.outcome(conditions.recovered_below, late, peak)
+    }
+}

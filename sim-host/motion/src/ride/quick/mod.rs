@@ -1,0 +1,227 @@
+//! Quick rides: outcomes of rides under a law in continuous time, with steps as long as the motion permits.
+//!
+//! The exact rides ([`super::rides`]) have the control period as their step and record the effort. These have a step of
+//! their own in each lane, up to 20 ms, and end as soon as the linear model decides ([`super::forecast`]).
+
+mod forecast;
+mod lane;
+mod linear;
+mod riders;
+mod source;
+
+use super::sensor::readings;
+use super::substeps::{nearer, stiffness};
+use super::{Conditions, Outcome, Start};
+use crate::bicycle::{FullState, Geometry, Motion, State, Torques};
+use crate::integrate::{AHEAD, STAGES, WEIGHT, rate};
+use crate::num::Lanes;
+use crate::rider::Instant;
+use forecast::{Forecast, Now};
+use lane::Lane;
+use riders::QuickRiders;
+use source::Source;
+
+/// Longest step \[s\].
+const LONGEST_S: f64 = 20e-3;
+/// Smallest ratio of the longest step to the control period at which quick rides are worth their inaccuracy.
+const WORTH: f64 = 5.0;
+/// Largest step relative to the time scale of the motion.
+const LARGEST: f64 = 0.05;
+/// The same of fine quick rides: a sixteenth of the error.
+const LARGEST_FINE: f64 = 0.025;
+/// With a rider, the cosine of roll down to which the step shortens with it: nearer to the ground mostly the yaw rate grows,
+/// which is counted already. Without a rider more falls bounce there, and their times need the shorter steps.
+const LEAST_COS: f64 = 0.2;
+/// Shortest step \[s\]: close to 90 degrees of roll the time scale is arbitrarily short.
+const SHORTEST_S: f64 = 1e-6;
+/// Smallest distance from a singular configuration at which the independent speeds are used, as a fraction of the
+/// upright bicycle's distance.
+const NEAREST: f64 = 0.1;
+/// Steps per second of the time limit after which a ride is left to the exact method.
+const STEPS_PER_S: f64 = 2000.0;
+/// The end of a ride is decided if the late amplitude differs from the limit by this factor.
+const CLEAR: f64 = 1.03;
+
+/// The result of a quick ride.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QuickRide {
+    /// The outcome; `None` if it is too close to a limit, or the motion too fast, for this method.
+    pub outcome: Option<Outcome>,
+    /// Steps taken.
+    pub steps: u32,
+}
+
+/// Quick rides under the conditions of exact ones.
+#[derive(Clone, Debug)]
+pub struct Quick<'a> {
+    conditions: &'a Conditions,
+    source: Source<'a>,
+    forecast: Option<Forecast>,
+    /// Longest step \[s\].
+    longest_s: f64,
+    /// Largest step relative to the time scale of the motion.
+    largest: f64,
+}
+
+impl<'a> Quick<'a> {
+    /// Quick rides under these conditions. `None` if more acts than a law and a rider: limits, filters or checks of the
+    /// controller, errors or delays of sensors and motor, friction or an end-stop; or if the rider needs steps that are
+    /// hardly longer than the exact ride's.
+    ///
+    /// A law that is sampled and held is the continuous law, delayed by half a control period.
+    pub fn new(conditions: &'a Conditions) -> Option<Self> {
+        let actuator = &conditions.plant.actuator;
+        let bare = conditions.plant.exact()
+            && conditions.sensor_delay_ticks == 0
+            && !actuator.friction.acts()
+            && actuator.stop.is_none();
+        let longest_s = conditions.rider.as_ref().map_or(LONGEST_S, riders::longest_step_s).min(LONGEST_S);
+        if !bare || longest_s < WORTH * conditions.step_s {
+            return None;
+        }
+        let source = Source::new(conditions)?;
+        let forecast = Forecast::new(conditions, &source);
+        Some(Self { conditions, source, forecast, longest_s, largest: LARGEST })
+    }
+
+    /// The same in shorter steps.
+    pub fn fine(&self) -> Self {
+        Self { largest: LARGEST_FINE, ..self.clone() }
+    }
+}
+
+/// Simulates every ride; results in the order of `starts`.
+#[inline(always)]
+pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
+    let Quick { conditions, source, forecast, longest_s, largest } = quick;
+    let b = &conditions.bicycle;
+    let least_cos = if conditions.rider.is_some() { LEAST_COS } else { 0.0 };
+    let most_steps = (STEPS_PER_S * conditions.time_limit_s.max(1.0)) as u32;
+    let mut done = vec![QuickRide { outcome: None, steps: 0 }; starts.len()];
+    let mut waiting = starts.iter().copied().enumerate();
+    let still = Lanes([0.0; N]);
+    let mut state = State::upright(b, still);
+    let mut initial = still;
+    let mut slopes = [still; 2];
+    let mut riders = conditions.rider.as_ref().map(QuickRiders::<N>::new);
+    let mut lanes: [Option<Lane>; N] = std::array::from_fn(|_| None);
+    loop {
+        for (lane, ride) in lanes.iter_mut().enumerate().filter(|(_, ride)| ride.is_none()) {
+            let next = waiting.next();
+            let start = next.map_or_else(Start::default, |(_, start)| start);
+            state.set_lane(lane, &start.state(b));
+            initial.0[lane] = start.speed_m_s;
+            slopes.iter_mut().for_each(|slope| slope.0[lane] = 0.0);
+            if let Some(riders) = &mut riders {
+                riders.restart(lane);
+            }
+            *ride = next.map(|(index, _)| Lane::new(index));
+        }
+        if lanes.iter().all(Option::is_none) {
+            return done;
+        }
+
+        // The step of all lanes, in one loop so that the binary contains the equations of motion once.
+        let slopes_before = slopes;
+        let t: [Option<f64>; N] = std::array::from_fn(|lane| lanes[lane].as_ref().map(|ride| ride.t));
+        if let Some(riders) = &mut riders {
+            riders.turn();
+        }
+        let (mut start, mut end, mut at) = (state, state, state);
+        let (mut h, mut stiff, mut at_start) = (still, [still; 4], (still, still));
+        for (stage, part) in STAGES.into_iter().enumerate() {
+            let motion = Motion::new(b, &at);
+            let measured = readings(conditions, &motion.actual, initial);
+            if stage == 0 {
+                // The pitch solved from roll and steer, not the predicted one.
+                start.pitch = motion.pose.attitude.pitch;
+                (end, at_start, stiff) = (start, measured, stiffness(b, &motion));
+                h = steps((conditions.time_limit_s, *largest, least_cos), &t, &stiff, |lane, t| {
+                    riders.as_ref().map_or(*longest_s, |riders| longest_s.min(riders.longest_step_s(lane, t)))
+                });
+            } else {
+                let per_s = Lanes([1.0; N]) / (h * part);
+                slopes = [(measured.0 - at_start.0) * per_s, (measured.1 - at_start.1) * per_s];
+            }
+            let assist_nm = source.torques(measured, slopes);
+            let steer = riders.as_ref().map_or(assist_nm, |riders| assist_nm + riders.torque_nm());
+            let torques = Torques { roll: still, steer };
+            let (acc, by_steer) = motion.accelerations_by_steer(b, &torques);
+            if let Some(riders) = &mut riders {
+                let mut felt = acc;
+                if riders.sampled() {
+                    // A sampled rider feels the torque that was computed from the same sample.
+                    let later_nm = source.torques(measured, [still; 2]) - assist_nm;
+                    felt.roll = felt.roll + by_steer.roll * later_nm;
+                    felt.steer = felt.steer + by_steer.steer * later_nm;
+                }
+                riders.end_stage(b, stage, (&t, h), &Instant::new(&at, &motion, &felt), &measured.1);
+            }
+            let k = rate(&at, &motion, &acc);
+            end = end.after(h * WEIGHT[stage], &k);
+            at = start.after(h * AHEAD[stage], &k);
+        }
+
+        for (lane, slot) in lanes.iter_mut().enumerate() {
+            let Some(ride) = slot else { continue };
+            let (before, h) = (start.lane(lane), h.0[lane]);
+            let mut after = end.lane(lane);
+            if nearer(stiff.map(|q| q.0[lane]), NEAREST) {
+                let from = ride.full.unwrap_or_else(|| six_speeds(b, &before));
+                let mut slope = slopes_before.map(|slope| slope.0[lane]);
+                let mut rider = riders.as_mut().map(|riders| riders.one(lane, (ride.t, h)));
+                let at = (initial.0[lane], &mut slope);
+                ride.full = source.full_step(conditions, &from, h, at, rider.as_mut());
+                let rider_state = rider.map(|rider| rider.end());
+                if let (Some(riders), Some(rider_state)) = (&mut riders, rider_state) {
+                    riders.set(lane, &rider_state);
+                }
+                (slopes[0].0[lane], slopes[1].0[lane]) = (slope[0], slope[1]);
+                after = ride.full.map_or(State { rear_wheel_rate: f64::NAN, ..before }, |next| next.state());
+                end.set_lane(lane, &after);
+            } else {
+                ride.full = None;
+            }
+            ride.steps += 1;
+            let ended = match ride.book(conditions, (&before, &after), h) {
+                None if ride.steps >= most_steps => Some(None),
+                None => {
+                    let rider = riders.as_ref().map(|riders| riders.after(lane));
+                    let now = Now { t_s: ride.t, state: &after, rider, initial_m_s: initial.0[lane] };
+                    ride.decide_early(conditions, forecast, &now).map(Some)
+                }
+                ended => ended,
+            };
+            if let Some(outcome) = ended {
+                done[ride.index] = QuickRide { outcome, steps: ride.steps };
+                *slot = None;
+            }
+        }
+        state = end;
+    }
+}
+
+/// The steps of all lanes \[s\] from their times, `None` in an empty lane; `largest` is relative to the time scale, `longest_s`
+/// of lane and time.
+#[inline(always)]
+fn steps<const N: usize>(
+    (time_limit_s, largest, least_cos): (f64, f64, f64),
+    t: &[Option<f64>; N],
+    stiff: &[Lanes<N>; 4],
+    longest_s: impl Fn(usize, f64) -> f64,
+) -> Lanes<N> {
+    let mut h = Lanes([LONGEST_S; N]);
+    for (i, t) in t.iter().enumerate() {
+        let Some(t) = *t else { continue };
+        let [squares, cos_roll, ..] = stiff.map(|q| q.0[i]);
+        let scale_s = largest * cos_roll.abs().max(least_cos) / squares.sqrt();
+        h.0[i] = scale_s.max(SHORTEST_S).min(longest_s(i, t)).min(time_limit_s - t);
+    }
+    h
+}
+
+/// The state with its dependent speeds.
+#[inline(never)]
+fn six_speeds(b: &Geometry, state: &State<f64>) -> FullState {
+    FullState::new(&Motion::new(b, state), state)
+}
