@@ -55,11 +55,16 @@ fn rising(signal: &Timed) -> (Timed, usize) {
     (rising, left_out)
 }
 
+/// The middle value; zero of none.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
 /// Median time between two samples \[s\].
 fn median_period(signal: &Timed) -> f64 {
-    let mut periods: Vec<f64> = signal.windows(2).map(|two| two[1].0 - two[0].0).collect();
-    periods.sort_by(f64::total_cmp);
-    periods.get(periods.len() / 2).copied().unwrap_or(0.0)
+    median(signal.windows(2).map(|two| two[1].0 - two[0].0))
 }
 
 /// A signal on the grid of times.
@@ -149,7 +154,18 @@ pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, Rec
     }
     let count = (duration_s * rate_hz + 0.5) as usize + 1;
     let grid = |signal: &Timed, hold| gridded(signal, start_s, sample_s, count, hold);
-    let disturbed = [&force, &torque].map(|signal| grid(signal, settings.hold));
+    let disturbed = [&force, &torque].map(|signal| {
+        let mut gridded = grid(signal, settings.hold);
+        // Between pulses there is none, so in a gap nothing is likelier than the value before it.
+        let middle = median(signal.iter().map(|(_, value)| *value));
+        gridded
+            .values
+            .iter_mut()
+            .zip(&gridded.valid)
+            .filter(|(_, valid)| !**valid)
+            .for_each(|(value, _)| *value = middle);
+        gridded
+    });
     let mut unknown = vec![false; count];
     for (what, of, recorded) in
         [("lateral force", &disturbed[0], &force), ("steer torque", &disturbed[1], &torque)]

@@ -9,7 +9,7 @@ pub struct Measured {
     pub signal: Signal,
     /// Its value at each sample \[rad or rad/s\].
     pub values: Vec<f64>,
-    /// Whether the value is measured; values in gaps are not.
+    /// Whether the value is fitted: values in gaps and after unknown disturbances are not.
     pub valid: Vec<bool>,
 }
 

@@ -5,6 +5,7 @@ use super::evolution::{Extent, minimise};
 use super::gray_box::{GAINS, GrayBox, PerGain};
 use super::objective::{Drift, Objective};
 use super::record::Record;
+use super::response::{Discrete, Disturbances, Hold};
 use super::spectrum::Spectrum;
 use rayon::prelude::*;
 
@@ -44,22 +45,65 @@ fn distinct(candidates: impl Iterator<Item = PerGain>, most: usize) -> Vec<PerGa
     chosen
 }
 
-fn starts(
-    spectrum: &Spectrum,
-    active: &[usize],
-    seed: u64,
-    stop: &(impl Fn() -> bool + Sync),
-) -> Vec<PerGain> {
-    let mut linear = spectrum.linear_fits(active, LINEAR_ITERATIONS);
-    linear.sort_by(|a, b| spectrum.unexplained(a).total_cmp(&spectrum.unexplained(b)));
+/// Cost of the global search: what the frequency domain leaves unexplained, and more than all of that for unstable gains,
+/// which the frequency domain does not tell from stable ones.
+struct Cost {
+    spectrum: Spectrum,
+    discrete: Discrete,
+    impulse: Disturbances,
+}
+
+/// Sample time and duration of the response that tells stable gains from unstable ones \[s\].
+const STABILITY_SAMPLE_S: f64 = 0.02;
+const STABILITY_S: f64 = 12.0;
+/// Growth from the first to the last third of that response from which gains count as unstable: riders who drift slowly are
+/// upright for a minute.
+const GROWTH: f64 = 3.0;
+/// Largest gain of the global search, in units of [`TYPICAL`]. Infinite gains explain nothing, which is better than many others.
+const LARGEST: f64 = 5.0;
+/// Cost of unstable gains: more than the power of all signals.
+const UNSTABLE: f64 = 10.0;
+
+impl Cost {
+    fn new(problem: &Global) -> Self {
+        let mut samples = vec![[0.0; 2]; (STABILITY_S / STABILITY_SAMPLE_S) as usize];
+        samples[0] = [1.0, 1.0];
+        Self {
+            spectrum: Spectrum::new(problem.record, problem.model),
+            discrete: Discrete::new(problem.model, STABILITY_SAMPLE_S),
+            impulse: Disturbances { sample_s: STABILITY_SAMPLE_S, samples, hold: Hold::Zero },
+        }
+    }
+
+    fn stable(&self, gains: &PerGain) -> bool {
+        let Some(response) = self.discrete.respond(&self.impulse, gains, false) else { return false };
+        let third = response.states.len() / 3;
+        let peak = |states: &[[f64; 3]]| states.iter().map(|x| x[0].abs() + x[1].abs()).fold(0.0, f64::max);
+        peak(&response.states[2 * third..]) < GROWTH * peak(&response.states[..third])
+    }
+
+    fn of(&self, gains: &PerGain) -> f64 {
+        if (0..GAINS).any(|i| gains[i].abs() > LARGEST * TYPICAL[i]) {
+            return f64::INFINITY;
+        }
+        let unexplained = self.spectrum.unexplained(gains);
+        // Gains that explain nothing need no simulation.
+        if unexplained < 1.0 && !self.stable(gains) { unexplained + UNSTABLE } else { unexplained }
+    }
+}
+
+fn starts(problem: &Global, stop: &(impl Fn() -> bool + Sync)) -> Vec<PerGain> {
+    let (cost, active) = (Cost::new(problem), problem.active);
+    let mut linear = cost.spectrum.linear_fits(active, LINEAR_ITERATIONS);
+    linear.sort_by(|a, b| cost.of(a).total_cmp(&cost.of(b)));
     let gains = |numbers: &[f64]| {
         let mut gains = PerGain::default();
         active.iter().zip(numbers).for_each(|(place, x)| gains[*place] = *x);
         gains
     };
     let ranges: Vec<(f64, f64)> = active.iter().map(|i| (-TYPICAL[*i], TYPICAL[*i])).collect();
-    let extent = Extent { population: 20 + 5 * active.len(), generations: 120, seed };
-    let population = minimise(&ranges, extent, |numbers| spectrum.unexplained(&gains(numbers)), stop);
+    let extent = Extent { population: 20 + 5 * active.len(), generations: 120, seed: problem.seed };
+    let population = minimise(&ranges, extent, |numbers| cost.of(&gains(numbers)), stop);
     let mut all = distinct(linear.into_iter(), STARTS[0]);
     all.extend(distinct(population.iter().map(|member| gains(&member.numbers)), STARTS[1]));
     all
@@ -117,8 +161,7 @@ pub(super) fn optima(
     problem: &Global,
     stop: &(impl Fn() -> bool + Sync),
 ) -> Vec<Optimum> {
-    let spectrum = Spectrum::new(problem.record, problem.model);
-    let starts = starts(&spectrum, problem.active, problem.seed, stop);
+    let starts = starts(problem, stop);
     let ends: Vec<Option<Found>> = starts
         .par_iter()
         .map(|start| if stop() { None } else { reached(objective, problem, start) })

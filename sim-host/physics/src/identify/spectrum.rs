@@ -48,10 +48,11 @@ fn transform(values: impl Iterator<Item = f64>, angle: f64) -> C {
     sum
 }
 
-/// Values with straight lines across gaps, without their mean.
+/// Values with straight lines across those that are not numbers, without their mean. Values that are not valid count here,
+/// because a bridge over seconds would change the spectrum more than they do.
 fn bridged(measured: &Measured) -> Vec<f64> {
     let mut values = measured.values.clone();
-    let valid: Vec<usize> = (0..values.len()).filter(|k| measured.valid[*k]).collect();
+    let valid: Vec<usize> = (0..values.len()).filter(|k| values[*k].is_finite()).collect();
     let mean = valid.iter().map(|k| values[*k]).sum::<f64>() / valid.len().max(1) as f64;
     let (mut last, count) = (None, values.len());
     for next in valid.into_iter().map(Some).chain([None]) {

@@ -29,6 +29,16 @@ fn autocovariance(rest: &[f64], reach: usize) -> Vec<f64> {
     (0..reach.min(rest.len())).map(|lag| at(lag) * parzen(lag as f64 / reach as f64)).collect()
 }
 
+/// `1 + 2 sum rho^2`: by how much the correlation of residuals reduces the information about their variance (Bartlett 1946).
+fn dependence(autocovariance: &[f64]) -> f64 {
+    match autocovariance {
+        [variance, later @ ..] if *variance > 0.0 => {
+            1.0 + 2.0 * later.iter().map(|r| (r / variance).powi(2)).sum::<f64>()
+        }
+        _ => 1.0,
+    }
+}
+
 /// Covariance at an optimum (Ljung 1999, section 9.4): `(J'J)^-1 J' R J (J'J)^-1` with `R` the covariance of the residuals
 /// as estimated from themselves. For white residuals it is the common `variance (J'J)^-1`. `None` if the Jacobian
 /// is singular.
@@ -44,10 +54,7 @@ pub(super) fn uncertainty(objective: &Objective, at: &Evaluation, sample_s: f64)
             let product = columns.rows(0, length - lag).tr_mul(&columns.rows(lag, length - lag)) * *r;
             middle += if lag == 0 { product } else { &product + product.transpose() };
         }
-        let sum = 2.0 * covariance.iter().sum::<f64>() - covariance.first().unwrap_or(&0.0);
-        let ratio =
-            covariance.first().map_or(1.0, |variance| if *variance > 0.0 { sum / variance } else { 1.0 });
-        independent.push(length as f64 / ratio.max(1.0));
+        independent.push(length as f64 / dependence(&covariance));
         first += length;
     }
     let lengths = DVector::from_iterator(count, at.jacobian.column_iter().map(|column| column.norm()));

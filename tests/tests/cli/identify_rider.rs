@@ -1,0 +1,240 @@
+//! `sim-host identify RECORD`: from a record to a rider's file.
+
+use serde_json::{Value, json};
+use tests::cli::{Bench, repository};
+use tests::json_schema::violations;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+
+/// A quick identification: five gains, no reduction.
+const FIVE: &str = "--feedback K_phi_p,K_phi_d,K_delta_i,K_delta_d,K_delta_dd --reduce-until none";
+
+/// Records of 20 s of the young cyclist, on the linear bicycle's side of the nonlinear one.
+fn recorded(bench: &Bench, name: &str, options: &str) {
+    let line = format!(
+        "record --rider young --speed 4.3 --duration 20 --pulse-interval 2 --out {name}.csv --json {name}.json {options}"
+    );
+    let run = bench.run(&line);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+}
+
+/// Situation: a noisy record of 20 s by a known rider.
+/// Action: identify all gains, with the delay's profile, a rider's file, a table and a figure; ride with the file.
+/// Must hold: the document is valid and as documented; the gains are within three standard errors; the rider's file is taken by
+/// `rider check`, `rider show` and `basin`, with the identified gains; table and figure have their content.
+#[test]
+fn a_record_becomes_a_rider() {
+    let bench = Bench::new(PROGRAM);
+    recorded(&bench, "run", "--steer-noise 0.002");
+    let options =
+        "--delay 30ms --delay-profile 20:40:5 --select bic --out rider.toml --csv o.csv --svg o.svg";
+    let document = bench.json(&format!("identify run.csv --bicycle rigid_jason {options}"));
+    let schema = std::fs::read_to_string(repository("docs/schema/identify.json")).expect("a schema");
+    let committed: Value = serde_json::from_str(&schema).expect("JSON");
+    assert_eq!(violations(&committed, &document), [""; 0]);
+    for name in ["identify", "identify-many"] {
+        let committed =
+            std::fs::read_to_string(repository(&format!("docs/schema/{name}.json"))).expect("a schema");
+        let own = bench.run(&format!("schema {name}")).stdout;
+        assert!(own == committed, "run: sim-host schema {name} > docs/schema/{name}.json");
+    }
+    let truth: Value = serde_json::from_str(&bench.read("run.json")).expect("JSON");
+    let gains = document["gains"].as_object().expect("gains");
+    assert!((4..=8).contains(&gains.len()), "{gains:?}");
+    for (name, gain) in gains {
+        let [value, error] = ["value", "std_error"].map(|key| gain[key].as_f64().expect("a number"));
+        let expected = truth["gains"]["gains"][name].as_f64().expect("a gain");
+        assert!(
+            error > 0.0 && (value - expected).abs() < 3.0 * error,
+            "{name}: {value}, {error}, {expected}"
+        );
+    }
+    let vaf = document["vaf"].as_f64().expect("a number");
+    assert!((0.95..1.0).contains(&vaf), "{vaf}");
+    assert_eq!((&document["delay_s"], &document["rider_file"]), (&json!(0.03), &json!("rider.toml")));
+    assert_eq!(document["refined"], json!(true));
+    let delay = &document["delay"]["estimate_s"].as_f64().expect("an estimate");
+    assert!((0.02..0.04).contains(delay), "{delay}");
+    assert!(!document["optima"].as_array().expect("optima").is_empty());
+    let steps = document["reduction"].as_array().expect("steps");
+    assert!(steps.len() >= 4 && steps[0]["gains"].as_object().expect("gains").len() == 8);
+    assert_eq!(
+        steps[document["selected"].as_u64().expect("an index") as usize]["gains"]
+            .as_object()
+            .map(|g| g.len()),
+        Some(gains.len())
+    );
+
+    assert_eq!(bench.run("rider check rider.toml").code, Some(0));
+    let shown = bench.json("rider show rider.toml");
+    assert_eq!(shown["rows"][0]["gains"]["K_phi_p"], gains["K_phi_p"]["value"]);
+    let basin = bench.json("basin --rider rider.toml --law none --speeds 4.3 --max-rate 6 --tolerance 0.25");
+    assert_eq!(basin["border"][0]["outcome"], json!("recovered"));
+    assert!(
+        basin["area_capped"] == json!(true) || basin["area"].as_f64().is_some_and(|area| area > 0.0),
+        "{basin}"
+    );
+    assert!(bench.read("o.csv").lines().any(|line| line.starts_with("run.csv,0,false,K_delta_dd,")));
+    assert!(bench.read("o.svg").contains("of the variance accounted for"));
+    let text = bench.run(&format!("identify run.csv {FIVE} --linear"));
+    assert!(text.stdout.contains("K_phi_p") && text.stdout.contains("(linear bicycle)"), "{}", text.stdout);
+}
+
+/// Situation: two records, a file that is none, and a folder for the results.
+/// Action: identify them together, twice.
+/// Must hold: the good ones are finished and merged into one rider, the other is named; the second time nothing is fitted again and
+/// the result is the same; with other options it is fitted again.
+#[test]
+fn finished_records_are_kept() {
+    let bench = Bench::new(PROGRAM);
+    recorded(&bench, "a", "");
+    recorded(&bench, "b", "--seed 1");
+    bench.write("c.csv", "time_s,steer_rad\n0,0\n0.01,0\n");
+    let line = format!("identify a.csv b.csv c.csv {FIVE} --linear --results found --out both.toml --json");
+    let first = bench.run(&line);
+    assert_eq!(first.code, Some(0), "{}", first.stderr);
+    assert!(first.stderr.contains("c.csv: not used: "), "{}", first.stderr);
+    let second = bench.run(&line);
+    assert!(second.stderr.contains("a.csv: finished before; not fitted again"), "{}", second.stderr);
+    assert_eq!(first.stdout, second.stdout);
+    let document: Value = serde_json::from_str(&first.stdout).expect("JSON");
+    assert_eq!(document["records"].as_array().map(Vec::len), Some(2));
+    assert!(document["refused"]["c.csv"].as_str().is_some_and(|why| why.contains("steer angle has 2")));
+    assert_eq!(bench.json("rider show both.toml")["rows"].as_array().map(Vec::len), Some(2));
+    let other = bench.run(&format!("{line} --drift none"));
+    assert!(!other.stderr.contains("finished before"), "{}", other.stderr);
+}
+
+/// A record as text, changed line by line.
+fn changed(bench: &Bench, name: &str, change: impl Fn(usize, Vec<String>) -> Option<String>) {
+    let text = bench.read("run.csv");
+    let lines = text.lines().enumerate();
+    let lines: Vec<String> =
+        lines.filter_map(|(i, line)| change(i, line.split(',').map(str::to_owned).collect())).collect();
+    bench.write(name, lines.join("\n") + "\n");
+}
+
+/// Situation: records with faults that a lab's export has.
+/// Must hold: each is told in words, with what was done; what can be used is used; nothing is written for the others.
+#[test]
+fn faults_of_a_record_are_told() {
+    let bench = Bench::new(PROGRAM);
+    recorded(&bench, "run", "--steer-noise 0.001");
+    let fit = |name: &str, options: &str| {
+        bench.run(&format!("identify {name} {FIVE} --linear --out rider-{name}.toml {options}"))
+    };
+    let refused = |name: &str, options: &str, words: &[&str]| {
+        let run = fit(name, options);
+        assert_eq!(run.code, Some(1), "{name}: {}", run.stderr);
+        for word in words {
+            assert!(run.stderr.contains(word), "{name}: `{word}` in {}", run.stderr);
+        }
+        assert!(!bench.path(&format!("rider-{name}.toml")).exists(), "{name}");
+    };
+    let used = |name: &str, options: &str, words: &[&str]| {
+        let run = fit(name, options);
+        assert_eq!(run.code, Some(0), "{name}: {}", run.stderr);
+        for word in words {
+            assert!(run.stderr.contains(word), "{name}: `{word}` in {}", run.stderr);
+        }
+        assert!(bench.read(&format!("rider-{name}.toml")).contains("covariances"), "{name}");
+    };
+    let degrees = |cell: &str| cell.parse::<f64>().map_or(cell.to_owned(), |x| (57.3 * x).to_string());
+    // Degrees in a column of radians.
+    changed(&bench, "degrees.csv", |_, mut cells| {
+        cells[2] = degrees(&cells[2]);
+        Some(cells.join(","))
+    });
+    let run = fit("degrees.csv", "");
+    assert!(
+        run.stderr.contains("steer reaches") && run.stderr.contains("is it in degrees?"),
+        "{}",
+        run.stderr
+    );
+    // The same with the right name.
+    changed(&bench, "named.csv", |i, mut cells| {
+        cells[2] = if i == 0 { "steer_deg".to_owned() } else { degrees(&cells[2]) };
+        Some(cells.join(","))
+    });
+    used("named.csv", "", &[]);
+    // Rows that are missing, blank or back in time.
+    changed(&bench, "gaps.csv", |i, cells| (!(900..1000).contains(&i)).then(|| cells.join(",")));
+    used("gaps.csv", "", &["steer angle: ", "samples are missing; they are not fitted"]);
+    changed(&bench, "blank.csv", |i, mut cells| {
+        if (1200..1210).contains(&i) {
+            cells[2].clear();
+        }
+        Some(cells.join(","))
+    });
+    used("blank.csv", "", &["samples are missing"]);
+    changed(&bench, "back.csv", |i, mut cells| {
+        if (700..720).contains(&i) {
+            cells[0] = "1.0".into();
+        }
+        Some(cells.join(","))
+    });
+    used("back.csv", "", &["without a later time than the one before; left out"]);
+    // Nothing to identify.
+    changed(&bench, "still.csv", |i, mut cells| {
+        if i > 0 {
+            cells[1] = "0.0".into();
+        }
+        Some(cells.join(","))
+    });
+    refused("still.csv", "", &["still.csv", "no perturbation"]);
+    changed(&bench, "short.csv", |i, cells| (i < 900).then(|| cells.join(",")));
+    refused("short.csv", "", &["short.csv", "4.50 s long", "at least 5 s"]);
+    changed(&bench, "unnamed.csv", |i, mut cells| {
+        if i == 0 {
+            cells[1] = "push".into();
+        }
+        Some(cells.join(","))
+    });
+    refused("unnamed.csv", "", &["no perturbation", "lateral_force_n"]);
+    changed(&bench, "slow.csv", |i, cells| (i % 20 == 0).then(|| cells.join(",")));
+    refused("slow.csv", "", &["sample rate is 10", "20 to 2000 Hz"]);
+    changed(&bench, "nospeed.csv", |_, cells| Some(cells[..5].join(",")));
+    refused("nospeed.csv", "", &["--speed"]);
+    used("nospeed.csv", "--speed 4.3", &[]);
+    refused("none.csv", "", &["none.csv"]);
+    let usage = [
+        ("--delay 30", "30"),
+        ("--fit yaw", "yaw"),
+        ("--feedback K_psi", "K_phi_p"),
+        ("--drift 3", "0.05Hz"),
+        ("--select best", "vaf:PERCENT"),
+        ("--delay-profile 0:10", "FROM:TO:STEP"),
+        ("--force-at 1", "AHEAD,HEIGHT"),
+    ];
+    for (option, word) in usage {
+        let run = bench.run(&format!("identify run.csv {option}"));
+        assert!(run.code == Some(2) && run.stderr.contains(word), "{option}: {}", run.stderr);
+    }
+    assert_eq!(bench.run("identify").code, Some(2));
+}
+
+/// Situation: a record with other names and units, read with a map.
+/// Must hold: the same gains as from the documented columns.
+#[test]
+fn a_map_names_the_columns() {
+    let bench = Bench::new(PROGRAM);
+    recorded(&bench, "run", "");
+    changed(&bench, "lab.csv", |i, cells| {
+        if i == 0 {
+            return Some("sample,pull,handlebar,belt".into());
+        }
+        let [force, steer, speed] = [1, 2, 5].map(|place| cells[place].parse::<f64>().expect("a number"));
+        Some(format!("{i},{},{},{}", -force / 1e3, -steer.to_degrees(), 3.6 * speed))
+    });
+    bench.write(
+        "lab.toml",
+        "[time]\nrate_hz = 200\n[perturbation.lateral_force]\ncolumns = [\"pull\"]\nunit = \"kN\"\nscale = -1\n\
+         [steer]\ncolumns = [\"handlebar\"]\nunit = \"deg\"\nscale = -1\n[rear_wheel]\ncolumns = [\"belt\"]\nunit = \"km/h\"\n",
+    );
+    let [plain, mapped] = ["run.csv", "lab.csv --map lab.toml"]
+        .map(|file| bench.json(&format!("identify {file} {FIVE} --linear"))["gains"].clone());
+    for (name, gain) in plain.as_object().expect("gains") {
+        let [a, b] = [gain, &mapped[name]].map(|gain| gain["value"].as_f64().expect("a number"));
+        assert!((a - b).abs() < 1e-6 * a.abs(), "{name}: {a} {b}");
+    }
+}
