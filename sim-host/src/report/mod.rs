@@ -4,6 +4,7 @@ pub mod board;
 pub mod compare;
 pub mod document;
 pub mod figure;
+pub(crate) mod html;
 pub mod identify;
 pub mod output;
 pub mod perturbation;
