@@ -54,8 +54,8 @@ pub fn impulse_response(record: &Record, measured: &Measured, drift: Drift, leng
     let response: Vec<f64> = (0..record.len()).map(answered).collect();
     let rest = &values - &matrix * &solved;
     let power = rows.iter().map(|k| response[*k].powi(2)).sum::<f64>();
-    // A coefficient is the response to a unit impulse over the samples that a hat spans.
-    let scale = (every as f64 * sample_s).recip();
+    // A coefficient is the response to 1 N or 1 N m during one sample.
+    let scale = sample_s.recip();
     let of = |input: usize| {
         let place = moving.iter().position(|i| *i == input);
         place.map_or(Vec::new(), |which| (0..taps).map(|tap| solved[which * taps + tap] * scale).collect())
