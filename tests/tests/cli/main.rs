@@ -11,6 +11,7 @@ mod document;
 mod examples;
 mod falls;
 mod identify;
+mod identify_report;
 mod identify_sensor;
 mod interrupt;
 mod library;

@@ -6,6 +6,7 @@ mod draws;
 mod linear;
 mod parts;
 mod perturbation;
+mod residuals;
 mod roots;
 mod spline;
 mod tables;

@@ -27,7 +27,7 @@ mod search;
 mod spectrum;
 mod uncertainty;
 
-pub use delay::{DelayPoint, DelayProfile, delay_profile};
+pub use delay::{DROP_95, DelayPoint, DelayProfile, delay_profile};
 pub use fir::{Fir, impulse_response};
 pub use fit::{
     AFTER_ONSET_S, Fit, FitError, From, LocalOptimum, Problem, Residuals, SHORTEST_S, rightmost_real,
