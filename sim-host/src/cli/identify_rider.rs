@@ -1,5 +1,6 @@
 //! `sim-host identify RECORD`: the gains of a rider from perturbation records.
 
+use super::command_line::command_line;
 use super::identify_rider_args::{Delay, RiderArgs, drift_name, select_name};
 use super::identify_rider_results::{Finished, Store};
 use super::interrupt;
@@ -14,7 +15,8 @@ use crate::recording::{ReadOptions, read};
 use crate::replay::{Map, perturbed};
 use crate::report::figure;
 use crate::report::identify::{
-    IdentifyDocument, IdentifyManyDocument, RecordEntry, ReductionRow, ResolvedIdentify, chart, rows, text,
+    IdentifyDocument, IdentifyManyDocument, RecordEntry, ReductionRow, ResolvedIdentify, chart, page, rows,
+    text,
 };
 use crate::report::output::Output;
 use crate::report::resolved::ResolvedBicycle;
@@ -43,11 +45,21 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     let many = args.files.len() > 1;
     if many {
         args.outputs.refuse_figures("a figure shows one record; give one, or --results")?;
+        args.report
+            .as_ref()
+            .map_or(Ok(()), |_| Err("--report: a report is of one record; give one, or --results"))?;
     }
     let outputs = args.outputs.open(None)?;
     let out = args.out.as_deref().map(Output::create).transpose()?;
     if let Some(out) = &out {
         outputs.refuse_place_of("--out", out)?;
+    }
+    let report = args.report.as_deref().map(Output::create).transpose()?;
+    if let Some(report) = &report {
+        outputs.refuse_place_of("--report", report)?;
+        if out.as_ref().is_some_and(|out| out.collides(report)) {
+            return Err("--out and --report have the same place to write to".into());
+        }
     }
     let store = args.results.as_deref().map(Store::open).transpose()?;
     interrupt::install_saying("finished records are written");
@@ -81,10 +93,12 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     }
     let rider = rider(&finished)?;
     let rider_file = args.out.as_ref().filter(|_| out.is_some()).map(|path| path.display().to_string());
+    let page = finished[0].page.clone();
     write(outputs, finished, refused, rider_file, many)?;
     if let Some(out) = out {
         out.finish(rider.to_toml().as_bytes())?;
     }
+    report.map_or(Ok(()), |report| report.finish(page.as_bytes()))?;
     Ok(if interrupt::stopped() { Ended::Interrupted } else { Ended::Done })
 }
 
@@ -165,11 +179,15 @@ fn one(
         complain(&format!("{name}: not refined on the nonlinear bicycle: {error}"));
     }
     let document = IdentifyDocument::new(record, ResolvedBicycle::new(bicycle), config, &found);
+    let rider = table_of(&name, bicycle, &found)?;
+    let reported = args.report.is_some() || store.is_some();
+    let page = || page(&document, &found, &command_line(), &rider.to_toml());
     let finished = Finished {
+        page: if reported { page() } else { String::new() },
         text: text(&document),
         rows: rows(&document),
         chart: chart(&document, &found),
-        rider: table_of(&name, bicycle, &found)?,
+        rider,
         document: serde_json::to_value(&document)?,
     };
     store.map_or(Ok(()), |store| store.keep(file, &finished))?;

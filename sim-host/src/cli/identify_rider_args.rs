@@ -73,8 +73,11 @@ pub(super) struct RiderArgs {
     /// Write the rider as a file for --rider, one row per record
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
-    /// Write each record's document and rider to FOLDER as soon as it is finished; a record that is finished there with the
-    /// same options is not fitted again
+    /// Write a report of the record as a self-contained HTML page: gains, signals, residuals, impulse response, reduction, delay
+    #[arg(long, value_name = "FILE")]
+    pub(super) report: Option<PathBuf>,
+    /// Write each record's document, rider and report to FOLDER as soon as it is finished; a record that is finished there with
+    /// the same options is not fitted again
     #[arg(long, value_name = "FOLDER")]
     pub(super) results: Option<PathBuf>,
     #[command(flatten)]

@@ -17,6 +17,8 @@ pub(super) struct Finished {
     pub(super) chart: Chart,
     pub(super) rider: RiderTable,
     pub(super) document: Value,
+    /// The report as an HTML page; empty if none was requested.
+    pub(super) page: String,
 }
 
 /// The folder.
@@ -47,14 +49,16 @@ impl Store {
             && document["config"] == serde_json::to_value(config).ok()?
             && document["bicycle"] == serde_json::to_value(ResolvedBicycle::new(bicycle)).ok()?;
         let rider = catalogue::load(&self.place(file, "toml").display().to_string()).ok()?;
+        let page = std::fs::read_to_string(self.place(file, "html")).ok()?;
         let text = format!("{}: finished before, in {}\n", record.file, self.place(file, "json").display());
-        same.then(|| Finished { text, rows: Vec::new(), chart: Chart::default(), rider, document })
+        same.then(|| Finished { text, rows: Vec::new(), chart: Chart::default(), rider, document, page })
     }
 
-    /// Writes the document and the rider of a record.
+    /// Writes the document, the rider and the report of a record.
     pub(super) fn keep(&self, file: &Path, finished: &Finished) -> Result<(), Failure> {
-        // The rider first: a document means that the record is finished.
+        // The document last: it means that the record is finished.
         Output::create(&self.place(file, "toml"))?.finish(finished.rider.to_toml().as_bytes())?;
+        Output::create(&self.place(file, "html"))?.finish(finished.page.as_bytes())?;
         let text = serde_json::to_string_pretty(&finished.document)? + "\n";
         Ok(Output::create(&self.place(file, "json"))?.finish(text.as_bytes())?)
     }

@@ -6,6 +6,7 @@ mod bicycle;
 mod bicycle_args;
 mod board_args;
 mod cells;
+mod command_line;
 mod compare;
 mod conditions;
 mod design;

@@ -5,6 +5,7 @@ pub mod closed_loop;
 pub mod compare;
 pub mod document;
 pub mod figure;
+pub(crate) mod html;
 pub mod identify;
 pub mod output;
 pub mod perturbation;

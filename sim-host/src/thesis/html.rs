@@ -2,9 +2,10 @@
 
 use super::catalogue::Made;
 use super::document::{ThesisDocument, ValueEntry};
-use super::item::{ACCEPTED_PERCENT, Figure, Table};
+use super::item::{ACCEPTED_PERCENT, Table};
 use super::published::remarks;
 use super::run::Outcome;
+use crate::report::html::{self, escaped};
 use std::fmt::Write;
 
 const STYLE: &str = include_str!("report.css");
@@ -21,15 +22,7 @@ pub(super) fn page(document: &ThesisDocument, outcomes: &[Outcome]) -> String {
     for outcome in outcomes {
         body += &section(document, outcome);
     }
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>Kuipers 2020, computed again</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n"
-    )
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    html::page("Kuipers 2020, computed again", STYLE, &body)
 }
 
 fn summary(document: &ThesisDocument) -> String {
@@ -95,7 +88,7 @@ fn section(document: &ThesisDocument, outcome: &Outcome) -> String {
         }
         (None, Made::Computed { .. }) => text += "<p class=\"note\">Interrupted.</p>\n",
         (Some(item), _) => {
-            item.figures.iter().for_each(|f| text += &figure(f));
+            item.figures.iter().for_each(|f| text += &html::figure(&f.name, &f.picture, &f.caption));
             let values: Vec<&ValueEntry> = document.values.iter().filter(|v| v.item == entry.name).collect();
             text += &comparison(&values);
             item.tables.iter().for_each(|t| text += &table(t));
@@ -105,14 +98,6 @@ fn section(document: &ThesisDocument, outcome: &Outcome) -> String {
         }
     }
     text + "</section>\n"
-}
-
-fn figure(figure: &Figure) -> String {
-    // Identifiers inside an SVG must be unique on the page.
-    let svg = figure.picture.svg();
-    let own = |mark: &str| format!("{mark}{}-", figure.name);
-    let svg = ["id=\"", "url(#", "href=\"#"].iter().fold(svg, |svg, mark| svg.replace(mark, &own(mark)));
-    format!("<figure>\n{svg}\n<figcaption>{}</figcaption>\n</figure>\n", escaped(&figure.caption))
 }
 
 /// The CSS class of a value's row.
@@ -174,14 +159,7 @@ fn explanation(value: &ValueEntry) -> String {
 }
 
 fn table(table: &Table) -> String {
-    let row = |cells: &[String], tag: &str| {
-        let cells: String = cells.iter().map(|c| format!("<{tag}>{}</{tag}>", escaped(c))).collect();
-        format!("<tr>{cells}</tr>\n")
-    };
-    let rows: String = table.rows.iter().map(|r| row(r, "td")).collect();
-    format!(
-        "<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead>{}</thead>\n<tbody>\n{rows}</tbody></table></div>\n",
-        escaped(&table.title),
-        row(&table.columns, "th")
-    )
+    let rows: Vec<Vec<String>> =
+        table.rows.iter().map(|cells| cells.iter().map(|cell| escaped(cell)).collect()).collect();
+    html::table(&table.title, &table.columns, &rows)
 }

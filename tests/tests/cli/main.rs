@@ -12,6 +12,7 @@ mod examples;
 mod falls;
 mod identify;
 mod identify_loop;
+mod identify_report;
 mod identify_rider;
 mod identify_sensor;
 mod interrupt;

@@ -7,6 +7,7 @@ mod identify;
 mod linear;
 mod parts;
 mod perturbation;
+mod residuals;
 mod roots;
 mod spline;
 mod tables;

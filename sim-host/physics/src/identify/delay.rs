@@ -6,7 +6,7 @@ use super::gray_box::PerGain;
 
 /// Half of the 95 % quantile of chi-squared with one degree of freedom: the drop of the log-likelihood at the ends of a
 /// 95 % interval (Wilks 1938).
-const DROP_95: f64 = 3.841_458_820_694_124 / 2.0;
+pub const DROP_95: f64 = 3.841_458_820_694_124 / 2.0;
 /// Refinements of the best delay.
 const REFINEMENTS: usize = 4;
 

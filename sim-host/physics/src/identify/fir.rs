@@ -54,7 +54,7 @@ pub fn impulse_response(record: &Record, measured: &Measured, drift: Drift, leng
     let response: Vec<f64> = (0..record.len()).map(answered).collect();
     let rest = &values - &matrix * &solved;
     let power = rows.iter().map(|k| response[*k].powi(2)).sum::<f64>();
-    // A coefficient is the response to a unit disturbance during one sample.
+    // A coefficient is the response to 1 N or 1 N m during one sample.
     let scale = sample_s.recip();
     let of = |input: usize| {
         let place = moving.iter().position(|i| *i == input);

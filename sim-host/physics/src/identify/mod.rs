@@ -21,12 +21,13 @@ mod objective;
 mod pipeline;
 mod record;
 mod reduction;
+mod residuals;
 mod response;
 mod search;
 mod spectrum;
 mod uncertainty;
 
-pub use delay::{DelayPoint, DelayProfile, delay_profile};
+pub use delay::{DROP_95, DelayPoint, DelayProfile, delay_profile};
 pub use fir::{Fir, impulse_response};
 pub use fit::{
     AFTER_ONSET_S, Fit, FitError, From, LocalOptimum, Problem, Residuals, SHORTEST_S, rightmost_real,
@@ -37,4 +38,5 @@ pub use objective::Drift;
 pub use pipeline::{IMPULSE_RESPONSE_S, Identified, Plan, Stage, identify};
 pub use record::{Measured, Record};
 pub use reduction::{Criteria, Select, Step, reduce};
+pub use residuals::{NORMAL_95, autocorrelation, cross_correlation, independent_band, white_band};
 pub use response::{Disturbances, Hold, Signal};

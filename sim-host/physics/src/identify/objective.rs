@@ -145,6 +145,17 @@ impl<'a> Objective<'a> {
         residual
     }
 
+    /// Each measured signal less a response and the drift \[rad or rad/s\]; NaN for samples that are not in use.
+    pub(super) fn differences(&self, response: &[[f64; 3]]) -> Vec<Vec<f64>> {
+        let of = |output: &Output| {
+            let rest = output.without_drift(&output.values - output.of(response));
+            let mut whole = vec![f64::NAN; self.record.len()];
+            output.samples.iter().zip(rest.iter()).for_each(|(k, rest)| whole[*k] = *rest);
+            whole
+        };
+        self.outputs.iter().map(of).collect()
+    }
+
     /// Residuals at `gains`, and the Jacobian for those of the indices `active`; `None` if the response is unbounded.
     pub(super) fn evaluate(&self, gains: &PerGain, active: &[usize]) -> Option<Evaluation> {
         let response = self.discrete.respond(&self.record.disturbances, gains, !active.is_empty())?;

@@ -160,6 +160,22 @@ impl GrayBox {
         let discrete = Discrete::new(self, disturbances.sample_s);
         Some(discrete.respond(disturbances, gains, false)?.states)
     }
+
+    /// Response to a unit impulse of the lateral force (`input` 0) or the steer torque (1) over one sample: roll \[rad\], steer
+    /// \[rad\] and roll rate \[rad/s\] per N s or N m s at `count` multiples of `sample_s`, from 0 on, as an
+    /// [`Fir`](super::Fir) estimates it. `None` if it grows without bound.
+    pub fn impulse_response(
+        &self,
+        gains: &PerGain,
+        (input, hold): (usize, Hold),
+        sample_s: f64,
+        count: usize,
+    ) -> Option<Vec<[f64; 3]>> {
+        let mut samples = vec![[0.0; INPUTS]; count + 1];
+        // The second sample: with straight lines between the samples, an impulse begins one sample earlier.
+        samples.get_mut(1)?[input] = sample_s.recip();
+        Some(self.response(&Disturbances { sample_s, samples, hold }, gains)?.split_off(1))
+    }
 }
 
 fn delayed(

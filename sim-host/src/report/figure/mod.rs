@@ -35,6 +35,7 @@ pub use plane::{PlaneFigure, plane};
 pub use replay::{ReplayFigure, replay};
 pub(super) use ride::Curve;
 pub use ride::{RideFigure, ride};
+pub(super) use thin::thinned;
 
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,7 @@
 //! Reduces curves to the number of points that a figure can show.
 
 /// A curve's first, least, greatest and last value in each `bin` of its x, so that no peak is lost.
-pub(super) fn thinned(points: impl Iterator<Item = (f64, f64)>, bin: f64) -> Vec<(f64, f64)> {
+pub(in crate::report) fn thinned(points: impl Iterator<Item = (f64, f64)>, bin: f64) -> Vec<(f64, f64)> {
     let data: Vec<_> = points.filter(|(_, y)| y.is_finite()).collect();
     let mut kept = Vec::new();
     for part in data.chunk_by(|a, b| (a.0 / bin).floor() == (b.0 / bin).floor()) {

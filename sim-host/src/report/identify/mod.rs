@@ -1,7 +1,9 @@
-//! Document, table and text of `sim-host identify RECORD`.
+//! Document, table, text, figure and page of `sim-host identify RECORD`.
 
 mod chart;
 mod document;
+mod page;
+mod plots;
 mod rows;
 mod text;
 
@@ -10,5 +12,6 @@ pub use document::{
     BlackBox, DelayEntry, DelayEstimate, GainValue, IdentifyDocument, IdentifyManyDocument, OptimumEntry,
     RecordEntry, ReductionEntry, ResolvedIdentify, Unidentified,
 };
+pub use page::page;
 pub use rows::{ReductionRow, rows};
 pub use text::text;

@@ -4,16 +4,18 @@ use super::document::{IdentifyDocument, ReductionEntry};
 use crate::identify::symbols;
 use std::fmt::Write;
 
-fn percent(vaf: f64) -> String {
+/// A fraction in %.
+pub(super) fn percent(vaf: f64) -> String {
     format!("{:.2}", 100.0 * vaf)
 }
 
-fn optional(vaf: Option<f64>) -> String {
+/// A fraction in %, or a dash.
+pub(super) fn optional(vaf: Option<f64>) -> String {
     vaf.map_or("-".into(), percent)
 }
 
 /// A number with four significant digits.
-fn number(x: f64) -> String {
+pub(super) fn number(x: f64) -> String {
     let digits = if x == 0.0 { 3 } else { (3 - libm::floor(libm::log10(x.abs())) as i32).clamp(0, 6) };
     format!("{x:.*}", digits as usize)
 }

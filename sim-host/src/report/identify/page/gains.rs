@@ -1,0 +1,85 @@
+//! The selected gains, and those that the record does not determine.
+
+use super::{ZERO, list, number, paragraph};
+use crate::identify::{Identified, NORMAL_95, symbols};
+use crate::report::html::table;
+use crate::report::identify::document::IdentifyDocument;
+use crate::report::identify::text::percent;
+
+/// What a gain feeds back, and its unit.
+fn meaning(symbol: &str) -> (&'static str, &'static str) {
+    let steer = symbol.starts_with("K_delta");
+    match symbol.rsplit('_').next() {
+        Some("i") if steer => ("integral of steer", "N m/(rad s)"),
+        Some("i") => ("integral of roll", "N m/(rad s)"),
+        Some("d") if steer => ("steer rate", "N m s/rad"),
+        Some("d") => ("roll rate", "N m s/rad"),
+        Some("dd") if steer => ("steer acceleration", "N m s²/rad"),
+        Some("dd") => ("roll acceleration", "N m s²/rad"),
+        _ if steer => ("steer", "N m/rad"),
+        _ => ("roll", "N m/rad"),
+    }
+}
+
+pub(super) fn gains(document: &IdentifyDocument, found: &Identified) -> String {
+    let row = |name: &&'static str| {
+        let gain = document.gains.get(name)?;
+        let (what, unit) = meaning(name);
+        let half = NORMAL_95 * gain.std_error;
+        let relative = 100.0 * gain.std_error / gain.value.abs();
+        let numbers = [gain.value, gain.std_error, gain.value - half, gain.value + half].map(number);
+        let names = [(*name).to_owned(), what.into()];
+        Some(names.into_iter().chain(numbers).chain([format!("{relative:.1}"), unit.into()]).collect())
+    };
+    let rows: Vec<Vec<String>> = symbols().iter().filter_map(row).collect();
+    let columns =
+        ["Gain", "Of", "Value", "Standard error", "95 % from", "95 % to", "Relative error [%]", "Unit"];
+    let mut text = table("", &columns, &rows);
+    text += &match &found.refined {
+        Some(Ok(_)) => paragraph(
+            "The gains are refined on the nonlinear bicycle; their standard errors are those of the linear model at these gains.",
+        ),
+        Some(Err(error)) => paragraph(&format!(
+            "The gains are those of the linear bicycle: they could not be refined on the nonlinear one, because {error}."
+        )),
+        None => paragraph("The gains are those of the linear bicycle."),
+    };
+    let by_signal: Vec<String> =
+        document.vaf_by_signal.iter().map(|(signal, vaf)| format!("{signal} {} %", percent(*vaf))).collect();
+    let real_1_s = document.rightmost_eigenvalue_1_s;
+    let stable = match real_1_s {
+        // Of two integrals that act through one torque, one combination is not fed back.
+        _ if real_1_s.abs() < ZERO => {
+            "stable except for an eigenvalue of zero, which two integrals in one torque have".into()
+        }
+        _ if real_1_s < 0.0 => {
+            format!("stable: the real part of its rightmost eigenvalue is {real_1_s:.3} 1/s")
+        }
+        _ => format!("unstable: the real part of its rightmost eigenvalue is {real_1_s:.3} 1/s"),
+    };
+    text + &paragraph(&format!(
+        "Variance accounted for: {}. The closed loop is {stable}. Condition \
+         number of the fit: {:.0}. The residuals count as {:.0} independent samples; their correlation is accounted for in the \
+         standard errors.",
+        by_signal.join(", "),
+        document.condition,
+        document.independent_samples
+    ))
+}
+
+pub(super) fn not_identified(document: &IdentifyDocument) -> String {
+    let loose = document.not_identified.iter().map(|gain| format!("{}: {}.", gain.gain, gain.why));
+    let full = &document.config.feedback;
+    let reason = |name: &&'static str| match document.gains.contains_key(name) {
+        true => None,
+        false if full.contains(name) => {
+            Some(format!("{name}: zero; left out by the selection (criterion {}).", document.config.select))
+        }
+        false => Some(format!("{name}: zero; not among the gains of the full fit.")),
+    };
+    let all: Vec<String> = loose.chain(symbols().iter().filter_map(reason)).collect();
+    match all[..] {
+        [] => paragraph("Every gain is identified: no 95 % interval contains zero."),
+        _ => list(all.iter().map(String::as_str)),
+    }
+}
