@@ -43,8 +43,10 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     warn(&bicycle);
     let map = args.map.as_deref().map(Map::load).transpose().map_err(|error| format!("--map {error}"))?;
     let many = args.files.len() > 1;
-    if many {
-        args.outputs.refuse_figures("a figure shows one record; give one, or --results")?;
+    if many || args.results.is_some() {
+        args.outputs.refuse_figures(
+            "a figure shows one record; with --results each record has a page with figures",
+        )?;
         args.report
             .as_ref()
             .map_or(Ok(()), |_| Err("--report: a report is of one record; give one, or --results"))?;
@@ -61,7 +63,7 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
             return Err("--out and --report have the same place to write to".into());
         }
     }
-    let store = args.results.as_deref().map(Store::open).transpose()?;
+    let store = args.results.as_deref().map(|folder| Store::open(folder, &args.files)).transpose()?;
     interrupt::install_saying("finished records are written");
     let bar = progress(outputs.shows_progress(), "identify", 4 * args.files.len(), "stages");
     let (mut finished, mut refused) = (Vec::new(), BTreeMap::new());
@@ -121,7 +123,7 @@ fn write(
     many: bool,
 ) -> Result<(), Failure> {
     let texts: Vec<String> = finished.iter().map(|one| one.text.clone()).collect();
-    let lines: Vec<ReductionRow> = finished.iter().flat_map(|one| one.rows.clone()).collect();
+    let lines: Vec<ReductionRow> = finished.iter().flat_map(|one| rows(&one.document)).collect();
     let figure = finished[0].chart.clone();
     let mut documents: Vec<serde_json::Value> = finished.into_iter().map(|one| one.document).collect();
     documents.iter_mut().for_each(|document| document["rider_file"] = rider_file.clone().into());
@@ -185,7 +187,6 @@ fn one(
     let finished = Finished {
         page: if reported { page() } else { String::new() },
         text: text(&document),
-        rows: rows(&document),
         chart: chart(&document, &found),
         rider,
         document: serde_json::to_value(&document)?,

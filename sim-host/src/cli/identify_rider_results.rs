@@ -3,17 +3,18 @@
 use super::Failure;
 use crate::bicycle::catalogue::Bicycle;
 use crate::report::figure::Chart;
-use crate::report::identify::{RecordEntry, ReductionRow, ResolvedIdentify};
+use crate::report::identify::{RecordEntry, ResolvedIdentify};
 use crate::report::output::Output;
 use crate::report::resolved::ResolvedBicycle;
+use crate::report::tool::Tool;
 use crate::rider::{RiderTable, catalogue};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// A finished record.
 pub(super) struct Finished {
     pub(super) text: String,
-    pub(super) rows: Vec<ReductionRow>,
     pub(super) chart: Chart,
     pub(super) rider: RiderTable,
     pub(super) document: Value,
@@ -25,8 +26,18 @@ pub(super) struct Finished {
 pub(super) struct Store(PathBuf);
 
 impl Store {
-    /// Creates the folder, if needed.
-    pub(super) fn open(folder: &Path) -> Result<Self, Failure> {
+    /// Creates the folder for the results of `files`, if needed.
+    ///
+    /// # Errors
+    /// It can't be made, or two files would have results of the same name.
+    pub(super) fn open(folder: &Path, files: &[PathBuf]) -> Result<Self, Failure> {
+        let mut stems = BTreeMap::new();
+        for file in files {
+            if let Some(other) = stems.insert(file.file_stem().unwrap_or_default(), file) {
+                let [one, two] = [other, file].map(|file| file.display());
+                return Err(format!("--results: {one} and {two} would have results of the same name").into());
+            }
+        }
         std::fs::create_dir_all(folder).map_err(|e| format!("--results {}: {e}", folder.display()))?;
         Ok(Self(folder.to_owned()))
     }
@@ -45,13 +56,14 @@ impl Store {
         bicycle: &Bicycle,
     ) -> Option<Finished> {
         let document: Value = serde_json::from_slice(&std::fs::read(self.place(file, "json")).ok()?).ok()?;
-        let same = document["record"]["sha256"] == record.sha256.as_str()
+        let same = document["tool"] == serde_json::to_value(Tool::this()).ok()?
+            && document["record"]["sha256"] == record.sha256.as_str()
             && document["config"] == serde_json::to_value(config).ok()?
             && document["bicycle"] == serde_json::to_value(ResolvedBicycle::new(bicycle)).ok()?;
         let rider = catalogue::load(&self.place(file, "toml").display().to_string()).ok()?;
         let page = std::fs::read_to_string(self.place(file, "html")).ok()?;
         let text = format!("{}: finished before, in {}\n", record.file, self.place(file, "json").display());
-        same.then(|| Finished { text, rows: Vec::new(), chart: Chart::default(), rider, document, page })
+        same.then(|| Finished { text, chart: Chart::default(), rider, document, page })
     }
 
     /// Writes the document, the rider and the report of a record.

@@ -101,6 +101,12 @@ fn finished_records_are_kept() {
     assert_eq!(document["records"].as_array().map(Vec::len), Some(2));
     assert!(document["refused"]["c.csv"].as_str().is_some_and(|why| why.contains("steer angle has 2")));
     assert_eq!(bench.json("rider show both.toml")["rows"].as_array().map(Vec::len), Some(2));
+    let twice = bench.run(&format!("identify a.csv ./a.csv {FIVE} --results found"));
+    assert!(
+        twice.stderr.contains("a.csv and ./a.csv would have results of the same name"),
+        "{}",
+        twice.stderr
+    );
     let other = bench.run(&format!("{line} --drift none"));
     assert!(!other.stderr.contains("finished before"), "{}", other.stderr);
 }

@@ -53,7 +53,7 @@ fn response(problem: &Problem, pushed: &Pushed, gains: &PerGain) -> Option<Vec<[
         rider: Some(Rider { schedule, delay_s, neuromuscular }),
         schedule_speed: ScheduleSpeed::Initial,
         step_s,
-        ..Conditions::thesis(pushed.bicycle.clone(), Assist::None)
+        ..Conditions::thesis(pushed.bicycle, Assist::None)
     };
     let samples = &disturbances.samples;
     let push = |k: usize| {

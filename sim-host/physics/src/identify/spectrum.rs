@@ -38,7 +38,7 @@ pub(super) struct Spectrum {
 
 /// `sum x_k exp(-i angle k)`.
 fn transform(values: impl Iterator<Item = f64>, angle: f64) -> C {
-    let turn = C::new(libm::cos(angle), -libm::sin(angle));
+    let turn = turned(-angle);
     let mut phase = C::new(1.0, 0.0);
     let mut sum = C::ZERO;
     for x in values {
@@ -69,10 +69,15 @@ fn bridged(measured: &Measured) -> Vec<f64> {
     values
 }
 
-/// `exp(-s delay)` times the neuromuscular dynamics.
+/// The unit number at an angle \[rad\].
+fn turned(angle: f64) -> C {
+    C::new(libm::cos(angle), libm::sin(angle))
+}
+
+/// On the imaginary axis: `exp(-s delay)` times the neuromuscular dynamics.
 fn rider(neuromuscular: &Neuromuscular, delay_s: f64, s: C) -> C {
     let (w, zeta) = (neuromuscular.omega_rad_s, neuromuscular.zeta);
-    (-s * delay_s).exp() * (w * w) / (s * s + s * (2.0 * zeta * w) + w * w)
+    turned(-s.im * delay_s) * (w * w) / (s * s + s * (2.0 * zeta * w) + w * w)
 }
 
 /// Powers of `s` by which roll or steer become the signals of the gains p, i, d, dd.
@@ -93,10 +98,10 @@ impl Spectrum {
         let line = |i: usize| {
             let frequency = TAU * i as f64 * every / duration_s;
             let s = C::new(0.0, frequency);
-            let held = (C::new(1.0, 0.0) - (-s * sample_s).exp()) / (s * sample_s);
+            let held = (C::new(1.0, 0.0) - turned(-frequency * sample_s)) / (s * sample_s);
             let held = match record.disturbances.hold {
                 Hold::Zero => held,
-                Hold::Linear => held * held * (s * sample_s).exp(),
+                Hold::Linear => held * held * turned(frequency * sample_s),
             };
             let angle = frequency * sample_s;
             let disturbance =

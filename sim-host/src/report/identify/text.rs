@@ -16,6 +16,9 @@ pub(super) fn optional(vaf: Option<f64>) -> String {
 
 /// A number with four significant digits.
 pub(super) fn number(x: f64) -> String {
+    if x != 0.0 && x.abs() < 1e-4 {
+        return format!("{x:.1e}");
+    }
     let digits = if x == 0.0 { 3 } else { (3 - libm::floor(libm::log10(x.abs())) as i32).clamp(0, 6) };
     format!("{x:.*}", digits as usize)
 }
