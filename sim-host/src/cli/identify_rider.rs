@@ -47,9 +47,9 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
         args.outputs.refuse_figures(
             "a figure shows one record; with --results each record has a page with figures",
         )?;
-        args.report
-            .as_ref()
-            .map_or(Ok(()), |_| Err("--report: a report is of one record; give one, or --results"))?;
+    }
+    if many && args.report.is_some() {
+        return Err("--report: a report is of one record; give one, or --results".into());
     }
     let outputs = args.outputs.open(None)?;
     let out = args.out.as_deref().map(Output::create).transpose()?;

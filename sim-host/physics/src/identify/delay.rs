@@ -1,12 +1,16 @@
 //! What a record tells about the neural delay: the likelihood of each delay with its own best gains.
 
 use super::descent::descend;
-use super::fit::{Fit, FitError, Problem, Residuals};
+use super::fit::{Fit, FitError, Problem};
 use super::gray_box::PerGain;
+use super::uncertainty::uncertainty;
+use nalgebra::DMatrix;
 
 /// Half of the 95 % quantile of chi-squared with one degree of freedom: the drop of the log-likelihood at the ends of a
 /// 95 % interval (Wilks 1938).
 pub const DROP_95: f64 = 3.841_458_820_694_124 / 2.0;
+/// Half the step of the derivative with respect to the delay \[s\].
+const DIFFERENCE_S: f64 = 5e-4;
 /// Refinements of the best delay.
 const REFINEMENTS: usize = 4;
 
@@ -17,7 +21,7 @@ pub struct DelayPoint {
     pub delay_s: f64,
     /// The best gains with this delay.
     pub gains: PerGain,
-    /// Drop of the log-likelihood below the best delay's.
+    /// Drop of the log-likelihood below the best delay's, for residuals as correlated as those of the best delay.
     pub drop: f64,
     /// Mean of the signals' variance accounted for.
     pub vaf: f64,
@@ -34,7 +38,7 @@ pub struct DelayProfile {
     pub interval_s: [Option<f64>; 2],
 }
 
-/// The best gains with one delay.
+/// The best gains with one delay, and the logarithm of the likelihood of white residuals.
 struct At {
     delay_s: f64,
     gains: PerGain,
@@ -48,12 +52,35 @@ fn at(problem: &Problem, fit: &Fit, delay_s: f64, start: &PerGain) -> Option<At>
     let objective = problem.objective_of(&model, fit, &|_| true);
     let gains = descend(&objective, &fit.active, start)?.gains;
     let means = objective.mean_squares(&objective.evaluate(&gains, &[])?);
-    let half = |(mean, residuals): (f64, &Residuals)| {
-        residuals.independent / 2.0 * libm::log(mean.max(f64::MIN_POSITIVE))
-    };
-    let likelihood = -means.into_iter().zip(&fit.residuals).map(half).sum::<f64>();
+    let half = |(mean, length): (f64, usize)| length as f64 / 2.0 * libm::log(mean.max(f64::MIN_POSITIVE));
+    let likelihood = -means.into_iter().zip(objective.lengths()).map(half).sum::<f64>();
     let vaf = objective.vaf(&gains, &|_| true)?;
     Some(At { delay_s, gains, likelihood, vaf: vaf.iter().sum::<f64>() / vaf.len() as f64 })
+}
+
+/// Variance of the delay with the residuals' own covariance over that with white residuals: the factor by which likelihoods of
+/// white residuals tell too much (Kent 1982). `None` if the delay can't be separated from the gains.
+fn overstatement(problem: &Problem, fit: &Fit, best: &At) -> Option<f64> {
+    let of = |delay_s: f64, active: &[usize]| {
+        let mut model = problem.model;
+        model.delay_s = delay_s;
+        let objective = problem.objective_of(&model, fit, &|_| true);
+        let at = objective.evaluate(&best.gains, active)?;
+        Some((objective, at))
+    };
+    let (low, high) = ((best.delay_s - DIFFERENCE_S).max(0.0), best.delay_s + DIFFERENCE_S);
+    let ((_, before), (_, after)) = (of(low, &[])?, of(high, &[])?);
+    let (objective, mut at) = of(best.delay_s, &fit.active)?;
+    let last = at.jacobian.ncols();
+    at.jacobian = at.jacobian.insert_column(last, 0.0);
+    at.jacobian.set_column(last, &((before.residual - after.residual) / (high - low)));
+    let own = uncertainty(&objective, &at, problem.record.disturbances.sample_s)?.covariance[(last, last)];
+    let normal = at.jacobian.tr_mul(&at.jacobian);
+    let scale = normal.diagonal().map(|x| x.sqrt().recip());
+    let scaled = DMatrix::from_fn(last + 1, last + 1, |i, j| normal[(i, j)] * scale[i] * scale[j]);
+    let white = scaled.cholesky()?.inverse()[(last, last)] * scale[last].powi(2);
+    let mean_square = at.residual.norm_squared() / at.residual.len() as f64;
+    Some(own / (white * mean_square)).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
 }
 
 /// Vertex of the parabola through three points.
@@ -119,7 +146,8 @@ pub fn delay_profile(
     }
     let top = best(&points).ok_or(FitError::Unbounded)?;
     let highest = points[top].likelihood;
-    let drop = |point: &At| highest - point.likelihood;
+    let overstated = overstatement(problem, fit, &points[top]).unwrap_or(1.0);
+    let drop = |point: &At| (highest - point.likelihood) / overstated;
     // Linear in the root of the drop, which is linear in the delay for a parabola.
     let crossing = |inside: &At, outside: &At| {
         let [a, b] = [inside, outside].map(|point| drop(point).max(0.0).sqrt());

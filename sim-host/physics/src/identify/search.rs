@@ -7,6 +7,7 @@ use super::objective::{Drift, Objective};
 use super::record::Record;
 use super::response::{Discrete, Disturbances, Hold};
 use super::spectrum::Spectrum;
+use crate::rider::{Row, catalogue};
 use rayon::prelude::*;
 
 /// Order of magnitude of each gain: half the largest of Tables F.3, G.3, J.1 of Kuipers 2020, rounded. It scales the
@@ -59,6 +60,10 @@ const STABILITY_S: f64 = 12.0;
 /// Growth from the first to the last third of that response from which gains count as unstable: riders who drift slowly are
 /// upright for a minute.
 const GROWTH: f64 = 3.0;
+/// Unexplained power from which stability is not looked at, in units of the signals' power.
+const WORTH_A_LOOK: f64 = 3.0;
+/// Tables whose rows at the nearest speed are starts, too.
+const PUBLISHED: [&str; 3] = ["young", "smart", "undelayed"];
 /// Largest gain of the global search, in units of [`TYPICAL`]. Infinite gains explain nothing, which is better than many others.
 const LARGEST: f64 = 5.0;
 /// Cost of unstable gains: more than the power of all signals.
@@ -87,8 +92,8 @@ impl Cost {
             return f64::INFINITY;
         }
         let unexplained = self.spectrum.unexplained(gains);
-        // Gains that explain nothing need no simulation.
-        if unexplained < 1.0 && !self.stable(gains) { unexplained + UNSTABLE } else { unexplained }
+        // Much worse gains are not chosen anyway.
+        if unexplained < WORTH_A_LOOK && !self.stable(gains) { unexplained + UNSTABLE } else { unexplained }
     }
 }
 
@@ -105,8 +110,22 @@ fn starts(problem: &Global, stop: &(impl Fn() -> bool + Sync)) -> Vec<PerGain> {
     let extent = Extent { population: 20 + 5 * active.len(), generations: 120, seed: problem.seed };
     let population = minimise(&ranges, extent, |numbers| cost.of(&gains(numbers)), stop);
     let mut all = distinct(linear.into_iter(), STARTS[0]);
+    all.extend(published(problem.model.speed_m_s, active));
     all.extend(distinct(population.iter().map(|member| gains(&member.numbers)), STARTS[1]));
     all
+}
+
+/// Published gains at the nearest speed: riders of other bicycles ride alike.
+fn published(speed_m_s: f64, active: &[usize]) -> Vec<PerGain> {
+    let nearest = |name: &&str| {
+        let table = catalogue::load(name).ok()?;
+        let far = |row: &&Row| (row.speed_m_s - speed_m_s).abs();
+        let row = table.rows.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
+        let mut gains = PerGain::default();
+        active.iter().for_each(|i| gains[*i] = row.gains.0[*i]);
+        Some(gains)
+    };
+    PUBLISHED.iter().filter_map(nearest).collect()
 }
 
 /// The optimum reached from `start`. If the response there is unbounded, the record's first part is fitted before longer

@@ -4,7 +4,7 @@ use super::objective::{Evaluation, Objective};
 use nalgebra::{DMatrix, DVector};
 
 /// Reach of the correlation that is taken into account \[s\].
-const REACH_S: f64 = 2.0;
+const REACH_S: f64 = 3.0;
 
 /// Uncertainty of a fit.
 #[derive(Clone, Debug, PartialEq)]
