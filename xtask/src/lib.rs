@@ -4,6 +4,7 @@
 pub mod against;
 pub mod architecture;
 pub mod bench;
+pub mod counts;
 pub mod coverage;
 pub mod document;
 pub mod image;

@@ -5,6 +5,7 @@ use std::time::Duration;
 use xtask::against::against;
 use xtask::architecture::architecture;
 use xtask::bench::bench;
+use xtask::counts::counts;
 use xtask::document::{self, instruction_table, size_table};
 use xtask::reproducible::reproducible;
 use xtask::setup::{TargetSource, setup};
@@ -22,6 +23,7 @@ cargo xtask <command> [--help]
   reproducible  check that clones in different folders build identical images
   size          flash and RAM used by the images, against their budgets
   instructions  instructions of a control step, against the budget
+  counts        instructions of rides and basins on the host, against the recorded ones
   architecture  figure and tables of docs/architecture.md, and the check of the dependencies
   mutants       mutation tests of the control crate
   coverage      lines of the control crate's torque path that its tests do not cover
@@ -32,8 +34,9 @@ cargo xtask <command> [--help]
 const SETUP_HELP: &str = "\
 cargo xtask setup [--target-source auto|rustup|debian]
 
-Installs the Rust target thumbv7em-none-eabihf and, as root, QEMU and binutils from apt. Installed
-parts are left unchanged. If something cannot be installed, it says what and how to get it.
+Installs the Rust target thumbv7em-none-eabihf and, as root, QEMU, binutils and valgrind from apt.
+Installed parts are left unchanged. If something cannot be installed, it says what and how to get it;
+without valgrind only the instructions on the host are not counted.
 
   auto    rustup; if its servers can't be reached, Debian (default)
   rustup  rustup target add
@@ -110,6 +113,17 @@ updates docs/images.md. Fails if a step is over its budget, or less than a tenth
 that page. Also prints the instructions of single functions, for the table of docs/motor.md.
 ";
 
+const COUNTS_HELP: &str = "\
+cargo xtask counts [--update]
+
+Builds a small program in the release profile and counts, by valgrind's callgrind, the instructions of
+a right-hand side, a step of eight rides, control steps, one ride and a small basin. Prints them beside
+those of tests/data/instructions.toml and fails if one differs by more than 3 %, up or down (15 % with
+another compiler). Needs Linux, a processor with AVX2, and valgrind.
+
+  --update  write the counts into that file instead
+";
+
 const BENCH_HELP: &str = "\
 cargo xtask bench
 
@@ -180,6 +194,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         "reproducible" => REPRODUCIBLE_HELP,
         "size" => SIZE_HELP,
         "instructions" => INSTRUCTIONS_HELP,
+        "counts" => COUNTS_HELP,
         "bench" => BENCH_HELP,
         "against" => AGAINST_HELP,
         "architecture" => ARCHITECTURE_HELP,
@@ -201,6 +216,8 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         ("flash", [image]) => image::flash(image)?,
         ("reproducible", []) => reproducible()?,
         ("architecture", []) => architecture(image::root())?,
+        ("counts", []) => counts(false)?,
+        ("counts", ["--update"]) => counts(true)?,
         ("bench", []) => bench()?,
         ("against", [commit]) => against(commit, 3)?,
         ("against", [commit, "--runs", runs]) => {

@@ -1,5 +1,6 @@
 //! The bicycle.
 
+mod counts;
 mod energy;
 mod lateral_force;
 mod linear;
