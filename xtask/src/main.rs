@@ -5,6 +5,7 @@ use std::time::Duration;
 use xtask::against::against;
 use xtask::architecture::architecture;
 use xtask::bench::bench;
+use xtask::cost::cost;
 use xtask::counts::counts;
 use xtask::document::{self, instruction_table, size_table};
 use xtask::reproducible::reproducible;
@@ -27,7 +28,8 @@ cargo xtask <command> [--help]
   architecture  figure and tables of docs/architecture.md, and the check of the dependencies
   mutants       mutation tests of the control crate
   coverage      lines of the control crate's torque path that its tests do not cover
-  bench         computing time of a delayed rider's ride and basin, beside Python programs for the same ride
+  bench         computing time beside this machine's peak, and beside Python programs for the same ride
+  cost          computing time over the number of rides, speeds and threads
   against       computing time of basins and rides, beside an earlier commit
 ";
 
@@ -128,9 +130,17 @@ const BENCH_HELP: &str = "\
 cargo xtask bench
 
 Times a ride of 6 s with a rider 30 ms late, in sim-host and in Python with numba and with scipy, and
-the rider's basin in sim-host, one after the other; prints one table. Fails if the final states
+the rider's basin in sim-host, one after the other; prints one table. Before that it measures the
+peak rate of a core and prints what part of it right-hand sides and a small basin reach. Fails if the final states
 differ by more than 1e-6, or if the Python programs are unavailable; the rest is printed nevertheless.
 Needs Python 3.11 or later for a virtual environment in target/bench-python, with packages from PyPI.
+";
+
+const COST_HELP: &str = "\
+cargo xtask cost
+
+Times 1 to 64 rides of 6 s, and the h basin at 2 to 101 speeds on one and on two threads. Draws
+docs/img/cost.svg and writes the tables of docs/performance.md. Name the machine there. About a minute.
 ";
 
 const AGAINST_HELP: &str = "\
@@ -196,6 +206,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         "instructions" => INSTRUCTIONS_HELP,
         "counts" => COUNTS_HELP,
         "bench" => BENCH_HELP,
+        "cost" => COST_HELP,
         "against" => AGAINST_HELP,
         "architecture" => ARCHITECTURE_HELP,
         "mutants" => MUTANTS_HELP,
@@ -219,6 +230,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         ("counts", []) => counts(false)?,
         ("counts", ["--update"]) => counts(true)?,
         ("bench", []) => bench()?,
+        ("cost", []) => cost()?,
         ("against", [commit]) => against(commit, 3)?,
         ("against", [commit, "--runs", runs]) => {
             let runs = runs.parse().ok().filter(|runs| (1..=100).contains(runs));
