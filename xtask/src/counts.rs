@@ -1,7 +1,7 @@
 //! Counts the instructions of the simulator's work on the host by callgrind, and compares them with the recorded ones.
 //!
 //! Callgrind executes the program on a simulated processor with AVX2 and without AVX-512, in one thread, so that the
-//! counts are the same on every x86-64 with AVX2.
+//! counts do not depend on which x86-64 with AVX2 executes it.
 
 use crate::instructions::field;
 use crate::paths::root;
