@@ -1,11 +1,11 @@
 //! How fast: `cargo bench -p sim-host`. Figures of one machine stand in docs/performance.md.
 
-use control::{Config, Law, Sample, SensorFrame, Triple};
+use control::{Config, Law};
 use divan::{Bencher, black_box};
 use sim_host::basin::{Axis, Method, Search, basin};
 use sim_host::bicycle::{Geometry, Motion, State, Torques, catalogue, pitch_from_upright};
 use sim_host::integrate::rk4;
-use sim_host::ride::{Assist, Conditions, Start, rides};
+use sim_host::ride::{Assist, Conditions, Start, frames, rides, traced};
 use sim_host::rider::{self, Fit, Outside};
 
 fn main() {
@@ -91,36 +91,25 @@ fn eight_rides_of_6_s_with_a_rider(bencher: Bencher) {
     eight_rides(bencher, &ridden());
 }
 
-/// A thousand control steps of the flashed law on the host.
+/// The last thousand control steps of a ride of 6 s with the flashed configuration and every sensor.
 #[divan::bench]
 fn control_step_x1000(bencher: Bencher) {
     let mut config = Config::product();
     config.calibration.polarity_checked = true;
     let plan = config.plan().expect("in range");
-    let frame_at = |tick: u32, roll_rate: f32, engage| SensorFrame {
-        now_us: 1000 * tick,
-        gyro_rad_s: Triple::fresh([black_box(roll_rate), 0.0, 0.0]),
-        accel_m_s2: Triple::fresh([0.0, roll_rate, -9.81]),
-        steer_rad: Sample::fresh(0.1 * roll_rate),
-        steer_rate_rad_s: Sample::fresh(0.1 * roll_rate),
-        front_wheel_m_s: Sample::fresh(4.0),
-        rear_wheel_m_s: Sample::fresh(4.0),
-        motor_torque_nm: Sample::fresh(0.0),
-        engage,
-        ..SensorFrame::missing()
-    };
-    let (mut ready, mut ticks, mut pressed) = (control::State::default(), 0, false);
-    while ready.authority() < 1.0 {
-        pressed |=
-            control::step(&plan, &mut ready, &frame_at(ticks, 0.0, pressed)).mode == control::Mode::Standby;
-        ticks += 1;
+    let conditions = Conditions::thesis(thesis_bicycle(), Assist::Firmware(Box::new(plan.clone())));
+    let start = Axis::SteerRate.start(4.0, 3.0);
+    let mut before = frames(&conditions, start, &traced(&conditions, start).1);
+    let last = before.split_off(before.len() - 1000);
+    let mut ready = control::State::default();
+    for frame in &before {
+        control::step(&plan, &mut ready, frame);
     }
+    assert_eq!(ready.authority(), 1.0, "it assists");
     bencher.bench_local(|| {
         let mut state = ready.clone();
-        for i in 0..1000_u16 {
-            // Small enough that the drive, which stands still here, is not missed.
-            let roll_rate = f32::from(i % 100) * 1e-4;
-            black_box(control::step(&plan, &mut state, &frame_at(ticks + u32::from(i), roll_rate, true)));
+        for frame in &last {
+            black_box(control::step(&plan, &mut state, black_box(frame)));
         }
     });
 }

@@ -1,9 +1,10 @@
-//! Compares the time of a delayed rider's ride and basin in sim-host with that of Python programs for the same ride.
+//! Compares the rates of the rides with the machine's peak, and the time of a delayed rider's ride and basin in sim-host with
+//! that of Python programs for the same ride.
 
 use crate::instructions::field;
 use crate::paths::root;
 use crate::process::{capture, must};
-use crate::{Result, process};
+use crate::{Result, peak, process};
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::Command;
@@ -42,6 +43,7 @@ pub fn bench() -> Result<()> {
         timings(ride.arg(reference("ride.py")))
     });
     let ours = timings(&mut cargo())?;
+    println!("{}", peak::table()?);
     let all: Vec<Timing> = reference.iter().flatten().cloned().chain(ours).collect();
     print!("{}", table(&all));
     let apart = apart(&all);

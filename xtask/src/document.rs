@@ -72,6 +72,16 @@ pub fn instruction_table(counts: &[Count]) -> String {
     counts.iter().map(row).fold(head.into(), |table: String, row| table + &row)
 }
 
+/// `page` with the text between the comments `<!-- table NAME -->` and `<!-- end -->` replaced by a table. Fails if it has no
+/// place for the table.
+pub(crate) fn with_table(page: &str, name: &str, table: &str) -> Result<String> {
+    let (start, end) = (format!("<!-- table {name} -->\n"), "<!-- end -->");
+    let (before, rest) = page.split_once(&start).ok_or_else(|| format!("no line `{}`", start.trim_end()))?;
+    let (_, after) =
+        rest.split_once(end).ok_or_else(|| format!("no `{end}` after `{}`", start.trim_end()))?;
+    Ok(format!("{before}{start}{table}{end}{after}"))
+}
+
 /// Measures everything and writes the document.
 ///
 /// # Errors

@@ -4,12 +4,15 @@
 pub mod against;
 pub mod architecture;
 pub mod bench;
+pub mod cost;
+pub mod counts;
 pub mod coverage;
 pub mod document;
 pub mod image;
 pub mod instructions;
 pub mod mutants;
 pub mod paths;
+pub mod peak;
 pub mod process;
 pub mod progress;
 pub mod qemu;

@@ -5,6 +5,8 @@ use std::time::Duration;
 use xtask::against::against;
 use xtask::architecture::architecture;
 use xtask::bench::bench;
+use xtask::cost::cost;
+use xtask::counts::counts;
 use xtask::document::{self, instruction_table, size_table};
 use xtask::reproducible::reproducible;
 use xtask::setup::{TargetSource, setup};
@@ -22,18 +24,21 @@ cargo xtask <command> [--help]
   reproducible  check that clones in different folders build identical images
   size          flash and RAM used by the images, against their budgets
   instructions  instructions of a control step, against the budget
+  counts        instructions of rides and basins on the host, against the recorded ones
   architecture  figure and tables of docs/architecture.md, and the check of the dependencies
   mutants       mutation tests of the control crate
   coverage      lines of the control crate's torque path that its tests do not cover
-  bench         computing time of a delayed rider's ride and basin, beside Python programs for the same ride
+  bench         computing time beside this machine's peak, and beside Python programs for the same ride
+  cost          computing time over the number of rides, speeds and threads
   against       computing time of basins and rides, beside an earlier commit
 ";
 
 const SETUP_HELP: &str = "\
 cargo xtask setup [--target-source auto|rustup|debian]
 
-Installs the Rust target thumbv7em-none-eabihf and, as root, QEMU and binutils from apt. Installed
-parts are left unchanged. If something cannot be installed, it says what and how to get it.
+Installs the Rust target thumbv7em-none-eabihf and, as root, QEMU, binutils and valgrind from apt.
+Installed parts are left unchanged. If something cannot be installed, it says what and how to get it;
+without valgrind only the instructions on the host are not counted.
 
   auto    rustup; if its servers can't be reached, Debian (default)
   rustup  rustup target add
@@ -110,13 +115,32 @@ updates docs/images.md. Fails if a step is over its budget, or less than a tenth
 that page. Also prints the instructions of single functions, for the table of docs/motor.md.
 ";
 
+const COUNTS_HELP: &str = "\
+cargo xtask counts [--update]
+
+Builds a small program in the release profile and counts, by valgrind's callgrind, the instructions of
+a right-hand side, a step of eight rides, control steps, one ride and a small basin. Prints them beside
+those of tests/data/instructions.toml and fails if one differs by more than 3 %, up or down (15 % with
+another compiler). Needs Linux, a processor with AVX2, and valgrind.
+
+  --update  write the counts into that file instead
+";
+
 const BENCH_HELP: &str = "\
 cargo xtask bench
 
 Times a ride of 6 s with a rider 30 ms late, in sim-host and in Python with numba and with scipy, and
-the rider's basin in sim-host, one after the other; prints one table. Fails if the final states
+the rider's basin in sim-host, one after the other; prints one table. Before that it measures the
+peak rate of a core and prints what part of it right-hand sides and a small basin reach. Fails if the final states
 differ by more than 1e-6, or if the Python programs are unavailable; the rest is printed nevertheless.
 Needs Python 3.11 or later for a virtual environment in target/bench-python, with packages from PyPI.
+";
+
+const COST_HELP: &str = "\
+cargo xtask cost
+
+Times 1 to 64 rides of 6 s, and the h basin at 2 to 101 speeds on one and on two threads. Draws
+docs/img/cost.svg and writes the tables of docs/performance.md. Name the machine there. About a minute.
 ";
 
 const AGAINST_HELP: &str = "\
@@ -180,7 +204,9 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         "reproducible" => REPRODUCIBLE_HELP,
         "size" => SIZE_HELP,
         "instructions" => INSTRUCTIONS_HELP,
+        "counts" => COUNTS_HELP,
         "bench" => BENCH_HELP,
+        "cost" => COST_HELP,
         "against" => AGAINST_HELP,
         "architecture" => ARCHITECTURE_HELP,
         "mutants" => MUTANTS_HELP,
@@ -201,7 +227,10 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         ("flash", [image]) => image::flash(image)?,
         ("reproducible", []) => reproducible()?,
         ("architecture", []) => architecture(image::root())?,
+        ("counts", []) => counts(false)?,
+        ("counts", ["--update"]) => counts(true)?,
         ("bench", []) => bench()?,
+        ("cost", []) => cost()?,
         ("against", [commit]) => against(commit, 3)?,
         ("against", [commit, "--runs", runs]) => {
             let runs = runs.parse().ok().filter(|runs| (1..=100).contains(runs));

@@ -1,6 +1,7 @@
 //! The bicycle.
 
 mod closed_loop;
+mod counts;
 mod energy;
 mod lateral_force;
 mod linear;

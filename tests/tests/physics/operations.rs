@@ -3,6 +3,7 @@
 use sim_host::bicycle::{Geometry, Motion, State, Torques};
 use tests::count::{Counted, Operations};
 use tests::rides::shipped;
+use xtask::peak::OPERATIONS;
 
 /// Operations of generated C code for the same model (PyDy, pull request 122).
 const GENERATED: u32 = 1909;
@@ -32,6 +33,7 @@ fn a_right_hand_side_has_fewer_operations_than_generated_code() {
     let plain = Motion::new(&b, &plain).accelerations(&b, &Torques { roll: 0.0, steer: 2.0 });
     assert_eq!([counted.roll.0, counted.steer.0], [plain.roll, plain.steer]);
     assert_eq!((operations.quotients, operations.roots, operations.angles), (9, 3, 3));
+    assert_eq!(operations.total(), OPERATIONS);
     let page = include_str!("../../../docs/performance.md");
     let text = format!(
         "A right-hand side has {} operations: {} sums, {} products,",

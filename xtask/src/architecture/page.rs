@@ -1,21 +1,13 @@
-//! The tables of `docs/architecture.md`, each between the comments `<!-- table NAME -->` and `<!-- end -->`.
+//! The tables of `docs/architecture.md`, one for each graph.
 
 use super::graph::{Graph, Node};
 use crate::Result;
+use crate::document::with_table;
 use std::collections::BTreeSet;
-
-const END: &str = "<!-- end -->";
 
 /// `page` with the table of each graph replaced. Fails if a graph has no place for its table.
 pub fn with_tables(page: &str, graphs: &[Graph]) -> Result<String> {
-    graphs.iter().try_fold(page.to_owned(), |page, graph| {
-        let start = format!("<!-- table {} -->\n", graph.name);
-        let (before, rest) =
-            page.split_once(&start).ok_or_else(|| format!("no line `{}`", start.trim_end()))?;
-        let (_, after) =
-            rest.split_once(END).ok_or_else(|| format!("no `{END}` after `{}`", start.trim_end()))?;
-        Ok(format!("{before}{start}{}{END}{after}", table(graph)?))
-    })
+    graphs.iter().try_fold(page.to_owned(), |page, graph| with_table(&page, &graph.name, &table(graph)?))
 }
 
 /// Rows from the highest layer to the lowest, by name in each.

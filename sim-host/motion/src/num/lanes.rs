@@ -7,7 +7,6 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// `N` independent numbers. Operations act on each lane alone, so each lane has the same bits as an `f64`
 /// after the same operations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(align(32))]
 pub struct Lanes<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> Lanes<N> {
