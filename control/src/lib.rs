@@ -25,7 +25,7 @@
 //!   [`safety::limits`] ([`safety::limiter`]) and checks the result by a second formulation ([`safety::guard`]).
 //!
 //! [`controller`] calls them in order. [`config`] holds all parameters, [`plan`] the constants derived from them,
-//! [`fault`] the numbered causes; [`param`] declares every parameter with its range, [`numbered`]
+//! [`fault`] the numbered causes; [`param`] declares every parameter with its range, [`mod@numbered`]
 //! enums with permanent numbers, [`wire`] encodes frames, commands and configurations. A board computes wheel speeds from pulses by [`sensors::wheel_speed`].
 //!
 //! ```

@@ -44,7 +44,7 @@ impl WheelState {
 /// period is seen, so pulses must be further apart than a period.
 ///
 /// An edge in a period of [`SPAN_US`] or more (the chip was halted) has an unknown time, and there can be more of
-/// them: the state is reset, and the sample is missing until two more pulses, or none for [`STANDS_US`].
+/// them: the state is reset, and the sample is missing until two more pulses, or none for `STANDS_US`.
 ///
 /// The sample is new with a pulse, while the next pulse is overdue, as that bounds the speed, and while the wheel
 /// stands. A sensor that never gives a pulse is indistinguishable from a standing wheel. The direction is unknown:

@@ -187,7 +187,7 @@ pub fn pencil_at(study: &Study, speed: f64, disturbance: f64) -> Option<[Complex
     matrix_pencil::eigenvalues(&signals, 1e-3 * DT as f64, 4)?.try_into().ok()
 }
 
-/// The largest distance of `found` from the corresponding eigenvalues of [`true_four`] \[1/s\].
+/// The largest distance of `found` from the corresponding eigenvalues of `true_four` \[1/s\].
 pub fn pencil_error(study: &Study, speed: f64, found: &[Complex<f64>; 4]) -> f64 {
     let exact = true_four(study, speed);
     let nearest = |e: &Complex<f64>| found.iter().map(|f| (f - e).modulus()).fold(f64::INFINITY, f64::min);

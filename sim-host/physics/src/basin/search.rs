@@ -206,7 +206,7 @@ pub(super) fn along<L: Fn(f64) -> Start>(
 }
 
 /// The basin at one speed without islands: the scan ends soon after the first fall. `upper` equals that of
-/// [`column`].
+/// [`column()`].
 pub fn border(conditions: &Conditions, search: &Search, speed: f64) -> Column {
     let start = |rate| search.axis.start(speed, rate);
     if let Some(quick) = search.quick(conditions) {
