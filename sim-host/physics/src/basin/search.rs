@@ -127,7 +127,7 @@ impl Search {
 }
 
 /// Computes the basin at every speed, on all cores of the current rayon pool. `finished` is called after each
-/// column, `stop` is checked before each or, in a fast search, before every eight. The result does not depend on the
+/// column, `stop` is checked before each or, in a fast search, before every eight or fewer. The result does not depend on the
 /// number of threads.
 ///
 /// # Errors
@@ -149,7 +149,10 @@ pub fn basin(
         columns.iter().for_each(&finished);
         columns
     };
-    let groups = search.speeds.par_chunks(together(conditions, search));
+    // Few speeds: fewer together, so that no core is without any.
+    let together =
+        search.speeds.len().div_ceil(rayon::current_num_threads()).min(together(conditions, search));
+    let groups = search.speeds.par_chunks(together);
     Ok(Basin { columns: groups.flat_map_iter(explored).collect() })
 }
 
