@@ -8,7 +8,7 @@ use crate::ride::Conditions;
 pub const SMALLEST_STEP: f64 = 0.0125;
 
 /// Number of speeds of a first round, at least.
-const FIRST: usize = 12;
+const FIRST: usize = 6;
 
 /// Which speeds are computed after which.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
