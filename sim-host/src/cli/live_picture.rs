@@ -14,8 +14,10 @@ const WIDTH: usize = 80;
 const ROWS: usize = 24;
 /// Interval between looks at the columns.
 const EVERY: Duration = Duration::from_millis(20);
+/// Number of columns of the first drawing.
+const FIRST: f64 = 3.0;
 /// Growth of the number of columns between drawings: a few drawings for any number and speed of columns.
-const GROWTH: f64 = 1.2;
+const GROWTH: f64 = 2.0;
 /// Most columns that are kept for the picture: two for each character. As coarse ones come first, these cover the range.
 const MOST: usize = 2 * WIDTH;
 
@@ -52,7 +54,7 @@ impl<'a> LivePicture<'a> {
         let (running, ended) = channel::<()>();
         std::thread::scope(|scope| {
             scope.spawn(move || {
-                let mut next = 1.0;
+                let mut next = FIRST;
                 while ended.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
                     let basin = self.locked().clone();
                     let count = basin.columns.len() as f64;

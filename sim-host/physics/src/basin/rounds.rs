@@ -1,20 +1,21 @@
 //! A search in rounds: from few speeds to all, and on to further speeds where the outline bends or jumps.
 
-use super::{Basin, Column, Island, Search, SearchError, basin};
+use super::search::columns;
+use super::{Basin, Column, Island, Search, SearchError};
 use crate::range::within;
 use crate::ride::Conditions;
 
 /// Smallest step of adaptive speeds \[m/s\]: intervals below twice this are not halved.
 pub const SMALLEST_STEP: f64 = 0.0125;
 
-/// Number of speeds of a first round, at least.
+/// Number of intervals of a first round, at least.
 const FIRST: usize = 6;
 
 /// Which speeds are computed after which.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rounds {
-    /// Whether the first round is a part of the given speeds, spread over their range, and each further round those halfway
-    /// between. The basin has the same bits.
+    /// Whether the first round is a part of the given speeds, spread over their range, and the second the others, coarse
+    /// before fine. The basin has the same bits.
     pub coarse_first: bool,
     /// Tolerance of adaptive speeds, as a part of the largest height, 0.0001 to 1. `None`: the given speeds only.
     ///
@@ -32,7 +33,7 @@ pub struct Refined {
     pub basin: Basin,
 }
 
-/// As [`basin`], in rounds: the speeds of each are computed on all cores before those of the next. `added` gets the number
+/// As [`basin`](super::basin), in rounds: the speeds of each are computed on all cores before those of the next. `added` gets the number
 /// of added speeds before each round of them. The result does not depend on the number of threads.
 ///
 /// # Errors
@@ -47,26 +48,25 @@ pub fn basin_in_rounds(
 ) -> Result<Refined, SearchError> {
     search.check()?;
     rounds.check()?;
+    conditions.check()?;
+    let columns = |speeds: &[f64]| columns(conditions, search, speeds, &finished, &stop);
     let mut found = Refined { speeds: search.speeds.clone(), basin: Basin { columns: Vec::new() } };
-    let columns = |speeds| {
-        let round = Search { speeds, ..search.clone() };
-        Ok::<_, SearchError>(basin(conditions, &round, &finished, &stop)?.columns)
-    };
-    let given = if rounds.coarse_first { coarse_first(&search.speeds) } else { vec![search.speeds.clone()] };
+    let given =
+        if rounds.coarse_first { coarse_first(&search.speeds) } else { [search.speeds.clone(), Vec::new()] };
     for speeds in given {
-        found.basin.columns.extend(columns(speeds)?);
+        found.basin.columns.extend(columns(&speeds));
     }
-    let Some(tolerance) = rounds.adaptive else { return Ok(found.sorted()) };
     loop {
         found = found.sorted();
         let complete = found.basin.columns.len() == found.speeds.len();
-        let between = if complete { midpoints(&found.basin, tolerance) } else { Vec::new() };
+        let tolerance = rounds.adaptive.filter(|_| complete);
+        let between = tolerance.map_or(Vec::new(), |tolerance| midpoints(&found.basin, tolerance));
         if between.is_empty() {
             return Ok(found);
         }
         added(between.len());
         found.speeds.extend(&between);
-        found.basin.columns.extend(columns(between)?);
+        found.basin.columns.extend(columns(&between));
     }
 }
 
@@ -91,22 +91,19 @@ impl Refined {
     }
 }
 
-/// The speeds in rounds: first and last and every so many between, then those halfway, and so on. None is empty.
-fn coarse_first(speeds: &[f64]) -> Vec<Vec<f64>> {
+/// The speeds in two rounds: first and last and every so many between; then those halfway, those halfway between these, and
+/// so on.
+fn coarse_first(speeds: &[f64]) -> [Vec<f64>; 2] {
     let last = speeds.len().saturating_sub(1);
     let mut step = 1;
     while last / (2 * step) >= FIRST {
         step *= 2;
     }
-    let of = |wanted: &dyn Fn(usize) -> bool| {
-        speeds.iter().enumerate().filter(|(i, _)| wanted(*i)).map(|(_, v)| *v).collect::<Vec<_>>()
-    };
-    let mut rounds = vec![of(&|i| i.is_multiple_of(step) || i == last)];
-    while step > 1 {
-        step /= 2;
-        rounds.push(of(&|i| i.is_multiple_of(step) && !i.is_multiple_of(2 * step) && i != last));
-    }
-    rounds
+    let first = |i: usize| i.is_multiple_of(step) || i == last;
+    let (first, mut rest): (Vec<usize>, Vec<usize>) = (0..speeds.len()).partition(|&i| first(i));
+    // The more often an index can be halved, the coarser its step; the sort is stable.
+    rest.sort_by_key(|i| std::cmp::Reverse(i.trailing_zeros()));
+    [first, rest].map(|round| round.into_iter().map(|i| speeds[i]).collect())
 }
 
 /// The middles of the intervals of speed that need one \[m/s\], increasing.

@@ -140,6 +140,17 @@ pub fn basin(
 ) -> Result<Basin, SearchError> {
     search.check()?;
     conditions.check()?;
+    Ok(Basin { columns: columns(conditions, search, &search.speeds, finished, stop) })
+}
+
+/// The columns at `speeds` \[m/s\] in their order, as [`basin`] computes them; the search's own speeds are not used.
+pub(super) fn columns(
+    conditions: &Conditions,
+    search: &Search,
+    speeds: &[f64],
+    finished: impl Fn(&Column) + Sync,
+    stop: impl Fn() -> bool + Sync,
+) -> Vec<Column> {
     let explored = |speeds: &[f64]| {
         if stop() {
             return Vec::new();
@@ -150,10 +161,8 @@ pub fn basin(
         columns
     };
     // Few speeds: fewer together, so that no core is without any.
-    let together =
-        search.speeds.len().div_ceil(rayon::current_num_threads()).min(together(conditions, search));
-    let groups = search.speeds.par_chunks(together);
-    Ok(Basin { columns: groups.flat_map_iter(explored).collect() })
+    let together = speeds.len().div_ceil(rayon::current_num_threads()).clamp(1, together(conditions, search));
+    speeds.par_chunks(together).flat_map_iter(explored).collect()
 }
 
 /// Number of lines of disturbances to search together.

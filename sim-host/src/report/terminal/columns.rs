@@ -72,8 +72,8 @@ fn sign(column: &Column, low: f64, high: f64) -> char {
     let middle = 0.5 * (low + high);
     let eighths = ((column.upper - low) / (high - low) * 8.0).round().clamp(0.0, 8.0) as usize;
     let closest =
-        column.scan.iter().min_by(|a, b| (a.rate - middle).abs().total_cmp(&(b.rate - middle).abs()));
-    if eighths == 8 && closest.is_some_and(|p| p.outcome == Outcome::Undecided) {
+        || column.scan.iter().min_by(|a, b| (a.rate - middle).abs().total_cmp(&(b.rate - middle).abs()));
+    if eighths == 8 && closest().is_some_and(|p| p.outcome == Outcome::Undecided) {
         UNDECIDED
     } else if eighths == 0 && column.islands.iter().any(|i| i.from < high && i.to > low) {
         ISLAND
