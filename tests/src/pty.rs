@@ -1,11 +1,12 @@
-//! A board behind a pseudo terminal, for programs that open it as a serial port.
+//! Pseudo terminals: a board behind one, for programs that open it as a serial port, and programs on one.
 
 use crate::link_board::{Shared, lock};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use rustix::termios::{OptionalActions, Winsize, tcgetattr, tcsetattr, tcsetwinsize};
 use std::fs::File;
 use std::io::{Read, Write};
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{JoinHandle, spawn};
@@ -51,6 +52,25 @@ impl Port {
     pub fn quiet(board: &Shared) -> Self {
         Self::new(board, |_| Some(Vec::new()))
     }
+}
+
+/// Exit code of a program, and all that it writes to a terminal with this number of rows and columns.
+///
+/// # Panics
+/// If there is no pseudo terminal, or the program can't be started.
+pub fn on_terminal(command: &mut Command, (rows, columns): (u16, u16)) -> (Option<i32>, String) {
+    let (mut end, _, device) = open().expect("a pseudo terminal");
+    rustix::io::ioctl_fionbio(&end, false).expect("can block");
+    let size = Winsize { ws_row: rows, ws_col: columns, ws_xpixel: 0, ws_ypixel: 0 };
+    tcsetwinsize(&end, size).expect("has a size");
+    let second = device.try_clone().expect("another handle");
+    let mut child = command.stdout(device).stderr(second).spawn().expect("the program starts");
+    // Only the program's own handles stay open: the end of the program is the end of the text.
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    let mut text = Vec::new();
+    let _ = end.read_to_end(&mut text);
+    let code = child.wait().expect("the program ends").code();
+    (code, String::from_utf8_lossy(&text).into_owned())
 }
 
 /// The board's end, which does not block, and the raw device with its name. No other program inherits them, or the

@@ -2,6 +2,7 @@
 
 use super::conditions::{Setup, printed, setup};
 use super::drawn::{DrawnBasins, Draws, draws};
+use super::live_picture::LivePicture;
 use super::options::{Basin as BasinOptions, Chosen, UncertainBasin};
 use super::outputs::{OutputArgs, Outputs, Results, complain};
 use super::progress::progress;
@@ -9,7 +10,7 @@ use super::ride::laid_flat;
 use super::scenario_error::named;
 use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
-use crate::basin::{Basin, Column, Search, Work, basin};
+use crate::basin::{Basin, Column, Refined, Rounds, Search, Work, basin_in_rounds};
 use crate::bicycle::linear::Linear;
 use crate::eigen::critical_speeds;
 use crate::report::document::BasinDocument;
@@ -26,6 +27,7 @@ const EXAMPLES: &str = "\
 Examples:
   sim-host basin --svg basin.svg --json basin.json
   sim-host basin --law none --speeds 4:10:0.1
+  sim-host basin --speeds 0:10:0.4 --adaptive-speeds
   sim-host basin --rider young --delay 60ms --gains best
   sim-host basin --law cl2:4 --assist ideal --schedule-speed rear
   sim-host basin --preset product --sensor-delay 20ms --csv product.csv
@@ -80,14 +82,28 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     let setup = setup(&scenario)?;
     let draws = draws(&scenario, &setup)?;
-    let search = scenario.search.resolve(scenario.is_ridden()).map_err(|e| named(&scenario, &e))?;
+    let given = scenario.search.resolve(scenario.is_ridden()).map_err(|e| named(&scenario, &e))?;
     let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = args.threads.pool()?;
     let basins = 1 + draws.as_ref().map_or(0, Draws::count);
-    let bar = progress(outputs.shows_progress(), "basin", basins * search.speeds.len(), "columns");
+    let bar = progress(outputs.shows_progress(), "basin", basins * given.speeds.len(), "columns");
+    let picture = outputs.shows_picture().then(|| LivePicture::new(&bar, &given)).flatten();
+    let rounds = Rounds { coarse_first: picture.is_some(), adaptive: scenario.search.adaptive_speeds };
+    let added = |speeds: usize| bar.inc_length((basins * speeds) as u64);
+    let finished = |column: &Column| {
+        bar.inc(1);
+        picture.iter().for_each(|picture| picture.add(column));
+    };
     let begin = Instant::now();
-    let result = pool.install(|| basin(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped))?;
+    let compute = || {
+        pool.install(|| {
+            basin_in_rounds(&setup.conditions, &given, rounds, added, finished, interrupt::stopped)
+        })
+    };
+    let found = picture.as_ref().map_or_else(compute, |picture| picture.during(compute))?;
+    let Refined { speeds, basin: result } = found;
+    let search = Search { speeds, ..given };
     let seconds = begin.elapsed().as_secs_f64();
     let drawn =
         draws.map(|draws| pool.install(|| draws.basins(&setup, &search, || bar.inc(1), interrupt::stopped)));
@@ -127,7 +143,8 @@ pub(super) fn write(
         return Ok(Ended::Interrupted);
     }
     let complete = result.columns.len() == search.speeds.len();
-    let resolved = ResolvedSearch::new(search);
+    let adaptive_speeds = setup.scenario.search.adaptive_speeds;
+    let resolved = ResolvedSearch { adaptive_speeds, ..ResolvedSearch::new(search) };
     let parts = (setup.config.clone(), resolved, setup.scenario.clone());
     let document = BasinDocument::new(parts, &search.speeds, result, seconds);
     // Without finished draws there is no band.

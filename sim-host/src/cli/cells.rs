@@ -108,7 +108,7 @@ pub(super) fn resolve(
     let mut cells = Vec::with_capacity(setups.len());
     for (id, (config, mut scenario, conditions)) in plan.cells.iter().zip(setups) {
         scenario.search.speeds = Some(speeds.clone());
-        (scenario.uncertain, scenario.rider_draws) = (None, None);
+        (scenario.uncertain, scenario.rider_draws, scenario.search.adaptive_speeds) = (None, None, None);
         cells.push(Cell { id: id.clone(), config, scenario: serde_json::to_value(&scenario)?, conditions });
     }
     Ok(Resolved { plan, cells, search })

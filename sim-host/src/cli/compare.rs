@@ -162,17 +162,20 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 /// The search of the scenarios of the cases, if they have one; it must be the same in all that have one.
 fn common_search(cases: &[RequestedCase]) -> Result<SearchChoice, Failure> {
     let searches = cases.iter().filter_map(|case| match case {
-        RequestedCase::Compute(label, setup) => Some((label, &setup.scenario.search)),
+        // A comparison is at common speeds.
+        RequestedCase::Compute(label, setup) => {
+            Some((label, SearchChoice { adaptive_speeds: None, ..setup.scenario.search.clone() }))
+        }
         RequestedCase::Done(..) => None,
     });
-    let mut own = searches.filter(|(_, search)| **search != SearchChoice::default());
+    let mut own = searches.filter(|(_, search)| *search != SearchChoice::default());
     let Some((first, search)) = own.next() else { return Ok(SearchChoice::default()) };
     match own.find(|(_, other)| *other != search) {
         Some((label, _)) => Err(format!(
             "the scenarios of the cases `{first}` and `{label}` have different searches; a comparison has one"
         )
         .into()),
-        None => Ok(search.clone()),
+        None => Ok(search),
     }
 }
 

@@ -22,6 +22,7 @@ mod identify_rider_args;
 mod identify_rider_results;
 mod identify_sensor;
 mod interrupt;
+mod live_picture;
 mod monitor;
 mod monitor_view;
 mod options;

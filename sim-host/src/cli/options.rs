@@ -5,7 +5,7 @@ use super::outputs::complain_once;
 use super::scenario_error::named;
 use crate::ride::FallCriterion;
 use crate::scenario::setting::{
-    BICYCLES, CONDITIONS, FALL, PLANE, RIDERS, SEARCH, START, Setting, UNCERTAIN,
+    ADAPTIVE, BICYCLES, CONDITIONS, FALL, PLANE, RIDERS, SEARCH, START, Setting, UNCERTAIN,
 };
 use crate::scenario::{LoadedRider, RiderChoice, Scenario, cut_warnings};
 use clap::builder::{PossibleValue, PossibleValuesParser, ValueParser};
@@ -28,7 +28,7 @@ pub(super) struct Conditions;
 pub(super) struct Ride;
 /// Conditions and search of a basin.
 pub(super) struct Basin;
-/// Conditions and search of a basin, and drawn bicycles or riders.
+/// Conditions and search of a basin, adaptive speeds, and drawn bicycles or riders.
 pub(super) struct UncertainBasin;
 /// The bicycle alone.
 pub(super) struct Bicycle;
@@ -55,7 +55,7 @@ impl Settings for Basin {
     const LISTS: &'static [&'static [Setting]] = &[CONDITIONS, SEARCH];
 }
 impl Settings for UncertainBasin {
-    const LISTS: &'static [&'static [Setting]] = &[CONDITIONS, SEARCH, UNCERTAIN];
+    const LISTS: &'static [&'static [Setting]] = &[CONDITIONS, SEARCH, ADAPTIVE, UNCERTAIN];
 }
 impl Settings for Bicycle {
     const LISTS: &'static [&'static [Setting]] = &[BICYCLES];
@@ -128,6 +128,10 @@ fn arg<S: Settings>(setting: &'static Setting) -> Arg {
         .allow_hyphen_values(setting.hyphen);
     let arg = match setting.default {
         Some(default) => arg.default_value(default),
+        None => arg,
+    };
+    let arg = match setting.alone {
+        Some(alone) => arg.num_args(0..=1).default_missing_value(alone),
         None => arg,
     };
     let arg = if setting.required { arg.required_unless_present("scenario") } else { arg };

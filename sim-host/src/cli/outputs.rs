@@ -7,7 +7,7 @@ use crate::report::output::Output;
 use crate::report::picture::{caption, png_with_caption, svg_with_caption};
 use serde::Serialize;
 use std::collections::BTreeSet;
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -108,6 +108,16 @@ impl Outputs {
         !self.quiet
     }
 
+    /// Whether the text output is shown on a terminal, below a progress bar on the same or another.
+    pub(super) fn shows_picture(&self) -> bool {
+        self.shows_text() && std::io::stdout().is_terminal() && std::io::stderr().is_terminal()
+    }
+
+    /// Whether the text output goes to standard output.
+    fn shows_text(&self) -> bool {
+        !self.quiet && !self.all().iter().any(|(_, output)| output.is_standard())
+    }
+
     /// Writes the frames, if requested.
     pub(super) fn write_frames(&self, frames: impl FnOnce() -> Vec<u8>) -> Result<(), Failure> {
         self.frames.as_ref().map_or(Ok(()), |output| Ok(output.finish(&frames())?))
@@ -169,7 +179,7 @@ impl Outputs {
         mut done: Vec<Result<(), Failure>>,
         summary: impl FnOnce() -> String,
     ) -> Result<(), Failure> {
-        if !self.quiet && !self.all().iter().any(|(_, output)| output.is_standard()) {
+        if self.shows_text() {
             done.push(print(&summary()));
         }
         // A closed pipe is no failure, so it comes last.

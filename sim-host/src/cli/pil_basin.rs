@@ -32,7 +32,7 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let BasinArgs { scenario: chosen, threads, outputs } = &args.basin;
     let mut scenario = chosen.scenario()?;
-    (scenario.uncertain, scenario.rider_draws) = (None, None);
+    (scenario.uncertain, scenario.rider_draws, scenario.search.adaptive_speeds) = (None, None, None);
     if let Some(ended) = printed(chosen, &scenario)? {
         return Ok(ended);
     }

@@ -7,7 +7,9 @@ pub(super) fn progress(shown: bool, command: &str, count: usize, what: &str) -> 
     if !shown {
         return ProgressBar::hidden();
     }
-    let template = format!("{command} {{bar:40}} {{pos}}/{{len}} {what}, {{elapsed}} gone, {{eta}} left");
+    // The message is above the bar, and is empty unless it is set.
+    let template =
+        format!("{{msg}}{command} {{bar:40}} {{pos}}/{{len}} {what}, {{elapsed}} gone, {{eta}} left");
     let style = ProgressStyle::with_template(&template);
     ProgressBar::new(count as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

@@ -315,6 +315,9 @@ pub struct ResolvedSearch {
     pub tolerance: f64,
     /// "fast" or "plain".
     pub method: Method,
+    /// Tolerance of the outline between speeds, as a part of the largest height; absent: no speeds were added.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adaptive_speeds: Option<f64>,
 }
 
 impl ResolvedSearch {
@@ -326,6 +329,7 @@ impl ResolvedSearch {
             scan_step: search.scan_step,
             tolerance: search.tolerance,
             method: search.method,
+            adaptive_speeds: None,
         }
     }
 }

@@ -5,7 +5,7 @@ mod columns;
 
 use super::figure::scale::nice;
 use super::figure::{BasinFigure, Curve, EigenFigure, RideFigure};
-use crate::basin::Axis;
+use crate::basin::{Axis, Basin};
 use braille::Chart;
 
 /// Smallest width of a plot with its numbers.
@@ -13,17 +13,25 @@ const MIN_WIDTH: usize = 40;
 
 /// Plots basins, one below the other, as columns of blocks; every line ends with a newline.
 pub fn basin(figure: &BasinFigure, width: usize) -> String {
-    let width = width.max(MIN_WIDTH);
-    let rate = match figure.axis {
-        Axis::SteerRate => "initial steer rate [rad/s]",
-        Axis::RollRate => "initial roll rate [rad/s]",
-    };
+    let rate = rate_label(figure.axis);
     let mut text = String::new();
     for (name, basin) in figure.series {
         let title = if name.is_empty() { rate.to_string() } else { format!("{name}: {rate}") };
-        text += &columns::plot(basin, &title, width);
+        text += &columns::plot(basin, &title, columns::span(basin), width.max(MIN_WIDTH));
     }
     text
+}
+
+/// Plots a basin of which columns are still missing, over the speeds that it will cover \[m/s\].
+pub fn partial_basin(basin: &Basin, axis: Axis, speeds: (f64, f64), width: usize) -> String {
+    columns::plot(basin, rate_label(axis), columns::wide(speeds), width.max(MIN_WIDTH))
+}
+
+fn rate_label(axis: Axis) -> &'static str {
+    match axis {
+        Axis::SteerRate => "initial steer rate [rad/s]",
+        Axis::RollRate => "initial roll rate [rad/s]",
+    }
 }
 
 /// Plots roll, steer and torque over time.
@@ -67,7 +75,7 @@ pub fn eigen(figure: &EigenFigure, width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::basin::{Basin, Column, Island, ScanPoint, Work};
+    use crate::basin::{Column, Island, ScanPoint, Work};
     use crate::eigen::{CriticalSpeeds, Mode};
     use crate::ride::{FallCause, Outcome};
     use nalgebra::Complex;

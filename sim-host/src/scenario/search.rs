@@ -2,7 +2,7 @@
 
 use super::error::ScenarioError;
 use super::speeds::{self, SpeedsError};
-use crate::basin::{Axis, Method, Search};
+use crate::basin::{Axis, Method, Rounds, Search};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +49,10 @@ pub struct SearchChoice {
     pub tolerance: f64,
     /// How the rides are simulated.
     pub method: Method,
+    /// Of `basin`: further speeds are added halfway between others until the outline deviates from straight lines by at
+    /// most this part of the largest height, 0.0001 to 1; absent: the given speeds only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adaptive_speeds: Option<f64>,
 }
 
 impl Default for SearchChoice {
@@ -60,6 +64,7 @@ impl Default for SearchChoice {
             scan_step: 0.25,
             tolerance: 0.01,
             method: Method::Fast,
+            adaptive_speeds: None,
         }
     }
 }
@@ -81,6 +86,7 @@ impl SearchChoice {
             method: self.method,
         };
         search.check()?;
+        Rounds { adaptive: self.adaptive_speeds, ..Rounds::default() }.check()?;
         Ok(search)
     }
 }

@@ -1,5 +1,6 @@
 //! The command line.
 
+mod adaptive;
 mod any_bicycle;
 mod bad_input;
 mod bicycle_files;

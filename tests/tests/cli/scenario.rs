@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use sim_host::scenario::Scenario;
-use sim_host::scenario::setting::{CONDITIONS, PLANE, SEARCH, START, Setting, UNCERTAIN};
+use sim_host::scenario::setting::{ADAPTIVE, CONDITIONS, PLANE, SEARCH, START, Setting, UNCERTAIN};
 use std::path::Path;
 use tests::cli::{Bench, repository};
 use tests::json_schema::violations;
@@ -283,7 +283,7 @@ fn example(setting: &Setting) -> String {
         "parameters" => "set.toml",
         "fall" => "flat=none",
         "speeds" => "3:4:0.5",
-        "recovered-below" | "ray-tolerance" => "0.2",
+        "adaptive-speeds" | "recovered-below" | "ray-tolerance" => "0.2",
         _ => "3",
     };
     text.into()
@@ -294,7 +294,7 @@ fn example(setting: &Setting) -> String {
 /// Must hold: the file has the key that the table says, and reads back as the same scenario, also as JSON.
 #[test]
 fn every_setting_has_its_key() {
-    let all = [CONDITIONS, SEARCH, START, PLANE, UNCERTAIN].into_iter().flatten();
+    let all = [CONDITIONS, SEARCH, ADAPTIVE, START, PLANE, UNCERTAIN].into_iter().flatten();
     let mut count = 0;
     for setting in all {
         let mut scenario = Scenario::default();

@@ -6,5 +6,6 @@ mod motion;
 mod published;
 mod riders;
 mod rides;
+mod rounds;
 mod search;
 mod sensitivity;

@@ -1,6 +1,7 @@
 //! Root-mean-square distance of two outlines.
 
-use super::{Basin, Bound};
+use super::outline::weights;
+use super::{Basin, Bound, Column};
 
 /// Root-mean-square distance of two outlines \[rad/s\], in both interpretations of the thesis's eq. 2.22.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -13,17 +14,19 @@ pub struct Rmse {
     pub bound: Bound,
 }
 
-/// The distance over the speeds common to both outlines; `None` if there are none.
+/// The distance over the speeds common to both outlines; `None` if there are none. `mean` weighs unequal steps as
+/// [`Basin::mean_height`] does.
 pub fn rmse(a: &Basin, b: &Basin) -> Option<Rmse> {
-    let mut squares = 0.0;
-    let mut n = 0u32;
-    let mut bound = Bound::Measured;
-    for column in &a.columns {
-        if let Some(other) = b.columns.iter().find(|c| (c.speed - column.speed).abs() < 1e-9) {
-            squares += (column.upper - other.upper).powi(2);
-            bound = bound.and(Bound::of_distance(column, other));
-            n += 1;
-        }
+    let other = |column: &Column| b.columns.iter().find(|c| (c.speed - column.speed).abs() < 1e-9);
+    let common: Vec<_> = a.columns.iter().filter_map(|column| Some((column, other(column)?))).collect();
+    let weights = weights(&common.iter().map(|(column, _)| column.speed).collect::<Vec<_>>());
+    let (mut squares, mut weighted, mut bound) = (0.0, 0.0, Bound::Measured);
+    for ((column, other), weight) in common.iter().zip(&weights) {
+        let square = (column.upper - other.upper).powi(2);
+        squares += square;
+        weighted += weight * square;
+        bound = bound.and(Bound::of_distance(column, other));
     }
-    (n > 0).then(|| Rmse { mean: (squares / f64::from(n)).sqrt(), as_printed: squares.sqrt(), bound })
+    let mean = (weighted / weights.iter().sum::<f64>()).sqrt();
+    (!common.is_empty()).then(|| Rmse { mean, as_printed: squares.sqrt(), bound })
 }

@@ -100,10 +100,12 @@ impl Basin {
         self.columns.iter().map(|c| (c.speed, c.upper)).collect()
     }
 
-    /// Mean of `upper` over the speeds \[rad/s\]; `None` without a column.
+    /// Mean of `upper` over the speeds \[rad/s\], at unequal steps weighted by the width of the columns; `None` without a
+    /// column.
     pub fn mean_height(&self) -> Option<f64> {
-        let n = self.columns.len();
-        (n > 0).then(|| self.columns.iter().map(|c| c.upper).sum::<f64>() / n as f64)
+        let weights = weights(&self.columns.iter().map(|c| c.speed).collect::<Vec<_>>());
+        let weighted = self.columns.iter().zip(&weights).map(|(c, weight)| weight * c.upper);
+        (!self.columns.is_empty()).then(|| weighted.sum::<f64>() / weights.iter().sum::<f64>())
     }
 
     /// Number of rides of the scan that fell by `cause`.
@@ -123,4 +125,18 @@ pub fn area(outline: &[(f64, f64)]) -> f64 {
     let strips = outline.windows(2).map(|w| 0.5 * (w[0].1 + w[1].1) * (w[1].0 - w[0].0));
     // The sum of an empty iterator is minus zero.
     strips.sum::<f64>() + 0.0
+}
+
+/// Largest difference of steps that count as equal \[m/s\]: speeds of a range are rounded to 1e-9.
+const EQUAL: f64 = 1e-8;
+
+/// Weights of increasing speeds in a mean: 1 at equal steps, else half the distance between the neighbours \[m/s\], an outer
+/// speed reaching as far outwards as inwards.
+pub(super) fn weights(speeds: &[f64]) -> Vec<f64> {
+    let steps: Vec<f64> = speeds.windows(2).map(|w| w[1] - w[0]).collect();
+    if steps.iter().all(|step| (step - steps[0]).abs() <= EQUAL) {
+        return vec![1.0; speeds.len()];
+    }
+    let last = steps.len() - 1;
+    (0..speeds.len()).map(|i| 0.5 * (steps[i.saturating_sub(1)] + steps[i.min(last)])).collect()
 }

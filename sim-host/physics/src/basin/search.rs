@@ -127,7 +127,7 @@ impl Search {
 }
 
 /// Computes the basin at every speed, on all cores of the current rayon pool. `finished` is called after each
-/// column, `stop` is checked before each or, in a fast search, before every eight. The result does not depend on the
+/// column, `stop` is checked before each or, in a fast search, before every eight or fewer. The result does not depend on the
 /// number of threads.
 ///
 /// # Errors
@@ -140,6 +140,17 @@ pub fn basin(
 ) -> Result<Basin, SearchError> {
     search.check()?;
     conditions.check()?;
+    Ok(Basin { columns: columns(conditions, search, &search.speeds, finished, stop) })
+}
+
+/// The columns at `speeds` \[m/s\] in their order, as [`basin`] computes them; the search's own speeds are not used.
+pub(super) fn columns(
+    conditions: &Conditions,
+    search: &Search,
+    speeds: &[f64],
+    finished: impl Fn(&Column) + Sync,
+    stop: impl Fn() -> bool + Sync,
+) -> Vec<Column> {
     let explored = |speeds: &[f64]| {
         if stop() {
             return Vec::new();
@@ -149,8 +160,9 @@ pub fn basin(
         columns.iter().for_each(&finished);
         columns
     };
-    let groups = search.speeds.par_chunks(together(conditions, search));
-    Ok(Basin { columns: groups.flat_map_iter(explored).collect() })
+    // Few speeds: fewer together, so that no core is without any.
+    let together = speeds.len().div_ceil(rayon::current_num_threads()).clamp(1, together(conditions, search));
+    speeds.par_chunks(together).flat_map_iter(explored).collect()
 }
 
 /// Number of lines of disturbances to search together.

@@ -11,12 +11,20 @@ const UNDECIDED: char = '▒';
 const ISLAND: char = '▓';
 const CAPPED: char = '▲';
 
-/// The plot, `width` characters wide.
-pub(super) fn plot(basin: &Basin, title: &str, width: usize) -> String {
-    let across = width - MARGIN;
+/// The range of a basin's speeds \[m/s\].
+pub(super) fn span(basin: &Basin) -> (f64, f64) {
     let speed = |c: Option<&Column>, or: f64| c.map_or(or, |c| c.speed);
-    let (first, last) = (speed(basin.columns.first(), 0.0), speed(basin.columns.last(), 1.0));
-    let x = if first < last { (first, last) } else { (first - 0.5, first + 0.5) };
+    wide((speed(basin.columns.first(), 0.0), speed(basin.columns.last(), 1.0)))
+}
+
+/// The range, or for a single speed one around it \[m/s\].
+pub(super) fn wide((first, last): (f64, f64)) -> (f64, f64) {
+    if first < last { (first, last) } else { (first - 0.5, first + 0.5) }
+}
+
+/// The plot over the speeds `x` \[m/s\], `width` characters wide.
+pub(super) fn plot(basin: &Basin, title: &str, x: (f64, f64), width: usize) -> String {
+    let across = width - MARGIN;
     let reach = basin.columns.iter().flat_map(|c| c.islands.iter().map(|i| i.to).chain([c.upper]));
     let top = nice(reach.chain([0.0]), 6).1;
     let shown: Vec<Option<&Column>> = (0..across).map(|i| nearest(basin, x, i, across)).collect();
@@ -64,8 +72,8 @@ fn sign(column: &Column, low: f64, high: f64) -> char {
     let middle = 0.5 * (low + high);
     let eighths = ((column.upper - low) / (high - low) * 8.0).round().clamp(0.0, 8.0) as usize;
     let closest =
-        column.scan.iter().min_by(|a, b| (a.rate - middle).abs().total_cmp(&(b.rate - middle).abs()));
-    if eighths == 8 && closest.is_some_and(|p| p.outcome == Outcome::Undecided) {
+        || column.scan.iter().min_by(|a, b| (a.rate - middle).abs().total_cmp(&(b.rate - middle).abs()));
+    if eighths == 8 && closest().is_some_and(|p| p.outcome == Outcome::Undecided) {
         UNDECIDED
     } else if eighths == 0 && column.islands.iter().any(|i| i.from < high && i.to > low) {
         ISLAND

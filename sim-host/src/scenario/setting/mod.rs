@@ -7,7 +7,7 @@ mod start;
 pub use conditions::{BICYCLES, CONDITIONS, FALL};
 pub use rider::RIDERS;
 pub(super) use start::DRAWS;
-pub use start::{PLANE, SEARCH, START, UNCERTAIN};
+pub use start::{ADAPTIVE, PLANE, SEARCH, START, UNCERTAIN};
 
 use super::{Scenario, TextError};
 
@@ -24,6 +24,8 @@ pub struct Setting {
     pub help: &'static str,
     /// Default as text; `None` if it depends on other settings.
     pub default: Option<&'static str>,
+    /// Value of the option given without one; `None` if it needs one.
+    pub alone: Option<&'static str>,
     /// The allowed words and their meaning; empty if the value is not a word of a list.
     pub words: &'static [(&'static str, &'static str)],
     /// Whether it must be given where it is an option.
@@ -45,6 +47,7 @@ const PLAIN: Setting = Setting {
     value: "",
     help: "",
     default: None,
+    alone: None,
     words: &[],
     required: false,
     repeats: false,
@@ -55,5 +58,8 @@ const PLAIN: Setting = Setting {
 
 /// The setting with this key in a scenario's file.
 pub fn of_key(key: &str) -> Option<&'static Setting> {
-    [CONDITIONS, SEARCH, START, PLANE, UNCERTAIN].into_iter().flatten().find(|setting| setting.key == key)
+    [CONDITIONS, SEARCH, ADAPTIVE, START, PLANE, UNCERTAIN]
+        .into_iter()
+        .flatten()
+        .find(|setting| setting.key == key)
 }

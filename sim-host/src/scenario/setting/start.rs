@@ -85,6 +85,21 @@ pub const SEARCH: &[Setting] = &[
     },
 ];
 
+/// Further speeds of a basin.
+pub const ADAPTIVE: &[Setting] = &[Setting {
+    name: "adaptive-speeds",
+    key: "search.adaptive_speeds",
+    value: "TOLERANCE",
+    help: "Add speeds between the given ones where the outline bends or jumps by more than TOLERANCE times the largest height            [without a value: 0.01]",
+    alone: Some("0.01"),
+    hyphen: false,
+    set: |s, text| {
+        s.search.adaptive_speeds = Some(text::number(text)?);
+        Ok(())
+    },
+    ..PLAIN
+}];
+
 /// The numbers of drawn bicycles and of drawn riders.
 pub const UNCERTAIN: &[Setting] = &[BICYCLE_DRAWS, RIDER_DRAWS];
 
