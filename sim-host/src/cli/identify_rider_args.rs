@@ -57,8 +57,8 @@ pub(super) struct RiderArgs {
     /// Variance accounted for in % at which the reduction ends; `none` for no reduction
     #[arg(long, value_name = "PERCENT", default_value = "50", value_parser = until)]
     pub(super) reduce_until: Until,
-    /// Gains to select: full (all), vaf:PERCENT (the fewest that account for it), aic, bic, or held (best for data that was
-    /// not fitted)
+    /// Gains to select: full (all), vaf:PERCENT (the fewest that account for it), onset:PERCENT (the same within 1 s of the
+    /// perturbations' onsets), aic, bic, or held (best for data that was not fitted)
     #[arg(long, value_name = "CRITERION", default_value = "full", value_parser = select)]
     pub(super) select: Select,
     /// Assignment of the columns: the name of a built-in map, or a FILE [default: by the columns' names]
@@ -181,9 +181,10 @@ fn select(text: &str) -> Result<Select, String> {
         "aic" => Ok(Select::Aic),
         "bic" => Ok(Select::Bic),
         "held" => Ok(Select::CrossValidated),
-        _ => match text.strip_prefix("vaf:") {
-            Some(number) => percent(number).map(Select::Vaf),
-            None => Err("expected full, vaf:PERCENT, aic, bic or held".into()),
+        _ => match text.split_once(':') {
+            Some(("vaf", number)) => percent(number).map(Select::Vaf),
+            Some(("onset", number)) => percent(number).map(Select::Onset),
+            _ => Err("expected full, vaf:PERCENT, onset:PERCENT, aic, bic or held".into()),
         },
     }
 }
@@ -193,6 +194,7 @@ pub(super) fn select_name(select: Select) -> String {
     match select {
         Select::Full => "full".into(),
         Select::Vaf(vaf) => format!("vaf:{}", 100.0 * vaf),
+        Select::Onset(vaf) => format!("onset:{}", 100.0 * vaf),
         Select::Aic => "aic".into(),
         Select::Bic => "bic".into(),
         Select::CrossValidated => "held".into(),

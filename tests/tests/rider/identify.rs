@@ -216,6 +216,7 @@ fn a_reduction_ends_at_the_riders_own_gains() {
     let vaf = |i: usize| steps[i].fit.mean_vaf();
     assert!(vaf(3) > 0.9 && vaf(3) - vaf(4) > 0.1, "{} {}", vaf(3), vaf(4));
     assert_eq!(Select::Vaf(0.9).index(&steps), 3);
+    assert_eq!(Select::Onset(0.9).index(&steps), 3);
     let held = Select::CrossValidated.index(&steps);
     assert!(held <= 3, "{held}");
     let last = steps.last().expect("a step");

@@ -168,6 +168,12 @@ impl Fit {
         self.vaf.iter().map(|(_, vaf)| vaf).sum::<f64>() / self.vaf.len() as f64
     }
 
+    /// The same within [`AFTER_ONSET_S`] of the perturbations' onsets.
+    pub fn mean_vaf_after_onset(&self) -> Option<f64> {
+        let of = self.vaf_after_onset.as_ref()?;
+        Some(of.iter().map(|(_, vaf)| vaf).sum::<f64>() / of.len() as f64)
+    }
+
     /// Variance of each gain relative to its square: the diagonal of eq. 2.15.
     pub fn relative_variances(&self) -> Vec<(usize, f64)> {
         let relative =

@@ -44,6 +44,8 @@ pub enum Select {
     Full,
     /// The last step with at least this variance accounted for, from 0 to 1.
     Vaf(f64),
+    /// The same of the variance after the perturbations' onsets: what decides between recovery and fall.
+    Onset(f64),
     /// Lowest information criterion of Akaike.
     Aic,
     /// Lowest information criterion of Bayes.
@@ -59,11 +61,13 @@ impl Select {
             let order = |a: &usize, b: &usize| of(&steps[*a]).total_cmp(&of(&steps[*b]));
             (0..steps.len()).min_by(order).unwrap_or(0)
         };
+        let last = |enough: &dyn Fn(&Step) -> bool| {
+            steps.iter().take_while(|step| enough(step)).count().saturating_sub(1)
+        };
         match self {
             Self::Full => 0,
-            Self::Vaf(vaf) => {
-                steps.iter().take_while(|step| step.fit.mean_vaf() >= vaf).count().saturating_sub(1)
-            }
+            Self::Vaf(vaf) => last(&|step| step.fit.mean_vaf() >= vaf),
+            Self::Onset(vaf) => last(&|step| step.fit.mean_vaf_after_onset().is_some_and(|of| of >= vaf)),
             Self::Aic => least(&|step| step.criteria.aic),
             Self::Bic => least(&|step| step.criteria.bic),
             Self::CrossValidated => least(&|step| -step.cross_validated_vaf.unwrap_or(f64::NEG_INFINITY)),
