@@ -10,7 +10,7 @@ use super::{Ended, Failure, interrupt};
 use crate::basin::{Basin, Bound, Column, Work, basin};
 use crate::bicycle::linear::Linear;
 use crate::eigen::critical_speeds;
-use crate::report::compare::{Case, CompareDocument};
+use crate::report::compare::{Case, CaseEntry, CompareDocument};
 use crate::report::figure::{self, BasinFigure};
 use crate::report::resolved::ResolvedSearch;
 use crate::report::table;
@@ -283,7 +283,11 @@ fn summary(document: &CompareDocument) -> String {
         text += "~: which of two such areas is larger is not known; a larger --max-rate tells\n";
     }
     if !document.same_speeds {
-        text += "the cases cover different speeds: their areas and means can't be compared\n";
+        let ends = |case: &CaseEntry| (case.speeds.first().copied(), case.speeds.last().copied());
+        text += match cases.windows(2).all(|pair| ends(&pair[0]) == ends(&pair[1])) {
+            true => "the cases have different speeds of the same range, and common ones for the RMSE\n",
+            false => "the cases cover different speeds: their areas and means can't be compared\n",
+        };
     }
     text
 }

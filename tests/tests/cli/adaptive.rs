@@ -49,6 +49,7 @@ fn adaptive_speeds_can_be_reproduced() {
     let run = bench
         .run("basin compare fine.json 'same=--law h' --speeds 0:2:0.4 --max-rate 5 --json compared.json");
     assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(run.stdout.contains("different speeds of the same range"), "{run:?}");
     let compared: Value = serde_json::from_str(&bench.read("compared.json")).expect("JSON");
     assert_eq!(compared["rmse"][0][1], 0.0, "at the common speeds");
 }
