@@ -63,6 +63,15 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
             return Err("--out and --report have the same place to write to".into());
         }
     }
+    for input in args.files.iter().chain(&args.dbc) {
+        let Ok(place) = Output::create(input) else { continue };
+        for (option, output) in [("--out", &out), ("--report", &report)] {
+            if output.as_ref().is_some_and(|output| output.collides(&place)) {
+                return Err(format!("{option}: {} is an input", input.display()).into());
+            }
+        }
+        outputs.refuse_place_of(&input.display().to_string(), &place)?;
+    }
     let store = args.results.as_deref().map(|folder| Store::open(folder, &args.files)).transpose()?;
     interrupt::install_saying("finished records are written");
     let bar = progress(outputs.shows_progress(), "identify", 4 * args.files.len(), "stages");
@@ -110,7 +119,10 @@ fn rider(finished: &[Finished]) -> Result<RiderTable, Failure> {
         [one] => Ok(one.rider.clone()),
         all => {
             let riders: Vec<RiderTable> = all.iter().map(|one| one.rider.clone()).collect();
-            Ok(merge("identified", &riders, GROUP_M_S)?)
+            let files: Vec<&str> =
+                all.iter().map(|one| one.document["record"]["file"].as_str().unwrap_or_default()).collect();
+            let source = Some(format!("identified from {}", files.join(", ")));
+            Ok(RiderTable { source, ..merge("identified", &riders, GROUP_M_S)? })
         }
     }
 }
@@ -177,10 +189,8 @@ fn one(
         return Ok(done);
     }
     let found = identify(problem, &plan, begins, &interrupt::stopped)?;
-    if let Some(Err(error)) = &found.refined {
-        complain(&format!("{name}: not refined on the nonlinear bicycle: {error}"));
-    }
     let document = IdentifyDocument::new(record, ResolvedBicycle::new(bicycle), config, &found);
+    document.warnings.iter().for_each(|warning| complain(&format!("{name}: warning: {warning}")));
     let rider = table_of(&name, bicycle, &found)?;
     let reported = args.report.is_some() || store.is_some();
     let page = || page(&document, &found, &command_line(), &rider.to_toml());

@@ -28,7 +28,7 @@ pub(super) struct RiderArgs {
     #[arg(long, value_name = "M/S", allow_negative_numbers = true)]
     pub(super) speed: Option<f64>,
     /// Point of the rear frame where the lateral force acts, in m: ahead of the rear contact, above the ground
-    #[arg(long, value_name = "AHEAD,HEIGHT", default_value_t = ForcePoint::SADDLE, value_parser = point, allow_hyphen_values = true)]
+    #[arg(long, value_name = "AHEAD,HEIGHT", default_value_t = ForcePoint::SADDLE, value_parser = force_point, allow_hyphen_values = true)]
     pub(super) force_at: ForcePoint,
     /// Signals to fit, with weights by their noise
     #[arg(long, value_name = "SIGNALS", value_delimiter = ',', default_value = "steer")]
@@ -103,6 +103,14 @@ pub(super) struct Until(pub(super) Option<f64>);
 
 /// Longest delay of a fit \[s\].
 const LONGEST_S: f64 = 0.5;
+
+/// A point from 3 m behind the rear contact to 5 m ahead, up to 5 m above the ground.
+fn force_point(text: &str) -> Result<ForcePoint, String> {
+    let at = point(text)?;
+    within("AHEAD (m)", at.ahead_m, -3.0, 5.0).map_err(|e| e.to_string())?;
+    within("HEIGHT (m)", at.height_m, 0.0, 5.0).map_err(|e| e.to_string())?;
+    Ok(at)
+}
 
 fn delay(text: &str) -> Result<Delay, TimeError> {
     if text == "estimate" { Ok(Delay::Estimate) } else { time(text, LONGEST_S).map(Delay::Given) }

@@ -203,6 +203,26 @@ fn faults_of_a_record_are_told() {
     refused("nospeed.csv", "", &["--speed"]);
     used("nospeed.csv", "--speed 4.3", &[]);
     refused("none.csv", "", &["none.csv"]);
+    // An input is never an output.
+    for option in ["--out", "--report", "--json", "--csv", "--svg"] {
+        let before = bench.read("run.csv");
+        let run = bench.run(&format!("identify run.csv {FIVE} --linear {option} run.csv"));
+        assert!(run.code == Some(1) && run.stderr.contains("run.csv"), "{option}: {}", run.stderr);
+        assert!(bench.read("run.csv") == before, "{option}");
+    }
+    // A force of the wrong sign.
+    changed(&bench, "flipped.csv", |i, mut cells| {
+        if i > 0 {
+            cells[1] = (-cells[1].parse::<f64>().expect("a number")).to_string();
+        }
+        Some(cells.join(","))
+    });
+    let run = fit("flipped.csv", "");
+    assert!(
+        run.stderr.contains("check the sign") || run.stderr.contains("the sign or unit"),
+        "{}",
+        run.stderr
+    );
     let usage = [
         ("--delay 30", "30"),
         ("--fit yaw", "yaw"),
@@ -211,6 +231,7 @@ fn faults_of_a_record_are_told() {
         ("--select best", "vaf:PERCENT"),
         ("--delay-profile 0:10", "FROM:TO:STEP"),
         ("--force-at 1", "AHEAD,HEIGHT"),
+        ("--force-at nan,1", "AHEAD (m)"),
     ];
     for (option, word) in usage {
         let run = bench.run(&format!("identify run.csv {option}"));

@@ -86,7 +86,9 @@ pub enum FitError {
         time_s: f64,
     },
     /// No bounded response.
-    #[error("no set of gains was found for which the response stays bounded over the record")]
+    #[error(
+        "no set of gains was found for which the response stays bounded over the record; its delay, the sign or unit of the disturbance, or the bicycle may be wrong"
+    )]
     Unbounded,
     /// Gains that can't be separated.
     #[error("the gains {0} can't be identified together: the record does not move them independently")]

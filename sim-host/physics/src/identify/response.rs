@@ -20,11 +20,11 @@ use nalgebra::{SMatrix, SVector};
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Signal {
-    /// Steer angle \[rad\].
+    /// Steer angle.
     Steer,
-    /// Roll angle \[rad\].
+    /// Roll angle.
     Roll,
-    /// Roll rate \[rad/s\].
+    /// Roll rate.
     RollRate,
 }
 

@@ -208,6 +208,8 @@ pub struct IdentifyDocument {
     pub condition: f64,
     /// The number of independent samples: all, less what the correlation of the residuals takes.
     pub independent_samples: f64,
+    /// Why the gains may be wrong by more than their standard errors say; empty if nothing was noticed.
+    pub warnings: Vec<String>,
     /// Gains that the record does not determine.
     pub not_identified: Vec<Unidentified>,
     /// The distinct optima of the full fit, best first.
@@ -256,6 +258,39 @@ fn by_signal(of: &[(Signal, f64)]) -> PerSignal {
 
 fn mean(of: &[(Signal, f64)]) -> f64 {
     of.iter().map(|(_, x)| x).sum::<f64>() / of.len() as f64
+}
+
+/// Share of a signal that the black box explains and the model does not, from which the model counts as wrong.
+const MISSED: f64 = 0.05;
+/// Growth from which a closed loop counts as unstable \[1/s\]: with both integrals one eigenvalue is zero but for rounding.
+const UNSTABLE_1_S: f64 = 1e-3;
+
+/// Why the gains may be wrong by more than their standard errors.
+fn warnings(found: &Identified) -> Vec<String> {
+    let fit = found.fit();
+    let mut warnings = Vec::new();
+    if let Some(Err(error)) = &found.refined {
+        warnings.push(format!(
+            "not refined on the nonlinear bicycle, so that the standard errors lack the linear one's error: {error}"
+        ));
+    }
+    for ((signal, vaf), fir) in fit.vaf.iter().zip(&found.impulse_responses) {
+        let there = fir.as_ref().map_or(0.0, |fir| fir.signal_to_noise / (1.0 + fir.signal_to_noise));
+        if *vaf < there - MISSED {
+            warnings.push(format!(
+                "the model explains {:.1} % of {}, the impulse response without a model {:.1} %: check the sign and unit of the \
+                 disturbance, --delay, --bicycle, --force-at and --feedback",
+                100.0 * vaf,
+                signal.name(),
+                100.0 * there
+            ));
+        }
+    }
+    if fit.rightmost_1_s > UNSTABLE_1_S {
+        let doubling_s = std::f64::consts::LN_2 / fit.rightmost_1_s;
+        warnings.push(format!("the closed loop is unstable: its motion doubles every {doubling_s:.1} s"));
+    }
+    warnings
 }
 
 /// The gains of a fit that the record does not determine.
@@ -347,6 +382,7 @@ impl IdentifyDocument {
             refined: matches!(found.refined, Some(Ok(_))),
             condition: fit.condition,
             independent_samples: fit.residuals.iter().map(|residuals| residuals.independent).sum(),
+            warnings: warnings(found),
             not_identified: unidentified(fit),
             optima: all.optima.iter().map(optimum).collect(),
             reduction: found.steps.iter().map(step).collect(),

@@ -14,9 +14,6 @@ pub(super) fn optional(vaf: Option<f64>) -> String {
     vaf.map_or("-".into(), percent)
 }
 
-/// Growth from which a closed loop counts as unstable \[1/s\]: with both integrals one eigenvalue is zero but for rounding.
-const UNSTABLE_1_S: f64 = 1e-3;
-
 /// A number with four significant digits.
 pub(super) fn number(x: f64) -> String {
     if x != 0.0 && x.abs() < 1e-4 {
@@ -63,14 +60,6 @@ pub fn text(document: &IdentifyDocument) -> String {
         optional(document.vaf_after_onset.as_ref().map(|of| of.values().sum::<f64>() / of.len() as f64)),
         number(document.rightmost_eigenvalue_1_s)
     );
-    let growth = document.rightmost_eigenvalue_1_s;
-    if growth > UNSTABLE_1_S {
-        let _ = writeln!(
-            text,
-            "the closed loop is unstable: motion doubles every {} s",
-            number(std::f64::consts::LN_2 / growth)
-        );
-    }
     for gain in &document.not_identified {
         let _ = writeln!(text, "{} is not identified: {}", gain.gain, gain.why);
     }
