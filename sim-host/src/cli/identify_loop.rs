@@ -1,11 +1,12 @@
 //! `sim-host identify loop`: steer angle scale, control law and steer axis from recordings of a closed loop.
 
 use super::outputs::{OutputArgs, complain};
+use super::recording_args::RecordingArgs;
 use super::{Ended, Failure, warn};
 use crate::bicycle::catalogue;
 use crate::closed_loop::{Geometry, StatedLaw, geometry, identify, record, within};
 use crate::range::{TimeError, time};
-use crate::recording::{ReadOptions, read};
+use crate::recording::read;
 use crate::replay::{Map, samples};
 use crate::report::closed_loop::{LoopDocument, LoopEntry, RefusedLoop, ResolvedLoop, rows, text};
 use crate::report::table;
@@ -32,12 +33,8 @@ pub(super) struct Args {
     /// Recordings; each is identified on its own
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Assignment of the columns: the name of a built-in map, or a FILE [default: by the columns]
-    #[arg(long, value_name = "NAME|FILE")]
-    map: Option<String>,
-    /// Database that decodes CAN frames; may be repeated
-    #[arg(long, value_name = "FILE")]
-    dbc: Vec<PathBuf>,
+    #[command(flatten)]
+    recording: RecordingArgs,
     /// Bicycle whose wheelbase and steer axis tilt are used [default: those of the map]
     #[arg(long, value_name = "NAME|FILE")]
     bicycle: Option<String>,
@@ -65,7 +62,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     {
         return Err(format!("--to: {to} s is not after --from, {from} s").into());
     }
-    let map = args.map.as_deref().map(Map::load).transpose().map_err(|error| format!("--map {error}"))?;
+    let map = args.recording.map()?;
     let stated = args.stated.as_deref().map(StatedLaw::load).transpose();
     let stated = stated.map_err(|error| format!("--stated {error}"))?;
     let bicycle = args.bicycle.as_deref().map(catalogue::load).transpose()?;
@@ -90,7 +87,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         return Err(format!("none of the {} files could be used", refused.len()).into());
     }
     let config = ResolvedLoop {
-        map: args.map.clone().unwrap_or_else(|| "by the columns".into()),
+        map: args.recording.map_name(),
         bicycle: args.bicycle.clone(),
         stated: stated.map(|stated| stated.source),
         from_s: args.from,
@@ -109,8 +106,7 @@ fn one(
     stated: Option<&StatedLaw>,
     path: &Path,
 ) -> Result<LoopEntry, String> {
-    let options = ReadOptions { strict: false, dbc: args.dbc.clone() };
-    let recording = read(path, &options).map_err(|error| error.to_string())?;
+    let recording = read(path, &args.recording.options()).map_err(|error| error.to_string())?;
     let map = map.cloned().or_else(|| Map::by_columns(&recording));
     let map = map.ok_or("no built-in map has these columns; give one with --map")?;
     let samples = samples(&recording, &map, PERIOD_S).map_err(|remark| remark.to_string())?;

@@ -11,7 +11,7 @@ use crate::bicycle::Geometry;
 use crate::bicycle::catalogue::Bicycle;
 use crate::bicycle::linear::Linear;
 use crate::identify::{FitError, GAINS, GrayBox, Identified, Plan, Problem, Pushed, Stage, identify};
-use crate::recording::{ReadOptions, read};
+use crate::recording::read;
 use crate::replay::{Map, perturbed};
 use crate::report::figure;
 use crate::report::identify::{
@@ -24,7 +24,7 @@ use crate::report::table;
 use crate::report::tool::{SCHEMA, Tool};
 use crate::rider::{Covariance, Gains, Neuromuscular, RiderTable, Row, merge};
 use crate::rider_record::{Prepared, Settings, prepare};
-use sha2::{Digest, Sha256};
+use crate::sweep::sha256;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -41,7 +41,7 @@ const GROUP_M_S: f64 = 0.3;
 pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     let bicycle = args.bicycle.load()?;
     warn(&bicycle);
-    let map = args.map.as_deref().map(Map::load).transpose().map_err(|error| format!("--map {error}"))?;
+    let map = args.recording.map()?;
     let many = args.files.len() > 1;
     if many || args.results.is_some() {
         args.outputs.refuse_figures(
@@ -63,15 +63,6 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
             return Err("--out and --report have the same place to write to".into());
         }
     }
-    for input in args.files.iter().chain(&args.dbc) {
-        let Ok(place) = Output::create(input) else { continue };
-        for (option, output) in [("--out", &out), ("--report", &report)] {
-            if output.as_ref().is_some_and(|output| output.collides(&place)) {
-                return Err(format!("{option}: {} is an input", input.display()).into());
-            }
-        }
-        outputs.refuse_place_of(&input.display().to_string(), &place)?;
-    }
     let store = args.results.as_deref().map(|folder| Store::open(folder, &args.files)).transpose()?;
     interrupt::install_saying("finished records are written");
     let bar = progress(outputs.shows_progress(), "identify", 4 * args.files.len(), "stages");
@@ -80,10 +71,7 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
         if interrupt::stopped() {
             break;
         }
-        let begins = |stage: Stage| {
-            bar.set_message(format!("{stage:?}"));
-            bar.inc(1);
-        };
+        let begins = |_: Stage| bar.inc(1);
         let of_one = one(args, &bicycle, map.as_ref(), file, store.as_ref(), &begins);
         match of_one {
             Ok(one) => finished.push(one),
@@ -171,7 +159,7 @@ fn one(
     begins: &(impl Fn(Stage) + Sync),
 ) -> Result<Finished, Failure> {
     let name = file.display().to_string();
-    let recording = read(file, &ReadOptions { strict: false, dbc: args.dbc.clone() })?;
+    let recording = read(file, &args.recording.options())?;
     let map = map.map_or_else(|| Map::of_perturbation(&recording), |map| Ok(map.clone()))?;
     let signals = perturbed(&recording, &map).map_err(|remark| remark.to_string())?;
     let settings = Settings { signals: args.fit.clone(), hold: args.hold, speed_m_s: args.speed };
@@ -179,10 +167,7 @@ fn one(
     prepared.remarks.splice(0..0, recording.remarks.iter().map(ToString::to_string));
     prepared.remarks.iter().for_each(|remark| complain(&format!("{name}: {remark}")));
     let (problem, plan) = problem(args, bicycle, &prepared);
-    let record = RecordEntry {
-        sha256: Sha256::digest(std::fs::read(file)?).iter().map(|byte| format!("{byte:02x}")).collect(),
-        ..entry(&name, &prepared)
-    };
+    let record = RecordEntry { sha256: sha256(&std::fs::read(file)?), ..entry(&name, &prepared) };
     let config = config(args, &problem, &plan);
     if let Some(done) = store.and_then(|store| store.finished(file, &record, &config, bicycle)) {
         complain(&format!("{name}: finished before; not fitted again"));
@@ -269,7 +254,7 @@ fn entry(name: &str, prepared: &Prepared) -> RecordEntry {
 
 fn config(args: &RiderArgs, problem: &Problem, plan: &Plan) -> ResolvedIdentify {
     ResolvedIdentify {
-        map: args.map.clone().unwrap_or_else(|| "by the columns".into()),
+        map: args.recording.map_name(),
         force_at: args.force_at,
         fit: args.fit.clone(),
         feedback: plan.gains.iter().map(|i| crate::identify::symbols()[*i]).collect(),

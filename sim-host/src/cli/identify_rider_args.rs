@@ -3,6 +3,7 @@
 use super::bicycle_args::BicycleArgs;
 use super::outputs::OutputArgs;
 use super::record::point;
+use super::recording_args::RecordingArgs;
 use crate::bicycle::ForcePoint;
 use crate::identify::{Drift, Hold, Select, Signal, symbols};
 use crate::range::{TimeError, time, within};
@@ -61,12 +62,8 @@ pub(super) struct RiderArgs {
     /// perturbations' onsets), aic, bic, or held (best for data that was not fitted)
     #[arg(long, value_name = "CRITERION", default_value = "full", value_parser = select)]
     pub(super) select: Select,
-    /// Assignment of the columns: the name of a built-in map, or a FILE [default: by the columns' names]
-    #[arg(long, value_name = "NAME|FILE")]
-    pub(super) map: Option<String>,
-    /// Database that decodes CAN frames; may be repeated
-    #[arg(long, value_name = "FILE")]
-    pub(super) dbc: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(super) recording: RecordingArgs,
     /// Seed of the global search
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(super) seed: u64,

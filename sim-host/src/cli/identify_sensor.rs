@@ -1,10 +1,11 @@
 //! `sim-host identify sensor`: identifies a sensor model from recordings.
 
 use super::outputs::{OutputArgs, complain};
+use super::recording_args::RecordingArgs;
 use super::{Ended, Failure};
 use crate::plant::Sensor;
 use crate::plant::sensor_file::SensorFile;
-use crate::recording::{ReadOptions, read};
+use crate::recording::read;
 use crate::replay::{Map, over_time, samples};
 use crate::report::output::Output;
 use crate::report::sensor::{ResolvedSensors, SensorDocument, rows, text};
@@ -35,12 +36,8 @@ pub(super) struct Args {
     /// Sensor: gyro, accel, steer, steer-rate, front-wheel, rear-wheel, rider-torque, motor-report; may be repeated
     #[arg(long = "sensor", value_name = "NAME", required = true, value_parser = sensor)]
     sensors: Vec<Sensor>,
-    /// Assignment of the columns: the name of a built-in map, or a FILE [default: by the columns]
-    #[arg(long, value_name = "NAME|FILE")]
-    map: Option<String>,
-    /// Database that decodes CAN frames; may be repeated
-    #[arg(long, value_name = "FILE")]
-    dbc: Vec<PathBuf>,
+    #[command(flatten)]
+    recording: RecordingArgs,
     /// Column of the distance in m from the wheel sensor, to find the averaging time of its speed
     #[arg(long, value_name = "COLUMN")]
     distance: Option<String>,
@@ -69,7 +66,7 @@ fn sensor(name: &str) -> Result<Sensor, String> {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     args.outputs.refuse_figures("a sensor's model has no figure")?;
-    let map = args.map.as_deref().map(Map::load).transpose().map_err(|error| format!("--map {error}"))?;
+    let map = args.recording.map()?;
     let outputs = args.outputs.open(None)?;
     let out = args.out.as_deref().map(Output::create).transpose()?;
     if let Some(out) = &out {
@@ -92,7 +89,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     let config = ResolvedSensors {
         files: args.files.iter().map(|file| file.display().to_string()).collect(),
-        map: args.map.clone().unwrap_or_else(|| "by the columns".into()),
+        map: args.recording.map_name(),
         distance: args.distance.clone(),
     };
     let document = SensorDocument::new(config, &file);
@@ -106,7 +103,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 
 fn recording(args: &Args, map: Option<&Map>, path: &Path) -> Result<Recording, Failure> {
     let name = path.display();
-    let recording = read(path, &ReadOptions { strict: false, dbc: args.dbc.clone() })?;
+    let recording = read(path, &args.recording.options())?;
     let map = match map {
         Some(map) => map.clone(),
         None => Map::by_columns(&recording)
@@ -129,7 +126,7 @@ fn command(args: &Args) -> String {
     for file in &args.files {
         word(&file.file_name().unwrap_or_default().to_string_lossy());
     }
-    if let Some(map) = &args.map {
+    if let Some(map) = &args.recording.map {
         word("--map");
         word(map);
     }

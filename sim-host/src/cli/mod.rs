@@ -21,6 +21,7 @@ mod identify_rider;
 mod identify_rider_args;
 mod identify_rider_results;
 mod identify_sensor;
+mod inputs;
 mod interrupt;
 mod live_picture;
 mod monitor;
@@ -35,6 +36,7 @@ mod plane;
 mod port_args;
 mod progress;
 mod record;
+mod recording_args;
 mod replay;
 mod ride;
 mod rider;
@@ -134,6 +136,10 @@ enum Command {
 /// Runs the program: arguments from the process, results to standard output, errors to standard error.
 pub fn run() -> ExitCode {
     let cli = Cli::parse();
+    if let Err(why) = inputs::refuse_overwriting(std::env::args_os().skip(1)) {
+        outputs::complain(&format!("error: {why}"));
+        return ExitCode::from(1);
+    }
     let ended = match cli.command {
         Command::Basin(args) => basin::run(&args),
         Command::Sweep(args) => sweep::run(&args),

@@ -25,6 +25,7 @@ pub use maps::pictures;
 pub use names::check;
 pub use plan::{PLAN, Plan, SweepSearch, combination, count, label};
 pub use run::{Cell, Progress, run};
+pub use seal::sha256;
 pub use shard::{Shard, ShardError};
 pub use unit::{Found, Unit};
 pub use write::write;

@@ -9,6 +9,7 @@ mod contract;
 mod design;
 mod details;
 mod document;
+mod drawn_riders;
 mod examples;
 mod falls;
 mod identify;

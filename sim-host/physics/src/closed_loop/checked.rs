@@ -10,7 +10,7 @@ const DRIVEN_S: f64 = 0.25;
 const AT_LIMIT: usize = 3;
 /// Below this part of the largest torque it is not at its limit.
 const NEAR_LIMIT: f64 = 0.999;
-/// Angle and rate of the steer beyond which the sensor is believed to be wrong \[rad\], \[rad/s\].
+/// Angle and rate of the steer beyond which the sensor counts as wrong \[rad\], \[rad/s\].
 const STEER_MOST: (f64, f64) = (1.0, 20.0);
 /// Shortest recording, and shortest part with a torque \[s\].
 pub(super) const SHORTEST_S: f64 = 3.0;

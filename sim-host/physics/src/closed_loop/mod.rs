@@ -11,6 +11,7 @@ mod checked;
 mod collinear;
 mod law;
 mod memory;
+mod output_error;
 mod record;
 mod regress;
 mod smooth;

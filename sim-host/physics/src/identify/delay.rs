@@ -1,7 +1,8 @@
 //! What a record tells about the neural delay: the likelihood of each delay with its own best gains.
 
 use super::descent::descend;
-use super::fit::{Fit, FitError, Problem};
+use super::error::FitError;
+use super::fit::{Fit, Problem};
 use super::gray_box::PerGain;
 use super::uncertainty::uncertainty;
 use nalgebra::DMatrix;

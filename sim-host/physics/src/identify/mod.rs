@@ -11,6 +11,7 @@
 
 mod delay;
 mod descent;
+mod error;
 mod evolution;
 mod fir;
 mod fit;
@@ -28,10 +29,9 @@ mod spectrum;
 mod uncertainty;
 
 pub use delay::{DROP_95, DelayPoint, DelayProfile, delay_profile};
+pub use error::{FitError, SHORTEST_S};
 pub use fir::{Fir, impulse_response};
-pub use fit::{
-    AFTER_ONSET_S, Fit, FitError, From, LocalOptimum, Problem, Residuals, SHORTEST_S, rightmost_real,
-};
+pub use fit::{AFTER_ONSET_S, Fit, From, LocalOptimum, Problem, Residuals, rightmost_real};
 pub use gray_box::{GAINS, GrayBox, PerGain, symbols};
 pub use nonlinear::{Pushed, Refined, refine};
 pub use objective::Drift;

@@ -1,7 +1,8 @@
 //! Refinement of the gains on the nonlinear bicycle. The perturbations of an experiment move a rider by several degrees of
 //! roll and steer, where the linear response is off by a few per cent; a linear fit makes up for that with its gains.
 
-use super::fit::{Fit, FitError, Problem, Residuals};
+use super::error::FitError;
+use super::fit::{Fit, Problem, Residuals};
 use super::objective::Objective;
 use super::response::Hold;
 use super::uncertainty::{Uncertainty, uncertainty};

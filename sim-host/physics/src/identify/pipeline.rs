@@ -1,8 +1,9 @@
 //! The whole identification of one record: impulse response, fit, reduction, selection, delay.
 
 use super::delay::{DelayProfile, delay_profile};
+use super::error::FitError;
 use super::fir::{Fir, impulse_response};
-use super::fit::{Fit, FitError, From, Problem};
+use super::fit::{Fit, From, Problem};
 use super::nonlinear::{Pushed, Refined, refine};
 use super::reduction::{Select, Step, reduce};
 

@@ -1,7 +1,8 @@
 //! Reduction of the feedback: the gains that a record needs (Kuipers 2020, section 2.1.3, eqs 2.13 to 2.15).
 
 use super::descent::descend;
-use super::fit::{Fit, FitError, From, Problem};
+use super::error::FitError;
+use super::fit::{Fit, From, Problem};
 use rayon::prelude::*;
 
 /// Parts into which a record is divided for cross-validation.

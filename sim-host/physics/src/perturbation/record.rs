@@ -125,29 +125,36 @@ pub fn record(conditions: &Conditions, experiment: &Experiment) -> Result<Record
     Ok(Record { samples: samples.collect(), fall: ride.fall })
 }
 
-/// The time steps per sample, and their length \[s\], of which the delay is nearly a multiple: as [`steps`], otherwise those
-/// with the smallest rounding of the delay among ten times as many.
+/// Steps among which [`nearest_steps`] chooses, in multiples of the fewest.
+const CHOICE: u32 = 10;
+/// Rounding of the delay that counts as none, in steps.
+const WHOLE: f64 = 1e-6;
+
+/// The fewest time steps per sample that are not too long.
+fn fewest(sample_s: f64) -> u32 {
+    (sample_s / STEPS_S[0] - 1e-6).ceil().max(1.0) as u32
+}
+
+/// Difference of the delay from whole steps, in steps.
+fn rounding(delay_s: f64, sample_s: f64, steps: u32) -> f64 {
+    let delay = delay_s / sample_s * f64::from(steps);
+    (delay - delay.round()).abs()
+}
+
+/// The fewest time steps per sample of which the delay is a multiple, too; otherwise those that round it least.
 pub(crate) fn nearest_steps(delay_s: f64, sample_s: f64) -> (u32, f64) {
-    let fewest = (sample_s / STEPS_S[0] - 1e-6).ceil().max(1.0) as u32;
-    let rounding = |steps: &u32| {
-        let delay = delay_s / sample_s * f64::from(*steps);
-        (delay - delay.round()).abs() / f64::from(*steps)
-    };
-    let fitting = (fewest..=10 * fewest).find(|steps| rounding(steps) < 1e-6);
-    let nearest = || (fewest..=10 * fewest).min_by(|a, b| rounding(a).total_cmp(&rounding(b)));
-    let steps = fitting.or_else(nearest).unwrap_or(fewest);
+    let all = || fewest(sample_s)..=CHOICE * fewest(sample_s);
+    let whole = all().find(|steps| rounding(delay_s, sample_s, *steps) < WHOLE);
+    let rounding_s = |steps: &u32| rounding(delay_s, sample_s, *steps) / f64::from(*steps);
+    let nearest = || all().min_by(|a, b| rounding_s(a).total_cmp(&rounding_s(b)));
+    let steps = whole.or_else(nearest).unwrap_or(fewest(sample_s));
     (steps, sample_s / f64::from(steps))
 }
 
-/// The fewest time steps per sample that divide the delay, too, and their length \[s\].
+/// The fewest time steps per sample of which the delay is a multiple, too, and their length \[s\].
 fn steps(delay_s: f64, sample_s: f64) -> Result<(u32, f64), PerturbationError> {
-    let [longest_s, shortest_s] = STEPS_S;
-    let [fewest, most] = [(sample_s / longest_s - 1e-6).ceil(), (sample_s / shortest_s + 1e-6).floor()];
-    let divides = |steps: &u32| {
-        let delay = delay_s / sample_s * f64::from(*steps);
-        (delay - delay.round()).abs() < 1e-6
-    };
-    let steps = (fewest.max(1.0) as u32..=most as u32).find(divides);
+    let most = (sample_s / STEPS_S[1] + 1e-6).floor() as u32;
+    let steps = (fewest(sample_s)..=most).find(|steps| rounding(delay_s, sample_s, *steps) < WHOLE);
     let steps = steps.ok_or(PerturbationError::Step { delay_s, sample_s })?;
     Ok((steps, sample_s / f64::from(steps)))
 }

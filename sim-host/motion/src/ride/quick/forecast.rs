@@ -122,8 +122,8 @@ impl Forecast {
             r.torque_rate,
         ];
         // With a neural delay the signals are sampled, together with the torque of the same sample.
-        let felt = if history.is_some() { upright.under(gain, 0.0)? } else { bicycle };
-        let ridden = Ridden::new((&self.bicycle, speed), (rider, scheduled), &bicycle, &felt);
+        let sensed = if history.is_some() { upright.under(gain, 0.0)? } else { bicycle };
+        let ridden = Ridden::new((&self.bicycle, speed), (rider, scheduled), &bicycle, &sensed);
         match history {
             None => {
                 let steps = (left_s / RIDER_STEP_S).ceil().max(1.0);

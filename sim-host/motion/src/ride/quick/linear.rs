@@ -22,13 +22,13 @@ pub(super) struct Ridden {
 }
 
 impl Ridden {
-    /// A bicycle at a forward speed \[m/s\], and a rider at the speed that schedules the gains; `felt` is the bicycle of
+    /// A bicycle at a forward speed \[m/s\], and a rider at the speed that schedules the gains; `sensed` is the bicycle of
     /// the rider's signals.
     pub(super) fn new(
         (b, speed): (&Geometry, f64),
         (rider, scheduled): (&Rider, f64),
         bicycle: &BicycleMatrix,
-        felt: &BicycleMatrix,
+        sensed: &BicycleMatrix,
     ) -> Self {
         let gains = rider.schedule.at(scheduled);
         let (mut matrix, mut signal) = ([[0.0; RIDDEN]; RIDDEN], [0.0; RIDDEN]);
@@ -58,8 +58,8 @@ impl Ridden {
             let motion = Motion::new(b, &state);
             let dual = |eps: f64| Dual { re: 0.0, eps };
             let acc = Accelerations {
-                roll: dual(of_row(felt, 2)),
-                steer: dual(of_row(felt, 3)),
+                roll: dual(of_row(sensed, 2)),
+                steer: dual(of_row(sensed, 3)),
                 rear_wheel: dual(0.0),
             };
             let now = Instant::new(&state, &motion, &acc);

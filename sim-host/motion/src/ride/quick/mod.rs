@@ -148,14 +148,14 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             let torques = Torques { roll: still, steer };
             let (acc, by_steer) = motion.accelerations_by_steer(b, &torques);
             if let Some(riders) = &mut riders {
-                let mut felt = acc;
+                let mut sensed = acc;
                 if riders.sampled() {
-                    // A sampled rider feels the torque that was computed from the same sample.
+                    // The accelerations in a sampled rider's signals contain the torque that was computed from the same sample.
                     let later_nm = source.torques(measured, [still; 2]) - assist_nm;
-                    felt.roll = felt.roll + by_steer.roll * later_nm;
-                    felt.steer = felt.steer + by_steer.steer * later_nm;
+                    sensed.roll = sensed.roll + by_steer.roll * later_nm;
+                    sensed.steer = sensed.steer + by_steer.steer * later_nm;
                 }
-                riders.end_stage(b, stage, (&t, h), &Instant::new(&at, &motion, &felt), &measured.1);
+                riders.end_stage(b, stage, (&t, h), &Instant::new(&at, &motion, &sensed), &measured.1);
             }
             let k = rate(&at, &motion, &acc);
             end = end.after(h * WEIGHT[stage], &k);

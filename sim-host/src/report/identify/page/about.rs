@@ -22,8 +22,15 @@ pub(super) fn summary(document: &IdentifyDocument) -> String {
         let mean = after.values().sum::<f64>() / after.len() as f64;
         text += &format!(", and for {} % within 1 s of the perturbations' onsets", percent(mean));
     }
+    let warnings = match document.warnings[..] {
+        [] => String::new(),
+        _ => {
+            paragraph("The gains may be wrong by more than their standard errors:")
+                + &list(document.warnings.iter().map(String::as_str))
+        }
+    };
     let made = format!("Made by {} {} (commit {}).", tool.name, tool.version, tool.commit);
-    paragraph(&(text + ".")) + &format!("<p class=\"note\">{}</p>\n", escaped(&made))
+    paragraph(&(text + ".")) + &warnings + &format!("<p class=\"note\">{}</p>\n", escaped(&made))
 }
 
 pub(super) fn fitted(document: &IdentifyDocument) -> String {
@@ -90,8 +97,10 @@ fn settings(config: &ResolvedIdentify) -> Vec<(&'static str, String)> {
         "aic" => "the step with the least information criterion of Akaike".into(),
         "bic" => "the step with the least information criterion of Bayes".into(),
         "held" => "the step that is best for parts of the record that were not fitted".into(),
-        vaf => {
-            format!("the fewest gains that account for {} % of the variance", vaf.trim_start_matches("vaf:"))
+        fewest => {
+            let (of, percent) = fewest.split_once(':').unwrap_or(("vaf", fewest));
+            let after = if of == "onset" { " within 1 s of the perturbations' onsets" } else { "" };
+            format!("the fewest gains that account for {percent} % of the variance{after}")
         }
     };
     let hold = match config.hold {

@@ -1,0 +1,79 @@
+//! Rejects command lines that would write over a file that the command reads.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+/// The options whose value is a file to write.
+const OUTPUTS: [&str; 10] = [
+    "--csv",
+    "--frames",
+    "--json",
+    "--law-file",
+    "--out",
+    "--png",
+    "--record",
+    "--report",
+    "--svg",
+    "--toml",
+];
+
+/// Checks the words of a command line: no existing file may be the value of an output option and another word, too.
+///
+/// # Errors
+/// The option and the file.
+pub(super) fn refuse_overwriting(words: impl Iterator<Item = OsString>) -> Result<(), String> {
+    let (mut outputs, mut inputs): (Vec<(String, PathBuf)>, Vec<PathBuf>) = Default::default();
+    let mut option: Option<String> = None;
+    for word in words {
+        let text = word.to_string_lossy();
+        let output = |name: &str| OUTPUTS.contains(&name).then(|| name.to_owned());
+        match (text.strip_prefix('-'), text.split_once('=')) {
+            (Some(_), Some((name, value))) => match output(name) {
+                Some(name) => outputs.push((name, value.into())),
+                None => inputs.push(value.into()),
+            },
+            (Some(_), None) => option = output(&text),
+            (None, _) => match option.take() {
+                Some(name) => outputs.push((name, word.into())),
+                None => inputs.push(word.into()),
+            },
+        }
+    }
+    let inputs: Vec<PathBuf> = inputs.iter().filter_map(|input| file(input)).collect();
+    let both = |(_, path): &&(String, PathBuf)| file(path).is_some_and(|path| inputs.contains(&path));
+    match outputs.iter().find(both) {
+        Some((name, path)) => Err(format!("{name} {}: the command reads this file, too", path.display())),
+        None => Ok(()),
+    }
+}
+
+/// The existing file of a path, or of a path with the name of one of its entries (`FILE#NAME`).
+fn file(path: &Path) -> Option<PathBuf> {
+    let of = |path: &Path| path.canonicalize().ok().filter(|path| path.is_file());
+    of(path).or_else(|| of(Path::new(path.to_str()?.rsplit_once('#')?.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::refuse_overwriting;
+
+    fn refused(line: &str) -> Option<String> {
+        refuse_overwriting(line.split(' ').map(Into::into)).err()
+    }
+
+    #[test]
+    fn a_file_is_read_or_written() {
+        let path = "src/cli/inputs.rs";
+        assert!(refused(&format!("identify {path} --json {path}")).is_some_and(|why| why.contains("--json")));
+        assert!(refused(&format!("basin --rider={path} --out=src/../{path}")).is_some());
+        assert!(refused(&format!("basin --bicycle {path}#name --svg {path}")).is_some());
+        assert_eq!(refused(&format!("identify {path} --json --csv new.csv")), None);
+        assert_eq!(refused(&format!("identify {path} --json new.json")), None);
+        assert_eq!(
+            refused(&format!("basin --json {path} --csv {path}")),
+            None,
+            "outputs in one place are told elsewhere"
+        );
+        assert_eq!(refused("sweep src --out src"), None, "folders");
+    }
+}
