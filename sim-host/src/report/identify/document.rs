@@ -157,6 +157,29 @@ pub struct DelayEstimate {
     pub profile: Vec<DelayEntry>,
 }
 
+impl DelayEstimate {
+    /// Estimate and 95 % interval in words.
+    pub(super) fn sentence(&self) -> String {
+        let ms = |s: f64| format!("{:.1} ms", 1e3 * s);
+        let first_s = self.profile.first().map_or(0.0, |point| point.delay_s);
+        let low = match self.low_s {
+            Some(low_s) => ms(low_s),
+            // There is no shorter delay.
+            None if first_s == 0.0 => ms(0.0),
+            None => format!("below {}, the first of the profile,", ms(first_s)),
+        };
+        let last_s = self.profile.last().map_or(0.0, |point| point.delay_s);
+        let high = match self.high_s {
+            Some(high_s) => ms(high_s),
+            None => format!("above {}, the last of the profile", ms(last_s)),
+        };
+        format!(
+            "The likeliest delay with the gains of the full fit is {}, its 95 % interval from {low} to {high}.",
+            ms(self.estimate_s)
+        )
+    }
+}
+
 /// The impulse response: what the perturbation explains of a signal without a model.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct BlackBox {

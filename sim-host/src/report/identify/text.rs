@@ -77,15 +77,7 @@ pub fn text(document: &IdentifyDocument) -> String {
         }
     }
     if let Some(delay) = &document.delay {
-        let end =
-            |end: Option<f64>| end.map_or("beyond the profile".into(), |s| format!("{:.1} ms", 1e3 * s));
-        let _ = writeln!(
-            text,
-            "\nlikeliest delay {:.1} ms, 95 % interval from {} to {}",
-            1e3 * delay.estimate_s,
-            end(delay.low_s),
-            end(delay.high_s)
-        );
+        let _ = writeln!(text, "\n{}", delay.sentence());
     }
     text
 }

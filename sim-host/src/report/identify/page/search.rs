@@ -63,16 +63,9 @@ pub(super) fn optima(document: &IdentifyDocument) -> String {
 /// Empty without a profile.
 pub(super) fn delay(document: &IdentifyDocument) -> String {
     let (Some(delay), Some(plot)) = (&document.delay, plots::delay(document)) else { return String::new() };
-    let end = |end: Option<f64>| end.map_or("beyond the profile".into(), |s| format!("{:.1} ms", 1e3 * s));
-    let text = format!(
-        "The likeliest delay is {:.1} ms; its 95 % interval is from {} to {}.",
-        1e3 * delay.estimate_s,
-        end(delay.low_s),
-        end(delay.high_s)
-    );
     let chart =
         Chart { title: String::new(), columns: 1, plots: vec![plot], shaded: plots::DELAY_SHADED.into() };
-    paragraph(&text)
+    paragraph(&delay.sentence())
         + &html::figure(
             "delay-profile",
             &figure::chart(&chart),
