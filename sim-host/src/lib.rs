@@ -31,6 +31,7 @@ pub mod board;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod closed_loop;
+pub mod commands;
 pub mod design;
 pub mod parameters;
 pub mod pil;

@@ -1,7 +1,7 @@
 //! `sim-host basin`: searches the basin of attraction over forward speed.
 
-use super::conditions::{Setup, printed, setup};
-use super::drawn::{DrawnBasins, Draws, draws};
+use super::conditions::{printed, setup};
+use super::drawn::{self, label};
 use super::live_picture::LivePicture;
 use super::options::{Basin as BasinOptions, Chosen, UncertainBasin};
 use super::outputs::{OutputArgs, Outputs, Results, complain};
@@ -10,18 +10,17 @@ use super::ride::laid_flat;
 use super::scenario_error::named;
 use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
-use crate::basin::{Basin, Column, Refined, Rounds, Search, Work, basin_in_rounds};
+use crate::basin::{Basin, Column, Search, Work};
 use crate::bicycle::linear::Linear;
+use crate::commands::basin::{BasinTask, Searched};
+use crate::commands::{Hooks, Setup};
 use crate::eigen::critical_speeds;
-use crate::report::document::BasinDocument;
 use crate::report::figure::{self, Band, BasinFigure};
-use crate::report::resolved::ResolvedSearch;
 use crate::report::{table, terminal};
 use crate::ride::{FallCause, FallCriterion, Outcome};
 use control::Law;
 use serde_json::json;
 use std::fmt::Write;
-use std::time::Instant;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -81,36 +80,23 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         return Ok(ended);
     }
     let setup = setup(&scenario)?;
-    let draws = draws(&scenario, &setup)?;
-    let given = scenario.search.resolve(scenario.is_ridden()).map_err(|e| named(&scenario, &e))?;
+    let task = BasinTask::new(setup).map_err(|e| named(&scenario, &e))?;
     let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = args.threads.pool()?;
-    let basins = 1 + draws.as_ref().map_or(0, Draws::count);
-    let bar = progress(outputs.shows_progress(), "basin", basins * given.speeds.len(), "columns");
-    let picture = outputs.shows_picture().then(|| LivePicture::new(&bar, &given)).flatten();
-    let rounds = Rounds { coarse_first: picture.is_some(), adaptive: scenario.search.adaptive_speeds };
-    let added = |speeds: usize| bar.inc_length((basins * speeds) as u64);
-    let finished = |column: &Column| {
-        bar.inc(1);
-        picture.iter().for_each(|picture| picture.add(column));
+    let bar = progress(outputs.shows_progress(), "basin", task.columns(), "columns");
+    let picture = outputs.shows_picture().then(|| LivePicture::new(&bar, &task.search)).flatten();
+    let column = |column: &Column| picture.iter().for_each(|picture| picture.add(column));
+    let hooks = Hooks {
+        finished: &|| bar.inc(1),
+        added: &|columns| bar.inc_length(columns as u64),
+        stop: &interrupt::stopped,
     };
-    let begin = Instant::now();
-    let compute = || {
-        pool.install(|| {
-            basin_in_rounds(&setup.conditions, &given, rounds, added, finished, interrupt::stopped)
-        })
-    };
+    let compute = || pool.install(|| task.run(picture.is_some(), column, hooks));
     let found = picture.as_ref().map_or_else(compute, |picture| picture.during(compute))?;
-    let Refined { speeds, basin: result } = found;
-    let search = Search { speeds, ..given };
-    let seconds = begin.elapsed().as_secs_f64();
-    let drawn =
-        draws.map(|draws| pool.install(|| draws.basins(&setup, &search, || bar.inc(1), interrupt::stopped)));
     bar.finish_and_clear();
-    let ended =
-        write(&setup, &search, &outputs, &Computed { basin: &result, drawn: drawn.as_ref(), seconds }, "")?;
-    if let (Ended::Done, Some(drawn)) = (&ended, &drawn)
+    let ended = write(&task.setup, &outputs, &found, "")?;
+    if let (Ended::Done, Some(drawn)) = (&ended, &found.drawn)
         && drawn.of.basins.len() < drawn.count
     {
         let (done, all) = (drawn.of.basins.len(), drawn.count);
@@ -120,47 +106,30 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(ended)
 }
 
-/// Results of a search.
-pub(super) struct Computed<'a> {
-    pub(super) basin: &'a Basin,
-    /// Results for draws, if requested.
-    pub(super) drawn: Option<&'a DrawnBasins>,
-    /// Computing time of the basin \[s\].
-    pub(super) seconds: f64,
-}
-
 /// Writes a complete or partial basin; `extra` is added to the text.
 pub(super) fn write(
     setup: &Setup,
-    search: &Search,
     outputs: &Outputs,
-    computed: &Computed,
+    found: &Searched,
     extra: &str,
 ) -> Result<Ended, Failure> {
-    let Computed { basin: result, drawn, seconds } = *computed;
+    let Searched { search, basin: result, seconds, .. } = found;
     if result.columns.is_empty() {
         complain("interrupted: no speed is done, nothing is written");
         return Ok(Ended::Interrupted);
     }
-    let complete = result.columns.len() == search.speeds.len();
-    let adaptive_speeds = setup.scenario.search.adaptive_speeds;
-    let resolved = ResolvedSearch { adaptive_speeds, ..ResolvedSearch::new(search) };
-    let parts = (setup.config.clone(), resolved, setup.scenario.clone());
-    let document = BasinDocument::new(parts, &search.speeds, result, seconds);
+    let complete = found.complete();
+    let document = found.document(setup);
     // Without finished draws there is no band.
-    let drawn = drawn.filter(|drawn| !drawn.of.basins.is_empty());
-    let document = match drawn {
-        Some(drawn) => drawn.add_to(document),
-        None => document,
-    };
+    let drawn = found.drawn();
     let heights = drawn.map_or(Vec::new(), |drawn| drawn.of.heights());
     let band: Vec<_> =
         search.speeds.iter().zip(&heights).map(|(v, [low, _, high])| (*v, *low, *high)).collect();
-    let band_label = drawn.map_or(String::new(), DrawnBasins::label);
+    let band_label = drawn.map_or(String::new(), label);
     let uncontrolled = critical_speeds(&Linear::new(&setup.parameters), &Law::None);
-    let label = setup.config.label();
+    let conditions = setup.config.label();
     let cut = if complete { "" } else { ", interrupted" };
-    let title = format!("Basin of attraction: {label}, {}{cut}", setup.config.assist);
+    let title = format!("Basin of attraction: {conditions}, {}{cut}", setup.config.assist);
     let figure = BasinFigure {
         series: &[("", result)],
         self_stable: uncontrolled.v_w.zip(uncontrolled.v_c),
@@ -175,8 +144,8 @@ pub(super) fn write(
         config: &config,
         summary: || {
             terminal::basin(&figure, 80)
-                + &summary(result, search, &setup.conditions.fall, seconds)
-                + &drawn.map_or(String::new(), |drawn| drawn.summary(&search.speeds))
+                + &summary(result, search, &setup.conditions.fall, *seconds)
+                + &drawn.map_or(String::new(), |drawn| drawn::summary(drawn, &search.speeds))
                 + extra
         },
         table: || {

@@ -1,7 +1,7 @@
 //! Options of a board in the loop and its link.
 
-use super::conditions::Setup;
 use super::ended::Failure;
+use crate::commands::Setup;
 use crate::pil::qemu::{LIMIT, Qemu, default_image};
 use crate::pil::{BoardError, Controller, LinkFault};
 use crate::ride::Assist;

@@ -1,6 +1,6 @@
 //! `sim-host basin compare`: compares basins of several cases.
 
-use super::conditions::{Setup, setup};
+use super::conditions::setup;
 use super::options::{self, Options, Search as SearchOptions};
 use super::outputs::{OutputArgs, Results, complain};
 use super::progress::progress;
@@ -9,6 +9,7 @@ use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Basin, Bound, Column, Work, basin};
 use crate::bicycle::linear::Linear;
+use crate::commands::Setup;
 use crate::eigen::critical_speeds;
 use crate::report::compare::{Case, CaseEntry, CompareDocument};
 use crate::report::figure::{self, BasinFigure};

@@ -2,21 +2,16 @@
 
 use super::options::{Bicycle as BicycleOptions, Options, Rider as RiderOptions};
 use super::outputs::{OutputArgs, Results, complain, complain_once};
+use super::scenario_error::failure;
 use super::{Ended, Failure, warn};
-use crate::eigen::{
-    CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes, roots, stability,
-};
+use crate::commands::eigen::{EigenTask, Eigenvalues, eigen};
+use crate::eigen::{CriticalSpeeds, LinearActuator, Mode, Stability};
 use crate::range::{TimeError, time};
-use crate::report::document::EigenDocument;
 use crate::report::figure::{self, EigenFigure};
-use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider};
-use crate::report::tool::{SCHEMA, Tool};
 use crate::report::{table, terminal};
-use crate::rider::compatibility_warnings;
-use crate::scenario::{law, speeds};
-use control::{Capsize, Law};
+use crate::scenario::{Scenario, law, speeds};
+use control::Capsize;
 use nalgebra::Complex;
-use rayon::prelude::*;
 use serde_json::json;
 use std::fmt::Write;
 
@@ -97,31 +92,20 @@ impl ActuatorArgs {
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let bicycle = args.bicycle.bicycle()?;
     warn(&bicycle);
-    let law = law::parse(&args.law)?;
-    let (resolved, rider) = match args.rider.rider()? {
-        Some(one) => {
-            (Some(ResolvedRider::new(&one)), Some((one.rider, compatibility_warnings(&bicycle, &one.table))))
-        }
-        None => (None, None),
+    let task = EigenTask {
+        bicycle,
+        rider: args.rider.rider()?,
+        law: (args.law.clone(), law::parse(&args.law)?),
+        capsize: args.capsize,
+        actuator: args.actuator.actuator(),
+        speeds: args.speeds.clone(),
+        roots: usize::from(args.roots),
     };
-    let alone = law == Law::None && rider.is_none() && args.capsize.is_none();
-    if let (false, Some(v)) = (alone, args.speeds.iter().find(|v| **v < 0.0)) {
-        let reason = "laws and riders are those of riding forward; below 0 only --law none without --rider and --capsize";
-        return Err(format!("--speeds: {v} m/s: {reason}").into());
-    }
-    let (rider, doubts) = rider.map_or((None, Vec::new()), |(rider, doubts)| (Some(rider), doubts));
-    doubts.iter().for_each(|doubt| complain_once(&format!("warning: {doubt}")));
     let outputs = args.outputs.open(None)?;
-    let actuator = args.actuator.actuator();
-    let count = match (&rider, actuator.delay_s > 0.0) {
-        (None, false) => 4 + usize::from(actuator.time_constant_s > 0.0),
-        _ => usize::from(args.roots),
-    };
-    let capsize = args.capsize.unwrap_or_default();
-    let model = Model::new(&bicycle.parameters, Feedback::new(law.clone(), capsize), rider);
-    let model = model.with_actuator(actuator)?;
-    let Stability { critical, ranges, changes } = stability(&model);
-    let values: Vec<_> = args.speeds.par_iter().map(|&v| roots(&model.at(v), count)).collect();
+    let found = eigen(&task).map_err(|e| failure(&Scenario::default(), e))?;
+    let Eigenvalues { document, count, values, modes, stability } = found;
+    let Stability { critical, ranges, .. } = stability;
+    document.warnings.iter().for_each(|doubt| complain_once(&format!("warning: {doubt}")));
     if let Some((n, v)) =
         values.iter().map(Vec::len).zip(&args.speeds).filter(|(n, _)| *n < count).min_by_key(|x| x.0)
     {
@@ -129,30 +113,10 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             "note: --roots {count}: {n} of them at {v} m/s; those further left decay too quickly to be distinguished"
         ));
     }
-    let modes = modes(&model, &args.speeds, count);
-    let CriticalSpeeds { v_d, v_w, v_c } = critical;
-    let document = EigenDocument {
-        schema: SCHEMA,
-        tool: Tool::this(),
-        bicycle: ResolvedBicycle::new(&bicycle),
-        rider: resolved,
-        warnings: doubts,
-        law: ResolvedLaw::new(&args.law, &law),
-        capsize: ResolvedCapsize::new(&capsize),
-        actuator: Some(actuator).filter(|a| *a != LinearActuator::default()),
-        v_d,
-        v_w,
-        v_c,
-        stable_ranges: ranges.iter().map(|&(from, to)| [from, to]).collect(),
-        stability_changes: changes,
-        speeds: args.speeds.clone(),
-        eigenvalues: values.iter().map(|of_speed| of_speed.iter().map(|e| [e.re, e.im]).collect()).collect(),
-        modes: modes.iter().map(|mode| (mode.name.clone(), per_speed(mode, args.speeds.len()))).collect(),
-    };
     let rider = document.rider.as_ref().map_or(String::new(), |r| format!(", {}", r.label()));
     let turned = document.actuator.map_or("", |_| ", actuator");
     let beside = args.capsize.map_or(String::new(), |c| format!(" and capsize {}:{}", c.k_c, c.v_max_m_s));
-    let title = format!("Eigenvalues: {}{rider}, law {}{beside}{turned}", bicycle.name, args.law);
+    let title = format!("Eigenvalues: {}{rider}, law {}{beside}{turned}", task.bicycle.name, args.law);
     let figure =
         EigenFigure { speeds: &args.speeds, modes: &modes, stable: &ranges, critical, title: &title };
     let config = json!({"bicycle": document.bicycle, "rider": document.rider, "warnings": document.warnings, "law": document.law, "capsize": document.capsize,
@@ -170,12 +134,6 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         figure: || figure::eigen(&figure),
     })?;
     Ok(Ended::Done)
-}
-
-/// The roots of a mode at each speed, in the document's form.
-fn per_speed(mode: &Mode, speeds: usize) -> Vec<Vec<[f64; 2]>> {
-    let at = |i: usize| mode.roots.iter().filter_map(|root| root[i]).map(|e| [e.re, e.im]).collect();
-    (0..speeds).map(at).collect()
 }
 
 /// Columns of the table: the speed, the rightmost eigenvalues, the modes.

@@ -3,7 +3,9 @@
 use super::board_args::BoardArgs;
 use super::conditions::{printed, setup};
 use super::outputs::{complain, print};
+use super::scenario_error::named;
 use super::{Ended, Failure, pil_basin, ride};
+use crate::commands::ride::{Ridden, check_direction, start};
 use crate::pil::Controller;
 use crate::pil::compare::{Recorder, same_ride};
 use crate::pil::qemu::Qemu;
@@ -57,12 +59,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 
 fn on_board(args: &RideArgs) -> Result<Ended, Failure> {
     let scenario = args.ride.scenario.scenario()?;
-    let start = ride::start(&scenario)?;
+    let start = start(&scenario).map_err(|e| named(&scenario, &e))?;
     if let Some(ended) = printed(&args.ride.scenario, &scenario)? {
         return Ok(ended);
     }
     let setup = setup(&scenario)?;
-    ride::check_direction(start, &setup.conditions)?;
+    check_direction(start, &setup.conditions)?;
     let start_board = args.board.starter(&setup)?;
     let outputs = args.ride.open()?;
     let mut controller = start_board()?;
@@ -96,7 +98,7 @@ fn on_board(args: &RideArgs) -> Result<Ended, Failure> {
         );
     }
     let sensed = || steps.iter().map(|(frame, _)| *frame).collect();
-    ride::write(&setup, &outputs, (&ride, &trace), sensed, &text)?;
+    ride::write(&setup, &outputs, &Ridden { ride, trace }, sensed, &text)?;
     same.unwrap_or(Ok(())).map_err(|difference| format!("--compare: {difference}"))?;
     Ok(Ended::Done)
 }

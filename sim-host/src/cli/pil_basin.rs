@@ -1,12 +1,13 @@
 //! `sim-host pil basin`: a basin with the control step of every ride on a board in QEMU.
 
-use super::basin::{BasinArgs, Computed, write};
+use super::basin::{BasinArgs, write};
 use super::board_args::BoardArgs;
 use super::conditions::{printed, setup};
 use super::progress::progress;
 use super::scenario_error::named;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Method, Search, basin, basin_by};
+use crate::commands::basin::Searched;
 use crate::pil::compare::same_basin;
 use crate::pil::qemu::Qemu;
 use crate::pil::{Controller, Tally};
@@ -70,7 +71,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         }
     }
     let ended =
-        write(&setup, &searched, &outputs, &Computed { basin: &result, drawn: None, seconds }, &text)?;
+        write(&setup, &outputs, &Searched { search: searched, basin: result, drawn: None, seconds }, &text)?;
     same.map_err(|difference| format!("--compare: {difference}"))?;
     Ok(ended)
 }

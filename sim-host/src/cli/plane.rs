@@ -5,16 +5,17 @@ use super::options::{Chosen, Plane as PlaneOptions};
 use super::outputs::{OutputArgs, Results, complain};
 use super::progress::progress;
 use super::ride::laid_flat;
+use super::scenario_error::named;
 use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
-use crate::basin::{Plane, plane};
+use crate::basin::Plane;
+use crate::commands::{Hooks, plane};
 use crate::report::figure::{self, PlaneFigure};
 use crate::report::plane::{PlaneDocument, plane_rows};
 use crate::report::table;
 use crate::ride::FallCause;
 use serde_json::json;
 use std::fmt::Write;
-use std::time::Instant;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -36,31 +37,27 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let scenario = args.scenario.scenario()?;
-    let search = scenario.plane.ok_or("--speed must be given (plane.speed)")?;
+    let search = plane::search(&scenario).map_err(|e| named(&scenario, &e))?;
     if let Some(ended) = printed(&args.scenario, &scenario)? {
         return Ok(ended);
     }
     let setup = setup(&scenario)?;
-    if !setup.conditions.plant.mirrors() {
-        return Err(
-            "basin plane mirrors one half: no faults, noise, bias, dropout, no IMU off its middle".into()
-        );
-    }
+    plane::check_mirrored(&setup)?;
     let outputs = args.outputs.open(None)?;
     interrupt::install();
     let pool = args.threads.pool()?;
     let bar = progress(outputs.shows_progress(), "basin", search.rays, "rays");
-    let begin = Instant::now();
-    let found = pool.install(|| plane(&setup.conditions, &search, |_| bar.inc(1), interrupt::stopped));
-    let seconds = begin.elapsed().as_secs_f64();
+    let hooks = Hooks { finished: &|| bar.inc(1), added: &|_| (), stop: &interrupt::stopped };
+    let found = pool.install(|| plane::plane(&setup, hooks));
     bar.finish_and_clear();
     let found = found?;
-    if found.rays.is_empty() {
+    if found.plane.rays.is_empty() {
         complain("interrupted: no ray is done, nothing is written");
         return Ok(Ended::Interrupted);
     }
     let label = setup.config.label();
-    let document = PlaneDocument::new((setup.config, search, setup.scenario), &found, seconds);
+    let document = found.document(&setup);
+    let found = found.plane;
     let cut = if document.complete { "" } else { ", interrupted" };
     let title = format!("Basin of attraction at {} m/s: {label}{cut}", search.speed);
     let config = json!({"config": document.config, "search": search, "complete": document.complete});

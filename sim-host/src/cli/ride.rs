@@ -1,16 +1,15 @@
 //! `sim-host ride`: one ride after a disturbance.
 
-use super::conditions::{Setup, printed, setup};
+use super::conditions::{printed, setup};
 use super::options::{Chosen, Ride as RideOptions};
 use super::outputs::{OutputArgs, Outputs, Results};
+use super::scenario_error::named;
 use super::{Ended, Failure};
-use crate::report::document::RideDocument;
+use crate::commands::Setup;
+use crate::commands::ride::{self, Ridden};
 use crate::report::figure::{self, RideFigure};
 use crate::report::{table, terminal};
-use crate::ride::{
-    Assist, Conditions, FallCause, FallCriterion, LaidFlat, Ride, Start, TracePoint, frames, traced,
-};
-use crate::scenario::Scenario;
+use crate::ride::{Conditions, FallCause, FallCriterion, LaidFlat, Ride, Start, frames};
 use control::SensorFrame;
 use control::wire::encode_frame;
 use serde_json::json;
@@ -36,11 +35,6 @@ pub(super) struct Args {
     outputs: OutputArgs,
 }
 
-/// The initial state of a scenario.
-pub(super) fn start(scenario: &Scenario) -> Result<Start, Failure> {
-    Ok(scenario.start.ok_or("--speed must be given (start.speed_m_s)")?)
-}
-
 impl Args {
     /// Checks every requested output.
     pub(super) fn open(&self) -> Result<Outputs, Failure> {
@@ -48,34 +42,18 @@ impl Args {
     }
 }
 
-/// Rejects a backward ride with assist or rider, which are defined for forward riding only.
-///
-/// # Errors
-/// Assist or rider at a negative speed.
-pub(super) fn check_direction(start: Start, conditions: &Conditions) -> Result<(), String> {
-    let alone = matches!(conditions.assist, Assist::None) && conditions.rider.is_none();
-    if start.speed_m_s < 0.0 && !alone {
-        let speed = start.speed_m_s;
-        return Err(format!(
-            "--speed (m/s) = {speed} is outside 0 to 30; laws and riders are those of riding forward, below 0 goes only \
-             --law none without --rider"
-        ));
-    }
-    Ok(())
-}
-
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let scenario = args.scenario.scenario()?;
-    let start = start(&scenario)?;
+    let start = ride::start(&scenario).map_err(|e| named(&scenario, &e))?;
     if let Some(ended) = printed(&args.scenario, &scenario)? {
         return Ok(ended);
     }
     let setup = setup(&scenario)?;
-    check_direction(start, &setup.conditions)?;
+    ride::check_direction(start, &setup.conditions)?;
     let outputs = args.open()?;
-    let (ride, trace) = traced(&setup.conditions, start);
-    let sensed = || frames(&setup.conditions, start, &trace);
-    write(&setup, &outputs, (&ride, &trace), sensed, "")?;
+    let ridden = ride::ride(&setup)?;
+    let sensed = || frames(&setup.conditions, start, &ridden.trace);
+    write(&setup, &outputs, &ridden, sensed, "")?;
     Ok(Ended::Done)
 }
 
@@ -83,11 +61,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 pub(super) fn write(
     setup: &Setup,
     outputs: &Outputs,
-    (ride, trace): (&Ride, &[TracePoint]),
+    ridden: &Ridden,
     sensed: impl FnOnce() -> Vec<SensorFrame>,
     extra: &str,
 ) -> Result<(), Failure> {
-    let document = RideDocument::new(setup.config.clone(), setup.scenario.clone(), ride);
+    let document = ridden.document(setup);
+    let Ridden { ride, trace } = ridden;
     let Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s } = ride.start;
     let title = format!(
         "{}: {speed_m_s} m/s, steer rate {steer_rate_rad_s} rad/s, roll rate {roll_rate_rad_s} rad/s",

@@ -1,6 +1,17 @@
 //! Errors of a scenario, with the file or the option of the wrong value.
 
+use super::Failure;
+use crate::commands::CommandError;
 use crate::scenario::{Scenario, ScenarioError, setting};
+
+/// An error of a command; see [`named`].
+pub(super) fn failure(scenario: &Scenario, error: CommandError) -> Failure {
+    match error {
+        CommandError::Scenario(error) => named(scenario, &error).into(),
+        CommandError::Choice { name, reason } => format!("--{name}: {reason}").into(),
+        other => other.into(),
+    }
+}
 
 /// An error of a scenario. A value of the scenario's file is named by the file and the key, a value of an option by the
 /// option. Of a value that a file and options can both contain, the file and the option are named.

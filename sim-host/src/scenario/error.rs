@@ -96,7 +96,7 @@ pub enum ScenarioError {
 
 impl ScenarioError {
     /// The value of `key` is wrong.
-    pub(super) fn value(key: &str, reason: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+    pub(crate) fn value(key: &str, reason: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         Self::Value { key: key.into(), reason: reason.into() }
     }
 }

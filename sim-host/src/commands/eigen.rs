@@ -1,0 +1,99 @@
+//! Eigenvalues of the linearised bicycle over speed, and its critical speeds.
+
+use super::CommandError;
+use crate::bicycle::catalogue::Bicycle;
+use crate::eigen::{
+    CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes, roots, stability,
+};
+use crate::report::document::EigenDocument;
+use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider};
+use crate::report::tool::{SCHEMA, Tool};
+use crate::rider::compatibility_warnings;
+use crate::scenario::LoadedRider;
+use control::{Capsize, Law};
+use nalgebra::Complex;
+use rayon::prelude::*;
+
+/// A bicycle with what steers it, and the speeds of the analysis.
+#[derive(Clone, Debug)]
+pub struct EigenTask {
+    /// The bicycle.
+    pub bicycle: Bicycle,
+    /// The rider; `None` for a rigid one.
+    pub rider: Option<LoadedRider>,
+    /// The law, and its name.
+    pub law: (String, Law),
+    /// The added capsize term.
+    pub capsize: Option<Capsize>,
+    /// Between law and steer axis.
+    pub actuator: LinearActuator,
+    /// Forward speeds \[m/s\].
+    pub speeds: Vec<f64>,
+    /// Number of rightmost eigenvalues, if there is a delay.
+    pub roots: usize,
+}
+
+/// Eigenvalues with their modes.
+#[derive(Clone, Debug)]
+pub struct Eigenvalues {
+    /// The document.
+    pub document: EigenDocument,
+    /// Requested eigenvalues per speed.
+    pub count: usize,
+    /// Per speed the rightmost eigenvalues \[1/s\].
+    pub values: Vec<Vec<Complex<f64>>>,
+    /// The modes.
+    pub modes: Vec<Mode>,
+    /// Critical speeds and stable ranges \[m/s\].
+    pub stability: Stability,
+}
+
+/// Computes the eigenvalues, on all cores of the current rayon pool.
+///
+/// # Errors
+/// An actuator or a speed that does not suit law and rider.
+pub fn eigen(task: &EigenTask) -> Result<Eigenvalues, CommandError> {
+    let EigenTask { bicycle, rider, law: (law_name, law), actuator, speeds, .. } = task;
+    let alone = *law == Law::None && rider.is_none() && task.capsize.is_none();
+    if let (false, Some(v)) = (alone, speeds.iter().find(|v| **v < 0.0)) {
+        let reason = "laws and riders are those of riding forward; below 0 only --law none without --rider and --capsize";
+        return Err(CommandError::choice("speeds", format!("{v} m/s: {reason}")));
+    }
+    let count = match (rider, actuator.delay_s > 0.0) {
+        (None, false) => 4 + usize::from(actuator.time_constant_s > 0.0),
+        _ => task.roots,
+    };
+    let capsize = task.capsize.unwrap_or_default();
+    let feedback = Feedback::new(law.clone(), capsize);
+    let model = Model::new(&bicycle.parameters, feedback, rider.as_ref().map(|one| one.rider.clone()));
+    let model = model.with_actuator(*actuator)?;
+    let stability = stability(&model);
+    let values: Vec<_> = speeds.par_iter().map(|&v| roots(&model.at(v), count)).collect();
+    let modes = modes(&model, speeds, count);
+    let CriticalSpeeds { v_d, v_w, v_c } = stability.critical;
+    let document = EigenDocument {
+        schema: SCHEMA,
+        tool: Tool::this(),
+        bicycle: ResolvedBicycle::new(bicycle),
+        rider: rider.as_ref().map(ResolvedRider::new),
+        warnings: rider.as_ref().map_or(Vec::new(), |one| compatibility_warnings(bicycle, &one.table)),
+        law: ResolvedLaw::new(law_name, law),
+        capsize: ResolvedCapsize::new(&capsize),
+        actuator: Some(*actuator).filter(|a| *a != LinearActuator::default()),
+        v_d,
+        v_w,
+        v_c,
+        stable_ranges: stability.ranges.iter().map(|&(from, to)| [from, to]).collect(),
+        stability_changes: stability.changes.clone(),
+        speeds: speeds.clone(),
+        eigenvalues: values.iter().map(|of_speed| of_speed.iter().map(|e| [e.re, e.im]).collect()).collect(),
+        modes: modes.iter().map(|mode| (mode.name.clone(), per_speed(mode, speeds.len()))).collect(),
+    };
+    Ok(Eigenvalues { document, count, values, modes, stability })
+}
+
+/// The roots of a mode at each speed, in the document's form.
+fn per_speed(mode: &Mode, speeds: usize) -> Vec<Vec<[f64; 2]>> {
+    let at = |i: usize| mode.roots.iter().filter_map(|root| root[i]).map(|e| [e.re, e.im]).collect();
+    (0..speeds).map(at).collect()
+}

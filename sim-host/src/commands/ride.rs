@@ -1,0 +1,53 @@
+//! One ride after a disturbance.
+
+use super::{CommandError, Setup};
+use crate::report::document::RideDocument;
+use crate::ride::{Assist, Conditions, Ride, Start, TracePoint, traced};
+use crate::scenario::{Scenario, ScenarioError};
+
+/// A ride with its record.
+#[derive(Clone, Debug)]
+pub struct Ridden {
+    /// The ride.
+    pub ride: Ride,
+    /// One point per control period.
+    pub trace: Vec<TracePoint>,
+}
+
+/// The initial state of a scenario.
+///
+/// # Errors
+/// The scenario has none.
+pub fn start(scenario: &Scenario) -> Result<Start, ScenarioError> {
+    scenario.start.ok_or_else(|| ScenarioError::value("start.speed_m_s", "must be given"))
+}
+
+/// Rejects a backward ride with assist or rider, which are defined for forward riding only.
+///
+/// # Errors
+/// Assist or rider at a negative speed.
+pub fn check_direction(start: Start, conditions: &Conditions) -> Result<(), CommandError> {
+    let alone = matches!(conditions.assist, Assist::None) && conditions.rider.is_none();
+    if start.speed_m_s < 0.0 && !alone {
+        return Err(CommandError::Backwards(start.speed_m_s));
+    }
+    Ok(())
+}
+
+/// Simulates the ride of a scenario.
+///
+/// # Errors
+/// The scenario has no start, or one of riding backwards with an assist or a rider.
+pub fn ride(setup: &Setup) -> Result<Ridden, CommandError> {
+    let start = start(&setup.scenario)?;
+    check_direction(start, &setup.conditions)?;
+    let (ride, trace) = traced(&setup.conditions, start);
+    Ok(Ridden { ride, trace })
+}
+
+impl Ridden {
+    /// The document.
+    pub fn document(&self, setup: &Setup) -> RideDocument {
+        RideDocument::new(setup.config.clone(), setup.scenario.clone(), &self.ride)
+    }
+}
