@@ -25,6 +25,7 @@ pub mod pil;
 #[cfg(unix)]
 pub mod pty;
 pub mod published;
+pub mod python;
 pub mod riders;
 pub mod rides;
 pub mod sets;
