@@ -58,15 +58,18 @@ fn installed(folder: &Path, python: &Path, list: &Path) -> Result<(), String> {
     let pip =
         ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"].map(OsStr::new);
     let pip = run(python, pip.into_iter().chain([list.as_os_str()]));
-    // pip has the same exit code for a missing network and a package that does not exist.
-    let unreachable = ["connection", "Connection", "timed out", "resolution"];
     match pip.code {
         Some(0) => Ok(()),
-        _ if unreachable.iter().any(|word| pip.stderr.contains(word)) => {
+        _ if unreachable(&pip.stderr) => {
             Err(format!("PyPI cannot be reached: {}", pip.stderr.lines().next().unwrap_or_default()))
         }
         _ => panic!("{}: {}", list.display(), pip.stderr),
     }
+}
+
+/// Whether pip failed because of its network, by its messages: its exit code is that of a package that does not exist.
+pub fn unreachable(stderr: &str) -> bool {
+    ["connection", "Connection", "timed out", "resolution"].iter().any(|word| stderr.contains(word))
 }
 
 /// Runs an interpreter of [`venv`] with these arguments.

@@ -7,6 +7,7 @@ pub mod bench;
 pub mod cost;
 pub mod counts;
 pub mod coverage;
+pub mod dbc;
 pub mod document;
 pub mod image;
 pub mod instructions;

@@ -7,6 +7,7 @@ use xtask::architecture::architecture;
 use xtask::bench::bench;
 use xtask::cost::cost;
 use xtask::counts::counts;
+use xtask::dbc::dbc;
 use xtask::document::{self, instruction_table, size_table};
 use xtask::reproducible::reproducible;
 use xtask::setup::{TargetSource, setup};
@@ -25,6 +26,7 @@ cargo xtask <command> [--help]
   size          flash and RAM used by the images, against their budgets
   instructions  instructions of a control step, against the budget
   counts        instructions of rides and basins on the host, against the recorded ones
+  dbc           the database of the board's CAN frames, data/can/assist.dbc
   architecture  figure and tables of docs/architecture.md, and the check of the dependencies
   mutants       mutation tests of the control crate
   coverage      lines of the control crate's torque path that its tests do not cover
@@ -153,6 +155,12 @@ their ratios as a table. Several minutes. Remove the work tree with `git worktre
 Try: cargo xtask against HEAD~20 --runs 5
 ";
 
+const DBC_HELP: &str = "\
+cargo xtask dbc
+
+Writes data/can/assist.dbc from the tables that the encoder of the board's CAN frames uses.
+";
+
 const ARCHITECTURE_HELP: &str = "\
 cargo xtask architecture
 
@@ -208,6 +216,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         "bench" => BENCH_HELP,
         "cost" => COST_HELP,
         "against" => AGAINST_HELP,
+        "dbc" => DBC_HELP,
         "architecture" => ARCHITECTURE_HELP,
         "mutants" => MUTANTS_HELP,
         "coverage" => COVERAGE_HELP,
@@ -226,6 +235,7 @@ fn dispatch(words: &[&str]) -> Result<ExitCode> {
         ("virtual-board", _) => on_virtual_board(rest)?,
         ("flash", [image]) => image::flash(image)?,
         ("reproducible", []) => reproducible()?,
+        ("dbc", []) => dbc()?,
         ("architecture", []) => architecture(image::root())?,
         ("counts", []) => counts(false)?,
         ("counts", ["--update"]) => counts(true)?,

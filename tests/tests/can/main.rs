@@ -4,6 +4,7 @@
 
 mod asc;
 mod candump;
+mod cantools;
 mod dbc;
 mod dispatch;
 mod mdf;

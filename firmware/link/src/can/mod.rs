@@ -1,12 +1,15 @@
 //! The board's CAN broadcasts: three data frames of eight bytes, classic CAN 2.0A. Table: docs/link.md.
 //!
 //! Little-endian. A number is rounded to its unit and saturates at its range. An unknown value, or NaN, has a reserved
-//! code.
+//! code. [`layout`] has the places and codes of all numbers.
+
+pub mod layout;
+pub mod signal;
 
 use control::sensors::calibration::CalibrationPlan;
 use control::sensors::polarity::PolarityStep;
 use control::{ActiveLimits, Causes, Command, Mode, SensorFrame};
-use micromath::F32;
+use signal::Signal;
 
 /// Bit rate \[bit/s\].
 pub const BIT_HZ: u32 = 500_000;
@@ -32,10 +35,6 @@ pub const STEER_RAD: f32 = 1e-4;
 pub const TORQUE_NM: f32 = 2e-3;
 /// One unit of the authority.
 pub const AUTHORITY: f32 = 5e-3;
-
-/// Codes of an unknown value.
-const UNKNOWN: i16 = i16::MIN;
-const UNKNOWN_U8: u8 = u8::MAX;
 
 /// A data frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,70 +115,56 @@ pub enum Message {
 impl Message {
     /// Encodes the message as a frame.
     pub fn frame(&self) -> Frame {
-        match self {
-            Message::State(state) => {
-                let flags =
-                    u8::from(state.driven) | u8::from(state.engage) << 1 | (state.polarity as u8) << 2;
-                let ([l0, l1], [v0, v1]) =
-                    (state.limits.0.to_le_bytes(), word(state.speed_m_s, SPEED_M_S).to_le_bytes());
-                let bytes = [state.mode as u8, flags, l0, l1, part(state.authority), v0, v1, state.steps];
-                Frame { identifier: STATE, bytes }
-            }
-            Message::Motion(motion) => {
-                let [r0, r1] = word(motion.roll_rate_rad_s, ROLL_RATE_RAD_S).to_le_bytes();
-                let [s0, s1] = word(motion.steer_rad, STEER_RAD).to_le_bytes();
-                let [c0, c1] = word(motion.commanded_nm, TORQUE_NM).to_le_bytes();
-                let [m0, m1] = word(motion.measured_nm, TORQUE_NM).to_le_bytes();
-                Frame { identifier: MOTION, bytes: [r0, r1, s0, s1, c0, c1, m0, m1] }
-            }
-            Message::Causes(causes) => Frame { identifier: CAUSES, bytes: causes.0.to_le_bytes() },
-        }
+        use layout::*;
+        let (identifier, bits) = match self {
+            Message::State(state) => (
+                STATE,
+                MODE.put(state.mode as u64)
+                    | DRIVEN.put(state.driven.into())
+                    | ENGAGE.put(state.engage.into())
+                    | POLARITY.put(state.polarity as u64)
+                    | LIMITS.put(state.limits.0.into())
+                    | AUTHORITY_PART.put(PART.code(state.authority))
+                    | SPEED.put(FORWARD.code(state.speed_m_s))
+                    | STEPS.put(state.steps.into()),
+            ),
+            Message::Motion(motion) => (
+                MOTION,
+                ROLL_RATE.put(RATE.code(motion.roll_rate_rad_s))
+                    | STEER.put(ANGLE.code(motion.steer_rad))
+                    | COMMANDED.put(TORQUE.code(motion.commanded_nm))
+                    | MEASURED.put(TORQUE.code(motion.measured_nm)),
+            ),
+            Message::Causes(causes) => (CAUSES, causes.0),
+        };
+        Frame { identifier, bytes: bits.to_le_bytes() }
     }
 
     /// Decodes a frame; `None` if the identifier, the mode or the polarity step is unknown.
     pub fn of(frame: &Frame) -> Option<Self> {
-        let [b0, b1, b2, b3, b4, b5, b6, b7] = frame.bytes;
+        use layout::*;
+        let bits = u64::from_le_bytes(frame.bytes);
+        let byte = |signal: Signal| signal.get(bits) as u8;
+        let word = |signal: Signal| signal.get(bits) as i16;
         match frame.identifier {
             STATE => Some(Message::State(State {
-                mode: Mode::numbered(b0)?,
-                driven: b1 & 1 != 0,
-                engage: b1 & 2 != 0,
-                polarity: PolarityStep::numbered(b1 >> 2 & 7)?,
-                limits: ActiveLimits(u16::from_le_bytes([b2, b3])),
-                authority: (b4 != UNKNOWN_U8).then_some(f32::from(b4) * AUTHORITY),
-                speed_m_s: value([b5, b6], SPEED_M_S),
-                steps: b7,
+                mode: Mode::numbered(byte(MODE))?,
+                driven: DRIVEN.get(bits) != 0,
+                engage: ENGAGE.get(bits) != 0,
+                polarity: PolarityStep::numbered(byte(POLARITY))?,
+                limits: ActiveLimits(LIMITS.get(bits) as u16),
+                authority: PART.value(word(AUTHORITY_PART)),
+                speed_m_s: FORWARD.value(word(SPEED)),
+                steps: byte(STEPS),
             })),
             MOTION => Some(Message::Motion(Motion {
-                roll_rate_rad_s: value([b0, b1], ROLL_RATE_RAD_S),
-                steer_rad: value([b2, b3], STEER_RAD),
-                commanded_nm: value([b4, b5], TORQUE_NM),
-                measured_nm: value([b6, b7], TORQUE_NM),
+                roll_rate_rad_s: RATE.value(word(ROLL_RATE)),
+                steer_rad: ANGLE.value(word(STEER)),
+                commanded_nm: TORQUE.value(word(COMMANDED)),
+                measured_nm: TORQUE.value(word(MEASURED)),
             })),
-            CAUSES => Some(Message::Causes(Causes(u64::from_le_bytes(frame.bytes)))),
+            CAUSES => Some(Message::Causes(Causes(bits))),
             _ => None,
         }
-    }
-}
-
-/// A value in units of `unit`, saturated to -32767..=32767.
-fn word(value: Option<f32>, unit: f32) -> i16 {
-    match value {
-        Some(value) if !value.is_nan() => (F32(value / unit).round().0 as i16).max(-i16::MAX),
-        _ => UNKNOWN,
-    }
-}
-
-/// Value of a word in units of `unit`; `None` if unknown.
-fn value(bytes: [u8; 2], unit: f32) -> Option<f32> {
-    let word = i16::from_le_bytes(bytes);
-    (word != UNKNOWN).then_some(f32::from(word) * unit)
-}
-
-/// A fraction from 0 to 1 in units of [`AUTHORITY`].
-fn part(part: Option<f32>) -> u8 {
-    match part {
-        Some(part) if !part.is_nan() => F32(part.clamp(0.0, 1.0) / AUTHORITY).round().0 as u8,
-        _ => UNKNOWN_U8,
     }
 }
