@@ -5,7 +5,7 @@ use crate::num::{Scalar, Vec3, sin_cos};
 use std::fmt;
 
 /// A material point of the rear frame on the symmetry plane, by its place in the upright bicycle.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 pub struct ForcePoint {
     /// Ahead of the rear contact \[m\].
     pub ahead_m: f64,

@@ -30,7 +30,7 @@ pub use start::Start;
 use crate::num::{Lanes, Scalar};
 
 /// The part of the bicycle's state on which its accelerations depend.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct State<S> {
     /// Roll angle \[rad\], right positive.
     pub roll: S,

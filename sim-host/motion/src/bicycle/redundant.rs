@@ -11,7 +11,7 @@ use super::{Geometry, Motion, Pose, State, Torques, Velocities};
 use crate::num::{Moves, Vec3, sin_cos};
 
 /// A state with redundant speeds, which satisfy the constraints.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FullState {
     /// Roll, pitch and steer \[rad\].
     pub angles: [f64; 3],

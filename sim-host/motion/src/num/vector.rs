@@ -4,7 +4,7 @@ use super::Scalar;
 use std::ops::{Add, Sub};
 
 /// A vector's components along three orthogonal axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Vec3<S> {
     /// Along the first axis.
     pub x: S,

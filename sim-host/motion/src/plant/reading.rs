@@ -78,7 +78,7 @@ impl Sensor {
 
 /// Exact values at one control instant in Meijaard's axes fixed to the rear frame: x forward and horizontal
 /// when upright, y right, z down.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Reading {
     /// Angular velocity of the rear frame \[rad/s\]; the x component as selected by [`Imu`].
     pub gyro_rad_s: [f64; 3],
@@ -137,7 +137,7 @@ impl Reading {
 
 /// Integrated heading and path, and the previous instant, needed for heading, lateral deviation and specific
 /// force.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Odometry {
     heading_rad: f64,
     lateral_m: f64,
@@ -145,7 +145,7 @@ pub struct Odometry {
 }
 
 /// The previous control instant, in inertial axes: forward at the start, right, down.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 struct Last {
     /// Velocity of the IMU \[m/s\].
     velocity: Vec3<f64>,

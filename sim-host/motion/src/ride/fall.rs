@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 ///
 /// Near 90 degrees of roll the knife-edge model bounces as a coin does. With a handlebar stop, much steer
 /// damping or a long trail a bicycle can lie there without passing the angle; see [`FallCriterion::flat`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FallCriterion {
     /// Largest roll to either side \[rad\]; 90 degrees, as published.
     pub roll_rad: f64,
@@ -69,7 +69,7 @@ impl Default for FallCriterion {
 }
 
 /// Cause for which a ride counts as fallen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FallCause {
     /// Roll passed [`FallCriterion::roll_rad`].
     Roll,

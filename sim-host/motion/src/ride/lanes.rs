@@ -224,6 +224,7 @@ pub(super) fn run<const N: usize>(
                     most_substeps: ride.substeps_left,
                     full: &mut ride.full,
                     assist_nm: steer_torques.assist_nm,
+                    roll_nm: 0.0,
                     motor: ride.hardware.as_ref().map(|hardware| &hardware.motor),
                     initial_m_s: batch.initial.0[lane],
                     rider,

@@ -47,15 +47,20 @@ pub(super) fn frame(plan: &Plan, reading: &Reading, ticks: u32, engage: bool) ->
             (true, false, _) | (true, true, Wheel::Front) => (speed, missing.rear_wheel_m_s),
             _ => (missing.front_wheel_m_s, speed),
         };
-    let period_us = (1e6 / f64::from(plan.config().rate_hz)) as u64;
     SensorFrame {
-        now_us: (u64::from(ticks) * period_us) as u32,
+        now_us: clock_us(plan, ticks),
         gyro_rad_s: Triple::fresh([reading.roll_rate_rad_s as f32, 0.0, 0.0]),
         front_wheel_m_s,
         rear_wheel_m_s,
         engage,
         ..missing
     }
+}
+
+/// The controller's clock `ticks` control periods after boot \[us\], wrapping.
+pub fn clock_us(plan: &Plan, ticks: u32) -> u32 {
+    let period_us = (1e6 / f64::from(plan.config().rate_hz)) as u64;
+    (u64::from(ticks) * period_us) as u32
 }
 
 /// Exact sensor values at these velocities: roll rate \[rad/s\] and speed \[m/s\].

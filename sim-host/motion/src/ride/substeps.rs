@@ -76,6 +76,8 @@ pub(super) struct Period<'a> {
     pub(super) full: &'a mut Option<FullState>,
     /// Assist torque at the start \[N m\].
     pub(super) assist_nm: f64,
+    /// Roll torque over the period \[N m\].
+    pub(super) roll_nm: f64,
     /// The motor, if it is not exact.
     pub(super) motor: Option<&'a Actuator>,
     /// The ride's speed at t = 0 \[m/s\].
@@ -101,7 +103,8 @@ impl Period<'_> {
             }
         };
         let rider_nm = self.rider.as_ref().map(|rider| rider.rider_state.at.torque);
-        steer_torque::torques(actuator, assist, rider_nm, || steer_rad, v.steer)
+        let torques = steer_torque::torques(actuator, assist, rider_nm, || steer_rad, v.steer);
+        Torques { roll: self.roll_nm, ..torques }
     }
 
     /// Passes a stage of the substep of `h` seconds that begins at `offset` to the rider.

@@ -2,10 +2,10 @@
 //! self-test and is engaged by a press of the switch, all by the flashed control step.
 
 use super::backend::{Backend, Stepped};
-use super::hardware::RideHardware;
-use super::sensor::{Reading, frame};
+use super::hardware::{self, RideHardware};
+use super::sensor::{Reading, clock_us, frame};
 use super::{Assist, Conditions, Start};
-use crate::plant::Plant;
+use crate::plant::{Held, Measured, Plant, Reading as ExactReading, Sensor};
 use control::{Command, Plan, SensorFrame, State};
 
 /// The controller at t = 0.
@@ -40,6 +40,19 @@ pub(super) fn engage_run(
         }
     }
     Ready { controller, ticks }
+}
+
+/// The controller after a warm start at a speed \[m/s\] in the gravity `g` \[m/s^2\], with all its sensors exact, and the control
+/// periods since its boot.
+pub fn engaged(plan: &Plan, speed_m_s: f64, g: f64) -> (State, u32) {
+    let steady = ExactReading::steady(speed_m_s, g);
+    let measured = |ticks, pressed, motor_torque_nm| {
+        let reading = ExactReading { motor_torque_nm, ..steady };
+        let held = Sensor::ALL.map(|sensor| Held { value: reading.of(sensor), age_ticks: 0 });
+        hardware::frame(plan, &Measured::new(held, clock_us(plan, ticks), pressed))
+    };
+    let Ready { controller, ticks } = engage_run(plan, &mut Backend::Local, measured, |_, _| ());
+    (controller, ticks)
 }
 
 /// Frames of exact sensors in steady riding at a speed \[m/s\].

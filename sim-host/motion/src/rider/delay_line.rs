@@ -8,7 +8,7 @@
 //! that of the Runge-Kutta step.
 
 /// Delayed signals of one ride.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DelayLine {
     /// The latest signals \[N m\], indexed by step modulo the ring's length, a power of two.
     ring: Vec<f64>,

@@ -19,7 +19,7 @@ pub const KEYS: [&str; 10] = [
 
 /// Feedback gains (eqs 2.7 and 2.8; heading and lateral deviation for Hess's family), by [`KEYS`].
 /// Positive gains turn the handlebar to the right for a motion to the right.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Gains(pub [f64; 10]);
 
 /// Feedback signals, in the order of [`KEYS`]: roll, its integral, rate and acceleration; the same of steer;

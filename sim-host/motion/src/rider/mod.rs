@@ -8,6 +8,7 @@ mod neuromuscular;
 mod schedule;
 mod signal_history;
 mod state;
+mod stepped;
 
 pub use delay_line::DelayLine;
 pub use error::{ScheduleError, UnfitError};
@@ -16,6 +17,7 @@ pub use neuromuscular::Neuromuscular;
 pub use schedule::{Outside, Schedule};
 pub use signal_history::SignalHistory;
 pub use state::{Instant, RiderState};
+pub use stepped::{RiderSample, SteppedRider};
 
 use crate::range::within;
 

@@ -5,7 +5,7 @@ use crate::num::Scalar;
 use crate::range::{RangeError, within};
 
 /// `T'' = omega^2 (alpha - T) - 2 zeta omega T'`.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 pub struct Neuromuscular {
     /// Undamped natural frequency \[rad/s\].
     pub omega_rad_s: f64,
