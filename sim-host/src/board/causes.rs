@@ -44,7 +44,7 @@ fn page(cause: Cause) -> String {
 }
 
 /// The limits in the order of their bits, named as in `docs/cli.md`.
-const LIMITS: [(ActiveLimits, &str); 10] = [
+pub const LIMITS: [(ActiveLimits, &str); 10] = [
     (ActiveLimits::TAPER, "taper"),
     (ActiveLimits::MAGNITUDE, "torque"),
     (ActiveLimits::RATE, "rate"),

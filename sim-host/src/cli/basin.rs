@@ -4,7 +4,7 @@ use super::conditions::{printed, setup};
 use super::drawn::{self, label};
 use super::live_picture::LivePicture;
 use super::options::{Basin as BasinOptions, Chosen, UncertainBasin};
-use super::outputs::{OutputArgs, Outputs, Results, complain};
+use super::outputs::{Further, OutputArgs, Outputs, Results, complain};
 use super::progress::progress;
 use super::ride::laid_flat;
 use super::scenario_error::named;
@@ -16,11 +16,12 @@ use crate::commands::basin::{BasinTask, Searched};
 use crate::commands::{Hooks, Setup};
 use crate::eigen::critical_speeds;
 use crate::report::figure::{self, Band, BasinFigure};
-use crate::report::{table, terminal};
+use crate::report::{netcdf, table, terminal};
 use crate::ride::{FallCause, FallCriterion, Outcome};
 use control::Law;
 use serde_json::json;
 use std::fmt::Write;
+use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -46,6 +47,9 @@ pub(super) struct Args {
     scenario: Chosen<UncertainBasin>,
     #[command(flatten)]
     threads: ThreadArgs,
+    /// Write a NetCDF file with CF conventions; a name that ends with .nc4 gives NetCDF-4; - is standard output
+    #[arg(long, value_name = "FILE")]
+    netcdf: Option<PathBuf>,
     #[command(flatten)]
     outputs: OutputArgs,
 }
@@ -57,6 +61,9 @@ pub(super) struct BasinArgs {
     pub(super) scenario: Chosen<BasinOptions>,
     #[command(flatten)]
     pub(super) threads: ThreadArgs,
+    /// Write a NetCDF file with CF conventions; a name that ends with .nc4 gives NetCDF-4; - is standard output
+    #[arg(long, value_name = "FILE")]
+    pub(super) netcdf: Option<PathBuf>,
     #[command(flatten)]
     pub(super) outputs: OutputArgs,
 }
@@ -81,7 +88,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     let setup = setup(&scenario)?;
     let task = BasinTask::new(setup).map_err(|e| named(&scenario, &e))?;
-    let outputs = args.outputs.open(None)?;
+    let outputs = args.outputs.open(Further { netcdf: args.netcdf.as_deref(), ..Further::default() })?;
     interrupt::install();
     let pool = args.threads.pool()?;
     let bar = progress(outputs.shows_progress(), "basin", task.columns(), "columns");
@@ -139,6 +146,10 @@ pub(super) fn write(
         band: drawn.map(|_| Band { label: &band_label, edges: &band }),
     };
     let config = json!({"config": document.config, "search": document.search, "complete": complete});
+    let written = outputs.write_netcdf(|| {
+        let attributes = netcdf::provenance(&config, &document.scenario);
+        netcdf::basin(&title, attributes, search.axis, result, drawn.map(|drawn| &drawn.of))
+    });
     outputs.write(Results {
         document: &document,
         config: &config,
@@ -154,6 +165,7 @@ pub(super) fn write(
         },
         figure: || figure::basin(&figure),
     })?;
+    written?;
     if complete {
         Ok(Ended::Done)
     } else {

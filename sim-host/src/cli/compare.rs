@@ -2,7 +2,7 @@
 
 use super::conditions::setup;
 use super::options::{self, Options, Search as SearchOptions};
-use super::outputs::{OutputArgs, Results, complain};
+use super::outputs::{Further, OutputArgs, Results, complain};
 use super::progress::progress;
 use super::scenario_error::named as named_option;
 use super::threads::ThreadArgs;
@@ -97,7 +97,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             .into());
         }
     }
-    let outputs = args.outputs.open(None)?;
+    let outputs = args.outputs.open(Further::default())?;
     interrupt::install();
     let pool = args.threads.pool()?;
     let to_compute = requested.iter().filter(|a| matches!(a, RequestedCase::Compute(..))).count();
@@ -263,7 +263,7 @@ fn summary(document: &CompareDocument) -> String {
     let one_speed = document.one_speed();
     for ((case, distances), bounds) in cases.iter().zip(&document.rmse).zip(&document.rmse_is) {
         let sign = Bound::of(case.area_capped).sign();
-        let area = if one_speed { "-".into() } else { format!("{sign}{:.3}", case.area) };
+        let area = case.area.map_or("-".into(), |area| format!("{sign}{area:.3}"));
         let mean = case.mean_height.map_or("-".into(), |m| format!("{sign}{m:.3}"));
         let part = if one_speed { case.relative_height } else { case.relative_area };
         let part = part.map_or("-".into(), |r| format!("{}{:.1} %", case.relative_is.sign(), 100.0 * r));

@@ -1,7 +1,7 @@
 //! `sim-host design`: optimises a gain schedule and evaluates it.
 
 use super::options::{Fall, Options};
-use super::outputs::{OutputArgs, Results, complain};
+use super::outputs::{Further, OutputArgs, Results, complain};
 use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Axis, Method, Search};
@@ -117,7 +117,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     };
     let fine = search("--judge", args.judge.0.unwrap_or(0.25), 0.25, 0.02)?;
     let scenarios = scenarios(args.fall.fall()?);
-    let outputs = args.outputs.open(None)?;
+    let outputs = args.outputs.open(Further::default())?;
     let law_output = args.law_file.as_deref().map(Output::create).transpose()?;
     if let Some(output) = &law_output {
         outputs.refuse_place_of("--law-file", output)?;

@@ -27,8 +27,8 @@ pub(super) fn summary(drawn: &DrawnBasins, speeds: &[f64]) -> String {
             "{name} of {n} drawn {noun}: 5 % {low:.3}, median {middle:.3}, 95 % {high:.3} {unit}{at_least}"
         );
     };
-    if speeds.len() > 1 {
-        line("area", entry.area, "rad m/s^2");
+    if let Some(area) = entry.area {
+        line("area", area, "rad m/s^2");
     }
     line("mean height", entry.mean_height, "rad/s");
     let Some(riders) = &drawn.riders else { return text };

@@ -1,7 +1,7 @@
 //! `sim-host eigen`: eigenvalues over speed and critical speeds.
 
 use super::options::{Bicycle as BicycleOptions, Options, Rider as RiderOptions};
-use super::outputs::{OutputArgs, Results, complain, complain_once};
+use super::outputs::{Further, OutputArgs, Results, complain, complain_once};
 use super::scenario_error::failure;
 use super::{Ended, Failure, warn};
 use crate::commands::eigen::{EigenTask, Eigenvalues, eigen};
@@ -101,7 +101,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         speeds: args.speeds.clone(),
         roots: usize::from(args.roots),
     };
-    let outputs = args.outputs.open(None)?;
+    let outputs = args.outputs.open(Further::default())?;
     let found = eigen(&task).map_err(|e| failure(&Scenario::default(), e))?;
     let Eigenvalues { document, count, values, modes, stability } = found;
     let Stability { critical, ranges, .. } = stability;

@@ -1,6 +1,6 @@
 //! `sim-host identify`: identification of riders, the weave and sensors from recordings.
 
-use super::outputs::{Outputs, Results, complain};
+use super::outputs::{Further, Outputs, Results, complain};
 use super::weave_args::WeaveArgs;
 use super::{
     Ended, Failure, identify_files, identify_loop, identify_rider, identify_rider_args, identify_sensor, warn,
@@ -107,7 +107,7 @@ fn weave(args: &WeaveArgs) -> Result<Ended, Failure> {
 
 /// All outputs, checked; the one of `--toml` separately.
 fn open(args: &WeaveArgs) -> Result<(Outputs, Option<Output>), Failure> {
-    let outputs = args.outputs.open(None)?;
+    let outputs = args.outputs.open(Further::default())?;
     let kept = args.toml.as_deref().map(Output::create).transpose()?;
     if let Some(kept) = &kept {
         outputs.refuse_place_of("--toml", kept)?;

@@ -1,6 +1,6 @@
 //! `sim-host identify loop`: steer angle scale, control law and steer axis from recordings of a closed loop.
 
-use super::outputs::{OutputArgs, complain};
+use super::outputs::{Further, OutputArgs, complain};
 use super::recording_args::RecordingArgs;
 use super::{Ended, Failure, warn};
 use crate::bicycle::catalogue;
@@ -69,7 +69,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     bicycle.iter().for_each(warn);
     let given = bicycle
         .map(|bicycle| Geometry { wheelbase_m: bicycle.parameters.w, tilt_rad: bicycle.parameters.lam });
-    let outputs = args.outputs.open(None)?;
+    let outputs = args.outputs.open(Further::default())?;
     let of_file = |path: &PathBuf| {
         one(args, map.as_ref(), given, stated.as_ref(), path)
             .map_err(|why| RefusedLoop { file: path.display().to_string(), why })

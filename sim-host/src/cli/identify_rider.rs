@@ -4,7 +4,7 @@ use super::command_line::command_line;
 use super::identify_rider_args::{Delay, RiderArgs, drift_name, select_name};
 use super::identify_rider_results::{Finished, Store};
 use super::interrupt;
-use super::outputs::{Outputs, Results, complain};
+use super::outputs::{Further, Outputs, Results, complain};
 use super::progress::progress;
 use super::{Ended, Failure, warn};
 use crate::bicycle::Geometry;
@@ -51,7 +51,7 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     if many && args.report.is_some() {
         return Err("--report: a report is of one record; give one, or --results".into());
     }
-    let outputs = args.outputs.open(None)?;
+    let outputs = args.outputs.open(Further::default())?;
     let out = args.out.as_deref().map(Output::create).transpose()?;
     if let Some(out) = &out {
         outputs.refuse_place_of("--out", out)?;

@@ -1,6 +1,6 @@
 //! `sim-host identify sensor`: identifies a sensor model from recordings.
 
-use super::outputs::{OutputArgs, complain};
+use super::outputs::{Further, OutputArgs, complain};
 use super::recording_args::RecordingArgs;
 use super::{Ended, Failure};
 use crate::plant::Sensor;
@@ -67,7 +67,7 @@ fn sensor(name: &str) -> Result<Sensor, String> {
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     args.outputs.refuse_figures("a sensor's model has no figure")?;
     let map = args.recording.map()?;
-    let outputs = args.outputs.open(None)?;
+    let outputs = args.outputs.open(Further::default())?;
     let out = args.out.as_deref().map(Output::create).transpose()?;
     if let Some(out) = &out {
         outputs.refuse_place_of("--out", out)?;

@@ -3,6 +3,7 @@
 use super::ended::{Failure, is_broken_pipe};
 use crate::bicycle::catalogue::Bicycle;
 use crate::report::figure::Picture;
+use crate::report::netcdf;
 use crate::report::output::Output;
 use crate::report::picture::{caption, png_with_caption, svg_with_caption};
 use serde::Serialize;
@@ -37,7 +38,17 @@ pub(super) struct Outputs {
     svg: Option<Output>,
     png: Option<Output>,
     frames: Option<Output>,
+    netcdf: Option<Output>,
     quiet: bool,
+}
+
+/// The files that only some commands write.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Further<'a> {
+    /// Sensor frames.
+    pub(super) frames: Option<&'a Path>,
+    /// A NetCDF file.
+    pub(super) netcdf: Option<&'a Path>,
 }
 
 /// The results to write; those that were not requested are not computed.
@@ -62,15 +73,16 @@ impl OutputArgs {
         requested.map_or(Ok(()), |(option, _)| Err(format!("{option}: {reason}").into()))
     }
 
-    /// Checks every requested output; `frames` is an option of `ride`.
-    pub(super) fn open(&self, frames: Option<&Path>) -> Result<Outputs, Failure> {
+    /// Checks every requested output.
+    pub(super) fn open(&self, further: Further) -> Result<Outputs, Failure> {
         let open = |path: &Option<PathBuf>| path.as_deref().map(Output::create).transpose();
         let outputs = Outputs {
             json: open(&self.json)?,
             csv: open(&self.csv)?,
             svg: open(&self.svg)?,
             png: open(&self.png)?,
-            frames: frames.map(Output::create).transpose()?,
+            frames: further.frames.map(Output::create).transpose()?,
+            netcdf: further.netcdf.map(Output::create).transpose()?,
             quiet: self.quiet,
         };
         let all = outputs.all();
@@ -91,6 +103,7 @@ impl Outputs {
             ("--svg", &self.svg),
             ("--png", &self.png),
             ("--frames", &self.frames),
+            ("--netcdf", &self.netcdf),
         ];
         named.into_iter().filter_map(|(name, output)| output.as_ref().map(|o| (name, o))).collect()
     }
@@ -121,6 +134,13 @@ impl Outputs {
     /// Writes the frames, if requested.
     pub(super) fn write_frames(&self, frames: impl FnOnce() -> Vec<u8>) -> Result<(), Failure> {
         self.frames.as_ref().map_or(Ok(()), |output| Ok(output.finish(&frames())?))
+    }
+
+    /// Writes the NetCDF file, if requested.
+    pub(super) fn write_netcdf(&self, file: impl FnOnce() -> netcdf::File) -> Result<(), Failure> {
+        self.netcdf
+            .as_ref()
+            .map_or(Ok(()), |output| Ok(output.finish(&file().bytes(netcdf::Format::of(output.path()))?)?))
     }
 
     /// Writes all other requested results, the text output last. A failed output does not prevent the others; neither

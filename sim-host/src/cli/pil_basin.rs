@@ -3,6 +3,7 @@
 use super::basin::{BasinArgs, write};
 use super::board_args::BoardArgs;
 use super::conditions::{printed, setup};
+use super::outputs::Further;
 use super::progress::progress;
 use super::scenario_error::named;
 use super::{Ended, Failure, interrupt};
@@ -31,7 +32,7 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let BasinArgs { scenario: chosen, threads, outputs } = &args.basin;
+    let BasinArgs { scenario: chosen, threads, netcdf, outputs } = &args.basin;
     let mut scenario = chosen.scenario()?;
     (scenario.uncertain, scenario.rider_draws, scenario.search.adaptive_speeds) = (None, None, None);
     if let Some(ended) = printed(chosen, &scenario)? {
@@ -40,7 +41,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let setup = setup(&scenario)?;
     let searched = scenario.search.resolve(scenario.is_ridden()).map_err(|e| named(&scenario, &e))?;
     let start_board = args.board.starter(&setup)?;
-    let outputs = outputs.open(None)?;
+    let outputs = outputs.open(Further { netcdf: netcdf.as_deref(), ..Further::default() })?;
     // One board is started first, to detect errors early; each thread has its own.
     let boards = Mutex::new(vec![start_board()?]);
     let ride = |starts: &[_]| -> Result<_, RemoteError> {

@@ -2,7 +2,7 @@
 
 use super::conditions::{printed, setup};
 use super::options::{Chosen, Plane as PlaneOptions};
-use super::outputs::{OutputArgs, Results, complain};
+use super::outputs::{Further, OutputArgs, Results, complain};
 use super::progress::progress;
 use super::ride::laid_flat;
 use super::scenario_error::named;
@@ -12,10 +12,11 @@ use crate::basin::Plane;
 use crate::commands::{Hooks, plane};
 use crate::report::figure::{self, PlaneFigure};
 use crate::report::plane::{PlaneDocument, plane_rows};
-use crate::report::table;
+use crate::report::{netcdf, table};
 use crate::ride::FallCause;
 use serde_json::json;
 use std::fmt::Write;
+use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -31,6 +32,9 @@ pub(super) struct Args {
     scenario: Chosen<PlaneOptions>,
     #[command(flatten)]
     threads: ThreadArgs,
+    /// Write a NetCDF file with CF conventions; a name that ends with .nc4 gives NetCDF-4; - is standard output
+    #[arg(long, value_name = "FILE")]
+    netcdf: Option<PathBuf>,
     #[command(flatten)]
     outputs: OutputArgs,
 }
@@ -43,7 +47,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     let setup = setup(&scenario)?;
     plane::check_mirrored(&setup)?;
-    let outputs = args.outputs.open(None)?;
+    let outputs = args.outputs.open(Further { netcdf: args.netcdf.as_deref(), ..Further::default() })?;
     interrupt::install();
     let pool = args.threads.pool()?;
     let bar = progress(outputs.shows_progress(), "basin", search.rays, "rays");
@@ -61,6 +65,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let cut = if document.complete { "" } else { ", interrupted" };
     let title = format!("Basin of attraction at {} m/s: {label}{cut}", search.speed);
     let config = json!({"config": document.config, "search": search, "complete": document.complete});
+    let written = outputs
+        .write_netcdf(|| netcdf::plane(&title, netcdf::provenance(&config, &document.scenario), &found));
     outputs.write(Results {
         document: &document,
         config: &config,
@@ -68,6 +74,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         table: || table::table(&config, &plane_rows(&found)),
         figure: || figure::plane(&PlaneFigure { title: &title, plane: &found }),
     })?;
+    written?;
     if document.complete {
         return Ok(Ended::Done);
     }

@@ -1,7 +1,7 @@
 //! `sim-host replay`: replays recorded rides through the firmware's control code.
 
 use super::interrupt;
-use super::outputs::{OutputArgs, Outputs, Results, complain, complain_once};
+use super::outputs::{Further, OutputArgs, Outputs, Results, complain, complain_once};
 use super::{Ended, Failure, warn};
 use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
@@ -128,7 +128,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         }
     }
     let common = common(args)?;
-    let outputs = args.outputs.open(args.frames.as_deref())?;
+    let outputs = args.outputs.open(Further { frames: args.frames.as_deref(), ..Further::default() })?;
     if let [file] = args.files.as_slice() {
         let done = one(args, &common, file)?;
         return write_one(args, &outputs, &done);

@@ -2,13 +2,13 @@
 
 use super::conditions::{printed, setup};
 use super::options::{Chosen, Ride as RideOptions};
-use super::outputs::{OutputArgs, Outputs, Results};
+use super::outputs::{Further, OutputArgs, Outputs, Results};
 use super::scenario_error::named;
 use super::{Ended, Failure};
 use crate::commands::Setup;
 use crate::commands::ride::{self, Ridden};
 use crate::report::figure::{self, RideFigure};
-use crate::report::{table, terminal};
+use crate::report::{netcdf, table, terminal};
 use crate::ride::{Conditions, FallCause, FallCriterion, LaidFlat, Ride, Start, frames};
 use control::SensorFrame;
 use control::wire::encode_frame;
@@ -31,6 +31,9 @@ pub(super) struct Args {
     /// Write the sensor frames that the firmware received, 81 bytes each, for replay on the chip
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
+    /// Write a NetCDF file with CF conventions; a name that ends with .nc4 gives NetCDF-4; - is standard output
+    #[arg(long, value_name = "FILE")]
+    netcdf: Option<PathBuf>,
     #[command(flatten)]
     outputs: OutputArgs,
 }
@@ -38,7 +41,7 @@ pub(super) struct Args {
 impl Args {
     /// Checks every requested output.
     pub(super) fn open(&self) -> Result<Outputs, Failure> {
-        self.outputs.open(self.frames.as_deref())
+        self.outputs.open(Further { frames: self.frames.as_deref(), netcdf: self.netcdf.as_deref() })
     }
 }
 
@@ -76,6 +79,8 @@ pub(super) fn write(
     let config = json!({"config": document.config, "start": document.start, "outcome": document.outcome,
         "time_to_fall_s": document.time_to_fall_s, "fall": document.fall});
     let framed = outputs.write_frames(|| sensed().iter().flat_map(encode_frame).collect());
+    let written = outputs
+        .write_netcdf(|| netcdf::ride(&title, netcdf::provenance(&config, &document.scenario), ride, trace));
     outputs.write(Results {
         document: &document,
         config: &config,
@@ -83,7 +88,7 @@ pub(super) fn write(
         table: || table::table(&config, trace),
         figure: || figure::ride(&figure),
     })?;
-    framed
+    framed.and(written)
 }
 
 fn summary(ride: &Ride, conditions: &Conditions) -> String {

@@ -43,11 +43,11 @@ pub struct CaseEntry {
     pub speeds: Vec<f64>,
     /// The outline \[rad/s\].
     pub upper: Vec<f64>,
-    /// Area under it, trapezoidal rule \[rad m/s^2\].
-    pub area: f64,
+    /// Area under it, trapezoidal rule \[rad m/s^2\]; null at a single speed.
+    pub area: Option<f64>,
     /// Mean height \[rad/s\].
     pub mean_height: Option<f64>,
-    /// Area relative to the first case's; null if that is 0.
+    /// Area relative to the first case's; null if that is 0 or one of both has a single speed.
     pub relative_area: Option<f64>,
     /// Mean relative to the first case's; null if that is 0. At a single speed, which has no area, this is the
     /// comparison.
@@ -76,7 +76,7 @@ pub struct Case {
 impl CompareDocument {
     /// The document of some cases.
     pub fn new(search: ResolvedSearch, cases: &[Case], complete: bool) -> Self {
-        let first = cases.first().map_or(0.0, |c| c.basin.area());
+        let first = cases.first().and_then(|c| c.basin.enclosed_area()).unwrap_or(0.0);
         let first_mean = cases.first().and_then(|c| c.basin.mean_height()).unwrap_or(0.0);
         let first_capped = cases.first().is_some_and(|c| c.basin.capped());
         // The first case relative to itself is exactly 1, even if its height is a bound.
@@ -91,9 +91,9 @@ impl CompareDocument {
             scenario: case.scenario.clone(),
             speeds: speeds(case),
             upper: case.basin.columns.iter().map(|c| c.upper).collect(),
-            area: case.basin.area(),
+            area: case.basin.enclosed_area(),
             mean_height: case.basin.mean_height(),
-            relative_area: (first > 0.0).then(|| case.basin.area() / first),
+            relative_area: case.basin.enclosed_area().filter(|_| first > 0.0).map(|area| area / first),
             relative_height: case.basin.mean_height().filter(|_| first_mean > 0.0).map(|m| m / first_mean),
             relative_is: relative_is(case),
             capped: case.basin.columns.iter().map(|c| c.capped).collect(),
@@ -113,7 +113,7 @@ impl CompareDocument {
         }
     }
 
-    /// Whether there is a single speed, at which areas are zero.
+    /// Whether there is a single speed, and so no area.
     pub fn one_speed(&self) -> bool {
         self.cases.iter().all(|case| case.speeds.len() < 2)
     }

@@ -197,8 +197,8 @@ pub struct UncertainEntry {
     pub quantiles: [f64; 3],
     /// These quantiles of the height per speed \[rad/s\].
     pub upper: Vec<[f64; 3]>,
-    /// These quantiles of the area \[rad m/s^2\].
-    pub area: [f64; 3],
+    /// These quantiles of the area \[rad m/s^2\]; null at a single speed.
+    pub area: Option<[f64; 3]>,
     /// These quantiles of the mean height \[rad/s\].
     pub mean_height: [f64; 3],
     /// Number of draws with a height that is a lower bound.
@@ -211,12 +211,13 @@ impl UncertainEntry {
     /// The entry of drawn basins.
     pub fn new(drawn: &Drawn) -> Self {
         let heights = |basin: &Basin| basin.columns.iter().map(|c| c.upper).collect();
+        let one_has_area = drawn.basins.iter().any(|basin| basin.enclosed_area().is_some());
         Self {
             draws: drawn.basins.len(),
             seed: drawn.seed,
             quantiles: QUANTILES,
             upper: drawn.heights(),
-            area: drawn.quantiles(Basin::area),
+            area: one_has_area.then(|| drawn.quantiles(Basin::area)),
             mean_height: drawn.quantiles(|basin| basin.mean_height().unwrap_or(0.0)),
             capped: drawn.capped(),
             heights: drawn.basins.iter().map(heights).collect(),
@@ -262,7 +263,7 @@ pub struct BasinDocument {
     pub capped: Vec<Option<bool>>,
     /// Islands beyond the border.
     pub islands: Vec<IslandEntry>,
-    /// Area between zero and `upper`, trapezoidal rule \[rad m/s^2\].
+    /// Area between zero and `upper`, trapezoidal rule \[rad m/s^2\]; null at a single speed.
     pub area: Option<f64>,
     /// Mean of `upper` \[rad/s\].
     pub mean_height: Option<f64>,
@@ -324,7 +325,7 @@ impl BasinDocument {
             height: Height { lower: upper.iter().map(|u| u.map(|u| 0.0 - u)).collect(), upper },
             capped: columns.iter().map(|c| c.map(|c| c.capped)).collect(),
             islands,
-            area: complete.then(|| basin.area()),
+            area: basin.enclosed_area().filter(|_| complete),
             mean_height: basin.mean_height().filter(|_| complete),
             area_capped: basin.capped(),
             uncertain: None,

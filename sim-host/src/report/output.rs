@@ -45,6 +45,11 @@ impl Output {
         Ok(Self { path: path.into(), place })
     }
 
+    /// The path as given.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Whether this is standard output.
     pub fn is_standard(&self) -> bool {
         self.place == Place::Standard

@@ -139,6 +139,38 @@ impl Axis {
     }
 }
 
+impl Axis {
+    /// The unit of an axis of numbers, the option's if none is typed; `None` for an axis of words.
+    pub(super) fn unit(&self) -> Option<AxisUnit<'_>> {
+        let (_, typed) = self.numbers()?;
+        let (netcdf, column) = match (self.key.as_str(), typed) {
+            ("torque-limit", "") => ("N m", "nm"),
+            ("rate-limit", "") => ("N m s-1", "nm_s"),
+            ("time-limit", "") => ("s", "s"),
+            (_, "") => ("1", ""),
+            (_, "deg") => ("degree", "deg"),
+            (_, typed) => (typed, typed),
+        };
+        Some(AxisUnit { netcdf, column })
+    }
+
+    /// One of the values as a number in the axis's unit; `None` for an axis of words.
+    pub(super) fn number_of(&self, value: &str) -> Option<f64> {
+        let (numbers, _) = self.numbers()?;
+        let place = self.values.iter().position(|v| v == value)?;
+        numbers.get(place).copied()
+    }
+}
+
+/// The unit of an axis of numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct AxisUnit<'a> {
+    /// As UDUNITS writes it; `1` if unknown or without one.
+    pub(super) netcdf: &'a str,
+    /// As the end of a column's name; may be empty.
+    pub(super) column: &'a str,
+}
+
 /// A time in seconds, from its unit.
 fn seconds(x: f64, unit: &str) -> Option<f64> {
     match unit {

@@ -1,5 +1,7 @@
 //! JSON document and CSV tables of `sweep`.
 
+use super::axis::AxisUnit;
+use super::names::variable;
 use super::{Axis, Found, Grid, SweepSearch, Unit};
 use crate::basin::Work;
 use crate::report::table;
@@ -43,8 +45,8 @@ pub struct CellDocument {
     pub config: Value,
     /// The scenario that gives this cell again: see `basin --scenario`.
     pub scenario: Value,
-    /// Area under the heights, trapezoidal rule \[rad m/s^2\].
-    pub area: f64,
+    /// Area under the heights, trapezoidal rule \[rad m/s^2\]; null at a single speed.
+    pub area: Option<f64>,
     /// Mean height \[rad/s\].
     pub mean_height: f64,
     /// Whether area and mean are lower bounds because a height is one.
@@ -126,9 +128,11 @@ fn without(config: &Value, shared: &Map<String, Value>) -> Value {
 pub fn cells_table(document: &SweepDocument) -> Result<Vec<u8>, csv::Error> {
     let measures = ["area_rad_m_s2", "mean_height_rad_s", "peak_torque_nm", "peak_slew_nm_s", "area_capped"];
     let rows = document.cells.iter().map(|cell| {
-        let numbers = [cell.area, cell.mean_height, cell.peak_torque_nm, cell.peak_slew_nm_s];
-        let measures = numbers.map(|x| x.to_string()).into_iter().chain([cell.area_capped.to_string()]);
-        cell.values.iter().cloned().chain(measures).collect::<Vec<_>>()
+        let numbers = [Some(cell.mean_height), Some(cell.peak_torque_nm), Some(cell.peak_slew_nm_s)];
+        let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+        let measures =
+            [cell.area].into_iter().chain(numbers).map(number).chain([cell.area_capped.to_string()]);
+        values(document, cell).chain(measures).collect::<Vec<_>>()
     });
     table::rows(&document.heading(), &columns(document, &measures), rows)
 }
@@ -154,13 +158,26 @@ pub fn heights_table(document: &SweepDocument) -> Result<Vec<u8>, csv::Error> {
                 effort(|e| e.peak_slew_nm_s),
                 fall.clone().unwrap_or_default(),
             ];
-            cell.values.iter().cloned().chain(measures).collect::<Vec<_>>()
+            values(document, cell).chain(measures).collect::<Vec<_>>()
         })
     });
     table::rows(&document.heading(), &columns(document, &measures), rows)
 }
 
+/// Names of the columns: an axis of numbers ends with its unit.
 fn columns(document: &SweepDocument, measures: &[&str]) -> Vec<String> {
-    let keys = document.axes.iter().map(|axis| axis.key.clone());
-    keys.chain(measures.iter().map(|m| (*m).to_owned())).collect()
+    let name = |axis: &Axis| match axis.unit() {
+        Some(AxisUnit { column, .. }) if !column.is_empty() => format!("{}_{column}", variable(axis)),
+        _ => variable(axis),
+    };
+    document.axes.iter().map(name).chain(measures.iter().map(|m| (*m).to_owned())).collect()
+}
+
+/// The axes' values of a cell, numbers without their unit.
+fn values<'a>(document: &'a SweepDocument, cell: &'a CellDocument) -> impl Iterator<Item = String> + 'a {
+    document
+        .axes
+        .iter()
+        .zip(&cell.values)
+        .map(|(axis, value)| axis.number_of(value).map_or_else(|| value.clone(), |x| x.to_string()))
 }

@@ -2,6 +2,7 @@
 
 use super::plan::PLAN;
 use crate::basin::SearchError;
+use crate::report::netcdf::NetCdfError;
 use crate::report::output::OutputError;
 use crate::ride::ConditionsError;
 use std::io;
@@ -92,9 +93,6 @@ pub enum SweepError {
     #[error(transparent)]
     Json(#[from] serde_json::Error),
     /// A NetCDF file that can't be made.
-    #[error("can't write NetCDF: {0}")]
-    NetCdf(String),
-    /// No temporary file.
-    #[error("no temporary file: {0}")]
-    Temporary(io::Error),
+    #[error(transparent)]
+    NetCdf(#[from] NetCdfError),
 }

@@ -37,10 +37,11 @@ impl Grid {
         self.units.iter().filter(|u| u.is_none()).count()
     }
 
-    /// Area of a cell's basin by the trapezoidal rule \[rad m/s^2\].
-    pub fn area(&self, unit: &Unit) -> f64 {
+    /// Area of a cell's basin by the trapezoidal rule \[rad m/s^2\]; none at a single speed.
+    pub fn area(&self, unit: &Unit) -> Option<f64> {
         let heights = unit.found.iter().map(|f| f.height);
-        area(&self.plan.search.speeds.iter().copied().zip(heights).collect::<Vec<_>>())
+        let outline: Vec<_> = self.plan.search.speeds.iter().copied().zip(heights).collect();
+        (!self.one_speed()).then(|| area(&outline))
     }
 
     /// Whether the sweep has a single speed, and so no area.
@@ -51,7 +52,7 @@ impl Grid {
     /// The measure by which cells are compared: area \[rad m/s^2\], or height \[rad/s\] at a single speed;
     /// and its relation to the true one.
     pub fn measure(&self, unit: &Unit) -> (f64, Bound) {
-        let measure = if self.one_speed() { unit.mean_height() } else { self.area(unit) };
+        let measure = self.area(unit).unwrap_or_else(|| unit.mean_height());
         (measure, Bound::of(unit.capped()))
     }
 

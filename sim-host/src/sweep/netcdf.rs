@@ -1,180 +1,90 @@
-//! Writes a sweep as a NetCDF file (classic format); its dimensions are the axes and the speed.
+//! NetCDF file of a sweep: its dimensions are the axes and the speed.
 
 use super::document::SweepDocument;
 use super::names::variable;
-use super::{Axis, Found, Grid, SweepError, Unit};
-use crate::ride::{Effort, FallCause};
-use netcdf3::{DataSet, FileWriter, Version, WriteError};
+use super::{Axis, Found, Grid, Unit};
+use crate::report::netcdf::{File, Values, Variable, effort_numbers, fall_flags, switch_flags};
 
-/// Unit of a numeric axis: the typed one, otherwise the option's; `1` if dimensionless.
-fn unit_of<'a>(axis: &Axis, typed: &'a str) -> &'a str {
-    match (axis.key.as_str(), typed) {
-        ("torque-limit", "") => "N m",
-        ("rate-limit", "") => "N m s-1",
-        ("time-limit", "") => "s",
-        (_, "") => "1",
-        (_, typed) => typed,
-    }
-}
-
-/// A numeric variable.
-struct Numbers<'a> {
-    name: &'a str,
-    units: &'a str,
-    long_name: &'a str,
-    dims: &'a [&'a str],
-    data: Vec<f64>,
-}
-
-impl From<WriteError> for SweepError {
-    fn from(error: WriteError) -> Self {
-        Self::NetCdf(format!("{error:?}"))
-    }
-}
-
-impl From<netcdf3::InvalidDataSet> for SweepError {
-    fn from(error: netcdf3::InvalidDataSet) -> Self {
-        Self::NetCdf(format!("{error:?}"))
-    }
-}
-
-/// Contents of the file; unknown values are NaN.
-///
-/// # Errors
-/// An axis has a name that NetCDF does not allow, or a temporary file can't be written.
-pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> Result<Vec<u8>, SweepError> {
+/// The file of a sweep without missing cells. Axes of numbers rise,
+/// whatever their order in the plan: coordinates must be monotonic.
+pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> File {
     let axes = &grid.plan.axes;
     let names: Vec<String> = axes.iter().map(variable).collect();
-    let mut cell_dims: Vec<&str> = names.iter().map(String::as_str).collect();
-    let cells = cell_dims.clone();
-    cell_dims.push("speed");
-    let mut set = DataSet::new();
-    for (axis, name) in axes.iter().zip(&names) {
-        set.add_fixed_dim(name, axis.values.len())?;
+    let all: Vec<String> = names.iter().cloned().chain(["speed".into()]).collect();
+    let orders: Vec<Vec<usize>> = axes.iter().map(order).collect();
+    let units: Vec<&Unit> = cells(&orders).into_iter().filter_map(|i| grid.units[i].as_ref()).collect();
+    let found = || units.iter().flat_map(|unit| &unit.found);
+    let heights = found().map(|f| f.height).collect();
+    let mut variables: Vec<Variable> = axes
+        .iter()
+        .zip(&names)
+        .zip(&orders)
+        .map(|((axis, name), order)| coordinate(axis, name, order))
+        .collect();
+    let speeds = grid.plan.search.speeds.clone();
+    let bound = ["measured", "lower_bound"];
+    variables.extend([
+        Variable::numbers(("speed", "m s-1", "forward speed"), &["speed"], speeds),
+        Variable::numbers(("height", "rad s-1", "largest disturbance not to fall"), &all, heights),
+        Variable::new(
+            ("capped", "whether nothing fell, so that height is a lower bound"),
+            &all,
+            switch_flags(bound, found().map(|f| f.capped)),
+        ),
+        Variable::new(
+            ("fall_cause", "reason for which the ride next beyond height counts as fallen"),
+            &all,
+            fall_flags(found().map(|f: &Found| f.fall.as_deref())),
+        ),
+    ]);
+    variables.extend(effort_numbers(&all, found().map(|f| f.effort)));
+    let areas = units.iter().map(|unit| grid.area(unit).unwrap_or(f64::NAN)).collect();
+    let means = units.iter().map(|unit| unit.mean_height()).collect();
+    variables.extend([
+        Variable::numbers(
+            ("area", "rad m s-2", "area under height; missing at a single speed"),
+            &names,
+            areas,
+        ),
+        Variable::numbers(("mean_height", "rad s-1", "mean of height over the speeds"), &names, means),
+        Variable::new(
+            ("area_capped", "whether area and mean_height are lower bounds"),
+            &names,
+            switch_flags(bound, units.iter().map(|unit| unit.capped())),
+        ),
+    ]);
+    File {
+        title: "Basins of attraction over a grid of conditions".into(),
+        tool: grid.plan.tool.clone(),
+        attributes: vec![("configuration", document.heading().to_string())],
+        variables,
     }
-    set.add_fixed_dim("speed", grid.plan.search.speeds.len())?;
-    for (axis, name) in axes.iter().zip(&names) {
-        match axis.numbers() {
-            Some((_, unit)) => {
-                set.add_var_f64(name, &[name])?;
-                set.add_var_attr_string(name, "units", unit_of(axis, unit))?;
-            }
-            None => {
-                let length = format!("{name}_length");
-                set.add_fixed_dim(&length, longest(axis))?;
-                set.add_var_u8(name, &[name, &length])?;
-                set.add_var_attr_string(name, "_Encoding", "utf-8")?;
-            }
+}
+
+/// The axis as the coordinate of its dimension, its values in `order`.
+fn coordinate(axis: &Axis, name: &str, order: &[usize]) -> Variable {
+    let values = match axis.numbers() {
+        Some((numbers, _)) => {
+            let unit = axis.unit().map_or("1", |unit| unit.netcdf);
+            Values::Numbers(unit.into(), order.iter().map(|&i| numbers[i]).collect())
         }
-        set.add_var_attr_string(name, "long_name", format!("--over {}", axis.key))?;
-    }
-    let numbers = numbers(grid, &cells, &cell_dims);
-    for Numbers { name, units, long_name, dims, .. } in &numbers {
-        set.add_var_f64(name, dims)?;
-        set.add_var_attr_string(name, "units", units)?;
-        set.add_var_attr_string(name, "long_name", long_name)?;
-    }
-    let tool = &grid.plan.tool;
-    set.add_global_attr_string("title", "Basins of attraction over a grid of conditions")?;
-    set.add_global_attr_string("source", format!("{} {} commit {}", tool.name, tool.version, tool.commit))?;
-    set.add_global_attr_string("configuration", document.heading().to_string())?;
-    let file = tempfile::NamedTempFile::new().map_err(SweepError::Temporary)?;
-    let mut writer = FileWriter::open(file.path())?;
-    writer.set_def(&set, Version::Classic, 0)?;
-    for (axis, name) in axes.iter().zip(&names) {
-        match axis.numbers() {
-            Some((values, _)) => writer.write_var_f64(name, &values)?,
-            None => writer.write_var_u8(name, &letters(axis))?,
-        }
-    }
-    for Numbers { name, data, .. } in &numbers {
-        writer.write_var_f64(name, data)?;
-    }
-    writer.close()?;
-    std::fs::read(file.path()).map_err(SweepError::Temporary)
-}
-
-fn numbers<'a>(grid: &Grid, cells: &'a [&str], all: &'a [&str]) -> Vec<Numbers<'a>> {
-    let speeds = &grid.plan.search.speeds;
-    let per_speed = |of: fn(&Found) -> f64| {
-        let cell = |unit: &Option<Unit>| match unit {
-            Some(unit) => unit.found.iter().map(of).collect(),
-            None => vec![f64::NAN; speeds.len()],
-        };
-        grid.units.iter().flat_map(cell).collect::<Vec<_>>()
+        None => Values::Texts(order.iter().map(|&i| axis.values[i].clone()).collect()),
     };
-    let per_cell = |of: &dyn Fn(&Unit) -> f64| {
-        grid.units.iter().map(|u| u.as_ref().map_or(f64::NAN, of)).collect::<Vec<_>>()
-    };
-    let variable = |name, units, long_name, dims, data| Numbers { name, units, long_name, dims, data };
-    vec![
-        variable("speed", "m s-1", "forward speed", &all[all.len() - 1..], speeds.clone()),
-        variable("height", "rad s-1", "largest disturbance not to fall", all, per_speed(|f| f.height)),
-        variable(
-            "capped",
-            "1",
-            "1 where nothing fell: height is a lower bound",
-            all,
-            per_speed(|f| f64::from(u8::from(f.capped))),
-        ),
-        variable(
-            "peak_torque",
-            "N m",
-            "largest torque of the border ride",
-            all,
-            per_speed(|f| effort(f, |e| e.peak_torque_nm)),
-        ),
-        variable(
-            "rms_torque",
-            "N m",
-            "root mean square torque of the border ride",
-            all,
-            per_speed(|f| effort(f, |e| e.rms_torque_nm)),
-        ),
-        variable(
-            "peak_slew",
-            "N m s-1",
-            "largest change of torque of the border ride",
-            all,
-            per_speed(|f| effort(f, |e| e.peak_slew_nm_s)),
-        ),
-        variable("fall_cause", "1", FALL_CODES, all, per_speed(fall_code)),
-        variable("area", "rad m s-2", "area under height", cells, per_cell(&|u| grid.area(u))),
-        variable("mean_height", "rad s-1", "mean of height", cells, per_cell(&Unit::mean_height)),
-        variable(
-            "area_capped",
-            "1",
-            "1 where area and mean_height are lower bounds",
-            cells,
-            per_cell(&|u| f64::from(u8::from(u.capped()))),
-        ),
-    ]
+    Variable::new((name, &format!("--over {}", axis.key)), &[name], values)
 }
 
-/// Codes of `fall_cause`, in the order of [`FallCause::ALL`].
-const FALL_CODES: &str = "fall criterion of the ride beyond height: 0 roll, 1 steer, 2 laid-flat, 3 too-quick, 4 no-motion; NaN no fall";
-
-fn fall_code(found: &Found) -> f64 {
-    let name = found.fall.as_deref();
-    let code = FallCause::ALL.iter().position(|cause| Some(cause.name()) == name);
-    code.map_or(f64::NAN, |code| code as f64)
+/// Indices of the axis's values: numbers rising, texts as given.
+fn order(axis: &Axis) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..axis.values.len()).collect();
+    if let Some((numbers, _)) = axis.numbers() {
+        order.sort_by(|&a, &b| numbers[a].total_cmp(&numbers[b]));
+    }
+    order
 }
 
-fn effort(found: &Found, of: fn(&Effort) -> f64) -> f64 {
-    found.effort.as_ref().map_or(f64::NAN, of)
-}
-
-fn longest(axis: &Axis) -> usize {
-    axis.values.iter().map(String::len).max().unwrap_or(1).max(1)
-}
-
-/// The values as rows of letters, padded to the same length.
-fn letters(axis: &Axis) -> Vec<u8> {
-    let length = longest(axis);
-    let padded = |value: &String| {
-        let mut bytes = value.clone().into_bytes();
-        bytes.resize(length, 0);
-        bytes
-    };
-    axis.values.iter().flat_map(padded).collect()
+/// Indices of the plan's cells, the axes' values in these orders, the last axis fastest.
+fn cells(orders: &[Vec<usize>]) -> Vec<usize> {
+    orders.iter().fold(vec![0], |outer, order| {
+        outer.iter().flat_map(|cell| order.iter().map(move |value| cell * order.len() + value)).collect()
+    })
 }

@@ -4,6 +4,7 @@ use super::document::{SweepDocument, cells_table, heights_table};
 use super::maps::pictures;
 use super::netcdf::netcdf;
 use super::{Folder, Grid, SweepError};
+use crate::report::netcdf::Format;
 use crate::report::picture::{caption, svg_with_caption};
 
 /// Writes `sweep.json`, `sweep.nc`, `sweep.csv`, `heights.csv` and `figures/*.svg` to `folder`, replacing
@@ -12,7 +13,7 @@ use crate::report::picture::{caption, svg_with_caption};
 /// # Errors
 /// A file can't be written.
 pub fn write(grid: &Grid, document: &SweepDocument, folder: &Folder) -> Result<(), SweepError> {
-    folder.write("sweep.nc", &netcdf(grid, document)?)?;
+    folder.write("sweep.nc", &netcdf(grid, document).bytes(Format::Classic)?)?;
     folder.write("sweep.csv", &cells_table(document)?)?;
     folder.write("heights.csv", &heights_table(document)?)?;
     let about = caption(&document.heading());

@@ -95,6 +95,11 @@ impl Basin {
         area(&self.outline())
     }
 
+    /// [`Self::area`]; `None` for fewer than two speeds, where there is none.
+    pub fn enclosed_area(&self) -> Option<f64> {
+        (self.columns.len() > 1).then(|| self.area())
+    }
+
     /// The outline: speed \[m/s\] and height \[rad/s\].
     pub fn outline(&self) -> Vec<(f64, f64)> {
         self.columns.iter().map(|c| (c.speed, c.upper)).collect()

@@ -1,0 +1,14 @@
+//! Results as NetCDF files that follow the CF conventions (<https://cfconventions.org>): every variable with units or the
+//! meaning of its flags, every dimension with a coordinate.
+
+mod basin;
+mod file;
+mod plane;
+mod ride;
+mod variable;
+
+pub use basin::basin;
+pub use file::{File, Format, NetCdfError, provenance};
+pub use plane::plane;
+pub use ride::ride;
+pub use variable::{Values, Variable, effort_numbers, fall_flags, switch_flags};
