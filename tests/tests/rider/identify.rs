@@ -3,11 +3,11 @@
 use sim_host::bicycle::{ForcePoint, Geometry};
 use sim_host::identify::{
     Drift, FitError, From, GAINS, Measured, PerGain, Plan, Problem, Pushed, Select, Signal, delay_profile,
-    identify, impulse_response, reduce, refine, symbols,
+    identify, impulse_response, reduce, refine, rightmost_real, symbols,
 };
 use sim_host::num::RandomStream;
 use sim_host::perturbation::{Experiment, SensorNoise};
-use sim_host::rider::{RiderTable, Row, catalogue};
+use sim_host::rider::{Outside, RiderTable, Row, catalogue};
 use tests::identification::{ALL, bicycle, gains, gray_box, linear_problem, pulses, ridden_problem};
 
 const NEVER: fn() -> bool = || false;
@@ -67,19 +67,22 @@ fn every_published_set_is_found() {
 /// A fit of a noisy nonlinear record.
 struct Noisy {
     name: String,
+    /// The table and the row.
+    of: (&'static str, Row),
     /// Error of each gain in standard errors.
     errors: [f64; GAINS],
     /// Mean square of the errors in units of their covariance: 1 on average, 1 / 2 of it as standard deviation.
     square: f64,
 }
 
-fn noisy(name: &str, rows: &[Row]) -> Vec<Noisy> {
+/// Fits of the sets of a table; `repeat` stands for other noise and other pulses.
+fn noisy(name: &'static str, rows: &[Row], repeat: u64) -> Vec<Noisy> {
     let table = table(name);
     let of_row = |(i, row): (usize, &Row)| {
         let experiment = Experiment {
             noise: SensorNoise { steer_rad: 0.003, ..SensorNoise::default() },
             // Noise of its own for each delay and row.
-            seed: 100 * (1e3 * table.delay_s) as u64 + i as u64,
+            seed: 100_000 * repeat + 100 * (1e3 * table.delay_s) as u64 + i as u64,
             ..Experiment::at(row.speed_m_s)
         };
         let problem = ridden_problem(&table, row, &experiment)?;
@@ -91,6 +94,7 @@ fn noisy(name: &str, rows: &[Row]) -> Vec<Noisy> {
         let inverse = fit.covariance.clone().cholesky().expect("positive definite").inverse();
         Some(Noisy {
             name: format!("{name} {:?}", row.run),
+            of: (name, row.clone()),
             errors: std::array::from_fn(|gain| off[gain] / deviations[gain]),
             square: off.dot(&(inverse * &off)) / GAINS as f64,
         })
@@ -98,10 +102,11 @@ fn noisy(name: &str, rows: &[Row]) -> Vec<Noisy> {
     rows.iter().enumerate().filter_map(of_row).collect()
 }
 
-fn within_three(fits: &[Noisy]) {
-    for fit in fits {
-        assert!(fit.errors.iter().all(|z| z.abs() < 3.0), "{}: {:?}", fit.name, fit.errors);
-    }
+fn within_three(fit: &Noisy) -> bool {
+    fit.errors.iter().all(|z| z.abs() < 3.0)
+}
+
+fn as_large_as_their_covariance(fits: &[Noisy]) {
     let square = fits.iter().map(|fit| fit.square).sum::<f64>() / fits.len() as f64;
     // Three standard deviations of the mean of chi-squared.
     let reach = 3.0 * (2.0 / (GAINS * fits.len()) as f64).sqrt();
@@ -117,19 +122,30 @@ fn within_three(fits: &[Noisy]) {
 #[test]
 fn noisy_gains_are_found_within_their_errors() {
     let rows = |name: &str| one_per_speed(&table(name)).into_iter().step_by(2).collect::<Vec<_>>();
-    let fits: Vec<_> = ["young", "undelayed"].iter().flat_map(|name| noisy(name, &rows(name))).collect();
+    let fits: Vec<_> = ["young", "undelayed"].iter().flat_map(|name| noisy(name, &rows(name), 0)).collect();
     assert_eq!(fits.len(), 6, "riders that stay upright");
-    within_three(&fits);
+    fits.iter().for_each(|fit| assert!(within_three(fit), "{}: {:?}", fit.name, fit.errors));
+    as_large_as_their_covariance(&fits);
 }
 
-/// The same for every published set of which the rider stays upright.
+/// The same for every published set of which the rider stays upright. Of 320 gains with right standard errors one is beyond three
+/// by chance: such a set, of which there may be two, must be within three in two more records, with other noise.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn every_published_set_is_found_within_its_errors() {
-    let of = |name: &&str| noisy(name, &table(name).rows);
+    let of = |name: &&'static str| noisy(name, &table(name).rows, 0);
     let fits: Vec<_> = ["young", "smart", "undelayed"].iter().flat_map(of).collect();
     assert!(fits.len() >= 38, "riders that stay upright: {}", fits.len());
-    within_three(&fits);
+    as_large_as_their_covariance(&fits);
+    let beyond: Vec<&Noisy> = fits.iter().filter(|fit| !within_three(fit)).collect();
+    beyond.iter().for_each(|fit| println!("{}: {:?}", fit.name, fit.errors));
+    assert!(beyond.len() <= 2, "{} sets of {}", beyond.len(), fits.len());
+    for fit in beyond {
+        let (name, row) = &fit.of;
+        for again in [1, 2].into_iter().flat_map(|repeat| noisy(name, std::slice::from_ref(row), repeat)) {
+            assert!(within_three(&again), "{} again: {:?}", again.name, again.errors);
+        }
+    }
 }
 
 /// Situation: records of a nonlinear bicycle that rolls by a few degrees, without noise.
@@ -149,6 +165,56 @@ fn refined_gains_are_free_of_the_linear_bicycles_error() {
         assert!((2e-3..0.2).contains(&off), "{:?}: {off}", row.run);
         assert!(error(&refined.gains, &truth) < 1e-4, "{:?}: {:?}", row.run, refined.gains);
     }
+}
+
+/// Situation: the smart rider at 2.3 and 2.5 m/s, whose best gains on the linear bicycle make an unstable loop, with which the
+/// nonlinear one falls within the record.
+/// Action: refine them.
+/// Must hold: the true gains within three standard errors, the loop stable as the rider's; gains that fall at once are refused.
+#[test]
+fn gains_that_fall_are_refined_on_longer_and_longer_parts() {
+    let table = table("smart");
+    let schedule = table.schedule(sim_host::rider::Fit::Mean, Outside::Hold).expect("a schedule");
+    for (speed_m_s, seed) in [(2.3, 2), (2.5, 1)] {
+        let row = Row { speed_m_s, gains: schedule.at(speed_m_s), ..table.rows[0].clone() };
+        let noise = SensorNoise { steer_rad: 5e-4, ..SensorNoise::default() };
+        let experiment = Experiment { noise, seed, ..Experiment::at(speed_m_s) };
+        let problem = ridden_problem(&table, &row, &experiment).expect("an upright ride");
+        let pushed =
+            Pushed { bicycle: Geometry::new(&bicycle()), point: ForcePoint::SADDLE, speeds_m_s: Vec::new() };
+        let mut linear = fitted(&problem);
+        assert!(linear.rightmost_1_s > 0.1, "{}", linear.rightmost_1_s);
+        let refined = refine(&problem, &pushed, &linear, &NEVER).expect("an upright ride").fit;
+        let (truth, errors) = (gains(&row), refined.standard_errors());
+        for gain in ALL {
+            let z = (refined.gains[gain] - truth[gain]) / errors[gain];
+            assert!(z.abs() < 3.0, "{speed_m_s} m/s, {}: {z}", symbols()[gain]);
+        }
+        assert!((-0.5..0.0).contains(&refined.rightmost_1_s), "{}", refined.rightmost_1_s);
+        linear.gains = [0.0; GAINS];
+        let refused = refine(&problem, &pushed, &linear, &NEVER).expect_err("falls at once");
+        assert!(matches!(refused, FitError::Falls { time_s } if time_s < 10.0), "{refused}");
+    }
+}
+
+/// Situation: gains of both integrals, of one, and of none.
+/// Must hold: the rightmost eigenvalue is that of the weighted sum of the integrals, as with a gain of one integral alone; it is
+/// not the zero of the combination that nothing feeds back.
+#[test]
+fn two_integrals_make_no_eigenvalue_of_zero() {
+    let table = table("young");
+    let row = &table.rows[7];
+    let model = gray_box(&table, row);
+    let mut gains = gains(row);
+    let one = rightmost_real(&model, &gains);
+    gains[1] = 1e-3;
+    let both = rightmost_real(&model, &gains);
+    assert!(one < -0.1 && (both - one).abs() < 1e-4, "{one} {both}");
+    gains[1] = 100.0;
+    let far = rightmost_real(&model, &gains);
+    assert!((far - one).abs() > 0.01, "{far}");
+    (gains[1], gains[5]) = (0.0, 0.0);
+    assert!(rightmost_real(&model, &gains).abs() > 1e-3);
 }
 
 /// Situation: the same pulses in samples of 1 and of 5 ms; delays of none, less than a sample, whole samples and others.

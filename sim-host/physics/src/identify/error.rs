@@ -20,7 +20,7 @@ pub enum FitError {
         skip_s: f64,
     },
     /// Too few samples.
-    #[error("{samples} valid samples of {signal} are too few for {gains} gains; {} are needed", gains * SAMPLES_PER_GAIN)]
+    #[error("{signal} has too few valid samples for {gains} of the gains: {samples} of at least {}", gains * SAMPLES_PER_GAIN)]
     Few {
         /// The signal.
         signal: &'static str,

@@ -132,21 +132,28 @@ impl Fit {
 /// Integral gains below this fraction of [`TYPICAL`] count as zero: their eigenvalue would be zero but for rounding.
 const NO_INTEGRAL: f64 = 1e-7;
 
-/// Real part of the rightmost eigenvalue of the model closed by `gains` \[1/s\], without integrals that no gain uses.
+/// Real part of the rightmost eigenvalue of the model closed by `gains` \[1/s\]. The integrals of roll and steer are one
+/// state, their weighted sum, because nothing else of them is fed back: the eigenvalue of another combination is zero for
+/// any gains. Without integral gains there is no such state.
 pub fn rightmost_real(model: &GrayBox, gains: &PerGain) -> f64 {
     let system = model.open_loop();
-    let used = |state: &usize| match state {
-        4 => gains[1].abs() > NO_INTEGRAL * TYPICAL[1],
-        5 => gains[5].abs() > NO_INTEGRAL * TYPICAL[5],
-        _ => true,
-    };
-    let states: Vec<usize> = (0..system.a.nrows()).filter(used).collect();
-    let row = nalgebra::SVector::<f64, GAINS>::from_column_slice(gains).transpose() * system.c;
-    let n = states.len();
+    // The states but the integrals: roll, steer, their rates, the rider's torque and its rate; then the weighted sum.
+    let others = [0, 1, 2, 3, 6, 7];
+    let weights =
+        [1, 5].map(|gain| if gains[gain].abs() > NO_INTEGRAL * TYPICAL[gain] { gains[gain] } else { 0.0 });
+    let sum = others.len();
+    let n = sum + usize::from(weights.iter().any(|weight| *weight != 0.0));
+    let mut without = *gains;
+    (without[1], without[5]) = (0.0, 0.0);
+    let row = nalgebra::SVector::<f64, GAINS>::from_column_slice(&without).transpose() * system.c;
     rightmost(&DelaySystem {
-        a: DMatrix::from_fn(n, n, |i, j| system.a[(states[i], states[j])]),
-        b: DVector::from_fn(n, |i, _| system.alpha[states[i]]),
-        k: RowDVector::from_fn(n, |_, j| row[states[j]]),
+        a: DMatrix::from_fn(n, n, |i, j| match (i == sum, j == sum) {
+            (false, false) => system.a[(others[i], others[j])],
+            (true, false) => weights.get(others[j]).copied().unwrap_or(0.0),
+            (_, true) => 0.0,
+        }),
+        b: DVector::from_fn(n, |i, _| if i == sum { 0.0 } else { system.alpha[others[i]] }),
+        k: RowDVector::from_fn(n, |_, j| if j == sum { 1.0 } else { row[others[j]] }),
         delay_s: model.delay_s,
     })
     .re

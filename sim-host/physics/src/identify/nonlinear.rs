@@ -23,6 +23,9 @@ const ENOUGH_RELATIVE: f64 = 1e-7;
 /// Shortest fraction of a Gauss-Newton step.
 const SHORTEST: f64 = 1.0 / 16.0;
 
+/// Part of the time up to a fall that is refined first: what precedes the fall is far from the linear bicycle.
+const PART: f64 = 0.5;
+
 /// A nonlinear bicycle, pushed at a point.
 #[derive(Clone, Debug)]
 pub struct Pushed {
@@ -74,7 +77,7 @@ fn response(problem: &Problem, pushed: &Pushed, gains: &PerGain) -> Option<Vec<[
     Some(ride.samples.iter().map(|x| [x.roll_rad, x.steer_rad, x.roll_rate_rad_s]).collect())
 }
 
-/// Gains, their nonlinear response and the sum of its squared residuals.
+/// Gains with their nonlinear response and its residuals.
 struct At {
     gains: PerGain,
     response: Vec<[f64; 3]>,
@@ -84,15 +87,47 @@ struct At {
 /// Refines the gains of `fit` by Gauss-Newton steps with the residuals of the nonlinear bicycle and the derivatives of the
 /// linear one. Standard errors are those of the linear model at the refined gains.
 ///
+/// If the nonlinear bicycle falls with the fitted gains, they are first refined on a part of the record in which it is
+/// upright, and so on with longer parts: gains of an unstable loop fit the linear bicycle, and fall on the other.
+///
 /// # Errors
-/// The nonlinear bicycle falls with the fitted gains, or interrupted.
+/// The nonlinear bicycle falls whatever part is refined, or interrupted.
 pub fn refine(
     problem: &Problem,
     pushed: &Pushed,
     fit: &Fit,
     stop: &impl Fn() -> bool,
 ) -> Result<Refined, FitError> {
+    let (mut gains, mut before) = (fit.gains, 0);
+    loop {
+        let upright = response(problem, pushed, &gains).unwrap_or_default().len();
+        if upright == problem.record.len() {
+            break;
+        }
+        let time_s = upright as f64 * problem.record.disturbances.sample_s;
+        let part =
+            Problem { record: problem.record.first((upright as f64 * PART) as usize), ..problem.clone() };
+        if upright <= before || part.check(&fit.active).is_err() {
+            return Err(FitError::Falls { time_s });
+        }
+        before = upright;
+        let objective = part.objective_of(&part.model, fit, &|_| true);
+        gains = improved(&part, &objective, pushed, fit, &gains, stop)?.gains;
+    }
     let objective = problem.objective_of(&problem.model, fit, &|_| true);
+    let at = improved(problem, &objective, pushed, fit, &gains, stop)?;
+    finished(problem, &objective, fit, at)
+}
+
+/// The gains reached from `start`, with which the bicycle must not fall.
+fn improved(
+    problem: &Problem,
+    objective: &Objective,
+    pushed: &Pushed,
+    fit: &Fit,
+    start: &PerGain,
+    stop: &impl Fn() -> bool,
+) -> Result<At, FitError> {
     let ridden = |gains: PerGain| -> Result<At, FitError> {
         let response = response(problem, pushed, &gains).unwrap_or_default();
         if response.len() < problem.record.len() {
@@ -102,7 +137,7 @@ pub fn refine(
         let residual = objective.residual(&response);
         Ok(At { gains, response, residual })
     };
-    let mut here = ridden(fit.gains)?;
+    let mut here = ridden(*start)?;
     let errors = fit.standard_errors();
     for _ in 0..MOST_STEPS {
         if stop() {
@@ -132,7 +167,7 @@ pub fn refine(
             break;
         }
     }
-    finished(problem, &objective, fit, here)
+    Ok(here)
 }
 
 fn gauss_newton(

@@ -68,6 +68,12 @@ impl Identified {
         }
     }
 
+    /// Whether the standard errors of [`Self::fit`] hold: not if the refinement was asked for and failed, because the linear
+    /// bicycle's error may be several times larger.
+    pub fn has_errors(&self) -> bool {
+        !matches!(self.refined, Some(Err(_)))
+    }
+
     /// Response of the selected fit: roll \[rad\], steer \[rad\] and roll rate \[rad/s\] at each sample.
     pub fn response(&self) -> Vec<[f64; 3]> {
         match &self.refined {

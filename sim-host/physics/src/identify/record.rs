@@ -33,6 +33,17 @@ impl Record {
         self.len() == 0
     }
 
+    /// The first `length` samples.
+    pub(super) fn first(&self, length: usize) -> Self {
+        let mut first = self.clone();
+        first.disturbances.samples.truncate(length);
+        for measured in &mut first.measured {
+            measured.values.truncate(length);
+            measured.valid.truncate(length);
+        }
+        first
+    }
+
     /// Duration \[s\].
     pub fn duration_s(&self) -> f64 {
         self.len() as f64 * self.disturbances.sample_s

@@ -137,13 +137,7 @@ fn reached(objective: &Objective, problem: &Global, start: &PerGain) -> Option<F
     }
     let mut gains = *start;
     for part in [64, 32, 16, 8, 4, 2] {
-        let length = record.len() / part;
-        let mut short = (*record).clone();
-        short.disturbances.samples.truncate(length);
-        for measured in &mut short.measured {
-            measured.values.truncate(length);
-            measured.valid.truncate(length);
-        }
+        let short = record.first(record.len() / part);
         let drift = if *drift == Drift::None { Drift::None } else { Drift::Offset };
         let shorter = Objective::new(&short, model, drift, &|_| true);
         gains = descend(&shorter, active, &gains)?.gains;
