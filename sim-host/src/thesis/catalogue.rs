@@ -5,7 +5,9 @@ use super::app_d;
 use super::case::Case;
 use super::item::Item;
 use super::study::Study;
-use super::{app_c, app_h, app_i, app_j, app_k, ch2, ch3_assist, ch3_laws, ch3_riders, fits, sensitivity};
+use super::{
+    app_c, app_h, app_i, app_j, app_k, ch2, ch3_assist, ch3_laws, ch3_riders, fits, reductions, sensitivity,
+};
 
 /// An item of the thesis.
 #[derive(Debug)]
@@ -134,8 +136,10 @@ pub const CATALOGUE: &[Entry] = &[
     Entry { name: "figure-D.3", title: "Errors of adaptive solvers", made: SOLVERS },
     gains("table-F.1", "Fit of the young cyclist's gains", fits::table_f_1),
     gains("equation-F.2", "Regression of the young cyclist's gains", fits::equation_f_2),
+    linear("table-F.3", "Variance that the young cyclist's reduced sets account for", reductions::table_f_3),
     gains("table-G.2", "Fit of the smart cyclist's gains", fits::table_g_2),
     gains("equation-G.2", "Regression of the smart cyclist's gains", fits::equation_g_2),
+    linear("table-G.3", "Variance that the old cyclist's reduced sets account for", reductions::table_g_3),
     gains("figure-H.1", "Six and seven gains over speed", fits::figure_h_1),
     gains("table-H.1", "Fit of the six gains", fits::table_h_1),
     gains("equation-H.1", "Regression of the six gains", fits::equation_h_1),
@@ -151,6 +155,11 @@ pub const CATALOGUE: &[Entry] = &[
     Entry { name: "figure-I.4", title: "Measured and modelled roll rate, run 248", made: MEASURED },
     Entry { name: "figure-I.5", title: "Measured and modelled roll rate, run 252", made: MEASURED },
     Entry { name: "figure-I.6", title: "Measured and modelled roll rate, run 256", made: MEASURED },
+    linear(
+        "table-J.1",
+        "Variance that the undelayed cyclist's reduced sets account for",
+        reductions::table_j_1,
+    ),
     gains("figure-J.1", "Variance accounted for by two reduced sets", app_j::figure_j_1),
     gains("equation-J.5", "Regression of the undelayed rider's gains", fits::equation_j_5),
     gains("figure-J.2", "The undelayed rider's gains over speed", fits::figure_j_2),

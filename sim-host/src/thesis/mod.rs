@@ -27,6 +27,7 @@ pub mod item;
 pub mod matrix_pencil;
 pub mod nelder_mead;
 pub mod published;
+mod reductions;
 pub mod run;
 mod sensitivity;
 #[cfg(feature = "solvers")]

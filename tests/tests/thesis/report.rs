@@ -174,6 +174,30 @@ fn riders_are_as_published() {
     assert!((0.0..2.0).contains(&number("figure-J.5", "undelayed gains with 60 ms", "area")));
 }
 
+/// Situation: the reductions of Tables F.3, G.3 and J.1.
+/// Action: how much of the response of a run's full set do its reduced sets give?
+/// Must hold: a row for each reduced set, with the printed variance accounted for; no reduced set gives more than the full one;
+/// of sets of the same optimum with 90 % and more, most are within two points of the print.
+#[test]
+fn reduced_sets_answer_like_full_ones() {
+    let bench = Bench::new(PROGRAM);
+    let run = bench.run("thesis --quick -q --only F.3,G.3,J.1 --out sets");
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let document: Value = serde_json::from_str(&bench.read("sets/values.json")).unwrap();
+    let values = document["values"].as_array().unwrap();
+    let items = [("table-F.3", 41 - 6), ("table-G.3", 31 - 6), ("table-J.1", 32 - 6)];
+    for (item, sets) in items {
+        let of: Vec<_> = values.iter().filter(|v| v["item"] == item).collect();
+        assert_eq!(of.len(), sets, "{item}");
+        let numbers = of.iter().map(|v| (v["published"].as_f64().unwrap(), v["exact"].as_f64()));
+        let high: Vec<(f64, f64)> =
+            numbers.filter(|(printed, _)| *printed >= 90.0).filter_map(|(p, x)| Some((p, x?))).collect();
+        let close = high.iter().filter(|(printed, exact)| (printed - exact).abs() < 2.0).count();
+        assert!(2 * close > high.len() && close < of.len(), "{item}: {close} of {}", high.len());
+        assert!(high.iter().all(|(_, exact)| *exact < 100.0), "{item}");
+    }
+}
+
 /// Situation: data/thesis.toml.
 /// Action: look up every item with printed numbers.
 /// Must hold: the catalogue contains it.

@@ -68,6 +68,19 @@ enum Purpose {
     RollRateNoise,
 }
 
+/// The random numbers for one purpose: the same for every bicycle, rider and speed, so that a seed stands for one sequence
+/// of pulses.
+fn stream(experiment: &Experiment, purpose: Purpose) -> RandomStream {
+    RandomStream::new(experiment.seed, [0.0; 3], purpose as u64)
+}
+
+impl Experiment {
+    /// The lateral force from each sample to the next \[N\].
+    pub fn lateral_force(&self) -> Vec<f64> {
+        self.force.values(stream(self, Purpose::Force), self.sample_s(), self.samples())
+    }
+}
+
 /// Simulates an experiment. Of the conditions it has the bicycle, the rider, the schedule speed and the fall criterion;
 /// there is neither assist nor plant.
 ///
@@ -89,11 +102,10 @@ pub fn record(conditions: &Conditions, experiment: &Experiment) -> Result<Record
         ..conditions.clone()
     };
     conditions.check()?;
-    // The same for every bicycle, rider and speed: a seed stands for one sequence of pulses.
-    let stream = |purpose: Purpose| RandomStream::new(experiment.seed, [0.0; 3], purpose as u64);
+    let stream = |purpose: Purpose| stream(experiment, purpose);
     let slow = |purpose, std| low_passed(stream(purpose), std, Drift::TIME_S, sample_s, n);
 
-    let force = experiment.force.values(stream(Purpose::Force), sample_s, n);
+    let force = experiment.lateral_force();
     let torque = experiment.steer_torque.values(stream(Purpose::SteerTorque), sample_s, n);
     let remnant = experiment.remnant;
     let remnant =
