@@ -1,9 +1,10 @@
 //! Reads a recorded ride from a file into columns; a map assigns them to sensors later.
 //!
-//! Formats: text tables, CAN logs (candump, ASC) and MDF 4; recognised by the first bytes and lines.
+//! Formats: text tables, CAN logs (candump, ASC, BLF) and MDF 4; recognised by the first bytes and lines.
 
 pub mod asc;
 pub mod bits;
+pub mod blf;
 pub mod candump;
 mod columns;
 pub mod database;
@@ -18,5 +19,5 @@ pub(crate) mod stamp;
 pub mod table;
 
 pub use columns::{Column, Group, Recording};
-pub use read::{ReadOptions, RecordingError, read};
+pub use read::{ReadOptions, RecordingError, frames, read};
 pub use remarks::Remark;

@@ -2,7 +2,7 @@
 
 use super::database::Database;
 use super::frames::Frames;
-use super::{Recording, Remark, asc, candump, decode, mdf, table};
+use super::{Recording, Remark, asc, blf, candump, decode, mdf, table};
 use std::path::{Path, PathBuf};
 
 /// Why a file cannot be used.
@@ -44,9 +44,7 @@ pub struct ReadOptions {
 /// The file, with the line if there is one; CAN frames without a database, or with databases that decode none of them;
 /// an unreadable database.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Recording, RecordingError> {
-    let bytes = std::fs::read(path)
-        .and_then(|bytes| unpacked(path, bytes))
-        .map_err(|error| RecordingError::Read { path: path.to_owned(), error })?;
+    let bytes = bytes(path)?;
     let content = |remark| RecordingError::Content { path: path.to_owned(), remark };
     let databases = options.dbc.iter().map(|path| database(path)).collect::<Result<Vec<_>, _>>()?;
     let recording = of_bytes(&bytes, &databases, &options.dbc).map_err(content)?;
@@ -56,14 +54,32 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Recording, RecordingEr
     }
 }
 
+/// Reads the CAN frames of a recording, without decoding them. Its content determines the format, not its name.
+///
+/// # Errors
+/// The file, with the line if there is one; a file without frames.
+pub fn frames(path: &Path) -> Result<Frames, RecordingError> {
+    let bytes = bytes(path)?;
+    let frames = undecoded(&bytes).and_then(|(_, frames)| match frames.is_empty() {
+        true => Err(Remark::of_file("has no frame of CAN".to_owned())),
+        false => Ok(frames),
+    });
+    frames.map_err(|remark| RecordingError::Content { path: path.to_owned(), remark })
+}
+
 /// Parses the bytes of a file; `names` are the paths of the databases.
 fn of_bytes(bytes: &[u8], databases: &[Database], names: &[PathBuf]) -> Result<Recording, Remark> {
-    let (decoded, frames) = if mdf::is_one(bytes) {
+    let (decoded, frames) = undecoded(bytes)?;
+    with_frames(decoded, &frames, databases, names)
+}
+
+/// The columns and the CAN frames of a file.
+fn undecoded(bytes: &[u8]) -> Result<(Recording, Frames), Remark> {
+    Ok(if mdf::is_one(bytes) {
         let mdf::Content { groups, frames, remarks } = mdf::parse(bytes)?;
         (Recording { groups, remarks }, frames)
-    } else if bytes.starts_with(b"LOGG") {
-        let what = "is a log of Vector's in binary (BLF), which is not read; convert it to ASC";
-        return Err(Remark::of_file(what.to_owned()));
+    } else if blf::is_one(bytes) {
+        (Recording::default(), blf::parse(bytes)?)
     } else {
         let text = String::from_utf8_lossy(bytes);
         if candump::is_one(&text) {
@@ -73,8 +89,7 @@ fn of_bytes(bytes: &[u8], databases: &[Database], names: &[PathBuf]) -> Result<R
         } else {
             (table::parse(&text)?, Frames::default())
         }
-    };
-    with_frames(decoded, &frames, databases, names)
+    })
 }
 
 /// Adds the decoded frames to a recording.
@@ -135,6 +150,12 @@ fn parsed(_: &[u8]) -> Result<Database, Remark> {
 }
 
 /// The bytes of a file, decompressed if necessary.
+fn bytes(path: &Path) -> Result<Vec<u8>, RecordingError> {
+    std::fs::read(path)
+        .and_then(|bytes| unpacked(path, bytes))
+        .map_err(|error| RecordingError::Read { path: path.to_owned(), error })
+}
+
 fn unpacked(path: &Path, bytes: Vec<u8>) -> std::io::Result<Vec<u8>> {
     const GZIP: [u8; 2] = [0x1f, 0x8b];
     if !bytes.starts_with(&GZIP) {

@@ -17,6 +17,7 @@ import cantools
 import numpy as np
 from asammdf import MDF, Signal
 from can.io.asc import ASCWriter
+from can.io.blf import BLFWriter
 from can.io.canutils import CanutilsLogWriter
 from can.io.mf4 import MF4Writer
 
@@ -142,6 +143,16 @@ def write_log(name, messages):
 
 def write_asc(name, messages):
     writer = ASCWriter(HERE / f"{name}.asc")
+    for m in messages:
+        m.channel = 0
+        writer.on_message_received(m)
+    writer.stop()
+
+
+def write_blf(name, messages, container):
+    """Containers of `container` bytes, so that objects continue from one to the next."""
+    writer = BLFWriter(HERE / f"{name}.blf")
+    writer.max_container_size = container
     for m in messages:
         m.channel = 0
         writer.on_message_received(m)
@@ -292,6 +303,7 @@ def main():
         write_asc(name, messages())
         fixed_dates(HERE / f"{name}.asc")
         write_mf4(name, messages(), compression)
+        write_blf(name, messages(), 1000)
     write_logger("logger", odd_messages()[:60], finished=False)
     write_logger("unsorted", odd_messages()[:60], finished=True)
     with MDF(HERE / "logger.mf4") as mdf:

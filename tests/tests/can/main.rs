@@ -3,6 +3,7 @@
 //! The files are in `tests/data/can`; its README names the programs that made them.
 
 mod asc;
+mod blf;
 mod candump;
 mod cantools;
 mod dbc;

@@ -41,6 +41,7 @@ fn a_ride_is_the_same_in_every_format() {
         ("ride.log", 1_700_000_000.0),
         ("ride.long.log", 1_700_000_000.0),
         ("ride.asc", 0.0),
+        ("ride.blf", 1_700_000_000.0),
         ("ride.mf4", 0.0),
     ] {
         let recording = recorded(name, &["ride.dbc"]).unwrap();
@@ -70,7 +71,7 @@ fn a_ride_is_the_same_in_every_format() {
 #[test]
 fn odd_messages_are_the_same_in_every_format() {
     let expected = expected("odd", u64::MAX);
-    for name in ["odd.log", "odd.asc", "odd.mf4", "log2asc.asc"] {
+    for name in ["odd.log", "odd.asc", "odd.blf", "odd.mf4", "log2asc.asc"] {
         let recording = recorded(name, &["odd.dbc"]).unwrap();
         assert_eq!(compared(&recording, &expected), 222, "{name}");
         assert_eq!(
