@@ -46,6 +46,7 @@ mod study;
 mod study_args;
 mod study_swept;
 mod sweep;
+mod sweep_status;
 mod thesis;
 mod threads;
 mod weave_args;

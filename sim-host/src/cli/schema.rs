@@ -16,6 +16,7 @@ use crate::report::sensor::SensorDocument;
 use crate::report::weave::WeaveDocument;
 use crate::scenario::Scenario;
 use crate::sweep::document::SweepDocument;
+use crate::sweep::status::StatusDocument;
 use crate::thesis::document::ThesisDocument;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
@@ -25,7 +26,7 @@ use serde_json::Value;
 type Document = (&'static str, fn() -> Schema);
 
 /// The documents by their commands' names.
-const DOCUMENTS: [Document; 21] = [
+const DOCUMENTS: [Document; 22] = [
     ("basin", of::<BasinDocument>),
     ("ride", of::<RideDocument>),
     (SCENARIO, of_scenario),
@@ -38,6 +39,7 @@ const DOCUMENTS: [Document; 21] = [
     ("basin-compare", of::<CompareDocument>),
     ("basin-plane", of::<PlaneDocument>),
     ("sweep", of::<SweepDocument>),
+    ("sweep-status", of::<StatusDocument>),
     ("design", of::<DesignDocument>),
     ("param-list", of::<ParametersDocument>),
     ("faults", of::<FaultsDocument>),

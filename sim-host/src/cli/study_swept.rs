@@ -48,7 +48,9 @@ pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
         let steps = Progress { advanced: &|| bar.inc(1), stop: &interrupt::stopped };
         let done = pool.install(|| sweep::run(&cells, &sweep.search, folder, &steps));
         bar.finish_and_clear();
-        if done? < cells.len() {
+        let done = done?;
+        afresh &= done.by_others == 0;
+        if done.cells < cells.len() {
             complain("interrupted: the cells that are done are kept; the same command continues");
             return Ok(Ended::Interrupted);
         }

@@ -5,7 +5,7 @@ use super::options::{Cells, Options, ScenarioFile, Search};
 use super::outputs::{complain, print, write_json};
 use super::progress::progress;
 use super::threads::ThreadArgs;
-use super::{Ended, Failure, interrupt};
+use super::{Ended, Failure, interrupt, sweep_status};
 use crate::basin::{Bound, border};
 use crate::report::output::Output;
 use crate::sweep::document::SweepDocument;
@@ -24,6 +24,8 @@ Examples:
   sim-host sweep --over law=h,f,g --over rider=none,smart --speeds 2:7.5:0.5 --out laws
   sim-host sweep --law cl2:{k} --over k=0.5:20/log7 --out cl2
   sim-host sweep --over law=h,f,g --out part2 --shard 2/3
+  sim-host sweep --over law=h,f,g --out laws & sim-host sweep --over law=h,f,g --out laws
+  sim-host sweep --status laws
   sim-host sweep merge part1 part2 part3 --out whole";
 
 /// Options of `sweep`.
@@ -33,14 +35,17 @@ pub(super) struct Args {
     #[command(subcommand)]
     command: Option<Command>,
     /// Axis and its values; may be repeated, once per axis
-    #[arg(long, required = true, value_name = "KEY=VALUES", value_parser = Axis::parse)]
+    #[arg(long, required_unless_present = "status", value_name = "KEY=VALUES", value_parser = Axis::parse)]
     over: Vec<Axis>,
-    /// Folder of the results; an interrupted sweep in it is continued
+    /// Folder of the results; an interrupted sweep in it is continued, and several processes share the cells
     #[arg(long, default_value = "sweep", value_name = "DIR")]
     out: PathBuf,
     /// Compute only part I of N, to be merged with the others
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     shard: Option<Shard>,
+    /// Show which cells of the sweep in DIR are done, by which processes the others are computed, and the time left
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["over", "out", "shard", "dry_run", "quiet"])]
+    status: Option<PathBuf>,
     /// List the cells, estimate the computing time, and end
     #[arg(long, conflicts_with = "json")]
     dry_run: bool,
@@ -90,6 +95,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     if let Some(Command::Merge(args)) = &args.command {
         return merge(args);
     }
+    if let Some(folder) = &args.status {
+        return sweep_status::run(folder, args.output.json.as_deref());
+    }
     let mut base = args.scenario.read()?;
     args.search.apply(&mut base)?;
     let resolved = resolve(&args.over, &base, args.conditions.given.clone())?;
@@ -109,13 +117,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let done = done?;
     let grid = Grid::gather(&resolved.plan, std::slice::from_ref(&folder))?;
     finish(&grid, &folder, json.as_ref(), args.output.quiet)?;
-    if done == to_do.len() {
+    if done.cells == to_do.len() {
         return Ok(Ended::Done);
     }
     let before = mine.len() - to_do.len();
     complain(&format!(
         "interrupted: {} of {} cells are done and kept; the same command continues",
-        before + done,
+        before + done.cells,
         mine.len()
     ));
     Ok(Ended::Interrupted)
@@ -235,7 +243,7 @@ fn dry_run(resolved: &Resolved, mine: &[usize], out: &Path, threads: usize) -> R
 }
 
 /// A duration as text.
-fn duration(seconds: f64) -> String {
+pub(super) fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 120.0 => format!("{s:.0} s"),
         s if s < 7200.0 => format!("{:.0} min", s / 60.0),

@@ -3,7 +3,7 @@
 use std::fs::{OpenOptions, metadata};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use tempfile::Builder;
+use tempfile::{Builder, NamedTempFile};
 
 /// Prefix of the temporary files' names.
 pub(crate) const TEMPORARY: &str = ".sim-host-";
@@ -32,6 +32,13 @@ enum Place {
 pub struct OutputError {
     path: PathBuf,
     source: io::Error,
+}
+
+impl OutputError {
+    /// Whether the folder is missing.
+    pub(crate) fn is_not_found(&self) -> bool {
+        self.source.kind() == io::ErrorKind::NotFound
+    }
 }
 
 impl Output {
@@ -70,7 +77,8 @@ impl Output {
             Place::Stream(path) => {
                 OpenOptions::new().write(true).open(path).and_then(|mut f| f.write_all(content))
             }
-            Place::File(folder, name) => replace(folder, name, content),
+            Place::File(folder, name) => temporary(folder, content)
+                .and_then(|file| file.persist(folder.join(name)).map(drop).map_err(|e| e.error)),
         };
         let path = || if self.is_standard() { "standard output".into() } else { self.path.clone() };
         written.map_err(|source| OutputError { path: path(), source })
@@ -105,13 +113,40 @@ impl Place {
     }
 }
 
-fn replace(folder: &Path, name: &Path, content: &[u8]) -> io::Result<()> {
+/// Replaces a file, whole or not at all; without the check in advance of [`Output::create`].
+///
+/// # Errors
+/// The system's error.
+pub(crate) fn replace(path: &Path, content: &[u8]) -> Result<(), OutputError> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let written = temporary(folder, content).and_then(|file| file.persist(path).map_err(|e| e.error));
+    written.map(drop).map_err(|source| OutputError { path: path.into(), source })
+}
+
+/// Writes a file, whole or not at all, unless it exists: of several processes one does, and the others get false.
+///
+/// # Errors
+/// The system's error.
+pub(crate) fn write_new(path: &Path, content: &[u8]) -> Result<bool, OutputError> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let written =
+        temporary(folder, content).and_then(|file| file.persist_noclobber(path).map_err(|e| e.error));
+    match written {
+        Ok(_) => Ok(true),
+        Err(e) if e.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+        Err(source) => Err(OutputError { path: path.into(), source }),
+    }
+}
+
+/// A temporary file in `folder` with the content; removed when dropped.
+fn temporary(folder: &Path, content: &[u8]) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     builder.prefix(TEMPORARY).suffix(".tmp");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(content)?;
+    // Neither error names the temporary file, which the user does not know.
+    let mut file = builder.tempfile_in(folder).map_err(|e| e.kind())?;
+    file.as_file_mut().write_all(content)?;
     file.as_file().sync_all()?;
-    file.persist(folder.join(name)).map(drop).map_err(|e| e.error)
+    Ok(file)
 }

@@ -1,10 +1,14 @@
 //! The folder of a sweep: its plan, and one file per finished cell.
 
+use super::claim::STALE;
+use super::claims::Claims;
 use super::plan::PLAN;
 use super::unit::Unit;
-use super::{Plan, SweepError};
-use crate::report::output::{Output, TEMPORARY};
+use super::{Plan, SweepError, seal};
+use crate::report::output::{Output, TEMPORARY, replace, write_new};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 const UNITS: &str = "units";
 
@@ -32,7 +36,7 @@ impl Folder {
                 }
             }
             let json = serde_json::to_string_pretty(plan).unwrap_or_default() + "\n";
-            folder.write(PLAN, json.as_bytes())?;
+            write_new(&path.join(PLAN), json.as_bytes())?;
         }
         if let Some(difference) = plan.difference(&folder.plan()?) {
             return Err(SweepError::OtherSweep { folder: path.into(), difference });
@@ -81,7 +85,7 @@ impl Folder {
         let path = self.path.join(Self::file(id));
         match std::fs::read(&path) {
             Ok(bytes) => {
-                let unit = std::str::from_utf8(&bytes).ok().and_then(|text| Unit::unsealed(text, id));
+                let unit = seal::unsealed(&bytes).filter(|unit: &Unit| unit.id == id);
                 unit.map(Some).ok_or(SweepError::Damaged(path))
             }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
@@ -94,7 +98,7 @@ impl Folder {
     /// # Errors
     /// Its file can't be written.
     pub fn keep(&self, unit: &Unit) -> Result<(), SweepError> {
-        self.write(&Self::file(&unit.id), unit.sealed().as_bytes())
+        Ok(replace(&self.path.join(Self::file(&unit.id)), seal::sealed(unit).as_bytes())?)
     }
 
     /// Writes a file in the folder atomically.
@@ -107,6 +111,51 @@ impl Folder {
             std::fs::create_dir_all(parent).map_err(|e| self.failed(e))?;
         }
         Ok(Output::create(&path)?.finish(content)?)
+    }
+
+    /// The claims of its units.
+    pub fn claims(&self) -> Claims {
+        Claims::of(&self.path)
+    }
+
+    /// The stored units, by identity, with the times of their files; they are not read.
+    ///
+    /// # Errors
+    /// The folder can't be read.
+    pub fn stored(&self) -> Result<BTreeMap<String, SystemTime>, SweepError> {
+        let path = self.path.join(UNITS);
+        let failed = |error| SweepError::Read { path: path.clone(), error };
+        let mut stored = BTreeMap::new();
+        let entries = match std::fs::read_dir(&path) {
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(stored),
+            entries => entries.map_err(failed)?,
+        };
+        for entry in entries {
+            let entry = entry.map_err(failed)?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if let Some(id) = name.strip_suffix(".json") {
+                let written = entry.metadata().and_then(|about| about.modified()).map_err(failed)?;
+                stored.insert(id.to_owned(), written);
+            }
+        }
+        Ok(stored)
+    }
+
+    /// Removes what only an unfinished sweep needs: claims, and temporary files of killed processes.
+    pub fn tidy(&self) {
+        self.claims().clear();
+        let old = |entry: &std::fs::DirEntry| {
+            let written = entry.metadata().ok()?.modified().ok()?;
+            Some(written.elapsed().ok()? > STALE)
+        };
+        for folder in [self.path.clone(), self.path.join(UNITS)] {
+            for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+                let temporary = entry.file_name().to_string_lossy().starts_with(TEMPORARY);
+                if temporary && old(&entry) == Some(true) {
+                    let _ = std::fs::remove_file(entry.path());
+                }
+            }
+        }
     }
 
     fn failed(&self, error: std::io::Error) -> SweepError {

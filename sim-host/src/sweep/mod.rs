@@ -2,6 +2,8 @@
 //! combined to the same bytes.
 
 mod axis;
+mod claim;
+mod claims;
 pub mod document;
 mod error;
 mod folder;
@@ -10,13 +12,18 @@ mod maps;
 mod names;
 mod netcdf;
 mod plan;
+mod queue;
 mod run;
 mod seal;
 mod shard;
+pub mod status;
 mod unit;
+mod worker;
 mod write;
 
 pub use axis::{Axis, AxisError, ItemError};
+pub use claim::{Claim, DoneColumn, RENEWAL, STALE, State};
+pub use claims::Claims;
 pub use error::SweepError;
 pub use folder::Folder;
 pub use grid::Grid;
@@ -24,8 +31,9 @@ pub(crate) use maps::AT_LEAST;
 pub use maps::pictures;
 pub use names::check;
 pub use plan::{PLAN, Plan, SweepSearch, combination, count, label};
-pub use run::{Cell, Progress, run};
+pub use run::{Cell, Done, Progress, run};
 pub use seal::sha256;
 pub use shard::{Shard, ShardError};
 pub use unit::{Found, Unit};
+pub use worker::Worker;
 pub use write::write;

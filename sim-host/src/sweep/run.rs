@@ -1,12 +1,18 @@
 //! Computes cells of a sweep and stores their results.
 
-use super::unit::Unit;
-use super::{Folder, SweepError};
-use crate::basin::{Column, Search, border};
+use super::claim::DoneColumn;
+use super::claims::renewing;
+use super::queue::{Next, Queue};
+use super::{Folder, Found, SweepError};
+use crate::basin::{Search, border};
 use crate::ride::Conditions;
-use rayon::prelude::*;
 use serde_json::Value;
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// Pause of a thread while others compute all that is left.
+const PAUSE: Duration = Duration::from_millis(50);
 
 /// A cell to compute.
 pub struct Cell {
@@ -22,14 +28,25 @@ pub struct Cell {
 
 /// Callbacks for progress and interruption.
 pub struct Progress<'a> {
-    /// Called after every column.
+    /// Called for every column, whoever computed it.
     pub advanced: &'a (dyn Fn() + Sync),
     /// Checked before every column; true stops the run.
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// Computes `cells` on all cores of the current rayon pool and stores each in `folder` when it is finished;
-/// returns their number. The results depend neither on the number of threads nor on earlier runs.
+/// Cells of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Done {
+    /// Number of finished cells.
+    pub cells: usize,
+    /// Number of them that other processes finished during the run.
+    pub by_others: usize,
+}
+
+/// Computes `cells` on all cores of the current rayon pool and stores each in `folder` when it is finished. Processes with
+/// the same folder share the cells: each is claimed before it is computed, and taken over if its process is lost. Ends
+/// when all cells are finished, by whomever, or `stop` is true: the finished columns of unfinished cells are then kept
+/// with their claims. The results depend neither on the number of threads or processes nor on earlier runs.
 ///
 /// # Errors
 /// The search or a cell's conditions fail their checks, or a file can't be written.
@@ -38,37 +55,57 @@ pub fn run(
     search: &Search,
     folder: &Folder,
     progress: &Progress,
-) -> Result<usize, SweepError> {
+) -> Result<Done, SweepError> {
     search.check()?;
     for cell in cells {
         cell.conditions.check()?;
     }
-    let speeds = search.speeds.len();
-    let columns: Vec<Mutex<Vec<(usize, Column)>>> = cells.iter().map(|_| Mutex::default()).collect();
-    let done = Mutex::new(0);
-    // Parallel over columns rather than cells: at most as many cells are unfinished as there are threads.
-    (0..cells.len() * speeds).into_par_iter().try_for_each(|i| {
-        if (progress.stop)() {
-            return Ok::<(), SweepError>(());
-        }
-        let (cell, speed) = (i / speeds, i % speeds);
-        let column = border(&cells[cell].conditions, search, search.speeds[speed]);
-        (progress.advanced)();
-        let mut there = lock(&columns[cell]);
-        there.push((speed, column));
-        if there.len() < speeds {
-            return Ok(());
-        }
-        there.sort_by_key(|(speed, _)| *speed);
-        let whole = std::mem::take(&mut *there).into_iter().map(|(_, column)| column).collect();
-        folder.keep(&Unit::new(&cells[cell].id, (&cells[cell].config, &cells[cell].scenario), whole))?;
-        *lock(&done) += 1;
+    let queue = Mutex::new(Queue::new(cells, search.speeds.len(), folder));
+    let failed = AtomicBool::new(false);
+    // The claim is renewed until the unit is there.
+    let store = |cell: usize| -> Result<(), SweepError> {
+        let unit = lock(&queue).unit(cell);
+        unit.map_or(Ok(()), |unit| folder.keep(&unit))?;
+        lock(&queue).stored(cell);
         Ok(())
-    })?;
-    let done = *lock(&done);
-    Ok(done)
+    };
+    let thread = || -> Result<(), SweepError> {
+        while !(progress.stop)() && !failed.load(Ordering::Relaxed) {
+            let (next, given) = {
+                let mut queue = lock(&queue);
+                (queue.next()?, queue.given())
+            };
+            (0..given).for_each(|_| (progress.advanced)());
+            match next {
+                Next::Column(cell, speed) => {
+                    let column = border(&cells[cell].conditions, search, search.speeds[speed]);
+                    (progress.advanced)();
+                    let done = DoneColumn { speed, found: Found::of(&column), work: column.work };
+                    let whole = lock(&queue).finished(cell, done);
+                    if whole {
+                        store(cell)?;
+                    }
+                }
+                Next::Store(cell) => store(cell)?,
+                Next::Again => {}
+                Next::Later => std::thread::sleep(PAUSE),
+                Next::Over => break,
+            }
+        }
+        Ok(())
+    };
+    // A claim that is not renewed costs computing time at most; a full disk is reported by the next unit.
+    let renew = || drop(lock(&queue).renew());
+    let ended: Vec<Result<(), SweepError>> = renewing(renew, || {
+        rayon::broadcast(|_| thread().inspect_err(|_| failed.store(true, Ordering::Relaxed)))
+    });
+    let error = ended.into_iter().find_map(Result::err);
+    let mut queue = lock(&queue);
+    let left = queue.release(error.as_ref());
+    let done = Done { cells: cells.len() - left, by_others: queue.others };
+    error.map_or(Ok(done), Err)
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,7 +1,7 @@
 //! The result of one cell, and its file.
 
-use super::seal::hash;
-use crate::basin::{Basin, Column, Work};
+use super::DoneColumn;
+use crate::basin::{Column, Work};
 use crate::ride::Effort;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,6 +21,18 @@ pub struct Found {
     pub fall: Option<String>,
 }
 
+impl Found {
+    /// The result of a column.
+    pub(super) fn of(column: &Column) -> Self {
+        Self {
+            height: column.upper,
+            capped: column.capped,
+            effort: column.border.map(|ride| ride.effort),
+            fall: column.beyond.map(|cause| cause.name().into()),
+        }
+    }
+}
+
 /// The basin of one cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Unit {
@@ -36,41 +48,15 @@ pub struct Unit {
     pub work: Work,
 }
 
-/// A unit with its hash, as written.
-#[derive(Serialize, Deserialize)]
-struct Sealed<U> {
-    sha256: String,
-    unit: U,
-}
-
 impl Unit {
     /// Result of a cell from all of its columns, in the order of the search.
-    pub fn new(id: &str, (config, scenario): (&Value, &Value), columns: Vec<Column>) -> Self {
-        let basin = Basin { columns };
-        let found = |c: &Column| Found {
-            height: c.upper,
-            capped: c.capped,
-            effort: c.border.map(|ride| ride.effort),
-            fall: c.beyond.map(|cause| cause.name().into()),
-        };
+    pub fn new(id: &str, (config, scenario): (&Value, &Value), columns: Vec<DoneColumn>) -> Self {
         Self {
             id: id.into(),
             config: config.clone(),
             scenario: scenario.clone(),
-            found: basin.columns.iter().map(found).collect(),
-            work: basin.work(),
+            work: columns.iter().fold(Work::default(), |sum, column| sum.plus(&column.work)),
+            found: columns.into_iter().map(|column| column.found).collect(),
         }
-    }
-
-    /// Contents of the unit's file.
-    pub(super) fn sealed(&self) -> String {
-        let sealed = Sealed { sha256: hash(self), unit: self };
-        serde_json::to_string_pretty(&sealed).unwrap_or_default() + "\n"
-    }
-
-    /// Parses a unit's file; `None` if it is damaged or has another identity than `id`.
-    pub(super) fn unsealed(text: &str, id: &str) -> Option<Self> {
-        let Sealed { sha256, unit } = serde_json::from_str::<Sealed<Self>>(text).ok()?;
-        (unit.id == id && sha256 == hash(&unit)).then_some(unit)
     }
 }

@@ -8,7 +8,7 @@ use crate::report::netcdf::Format;
 use crate::report::picture::{caption, svg_with_caption};
 
 /// Writes `sweep.json`, `sweep.nc`, `sweep.csv`, `heights.csv` and `figures/*.svg` to `folder`, replacing
-/// older files of these names.
+/// older files of these names, and removes what only the computation needed.
 ///
 /// # Errors
 /// A file can't be written.
@@ -22,5 +22,7 @@ pub fn write(grid: &Grid, document: &SweepDocument, folder: &Folder) -> Result<(
         folder.write(&format!("figures/{name}.svg"), svg.as_bytes())?;
     }
     let json = serde_json::to_string_pretty(document)?;
-    folder.write("sweep.json", (json + "\n").as_bytes())
+    folder.write("sweep.json", (json + "\n").as_bytes())?;
+    folder.tidy();
+    Ok(())
 }

@@ -61,6 +61,7 @@ fn documents_fit_their_committed_schemas() {
         "basin-compare",
         "basin-plane",
         "sweep",
+        "sweep-status",
     ] {
         let run = bench.run(&format!("schema {name}"));
         let file = std::fs::read_to_string(repository("docs/schema").join(format!("{name}.json"))).unwrap();

@@ -31,3 +31,4 @@ mod scenario;
 
 mod study;
 mod sweep;
+mod sweep_shared;

@@ -21,7 +21,7 @@ const SMALL: &str = "sweep --over law=h,none --over torque-limit=2,none --speeds
                      --scan-step 2 --tolerance 0.5 --time-limit 1.5 -q";
 
 /// Every file under a folder, by its path in it.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in std::fs::read_dir(folder).expect("the folder is there") {
         let path = entry.expect("an entry").path();

@@ -1,0 +1,93 @@
+//! Claims: who computes a unit, and what of it is done. Processes that share a folder, on any number of machines, divide
+//! its units by them; a claim that is lost or ignored costs computing time only, as each unit has the same bytes
+//! whoever computes it.
+
+use super::Found;
+use super::worker::Worker;
+use crate::basin::Work;
+use serde::{Deserialize, Serialize};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// Time between renewals of a claim.
+pub const RENEWAL: Duration = Duration::from_secs(20);
+/// Time without renewal after which a claim is stale: above the minute for which network file systems may show an
+/// older state, and the usual differences between clocks.
+pub const STALE: Duration = Duration::from_secs(120);
+
+/// A claim of a unit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Claim {
+    /// The unit's identity.
+    pub id: String,
+    /// The process that computes it; `None` once it was interrupted or has failed.
+    pub worker: Option<Worker>,
+    /// Time of the claim, seconds since 1970 UTC.
+    pub since_unix_s: u64,
+    /// Time of the last renewal, seconds since 1970 UTC.
+    pub renewed_unix_s: u64,
+    /// Time without renewal after which others take the unit over \[s\].
+    pub stale_after_s: u64,
+    /// Counts the processes that have begun the unit.
+    pub attempt: u32,
+    /// The error with which the last one ended.
+    pub error: Option<String>,
+    /// Finished columns, which need not be computed again.
+    pub columns: Vec<DoneColumn>,
+}
+
+/// A finished column of a cell.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DoneColumn {
+    /// Index of its speed in the search.
+    pub speed: usize,
+    /// The result.
+    pub found: Found,
+    /// Computing effort.
+    pub work: Work,
+}
+
+/// State of a claimed unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Being computed.
+    Running,
+    /// No longer computed, as the process was lost: not renewed in time, or ended on this machine.
+    Stale,
+    /// Interrupted.
+    Released,
+    /// Ended with an error.
+    Failed,
+}
+
+impl Claim {
+    /// A first claim.
+    pub(super) fn new(id: &str, worker: &Worker) -> Self {
+        let now = now_unix_s();
+        Self {
+            id: id.into(),
+            worker: Some(worker.clone()),
+            since_unix_s: now,
+            renewed_unix_s: now,
+            stale_after_s: STALE.as_secs(),
+            attempt: 1,
+            error: None,
+            columns: Vec::new(),
+        }
+    }
+
+    /// The state, as seen by a process on the machine of `here`.
+    pub fn state(&self, here: &Worker) -> State {
+        let late = now_unix_s().saturating_sub(self.renewed_unix_s) > self.stale_after_s;
+        match &self.worker {
+            None if self.error.is_some() => State::Failed,
+            None => State::Released,
+            Some(worker) if late || worker.ended(here) => State::Stale,
+            Some(_) => State::Running,
+        }
+    }
+}
+
+/// Seconds since 1970 UTC.
+pub(super) fn now_unix_s() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())
+}
