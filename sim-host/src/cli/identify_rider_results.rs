@@ -8,6 +8,7 @@ use crate::report::output::Output;
 use crate::report::resolved::ResolvedBicycle;
 use crate::report::tool::Tool;
 use crate::rider::{RiderTable, catalogue};
+use crate::sweep::{Claim, Claims};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -23,7 +24,10 @@ pub(super) struct Finished {
 }
 
 /// The folder.
-pub(super) struct Store(PathBuf);
+pub(super) struct Store {
+    folder: PathBuf,
+    claims: Claims,
+}
 
 impl Store {
     /// Creates the folder for the results of `files`, if needed.
@@ -39,12 +43,29 @@ impl Store {
             }
         }
         std::fs::create_dir_all(folder).map_err(|e| format!("--results {}: {e}", folder.display()))?;
-        Ok(Self(folder.to_owned()))
+        Ok(Self { folder: folder.to_owned(), claims: Claims::of(folder) })
+    }
+
+    /// Claims a record, so that processes with the same folder share the records; `None` if another process computes it.
+    pub(super) fn take(&self, record: &Path) -> Result<Option<Claim>, Failure> {
+        Ok(self.claims.take(&id(record))?)
+    }
+
+    /// Whether another process computes a record.
+    pub(super) fn is_taken(&self, record: &Path) -> bool {
+        self.claims.is_running(&id(record))
+    }
+
+    /// Runs `work` under a claim, which ends with it.
+    pub(super) fn under<T>(&self, mut claim: Claim, work: impl FnOnce() -> T) -> T {
+        let done = self.claims.hold(&mut claim, work);
+        self.claims.done(&claim.id);
+        self.claims.clear_empty();
+        done
     }
 
     fn place(&self, record: &Path, extension: &str) -> PathBuf {
-        let stem = record.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        self.0.join(format!("{stem}.{extension}"))
+        self.folder.join(format!("{}.{extension}", id(record)))
     }
 
     /// The result of a record with the same content and options; `None` if there is none.
@@ -74,4 +95,9 @@ impl Store {
         let text = serde_json::to_string_pretty(&finished.document)? + "\n";
         Ok(Output::create(&self.place(file, "json"))?.finish(text.as_bytes())?)
     }
+}
+
+/// Name of a record's results.
+fn id(record: &Path) -> String {
+    record.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
