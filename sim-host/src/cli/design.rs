@@ -6,11 +6,12 @@ use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Axis, Method, Search};
 use crate::design::document::{Design, DesignDocument, figure, law_file};
-use crate::design::{Knots, Plan, Progress, competitors, evaluate, optimise, scenarios};
+use crate::design::{Knots, Plan, Progress, competitors, evaluate, evaluate_in, optimise, scenarios};
 use crate::report::figure;
 use crate::report::output::Output;
 use crate::report::table;
 use crate::scenario::law;
+use crate::sweep;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::path::PathBuf;
@@ -20,6 +21,7 @@ const EXAMPLES: &str = "\
 Examples:
   sim-host design --budget 10min --law-file mine.toml --json mine.json --svg mine.svg
   sim-host design --start mine.toml --seed 2 --law-file better.toml     going on from there
+  sim-host design --start mine.toml --evaluations 1 --results judged    only its evaluation, shared
   sim-host design --budget 30s --judge none --law-file look.toml        a quick look";
 
 /// Options of `design`.
@@ -52,6 +54,9 @@ pub(super) struct Args {
     /// Step of the speeds in the evaluation beside the known laws, in m/s, or none
     #[arg(long, default_value = "0.25", value_name = "M/S|none", value_parser = evaluation_step, allow_hyphen_values = true)]
     judge: EvaluationStep,
+    /// Keep the evaluation in DIR as a sweep, which is continued and shared by several processes
+    #[arg(long, value_name = "DIR")]
+    results: Option<PathBuf>,
     /// Write the law as a file for --law
     #[arg(long, value_name = "FILE")]
     law_file: Option<PathBuf>,
@@ -148,8 +153,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     if args.judge.0.is_some() && !interrupt::stopped() {
         let columns = (scenarios.training.len() + scenarios.held_out.len()) * laws.len() * fine.speeds.len();
         let bar = progress(outputs.shows_progress(), "judge", columns as u64);
-        evaluation =
-            pool.install(|| evaluate(&scenarios, &laws, &fine, &|| bar.inc(1), &interrupt::stopped))?;
+        let advanced = || bar.inc(1);
+        let steps = sweep::Progress { advanced: &advanced, stop: &interrupt::stopped };
+        evaluation = pool.install(|| match &args.results {
+            Some(folder) => evaluate_in(folder, &scenarios, &laws, &fine, &steps),
+            None => Ok(evaluate(&scenarios, &laws, &fine, &advanced, &interrupt::stopped)?),
+        })?;
         bar.finish_and_clear();
     }
     let design = Design {

@@ -1,9 +1,15 @@
 //! Evaluates laws: the area of the basin of each law in every trial.
 
-use super::Scenarios;
+use super::{DesignError, Scenarios};
 use crate::basin::{Basin, Search};
+use crate::report::resolved::ResolvedConfig;
+use crate::scenario::Speeds;
 use crate::study::trial::{Trial, TrialError, basins};
+use crate::sweep::document::SweepDocument;
+use crate::sweep::{self, Axis, Cell, Folder, Grid, Plan, Progress, SweepError, Unit};
 use control::Law;
+use serde_json::Value;
+use std::path::Path;
 
 /// Areas of the laws in all trials.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +34,55 @@ pub fn competitors() -> Vec<(String, Law)> {
     ]
     .map(|law| (law.to_string(), law))
     .to_vec()
+}
+
+/// Evaluates `laws` like [`evaluate`], as a sweep over trials and laws in a folder: continued after an interruption, and
+/// shared by processes that have the same laws.
+///
+/// # Errors
+/// A trial can't be simulated, or the folder can't be used.
+pub fn evaluate_in(
+    folder: &Path,
+    scenarios: &Scenarios,
+    laws: &[(String, Law)],
+    search: &Search,
+    progress: &Progress,
+) -> Result<Option<Evaluation>, DesignError> {
+    let trials: Vec<&Trial> = scenarios.training.iter().chain(&scenarios.held_out).collect();
+    let mut resolved = Vec::new();
+    for trial in &trials {
+        for (_, law) in laws {
+            resolved.push(trial.resolve(law)?);
+        }
+    }
+    let configs = resolved.iter().map(|cell| serde_json::to_value(ResolvedConfig::new(cell)));
+    let configs: Vec<Value> = configs.collect::<Result<_, _>>().map_err(SweepError::from)?;
+    let axes = vec![
+        Axis { key: "trial".into(), values: trials.iter().map(|trial| trial.label.clone()).collect() },
+        Axis { key: "law".into(), values: laws.iter().map(|(name, _)| name.clone()).collect() },
+    ];
+    // The laws by their content, as the name of the designed one is always the same.
+    let options = laws.iter().map(|(name, law)| format!("{name}: {law:?}")).collect();
+    let plan = Plan::new(options, axes, search, &configs);
+    let mut cells = Vec::new();
+    for (id, (config, cell)) in plan.cells.iter().zip(configs.into_iter().zip(resolved)) {
+        let mut scenario = cell.scenario;
+        scenario.search.speeds = Some(Speeds::List(search.speeds.clone()));
+        let scenario = serde_json::to_value(&scenario).map_err(SweepError::from)?;
+        cells.push(Cell { id: id.clone(), config, scenario, conditions: cell.conditions });
+    }
+    let folder = Folder::open(folder, &plan)?;
+    let done = sweep::run(&cells.iter().collect::<Vec<_>>(), search, &folder, progress)?;
+    if done.cells < cells.len() {
+        return Ok(None);
+    }
+    let grid = Grid::gather(&plan, std::slice::from_ref(&folder))?;
+    sweep::write(&grid, &SweepDocument::new(&grid), &folder)?;
+    let units: Vec<&Unit> = grid.units.iter().flatten().collect();
+    Ok(Some(Evaluation {
+        areas: units.chunks(laws.len()).map(|of| of.iter().map(|unit| grid.area(unit)).collect()).collect(),
+        capped: units.chunks(laws.len()).map(|of| of.iter().map(|unit| unit.capped()).collect()).collect(),
+    }))
 }
 
 /// Evaluates `laws`; `None` if stopped by `stop`.

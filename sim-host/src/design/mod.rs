@@ -7,7 +7,7 @@ mod knots;
 mod scenarios;
 mod search;
 
-pub use evaluation::{Evaluation, competitors, evaluate};
+pub use evaluation::{Evaluation, competitors, evaluate, evaluate_in};
 pub use knots::{GAINS, Knots};
 pub use scenarios::{Scenarios, scenarios};
 pub use search::{DesignError, Found, Plan, Progress, optimise};

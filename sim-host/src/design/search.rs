@@ -4,6 +4,7 @@
 use super::knots::{GAINS, Knots, roughness};
 use crate::basin::Search;
 use crate::study::trial::{Least, Trial, TrialError, least_area};
+use crate::sweep::SweepError;
 use argmin::core::{CostFunction, Error, Executor};
 use argmin::solver::neldermead::NelderMead;
 use control::Law;
@@ -64,6 +65,9 @@ pub enum DesignError {
     /// A trial can't be simulated.
     #[error(transparent)]
     Trial(#[from] TrialError),
+    /// A folder of an evaluation that can't be used.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
     /// A gain is outside the range of a law.
     #[error(transparent)]
     Gain(#[from] ParamError),

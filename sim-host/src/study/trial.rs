@@ -3,7 +3,7 @@
 use crate::basin::{Basin, Column, Search, SearchError, border};
 use crate::parameters::departing;
 use crate::ride::Conditions;
-use crate::scenario::{RiderChoice, Scenario, ScenarioError, law};
+use crate::scenario::{Resolved, RiderChoice, Scenario, ScenarioError, law};
 use control::{Config, Law, Limits};
 use rayon::prelude::*;
 
@@ -66,10 +66,17 @@ impl Trial {
     /// # Errors
     /// The bicycle or rider does not exist, law or limits are out of range, or invalid conditions.
     pub fn conditions(&self, law: &Law) -> Result<Conditions, TrialError> {
+        Ok(self.resolve(law)?.conditions)
+    }
+
+    /// The trial with a law, as a scenario with all that it names.
+    ///
+    /// # Errors
+    /// See [`Trial::conditions`].
+    pub fn resolve(&self, law: &Law) -> Result<Resolved, TrialError> {
         let law = Some(law::content("table", law));
         let resolved = Scenario { law, ..self.scenario.clone() }.resolve();
-        let wrong = |error| TrialError::Conditions { label: self.label.clone(), error: Box::new(error) };
-        resolved.map(|resolved| resolved.conditions).map_err(wrong)
+        resolved.map_err(|error| TrialError::Conditions { label: self.label.clone(), error: Box::new(error) })
     }
 }
 
