@@ -2,7 +2,9 @@
 
 use control::Law;
 use sim_host::basin::{Axis, Method, Search};
-use sim_host::design::{Found, Knots, Plan, Progress, Scenarios, evaluate, optimise, scenarios};
+use sim_host::design::{
+    Found, Knots, Plan, Progress, Scenarios, evaluate, evaluate_in, optimise, scenarios,
+};
 use sim_host::ride::FallCriterion;
 use sim_host::study::trial::Trial;
 use std::cell::Cell;
@@ -163,4 +165,27 @@ fn invalid_options_are_rejected() {
         assert_eq!(bench.run(&format!("design {usage}")).code, Some(2), "{usage}");
     }
     assert!(bench.files().is_empty());
+}
+
+/// Situation: two laws in two trials.
+/// Action: evaluate them in memory; twice at the same time in one folder; then another law in that folder.
+/// Must hold: the same areas to the bit; the folder is a complete sweep without claims; the other law is rejected.
+#[test]
+fn an_evaluation_is_shared_in_a_folder() {
+    let bench = Bench::new(PROGRAM);
+    let scenarios =
+        Scenarios { training: trials(), held_out: Vec::new(), ..scenarios(FallCriterion::default()) };
+    let laws = |k| [("none".into(), Law::None), ("it".into(), Law::Cl2 { k })];
+    let alone = evaluate(&scenarios, &laws(2.0), &coarse(), &|| {}, &|| false).expect("rides");
+    let steps = sim_host::sweep::Progress { advanced: &|| {}, stop: &|| false };
+    let shared = |k| evaluate_in(&bench.path("judged"), &scenarios, &laws(k), &coarse(), &steps);
+    std::thread::scope(|scope| {
+        let both = [(); 2].map(|()| scope.spawn(|| shared(2.0).expect("rides")));
+        both.map(|one| assert_eq!(one.join().expect("no panic"), alone));
+    });
+    assert!(bench.path("judged/sweep.json").exists() && !bench.path("judged/claims").exists());
+    let status = bench.json("sweep --status judged");
+    assert_eq!((&status["cells"], &status["done"]), (&4.into(), &4.into()));
+    let other = shared(3.0).expect_err("another law").to_string();
+    assert!(other.contains("holds another sweep") && other.contains("the options"), "{other}");
 }

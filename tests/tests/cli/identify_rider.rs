@@ -1,7 +1,8 @@
 //! `sim-host identify RECORD`: from a record to a rider's file.
 
 use serde_json::{Value, json};
-use tests::cli::{Bench, repository};
+use std::process::Stdio;
+use tests::cli::{Bench, Run, repository};
 use tests::json_schema::violations;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
@@ -109,6 +110,27 @@ fn finished_records_are_kept() {
     );
     let other = bench.run(&format!("{line} --drift none"));
     assert!(!other.stderr.contains("finished before"), "{}", other.stderr);
+}
+
+/// Situation: three records.
+/// Action: two processes with the same folder identify them at the same time.
+/// Must hold: each record is fitted by one of them and taken over by the other; both end with the same document, which is that of one
+/// process; no claim remains.
+#[test]
+fn processes_share_the_records() {
+    let bench = Bench::new(PROGRAM);
+    ["a", "b", "c"].iter().enumerate().for_each(|(i, name)| recorded(&bench, name, &format!("--seed {i}")));
+    let line = format!("identify a.csv b.csv c.csv {FIVE} --linear --json");
+    let spawn = || {
+        let mut command = bench.command(&format!("{line} --results shared"));
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts")
+    };
+    let runs = [spawn(), spawn()].map(|child| Run::from(child.wait_with_output().expect("the program ends")));
+    let taken_over: usize = runs.iter().map(|run| run.stderr.matches("finished before").count()).sum();
+    assert_eq!((runs[0].code, runs[1].code, taken_over), (Some(0), Some(0), 3), "{runs:?}");
+    assert_eq!(runs[0].stdout, runs[1].stdout);
+    assert_eq!(runs[0].stdout, bench.run(&format!("{line} --results alone")).stdout);
+    assert!(!bench.path("shared/claims").exists());
 }
 
 /// A record as text, changed line by line.

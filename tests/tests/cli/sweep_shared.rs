@@ -16,9 +16,9 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 /// Forty cells of three columns, with one thread.
 const FORTY: &str = "sweep --over torque-limit=0.5:20/log20 --over law=h,f --speeds 4:5:0.5 --max-rate 10 \
                      --scan-step 1 --tolerance 0.5 --time-limit 1 --threads 1 -q";
-/// One cell of thirty columns.
-const ONE_CELL: &str = "sweep --over law=h --speeds 4:6.9:0.1 --max-rate 10 --scan-step 1 --tolerance 0.5 \
-                        --time-limit 1 --threads 1 -q";
+/// One cell of eighty columns.
+const ONE_CELL: &str = "sweep --over law=h --speeds 3:6.95:0.05 --max-rate 10 --scan-step 0.5 --tolerance 0.05 \
+                        --threads 1 -q";
 
 fn spawn(bench: &Bench, line: &str) -> Child {
     let mut command = bench.command(line);
@@ -226,8 +226,11 @@ fn the_status_tells_the_truth_about_claims() {
         assert!(text.contains(words), "{words}: {text}");
     }
     let child = spawn(&bench, &format!("{FORTY} --out s"));
-    until("all but the running cell", || (names(&bench, "s/units").len() == 39).then_some(()));
-    assert_eq!(names(&bench, "s/claims"), [format!("{}.json", missing[0])]);
+    let claims = || names(&bench, "s/claims");
+    until("all but the running cell", || {
+        (names(&bench, "s/units").len() == 39 && claims().len() == 1).then_some(())
+    });
+    assert_eq!(claims(), [format!("{}.json", missing[0])]);
     write_claim(&bench, "s", &Claim { renewed_unix_s: fresh.renewed_unix_s - 3600, ..fresh });
     let run = ended(child);
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
@@ -258,7 +261,7 @@ fn waiting_for_others_can_be_ended() {
     assert_eq!(read_claim(&bench, "s", &unit), claim);
 }
 
-/// Situation: one cell of thirty columns.
+/// Situation: one cell of eighty columns.
 /// Action: SIGTERM after the first columns; change a kept column; continue.
 /// Must hold: exit code 130, the finished columns are kept with the released claim; the changed column appears in the
 /// result, so it was not computed again; without the change the bytes are those of one run.
@@ -274,7 +277,7 @@ fn columns_of_an_interrupted_cell_are_kept() {
     let name = names(&bench, "s/claims").remove(0);
     let claim = read_claim(&bench, "s", &name);
     let kept = claim.columns.len();
-    assert!((1..30).contains(&kept), "{kept}");
+    assert!((1..80).contains(&kept), "{kept}");
     assert_eq!((claim.worker.clone(), claim.error.clone()), (None, None));
     let found = status(&bench, "s");
     assert_eq!((&found["done"], &found["free"]), (&json!(0), &json!(1)));
@@ -286,7 +289,7 @@ fn columns_of_an_interrupted_cell_are_kept() {
         must(&bench, &format!("{ONE_CELL} --out s"));
         let document: Value = serde_json::from_str(&bench.read("s/sweep.json")).unwrap();
         let heights = document["cells"][0]["found"].as_array().unwrap();
-        assert_eq!(heights.len(), 30);
+        assert_eq!(heights.len(), 80);
         assert_eq!(heights[changed.columns[0].speed]["height"] == 7.0625, is_changed);
     }
     must(&bench, &format!("{ONE_CELL} --out one"));
