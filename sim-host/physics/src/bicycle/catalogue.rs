@@ -8,20 +8,21 @@ pub use super::set::Bicycle;
 use super::uncertain::{Measured, Uncertain};
 use super::{KEYS, check, formats};
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, PoisonError};
 use toml::{Table, Value};
 
 /// The shipped sets, a collection.
 const SHIPPED: &str = include_str!("../../../../data/bicycles.toml");
 /// File of the shipped sets, for messages.
 const SHIPPED_FILE: &str = "data/bicycles.toml";
+/// The shipped sets, parsed once: it takes milliseconds, and each cell of a sweep has a bicycle.
+static SETS: LazyLock<Table> = LazyLock::new(|| parse(SHIPPED, Path::new(SHIPPED_FILE)).unwrap_or_default());
 /// Keys of a set that are not parameters.
 const EXTRA_KEYS: [&str; 4] = ["source", "note", "rider_included", "schema"];
 
 /// Names of the shipped sets, in the file's order.
 pub fn shipped_names() -> Vec<String> {
-    let sets = parse(SHIPPED, Path::new(SHIPPED_FILE)).unwrap_or_default();
-    sets.iter().filter(|(_, v)| v.is_table()).map(|(name, _)| name.clone()).collect()
+    SETS.iter().filter(|(_, v)| v.is_table()).map(|(name, _)| name.clone()).collect()
 }
 
 /// Loads a bicycle by `name`: a shipped set, a `FILE` (`-` is standard input), a `FILE#NAME` (the file's name
@@ -37,7 +38,7 @@ pub fn load(name: &str) -> Result<Bicycle, BicycleError> {
         return with_rider(name, bicycle, base, &table, &path);
     }
     if shipped_names().iter().any(|n| n == name) {
-        return from_text(name, SHIPPED, Path::new(SHIPPED_FILE), Some(name));
+        return from_table(name, &SETS, Path::new(SHIPPED_FILE), Some(name));
     }
     if name == "-" {
         return from_text("standard input", &standard_input()?, Path::new("standard input"), None);
@@ -100,7 +101,10 @@ fn parse(text: &str, path: &Path) -> Result<Table, BicycleError> {
 /// # Errors
 /// As [`load`].
 pub fn from_text(name: &str, text: &str, path: &Path, set: Option<&str>) -> Result<Bicycle, BicycleError> {
-    let table = parse(text, path)?;
+    from_table(name, &parse(text, path)?, path, set)
+}
+
+fn from_table(name: &str, table: &Table, path: &Path, set: Option<&str>) -> Result<Bicycle, BicycleError> {
     let sets: Vec<&str> = table.iter().filter(|(_, v)| v.is_table()).map(|(k, _)| k.as_str()).collect();
     let (label, values) = match set {
         Some(set) => match table.get(set) {
@@ -114,7 +118,7 @@ pub fn from_text(name: &str, text: &str, path: &Path, set: Option<&str>) -> Resu
         None if !sets.is_empty() => {
             return Err(BicycleError::Collection { path: path.into(), known: sets.join(", ") });
         }
-        None => (path.display().to_string(), &table),
+        None => (path.display().to_string(), table),
     };
     let wrong = |reason: SetError| BicycleError::Set { set: label.clone(), reason };
     if let Some(key) = values
