@@ -4,7 +4,7 @@ use super::command_line::command_line;
 use super::identify_rider_args::{Delay, RiderArgs, drift_name, select_name};
 use super::identify_rider_results::{Finished, Store};
 use super::interrupt;
-use super::outputs::{Further, Outputs, Results, complain, complain_once};
+use super::outputs::{Further, Outputs, Results, complain};
 use super::progress::progress;
 use super::{Ended, Failure, warn};
 use crate::bicycle::Geometry;
@@ -72,24 +72,32 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     let bar = progress(outputs.shows_progress(), "identify", 4 * args.files.len(), "stages");
     let (mut finished, mut refused) = (BTreeMap::new(), BTreeMap::new());
     let mut open: VecDeque<usize> = (0..args.files.len()).collect();
-    // Records that other processes with the same folder of results have begun.
+    // Records that other processes with the same folder of results identify.
     let mut elsewhere = VecDeque::new();
     while !interrupt::stopped() {
         let Some(i) = open.pop_front() else {
             if elsewhere.is_empty() {
                 break;
             }
+            open = std::mem::take(&mut elsewhere);
             std::thread::sleep(LOOK);
-            let busy = |i: &usize| store.as_ref().is_some_and(|store| store.is_taken(&args.files[*i]));
-            (elsewhere, open) = elsewhere.into_iter().partition(busy);
             continue;
         };
         let file = &args.files[i];
         let begins = |_: Stage| bar.inc(1);
-        let of_one = one(args, &bicycle, map.as_ref(), file, store.as_ref(), &begins);
+        let of_this = || one(args, &bicycle, map.as_ref(), file, store.as_ref(), &begins);
+        let of_one = match &store {
+            None => of_this(),
+            Some(store) => match store.alone(file, of_this)? {
+                Some(of_one) => of_one,
+                None => {
+                    elsewhere.push_back(i);
+                    continue;
+                }
+            },
+        };
         match of_one {
-            Ok(Some(one)) => drop(finished.insert(i, one)),
-            Ok(None) => elsewhere.push_back(i),
+            Ok(one) => drop(finished.insert(i, one)),
             Err(error) if error.downcast_ref() == Some(&FitError::Interrupted) => break,
             Err(error) if many => {
                 complain(&format!("{}: not used: {error}", file.display()));
@@ -98,8 +106,8 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
             Err(error) => return Err(format!("{}: {error}", file.display()).into()),
         }
     }
-    let finished: Vec<Finished> = finished.into_values().collect();
     bar.finish_and_clear();
+    let finished: Vec<Finished> = finished.into_values().collect();
     if finished.is_empty() {
         if interrupt::stopped() {
             return Ok(Ended::Interrupted);
@@ -165,7 +173,7 @@ fn write(
     })
 }
 
-/// Identifies the rider of one record, or takes it from the finished ones; `None` if another process identifies it.
+/// Identifies the rider of one record, or takes it from the finished ones.
 fn one(
     args: &RiderArgs,
     bicycle: &Bicycle,
@@ -173,7 +181,7 @@ fn one(
     file: &Path,
     store: Option<&Store>,
     begins: &(impl Fn(Stage) + Sync),
-) -> Result<Option<Finished>, Failure> {
+) -> Result<Finished, Failure> {
     let name = file.display().to_string();
     let recording = read(file, &args.recording.options())?;
     let map = map.map_or_else(|| Map::of_perturbation(&recording), |map| Ok(map.clone()))?;
@@ -181,47 +189,29 @@ fn one(
     let settings = Settings { signals: args.fit.clone(), hold: args.hold, speed_m_s: args.speed };
     let mut prepared = prepare(&signals, &settings)?;
     prepared.remarks.splice(0..0, recording.remarks.iter().map(ToString::to_string));
-    prepared.remarks.iter().for_each(|remark| complain_once(&format!("{name}: {remark}")));
+    prepared.remarks.iter().for_each(|remark| complain(&format!("{name}: {remark}")));
     let (problem, plan) = problem(args, bicycle, &prepared);
     let record = RecordEntry { sha256: sha256(&std::fs::read(file)?), ..entry(&name, &prepared) };
     let config = config(args, &problem, &plan);
-    let kept = || store.and_then(|store| store.finished(file, &record, &config, bicycle));
-    let kept_before = || {
-        let done = kept()?;
+    if let Some(done) = store.and_then(|store| store.finished(file, &record, &config, bicycle)) {
         complain(&format!("{name}: finished before; not fitted again"));
-        Some(done)
-    };
-    if let Some(done) = kept_before() {
-        return Ok(Some(done));
+        return Ok(done);
     }
-    let fit = || -> Result<Finished, Failure> {
-        let found = identify(problem, &plan, begins, &interrupt::stopped)?;
-        let document =
-            IdentifyDocument::new(record.clone(), ResolvedBicycle::new(bicycle), config.clone(), &found);
-        document.warnings.iter().for_each(|warning| complain(&format!("{name}: warning: {warning}")));
-        let rider = table_of(&name, bicycle, &found)?;
-        let reported = args.report.is_some() || store.is_some();
-        let page = || page(&document, &found, &command_line(), &rider.to_toml());
-        Ok(Finished {
-            page: if reported { page() } else { String::new() },
-            text: text(&document),
-            chart: chart(&document, &found),
-            rider,
-            document: serde_json::to_value(&document)?,
-        })
+    let found = identify(problem, &plan, begins, &interrupt::stopped)?;
+    let document = IdentifyDocument::new(record, ResolvedBicycle::new(bicycle), config, &found);
+    document.warnings.iter().for_each(|warning| complain(&format!("{name}: warning: {warning}")));
+    let rider = table_of(&name, bicycle, &found)?;
+    let reported = args.report.is_some() || store.is_some();
+    let page = || page(&document, &found, &command_line(), &rider.to_toml());
+    let finished = Finished {
+        page: if reported { page() } else { String::new() },
+        text: text(&document),
+        chart: chart(&document, &found),
+        rider,
+        document: serde_json::to_value(&document)?,
     };
-    let Some(store) = store else { return fit().map(Some) };
-    let Some(claim) = store.take(file)? else { return Ok(None) };
-    let finished = store.under(claim, || {
-        // Another process may have finished it before this claim.
-        if let Some(done) = kept_before() {
-            return Ok(done);
-        }
-        let finished = fit()?;
-        store.keep(file, &finished)?;
-        Ok(finished)
-    });
-    finished.map(Some)
+    store.map_or(Ok(()), |store| store.keep(file, &finished))?;
+    Ok(finished)
 }
 
 fn problem(args: &RiderArgs, bicycle: &Bicycle, prepared: &Prepared) -> (Problem, Plan) {

@@ -8,7 +8,7 @@ use crate::report::output::Output;
 use crate::report::resolved::ResolvedBicycle;
 use crate::report::tool::Tool;
 use crate::rider::{RiderTable, catalogue};
-use crate::sweep::{Claim, Claims};
+use crate::sweep::Claims;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -46,22 +46,13 @@ impl Store {
         Ok(Self { folder: folder.to_owned(), claims: Claims::of(folder) })
     }
 
-    /// Claims a record, so that processes with the same folder share the records; `None` if another process computes it.
-    pub(super) fn take(&self, record: &Path) -> Result<Option<Claim>, Failure> {
-        Ok(self.claims.take(&id(record))?)
-    }
-
-    /// Whether another process computes a record.
-    pub(super) fn is_taken(&self, record: &Path) -> bool {
-        self.claims.is_running(&id(record))
-    }
-
-    /// Runs `work` under a claim, which ends with it.
-    pub(super) fn under<T>(&self, mut claim: Claim, work: impl FnOnce() -> T) -> T {
+    /// Runs `work` on a record, or returns `None` if another process with the same folder works on it.
+    pub(super) fn alone<T>(&self, record: &Path, work: impl FnOnce() -> T) -> Result<Option<T>, Failure> {
+        let Some(mut claim) = self.claims.take(&id(record))? else { return Ok(None) };
         let done = self.claims.hold(&mut claim, work);
         self.claims.done(&claim.id);
         self.claims.clear_empty();
-        done
+        Ok(Some(done))
     }
 
     fn place(&self, record: &Path, extension: &str) -> PathBuf {

@@ -57,11 +57,6 @@ impl Claims {
         Ok(self.holds(&claim)?.then_some(claim))
     }
 
-    /// Whether a process computes a unit.
-    pub fn is_running(&self, id: &str) -> bool {
-        matches!(self.read(id), Ok(Some(claim)) if claim.state(&self.worker) == State::Running)
-    }
-
     /// Renews a claim while `work` runs.
     pub fn hold<T>(&self, claim: &mut Claim, work: impl FnOnce() -> T) -> T {
         // A claim that is not renewed costs computing time at most.
