@@ -120,10 +120,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     if done.cells == to_do.len() {
         return Ok(Ended::Done);
     }
-    let before = mine.len() - to_do.len();
+    let there = mine.iter().filter(|&&i| grid.units[i].is_some()).count();
     complain(&format!(
-        "interrupted: {} of {} cells are done and kept; the same command continues",
-        before + done.cells,
+        "interrupted: {there} of {} cells are done and kept; the same command continues",
         mine.len()
     ));
     Ok(Ended::Interrupted)

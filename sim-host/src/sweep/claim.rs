@@ -4,7 +4,7 @@
 
 use super::Found;
 use super::worker::Worker;
-use crate::basin::Work;
+use crate::basin::{Column, Work};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -44,6 +44,13 @@ pub struct DoneColumn {
     pub found: Found,
     /// Computing effort.
     pub work: Work,
+}
+
+impl DoneColumn {
+    /// The column at a speed, given by its index in the search.
+    pub fn new(speed: usize, column: &Column) -> Self {
+        Self { speed, found: Found::of(column), work: column.work }
+    }
 }
 
 /// State of a claimed unit.

@@ -3,7 +3,7 @@
 use super::claim::DoneColumn;
 use super::claims::renewing;
 use super::queue::{Next, Queue};
-use super::{Folder, Found, SweepError};
+use super::{Folder, SweepError};
 use crate::basin::{Search, border};
 use crate::ride::Conditions;
 use serde_json::Value;
@@ -80,8 +80,7 @@ pub fn run(
                 Next::Column(cell, speed) => {
                     let column = border(&cells[cell].conditions, search, search.speeds[speed]);
                     (progress.advanced)();
-                    let done = DoneColumn { speed, found: Found::of(&column), work: column.work };
-                    let whole = lock(&queue).finished(cell, done);
+                    let whole = lock(&queue).finished(cell, DoneColumn::new(speed, &column));
                     if whole {
                         store(cell)?;
                     }

@@ -3,7 +3,6 @@
 use super::claim::now_unix_s;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 
 /// A process, told from all others.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -41,10 +40,13 @@ impl Worker {
         }
     }
 
-    /// Whether it is known to have ended: its table of processes is that of `here`, and it is not in there.
+    /// Whether it is known to have ended: its table of processes is that of `here`, and it is not in there, or as a
+    /// process that has ended (Z) but is still in the table.
     pub(super) fn ended(&self, here: &Self) -> bool {
         let same = self.processes.is_some() && self.processes == here.processes;
-        same && !Path::new(&format!("/proc/{}", self.pid)).exists()
+        let stat = || std::fs::read_to_string(format!("/proc/{}/stat", self.pid));
+        same && stat()
+            .map_or(true, |stat| stat.rsplit_once(") ").is_some_and(|(_, rest)| rest.starts_with('Z')))
     }
 
     /// Machine and number, and the job if there is one: "node3:4711 (job 1234_5)".

@@ -2,9 +2,7 @@
 
 use control::Law;
 use sim_host::basin::{Axis, Method, Search};
-use sim_host::design::{
-    Found, Knots, Plan, Progress, Scenarios, evaluate, evaluate_in, optimise, scenarios,
-};
+use sim_host::design::{Found, Knots, Plan, Progress, Scenarios, evaluate, evaluate_in, optimise, scenarios};
 use sim_host::ride::FallCriterion;
 use sim_host::study::trial::Trial;
 use std::cell::Cell;
@@ -181,7 +179,9 @@ fn an_evaluation_is_shared_in_a_folder() {
     let shared = |k| evaluate_in(&bench.path("judged"), &scenarios, &laws(k), &coarse(), &steps);
     std::thread::scope(|scope| {
         let both = [(); 2].map(|()| scope.spawn(|| shared(2.0).expect("rides")));
-        both.map(|one| assert_eq!(one.join().expect("no panic"), alone));
+        for one in both {
+            assert_eq!(one.join().expect("no panic"), alone);
+        }
     });
     assert!(bench.path("judged/sweep.json").exists() && !bench.path("judged/claims").exists());
     let status = bench.json("sweep --status judged");
