@@ -121,6 +121,7 @@ done
 finished
 "$sim_host" sweep --status shared
 cat shared-*.log
+scontrol --oneliner show job | sed -nE 's/.*ArrayTaskId=([0-9]+) .*JobState=([A-Z]+) .*Restarts=([0-9]+) .*/task \1: \2, restarts: \3/p' | sort
 same shared
 
 start_node node2
