@@ -79,8 +79,8 @@ pub fn evaluate_in(
     let grid = Grid::gather(&plan, std::slice::from_ref(&folder))?;
     sweep::write(&grid, &SweepDocument::new(&grid), &folder)?;
     let units: Vec<&Unit> = grid.units.iter().flatten().collect();
-    // A basin at a single speed has no area, as in [`Basin::area`].
-    let area = |unit: &&Unit| grid.area(unit).unwrap_or(0.0);
+    // None only at a single speed, where `Basin::area` is 0 as well.
+    let area = |unit: &&Unit| grid.area(unit).unwrap_or_default();
     Ok(Some(Evaluation {
         areas: units.chunks(laws.len()).map(|of| of.iter().map(area).collect()).collect(),
         capped: units.chunks(laws.len()).map(|of| of.iter().map(|unit| unit.capped()).collect()).collect(),
