@@ -73,7 +73,7 @@ fn weave(args: &WeaveArgs) -> Result<Ended, Failure> {
     }
     refused.iter().for_each(|entry| complain(&format!("{}: not used: {}", entry.file, entry.why)));
     if recordings.is_empty() {
-        return Err(format!("none of the {} files could be used", refused.len()).into());
+        return Err("no file could be used".into());
     }
     let published = published_weave::published();
     let prototype = catalogue::load(RIDERLESS)?.parameters;

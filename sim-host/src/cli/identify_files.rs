@@ -1,6 +1,7 @@
 //! The files of `identify weave`: gain and speed from their names, fits of their content, and the model's prediction.
 
 use super::Failure;
+use super::inputs::once;
 use super::weave_args::WeaveArgs;
 use crate::bicycle::Parameters;
 use crate::eigen::LinearActuator;
@@ -16,7 +17,7 @@ use control::Law;
 use nalgebra::Complex;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Placeholder of the gain in a law.
 const GAIN: &str = "{gain}";
@@ -50,15 +51,6 @@ pub(super) fn identify(args: &WeaveArgs) -> Result<Sorted, Failure> {
         return Err(format!("{first}, but {other}: name the columns with --column").into());
     }
     Ok((used, refused))
-}
-
-/// Rejects a file given twice, which would count as a repeat in perfect agreement.
-fn once(files: &[PathBuf]) -> Result<(), String> {
-    let mut seen = std::collections::BTreeSet::new();
-    match files.iter().find(|file| !seen.insert(file.canonicalize().unwrap_or_else(|_| (*file).clone()))) {
-        Some(twice) => Err(format!("{} is given twice", twice.display())),
-        None => Ok(()),
-    }
 }
 
 fn of_file(args: &WeaveArgs, pattern: &Pattern, path: &Path) -> Result<RecordingEntry, RefusedEntry> {

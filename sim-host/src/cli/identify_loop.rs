@@ -1,5 +1,6 @@
 //! `sim-host identify loop`: steer angle scale, control law and steer axis from recordings of a closed loop.
 
+use super::inputs::once;
 use super::outputs::{Further, OutputArgs, complain};
 use super::recording_args::RecordingArgs;
 use super::{Ended, Failure, warn};
@@ -62,6 +63,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     {
         return Err(format!("--to: {to} s is not after --from, {from} s").into());
     }
+    once(&args.files)?;
     let map = args.recording.map()?;
     let stated = args.stated.as_deref().map(StatedLaw::load).transpose();
     let stated = stated.map_err(|error| format!("--stated {error}"))?;
@@ -84,7 +86,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     refused.iter().for_each(|entry| complain(&format!("{}: not used: {}", entry.file, entry.why)));
     if recordings.is_empty() {
-        return Err(format!("none of the {} files could be used", refused.len()).into());
+        return Err("no file could be used".into());
     }
     let config = ResolvedLoop {
         map: args.recording.map_name(),
@@ -106,7 +108,7 @@ fn one(
     stated: Option<&StatedLaw>,
     path: &Path,
 ) -> Result<LoopEntry, String> {
-    let recording = read(path, &args.recording.options()).map_err(|error| error.to_string())?;
+    let recording = read(path, &args.recording.options()).map_err(|error| error.beside(path))?;
     let map = map.cloned().or_else(|| Map::by_columns(&recording));
     let map = map.ok_or("no built-in map has these columns; give one with --map")?;
     let samples = samples(&recording, &map, PERIOD_S).map_err(|remark| remark.to_string())?;

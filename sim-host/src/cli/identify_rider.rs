@@ -3,6 +3,7 @@
 use super::command_line::command_line;
 use super::identify_rider_args::{Delay, RiderArgs, drift_name, select_name};
 use super::identify_rider_results::{Finished, Store};
+use super::inputs::once;
 use super::interrupt;
 use super::outputs::{Further, Outputs, Results, complain};
 use super::progress::progress;
@@ -10,8 +11,10 @@ use super::{Ended, Failure, warn};
 use crate::bicycle::Geometry;
 use crate::bicycle::catalogue::Bicycle;
 use crate::bicycle::linear::Linear;
-use crate::identify::{FitError, GAINS, GrayBox, Identified, Plan, Problem, Pushed, Stage, identify};
-use crate::recording::read;
+use crate::identify::{
+    FitError, GAINS, GrayBox, Identified, Plan, Problem, Pushed, Stage, identify, symbols,
+};
+use crate::recording::{RecordingError, read};
 use crate::replay::{Map, perturbed};
 use crate::report::figure;
 use crate::report::identify::{
@@ -25,7 +28,7 @@ use crate::report::tool::{SCHEMA, Tool};
 use crate::rider::{Covariance, Gains, Neuromuscular, RiderTable, Row, merge};
 use crate::rider_record::{Prepared, Settings, prepare};
 use crate::sweep::sha256;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::Path;
 use std::time::Duration;
 
@@ -43,6 +46,9 @@ const GROUP_M_S: f64 = 0.3;
 const LOOK: Duration = Duration::from_millis(500);
 
 pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
+    once(&args.files)?;
+    distinct("--feedback", args.feedback.iter().map(|gain| symbols()[*gain]))?;
+    distinct("--fit", args.fit.iter().map(|signal| signal.name()))?;
     let bicycle = args.bicycle.load()?;
     warn(&bicycle);
     let map = args.recording.map()?;
@@ -100,10 +106,11 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
             Ok(one) => drop(finished.insert(i, one)),
             Err(error) if error.downcast_ref() == Some(&FitError::Interrupted) => break,
             Err(error) if many => {
-                complain(&format!("{}: not used: {error}", file.display()));
-                refused.insert(file.display().to_string(), error.to_string());
+                let reason = reason(file, error.as_ref());
+                complain(&format!("{}: not used: {reason}", file.display()));
+                refused.insert(file.display().to_string(), reason);
             }
-            Err(error) => return Err(format!("{}: {error}", file.display()).into()),
+            Err(error) => return Err(format!("{}: {}", file.display(), reason(file, error.as_ref())).into()),
         }
     }
     bar.finish_and_clear();
@@ -112,7 +119,7 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
         if interrupt::stopped() {
             return Ok(Ended::Interrupted);
         }
-        return Err(format!("none of the {} records could be used", args.files.len()).into());
+        return Err("no record could be used".into());
     }
     let rider = rider(&finished)?;
     let rider_file = args.out.as_ref().filter(|_| out.is_some()).map(|path| path.display().to_string());
@@ -123,6 +130,20 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     }
     report.map_or(Ok(()), |report| report.finish(page.as_bytes()))?;
     Ok(if interrupt::stopped() { Ended::Interrupted } else { Ended::Done })
+}
+
+/// Rejects a word that an option's list contains twice.
+fn distinct<'a>(option: &str, mut words: impl Iterator<Item = &'a str>) -> Result<(), String> {
+    let mut seen = BTreeSet::new();
+    match words.find(|word| !seen.insert(*word)) {
+        Some(twice) => Err(format!("{option}: {twice} is given twice")),
+        None => Ok(()),
+    }
+}
+
+/// Why a record is not used, without its name.
+fn reason(file: &Path, error: &(dyn std::error::Error + 'static)) -> String {
+    error.downcast_ref::<RecordingError>().map_or_else(|| error.to_string(), |error| error.beside(file))
 }
 
 /// One rider of all records.
@@ -188,7 +209,8 @@ fn one(
     let signals = perturbed(&recording, &map).map_err(|remark| remark.to_string())?;
     let settings = Settings { signals: args.fit.clone(), hold: args.hold, speed_m_s: args.speed };
     let mut prepared = prepare(&signals, &settings)?;
-    prepared.remarks.splice(0..0, recording.remarks.iter().map(ToString::to_string));
+    let concerning = recording.remarks.iter().filter(|remark| map.concerns_perturbation(remark));
+    prepared.remarks.splice(0..0, concerning.map(ToString::to_string));
     prepared.remarks.iter().for_each(|remark| complain(&format!("{name}: {remark}")));
     let (problem, plan) = problem(args, bicycle, &prepared);
     let record = RecordEntry { sha256: sha256(&std::fs::read(file)?), ..entry(&name, &prepared) };
@@ -224,7 +246,6 @@ fn problem(args: &RiderArgs, bicycle: &Bicycle, prepared: &Prepared) -> (Problem
     let delays_s = if profile.is_empty() && estimate_delay { default_delays() } else { profile };
     let mut gains = args.feedback.clone();
     gains.sort_unstable();
-    gains.dedup();
     let gains = if gains.is_empty() { (0..GAINS).collect() } else { gains };
     let model = GrayBox {
         bicycle: linear,
@@ -281,7 +302,7 @@ fn config(args: &RiderArgs, problem: &Problem, plan: &Plan) -> ResolvedIdentify 
         map: args.recording.map_name(),
         force_at: args.force_at,
         fit: args.fit.clone(),
-        feedback: plan.gains.iter().map(|i| crate::identify::symbols()[*i]).collect(),
+        feedback: plan.gains.iter().map(|i| symbols()[*i]).collect(),
         neuromuscular: problem.model.neuromuscular,
         delay_s: (!plan.estimate_delay).then_some(problem.model.delay_s),
         delay_profile_s: plan.delays_s.clone(),
@@ -306,12 +327,13 @@ fn table_of(name: &str, bicycle: &Bicycle, found: &Identified) -> Result<RiderTa
         group: 1,
         vaf: Some(100.0 * fit.mean_vaf()),
         gains: Gains::of_states(&fit.gains),
-        covariance: Some(Covariance::new(&fit.covariance, &fit.active)?),
+        covariance: found.has_errors().then(|| Covariance::new(&fit.covariance, &fit.active)).transpose()?,
     };
     Ok(RiderTable {
         name: "identified".into(),
         source: Some(format!("identified from {name}")),
-        note: None,
+        note: (!found.has_errors())
+            .then(|| "not refined on the nonlinear bicycle: the gains' errors are not known".into()),
         bicycle: Some(bicycle.name.clone()),
         delay_s: model.delay_s,
         neuromuscular: model.neuromuscular,

@@ -7,7 +7,7 @@ use super::recording_args::RecordingArgs;
 use crate::bicycle::ForcePoint;
 use crate::identify::{Drift, Hold, Select, Signal, symbols};
 use crate::range::{TimeError, time, within};
-use crate::rider::Neuromuscular;
+use crate::rider::{MAX_DELAY_S, Neuromuscular};
 use std::path::PathBuf;
 
 /// Options of `identify RECORD`.
@@ -19,10 +19,10 @@ pub(super) struct RiderArgs {
     pub(super) files: Vec<PathBuf>,
     #[command(flatten)]
     pub(super) bicycle: BicycleArgs,
-    /// Neural delay for which the gains are fitted, for example 30ms, or `estimate`: the likeliest one of the record
+    /// Neural delay for which the gains are fitted, 0 to 1 s, for example 30ms, or `estimate`: the likeliest one of the record
     #[arg(long, value_name = "TIME|estimate", default_value = "30ms", value_parser = delay)]
     pub(super) delay: Delay,
-    /// Delays whose likelihood is computed, in ms: FROM:TO:STEP, or none
+    /// Delays whose likelihood is computed, in ms: FROM:TO:STEP from 0 to 1000, or none
     #[arg(long, value_name = "RANGE", default_value = "none", value_parser = delays)]
     pub(super) delay_profile: Delays,
     /// Forward speed in m/s [default: the mean of the recorded one]
@@ -73,7 +73,7 @@ pub(super) struct RiderArgs {
     /// Write a report of the record as a self-contained HTML page: gains, signals, residuals, impulse response, reduction, delay
     #[arg(long, value_name = "FILE")]
     pub(super) report: Option<PathBuf>,
-    /// Write each record's document, rider and report to FOLDER as soon as it is finished; a record that is finished there with
+    /// Write each record's document, rider, report and text to FOLDER as soon as it is finished; a record that is finished there with
     /// the same options is not fitted again
     #[arg(long, value_name = "FOLDER")]
     pub(super) results: Option<PathBuf>,
@@ -98,9 +98,6 @@ pub(super) struct Delays(pub(super) Vec<f64>);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Until(pub(super) Option<f64>);
 
-/// Longest delay of a fit \[s\].
-const LONGEST_S: f64 = 0.5;
-
 /// A point from 3 m behind the rear contact to 5 m ahead, up to 5 m above the ground.
 fn force_point(text: &str) -> Result<ForcePoint, String> {
     let at = point(text)?;
@@ -110,7 +107,7 @@ fn force_point(text: &str) -> Result<ForcePoint, String> {
 }
 
 fn delay(text: &str) -> Result<Delay, TimeError> {
-    if text == "estimate" { Ok(Delay::Estimate) } else { time(text, LONGEST_S).map(Delay::Given) }
+    if text == "estimate" { Ok(Delay::Estimate) } else { time(text, MAX_DELAY_S).map(Delay::Given) }
 }
 
 fn delays(text: &str) -> Result<Delays, String> {
@@ -120,8 +117,8 @@ fn delays(text: &str) -> Result<Delays, String> {
     let wrong = || "expected FROM:TO:STEP in ms, for example 0:120:5, or none".to_owned();
     let numbers: Vec<f64> = text.split(':').map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
     let [from, to, step] = numbers[..] else { return Err(wrong()) };
-    within("FROM (ms)", from, 0.0, 1e3 * LONGEST_S).map_err(|e| e.to_string())?;
-    within("TO (ms)", to, from, 1e3 * LONGEST_S).map_err(|e| e.to_string())?;
+    within("FROM (ms)", from, 0.0, 1e3 * MAX_DELAY_S).map_err(|e| e.to_string())?;
+    within("TO (ms)", to, from, 1e3 * MAX_DELAY_S).map_err(|e| e.to_string())?;
     within("STEP (ms)", step, 0.1, 100.0).map_err(|e| e.to_string())?;
     let count = ((to - from) / step + 1e-9) as usize;
     within("number of delays", count as f64 + 1.0, 3.0, 1000.0).map_err(|e| e.to_string())?;

@@ -74,15 +74,16 @@ impl Store {
             && document["bicycle"] == serde_json::to_value(ResolvedBicycle::new(bicycle)).ok()?;
         let rider = catalogue::load(&self.place(file, "toml").display().to_string()).ok()?;
         let page = std::fs::read_to_string(self.place(file, "html")).ok()?;
-        let text = format!("{}: finished before, in {}\n", record.file, self.place(file, "json").display());
+        let text = std::fs::read_to_string(self.place(file, "txt")).ok()?;
         same.then(|| Finished { text, chart: Chart::default(), rider, document, page })
     }
 
-    /// Writes the document, the rider and the report of a record.
+    /// Writes the document, the rider, the report and the text of a record.
     pub(super) fn keep(&self, file: &Path, finished: &Finished) -> Result<(), Failure> {
         // The document last: it means that the record is finished.
         Output::create(&self.place(file, "toml"))?.finish(finished.rider.to_toml().as_bytes())?;
         Output::create(&self.place(file, "html"))?.finish(finished.page.as_bytes())?;
+        Output::create(&self.place(file, "txt"))?.finish(finished.text.as_bytes())?;
         let text = serde_json::to_string_pretty(&finished.document)? + "\n";
         Ok(Output::create(&self.place(file, "json"))?.finish(text.as_bytes())?)
     }

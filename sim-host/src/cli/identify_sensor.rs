@@ -1,5 +1,6 @@
 //! `sim-host identify sensor`: identifies a sensor model from recordings.
 
+use super::inputs::once;
 use super::outputs::{Further, OutputArgs, complain};
 use super::recording_args::RecordingArgs;
 use super::{Ended, Failure};
@@ -66,6 +67,7 @@ fn sensor(name: &str) -> Result<Sensor, String> {
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     args.outputs.refuse_figures("a sensor's model has no figure")?;
+    once(&args.files)?;
     let map = args.recording.map()?;
     let outputs = args.outputs.open(Further::default())?;
     let out = args.out.as_deref().map(Output::create).transpose()?;

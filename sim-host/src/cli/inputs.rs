@@ -1,5 +1,6 @@
-//! Rejects command lines that would write over a file that the command reads.
+//! Checks of the files that a command reads: none is written over, none is read twice.
 
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -43,6 +44,15 @@ pub(super) fn refuse_overwriting(words: impl Iterator<Item = OsString>) -> Resul
     let both = |(_, path): &&(String, PathBuf)| file(path).is_some_and(|path| inputs.contains(&path));
     match outputs.iter().find(both) {
         Some((name, path)) => Err(format!("{name} {}: the command reads this file, too", path.display())),
+        None => Ok(()),
+    }
+}
+
+/// Rejects a file given twice, which would count as a repeat in perfect agreement.
+pub(super) fn once(files: &[PathBuf]) -> Result<(), String> {
+    let mut seen = BTreeSet::new();
+    match files.iter().find(|file| !seen.insert(file.canonicalize().unwrap_or_else(|_| (*file).clone()))) {
+        Some(twice) => Err(format!("{} is given twice", twice.display())),
         None => Ok(()),
     }
 }

@@ -26,6 +26,17 @@ pub enum RecordingError {
     },
 }
 
+impl RecordingError {
+    /// The message for a text that names `file` already: without that name, or with the name of another file.
+    pub fn beside(&self, file: &Path) -> String {
+        match self {
+            Self::Read { path, error } if path == file => format!("can't be read: {error}"),
+            Self::Content { path, remark } if path == file => remark.to_string(),
+            other => other.to_string(),
+        }
+    }
+}
+
 /// Options of reading.
 #[derive(Clone, Debug, Default)]
 pub struct ReadOptions {
@@ -152,17 +163,17 @@ fn parsed(_: &[u8]) -> Result<Database, Remark> {
 /// The bytes of a file, decompressed if necessary.
 fn bytes(path: &Path) -> Result<Vec<u8>, RecordingError> {
     std::fs::read(path)
-        .and_then(|bytes| unpacked(path, bytes))
+        .and_then(unpacked)
         .map_err(|error| RecordingError::Read { path: path.to_owned(), error })
 }
 
-fn unpacked(path: &Path, bytes: Vec<u8>) -> std::io::Result<Vec<u8>> {
+fn unpacked(bytes: Vec<u8>) -> std::io::Result<Vec<u8>> {
     const GZIP: [u8; 2] = [0x1f, 0x8b];
     if !bytes.starts_with(&GZIP) {
         return Ok(bytes);
     }
     let mut plain = Vec::new();
     std::io::Read::read_to_end(&mut flate2::read::MultiGzDecoder::new(bytes.as_slice()), &mut plain)
-        .map_err(|error| std::io::Error::new(error.kind(), format!("{}: gzip: {error}", path.display())))?;
+        .map_err(|error| std::io::Error::new(error.kind(), format!("gzip: {error}")))?;
     Ok(plain)
 }

@@ -1,4 +1,4 @@
-//! Remarks about a file: the first few of each kind are listed, the rest counted.
+//! Remarks about a file: the first few of each kind are listed, the rest counted by column.
 
 use std::fmt::{self, Display};
 
@@ -40,11 +40,20 @@ impl Display for Remark {
 /// Most remarks of one kind that are listed.
 const LISTED: u64 = 3;
 
-/// The remarks so far, and the number of each kind.
+/// The remarks so far, and the number of each kind that are not listed, by column.
 #[derive(Debug, Default)]
 pub(super) struct Remarks {
     listed: Vec<Remark>,
-    counts: Vec<(&'static str, u64)>,
+    counts: Vec<Count>,
+}
+
+/// Remarks of one kind about one column, or about none.
+#[derive(Debug)]
+struct Count {
+    kind: &'static str,
+    column: Option<String>,
+    listed: u64,
+    more: u64,
 }
 
 impl Remarks {
@@ -56,20 +65,25 @@ impl Remarks {
         column: Option<&str>,
         what: impl FnOnce() -> String,
     ) {
-        let place = self.counts.iter().position(|(other, _)| *other == kind).unwrap_or_else(|| {
-            self.counts.push((kind, 0));
+        let same = |count: &Count| count.kind == kind && count.column.as_deref() == column;
+        let place = self.counts.iter().position(same).unwrap_or_else(|| {
+            self.counts.push(Count { kind, column: column.map(str::to_owned), listed: 0, more: 0 });
             self.counts.len() - 1
         });
-        self.counts[place].1 += 1;
-        if self.counts[place].1 <= LISTED {
+        let listed: u64 =
+            self.counts.iter().filter(|count| count.kind == kind).map(|count| count.listed).sum();
+        if listed < LISTED {
+            self.counts[place].listed += 1;
             self.listed.push(Remark { line, column: column.map(str::to_owned), what: what() });
+        } else {
+            self.counts[place].more += 1;
         }
     }
 
     /// All remarks, with the number of unlisted ones.
     pub(super) fn done(mut self) -> Vec<Remark> {
-        for (kind, count) in self.counts.into_iter().filter(|(_, count)| *count > LISTED) {
-            self.listed.push(Remark::of_file(format!("{} more {kind}", count - LISTED)));
+        for Count { kind, column, more, .. } in self.counts.into_iter().filter(|count| count.more > 0) {
+            self.listed.push(Remark { line: None, column, what: format!("{more} more {kind}") });
         }
         self.listed
     }

@@ -102,6 +102,28 @@ const TIMES: [(&str, &str); 5] =
     [("time_s", "s"), ("t", "s"), ("time", "s"), ("Time", "s"), ("time_ms", "ms")];
 
 impl Map {
+    /// Whether a remark concerns a perturbation record: the whole file, the time, or a column of a signal that is read.
+    pub fn concerns_perturbation(&self, remark: &Remark) -> bool {
+        let Some(column) = &remark.column else { return true };
+        let perturbation = &self.perturbation;
+        let others = [
+            &perturbation.lateral_force,
+            &perturbation.steer_torque,
+            &perturbation.roll_rate,
+            &self.reference.roll,
+        ];
+        let signals = self.sensors().map(|mapped| mapped.signal).chain(others.into_iter().flatten());
+        let times = self.time.iter().flat_map(|time| &time.column);
+        let read = signals.flat_map(|signal| {
+            let columns = signal.columns.iter().filter_map(|source| match source {
+                Source::Column(name) => Some(name),
+                _ => None,
+            });
+            columns.chain(&signal.time)
+        });
+        times.chain(read).any(|name| name == column)
+    }
+
     /// The map of the documented columns that the recording has: docs/identify.md.
     ///
     /// # Errors

@@ -1,6 +1,8 @@
 //! Values that look wrong: another unit than the column's name says, or a motion that a linear model does not describe.
 
+use super::outliers::high;
 use crate::identify::{Record, Signal};
+use crate::range::plain;
 
 /// Angles and rates beyond these are suspected to be in degrees: nobody rides with a roll angle of 60 degrees.
 const SUSPECT_RAD: f64 = 1.0;
@@ -9,16 +11,10 @@ const SUSPECT_RAD_S: f64 = 6.0;
 const LINEAR_RAD: f64 = 0.35;
 /// Lateral forces outside of this range do not move a rider noticeably, or throw the rider off \[N\].
 const FORCE_N: (f64, f64) = (2.0, 1000.0);
+/// Steer torques outside of this range do not move the handlebar noticeably, or tear it out of a rider's hands \[N m\].
+const TORQUE_NM: (f64, f64) = (0.05, 100.0);
 /// Largest standard deviation of a constant speed, relative to its mean.
 const SPEED_DEVIATION: f64 = 0.05;
-
-/// The magnitude that one sample in a hundred exceeds.
-fn high(values: impl Iterator<Item = f64>) -> f64 {
-    let mut magnitudes: Vec<f64> = values.map(f64::abs).collect();
-    magnitudes.sort_by(f64::total_cmp);
-    let place = magnitudes.len().saturating_sub(1 + magnitudes.len() / 100);
-    magnitudes.get(place).copied().unwrap_or(0.0)
-}
 
 /// Doubts about a record.
 pub(super) fn doubts(record: &Record, speed_m_s: f64, deviation_m_s: Option<f64>) -> Vec<String> {
@@ -40,12 +36,15 @@ pub(super) fn doubts(record: &Record, speed_m_s: f64, deviation_m_s: Option<f64>
             ));
         }
     }
-    let force = record.disturbances.samples.iter().map(|x| x[0].abs()).fold(0.0, f64::max);
-    let (least, most) = FORCE_N;
-    if force > 0.0 && !(least..=most).contains(&force) {
-        doubts.push(format!(
-            "the largest lateral force is {force:.3e} N; {least} to {most} N are expected: is the unit right?"
-        ));
+    let disturbances = [("lateral force", "N", FORCE_N), ("steer torque", "N m", TORQUE_NM)];
+    for (input, (name, unit, (least, most))) in disturbances.into_iter().enumerate() {
+        let largest = record.disturbances.samples.iter().map(|x| x[input].abs()).fold(0.0, f64::max);
+        if largest > 0.0 && !(least..=most).contains(&largest) {
+            doubts.push(format!(
+                "the largest {name} is {} {unit}; {least} to {most} {unit} are expected: is the unit right?",
+                plain(largest)
+            ));
+        }
     }
     if let Some(deviation) = deviation_m_s.filter(|deviation| *deviation > SPEED_DEVIATION * speed_m_s) {
         doubts.push(format!(

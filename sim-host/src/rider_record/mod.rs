@@ -2,6 +2,7 @@
 
 mod doubts;
 mod error;
+mod outliers;
 mod uniform;
 
 pub use error::RecordError;

@@ -1,9 +1,10 @@
 //! From signals with times of their own to samples at equal intervals.
 
 use super::doubts::doubts;
-use super::error::RecordError;
+use super::error::{FEWEST, RATES_HZ, RecordError};
+use super::outliers::without;
 use crate::identify::{Disturbances, Hold, Measured, Record, Signal};
-use crate::range::within;
+use crate::range::{plain, within};
 use crate::replay::{Perturbed, Timed};
 
 /// Longest bridged time between two samples, in sample times; a longer one is a gap.
@@ -12,7 +13,6 @@ const GAP: f64 = 3.0;
 const ON_TIME: f64 = 1e-3;
 /// Time after a gap in the disturbance whose response is unknown \[s\].
 const UNKNOWN_AFTER_S: f64 = 2.0;
-const FEWEST: usize = 100;
 const MOST: f64 = 2e6;
 
 /// Options of the preparation.
@@ -43,16 +43,53 @@ pub struct Prepared {
     pub remarks: Vec<String>,
 }
 
-/// Samples with rising times; the others are left out and counted.
-fn rising(signal: &Timed) -> (Timed, usize) {
-    let mut rising: Timed = Vec::with_capacity(signal.len());
-    for sample in signal {
-        if rising.last().is_none_or(|last| sample.0 > last.0) {
-            rising.push(*sample);
+/// Remarks about signals; the same about several, as the columns of a table have the same times, is one.
+#[derive(Default)]
+struct Told(Vec<(Vec<&'static str>, String)>);
+
+impl Told {
+    fn add(&mut self, what: &'static str, remark: Option<String>) {
+        let Some(remark) = remark else { return };
+        match self.0.iter_mut().find(|(_, other)| *other == remark) {
+            Some((all, _)) => all.push(what),
+            None => self.0.push((vec![what], remark)),
         }
     }
+
+    fn all(self) -> impl Iterator<Item = String> {
+        self.0.into_iter().map(|(all, remark)| format!("{}: {remark}", all.join(", ")))
+    }
+}
+
+/// The samples with rising times, and a remark about the others: those that are not later than the one before, and those
+/// that are later than the one after, if that one is not behind, too.
+fn rising(signal: &Timed) -> (Timed, Option<String>) {
+    let mut rising: Timed = Vec::with_capacity(signal.len());
+    let mut first = None;
+    for (k, (t_s, value)) in signal.iter().enumerate() {
+        let last_s = rising.last().map_or(f64::NEG_INFINITY, |last| last.0);
+        let next_s = signal.get(k + 1).map_or(f64::INFINITY, |next| next.0);
+        let turn = if *t_s <= last_s {
+            (last_s, *t_s)
+        } else if next_s < *t_s && next_s > last_s {
+            (*t_s, next_s)
+        } else {
+            rising.push((*t_s, *value));
+            continue;
+        };
+        first = first.or(Some(turn));
+    }
     let left_out = signal.len() - rising.len();
-    (rising, left_out)
+    let remark = first.map(|(from, to)| {
+        let [from_s, to_s] = [from, to].map(plain);
+        let turn = if to == from {
+            format!("stands at {from_s} s")
+        } else {
+            format!("goes back from {from_s} to {to_s} s")
+        };
+        format!("the time {turn}; {left_out} of {} samples left out", signal.len())
+    });
+    (rising, remark)
 }
 
 /// The middle value; zero of none.
@@ -106,27 +143,31 @@ fn gridded(signal: &Timed, start_s: f64, sample_s: f64, count: usize, hold: Hold
 /// # Errors
 /// A signal is missing or has too few samples, or the speed is not known.
 pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, RecordError> {
-    let mut remarks = Vec::new();
+    let mut told = Told::default();
     let mut sorted = |what: &'static str, signal: &Timed| {
-        let (rising, left_out) = rising(signal);
-        if left_out > 0 {
-            remarks.push(format!(
-                "{what}: {left_out} samples without a later time than the one before; left out"
-            ));
-        }
+        let (rising, remark) = rising(signal);
+        told.add(what, remark);
         rising
+    };
+    let mut outliers = Told::default();
+    let mut plausible = |what: &'static str, unit: &'static str, signal: Timed| {
+        let (kept, remark) = without(unit, signal);
+        outliers.add(what, remark);
+        kept
     };
     let mut measured = Vec::new();
     for signal in &settings.signals {
-        let (what, columns, of) = match signal {
-            Signal::Steer => ("steer angle", "steer_rad or steer_deg", &signals.steer_rad),
-            Signal::Roll => ("roll angle", "roll_rad or roll_deg", &signals.roll_rad),
-            Signal::RollRate => ("roll rate", "roll_rate_rad_s or roll_rate_deg_s", &signals.roll_rate_rad_s),
+        let (what, unit, columns, of) = match signal {
+            Signal::Steer => ("steer angle", "rad", "steer_rad or steer_deg", &signals.steer_rad),
+            Signal::Roll => ("roll angle", "rad", "roll_rad or roll_deg", &signals.roll_rad),
+            Signal::RollRate => {
+                ("roll rate", "rad/s", "roll_rate_rad_s or roll_rate_deg_s", &signals.roll_rate_rad_s)
+            }
         };
         if of.is_empty() {
             return Err(RecordError::Missing { what, columns });
         }
-        let of = sorted(what, of);
+        let of = plausible(what, unit, sorted(what, of));
         if of.len() < FEWEST {
             return Err(RecordError::Few { what, samples: of.len() });
         }
@@ -138,19 +179,21 @@ pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, Rec
         let columns = "lateral_force_n, lateral_force_kn, lateral_force_lbf or steer_torque_nm";
         return Err(RecordError::Missing { what: "perturbation", columns });
     }
-    let speed = sorted("speed", &signals.speed_m_s);
+    let speed = plausible("speed", "m/s", sorted("speed", &signals.speed_m_s));
+    let mut remarks: Vec<String> = told.all().chain(outliers.all()).collect();
     let Some((_, _, leading)) = measured.first() else {
         return Err(RecordError::Missing { what: "signal to fit", columns: "steer_rad" });
     };
     let sample_s = median_period(leading);
     let rate_hz = sample_s.recip();
-    if !(20.0..=2000.0).contains(&rate_hz) {
+    if !(RATES_HZ.0..=RATES_HZ.1).contains(&rate_hz) {
         return Err(RecordError::Rate { rate_hz });
     }
     let (start_s, end_s) = (leading[0].0, leading[leading.len() - 1].0);
     let duration_s = end_s - start_s;
     if duration_s * rate_hz > MOST {
-        return Err(RecordError::Long { duration_s, rate_hz });
+        let longest_s = leading.windows(2).map(|two| two[1].0 - two[0].0).fold(0.0, f64::max);
+        return Err(RecordError::Long { duration_s, rate_hz, longest_s });
     }
     let count = (duration_s * rate_hz + 0.5) as usize + 1;
     let grid = |signal: &Timed, hold| gridded(signal, start_s, sample_s, count, hold);
@@ -176,7 +219,7 @@ pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, Rec
         let missing = of.valid.iter().filter(|valid| !**valid).count();
         if missing > 0 {
             remarks.push(format!(
-                "{what}: {missing} of {count} samples are missing; the response to them, until {UNKNOWN_AFTER_S} s later, is left out"
+                "{what}: {missing} of {count} samples missing; the response to them, until {UNKNOWN_AFTER_S} s later, is left out"
             ));
         }
         let mut since = f64::INFINITY;
@@ -190,7 +233,7 @@ pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, Rec
         let Gridded { values, mut valid } = grid(of, Hold::Linear);
         let missing = valid.iter().filter(|valid| !**valid).count();
         if missing > 0 {
-            remarks.push(format!("{what}: {missing} of {count} samples are missing; they are not fitted"));
+            remarks.push(format!("{what}: {missing} of {count} samples missing; not fitted"));
         }
         valid.iter_mut().zip(&unknown).for_each(|(valid, unknown)| *valid &= !unknown);
         let left_out = valid.iter().filter(|valid| !**valid).count();

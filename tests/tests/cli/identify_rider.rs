@@ -95,19 +95,31 @@ fn finished_records_are_kept() {
     let first = bench.run(&line);
     assert_eq!(first.code, Some(0), "{}", first.stderr);
     assert!(first.stderr.contains("c.csv: not used: "), "{}", first.stderr);
+    assert!(!first.stderr.contains("c.csv: not used: c.csv"), "{}", first.stderr);
     let second = bench.run(&line);
     assert!(second.stderr.contains("a.csv: finished before; not fitted again"), "{}", second.stderr);
     assert_eq!(first.stdout, second.stdout);
+    // The text of a finished record is the same, too, with its gains.
+    let shown = bench.run(&format!("identify a.csv {FIVE} --linear --results found"));
+    assert!(shown.stderr.contains("finished before"), "{}", shown.stderr);
+    assert!(
+        shown.stdout.starts_with("a.csv: 20.0 s") && shown.stdout.contains("K_delta_dd"),
+        "{}",
+        shown.stdout
+    );
     let document: Value = serde_json::from_str(&first.stdout).expect("JSON");
     assert_eq!(document["records"].as_array().map(Vec::len), Some(2));
-    assert!(document["refused"]["c.csv"].as_str().is_some_and(|why| why.contains("steer angle has 2")));
-    assert_eq!(bench.json("rider show both.toml")["rows"].as_array().map(Vec::len), Some(2));
-    let twice = bench.run(&format!("identify a.csv ./a.csv {FIVE} --results found"));
     assert!(
-        twice.stderr.contains("a.csv and ./a.csv would have results of the same name"),
-        "{}",
-        twice.stderr
+        document["refused"]["c.csv"]
+            .as_str()
+            .is_some_and(|why| why.contains("usable samples: 2 of at least 100"))
     );
+    assert_eq!(bench.json("rider show both.toml")["rows"].as_array().map(Vec::len), Some(2));
+    bench.write("a.txt", "");
+    let same = bench.run(&format!("identify a.csv a.txt {FIVE} --results found"));
+    assert!(same.stderr.contains("a.csv and a.txt would have results of the same name"), "{}", same.stderr);
+    let twice = bench.run(&format!("identify a.csv ./a.csv {FIVE}"));
+    assert!(twice.code == Some(1) && twice.stderr.contains("./a.csv is given twice"), "{}", twice.stderr);
     let other = bench.run(&format!("{line} --drift none"));
     assert!(!other.stderr.contains("finished before"), "{}", other.stderr);
 }
@@ -187,21 +199,88 @@ fn faults_of_a_record_are_told() {
     used("named.csv", "", &[]);
     // Rows that are missing, blank or back in time.
     changed(&bench, "gaps.csv", |i, cells| (!(900..1000).contains(&i)).then(|| cells.join(",")));
-    used("gaps.csv", "", &["steer angle: ", "samples are missing; they are not fitted"]);
+    used("gaps.csv", "", &["steer angle: ", "samples missing; not fitted"]);
     changed(&bench, "blank.csv", |i, mut cells| {
         if (1200..1210).contains(&i) {
             cells[2].clear();
         }
         Some(cells.join(","))
     });
-    used("blank.csv", "", &["samples are missing"]);
+    used("blank.csv", "", &["samples missing"]);
     changed(&bench, "back.csv", |i, mut cells| {
         if (700..720).contains(&i) {
             cells[0] = "1.0".into();
         }
         Some(cells.join(","))
     });
-    used("back.csv", "", &["without a later time than the one before; left out"]);
+    used("back.csv", "", &["the time goes back from 3.495 to 1 s; 20 of 4000 samples left out"]);
+    // Error values of a logger.
+    let outlier = |name: &str, column: usize, value: &'static str| {
+        changed(&bench, name, move |i, mut cells| {
+            if i == 1500 {
+                cells[column] = value.into();
+            }
+            Some(cells.join(","))
+        });
+    };
+    outlier("huge.csv", 2, "1e300");
+    used(
+        "huge.csv",
+        "",
+        &["steer angle: outliers, 1 of 4000 samples, 1 of them left out; the first is 1e300 rad at 7.495 s"],
+    );
+    outlier("large.csv", 2, "9");
+    used(
+        "large.csv",
+        "",
+        &["steer angle: outliers, 1 of 4000 samples, 0 of them left out; the first is 9 rad at 7.495 s"],
+    );
+    outlier("fast.csv", 5, "1e300");
+    used("fast.csv", "", &["speed: outliers, 1 of 4000"]);
+    outlier("ahead.csv", 0, "1e300");
+    used(
+        "ahead.csv",
+        "",
+        &["steer angle: the time goes back from 1e300 to 7.5 s; 1 of 4000 samples left out"],
+    );
+    outlier("hit.csv", 1, "1e300");
+    assert!(
+        fit("hit.csv", "").stderr.contains("the largest lateral force is 1e300 N; 2 to 1000 N are expected")
+    );
+    // Columns of text beside the record's are no concern of it; text in its own columns is.
+    changed(&bench, "notes.csv", |i, mut cells| {
+        cells.push(if i == 0 { "note".into() } else { "windy".into() });
+        Some(cells.join(","))
+    });
+    let run = fit("notes.csv", "");
+    assert!(run.code == Some(0) && run.stderr.is_empty(), "{}", run.stderr);
+    changed(&bench, "words.csv", |i, mut cells| {
+        if (800..810).contains(&i) {
+            cells[2] = "lost".into();
+        }
+        Some(cells.join(","))
+    });
+    used(
+        "words.csv",
+        "",
+        &["line 801: steer_rad: `lost` is no number", "steer_rad: 7 more cells that are no number"],
+    );
+    // Units of the time.
+    let times = |name: &str, column: &'static str, factor: f64| {
+        changed(&bench, name, move |_, mut cells| {
+            cells[0] = cells[0].parse::<f64>().map_or(column.into(), |t| (factor * t).to_string());
+            Some(cells.join(","))
+        });
+    };
+    for (name, column, factor, unit) in [
+        ("ms.csv", "time_s", 1e3, "milliseconds"),
+        ("us.csv", "time_s", 1e6, "microseconds"),
+        ("ns.csv", "time_s", 1e9, "nanoseconds"),
+        ("s.csv", "time_ms", 1.0, "seconds"),
+    ] {
+        times(name, column, factor);
+        refused(name, "", &["sample rate", &format!("is the time in {unit}?")]);
+    }
     // Nothing to identify.
     changed(&bench, "still.csv", |i, mut cells| {
         if i > 0 {
@@ -224,7 +303,16 @@ fn faults_of_a_record_are_told() {
     changed(&bench, "nospeed.csv", |_, cells| Some(cells[..5].join(",")));
     refused("nospeed.csv", "", &["--speed"]);
     used("nospeed.csv", "--speed 4.3", &[]);
-    refused("none.csv", "", &["none.csv"]);
+    let none = fit("none.csv", "");
+    assert!(
+        none.code == Some(1) && none.stderr.starts_with("error: none.csv: can't be read: "),
+        "{}",
+        none.stderr
+    );
+    for option in ["--feedback K_phi_p,K_phi_d,K_phi_p", "--fit steer,roll,steer"] {
+        let run = bench.run(&format!("identify run.csv {option}"));
+        assert!(run.code == Some(1) && run.stderr.contains("is given twice"), "{option}: {}", run.stderr);
+    }
     // An input is never an output.
     for option in ["--out", "--report", "--json", "--csv", "--svg"] {
         let before = bench.read("run.csv");
@@ -247,6 +335,7 @@ fn faults_of_a_record_are_told() {
     );
     let usage = [
         ("--delay 30", "30"),
+        ("--delay 1.01s", "0 s to 1 s"),
         ("--fit yaw", "yaw"),
         ("--feedback K_psi", "K_phi_p"),
         ("--drift 3", "0.05Hz"),

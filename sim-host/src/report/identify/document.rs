@@ -80,8 +80,8 @@ pub struct ResolvedIdentify {
 pub struct GainValue {
     /// The gain: N m per rad, rad s, rad/s, rad/s^2 (roll, then steer).
     pub value: f64,
-    /// Its standard error.
-    pub std_error: f64,
+    /// Its standard error; null for gains that could not be refined on the nonlinear bicycle, whose error is not known.
+    pub std_error: Option<f64>,
 }
 
 /// A gain that the record does not determine.
@@ -211,8 +211,8 @@ pub struct IdentifyDocument {
     pub config: ResolvedIdentify,
     /// The selected gains.
     pub gains: BTreeMap<&'static str, GainValue>,
-    /// Covariance of the selected gains, in the order of their names in `covariance_of`.
-    pub covariance: Vec<Vec<f64>>,
+    /// Covariance of the selected gains, in the order of their names in `covariance_of`; null if it is not known.
+    pub covariance: Option<Vec<Vec<f64>>>,
     /// Names of the rows and columns of `covariance`.
     pub covariance_of: Vec<&'static str>,
     /// Variance accounted for (eq. 2.12) by the selected gains, the mean of the signals: 1 for a perfect model.
@@ -269,9 +269,13 @@ fn named(gains: &PerGain, active: &[usize]) -> BTreeMap<&'static str, f64> {
     active.iter().map(|i| (symbols()[*i], gains[*i])).collect()
 }
 
-fn values(fit: &Fit) -> BTreeMap<&'static str, GainValue> {
+/// The gains of a fit; `known` tells whether its standard errors hold.
+fn values(fit: &Fit, known: bool) -> BTreeMap<&'static str, GainValue> {
     let errors = fit.standard_errors();
-    let value = |i: &usize| (symbols()[*i], GainValue { value: fit.gains[*i], std_error: errors[*i] });
+    let value = |i: &usize| {
+        let std_error = known.then_some(errors[*i]);
+        (symbols()[*i], GainValue { value: fit.gains[*i], std_error })
+    };
     fit.active.iter().map(value).collect()
 }
 
@@ -285,7 +289,7 @@ fn mean(of: &[(Signal, f64)]) -> f64 {
 
 /// Share of a signal that the black box explains and the model does not, from which the model counts as wrong.
 const MISSED: f64 = 0.05;
-/// Growth from which a closed loop counts as unstable \[1/s\]: with both integrals one eigenvalue is zero but for rounding.
+/// Growth from which a closed loop counts as unstable \[1/s\]: less is not noticed in a ride.
 const UNSTABLE_1_S: f64 = 1e-3;
 
 /// Why the gains may be wrong by more than their standard errors.
@@ -294,7 +298,8 @@ fn warnings(found: &Identified) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some(Err(error)) = &found.refined {
         warnings.push(format!(
-            "not refined on the nonlinear bicycle, so that the standard errors lack the linear one's error: {error}"
+            "these are the gains of the linear bicycle, without standard errors, because they could not be refined on the \
+             nonlinear one and may be wrong by a multiple of the noise's effect: {error}"
         ));
     }
     for ((signal, vaf), fir) in fit.vaf.iter().zip(&found.impulse_responses) {
@@ -356,7 +361,7 @@ impl IdentifyDocument {
             starts: optimum.starts,
         };
         let step = |step: &Step| ReductionEntry {
-            gains: values(&step.fit),
+            gains: values(&step.fit, true),
             vaf: step.fit.mean_vaf(),
             vaf_after_onset: step.fit.vaf_after_onset.as_deref().map(mean),
             vaf_cross_validated: step.cross_validated_vaf,
@@ -394,8 +399,10 @@ impl IdentifyDocument {
             record,
             bicycle,
             config,
-            gains: values(fit),
-            covariance: fit.covariance.row_iter().map(|row| row.iter().copied().collect()).collect(),
+            gains: values(fit, found.has_errors()),
+            covariance: found
+                .has_errors()
+                .then(|| fit.covariance.row_iter().map(|row| row.iter().copied().collect()).collect()),
             covariance_of: fit.active.iter().map(|i| symbols()[*i]).collect(),
             vaf: fit.mean_vaf(),
             vaf_by_signal: by_signal(&fit.vaf),

@@ -50,7 +50,8 @@ pub fn text(document: &IdentifyDocument) -> String {
     let _ = writeln!(text, "\n{:11} {:>12} {:>14}   ({bicycle} bicycle)", "gain", "value", "std. error");
     for name in symbols() {
         if let Some(gain) = document.gains.get(name) {
-            let _ = writeln!(text, "{name:11} {:>12} {:>14}", number(gain.value), number(gain.std_error));
+            let error = gain.std_error.map_or("not known".into(), number);
+            let _ = writeln!(text, "{name:11} {:>12} {error:>14}", number(gain.value));
         }
     }
     let _ = writeln!(

@@ -1,6 +1,6 @@
 //! The selected gains, and those that the record does not determine.
 
-use super::{ZERO, list, number, paragraph};
+use super::{list, number, paragraph};
 use crate::identify::{Identified, NORMAL_95, symbols};
 use crate::report::html::table;
 use crate::report::identify::document::IdentifyDocument;
@@ -25,11 +25,13 @@ pub(super) fn gains(document: &IdentifyDocument, found: &Identified) -> String {
     let row = |name: &&'static str| {
         let gain = document.gains.get(name)?;
         let (what, unit) = meaning(name);
-        let half = NORMAL_95 * gain.std_error;
-        let relative = 100.0 * gain.std_error / gain.value.abs();
-        let numbers = [gain.value, gain.std_error, gain.value - half, gain.value + half].map(number);
-        let names = [(*name).to_owned(), what.into()];
-        Some(names.into_iter().chain(numbers).chain([format!("{relative:.1}"), unit.into()]).collect())
+        let uncertainty = gain.std_error.map_or(std::array::from_fn(|_| "not known".into()), |error| {
+            let half = NORMAL_95 * error;
+            let [error_shown, from, to] = [error, gain.value - half, gain.value + half].map(number);
+            [error_shown, from, to, format!("{:.1}", 100.0 * error / gain.value.abs())]
+        });
+        let names = [(*name).to_owned(), what.into(), number(gain.value)];
+        Some(names.into_iter().chain(uncertainty).chain([unit.into()]).collect())
     };
     let rows: Vec<Vec<String>> = symbols().iter().filter_map(row).collect();
     let columns =
@@ -40,25 +42,17 @@ pub(super) fn gains(document: &IdentifyDocument, found: &Identified) -> String {
             "The gains are refined on the nonlinear bicycle; their standard errors are those of the linear model at these gains.",
         ),
         Some(Err(error)) => paragraph(&format!(
-            "The gains are those of the linear bicycle: they could not be refined on the nonlinear one, because {error}."
+            "The gains are those of the linear bicycle, and their errors are not known: they could not be refined on the nonlinear \
+             one, because {error}."
         )),
         None => paragraph("The gains are those of the linear bicycle."),
     };
     let by_signal: Vec<String> =
         document.vaf_by_signal.iter().map(|(signal, vaf)| format!("{signal} {} %", percent(*vaf))).collect();
     let real_1_s = document.rightmost_eigenvalue_1_s;
-    let stable = match real_1_s {
-        // Of two integrals that act through one torque, one combination is not fed back.
-        _ if real_1_s.abs() < ZERO => {
-            "stable except for an eigenvalue of zero, which two integrals in one torque have".into()
-        }
-        _ if real_1_s < 0.0 => {
-            format!("stable: the real part of its rightmost eigenvalue is {real_1_s:.3} 1/s")
-        }
-        _ => format!("unstable: the real part of its rightmost eigenvalue is {real_1_s:.3} 1/s"),
-    };
+    let stable = if real_1_s < 0.0 { "stable" } else { "unstable" };
     text + &paragraph(&format!(
-        "Variance accounted for: {}. The closed loop is {stable}. Condition \
+        "Variance accounted for: {}. The closed loop is {stable}: the real part of its rightmost eigenvalue is {real_1_s:.3} 1/s. Condition \
          number of the fit: {:.0}. The residuals count as {:.0} independent samples; their correlation is accounted for in the \
          standard errors.",
         by_signal.join(", "),

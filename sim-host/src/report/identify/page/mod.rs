@@ -47,7 +47,7 @@ fn paragraph(text: &str) -> String {
 
 /// A number as a reader wants it, with all digits for a program.
 fn number(x: f64) -> String {
-    // Rounding makes an eigenvalue of zero a tiny number.
+    // Without noise, gains that the rider lacks are found as tiny numbers.
     let shown = super::text::number(if x.abs() < ZERO { 0.0 } else { x }).replace('-', "−");
     format!("<data value=\"{x}\">{shown}</data>")
 }
