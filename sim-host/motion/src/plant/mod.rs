@@ -48,7 +48,12 @@ impl Plant {
 
     /// Whether sensors and motor are exact and without faults; friction and end-stop do not count.
     pub fn exact(&self) -> bool {
-        self.sensors.exact() && self.actuator.exact() && self.faults.is_empty()
+        self.reads_exactly() && self.actuator.exact()
+    }
+
+    /// Whether sensors are exact and nothing has a fault.
+    pub fn reads_exactly(&self) -> bool {
+        self.sensors.exact() && self.faults.is_empty()
     }
 
     /// Whether the mirror image of every ride is also a ride.

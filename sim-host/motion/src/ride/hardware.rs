@@ -13,7 +13,8 @@ use control::{Plan, Sample, SensorFrame, Triple, ValidationConfig, Wheel};
 /// Sensors and motor of one ride.
 #[derive(Debug)]
 pub(super) struct RideHardware {
-    sensors: SensorSuite,
+    /// `None` if they are exact.
+    sensors: Option<SensorSuite>,
     odometry: Odometry,
     pub(super) motor: Actuator,
 }
@@ -40,34 +41,43 @@ impl RideHardware {
         mut frames: impl FnMut(&SensorFrame),
     ) -> (Self, Ready) {
         let steady = Reading::steady(start.speed_m_s, conditions.bicycle.g);
-        let mut sensors = SensorSuite::new(plant, conditions.step_s, start, &steady);
+        let mut sensors =
+            (!plant.reads_exactly()).then(|| SensorSuite::new(plant, conditions.step_s, start, &steady));
         let mut motor = Actuator::new(&plant.actuator);
-        let measured = |_, pressed, torque_nm| {
-            let reached = sensors.command(plant, torque_nm);
+        let measured = |ticks, pressed, torque_nm| {
+            let reached = sensors.as_mut().map_or(torque_nm, |sensors| sensors.command(plant, torque_nm));
             motor.command(&plant.actuator, conditions.step_s, reached);
             let motor_torque_nm = motor.torque(&plant.actuator, conditions.step_s, 0.0);
-            frame(plan, &sensors.measure(plant, &Reading { motor_torque_nm, ..steady }, pressed))
+            let now = Reading { motor_torque_nm, ..steady };
+            match &mut sensors {
+                Some(sensors) => frame(plan, &sensors.measure(plant, &now, pressed)),
+                None => exact_frame(plan, &now, ticks, pressed),
+            }
         };
         let ready = engage_run(plan, backend, measured, |frame, _| frames(frame));
-        sensors.begin();
+        sensors.iter_mut().for_each(SensorSuite::begin);
         (Self { sensors, odometry: Odometry::default(), motor }, ready)
     }
 
     /// A copy for another ride; `None` if anything is random or there are faults.
     pub(super) fn copied(&self) -> Option<Self> {
-        let sensors = self.sensors.copied()?;
+        let sensors = match &self.sensors {
+            Some(sensors) => Some(sensors.copied()?),
+            None => None,
+        };
         Some(Self { sensors, odometry: self.odometry, motor: self.motor.clone() })
     }
 
-    /// Sensor values at a control instant.
+    /// Input frame of the controller at a control instant, `ticks` control periods after boot, and roll rate and speed as
+    /// measured.
     pub(super) fn measured(
         &mut self,
         conditions: &Conditions,
-        plant: &Plant,
+        (plan, plant): (&Plan, &Plant),
         at: &Frame,
-        rider_torque_nm: f64,
-        initial_m_s: f64,
-    ) -> Measured {
+        (rider_torque_nm, initial_m_s): (f64, f64),
+        ticks: u32,
+    ) -> (SensorFrame, Signals) {
         let (b, h) = (&conditions.bicycle, conditions.step_s);
         let exact = self.odometry.read(b, conditions.imu, plant.sensors.imu.point_m, h, at);
         let mut now = Reading {
@@ -78,12 +88,19 @@ impl RideHardware {
         if conditions.schedule_speed == ScheduleSpeed::Initial {
             (now.front_wheel_m_s, now.rear_wheel_m_s) = (initial_m_s, initial_m_s);
         }
-        self.sensors.measure(plant, &now, true)
+        match &mut self.sensors {
+            Some(sensors) => {
+                let measured = sensors.measure(plant, &now, true);
+                let of = |sensor| measured.of(sensor).value[0];
+                (frame(plan, &measured), signals(plan, of))
+            }
+            None => (exact_frame(plan, &now, ticks, true), signals(plan, |sensor| now.of(sensor)[0])),
+        }
     }
 
     /// Passes the controller's command of this control instant to the motor \[N m\].
     pub(super) fn commanded(&mut self, conditions: &Conditions, plant: &Plant, torque_nm: f64) {
-        let reached = self.sensors.command(plant, torque_nm);
+        let reached = self.sensors.as_mut().map_or(torque_nm, |sensors| sensors.command(plant, torque_nm));
         self.motor.command(&plant.actuator, conditions.step_s, reached);
     }
 }
@@ -116,13 +133,39 @@ pub fn frame(plan: &Plan, measured: &Measured) -> SensorFrame {
     }
 }
 
-/// Roll rate and speed as measured.
-pub(super) fn measured_signals(plan: &Plan, measured: &Measured) -> Signals {
+/// Input frame of the controller from exact sensors, with the fitted ones, `ticks` control periods after boot.
+pub(super) fn exact_frame(plan: &Plan, reading: &Reading, ticks: u32, engage: bool) -> SensorFrame {
+    let input = &plan.config().input;
+    let one = |fitted: bool, value: f64| {
+        if fitted { Sample::fresh(value as f32) } else { Sample::missing() }
+    };
+    let three = |fitted: bool, value: [f64; 3]| {
+        if fitted { Triple::fresh(value.map(|x| x as f32)) } else { Triple::missing() }
+    };
+    let period_s = 1.0 / f64::from(plan.config().rate_hz);
+    SensorFrame {
+        now_us: (f64::from(ticks) * period_s * 1e6).round() as i64 as u32,
+        gyro_rad_s: three(input.gyro.fitted, reading.gyro_rad_s),
+        accel_m_s2: three(input.accel.fitted, reading.accel_m_s2),
+        steer_rad: one(input.steer.fitted, reading.steer_rad),
+        steer_rate_rad_s: one(input.steer_rate.fitted, reading.steer_rate_rad_s),
+        front_wheel_m_s: one(input.front_wheel.fitted, reading.front_wheel_m_s),
+        rear_wheel_m_s: one(input.rear_wheel.fitted, reading.rear_wheel_m_s),
+        rider_torque_nm: one(input.rider_torque.fitted, reading.rider_torque_nm),
+        motor_torque_nm: one(input.motor.fitted, reading.motor_torque_nm),
+        heading_error_rad: one(input.path.fitted, reading.heading_rad),
+        lateral_error_m: one(input.path.fitted, reading.lateral_m),
+        engage,
+    }
+}
+
+/// Roll rate and speed, `of` the sensors.
+fn signals(plan: &Plan, of: impl Fn(Sensor) -> f64) -> Signals {
     let wheel = match plan.config().input.wheel {
         Wheel::Front => Sensor::FrontWheel,
         Wheel::Rear => Sensor::RearWheel,
     };
-    Signals { roll_rate_rad_s: measured.of(Sensor::Gyro).value[0], speed_m_s: measured.of(wheel).value[0] }
+    Signals { roll_rate_rad_s: of(Sensor::Gyro), speed_m_s: of(wheel) }
 }
 
 /// Motion of the rear frame in a lane.

@@ -1,7 +1,7 @@
 //! Simulates rides side by side, one in each lane; when a ride ends, its lane takes the next.
 
 use super::backend::Backend;
-use super::hardware::{self, lane_frame, measured_signals};
+use super::hardware::{self, lane_frame};
 use super::recorder::{RideRecorder, SteerTorques};
 use super::rider_lanes::{RiderLane, RiderLanes};
 use super::sensor::{Reading, readings};
@@ -56,15 +56,16 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
                         Some(full) => Frame::new(&full.pose(b), &full.velocities(b), full.angles[2]),
                         None => lane_frame(motion, lane),
                     };
-                    let (rider_nm, initial) = (self.rider_nm.0[lane], self.initial.0[lane]);
-                    let measured = hardware.measured(self.conditions, &self.plant, &at, rider_nm, initial);
-                    let output = ride.output(plan, self.backend, hardware::frame(plan, &measured));
+                    let also = (self.rider_nm.0[lane], self.initial.0[lane]);
+                    let read = (&**plan, &self.plant);
+                    let (frame, measured) = hardware.measured(self.conditions, read, &at, also, ride.ticks());
+                    let output = ride.output(plan, self.backend, frame);
                     hardware.commanded(self.conditions, &self.plant, output.torque_nm);
                     let middle_s = 0.5 * self.conditions.step_s;
                     self.assist.0[lane] =
                         hardware.motor.torque(&self.plant.actuator, middle_s, at.velocities.steer);
                     ride.hardware = Some(hardware);
-                    (measured_signals(plan, &measured), output)
+                    (measured, output)
                 }
                 _ => {
                     let (rate, speed) = match &ride.full {

@@ -103,8 +103,8 @@ impl RideRecorder {
         match assist {
             Assist::None => ControllerOutput::NONE,
             Assist::Firmware(plan) => {
-                let ticks = self.controller.as_ref().map_or(0, |ready| ready.ticks);
-                self.output(plan, backend, frame(plan, measured, ticks, true))
+                let frame = frame(plan, measured, self.ticks(), true);
+                self.output(plan, backend, frame)
             }
             Assist::Ideal(law) => ControllerOutput {
                 torque_nm: law.torque_nm(measured.roll_rate_rad_s, measured.speed_m_s),
@@ -115,6 +115,11 @@ impl RideRecorder {
                 ..ControllerOutput::NONE
             },
         }
+    }
+
+    /// Control periods since boot.
+    pub(super) fn ticks(&self) -> u32 {
+        self.controller.as_ref().map_or(0, |ready| ready.ticks)
     }
 
     /// The controller's output for a frame.
