@@ -8,7 +8,7 @@ use sim_host::basin::{Axis, Column, Method, PlaneSearch, Search, basin, border, 
 use sim_host::ride::{Conditions, Imu, Outcome, Quick, Start, rides};
 use sim_host::rider::Rider;
 use tests::basins::{H, alone, assisted, configured, ideal, search};
-use tests::fault_reactions::rider;
+use tests::fault_reactions::{product, rider};
 
 /// Difference of a time of fall that counts \[s\].
 const TIME_S: f64 = 1e-3;
@@ -184,6 +184,40 @@ fn the_linear_model_decides_as_the_nonlinear() {
     assert!(counts.iter().all(|count| *count > 100), "{counts:?}");
 }
 
+/// Situation: a controller with more than a law: the product, alone and with a rider, whose falls are exact rides in either
+/// search, and h with a limit only. Action and what must hold: as above.
+#[test]
+fn fast_and_plain_searches_with_a_controller_agree() {
+    let mut limited = Config::thesis(H);
+    limited.limits.max_torque_nm = Some(5.0);
+    let cases = [
+        (configured(product()), search(&[2.0, 5.0, 7.0], 12.0)),
+        (ridden("smart", configured(product())), search(&[4.5], 10.0)),
+        (configured(limited), search(&[4.0], 10.0)),
+    ];
+    for (conditions, search) in &cases {
+        assert!(Quick::new(conditions).is_some());
+        let (falls, apart) = compared(conditions, search);
+        assert!(falls > 5 && 50 * apart <= falls, "{apart} of {falls} times of falls differ by more than 1 ms");
+    }
+}
+
+/// Situation: as above, every speed of the product's default basin, and of the smart rider's beside it.
+/// Action and what must hold: as above.
+#[test]
+#[ignore = "slow: cargo xtask test --all"]
+fn fast_and_plain_basins_of_the_product_agree() {
+    let speeds: Vec<f64> = (0..=100).map(|i| f64::from(i) / 10.0).collect();
+    for (conditions, speeds) in [
+        (configured(product()), &speeds[..]),
+        (ridden("smart", configured(product())), &speeds[20..=75]),
+    ] {
+        let (falls, apart) = compared(&conditions, &search(speeds, 30.0));
+        println!("{apart} of {falls} falls differ by more than 1 ms or in their cause");
+        assert!(falls > 4000 && 100 * apart <= falls, "{apart} of {falls}");
+    }
+}
+
 /// Situation: a plane of disturbances, and the height alone at one speed. Action: search both fast and plainly.
 /// Must hold: the rays' borders and the height have the same bits.
 #[test]
@@ -206,21 +240,20 @@ fn fast_and_plain_planes_and_heights_agree() {
     assert!(2 * fast.work.steps < plain.work.steps, "{:?} {:?}", fast.work, plain.work);
 }
 
-/// Situation: conditions under which more than law and rider acts: a limit, a sensor's delay, friction; and a rider whose
-/// neural delay would limit the steps to two control periods. Action: search.
+/// Situation: conditions under which more than controller and rider acts: a sensor's delay, a motor with a lag, friction; and
+/// a rider whose neural delay would limit the steps to two control periods. Action: search.
 /// Must hold: there are no quick rides, and both searches are one. A dead band, the gyro's own axis and the speed of the
 /// rear wheel are part of the law.
 #[test]
-fn quick_rides_exist_for_law_and_rider_alone() {
-    let mut limited = Config::thesis(H);
-    limited.limits.max_torque_nm = Some(5.0);
+fn quick_rides_exist_for_controller_and_rider_alone() {
     let mut friction = assisted(H);
     friction.plant.actuator.friction.coulomb_nm = 0.1;
+    let mut lagging = assisted(H);
+    lagging.plant.actuator.time_constant_s = 0.01;
     let others = [
-        configured(limited),
-        configured(Config::product()),
         Conditions { sensor_delay_ticks: 5, ..assisted(H) },
         friction,
+        lagging,
         Conditions { rider: Some(Rider { delay_s: 2e-3, ..rider("young") }), ..alone() },
     ];
     for conditions in &others {

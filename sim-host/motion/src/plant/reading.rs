@@ -119,6 +119,28 @@ impl Reading {
         }
     }
 
+    /// The sum of this and two other readings, each by its weight.
+    pub fn combined(&self, weights: [f64; 3], second: &Self, third: &Self) -> Self {
+        let one =
+            |of: fn(&Self) -> f64| weights[0] * of(self) + weights[1] * of(second) + weights[2] * of(third);
+        let three = |of: fn(&Self) -> [f64; 3]| {
+            let (a, b, c) = (of(self), of(second), of(third));
+            std::array::from_fn(|i| weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i])
+        };
+        Self {
+            gyro_rad_s: three(|r| r.gyro_rad_s),
+            accel_m_s2: three(|r| r.accel_m_s2),
+            steer_rad: one(|r| r.steer_rad),
+            steer_rate_rad_s: one(|r| r.steer_rate_rad_s),
+            front_wheel_m_s: one(|r| r.front_wheel_m_s),
+            rear_wheel_m_s: one(|r| r.rear_wheel_m_s),
+            rider_torque_nm: one(|r| r.rider_torque_nm),
+            motor_torque_nm: one(|r| r.motor_torque_nm),
+            heading_rad: one(|r| r.heading_rad),
+            lateral_m: one(|r| r.lateral_m),
+        }
+    }
+
     /// Values of one sensor in the order of [`Sensor::axes`]; unused components are zero.
     pub fn of(&self, sensor: Sensor) -> [f64; 3] {
         match sensor {

@@ -3,6 +3,7 @@
 //! Within [`LARGEST_RAD`] and [`LARGEST_RAD_S`] the nonlinear terms change a motion by less than 1 %; the outcome is
 //! decided only if the late amplitudes differ from the limit by the factor [`CLEAR`].
 
+use super::controller::Linear;
 use super::linear::{BICYCLE, Delayed, Matrix, Ridden, Upright, exponential, times};
 use super::source::Source;
 use crate::bicycle::{Geometry, State};
@@ -30,8 +31,7 @@ const GAIN_CHANGE: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub(super) struct Forecast {
     bicycle: Geometry,
-    law: Law,
-    delay_s: f64,
+    assist: Linear,
     schedule_speed: ScheduleSpeed,
     rider: Option<Rider>,
     /// Whether the rider has a gain on the lateral path.
@@ -43,6 +43,8 @@ pub(super) struct Now<'a> {
     /// Time since the disturbance \[s\].
     pub(super) t_s: f64,
     pub(super) state: &'a State<f64>,
+    /// Whether the assist has full authority.
+    pub(super) engaged: bool,
     /// The rider's state, and its signals if it has a delay.
     pub(super) rider: Option<(RiderState<f64>, Option<&'a SignalHistory>)>,
     /// Speed at t = 0 \[m/s\].
@@ -58,18 +60,20 @@ impl Forecast {
 
     /// The model under an assist; `None` if it is not linear near upright riding.
     pub(super) fn new(conditions: &Conditions, source: &Source) -> Option<Self> {
-        let (law, delay_s) = match source {
-            Source::None => (IdealLaw::from(Law::None), 0.0),
-            Source::Ideal(law, delay_s) => ((**law).clone(), *delay_s),
+        // The roll rate in the frame differs from the roll angle's derivative by pitch and yaw.
+        let assist = match source {
+            Source::None => Linear::unlimited(IdealLaw::from(Law::None), 0.0),
+            Source::Ideal(law, delay_s) => Linear::unlimited((**law).clone(), *delay_s),
+            Source::Sampled(plan) => Linear::of(conditions, plan)?,
             Source::Own(_) => return None,
         };
         // The roll rate in the frame differs from the roll angle's derivative by pitch and yaw.
-        let linear = conditions.imu == Imu::Euler && law.dead_band.roll_rate_rad_s == 0.0;
+        let linear = conditions.imu == Imu::Euler && assist.law.dead_band.roll_rate_rad_s == 0.0;
         let (bicycle, schedule_speed) = (conditions.bicycle, conditions.schedule_speed);
         let rider = conditions.rider.clone();
         let sets = rider.iter().flat_map(|rider| rider.schedule.points());
         let follows_path = sets.map(|(_, gains)| gains.get("K_y")).any(|gain| gain != Some(0.0));
-        linear.then_some(Self { bicycle, law: law.law, delay_s, schedule_speed, rider, follows_path })
+        linear.then_some(Self { bicycle, assist, schedule_speed, rider, follows_path })
     }
 
     /// Whether a motion is small enough. A rider's signals must all come from it, too.
@@ -80,6 +84,7 @@ impl Forecast {
         let kink_s = self.rider.as_ref().map_or(0.0, |rider| 2.0 * rider.delay_s);
         state.roll.abs().max(state.steer.abs()) < LARGEST_RAD
             && state.roll_rate.abs().max(state.steer_rate.abs()) < LARGEST_RAD_S
+            && now.engaged
             && heading.abs() < LARGEST_HEADING_RAD
             && now.t_s >= kink_s
     }
@@ -93,14 +98,17 @@ impl Forecast {
             ScheduleSpeed::Initial => now.initial_m_s,
             ScheduleSpeed::Front | ScheduleSpeed::Rear => speed,
         };
-        let gain = self.law.gain(scheduled);
-        let smooth =
-            |factor: f64| (self.law.gain(factor * scheduled) - gain).abs() <= GAIN_CHANGE * gain.abs();
-        if !(smooth(0.99) && smooth(1.01)) {
+        let Linear { law: IdealLaw { law, .. }, delay_s, largest_nm, slowest_m_s } = &self.assist;
+        let gain = law.gain(scheduled);
+        let smooth = |factor: f64| (law.gain(factor * scheduled) - gain).abs() <= GAIN_CHANGE * gain.abs();
+        if !(smooth(0.99) && smooth(1.01))
+            || gain.abs() * LARGEST_RAD_S > *largest_nm
+            || scheduled < *slowest_m_s
+        {
             return None;
         }
         let upright = Upright::new(&self.bicycle, speed);
-        let bicycle = upright.under(gain, self.delay_s)?;
+        let bicycle = upright.under(gain, *delay_s)?;
         let x = [state.roll, state.steer, state.roll_rate, state.steer_rate];
         let (Some(rider), Some((rider_state, history))) = (&self.rider, &now.rider) else {
             let matrix = std::array::from_fn(|i| std::array::from_fn(|j| bicycle[i][j]));

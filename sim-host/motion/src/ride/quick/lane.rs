@@ -1,6 +1,5 @@
 //! The ride in a lane: its time, fall, amplitudes and outcome.
 
-use super::CLEAR;
 use super::forecast::{Forecast, Now};
 use crate::bicycle::{FullState, State};
 use crate::ride::event::{fallen, time_of_fall};
@@ -38,10 +37,11 @@ impl Lane {
         }
     }
 
-    /// Records a step of `h` seconds; the outcome if the ride has ended, or `Some(None)` if it is not decided.
+    /// Records a step of `h` seconds; the outcome if the ride has ended, or `Some(None)` if it is not decided
+    /// by the factor `clear`.
     pub(super) fn book(
         &mut self,
-        conditions: &Conditions,
+        (conditions, clear): (&Conditions, f64),
         (before, after): (&State<f64>, &State<f64>),
         h: f64,
     ) -> Option<Option<Outcome>> {
@@ -79,7 +79,7 @@ impl Lane {
                 }
             }
         }
-        over.then(|| Outcome::of_amplitudes(conditions.recovered_below, self.late, self.peak, CLEAR))
+        over.then(|| Outcome::of_amplitudes(conditions.recovered_below, self.late, self.peak, clear))
     }
 
     /// The outcome by the linear model, if the motion is small and the model decides.

@@ -3,19 +3,24 @@
 //! The exact rides ([`super::rides`]) have the control period as their step and record the effort. These have a step of
 //! their own in each lane, up to 20 ms, and end as soon as the linear model decides ([`super::forecast`]).
 
+mod controller;
 mod forecast;
 mod lane;
 mod linear;
 mod riders;
 mod source;
 
+use super::event::fallen;
+use super::hardware::{self, lane_frame};
 use super::sensor::readings;
 use super::substeps::{nearer, stiffness};
 use super::{Conditions, Outcome, Start};
 use crate::bicycle::{FullState, Geometry, Motion, State, Torques};
 use crate::integrate::{AHEAD, STAGES, WEIGHT, rate};
 use crate::num::Lanes;
+use crate::plant::Frame;
 use crate::rider::Instant;
+use controller::{Controllers, StepStart};
 use forecast::{Forecast, Now};
 use lane::Lane;
 use riders::QuickRiders;
@@ -37,10 +42,15 @@ const SHORTEST_S: f64 = 1e-6;
 /// Smallest distance from a singular configuration at which the independent speeds are used, as a fraction of the
 /// upright bicycle's distance.
 const NEAREST: f64 = 0.1;
+/// Roll or steer beyond which a ride whose controller monitors its sensors is left to the exact method \[rad\]: hardly any
+/// returns from there.
+const VIOLENT_RAD: f64 = 1.2;
 /// Steps per second of the time limit after which a ride is left to the exact method.
 const STEPS_PER_S: f64 = 2000.0;
 /// The end of a ride is decided if the late amplitude differs from the limit by this factor.
 const CLEAR: f64 = 1.03;
+/// The same with an estimator and monitors.
+const CLEAR_MONITORED: f64 = 1.05;
 
 /// The result of a quick ride.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,39 +71,47 @@ pub struct Quick<'a> {
     longest_s: f64,
     /// Largest step relative to the time scale of the motion.
     largest: f64,
+    /// Factor between a late amplitude and the limit that decides.
+    clear: f64,
+    /// Whether a controller reads, and so monitors, more than roll rate and one speed.
+    monitored: bool,
 }
 
 impl<'a> Quick<'a> {
-    /// Quick rides under these conditions. `None` if more acts than a law and a rider: limits, filters or checks of the
-    /// controller, errors or delays of sensors and motor, friction or an end-stop; or if the rider needs steps that are
-    /// hardly longer than the exact ride's.
+    /// Quick rides under these conditions. `None` if more acts than controller and rider: errors or delays of sensors and
+    /// motor, friction or an end-stop; or if the rider needs steps that are hardly longer than the exact ride's.
     ///
-    /// A law that is sampled and held is the continuous law, delayed by half a control period.
+    /// A law that is sampled and held is the continuous law, delayed by half a control period. A controller with any other
+    /// function is executed in every control period.
     pub fn new(conditions: &'a Conditions) -> Option<Self> {
         let actuator = &conditions.plant.actuator;
         let bare = conditions.plant.exact()
             && conditions.sensor_delay_ticks == 0
             && !actuator.friction.acts()
             && actuator.stop.is_none();
-        let longest_s = conditions.rider.as_ref().map_or(LONGEST_S, riders::longest_step_s).min(LONGEST_S);
+        let source = Source::new(conditions);
+        let longest_s = if source.sampled().is_some() { controller::LONGEST_S } else { LONGEST_S };
+        let monitored = source.sampled().is_some() && hardware::needed(conditions);
+        let clear = if monitored { CLEAR_MONITORED } else { CLEAR };
+        let longest_s = conditions.rider.as_ref().map_or(longest_s, riders::longest_step_s).min(longest_s);
         if !bare || longest_s < WORTH * conditions.step_s {
             return None;
         }
-        let source = Source::new(conditions)?;
         let forecast = Forecast::new(conditions, &source);
-        Some(Self { conditions, source, forecast, longest_s, largest: LARGEST })
+        Some(Self { conditions, source, forecast, longest_s, largest: LARGEST, clear, monitored })
     }
 
     /// The same in shorter steps.
     pub fn fine(&self) -> Self {
-        Self { largest: LARGEST_FINE, ..self.clone() }
+        let longest_s = if self.source.sampled().is_some() { 0.5 * self.longest_s } else { self.longest_s };
+        Self { largest: LARGEST_FINE, longest_s, ..self.clone() }
     }
 }
 
 /// Simulates every ride; results in the order of `starts`.
 #[inline(always)]
 pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
-    let Quick { conditions, source, forecast, longest_s, largest } = quick;
+    let Quick { conditions, source, forecast, longest_s, largest, clear, monitored } = quick;
     let b = &conditions.bicycle;
     let least_cos = if conditions.rider.is_some() { LEAST_COS } else { 0.0 };
     let most_steps = (STEPS_PER_S * conditions.time_limit_s.max(1.0)) as u32;
@@ -104,6 +122,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
     let mut initial = still;
     let mut slopes = [still; 2];
     let mut riders = conditions.rider.as_ref().map(QuickRiders::<N>::new);
+    let mut controllers = source.sampled().map(|plan| Controllers::<N>::new(conditions, plan));
     let mut lanes: [Option<Lane>; N] = std::array::from_fn(|_| None);
     loop {
         for (lane, ride) in lanes.iter_mut().enumerate().filter(|(_, ride)| ride.is_none()) {
@@ -114,6 +133,9 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             slopes.iter_mut().for_each(|slope| slope.0[lane] = 0.0);
             if let Some(riders) = &mut riders {
                 riders.restart(lane);
+            }
+            if let Some(controllers) = &mut controllers {
+                controllers.restart(lane, &start);
             }
             *ride = next.map(|(index, _)| Lane::new(index));
         }
@@ -139,11 +161,29 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 h = steps((conditions.time_limit_s, *largest, least_cos), &t, &stiff, |lane, t| {
                     riders.as_ref().map_or(*longest_s, |riders| longest_s.min(riders.longest_step_s(lane, t)))
                 });
+                if let Some(controllers) = &mut controllers {
+                    for (lane, ride) in lanes.iter().enumerate() {
+                        let Some(ride) = ride else { continue };
+                        let (frame, measured) = match &ride.full {
+                            Some(full) => {
+                                let velocities = full.velocities(b);
+                                let frame = Frame::new(&full.pose(b), &velocities, full.angles[2]);
+                                (frame, readings(conditions, &velocities, initial.0[lane]))
+                            }
+                            None => (lane_frame(&motion, lane), (measured.0.0[lane], measured.1.0[lane])),
+                        };
+                        let rider_torque_nm =
+                            riders.as_ref().map_or(0.0, |riders| riders.torque_nm().0[lane]);
+                        let start = StepStart { t_s: ride.t, frame, measured, rider_torque_nm };
+                        h.0[lane] = controllers.begin(lane, h.0[lane], &start);
+                    }
+                }
             } else {
                 let per_s = Lanes([1.0; N]) / (h * part);
                 slopes = [(measured.0 - at_start.0) * per_s, (measured.1 - at_start.1) * per_s];
             }
-            let assist_nm = source.torques(measured, slopes);
+            let sampled_nm = controllers.as_ref().map(|controllers| controllers.line.at(part));
+            let assist_nm = source.torques(measured, slopes, sampled_nm);
             let steer = riders.as_ref().map_or(assist_nm, |riders| assist_nm + riders.torque_nm());
             let torques = Torques { roll: still, steer };
             let (acc, by_steer) = motion.accelerations_by_steer(b, &torques);
@@ -151,7 +191,8 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 let mut sensed = acc;
                 if riders.sampled() {
                     // The accelerations in a sampled rider's signals contain the torque that was computed from the same sample.
-                    let later_nm = source.torques(measured, [still; 2]) - assist_nm;
+                    let held_nm = controllers.as_ref().map(|controllers| controllers.held_nm);
+                    let later_nm = source.torques(measured, [still; 2], held_nm) - assist_nm;
                     sensed.roll = sensed.roll + by_steer.roll * later_nm;
                     sensed.steer = sensed.steer + by_steer.steer * later_nm;
                 }
@@ -170,7 +211,8 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 let from = ride.full.unwrap_or_else(|| six_speeds(b, &before));
                 let mut slope = slopes_before.map(|slope| slope.0[lane]);
                 let mut rider = riders.as_mut().map(|riders| riders.one(lane, (ride.t, h)));
-                let at = (initial.0[lane], &mut slope);
+                let line = controllers.as_ref().map(|controllers| controllers.line.of(lane));
+                let at = (initial.0[lane], &mut slope, line);
                 ride.full = source.full_step(conditions, &from, h, at, rider.as_mut());
                 let rider_state = rider.map(|rider| rider.end());
                 if let (Some(riders), Some(rider_state)) = (&mut riders, rider_state) {
@@ -183,11 +225,16 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 ride.full = None;
             }
             ride.steps += 1;
-            let ended = match ride.book(conditions, (&before, &after), h) {
+            let ended = match ride.book((conditions, *clear), (&before, &after), h) {
                 None if ride.steps >= most_steps => Some(None),
+                // Monitors that compare sensors decide in violent motion: falls are left to the exact ride.
+                None if *monitored && after.roll.abs().max(after.steer.abs()) > VIOLENT_RAD => Some(None),
+                Some(_) if *monitored && fallen(&conditions.fall, &after) => Some(None),
                 None => {
                     let rider = riders.as_ref().map(|riders| riders.after(lane));
-                    let now = Now { t_s: ride.t, state: &after, rider, initial_m_s: initial.0[lane] };
+                    let engaged = controllers.as_ref().is_none_or(|controllers| controllers.engaged(lane));
+                    let now =
+                        Now { t_s: ride.t, engaged, state: &after, rider, initial_m_s: initial.0[lane] };
                     ride.decide_early(conditions, forecast, &now).map(Some)
                 }
                 ended => ended,

@@ -1,5 +1,6 @@
 //! The assist's torque in quick rides, and their steps near singular configurations.
 
+use super::controller::Line;
 use super::riders::QuickRider;
 use crate::bicycle::{FullState, Geometry, Torques};
 use crate::integrate::{STAGES, Stages};
@@ -19,17 +20,27 @@ pub(super) enum Source<'a> {
     /// their slopes.
     Ideal(Box<IdealLaw>, f64),
     Own(&'a OwnLaw),
+    /// A controller with more than a law.
+    Sampled(&'a Plan),
 }
 
 impl<'a> Source<'a> {
-    /// The law under these conditions; `None` for a controller with any other function.
-    pub(super) fn new(conditions: &'a Conditions) -> Option<Self> {
-        Some(match &conditions.assist {
+    /// The law under these conditions.
+    pub(super) fn new(conditions: &'a Conditions) -> Self {
+        match &conditions.assist {
             Assist::None => Self::None,
             Assist::Ideal(law) => Self::Ideal(law.clone(), 0.0),
             Assist::Own(law) => Self::Own(law),
-            Assist::Firmware(plan) => Self::Ideal(Box::new(continuous(plan)?), 0.5 * conditions.step_s),
-        })
+            Assist::Firmware(plan) => match continuous(plan) {
+                Some(law) => Self::Ideal(Box::new(law), 0.5 * conditions.step_s),
+                None => Self::Sampled(plan),
+            },
+        }
+    }
+
+    /// The controller, if its steps are executed.
+    pub(super) fn sampled(&self) -> Option<&'a Plan> {
+        if let Self::Sampled(plan) = self { Some(plan) } else { None }
     }
 }
 
@@ -47,13 +58,17 @@ fn continuous(plan: &Plan) -> Option<IdealLaw> {
 }
 
 impl Source<'_> {
-    /// The steer torques at a stage \[N m\], from roll rate and speed and their slopes over time.
+    /// The steer torques at a stage \[N m\], from roll rate and speed and their slopes over time; of a controller `sampled_nm`.
     #[inline(always)]
     pub(super) fn torques<const N: usize>(
         &self,
         (rate, speed): (Lanes<N>, Lanes<N>),
         slopes: [Lanes<N>; 2],
+        sampled_nm: Option<Lanes<N>>,
     ) -> Lanes<N> {
+        if let Some(sampled_nm) = sampled_nm {
+            return sampled_nm;
+        }
         Lanes(std::array::from_fn(|lane| {
             self.torque((rate.0[lane], speed.0[lane]), slopes.map(|slope| slope.0[lane]))
         }))
@@ -63,19 +78,19 @@ impl Source<'_> {
     #[inline(always)]
     fn torque(&self, (rate, speed): (f64, f64), slope: [f64; 2]) -> f64 {
         match self {
-            Self::None => 0.0,
+            Self::None | Self::Sampled(_) => 0.0,
             Self::Ideal(law, delay_s) => law.torque_nm(rate - delay_s * slope[0], speed - delay_s * slope[1]),
             Self::Own(law) => law.torque_nm(rate, speed),
         }
     }
 
-    /// One Runge-Kutta step with six speeds, with the rider; `slope` as in [`Self::torques`].
+    /// One Runge-Kutta step with six speeds, with the rider; `slope` as in [`Self::torques`], `line` the torque of a controller.
     pub(super) fn full_step(
         &self,
         conditions: &Conditions,
         from: &FullState,
         h: f64,
-        (initial, slope): (f64, &mut [f64; 2]),
+        (initial, slope, line): (f64, &mut [f64; 2], Option<Line<f64>>),
         mut rider: Option<&mut QuickRider>,
     ) -> Option<FullState> {
         let b: &Geometry = &conditions.bicycle;
@@ -89,7 +104,7 @@ impl Source<'_> {
                 let elapsed_s = h * part;
                 *slope = [(measured.0 - at_start.0) / elapsed_s, (measured.1 - at_start.1) / elapsed_s];
             }
-            let assist_nm = self.torque(measured, *slope);
+            let assist_nm = line.map_or_else(|| self.torque(measured, *slope), |line| line.at(part));
             let steer = rider.as_ref().map_or(assist_nm, |rider| assist_nm + rider.torque_nm());
             let k = at.rate(b, &Torques { roll: 0.0, steer })?;
             if let Some(rider) = &mut rider {
