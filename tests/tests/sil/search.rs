@@ -192,7 +192,7 @@ fn fast_and_plain_searches_with_a_controller_agree() {
     limited.limits.max_torque_nm = Some(5.0);
     let cases = [
         (configured(product()), search(&[2.0, 5.0, 7.0], 12.0)),
-        (ridden("smart", configured(product())), search(&[4.5], 10.0)),
+        (ridden("smart", configured(product())), search(&[4.5], 12.0)),
         (configured(limited), search(&[4.0], 10.0)),
     ];
     for (conditions, search) in &cases {

@@ -1,4 +1,5 @@
-//! Quick rides: outcomes of rides under a law in continuous time, with steps as long as the motion permits.
+//! Quick rides: outcomes of rides with steps as long as the motion permits, under a law in continuous time or a controller
+//! that is executed in every control period.
 //!
 //! The exact rides ([`super::rides`]) have the control period as their step and record the effort. These have a step of
 //! their own in each lane, up to 20 ms, and end as soon as the linear model decides ([`super::forecast`]).
