@@ -34,4 +34,4 @@ pub use quick::{Quick, QuickRide};
 pub use sensor::clock_us;
 pub use stepped::{Applied, BicycleSample, SteppedBicycle};
 pub use trace::{TracePoint, frames};
-pub use warm_start::engaged;
+pub use warm_start::{Engaged, engaged};

@@ -9,7 +9,7 @@ use super::{Conditions, FallCause, Start, steer_torque};
 use crate::bicycle::{
     Accelerations, ForcePoint, Forces, FullState, Geometry, Motion, State, Torques, Velocities,
 };
-use crate::integrate::{Actuation, rk4};
+use crate::integrate::{Actuation, STAGES, rk4};
 use crate::num::sin_cos;
 use crate::plant::{ActuatorConfig, Frame, Odometry, Reading};
 use serde::{Deserialize, Serialize};
@@ -19,8 +19,10 @@ use serde::{Deserialize, Serialize};
 pub struct Applied {
     /// Torque of the motor on the steer axis \[N m\].
     pub assist_nm: f64,
-    /// The rider's torque on the handlebar \[N m\].
+    /// The rider's torque on the handlebar at the start of the step \[N m\].
     pub rider_nm: f64,
+    /// Its rate, constant over the step \[N m/s\].
+    pub rider_rate_nm_s: f64,
     /// Torque on the rear frame about the heading line through the rear contact \[N m\].
     pub roll_nm: f64,
     /// Lateral force, across the rear wheel's heading \[N\].
@@ -34,8 +36,6 @@ pub struct BicycleSample {
     pub angles_rad: [f64; 3],
     /// Rates of roll and steer \[rad/s\].
     pub rates_rad_s: [f64; 2],
-    /// Accelerations of roll and steer under the torques of the step that ended \[rad/s^2\].
-    pub accelerations_rad_s2: [f64; 2],
     /// Yaw rate \[rad/s\].
     pub yaw_rate_rad_s: f64,
     /// Rear wheel's rate \[rad/s\], negative forward.
@@ -90,6 +90,27 @@ impl SteppedBicycle {
         self.fall
     }
 
+    /// Accelerations of roll and steer at this instant under what is `applied` \[rad/s^2\]; zero after a fall.
+    pub fn accelerations_rad_s2(
+        &self,
+        conditions: &Conditions,
+        point: ForcePoint,
+        applied: &Applied,
+    ) -> [f64; 2] {
+        let (b, actuator) = (&conditions.bicycle, &conditions.plant.actuator);
+        let motion = Motion::new(b, &self.state);
+        let torques = applied.torques(actuator, 0.0, &motion);
+        let found = match self.full.and_then(|full| full.rate(b, &torques)) {
+            _ if self.fall.is_some() => return [0.0; 2],
+            Some(rate) => [rate.speeds[0], rate.speeds[3]],
+            None => {
+                let Accelerations { roll, steer, .. } = accelerations(b, applied, point, &torques, &motion);
+                [roll, steer]
+            }
+        };
+        found.map(|x| if x.is_finite() { x } else { 0.0 })
+    }
+
     /// One time step under what is `applied`, the lateral force at `point`. A lateral force while the motion is too quick for
     /// the time step counts as a fall, as in [`super::perturbed()`].
     pub fn step(&mut self, conditions: &Conditions, point: ForcePoint, applied: &Applied) {
@@ -98,7 +119,7 @@ impl SteppedBicycle {
         }
         let (b, h) = (&conditions.bicycle, conditions.step_s);
         let before = self.state;
-        let mut held = Held { actuator: &conditions.plant.actuator, applied, point, stiffness: [0.0; 4] };
+        let mut held = Held { actuator: &conditions.plant.actuator, applied, h, point, stiffness: [0.0; 4] };
         let after = rk4(b, &before, h, &mut held);
         let last = if !too_stiff(held.stiffness, h) {
             self.full = None;
@@ -108,7 +129,7 @@ impl SteppedBicycle {
                 conditions,
                 most_substeps: self.substeps_left,
                 full: &mut self.full,
-                assist_nm: applied.steer_nm(),
+                assist_nm: applied.mean_steer_nm(h),
                 roll_nm: applied.roll_nm,
                 motor: None,
                 initial_m_s: 0.0,
@@ -148,20 +169,31 @@ impl SteppedBicycle {
 }
 
 impl Applied {
-    /// The torque of motor and rider \[N m\].
-    fn steer_nm(&self) -> f64 {
-        self.rider().map_or(self.assist_nm, |rider_nm| self.assist_nm + rider_nm)
+    /// Mean torque of motor and rider over a step of `h` seconds \[N m\].
+    fn mean_steer_nm(&self, h: f64) -> f64 {
+        self.rider_nm_at(0.5 * h).map_or(self.assist_nm, |rider_nm| self.assist_nm + rider_nm)
     }
 
-    /// The rider's torque, if there is one: adding zero would turn -0 into 0.
-    fn rider(&self) -> Option<f64> {
-        (self.rider_nm != 0.0).then_some(self.rider_nm)
+    /// The rider's torque `elapsed_s` into the step, if there is one: adding zero would turn -0 into 0.
+    fn rider_nm_at(&self, elapsed_s: f64) -> Option<f64> {
+        let rider_nm = self.rider_nm + self.rider_rate_nm_s * elapsed_s;
+        (rider_nm != 0.0).then_some(rider_nm)
+    }
+
+    /// The torques on the bicycle `elapsed_s` into a step, friction and end-stop included.
+    fn torques(&self, actuator: &ActuatorConfig, elapsed_s: f64, motion: &Motion<f64>) -> Torques<f64> {
+        let (sin, cos) = motion.pose.attitude.steer;
+        let (rider_nm, steer_rad) = (self.rider_nm_at(elapsed_s), || libm::atan2(sin, cos));
+        let torques =
+            steer_torque::torques(actuator, self.assist_nm, rider_nm, steer_rad, motion.actual.steer);
+        Torques { roll: self.roll_nm, ..torques }
     }
 }
 
-/// Torques and force held over a step.
+/// Torques and force during a step of `h` seconds.
 struct Held<'a> {
     actuator: &'a ActuatorConfig,
+    h: f64,
     applied: &'a Applied,
     point: ForcePoint,
     /// The quantities of [`stiffness`] at the start of the step.
@@ -173,27 +205,28 @@ impl Actuation<f64> for Held<'_> {
         self.stiffness = stiffness(b, motion);
     }
 
-    fn torques(&self, _: usize, motion: &Motion<f64>) -> Torques<f64> {
-        held(self.actuator, self.applied, motion)
+    fn torques(&self, stage: usize, motion: &Motion<f64>) -> Torques<f64> {
+        self.applied.torques(self.actuator, STAGES[stage] * self.h, motion)
     }
 
     fn accelerations(&self, b: &Geometry, stage: usize, motion: &Motion<f64>) -> Accelerations<f64> {
-        let torques = self.torques(stage, motion);
-        if self.applied.lateral_force_n == 0.0 {
-            return motion.accelerations(b, &torques);
-        }
-        let force = motion.lateral_force(b, self.point, self.applied.lateral_force_n);
-        motion.accelerations_under(b, &force.and(Forces::from(torques)))
+        accelerations(b, self.applied, self.point, &self.torques(stage, motion), motion)
     }
 }
 
-/// The torques on the bicycle, friction and end-stop included.
-fn held(actuator: &ActuatorConfig, applied: &Applied, motion: &Motion<f64>) -> Torques<f64> {
-    let (sin, cos) = motion.pose.attitude.steer;
-    let Applied { assist_nm, roll_nm, .. } = *applied;
-    let steer_rad = || libm::atan2(sin, cos);
-    let torques = steer_torque::torques(actuator, assist_nm, applied.rider(), steer_rad, motion.actual.steer);
-    Torques { roll: roll_nm, ..torques }
+/// Accelerations under these torques and the lateral force.
+fn accelerations(
+    b: &Geometry,
+    applied: &Applied,
+    point: ForcePoint,
+    torques: &Torques<f64>,
+    motion: &Motion<f64>,
+) -> Accelerations<f64> {
+    if applied.lateral_force_n == 0.0 {
+        return motion.accelerations(b, torques);
+    }
+    let force = motion.lateral_force(b, point, applied.lateral_force_n);
+    motion.accelerations_under(b, &force.and(Forces::from(*torques)))
 }
 
 /// The motion of a state, after a step under what was `applied`.
@@ -212,14 +245,6 @@ fn observed(
         Some(full) => Frame::new(&full.pose(b), &full.velocities(b), full.angles[2]),
         None => Frame::new(&motion.pose, &motion.actual, angles_rad[1]),
     };
-    let torques = held(&conditions.plant.actuator, applied, &motion);
-    let accelerations = match full.and_then(|full| full.rate(b, &torques)) {
-        Some(rate) => [rate.speeds[0], rate.speeds[3]],
-        None => {
-            let acc = motion.accelerations(b, &torques);
-            [acc.roll, acc.steer]
-        }
-    };
     let point_m = conditions.plant.sensors.imu.point_m;
     let exact = odometry.read(b, conditions.imu, point_m, conditions.step_s, &frame);
     // As in `RiderState::signals`.
@@ -230,7 +255,6 @@ fn observed(
     BicycleSample {
         angles_rad,
         rates_rad_s: [roll, steer],
-        accelerations_rad_s2: accelerations.map(|x| if x.is_finite() { x } else { 0.0 }),
         yaw_rate_rad_s: yaw,
         rear_wheel_rate_rad_s: rear_spin,
         front_lateral_m: exact.lateral_m + sin * ahead + cos * right,

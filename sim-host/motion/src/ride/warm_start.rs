@@ -42,17 +42,36 @@ pub(super) fn engage_run(
     Ready { controller, ticks }
 }
 
-/// The controller after a warm start at a speed \[m/s\] in the gravity `g` \[m/s^2\], with all its sensors exact, and the control
-/// periods since its boot.
-pub fn engaged(plan: &Plan, speed_m_s: f64, g: f64) -> (State, u32) {
+/// A controller after a warm start.
+#[derive(Clone, Debug)]
+pub struct Engaged {
+    /// Its state.
+    pub state: State,
+    /// Control periods since its boot.
+    pub ticks: u32,
+    /// Its last command.
+    pub command: Command,
+}
+
+impl Engaged {
+    /// The controller at its boot.
+    pub fn boot() -> Self {
+        Self { state: State::default(), ticks: 0, command: Stepped::OFF.command }
+    }
+}
+
+/// The controller after a warm start at a speed \[m/s\] in the gravity `g` \[m/s^2\], all its sensors exact.
+pub fn engaged(plan: &Plan, speed_m_s: f64, g: f64) -> Engaged {
     let steady = ExactReading::steady(speed_m_s, g);
     let measured = |ticks, pressed, motor_torque_nm| {
         let reading = ExactReading { motor_torque_nm, ..steady };
         let held = Sensor::ALL.map(|sensor| Held { value: reading.of(sensor), age_ticks: 0 });
         hardware::frame(plan, &Measured::new(held, clock_us(plan, ticks), pressed))
     };
-    let Ready { controller, ticks } = engage_run(plan, &mut Backend::Local, measured, |_, _| ());
-    (controller, ticks)
+    let mut last = Stepped::OFF.command;
+    let Ready { controller, ticks } =
+        engage_run(plan, &mut Backend::Local, measured, |_, command| last = *command);
+    Engaged { state: controller, ticks, command: last }
 }
 
 /// Frames of exact sensors in steady riding at a speed \[m/s\].

@@ -40,7 +40,6 @@ impl Moves for Muscle {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SteppedRider {
     muscle: Muscle,
-    mean_nm: f64,
     /// Integrals of roll and steer up to the last sample \[rad s\].
     integrals: [f64; 2],
     last: Option<RiderSample>,
@@ -54,21 +53,15 @@ impl SteppedRider {
         let delay = rider.delay_steps(step_s);
         Self {
             muscle: Muscle::default(),
-            mean_nm: 0.0,
             integrals: [0.0; 2],
             last: None,
             delay_line: (delay > 0).then(|| DelayLine::new(delay)),
         }
     }
 
-    /// The torque on the handlebar at the end of the last step, right positive \[N m\].
-    pub fn torque_nm(&self) -> f64 {
-        self.muscle.torque
-    }
-
-    /// The mean torque over the last step \[N m\].
-    pub fn mean_torque_nm(&self) -> f64 {
-        self.mean_nm
+    /// The torque on the handlebar \[N m\], right positive, and its rate \[N m/s\].
+    pub fn torque(&self) -> [f64; 2] {
+        [self.muscle.torque, self.muscle.rate]
     }
 
     /// One time step of `step_s` seconds from the sample at its start.
@@ -104,8 +97,7 @@ impl SteppedRider {
             }
             None => [signal; 3],
         };
-        let before = self.muscle;
-        let mut stages = Stages::new(before);
+        let mut stages = Stages::new(self.muscle);
         for (stage, part) in STAGES.into_iter().enumerate() {
             let Muscle { torque, rate } = stages.at;
             let alpha = arriving[(2.0 * part) as usize];
@@ -113,8 +105,6 @@ impl SteppedRider {
             stages.next(stage, step_s, &k);
         }
         self.muscle = stages.end;
-        let after = self.muscle;
-        self.mean_nm = mean([before.torque, before.rate], [after.torque, after.rate], step_s);
     }
 }
 
