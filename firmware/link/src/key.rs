@@ -53,6 +53,10 @@ impl<'a> Key<'a> {
 const UNITS: &[(&str, &str)] = &[
     ("per_nm", "/(N m)"),
     ("per_s", "/s"),
+    ("nm_s_rad", "N m s/rad"),
+    ("nm_rad", "N m/rad"),
+    ("nm_m_s", "N m/(m s)"),
+    ("nm_m", "N m/m"),
     ("rad_s", "rad/s"),
     ("nm_s", "N m/s"),
     ("m_s2", "m/s^2"),
