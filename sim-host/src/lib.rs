@@ -33,6 +33,8 @@ pub mod cli;
 pub mod closed_loop;
 pub mod commands;
 pub mod design;
+#[cfg(feature = "fmu")]
+pub mod fmu;
 pub mod parameters;
 pub mod pil;
 pub mod recording;

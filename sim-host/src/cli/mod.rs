@@ -14,6 +14,8 @@ mod drawn;
 mod eigen;
 mod ended;
 mod faults;
+#[cfg(feature = "fmu")]
+mod fmu;
 mod identify;
 mod identify_files;
 mod identify_loop;
@@ -125,6 +127,17 @@ enum Command {
     Param(param::Command),
     /// The fault records stored on a board.
     Faults(faults::Args),
+    /// The controller, the bicycle or the rider as an FMU, for other simulators.
+    #[cfg(feature = "fmu")]
+    #[command(subcommand, after_help = fmu::EXAMPLES)]
+    Fmu(fmu::Command),
+    /// The controller, the bicycle or the rider as an FMU: needs a build with `--features fmu`.
+    #[cfg(not(feature = "fmu"))]
+    Fmu {
+        /// Not read
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+        words: Vec<String>,
+    },
     /// The JSON schema of a command's `--json` document.
     #[command(after_help = "Example:\n  sim-host schema basin > basin.schema.json")]
     Schema {
@@ -159,6 +172,12 @@ pub fn run() -> ExitCode {
         Command::Monitor(args) => monitor::run(&args),
         Command::Param(command) => param::run(&command),
         Command::Faults(args) => faults::run(&args),
+        #[cfg(feature = "fmu")]
+        Command::Fmu(command) => fmu::run(&command),
+        #[cfg(not(feature = "fmu"))]
+        Command::Fmu { words: _ } => {
+            Err("this program was built without FMUs; with them: `cargo build --release -p sim-host --features fmu`".into())
+        }
         Command::Schema { document } => schema::run(&document),
     };
     match ended {

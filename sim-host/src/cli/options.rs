@@ -20,12 +20,17 @@ pub(super) trait Settings {
     const CHECKED: bool = true;
     /// Whether the command also takes a scenario's file.
     const FILE: bool = true;
+    /// Whether settings that a ride cannot do without must be given.
+    const REQUIRES: bool = true;
 }
 
 /// Conditions of a ride.
 pub(super) struct Conditions;
 /// Conditions and initial state of a ride.
 pub(super) struct Ride;
+/// Conditions and initial state of a ride, for an FMU, which has a speed of its own.
+#[cfg(feature = "fmu")]
+pub(super) struct Fmu;
 /// Conditions and search of a basin.
 pub(super) struct Basin;
 /// Conditions and search of a basin, adaptive speeds, and drawn bicycles or riders.
@@ -50,6 +55,11 @@ impl Settings for Conditions {
 }
 impl Settings for Ride {
     const LISTS: &'static [&'static [Setting]] = &[CONDITIONS, START];
+}
+#[cfg(feature = "fmu")]
+impl Settings for Fmu {
+    const LISTS: &'static [&'static [Setting]] = &[CONDITIONS, START];
+    const REQUIRES: bool = false;
 }
 impl Settings for Basin {
     const LISTS: &'static [&'static [Setting]] = &[CONDITIONS, SEARCH];
@@ -134,7 +144,7 @@ fn arg<S: Settings>(setting: &'static Setting) -> Arg {
         Some(alone) => arg.num_args(0..=1).default_missing_value(alone),
         None => arg,
     };
-    let arg = if setting.required { arg.required_unless_present("scenario") } else { arg };
+    let arg = if setting.required && S::REQUIRES { arg.required_unless_present("scenario") } else { arg };
     if !S::CHECKED {
         return arg.value_parser(ValueParser::string());
     }
