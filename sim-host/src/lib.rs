@@ -48,7 +48,7 @@ pub mod sweep;
 pub mod thesis;
 pub mod weave;
 
+use physics::json;
 pub use physics::{
-    basin, bicycle, eigen, identify, integrate, num, perturbation, plant, ride, rider, tracking,
+    basin, bicycle, eigen, identify, integrate, num, perturbation, plant, range, ride, rider, tracking,
 };
-use physics::{json, range};

@@ -5,6 +5,8 @@ use super::outputs::OutputArgs;
 use super::record::point;
 use super::recording_args::RecordingArgs;
 use crate::bicycle::ForcePoint;
+use crate::commands::identify::Delay;
+use crate::commands::identify_text::{drift, percent, select};
 use crate::identify::{Drift, Hold, Select, Signal, symbols};
 use crate::range::{TimeError, time, within};
 use crate::rider::{MAX_DELAY_S, Neuromuscular};
@@ -81,15 +83,6 @@ pub(super) struct RiderArgs {
     pub(super) outputs: OutputArgs,
 }
 
-/// The neural delay of a fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Delay {
-    /// Given \[s\].
-    Given(f64),
-    /// The likeliest.
-    Estimate,
-}
-
 /// Delays of a profile \[s\].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Delays(pub(super) Vec<f64>);
@@ -140,65 +133,10 @@ fn neuromuscular(text: &str) -> Result<Neuromuscular, String> {
     Ok(muscles)
 }
 
-fn drift(text: &str) -> Result<Drift, String> {
-    match text {
-        "none" => Ok(Drift::None),
-        "offset" => Ok(Drift::Offset),
-        _ => {
-            let wrong = || "expected none, offset, or a frequency such as 0.05Hz".to_owned();
-            let hz =
-                text.strip_suffix("Hz").and_then(|hz| hz.trim().parse::<f64>().ok()).ok_or_else(wrong)?;
-            within("frequency (Hz)", hz, 1e-4, 0.5).map_err(|e| e.to_string())?;
-            Ok(Drift::Below(hz))
-        }
-    }
-}
-
-/// The drift as on the command line.
-pub(super) fn drift_name(drift: Drift) -> String {
-    match drift {
-        Drift::None => "none".into(),
-        Drift::Offset => "offset".into(),
-        Drift::Below(hz) => format!("{hz}Hz"),
-    }
-}
-
 fn moment(text: &str) -> Result<f64, TimeError> {
     time(text, 3600.0)
 }
 
-fn percent(text: &str) -> Result<f64, String> {
-    let wrong = || "expected a percentage from 0 to 100".to_owned();
-    let value = text.parse::<f64>().ok().filter(|x| (0.0..=100.0).contains(x));
-    value.map(|x| x / 100.0).ok_or_else(wrong)
-}
-
 fn until(text: &str) -> Result<Until, String> {
     if text == "none" { Ok(Until(None)) } else { percent(text).map(|x| Until(Some(x))) }
-}
-
-fn select(text: &str) -> Result<Select, String> {
-    match text {
-        "full" => Ok(Select::Full),
-        "aic" => Ok(Select::Aic),
-        "bic" => Ok(Select::Bic),
-        "held" => Ok(Select::CrossValidated),
-        _ => match text.split_once(':') {
-            Some(("vaf", number)) => percent(number).map(Select::Vaf),
-            Some(("onset", number)) => percent(number).map(Select::Onset),
-            _ => Err("expected full, vaf:PERCENT, onset:PERCENT, aic, bic or held".into()),
-        },
-    }
-}
-
-/// The criterion as on the command line.
-pub(super) fn select_name(select: Select) -> String {
-    match select {
-        Select::Full => "full".into(),
-        Select::Vaf(vaf) => format!("vaf:{}", 100.0 * vaf),
-        Select::Onset(vaf) => format!("onset:{}", 100.0 * vaf),
-        Select::Aic => "aic".into(),
-        Select::Bic => "bic".into(),
-        Select::CrossValidated => "held".into(),
-    }
 }

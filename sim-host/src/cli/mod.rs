@@ -5,7 +5,6 @@ mod basin;
 mod bicycle;
 mod bicycle_args;
 mod board_args;
-mod cells;
 mod command_line;
 mod compare;
 mod conditions;

@@ -5,7 +5,7 @@ use super::outputs::complain_once;
 use super::scenario_error::named;
 use crate::ride::FallCriterion;
 use crate::scenario::setting::{
-    ADAPTIVE, BICYCLES, CONDITIONS, FALL, PLANE, RIDERS, SEARCH, START, Setting, UNCERTAIN,
+    ADAPTIVE, BICYCLES, CONDITIONS, FALL, Given, PLANE, RIDERS, SEARCH, START, Setting, UNCERTAIN,
 };
 use crate::scenario::{LoadedRider, RiderChoice, Scenario, cut_warnings};
 use clap::builder::{PossibleValue, PossibleValuesParser, ValueParser};
@@ -93,30 +93,6 @@ impl Settings for Fall {
 impl Settings for Cells {
     const LISTS: &'static [&'static [Setting]] = &[CONDITIONS];
     const CHECKED: bool = false;
-}
-
-/// A setting and its text.
-#[derive(Clone)]
-pub(super) struct Given {
-    pub(super) setting: &'static Setting,
-    pub(super) text: String,
-}
-
-impl Given {
-    /// Changes a scenario.
-    ///
-    /// # Errors
-    /// The option with its text, and what is expected.
-    pub(super) fn apply(&self, scenario: &mut Scenario) -> Result<(), String> {
-        scenario.options.insert(self.setting.key);
-        (self.setting.set)(scenario, &self.text)
-            .map_err(|e| format!("--{} {}: {e}", self.setting.name, self.text))
-    }
-
-    /// As it was typed.
-    pub(super) fn typed(&self) -> String {
-        format!("--{}={}", self.setting.name, self.text)
-    }
 }
 
 /// The given options of a command, in the order of the settings.

@@ -2,28 +2,19 @@
 
 use super::interrupt;
 use super::outputs::{Further, OutputArgs, Outputs, Results, complain, complain_once};
-use super::{Ended, Failure, warn};
-use crate::bicycle::onboard::fit;
-use crate::bicycle::{Geometry, catalogue};
-use crate::parameters;
-use crate::plant::{Fault, ImuMount};
-use crate::recording::{ReadOptions, read};
-use crate::replay::{
-    CauseRecord, Feed, FeedOptions, Fitted, Map, Press, Resample, RunOptions, Samples, Summary, fitted,
-    frames, run as run_through, samples,
-};
+use super::scenario_error::failure;
+use super::{Ended, Failure};
+use crate::commands::CommandError;
+use crate::commands::replay::{Replay, ReplayChoice, ReplayedRecording};
+use crate::replay::{CauseRecord, Press, Resample, Summary};
 use crate::report::figure::{self, ReplayFigure};
-use crate::report::replay::{
-    ReplayConfig, ReplayDocument, ReplayResult, ReplaysDocument, summary_text, text,
-};
+use crate::report::replay::{ReplaysDocument, summary_text, text};
 use crate::report::table;
 use crate::report::tool::SCHEMA;
 use crate::report::tool::Tool;
-use crate::ride::frame_of;
-use crate::scenario::{ParameterFile, Preset, law};
+use crate::scenario::{Preset, Scenario};
 use control::wire::encode_frame;
-use control::{Config, Law, SensorFrame};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 pub(super) const EXAMPLES: &str = "\
 FILE is a table of samples with named columns (also gzipped), such as the output of `monitor --csv`, a recording of
@@ -104,22 +95,6 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Data common to all recordings.
-struct Common {
-    config: Config,
-    law_name: String,
-    file: Option<ParameterFile>,
-    faults: Vec<Fault>,
-    map: Option<Map>,
-}
-
-/// Result of one recording.
-struct Done {
-    result: ReplayResult,
-    config: ReplayConfig,
-    frames: Vec<SensorFrame>,
-}
-
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     if args.files.len() > 1 {
         args.outputs.refuse_figures("a figure is of one recording only")?;
@@ -127,10 +102,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             return Err("--frames: frames are of one recording only".into());
         }
     }
-    let common = common(args)?;
+    let named = |error| failure(&Scenario::default(), error);
+    let replay = Replay::new(choice(args)).map_err(named)?;
+    replay.remarks.iter().for_each(|remark| complain_once(remark));
+    let one = |file: &PathBuf| replay.file(file).map_err(of_recording);
     let outputs = args.outputs.open(Further { frames: args.frames.as_deref(), ..Further::default() })?;
     if let [file] = args.files.as_slice() {
-        let done = one(args, &common, file)?;
+        let done = one(file)?;
         return write_one(args, &outputs, &done);
     }
     interrupt::install_saying("the finished recordings are reported");
@@ -139,7 +117,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         if interrupt::stopped() {
             break;
         }
-        match one(args, &common, file) {
+        match one(file) {
             Ok(done) => all.push(done),
             Err(error) => {
                 complain(&format!("error: {error}"));
@@ -148,157 +126,42 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         }
     }
     let ended = if interrupt::stopped() { Ended::Interrupted } else { Ended::Done };
-    write_many(&common, &outputs, all, unusable)?;
+    write_many(&replay, &outputs, all, unusable)?;
     Ok(ended)
 }
 
-fn common(args: &Args) -> Result<Common, Failure> {
-    let base = match args.preset {
-        Preset::Thesis => Config::thesis(Law::H { cut: false }),
-        Preset::Product => Config::product(),
-    };
-    let file = args.parameters.as_deref().map(ParameterFile::read).transpose()?;
-    let law = match (&args.law, file.as_ref().and_then(|file| file.law.clone())) {
-        (Some(name), _) => law::parse(name)?,
-        (None, Some(law)) => law,
-        (None, None) => base.law.clone(),
-    };
-    let faults = args.fault.iter().map(|text| text.parse::<Fault>());
-    let faults = faults.collect::<Result<_, _>>().map_err(|e| format!("--fault: {e}"))?;
-    let map = args.map.as_deref().map(Map::load).transpose().map_err(|error| format!("--map {error}"))?;
-    let law_name = law.to_string();
-    let mut config = Config { law, ..base };
-    if let Some(name) = &args.bicycle {
-        let bicycle = catalogue::load(name)?;
-        warn(&bicycle);
-        for reason in fit(&mut config, &Geometry::new(&bicycle.parameters), ImuMount::default().point_m) {
-            complain_once(&format!("note: {name}: for the flashed code {reason}"));
-        }
-    }
-    Ok(Common { config, law_name, file, faults, map })
-}
-
-impl Common {
-    /// The plan for a recording with these samples.
-    fn plan(
-        &self,
-        args: &Args,
-        recorded: Option<(&Samples, &Map)>,
-    ) -> Result<(control::Plan, Fitted), Failure> {
-        let mut config = self.config.clone();
-        config.calibration.polarity_checked = true;
-        let fitted = match recorded {
-            Some((samples, map)) => {
-                fitted(&mut config, samples, map).map_err(|error| format!("--map: {error}"))?
-            }
-            None => Fitted::default(),
-        };
-        if let Some(file) = &self.file {
-            file.apply(&mut config)?;
-        }
-        for word in &args.set {
-            let (key, value) = word.split_once('=').ok_or(format!("--set {word}: expected KEY=VALUE"))?;
-            parameters::set(&mut config, key, value).map_err(|error| format!("--set {word}: {error}"))?;
-        }
-        Ok((config.plan()?, fitted))
-    }
-}
-
-fn one(args: &Args, common: &Common, path: &Path) -> Result<Done, Failure> {
-    let name = path.display().to_string();
-    let framed = path.extension().is_some_and(|extension| extension == "frames");
-    if framed {
-        return replay_frames(args, common, path, name);
-    }
-    let options = ReadOptions { strict: args.strict, dbc: args.dbc.clone() };
-    let recording = read(path, &options)?;
-    let map = match &common.map {
-        Some(map) => map.clone(),
-        None => Map::by_columns(&recording)
-            .ok_or(format!("{name}: no built-in map has these columns; give one with --map"))?,
-    };
-    let period_s = 1.0 / f64::from(common.config.rate_hz);
-    let samples = samples(&recording, &map, period_s).map_err(|remark| format!("{name}: {remark}"))?;
-    if let (true, Some(remark)) = (args.strict, samples.remarks.first()) {
-        return Err(format!("{name}: {remark}").into());
-    }
-    let (plan, fitted) = common.plan(args, Some((&samples, &map)))?;
-    let resample = args.resample.unwrap_or(map.resample);
-    let feed = FeedOptions {
-        period_s: 1.0 / f64::from(plan.config().rate_hz),
-        resample,
+/// The choices of the options.
+fn choice(args: &Args) -> ReplayChoice {
+    ReplayChoice {
+        map: args.map.clone(),
+        dbc: args.dbc.clone(),
+        strict: args.strict,
+        resample: args.resample,
         longest_gap_s: args.longest_gap,
-        faults: &common.faults,
-        seed: args.seed,
-    };
-    let mut feed = Feed::new(&samples, feed).map_err(|error| format!("{name}: {error}"))?;
-    let mut kept = Vec::new();
-    let options = RunOptions {
         press: args.press,
-        every_s: args.every,
-        roll_rad: &samples.roll_rad,
-        torque_nm: &samples.torque_nm,
-    };
-    let replayed = run_through(&plan, &options, |pressed| {
-        let (t_s, measured) = feed.next(pressed)?;
-        let frame = frame_of(&plan, &measured);
-        if args.frames.is_some() {
-            kept.push(frame);
-        }
-        Some((t_s, frame))
-    });
-    let resample = match resample {
-        Resample::Hold => "hold",
-        Resample::Interpolate => "interpolate",
-    };
-    let config = resolved(args, common, &plan, Some(resample));
-    let remarks = samples.remarks.iter().map(ToString::to_string).collect();
-    let result = ReplayResult { file: name, remarks, fitted, replayed };
-    Ok(Done { result, config, frames: kept })
-}
-
-/// Replays recorded frames bit for bit, with the switch that they contain.
-fn replay_frames(args: &Args, common: &Common, path: &Path, name: String) -> Result<Done, Failure> {
-    if !common.faults.is_empty() {
-        return Err(format!("{name}: --fault acts on recordings of samples, not on frames").into());
-    }
-    let bytes = std::fs::read(path).map_err(|error| format!("can't read {name}: {error}"))?;
-    let all = frames(&bytes).map_err(|error| format!("{name}: {error}"))?;
-    let (plan, fitted) = common.plan(args, None)?;
-    let options = RunOptions { press: args.press, every_s: args.every, roll_rad: &[], torque_nm: &[] };
-    let mut each = all.iter().copied();
-    let replayed = run_through(&plan, &options, |_| each.next());
-    let config = resolved(args, common, &plan, None);
-    let result = ReplayResult { file: name, remarks: Vec::new(), fitted, replayed };
-    let frames = all.into_iter().map(|(_, frame)| frame).collect();
-    Ok(Done { result, config, frames })
-}
-
-fn resolved(
-    args: &Args,
-    common: &Common,
-    plan: &control::Plan,
-    resample: Option<&'static str>,
-) -> ReplayConfig {
-    let (preset, base) = match args.preset {
-        Preset::Thesis => ("thesis", Config::thesis(Law::H { cut: false })),
-        Preset::Product => ("product", Config::product()),
-    };
-    ReplayConfig {
-        preset,
-        law: common.law_name.clone(),
-        map: resample.map(|_| args.map.clone().unwrap_or_else(|| "by the columns".into())),
-        resample,
+        preset: args.preset,
+        law: args.law.clone(),
+        bicycle: args.bicycle.clone(),
+        parameters: args.parameters.clone(),
+        set: args.set.clone(),
         faults: args.fault.clone(),
-        parameters: parameters::departing(plan.config(), &base).into_iter().collect(),
+        seed: args.seed,
+        every_s: args.every,
     }
 }
 
-fn write_one(args: &Args, outputs: &Outputs, done: &Done) -> Result<Ended, Failure> {
-    let Done { result, config, frames } = done;
+/// An error of a recording; that of an option with the option.
+fn of_recording(error: Box<dyn std::error::Error + Send + Sync>) -> Failure {
+    match error.downcast::<CommandError>() {
+        Ok(error) => failure(&Scenario::default(), *error),
+        Err(error) => error,
+    }
+}
+
+fn write_one(args: &Args, outputs: &Outputs, done: &ReplayedRecording) -> Result<Ended, Failure> {
+    let ReplayedRecording { result, config, frames } = done;
     let replayed = &result.replayed;
-    let document =
-        ReplayDocument { schema: SCHEMA, tool: Tool::this(), config: config.clone(), result: result.clone() };
+    let document = done.document();
     let figure = ReplayFigure {
         title: &result.file,
         rows: &replayed.rows,
@@ -320,14 +183,14 @@ fn write_one(args: &Args, outputs: &Outputs, done: &Done) -> Result<Ended, Failu
 }
 
 fn write_many(
-    common: &Common,
+    replay: &Replay,
     outputs: &Outputs,
-    all: Vec<Done>,
+    all: Vec<ReplayedRecording>,
     unusable: Vec<String>,
 ) -> Result<(), Failure> {
     let Some(first) = all.first() else { return Err("none of the recordings can be used".into()) };
     let config = first.config.clone();
-    let fault_s = common.faults.iter().map(|fault| fault.from_s).reduce(f64::min);
+    let fault_s = replay.faults.iter().map(|fault| fault.from_s).reduce(f64::min);
     let summary = Summary::new(all.iter().map(|done| &done.result.replayed), fault_s);
     let failed = unusable.len();
     let results: Vec<_> = all.into_iter().map(|done| done.result).collect();

@@ -1,16 +1,16 @@
 //! `sim-host study` for studies that are defined as sweeps in a TOML file.
 
-use super::cells::{Resolved, resolve};
-use super::options::{Cells, Given, Options, Search, usage_error};
+use super::options::{Cells, Options, Search, usage_error};
 use super::outputs::complain;
 use super::progress::progress;
 use super::study_args::{Args, made, page_path, print_path};
-use super::sweep::{finish, to_do};
+use super::sweep::{finish, resolved as sweep_of, to_do};
 use super::{Ended, Failure, interrupt};
+use crate::commands::sweep::SweepTask;
 use crate::report::output::Output;
 use crate::report::picture::{caption, svg_with_caption};
 use crate::scenario::Scenario;
-use crate::scenario::setting::SEARCH;
+use crate::scenario::setting::{Given, SEARCH};
 use crate::study::swept::{self, Part, Spent, Study, StudyOptions};
 use crate::sweep::{self, Folder, Grid, Progress, Shard};
 use clap::Parser;
@@ -29,10 +29,10 @@ struct PartArgs {
 
 pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
     let named = |part: &Part, e: Failure| format!("study {}, sweep {}: {e}", study.name, part.name);
-    let sweeps: Vec<Resolved> =
+    let sweeps: Vec<SweepTask> =
         study.parts.iter().map(|p| resolved(p).map_err(|e| named(p, e))).collect::<Result<_, _>>()?;
     interrupt::install();
-    let folder = |(part, sweep): (&Part, &Resolved)| Folder::open(&args.out.join(&part.name), &sweep.plan);
+    let folder = |(part, sweep): (&Part, &SweepTask)| Folder::open(&args.out.join(&part.name), &sweep.plan);
     let folders: Vec<Folder> = study.parts.iter().zip(&sweeps).map(folder).collect::<Result<_, _>>()?;
     made(args.pages(), "studies")?;
     let figures = made(args.pages(), "img/studies")?;
@@ -65,7 +65,7 @@ pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
     print_path(args, &page)
 }
 
-fn resolved(part: &Part) -> Result<Resolved, Failure> {
+fn resolved(part: &Part) -> Result<SweepTask, Failure> {
     let mut base = Scenario::default();
     let given = match (part.options.settings()?, &part.options) {
         (Some(settings), _) => {
@@ -83,7 +83,7 @@ fn resolved(part: &Part) -> Result<Resolved, Failure> {
         }
         (None, StudyOptions::Table(_)) => Vec::new(),
     };
-    resolve(&part.axes()?, &base, given)
+    sweep_of(&part.axes()?, &base, given)
 }
 
 fn write_figures(study: &Study, grids: &[Grid], folder: &Path) -> Result<(), Failure> {

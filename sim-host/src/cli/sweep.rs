@@ -1,13 +1,16 @@
 //! `sim-host sweep`: basins over a grid of conditions, from options to a folder of results.
 
-use super::cells::{Resolved, resolve};
 use super::options::{Cells, Options, ScenarioFile, Search};
-use super::outputs::{complain, print, write_json};
+use super::outputs::{complain, complain_once, print, write_json};
 use super::progress::progress;
+use super::scenario_error::failure;
 use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt, sweep_status};
 use crate::basin::{Bound, border};
+use crate::commands::sweep::{SweepTask, sweep as resolve};
 use crate::report::output::Output;
+use crate::scenario::Scenario;
+use crate::scenario::setting::Given;
 use crate::sweep::document::SweepDocument;
 use crate::sweep::{self, Axis, Cell, Folder, Grid, Progress, Shard};
 use std::collections::BTreeSet;
@@ -100,7 +103,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     let mut base = args.scenario.read()?;
     args.search.apply(&mut base)?;
-    let resolved = resolve(&args.over, &base, args.conditions.given.clone())?;
+    let resolved = resolved(&args.over, &base, args.conditions.given.clone())?;
     let mine = args.shard.unwrap_or(Shard::WHOLE).of(&resolved.plan.cells);
     let pool = args.threads.pool()?;
     if args.dry_run {
@@ -128,8 +131,15 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(Ended::Interrupted)
 }
 
+/// The sweep, with its remarks on standard error.
+pub(super) fn resolved(axes: &[Axis], base: &Scenario, given: Vec<Given>) -> Result<SweepTask, Failure> {
+    let task = resolve(axes, base, given).map_err(|error| failure(base, error))?;
+    task.remarks.iter().for_each(|remark| complain_once(remark));
+    Ok(task)
+}
+
 /// The cells of `mine` that are missing or damaged; damage causes a warning.
-pub(super) fn to_do<'a>(resolved: &'a Resolved, mine: &[usize], folder: &Folder) -> Vec<&'a Cell> {
+pub(super) fn to_do<'a>(resolved: &'a SweepTask, mine: &[usize], folder: &Folder) -> Vec<&'a Cell> {
     let cells = mine.iter().map(|&i| &resolved.cells[i]);
     let missing = |cell: &&Cell| match folder.unit(&cell.id) {
         Ok(there) => there.is_none(),
@@ -208,7 +218,7 @@ fn not_known(all: usize, capped: usize, largest: bool, smallest: bool) -> &'stat
 const TIMED: usize = 4;
 
 /// Lists the cells and estimates the computing time from a few columns.
-fn dry_run(resolved: &Resolved, mine: &[usize], out: &Path, threads: usize) -> Result<Ended, Failure> {
+fn dry_run(resolved: &SweepTask, mine: &[usize], out: &Path, threads: usize) -> Result<Ended, Failure> {
     let (plan, speeds) = (&resolved.plan, &resolved.search.speeds);
     let folder = out.join(sweep::PLAN).exists().then(|| Folder::open(out, plan)).transpose()?;
     let to_do: Vec<&Cell> = match &folder {

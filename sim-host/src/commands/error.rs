@@ -3,6 +3,7 @@
 use crate::basin::SearchError;
 use crate::eigen::ActuatorError;
 use crate::scenario::ScenarioError;
+use crate::sweep::SweepError;
 use std::error::Error;
 
 /// A command that can't be run, with the reason.
@@ -26,6 +27,12 @@ pub enum CommandError {
         /// The value and what is allowed.
         reason: Box<dyn Error + Send + Sync>,
     },
+    /// The axes of a sweep can't be used.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    /// A cell of a sweep is wrong; its values and the reason as text.
+    #[error("{0}")]
+    Cell(String),
     /// A ride backwards with assist or rider.
     #[error(
         "speed (m/s) = {0} is outside 0 to 30; laws and riders are those of riding forward, below 0 goes only law none \

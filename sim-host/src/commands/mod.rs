@@ -6,9 +6,13 @@ pub mod basin;
 pub mod drawn;
 pub mod eigen;
 mod error;
+pub mod identify;
+pub mod identify_text;
 pub mod plane;
+pub mod replay;
 pub mod ride;
 mod setup;
+pub mod sweep;
 
 pub use error::CommandError;
 pub use setup::Setup;

@@ -6,7 +6,9 @@ use super::parameter_file::ParameterFileError;
 use super::plant_error::PlantChoiceError;
 use crate::basin::SearchError;
 use crate::bicycle::catalogue::BicycleError;
+use crate::bicycle::{ParameterError, SetError};
 use crate::plant::PlantError;
+use crate::range::RangeError;
 use crate::ride::ConditionsError;
 use crate::rider::{RiderError, ScheduleError};
 use control::param::ParamError;
@@ -95,6 +97,54 @@ pub enum ScenarioError {
 }
 
 impl ScenarioError {
+    /// The key to blame, with dots, if it is known.
+    pub fn key(&self) -> Option<String> {
+        match self {
+            Self::Syntax { reason, .. } => reason.key().map(Into::into),
+            Self::Value { key, reason } => Some(match reason.downcast_ref() {
+                Some(SetError::Parameter(ParameterError::Range { key: inner, .. })) if key == "bicycle" => {
+                    format!("bicycle.parameters.{inner}")
+                }
+                _ => key.clone(),
+            }),
+            Self::Bicycle(_) => Some("bicycle".into()),
+            Self::Rider(_) | Self::Fit { .. } => Some("rider".into()),
+            Self::Law(_) => Some("law".into()),
+            Self::ParameterFile(_) => Some("parameter_file".into()),
+            Self::PlantFile(_) | Self::Plant(_) => Some("plant".into()),
+            Self::Search(_) => Some("search".into()),
+            Self::Parameter(error) => Some(format!("parameters.{}.{}", error.leaf.group, error.leaf.name)),
+            Self::Read { .. } | Self::Conditions(_) | Self::Flashed { .. } | Self::Ideal => None,
+        }
+    }
+
+    /// Smallest and largest allowed value, if a number is outside its range.
+    pub fn range(&self) -> Option<(f64, f64)> {
+        let of = |error: &RangeError| (error.min, error.max);
+        let of_search = |error: &SearchError| match error {
+            SearchError::Range(error) => Some(of(error)),
+            _ => None,
+        };
+        let of_parameter = |error: &ParamError| (error.leaf.min.into(), error.leaf.max.into());
+        match self {
+            Self::Value { reason, .. } => reason
+                .downcast_ref()
+                .map(of)
+                .or_else(|| of_search(reason.downcast_ref()?))
+                .or_else(|| reason.downcast_ref().map(of_parameter))
+                .or_else(|| match reason.downcast_ref()? {
+                    SetError::Parameter(ParameterError::Range { min, max, .. }) => Some((*min, *max)),
+                    _ => None,
+                }),
+            Self::Search(error) => of_search(error),
+            Self::Conditions(ConditionsError::Range(error)) | Self::Plant(PlantError::Range(error)) => {
+                Some(of(error))
+            }
+            Self::Parameter(error) | Self::Flashed { error, .. } => Some(of_parameter(error)),
+            _ => None,
+        }
+    }
+
     /// The value of `key` is wrong.
     pub(crate) fn value(key: &str, reason: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         Self::Value { key: key.into(), reason: reason.into() }

@@ -2,19 +2,32 @@
 
 use super::{Scenario, ScenarioError};
 use crate::json;
-use serde::Deserialize;
 use std::path::Path;
 use toml::Value;
 
 /// A text that is no scenario: the parser's message, with line or key and what was expected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct SyntaxError(String);
+#[error("{message}")]
+pub struct SyntaxError {
+    message: String,
+    key: Option<String>,
+}
 
 impl SyntaxError {
     /// A parser's message, without the names of Rust's types.
     fn new(error: &impl ToString) -> Self {
-        Self(in_plain_words(error.to_string().trim()))
+        Self { message: in_plain_words(error.to_string().trim()), key: None }
+    }
+
+    /// The message about a key.
+    fn at<E: ToString>(error: &serde_path_to_error::Error<E>) -> Self {
+        let key = Some(error.path().to_string()).filter(|key| key != ".");
+        Self { key, ..Self::new(error.inner()) }
+    }
+
+    /// The wrong or unknown key, with dots, if one is to blame.
+    pub fn key(&self) -> Option<&str> {
+        self.key.as_deref()
     }
 }
 
@@ -42,7 +55,8 @@ impl Scenario {
     /// # Errors
     /// States line, key and what was expected.
     pub fn from_toml(text: &str) -> Result<Self, SyntaxError> {
-        toml::from_str(text).map_err(|e| SyntaxError::new(&e))
+        let file = toml::Deserializer::parse(text).map_err(|e| SyntaxError::new(&e))?;
+        serde_path_to_error::deserialize(file).map_err(|e| SyntaxError::at(&e))
     }
 
     /// Parses a scenario in JSON, or the scenario of a result.
@@ -50,11 +64,11 @@ impl Scenario {
     /// # Errors
     /// States line or key, and what was expected.
     pub fn from_json(text: &str) -> Result<Self, SyntaxError> {
-        let value: serde_json::Value = serde_json::from_str(text).map_err(|e| SyntaxError(e.to_string()))?;
+        let value: serde_json::Value = serde_json::from_str(text).map_err(|e| SyntaxError::new(&e))?;
         let Some(Value::Table(mut table)) = json::as_toml(value) else {
-            return Err(SyntaxError("expected an object".into()));
+            return Err(SyntaxError::new(&"expected an object"));
         };
-        let wrong = |reason: &str| Err(SyntaxError(reason.into()));
+        let wrong = |reason: &str| Err(SyntaxError::new(&reason));
         // Every document with a scenario in it has its configuration beside it.
         let of_result = table.contains_key("tool") || table.contains_key("config");
         let own = match table.remove("scenario") {
@@ -65,7 +79,7 @@ impl Scenario {
             None if of_result => return wrong("this result has no `scenario`"),
             None => Value::Table(table),
         };
-        Self::deserialize(own).map_err(|e| SyntaxError::new(&e))
+        serde_path_to_error::deserialize(own).map_err(|e| SyntaxError::at(&e))
     }
 
     /// The scenario as a TOML file.
@@ -73,7 +87,7 @@ impl Scenario {
     /// # Errors
     /// A number that TOML does not have: a seed above 2^63 - 1, which only code can set.
     pub fn to_toml(&self) -> Result<String, SyntaxError> {
-        toml::to_string(self).map_err(|e| SyntaxError(e.to_string()))
+        toml::to_string(self).map_err(|e| SyntaxError::new(&e))
     }
 }
 

@@ -134,7 +134,7 @@ pub fn content(name: &str, law: &Law) -> Content<LawTable> {
 ///
 /// # Errors
 /// States the law, its number and range, or file and value.
-pub(super) fn resolve(choice: &Content<LawTable>) -> Result<(String, Law), LawChoiceError> {
+pub fn resolve(choice: &Content<LawTable>) -> Result<(String, Law), LawChoiceError> {
     match choice {
         Content::Named(name) => Ok((name.clone(), parse(name)?)),
         Content::Given(table) => {

@@ -1,10 +1,12 @@
 //! The settings of a scenario by name, as text: options of the command line and axes of a sweep read this table.
 
 mod conditions;
+mod given;
 mod rider;
 mod start;
 
 pub use conditions::{BICYCLES, CONDITIONS, FALL};
+pub use given::Given;
 pub use rider::RIDERS;
 pub(super) use start::DRAWS;
 pub use start::{ADAPTIVE, PLANE, SEARCH, START, UNCERTAIN};

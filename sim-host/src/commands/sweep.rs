@@ -1,12 +1,13 @@
-//! The cells of a sweep: a scenario, changed by the common options and by one value of every axis.
+//! Basins over a grid of conditions. A cell is a scenario, changed by the common options and by one value of every axis.
 
-use super::conditions::setup;
-use super::options::Given;
-use super::scenario_error::named;
-use crate::basin::Search;
-use crate::scenario::setting::{CONDITIONS, Setting};
-use crate::scenario::{RiderChoice, Scenario, Speeds};
-use crate::sweep::{Axis, Cell, Plan, SweepError, check, combination, count, label};
+use super::{CommandError, Hooks, Setup};
+use crate::basin::{Search, border};
+use crate::scenario::setting::{CONDITIONS, Given, Setting};
+use crate::scenario::{RiderChoice, Scenario, Speeds, named};
+use crate::sweep::{Axis, Cell, DoneColumn, Plan, SweepError, Unit, check, combination, count, label};
+use rayon::prelude::*;
+use serde_json::Value;
+use std::collections::BTreeSet;
 
 /// Most cells of a sweep.
 const MOST: usize = 100_000;
@@ -20,10 +21,15 @@ enum Role {
 }
 
 /// A valid sweep: its plan and its cells.
-pub(super) struct Resolved {
-    pub(super) plan: Plan,
-    pub(super) cells: Vec<Cell>,
-    pub(super) search: Search,
+pub struct SweepTask {
+    /// The plan.
+    pub plan: Plan,
+    /// The cells, in the plan's order.
+    pub cells: Vec<Cell>,
+    /// The search of each.
+    pub search: Search,
+    /// Doubts and notes about the cells, each once, as text.
+    pub remarks: BTreeSet<String>,
 }
 
 /// Finds the role of every axis.
@@ -79,27 +85,25 @@ fn cell(base: &Scenario, shared: &[Given], roles: &[Role], values: &[String]) ->
 ///
 /// # Errors
 /// The axis, or the cell with its error.
-pub(super) fn resolve(
-    axes: &[Axis],
-    base: &Scenario,
-    shared: Vec<Given>,
-) -> Result<Resolved, super::Failure> {
+pub fn sweep(axes: &[Axis], base: &Scenario, shared: Vec<Given>) -> Result<SweepTask, CommandError> {
     check(axes)?;
     let roles = roles(axes, &shared)?;
     let cells = count(axes);
     if cells > MOST {
-        return Err(format!("the sweep has {cells} cells; at most {MOST}").into());
+        return Err(CommandError::Cell(format!("the sweep has {cells} cells; at most {MOST}")));
     }
-    let (mut setups, mut ridden) = (Vec::with_capacity(cells), false);
+    let (mut setups, mut remarks, mut ridden) = (Vec::with_capacity(cells), BTreeSet::new(), false);
     for i in 0..cells {
         let values = combination(axes, i);
-        let of_cell = |e: &dyn std::fmt::Display| format!("cell {}: {e}", label(axes, &values));
-        let scenario = cell(base, &shared, &roles, &values).map_err(|e| of_cell(&e))?;
+        let of_cell = |reason: String| CommandError::Cell(format!("cell {}: {reason}", label(axes, &values)));
+        let scenario = cell(base, &shared, &roles, &values).map_err(of_cell)?;
         ridden |= scenario.is_ridden();
-        let setup = setup(&scenario).map_err(|e| of_cell(&e))?;
-        setups.push((serde_json::to_value(&setup.config)?, setup.scenario, setup.conditions));
+        let setup = Setup::new(&scenario).map_err(|e| of_cell(named(&scenario, &e)))?;
+        remarks.extend(setup.notes.iter().map(|note| format!("note: {note}")));
+        remarks.extend(setup.warnings().map(|warning| format!("warning: {warning}")));
+        setups.push((json(&setup.config), setup.scenario, setup.conditions));
     }
-    let search = base.search.resolve(ridden).map_err(|e| named(base, &e))?;
+    let search = base.search.resolve(ridden)?;
     // Without riders in a cell its own default would be other speeds.
     let speeds = base.search.speeds.clone().unwrap_or_else(|| Speeds::List(search.speeds.clone()));
     let configs: Vec<_> = setups.iter().map(|(config, ..)| config.clone()).collect();
@@ -109,7 +113,32 @@ pub(super) fn resolve(
     for (id, (config, mut scenario, conditions)) in plan.cells.iter().zip(setups) {
         scenario.search.speeds = Some(speeds.clone());
         (scenario.uncertain, scenario.rider_draws, scenario.search.adaptive_speeds) = (None, None, None);
-        cells.push(Cell { id: id.clone(), config, scenario: serde_json::to_value(&scenario)?, conditions });
+        cells.push(Cell { id: id.clone(), config, scenario: json(&scenario), conditions });
     }
-    Ok(Resolved { plan, cells, search })
+    Ok(SweepTask { plan, cells, search, remarks })
+}
+
+/// A configuration or a scenario as JSON.
+fn json(value: &impl serde::Serialize) -> Value {
+    // Neither has keys other than text.
+    serde_json::to_value(value).unwrap_or_default()
+}
+
+/// Computes one cell from its scenario alone, on all cores of the current rayon pool, to the same bits as
+/// [`crate::sweep::run`]; `None` if it was stopped. `id` and `config` are those of the plan.
+///
+/// # Errors
+/// The scenario can't be used.
+pub fn unit(id: &str, config: &Value, scenario: &Value, hooks: Hooks) -> Result<Option<Unit>, CommandError> {
+    let text = scenario.to_string();
+    let read = Scenario::from_json(&text).map_err(|e| CommandError::Cell(format!("cell {id}: {e}")))?;
+    let setup = Setup::new(&read)?;
+    let search = read.search.resolve(read.is_ridden())?;
+    let column = |(i, speed): (usize, &f64)| -> Option<DoneColumn> {
+        let column = (!(hooks.stop)()).then(|| border(&setup.conditions, &search, *speed));
+        (hooks.finished)();
+        column.map(|column| DoneColumn::new(i, &column))
+    };
+    let columns: Option<Vec<DoneColumn>> = search.speeds.par_iter().enumerate().map(column).collect();
+    Ok(columns.map(|columns| Unit::new(id, (config, scenario), columns)))
 }
