@@ -16,6 +16,7 @@ pub mod paths;
 pub mod peak;
 pub mod process;
 pub mod progress;
+pub mod python;
 pub mod qemu;
 pub mod reproducible;
 pub mod rides;

@@ -11,7 +11,7 @@ use xtask::dbc::dbc;
 use xtask::document::{self, instruction_table, size_table};
 use xtask::reproducible::reproducible;
 use xtask::setup::{TargetSource, setup};
-use xtask::{Result, coverage, image, instructions, mutants, paths, progress, qemu, virtual_board};
+use xtask::{Result, coverage, image, instructions, mutants, paths, progress, python, qemu, virtual_board};
 
 const HELP: &str = "\
 cargo xtask <command> [--help]
@@ -51,7 +51,8 @@ const TEST_HELP: &str = "\
 cargo xtask test [--target-source auto|rustup|debian] [--all] [--mutants N] [-- ARGUMENTS OF cargo test]
 
 Runs the set-up, builds the firmware images, then `cargo test` with the tests in QEMU required: a
-missing QEMU or target is a failure, not a skip. There is no time limit; every five minutes a line
+missing QEMU or target is a failure, not a skip. Then installs the Python package in target/python, with
+packages from PyPI, and runs its tests; not without these, nor if the arguments choose packages of cargo. There is no time limit; every five minutes a line
 lists the running programs.
 
   --all        also run the slow tests, and the full sets of tests that run a part by default
@@ -265,8 +266,16 @@ fn target_source(arguments: &[&str], help: &str) -> Result<TargetSource> {
 
 /// The tested packages: with the virtual board, whose emulated core declares a newer Rust version than it needs;
 /// without those that run on the chip only.
-const EVERYTHING: [&str; 6] =
-    ["--workspace", "--exclude", "firmware", "--exclude", "no-panic", "--ignore-rust-version"];
+const EVERYTHING: [&str; 8] = [
+    "--workspace",
+    "--exclude",
+    "firmware",
+    "--exclude",
+    "no-panic",
+    "--exclude",
+    "steer-assist-python",
+    "--ignore-rust-version",
+];
 
 fn test(words: &[&str]) -> Result<()> {
     let split = words.iter().position(|argument| *argument == "--").unwrap_or(words.len());
@@ -279,11 +288,13 @@ fn test(words: &[&str]) -> Result<()> {
         source => (source, false),
     };
     setup(target_source(source, TEST_HELP)?)?;
-    image::build_all()?;
     let arguments = words.get(split + 1..).unwrap_or_default();
+    let whole = !arguments.iter().any(|word| word.starts_with("-p") || word.starts_with("--package"));
+    let python = whole.then(python::environment).flatten();
+    image::build_all()?;
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     cargo.current_dir(paths::root()).arg("test").env("STEER_ASSIST_REQUIRE_QEMU", "1");
-    if !arguments.iter().any(|word| word.starts_with("-p") || word.starts_with("--package")) {
+    if whole {
         cargo.args(EVERYTHING);
     }
     cargo.args(arguments);
@@ -292,6 +303,7 @@ fn test(words: &[&str]) -> Result<()> {
         cargo.env("STEER_ASSIST_SLOW", "1").args(separator).arg("--include-ignored");
     }
     progress::must_whenever(&mut cargo)?;
+    python.map_or(Ok(()), |python| python::test(&python))?;
     sample.map_or(Ok(()), |sample| mutants::mutants(Some(sample), &[]))
 }
 

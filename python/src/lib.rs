@@ -1,0 +1,41 @@
+//! The simulator as the Python module `steer_assist._core`. Scenarios and documents pass the border as JSON, records as
+//! columns of bytes; the package around it (`python/steer_assist`) makes them Python's.
+#![allow(unsafe_code, reason = "the macros of PyO3 write it: functions that the interpreter calls")]
+
+mod basin;
+mod catalogue;
+mod eigen;
+mod error;
+mod identify;
+mod law;
+mod plane;
+mod replay;
+mod ride;
+mod scenario;
+mod sweep;
+mod work;
+
+use pyo3::prelude::*;
+
+/// The module.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::basin::basin;
+    #[pymodule_export]
+    use super::catalogue::{bicycle_keys, bicycles, riders};
+    #[pymodule_export]
+    use super::eigen::eigen;
+    #[pymodule_export]
+    use super::identify::identify;
+    #[pymodule_export]
+    use super::plane::plane;
+    #[pymodule_export]
+    use super::replay::replay;
+    #[pymodule_export]
+    use super::ride::ride;
+    #[pymodule_export]
+    use super::scenario::{check, read};
+    #[pymodule_export]
+    use super::sweep::{axes, sweep_cell, sweep_document, sweep_plan};
+}

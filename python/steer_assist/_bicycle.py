@@ -1,0 +1,69 @@
+"""Bicycles from dictionaries and from objects of BicycleParameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from . import _core
+from .errors import ScenarioError
+
+IGNORED = {"v"}  # A forward speed, which BicycleParameters keeps beside the parameters.
+
+
+def as_bicycle(value: Any) -> Any:
+    """A scenario's ``bicycle`` from a name, a file, a scenario's own form, a dictionary, or an object.
+
+    Parameters
+    ----------
+    value : str, path, mapping or object
+        Shipped name, ``FILE`` or ``FILE#NAME``; the 26 benchmark parameters (Meijaard et al. 2007, Table 1, with ``g``;
+        SI units, ``lam`` in rad), with or without uncertainties (``uncertainties.ufloat``); or an object of
+        BicycleParameters: ``Bicycle`` or a parameter set.
+    """
+    if isinstance(value, (str, Path)):
+        return str(value)
+    if isinstance(value, Mapping):
+        return value if "parameters" in value else from_parameters(value, str(value.get("name", "own")))
+    if hasattr(value, "parameters"):
+        name = getattr(value, "bicycleName", None) or getattr(value, "name", None) or type(value).__name__
+        return from_parameters(benchmark(value), str(name))
+    raise ScenarioError(f"bicycle: an object of type {type(value).__name__} is no bicycle", "bicycle")
+
+
+def benchmark(value: Any) -> Mapping[str, Any]:
+    """The benchmark parameters of an object of BicycleParameters."""
+    parameters = value.parameters
+    if "Benchmark" in parameters:
+        return parameters["Benchmark"]
+    if "IBxx" not in parameters and hasattr(value, "to_parameterization"):
+        return value.to_parameterization("Meijaard2007").parameters
+    return parameters
+
+
+def from_parameters(values: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """A scenario's own form of a bicycle from its benchmark parameters."""
+    keys = _core.bicycle_keys()
+    given = {key: value for key, value in values.items() if key not in IGNORED | {"name"}}
+    unknown = [key for key in given if key not in keys]
+    if unknown:
+        raise ScenarioError(
+            f"bicycle: `{unknown[0]}` is no parameter; the parameters are {', '.join(keys)}", f"bicycle.{unknown[0]}"
+        )
+    missing = [key for key in keys if key not in given]
+    if missing:
+        raise ScenarioError(f"bicycle: `{missing[0]}` is missing", f"bicycle.{missing[0]}")
+    pairs = {key: (number(key, given[key]), float(getattr(given[key], "std_dev", 0.0))) for key in keys}
+    bicycle: dict[str, Any] = {"name": name, "parameters": {key: value for key, (value, _) in pairs.items()}}
+    if any(sd > 0.0 for _, sd in pairs.values()):
+        bicycle["measured"] = {"bicycle": [{"value": value, "sd": sd} for value, sd in pairs.values()]}
+    return bicycle
+
+
+def number(key: str, value: Any) -> float:
+    """The nominal value of a parameter."""
+    try:
+        return float(getattr(value, "nominal_value", value))
+    except (TypeError, ValueError):
+        raise ScenarioError(f"bicycle.{key}: {value!r} is no number", f"bicycle.{key}") from None

@@ -1,0 +1,70 @@
+"""Values of a scenario as plain data; what is wrong with them, by key."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .errors import ScenarioError, UnitsWarning
+
+#: Magnitudes above which a value is probably not in its unit, by the end of its key.
+SUSPICIOUS = [
+    ("roll_rate_rad_s", 10.0, "rad/s"),
+    ("steer_rate_rad_s", 40.0, "rad/s"),
+    ("max_roll_rate", 60.0, "rad/s"),
+    ("max_steer_rate", 60.0, "rad/s"),
+    ("search.max_rate", 60.0, "rad/s"),
+    ("_rad", 2.0 * math.pi, "rad"),
+    (".lam", 1.4, "rad"),
+]
+
+
+def plain(value: Any, key: str = "") -> Any:
+    """The value as dictionaries, lists, numbers and text; None is left out of dictionaries.
+
+    Raises
+    ------
+    ScenarioError
+        A number that is not finite, an array of more than one dimension, or a value of another kind, with its key.
+    """
+    if isinstance(value, Mapping):
+        inner = {str(name): plain(item, f"{key}.{name}" if key else str(name)) for name, item in value.items()}
+        return {name: item for name, item in inner.items() if item is not None}
+    if isinstance(value, np.ndarray) or (hasattr(value, "to_numpy") and not isinstance(value, str)):
+        return listed(np.asarray(value), key)
+    if isinstance(value, (list, tuple, range)):
+        return [plain(item, f"{key}[{i}]") for i, item in enumerate(value)]
+    if isinstance(value, np.generic):
+        return plain(value.item(), key)
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ScenarioError(f"{key} = {value} is not a finite number", key)
+    if isinstance(value, Path):
+        return str(value)
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    raise ScenarioError(f"{key}: a {type(value).__name__} is no value of a scenario", key)
+
+
+def listed(array: np.ndarray, key: str) -> Any:
+    """An array as a number or a list."""
+    if array.ndim > 1:
+        raise ScenarioError(f"{key}: an array of shape {array.shape}; expected one dimension", key)
+    return plain(array.tolist(), key)
+
+
+def doubt_units(value: Any, key: str = "") -> None:
+    """Warns of numbers that look as if they were in degrees."""
+    if isinstance(value, Mapping):
+        for name, item in value.items():
+            doubt_units(item, f"{key}.{name}" if key else name)
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        for end, most, unit in SUSPICIOUS:
+            if key.endswith(end) and abs(value) > most:
+                message = f"{key} = {value} {unit} is unusually large; is it in degrees?"
+                warnings.warn(message, UnitsWarning, stacklevel=5)
+                return

@@ -1,0 +1,80 @@
+"""One ride."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from . import _core, _law
+from ._data import attributes, unit_of, variable
+from ._scenario import scenario as as_scenario
+from ._scenario import short, text
+from .errors import Interrupted
+
+ABOUT = {
+    "roll_rad": "roll, to the right",
+    "steer_rad": "steer, to the right",
+    "pitch_rad": "pitch of the rear frame",
+    "roll_rate_rad_s": "roll rate",
+    "steer_rate_rad_s": "steer rate",
+    "yaw_rate_rad_s": "yaw rate",
+    "rear_wheel_rate_rad_s": "rear wheel rate, negative forward",
+    "rear_speed_m_s": "forward speed of the rear wheel",
+    "front_speed_m_s": "forward speed of the front wheel",
+    "measured_roll_rate_rad_s": "roll rate that the controller measures",
+    "measured_speed_m_s": "speed that the controller measures",
+    "torque_nm": "steer torque commanded by the assist, to the right",
+    "rider_torque_nm": "steer torque of the rider, to the right",
+    "motor_torque_nm": "steer torque of the motor, to the right",
+    "mode": "mode of the controller, by number",
+}
+
+
+def ride(scenario: Any = None, /, *, law: Any = None, **changes: Any) -> xr.Dataset:
+    """Rides once after a disturbance, until a fall or the time limit.
+
+    Parameters
+    ----------
+    scenario : mapping, path or Dataset, optional
+        The experiment; see :func:`steer_assist.scenario`.
+    law : str, mapping, DataFrame or callable, optional
+        Name of a law, a table (``speed_m_s``, ``gain_nm_s_rad``), or a function ``f(roll_rate_rad_s, speed_m_s) ->
+        torque_nm`` of two numbers, positive steering to the right. A function is the ideal path: continuous, with exact sensors, no
+        limits, called about 24,000 times in a ride of 6 s (docs/python.md).
+    **changes
+        Keys of the scenario; those of ``start`` directly: ``speed_m_s`` [m/s], ``steer_rate_rad_s``, ``roll_rate_rad_s`` [rad/s].
+
+    Returns
+    -------
+    Dataset
+        Variables over ``time_s`` [s], one point per control period: angles [rad], rates [rad/s], speeds [m/s], torques [N m], ``limits``
+        and ``causes`` as bits. Attributes ``outcome`` ("fallen", "recovered", "undecided"), ``time_to_fall_s`` (of a fall),
+        ``effort`` entries such as ``peak_torque_nm``, and ``document``.
+
+    Raises
+    ------
+    ScenarioError
+        With ``key`` and ``range``.
+    """
+    law, function = _law.split(law)
+    data = as_scenario(scenario, **short({**changes, **({} if law is None else {"law": law})}, "start"))
+    _law.check(function, mirrored=False)
+    document, columns, interrupted = _core.ride(text(data), function)
+    if interrupted:
+        raise Interrupted("the ride was interrupted")
+    time = np.frombuffer(columns.pop("time_s"))
+    whole = {"limits": "active limits, as bits", "causes": "causes that prevent or reduce torque, as bits"}
+    bits = {
+        name: variable("time_s", np.frombuffer(columns.pop(name), dtype=np.uint64), "1", about) for name, about in whole.items()
+    }
+    values = {
+        name: variable("time_s", np.frombuffer(column), unit_of(name), ABOUT[name]) for name, column in columns.items()
+    }
+    content = json.loads(document)
+    keys = ["outcome", "time_to_fall_s", "fall"]
+    attrs = {**attributes(content, document, keys), **content["effort"]}
+    coords = {"time_s": variable("time_s", time, "s", "time since the disturbance")}
+    return xr.Dataset({**values, **bits}, coords, attrs)
