@@ -5,11 +5,12 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// The options whose value is a file to write.
-const OUTPUTS: [&str; 10] = [
+const OUTPUTS: [&str; 11] = [
     "--csv",
     "--frames",
     "--json",
     "--law-file",
+    "--netcdf",
     "--out",
     "--png",
     "--record",
@@ -77,6 +78,7 @@ mod tests {
         assert!(refused(&format!("identify {path} --json {path}")).is_some_and(|why| why.contains("--json")));
         assert!(refused(&format!("basin --rider={path} --out=src/../{path}")).is_some());
         assert!(refused(&format!("basin --bicycle {path}#name --svg {path}")).is_some());
+        assert!(refused(&format!("ride --scenario {path} --netcdf {path}")).is_some());
         assert_eq!(refused(&format!("identify {path} --json --csv new.csv")), None);
         assert_eq!(refused(&format!("identify {path} --json new.json")), None);
         assert_eq!(

@@ -6,6 +6,7 @@ mod bad_input;
 mod bicycle_files;
 mod capped;
 mod contract;
+mod data;
 mod design;
 mod details;
 mod document;
