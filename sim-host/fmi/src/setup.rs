@@ -15,6 +15,7 @@ pub const MODEL_FILE: &str = "model.json";
 /// A model with its defaults.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[expect(clippy::large_enum_variant, reason = "each instance has one")]
 pub enum Setup {
     /// The flashed control step.
     Controller {
