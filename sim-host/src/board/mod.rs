@@ -1,5 +1,6 @@
 //! Client for a board on a serial link: requests, tuning and monitoring, with the same `link` crate as the firmware.
 
+pub mod broadcast;
 pub mod causes;
 pub mod client;
 pub mod exception;
@@ -13,6 +14,7 @@ pub mod recorded;
 pub mod requests;
 pub mod serial;
 pub mod settings;
+pub mod socketcan;
 pub mod telemetry_row;
 pub mod transport;
 pub mod tune;

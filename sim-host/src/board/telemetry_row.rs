@@ -2,11 +2,12 @@
 
 use control::{Sample, Triple, sensors::frame::MISSING};
 use link::telemetry::Telemetry;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// One control step as reported by the board. Sensor values are raw: in the sensor's own axes, zeros and signs; empty
 /// without a sample.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TelemetryRow {
     /// The board's clock \[s\].
     pub t: f64,

@@ -1,10 +1,12 @@
 //! `sim-host monitor`: live values of a board as a panel, lines, a table or a recording.
 
 use super::faults::no_recording;
-use super::monitor_view::{View, summary};
+use super::monitor_files::{Mcap, Table, open};
+use super::monitor_text::{line as text_line, panel, summary};
+use super::monitor_view::{Seen, View};
 use super::outputs::complain;
 use super::port_args::{PortArgs, board};
-use super::{Ended, Failure, interrupt};
+use super::{Ended, Failure, interrupt, monitor_can};
 use crate::board::monitor::{Monitor, News};
 use crate::board::printable::printable;
 use crate::board::received::ReceivedMessage;
@@ -14,16 +16,14 @@ use crate::board::telemetry_row::TelemetryRow;
 use crate::board::{BoardName, Client, ClientError, RetryPolicy, Transport, TransportError};
 use crate::range::{TimeError, time};
 use crate::report::output::Output;
-use crate::report::table::heading;
+use link::telemetry::Telemetry;
 use serde_json::json;
-use std::fs::File;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 const EXAMPLES: &str = "\
-Ends with Ctrl-C, after --for, at the end of --file, or when the line is lost; written files remain.
+Ends with Ctrl-C, after --for, at the end of a recording, or when the line is lost; written files remain.
 A lost serial port is reopened when it is back within the time of --reopen.
 If standard output is no terminal, it prints a line per second and one for every change of mode, causes, drive
 or missed deadlines.
@@ -31,34 +31,43 @@ or missed deadlines.
 Examples:
   sim-host monitor --port /dev/ttyACM0
   sim-host monitor --port /dev/ttyACM0 --record ride.link --csv ride.csv
-  sim-host monitor --file ride.link --csv ride.csv";
+  sim-host monitor --file ride.link --csv ride.csv
+  sim-host monitor --can can0 --mcap ride.mcap
+  sim-host monitor --can ride.blf --csv ride.csv";
 
 /// Silence after which a message is shown.
-const SILENCE: Duration = Duration::from_secs(2);
+pub(super) const SILENCE: Duration = Duration::from_secs(2);
 
 /// Time between two attempts to reopen a lost line.
 const RETRY_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Options of `monitor`.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLES, group = board().arg("file"))]
+#[command(after_help = EXAMPLES, group = board().arg("file").arg("can"))]
 pub(super) struct Args {
     #[command(flatten)]
     port: PortArgs,
     /// A recording of --record, read as fast as possible
     #[arg(long, value_name = "FILE")]
     file: Option<PathBuf>,
-    /// Write every control step of the telemetry as a CSV table, at once; - is standard output
+    /// The board's frames on CAN instead of its link: an interface of Linux, for example can0, or a recording (candump, ASC, BLF,
+    /// MDF 4), read as fast as possible
+    #[arg(long, value_name = "INTERFACE|FILE")]
+    pub(super) can: Option<String>,
+    /// Write every control step of the telemetry, with --can every broadcast, as a CSV table, at once; - is standard output
     #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-    /// Write the received raw bytes for --file, at once; - is standard output
+    pub(super) csv: Option<PathBuf>,
+    /// Write the rows of --csv as MCAP, for Foxglove and PlotJuggler
+    #[arg(long, value_name = "FILE")]
+    pub(super) mcap: Option<PathBuf>,
+    /// Write the received raw bytes for --file, with --can the frames as a log of candump, at once; - is standard output
     #[arg(long, value_name = "FILE", conflicts_with = "file")]
-    record: Option<PathBuf>,
+    pub(super) record: Option<PathBuf>,
     /// End after this time, for example 10s [default: never]
     #[arg(long = "for", value_name = "TIME", value_parser = duration, conflicts_with = "file")]
-    length: Option<f64>,
+    pub(super) length: Option<f64>,
     /// Longest wait for a lost serial port; 0s ends at once
-    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "60s", conflicts_with = "file")]
+    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "60s", conflicts_with_all = ["file", "can"])]
     reopen: f64,
 }
 
@@ -72,6 +81,7 @@ struct Session {
     monitor: Monitor,
     view: View,
     table: Option<Table>,
+    mcap: Option<Mcap>,
     /// Damaged frames before the first whole one: reception begins in the middle of a frame.
     damaged_before: u32,
     begin: Instant,
@@ -84,19 +94,18 @@ struct Session {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let place = |path: &Option<PathBuf>| path.as_deref().map(Output::create).transpose();
-    let (csv, record) = (place(&args.csv)?, place(&args.record)?);
-    if let (Some(csv), Some(record)) = (&csv, &record)
-        && csv.collides(record)
-    {
-        return Err("--csv and --record have the same place to write to".into());
-    }
-    let quiet = [&csv, &record].into_iter().flatten().any(Output::is_standard);
+    let quiet = places(args)?;
     interrupt::install_saying("ending");
+    if let Some(source) = &args.can {
+        return monitor_can::run(args, source, quiet);
+    }
     let mut client = Client::new(line(args)?, RetryPolicy::default());
     let board = if args.file.is_some() { None } else { Some(client.hello()?) };
     let title = board.as_ref().map_or("a recording".to_owned(), BoardName::label);
-    let table = args.csv.as_deref().map(|path| Table::create(path, &json!({"board": board}))).transpose()?;
+    let config = json!({"board": board});
+    let table = args.csv.as_deref().map(|path| Table::create(path, &config)).transpose()?;
+    let mcap = args.mcap.as_deref();
+    let mcap = mcap.map(|path| Mcap::create::<TelemetryRow>(path, "/board", &config)).transpose()?;
     let view = if quiet { View::None } else { View::new(title)? };
     let damaged_before = client.damaged();
     let mut session = Session {
@@ -104,6 +113,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         monitor: Monitor::default(),
         view,
         table,
+        mcap,
         damaged_before,
         begin: Instant::now(),
         length: args.length.map(Duration::from_secs_f64),
@@ -123,6 +133,27 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         }
         _ => Ok(ended),
     }
+}
+
+/// Checks the places to write to; whether one of them is standard output.
+fn places(args: &Args) -> Result<bool, Failure> {
+    let options = [("--csv", &args.csv), ("--record", &args.record), ("--mcap", &args.mcap)];
+    let mut places: Vec<(&str, Output)> = Vec::new();
+    for (option, path) in options {
+        let Some(path) = path else { continue };
+        let place = Output::create(path)?;
+        if let Some((other, _)) = places.iter().find(|(_, other)| other.collides(&place)) {
+            return Err(format!("{other} and {option} have the same place to write to").into());
+        }
+        if option == "--mcap" && place.is_standard() {
+            return Err("--mcap needs a file, not standard output".into());
+        }
+        if option == "--record" && path.extension().is_some_and(|extension| extension == "mcap") {
+            return Err("--record writes what was received as it is; --mcap writes MCAP".into());
+        }
+        places.push((option, place));
+    }
+    Ok(places.iter().any(|(_, place)| place.is_standard()))
 }
 
 /// The line to monitor, recorded to a file if requested.
@@ -165,7 +196,8 @@ impl Session {
             }
             received.iter().try_for_each(|received| self.take(received))?;
             self.table.as_mut().map_or(Ok(()), Table::flush)?;
-            self.view.draw(&self.monitor, self.damaged())?;
+            let damaged = self.damaged();
+            self.view.draw(|| panel(&self.monitor, damaged))?;
         }
     }
 
@@ -212,7 +244,11 @@ impl Session {
         match self.monitor.take(received) {
             News::Step(row) => {
                 self.table.as_mut().map_or(Ok(()), |table| table.write(&row))?;
-                self.view.step(&self.monitor, self.damaged())
+                self.mcap.as_mut().map_or(Ok(()), |mcap| mcap.write(row.t, &row))?;
+                let (damaged, Some(step)) = (self.damaged(), &self.monitor.newest) else { return Ok(()) };
+                let Telemetry { command, driven, late, .. } = *step;
+                let seen = Seen { mode: command.mode, causes: command.causes, driven, late };
+                self.view.step(self.monitor.t, seen, || text_line(&self.monitor, step, damaged))
             }
             News::Fault(fault) => self.view.say(&format!("fault: {fault}")),
             News::Log(words) => self.view.say(&format!("log: {}", printable(&words))),
@@ -220,9 +256,10 @@ impl Session {
         }
     }
 
-    /// Shows the summary and completes the table.
+    /// Shows the summary and completes the files.
     fn end(&mut self) -> Result<(), Failure> {
         self.table.as_mut().map_or(Ok(()), Table::flush)?;
+        self.mcap.take().map_or(Ok(()), Mcap::finish)?;
         self.view.say(&summary(&self.monitor, self.damaged()))
     }
 
@@ -234,40 +271,4 @@ impl Session {
     fn damaged(&self) -> u32 {
         self.client.damaged().wrapping_sub(self.damaged_before)
     }
-}
-
-/// A table whose rows are written at once.
-struct Table {
-    path: String,
-    rows: csv::Writer<Box<dyn Write>>,
-}
-
-impl Table {
-    fn create(path: &Path, config: &serde_json::Value) -> Result<Self, Failure> {
-        let mut file = open(path)?;
-        file.write_all(heading(config).as_bytes())?;
-        Ok(Self { path: path.display().to_string(), rows: csv::Writer::from_writer(file) })
-    }
-
-    fn write(&mut self, row: &TelemetryRow) -> Result<(), Failure> {
-        self.rows.serialize(row).map_err(|error| failed(&self.path, error.into()))
-    }
-
-    fn flush(&mut self) -> Result<(), Failure> {
-        self.rows.flush().map_err(|error| failed(&self.path, error))
-    }
-}
-
-/// Opens a file for writing at once; an older one is truncated.
-fn open(path: &Path) -> Result<Box<dyn Write>, Failure> {
-    if path == Path::new("-") {
-        return Ok(Box::new(io::stdout()));
-    }
-    let file = File::create(path).map_err(|error| failed(&path.display().to_string(), error))?;
-    Ok(Box::new(file))
-}
-
-/// Keeps a closed standard output recognisable; other errors name the file.
-fn failed(path: &str, error: io::Error) -> Failure {
-    if path == "-" { error.into() } else { format!("can't write {path}: {error}").into() }
 }

@@ -3,6 +3,7 @@
 use super::ended::{Failure, is_broken_pipe};
 use crate::bicycle::catalogue::Bicycle;
 use crate::report::figure::Picture;
+use crate::report::mcap;
 use crate::report::netcdf;
 use crate::report::output::Output;
 use crate::report::picture::{caption, png_with_caption, svg_with_caption};
@@ -39,6 +40,7 @@ pub(super) struct Outputs {
     png: Option<Output>,
     frames: Option<Output>,
     netcdf: Option<Output>,
+    mcap: Option<Output>,
     quiet: bool,
 }
 
@@ -49,6 +51,8 @@ pub(super) struct Further<'a> {
     pub(super) frames: Option<&'a Path>,
     /// A NetCDF file.
     pub(super) netcdf: Option<&'a Path>,
+    /// An MCAP file.
+    pub(super) mcap: Option<&'a Path>,
 }
 
 /// The results to write; those that were not requested are not computed.
@@ -76,6 +80,9 @@ impl OutputArgs {
     /// Checks every requested output.
     pub(super) fn open(&self, further: Further) -> Result<Outputs, Failure> {
         let open = |path: &Option<PathBuf>| path.as_deref().map(Output::create).transpose();
+        if further.mcap.is_some() {
+            mcap::available().map_err(|error| format!("--mcap: {error}"))?;
+        }
         let outputs = Outputs {
             json: open(&self.json)?,
             csv: open(&self.csv)?,
@@ -83,6 +90,7 @@ impl OutputArgs {
             png: open(&self.png)?,
             frames: further.frames.map(Output::create).transpose()?,
             netcdf: further.netcdf.map(Output::create).transpose()?,
+            mcap: further.mcap.map(Output::create).transpose()?,
             quiet: self.quiet,
         };
         let all = outputs.all();
@@ -104,6 +112,7 @@ impl Outputs {
             ("--png", &self.png),
             ("--frames", &self.frames),
             ("--netcdf", &self.netcdf),
+            ("--mcap", &self.mcap),
         ];
         named.into_iter().filter_map(|(name, output)| output.as_ref().map(|o| (name, o))).collect()
     }
@@ -141,6 +150,14 @@ impl Outputs {
         self.netcdf
             .as_ref()
             .map_or(Ok(()), |output| Ok(output.finish(&file().bytes(netcdf::Format::of(output.path()))?)?))
+    }
+
+    /// Writes the MCAP file, if requested.
+    pub(super) fn write_mcap(
+        &self,
+        content: impl FnOnce() -> Result<Vec<u8>, mcap::McapError>,
+    ) -> Result<(), Failure> {
+        self.mcap.as_ref().map_or(Ok(()), |output| Ok(output.finish(&content()?)?))
     }
 
     /// Writes all other requested results, the text output last. A failed output does not prevent the others; neither

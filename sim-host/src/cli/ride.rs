@@ -8,7 +8,7 @@ use super::{Ended, Failure};
 use crate::commands::Setup;
 use crate::commands::ride::{self, Ridden};
 use crate::report::figure::{self, RideFigure};
-use crate::report::{netcdf, table, terminal};
+use crate::report::{mcap, netcdf, table, terminal};
 use crate::ride::{Conditions, FallCause, FallCriterion, LaidFlat, Ride, Start, frames};
 use control::SensorFrame;
 use control::wire::encode_frame;
@@ -21,7 +21,8 @@ Examples:
   sim-host ride --speed 4 --steer-rate 5
   sim-host ride --law none --speed 6 --steer-rate 1 --svg ride.svg --csv ride.csv
   sim-host ride --rider smart --law h --speed 4 --steer-rate 5
-  sim-host ride --preset product --speed 3 --roll-rate 0.5 --json";
+  sim-host ride --preset product --speed 3 --roll-rate 0.5 --json
+  sim-host ride --speed 4 --steer-rate 5 --mcap ride.mcap";
 
 /// Options of `ride` and of a ride on a board.
 #[derive(clap::Args)]
@@ -34,6 +35,9 @@ pub(super) struct Args {
     /// Write a NetCDF file with CF conventions; a name that ends with .nc4 gives NetCDF-4; - is standard output
     #[arg(long, value_name = "FILE")]
     netcdf: Option<PathBuf>,
+    /// Write the rows of --csv as MCAP, for Foxglove and PlotJuggler
+    #[arg(long, value_name = "FILE")]
+    mcap: Option<PathBuf>,
     #[command(flatten)]
     outputs: OutputArgs,
 }
@@ -41,7 +45,11 @@ pub(super) struct Args {
 impl Args {
     /// Checks every requested output.
     pub(super) fn open(&self) -> Result<Outputs, Failure> {
-        self.outputs.open(Further { frames: self.frames.as_deref(), netcdf: self.netcdf.as_deref() })
+        self.outputs.open(Further {
+            frames: self.frames.as_deref(),
+            netcdf: self.netcdf.as_deref(),
+            mcap: self.mcap.as_deref(),
+        })
     }
 }
 
@@ -81,6 +89,8 @@ pub(super) fn write(
     let framed = outputs.write_frames(|| sensed().iter().flat_map(encode_frame).collect());
     let written = outputs
         .write_netcdf(|| netcdf::ride(&title, netcdf::provenance(&config, &document.scenario), ride, trace));
+    let logged =
+        outputs.write_mcap(|| mcap::file("/ride", &config, trace.iter().map(|point| (point.t, *point))));
     outputs.write(Results {
         document: &document,
         config: &config,
@@ -88,7 +98,7 @@ pub(super) fn write(
         table: || table::table(&config, trace),
         figure: || figure::ride(&figure),
     })?;
-    framed.and(written)
+    framed.and(written).and(logged)
 }
 
 fn summary(ride: &Ride, conditions: &Conditions) -> String {

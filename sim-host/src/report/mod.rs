@@ -7,6 +7,7 @@ pub mod document;
 pub mod figure;
 pub(crate) mod html;
 pub mod identify;
+pub mod mcap;
 pub mod netcdf;
 pub mod output;
 pub mod perturbation;

@@ -12,7 +12,7 @@ use crate::num::Lanes;
 use control::SensorFrame;
 
 /// One instant of a traced ride, at the start of a control period.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct TracePoint {
     /// Time \[s\].
     pub t: f64,

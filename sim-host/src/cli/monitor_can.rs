@@ -1,0 +1,243 @@
+//! `sim-host monitor --can`: a board by its frames on a CAN bus, as they arrive or from a recording.
+
+use super::monitor::{Args, SILENCE};
+use super::monitor_files::{Mcap, Table, failed, open};
+use super::monitor_text::{cause_lines, cause_names, limit_names};
+use super::monitor_view::{Seen, View};
+use super::outputs::complain;
+use super::{Ended, Failure, interrupt};
+use crate::board::broadcast::{Broadcast, BroadcastMonitor, BroadcastRow};
+use crate::board::socketcan::{ArrivedFrame, Bus};
+use crate::recording::frames::{Frames, Id};
+use crate::recording::{Remark, frames};
+use control::{Causes, Mode};
+use link::can::{CAUSES, STATE};
+use serde_json::json;
+use std::io::Write;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// State of a session.
+struct Session {
+    monitor: BroadcastMonitor,
+    /// Error and remote frames.
+    errors: u64,
+    remote: u64,
+    view: View,
+    /// The newest known mode and causes.
+    seen: Seen,
+    table: Option<Table>,
+    mcap: Option<Mcap>,
+}
+
+pub(super) fn run(args: &Args, source: &str, quiet: bool) -> Result<Ended, Failure> {
+    let path = Path::new(source);
+    if !path.is_file() {
+        let bus = Bus::open(source)?;
+        let mut session = Session::new(args, source, None, quiet)?;
+        let followed = session.follow(args, source, &bus);
+        let ended = session.end(&[]);
+        return followed.and(ended);
+    }
+    if args.record.is_some() || args.length.is_some() {
+        return Err(format!("--record and --for are for a CAN interface; {source} is a recording").into());
+    }
+    let frames = frames(path)?;
+    // One board: the first bus with its frames.
+    let board = |id: Id| eleven_bits(id).is_some_and(|id| (STATE..=CAUSES).contains(&id));
+    let Some(first) = frames.iter().find(|frame| board(frame.id)) else {
+        let (count, from, to) = (frames.len(), STATE, CAUSES);
+        return Err(format!(
+            "{source}: none of its {count} frames is of a board (identifiers {from:#x} to {to:#x})"
+        )
+        .into());
+    };
+    let mut session = Session::new(args, source, Some(first.time_s), quiet)?;
+    session.read(&frames, first.bus)?;
+    session.end(&frames.remarks)
+}
+
+/// The number of an identifier of 11 bits.
+fn eleven_bits(id: Id) -> Option<u16> {
+    u16::try_from(id.number).ok().filter(|_| !id.extended)
+}
+
+impl Session {
+    fn new(args: &Args, source: &str, start_s: Option<f64>, quiet: bool) -> Result<Self, Failure> {
+        let config = json!({"can": {"source": source, "start_s": start_s}});
+        let table = args.csv.as_deref().map(|path| Table::create(path, &config)).transpose()?;
+        let mcap = args.mcap.as_deref();
+        let mcap = mcap.map(|path| Mcap::create::<BroadcastRow>(path, "/can", &config)).transpose()?;
+        let view = if quiet { View::None } else { View::new(format!("CAN: {source}"))? };
+        let seen = Seen { mode: Mode::Off, causes: Causes::NONE, driven: false, late: 0 };
+        Ok(Self { monitor: BroadcastMonitor::default(), errors: 0, remote: 0, view, seen, table, mcap })
+    }
+
+    /// Receives frames until the end.
+    fn follow(&mut self, args: &Args, interface: &str, bus: &Bus) -> Result<(), Failure> {
+        let mut record =
+            args.record.as_deref().map(|path| Ok::<_, Failure>((path, open(path)?))).transpose()?;
+        let length = args.length.map(Duration::from_secs_f64);
+        let (begin, mut last_received, mut silence_shown) = (Instant::now(), Instant::now(), false);
+        loop {
+            if interrupt::stopped() || length.is_some_and(|length| begin.elapsed() >= length) {
+                return Ok(());
+            }
+            match bus.receive(Duration::from_millis(50))? {
+                Some(arrived) => {
+                    (last_received, silence_shown) = (Instant::now(), false);
+                    match arrived.frame {
+                        ArrivedFrame::Data(id, data) => {
+                            if let Some((path, to)) = &mut record {
+                                let line = candump(arrived.time_s, interface, id, &data);
+                                let written = to.write_all(line.as_bytes());
+                                written.map_err(|error| failed(&path.display().to_string(), error))?;
+                            }
+                            self.take(arrived.time_s, eleven_bits(id), &data)?;
+                        }
+                        ArrivedFrame::Remote => self.remote += 1,
+                        ArrivedFrame::Error => self.errors += 1,
+                    }
+                }
+                None if last_received.elapsed() > SILENCE && !std::mem::replace(&mut silence_shown, true) => {
+                    self.view.say(&format!("no data for {} s", SILENCE.as_secs()))?;
+                }
+                None => {}
+            }
+            self.table.as_mut().map_or(Ok(()), Table::flush)?;
+            self.draw()?;
+        }
+    }
+
+    /// Processes a recording; frames of other buses count as others.
+    fn read(&mut self, frames: &Frames, bus: u32) -> Result<(), Failure> {
+        (self.errors, self.remote) = (frames.errors, frames.remote);
+        for frame in frames.iter() {
+            if interrupt::stopped() {
+                break;
+            }
+            self.take(frame.time_s, eleven_bits(frame.id).filter(|_| frame.bus == bus), frame.data)?;
+        }
+        self.draw()
+    }
+
+    fn take(&mut self, time_s: f64, identifier: Option<u16>, data: &[u8]) -> Result<(), Failure> {
+        self.monitor.take(time_s, identifier, data).iter().try_for_each(|broadcast| self.show(broadcast))
+    }
+
+    fn show(&mut self, broadcast: &Broadcast) -> Result<(), Failure> {
+        let row = broadcast.row();
+        self.table.as_mut().map_or(Ok(()), |table| table.write(&row))?;
+        let time_s = self.monitor.start_s.unwrap_or_default() + row.t;
+        self.mcap.as_mut().map_or(Ok(()), |mcap| mcap.write(time_s, &row))?;
+        if let Some(state) = broadcast.state {
+            (self.seen.mode, self.seen.driven) = (state.mode, state.driven);
+        }
+        self.seen.causes = broadcast.causes.unwrap_or(self.seen.causes);
+        self.view.step(row.t, self.seen, || line(broadcast, self.monitor.counts.missing))
+    }
+
+    fn draw(&mut self) -> Result<(), Failure> {
+        let (newest, causes, counts) = (self.monitor.newest, self.seen.causes, self.counts());
+        self.view.draw(|| newest.iter().flat_map(panel).chain(cause_lines(causes)).chain([counts]).collect())
+    }
+
+    /// Completes the files and shows the summary; with data that was not decoded, says which.
+    fn end(&mut self, remarks: &[Remark]) -> Result<Ended, Failure> {
+        self.monitor.end().iter().try_for_each(|broadcast| self.show(broadcast))?;
+        self.table.as_mut().map_or(Ok(()), Table::flush)?;
+        self.mcap.take().map_or(Ok(()), Mcap::finish)?;
+        let t = self.monitor.newest.map_or(0.0, |newest| newest.t);
+        let summary = format!("{}; {t:.3} s", self.counts());
+        self.view.say(&summary)?;
+        let counts = self.monitor.counts;
+        let unread: Vec<String> =
+            [(counts.wrong_length, "frames of a wrong length"), (counts.unknown, "frames not understood")]
+                .into_iter()
+                .filter(|(count, _)| *count > 0)
+                .map(|(count, what)| format!("{count} {what}"))
+                .chain(remarks.iter().map(ToString::to_string))
+                .collect();
+        if !unread.is_empty() {
+            complain(&format!("warning: part of the data was not decoded: {}", unread.join(", ")));
+        }
+        let ended = if unread.is_empty() { Ended::Done } else { Ended::Partly };
+        Ok(if interrupt::stopped() { Ended::Interrupted } else { ended })
+    }
+
+    /// Counts of received frames.
+    fn counts(&self) -> String {
+        let counts = self.monitor.counts;
+        let further = [
+            (counts.wrong_length, "of a wrong length"),
+            (counts.unknown, "not understood"),
+            (counts.other, "of others"),
+            (self.errors, "error frames"),
+            (self.remote, "remote frames"),
+            (counts.stopped, "broadcasts with control stopped"),
+            (counts.time_backs, "times back"),
+        ];
+        let further = further.iter().filter(|(count, _)| *count > 0);
+        let further: String = further.map(|(count, what)| format!(", {count} {what}")).collect();
+        format!("{} frames, {} missing{further}", counts.frames, counts.missing)
+    }
+}
+
+fn number(value: Option<f32>) -> String {
+    value.map_or("-".to_owned(), |value| format!("{value:.2}"))
+}
+
+/// A broadcast in a line; values that are not known as -.
+fn line(broadcast: &Broadcast, missing: u64) -> String {
+    let row = broadcast.row();
+    let state = match broadcast.state {
+        Some(state) => format!("{}{}", state.mode.name(), if state.driven { "" } else { " (motor off)" }),
+        None => "state missing".to_owned(),
+    };
+    format!(
+        "{:.3} s {state}, torque {} N m, roll rate {} rad/s, steer {} rad, speed rear {} m/s, authority {}, limits {}, causes {}, missing {missing}",
+        row.t,
+        number(row.torque),
+        number(row.measured_roll_rate),
+        number(row.measured_steer),
+        number(row.measured_rear_speed),
+        number(row.authority),
+        broadcast.state.map_or("-".to_owned(), |state| limit_names(state.limits)),
+        broadcast.causes.map_or("-".to_owned(), cause_names),
+    )
+}
+
+/// A broadcast in several lines, without its causes.
+fn panel(broadcast: &Broadcast) -> Vec<String> {
+    let row = broadcast.row();
+    let switch = |on: Option<bool>| on.map_or("-", |on| if on { "on" } else { "off" });
+    vec![
+        format!("{:10.3} s", row.t),
+        format!(
+            "mode       {}, motor {}, switch {}",
+            broadcast.state.map_or("-", |state| state.mode.name()),
+            switch(row.driven),
+            switch(row.engage)
+        ),
+        format!(
+            "torque     {:>8} N m     motor {:>8} N m     authority {:>5}",
+            number(row.torque),
+            number(row.measured_motor_torque),
+            number(row.authority)
+        ),
+        format!(
+            "roll rate  {:>8} rad/s   steer {:>8} rad",
+            number(row.measured_roll_rate),
+            number(row.measured_steer)
+        ),
+        format!("speed      {:>8} rear, m/s", number(row.measured_rear_speed)),
+        format!("limits     {}", broadcast.state.map_or("-".to_owned(), |state| limit_names(state.limits))),
+    ]
+}
+
+/// A frame as a line of `candump -L`.
+fn candump(time_s: f64, interface: &str, id: Id, data: &[u8]) -> String {
+    let digits = if id.extended { 8 } else { 3 };
+    let bytes: String = data.iter().map(|byte| format!("{byte:02X}")).collect();
+    format!("({time_s:.6}) {interface} {:0digits$X}#{bytes}\n", id.number)
+}

@@ -1,0 +1,294 @@
+//! `sim-host monitor --can`: a board's frames from recordings and from an interface.
+
+use super::blf::{classic, container, log, object};
+use control::sensors::polarity::PolarityStep;
+use control::{ActiveLimits, Cause, Causes, Mode};
+use link::can::{Message, Motion, PERIOD_MS, State};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use sim_host::board::broadcast::{Broadcast, BroadcastMonitor};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+use tests::cli::{Bench, repository};
+use tests::draws::runner;
+use tests::python;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
+
+/// The frames of the broadcast `n`, in the order of their priority; the mode changes at the tenth, and every value with
+/// `n`.
+pub(super) fn broadcast(n: u16) -> [Message; 3] {
+    let x = f32::from(n);
+    let state = State {
+        mode: if n < 10 { Mode::Standby } else { Mode::Engaged },
+        driven: n >= 10,
+        engage: true,
+        polarity: PolarityStep::Passed,
+        limits: ActiveLimits::RATE,
+        authority: Some(0.5),
+        speed_m_s: Some(4.0 + 0.01 * x),
+        steps: (n * 20) as u8,
+    };
+    let motion = Motion {
+        roll_rate_rad_s: Some(-0.1 + 0.001 * x),
+        steer_rad: (n != 7).then_some(0.0001 * x),
+        commanded_nm: Some(-0.02 * x),
+        measured_nm: None,
+    };
+    // 59 and 1 together have more bits than a double.
+    let causes = if n < 10 { Causes::all(&[Cause::Crash, Cause::GyroLost]) } else { Causes::NONE };
+    [Message::State(state), Message::Motion(motion), Message::Causes(causes)]
+}
+
+/// Time, identifier and bytes of every frame of the first broadcasts, from 1.7e9 s on.
+fn ride(broadcasts: u16) -> Vec<(f64, u16, [u8; 8])> {
+    let frames = (0..broadcasts).flat_map(|n| {
+        let start_s = f64::from(n) * PERIOD_MS as f64 / 1e3;
+        broadcast(n).into_iter().zip(0..3).map(move |(message, k)| {
+            let frame = message.frame();
+            (1.7e9 + start_s + 0.0003 * f64::from(k), frame.identifier, frame.bytes)
+        })
+    });
+    frames.collect()
+}
+
+/// Frames as a log of candump.
+fn candump(frames: &[(f64, u16, [u8; 8])]) -> String {
+    let hex = |bytes: &[u8]| bytes.iter().map(|byte| format!("{byte:02X}")).collect::<String>();
+    frames.iter().map(|(t, id, bytes)| format!("({t:.6}) can0 {id:03X}#{}\n", hex(bytes))).collect()
+}
+
+/// Frames as a log of Vector.
+fn blf(frames: &[(f64, u16, [u8; 8])]) -> Vec<u8> {
+    let objects = frames.iter().map(|(t, id, bytes)| {
+        object(86, ((t - 1.7e9) * 1e9).round() as u64, &classic(1, 0, 8, u32::from(*id), *bytes))
+    });
+    log(&container(&objects.collect::<Vec<_>>().concat()))
+}
+
+/// The rows of a table below its heading.
+fn rows(table: &str) -> Vec<&str> {
+    table.lines().filter(|line| !line.starts_with('#')).collect()
+}
+
+/// Situation: 100 broadcasts as a log of candump and as one of Vector.
+/// Action: monitor each, with a table. Must hold: the tables are equal; a row per broadcast with its values and time;
+/// empty where the board does not know a value; the causes in full and in halves; nothing missing; a line of text for
+/// the changed mode.
+#[test]
+fn a_recording_becomes_rows() {
+    let (bench, frames) = (Bench::new(PROGRAM), ride(100));
+    bench.write("ride.log", candump(&frames));
+    bench.write("ride.blf", blf(&frames));
+    let run = bench.run("monitor --can ride.log --csv log.csv");
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{run:?}");
+    assert!(run.stdout.starts_with("CAN: ride.log\n"), "{}", run.stdout);
+    let engaged = "0.200 s engaged, torque -0.20 N m, roll rate -0.09 rad/s, steer 0.00 rad, speed rear 4.10 m/s, \
+                   authority 0.50, limits rate, causes none, missing 0";
+    assert!(run.stdout.contains(engaged), "{}", run.stdout);
+    assert!(run.stdout.contains("59 Crash: "), "{}", run.stdout);
+    assert!(run.stdout.ends_with("300 frames, 0 missing; 1.980 s\n"), "{}", run.stdout);
+    let quiet = bench.run("monitor --can ride.blf --csv -");
+    assert_eq!(quiet.code, Some(0), "{quiet:?}");
+    let table = bench.read("log.csv");
+    let (head, data) = (rows(&table)[0], &rows(&table)[1..]);
+    assert_eq!(
+        head,
+        "t,steps_low,driven,mode,causes,limits,torque,engage,authority,measured_roll_rate,measured_steer,\
+         measured_rear_speed,measured_motor_torque,polarity,causes_low,causes_high"
+    );
+    assert_eq!(data.len(), 100);
+    for (n, (row, other)) in data.iter().zip(&rows(&quiet.stdout)[1..]).enumerate() {
+        let [cells, other] = [row, other].map(|row| row.split(',').collect::<Vec<_>>());
+        let [t, other_t] = [&cells, &other].map(|cells| cells[0].parse::<f64>().unwrap());
+        // A time since 1970 has steps of 0.24 us as a double.
+        assert!((t - 0.02 * n as f64).abs() < 1e-6 && (t - other_t).abs() < 1e-6, "{row}");
+        assert_eq!(cells[1..], other[1..]);
+        let causes = if n < 10 { 1_u64 << 59 | 2 } else { 0 };
+        let halves = [causes, causes & 0xffff_ffff, causes >> 32].map(|x| x.to_string());
+        assert_eq!([cells[4], cells[14], cells[15]], halves.each_ref().map(String::as_str));
+        let near = |cell: &str, value: f64| (cell.parse::<f64>().unwrap() - value).abs() < 1.1e-3;
+        assert!(near(cells[6], -0.02 * n as f64) && near(cells[11], 4.0 + 0.01 * n as f64), "{row}");
+        assert_eq!((cells[10].is_empty(), cells[12]), (n == 7, ""), "{row}");
+    }
+}
+
+/// Situation: a log with two lost broadcasts, a lost frame, a frame of seven bytes, one with a mode that does not exist,
+/// frames of another node and of another bus, an error frame, a request, a line that is no frame.
+/// Action: monitor it.
+/// Must hold: each is named and counted, exit code 3; the other rows are there, with empty cells for what is missing.
+#[test]
+fn what_is_missing_or_wrong_is_counted() {
+    let (bench, frames) = (Bench::new(PROGRAM), ride(50));
+    // Broadcasts 20 and 21 as a whole, and the causes of 30.
+    let kept = |n: usize| !(60..66).contains(&n) && n != 92;
+    let some: Vec<_> = frames.iter().enumerate().filter(|(n, _)| kept(*n)).map(|(_, frame)| *frame).collect();
+    let (first, rest) = some.split_at(120);
+    let odd = "(1700000000.850000) can0 320#04000000000000\n(1700000000.850000) can0 320#0900000000000000\n\
+               (1700000000.850000) can0 7DF#0102\n(1700000000.850000) can1 320#0400000000000000\n\
+               (1700000000.850000) can0 20000004#0000000000000000\n(1700000000.850000) can0 321#R8\n\
+               (1700000000.850000) can0 321#XX\n";
+    bench.write("odd.log", candump(first) + odd + &candump(rest));
+    let run = bench.run("monitor --can odd.log --csv odd.csv");
+    assert_eq!(run.code, Some(3), "{run:?}");
+    let counted = "143 frames, 7 missing, 1 of a wrong length, 1 not understood, 2 of others, 1 error frames, \
+                   1 remote frames; 0.980 s\n";
+    assert!(run.stdout.ends_with(counted), "{}", run.stdout);
+    assert_eq!(
+        run.stderr,
+        "warning: part of the data was not decoded: 1 frames of a wrong length, 1 frames not understood, line 127: its \
+         bytes are no hexadecimal digits; left out\n"
+    );
+    let table = bench.read("odd.csv");
+    let data = &rows(&table)[1..];
+    assert_eq!(data.len(), 48);
+    let partial: Vec<&&str> = data.iter().filter(|row| row.ends_with(",,")).collect();
+    assert_eq!(partial.len(), 1, "{partial:?}");
+    assert!(partial[0].starts_with("0.6"), "{partial:?}");
+}
+
+/// Situation: a log in which the count of control steps stands still for ten broadcasts, and one whose times go back.
+/// Action: monitor them. Must hold: both are counted.
+#[test]
+fn a_stopped_controller_is_counted() {
+    let (bench, mut frames) = (Bench::new(PROGRAM), ride(40));
+    for n in 21..=30 {
+        frames[3 * n].2[7] = frames[60].2[7];
+    }
+    bench.write("stopped.log", candump(&frames));
+    let run = bench.run("monitor --can stopped.log");
+    assert!(
+        run.stdout.ends_with("120 frames, 0 missing, 10 broadcasts with control stopped; 0.780 s\n"),
+        "{run:?}"
+    );
+    let mut frames = ride(40);
+    frames[60..].iter_mut().for_each(|(t, ..)| *t -= 0.3);
+    bench.write("back.log", candump(&frames));
+    let run = bench.run("monitor --can back.log");
+    assert!(run.stdout.contains("120 frames, 0 missing, 1 times back"), "{run:?}");
+}
+
+/// Situation: a log of Vector that was cut; one without a board's frames; a file that is no log; a name that is neither
+/// a file nor an interface; outputs that a recording cannot have.
+/// Action: monitor. Must hold: the first is read up to its end and reported, exit code 3; the others are rejected, with
+/// the reason; no table is left.
+#[test]
+fn what_cannot_be_monitored_is_rejected() {
+    let bench = Bench::new(PROGRAM);
+    let whole = blf(&ride(30));
+    bench.write("cut.blf", &whole[..whole.len() / 2]);
+    let run = bench.run("monitor --can cut.blf");
+    assert_eq!(run.code, Some(3), "{run:?}");
+    assert!(run.stderr.contains("cut"), "{}", run.stderr);
+    let frames: u32 = run.stdout.lines().last().unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!((40..=45).contains(&frames), "{}", run.stdout);
+
+    bench.write("other.log", "(1.0) can0 7DF#0102\n");
+    bench.run("monitor --can other.log --csv no.csv").rejected_naming(&[
+        "other.log",
+        "1 frames",
+        "0x320 to 0x322",
+    ]);
+    bench.write("no.log", "nothing\n");
+    bench.run("monitor --can no.log").rejected_naming(&["no.log"]);
+    bench.run("monitor --can nowhere0").rejected_naming(&["nowhere0", "no file"]);
+    bench.write("ride.log", candump(&ride(3)));
+    bench.run("monitor --can ride.log --record again.log").rejected_naming(&["--record", "ride.log"]);
+    bench.run("monitor --can ride.log --mcap -").rejected_naming(&["--mcap", "standard output"]);
+    bench.run("monitor --can ride.log --csv a --mcap a").rejected_naming(&["--csv", "--mcap"]);
+    let run = bench.run("monitor --can ride.log --file ride.link");
+    assert_eq!(run.code, Some(2), "{run:?}");
+    assert_eq!(bench.files(), ["cut.blf", "no.log", "other.log", "ride.log"]);
+}
+
+/// Situation: the same ride in ASC and BLF as python-can writes them.
+/// Action: monitor each. Must hold: the rows of candump's log, but for rounded times.
+#[test]
+fn python_cans_logs_give_the_same_rows() {
+    let Some(python) = python::venv("can") else { return };
+    let bench = Bench::new(PROGRAM);
+    bench.write("ride.log", candump(&ride(100)));
+    let [log, asc, blf] = ["ride.log", "ride.asc", "ride.blf"].map(|name| bench.path(name));
+    python::checked(&python, "can_convert.py", &[log.as_os_str(), asc.as_os_str(), blf.as_os_str()]);
+    let tables = ["ride.log", "ride.asc", "ride.blf"].map(|name| {
+        let run = bench.run(&format!("monitor --can {name} --csv -"));
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{name}");
+        run.stdout
+    });
+    let [log, others @ ..] = tables.each_ref().map(|table| rows(table));
+    for other in others {
+        assert_eq!(other.len(), 101);
+        for (row, other) in log.iter().zip(other).skip(1) {
+            let ((t, rest), (other_t, other_rest)) =
+                (row.split_once(',').unwrap(), other.split_once(',').unwrap());
+            assert!((t.parse::<f64>().unwrap() - other_t.parse::<f64>().unwrap()).abs() < 2e-6);
+            assert_eq!(rest, other_rest);
+        }
+    }
+}
+
+/// Situation: frames of any times, identifiers and lengths, among them the board's.
+/// Action: process them.
+/// Must hold: every frame is counted once, and every decoded one is in one row.
+#[test]
+fn any_frames_are_counted_once() {
+    let time = prop_oneof![4 => 0.0..2.0_f64, 1 => any::<f64>().prop_filter("a time", |t| t.is_finite())];
+    let id = prop_oneof![4 => (0x320_u16..0x323).prop_map(Some), 1 => any::<Option<u16>>()];
+    let data = prop_oneof![4 => any::<[u8; 8]>().prop_map(Vec::from), 1 => vec(any::<u8>(), 0..=64)];
+    let small = data.prop_map(|mut data| {
+        // Mostly modes that exist.
+        data.first_mut().into_iter().for_each(|mode| *mode %= 8);
+        data
+    });
+    runner(1000)
+        .run(&vec((time, id, small), 0..200), |frames| {
+            let mut monitor = BroadcastMonitor::default();
+            let mut rows = Vec::new();
+            for (time_s, id, data) in &frames {
+                rows.extend(monitor.take(*time_s, *id, data));
+            }
+            rows.extend(monitor.end());
+            let counts = monitor.counts;
+            let all = counts.frames + counts.wrong_length + counts.unknown + counts.other;
+            prop_assert_eq!(all, frames.len() as u64);
+            let parts = |row: &Broadcast| {
+                u64::from(row.state.is_some())
+                    + u64::from(row.motion.is_some())
+                    + u64::from(row.causes.is_some())
+            };
+            prop_assert_eq!(rows.iter().map(parts).sum::<u64>(), counts.frames);
+            prop_assert!(rows.iter().all(|row| parts(row) > 0));
+            Ok(())
+        })
+        .unwrap();
+}
+
+/// Situation: an interface of the kernel (vcan), on which Python's standard library sends a board's frames.
+/// Action: monitor it for a while, with a table and a log. Must hold: a row per broadcast, and the log gives them again.
+/// Skipped where the kernel has no vcan or this user may not add one.
+#[test]
+fn an_interface_is_monitored() {
+    const INTERFACE: &str = "vcantest0";
+    let ip = |arguments: &[&str]| Command::new("ip").args(arguments).stderr(Stdio::null()).status();
+    let _ = ip(&["link", "delete", INTERFACE]);
+    let added = ip(&["link", "add", "dev", INTERFACE, "type", "vcan"]);
+    if !added.is_ok_and(|status| status.success()) {
+        return eprintln!("skipped: no vcan here; recordings are monitored by the tests beside this one");
+    }
+    assert!(ip(&["link", "set", INTERFACE, "up"]).is_ok_and(|status| status.success()));
+    let bench = Bench::new(PROGRAM);
+    bench.write("ride.log", candump(&ride(50)));
+    let mut command =
+        bench.command(&format!("monitor --can {INTERFACE} --for 4s --csv live.csv --record live.log"));
+    let mut child = command.stdout(Stdio::null()).spawn().expect("the program runs");
+    std::thread::sleep(Duration::from_secs(1));
+    let send = repository("tests/python/can_send.py");
+    let sent = Command::new("python3").arg(send).arg(INTERFACE).arg(bench.path("ride.log")).status();
+    assert!(sent.is_ok_and(|status| status.success()));
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+    let _ = ip(&["link", "delete", INTERFACE]);
+    let live = bench.read("live.csv");
+    assert_eq!(rows(&live).len(), 51);
+    let again = bench.run("monitor --can live.log --csv -");
+    assert_eq!(rows(&again.stdout).len(), 51, "{again:?}");
+}
