@@ -76,14 +76,14 @@ pub(super) struct Period<'a> {
     pub(super) full: &'a mut Option<FullState>,
     /// Assist torque at the start \[N m\].
     pub(super) assist_nm: f64,
-    /// Roll torque over the period \[N m\].
-    pub(super) roll_nm: f64,
     /// The motor, if it is not exact.
     pub(super) motor: Option<&'a Actuator>,
     /// The ride's speed at t = 0 \[m/s\].
     pub(super) initial_m_s: f64,
     /// The rider.
     pub(super) rider: Option<RiderLane<'a>>,
+    /// Roll torque over the period \[N m\].
+    pub(super) roll_nm: f64,
 }
 
 impl Period<'_> {
