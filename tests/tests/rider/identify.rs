@@ -73,6 +73,8 @@ struct Noisy {
     errors: [f64; GAINS],
     /// Mean square of the errors in units of their covariance: 1 on average, 1 / 2 of it as standard deviation.
     square: f64,
+    /// Growth of the fitted loop's rightmost mode \[1/s\].
+    growth_1_s: f64,
 }
 
 /// Fits of the sets of a table; `repeat` stands for other noise and other pulses.
@@ -97,6 +99,7 @@ fn noisy(name: &'static str, rows: &[Row], repeat: u64) -> Vec<Noisy> {
             of: (name, row.clone()),
             errors: std::array::from_fn(|gain| off[gain] / deviations[gain]),
             square: off.dot(&(inverse * &off)) / GAINS as f64,
+            growth_1_s: fit.rightmost_1_s,
         })
     };
     rows.iter().enumerate().filter_map(of_row).collect()
@@ -106,7 +109,8 @@ fn within_three(fit: &Noisy) -> bool {
     fit.errors.iter().all(|z| z.abs() < 3.0)
 }
 
-fn as_large_as_their_covariance(fits: &[Noisy]) {
+fn as_large_as_their_covariance<'a>(fits: impl IntoIterator<Item = &'a Noisy>) {
+    let fits: Vec<&Noisy> = fits.into_iter().collect();
     let square = fits.iter().map(|fit| fit.square).sum::<f64>() / fits.len() as f64;
     // Three standard deviations of the mean of chi-squared.
     let reach = 3.0 * (2.0 / (GAINS * fits.len()) as f64).sqrt();
@@ -129,7 +133,9 @@ fn noisy_gains_are_found_within_their_errors() {
 }
 
 /// The same for every published set of which the rider stays upright. Of 320 gains with right standard errors one is beyond three
-/// by chance: such a set, of which there may be two, must be within three in two more records, with other noise.
+/// by chance: such a set, of which there may be two, must be within three in two more records, with other noise. A fitted loop
+/// that grows e-fold in a third of the record is exponential in its gains, which a covariance cannot describe: of such a fit, of
+/// which there may be one, each gain must be within three standard errors.
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn every_published_set_is_found_within_its_errors() {
@@ -137,7 +143,10 @@ fn every_published_set_is_found_within_its_errors() {
     let fits: Vec<_> = ["young", "smart", "undelayed"].iter().flat_map(of).collect();
     fits.iter().for_each(|fit| println!("{}: {:.2}, {:.2?}", fit.name, fit.square, fit.errors));
     assert!(fits.len() >= 38, "riders that stay upright: {}", fits.len());
-    as_large_as_their_covariance(&fits);
+    let growing: Vec<&Noisy> = fits.iter().filter(|fit| fit.growth_1_s > 3.0 / 60.0).collect();
+    assert!(growing.len() <= 1, "{} sets of {}", growing.len(), fits.len());
+    growing.iter().for_each(|fit| assert!(within_three(fit), "{}: {:?}", fit.name, fit.errors));
+    as_large_as_their_covariance(fits.iter().filter(|fit| fit.growth_1_s <= 3.0 / 60.0));
     let beyond: Vec<&Noisy> = fits.iter().filter(|fit| !within_three(fit)).collect();
     assert!(beyond.len() <= 2, "{} sets of {}", beyond.len(), fits.len());
     for fit in beyond {
