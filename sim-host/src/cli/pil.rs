@@ -64,7 +64,7 @@ fn on_board(args: &RideArgs) -> Result<Ended, Failure> {
         return Ok(ended);
     }
     let setup = setup(&scenario)?;
-    check_direction(start, &setup.conditions)?;
+    check_direction(start, &setup.conditions).map_err(|e| named(&scenario, &e))?;
     let start_board = args.board.starter(&setup)?;
     let outputs = args.ride.open()?;
     let mut controller = start_board()?;

@@ -60,7 +60,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         return Ok(ended);
     }
     let setup = setup(&scenario)?;
-    ride::check_direction(start, &setup.conditions)?;
+    ride::check_direction(start, &setup.conditions).map_err(|e| named(&scenario, &e))?;
     let outputs = args.open()?;
     let ridden = ride::ride(&setup)?;
     let sensed = || frames(&setup.conditions, start, &ridden.trace);

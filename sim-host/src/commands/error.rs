@@ -33,12 +33,6 @@ pub enum CommandError {
     /// A cell of a sweep is wrong; its values and the reason as text.
     #[error("{0}")]
     Cell(String),
-    /// A ride backwards with assist or rider.
-    #[error(
-        "speed (m/s) = {0} is outside 0 to 30; laws and riders are those of riding forward, below 0 goes only law none \
-         without a rider"
-    )]
-    Backwards(f64),
     /// Conditions that distinguish left from right, in a search that mirrors one half.
     #[error("basin plane mirrors one half: no faults, noise, bias, dropout, no IMU off its middle")]
     OneSided,

@@ -26,10 +26,15 @@ pub fn start(scenario: &Scenario) -> Result<Start, ScenarioError> {
 ///
 /// # Errors
 /// Assist or rider at a negative speed.
-pub fn check_direction(start: Start, conditions: &Conditions) -> Result<(), CommandError> {
+pub fn check_direction(start: Start, conditions: &Conditions) -> Result<(), ScenarioError> {
     let alone = matches!(conditions.assist, Assist::None) && conditions.rider.is_none();
     if start.speed_m_s < 0.0 && !alone {
-        return Err(CommandError::Backwards(start.speed_m_s));
+        let reason = format!(
+            "{} m/s is outside 0 to 30; laws and riders are those of riding forward, below 0 goes only law none \
+             without a rider",
+            start.speed_m_s
+        );
+        return Err(ScenarioError::value("start.speed_m_s", reason));
     }
     Ok(())
 }

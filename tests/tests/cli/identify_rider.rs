@@ -213,7 +213,7 @@ fn faults_of_a_record_are_told() {
         }
         Some(cells.join(","))
     });
-    used("back.csv", "", &["the time goes back from 3.495 to 1 s; 20 of 4000 samples left out"]);
+    used("back.csv", "", &["the time goes back from 3.49 to 1 s; 20 of 4000 samples left out"]);
     // Error values of a logger.
     let outlier = |name: &str, column: usize, value: &'static str| {
         changed(&bench, name, move |i, mut cells| {
