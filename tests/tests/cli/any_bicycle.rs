@@ -182,6 +182,6 @@ fn backwards_is_riding_with_a_steered_rear_wheel() {
     assert!(!bench.run("eigen --bicycle benchmark --speeds 5").stdout.contains("riding forward"));
     let ride = bench.json("ride --bicycle benchmark --law none --speed=-3 --steer-rate 0.1");
     assert_eq!((&ride["outcome"], &ride["start"]["speed_m_s"]), (&json!("fallen"), &json!(-3.0)));
-    bench.run("ride --law h --speed=-3").rejected_naming(&["--speed", "-3", "0 to 30", "--law none"]);
+    bench.run("ride --law h --speed=-3").rejected_naming(&["--speed", "-3", "0 to 30", "law none"]);
     bench.run("eigen --law h --speeds=-3").rejected_naming(&["--speeds", "-3", "--law none"]);
 }

@@ -241,7 +241,7 @@ fn faults_of_a_record_are_told() {
     used(
         "ahead.csv",
         "",
-        &["steer angle: the time goes back from 1e300 to 7.5 s; 1 of 4000 samples left out"],
+        &["the time goes back from 1e300 to 7.5 s; 1 of 4000 samples left out"],
     );
     outlier("hit.csv", 1, "1e300");
     assert!(

@@ -198,7 +198,10 @@ fn fast_and_plain_searches_with_a_controller_agree() {
     for (conditions, search) in &cases {
         assert!(Quick::new(conditions).is_some());
         let (falls, apart) = compared(conditions, search);
-        assert!(falls > 5 && 50 * apart <= falls, "{apart} of {falls} times of falls differ by more than 1 ms");
+        assert!(
+            falls > 5 && 50 * apart <= falls,
+            "{apart} of {falls} times of falls differ by more than 1 ms"
+        );
     }
 }
 
@@ -208,10 +211,9 @@ fn fast_and_plain_searches_with_a_controller_agree() {
 #[ignore = "slow: cargo xtask test --all"]
 fn fast_and_plain_basins_of_the_product_agree() {
     let speeds: Vec<f64> = (0..=100).map(|i| f64::from(i) / 10.0).collect();
-    for (conditions, speeds) in [
-        (configured(product()), &speeds[..]),
-        (ridden("smart", configured(product())), &speeds[20..=75]),
-    ] {
+    for (conditions, speeds) in
+        [(configured(product()), &speeds[..]), (ridden("smart", configured(product())), &speeds[20..=75])]
+    {
         let (falls, apart) = compared(&conditions, &search(speeds, 30.0));
         println!("{apart} of {falls} falls differ by more than 1 ms or in their cause");
         assert!(falls > 4000 && 100 * apart <= falls, "{apart} of {falls}");
