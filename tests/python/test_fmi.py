@@ -372,6 +372,40 @@ def test_wrong_calls_are_refused_by_name(export, version):
     assert bicycle.get("time") == [0.009]
 
 
+@pytest.mark.parametrize("version", ["2", "3"])
+def test_initialisation_has_the_outputs_of_the_start(export, version):
+    """Situation: a bicycle that is being initialised. Action: read its outputs, change its start. Must hold: the outputs of the
+    instant after the initialisation with these parameters, not zeros."""
+    names = ["front_wheel_m_s", "steer_rate_rad_s", "roll_acceleration_rad_s2", "accel_z_m_s2"]
+    bicycle = Part(export("bicycle", version, *HARD), version, initialise=False)
+    if version == "2":
+        bicycle.fmu.setupExperiment(startTime=0.0)
+    bicycle.fmu.enterInitializationMode()
+    first = bicycle.get(*names)
+    assert first[1] == 5.0 and first[0] == pytest.approx(4.0) and first[3] == pytest.approx(-9.81, abs=0.5) and abs(first[2]) > 0.1
+    bicycle.set_parameters({"start_steer_rate_rad_s": 1.0})
+    before = bicycle.get(*names)
+    assert before[1] == 1.0
+    bicycle.fmu.exitInitializationMode()
+    assert bicycle.get(*names) == before
+
+
+@pytest.mark.parametrize("version", ["2", "3"])
+def test_states_of_other_fmus_are_refused(export, version):
+    """Situation: a controller's state, and a fall within a long step. Must hold: the bicycle refuses the state and goes on; the
+    long step is told as well as the fall."""
+    bicycle, controller = Part(export("bicycle", version, *HARD), version), Part(export("controller", version), version)
+    state = controller.save()
+    for act in (lambda: bicycle.restore(state), lambda: bicycle.serialized(state)):
+        with pytest.raises(Exception):
+            act()
+        assert "another FMU" in bicycle.log[-1]
+    controller.free(state)
+    bicycle.step(0, 3.0)
+    assert any("held over all of them" in line for line in bicycle.log)
+    assert any("fallen" in line for line in bicycle.log)
+
+
 def test_parameters_act_as_the_options_of_the_command_line(export, ride):
     """Situation: a controller exported without options. Action: set a law and a torque limit as FMI parameters. Must hold: the
     ride of the command line with these options."""

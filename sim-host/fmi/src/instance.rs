@@ -22,7 +22,7 @@ enum Phase {
 /// What does not change.
 #[derive(Debug)]
 struct Fixed {
-    token: String,
+    token: Arc<str>,
     setup: Setup,
     table: Table,
     step_s: f64,
@@ -40,6 +40,8 @@ pub enum Said {
 /// A saved state.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
+    /// Token of its FMU.
+    token: Arc<str>,
     phase: Phase,
     start_s: f64,
     /// Time steps of the model since the start.
@@ -76,8 +78,9 @@ impl Instance {
     pub fn new(token: &str, resources: &Path) -> Result<Self, String> {
         let (setup, table) = Setup::read(resources, token)?;
         let step_s = setup.step_s()?;
-        let now = Snapshot::fresh(&setup, &table)?;
-        Ok(Self { fixed: Arc::new(Fixed { token: token.into(), setup, table, step_s }), now })
+        let token: Arc<str> = token.into();
+        let now = Snapshot::fresh(&token, &setup, &table)?;
+        Ok(Self { fixed: Arc::new(Fixed { token, setup, table, step_s }), now })
     }
 
     /// Sets the time of the start, which is 0 otherwise \[s\].
@@ -93,14 +96,32 @@ impl Instance {
         Ok(())
     }
 
-    /// Begins the initialisation.
+    /// Begins the initialisation. From here on the outputs are those of the start with the present parameters.
     ///
     /// # Errors
     /// It has begun before.
     pub fn enter(&mut self) -> Result<(), String> {
         self.only(Phase::Instantiated, "initialise")?;
         self.now.phase = Phase::Initialising;
+        self.preview();
         Ok(())
+    }
+
+    /// The model as it would start now; as it is, if the parameters do not fit each other yet.
+    fn begun(&self) -> Model {
+        let mut model = self.now.model.clone();
+        match model.begin(&self.now.values[self.fixed.table.of(Role::Parameter)]) {
+            Ok(()) => model,
+            // Told at the end of the initialisation.
+            Err(_) => self.now.model.clone(),
+        }
+    }
+
+    /// Copies the outputs of a start to the values.
+    fn preview(&mut self) {
+        let time_s = self.time_s();
+        self.begun().outputs(&mut self.now.values[self.fixed.table.of(Role::Output)]);
+        self.now.values[0] = time_s;
     }
 
     /// Ends the initialisation: the model starts with its parameters.
@@ -116,11 +137,11 @@ impl Instance {
         Ok(())
     }
 
-    /// A communication step of `step_s` seconds from the time `now_s`; returns what is worth a line in the log.
+    /// A communication step of `step_s` seconds from the time `now_s`; returns what is worth lines in the log.
     ///
     /// # Errors
     /// The time is not that of the instance, or the step is not a whole number of the model's time steps.
-    pub fn step(&mut self, now_s: f64, step_s: f64) -> Result<Option<Said>, String> {
+    pub fn step(&mut self, now_s: f64, step_s: f64) -> Result<Vec<Said>, String> {
         self.only(Phase::Running, "step")?;
         let own_s = self.fixed.step_s;
         let expected_s = self.time_s();
@@ -138,10 +159,10 @@ impl Instance {
                 (least * 1e9).round() / 1e9
             ));
         }
-        let mut said = None;
+        let mut said = Vec::new();
         if count > 1.0 && !self.now.warned {
             self.now.warned = true;
-            said = Some(Said::Doubt(format!(
+            said.push(Said::Doubt(format!(
                 "the communication step {step_s} s is {count} time steps of {own_s} s: the inputs are held over all \
                  of them"
             )));
@@ -149,7 +170,7 @@ impl Instance {
         let inputs = self.fixed.table.of(Role::Input);
         for _ in 0..count as u64 {
             let Snapshot { model, values, .. } = &mut self.now;
-            said = model.step(&values[inputs.clone()]).map(Said::Event).or(said);
+            said.extend(model.step(&values[inputs.clone()]).map(Said::Event));
             self.now.periods += 1;
         }
         self.publish();
@@ -172,7 +193,7 @@ impl Instance {
     /// # Errors
     /// The setup is wrong, which it was not before.
     pub fn reset(&mut self) -> Result<(), String> {
-        self.now = Snapshot::fresh(&self.fixed.setup, &self.fixed.table)?;
+        self.now = Snapshot::fresh(&self.fixed.token, &self.fixed.setup, &self.fixed.table)?;
         Ok(())
     }
 
@@ -187,7 +208,11 @@ impl Instance {
         let Fixed { table, .. } = &*self.fixed;
         let before = &table.variables()[..reference as usize];
         let place = before.iter().filter(|variable| variable.direct).count();
-        let direct = self.now.model.direct(&self.now.values[table.of(Role::Input)]);
+        let inputs = &self.now.values[table.of(Role::Input)];
+        let direct = match self.now.phase {
+            Phase::Initialising => self.begun().direct(inputs),
+            _ => self.now.model.direct(inputs),
+        };
         Ok(direct.get(place).copied().unwrap_or(0.0))
     }
 
@@ -209,7 +234,11 @@ impl Instance {
             }
         }
         variable.check(value)?;
+        let parameter = variable.role == Role::Parameter;
         self.now.values[reference as usize] = value;
+        if parameter && self.now.phase == Phase::Initialising {
+            self.preview();
+        }
         Ok(())
     }
 
@@ -218,17 +247,26 @@ impl Instance {
         self.now.clone()
     }
 
-    /// Returns to a state.
-    pub fn restore(&mut self, state: &Snapshot) {
+    /// Returns to a state of an instance of this FMU.
+    ///
+    /// # Errors
+    /// It is that of another FMU.
+    pub fn restore(&mut self, state: &Snapshot) -> Result<(), String> {
+        self.owns(&state.token)?;
         self.now = state.clone();
+        Ok(())
     }
 
     /// A state as bytes, for another instance or process with the same FMU.
-    pub fn serialize(&self, state: &Snapshot) -> Vec<u8> {
+    ///
+    /// # Errors
+    /// It is that of another FMU.
+    pub fn serialize(&self, state: &Snapshot) -> Result<Vec<u8>, String> {
+        self.owns(&state.token)?;
         let Snapshot { phase, start_s, periods, values, model, .. } = state;
         let model = if *phase == Phase::Running { model.bytes() } else { Vec::new() };
         let mut bytes = to_bytes(&Stored {
-            token: self.fixed.token.clone(),
+            token: self.fixed.token.to_string(),
             phase: *phase,
             start_s: *start_s,
             periods: *periods,
@@ -236,7 +274,7 @@ impl Instance {
             model,
         });
         bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
-        bytes
+        Ok(bytes)
     }
 
     /// A state from bytes.
@@ -249,10 +287,8 @@ impl Instance {
             .filter(|(rest, crc)| crc32fast::hash(rest) == u32::from_le_bytes(**crc));
         let (bytes, _) = sound.ok_or("the state is damaged: its checksum is wrong")?;
         let Stored { token, phase, start_s, periods, values, model: state } = from_bytes(bytes)?;
-        let Fixed { token: own, setup, table, .. } = &*self.fixed;
-        if token != *own {
-            return Err(format!("the state is that of another FMU, with the token {token}"));
-        }
+        self.owns(&token)?;
+        let Fixed { token, setup, table, .. } = &*self.fixed;
         if values.len() != table.variables().len() {
             return Err("the state has another number of variables".into());
         }
@@ -261,7 +297,7 @@ impl Instance {
             model.begin(&values[table.of(Role::Parameter)])?;
             model.load(&state)?;
         }
-        Ok(Snapshot { phase, start_s, periods, values, model, warned: false })
+        Ok(Snapshot { token: token.clone(), phase, start_s, periods, values, model, warned: false })
     }
 
     /// Copies the model's outputs and the time to the values.
@@ -269,6 +305,14 @@ impl Instance {
         self.now.values[0] = self.time_s();
         let Snapshot { model, values, .. } = &mut self.now;
         model.outputs(&mut values[self.fixed.table.of(Role::Output)]);
+    }
+
+    /// Rejects what belongs to another FMU, by its token.
+    fn owns(&self, token: &str) -> Result<(), String> {
+        if token == &*self.fixed.token {
+            return Ok(());
+        }
+        Err(format!("the state is that of another FMU, with the token {token}"))
     }
 
     fn only(&self, phase: Phase, what: &str) -> Result<(), String> {
@@ -299,8 +343,9 @@ impl Instance {
 }
 
 impl Snapshot {
-    fn fresh(setup: &Setup, table: &Table) -> Result<Self, String> {
+    fn fresh(token: &Arc<str>, setup: &Setup, table: &Table) -> Result<Self, String> {
         Ok(Self {
+            token: token.clone(),
             phase: Phase::Instantiated,
             start_s: 0.0,
             periods: 0,

@@ -231,10 +231,12 @@ fn terminate(pointer: Pointer) -> c_int {
 
 fn do_step(pointer: Pointer, now_s: f64, step_s: f64) -> c_int {
     on(pointer, |handle| {
-        match handle.instance.step(now_s, step_s)? {
-            Some(Said::Doubt(doubt)) => handle.log.say(WARNING, &doubt),
-            Some(Said::Event(event)) if handle.talks => handle.log.say(OK, &event),
-            Some(Said::Event(_)) | None => {}
+        for said in handle.instance.step(now_s, step_s)? {
+            match said {
+                Said::Doubt(doubt) => handle.log.say(WARNING, &doubt),
+                Said::Event(event) if handle.talks => handle.log.say(OK, &event),
+                Said::Event(_) => {}
+            }
         }
         Ok(())
     })
@@ -260,10 +262,7 @@ fn saved<'a>(state: Pointer) -> Result<&'a Snapshot, String> {
 }
 
 fn set_state(pointer: Pointer, state: Pointer) -> c_int {
-    on(pointer, |handle| {
-        handle.instance.restore(saved(state)?);
-        Ok(())
-    })
+    on(pointer, |handle| handle.instance.restore(saved(state)?))
 }
 
 fn free_state(pointer: Pointer, state: *mut Pointer) -> c_int {
@@ -282,14 +281,14 @@ fn free_state(pointer: Pointer, state: *mut Pointer) -> c_int {
 
 fn state_size(pointer: Pointer, state: Pointer, size: *mut usize) -> c_int {
     on(pointer, |handle| {
-        put(size, handle.instance.serialize(saved(state)?).len());
+        put(size, handle.instance.serialize(saved(state)?)?.len());
         Ok(())
     })
 }
 
 fn serialize(pointer: Pointer, state: Pointer, bytes: *mut u8, size: usize) -> c_int {
     on(pointer, |handle| {
-        let state = handle.instance.serialize(saved(state)?);
+        let state = handle.instance.serialize(saved(state)?)?;
         let room = elements_mut(bytes, size)?;
         let needed = state.len();
         room.get_mut(..needed)
