@@ -32,6 +32,9 @@ struct Session {
 
 pub(super) fn run(args: &Args, source: &str, quiet: bool) -> Result<Ended, Failure> {
     let path = Path::new(source);
+    if path.exists() && !path.is_file() {
+        return Err(format!("{source} is neither a file nor a CAN interface").into());
+    }
     if !path.is_file() {
         let bus = Bus::open(source)?;
         let mut session = Session::new(args, source, None, quiet)?;

@@ -18,8 +18,9 @@ pub(super) struct Table {
 impl Table {
     pub(super) fn create(path: &Path, config: &serde_json::Value) -> Result<Self, Failure> {
         let mut file = open(path)?;
-        file.write_all(heading(config).as_bytes())?;
-        Ok(Self { path: path.display().to_string(), rows: csv::Writer::from_writer(file) })
+        let name = path.display().to_string();
+        file.write_all(heading(config).as_bytes()).map_err(|error| failed(&name, error))?;
+        Ok(Self { path: name, rows: csv::Writer::from_writer(file) })
     }
 
     pub(super) fn write(&mut self, row: &impl Serialize) -> Result<(), Failure> {

@@ -106,9 +106,12 @@ fn line_of(line: &str) -> Result<Line<'_>, &'static str> {
     }
 }
 
+/// Largest time stamp \[s\]: the year 5138.
+const MOST_S: f64 = 1e11;
+
 /// A time stamp in seconds, from a number or a date.
 fn seconds(stamp: &str) -> Option<f64> {
-    let number = || stamp.parse::<f64>().ok().filter(|s| s.is_finite() && !stamp.contains(['e', 'E']));
+    let number = || stamp.parse::<f64>().ok().filter(|s| s.abs() <= MOST_S && !stamp.contains(['e', 'E']));
     let date = || {
         let time: jiff::civil::DateTime = stamp.parse().ok().filter(|_| stamp.contains(':'))?;
         let time = time.to_zoned(jiff::tz::TimeZone::UTC).ok()?;

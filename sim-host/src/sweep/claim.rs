@@ -82,9 +82,10 @@ impl Claim {
         }
     }
 
-    /// The state, as seen by a process on the machine of `here`.
+    /// The state, as seen by a process on the machine of `here`. A renewal further ahead than a stale one is behind comes from
+    /// a wrong clock, and is stale as well.
     pub fn state(&self, here: &Worker) -> State {
-        let late = now_unix_s().saturating_sub(self.renewed_unix_s) > self.stale_after_s;
+        let late = now_unix_s().abs_diff(self.renewed_unix_s) > self.stale_after_s;
         match &self.worker {
             None if self.error.is_some() => State::Failed,
             None => State::Released,

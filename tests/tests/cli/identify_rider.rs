@@ -238,11 +238,7 @@ fn faults_of_a_record_are_told() {
     outlier("fast.csv", 5, "1e300");
     used("fast.csv", "", &["speed: outliers, 1 of 4000"]);
     outlier("ahead.csv", 0, "1e300");
-    used(
-        "ahead.csv",
-        "",
-        &["the time goes back from 1e300 to 7.5 s; 1 of 4000 samples left out"],
-    );
+    used("ahead.csv", "", &["the time goes back from 1e300 to 7.5 s; 1 of 4000 samples left out"]);
     outlier("hit.csv", 1, "1e300");
     assert!(
         fit("hit.csv", "").stderr.contains("the largest lateral force is 1e300 N; 2 to 1000 N are expected")
