@@ -61,6 +61,7 @@ pub fn parse(text: &str) -> Result<Frames, Remark> {
         let event = match tokens.as_slice() {
             ["CANFD", bus, rest @ ..] => flexible(rest, radix).map(|event| (*bus, event)),
             [bus, rest @ ..] if is_number(bus) => classic(rest, radix).map(|event| (*bus, event)),
+            [] => Err("ends after its time stamp"),
             _ => Ok(("", Event::Other)),
         };
         match event {
@@ -163,7 +164,8 @@ fn classic(tokens: &[&str], radix: u32) -> Result<Event, &'static str> {
                 number(code, radix).filter(|code| *code < 16).ok_or("its length is invalid for a frame")?;
             Ok(Event::Data { id, data: bytes_of(rest, code.min(8) as usize, radix)? })
         }
-        [_, "Rx" | "Tx", ..] | [_] => Err("is no whole frame"),
+        [_, "Rx" | "Tx", ..] | [_] | [] => Err("is no whole frame"),
+        [id, ..] if id_of(id, radix).is_ok() => Err("its direction is neither Rx nor Tx"),
         _ => Ok(Event::Other),
     }
 }
