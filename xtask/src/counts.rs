@@ -90,14 +90,12 @@ pub fn measured() -> Result<Counts> {
 
 /// Instructions of one unit of a piece of work; callgrind's own output goes into `profile`.
 fn counted(name: &str, target: &str, profile: &Path) -> Result<u64> {
-    let runner = format!("CARGO_TARGET_{}_RUNNER", target.to_uppercase().replace('-', "_"));
-    let valgrind = format!(
-        "valgrind --tool=callgrind --toggle-collect=counts::counted --callgrind-out-file={}",
-        profile.display()
-    );
+    let into = format!("--callgrind-out-file={}", profile.display());
+    let valgrind = ["valgrind", "--tool=callgrind", "--toggle-collect=counts::counted", &into];
+    // A list, unlike the environment variable of a runner, may contain paths with spaces.
+    let runner = format!("target.{target}.runner = {valgrind:?}");
     let mut run = cargo();
-    // The words of a runner are separated by spaces, so the profile's path must not contain any.
-    let outcome = capture(run.args(["--quiet", "--", name]).env(runner, valgrind), LIMIT)?;
+    let outcome = capture(run.args(["--quiet", "--config", &runner, "--", name]), LIMIT)?;
     let text = std::fs::read_to_string(profile).map_err(|e| format!("{}: {e}", profile.display()));
     let all: Option<u64> =
         text?.lines().find_map(|line| line.strip_prefix("summary: ")).and_then(|sum| sum.trim().parse().ok());

@@ -35,8 +35,14 @@ pub fn environment() -> Option<PathBuf> {
 /// The package can't be built, a package is missing, or a test fails.
 pub fn test(python: &Path) -> Result<()> {
     let mut install = pip(python);
+    // maturin starts its program of the same name by the path.
+    let programs = python.parent().unwrap_or(Path::new("")).to_path_buf();
+    let others = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(std::iter::once(programs).chain(std::env::split_paths(&others)))
+        .map_err(|e| format!("PATH: {e}"))?;
     // The profile of `cargo test`: most crates are compiled there already.
-    install.env("MATURIN_PEP517_ARGS", "--profile=dev").arg("--no-build-isolation").arg("./python[test]");
+    install.env("PATH", path).env("MATURIN_PEP517_ARGS", "--profile=dev");
+    install.arg("--no-build-isolation").arg("./python[test]");
     must(&mut install, LIMIT)
         .map_err(|e| format!("{e}\nneeded: packages from PyPI (python/pyproject.toml)"))?;
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
