@@ -4,6 +4,7 @@ use crate::error::{of_command, of_scenario, of_text};
 use crate::scenario::{json, parsed};
 use crate::work::{Options, run};
 use control::Capsize;
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use serde::Deserialize;
 use sim_host::commands::eigen::{EigenTask, eigen as analyse};
@@ -44,7 +45,10 @@ pub(crate) fn eigen(py: Python<'_>, scenario: &str, choice: &str) -> PyResult<St
     let choice: Choice = serde_json::from_str(choice).map_err(|error| of_text(py, &error))?;
     let task = task(py, &scenario, choice)?;
     let options = Options { parts: 1, threads: None, progress: None, law: None };
-    let (found, _) = run(py, &options, |_| analyse(&task))?;
+    let (found, interrupted) = run(py, &options, |_| analyse(&task))?;
+    if interrupted {
+        return Err(PyKeyboardInterrupt::new_err("the analysis was interrupted"));
+    }
     found.map(|found| json(&found.document)).map_err(|error| of_command(py, &error))
 }
 

@@ -3,6 +3,7 @@
 use crate::error::{of_command, of_text};
 use crate::scenario::json;
 use crate::work::{Options, run};
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use serde::Deserialize;
 use sim_host::commands::replay::{Replay, ReplayChoice};
@@ -72,7 +73,10 @@ pub(crate) fn replay(py: Python<'_>, file: PathBuf, choice: &str) -> PyResult<(S
     };
     let replay = Replay::new(choice).map_err(|error| of_command(py, &error))?;
     let options = Options { parts: 1, threads: Some(1), progress: None, law: None };
-    let (done, _) = run(py, &options, |_| replay.file(&file))?;
+    let (done, interrupted) = run(py, &options, |_| replay.file(&file))?;
+    if interrupted {
+        return Err(PyKeyboardInterrupt::new_err("the replay was interrupted"));
+    }
     let done = done.map_err(|error| of_text(py, &error))?;
     Ok((json(&done.document()), json(&done.result.replayed.rows), replay.remarks))
 }

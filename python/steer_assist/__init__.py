@@ -16,13 +16,14 @@ from ._replay import causes, replay
 from ._ride import ride
 from ._scenario import check, scenario
 from ._sweep import sweep
-from .errors import ClientError, Interrupted, ScenarioError, UnitsWarning
+from .errors import ClientError, Interrupted, ScenarioError, ScenarioWarning, UnitsWarning
 
 __all__ = [
     "ClientError",
     "Identified",
     "Interrupted",
     "ScenarioError",
+    "ScenarioWarning",
     "UnitsWarning",
     "as_bicycle",
     "basin",

@@ -9,10 +9,10 @@ import pandas as pd
 import xarray as xr
 
 from . import _core, _law
+from ._check import threads as as_threads
 from ._data import attributes, border, document, numbers, table, variable
 from ._progress import Progress, reporting
-from ._scenario import scenario as as_scenario
-from ._scenario import short, text
+from ._scenario import text
 from .errors import Interrupted
 
 
@@ -39,7 +39,7 @@ def basin(
         Over ``speed_m_s`` (S): ``height`` [rad/s], the largest disturbance from which nothing falls; ``capped``, whether it is a lower
         bound; efforts ``border_*`` of the ride there. Over ``speed_m_s`` and ``rate`` [rad/s] (S x R), the rides of the scan:
         ``outcome``, ``time_to_fall_s`` (NaN: no fall), ``fall``. Of draws (``uncertain``, ``rider_draws``): ``drawn_height`` (draw x S),
-        ``drawn_quantile`` (3 x S). Attributes ``area`` [rad m/s^2], ``mean_height`` [rad/s], ``complete``, ``document``.
+        ``drawn_quantile`` (S x 3). Attributes ``area`` [rad m/s^2], ``mean_height`` [rad/s], ``complete``, ``document``.
 
     Raises
     ------
@@ -48,9 +48,8 @@ def basin(
     Interrupted
         After Ctrl-C, with the finished speeds in ``result``.
     """
-    law, function = _law.split(law)
-    data = as_scenario(scenario, **short({**changes, **({} if law is None else {"law": law})}, "search"))
-    _law.check(function, mirrored=True)
+    threads = as_threads(threads)
+    data, function = _law.steered(scenario, law, changes, "search", mirrored=True)
     with reporting(progress, "basin", "column") as report:
         document_text, interrupted = _core.basin(text(data), function, threads, report)
     result = dataset(document_text)

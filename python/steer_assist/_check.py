@@ -50,8 +50,24 @@ def plain(value: Any, key: str = "") -> Any:
     raise ScenarioError(f"{key}: a {type(value).__name__} is no value of a scenario", key)
 
 
+def threads(number: int | None) -> int | None:
+    """A number of threads.
+
+    Raises
+    ------
+    ScenarioError
+        It is no whole number from 1 to 1024.
+    """
+    whole = isinstance(number, (int, np.integer)) and not isinstance(number, bool)
+    if number is not None and not (whole and 1 <= number <= 1024):
+        raise ScenarioError(f"threads = {number!r} is no whole number from 1 to 1024", "threads", (1.0, 1024.0))
+    return None if number is None else int(number)
+
+
 def listed(array: np.ndarray, key: str) -> Any:
     """An array as a number or a list."""
+    if array.ndim == 0 and array.dtype == object:
+        raise ScenarioError(f"{key}: a {type(array.item()).__name__} is no value of a scenario", key)
     if array.ndim > 1:
         raise ScenarioError(f"{key}: an array of shape {array.shape}; expected one dimension", key)
     return plain(array.tolist(), key)

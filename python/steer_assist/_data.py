@@ -40,6 +40,7 @@ def attributes(document: dict[str, Any], text: str, keys: list[str]) -> dict[str
     """Attributes of a dataset: these entries of a document, and the document itself."""
     tool = document["tool"]
     entries = {key: document[key] for key in keys if document.get(key) is not None}
+    entries.update({key: float("nan") for key in ("area", "mean_height") if key in keys and document.get(key) is None})
     # Files have no attributes that are true or false.
     entries = {key: int(value) if isinstance(value, bool) else value for key, value in entries.items()}
     source = f"{tool['name']} {tool['version']} ({tool['commit']})"

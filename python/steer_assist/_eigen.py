@@ -12,8 +12,8 @@ import xarray as xr
 from . import _core
 from ._check import plain
 from ._data import attributes, variable
+from ._scenario import doubt, text
 from ._scenario import scenario as as_scenario
-from ._scenario import text
 from .errors import ScenarioError
 
 
@@ -70,7 +70,9 @@ def eigen(
     }
     if not 4 <= roots <= 40:
         raise ScenarioError(f"roots = {roots} is outside 4 to 40", "roots", (4.0, 40.0))
-    document_text = _core.eigen(text(as_scenario(scenario, **changes)), json.dumps(plain(choice)))
+    data = as_scenario(scenario, **changes)
+    doubt(data)
+    document_text = _core.eigen(text(data), json.dumps(plain(choice)))
     return dataset(document_text)
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 
 from . import _core, _law
+from ._check import threads as as_threads
 from ._data import attributes, numbers, variable
 from ._progress import Progress, reporting
-from ._scenario import scenario as as_scenario
-from ._scenario import short, text
+from ._scenario import text
 from .errors import Interrupted
 
 
@@ -32,7 +32,7 @@ def plane(
     Returns
     -------
     Dataset
-        The closed border as ``steer_rate_rad_s`` and ``roll_rate_rad_s`` over ``vertex`` (first vertex repeated at the end). Over ``ray``:
+        The closed border as ``steer_rate_rad_s`` and ``roll_rate_rad_s`` over ``vertex`` (first vertex repeated at the end, if complete). Over ``ray``:
         the rates at a ray's end, ``reach`` (part of the ray without a fall), ``ray_capped``. Attributes ``area`` [rad^2/s^2],
         ``complete``, ``document``.
 
@@ -43,9 +43,8 @@ def plane(
     Interrupted
         After Ctrl-C, with the finished rays in ``result``.
     """
-    law, function = _law.split(law)
-    data = as_scenario(scenario, **short({**changes, **({} if law is None else {"law": law})}, "plane"))
-    _law.check(function, mirrored=True)
+    threads = as_threads(threads)
+    data, function = _law.steered(scenario, law, changes, "plane", mirrored=True)
     with reporting(progress, "plane", "ray") as report:
         document_text, interrupted = _core.plane(text(data), function, threads, report)
     result = dataset(document_text)
@@ -58,7 +57,7 @@ def dataset(document_text: str) -> xr.Dataset:
     """The dataset of a document of ``basin plane``."""
     content = json.loads(document_text)
     outline = np.array(content["outline"], dtype=float).reshape(-1, 2)
-    closed = np.concatenate([outline, outline[:1]])
+    closed = np.concatenate([outline, outline[:1]]) if content["complete"] else outline
     rays = content["rays"]
     variables = {
         "steer_rate_rad_s": variable("vertex", closed[:, 0], "rad s-1", "steer rate at the border"),

@@ -10,8 +10,7 @@ import xarray as xr
 
 from . import _core, _law
 from ._data import attributes, unit_of, variable
-from ._scenario import scenario as as_scenario
-from ._scenario import short, text
+from ._scenario import text
 from .errors import Interrupted
 
 ABOUT = {
@@ -58,13 +57,19 @@ def ride(scenario: Any = None, /, *, law: Any = None, **changes: Any) -> xr.Data
     ------
     ScenarioError
         With ``key`` and ``range``.
+    Interrupted
+        After Ctrl-C, at the end of the ride, with the ride in ``result``.
     """
-    law, function = _law.split(law)
-    data = as_scenario(scenario, **short({**changes, **({} if law is None else {"law": law})}, "start"))
-    _law.check(function, mirrored=False)
+    data, function = _law.steered(scenario, law, changes, "start", mirrored=False)
     document, columns, interrupted = _core.ride(text(data), function)
+    result = dataset(document, columns)
     if interrupted:
-        raise Interrupted("the ride was interrupted")
+        raise Interrupted("interrupted; .result has the ride, which ends first", result)
+    return result
+
+
+def dataset(document: str, columns: dict[str, bytes]) -> xr.Dataset:
+    """The dataset of a document of ``ride`` and the columns of its record."""
     time = np.frombuffer(columns.pop("time_s"))
     whole = {"limits": "active limits, as bits", "causes": "causes that prevent or reduce torque, as bits"}
     bits = {

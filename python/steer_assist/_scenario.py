@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ import xarray as xr
 from . import _core
 from ._bicycle import as_bicycle
 from ._check import doubt_units, plain
-from .errors import ScenarioError
+from .errors import ScenarioError, ScenarioWarning
 
 START = {"speed_m_s", "steer_rate_rad_s", "roll_rate_rad_s"}
 SEARCH = {"speeds", "axis", "max_rate", "scan_step", "tolerance", "method", "adaptive_speeds"}
@@ -77,6 +78,12 @@ def merge(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]
 def text(data: Mapping[str, Any]) -> str:
     """A scenario as the simulator reads it."""
     return json.dumps(data, allow_nan=False)
+
+
+def doubt(data: Mapping[str, Any]) -> None:
+    """Warns of what is doubtful in a scenario that is about to be computed, which is loaded for it."""
+    for warning in _core.check(text(data))[2]:
+        warnings.warn(warning, ScenarioWarning, stacklevel=4)
 
 
 def check(base: Any = None, /, **changes: Any) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -12,11 +13,12 @@ import xarray as xr
 
 from . import _core, _dask
 from ._check import plain
+from ._check import threads as as_threads
 from ._data import attributes, variable
 from ._progress import Progress, Report, reporting
 from ._scenario import scenario as as_scenario
 from ._scenario import short, text
-from .errors import Interrupted, ScenarioError
+from .errors import Interrupted, ScenarioError, ScenarioWarning
 
 #: Settings whose values have a unit of time as text.
 TIMES = {"sensor-delay", "delay"}
@@ -68,11 +70,15 @@ def sweep(
     """
     if callable(changes.get("law")):
         raise ScenarioError("law: the cells of a sweep are data; a function goes with ride, basin and plane", "law")
+    threads = as_threads(threads)
     axes = [axis(key, values) for key, values in over.items()]
     data = as_scenario(scenario, **short(changes, "search"))
     if client is not None:
         _dask.check(client)
-    plan, cells, _ = _core.sweep_plan(text(data), axes)
+    plan, cells, remarks = _core.sweep_plan(text(data), axes)
+    for remark in remarks:
+        if remark.startswith("warning: "):
+            warnings.warn(remark.removeprefix("warning: "), ScenarioWarning, stacklevel=2)
     units: list[str] = []
     with reporting(progress, "sweep", "cell") as report:
         done = here(cells, threads) if client is None else _dask.units(client, cells, threads or 1)

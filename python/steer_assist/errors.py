@@ -25,6 +25,10 @@ class ScenarioError(ValueError):
         return type(self), (str(self), self.key, self.range)
 
 
+class ScenarioWarning(UserWarning):
+    """A doubt about a scenario that can be computed, such as a bicycle whose bodies have no possible inertia."""
+
+
 class UnitsWarning(UserWarning):
     """A number whose magnitude suggests another unit, such as degrees in place of radians."""
 

@@ -83,3 +83,31 @@ def test_plane(sim_host):
     assert found.area == pytest.approx(area, rel=1e-12) and area > 1
     there = sim_host(*"basin plane --speed 4 --rays 8 --points 20 --ray-tolerance 0.005".split())
     assert sa.document(found)["outline"] == there["outline"]
+
+
+def test_a_function_replaces_the_law_of_a_result():
+    """Situation: a basin of law h. Action: the same again with a function, as a result and as a dictionary. Must hold: that of the
+    function; its own result can be used again with it."""
+    short = {"speeds": [4.0, 5.0]}
+    of_h = sa.basin(law="h", **short)
+    law = lambda roll_rate_rad_s, speed_m_s: 3.0 * roll_rate_rad_s
+    alone = sa.basin(law=law, **short).height
+    assert not alone.equals(of_h.height)
+    assert sa.basin(of_h, law=law).height.equals(alone)
+    assert sa.basin({"law": "h", "search": short}, law=law).height.equals(alone)
+    assert sa.basin(sa.basin(law=law, **short), law=law).height.equals(alone)
+
+
+def test_laws_that_are_odd_at_some_rates_only():
+    """Situation: functions that are not odd beyond 0.5 rad/s, or at another speed. Must hold: refused with the place."""
+    for law, place in (
+        (lambda r, v: 12.0 * r if abs(r) <= 0.5 else 12.0 * r + 5.0, "1.0 rad/s"),
+        (lambda r, v: 12.0 * r if v > 3.5 else 12.0 * abs(r), "2.0 m/s"),
+    ):
+        with pytest.raises(sa.ScenarioError, match="not odd") as raised:
+            sa.basin(law=law, speeds=[4.0])
+        assert place in str(raised.value)
+
+
+def test_a_single_speed_has_no_area():
+    assert np.isnan(sa.basin(speeds=[4.0], max_rate=0.5).area)

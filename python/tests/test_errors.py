@@ -4,6 +4,7 @@ import pickle
 import warnings
 
 import numpy as np
+import pandas
 import pytest
 import steer_assist as sa
 
@@ -103,3 +104,43 @@ def test_a_missing_file(tmp_path):
 def test_an_error_passes_between_processes():
     error = pickle.loads(pickle.dumps(sa.ScenarioError("wrong", "a.b", (0.0, 1.0))))
     assert (str(error), error.key, error.range) == ("wrong", "a.b", (0.0, 1.0))
+
+
+@pytest.mark.parametrize("threads", [0, -1, 1025, 2.0, True])
+def test_threads_out_of_range(threads):
+    for search in (lambda: sa.basin(threads=threads), lambda: sa.plane(speed=4, threads=threads), lambda: sa.sweep(over={"law": ["h"]}, threads=threads)):
+        with pytest.raises(sa.ScenarioError, match="threads") as raised:
+            search()
+        assert raised.value.key == "threads" and raised.value.range == (1.0, 1024.0)
+
+
+def test_speeds_of_eigenvalues_out_of_range():
+    """Situation: km/h for m/s, and none. Must hold: refused with the key, not computed."""
+    for speeds in ([36.0], [-31.0], [1e9], []):
+        with pytest.raises(sa.ScenarioError, match="speeds") as raised:
+            sa.eigen(speeds=speeds)
+        assert raised.value.key == "speeds"
+
+
+def test_a_duration_of_pandas_is_no_number():
+    with pytest.raises(sa.ScenarioError, match="Timedelta") as raised:
+        sa.ride(time_limit_s=pandas.Timedelta("3s"), **START)
+    assert raised.value.key == "time_limit_s"
+
+
+def test_doubts_are_warnings():
+    """Situation: a frame whose inertias no rigid body has. Action: every computation. Must hold: each warns, the given one not."""
+    parameters = sa.check()["config"]["bicycle"]["parameters"]
+    doubtful = {**parameters, "IBxx": 40.0}
+    for compute in (
+        lambda: sa.ride(bicycle=doubtful, **START),
+        lambda: sa.basin(bicycle=doubtful, speeds=[4.0], max_rate=0.5),
+        lambda: sa.plane(bicycle=doubtful, speed=4, rays=4, method="fast"),
+        lambda: sa.eigen(bicycle=doubtful, speeds=[4.0]),
+        lambda: sa.sweep(over={"law": ["h"]}, bicycle=doubtful, speeds=[4.0], max_rate=0.5),
+    ):
+        with pytest.warns(sa.ScenarioWarning, match="IB"):
+            compute()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sa.ride(bicycle=parameters, **START)

@@ -10,6 +10,7 @@ use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, Res
 use crate::report::tool::{SCHEMA, Tool};
 use crate::rider::compatibility_warnings;
 use crate::scenario::LoadedRider;
+use crate::scenario::speeds::FASTEST_M_S;
 use control::{Capsize, Law};
 use nalgebra::Complex;
 use rayon::prelude::*;
@@ -51,9 +52,16 @@ pub struct Eigenvalues {
 /// Computes the eigenvalues, on all cores of the current rayon pool.
 ///
 /// # Errors
-/// An actuator or a speed that does not suit law and rider.
+/// A speed out of range; an actuator or a speed that does not suit law and rider.
 pub fn eigen(task: &EigenTask) -> Result<Eigenvalues, CommandError> {
     let EigenTask { bicycle, rider, law: (law_name, law), actuator, speeds, .. } = task;
+    if speeds.is_empty() {
+        return Err(CommandError::choice("speeds", "none is given"));
+    }
+    if let Some(v) = speeds.iter().find(|v| !(-FASTEST_M_S..=FASTEST_M_S).contains(*v)) {
+        let reason = format!("{v} m/s is outside -{FASTEST_M_S} to {FASTEST_M_S}");
+        return Err(CommandError::choice("speeds", reason));
+    }
     let alone = *law == Law::None && rider.is_none() && task.capsize.is_none();
     if let (false, Some(v)) = (alone, speeds.iter().find(|v| **v < 0.0)) {
         let reason = "laws and riders are those of riding forward; below 0 only --law none without --rider and --capsize";

@@ -4,7 +4,7 @@
 const MOST: usize = 100_000;
 
 /// Largest speed \[m/s\].
-const FASTEST_M_S: f64 = 30.0;
+pub const FASTEST_M_S: f64 = 30.0;
 
 /// A text that is no range of speeds.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
