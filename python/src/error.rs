@@ -42,3 +42,8 @@ pub(crate) fn of_command(py: Python<'_>, error: &CommandError) -> PyErr {
 pub(crate) fn of_text(py: Python<'_>, error: &dyn std::fmt::Display) -> PyErr {
     exception(py, "ScenarioError", (error.to_string(),))
 }
+
+/// Any other error of the value of a key, as a message.
+pub(crate) fn of_key(py: Python<'_>, key: &str, error: &dyn std::fmt::Display) -> PyErr {
+    exception(py, "ScenarioError", (error.to_string(), key))
+}

@@ -23,7 +23,7 @@ mod _core {
     #[pymodule_export]
     use super::basin::basin;
     #[pymodule_export]
-    use super::catalogue::{bicycle_keys, bicycles, riders};
+    use super::catalogue::{bicycle_keys, bicycle_of_text, bicycles, riders};
     #[pymodule_export]
     use super::eigen::eigen;
     #[pymodule_export]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -28,7 +30,7 @@ def as_bicycle(value: Any) -> Any:
         return value if "parameters" in value else from_parameters(value, str(value.get("name", "own")))
     if hasattr(value, "parameters"):
         name = getattr(value, "bicycleName", None) or getattr(value, "name", None) or type(value).__name__
-        return from_parameters(benchmark(value), str(name))
+        return from_object(benchmark(value), str(name))
     raise ScenarioError(f"bicycle: an object of type {type(value).__name__} is no bicycle", "bicycle")
 
 
@@ -40,6 +42,14 @@ def benchmark(value: Any) -> Mapping[str, Any]:
     if "IBxx" not in parameters and hasattr(value, "to_parameterization"):
         return value.to_parameterization("Meijaard2007").parameters
     return parameters
+
+
+def from_object(values: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """A scenario's own form of a bicycle from an object's parameters, of which those beside the 26 are checked against these and
+    left out, as those of a file are."""
+    pairs = {key: (number(key, value), deviation(key, value)) for key, value in values.items()}
+    lines = [f"{key} = {value!r}" + (f"+/-{sd!r}" if sd > 0.0 else "") for key, (value, sd) in pairs.items()]
+    return json.loads(_core.bicycle_of_text(name, "\n".join(lines)))
 
 
 def from_parameters(values: Mapping[str, Any], name: str) -> dict[str, Any]:
@@ -54,11 +64,19 @@ def from_parameters(values: Mapping[str, Any], name: str) -> dict[str, Any]:
     missing = [key for key in keys if key not in given]
     if missing:
         raise ScenarioError(f"bicycle: `{missing[0]}` is missing", f"bicycle.{missing[0]}")
-    pairs = {key: (number(key, given[key]), float(getattr(given[key], "std_dev", 0.0))) for key in keys}
+    pairs = {key: (number(key, given[key]), deviation(key, given[key])) for key in keys}
     bicycle: dict[str, Any] = {"name": name, "parameters": {key: value for key, (value, _) in pairs.items()}}
     if any(sd > 0.0 for _, sd in pairs.values()):
         bicycle["measured"] = {"bicycle": [{"value": value, "sd": sd} for value, sd in pairs.values()]}
     return bicycle
+
+
+def deviation(key: str, value: Any) -> float:
+    """The standard deviation of a parameter, 0 of a plain number."""
+    sd = float(getattr(value, "std_dev", 0.0))
+    if not 0.0 <= sd < math.inf:
+        raise ScenarioError(f"bicycle.{key}: a standard deviation of {sd} is no number of at least 0", f"bicycle.{key}")
+    return sd
 
 
 def number(key: str, value: Any) -> float:

@@ -16,7 +16,7 @@ Progress = Union[bool, Report, None]
 
 @contextmanager
 def reporting(progress: Progress, name: str, unit: str) -> Iterator[Report | None]:
-    """The function that is told the progress.
+    """The function that gets the progress.
 
     ``progress``: None for a bar on a terminal, True for a bar everywhere, False for none, or a function of the numbers of
     finished and of all parts.

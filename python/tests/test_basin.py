@@ -58,9 +58,9 @@ def test_threads_change_no_bit():
 
 
 def test_progress_is_told():
-    told = []
-    sa.basin(speeds=[3, 4, 5], progress=lambda done, all: told.append((done, all)))
-    assert told[-1] == (3, 3)
+    calls = []
+    sa.basin(speeds=[3, 4, 5], progress=lambda done, all: calls.append((done, all)))
+    assert calls[-1] == (3, 3)
 
 
 def test_draws_have_a_band():

@@ -1,5 +1,7 @@
 """Eigenvalues, against BicycleParameters."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import steer_assist as sa
@@ -40,6 +42,29 @@ def test_uncertain_parameters_of_bicycleparameters():
     config = sa.check(bicycle=Bicycle())["config"]["bicycle"]
     assert config["name"] == "Rigid" and config["parameters"] == parameters
     assert config["uncertainties"]["mB"] == pytest.approx(0.01 * parameters["mB"])
+
+
+@pytest.mark.parametrize("name, beside", [("Silver", "IFzz"), ("Browser", None)])
+def test_bicycles_of_bicycleparameters(name, beside):
+    """Situation: bicycles as BicycleParameters loads those that it ships, one with parameters beside the 26. Must hold: its
+    26 values and their deviations; a value beside them that contradicts them warns; a deviation that is no number is refused."""
+    package = pytest.importorskip("bicycleparameters")
+    theirs = package.Bicycle(name, pathToData=str(Path(package.__file__).parent / "app-data"))
+    benchmark = theirs.parameters["Benchmark"]
+    assert beside is None or beside in benchmark
+    config = sa.check(bicycle=theirs)["config"]["bicycle"]
+    assert config["name"] == name
+    assert config["parameters"] == {key: benchmark[key].nominal_value for key in sa.bicycle_keys()}
+    if name == "Browser":
+        assert config["uncertainties"]["mB"] == pytest.approx(benchmark["mB"].std_dev) and benchmark["mB"].std_dev > 0
+    else:
+        benchmark["IFzz"] = benchmark["IFzz"] * 2
+        with pytest.warns(sa.ScenarioWarning, match="IFzz = .* is not IFxx"):
+            sa.eigen(bicycle=theirs, speeds=[4.0])
+    benchmark["mB"] = pytest.importorskip("uncertainties").ufloat(12.1, float("nan"))
+    with pytest.raises(sa.ScenarioError, match="mB.*deviation") as raised:
+        sa.check(bicycle=theirs)
+    assert raised.value.key == "bicycle.mB"
 
 
 def test_the_law_and_the_modes(sim_host):
