@@ -45,9 +45,9 @@ pub struct Prepared {
 
 /// Remarks about signals; the same about several, as the columns of a table have the same times, is one.
 #[derive(Default)]
-struct Told(Vec<(Vec<&'static str>, String)>);
+struct SharedRemarks(Vec<(Vec<&'static str>, String)>);
 
-impl Told {
+impl SharedRemarks {
     fn add(&mut self, what: &'static str, remark: Option<String>) {
         let Some(remark) = remark else { return };
         match self.0.iter_mut().find(|(_, other)| *other == remark) {
@@ -143,13 +143,13 @@ fn gridded(signal: &Timed, start_s: f64, sample_s: f64, count: usize, hold: Hold
 /// # Errors
 /// A signal is missing or has too few samples, or the speed is not known.
 pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, RecordError> {
-    let mut told = Told::default();
+    let mut shared = SharedRemarks::default();
     let mut sorted = |what: &'static str, signal: &Timed| {
         let (rising, remark) = rising(signal);
-        told.add(what, remark);
+        shared.add(what, remark);
         rising
     };
-    let mut outliers = Told::default();
+    let mut outliers = SharedRemarks::default();
     let mut plausible = |what: &'static str, unit: &'static str, signal: Timed| {
         let (kept, remark) = without(unit, signal);
         outliers.add(what, remark);
@@ -180,7 +180,7 @@ pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, Rec
         return Err(RecordError::Missing { what: "perturbation", columns });
     }
     let speed = plausible("speed", "m/s", sorted("speed", &signals.speed_m_s));
-    let mut remarks: Vec<String> = told.all().chain(outliers.all()).collect();
+    let mut remarks: Vec<String> = shared.all().chain(outliers.all()).collect();
     let Some((_, _, leading)) = measured.first() else {
         return Err(RecordError::Missing { what: "signal to fit", columns: "steer_rad" });
     };

@@ -7,6 +7,7 @@ mod identify;
 mod linear;
 mod parts;
 mod perturbation;
+mod recovery;
 mod residuals;
 mod roots;
 mod spline;

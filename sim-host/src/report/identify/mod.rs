@@ -6,6 +6,7 @@ mod page;
 mod plots;
 mod rows;
 mod text;
+mod warnings;
 
 pub use chart::chart;
 pub use document::{
