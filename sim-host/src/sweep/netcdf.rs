@@ -3,7 +3,7 @@
 use super::document::SweepDocument;
 use super::names::variable;
 use super::{Axis, Found, Grid, Unit};
-use crate::report::netcdf::{File, Values, Variable, effort_numbers, fall_flags, switch_flags};
+use crate::report::netcdf::{BOUND, File, Values, Variable, border_flags, effort_numbers, switch_flags};
 
 /// The file of a sweep without missing cells. Axes of numbers rise,
 /// whatever their order in the plan: coordinates must be monotonic.
@@ -22,21 +22,12 @@ pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> File {
         .map(|((axis, name), order)| coordinate(axis, name, order))
         .collect();
     let speeds = grid.plan.search.speeds.clone();
-    let bound = ["measured", "lower_bound"];
     variables.extend([
         Variable::numbers(("speed", "m s-1", "forward speed"), &["speed"], speeds),
         Variable::numbers(("height", "rad s-1", "largest disturbance not to fall"), &all, heights),
-        Variable::new(
-            ("capped", "whether nothing fell, so that height is a lower bound"),
-            &all,
-            switch_flags(bound, found().map(|f| f.capped)),
-        ),
-        Variable::new(
-            ("fall_cause", "reason for which the ride next beyond height counts as fallen"),
-            &all,
-            fall_flags(found().map(|f: &Found| f.fall.as_deref())),
-        ),
     ]);
+    let falls = found().map(|f: &Found| f.fall.as_deref());
+    variables.extend(border_flags("height", &all, found().map(|f| f.capped), falls));
     variables.extend(effort_numbers(&all, found().map(|f| f.effort)));
     let areas = units.iter().map(|unit| grid.area(unit).unwrap_or(f64::NAN)).collect();
     let means = units.iter().map(|unit| unit.mean_height()).collect();
@@ -50,7 +41,7 @@ pub(super) fn netcdf(grid: &Grid, document: &SweepDocument) -> File {
         Variable::new(
             ("area_capped", "whether area and mean_height are lower bounds"),
             &names,
-            switch_flags(bound, units.iter().map(|unit| unit.capped())),
+            switch_flags(BOUND, units.iter().map(|unit| unit.capped())),
         ),
     ]);
     File {

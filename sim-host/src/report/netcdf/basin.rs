@@ -1,7 +1,7 @@
 //! NetCDF file of `basin`.
 
-use super::variable::{effort_numbers, outcome_flags};
-use super::{File, Variable, fall_flags, switch_flags};
+use super::variable::{border_flags, effort_numbers, scan_outcomes};
+use super::{File, Variable, fall_flags};
 use crate::basin::{Axis, Basin, Column, Drawn, QUANTILES, ScanPoint};
 use crate::report::tool::Tool;
 use crate::ride::FallCause;
@@ -23,7 +23,6 @@ pub fn basin(
         Axis::SteerRate => "steer rate added by the disturbance, to the right",
         Axis::RollRate => "roll rate added by the disturbance, to the right",
     };
-    let lower_bound = ["measured", "lower_bound"];
     let speed = &["speed"];
     let map = &["speed", "rate"];
     let mut variables = vec![
@@ -34,32 +33,15 @@ pub fn basin(
             speed,
             over_speed(|c| c.upper),
         ),
-        Variable::new(
-            ("capped", "whether nothing fell, so that height is a lower bound"),
-            speed,
-            switch_flags(lower_bound, columns.iter().map(|c| c.capped)),
-        ),
-        Variable::new(
-            ("fall_cause", "reason for which the ride next beyond height counts as fallen"),
-            speed,
-            fall_flags(columns.iter().map(|c| c.beyond.map(FallCause::name))),
-        ),
-        Variable::new(
-            ("outcome", "outcome of each ride of the scan"),
-            map,
-            outcome_flags(scan().map(|p| p.outcome)),
-        ),
-        Variable::numbers(
-            ("time_to_fall", "s", "time of the fall since the disturbance; missing without a fall"),
-            map,
-            scan().map(|p| p.outcome.time_to_fall_s().unwrap_or(f64::NAN)).collect(),
-        ),
-        Variable::new(
-            ("fall", "reason for which each ride of the scan counts as fallen"),
-            map,
-            fall_flags(scan().map(|ScanPoint { outcome, .. }| outcome.fall().map(FallCause::name))),
-        ),
     ];
+    let falls = columns.iter().map(|c| c.beyond.map(FallCause::name));
+    variables.extend(border_flags("height", speed, columns.iter().map(|c| c.capped), falls));
+    variables.extend(scan_outcomes(map, scan()));
+    variables.push(Variable::new(
+        ("fall", "reason for which each ride of the scan counts as fallen"),
+        map,
+        fall_flags(scan().map(|ScanPoint { outcome, .. }| outcome.fall().map(FallCause::name))),
+    ));
     variables.extend(effort_numbers(speed, columns.iter().map(|c| c.border.map(|ride| ride.effort))));
     variables.extend(islands(columns));
     variables.extend(drawn.map_or(Vec::new(), draws));

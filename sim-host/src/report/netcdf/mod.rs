@@ -11,4 +11,4 @@ pub use basin::basin;
 pub use file::{File, Format, NetCdfError, provenance};
 pub use plane::plane;
 pub use ride::ride;
-pub use variable::{Values, Variable, effort_numbers, fall_flags, switch_flags};
+pub use variable::{BOUND, Values, Variable, border_flags, effort_numbers, fall_flags, switch_flags};

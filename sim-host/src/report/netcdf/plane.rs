@@ -1,8 +1,8 @@
 //! NetCDF file of `basin plane`.
 
 use super::basin::numbered;
-use super::variable::outcome_flags;
-use super::{File, Variable, fall_flags, switch_flags};
+use super::variable::{border_flags, scan_outcomes};
+use super::{File, Variable};
 use crate::basin::{Plane, Ray};
 use crate::report::tool::Tool;
 use crate::ride::FallCause;
@@ -16,7 +16,7 @@ pub fn plane(title: &str, attributes: Vec<(&'static str, String)>, plane: &Plane
     let parts = rays.first().map_or(Vec::new(), |ray| ray.column.scan.iter().map(|p| p.rate).collect());
     let outline = plane.outline();
     let (ray, map, point) = (&["ray"], &["ray", "part"], &["point"]);
-    let variables = vec![
+    let mut variables = vec![
         Variable::numbers(("ray", "1", "number of the ray, by its angle"), ray, numbered(rays.len())),
         Variable::numbers(("part", "1", "part of the ray from the undisturbed ride"), &["part"], parts),
         Variable::numbers(
@@ -34,26 +34,11 @@ pub fn plane(title: &str, attributes: Vec<(&'static str, String)>, plane: &Plane
             ray,
             over_rays(|r| r.column.upper),
         ),
-        Variable::new(
-            ("capped", "whether nothing fell, so that border is a lower bound"),
-            ray,
-            switch_flags(["measured", "lower_bound"], rays.iter().map(|r| r.column.capped)),
-        ),
-        Variable::new(
-            ("fall_cause", "reason for which the ride next beyond border counts as fallen"),
-            ray,
-            fall_flags(rays.iter().map(|r| r.column.beyond.map(FallCause::name))),
-        ),
-        Variable::new(
-            ("outcome", "outcome of each ride of the scan"),
-            map,
-            outcome_flags(scan().map(|p| p.outcome)),
-        ),
-        Variable::numbers(
-            ("time_to_fall", "s", "time of the fall since the disturbance; missing without a fall"),
-            map,
-            scan().map(|p| p.outcome.time_to_fall_s().unwrap_or(f64::NAN)).collect(),
-        ),
+    ];
+    let falls = rays.iter().map(|r| r.column.beyond.map(FallCause::name));
+    variables.extend(border_flags("border", ray, rays.iter().map(|r| r.column.capped), falls));
+    variables.extend(scan_outcomes(map, scan()));
+    variables.extend([
         Variable::numbers(("point", "1", "number of the outline's point"), point, numbered(outline.len())),
         Variable::numbers(
             ("outline_steer_rate", "rad s-1", "steer rate of the closed outline"),
@@ -65,6 +50,6 @@ pub fn plane(title: &str, attributes: Vec<(&'static str, String)>, plane: &Plane
             point,
             outline.iter().map(|p| p.1).collect(),
         ),
-    ];
+    ]);
     File { title: title.into(), tool: Tool::this(), attributes, variables }
 }

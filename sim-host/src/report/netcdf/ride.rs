@@ -2,10 +2,9 @@
 
 use super::variable::outcome_flags;
 use super::{File, Values, Variable, fall_flags, switch_flags};
-use crate::board::causes::LIMITS;
 use crate::report::tool::Tool;
 use crate::ride::{FallCause, Ride, TracePoint};
-use control::{ActiveLimits, CAUSES, Causes, Mode};
+use control::{ActiveLimits, CAUSES, Causes, LIMITS, Mode};
 
 /// A number of a point in time: its name, unit, meaning and value.
 type Number = (&'static str, &'static str, &'static str, fn(&TracePoint) -> f64);
@@ -37,12 +36,12 @@ pub fn ride(title: &str, attributes: Vec<(&'static str, String)>, ride: &Ride, t
     };
     let mut variables: Vec<Variable> = NUMBERS.iter().map(number).collect();
     let modes: Vec<String> = (0..).map_while(Mode::numbered).map(|mode| mode.name().to_owned()).collect();
-    let limits = LIMITS.map(|(_, name)| name.to_owned()).to_vec();
+    let limits = LIMITS.map(|named| named.name.to_owned()).to_vec();
     let causes = CAUSES.map(|cause| cause.name().to_owned()).to_vec();
     let numbers = CAUSES.map(|cause| f64::from(cause.code())).to_vec();
     let limited = |p: &TracePoint| {
         let active = ActiveLimits(p.limits);
-        LIMITS.map(|(limit, _)| active.contains(limit))
+        LIMITS.map(|named| active.contains(named.limit))
     };
     let caused = |p: &TracePoint| {
         let active = Causes(p.causes);

@@ -1,5 +1,6 @@
 //! A variable of a NetCDF file: names, dimensions, values.
 
+use crate::basin::ScanPoint;
 use crate::ride::{Effort, FallCause, Outcome};
 
 /// A variable with its description.
@@ -70,6 +71,44 @@ pub fn fall_flags<'a>(falls: impl IntoIterator<Item = Option<&'a str>>) -> Value
         &[&["none"][..], &FallCause::ALL.map(FallCause::name)].concat(),
         falls.into_iter().map(|f| f.unwrap_or("none")),
     )
+}
+
+/// About borders called `border`, over `dims`: whether each is a lower bound, and why the ride next beyond it counts as fallen.
+pub fn border_flags<'a, D: AsRef<str>>(
+    border: &str,
+    dims: &[D],
+    capped: impl IntoIterator<Item = bool>,
+    falls: impl IntoIterator<Item = Option<&'a str>>,
+) -> [Variable; 2] {
+    let bound = format!("whether nothing fell, so that {border} is a lower bound");
+    let reason = format!("reason for which the ride next beyond {border} counts as fallen");
+    [
+        Variable::new(("capped", &bound), dims, switch_flags(BOUND, capped)),
+        Variable::new(("fall_cause", &reason), dims, fall_flags(falls)),
+    ]
+}
+
+/// States of a border that may be a lower bound.
+pub const BOUND: [&str; 2] = ["measured", "lower_bound"];
+
+/// Outcome and time of the fall of the rides of a scan, over `dims`.
+pub(super) fn scan_outcomes<'a, D: AsRef<str>>(
+    dims: &[D],
+    scan: impl Iterator<Item = &'a ScanPoint> + Clone,
+) -> [Variable; 2] {
+    let times = scan.clone().map(|p| p.outcome.time_to_fall_s().unwrap_or(f64::NAN)).collect();
+    [
+        Variable::new(
+            ("outcome", "outcome of each ride of the scan"),
+            dims,
+            outcome_flags(scan.map(|p| p.outcome)),
+        ),
+        Variable::numbers(
+            ("time_to_fall", "s", "time of the fall since the disturbance; missing without a fall"),
+            dims,
+            times,
+        ),
+    ]
 }
 
 /// Flags of outcomes.
