@@ -76,7 +76,7 @@ pub use law::gain_schedule::GainSchedule;
 pub use param::ParamError;
 pub use plan::Plan;
 pub use safety::engagement::{EngagementConfig, Mode};
-pub use safety::limits::{ActiveLimits, Limits, Taper};
+pub use safety::limits::{ActiveLimits, LIMITS, Limits, NamedLimit, Taper};
 pub use sensors::calibration::Calibration;
 pub use sensors::frame::{Sample, SensorFrame, Triple, Wheel};
 pub use sensors::monitor::{Loss, Sensor};

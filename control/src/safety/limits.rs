@@ -317,3 +317,42 @@ impl ActiveLimits {
         }
     }
 }
+
+/// A limit of [`ActiveLimits`] with its name and its meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NamedLimit {
+    /// The limit.
+    pub limit: ActiveLimits,
+    /// Name in messages, tables and documents.
+    pub name: &'static str,
+    /// Meaning, in one sentence.
+    pub meaning: &'static str,
+}
+
+impl NamedLimit {
+    const fn new(limit: ActiveLimits, name: &'static str, meaning: &'static str) -> Self {
+        Self { limit, name, meaning }
+    }
+}
+
+/// Every limit, in the order of the bits.
+pub const LIMITS: [NamedLimit; 10] = [
+    NamedLimit::new(ActiveLimits::TAPER, "taper", "Torque scaled down below walking speed."),
+    NamedLimit::new(ActiveLimits::MAGNITUDE, "torque", "Torque limited to the largest one."),
+    NamedLimit::new(ActiveLimits::RATE, "rate", "Torque limited by its rate of change."),
+    NamedLimit::new(ActiveLimits::SPEED, "speed", "Torque limited to the largest one at this speed."),
+    NamedLimit::new(
+        ActiveLimits::RIDER_TORQUE,
+        "rider torque",
+        "Torque limited because the rider pushes against the assist.",
+    ),
+    NamedLimit::new(
+        ActiveLimits::RIDER_MOTION,
+        "rider motion",
+        "Torque scaled down because the handlebar turns against it.",
+    ),
+    NamedLimit::new(ActiveLimits::WINDOW, "window", "Torque limited by its change within the window."),
+    NamedLimit::new(ActiveLimits::END_STOP, "end-stop", "Torque scaled down towards the end-stop."),
+    NamedLimit::new(ActiveLimits::LIMP, "limp", "Torque limited to the largest one of limp mode."),
+    NamedLimit::new(ActiveLimits::AUTHORITY, "authority", "Torque scaled down by an authority below 1."),
+];

@@ -280,3 +280,14 @@ fn limits_out_of_range_are_rejected_by_name() {
         assert!(message.starts_with(name), "{message}");
     }
 }
+
+/// Situation: the table of limits. Must hold: each bit in use has one entry, in the bits' order, with a name of its own.
+#[test]
+fn every_limit_has_a_name() {
+    let bits: Vec<u16> = LIMITS.iter().map(|named| named.limit.0).collect();
+    assert_eq!(bits, (0..LIMITS.len()).map(|bit| 1 << bit).collect::<Vec<u16>>());
+    let names: std::collections::BTreeSet<&str> = LIMITS.iter().map(|named| named.name).collect();
+    assert_eq!(names.len(), LIMITS.len());
+    let last = LIMITS[LIMITS.len() - 1].limit;
+    assert_eq!(last, ActiveLimits::AUTHORITY);
+}

@@ -4,12 +4,14 @@ use crate::parameters;
 use crate::variable::{Kind, Role, Variable};
 use control::law::gain_schedule::GainSchedule;
 use control::wire::{CONFIG_BYTES, FRAME_BYTES, decode_config, decode_frame, encode_frame};
-use control::{CAUSES, Command, Config, Law, Plan, SensorFrame, step};
+use control::{CAUSES, Command, Config, LIMITS, Law, Mode, Plan, SensorFrame, step};
 use motion::plant::{Held, Measured, Sensor};
 use motion::ride::{Engaged, clock_us, engaged, frame_of};
+use std::sync::LazyLock;
 
 /// Names of the modes, by their number.
-const MODES: &[&str] = &["off", "initialise", "self-test", "standby", "engaged", "limp", "fault"];
+static MODES: LazyLock<Vec<&str>> =
+    LazyLock::new(|| (0..).map_while(Mode::numbered).map(Mode::name).collect());
 
 /// Variables of a sensor's values: names, unit, meaning.
 pub(crate) fn signals(sensor: Sensor) -> (&'static [&'static str], &'static str, &'static str) {
@@ -64,8 +66,8 @@ pub(crate) fn decoded(digits: &str) -> Result<Config, String> {
     decode_config(&bytes).map_err(|e| e.to_string())
 }
 
-/// All variables; `speed_m_s` is that of the warm start.
-pub(crate) fn variables(config: &Config, speed_m_s: f64) -> Vec<Variable> {
+/// All variables; `speed_m_s` is that of the warm start, `g_m_s2` gravity.
+pub(crate) fn variables(config: &Config, speed_m_s: f64, g_m_s2: f64) -> Vec<Variable> {
     let mut all = parameters::declared(config);
     all.extend(parameters::law_variables(&config.law));
     all.push(
@@ -84,7 +86,7 @@ pub(crate) fn variables(config: &Config, speed_m_s: f64) -> Vec<Variable> {
     );
     for sensor in Sensor::ALL {
         let steady = |name: &str| match name {
-            "accel_z_m_s2" => -9.81,
+            "accel_z_m_s2" => -g_m_s2,
             "front_wheel_m_s" | "rear_wheel_m_s" => speed_m_s,
             _ => 0.0,
         };
@@ -107,10 +109,10 @@ pub(crate) fn variables(config: &Config, speed_m_s: f64) -> Vec<Variable> {
         "torque of the motor on the steer axis until the next step, right positive",
     ));
     all.push(Variable::real(Role::Output, "gain_nm_s_rad", "N m s/rad", "gain of the law"));
-    all.push(Variable::of_kind(Kind::Choice(MODES), Role::Output, "mode", "mode of the controller"));
-    let limits = "limits that changed the torque, bits from 0: taper, torque, rate, speed, rider torque, rider motion, \
-                  window, end-stop, limp, authority";
-    all.push(Variable::of_kind(Kind::Integer, Role::Output, "limits", limits));
+    all.push(Variable::of_kind(Kind::Choice(&MODES), Role::Output, "mode", "mode of the controller"));
+    let limits = LIMITS.map(|named| named.name).join(", ");
+    let limits = format!("limits that changed the torque, bits from 0: {limits}");
+    all.push(Variable::of_kind(Kind::Integer, Role::Output, "limits", &limits));
     all.push(Variable::of_kind(
         Kind::Integer,
         Role::Output,

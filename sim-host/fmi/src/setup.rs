@@ -103,8 +103,8 @@ impl Setup {
     /// The configuration can't be decoded.
     pub fn table(&self) -> Result<Table, String> {
         Ok(Table::new(match self {
-            Self::Controller { configuration, speed_m_s, .. } => {
-                controller::variables(&controller::decoded(configuration)?, *speed_m_s)
+            Self::Controller { configuration, speed_m_s, g_m_s2, .. } => {
+                controller::variables(&controller::decoded(configuration)?, *speed_m_s, *g_m_s2)
             }
             Self::Bicycle { parameters, start, force_point, .. } => {
                 bicycle::variables(parameters, start, force_point)

@@ -1,6 +1,6 @@
 //! Causes and limits as text.
 
-use control::{ActiveLimits, Cause, Causes};
+use control::{ActiveLimits, Cause, Causes, LIMITS};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -43,21 +43,7 @@ fn page(cause: Cause) -> String {
     page + ".md"
 }
 
-/// The limits in the order of their bits, named as in `docs/cli.md`.
-pub const LIMITS: [(ActiveLimits, &str); 10] = [
-    (ActiveLimits::TAPER, "taper"),
-    (ActiveLimits::MAGNITUDE, "torque"),
-    (ActiveLimits::RATE, "rate"),
-    (ActiveLimits::SPEED, "speed"),
-    (ActiveLimits::RIDER_TORQUE, "rider torque"),
-    (ActiveLimits::RIDER_MOTION, "rider motion"),
-    (ActiveLimits::WINDOW, "window"),
-    (ActiveLimits::END_STOP, "end-stop"),
-    (ActiveLimits::LIMP, "limp"),
-    (ActiveLimits::AUTHORITY, "authority"),
-];
-
 /// Names of the limits in a set.
 pub fn limits(set: ActiveLimits) -> Vec<&'static str> {
-    LIMITS.iter().filter(|(limit, _)| set.0 & limit.0 != 0).map(|(_, name)| *name).collect()
+    LIMITS.iter().filter(|named| set.contains(named.limit)).map(|named| named.name).collect()
 }

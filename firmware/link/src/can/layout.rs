@@ -2,8 +2,8 @@
 
 use super::signal::{Content, Element, Quantity, Signal};
 use super::{AUTHORITY, CAUSES, MOTION, ROLL_RATE_RAD_S, SPEED_M_S, STATE, STEER_RAD, TORQUE_NM};
-use control::Mode;
 use control::sensors::polarity::PolarityStep;
+use control::{ActiveLimits, LIMITS, Mode};
 
 /// Layout of a frame.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +23,7 @@ pub const LAYOUTS: [Layout; 3] = [
     Layout {
         name: "State",
         identifier: STATE,
-        signals: &[MODE, DRIVEN, ENGAGE, POLARITY, LIMITS, AUTHORITY_PART, SPEED, STEPS],
+        signals: &[MODE, DRIVEN, ENGAGE, POLARITY, LIMITED, AUTHORITY_PART, SPEED, STEPS],
         meaning: "State of the controller. Unknown after 100 ms without a frame, and while Steps does not change.",
     },
     Layout {
@@ -56,7 +56,7 @@ pub(super) const POLARITY: Signal = Signal {
     content: Content::Choice(polarity),
     meaning: "Next move of the polarity check.",
 };
-pub(super) const LIMITS: Signal = Signal {
+pub(super) const LIMITED: Signal = Signal {
     name: "Limits",
     start: 16,
     bits: 16,
@@ -130,20 +130,21 @@ fn polarity(number: u8) -> Option<&'static str> {
 }
 
 fn limit(bit: u8) -> Option<Element> {
-    // In the order of the bits of `ActiveLimits`.
-    const LIMITS: [(&str, &str); 10] = [
-        ("LimitTaper", "Torque scaled down below walking speed."),
-        ("LimitMagnitude", "Torque limited to the largest one."),
-        ("LimitRate", "Torque limited by its rate of change."),
-        ("LimitSpeed", "Torque limited to the largest one at this speed."),
-        ("LimitRiderTorque", "Torque limited because the rider pushes against the assist."),
-        ("LimitRiderMotion", "Torque scaled down because the handlebar turns against it."),
-        ("LimitWindow", "Torque limited by its change within the window."),
-        ("LimitEndStop", "Torque scaled down towards the end-stop."),
-        ("LimitLimp", "Torque limited to the largest one of limp mode."),
-        ("LimitAuthority", "Torque scaled down by an authority below 1."),
+    const NAMES: [(ActiveLimits, &str); LIMITS.len()] = [
+        (ActiveLimits::TAPER, "LimitTaper"),
+        (ActiveLimits::MAGNITUDE, "LimitMagnitude"),
+        (ActiveLimits::RATE, "LimitRate"),
+        (ActiveLimits::SPEED, "LimitSpeed"),
+        (ActiveLimits::RIDER_TORQUE, "LimitRiderTorque"),
+        (ActiveLimits::RIDER_MOTION, "LimitRiderMotion"),
+        (ActiveLimits::WINDOW, "LimitWindow"),
+        (ActiveLimits::END_STOP, "LimitEndStop"),
+        (ActiveLimits::LIMP, "LimitLimp"),
+        (ActiveLimits::AUTHORITY, "LimitAuthority"),
     ];
-    LIMITS.get(usize::from(bit)).map(|&(name, meaning)| Element { name, meaning })
+    let named = LIMITS.iter().find(|named| u32::from(named.limit.0) == 1 << bit)?;
+    let (_, name) = NAMES.iter().find(|(limit, _)| *limit == named.limit)?;
+    Some(Element { name, meaning: named.meaning })
 }
 
 fn cause(bit: u8) -> Option<Element> {

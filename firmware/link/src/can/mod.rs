@@ -123,7 +123,7 @@ impl Message {
                     | DRIVEN.put(state.driven.into())
                     | ENGAGE.put(state.engage.into())
                     | POLARITY.put(state.polarity as u64)
-                    | LIMITS.put(state.limits.0.into())
+                    | LIMITED.put(state.limits.0.into())
                     | AUTHORITY_PART.put(PART.code(state.authority))
                     | SPEED.put(FORWARD.code(state.speed_m_s))
                     | STEPS.put(state.steps.into()),
@@ -152,7 +152,7 @@ impl Message {
                 driven: DRIVEN.get(bits) != 0,
                 engage: ENGAGE.get(bits) != 0,
                 polarity: PolarityStep::numbered(byte(POLARITY))?,
-                limits: ActiveLimits(LIMITS.get(bits) as u16),
+                limits: ActiveLimits(LIMITED.get(bits) as u16),
                 authority: PART.value(word(AUTHORITY_PART)),
                 speed_m_s: FORWARD.value(word(SPEED)),
                 steps: byte(STEPS),
