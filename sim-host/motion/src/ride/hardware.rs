@@ -2,7 +2,7 @@
 //! controller needs only roll rate and one speed.
 
 use super::backend::Backend;
-use super::sensor::Reading as Signals;
+use super::sensor::{Reading as Signals, clock_us};
 use super::warm_start::{Ready, engage_run};
 use super::{Assist, Conditions, ScheduleSpeed, Start};
 use crate::bicycle::{Motion, Velocities};
@@ -107,18 +107,38 @@ impl RideHardware {
 
 /// Input frame of the controller, with the fitted sensors.
 pub fn frame(plan: &Plan, measured: &Measured) -> SensorFrame {
-    let input = &plan.config().input;
-    let of = |sensor| -> &Held { measured.of(sensor) };
-    let one = |fitted: bool, sensor: Sensor, axis: usize| match fitted {
-        true => Sample { value: of(sensor).value[axis] as f32, age_ticks: of(sensor).age_ticks },
-        false => Sample::missing(),
+    let of = |sensor| {
+        let Held { value, age_ticks } = *measured.of(sensor);
+        (value, age_ticks)
     };
-    let three = |fitted: bool, sensor: Sensor| match fitted {
-        true => Triple { value: of(sensor).value.map(|x| x as f32), age_ticks: of(sensor).age_ticks },
-        false => Triple::missing(),
+    fitted(plan, (measured.now_us, measured.engage), of)
+}
+
+/// Input frame of the controller from exact sensors, with the fitted ones, `ticks` control periods after boot.
+pub(super) fn exact_frame(plan: &Plan, reading: &Reading, ticks: u32, engage: bool) -> SensorFrame {
+    fitted(plan, (clock_us(plan, ticks), engage), |sensor| (reading.of(sensor), 0))
+}
+
+/// Input frame of the controller at its clock \[us\]; `of` gives value and age of a fitted sensor \[control periods\].
+#[inline(always)]
+fn fitted(plan: &Plan, (now_us, engage): (u32, bool), of: impl Fn(Sensor) -> ([f64; 3], u16)) -> SensorFrame {
+    let input = &plan.config().input;
+    let one = |fitted: bool, sensor: Sensor, axis: usize| {
+        if !fitted {
+            return Sample::missing();
+        }
+        let (value, age_ticks) = of(sensor);
+        Sample { value: value[axis] as f32, age_ticks }
+    };
+    let three = |fitted: bool, sensor: Sensor| {
+        if !fitted {
+            return Triple::missing();
+        }
+        let (value, age_ticks) = of(sensor);
+        Triple { value: value.map(|x| x as f32), age_ticks }
     };
     SensorFrame {
-        now_us: measured.now_us,
+        now_us,
         gyro_rad_s: three(input.gyro.fitted, Sensor::Gyro),
         accel_m_s2: three(input.accel.fitted, Sensor::Accel),
         steer_rad: one(input.steer.fitted, Sensor::Steer, 0),
@@ -129,32 +149,6 @@ pub fn frame(plan: &Plan, measured: &Measured) -> SensorFrame {
         motor_torque_nm: one(input.motor.fitted, Sensor::MotorReport, 0),
         heading_error_rad: one(input.path.fitted, Sensor::Path, 0),
         lateral_error_m: one(input.path.fitted, Sensor::Path, 1),
-        engage: measured.engage,
-    }
-}
-
-/// Input frame of the controller from exact sensors, with the fitted ones, `ticks` control periods after boot.
-pub(super) fn exact_frame(plan: &Plan, reading: &Reading, ticks: u32, engage: bool) -> SensorFrame {
-    let input = &plan.config().input;
-    let one = |fitted: bool, value: f64| {
-        if fitted { Sample::fresh(value as f32) } else { Sample::missing() }
-    };
-    let three = |fitted: bool, value: [f64; 3]| {
-        if fitted { Triple::fresh(value.map(|x| x as f32)) } else { Triple::missing() }
-    };
-    let period_s = 1.0 / f64::from(plan.config().rate_hz);
-    SensorFrame {
-        now_us: (f64::from(ticks) * period_s * 1e6).round() as i64 as u32,
-        gyro_rad_s: three(input.gyro.fitted, reading.gyro_rad_s),
-        accel_m_s2: three(input.accel.fitted, reading.accel_m_s2),
-        steer_rad: one(input.steer.fitted, reading.steer_rad),
-        steer_rate_rad_s: one(input.steer_rate.fitted, reading.steer_rate_rad_s),
-        front_wheel_m_s: one(input.front_wheel.fitted, reading.front_wheel_m_s),
-        rear_wheel_m_s: one(input.rear_wheel.fitted, reading.rear_wheel_m_s),
-        rider_torque_nm: one(input.rider_torque.fitted, reading.rider_torque_nm),
-        motor_torque_nm: one(input.motor.fitted, reading.motor_torque_nm),
-        heading_error_rad: one(input.path.fitted, reading.heading_rad),
-        lateral_error_m: one(input.path.fitted, reading.lateral_m),
         engage,
     }
 }

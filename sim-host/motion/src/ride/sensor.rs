@@ -59,8 +59,8 @@ pub(super) fn frame(plan: &Plan, reading: &Reading, ticks: u32, engage: bool) ->
 
 /// The controller's clock `ticks` control periods after boot \[us\], wrapping.
 pub fn clock_us(plan: &Plan, ticks: u32) -> u32 {
-    let period_us = (1e6 / f64::from(plan.config().rate_hz)) as u64;
-    (u64::from(ticks) * period_us) as u32
+    let period_s = 1.0 / f64::from(plan.config().rate_hz);
+    (f64::from(ticks) * period_s * 1e6).round() as i64 as u32
 }
 
 /// Exact sensor values at these velocities: roll rate \[rad/s\] and speed \[m/s\].

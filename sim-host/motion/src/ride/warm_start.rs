@@ -3,9 +3,9 @@
 
 use super::backend::{Backend, Stepped};
 use super::hardware::{self, RideHardware};
-use super::sensor::{Reading, clock_us, frame};
+use super::sensor::{Reading, frame};
 use super::{Assist, Conditions, Start};
-use crate::plant::{Held, Measured, Plant, Reading as ExactReading, Sensor};
+use crate::plant::{Plant, Reading as ExactReading};
 use control::{Command, Plan, SensorFrame, State};
 
 /// The controller at t = 0.
@@ -65,8 +65,7 @@ pub fn engaged(plan: &Plan, speed_m_s: f64, g: f64) -> Engaged {
     let steady = ExactReading::steady(speed_m_s, g);
     let measured = |ticks, pressed, motor_torque_nm| {
         let reading = ExactReading { motor_torque_nm, ..steady };
-        let held = Sensor::ALL.map(|sensor| Held { value: reading.of(sensor), age_ticks: 0 });
-        hardware::frame(plan, &Measured::new(held, clock_us(plan, ticks), pressed))
+        hardware::exact_frame(plan, &reading, ticks, pressed)
     };
     let mut last = Stepped::OFF.command;
     let Ready { controller, ticks } =

@@ -60,7 +60,6 @@ impl Forecast {
 
     /// The model under an assist; `None` if it is not linear near upright riding.
     pub(super) fn new(conditions: &Conditions, source: &Source) -> Option<Self> {
-        // The roll rate in the frame differs from the roll angle's derivative by pitch and yaw.
         let assist = match source {
             Source::None => Linear::unlimited(IdealLaw::from(Law::None), 0.0),
             Source::Ideal(law, delay_s) => Linear::unlimited((**law).clone(), *delay_s),
