@@ -393,7 +393,7 @@ def test_initialisation_has_the_outputs_of_the_start(export, version):
 @pytest.mark.parametrize("version", ["2", "3"])
 def test_states_of_other_fmus_are_refused(export, version):
     """Situation: a controller's state, and a fall within a long step. Must hold: the bicycle refuses the state and goes on; the
-    long step is told as well as the fall."""
+    long step is reported as well as the fall."""
     bicycle, controller = Part(export("bicycle", version, *HARD), version), Part(export("controller", version), version)
     state = controller.save()
     for act in (lambda: bicycle.restore(state), lambda: bicycle.serialized(state)):

@@ -176,7 +176,7 @@ impl Bicycle {
             roll_rate,
             now.yaw_rate_rad_s,
             now.rear_wheel_rate_rad_s,
-            // Computed when they are asked for.
+            // The accelerations, which depend on the inputs: `accelerations`.
             0.0,
             0.0,
             now.front_lateral_m,

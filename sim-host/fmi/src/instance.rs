@@ -28,11 +28,11 @@ struct Fixed {
     step_s: f64,
 }
 
-/// What is worth a line in the log.
+/// An entry for the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Said {
-    /// A doubt about what the importer does.
-    Doubt(String),
+pub enum LogEntry {
+    /// A doubtful call of the importer.
+    Warning(String),
     /// An event of the model.
     Event(String),
 }
@@ -137,11 +137,11 @@ impl Instance {
         Ok(())
     }
 
-    /// A communication step of `step_s` seconds from the time `now_s`; returns what is worth lines in the log.
+    /// A communication step of `step_s` seconds from the time `now_s`; returns the entries for the log.
     ///
     /// # Errors
     /// The time is not that of the instance, or the step is not a whole number of the model's time steps.
-    pub fn step(&mut self, now_s: f64, step_s: f64) -> Result<Vec<Said>, String> {
+    pub fn step(&mut self, now_s: f64, step_s: f64) -> Result<Vec<LogEntry>, String> {
         self.only(Phase::Running, "step")?;
         let own_s = self.fixed.step_s;
         let expected_s = self.time_s();
@@ -159,10 +159,10 @@ impl Instance {
                 (least * 1e9).round() / 1e9
             ));
         }
-        let mut said = Vec::new();
+        let mut entries = Vec::new();
         if count > 1.0 && !self.now.warned {
             self.now.warned = true;
-            said.push(Said::Doubt(format!(
+            entries.push(LogEntry::Warning(format!(
                 "the communication step {step_s} s is {count} time steps of {own_s} s: the inputs are held over all \
                  of them"
             )));
@@ -170,11 +170,11 @@ impl Instance {
         let inputs = self.fixed.table.of(Role::Input);
         for _ in 0..count as u64 {
             let Snapshot { model, values, .. } = &mut self.now;
-            said.extend(model.step(&values[inputs.clone()]).map(Said::Event));
+            entries.extend(model.step(&values[inputs.clone()]).map(LogEntry::Event));
             self.now.periods += 1;
         }
         self.publish();
-        Ok(said)
+        Ok(entries)
     }
 
     /// The instance's time \[s\].

@@ -14,7 +14,7 @@ mod rider;
 mod setup;
 mod variable;
 
-pub use instance::{Instance, Said, Snapshot};
+pub use instance::{Instance, LogEntry, Snapshot};
 pub use model::Model;
 pub use setup::{MODEL_FILE, Setup, token};
 pub use variable::{Kind, Role, Table, Variable};

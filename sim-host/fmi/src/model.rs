@@ -46,7 +46,7 @@ impl Model {
         }
     }
 
-    /// One time step with the values of the inputs; returns what is worth a line in the log.
+    /// One time step with the values of the inputs; returns an event for the log.
     pub fn step(&mut self, inputs: &[f64]) -> Option<String> {
         match &mut self.0 {
             Which::Controller(model) => model.step(inputs),

@@ -115,7 +115,7 @@ mod tests {
         assert_eq!(
             refused(&format!("basin --json {path} --csv {path}")),
             None,
-            "outputs in one place are told elsewhere"
+            "two outputs in one place are refused elsewhere"
         );
         assert_eq!(refused("sweep src --out src"), None, "folders");
     }

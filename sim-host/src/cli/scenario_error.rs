@@ -1,4 +1,4 @@
-//! Errors of commands as the command line tells them.
+//! Errors of commands in the words of the command line.
 
 use super::Failure;
 use crate::commands::CommandError;

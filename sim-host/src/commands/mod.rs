@@ -1,6 +1,6 @@
 //! The commands without their command line: from a scenario or a recording to a document, one file per command.
 //!
-//! A long command tells its progress and can be stopped through [`Hooks`]; what is finished then is its result.
+//! A long command reports its progress and can be stopped through [`Hooks`]; what is finished then is its result.
 
 pub mod basin;
 pub mod drawn;
@@ -17,13 +17,13 @@ pub mod sweep;
 pub use error::CommandError;
 pub use setup::Setup;
 
-/// What a long command tells, and asks, while it computes. The functions are called from several threads.
+/// Callbacks of a long command, for progress and interruption, called from several threads.
 #[derive(Clone, Copy)]
 pub struct Hooks<'a> {
     /// Called after every part of the work: a speed, a ray, a cell.
     pub finished: &'a (dyn Fn() + Sync),
     /// Called with a number of parts that are added to the work.
     pub added: &'a (dyn Fn(usize) + Sync),
-    /// Asked before every part; true ends the command with what is finished.
+    /// Checked before every part; true ends the command with what is finished.
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }

@@ -1,6 +1,6 @@
 //! Claims: who computes a unit, and what of it is done. Processes that share a folder, on any number of machines, divide
 //! its units by them; a claim that is lost or ignored costs computing time only, as each unit has the same bytes
-//! whoever computes it.
+//! in every process.
 
 use super::Found;
 use super::worker::Worker;

@@ -30,7 +30,7 @@ impl Claims {
         &self.worker
     }
 
-    /// Claims a unit that nobody computes, with the columns that others have finished; `None` if another process
+    /// Claims a unit that no process computes, with the columns that others have finished; `None` if another process
     /// computes it.
     ///
     /// # Errors

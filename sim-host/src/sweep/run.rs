@@ -28,7 +28,7 @@ pub struct Cell {
 
 /// Callbacks for progress and interruption.
 pub struct Progress<'a> {
-    /// Called for every column, whoever computed it.
+    /// Called for every column, also of other processes.
     pub advanced: &'a (dyn Fn() + Sync),
     /// Checked before every column; true stops the run.
     pub stop: &'a (dyn Fn() -> bool + Sync),
@@ -45,7 +45,7 @@ pub struct Done {
 
 /// Computes `cells` on all cores of the current rayon pool and stores each in `folder` when it is finished. Processes with
 /// the same folder share the cells: each is claimed before it is computed, and taken over if its process is lost. Ends
-/// when all cells are finished, by whomever, or `stop` is true: the finished columns of unfinished cells are then kept
+/// when all cells are finished, also by others, or `stop` is true: the finished columns of unfinished cells are then kept
 /// with their claims. The results depend neither on the number of threads or processes nor on earlier runs.
 ///
 /// # Errors

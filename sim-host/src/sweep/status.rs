@@ -19,7 +19,7 @@ pub struct StatusDocument {
     pub cells: usize,
     /// Number of stored cells. They are not read: a damaged one is found by the next run.
     pub done: usize,
-    /// Number of cells that nobody has begun, or that were interrupted.
+    /// Number of cells that are not begun, or that were interrupted.
     pub free: usize,
     /// Cells that are being computed.
     pub running: Vec<ClaimedCell>,

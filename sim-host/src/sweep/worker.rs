@@ -4,7 +4,7 @@ use super::claim::now_unix_s;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A process, told from all others.
+/// A process, distinguished from all others.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Worker {
     /// Name of its machine.

@@ -48,7 +48,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
         callbacks.map_or((None, null_mut()), |given| (given.logger, given.environment));
     let log = Log::V2(logger, environment, text(name).map(CStr::to_owned).unwrap_or_default());
     if kind != 1 {
-        log.say(ERROR, "the FMU is for co-simulation, not for model exchange");
+        log.write(ERROR, "the FMU is for co-simulation, not for model exchange");
         return null_mut();
     }
     let folder = text(resources).and_then(|uri| folder_of(&uri.to_string_lossy()));
@@ -181,7 +181,7 @@ pub unsafe extern "C" fn fmi2GetRealStatus(c: Pointer, kind: c_int, value: *mut 
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetBooleanStatus(_c: Pointer, kind: c_int, value: *mut c_int) -> c_int {
-    // 3: whether the instance wants to end the simulation.
+    // 3: whether the simulation is to be ended.
     if kind != 3 {
         return DISCARD;
     }

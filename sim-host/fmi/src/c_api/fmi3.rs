@@ -46,7 +46,7 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     environment: Pointer,
     logger: Option<Logger3>,
 ) -> Pointer {
-    Log::V3(logger, environment).say(ERROR, "the FMU is for co-simulation, not for model exchange");
+    Log::V3(logger, environment).write(ERROR, "the FMU is for co-simulation, not for model exchange");
     null_mut()
 }
 
@@ -63,7 +63,7 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     _lock: Pointer,
     _unlock: Pointer,
 ) -> Pointer {
-    Log::V3(logger, environment).say(ERROR, "the FMU is for co-simulation, not for scheduled execution");
+    Log::V3(logger, environment).write(ERROR, "the FMU is for co-simulation, not for scheduled execution");
     null_mut()
 }
 

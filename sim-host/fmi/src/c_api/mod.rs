@@ -1,6 +1,6 @@
 //! The functions of FMI 2.0 and 3.0 for co-simulation, over [`Instance`].
 //!
-//! No call panics across this border: a panic is caught, reported through the logger, and the instance is dead from then on.
+//! No call panics across this border: a panic is caught, reported through the logger, and the instance refuses further calls.
 #![allow(
     unsafe_code,
     non_snake_case,
@@ -12,7 +12,7 @@
               module of the crate has unsafe code: pointers that the standard says are valid for the call are read and written here"
 )]
 
-use crate::instance::{Instance, Said, Snapshot};
+use crate::instance::{Instance, LogEntry, Snapshot};
 use crate::variable::Kind;
 use percent_encoding::percent_decode_str;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -44,12 +44,12 @@ enum Log {
 struct Handle {
     instance: Instance,
     log: Log,
-    talks: bool,
-    dead: bool,
+    logs_events: bool,
+    failed: bool,
 }
 
 impl Log {
-    fn say(&self, status: c_int, text: &str) {
+    fn write(&self, status: c_int, text: &str) {
         let category = match status {
             ERROR => c"logStatusError",
             WARNING => c"logStatusWarning",
@@ -76,19 +76,19 @@ impl Log {
 fn on(pointer: Pointer, act: impl FnOnce(&mut Handle) -> Result<(), String>) -> c_int {
     // SAFETY: the importer passes what an instantiation returned and has not freed it, from one thread at a time.
     let Some(handle) = (unsafe { pointer.cast::<Handle>().as_mut() }) else { return ERROR };
-    if handle.dead {
-        handle.log.say(ERROR, "the instance ended with an internal error");
+    if handle.failed {
+        handle.log.write(ERROR, "the instance ended with an internal error");
         return ERROR;
     }
     match catch_unwind(AssertUnwindSafe(|| act(handle))) {
         Ok(Ok(())) => OK,
         Ok(Err(reason)) => {
-            handle.log.say(ERROR, &reason);
+            handle.log.write(ERROR, &reason);
             ERROR
         }
         Err(_) => {
-            handle.dead = true;
-            handle.log.say(ERROR, "internal error");
+            handle.failed = true;
+            handle.log.write(ERROR, "internal error");
             ERROR
         }
     }
@@ -124,7 +124,7 @@ fn text<'a>(at: Text) -> Option<&'a CStr> {
     (!at.is_null()).then(|| unsafe { CStr::from_ptr(at) })
 }
 
-/// Writes one value where the importer wants it.
+/// Writes one value to the place that the importer gives.
 fn put<T>(at: *mut T, value: T) {
     // SAFETY: null or a place for such a value.
     if let Some(place) = unsafe { at.as_mut() } {
@@ -189,20 +189,22 @@ fn integer_or_choice(kind: Kind) -> bool {
 }
 
 /// An instance as the importer's pointer; null, and a line in the log, if it can't be made.
-fn instantiate(log: Log, token: Text, resources: Option<PathBuf>, talks: bool) -> Pointer {
+fn instantiate(log: Log, token: Text, resources: Option<PathBuf>, logs_events: bool) -> Pointer {
     let made = catch_unwind(|| {
         let token = text(token).ok_or("no instantiation token")?.to_string_lossy();
         let resources = resources.ok_or("no path of the resources")?;
         Instance::new(&token, &resources)
     });
     match made {
-        Ok(Ok(instance)) => Box::into_raw(Box::new(Handle { instance, log, talks, dead: false })).cast(),
+        Ok(Ok(instance)) => {
+            Box::into_raw(Box::new(Handle { instance, log, logs_events, failed: false })).cast()
+        }
         Ok(Err(reason)) => {
-            log.say(ERROR, &reason);
+            log.write(ERROR, &reason);
             null_mut()
         }
         Err(_) => {
-            log.say(ERROR, "internal error");
+            log.write(ERROR, "internal error");
             null_mut()
         }
     }
@@ -215,9 +217,9 @@ fn free_instance(pointer: Pointer) {
     }
 }
 
-fn log_events(pointer: Pointer, talks: bool) -> c_int {
+fn log_events(pointer: Pointer, logs_events: bool) -> c_int {
     on(pointer, |handle| {
-        handle.talks = talks;
+        handle.logs_events = logs_events;
         Ok(())
     })
 }
@@ -231,11 +233,11 @@ fn terminate(pointer: Pointer) -> c_int {
 
 fn do_step(pointer: Pointer, now_s: f64, step_s: f64) -> c_int {
     on(pointer, |handle| {
-        for said in handle.instance.step(now_s, step_s)? {
-            match said {
-                Said::Doubt(doubt) => handle.log.say(WARNING, &doubt),
-                Said::Event(event) if handle.talks => handle.log.say(OK, &event),
-                Said::Event(_) => {}
+        for entry in handle.instance.step(now_s, step_s)? {
+            match entry {
+                LogEntry::Warning(warning) => handle.log.write(WARNING, &warning),
+                LogEntry::Event(event) if handle.logs_events => handle.log.write(OK, &event),
+                LogEntry::Event(_) => {}
             }
         }
         Ok(())
@@ -329,7 +331,7 @@ macro_rules! refused {
     };
 }
 
-/// Getters and setters for types that no variable has: nothing can be asked of them.
+/// Getters and setters for types that no variable has: every call is an error.
 macro_rules! untyped {
     ($($get:ident $set:ident $type:ty;)*) => {
         refused! {

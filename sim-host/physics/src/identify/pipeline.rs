@@ -68,7 +68,7 @@ impl Identified {
         }
     }
 
-    /// Whether the standard errors of [`Self::fit`] hold: not if the refinement was asked for and failed, because the linear
+    /// Whether the standard errors of [`Self::fit`] hold: not if the requested refinement failed, because the linear
     /// bicycle's error may be several times larger.
     pub fn has_errors(&self) -> bool {
         !matches!(self.refined, Some(Err(_)))
