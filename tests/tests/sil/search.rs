@@ -104,35 +104,34 @@ fn fast_and_plain_basins_with_riders_agree() {
     }
 }
 
-/// Situation: bicycles under any law with any small or large disturbance. Action: ride quickly and exactly.
+/// Situation: bicycles under any law, and under the product, with any small or large disturbance. Action: ride quickly and
+/// exactly.
 /// Must hold: every quick outcome is the exact one, but for at most one in 500 chaotic rides; few are left open; and quick
 /// rides take at most a third of the steps.
 fn random_rides(cases: u32) {
     let laws = [Law::None, H, Law::H { cut: true }, Law::F, Law::G, "cl1".parse().expect("a law")];
-    let starts = (0..laws.len(), 0.0..10.0, -20.0..20.0, -3.0..3.0, any::<bool>());
+    let all: Vec<Conditions> = laws.into_iter().map(assisted).chain([configured(product())]).collect();
+    let starts = (0..all.len(), 0.0..10.0, -20.0..20.0, -3.0..3.0, any::<bool>());
     let mut runner = TestRunner::default();
-    let mut rides_of: Vec<Vec<Start>> = vec![Vec::new(); laws.len()];
+    let mut rides_of: Vec<Vec<Start>> = vec![Vec::new(); all.len()];
     for _ in 0..cases {
-        let (law, speed_m_s, steer_rate_rad_s, roll_rate_rad_s, small) =
+        let (assist, speed_m_s, steer_rate_rad_s, roll_rate_rad_s, small) =
             starts.new_tree(&mut runner).expect("a start").current();
         let scale = if small { 0.1 } else { 1.0 };
         let (steer_rate_rad_s, roll_rate_rad_s) = (scale * steer_rate_rad_s, scale * roll_rate_rad_s);
-        rides_of[law].push(Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s });
+        rides_of[assist].push(Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s });
     }
     let (mut other, mut open, mut quick_steps, mut steps) = (Vec::new(), 0, 0, 0);
-    for (law, starts) in laws.iter().zip(&rides_of) {
-        let conditions = assisted(law.clone());
-        let quick = Quick::new(&conditions).expect("quick rides").rides(starts);
-        for (quick, exact) in quick.iter().zip(rides(&conditions, starts)) {
+    for (assist, (conditions, starts)) in all.iter().zip(&rides_of).enumerate() {
+        let quick = Quick::new(conditions).expect("quick rides").rides(starts);
+        for (quick, exact) in quick.iter().zip(rides(conditions, starts)) {
             (quick_steps, steps) = (quick_steps + quick.steps, steps + exact.steps);
             let same = |outcome: Outcome| match (outcome.fall(), exact.outcome.fall()) {
                 (None, None) => outcome == exact.outcome,
                 (one, other) => one == other,
             };
             match quick.outcome {
-                Some(outcome) if !same(outcome) => {
-                    other.push((law.clone(), exact.start, outcome, exact.outcome))
-                }
+                Some(outcome) if !same(outcome) => other.push((assist, exact.start, outcome, exact.outcome)),
                 Some(_) => {}
                 None => open += 1,
             }
@@ -184,8 +183,8 @@ fn the_linear_model_decides_as_the_nonlinear() {
     assert!(counts.iter().all(|count| *count > 100), "{counts:?}");
 }
 
-/// Situation: a controller with more than a law: the product, alone and with a rider, whose falls are exact rides in either
-/// search, and h with a limit only. Action and what must hold: as above.
+/// Situation: a controller with more than a law: the product with all its checks, alone and with a rider, and h with a limit
+/// only. Action and what must hold: as above.
 #[test]
 fn fast_and_plain_searches_with_a_controller_agree() {
     let mut limited = Config::thesis(H);

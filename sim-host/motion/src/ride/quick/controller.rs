@@ -15,6 +15,9 @@ use control::{Command, Mode, Plan};
 
 /// Longest step with a controller in every control period \[s\].
 pub(super) const LONGEST_S: f64 = 5e-3;
+/// Largest step over more than one control period of a controller that compares its sensors with each other, relative to the
+/// time scale of the motion: with readings extrapolated further, its checks trip at other times.
+pub(super) const EXTRAPOLATED: f64 = 0.02;
 /// Relative error of a time in control periods.
 const ROUNDING: f64 = 1e-6;
 

@@ -11,7 +11,6 @@ mod linear;
 mod riders;
 mod source;
 
-use super::event::fallen;
 use super::hardware::{self, lane_frame};
 use super::sensor::readings;
 use super::substeps::{nearer, stiffness};
@@ -43,9 +42,6 @@ const SHORTEST_S: f64 = 1e-6;
 /// Smallest distance from a singular configuration at which the independent speeds are used, as a fraction of the
 /// upright bicycle's distance.
 const NEAREST: f64 = 0.1;
-/// Roll or steer beyond which a ride whose controller monitors its sensors is left to the exact method \[rad\]: hardly any
-/// returns from there.
-const VIOLENT_RAD: f64 = 1.2;
 /// Steps per second of the time limit after which a ride is left to the exact method.
 const STEPS_PER_S: f64 = 2000.0;
 /// The end of a ride is decided if the late amplitude differs from the limit by this factor.
@@ -74,8 +70,8 @@ pub struct Quick<'a> {
     largest: f64,
     /// Factor between a late amplitude and the limit that decides.
     clear: f64,
-    /// Whether a controller reads, and so monitors, more than roll rate and one speed.
-    monitored: bool,
+    /// Largest step over more than one control period, relative to the time scale of the motion.
+    extrapolated: f64,
 }
 
 impl<'a> Quick<'a> {
@@ -99,20 +95,22 @@ impl<'a> Quick<'a> {
             return None;
         }
         let forecast = Forecast::new(conditions, &source);
-        Some(Self { conditions, source, forecast, longest_s, largest: LARGEST, clear, monitored })
+        let extrapolated = if monitored { controller::EXTRAPOLATED } else { f64::INFINITY };
+        Some(Self { conditions, source, forecast, longest_s, largest: LARGEST, clear, extrapolated })
     }
 
     /// The same in shorter steps.
     pub fn fine(&self) -> Self {
         let longest_s = if self.source.sampled().is_some() { 0.5 * self.longest_s } else { self.longest_s };
-        Self { largest: LARGEST_FINE, longest_s, ..self.clone() }
+        let extrapolated = 0.5 * self.extrapolated;
+        Self { largest: LARGEST_FINE, longest_s, extrapolated, ..self.clone() }
     }
 }
 
 /// Simulates every ride; results in the order of `starts`.
 #[inline(always)]
 pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
-    let Quick { conditions, source, forecast, longest_s, largest, clear, monitored } = quick;
+    let Quick { conditions, source, forecast, longest_s, largest, clear, extrapolated } = quick;
     let b = &conditions.bicycle;
     let least_cos = if conditions.rider.is_some() { LEAST_COS } else { 0.0 };
     let most_steps = (STEPS_PER_S * conditions.time_limit_s.max(1.0)) as u32;
@@ -159,9 +157,17 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 // The pitch solved from roll and steer, not the predicted one.
                 start.pitch = motion.pose.attitude.pitch;
                 (end, at_start, stiff) = (start, measured, stiffness(b, &motion));
-                h = steps((conditions.time_limit_s, *largest, least_cos), &t, &stiff, |lane, t| {
-                    riders.as_ref().map_or(*longest_s, |riders| longest_s.min(riders.longest_step_s(lane, t)))
-                });
+                h = steps(
+                    (conditions.time_limit_s, *largest, least_cos),
+                    &t,
+                    &stiff,
+                    |lane, t, rate_rad_s| {
+                        let longest_s = longest_s.min((extrapolated / rate_rad_s).max(conditions.step_s));
+                        riders
+                            .as_ref()
+                            .map_or(longest_s, |riders| longest_s.min(riders.longest_step_s(lane, t)))
+                    },
+                );
                 if let Some(controllers) = &mut controllers {
                     for (lane, ride) in lanes.iter().enumerate() {
                         let Some(ride) = ride else { continue };
@@ -228,9 +234,6 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             ride.steps += 1;
             let ended = match ride.book((conditions, *clear), (&before, &after), h) {
                 None if ride.steps >= most_steps => Some(None),
-                // Monitors that compare sensors decide in violent motion: falls are left to the exact ride.
-                None if *monitored && after.roll.abs().max(after.steer.abs()) > VIOLENT_RAD => Some(None),
-                Some(_) if *monitored && fallen(&conditions.fall, &after) => Some(None),
                 None => {
                     let rider = riders.as_ref().map(|riders| riders.after(lane));
                     let engaged = controllers.as_ref().is_none_or(|controllers| controllers.engaged(lane));
@@ -250,20 +253,21 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
 }
 
 /// The steps of all lanes \[s\] from their times, `None` in an empty lane; `largest` is relative to the time scale, `longest_s`
-/// of lane and time.
+/// of lane, time and the root of the sum of the squared angular rates \[rad/s\].
 #[inline(always)]
 fn steps<const N: usize>(
     (time_limit_s, largest, least_cos): (f64, f64, f64),
     t: &[Option<f64>; N],
     stiff: &[Lanes<N>; 4],
-    longest_s: impl Fn(usize, f64) -> f64,
+    longest_s: impl Fn(usize, f64, f64) -> f64,
 ) -> Lanes<N> {
     let mut h = Lanes([LONGEST_S; N]);
     for (i, t) in t.iter().enumerate() {
         let Some(t) = *t else { continue };
         let [squares, cos_roll, ..] = stiff.map(|q| q.0[i]);
-        let scale_s = largest * cos_roll.abs().max(least_cos) / squares.sqrt();
-        h.0[i] = scale_s.max(SHORTEST_S).min(longest_s(i, t)).min(time_limit_s - t);
+        let rate_rad_s = squares.sqrt();
+        let scale_s = largest * cos_roll.abs().max(least_cos) / rate_rad_s;
+        h.0[i] = scale_s.max(SHORTEST_S).min(longest_s(i, t, rate_rad_s)).min(time_limit_s - t);
     }
     h
 }
