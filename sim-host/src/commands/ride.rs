@@ -2,7 +2,7 @@
 
 use super::{CommandError, Setup};
 use crate::report::document::RideDocument;
-use crate::ride::{Assist, Conditions, Ride, Start, TracePoint, traced};
+use crate::ride::{Assist, Conditions, Ride, Start, TracePoint, traced, traced_until};
 use crate::scenario::{Scenario, ScenarioError};
 
 /// A ride with its record.
@@ -48,6 +48,16 @@ pub fn ride(setup: &Setup) -> Result<Ridden, CommandError> {
     check_direction(start, &setup.conditions)?;
     let (ride, trace) = traced(&setup.conditions, start);
     Ok(Ridden { ride, trace })
+}
+
+/// As [`ride`]; `stop` is called in every control period, and there is no ride once it returns true.
+///
+/// # Errors
+/// As of [`ride`].
+pub fn ride_until(setup: &Setup, stop: &dyn Fn() -> bool) -> Result<Option<Ridden>, CommandError> {
+    let start = start(&setup.scenario)?;
+    check_direction(start, &setup.conditions)?;
+    Ok(traced_until(&setup.conditions, start, stop).map(|(ride, trace)| Ridden { ride, trace }))
 }
 
 impl Ridden {

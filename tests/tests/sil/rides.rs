@@ -1,7 +1,8 @@
 //! Rides with the control crate in the loop.
 
 use control::{Config, Law, Taper};
-use sim_host::ride::{Conditions, Imu, Outcome, Ride, Start, rides, traced};
+use sim_host::ride::{Conditions, Imu, Outcome, Ride, Start, rides, traced, traced_until};
+use std::cell::Cell;
 use tests::basins::{H, alone, assisted, configured, ideal};
 
 fn knock(speed_m_s: f64, steer_rate_rad_s: f64) -> Start {
@@ -28,6 +29,27 @@ fn the_assist_recovers_a_ride_that_falls_without() {
     assert!((10.0..35.0).contains(&saved.effort.peak_steer_rad.to_degrees()), "{:?}", saved.effort);
     let (out_j, net_j) = (saved.effort.motor_energy_out_j, saved.effort.motor_energy_j);
     assert!((4.0..8.0).contains(&out_j) && (0.1..1.0).contains(&(out_j - net_j)), "{:?}", saved.effort);
+}
+
+/// Situation: a ride that is asked in every control period whether it is stopped.
+/// Action: never, and at the hundredth question.
+/// Must hold: the ride and the record of an ordinary one, to the bit; no ride, and no further question.
+#[test]
+fn a_stopped_ride_is_none() {
+    let (conditions, start) = (assisted(H), knock(4.0, 5.0));
+    let asked = Cell::new(0);
+    let whole = traced_until(&conditions, start, &|| {
+        asked.set(asked.get() + 1);
+        false
+    });
+    assert_eq!(whole, Some(traced(&conditions, start)));
+    assert!((6000..6010).contains(&asked.get()), "{}", asked.get());
+    asked.set(0);
+    let stopped = traced_until(&conditions, start, &|| {
+        asked.set(asked.get() + 1);
+        asked.get() == 100
+    });
+    assert_eq!((stopped, asked.get()), (None, 100));
 }
 
 /// Situation: h at 2 m/s, below its weave speed of 2.445 m/s.

@@ -53,6 +53,8 @@ pub trait Remote {
 pub(super) enum Backend<'a> {
     /// In this program.
     Local,
+    /// In this program, until the function, called before every step, returns true.
+    Until(&'a dyn Fn() -> bool),
     /// On an external processor; not called again after its first failure.
     Remote {
         /// The external controller.
@@ -70,18 +72,22 @@ impl<'a> Backend<'a> {
 
     /// Whether rides from the same speed can share one warm start.
     pub(super) fn shares(&self) -> bool {
-        matches!(self, Self::Local)
+        matches!(self, Self::Local | Self::Until(_))
     }
 
-    /// Whether the processor failed, so that the ride is invalid.
+    /// Whether the processor failed or the ride was stopped, so that it is invalid.
     pub(super) fn failed(&self) -> bool {
-        matches!(self, Self::Remote { failure: Some(_), .. })
+        match self {
+            Self::Local => false,
+            Self::Until(stop) => stop(),
+            Self::Remote { failure, .. } => failure.is_some(),
+        }
     }
 
     /// Returns the failure, if any.
     pub(super) fn end(self) -> Result<(), RemoteError> {
         match self {
-            Self::Local | Self::Remote { failure: None, .. } => Ok(()),
+            Self::Local | Self::Until(_) | Self::Remote { failure: None, .. } => Ok(()),
             Self::Remote { failure: Some(error), .. } => Err(error),
         }
     }
@@ -105,7 +111,7 @@ impl<'a> Backend<'a> {
     #[inline]
     pub(super) fn step(&mut self, plan: &Plan, state: &mut State, frame: &SensorFrame) -> Stepped {
         match self {
-            Self::Local => {
+            Self::Local | Self::Until(_) => {
                 let command = control::step(plan, state, frame);
                 Stepped { command, authority: state.authority() }
             }

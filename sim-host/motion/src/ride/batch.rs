@@ -46,24 +46,45 @@ fn quick_rides_avx2(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
 /// Simulates one ride and records every control period; the bits are the same as in a batch.
 pub fn traced(conditions: &Conditions, start: Start) -> (Ride, Vec<TracePoint>) {
     let mut trace = Vec::with_capacity(conditions.steps() as usize);
-    let mut done = alone(conditions, start, &mut trace);
+    let mut done = alone(conditions, start, &mut trace, &mut Backend::Local);
     (done.remove(0), trace)
 }
 
-fn alone(conditions: &Conditions, start: Start, trace: &mut Vec<TracePoint>) -> Vec<Ride> {
+/// As [`traced`]; `stop` is called in every control period, and there is no ride once it returns true.
+pub fn traced_until(
+    conditions: &Conditions,
+    start: Start,
+    stop: &dyn Fn() -> bool,
+) -> Option<(Ride, Vec<TracePoint>)> {
+    let mut trace = Vec::with_capacity(conditions.steps() as usize);
+    let mut done = alone(conditions, start, &mut trace, &mut Backend::Until(stop));
+    done.pop().map(|ride| (ride, trace))
+}
+
+fn alone(
+    conditions: &Conditions,
+    start: Start,
+    trace: &mut Vec<TracePoint>,
+    backend: &mut Backend<'_>,
+) -> Vec<Ride> {
     #[cfg(target_arch = "x86_64")]
     if std::is_x86_feature_detected!("avx2") {
         // SAFETY: the machine was just checked to have AVX2.
-        return unsafe { alone_avx2(conditions, start, trace) };
+        return unsafe { alone_avx2(conditions, start, trace, backend) };
     }
-    run::<1>(conditions, &[start], Some(trace), &mut Backend::Local)
+    run::<1>(conditions, &[start], Some(trace), backend)
 }
 
 /// One ride in instructions with three operands, which need no copies of registers.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn alone_avx2(conditions: &Conditions, start: Start, trace: &mut Vec<TracePoint>) -> Vec<Ride> {
-    run::<1>(conditions, &[start], Some(trace), &mut Backend::Local)
+fn alone_avx2(
+    conditions: &Conditions,
+    start: Start,
+    trace: &mut Vec<TracePoint>,
+    backend: &mut Backend<'_>,
+) -> Vec<Ride> {
+    run::<1>(conditions, &[start], Some(trace), backend)
 }
 
 /// As [`rides`], one after the other, with the control step on an external processor.

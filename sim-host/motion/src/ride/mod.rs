@@ -24,7 +24,7 @@ pub use crate::bicycle::Start;
 pub use crate::plant::Imu;
 pub use assist::{Assist, IdealLaw, OwnLaw};
 pub use backend::{Remote, RemoteError, Stepped};
-pub use batch::{rides, rides_on, traced, traced_on};
+pub use batch::{rides, rides_on, traced, traced_on, traced_until};
 pub use conditions::{Conditions, ConditionsError, ScheduleSpeed};
 pub use fall::{FallCause, FallCriterion, LaidFlat};
 pub use hardware::frame as frame_of;
