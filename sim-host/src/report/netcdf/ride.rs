@@ -1,10 +1,10 @@
 //! NetCDF file of `ride`.
 
+use super::active::{ACTIVE, active_causes, active_limits, cause_names, limit_names, mode_names};
 use super::variable::outcome_flags;
 use super::{File, Values, Variable, fall_flags, switch_flags};
 use crate::report::tool::Tool;
 use crate::ride::{FallCause, Ride, TracePoint};
-use control::{ActiveLimits, CAUSES, Causes, LIMITS, Mode};
 
 /// A number of a point in time: its name, unit, meaning and value.
 type Number = (&'static str, &'static str, &'static str, fn(&TracePoint) -> f64);
@@ -35,37 +35,25 @@ pub fn ride(title: &str, attributes: Vec<(&'static str, String)>, ride: &Ride, t
         Variable::numbers((name, units, long_name), &["t"], trace.iter().map(of).collect())
     };
     let mut variables: Vec<Variable> = NUMBERS.iter().map(number).collect();
-    let modes: Vec<String> = (0..).map_while(Mode::numbered).map(|mode| mode.name().to_owned()).collect();
-    let limits = LIMITS.map(|named| named.name.to_owned()).to_vec();
-    let causes = CAUSES.map(|cause| cause.name().to_owned()).to_vec();
-    let numbers = CAUSES.map(|cause| f64::from(cause.code())).to_vec();
-    let limited = |p: &TracePoint| {
-        let active = ActiveLimits(p.limits);
-        LIMITS.map(|named| active.contains(named.limit))
-    };
-    let caused = |p: &TracePoint| {
-        let active = Causes(p.causes);
-        CAUSES.map(|cause| active.has(cause))
-    };
-    let inactive = ["inactive", "active"];
+    let (causes, numbers) = cause_names().into_iter().map(|(name, number)| (name, f64::from(number))).unzip();
     variables.extend([
         Variable::new(
             ("mode", "mode of the controller"),
             &["t"],
-            Values::Flags(modes, trace.iter().map(|p| p.mode).collect()),
+            Values::Flags(mode_names(), trace.iter().map(|p| p.mode).collect()),
         ),
-        Variable::new(("limit", "limits of the torque"), &["limit"], Values::Texts(limits)),
+        Variable::new(("limit", "limits of the torque"), &["limit"], Values::Texts(limit_names())),
         Variable::new(
             ("limit_active", "whether a limit changed the torque"),
             &["t", "limit"],
-            switch_flags(inactive, trace.iter().flat_map(limited)),
+            switch_flags(ACTIVE, trace.iter().flat_map(|p| active_limits(p.limits))),
         ),
         Variable::new(("cause", "causes that prevent or reduce torque"), &["cause"], Values::Texts(causes)),
         Variable::numbers(("cause_number", "1", "number of the cause"), &["cause"], numbers),
         Variable::new(
             ("cause_active", "whether a cause prevented or reduced torque"),
             &["t", "cause"],
-            switch_flags(inactive, trace.iter().flat_map(caused)),
+            switch_flags(ACTIVE, trace.iter().flat_map(|p| active_causes(p.causes))),
         ),
         Variable::new(("outcome", "outcome of the ride"), NONE, outcome_flags([ride.outcome])),
         Variable::new(
