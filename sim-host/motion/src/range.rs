@@ -6,6 +6,8 @@
 pub struct RangeError {
     /// Name of the quantity, with its unit.
     pub name: String,
+    /// Key of the quantity in a scenario's file, with dots, where it has one.
+    pub key: Option<&'static str>,
     /// The rejected value.
     pub value: f64,
     /// Smallest allowed value.
@@ -14,12 +16,31 @@ pub struct RangeError {
     pub max: f64,
 }
 
+impl RangeError {
+    /// Smallest and largest allowed value in the unit of the key: messages have angles in degrees, keys in radians.
+    pub fn bounds(&self) -> (f64, f64) {
+        let angle = self.key.is_some_and(|key| key.ends_with("_rad")) && self.name.ends_with("(deg)");
+        if angle { (self.min.to_radians(), self.max.to_radians()) } else { (self.min, self.max) }
+    }
+}
+
 /// Accepts `value` from `min` to `max`; rejects NaN.
 ///
 /// # Errors
 /// The name, the value and the range.
 pub fn within(name: &str, value: f64, min: f64, max: f64) -> Result<(), RangeError> {
-    if value >= min && value <= max { Ok(()) } else { Err(RangeError { name: name.into(), value, min, max }) }
+    if value >= min && value <= max {
+        return Ok(());
+    }
+    Err(RangeError { name: name.into(), key: None, value, min, max })
+}
+
+/// As [`within`], of the value of a scenario's `key`.
+///
+/// # Errors
+/// The key, the name, the value and the range.
+pub fn within_key(key: &'static str, name: &str, value: f64, min: f64, max: f64) -> Result<(), RangeError> {
+    within(name, value, min, max).map_err(|error| RangeError { key: Some(key), ..error })
 }
 
 /// A number as text, with an exponent if very small or very large.

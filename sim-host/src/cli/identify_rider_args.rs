@@ -6,7 +6,7 @@ use super::record::point;
 use super::recording_args::RecordingArgs;
 use crate::bicycle::ForcePoint;
 use crate::commands::identify::Delay;
-use crate::commands::identify_text::{drift, percent, select};
+use crate::commands::identify_text::{ChoiceTextError, drift, percent, select};
 use crate::identify::{Drift, Hold, Select, Signal, symbols};
 use crate::range::{TimeError, time, within};
 use crate::rider::{MAX_DELAY_S, Neuromuscular};
@@ -137,6 +137,6 @@ fn moment(text: &str) -> Result<f64, TimeError> {
     time(text, 3600.0)
 }
 
-fn until(text: &str) -> Result<Until, String> {
+fn until(text: &str) -> Result<Until, ChoiceTextError> {
     if text == "none" { Ok(Until(None)) } else { percent(text).map(|x| Until(Some(x))) }
 }

@@ -184,7 +184,7 @@ impl<S> Options<S> {
         if self.given.iter().any(|given| given.setting.name == "rider") {
             scenario.rider = RiderChoice::default();
         }
-        self.given.iter().try_for_each(|given| given.apply(scenario))
+        self.given.iter().try_for_each(|given| given.apply(scenario)).map_err(|error| error.to_string())
     }
 }
 

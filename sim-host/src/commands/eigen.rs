@@ -5,6 +5,7 @@ use crate::bicycle::catalogue::Bicycle;
 use crate::eigen::{
     CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes, roots, stability,
 };
+use crate::range::within;
 use crate::report::document::EigenDocument;
 use crate::report::resolved::{ResolvedBicycle, ResolvedCapsize, ResolvedLaw, ResolvedRider};
 use crate::report::tool::{SCHEMA, Tool};
@@ -58,9 +59,9 @@ pub fn eigen(task: &EigenTask) -> Result<Eigenvalues, CommandError> {
     if speeds.is_empty() {
         return Err(CommandError::choice("speeds", "none is given"));
     }
-    if let Some(v) = speeds.iter().find(|v| !(-FASTEST_M_S..=FASTEST_M_S).contains(*v)) {
-        let reason = format!("{v} m/s is outside -{FASTEST_M_S} to {FASTEST_M_S}");
-        return Err(CommandError::choice("speeds", reason));
+    for v in speeds {
+        within("speed (m/s)", *v, -FASTEST_M_S, FASTEST_M_S)
+            .map_err(|e| CommandError::choice("speeds", e))?;
     }
     let alone = *law == Law::None && rider.is_none() && task.capsize.is_none();
     if let (false, Some(v)) = (alone, speeds.iter().find(|v| **v < 0.0)) {

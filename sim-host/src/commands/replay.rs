@@ -5,6 +5,7 @@ use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
 use crate::parameters;
 use crate::plant::{Fault, ImuMount};
+use crate::range::within_key;
 use crate::recording::{ReadOptions, read};
 use crate::replay::{
     Feed, FeedOptions, Fitted, Map, Press, Resample, RunOptions, Samples, fitted, frames, run as run_through,
@@ -115,6 +116,11 @@ impl Replay {
     /// # Errors
     /// A wrong choice, with its name.
     pub fn new(choice: ReplayChoice) -> Result<Self, CommandError> {
+        for (name, key, time_s) in
+            [("longest-gap", "longest_gap_s", choice.longest_gap_s), ("every", "every_s", choice.every_s)]
+        {
+            within_key(key, "time (s)", time_s, 1e-6, 3600.0).map_err(|e| CommandError::choice(name, e))?;
+        }
         let base = base(choice.preset);
         let file = choice.parameters.as_deref().map(ParameterFile::read).transpose();
         let file = file.map_err(|e| CommandError::Scenario(e.into()))?;
@@ -166,9 +172,17 @@ impl Replay {
     /// # Errors
     /// The file, or the part of it that can't be used.
     pub fn file(&self, path: &Path) -> Result<ReplayedRecording, Failure> {
+        self.file_until(path, &|| false)
+    }
+
+    /// As [`Self::file`]; `stop` is called in every control period, and the replay ends once it returns true.
+    ///
+    /// # Errors
+    /// As of [`Self::file`].
+    pub fn file_until(&self, path: &Path, stop: &dyn Fn() -> bool) -> Result<ReplayedRecording, Failure> {
         let name = path.display().to_string();
         if path.extension().is_some_and(|extension| extension == "frames") {
-            return self.frames(path, name);
+            return self.frames(path, name, stop);
         }
         let choice = &self.choice;
         let options = ReadOptions { strict: choice.strict, dbc: choice.dbc.clone() };
@@ -201,7 +215,7 @@ impl Replay {
             torque_nm: &samples.torque_nm,
         };
         let replayed = run_through(&plan, &options, |pressed| {
-            let (t_s, measured) = feed.next(pressed)?;
+            let (t_s, measured) = feed.next(pressed).filter(|_| !stop())?;
             let frame = frame_of(&plan, &measured);
             kept.push(frame);
             Some((t_s, frame))
@@ -217,7 +231,12 @@ impl Replay {
     }
 
     /// Replays recorded frames bit for bit, with the switch that they contain.
-    fn frames(&self, path: &Path, name: String) -> Result<ReplayedRecording, Failure> {
+    fn frames(
+        &self,
+        path: &Path,
+        name: String,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<ReplayedRecording, Failure> {
         if !self.faults.is_empty() {
             return Err(format!("{name}: --fault acts on recordings of samples, not on frames").into());
         }
@@ -228,7 +247,7 @@ impl Replay {
         let options =
             RunOptions { press: choice.press, every_s: choice.every_s, roll_rad: &[], torque_nm: &[] };
         let mut each = all.iter().copied();
-        let replayed = run_through(&plan, &options, |_| each.next());
+        let replayed = run_through(&plan, &options, |_| each.next().filter(|_| !stop()));
         let config = self.resolved(&plan, None);
         let result = ReplayResult { file: name, remarks: Vec::new(), fitted, replayed };
         let frames = all.into_iter().map(|(_, frame)| frame).collect();

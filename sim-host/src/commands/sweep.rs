@@ -2,7 +2,7 @@
 
 use super::{CommandError, Hooks, Setup};
 use crate::basin::{Search, border};
-use crate::scenario::setting::{CONDITIONS, Given, Setting};
+use crate::scenario::setting::{CONDITIONS, Given, GivenError, Setting};
 use crate::scenario::{RiderChoice, Scenario, Speeds, named};
 use crate::sweep::{Axis, Cell, DoneColumn, Plan, SweepError, Unit, check, combination, count, label};
 use rayon::prelude::*;
@@ -41,24 +41,28 @@ fn roles(axes: &[Axis], shared: &[Given]) -> Result<Vec<Role>, SweepError> {
         let given = shared.iter().any(|given| given.setting.name == key);
         match CONDITIONS.iter().find(|setting| setting.name == key) {
             _ if used => Ok(Role::Place(place)),
-            Some(setting) if given && !setting.repeats => {
-                Err(format!("--over {key}: --{key} cannot be given in addition"))
-            }
+            Some(setting) if given && !setting.repeats => Err(format!("--{key} cannot be given in addition")),
             Some(setting) => Ok(Role::Setting(setting)),
             None => {
                 let names: Vec<_> = CONDITIONS.iter().map(|setting| setting.name).collect();
                 Err(format!(
-                    "--over {key}: there is no option --{key}, nor {place} in another option's value; options are {}",
+                    "there is no option --{key}, nor {place} in another option's value; options are {}",
                     names.join(", ")
                 ))
             }
         }
     };
-    axes.iter().map(|axis| role(axis).map_err(SweepError::Axis)).collect()
+    let named = |axis: &Axis| role(axis).map_err(|reason| SweepError::Axis { key: axis.key.clone(), reason });
+    axes.iter().map(named).collect()
 }
 
 /// The scenario of one cell.
-fn cell(base: &Scenario, shared: &[Given], roles: &[Role], values: &[String]) -> Result<Scenario, String> {
+fn cell(
+    base: &Scenario,
+    shared: &[Given],
+    roles: &[Role],
+    values: &[String],
+) -> Result<Scenario, GivenError> {
     let mut scenario = base.clone();
     if roles.iter().any(|role| matches!(role, Role::Setting(setting) if setting.name == "rider")) {
         scenario.rider = RiderChoice::default();
@@ -90,15 +94,21 @@ pub fn sweep(axes: &[Axis], base: &Scenario, shared: Vec<Given>) -> Result<Sweep
     let roles = roles(axes, &shared)?;
     let cells = count(axes);
     if cells > MOST {
-        return Err(CommandError::Cell(format!("the sweep has {cells} cells; at most {MOST}")));
+        return Err(CommandError::Cells { cells, most: MOST });
     }
     let (mut setups, mut remarks, mut ridden) = (Vec::with_capacity(cells), BTreeSet::new(), false);
     for i in 0..cells {
         let values = combination(axes, i);
-        let of_cell = |reason: String| CommandError::Cell(format!("cell {}: {reason}", label(axes, &values)));
-        let scenario = cell(base, &shared, &roles, &values).map_err(of_cell)?;
+        let of_cell = |(message, key, range)| {
+            let cell = label(axes, &values);
+            CommandError::Cell { cell, message, key, range }
+        };
+        let scenario = cell(base, &shared, &roles, &values);
+        let scenario =
+            scenario.map_err(|e| of_cell((e.to_string(), Some(e.given.setting.key.into()), e.range())))?;
         ridden |= scenario.is_ridden();
-        let setup = Setup::new(&scenario).map_err(|e| of_cell(named(&scenario, &e)))?;
+        let setup = Setup::new(&scenario);
+        let setup = setup.map_err(|e| of_cell((named(&scenario, &e), e.key(), e.range())))?;
         remarks.extend(setup.notes.iter().map(|note| format!("note: {note}")));
         remarks.extend(setup.warnings().map(|warning| format!("warning: {warning}")));
         setups.push((json(&setup.config), setup.scenario, setup.conditions));
@@ -131,7 +141,12 @@ fn json(value: &impl serde::Serialize) -> Value {
 /// The scenario can't be used.
 pub fn unit(id: &str, config: &Value, scenario: &Value, hooks: Hooks) -> Result<Option<Unit>, CommandError> {
     let text = scenario.to_string();
-    let read = Scenario::from_json(&text).map_err(|e| CommandError::Cell(format!("cell {id}: {e}")))?;
+    let read = Scenario::from_json(&text).map_err(|e| CommandError::Cell {
+        cell: id.into(),
+        message: e.to_string(),
+        key: e.key().map(Into::into),
+        range: None,
+    })?;
     let setup = Setup::new(&read)?;
     let search = read.search.resolve(read.is_ridden())?;
     let column = |(i, speed): (usize, &f64)| -> Option<DoneColumn> {

@@ -4,7 +4,7 @@ use super::doubts::doubts;
 use super::error::{FEWEST, RATES_HZ, RecordError};
 use super::outliers::without;
 use crate::identify::{Disturbances, Hold, Measured, Record, Signal};
-use crate::range::{plain, within};
+use crate::range::{plain, within_key};
 use crate::replay::{Perturbed, Timed};
 
 /// Longest bridged time between two samples, in sample times; a longer one is a gap.
@@ -248,7 +248,7 @@ pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, Rec
         (None, false) => mean,
         (None, true) => return Err(RecordError::NoSpeed),
     };
-    within("forward speed (m/s)", speed_m_s, 0.1, 30.0)?;
+    within_key("speed_m_s", "forward speed (m/s)", speed_m_s, 0.1, 30.0)?;
     let deviation = (speed.iter().map(|(_, v)| (v - mean).powi(2)).sum::<f64>() / speed.len() as f64).sqrt();
     let samples = (0..count).map(|k| [0, 1].map(|i| disturbed[i].values[k])).collect();
     let record =

@@ -1,5 +1,6 @@
 //! Errors of scenarios.
 
+use super::blame::{bounds, conditions_key, number, search_key};
 use super::file::SyntaxError;
 use super::law::LawChoiceError;
 use super::parameter_file::ParameterFileError;
@@ -105,42 +106,38 @@ impl ScenarioError {
                 Some(SetError::Parameter(ParameterError::Range { key: inner, .. })) if key == "bicycle" => {
                     format!("bicycle.parameters.{inner}")
                 }
-                _ => key.clone(),
+                _ => self.number().and_then(|error| error.key).unwrap_or(key).to_owned(),
             }),
             Self::Bicycle(_) => Some("bicycle".into()),
             Self::Rider(_) | Self::Fit { .. } => Some("rider".into()),
             Self::Law(_) => Some("law".into()),
             Self::ParameterFile(_) => Some("parameter_file".into()),
             Self::PlantFile(_) | Self::Plant(_) => Some("plant".into()),
-            Self::Search(_) => Some("search".into()),
+            Self::Search(error) => Some(search_key(error).into()),
             Self::Parameter(error) => Some(format!("parameters.{}.{}", error.leaf.group, error.leaf.name)),
-            Self::Read { .. } | Self::Conditions(_) | Self::Flashed { .. } | Self::Ideal => None,
+            Self::Conditions(error) => conditions_key(error).map(Into::into),
+            Self::Flashed { .. } => Some("bicycle".into()),
+            Self::Ideal => Some("assist".into()),
+            Self::Read { .. } => None,
         }
     }
 
     /// Smallest and largest allowed value, if a number is outside its range.
     pub fn range(&self) -> Option<(f64, f64)> {
-        let of = |error: &RangeError| (error.min, error.max);
-        let of_search = |error: &SearchError| match error {
-            SearchError::Range(error) => Some(of(error)),
-            _ => None,
-        };
-        let of_parameter = |error: &ParamError| (error.leaf.min.into(), error.leaf.max.into());
         match self {
-            Self::Value { reason, .. } => reason
-                .downcast_ref()
-                .map(of)
-                .or_else(|| of_search(reason.downcast_ref()?))
-                .or_else(|| reason.downcast_ref().map(of_parameter))
-                .or_else(|| match reason.downcast_ref()? {
-                    SetError::Parameter(ParameterError::Range { min, max, .. }) => Some((*min, *max)),
-                    _ => None,
-                }),
-            Self::Search(error) => of_search(error),
-            Self::Conditions(ConditionsError::Range(error)) | Self::Plant(PlantError::Range(error)) => {
-                Some(of(error))
-            }
-            Self::Parameter(error) | Self::Flashed { error, .. } => Some(of_parameter(error)),
+            Self::Value { reason, .. } => bounds(reason.as_ref()),
+            Self::Parameter(error) | Self::Flashed { error, .. } => bounds(error),
+            _ => self.number().map(RangeError::bounds),
+        }
+    }
+
+    /// The number outside its range, if there is one.
+    fn number(&self) -> Option<&RangeError> {
+        match self {
+            Self::Value { reason, .. } => number(reason.as_ref()),
+            Self::Search(error) => error.range(),
+            Self::Conditions(error) => error.range(),
+            Self::Plant(PlantError::Range(error)) => Some(error),
             _ => None,
         }
     }

@@ -91,6 +91,15 @@ impl Scenario {
     }
 }
 
+/// Choices beside a scenario, from JSON.
+///
+/// # Errors
+/// States the key, and what was expected.
+pub fn choices<T: serde::de::DeserializeOwned>(json: &str) -> Result<T, SyntaxError> {
+    let value: serde_json::Value = serde_json::from_str(json).map_err(|e| SyntaxError::new(&e))?;
+    serde_path_to_error::deserialize(value).map_err(|e| SyntaxError::at(&e))
+}
+
 /// A parser's message without the names of Rust's types.
 fn in_plain_words(message: &str) -> String {
     let tables = ["Scenario", "RiderChoice", "PlantChoice", "SensorChange", "ActuatorChoice", "FallChoice"];

@@ -2,6 +2,7 @@
 //! disturbance and the search; [`Scenario::resolve`] gives what a ride needs. Files, options of the command line, cells
 //! of a sweep and code make the same type, and every result contains the one that reproduces it. `docs/scenario.md`.
 
+mod blame;
 pub mod content;
 mod cut_files;
 mod error;
@@ -20,12 +21,15 @@ pub mod speeds;
 mod text;
 mod text_error;
 mod ticks;
+mod unit;
 
+pub(crate) use blame::search_key;
+pub use blame::{bounds, number};
 pub use content::{Content, OrNone};
 pub use cut_files::warnings as cut_warnings;
 pub use error::ScenarioError;
 pub use fall::FallChoice;
-pub use file::SyntaxError;
+pub use file::{SyntaxError, choices};
 pub use law::{LawChoiceError, LawTable};
 pub use named::named;
 pub use parameter_file::{ParameterFile, ParameterFileError, ParameterTextError};
@@ -37,6 +41,7 @@ pub use search::{SearchChoice, Speeds};
 pub use speeds::SpeedsError;
 pub use text_error::TextError;
 pub use ticks::TicksError;
+pub use unit::unit_of;
 
 use crate::basin::PlaneSearch;
 use crate::bicycle::catalogue::Bicycle;

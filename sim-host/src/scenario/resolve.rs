@@ -121,10 +121,10 @@ impl Scenario {
             plane.check().map_err(|e| ScenarioError::value("plane", e))?;
         }
         for (key, draws) in [("uncertain", self.uncertain), ("rider_draws", self.rider_draws)] {
-            if let Some(count) = draws.filter(|count| !DRAWS.contains(count)) {
-                let (least, most) = (DRAWS.start(), DRAWS.end());
-                return Err(ScenarioError::value(key, format!("{count} is outside {least} to {most}")));
-            }
+            let (least, most) = (f64::from(*DRAWS.start()), f64::from(*DRAWS.end()));
+            draws
+                .map_or(Ok(()), |count| within("draws", f64::from(count), least, most))
+                .map_err(|e| ScenarioError::value(key, e))?;
         }
         match self.rider_draws {
             Some(_) if self.uncertain.is_some() => Err(ScenarioError::value(

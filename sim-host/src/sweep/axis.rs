@@ -1,5 +1,6 @@
 //! Parses the axes of a sweep: `KEY=VALUES` with words and ranges of numbers.
 
+use crate::scenario::setting::{self, Setting};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +57,19 @@ pub enum AxisError {
         /// The number of values.
         values: usize,
     },
+}
+
+impl AxisError {
+    /// Key of the axis, if there is one.
+    pub fn key(&self) -> Option<&str> {
+        match self {
+            Self::Form(_) => None,
+            Self::Item { key, .. }
+            | Self::Twice { key, .. }
+            | Self::Equal { key, .. }
+            | Self::Many { key, .. } => Some(key),
+        }
+    }
 }
 
 /// A wrong value or range of an axis; each with the range as given.
@@ -141,17 +155,23 @@ impl Axis {
 
 impl Axis {
     /// The unit of an axis of numbers, the option's if none is typed; `None` for an axis of words.
-    pub(super) fn unit(&self) -> Option<AxisUnit<'_>> {
+    pub fn unit(&self) -> Option<AxisUnit<'_>> {
         let (_, typed) = self.numbers()?;
-        let (netcdf, column) = match (self.key.as_str(), typed) {
-            ("torque-limit", "") => ("N m", "nm"),
-            ("rate-limit", "") => ("N m s-1", "nm_s"),
-            ("time-limit", "") => ("s", "s"),
-            (_, "") => ("1", ""),
-            (_, "deg") => ("degree", "deg"),
-            (_, typed) => (typed, typed),
+        let (column, netcdf) = match typed {
+            "" => self.setting().and_then(Setting::unit).unwrap_or(("", "1")),
+            "deg" => ("deg", "degree"),
+            typed => (typed, typed),
         };
         Some(AxisUnit { netcdf, column })
+    }
+
+    /// What the axis is, in a few words: those of its setting, or its placeholder.
+    pub fn about(&self) -> String {
+        self.setting().map_or_else(|| self.key.replace('-', " "), Setting::about)
+    }
+
+    fn setting(&self) -> Option<&'static Setting> {
+        setting::of_name(&self.key)
     }
 
     /// One of the values as a number in the axis's unit; `None` for an axis of words.
@@ -164,11 +184,11 @@ impl Axis {
 
 /// The unit of an axis of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct AxisUnit<'a> {
+pub struct AxisUnit<'a> {
     /// As UDUNITS writes it; `1` if unknown or without one.
-    pub(super) netcdf: &'a str,
+    pub netcdf: &'a str,
     /// As the end of a column's name; may be empty.
-    pub(super) column: &'a str,
+    pub column: &'a str,
 }
 
 /// A time in seconds, from its unit.

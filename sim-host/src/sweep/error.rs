@@ -5,6 +5,7 @@ use crate::basin::SearchError;
 use crate::report::netcdf::NetCdfError;
 use crate::report::output::OutputError;
 use crate::ride::ConditionsError;
+use crate::scenario::search_key;
 use std::io;
 use std::path::PathBuf;
 
@@ -12,9 +13,14 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SweepError {
-    /// A wrong axis; the option, the key and the reason as text.
-    #[error("{0}")]
-    Axis(String),
+    /// A wrong axis.
+    #[error("--over {key}: {reason}")]
+    Axis {
+        /// Its key.
+        key: String,
+        /// The reason.
+        reason: String,
+    },
     /// A name that cannot be a variable of the results.
     #[error("--over {key}: the name {reason}")]
     Name {
@@ -95,4 +101,15 @@ pub enum SweepError {
     /// A NetCDF file that can't be made.
     #[error(transparent)]
     NetCdf(#[from] NetCdfError),
+}
+
+impl SweepError {
+    /// Key of the axis or of the search to blame, if it is known.
+    pub fn key(&self) -> Option<&str> {
+        match self {
+            Self::Axis { key, .. } | Self::Name { key, .. } => Some(key),
+            Self::Search(error) => Some(search_key(error)),
+            _ => None,
+        }
+    }
 }

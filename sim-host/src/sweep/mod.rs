@@ -21,7 +21,7 @@ mod unit;
 mod worker;
 mod write;
 
-pub use axis::{Axis, AxisError, ItemError};
+pub use axis::{Axis, AxisError, AxisUnit, ItemError};
 pub use claim::{Claim, DoneColumn, RENEWAL, STALE, State};
 pub use claims::Claims;
 pub use error::SweepError;

@@ -61,7 +61,7 @@ fn coordinate(axis: &Axis, name: &str, order: &[usize]) -> Variable {
         }
         None => Values::Texts(order.iter().map(|&i| axis.values[i].clone()).collect()),
     };
-    Variable::new((name, &format!("--over {}", axis.key)), &[name], values)
+    Variable::new((name, &axis.about()), &[name], values)
 }
 
 /// Indices of the axis's values: numbers rising, texts as given.

@@ -264,7 +264,7 @@ fn a_dry_run_lists_the_cells_and_writes_nothing() {
 /// Situation: axes of numbers with a unit and of texts.
 /// Action: sweep, and read the NetCDF file.
 /// Must hold: dimensions axes and speed; the axes' values and the document's heights and areas, to the bit; units
-/// given.
+/// and names of the options' keys.
 #[test]
 fn netcdf_has_the_documents_numbers() {
     let bench = Bench::new(PROGRAM);
@@ -281,6 +281,11 @@ fn netcdf_has_the_documents_numbers() {
     assert_eq!(set.get_var("area").unwrap().dim_names(), ["sensor_delay", "law"]);
     let units = |name: &str| set.get_var_attr_as_string(name, "units").unwrap();
     assert_eq!((units("sensor_delay"), units("height")), ("ms".into(), "rad s-1".into()));
+    let about = |name: &str| set.get_var_attr_as_string(name, "long_name").unwrap();
+    assert_eq!(
+        (about("sensor_delay"), about("law")),
+        ("delay of the sensors".into(), "roll-rate law".into())
+    );
     let configuration = set.get_global_attr_as_string("configuration").unwrap();
     let configuration: Value = serde_json::from_str(&configuration).unwrap();
     assert_eq!(configuration["tool"], document["tool"]);

@@ -3,7 +3,7 @@
 use super::{Assist, FallCriterion};
 use crate::bicycle::Geometry;
 use crate::plant::{Imu, Plant, PlantError};
-use crate::range::{RangeError, within};
+use crate::range::{RangeError, within, within_key};
 use crate::rider::{Rider, UnfitError};
 
 /// Speed that schedules the gains of assist and rider.
@@ -68,6 +68,16 @@ pub enum ConditionsError {
     IdealLaw,
 }
 
+impl ConditionsError {
+    /// The number outside its range, if there is one.
+    pub fn range(&self) -> Option<&RangeError> {
+        match self {
+            Self::Range(error) | Self::Plant(PlantError::Range(error)) => Some(error),
+            _ => None,
+        }
+    }
+}
+
 /// Largest delay of a simulated sensor \[control periods\].
 pub(super) const MAX_SENSOR_DELAY_TICKS: u16 = 1000;
 
@@ -107,9 +117,9 @@ impl Conditions {
     /// # Errors
     /// States the value and its range.
     pub fn check(&self) -> Result<(), ConditionsError> {
-        within("time limit (s)", self.time_limit_s, self.step_s, 3600.0)?;
+        within_key("time_limit_s", "time limit (s)", self.time_limit_s, self.step_s, 3600.0)?;
         within("step (s)", self.step_s, 1e-5, 1e-2)?;
-        within("recovered-below fraction", self.recovered_below, 1e-6, 1.0)?;
+        within_key("recovered_below", "recovered-below fraction", self.recovered_below, 1e-6, 1.0)?;
         self.fall.check()?;
         self.rider.as_ref().map_or(Ok(()), |rider| rider.check(self.step_s))?;
         self.plant.check()?;

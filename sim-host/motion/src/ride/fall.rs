@@ -1,6 +1,6 @@
 //! Fall criterion: configuration and causes.
 
-use crate::range::{RangeError, within};
+use crate::range::{RangeError, within_key};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -40,15 +40,15 @@ impl FallCriterion {
     /// # Errors
     /// States the value and its range.
     pub fn check(&self) -> Result<(), RangeError> {
-        let angle = |name: &str, rad: f64| {
+        let angle = |key, name: &str, rad: f64| {
             // A typed 90 degrees can differ by rounding.
-            within(&format!("{name} (deg)"), (rad.to_degrees() * 1e9).round() / 1e9, 1.0, 90.0)
+            within_key(key, &format!("{name} (deg)"), (rad.to_degrees() * 1e9).round() / 1e9, 1.0, 90.0)
         };
-        angle("fall: roll", self.roll_rad)?;
-        angle("fall: steer", self.steer_rad)?;
+        angle("fall.roll_rad", "fall: roll", self.roll_rad)?;
+        angle("fall.steer_rad", "fall: steer", self.steer_rad)?;
         self.flat.map_or(Ok(()), |flat| {
-            angle("fall: flat", flat.roll_rad)?;
-            within("fall: lasting (s)", flat.lasting_s, 0.001, 10.0)
+            angle("fall.flat.roll_rad", "fall: flat", flat.roll_rad)?;
+            within_key("fall.flat.lasting_s", "fall: lasting (s)", flat.lasting_s, 0.001, 10.0)
         })
     }
 }

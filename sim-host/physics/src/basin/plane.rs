@@ -2,7 +2,7 @@
 
 use super::search::{along, together};
 use super::{Axis, Column, Method, Search, SearchError, Work};
-use crate::range::within;
+use crate::range::within_key;
 use crate::ride::{Conditions, Start};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -106,12 +106,13 @@ impl PlaneSearch {
     /// # Errors
     /// States the value and its range.
     pub fn check(&self) -> Result<(), SearchError> {
-        within("speed (m/s)", self.speed, 0.0, 30.0)?;
-        within("number of rays", self.rays as f64, 2.0, 10_000.0)?;
-        within("largest steer rate (rad/s)", self.max_steer_rate, 0.01, 100.0)?;
-        within("largest roll rate (rad/s)", self.max_roll_rate, 0.01, 100.0)?;
-        within("points of a ray", self.points as f64, 1.0, 10_000.0)?;
-        within("tolerance as a part of a ray", self.tolerance, 1e-9, 1.0 / self.points as f64)?;
+        within_key("plane.speed", "speed (m/s)", self.speed, 0.0, 30.0)?;
+        within_key("plane.rays", "number of rays", self.rays as f64, 2.0, 10_000.0)?;
+        within_key("plane.max_steer_rate", "largest steer rate (rad/s)", self.max_steer_rate, 0.01, 100.0)?;
+        within_key("plane.max_roll_rate", "largest roll rate (rad/s)", self.max_roll_rate, 0.01, 100.0)?;
+        within_key("plane.points", "points of a ray", self.points as f64, 1.0, 10_000.0)?;
+        let most = 1.0 / self.points as f64;
+        within_key("plane.tolerance", "tolerance as a part of a ray", self.tolerance, 1e-9, most)?;
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use super::search::columns;
 use super::{Basin, Column, Island, Search, SearchError};
-use crate::range::within;
+use crate::range::within_key;
 use crate::ride::Conditions;
 
 /// Smallest step of adaptive speeds \[m/s\]: intervals below twice this are not halved.
@@ -76,8 +76,9 @@ impl Rounds {
     /// # Errors
     /// States the value and its range.
     pub fn check(&self) -> Result<(), SearchError> {
-        let tolerance =
-            self.adaptive.map(|part| within("adaptive speeds (part of the largest height)", part, 1e-4, 1.0));
+        let name = "adaptive speeds (part of the largest height)";
+        let checked = |part| within_key("search.adaptive_speeds", name, part, 1e-4, 1.0);
+        let tolerance = self.adaptive.map(checked);
         Ok(tolerance.transpose().map(drop)?)
     }
 }

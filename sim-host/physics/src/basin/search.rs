@@ -3,7 +3,7 @@
 use super::plain::{explored, plain, ridden};
 use super::{Basin, Column, fast};
 use crate::bicycle::uncertain::DrawError;
-use crate::range::{RangeError, within};
+use crate::range::{RangeError, within_key};
 use crate::ride::{Conditions, ConditionsError, Quick, RemoteError, Ride, Start};
 use crate::rider::ScheduleError;
 use rayon::prelude::*;
@@ -95,6 +95,17 @@ pub enum SearchError {
     },
 }
 
+impl SearchError {
+    /// The number outside its range, if there is one.
+    pub fn range(&self) -> Option<&RangeError> {
+        match self {
+            Self::Range(error) => Some(error),
+            Self::Conditions(error) => error.range(),
+            _ => None,
+        }
+    }
+}
+
 impl From<SearchError> for RemoteError {
     fn from(error: SearchError) -> Self {
         Self(error.into())
@@ -107,16 +118,16 @@ impl Search {
     /// # Errors
     /// States the value and its range.
     pub fn check(&self) -> Result<(), SearchError> {
-        within("number of speeds", self.speeds.len() as f64, 1.0, 100_000.0)?;
+        within_key("search.speeds", "number of speeds", self.speeds.len() as f64, 1.0, 100_000.0)?;
         for &v in &self.speeds {
-            within("speed (m/s)", v, 0.0, 30.0)?;
+            within_key("search.speeds", "speed (m/s)", v, 0.0, 30.0)?;
         }
         if let Some(pair) = self.speeds.windows(2).find(|pair| pair[1] <= pair[0]) {
             return Err(SearchError::Order { before: pair[0], after: pair[1] });
         }
-        within("max rate (rad/s)", self.max_rate, 0.01, 100.0)?;
-        within("scan step (rad/s)", self.scan_step, 1e-3, self.max_rate)?;
-        within("tolerance (rad/s)", self.tolerance, 1e-9, self.scan_step)?;
+        within_key("search.max_rate", "max rate (rad/s)", self.max_rate, 0.01, 100.0)?;
+        within_key("search.scan_step", "scan step (rad/s)", self.scan_step, 1e-3, self.max_rate)?;
+        within_key("search.tolerance", "tolerance (rad/s)", self.tolerance, 1e-9, self.scan_step)?;
         Ok(())
     }
 

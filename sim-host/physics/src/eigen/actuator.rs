@@ -1,6 +1,6 @@
 //! Linear model of the motor and its gear.
 
-use crate::range::{RangeError, within};
+use crate::range::{RangeError, within, within_key};
 
 /// Deviation of the torque on the steer axis from the requested one, and the friction and inertia that motor,
 /// gear and bearings add. The default is exact and adds none.
@@ -32,10 +32,22 @@ impl LinearActuator {
     /// States the value and its range.
     pub fn check(&self) -> Result<(), RangeError> {
         within("actuator scale", self.scale, -10.0, 10.0)?;
-        within("actuator delay (s)", self.delay_s, 0.0, 1.0)?;
-        within("actuator time constant (s)", self.time_constant_s, 0.0, 10.0)?;
-        within("viscous friction (N m s/rad)", self.viscous_nm_s_rad, 0.0, 100.0)?;
-        within("actuator inertia (kg m^2)", self.inertia_kg_m2, 0.0, 10.0)
+        within_key("actuator.delay_s", "actuator delay (s)", self.delay_s, 0.0, 1.0)?;
+        within_key(
+            "actuator.time_constant_s",
+            "actuator time constant (s)",
+            self.time_constant_s,
+            0.0,
+            10.0,
+        )?;
+        within_key(
+            "actuator.viscous_nm_s_rad",
+            "viscous friction (N m s/rad)",
+            self.viscous_nm_s_rad,
+            0.0,
+            100.0,
+        )?;
+        within_key("actuator.inertia_kg_m2", "actuator inertia (kg m^2)", self.inertia_kg_m2, 0.0, 10.0)
     }
 }
 

@@ -18,6 +18,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "law",
         key: "law",
+        long_name: "roll-rate law",
         value: "LAW",
         help: "Roll-rate law: none, h, h-cut, f, g, cl1, cl2:K, balance-assist:K, or a table FILE [default: h; none with a rider; product: h-cut]",
         hyphen: false,
@@ -30,6 +31,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "preset",
         key: "preset",
+        long_name: "defaults",
         value: "PRESET",
         help: "Defaults of the options below",
         default: Some("thesis"),
@@ -47,6 +49,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "assist",
         key: "assist",
+        long_name: "what computes the torque",
         value: "ASSIST",
         help: "What computes the torque",
         default: Some("firmware"),
@@ -64,6 +67,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "schedule-speed",
         key: "schedule_speed",
+        long_name: "speed that schedules the gain",
         value: "SCHEDULE_SPEED",
         help: "Speed that schedules the gain",
         default: Some("front"),
@@ -82,6 +86,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "torque-limit",
         key: "torque_limit_nm",
+        long_name: "largest torque of the assist",
         value: "NM|none",
         help: "Largest torque in N m, or none [default: none; product: 7]",
         set: |s, text| {
@@ -94,6 +99,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "rate-limit",
         key: "rate_limit_nm_s",
+        long_name: "largest change of torque of the assist",
         value: "NM/S|none",
         help: "Largest change of torque in N m/s, or none [default: none; product: 100]",
         set: |s, text| {
@@ -107,6 +113,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "taper",
         key: "taper_m_s",
+        long_name: "speeds between which the torque rises from zero",
         value: "ZERO:FULL|none",
         help: "Taper: torque zero at the first, full at the second speed in m/s, or none [default: none; product: 0.5:1.5]",
         set: |s, text| {
@@ -119,6 +126,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "sensor-delay",
         key: "sensor_delay_s",
+        long_name: "delay of the sensors",
         value: "TIME",
         help: "Delay of the simulated sensors, for example 20ms; a whole number of control periods",
         default: Some("0ms"),
@@ -131,6 +139,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "sensor",
         key: "plant.sensors",
+        long_name: "errors of the sensors",
         value: "MODEL|NAME:KEY=VALUE,...",
         help: "Sensor errors: models of real sensors by name or FILE, several joined by +; or NAME:KEY=VALUE,... for example gyro:noise=0.01,bias=0.02,delay=5ms or front-wheel:model=hall-16; or none; may be repeated",
         repeats: true,
@@ -141,6 +150,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "actuator",
         key: "plant.actuator",
+        long_name: "motor, steer friction and end stop",
         value: "NAME|FILE|KEY=VALUE,...",
         help: "Motor, steer friction and end stop: none, davis, gazelle, a FILE, and KEY=VALUE to change values",
         default: Some("none"),
@@ -154,6 +164,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "fault",
         key: "plant.faults",
+        long_name: "injected faults",
         value: "CHANNEL:KIND@FROM..TO",
         help: "Inject a fault, for example gyro.x:stuck@1.5s..2s or motor:dead@1s, or none; may be repeated",
         repeats: true,
@@ -170,6 +181,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "seed",
         key: "plant.seed",
+        long_name: "seed of noise and dropouts",
         value: "N",
         help: "Seed of noise and dropouts; each ride derives its own from its initial state",
         default: Some("0"),
@@ -185,6 +197,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "parameters",
         key: "parameter_file",
+        long_name: "file of the firmware's parameters",
         value: "FILE",
         help: "Law and parameters of the firmware from a file, as written by `param export`; other options have precedence",
         hyphen: false,
@@ -197,6 +210,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "set",
         key: "parameters",
+        long_name: "parameters of the firmware",
         value: "KEY=VALUE",
         help: "Any parameter of the firmware, for example limits.rise_nm_s=50 or limits.end_stop=on; may be repeated",
         repeats: true,
@@ -212,6 +226,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "imu",
         key: "imu",
+        long_name: "roll rate that the gyro measures",
         value: "IMU",
         help: "Roll rate that the gyro measures: derivative of the roll angle, or angular rate about the frame's axis",
         default: Some("euler"),
@@ -230,6 +245,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "time-limit",
         key: "time_limit_s",
+        long_name: "duration of a ride that does not fall",
         value: "S",
         help: "Duration of a ride that does not fall, in seconds",
         default: Some("6"),
@@ -242,6 +258,7 @@ pub const CONDITIONS: &[Setting] = &[
     Setting {
         name: "recovered-below",
         key: "recovered_below",
+        long_name: "fraction of the maxima below which a ride has recovered",
         value: "FRACTION",
         help: "A ride has recovered if roll and steer end below this fraction of their maxima",
         default: Some("0.1"),
@@ -273,6 +290,7 @@ const BICYCLE: Setting = Setting {
 const BICYCLE_SET: Setting = Setting {
     name: "bicycle-set",
     key: "bicycle_set",
+    long_name: "changed parameters of the bicycle",
     value: "KEY=VALUE",
     help: "Changes one of the bicycle's parameters, SI units, for example lam=0.3; may be repeated",
     repeats: true,
@@ -290,6 +308,7 @@ const BICYCLE_SET: Setting = Setting {
 pub const FALL: Setting = Setting {
     name: "fall",
     key: "fall",
+    long_name: "criterion of a fall",
     value: "KEY=VALUE,...|published",
     help: "Fall: roll or steer passes these angles, or the bicycle lies flat short of them for a time after the flat angle of roll; published has no flat",
     default: Some("roll=90deg,steer=90deg,flat=80deg,lasting=1s"),

@@ -1,7 +1,7 @@
 //! A setting with a value, as a text.
 
 use super::Setting;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, TextError, bounds};
 
 /// A setting and its text.
 #[derive(Clone, Debug)]
@@ -12,15 +12,32 @@ pub struct Given {
     pub text: String,
 }
 
+/// A text that is no value of its setting.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("--{} {}: {reason}", given.setting.name, given.text)]
+pub struct GivenError {
+    /// The setting and its text.
+    pub given: Given,
+    /// What is expected.
+    pub reason: Box<TextError>,
+}
+
+impl GivenError {
+    /// Smallest and largest allowed value, if a number is outside its range.
+    pub fn range(&self) -> Option<(f64, f64)> {
+        bounds(self.reason.as_ref())
+    }
+}
+
 impl Given {
     /// Changes a scenario.
     ///
     /// # Errors
     /// The option with its text, and what is expected.
-    pub fn apply(&self, scenario: &mut Scenario) -> Result<(), String> {
+    pub fn apply(&self, scenario: &mut Scenario) -> Result<(), GivenError> {
         scenario.options.insert(self.setting.key);
         (self.setting.set)(scenario, &self.text)
-            .map_err(|e| format!("--{} {}: {e}", self.setting.name, self.text))
+            .map_err(|reason| GivenError { given: self.clone(), reason: Box::new(reason) })
     }
 
     /// As it was typed.

@@ -6,20 +6,22 @@ mod rider;
 mod start;
 
 pub use conditions::{BICYCLES, CONDITIONS, FALL};
-pub use given::Given;
+pub use given::{Given, GivenError};
 pub use rider::RIDERS;
 pub(super) use start::DRAWS;
 pub use start::{ADAPTIVE, PLANE, SEARCH, START, UNCERTAIN};
 
-use super::{Scenario, TextError};
+use super::{Scenario, TextError, unit_of};
 
 /// A setting: how it is named and described, and how its text changes a scenario.
 #[derive(Debug)]
 pub struct Setting {
     /// Name: `--name` on the command line, key of an axis.
     pub name: &'static str,
-    /// Key in a scenario's file, with dots.
+    /// Key in a scenario's file, with dots; that of a number with a unit ends with the unit.
     pub key: &'static str,
+    /// What it is, in a few words, if the name is not enough.
+    pub long_name: &'static str,
     /// Placeholder of the value in help texts.
     pub value: &'static str,
     /// Description.
@@ -46,6 +48,7 @@ pub struct Setting {
 const PLAIN: Setting = Setting {
     name: "",
     key: "",
+    long_name: "",
     value: "",
     help: "",
     default: None,
@@ -57,6 +60,23 @@ const PLAIN: Setting = Setting {
     grammar: false,
     set: |_, _| Ok(()),
 };
+
+impl Setting {
+    /// What it is, in a few words.
+    pub fn about(&self) -> String {
+        if self.long_name.is_empty() { self.name.replace('-', " ") } else { self.long_name.into() }
+    }
+
+    /// The unit of its numbers, as the end of the key and in the form of UDUNITS; `None` without one.
+    pub fn unit(&self) -> Option<(&'static str, &'static str)> {
+        unit_of(self.key)
+    }
+}
+
+/// The setting of a scenario's conditions with this name.
+pub fn of_name(name: &str) -> Option<&'static Setting> {
+    CONDITIONS.iter().find(|setting| setting.name == name)
+}
 
 /// The setting with this key in a scenario's file.
 pub fn of_key(key: &str) -> Option<&'static Setting> {

@@ -24,6 +24,7 @@ pub(super) const RIDER: Setting = Setting {
 pub(super) const GAINS: Setting = Setting {
     name: "gains",
     key: "rider.gains",
+    long_name: "fit of the rider's gains",
     value: "GAINS",
     help: "Fit of the rider's gains over speed [default: mean]",
     words: &[
@@ -49,6 +50,7 @@ pub(super) const GAINS: Setting = Setting {
 pub(super) const DELAY: Setting = Setting {
     name: "delay",
     key: "rider.delay_s",
+    long_name: "neural delay of the rider",
     value: "TIME",
     help: "The rider's neural delay, 0 to 1 s, for example 60ms [default: the table's own]",
     set: |s, text| {
@@ -61,6 +63,7 @@ pub(super) const DELAY: Setting = Setting {
 pub(super) const GAINS_OUTSIDE: Setting = Setting {
     name: "gains-outside",
     key: "rider.outside",
+    long_name: "gains of the rider beyond the measured speeds",
     value: "GAINS_OUTSIDE",
     help: "The rider's gains beyond the measured speeds [default: extrapolate]",
     words: &[
